@@ -1,0 +1,5 @@
+"""Run the command line with `python -m tsas_cli`."""
+
+from tsas_cli.app import main
+
+main()

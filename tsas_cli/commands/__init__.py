@@ -1,0 +1,1 @@
+"""The subcommands: parse, read, one call, write, print."""

@@ -1,0 +1,57 @@
+"""What the subcommands share: their options, the table they print, and the summary they write."""
+
+import sys
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+DatasetFolder = Annotated[Path, typer.Argument(metavar="DATASET", help="A dataset's folder.")]
+OutFolder = Annotated[Path, typer.Option("--out", metavar="DIR", help="The folder to write.")]
+Force = Annotated[bool, typer.Option("--force", help="Replace the output if it is there.")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
+Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON instead of a table.")]
+
+
+def show(
+    summary: dict[str, Any],
+    tables: Iterable[tuple[str, Sequence[str], Sequence[Sequence[str]]]],
+    *,
+    quiet: bool,
+    as_json: bool,
+) -> None:
+    """Print a stage's result: its summary as JSON, or its tables (title, header, rows)."""
+    if as_json:
+        from tsas_cli.files import json_text
+
+        sys.stdout.write(json_text(summary))
+    elif not quiet:
+        for title, header, rows in tables:
+            _print_table(title, header, rows)
+
+
+def _print_table(title: str, header: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
+    widths = [max(len(str(cell)) for cell in column) for column in zip(header, *rows, strict=True)]
+    print(title)
+    for row in (header, ["-" * w for w in widths], *rows):
+        print(
+            "  "
+            + "  ".join(str(cell).ljust(w) for cell, w in zip(row, widths, strict=True)).rstrip()
+        )
+    print()
+
+
+@contextmanager
+def progress(label: str, total: int, *, quiet: bool) -> Iterator[Any]:
+    """Show a bar on a terminal; yield a function that moves it by one."""
+    if quiet or not sys.stderr.isatty():
+        yield lambda: None
+        return
+    from rich.console import Console
+    from rich.progress import Progress
+
+    with Progress(console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task(label, total=total)
+        yield lambda: bar.advance(task)

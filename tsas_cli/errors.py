@@ -1,0 +1,52 @@
+"""What a person is told when the call or the input is wrong."""
+
+from collections.abc import Iterable
+from difflib import get_close_matches
+
+
+class InputError(Exception):
+    """The call or the input is wrong: one line that says what, where, expected and what to do.
+
+    Parameters
+    ----------
+    what
+        What is wrong, with what was found ("column f_in_N holds text").
+    where
+        File, and row or key where known ("runs/a.parquet, row 12").
+    expected
+        What would have been right ("a number in newton").
+    remedy
+        What to do ("run `tsas check DATASET`").
+    """
+
+    def __init__(
+        self, what: str, *, where: object = "", expected: str = "", remedy: str = ""
+    ) -> None:
+        self.what, self.where, self.expected, self.remedy = what, str(where), expected, remedy
+        super().__init__(self.line())
+
+    def line(self) -> str:
+        """Return the whole message on one line, control characters made visible."""
+        head = f"{self.where}: {self.what}" if self.where else self.what
+        parts = [head]
+        if self.expected:
+            parts.append(f"expected {self.expected}")
+        if self.remedy:
+            parts.append(self.remedy)
+        text = "; ".join(parts)
+        return "".join(c if c.isprintable() else repr(c)[1:-1] for c in text)
+
+
+def nearest(name: str, known: Iterable[str]) -> str:
+    """Return a hint that names the nearest known word, or lists those that exist.
+
+    Examples
+    --------
+    >>> nearest("preload_n", ["preload_N", "load"])
+    'did you mean preload_N?'
+    """
+    known = list(known)
+    close = get_close_matches(name, known, n=1, cutoff=0.6)
+    if close:
+        return f"did you mean {close[0]}?"
+    return f"known are {', '.join(known)}" if known else "none are known here"

@@ -1,0 +1,1 @@
+"""Vectors only, no physics."""

@@ -1,0 +1,53 @@
+"""How noisy and how coarse a sampled channel is, told from the samples alone."""
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+Floats = npt.NDArray[np.float64]
+
+_DIFFERENCE = np.array([1.0, -3.0, 3.0, -1.0])  # blind to anything up to a parabola
+_GAIN = math.sqrt(float(np.sum(_DIFFERENCE**2)))
+
+
+def noise_sd(values: Floats) -> float:
+    """Return the standard deviation of the sample-to-sample noise of a channel.
+
+    Third differences remove the motion; a robust mean square of what is left (the largest 5 % of
+    the differences, jumps and reversals among them, are cut off and made up for) is the noise.
+    Slow disturbances are not counted. NaN where fewer than 16 samples are there.
+    """
+    clean = values[np.isfinite(values)]
+    if clean.size < 16:
+        return math.nan
+    third = np.abs(np.convolve(clean, _DIFFERENCE, mode="valid"))
+    kept = np.sort(third)[: int(0.95 * third.size)]
+    return float(np.sqrt(np.mean(kept**2) / _TRIMMED) / _GAIN)
+
+
+# Mean square of a standard normal variable whose largest 5 % in magnitude are cut off:
+# 1 − 2 c φ(c)/0.95 with c = 1.95996.
+_TRIMMED = 1.0 - 2.0 * 1.959964 * 0.05844507 / 0.95
+
+
+def quantisation_step(values: Floats) -> float:
+    """Return the step between the levels that a channel takes, 0 where it takes too many levels.
+
+    A channel is quantised when all differences between neighbouring levels are multiples of the
+    smallest one, within a thousandth of it, and levels repeat.
+    """
+    levels = np.unique(values[np.isfinite(values)])
+    if levels.size < 2 or levels.size > 0.5 * np.isfinite(values).sum():
+        return 0.0
+    gaps = np.diff(levels)
+    floor = 1e-9 * float(np.abs(levels).max())
+    step = (
+        float(np.median(gaps[gaps <= 1.5 * gaps[gaps > floor].min()]))
+        if (gaps > floor).any()
+        else 0.0
+    )
+    if step <= 0.0:
+        return 0.0
+    ratio = gaps[gaps > floor] / step
+    return step if float(np.abs(ratio - np.round(ratio)).max()) < 0.05 else 0.0

@@ -1,0 +1,55 @@
+"""Where a sampled motion turns back, told apart from noise by a threshold."""
+
+import numpy as np
+import numpy.typing as npt
+
+from tsas_cli.numerics.compiled import kernel
+
+Floats = npt.NDArray[np.float64]
+Indices = npt.NDArray[np.int64]
+
+
+@kernel
+def turning_points(values: Floats, threshold: float) -> Indices:
+    """Return the indices of the extrema between which the signal moves by more than a threshold.
+
+    The first and the last sample are always there, so that neighbouring indices bound the
+    strokes. Extrema alternate; of a flat extremum the first sample is taken.
+
+    Parameters
+    ----------
+    values
+        The signal, shape (n,), finite.
+    threshold
+        The smallest move back that counts as a turn, in the signal's unit.
+    """
+    n = values.size
+    found = np.empty(n, dtype=np.int64)
+    found[0] = 0
+    count = 1
+    low = 0
+    high = 0
+    direction = 0
+    for i in range(1, n):
+        if values[i] > values[high]:
+            high = i
+        if values[i] < values[low]:
+            low = i
+        if direction >= 0 and values[high] - values[i] > threshold:
+            if high > found[count - 1]:
+                found[count] = high
+                count += 1
+            direction = -1
+            low = i
+            high = i
+        elif direction <= 0 and values[i] - values[low] > threshold:
+            if low > found[count - 1]:
+                found[count] = low
+                count += 1
+            direction = 1
+            low = i
+            high = i
+    if found[count - 1] != n - 1:
+        found[count] = n - 1
+        count += 1
+    return found[:count].copy()

@@ -1,0 +1,1 @@
+"""The nominal rig: parameters, static capstan model, slip chain."""

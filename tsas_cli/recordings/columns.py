@@ -1,0 +1,45 @@
+"""The canonical columns of a recording, with their units and roles (format 1)."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+Role = Literal["time", "input", "output", "other"]
+
+
+@dataclass(frozen=True)
+class Column:
+    """One canonical column: its name with the unit, the unit as text, its role and its meaning."""
+
+    name: str
+    unit: str
+    role: Role
+    meaning: str
+
+
+COLUMNS = (
+    Column("time_s", "s", "time", "time since the run began"),
+    Column(
+        "x_in_mm", "mm", "input", "displacement of the tendon at the drive, positive when pulled"
+    ),
+    Column(
+        "x_out_mm", "mm", "output", "displacement of the tendon at the load, positive when pulled"
+    ),
+    Column("f_in_N", "N", "output", "tension at the drive"),
+    Column("f_out_N", "N", "output", "tension at the load"),
+    Column("motor_speed_rpm", "rpm", "input", "motor speed, commanded or measured"),
+    Column("motor_angle_rad", "rad", "input", "motor angle"),
+    Column("f_out_ref_N", "N", "other", "wanted tension at the load"),
+    Column("temperature_C", "°C", "other", "temperature"),
+)
+BY_NAME = {column.name: column for column in COLUMNS}
+NAMES = tuple(BY_NAME)
+TIME = "time_s"
+
+# x_in is the input of the tendon and the output of the drive; f_in alone can drive the tendon too.
+INPUTS = ("x_in_mm", "f_in_N", "motor_speed_rpm", "motor_angle_rad")
+OUTPUTS = ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N")
+
+
+def has_input_and_output(names: frozenset[str]) -> bool:
+    """Say whether the columns hold an input and another column that is an output."""
+    return any(i != o for i in names.intersection(INPUTS) for o in names.intersection(OUTPUTS))

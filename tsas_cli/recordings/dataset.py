@@ -1,0 +1,187 @@
+"""A dataset on disk: one Parquet file per run, and the manifest beside them (format 1)."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from tsas_cli.errors import InputError
+from tsas_cli.files import sha256_of
+from tsas_cli.recordings.columns import BY_NAME, INPUTS, OUTPUTS, TIME, has_input_and_output
+from tsas_cli.recordings.manifest import FILE, Manifest, Run, read_manifest, write_manifest
+
+Floats = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Recording:
+    """One run: its manifest entry, and its canonical columns as float64 arrays, null as NaN."""
+
+    run: Run
+    columns: Mapping[str, Floats]
+
+    @property
+    def time_s(self) -> Floats:
+        """Time in s, strictly increasing."""
+        return self.columns[TIME]
+
+    def get(self, name: str) -> Floats | None:
+        """Return a column, or None where it was not recorded."""
+        return self.columns.get(name)
+
+
+@dataclass(frozen=True)
+class Dataset:
+    """A dataset's folder and manifest; the recordings are read when they are asked for."""
+
+    folder: Path
+    manifest: Manifest
+
+    def __iter__(self) -> Iterator[Recording]:
+        """Read one recording after the other, in the order of the manifest."""
+        return (read_recording(self.folder, run) for run in self.manifest.run)
+
+    def hashes(self) -> dict[str, str]:
+        """Return the checksum of the manifest and of each run's file, by path in the dataset."""
+        return {FILE: sha256_of(self.folder / FILE)} | {r.file: r.sha256 for r in self.manifest.run}
+
+
+def read_dataset(folder: Path) -> Dataset:
+    """Open a dataset.
+
+    Raises
+    ------
+    InputError
+        The folder holds no manifest, or one that format 1 does not allow.
+    """
+    return Dataset(folder, read_manifest(folder))
+
+
+def read_recording(folder: Path, run: Run, *, strict: bool = True) -> Recording:
+    """Read one run and check it against its checksum and the rules of format 1.
+
+    With `strict=False` the time may run backwards or repeat, for `tsas check` to describe it.
+
+    Raises
+    ------
+    InputError
+        The file is missing, leaves its folder, is not Parquet, has another checksum, lacks a
+        column, or holds something else than numbers; the time is not strictly increasing.
+    """
+    path = folder / run.file
+    table = _read_parquet(path, folder, run)
+    columns = {name: _floats(table, name, path) for name in table.column_names if name in BY_NAME}
+    _check_columns(columns, table.column_names, path)
+    if strict:
+        _check_time(columns[TIME], path)
+    return Recording(run, columns)
+
+
+def write_dataset(folder: Path, manifest: Manifest, tables: Mapping[str, pa.Table]) -> None:
+    """Write the runs' tables and the manifest with their checksums into an empty folder."""
+    (folder / "runs").mkdir()
+    runs = []
+    for run in manifest.run:
+        write_parquet(folder / run.file, tables[run.id])
+        runs.append(run.model_copy(update={"sha256": sha256_of(folder / run.file)}))
+    write_manifest(folder, manifest.model_copy(update={"run": tuple(runs)}))
+
+
+def write_parquet(path: Path, table: pa.Table) -> None:
+    """Write a table of float64 columns; known columns get their unit as field metadata."""
+    fields = [
+        field.with_metadata({"unit": BY_NAME[field.name].unit}) if field.name in BY_NAME else field
+        for field in table.schema
+    ]
+    pq.write_table(
+        table.cast(pa.schema(fields)),
+        path,
+        compression="zstd",
+        use_dictionary=False,
+        use_byte_stream_split=_float_names(table),
+    )
+
+
+def _float_names(table: pa.Table) -> list[str]:
+    return [f.name for f in table.schema if pa.types.is_floating(f.type)]
+
+
+def _read_parquet(path: Path, folder: Path, run: Run) -> pa.Table:
+    if not path.is_file():
+        raise InputError(
+            "the run's file is missing", where=path, expected=f"the Parquet file of run {run.id}"
+        )
+    if not path.resolve().is_relative_to(folder.resolve()):
+        raise InputError("a link leads out of the dataset's folder", where=path)
+    if sha256_of(path) != run.sha256.lower():
+        raise InputError(
+            "the checksum differs from the manifest's",
+            where=path,
+            expected=run.sha256.lower(),
+            remedy="the file has changed since ingest: restore it or ingest again",
+        )
+    try:
+        return pq.ParquetFile(path).read()
+    except (pa.ArrowException, OSError) as error:
+        reason = str(error).splitlines()[0]
+        raise InputError(f"cannot be read as Parquet ({reason})", where=path) from error
+
+
+def _floats(table: pa.Table, name: str, path: Path) -> Floats:
+    column = table.column(name)
+    if not (
+        pa.types.is_floating(column.type)
+        or pa.types.is_integer(column.type)
+        or pa.types.is_null(column.type)
+    ):
+        raise InputError(f"column {name} holds {column.type}", where=path, expected="float64")
+    values = column.cast(pa.float64()).to_numpy(zero_copy_only=False).astype(np.float64)
+    if name == TIME and not np.isfinite(values).all():
+        row = int(np.flatnonzero(~np.isfinite(values))[0])
+        raise InputError(
+            "time_s is null or not finite", where=f"{path}, row {row}", expected="a time in s"
+        )
+    infinite = np.flatnonzero(np.isinf(values))
+    if infinite.size:
+        raise InputError(
+            f"{name} is infinite",
+            where=f"{path}, row {infinite[0]}",
+            expected="a number, or null for a gap",
+        )
+    return values
+
+
+def _check_columns(columns: Mapping[str, Floats], there: list[str], path: Path) -> None:
+    listed = ", ".join(there) or "none"
+    if TIME not in columns:
+        raise InputError(
+            "column time_s is missing",
+            where=path,
+            expected="time in s",
+            remedy=f"there are: {listed}",
+        )
+    if not has_input_and_output(frozenset(columns)):
+        raise InputError(
+            "an input and an output column are needed",
+            where=path,
+            expected=f"one of {', '.join(INPUTS)} and another of {', '.join(OUTPUTS)}",
+            remedy=f"there are: {listed}",
+        )
+    if len(columns[TIME]) < 2:
+        raise InputError(f"{len(columns[TIME])} rows", where=path, expected="at least two samples")
+
+
+def _check_time(time_s: Floats, path: Path) -> None:
+    step = np.diff(time_s)
+    if (step <= 0).any():
+        row = int(np.flatnonzero(step <= 0)[0]) + 1
+        raise InputError(
+            f"time_s does not increase ({time_s[row - 1]:.6g} then {time_s[row]:.6g})",
+            where=f"{path}, row {row}",
+            expected="strictly increasing time",
+            remedy="`tsas check` describes it; mend it before ingest",
+        )
