@@ -36,14 +36,14 @@ def turning_points(values: Floats, threshold: float) -> Indices:
         if values[i] < values[low]:
             low = i
         if direction >= 0 and values[high] - values[i] > threshold:
-            if high > found[count - 1]:
+            if direction != 0 or values[high] - values[0] > threshold:
                 found[count] = high
                 count += 1
             direction = -1
             low = i
             high = i
         elif direction <= 0 and values[i] - values[low] > threshold:
-            if low > found[count - 1]:
+            if direction != 0 or values[0] - values[low] > threshold:
                 found[count] = low
                 count += 1
             direction = 1
