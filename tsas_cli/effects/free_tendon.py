@@ -1,0 +1,41 @@
+"""Tendon outside the sheath stretches in series with it, at either end.
+
+What one sees: the output moves less than the model says, by an amount that follows the tension;
+dead bands look softer at the drive (proximal length), loaded slopes fall slightly (both).
+Equation: a free length l under tension F is longer by (F − F0) l/(EA), Hooke's law as in Yang
+2025, Eq. (3), without friction. The paper supposes this effect under its Fig. 4 and does not
+test it.
+Mistaken for: a lower tendon modulus (recordings with two sheath lengths tell them apart), a
+compliant drive, a soft load spring.
+Not validated: tendon that touches a guide on its free length.
+"""
+
+from typing import NamedTuple
+
+from tsas_cli.effects.effect import Effect, Parameter
+from tsas_cli.numerics.compiled import kernel
+
+
+class FreeTendon(NamedTuple):
+    """Free lengths at the drive and at the load [mm]."""
+
+    proximal_length_mm: float = 0.0
+    distal_length_mm: float = 0.0
+
+
+@kernel
+def free_compliance(length_mm: float, tendon_stiffness_N: float) -> float:
+    """Return the compliance l/(EA) of a free length [mm/N]."""
+    return length_mm / tendon_stiffness_N
+
+
+FREE_TENDON = Effect(
+    name="free_tendon",
+    doc=__doc__,
+    parameters=(
+        Parameter("proximal_length_mm", "mm", neutral=0.0, start=50.0, lower=0.0, upper=5000.0),
+        Parameter("distal_length_mm", "mm", neutral=0.0, start=50.0, lower=0.0, upper=5000.0),
+    ),
+    experiment="The same motion with two sheath lengths and the same bend: the modulus scales "
+    "with the length, a free length does not.",
+)

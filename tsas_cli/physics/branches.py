@@ -1,0 +1,149 @@
+"""The distributed quasi-static model in closed form: spring load, friction that stays the same.
+
+A reversal starts a slip front at the drive; behind it the tension is T0 e^(±a s/L), ahead of it
+the old profile stands. From a turning point with tension A at the drive the travel D is
+
+    D = c |T0 − A| + C (√T0 − √A)²,    C = L/(a EA),
+
+with c the compliance of free tendon at the drive: a quadratic in √(T0/A). Nested reversals are a
+stack of turning points with return-point memory; when the front reaches the load the tendon
+slips as a whole (Yang 2025, Eqs. 7-9) and the stack is forgotten. No mesh, no iteration, except on
+the first loading from rest, where T0 solves D = c (T0−F0) + C (T0 − F0 − F0 ln(T0/F0)).
+"""
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from tsas_cli.effects.free_tendon import free_compliance
+from tsas_cli.numerics.compiled import kernel
+from tsas_cli.physics.capstan import mean_tension_ratio, tension_ratio
+from tsas_cli.physics.rig import Rig
+
+Floats = npt.NDArray[np.float64]
+Phases = npt.NDArray[np.int8]
+
+REST, SLIP = 0, 1  # what lies under the stack of turning points
+SMALLEST_WRAP = 1e-9  # a straight sheath: C stays finite, and the dead band has no width
+
+
+@kernel
+def from_turning_point(travel: float, tension: float, direction: int, C: float, c: float) -> float:
+    """Return T0 after a travel D ≥ 0 from a turning point with tension A [N]."""
+    D = travel / tension
+    if direction > 0:
+        root = (C + math.sqrt(c * c + (C + c) * D)) / (C + c)
+    else:
+        inside = c * c + (C - c) * D
+        root = (C + c - D) / (C + math.sqrt(inside)) if inside > 0.0 and D < C + c else 0.0
+    return tension * root * root
+
+
+@kernel
+def from_rest(travel: float, preload: float, C: float, c: float, highest: float) -> float:
+    """Return T0 after a signed travel from uniform tension F0, by Newton's method on ln(T0/F0).
+
+    Beyond `highest` = a the front has reached the load; the root is not sought there.
+    """
+    target = travel / preload
+    y = math.copysign(min(highest, math.sqrt(2.0 * abs(target) / C)), target)
+    for _ in range(60):
+        grown = math.expm1(y)
+        value = c * grown + math.copysign(C * (grown - y), y) - target
+        slope = c * (grown + 1.0) + C * abs(grown)
+        if slope == 0.0:
+            return preload
+        step = value / slope
+        y = min(max(y - step, -highest - 1.0), highest + 1.0)
+        if abs(step) < 1e-14:
+            break
+    return preload * math.exp(y)
+
+
+@kernel
+def full_slip(direction: float, rig: Rig, wrap: float, c: float) -> tuple[float, float]:
+    """Return slope k and zero x* of T0 = k (x − x*) while the whole tendon slips, Eqs. (7)-(9).
+
+    Below x*, where no tension is left, it hangs slack.
+    """
+    EA = rig.tendon_stiffness_N
+    spring = 1.0 / rig.load_stiffness_N_per_mm
+    spring += free_compliance(rig.effects.free_tendon.distal_length_mm, EA)
+    sheath = rig.sheath_length_mm / EA
+    compliance = (
+        tension_ratio(wrap, direction) * spring + mean_tension_ratio(wrap, direction) * sheath + c
+    )
+    return 1.0 / compliance, -rig.preload_N * (spring + sheath + c)
+
+
+@kernel
+def branches(x_in: Floats, rig: Rig) -> tuple[Floats, Floats, Phases]:
+    """Follow a motion of the drive that starts at rest at x = 0 [mm].
+
+    Parameters
+    ----------
+    x_in
+        Displacement of the drive from the state of uniform preload, shape (n,) [mm].
+    rig
+        The rig; its zeros are not looked at.
+
+    Returns
+    -------
+    f_in, f_out, phase
+        Tensions at both ends, shape (n,) [N]; +1 where the whole tendon slips in contraction, −1
+        in loosening, 0 in a dead band, 2 where it hangs slack.
+    """
+    wrap = max(rig.friction_coefficient * rig.total_bend_rad, SMALLEST_WRAP)
+    C = rig.sheath_length_mm / (wrap * rig.tendon_stiffness_N)
+    c = free_compliance(rig.effects.free_tendon.proximal_length_mm, rig.tendon_stiffness_N)
+    swing = math.exp(2.0 * wrap)
+    rest_high, rest_low = rig.preload_N * math.exp(wrap), rig.preload_N * math.exp(-wrap)
+    pulled, slack = full_slip(1.0, rig, wrap, c)
+    released, slack = full_slip(-1.0, rig, wrap, c)
+    out_pulled, out_released = tension_ratio(wrap, 1.0), tension_ratio(wrap, -1.0)
+    n = x_in.size
+    f_in = np.empty(n)
+    f_out = np.empty(n)
+    phase = np.zeros(n, dtype=np.int8)
+    turn_x = np.empty(256)
+    turn_T = np.empty(256)
+    depth = 0
+    base = REST
+    x, T, out, direction = 0.0, rig.preload_N, rig.preload_N, 0
+    for i in range(n):
+        if x_in[i] != x:
+            now = 1 if x_in[i] > x else -1
+            if now != direction and direction != 0 and T > 0.0:
+                if depth == turn_x.size:
+                    turn_x = np.concatenate((turn_x, np.empty_like(turn_x)))
+                    turn_T = np.concatenate((turn_T, np.empty_like(turn_T)))
+                turn_x[depth], turn_T[depth] = x, T
+                depth += 1
+            direction, x = now, x_in[i]
+            # Climb down the stack: each branch holds until it meets the turn that encloses it.
+            while depth > 0:
+                A = turn_T[depth - 1]
+                T = from_turning_point(abs(x - turn_x[depth - 1]), A, direction, C, c)
+                if depth > 1:
+                    end = turn_T[depth - 2]
+                elif base == REST:
+                    end = rig.preload_N * rig.preload_N / A
+                else:
+                    end = A * swing if direction > 0 else A / swing
+                if (T - end) * direction <= 0.0:
+                    break
+                depth = max(depth - 2, 0)
+            if depth == 0 and base == REST:
+                T = from_rest(x, rig.preload_N, C, c, wrap)
+                if not rest_low < T < rest_high:
+                    base = SLIP
+            if depth == 0 and base == SLIP:
+                T = max((pulled if direction > 0 else released) * (x - slack), 0.0)
+                out = T * (out_pulled if direction > 0 else out_released)
+                phase[i] = direction if T > 0.0 else 2
+        elif i > 0 and phase[i - 1] == 2:
+            phase[i] = 2
+        f_in[i] = T
+        f_out[i] = out
+    return f_in, f_out, phase

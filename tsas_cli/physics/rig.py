@@ -1,0 +1,23 @@
+"""The parameters of one rig during one run, as the kernels take them."""
+
+from typing import NamedTuple
+
+from tsas_cli.effects import Effects
+
+
+class Rig(NamedTuple):
+    """One tendon in its sheath with its load (the paper's symbols in brackets).
+
+    Displacements are zero where the tension is the preload everywhere (Yang 2025, point a of
+    Fig. 6); the two zeros say what the sensors read there.
+    """
+
+    friction_coefficient: float  # [μ, 1]
+    tendon_stiffness_N: float  # [EA]
+    load_stiffness_N_per_mm: float  # [kL]
+    sheath_length_mm: float  # [L]
+    total_bend_rad: float  # [θ]
+    preload_N: float  # [F0]
+    x_in_zero_mm: float = 0.0
+    x_out_zero_mm: float = 0.0
+    effects: Effects = Effects()
