@@ -1,0 +1,17 @@
+# From a dataset to a report: check, calibrate, simulate, report.
+#
+# make run                                   on the shipped recordings
+# make pipeline DATASET=folder OUT=folder    on your own
+TSAS := $(BIN)/tsas
+
+.PHONY: run pipeline
+run: DATASET = datasets/paper-groups
+run: OUT = reports/run
+run: pipeline  ## check, calibrate, simulate and report on the shipped recordings
+
+pipeline: setup  ## the same on your own: make pipeline DATASET=folder OUT=folder
+	@test -n '$(DATASET)' -a -n '$(OUT)' || { echo 'say on what and where to: make pipeline DATASET=folder OUT=folder' >&2; exit 2; }
+	$(TSAS) check '$(DATASET)' --out '$(OUT)/check' --force
+	$(TSAS) calibrate '$(DATASET)' --out '$(OUT)/calibrate' --force
+	$(TSAS) simulate '$(DATASET)' --model '$(OUT)/calibrate/model.toml' --out '$(OUT)/simulate' --force
+	$(TSAS) report '$(DATASET)' '$(OUT)/check' '$(OUT)/calibrate' '$(OUT)/simulate' --out '$(OUT)/report.html' --force
