@@ -33,8 +33,12 @@ class InputError(Exception):
             parts.append(f"expected {self.expected}")
         if self.remedy:
             parts.append(self.remedy)
-        text = "; ".join(parts)
-        return "".join(c if c.isprintable() else repr(c)[1:-1] for c in text)
+        return printable("; ".join(parts))
+
+
+def printable(text: str) -> str:
+    """Return text with control characters made visible, for names that come from files."""
+    return "".join(c if c.isprintable() else repr(c)[1:-1] for c in text)
 
 
 def nearest(name: str, known: Iterable[str]) -> str:

@@ -1,0 +1,45 @@
+"""What a section of the page is made of."""
+
+from dataclasses import dataclass
+
+from markupsafe import Markup
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table: its caption, header and rows of text; columns in `numeric` stand to the right."""
+
+    caption: str
+    header: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    numeric: frozenset[int] = frozenset()
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A plot as inline SVG, with the alternative text inside, and the caption under it."""
+
+    svg: Markup
+    caption: str
+
+
+@dataclass(frozen=True)
+class Group:
+    """Pictures under one name that a reader can fold away, one group per run."""
+
+    name: str
+    pictures: tuple[Picture, ...]
+
+
+@dataclass(frozen=True)
+class Section:
+    """One section: what it shows, in the order of the fields."""
+
+    anchor: str
+    title: str
+    intro: tuple[str, ...]
+    tables: tuple[Table, ...] = ()
+    pictures: tuple[Picture, ...] = ()
+    groups: tuple[Group, ...] = ()
+    points: tuple[str, ...] = ()
+    commands: tuple[str, ...] = ()

@@ -1,0 +1,109 @@
+"""From a drawing function to inline SVG that follows the page's colours and never changes."""
+
+import io
+import re
+import warnings
+from collections.abc import Callable
+from typing import Any
+from xml.etree import ElementTree  # noqa: S405  reads only what matplotlib has just written
+
+from markupsafe import Markup
+
+from tsas_cli.errors import printable
+from tsas_cli.reporting.colours import STAND_IN, themed
+from tsas_cli.reporting.content import Picture
+
+WIDTH_IN = 5.0  # a phone shows this at about its own size, so that the text stays readable
+_STYLE = {
+    "svg.fonttype": "none",
+    "svg.hashsalt": "tsas",
+    "text.parse_math": False,
+    "font.size": 9.5,
+    "axes.labelsize": 9.5,
+    "xtick.labelsize": 9.0,
+    "ytick.labelsize": 9.0,
+    "legend.fontsize": 9.0,
+    "legend.frameon": False,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "axes.edgecolor": STAND_IN["muted"],
+    "axes.labelcolor": STAND_IN["ink"],
+    "axes.facecolor": "none",
+    "axes.unicode_minus": True,
+    "figure.facecolor": "none",
+    "grid.color": STAND_IN["line"],
+    "grid.linewidth": 0.7,
+    "text.color": STAND_IN["ink"],
+    "xtick.color": STAND_IN["muted"],
+    "ytick.color": STAND_IN["muted"],
+    "xtick.labelcolor": STAND_IN["ink"],
+    "ytick.labelcolor": STAND_IN["ink"],
+    "lines.linewidth": 1.3,
+}
+_NOTHING = {"Creator": None, "Date": None, "Format": None, "Type": None}
+_SVG = "{http://www.w3.org/2000/svg}"
+_LINK = "{http://www.w3.org/1999/xlink}href"
+
+
+def picture(
+    draw: Callable[[Any], None], *, key: str, alt: str, caption: str, height_in: float = 3.5
+) -> Picture:
+    """Draw on an empty matplotlib figure and return it as a picture of the page.
+
+    Parameters
+    ----------
+    draw
+        Draws on the `matplotlib.figure.Figure` that it is given, with colours of `STAND_IN`.
+    key
+        A word of its own for each picture of the page, for the names inside the SVG.
+    alt
+        What the plot shows, for a reader who does not see it.
+    caption
+        The line under the plot.
+    height_in
+        Height in inches, at a width of `WIDTH_IN`.
+    """
+    from matplotlib import rc_context
+    from matplotlib.figure import Figure
+
+    with rc_context(_STYLE), warnings.catch_warnings():
+        # The browser's fonts hold more letters than the one that measures here.
+        warnings.filterwarnings("ignore", message="Glyph .* missing from", category=UserWarning)
+        figure = Figure(figsize=(WIDTH_IN, height_in), layout="constrained")
+        draw(figure)
+        stream = io.StringIO()
+        figure.savefig(stream, format="svg", metadata=_NOTHING)
+    return Picture(svg=_inline(stream.getvalue(), key=key, alt=alt), caption=caption)
+
+
+def _inline(text: str, *, key: str, alt: str) -> Markup:
+    """Strip what only a file needs, make the ids the picture's own, shorten the numbers."""
+    root = ElementTree.fromstring(text)  # noqa: S314  our own output
+    for parent in list(root.iter()):
+        for style in parent.findall(f"{_SVG}defs/{_SVG}style/.."):
+            parent.remove(style)  # it would hold for the whole page
+    for element in root.iter():
+        element.tag = element.tag.removeprefix(_SVG)
+        attributes = {
+            "href" if name == _LINK else name: _own(name, value, key)
+            for name, value in element.attrib.items()
+        }
+        element.attrib.clear()
+        element.attrib.update(attributes)
+        element.tail = None
+    for name in ("width", "height", "version"):
+        root.attrib.pop(name, None)
+    root.attrib.update({"role": "img", "aria-label": printable(alt)})
+    return Markup(themed(ElementTree.tostring(root, encoding="unicode")))  # noqa: S704
+
+
+def _own(name: str, value: str, key: str) -> str:
+    if name == "id":
+        return f"{key}-{value}"
+    if name == _LINK:
+        return f"#{key}-{value[1:]}"
+    if name == "d":
+        return re.sub(r"\d+\.\d{3,}", lambda number: f"{float(number[0]):.2f}", value)
+    return value.replace("url(#", f"url(#{key}-")

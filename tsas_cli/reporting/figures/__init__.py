@@ -1,0 +1,1 @@
+"""What is drawn, one kind of plot per file."""

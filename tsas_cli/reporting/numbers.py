@@ -1,0 +1,49 @@
+"""How numbers are printed: as many digits as the interval bears."""
+
+import math
+
+MINUS = "\N{MINUS SIGN}"
+ABSENT = "\N{EN DASH}"
+
+
+def plain(value: float | None, digits: int = 4) -> str:
+    """Return a number with so many significant digits; an en dash where there is none.
+
+    Examples
+    --------
+    >>> plain(67858.4), plain(0.125), plain(None)
+    ('67860', '0.1250', '–')
+    """
+    if value is None or not math.isfinite(value):
+        return ABSENT
+    return _fixed(value, digits - 1 - _exponent(value))
+
+
+def with_interval(value: float | None, low: float | None, high: float | None) -> tuple[str, str]:
+    """Return a value and its interval, both cut at the second digit of the interval's half width.
+
+    Examples
+    --------
+    >>> with_interval(2.33812, 2.3262, 2.3501)
+    ('2.338', '2.326 to 2.350')
+    """
+    if value is None or low is None or high is None or not math.isfinite(high - low):
+        return plain(value), ABSENT
+    width = (high - low) / 2
+    if width <= 0:
+        return plain(value), ABSENT
+    decimals = 1 - _exponent(width)
+    return _fixed(value, decimals), f"{_fixed(low, decimals)} to {_fixed(high, decimals)}"
+
+
+def _exponent(value: float) -> int:
+    return math.floor(math.log10(abs(value))) if value else 0
+
+
+def _fixed(value: float, decimals: int) -> str:
+    """Round to a number of decimals, or of tens where it is negative; powers of ten if needed."""
+    if decimals > 6:
+        exponent = _exponent(value)
+        return f"{_fixed(value / 10.0**exponent, decimals + exponent)}·10^{exponent}"
+    text = f"{round(value, decimals):.{max(decimals, 0)}f}"
+    return text.replace("-", MINUS)

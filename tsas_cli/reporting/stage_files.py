@@ -1,0 +1,121 @@
+"""What the stages' JSON files hold, as far as the page reads them (docs/formats.md)."""
+
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict
+
+
+class _Record(BaseModel):
+    # The stages may say more than the page shows.
+    model_config = ConfigDict(frozen=True, extra="ignore")
+
+
+class Source(_Record):
+    """The dataset that a stage has read: where it is, relative to the stage's folder."""
+
+    name: str
+    folder: str
+    hashes: dict[str, str]
+
+
+class Finding(_Record):
+    """One thing that `tsas check` says about the recordings."""
+
+    code: str
+    severity: str
+    run: str | None = None
+    column: str | None = None
+    sentence: str
+    remedy: str = ""
+
+
+class Check(_Record):
+    """The content of `check.json`."""
+
+    format: Literal[1]
+    stage: Literal["check"]
+    dataset: Source
+    findings: tuple[Finding, ...]
+
+
+class Segment(_Record):
+    """A stretch of one run that is in one phase, from `start_s` up to and with `end_s`."""
+
+    start_s: float
+    end_s: float
+    phase: str
+
+
+class Parameter(_Record):
+    """One value with its 95 % interval; None where it has none."""
+
+    name: str
+    run: str | None = None
+    value: float | None
+    stderr: float | None = None
+    interval_low: float | None = None
+    interval_high: float | None = None
+    unit: str
+    at_bound: bool = False
+    origin: str
+
+
+class Stiffness(_Record):
+    """One phase of one run: its stiffness as fitted, by theory, and as a fit should find it."""
+
+    run: str
+    phase: str
+    km: Parameter
+    kr: Parameter | None = None
+    theory_N_per_mm: float | None = None
+    theory_elastic_N_per_mm: float | None = None
+    expected_N_per_mm: float | None = None
+    occurrences: int
+    note: str | None = None
+
+
+class Channel(_Record):
+    """How far a simulated channel is from the measured one, and how noisy that is."""
+
+    rmse: float | None
+    noise: float | None
+    unit: str | None = None
+
+
+class Fit(_Record):
+    """How the joint fit ended."""
+
+    converged: bool
+    message: str = ""
+
+
+class Calibration(_Record):
+    """The content of `calibration.json`."""
+
+    format: Literal[1]
+    stage: Literal["calibrate"]
+    version: str
+    dataset: Source
+    segments: dict[str, tuple[Segment, ...]]
+    stiffness: tuple[Stiffness, ...]
+    parameters: tuple[Parameter, ...]
+    cannot_tell: tuple[str, ...]
+    fit: Fit
+
+
+class SimulatedRun(_Record):
+    """What `tsas simulate` says about one run."""
+
+    unconverged_samples: int = 0
+    channels: dict[str, Channel]
+
+
+class Simulation(_Record):
+    """The content of `simulation.json`; its series are in `runs/ID.parquet`."""
+
+    format: Literal[1]
+    stage: Literal["simulate"]
+    version: str
+    dataset: Source
+    dynamics: str
+    runs: dict[str, SimulatedRun]
