@@ -4,9 +4,10 @@ import os
 import sys
 
 import typer
+from typer.exceptions import TyperException
 
 from tsas_cli import __version__
-from tsas_cli.errors import InputError
+from tsas_cli.errors import InputError, printable
 
 app = typer.Typer(
     name="tsas",
@@ -33,22 +34,35 @@ def _options(
 
 
 def main() -> None:
-    """Run the command line; a wrong input ends with one line on stderr and exit code 2."""
+    """Run the command line; what goes wrong is one line on stderr and an exit code."""
     try:
-        app()
+        code = app(standalone_mode=False)
+        sys.stdout.flush()
     except InputError as error:
-        print(f"tsas: {error.line()}", file=sys.stderr)
-        sys.exit(2)
+        code = _stop(error.line(), 2)
+    except TyperException as error:
+        code = _stop(_wrong_call(error), 2)
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        sys.exit(0)
+        code = 0
     except Exception as error:
         if os.environ.get("TSAS_TRACEBACK") == "1":
             raise
-        line = str(error).splitlines()[0] if str(error) else ""
-        print(
-            f"tsas: a defect of tsas itself: {type(error).__name__}: {line}; "
-            "please report it with the output of the same call under TSAS_TRACEBACK=1",
-            file=sys.stderr,
-        )
-        sys.exit(1)
+        defect = f"{type(error).__name__}: {error}".strip()
+        remedy = "please report it with the output of the same call under TSAS_TRACEBACK=1"
+        code = _stop(f"a defect of tsas itself: {printable(defect)}; {remedy}", 1)
+    sys.exit(code)
+
+
+def _wrong_call(error: TyperException) -> str:
+    """Return one line about a call that typer refuses; empty after `tsas` alone, which is help."""
+    message = error.format_message().rstrip(".")
+    context = getattr(error, "ctx", None)
+    command = context.command_path if context else "tsas"
+    return printable(f"{message}; see `{command} --help`") if message else ""
+
+
+def _stop(line: str, code: int) -> int:
+    if line:
+        print(f"tsas: {line}", file=sys.stderr)
+    return code

@@ -27,10 +27,12 @@ def new_folder(path: Path, *, force: bool = False) -> Iterator[Path]:
     Raises
     ------
     InputError
-        `path` exists and is not an empty folder, and `force` is not set; or it cannot be written.
+        `path` exists and is not an empty folder, and `force` is not set; or it cannot be written;
+        or the current folder is in it.
     """
-    _refuse_existing(path, force=force)
     try:
+        _refuse_existing(path, force=force)
+        _refuse_current(path)
         path.parent.mkdir(parents=True, exist_ok=True)
         temporary = Path(tempfile.mkdtemp(prefix=f".{path.name}.", dir=path.parent))
     except OSError as error:
@@ -50,10 +52,12 @@ def new_file(path: Path, *, force: bool = False) -> Iterator[Path]:
     Raises
     ------
     InputError
-        `path` exists and `force` is not set, or the folder cannot be written.
+        `path` exists and `force` is not set, it is a folder, or it cannot be written.
     """
-    _refuse_existing(path, force=force)
     try:
+        if path.is_dir():
+            raise InputError("is a folder", where=path, expected="a file's name")
+        _refuse_existing(path, force=force)
         path.parent.mkdir(parents=True, exist_ok=True)
         descriptor, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
         os.close(descriptor)
@@ -108,7 +112,7 @@ def _finite(content: Any) -> Any:
 
 def _refuse_existing(path: Path, *, force: bool) -> None:
     empty_folder = path.is_dir() and not any(path.iterdir())
-    if path.exists() and not empty_folder and not force:
+    if os.path.lexists(path) and not empty_folder and not force:
         raise InputError(
             "already exists",
             where=path,
@@ -117,9 +121,19 @@ def _refuse_existing(path: Path, *, force: bool) -> None:
         )
 
 
+def _refuse_current(path: Path) -> None:
+    """Keep `--out . --force` from deleting the folder that somebody works in."""
+    if Path.cwd().is_relative_to(path.resolve()):
+        raise InputError(
+            "is the current folder, or holds it",
+            where=path,
+            remedy="choose an --out that is a folder of its own",
+        )
+
+
 def _replace_folder(temporary: Path, path: Path) -> None:
     """Put `temporary` in the place of `path`; the old one goes only when the new one is there."""
-    if not path.exists():
+    if not os.path.lexists(path):
         temporary.rename(path)
         return
     old = Path(tempfile.mkdtemp(prefix=f".{path.name}.old.", dir=path.parent))

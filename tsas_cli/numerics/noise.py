@@ -35,19 +35,15 @@ def quantisation_step(values: Floats) -> float:
     """Return the step between the levels that a channel takes, 0 where it takes too many levels.
 
     A channel is quantised when all differences between neighbouring levels are multiples of the
-    smallest one, within a thousandth of it, and levels repeat.
+    smallest one, within a twentieth of it, and levels repeat.
     """
     levels = np.unique(values[np.isfinite(values)])
     if levels.size < 2 or levels.size > 0.5 * np.isfinite(values).sum():
         return 0.0
     gaps = np.diff(levels)
-    floor = 1e-9 * float(np.abs(levels).max())
-    step = (
-        float(np.median(gaps[gaps <= 1.5 * gaps[gaps > floor].min()]))
-        if (gaps > floor).any()
-        else 0.0
-    )
-    if step <= 0.0:
+    gaps = gaps[gaps > 1e-9 * np.abs(levels).max()]  # one level may be rounded in two ways
+    if gaps.size == 0:
         return 0.0
-    ratio = gaps[gaps > floor] / step
+    step = float(np.median(gaps[gaps <= 1.5 * gaps.min()]))
+    ratio = gaps / step
     return step if float(np.abs(ratio - np.round(ratio)).max()) < 0.05 else 0.0

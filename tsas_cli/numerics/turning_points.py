@@ -24,8 +24,9 @@ def turning_points(values: Floats, threshold: float) -> Indices:
         The smallest move back that counts as a turn, in the signal's unit.
     """
     n = values.size
-    found = np.empty(n, dtype=np.int64)
-    found[0] = 0
+    found = np.zeros(n, dtype=np.int64)
+    if n == 0:
+        return found
     count = 1
     low = 0
     high = 0
@@ -36,14 +37,14 @@ def turning_points(values: Floats, threshold: float) -> Indices:
         if values[i] < values[low]:
             low = i
         if direction >= 0 and values[high] - values[i] > threshold:
-            if direction != 0 or values[high] - values[0] > threshold:
+            if direction == 1:
                 found[count] = high
                 count += 1
             direction = -1
             low = i
             high = i
         elif direction <= 0 and values[i] - values[low] > threshold:
-            if direction != 0 or values[0] - values[low] > threshold:
+            if direction == -1:
                 found[count] = low
                 count += 1
             direction = 1

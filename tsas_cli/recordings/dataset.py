@@ -69,11 +69,12 @@ def read_recording(folder: Path, run: Run, *, strict: bool = True) -> Recording:
     Raises
     ------
     InputError
-        The file is missing, leaves its folder, is not Parquet, has another checksum, lacks a
-        column, or holds something else than numbers; the time is not strictly increasing.
+        The file is missing, leaves its folder, is not Parquet or has another checksum; a column
+        is missing, in another unit or not of numbers; the time is not strictly increasing.
     """
     path = folder / run.file
     table = _read_parquet(path, folder, run)
+    _check_names_and_units(table, path)
     columns = {name: _floats(table, name, path) for name in table.column_names if name in BY_NAME}
     _check_columns(columns, table.column_names, path)
     if strict:
@@ -117,18 +118,34 @@ def _read_parquet(path: Path, folder: Path, run: Run) -> pa.Table:
         )
     if not path.resolve().is_relative_to(folder.resolve()):
         raise InputError("a link leads out of the dataset's folder", where=path)
-    if sha256_of(path) != run.sha256.lower():
-        raise InputError(
-            "the checksum differs from the manifest's",
-            where=path,
-            expected=run.sha256.lower(),
-            remedy="the file has changed since ingest: restore it or ingest again",
-        )
     try:
+        if sha256_of(path) != run.sha256.lower():
+            raise InputError(
+                "the checksum differs from the manifest's",
+                where=path,
+                expected=run.sha256.lower(),
+                remedy="the file has changed since ingest: restore it or ingest again",
+            )
         return pq.ParquetFile(path).read()
     except (pa.ArrowException, OSError) as error:
         reason = str(error).splitlines()[0]
         raise InputError(f"cannot be read as Parquet ({reason})", where=path) from error
+
+
+def _check_names_and_units(table: pa.Table, path: Path) -> None:
+    """Refuse a known column that is there twice, or whose metadata name another known unit."""
+    units = {column.unit for column in BY_NAME.values()}
+    for field in table.schema:
+        if field.name not in BY_NAME:
+            continue
+        if table.column_names.count(field.name) > 1:
+            raise InputError(f"column {field.name} is there twice", where=path)
+        unit = (field.metadata or {}).get(b"unit", b"").decode("utf-8", "replace")
+        expected = BY_NAME[field.name].unit
+        if unit in units - {expected}:
+            raise InputError(
+                f"column {field.name} says that its unit is {unit}", where=path, expected=expected
+            )
 
 
 def _floats(table: pa.Table, name: str, path: Path) -> Floats:
@@ -139,7 +156,7 @@ def _floats(table: pa.Table, name: str, path: Path) -> Floats:
         or pa.types.is_null(column.type)
     ):
         raise InputError(f"column {name} holds {column.type}", where=path, expected="float64")
-    values = column.cast(pa.float64()).to_numpy(zero_copy_only=False).astype(np.float64)
+    values = column.cast(pa.float64(), safe=False).to_numpy(zero_copy_only=False).astype(np.float64)
     if name == TIME and not np.isfinite(values).all():
         row = int(np.flatnonzero(~np.isfinite(values))[0])
         raise InputError(

@@ -18,7 +18,7 @@ T = TypeVar("T", bound=BaseModel)
 class _Table(BaseModel):
     # A dataset made with any tool must work: keys that we do not know travel along, and
     # `tsas check` names them with the nearest known one.
-    model_config = ConfigDict(frozen=True, extra="allow")
+    model_config = ConfigDict(frozen=True, extra="allow", allow_inf_nan=False)
 
     def unknown_keys(self) -> dict[str, str]:
         """Return each key that format 1 does not know, with the hint that belongs to it."""
@@ -55,9 +55,10 @@ class Run(_Table):
     @classmethod
     def _stays_inside(cls, file: str) -> str:
         path = PurePosixPath(file.replace("\\", "/"))
-        if path.is_absolute() or ".." in path.parts or ":" in path.parts[0]:
+        drive = any(":" in part for part in path.parts[:1])
+        if path.is_absolute() or ".." in path.parts or drive:
             raise ValueError("must stay inside the dataset's folder (no '..', no absolute path)")
-        return file
+        return str(path)
 
     @field_validator("id")
     @classmethod
@@ -116,7 +117,7 @@ def read_toml(path: Path) -> dict[str, Any]:
         The file cannot be read or is not TOML.
     """
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
+        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except OSError as error:
         raise InputError(f"cannot be read ({error.strerror})", where=path) from error
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
