@@ -6,7 +6,7 @@ import tempfile
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -23,9 +23,8 @@ def kernel(function: Function) -> Function:
         return function
     import numba
 
-    numba.config.CACHE_DIR = _cache_folder()
-    compiled: Function = numba.njit(cache=True, error_model="numpy")(function)
-    return compiled
+    numba.config.CACHE_DIR = _cache_folder()  # type: ignore[attr-defined] # set by name at run time
+    return cast(Function, numba.njit(cache=True, error_model="numpy")(function))
 
 
 @cache

@@ -156,7 +156,7 @@ def _floats(table: pa.Table, name: str, path: Path) -> Floats:
         or pa.types.is_null(column.type)
     ):
         raise InputError(f"column {name} holds {column.type}", where=path, expected="float64")
-    values = column.cast(pa.float64(), safe=False).to_numpy(zero_copy_only=False).astype(np.float64)
+    values: Floats = column.cast(pa.float64(), safe=False).to_numpy(zero_copy_only=False)
     if name == TIME and not np.isfinite(values).all():
         row = int(np.flatnonzero(~np.isfinite(values))[0])
         raise InputError(

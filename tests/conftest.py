@@ -1,0 +1,50 @@
+"""What many tests need: the command line in a process of its own, and a small dataset."""
+
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pytest
+
+from tsas_cli.recordings.dataset import write_dataset
+from tsas_cli.recordings.manifest import Manifest
+
+
+@pytest.fixture
+def tsas() -> Callable[..., subprocess.CompletedProcess[str]]:
+    """Run the command line in a new process; keywords are passed to `subprocess.run`."""
+
+    def run(*arguments: object, **keywords: object) -> subprocess.CompletedProcess[str]:
+        call = [sys.executable, "-m", "tsas_cli", *map(str, arguments)]
+        return subprocess.run(call, capture_output=True, text=True, check=False, **keywords)  # type: ignore[call-overload]
+
+    return run
+
+
+@pytest.fixture
+def columns() -> dict[str, np.ndarray]:
+    """Half a second of a pull and its release, exact to the last bit."""
+    time_s = np.arange(500) / 1000
+    x_in_mm = 10 - 10 * np.cos(4 * np.pi * time_s)
+    return {"time_s": time_s, "x_in_mm": x_in_mm, "f_in_N": 25 + 2.5 * x_in_mm}
+
+
+@pytest.fixture
+def manifest() -> Manifest:
+    """One run `a`; its checksum is a placeholder until the dataset is written."""
+    run = {"id": "a", "file": "runs/a.parquet", "sha256": "0" * 64, "preload_N": 25.0}
+    return Manifest.model_validate(
+        {"format": 1, "name": "bench-42", "kind": "measured", "run": [run]}
+    )
+
+
+@pytest.fixture
+def dataset(tmp_path: Path, manifest: Manifest, columns: dict[str, np.ndarray]) -> Path:
+    """Return the folder of a dataset with one run."""
+    folder = tmp_path / "dataset"
+    folder.mkdir()
+    write_dataset(folder, manifest, {"a": pa.table(columns)})
+    return folder
