@@ -7,6 +7,7 @@ import typer
 from typer.exceptions import TyperException
 
 from tsas_cli import __version__
+from tsas_cli.commands.report import report
 from tsas_cli.errors import InputError, printable
 
 app = typer.Typer(
@@ -31,6 +32,9 @@ def _options(
     ),
 ) -> None:
     del version
+
+
+app.command("report")(report)
 
 
 def main() -> None:

@@ -27,7 +27,9 @@ Floats = npt.NDArray[np.float64]
 Phases = npt.NDArray[np.int8]
 
 DISPLACEMENT, FORCE = 0, 1  # what is given at an end
-TOLERANCE = 1e-12  # of the tension and of the displacement, for rounding
+TOLERANCE = 1e-10  # of the tension and of a segment's elongation, for rounding
+MOST_REVISIONS = 20  # of the slipping set, and two more for each node
+SMALLEST_STEP = 2.0**-20  # of the way between two samples
 
 
 class Boundary(NamedTuple):
@@ -38,6 +40,15 @@ class Boundary(NamedTuple):
     spring_compliance: float
 
 
+class Ends(NamedTuple):
+    """The ends at one moment: what is given there, the wrap angle times friction, the preload."""
+
+    drive: float
+    load: float
+    wrap: float
+    preload: float
+
+
 @kernel
 def passed_on(tension: float, ratio: float) -> float:
     """Return the tension behind a slipping node, e^(∓a/n) T; for T < 0 the ratio inverts."""
@@ -45,14 +56,14 @@ def passed_on(tension: float, ratio: float) -> float:
 
 
 @kernel
-def held_at_both_ends(p, q, x, T, slip, compliance, preload, ratio, signed):  # type: ignore[no-untyped-def]
+def held_at_both_ends(p, q, x, T, slip, compliance, preload, ratio):  # type: ignore[no-untyped-def]
     """Solve the segments p … q−1 between two nodes that keep their places.
 
-    The tensions are T[p] times powers of the ratio, and stretch the segments by x[p] − x[q]. The
-    ratio of a node depends on the sign of the tension, where that may be negative (`signed`).
+    The tensions are T[p] times powers of the ratio, and stretch the segments by x[p] − x[q]; the
+    ratio turns round where the tension is negative.
     """
     inverse = 1.0 / ratio
-    negative = signed and T[p] < 0.0
+    negative = T[p] < 0.0
     for _ in range(2):
         share = 1.0
         weighted = compliance[p]
@@ -62,7 +73,7 @@ def held_at_both_ends(p, q, x, T, slip, compliance, preload, ratio, signed):  # 
             weighted += compliance[j] * share
             total += compliance[j]
         T[p] = (x[p] - x[q] + preload * total) / weighted
-        if not signed or (T[p] < 0.0) == negative:
+        if (T[p] < 0.0) == negative:
             break
         negative = not negative
     for j in range(p + 1, q):
@@ -95,48 +106,89 @@ def pulled_at_drive(q, x, T, slip, compliance, preload, ratio, force):  # type: 
 def revise(x, x_old, T, slip, ratio, scale):  # type: ignore[no-untyped-def]
     """Free the nodes whose tensions exceed the capstan ratio, hold those that slip backwards.
 
-    Returns how many nodes changed.
+    Returns whether any node was wrong.
     """
-    changed = 0
+    wrong = False
     for i in range(1, x.size - 1):
+        change = slip[i]
         if slip[i] == 0:
-            lower = passed_on(T[i - 1], ratio)
-            upper = passed_on(T[i - 1], 1.0 / ratio)
             margin = TOLERANCE * abs(T[i - 1])
-            if T[i] < lower - margin:
-                slip[i] = 1
-                changed += 1
-            elif T[i] > upper + margin:
-                slip[i] = -1
-                changed += 1
+            if T[i] < passed_on(T[i - 1], ratio) - margin:
+                change = 1
+            elif T[i] > passed_on(T[i - 1], 1.0 / ratio) + margin:
+                change = -1
         elif slip[i] * (x[i] - x_old[i]) < -TOLERANCE * scale:
-            slip[i] = 0
+            change = 0
             x[i] = x_old[i]
-            changed += 1
-    return changed
+        if change != slip[i]:
+            slip[i] = change
+            wrong = True
+    return wrong
 
 
 @kernel
-def settle(x, x_old, T, slip, compliance, preload, ratio, boundary, end_force, scale):  # type: ignore[no-untyped-def]
-    """Find the slipping nodes of one sample; return whether the set was found."""
-    end = x.size - 1
-    signed = boundary.load == FORCE
-    for _ in range(4 * end + 20):
+def settle(chain, compliance, ends, boundary, scale):  # type: ignore[no-untyped-def]
+    """Find the slipping nodes for given ends; return whether the set was found."""
+    x, x_old, T, slip = chain
+    n = x.size - 2
+    ratio = math.exp(-ends.wrap / n)
+    if boundary.drive == DISPLACEMENT:
+        x[0] = ends.drive
+    if boundary.load == DISPLACEMENT:
+        x[n + 1] = ends.load
+    for _ in range(MOST_REVISIONS + 2 * n):
         p = 0
-        while p < end:
+        while p <= n:
             q = p + 1
-            while q < end and slip[q] != 0:
+            while q <= n and slip[q] != 0:
                 q += 1
-            if q == end and boundary.load == FORCE:
-                pulled_at_load(p, x, T, slip, compliance, preload, ratio, end_force)
+            if q == n + 1 and boundary.load == FORCE:
+                pulled_at_load(p, x, T, slip, compliance, ends.preload, ratio, ends.load)
             elif p == 0 and boundary.drive == FORCE:
-                pulled_at_drive(q, x, T, slip, compliance, preload, ratio, end_force)
+                pulled_at_drive(q, x, T, slip, compliance, ends.preload, ratio, ends.drive)
             else:
-                held_at_both_ends(p, q, x, T, slip, compliance, preload, ratio, signed)
+                held_at_both_ends(p, q, x, T, slip, compliance, ends.preload, ratio)
             p = q
-        if revise(x, x_old, T, slip, ratio, scale) == 0:
+        if not revise(x, x_old, T, slip, ratio, scale):
             return True
     return False
+
+
+@kernel
+def advance(chain, compliance, start, end, boundary, scale):  # type: ignore[no-untyped-def]
+    """Move the ends from one sample to the next, in smaller steps where one is too large.
+
+    The model does not depend on the rate, only on the path: a straight line between samples.
+    Returns whether every step settled.
+    """
+    x, x_old, T, slip = chain
+    done, step = 0.0, 1.0
+    while done < 1.0:
+        to = min(done + step, 1.0)
+        if settle(chain, compliance, between(start, end, to), boundary, scale):
+            x_old[:] = x
+            done = to
+            step *= 2.0
+        else:
+            x[:] = x_old
+            slip[:] = 0
+            step *= 0.5
+            if step < SMALLEST_STEP:
+                return False
+    return True
+
+
+@kernel
+def between(start, end, part):  # type: ignore[no-untyped-def]
+    """Return the ends at a part of the way; the last one exactly."""
+    if part == 1.0:
+        return end
+    return Ends(
+        start.drive + part * (end.drive - start.drive),
+        start.load + part * (end.load - start.load),
+        start.wrap + part * (end.wrap - start.wrap),
+        start.preload + part * (end.preload - start.preload),
+    )
 
 
 @kernel
@@ -165,41 +217,29 @@ def slip_chain(
     x_in, x_out, f_in, f_out, phase
         Shape (m,) [mm, mm, N, N]; the phase is +1 where the whole tendon slips in contraction, −1
         in loosening, 0 where a part of it sticks, 2 where it hangs slack, 3 where the set of
-        slipping nodes was not found.
+        slipping nodes was not found and the sample is not to be trusted.
     """
     m = drive.size
     x_in, x_out, f_in, f_out = np.empty(m), np.empty(m), np.empty(m), np.empty(m)
     phase = np.zeros(m, dtype=np.int8)
     compliance = segment_compliances(rig, boundary, n)
-    x = np.zeros(n + 2)
-    x_old = np.zeros(n + 2)
-    T = np.full(n + 1, preload[0])
-    slip = np.zeros(n + 2, dtype=np.int8)
-    scale = rig.sheath_length_mm * rig.preload_N / rig.tendon_stiffness_N + 1e-6
-    a, ratio = math.nan, math.nan
+    chain = (np.zeros(n + 2), np.zeros(n + 2), np.full(n + 1, preload[0]), np.zeros(n + 2, np.int8))
+    x, x_old, T, slip = chain
+    scale = rig.sheath_length_mm * rig.preload_N / rig.tendon_stiffness_N / n + 1e-9
+    rest_drive = preload[0] if boundary.drive == FORCE else 0.0
+    rest_load = preload[0] if boundary.load == FORCE else 0.0
+    before = Ends(rest_drive, rest_load, wrap[0], preload[0])
     for i in range(m):
-        F0 = preload[i if preload.size > 1 else 0]
-        if wrap[i if wrap.size > 1 else 0] != a:
-            a = wrap[i if wrap.size > 1 else 0]
-            ratio = math.exp(-a / n)
-        end_force = 0.0
-        if boundary.drive == FORCE:
-            end_force = drive[i]
-        else:
-            x[0] = drive[i]
-        if boundary.load == FORCE:
-            end_force = load[i]
-        else:
-            x[n + 1] = load[i]
-        found = settle(x, x_old, T, slip, compliance, F0, ratio, boundary, end_force, scale)
+        now = Ends(drive[i], load[i], wrap[i % wrap.size], preload[i % preload.size])
+        found = advance(chain, compliance, before, now, boundary, scale)
+        before = now
         phase[i] = phase_of(slip) if found else 3
         if boundary.load != FORCE and T[0] < 0.0:
             phase[i] = 2
-            hang_slack(x, T, slip, compliance, F0)
-        for j in range(1, n + 1):
-            x_old[j] = x[j]
+            hang_slack(x, T, slip, compliance, now.preload)
+            x_old[:] = x
         x_in[i], f_in[i], f_out[i] = x[0], T[0], T[n]
-        x_out[i] = (T[n] - F0) * boundary.spring_compliance + x[n + 1]
+        x_out[i] = (T[n] - now.preload) * boundary.spring_compliance + x[n + 1]
     return x_in, x_out, f_in, f_out, phase
 
 

@@ -18,6 +18,13 @@ class Source(_Record):
     hashes: dict[str, str]
 
 
+class StageFile(_Record):
+    """What all stages say: the format, and what they have read."""
+
+    format: Literal[1]
+    dataset: Source
+
+
 class Finding(_Record):
     """One thing that `tsas check` says about the recordings."""
 
@@ -29,12 +36,10 @@ class Finding(_Record):
     remedy: str = ""
 
 
-class Check(_Record):
+class Check(StageFile):
     """The content of `check.json`."""
 
-    format: Literal[1]
     stage: Literal["check"]
-    dataset: Source
     findings: tuple[Finding, ...]
 
 
@@ -89,13 +94,11 @@ class Fit(_Record):
     message: str = ""
 
 
-class Calibration(_Record):
+class Calibration(StageFile):
     """The content of `calibration.json`."""
 
-    format: Literal[1]
     stage: Literal["calibrate"]
     version: str
-    dataset: Source
     segments: dict[str, tuple[Segment, ...]]
     stiffness: tuple[Stiffness, ...]
     parameters: tuple[Parameter, ...]
@@ -110,12 +113,10 @@ class SimulatedRun(_Record):
     channels: dict[str, Channel]
 
 
-class Simulation(_Record):
+class Simulation(StageFile):
     """The content of `simulation.json`; its series are in `runs/ID.parquet`."""
 
-    format: Literal[1]
     stage: Literal["simulate"]
     version: str
-    dataset: Source
     dynamics: str
     runs: dict[str, SimulatedRun]

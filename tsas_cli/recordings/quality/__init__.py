@@ -1,1 +1,116 @@
 """What is wrong with recordings, found before anyone fits anything."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from tsas_cli.errors import InputError
+from tsas_cli.recordings.dataset import Dataset, read_recording
+from tsas_cli.recordings.manifest import Manifest, Run
+from tsas_cli.recordings.quality.checks import (
+    clipped,
+    delay,
+    exchanged,
+    few_reversals,
+    gap,
+    manifest_unit,
+    negative_tension,
+    no_steady_motion,
+    quantised,
+    repeated_rows,
+    sign,
+    stuck,
+    time_jitter,
+    time_order,
+    unit,
+    unknown_key,
+)
+from tsas_cli.recordings.quality.finding import CannotTell, Check, Finding, NotChecked, Remark
+from tsas_cli.recordings.quality.trial import Trial
+
+MANIFEST_CHECKS: tuple[Check[Manifest], ...] = (unknown_key.CHECK, manifest_unit.CHECK)
+RUN_CHECKS: tuple[Check[Trial], ...] = (
+    time_order.CHECK,
+    time_jitter.CHECK,
+    gap.CHECK,
+    repeated_rows.CHECK,
+    clipped.CHECK,
+    stuck.CHECK,
+    quantised.CHECK,
+    sign.CHECK,
+    negative_tension.CHECK,
+    exchanged.CHECK,
+    unit.CHECK,
+    delay.CHECK,
+    few_reversals.CHECK,
+    no_steady_motion.CHECK,
+)
+CHECKS = (*MANIFEST_CHECKS, *RUN_CHECKS)
+
+
+@dataclass(frozen=True)
+class Report:
+    """What the checks found, and which of them could not tell."""
+
+    findings: tuple[Finding, ...]
+    not_checked: tuple[NotChecked, ...]
+
+
+def check_dataset(dataset: Dataset) -> Report:
+    """Run every check on the manifest and on every run of a dataset.
+
+    A run that cannot be read is a finding (`unreadable`), as long as another one can.
+
+    Raises
+    ------
+    InputError
+        No run can be read.
+    """
+    results = list(_look(MANIFEST_CHECKS, dataset.manifest, None))
+    failures = []
+    for run in dataset.manifest.run:
+        try:
+            results += _look_at_run(dataset, run)
+        except InputError as error:
+            failures.append(error)
+            results.append(_unreadable(run, error))
+    if len(failures) == len(dataset.manifest.run):
+        raise failures[0]
+    return Report(
+        tuple(r for r in results if isinstance(r, Finding)),
+        tuple(r for r in results if isinstance(r, NotChecked)),
+    )
+
+
+def _look_at_run(dataset: Dataset, run: Run) -> list[Finding | NotChecked]:
+    trial = Trial(read_recording(dataset.folder, run, strict=False), dataset.manifest.rig)
+    results: list[Finding | NotChecked] = []
+    for check in RUN_CHECKS:
+        missing = [name for name in check.needs if name not in trial.channels]
+        if missing:
+            reason = f"{' and '.join(missing)} not recorded"
+            results.append(NotChecked(check.code, run.id, reason))
+        else:
+            results += _look((check,), trial, run.id)
+    return results
+
+
+def _look[Subject](
+    checks: tuple[Check[Subject], ...], subject: Subject, run: str | None
+) -> Iterator[Finding | NotChecked]:
+    for check in checks:
+        for said in check.find(subject):
+            yield _attributed(said, check.code, run)
+
+
+def _attributed(said: Remark | CannotTell, code: str, run: str | None) -> Finding | NotChecked:
+    if isinstance(said, CannotTell):
+        return NotChecked(code, run, said.reason)
+    return Finding(
+        code, said.severity, run, said.column, said.sentence, said.remedy, said.first_s
+    )
+
+
+def _unreadable(run: Run, error: InputError) -> Finding:
+    return Finding(
+        "unreadable", "error", run.id, None, error.line(), "restore the file or ingest again", None
+    )

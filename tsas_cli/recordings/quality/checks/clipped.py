@@ -1,0 +1,60 @@
+"""A channel sits at its highest or lowest value while the motion goes on.
+
+The sensor or its amplifier is at the end of its range, or the part is at a stop. Told when the
+channel does not change at all at its extreme while the drive moves on by more than a twentieth of
+its span. Not a clip: a dwell (everything rests), the dead band after a reversal (the drive moves
+back), a coarse step at the top of a sine.
+"""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
+from tsas_cli.recordings.quality.trial import Trial, plateaus
+
+_FEWEST_ROWS = 5
+_PASSED = 0.05
+
+
+def find(trial: Trial) -> Iterator[Remark | CannotTell]:
+    """Look at both extremes of each displacement and tension."""
+    for name in trial.mechanical:
+        for end, sign in (("highest", 1), ("lowest", -1)):
+            yield from _look(trial, name, end, sign)
+
+
+def _look(trial: Trial, name: str, end: str, sign: int) -> Iterator[Remark]:
+    values = trial.channels[name]
+    extreme = sign * np.nanmax(sign * values)
+    flat = [
+        rows
+        for rows in plateaus(values, _FEWEST_ROWS)
+        if values[rows.start] == extreme and _passes(trial, name, rows, sign)
+    ]
+    if flat:
+        seconds = sum(trial.time_s[r.stop - 1] - trial.time_s[r.start] for r in flat)
+        yield Remark(
+            "error",
+            f"{name} stays at its {end} value {extreme:.6g} for {seconds:.3g} s in {len(flat)} "
+            "stretches while the motion goes on",
+            "raise the sensor's range or lower its gain, check for a stop, and record again",
+            name,
+            float(trial.time_s[flat[0].start]),
+        )
+
+
+def _passes(trial: Trial, name: str, rows: slice, sign: int) -> bool:
+    """Say whether the motion goes beyond where it was when the plateau began, and comes back."""
+    coarse = 4.0 * trial.step[name] / max(trial.span[name], 1e-300)
+    for other in trial.references(name):
+        moved = sign * (trial.channels[other][rows] - trial.channels[other][rows.start])
+        further = float(np.nanmax(moved, initial=0.0))
+        needed = max(_PASSED, coarse) * trial.span[other] + trial.visible(other)
+        back = float(np.nanmin(moved, initial=0.0))
+        if further > needed and -back < 0.6 * trial.span[other]:
+            return True
+    return False
+
+
+CHECK = Check("clipped", find)

@@ -1,0 +1,36 @@
+"""The interval from sample to sample scatters.
+
+A logger on a busy computer, or time stamps that were rounded. The scatter is the root mean square
+about the median interval, without gaps; above 5 % it is told.
+"""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
+from tsas_cli.recordings.quality.trial import Trial
+
+_TOLERATED = 0.05
+
+
+def find(trial: Trial) -> Iterator[Remark | CannotTell]:
+    """Compare the intervals with their median."""
+    if not trial.increases:
+        yield CannotTell("time does not increase")
+        return
+    interval = np.diff(trial.time_s)
+    median = float(np.median(interval))
+    steady = interval < 2.5 * median
+    scatter = float(np.sqrt(np.mean((interval[steady] / median - 1.0) ** 2)))
+    if scatter > _TOLERATED:
+        yield Remark(
+            "warning",
+            f"the sample interval scatters by {100 * scatter:.3g} % about {1e3 * median:.4g} ms "
+            f"(from {1e3 * interval.min():.4g} to {1e3 * interval[steady].max():.4g} ms)",
+            "record with the clock of the data acquisition instead of the computer's",
+            "time_s",
+        )
+
+
+CHECK = Check("time-jitter", find)

@@ -1,0 +1,127 @@
+"""One run as the checks see it: channels, their noise and span, and the strokes of the drive."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from tsas_cli.numerics.noise import noise_sd, quantisation_step
+from tsas_cli.numerics.turning_points import turning_points
+from tsas_cli.recordings.columns import TIME
+from tsas_cli.recordings.dataset import Floats, Recording
+from tsas_cli.recordings.manifest import Rig
+
+MECHANICAL = ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N")
+_FEWEST = 16  # samples below which neither noise nor motion can be told
+_STROKE = 0.2  # of the drive's span: the smallest move back that begins a new stroke
+
+
+@dataclass(frozen=True)
+class Stroke:
+    """A move of the drive in one direction, from one row to another, both included."""
+
+    start: int
+    stop: int
+    direction: int
+
+    @property
+    def rows(self) -> slice:
+        """The rows of the stroke."""
+        return slice(self.start, self.stop + 1)
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A recording, and what the data sheet says about the rig."""
+
+    recording: Recording
+    rig: Rig
+
+    @cached_property
+    def time_s(self) -> Floats:
+        """Time [s], shape (n,); it may run backwards."""
+        return self.recording.time_s
+
+    @cached_property
+    def increases(self) -> bool:
+        """Whether time increases strictly."""
+        return bool((np.diff(self.time_s) > 0).all())
+
+    @cached_property
+    def channels(self) -> dict[str, Floats]:
+        """The columns besides time that hold enough numbers to say anything about them."""
+        return {
+            name: values
+            for name, values in self.recording.columns.items()
+            if name != TIME and np.isfinite(values).sum() >= _FEWEST
+        }
+
+    @cached_property
+    def mechanical(self) -> dict[str, Floats]:
+        """The displacements and tensions among the channels."""
+        return {name: self.channels[name] for name in MECHANICAL if name in self.channels}
+
+    @cached_property
+    def noise(self) -> dict[str, float]:
+        """Sample-to-sample noise of each channel (standard deviation)."""
+        return {name: noise_sd(values) for name, values in self.channels.items()}
+
+    @cached_property
+    def step(self) -> dict[str, float]:
+        """Step of quantisation of each channel, 0 where there is none."""
+        return {name: quantisation_step(values) for name, values in self.channels.items()}
+
+    @cached_property
+    def span(self) -> dict[str, float]:
+        """How far each channel moves: all but the outermost thousandth at either end."""
+        return {
+            name: float(np.ptp(np.nanpercentile(values, (0.1, 99.9))))
+            for name, values in self.channels.items()
+        }
+
+    def visible(self, name: str) -> float:
+        """Return the smallest change of a channel that neither noise nor steps explain."""
+        return 6.0 * self.noise[name] + 2.0 * self.step[name]
+
+    @cached_property
+    def strokes(self) -> tuple[Stroke, ...]:
+        """The strokes of `x_in_mm` that are longer than a fifth of its span; none at rest."""
+        x = self.channels.get("x_in_mm")
+        if x is None or self.span["x_in_mm"] <= 2.0 * self.visible("x_in_mm"):
+            return ()
+        there = np.flatnonzero(np.isfinite(x))
+        threshold = max(_STROKE * self.span["x_in_mm"], self.visible("x_in_mm"))
+        turns = there[turning_points(x[there], threshold)]
+        return tuple(
+            Stroke(int(a), int(b), int(np.sign(x[b] - x[a])))
+            for a, b in zip(turns[:-1], turns[1:], strict=True)
+            if abs(x[b] - x[a]) > threshold
+        )
+
+    def follows(self, name: str) -> float | None:
+        """Return how a channel goes with the drive's strokes: 1 always with, −1 always against.
+
+        None where it does not move visibly, or there are no strokes.
+        """
+        values = self.channels[name]
+        change = np.array([s.direction * (values[s.stop] - values[s.start]) for s in self.strokes])
+        size = np.abs(change)
+        if not np.isfinite(size).any() or np.nanmean(size) <= self.visible(name):
+            return None
+        return float(np.nansum(change) / np.nansum(size))
+
+
+def plateaus(values: Floats, shortest: int) -> list[slice]:
+    """Return the stretches of at least `shortest` rows in which a channel does not change at all.
+
+    Parameters
+    ----------
+    values
+        A channel, shape (n,); NaN belongs to no stretch.
+    shortest
+        Rows in the shortest stretch to return.
+    """
+    changes = np.flatnonzero(values[1:] != values[:-1]) + 1
+    edges = np.concatenate(([0], changes, [values.size]))
+    long = np.flatnonzero(np.diff(edges) >= shortest)
+    return [slice(int(edges[i]), int(edges[i + 1])) for i in long]

@@ -1,0 +1,66 @@
+"""dSPACE ControlDesk exports: a struct with the clocks under X and the channels under Y."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tsas_cli.errors import InputError
+from tsas_cli.recordings.readers.options import ReadOptions
+from tsas_cli.recordings.readers.table import Floats, Source, Table, floats, resolve
+from tsas_cli.recordings.readers.timebase import TIME, on_one_clock
+
+
+def find_capture(content: Mapping[str, Any]) -> Mapping[str, Any] | None:
+    """Return the first struct that holds X and Y with data, or None."""
+    for value in (content, *content.values()):
+        if isinstance(value, Mapping) and {"X", "Y"} <= set(value):
+            records = [*_records(value["X"]), *_records(value["Y"])]
+            if records and all(isinstance(r, Mapping) and "Data" in r for r in records):
+                return value
+    return None
+
+
+def read_capture(
+    capture: Mapping[str, Any], options: ReadOptions, wanted: Sequence[Source], path: Path
+) -> Table:
+    """Read the wanted channels of a capture; its clock is `time`, in s.
+
+    Raises
+    ------
+    InputError
+        A channel is missing, holds no numbers, or has another length than its clock; or the
+        channels' clocks differ and the map does not say `resample = true`.
+    """
+    channels = _records(capture["Y"])
+    names = [str(channel.get("Name", "")).strip('"') for channel in channels]
+    at = resolve([s for s in wanted if s != TIME], names, path)
+    clocks = [floats(np.ravel(clock["Data"]), TIME, path) for clock in _records(capture["X"])]
+    series = {s: _series(channels[i], clocks, s, path) for s, i in at.items()}
+    units: dict[Source, str] = {TIME: "s"}
+    units |= {s: unit for s, i in at.items() if (unit := str(channels[i].get("Unit", "")))}
+    description = str(capture.get("Description", ""))
+    return Table(
+        on_one_clock(series, path, resample=options.resample),
+        units,
+        (description,) if description else (),
+    )
+
+
+def _records(value: Any) -> list[Any]:
+    """Return a struct array as a list: one element is read as a struct, several as a list."""
+    return list(value) if isinstance(value, list | np.ndarray) else [value]
+
+
+def _series(
+    channel: Mapping[str, Any], clocks: list[Floats], source: Source, path: Path
+) -> tuple[Floats, Floats]:
+    values = floats(np.ravel(channel["Data"]), source, path)
+    number = channel.get("XIndex", 1)  # which clock, counted from 1
+    clock = clocks[int(number) - 1] if np.ndim(number) == 0 and 1 <= number <= len(clocks) else None
+    if clock is None or clock.size != values.size:
+        raise InputError(
+            f"channel {source} has {values.size} samples and no clock of that length", where=path
+        )
+    return clock, values

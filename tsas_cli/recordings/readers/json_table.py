@@ -1,0 +1,67 @@
+"""JSON tables: rows, records or columns, at the top or under a key."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from tsas_cli.errors import InputError, nearest
+from tsas_cli.files import read_json
+from tsas_cli.recordings.readers.options import ReadOptions
+from tsas_cli.recordings.readers.table import Source, Table, floats, resolve
+
+
+def read(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Table:
+    """Read the wanted columns of a JSON table.
+
+    It is a list of rows, a list of records, or an object of columns; `table` in the map names the
+    key (dots lead deeper) where it stands. Rows have names where the key `columns` beside them
+    lists names, else numbers.
+
+    Raises
+    ------
+    InputError
+        It is no such table, a column is missing, or a value is no number.
+    """
+    above, content = _descend(read_json(path), options.table, path)
+    names, columns = _columns(content, above.get("columns"), path)
+    at = resolve(wanted, names, path)
+    header = tuple(f"{key} = {value}" for key, value in above.items() if _is_plain(value))
+    return Table({s: floats(columns[i], s, path) for s, i in at.items()}, header=header)
+
+
+def _descend(content: Any, keys: str | None, path: Path) -> tuple[dict[str, Any], Any]:
+    """Return the object that holds the table, and the table."""
+    above: dict[str, Any] = {}
+    for key in keys.split(".") if keys else ():
+        if not isinstance(content, dict) or key not in content:
+            there = list(content) if isinstance(content, dict) else []
+            raise InputError(f"key {key} is missing", where=path, remedy=nearest(key, there))
+        above, content = content, content[key]
+    return above, content
+
+
+def _columns(content: Any, names: Any, path: Path) -> tuple[list[str], list[list[Any]]]:
+    if isinstance(content, dict) and all(isinstance(c, list) for c in content.values()):
+        return list(content), list(content.values())
+    if isinstance(content, list) and content and all(isinstance(r, dict) for r in content):
+        names = list(dict.fromkeys(key for record in content for key in record))
+        return names, [[record.get(name) for record in content] for name in names]
+    if isinstance(content, list) and content and all(isinstance(r, list) for r in content):
+        names = [str(n) for n in names] if isinstance(names, list) else [""] * len(content[0])
+        for row, cells in enumerate(content, start=1):
+            if len(cells) != len(names):
+                raise InputError(
+                    f"{len(cells)} values", where=f"{path}, row {row}", expected=f"{len(names)}"
+                )
+        return names, [list(column) for column in zip(*content, strict=True)]
+    keys = f"; its keys are: {', '.join(content)}" if isinstance(content, dict) else ""
+    raise InputError(
+        "holds no table here",
+        where=path,
+        expected="a list of rows, a list of records, or an object of columns",
+        remedy=f'name the key that holds it in the map: table = "…" under [read]{keys}',
+    )
+
+
+def _is_plain(value: Any) -> bool:
+    return isinstance(value, str | int | float)

@@ -1,0 +1,153 @@
+"""How a text table is laid out: its comment lines, names, units, delimiter and decimal mark."""
+
+import csv
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import islice
+from pathlib import Path
+
+from tsas_cli.errors import InputError
+from tsas_cli.recordings.readers.options import ReadOptions
+
+_SAMPLE = 20  # lines of the table that are looked at
+_UNIT_IN_NAME = re.compile(r"[\[(]([^\[\]()]+)[\])]$")
+_DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+([eE][+-]?\d+)?")
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Where the numbers begin (line counted from 1), and what stands above them."""
+
+    delimiter: str
+    decimal: str
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    header: tuple[str, ...]
+    first_line: int
+
+
+def detect(path: Path, options: ReadOptions) -> Layout:
+    """Find the layout of a text table from its head; what the map says is taken as said.
+
+    Names stand in the first line that is no comment, or, where that line holds numbers, in the
+    last comment line if it has as many fields. A line without any number under the names holds
+    the units; else a unit in brackets at the end of a name counts.
+
+    Raises
+    ------
+    InputError
+        The file is not text in its encoding, holds no row of numbers, or names more or fewer
+        columns than its first row has.
+    """
+    comments, lines = _head(path, options)
+    if not lines:
+        raise InputError("holds no table", where=path, expected="rows of numbers")
+    delimiter = options.delimiter or _delimiter([text for _, text in lines])
+    rows = [fields(text, delimiter) for _, text in lines]
+    decimal = options.decimal or _decimal(rows, delimiter)
+    names, units = [], []
+    if not _has_number(rows[0], decimal):
+        names = rows.pop(0)
+        if rows and _is_units_row(rows[0], decimal, options):
+            units = rows.pop(0)
+    elif comments and len(last := fields(comments[-1], delimiter)) == len(rows[0]):
+        names = last
+    if not rows:
+        raise InputError("holds no row of numbers", where=path)
+    first_line = lines[len(lines) - len(rows)][0]
+    names = _fitted(names, rows[0], path, first_line)
+    units = [cell.strip("[]()") for cell in units] or [_unit_in(name) for name in names]
+    units += [""] * (len(names) - len(units))
+    return Layout(delimiter, decimal, tuple(names), tuple(units), tuple(comments), first_line)
+
+
+def fields(text: str, delimiter: str) -> list[str]:
+    """Split one line of a text table; with a space as delimiter, several count as one."""
+    if delimiter == " ":
+        return text.split()
+    return [cell.strip() for cell in next(csv.reader([text], delimiter=delimiter))]
+
+
+def comment_text(line: str, options: ReadOptions) -> str | None:
+    """Return what a comment line says, or None where the line is no comment."""
+    for prefix in options.comment:
+        if line.lstrip().startswith(prefix):
+            return line.strip().removeprefix(prefix).strip()
+    return None
+
+
+def number(text: str, decimal: str) -> float:
+    """Return a cell as a number (ValueError where it is none)."""
+    return float(text.replace(",", ".") if decimal == "," else text)
+
+
+def _head(path: Path, options: ReadOptions) -> tuple[list[str], list[tuple[int, str]]]:
+    """Return the comments, and the first lines of the table with their numbers."""
+    comments: list[str] = []
+    lines: list[tuple[int, str]] = []
+    try:
+        with path.open(encoding=options.encoding) as stream:
+            for count, line in enumerate(islice(stream, options.skip_lines, None)):
+                text = comment_text(line, options)
+                if text is not None:
+                    comments.append(text)
+                elif line.strip():
+                    lines.append((options.skip_lines + count + 1, line.rstrip("\r\n")))
+                if len(lines) == _SAMPLE:
+                    break
+    except (UnicodeError, LookupError) as error:
+        raise InputError(
+            f"is not text in the encoding {options.encoding}",
+            where=path,
+            remedy='say which it is in the map, such as encoding = "cp1252" under [read]',
+        ) from error
+    return comments, lines
+
+
+def _delimiter(lines: Sequence[str]) -> str:
+    for candidate in ("\t", ";", ",", " "):
+        if all(candidate in line.strip() for line in lines):
+            return candidate
+    return ","
+
+
+def _decimal(rows: Sequence[Sequence[str]], delimiter: str) -> str:
+    commas = any(_DECIMAL_COMMA.fullmatch(cell) for row in rows for cell in row)
+    return "," if commas and delimiter != "," else "."
+
+
+def _has_number(row: Sequence[str], decimal: str) -> bool:
+    for cell in row:
+        try:
+            number(cell, decimal)
+        except ValueError:
+            continue
+        return True
+    return False
+
+
+def _is_units_row(row: Sequence[str], decimal: str, options: ReadOptions) -> bool:
+    if options.units_row is not None:
+        return options.units_row
+    return any(row) and not _has_number(row, decimal)
+
+
+def _fitted(names: list[str], row: list[str], path: Path, line: int) -> list[str]:
+    if not names:
+        return [""] * len(row)
+    if len(row) == len(names) + 1 and not row[-1]:  # a delimiter at the end of every line
+        return [*names, ""]
+    if len(names) != len(row):
+        raise InputError(
+            f"{len(names)} column names and {len(row)} fields",
+            where=f"{path}, row {line}",
+            expected="as many fields as names",
+            remedy="set delimiter, decimal or skip_lines under [read] of the map",
+        )
+    return names
+
+
+def _unit_in(name: str) -> str:
+    found = _UNIT_IN_NAME.search(name)
+    return found[1].strip() if found else ""

@@ -1,0 +1,94 @@
+"""MATLAB files: version 5 and earlier, and the HDF5 of version 7.3."""
+
+import struct
+import zlib
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.io import loadmat
+from scipy.io.matlab import MatReadError
+
+from tsas_cli.errors import InputError, nearest
+from tsas_cli.recordings.readers.controldesk import find_capture, read_capture
+from tsas_cli.recordings.readers.options import ReadOptions
+from tsas_cli.recordings.readers.table import Floats, Source, Table, floats, resolve
+
+_HDF5 = b"\x89HDF\r\n\x1a\n"
+_DAMAGED = (
+    MatReadError,
+    ValueError,
+    TypeError,
+    LookupError,
+    OSError,
+    EOFError,
+    RecursionError,
+    struct.error,
+    zlib.error,
+)
+
+
+def read(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Table:
+    """Read the wanted columns of a MATLAB file.
+
+    A vector is a column under its name, column j of a matrix is `name(:,j)`, and a member of a
+    struct is `name.member`. The X/Y struct of a dSPACE ControlDesk export is read as such. With
+    `table` in the map, names begin inside that variable.
+
+    Raises
+    ------
+    InputError
+        The file is damaged, or a column is missing or holds no numbers.
+    """
+    try:
+        content = _content(path)
+    except InputError:
+        raise
+    except _DAMAGED as error:
+        reason = str(error).splitlines()[0] if str(error) else type(error).__name__
+        raise InputError(f"cannot be read as a MATLAB file ({reason})", where=path) from error
+    content = _inside(content, options.table, path)
+    capture = find_capture(content)
+    if capture is not None:
+        return read_capture(capture, options, wanted, path)
+    vectors = dict(_vectors(content))
+    names = list(vectors)
+    at = resolve(wanted, names, path)
+    columns = {source: floats(vectors[names[i]], source, path) for source, i in at.items()}
+    header = tuple(f"{k} = {v}" for k, v in content.items() if isinstance(v, str | int | float))
+    return Table(columns, header=header)
+
+
+def _content(path: Path) -> dict[str, Any]:
+    """Return the variables as plain dictionaries, lists, text and arrays."""
+    with path.open("rb") as stream:
+        head = stream.read(520)
+    if _HDF5 in (head[:8], head[512:]):
+        from tsas_cli.recordings.readers.matlab_hdf5 import variables
+
+        return variables(path)
+    content = loadmat(path, simplify_cells=True)
+    return {name: value for name, value in content.items() if not name.startswith("__")}
+
+
+def _inside(content: dict[str, Any], table: str | None, path: Path) -> dict[str, Any]:
+    for name in table.split(".") if table else ():
+        if not isinstance(inner := content.get(name), dict):
+            raise InputError(f"no struct {name}", where=path, remedy=nearest(name, content))
+        content = inner
+    return content
+
+
+def _vectors(content: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, Floats]]:
+    """Yield every numeric vector under the name that a map gives it."""
+    for name, value in content.items():
+        if isinstance(value, dict):
+            yield from _vectors(value, f"{prefix}{name}.")
+        elif isinstance(value, np.ndarray) and value.dtype.kind in "fiub":
+            matrix = value.reshape(-1, 1) if 1 in value.shape or value.ndim == 1 else value
+            if matrix.ndim == 2 and matrix.shape[1] == 1:
+                yield f"{prefix}{name}", matrix[:, 0]
+            elif matrix.ndim == 2:
+                for j in range(matrix.shape[1]):
+                    yield f"{prefix}{name}(:,{j + 1})", matrix[:, j]

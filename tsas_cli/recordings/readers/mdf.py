@@ -1,0 +1,64 @@
+"""ASAM MDF measurement files."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tsas_cli.errors import InputError
+from tsas_cli.recordings.readers.optional import optional
+from tsas_cli.recordings.readers.options import ReadOptions
+from tsas_cli.recordings.readers.table import Floats, Source, Table, floats, resolve
+from tsas_cli.recordings.readers.timebase import TIME, on_one_clock
+
+
+def read(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Table:
+    """Read the wanted channels of an MDF file; its master channel is `time`, in s.
+
+    Raises
+    ------
+    InputError
+        asammdf is not installed, the file is damaged, a channel is missing or holds no numbers,
+        or the channels' times differ and the map does not say `resample = true`.
+    """
+    asammdf = optional("asammdf", extra="mdf")
+    try:
+        with asammdf.MDF(path) as file:
+            return _table(file, options, wanted, path)
+    except InputError:
+        raise
+    except Exception as error:  # a damaged file ends in any of a dozen types
+        reason = str(error).splitlines()[0] if str(error) else type(error).__name__
+        raise InputError(f"cannot be read as MDF ({reason})", where=path) from error
+
+
+def _table(file: Any, options: ReadOptions, wanted: Sequence[Source], path: Path) -> Table:
+    channels = [
+        (channel.name, group, index)
+        for group, content in enumerate(file.groups)
+        for index, channel in enumerate(content.channels)
+        if index != file.masters_db.get(group)
+    ]
+    at = resolve([s for s in wanted if s != TIME], [name for name, _, _ in channels], path)
+    signals = {
+        source: file.get(*channels[i], ignore_invalidation_bits=True) for source, i in at.items()
+    }
+    series = {s: (_seconds(signal), _values(signal, s, path)) for s, signal in signals.items()}
+    columns = on_one_clock(series, path, resample=options.resample)
+    units: dict[Source, str] = {TIME: "s"}
+    units |= {source: signal.unit for source, signal in signals.items() if signal.unit}
+    header = (str(file.header.comment), f"started {file.start_time.isoformat()}")
+    return Table(columns, units, header)
+
+
+def _seconds(signal: Any) -> Floats:
+    return np.asarray(signal.timestamps, dtype=np.float64)
+
+
+def _values(signal: Any, source: Source, path: Path) -> Floats:
+    """Return a channel's samples; those that the file marks as invalid are gaps."""
+    values = floats(signal.samples, source, path).copy()
+    if signal.invalidation_bits is not None:
+        values[np.asarray(signal.invalidation_bits, dtype=bool)] = np.nan
+    return values

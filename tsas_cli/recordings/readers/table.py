@@ -1,0 +1,115 @@
+"""What every reader returns, and how a map's source names a column of a file."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from tsas_cli.errors import InputError, nearest
+
+Floats = npt.NDArray[np.float64]
+Source = str | int  # a column's name, or its number counted from 1
+
+
+@dataclass(frozen=True)
+class Table:
+    """The wanted columns of one file.
+
+    Attributes
+    ----------
+    columns
+        Values by source, shape (n,), a gap is NaN.
+    units
+        The unit as the file's text, by source, where the file gives one.
+    header
+        The lines above the table, or whatever else the file says in words.
+    first_row
+        The number of the first row as a person counts it in the file.
+    """
+
+    columns: Mapping[Source, Floats]
+    units: Mapping[Source, str] = field(default_factory=dict)
+    header: tuple[str, ...] = ()
+    first_row: int = 1
+
+
+def resolve(wanted: Sequence[Source], names: Sequence[str], path: Path) -> dict[Source, int]:
+    """Return the index of each wanted column among a file's columns.
+
+    Parameters
+    ----------
+    wanted
+        Names or numbers (from 1).
+    names
+        The file's columns in order; empty text where a column has no name.
+
+    Raises
+    ------
+    InputError
+        A column is not there, or its name is there more than once; lists those that are there.
+    """
+    return {source: _index(source, names, path) for source in wanted}
+
+
+def floats(values: Any, source: Source, path: Path, *, first_row: int = 1) -> Floats:
+    """Return values as float64; null becomes NaN.
+
+    Raises
+    ------
+    InputError
+        A value is no number; names its row.
+    """
+    try:
+        numbers = np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        numbers = np.array([_number(v, source, path, first_row + i) for i, v in enumerate(values)])
+    if numbers.ndim != 1:
+        raise InputError(f"column {source} has {numbers.ndim} dimensions", where=path, expected="1")
+    return numbers
+
+
+def not_a_number(found: object, source: Source, path: Path, row: int) -> InputError:
+    """Return the error for text where a number belongs."""
+    return InputError(
+        f"column {source} holds {str(found)[:40]!r}",
+        where=f"{path}, row {row}",
+        expected="a number, or an empty cell for a gap",
+    )
+
+
+def _number(value: Any, source: Source, path: Path, row: int) -> float:
+    try:
+        return float("nan") if value is None else float(value)
+    except (TypeError, ValueError):
+        raise not_a_number(value, source, path, row) from None
+
+
+def _index(source: Source, names: Sequence[str], path: Path) -> int:
+    if isinstance(source, int):
+        if 1 <= source <= len(names):
+            return source - 1
+        raise InputError(f"column {source} is missing", where=path, remedy=_listed(names))
+    found = [i for i, name in enumerate(names) if name == source]
+    if len(found) == 1:
+        return found[0]
+    if found:
+        numbers = ", ".join(str(i + 1) for i in found)
+        raise InputError(
+            f"column {source} is there {len(found)} times",
+            where=path,
+            remedy=f"take one of them by its number in the map: {numbers}",
+        )
+    close = nearest(source, (n for n in names if n))
+    hint = f"{close}; " if close.startswith("did") else ""
+    raise InputError(f"column {source} is missing", where=path, remedy=hint + _listed(names))
+
+
+def _listed(names: Sequence[str]) -> str:
+    if not any(names):
+        return f"there are {len(names)} columns without names: take them by number, from 1"
+    shown = [name or f"(number {i + 1})" for i, name in enumerate(names)]
+    more = f" and {len(shown) - 40} more" if len(shown) > 40 else ""
+    return f"there are: {', '.join(shown[:40])}{more}"

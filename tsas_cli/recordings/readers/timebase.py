@@ -1,0 +1,56 @@
+"""Channels with times of their own, brought onto one clock."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from tsas_cli.errors import InputError
+from tsas_cli.recordings.readers.table import Floats, Source
+
+TIME = "time"  # how a map names the clock of a file whose channels share it
+
+
+def on_one_clock(
+    series: Mapping[Source, tuple[Floats, Floats]], path: Path, *, resample: bool
+) -> dict[Source, Floats]:
+    """Return the channels' values and, under `time`, the times that they share.
+
+    Parameters
+    ----------
+    series
+        Times [s] and values by source, each of shape (n,) with its own n.
+    resample
+        Where times differ, interpolate linearly onto the times of the channel with the most
+        samples, within the stretch that all channels cover.
+
+    Raises
+    ------
+    InputError
+        The times differ and `resample` is not set, or the channels never overlap.
+    """
+    clock = max((times for times, _ in series.values()), key=len)
+    if all(np.array_equal(times, clock) for times, _ in series.values()):
+        return {TIME: clock} | {source: values for source, (_, values) in series.items()}
+    described = "; ".join(f"{s}: {_described(times)}" for s, (times, _) in series.items())
+    if not resample:
+        raise InputError(
+            f"the channels have different times ({described})",
+            where=path,
+            expected="one clock",
+            remedy="take channels of one raster, or interpolate: resample = true under [read]",
+        )
+    if any(times.size == 0 for times, _ in series.values()):
+        raise InputError(f"a channel holds no samples ({described})", where=path)
+    start = max(times[0] for times, _ in series.values())
+    end = min(times[-1] for times, _ in series.values())
+    clock = clock[(clock >= start) & (clock <= end)]
+    if clock.size == 0:
+        raise InputError(f"the channels never overlap in time ({described})", where=path)
+    return {TIME: clock} | {s: np.interp(clock, *channel) for s, channel in series.items()}
+
+
+def _described(times: Floats) -> str:
+    if times.size == 0:
+        return "no samples"
+    return f"{times.size} samples, {times[0]:g} to {times[-1]:g} s"

@@ -1,0 +1,60 @@
+"""The page that a person reads: every section in order, in one file that needs nothing else."""
+
+from collections.abc import Callable
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup
+
+from tsas_cli.errors import printable
+from tsas_cli.reporting.content import Section
+from tsas_cli.reporting.inputs import Inputs
+from tsas_cli.reporting.sections import (
+    loops,
+    parameters,
+    recordings,
+    repeat,
+    simulation,
+    stiffness,
+    summary,
+)
+
+SECTIONS: tuple[Callable[[Inputs], Section], ...] = (
+    recordings.section,
+    stiffness.section,
+    loops.section,
+    simulation.section,
+    parameters.section,
+    repeat.section,
+)
+
+
+def page(inputs: Inputs, advance: Callable[[], None] = lambda: None) -> str:
+    """Return the whole page as HTML; `advance` is called after each of `SECTIONS`.
+
+    Raises
+    ------
+    InputError
+        A recording or a simulated run cannot be read.
+    """
+    sections = []
+    for section in SECTIONS:
+        sections.append(section(inputs))
+        advance()
+    environment = Environment(
+        loader=PackageLoader("tsas_cli.reporting"),
+        autoescape=True,
+        finalize=_visible,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    return environment.get_template("page.html").render(
+        name=inputs.dataset.manifest.name,
+        summary=tuple(summary.sentences(inputs)),
+        sections=sections,
+    )
+
+
+def _visible(value: object) -> object:
+    """Make control characters in names from files visible; leave our own markup as it is."""
+    return value if isinstance(value, Markup) else printable(str(value))

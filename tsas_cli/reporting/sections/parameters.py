@@ -1,0 +1,42 @@
+"""The model's parameters with their intervals, and what the recordings do not say."""
+
+from tsas_cli.reporting.content import Section, Table
+from tsas_cli.reporting.inputs import Inputs
+from tsas_cli.reporting.numbers import with_interval
+from tsas_cli.reporting.stage_files import Parameter
+
+_TITLE = "Parameters"
+
+
+def section(inputs: Inputs) -> Section:
+    """Return the section of the parameters."""
+    calibration = inputs.calibration
+    if calibration is None:
+        text = "No calibration was given: add a folder written by `tsas calibrate`."
+        return Section("parameters", _TITLE, (text,))
+    intro = ["Values with an interval are fitted; the others are taken as given."]
+    if not calibration.fit.converged:
+        intro.append(f"The fit did not converge: {calibration.fit.message}")
+    if calibration.cannot_tell:
+        intro.append("What these recordings do not say:")
+    header = ("parameter", "run", "value", "95 % interval", "unit", "origin", "at its bound")
+    table = Table(
+        "The model's parameters",
+        header,
+        tuple(_row(parameter) for parameter in calibration.parameters),
+        numeric=frozenset({2, 3}),
+    )
+    return Section(
+        "parameters", _TITLE, tuple(intro), tables=(table,), points=calibration.cannot_tell
+    )
+
+
+def _row(parameter: Parameter) -> tuple[str, ...]:
+    return (
+        parameter.name,
+        parameter.run or "all",
+        *with_interval(parameter.value, parameter.interval_low, parameter.interval_high),
+        parameter.unit,
+        parameter.origin,
+        "yes" if parameter.at_bound else "no",
+    )

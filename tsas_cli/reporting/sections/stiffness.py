@@ -1,0 +1,84 @@
+"""The stiffness of each phase: fitted, expected from the model, and by theory."""
+
+from functools import partial
+
+from tsas_cli.reporting.content import Picture, Section, Table
+from tsas_cli.reporting.drawing import picture
+from tsas_cli.reporting.figures.stiffness import draw_stiffness, height_in
+from tsas_cli.reporting.inputs import Inputs
+from tsas_cli.reporting.numbers import ABSENT, plain, with_interval
+from tsas_cli.reporting.phases import PHASES, label_of
+from tsas_cli.reporting.stage_files import Stiffness
+
+
+def section(inputs: Inputs) -> Section:
+    """Return the section of the stiffness in each phase."""
+    if inputs.calibration is None:
+        text = "No calibration was given: add a folder written by `tsas calibrate`."
+        return Section("stiffness", "Stiffness by phase", (text,))
+    rows = inputs.calibration.stiffness
+    intro = (
+        "km is the slope of the tension at the drive over its displacement, fitted as a straight "
+        "line in each phase. The same line fitted to the calibrated model stands beside it, since "
+        "the tension in a dead band is curved: there, a linear fit finds another value than the "
+        "theory of a lumped tendon, without any error of the sensors.",
+    )
+    by_phase = ((phase.key, [row for row in rows if row.phase == phase.key]) for phase in PHASES)
+    pictures = tuple(_picture(key, found) for key, found in by_phase if found)
+    return Section(
+        "stiffness", "Stiffness by phase", intro, tables=(_table(rows),), pictures=pictures
+    )
+
+
+def _table(rows: tuple[Stiffness, ...]) -> Table:
+    kr_unit = next((row.kr.unit for row in rows if row.kr), ABSENT)
+    header = (
+        "run",
+        "phase",
+        "km [N/mm]",
+        "95 % interval",
+        "linear fit of the model",
+        "theory",
+        "theory, elastic term kept",
+        f"kr [{kr_unit}]",
+        "95 % interval",
+        "strokes",
+        "note",
+    )
+    return Table(
+        "Stiffness by run and phase",
+        header,
+        tuple(_row(row) for row in rows),
+        numeric=frozenset(range(2, 10)),
+    )
+
+
+def _row(row: Stiffness) -> tuple[str, ...]:
+    kr = (row.kr.value, row.kr.interval_low, row.kr.interval_high) if row.kr else (None,) * 3
+    return (
+        row.run,
+        label_of(row.phase),
+        *with_interval(row.km.value, row.km.interval_low, row.km.interval_high),
+        plain(row.expected_N_per_mm),
+        plain(row.theory_N_per_mm),
+        plain(row.theory_elastic_N_per_mm),
+        *with_interval(*kr),
+        str(row.occurrences),
+        row.note or "",
+    )
+
+
+def _picture(key: str, rows: list[Stiffness]) -> Picture:
+    label = label_of(key)
+    values = "; ".join(
+        f"run {row.run} {plain(row.km.value)}, the model's linear fit "
+        f"{plain(row.expected_N_per_mm)}, theory {plain(row.theory_N_per_mm)}"
+        for row in rows
+    )
+    return picture(
+        partial(draw_stiffness, rows=rows),
+        key=f"stiffness-{key}",
+        alt=f"Stiffness km in {label}, in newton per millimetre: {values}.",
+        caption=f"km in {label}.",
+        height_in=height_in(len(rows)),
+    )

@@ -1,0 +1,50 @@
+"""The page's first paragraph: what it is about and what came out, in plain words."""
+
+from collections.abc import Iterator
+
+from tsas_cli.recordings.columns import BY_NAME
+from tsas_cli.reporting.inputs import Inputs
+from tsas_cli.reporting.numbers import plain
+from tsas_cli.reporting.stage_files import Check, Simulation
+
+
+def sentences(inputs: Inputs) -> Iterator[str]:
+    """Yield the sentences of the summary."""
+    manifest = inputs.dataset.manifest
+    many = "1 recording" if len(manifest.run) == 1 else f"{len(manifest.run)} recordings"
+    yield f"{manifest.name} holds {many}, {manifest.kind}."
+    if inputs.check is not None:
+        yield _findings(inputs.check)
+    if inputs.simulation is not None:
+        yield from _distances(inputs.simulation)
+    if inputs.calibration is not None and inputs.calibration.cannot_tell:
+        yield "These recordings do not say everything:"
+        yield from inputs.calibration.cannot_tell
+
+
+def _findings(check: Check) -> str:
+    counts = {
+        severity: sum(f.severity == severity for f in check.findings)
+        for severity in ("error", "warning", "note")
+    }
+    said = [f"{n} {name}{'s' if n > 1 else ''}" for name, n in counts.items() if n]
+    return f"The checks report {', '.join(said)}." if said else "The checks found nothing."
+
+
+def _distances(simulation: Simulation) -> Iterator[str]:
+    """Yield, for each channel, the range over the runs of RMSE against noise."""
+    channels = {name for run in simulation.runs.values() for name in run.channels}
+    for name in (column for column in BY_NAME if column in channels):
+        found = [run.channels[name] for run in simulation.runs.values() if name in run.channels]
+        ratios = [c.rmse / c.noise for c in found if c.rmse is not None and c.noise]
+        if ratios:
+            what = BY_NAME[name].meaning.split(",")[0]
+            yield (
+                f"For the {what}, the simulation is {_range(ratios)} times the noise away from "
+                "the measurement."
+            )
+
+
+def _range(values: list[float]) -> str:
+    low, high = plain(min(values), 2), plain(max(values), 2)
+    return low if low == high else f"{low} to {high}"
