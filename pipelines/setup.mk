@@ -23,7 +23,7 @@ $(LOCKED):
 
 $(INSTALLED): $(LOCKED)
 	@$(PIP) install --no-deps --no-build-isolation --editable .
-	@touch $@
+	@rm -f .venv/installed-* && touch $@
 
 lock:  ## choose the newest versions that pyproject.toml allows, and lock them with hashes
 	@folder=$$(mktemp -d) && trap 'rm -rf "$$folder"' EXIT \

@@ -29,18 +29,22 @@ def test_a_folder_appears_only_when_it_is_complete(tmp_path: Path) -> None:
     assert names(out.parent) == ["out"]
 
 
-@pytest.mark.parametrize("new", [new_folder, new_file])
-def test_an_error_inside_the_block_leaves_nothing(tmp_path: Path, new: object) -> None:
-    with pytest.raises(RuntimeError), new(tmp_path / "out") as path:  # type: ignore[operator]
-        target = path / "half" if path.is_dir() else path
-        target.write_text("half")
-        raise RuntimeError
+def fail_after_writing(path: Path) -> None:
+    path.write_text("half")
+    raise RuntimeError
+
+
+def test_an_error_inside_the_block_leaves_nothing(tmp_path: Path) -> None:
+    with pytest.raises(RuntimeError), new_folder(tmp_path / "out") as folder:
+        fail_after_writing(folder / "half")
+    with pytest.raises(RuntimeError), new_file(tmp_path / "page.html") as file:
+        fail_after_writing(file)
     assert names(tmp_path) == []
 
 
 def test_an_existing_folder_stays_as_it_is_without_force(tmp_path: Path) -> None:
     make_old(tmp_path / "out")
-    with pytest.raises(InputError, match="already exists.*--force"), new_folder(tmp_path / "out"):
+    with pytest.raises(InputError, match=r"already exists.*--force"), new_folder(tmp_path / "out"):
         pytest.fail("the block must not run")
     assert (tmp_path / "out" / "result").read_text() == "old"
     assert names(tmp_path) == ["out"]

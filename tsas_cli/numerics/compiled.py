@@ -2,7 +2,6 @@
 
 import hashlib
 import os
-import tempfile
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -10,6 +9,7 @@ from typing import Any, TypeVar, cast
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
+PARTS = ("effects", "numerics", "physics")  # where kernels live
 PLAIN = os.environ.get("TSAS_PLAIN_PYTHON") == "1"
 
 
@@ -23,24 +23,28 @@ def kernel(function: Function) -> Function:
         return function
     import numba
 
-    numba.config.CACHE_DIR = _cache_folder()  # type: ignore[attr-defined] # set by name at run time
-    return cast(Function, numba.njit(cache=True, error_model="numpy")(function))
+    folder = _cache_folder()
+    numba.config.CACHE_DIR = folder or ""  # type: ignore[attr-defined] # numba sets it by name
+    return cast(Function, numba.njit(cache=folder is not None, error_model="numpy")(function))
 
 
 @cache
-def _cache_folder() -> str:
-    """Return a folder named after the sources: numba does not see edits in imported kernels."""
+def _cache_folder() -> str | None:
+    """Return a folder named after the sources, or None where none can be written.
+
+    Numba by itself does not see edits in the kernels that a kernel calls.
+    """
     import platformdirs
 
     digest = hashlib.sha256()
     package = Path(__file__).parent.parent
-    for part in ("effects", "numerics", "physics"):
+    for part in PARTS:
         for source in sorted((package / part).rglob("*.py")):
             digest.update(source.read_bytes())
     root = Path(os.environ.get("TSAS_CACHE_DIR") or platformdirs.user_cache_dir("tsas"))
     folder = root / "kernels" / digest.hexdigest()[:16]
     try:
         folder.mkdir(parents=True, exist_ok=True)
-    except OSError:  # a read-only home: compile for this process only
-        return tempfile.mkdtemp(prefix="tsas-kernels-")
-    return str(folder)
+    except OSError:
+        return None
+    return str(folder) if os.access(folder, os.W_OK) else None

@@ -1,0 +1,211 @@
+import hashlib
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+
+from tsas_cli.errors import InputError
+from tsas_cli.recordings.dataset import Recording, read_dataset, read_recording, write_dataset
+from tsas_cli.recordings.manifest import Manifest
+
+Columns = dict[str, np.ndarray]
+
+
+def put(folder: Path, table: pa.Table) -> None:
+    """Replace run `a` by a table, with the right checksum."""
+    pq.write_table(table, folder / "runs" / "a.parquet")
+    rehash(folder)
+
+
+def rehash(folder: Path) -> None:
+    digest = hashlib.sha256((folder / "runs" / "a.parquet").read_bytes()).hexdigest()
+    old = read_dataset(folder).manifest.run[0].sha256
+    text = (folder / "dataset.toml").read_text()
+    (folder / "dataset.toml").write_text(text.replace(old, digest))
+
+
+def only(folder: Path) -> Recording:
+    (recording,) = read_dataset(folder)
+    return recording
+
+
+def refusal(folder: Path) -> str:
+    with pytest.raises(InputError) as caught:
+        only(folder)
+    return caught.value.line().removeprefix(str(folder / "runs" / "a.parquet"))
+
+
+def test_what_is_written_is_read_to_the_last_bit(dataset: Path, columns: Columns) -> None:
+    recording = only(dataset)
+    assert set(recording.columns) == set(columns)
+    for name, values in columns.items():
+        np.testing.assert_array_equal(recording.columns[name], values)
+    assert recording.time_s is recording.columns["time_s"]
+    assert recording.get("f_out_N") is None
+    assert recording.run.preload_N == 25.0
+
+
+def test_each_known_column_carries_its_unit_in_the_file(dataset: Path) -> None:
+    schema = pq.read_schema(dataset / "runs" / "a.parquet")
+    units = {field.name: field.metadata[b"unit"].decode() for field in schema}
+    assert units == {"time_s": "s", "x_in_mm": "mm", "f_in_N": "N"}
+
+
+def test_the_hashes_are_those_of_the_files(dataset: Path) -> None:
+    expected = {
+        name: hashlib.sha256((dataset / name).read_bytes()).hexdigest()
+        for name in ("dataset.toml", "runs/a.parquet")
+    }
+    assert read_dataset(dataset).hashes() == expected
+
+
+def test_unknown_columns_travel_along_untouched(
+    tmp_path: Path, manifest: Manifest, columns: Columns
+) -> None:
+    note = pa.array(["μ"] * 499 + [None])
+    write_out = tmp_path / "out"
+    write_out.mkdir()
+    write_dataset(write_out, manifest, {"a": pa.table(columns | {"note": note})})
+    assert pq.read_table(write_out / "runs" / "a.parquet")["note"].combine_chunks() == note
+    assert "note" not in only(write_out).columns
+
+
+def test_a_gap_is_null_in_the_file_and_nan_in_memory(dataset: Path, columns: Columns) -> None:
+    force = pa.array(columns["f_in_N"], mask=np.arange(500) == 7)
+    put(dataset, pa.table(columns | {"f_in_N": force}))
+    assert np.flatnonzero(np.isnan(only(dataset).columns["f_in_N"])).tolist() == [7]
+
+
+@pytest.mark.parametrize("kind", ["float32", "int64", "uint8"])
+def test_other_kinds_of_numbers_are_accepted(dataset: Path, columns: Columns, kind: str) -> None:
+    force = columns["f_in_N"].astype(kind)
+    put(dataset, pa.table(columns | {"f_in_N": force}))
+    read = only(dataset).columns["f_in_N"]
+    assert read.dtype == np.float64
+    np.testing.assert_array_equal(read, force.astype(float))
+
+
+def test_integers_beyond_the_exact_floats_are_accepted(dataset: Path, columns: Columns) -> None:
+    nanoseconds = 2**60 + np.arange(500) * 1_000_000
+    put(dataset, pa.table(columns | {"time_s": nanoseconds}))
+    assert only(dataset).time_s[-1] == pytest.approx(nanoseconds[-1])
+
+
+def test_a_dataset_made_by_pandas_alone_works(tmp_path: Path, columns: Columns) -> None:
+    frame = pd.DataFrame(columns).assign(f_out_N=lambda t: t.f_in_N.where(t.index != 3))
+    frame.to_parquet(tmp_path / "first run.parquet")
+    digest = hashlib.sha256((tmp_path / "first run.parquet").read_bytes()).hexdigest()
+    (tmp_path / "dataset.toml").write_text(
+        'format = 1\nname = "mine"\nkind = "measured"\n'
+        f'[[run]]\nid = "1"\nfile = "first run.parquet"\nsha256 = "{digest.upper()}"\n'
+    )
+    recording = only(tmp_path)
+    np.testing.assert_array_equal(recording.columns["x_in_mm"], columns["x_in_mm"])
+    assert np.isnan(recording.columns["f_out_N"]).sum() == 1
+
+
+def test_a_changed_file_is_found_by_its_checksum(dataset: Path, columns: Columns) -> None:
+    pq.write_table(pa.table(columns | {"f_in_N": columns["x_in_mm"]}), dataset / "runs/a.parquet")
+    assert refusal(dataset).startswith(": the checksum differs from the manifest's; expected ")
+
+
+@pytest.mark.parametrize("size", [0, 3, 8, 2000, -1])
+def test_a_truncated_file_is_one_line(dataset: Path, size: int) -> None:
+    path = dataset / "runs" / "a.parquet"
+    path.write_bytes(path.read_bytes()[:size])
+    assert "checksum" in refusal(dataset)
+    rehash(dataset)
+    assert refusal(dataset).startswith(": cannot be read as Parquet (")
+
+
+def test_a_missing_file_is_one_line(dataset: Path) -> None:
+    (dataset / "runs" / "a.parquet").unlink()
+    assert refusal(dataset).startswith(": the run's file is missing")
+
+
+def test_a_folder_in_the_place_of_a_file_is_one_line(dataset: Path) -> None:
+    text = (dataset / "dataset.toml").read_text()
+    (dataset / "dataset.toml").write_text(text.replace("runs/a.parquet", "."))
+    with pytest.raises(InputError, match="the run's file is missing"):
+        only(dataset)
+
+
+def test_a_link_out_of_the_folder_is_refused(dataset: Path, tmp_path: Path) -> None:
+    path = dataset / "runs" / "a.parquet"
+    path.rename(tmp_path / "elsewhere.parquet")
+    path.symlink_to(tmp_path / "elsewhere.parquet")
+    assert refusal(dataset) == ": a link leads out of the dataset's folder"
+
+
+def test_a_missing_time_lists_the_columns_that_are_there(dataset: Path, columns: Columns) -> None:
+    del columns["time_s"]
+    put(dataset, pa.table(columns | {"Time [ms]": np.arange(500)}))
+    line = refusal(dataset)
+    assert line.startswith(": column time_s is missing")
+    assert line.endswith("there are: x_in_mm, f_in_N, Time [ms]")
+
+
+@pytest.mark.parametrize("kept", [{"x_in_mm"}, {"f_in_N"}, set()])
+def test_an_input_and_another_output_are_needed(
+    dataset: Path, columns: Columns, kept: set[str]
+) -> None:
+    put(dataset, pa.table({n: v for n, v in columns.items() if n in kept | {"time_s"}}))
+    assert refusal(dataset).startswith(": an input and an output column are needed")
+
+
+@pytest.mark.parametrize("rows", [0, 1])
+def test_too_few_rows_are_refused(dataset: Path, columns: Columns, rows: int) -> None:
+    put(dataset, pa.table(columns).slice(0, rows))
+    assert refusal(dataset) == f": {rows} rows; expected at least two samples"
+
+
+@pytest.mark.parametrize("values", [["5 N"] * 500, [True] * 500])
+def test_what_is_not_a_number_is_refused(
+    dataset: Path, columns: Columns, values: list[object]
+) -> None:
+    put(dataset, pa.table(columns | {"f_in_N": values}))
+    assert refusal(dataset).startswith(": column f_in_N holds ")
+
+
+def test_an_infinite_value_is_named_with_its_row(dataset: Path, columns: Columns) -> None:
+    columns["f_in_N"][12] = np.inf
+    put(dataset, pa.table(columns))
+    assert refusal(dataset).startswith(", row 12: f_in_N is infinite")
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf, None])
+def test_a_time_that_is_no_number_is_named_with_its_row(
+    dataset: Path, columns: Columns, value: float | None
+) -> None:
+    put(dataset, pa.table(columns | {"time_s": [*columns["time_s"][:499], value]}))
+    assert refusal(dataset).startswith(", row 499: time_s is null or not finite")
+
+
+@pytest.mark.parametrize("back_s", [0.0, 0.5])
+def test_time_that_does_not_increase_is_named_with_its_row(
+    dataset: Path, columns: Columns, back_s: float
+) -> None:
+    columns["time_s"][30] = columns["time_s"][29] - back_s
+    put(dataset, pa.table(columns))
+    assert refusal(dataset).startswith(", row 30: time_s does not increase")
+    run = read_dataset(dataset).manifest.run[0]
+    lenient = read_recording(dataset, run, strict=False)
+    np.testing.assert_array_equal(lenient.time_s, columns["time_s"])
+
+
+def test_a_column_whose_metadata_name_another_unit_is_refused(
+    dataset: Path, columns: Columns
+) -> None:
+    fields = [pa.field(n, pa.float64(), metadata={"unit": "mm"}) for n in ("x_in_mm", "f_in_N")]
+    schema = pa.schema([pa.field("time_s", pa.float64()), *fields])
+    put(dataset, pa.table(columns, schema=schema))
+    assert refusal(dataset) == ": column f_in_N says that its unit is mm; expected N"
+
+
+def test_a_column_that_is_there_twice_is_refused(dataset: Path, columns: Columns) -> None:
+    force = pa.array(columns["f_in_N"])
+    put(dataset, pa.table(columns).append_column("f_in_N", force))
+    assert refusal(dataset) == ": column f_in_N is there twice"

@@ -1,0 +1,161 @@
+import datetime as dt
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tsas_cli.errors import InputError
+from tsas_cli.recordings.manifest import Manifest, parse, read_manifest, write_manifest
+
+SHA = "0123456789abcdef" * 4
+TEXT = f"""
+format = 1
+name = "bench-42"
+kind = "measured"
+license = "CC-BY-4.0"
+
+[rig]
+tendon_diameter_mm = 1.2
+load_stiffness_N_per_mm = 1.579
+
+[[run]]
+id = "a"
+file = "runs/a.parquet"
+sha256 = "{SHA}"
+started = 2026-03-02T09:30:00
+sheath_length_mm = 785.4
+preload_N = 25.0
+
+[[run]]
+id = "b"
+file = "runs/b.parquet"
+sha256 = "{SHA}"
+load = "force"
+"""
+
+
+def read(folder: Path, text: str) -> Manifest:
+    (folder / "dataset.toml").write_text(text, encoding="utf-8")
+    return read_manifest(folder)
+
+
+def refusal(folder: Path, text: str) -> str:
+    with pytest.raises(InputError) as caught:
+        read(folder, text)
+    return caught.value.line().removeprefix(f"{folder / 'dataset.toml'}: ")
+
+
+def test_a_manifest_says_what_was_written_by_hand(tmp_path: Path) -> None:
+    manifest = read(tmp_path, TEXT)
+    assert (manifest.name, manifest.kind, manifest.license) == (
+        "bench-42",
+        "measured",
+        "CC-BY-4.0",
+    )
+    assert manifest.rig.tendon_diameter_mm == 1.2
+    assert manifest.rig.friction_coefficient is None
+    a, b = manifest.run
+    assert (a.id, a.file, a.sheath_length_mm, a.preload_N) == ("a", "runs/a.parquet", 785.4, 25.0)
+    assert a.started == dt.datetime.fromisoformat("2026-03-02T09:30:00")
+    assert (a.load, b.load) == ("spring", "force")
+
+
+def test_writing_and_reading_gives_the_same_manifest(tmp_path: Path) -> None:
+    manifest = read(tmp_path, TEXT + '\n[lab]\nroom = "3.14"\n')
+    write_manifest(tmp_path, manifest)
+    assert read_manifest(tmp_path) == manifest
+    assert manifest.model_extra == {"lab": {"room": "3.14"}}
+
+
+def test_a_byte_order_mark_is_no_obstacle(tmp_path: Path) -> None:
+    assert read(tmp_path, "\ufeff" + TEXT).name == "bench-42"
+
+
+def test_an_unknown_key_travels_along_and_names_its_nearest(tmp_path: Path) -> None:
+    manifest = read(tmp_path, TEXT.replace("preload_N", "preload_n"))
+    assert manifest.run[0].unknown_keys() == {"preload_n": "did you mean preload_N?"}
+    assert manifest.run[1].unknown_keys() == {}
+
+
+def test_a_closed_table_names_the_nearest_key_and_its_place() -> None:
+    class Inner(Manifest):
+        model_config = Manifest.model_config | {"extra": "forbid"}
+
+    content: dict[str, Any] = {"format": 1, "name": "x", "kind": "measured", "licence": "MIT"}
+    content["run"] = [{"id": "a", "file": "a.parquet", "sha256": SHA}]
+    with pytest.raises(InputError, match=r"map\.toml: unknown key licence .*mean license\?"):
+        parse(Inner, content, Path("map.toml"))
+
+
+def test_all_errors_come_at_once_with_their_places(tmp_path: Path) -> None:
+    text = TEXT.replace('kind = "measured"', 'kind = "guessed"')
+    text = text.replace("tendon_diameter_mm = 1.2", "tendon_diameter_mm = -1.2")
+    text = text.replace('id = "b"\n', "").replace("preload_N = 25.0", 'preload_N = "tight"')
+    line = refusal(tmp_path, text)
+    for part in ("kind: ", "'guessed'", "rig.tendon_diameter_mm: ", "-1.2", "run.1.id is missing"):
+        assert part in line
+    assert "run.0.preload_N: " in line
+
+
+@pytest.mark.parametrize(
+    "file",
+    [
+        "../a.parquet",
+        "runs/../../a.parquet",
+        "/etc/passwd",
+        "C:/a.parquet",
+        "C:a.parquet",
+        r"..\\a.parquet",
+        r"\\\\server\\share\\a.parquet",
+        r"C:\\a.parquet",
+    ],
+)
+def test_a_file_outside_the_folder_is_refused(tmp_path: Path, file: str) -> None:
+    line = refusal(tmp_path, TEXT.replace("runs/a.parquet", file))
+    assert line.startswith("run.0.file: must stay inside the dataset's folder")
+
+
+def test_a_path_written_on_windows_works(tmp_path: Path) -> None:
+    manifest = read(tmp_path, TEXT.replace("runs/a.parquet", r"runs\\a.parquet"))
+    assert manifest.run[0].file == "runs/a.parquet"
+
+
+@pytest.mark.parametrize("name", ["", ".", "..", "a/b", r"a\\b", r"a\u001b[2J", r"a\n"])
+def test_an_id_that_cannot_name_a_file_is_refused(tmp_path: Path, name: str) -> None:
+    line = refusal(tmp_path, TEXT.replace('id = "a"', f'id = "{name}"'))
+    assert line.startswith("run.0.id: ")
+    assert line.isprintable()
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ("format = 1", "format = 2", "format: .*1.*got 2"),
+        ("format = 1\n", "", "format is missing"),
+        ('id = "b"', 'id = "a"', "run id 'a' is there twice"),
+        (SHA, "abc", "run.0.sha256: "),
+        (SHA, "g" * 64, "run.0.sha256: "),
+        ('load = "force"', 'load = "weight"', "run.1.load: .*'spring', 'force' or 'displacement'"),
+        ("preload_N = 25.0", "preload_N = nan", "run.0.preload_N: .*finite"),
+        ("preload_N = 25.0", "preload_N = inf", "run.0.preload_N: .*finite"),
+        ("1.579", "0", "rig.load_stiffness_N_per_mm: .*greater than 0, got 0"),
+        ("[[run]]", "[[runs]]", "run is missing"),
+    ],
+)
+def test_what_format_1_does_not_allow_is_refused(
+    tmp_path: Path, old: str, new: str, told: str
+) -> None:
+    with pytest.raises(InputError, match=told):
+        read(tmp_path, TEXT.replace(old, new))
+
+
+@pytest.mark.parametrize("content", [b"format = ", b"\xff\xfe\x00"])
+def test_what_is_not_toml_is_one_line(tmp_path: Path, content: bytes) -> None:
+    (tmp_path / "dataset.toml").write_bytes(content)
+    with pytest.raises(InputError, match=r"dataset\.toml: is not TOML"):
+        read_manifest(tmp_path)
+
+
+def test_a_folder_without_manifest_says_how_to_make_one(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"no dataset\.toml here.*tsas ingest"):
+        read_manifest(tmp_path)
