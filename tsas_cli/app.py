@@ -40,13 +40,13 @@ app.command("report")(report)
 def main() -> None:
     """Run the command line; what goes wrong is one line on stderr and an exit code."""
     try:
-        code = app(standalone_mode=False)
+        code = app(prog_name="tsas", standalone_mode=False)
         sys.stdout.flush()
     except InputError as error:
         code = _stop(error.line(), 2)
     except TyperException as error:
         code = _stop(_wrong_call(error), 2)
-    except BrokenPipeError:
+    except (BrokenPipeError, SystemExit):  # who read the output is gone; typer exits then
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         code = 0
     except Exception as error:

@@ -1,0 +1,1 @@
+"""What has to be fast: each module here has `measure() -> Iterable[Row]`; `make bench` runs all."""

@@ -1,0 +1,138 @@
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+import typer
+
+import tsas_cli
+import tsas_cli.app
+from tsas_cli.errors import InputError
+
+Tsas = Callable[..., subprocess.CompletedProcess[str]]
+HEAVY = {
+    "asammdf",
+    "control",
+    "h5py",
+    "jinja2",
+    "matplotlib",
+    "numba",
+    "numpy",
+    "pandas",
+    "pint",
+    "pyarrow",
+    "pydantic",
+    "rerun",
+    "scipy",
+    "tomlkit",
+}
+COMMANDS = typer.main.get_command(tsas_cli.app.app).commands  # type: ignore[attr-defined]
+
+
+def fail_with(error: Exception, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let every call of the command line end in an error."""
+
+    def app(**_: object) -> None:
+        raise error
+
+    monkeypatch.setattr(tsas_cli.app, "app", app)
+
+
+def test_version_and_help_succeed(tsas: Tsas) -> None:
+    version = tsas("--version")
+    assert (version.returncode, version.stdout) == (0, f"tsas {tsas_cli.__version__}\n")
+    page = tsas("--help")
+    assert page.returncode == 0
+    for name in COMMANDS:
+        assert name in page.stdout
+
+
+def test_help_loads_no_library_that_it_does_not_need() -> None:
+    program = "import tsas_cli.app, sys, json; print(json.dumps(list(sys.modules)))"
+    loaded = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True
+    )
+    assert HEAVY & {name.split(".")[0] for name in json.loads(loaded.stdout)} == set()
+
+
+def test_every_command_file_is_a_command() -> None:
+    files = {path.stem for path in (Path(tsas_cli.__file__).parent / "commands").glob("*.py")}
+    assert {name.replace("-", "_") for name in COMMANDS} == files - {"__init__", "common"}
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_every_command_explains_itself_and_can_be_quiet_or_print_json(name: str) -> None:
+    command = COMMANDS[name]
+    options = {option for parameter in command.params for option in parameter.opts}
+    assert {"--quiet", "--json"} <= options
+    assert command.help
+    assert all(p.help for p in command.params if p.name != "help")
+
+
+@pytest.mark.parametrize(
+    ("call", "told"),
+    [
+        (["nope"], "tsas: No such command 'nope'"),
+        (["--nope"], "tsas: No such option: --nope"),
+        (["report", "--out"], "tsas: Option '--out' requires an argument"),
+    ],
+)
+def test_a_wrong_call_is_one_line_that_names_the_help(
+    tsas: Tsas, call: list[str], told: str
+) -> None:
+    result = tsas(*call)
+    assert (result.returncode, result.stdout) == (2, "")
+    assert result.stderr.startswith(told)
+    assert result.stderr.endswith("--help`\n")
+    assert result.stderr.count("\n") == 1
+
+
+def test_no_command_at_all_prints_the_help(tsas: Tsas) -> None:
+    result = tsas()
+    assert result.returncode == 2
+    assert "Usage: tsas" in result.stdout + result.stderr
+
+
+def test_a_wrong_input_is_one_line_and_exit_code_2(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    fail_with(InputError("no\nsuch run", where="a\x1b[31m"), monkeypatch)
+    with pytest.raises(SystemExit) as stopped:
+        tsas_cli.app.main()
+    assert stopped.value.code == 2
+    assert capsys.readouterr() == ("", "tsas: a\\x1b[31m: no\\nsuch run\n")
+
+
+def test_a_defect_is_one_line_and_exit_code_1(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.delenv("TSAS_TRACEBACK", raising=False)
+    fail_with(ZeroDivisionError("two\nlines"), monkeypatch)
+    with pytest.raises(SystemExit) as stopped:
+        tsas_cli.app.main()
+    assert stopped.value.code == 1
+    error = capsys.readouterr().err
+    assert error.startswith("tsas: a defect of tsas itself: ZeroDivisionError: two\\nlines; ")
+    assert "TSAS_TRACEBACK=1" in error
+    assert error.count("\n") == 1
+
+
+def test_a_defect_shows_its_traceback_where_it_is_asked_for(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setenv("TSAS_TRACEBACK", "1")
+    fail_with(ZeroDivisionError("here"), monkeypatch)
+    with pytest.raises(ZeroDivisionError, match="here"):
+        tsas_cli.app.main()
+
+
+def test_a_reader_that_goes_away_is_no_error() -> None:
+    reader, writer = os.pipe()
+    os.close(reader)
+    call = [sys.executable, "-m", "tsas_cli", "--version"]
+    result = subprocess.run(call, stdout=writer, stderr=subprocess.PIPE, check=False)
+    os.close(writer)
+    assert (result.returncode, result.stderr) == (0, b"")
