@@ -7,6 +7,8 @@ import typer
 from typer.exceptions import TyperException
 
 from tsas_cli import __version__
+from tsas_cli.commands.check import check
+from tsas_cli.commands.ingest import ingest
 from tsas_cli.commands.report import report
 from tsas_cli.errors import InputError, printable
 
@@ -34,6 +36,8 @@ def _options(
     del version
 
 
+app.command("check")(check)
+app.command("ingest")(ingest)
 app.command("report")(report)
 
 

@@ -1,5 +1,6 @@
 """A dataset on disk: one Parquet file per run, and the manifest beside them (format 1)."""
 
+import os
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -44,6 +45,11 @@ class Dataset:
     def __iter__(self) -> Iterator[Recording]:
         """Read one recording after the other, in the order of the manifest."""
         return (read_recording(self.folder, run) for run in self.manifest.run)
+
+    def reference(self, folder: Path) -> dict[str, object]:
+        """Return what a stage that writes `folder` says about the dataset that it read."""
+        path = os.path.relpath(self.folder.resolve(), folder.resolve())
+        return {"name": self.manifest.name, "folder": path, "hashes": self.hashes()}
 
     def hashes(self) -> dict[str, str]:
         """Return the checksum of the manifest and of each run's file, by path in the dataset."""

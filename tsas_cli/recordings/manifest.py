@@ -79,6 +79,7 @@ class Manifest(_Table):
     source: str | None = None
     rig: Rig = Rig()
     run: tuple[Run, ...] = Field(min_length=1)
+    ingest: dict[str, Any] | None = None  # the files and the map that `tsas ingest` has read
 
     @model_validator(mode="after")
     def _ids_differ(self) -> "Manifest":

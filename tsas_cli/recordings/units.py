@@ -34,9 +34,19 @@ _SPELLINGS = {
 }
 _AS_FORCE = {"lb": "lbf", "lbs": "lbf", "kg": "kgf", "g": "gf", "oz": "ozf", "kp": "kgf"}
 _AS_TEMPERATURE = {"C": "degC", "F": "degF"}
-_LABELS = {"count", "counts", "cts", "pulse", "pulses", "tick", "ticks", "inc", "V", "mV", "volt"}
+_LABELS = {"count", "counts", "pulse", "pulses", "tick", "ticks", "inc", "v", "mv", "volt", "volts"}
 _TORQUE = re.compile(r"([mkM]?N)(mm|cm|m)")
-_ANGLES = ("radian", "degree", "turn", "revolution", "arc_minute", "arc_second", "grade")
+_CAPITALISED = re.compile(r"[A-Z][a-z]{3,}")
+_ANGLES = ("radian", "degree", "turn", "revolution", "arcminute", "arcsecond", "grade")
+_KINDS = {
+    "s": "a time",
+    "mm": "a length",
+    "N": "a force",
+    "N*mm": "a torque",
+    "rad": "an angle",
+    "rpm": "a speed of rotation, such as rpm, turn/s or rad/s",
+    "°C": "a temperature",
+}
 
 
 def conversion(
@@ -46,38 +56,95 @@ def conversion(
     factor: float | None = None,
     factor_unit: str | None = None,
     pulley_radius_mm: float | None = None,
+    where: str = "",
 ) -> tuple[float, float]:
     """Return slope and intercept that take a number in a file to a canonical unit.
 
     Parameters
     ----------
     unit
-        The unit as text, as people write it.
+        The unit as people write it.
     to
         The canonical unit: s, mm, N, rpm, rad or °C.
     factor, factor_unit
-        What one of `unit` is, for counts and volts: `factor` times `factor_unit`.
+        What one `unit` is, needed for counts and volts: `factor` times `factor_unit`.
     pulley_radius_mm
         The radius on which an angle becomes mm, or a torque N.
+    where
+        The place that errors name.
 
     Raises
     ------
     InputError
         The unit is unknown, or cannot become the canonical one; says what to add.
     """
-    if unit.strip() in _LABELS and factor is None:
+    if factor is None and unit.strip().lower() in _LABELS:
         raise InputError(
-            f"{unit!r} does not say how many {to} one is",
-            remedy="say what one is: factor and factor_unit",
+            f"unit {unit!r} does not say how many {to} one is",
+            where=where,
+            remedy="say what one is with factor and factor_unit",
         )
-    source = _parse(factor_unit or unit, to)
-    wanted = _parse(to, to)
     scale = 1.0 if factor is None else factor
-    if pulley_radius_mm is not None:
-        source = _on_pulley(source, to, pulley_radius_mm, unit)
-    if not _fits(source, wanted):
-        raise _cannot_become(source, to, factor_unit or unit)
-    zero, one = (
-        float(_registry().Quantity(x, source.units).to(wanted.units).magnitude) for x in (0.0, 1.0)
+    text = factor_unit or unit
+    if pulley_radius_mm is None:
+        slope, intercept = _between(text, to, where)
+        return slope * scale, intercept
+    if to == "mm":
+        return _between(text, "rad", where)[0] * scale * pulley_radius_mm, 0.0
+    if to == "N":
+        return _between(text, "N*mm", where)[0] * scale / pulley_radius_mm, 0.0
+    raise InputError(
+        f"pulley_radius_mm does not apply to {to}",
+        where=where,
+        expected="a column in mm from an angle, or in N from a torque",
     )
-    return (one - zero) * source.magnitude * scale, zero
+
+
+def _between(text: str, to: str, where: str) -> tuple[float, float]:
+    unit, wanted = _parse(text, to, where), _parse(to, to, where)
+    turns = to not in {"rad", "rpm"} or _has_angle(unit)  # else a count or 1/s passes for an angle
+    if unit.dimensionality != wanted.dimensionality or not turns:
+        raise InputError(
+            f"unit {text!r} cannot become {to}",
+            where=where,
+            expected=_KINDS[to],
+            remedy=_remedy(unit, to),
+        )
+    zero, one = (float(_registry().Quantity(x, unit).to(wanted).magnitude) for x in (0.0, 1.0))
+    return one - zero, zero
+
+
+def _parse(text: str, to: str, where: str) -> Any:
+    spelled = text.strip().replace("⋅", "*")
+    spelled = _SPELLINGS.get(spelled, spelled)
+    if to == "N":
+        spelled = _AS_FORCE.get(spelled, spelled)
+    if to == "°C":
+        spelled = _AS_TEMPERATURE.get(spelled, spelled)
+    spelled = _CAPITALISED.sub(lambda word: word[0].lower(), spelled)
+    if torque := _TORQUE.fullmatch(spelled):
+        spelled = f"{torque[1]}*{torque[2]}"
+    try:
+        return _registry().Unit(spelled)
+    except Exception as error:  # pint's parser ends in any of a dozen types
+        raise InputError(f"unit {text!r} is unknown", where=where, expected=_KINDS[to]) from error
+
+
+def _has_angle(unit: Any) -> bool:
+    names = [name for name, _ in _registry().Quantity(1, unit).unit_items()]
+    return any(angle in name for angle in _ANGLES for name in names)
+
+
+def _remedy(unit: Any, to: str) -> str:
+    if to == "mm" and unit.dimensionless and _has_angle(unit):
+        return "an angle needs pulley_radius_mm to become mm"
+    if to == "N" and unit.dimensionality == _registry().Unit("N*mm").dimensionality:
+        return "a torque needs pulley_radius_mm to become N"
+    return "is this the right source column, and its unit the one in the file?"
+
+
+@cache
+def _registry() -> Any:
+    import pint
+
+    return pint.UnitRegistry()

@@ -1,0 +1,80 @@
+"""The conditions of a run, from its file's name, its header and the map."""
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from tsas_cli.errors import InputError, nearest
+from tsas_cli.recordings.ingest_map import FromText, RunMap
+from tsas_cli.recordings.units import conversion
+
+_UNITS = {"preload_N": "N", "sheath_length_mm": "mm", "total_bend_rad": "rad"}
+
+
+def run_conditions(path: Path, header: Sequence[str], run_map: RunMap) -> dict[str, Any]:
+    """Return a run's id and conditions, and whatever else the names and headers say about it.
+
+    Later sources win: `[run]`, the file's name (with its folder), the header, the converted
+    groups, the table entry of the run's id. Groups that are no conditions travel along.
+
+    Raises
+    ------
+    InputError
+        A pattern finds nothing, a group is missing or no number, or a unit does not fit.
+    """
+    groups = _groups(run_map.from_file_name, f"{path.absolute().parent.name}/{path.name}", path)
+    groups |= _groups(run_map.from_header, "\n".join(header), path)
+    name = _filled(run_map.id, {"stem": path.stem, "folder": path.absolute().parent.name} | groups)
+    converted = {}
+    for condition, rule in run_map.conditions.items():
+        if rule.group not in groups:
+            hint = nearest(rule.group, groups)
+            raise InputError(f"no group {rule.group} for {condition}", where=path, remedy=hint)
+        slope, intercept = conversion(
+            rule.unit, _UNITS[condition], where=f"run.conditions.{condition} of the map"
+        )
+        converted[condition] = slope * _number(groups[rule.group], rule.group, path) + intercept
+    used = {rule.group for rule in run_map.conditions.values()}
+    said = {key: _plain(text) for key, text in groups.items() if key not in used}
+    defaults = run_map.model_dump(include={"load", *_UNITS}, exclude_none=True)
+    return defaults | said | converted | run_map.table.get(name, {}) | {"id": name}
+
+
+def _groups(rule: FromText | None, text: str, path: Path) -> dict[str, str]:
+    if rule is None:
+        return {}
+    found = rule.pattern.search(text)
+    if found is None:
+        shown = text if len(text) <= 60 else f"{text[:60]}…"
+        raise InputError(
+            f"the pattern {rule.pattern.pattern!r} finds nothing in {shown!r}", where=path
+        )
+    return {key: value for key, value in found.groupdict().items() if value is not None}
+
+
+def _filled(template: str, words: dict[str, str]) -> str:
+    def word(match: re.Match[str]) -> str:
+        if match[1] not in words:
+            hint = nearest(match[1], words)
+            raise InputError(f"run.id: {{{match[1]}}} is unknown", remedy=hint)
+        return words[match[1]]
+
+    return re.sub(r"\{(\w+)\}", word, template)
+
+
+def _number(text: str, group: str, path: Path) -> float:
+    value = _plain(text)
+    if isinstance(value, str):
+        raise InputError(f"group {group} is {text!r}", where=path, expected="a number")
+    return value
+
+
+def _plain(text: str) -> float | int | str:
+    """Return a number where the text is one (a decimal comma counts), else the text."""
+    for kind in (int, float):
+        try:
+            return kind(text.replace(",", "."))
+        except ValueError:
+            continue
+    return text
