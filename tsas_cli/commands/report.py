@@ -29,11 +29,12 @@ def report(
         inputs = read_inputs(folders)
         with progress("drawing", len(SECTIONS), quiet=quiet) as advance:
             path.write_text(page(inputs, advance), encoding="utf-8")
-    kinds = {kind: str(folder) for kind, folder in inputs.folders.items()}
+    read = {"dataset.toml": str(inputs.dataset.folder)}
+    read |= {kind.FILE: str(folder) for kind, folder in inputs.folders.items()}
     size = out.stat().st_size
     show(
-        {"stage": "report", "page": str(out), "bytes": size, "read": kinds},
-        [(f"{out}, {size / 1e6:.2f} MB", ("read", "folder"), list(kinds.items()))],
+        {"stage": "report", "page": str(out), "bytes": size, "read": read},
+        [(f"{out}, {size / 1e6:.2f} MB", ("file", "folder"), list(read.items()))],
         quiet=quiet,
         as_json=as_json,
     )

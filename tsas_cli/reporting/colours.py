@@ -7,7 +7,6 @@ ROLES = (
     "paper",
     "measured",
     "simulated",
-    "band",
     "contraction",
     "loosening",
     "dead-band-up",

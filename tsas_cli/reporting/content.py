@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 from markupsafe import Markup
 
+from tsas_cli.reporting.numbers import ABSENT
+
 
 @dataclass(frozen=True)
 class Table:
@@ -13,6 +15,20 @@ class Table:
     header: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
     numeric: frozenset[int] = frozenset()
+
+    def without_empty(self) -> "Table":
+        """Return the table without the columns in which nothing stands."""
+        kept = [
+            column
+            for column in range(len(self.header))
+            if any(row[column] not in {"", ABSENT} for row in self.rows)
+        ]
+        return Table(
+            self.caption,
+            tuple(self.header[column] for column in kept),
+            tuple(tuple(row[column] for column in kept) for row in self.rows),
+            frozenset(place for place, column in enumerate(kept) if column in self.numeric),
+        )
 
 
 @dataclass(frozen=True)

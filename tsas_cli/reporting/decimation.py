@@ -6,7 +6,7 @@ import numpy.typing as npt
 Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
 
-POINTS = 3200
+POINTS = 2400  # a bin is then narrower than a pixel of a plot of 30 rem
 
 
 def kept_samples(*series: Floats, points: int = POINTS) -> Indices:

@@ -5,7 +5,7 @@ import re
 import warnings
 from collections.abc import Callable
 from typing import Any
-from xml.etree import ElementTree  # noqa: S405  reads only what matplotlib has just written
+from xml.etree import ElementTree as ET
 
 from markupsafe import Markup
 
@@ -14,7 +14,7 @@ from tsas_cli.reporting.colours import STAND_IN, themed
 from tsas_cli.reporting.content import Picture
 
 WIDTH_IN = 5.0  # a phone shows this at about its own size, so that the text stays readable
-_STYLE = {
+_STYLE: dict[Any, Any] = {
     "svg.fonttype": "none",
     "svg.hashsalt": "tsas",
     "text.parse_math": False,
@@ -80,7 +80,7 @@ def picture(
 
 def _inline(text: str, *, key: str, alt: str) -> Markup:
     """Strip what only a file needs, make the ids the picture's own, shorten the numbers."""
-    root = ElementTree.fromstring(text)  # noqa: S314  our own output
+    root = ET.fromstring(text)  # noqa: S314  our own output
     for parent in list(root.iter()):
         for style in parent.findall(f"{_SVG}defs/{_SVG}style/.."):
             parent.remove(style)  # it would hold for the whole page
@@ -96,7 +96,7 @@ def _inline(text: str, *, key: str, alt: str) -> Markup:
     for name in ("width", "height", "version"):
         root.attrib.pop(name, None)
     root.attrib.update({"role": "img", "aria-label": printable(alt)})
-    return Markup(themed(ElementTree.tostring(root, encoding="unicode")))  # noqa: S704
+    return Markup(themed(ET.tostring(root, encoding="unicode")))  # noqa: S704
 
 
 def _own(name: str, value: str, key: str) -> str:

@@ -4,6 +4,7 @@ import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TypeVar, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -14,25 +15,23 @@ from tsas_cli.errors import InputError
 from tsas_cli.files import read_json
 from tsas_cli.recordings.dataset import Dataset, Recording, read_dataset
 from tsas_cli.recordings.manifest import FILE, parse
-from tsas_cli.reporting.stage_files import Calibration, Check, Simulation, StageFile
+from tsas_cli.reporting.stage_files import STAGES, Simulation, StageFile
 
 Floats = npt.NDArray[np.float64]
-STAGES: dict[str, tuple[str, type[StageFile]]] = {
-    "check": ("check.json", Check),
-    "calibration": ("calibration.json", Calibration),
-    "simulation": ("simulation.json", Simulation),
-}
+Stage = TypeVar("Stage", bound=StageFile)
 
 
 @dataclass(frozen=True)
 class Inputs:
-    """The dataset, the folders by kind, and what each stage wrote, None where it was not given."""
+    """The dataset, and by kind of stage what was given: its file's content, and its folder."""
 
     dataset: Dataset
-    folders: Mapping[str, Path]
-    check: Check | None = None
-    calibration: Calibration | None = None
-    simulation: Simulation | None = None
+    stages: Mapping[type[StageFile], StageFile]
+    folders: Mapping[type[StageFile], Path]
+
+    def get(self, kind: type[Stage]) -> Stage | None:
+        """Return what a stage wrote, or None where it was not given."""
+        return cast("Stage | None", self.stages.get(kind))
 
     def simulated(self, recording: Recording, column: str) -> Floats:
         """Return a simulated channel of a run, shape (n,) as the recording, NaN for gaps.
@@ -42,9 +41,9 @@ class Inputs:
         InputError
             The file cannot be read, or does not belong to this recording.
         """
-        path = self.folders["simulation"] / "runs" / f"{recording.run.id}.parquet"
+        path = self.folders[Simulation] / "runs" / f"{recording.run.id}.parquet"
         try:
-            values = pq.read_table(path, columns=[column]).column(column)
+            values = pq.ParquetFile(path).read(columns=[column]).column(column)
         except (pa.ArrowException, OSError, KeyError) as error:
             reason = str(error).splitlines()[0]
             raise InputError(f"cannot be read ({reason})", where=path) from error
@@ -68,38 +67,39 @@ def read_inputs(folders: Sequence[Path]) -> Inputs:
         A folder is of no known kind, a kind is there twice, no dataset can be found, or a stage
         has read other recordings than the dataset holds.
     """
-    by_kind = _by_kind(folders)
-    paths = {kind: by_kind[kind] / file for kind, (file, _) in STAGES.items() if kind in by_kind}
-    stages = {kind: parse(STAGES[kind][1], read_json(path), path) for kind, path in paths.items()}
-    if "dataset" not in by_kind:
-        kind, stage = next(iter(stages.items()))
-        by_kind["dataset"] = _dataset_of(stage, paths[kind])
-    dataset = read_dataset(by_kind["dataset"])
+    by_file = _by_file(folders)
+    where = {kind: by_file[kind.FILE] for kind in STAGES if kind.FILE in by_file}
+    stages = {
+        kind: parse(kind, read_json(folder / kind.FILE), folder / kind.FILE)
+        for kind, folder in where.items()
+    }
+    named = (_dataset_of(stage, where[kind] / kind.FILE) for kind, stage in stages.items())
+    dataset = read_dataset(by_file[FILE] if FILE in by_file else next(named))
     for kind, stage in stages.items():
-        _check_hashes(stage, dataset, paths[kind])
-    return Inputs(dataset, by_kind, **stages)
+        _check_hashes(stage, dataset, where[kind] / kind.FILE)
+    return Inputs(dataset, stages, where)
 
 
-def _by_kind(folders: Sequence[Path]) -> dict[str, Path]:
-    files = {"dataset": FILE} | {kind: file for kind, (file, _) in STAGES.items()}
+def _by_file(folders: Sequence[Path]) -> dict[str, Path]:
+    known = (FILE, *(kind.FILE for kind in STAGES))
     found: dict[str, Path] = {}
     for folder in folders:
-        kinds = [kind for kind, file in files.items() if (folder / file).is_file()]
-        if not kinds:
+        files = [file for file in known if (folder / file).is_file()]
+        if not files:
             raise InputError(
-                "this is no folder that tsas has written",
+                "neither a dataset nor what a stage wrote",
                 where=folder,
-                expected=f"one of {', '.join(files.values())} in it",
+                expected=f"a folder with one of {', '.join(known)}",
             )
-        for kind in kinds:
-            if kind in found:
+        for file in files:
+            if file in found:
                 raise InputError(
-                    f"a second folder with {files[kind]}, after {found[kind]}",
+                    f"a second folder with {file}, after {found[file]}",
                     where=folder,
                     expected="one folder of each kind",
                     remedy="write a page for each",
                 )
-            found[kind] = folder
+            found[file] = folder
     return found
 
 
@@ -116,12 +116,12 @@ def _dataset_of(stage: StageFile, path: Path) -> Path:
 
 
 def _check_hashes(stage: StageFile, dataset: Dataset, path: Path) -> None:
-    now = dataset.hashes()
-    for file in sorted(now.keys() | stage.dataset.hashes.keys()):
-        if now.get(file, "").lower() != stage.dataset.hashes.get(file, "").lower():
+    then, now = stage.dataset.hashes, dataset.hashes()
+    for file in sorted(now.keys() | then.keys()):
+        if now.get(file, "").lower() != then.get(file, "").lower():
             raise InputError(
-                f"{file} of {dataset.folder} is not what this stage has read",
+                f"{file} of {dataset.folder} has changed since this stage read it",
                 where=path,
-                expected=f"SHA-256 {stage.dataset.hashes.get(file, 'of no such file')}",
-                remedy="run the stage again on this dataset",
+                expected=f"SHA-256 {then[file]}" if file in then else "no such file",
+                remedy="run the stage again, or give the dataset that it has read",
             )

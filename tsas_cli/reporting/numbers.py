@@ -44,6 +44,8 @@ def _fixed(value: float, decimals: int) -> str:
     """Round to a number of decimals, or of tens where it is negative; powers of ten if needed."""
     if decimals > 6:
         exponent = _exponent(value)
-        return f"{_fixed(value / 10.0**exponent, decimals + exponent)}·10^{exponent}"
-    text = f"{round(value, decimals):.{max(decimals, 0)}f}"
+        text = f"{_fixed(value / 10.0**exponent, decimals + exponent)}·10^{exponent}"
+    else:
+        rounded = round(value, decimals) + 0.0  # minus zero becomes zero
+        text = f"{rounded:.{max(decimals, 0)}f}"
     return text.replace("-", MINUS)

@@ -23,9 +23,9 @@ class Phase:
 
 PHASES = (
     Phase("contraction", "contraction", "1", "contraction"),
-    Phase("dead_band_down", "dead band, down", "2", "dead-band-down"),
+    Phase("dead_band_down", "dead band down", "2", "dead-band-down"),
     Phase("loosening", "loosening", "3", "loosening"),
-    Phase("dead_band_up", "dead band, up", "4", "dead-band-up"),
+    Phase("dead_band_up", "dead band up", "4", "dead-band-up"),
     Phase("rest", "rest", "", "rest"),
     Phase("unknown", "not told", "", "unknown"),
 )

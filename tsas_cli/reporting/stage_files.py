@@ -1,6 +1,6 @@
 """What the stages' JSON files hold, as far as the page reads them (docs/formats.md)."""
 
-from typing import Literal
+from typing import ClassVar, Literal
 
 from pydantic import BaseModel, ConfigDict
 
@@ -19,8 +19,9 @@ class Source(_Record):
 
 
 class StageFile(_Record):
-    """What all stages say: the format, and what they have read."""
+    """What all stages say: the format, and what they have read; `FILE` is the file's name."""
 
+    FILE: ClassVar[str]
     format: Literal[1]
     dataset: Source
 
@@ -39,6 +40,7 @@ class Finding(_Record):
 class Check(StageFile):
     """The content of `check.json`."""
 
+    FILE: ClassVar[str] = "check.json"
     stage: Literal["check"]
     findings: tuple[Finding, ...]
 
@@ -97,6 +99,7 @@ class Fit(_Record):
 class Calibration(StageFile):
     """The content of `calibration.json`."""
 
+    FILE: ClassVar[str] = "calibration.json"
     stage: Literal["calibrate"]
     version: str
     segments: dict[str, tuple[Segment, ...]]
@@ -116,7 +119,11 @@ class SimulatedRun(_Record):
 class Simulation(StageFile):
     """The content of `simulation.json`; its series are in `runs/ID.parquet`."""
 
+    FILE: ClassVar[str] = "simulation.json"
     stage: Literal["simulate"]
     version: str
     dynamics: str
     runs: dict[str, SimulatedRun]
+
+
+STAGES: tuple[type[StageFile], ...] = (Check, Calibration, Simulation)

@@ -33,21 +33,15 @@ def draw_comparison(
     labels
         The channel's name with unit, and its unit.
     """
-    upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
+    upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
     _line(upper, time_s, measured, color=STAND_IN["measured"], linewidth=2.6, label="measured")
     _line(upper, time_s, simulated, color=STAND_IN["simulated"], linewidth=1.1, label="simulated")
     upper.set_ylabel(labels[0])
+    _line(lower, time_s, measured - simulated, color=STAND_IN["muted"], linewidth=0.7)
     if noise is not None:
-        lower.axhspan(
-            -2 * noise,
-            2 * noise,
-            color=STAND_IN["band"],
-            alpha=0.35,
-            linewidth=0,
-            label="± 2 × noise of the sensor",
-        )
-    _line(lower, time_s, measured - simulated, color=STAND_IN["ink"], linewidth=0.8)
-    lower.axhline(0.0, color=STAND_IN["muted"], linewidth=0.7)
+        edge = {"color": STAND_IN["ink"], "linewidth": 1.0, "linestyle": (0, (4, 3)), "zorder": 3}
+        lower.axhline(2 * noise, **edge, label="± 2 × noise")
+        lower.axhline(-2 * noise, **edge)
     lower.set(xlabel="time [s]", ylabel=f"residual [{labels[1]}]")
     figure.align_ylabels()
     figure.legend(loc="outside upper left", ncols=3, handlelength=1.6, columnspacing=1.2)

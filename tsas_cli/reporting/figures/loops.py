@@ -45,15 +45,16 @@ def _draw_phase(axes: Any, x: Floats, y: Floats, inside: npt.NDArray[np.bool_], 
 
 
 def _number(axes: Any, x: Floats, y: Floats, inside: npt.NDArray[np.bool_], one: Phase) -> None:
-    """Put the phase's number where its longest stretch is half way up."""
+    """Put the phase's number on its longest stretch, apart from that of the opposite phase."""
     edges = np.flatnonzero(np.diff(np.concatenate(([False], inside, [False])).astype(int)))
     starts, ends = edges[::2], edges[1::2]
     longest = int(np.argmax(ends - starts))
     stretch = slice(starts[longest], ends[longest])
     if not one.number or not np.isfinite(y[stretch]).any():
         return
-    middle = (np.nanmin(y[stretch]) + np.nanmax(y[stretch])) / 2
-    at = starts[longest] + int(np.nanargmin(np.abs(y[stretch] - middle)))
+    height = 0.6 if one.number in "12" else 0.4
+    level = height * np.nanmax(y[stretch]) + (1 - height) * np.nanmin(y[stretch])
+    at = starts[longest] + int(np.nanargmin(np.abs(y[stretch] - level)))
     axes.text(
         x[at],
         y[at],

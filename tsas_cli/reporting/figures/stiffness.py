@@ -1,4 +1,4 @@
-"""One phase's stiffness of every run: fitted with its interval, expected, and by theory."""
+"""One phase's stiffness of every run: fitted with its interval, of the model, and by theory."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -19,41 +19,34 @@ def draw_stiffness(figure: Any, rows: Sequence[Stiffness]) -> None:
     """Draw the rows of one phase, one line per run, the first on top."""
     axes = figure.add_subplot()
     phase = BY_KEY[rows[0].phase]
-    places = range(len(rows))
-    _interval(axes, rows, colour=STAND_IN[phase.colour])
-    for marker, label, values in (
-        ("D", "linear fit of the model", [row.expected_N_per_mm for row in rows]),
-        ("|", "theory", [row.theory_N_per_mm for row in rows]),
-    ):
-        there = [(value, place) for value, place in zip(values, places, strict=True) if value]
-        if there:
-            axes.plot(
-                *zip(*there, strict=True),
-                linestyle="none",
-                marker=marker,
-                markersize=11 if marker == "|" else 6,
-                markeredgewidth=1.6,
-                markerfacecolor="none",
-                color=STAND_IN["ink"],
-                label=label,
-            )
-    axes.set_yticks(list(places), [_short(row.run) for row in rows])
+    _draw_measured(axes, rows, colour=STAND_IN[phase.colour])
+    model = [row.expected_N_per_mm for row in rows]
+    theory = [row.theory_N_per_mm for row in rows]
+    _draw_marks(axes, model, marker="D", markersize=6, label="calibrated model")
+    _draw_marks(axes, theory, marker="|", markersize=11, label="theory")
+    axes.set_yticks(range(len(rows)), [_short(row.run) for row in rows])
     axes.set_ylim(len(rows) - 0.4, -0.6)
     axes.margins(x=0.12)
     axes.set_xlabel(f"km in {phase.label} [N/mm]")
-    figure.legend(loc="outside upper left", ncols=2, handlelength=1.4, columnspacing=1.2)
+    figure.legend(loc="outside upper left", ncols=3, handlelength=1.4, columnspacing=1.2)
 
 
-def _interval(axes: Any, rows: Sequence[Stiffness], *, colour: str) -> None:
+def _draw_measured(axes: Any, rows: Sequence[Stiffness], *, colour: str) -> None:
+    """Draw the fitted values, and their intervals where they have one."""
+    values = [row.km.value for row in rows]
+    _draw_marks(axes, values, marker="o", markersize=6, color=colour, label="measured, 95 %")
     for place, km in enumerate(row.km for row in rows):
-        if km.value is None:
-            continue
-        style = {"color": colour, "label": "linear fit, 95 %" if place == 0 else None}
-        if km.interval_low is None or km.interval_high is None:
-            axes.plot([km.value], [place], marker="o", **style)
-            continue
-        sides = [[km.value - km.interval_low], [km.interval_high - km.value]]
-        axes.errorbar([km.value], [place], xerr=sides, fmt="o", capsize=4, **style)
+        if km.interval_low is not None and km.interval_high is not None:
+            ends = [km.interval_low, km.interval_high]
+            axes.plot(ends, [place, place], marker="|", markersize=7, color=colour)
+
+
+def _draw_marks(axes: Any, values: Sequence[float | None], **style: Any) -> None:
+    """Draw one mark per run, none where there is no value."""
+    there = [(value, place) for place, value in enumerate(values) if value is not None]
+    look = {"color": STAND_IN["ink"], "markerfacecolor": "none", "markeredgewidth": 1.5} | style
+    if there:
+        axes.plot(*zip(*there, strict=True), linestyle="none", **look)
 
 
 def _short(name: str) -> str:

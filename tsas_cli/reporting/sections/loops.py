@@ -12,6 +12,7 @@ from tsas_cli.reporting.figures.loops import draw_loop
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import plain
 from tsas_cli.reporting.phases import PHASES, phase_of_samples
+from tsas_cli.reporting.stage_files import Calibration, Segment
 
 _TENSIONS = {"f_in_N": "tension at the drive [N]", "f_out_N": "tension at the load [N]"}
 _X = "x_in_mm"
@@ -21,11 +22,13 @@ Floats = npt.NDArray[np.float64]
 def section(inputs: Inputs) -> Section:
     """Return the section of the loops, one group per run."""
     intro = ["Each cycle runs through four phases, numbered in the order in which they follow."]
-    if inputs.calibration is None:
+    calibration = inputs.get(Calibration)
+    if calibration is None:
         intro = ["Without a folder written by `tsas calibrate`, the phases are not told apart."]
+    segments = calibration.segments if calibration else {}
     groups = []
     for number, recording in enumerate(inputs.dataset):
-        pictures = _pictures(inputs, recording, number)
+        pictures = _pictures(recording, segments.get(recording.run.id, ()), number)
         if pictures:
             groups.append(Group(f"Run {recording.run.id}", pictures))
     if not groups:
@@ -33,9 +36,10 @@ def section(inputs: Inputs) -> Section:
     return Section("loops", "Loops and phases", tuple(intro), groups=tuple(groups))
 
 
-def _pictures(inputs: Inputs, recording: Recording, number: int) -> tuple[Picture, ...]:
-    segments = inputs.calibration.segments if inputs.calibration else {}
-    phase = phase_of_samples(recording.time_s, segments.get(recording.run.id, ()))
+def _pictures(
+    recording: Recording, segments: tuple[Segment, ...], number: int
+) -> tuple[Picture, ...]:
+    phase = phase_of_samples(recording.time_s, segments)
     x = recording.get(_X)
     loops = []
     for column, label in _TENSIONS.items():

@@ -3,14 +3,14 @@
 from tsas_cli.reporting.content import Section, Table
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import with_interval
-from tsas_cli.reporting.stage_files import Parameter
+from tsas_cli.reporting.stage_files import Calibration, Parameter
 
 _TITLE = "Parameters"
 
 
 def section(inputs: Inputs) -> Section:
     """Return the section of the parameters."""
-    calibration = inputs.calibration
+    calibration = inputs.get(Calibration)
     if calibration is None:
         text = "No calibration was given: add a folder written by `tsas calibrate`."
         return Section("parameters", _TITLE, (text,))

@@ -17,10 +17,11 @@ def section(inputs: Inputs) -> Section:
     intro = [f"The dataset {manifest.name} holds {len(manifest.run)} recordings, {kind}."]
     intro += [text for text in (manifest.description, _credit(inputs)) if text]
     tables = [_runs(inputs)]
-    if inputs.check is None:
+    check = inputs.get(Check)
+    if check is None:
         intro.append("The checks were not run: add a folder written by `tsas check --out`.")
-    elif inputs.check.findings:
-        tables.append(_findings(inputs.check))
+    elif check.findings:
+        tables.append(_findings(check))
     else:
         intro.append("The checks found nothing to report.")
     return Section("recordings", "Recordings", tuple(intro), tables=tuple(tables))
@@ -45,7 +46,7 @@ def _runs(inputs: Inputs) -> Table:
         "load",
     )
     rows = tuple(_run(recording) for recording in inputs.dataset)
-    return Table("The recordings", header, rows, numeric=frozenset(range(2, 8)))
+    return Table("The recordings", header, rows, numeric=frozenset(range(2, 8))).without_empty()
 
 
 def _run(recording: Recording) -> tuple[str, ...]:
@@ -54,7 +55,7 @@ def _run(recording: Recording) -> tuple[str, ...]:
     return (
         run.id,
         ", ".join(name for name in BY_NAME if name in recording.columns and name != TIME),
-        f"{time_s.size:,}".replace(",", "\N{NARROW NO-BREAK SPACE}"),
+        str(time_s.size),
         plain(duration),
         plain((time_s.size - 1) / duration),
         plain(run.sheath_length_mm),
@@ -71,4 +72,4 @@ def _findings(check: Check) -> Table:
         for f in [*known, *(f for f in check.findings if f.severity not in _SEVERITIES)]
     )
     header = ("severity", "run", "column", "what", "what to do", "code")
-    return Table("What the checks found", header, rows)
+    return Table("What the checks found", header, rows).without_empty()

@@ -8,6 +8,7 @@ from importlib.metadata import version
 from tsas_cli import __version__
 from tsas_cli.reporting.content import Section, Table
 from tsas_cli.reporting.inputs import Inputs
+from tsas_cli.reporting.stage_files import Calibration, Check, Simulation
 
 _LIBRARIES = ("numpy", "scipy", "numba", "matplotlib")
 
@@ -28,24 +29,24 @@ def section(inputs: Inputs) -> Section:
 
 
 def _commands(inputs: Inputs) -> Iterator[list[str]]:
+    dataset = str(inputs.dataset.folder)
     folder = {kind: str(path) for kind, path in inputs.folders.items()}
-    dataset = folder["dataset"]
-    if "check" in folder:
-        yield ["tsas", "check", dataset, "--out", folder["check"]]
-    if "calibration" in folder:
-        yield ["tsas", "calibrate", dataset, "--out", folder["calibration"]]
-    if inputs.simulation is not None:
-        model = f"{folder['calibration']}/model.toml" if "calibration" in folder else "model.toml"
-        options = ["--dynamics", inputs.simulation.dynamics, "--out", folder["simulation"]]
+    if Check in folder:
+        yield ["tsas", "check", dataset, "--out", folder[Check]]
+    if Calibration in folder:
+        yield ["tsas", "calibrate", dataset, "--out", folder[Calibration]]
+    if simulation := inputs.get(Simulation):
+        model = f"{folder[Calibration]}/model.toml" if Calibration in folder else "model.toml"
+        options = ["--dynamics", simulation.dynamics, "--out", folder[Simulation]]
         yield ["tsas", "simulate", dataset, "--model", model, *options]
-    yield ["tsas", "report", *folder.values(), "--out", "report.html"]
+    yield ["tsas", "report", dataset, *folder.values(), "--out", "report.html"]
 
 
 def _versions(inputs: Inputs) -> Iterator[tuple[str, str]]:
     yield "tsas, this page", __version__
-    if inputs.calibration is not None:
-        yield "tsas, calibration", inputs.calibration.version
-    if inputs.simulation is not None:
-        yield "tsas, simulation", inputs.simulation.version
+    if calibration := inputs.get(Calibration):
+        yield "tsas, calibration", calibration.version
+    if simulation := inputs.get(Simulation):
+        yield "tsas, simulation", simulation.version
     yield "Python", platform.python_version()
     yield from ((name, version(name)) for name in _LIBRARIES)

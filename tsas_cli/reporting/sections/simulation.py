@@ -18,20 +18,20 @@ _TITLE = "Simulation and measurement"
 
 def section(inputs: Inputs) -> Section:
     """Return the section of the simulation, one group per run."""
-    if inputs.simulation is None:
+    simulation = inputs.get(Simulation)
+    if simulation is None:
         text = "No simulation was given: add a folder written by `tsas simulate`."
         return Section("simulation", _TITLE, (text,))
     intro = (
-        f"The calibrated model ({inputs.simulation.dynamics}) is driven with the measured input. "
-        "The residual is measured minus simulated; the band shows what noise alone would leave "
-        "in 95 of 100 samples.",
+        f"The model ({simulation.dynamics}) is driven with the measured input.",
+        "Residual: measured minus simulated. Noise alone leaves 95 % between the dashed lines.",
     )
     groups = tuple(
         Group(f"Run {recording.run.id}", _pictures(inputs, recording, number, run))
         for number, recording in enumerate(inputs.dataset)
-        if (run := inputs.simulation.runs.get(recording.run.id))
+        if (run := simulation.runs.get(recording.run.id))
     )
-    return Section("simulation", _TITLE, intro, tables=(_table(inputs.simulation),), groups=groups)
+    return Section("simulation", _TITLE, intro, tables=(_table(simulation),), groups=groups)
 
 
 def _table(simulation: Simulation) -> Table:

@@ -8,21 +8,26 @@ from tsas_cli.reporting.figures.stiffness import draw_stiffness, height_in
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import ABSENT, plain, with_interval
 from tsas_cli.reporting.phases import PHASES, label_of
-from tsas_cli.reporting.stage_files import Stiffness
+from tsas_cli.reporting.stage_files import Calibration, Stiffness
+
+_WHAT = (
+    "km is the slope of the tension at the drive over its displacement, fitted as a straight line "
+    "in each phase."
+)
+_WHY = (
+    "The same line fitted to the calibrated model stands beside it: in a dead band the tension is "
+    "curved, so that a linear fit misses the theory of a lumped tendon without any sensor's fault."
+)
 
 
 def section(inputs: Inputs) -> Section:
     """Return the section of the stiffness in each phase."""
-    if inputs.calibration is None:
+    calibration = inputs.get(Calibration)
+    if calibration is None:
         text = "No calibration was given: add a folder written by `tsas calibrate`."
         return Section("stiffness", "Stiffness by phase", (text,))
-    rows = inputs.calibration.stiffness
-    intro = (
-        "km is the slope of the tension at the drive over its displacement, fitted as a straight "
-        "line in each phase. The same line fitted to the calibrated model stands beside it, since "
-        "the tension in a dead band is curved: there, a linear fit finds another value than the "
-        "theory of a lumped tendon, without any error of the sensors.",
-    )
+    rows = calibration.stiffness
+    intro = (_WHAT, _WHY)
     by_phase = ((phase.key, [row for row in rows if row.phase == phase.key]) for phase in PHASES)
     pictures = tuple(_picture(key, found) for key, found in by_phase if found)
     return Section(
@@ -35,11 +40,11 @@ def _table(rows: tuple[Stiffness, ...]) -> Table:
     header = (
         "run",
         "phase",
-        "km [N/mm]",
+        "km measured [N/mm]",
         "95 % interval",
-        "linear fit of the model",
+        "calibrated model",
         "theory",
-        "theory, elastic term kept",
+        "theory with elastic term",
         f"kr [{kr_unit}]",
         "95 % interval",
         "strokes",
@@ -50,7 +55,7 @@ def _table(rows: tuple[Stiffness, ...]) -> Table:
         header,
         tuple(_row(row) for row in rows),
         numeric=frozenset(range(2, 10)),
-    )
+    ).without_empty()
 
 
 def _row(row: Stiffness) -> tuple[str, ...]:
@@ -71,7 +76,7 @@ def _row(row: Stiffness) -> tuple[str, ...]:
 def _picture(key: str, rows: list[Stiffness]) -> Picture:
     label = label_of(key)
     values = "; ".join(
-        f"run {row.run} {plain(row.km.value)}, the model's linear fit "
+        f"run {row.run} {plain(row.km.value)}, calibrated model "
         f"{plain(row.expected_N_per_mm)}, theory {plain(row.theory_N_per_mm)}"
         for row in rows
     )
@@ -79,6 +84,6 @@ def _picture(key: str, rows: list[Stiffness]) -> Picture:
         partial(draw_stiffness, rows=rows),
         key=f"stiffness-{key}",
         alt=f"Stiffness km in {label}, in newton per millimetre: {values}.",
-        caption=f"km in {label}.",
+        caption=f"{label.capitalize()}.",
         height_in=height_in(len(rows)),
     )

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import plain
-from tsas_cli.reporting.stage_files import Check, Simulation
+from tsas_cli.reporting.stage_files import Calibration, Check, Simulation
 
 
 def sentences(inputs: Inputs) -> Iterator[str]:
@@ -13,13 +13,14 @@ def sentences(inputs: Inputs) -> Iterator[str]:
     manifest = inputs.dataset.manifest
     many = "1 recording" if len(manifest.run) == 1 else f"{len(manifest.run)} recordings"
     yield f"{manifest.name} holds {many}, {manifest.kind}."
-    if inputs.check is not None:
-        yield _findings(inputs.check)
-    if inputs.simulation is not None:
-        yield from _distances(inputs.simulation)
-    if inputs.calibration is not None and inputs.calibration.cannot_tell:
+    if check := inputs.get(Check):
+        yield _findings(check)
+    if simulation := inputs.get(Simulation):
+        yield from _distances(simulation)
+    calibration = inputs.get(Calibration)
+    if calibration and calibration.cannot_tell:
         yield "These recordings do not say everything:"
-        yield from inputs.calibration.cannot_tell
+        yield from calibration.cannot_tell
 
 
 def _findings(check: Check) -> str:

@@ -1,0 +1,137 @@
+import json
+import shutil
+
+import pytest
+
+from tests.reporting.made_folders import make_calibration, make_check, make_dataset, make_simulation
+from tsas_cli.app import app, main
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    root = tmp_path_factory.mktemp("report")
+    dataset = make_dataset(root / "dataset", ("a",), samples=400)
+    make_check(dataset, root / "check")
+    make_calibration(dataset, root / "calibrated")
+    make_simulation(dataset, root / "simulated")
+    return root
+
+
+@pytest.fixture
+def folder(made, tmp_path):
+    return shutil.copytree(made, tmp_path / "made")
+
+
+@pytest.fixture
+def run(monkeypatch, capsys):
+    def call(*words):
+        monkeypatch.setattr("sys.argv", ["tsas", *map(str, words)])
+        with pytest.raises(SystemExit) as end:
+            main()
+        return end.value.code or 0, *capsys.readouterr()
+
+    return call
+
+
+def refused(result, *words):
+    code, out, err = result
+    assert code == 2
+    assert out == ""
+    assert err.count("\n") == 1
+    for word in words:
+        assert word in err
+
+
+def test_one_folder_of_a_stage_is_enough_and_leads_to_the_dataset(folder, run):
+    code, out, err = run("report", folder / "simulated", "--out", folder / "r.html")
+    assert (code, err) == (0, "")
+    assert str(folder / "dataset") in out
+    assert (folder / "r.html").read_text().startswith("<!DOCTYPE html>")
+
+
+def test_json_names_what_was_read_and_quiet_says_nothing(folder, run):
+    code, out, _ = run("report", folder / "check", "--out", folder / "r.html", "--json")
+    assert code == 0
+    assert json.loads(out)["read"]["check.json"] == str(folder / "check")
+    assert run("report", folder / "check", "--out", folder / "q.html", "-q") == (0, "", "")
+
+
+def test_an_existing_page_stays_without_force(folder, run):
+    (folder / "r.html").write_text("mine")
+    refused(run("report", folder / "check", "--out", folder / "r.html"), "r.html", "--force")
+    assert (folder / "r.html").read_text() == "mine"
+    assert run("report", folder / "check", "--out", folder / "r.html", "--force")[0] == 0
+    assert (folder / "r.html").read_text() != "mine"
+
+
+def test_a_folder_of_another_kind_is_refused_and_nothing_is_written(folder, run):
+    (folder / "other").mkdir()
+    result = run("report", folder / "other", "--out", folder / "r.html")
+    refused(result, "other", "dataset.toml", "calibration.json", "simulation.json", "check.json")
+    assert sorted(p.name for p in folder.iterdir() if "r.html" in p.name) == []
+
+
+def test_a_dataset_that_has_changed_since_is_refused(folder, run):
+    with (folder / "dataset" / "dataset.toml").open("a") as stream:
+        stream.write("\n# changed\n")
+    result = run("report", folder / "calibrated", "--out", folder / "r.html")
+    refused(result, "calibration.json", "dataset.toml", "has changed")
+
+
+def test_a_recording_that_has_changed_since_is_refused(folder, run):
+    with (folder / "dataset" / "runs" / "0.parquet").open("ab") as stream:
+        stream.write(b"x")
+    refused(run("report", folder / "simulated", "--out", folder / "r.html"), "0.parquet")
+
+
+def test_a_dataset_that_is_gone_is_refused(folder, run):
+    (folder / "dataset").rename(folder / "elsewhere")
+    result = run("report", folder / "calibrated", "--out", folder / "r.html")
+    refused(result, "calibration.json", "dataset")
+    moved = [folder / "calibrated", folder / "elsewhere"]
+    assert run("report", *moved, "--out", folder / "r.html")[0] == 0
+
+
+def test_two_folders_of_one_kind_are_refused(folder, run):
+    shutil.copytree(folder / "simulated", folder / "second")
+    pair = [folder / "simulated", folder / "second"]
+    refused(run("report", *pair, "--out", folder / "r.html"), "second", "simulation.json")
+
+
+@pytest.mark.parametrize(
+    ("spoil", "said"),
+    [
+        (lambda content: content.pop("parameters"), "parameters is missing"),
+        (lambda content: content.update(format=2), "format"),
+        (lambda content: content["stiffness"][0].update(run=None), "stiffness.0.run"),
+    ],
+)
+def test_a_stage_file_that_is_not_whole_is_refused(folder, run, spoil, said):
+    path = folder / "calibrated" / "calibration.json"
+    content = json.loads(path.read_text())
+    spoil(content)
+    path.write_text(json.dumps(content))
+    refused(run("report", folder / "calibrated", "--out", folder / "r.html"), str(path), said)
+
+
+def test_a_simulated_run_of_another_length_is_refused(folder, run, tmp_path):
+    longer = make_dataset(tmp_path / "longer", ("a",), samples=500)
+    make_simulation(longer, tmp_path / "other")
+    shutil.copy(tmp_path / "other" / "runs" / "a.parquet", folder / "simulated" / "runs")
+    result = run("report", folder / "simulated", "--out", folder / "r.html")
+    refused(result, "a.parquet", "500 rows", "400")
+
+
+def test_a_truncated_simulated_run_is_refused(folder, run):
+    path = folder / "simulated" / "runs" / "a.parquet"
+    path.write_bytes(path.read_bytes()[:100])
+    refused(run("report", folder / "simulated", "--out", folder / "r.html"), "a.parquet")
+
+
+def test_a_truncated_stage_file_is_refused(folder, run):
+    (folder / "check" / "check.json").write_text('{"format": 1,')
+    refused(run("report", folder / "check", "--out", folder / "r.html"), "check.json", "JSON")
+
+
+def test_report_is_registered_once():
+    assert [c.name for c in app.registered_commands].count("report") == 1

@@ -1,0 +1,45 @@
+import re
+from xml.etree import ElementTree as ET
+
+import numpy as np
+
+from tsas_cli.reporting.colours import ROLES, STAND_IN
+from tsas_cli.reporting.drawing import picture
+
+
+def draw(figure):
+    axes = figure.add_subplot()
+    axes.plot(np.arange(5.0), color=STAND_IN["contraction"], label="$a$ <b> 😀")
+    axes.axhspan(1, 2, color=STAND_IN["measured"], alpha=0.5)
+    figure.legend(loc="outside upper left")
+
+
+def test_the_picture_is_well_formed_and_says_what_it_shows():
+    shown = picture(draw, key="one", alt="A line that <rises>\x1b", caption="")
+    root = ET.fromstring(str(shown.svg))  # noqa: S314  our own output
+    assert root.attrib["aria-label"] == "A line that <rises>\\x1b"
+    assert "$a$ <b> 😀" in "".join(root.itertext())
+
+
+def test_ids_are_those_of_the_picture_and_every_reference_has_its_target():
+    svg = str(picture(draw, key="one", alt="", caption="").svg)
+    ids = re.findall(r'\bid="([^"]+)"', svg)
+    assert len(ids) == len(set(ids))
+    assert all(one.startswith("one-") for one in ids)
+    references = re.findall(r'url\(#([^)]+)\)|href="#([^"]+)"', svg)
+    assert references
+    assert {a or b for a, b in references} <= set(ids)
+
+
+def test_every_colour_is_a_variable_of_the_page():
+    svg = str(picture(draw, key="one", alt="", caption="").svg)
+    assert "var(--contraction)" in svg
+    assert "var(--measured)" in svg
+    assert not re.search(r"#[0-9a-fA-F]{6}\b", svg)
+    assert set(re.findall(r"var\(--([\w-]+)\)", svg)) <= set(ROLES)
+
+
+def test_nothing_in_it_holds_for_the_whole_page_or_asks_the_network():
+    svg = str(picture(draw, key="one", alt="", caption="").svg)
+    assert "<style" not in svg
+    assert "http" not in svg

@@ -1,0 +1,40 @@
+import math
+
+import pytest
+
+from tsas_cli.reporting.numbers import ABSENT, plain, with_interval
+
+
+@pytest.mark.parametrize(
+    ("value", "low", "high", "shown"),
+    [
+        (2.33812, 2.3262, 2.3501, ("2.338", "2.326 to 2.350")),
+        (67858.4, 66624.0, 69093.0, ("67900", "66600 to 69100")),
+        (-0.5, -0.53, -0.47, ("−0.500", "−0.530 to −0.470")),
+        (12.0, 2.0, 22.0, ("12", "2 to 22")),
+        (3.1e-9, 3.0e-9, 3.2e-9, ("3.10·10^−9", "3.00·10^−9 to 3.20·10^−9")),
+        (0.0, -1.5, 1.5, ("0.0", "−1.5 to 1.5")),
+    ],
+)
+def test_value_and_interval_end_at_the_same_digit(value, low, high, shown):
+    assert with_interval(value, low, high) == shown
+
+
+@pytest.mark.parametrize("bad", [None, math.nan, math.inf])
+def test_an_interval_that_is_not_known_is_a_dash(bad):
+    assert with_interval(1.579, 1.5, bad) == ("1.579", ABSENT)
+    assert plain(bad) == ABSENT
+
+
+def test_plain_numbers_have_significant_digits():
+    assert [plain(v) for v in (0.125, 1591.4, 67858.4, 0.0, -2.0)] == [
+        "0.1250",
+        "1591",
+        "67860",
+        "0.000",
+        "−2.000",
+    ]
+
+
+def test_what_rounds_to_zero_has_no_sign():
+    assert with_interval(-0.0001, -1.0, 1.0) == ("0.0", "−1.0 to 1.0")

@@ -1,0 +1,145 @@
+import json
+import re
+from html.parser import HTMLParser
+from importlib.resources import files
+from pathlib import Path
+
+import pytest
+
+from tests.reporting.made_folders import make_calibration, make_check, make_dataset, make_simulation
+from tsas_cli.reporting.colours import ROLES
+from tsas_cli.reporting.inputs import read_inputs
+from tsas_cli.reporting.page import SECTIONS, page
+
+VOID = {"meta", "link", "br", "hr", "img", "input"}
+FINDING = {
+    "code": "time-jitter",
+    "severity": "warning",
+    "run": "a",
+    "column": "time_s",
+    "sentence": "Steps <vary>\x07 by 12 %.",
+    "remedy": "",
+    "first_s": None,
+}
+
+
+class Outline(HTMLParser):
+    """Checks that tags are balanced; collects headings, ids and addresses."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.open, self.headings, self.ids, self.addresses, self.pictures = [], [], [], [], []
+        self.feed(text)
+        assert self.open == []
+
+    def handle_starttag(self, tag, attrs):
+        self.handle_startendtag(tag, attrs)
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag, attrs):
+        attrs = dict(attrs)
+        self.headings += [int(tag[1])] if re.fullmatch("h[1-6]", tag) else []
+        self.ids += [attrs["id"]] if "id" in attrs else []
+        self.addresses += [attrs[name] for name in ("src", "href") if name in attrs]
+        self.pictures += [attrs] if tag in {"svg", "img"} else []
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+
+@pytest.fixture(scope="module")
+def folders(tmp_path_factory):
+    root = tmp_path_factory.mktemp("report")
+    dataset = make_dataset(root / "dataset", ("a", "<script>$x$"), name="bench & <b>")
+    return {
+        "dataset": dataset,
+        "check": make_check(dataset, root / "check", [FINDING]),
+        "calibration": make_calibration(dataset, root / "cal", ["The <sheath> is silent."]),
+        "simulation": make_simulation(dataset, root / "sim"),
+    }
+
+
+@pytest.fixture(scope="module")
+def whole(folders):
+    return page(read_inputs(list(folders.values())))
+
+
+def test_the_page_is_well_formed_with_headings_in_order(whole):
+    outline = Outline(whole)
+    assert outline.headings[0] == 1
+    assert outline.headings.count(1) == 1
+    steps = [b - a for a, b in zip(outline.headings, outline.headings[1:], strict=False)]
+    assert max(steps) == 1
+    assert len(outline.ids) == len(set(outline.ids))
+
+
+def test_the_contents_lead_to_every_section(whole):
+    outline = Outline(whole)
+    anchors = [a[1:] for a in outline.addresses if a.startswith("#") and "-" not in a]
+    assert len(anchors) == len(SECTIONS)
+    assert set(anchors) <= set(outline.ids)
+
+
+def test_every_plot_is_there_and_says_what_it_shows(whole):
+    labels = [svg["aria-label"] for svg in Outline(whole).pictures]
+    assert len(labels) == 4 + 2 * 2 + 2 * 2  # phases; two loops and two channels of two runs
+    assert len(set(labels)) == len(labels)
+    assert all(len(label) > 40 for label in labels)
+
+
+def test_nothing_is_asked_from_the_network(whole):
+    assert all(address.startswith("#") for address in Outline(whole).addresses)
+    assert not re.search(r"https?:|@import|url\((?!#)|<script", whole)
+
+
+def test_names_from_files_show_as_text(whole):
+    assert "&lt;script&gt;$x$" in whole
+    assert "bench &amp; &lt;b&gt;" in whole
+    assert "Steps &lt;vary&gt;\\x07 by 12 %." in whole
+    assert "The &lt;sheath&gt; is silent." in whole
+
+
+def test_the_page_does_not_change_when_nothing_changed(folders, whole):
+    assert page(read_inputs(list(folders.values()))) == whole
+
+
+def test_the_numbers_of_the_stages_stand_on_the_page(whole):
+    for text in ("2.338", "2.291 to 2.385", "0.1251", "0.1230 to 0.1272", "2.00", "data sheet"):
+        assert f">{text}</td>" in whole
+
+
+def test_each_phase_is_drawn_in_its_own_colour(whole):
+    pictures = re.findall(r"<svg.*?</svg>", whole, re.DOTALL)
+    (loop,) = (p for p in pictures if 'aria-label="Loop of run a: tension at the drive' in p)
+    for colour in ("contraction", "loosening", "dead-band-up", "dead-band-down"):
+        assert f"stroke: var(--{colour})" in loop
+
+
+def test_a_dataset_alone_makes_a_page_that_says_what_is_missing(folders):
+    alone = page(read_inputs([folders["dataset"]]))
+    Outline(alone)
+    assert "No calibration was given" in alone
+    assert "No simulation was given" in alone
+    assert alone.count("<svg") == 4
+
+
+def test_every_colour_is_defined_light_and_dark():
+    style = (files("tsas_cli.reporting") / "templates" / "page.css").read_text(encoding="utf-8")
+    for role in ROLES:
+        assert len(re.findall(rf"--{role}: #", style)) >= 2, role
+
+
+def test_every_section_file_is_on_the_page():
+    folder = Path(str(files("tsas_cli.reporting"))) / "sections"
+    names = {path.stem for path in folder.glob("*.py")} - {"__init__", "summary"}
+    assert {section.__module__.rpartition(".")[2] for section in SECTIONS} == names
+
+
+def test_missing_values_of_a_stage_are_dashes(folders, tmp_path):
+    content = json.loads((folders["calibration"] / "calibration.json").read_text())
+    for row in content["stiffness"]:
+        row["km"] |= {"value": None, "interval_low": None, "interval_high": None}
+    content["dataset"]["folder"] = str(folders["dataset"])
+    (tmp_path / "calibration.json").write_text(json.dumps(content))
+    Outline(page(read_inputs([tmp_path])))
