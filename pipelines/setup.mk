@@ -4,7 +4,7 @@
 # outdated environment is made again and a current one is left alone.
 PYTHON ?= python3
 BIN := .venv/bin
-PIP := $(BIN)/python -m pip --quiet --disable-pip-version-check --no-input
+PIP := $(BIN)/python -m pip -qq --disable-pip-version-check --no-input
 
 digest = $(shell { $(1); } 2>&1 | cksum | cut -d ' ' -f 1)
 LOCKED := .venv/locked-$(call digest,$(PYTHON) -VV; pwd; cat requirements/lock.txt)
