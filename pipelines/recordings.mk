@@ -2,7 +2,7 @@
 #
 # make run                                   on the shipped recordings
 # make pipeline DATASET=folder OUT=folder    on your own
-TSAS := $(BIN)/tsas
+TSAS = $(BIN)/tsas
 
 .PHONY: run pipeline
 run: DATASET = datasets/paper-groups
