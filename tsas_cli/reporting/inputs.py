@@ -15,7 +15,8 @@ from tsas_cli.errors import InputError
 from tsas_cli.files import read_json
 from tsas_cli.recordings.dataset import Dataset, Recording, read_dataset
 from tsas_cli.recordings.manifest import FILE, parse
-from tsas_cli.reporting.stage_files import STAGES, Simulation, StageFile
+from tsas_cli.recordings.quality import check_dataset
+from tsas_cli.reporting.stage_files import STAGES, Check, Simulation, StageFile
 
 Floats = npt.NDArray[np.float64]
 Stage = TypeVar("Stage", bound=StageFile)
@@ -28,6 +29,11 @@ class Inputs:
     dataset: Dataset
     stages: Mapping[type[StageFile], StageFile]
     folders: Mapping[type[StageFile], Path]
+
+    @property
+    def check(self) -> Check:
+        """What the checks say; it is always there."""
+        return cast("Check", self.stages[Check])
 
     def get(self, kind: type[Stage]) -> Stage | None:
         """Return what a stage wrote, or None where it was not given."""
@@ -61,6 +67,8 @@ class Inputs:
 def read_inputs(folders: Sequence[Path]) -> Inputs:
     """Recognise each folder by the files in it, read all, and find the dataset.
 
+    Where no folder holds `check.json`, the checks are run here.
+
     Raises
     ------
     InputError
@@ -77,6 +85,8 @@ def read_inputs(folders: Sequence[Path]) -> Inputs:
     dataset = read_dataset(by_file[FILE] if FILE in by_file else next(named))
     for kind, stage in stages.items():
         _check_hashes(stage, dataset, where[kind] / kind.FILE)
+    if Check not in stages:
+        stages[Check] = _own_check(dataset)
     return Inputs(dataset, stages, where)
 
 
@@ -113,6 +123,11 @@ def _dataset_of(stage: StageFile, path: Path) -> Path:
             remedy="give the dataset's folder to `tsas report` too",
         )
     return folder
+
+
+def _own_check(dataset: Dataset) -> Check:
+    content = {"format": 1, "stage": "check", "dataset": dataset.reference(Path())}
+    return Check.model_validate(content | check_dataset(dataset).content())
 
 
 def _check_hashes(stage: StageFile, dataset: Dataset, path: Path) -> None:

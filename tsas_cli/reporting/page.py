@@ -1,9 +1,10 @@
 """The page that a person reads: every section in order, in one file that needs nothing else."""
 
+import re
 from collections.abc import Callable
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
-from markupsafe import Markup
+from markupsafe import Markup, escape
 
 from tsas_cli.errors import printable
 from tsas_cli.reporting.content import Section
@@ -48,11 +49,17 @@ def page(inputs: Inputs, advance: Callable[[], None] = lambda: None) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    environment.filters["prose"] = _prose
     return environment.get_template("page.html").render(
         name=inputs.dataset.manifest.name,
-        summary=tuple(summary.sentences(inputs)),
+        summary=" ".join(summary.sentences(inputs)),
         sections=sections,
     )
+
+
+def _prose(text: str) -> Markup:
+    """Escape a sentence; what stands between backticks in it becomes code."""
+    return Markup(re.sub("`([^`]+)`", r"<code>\1</code>", str(escape(printable(text)))))  # noqa: S704
 
 
 def _visible(value: object) -> object:

@@ -37,12 +37,21 @@ class Finding(_Record):
     remedy: str = ""
 
 
+class NotChecked(_Record):
+    """A check that could not tell, with the reason."""
+
+    code: str
+    run: str | None = None
+    reason: str
+
+
 class Check(StageFile):
     """The content of `check.json`."""
 
     FILE: ClassVar[str] = "check.json"
     stage: Literal["check"]
     findings: tuple[Finding, ...]
+    not_checked: tuple[NotChecked, ...] = ()
 
 
 class Segment(_Record):

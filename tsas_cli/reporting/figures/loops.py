@@ -34,7 +34,8 @@ def draw_loop(figure: Any, *, x: Floats, y: Floats, phase: Keys, labels: tuple[s
             _draw_phase(axes, x[kept], y[kept], phase[kept] == one.key, one)
             _number(axes, x, y, phase == one.key, one)
     axes.set(xlabel=labels[0], ylabel=labels[1])
-    figure.legend(loc="outside upper left", ncols=2, handlelength=1.6, columnspacing=1.2)
+    if (phase != "unknown").any():
+        figure.legend(loc="outside upper left", ncols=2, handlelength=1.6, columnspacing=1.2)
 
 
 def _draw_phase(axes: Any, x: Floats, y: Floats, inside: npt.NDArray[np.bool_], one: Phase) -> None:

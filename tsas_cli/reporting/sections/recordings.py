@@ -17,13 +17,10 @@ def section(inputs: Inputs) -> Section:
     intro = [f"The dataset {manifest.name} holds {len(manifest.run)} recordings, {kind}."]
     intro += [text for text in (manifest.description, _credit(inputs)) if text]
     tables = [_runs(inputs)]
-    check = inputs.get(Check)
-    if check is None:
-        intro.append("The checks were not run: add a folder written by `tsas check --out`.")
-    elif check.findings:
-        tables.append(_findings(check))
-    else:
-        intro.append("The checks found nothing to report.")
+    if inputs.check.findings:
+        tables.append(_findings(inputs.check))
+    if inputs.check.not_checked:
+        tables.append(_not_checked(inputs.check))
     return Section("recordings", "Recordings", tuple(intro), tables=tuple(tables))
 
 
@@ -73,3 +70,11 @@ def _findings(check: Check) -> Table:
     )
     header = ("severity", "run", "column", "what", "what to do", "code")
     return Table("What the checks found", header, rows).without_empty()
+
+
+def _not_checked(check: Check) -> Table:
+    reasons: dict[tuple[str, str], list[str]] = {}
+    for silent in check.not_checked:
+        reasons.setdefault((silent.code, silent.reason), []).append(silent.run or ABSENT)
+    rows = tuple((code, reason, ", ".join(runs)) for (code, reason), runs in reasons.items())
+    return Table("What the checks could not tell", ("code", "reason", "runs"), rows)

@@ -13,8 +13,7 @@ def sentences(inputs: Inputs) -> Iterator[str]:
     manifest = inputs.dataset.manifest
     many = "1 recording" if len(manifest.run) == 1 else f"{len(manifest.run)} recordings"
     yield f"{manifest.name} holds {many}, {manifest.kind}."
-    if check := inputs.get(Check):
-        yield _findings(check)
+    yield _findings(inputs.check)
     if simulation := inputs.get(Simulation):
         yield from _distances(simulation)
     calibration = inputs.get(Calibration)
