@@ -57,14 +57,39 @@ def test_an_existing_file_stays_as_it_is_without_force(tmp_path: Path) -> None:
     assert (tmp_path / "page.html").read_text() == "old"
 
 
-def test_force_replaces_a_folder_and_keeps_nothing_of_the_old_one(tmp_path: Path) -> None:
+def test_force_replaces_an_output_and_keeps_nothing_of_the_old_one(tmp_path: Path) -> None:
     out = tmp_path / "out"
     make_old(out)
+    (out / "left").write_text("old")
     with new_folder(out, force=True) as folder:
-        (folder / "other").write_text("new")
-        assert names(out) == ["result"]
-    assert names(out) == ["other"]
+        (folder / "result").write_text("new")
+        assert names(out) == ["left", "result"]
+    assert names(out) == ["result"]
+    assert (out / "result").read_text() == "new"
     assert names(tmp_path) == ["out"]
+
+
+def simulate_into(out: Path) -> None:
+    with new_folder(out, force=True) as folder:
+        (folder / "runs").mkdir()
+        (folder / "simulation.json").write_text("{}")
+
+
+def test_force_never_replaces_recordings_by_what_was_made_of_them(tmp_path: Path) -> None:
+    (tmp_path / "dataset" / "runs").mkdir(parents=True)
+    (tmp_path / "dataset" / "dataset.toml").write_text("mine")
+    told = r"something else than an earlier output; expected a folder with simulation\.json"
+    with pytest.raises(InputError, match=told):
+        simulate_into(tmp_path / "dataset")
+    assert names(tmp_path / "dataset") == ["dataset.toml", "runs"]
+    assert names(tmp_path) == ["dataset"]
+
+
+def test_a_file_is_not_taken_for_a_folder(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("old")
+    with pytest.raises(InputError, match="is a file"), new_folder(tmp_path / "file", force=True):
+        pytest.fail("the block must not run")
+    assert (tmp_path / "file").read_text() == "old"
 
 
 def test_force_keeps_the_old_output_where_the_new_one_fails(tmp_path: Path) -> None:

@@ -27,10 +27,12 @@ def new_folder(path: Path, *, force: bool = False) -> Iterator[Path]:
     Raises
     ------
     InputError
-        `path` exists and is not an empty folder, and `force` is not set; or it cannot be written;
-        or the current folder is in it.
+        `path` exists and is not an empty folder, and `force` is not set; with `force`, where it
+        holds something else than an earlier output, or the current folder; it cannot be written.
     """
     try:
+        if path.is_file():
+            raise InputError("is a file", where=path, expected="a folder's name")
         _refuse_existing(path, force=force)
         _refuse_current(path)
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -40,6 +42,7 @@ def new_folder(path: Path, *, force: bool = False) -> Iterator[Path]:
     try:
         yield temporary
         temporary.chmod(0o755)
+        _refuse_foreign(path, _files_in(temporary))
         _replace_folder(temporary, path)
     finally:
         shutil.rmtree(temporary, ignore_errors=True)
@@ -129,6 +132,21 @@ def _refuse_current(path: Path) -> None:
             where=path,
             remedy="choose an --out that is a folder of its own",
         )
+
+
+def _refuse_foreign(path: Path, files: set[str]) -> None:
+    """Keep `--out DATASET --force` from replacing recordings by what was made of them."""
+    if path.is_dir() and any(path.iterdir()) and not files & _files_in(path):
+        raise InputError(
+            "holds something else than an earlier output",
+            where=path,
+            expected=f"a folder with {', '.join(sorted(files))}",
+            remedy="choose another --out",
+        )
+
+
+def _files_in(folder: Path) -> set[str]:
+    return {path.name for path in folder.iterdir() if path.is_file()}
 
 
 def _replace_folder(temporary: Path, path: Path) -> None:
