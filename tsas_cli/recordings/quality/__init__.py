@@ -1,7 +1,7 @@
 """What is wrong with recordings, found before anyone fits anything."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 
 from tsas_cli.errors import InputError
 from tsas_cli.recordings.dataset import Dataset, read_recording
@@ -24,7 +24,14 @@ from tsas_cli.recordings.quality.checks import (
     unit,
     unknown_key,
 )
-from tsas_cli.recordings.quality.finding import CannotTell, Check, Finding, NotChecked, Remark
+from tsas_cli.recordings.quality.finding import (
+    CannotTell,
+    Check,
+    Finding,
+    NotChecked,
+    Remark,
+    Subject,
+)
 from tsas_cli.recordings.quality.trial import Trial
 
 MANIFEST_CHECKS: tuple[Check[Manifest], ...] = (unknown_key.CHECK, manifest_unit.CHECK)
@@ -53,6 +60,13 @@ class Report:
 
     findings: tuple[Finding, ...]
     not_checked: tuple[NotChecked, ...]
+
+    def content(self) -> dict[str, list[dict[str, object]]]:
+        """Return the part of `check.json` that the checks fill."""
+        return {
+            "findings": [asdict(finding) for finding in self.findings],
+            "not_checked": [asdict(check) for check in self.not_checked],
+        }
 
 
 def check_dataset(dataset: Dataset) -> Report:
@@ -94,7 +108,7 @@ def _look_at_run(dataset: Dataset, run: Run) -> list[Finding | NotChecked]:
     return results
 
 
-def _look[Subject](
+def _look(
     checks: tuple[Check[Subject], ...], subject: Subject, run: str | None
 ) -> Iterator[Finding | NotChecked]:
     for check in checks:
@@ -105,9 +119,7 @@ def _look[Subject](
 def _attributed(said: Remark | CannotTell, code: str, run: str | None) -> Finding | NotChecked:
     if isinstance(said, CannotTell):
         return NotChecked(code, run, said.reason)
-    return Finding(
-        code, said.severity, run, said.column, said.sentence, said.remedy, said.first_s
-    )
+    return Finding(code, said.severity, run, said.column, said.sentence, said.remedy, said.first_s)
 
 
 def _unreadable(run: Run, error: InputError) -> Finding:

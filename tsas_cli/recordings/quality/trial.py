@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
@@ -69,7 +70,7 @@ class Trial:
     @cached_property
     def step(self) -> dict[str, float]:
         """Step of quantisation of each channel, 0 where there is none."""
-        return {name: quantisation_step(values) for name, values in self.channels.items()}
+        return {name: _step(values) for name, values in self.channels.items()}
 
     @cached_property
     def span(self) -> dict[str, float]:
@@ -83,20 +84,42 @@ class Trial:
         """Return the smallest change of a channel that neither noise nor steps explain."""
         return 6.0 * self.noise[name] + 2.0 * self.step[name]
 
+    def moves(self, name: str) -> bool:
+        """Return whether a channel moves visibly."""
+        return self.span[name] > 2.0 * self.visible(name)
+
+    def references(self, name: str) -> tuple[str, ...]:
+        """Return the channels that show the motion beside this one: the drive, or what follows it.
+
+        Those that do not move visibly are left out.
+        """
+        others = MECHANICAL[1:] if name == "x_in_mm" else MECHANICAL[:1]
+        return tuple(o for o in others if o in self.channels and self.moves(o))
+
     @cached_property
     def strokes(self) -> tuple[Stroke, ...]:
         """The strokes of `x_in_mm` that are longer than a fifth of its span; none at rest."""
         x = self.channels.get("x_in_mm")
-        if x is None or self.span["x_in_mm"] <= 2.0 * self.visible("x_in_mm"):
+        if x is None or not self.moves("x_in_mm"):
             return ()
         there = np.flatnonzero(np.isfinite(x))
         threshold = max(_STROKE * self.span["x_in_mm"], self.visible("x_in_mm"))
         turns = there[turning_points(x[there], threshold)]
         return tuple(
             Stroke(int(a), int(b), int(np.sign(x[b] - x[a])))
-            for a, b in zip(turns[:-1], turns[1:], strict=True)
+            for a, b in pairwise(turns)
             if abs(x[b] - x[a]) > threshold
         )
+
+    @cached_property
+    def direction(self) -> Floats:
+        """1 or −1 where the drive is well under way in a stroke, 0 elsewhere; shape (n,)."""
+        direction = np.zeros(self.time_s.size)
+        for stroke in self.strokes:
+            x = self.channels["x_in_mm"][stroke.rows]
+            share = (x - x[0]) / (x[-1] - x[0])
+            direction[stroke.rows] = np.where((share > 0.3) & (share < 0.95), stroke.direction, 0)
+        return direction
 
     def follows(self, name: str) -> float | None:
         """Return how a channel goes with the drive's strokes: 1 always with, −1 always against.
@@ -109,6 +132,24 @@ class Trial:
         if not np.isfinite(size).any() or np.nanmean(size) <= self.visible(name):
             return None
         return float(np.nansum(change) / np.nansum(size))
+
+
+def _step(values: Floats) -> float:
+    """Return the step, told from the increments where the channel hardly takes a level twice."""
+    increments = np.round(np.diff(values), 12)
+    return quantisation_step(values) or quantisation_step(increments)
+
+
+def alternates(values: Floats) -> bool:
+    """Say whether a channel is noisy: third differences of noise alternate, of motion they do not.
+
+    Parameters
+    ----------
+    values
+        A channel, shape (n,).
+    """
+    third = np.diff(values[np.isfinite(values)], 3)
+    return bool(np.sum(third[1:] * third[:-1]) < 0.0)
 
 
 def plateaus(values: Floats, shortest: int) -> list[slice]:

@@ -19,7 +19,9 @@ _PASSED = 0.05
 
 def find(trial: Trial) -> Iterator[Remark | CannotTell]:
     """Look at both extremes of each displacement and tension."""
-    for name in trial.mechanical:
+    for name, values in trial.mechanical.items():
+        if np.nanmin(values) == np.nanmax(values):
+            continue
         for end, sign in (("highest", 1), ("lowest", -1)):
             yield from _look(trial, name, end, sign)
 

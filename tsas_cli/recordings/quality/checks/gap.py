@@ -7,11 +7,14 @@ scatter of the others. Gaps are never filled; each stage leaves them out.
 from collections.abc import Iterator
 
 import numpy as np
+import numpy.typing as npt
 
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
 from tsas_cli.recordings.quality.trial import Trial
 
+_COMMON = 0.05  # long intervals that are as frequent as this are jitter
+Booleans = npt.NDArray[np.bool_]
 _REMEDY = "look for lost samples at the source; the stages leave the gap out"
 
 
@@ -32,7 +35,7 @@ def _missing_rows(trial: Trial) -> Iterator[Remark]:
     median = float(np.median(interval))
     scatter = 1.4826 * float(np.median(np.abs(interval - median)))
     gaps = np.flatnonzero(interval > max(1.5 * median, median + 8.0 * scatter))
-    if gaps.size:
+    if 0 < gaps.size < _COMMON * interval.size:
         longest = gaps[np.argmax(interval[gaps])]
         yield Remark(
             "warning",
@@ -45,7 +48,7 @@ def _missing_rows(trial: Trial) -> Iterator[Remark]:
         )
 
 
-def _empty_cells(trial: Trial, name: str, empty: np.ndarray[tuple[int], np.dtype[np.bool_]]) -> Remark:
+def _empty_cells(trial: Trial, name: str, empty: Booleans) -> Remark:
     if empty.all():
         return Remark("error", f"{name} holds no value at all", "leave the column out", name)
     edges = np.flatnonzero(np.diff(np.concatenate(([False], empty, [False])).astype(np.int8)))

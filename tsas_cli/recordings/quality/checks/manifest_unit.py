@@ -17,12 +17,13 @@ class _Suspicion(NamedTuple):
     likely: str
 
 
-_RUN = (
+_Suspicions = tuple[_Suspicion, ...]
+_RUN: _Suspicions = (
     _Suspicion("total_bend_rad", lambda v: v > 50 or (v > 6.5 and v % 5 == 0), "degree"),
     _Suspicion("sheath_length_mm", lambda v: v < 5, "metre"),
     _Suspicion("sheath_length_mm", lambda v: v > 5e4, "micrometre"),
 )
-_RIG = (
+_RIG: _Suspicions = (
     _Suspicion("tendon_diameter_mm", lambda v: v < 0.02, "metre"),
     _Suspicion("tendon_diameter_mm", lambda v: v > 50, "micrometre"),
     _Suspicion("tendon_modulus_GPa", lambda v: 1e3 < v < 1e6, "MPa"),

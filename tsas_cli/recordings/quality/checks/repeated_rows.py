@@ -13,7 +13,7 @@ import numpy as np
 from tsas_cli.numerics.noise import noise_sd
 from tsas_cli.recordings.dataset import Floats
 from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
-from tsas_cli.recordings.quality.trial import Trial
+from tsas_cli.recordings.quality.trial import Trial, alternates
 
 _CHANCE_TOO_HIGH = 0.2
 
@@ -43,11 +43,8 @@ def find(trial: Trial) -> Iterator[Remark | CannotTell]:
 
 def _chance(values: Floats, step: float) -> float:
     """Return how likely a sample at rest equals the one before it; 1 where there is no noise."""
-    clean = values[np.isfinite(values)]
-    third = np.diff(clean, 3)
-    smooth = third.size < 2 or float(np.sum(third[1:] * third[:-1])) >= 0.0
-    noise = noise_sd(clean)
-    if smooth or not noise > 0.0:  # third differences of noise alternate, those of motion do not
+    noise = noise_sd(values)
+    if not alternates(values) or not noise > 0.0:
         return 1.0
     return min(1.0, step / (2.0 * math.sqrt(math.pi) * noise))
 

@@ -9,8 +9,65 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
-from tsas_cli.recordings.quality.trial import Trial, plateaus
+from tsas_cli.numerics.noise import noise_sd
+from tsas_cli.numerics.turning_points import turning_points
+from tsas_cli.recordings.dataset import Floats
+from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark, Severity
+from tsas_cli.recordings.quality.trial import Trial, alternates, plateaus
 
 _FEWEST_ROWS = 20
 _HELD = {"force": "f_out_N", "displacement": "x_out_mm"}  # the load may hold this one constant
+
+
+def find(trial: Trial) -> Iterator[Remark | CannotTell]:
+    """Look for constant stretches of each displacement and tension."""
+    for name, values in trial.mechanical.items():
+        if np.nanmin(values) == np.nanmax(values):
+            if name != _HELD.get(trial.recording.run.load):
+                yield _remark("warning", trial, name, slice(0, values.size))
+            continue
+        stuck = [rows for rows in plateaus(values, _FEWEST_ROWS) if _hangs(trial, name, rows)]
+        if stuck:
+            yield _remark("error", trial, name, max(stuck, key=lambda r: r.stop - r.start))
+
+
+def _remark(severity: Severity, trial: Trial, name: str, rows: slice) -> Remark:
+    begin, end = trial.time_s[rows.start], trial.time_s[rows.stop - 1]
+    return Remark(
+        severity,
+        f"{name} does not change from {begin:.6g} s to {end:.6g} s "
+        f"(it stays at {trial.channels[name][rows.start]:.6g})",
+        "check the sensor and its cable, and leave the column or this stretch out",
+        name,
+        float(begin),
+    )
+
+
+def _hangs(trial: Trial, name: str, rows: slice) -> bool:
+    values = trial.channels[name]
+    interior = np.nanmin(values) < values[rows.start] < np.nanmax(values)
+    for other in trial.references(name):
+        motion = trial.channels[other][rows]
+        motion = motion[np.isfinite(motion)]
+        if motion.size < 2:
+            continue
+        if interior and _noisy(trial, name) and np.ptp(motion) > 2.0 * trial.visible(other):
+            return True
+        if _goes_there_and_back(motion, trial.span[other]):
+            return True
+    return False
+
+
+def _noisy(trial: Trial, name: str) -> bool:
+    values = trial.channels[name]
+    for rows in plateaus(values, _FEWEST_ROWS)[::-1]:
+        values = np.delete(values, rows)
+    return alternates(values) and noise_sd(values) > trial.step[name]
+
+
+def _goes_there_and_back(motion: Floats, span: float) -> bool:
+    strokes = np.abs(np.diff(motion[turning_points(motion, 0.2 * span)]))
+    return bool(np.ptp(motion) > 0.6 * span and strokes.sum() > 1.5 * span)
+
+
+CHECK = Check("stuck", find)

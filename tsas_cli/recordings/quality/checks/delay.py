@@ -1,0 +1,120 @@
+"""The tension at the load comes before or after the displacement at the load.
+
+A spring's tension goes with its displacement, so a shift in time between the two is one of the
+recording: filters, another bus, another clock. It is fitted cycle by cycle, beside the spring's
+curvature and a friction at the load, and told when the cycles agree and it matters: above half a
+sample, and with an error of the tension above a quarter of the noise.
+Other pairs of channels lag each other by the physics of the sheath and are not judged. A damper or
+a mass at the load looks like a delay too.
+"""
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from tsas_cli.recordings.dataset import Floats
+from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
+from tsas_cli.recordings.quality.trial import Trial
+
+_ROUNDS = 20
+_ROWS = 40  # rows of a cycle that the smoothing leaves apart, at least
+_SPRING = 0.002  # the share of the tension that a spring may leave unexplained
+_OWN = 0.02  # the share of the speed that the other terms must leave unexplained
+
+
+def find(trial: Trial) -> Iterator[Remark | CannotTell]:
+    """Fit the delay to each cycle, and hold the mean against the scatter."""
+    reason = _not_judged(trial)
+    if reason:
+        yield CannotTell(reason)
+        return
+    strokes = zip(trial.strokes[::2], trial.strokes[1::2], strict=False)
+    cycles = [slice(one.start, other.stop + 1) for one, other in strokes]
+    delays = np.array([d for d in (_delay(trial, rows) for rows in cycles) if math.isfinite(d)])
+    if delays.size < 2:
+        yield CannotTell("fewer than two cycles of changing speed with a load like a spring")
+        return
+    mean, half = float(delays.mean()), _half_interval(delays)
+    if abs(mean) - half > _smallest(trial):
+        yield Remark(
+            "warning",
+            f"f_out_N comes {1e3 * abs(mean):.3g} ms (95 %: {1e3 * (abs(mean) - half):.3g} to "
+            f"{1e3 * (abs(mean) + half):.3g}) {'after' if mean > 0 else 'before'} x_out_mm",
+            "use the same filter and clock for both channels, or shift one at the source",
+            "f_out_N",
+        )
+
+
+def _not_judged(trial: Trial) -> str:
+    if trial.recording.run.load != "spring":
+        return "the load is no spring, so the tension at the load need not go with displacement"
+    return "" if trial.increases else "time does not increase"
+
+
+def _smallest(trial: Trial) -> float:
+    """Return the shortest delay that matters [s]."""
+    interval = float(np.median(np.diff(trial.time_s)))
+    force = trial.channels["f_out_N"]
+    rate = np.nanstd(force) * math.pi * len(trial.strokes) / np.ptp(trial.time_s)
+    return max(0.5 * interval, 0.25 * trial.noise["f_out_N"] / float(rate))
+
+
+def _delay(trial: Trial, rows: slice) -> float:
+    """Return the delay of f_out behind x_out in one cycle [s]; NaN where it cannot be told."""
+    x, y, time = (
+        trial.channels["x_out_mm"][rows],
+        trial.channels["f_out_N"][rows],
+        trial.time_s[rows],
+    )
+    there = np.isfinite(x) & np.isfinite(y)
+    width = max(int(there.sum()) // _ROWS, 1)
+    if there.sum() < 2 * _ROWS or np.ptp(x[there]) < 2.0 * trial.visible("x_out_mm"):
+        return math.nan
+    x, y, time = (_smoothed(values[there], width) for values in (x, y, time))
+    longest = 0.25 * float(time[-1] - time[0])
+    delay = 0.0
+    for _ in range(_ROUNDS):
+        inside = (time - delay >= time[0]) & (time - delay <= time[-1])
+        shifted = np.interp(time - delay, time, x)
+        change = _remaining_delay(time[inside], shifted[inside], y[inside])
+        delay += change
+        if not abs(delay) < longest:
+            return math.nan
+        if abs(change) < 1e-3 * float(time[1] - time[0]):
+            return delay
+    return math.nan
+
+
+def _remaining_delay(time: Floats, x: Floats, y: Floats) -> float:
+    """Return −c/b of y = a + b x + d x² + e sgn(v) + c v.
+
+    NaN where the speed is no term of its own, or the terms do not make up the tension.
+    """
+    speed = np.gradient(x, time)
+    typical = float(np.sqrt(np.mean(speed**2)))
+    x = x - x.mean()
+    others = np.column_stack([np.ones_like(x), x, x**2, np.tanh(5.0 * speed / typical)])
+    own = speed - others @ np.linalg.lstsq(others, speed, rcond=None)[0]
+    if np.sum(own**2) < _OWN * np.sum(speed**2):
+        return math.nan
+    terms = np.column_stack([others, speed])
+    coefficients = np.linalg.lstsq(terms, y, rcond=None)[0]
+    if np.var(y - terms @ coefficients) > _SPRING * np.var(y):
+        return math.nan
+    return float(-coefficients[4] / coefficients[1])
+
+
+def _smoothed(values: Floats, width: int) -> Floats:
+    return np.convolve(values, np.ones(width) / width, mode="valid")
+
+
+def _half_interval(delays: Floats) -> float:
+    """Return half the 95 % interval of the mean, each cycle counted as one."""
+    from scipy.stats import t
+
+    quantile = float(t.ppf(0.975, delays.size - 1))
+    return quantile * float(delays.std(ddof=1)) / math.sqrt(delays.size)
+
+
+CHECK = Check("delay", find, needs=("x_out_mm", "f_out_N"))

@@ -1,0 +1,52 @@
+"""The two tension sensors are exchanged.
+
+Friction holds back: at the same tension at the load, the drive's tension is higher during
+contraction than during loosening. When it is the other way round, the proximal and the distal
+column are swapped (or, where nothing else shows its sign, `x_in_mm` counts the wrong way).
+"""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
+from tsas_cli.recordings.quality.trial import Trial
+
+_CLEAR = 0.03
+
+
+def find(trial: Trial) -> Iterator[Remark | CannotTell]:
+    """Compare the two directions at the same tension at the load."""
+    for name in trial.mechanical.keys() - {"x_in_mm"}:
+        going = trial.follows(name)
+        if trial.recording.run.load == "spring" and going is not None and going < 0.0:
+            yield CannotTell(f"the sign of {name} against x_in_mm is in doubt")
+            return
+    if len({stroke.direction for stroke in trial.strokes}) < 2:
+        yield CannotTell("the drive does not move both ways")
+        return
+    excess = _excess_while_pulling(trial)
+    visible = 0.5 * (trial.visible("f_in_N") + trial.visible("f_out_N"))
+    if excess < -max(_CLEAR * trial.span["f_in_N"], visible):
+        yield Remark(
+            "error",
+            f"at the same f_out_N, f_in_N is {-excess:.3g} N lower when the drive pulls than when "
+            "it gives way; friction makes it higher",
+            "exchange the columns of f_in_N and f_out_N at ingest, or check the sign of x_in_mm",
+            "f_in_N",
+        )
+
+
+def _excess_while_pulling(trial: Trial) -> float:
+    """Return d of f_in = a + b f_out + d/2 · direction, the drive under way [N].
+
+    A wrong gain or offset of a sensor goes into a and b.
+    """
+    f_in, f_out = trial.channels["f_in_N"], trial.channels["f_out_N"]
+    direction = trial.direction
+    rows = (direction != 0.0) & np.isfinite(f_in) & np.isfinite(f_out)
+    terms = np.column_stack([np.ones(int(rows.sum())), f_out[rows], direction[rows]])
+    return 2.0 * float(np.linalg.lstsq(terms, f_in[rows], rcond=None)[0][2])
+
+
+CHECK = Check("exchanged", find, needs=("x_in_mm", "f_in_N", "f_out_N"))

@@ -1,0 +1,56 @@
+"""A channel has the wrong sign.
+
+Pulling at the drive is positive, the distal end follows it, and a tendon cannot push: over each
+stroke of the drive the displacement at the load and, with a spring as load, both tensions rise
+when `x_in_mm` rises. When all others go against the drive, it is the drive's sign that is wrong.
+"""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
+from tsas_cli.recordings.quality.trial import Trial
+
+_CLEAR = 0.8
+
+
+def find(trial: Trial) -> Iterator[Remark | CannotTell]:
+    """Compare the direction of each channel with the drive's, and look for pushing tendons."""
+    pushing = [n for n in trial.mechanical if n.startswith("f_") and _pushes(trial, n)]
+    going = {name: trial.follows(name) for name in _followers(trial)}
+    against = [name for name, score in going.items() if score is not None and score < -_CLEAR]
+    together = [name for name, score in going.items() if score is not None and score > _CLEAR]
+    if against and not together and not pushing and against != ["x_out_mm"]:
+        yield _remark("x_in_mm", f"goes against {', '.join(against)}, stroke by stroke")
+        return
+    for name in against:
+        yield _remark(name, "goes against x_in_mm, stroke by stroke")
+    for name in set(pushing) - set(against):
+        share = 100.0 * float(np.mean(trial.channels[name] < 0.0))
+        yield _remark(name, f"is negative in {share:.3g} % of the samples; a tendon cannot push")
+    if not against and not together and not pushing:
+        yield CannotTell("no channel that has to follow x_in_mm moves visibly with it")
+
+
+def _followers(trial: Trial) -> list[str]:
+    """Return the channels that must go with the drive; a driven load has tensions of its own."""
+    spring = trial.recording.run.load == "spring"
+    return [n for n in trial.mechanical if n == "x_out_mm" or (spring and n.startswith("f_"))]
+
+
+def _pushes(trial: Trial, name: str) -> bool:
+    values = trial.channels[name]
+    return bool(np.nanpercentile(values, 98.0) < -trial.visible(name))
+
+
+def _remark(column: str, what: str) -> Remark:
+    return Remark(
+        "error",
+        f"{column} {what}",
+        f"turn the sign of {column} round at ingest, after a look at how the sensor is mounted",
+        column,
+    )
+
+
+CHECK = Check("sign", find, needs=("x_in_mm",))

@@ -1,0 +1,136 @@
+"""A channel is off by a round factor: most likely it is in another unit than its name says.
+
+What must agree is compared: the travel of the tendon's two ends; the level of the two tensions
+(friction raises one way what it lowers the other, so the geometric mean of both ways is free of
+it); the slope of `f_out_N` over `x_out_mm` with the data sheet's load stiffness; and the sample
+interval with the duration of the strokes. A wide dead band also makes the load's end move less,
+but then its path is no scaled copy of the drive's.
+"""
+
+import math
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
+from tsas_cli.recordings.quality.trial import Trial
+
+# What each ratio would be, if a channel were in that unit.
+_TRAVEL = {
+    1 / 10: "x_out_mm looks like centimetre",
+    1 / 25.4: "x_out_mm looks like inch",
+    1 / 1000: "x_out_mm looks like metre",
+    10.0: "x_in_mm looks like centimetre",
+    25.4: "x_in_mm looks like inch",
+    1000.0: "x_in_mm looks like metre",
+}
+_TENSION = {
+    1 / 4.448: "f_out_N looks like pound-force",
+    1 / 9.807: "f_out_N looks like kilogram-force",
+    1 / 1000: "f_out_N looks like kilonewton",
+    4.448: "f_in_N looks like pound-force",
+    9.807: "f_in_N looks like kilogram-force",
+    1000.0: "f_in_N looks like kilonewton",
+}
+_STIFFNESS = {
+    1 / 4.448: "f_out_N looks like pound-force",
+    1 / 5.710: "load_stiffness_N_per_mm looks like pound-force per inch",
+    1 / 10: "f_out_N looks like kilogram-force, or load_stiffness_N_per_mm like N/cm",
+    1 / 1000: "f_out_N looks like kilonewton, or load_stiffness_N_per_mm like N/m",
+    10.0: "x_out_mm looks like centimetre",
+    25.4: "x_out_mm looks like inch",
+    1000.0: "x_out_mm looks like metre",
+}
+_COPY = 0.98  # the correlation above which one path is a scaled copy of the other
+_SLOW_S, _LONG_S = 0.5, 500.0  # a sample interval and a stroke that are normal in milliseconds
+
+
+def find(trial: Trial) -> Iterator[Remark | CannotTell]:
+    """Compare whichever of the pairs are there."""
+    yield from _time(trial)
+    travel, tension, stiffness = _travel_ratio(trial), _tension_ratio(trial), _slope_ratio(trial)
+    if travel is None and tension is None and stiffness is None:
+        yield CannotTell("no two channels whose sizes must agree are there and move")
+    yield from _odd(travel, "x_out_mm moves {:.4g} mm per mm of x_in_mm", _TRAVEL, 1.4)
+    yield from _odd(tension, "f_out_N is {:.4g} times f_in_N", _TENSION, 1.15)
+    yield from _odd(
+        stiffness,
+        "the slope of f_out_N over x_out_mm is {:.4g} times load_stiffness_N_per_mm",
+        _STIFFNESS,
+        1.1,
+    )
+
+
+def _odd(
+    ratio: float | None, sentence: str, likely: Mapping[float, str], tolerance: float
+) -> Iterator[Remark]:
+    """Yield a remark when a ratio is close to one of the round factors."""
+    if ratio is None:
+        return
+    nearest = min(likely, key=lambda factor: abs(math.log(ratio / factor)))
+    if abs(math.log(ratio / nearest)) < math.log(tolerance):
+        column = likely[nearest].split()[0]
+        yield Remark(
+            "error",
+            f"{sentence.format(ratio)}; {likely[nearest]}",
+            f"look up the unit of {column} and set it at ingest",
+            None if column.startswith("load") else column,
+        )
+
+
+def _travel_ratio(trial: Trial) -> float | None:
+    """Return the travel of x_out over that of x_in, where one is a copy of the other."""
+    driven = trial.recording.run.load == "displacement"
+    if driven or not trial.strokes or "x_out_mm" not in trial.channels:
+        return None
+    return _slope(trial, "x_in_mm", "x_out_mm", _COPY)
+
+
+def _tension_ratio(trial: Trial) -> float | None:
+    """Return the level of f_out over f_in, averaged geometrically over the two directions."""
+    if not trial.strokes or not {"f_in_N", "f_out_N"} <= trial.channels.keys():
+        return None
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratio = trial.channels["f_out_N"] / trial.channels["f_in_N"]
+    levels = []
+    for direction in (1, -1):
+        every = ratio[trial.direction == direction]
+        levels.append(float(np.nanmedian(every)) if np.isfinite(every).any() else 0.0)
+    return math.sqrt(levels[0] * levels[1]) if min(levels) > 0.0 else None
+
+
+def _slope_ratio(trial: Trial) -> float | None:
+    """Return the slope of f_out over x_out against the data sheet's stiffness of the spring."""
+    nominal = trial.rig.load_stiffness_N_per_mm
+    spring = trial.recording.run.load == "spring"
+    if nominal is None or not spring or not {"x_out_mm", "f_out_N"} <= trial.channels.keys():
+        return None
+    slope = _slope(trial, "x_out_mm", "f_out_N", _COPY)
+    return slope / nominal if slope is not None else None
+
+
+def _slope(trial: Trial, x: str, y: str, least_correlation: float) -> float | None:
+    """Return the size of the slope of y over x; None where they do not go together."""
+    both = np.isfinite(trial.channels[x]) & np.isfinite(trial.channels[y])
+    a, b = trial.channels[x][both], trial.channels[y][both]
+    if a.size < 3 or np.ptp(a) == 0.0 or np.ptp(b) == 0.0:
+        return None
+    if abs(float(np.corrcoef(a, b)[0, 1])) < least_correlation:
+        return None
+    return float(np.std(b) / np.std(a))
+
+
+def _time(trial: Trial) -> Iterator[Remark]:
+    interval = float(np.median(np.diff(trial.time_s)))
+    strokes = [trial.time_s[s.stop] - trial.time_s[s.start] for s in trial.strokes]
+    if strokes and interval >= _SLOW_S and float(np.median(strokes)) > _LONG_S:
+        yield Remark(
+            "error",
+            f"one sample each {interval:.4g} s and {np.median(strokes):.4g} s per stroke; "
+            f"time_s looks like {'microsecond' if interval >= 500.0 * _SLOW_S else 'millisecond'}",
+            "look up the unit of time_s and set it at ingest",
+            "time_s",
+        )
+
+
+CHECK = Check("unit", find)
