@@ -121,6 +121,13 @@ def test_a_truncated_file_is_one_line(dataset: Path, size: int) -> None:
     assert refusal(dataset).startswith(": cannot be read as Parquet (")
 
 
+def test_a_damaged_column_name_is_one_line(dataset: Path) -> None:
+    path = dataset / "runs" / "a.parquet"
+    path.write_bytes(path.read_bytes().replace(b"x_in_mm", b"x_in_m\xff"))
+    rehash(dataset)
+    assert refusal(dataset).startswith(": cannot be read as Parquet (")
+
+
 def test_a_missing_file_is_one_line(dataset: Path) -> None:
     (dataset / "runs" / "a.parquet").unlink()
     assert refusal(dataset).startswith(": the run's file is missing")

@@ -80,7 +80,6 @@ def read_recording(folder: Path, run: Run, *, strict: bool = True) -> Recording:
     """
     path = folder / run.file
     table = _read_parquet(path, folder, run)
-    _check_names_and_units(table, path)
     columns = {name: _floats(table, name, path) for name in table.column_names if name in BY_NAME}
     _check_columns(columns, table.column_names, path)
     if strict:
@@ -136,10 +135,12 @@ def _read_parquet(path: Path, folder: Path, run: Run) -> pa.Table:
                 expected=run.sha256.lower(),
                 remedy="the file has changed since ingest: restore it or ingest again",
             )
-        return pq.ParquetFile(path).read()
-    except (pa.ArrowException, OSError) as error:
+        table = pq.ParquetFile(path).read()
+        _check_names_and_units(table, path)
+    except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
         reason = str(error).splitlines()[0]
         raise InputError(f"cannot be read as Parquet ({reason})", where=path) from error
+    return table
 
 
 def _check_names_and_units(table: pa.Table, path: Path) -> None:
