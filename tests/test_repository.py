@@ -1,0 +1,40 @@
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+INDEX = re.compile(r"pypi\.|pythonhosted|/simple\b|--(extra-)?index-url|--find-links")
+
+
+@pytest.fixture(scope="module")
+def texts() -> dict[str, str]:
+    """Return every text file that the repository keeps, by its path."""
+    listed = subprocess.run(
+        ["git", "ls-files"],  # noqa: S607 # whichever git is installed
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    if listed.returncode:
+        pytest.skip("not a git repository")
+    found = {}
+    for name in listed.stdout.splitlines():
+        content = (ROOT / name).read_bytes() if (ROOT / name).is_file() else b"\0"
+        if b"\0" not in content:
+            found[name] = content.decode("utf-8")
+    return found
+
+
+def test_no_file_names_a_package_index(texts: dict[str, str]) -> None:
+    here = Path(__file__).relative_to(ROOT).as_posix()
+    assert [n for n, text in texts.items() if n != here and INDEX.search(text)] == []
+
+
+def test_every_locked_version_has_its_hashes(texts: dict[str, str]) -> None:
+    blocks = re.split(r"\n(?=[a-z0-9])", texts["requirements/lock.txt"])
+    versions = [block for block in blocks if "==" in block]
+    assert len(versions) > 50
+    assert [block.split()[0] for block in versions if "--hash=sha256:" not in block] == []
