@@ -28,7 +28,7 @@ $(INSTALLED): $(LOCKED)
 lock:  ## choose the newest versions that pyproject.toml allows, and lock them with hashes
 	@folder=$$(mktemp -d) && trap 'rm -rf "$$folder"' EXIT \
 	&& $(PYTHON) -m venv "$$folder" \
-	&& "$$folder/bin/python" -m pip --quiet --disable-pip-version-check install uv \
+	&& "$$folder/bin/python" -m pip -qq --disable-pip-version-check install uv \
 	&& "$$folder/bin/uv" pip compile --quiet --universal --python-version 3.11 --upgrade \
 		--generate-hashes --no-emit-index-url --no-header \
 		--all-extras --group dev pyproject.toml --output-file requirements/lock.txt
