@@ -91,7 +91,8 @@ def best_half_windows(
     pooled = np.mean([padded[k : k + len(mean)] for k in range(5)], axis=0)
     chosen = np.log(HALF_WINDOWS[np.argmin(pooled, axis=1)])
     centres = [points[block].mean() for block in blocks if block.size]
-    return np.round(np.exp(np.interp(np.arange(values.size), centres, chosen)))
+    half: Floats = np.round(np.exp(np.interp(np.arange(values.size), centres, chosen)))
+    return half
 
 
 @kernel

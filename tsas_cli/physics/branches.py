@@ -36,7 +36,7 @@ def from_turning_point(travel: float, tension: float, direction: int, C: float, 
         root = (C + math.sqrt(c * c + (C + c) * D)) / (C + c)
     else:
         inside = c * c + (C - c) * D
-        root = (C + c - D) / (C + math.sqrt(inside)) if inside > 0.0 and D < C + c else 0.0
+        root = (C + c - D) / (C + math.sqrt(inside)) if inside > 0.0 and C + c > D else 0.0
     return tension * root * root
 
 

@@ -42,9 +42,7 @@ def dead_band_stiffness(wrap: float, length: float, tendon_stiffness: float) -> 
 
 
 @kernel
-def dead_band_width(
-    tension: float, wrap: float, length: float, tendon_stiffness: float
-) -> float:
+def dead_band_width(tension: float, wrap: float, length: float, tendon_stiffness: float) -> float:
     """Return the drive's travel in a dead band at a distal tension, from Eqs. (27)-(29) [mm]."""
     swing = 4.0 * math.sinh(0.5 * wrap) ** 2  # e^a + e^-a − 2
     return tension * swing * length / (wrap * tendon_stiffness)

@@ -40,6 +40,16 @@ class Boundary(NamedTuple):
     spring_compliance: float
 
 
+class Chain(NamedTuple):
+    """The state of the chain; nodes count from 0 at the drive to n + 1 at the load."""
+
+    x: Floats  # positions of the nodes [mm], shape (n + 2,)
+    x_old: Floats  # the same when the last step had settled
+    T: Floats  # tensions of the segments [N], shape (n + 1,)
+    slip: Phases  # direction in which each node slips, 0 where it sticks
+    compliance: Floats  # of the segments [mm/N]
+
+
 class Ends(NamedTuple):
     """The ends at one moment: what is given there, the wrap angle times friction, the preload."""
 
@@ -56,12 +66,13 @@ def passed_on(tension: float, ratio: float) -> float:
 
 
 @kernel
-def held_at_both_ends(p, q, x, T, slip, compliance, preload, ratio):  # type: ignore[no-untyped-def]
+def held_at_both_ends(p: int, q: int, chain: Chain, preload: float, ratio: float) -> None:
     """Solve the segments p … q−1 between two nodes that keep their places.
 
     The tensions are T[p] times powers of the ratio, and stretch the segments by x[p] − x[q]; the
     ratio turns round where the tension is negative.
     """
+    x, T, slip, compliance = chain.x, chain.T, chain.slip, chain.compliance
     inverse = 1.0 / ratio
     negative = T[p] < 0.0
     for _ in range(2):
@@ -82,8 +93,9 @@ def held_at_both_ends(p, q, x, T, slip, compliance, preload, ratio):  # type: ig
 
 
 @kernel
-def pulled_at_load(p, x, T, slip, compliance, preload, ratio, force):  # type: ignore[no-untyped-def]
+def pulled_at_load(p: int, chain: Chain, preload: float, ratio: float, force: float) -> None:
     """Solve the segments from the sticking node p to the load, whose force is given."""
+    x, T, slip, compliance = chain.x, chain.T, chain.slip, chain.compliance
     last = T.size - 1
     T[last] = force
     for j in range(last, p, -1):
@@ -93,8 +105,9 @@ def pulled_at_load(p, x, T, slip, compliance, preload, ratio, force):  # type: i
 
 
 @kernel
-def pulled_at_drive(q, x, T, slip, compliance, preload, ratio, force):  # type: ignore[no-untyped-def]
+def pulled_at_drive(q: int, chain: Chain, preload: float, ratio: float, force: float) -> None:
     """Solve the segments from the drive, whose force is given, to the sticking node q."""
+    x, T, slip, compliance = chain.x, chain.T, chain.slip, chain.compliance
     T[0] = force
     for j in range(1, q):
         T[j] = passed_on(T[j - 1], ratio if slip[j] > 0 else 1.0 / ratio)
@@ -103,11 +116,12 @@ def pulled_at_drive(q, x, T, slip, compliance, preload, ratio, force):  # type: 
 
 
 @kernel
-def revise(x, x_old, T, slip, ratio, scale):  # type: ignore[no-untyped-def]
+def revise(chain: Chain, ratio: float, scale: float) -> bool:
     """Free the nodes whose tensions exceed the capstan ratio, hold those that slip backwards.
 
     Returns whether any node was wrong.
     """
+    x, x_old, T, slip = chain.x, chain.x_old, chain.T, chain.slip
     wrong = False
     for i in range(1, x.size - 1):
         change = slip[i]
@@ -127,9 +141,9 @@ def revise(x, x_old, T, slip, ratio, scale):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def settle(chain, compliance, ends, boundary, scale):  # type: ignore[no-untyped-def]
+def settle(chain: Chain, ends: Ends, boundary: Boundary, scale: float) -> bool:
     """Find the slipping nodes for given ends; return whether the set was found."""
-    x, x_old, T, slip = chain
+    x, slip = chain.x, chain.slip
     n = x.size - 2
     ratio = math.exp(-ends.wrap / n)
     if boundary.drive == DISPLACEMENT:
@@ -143,29 +157,29 @@ def settle(chain, compliance, ends, boundary, scale):  # type: ignore[no-untyped
             while q <= n and slip[q] != 0:
                 q += 1
             if q == n + 1 and boundary.load == FORCE:
-                pulled_at_load(p, x, T, slip, compliance, ends.preload, ratio, ends.load)
+                pulled_at_load(p, chain, ends.preload, ratio, ends.load)
             elif p == 0 and boundary.drive == FORCE:
-                pulled_at_drive(q, x, T, slip, compliance, ends.preload, ratio, ends.drive)
+                pulled_at_drive(q, chain, ends.preload, ratio, ends.drive)
             else:
-                held_at_both_ends(p, q, x, T, slip, compliance, ends.preload, ratio)
+                held_at_both_ends(p, q, chain, ends.preload, ratio)
             p = q
-        if not revise(x, x_old, T, slip, ratio, scale):
+        if not revise(chain, ratio, scale):
             return True
     return False
 
 
 @kernel
-def advance(chain, compliance, start, end, boundary, scale):  # type: ignore[no-untyped-def]
+def advance(chain: Chain, start: Ends, end: Ends, boundary: Boundary, scale: float) -> bool:
     """Move the ends from one sample to the next, in smaller steps where one is too large.
 
     The model does not depend on the rate, only on the path: a straight line between samples.
     Returns whether every step settled.
     """
-    x, x_old, T, slip = chain
+    x, x_old, slip = chain.x, chain.x_old, chain.slip
     done, step = 0.0, 1.0
     while done < 1.0:
         to = min(done + step, 1.0)
-        if settle(chain, compliance, between(start, end, to), boundary, scale):
+        if settle(chain, between(start, end, to), boundary, scale):
             x_old[:] = x
             done = to
             step *= 2.0
@@ -179,7 +193,7 @@ def advance(chain, compliance, start, end, boundary, scale):  # type: ignore[no-
 
 
 @kernel
-def between(start, end, part):  # type: ignore[no-untyped-def]
+def between(start: Ends, end: Ends, part: float) -> Ends:
     """Return the ends at a part of the way; the last one exactly."""
     if part == 1.0:
         return end
@@ -222,22 +236,27 @@ def slip_chain(
     m = drive.size
     x_in, x_out, f_in, f_out = np.empty(m), np.empty(m), np.empty(m), np.empty(m)
     phase = np.zeros(m, dtype=np.int8)
-    compliance = segment_compliances(rig, boundary, n)
-    chain = (np.zeros(n + 2), np.zeros(n + 2), np.full(n + 1, preload[0]), np.zeros(n + 2, np.int8))
-    x, x_old, T, slip = chain
+    chain = Chain(
+        np.zeros(n + 2),
+        np.zeros(n + 2),
+        np.full(n + 1, preload[0]),
+        np.zeros(n + 2, dtype=np.int8),
+        segment_compliances(rig, boundary, n),
+    )
+    x, T = chain.x, chain.T
     scale = rig.sheath_length_mm * rig.preload_N / rig.tendon_stiffness_N / n + 1e-9
     rest_drive = preload[0] if boundary.drive == FORCE else 0.0
     rest_load = preload[0] if boundary.load == FORCE else 0.0
     before = Ends(rest_drive, rest_load, wrap[0], preload[0])
     for i in range(m):
         now = Ends(drive[i], load[i], wrap[i % wrap.size], preload[i % preload.size])
-        found = advance(chain, compliance, before, now, boundary, scale)
+        found = advance(chain, before, now, boundary, scale)
         before = now
-        phase[i] = phase_of(slip) if found else 3
+        phase[i] = phase_of(chain.slip) if found else 3
         if boundary.load != FORCE and T[0] < 0.0:
             phase[i] = 2
-            hang_slack(x, T, slip, compliance, now.preload)
-            x_old[:] = x
+            hang_slack(chain, now.preload)
+            chain.x_old[:] = x
         x_in[i], f_in[i], f_out[i] = x[0], T[0], T[n]
         x_out[i] = (T[n] - now.preload) * boundary.spring_compliance + x[n + 1]
     return x_in, x_out, f_in, f_out, phase
@@ -258,7 +277,7 @@ def segment_compliances(rig: Rig, boundary: Boundary, n: int) -> Floats:
 @kernel
 def phase_of(slip: Phases) -> int:
     """Return +1 or −1 where all nodes slip alike, 0 otherwise."""
-    first = slip[1]
+    first: int = slip[1]
     for i in range(2, slip.size - 1):
         if slip[i] != first:
             return 0
@@ -266,8 +285,9 @@ def phase_of(slip: Phases) -> int:
 
 
 @kernel
-def hang_slack(x, T, slip, compliance, preload):  # type: ignore[no-untyped-def]
+def hang_slack(chain: Chain, preload: float) -> None:
     """Lay the tendon without tension against the load; the next pull finds all nodes slipping."""
+    x, T, slip, compliance = chain.x, chain.T, chain.slip, chain.compliance
     for j in range(T.size - 1, -1, -1):
         T[j] = 0.0
         if j > 0:

@@ -1,0 +1,131 @@
+"""A recording made ready for a model: its drive conditioned, its noise told, its gaps marked."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from tsas_cli.errors import InputError
+from tsas_cli.numerics.conditioning import METHOD, Conditioned, condition
+from tsas_cli.numerics.noise import noise_sd, quantisation_step
+from tsas_cli.physics.quasi_static import Drive
+from tsas_cli.recordings.columns import BY_NAME
+from tsas_cli.recordings.dataset import Recording
+from tsas_cli.recordings.manifest import Load, Run
+
+Floats = npt.NDArray[np.float64]
+Mask = npt.NDArray[np.bool_]
+
+CHANNELS = ("f_in_N", "f_out_N", "x_out_mm")  # what the models answer, where it drives nothing
+LOAD_COLUMNS: Mapping[Load, str] = {"force": "f_out_N", "displacement": "x_out_mm"}
+START_SAMPLES = 20  # whose mean is the tension at the start
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """One run, ready to drive a model and to be compared with its answers."""
+
+    run: Run
+    time_s: Floats
+    drive_column: str
+    conditioned: Mapping[str, Conditioned]
+    measured: Mapping[str, Floats]
+    in_gap: Mask
+
+    @cached_property
+    def drive(self) -> Drive:
+        """What is given at the ends, conditioned."""
+        f_in = self.measured.get("f_in_N")
+        load = LOAD_COLUMNS.get(self.run.load)
+        start = None
+        if f_in is not None and self.drive_column == "x_in_mm":
+            start = _start_value(self.time_s, f_in)
+        return Drive(
+            values=self.conditioned[self.drive_column].values,
+            kind="displacement" if self.drive_column == "x_in_mm" else "force",
+            load=self.run.load,
+            load_values=None if load is None else self.conditioned[load].values,
+            start_f_in_N=start,
+        )
+
+    @cached_property
+    def noise(self) -> dict[str, float]:
+        """Noise of each measured channel, quantisation counted in [the channel's unit]."""
+        return {name: _noise(values) for name, values in self.measured.items()}
+
+    def conditioning(self) -> dict[str, dict[str, object]]:
+        """Say how each driving column was conditioned."""
+        return {
+            name: {
+                "method": METHOD if c.noise > 0.0 else "none: the column holds no noise",
+                "window_s": c.window_s,
+                "noise": c.noise,
+                "unit": BY_NAME[name].unit,
+                "reversals": max(c.reversals.size - 2, 0),
+            }
+            for name, c in self.conditioned.items()
+        }
+
+
+def prepare(recording: Recording) -> Prepared:
+    """Condition what drives the model and collect what it is compared with.
+
+    Raises
+    ------
+    InputError
+        The run has no column that can drive the tendon, or lacks the one that drives its load, or
+        holds nothing to compare a model with.
+    """
+    run, columns = recording.run, recording.columns
+    drive = next((name for name in ("x_in_mm", "f_in_N") if name in columns), None)
+    if drive is None:
+        raise InputError(
+            "no column drives the tendon",
+            where=run.file,
+            expected="x_in_mm or f_in_N",
+            remedy=f"there are: {', '.join(columns)}",
+        )
+    load = LOAD_COLUMNS.get(run.load)
+    if load is not None and load not in columns:
+        raise InputError(
+            f"load = {run.load!r} needs the column {load}",
+            where=run.file,
+            remedy="record it, or say load = 'spring' in dataset.toml",
+        )
+    if drive == "f_in_N" and run.load == "force":
+        raise InputError(
+            "forces at both ends do not say how the tendon moves",
+            where=run.file,
+            expected="x_in_mm",
+        )
+    driving = [drive] if load is None else [drive, load]
+    measured = {n: columns[n] for n in CHANNELS if n in columns and n not in driving}
+    if not measured:
+        raise InputError(
+            "nothing to compare a model with",
+            where=run.file,
+            expected=f"one of {', '.join(CHANNELS)} beside what drives the tendon",
+            remedy=f"there are: {', '.join(columns)}",
+        )
+    time_s = recording.time_s
+    gap = np.any([~np.isfinite(columns[name]) for name in driving], axis=0)
+    for name in driving:
+        if np.isfinite(columns[name]).sum() < 2:
+            raise InputError(f"column {name} is empty", where=run.file, expected="numbers")
+    conditioned = {name: condition(time_s, columns[name]) for name in driving}
+    return Prepared(run, time_s, drive, conditioned, measured, gap)
+
+
+def _noise(values: Floats) -> float:
+    return float(np.fmax(noise_sd(values), quantisation_step(values) / np.sqrt(12.0)))
+
+
+def _start_value(time_s: Floats, values: Floats) -> float | None:
+    """Return the value at the first sample, from a line through the first few."""
+    there = np.flatnonzero(np.isfinite(values[:START_SAMPLES]))
+    if there.size < 2:
+        return None
+    slope_and_value = np.polyfit(time_s[there] - time_s[0], values[there], 1)
+    return float(slope_and_value[1])
