@@ -105,5 +105,6 @@ def _own(name: str, value: str, key: str) -> str:
     if name == _LINK:
         return f"#{key}-{value[1:]}"
     if name == "d":
-        return re.sub(r"\d+\.\d{3,}", lambda number: f"{float(number[0]):.2f}", value)
+        short = re.sub(r"\d+\.\d{3,}", lambda number: f"{float(number[0]):.2f}", value)
+        return re.sub(r"\s*([A-Z])\s*", r"\1", short)
     return value.replace("url(#", f"url(#{key}-")

@@ -1,13 +1,16 @@
 """What the recordings are, and what the checks say about them."""
 
+from collections.abc import Sequence
+
 from tsas_cli.recordings.columns import BY_NAME, TIME
 from tsas_cli.recordings.dataset import Recording
 from tsas_cli.reporting.content import Section, Table
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import ABSENT, plain
-from tsas_cli.reporting.stage_files import Check
+from tsas_cli.reporting.stage_files import Check, Finding
 
 _SEVERITIES = ("error", "warning", "note")
+_SHOWN = 4
 
 
 def section(inputs: Inputs) -> Section:
@@ -31,6 +34,9 @@ def _credit(inputs: Inputs) -> str:
 
 
 def _runs(inputs: Inputs) -> Table:
+    more = list(
+        dict.fromkeys(key for run in inputs.dataset.manifest.run for key in run.model_extra or {})
+    )
     header = (
         "run",
         "channels",
@@ -40,13 +46,16 @@ def _runs(inputs: Inputs) -> Table:
         "sheath length [mm]",
         "total bend [rad]",
         "preload [N]",
+        *more,
+        "started",
         "load",
     )
-    rows = tuple(_run(recording) for recording in inputs.dataset)
-    return Table("The recordings", header, rows, numeric=frozenset(range(2, 8))).without_empty()
+    rows = tuple(_run(recording, more) for recording in inputs.dataset)
+    numeric = frozenset(range(2, 8 + len(more)))
+    return Table("The recordings", header, rows, numeric=numeric).without_empty()
 
 
-def _run(recording: Recording) -> tuple[str, ...]:
+def _run(recording: Recording, more: Sequence[str]) -> tuple[str, ...]:
     run, time_s = recording.run, recording.time_s
     duration = float(time_s[-1] - time_s[0])
     return (
@@ -58,18 +67,34 @@ def _run(recording: Recording) -> tuple[str, ...]:
         plain(run.sheath_length_mm),
         plain(run.total_bend_rad),
         plain(run.preload_N),
+        *(str((run.model_extra or {}).get(key, ABSENT)) for key in more),
+        run.started.isoformat(" ") if run.started else ABSENT,
         run.load,
     )
 
 
 def _findings(check: Check) -> Table:
-    known = [f for severity in _SEVERITIES for f in check.findings if f.severity == severity]
-    rows = tuple(
-        (f.severity, f.run or ABSENT, f.column or ABSENT, f.sentence, f.remedy, f.code)
-        for f in [*known, *(f for f in check.findings if f.severity not in _SEVERITIES)]
-    )
-    header = ("severity", "run", "column", "what", "what to do", "code")
-    return Table("What the checks found", header, rows).without_empty()
+    """Return the findings, errors first; of many of one kind the first few, and whose they are."""
+    kinds: dict[tuple[str, str], list[Finding]] = {}
+    for finding in sorted(check.findings, key=_rank):
+        kinds.setdefault((finding.severity, finding.code), []).append(finding)
+    rows: list[tuple[str, ...]] = []
+    for (severity, code), found in kinds.items():
+        shown, rest = found[:_SHOWN], found[_SHOWN:]
+        rows += [
+            (severity, code, f.run or ABSENT, f.column or ABSENT, f.sentence, f.remedy)
+            for f in shown
+        ]
+        if rest:
+            runs = ", ".join(dict.fromkeys(f.run for f in rest if f.run)) or ABSENT
+            more = f"{len(rest)} more of this kind; `tsas check` lists them"
+            rows.append((severity, code, runs, ABSENT, more, ""))
+    header = ("severity", "code", "run", "column", "what", "what to do")
+    return Table("What the checks found", header, tuple(rows)).without_empty()
+
+
+def _rank(finding: Finding) -> int:
+    return _SEVERITIES.index(finding.severity) if finding.severity in _SEVERITIES else -1
 
 
 def _not_checked(check: Check) -> Table:

@@ -14,8 +14,12 @@ def sentences(inputs: Inputs) -> Iterator[str]:
     many = "1 recording" if len(manifest.run) == 1 else f"{len(manifest.run)} recordings"
     yield f"{manifest.name} holds {many}, {manifest.kind}."
     yield _findings(inputs.check)
-    if simulation := inputs.get(Simulation):
-        yield from _distances(simulation)
+    simulation = inputs.get(Simulation)
+    if simulation and (distances := _distances(simulation)):
+        yield (
+            f"The RMSE between simulation and measurement is {', '.join(distances)}; "
+            "1 is as near as noise allows."
+        )
     calibration = inputs.get(Calibration)
     if calibration and calibration.cannot_tell:
         yield "These recordings do not say everything:"
@@ -31,18 +35,15 @@ def _findings(check: Check) -> str:
     return f"The checks report {', '.join(said)}." if said else "The checks found nothing."
 
 
-def _distances(simulation: Simulation) -> Iterator[str]:
-    """Yield, for each channel, the range over the runs of RMSE against noise."""
-    channels = {name for run in simulation.runs.values() for name in run.channels}
-    for name in (column for column in BY_NAME if column in channels):
+def _distances(simulation: Simulation) -> list[str]:
+    """Return, for each channel, the range over the runs of RMSE against noise."""
+    said = []
+    for name, column in BY_NAME.items():
         found = [run.channels[name] for run in simulation.runs.values() if name in run.channels]
         ratios = [c.rmse / c.noise for c in found if c.rmse is not None and c.noise]
         if ratios:
-            what = BY_NAME[name].meaning.split(",")[0]
-            yield (
-                f"For the {what}, the simulation is {_range(ratios)} times the noise away from "
-                "the measurement."
-            )
+            said.append(f"{_range(ratios)} times the noise in {column.meaning.split(',')[0]}")
+    return said
 
 
 def _range(values: list[float]) -> str:
