@@ -124,6 +124,18 @@ def test_a_dataset_alone_makes_a_page_that_says_what_is_missing(folders):
     assert alone.count("<svg") == 4
 
 
+def test_of_many_findings_of_one_kind_the_first_are_shown_and_the_others_named(folders, tmp_path):
+    findings = [FINDING | {"run": f"r{n}", "sentence": f"`x` in r{n}"} for n in range(9)]
+    alone = FINDING | {"severity": "error", "sentence": "broken"}
+    check = make_check(folders["dataset"], tmp_path / "check", [*findings, alone])
+    text = page(read_inputs([check]))
+    assert "<code>x</code> in r3<" in text
+    assert "in r4<" not in text
+    assert ">r4, r5, r6, r7, r8<" in text
+    assert text.index(">broken<") < text.index("in r0<")
+    assert "1 error, 9 warnings" in text
+
+
 def test_every_colour_is_defined_light_and_dark():
     style = (files("tsas_cli.reporting") / "templates" / "page.css").read_text(encoding="utf-8")
     for role in ROLES:
