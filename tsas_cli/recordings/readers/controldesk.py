@@ -35,11 +35,12 @@ def read_capture(
     """
     channels = _records(capture["Y"])
     names = [str(channel.get("Name", "")).strip('"') for channel in channels]
-    at = resolve([s for s in wanted if s != TIME], names, path)
+    at = resolve(wanted, [*names, TIME], path)
     clocks = [floats(np.ravel(clock["Data"]), TIME, path) for clock in _records(capture["X"])]
-    series = {s: _series(channels[i], clocks, s, path) for s, i in at.items()}
+    taken = {source: channels[i] for source, i in at.items() if i < len(channels)}
+    series = {s: _series(channel, clocks, s, path) for s, channel in taken.items()}
     units: dict[Source, str] = {TIME: "s"}
-    units |= {s: unit for s, i in at.items() if (unit := str(channels[i].get("Unit", "")))}
+    units |= {s: unit for s, channel in taken.items() if (unit := str(channel.get("Unit", "")))}
     description = str(capture.get("Description", ""))
     return Table(
         on_one_clock(series, path, resample=options.resample),

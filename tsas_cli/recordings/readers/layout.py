@@ -78,8 +78,8 @@ def comment_text(line: str, options: ReadOptions) -> str | None:
 
 
 def number(text: str, decimal: str) -> float:
-    """Return a cell as a number (ValueError where it is none)."""
-    return float(text.replace(",", ".") if decimal == "," else text)
+    """Return a cell as a number (ValueError where it is none: 1.234,5 may not be guessed at)."""
+    return float(text.replace(".", "·").replace(",", ".") if decimal == "," else text)
 
 
 def _head(path: Path, options: ReadOptions) -> tuple[list[str], list[tuple[int, str]]]:
@@ -107,7 +107,7 @@ def _head(path: Path, options: ReadOptions) -> tuple[list[str], list[tuple[int, 
 
 def _delimiter(lines: Sequence[str]) -> str:
     for candidate in ("\t", ";", ",", " "):
-        if all(candidate in line.strip() for line in lines):
+        if all(candidate in line.strip(" ") for line in lines):
             return candidate
     return ","
 

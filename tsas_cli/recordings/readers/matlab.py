@@ -13,7 +13,7 @@ from scipy.io.matlab import MatReadError
 from tsas_cli.errors import InputError, nearest
 from tsas_cli.recordings.readers.controldesk import find_capture, read_capture
 from tsas_cli.recordings.readers.options import ReadOptions
-from tsas_cli.recordings.readers.table import Floats, Source, Table, floats, resolve
+from tsas_cli.recordings.readers.table import Floats, Source, Table, damaged, floats, resolve
 
 _HDF5 = b"\x89HDF\r\n\x1a\n"
 _DAMAGED = (
@@ -23,7 +23,7 @@ _DAMAGED = (
     LookupError,
     OSError,
     EOFError,
-    RecursionError,
+    RuntimeError,
     struct.error,
     zlib.error,
 )
@@ -43,11 +43,8 @@ def read(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Table:
     """
     try:
         content = _content(path)
-    except InputError:
-        raise
     except _DAMAGED as error:
-        reason = str(error).splitlines()[0] if str(error) else type(error).__name__
-        raise InputError(f"cannot be read as a MATLAB file ({reason})", where=path) from error
+        raise damaged(path, "a MATLAB file", error) from error
     content = _inside(content, options.table, path)
     capture = find_capture(content)
     if capture is not None:
@@ -74,9 +71,10 @@ def _content(path: Path) -> dict[str, Any]:
 
 def _inside(content: dict[str, Any], table: str | None, path: Path) -> dict[str, Any]:
     for name in table.split(".") if table else ():
-        if not isinstance(inner := content.get(name), dict):
-            raise InputError(f"no struct {name}", where=path, remedy=nearest(name, content))
-        content = inner
+        structs = [key for key, value in content.items() if isinstance(value, dict)]
+        if name not in structs:
+            raise InputError(f"no struct {name}", where=path, remedy=nearest(name, structs))
+        content = content[name]
     return content
 
 
@@ -85,7 +83,7 @@ def _vectors(content: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, F
     for name, value in content.items():
         if isinstance(value, dict):
             yield from _vectors(value, f"{prefix}{name}.")
-        elif isinstance(value, np.ndarray) and value.dtype.kind in "fiub":
+        elif isinstance(value, np.ndarray) and value.size and value.dtype.kind in "fiub":
             matrix = value.reshape(-1, 1) if 1 in value.shape or value.ndim == 1 else value
             if matrix.ndim == 2 and matrix.shape[1] == 1:
                 yield f"{prefix}{name}", matrix[:, 0]

@@ -1,5 +1,8 @@
 """ASAM MDF measurement files."""
 
+import gc
+import sys
+import traceback
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -9,7 +12,7 @@ import numpy as np
 from tsas_cli.errors import InputError
 from tsas_cli.recordings.readers.optional import optional
 from tsas_cli.recordings.readers.options import ReadOptions
-from tsas_cli.recordings.readers.table import Floats, Source, Table, floats, resolve
+from tsas_cli.recordings.readers.table import Floats, Source, Table, damaged, floats, resolve
 from tsas_cli.recordings.readers.timebase import TIME, on_one_clock
 
 
@@ -29,8 +32,16 @@ def read(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Table:
     except InputError:
         raise
     except Exception as error:  # a damaged file ends in any of a dozen types
-        reason = str(error).splitlines()[0] if str(error) else type(error).__name__
-        raise InputError(f"cannot be read as MDF ({reason})", where=path) from error
+        _discard_half_made(error)
+        raise damaged(path, "MDF", error) from error
+
+
+def _discard_half_made(error: Exception) -> None:
+    """Collect what a damaged file left behind now: asammdf's clean-up of it fails on stderr."""
+    hook, sys.unraisablehook = sys.unraisablehook, lambda _: None
+    traceback.clear_frames(error.__traceback__)
+    gc.collect()
+    sys.unraisablehook = hook
 
 
 def _table(file: Any, options: ReadOptions, wanted: Sequence[Source], path: Path) -> Table:
@@ -40,9 +51,11 @@ def _table(file: Any, options: ReadOptions, wanted: Sequence[Source], path: Path
         for index, channel in enumerate(content.channels)
         if index != file.masters_db.get(group)
     ]
-    at = resolve([s for s in wanted if s != TIME], [name for name, _, _ in channels], path)
+    at = resolve(wanted, [*(name for name, _, _ in channels), TIME], path)
     signals = {
-        source: file.get(*channels[i], ignore_invalidation_bits=True) for source, i in at.items()
+        source: file.get(*channels[i], ignore_invalidation_bits=True)
+        for source, i in at.items()
+        if i < len(channels)
     }
     series = {s: (_seconds(signal), _values(signal, s, path)) for s, signal in signals.items()}
     columns = on_one_clock(series, path, resample=options.resample)

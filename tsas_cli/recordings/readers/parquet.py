@@ -6,9 +6,8 @@ from pathlib import Path
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from tsas_cli.errors import InputError
 from tsas_cli.recordings.readers.options import ReadOptions
-from tsas_cli.recordings.readers.table import Source, Table, floats, resolve
+from tsas_cli.recordings.readers.table import Source, Table, damaged, floats, resolve
 
 
 def read(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Table:
@@ -26,8 +25,7 @@ def read(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Table:
             at = resolve(wanted, schema.names, path)
             table = file.read(columns=[schema.names[i] for i in at.values()])
     except pa.ArrowException as error:
-        reason = str(error).splitlines()[0]
-        raise InputError(f"cannot be read as Parquet ({reason})", where=path) from error
+        raise damaged(path, "Parquet", error) from error
     fields = {source: schema.field(i) for source, i in at.items()}
     columns = {
         source: floats(table.column(field.name).to_numpy(), source, path)

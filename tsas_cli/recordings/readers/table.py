@@ -80,6 +80,16 @@ def not_a_number(found: object, source: Source, path: Path, row: int) -> InputEr
     )
 
 
+def damaged(path: Path, kind: str, error: Exception) -> InputError:
+    """Return the error for a file that the library for its format refuses."""
+    reason = str(error).splitlines()[0] if str(error) else type(error).__name__
+    return InputError(
+        f"cannot be read as {kind} ({reason})",
+        where=path,
+        remedy="is the file whole? copy or export it again",
+    )
+
+
 def _number(value: Any, source: Source, path: Path, row: int) -> float:
     try:
         return float("nan") if value is None else float(value)
@@ -108,6 +118,8 @@ def _index(source: Source, names: Sequence[str], path: Path) -> int:
 
 
 def _listed(names: Sequence[str]) -> str:
+    if not names:
+        return "there are no columns of numbers"
     if not any(names):
         return f"there are {len(names)} columns without names: take them by number, from 1"
     shown = [name or f"(number {i + 1})" for i, name in enumerate(names)]

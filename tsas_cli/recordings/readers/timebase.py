@@ -27,8 +27,10 @@ def on_one_clock(
     Raises
     ------
     InputError
-        The times differ and `resample` is not set, or the channels never overlap.
+        No channel is taken, the times differ and `resample` is not set, or they never overlap.
     """
+    if not series:
+        raise InputError("the map takes no channel but the time", where=path)
     clock = max((times for times, _ in series.values()), key=len)
     if all(np.array_equal(times, clock) for times, _ in series.values()):
         return {TIME: clock} | {source: values for source, (_, values) in series.items()}

@@ -1,0 +1,101 @@
+import numpy as np
+import pytest
+
+from tsas_cli.errors import InputError
+from tsas_cli.recordings.readers import read
+from tsas_cli.recordings.readers.options import ReadOptions
+
+GERMAN = "\ufeffZeit;Kraft\r\ns;N\r\n0,5;1,25\r\n1,5;-2,5e1\r\n"
+
+
+@pytest.fixture
+def ask(tmp_path):
+    def call(text, *wanted, bytes_in="utf-8", **options):
+        path = tmp_path / "a.csv"
+        path.write_bytes(text.encode(bytes_in))
+        table = read(path, ReadOptions(**options), wanted)
+        return {k: v.tolist() for k, v in table.columns.items()}, table
+
+    return call
+
+
+@pytest.mark.parametrize(
+    ("text", "names"),
+    [
+        ("t,f\n0,1\n1,2.5\n", ("t", "f")),
+        ("t\tf\r\n0\t1\r\n1\t2.5\r\n", ("t", "f")),
+        ("t f\n0 1\n1 2.5\n", ("t", "f")),
+        ("   t     f\n 0.0   1.0\n 1.0  +2.5\n", ("t", "f")),
+        ('"Force, N",t\n1,0\n2.5,1\n', ("t", "Force, N")),
+        ("t, f\n0, 1\n\n1, 2.5\n\n\n", ("t", "f")),
+        ("t,f,\n0,1,\n1,2.5,\n", ("t", "f")),
+        ("t,f\n0,1,\n1,2.5,\n", ("t", "f")),
+        ("t,note,f\n0,start,1\n1,end,2.5\n", ("t", "f")),
+        ("% a rig\n% t, f\n0,1\n1,2.5\n", ("t", "f")),
+        ("0,1\n1,2.5\n", (1, 2)),
+        ("t,t\n0,1\n1,2.5\n", (1, 2)),
+        ("t,f\n0,1\n# a pause\n1,2.5\n", ("t", "f")),
+    ],
+)
+def test_every_usual_layout_gives_the_same_numbers(ask, text, names):
+    columns, _ = ask(text, *names)
+    assert columns == {names[0]: [0.0, 1.0], names[1]: [1.0, 2.5]}
+
+
+def test_semicolons_decimal_commas_units_row_mark_and_carriage_returns(ask):
+    columns, table = ask(GERMAN, "Kraft", "Zeit")
+    assert columns == {"Zeit": [0.5, 1.5], "Kraft": [1.25, -25.0]}
+    assert table.units == {"Zeit": "s", "Kraft": "N"}
+    assert table.first_row == 3
+
+
+def test_units_stand_in_a_row_of_their_own_or_in_brackets(ask):
+    _, row = ask("t,f\n[ms],(lbf)\n0,1\n1,2\n", "t", "f")
+    _, names = ask("t [ms],f (lbf)\n0,1\n1,2\n", "t [ms]", "f (lbf)")
+    assert list(row.units.values()) == list(names.units.values()) == ["ms", "lbf"]
+
+
+def test_empty_cells_and_nan_are_gaps(ask):
+    columns, _ = ask("t\tf\n0\t1\n1\t\n2\tNaN\n", "t", "f")
+    assert np.isnan(columns["f"]).tolist() == [False, True, True]
+
+
+def test_comment_lines_are_the_header(ask):
+    _, table = ask("% made by hand\n% 0.50 Hz\nt,f\n0,1\n1,2\n", "t")
+    assert table.header == ("made by hand", "0.50 Hz")
+
+
+def test_encoding_and_lines_to_skip_are_taken_from_the_map(ask):
+    text = "Logger\n17.3.2024\nt;µ °\n0;1,5\n1;2,5\n"
+    columns, _ = ask(text, "µ °", bytes_in="cp1252", encoding="cp1252", skip_lines=2)
+    assert columns["µ °"] == [1.5, 2.5]
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("t,f\n0,1\n1,fast\n", ("row 3", "column f", "'fast'")),
+        ("t,f\n" + "0,1\n" * 200_000 + "1,fast\n", ("row 200002", "column f", "'fast'")),
+        ("t,f\n0,1\n1,2,3\n", ("row 3", "3 fields", "expected 2")),
+        ("t,f,g\n0,1\n1,2\n", ("row 2", "3 column names and 2 fields")),
+        ("t,g\n0,1\n1,2\n", ("column f is missing", "there are: t, g")),
+        ("0,1\n1,2\n", ("2 columns without names",)),
+        ("t;f\n0,5;1,5\n1,5;1.234,5\n", ("row 3", "'1.234,5'")),
+        ("f,f\n0,1\n1,2\n", ("2 times", "number")),
+        ("t,f\n", ("no row",)),
+        ("# nothing\n", ("holds no table",)),
+        ("", ("is empty",)),
+        ("t,f\n0,1\n1,\x1b[31mred\n", ("row 3", "\\x1b[31mred")),
+    ],
+)
+def test_what_is_wrong_is_said_with_its_place(ask, text, said):
+    with pytest.raises(InputError) as error:
+        ask(text, "f", "t")
+    for words in said:
+        assert words in error.value.line()
+    assert error.value.line().isprintable()
+
+
+def test_the_wrong_encoding_is_said(ask):
+    with pytest.raises(InputError, match="cp1252"):
+        ask("t;µ\n0;1\n1;2\n", "t", bytes_in="cp1252")

@@ -1,0 +1,60 @@
+import json
+
+import numpy as np
+import pytest
+
+from tsas_cli.errors import InputError
+from tsas_cli.recordings.readers import read
+from tsas_cli.recordings.readers.options import ReadOptions
+
+ROWS = [[0, 1.5], [1, None], [2, 3.5]]
+
+
+@pytest.fixture
+def ask(tmp_path):
+    def call(content, *wanted, **options):
+        path = tmp_path / "a.json"
+        path.write_text(content if isinstance(content, str) else json.dumps(content))
+        return read(path, ReadOptions(**options), wanted)
+
+    return call
+
+
+@pytest.mark.parametrize(
+    ("content", "wanted", "table"),
+    [
+        (ROWS, (1, 2), None),
+        ({"data": ROWS, "dt": 1}, (1, 2), "data"),
+        ({"run": {"data": ROWS}}, (1, 2), "run.data"),
+        ({"columns": ["t", "f"], "data": ROWS}, ("t", "f"), "data"),
+        ({"t": [0, 1, 2], "f": [1.5, None, 3.5]}, ("t", "f"), None),
+        ([{"f": 1.5, "t": 0}, {"t": 1}, {"t": 2, "f": 3.5}], ("t", "f"), None),
+    ],
+)
+def test_rows_records_and_columns_give_the_same_numbers(ask, content, wanted, table):
+    columns = ask(content, *wanted, table=table).columns
+    np.testing.assert_array_equal(columns[wanted[0]], [0, 1, 2])
+    np.testing.assert_array_equal(columns[wanted[1]], [1.5, np.nan, 3.5])
+
+
+def test_what_stands_beside_the_table_is_the_header(ask):
+    assert ask({"data": ROWS, "unit": "kip"}, 1, table="data").header == ("unit = kip",)
+
+
+@pytest.mark.parametrize(
+    ("content", "options", "said"),
+    [
+        ("", {}, "is empty"),
+        ("{", {}, "is not JSON"),
+        ("[" * 100_000, {}, "is not JSON"),
+        ({"data": ROWS, "dt": 1}, {}, "its keys are: data, dt"),
+        ({"data": ROWS}, {"table": "date"}, "did you mean data"),
+        ([[0, 1], [1, "fast"]], {}, "row 2: column 2 holds 'fast'"),
+        ([[0, 1], [1]], {}, "row 2: 1 values; expected 2"),
+        ([], {}, "holds no table"),
+    ],
+)
+def test_what_is_wrong_is_said(ask, content, options, said):
+    with pytest.raises(InputError) as error:
+        ask(content, 1, 2, **options)
+    assert said in error.value.line()

@@ -1,0 +1,144 @@
+import numpy as np
+import pytest
+
+from tests.recordings.readers.matlab_files import (
+    controldesk,
+    numbers,
+    save_5,
+    save_73,
+    struct,
+    struct_array,
+    text,
+)
+from tsas_cli.errors import InputError
+from tsas_cli.recordings.readers import read
+from tsas_cli.recordings.readers.options import ReadOptions
+
+T = np.arange(5) / 10
+F = np.arange(5.0) + 10
+FORCE, SPEED = "Model Root/Force/Out1", "Model Root/Speed/Out1"
+
+
+@pytest.fixture
+def path(tmp_path):
+    return tmp_path / "a.mat"
+
+
+def ask(path, *wanted, **options):
+    table = read(path, ReadOptions(**options), wanted)
+    return {source: values.tolist() for source, values in table.columns.items()}, table
+
+
+def plain_5(path):
+    inner = {"a": T, "b": {"c": F}}
+    save_5(path, t=T, i=np.arange(5, dtype=np.int16), m=np.c_[T, F], s=inner, note="50 mm")
+
+
+def plain_73(path):
+    def build(file):
+        numbers(file, "t", T)
+        numbers(file, "i", np.arange(5))
+        numbers(file, "m", np.c_[T, F])
+        numbers(struct(file, "s"), "a", T)
+        numbers(struct(file["s"], "b"), "c", F)
+        text(file, "note", "50 mm")
+
+    save_73(path, build)
+
+
+@pytest.mark.parametrize("write", [plain_5, plain_73])
+def test_vectors_matrices_and_structs_have_names(path, write):
+    write(path)
+    columns, table = ask(path, "t", "i", "m(:,2)", "s.a", "s.b.c")
+    assert columns == {
+        "t": T.tolist(),
+        "i": [0, 1, 2, 3, 4],
+        "m(:,2)": F.tolist(),
+        "s.a": T.tolist(),
+        "s.b.c": F.tolist(),
+    }
+    assert "note = 50 mm" in table.header
+    assert ask(path, "b.c", table="s")[0] == {"b.c": F.tolist()}
+
+
+def one_channel_5(path):
+    save_5(path, rec001=controldesk([T], [(f'"{FORCE}"', F, "N", 1)]))
+
+
+def two_channels_5(path):
+    channels = [(f'"{SPEED}"', F * 2, "rpm", 1), (f'"{FORCE}"', F, "N", 1)]
+    save_5(path, rec001=controldesk([T], channels))
+
+
+def one_channel_73(path):
+    def build(file):
+        capture = struct(file, "rec001")
+        numbers(struct(capture, "X"), "Data", T)
+        channel = struct(capture, "Y")
+        text(channel, "Name", FORCE)
+        numbers(channel, "Data", F)
+        text(channel, "Unit", "N")
+
+    save_73(path, build)
+
+
+def two_channels_73(path):
+    def build(file):
+        capture = struct(file, "rec001")
+        numbers(struct(capture, "X"), "Data", T)
+        records = [
+            {"Name": SPEED, "Data": F * 2, "Unit": "rpm"},
+            {"Name": FORCE, "Data": F, "Unit": "N"},
+        ]
+        struct_array(file, capture, "Y", records)
+
+    save_73(path, build)
+
+
+@pytest.mark.parametrize("write", [one_channel_5, two_channels_5, one_channel_73, two_channels_73])
+def test_a_controldesk_capture_of_one_or_more_channels(path, write):
+    write(path)
+    columns, table = ask(path, "time", FORCE)
+    assert columns == {"time": T.tolist(), FORCE: F.tolist()}
+    assert table.units == {"time": "s", FORCE: "N"}
+
+
+def test_a_capture_with_two_rasters_needs_leave_to_interpolate(path):
+    slow = T[::2]
+    channels = [(FORCE, F, "N", 1), (SPEED, F[::2], "rpm", 2)]
+    save_5(path, rec001=controldesk([T, slow], channels))
+    with pytest.raises(InputError, match=r"different times.*resample = true"):
+        ask(path, "time", FORCE, SPEED)
+    columns, _ = ask(path, "time", FORCE, SPEED, resample=True)
+    assert columns["time"] == T.tolist()
+    assert columns[SPEED] == pytest.approx(F.tolist())
+
+
+def test_a_missing_channel_lists_those_that_are_there(path):
+    two_channels_5(path)
+    with pytest.raises(InputError, match=rf"Torque is missing.*{FORCE}"):
+        ask(path, "Torque")
+
+
+@pytest.mark.parametrize("write", [plain_5, plain_73])
+@pytest.mark.parametrize("kept", [0, 1, 100, 300, 600, 0.5, 0.98])
+def test_a_file_that_is_cut_short_is_one_line(path, write, kept):
+    write(path)
+    content = path.read_bytes()
+    path.write_bytes(content[: kept if isinstance(kept, int) else int(kept * len(content))])
+    with pytest.raises(InputError) as error:
+        ask(path, "m(:,2)")
+    assert str(path) in error.value.line()
+
+
+def test_text_in_a_cell_is_no_column(path):
+    save_5(path, t=T, c=np.array(["a", "b"], dtype=object))
+    with pytest.raises(InputError, match="column c is missing"):
+        ask(path, "c")
+
+
+def test_the_missing_package_is_named(path, monkeypatch):
+    plain_73(path)
+    monkeypatch.setitem(__import__("sys").modules, "h5py", None)
+    with pytest.raises(InputError, match=r"install tsas\[mat\]"):
+        ask(path, "t")

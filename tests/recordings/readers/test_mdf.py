@@ -1,0 +1,89 @@
+import sys
+
+import numpy as np
+import pytest
+from asammdf import MDF, Signal
+
+from tsas_cli.errors import InputError
+from tsas_cli.recordings.readers import read
+from tsas_cli.recordings.readers.options import ReadOptions
+
+T = np.arange(5) / 10
+F = np.arange(5.0) + 10
+
+
+@pytest.fixture
+def path(tmp_path):
+    path = tmp_path / "a.mf4"
+    invalid = np.array([0, 1, 0, 0, 0], dtype=bool)
+    with MDF(version="4.10") as file:
+        file.append(
+            [
+                Signal(F, T, name="force", unit="N"),
+                Signal((F * 2).astype(np.int16), T, name="place", unit="mm"),
+            ]
+        )
+        file.append([Signal(F[::2], T[::2], name="slow"), Signal(F[::2], T[::2], name="force")])
+        file.append([Signal(F, T, name="patchy", invalidation_bits=invalid)])
+        file.append([Signal(np.array([b"a"] * 5), T, name="words", encoding="utf-8")])
+        file.save(path)
+    return path
+
+
+def ask(path, *wanted, **options):
+    table = read(path, ReadOptions(**options), wanted)
+    return {source: values.tolist() for source, values in table.columns.items()}, table
+
+
+def test_channels_units_and_the_master_as_time(path):
+    columns, table = ask(path, "time", "place", 1)
+    assert columns == {"time": T.tolist(), "place": (F * 2).tolist(), 1: F.tolist()}
+    assert table.units == {"time": "s", "place": "mm", 1: "N"}
+
+
+def test_samples_marked_as_invalid_are_gaps(path):
+    columns, _ = ask(path, "patchy")
+    assert np.isnan(columns["patchy"]).tolist() == [False, True, False, False, False]
+
+
+def test_groups_of_other_rates_need_leave_to_interpolate(path):
+    with pytest.raises(InputError, match=r"5 samples.*3 samples.*resample = true"):
+        ask(path, "time", "place", "slow")
+    columns, _ = ask(path, "time", "place", "slow", resample=True)
+    assert columns["time"] == T.tolist()
+    assert columns["slow"] == pytest.approx(F.tolist())
+
+
+@pytest.mark.parametrize(
+    ("wanted", "said"),
+    [
+        ("force", "2 times; .* 1, 4"),
+        ("torque", "there are: force, place, slow, force, patchy, words, time"),
+        ("words", "row 1: column words"),
+        ("time", "no channel but the time"),
+    ],
+)
+def test_what_is_wrong_is_said(path, wanted, said):
+    with pytest.raises(InputError, match=said):
+        ask(path, wanted)
+
+
+@pytest.mark.parametrize("kept", [0, 1, 64, 200, 0.5, 0.99])
+def test_a_file_that_is_cut_short_is_one_line_and_nothing_else(path, tsas, kept):
+    content = path.read_bytes()
+    path.write_bytes(content[: kept if isinstance(kept, int) else int(kept * len(content))])
+    map_path = path.with_name("map.toml")
+    map_path.write_text(
+        '[dataset]\nname = "m"\n[columns]\ntime_s = {source = "time"}\n'
+        'x_in_mm = {source = "place"}\nf_in_N = {source = 1}\n'
+    )
+    done = tsas("ingest", path, "--map", map_path, "--out", path.with_name("out"))
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.count("\n") == 1
+    assert str(path) in done.stderr
+
+
+def test_the_missing_package_is_named(path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "asammdf", None)
+    with pytest.raises(InputError, match=r"install tsas\[mdf\]"):
+        ask(path, "place")
