@@ -13,6 +13,7 @@ from tsas_cli.recordings.dataset import Floats, Recording
 from tsas_cli.recordings.manifest import Rig
 
 MECHANICAL = ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N")
+_FOLLOWERS = {"spring": MECHANICAL[1:], "force": ("x_out_mm",), "displacement": ()}
 _FEWEST = 16  # samples below which neither noise nor motion can be told
 _STROKE = 0.2  # of the drive's span: the smallest move back that begins a new stroke
 
@@ -93,8 +94,13 @@ class Trial:
 
         Those that do not move visibly are left out.
         """
-        others = MECHANICAL[1:] if name == "x_in_mm" else MECHANICAL[:1]
+        others = _FOLLOWERS[self.recording.run.load] if name == "x_in_mm" else MECHANICAL[:1]
         return tuple(o for o in others if o in self.channels and self.moves(o))
+
+    @property
+    def prescribed(self) -> str | None:
+        """The channel that a driven load decides, whatever the drive does."""
+        return {"force": "f_out_N", "displacement": "x_out_mm"}.get(self.recording.run.load)
 
     @cached_property
     def strokes(self) -> tuple[Stroke, ...]:
@@ -148,8 +154,10 @@ def alternates(values: Floats) -> bool:
     values
         A channel, shape (n,).
     """
-    third = np.diff(values[np.isfinite(values)], 3)
-    return bool(np.sum(third[1:] * third[:-1]) < 0.0)
+    clean = values[np.isfinite(values)]
+    third = np.diff(clean, 3)
+    third = third[np.abs(third) > 1e-9 * np.abs(clean).max(initial=0.0)]
+    return third.size >= _FEWEST and bool(np.mean(third[1:] * third[:-1] < 0.0) > 0.5)
 
 
 def plateaus(values: Floats, shortest: int) -> list[slice]:

@@ -20,6 +20,9 @@ _PASSED = 0.05
 def find(trial: Trial) -> Iterator[Remark | CannotTell]:
     """Look at both extremes of each displacement and tension."""
     for name, values in trial.mechanical.items():
+        if name == trial.prescribed:
+            yield CannotTell(f"{name} is what the load decides, and may stay at its extremes")
+            continue
         if np.nanmin(values) == np.nanmax(values):
             continue
         for end, sign in (("highest", 1), ("lowest", -1)):

@@ -19,6 +19,7 @@ from tsas_cli.recordings.quality.trial import Trial
 
 _ROUNDS = 20
 _ROWS = 40  # rows of a cycle that the smoothing leaves apart, at least
+_SLOW = 0.3  # of the typical speed: below, noise decides its sign
 _SPRING = 0.002  # the share of the tension that a spring may leave unexplained
 _OWN = 0.02  # the share of the speed that the other terms must leave unexplained
 
@@ -92,9 +93,9 @@ def _remaining_delay(time: Floats, x: Floats, y: Floats) -> float:
     NaN where the speed is no term of its own, or the terms do not make up the tension.
     """
     speed = np.gradient(x, time)
-    typical = float(np.sqrt(np.mean(speed**2)))
-    x = x - x.mean()
-    others = np.column_stack([np.ones_like(x), x, x**2, np.tanh(5.0 * speed / typical)])
+    moving = np.abs(speed) > _SLOW * np.sqrt(np.mean(speed**2))
+    x, y, speed = x[moving] - x[moving].mean(), y[moving], speed[moving]
+    others = np.column_stack([np.ones_like(x), x, x**2, np.sign(speed)])
     own = speed - others @ np.linalg.lstsq(others, speed, rcond=None)[0]
     if np.sum(own**2) < _OWN * np.sum(speed**2):
         return math.nan

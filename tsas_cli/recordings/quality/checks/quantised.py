@@ -10,7 +10,6 @@ from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
 from tsas_cli.recordings.quality.trial import Trial
 
 _NOTE, _WARNING = 1 / 500, 1 / 50
-_PRESCRIBED = {"force": "f_out_N", "displacement": "x_out_mm"}  # the load decides how far it moves
 
 
 def find(trial: Trial) -> Iterator[Remark | CannotTell]:
@@ -19,7 +18,7 @@ def find(trial: Trial) -> Iterator[Remark | CannotTell]:
         step, noise, span = trial.step[name], trial.noise[name], trial.span[name]
         if step <= max(2.0 * noise, _NOTE * span) or span == 0.0:
             continue
-        coarse = step > _WARNING * span and name != _PRESCRIBED.get(trial.recording.run.load)
+        coarse = step > _WARNING * span and name != trial.prescribed
         unit = name.rsplit("_", 1)[1]
         yield Remark(
             "warning" if coarse else "note",

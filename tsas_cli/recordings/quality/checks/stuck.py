@@ -16,15 +16,16 @@ from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark, Sever
 from tsas_cli.recordings.quality.trial import Trial, alternates, plateaus
 
 _FEWEST_ROWS = 20
-_HELD = {"force": "f_out_N", "displacement": "x_out_mm"}  # the load may hold this one constant
 
 
 def find(trial: Trial) -> Iterator[Remark | CannotTell]:
     """Look for constant stretches of each displacement and tension."""
     for name, values in trial.mechanical.items():
+        if name == trial.prescribed:
+            yield CannotTell(f"{name} is what the load decides, and may rest")
+            continue
         if np.nanmin(values) == np.nanmax(values):
-            if name != _HELD.get(trial.recording.run.load):
-                yield _remark("warning", trial, name, slice(0, values.size))
+            yield _remark("warning", trial, name, slice(0, values.size))
             continue
         stuck = [rows for rows in plateaus(values, _FEWEST_ROWS) if _hangs(trial, name, rows)]
         if stuck:

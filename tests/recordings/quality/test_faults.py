@@ -1,0 +1,230 @@
+"""Each fault, put into a good recording, is found by its own check and by no other."""
+
+import numpy as np
+import pytest
+
+from tests.recordings.quality.bench import LOAD, Bench, columns, trial
+from tsas_cli.recordings.quality import RUN_CHECKS
+from tsas_cli.recordings.quality.finding import CannotTell, Remark
+
+GOOD = columns(Bench())
+TIME = GOOD["time_s"]
+N = TIME.size
+
+
+def findings(measured, load="spring"):
+    subject = trial(measured, {"load_stiffness_N_per_mm": LOAD}, load)
+    return [
+        (check.code, said)
+        for check in RUN_CHECKS
+        if all(name in subject.channels for name in check.needs)
+        for said in check.find(subject)
+        if isinstance(said, Remark)
+    ]
+
+
+def found(measured, code, column=None, load="spring"):
+    """Return the one remark; fail where another check speaks too."""
+    said = findings(measured, load)
+    assert {found_code for found_code, _ in said} == {code}
+    if column is not None:
+        assert {remark.column for _, remark in said} == {column}
+    return said[0][1]
+
+
+def changed(**columns_by_name):
+    return GOOD | columns_by_name
+
+
+def held(rows):
+    """Return the recording with the channels of other rows, at its own time."""
+    return {name: v if name == "time_s" else v[rows] for name, v in GOOD.items()}
+
+
+def frozen_from(values, row):
+    return np.where(np.arange(N) < row, values, values[row])
+
+
+def test_the_recording_without_a_fault_is_good():
+    assert findings(GOOD) == []
+
+
+def test_a_clock_that_is_set_back():
+    time = TIME - np.where(np.arange(N) > 1000, 0.05, 0.0)
+    said = found(changed(time_s=time), "time-order", "time_s")
+    assert said.severity == "error"
+    assert "1 of 3200 rows, first at row 1001 (5 s, then 4.955 s)" in said.sentence
+
+
+def test_jitter_tells_its_size():
+    noise = 0.1 * 0.005 * np.random.default_rng(1).standard_normal(N)
+    said = found(changed(time_s=TIME + noise), "time-jitter")
+    assert 13.0 < float(said.sentence.split("by ")[1].split(" %")[0]) < 15.5  # 10 % · √2
+
+
+def test_rounded_time_stamps_are_jitter_and_no_gaps():
+    found(changed(time_s=np.floor(TIME / 0.0037) * 0.0037), "time-jitter")
+
+
+def test_missing_rows():
+    rows = np.r_[0:900, 950:N]
+    said = found({name: values[rows] for name, values in GOOD.items()}, "gap", "time_s")
+    assert "1 place" in said.sentence
+    assert "0.255 s at 4.495 s" in said.sentence
+    assert said.first_s == pytest.approx(4.495)
+
+
+def test_empty_cells():
+    values = GOOD["x_out_mm"].copy()
+    values[1000:1013] = values[2000] = np.nan
+    said = found(changed(x_out_mm=values), "gap", "x_out_mm")
+    assert "14 of 3200 rows, at 2 places; the longest has 13 rows at 5 s" in said.sentence
+
+
+def test_an_empty_column():
+    assert found(changed(f_out_N=np.full(N, np.nan)), "gap", "f_out_N").severity == "error"
+
+
+def test_sample_and_hold():
+    rows = np.arange(N)
+    rows[500:1500] -= rows[500:1500] % 2
+    assert "500 of 3200 rows" in found(held(rows), "repeated-rows").sentence
+
+
+def test_a_link_that_is_down_for_a_while():
+    rows = np.arange(N)
+    rows[700:760] = 700
+    said = found(held(rows), "repeated-rows")
+    assert "59 of 3200" in said.sentence
+    assert said.first_s == pytest.approx(701 * 0.005)
+
+
+def test_rows_of_a_quiet_coarse_recording_may_repeat():
+    measured = columns(Bench(noise_mm=0.0, noise_N=0.0, step_mm=0.01, step_N=0.1, rate_Hz=2000.0))
+    subject = trial(measured)
+    (check,) = (check for check in RUN_CHECKS if check.code == "repeated-rows")
+    assert [type(said) for said in check.find(subject)] == [CannotTell]
+
+
+@pytest.mark.parametrize(
+    ("column", "low", "high"),
+    [
+        ("f_out_N", None, 45.0),
+        ("f_in_N", None, 60.0),
+        ("f_in_N", 25.0, None),
+        ("x_out_mm", None, 17.0),
+        ("x_in_mm", None, 18.0),
+    ],
+)
+def test_a_clipped_channel(column, low, high):
+    said = found(changed(**{column: np.clip(GOOD[column], low, high)}), "clipped", column)
+    assert f"{low or high:g}" in said.sentence
+
+
+@pytest.mark.parametrize("column", ["x_in_mm", "x_out_mm", "f_in_N", "f_out_N"])
+def test_a_channel_that_hangs(column):
+    said = found(changed(**{column: frozen_from(GOOD[column], 1700)}), "stuck", column)
+    assert said.first_s == pytest.approx(8.5)
+
+
+def test_an_encoder_that_hangs_is_told_from_one_that_rests_in_the_dead_band():
+    encoder = columns(Bench(noise_mm=0.0, step_mm=0.02))
+    assert findings(encoder) == []
+    found(encoder | {"x_out_mm": frozen_from(encoder["x_out_mm"], 1700)}, "stuck", "x_out_mm")
+
+
+def test_a_channel_that_never_changes():
+    found(changed(f_out_N=np.full(N, 30.0)), "stuck", "f_out_N")
+
+
+def test_a_load_that_holds_the_distal_end_is_not_stuck():
+    clamped = columns(Bench(load="displacement", noise_mm=0.0))
+    assert findings(clamped, "displacement") == []
+
+
+@pytest.mark.parametrize(("column", "step"), [("x_out_mm", 0.5), ("f_in_N", 2.0)])
+def test_coarse_steps(column, step):
+    said = found(changed(**{column: np.round(GOOD[column] / step) * step}), "quantised", column)
+    assert f"steps of {step:g} {column[-2:].strip('_')}" in said.sentence
+    assert said.severity == "warning"
+
+
+@pytest.mark.parametrize("column", ["x_in_mm", "x_out_mm", "f_in_N", "f_out_N"])
+def test_a_wrong_sign_is_laid_to_the_right_channel(column):
+    assert found(changed(**{column: -GOOD[column]}), "sign", column).severity == "error"
+
+
+def test_a_sensor_that_was_zeroed_under_preload():
+    found(changed(f_in_N=GOOD["f_in_N"] - 25.0), "negative-tension", "f_in_N")
+
+
+@pytest.mark.parametrize("load", ["spring", "force"])
+def test_exchanged_tension_sensors(load):
+    measured = columns(Bench(load=load))
+    swapped = measured | {"f_in_N": measured["f_out_N"], "f_out_N": measured["f_in_N"]}
+    found(swapped, "exchanged", load=load)
+
+
+@pytest.mark.parametrize("gain", [0.95, 1.05])
+@pytest.mark.parametrize("offset", [-5.0, 5.0])
+def test_a_gain_and_an_offset_are_no_exchange(gain, offset):
+    assert findings(changed(f_in_N=gain * GOOD["f_in_N"] + offset)) == []
+
+
+@pytest.mark.parametrize(
+    ("column", "factor", "unit"),
+    [
+        ("x_out_mm", 25.4, "inch"),
+        ("x_out_mm", 10.0, "centimetre"),
+        ("x_out_mm", 1000.0, "metre"),
+        ("x_in_mm", 25.4, "inch"),
+        ("x_in_mm", 10.0, "centimetre"),
+        ("f_in_N", 4.448, "pound-force"),
+        ("f_in_N", 9.807, "kilogram-force"),
+        ("f_out_N", 4.448, "pound-force"),
+        ("f_out_N", 9.807, "kilogram-force"),
+        ("f_out_N", 1000.0, "kilonewton"),
+        ("time_s", 0.001, "millisecond"),
+    ],
+)
+def test_a_unit_off_by_a_round_factor_is_named(column, factor, unit):
+    said = found(changed(**{column: GOOD[column] / factor}), "unit", column)
+    assert said.sentence.endswith(unit) or f"{unit}, or " in said.sentence
+
+
+def test_both_tensions_in_pounds_show_against_the_data_sheet():
+    pounds = {name: GOOD[name] / 4.448 for name in ("f_in_N", "f_out_N")}
+    found(changed(**pounds), "unit", "f_out_N")
+
+
+@pytest.mark.parametrize("shift_s", [-0.02, 0.005, 0.02])
+def test_a_delay_is_told_with_an_interval_that_holds_it(shift_s):
+    late = np.interp(TIME - shift_s, TIME, GOOD["f_out_N"])
+    sentence = found(changed(f_out_N=late), "delay", "f_out_N").sentence
+    assert ("after" if shift_s > 0 else "before") in sentence
+    low, high = sentence.split("95 %: ")[1].split(")")[0].split(" to ")
+    assert float(low) - 0.1 <= 1e3 * abs(shift_s) <= float(high) + 0.1
+
+
+def test_a_load_with_friction_or_a_curved_spring_is_no_delay():
+    x = GOOD["x_out_mm"]
+    moving = np.sign(np.gradient(np.convolve(x, np.ones(25) / 25, mode="same")))
+    assert findings(changed(f_out_N=GOOD["f_out_N"] + 1.0 * moving)) == []
+    assert findings(changed(f_out_N=GOOD["f_out_N"] + 0.01 * x**2)) == []
+
+
+@pytest.mark.parametrize("rows", [800, 1100])
+def test_too_few_reversals(rows):
+    found({name: values[:rows] for name, values in GOOD.items()}, "few-reversals", "x_in_mm")
+
+
+def test_a_drive_that_does_not_move():
+    rest = columns(Bench(amplitude_mm=0.0))
+    assert "does not move visibly" in found(rest, "few-reversals").sentence
+
+
+def test_strokes_inside_the_dead_band():
+    small = columns(Bench(amplitude_mm=0.05, noise_mm=0.001, noise_N=0.02))
+    assert "no steady contraction" in found(small, "no-steady-motion").sentence
+    larger = columns(Bench(amplitude_mm=1.0, noise_mm=0.001, noise_N=0.02))
+    assert findings(larger) == []
