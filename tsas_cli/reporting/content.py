@@ -59,3 +59,10 @@ class Section:
     groups: tuple[Group, ...] = ()
     points: tuple[str, ...] = ()
     commands: tuple[str, ...] = ()
+
+
+def missing(anchor: str, title: str, *, what: str, stage: str) -> Section:
+    """Return a section that only says what was not given, and which stage writes it."""
+    return Section(
+        anchor, title, (f"No {what} was given: add a folder written by `tsas {stage}`.",)
+    )

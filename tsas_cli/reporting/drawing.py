@@ -65,10 +65,10 @@ def picture(
     height_in
         Height in inches, at a width of `WIDTH_IN`.
     """
-    from matplotlib import rc_context
     from matplotlib.figure import Figure
+    from matplotlib.style import context
 
-    with rc_context(_STYLE), warnings.catch_warnings():
+    with context(["default", _STYLE]), warnings.catch_warnings():
         # The browser's fonts hold more letters than the one that measures here.
         warnings.filterwarnings("ignore", message="Glyph .* missing from", category=UserWarning)
         figure = Figure(figsize=(WIDTH_IN, height_in), layout="constrained")

@@ -31,7 +31,7 @@ def draw_comparison(
     noise
         Standard deviation of the channel's noise in its unit, None where it is not known.
     labels
-        The channel's name with unit, and its unit.
+        What stands at the axis of the channel, and at that of the residual.
     """
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
     _line(upper, time_s, measured, color=STAND_IN["measured"], linewidth=2.6, label="measured")
@@ -42,7 +42,7 @@ def draw_comparison(
         edge = {"color": STAND_IN["ink"], "linewidth": 1.0, "linestyle": (0, (4, 3)), "zorder": 3}
         lower.axhline(2 * noise, **edge, label="± 2 × noise")
         lower.axhline(-2 * noise, **edge)
-    lower.set(xlabel="time [s]", ylabel=f"residual [{labels[1]}]")
+    lower.set(xlabel="time [s]", ylabel=labels[1])
     figure.align_ylabels()
     figure.legend(loc="outside upper left", ncols=3, handlelength=1.6, columnspacing=1.2)
 

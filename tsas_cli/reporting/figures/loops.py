@@ -28,6 +28,7 @@ def draw_loop(figure: Any, *, x: Floats, y: Floats, phase: Keys, labels: tuple[s
         The names of the two axes, with units.
     """
     axes = figure.add_subplot()
+    y = np.where(np.isfinite(x), y, np.nan)
     kept = kept_samples(x, y)
     for one in PHASES:
         if (phase == one.key).any():
@@ -48,14 +49,13 @@ def _draw_phase(axes: Any, x: Floats, y: Floats, inside: npt.NDArray[np.bool_], 
 def _number(axes: Any, x: Floats, y: Floats, inside: npt.NDArray[np.bool_], one: Phase) -> None:
     """Put the phase's number on its longest stretch, apart from that of the opposite phase."""
     edges = np.flatnonzero(np.diff(np.concatenate(([False], inside, [False])).astype(int)))
-    starts, ends = edges[::2], edges[1::2]
-    longest = int(np.argmax(ends - starts))
-    stretch = slice(starts[longest], ends[longest])
-    if not one.number or not np.isfinite(y[stretch]).any():
+    first, after = max(edges.reshape(-1, 2), key=lambda stretch: stretch[1] - stretch[0])
+    there = y[first:after]
+    if not one.number or not np.isfinite(there).any():
         return
     height = 0.6 if one.number in "12" else 0.4
-    level = height * np.nanmax(y[stretch]) + (1 - height) * np.nanmin(y[stretch])
-    at = starts[longest] + int(np.nanargmin(np.abs(y[stretch] - level)))
+    level = height * np.nanmax(there) + (1 - height) * np.nanmin(there)
+    at = first + int(np.nanargmin(np.abs(there - level)))
     axes.text(
         x[at],
         y[at],

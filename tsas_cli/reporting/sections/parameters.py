@@ -1,6 +1,6 @@
 """The model's parameters with their intervals, and what the recordings do not say."""
 
-from tsas_cli.reporting.content import Section, Table
+from tsas_cli.reporting.content import Section, Table, missing
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import with_interval
 from tsas_cli.reporting.stage_files import Calibration, Parameter
@@ -12,8 +12,7 @@ def section(inputs: Inputs) -> Section:
     """Return the section of the parameters."""
     calibration = inputs.get(Calibration)
     if calibration is None:
-        text = "No calibration was given: add a folder written by `tsas calibrate`."
-        return Section("parameters", _TITLE, (text,))
+        return missing("parameters", _TITLE, what="calibration", stage="calibrate")
     intro = ["Values with an interval are fitted; the others are taken as given."]
     if not calibration.fit.converged:
         intro.append(f"The fit did not converge: {calibration.fit.message}")

@@ -1,17 +1,19 @@
 """The simulation over the measurement, channel by channel, with the residual under it."""
 
+from collections.abc import Iterator, Mapping
 from functools import partial
 
 import numpy as np
 
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.dataset import Recording
-from tsas_cli.reporting.content import Group, Picture, Section, Table
+from tsas_cli.reporting.channels import in_words
+from tsas_cli.reporting.content import Group, Picture, Section, Table, missing
 from tsas_cli.reporting.drawing import picture
 from tsas_cli.reporting.figures.comparison import draw_comparison
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import ABSENT, plain
-from tsas_cli.reporting.stage_files import Channel, SimulatedRun, Simulation
+from tsas_cli.reporting.stage_files import Channel, Simulation
 
 _TITLE = "Simulation and measurement"
 
@@ -20,16 +22,16 @@ def section(inputs: Inputs) -> Section:
     """Return the section of the simulation, one group per run."""
     simulation = inputs.get(Simulation)
     if simulation is None:
-        text = "No simulation was given: add a folder written by `tsas simulate`."
-        return Section("simulation", _TITLE, (text,))
+        return missing("simulation", _TITLE, what="simulation", stage="simulate")
     intro = (
         f"The model ({simulation.dynamics}) is driven with the measured input.",
         "Residual: measured minus simulated. Noise alone leaves 95 % between the dashed lines.",
     )
+    channels = {run_id: run.channels for run_id, run in simulation.runs.items()}
     groups = tuple(
-        Group(f"Run {recording.run.id}", _pictures(inputs, recording, number, run))
+        Group(f"Run {recording.run.id}", pictures)
         for number, recording in enumerate(inputs.dataset)
-        if (run := simulation.runs.get(recording.run.id))
+        if (pictures := tuple(_pictures(inputs, recording, channels, number)))
     )
     return Section("simulation", _TITLE, intro, tables=(_table(simulation),), groups=groups)
 
@@ -64,34 +66,31 @@ def _unit(name: str, channel: Channel) -> str:
 
 
 def _pictures(
-    inputs: Inputs, recording: Recording, number: int, run: SimulatedRun
-) -> tuple[Picture, ...]:
-    pictures = []
-    for name, channel in run.channels.items():
+    inputs: Inputs,
+    recording: Recording,
+    channels: Mapping[str, Mapping[str, Channel]],
+    number: int,
+) -> Iterator[Picture]:
+    for name, channel in channels.get(recording.run.id, {}).items():
         measured = recording.get(name)
         if measured is None:
             continue
         simulated = inputs.simulated(recording, name)
         if not np.isfinite(measured - simulated).any():
             continue
-        unit, what = _unit(name, channel), BY_NAME[name].meaning.split(",")[0]
-        pictures.append(
-            picture(
-                partial(
-                    draw_comparison,
-                    time_s=recording.time_s,
-                    measured=measured,
-                    simulated=simulated,
-                    noise=channel.noise,
-                    labels=(f"{name.rsplit('_', 1)[0]} [{unit}]", unit),
-                ),
-                key=f"simulation-{number}-{name}",
-                alt=f"Run {recording.run.id}, {what}, measured and simulated along the time, and "
-                f"the residual: RMSE {plain(channel.rmse, 3)} {unit}, noise "
-                f"{plain(channel.noise, 3)} {unit}.",
-                caption=f"{what.capitalize()}: RMSE {plain(channel.rmse, 3)} {unit}, "
-                f"noise {plain(channel.noise, 3)} {unit}.",
-                height_in=4.0,
-            )
+        unit, what = _unit(name, channel), in_words(name)
+        distance = f"RMSE {plain(channel.rmse, 3)} {unit}, noise {plain(channel.noise, 3)} {unit}."
+        yield picture(
+            partial(
+                draw_comparison,
+                time_s=recording.time_s,
+                measured=measured,
+                simulated=simulated,
+                noise=channel.noise,
+                labels=(f"{name.rsplit('_', 1)[0]} [{unit}]", f"residual [{unit}]"),
+            ),
+            key=f"simulation-{number}-{name}",
+            alt=f"Run {recording.run.id}, {what}: measured, simulated and residual; {distance}",
+            caption=f"{what.capitalize()}: {distance}",
+            height_in=4.0,
         )
-    return tuple(pictures)

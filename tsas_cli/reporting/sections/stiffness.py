@@ -2,7 +2,7 @@
 
 from functools import partial
 
-from tsas_cli.reporting.content import Picture, Section, Table
+from tsas_cli.reporting.content import Picture, Section, Table, missing
 from tsas_cli.reporting.drawing import picture
 from tsas_cli.reporting.figures.stiffness import draw_stiffness, height_in
 from tsas_cli.reporting.inputs import Inputs
@@ -10,6 +10,7 @@ from tsas_cli.reporting.numbers import ABSENT, plain, with_interval
 from tsas_cli.reporting.phases import PHASES, label_of
 from tsas_cli.reporting.stage_files import Calibration, Stiffness
 
+_TITLE = "Stiffness by phase"
 _WHAT = (
     "km is the slope of the tension at the drive over its displacement, fitted as a straight line "
     "in each phase."
@@ -24,15 +25,11 @@ def section(inputs: Inputs) -> Section:
     """Return the section of the stiffness in each phase."""
     calibration = inputs.get(Calibration)
     if calibration is None:
-        text = "No calibration was given: add a folder written by `tsas calibrate`."
-        return Section("stiffness", "Stiffness by phase", (text,))
+        return missing("stiffness", _TITLE, what="calibration", stage="calibrate")
     rows = calibration.stiffness
-    intro = (_WHAT, _WHY)
     by_phase = ((phase.key, [row for row in rows if row.phase == phase.key]) for phase in PHASES)
     pictures = tuple(_picture(key, found) for key, found in by_phase if found)
-    return Section(
-        "stiffness", "Stiffness by phase", intro, tables=(_table(rows),), pictures=pictures
-    )
+    return Section("stiffness", _TITLE, (_WHAT, _WHY), tables=(_table(rows),), pictures=pictures)
 
 
 def _table(rows: tuple[Stiffness, ...]) -> Table:

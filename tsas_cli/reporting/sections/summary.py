@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 
 from tsas_cli.recordings.columns import BY_NAME
+from tsas_cli.reporting.channels import in_words
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import plain
 from tsas_cli.reporting.stage_files import Calibration, Check, Simulation
@@ -38,11 +39,11 @@ def _findings(check: Check) -> str:
 def _distances(simulation: Simulation) -> list[str]:
     """Return, for each channel, the range over the runs of RMSE against noise."""
     said = []
-    for name, column in BY_NAME.items():
+    for name in BY_NAME:
         found = [run.channels[name] for run in simulation.runs.values() if name in run.channels]
         ratios = [c.rmse / c.noise for c in found if c.rmse is not None and c.noise]
         if ratios:
-            said.append(f"{_range(ratios)} times the noise in {column.meaning.split(',')[0]}")
+            said.append(f"{_range(ratios)} times the noise in {in_words(name)}")
     return said
 
 
