@@ -40,11 +40,10 @@ def check(
 def _tables(report: "Report") -> Iterator[tuple[str, tuple[str, ...], Sequence[tuple[str, ...]]]]:
     """Yield what was found, what to do about it, and what could not be told."""
     found = [(str(f.severity), f.code, f.run or "", f.sentence) for f in report.findings]
-    if not found:
-        yield "nothing is wrong as far as the checks can tell", ("severity", "code"), []
-    else:
-        yield f"{len(found)} findings", ("severity", "code", "run", "finding"), found
-        remedies = dict.fromkeys((f.code, f.remedy) for f in report.findings)
+    title = f"the checks found {len(found) or 'nothing'}"
+    yield title, ("severity", "code", "run", "finding"), found
+    remedies = dict.fromkeys((f.code, f.remedy) for f in report.findings)
+    if remedies:
         yield "what to do", ("code", "remedy"), list(remedies)
     reasons: dict[tuple[str, str], list[str]] = {}
     for silent in report.not_checked:
