@@ -7,7 +7,6 @@ from pathlib import Path
 import pytest
 
 from tests.reporting.made_folders import make_calibration, make_check, make_dataset, make_simulation
-from tsas_cli.reporting.colours import ROLES
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.page import SECTIONS, page
 
@@ -134,12 +133,6 @@ def test_of_many_findings_of_one_kind_the_first_are_shown_and_the_others_named(f
     assert ">r4, r5, r6, r7, r8<" in text
     assert text.index(">broken<") < text.index("in r0<")
     assert "1 error, 9 warnings" in text
-
-
-def test_every_colour_is_defined_light_and_dark():
-    style = (files("tsas_cli.reporting") / "templates" / "page.css").read_text(encoding="utf-8")
-    for role in ROLES:
-        assert len(re.findall(rf"--{role}: #", style)) >= 2, role
 
 
 def test_every_section_file_is_on_the_page():

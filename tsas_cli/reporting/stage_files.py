@@ -121,6 +121,7 @@ class Calibration(StageFile):
 class SimulatedRun(_Record):
     """What `tsas simulate` says about one run."""
 
+    slack_samples: int = 0
     unconverged_samples: int = 0
     channels: dict[str, Channel]
 

@@ -45,14 +45,24 @@ def _table(simulation: Simulation) -> Table:
             plain(channel.noise, 3),
             _ratio(channel),
             _unit(name, channel),
+            str(run.slack_samples),
             str(run.unconverged_samples),
         )
         for run_id, run in simulation.runs.items()
         for name, channel in run.channels.items()
     )
-    header = ("run", "channel", "RMSE", "noise", "RMSE / noise", "unit", "samples not converged")
+    header = (
+        "run",
+        "channel",
+        "RMSE",
+        "noise",
+        "RMSE / noise",
+        "unit",
+        "samples with slack",
+        "not converged",
+    )
     caption = "How far the simulation is from the measurement"
-    return Table(caption, header, rows, numeric=frozenset({2, 3, 4, 6}))
+    return Table(caption, header, rows, numeric=frozenset({2, 3, 4, 6, 7}))
 
 
 def _ratio(channel: Channel) -> str:

@@ -1,0 +1,37 @@
+import re
+from importlib.resources import files
+
+import pytest
+
+from tsas_cli.reporting.colours import ROLES
+
+STYLE = (files("tsas_cli.reporting") / "templates" / "page.css").read_text(encoding="utf-8")
+SCHEMES = [
+    dict(re.findall(r"--([\w-]+): (#[0-9a-f]{6})", block))
+    for block in re.findall(r":root \{(.*?)\}", STYLE, re.DOTALL)
+]
+TEXT = {"ink", "muted", "link"}
+
+
+def luminance(colour):
+    """Relative luminance of WCAG 2.2."""
+    channels = [int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)]
+    linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in channels]
+    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+
+def contrast(a, b):
+    dark, light = sorted((luminance(a), luminance(b)))
+    return (light + 0.05) / (dark + 0.05)
+
+
+def test_every_colour_is_defined_light_and_dark():
+    assert len(SCHEMES) == 2
+    for scheme in SCHEMES:
+        assert set(ROLES) | TEXT <= set(scheme)
+
+
+@pytest.mark.parametrize("scheme", SCHEMES, ids=["light", "dark"])
+def test_text_and_curves_stand_out_from_the_paper(scheme):
+    for role in (set(ROLES) | TEXT) - {"paper", "line"}:
+        assert contrast(scheme[role], scheme["paper"]) >= (4.5 if role in TEXT else 3.0), role
