@@ -10,7 +10,7 @@ from tsas_cli.commands.common import Force, Json, Quiet, progress, show
 
 def report(
     folders: Annotated[
-        list[Path], typer.Argument(metavar="DIR…", help="Folders that the stages have written.")
+        list[Path], typer.Argument(metavar="DIR", help="Folders that the stages have written.")
     ],
     out: Annotated[Path, typer.Option("--out", metavar="FILE", help="The HTML page to write.")],
     force: Force = False,
