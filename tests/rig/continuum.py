@@ -9,11 +9,38 @@ Journal 14, 1976). As δ → 0 this is Coulomb friction; at δ = 5e-6 mm a front
 Units: mm, N. Displacements u count towards the drive, from the state at rest at the preload.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
 
-MAX_NEWTON = 60
-MAX_HALVINGS = 20
+MAX_ITERATIONS = 100
+MAX_CUTS = 10
+SHORTEST_PART = 1e-4
+
+
+class Tendon(NamedTuple):
+    """What stays the same over a run.
+
+    bend: bend angle of each node [rad]; k: stiffness of each cell [N/mm]; c_in: compliance of
+    the free tendon at the drive [mm/N]; p, r: the distal end, p T_out = q + r u_end.
+    """
+
+    bend: np.ndarray
+    k: np.ndarray
+    c_in: float
+    p: float
+    r: float
+    preload: float
+    delta: float
+
+
+class Ends(NamedTuple):
+    """What changes: displacement of the drive [mm], friction coefficient, q of the distal end."""
+
+    x_in: float
+    mu: float
+    q: float
 
 
 def nodes(length_mm, cells):
@@ -22,69 +49,64 @@ def nodes(length_mm, cells):
 
 
 @njit(cache=True)
-def run(x_in, friction, load_q, load_p, load_r, bend, k, c_in, F0, delta):
+def run(tendon, x_in, mu, q):
     """March through all samples, starting at rest at the preload with x_in = 0.
 
     Parameters
     ----------
-    x_in
-        Displacement of the drive [mm], shape (m,).
-    friction
-        μ at each sample, shape (m,).
-    load_q, load_p, load_r
-        The distal end: p T_out = q + r u_end, with q of shape (m,).
-    bend
-        Bend angle that belongs to each node [rad], shape (cells + 1,).
-    k
-        Stiffness of each cell [N/mm], shape (cells,).
-    c_in
-        Compliance of the free tendon at the drive [mm/N].
-    F0, delta
-        Preload [N]; presliding length [mm].
+    tendon
+        What stays the same.
+    x_in, mu, q
+        The fields of `Ends` at each sample, each of shape (m,).
 
     Returns
     -------
-    f_in, f_out, u_end, ok
+    f_in, f_out, u_end
         Tensions at the drive and at the load [N] and displacement of the sheath's distal end
-        [mm], each of shape (m,); False when a step did not converge or the tendon went slack.
+        [mm], each of shape (m,).
+    solved
+        The number of samples before the tendon went slack or a step did not converge.
     """
-    m, n = x_in.size, bend.size
-    u, phi, du = np.zeros(n), np.zeros(n), np.zeros(n)
-    work = np.empty((2, n))
+    m, n = x_in.size, tendon.bend.size
+    u, phi = np.zeros(n), np.zeros(n)
     f_in, f_out, u_end = np.empty(m), np.empty(m), np.empty(m)
-    x0, mu0, q0 = 0.0, friction[0], load_p * F0
+    before = Ends(0.0, mu[0], tendon.p * tendon.preload)
     for i in range(m):
-        x1, mu1, q1 = x_in[i], friction[i], load_q[i]
-        done, part, halvings = 0.0, 1.0, 0
-        while done < 1.0:
-            to = min(1.0, done + part)
-            x, mu, q = x0 + to * (x1 - x0), mu0 + to * (mu1 - mu0), q0 + to * (q1 - q0)
-            direction = np.sign(x1 - x0)
-            ok = False
-            for guess in (direction, 0.0):
-                ok = ok or _step(
-                    u, phi, du, work, guess, x + c_in * F0, mu, q, load_p, load_r, bend, k, c_in,
-                    F0, delta,
-                )  # fmt: skip
-            if not ok:
-                part *= 0.5
-                halvings += 1
-                if halvings > MAX_HALVINGS:
-                    return f_in, f_out, u_end, False
-                continue
-            for j in range(n):
-                phi[j] = dahl(du[j], phi[j], delta)
-                u[j] += du[j]
-            done = to
-        x0, mu0, q0 = x1, mu1, q1
-        e = 0.5 * mu1 * bend[0] * phi[0]
-        f_in[i] = (F0 + k[0] * (u[0] - u[1])) * (1.0 + e) / (1.0 - e)
-        e = 0.5 * mu1 * bend[-1] * phi[-1]
-        f_out[i] = (F0 + k[-1] * (u[-2] - u[-1])) * (1.0 - e) / (1.0 + e)
+        now = Ends(x_in[i], mu[i], q[i])
+        if not _advance(u, phi, tendon, before, now):
+            return f_in, f_out, u_end, i
+        before = now
+        tension, e = _state(u, phi, np.zeros(n), tendon, now.mu)
+        f_in[i] = tension[0] * (1.0 + e[0]) / (1.0 - e[0])
+        f_out[i] = tension[-1] * (1.0 - e[-1]) / (1.0 + e[-1])
         u_end[i] = u[-1]
         if min(f_in[i], f_out[i]) <= 0.0:
-            return f_in, f_out, u_end, False
-    return f_in, f_out, u_end, True
+            return f_in, f_out, u_end, i
+    return f_in, f_out, u_end, m
+
+
+@njit(cache=True)
+def _advance(u, phi, tendon, before, now):
+    """Go from one sample to the next, in smaller parts where the whole does not converge."""
+    done, part = 0.0, 1.0
+    while done < 1.0:
+        to = min(1.0, done + part)
+        here = Ends(
+            before.x_in + to * (now.x_in - before.x_in),
+            before.mu + to * (now.mu - before.mu),
+            before.q + to * (now.q - before.q),
+        )
+        converged, du = _solve(u, phi, tendon, here, np.sign(now.x_in - before.x_in))
+        if converged:
+            for j in range(u.size):
+                phi[j] = dahl(du[j], phi[j], tendon.delta)
+                u[j] += du[j]
+            done = to
+        else:
+            part *= 0.5
+            if part < SHORTEST_PART:
+                return False
+    return True
 
 
 @njit(cache=True)
@@ -104,64 +126,81 @@ def _dahl_slope(du, phi, delta, direction):
 
 
 @njit(cache=True)
-def _moved(du, change, direction):
-    """Return du after a Newton change that stops at 0, where the slope jumps."""
-    if direction == 0.0 and du * (du + change) < 0.0:
-        return 0.0
-    return du + change
+def _state(u, phi, du, tendon, mu):
+    """Return the tension of each cell [N], and e = μ θ φ / 2 of each node."""
+    tension, e = np.empty(u.size - 1), np.empty(u.size)
+    for i in range(u.size):
+        e[i] = 0.5 * mu * tendon.bend[i] * dahl(du[i], phi[i], tendon.delta)
+    for i in range(u.size - 1):
+        stretch = u[i] - u[i + 1] + (du[i] - du[i + 1])
+        tension[i] = tendon.preload + tendon.k[i] * stretch
+    return tension, e
 
 
 @njit(cache=True)
-def _step(u, phi, du, work, direction, q_in, mu, q, p, r, bend, k, c_in, F0, delta):
-    """Find du by Newton's method from du = 0; return whether it converged.
+def _unbalanced(u, du, tension, e, tendon, ends):
+    """Return what pulls each node towards the drive: T_{i−1} (1 − e) − T_i (1 + e) inside [N]."""
+    pull = np.empty(u.size)
+    at_drive = tension[0] * (1.0 + e[0]) / (1.0 - e[0])
+    pull[0] = ends.x_in - u[0] - du[0] - tendon.c_in * (at_drive - tendon.preload)
+    for i in range(1, u.size - 1):
+        pull[i] = tension[i - 1] * (1.0 - e[i]) - tension[i] * (1.0 + e[i])
+    at_load = tension[-1] * (1.0 - e[-1]) / (1.0 + e[-1])
+    pull[-1] = tendon.p * at_load - ends.q - tendon.r * (u[-1] + du[-1])
+    return pull
 
-    Where all nodes move one way the residual is concave with an M-matrix as Jacobian, and the
-    iteration is monotone. Balance of node i: T_{i−1} (1 − e) = T_i (1 + e), e = μ θ_i φ_i / 2.
+
+@njit(cache=True)
+def _newton_change(phi, du, tension, e, pull, tendon, mu, direction):
+    """Solve the tridiagonal Newton equations for the change of du."""
+    n, k = du.size, tendon.k
+    upper, change = np.empty(n), np.empty(n)
+    for i in range(n):
+        slope = 0.5 * mu * tendon.bend[i] * _dahl_slope(du[i], phi[i], tendon.delta, direction)
+        if i == 0:
+            below, above = 0.0, -tendon.c_in * k[0] * (1.0 + e[0]) / (1.0 - e[0])
+            diagonal = 1.0 - above + tendon.c_in * tension[0] * 2.0 * slope / (1.0 - e[0]) ** 2
+        elif i < n - 1:
+            below, above = -k[i - 1] * (1.0 - e[i]), -k[i] * (1.0 + e[i])
+            diagonal = -below - above + slope * (tension[i - 1] + tension[i])
+        else:
+            below, above = -tendon.p * k[-1] * (1.0 - e[i]) / (1.0 + e[i]), 0.0
+            diagonal = tendon.r - below + tendon.p * tension[-1] * 2.0 * slope / (1.0 + e[i]) ** 2
+        change[i] = pull[i]
+        if i > 0:
+            diagonal -= below * upper[i - 1]
+            change[i] -= below * change[i - 1]
+        upper[i] = above / diagonal
+        change[i] /= diagonal
+    for i in range(n - 2, -1, -1):
+        change[i] -= upper[i] * change[i + 1]
+    return change
+
+
+@njit(cache=True)
+def _solve(u, phi, tendon, ends, direction):
+    """Find du by Newton's method from du = 0; return whether it converged, and du.
+
+    While all nodes move one way the residual is concave with an M-matrix as Jacobian, and the
+    iteration is monotone. Otherwise a step is cut where the nodes would be pulled back.
     """
-    n = u.size
-    upper, rhs = work[0], work[1]
-    du[:] = 0.0
-    for _ in range(MAX_NEWTON):
-        left, k_left = 0.0, 0.0
-        for i in range(n):
-            half = 0.5 * mu * bend[i]
-            e = half * dahl(du[i], phi[i], delta)
-            e1 = half * _dahl_slope(du[i], phi[i], delta, direction)
-            if i < n - 1:
-                k_right = k[i]
-                right = F0 + k_right * (u[i] + du[i] - u[i + 1] - du[i + 1])
-            if i == 0:
-                g = (1.0 + e) / (1.0 - e)
-                below = 0.0
-                above = -c_in * k_right * g
-                diagonal = 1.0 - above + c_in * right * 2.0 * e1 / (1.0 - e) ** 2
-                residual = q_in - u[0] - du[0] - c_in * right * g
-            elif i < n - 1:
-                below = -k_left * (1.0 - e)
-                above = -k_right * (1.0 + e)
-                diagonal = -below - above + e1 * (left + right)
-                residual = left * (1.0 - e) - right * (1.0 + e)
-            else:
-                g = (1.0 - e) / (1.0 + e)
-                below = -p * k_left * g
-                above = 0.0
-                diagonal = r - below + p * left * 2.0 * e1 / (1.0 + e) ** 2
-                residual = p * left * g - q - r * (u[i] + du[i])
-            if i > 0:
-                diagonal -= below * upper[i - 1]
-                residual -= below * rhs[i - 1]
-            upper[i] = above / diagonal
-            rhs[i] = residual / diagonal
-            left, k_left = right, k_right
-        largest, tension = abs(rhs[n - 1]), 0.0
-        du[n - 1] = _moved(du[n - 1], rhs[n - 1], direction)
-        for i in range(n - 2, -1, -1):
-            rhs[i] -= upper[i] * rhs[i + 1]
-            du[i] = _moved(du[i], rhs[i], direction)
-            largest = max(largest, abs(rhs[i]))
-            tension = max(tension, k[i] * abs(rhs[i] - rhs[i + 1]))
-        if not np.isfinite(largest):
-            return False
-        if largest < 1e-5 * delta and tension < 1e-7:
-            return True
-    return False
+    du = np.zeros(u.size)
+    tension, e = _state(u, phi, du, tendon, ends.mu)
+    pull = _unbalanced(u, du, tension, e, tendon, ends)
+    for _ in range(MAX_ITERATIONS):
+        change = _newton_change(phi, du, tension, e, pull, tendon, ends.mu, direction)
+        work = np.dot(change[1:-1], pull[1:-1])
+        part = 1.0
+        for _ in range(MAX_CUTS):
+            trial = du + part * change
+            tension, e = _state(u, phi, trial, tendon, ends.mu)
+            pull = _unbalanced(u, trial, tension, e, tendon, ends)
+            after = np.dot(change[1:-1], pull[1:-1])
+            if work <= 0.0 or after >= -0.5 * work:
+                break
+            part *= work / (work - after)
+        du = trial
+        stretch = np.abs(np.diff(change)) * tendon.k
+        if np.abs(change).max() < 1e-5 * tendon.delta and stretch.max() < 1e-7:
+            return True, du
+    return False, du

@@ -58,7 +58,7 @@ class Rig:
     cells: int = 200
 
     @property
-    def axial_stiffness_N(self) -> float:
+    def axial_stiffness(self) -> float:
         """Axial stiffness of the tendon times its length [N]."""
         return self.tendon_modulus_GPa * 1e3 * math.pi / 4.0 * self.tendon_diameter_mm**2
 
@@ -103,26 +103,24 @@ def simulate(rig: Rig, motion: Motion, *, distal: np.ndarray | None = None) -> C
         raise ValueError(f"load {rig.load!r} and distal values do not go together")
     t, x_in = motion.time_s, motion.x_in_mm
     c_in, c_out = (
-        rig.proximal_length_mm / rig.axial_stiffness_N,
-        rig.distal_length_mm / rig.axial_stiffness_N,
+        rig.proximal_length_mm / rig.axial_stiffness,
+        rig.distal_length_mm / rig.axial_stiffness,
     )
     q, p, r = _distal_end(rig, t, c_out, distal)
     s = continuum.nodes(rig.sheath_length_mm, rig.cells)
-    friction = rig.friction_coefficient * _course(rig.friction_course, t)
-    f_in, f_out, u_end, ok = continuum.run(
-        x_in,
-        friction * _course(rig.bend_course, t),
-        q,
-        p,
-        r,
-        _bend_per_node(rig, s),
-        rig.axial_stiffness_N / np.diff(s),
-        c_in,
-        rig.preload_N,
-        rig.presliding_length_mm,
+    tendon = continuum.Tendon(
+        bend=_bend_per_node(rig, s),
+        k=rig.axial_stiffness / np.diff(s),
+        c_in=c_in,
+        p=p,
+        r=r,
+        preload=rig.preload_N,
+        delta=rig.presliding_length_mm,
     )
-    if not ok:
-        raise ValueError("the tendon goes slack or a step does not converge")
+    mu = rig.friction_coefficient * _course(rig.friction_course, t) * _course(rig.bend_course, t)
+    f_in, f_out, u_end, solved = continuum.run(tendon, x_in, mu, q)
+    if solved < t.size:
+        raise ValueError(f"the tendon goes slack or the step fails at {t[solved]:.6g} s")
     x_out = u_end - c_out * (f_out - rig.preload_N)
     return CleanRun(
         {"time_s": t, "x_in_mm": x_in, "x_out_mm": x_out, "f_in_N": f_in, "f_out_N": f_out}
