@@ -1,0 +1,189 @@
+import hashlib
+import json
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tsas_cli.recordings.dataset import read_dataset
+
+MAP = """
+[dataset]
+name = "bench"
+[columns]
+time_s = {source = "t", unit = "s"}
+x_in_mm = {source = "x", unit = "in"}
+f_in_N = {source = "f", unit = "N"}
+"""
+CSV = "t,x,f\n0,1,25\n0.5,2,\n1,3,27\n"
+REPOSITORY = Path(__file__).parents[2]
+MAPS = REPOSITORY / "datasets" / "maps"
+
+
+@pytest.fixture
+def bench(tmp_path):
+    (tmp_path / "map.toml").write_text(MAP)
+    (tmp_path / "a.csv").write_text(CSV)
+    return tmp_path
+
+
+@pytest.fixture
+def ingest(bench, tsas):
+    def call(*words):
+        return tsas("ingest", *words, "--map", "map.toml", "--out", "out", cwd=bench)
+
+    return call
+
+
+def refused(done, folder, *said):
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.count("\n") == 1
+    for words in said:
+        assert words in done.stderr
+    assert not list(folder.glob("*out*"))
+
+
+def test_a_file_becomes_a_dataset_that_knows_what_it_was_made_from(bench, ingest):
+    done = ingest("a.csv")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "a    3     1 s" in done.stdout
+    (recording,) = read_dataset(bench / "out")
+    np.testing.assert_allclose(recording.columns["x_in_mm"], [25.4, 50.8, 76.2])
+    np.testing.assert_array_equal(recording.columns["f_in_N"], [25, np.nan, 27])
+    source = read_dataset(bench / "out").manifest.ingest["sources"]["a"]
+    assert source["sha256"] == hashlib.sha256(CSV.encode()).hexdigest()
+
+
+def test_a_folder_is_searched_and_other_files_are_left_alone(bench, ingest):
+    (bench / "runs" / "deep").mkdir(parents=True)
+    (bench / "runs" / "b.CSV").write_text(CSV)
+    (bench / "runs" / "deep" / "c.csv").write_text(CSV)
+    (bench / "runs" / "photo.png").write_bytes(b"")
+    done = ingest("runs", "a.csv", "--json")
+    runs = json.loads(done.stdout)["runs"]
+    assert [run["run"] for run in runs] == ["b", "c", "a"]
+    assert runs[0]["rate_Hz"] == 2
+
+
+def test_the_map_can_choose_among_a_folders_files(bench, ingest):
+    (bench / "notes.txt").write_text("bent by hand")
+    refused(ingest("."), bench, "notes.txt")
+    with (bench / "map.toml").open("a") as stream:
+        stream.write('[read]\nfiles = "*.csv"\n')
+    assert ingest(".", "-q").stdout == ""
+    assert len(read_dataset(bench / "out").manifest.run) == 1
+
+
+def test_an_existing_dataset_stays_without_force(bench, ingest):
+    ingest("a.csv")
+    before = (bench / "out" / "dataset.toml").read_bytes()
+    done = ingest("a.csv")
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+    assert "--force" in done.stderr
+    assert (bench / "out" / "dataset.toml").read_bytes() == before
+    assert ingest("a.csv", "--force").returncode == 0
+
+
+def test_two_files_with_one_id_are_refused_and_both_named(bench, ingest):
+    (bench / "other").mkdir()
+    (bench / "other" / "a.csv").write_text(CSV)
+    refused(ingest("a.csv", "other"), bench, "'a'", "a.csv", "other/a.csv", "{folder}_{stem}")
+
+
+def test_half_of_the_files_are_not_half_a_dataset(bench, ingest):
+    (bench / "b.csv").write_text("t,x\n0,1\n1,2\n")
+    refused(ingest("a.csv", "b.csv"), bench, "b.csv", "column f is missing; ", "there are: t, x")
+
+
+def test_a_wrong_unit_is_said_with_the_place_in_the_map(bench, ingest):
+    text = (bench / "map.toml").read_text()
+    (bench / "map.toml").write_text(text.replace('unit = "N"', 'unit = "mm"'))
+    refused(ingest("a.csv"), bench, "map.toml, columns.f_in_N", "'mm' cannot become N", "a force")
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "said"),
+    [
+        ("b.csv", b"", "is empty"),
+        ("b.mat", b"", "is empty"),
+        ("b.parquet", b"PAR1", "cannot be read as Parquet"),
+        ("b.xlsx", b"PK", "no reader knows .xlsx"),
+        ("b\x1b[31m.csv", CSV.encode(), "usable as a file name"),
+        ("none.csv", None, "is not there"),
+        ("empty", "folder", "holds no file"),
+    ],
+)
+def test_what_is_no_recording_is_one_line(bench, ingest, name, content, said):
+    if content == "folder":
+        (bench / name).mkdir()
+    elif content is not None:
+        (bench / name).write_bytes(content)
+    done = ingest(name)
+    refused(done, bench, said)
+    assert done.stderr.rstrip("\n").isprintable()
+
+
+def public(name):
+    folder = Path(os.environ.get("TSAS_DATA", REPOSITORY / ".." / "shared" / "data")) / name
+    if not folder.is_dir():
+        pytest.skip(f"no public recordings in {folder}: set TSAS_DATA, see docs/ingest.md")
+    return folder
+
+
+def strokes(recording, half_window=50):
+    """Return where x_in rises and where it falls, steadily."""
+    x = recording.columns["x_in_mm"]
+    speed = x[2 * half_window :] - x[: -2 * half_window]
+    fast = 0.3 * np.abs(speed).max()
+    inner = slice(half_window, -half_window)
+    return inner, speed > fast, speed < -fast
+
+
+def test_the_surgical_instrument_pulls_when_it_moves_in(tsas, tmp_path):
+    folder = public("mis-tool")
+    sources = folder / "L_4", folder / "pitch"
+    done = tsas(
+        "ingest",
+        *sources,
+        "--map",
+        MAPS / "mis-tool.toml",
+        "--out",
+        tmp_path / "d",
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    recordings = {recording.run.id: recording for recording in read_dataset(tmp_path / "d")}
+    assert len(recordings) == 9
+    for recording in recordings.values():
+        inner, pull, release = strokes(recording)
+        tension = recording.columns["f_in_N"][inner]
+        assert recording.run.load == "force"
+        assert tension[pull].mean() > tension[release].mean()
+        assert recording.columns["f_out_N"].mean() > 0
+        x_in, x_out = recording.columns["x_in_mm"], recording.columns["x_out_mm"]
+        assert np.corrcoef(x_in, x_out)[0, 1] > 0.99
+        assert np.ptp(x_in) == pytest.approx(5 * np.pi / 3, rel=0.02)  # ±30° on 5 mm
+    said = recordings["L_4_49"].run.model_extra
+    assert (said["frequency_Hz"], said["load_percent"]) == (0.5, 100)
+    assert recordings["pitch_pitch_5"].run.model_extra["wrist_pitch_deg"] == -60
+
+
+def test_the_friction_damper_is_tight_at_the_drive_when_it_moves_in(tsas, tmp_path):
+    folder = public("friction-damper")
+    done = tsas(
+        "ingest",
+        folder,
+        "--map",
+        MAPS / "friction-damper.toml",
+        "--out",
+        tmp_path / "d",
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    recordings = {recording.run.id: recording for recording in read_dataset(tmp_path / "d")}
+    assert len(recordings) == 4
+    for recording in recordings.values():
+        inner, pull, release = strokes(recording)
+        drive, far = (recording.columns[name][inner] for name in ("f_in_N", "f_out_N"))
+        assert drive[pull].mean() > 3 * far[pull].mean()
+        assert far[release].mean() > 3 * drive[release].mean()
+    assert recordings["1Hz80lbtension"].run.preload_N == pytest.approx(80 * 4.4482216)

@@ -1,0 +1,92 @@
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tsas_cli.errors import InputError
+from tsas_cli.recordings.canonical import canonical_columns
+from tsas_cli.recordings.ingest_map import IngestMap
+from tsas_cli.recordings.readers.table import Table
+
+TIME = {"source": "t", "unit": "ms"}
+PLACE = {"source": "x", "unit": "in"}
+FORCE = {"source": "f", "unit": "N"}
+
+
+def ask(values=None, units=None, time=TIME, place=PLACE, force=FORCE, **read):
+    arrays = {"t": [0, 1, 2], "x": [1, 2, 3], "f": [4, np.nan, 6]} | (values or {})
+    table = Table({k: np.array(v, dtype=float) for k, v in arrays.items()}, units or {}, (), 10)
+    columns = {"time_s": time, "x_in_mm": place, "f_in_N": force}
+    content = {"dataset": {"name": "m"}, "read": read, "columns": columns}
+    mapping = IngestMap.model_validate(content)
+    return canonical_columns(table, mapping, Path("a.csv"), Path("map.toml"))
+
+
+def test_units_are_converted_and_gaps_stay_gaps():
+    columns = ask()
+    np.testing.assert_allclose(columns["time_s"], [0, 0.001, 0.002])
+    np.testing.assert_allclose(columns["x_in_mm"], [25.4, 50.8, 76.2])
+    np.testing.assert_array_equal(columns["f_in_N"], [4, np.nan, 6])
+
+
+def test_the_sign_comes_before_the_offset_and_the_offset_is_subtracted():
+    columns = ask(place=PLACE | {"sign": -1, "offset": 10.0})
+    np.testing.assert_allclose(columns["x_in_mm"], [-35.4, -60.8, -86.2])
+
+
+def test_the_first_sample_that_is_there_can_be_the_zero():
+    columns = ask({"x": [np.nan, 2, 3]}, place=PLACE | {"offset": "first"})
+    np.testing.assert_allclose(columns["x_in_mm"], [np.nan, 0, 25.4])
+
+
+def test_the_files_own_unit_counts_where_the_map_says_none():
+    assert ask(units={"f": "kN"}, force={"source": "f"})["f_in_N"][0] == 4000
+    assert ask(units={"f": "kN"}, force=FORCE)["f_in_N"][0] == 4
+    with pytest.raises(InputError, match=r"map.toml, columns.f_in_N: .* the unit of f; say it"):
+        ask(force={"source": "f"})
+
+
+def test_a_rate_stands_for_a_clock():
+    np.testing.assert_allclose(ask(time={"rate_Hz": 50})["time_s"], [0, 0.02, 0.04])
+
+
+def test_extra_columns_travel_along_untouched():
+    columns = ask({"a": [7, np.inf, 9], 2: [1, 2, 3]}, extra=["a", 2])
+    np.testing.assert_array_equal(columns["a"], [7, np.inf, 9])
+    np.testing.assert_array_equal(columns["column_2"], [1, 2, 3])
+
+
+def test_rows_that_repeat_go_only_when_the_map_says_so():
+    twice = {"t": [0, 1, 1, 2], "x": [1, 2, 2, 3], "f": [4, np.nan, np.nan, 6]}
+    with pytest.raises(InputError, match=r"a.csv, row 12: .*drop_repeated_rows"):
+        ask(twice)
+    np.testing.assert_allclose(ask(twice, drop_repeated_rows=True)["x_in_mm"], [25.4, 50.8, 76.2])
+
+
+@pytest.mark.parametrize(
+    ("values", "said"),
+    [
+        ({"t": [0, 2, 1]}, "a.csv, row 12: the time does not increase (0.002 s, then 0.001 s)"),
+        ({"t": [0, 1, 1]}, "a.csv, row 12: the time does not increase"),
+        ({"t": [0, np.nan, 1]}, "a.csv, row 11: the time is empty"),
+        ({"f": [1, 2, np.inf]}, "a.csv, row 12: f_in_N is infinite"),
+        ({"f": [1, 2]}, "columns differ in length: t has 3, x has 3, f has 2"),
+        ({"t": [0], "x": [0], "f": [0]}, "1 rows; expected at least two"),
+    ],
+)
+def test_what_cannot_be_a_recording_is_refused_with_its_row(values, said):
+    with pytest.raises(InputError) as error:
+        ask(values)
+    assert said in error.value.line()
+
+
+def test_repeated_times_with_other_values_are_not_dropped():
+    with pytest.raises(InputError, match="does not increase"):
+        ask({"t": [0, 1, 1]}, drop_repeated_rows=True)
+
+
+@pytest.mark.parametrize("name", ["x_in_mm", "a\x1b[31m"])
+def test_an_extra_column_may_not_take_a_name_that_is_taken_or_breaks_the_terminal(name):
+    with pytest.raises(InputError, match="cannot keep this name") as error:
+        ask({name: [1, 2, 3]}, extra=[name])
+    assert error.value.line().isprintable()

@@ -1,0 +1,81 @@
+import math
+from pathlib import Path
+
+import pytest
+
+from tsas_cli.errors import InputError
+from tsas_cli.recordings.conditions import run_conditions
+from tsas_cli.recordings.ingest_map import RunMap
+
+PATH = Path("/rig/L_4/bend180_0,5Hz.csv")
+NAME = {"pattern": r"bend(?P<bend>\d+)_(?P<frequency_Hz>[\d,]+)Hz"}
+
+
+def conditions(header=(), path=PATH, **content):
+    return run_conditions(path, header, RunMap.model_validate(content))
+
+
+def test_without_a_word_the_id_is_the_name_and_the_load_a_spring():
+    assert conditions() == {"id": "bend180_0,5Hz", "load": "spring"}
+
+
+def test_groups_of_the_file_name_become_conditions_in_the_wanted_unit():
+    found = conditions(
+        from_file_name=NAME, conditions={"total_bend_rad": {"from": "bend", "unit": "deg"}}
+    )
+    assert found["total_bend_rad"] == pytest.approx(math.pi)
+    assert found["frequency_Hz"] == 0.5
+    assert "bend" not in found
+
+
+def test_the_folder_is_part_of_the_name_and_of_the_id():
+    found = conditions(
+        id="{folder}-{stage}-{stem}", from_file_name={"pattern": r"^L_(?P<stage>\d)/bend"}
+    )
+    assert found["id"] == "L_4-4-bend180_0,5Hz"
+
+
+def test_the_header_wins_over_the_name_and_the_table_over_both():
+    content = {
+        "preload_N": 1.0,
+        "load": "force",
+        "from_file_name": {"pattern": r"bend(?P<preload_N>\d+)"},
+        "from_header": {"pattern": r"preload (?P<preload_N>[\d.]+)"},
+    }
+    header = ("a rig", "preload 25.5 N")
+    assert conditions(header, **content)["preload_N"] == 25.5
+    content["table"] = {"bend180_0,5Hz": {"preload_N": 30.0}, "other": {"preload_N": 99.0}}
+    found = conditions(header, **content)
+    assert (found["preload_N"], found["load"]) == (30.0, "force")
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        (
+            {"from_file_name": {"pattern": "curl(?P<a>.)"}},
+            "finds nothing in 'L_4/bend180_0,5Hz.csv'",
+        ),
+        ({"from_header": {"pattern": "x"}}, "finds nothing"),
+        ({"id": "{steam}"}, "did you mean stem?"),
+        (
+            {"from_file_name": NAME, "conditions": {"preload_N": {"from": "bond", "unit": "N"}}},
+            "did you mean bend?",
+        ),
+        (
+            {"from_file_name": NAME, "conditions": {"preload_N": {"from": "bend", "unit": "deg"}}},
+            "run.conditions.preload_N of the map: unit 'deg' cannot become N",
+        ),
+        (
+            {
+                "from_file_name": {"pattern": "(?P<w>bend)"},
+                "conditions": {"preload_N": {"from": "w", "unit": "N"}},
+            },
+            "group w is 'bend'; expected a number",
+        ),
+    ],
+)
+def test_what_is_wrong_is_said(content, said):
+    with pytest.raises(InputError) as error:
+        conditions(**content)
+    assert said in error.value.line()

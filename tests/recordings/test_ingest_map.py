@@ -1,0 +1,63 @@
+import pytest
+
+from tsas_cli.errors import InputError
+from tsas_cli.recordings.ingest_map import read_map
+
+WHOLE = """
+[dataset]
+name = "m"
+[columns.time_s]
+source = 1
+[columns.x_in_mm]
+source = "x"
+[columns.f_in_N]
+source = "f"
+"""
+
+
+@pytest.fixture
+def ask(tmp_path):
+    def call(text):
+        path = tmp_path / "map.toml"
+        path.write_text(text)
+        return read_map(path)
+
+    return call
+
+
+def test_the_smallest_map_and_the_columns_it_takes(ask):
+    mapping = ask(WHOLE + '[columns.f_out_N]\nsource = "f"\n[read]\nextra = ["note", "x"]\n')
+    assert mapping.sources() == [1, "x", "f", "note"]
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (WHOLE.replace("f_in_N", "f_in_n"), "unknown column f_in_n (did you mean f_in_N?)"),
+        (WHOLE + "ofset = 1\n", "columns.f_in_N.ofset (did you mean offset?)"),
+        (WHOLE + "[reed]\n", "unknown key reed (did you mean read?)"),
+        (WHOLE + "[read]\ndecimals = ','\n", "read.decimals (did you mean decimal?)"),
+        (WHOLE + "[rig]\ntendon_diameter = 1\n", "did you mean tendon_diameter_mm?"),
+        (WHOLE + "[run]\npreload = 1\n", "did you mean preload_N?"),
+        (WHOLE + "[run]\nload = 'sprung'\n", "run.load"),
+        (WHOLE + "[run.from_header]\npattern = '('\n", "run.from_header.pattern"),
+        (WHOLE + "sign = 2\n", "columns.f_in_N.sign"),
+        (WHOLE + "factor = 2\n", "factor and factor_unit belong together"),
+        (WHOLE + "rate_Hz = 2\n", "columns.f_in_N: needs a source"),
+        (WHOLE.replace('source = "f"', "rate_Hz = 2"), "f_in_N cannot have rate_Hz"),
+        (WHOLE.replace("[columns.time_s]", "[columns.x_out_mm]"), "time_s is missing"),
+        (WHOLE.replace("x_in_mm", "temperature_C"), "an input and an output column"),
+        (WHOLE.replace('name = "m"', ""), "dataset.name is missing"),
+        ("[dataset", "is not TOML"),
+    ],
+)
+def test_what_is_wrong_is_said_with_the_nearest_known_word(ask, text, said):
+    with pytest.raises(InputError) as error:
+        ask(text)
+    assert said in error.value.line()
+    assert "map.toml" in error.value.line()
+
+
+def test_a_missing_map_is_said(tmp_path):
+    with pytest.raises(InputError, match="cannot be read"):
+        read_map(tmp_path / "none.toml")
