@@ -1,0 +1,82 @@
+"""A model's answer to one run, and how far it is from what was measured."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from tsas_cli.errors import InputError
+from tsas_cli.identification.model import Model
+from tsas_cli.identification.prepared import Prepared
+from tsas_cli.physics.quasi_static import SLACK, UNSETTLED, Dynamics, Response, simulate
+from tsas_cli.recordings.columns import BY_NAME
+
+Floats = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Compared:
+    """One run simulated; `channels` holds the answers, shape (n,), NaN in gaps of the drive."""
+
+    response: Response
+    channels: dict[str, Floats]
+    rmse: dict[str, float]
+    samples: dict[str, int]
+
+    def as_json(self, run: Prepared) -> dict[str, Any]:
+        """Return what `simulation.json` says of the run."""
+        start = run.drive.start_f_in_N
+        return {
+            "solver": self.response.solver,
+            "conditioning": run.conditioning(),
+            "start": "at rest" if start is None else f"f_in_N = {start:.4g} N as measured",
+            "samples": int(run.time_s.size),
+            "slack_samples": int(np.count_nonzero(self.response.phase == SLACK)),
+            "unconverged_samples": int(np.count_nonzero(self.response.phase == UNSETTLED)),
+            "channels": {
+                name: {
+                    "rmse": self.rmse[name],
+                    "noise": run.noise[name],
+                    "samples": self.samples[name],
+                    "unit": BY_NAME[name].unit,
+                }
+                for name in self.rmse
+            },
+        }
+
+
+def compare(run: Prepared, model: Model, dynamics: Dynamics = "slip") -> Compared:
+    """Simulate a run with a model and hold the answer against the measurement.
+
+    Raises
+    ------
+    InputError
+        The static model is asked for a load that is not a spring, or for a drive by force.
+    """
+    plain = run.run.load == "spring" and run.drive_column == "x_in_mm"
+    if dynamics == "static" and not plain:
+        raise InputError(
+            "the static model knows a spring load and a drive by displacement only",
+            where=f"run {run.run.id}",
+            remedy="use --dynamics slip",
+        )
+    response = simulate(model.rig(run.run), run.drive, dynamics)
+    answers = {
+        "f_in_N": response.f_in_N,
+        "f_out_N": response.f_out_N,
+        "x_out_mm": response.x_out_mm,
+    }
+    driven = set(run.conditioned)
+    channels = {
+        name: np.where(run.in_gap, np.nan, values)
+        for name, values in answers.items()
+        if name not in driven
+    }
+    error = {name: run.measured[name] - channels[name] for name in run.measured}
+    return Compared(
+        response,
+        channels,
+        {name: float(np.sqrt(np.nanmean(e**2))) for name, e in error.items()},
+        {name: int(np.isfinite(e).sum()) for name, e in error.items()},
+    )

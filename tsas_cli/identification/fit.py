@@ -1,0 +1,133 @@
+"""Bounded least squares over several runs, with a look at what can be told before the fit.
+
+The unknowns are scaled (logarithms of positive parameters); each run gives a vector of residuals
+in units of its noise. A parameter of one run touches that run's residuals only, and its column of
+the Jacobian costs one simulation of that run.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from tsas_cli.numerics.covariance import sandwich
+
+Floats = npt.NDArray[np.float64]
+Indices = npt.NDArray[np.int64]
+Residuals = Callable[[int, Floats], Floats]  # of one run, at given unknowns
+
+STEP = 1e-5  # of the finite differences, in scaled unknowns
+MOST_EVALUATIONS = 60
+NEARLY_BOUND = 1e-4  # of the width between the bounds
+KNOWN = 0.1  # of its scale: an unknown whose error, by its own light, is larger is not identified
+COLOUR = 10.0  # how much larger the error of coloured noise may be than that of white noise
+
+
+@dataclass(frozen=True)
+class Unknown:
+    """One number to be found: scaled start and bounds, plausible change, the run it belongs to."""
+
+    name: str
+    run: int | None
+    start: float
+    lower: float
+    upper: float
+    scale: float
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """The result: scaled values, covariance, Student's t, bound flags, and how it ended."""
+
+    values: Floats
+    covariance: Floats
+    t: float
+    at_bound: npt.NDArray[np.bool_]
+    converged: bool
+    message: str
+    evaluations: int
+
+
+def jacobian(
+    unknowns: Sequence[Unknown], runs: int, values: Floats, residuals: Residuals
+) -> Floats:
+    """Return the Jacobian of all runs' residuals by central differences, shape (n, p)."""
+    base = [residuals(r, values) for r in range(runs)]
+    starts = np.concatenate(([0], np.cumsum([b.size for b in base])))
+    out = np.zeros((int(starts[-1]), len(unknowns)))
+    for j, unknown in enumerate(unknowns):
+        ahead, back = values.copy(), values.copy()
+        ahead[j] = min(values[j] + STEP, unknown.upper)
+        back[j] = max(values[j] - STEP, unknown.lower)
+        width = ahead[j] - back[j]
+        for r in range(runs) if unknown.run is None else (unknown.run,):
+            change = residuals(r, ahead) - residuals(r, back)
+            out[starts[r] : starts[r + 1], j] = change / width
+    return out
+
+
+def identifiable(unknowns: Sequence[Unknown], J: Floats) -> tuple[list[int], dict[int, list[int]]]:
+    """Choose, in the given order, the unknowns that the data can tell from those before.
+
+    Returns
+    -------
+    chosen, confounded
+        Indices of the identifiable unknowns; for each other one the indices of those that it
+        cannot be told from, strongest first, empty where the data do not show it at all.
+    """
+    scaled = J * np.array([u.scale for u in unknowns])
+    chosen: list[int] = []
+    confounded: dict[int, list[int]] = {}
+    for j in range(len(unknowns)):
+        column = scaled[:, j]
+        weights = (
+            np.linalg.lstsq(scaled[:, chosen], column, rcond=None)[0] if chosen else np.zeros(0)
+        )
+        new = float(np.linalg.norm(column - scaled[:, chosen] @ weights))
+        if new * KNOWN > COLOUR and new > 1e-4 * float(np.linalg.norm(column)):
+            chosen.append(j)
+        else:
+            told = np.linalg.norm(scaled[:, chosen] * weights, axis=0)
+            visible = float(np.linalg.norm(column)) * KNOWN > COLOUR
+            order = np.argsort(-told) if visible else []
+            confounded[j] = [chosen[k] for k in order if told[k] > 0.1 * told.max()]
+    return chosen, confounded
+
+
+def fit(unknowns: Sequence[Unknown], blocks: Sequence[Indices], residuals: Residuals) -> Fitted:
+    """Minimise the squares of all runs' residuals within the bounds.
+
+    Parameters
+    ----------
+    unknowns
+        What is sought, p of them.
+    blocks
+        For each run the block of each residual, counted from 0 in each run, for the intervals.
+    residuals
+        The residuals of a run at scaled values of all unknowns.
+    """
+    from scipy.optimize import least_squares
+
+    runs = len(blocks)
+    lower = np.array([u.lower for u in unknowns])
+    upper = np.array([u.upper for u in unknowns])
+    solution = least_squares(
+        lambda v: np.concatenate([residuals(r, v) for r in range(runs)]),
+        np.clip([u.start for u in unknowns], lower, upper),
+        jac=lambda v: jacobian(unknowns, runs, v, residuals),
+        bounds=(lower, upper),
+        x_scale=np.array([u.scale for u in unknowns]),
+        max_nfev=MOST_EVALUATIONS,
+        xtol=1e-10,
+        ftol=1e-12,
+        gtol=1e-10,
+    )
+    offsets = np.concatenate(([0], np.cumsum([b.max() + 1 for b in blocks])))[:-1]
+    block = np.concatenate([b + o for b, o in zip(blocks, offsets, strict=True)])
+    covariance, t = sandwich(solution.jac, solution.fun, block)
+    near = NEARLY_BOUND * (upper - lower)
+    at_bound = (solution.x - lower < near) | (upper - solution.x < near)
+    return Fitted(
+        solution.x, covariance, t, at_bound, solution.status > 0, solution.message, solution.nfev
+    )

@@ -1,0 +1,183 @@
+"""The model: the nominal rig's parameters and the effects' values, with what is known of each."""
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+import tomlkit
+from pydantic import BaseModel, ConfigDict
+
+from tsas_cli.effects import EFFECTS, Effects
+from tsas_cli.errors import InputError, nearest
+from tsas_cli.identification.estimate import Estimate
+from tsas_cli.physics.parameters import NOMINAL, NOMINAL_BY_NAME
+from tsas_cli.physics.rig import Rig
+from tsas_cli.recordings.manifest import Manifest, Run, parse, read_toml
+
+FILE = "model.toml"
+CORRECTION = "preload_correction_N"  # mean of fitted less stated preload, for runs not calibrated
+UNKNOWN_BEND_RAD = 1.0
+UNKNOWN_LENGTH_MM = 1000.0
+DEFAULTS = {
+    "friction_coefficient": 0.1,
+    "load_stiffness_N_per_mm": 1.0,
+    "preload_N": 10.0,
+    "tendon_stiffness_N": 5e4,
+    "x_in_zero_mm": 0.0,
+    "x_out_zero_mm": 0.0,
+}
+
+
+@dataclass(frozen=True)
+class Model:
+    """All estimates: those with a run belong to it alone; an effect's are named effect.parameter."""
+
+    estimates: tuple[Estimate, ...]
+
+    def value(self, name: str, run: str | None = None) -> float | None:
+        """Return a value for a run, else the shared one, else None."""
+        known = {(e.name, e.run): e.value for e in self.estimates}
+        return known.get((name, run), known.get((name, None)))
+
+    def rig(self, run: Run) -> Rig:
+        """Return the rig of a run, calibrated or not; what nobody told is a default."""
+        values = {p.name: self.value(p.name, run.id) for p in NOMINAL}
+        if values["preload_N"] is None and run.preload_N is not None:
+            values["preload_N"] = run.preload_N + (self.value(CORRECTION) or 0.0)
+        known = {name: v if v is not None else DEFAULTS[name] for name, v in values.items()}
+        return Rig(
+            sheath_length_mm=run.sheath_length_mm or UNKNOWN_LENGTH_MM,
+            total_bend_rad=UNKNOWN_BEND_RAD if run.total_bend_rad is None else run.total_bend_rad,
+            effects=self._effects(),
+            **known,
+        )
+
+    def _effects(self) -> Effects:
+        effects = Effects()
+        for effect in EFFECTS:
+            names = (p.name for p in effect.parameters)
+            told = {n: self.value(f"{effect.name}.{n}") for n in names}
+            given = {n: v for n, v in told.items() if v is not None}
+            own = getattr(effects, effect.name)._replace(**given)
+            effects = effects._replace(**{effect.name: own})
+        return effects
+
+
+def data_sheet(manifest: Manifest) -> Model:
+    """Return the model that the manifest states, before anything is fitted."""
+    rig = manifest.rig
+    stated: dict[str, float | None] = {
+        "friction_coefficient": rig.friction_coefficient,
+        "load_stiffness_N_per_mm": rig.load_stiffness_N_per_mm,
+        "tendon_stiffness_N": _axial_stiffness(rig.tendon_diameter_mm, rig.tendon_modulus_GPa),
+    }
+    estimates = [_stated(name, value) for name, value in stated.items() if value is not None]
+    for effect in EFFECTS:
+        for p in effect.parameters:
+            value = getattr(rig, p.name, None)
+            if value is not None:
+                estimates.append(Estimate(f"{effect.name}.{p.name}", value, p.unit, "data sheet"))
+    for run in manifest.run:
+        if run.preload_N:
+            estimates.append(_stated("preload_N", run.preload_N, run.id))
+    return Model(tuple(estimates))
+
+
+def _stated(name: str, value: float, run: str | None = None) -> Estimate:
+    return Estimate(name, value, NOMINAL_BY_NAME[name].unit, "data sheet", run)
+
+
+def _axial_stiffness(diameter_mm: float | None, modulus_GPa: float | None) -> float | None:
+    if diameter_mm is None or modulus_GPa is None:
+        return None
+    return 1e3 * modulus_GPa * math.pi / 4.0 * diameter_mm**2
+
+
+class _Value(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    value: float
+    unit: str
+    origin: Literal["fitted", "data sheet", "default"] = "data sheet"
+    stderr: float | None = None
+    interval_low: float | None = None
+    interval_high: float | None = None
+    at_bound: bool = False
+
+
+class _File(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    format: Literal[1]
+    kind: Literal["model"] = "model"
+    version: str = ""
+    dataset: dict[str, Any] = {}
+    parameters: dict[str, _Value] = {}
+    runs: dict[str, dict[str, _Value]] = {}
+    effects: dict[str, dict[str, _Value]] = {}
+
+
+def write_model(path: Path, model: Model, *, version: str, dataset: Mapping[str, Any]) -> None:
+    """Write `model.toml`."""
+    content: dict[str, Any] = {
+        "format": 1,
+        "kind": "model",
+        "version": version,
+        "dataset": dict(dataset),
+        "parameters": {},
+        "runs": {},
+        "effects": {},
+    }
+    for e in model.estimates:
+        entry = {k: v for k, v in e.as_json().items() if v is not None and k not in ("name", "run")}
+        if "." in e.name:
+            effect, name = e.name.split(".")
+            content["effects"].setdefault(effect, {})[name] = entry
+        elif e.run is None:
+            content["parameters"][e.name] = entry
+        else:
+            content["runs"].setdefault(e.run, {})[e.name] = entry
+    path.write_text(tomlkit.dumps(content), encoding="utf-8")
+
+
+def read_model(path: Path) -> Model:
+    """Read `model.toml` or `model-extended.toml`.
+
+    Raises
+    ------
+    InputError
+        The file is missing, not TOML, of another format, or names what this version does not know.
+    """
+    if path.is_dir():
+        path = path / FILE
+    file = parse(_File, read_toml(path), path)
+    nominal = [p.name for p in NOMINAL]
+    known_effects = {f"{e.name}.{p.name}": p.unit for e in EFFECTS for p in e.parameters}
+    units = {p.name: p.unit for p in NOMINAL} | {CORRECTION: "N"} | known_effects
+    values = [(name, None, v) for name, v in file.parameters.items()]
+    values += [(name, run, v) for run, named in file.runs.items() for name, v in named.items()]
+    values += [
+        (f"{effect}.{name}", None, v)
+        for effect, named in file.effects.items()
+        for name, v in named.items()
+    ]
+    for name, _, value in values:
+        known: Iterable[str] = known_effects if "." in name else [*nominal, CORRECTION]
+        if name not in units:
+            raise InputError(f"unknown parameter {name}", where=path, remedy=nearest(name, known))
+        _check_value(name, value, units[name], path)
+    return Model(
+        tuple(Estimate(name=name, run=run, **value.model_dump()) for name, run, value in values)
+    )
+
+
+def _check_value(name: str, value: _Value, unit: str, path: Path) -> None:
+    if value.unit != unit:
+        raise InputError(f"{name} is in {value.unit!r}", where=path, expected=f"the unit {unit!r}")
+    nominal = NOMINAL_BY_NAME.get(name)
+    if not math.isfinite(value.value):
+        raise InputError(f"{name} is {value.value}", where=path, expected="a finite number")
+    if nominal and nominal.positive and value.value <= 0.0:
+        raise InputError(f"{name} is {value.value}", where=path, expected="a positive number")

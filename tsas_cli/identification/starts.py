@@ -1,0 +1,80 @@
+"""Start values read off the phases of a run, for what the data sheet does not tell."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from tsas_cli.identification.phases import Segment
+from tsas_cli.identification.prepared import Prepared
+from tsas_cli.identification.stiffness import Slope
+
+Floats = npt.NDArray[np.float64]
+
+
+def read_off(
+    run: Prepared, segments: Sequence[Segment], slopes: Sequence[Slope], length: float, bend: float
+) -> dict[str, float]:
+    """Return the parameters that the formulas of the static model give from one run.
+
+    Friction from the ratio of the tensions in both directions, or of the slopes (Yang 2025, Eqs.
+    7, 31, 32); the load spring from f_out over x_out, or from the slopes; the tendon from the
+    dead band (29). What the channels do not show is left out.
+    """
+    km = {s.phase: abs(s.value) for s in slopes if s.value != 0.0}
+    wrap = _wrap(run, segments, km)
+    found: dict[str, float] = {}
+    if wrap is not None and wrap > 0.0:
+        found["friction_coefficient"] = wrap / bend
+        dead = [km[p] for p in ("dead_band_up", "dead_band_down") if p in km]
+        if dead:
+            found["tendon_stiffness_N"] = np.mean(dead) * length * math.tanh(0.5 * wrap) / wrap
+    if run.run.load == "spring":
+        found |= _spring(run, segments, km)
+    return {k: float(v) for k, v in found.items() if np.isfinite(v) and v > 0.0}
+
+
+def _samples(segments: Sequence[Segment], phase: str, values: Floats) -> Floats:
+    parts = [values[s.first : s.end] for s in segments if s.phase == phase]
+    return np.concatenate(parts) if parts else np.zeros(0)
+
+
+def _wrap(run: Prepared, segments: Sequence[Segment], km: dict[str, float]) -> float | None:
+    f_in, f_out = run.measured.get("f_in_N"), run.measured.get("f_out_N")
+    if f_out is None and "f_out_N" in run.conditioned:
+        f_out = run.conditioned["f_out_N"].values
+    if f_in is None and "f_in_N" in run.conditioned:
+        f_in = run.conditioned["f_in_N"].values
+    if f_in is not None and f_out is not None:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ratio = np.log(f_in / f_out)
+        up = _samples(segments, "contraction", ratio)
+        down = _samples(segments, "loosening", ratio)
+        if np.isfinite(up).any() and np.isfinite(down).any():
+            return 0.5 * float(np.nanmedian(up) - np.nanmedian(down))
+    if "contraction" in km and "loosening" in km:
+        return 0.5 * math.log(km["contraction"] / km["loosening"])
+    return None
+
+
+def _spring(run: Prepared, segments: Sequence[Segment], km: dict[str, float]) -> dict[str, float]:
+    f_out, x_out = run.measured.get("f_out_N"), run.measured.get("x_out_mm")
+    if f_out is not None and x_out is not None:
+        ok = np.isfinite(f_out) & np.isfinite(x_out)
+        if ok.sum() > 2 and np.ptp(x_out[ok]) > 0.0:
+            slope, intercept = np.polyfit(x_out[ok], f_out[ok], 1)
+            return {"load_stiffness_N_per_mm": slope, "preload_N": intercept}
+    if "contraction" not in km or "loosening" not in km:
+        return {}
+    found = {"load_stiffness_N_per_mm": math.sqrt(km["contraction"] * km["loosening"])}
+    f_in = run.measured.get("f_in_N")
+    if f_in is not None:
+        x = run.conditioned["x_in_mm"].values
+        at_zero = []
+        for phase in ("contraction", "loosening"):
+            offset = _samples(segments, phase, f_in) - km[phase] * _samples(segments, phase, x)
+            at_zero.append(float(np.nanmean(offset)))
+        if min(at_zero) > 0.0:
+            found["preload_N"] = math.sqrt(at_zero[0] * at_zero[1])
+    return found
