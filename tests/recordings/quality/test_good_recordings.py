@@ -3,6 +3,7 @@
 import dataclasses
 from itertools import product
 
+import numpy as np
 import pytest
 
 from tests.recordings.quality.bench import LOAD, Bench, columns, trial
@@ -53,3 +54,34 @@ def test_nothing_is_said_in_twenty_repeats_of_one_experiment():
     bench = Bench(rate_Hz=500.0, noise_mm=0.02, noise_N=0.3, step_mm=0.01, step_N=0.05)
     for seed in range(20):
         assert complaints(columns(dataclasses.replace(bench, seed=seed)), "spring") == []
+
+
+def test_a_band_brake_whose_tight_side_changes_with_the_direction_is_no_exchange():
+    measured = columns(Bench(load="force"))
+    forward = np.gradient(np.convolve(measured["x_in_mm"], np.ones(9) / 9, mode="same")) > 0
+    noise = np.random.default_rng(3).standard_normal((2, forward.size))
+    brake = measured | {
+        "f_in_N": np.where(forward, 2300.0, 20.0) + noise[0],
+        "f_out_N": np.where(forward, 80.0, 1600.0) + noise[1],
+    }
+    assert complaints(brake, "force") == []
+    swapped = brake | {"f_in_N": brake["f_out_N"], "f_out_N": brake["f_in_N"]}
+    assert [code for code, _ in complaints(swapped, "force")] == ["exchanged"]
+
+
+def test_rows_that_repeat_at_rest_between_bursts_of_vibration_are_no_fault():
+    rng = np.random.default_rng(5)
+    measured = columns(Bench(rate_Hz=1000.0, shape="dwells", noise_mm=0.0, noise_N=0.0))
+    burst = np.where(np.abs(np.gradient(measured["x_in_mm"])) > 1e-4, 40.0, 0.6)
+    for name, step in (("x_in_mm", 0.01), ("x_out_mm", 0.01), ("f_in_N", 0.05), ("f_out_N", 0.05)):
+        noisy = measured[name] + burst * step * rng.standard_normal(burst.size)
+        measured[name] = np.round(noisy / step) * step
+    assert "repeated-rows" not in {code for code, _ in complaints(measured, "spring")}
+
+
+def test_an_encoder_that_waits_for_the_load_at_the_start_is_not_clipped():
+    measured = columns(Bench(load="force", noise_mm=0.0, step_mm=0.005))
+    start = measured["time_s"] < 0.2
+    measured["x_in_mm"][start] = measured["x_in_mm"].min()
+    measured["x_out_mm"] -= np.where(measured["time_s"] > 0.02, 1.5, 0.0)
+    assert "clipped" not in {code for code, _ in complaints(measured, "force")}

@@ -27,8 +27,8 @@ def test_the_paper_rig_is_ordinary():
 @pytest.mark.parametrize(
     ("rig", "run", "place", "nearest"),
     [
-        ({"tendon_diametre_mm": 1.2}, {}, "rig.tendon_diametre_mm", "tendon_diameter_mm"),
-        ({}, {"preload_n": 25}, "run a: preload_n", "preload_N"),
+        ({"tendon_diametre_mm": 1.2}, {}, "tendon_diametre_mm in [rig]", "tendon_diameter_mm"),
+        ({}, {"preload_n": 25}, "preload_n in run a", "preload_N"),
     ],
 )
 def test_a_misspelt_key_is_named_with_the_nearest(rig, run, place, nearest):

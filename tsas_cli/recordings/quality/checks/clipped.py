@@ -3,7 +3,7 @@
 The sensor or its amplifier is at the end of its range, or the part is at a stop. Told when the
 channel does not change at all at its extreme while the drive moves on by more than a twentieth of
 its span. Not a clip: a dwell (everything rests), the dead band after a reversal (the drive moves
-back), a coarse step at the top of a sine.
+back), a coarse step at the top of a sine, a rest at the very beginning.
 """
 
 from collections.abc import Iterator
@@ -35,7 +35,7 @@ def _look(trial: Trial, name: str, end: str, sign: int) -> Iterator[Remark]:
     flat = [
         rows
         for rows in plateaus(values, _FEWEST_ROWS)
-        if values[rows.start] == extreme and _passes(trial, name, rows, sign)
+        if rows.start > 0 and values[rows.start] == extreme and _passes(trial, name, rows, sign)
     ]
     if flat:
         seconds = sum(trial.time_s[r.stop - 1] - trial.time_s[r.start] for r in flat)
@@ -50,7 +50,7 @@ def _look(trial: Trial, name: str, end: str, sign: int) -> Iterator[Remark]:
 
 
 def _passes(trial: Trial, name: str, rows: slice, sign: int) -> bool:
-    """Say whether the motion goes beyond where it was when the plateau began, and comes back."""
+    """Say whether the motion goes beyond where it was when the plateau began."""
     coarse = 4.0 * trial.step[name] / max(trial.span[name], 1e-300)
     for other in trial.references(name):
         moved = sign * (trial.channels[other][rows] - trial.channels[other][rows.start])

@@ -40,13 +40,16 @@ def find(trial: Trial) -> Iterator[Remark | CannotTell]:
 def _excess_while_pulling(trial: Trial) -> float:
     """Return d of f_in = a + b f_out + d/2 · direction, the drive under way [N].
 
-    A wrong gain or offset of a sensor goes into a and b.
+    A wrong gain or offset of a sensor goes into a and b. Where the load's own tension turns with
+    the direction, b cannot be told from d; below zero it makes no sense and is left out.
     """
-    f_in, f_out = trial.channels["f_in_N"], trial.channels["f_out_N"]
-    direction = trial.direction
+    f_in, f_out, direction = trial.channels["f_in_N"], trial.channels["f_out_N"], trial.direction
     rows = (direction != 0.0) & np.isfinite(f_in) & np.isfinite(f_out)
-    terms = np.column_stack([np.ones(int(rows.sum())), f_out[rows], direction[rows]])
-    return 2.0 * float(np.linalg.lstsq(terms, f_in[rows], rcond=None)[0][2])
+    terms = np.column_stack([direction[rows] / 2.0, np.ones(int(rows.sum())), f_out[rows]])
+    fit = np.linalg.lstsq(terms, f_in[rows], rcond=None)[0]
+    if fit[2] < 0.0:
+        fit = np.linalg.lstsq(terms[:, :2], f_in[rows], rcond=None)[0]
+    return float(fit[0])
 
 
 CHECK = Check("exchanged", find, needs=("x_in_mm", "f_in_N", "f_out_N"))

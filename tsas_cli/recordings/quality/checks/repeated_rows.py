@@ -1,52 +1,69 @@
 """Rows repeat the row before them in every channel.
 
 The logger asked faster than the sensors answered, or held the last value while the link was down.
-Noise makes an exact repeat unlikely; how unlikely follows from each channel's noise and step of
-quantisation, and only repeats far beyond that are told.
+Noise makes an exact repeat unlikely; how unlikely follows, block by block, from each channel's
+noise and its smallest change. Only repeats far beyond that are told, and only where some channel
+is noisier than its smallest change: a quiet one repeats by itself.
 """
 
 import math
 from collections.abc import Iterator
 
 import numpy as np
+import numpy.typing as npt
 
-from tsas_cli.numerics.noise import noise_sd
 from tsas_cli.recordings.dataset import Floats
 from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
-from tsas_cli.recordings.quality.trial import Trial, alternates
+from tsas_cli.recordings.quality.trial import Trial
 
-_CHANCE_TOO_HIGH = 0.2
+_BLOCK = 32  # rows
+_MEDIAN_OF_THIRD = 0.6745 * math.sqrt(20.0)  # of |third difference|, for noise of unit deviation
 
 
 def find(trial: Trial) -> Iterator[Remark | CannotTell]:
     """Count exact repeats and hold them against chance."""
     rows = np.column_stack(list(trial.channels.values()))
     repeats = np.concatenate(([False], (rows[1:] == rows[:-1]).all(axis=1)))
-    count, n = int(repeats.sum()), repeats.size
-    if count == 0:
+    if not repeats.any():
         return
-    chance = math.prod(
-        _chance(values[~repeats], trial.step[name]) for name, values in trial.channels.items()
-    )
-    if chance > _CHANCE_TOO_HIGH:
+    block = (np.cumsum(~repeats) - 1) // _BLOCK  # a repeat belongs to the row that it repeats
+    chance = _chances(trial, ~repeats)[block]
+    telling = chance < 1.0
+    if not telling.any():
         yield CannotTell("the channels are so quiet or so coarse that rows repeat by themselves")
-    elif count > 3.0 * n * chance + 10.0:
-        first = int(np.argmax(repeats))
+        return
+    repeats &= telling
+    count, expected = int(repeats.sum()), float(chance[telling].sum())
+    if count > 3.0 * expected + 10.0:
         yield Remark(
             "warning",
-            f"{count} of {n} rows ({100 * count / n:.2g} %) repeat the row before them in all "
-            f"channels; noise alone would do so in at most {100 * chance:.2g} %",
+            f"{count} of {repeats.size} rows ({100 * count / repeats.size:.2g} %) repeat the row "
+            f"before them in all channels; with this noise about {expected:.0f} would",
             "record no faster than the slowest sensor answers, or drop the repeats at ingest",
-            first_s=float(trial.time_s[first]),
+            first_s=float(trial.time_s[np.argmax(repeats)]),
         )
 
 
-def _chance(values: Floats, step: float) -> float:
-    """Return how likely a sample at rest equals the one before it; 1 where there is no noise."""
-    noise = noise_sd(values)
-    if not alternates(values) or not noise > 0.0:
-        return 1.0
-    return min(1.0, step / (2.0 * math.sqrt(math.pi) * noise))
+def _chances(trial: Trial, fresh: npt.NDArray[np.bool_]) -> Floats:
+    """Return for each block of fresh rows how likely a row equals the one before it.
+
+    At the edge of a rest the block beside decides.
+    """
+    chance = np.ones(-(-int(fresh.sum()) // _BLOCK))
+    for values in trial.channels.values():
+        chance *= _chances_of(values[fresh], chance.size)
+    padded = np.pad(chance, 1, mode="edge")
+    return np.maximum(chance, np.maximum(padded[:-2], padded[2:]))
+
+
+def _chances_of(values: Floats, blocks: int) -> Floats:
+    """Return the chances of one channel; 1 where its noise is below its smallest change."""
+    change = np.abs(np.diff(values))
+    smallest = np.min(change, where=change > 1e-9 * np.nanmax(np.abs(values)), initial=np.inf)
+    third = np.zeros(blocks * _BLOCK)
+    third[: values.size - 3] = np.nan_to_num(np.abs(np.diff(values, 3)))
+    noise = np.median(third.reshape(blocks, _BLOCK), axis=1) / _MEDIAN_OF_THIRD
+    return np.where(noise > smallest, smallest / (2.0 * math.sqrt(math.pi) * noise + 1e-300), 1.0)
 
 
 CHECK = Check("repeated-rows", find)

@@ -12,16 +12,23 @@ from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
 
 def find(manifest: Manifest) -> Iterator[Remark | CannotTell]:
     """Look at the manifest's three kinds of tables; a likely misspelling is a warning."""
-    tables = [("", manifest), ("rig.", manifest.rig)]
-    tables += [(f"run {run.id}: ", run) for run in manifest.run]
-    for place, table in tables:
+    places: dict[tuple[str, str], list[str]] = {}
+    tables = [("the top", manifest), ("[rig]", manifest.rig)]
+    for place, table in [*tables, *((f"run {run.id}", run) for run in manifest.run)]:
         for key, hint in table.unknown_keys().items():
-            misspelt = hint.startswith("did you mean")
-            yield Remark(
-                "warning" if misspelt else "note",
-                f"dataset.toml holds the unknown key {printable(place + key)}",
-                hint if misspelt else "nothing, if it is meant for the reader",
-            )
+            places.setdefault((key, hint), []).append(place)
+    for (key, hint), where in places.items():
+        misspelt = hint.startswith("did you mean")
+        yield Remark(
+            "warning" if misspelt else "note",
+            f"dataset.toml holds the unknown key {printable(key)} in {_listed(where)}",
+            hint if misspelt else "nothing, if it is meant for the reader",
+        )
+
+
+def _listed(places: list[str]) -> str:
+    more = f" and {len(places) - 1} more" if len(places) > 1 else ""
+    return places[0] + more
 
 
 CHECK = Check("unknown-key", find)
