@@ -1,7 +1,14 @@
+import re
+from pathlib import Path
+
 import pytest
 
 from tsas_cli.errors import InputError
-from tsas_cli.recordings.ingest_map import read_map
+from tsas_cli.recordings.ingest_map import ColumnMap, read_map
+from tsas_cli.recordings.readers.options import ReadOptions
+
+REPOSITORY = Path(__file__).parents[2]
+PAGE = (REPOSITORY / "docs" / "ingest.md").read_text(encoding="utf-8")
 
 WHOLE = """
 [dataset]
@@ -61,3 +68,15 @@ def test_what_is_wrong_is_said_with_the_nearest_known_word(ask, text, said):
 def test_a_missing_map_is_said(tmp_path):
     with pytest.raises(InputError, match="cannot be read"):
         read_map(tmp_path / "none.toml")
+
+
+@pytest.mark.parametrize("path", sorted((REPOSITORY / "datasets" / "maps").glob("*.toml")))
+def test_the_shipped_maps_are_maps(path):
+    assert read_map(path).dataset.name == path.stem
+
+
+def test_the_page_shows_a_map_that_works_and_names_every_key(ask):
+    (example,) = re.findall(r"```toml\n(.*?)```", PAGE, flags=re.DOTALL)
+    assert ask(example).columns["x_in_mm"].sign == -1
+    for key in [*ReadOptions.model_fields, *ColumnMap.model_fields]:
+        assert f"`{key}`" in PAGE

@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from tsas_cli import __version__
 from tsas_cli.commands.common import Force, Json, OutFolder, Quiet, progress, show
 
 
@@ -18,7 +19,7 @@ def ingest(
 ) -> None:
     """Turn files of a rig into a dataset, as a map says."""
     from tsas_cli.files import new_folder
-    from tsas_cli.recordings.ingest import find_files, ingest
+    from tsas_cli.recordings.ingest import find_files, ingest_files
     from tsas_cli.recordings.ingest_map import read_map
 
     mapping = read_map(map_path)
@@ -27,15 +28,17 @@ def ingest(
         new_folder(out, force=force) as folder,
         progress("ingest", len(files), quiet=quiet) as step,
     ):
-        runs = ingest(files, mapping, map_path, folder, step=step)
+        runs = ingest_files(files, mapping, map_path, folder, step=step)
+    summary = {
+        "format": 1,
+        "stage": "ingest",
+        "version": __version__,
+        "dataset": {"name": mapping.dataset.name, "folder": str(out)},
+        "runs": [vars(run) | {"source": str(run.source)} for run in runs],
+    }
+    header = ("run", "rows", "duration", "rate", "columns")
     rows = [
         (r.run, f"{r.rows}", f"{r.duration_s:.6g} s", f"{r.rate_Hz:.6g} Hz", " ".join(r.columns))
         for r in runs
     ]
-    header = ("run", "rows", "duration", "rate", "columns")
-    summary = {
-        "stage": "ingest",
-        "dataset": str(out),
-        "runs": [vars(r) | {"source": str(r.source)} for r in runs],
-    }
     show(summary, [(f"dataset {out}", header, rows)], quiet=quiet, as_json=as_json)

@@ -53,11 +53,7 @@ def _rows(table: Table, path: Path) -> int:
 
 
 def _converted(name: str, column: ColumnMap, table: Table, rows: int, where: str) -> Floats:
-    if column.rate_Hz is not None:
-        values = np.arange(rows) / column.rate_Hz
-    elif column.source is not None:
-        values = table.columns[column.source]
-    unit = column.unit or ("s" if column.rate_Hz else table.units.get(column.source or 0))
+    values, unit = _raw(column, table, rows)
     if not unit:
         raise InputError(
             f"the file does not say the unit of {column.source}",
@@ -74,6 +70,13 @@ def _converted(name: str, column: ColumnMap, table: Table, rows: int, where: str
     )
     values = values * (column.sign * slope) + column.sign * intercept
     return values - _offset(values, column.offset)
+
+
+def _raw(column: ColumnMap, table: Table, rows: int) -> tuple[Floats, str | None]:
+    """Return the values as they are in the file, and their unit."""
+    if column.rate_Hz is not None:
+        return np.arange(rows) / column.rate_Hz, "s"
+    return table.columns[column.source], column.unit or table.units.get(column.source)
 
 
 def _offset(values: Floats, offset: float | str) -> float:

@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatch
 from pathlib import Path
+from typing import Any
 
 import pyarrow as pa
 
@@ -58,7 +59,7 @@ def find_files(sources: Sequence[Path], pattern: str) -> list[Path]:
     return found
 
 
-def ingest(
+def ingest_files(
     files: Sequence[Path],
     mapping: IngestMap,
     map_path: Path,
@@ -74,37 +75,30 @@ def ingest(
         A file does not hold what the map says, or two files give one run id.
     """
     runs: list[Run] = []
-    ingested: list[Ingested] = []
-    origin: dict[str, Path] = {}
+    ingested: dict[str, Ingested] = {}
     for path in files:
         table = read(path, mapping.read, mapping.sources())
         run = _run(path, table, mapping)
-        if run.id in origin:
+        if run.id in ingested:
             raise InputError(
-                f"run id {run.id!r} comes from {origin[run.id]} too",
+                f"run id {run.id!r} comes from {ingested[run.id].source} too",
                 where=path,
                 expected="an id for each file",
                 remedy='tell them apart in the map: id = "{folder}_{stem}" under [run]',
             )
-        origin[run.id] = path
         columns = canonical_columns(table, mapping, path, map_path)
         runs.append(write_run(folder, run, _with_nulls(columns)))
-        ingested.append(_summary(run.id, path, columns))
+        ingested[run.id] = _summary(run.id, path, columns)
         step()
-    sources = {run: {"file": path.name, "sha256": sha256_of(path)} for run, path in origin.items()}
     content = {
         "format": 1,
         **mapping.dataset.model_dump(exclude_none=True),
         "rig": mapping.rig,
         "run": runs,
-        "ingest": {
-            "version": __version__,
-            "map": {"file": map_path.name, "sha256": sha256_of(map_path)},
-            "sources": sources,
-        },
+        "ingest": _origin(list(ingested.values()), map_path),
     }
     write_manifest(folder, parse(Manifest, content, map_path))
-    return ingested
+    return list(ingested.values())
 
 
 def _files_in(folder: Path, pattern: str) -> list[Path]:
@@ -122,6 +116,19 @@ def _run(path: Path, table: Table, mapping: IngestMap) -> Run:
         "sha256": "0" * 64,  # known once the file is written
     }
     return parse(Run, conditions | written, path)
+
+
+def _origin(ingested: Sequence[Ingested], map_path: Path) -> dict[str, Any]:
+    """Return what was read, with checksums."""
+    return {
+        "version": __version__,
+        "map": _named(map_path),
+        "sources": {one.run: _named(one.source) for one in ingested},
+    }
+
+
+def _named(path: Path) -> dict[str, str]:
+    return {"file": path.name, "sha256": sha256_of(path)}
 
 
 def _with_nulls(columns: dict[str, Floats]) -> pa.Table:

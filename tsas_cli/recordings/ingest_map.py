@@ -38,7 +38,7 @@ class MapRig(Rig):
 class ColumnMap(_Strict):
     """`[columns.NAME]`: value = sign · (source in the canonical unit) − offset."""
 
-    source: Source | None = None
+    source: Source = ""
     rate_Hz: float | None = Field(default=None, gt=0)  # time_s of files without a clock
     unit: str | None = None
     factor: float | None = None
@@ -49,7 +49,7 @@ class ColumnMap(_Strict):
 
     @model_validator(mode="after")
     def _is_whole(self) -> "ColumnMap":
-        if (self.source is None) == (self.rate_Hz is None):
+        if (self.source == "") == (self.rate_Hz is None):
             raise ValueError("needs a source (time_s may have rate_Hz instead)")
         if (self.factor is None) != (self.factor_unit is None):
             raise ValueError("factor and factor_unit belong together")
@@ -108,7 +108,7 @@ class IngestMap(_Strict):
 
     def sources(self) -> list[Source]:
         """Return every source column that the map takes, each once."""
-        mapped = [c.source for c in self.columns.values() if c.source is not None]
+        mapped = [column.source for column in self.columns.values() if column.rate_Hz is None]
         return list(dict.fromkeys([*mapped, *self.read.extra]))
 
 

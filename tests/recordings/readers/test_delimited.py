@@ -1,5 +1,7 @@
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from tsas_cli.errors import InputError
 from tsas_cli.recordings.readers import read
@@ -84,6 +86,7 @@ def test_encoding_and_lines_to_skip_are_taken_from_the_map(ask):
         ("f,f\n0,1\n1,2\n", ("2 times", "number")),
         ("t,f\n", ("no row",)),
         ("# nothing\n", ("holds no table",)),
+        ("word" * 50_000, ("no row",)),
         ("", ("is empty",)),
         ("t,f\n0,1\n1,\x1b[31mred\n", ("row 3", "\\x1b[31mred")),
     ],
@@ -99,3 +102,20 @@ def test_what_is_wrong_is_said_with_its_place(ask, text, said):
 def test_the_wrong_encoding_is_said(ask):
     with pytest.raises(InputError, match="cp1252"):
         ask("t;µ\n0;1\n1;2\n", "t", bytes_in="cp1252")
+
+
+@settings(max_examples=50, deadline=None)
+@given(
+    rows=st.lists(st.tuples(st.floats(-1e6, 1e6), st.floats(-1e6, 1e6)), min_size=1, max_size=30),
+    marks=st.sampled_from(
+        [(",", "."), (";", "."), (";", ","), ("\t", "."), ("\t", ","), (" ", ".")]
+    ),
+    names=st.booleans(),
+)
+def test_what_is_written_is_read_back_to_the_last_bit(tmp_path_factory, rows, marks, names):
+    delimiter, decimal = marks
+    lines = [delimiter.join(repr(cell).replace(".", decimal) for cell in row) for row in rows]
+    path = tmp_path_factory.mktemp("made") / "a.csv"
+    path.write_text("\n".join([delimiter.join(["t", "f"])] * names + lines) + "\n")
+    table = read(path, ReadOptions(), [1, 2])
+    assert [*zip(table.columns[1], table.columns[2], strict=True)] == rows

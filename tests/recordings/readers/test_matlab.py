@@ -114,6 +114,16 @@ def test_a_capture_with_two_rasters_needs_leave_to_interpolate(path):
     assert columns[SPEED] == pytest.approx(F.tolist())
 
 
+def test_two_captures_are_not_chosen_between(path):
+    captures = {
+        name: controldesk([T], [(FORCE, values, "N", 1)]) for name, values in (("a", T), ("b", F))
+    }
+    save_5(path, **captures)
+    with pytest.raises(InputError, match="holds 2 captures: a, b"):
+        ask(path, FORCE)
+    assert ask(path, FORCE, table="b")[0] == {"time": T.tolist(), FORCE: F.tolist()}
+
+
 def test_a_missing_channel_lists_those_that_are_there(path):
     two_channels_5(path)
     with pytest.raises(InputError, match=rf"Torque is missing.*{FORCE}"):

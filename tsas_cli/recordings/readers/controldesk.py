@@ -12,14 +12,25 @@ from tsas_cli.recordings.readers.table import Floats, Source, Table, floats, res
 from tsas_cli.recordings.readers.timebase import TIME, on_one_clock
 
 
-def find_capture(content: Mapping[str, Any]) -> Mapping[str, Any] | None:
-    """Return the first struct that holds X and Y with data, or None."""
-    for value in (content, *content.values()):
-        if isinstance(value, Mapping) and {"X", "Y"} <= set(value):
-            records = [*_records(value["X"]), *_records(value["Y"])]
-            if records and all(isinstance(r, Mapping) and "Data" in r for r in records):
-                return value
-    return None
+def find_capture(content: Mapping[str, Any], path: Path) -> Mapping[str, Any] | None:
+    """Return the struct that holds X and Y with data, or None where there is none.
+
+    Raises
+    ------
+    InputError
+        There is more than one.
+    """
+    if _is_capture(content):
+        return content
+    found = {name: value for name, value in content.items() if _is_capture(value)}
+    if len(found) > 1:
+        raise InputError(
+            f"holds {len(found)} captures: {', '.join(found)}",
+            where=path,
+            expected="one",
+            remedy='name it in the map: table = "…" under [read]',
+        )
+    return next(iter(found.values()), None)
 
 
 def read_capture(
@@ -47,6 +58,13 @@ def read_capture(
         units,
         (description,) if description else (),
     )
+
+
+def _is_capture(value: Any) -> bool:
+    if not isinstance(value, Mapping) or not {"X", "Y"} <= set(value):
+        return False
+    records = [*_records(value["X"]), *_records(value["Y"])]
+    return all(isinstance(record, Mapping) and "Data" in record for record in records)
 
 
 def _records(value: Any) -> list[Any]:

@@ -10,7 +10,7 @@ from pathlib import Path
 from tsas_cli.errors import InputError
 from tsas_cli.recordings.readers.options import ReadOptions
 
-_SAMPLE = 20  # lines of the table that are looked at
+_SAMPLE = 200  # lines of the table that are looked at
 _UNIT_IN_NAME = re.compile(r"[\[(]([^\[\]()]+)[\])]$")
 _DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+([eE][+-]?\d+)?")
 
@@ -66,7 +66,10 @@ def fields(text: str, delimiter: str) -> list[str]:
     """Split one line of a text table; with a space as delimiter, several count as one."""
     if delimiter == " ":
         return text.split()
-    return [cell.strip() for cell in next(csv.reader([text], delimiter=delimiter))]
+    try:
+        return [cell.strip() for cell in next(csv.reader([text], delimiter=delimiter))]
+    except csv.Error:  # longer than any number or name: no table, which the caller will find
+        return [text]
 
 
 def comment_text(line: str, options: ReadOptions) -> str | None:

@@ -46,7 +46,7 @@ def read(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Table:
     except _DAMAGED as error:
         raise damaged(path, "a MATLAB file", error) from error
     content = _inside(content, options.table, path)
-    capture = find_capture(content)
+    capture = find_capture(content, path)
     if capture is not None:
         return read_capture(capture, options, wanted, path)
     vectors = dict(_vectors(content))
