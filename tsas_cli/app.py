@@ -7,9 +7,11 @@ import typer
 from typer.exceptions import TyperException
 
 from tsas_cli import __version__
+from tsas_cli.commands.calibrate import calibrate
 from tsas_cli.commands.check import check
 from tsas_cli.commands.ingest import ingest
 from tsas_cli.commands.report import report
+from tsas_cli.commands.simulate import simulate
 from tsas_cli.errors import InputError, printable
 
 app = typer.Typer(
@@ -36,8 +38,10 @@ def _options(
     del version
 
 
-app.command("check")(check)
 app.command("ingest")(ingest)
+app.command("check")(check)
+app.command("calibrate")(calibrate)
+app.command("simulate")(simulate)
 app.command("report")(report)
 
 

@@ -21,6 +21,7 @@ STEP = 1e-5  # of the finite differences, in scaled unknowns
 MOST_EVALUATIONS = 60
 NEARLY_BOUND = 1e-4  # of the width between the bounds
 KNOWN = 0.1  # of its scale: an unknown whose error, by its own light, is larger is not identified
+INDEPENDENT = 1e-3  # part of an unknown's effect that the others must not be able to imitate
 COLOUR = 10.0  # how much larger the error of coloured noise may be than that of white noise
 
 
@@ -76,7 +77,7 @@ def identifiable(unknowns: Sequence[Unknown], J: Floats) -> tuple[list[int], dic
         Indices of the identifiable unknowns; for each other one the indices of those that it
         cannot be told from, strongest first, empty where the data do not show it at all.
     """
-    scaled = J * np.array([u.scale for u in unknowns])
+    scaled: Floats = np.linalg.qr(J * np.array([u.scale for u in unknowns]), mode="r")
     chosen: list[int] = []
     confounded: dict[int, list[int]] = {}
     for j in range(len(unknowns)):
@@ -85,12 +86,12 @@ def identifiable(unknowns: Sequence[Unknown], J: Floats) -> tuple[list[int], dic
             np.linalg.lstsq(scaled[:, chosen], column, rcond=None)[0] if chosen else np.zeros(0)
         )
         new = float(np.linalg.norm(column - scaled[:, chosen] @ weights))
-        if new * KNOWN > COLOUR and new > 1e-4 * float(np.linalg.norm(column)):
+        if new * KNOWN > COLOUR and new > INDEPENDENT * float(np.linalg.norm(column)):
             chosen.append(j)
         else:
             told = np.linalg.norm(scaled[:, chosen] * weights, axis=0)
             visible = float(np.linalg.norm(column)) * KNOWN > COLOUR
-            order = np.argsort(-told) if visible else []
+            order = np.argsort(-told) if visible else np.zeros(0, dtype=np.int64)
             confounded[j] = [chosen[k] for k in order if told[k] > 0.1 * told.max()]
     return chosen, confounded
 
@@ -112,10 +113,17 @@ def fit(unknowns: Sequence[Unknown], blocks: Sequence[Indices], residuals: Resid
     runs = len(blocks)
     lower = np.array([u.lower for u in unknowns])
     upper = np.array([u.upper for u in unknowns])
+
+    def errors(values: Floats) -> Floats:
+        return np.concatenate([residuals(r, values) for r in range(runs)])
+
+    def slopes(values: Floats) -> Floats:
+        return jacobian(unknowns, runs, values, residuals)
+
     solution = least_squares(
-        lambda v: np.concatenate([residuals(r, v) for r in range(runs)]),
+        errors,
         np.clip([u.start for u in unknowns], lower, upper),
-        jac=lambda v: jacobian(unknowns, runs, v, residuals),
+        jac=slopes,
         bounds=(lower, upper),
         x_scale=np.array([u.scale for u in unknowns]),
         max_nfev=MOST_EVALUATIONS,
@@ -125,7 +133,7 @@ def fit(unknowns: Sequence[Unknown], blocks: Sequence[Indices], residuals: Resid
     )
     offsets = np.concatenate(([0], np.cumsum([b.max() + 1 for b in blocks])))[:-1]
     block = np.concatenate([b + o for b, o in zip(blocks, offsets, strict=True)])
-    covariance, t = sandwich(solution.jac, solution.fun, block)
+    covariance, t = sandwich(np.asarray(solution.jac), solution.fun, block)
     near = NEARLY_BOUND * (upper - lower)
     at_bound = (solution.x - lower < near) | (upper - solution.x < near)
     return Fitted(

@@ -32,7 +32,7 @@ DEFAULTS = {
 
 @dataclass(frozen=True)
 class Model:
-    """All estimates: those with a run belong to it alone; an effect's are named effect.parameter."""
+    """All estimates; one with a run belongs to it alone, an effect's is named effect.parameter."""
 
     estimates: tuple[Estimate, ...]
 
@@ -79,10 +79,10 @@ def data_sheet(manifest: Manifest) -> Model:
             value = getattr(rig, p.name, None)
             if value is not None:
                 estimates.append(Estimate(f"{effect.name}.{p.name}", value, p.unit, "data sheet"))
-    for run in manifest.run:
-        if run.preload_N:
-            estimates.append(_stated("preload_N", run.preload_N, run.id))
-    return Model(tuple(estimates))
+    preloads = [
+        _stated("preload_N", run.preload_N, run.id) for run in manifest.run if run.preload_N
+    ]
+    return Model((*estimates, *preloads))
 
 
 def _stated(name: str, value: float, run: str | None = None) -> Estimate:
@@ -156,7 +156,8 @@ def read_model(path: Path) -> Model:
     nominal = [p.name for p in NOMINAL]
     known_effects = {f"{e.name}.{p.name}": p.unit for e in EFFECTS for p in e.parameters}
     units = {p.name: p.unit for p in NOMINAL} | {CORRECTION: "N"} | known_effects
-    values = [(name, None, v) for name, v in file.parameters.items()]
+    values: list[tuple[str, str | None, _Value]] = []
+    values += [(name, None, v) for name, v in file.parameters.items()]
     values += [(name, run, v) for run, named in file.runs.items() for name, v in named.items()]
     values += [
         (f"{effect}.{name}", None, v)

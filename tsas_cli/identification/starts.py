@@ -22,14 +22,16 @@ def read_off(
     7, 31, 32); the load spring from f_out over x_out, or from the slopes; the tendon from the
     dead band (29). What the channels do not show is left out.
     """
-    km = {s.phase: abs(s.value) for s in slopes if s.value != 0.0}
+    km: dict[str, float] = {s.phase: abs(s.value) for s in slopes if s.value != 0.0}
     wrap = _wrap(run, segments, km)
     found: dict[str, float] = {}
     if wrap is not None and wrap > 0.0:
         found["friction_coefficient"] = wrap / bend
         dead = [km[p] for p in ("dead_band_up", "dead_band_down") if p in km]
         if dead:
-            found["tendon_stiffness_N"] = np.mean(dead) * length * math.tanh(0.5 * wrap) / wrap
+            found["tendon_stiffness_N"] = (
+                float(np.mean(dead)) * length * math.tanh(0.5 * wrap) / wrap
+            )
     if run.run.load == "spring":
         found |= _spring(run, segments, km)
     return {k: float(v) for k, v in found.items() if np.isfinite(v) and v > 0.0}

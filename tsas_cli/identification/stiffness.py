@@ -63,7 +63,7 @@ def _slope(phase: Phase, x_in: Floats, f_in: Floats, segments: Sequence[Segment]
 
 
 def _block_numbers(sizes: Sequence[int], length: int) -> list[npt.NDArray[np.int64]]:
-    """Number the blocks through, each within one piece."""
+    """Return block numbers that go on from piece to piece; a block lies within one piece."""
     out: list[npt.NDArray[np.int64]] = []
     start = 0
     for size in sizes:

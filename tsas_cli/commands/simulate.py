@@ -1,0 +1,46 @@
+"""`tsas simulate`: run a model on the recorded inputs and compare."""
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from tsas_cli.commands.common import DatasetFolder, Force, Json, OutFolder, Quiet, progress, show
+
+
+class DynamicsOption(StrEnum):
+    """The models of the tendon that can be simulated."""
+
+    static = "static"
+    slip = "slip"
+
+
+def simulate(
+    dataset: DatasetFolder,
+    out: OutFolder,
+    model: Annotated[
+        Path | None,
+        typer.Option("--model", metavar="M.toml", help="The model; the data sheet's without it."),
+    ] = None,
+    dynamics: Annotated[
+        DynamicsOption, typer.Option("--dynamics", help="static: the paper's; slip: distributed.")
+    ] = DynamicsOption.slip,
+    force: Force = False,
+    quiet: Quiet = False,
+    as_json: Json = False,
+) -> None:
+    """Simulate every run with a model and say how far it is from the measurement."""
+    from tsas_cli.identification.simulation import simulate_dataset
+    from tsas_cli.recordings.dataset import read_dataset
+
+    data = read_dataset(dataset)
+    with progress("simulate", len(data.manifest.run), quiet=quiet or as_json) as step:
+        summary = simulate_dataset(data, model, dynamics.value, out, force=force, step=step)
+    rows = [
+        (run, name, f"{c['rmse']:.4g}", f"{c['noise']:.2g}", c["unit"], answer["solver"])
+        for run, answer in summary["runs"].items()
+        for name, c in answer["channels"].items()
+    ]
+    header = ("run", "channel", "RMSE", "noise", "unit", "solver")
+    show(summary, [(f"{dynamics.value} model → {out}", header, rows)], quiet=quiet, as_json=as_json)

@@ -1,0 +1,187 @@
+"""The calibrate stage: `model.toml` and `calibration.json` of a dataset."""
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+from tsas_cli import __version__
+from tsas_cli.files import new_folder, write_json
+from tsas_cli.identification.calibration import Calibration, calibrate
+from tsas_cli.identification.comparison import compare
+from tsas_cli.identification.estimate import Estimate
+from tsas_cli.identification.model import FILE, Model, data_sheet, write_model
+from tsas_cli.identification.prepared import Prepared, prepare
+from tsas_cli.identification.stage import header
+from tsas_cli.identification.stiffness import Slope
+from tsas_cli.physics.capstan import dead_band_stiffness, slip_stiffness, speed_per_stiffness
+from tsas_cli.physics.rig import Rig
+from tsas_cli.recordings.dataset import Dataset
+from tsas_cli.recordings.manifest import Manifest
+
+Table = tuple[str, Sequence[str], Sequence[Sequence[str]]]
+
+
+def calibrate_dataset(
+    dataset: Dataset, out: Path, *, force: bool = False, step: Callable[[], None] = lambda: None
+) -> dict[str, Any]:
+    """Calibrate and write `model.toml` and `calibration.json` into a new folder.
+
+    Raises
+    ------
+    InputError
+        A recording is wrong, or `out` exists and `force` is not set.
+    """
+    with new_folder(out, force=force) as folder:
+        runs = []
+        for recording in dataset:
+            runs.append(prepare(recording))
+            step()
+        result = calibrate(dataset.manifest, runs, step)
+        summary = header("calibrate", dataset, out) | _summary(result, dataset.manifest)
+        write_model(folder / FILE, result.model, version=__version__, dataset=summary["dataset"])
+        write_json(folder / "calibration.json", summary)
+    return summary
+
+
+def _summary(result: Calibration, manifest: Manifest) -> dict[str, Any]:
+    answers = [compare(run, result.model) for run in result.runs]
+    return {
+        "segments": {
+            run.run.id: [
+                {
+                    "start_s": float(run.time_s[s.first]),
+                    "end_s": float(run.time_s[min(s.end, run.time_s.size - 1)]),
+                    "phase": s.phase,
+                }
+                for s in segments
+            ]
+            for run, segments in zip(result.runs, result.segments, strict=True)
+        },
+        "stiffness": [
+            _stiffness(run, slope, expected, manifest, result.model)
+            for run, slopes, by_model in zip(
+                result.runs, result.slopes, result.expected, strict=True
+            )
+            for slope in slopes
+            for expected in [next((e for e in by_model if e.phase == slope.phase), None)]
+        ],
+        "parameters": [e.as_json() for e in result.model.estimates],
+        "cannot_tell": list(result.cannot_tell),
+        "fit": {
+            "converged": result.fitted is not None and result.fitted.converged,
+            "message": "nothing to fit" if result.fitted is None else result.fitted.message,
+            "evaluations": 0 if result.fitted is None else result.fitted.evaluations,
+            "solver": sorted({a.response.solver for a in answers}),
+        },
+        "channels": {
+            run.run.id: {
+                name: {"rmse": rmse, "noise": run.noise[name]} for name, rmse in a.rmse.items()
+            }
+            for run, a in zip(result.runs, answers, strict=True)
+        },
+    }
+
+
+def _stiffness(
+    run: Prepared, slope: Slope, expected: Slope | None, manifest: Manifest, model: Model
+) -> dict[str, Any]:
+    """Return one row: measured km and kr beside what theory and the calibrated model expect."""
+    sheet = manifest.rig
+    stated = all(
+        v is not None
+        for v in (
+            sheet.friction_coefficient,
+            sheet.tendon_modulus_GPa,
+            sheet.tendon_diameter_mm,
+            sheet.load_stiffness_N_per_mm,
+            run.run.total_bend_rad,
+            run.run.sheath_length_mm,
+        )
+    )
+    theory, elastic = _theory((data_sheet(manifest) if stated else model).rig(run.run), slope, run)
+    radius, gear = sheet.turntable_radius_mm, sheet.gear_ratio
+    factor = None if radius is None or gear is None else speed_per_stiffness(radius, gear)
+    return {
+        "run": run.run.id,
+        "phase": slope.phase,
+        "km": _estimate("km", slope, "N/mm", 1.0, run.run.id).as_json(),
+        "kr": None
+        if factor is None
+        else _estimate("kr", slope, "N/(s rpm)", factor, run.run.id).as_json(),
+        "theory_N_per_mm": theory,
+        "theory_elastic_N_per_mm": elastic,
+        "expected_N_per_mm": None if expected is None else expected.value,
+        "occurrences": slope.occurrences,
+        "samples": slope.samples,
+        "note": "theory from the data sheet" if stated else "theory from the calibrated values",
+    }
+
+
+def _estimate(name: str, slope: Slope, unit: str, factor: float, run: str) -> Estimate:
+    low, high = slope.value - slope.half_width, slope.value + slope.half_width
+    return Estimate(
+        name,
+        slope.value * factor,
+        unit,
+        "fitted",
+        run,
+        slope.stderr * factor,
+        low * factor,
+        high * factor,
+    )
+
+
+def _theory(rig: Rig, slope: Slope, run: Prepared) -> tuple[float | None, float | None]:
+    """Return km by Eqs. (29), (31), (32), and with the elastic term kept (30)."""
+    import math
+
+    wrap = rig.friction_coefficient * rig.total_bend_rad
+    if wrap <= 0.0:
+        return None, None
+    if slope.phase.startswith("dead_band"):
+        km = dead_band_stiffness(wrap, rig.sheath_length_mm, rig.tendon_stiffness_N)
+        return km, km
+    if run.run.load != "spring":
+        return None, None
+    direction = 1.0 if slope.phase == "contraction" else -1.0
+    kL = rig.load_stiffness_N_per_mm
+    return kL * math.exp(direction * wrap), slip_stiffness(
+        wrap, direction, kL, rig.sheath_length_mm, rig.tendon_stiffness_N
+    )
+
+
+def tables(summary: dict[str, Any], out: Path) -> list[Table]:
+    """Return what the stage prints: the slopes, the parameters, the errors."""
+    parameters = [Estimate(**p) for p in summary["parameters"]]
+    slope_rows = [
+        (
+            row["run"],
+            row["phase"],
+            Estimate(**row["km"]).text(),
+            _number(row["theory_N_per_mm"]),
+            _number(row["expected_N_per_mm"]),
+        )
+        for row in summary["stiffness"]
+    ]
+    error_rows = [
+        (run, name, f"{c['rmse']:.4g}", f"{c['noise']:.2g}")
+        for run, channels in summary["channels"].items()
+        for name, c in channels.items()
+    ]
+    return [
+        (
+            "stiffness km [N/mm] by linear fit",
+            ("run", "phase", "measured [95 %]", "theory", "distributed model"),
+            slope_rows,
+        ),
+        (
+            f"parameters → {out / FILE}",
+            ("name", "run", "value [95 %]", "unit"),
+            [(e.name, e.run or "all", e.text(), e.unit) for e in parameters],
+        ),
+        ("calibrated model against measurement", ("run", "channel", "RMSE", "noise"), error_rows),
+    ]
+
+
+def _number(value: float | None) -> str:
+    return "" if value is None else f"{value:.4g}"

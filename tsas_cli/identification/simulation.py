@@ -1,0 +1,64 @@
+"""The simulate stage: every run of a dataset with one model, written beside its errors."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+
+from tsas_cli.files import new_folder, sha256_of, write_json
+from tsas_cli.identification.comparison import Compared, compare
+from tsas_cli.identification.model import FILE, data_sheet, read_model
+from tsas_cli.identification.prepared import Prepared, prepare
+from tsas_cli.identification.stage import header
+from tsas_cli.physics.quasi_static import Dynamics
+from tsas_cli.recordings.dataset import Dataset, write_parquet
+
+
+def simulate_dataset(
+    dataset: Dataset,
+    model_path: Path | None,
+    dynamics: Dynamics,
+    out: Path,
+    *,
+    force: bool = False,
+    step: Callable[[], None] = lambda: None,
+) -> dict[str, Any]:
+    """Simulate all runs and write `runs/ID.parquet` and `simulation.json` into a new folder.
+
+    Without a model file the manifest's data sheet is simulated. `step` is called after each run.
+
+    Raises
+    ------
+    InputError
+        The model or a recording is wrong, or `out` exists and `force` is not set.
+    """
+    if model_path is not None and model_path.is_dir():
+        model_path = model_path / FILE
+    model = data_sheet(dataset.manifest) if model_path is None else read_model(model_path)
+    summary = header("simulate", dataset, out)
+    summary["model"] = (
+        {"file": "data sheet"}
+        if model_path is None
+        else {"file": model_path.name, "sha256": sha256_of(model_path)}
+    )
+    summary |= {"dynamics": dynamics, "runs": {}}
+    with new_folder(out, force=force) as folder:
+        (folder / "runs").mkdir()
+        for recording in dataset:
+            run = prepare(recording)
+            answer = compare(run, model, dynamics)
+            write_parquet(folder / "runs" / f"{run.run.id}.parquet", _table(run, answer))
+            summary["runs"][run.run.id] = answer.as_json(run)
+            step()
+        write_json(folder / "simulation.json", summary)
+    return summary
+
+
+def _table(run: Prepared, answer: Compared) -> pa.Table:
+    """Return time, the conditioned or simulated x_in, and the answers; NaN as null."""
+    columns = {"time_s": run.time_s, "x_in_mm": answer.response.x_in_mm, **answer.channels}
+    return pa.table(
+        {name: pa.array(v.astype(np.float64), from_pandas=True) for name, v in columns.items()}
+    )
