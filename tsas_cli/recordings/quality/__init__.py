@@ -3,6 +3,8 @@
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 
+import numpy as np
+
 from tsas_cli.errors import InputError
 from tsas_cli.recordings.dataset import Dataset, read_recording
 from tsas_cli.recordings.manifest import Manifest, Run
@@ -103,7 +105,8 @@ def _look_at_run(dataset: Dataset, run: Run) -> list[Finding | NotChecked]:
         if missing:
             reason = f"{' and '.join(missing)} not recorded"
             results.append(NotChecked(check.code, run.id, reason))
-        else:
+            continue
+        with np.errstate(all="ignore"):  # a stray 1e300 is judged like any other number
             results += _look((check,), trial, run.id)
     return results
 

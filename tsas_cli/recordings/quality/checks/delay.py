@@ -94,6 +94,8 @@ def _remaining_delay(time: Floats, x: Floats, y: Floats) -> float:
     """
     speed = np.gradient(x, time)
     moving = np.abs(speed) > _SLOW * np.sqrt(np.mean(speed**2))
+    if moving.sum() < _ROWS // 2:
+        return math.nan
     x, y, speed = x[moving] - x[moving].mean(), y[moving], speed[moving]
     others = np.column_stack([np.ones_like(x), x, x**2, np.sign(speed)])
     own = speed - others @ np.linalg.lstsq(others, speed, rcond=None)[0]

@@ -22,6 +22,9 @@ _MEDIAN_OF_THIRD = 0.6745 * math.sqrt(20.0)  # of |third difference|, for noise 
 
 def find(trial: Trial) -> Iterator[Remark | CannotTell]:
     """Count exact repeats and hold them against chance."""
+    if not trial.channels:
+        yield CannotTell("no column besides time holds enough numbers")
+        return
     rows = np.column_stack(list(trial.channels.values()))
     repeats = np.concatenate(([False], (rows[1:] == rows[:-1]).all(axis=1)))
     if not repeats.any():
@@ -61,7 +64,7 @@ def _chances_of(values: Floats, blocks: int) -> Floats:
     change = np.abs(np.diff(values))
     smallest = np.min(change, where=change > 1e-9 * np.nanmax(np.abs(values)), initial=np.inf)
     third = np.zeros(blocks * _BLOCK)
-    third[: values.size - 3] = np.nan_to_num(np.abs(np.diff(values, 3)))
+    third[: max(values.size - 3, 0)] = np.nan_to_num(np.abs(np.diff(values, 3)))
     noise = np.median(third.reshape(blocks, _BLOCK), axis=1) / _MEDIAN_OF_THIRD
     return np.where(noise > smallest, smallest / (2.0 * math.sqrt(math.pi) * noise + 1e-300), 1.0)
 

@@ -65,7 +65,7 @@ def _odd(
     ratio: float | None, sentence: str, likely: Mapping[float, str], tolerance: float
 ) -> Iterator[Remark]:
     """Yield a remark when a ratio is close to one of the round factors."""
-    if ratio is None:
+    if ratio is None or not 0.0 < ratio < math.inf:
         return
     nearest = min(likely, key=lambda factor: abs(math.log(ratio / factor)))
     if abs(math.log(ratio / nearest)) < math.log(tolerance):
