@@ -60,6 +60,7 @@ def test_a_folder_is_searched_and_other_files_are_left_alone(bench, ingest):
     (bench / "runs" / "b.CSV").write_text(CSV)
     (bench / "runs" / "deep" / "c.csv").write_text(CSV)
     (bench / "runs" / "photo.png").write_bytes(b"")
+    (bench / "runs" / "._b.csv").write_bytes(b"left by a file manager")
     done = ingest("runs", "a.csv", "--json")
     runs = json.loads(done.stdout)["runs"]
     assert [run["run"] for run in runs] == ["b", "c", "a"]

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from tsas_cli.errors import InputError, nearest
-from tsas_cli.recordings.ingest_map import FromText, RunMap
+from tsas_cli.recordings.ingest_map import Converted, FromText, RunMap
 from tsas_cli.recordings.units import conversion
 
 _UNITS = {"preload_N": "N", "sheath_length_mm": "mm", "total_bend_rad": "rad"}
@@ -23,22 +23,30 @@ def run_conditions(path: Path, header: Sequence[str], run_map: RunMap) -> dict[s
     InputError
         A pattern finds nothing, a group is missing or no number, or a unit does not fit.
     """
-    groups = _groups(run_map.from_file_name, f"{path.absolute().parent.name}/{path.name}", path)
+    folder = path.absolute().parent.name
+    groups = _groups(run_map.from_file_name, f"{folder}/{path.name}", path)
     groups |= _groups(run_map.from_header, "\n".join(header), path)
-    name = _filled(run_map.id, {"stem": path.stem, "folder": path.absolute().parent.name} | groups)
-    converted = {}
-    for condition, rule in run_map.conditions.items():
-        if rule.group not in groups:
-            hint = nearest(rule.group, groups)
-            raise InputError(f"no group {rule.group} for {condition}", where=path, remedy=hint)
-        slope, intercept = conversion(
-            rule.unit, _UNITS[condition], where=f"run.conditions.{condition} of the map"
-        )
-        converted[condition] = slope * _number(groups[rule.group], rule.group, path) + intercept
+    name = _filled(run_map.id, {"stem": path.stem, "folder": folder} | groups)
+    converted = {
+        condition: _converted(condition, rule, groups, path)
+        for condition, rule in run_map.conditions.items()
+    }
     used = {rule.group for rule in run_map.conditions.values()}
     said = {key: _plain(text) for key, text in groups.items() if key not in used}
     defaults = run_map.model_dump(include={"load", *_UNITS}, exclude_none=True)
     return defaults | said | converted | run_map.table.get(name, {}) | {"id": name}
+
+
+def _converted(condition: str, rule: Converted, groups: dict[str, str], path: Path) -> float:
+    if rule.group not in groups:
+        hint = nearest(rule.group, groups)
+        raise InputError(f"no group {rule.group} for {condition}", where=path, remedy=hint)
+    value = _plain(groups[rule.group])
+    if isinstance(value, str):
+        raise InputError(f"group {rule.group} is {value!r}", where=path, expected="a number")
+    where = f"run.conditions.{condition} of the map"
+    slope, intercept = conversion(rule.unit, _UNITS[condition], where=where)
+    return slope * value + intercept
 
 
 def _groups(rule: FromText | None, text: str, path: Path) -> dict[str, str]:
@@ -61,13 +69,6 @@ def _filled(template: str, words: dict[str, str]) -> str:
         return words[match[1]]
 
     return re.sub(r"\{(\w+)\}", word, template)
-
-
-def _number(text: str, group: str, path: Path) -> float:
-    value = _plain(text)
-    if isinstance(value, str):
-        raise InputError(f"group {group} is {text!r}", where=path, expected="a number")
-    return value
 
 
 def _plain(text: str) -> float | int | str:

@@ -105,7 +105,10 @@ def _files_in(folder: Path, pattern: str) -> list[Path]:
     return sorted(
         path
         for path in folder.rglob("*")
-        if path.suffix.lower() in SUFFIXES and fnmatch(path.name, pattern) and path.is_file()
+        if path.suffix.lower() in SUFFIXES
+        and fnmatch(path.name, pattern)
+        and not path.name.startswith(".")
+        and path.is_file()
     )
 
 

@@ -1,14 +1,11 @@
 """MATLAB files: version 5 and earlier, and the HDF5 of version 7.3."""
 
-import struct
-import zlib
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from scipy.io import loadmat
-from scipy.io.matlab import MatReadError
 
 from tsas_cli.errors import InputError, nearest
 from tsas_cli.recordings.readers.controldesk import find_capture, read_capture
@@ -16,17 +13,6 @@ from tsas_cli.recordings.readers.options import ReadOptions
 from tsas_cli.recordings.readers.table import Floats, Source, Table, damaged, floats, resolve
 
 _HDF5 = b"\x89HDF\r\n\x1a\n"
-_DAMAGED = (
-    MatReadError,
-    ValueError,
-    TypeError,
-    LookupError,
-    OSError,
-    EOFError,
-    RuntimeError,
-    struct.error,
-    zlib.error,
-)
 
 
 def read(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Table:
@@ -43,7 +29,9 @@ def read(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Table:
     """
     try:
         content = _content(path)
-    except _DAMAGED as error:
+    except InputError:
+        raise
+    except Exception as error:  # a damaged file ends in any of a dozen types
         raise damaged(path, "a MATLAB file", error) from error
     content = _inside(content, options.table, path)
     capture = find_capture(content, path)
@@ -83,10 +71,14 @@ def _vectors(content: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, F
     for name, value in content.items():
         if isinstance(value, dict):
             yield from _vectors(value, f"{prefix}{name}.")
-        elif isinstance(value, np.ndarray) and value.size and value.dtype.kind in "fiub":
-            matrix = value.reshape(-1, 1) if 1 in value.shape or value.ndim == 1 else value
-            if matrix.ndim == 2 and matrix.shape[1] == 1:
-                yield f"{prefix}{name}", matrix[:, 0]
-            elif matrix.ndim == 2:
-                for j in range(matrix.shape[1]):
-                    yield f"{prefix}{name}(:,{j + 1})", matrix[:, j]
+        elif _is_matrix(value):
+            if 1 in value.shape or value.ndim == 1:
+                yield f"{prefix}{name}", value.ravel()
+            else:
+                for j in range(value.shape[1]):
+                    yield f"{prefix}{name}(:,{j + 1})", value[:, j]
+
+
+def _is_matrix(value: Any) -> bool:
+    is_array = isinstance(value, np.ndarray) and value.ndim in {1, 2} and value.size > 0
+    return is_array and value.dtype.kind in "fiub"

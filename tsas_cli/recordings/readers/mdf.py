@@ -1,6 +1,7 @@
 """ASAM MDF measurement files."""
 
 import gc
+import logging
 import sys
 import traceback
 from collections.abc import Sequence
@@ -26,6 +27,7 @@ def read(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Table:
         or the channels' times differ and the map does not say `resample = true`.
     """
     asammdf = optional("asammdf", extra="mdf")
+    logging.getLogger("asammdf").setLevel(logging.CRITICAL)  # it logs what our error says
     try:
         with asammdf.MDF(path) as file:
             return _table(file, options, wanted, path)
@@ -57,16 +59,12 @@ def _table(file: Any, options: ReadOptions, wanted: Sequence[Source], path: Path
         for source, i in at.items()
         if i < len(channels)
     }
-    series = {s: (_seconds(signal), _values(signal, s, path)) for s, signal in signals.items()}
+    series = {s: (signal.timestamps, _values(signal, s, path)) for s, signal in signals.items()}
     columns = on_one_clock(series, path, resample=options.resample)
     units: dict[Source, str] = {TIME: "s"}
     units |= {source: signal.unit for source, signal in signals.items() if signal.unit}
     header = (str(file.header.comment), f"started {file.start_time.isoformat()}")
     return Table(columns, units, header)
-
-
-def _seconds(signal: Any) -> Floats:
-    return np.asarray(signal.timestamps, dtype=np.float64)
 
 
 def _values(signal: Any, source: Source, path: Path) -> Floats:

@@ -54,7 +54,7 @@ def resolve(wanted: Sequence[Source], names: Sequence[str], path: Path) -> dict[
     return {source: _index(source, names, path) for source in wanted}
 
 
-def floats(values: Any, source: Source, path: Path, *, first_row: int = 1) -> Floats:
+def floats(values: Any, source: Source, path: Path) -> Floats:
     """Return values as float64; null becomes NaN.
 
     Raises
@@ -65,7 +65,7 @@ def floats(values: Any, source: Source, path: Path, *, first_row: int = 1) -> Fl
     try:
         numbers = np.asarray(values, dtype=np.float64)
     except (TypeError, ValueError):
-        numbers = np.array([_number(v, source, path, first_row + i) for i, v in enumerate(values)])
+        numbers = np.array([_number(v, source, path, i) for i, v in enumerate(values, start=1)])
     if numbers.ndim != 1:
         raise InputError(f"column {source} has {numbers.ndim} dimensions", where=path, expected="1")
     return numbers
