@@ -10,14 +10,16 @@ from tsas_cli.commands.common import Force, Json, OutFolder, Quiet, progress, sh
 
 
 def ingest(
-    sources: Annotated[list[Path], typer.Argument(metavar="SOURCE…", help="Files or folders.")],
+    sources: Annotated[
+        list[Path], typer.Argument(metavar="SOURCE", help="Files, or folders to search.")
+    ],
     map_path: Annotated[Path, typer.Option("--map", metavar="MAP.toml", help="What they hold.")],
     out: OutFolder,
     force: Force = False,
     quiet: Quiet = False,
     as_json: Json = False,
 ) -> None:
-    """Turn files of a rig into a dataset, as a map says."""
+    """Turn files of a rig into a dataset, as a map says (docs/ingest.md shows one)."""
     from tsas_cli.files import new_folder
     from tsas_cli.recordings.ingest import find_files, ingest_files
     from tsas_cli.recordings.ingest_map import read_map
