@@ -1,0 +1,44 @@
+import json
+
+import pytest
+
+from tsas_cli.commands.common import progress, show
+
+TABLES = [
+    ("two runs", ("run", "noise"), [("a", "0.1 N"), ("b\x1b[2J", "12.5 N")]),
+    ("none", (), []),
+]
+
+
+def test_a_table_is_aligned_and_names_cannot_steer_the_terminal(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    show({}, TABLES, quiet=False, as_json=False)
+    assert capsys.readouterr().out.splitlines() == [
+        "two runs",
+        "  run       noise",
+        "  --------  ------",
+        "  a         0.1 N",
+        "  b\\x1b[2J  12.5 N",
+        "",
+        "none",
+        "",
+    ]
+
+
+def test_json_replaces_the_tables(capsys: pytest.CaptureFixture[str]) -> None:
+    show({"noise": float("nan")}, TABLES, quiet=True, as_json=True)
+    assert json.loads(capsys.readouterr().out) == {"noise": None}
+
+
+def test_quiet_prints_nothing(capsys: pytest.CaptureFixture[str]) -> None:
+    show({}, TABLES, quiet=True, as_json=False)
+    with progress("fit", 2, quiet=True) as step:
+        step()
+    assert capsys.readouterr() == ("", "")
+
+
+def test_no_bar_is_drawn_into_a_file(capsys: pytest.CaptureFixture[str]) -> None:
+    with progress("fit", 2, quiet=False) as step:
+        step()
+    assert capsys.readouterr() == ("", "")
