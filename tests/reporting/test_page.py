@@ -141,6 +141,14 @@ def test_every_section_file_is_on_the_page():
     assert {section.__module__.rpartition(".")[2] for section in SECTIONS} == names
 
 
+def test_a_note_says_for_which_rows_it_holds(folders, tmp_path):
+    content = json.loads((folders["calibration"] / "calibration.json").read_text())
+    content["stiffness"][0]["note"] = "few samples"
+    content["dataset"]["folder"] = str(folders["dataset"])
+    (tmp_path / "calibration.json").write_text(json.dumps(content))
+    assert "<li>few samples: a contraction</li>" in page(read_inputs([tmp_path]))
+
+
 def test_missing_values_of_a_stage_are_dashes(folders, tmp_path):
     content = json.loads((folders["calibration"] / "calibration.json").read_text())
     for row in content["stiffness"]:

@@ -4,6 +4,8 @@ import math
 
 MINUS = "\N{MINUS SIGN}"
 ABSENT = "\N{EN DASH}"
+_MOST_DECIMALS = 9
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def plain(value: float | None, digits: int = 4) -> str:
@@ -42,10 +44,9 @@ def _exponent(value: float) -> int:
 
 def _fixed(value: float, decimals: int) -> str:
     """Round to a number of decimals, or of tens where it is negative; powers of ten if needed."""
-    if decimals > 6:
+    if decimals > _MOST_DECIMALS and value:
         exponent = _exponent(value)
-        text = f"{_fixed(value / 10.0**exponent, decimals + exponent)}·10^{exponent}"
-    else:
-        rounded = round(value, decimals) + 0.0  # minus zero becomes zero
-        text = f"{rounded:.{max(decimals, 0)}f}"
-    return text.replace("-", MINUS)
+        power = str(exponent).translate(_RAISED)
+        return f"{_fixed(value / 10.0**exponent, decimals + exponent)}·10{power}"
+    rounded = round(value, decimals) + 0.0  # minus zero becomes zero
+    return f"{rounded:.{max(decimals, 0)}f}".replace("-", MINUS)

@@ -29,7 +29,14 @@ def section(inputs: Inputs) -> Section:
     rows = calibration.stiffness
     by_phase = ((phase.key, [row for row in rows if row.phase == phase.key]) for phase in PHASES)
     pictures = tuple(_picture(key, found) for key, found in by_phase if found)
-    return Section("stiffness", _TITLE, (_WHAT, _WHY), tables=(_table(rows),), pictures=pictures)
+    return Section(
+        "stiffness",
+        _TITLE,
+        (_WHAT, _WHY),
+        points=_notes(rows),
+        tables=(_table(rows),),
+        pictures=pictures,
+    )
 
 
 def _table(rows: tuple[Stiffness, ...]) -> Table:
@@ -45,7 +52,6 @@ def _table(rows: tuple[Stiffness, ...]) -> Table:
         f"kr [{kr_unit}]",
         "95 % interval",
         "strokes",
-        "note",
     )
     return Table(
         "Stiffness by run and phase",
@@ -66,7 +72,18 @@ def _row(row: Stiffness) -> tuple[str, ...]:
         plain(row.theory_elastic_N_per_mm),
         *with_interval(*kr),
         str(row.occurrences),
-        row.note or "",
+    )
+
+
+def _notes(rows: tuple[Stiffness, ...]) -> tuple[str, ...]:
+    """Return each note once, with the rows that it holds for where it does not hold for all."""
+    places: dict[str, list[str]] = {}
+    for row in rows:
+        if row.note:
+            places.setdefault(row.note, []).append(f"{row.run} {label_of(row.phase)}")
+    return tuple(
+        note if len(found) == len(rows) else f"{note}: {', '.join(found)}"
+        for note, found in places.items()
     )
 
 

@@ -21,10 +21,15 @@ def sentences(inputs: Inputs) -> Iterator[str]:
             f"The RMSE between simulation and measurement is {', '.join(distances)}; "
             "1 is as near as noise allows."
         )
-    calibration = inputs.get(Calibration)
-    if calibration and calibration.cannot_tell:
-        yield "These recordings do not say everything:"
-        yield from calibration.cannot_tell
+    if calibration := inputs.get(Calibration):
+        yield from _open_questions(calibration.cannot_tell)
+
+
+def _open_questions(sentences: tuple[str, ...]) -> Iterator[str]:
+    if sentences:
+        yield f"What these recordings do not say: {sentences[0]}"
+    if len(sentences) > 1:
+        yield f"More of this stands under Parameters ({len(sentences) - 1})."
 
 
 def _findings(check: Check) -> str:
