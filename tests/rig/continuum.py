@@ -69,7 +69,7 @@ def run(tendon, x_in, mu, q):
     """
     m, n = x_in.size, tendon.bend.size
     u, phi = np.zeros(n), np.zeros(n)
-    f_in, f_out, u_end = np.empty(m), np.empty(m), np.empty(m)
+    f_in, f_out, u_end = np.full(m, np.nan), np.full(m, np.nan), np.full(m, np.nan)
     before = Ends(0.0, mu[0], tendon.p * tendon.preload)
     for i in range(m):
         now = Ends(x_in[i], mu[i], q[i])
@@ -96,7 +96,7 @@ def _advance(u, phi, tendon, before, now):
             before.mu + to * (now.mu - before.mu),
             before.q + to * (now.q - before.q),
         )
-        converged, du = _solve(u, phi, tendon, here, np.sign(now.x_in - before.x_in))
+        converged, du = _solve(u, phi, tendon, here)
         if converged:
             for j in range(u.size):
                 phi[j] = dahl(du[j], phi[j], tendon.delta)
@@ -117,11 +117,11 @@ def dahl(du, phi, delta):
 
 
 @njit(cache=True)
-def _dahl_slope(du, phi, delta, direction):
-    """Return ∂φ/∂du; at du = 0 the one towards `direction`, or the larger one if that is 0."""
-    sign = np.sign(du) if du != 0.0 else direction
-    if sign == 0.0:
+def _dahl_slope(du, phi, delta):
+    """Return ∂φ/∂du, at du = 0 the larger one of both sides."""
+    if du == 0.0:
         return (1.0 + abs(phi)) / delta
+    sign = np.sign(du)
     return (1.0 - sign * phi) / delta * np.exp(-abs(du) / delta)
 
 
@@ -151,12 +151,12 @@ def _unbalanced(u, du, tension, e, tendon, ends):
 
 
 @njit(cache=True)
-def _newton_change(phi, du, tension, e, pull, tendon, mu, direction):
+def _newton_change(phi, du, tension, e, pull, tendon, mu):
     """Solve the tridiagonal Newton equations for the change of du."""
     n, k = du.size, tendon.k
     upper, change = np.empty(n), np.empty(n)
     for i in range(n):
-        slope = 0.5 * mu * tendon.bend[i] * _dahl_slope(du[i], phi[i], tendon.delta, direction)
+        slope = 0.5 * mu * tendon.bend[i] * _dahl_slope(du[i], phi[i], tendon.delta)
         if i == 0:
             below, above = 0.0, -tendon.c_in * k[0] * (1.0 + e[0]) / (1.0 - e[0])
             diagonal = 1.0 - above + tendon.c_in * tension[0] * 2.0 * slope / (1.0 - e[0]) ** 2
@@ -178,7 +178,7 @@ def _newton_change(phi, du, tension, e, pull, tendon, mu, direction):
 
 
 @njit(cache=True)
-def _solve(u, phi, tendon, ends, direction):
+def _solve(u, phi, tendon, ends):
     """Find du by Newton's method from du = 0; return whether it converged, and du.
 
     While all nodes move one way the residual is concave with an M-matrix as Jacobian, and the
@@ -188,7 +188,7 @@ def _solve(u, phi, tendon, ends, direction):
     tension, e = _state(u, phi, du, tendon, ends.mu)
     pull = _unbalanced(u, du, tension, e, tendon, ends)
     for _ in range(MAX_ITERATIONS):
-        change = _newton_change(phi, du, tension, e, pull, tendon, ends.mu, direction)
+        change = _newton_change(phi, du, tension, e, pull, tendon, ends.mu)
         work = np.dot(change[1:-1], pull[1:-1])
         part = 1.0
         for _ in range(MAX_CUTS):

@@ -120,7 +120,8 @@ def simulate(rig: Rig, motion: Motion, *, distal: np.ndarray | None = None) -> C
     mu = rig.friction_coefficient * _course(rig.friction_course, t) * _course(rig.bend_course, t)
     f_in, f_out, u_end, solved = continuum.run(tendon, x_in, mu, q)
     if solved < t.size:
-        raise ValueError(f"the tendon goes slack or the step fails at {t[solved]:.6g} s")
+        what = "the tendon is slack" if np.isfinite(f_in[solved]) else "the step fails"
+        raise ValueError(f"{what} at {t[solved]:.6g} s")
     x_out = u_end - c_out * (f_out - rig.preload_N)
     return CleanRun(
         {"time_s": t, "x_in_mm": x_in, "x_out_mm": x_out, "f_in_N": f_in, "f_out_N": f_out}
