@@ -40,8 +40,8 @@ def check(
 def _tables(report: "Report") -> Iterator[tuple[str, tuple[str, ...], Sequence[tuple[str, ...]]]]:
     """Yield what was found, what to do about it, and what could not be told."""
     found = [(str(f.severity), f.code, f.run or "", f.sentence) for f in report.findings]
-    title = f"the checks found {len(found) or 'nothing'}"
-    yield title, ("severity", "code", "run", "finding"), found
+    header = ("severity", "code", "run", "finding") if found else ()
+    yield f"the checks found {len(found) or 'nothing'}", header, found
     remedies = dict.fromkeys((f.code, f.remedy) for f in report.findings)
     if remedies:
         yield "what to do", ("code", "remedy"), list(remedies)

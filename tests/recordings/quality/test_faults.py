@@ -106,6 +106,16 @@ def test_rows_of_a_quiet_coarse_recording_may_repeat():
     assert [type(said) for said in check.find(subject)] == [CannotTell]
 
 
+@pytest.mark.parametrize("column", ["x_in_mm", "f_in_N"])
+@pytest.mark.parametrize("rows", [2, 10, 50])
+@pytest.mark.parametrize("step", [0.0, 0.01])
+def test_a_channel_that_is_updated_slowly(column, rows, step):
+    measured = columns(Bench(rate_Hz=1000.0, step_mm=step, step_N=5.0 * step))
+    slow = measured[column][np.arange(measured[column].size) // rows * rows]
+    said = found(measured | {column: slow}, "slow-channel", column)
+    assert f"every {rows} rows" in said.sentence
+
+
 @pytest.mark.parametrize(
     ("column", "low", "high"),
     [

@@ -5,6 +5,7 @@ from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
+import numpy.typing as npt
 
 from tsas_cli.numerics.noise import noise_sd, quantisation_step
 from tsas_cli.numerics.turning_points import turning_points
@@ -12,6 +13,7 @@ from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.dataset import Floats, Recording
 from tsas_cli.recordings.manifest import Rig
 
+Booleans = npt.NDArray[np.bool_]
 MECHANICAL = ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N")
 _FOLLOWERS = {"spring": MECHANICAL[1:], "force": ("x_out_mm",), "displacement": ()}
 _FEWEST = 16  # samples below which neither noise nor motion can be told
@@ -158,6 +160,27 @@ def alternates(values: Floats) -> bool:
     third = np.diff(clean, 3)
     third = third[np.abs(third) > 1e-9 * np.abs(clean).max(initial=0.0)]
     return third.size >= _FEWEST and bool(np.mean(third[1:] * third[:-1] < 0.0) > 0.5)
+
+
+def repeats(trial: Trial) -> Booleans:
+    """Return which rows equal the row before them in every channel, shape (n,)."""
+    same = np.ones(trial.time_s.size, dtype=np.bool_)
+    same[0] = False
+    for values in trial.channels.values():
+        same[1:] &= values[1:] == values[:-1]
+    return same
+
+
+def rows_between_changes(values: Floats) -> npt.NDArray[np.int64]:
+    """Return how many rows lie from each change of a channel to the next."""
+    return np.diff(np.flatnonzero(values[1:] != values[:-1]))
+
+
+def smallest_change(values: Floats) -> float:
+    """Return the smallest change from a row to the next, rounding apart; infinite where none is."""
+    change = np.abs(np.diff(values))
+    rounding = 1e-9 * np.nanmax(np.abs(values))
+    return float(np.min(change, where=change > rounding, initial=np.inf))
 
 
 def plateaus(values: Floats, shortest: int) -> list[slice]:

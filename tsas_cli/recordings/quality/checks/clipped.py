@@ -10,7 +10,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
+from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark, counted
 from tsas_cli.recordings.quality.trial import Trial, plateaus
 
 _FEWEST_ROWS = 5
@@ -41,8 +41,8 @@ def _look(trial: Trial, name: str, end: str, sign: int) -> Iterator[Remark]:
         seconds = sum(trial.time_s[r.stop - 1] - trial.time_s[r.start] for r in flat)
         yield Remark(
             "error",
-            f"{name} stays at its {end} value {extreme:.6g} for {seconds:.3g} s in {len(flat)} "
-            "stretches while the motion goes on",
+            f"{name} stays at its {end} value {extreme:.6g} for {seconds:.3g} s in "
+            f"{counted(len(flat), 'plateau')} while the motion goes on",
             "raise the sensor's range or lower its gain, check for a stop, and record again",
             name,
             float(trial.time_s[flat[0].start]),

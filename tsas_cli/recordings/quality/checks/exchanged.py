@@ -17,11 +17,11 @@ _CLEAR = 0.03
 
 def find(trial: Trial) -> Iterator[Remark | CannotTell]:
     """Compare the two directions at the same tension at the load."""
-    for name in trial.mechanical.keys() - {"x_in_mm"}:
-        going = trial.follows(name)
-        if trial.recording.run.load == "spring" and going is not None and going < 0.0:
-            yield CannotTell(f"the sign of {name} against x_in_mm is in doubt")
-            return
+    spring = trial.recording.run.load == "spring"
+    against = [n for n in ("f_in_N", "f_out_N") if spring and (trial.follows(n) or 0.0) < 0.0]
+    if against:
+        yield CannotTell(f"the sign of {against[0]} against x_in_mm is in doubt")
+        return
     if len({stroke.direction for stroke in trial.strokes}) < 2:
         yield CannotTell("the drive does not move both ways")
         return

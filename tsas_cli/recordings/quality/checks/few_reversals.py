@@ -6,7 +6,7 @@ once, and nothing says whether it repeats.
 
 from collections.abc import Iterator
 
-from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
+from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark, counted
 from tsas_cli.recordings.quality.trial import Trial
 
 _ENOUGH = 3
@@ -17,7 +17,7 @@ def find(trial: Trial) -> Iterator[Remark | CannotTell]:
     turns = max(len(trial.strokes) - 1, 0)
     if turns >= _ENOUGH:
         return
-    moves = f"turns back {turns} {'time' if turns == 1 else 'times'}"
+    moves = f"turns back {counted(turns, 'time')}"
     yield Remark(
         "warning",
         f"x_in_mm {moves if trial.strokes else 'does not move visibly'}; two full cycles have "

@@ -7,14 +7,12 @@ scatter of the others. Gaps are never filled; each stage leaves them out.
 from collections.abc import Iterator
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.recordings.columns import TIME
-from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
-from tsas_cli.recordings.quality.trial import Trial
+from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark, counted
+from tsas_cli.recordings.quality.trial import Booleans, Trial
 
 _COMMON = 0.05  # long intervals that are as frequent as this are jitter
-Booleans = npt.NDArray[np.bool_]
 _REMEDY = "look for lost samples at the source; the stages leave the gap out"
 
 
@@ -39,7 +37,7 @@ def _missing_rows(trial: Trial) -> Iterator[Remark]:
         longest = gaps[np.argmax(interval[gaps])]
         yield Remark(
             "warning",
-            f"rows are missing at {_count(gaps.size, 'place')}; the longest gap is "
+            f"rows are missing at {counted(gaps.size, 'place')}; the longest gap is "
             f"{interval[longest]:.4g} s at {trial.time_s[longest]:.6g} s "
             f"(the sample interval is {1e3 * median:.4g} ms)",
             _REMEDY,
@@ -57,16 +55,12 @@ def _empty_cells(trial: Trial, name: str, empty: Booleans) -> Remark:
     return Remark(
         "warning",
         f"{name} is empty in {int(empty.sum())} of {empty.size} rows, at "
-        f"{_count(starts.size, 'place')}; the longest has {lengths[longest]} rows "
+        f"{counted(starts.size, 'place')}; the longest has {lengths[longest]} rows "
         f"at {trial.time_s[starts[longest]]:.6g} s",
         _REMEDY,
         name,
         float(trial.time_s[starts[0]]),
     )
-
-
-def _count(number: int, noun: str) -> str:
-    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
 
 
 CHECK = Check("gap", find)

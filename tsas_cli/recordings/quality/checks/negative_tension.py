@@ -27,7 +27,8 @@ def find(trial: Trial) -> Iterator[Remark | CannotTell]:
             yield Remark(
                 "warning",
                 f"{name} is negative in {share:.3g} % of the samples, down to {low:.4g} N",
-                "add the preload at ingest if the sensor was zeroed under it, or mend the offset",
+                "add the preload at ingest if the sensor was zeroed under it, or mend its offset; "
+                "only the difference of two tendons may be negative",
                 name,
                 float(trial.time_s[np.argmax(values < -limit)]),
             )

@@ -26,9 +26,9 @@ def find(trial: Trial) -> Iterator[Remark | CannotTell]:
     witnesses = [n for n in _WITNESSES[trial.recording.run.load] if n in trial.channels]
     if not witnesses or not trial.strokes:
         yield CannotTell(
-            "no channel shows when the distal end moves"
-            if not witnesses
-            else "the drive does not move visibly"
+            "the drive does not move visibly"
+            if witnesses
+            else "no channel shows when the distal end moves"
         )
         return
     for phase, direction in (("contraction", 1), ("loosening", -1)):
@@ -37,7 +37,7 @@ def find(trial: Trial) -> Iterator[Remark | CannotTell]:
         if share < _ENOUGH:
             yield Remark(
                 "warning",
-                f"no steady {phase}: {' and '.join(witnesses)} moves in at most "
+                f"no steady {phase}: by {' and '.join(witnesses)}, the distal end moves in at most "
                 f"{100 * share:.2g} % of a stroke of x_in_mm",
                 "record longer strokes, so that the load moves well beyond the dead band",
                 witnesses[0],
@@ -47,9 +47,13 @@ def find(trial: Trial) -> Iterator[Remark | CannotTell]:
 def _moving(trial: Trial, name: str, stroke: Stroke) -> float:
     """Return the share of a stroke's travel that lies after the distal end has begun to move."""
     values, x = trial.channels[name][stroke.rows], trial.channels["x_in_mm"][stroke.rows]
+    there = np.isfinite(values) & np.isfinite(x)
+    if not there.any():
+        return 0.0
+    values, x = values[there], x[there]
     limit = max(trial.visible(name), 0.02 * trial.span[name])
     away = np.abs(values - values[0]) > limit
-    if not away[-1] or not np.isfinite(values[0]):
+    if not away[-1]:
         return 0.0
     begin = int(np.flatnonzero(~away)[-1])
     if away.size - begin < _FEWEST_ROWS:

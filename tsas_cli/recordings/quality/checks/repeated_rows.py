@@ -10,11 +10,10 @@ import math
 from collections.abc import Iterator
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.recordings.dataset import Floats
 from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
-from tsas_cli.recordings.quality.trial import Trial
+from tsas_cli.recordings.quality.trial import Booleans, Trial, repeats, smallest_change
 
 _BLOCK = 32  # rows
 _MEDIAN_OF_THIRD = 0.6745 * math.sqrt(20.0)  # of |third difference|, for noise of unit deviation
@@ -25,29 +24,28 @@ def find(trial: Trial) -> Iterator[Remark | CannotTell]:
     if not trial.channels:
         yield CannotTell("no column besides time holds enough numbers")
         return
-    rows = np.column_stack(list(trial.channels.values()))
-    repeats = np.concatenate(([False], (rows[1:] == rows[:-1]).all(axis=1)))
-    if not repeats.any():
+    repeated = repeats(trial)
+    if not repeated.any():
         return
-    block = (np.cumsum(~repeats) - 1) // _BLOCK  # a repeat belongs to the row that it repeats
-    chance = _chances(trial, ~repeats)[block]
+    block = (np.cumsum(~repeated) - 1) // _BLOCK  # a repeat belongs to the row that it repeats
+    chance = _chances(trial, ~repeated)[block]
     telling = chance < 1.0
     if not telling.any():
         yield CannotTell("the channels are so quiet or so coarse that rows repeat by themselves")
         return
-    repeats &= telling
-    count, expected = int(repeats.sum()), float(chance[telling].sum())
+    repeated &= telling
+    count, expected = int(repeated.sum()), float(chance[telling].sum())
     if count > 3.0 * expected + 10.0:
         yield Remark(
             "warning",
-            f"{count} of {repeats.size} rows ({100 * count / repeats.size:.2g} %) repeat the row "
+            f"{count} of {repeated.size} rows ({100 * count / repeated.size:.2g} %) repeat the row "
             f"before them in all channels; with this noise about {expected:.0f} would",
             "record no faster than the slowest sensor answers, or drop the repeats at ingest",
-            first_s=float(trial.time_s[np.argmax(repeats)]),
+            first_s=float(trial.time_s[np.argmax(repeated)]),
         )
 
 
-def _chances(trial: Trial, fresh: npt.NDArray[np.bool_]) -> Floats:
+def _chances(trial: Trial, fresh: Booleans) -> Floats:
     """Return for each block of fresh rows how likely a row equals the one before it.
 
     At the edge of a rest the block beside decides.
@@ -61,8 +59,7 @@ def _chances(trial: Trial, fresh: npt.NDArray[np.bool_]) -> Floats:
 
 def _chances_of(values: Floats, blocks: int) -> Floats:
     """Return the chances of one channel; 1 where its noise is below its smallest change."""
-    change = np.abs(np.diff(values))
-    smallest = np.min(change, where=change > 1e-9 * np.nanmax(np.abs(values)), initial=np.inf)
+    smallest = smallest_change(values)
     third = np.zeros(blocks * _BLOCK)
     third[: max(values.size - 3, 0)] = np.nan_to_num(np.abs(np.diff(values, 3)))
     noise = np.median(third.reshape(blocks, _BLOCK), axis=1) / _MEDIAN_OF_THIRD

@@ -26,7 +26,9 @@ def find(trial: Trial) -> Iterator[Remark | CannotTell]:
         return
     for name in against:
         yield _remark(name, "goes against x_in_mm, stroke by stroke")
-    for name in set(pushing) - set(against):
+    for name in pushing:
+        if name in against:
+            continue
         share = 100.0 * float(np.mean(trial.channels[name] < 0.0))
         yield _remark(name, f"is negative in {share:.3g} % of the samples; a tendon cannot push")
     if not against and not together and not pushing:

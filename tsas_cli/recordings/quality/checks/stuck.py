@@ -1,7 +1,7 @@
 """A channel does not change at all while the motion goes back and forth.
 
 The sensor, its cable or its software hangs. A channel with noise is stuck when it does not change
-for 20 rows during visible motion; one without noise only when the drive goes through most of its
+for 20 updates during visible motion; one without noise only when the drive goes through most of its
 span and back, because in a dead band the distal end rests by itself.
 """
 
@@ -13,9 +13,9 @@ from tsas_cli.numerics.noise import noise_sd
 from tsas_cli.numerics.turning_points import turning_points
 from tsas_cli.recordings.dataset import Floats
 from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark, Severity
-from tsas_cli.recordings.quality.trial import Trial, alternates, plateaus
+from tsas_cli.recordings.quality.trial import Trial, alternates, plateaus, rows_between_changes
 
-_FEWEST_ROWS = 20
+_FEWEST_UPDATES = 20
 
 
 def find(trial: Trial) -> Iterator[Remark | CannotTell]:
@@ -27,7 +27,11 @@ def find(trial: Trial) -> Iterator[Remark | CannotTell]:
         if np.nanmin(values) == np.nanmax(values):
             yield _remark("warning", trial, name, slice(0, values.size))
             continue
-        stuck = [rows for rows in plateaus(values, _FEWEST_ROWS) if _hangs(trial, name, rows)]
+        between = rows_between_changes(values)
+        shortest = int(_FEWEST_UPDATES * np.median(between)) if between.size else _FEWEST_UPDATES
+        long = plateaus(values, shortest)
+        noisy = bool(long) and _noisy(trial, name, long)
+        stuck = [rows for rows in long if _hangs(trial, name, rows, noisy=noisy)]
         if stuck:
             yield _remark("error", trial, name, max(stuck, key=lambda r: r.stop - r.start))
 
@@ -44,7 +48,7 @@ def _remark(severity: Severity, trial: Trial, name: str, rows: slice) -> Remark:
     )
 
 
-def _hangs(trial: Trial, name: str, rows: slice) -> bool:
+def _hangs(trial: Trial, name: str, rows: slice, *, noisy: bool) -> bool:
     values = trial.channels[name]
     interior = np.nanmin(values) < values[rows.start] < np.nanmax(values)
     for other in trial.references(name):
@@ -52,17 +56,18 @@ def _hangs(trial: Trial, name: str, rows: slice) -> bool:
         motion = motion[np.isfinite(motion)]
         if motion.size < 2:
             continue
-        if interior and _noisy(trial, name) and np.ptp(motion) > 2.0 * trial.visible(other):
+        if interior and noisy and np.ptp(motion) > 2.0 * trial.visible(other):
             return True
         if _goes_there_and_back(motion, trial.span[other]):
             return True
     return False
 
 
-def _noisy(trial: Trial, name: str) -> bool:
-    values = trial.channels[name]
-    for rows in plateaus(values, _FEWEST_ROWS)[::-1]:
-        values = np.delete(values, rows)
+def _noisy(trial: Trial, name: str, long: list[slice]) -> bool:
+    """Say whether the channel outside its long plateaus has more noise than steps."""
+    values = trial.channels[name].copy()
+    for rows in long:
+        values[rows] = np.nan
     return alternates(values) and noise_sd(values) > trial.step[name]
 
 

@@ -1,0 +1,39 @@
+"""A channel is updated less often than the rows are written.
+
+Its sensor answers at a lower rate and the logger holds the last value, so the channel comes half
+an update late on average. An encoder in slow motion also rests between its steps, but moves by one
+step at a time; a held channel jumps.
+"""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from tsas_cli.recordings.dataset import Floats
+from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
+from tsas_cli.recordings.quality.trial import Trial, repeats, rows_between_changes, smallest_change
+
+_FEWEST_CHANGES = 20
+
+
+def find(trial: Trial) -> Iterator[Remark | CannotTell]:
+    """Look for displacements and tensions that hardly ever change in neighbouring rows."""
+    fresh = ~repeats(trial)
+    for name, values in trial.mechanical.items():
+        rows = rows_between_changes(values[fresh])
+        if rows.size >= _FEWEST_CHANGES and np.quantile(rows, 0.05) >= 2.0 and _jumps(values):
+            yield Remark(
+                "warning",
+                f"{name} changes only every {np.median(rows):.0f} rows; the value is held between",
+                "record the channel at its own rate, or correct for half an update of delay",
+                name,
+            )
+
+
+def _jumps(values: Floats) -> bool:
+    """Say whether most changes are larger than one step."""
+    change = np.abs(np.diff(values))
+    return bool(np.nanmedian(change[change > 0.0]) > 1.5 * smallest_change(values))
+
+
+CHECK = Check("slow-channel", find)
