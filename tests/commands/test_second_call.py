@@ -1,0 +1,38 @@
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+from tests.rig.recordings import Run, conditions, record, write_dataset
+from tests.rig.tendon import Rig
+
+COUNT_COMPILATIONS = """
+import sys
+from numba.core import event
+from tsas_cli.app import main
+with event.install_recorder("numba:compile") as compilations:
+    try:
+        main()
+    except SystemExit as stopped:
+        assert not stopped.code
+print(len(compilations.buffer))
+"""
+
+
+def test_the_second_calibrate_compiles_nothing(tmp_path: Path) -> None:
+    rig = Rig(proximal_length_mm=150.0, distal_length_mm=60.0)
+    dataset = write_dataset(tmp_path / "dataset", [Run("a", record(rig), conditions(rig))])
+    call = [sys.executable, "-c", COUNT_COMPILATIONS, "calibrate", dataset, "--quiet", "--out"]
+    counts = []
+    for number in ("first", "second"):
+        result = subprocess.run(
+            [*call, tmp_path / number],
+            env=os.environ | {"TSAS_CACHE_DIR": str(tmp_path / "cache")},
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert result.returncode == 0, result.stderr
+        counts.append(int(result.stdout))
+    assert counts[0] > 0
+    assert counts[1] == 0
