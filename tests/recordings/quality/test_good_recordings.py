@@ -85,3 +85,11 @@ def test_an_encoder_that_waits_for_the_load_at_the_start_is_not_clipped():
     measured["x_in_mm"][start] = measured["x_in_mm"].min()
     measured["x_out_mm"] -= np.where(measured["time_s"] > 0.02, 1.5, 0.0)
     assert "clipped" not in {code for code, _ in complaints(measured, "force")}
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_a_computed_recording_that_was_interpolated_is_not_stuck_in_the_dead_band(shape):
+    measured = columns(Bench(shape=shape, noise_mm=0.0, noise_N=0.0))
+    time = np.arange(0.0, 15.9, 0.001)
+    finer = {name: np.interp(time, measured["time_s"], v) for name, v in measured.items()}
+    assert complaints(finer, "spring") == []

@@ -16,6 +16,7 @@ from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark, Sever
 from tsas_cli.recordings.quality.trial import Trial, alternates, plateaus, rows_between_changes
 
 _FEWEST_UPDATES = 20
+_LEAST_NOISE = 1e-4  # of the span; less may be the interpolation of a computed channel
 
 
 def find(trial: Trial) -> Iterator[Remark | CannotTell]:
@@ -68,7 +69,8 @@ def _noisy(trial: Trial, name: str, long: list[slice]) -> bool:
     values = trial.channels[name].copy()
     for rows in long:
         values[rows] = np.nan
-    return alternates(values) and noise_sd(values) > trial.step[name]
+    least = max(trial.step[name], _LEAST_NOISE * trial.span[name])
+    return alternates(values) and noise_sd(values) > least
 
 
 def _goes_there_and_back(motion: Floats, span: float) -> bool:
