@@ -13,7 +13,7 @@ def section(inputs: Inputs) -> Section:
     calibration = inputs.get(Calibration)
     if calibration is None:
         return missing("parameters", _TITLE, what="calibration", stage="calibrate")
-    intro = ["Values with an interval are fitted; the others are taken as given."]
+    intro = ["The origin says which values are fitted, and which are taken as given."]
     if not calibration.fit.converged:
         intro.append(f"The fit did not converge: {calibration.fit.message}")
     if calibration.cannot_tell:

@@ -29,7 +29,7 @@ def _open_questions(sentences: tuple[str, ...]) -> Iterator[str]:
     if sentences:
         yield f"What these recordings do not say: {sentences[0]}"
     if len(sentences) > 1:
-        yield f"More of this stands under Parameters ({len(sentences) - 1})."
+        yield f"The other {len(sentences) - 1} of these sentences stand under Parameters."
 
 
 def _findings(check: Check) -> str:
