@@ -65,6 +65,7 @@ def _summary(result: Calibration, manifest: Manifest) -> dict[str, Any]:
             for slope in slopes
             for expected in [next((e for e in by_model if e.phase == slope.phase), None)]
         ],
+        "transfer": [e.as_json() for e in result.transfer],
         "parameters": [e.as_json() for e in result.model.estimates],
         "cannot_tell": list(result.cannot_tell),
         "fit": {
@@ -174,6 +175,7 @@ def tables(summary: dict[str, Any], out: Path) -> list[Table]:
             ("run", "phase", "measured [95 %]", "theory", "distributed model"),
             slope_rows,
         ),
+        *_transfer_table(summary["transfer"]),
         (
             f"parameters → {out / FILE}",
             ("name", "run", "value [95 %]", "unit"),
@@ -181,6 +183,12 @@ def tables(summary: dict[str, Any], out: Path) -> list[Table]:
         ),
         ("calibrated model against measurement", ("run", "channel", "RMSE", "noise"), error_rows),
     ]
+
+
+def _transfer_table(transfer: Sequence[dict[str, Any]]) -> list[Table]:
+    rows = [(p["name"], Estimate(**p).text(), p["unit"]) for p in transfer]
+    title = "tension passed on in full slip, f_in = ratio f_out + intercept"
+    return [(title, ("name", "value [95 %]", "unit"), rows)] if rows else []
 
 
 def _number(value: float | None) -> str:

@@ -15,6 +15,7 @@ from tsas_cli.identification.phases import Segment, segment
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.starts import read_off
 from tsas_cli.identification.stiffness import Slope, slopes
+from tsas_cli.identification.transfer import tension_transfer
 from tsas_cli.physics.parameters import NOMINAL_BY_NAME
 from tsas_cli.recordings.manifest import Manifest
 
@@ -30,6 +31,7 @@ class Calibration:
     segments: Sequence[list[Segment]]
     slopes: Sequence[list[Slope]]
     expected: Sequence[list[Slope]]
+    transfer: Sequence[Estimate]
     cannot_tell: Sequence[str]
     fitted: Fitted | None
 
@@ -58,7 +60,14 @@ def calibrate(
     rmse = [a.rmse for a in answers]
     cannot = [*_unknown_conditions(runs), *sentences, *_misfit(runs, rmse)]
     return Calibration(
-        _with_correction(model, runs), runs, segments, measured, expected, cannot, fitted
+        _with_correction(model, runs),
+        runs,
+        segments,
+        measured,
+        expected,
+        tension_transfer(runs, segments),
+        cannot,
+        fitted,
     )
 
 

@@ -53,18 +53,16 @@ class Fitted:
 def jacobian(
     unknowns: Sequence[Unknown], runs: int, values: Floats, residuals: Residuals
 ) -> Floats:
-    """Return the Jacobian of all runs' residuals by central differences, shape (n, p)."""
+    """Return the Jacobian of all runs' residuals by finite differences, shape (n, p)."""
     base = [residuals(r, values) for r in range(runs)]
     starts = np.concatenate(([0], np.cumsum([b.size for b in base])))
     out = np.zeros((int(starts[-1]), len(unknowns)))
     for j, unknown in enumerate(unknowns):
-        ahead, back = values.copy(), values.copy()
-        ahead[j] = min(values[j] + STEP, unknown.upper)
-        back[j] = max(values[j] - STEP, unknown.lower)
-        width = ahead[j] - back[j]
+        moved = values.copy()
+        moved[j] += STEP if values[j] + STEP <= unknown.upper else -STEP
         for r in range(runs) if unknown.run is None else (unknown.run,):
-            change = residuals(r, ahead) - residuals(r, back)
-            out[starts[r] : starts[r + 1], j] = change / width
+            change = residuals(r, moved) - base[r]
+            out[starts[r] : starts[r + 1], j] = change / (moved[j] - values[j])
     return out
 
 
@@ -77,7 +75,7 @@ def identifiable(unknowns: Sequence[Unknown], J: Floats) -> tuple[list[int], dic
         Indices of the identifiable unknowns; for each other one the indices of those that it
         cannot be told from, strongest first, empty where the data do not show it at all.
     """
-    scaled: Floats = np.linalg.qr(J * np.array([u.scale for u in unknowns]), mode="r")
+    scaled: Floats = np.asarray(np.linalg.qr(J * np.array([u.scale for u in unknowns]), mode="r"))
     chosen: list[int] = []
     confounded: dict[int, list[int]] = {}
     for j in range(len(unknowns)):

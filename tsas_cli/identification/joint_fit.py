@@ -20,11 +20,13 @@ from tsas_cli.identification.prepared import Prepared
 from tsas_cli.numerics.covariance import block_length
 from tsas_cli.physics.parameters import NOMINAL, NOMINAL_BY_NAME, NominalParameter
 from tsas_cli.physics.quasi_static import Drive, Response, simulate
+from tsas_cli.physics.rig import Rig
 
 Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
 
 MOST_MEANS = 2000  # means of neighbouring residuals that enter the fit, for a channel of a run
+MOST_ROUNDS = 4
 LOG_SCALE = 0.3  # plausible relative change of a positive parameter
 ZERO_SCALE = 0.02  # plausible zero of a displacement sensor, of its range
 
@@ -36,55 +38,76 @@ class JointFit:
         self.start = start
         self.runs = runs
         self.unknowns = _unknowns(start, runs)
+        self.values = np.array([u.start for u in self.unknowns])
         answers = [simulate(start.rig(r.run), _from_rest(r)) for r in runs]
         self.samples = [_kept(r, a) for r, a in zip(runs, answers, strict=True)]
-        self.weights = [self._weights(k, start) for k in range(len(runs))]
+        self.weights = [self._weights(k) for k in range(len(runs))]
 
     def solve(self) -> tuple[Model, Fitted | None, list[str]]:
-        """Fit what can be told, twice: the second time with the weights of the first result.
+        """Fit what can be told; again with the weights of the result, until the choice stays.
 
         Returns the model, the fit (None where nothing can be told) and what cannot be told.
         """
-        values = np.array([u.start for u in self.unknowns])
-        J = jacobian(self.unknowns, len(self.runs), values, self._residuals)
-        chosen, confounded = identifiable(self.unknowns, J)
+        before: list[int] | None = None
+        for _ in range(MOST_ROUNDS):
+            J = jacobian(self.unknowns, len(self.runs), self.values, self._residuals)
+            chosen, confounded = identifiable(self.unknowns, J)
+            if not chosen:
+                return self.start, None, self._sentences(confounded)
+            result = self._fit(chosen)
+            if chosen == before:
+                break
+            before = chosen
         sentences = self._sentences(confounded)
-        if not chosen:
-            return self.start, None, sentences
-        self.unknowns = [self.unknowns[j] for j in chosen]
-        first = fit(self.unknowns, self._blocks(values[chosen]), self._residuals)
-        self.weights = [self._weights(k, self._model(first.values)) for k in range(len(self.runs))]
-        self.unknowns = [
-            replace(u, start=float(v)) for u, v in zip(self.unknowns, first.values, strict=True)
-        ]
-        result = fit(self.unknowns, self._blocks(first.values), self._residuals)
         if not result.converged:
             sentences.append(
                 f"The fit did not converge ({result.message}): its values are not to be relied on."
             )
-        return Model(_merged(self.start, self._estimates(result))), result, sentences
+        return self._model(self._estimates(chosen, result)), result, sentences
 
-    def _model(self, values: Floats) -> Model:
-        told = [
-            Estimate(
-                u.name, _unscaled(u.name, v), NOMINAL_BY_NAME[u.name].unit, "fitted", self._owner(u)
-            )
+    def _fit(self, chosen: list[int]) -> Fitted:
+        """Fit the chosen unknowns, the others at their starts; renew values and weights."""
+        base = np.array([u.start for u in self.unknowns])
+
+        def residuals(k: int, values: Floats) -> Floats:
+            base[chosen] = values
+            return self._residuals(k, base)
+
+        sought = [replace(self.unknowns[j], start=float(self.values[j])) for j in chosen]
+        result = fit(sought, self._blocks(), residuals)
+        base[chosen] = result.values
+        self.values = base
+        self.weights = [self._weights(k) for k in range(len(self.runs))]
+        return result
+
+    def _model(self, told: Sequence[Estimate]) -> Model:
+        names = {(e.name, e.run) for e in told}
+        return Model((*told, *(e for e in self.start.estimates if (e.name, e.run) not in names)))
+
+    def _rig(self, k: int, values: Floats) -> Rig:
+        """Return the rig of run k at scaled values of all unknowns."""
+        own = {
+            u.name: _unscaled(u.name, v)
             for u, v in zip(self.unknowns, values, strict=True)
-        ]
-        return Model(_merged(self.start, told))
+            if u.run in (None, k)
+        }
+        rig: Rig = self.start.rig(self.runs[k].run)
+        return Rig(**{**rig._asdict(), **own})
 
     def _owner(self, unknown: Unknown) -> str | None:
         return None if unknown.run is None else self.runs[unknown.run].run.id
 
-    def _estimates(self, result: Fitted) -> list[Estimate]:
-        spread = np.sqrt(np.diag(result.covariance))
+    def _estimates(self, chosen: list[int], result: Fitted) -> list[Estimate]:
+        spread = result.t * np.sqrt(np.diag(result.covariance))
         out = []
-        for u, v, sd, at_bound in zip(
-            self.unknowns, result.values, spread, result.at_bound, strict=True
+        for j, v, half, at_bound in zip(
+            chosen, result.values, spread, result.at_bound, strict=True
         ):
-            low, value, high = (_unscaled(u.name, v + k * result.t * sd) for k in (-1.0, 0.0, 1.0))
+            u = self.unknowns[j]
             parameter = NOMINAL_BY_NAME[u.name]
-            stderr = float(value * sd if parameter.positive else sd)
+            ends = np.clip([v - half, v, v + half], u.lower, u.upper)
+            low, value, high = (_unscaled(u.name, float(end)) for end in ends)
+            stderr = half / result.t * (value if parameter.positive else 1.0)
             out.append(
                 Estimate(
                     u.name,
@@ -92,7 +115,7 @@ class JointFit:
                     parameter.unit,
                     "fitted",
                     self._owner(u),
-                    stderr,
+                    float(stderr),
                     low,
                     high,
                     bool(at_bound),
@@ -103,7 +126,7 @@ class JointFit:
     def _errors(self, k: int, values: Floats) -> dict[str, Floats]:
         """Return run k's weighted errors of each channel, at the samples that are kept."""
         run, at = self.runs[k], self.samples[k]
-        answer = _answers(simulate(self._model(values).rig(run.run), _from_rest(run)))
+        answer = _answers(simulate(self._rig(k, values), _from_rest(run)))
         return {
             name: ((answer[name] - measured) / self.weights[k][name])[at[name]]
             for name, measured in run.measured.items()
@@ -118,14 +141,14 @@ class JointFit:
             parts.append(np.add.reduceat(errors, edges) / np.sqrt(counts))
         return np.concatenate(parts)
 
-    def _weights(self, k: int, model: Model) -> dict[str, Floats]:
+    def _weights(self, k: int) -> dict[str, Floats]:
         """Return each channel's standard deviation per sample: its noise, and that of the drive.
 
         What the drive's error does is found by a simulation with each stroke moved on by one
         standard deviation, so that turning points move too.
         """
         run, drive = self.runs[k], _from_rest(self.runs[k])
-        rig = model.rig(run.run)
+        rig = self._rig(k, self.values)
         conditioned = run.conditioned[run.drive_column]
         forth = np.zeros(drive.values.size)
         for first, end in pairwise(conditioned.reversals):
@@ -138,13 +161,13 @@ class JointFit:
             for name in run.measured
         }
 
-    def _blocks(self, values: Floats) -> list[Indices]:
+    def _blocks(self) -> list[Indices]:
         """Return for each run the block of each residual, at least a conditioning window long."""
         out = []
         for k, (run, at) in enumerate(zip(self.runs, self.samples, strict=True)):
             window = max(c.window_s for c in run.conditioned.values())
             step = float(np.median(np.diff(run.time_s)))
-            errors = list(self._errors(k, values).values())
+            errors = list(self._errors(k, self.values).values())
             length = max(block_length(errors), round(window / step), 1)
             first = [at[name][_edges(at[name].size)] for name in run.measured]
             out.append(np.unique(np.concatenate(first) // length, return_inverse=True)[1])
@@ -178,16 +201,22 @@ def _kept_value(start: Model, name: str, owner: str) -> str:
 
 
 def _unknowns(start: Model, runs: Sequence[Prepared]) -> list[Unknown]:
+    """Return all candidates, in the order in which they are asked for.
+
+    With a load that is no spring the preload is only a name for the zeros: it keeps its value.
+    """
     out = []
-    springs = any(run.run.load == "spring" for run in runs)
+    travel = max(float(np.ptp(r.drive.values)) for r in runs)
+    springs = [k for k, run in enumerate(runs) if run.run.load == "spring"]
     for p in NOMINAL:
+        owners: Sequence[int | None] = [None] if p.shared else range(len(runs))
+        if p.name == "preload_N":
+            owners = springs
         if p.name == "load_stiffness_N_per_mm" and not springs:
             continue
-        for k in [None] if p.shared else range(len(runs)):
-            owner = None if k is None else runs[k].run.id
-            value = start.value(p.name, owner)
+        for k in owners:
+            value = start.value(p.name, None if k is None else runs[k].run.id)
             value = DEFAULTS[p.name] if value is None else value
-            travel = max(float(np.ptp(r.drive.values)) for r in runs)
             scale = LOG_SCALE if p.positive else ZERO_SCALE * travel
             bounds = (_scaled(p, p.lower), _scaled(p, p.upper))
             out.append(Unknown(p.name, k, _scaled(p, value), *bounds, scale))
@@ -200,11 +229,6 @@ def _scaled(parameter: NominalParameter, value: float) -> float:
 
 def _unscaled(name: str, value: float) -> float:
     return math.exp(value) if NOMINAL_BY_NAME[name].positive else float(value)
-
-
-def _merged(start: Model, told: Sequence[Estimate]) -> tuple[Estimate, ...]:
-    names = {(e.name, e.run) for e in told}
-    return (*told, *(e for e in start.estimates if (e.name, e.run) not in names))
 
 
 def _from_rest(run: Prepared) -> Drive:

@@ -55,6 +55,11 @@ class Prepared:
         """Noise of each measured channel, quantisation counted in [the channel's unit]."""
         return {name: _noise(values) for name, values in self.measured.items()}
 
+    def channel(self, name: str) -> Floats | None:
+        """Return a column, as measured or as conditioned where it drives the model, or None."""
+        conditioned = self.conditioned.get(name)
+        return self.measured.get(name) if conditioned is None else conditioned.values
+
     def conditioning(self) -> dict[str, dict[str, object]]:
         """Say how each driving column was conditioned."""
         return {

@@ -43,11 +43,7 @@ def _samples(segments: Sequence[Segment], phase: str, values: Floats) -> Floats:
 
 
 def _wrap(run: Prepared, segments: Sequence[Segment], km: dict[str, float]) -> float | None:
-    f_in, f_out = run.measured.get("f_in_N"), run.measured.get("f_out_N")
-    if f_out is None and "f_out_N" in run.conditioned:
-        f_out = run.conditioned["f_out_N"].values
-    if f_in is None and "f_in_N" in run.conditioned:
-        f_in = run.conditioned["f_in_N"].values
+    f_in, f_out = run.channel("f_in_N"), run.channel("f_out_N")
     if f_in is not None and f_out is not None:
         with np.errstate(divide="ignore", invalid="ignore"):
             ratio = np.log(f_in / f_out)

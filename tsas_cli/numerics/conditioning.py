@@ -28,6 +28,7 @@ METHOD = "local quadratic between corners, window of least risk; monotone betwee
 HALF_WINDOWS = np.array([3, 5, 8, 12, 18, 27, 40, 60, 90, 135, 200, 300, 450])  # samples
 RISK_POINTS = 2000  # where the risk is looked at, evenly spread
 RISK_BLOCKS = 40  # pieces of the signal that may have windows of their own
+UNDERSMOOTH = 0.75  # of the window of least risk: what follows minds bias more than noise
 CORNER = 6.0  # standard deviations of the difference of two slopes
 STANDS_OUT = 8.0  # standard deviations by which a reversal turns back
 
@@ -89,7 +90,7 @@ def best_half_windows(
     mean = np.array([risks[:, block].mean(axis=1) for block in blocks if block.size])
     padded = np.pad(mean, ((2, 2), (0, 0)), mode="edge")
     pooled = np.mean([padded[k : k + len(mean)] for k in range(5)], axis=0)
-    chosen = np.log(HALF_WINDOWS[np.argmin(pooled, axis=1)])
+    chosen = np.log(UNDERSMOOTH * HALF_WINDOWS[np.argmin(pooled, axis=1)])
     centres = [points[block].mean() for block in blocks if block.size]
     half: Floats = np.round(np.exp(np.interp(np.arange(values.size), centres, chosen)))
     return half

@@ -1,0 +1,109 @@
+"""How tension passes through the sheath: f_in = r f_out + c while the whole tendon slips.
+
+The capstan alone gives r = e^(±a) and c = 0 (Yang 2025, Eq. 7), so that a = μθ is half the
+logarithm of the two ratios' quotient. An intercept of opposite sign in the two directions is
+friction that does not depend on the tendon's tension; one of the same sign is an offset.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from tsas_cli.identification.estimate import Estimate
+from tsas_cli.identification.phases import Segment
+from tsas_cli.identification.prepared import Prepared
+from tsas_cli.numerics.covariance import block_length, sandwich
+
+Floats = npt.NDArray[np.float64]
+
+FEWEST_SAMPLES = 50
+WIDE = 10.0  # the range of f_out must exceed its noise by this factor
+
+
+@dataclass(frozen=True)
+class _Line:
+    """r and c of one direction with their covariance and Student's t."""
+
+    values: Floats
+    covariance: Floats
+    t: float
+
+
+def tension_transfer(
+    runs: Sequence[Prepared], segments: Sequence[Sequence[Segment]]
+) -> list[Estimate]:
+    """Fit both directions over all runs together.
+
+    Returns
+    -------
+    list of Estimate
+        Ratio and intercept of each direction, the wrap angle times friction, the friction that
+        does not depend on the load, and the offset; empty where f_in or f_out is not measured in
+        both directions, or f_out hardly changes.
+    """
+    up = _line(runs, segments, "contraction")
+    down = _line(runs, segments, "loosening")
+    if up is None or down is None or min(up.values[0], down.values[0]) <= 0.0:
+        return []
+    t = max(up.t, down.t)
+    ratios = [line.values[0] for line in (up, down)]
+    variances = [np.diag(line.covariance) for line in (up, down)]
+    wrap_sd = 0.5 * math.hypot(
+        *(math.sqrt(v[0]) / r for v, r in zip(variances, ratios, strict=True))
+    )
+    constant_sd = 0.5 * math.sqrt(variances[0][1] + variances[1][1])
+    both = 0.5 * (up.values[1] - down.values[1]), 0.5 * (up.values[1] + down.values[1])
+    return [
+        _estimate("ratio_contraction", up.values[0], math.sqrt(variances[0][0]), "1", t),
+        _estimate("ratio_loosening", down.values[0], math.sqrt(variances[1][0]), "1", t),
+        _estimate("intercept_contraction", up.values[1], math.sqrt(variances[0][1]), "N", t),
+        _estimate("intercept_loosening", down.values[1], math.sqrt(variances[1][1]), "N", t),
+        _estimate("wrap", 0.5 * math.log(ratios[0] / ratios[1]), wrap_sd, "1", t),
+        _estimate("constant_friction", both[0], constant_sd, "N", t),
+        _estimate("offset", both[1], constant_sd, "N", t),
+    ]
+
+
+def _estimate(name: str, value: float, sd: float, unit: str, t: float) -> Estimate:
+    return Estimate(
+        name, float(value), unit, "fitted", None, sd, float(value - t * sd), float(value + t * sd)
+    )
+
+
+def _line(
+    runs: Sequence[Prepared], segments: Sequence[Sequence[Segment]], phase: str
+) -> _Line | None:
+    at_drive, at_load, block = [], [], []
+    count = 0
+    noise = 0.0
+    for run, parts in zip(runs, segments, strict=True):
+        f_in, f_out = run.channel("f_in_N"), run.channel("f_out_N")
+        if f_in is None or f_out is None:
+            continue
+        noise = max(noise, run.noise.get("f_out_N", 0.0))
+        for part in parts:
+            ok = np.isfinite(f_in[part.first : part.end]) & np.isfinite(
+                f_out[part.first : part.end]
+            )
+            if part.phase == phase and ok.any():
+                at_drive.append(f_in[part.first : part.end][ok])
+                at_load.append(f_out[part.first : part.end][ok])
+                block.append(np.full(int(ok.sum()), count))
+                count += 1
+    if count < 2 or sum(b.size for b in block) < FEWEST_SAMPLES:
+        return None
+    F, G, number = (np.concatenate(parts) for parts in (at_drive, at_load, block))
+    if np.ptp(G) < WIDE * noise or np.ptp(G) == 0.0:
+        return None
+    J = np.column_stack((G, np.ones_like(G)))
+    values, *_ = np.linalg.lstsq(J, F, rcond=None)
+    residual = F - J @ values
+    pieces = np.split(residual, np.flatnonzero(np.diff(number)) + 1)
+    length = block_length(pieces)
+    within = np.concatenate([np.arange(p.size) // length for p in pieces])
+    blocks = np.unique(number * (within.max() + 1) + within, return_inverse=True)[1]
+    covariance, t = sandwich(J, residual, blocks)
+    return _Line(values, covariance, t)

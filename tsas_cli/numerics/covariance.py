@@ -1,0 +1,66 @@
+"""Intervals that hold although the residual is coloured.
+
+A residual of a physical model has memory; the plain formula counts each sample as news and is
+far too sure. Here the unit of evidence is a block longer than that memory: the sandwich estimate
+with sums of scores per block, its small-sample factor, and Student's t for the number of blocks.
+"""
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+Floats = npt.NDArray[np.float64]
+Indices = npt.NDArray[np.int64]
+
+FEWEST_BLOCKS = 8
+MEMORIES_PER_BLOCK = 4.0
+
+
+def memory(residual: Floats) -> float:
+    """Return the integrated autocorrelation time of a residual in samples, at least 1.
+
+    The sum of the autocorrelation is cut where it first gets lost in its own scatter (Geyer's
+    initial positive sequence).
+    """
+    n = residual.size
+    centred = residual - residual.mean()
+    power = np.abs(np.fft.rfft(centred, 2 * n)) ** 2
+    covariance = np.fft.irfft(power)[:n]
+    if n < 4 or covariance[0] <= 0.0:
+        return 1.0
+    pairs = (covariance[0 : n - 1 : 2] + covariance[1:n:2]) / covariance[0]
+    negative = np.flatnonzero(pairs <= 0.0)
+    end = int(negative[0]) if negative.size else pairs.size
+    return max(1.0, float(2.0 * pairs[:end].sum() - 1.0))
+
+
+def block_length(residuals: list[Floats]) -> int:
+    """Return a block length in samples for residuals that share one clock.
+
+    It is some memories long, but leaves a minimum number of blocks.
+    """
+    longest = max(memory(r) for r in residuals)
+    samples = sum(r.size for r in residuals)
+    return max(1, min(math.ceil(MEMORIES_PER_BLOCK * longest), samples // FEWEST_BLOCKS))
+
+
+def sandwich(jacobian: Floats, residual: Floats, block: Indices) -> tuple[Floats, float]:
+    """Return the covariance of least-squares parameters and Student's t for a 95 % interval.
+
+    Parameters
+    ----------
+    jacobian, residual
+        Weighted, shapes (n, p) and (n,).
+    block
+        The number of the block that each row belongs to, shape (n,), counted from 0.
+    """
+    from scipy.stats import t
+
+    bread = np.linalg.pinv(jacobian.T @ jacobian, hermitian=True)
+    blocks = int(block.max()) + 1
+    scores = np.zeros((blocks, jacobian.shape[1]))
+    np.add.at(scores, block, jacobian * residual[:, None])
+    freedom = max(blocks - jacobian.shape[1], 1)
+    meat = scores.T @ scores * (blocks / freedom)
+    return bread @ meat @ bread, float(t.ppf(0.975, freedom))
