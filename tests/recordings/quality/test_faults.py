@@ -194,7 +194,8 @@ def test_a_gain_and_an_offset_are_no_exchange(gain, offset):
         ("f_out_N", 4.448, "pound-force"),
         ("f_out_N", 9.807, "kilogram-force"),
         ("f_out_N", 1000.0, "kilonewton"),
-        ("time_s", 0.001, "millisecond"),
+        ("time_s", 1e-3, "millisecond"),
+        ("time_s", 1e-6, "microsecond"),
     ],
 )
 def test_a_unit_off_by_a_round_factor_is_named(column, factor, unit):

@@ -5,15 +5,14 @@ from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
 
-from tsas_cli.numerics.noise import noise_sd, quantisation_step
+from tsas_cli.numerics.noise import noise_sd
 from tsas_cli.numerics.turning_points import turning_points
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.dataset import Floats, Recording
 from tsas_cli.recordings.manifest import Rig
+from tsas_cli.recordings.quality.samples import Booleans, step_of
 
-Booleans = npt.NDArray[np.bool_]
 MECHANICAL = ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N")
 _FOLLOWERS = {"spring": MECHANICAL[1:], "force": ("x_out_mm",), "displacement": ()}
 _FEWEST = 16  # samples below which neither noise nor motion can be told
@@ -73,7 +72,7 @@ class Trial:
     @cached_property
     def step(self) -> dict[str, float]:
         """Step of quantisation of each channel, 0 where there is none."""
-        return {name: _step(values) for name, values in self.channels.items()}
+        return {name: step_of(values) for name, values in self.channels.items()}
 
     @cached_property
     def span(self) -> dict[str, float]:
@@ -103,6 +102,14 @@ class Trial:
     def prescribed(self) -> str | None:
         """The channel that a driven load decides, whatever the drive does."""
         return {"force": "f_out_N", "displacement": "x_out_mm"}.get(self.recording.run.load)
+
+    @cached_property
+    def repeats(self) -> Booleans:
+        """Which rows equal the row before them in every channel, shape (n,)."""
+        same = np.arange(self.time_s.size) > 0
+        for values in self.channels.values():
+            same[1:] &= values[1:] == values[:-1]
+        return same
 
     @cached_property
     def strokes(self) -> tuple[Stroke, ...]:
@@ -140,60 +147,3 @@ class Trial:
         if not np.isfinite(size).any() or np.nanmean(size) <= self.visible(name):
             return None
         return float(np.nansum(change) / np.nansum(size))
-
-
-def _step(values: Floats) -> float:
-    """Return the step, told from the increments where the channel hardly takes a level twice."""
-    increments = np.round(np.diff(values), 12)
-    return quantisation_step(values) or quantisation_step(increments)
-
-
-def alternates(values: Floats) -> bool:
-    """Say whether a channel is noisy: third differences of noise alternate, of motion they do not.
-
-    Parameters
-    ----------
-    values
-        A channel, shape (n,).
-    """
-    clean = values[np.isfinite(values)]
-    third = np.diff(clean, 3)
-    third = third[np.abs(third) > 1e-9 * np.abs(clean).max(initial=0.0)]
-    return third.size >= _FEWEST and bool(np.mean(third[1:] * third[:-1] < 0.0) > 0.5)
-
-
-def repeats(trial: Trial) -> Booleans:
-    """Return which rows equal the row before them in every channel, shape (n,)."""
-    same = np.ones(trial.time_s.size, dtype=np.bool_)
-    same[0] = False
-    for values in trial.channels.values():
-        same[1:] &= values[1:] == values[:-1]
-    return same
-
-
-def rows_between_changes(values: Floats) -> npt.NDArray[np.int64]:
-    """Return how many rows lie from each change of a channel to the next."""
-    return np.diff(np.flatnonzero(values[1:] != values[:-1]))
-
-
-def smallest_change(values: Floats) -> float:
-    """Return the smallest change from a row to the next, rounding apart; infinite where none is."""
-    change = np.abs(np.diff(values))
-    rounding = 1e-9 * np.nanmax(np.abs(values))
-    return float(np.min(change, where=change > rounding, initial=np.inf))
-
-
-def plateaus(values: Floats, shortest: int) -> list[slice]:
-    """Return the stretches of at least `shortest` rows in which a channel does not change at all.
-
-    Parameters
-    ----------
-    values
-        A channel, shape (n,); NaN belongs to no stretch.
-    shortest
-        Rows in the shortest stretch to return.
-    """
-    changes = np.flatnonzero(values[1:] != values[:-1]) + 1
-    edges = np.concatenate(([0], changes, [values.size]))
-    long = np.flatnonzero(np.diff(edges) >= shortest)
-    return [slice(int(edges[i]), int(edges[i + 1])) for i in long]

@@ -11,7 +11,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark, counted
-from tsas_cli.recordings.quality.trial import Trial, plateaus
+from tsas_cli.recordings.quality.samples import plateaus
+from tsas_cli.recordings.quality.trial import Trial
 
 _FEWEST_ROWS = 5
 _PASSED = 0.05

@@ -10,7 +10,8 @@ import numpy as np
 
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark, counted
-from tsas_cli.recordings.quality.trial import Booleans, Trial
+from tsas_cli.recordings.quality.samples import Booleans
+from tsas_cli.recordings.quality.trial import Trial
 
 _COMMON = 0.05  # long intervals that are as frequent as this are jitter
 _REMEDY = "look for lost samples at the source; the stages leave the gap out"

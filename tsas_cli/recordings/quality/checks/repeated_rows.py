@@ -13,7 +13,8 @@ import numpy as np
 
 from tsas_cli.recordings.dataset import Floats
 from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
-from tsas_cli.recordings.quality.trial import Booleans, Trial, repeats, smallest_change
+from tsas_cli.recordings.quality.samples import Booleans, smallest_change
+from tsas_cli.recordings.quality.trial import Trial
 
 _BLOCK = 32  # rows
 _MEDIAN_OF_THIRD = 0.6745 * math.sqrt(20.0)  # of |third difference|, for noise of unit deviation
@@ -24,7 +25,7 @@ def find(trial: Trial) -> Iterator[Remark | CannotTell]:
     if not trial.channels:
         yield CannotTell("no column besides time holds enough numbers")
         return
-    repeated = repeats(trial)
+    repeated = trial.repeats.copy()
     if not repeated.any():
         return
     block = (np.cumsum(~repeated) - 1) // _BLOCK  # a repeat belongs to the row that it repeats

@@ -11,14 +11,15 @@ import numpy as np
 
 from tsas_cli.recordings.dataset import Floats
 from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
-from tsas_cli.recordings.quality.trial import Trial, repeats, rows_between_changes, smallest_change
+from tsas_cli.recordings.quality.samples import rows_between_changes, smallest_change
+from tsas_cli.recordings.quality.trial import Trial
 
 _FEWEST_CHANGES = 20
 
 
 def find(trial: Trial) -> Iterator[Remark | CannotTell]:
     """Look for displacements and tensions that hardly ever change in neighbouring rows."""
-    fresh = ~repeats(trial)
+    fresh = ~trial.repeats
     for name, values in trial.mechanical.items():
         rows = rows_between_changes(values[fresh])
         if rows.size >= _FEWEST_CHANGES and np.quantile(rows, 0.05) >= 2.0 and _jumps(values):

@@ -42,7 +42,7 @@ _STIFFNESS = {
     1000.0: "x_out_mm looks like metre",
 }
 _COPY = 0.98  # the correlation above which one path is a scaled copy of the other
-_SLOW_S, _LONG_S = 0.5, 500.0  # a sample interval and a stroke that are normal in milliseconds
+_SLOW_S, _LONG_S = 0.2, 500.0  # a sample interval and a stroke that are normal in milliseconds
 
 
 def find(trial: Trial) -> Iterator[Remark | CannotTell]:
@@ -83,7 +83,7 @@ def _travel_ratio(trial: Trial) -> float | None:
     driven = trial.recording.run.load == "displacement"
     if driven or not trial.strokes or "x_out_mm" not in trial.channels:
         return None
-    return _slope(trial, "x_in_mm", "x_out_mm", _COPY)
+    return _slope(trial, "x_in_mm", "x_out_mm")
 
 
 def _tension_ratio(trial: Trial) -> float | None:
@@ -105,17 +105,17 @@ def _slope_ratio(trial: Trial) -> float | None:
     spring = trial.recording.run.load == "spring"
     if nominal is None or not spring or not {"x_out_mm", "f_out_N"} <= trial.channels.keys():
         return None
-    slope = _slope(trial, "x_out_mm", "f_out_N", _COPY)
+    slope = _slope(trial, "x_out_mm", "f_out_N")
     return slope / nominal if slope is not None else None
 
 
-def _slope(trial: Trial, x: str, y: str, least_correlation: float) -> float | None:
+def _slope(trial: Trial, x: str, y: str) -> float | None:
     """Return the size of the slope of y over x; None where they do not go together."""
     both = np.isfinite(trial.channels[x]) & np.isfinite(trial.channels[y])
     a, b = trial.channels[x][both], trial.channels[y][both]
     if a.size < 3 or np.ptp(a) == 0.0 or np.ptp(b) == 0.0:
         return None
-    if abs(float(np.corrcoef(a, b)[0, 1])) < least_correlation:
+    if abs(float(np.corrcoef(a, b)[0, 1])) < _COPY:
         return None
     return float(np.std(b) / np.std(a))
 
@@ -127,7 +127,7 @@ def _time(trial: Trial) -> Iterator[Remark]:
         yield Remark(
             "error",
             f"one sample each {interval:.4g} s and {np.median(strokes):.4g} s per stroke; "
-            f"time_s looks like {'microsecond' if interval >= 500.0 * _SLOW_S else 'millisecond'}",
+            f"time_s looks like {'microsecond' if interval >= 1000.0 * _SLOW_S else 'millisecond'}",
             "look up the unit of time_s and set it at ingest",
             "time_s",
         )

@@ -1,0 +1,61 @@
+"""What the samples of one channel show by themselves: steps, noise, rests."""
+
+import numpy as np
+import numpy.typing as npt
+
+from tsas_cli.numerics.noise import quantisation_step
+from tsas_cli.recordings.dataset import Floats
+
+Booleans = npt.NDArray[np.bool_]
+_FEWEST = 16  # samples below which noise cannot be told
+
+
+def step_of(values: Floats) -> float:
+    """Return the step of quantisation, 0 where there is none.
+
+    A channel that hardly takes a level twice shows its step in the increments.
+    """
+    increments = np.round(np.diff(values), 12)
+    return quantisation_step(values) or quantisation_step(increments)
+
+
+def alternates(values: Floats) -> bool:
+    """Say whether a channel is noisy: third differences of noise alternate, of motion they do not.
+
+    Parameters
+    ----------
+    values
+        A channel, shape (n,).
+    """
+    clean = values[np.isfinite(values)]
+    third = np.diff(clean, 3)
+    third = third[np.abs(third) > 1e-9 * np.abs(clean).max(initial=0.0)]
+    return third.size >= _FEWEST and bool(np.mean(third[1:] * third[:-1] < 0.0) > 0.5)
+
+
+def rows_between_changes(values: Floats) -> npt.NDArray[np.int64]:
+    """Return how many rows lie from each change of a channel to the next."""
+    return np.diff(np.flatnonzero(values[1:] != values[:-1]))
+
+
+def smallest_change(values: Floats) -> float:
+    """Return the smallest change from a row to the next, rounding apart; infinite where none is."""
+    change = np.abs(np.diff(values))
+    rounding = 1e-9 * np.nanmax(np.abs(values))
+    return float(np.min(change, where=change > rounding, initial=np.inf))
+
+
+def plateaus(values: Floats, shortest: int) -> list[slice]:
+    """Return the stretches of at least `shortest` rows in which a channel does not change at all.
+
+    Parameters
+    ----------
+    values
+        A channel, shape (n,); NaN belongs to no stretch.
+    shortest
+        Rows in the shortest stretch to return.
+    """
+    changes = np.flatnonzero(values[1:] != values[:-1]) + 1
+    edges = np.concatenate(([0], changes, [values.size]))
+    long = np.flatnonzero(np.diff(edges) >= shortest)
+    return [slice(int(edges[i]), int(edges[i + 1])) for i in long]
