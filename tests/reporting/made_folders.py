@@ -163,6 +163,7 @@ def make_simulation(dataset: Path, folder: Path) -> Path:
         "stage": "simulate",
         "version": "0.1.0",
         "dataset": source(dataset, folder),
+        "model": {"file": "data sheet"},
         "dynamics": "static",
         "runs": runs,
     }

@@ -1,5 +1,7 @@
+import hashlib
 import json
 import re
+import shutil
 from html.parser import HTMLParser
 from importlib.resources import files
 from pathlib import Path
@@ -147,6 +149,27 @@ def test_a_note_says_for_which_rows_it_holds(folders, tmp_path):
     content["dataset"]["folder"] = str(folders["dataset"])
     (tmp_path / "calibration.json").write_text(json.dumps(content))
     assert "<li>few samples: a contraction</li>" in page(read_inputs([tmp_path]))
+
+
+@pytest.mark.parametrize("same", [True, False])
+def test_the_commands_name_the_calibrated_model_only_where_it_was_simulated(
+    folders, tmp_path, same
+):
+    calibrated = shutil.copytree(folders["calibration"], tmp_path / "cal")
+    (calibrated / "model.toml").write_text("mine" if same else "another")
+    simulated = shutil.copytree(folders["simulation"], tmp_path / "sim")
+    content = json.loads((simulated / "simulation.json").read_text())
+    content["model"] = {"file": "model.toml", "sha256": hashlib.sha256(b"mine").hexdigest()}
+    (simulated / "simulation.json").write_text(json.dumps(content))
+    text = page(read_inputs([folders["dataset"], calibrated, simulated]))
+    assert (f"--model {calibrated}/model.toml" in text) is same
+    assert content["model"]["sha256"] in text
+
+
+def test_a_simulation_of_the_data_sheet_is_repeated_without_a_model(whole):
+    (command,) = re.findall(r"tsas simulate .*", whole.partition("<pre")[2])
+    assert "--dynamics static" in command
+    assert "--model" not in command
 
 
 def test_missing_values_of_a_stage_are_dashes(folders, tmp_path):

@@ -118,6 +118,13 @@ class Calibration(StageFile):
     fit: Fit
 
 
+class ModelFile(_Record):
+    """The model that was simulated: its file and checksum, None for that of the data sheet."""
+
+    file: str
+    sha256: str | None = None
+
+
 class SimulatedRun(_Record):
     """What `tsas simulate` says about one run."""
 
@@ -132,6 +139,7 @@ class Simulation(StageFile):
     FILE: ClassVar[str] = "simulation.json"
     stage: Literal["simulate"]
     version: str
+    model: ModelFile
     dynamics: str
     runs: dict[str, SimulatedRun]
 

@@ -4,8 +4,10 @@ import platform
 import shlex
 from collections.abc import Iterator
 from importlib.metadata import version
+from pathlib import Path
 
 from tsas_cli import __version__
+from tsas_cli.files import sha256_of
 from tsas_cli.reporting.content import Section, Table
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.stage_files import Calibration, Check, Simulation
@@ -16,13 +18,16 @@ _LIBRARIES = ("numpy", "scipy", "numba", "matplotlib")
 def section(inputs: Inputs) -> Section:
     """Return the section on how to repeat the page."""
     hashes = inputs.dataset.hashes()
+    simulation = inputs.get(Simulation)
+    if simulation and simulation.model.sha256:
+        hashes[simulation.model.file] = simulation.model.sha256
     return Section(
         "repeat",
         "How to repeat it",
         ("These commands make the same page from the same files.",),
         tables=(
             Table("Versions", ("program", "version"), tuple(_versions(inputs))),
-            Table("Files read", ("file in the dataset", "SHA-256"), tuple(hashes.items())),
+            Table("Files read", ("file", "SHA-256"), tuple(hashes.items())),
         ),
         commands=tuple(shlex.join(command) for command in _commands(inputs)),
     )
@@ -36,10 +41,19 @@ def _commands(inputs: Inputs) -> Iterator[list[str]]:
     if Calibration in folder:
         yield ["tsas", "calibrate", dataset, "--out", folder[Calibration]]
     if simulation := inputs.get(Simulation):
-        model = f"{folder[Calibration]}/model.toml" if Calibration in folder else "model.toml"
         options = ["--dynamics", simulation.dynamics, "--out", folder[Simulation]]
-        yield ["tsas", "simulate", dataset, "--model", model, *options]
+        yield ["tsas", "simulate", dataset, *_model(simulation, inputs), *options]
     yield ["tsas", "report", dataset, *folder.values(), "--out", "report.html"]
+
+
+def _model(simulation: Simulation, inputs: Inputs) -> list[str]:
+    """Return the option that names the model: the calibration's where it is the one simulated."""
+    if simulation.model.sha256 is None:
+        return []
+    folder = inputs.folders.get(Calibration)
+    calibrated = folder / simulation.model.file if folder else Path(simulation.model.file)
+    same = calibrated.is_file() and sha256_of(calibrated) == simulation.model.sha256
+    return ["--model", str(calibrated) if same else simulation.model.file]
 
 
 def _versions(inputs: Inputs) -> Iterator[tuple[str, str]]:
