@@ -6,13 +6,15 @@ point. Three steps, none of which delays the signal:
 1. Corners: where the slopes of quadratic fits to the past and to the future differ by far more
    than their noise, the signal is cut, so that sharp reversals and the ends of dwells stay sharp.
 2. Between corners local quadratic fits. The window is the one with the least estimated risk
-   (Stein's unbiased estimate), chosen anew along the signal: wide where the motion is smooth.
+   (Stein's unbiased estimate), chosen anew along the signal: wide where the motion is smooth. A
+   piece that does not move is its mean.
 3. Between the reversals that stand out of the remaining noise, the nearest monotone signal in the
    least-squares sense (pool adjacent violators): no spurious reversal is left.
 """
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -30,6 +32,7 @@ RISK_POINTS = 2000  # where the risk is looked at, evenly spread
 RISK_BLOCKS = 40  # pieces of the signal that may have windows of their own
 UNDERSMOOTH = 0.75  # of the window of least risk: what follows minds bias more than noise
 CORNER = 6.0  # standard deviations of the difference of two slopes
+MOVES = 4.0  # standard deviations by which a piece that moves departs from its mean
 STANDS_OUT = 8.0  # standard deviations by which a reversal turns back
 
 
@@ -64,10 +67,12 @@ def condition(time_s: Floats, values: Floats) -> Conditioned:
         return Conditioned(filled, np.zeros(filled.size), 0.0, 0.0, turning_points(filled, 0.0))
     memory = _plateau(filled) if step > 0.0 else 1.0
     whole = np.array([0, filled.size], dtype=np.int64)
-    common = int(np.median(best_half_windows(time_s, filled, whole, noise, memory)))
-    cuts = corners(time_s, filled, common, noise * math.sqrt(memory))
-    half = best_half_windows(time_s, filled, cuts, noise, memory)
+    # Corners spoil the blocks that they lie in; the smooth blocks tell the window to seek them by.
+    alone = best_half_windows(time_s, filled, whole, noise, memory, pooled=1)
+    cuts = corners(time_s, filled, int(np.percentile(alone, 75)), noise * math.sqrt(memory))
+    half = best_half_windows(time_s, filled, cuts, noise, memory, pooled=5)
     smooth, sd = smoothed(time_s, filled, cuts, half, noise * math.sqrt(memory))
+    lay_flat(time_s, filled, smooth, sd, cuts, noise * math.sqrt(memory))
     reversals = turning_points(smooth, STANDS_OUT * float(np.median(sd)))
     window_s = float(np.median(2 * half + 1) * np.median(np.diff(time_s)))
     return Conditioned(monotone_between(smooth, reversals), sd, window_s, noise, reversals)
@@ -79,18 +84,21 @@ def _plateau(values: Floats) -> float:
 
 
 def best_half_windows(
-    time_s: Floats, values: Floats, cuts: Indices, noise: float, memory: float
+    time_s: Floats, values: Floats, cuts: Indices, noise: float, memory: float, *, pooled: int
 ) -> Floats:
-    """Return for each sample the half window of least risk, shape (n,) [samples]."""
+    """Return for each sample the half window of least risk, shape (n,) [samples].
+
+    The risk is that of `pooled` neighbouring blocks together, an odd number.
+    """
     points = np.unique(np.linspace(0, values.size - 1, RISK_POINTS).astype(np.int64))
     risks = np.array(
         [risk(time_s, values, cuts, points, half, noise, memory) for half in HALF_WINDOWS]
     )
     blocks = np.array_split(np.arange(points.size), RISK_BLOCKS)
     mean = np.array([risks[:, block].mean(axis=1) for block in blocks if block.size])
-    padded = np.pad(mean, ((2, 2), (0, 0)), mode="edge")
-    pooled = np.mean([padded[k : k + len(mean)] for k in range(5)], axis=0)
-    chosen = np.log(UNDERSMOOTH * HALF_WINDOWS[np.argmin(pooled, axis=1)])
+    padded = np.pad(mean, ((pooled // 2, pooled // 2), (0, 0)), mode="edge")
+    together = np.mean([padded[k : k + len(mean)] for k in range(pooled)], axis=0)
+    chosen = np.log(UNDERSMOOTH * HALF_WINDOWS[np.argmin(together, axis=1)])
     centres = [points[block].mean() for block in blocks if block.size]
     half: Floats = np.round(np.exp(np.interp(np.arange(values.size), centres, chosen)))
     return half
@@ -225,6 +233,36 @@ def smoothed(
         out[i], _, variance, _ = quadratic_fit(time_s, values, i, first, last)
         sd[i] = noise * math.sqrt(min(variance, 1.0))
     return out, sd
+
+
+def lay_flat(
+    time_s: Floats, values: Floats, smooth: Floats, sd: Floats, cuts: Indices, noise: float
+) -> None:
+    """Set pieces at rest to their mean, in place, and what runs into them within its noise.
+
+    A drift by a thousandth of a millimetre at rest would be a reversal to a hysteretic model.
+    """
+    for first, end in pairwise(cuts):
+        count = end - first
+        if count < 2 * HALF_WINDOWS[0]:
+            continue
+        mean = float(values[first:end].mean())
+        t = time_s[first:end] - time_s[first:end].mean()
+        trend = float(t @ values[first:end]) / math.sqrt(float(t @ t))
+        bow = t * t - np.mean(t * t)
+        curvature = float(bow @ values[first:end]) / math.sqrt(float(bow @ bow))
+        spread = math.sqrt(count) * abs(
+            float(np.mean((values[first:end] - mean) ** 2)) / noise**2 - 1
+        )
+        if max(abs(trend), abs(curvature)) > MOVES * noise or spread > 2.0 * MOVES:
+            continue
+        smooth[first:end] = mean
+        sd[first:end] = noise / math.sqrt(count)
+        for side in (range(first - 1, -1, -1), range(end, values.size)):
+            for i in side:
+                if abs(smooth[i] - mean) > MOVES * sd[i]:
+                    break
+                smooth[i] = mean
 
 
 @kernel
