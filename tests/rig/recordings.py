@@ -35,7 +35,7 @@ DATA_SHEET = {
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """One run to write: its id, its columns, and the conditions that the manifest tells."""
+    """One run to write: its id, its columns, and the conditions for the manifest."""
 
     id: str
     columns: Mapping[str, np.ndarray]
@@ -43,19 +43,20 @@ class Run:
 
 
 def record(
-    rig: Rig = Rig(),  # noqa: B008
+    rig: Rig,
     motion: Motion | None = None,
     *,
-    sensors: Sensors = Sensors(),  # noqa: B008
+    sensors: Sensors | None = None,
     seed: int = 0,
     distal: np.ndarray | None = None,
 ) -> dict[str, np.ndarray]:
     """Simulate and measure in one go: columns time_s, x_in_mm, x_out_mm, f_in_N, f_out_N.
 
+    The motion is two periods of the paper's sine and the sensors are `Sensors()` if not given.
     For many seeds of one run keep `clean = simulate(rig, motion)` and call `measure` per seed.
     """
-    motion = motion or sine()
-    return measure(simulate(rig, motion, distal=distal), sensors, seed=seed)
+    clean = simulate(rig, motion or sine(), distal=distal)
+    return measure(clean, sensors or Sensors(), seed=seed)
 
 
 def conditions(rig: Rig) -> dict[str, Any]:

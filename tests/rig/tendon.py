@@ -102,16 +102,13 @@ def simulate(rig: Rig, motion: Motion, *, distal: np.ndarray | None = None) -> C
     if (rig.load == "spring") != (distal is None):
         raise ValueError(f"load {rig.load!r} and distal values do not go together")
     t, x_in = motion.time_s, motion.x_in_mm
-    c_in, c_out = (
-        rig.proximal_length_mm / rig.axial_stiffness,
-        rig.distal_length_mm / rig.axial_stiffness,
-    )
+    c_out = rig.distal_length_mm / rig.axial_stiffness
     q, p, r = _distal_end(rig, t, c_out, distal)
     s = continuum.nodes(rig.sheath_length_mm, rig.cells)
     tendon = continuum.Tendon(
         bend=_bend_per_node(rig, s),
         k=rig.axial_stiffness / np.diff(s),
-        c_in=c_in,
+        c_in=rig.proximal_length_mm / rig.axial_stiffness,
         p=p,
         r=r,
         preload=rig.preload_N,
