@@ -186,9 +186,9 @@ def tables(summary: dict[str, Any], out: Path) -> list[Table]:
 
 
 def _transfer_table(transfer: Sequence[dict[str, Any]]) -> list[Table]:
-    rows = [(p["name"], Estimate(**p).text(), p["unit"]) for p in transfer]
+    rows = [(p["run"], p["name"], Estimate(**p).text(), p["unit"]) for p in transfer]
     title = "tension passed on in full slip, f_in = ratio f_out + intercept"
-    return [(title, ("name", "value [95 %]", "unit"), rows)] if rows else []
+    return [(title, ("runs", "name", "value [95 %]", "unit"), rows)] if rows else []
 
 
 def _number(value: float | None) -> str:

@@ -8,6 +8,7 @@ friction that does not depend on the tendon's tension; one of the same sign is a
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
@@ -35,20 +36,28 @@ class _Line:
 def tension_transfer(
     runs: Sequence[Prepared], segments: Sequence[Sequence[Segment]]
 ) -> list[Estimate]:
-    """Fit both directions over all runs together.
+    """Fit both directions, over all runs with the same bend together.
 
     Returns
     -------
     list of Estimate
-        Ratio and intercept of each direction, the wrap angle times friction, the friction that
-        does not depend on the load, and the offset; empty where f_in or f_out is not measured in
-        both directions, or f_out hardly changes.
+        For each bend the ratio and intercept of both directions, the wrap angle times friction,
+        the friction that does not depend on the load, and the offset; `run` lists the runs.
+        Nothing where f_in or f_out is not measured in both directions, or f_out hardly changes.
     """
+    bends = list(dict.fromkeys(run.run.total_bend_rad for run in runs))
+    out = []
+    for bend in bends:
+        members = [k for k, run in enumerate(runs) if run.run.total_bend_rad == bend]
+        out += _of_one_bend([runs[k] for k in members], [segments[k] for k in members])
+    return out
+
+
+def _of_one_bend(runs: Sequence[Prepared], segments: Sequence[Sequence[Segment]]) -> list[Estimate]:
     up = _line(runs, segments, "contraction")
     down = _line(runs, segments, "loosening")
     if up is None or down is None or min(up.values[0], down.values[0]) <= 0.0:
         return []
-    t = max(up.t, down.t)
     ratios = [line.values[0] for line in (up, down)]
     variances = [np.diag(line.covariance) for line in (up, down)]
     wrap_sd = 0.5 * math.hypot(
@@ -56,21 +65,21 @@ def tension_transfer(
     )
     constant_sd = 0.5 * math.sqrt(variances[0][1] + variances[1][1])
     both = 0.5 * (up.values[1] - down.values[1]), 0.5 * (up.values[1] + down.values[1])
+    estimate = partial(_estimate, t=max(up.t, down.t), runs=", ".join(r.run.id for r in runs))
     return [
-        _estimate("ratio_contraction", up.values[0], math.sqrt(variances[0][0]), "1", t),
-        _estimate("ratio_loosening", down.values[0], math.sqrt(variances[1][0]), "1", t),
-        _estimate("intercept_contraction", up.values[1], math.sqrt(variances[0][1]), "N", t),
-        _estimate("intercept_loosening", down.values[1], math.sqrt(variances[1][1]), "N", t),
-        _estimate("wrap", 0.5 * math.log(ratios[0] / ratios[1]), wrap_sd, "1", t),
-        _estimate("constant_friction", both[0], constant_sd, "N", t),
-        _estimate("offset", both[1], constant_sd, "N", t),
+        estimate("ratio_contraction", up.values[0], math.sqrt(variances[0][0]), "1"),
+        estimate("ratio_loosening", down.values[0], math.sqrt(variances[1][0]), "1"),
+        estimate("intercept_contraction", up.values[1], math.sqrt(variances[0][1]), "N"),
+        estimate("intercept_loosening", down.values[1], math.sqrt(variances[1][1]), "N"),
+        estimate("wrap", 0.5 * math.log(ratios[0] / ratios[1]), wrap_sd, "1"),
+        estimate("constant_friction", both[0], constant_sd, "N"),
+        estimate("offset", both[1], constant_sd, "N"),
     ]
 
 
-def _estimate(name: str, value: float, sd: float, unit: str, t: float) -> Estimate:
-    return Estimate(
-        name, float(value), unit, "fitted", None, sd, float(value - t * sd), float(value + t * sd)
-    )
+def _estimate(name: str, value: float, sd: float, unit: str, *, t: float, runs: str) -> Estimate:
+    low, high = float(value - t * sd), float(value + t * sd)
+    return Estimate(name, float(value), unit, "fitted", runs, sd, low, high)
 
 
 def _line(
