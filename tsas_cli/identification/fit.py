@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.numerics.covariance import sandwich
+from tsas_cli.numerics.covariance import jackknife
 
 Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
@@ -131,7 +131,7 @@ def fit(unknowns: Sequence[Unknown], blocks: Sequence[Indices], residuals: Resid
     )
     offsets = np.concatenate(([0], np.cumsum([b.max() + 1 for b in blocks])))[:-1]
     block = np.concatenate([b + o for b, o in zip(blocks, offsets, strict=True)])
-    covariance, t = sandwich(np.asarray(solution.jac), solution.fun, block)
+    covariance, t = jackknife(np.asarray(solution.jac), solution.fun, block)
     near = NEARLY_BOUND * (upper - lower)
     at_bound = (solution.x - lower < near) | (upper - solution.x < near)
     return Fitted(

@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.identification.phases import Phase, Segment
-from tsas_cli.numerics.covariance import block_length, sandwich
+from tsas_cli.numerics.covariance import block_length, jackknife
 
 Floats = npt.NDArray[np.float64]
 
@@ -56,7 +56,7 @@ def _slope(phase: Phase, x_in: Floats, f_in: Floats, segments: Sequence[Segment]
     residuals = [f - slope * x for x, f in zip(xs, fs, strict=True)]
     length = block_length(residuals)
     block = np.concatenate(_block_numbers([r.size for r in residuals], length))
-    covariance, t = sandwich(np.concatenate(xs)[:, None], np.concatenate(residuals), block)
+    covariance, t = jackknife(np.concatenate(xs)[:, None], np.concatenate(residuals), block)
     stderr = float(np.sqrt(covariance[0, 0]))
     samples = sum(x.size for x in xs)
     return Slope(phase, slope, stderr, t * stderr, len(xs), samples)

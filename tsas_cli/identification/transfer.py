@@ -16,7 +16,7 @@ import numpy.typing as npt
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.phases import Segment
 from tsas_cli.identification.prepared import Prepared
-from tsas_cli.numerics.covariance import block_length, sandwich
+from tsas_cli.numerics.covariance import block_length, jackknife
 
 Floats = npt.NDArray[np.float64]
 
@@ -114,5 +114,5 @@ def _line(
     length = block_length(pieces)
     within = np.concatenate([np.arange(p.size) // length for p in pieces])
     blocks = np.unique(number * (within.max() + 1) + within, return_inverse=True)[1]
-    covariance, t = sandwich(J, residual, blocks)
+    covariance, t = jackknife(J, residual, blocks)
     return _Line(values, covariance, t)

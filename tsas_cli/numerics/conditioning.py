@@ -72,7 +72,7 @@ def condition(time_s: Floats, values: Floats) -> Conditioned:
     cuts = corners(time_s, filled, int(np.percentile(alone, 75)), noise * math.sqrt(memory))
     half = best_half_windows(time_s, filled, cuts, noise, memory, pooled=5)
     smooth, sd = smoothed(time_s, filled, cuts, half, noise * math.sqrt(memory))
-    lay_flat(time_s, filled, smooth, sd, cuts, noise * math.sqrt(memory))
+    lay_flat(time_s, filled, smooth, sd, cuts, int(np.median(half)), noise * math.sqrt(memory))
     reversals = turning_points(smooth, STANDS_OUT * float(np.median(sd)))
     window_s = float(np.median(2 * half + 1) * np.median(np.diff(time_s)))
     return Conditioned(monotone_between(smooth, reversals), sd, window_s, noise, reversals)
@@ -236,59 +236,51 @@ def smoothed(
 
 
 def lay_flat(
-    time_s: Floats, values: Floats, smooth: Floats, sd: Floats, cuts: Indices, noise: float
+    time_s: Floats,
+    values: Floats,
+    smooth: Floats,
+    sd: Floats,
+    cuts: Indices,
+    reach: int,
+    noise: float,
 ) -> None:
-    """Set pieces at rest to their mean, in place, and what runs into them within its noise.
+    """Set pieces at rest to their mean, in place; what runs into them does not overshoot.
 
     A drift by a thousandth of a millimetre at rest would be a reversal to a hysteretic model.
     """
-    for first, end in pairwise(cuts):
-        count = end - first
-        if count < 2 * HALF_WINDOWS[0]:
+    for k, (first, end) in enumerate(pairwise(cuts)):
+        if not at_rest(time_s[first:end], values[first:end], noise):
             continue
-        mean = float(values[first:end].mean())
-        t = time_s[first:end] - time_s[first:end].mean()
-        trend = float(t @ values[first:end]) / math.sqrt(float(t @ t))
-        bow = t * t - np.mean(t * t)
-        curvature = float(bow @ values[first:end]) / math.sqrt(float(bow @ bow))
-        spread = math.sqrt(count) * abs(
-            float(np.mean((values[first:end] - mean) ** 2)) / noise**2 - 1
-        )
-        if max(abs(trend), abs(curvature)) > MOVES * noise or spread > 2.0 * MOVES:
-            continue
-        smooth[first:end] = mean
-        sd[first:end] = noise / math.sqrt(count)
-        for side in (range(first - 1, -1, -1), range(end, values.size)):
-            for i in side:
-                if abs(smooth[i] - mean) > MOVES * sd[i]:
-                    break
-                smooth[i] = mean
+        level = float(values[first:end].mean())
+        smooth[first:end] = level
+        sd[first:end] = noise / math.sqrt(end - first)
+        before = smooth[max(cuts[max(k - 1, 0)], first - reach) : first]
+        after = smooth[end : min(cuts[min(k + 2, cuts.size - 1)], end + reach)][::-1]
+        for beside in (before, after):  # both begin at their far ends
+            if beside.size:
+                limit = np.minimum if beside[0] < level else np.maximum
+                beside[:] = limit(beside, level)
 
 
-@kernel
+def at_rest(time_s: Floats, values: Floats, noise: float) -> bool:
+    """Say whether a piece shows no trend, no bow and no more spread than its noise."""
+    count = values.size
+    if count < 2 * HALF_WINDOWS[0]:
+        return False
+    t = time_s - time_s.mean()
+    bow = t * t - np.mean(t * t)
+    shapes = [abs(float(s @ values)) / math.sqrt(float(s @ s)) for s in (t, bow)]
+    excess = math.sqrt(count) * (float(values.var()) / noise**2 - 1.0)
+    return max(shapes) < MOVES * noise and excess < 2.0 * MOVES
+
+
 def monotone_between(values: Floats, turns: Indices) -> Floats:
     """Return the nearest signal that is monotone between the given indices (least squares)."""
+    from scipy.optimize import isotonic_regression
+
     out = values.copy()
-    level = np.empty(values.size)
-    weight = np.empty(values.size)
-    for s in range(turns.size - 1):
-        first, last = turns[s], turns[s + 1]
-        sign = 1.0 if values[last] >= values[first] else -1.0
-        blocks = 0
-        for i in range(first, last + 1):
-            level[blocks] = sign * out[i]
-            weight[blocks] = 1.0
-            blocks += 1
-            while blocks > 1 and level[blocks - 2] > level[blocks - 1]:
-                total = weight[blocks - 2] + weight[blocks - 1]
-                level[blocks - 2] += (level[blocks - 1] - level[blocks - 2]) * (
-                    weight[blocks - 1] / total
-                )
-                weight[blocks - 2] = total
-                blocks -= 1
-        i = first
-        for block in range(blocks):
-            for _ in range(int(weight[block])):
-                out[i] = sign * level[block]
-                i += 1
+    for first, last in pairwise(turns):
+        rising = bool(values[last] >= values[first])
+        stroke = isotonic_regression(out[first : last + 1], increasing=rising)
+        out[first : last + 1] = stroke.x
     return out

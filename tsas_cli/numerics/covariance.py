@@ -1,7 +1,7 @@
 """Intervals that hold although the residual is coloured.
 
 A residual of a physical model has memory; the plain formula counts each sample as news and is
-far too sure. Here the unit of evidence is a block longer than that memory: the sandwich estimate
+far too sure. Here the unit of evidence is a block longer than that memory: the jackknife estimate
 with sums of scores per block, its small-sample factor, and Student's t for the number of blocks.
 """
 
@@ -45,7 +45,7 @@ def block_length(residuals: list[Floats]) -> int:
     return max(1, min(math.ceil(MEMORIES_PER_BLOCK * longest), samples // FEWEST_BLOCKS))
 
 
-def sandwich(jacobian: Floats, residual: Floats, block: Indices) -> tuple[Floats, float]:
+def jackknife(jacobian: Floats, residual: Floats, block: Indices) -> tuple[Floats, float]:
     """Return the covariance of least-squares parameters and Student's t for a 95 % interval.
 
     Parameters
@@ -57,10 +57,17 @@ def sandwich(jacobian: Floats, residual: Floats, block: Indices) -> tuple[Floats
     """
     from scipy.stats import t
 
+    p = jacobian.shape[1]
     bread = np.linalg.pinv(jacobian.T @ jacobian, hermitian=True)
-    blocks = int(block.max()) + 1
-    scores = np.zeros((blocks, jacobian.shape[1]))
-    np.add.at(scores, block, jacobian * residual[:, None])
-    freedom = max(blocks - jacobian.shape[1], 1)
-    meat = scores.T @ scores * (blocks / freedom)
-    return bread @ meat @ bread, float(t.ppf(0.975, freedom))
+    order = np.argsort(block, kind="stable")
+    starts = np.flatnonzero(np.diff(block[order], prepend=-1))
+    scores = np.add.reduceat((jacobian * residual[:, None])[order], starts)
+    grams = np.array([part.T @ part for part in np.split(jacobian[order], starts[1:])])
+    # What leaving the block out would move: its score, magnified by its own leverage.
+    own = np.eye(p) - grams @ bread
+    magnified = np.linalg.solve(own + 1e-9 * np.eye(p), scores[:, :, None])[:, :, 0]
+    moves = magnified @ bread
+    moves -= moves.mean(axis=0)
+    blocks = starts.size
+    covariance: Floats = (blocks - 1) / blocks * moves.T @ moves
+    return covariance, float(t.ppf(0.975, max(blocks - p, 1)))

@@ -1,0 +1,139 @@
+"""Cleaning an input: what is left of the noise, of the reversals, and in the tension."""
+
+import numpy as np
+import pytest
+
+from tests.rig.motions import dwell, nested, sine, triangle
+from tests.rig.tendon import Rig as VirtualRig
+from tests.rig.tendon import simulate as rig_run
+from tsas_cli.numerics.conditioning import condition, monotone_between
+from tsas_cli.physics.quasi_static import Drive, simulate
+from tsas_cli.physics.rig import Rig
+
+NOISE_mm = 0.005
+FORCE_NOISE_N = 0.08
+MODEL = Rig(0.125, VirtualRig().axial_stiffness, 1.579, 250.0 * np.pi, np.pi, 25.0)
+MOTIONS = {
+    "sine": sine(),
+    "slow sampling": sine(rate_Hz=200.0),
+    "nested": nested(),
+    "triangle": triangle(),
+    "dwell": dwell(),
+}
+
+
+def noisy(x, seed, sd=NOISE_mm):
+    return x + np.random.default_rng(seed).normal(0.0, sd, x.size)
+
+
+def rms(values):
+    return float(np.sqrt(np.mean(values**2)))
+
+
+@pytest.mark.parametrize("name", MOTIONS)
+def test_a_true_model_stays_within_twice_the_force_noise(name):
+    """Raw noise costs the model ten times the force sensor's noise and more."""
+    clean = rig_run(VirtualRig(), MOTIONS[name])
+    t, x, f_in = (clean.columns[c] for c in ("time_s", "x_in_mm", "f_in_N"))
+    errors = []
+    for seed in range(5):
+        cleaned = condition(t, noisy(x, seed)).values
+        errors.append(rms(simulate(MODEL, Drive(cleaned)).f_in_N - f_in))
+    assert np.median(errors) < 2.0 * FORCE_NOISE_N
+    if name == "sine":
+        raw = simulate(MODEL, Drive(noisy(x, 0))).f_in_N - f_in
+        assert np.std(raw) > 10.0 * FORCE_NOISE_N
+
+
+@pytest.mark.parametrize("name", MOTIONS)
+def test_reversals_stay_and_none_is_added(name):
+    motion = MOTIONS[name]
+    turns = np.flatnonzero(
+        np.diff(np.sign(np.diff(motion.x_in_mm[np.diff(motion.x_in_mm, prepend=-1) != 0])))
+    )
+    cleaned = condition(motion.time_s, noisy(motion.x_in_mm, 1))
+    assert cleaned.reversals.size - 2 == turns.size
+    step = np.sign(np.diff(cleaned.values))
+    strokes = np.split(step, cleaned.reversals[1:-1])
+    assert all(len(set(s[s != 0])) <= 1 for s in strokes)
+
+
+def test_a_corner_stays_where_it_is():
+    """A window of half a second across the corner would round it by 0.2 mm."""
+    motion = triangle(speed_mm_s=5.0)
+    apex = int(np.argmax(motion.x_in_mm))
+    found = [condition(motion.time_s, noisy(motion.x_in_mm, seed)) for seed in range(10)]
+    heights = [c.values.max() - motion.x_in_mm[apex] for c in found]
+    assert abs(np.mean(heights)) < 0.006
+    assert all(abs(int(c.reversals[1]) - apex) < 12 for c in found)
+
+
+@pytest.mark.parametrize("name", ["sine", "nested"])
+def test_the_stated_error_is_the_error(name):
+    motion = MOTIONS[name]
+    cleaned = [condition(motion.time_s, noisy(motion.x_in_mm, seed)) for seed in range(8)]
+    found = rms(np.concatenate([c.values - motion.x_in_mm for c in cleaned]))
+    stated = rms(np.concatenate([c.sd for c in cleaned]))
+    assert found == pytest.approx(stated, rel=0.25)
+    assert found < 0.3 * NOISE_mm
+
+
+def test_a_coarse_encoder_is_smoothed_too():
+    motion = sine()
+    coarse = np.round(motion.x_in_mm / 0.01) * 0.01
+    cleaned = condition(motion.time_s, coarse)
+    assert cleaned.noise == pytest.approx(0.01 / np.sqrt(12.0), rel=0.2)
+    assert rms(cleaned.values - motion.x_in_mm) < 0.5 * rms(coarse - motion.x_in_mm)
+    assert cleaned.reversals.size == 5
+
+
+def test_a_rest_is_flat():
+    motion = dwell()
+    cleaned = condition(motion.time_s, noisy(motion.x_in_mm, 3)).values
+    resting = (
+        np.convolve(np.abs(np.diff(motion.x_in_mm, prepend=0.0)) < 1e-12, np.ones(201), "same")
+        > 200
+    )
+    assert resting.sum() > 500
+    assert np.abs(np.diff(cleaned))[resting[1:] & resting[:-1]].max() < 1e-12
+
+
+def test_without_noise_nothing_changes():
+    motion = sine()
+    cleaned = condition(motion.time_s, motion.x_in_mm)
+    assert np.abs(cleaned.values - motion.x_in_mm).max() < 1e-6
+
+
+def test_a_gap_is_bridged_by_a_straight_line():
+    motion = triangle()
+    x = noisy(motion.x_in_mm, 4)
+    x[1000:1100] = np.nan
+    cleaned = condition(motion.time_s, x)
+    assert np.isfinite(cleaned.values).all()
+    assert rms(cleaned.values[1000:1100] - motion.x_in_mm[1000:1100]) < NOISE_mm
+
+
+def test_irregular_times_do_as_well():
+    rng = np.random.default_rng(5)
+    t = np.sort(rng.uniform(0.0, 4.0 * np.pi, 6000))
+    x = 10.0 - 10.0 * np.cos(t)
+    cleaned = condition(t, noisy(x, 6))
+    assert rms(cleaned.values - x) < 0.3 * NOISE_mm
+    assert cleaned.reversals.size == 5
+
+
+def test_scaling_scales():
+    """Another unit gives the same signal, window and reversals."""
+    motion = nested()
+    x = noisy(motion.x_in_mm, 7)
+    one, other = condition(motion.time_s, x), condition(motion.time_s, x / 25.4)
+    assert np.allclose(one.values, 25.4 * other.values, atol=1e-9)
+    assert one.window_s == other.window_s
+    assert np.array_equal(one.reversals, other.reversals)
+
+
+def test_monotone_between_turns_only():
+    values = np.array([0.0, 2.0, 1.0, 3.0, 2.5, 2.6, 1.0])
+    assert monotone_between(values, np.array([0, 3, 6])) == pytest.approx(
+        [0.0, 1.5, 1.5, 3.0, 2.55, 2.55, 1.0]
+    )
