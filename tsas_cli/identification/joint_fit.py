@@ -17,6 +17,7 @@ from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.fit import Fitted, Unknown, fit, identifiable, jacobian
 from tsas_cli.identification.model import DEFAULTS, Model
 from tsas_cli.identification.prepared import Prepared
+from tsas_cli.numerics.conditioning import Conditioned
 from tsas_cli.numerics.covariance import block_length
 from tsas_cli.physics.parameters import NOMINAL, NOMINAL_BY_NAME, NominalParameter
 from tsas_cli.physics.quasi_static import Drive, Response, simulate
@@ -142,24 +143,28 @@ class JointFit:
         return np.concatenate(parts)
 
     def _weights(self, k: int) -> dict[str, Floats]:
-        """Return each channel's standard deviation per sample: its noise, and that of the drive.
+        """Return each channel's standard deviation per sample: its noise, and those of the ends.
 
-        What the drive's error does is found by a simulation with each stroke moved on by one
-        standard deviation, so that turning points move too.
+        What the error of an end does is found by a simulation with each of its strokes moved on
+        by one standard deviation, so that turning points move too.
         """
         run, drive = self.runs[k], _from_rest(self.runs[k])
         rig = self._rig(k, self.values)
-        conditioned = run.conditioned[run.drive_column]
-        forth = np.zeros(drive.values.size)
-        for first, end in pairwise(conditioned.reversals):
-            up = conditioned.values[end] >= conditioned.values[first]
-            forth[first : end + 1] = conditioned.sd[first : end + 1] * (1.0 if up else -1.0)
         plain = _answers(simulate(rig, drive))
-        moved = _answers(simulate(rig, replace(drive, values=drive.values + forth)))
-        return {
-            name: np.hypot(max(run.noise[name], 1e-9), moved[name] - plain[name])
-            for name in run.measured
+        square = {
+            name: np.full(run.time_s.size, max(n, 1e-9) ** 2) for name, n in run.noise.items()
         }
+        for column, conditioned in run.conditioned.items():
+            values = _moved_on(conditioned)
+            moved = (
+                replace(drive, values=values)
+                if column == run.drive_column
+                else replace(drive, load_values=values)
+            )
+            answers = _answers(simulate(rig, moved))
+            for name in square:
+                square[name] += (answers[name] - plain[name]) ** 2
+        return {name: np.sqrt(values) for name, values in square.items()}
 
     def _blocks(self) -> list[Indices]:
         """Return for each run the block of each residual, at least a conditioning window long."""
@@ -187,6 +192,16 @@ class JointFit:
             f"it is kept at {_kept_value(self.start, name, owners[0])}."
             for (name, why), owners in reasons.items()
         ]
+
+
+def _moved_on(conditioned: Conditioned) -> Floats:
+    """Return the values with each stroke moved on by one standard deviation."""
+    moved = conditioned.values.copy()
+    for first, end in pairwise(conditioned.reversals):
+        up = conditioned.values[end] >= conditioned.values[first]
+        part = slice(first, end + 1)
+        moved[part] = conditioned.values[part] + conditioned.sd[part] * (1.0 if up else -1.0)
+    return moved
 
 
 def _edges(size: int) -> Indices:

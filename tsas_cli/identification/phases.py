@@ -122,7 +122,7 @@ def _bases(name: str, travel: Floats) -> tuple[Floats, Floats]:
 def _transition(stroke: _Stroke) -> int | None:
     """Return where slip begins in a stroke, as an index into its thinned samples, or None."""
     n = stroke.travel.size
-    if n < 2 * FEWEST or not stroke.channels:
+    if n <= 2 * FEWEST or not stroke.channels:
         return None
     total = np.zeros(n + 1)
     alone = np.zeros(2)

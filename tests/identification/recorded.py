@@ -1,0 +1,35 @@
+"""Recordings of the independent rig, prepared for a model, as several tests need them."""
+
+from functools import cache
+
+from tests.rig.motions import sine
+from tests.rig.recordings import DATA_SHEET, conditions
+from tests.rig.sensors import Sensors, measure
+from tests.rig.tendon import Rig, simulate
+from tsas_cli.identification.prepared import Prepared, prepare
+from tsas_cli.recordings.dataset import Recording
+from tsas_cli.recordings.manifest import Manifest, Run
+
+ALL = ("f_in_N", "f_out_N", "x_out_mm")
+
+
+@cache
+def clean(rig: Rig, motion=None):
+    """Return the rig's run without sensor errors."""
+    return simulate(rig, motion or sine())
+
+
+def prepared(rig: Rig, motion=None, *, seed=0, channels=ALL, run_id="a", sensors=None, **said):
+    """Measure a run and prepare it; `said` replaces what the manifest tells."""
+    columns = measure(clean(rig, motion), sensors or Sensors(), seed=seed)
+    kept = {n: v for n, v in columns.items() if n in channels or n in ("time_s", "x_in_mm")}
+    told = conditions(rig) | said
+    run = Run(id=run_id, file=f"{run_id}.parquet", sha256="0" * 64, **told)
+    return prepare(Recording(run, kept))
+
+
+def manifest(*runs: Prepared, **sheet: float) -> Manifest:
+    """Return a manifest of prepared runs, with Table 1 of Yang 2025 as data sheet."""
+    return Manifest(
+        format=1, name="t", kind="simulated", rig=DATA_SHEET | sheet, run=tuple(r.run for r in runs)
+    )

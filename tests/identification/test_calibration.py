@@ -1,0 +1,144 @@
+"""Calibration on the independent rig: the truth is found, and what cannot be told is said."""
+
+import math
+
+import numpy as np
+import pytest
+
+from tests.identification.recorded import manifest, prepared
+from tests.rig.motions import sine
+from tests.rig.tendon import Rig
+from tsas_cli.identification.calibration import calibrate
+
+TRUE = Rig(friction_coefficient=0.135, load_stiffness_N_per_mm=1.45, preload_N=27.0)
+OTHER = Rig(
+    friction_coefficient=0.135,
+    load_stiffness_N_per_mm=1.45,
+    preload_N=27.0,
+    total_bend_rad=math.pi / 2.0,
+    sheath_length_mm=100.0 * math.pi,
+)
+VALUES = {
+    "friction_coefficient": 0.135,
+    "load_stiffness_N_per_mm": 1.45,
+    "preload_N": 27.0,
+    "tendon_stiffness_N": TRUE.axial_stiffness,
+    "x_in_zero_mm": 0.0,
+}
+
+
+def found(result):
+    return {(e.name, e.run): e for e in result.model.estimates if e.stderr is not None}
+
+
+@pytest.mark.parametrize("channels", [("f_in_N", "f_out_N", "x_out_mm"), ("f_in_N",)])
+def test_the_truth_is_found_from_a_data_sheet_that_is_wrong(channels):
+    """The sheet says 0.125, 1.579 and 25; the estimates are right to a few of their errors."""
+    runs = [
+        prepared(TRUE, channels=channels, seed=1, preload_N=25.0),
+        prepared(OTHER, channels=channels, seed=2, run_id="b", preload_N=25.0),
+    ]
+    result = calibrate(manifest(*runs), runs)
+    estimates = found(result)
+    for name, value in VALUES.items():
+        for run in (None, "a", "b"):
+            if (name, run) in estimates:
+                e = estimates[name, run]
+                assert abs(e.value - value) < 4.0 * e.stderr + 2e-4 * abs(value)
+    assert estimates["friction_coefficient", None].stderr < 1e-3
+    assert estimates["tendon_stiffness_N", None].stderr < 0.01 * TRUE.axial_stiffness
+    assert result.fitted is not None
+    assert result.fitted.converged
+
+
+def test_what_cannot_be_told_is_said():
+    run = prepared(TRUE, channels=("f_in_N",))
+    result = calibrate(manifest(run), [run])
+    said = " ".join(result.cannot_tell)
+    assert "x_in_zero_mm cannot be told apart from preload_N" in said
+    assert "x_out_zero_mm does not show" in said
+    assert ("x_in_zero_mm", "a") not in found(result)
+
+
+def test_without_a_bend_friction_stands_for_the_product():
+    run = prepared(TRUE, total_bend_rad=None)
+    result = calibrate(manifest(run), [run])
+    friction = found(result)["friction_coefficient", None]
+    assert friction.value == pytest.approx(0.135 * math.pi, rel=2e-3)
+    assert any("product of friction and bend" in s for s in result.cannot_tell)
+
+
+def test_a_right_model_is_not_accused_and_a_wrong_one_is():
+    right = prepared(TRUE)
+    assert not any("wrong somewhere" in s for s in calibrate(manifest(right), [right]).cannot_tell)
+    hidden = Rig(proximal_length_mm=200.0)
+    both = [
+        prepared(hidden),
+        prepared(Rig(sheath_length_mm=300.0, proximal_length_mm=200.0), run_id="b"),
+    ]
+    assert any("wrong somewhere" in s for s in calibrate(manifest(*both), both).cannot_tell)
+
+
+def test_a_told_free_length_is_used():
+    """With the free lengths on the data sheet the tendon's own stiffness is found."""
+    rigs = [
+        Rig(proximal_length_mm=150.0, distal_length_mm=60.0),
+        Rig(sheath_length_mm=300.0, proximal_length_mm=150.0, distal_length_mm=60.0),
+    ]
+    runs = [prepared(r, run_id=n, seed=k) for k, (r, n) in enumerate(zip(rigs, "ab", strict=True))]
+    told = manifest(*runs, proximal_length_mm=150.0, distal_length_mm=60.0)
+    swapped = manifest(*runs, proximal_length_mm=60.0, distal_length_mm=150.0)
+    right = found(calibrate(told, runs))["tendon_stiffness_N", None]
+    wrong = found(calibrate(swapped, runs))["tendon_stiffness_N", None]
+    assert right.value == pytest.approx(Rig().axial_stiffness, rel=3e-3)
+    assert abs(wrong.value / Rig().axial_stiffness - 1.0) > 0.02
+
+
+def test_the_dead_band_s_bias_is_expected():
+    """The line fit misses the theory, and the distributed model says by how much."""
+    run = prepared(Rig())
+    result = calibrate(manifest(run), [run])
+    measured = {s.phase: s for s in result.slopes[0]}
+    expected = {s.phase: s.value for s in result.expected[0]}
+    for phase in ("dead_band_up", "dead_band_down"):
+        assert abs(measured[phase].value - expected[phase]) < measured[phase].half_width
+        assert expected[phase] < 0.97 * 175.1
+    assert measured["contraction"].value == pytest.approx(2.287, abs=2e-3)
+    assert measured["loosening"].value == pytest.approx(1.050, abs=2e-3)
+
+
+def test_a_measured_load_takes_the_place_of_the_spring():
+    """Friction and tendon come out the same when the tension or displacement at the load drives."""
+    for load, channels in (
+        ("force", ("f_in_N", "f_out_N", "x_out_mm")),
+        ("displacement", ("f_in_N", "f_out_N", "x_out_mm")),
+    ):
+        run = prepared(TRUE, sine(rate_Hz=250.0), channels=channels, load=load)
+        estimates = found(calibrate(manifest(run), [run]))
+        assert estimates["friction_coefficient", None].value == pytest.approx(0.135, rel=5e-3)
+        tendon = estimates["tendon_stiffness_N", None].value
+        assert tendon == pytest.approx(TRUE.axial_stiffness, rel=0.03)
+        assert ("load_stiffness_N_per_mm", None) not in estimates
+
+
+def test_tension_transfer_is_the_capstan_s():
+    run = prepared(TRUE)
+    transfer = {e.name: e for e in calibrate(manifest(run), [run]).transfer}
+    a = 0.135 * math.pi
+    assert transfer["ratio_contraction"].value == pytest.approx(math.exp(a), rel=2e-3)
+    assert transfer["ratio_loosening"].value == pytest.approx(math.exp(-a), rel=2e-3)
+    assert transfer["wrap"].value == pytest.approx(a, rel=2e-3)
+    assert abs(transfer["constant_friction"].value) < 0.05
+
+
+def test_intervals_hold_the_truth_over_seeds():
+    """A small part of the coverage benchmark: over 12 seeds at least 80 % of all intervals."""
+    inside = []
+    for seed in range(100, 112):
+        run = prepared(TRUE, seed=seed)
+        inside += [
+            e.interval_low <= VALUES[e.name] <= e.interval_high
+            for e in found(calibrate(manifest(run), [run])).values()
+            if e.name in VALUES
+        ]
+    assert np.mean(inside) > 0.8

@@ -1,0 +1,86 @@
+"""Phases against the rig's own knowledge of when the load end moves."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from tests.identification.recorded import ALL, clean, prepared
+from tests.rig.motions import chirp, nested, sine, triangle, two_sines
+from tests.rig.sensors import Sensor, Sensors
+from tests.rig.tendon import Rig
+from tsas_cli.identification.phases import segment
+
+COARSE = Sensors(
+    x_in_mm=Sensor(0.01, 0.01),
+    x_out_mm=Sensor(0.01, 0.01),
+    f_in_N=Sensor(0.3, 0.1),
+    f_out_N=Sensor(0.3, 0.1),
+)
+
+
+def labels(run):
+    out = np.full(run.time_s.size, "", dtype="U16")
+    for part in segment(run):
+        out[part.first : part.end] = part.phase
+    return out
+
+
+def truth(motion, rig):
+    """Return what the load end does, and which way the drive goes."""
+    columns = clean(rig, motion).columns
+    up = np.gradient(columns["x_in_mm"]) > 0.0
+    moves = np.abs(np.gradient(columns["x_out_mm"])) > 0.02 * np.abs(
+        np.gradient(columns["x_in_mm"])
+    )
+    slip, dead = (
+        np.where(up, "contraction", "loosening"),
+        np.where(up, "dead_band_up", "dead_band_down"),
+    )
+    return np.where(moves, slip, dead)
+
+
+@pytest.mark.parametrize(
+    "sensors", [Sensors(), COARSE, Sensors(rate_Hz=200.0)], ids=["fine", "coarse", "slow"]
+)
+@pytest.mark.parametrize(
+    "motion", [sine(), triangle(), two_sines(), chirp()], ids=["sine", "triangle", "two", "chirp"]
+)
+def test_phases_are_those_of_the_rig(motion, sensors):
+    run = prepared(Rig(), motion, sensors=sensors)
+    true = truth(motion, Rig())[:: round(motion.time_s.size / run.time_s.size)][: run.time_s.size]
+    assert np.mean(labels(run) == true) > 0.96
+
+
+@pytest.mark.parametrize("channels", [("f_in_N",), ("f_out_N",), ("x_out_mm",)])
+def test_one_channel_is_enough(channels):
+    run = prepared(Rig(), sine(), channels=channels)
+    assert np.mean(labels(run) == truth(sine(), Rig())) > 0.95
+
+
+def test_partial_loops_hold_no_slip():
+    """Where the nested loops turn back inside the dead band, nothing slips as a whole."""
+    motion = nested()
+    found = labels(prepared(Rig(), motion))
+    true = truth(motion, Rig())
+    assert np.mean(found == true) > 0.93
+
+
+def test_segments_cover_the_run_without_overlap():
+    run = prepared(Rig(), two_sines())
+    parts = segment(run)
+    assert parts[0].first == 0
+    assert parts[-1].end == run.time_s.size
+    assert all(a.end == b.first for a, b in pairwise(parts))
+
+
+def test_noise_does_not_make_phases_chatter():
+    """Two cycles have at most nine segments, whatever the noise."""
+    for seed in range(5):
+        assert len(segment(prepared(Rig(), sine(), sensors=COARSE, seed=seed))) <= 9
+
+
+def test_motion_inside_the_dead_band_is_not_called_slip():
+    small = sine(amplitude_mm=0.02)
+    run = prepared(Rig(), small, channels=ALL, sensors=Sensors(x_in_mm=Sensor(2e-4)))
+    assert not {"contraction", "loosening"} & set(labels(run))
