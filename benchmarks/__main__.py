@@ -75,12 +75,12 @@ def table(name: str, rows: list[dict[str, Any]]) -> tuple[str, list[str], list[l
             row["name"],
             f"{row['value']:.4g}",
             row["unit"],
-            "" if row["at_most"] is None else f"{row['at_most']:g}",
+            *("" if row[limit] is None else f"{row[limit]:g}" for limit in ("at_least", "at_most")),
             verdicts[row["holds"]],
         ]
         for row in rows
     ]
-    return name, ["what", "value", "unit", "at most", "holds"], cells
+    return name, ["what", "value", "unit", "at least", "at most", "holds"], cells
 
 
 if __name__ == "__main__":

@@ -78,5 +78,6 @@ def measure() -> Iterable[Row]:
                 pairs = np.array([p for answer in answers for p in answer.get(name, [])])
                 if pairs.size:
                     share = 100.0 * float(pairs[:, 0].mean())
-                    yield Row(f"{name}, {label}: covered", share, "%")
+                    limits = {"at_most": 99.0, "at_least": 85.0} if told else {}
+                    yield Row(f"{name}, {label}: covered", share, "%", **limits)
                     yield Row(f"{name}, {label}: half width", float(pairs[:, 1].mean()), "")

@@ -58,7 +58,7 @@ def calibrate(
         for run, a, s in zip(runs, answers, segments, strict=True)
     ]
     rmse = [a.rmse for a in answers]
-    cannot = [*_unknown_conditions(runs), *sentences, *_misfit(runs, rmse)]
+    cannot = [*_misfit(runs, rmse), *_unknown_conditions(runs), *sentences]
     return Calibration(
         _with_correction(model, runs),
         runs,
@@ -100,15 +100,33 @@ def _start(
 
 
 def _with_correction(model: Model, runs: Sequence[Prepared]) -> Model:
-    """Add the mean difference of fitted and stated preload, for runs that are not calibrated."""
-    known = {
-        e.run: e.value for e in model.estimates if e.name == "preload_N" and e.origin == "fitted"
-    }
-    off = [known[r.run.id] - r.run.preload_N for r in runs if r.run.id in known and r.run.preload_N]
-    if not off:
+    """Add the mean difference of fitted and stated preload, for runs that are not calibrated.
+
+    Its interval is the one that a further run's difference lies in; one run alone gives none.
+    """
+    from scipy.stats import t
+
+    fitted = {e.run: e.value for e in model.estimates if e.name == "preload_N" and e.stderr}
+    off = [
+        fitted[r.run.id] - r.run.preload_N
+        for r in runs
+        if r.run.id in fitted and r.run.preload_N is not None
+    ]
+    count = len(off)
+    if count < 2:
         return model
-    stderr = float(np.std(off, ddof=1)) if len(off) > 1 else None
-    correction = Estimate(CORRECTION, float(np.mean(off)), "N", "fitted", stderr=stderr)
+    mean = float(np.mean(off))
+    spread = float(np.std(off, ddof=1)) * (1.0 + 1.0 / count) ** 0.5
+    half = float(t.ppf(0.975, count - 1)) * spread
+    correction = Estimate(
+        CORRECTION,
+        mean,
+        "N",
+        "fitted",
+        stderr=spread,
+        interval_low=mean - half,
+        interval_high=mean + half,
+    )
     return Model((*model.estimates, correction))
 
 

@@ -17,11 +17,13 @@ from tsas_cli.reporting.sections import (
     simulation,
     stiffness,
     summary,
+    transfer,
 )
 
 SECTIONS: tuple[Callable[[Inputs], Section], ...] = (
     recordings.section,
     stiffness.section,
+    transfer.section,
     loops.section,
     simulation.section,
     parameters.section,

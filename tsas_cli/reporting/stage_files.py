@@ -113,6 +113,7 @@ class Calibration(StageFile):
     version: str
     segments: dict[str, tuple[Segment, ...]]
     stiffness: tuple[Stiffness, ...]
+    transfer: tuple[Parameter, ...] = ()
     parameters: tuple[Parameter, ...]
     cannot_tell: tuple[str, ...]
     fit: Fit
@@ -125,9 +126,22 @@ class ModelFile(_Record):
     sha256: str | None = None
 
 
+class Conditioning(_Record):
+    """How a measured input was cleaned before it drove the model."""
+
+    method: str
+    window_s: float
+    noise: float
+    unit: str
+    reversals: int
+
+
 class SimulatedRun(_Record):
     """What `tsas simulate` says about one run."""
 
+    solver: str = ""
+    start: str = ""
+    conditioning: dict[str, Conditioning] = {}
     slack_samples: int = 0
     unconverged_samples: int = 0
     channels: dict[str, Channel]

@@ -33,7 +33,9 @@ def section(inputs: Inputs) -> Section:
         for number, recording in enumerate(inputs.dataset)
         if (pictures := tuple(_pictures(inputs, recording, channels, number)))
     )
-    return Section("simulation", _TITLE, intro, tables=(_table(simulation),), groups=groups)
+    return Section(
+        "simulation", _TITLE, intro, tables=(_table(simulation), _inputs(simulation)), groups=groups
+    )
 
 
 def _table(simulation: Simulation) -> Table:
@@ -63,6 +65,38 @@ def _table(simulation: Simulation) -> Table:
     )
     caption = "How far the simulation is from the measurement"
     return Table(caption, header, rows, numeric=frozenset({2, 3, 4, 6, 7}))
+
+
+def _inputs(simulation: Simulation) -> Table:
+    """Return how each run's inputs were cleaned, where it starts and what solved it."""
+    rows = tuple(
+        (
+            run_id,
+            column,
+            c.method,
+            plain(c.window_s, 3),
+            plain(c.noise, 3),
+            c.unit,
+            str(c.reversals),
+            run.start,
+            run.solver,
+        )
+        for run_id, run in simulation.runs.items()
+        for column, c in run.conditioning.items()
+    )
+    header = (
+        "run",
+        "input",
+        "cleaned by",
+        "window [s]",
+        "noise",
+        "unit",
+        "reversals",
+        "start",
+        "solver",
+    )
+    caption = "How the measured inputs were made ready, and what solved the model"
+    return Table(caption, header, rows, numeric=frozenset({3, 4, 6}))
 
 
 def _ratio(channel: Channel) -> str:
