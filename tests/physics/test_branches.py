@@ -116,7 +116,7 @@ def test_tangent_grows_without_bound_towards_the_reversal(pulling):
     ("pulling", "slope", "rise"), [(False, 133.6, 1 - DOWN), (True, 147.1, UP - 1)]
 )
 def test_a_straight_line_fitted_to_the_band_is_not_its_secant(pulling, slope, rise):
-    """The limit of ever more points is ((8/5)/rise ± 1)/C: least squares on (1 ± √u)², u ≤ rise²."""
+    """Of ever more points it is (8/(5 rise) ± 1)/C: least squares on (1 ± √u)², u ≤ rise²."""
     assert np.polyfit(*band(pulling=pulling, points=401), 1)[0] == pytest.approx(slope, abs=0.1)
     limit = (1.6 / rise + (1.0 if pulling else -1.0)) / C
     assert np.polyfit(*band(pulling=pulling, points=20001), 1)[0] == pytest.approx(limit, rel=1e-4)

@@ -1,0 +1,86 @@
+"""One run: which solver answers, where it starts, and what the sensors would read."""
+
+import math
+
+import numpy as np
+import pytest
+
+from tests.physics.references import GROUP_A, wrap_of
+from tsas_cli.physics.branches import branches
+from tsas_cli.physics.quasi_static import UNSETTLED, Drive, simulate
+
+RIG = GROUP_A._replace(x_in_zero_mm=3.0, x_out_zero_mm=-7.0)
+UP = math.exp(wrap_of(GROUP_A))
+MOTION = np.concatenate((np.linspace(0, 20, 500), np.linspace(20, 5, 500), np.linspace(5, 9, 300)))
+CHANNELS = ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N")
+
+
+@pytest.fixture(scope="module")
+def spring():
+    return simulate(RIG, Drive(MOTION + 3.0))
+
+
+def test_a_spring_is_solved_in_closed_form_and_read_with_the_zeros(spring):
+    f_in, f_out, phase = branches(MOTION, GROUP_A)
+    assert spring.solver == "closed form"
+    np.testing.assert_array_equal(spring.x_in_mm, MOTION + 3.0)
+    np.testing.assert_allclose(spring.f_in_N, f_in, rtol=1e-12)
+    np.testing.assert_allclose(spring.x_out_mm + 7.0, (f_out - 25.0) / 1.579, atol=1e-12)
+    np.testing.assert_array_equal(spring.phase, phase)
+
+
+@pytest.mark.parametrize(("load", "channel"), [("force", "f_out_N"), ("displacement", "x_out_mm")])
+def test_a_measured_load_repeats_the_spring(spring, load, channel):
+    again = simulate(RIG, Drive(MOTION + 3.0, load=load, load_values=getattr(spring, channel)))
+    assert "slip chain" in again.solver
+    assert UNSETTLED not in again.phase
+    np.testing.assert_array_equal(getattr(again, channel), getattr(spring, channel))
+    for name in CHANNELS:
+        np.testing.assert_allclose(getattr(again, name), getattr(spring, name), atol=0.5)
+        error = getattr(again, name) - getattr(spring, name)
+        assert np.sqrt(np.mean(error**2)) < 0.03
+
+
+def test_a_drive_by_force_moves_as_the_drive_did(spring):
+    again = simulate(RIG, Drive(spring.f_in_N, kind="force"))
+    np.testing.assert_array_equal(again.f_in_N, spring.f_in_N)
+    np.testing.assert_allclose(again.x_in_mm, spring.x_in_mm, atol=0.02)
+    np.testing.assert_allclose(again.x_out_mm, spring.x_out_mm, atol=0.02)
+
+
+def test_dynamics_static_asks_the_lumped_model():
+    answer = simulate(RIG, Drive(np.array([3.0, 3.01])), "static")
+    assert answer.f_in_N[1] - answer.f_in_N[0] == pytest.approx(1.751, abs=2e-3)
+    assert answer.x_out_mm == pytest.approx([-7.0, -7.0])
+    assert answer.solver == "lumped dead bands"
+
+
+@pytest.mark.parametrize("cut", [250, 520, 700, 900, 1010, 1100])
+@pytest.mark.parametrize("load", ["spring", "force", "displacement"])
+def test_a_run_that_begins_mid_cycle_starts_from_the_measured_tension(spring, load, cut):
+    values = {"spring": None, "force": spring.f_out_N, "displacement": spring.x_out_mm}[load]
+    answer = simulate(
+        RIG,
+        Drive(
+            spring.x_in_mm[cut:],
+            load=load,
+            load_values=None if values is None else values[cut:],
+            start_f_in_N=float(spring.f_in_N[cut]),
+        ),
+    )
+    assert answer.f_in_N.size == MOTION.size - cut
+    np.testing.assert_array_equal(answer.x_in_mm, spring.x_in_mm[cut:])
+    assert answer.f_in_N[0] == pytest.approx(
+        spring.f_in_N[cut], abs=1e-6 if load == "spring" else 0.3
+    )
+    late = slice(-1, None)
+    np.testing.assert_allclose(answer.f_in_N[late], spring.f_in_N[late], rtol=0.01)
+
+
+@pytest.mark.parametrize("factor", [0.5, 3.0])
+def test_a_start_that_cannot_be_is_the_nearest_that_can(factor):
+    """At x_in = 10 mm the tension lies between those of loosening and contraction."""
+    x = np.array([13.0, 13.0])
+    extreme = branches(np.array([40.0 if factor < 1 else -5.0, 10.0]), GROUP_A)[0][1]
+    answer = simulate(RIG, Drive(x, start_f_in_N=factor * extreme))
+    assert answer.f_in_N[0] == pytest.approx(extreme)
