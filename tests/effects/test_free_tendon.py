@@ -1,0 +1,62 @@
+"""Tendon outside the sheath, held against two ways of taking it out again."""
+
+import numpy as np
+import pytest
+
+from tests.physics.references import GROUP_A
+from tsas_cli.effects import Effects, FreeTendon
+from tsas_cli.effects.free_tendon import free_compliance
+from tsas_cli.physics.branches import branches
+from tsas_cli.physics.quasi_static import Drive, simulate
+
+EA = GROUP_A.tendon_stiffness_N
+MOTION = np.interp(np.linspace(0, 6, 3000), np.arange(7), [0, 14, 13.9, 13.95, 3, 9, -4])
+
+
+def with_free(proximal, distal):
+    return GROUP_A._replace(effects=Effects(FreeTendon(proximal, distal)))
+
+
+def test_a_free_length_is_a_rod():
+    assert free_compliance(150.0, 6e4) == pytest.approx(0.0025)
+
+
+def test_at_the_drive_it_takes_up_travel_by_its_tension():
+    f_in, f_out, phase = branches(MOTION, with_free(152.0, 0.0))
+    inside = MOTION - (f_in - 25.0) * 152.0 / EA
+    nominal = branches(inside, GROUP_A)
+    np.testing.assert_allclose(f_in, nominal[0], rtol=1e-9)
+    np.testing.assert_allclose(f_out, nominal[1], rtol=1e-9)
+    np.testing.assert_array_equal(phase, nominal[2])
+
+
+def test_at_the_load_it_softens_the_spring_and_moves_the_output_less():
+    spring = GROUP_A.load_stiffness_N_per_mm
+    softer = GROUP_A._replace(load_stiffness_N_per_mm=1.0 / (1.0 / spring + 61.0 / EA))
+    f_in, f_out, _ = branches(MOTION, with_free(0.0, 61.0))
+    np.testing.assert_allclose(f_in, branches(MOTION, softer)[0], rtol=1e-9)
+    response = simulate(with_free(0.0, 61.0), Drive(MOTION))
+    np.testing.assert_allclose(response.x_out_mm, (f_out - 25.0) / spring, atol=1e-9)
+
+
+def test_its_ends_are_not_exchanged():
+    """At the drive it softens the dead band, at the load it hardly does."""
+    band = np.array([14.0, 13.9])
+    nominal, drive, load = (
+        np.diff(branches(band, with_free(*lengths))[0])[0]
+        for lengths in ((0.0, 0.0), (400.0, 0.0), (0.0, 400.0))
+    )
+    assert drive > 0.7 * nominal
+    assert load == pytest.approx(nominal, rel=0.01)
+
+
+@pytest.mark.parametrize("channel", ["f_out_N", "x_out_mm"])
+def test_the_chain_is_the_closed_form_with_free_lengths(channel):
+    rig = with_free(152.0, 61.0)
+    exact = simulate(rig, Drive(MOTION))
+    kind = "force" if channel == "f_out_N" else "displacement"
+    chain = simulate(rig, Drive(MOTION, load=kind, load_values=getattr(exact, channel)))
+    for name in ("f_in_N", "f_out_N"):
+        error = getattr(chain, name) - getattr(exact, name)
+        assert np.sqrt(np.mean(error**2)) < 0.03
+    np.testing.assert_allclose(chain.x_out_mm, exact.x_out_mm, atol=0.01)

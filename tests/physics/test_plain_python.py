@@ -1,0 +1,51 @@
+"""Compiled and plain Python are the same program."""
+
+import json
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+PROGRAM = """
+import json
+import sys
+import numpy as np
+from tests.physics.references import GROUP_A
+from tsas_cli.effects import Effects, FreeTendon
+from tsas_cli.physics.branches import branches
+from tsas_cli.physics.slip_chain import DISPLACEMENT, FORCE, Boundary, slip_chain
+from tsas_cli.physics.static import static_model
+
+rig = GROUP_A._replace(effects=Effects(FreeTendon(152.0, 61.0)))
+x = np.interp(np.linspace(0, 7, 300), np.arange(8), [0, 14, 13.9, 13.95, 13.2, -60, 13, 12])
+wrap, preload = np.linspace(0.3, 0.5, 300), np.linspace(25.0, 20.0, 300)
+answers = [branches(x, rig), static_model(x, rig)]
+for drive, load, boundary in (
+    (x, 0.0 * x, Boundary(DISPLACEMENT, DISPLACEMENT, 1.0 / 1.579)),
+    (x, 25.0 - 3.0 * x, Boundary(DISPLACEMENT, FORCE, 0.0)),
+    (x, 0.9 * x, Boundary(DISPLACEMENT, DISPLACEMENT, 0.0)),
+    (25.0 + x, 0.0 * x, Boundary(FORCE, DISPLACEMENT, 1.0 / 1.579)),
+):
+    answers.append(slip_chain(drive, load, wrap, preload, rig, boundary, 10))
+columns = [column.tolist() for answer in answers for column in answer]
+print(json.dumps(["numba" in sys.modules, columns]))
+"""
+
+
+def answers(plain):
+    environment = os.environ | {"TSAS_PLAIN_PYTHON": "1" if plain else "0"}
+    call = [sys.executable, "-W", "error", "-c", PROGRAM]
+    done = subprocess.run(call, env=environment, capture_output=True, text=True, check=True)
+    compiled, columns = json.loads(done.stdout)
+    assert compiled != plain
+    return columns
+
+
+def test_compiled_is_plain_python_to_rounding():
+    plain, compiled = answers(plain=True), answers(plain=False)
+    assert len(plain) == 3 + 3 + 4 * 5
+    for ours, theirs in zip(plain, compiled, strict=True):
+        assert np.ptp(ours) > 0.0
+        assert ours == pytest.approx(theirs, rel=1e-9, abs=1e-9)
