@@ -1,6 +1,6 @@
 """Calibrate the nominal model on a dataset: phases, stiffness per phase, joint fit."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -50,15 +50,15 @@ def calibrate(
         measured.append(_slopes(run, run.measured.get("f_in_N"), segments[-1]))
         step()
     stated = data_sheet(manifest)
-    start = _start(stated, runs, segments, measured)
-    model, fitted, sentences = JointFit(start, runs).solve()
+    read = _read_off(stated, runs, segments, measured)
+    fit = JointFit(read.over(stated), stated.over(read), runs)
+    model, fitted, sentences = fit.solve()
     answers = [compare(run, model) for run in runs]
     expected = [
         _slopes(run, a.response.f_in_N, s)
         for run, a, s in zip(runs, answers, segments, strict=True)
     ]
-    rmse = [a.rmse for a in answers]
-    cannot = [*_misfit(runs, rmse), *_unknown_conditions(runs), *sentences]
+    cannot = [*fit.misfit(), *_unknown_conditions(runs), *sentences]
     return Calibration(
         _with_correction(model, runs),
         runs,
@@ -77,13 +77,13 @@ def _slopes(run: Prepared, f_in: Floats | None, segments: list[Segment]) -> list
     return slopes(run.conditioned["x_in_mm"].values, f_in, segments)
 
 
-def _start(
+def _read_off(
     stated: Model,
     runs: Sequence[Prepared],
     segments: Sequence[list[Segment]],
     measured: Sequence[list[Slope]],
 ) -> Model:
-    """Return the model to start from: read off the data, else the data sheet's, else a default."""
+    """Return what the phases of the runs show, to start from; the median where runs share it."""
     found: dict[tuple[str, str | None], list[float]] = {}
     for run, parts, km in zip(runs, segments, measured, strict=True):
         rig = stated.rig(run.run)
@@ -91,12 +91,12 @@ def _start(
         for name, value in values.items():
             owner = None if NOMINAL_BY_NAME[name].shared else run.run.id
             found.setdefault((name, owner), []).append(value)
-    estimates = [e for e in stated.estimates if (e.name, e.run) not in found]
-    read = [
-        Estimate(name, float(np.median(seen)), NOMINAL_BY_NAME[name].unit, "default", owner)
-        for (name, owner), seen in found.items()
-    ]
-    return Model((*estimates, *read))
+    return Model(
+        tuple(
+            Estimate(name, float(np.median(seen)), NOMINAL_BY_NAME[name].unit, "default", owner)
+            for (name, owner), seen in found.items()
+        )
+    )
 
 
 def _with_correction(model: Model, runs: Sequence[Prepared]) -> Model:
@@ -143,18 +143,3 @@ def _unknown_conditions(runs: Sequence[Prepared]) -> list[str]:
             "tendon_stiffness_N stands for the stiffness of one metre."
         )
     return out
-
-
-def _misfit(runs: Sequence[Prepared], rmse: Sequence[Mapping[str, float]]) -> list[str]:
-    """Say where the calibrated model is further from the data than their noise allows."""
-    worst: dict[str, float] = {}
-    for run, errors in zip(runs, rmse, strict=True):
-        for name, error in errors.items():
-            if run.noise[name] > 0.0:
-                worst[name] = max(worst.get(name, 0.0), error / run.noise[name])
-    return [
-        f"{name} is missed by up to {ratio:.3g} times its noise: the nominal model is wrong "
-        "somewhere, and the intervals are those of the nearest nominal model, not of the rig."
-        for name, ratio in worst.items()
-        if ratio > 2.0
-    ]

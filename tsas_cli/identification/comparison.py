@@ -74,9 +74,10 @@ def compare(run: Prepared, model: Model, dynamics: Dynamics = "slip") -> Compare
         if name not in driven
     }
     error = {name: run.measured[name] - channels[name] for name in run.measured}
+    error = {name: e[np.isfinite(e)] for name, e in error.items()}
     return Compared(
         response,
         channels,
-        {name: float(np.sqrt(np.nanmean(e**2))) for name, e in error.items()},
-        {name: int(np.isfinite(e).sum()) for name, e in error.items()},
+        {name: float(np.sqrt(np.mean(e**2))) for name, e in error.items()},
+        {name: int(e.size) for name, e in error.items()},
     )

@@ -125,8 +125,8 @@ def fit(unknowns: Sequence[Unknown], blocks: Sequence[Indices], residuals: Resid
         bounds=(lower, upper),
         x_scale=np.array([u.scale for u in unknowns]),
         max_nfev=MOST_EVALUATIONS,
-        xtol=1e-10,
-        ftol=1e-12,
+        xtol=1e-6,
+        ftol=1e-8,
         gtol=1e-10,
     )
     offsets = np.concatenate(([0], np.cumsum([b.max() + 1 for b in blocks])))[:-1]

@@ -8,6 +8,7 @@ Jacobian says which parameters the recordings can tell; the others keep their va
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -18,15 +19,16 @@ from tsas_cli.identification.fit import Fitted, Unknown, fit, identifiable, jaco
 from tsas_cli.identification.model import DEFAULTS, Model
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.numerics.conditioning import Conditioned
-from tsas_cli.numerics.covariance import block_length
-from tsas_cli.physics.parameters import NOMINAL, NOMINAL_BY_NAME, NominalParameter
-from tsas_cli.physics.quasi_static import Drive, Response, simulate
+from tsas_cli.numerics.covariance import FEWEST_BLOCKS, block_length
+from tsas_cli.physics.parameters import NOMINAL, NOMINAL_BY_NAME
+from tsas_cli.physics.quasi_static import Drive, Response, forgotten, simulate
 from tsas_cli.physics.rig import Rig
 
 Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
 
 MOST_MEANS = 2000  # means of neighbouring residuals that enter the fit, for a channel of a run
+FEWEST_SAMPLES = 16  # of a channel, after the start of a run
 MOST_ROUNDS = 4
 LOG_SCALE = 0.3  # plausible relative change of a positive parameter
 ZERO_SCALE = 0.02  # plausible zero of a displacement sensor, of its range
@@ -35,40 +37,61 @@ ZERO_SCALE = 0.02  # plausible zero of a displacement sensor, of its range
 class JointFit:
     """The joint fit of one dataset: its unknowns, runs, samples and weights."""
 
-    def __init__(self, start: Model, runs: Sequence[Prepared]) -> None:
+    def __init__(self, start: Model, kept: Model, runs: Sequence[Prepared]) -> None:
+        """Take the values to start from, and those to keep where the recordings do not tell."""
         self.start = start
-        self.runs = runs
-        self.unknowns = _unknowns(start, runs)
+        self.kept = kept
+        samples = [_samples(run, start.rig(run.run)) for run in runs]
+        self.left_out = [s for run, at in zip(runs, samples, strict=True) for s in _lost(run, at)]
+        self.runs = [run for run, at in zip(runs, samples, strict=True) if at]
+        self.samples = [at for at in samples if at]
+        self.unknowns = _unknowns(start, self.runs)
         self.values = np.array([u.start for u in self.unknowns])
-        answers = [simulate(start.rig(r.run), _from_rest(r)) for r in runs]
-        self.samples = [_kept(r, a) for r, a in zip(runs, answers, strict=True)]
-        self.weights = [self._weights(k) for k in range(len(runs))]
+        self._answer = lru_cache(maxsize=2 * len(runs))(self._simulate)
+        self.weights = [self._weights(k) for k in range(len(self.runs))]
 
     def solve(self) -> tuple[Model, Fitted | None, list[str]]:
         """Fit what can be told; again with the weights of the result, until the choice stays.
 
         Returns the model, the fit (None where nothing can be told) and what cannot be told.
         """
-        before: list[int] | None = None
+        if not self.runs:
+            return self.kept, None, self.left_out
+        before: list[int] = []
         for _ in range(MOST_ROUNDS):
             J = jacobian(self.unknowns, len(self.runs), self.values, self._residuals)
             chosen, confounded = identifiable(self.unknowns, J)
+            # One that was fitted to a value too small to show is told: it is that small.
+            small = [j for j in before if confounded.get(j) == []]
+            chosen = sorted({*chosen, *small})
+            confounded = {j: p for j, p in confounded.items() if j not in small}
             if not chosen:
-                return self.start, None, self._sentences(confounded)
+                return self.kept, None, [*self.left_out, *self._sentences(confounded)]
             result = self._fit(chosen)
             if chosen == before:
                 break
             before = chosen
-        sentences = self._sentences(confounded)
-        if not result.converged:
-            sentences.append(
-                f"The fit did not converge ({result.message}): its values are not to be relied on."
-            )
-        return self._model(self._estimates(chosen, result)), result, sentences
+        told = self._estimates(chosen, result)
+        sentences = [*self.left_out, *self._sentences(confounded), *_doubts(told, result)]
+        return Model(tuple(told)).over(self.kept), result, sentences
+
+    def misfit(self) -> list[str]:
+        """Say which channels are further from the model than what is known to be uncertain."""
+        worst: dict[str, float] = {}
+        for k in range(len(self.runs)):
+            for name, errors in self._errors(k, self.values).items():
+                worst[name] = max(worst.get(name, 0.0), float(np.sqrt(np.mean(errors**2))))
+        return [
+            f"{name} is missed by up to {ratio:.3g} times what noise explains: the nominal model "
+            "is wrong somewhere, and the intervals are those of the nearest nominal model, not of "
+            "the rig."
+            for name, ratio in worst.items()
+            if ratio > 2.0
+        ]
 
     def _fit(self, chosen: list[int]) -> Fitted:
-        """Fit the chosen unknowns, the others at their starts; renew values and weights."""
-        base = np.array([u.start for u in self.unknowns])
+        """Fit the chosen unknowns, the others as they are kept; renew values and weights."""
+        base = np.array([self._kept(u) for u in self.unknowns])
 
         def residuals(k: int, values: Floats) -> Floats:
             base[chosen] = values
@@ -81,9 +104,10 @@ class JointFit:
         self.weights = [self._weights(k) for k in range(len(self.runs))]
         return result
 
-    def _model(self, told: Sequence[Estimate]) -> Model:
-        names = {(e.name, e.run) for e in told}
-        return Model((*told, *(e for e in self.start.estimates if (e.name, e.run) not in names)))
+    def _kept(self, unknown: Unknown) -> float:
+        """Return the scaled value that an unknown keeps where it is not fitted."""
+        value = self.kept.value(unknown.name, self._owner(unknown))
+        return _scaled(unknown.name, DEFAULTS[unknown.name] if value is None else value)
 
     def _rig(self, k: int, values: Floats) -> Rig:
         """Return the rig of run k at scaled values of all unknowns."""
@@ -126,12 +150,14 @@ class JointFit:
 
     def _errors(self, k: int, values: Floats) -> dict[str, Floats]:
         """Return run k's weighted errors of each channel, at the samples that are kept."""
-        run, at = self.runs[k], self.samples[k]
-        answer = _answers(simulate(self._rig(k, values), _from_rest(run)))
+        answer = self._answer(k, self._rig(k, values))
         return {
-            name: ((answer[name] - measured) / self.weights[k][name])[at[name]]
-            for name, measured in run.measured.items()
+            name: ((answer[name] - self.runs[k].measured[name]) / self.weights[k][name])[at]
+            for name, at in self.samples[k].items()
         }
+
+    def _simulate(self, k: int, rig: Rig) -> dict[str, Floats]:
+        return _answers(simulate(rig, _from_rest(self.runs[k])))
 
     def _residuals(self, k: int, values: Floats) -> Floats:
         """Return run k's residuals: means of neighbouring errors that keep a variance of one."""
@@ -150,7 +176,7 @@ class JointFit:
         """
         run, drive = self.runs[k], _from_rest(self.runs[k])
         rig = self._rig(k, self.values)
-        plain = _answers(simulate(rig, drive))
+        plain = self._answer(k, rig)
         square = {
             name: np.full(run.time_s.size, max(n, 1e-9) ** 2) for name, n in run.noise.items()
         }
@@ -173,8 +199,10 @@ class JointFit:
             window = max(c.window_s for c in run.conditioned.values())
             step = float(np.median(np.diff(run.time_s)))
             errors = list(self._errors(k, self.values).values())
-            length = max(block_length(errors), round(window / step), 1)
-            first = [at[name][_edges(at[name].size)] for name in run.measured]
+            length = max(block_length(errors), round(4.0 * window / step))
+            longest = max(e.size for e in errors)  # the channels run side by side
+            length = min(length, longest // FEWEST_BLOCKS)
+            first = [kept[_edges(kept.size)] for kept in at.values()]
             out.append(np.unique(np.concatenate(first) // length, return_inverse=True)[1])
         return out
 
@@ -189,7 +217,7 @@ class JointFit:
         return [
             f"{name} {why} in these recordings"
             f"{' (runs ' + ', '.join(owners) + ')' if any(owners) else ''}; "
-            f"it is kept at {_kept_value(self.start, name, owners[0])}."
+            f"it is kept at {_kept_value(self.kept, name, owners[0])}."
             for (name, why), owners in reasons.items()
         ]
 
@@ -209,10 +237,26 @@ def _edges(size: int) -> Indices:
     return np.arange(0, size, max(1, -(-size // MOST_MEANS)))
 
 
-def _kept_value(start: Model, name: str, owner: str) -> str:
-    value = start.value(name, owner or None)
-    value = DEFAULTS[name] if value is None else value
-    return f"{value:.5g} {NOMINAL_BY_NAME[name].unit}"
+def _kept_value(kept: Model, name: str, owner: str) -> str:
+    value = kept.value(name, owner or None)
+    unit = NOMINAL_BY_NAME[name].unit.removeprefix("1")
+    return f"{DEFAULTS[name] if value is None else value:.5g} {unit}".rstrip()
+
+
+def _doubts(told: Sequence[Estimate], result: Fitted) -> list[str]:
+    """Say what makes the fitted values unreliable."""
+    out = [
+        f"{e.name}{f' of run {e.run}' if e.run else ''} ended at the bound of what is plausible, "
+        f"{e.value:.5g}: it is not to be relied on."
+        for e in told
+        if e.at_bound
+    ]
+    if not result.converged:
+        out.append(
+            f"The fit did not converge ({result.message.rstrip('.')}): its values are not to be "
+            "relied on."
+        )
+    return out
 
 
 def _unknowns(start: Model, runs: Sequence[Prepared]) -> list[Unknown]:
@@ -221,7 +265,7 @@ def _unknowns(start: Model, runs: Sequence[Prepared]) -> list[Unknown]:
     With a load that is no spring the preload is only a name for the zeros: it keeps its value.
     """
     out = []
-    travel = max(float(np.ptp(r.drive.values)) for r in runs)
+    travel = max((float(np.ptp(r.drive.values)) for r in runs), default=0.0)
     springs = [k for k, run in enumerate(runs) if run.run.load == "spring"]
     for p in NOMINAL:
         owners: Sequence[int | None] = [None] if p.shared else range(len(runs))
@@ -233,13 +277,14 @@ def _unknowns(start: Model, runs: Sequence[Prepared]) -> list[Unknown]:
             value = start.value(p.name, None if k is None else runs[k].run.id)
             value = DEFAULTS[p.name] if value is None else value
             scale = LOG_SCALE if p.positive else ZERO_SCALE * travel
-            bounds = (_scaled(p, p.lower), _scaled(p, p.upper))
-            out.append(Unknown(p.name, k, _scaled(p, value), *bounds, scale))
+            bounds = (_scaled(p.name, p.lower), _scaled(p.name, p.upper))
+            begin = _scaled(p.name, min(max(value, p.lower), p.upper))
+            out.append(Unknown(p.name, k, begin, *bounds, scale))
     return out
 
 
-def _scaled(parameter: NominalParameter, value: float) -> float:
-    return math.log(value) if parameter.positive else value
+def _scaled(name: str, value: float) -> float:
+    return math.log(value) if NOMINAL_BY_NAME[name].positive else value
 
 
 def _unscaled(name: str, value: float) -> float:
@@ -259,16 +304,37 @@ def _answers(response: Response) -> dict[str, Floats]:
     }
 
 
-def _kept(run: Prepared, response: Response) -> dict[str, Indices]:
-    """Return the samples that enter the fit: those after the tendon has forgotten how it began.
+def _samples(run: Prepared, rig: Rig) -> dict[str, Indices]:
+    """Return the samples of each channel that enter the fit, none where there are too few.
 
-    The first full slip erases the history; to be sure of it with other parameters too, the drive
-    must travel as far again.
+    They are those after the tendon has forgotten how the run began; to be sure of it with other
+    parameters too, the drive must travel as far again. The channel's noise must be known.
     """
-    slipping = np.flatnonzero(np.abs(response.phase) == 1)
-    x = run.drive.values
-    travel = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(x)))))
-    first = int(np.searchsorted(travel, 2.0 * travel[slipping[0]])) if slipping.size else 0
-    usable = ~run.in_gap
-    usable[:first] = False
-    return {n: np.flatnonzero(usable & np.isfinite(m)) for n, m in run.measured.items()}
+    first = forgotten(rig, run.drive)
+    if first is None:
+        return {}
+    travel = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(run.drive.values)))))
+    usable = ~run.in_gap & (travel >= 2.0 * travel[first])
+    there = {
+        name: np.flatnonzero(usable & np.isfinite(measured))
+        for name, measured in run.measured.items()
+        if run.noise[name] > 0.0
+    }
+    return {name: at for name, at in there.items() if at.size >= FEWEST_SAMPLES}
+
+
+def _lost(run: Prepared, samples: Mapping[str, Indices]) -> list[str]:
+    """Say what of a run does not enter the fit, and why."""
+    flat = [name for name, noise in run.noise.items() if noise == 0.0]
+    short = [name for name in run.measured if name not in samples and name not in flat]
+    out = [f"{name} of run {run.run.id} does not enter the fit: it never changes." for name in flat]
+    if not samples and short:
+        out.append(
+            f"Run {run.run.id} does not enter the fit: too few samples are left after the whole "
+            "tendon has slipped for the first time, which is when it forgets how it began."
+        )
+        return out
+    return out + [
+        f"{name} of run {run.run.id} does not enter the fit: it holds too few samples."
+        for name in short
+    ]

@@ -41,6 +41,13 @@ class Model:
         known = {(e.name, e.run): e.value for e in self.estimates}
         return known.get((name, run), known.get((name, None)))
 
+    def over(self, other: "Model") -> "Model":
+        """Return these estimates, and of another model those that are missing here."""
+        known = {(e.name, e.run) for e in self.estimates}
+        return Model(
+            (*self.estimates, *(e for e in other.estimates if (e.name, e.run) not in known))
+        )
+
     def rig(self, run: Run) -> Rig:
         """Return the rig of a run, calibrated or not; what nobody told is a default."""
         values = {p.name: self.value(p.name, run.id) for p in NOMINAL}

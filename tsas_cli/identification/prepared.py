@@ -1,5 +1,6 @@
 """A recording made ready for a model: its drive conditioned, its noise told, its gaps marked."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -20,6 +21,7 @@ Mask = npt.NDArray[np.bool_]
 
 CHANNELS = ("f_in_N", "f_out_N", "x_out_mm")  # what the models answer, where it drives nothing
 LOAD_COLUMNS: Mapping[Load, str] = {"force": "f_out_N", "displacement": "x_out_mm"}
+GAP = 1.5  # times the usual time between a column's samples
 START_SAMPLES = 20  # whose mean is the tension at the start
 
 
@@ -52,7 +54,10 @@ class Prepared:
 
     @cached_property
     def noise(self) -> dict[str, float]:
-        """Noise of each measured channel, quantisation counted in [the channel's unit]."""
+        """Noise of each measured channel, quantisation counted in [the channel's unit].
+
+        Zero where a channel never changes, NaN where too few samples are there to tell.
+        """
         return {name: _noise(values) for name, values in self.measured.items()}
 
     def channel(self, name: str) -> Floats | None:
@@ -106,7 +111,16 @@ def prepare(recording: Recording) -> Prepared:
             expected="x_in_mm",
         )
     driving = [drive] if load is None else [drive, load]
-    measured = {n: columns[n] for n in CHANNELS if n in columns and n not in driving}
+    time_s = recording.time_s
+    for name in driving:
+        if np.isfinite(columns[name]).sum() < 2:
+            raise InputError(f"column {name} is empty", where=run.file, expected="numbers")
+    gap = np.any([_in_gap(time_s, columns[name]) for name in driving], axis=0)
+    measured = {
+        n: columns[n]
+        for n in CHANNELS
+        if n in columns and n not in driving and np.isfinite(columns[n][~gap]).any()
+    }
     if not measured:
         raise InputError(
             "nothing to compare a model with",
@@ -114,17 +128,24 @@ def prepare(recording: Recording) -> Prepared:
             expected=f"one of {', '.join(CHANNELS)} beside what drives the tendon",
             remedy=f"there are: {', '.join(columns)}",
         )
-    time_s = recording.time_s
-    gap = np.any([~np.isfinite(columns[name]) for name in driving], axis=0)
-    for name in driving:
-        if np.isfinite(columns[name]).sum() < 2:
-            raise InputError(f"column {name} is empty", where=run.file, expected="numbers")
     conditioned = {name: condition(time_s, columns[name]) for name in driving}
     return Prepared(run, time_s, drive, conditioned, measured, gap)
 
 
+def _in_gap(time_s: Floats, values: Floats) -> Mask:
+    """Return where a column holds no number for longer than its samples are apart."""
+    there = np.flatnonzero(np.isfinite(values))
+    rows = np.arange(values.size)
+    before = np.searchsorted(there, rows, side="right") - 1
+    after = np.searchsorted(there, rows)
+    inside = (before >= 0) & (after < there.size)
+    apart = time_s[there[np.minimum(after, there.size - 1)]] - time_s[there[np.maximum(before, 0)]]
+    return ~inside | (apart > GAP * np.median(np.diff(time_s[there])))
+
+
 def _noise(values: Floats) -> float:
-    return float(np.fmax(noise_sd(values), quantisation_step(values) / np.sqrt(12.0)))
+    noise = noise_sd(values)
+    return noise if math.isnan(noise) else max(noise, quantisation_step(values) / math.sqrt(12.0))
 
 
 def _start_value(time_s: Floats, values: Floats) -> float | None:

@@ -9,8 +9,11 @@ import numpy.typing as npt
 from tsas_cli.identification.phases import Segment
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.stiffness import Slope
+from tsas_cli.physics.parameters import NOMINAL_BY_NAME
 
 Floats = npt.NDArray[np.float64]
+
+SMALLEST_WRAP = 0.01  # to start from: with less friction than that, a change of it does not show
 
 
 def read_off(
@@ -25,7 +28,8 @@ def read_off(
     km: dict[str, float] = {s.phase: abs(s.value) for s in slopes if s.value != 0.0}
     wrap = _wrap(run, segments, km)
     found: dict[str, float] = {}
-    if wrap is not None and wrap > 0.0:
+    if wrap is not None:
+        wrap = max(wrap, SMALLEST_WRAP)
         found["friction_coefficient"] = wrap / bend
         dead = [km[p] for p in ("dead_band_up", "dead_band_down") if p in km]
         if dead:
@@ -34,7 +38,8 @@ def read_off(
             )
     if run.run.load == "spring":
         found |= _spring(run, segments, km)
-    return {k: float(v) for k, v in found.items() if np.isfinite(v) and v > 0.0}
+    plausible = {k: (NOMINAL_BY_NAME[k].lower, NOMINAL_BY_NAME[k].upper) for k in found}
+    return {k: float(v) for k, v in found.items() if plausible[k][0] <= v <= plausible[k][1]}
 
 
 def _samples(segments: Sequence[Segment], phase: str, values: Floats) -> Floats:

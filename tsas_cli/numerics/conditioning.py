@@ -13,7 +13,7 @@ point. Three steps, none of which delays the signal:
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -59,23 +59,36 @@ def condition(time_s: Floats, values: Floats) -> Conditioned:
     time_s, values
         Times and the signal, shape (n,); NaN in the signal is a gap, filled by a straight line.
     """
-    there = np.isfinite(values)
-    filled = np.interp(time_s, time_s[there], values[there])
-    step = quantisation_step(filled)
-    noise = max(noise_sd(filled), step / math.sqrt(12.0))
+    there = np.flatnonzero(np.isfinite(values))
+    if there.size < values.size:
+        return _with_gaps(condition(time_s[there], values[there]), time_s, there)
+    step = quantisation_step(values)
+    noise = max(noise_sd(values), step / math.sqrt(12.0))
     if not noise > 0.0:  # noise-free, or too short to tell
-        return Conditioned(filled, np.zeros(filled.size), 0.0, 0.0, turning_points(filled, 0.0))
-    memory = _plateau(filled) if step > 0.0 else 1.0
-    whole = np.array([0, filled.size], dtype=np.int64)
+        return Conditioned(values, np.zeros(values.size), 0.0, 0.0, turning_points(values, 0.0))
+    memory = _plateau(values) if step > 0.0 else 1.0
+    whole = np.array([0, values.size], dtype=np.int64)
     # Corners spoil the blocks that they lie in; the smooth blocks tell the window to seek them by.
-    alone = best_half_windows(time_s, filled, whole, noise, memory, pooled=1)
-    cuts = corners(time_s, filled, int(np.percentile(alone, 75)), noise * math.sqrt(memory))
-    half = best_half_windows(time_s, filled, cuts, noise, memory, pooled=5)
-    smooth, sd = smoothed(time_s, filled, cuts, half, noise * math.sqrt(memory))
-    lay_flat(time_s, filled, smooth, sd, cuts, int(np.median(half)), noise * math.sqrt(memory))
+    alone = best_half_windows(time_s, values, whole, noise, memory, pooled=1)
+    cuts = corners(time_s, values, int(np.percentile(alone, 75)), noise * math.sqrt(memory))
+    half = best_half_windows(time_s, values, cuts, noise, memory, pooled=5)
+    smooth, sd = smoothed(time_s, values, cuts, half, noise * math.sqrt(memory))
+    lay_flat(time_s, values, smooth, sd, cuts, int(np.median(half)), noise * math.sqrt(memory))
     reversals = turning_points(smooth, STANDS_OUT * float(np.median(sd)))
     window_s = float(np.median(2 * half + 1) * np.median(np.diff(time_s)))
     return Conditioned(monotone_between(smooth, reversals), sd, window_s, noise, reversals)
+
+
+def _with_gaps(cleaned: Conditioned, time_s: Floats, there: Indices) -> Conditioned:
+    """Lay a signal that was cleaned at some samples over all of them, straight in between."""
+    reversals = there[cleaned.reversals]
+    reversals[0], reversals[-1] = 0, time_s.size - 1
+    return replace(
+        cleaned,
+        values=np.interp(time_s, time_s[there], cleaned.values),
+        sd=np.interp(time_s, time_s[there], cleaned.sd),
+        reversals=reversals,
+    )
 
 
 def _plateau(values: Floats) -> float:

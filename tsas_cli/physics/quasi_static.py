@@ -18,6 +18,7 @@ Answer = tuple[Floats, Floats, Floats, Floats, Phases]
 Dynamics = Literal["static", "slip"]
 
 NODES = 60  # of the slip chain, where the closed form does not hold
+MOST_DOUBLINGS = 30  # of the way that the drive goes before a run
 SLACK, UNSETTLED = 2, 3  # phases beside +1, 0, −1
 
 
@@ -134,6 +135,32 @@ def _solve(rig: Rig, ends: _Ends) -> Answer:
     )
 
 
+def forgotten(rig: Rig, drive: Drive) -> int | None:
+    """Return the first sample whose answer does not depend on what came before the run, or None.
+
+    The tendon has forgotten that when it slips as a whole in the same direction (or hangs slack),
+    whether the drive came from far above or from far below.
+    """
+    ends = _Ends.of(rig, drive)
+    phases = [_solve(rig, ends.after([_far(rig, ends, side)]))[4][1:] for side in (1.0, -1.0)]
+    same = np.flatnonzero((phases[0] == phases[1]) & np.isin(phases[0], (1, -1, SLACK)))
+    return int(same[0]) if same.size else None
+
+
+def _far(rig: Rig, ends: _Ends, side: float) -> float:
+    """Return a drive from which the way back to the first sample makes the whole tendon slip."""
+    first = float(ends.drive[0])
+    stretch = rig.preload_N * rig.sheath_length_mm / rig.tendon_stiffness_N
+    step = 1e-3
+    for _ in range(MOST_DOUBLINGS):
+        by_force = ends.boundary.drive == FORCE
+        past = first * (1.0 + step) ** side if by_force else first + side * step * stretch
+        if _solve(rig, ends.first().after([past]))[4][-1] in (1, -1, SLACK):
+            break
+        step *= 2.0
+    return past
+
+
 def _history(rig: Rig, ends: _Ends, wanted_f_in: float | None) -> list[float]:
     """Return a drive position to pass before the first sample, if one is needed, so that f_in fits.
 
@@ -144,21 +171,13 @@ def _history(rig: Rig, ends: _Ends, wanted_f_in: float | None) -> list[float]:
         return []
     x = float(ends.drive[0])
     first = ends.first()
-
-    def f_in_after(past: float) -> float:
-        return float(_solve(rig, first.after([x + past]))[2][-1])
-
     at_rest = float(_solve(rig, first)[2][-1])
     side = math.copysign(1.0, at_rest - wanted_f_in)  # pulling past and back lowers the tension
-    lower, upper = 0.0, 1e-3 * rig.preload_N * rig.sheath_length_mm / rig.tendon_stiffness_N
-    for _ in range(30):
-        if (f_in_after(side * upper) - wanted_f_in) * side <= 0.0:
-            break
-        lower, upper = upper, 2.0 * upper
+    near, far = x, _far(rig, ends, side)
     for _ in range(40):
-        middle = 0.5 * (lower + upper)
-        if (f_in_after(side * middle) - wanted_f_in) * side > 0.0:
-            lower = middle
+        middle = 0.5 * (near + far)
+        if (float(_solve(rig, first.after([middle]))[2][-1]) - wanted_f_in) * side > 0.0:
+            near = middle
         else:
-            upper = middle
-    return [x + side * upper]
+            far = middle
+    return [far]
