@@ -29,7 +29,7 @@ def test_the_interval_of_a_slope_holds_at_its_rate(rho):
         found, *_ = np.linalg.lstsq(J, residual, rcond=None)
         left = residual - J @ found
         covariance, t = jackknife(J, left, np.arange(n) // block_length([left]))
-        held += abs(found[1]) < t * np.sqrt(covariance[1, 1])
+        held += abs(found[1]) < t[1] * np.sqrt(covariance[1, 1])
         plain += abs(found[1]) < 1.96 * left.std() / np.sqrt(np.sum(J[:, 1] ** 2))
     assert 0.89 < held / 300 < 0.985
     if rho > 0.9:

@@ -43,7 +43,7 @@ class Fitted:
 
     values: Floats
     covariance: Floats
-    t: float
+    t: Floats
     at_bound: npt.NDArray[np.bool_]
     converged: bool
     message: str
@@ -126,7 +126,7 @@ def fit(unknowns: Sequence[Unknown], blocks: Sequence[Indices], residuals: Resid
         x_scale=np.array([u.scale for u in unknowns]),
         max_nfev=MOST_EVALUATIONS,
         xtol=1e-6,
-        ftol=1e-8,
+        ftol=1e-6,
         gtol=1e-10,
     )
     offsets = np.concatenate(([0], np.cumsum([b.max() + 1 for b in blocks])))[:-1]

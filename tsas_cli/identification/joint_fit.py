@@ -29,6 +29,7 @@ Indices = npt.NDArray[np.int64]
 
 MOST_MEANS = 2000  # means of neighbouring residuals that enter the fit, for a channel of a run
 FEWEST_SAMPLES = 16  # of a channel, after the start of a run
+WINDOWS_PER_BLOCK = 2.0  # of the conditioning: the error of a cleaned drive lasts that long
 MOST_ROUNDS = 4
 LOG_SCALE = 0.3  # plausible relative change of a positive parameter
 ZERO_SCALE = 0.02  # plausible zero of a displacement sensor, of its range
@@ -123,16 +124,15 @@ class JointFit:
         return None if unknown.run is None else self.runs[unknown.run].run.id
 
     def _estimates(self, chosen: list[int], result: Fitted) -> list[Estimate]:
-        spread = result.t * np.sqrt(np.diag(result.covariance))
+        spread = np.sqrt(np.diag(result.covariance))
+        found = zip(chosen, result.values, spread, result.t, result.at_bound, strict=True)
         out = []
-        for j, v, half, at_bound in zip(
-            chosen, result.values, spread, result.at_bound, strict=True
-        ):
+        for j, v, sd, t, at_bound in found:
             u = self.unknowns[j]
             parameter = NOMINAL_BY_NAME[u.name]
-            ends = np.clip([v - half, v, v + half], u.lower, u.upper)
+            ends = np.clip([v - t * sd, v, v + t * sd], u.lower, u.upper)
             low, value, high = (_unscaled(u.name, float(end)) for end in ends)
-            stderr = half / result.t * (value if parameter.positive else 1.0)
+            stderr = sd * (value if parameter.positive else 1.0)
             out.append(
                 Estimate(
                     u.name,
@@ -199,7 +199,7 @@ class JointFit:
             window = max(c.window_s for c in run.conditioned.values())
             step = float(np.median(np.diff(run.time_s)))
             errors = list(self._errors(k, self.values).values())
-            length = max(block_length(errors), round(4.0 * window / step))
+            length = max(block_length(errors), round(WINDOWS_PER_BLOCK * window / step))
             longest = max(e.size for e in errors)  # the channels run side by side
             length = min(length, longest // FEWEST_BLOCKS)
             first = [kept[_edges(kept.size)] for kept in at.values()]

@@ -59,7 +59,7 @@ def _slope(phase: Phase, x_in: Floats, f_in: Floats, segments: Sequence[Segment]
     covariance, t = jackknife(np.concatenate(xs)[:, None], np.concatenate(residuals), block)
     stderr = float(np.sqrt(covariance[0, 0]))
     samples = sum(x.size for x in xs)
-    return Slope(phase, slope, stderr, t * stderr, len(xs), samples)
+    return Slope(phase, slope, stderr, float(t[0]) * stderr, len(xs), samples)
 
 
 def _block_numbers(sizes: Sequence[int], length: int) -> list[npt.NDArray[np.int64]]:

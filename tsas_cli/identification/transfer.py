@@ -30,7 +30,7 @@ class _Line:
 
     values: Floats
     covariance: Floats
-    t: float
+    t: Floats
 
 
 def tension_transfer(
@@ -65,7 +65,9 @@ def _of_one_bend(runs: Sequence[Prepared], segments: Sequence[Sequence[Segment]]
     )
     constant_sd = 0.5 * math.sqrt(variances[0][1] + variances[1][1])
     both = 0.5 * (up.values[1] - down.values[1]), 0.5 * (up.values[1] + down.values[1])
-    estimate = partial(_estimate, t=max(up.t, down.t), runs=", ".join(r.run.id for r in runs))
+    estimate = partial(
+        _estimate, t=float(max(up.t.max(), down.t.max())), runs=", ".join(r.run.id for r in runs)
+    )
     return [
         estimate("ratio_contraction", up.values[0], math.sqrt(variances[0][0]), "1"),
         estimate("ratio_loosening", down.values[0], math.sqrt(variances[1][0]), "1"),

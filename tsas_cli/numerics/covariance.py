@@ -1,8 +1,9 @@
 """Intervals that hold although the residual is coloured.
 
 A residual of a physical model has memory; the plain formula counts each sample as news and is
-far too sure. Here the unit of evidence is a block longer than that memory: the jackknife estimate
-with sums of scores per block, its small-sample factor, and Student's t for the number of blocks.
+far too sure. Here the unit of evidence is a block longer than that memory: the jackknife that
+leaves out one block at a time (CR3 of Bell and McCaffrey 2002), which also holds where few blocks
+carry most of the information, and Student's t with the freedom that they leave.
 """
 
 import math
@@ -45,8 +46,10 @@ def block_length(residuals: list[Floats]) -> int:
     return max(1, min(math.ceil(MEMORIES_PER_BLOCK * longest), samples // FEWEST_BLOCKS))
 
 
-def jackknife(jacobian: Floats, residual: Floats, block: Indices) -> tuple[Floats, float]:
-    """Return the covariance of least-squares parameters and Student's t for a 95 % interval.
+def jackknife(jacobian: Floats, residual: Floats, block: Indices) -> tuple[Floats, Floats]:
+    """Return the covariance of least-squares parameters and Student's t for 95 % intervals.
+
+    Each parameter has a t of its own, shape (p,): the fewer blocks carry it, the larger.
 
     Parameters
     ----------
@@ -70,4 +73,7 @@ def jackknife(jacobian: Floats, residual: Floats, block: Indices) -> tuple[Float
     moves -= moves.mean(axis=0)
     blocks = starts.size
     covariance: Floats = (blocks - 1) / blocks * moves.T @ moves
-    return covariance, float(t.ppf(0.975, max(blocks - p, 1)))
+    # Satterthwaite's freedom with the blocks' own moves; a normal one has a fourth moment of 3.
+    squares = np.maximum(moves**2, 1e-300)
+    freedom = 3.0 * squares.sum(axis=0) ** 2 / np.sum(squares**2, axis=0)
+    return covariance, t.ppf(0.975, np.clip(freedom, 1.0, max(blocks - p, 1)))
