@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from tsas_cli import __version__
+from tsas_cli.errors import InputError
 from tsas_cli.files import new_folder, write_json
 from tsas_cli.identification.calibration import Calibration, calibrate
 from tsas_cli.identification.comparison import compare
@@ -15,8 +16,11 @@ from tsas_cli.identification.stage import header
 from tsas_cli.identification.stiffness import Slope
 from tsas_cli.physics.capstan import dead_band_stiffness, slip_stiffness, speed_per_stiffness
 from tsas_cli.physics.rig import Rig
-from tsas_cli.recordings.dataset import Dataset
+from tsas_cli.recordings.dataset import Dataset, Recording
 from tsas_cli.recordings.manifest import Manifest
+from tsas_cli.recordings.quality.checks import sign
+from tsas_cli.recordings.quality.finding import Remark
+from tsas_cli.recordings.quality.trial import Trial
 
 Table = tuple[str, Sequence[str], Sequence[Sequence[str]]]
 
@@ -29,11 +33,12 @@ def calibrate_dataset(
     Raises
     ------
     InputError
-        A recording is wrong, or `out` exists and `force` is not set.
+        A recording is wrong, a channel has the wrong sign, or `out` exists and `force` is not set.
     """
     with new_folder(out, force=force) as folder:
         runs = []
         for recording in dataset:
+            _refuse_wrong_sign(recording, dataset.manifest)
             runs.append(prepare(recording))
             step()
         result = calibrate(dataset.manifest, runs, step)
@@ -41,6 +46,13 @@ def calibrate_dataset(
         write_model(folder / FILE, result.model, version=__version__, dataset=summary["dataset"])
         write_json(folder / "calibration.json", summary)
     return summary
+
+
+def _refuse_wrong_sign(recording: Recording, manifest: Manifest) -> None:
+    """Stop at what no parameter mends: a fit would end somewhere, and mean nothing."""
+    for said in sign.find(Trial(recording, manifest.rig)):
+        if isinstance(said, Remark):
+            raise InputError(said.sentence, where=recording.run.file, remedy=said.remedy)
 
 
 def _summary(result: Calibration, manifest: Manifest) -> dict[str, Any]:
