@@ -39,6 +39,17 @@ def test_at_the_load_it_softens_the_spring_and_moves_the_output_less():
     np.testing.assert_allclose(response.x_out_mm, (f_out - 25.0) / spring, atol=1e-9)
 
 
+def test_it_loses_no_energy_of_its_own():
+    """The same motion inside the sheath costs the drive the same work, however far it travels."""
+    inside = np.interp(np.linspace(0, 4, 20001), np.arange(5), [14, 3, 9, 5, 14])
+    f_in = branches(inside, GROUP_A)[0]
+    outside = inside + (f_in - 25.0) * 152.0 / EA
+    again = branches(outside, with_free(152.0, 0.0))[0]
+    work = np.trapezoid(f_in, inside)
+    assert np.trapezoid(again, outside) == pytest.approx(work, rel=1e-9)
+    assert work > 100.0
+
+
 def test_its_ends_are_not_exchanged():
     """At the drive it softens the dead band, at the load it hardly does."""
     band = np.array([14.0, 13.9])

@@ -79,8 +79,8 @@ def full_slip(direction: float, rig: Rig, wrap: float, c: float) -> tuple[float,
 
 @kernel
 def strokes(x_in: Floats) -> int:
-    """Return an upper bound of the depth of nested reversals of a motion from rest at x = 0."""
-    count, direction, x = 1, 0, 0.0
+    """Return the number of strokes of a motion from rest at x = 0; no more reversals can nest."""
+    count, direction, x = 0, 0, 0.0
     for value in x_in:
         if value != x:
             now = 1 if value > x else -1
