@@ -27,6 +27,8 @@ def section(inputs: Inputs) -> Section:
         f"The model ({simulation.dynamics}) is driven with the measured input.",
         "Residual: measured minus simulated. Noise alone leaves 95 % between the dashed lines.",
     )
+    methods = {c.method for run in simulation.runs.values() for c in run.conditioning.values()}
+    intro += tuple(f"Inputs are cleaned first: {method}." for method in sorted(methods))
     channels = {run_id: run.channels for run_id, run in simulation.runs.items()}
     groups = tuple(
         Group(f"Run {recording.run.id}", pictures)
@@ -73,7 +75,6 @@ def _inputs(simulation: Simulation) -> Table:
         (
             run_id,
             column,
-            c.method,
             plain(c.window_s, 3),
             plain(c.noise, 3),
             c.unit,
@@ -87,7 +88,6 @@ def _inputs(simulation: Simulation) -> Table:
     header = (
         "run",
         "input",
-        "cleaned by",
         "window [s]",
         "noise",
         "unit",
@@ -96,7 +96,7 @@ def _inputs(simulation: Simulation) -> Table:
         "solver",
     )
     caption = "How the measured inputs were made ready, and what solved the model"
-    return Table(caption, header, rows, numeric=frozenset({3, 4, 6}))
+    return Table(caption, header, rows, numeric=frozenset({2, 3, 5}))
 
 
 def _ratio(channel: Channel) -> str:
