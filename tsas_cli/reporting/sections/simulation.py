@@ -23,7 +23,7 @@ def section(inputs: Inputs) -> Section:
     simulation = inputs.get(Simulation)
     if simulation is None:
         return missing("simulation", _TITLE, what="simulation", stage="simulate")
-    intro = (
+    intro: tuple[str, ...] = (
         f"The model ({simulation.dynamics}) is driven with the measured input.",
         "Residual: measured minus simulated. Noise alone leaves 95 % between the dashed lines.",
     )
