@@ -8,7 +8,6 @@ from tsas_cli import __version__
 from tsas_cli.errors import InputError
 from tsas_cli.files import new_folder, write_json
 from tsas_cli.identification.calibration import Calibration, calibrate
-from tsas_cli.identification.comparison import compare
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import FILE, Model, data_sheet, write_model
 from tsas_cli.identification.prepared import Prepared, prepare
@@ -56,7 +55,6 @@ def _refuse_wrong_sign(recording: Recording, manifest: Manifest) -> None:
 
 
 def _summary(result: Calibration, manifest: Manifest) -> dict[str, Any]:
-    answers = [compare(run, result.model) for run in result.runs]
     return {
         "segments": {
             run.run.id: [
@@ -84,13 +82,13 @@ def _summary(result: Calibration, manifest: Manifest) -> dict[str, Any]:
             "converged": result.fitted is not None and result.fitted.converged,
             "message": "nothing to fit" if result.fitted is None else result.fitted.message,
             "evaluations": 0 if result.fitted is None else result.fitted.evaluations,
-            "solver": sorted({a.response.solver for a in answers}),
+            "solver": sorted({a.response.solver for a in result.answers}),
         },
         "channels": {
             run.run.id: {
                 name: {"rmse": rmse, "noise": run.noise[name]} for name, rmse in a.rmse.items()
             }
-            for run, a in zip(result.runs, answers, strict=True)
+            for run, a in zip(result.runs, result.answers, strict=True)
         },
     }
 

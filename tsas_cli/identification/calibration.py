@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.identification.comparison import compare
+from tsas_cli.identification.comparison import Compared, compare
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.fit import Fitted
 from tsas_cli.identification.joint_fit import JointFit
@@ -30,6 +30,7 @@ class Calibration:
     runs: Sequence[Prepared]
     segments: Sequence[list[Segment]]
     slopes: Sequence[list[Slope]]
+    answers: Sequence[Compared]
     expected: Sequence[list[Slope]]
     transfer: Sequence[Estimate]
     cannot_tell: Sequence[str]
@@ -64,6 +65,7 @@ def calibrate(
         runs,
         segments,
         measured,
+        answers,
         expected,
         tension_transfer(runs, segments),
         cannot,

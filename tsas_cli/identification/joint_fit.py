@@ -21,7 +21,7 @@ from tsas_cli.identification.prepared import Prepared
 from tsas_cli.numerics.conditioning import Conditioned
 from tsas_cli.numerics.covariance import FEWEST_BLOCKS, block_length
 from tsas_cli.physics.parameters import NOMINAL, NOMINAL_BY_NAME
-from tsas_cli.physics.quasi_static import Drive, Response, forgotten, simulate
+from tsas_cli.physics.quasi_static import Drive, forgotten, simulate
 from tsas_cli.physics.rig import Rig
 
 Floats = npt.NDArray[np.float64]
@@ -30,6 +30,7 @@ Indices = npt.NDArray[np.int64]
 MOST_MEANS = 2000  # means of neighbouring residuals that enter the fit, for a channel of a run
 FEWEST_SAMPLES = 16  # of a channel, after the start of a run
 WINDOWS_PER_BLOCK = 2.0  # of the conditioning: the error of a cleaned drive lasts that long
+SHARP = 4  # strides after a reversal in which every sample is simulated
 MOST_ROUNDS = 4
 LOG_SCALE = 0.3  # plausible relative change of a positive parameter
 ZERO_SCALE = 0.02  # plausible zero of a displacement sensor, of its range
@@ -46,6 +47,7 @@ class JointFit:
         self.left_out = [s for run, at in zip(runs, samples, strict=True) for s in _lost(run, at)]
         self.runs = [run for run, at in zip(runs, samples, strict=True) if at]
         self.samples = [at for at in samples if at]
+        self.points = [_points(run) for run in self.runs]
         self.unknowns = _unknowns(start, self.runs)
         self.values = np.array([u.start for u in self.unknowns])
         self._answer = lru_cache(maxsize=2 * len(runs))(self._simulate)
@@ -157,7 +159,19 @@ class JointFit:
         }
 
     def _simulate(self, k: int, rig: Rig) -> dict[str, Floats]:
-        return _answers(simulate(rig, _from_rest(self.runs[k])))
+        return self._follow(k, rig, _from_rest(self.runs[k]))
+
+    def _follow(self, k: int, rig: Rig, drive: Drive) -> dict[str, Floats]:
+        """Return the answers to a drive at all samples, straight between those simulated."""
+        at = self.points[k]
+        load = None if drive.load_values is None else drive.load_values[at]
+        response = simulate(rig, replace(drive, values=drive.values[at], load_values=load))
+        samples = np.arange(drive.values.size)
+        return {
+            "f_in_N": np.interp(samples, at, response.f_in_N),
+            "f_out_N": np.interp(samples, at, response.f_out_N),
+            "x_out_mm": np.interp(samples, at, response.x_out_mm),
+        }
 
     def _residuals(self, k: int, values: Floats) -> Floats:
         """Return run k's residuals: means of neighbouring errors that keep a variance of one."""
@@ -187,21 +201,26 @@ class JointFit:
                 if column == run.drive_column
                 else replace(drive, load_values=values)
             )
-            answers = _answers(simulate(rig, moved))
+            answers = self._follow(k, rig, moved)
             for name in square:
                 square[name] += (answers[name] - plain[name]) ** 2
         return {name: np.sqrt(values) for name, values in square.items()}
 
     def _blocks(self) -> list[Indices]:
-        """Return for each run the block of each residual, at least a conditioning window long."""
+        """Return for each run the block of each residual, longer than the residual's memory.
+
+        A wrong model's memory is as long as its run: all runs together keep a few blocks, each
+        run at least two.
+        """
         out = []
+        together = sum(max(kept.size for kept in at.values()) for at in self.samples)
         for k, (run, at) in enumerate(zip(self.runs, self.samples, strict=True)):
             window = max(c.window_s for c in run.conditioned.values())
             step = float(np.median(np.diff(run.time_s)))
             errors = list(self._errors(k, self.values).values())
             length = max(block_length(errors), round(WINDOWS_PER_BLOCK * window / step))
-            longest = max(e.size for e in errors)  # the channels run side by side
-            length = min(length, longest // FEWEST_BLOCKS)
+            own = max(e.size for e in errors)  # the channels run side by side
+            length = min(length, together // FEWEST_BLOCKS, own // 2)
             first = [kept[_edges(kept.size)] for kept in at.values()]
             out.append(np.unique(np.concatenate(first) // length, return_inverse=True)[1])
         return out
@@ -296,12 +315,18 @@ def _from_rest(run: Prepared) -> Drive:
     return replace(run.drive, start_f_in_N=None)
 
 
-def _answers(response: Response) -> dict[str, Floats]:
-    return {
-        "f_in_N": response.f_in_N,
-        "f_out_N": response.f_out_N,
-        "x_out_mm": response.x_out_mm,
-    }
+def _points(run: Prepared) -> Indices:
+    """Return the samples that are simulated: twice as many as means, and all after a reversal.
+
+    The model depends on the path alone, and where the drive turns back its answer bends sharply.
+    """
+    n = run.time_s.size
+    stride = max(1, n // (2 * MOST_MEANS))
+    there = np.arange(n) % stride == 0
+    there[-1] = True
+    for turn in run.conditioned[run.drive_column].reversals:
+        there[turn : turn + SHARP * stride] = True
+    return np.flatnonzero(there)
 
 
 def _samples(run: Prepared, rig: Rig) -> dict[str, Indices]:

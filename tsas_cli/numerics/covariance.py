@@ -74,6 +74,8 @@ def jackknife(jacobian: Floats, residual: Floats, block: Indices) -> tuple[Float
     blocks = starts.size
     covariance: Floats = (blocks - 1) / blocks * moves.T @ moves
     # Satterthwaite's freedom with the blocks' own moves; a normal one has a fourth moment of 3.
-    squares = np.maximum(moves**2, 1e-300)
+    # It is less than the number of blocks that move the parameter at all.
+    squares = np.maximum(moves**2, 1e-150)
     freedom = 3.0 * squares.sum(axis=0) ** 2 / np.sum(squares**2, axis=0)
-    return covariance, t.ppf(0.975, np.clip(freedom, 1.0, max(blocks - p, 1)))
+    moving = np.sum(squares > 1e-6 * squares.max(axis=0), axis=0)
+    return covariance, t.ppf(0.975, np.clip(freedom, 1.0, np.maximum(moving - 1, 1)))
