@@ -1,10 +1,13 @@
-"""The same physics solved in other ways: a profile on a fine grid, and a relaxed chain."""
+"""Rigs and runs of these tests, and the same physics solved in two other ways."""
 
 import math
+from itertools import pairwise
 
 import numpy as np
 
+from tsas_cli.effects import Effects, FreeTendon
 from tsas_cli.physics.rig import Rig
+from tsas_cli.physics.slip_chain import DISPLACEMENT, FORCE, Boundary, slip_chain
 
 GROUP_A = Rig(
     friction_coefficient=0.125,
@@ -14,10 +17,33 @@ GROUP_A = Rig(
     total_bend_rad=math.pi,
     preload_N=25.0,
 )
+FREE = GROUP_A._replace(effects=Effects(FreeTendon(152.0, 61.0)))
+
+LOADED_BY_SPRING = Boundary(DISPLACEMENT, DISPLACEMENT, 1.0 / GROUP_A.load_stiffness_N_per_mm)
+LOADED_BY_FORCE = Boundary(DISPLACEMENT, FORCE, 0.0)
+LOADED_BY_DISPLACEMENT = Boundary(DISPLACEMENT, DISPLACEMENT, 0.0)
+DRIVEN_BY_FORCE = LOADED_BY_SPRING._replace(drive=FORCE)
 
 
 def wrap_of(rig):
     return rig.friction_coefficient * rig.total_bend_rad
+
+
+def through(*turns, samples=400):
+    """Go from rest to each turn in evenly spaced samples."""
+    legs = [np.linspace(a, b, samples + 1)[1:] for a, b in pairwise((0.0, *turns))]
+    return np.concatenate(legs)
+
+
+def follow(
+    drive, *, load=None, rig=GROUP_A, boundary=LOADED_BY_SPRING, n=30, wrap=None, preload=None
+):
+    """Run the slip chain with friction and preload of the rig unless they are given."""
+    drive = np.asarray(drive, dtype=float)
+    load = np.zeros_like(drive) if load is None else np.asarray(load, dtype=float)
+    wrap = np.array([wrap_of(rig)]) if wrap is None else wrap
+    preload = np.array([rig.preload_N]) if preload is None else preload
+    return slip_chain(drive, load, wrap, preload, rig, boundary, n)
 
 
 class Profile:

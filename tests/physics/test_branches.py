@@ -5,14 +5,13 @@ import math
 import numpy as np
 import pytest
 
-from tests.physics.references import GROUP_A, Profile, pulled_through, wrap_of
+from tests.physics.references import FREE, GROUP_A, Profile, pulled_through, wrap_of
 from tsas_cli.effects import Effects, FreeTendon
 from tsas_cli.physics.branches import branches
 
 A = wrap_of(GROUP_A)
 C = GROUP_A.sheath_length_mm / (A * GROUP_A.tendon_stiffness_N)
 UP, DOWN = math.exp(A), math.exp(-A)
-FREE = GROUP_A._replace(effects=Effects(FreeTendon(152.0, 61.0)))
 SOFT = GROUP_A._replace(
     friction_coefficient=0.4,
     tendon_stiffness_N=2.2e3,

@@ -5,13 +5,12 @@ import math
 import numpy as np
 import pytest
 
-from tests.physics.references import GROUP_A, pulled_through, wrap_of
+from tests.physics.references import FREE, GROUP_A, pulled_through, wrap_of
 from tsas_cli.effects import Effects, FreeTendon
 from tsas_cli.physics.branches import branches
 from tsas_cli.physics.static import static_model
 
 UP = math.exp(wrap_of(GROUP_A))
-FREE = GROUP_A._replace(effects=Effects(FreeTendon(152.0, 61.0)))
 
 
 @pytest.fixture(scope="module")
