@@ -1,0 +1,357 @@
+"""Recordings as strangers bring them: right numbers, or a sentence that says why there are none."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.identification.recorded import clean
+from tests.rig.motions import dwell, nested, triangle
+from tests.rig.recordings import DATA_SHEET, conditions
+from tests.rig.sensors import PERFECT, Sensor, Sensors, measure
+from tests.rig.tendon import Rig
+from tsas_cli.errors import InputError
+from tsas_cli.identification.calibration import calibrate
+from tsas_cli.identification.comparison import compare
+from tsas_cli.identification.prepared import prepare
+from tsas_cli.physics.quasi_static import SLACK, Drive, simulate
+from tsas_cli.physics.rig import Rig as ModelRig
+from tsas_cli.recordings.dataset import Recording
+from tsas_cli.recordings.manifest import Manifest, Run
+
+TRUE = Rig(friction_coefficient=0.135, load_stiffness_N_per_mm=1.45, preload_N=27.0)
+VALUES = {
+    "friction_coefficient": 0.135,
+    "load_stiffness_N_per_mm": 1.45,
+    "preload_N": 27.0,
+    "tendon_stiffness_N": TRUE.axial_stiffness,
+}
+SENSORS = Sensors(rate_Hz=200.0)
+CHANNELS = ("f_in_N", "f_out_N", "x_out_mm")
+
+
+def recorded(motion=None, *, rig=TRUE, sensors=SENSORS, seed=1):
+    return measure(clean(rig, motion), sensors, seed=seed)
+
+
+def ran(columns, *, rig=TRUE, run_id="a", **said):
+    told = conditions(rig) | said
+    told = {key: value for key, value in told.items() if value is not None}
+    run = Run(id=run_id, file=f"{run_id}.parquet", sha256="0" * 64, **told)
+    return prepare(Recording(run, columns))
+
+
+def calibrated(*runs, **sheet):
+    stated = {key: value for key, value in (DATA_SHEET | sheet).items() if value is not None}
+    manifest = Manifest(
+        format=1, name="t", kind="measured", rig=stated, run=tuple(run.run for run in runs)
+    )
+    return calibrate(manifest, runs)
+
+
+def fitted(result):
+    return {e.name: e for e in result.model.estimates if e.origin == "fitted"}
+
+
+def is_right(result, *names, part=0.01, values=VALUES):
+    estimates = fitted(result)
+    for name in names or values:
+        assert estimates[name].value == pytest.approx(values[name], rel=part), name
+        assert 0.0 < estimates[name].stderr < 0.05 * values[name], name
+
+
+def part_of(columns, first, end):
+    size = columns["time_s"].size
+    return {name: v[int(first * size) : int(end * size)] for name, v in columns.items()}
+
+
+def with_gap(columns, rows, *names):
+    gone = np.zeros(columns["time_s"].size, dtype=bool)
+    gone[rows] = True
+    return {name: np.where(gone, np.nan, v) if name in names else v for name, v in columns.items()}
+
+
+@pytest.mark.parametrize("first", [0.1, 0.255, 0.27, 0.35, 0.45, 0.51])
+def test_a_recording_may_begin_anywhere_in_a_cycle(first):
+    """In contraction, in the dead band, in loosening: what came before does not enter the fit."""
+    result = calibrated(ran(part_of(recorded(), first, 1.0)))
+    is_right(result)
+    assert not any("wrong somewhere" in sentence for sentence in result.cannot_tell)
+
+
+@pytest.mark.parametrize("ends", [(0.0, 0.25), (0.25, 0.5)])
+def test_half_a_cycle_is_enough(ends):
+    is_right(calibrated(ran(part_of(recorded(), *ends))))
+
+
+def test_a_dead_band_alone_says_that_it_is_not_enough():
+    """The tendon's state before it is unknown, and with it what its tensions mean."""
+    columns = part_of(recorded(sensors=Sensors()), 0.25, 0.262)
+    result = calibrated(ran(columns))
+    assert fitted(result) == {}
+    assert any("has slipped for the first time" in s for s in result.cannot_tell)
+
+
+@pytest.mark.parametrize("samples", [2, 3, 10, 17])
+def test_a_few_samples_are_no_fit(samples):
+    columns = {name: v[300 : 300 + samples] for name, v in recorded().items()}
+    result = calibrated(ran(columns))
+    assert fitted(result) == {}
+    assert result.cannot_tell
+
+
+def test_nothing_moves():
+    rng = np.random.default_rng(0)
+    levels = {"x_in_mm": 5.0, "x_out_mm": 3.0, "f_in_N": 30.0, "f_out_N": 25.0}
+    still = {name: np.full(400, level) for name, level in levels.items()}
+    noisy = {name: v + 0.05 * rng.standard_normal(400) for name, v in still.items()}
+    for columns in (still, noisy):
+        result = calibrated(ran({"time_s": np.arange(400) / 200.0, **columns}))
+        assert fitted(result) == {}
+        assert result.cannot_tell
+
+
+@pytest.mark.parametrize("name", CHANNELS)
+def test_a_dead_channel_does_not_spoil_the_others(name):
+    """A sensor that hangs has no noise: by its own light it would outweigh everything."""
+    for value in (0.0, 7.0):
+        columns = recorded()
+        result = calibrated(ran(columns | {name: np.full_like(columns[name], value)}))
+        is_right(result, "friction_coefficient", "load_stiffness_N_per_mm")
+        assert f"{name} of run a does not enter the fit: it never changes." in result.cannot_tell
+
+
+@pytest.mark.parametrize("name", CHANNELS)
+def test_an_empty_channel_is_as_if_it_were_not_there(name):
+    columns = recorded()
+    there = {key: v for key, v in columns.items() if key != name}
+    empty = calibrated(ran(columns | {name: np.full_like(columns[name], np.nan)}))
+    without = calibrated(ran(there))
+    assert empty.model == without.model
+
+
+@pytest.mark.parametrize("name", ["x_in_mm", *CHANNELS])
+@pytest.mark.parametrize("rows", [slice(0, 100), slice(600, 700), slice(-100, None)])
+def test_gaps_are_left_out(name, rows):
+    result = calibrated(ran(with_gap(recorded(), rows, name)))
+    is_right(result)
+    assert not any("wrong somewhere" in sentence for sentence in result.cannot_tell)
+
+
+def test_channels_of_two_loggers_that_never_share_a_row():
+    """Each column holds every other row: that is its rate, not a gap."""
+    columns = recorded(sensors=replace(SENSORS, rate_Hz=400.0))
+    columns = with_gap(columns, slice(0, None, 2), "x_in_mm")
+    run = ran(with_gap(columns, slice(1, None, 2), *CHANNELS))
+    assert not run.in_gap.all()
+    is_right(calibrated(run))
+
+
+def test_the_drive_is_cleaned_by_its_own_samples():
+    """Filled by straight lines before, a channel with every other row looks too good."""
+    columns = recorded()
+    half = {name: v[::2] for name, v in columns.items()}
+    full = ran(with_gap(columns, slice(1, None, 2), "x_in_mm")).conditioned["x_in_mm"]
+    alone = ran(half).conditioned["x_in_mm"]
+    assert full.noise == alone.noise
+    assert np.array_equal(full.values[::2], alone.values)
+
+
+@pytest.mark.parametrize("offset", [-1e4, 1e9])
+def test_the_clock_may_begin_anywhere(offset):
+    columns = recorded()
+    moved = calibrated(ran(columns | {"time_s": columns["time_s"] + offset}))
+    plain = calibrated(ran(columns))
+    for name, estimate in fitted(plain).items():
+        assert fitted(moved)[name].value == pytest.approx(estimate.value, rel=1e-6, abs=1e-6)
+
+
+def test_sampling_may_be_irregular():
+    exact = clean(TRUE).columns
+    rng = np.random.default_rng(2)
+    t = np.sort(rng.uniform(0.0, exact["time_s"][-1], 2500))
+    noise = {name: 0.005 if name.startswith("x") else 0.08 for name in ("x_in_mm", *CHANNELS)}
+    columns = {
+        name: np.interp(t, exact["time_s"], exact[name]) + sd * rng.standard_normal(t.size)
+        for name, sd in noise.items()
+    }
+    is_right(calibrated(ran({"time_s": t, **columns})))
+    is_right(calibrated(ran(recorded(sensors=replace(SENSORS, jitter_s=0.3 / 200.0)))))
+
+
+@pytest.mark.parametrize("motion", [triangle(), dwell(), nested()])
+def test_other_motions(motion):
+    is_right(calibrated(ran(recorded(motion))))
+
+
+@pytest.mark.parametrize("rate_Hz", [30.0, 1000.0])
+def test_other_rates(rate_Hz):
+    is_right(calibrated(ran(recorded(sensors=replace(SENSORS, rate_Hz=rate_Hz)))), part=0.02)
+
+
+def test_a_long_run_is_fitted_like_a_short_one():
+    """What is simulated for the fit does not grow with the samples, and keeps the reversals."""
+    is_right(calibrated(ran(recorded(triangle(), sensors=replace(SENSORS, rate_Hz=3000.0)))))
+
+
+def test_large_noise_and_coarse_steps():
+    """What they drown is kept as the data sheet says; the rest is found."""
+    noisy = Sensors(
+        200.0, x_in_mm=Sensor(0.1), x_out_mm=Sensor(0.1), f_in_N=Sensor(1.0), f_out_N=Sensor(1.0)
+    )
+    coarse = Sensors(
+        200.0,
+        x_in_mm=Sensor(step=0.2),
+        x_out_mm=Sensor(step=0.2),
+        f_in_N=Sensor(step=1.0),
+        f_out_N=Sensor(step=1.0),
+    )
+    for sensors in (noisy, coarse):
+        result = calibrated(ran(recorded(sensors=sensors)))
+        is_right(result, "friction_coefficient", "load_stiffness_N_per_mm", "preload_N")
+        rest = {e.name: e for e in result.model.estimates if e.origin == "data sheet"}
+        assert "tendon_stiffness_N" in fitted(result) | rest
+
+
+def test_without_any_noise():
+    is_right(calibrated(ran(recorded(sensors=replace(PERFECT, rate_Hz=200.0)))), part=2e-3)
+
+
+def test_almost_no_friction_is_found_to_be_that():
+    rig = Rig(friction_coefficient=0.001 / math.pi)
+    result = calibrated(ran(recorded(rig=rig), rig=rig))
+    assert fitted(result)["friction_coefficient"].value < 0.002
+    assert fitted(result)["load_stiffness_N_per_mm"].value == pytest.approx(1.579, rel=2e-3)
+    assert not any("wrong somewhere" in sentence for sentence in result.cannot_tell)
+
+
+def test_much_friction():
+    rig = Rig(friction_coefficient=2.5 / math.pi)
+    result = calibrated(ran(recorded(rig=rig), rig=rig))
+    assert fitted(result)["friction_coefficient"].value == pytest.approx(2.5 / math.pi, rel=1e-3)
+
+
+@pytest.mark.parametrize("factor", [0.9, 1.1, 1.0 / 3.0, 3.0])
+@pytest.mark.parametrize("channels", [CHANNELS, ("f_in_N",)])
+def test_a_wrong_data_sheet_does_not_lead_astray(factor, channels):
+    columns = {n: v for n, v in recorded().items() if n in ("time_s", "x_in_mm", *channels)}
+    run = ran(columns, preload_N=27.0 * factor)
+    wrong = {
+        key: factor * DATA_SHEET[key]
+        for key in ("friction_coefficient", "load_stiffness_N_per_mm", "tendon_modulus_GPa")
+    }
+    is_right(calibrated(run, **wrong), part=0.02)
+
+
+def test_nothing_but_the_columns():
+    """No rig, no conditions: friction stands for μθ, and the stiffness for that of a metre."""
+    run = ran(recorded(), sheath_length_mm=None, total_bend_rad=None, preload_N=None, load="spring")
+    result = calibrated(run, **dict.fromkeys(DATA_SHEET))
+    product = {
+        "friction_coefficient": 0.135 * math.pi,
+        "load_stiffness_N_per_mm": 1.45,
+        "preload_N": 27.0,
+        "tendon_stiffness_N": TRUE.axial_stiffness * 1000.0 / TRUE.sheath_length_mm,
+    }
+    is_right(result, values=product)
+
+
+def test_a_straight_sheath_with_friction_is_told_to_be_wrong():
+    """Friction does not act in a straight sheath; the data sheet's value stays, and it shows."""
+    result = calibrated(ran(recorded(), total_bend_rad=0.0))
+    friction = next(e for e in result.model.estimates if e.name == "friction_coefficient")
+    assert (friction.value, friction.origin) == (0.125, "data sheet")
+    assert any("f_in_N is missed" in sentence for sentence in result.cannot_tell)
+
+
+def test_what_does_not_show_is_kept_as_the_data_sheet_says():
+    columns = {n: v for n, v in recorded().items() if n in ("time_s", "x_in_mm", "f_out_N")}
+    result = calibrated(ran(columns))
+    kept = {e.name: (e.value, e.origin) for e in result.model.estimates if e.stderr is None}
+    assert kept["friction_coefficient"] == (0.125, "data sheet")
+    assert "friction_coefficient does not show in these recordings; it is kept at 0.125." in (
+        result.cannot_tell
+    )
+
+
+def test_a_short_run_among_long_ones():
+    rest = ran(part_of(recorded(), 0.25, 0.255), run_id="b")
+    result = calibrated(ran(recorded()), rest)
+    is_right(result)
+    assert any("Run b does not enter the fit" in sentence for sentence in result.cannot_tell)
+
+
+def test_runs_with_loads_of_different_kinds():
+    """One friction and one tendon for all; only the spring's run has a preload to find."""
+    columns = recorded()
+    runs = [ran(columns, run_id=kind, load=kind) for kind in ("spring", "force", "displacement")]
+    result = calibrated(*runs)
+    is_right(result)
+    owners = {e.run for e in result.model.estimates if e.name == "preload_N" and e.stderr}
+    assert owners == {"spring"}
+
+
+@pytest.mark.parametrize(
+    ("load", "names", "says"),
+    [
+        ("spring", ("x_in_mm", "motor_speed_rpm"), "nothing to compare a model with"),
+        ("spring", ("x_out_mm",), "no column drives the tendon"),
+        ("force", ("x_in_mm", "f_in_N"), "load = 'force' needs the column f_out_N"),
+        ("displacement", ("x_in_mm", "f_in_N"), "load = 'displacement' needs the column x_out_mm"),
+        ("force", ("f_in_N", "f_out_N", "x_out_mm"), "forces at both ends"),
+    ],
+)
+def test_columns_that_do_not_suffice(load, names, says):
+    columns = recorded()
+    columns["motor_speed_rpm"] = np.sin(columns["time_s"])
+    with pytest.raises(InputError, match=says):
+        ran({name: columns[name] for name in ("time_s", *names)}, load=load)
+
+
+def test_a_force_drives_the_tendon():
+    """Without x_in the tension at the drive drives; friction comes from what passes."""
+    columns = {n: v for n, v in recorded().items() if n != "x_in_mm"}
+    for first in (0.0, 0.3):
+        result = calibrated(ran(part_of(columns, first, 1.0)))
+        is_right(result, "friction_coefficient", "load_stiffness_N_per_mm", "preload_N")
+
+
+def test_a_tendon_that_hangs_slack_for_a_while():
+    """By the product's own model: the independent rig stops where no tension is left."""
+    t = np.arange(0.0, 12.0, 0.005)
+    rig = ModelRig(0.135, TRUE.axial_stiffness, 1.45, TRUE.sheath_length_mm, math.pi, 27.0)
+    response = simulate(rig, Drive(12.0 * np.sin(t) - 12.0))
+    assert 0.05 < np.mean(response.phase == SLACK) < 0.5
+    rng = np.random.default_rng(5)
+    noise = {"x_in_mm": 0.005, "x_out_mm": 0.005, "f_in_N": 0.08, "f_out_N": 0.08}
+    columns = {
+        name: getattr(response, name) + sd * rng.standard_normal(t.size)
+        for name, sd in noise.items()
+    }
+    is_right(calibrated(ran({"time_s": t, **columns})))
+
+
+def test_every_number_of_a_fit_is_finite_or_said_to_be_unknown():
+    for columns in (recorded(), part_of(recorded(), 0.25, 0.26)):
+        for e in calibrated(ran(columns)).model.estimates:
+            known = [e.stderr, e.interval_low, e.interval_high]
+            assert all(v is None for v in known) or all(math.isfinite(v) for v in known)
+            assert math.isfinite(e.value)
+
+
+def test_a_fit_that_ends_at_a_bound_says_so():
+    """Half of x_in is cut off, so that no spring fits: a stiffness runs away."""
+    columns = recorded()
+    result = calibrated(ran(columns | {"x_in_mm": np.minimum(columns["x_in_mm"], 15.0)}))
+    at_bound = [e.name for e in result.model.estimates if e.at_bound]
+    said = [s.split()[0] for s in result.cannot_tell if "ended at the bound" in s]
+    assert at_bound == said
+    assert any("wrong somewhere" in sentence for sentence in result.cannot_tell)
+
+
+def test_a_run_begins_with_the_tension_that_was_measured():
+    """Started at the top, the first samples are a dead band with a known side."""
+    columns = part_of(recorded(), 0.25, 1.0)
+    answer = compare(ran(columns), calibrated(ran(columns)).model)
+    assert answer.rmse["f_in_N"] < 0.2
