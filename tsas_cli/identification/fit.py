@@ -19,6 +19,8 @@ Residuals = Callable[[int, Floats], Floats]  # of one run, at given unknowns
 
 STEP = 1e-5  # of the finite differences, in scaled unknowns
 MOST_EVALUATIONS = 60
+WRONG = 2.0  # mean square of the residuals beyond which the model is taken to be wrong
+FEWEST_RUNS = 3  # that can stand for the errors of a wrong model
 NEARLY_BOUND = 1e-4  # of the width between the bounds
 KNOWN = 0.1  # of its scale: an unknown whose error, by its own light, is larger is not identified
 INDEPENDENT = 1e-3  # part of an unknown's effect that the others must not be able to imitate
@@ -39,10 +41,10 @@ class Unknown:
 
 @dataclass(frozen=True)
 class Fitted:
-    """The result: scaled values, covariance, Student's t, bound flags, and how it ended."""
+    """The result: scaled values, their errors, Student's t, bound flags, and how it ended."""
 
     values: Floats
-    covariance: Floats
+    stderr: Floats
     t: Floats
     at_bound: npt.NDArray[np.bool_]
     converged: bool
@@ -131,9 +133,22 @@ def fit(unknowns: Sequence[Unknown], blocks: Sequence[Indices], residuals: Resid
     )
     offsets = np.concatenate(([0], np.cumsum([b.max() + 1 for b in blocks])))[:-1]
     block = np.concatenate([b + o for b, o in zip(blocks, offsets, strict=True)])
-    covariance, t = jackknife(np.asarray(solution.jac), solution.fun, block)
+    J = np.asarray(solution.jac)
+    stderr, t = _errors(J, solution.fun, block)
+    if np.mean(solution.fun**2) > WRONG and runs >= FEWEST_RUNS:
+        # The error of a wrong model repeats from block to block: only runs are independent.
+        own = np.repeat(np.arange(runs), [b.size for b in blocks])
+        run_stderr, run_t = _errors(J, solution.fun, own)
+        wider = (run_t * run_stderr > t * stderr) & [u.run is None for u in unknowns]
+        stderr, t = np.where(wider, run_stderr, stderr), np.where(wider, run_t, t)
     near = NEARLY_BOUND * (upper - lower)
     at_bound = (solution.x - lower < near) | (upper - solution.x < near)
     return Fitted(
-        solution.x, covariance, t, at_bound, solution.status > 0, solution.message, solution.nfev
+        solution.x, stderr, t, at_bound, solution.status > 0, solution.message, solution.nfev
     )
+
+
+def _errors(J: Floats, residual: Floats, block: Indices) -> tuple[Floats, Floats]:
+    """Return the standard errors and Student's t of the parameters, shape (p,)."""
+    covariance, t = jackknife(J, residual, block)
+    return np.sqrt(np.diag(covariance)), t

@@ -126,8 +126,7 @@ class JointFit:
         return None if unknown.run is None else self.runs[unknown.run].run.id
 
     def _estimates(self, chosen: list[int], result: Fitted) -> list[Estimate]:
-        spread = np.sqrt(np.diag(result.covariance))
-        found = zip(chosen, result.values, spread, result.t, result.at_bound, strict=True)
+        found = zip(chosen, result.values, result.stderr, result.t, result.at_bound, strict=True)
         out = []
         for j, v, sd, t, at_bound in found:
             u = self.unknowns[j]

@@ -68,7 +68,7 @@ def jackknife(jacobian: Floats, residual: Floats, block: Indices) -> tuple[Float
     grams = np.array([part.T @ part for part in np.split(jacobian[order], starts[1:])])
     # What leaving the block out would move: its score, magnified by its own leverage.
     own = np.eye(p) - grams @ bread
-    magnified = np.linalg.solve(own + 1e-9 * np.eye(p), scores[:, :, None])[:, :, 0]
+    magnified = (np.linalg.pinv(own, rcond=1e-9) @ scores[:, :, None])[:, :, 0]
     moves = magnified @ bread
     moves -= moves.mean(axis=0)
     blocks = starts.size
