@@ -1,8 +1,8 @@
 """The slip chain: the distributed quasi-static model for any load, with friction that may vary.
 
 The tendon is n nodes in a row, each with its share a/n of the wrap angle times friction, joined
-by springs (half springs at both ends, which makes the mesh second order in 1/n). A node sticks
-while the tensions on its two sides keep within the capstan ratio e^(±a/n), exactly Eq. (7) of
+by springs (half springs at both ends, which makes the mesh second order in 1/n; first right at a
+reversal, where the exact slope is infinite). A node sticks while the tensions on its two sides keep within the capstan ratio e^(±a/n), exactly Eq. (7) of
 Yang 2025 for its bend; it slips in the direction that the larger one pulls. Each sample is one
 static problem: find the set of slipping nodes (an active-set form of the semi-smooth Newton
 method, started from the last sample's set). Between two sticking nodes the tensions are one
@@ -87,9 +87,11 @@ def held_at_both_ends(p: int, q: int, chain: Chain, preload: float, ratio: float
         if (T[p] < 0.0) == negative:
             break
         negative = not negative
+    tension, place = T[p], x[p]
     for j in range(p + 1, q):
-        x[j] = x[j - 1] - compliance[j - 1] * (T[j - 1] - preload)
-        T[j] = T[j - 1] * (ratio if (slip[j] > 0) != negative else inverse)
+        place -= compliance[j - 1] * (tension - preload)
+        tension *= ratio if (slip[j] > 0) != negative else inverse
+        x[j], T[j] = place, tension
 
 
 @kernel
@@ -124,18 +126,17 @@ def revise(chain: Chain, ratio: float, scale: float) -> bool:
     x, x_old, T, slip = chain.x, chain.x_old, chain.T, chain.slip
     wrong = False
     for i in range(1, x.size - 1):
-        change = slip[i]
         if slip[i] == 0:
             margin = TOLERANCE * abs(T[i - 1])
             if T[i] < passed_on(T[i - 1], ratio) - margin:
-                change = 1
+                slip[i] = 1
+                wrong = True
             elif T[i] > passed_on(T[i - 1], 1.0 / ratio) + margin:
-                change = -1
+                slip[i] = -1
+                wrong = True
         elif slip[i] * (x[i] - x_old[i]) < -TOLERANCE * scale:
-            change = 0
+            slip[i] = 0
             x[i] = x_old[i]
-        if change != slip[i]:
-            slip[i] = change
             wrong = True
     return wrong
 
