@@ -1,12 +1,13 @@
 """The slip chain: the distributed quasi-static model for any load, with friction that may vary.
 
 The tendon is n nodes in a row, each with its share a/n of the wrap angle times friction, joined
-by springs (half springs at both ends, which makes the mesh second order in 1/n; first right at a
-reversal, where the exact slope is infinite). A node sticks while the tensions on its two sides keep within the capstan ratio e^(±a/n), exactly Eq. (7) of
-Yang 2025 for its bend; it slips in the direction that the larger one pulls. Each sample is one
-static problem: find the set of slipping nodes (an active-set form of the semi-smooth Newton
-method, started from the last sample's set). Between two sticking nodes the tensions are one
-geometric series, so each step solves the chain exactly without a linear system.
+by springs; half springs at both ends make the mesh second order in 1/n (first order close to a
+reversal, where the exact slope is infinite). A node sticks while the tensions on its two sides
+keep within the capstan ratio e^(±a/n), exactly Eq. (7) of Yang 2025 for its bend; it slips in the
+direction that the larger one pulls. Each sample is one static problem: find the set of slipping
+nodes (an active-set form of the semi-smooth Newton method, started from the last sample's set).
+Between two sticking nodes the tensions are one geometric series, so each step solves the chain
+exactly without a linear system.
 
 Signs: x grows towards the drive; node i moves towards the drive (+1) when T[i] = e^(−a/n) T[i−1].
 Where the net tension is negative (a pair of antagonistic tendons seen as one), friction follows
