@@ -19,7 +19,7 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.numerics.compiled import kernel
+from tsas_cli.numerics.local_quadratic import HALF_WINDOWS, best_half_windows, corners, smoothed
 from tsas_cli.numerics.noise import noise_sd, quantisation_step
 from tsas_cli.numerics.turning_points import turning_points
 
@@ -27,11 +27,6 @@ Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
 
 METHOD = "local quadratic between corners, window of least risk; monotone between reversals"
-HALF_WINDOWS = np.array([3, 5, 8, 12, 18, 27, 40, 60, 90, 135, 200, 300, 450])  # samples
-RISK_POINTS = 2000  # where the risk is looked at, evenly spread
-RISK_BLOCKS = 40  # pieces of the signal that may have windows of their own
-UNDERSMOOTH = 0.75  # of the window of least risk: what follows minds bias more than noise
-CORNER = 6.0  # standard deviations of the difference of two slopes
 MOVES = 4.0  # standard deviations by which a piece that moves departs from its mean
 STANDS_OUT = 8.0  # standard deviations by which a reversal turns back
 
@@ -94,158 +89,6 @@ def _with_gaps(cleaned: Conditioned, time_s: Floats, there: Indices) -> Conditio
 def _plateau(values: Floats) -> float:
     """Return the mean number of samples that a quantised signal stays at one level."""
     return values.size / (1.0 + np.count_nonzero(np.diff(values)))
-
-
-def best_half_windows(
-    time_s: Floats, values: Floats, cuts: Indices, noise: float, memory: float, *, pooled: int
-) -> Floats:
-    """Return for each sample the half window of least risk, shape (n,) [samples].
-
-    The risk is that of `pooled` neighbouring blocks together, an odd number.
-    """
-    points = np.unique(np.linspace(0, values.size - 1, RISK_POINTS).astype(np.int64))
-    risks = np.array(
-        [risk(time_s, values, cuts, points, half, noise, memory) for half in HALF_WINDOWS]
-    )
-    blocks = np.array_split(np.arange(points.size), RISK_BLOCKS)
-    mean = np.array([risks[:, block].mean(axis=1) for block in blocks if block.size])
-    padded = np.pad(mean, ((pooled // 2, pooled // 2), (0, 0)), mode="edge")
-    together = np.mean([padded[k : k + len(mean)] for k in range(pooled)], axis=0)
-    chosen = np.log(UNDERSMOOTH * HALF_WINDOWS[np.argmin(together, axis=1)])
-    centres = [points[block].mean() for block in blocks if block.size]
-    half: Floats = np.round(np.exp(np.interp(np.arange(values.size), centres, chosen)))
-    return half
-
-
-@kernel
-def quadratic_fit(
-    time_s: Floats, values: Floats, i: int, first: int, last: int
-) -> tuple[float, float, float, float]:
-    """Fit a parabola to the samples first … last; return its value and slope at sample i.
-
-    With them their variances for noise of variance one. Fewer than four samples give a line or
-    the mean.
-    """
-    t1 = t2 = t3 = t4 = y0 = y1 = y2 = 0.0
-    unit = (time_s[last] - time_s[first]) / max(last - first, 1)
-    for j in range(first, last + 1):
-        t = (time_s[j] - time_s[i]) / unit
-        y = values[j] - values[i]
-        tt = t * t
-        t1 += t
-        t2 += tt
-        t3 += tt * t
-        t4 += tt * tt
-        y0 += y
-        y1 += t * y
-        y2 += tt * y
-    count = last - first + 1.0
-    if count < 3.0:
-        return values[i] + y0 / count, 0.0, 1.0 / count, math.inf
-    if count < 5.0:
-        determinant = count * t2 - t1 * t1
-        value, slope = (t2 * y0 - t1 * y1) / determinant, (count * y1 - t1 * y0) / determinant
-        spread = count / determinant / unit**2
-        return values[i] + value, slope / unit, t2 / determinant, spread
-    # The first two rows of the inverse of [[count, t1, t2], [t1, t2, t3], [t2, t3, t4]].
-    a, b, c = t2 * t4 - t3 * t3, t2 * t3 - t1 * t4, t1 * t3 - t2 * t2
-    d, e = count * t4 - t2 * t2, t1 * t2 - count * t3
-    determinant = count * a + t1 * b + t2 * c
-    value = (a * y0 + b * y1 + c * y2) / determinant
-    slope = (b * y0 + d * y1 + e * y2) / determinant
-    return values[i] + value, slope / unit, a / determinant, d / determinant / unit**2
-
-
-@kernel
-def window_of(i: int, half: int, first: int, end: int) -> tuple[int, int]:
-    """Return the window around sample i, inside the piece first … end−1."""
-    return max(first, i - half), min(end - 1, i + half)
-
-
-@kernel
-def risk(
-    time_s: Floats,
-    values: Floats,
-    cuts: Indices,
-    points: Indices,
-    half: int,
-    noise: float,
-    memory: float,
-) -> Floats:
-    """Return Stein's estimate of the squared error of the fit, at the given samples.
-
-    It is (y − fit)² − σ² + 2 cov(y, fit); noise that keeps its value for `memory` samples has
-    that many times the covariance.
-    """
-    out = np.empty(points.size)
-    piece = 0
-    for k in range(points.size):
-        i = points[k]
-        while i >= cuts[piece + 1]:
-            piece += 1
-        first, last = window_of(i, half, cuts[piece], cuts[piece + 1])
-        value, _, weight, _ = quadratic_fit(time_s, values, i, first, last)
-        weight = min(1.0, weight * memory)
-        out[k] = (values[i] - value) ** 2 + (2.0 * weight - 1.0) * noise * noise
-    return out
-
-
-@kernel
-def corners(time_s: Floats, values: Floats, half: int, noise: float) -> Indices:
-    """Return where the slope jumps, as the bounds of the pieces between: 0, …, n.
-
-    Past and future slopes are compared over one window each; of the samples nearer to each
-    other than a window, the one with the largest jump is the corner.
-    """
-    n = values.size
-    stride = max(1, half // 10)
-    jump = np.zeros(n)
-    for i in range(half, n - half, stride):
-        jump[i] = slope_jump(time_s, values, i, half)
-    found = [0]
-    i = 0
-    while i < n:
-        if jump[i] > CORNER * noise:
-            best = i
-            for j in range(i, min(i + half, n)):
-                if jump[j] > jump[best]:
-                    best = j
-            centre = best
-            for j in range(max(half, centre - stride), min(n - half, centre + stride + 1)):
-                jump[j] = slope_jump(time_s, values, j, half)
-                if jump[j] > jump[best]:
-                    best = j
-            found.append(best)
-            i = best + half
-        i += 1
-    found.append(n)
-    return np.array(found, dtype=np.int64)
-
-
-@kernel
-def slope_jump(time_s: Floats, values: Floats, i: int, half: int) -> float:
-    """Return the jump of the slope at sample i over its standard deviation for unit noise."""
-    _, past, _, past_variance = quadratic_fit(time_s, values, i, i - half, i)
-    _, future, _, future_variance = quadratic_fit(time_s, values, i, i, i + half)
-    return abs(future - past) / math.sqrt(past_variance + future_variance)
-
-
-@kernel
-def smoothed(
-    time_s: Floats, values: Floats, cuts: Indices, half: Floats, noise: float
-) -> tuple[Floats, Floats]:
-    """Return the local quadratic fits between the cuts and their standard deviations."""
-    n = values.size
-    out = np.empty(n)
-    sd = np.empty(n)
-    piece = 0
-    for i in range(n):
-        while i >= cuts[piece + 1]:
-            piece += 1
-        first, last = window_of(i, int(half[i]), cuts[piece], cuts[piece + 1])
-        out[i], _, variance, _ = quadratic_fit(time_s, values, i, first, last)
-        sd[i] = noise * math.sqrt(min(variance, 1.0))
-    return out, sd
 
 
 def lay_flat(
