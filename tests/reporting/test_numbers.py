@@ -39,3 +39,10 @@ def test_plain_numbers_have_significant_digits():
 
 def test_what_rounds_to_zero_has_no_sign():
     assert with_interval(-0.0001, -1.0, 1.0) == ("0.0", "−1.0 to 1.0")
+
+
+def test_an_interval_of_no_width_to_speak_of_is_printed():
+    """A fit that gets stuck may leave one; the page must not fall over it."""
+    value, interval = with_interval(-10.806, -10.806 - 1e-15, -10.806 + 1e-15)
+    assert value == "−10.806000000"
+    assert interval == f"{value} to {value}"

@@ -5,6 +5,7 @@ import math
 MINUS = "\N{MINUS SIGN}"
 ABSENT = "\N{EN DASH}"
 _MOST_DECIMALS = 9
+_SMALL = 4  # zeros after the point, beyond which a power of ten reads better
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -44,9 +45,12 @@ def _exponent(value: float) -> int:
 
 def _fixed(value: float, decimals: int) -> str:
     """Round to a number of decimals, or of tens where it is negative; powers of ten if needed."""
-    if decimals > _MOST_DECIMALS and value:
-        exponent = _exponent(value)
+    exponent = _exponent(value)
+    if decimals > _MOST_DECIMALS and value and exponent < -_SMALL:
         power = str(exponent).translate(_RAISED)
-        return f"{_fixed(value / 10.0**exponent, decimals + exponent)}·10{power}"
+        return (
+            f"{_fixed(value / 10.0**exponent, min(decimals + exponent, _MOST_DECIMALS))}·10{power}"
+        )
+    decimals = min(decimals, _MOST_DECIMALS)
     rounded = round(value, decimals) + 0.0  # minus zero becomes zero
     return f"{rounded:.{max(decimals, 0)}f}".replace("-", MINUS)
