@@ -21,6 +21,7 @@ STEP = 1e-5  # of the finite differences, in scaled unknowns
 MOST_EVALUATIONS = 60
 WRONG = 2.0  # mean square of the residuals beyond which the model is taken to be wrong
 FEWEST_RUNS = 3  # that can stand for the errors of a wrong model
+UNDETERMINED = 1e-3  # of a parameter that may leak into others
 NEARLY_BOUND = 1e-4  # of the width between the bounds
 KNOWN = 0.1  # of its scale: an unknown whose error, by its own light, is larger is not identified
 INDEPENDENT = 1e-3  # part of an unknown's effect that the others must not be able to imitate
@@ -149,6 +150,12 @@ def fit(unknowns: Sequence[Unknown], blocks: Sequence[Indices], residuals: Resid
 
 
 def _errors(J: Floats, residual: Floats, block: Indices) -> tuple[Floats, Floats]:
-    """Return the standard errors and Student's t of the parameters, shape (p,)."""
+    """Return the standard errors and Student's t of the parameters, shape (p,).
+
+    Infinite errors where the residuals do not determine a parameter at all.
+    """
     covariance, t = jackknife(J, residual, block)
-    return np.sqrt(np.diag(covariance)), t
+    gram = J.T @ J
+    determined = np.diag(np.linalg.pinv(gram, hermitian=True) @ gram)
+    errors = np.sqrt(np.diag(covariance))
+    return np.where(np.abs(determined - 1.0) < UNDETERMINED, errors, np.inf), t

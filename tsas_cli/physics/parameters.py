@@ -24,7 +24,7 @@ NOMINAL = (
         "friction_coefficient",
         "1",
         1e-4,
-        3.0,
+        10.0,  # μθ where the bend is not known
         shared=True,
         positive=True,
         meaning="friction between tendon and sheath, μ",
