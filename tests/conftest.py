@@ -25,6 +25,15 @@ def tsas() -> Callable[..., subprocess.CompletedProcess[str]]:
 
 
 @pytest.fixture
+def strict(
+    tsas: Callable[..., subprocess.CompletedProcess[str]], monkeypatch: pytest.MonkeyPatch
+) -> Callable[..., subprocess.CompletedProcess[str]]:
+    """Run the command line in a new process with every warning an error."""
+    monkeypatch.setenv("PYTHONWARNINGS", "error")
+    return tsas
+
+
+@pytest.fixture
 def columns() -> dict[str, np.ndarray]:
     """Half a second of a pull and its release, exact to the last bit."""
     time_s = np.arange(500) / 1000

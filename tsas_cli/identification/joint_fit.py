@@ -296,13 +296,15 @@ def _unknowns(start: Model, runs: Sequence[Prepared]) -> list[Unknown]:
             value = DEFAULTS[p.name] if value is None else value
             scale = LOG_SCALE if p.positive else ZERO_SCALE * travel
             bounds = (_scaled(p.name, p.lower), _scaled(p.name, p.upper))
-            begin = _scaled(p.name, min(max(value, p.lower), p.upper))
-            out.append(Unknown(p.name, k, begin, *bounds, scale))
+            out.append(Unknown(p.name, k, _scaled(p.name, value), *bounds, scale))
     return out
 
 
 def _scaled(name: str, value: float) -> float:
-    return math.log(value) if NOMINAL_BY_NAME[name].positive else value
+    """Return the value, inside its bounds, as it is fitted: a positive one as its logarithm."""
+    p = NOMINAL_BY_NAME[name]
+    inside = min(max(value, p.lower), p.upper)
+    return math.log(inside) if p.positive else inside
 
 
 def _unscaled(name: str, value: float) -> float:

@@ -18,6 +18,8 @@ from tsas_cli.recordings.manifest import Manifest, Run, parse, read_toml
 
 FILE = "model.toml"
 CORRECTION = "preload_correction_N"  # mean of fitted less stated preload, for runs not calibrated
+MOST_WRAP = 20.0  # friction times bend; e^20 is the ratio of the tensions at the two ends
+MAY_BE_ZERO = ("friction_coefficient", "preload_N")  # among the positive parameters
 UNKNOWN_BEND_RAD = 1.0
 UNKNOWN_LENGTH_MM = 1000.0
 DEFAULTS = {
@@ -49,14 +51,29 @@ class Model:
         )
 
     def rig(self, run: Run) -> Rig:
-        """Return the rig of a run, calibrated or not; what nobody told is a default."""
+        """Return the rig of a run, calibrated or not; what nobody told is a default.
+
+        Raises
+        ------
+        InputError
+            Friction times bend is more than any tendon gets through.
+        """
         values = {p.name: self.value(p.name, run.id) for p in NOMINAL}
         if values["preload_N"] is None and run.preload_N is not None:
             values["preload_N"] = run.preload_N + (self.value(CORRECTION) or 0.0)
         known = {name: v if v is not None else DEFAULTS[name] for name, v in values.items()}
+        bend = UNKNOWN_BEND_RAD if run.total_bend_rad is None else run.total_bend_rad
+        if known["friction_coefficient"] * bend > MOST_WRAP:
+            raise InputError(
+                f"a friction_coefficient of {known['friction_coefficient']:.4g} over a "
+                f"total_bend_rad of {bend:.4g} lets no tension through",
+                where=f"run {run.id}",
+                expected=f"at most {MOST_WRAP:.4g} for their product",
+                remedy="is the bend in radians?",
+            )
         return Rig(
             sheath_length_mm=run.sheath_length_mm or UNKNOWN_LENGTH_MM,
-            total_bend_rad=UNKNOWN_BEND_RAD if run.total_bend_rad is None else run.total_bend_rad,
+            total_bend_rad=bend,
             effects=self._effects(),
             **known,
         )
@@ -87,7 +104,9 @@ def data_sheet(manifest: Manifest) -> Model:
             if value is not None:
                 estimates.append(Estimate(f"{effect.name}.{p.name}", value, p.unit, "data sheet"))
     preloads = [
-        _stated("preload_N", run.preload_N, run.id) for run in manifest.run if run.preload_N
+        _stated("preload_N", run.preload_N, run.id)
+        for run in manifest.run
+        if run.preload_N is not None
     ]
     return Model((*estimates, *preloads))
 
@@ -187,5 +206,13 @@ def _check_value(name: str, value: _Value, unit: str, path: Path) -> None:
     nominal = NOMINAL_BY_NAME.get(name)
     if not math.isfinite(value.value):
         raise InputError(f"{name} is {value.value}", where=path, expected="a finite number")
-    if nominal and nominal.positive and value.value <= 0.0:
+    zero = value.value == 0.0 and name in MAY_BE_ZERO
+    if nominal and nominal.positive and value.value <= 0.0 and not zero:
         raise InputError(f"{name} is {value.value}", where=path, expected="a positive number")
+    bounds = next((p for e in EFFECTS for p in e.parameters if f"{e.name}.{p.name}" == name), None)
+    if bounds and not bounds.lower <= value.value <= bounds.upper:
+        raise InputError(
+            f"{name} is {value.value} {unit}",
+            where=path,
+            expected=f"{bounds.lower:g} to {bounds.upper:g} {unit}",
+        )

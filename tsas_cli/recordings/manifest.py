@@ -63,8 +63,12 @@ class Run(_Table):
     @field_validator("id")
     @classmethod
     def _can_name_a_file(cls, name: str) -> str:
-        if name in {".", ".."} or any(c in name for c in "/\\") or not name.isprintable():
-            raise ValueError("must be usable as a file name (no slash, no control character)")
+        too_long = len(f"{name}.parquet".encode()) > 255
+        bad = name in {".", ".."} or any(c in name for c in "/\\") or not name.isprintable()
+        if bad or too_long:
+            raise ValueError(
+                "must be usable as a file name (no slash, no control character, not too long)"
+            )
         return name
 
 

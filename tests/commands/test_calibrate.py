@@ -1,0 +1,173 @@
+"""`tsas calibrate` in a process of its own, with every warning an error."""
+
+import json
+import re
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+
+from tests.commands.documented import documented
+from tests.rig.recordings import Run, conditions, record, write_dataset
+from tests.rig.sensors import Sensors
+from tests.rig.tendon import Rig
+
+IDS = ["a", "ü → 'b'", "<script>", "..c", "n" * 200]
+
+
+@pytest.fixture(scope="module")
+def recorded():
+    return record(Rig(), sensors=Sensors(rate_Hz=100.0))
+
+
+@pytest.fixture
+def folder(tmp_path, recorded):
+    return write_dataset(tmp_path / "dataset", [Run("a", recorded, conditions(Rig()))])
+
+
+def nulls(content, path=""):
+    """Return the paths of all nulls in JSON content."""
+    if isinstance(content, dict):
+        return [p for k, v in content.items() for p in nulls(v, f"{path}.{k}")]
+    if isinstance(content, list):
+        return [p for v in content for p in nulls(v, path)]
+    return [path] if content is None else []
+
+
+def test_it_writes_what_is_documented(strict, folder, tmp_path):
+    done = strict("calibrate", folder, "--out", tmp_path / "out", "--json")
+    assert (done.returncode, done.stderr) == (0, "")
+    summary = json.loads((tmp_path / "out" / "calibration.json").read_text(encoding="utf-8"))
+    assert json.loads(done.stdout) == summary
+    assert set(summary) == documented("calibration.json")
+    assert {p.name for p in (tmp_path / "out").iterdir()} == {"calibration.json", "model.toml"}
+    parameter = {
+        *("name", "run", "value", "stderr", "interval_low", "interval_high"),
+        *("unit", "at_bound", "origin"),
+    }
+    assert all(set(p) == parameter for p in summary["parameters"] + summary["transfer"])
+    allowed = (".run", ".stderr", ".interval_low", ".interval_high")
+    assert all(path.endswith(allowed) for path in nulls(summary))
+    for p in summary["parameters"]:
+        assert (p["stderr"] is None) == (p["interval_low"] is None) == (p["origin"] != "fitted")
+
+
+def test_the_model_holds_the_same_numbers_as_the_json(strict, folder, tmp_path):
+    summary = json.loads(strict("calibrate", folder, "--out", tmp_path / "o", "--json").stdout)
+    model = tomllib.loads((tmp_path / "o" / "model.toml").read_text(encoding="utf-8"))
+    for p in summary["parameters"]:
+        table = model["parameters"] if p["run"] is None else model["runs"][p["run"]]
+        assert table[p["name"]]["value"] == p["value"]
+        assert table[p["name"]]["unit"] == p["unit"]
+
+
+def test_it_prints_tables_and_says_what_cannot_be_told(strict, folder, tmp_path):
+    done = strict("calibrate", folder, "--out", tmp_path / "out")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "stiffness km" in done.stdout
+    assert "- x_out_zero_mm cannot be told apart from preload_N" in done.stdout
+    quiet = strict("calibrate", folder, "--out", tmp_path / "out", "--force", "--quiet")
+    assert (quiet.returncode, quiet.stdout, quiet.stderr) == (0, "", "")
+
+
+def test_an_output_is_not_overwritten_unasked(strict, folder, tmp_path):
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "mine.txt").write_text("x", encoding="utf-8")
+    done = strict("calibrate", folder, "--out", tmp_path / "out")
+    assert done.returncode == 2
+    assert done.stderr.count("\n") == 1
+    assert "already exists" in done.stderr
+    assert [p.name for p in (tmp_path / "out").iterdir()] == ["mine.txt"]
+
+
+def test_odd_names_of_runs(strict, recorded, tmp_path):
+    """They name files, TOML keys and cells of a table, and break none of them."""
+    folder = write_dataset(tmp_path / "d", [Run("a", recorded, conditions(Rig()))])
+    manifest = folder / "dataset.toml"
+    text = manifest.read_text(encoding="utf-8")
+    entry = text[text.index("[[run]]") :]
+    copies = [entry.replace('id = "a"', f"id = {json.dumps(i, ensure_ascii=False)}") for i in IDS]
+    manifest.write_text(text.replace(entry, "\n".join(copies)), encoding="utf-8")
+    done = strict("calibrate", folder, "--out", tmp_path / "c", "--json")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert list(json.loads(done.stdout)["channels"]) == IDS
+    done = strict("simulate", folder, "--model", tmp_path / "c", "--out", tmp_path / "s", "-q")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert {p.stem for p in (tmp_path / "s" / "runs").iterdir()} == set(IDS)
+
+
+@pytest.mark.parametrize("name", ["..", "a/b", "a\\\\b", "n" * 260, "a\\u202eb"])
+def test_a_name_that_cannot_be_a_file_is_refused(strict, folder, tmp_path, name):
+    manifest = folder / "dataset.toml"
+    text = manifest.read_text(encoding="utf-8")
+    manifest.write_text(text.replace('id = "a"', f'id = "{name}"'), encoding="utf-8")
+    done = strict("calibrate", folder, "--out", tmp_path / "out")
+    assert done.returncode == 2
+    assert done.stderr.count("\n") == 1
+    assert "must be usable as a file name" in done.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def test_integer_and_float32_and_further_columns(strict, recorded, tmp_path):
+    """Micrometres in whole numbers as another tool may write them are no obstacle."""
+    folder = write_dataset(tmp_path / "d", [Run("a", recorded, conditions(Rig()))])
+    path = folder / "runs" / "a.parquet"
+    table = pa.table(
+        {
+            "time_s": pa.array(recorded["time_s"], pa.float64()),
+            "x_in_mm": pa.array(recorded["x_in_mm"], pa.float32()),
+            "f_in_N": pa.array(np.round(recorded["f_in_N"]).astype(np.int16)),
+            "f_out_N": pa.array(recorded["f_out_N"], pa.float32()),
+            "comment": pa.array(["x"] * recorded["time_s"].size),
+        }
+    )
+    pq.write_table(table, path)
+    rewrite_checksum(folder, path)
+    done = strict("calibrate", folder, "--out", tmp_path / "c", "--json")
+    assert (done.returncode, done.stderr) == (0, "")
+    found = {p["name"]: p["value"] for p in json.loads(done.stdout)["parameters"]}
+    assert found["friction_coefficient"] == pytest.approx(0.125, rel=0.01)
+
+
+def rewrite_checksum(folder, path):
+    import hashlib
+
+    manifest = folder / "dataset.toml"
+    digest = hashlib.sha256(path.read_bytes()).hexdigest()
+    text = manifest.read_text(encoding="utf-8")
+    manifest.write_text(re.sub(r'sha256 = "\w+"', f'sha256 = "{digest}"', text), encoding="utf-8")
+
+
+@pytest.mark.parametrize("names", [("x_in_mm",), ("f_in_N", "f_out_N"), ("x_in_mm", "x_out_mm")])
+def test_a_wrong_sign_is_one_line(strict, recorded, tmp_path, names):
+    turned = {name: -v if name in names else v for name, v in recorded.items()}
+    folder = write_dataset(tmp_path / "d", [Run("a", turned, conditions(Rig()))])
+    done = strict("calibrate", folder, "--out", tmp_path / "c")
+    assert done.returncode == 2
+    assert done.stderr.count("\n") == 1
+    assert "turn the sign of" in done.stderr
+    assert not (tmp_path / "c").exists()
+
+
+def test_drive_data_have_nothing_to_compare_with(strict, tmp_path):
+    shipped = Path(__file__).parents[2] / "datasets" / "drive-chirp"
+    done = strict("calibrate", shipped, "--out", tmp_path / "c")
+    assert done.returncode == 2
+    assert done.stderr.count("\n") == 1
+    assert "nothing to compare a model with" in done.stderr
+
+
+def test_a_short_recording_is_no_error_and_no_number(strict, recorded, tmp_path):
+    """Two rows: the data sheet's values without intervals, and the reason."""
+    short = {name: v[100:102] for name, v in recorded.items()}
+    folder = write_dataset(tmp_path / "d", [Run("a", short, conditions(Rig()))])
+    done = strict("calibrate", folder, "--out", tmp_path / "c", "--json")
+    assert (done.returncode, done.stderr) == (0, "")
+    summary = json.loads(done.stdout)
+    assert all(p["stderr"] is None for p in summary["parameters"])
+    assert summary["fit"]["message"] == "nothing to fit"
+    assert summary["cannot_tell"]
+    assert summary["channels"]["a"]["f_in_N"]["noise"] is None

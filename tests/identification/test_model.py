@@ -1,0 +1,124 @@
+"""model.toml: written and read back alike, and every wrong one is one line."""
+
+import pytest
+
+from tests.identification.recorded import manifest, prepared
+from tests.rig.tendon import Rig
+from tsas_cli.errors import InputError
+from tsas_cli.identification.estimate import Estimate
+from tsas_cli.identification.model import CORRECTION, Model, data_sheet, read_model, write_model
+from tsas_cli.recordings.manifest import Run
+
+MODEL = Model(
+    (
+        Estimate("friction_coefficient", 0.13, "1", "fitted", None, 0.01, 0.11, 0.15, True),
+        Estimate("load_stiffness_N_per_mm", 1.5, "N/mm", "data sheet"),
+        Estimate("tendon_stiffness_N", 6e4, "N", "default"),
+        Estimate(CORRECTION, -1.5, "N", "fitted"),
+        Estimate("preload_N", 25.0, "N", "fitted", 'a "b" <c>.d', 0.1, 24.8, 25.2),
+        Estimate("x_in_zero_mm", -0.3, "mm", "fitted", 'a "b" <c>.d', 0.1, -0.5, -0.1),
+        Estimate("free_tendon.proximal_length_mm", 150.0, "mm", "fitted", None, 2.0, 146.0, 154.0),
+    )
+)
+VALUE = "[parameters.friction_coefficient]\nvalue = 0.1\nunit = '1'\n"
+
+
+def run(run_id="a", **conditions):
+    return Run(id=run_id, file="a.parquet", sha256="0" * 64, **conditions)
+
+
+def test_what_is_written_is_read_back(tmp_path):
+    path = tmp_path / "model.toml"
+    write_model(path, MODEL, version="1", dataset={"name": "x", "hashes": {"a/b.parquet": "0"}})
+    for told in (path, tmp_path):  # the file, or the folder that calibrate has written
+        assert set(read_model(told).estimates) == set(MODEL.estimates)
+
+
+def test_a_rig_takes_its_run_s_values_and_the_effects():
+    rig = MODEL.rig(run('a "b" <c>.d', preload_N=20.0, total_bend_rad=2.0, sheath_length_mm=500.0))
+    assert (rig.preload_N, rig.x_in_zero_mm, rig.friction_coefficient) == (25.0, -0.3, 0.13)
+    assert (rig.total_bend_rad, rig.sheath_length_mm) == (2.0, 500.0)
+    assert rig.effects.free_tendon == (150.0, 0.0)
+
+
+def test_a_run_that_was_not_calibrated_gets_the_correction():
+    rig = MODEL.rig(run("other", preload_N=20.0))
+    assert rig.preload_N == pytest.approx(18.5)
+    assert rig.x_in_zero_mm == 0.0
+
+
+def test_the_data_sheet_is_a_model():
+    made = prepared(Rig())
+    rig = data_sheet(manifest(made, proximal_length_mm=30.0)).rig(made.run)
+    assert rig.tendon_stiffness_N == pytest.approx(67858.4, rel=1e-5)
+    assert (rig.friction_coefficient, rig.load_stiffness_N_per_mm) == (0.125, 1.579)
+    assert rig.effects.free_tendon.proximal_length_mm == 30.0
+    assert data_sheet(manifest(made, friction_coefficient=0.0)).rig(made.run)[0] == 0.0
+
+
+def test_a_preload_of_zero_is_told():
+    made = prepared(Rig(), preload_N=0.0)
+    assert data_sheet(manifest(made)).value("preload_N", "a") == 0.0
+
+
+def test_a_bend_in_degrees_is_refused():
+    with pytest.raises(InputError, match="is the bend in radians"):
+        MODEL.rig(run(total_bend_rad=180.0))
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        (VALUE, "format is missing"),
+        ("format = 2\n" + VALUE, "format: input should be 1, got 2"),
+        ("format = 1\nkind = 'dataset'\n", "kind: input should be 'model', got 'dataset'"),
+        ("format = \n", "is not TOML"),
+        ("format = 1\nparametres = 1\n", "did you mean parameters"),
+        (
+            "format = 1\n" + VALUE.replace("friction_", "frction_"),
+            "unknown parameter frction_coefficient; did you mean friction_coefficient",
+        ),
+        (
+            "format = 1\n[runs.a.preload]\nvalue = 1.0\nunit = 'N'\n",
+            "unknown parameter preload; did you mean preload_N",
+        ),
+        (
+            "format = 1\n[effects.free_tendon.proximal_mm]\nvalue = 1.0\nunit = 'mm'\n",
+            "did you mean free_tendon.proximal_length_mm",
+        ),
+        (
+            "format = 1\n[effects.free_tendon.proximal_length_mm]\nvalue = -1.0\nunit = 'mm'\n",
+            "expected 0 to 5000 mm",
+        ),
+        ("format = 1\n" + VALUE.replace("'1'", "'N'"), "is in 'N'; expected the unit '1'"),
+        ("format = 1\n" + VALUE.replace("unit = '1'\n", ""), "unit is missing"),
+        ("format = 1\n" + VALUE.replace("0.1", "nan"), "is nan; expected a finite number"),
+        ("format = 1\n" + VALUE.replace("0.1", "-0.1"), "is -0.1; expected a positive number"),
+        ("format = 1\n" + VALUE.replace("0.1", "'x'"), "should be a valid number"),
+        ("format = 1\n" + VALUE + "stdder = 0.1\n", "did you mean stderr"),
+        (
+            "format = 1\n[parameters.tendon_stiffness_N]\nvalue = 0\nunit = 'N'\n",
+            "is 0.0; expected a positive number",
+        ),
+    ],
+)
+def test_a_wrong_model_is_one_line(tmp_path, text, says):
+    path = tmp_path / "model.toml"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(InputError) as stopped:
+        read_model(path)
+    assert says in stopped.value.line()
+    assert "\n" not in stopped.value.line()
+    assert str(path) in stopped.value.line()
+
+
+def test_a_missing_model_and_an_empty_folder(tmp_path):
+    for path in (tmp_path, tmp_path / "no.toml"):
+        with pytest.raises(InputError, match="cannot be read"):
+            read_model(path)
+
+
+def test_a_value_of_zero_where_it_means_something(tmp_path):
+    path = tmp_path / "model.toml"
+    path.write_text("format = 1\n" + VALUE.replace("0.1", "0.0"), encoding="utf-8")
+    assert read_model(path).value("friction_coefficient") == 0.0
