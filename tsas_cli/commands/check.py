@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tsas_cli import __version__
 from tsas_cli.commands.common import DatasetFolder, Force, Json, Quiet, show
 
 if TYPE_CHECKING:
@@ -29,8 +28,7 @@ def check(
 
     opened = read_dataset(dataset)
     report = check_dataset(opened)
-    head = {"format": 1, "stage": "check", "version": __version__}
-    content = {**head, "dataset": opened.reference(out or Path()), **report.content()}
+    content = opened.header("check", out or Path()) | report.content()
     if out is not None:
         with new_folder(out, force=force) as folder:
             write_json(folder / "check.json", content)

@@ -11,7 +11,6 @@ from tsas_cli.identification.calibration import Calibration, calibrate
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import FILE, Model, data_sheet, write_model
 from tsas_cli.identification.prepared import Prepared, prepare
-from tsas_cli.identification.stage import header
 from tsas_cli.identification.stiffness import Slope
 from tsas_cli.physics.capstan import dead_band_stiffness, slip_stiffness, speed_per_stiffness
 from tsas_cli.physics.rig import Rig
@@ -41,7 +40,7 @@ def calibrate_dataset(
             runs.append(prepare(recording))
             step()
         result = calibrate(dataset.manifest, runs, step)
-        summary = header("calibrate", dataset, out) | _summary(result, dataset.manifest)
+        summary = dataset.header("calibrate", out) | _summary(result, dataset.manifest)
         write_model(folder / FILE, result.model, version=__version__, dataset=summary["dataset"])
         write_json(folder / "calibration.json", summary)
     return summary

@@ -11,7 +11,6 @@ from tsas_cli.files import new_folder, sha256_of, write_json
 from tsas_cli.identification.comparison import Compared, compare
 from tsas_cli.identification.model import FILE, data_sheet, read_model
 from tsas_cli.identification.prepared import Prepared, prepare
-from tsas_cli.identification.stage import header
 from tsas_cli.physics.quasi_static import Dynamics
 from tsas_cli.recordings.dataset import Dataset, write_parquet
 
@@ -37,7 +36,7 @@ def simulate_dataset(
     if model_path is not None and model_path.is_dir():
         model_path = model_path / FILE
     model = data_sheet(dataset.manifest) if model_path is None else read_model(model_path)
-    summary = header("simulate", dataset, out)
+    summary = dataset.header("simulate", out)
     summary["model"] = (
         {"file": "data sheet"}
         if model_path is None

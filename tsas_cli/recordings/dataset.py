@@ -4,12 +4,14 @@ import os
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from tsas_cli import __version__
 from tsas_cli.errors import InputError
 from tsas_cli.files import sha256_of
 from tsas_cli.recordings.columns import BY_NAME, INPUTS, OUTPUTS, TIME, has_input_and_output
@@ -46,10 +48,15 @@ class Dataset:
         """Read one recording after the other, in the order of the manifest."""
         return (read_recording(self.folder, run) for run in self.manifest.run)
 
-    def reference(self, folder: Path) -> dict[str, object]:
-        """Return what a stage that writes `folder` says about the dataset that it read."""
-        path = os.path.relpath(self.folder.resolve(), folder.resolve())
-        return {"name": self.manifest.name, "folder": path, "hashes": self.hashes()}
+    def header(self, stage: str, folder: Path) -> dict[str, Any]:
+        """Return the first keys of the JSON that a stage writes into `folder`."""
+        path = Path(os.path.relpath(self.folder.resolve(), folder.resolve())).as_posix()
+        return {
+            "format": 1,
+            "stage": stage,
+            "version": __version__,
+            "dataset": {"name": self.manifest.name, "folder": path, "hashes": self.hashes()},
+        }
 
     def hashes(self) -> dict[str, str]:
         """Return the checksum of the manifest and of each run's file, by path in the dataset."""

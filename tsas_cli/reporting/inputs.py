@@ -126,8 +126,8 @@ def _dataset_of(stage: StageFile, path: Path) -> Path:
 
 
 def _own_check(dataset: Dataset) -> Check:
-    content = {"format": 1, "stage": "check", "dataset": dataset.reference(Path())}
-    return Check.model_validate(content | check_dataset(dataset).content())
+    content = dataset.header("check", Path()) | check_dataset(dataset).content()
+    return Check.model_validate(content)
 
 
 def _check_hashes(stage: StageFile, dataset: Dataset, path: Path) -> None:
