@@ -97,7 +97,13 @@ def identifiable(unknowns: Sequence[Unknown], J: Floats) -> tuple[list[int], dic
     return chosen, confounded
 
 
-def fit(unknowns: Sequence[Unknown], blocks: Sequence[Indices], residuals: Residuals) -> Fitted:
+def fit(
+    unknowns: Sequence[Unknown],
+    blocks: Sequence[Indices],
+    residuals: Residuals,
+    *,
+    tolerance: float,
+) -> Fitted:
     """Minimise the squares of all runs' residuals within the bounds.
 
     Parameters
@@ -108,6 +114,8 @@ def fit(unknowns: Sequence[Unknown], blocks: Sequence[Indices], residuals: Resid
         For each run the block of each residual, counted from 0 in each run, for the intervals.
     residuals
         The residuals of a run at scaled values of all unknowns.
+    tolerance
+        The part of the squares that a last step may still have saved.
     """
     from scipy.optimize import least_squares
 
@@ -129,7 +137,7 @@ def fit(unknowns: Sequence[Unknown], blocks: Sequence[Indices], residuals: Resid
         x_scale=np.array([u.scale for u in unknowns]),
         max_nfev=MOST_EVALUATIONS,
         xtol=1e-6,
-        ftol=1e-6,
+        ftol=tolerance,
         gtol=1e-10,
     )
     offsets = np.concatenate(([0], np.cumsum([b.max() + 1 for b in blocks])))[:-1]

@@ -32,6 +32,7 @@ FEWEST_SAMPLES = 16  # of a channel, after the start of a run
 WINDOWS_PER_BLOCK = 2.0  # of the conditioning: the error of a cleaned drive lasts that long
 SHARP = 4  # strides after a reversal in which every sample is simulated
 MOST_ROUNDS = 4
+ROUGH, FINE = 1e-3, 1e-6  # tolerance of the first fit, whose weights are the start's, and after
 LOG_SCALE = 0.3  # plausible relative change of a positive parameter
 ZERO_SCALE = 0.02  # plausible zero of a displacement sensor, of its range
 
@@ -70,7 +71,7 @@ class JointFit:
             confounded = {j: p for j, p in confounded.items() if j not in small}
             if not chosen:
                 return self.kept, None, [*self.left_out, *self._sentences(confounded)]
-            result = self._fit(chosen)
+            result = self._fit(chosen, tolerance=FINE if before else ROUGH)
             if chosen == before:
                 break
             before = chosen
@@ -92,7 +93,7 @@ class JointFit:
             if ratio > 2.0
         ]
 
-    def _fit(self, chosen: list[int]) -> Fitted:
+    def _fit(self, chosen: list[int], *, tolerance: float) -> Fitted:
         """Fit the chosen unknowns, the others as they are kept; renew values and weights."""
         base = np.array([self._kept(u) for u in self.unknowns])
 
@@ -101,7 +102,7 @@ class JointFit:
             return self._residuals(k, base)
 
         sought = [replace(self.unknowns[j], start=float(self.values[j])) for j in chosen]
-        result = fit(sought, self._blocks(), residuals)
+        result = fit(sought, self._blocks(), residuals, tolerance=tolerance)
         base[chosen] = result.values
         self.values = base
         self.weights = [self._weights(k) for k in range(len(self.runs))]
