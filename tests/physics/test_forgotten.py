@@ -1,0 +1,64 @@
+"""From where on a run does not depend on what came before it."""
+
+import math
+
+import numpy as np
+import pytest
+
+from tsas_cli.physics.quasi_static import Drive, forgotten, simulate
+from tsas_cli.physics.rig import Rig
+
+MU, EA, KL, L, BEND, F0 = 0.125, 67858.4, 1.579, 785.398, math.pi, 25.0
+RIG = Rig(MU, EA, KL, L, BEND, F0)
+WRAP = MU * BEND
+
+
+def dead_band(x):
+    """Return the travel from contraction at x to loosening, by the formulas of Yang 2025.
+
+    The tension there is that of Eq. (30); the band ends where it has fallen by e^(−2a).
+    """
+    slope = KL * math.exp(WRAP) / (1.0 + KL * (math.exp(WRAP) - 1.0) * L / (WRAP * EA))
+    tension = slope * (x + F0 * (1.0 / KL + L / EA))
+    return L / (WRAP * EA) * tension * (1.0 - math.exp(-WRAP)) ** 2
+
+
+def test_a_release_forgets_when_the_widest_dead_band_is_crossed():
+    x = 10.0 - np.arange(0.0, 1.0, 1e-3)
+    first = forgotten(RIG, Drive(x))
+    assert first is not None
+    assert x[0] - x[first] == pytest.approx(dead_band(10.0), abs=1.5e-3)
+
+
+def test_the_chain_forgets_where_the_closed_form_does():
+    """A load whose displacement is held where the spring holds it."""
+    x = 10.0 - np.arange(0.0, 1.0, 2e-3)
+    spring = simulate(RIG, Drive(np.concatenate(([10.0], x))))
+    by_spring = forgotten(RIG, Drive(x))
+    by_load = forgotten(RIG, Drive(x, load="displacement", load_values=spring.x_out_mm[1:]))
+    assert by_spring is not None
+    assert by_load is not None
+    assert abs(by_load - by_spring) <= 6
+
+
+def test_a_move_inside_the_dead_band_is_never_forgotten():
+    x = 10.0 + 0.4 * dead_band(10.0) * np.sin(np.linspace(0.0, 20.0, 500))
+    assert forgotten(RIG, Drive(x)) is None
+    assert forgotten(RIG, Drive(np.full(100, 10.0))) is None
+
+
+def test_a_force_at_the_drive_forgets_after_the_square_of_the_tension_ratio():
+    pull = F0 * np.linspace(1.0, 3.0, 2001)
+    first = forgotten(RIG, Drive(pull, kind="force"))
+    assert first is not None
+    assert pull[first] / pull[0] == pytest.approx(math.exp(2.0 * WRAP), rel=5e-3)
+
+
+@pytest.mark.parametrize("wanted", [5.0, 200.0])
+def test_a_tension_out_of_reach_starts_at_the_nearest_one(wanted):
+    """Below that of loosening, or above that of contraction."""
+    x = np.full(3, 10.0)
+    reached = simulate(RIG, Drive(x, start_f_in_N=wanted)).f_in_N[0]
+    pulled = simulate(RIG, Drive(np.array([0.0, 10.0]))).f_in_N[-1]
+    released = simulate(RIG, Drive(np.array([0.0, 20.0, 10.0]))).f_in_N[-1]
+    assert reached == pytest.approx(pulled if wanted > 100.0 else released, rel=1e-6)
