@@ -355,3 +355,15 @@ def test_a_run_begins_with_the_tension_that_was_measured():
     columns = part_of(recorded(), 0.25, 1.0)
     answer = compare(ran(columns), calibrated(ran(columns)).model)
     assert answer.rmse["f_in_N"] < 0.2
+
+
+def test_what_the_fit_leaves_open_has_no_error_and_a_sentence():
+    """With displacements of a thousand kilometres the zeros, bounded by a metre, are nothing."""
+    columns = {n: v if n.startswith("t") else 1e9 * v for n, v in recorded().items()}
+    result = calibrated(ran(columns))
+    open_ = [e for e in fitted(result).values() if e.stderr is None]
+    assert open_
+    for e in open_:
+        assert f"{e.name} of run a does not show where the fit ended" in " ".join(
+            result.cannot_tell
+        )

@@ -142,7 +142,7 @@ class JointFit:
                     parameter.unit,
                     "fitted",
                     self._owner(u),
-                    float(stderr),
+                    float(stderr) if np.isfinite(stderr) else None,
                     low,
                     high,
                     bool(at_bound),
@@ -264,11 +264,17 @@ def _kept_value(kept: Model, name: str, owner: str) -> str:
 
 def _doubts(told: Sequence[Estimate], result: Fitted) -> list[str]:
     """Say what makes the fitted values unreliable."""
+    names = {e: f"{e.name} of run {e.run}" if e.run else e.name for e in told}
     out = [
-        f"{e.name}{f' of run {e.run}' if e.run else ''} ended at the bound of what is plausible, "
-        f"{e.value:.5g}: it is not to be relied on."
+        f"{names[e]} ended at the bound of what is plausible, {e.value:.5g}: it is not to be "
+        "relied on."
         for e in told
         if e.at_bound
+    ]
+    out += [
+        f"{names[e]} does not show where the fit ended: its interval is all that is plausible."
+        for e in told
+        if e.stderr is None
     ]
     if not result.converged:
         out.append(
