@@ -18,19 +18,17 @@ from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.fit import Fitted, Unknown, fit, identifiable, jacobian
 from tsas_cli.identification.model import DEFAULTS, Model
 from tsas_cli.identification.prepared import Prepared
+from tsas_cli.identification.samples import kept_samples, lost, mean_edges, points
 from tsas_cli.numerics.conditioning import Conditioned
 from tsas_cli.numerics.covariance import FEWEST_BLOCKS, block_length
 from tsas_cli.physics.parameters import NOMINAL, NOMINAL_BY_NAME
-from tsas_cli.physics.quasi_static import Drive, forgotten, simulate
+from tsas_cli.physics.quasi_static import Drive, simulate
 from tsas_cli.physics.rig import Rig
 
 Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
 
-MOST_MEANS = 2000  # means of neighbouring residuals that enter the fit, for a channel of a run
-FEWEST_SAMPLES = 16  # of a channel, after the start of a run
 WINDOWS_PER_BLOCK = 2.0  # of the conditioning: the error of a cleaned drive lasts that long
-SHARP = 4  # strides after a reversal in which every sample is simulated
 MOST_ROUNDS = 4
 ROUGH, FINE = 1e-3, 1e-6  # tolerance of the first fit, whose weights are the start's, and after
 LOG_SCALE = 0.3  # plausible relative change of a positive parameter
@@ -44,11 +42,11 @@ class JointFit:
         """Take the values to start from, and those to keep where the recordings do not tell."""
         self.start = start
         self.kept = kept
-        samples = [_samples(run, start.rig(run.run)) for run in runs]
-        self.left_out = [s for run, at in zip(runs, samples, strict=True) for s in _lost(run, at)]
+        samples = [kept_samples(run, start.rig(run.run)) for run in runs]
+        self.left_out = [s for run, at in zip(runs, samples, strict=True) for s in lost(run, at)]
         self.runs = [run for run, at in zip(runs, samples, strict=True) if at]
         self.samples = [at for at in samples if at]
-        self.points = [_points(run) for run in self.runs]
+        self.points = [points(run) for run in self.runs]
         self.unknowns = _unknowns(start, self.runs)
         self.values = np.array([u.start for u in self.unknowns])
         self._answer = lru_cache(maxsize=2 * len(runs))(self._simulate)
@@ -177,9 +175,9 @@ class JointFit:
         """Return run k's residuals: means of neighbouring errors that keep a variance of one."""
         parts = []
         for errors in self._errors(k, values).values():
-            edges = _edges(errors.size)
-            counts = np.diff([*edges, errors.size])
-            parts.append(np.add.reduceat(errors, edges) / np.sqrt(counts))
+            first = mean_edges(errors.size)
+            counts = np.diff([*first, errors.size])
+            parts.append(np.add.reduceat(errors, first) / np.sqrt(counts))
         return np.concatenate(parts)
 
     def _weights(self, k: int) -> dict[str, Floats]:
@@ -221,7 +219,7 @@ class JointFit:
             length = max(block_length(errors), round(WINDOWS_PER_BLOCK * window / step))
             own = max(e.size for e in errors)  # the channels run side by side
             length = min(length, together // FEWEST_BLOCKS, own // 2)
-            first = [kept[_edges(kept.size)] for kept in at.values()]
+            first = [kept[mean_edges(kept.size)] for kept in at.values()]
             out.append(np.unique(np.concatenate(first) // length, return_inverse=True)[1])
         return out
 
@@ -249,11 +247,6 @@ def _moved_on(conditioned: Conditioned) -> Floats:
         part = slice(first, end + 1)
         moved[part] = conditioned.values[part] + conditioned.sd[part] * (1.0 if up else -1.0)
     return moved
-
-
-def _edges(size: int) -> Indices:
-    """Return where each mean of neighbouring samples begins."""
-    return np.arange(0, size, max(1, -(-size // MOST_MEANS)))
 
 
 def _kept_value(kept: Model, name: str, owner: str) -> str:
@@ -321,53 +314,3 @@ def _unscaled(name: str, value: float) -> float:
 def _from_rest(run: Prepared) -> Drive:
     """Return the drive with a start from rest: the fit leaves out what the start still shows in."""
     return replace(run.drive, start_f_in_N=None)
-
-
-def _points(run: Prepared) -> Indices:
-    """Return the samples that are simulated: twice as many as means, and all after a reversal.
-
-    The model depends on the path alone, and where the drive turns back its answer bends sharply.
-    """
-    n = run.time_s.size
-    stride = max(1, n // (2 * MOST_MEANS))
-    there = np.arange(n) % stride == 0
-    there[-1] = True
-    for turn in run.conditioned[run.drive_column].reversals:
-        there[turn : turn + SHARP * stride] = True
-    return np.flatnonzero(there)
-
-
-def _samples(run: Prepared, rig: Rig) -> dict[str, Indices]:
-    """Return the samples of each channel that enter the fit, none where there are too few.
-
-    They are those after the tendon has forgotten how the run began; to be sure of it with other
-    parameters too, the drive must travel as far again. The channel's noise must be known.
-    """
-    first = forgotten(rig, run.drive)
-    if first is None:
-        return {}
-    travel = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(run.drive.values)))))
-    usable = ~run.in_gap & (travel >= 2.0 * travel[first])
-    there = {
-        name: np.flatnonzero(usable & np.isfinite(measured))
-        for name, measured in run.measured.items()
-        if run.noise[name] > 0.0
-    }
-    return {name: at for name, at in there.items() if at.size >= FEWEST_SAMPLES}
-
-
-def _lost(run: Prepared, samples: Mapping[str, Indices]) -> list[str]:
-    """Say what of a run does not enter the fit, and why."""
-    flat = [name for name, noise in run.noise.items() if noise == 0.0]
-    short = [name for name in run.measured if name not in samples and name not in flat]
-    out = [f"{name} of run {run.run.id} does not enter the fit: it never changes." for name in flat]
-    if not samples and short:
-        out.append(
-            f"Run {run.run.id} does not enter the fit: too few samples are left after the whole "
-            "tendon has slipped for the first time, which is when it forgets how it began."
-        )
-        return out
-    return out + [
-        f"{name} of run {run.run.id} does not enter the fit: it holds too few samples."
-        for name in short
-    ]

@@ -1,0 +1,71 @@
+"""Which samples of a run enter the joint fit, which are simulated for it, and what is left out."""
+
+from collections.abc import Mapping
+
+import numpy as np
+import numpy.typing as npt
+
+from tsas_cli.identification.prepared import Prepared
+from tsas_cli.physics.quasi_static import forgotten
+from tsas_cli.physics.rig import Rig
+
+Indices = npt.NDArray[np.int64]
+
+MOST_MEANS = 2000  # means of neighbouring residuals that enter the fit, for a channel of a run
+FEWEST_SAMPLES = 16  # of a channel, after the start of a run
+SHARP = 4  # strides after a reversal in which every sample is simulated
+
+
+def mean_edges(size: int) -> Indices:
+    """Return where each mean of neighbouring samples begins."""
+    return np.arange(0, size, max(1, -(-size // MOST_MEANS)))
+
+
+def points(run: Prepared) -> Indices:
+    """Return the samples that are simulated: twice as many as means, and all after a reversal.
+
+    The model depends on the path alone, and where the drive turns back its answer bends sharply.
+    """
+    n = run.time_s.size
+    stride = max(1, n // (2 * MOST_MEANS))
+    there = np.arange(n) % stride == 0
+    there[-1] = True
+    for turn in run.conditioned[run.drive_column].reversals:
+        there[turn : turn + SHARP * stride] = True
+    return np.flatnonzero(there)
+
+
+def kept_samples(run: Prepared, rig: Rig) -> dict[str, Indices]:
+    """Return the samples of each channel that enter the fit, none where there are too few.
+
+    They are those after the tendon has forgotten how the run began; to be sure of it with other
+    parameters too, the drive must travel as far again. The channel's noise must be known.
+    """
+    first = forgotten(rig, run.drive)
+    if first is None:
+        return {}
+    travel = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(run.drive.values)))))
+    usable = ~run.in_gap & (travel >= 2.0 * travel[first])
+    there = {
+        name: np.flatnonzero(usable & np.isfinite(measured))
+        for name, measured in run.measured.items()
+        if run.noise[name] > 0.0
+    }
+    return {name: at for name, at in there.items() if at.size >= FEWEST_SAMPLES}
+
+
+def lost(run: Prepared, samples: Mapping[str, Indices]) -> list[str]:
+    """Say what of a run does not enter the fit, and why."""
+    flat = [name for name, noise in run.noise.items() if noise == 0.0]
+    short = [name for name in run.measured if name not in samples and name not in flat]
+    out = [f"{name} of run {run.run.id} does not enter the fit: it never changes." for name in flat]
+    if not samples and short:
+        out.append(
+            f"Run {run.run.id} does not enter the fit: too few samples are left after the whole "
+            "tendon has slipped for the first time, which is when it forgets how it began."
+        )
+        return out
+    return out + [
+        f"{name} of run {run.run.id} does not enter the fit: it holds too few samples."
+        for name in short
+    ]
