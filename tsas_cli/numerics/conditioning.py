@@ -5,9 +5,9 @@ point. Three steps, none of which delays the signal:
 
 1. Corners: where the slopes of quadratic fits to the past and to the future differ by far more
    than their noise, the signal is cut, so that sharp reversals and the ends of dwells stay sharp.
-2. Between corners local quadratic fits. The window is the one with the least estimated risk
-   (Stein's unbiased estimate), chosen anew along the signal: wide where the motion is smooth. A
-   piece that does not move is its mean.
+2. Between corners local polynomials of fourth degree. The window is the one with the least
+   estimated risk (Stein's unbiased estimate), chosen anew along the signal: wide where the motion
+   is smooth. A piece that does not move is its mean.
 3. Between the reversals that stand out of the remaining noise, the nearest monotone signal in the
    least-squares sense (pool adjacent violators): no spurious reversal is left.
 """
@@ -19,14 +19,17 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.numerics.local_quadratic import HALF_WINDOWS, best_half_windows, corners, smoothed
+from tsas_cli.numerics.local_polynomial import HALF_WINDOWS, best_half_windows, corners, smoothed
 from tsas_cli.numerics.noise import noise_sd, quantisation_step
 from tsas_cli.numerics.turning_points import turning_points
 
 Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
 
-METHOD = "local quadratic between corners, window of least risk; monotone between reversals"
+METHOD = (
+    "local polynomials of fourth degree between corners, window of least risk; "
+    "monotone between reversals"
+)
 MOVES = 4.0  # standard deviations by which a piece that moves departs from its mean
 STANDS_OUT = 8.0  # standard deviations by which a reversal turns back
 
@@ -64,9 +67,9 @@ def condition(time_s: Floats, values: Floats) -> Conditioned:
     memory = _plateau(values) if step > 0.0 else 1.0
     whole = np.array([0, values.size], dtype=np.int64)
     # Corners spoil the blocks that they lie in; the smooth blocks tell the window to seek them by.
-    alone = best_half_windows(time_s, values, whole, noise, memory, pooled=1)
+    alone = best_half_windows(time_s, values, whole, noise, memory, degree=2, pooled=1)
     cuts = corners(time_s, values, int(np.percentile(alone, 75)), noise * math.sqrt(memory))
-    half = best_half_windows(time_s, values, cuts, noise, memory, pooled=5)
+    half = best_half_windows(time_s, values, cuts, noise, memory, degree=4, pooled=5)
     smooth, sd = smoothed(time_s, values, cuts, half, noise * math.sqrt(memory))
     lay_flat(time_s, values, smooth, sd, cuts, int(np.median(half)), noise * math.sqrt(memory))
     reversals = turning_points(smooth, STANDS_OUT * float(np.median(sd)))

@@ -1,7 +1,9 @@
-"""Local quadratic fits to a sampled signal: the window of least risk, and where slopes jump.
+"""Local polynomial fits to a sampled signal: the window of least risk, and where slopes jump.
 
 The signal is cut at its corners into pieces, given by their bounds 0, …, n; a window never
-crosses a cut. Times need not be even.
+crosses a cut. Inside a piece a polynomial of fourth degree is fitted, which bends with a turning
+point and so allows a wide window; where a cut or an end shortens the window, a parabola, which
+is steadier at the edge. Times need not be even.
 """
 
 import math
@@ -14,7 +16,7 @@ from tsas_cli.numerics.compiled import kernel
 Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
 
-HALF_WINDOWS = np.array([3, 5, 8, 12, 18, 27, 40, 60, 90, 135, 200, 300, 450])  # samples
+HALF_WINDOWS = np.array([3, 5, 8, 12, 18, 27, 40, 60, 90, 135, 200, 300, 450, 700, 1000])  # samples
 RISK_POINTS = 2000  # where the risk is looked at, evenly spread
 RISK_BLOCKS = 40  # pieces of the signal that may have windows of their own
 UNDERSMOOTH = 0.75  # of the window of least risk: what follows minds bias more than noise
@@ -22,15 +24,23 @@ CORNER = 6.0  # standard deviations of the difference of two slopes
 
 
 def best_half_windows(
-    time_s: Floats, values: Floats, cuts: Indices, noise: float, memory: float, *, pooled: int
+    time_s: Floats,
+    values: Floats,
+    cuts: Indices,
+    noise: float,
+    memory: float,
+    *,
+    degree: int,
+    pooled: int,
 ) -> Floats:
     """Return for each sample the half window of least risk, shape (n,) [samples].
 
-    The risk is that of `pooled` neighbouring blocks together, an odd number.
+    The risk is that of fits of degree 2 or 4, of `pooled` neighbouring blocks together, an odd
+    number.
     """
     points = np.unique(np.linspace(0, values.size - 1, RISK_POINTS).astype(np.int64))
     risks = np.array(
-        [risk(time_s, values, cuts, points, half, noise, memory) for half in HALF_WINDOWS]
+        [risk(time_s, values, cuts, points, half, degree, noise, memory) for half in HALF_WINDOWS]
     )
     blocks = np.array_split(np.arange(points.size), RISK_BLOCKS)
     mean = np.array([risks[:, block].mean(axis=1) for block in blocks if block.size])
@@ -82,9 +92,62 @@ def quadratic_fit(
 
 
 @kernel
-def window_of(i: int, half: int, first: int, end: int) -> tuple[int, int]:
-    """Return the window around sample i, inside the piece first … end−1."""
-    return max(first, i - half), min(end - 1, i + half)
+def quartic_fit(
+    time_s: Floats, values: Floats, i: int, first: int, last: int
+) -> tuple[float, float]:
+    """Fit a polynomial of fourth degree to the samples first … last; at least nine of them.
+
+    Returns its value at sample i and the variance of that for noise of variance one.
+    """
+    unit = 0.5 * (time_s[last] - time_s[first])
+    moments = np.zeros(9)
+    weighted = np.zeros(5)
+    for j in range(first, last + 1):
+        t = (time_s[j] - time_s[i]) / unit
+        y = values[j] - values[i]
+        power = 1.0
+        for k in range(9):
+            moments[k] += power
+            if k < 5:
+                weighted[k] += power * y
+            power *= t
+    weights = first_row_of_inverse(moments)
+    return values[i] + float(np.sum(weights * weighted)), weights[0]
+
+
+@kernel
+def first_row_of_inverse(moments: Floats) -> Floats:
+    """Return the first row of the inverse of the matrix of moments[row + column], shape (5,).
+
+    The matrix is positive definite: elimination needs no pivots.
+    """
+    A = np.empty((5, 6))
+    for row in range(5):
+        for column in range(5):
+            A[row, column] = moments[row + column]
+        A[row, 5] = 1.0 if row == 0 else 0.0
+    for pivot in range(5):
+        for row in range(5):
+            if row != pivot:
+                factor = A[row, pivot] / A[pivot, pivot]
+                for column in range(pivot, 6):
+                    A[row, column] -= factor * A[pivot, column]
+    return np.array([A[row, 5] / A[row, row] for row in range(5)])
+
+
+@kernel
+def local_fit(
+    time_s: Floats, values: Floats, i: int, half: int, start: int, end: int, degree: int
+) -> tuple[float, float]:
+    """Fit the window around sample i inside the piece start … end−1; return value and variance.
+
+    The fourth degree is for whole windows of nine samples or more.
+    """
+    first, last = max(start, i - half), min(end - 1, i + half)
+    if degree == 4 and half >= 4 and last - first == 2 * half:
+        return quartic_fit(time_s, values, i, first, last)
+    value, _, variance, _ = quadratic_fit(time_s, values, i, first, last)
+    return value, variance
 
 
 @kernel
@@ -94,6 +157,7 @@ def risk(
     cuts: Indices,
     points: Indices,
     half: int,
+    degree: int,
     noise: float,
     memory: float,
 ) -> Floats:
@@ -108,8 +172,7 @@ def risk(
         i = points[k]
         while i >= cuts[piece + 1]:
             piece += 1
-        first, last = window_of(i, half, cuts[piece], cuts[piece + 1])
-        value, _, weight, _ = quadratic_fit(time_s, values, i, first, last)
+        value, weight = local_fit(time_s, values, i, half, cuts[piece], cuts[piece + 1], degree)
         weight = min(1.0, weight * memory)
         out[k] = (values[i] - value) ** 2 + (2.0 * weight - 1.0) * noise * noise
     return out
@@ -159,7 +222,7 @@ def slope_jump(time_s: Floats, values: Floats, i: int, half: int) -> float:
 def smoothed(
     time_s: Floats, values: Floats, cuts: Indices, half: Floats, noise: float
 ) -> tuple[Floats, Floats]:
-    """Return the local quadratic fits between the cuts and their standard deviations."""
+    """Return the local fits of fourth degree and their standard deviations."""
     n = values.size
     out = np.empty(n)
     sd = np.empty(n)
@@ -167,7 +230,8 @@ def smoothed(
     for i in range(n):
         while i >= cuts[piece + 1]:
             piece += 1
-        first, last = window_of(i, int(half[i]), cuts[piece], cuts[piece + 1])
-        out[i], _, variance, _ = quadratic_fit(time_s, values, i, first, last)
+        out[i], variance = local_fit(
+            time_s, values, i, int(half[i]), cuts[piece], cuts[piece + 1], 4
+        )
         sd[i] = noise * math.sqrt(min(variance, 1.0))
     return out, sd
