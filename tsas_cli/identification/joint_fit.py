@@ -1,15 +1,12 @@
 """The joint fit of the nominal parameters to all runs and all their measured channels.
 
-Each error counts in units of its standard deviation: the channel's noise, and what the remaining
-noise of the drive does to it (large where the tangent stiffness is large). Before the fit, the
-Jacobian says which parameters the recordings can tell; the others keep their values.
+Before the fit, the Jacobian says which parameters the recordings can tell; the others keep their
+values. The errors and their weights are those of `run_errors`.
 """
 
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from functools import lru_cache
-from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -18,17 +15,14 @@ from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.fit import Fitted, Unknown, fit, identifiable, jacobian
 from tsas_cli.identification.model import DEFAULTS, Model
 from tsas_cli.identification.prepared import Prepared
-from tsas_cli.identification.samples import kept_samples, lost, mean_edges, points
-from tsas_cli.numerics.conditioning import Conditioned
-from tsas_cli.numerics.covariance import FEWEST_BLOCKS, block_length
+from tsas_cli.identification.run_errors import RunErrors
+from tsas_cli.identification.samples import kept_samples, lost
+from tsas_cli.numerics.covariance import FEWEST_BLOCKS
 from tsas_cli.physics.parameters import NOMINAL, NOMINAL_BY_NAME
-from tsas_cli.physics.quasi_static import Drive, simulate
 from tsas_cli.physics.rig import Rig
 
 Floats = npt.NDArray[np.float64]
-Indices = npt.NDArray[np.int64]
 
-WINDOWS_PER_BLOCK = 2.0  # of the conditioning: the error of a cleaned drive lasts that long
 MOST_ROUNDS = 4
 ROUGH, FINE = 1e-3, 1e-6  # tolerance of the first fit, whose weights are the start's, and after
 LOG_SCALE = 0.3  # plausible relative change of a positive parameter
@@ -36,7 +30,7 @@ ZERO_SCALE = 0.02  # plausible zero of a displacement sensor, of its range
 
 
 class JointFit:
-    """The joint fit of one dataset: its unknowns, runs, samples and weights."""
+    """The joint fit of one dataset: its unknowns and its runs."""
 
     def __init__(self, start: Model, kept: Model, runs: Sequence[Prepared]) -> None:
         """Take the values to start from, and those to keep where the recordings do not tell."""
@@ -45,12 +39,13 @@ class JointFit:
         samples = [kept_samples(run, start.rig(run.run)) for run in runs]
         self.left_out = [s for run, at in zip(runs, samples, strict=True) for s in lost(run, at)]
         self.runs = [run for run, at in zip(runs, samples, strict=True) if at]
-        self.samples = [at for at in samples if at]
-        self.points = [points(run) for run in self.runs]
         self.unknowns = _unknowns(start, self.runs)
         self.values = np.array([u.start for u in self.unknowns])
-        self._answer = lru_cache(maxsize=2 * len(runs))(self._simulate)
-        self.weights = [self._weights(k) for k in range(len(self.runs))]
+        self.errors = [
+            RunErrors(run, at, start.rig(run.run))
+            for run, at in zip(runs, samples, strict=True)
+            if at
+        ]
 
     def solve(self) -> tuple[Model, Fitted | None, list[str]]:
         """Fit what can be told; again with the weights of the result, until the choice stays.
@@ -81,7 +76,7 @@ class JointFit:
         """Say which channels are further from the model than what is known to be uncertain."""
         worst: dict[str, float] = {}
         for k in range(len(self.runs)):
-            for name, errors in self._errors(k, self.values).items():
+            for name, errors in self.errors[k].errors(self._rig(k, self.values)).items():
                 worst[name] = max(worst.get(name, 0.0), float(np.sqrt(np.mean(errors**2))))
         return [
             f"{name} is missed by up to {ratio:.3g} times what noise explains: the nominal model "
@@ -100,11 +95,19 @@ class JointFit:
             return self._residuals(k, base)
 
         sought = [replace(self.unknowns[j], start=float(self.values[j])) for j in chosen]
-        result = fit(sought, self._blocks(), residuals, tolerance=tolerance)
+        longest = sum(run.length for run in self.errors) // FEWEST_BLOCKS
+        blocks = [
+            run.blocks(self._rig(k, self.values), longest) for k, run in enumerate(self.errors)
+        ]
+        result = fit(sought, blocks, residuals, tolerance=tolerance)
         base[chosen] = result.values
         self.values = base
-        self.weights = [self._weights(k) for k in range(len(self.runs))]
+        for k, run in enumerate(self.errors):
+            run.weigh(self._rig(k, base))
         return result
+
+    def _residuals(self, k: int, values: Floats) -> Floats:
+        return self.errors[k].residuals(self._rig(k, values))
 
     def _kept(self, unknown: Unknown) -> float:
         """Return the scaled value that an unknown keeps where it is not fitted."""
@@ -148,81 +151,6 @@ class JointFit:
             )
         return out
 
-    def _errors(self, k: int, values: Floats) -> dict[str, Floats]:
-        """Return run k's weighted errors of each channel, at the samples that are kept."""
-        answer = self._answer(k, self._rig(k, values))
-        return {
-            name: ((answer[name] - self.runs[k].measured[name]) / self.weights[k][name])[at]
-            for name, at in self.samples[k].items()
-        }
-
-    def _simulate(self, k: int, rig: Rig) -> dict[str, Floats]:
-        return self._follow(k, rig, _from_rest(self.runs[k]))
-
-    def _follow(self, k: int, rig: Rig, drive: Drive) -> dict[str, Floats]:
-        """Return the answers to a drive at all samples, straight between those simulated."""
-        at = self.points[k]
-        load = None if drive.load_values is None else drive.load_values[at]
-        response = simulate(rig, replace(drive, values=drive.values[at], load_values=load))
-        samples = np.arange(drive.values.size)
-        return {
-            "f_in_N": np.interp(samples, at, response.f_in_N),
-            "f_out_N": np.interp(samples, at, response.f_out_N),
-            "x_out_mm": np.interp(samples, at, response.x_out_mm),
-        }
-
-    def _residuals(self, k: int, values: Floats) -> Floats:
-        """Return run k's residuals: means of neighbouring errors that keep a variance of one."""
-        parts = []
-        for errors in self._errors(k, values).values():
-            first = mean_edges(errors.size)
-            counts = np.diff([*first, errors.size])
-            parts.append(np.add.reduceat(errors, first) / np.sqrt(counts))
-        return np.concatenate(parts)
-
-    def _weights(self, k: int) -> dict[str, Floats]:
-        """Return each channel's standard deviation per sample: its noise, and those of the ends.
-
-        What the error of an end does is found by a simulation with each of its strokes moved on
-        by one standard deviation, so that turning points move too.
-        """
-        run, drive = self.runs[k], _from_rest(self.runs[k])
-        rig = self._rig(k, self.values)
-        plain = self._answer(k, rig)
-        square = {
-            name: np.full(run.time_s.size, max(n, 1e-9) ** 2) for name, n in run.noise.items()
-        }
-        for column, conditioned in run.conditioned.items():
-            values = _moved_on(conditioned)
-            moved = (
-                replace(drive, values=values)
-                if column == run.drive_column
-                else replace(drive, load_values=values)
-            )
-            answers = self._follow(k, rig, moved)
-            for name in square:
-                square[name] += (answers[name] - plain[name]) ** 2
-        return {name: np.sqrt(values) for name, values in square.items()}
-
-    def _blocks(self) -> list[Indices]:
-        """Return for each run the block of each residual, longer than the residual's memory.
-
-        A wrong model's memory is as long as its run: all runs together keep a few blocks, each
-        run at least two.
-        """
-        out = []
-        together = sum(max(kept.size for kept in at.values()) for at in self.samples)
-        for k, (run, at) in enumerate(zip(self.runs, self.samples, strict=True)):
-            window = max(c.window_s for c in run.conditioned.values())
-            step = float(np.median(np.diff(run.time_s)))
-            errors = list(self._errors(k, self.values).values())
-            length = max(block_length(errors), round(WINDOWS_PER_BLOCK * window / step))
-            own = max(e.size for e in errors)  # the channels run side by side
-            length = min(length, together // FEWEST_BLOCKS, own // 2)
-            first = [kept[mean_edges(kept.size)] for kept in at.values()]
-            out.append(np.unique(np.concatenate(first) // length, return_inverse=True)[1])
-        return out
-
     def _sentences(self, confounded: Mapping[int, list[int]]) -> list[str]:
         """Say what is kept and why, one sentence for each parameter and reason."""
         reasons: dict[tuple[str, str], list[str]] = {}
@@ -237,16 +165,6 @@ class JointFit:
             f"it is kept at {_kept_value(self.kept, name, owners[0])}."
             for (name, why), owners in reasons.items()
         ]
-
-
-def _moved_on(conditioned: Conditioned) -> Floats:
-    """Return the values with each stroke moved on by one standard deviation."""
-    moved = conditioned.values.copy()
-    for first, end in pairwise(conditioned.reversals):
-        up = conditioned.values[end] >= conditioned.values[first]
-        part = slice(first, end + 1)
-        moved[part] = conditioned.values[part] + conditioned.sd[part] * (1.0 if up else -1.0)
-    return moved
 
 
 def _kept_value(kept: Model, name: str, owner: str) -> str:
@@ -309,8 +227,3 @@ def _scaled(name: str, value: float) -> float:
 
 def _unscaled(name: str, value: float) -> float:
     return math.exp(value) if NOMINAL_BY_NAME[name].positive else float(value)
-
-
-def _from_rest(run: Prepared) -> Drive:
-    """Return the drive with a start from rest: the fit leaves out what the start still shows in."""
-    return replace(run.drive, start_f_in_N=None)

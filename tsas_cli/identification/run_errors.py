@@ -1,0 +1,120 @@
+"""One run in the joint fit: its model's answers, and its errors in units of what is uncertain.
+
+Each error counts in units of its standard deviation: the channel's noise, and what the remaining
+noise of the driven ends does to it (large where the tangent stiffness is large).
+"""
+
+from dataclasses import replace
+from functools import lru_cache
+from itertools import pairwise
+
+import numpy as np
+import numpy.typing as npt
+
+from tsas_cli.identification.prepared import Prepared
+from tsas_cli.identification.samples import mean_edges, points
+from tsas_cli.numerics.conditioning import Conditioned
+from tsas_cli.numerics.covariance import block_length
+from tsas_cli.physics.quasi_static import Drive, simulate
+from tsas_cli.physics.rig import Rig
+
+Floats = npt.NDArray[np.float64]
+Indices = npt.NDArray[np.int64]
+
+WINDOWS_PER_BLOCK = 2.0  # of the conditioning: the error of a cleaned drive lasts that long
+
+
+class RunErrors:
+    """The errors of one run for any rig, with weights that are renewed on demand."""
+
+    def __init__(self, run: Prepared, samples: dict[str, Indices], rig: Rig) -> None:
+        """Take the samples of each channel that count, and the rig that gives the weights."""
+        self.run = run
+        self.samples = samples
+        self.points = points(run)
+        # The fit leaves out what the start still shows in: it may begin at rest.
+        self.drive = replace(run.drive, start_f_in_N=None)
+        self._answer = lru_cache(maxsize=2)(lambda rig: self._follow(rig, self.drive))
+        self.weights: dict[str, Floats] = {}
+        self.weigh(rig)
+
+    @property
+    def length(self) -> int:
+        """The number of samples of the channel that has most; channels run side by side."""
+        return max(at.size for at in self.samples.values())
+
+    def weigh(self, rig: Rig) -> None:
+        """Renew each channel's standard deviation per sample: its noise, and those of the ends.
+
+        What the error of an end does is found by a simulation with each of its strokes moved on
+        by one standard deviation, so that turning points move too.
+        """
+        plain = self._answer(rig)
+        square = {
+            name: np.full(self.run.time_s.size, max(noise, 1e-9) ** 2)
+            for name, noise in self.run.noise.items()
+        }
+        for column, conditioned in self.run.conditioned.items():
+            values = _moved_on(conditioned)
+            moved = (
+                replace(self.drive, values=values)
+                if column == self.run.drive_column
+                else replace(self.drive, load_values=values)
+            )
+            answers = self._follow(rig, moved)
+            for name in square:
+                square[name] += (answers[name] - plain[name]) ** 2
+        self.weights = {name: np.sqrt(values) for name, values in square.items()}
+
+    def errors(self, rig: Rig) -> dict[str, Floats]:
+        """Return the weighted errors of each channel, at the samples that count."""
+        answer = self._answer(rig)
+        return {
+            name: ((answer[name] - self.run.measured[name]) / self.weights[name])[at]
+            for name, at in self.samples.items()
+        }
+
+    def residuals(self, rig: Rig) -> Floats:
+        """Return means of neighbouring errors that keep a variance of one, channel by channel."""
+        parts = []
+        for errors in self.errors(rig).values():
+            edges = mean_edges(errors.size)
+            counts = np.diff([*edges, errors.size])
+            parts.append(np.add.reduceat(errors, edges) / np.sqrt(counts))
+        return np.concatenate(parts)
+
+    def blocks(self, rig: Rig, longest: int) -> Indices:
+        """Return the block of each residual: longer than its memory, but at least two in the run.
+
+        `longest` limits a block [samples]: the memory of a wrong model is as long as its run.
+        """
+        window = max(c.window_s for c in self.run.conditioned.values())
+        step = float(np.median(np.diff(self.run.time_s)))
+        memory = block_length(list(self.errors(rig).values()))
+        length = max(memory, round(WINDOWS_PER_BLOCK * window / step))
+        length = min(length, longest, self.length // 2)
+        first = [at[mean_edges(at.size)] for at in self.samples.values()]
+        numbers: Indices = np.unique(np.concatenate(first) // length, return_inverse=True)[1]
+        return numbers
+
+    def _follow(self, rig: Rig, drive: Drive) -> dict[str, Floats]:
+        """Return the answers to a drive at all samples, straight between those simulated."""
+        at = self.points
+        load = None if drive.load_values is None else drive.load_values[at]
+        response = simulate(rig, replace(drive, values=drive.values[at], load_values=load))
+        samples = np.arange(drive.values.size)
+        return {
+            "f_in_N": np.interp(samples, at, response.f_in_N),
+            "f_out_N": np.interp(samples, at, response.f_out_N),
+            "x_out_mm": np.interp(samples, at, response.x_out_mm),
+        }
+
+
+def _moved_on(conditioned: Conditioned) -> Floats:
+    """Return the values with each stroke moved on by one standard deviation."""
+    moved = conditioned.values.copy()
+    for first, end in pairwise(conditioned.reversals):
+        up = conditioned.values[end] >= conditioned.values[first]
+        part = slice(first, end + 1)
+        moved[part] = conditioned.values[part] + conditioned.sd[part] * (1.0 if up else -1.0)
+    return moved
