@@ -10,6 +10,9 @@ from tests.rig.motions import chirp, nested, sine, triangle, two_sines
 from tests.rig.sensors import Sensor, Sensors
 from tests.rig.tendon import Rig
 from tsas_cli.identification.phases import segment
+from tsas_cli.identification.prepared import prepare
+from tsas_cli.recordings.dataset import Recording
+from tsas_cli.recordings.manifest import Run
 
 COARSE = Sensors(
     x_in_mm=Sensor(0.01, 0.01),
@@ -84,3 +87,25 @@ def test_motion_inside_the_dead_band_is_not_called_slip():
     small = sine(amplitude_mm=0.02)
     run = prepared(Rig(), small, channels=ALL, sensors=Sensors(x_in_mm=Sensor(2e-4)))
     assert not {"contraction", "loosening"} & set(labels(run))
+
+
+def test_a_drive_that_stands_still_while_it_unloads_is_in_the_dead_band():
+    """The encoder rests for a second at the top while the tension falls by half."""
+    motion = triangle(amplitude_mm=5.0, speed_mm_s=5.0, periods=1)
+    run = prepared(Rig(), motion)
+    top = int(np.argmax(motion.x_in_mm))
+    hold = np.repeat(top, 1000)
+    order = np.concatenate((np.arange(top), hold, np.arange(top, run.time_s.size)))
+    f_in = run.measured["f_in_N"][order]
+    falling = slice(top + 500, top + 1000)
+    f_in[falling] -= np.linspace(0.0, 10.0, 500)
+    entry = Run(id="a", file="a.parquet", sha256="0" * 64, preload_N=25.0)
+    noise = np.random.default_rng(1).normal(0.0, 0.005, order.size)
+    columns = {
+        "time_s": np.arange(order.size) / 1000.0,
+        "x_in_mm": motion.x_in_mm[order] + noise,
+        "f_in_N": f_in,
+    }
+    found = labels(prepare(Recording(entry, columns)))
+    assert np.mean(found[falling] == "dead_band_down") > 0.9
+    assert np.mean(found[top - 700 : top - 50] == "contraction") > 0.9

@@ -20,11 +20,13 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.identification.prepared import Prepared
+from tsas_cli.numerics.conditioning import Conditioned
 
 Floats = npt.NDArray[np.float64]
 Phase = Literal["contraction", "loosening", "dead_band_up", "dead_band_down", "unknown"]
 
 POINTS = 400  # at which a transition is looked for in a stroke, before it is refined
+STILL = 2.0  # standard deviations by which a drive at rest may seem to move
 FEWEST = 8  # samples that a law is fitted to
 CLEAR = 30.0  # squares that a second law must save, in mean squares of what is left
 GENTLE = 1.0 / 3.0  # the slip's slope over the dead band's, at most
@@ -79,7 +81,8 @@ def segment(run: Prepared) -> list[Segment]:
 
 def _strokes(run: Prepared) -> list[_Stroke]:
     conditioned = run.conditioned["x_in_mm"]
-    x, turns = conditioned.values, conditioned.reversals
+    x = conditioned.values
+    turns = [_start_of_rest(conditioned, int(turn)) for turn in conditioned.reversals]
     channels = {
         name: np.interp(run.time_s, run.time_s[ok], values[ok]) / max(run.noise[name], 1e-12)
         for name, values in run.measured.items()
@@ -100,6 +103,16 @@ def _strokes(run: Prepared) -> list[_Stroke]:
             )
         )
     return out
+
+
+def _start_of_rest(conditioned: Conditioned, turn: int) -> int:
+    """Return where the drive comes to rest before it turns back, within what is known of it.
+
+    A drive that stands still for a while has begun to unload before its encoder says so.
+    """
+    near = np.abs(conditioned.values[: turn + 1] - conditioned.values[turn])
+    moving = np.flatnonzero(near > STILL * conditioned.sd[turn])
+    return int(moving[-1]) + 1 if moving.size and turn < conditioned.values.size - 1 else turn
 
 
 def _block_means(values: Floats, step: int) -> Floats:
