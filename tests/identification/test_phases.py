@@ -89,23 +89,22 @@ def test_motion_inside_the_dead_band_is_not_called_slip():
     assert not {"contraction", "loosening"} & set(labels(run))
 
 
-def test_a_drive_that_stands_still_while_it_unloads_is_in_the_dead_band():
-    """The encoder rests for a second at the top while the tension falls by half."""
-    motion = triangle(amplitude_mm=5.0, speed_mm_s=5.0, periods=1)
+@pytest.mark.parametrize("seed", range(3))
+def test_a_drive_that_stands_still_while_it_unloads_is_in_the_dead_band(seed):
+    """At the top of a sine the encoder creeps on by less than shows; the tension falls already."""
+    motion = sine(periods=1.0)
     run = prepared(Rig(), motion)
     top = int(np.argmax(motion.x_in_mm))
-    hold = np.repeat(top, 1000)
-    order = np.concatenate((np.arange(top), hold, np.arange(top, run.time_s.size)))
+    order = np.concatenate(
+        (np.arange(top), np.repeat(top, 1000), np.arange(top, motion.time_s.size))
+    )
+    rests = slice(top, top + 1000)
+    x_in = motion.x_in_mm[order] + np.random.default_rng(seed + 4).normal(0.0, 0.005, order.size)
+    x_in[rests] += np.linspace(0.0, 1e-3, 1000)
     f_in = run.measured["f_in_N"][order]
-    falling = slice(top + 500, top + 1000)
-    f_in[falling] -= np.linspace(0.0, 10.0, 500)
+    f_in[rests] -= np.linspace(0.0, 10.0, 1000)
     entry = Run(id="a", file="a.parquet", sha256="0" * 64, preload_N=25.0)
-    noise = np.random.default_rng(1).normal(0.0, 0.005, order.size)
-    columns = {
-        "time_s": np.arange(order.size) / 1000.0,
-        "x_in_mm": motion.x_in_mm[order] + noise,
-        "f_in_N": f_in,
-    }
+    columns = {"time_s": np.arange(order.size) / 1000.0, "x_in_mm": x_in, "f_in_N": f_in}
     found = labels(prepare(Recording(entry, columns)))
-    assert np.mean(found[falling] == "dead_band_down") > 0.9
+    assert np.mean(found[rests] == "dead_band_down") > 0.7
     assert np.mean(found[top - 700 : top - 50] == "contraction") > 0.9

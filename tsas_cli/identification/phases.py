@@ -12,6 +12,7 @@ A stroke has at most one transition, so that noise cannot make it chatter. A str
 of the laws is needed for belongs to a phase as a whole; which one, its slope tells.
 """
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
@@ -20,13 +21,13 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.identification.prepared import Prepared
-from tsas_cli.numerics.conditioning import Conditioned
 
 Floats = npt.NDArray[np.float64]
 Phase = Literal["contraction", "loosening", "dead_band_up", "dead_band_down", "unknown"]
 
 POINTS = 400  # at which a transition is looked for in a stroke, before it is refined
-STILL = 2.0  # standard deviations by which a drive at rest may seem to move
+STILL = 4.0  # standard deviations by which a drive at rest may seem to move
+UNLOADS = 5.0  # standard deviations of its means by which f_in turns back at rest
 FEWEST = 8  # samples that a law is fitted to
 CLEAR = 30.0  # squares that a second law must save, in mean squares of what is left
 GENTLE = 1.0 / 3.0  # the slip's slope over the dead band's, at most
@@ -82,7 +83,7 @@ def segment(run: Prepared) -> list[Segment]:
 def _strokes(run: Prepared) -> list[_Stroke]:
     conditioned = run.conditioned["x_in_mm"]
     x = conditioned.values
-    turns = [_start_of_rest(conditioned, int(turn)) for turn in conditioned.reversals]
+    turns = [_start_of_unloading(run, int(turn)) for turn in conditioned.reversals]
     channels = {
         name: np.interp(run.time_s, run.time_s[ok], values[ok]) / max(run.noise[name], 1e-12)
         for name, values in run.measured.items()
@@ -105,14 +106,22 @@ def _strokes(run: Prepared) -> list[_Stroke]:
     return out
 
 
-def _start_of_rest(conditioned: Conditioned, turn: int) -> int:
-    """Return where the drive comes to rest before it turns back, within what is known of it.
+def _start_of_unloading(run: Prepared, turn: int) -> int:
+    """Return where the tension turns back, if that is while the drive rests before its reversal.
 
     A drive that stands still for a while has begun to unload before its encoder says so.
     """
-    near = np.abs(conditioned.values[: turn + 1] - conditioned.values[turn])
-    moving = np.flatnonzero(near > STILL * conditioned.sd[turn])
-    return int(moving[-1]) + 1 if moving.size and turn < conditioned.values.size - 1 else turn
+    conditioned, f_in = run.conditioned["x_in_mm"], run.measured.get("f_in_N")
+    x = conditioned.values
+    moving = np.flatnonzero(np.abs(x[: turn + 1] - x[turn]) > STILL * conditioned.sd[turn])
+    if f_in is None or not moving.size or turn == x.size - 1:
+        return turn
+    rest = int(moving[-1]) + 1
+    means = np.convolve(f_in[rest : turn + FEWEST], np.full(FEWEST, 1.0 / FEWEST), mode="valid")
+    pulled = means if x[turn] > x[rest - 1] else -means
+    margin = UNLOADS * run.noise["f_in_N"] / math.sqrt(FEWEST)
+    kept = np.flatnonzero(pulled >= pulled.max() - margin)
+    return rest + int(kept[-1]) if kept.size else turn
 
 
 def _block_means(values: Floats, step: int) -> Floats:

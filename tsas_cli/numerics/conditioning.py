@@ -31,7 +31,8 @@ METHOD = (
     "monotone between reversals"
 )
 MOVES = 4.0  # standard deviations by which a piece that moves departs from its mean
-STANDS_OUT = 8.0  # standard deviations by which a reversal turns back
+STANDS_OUT = 8.0  # standard deviations of the cleaned signal by which a reversal turns back
+VISIBLE = 2.0  # and of the raw noise: a jump of the acceleration makes the fits swing a little
 
 
 @dataclass(frozen=True)
@@ -72,7 +73,8 @@ def condition(time_s: Floats, values: Floats) -> Conditioned:
     half = best_half_windows(time_s, values, cuts, noise, memory, degree=4, pooled=5)
     smooth, sd = smoothed(time_s, values, cuts, half, noise * math.sqrt(memory))
     lay_flat(time_s, values, smooth, sd, cuts, int(np.median(half)), noise * math.sqrt(memory))
-    reversals = turning_points(smooth, STANDS_OUT * float(np.median(sd)))
+    threshold = max(STANDS_OUT * float(np.median(sd)), VISIBLE * noise)
+    reversals = turning_points(smooth, threshold)
     window_s = float(np.median(2 * half + 1) * np.median(np.diff(time_s)))
     return Conditioned(monotone_between(smooth, reversals), sd, window_s, noise, reversals)
 
