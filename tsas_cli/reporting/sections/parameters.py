@@ -17,7 +17,7 @@ def section(inputs: Inputs) -> Section:
     if not calibration.fit.converged:
         intro.append(f"The fit did not converge: {calibration.fit.message}")
     if calibration.cannot_tell:
-        intro.append("What these recordings do not say:")
+        intro.append("Keep in mind:")
     header = ("parameter", "run", "value", "95 % interval", "unit", "origin", "at its bound")
     table = Table(
         "The model's parameters",

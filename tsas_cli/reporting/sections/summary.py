@@ -27,7 +27,7 @@ def sentences(inputs: Inputs) -> Iterator[str]:
 
 def _open_questions(sentences: tuple[str, ...]) -> Iterator[str]:
     if sentences:
-        yield f"What these recordings do not say: {sentences[0]}"
+        yield f"Keep in mind: {sentences[0]}"
     if len(sentences) > 1:
         yield f"The other {len(sentences) - 1} of these sentences stand under Parameters."
 
