@@ -9,21 +9,13 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.row import Row
+from tests.physics.references import GROUP_A
 from tsas_cli.numerics.conditioning import condition
 from tsas_cli.physics.branches import branches
-from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.slip_chain import DISPLACEMENT, FORCE, Boundary, slip_chain
 
-RIG = Rig(
-    friction_coefficient=0.125,
-    tendon_stiffness_N=60e3 * math.pi / 4.0 * 1.2**2,
-    load_stiffness_N_per_mm=1.579,
-    sheath_length_mm=250.0 * math.pi,
-    total_bend_rad=math.pi,
-    preload_N=25.0,
-)  # group a of Yang 2025
-WRAP = np.array([RIG.friction_coefficient * RIG.total_bend_rad])
-PRELOAD = np.array([RIG.preload_N])
+WRAP = np.array([GROUP_A.friction_coefficient * GROUP_A.total_bend_rad])
+PRELOAD = np.array([GROUP_A.preload_N])
 TIME_S = np.arange(12566) / 1000.0  # two periods
 REPEATS = 30
 TIMES_LONGER = 100  # the run whose memory is looked at
@@ -33,12 +25,12 @@ PEAK, NOW = "VmHWM", "VmRSS"
 def measure() -> Iterator[Row]:
     """Time each solver, compiled, on two periods; the best of several repeats counts."""
     x_in = 10.0 * (1.0 - np.cos(TIME_S))
-    _, f_out, _ = branches(x_in, RIG)
-    x_out = (f_out - RIG.preload_N) / RIG.load_stiffness_N_per_mm
+    _, f_out, _ = branches(x_in, GROUP_A)
+    x_out = (f_out - GROUP_A.preload_N) / GROUP_A.load_stiffness_N_per_mm
     drive = as_measured(x_in, noise=0.005, step=0.002)
-    yield Row("closed form", best_ns(lambda: branches(drive, RIG)), "ns", at_most=20.0)
+    yield Row("closed form", best_ns(lambda: branches(drive, GROUP_A)), "ns", at_most=20.0)
 
-    spring = Boundary(DISPLACEMENT, DISPLACEMENT, 1.0 / RIG.load_stiffness_N_per_mm)
+    spring = Boundary(DISPLACEMENT, DISPLACEMENT, 1.0 / GROUP_A.load_stiffness_N_per_mm)
     loads = {
         "spring": (np.zeros_like(drive), spring),
         "force": (as_measured(f_out, noise=0.08, step=0.01), Boundary(DISPLACEMENT, FORCE, 0.0)),
@@ -49,7 +41,7 @@ def measure() -> Iterator[Row]:
     }
     for n, at_most in ((30, 2000.0), (60, None)):
         for name, (load, boundary) in loads.items():
-            ns = best_ns(lambda: slip_chain(drive, load, WRAP, PRELOAD, RIG, boundary, n))  # noqa: B023 # called at once
+            ns = best_ns(lambda: slip_chain(drive, load, WRAP, PRELOAD, GROUP_A, boundary, n))  # noqa: B023 # called at once
             yield Row(f"slip chain, {n} nodes, load {name}", ns, "ns", at_most)
     if sys.platform == "linux":
         megabytes = memory_beyond_output(np.tile(drive, TIMES_LONGER), spring)
@@ -78,7 +70,7 @@ def memory_beyond_output(drive: np.ndarray, boundary: Boundary) -> float:
     load = np.zeros_like(drive)
     Path("/proc/self/clear_refs").write_text("5", encoding="ascii")  # forgets earlier peaks
     before = memory(NOW)
-    output = slip_chain(drive, load, WRAP, PRELOAD, RIG, boundary, 30)
+    output = slip_chain(drive, load, WRAP, PRELOAD, GROUP_A, boundary, 30)
     return (memory(PEAK) - before - sum(column.nbytes for column in output)) / 1e6
 
 
