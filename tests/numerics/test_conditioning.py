@@ -137,3 +137,13 @@ def test_monotone_between_turns_only():
     assert monotone_between(values, np.array([0, 3, 6])) == pytest.approx(
         [0.0, 1.5, 1.5, 3.0, 2.55, 2.55, 1.0]
     )
+
+
+def test_a_corner_does_not_stick_out():
+    """A cut one sample off the corner must not leave a peak of twice the step."""
+    motion = triangle(speed_mm_s=10.0)
+    apex = int(np.argmax(motion.x_in_mm))
+    step = motion.x_in_mm[apex] - motion.x_in_mm[apex - 1]
+    for seed in range(20):
+        cleaned = condition(motion.time_s, noisy(motion.x_in_mm, seed)).values
+        assert cleaned.max() - motion.x_in_mm[apex] < 0.8 * step

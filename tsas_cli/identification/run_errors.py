@@ -115,6 +115,6 @@ def _moved_on(conditioned: Conditioned) -> Floats:
     moved = conditioned.values.copy()
     for first, end in pairwise(conditioned.reversals):
         up = conditioned.values[end] >= conditioned.values[first]
-        part = slice(first, end + 1)
+        part = slice(first + 1 if first else 0, end + 1)  # a reversal belongs to what it ends
         moved[part] = conditioned.values[part] + conditioned.sd[part] * (1.0 if up else -1.0)
     return moved

@@ -39,13 +39,18 @@ def kept_samples(run: Prepared, rig: Rig) -> dict[str, Indices]:
     """Return the samples of each channel that enter the fit, none where there are too few.
 
     They are those after the tendon has forgotten how the run began; to be sure of it with other
-    parameters too, the drive must travel as far again. The channel's noise must be known.
+    parameters too, the drive must travel as far again. A reversal so near the end that it cannot
+    be told from noise is left out with what follows. The channel's noise must be known.
     """
     first = forgotten(rig, run.drive)
     if first is None:
         return {}
     travel = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(run.drive.values)))))
     usable = ~run.in_gap & (travel >= 2.0 * travel[first])
+    drive = run.conditioned[run.drive_column]
+    moving = np.flatnonzero(np.abs(drive.values - drive.values[-1]) > drive.smallest_reversal)
+    if moving.size:
+        usable[moving[-1] + 1 :] = False
     there = {
         name: np.flatnonzero(usable & np.isfinite(measured))
         for name, measured in run.measured.items()

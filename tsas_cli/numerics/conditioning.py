@@ -40,7 +40,8 @@ class Conditioned:
     """A cleaned signal, shape (n,), in the unit of the raw one.
 
     `sd` is the standard deviation of its error per sample, `window_s` the median window,
-    `noise` the raw noise, `reversals` the indices of the extrema that were kept, with both ends.
+    `noise` the raw noise, `reversals` the indices of the extrema that were kept, with both ends,
+    `smallest_reversal` the smallest move back that was told from noise.
     """
 
     values: Floats
@@ -48,6 +49,7 @@ class Conditioned:
     window_s: float
     noise: float
     reversals: Indices
+    smallest_reversal: float = 0.0
 
 
 def condition(time_s: Floats, values: Floats) -> Conditioned:
@@ -72,11 +74,13 @@ def condition(time_s: Floats, values: Floats) -> Conditioned:
     cuts = corners(time_s, values, int(np.percentile(alone, 75)), noise * math.sqrt(memory))
     half = best_half_windows(time_s, values, cuts, noise, memory, degree=4, pooled=5)
     smooth, sd = smoothed(time_s, values, cuts, half, noise * math.sqrt(memory))
+    blunt(smooth, cuts)
     lay_flat(time_s, values, smooth, sd, cuts, int(np.median(half)), noise * math.sqrt(memory))
     threshold = max(STANDS_OUT * float(np.median(sd)), VISIBLE * noise)
     reversals = turning_points(smooth, threshold)
     window_s = float(np.median(2 * half + 1) * np.median(np.diff(time_s)))
-    return Conditioned(monotone_between(smooth, reversals), sd, window_s, noise, reversals)
+    clean = monotone_between(smooth, reversals)
+    return Conditioned(clean, sd, window_s, noise, reversals, threshold)
 
 
 def _with_gaps(cleaned: Conditioned, time_s: Floats, there: Indices) -> Conditioned:
@@ -94,6 +98,20 @@ def _with_gaps(cleaned: Conditioned, time_s: Floats, there: Indices) -> Conditio
 def _plateau(values: Floats) -> float:
     """Return the mean number of samples that a quantised signal stays at one level."""
     return values.size / (1.0 + np.count_nonzero(np.diff(values)))
+
+
+def blunt(smooth: Floats, cuts: Indices) -> None:
+    """Take off, in place, what a fit overshoots where its piece begins a sample off the corner.
+
+    At a peak the sample of the corner lies below the lines of both sides, in a valley above.
+    """
+    for cut in cuts[1:-1]:
+        if cut < 2 or cut + 1 >= smooth.size:
+            continue
+        rise, fall = smooth[cut - 1] - smooth[cut - 2], smooth[cut + 1] - smooth[cut]
+        before = smooth[cut - 1] + rise
+        if rise * fall < 0.0:
+            smooth[cut] = min(smooth[cut], before) if rise > 0.0 else max(smooth[cut], before)
 
 
 def lay_flat(

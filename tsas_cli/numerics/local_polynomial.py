@@ -2,8 +2,8 @@
 
 The signal is cut at its corners into pieces, given by their bounds 0, …, n; a window never
 crosses a cut. Inside a piece a polynomial of fourth degree is fitted, which bends with a turning
-point and so allows a wide window; where a cut or an end shortens the window, a parabola, which
-is steadier at the edge. Times need not be even.
+point and so allows a wide window; where a cut shortens the window, a parabola, which is steadier
+at the edge. Times need not be even.
 """
 
 import math
@@ -141,10 +141,11 @@ def local_fit(
 ) -> tuple[float, float]:
     """Fit the window around sample i inside the piece start … end−1; return value and variance.
 
-    The fourth degree is for whole windows of nine samples or more.
+    The fourth degree is for windows of nine samples or more that no corner shortens.
     """
     first, last = max(start, i - half), min(end - 1, i + half)
-    if degree == 4 and half >= 4 and last - first == 2 * half:
+    cornered = (first > i - half and start > 0) or (last < i + half and end < values.size)
+    if degree == 4 and last - first >= 8 and not cornered:
         return quartic_fit(time_s, values, i, first, last)
     value, _, variance, _ = quadratic_fit(time_s, values, i, first, last)
     return value, variance

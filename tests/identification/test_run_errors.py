@@ -1,0 +1,46 @@
+"""What counts in the fit, and how much: weights near reversals, samples near the ends."""
+
+import numpy as np
+import pytest
+
+from tests.identification.recorded import manifest, prepared
+from tests.rig.motions import nested, sine, triangle, two_sines
+from tests.rig.sensors import Sensor, Sensors
+from tests.rig.tendon import Rig
+from tsas_cli.identification.model import data_sheet
+from tsas_cli.identification.run_errors import RunErrors
+from tsas_cli.identification.samples import kept_samples
+
+
+def errors_of(run):
+    rig = data_sheet(manifest(run)).rig(run.run)
+    return RunErrors(run, kept_samples(run, rig), rig), rig
+
+
+@pytest.mark.parametrize("motion", [sine(), triangle()], ids=["sine", "triangle"])
+def test_the_tension_is_uncertain_after_a_reversal_and_sure_in_slip(motion):
+    """A turning point off by a micrometre moves the tension after it by newtons."""
+    run = prepared(Rig(), motion)
+    errors, _ = errors_of(run)
+    weights = errors.weights["f_in_N"] / run.noise["f_in_N"]
+    turn = int(run.conditioned["x_in_mm"].reversals[1])
+    assert weights[turn + 1 : turn + 6].max() > 4.0
+    assert weights[turn - 1500 : turn - 500].max() < 1.05
+
+
+@pytest.mark.parametrize("motion", [sine(), nested()], ids=["sine", "nested"])
+def test_a_true_model_s_errors_are_about_one(motion):
+    run = prepared(Rig(), motion, seed=3)
+    errors, rig = errors_of(run)
+    for found in errors.errors(rig).values():
+        assert np.sqrt(np.mean(found**2)) < 1.3
+
+
+def test_a_reversal_too_near_the_end_to_be_seen_is_left_out():
+    """This motion turns back 24 ms before its end, by less than twice the noise."""
+    motion = two_sines()
+    last_turn = int(np.flatnonzero(np.diff(np.sign(np.diff(motion.x_in_mm))))[-1]) + 1
+    assert motion.time_s.size - last_turn < 50
+    run = prepared(Rig(), motion, sensors=Sensors(x_in_mm=Sensor(0.02), f_in_N=Sensor(0.1)))
+    errors, _ = errors_of(run)
+    assert errors.samples["f_in_N"].max() < last_turn
