@@ -145,5 +145,5 @@ def test_a_corner_does_not_stick_out():
     apex = int(np.argmax(motion.x_in_mm))
     step = motion.x_in_mm[apex] - motion.x_in_mm[apex - 1]
     for seed in range(20):
-        cleaned = condition(motion.time_s, noisy(motion.x_in_mm, seed)).values
-        assert cleaned.max() - motion.x_in_mm[apex] < 0.8 * step
+        cleaned = condition(motion.time_s, noisy(motion.x_in_mm, seed, 0.01)).values
+        assert cleaned.max() - motion.x_in_mm[apex] < 0.5 * step
