@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.identification.phases import Phase, Segment
-from tsas_cli.numerics.covariance import block_length, jackknife
+from tsas_cli.numerics.covariance import block_length, block_numbers, jackknife
 
 Floats = npt.NDArray[np.float64]
 
@@ -55,19 +55,8 @@ def _slope(phase: Phase, x_in: Floats, f_in: Floats, segments: Sequence[Segment]
     slope = sum(float(np.sum(x * f)) for x, f in zip(xs, fs, strict=True)) / square
     residuals = [f - slope * x for x, f in zip(xs, fs, strict=True)]
     length = block_length(residuals)
-    block = np.concatenate(_block_numbers([r.size for r in residuals], length))
+    block = block_numbers([r.size for r in residuals], length)
     covariance, t = jackknife(np.concatenate(xs)[:, None], np.concatenate(residuals), block)
     stderr = float(np.sqrt(covariance[0, 0]))
     samples = sum(x.size for x in xs)
     return Slope(phase, slope, stderr, float(t[0]) * stderr, len(xs), samples)
-
-
-def _block_numbers(sizes: Sequence[int], length: int) -> list[npt.NDArray[np.int64]]:
-    """Return block numbers that go on from piece to piece; a block lies within one piece."""
-    out: list[npt.NDArray[np.int64]] = []
-    start = 0
-    for size in sizes:
-        count = max(1, round(size / length))
-        out.append(start + np.arange(size) * count // size)
-        start += count
-    return out

@@ -16,7 +16,7 @@ import numpy.typing as npt
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.phases import Segment
 from tsas_cli.identification.prepared import Prepared
-from tsas_cli.numerics.covariance import block_length, jackknife
+from tsas_cli.numerics.covariance import block_length, block_numbers, jackknife
 
 Floats = npt.NDArray[np.float64]
 
@@ -113,8 +113,6 @@ def _line(
     values, *_ = np.linalg.lstsq(J, F, rcond=None)
     residual = F - J @ values
     pieces = np.split(residual, np.flatnonzero(np.diff(number)) + 1)
-    length = block_length(pieces)
-    within = np.concatenate([np.arange(p.size) // length for p in pieces])
-    blocks = np.unique(number * (within.max() + 1) + within, return_inverse=True)[1]
+    blocks = block_numbers([p.size for p in pieces], block_length(pieces))
     covariance, t = jackknife(J, residual, blocks)
     return _Line(values, covariance, t)

@@ -46,6 +46,17 @@ def block_length(residuals: list[Floats]) -> int:
     return max(1, min(math.ceil(MEMORIES_PER_BLOCK * longest), samples // FEWEST_BLOCKS))
 
 
+def block_numbers(sizes: list[int], length: int) -> Indices:
+    """Return block numbers that go on from piece to piece; a block lies within one piece."""
+    out: list[Indices] = []
+    start = 0
+    for size in sizes:
+        count = max(1, round(size / length))
+        out.append(start + np.arange(size) * count // size)
+        start += count
+    return np.concatenate(out)
+
+
 def jackknife(jacobian: Floats, residual: Floats, block: Indices) -> tuple[Floats, Floats]:
     """Return the covariance of least-squares parameters and Student's t for 95 % intervals.
 
