@@ -14,11 +14,11 @@ from multiprocessing import get_context
 import numpy as np
 
 from benchmarks.row import Row
-from tests.rig.make_datasets import FREE_TENDON, GROUPS, SENSORS
-from tests.rig.motions import sine
-from tests.rig.recordings import DATA_SHEET, conditions
-from tests.rig.sensors import measure as measured
-from tests.rig.tendon import CleanRun, Rig, simulate
+from tsas_cli.challenge.rig.make_datasets import FREE_TENDON, GROUPS, SENSORS
+from tsas_cli.challenge.rig.motions import sine
+from tsas_cli.challenge.rig.recordings import DATA_SHEET, conditions
+from tsas_cli.challenge.rig.sensors import measure as measured
+from tsas_cli.challenge.rig.tendon import CleanRun, Rig, simulate
 from tsas_cli.identification.calibration import calibrate
 from tsas_cli.identification.prepared import prepare
 from tsas_cli.recordings.dataset import Recording

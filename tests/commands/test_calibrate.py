@@ -11,9 +11,9 @@ import pyarrow.parquet as pq
 import pytest
 
 from tests.commands.documented import documented
-from tests.rig.recordings import Run, conditions, record, write_dataset
-from tests.rig.sensors import Sensors
-from tests.rig.tendon import Rig
+from tsas_cli.challenge.rig.recordings import Run, conditions, record, write_dataset
+from tsas_cli.challenge.rig.sensors import Sensors
+from tsas_cli.challenge.rig.tendon import Rig
 
 IDS = ["a", "ü → 'b'", "<script>", "..c", "n" * 200]
 

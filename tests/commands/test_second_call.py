@@ -3,8 +3,8 @@ import subprocess
 import sys
 from pathlib import Path
 
-from tests.rig.recordings import Run, conditions, record, write_dataset
-from tests.rig.tendon import Rig
+from tsas_cli.challenge.rig.recordings import Run, conditions, record, write_dataset
+from tsas_cli.challenge.rig.tendon import Rig
 
 COUNT_COMPILATIONS = """
 import sys

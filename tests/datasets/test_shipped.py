@@ -4,7 +4,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.rig import make_datasets
+from tsas_cli.challenge.rig import make_datasets
 from tsas_cli.recordings.dataset import read_dataset
 
 DATASETS = Path(__file__).parents[2] / "datasets"

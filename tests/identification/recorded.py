@@ -2,10 +2,10 @@
 
 from functools import cache
 
-from tests.rig.motions import sine
-from tests.rig.recordings import DATA_SHEET, conditions
-from tests.rig.sensors import Sensors, measure
-from tests.rig.tendon import Rig, simulate
+from tsas_cli.challenge.rig.motions import sine
+from tsas_cli.challenge.rig.recordings import DATA_SHEET, conditions
+from tsas_cli.challenge.rig.sensors import Sensors, measure
+from tsas_cli.challenge.rig.tendon import Rig, simulate
 from tsas_cli.identification.prepared import Prepared, prepare
 from tsas_cli.recordings.dataset import Recording
 from tsas_cli.recordings.manifest import Manifest, Run

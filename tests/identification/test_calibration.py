@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from tests.identification.recorded import manifest, prepared
-from tests.rig.motions import sine
-from tests.rig.tendon import Rig
+from tsas_cli.challenge.rig.motions import sine
+from tsas_cli.challenge.rig.tendon import Rig
 from tsas_cli.identification.calibration import calibrate
 
 TRUE = Rig(friction_coefficient=0.135, load_stiffness_N_per_mm=1.45, preload_N=27.0)

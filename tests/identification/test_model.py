@@ -3,7 +3,7 @@
 import pytest
 
 from tests.identification.recorded import manifest, prepared
-from tests.rig.tendon import Rig
+from tsas_cli.challenge.rig.tendon import Rig
 from tsas_cli.errors import InputError
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import CORRECTION, Model, data_sheet, read_model, write_model

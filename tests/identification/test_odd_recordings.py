@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from tests.identification.recorded import clean
-from tests.rig.motions import dwell, nested, triangle
-from tests.rig.recordings import DATA_SHEET, conditions
-from tests.rig.sensors import PERFECT, Sensor, Sensors, measure
-from tests.rig.tendon import Rig
+from tsas_cli.challenge.rig.motions import dwell, nested, triangle
+from tsas_cli.challenge.rig.recordings import DATA_SHEET, conditions
+from tsas_cli.challenge.rig.sensors import PERFECT, Sensor, Sensors, measure
+from tsas_cli.challenge.rig.tendon import Rig
 from tsas_cli.errors import InputError
 from tsas_cli.identification.calibration import calibrate
 from tsas_cli.identification.comparison import compare

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from tests.identification.recorded import ALL, clean, prepared
-from tests.rig.motions import chirp, nested, sine, triangle, two_sines
-from tests.rig.sensors import Sensor, Sensors
-from tests.rig.tendon import Rig
+from tsas_cli.challenge.rig.motions import chirp, nested, sine, triangle, two_sines
+from tsas_cli.challenge.rig.sensors import Sensor, Sensors
+from tsas_cli.challenge.rig.tendon import Rig
 from tsas_cli.identification.phases import segment
 from tsas_cli.identification.prepared import prepare
 from tsas_cli.recordings.dataset import Recording

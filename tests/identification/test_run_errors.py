@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from tests.identification.recorded import manifest, prepared
-from tests.rig.motions import nested, sine, triangle, two_sines
-from tests.rig.sensors import Sensor, Sensors
-from tests.rig.tendon import Rig
+from tsas_cli.challenge.rig.motions import nested, sine, triangle, two_sines
+from tsas_cli.challenge.rig.sensors import Sensor, Sensors
+from tsas_cli.challenge.rig.tendon import Rig
 from tsas_cli.identification.model import data_sheet
 from tsas_cli.identification.run_errors import RunErrors
 from tsas_cli.identification.samples import kept_samples

@@ -5,7 +5,7 @@ import pytest
 from scipy.signal import lfilter
 
 from tests.identification.recorded import clean
-from tests.rig.tendon import Rig
+from tsas_cli.challenge.rig.tendon import Rig
 from tsas_cli.identification.phases import Segment
 from tsas_cli.identification.stiffness import slopes
 

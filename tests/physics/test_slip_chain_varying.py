@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from tests.physics.references import FREE, GROUP_A, follow, relaxed_chain, through, wrap_of
-from tests.rig import tendon
-from tests.rig.motions import Motion
+from tsas_cli.challenge.rig import tendon
+from tsas_cli.challenge.rig.motions import Motion
 from tsas_cli.physics.slip_chain import DISPLACEMENT, FORCE, Boundary
 
 A = wrap_of(GROUP_A)

@@ -2,9 +2,9 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
-from tests.rig.motions import through
-from tests.rig.recordings import Run, conditions, record, write_dataset
-from tests.rig.tendon import Rig
+from tsas_cli.challenge.rig.motions import through
+from tsas_cli.challenge.rig.recordings import Run, conditions, record, write_dataset
+from tsas_cli.challenge.rig.tendon import Rig
 from tsas_cli.recordings.dataset import read_dataset
 
 MOTION = through([2.0, 0.0])

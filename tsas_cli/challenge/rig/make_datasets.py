@@ -1,22 +1,22 @@
 """Make the shipped datasets paper-groups and drive-chirp again, byte for byte.
 
-python -m tests.rig.make_datasets [--out DIR]
+python -m tsas_cli.challenge.rig.make_datasets --out DIR
 """
 
 import argparse
 import math
 from pathlib import Path
+from typing import TypedDict
 
 import numpy as np
 import tomlkit
 
-from tests.rig.drive import Drive, run_drive
-from tests.rig.motions import clock, sine
-from tests.rig.recordings import Run, conditions, record, write_dataset
-from tests.rig.sensors import Sensor, Sensors, measure, quantised
-from tests.rig.tendon import Rig
+from tsas_cli.challenge.rig.drive import Drive, run_drive
+from tsas_cli.challenge.rig.motions import Floats, clock, sine
+from tsas_cli.challenge.rig.recordings import Run, conditions, record, write_dataset
+from tsas_cli.challenge.rig.sensors import Sensor, Sensors, measure, quantised
+from tsas_cli.challenge.rig.tendon import Rig
 
-SHIPPED = Path(__file__).parents[2] / "datasets"
 LICENSE = "Apache-2.0"
 
 # Table 2 of Yang 2025: angular frequency [rad/s], radius of curvature [mm], total bend [rad].
@@ -26,7 +26,16 @@ GROUPS = {
     "c": (1.0, 200.0, math.pi),
     "d": (1.0, 200.0, math.pi / 2.0),
 }
-FREE_TENDON = {"proximal_length_mm": 150.0, "distal_length_mm": 60.0}
+
+
+class FreeTendon(TypedDict):
+    """Lengths of tendon outside the sheath, as options of the rig."""
+
+    proximal_length_mm: float
+    distal_length_mm: float
+
+
+FREE_TENDON: FreeTendon = {"proximal_length_mm": 150.0, "distal_length_mm": 60.0}
 SENSORS = Sensors(
     x_in_mm=Sensor(noise=0.005, step=0.002),
     x_out_mm=Sensor(noise=0.008, step=0.002),
@@ -70,7 +79,7 @@ def drive_chirp(folder: Path) -> None:
     )
 
 
-def speeds() -> dict[str, tuple[np.ndarray, np.ndarray]]:
+def speeds() -> dict[str, tuple[Floats, Floats]]:
     """Return time [s] and wanted motor speed [rpm] of each run of drive-chirp."""
     chirp, sine_run, check = clock(40.0, 1000.0), clock(15.0, 1000.0), clock(20.0, 1000.0)
     growth = math.log(120.0 / 0.2) / 40.0
@@ -134,8 +143,8 @@ def make(out: Path) -> None:
 
 def main() -> None:
     """Read --out and make the datasets."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--out", type=Path, default=SHIPPED, metavar="DIR")
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("--out", type=Path, required=True, metavar="DIR")
     make(parser.parse_args().out)
 
 

@@ -11,9 +11,9 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import tomlkit
 
-from tests.rig.motions import Motion, sine
-from tests.rig.sensors import Sensors, measure
-from tests.rig.tendon import Rig, simulate
+from tsas_cli.challenge.rig.motions import Floats, Motion, sine
+from tsas_cli.challenge.rig.sensors import Sensors, measure
+from tsas_cli.challenge.rig.tendon import Rig, simulate
 
 UNITS = {
     "time_s": "s",
@@ -38,7 +38,7 @@ class Run:
     """One run to write: its id, its columns, and the conditions for the manifest."""
 
     id: str
-    columns: Mapping[str, np.ndarray]
+    columns: Mapping[str, Floats]
     conditions: Mapping[str, Any] = field(default_factory=dict)
 
 
@@ -48,8 +48,8 @@ def record(
     *,
     sensors: Sensors | None = None,
     seed: int = 0,
-    distal: np.ndarray | None = None,
-) -> dict[str, np.ndarray]:
+    distal: Floats | None = None,
+) -> dict[str, Floats]:
     """Simulate and measure in one go: columns time_s, x_in_mm, x_out_mm, f_in_N, f_out_N.
 
     The motion is two periods of the paper's sine and the sensors are `Sensors()` if not given.
@@ -74,7 +74,7 @@ def write_dataset(
     runs: Sequence[Run],
     *,
     name: str = "rig",
-    description: str = "Made by the virtual rig of the tests.",
+    description: str = "Made by the virtual rig.",
     data_sheet: Mapping[str, float] | None = None,
     **more: Any,
 ) -> Path:
@@ -99,14 +99,14 @@ def write_dataset(
     return folder
 
 
-def _write_run(folder, run):
+def _write_run(folder: Path, run: Run) -> dict[str, Any]:
     file = f"runs/{run.id}.parquet"
     write_parquet(folder / file, run.columns)
     digest = hashlib.sha256((folder / file).read_bytes()).hexdigest()
     return {"id": run.id, "file": file, "sha256": digest, **run.conditions}
 
 
-def write_parquet(path: Path, columns: Mapping[str, np.ndarray]) -> None:
+def write_parquet(path: Path, columns: Mapping[str, Floats]) -> None:
     """Write float64 columns with their units; not-finite values become null."""
     schema = pa.schema(
         [

@@ -15,7 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import expm
 
-from tests.rig.tendon import CleanRun
+from tsas_cli.challenge.rig.motions import Floats
+from tsas_cli.challenge.rig.tendon import CleanRun
 
 
 @dataclass(frozen=True)
@@ -35,7 +36,7 @@ class Drive:
         """K, 0.0236492 mm/s per rpm."""
         return 2.0 * math.pi * self.turntable_radius_mm / (60.0 * self.gear_ratio)
 
-    def matrices(self) -> tuple[np.ndarray, np.ndarray]:
+    def matrices(self) -> tuple[Floats, Floats]:
         """Return A and b of dy/dt = A y + b u for the state y = (w, x_m, x, dx/dt)."""
         mass = self.inertia_N_mm_s2 / self.turntable_radius_mm**2
         k_d, k_p = self.drive_stiffness_N_per_mm, self.pull_back_N_per_mm
@@ -47,7 +48,7 @@ class Drive:
         return A, np.array([1.0 / self.motor_lag_s, 0.0, 0.0, 0.0])
 
 
-def run_drive(drive: Drive, time_s: np.ndarray, motor_speed_rpm: np.ndarray) -> CleanRun:
+def run_drive(drive: Drive, time_s: Floats, motor_speed_rpm: Floats) -> CleanRun:
     """Drive from rest; u is linear between its evenly spaced samples, so the result is exact."""
     A, b = drive.matrices()
     h = time_s[1] - time_s[0]

@@ -3,8 +3,8 @@ import math
 import numpy as np
 import pytest
 
-from tests.rig.sensors import PERFECT, Sensor, Sensors, measure
-from tests.rig.tendon import CleanRun
+from tsas_cli.challenge.rig.sensors import PERFECT, Sensor, Sensors, measure
+from tsas_cli.challenge.rig.tendon import CleanRun
 
 TIME = np.arange(20001) / 1000.0
 

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from tests.rig.motions import Motion, clock, nested, sine, through
-from tests.rig.tendon import Rig, simulate
+from tsas_cli.challenge.rig.motions import Motion, clock, nested, sine, through
+from tsas_cli.challenge.rig.tendon import Rig, simulate
 
 RIG = Rig()
 A = RIG.friction_coefficient * RIG.total_bend_rad

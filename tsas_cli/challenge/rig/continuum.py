@@ -12,7 +12,11 @@ Units: mm, N. Displacements u count towards the drive, from the state at rest at
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
+import numpy.typing as npt
+
+from tsas_cli.challenge.rig.compiled import compiled
+
+Floats = npt.NDArray[np.float64]
 
 MAX_ITERATIONS = 100
 MAX_CUTS = 10
@@ -26,8 +30,8 @@ class Tendon(NamedTuple):
     the free tendon at the drive [mm/N]; p, r: the distal end, p T_out = q + r u_end.
     """
 
-    bend: np.ndarray
-    k: np.ndarray
+    bend: Floats
+    k: Floats
     c_in: float
     p: float
     r: float
@@ -43,13 +47,13 @@ class Ends(NamedTuple):
     q: float
 
 
-def nodes(length_mm, cells):
+def nodes(length_mm: float, cells: int) -> Floats:
     """Return the node positions from 0 (drive) to the length (load), shape (cells + 1,)."""
     return 0.5 * length_mm * (1.0 - np.cos(np.pi * np.arange(cells + 1) / cells))
 
 
-@njit(cache=True)
-def run(tendon, x_in, mu, q):
+@compiled
+def run(tendon: Tendon, x_in: Floats, mu: Floats, q: Floats) -> tuple[Floats, Floats, Floats, int]:
     """March through all samples, starting at rest at the preload with x_in = 0.
 
     Parameters
@@ -85,8 +89,8 @@ def run(tendon, x_in, mu, q):
     return f_in, f_out, u_end, m
 
 
-@njit(cache=True)
-def _advance(u, phi, tendon, before, now):
+@compiled
+def _advance(u: Floats, phi: Floats, tendon: Tendon, before: Ends, now: Ends) -> bool:
     """Go from one sample to the next, in smaller parts where the whole does not converge."""
     done, part = 0.0, 1.0
     while done < 1.0:
@@ -109,24 +113,24 @@ def _advance(u, phi, tendon, before, now):
     return True
 
 
-@njit(cache=True)
-def dahl(du, phi, delta):
+@compiled
+def dahl(du: float, phi: float, delta: float) -> float:
     """Return the friction state after a displacement du [mm] of one sign."""
     sign = np.sign(du)
-    return sign + (phi - sign) * np.exp(-abs(du) / delta)
+    return float(sign + (phi - sign) * np.exp(-abs(du) / delta))
 
 
-@njit(cache=True)
-def _dahl_slope(du, phi, delta):
+@compiled
+def _dahl_slope(du: float, phi: float, delta: float) -> float:
     """Return ∂φ/∂du, at du = 0 the larger one of both sides."""
     if du == 0.0:
         return (1.0 + abs(phi)) / delta
     sign = np.sign(du)
-    return (1.0 - sign * phi) / delta * np.exp(-abs(du) / delta)
+    return float((1.0 - sign * phi) / delta * np.exp(-abs(du) / delta))
 
 
-@njit(cache=True)
-def _state(u, phi, du, tendon, mu):
+@compiled
+def _state(u: Floats, phi: Floats, du: Floats, tendon: Tendon, mu: float) -> tuple[Floats, Floats]:
     """Return the tension of each cell [N], and e = μ θ φ / 2 of each node."""
     tension, e = np.empty(u.size - 1), np.empty(u.size)
     for i in range(u.size):
@@ -137,8 +141,10 @@ def _state(u, phi, du, tendon, mu):
     return tension, e
 
 
-@njit(cache=True)
-def _unbalanced(u, du, tension, e, tendon, ends):
+@compiled
+def _unbalanced(
+    u: Floats, du: Floats, tension: Floats, e: Floats, tendon: Tendon, ends: Ends
+) -> Floats:
     """Return what pulls each node towards the drive: T_{i−1} (1 − e) − T_i (1 + e) inside [N]."""
     pull = np.empty(u.size)
     at_drive = tension[0] * (1.0 + e[0]) / (1.0 - e[0])
@@ -150,8 +156,10 @@ def _unbalanced(u, du, tension, e, tendon, ends):
     return pull
 
 
-@njit(cache=True)
-def _newton_change(phi, du, tension, e, pull, tendon, mu):
+@compiled
+def _newton_change(
+    phi: Floats, du: Floats, tension: Floats, e: Floats, pull: Floats, tendon: Tendon, mu: float
+) -> Floats:
     """Solve the tridiagonal Newton equations for the change of du."""
     n, k = du.size, tendon.k
     upper, change = np.empty(n), np.empty(n)
@@ -177,8 +185,8 @@ def _newton_change(phi, du, tension, e, pull, tendon, mu):
     return change
 
 
-@njit(cache=True)
-def _solve(u, phi, tendon, ends):
+@compiled
+def _solve(u: Floats, phi: Floats, tendon: Tendon, ends: Ends) -> tuple[bool, Floats]:
     """Find du by Newton's method from du = 0; return whether it converged, and du.
 
     While all nodes move one way the residual is concave with an M-matrix as Jacobian, and the

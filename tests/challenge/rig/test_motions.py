@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from tests.rig import motions
+from tsas_cli.challenge.rig import motions
 
 ALL = ("chirp", "dwell", "nested", "sine", "steps", "triangle", "two_sines")
 

@@ -4,7 +4,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from tests.rig.tendon import CleanRun
+from tsas_cli.challenge.rig.motions import Floats
+from tsas_cli.challenge.rig.tendon import CleanRun
 
 
 @dataclass(frozen=True)
@@ -30,11 +31,11 @@ class Sensor:
     delay_s: float = 0.0
 
 
-def _position():
+def _position() -> Sensor:
     return Sensor(noise=0.005, step=0.002)
 
 
-def _force():
+def _force() -> Sensor:
     return Sensor(noise=0.08, step=0.01)
 
 
@@ -58,7 +59,7 @@ class Sensors:
 PERFECT = Sensors(x_in_mm=Sensor(), x_out_mm=Sensor(), f_in_N=Sensor(), f_out_N=Sensor())
 
 
-def measure(clean: CleanRun, sensors: Sensors, *, seed: int) -> dict[str, np.ndarray]:
+def measure(clean: CleanRun, sensors: Sensors, *, seed: int) -> dict[str, Floats]:
     """Return the recording of a clean run, as columns of format 1.
 
     The clean run is computed once; another seed gives another recording of it.
@@ -79,13 +80,13 @@ def measure(clean: CleanRun, sensors: Sensors, *, seed: int) -> dict[str, np.nda
     return columns
 
 
-def _read_out(true, sensor, rate_Hz, rng):
+def _read_out(true: Floats, sensor: Sensor, rate_Hz: float, rng: np.random.Generator) -> Floats:
     white = sensor.noise * rng.standard_normal(true.size)
     slow = sensor.slow_noise * _coloured(true.size, sensor.slow_time_s * rate_Hz, rng)
     return quantised(true + white + slow, sensor.step)
 
 
-def _coloured(size, samples, rng):
+def _coloured(size: int, samples: float, rng: np.random.Generator) -> Floats:
     """Return first-order coloured noise of unit variance with a memory of so many samples."""
     keep = np.exp(-1.0 / samples)
     kicks = np.sqrt(1.0 - keep**2) * rng.standard_normal(size)
@@ -98,7 +99,7 @@ def _coloured(size, samples, rng):
     return values
 
 
-def quantised(values, step):
+def quantised(values: Floats, step: float) -> Floats:
     """Round to multiples of a step, each the nearest float to its decimal text; 0 for no step."""
     if step == 0.0:
         return values

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from tests.rig.drive import Drive, run_drive
+from tsas_cli.challenge.rig.drive import Drive, run_drive
 
 DRIVE = Drive()
 

@@ -1,7 +1,7 @@
 """A virtual tendon-sheath rig, independent of the product: its options, and its clean recording.
 
 clean = simulate(Rig(distal_length_mm=60.0), sine())
-columns = measure(clean, Sensors(), seed=1)          # in tests.rig.sensors
+columns = measure(clean, Sensors(), seed=1)          # in tsas_cli.challenge.rig.sensors
 """
 
 import math
@@ -10,10 +10,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tests.rig import continuum
-from tests.rig.motions import Motion
+from tsas_cli.challenge.rig import continuum
+from tsas_cli.challenge.rig.motions import Floats, Motion
 
-ONE = ((0.0, 1.0),)
+Course = tuple[tuple[float, float], ...]
+ONE: Course = ((0.0, 1.0),)
 
 
 @dataclass(frozen=True)
@@ -50,10 +51,10 @@ class Rig:
     load: str = "spring"
     proximal_length_mm: float = 0.0
     distal_length_mm: float = 0.0
-    bend_profile: tuple[tuple[float, float], ...] = ONE
-    friction_course: tuple[tuple[float, float], ...] = ONE
-    bend_course: tuple[tuple[float, float], ...] = ONE
-    preload_course: tuple[tuple[float, float], ...] = ONE
+    bend_profile: Course = ONE
+    friction_course: Course = ONE
+    bend_course: Course = ONE
+    preload_course: Course = ONE
     presliding_length_mm: float = 5e-6
     cells: int = 200
 
@@ -67,14 +68,15 @@ class Rig:
 class CleanRun:
     """A recording without any sensor error: columns named as in format 1, on one fine clock."""
 
-    columns: Mapping[str, np.ndarray]
+    columns: Mapping[str, Floats]
 
     @property
-    def time_s(self) -> np.ndarray:
+    def time_s(self) -> Floats:
+        """Time of each sample [s]."""
         return self.columns["time_s"]
 
 
-def simulate(rig: Rig, motion: Motion, *, distal: np.ndarray | None = None) -> CleanRun:
+def simulate(rig: Rig, motion: Motion, *, distal: Floats | None = None) -> CleanRun:
     """Drive the rig through a motion, from rest at the preload with x_in = 0 mm.
 
     A motion that starts elsewhere is reached by one straight pull before its first sample.
@@ -125,7 +127,9 @@ def simulate(rig: Rig, motion: Motion, *, distal: np.ndarray | None = None) -> C
     )
 
 
-def _distal_end(rig, t, c_out, distal):
+def _distal_end(
+    rig: Rig, t: Floats, c_out: float, distal: Floats | None
+) -> tuple[Floats, float, float]:
     """Return q, p, r of p T_out = q + r u_end, the free tendon at the load included."""
     F0, kL = rig.preload_N, rig.load_stiffness_N_per_mm
     if rig.load == "spring":
@@ -138,15 +142,15 @@ def _distal_end(rig, t, c_out, distal):
     raise ValueError(f"load is {rig.load!r}, expected spring, force or displacement")
 
 
-def _course(course, t):
+def _course(course: Course, t: Floats) -> Floats:
     at, value = np.array(course, dtype=float).T
-    return np.interp(t, at, value)
+    return np.asarray(np.interp(t, at, value))
 
 
-def _bend_per_node(rig, s):
+def _bend_per_node(rig: Rig, s: Floats) -> Floats:
     """Return the bend angle between the midpoints around each node [rad]."""
     fine = np.linspace(0.0, rig.sheath_length_mm, 20001)
     curvature = _course(rig.bend_profile, fine / rig.sheath_length_mm)
     angle = np.concatenate(([0.0], np.cumsum(0.5 * (curvature[1:] + curvature[:-1]))))
     edges = np.concatenate((s[:1], 0.5 * (s[1:] + s[:-1]), s[-1:]))
-    return rig.total_bend_rad * np.diff(np.interp(edges, fine, angle / angle[-1]))
+    return np.asarray(rig.total_bend_rad * np.diff(np.interp(edges, fine, angle / angle[-1])))
