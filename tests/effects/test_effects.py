@@ -1,5 +1,7 @@
 """What every effect owes: the list is whole, the text is there, neutral means nothing at all."""
 
+import math
+import re
 from importlib import import_module
 from pathlib import Path
 
@@ -16,12 +18,29 @@ from tsas_cli.physics.static import static_model
 
 FOLDER = Path(tsas_cli.effects.__file__).parent
 MOTION = np.interp(np.linspace(0, 5, 200), np.arange(6), [0, 14, 13.9, 13.95, 3, 9])
+BY_NAME = {effect.name: effect for effect in EFFECTS}
+FLOW = ("drive", "tendon", "load", "sensor")
 PARTS = ("What one sees", "Equation", "Mistaken for", "Not validated")
+
+
+def unit_suffix(unit: str) -> str:
+    """Return a unit as it stands at the end of a name: "1/mm²" is "_per_mm2"."""
+    spelled = unit.replace("²", "2").replace(" ", "_").removeprefix("1/")
+    return f"_per_{spelled}" if unit.startswith("1/") else "_" + spelled.replace("/", "_per_")
+
+
 every_effect = pytest.mark.parametrize("effect", EFFECTS, ids=lambda effect: effect.name)
+SIMULATED = ("free_tendon",)
 every_parameter = pytest.mark.parametrize(
     ("effect", "parameter"),
-    [pytest.param(e, p, id=f"{e.name}.{p.name}") for e in EFFECTS for p in e.parameters],
+    [
+        pytest.param(e, p, id=f"{e.name}.{p.name}")
+        for e in EFFECTS
+        for p in e.parameters
+        if e.name in SIMULATED
+    ],
 )
+SUFFIXES = {p.unit: unit_suffix(p.unit) for e in EFFECTS for p in e.parameters if p.unit != "1"}
 
 
 def with_value(effect: Effect, parameter: Parameter, value: float) -> Rig:
@@ -67,9 +86,66 @@ def test_the_record_describes_the_values(effect):
     for p in effect.parameters:
         assert p.lower <= p.neutral <= p.upper
         assert p.lower < p.start < p.upper
-        assert p.start != p.neutral
-        assert p.unit
-        assert p.unit == "1" or p.name.endswith("_" + p.unit.replace("/", "_per_"))
+        assert p.shape or p.start != p.neutral
+        assert all(p.lower <= value <= p.upper for value in p.starts)
+        assert len(set(p.starts)) == len(p.starts)
+    assert not all(p.shape for p in effect.parameters)
+
+
+@every_effect
+def test_a_name_ends_with_its_unit_and_with_no_longer_one(effect):
+    for p in effect.parameters:
+        suffixes = [suffix for suffix in SUFFIXES.values() if p.name.endswith(suffix)]
+        assert max(suffixes, key=len, default=None) == SUFFIXES.get(p.unit)
+
+
+@pytest.mark.parametrize(
+    ("unit", "suffix"),
+    [
+        ("mm", "_mm"),
+        ("N/mm", "_N_per_mm"),
+        ("mm/N", "_mm_per_N"),
+        ("1/s", "_per_s"),
+        ("1/mm²", "_per_mm2"),
+        ("N s/mm", "_N_s_per_mm"),
+    ],
+)
+def test_how_a_unit_stands_in_a_name(unit, suffix):
+    assert unit_suffix(unit) == suffix
+
+
+@every_effect
+def test_the_record_can_be_printed(effect):
+    assert effect.acts_on in FLOW
+    assert len(effect.title) <= 60
+    for line in (effect.title, effect.equation):
+        assert line.isprintable()
+        assert line.strip() == line != ""
+    assert "=" in effect.equation or "→" in effect.equation
+
+
+def test_the_list_follows_the_force_from_the_drive_to_the_sensors():
+    places = [FLOW.index(effect.acts_on) for effect in EFFECTS]
+    assert places == sorted(places)
+    assert set(places) == set(range(len(FLOW)))
+
+
+@every_effect
+def test_it_is_mistaken_for_effects_that_are_there(effect):
+    """What is spelled like an effect is one, and another one."""
+    _, _, mistaken = effect.doc.partition("Mistaken for:")
+    spelled = set(re.findall(r"\b[a-z]+(?:_[a-z]+)+\b", mistaken.partition("Not validated")[0]))
+    channels = {"f_in", "f_out", "x_in", "x_out"}
+    assert spelled - channels <= set(Effects._fields) - {effect.name}
+
+
+def test_every_period_of_a_ripple_is_tried():
+    """Sixty, evenly spaced in 1/period from 0.3 to 20 mm, and the one of the paper's gear."""
+    period = {p.name: p for p in BY_NAME["drive_ripple"].parameters}["period_mm"]
+    assert period.start == pytest.approx(2 * math.pi * 27.1 / (2 * 120), abs=5e-5)
+    assert period.start in period.starts
+    rest = np.sort(1.0 / np.array([value for value in period.starts if value != period.start]))
+    np.testing.assert_allclose(rest, np.linspace(1 / 20.0, 1 / 0.3, 60))
 
 
 @every_parameter

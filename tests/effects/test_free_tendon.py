@@ -14,7 +14,7 @@ MOTION = np.interp(np.linspace(0, 6, 3000), np.arange(7), [0, 14, 13.9, 13.95, 3
 
 
 def with_free(proximal, distal):
-    return GROUP_A._replace(effects=Effects(FreeTendon(proximal, distal)))
+    return GROUP_A._replace(effects=Effects(free_tendon=FreeTendon(proximal, distal)))
 
 
 def test_a_free_length_is_a_rod():

@@ -17,7 +17,7 @@ GROUP_A = Rig(
     total_bend_rad=math.pi,
     preload_N=25.0,
 )
-FREE = GROUP_A._replace(effects=Effects(FreeTendon(152.0, 61.0)))
+FREE = GROUP_A._replace(effects=Effects(free_tendon=FreeTendon(152.0, 61.0)))
 
 LOADED_BY_SPRING = Boundary(DISPLACEMENT, DISPLACEMENT, 1.0 / GROUP_A.load_stiffness_N_per_mm)
 LOADED_BY_FORCE = Boundary(DISPLACEMENT, FORCE, 0.0)

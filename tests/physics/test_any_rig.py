@@ -29,7 +29,9 @@ def any_rig(rng):
         sheath_length_mm=between(50.0, 5000.0),
         total_bend_rad=between(0.1, 12.0),
         preload_N=between(0.5, 200.0),
-        effects=Effects(FreeTendon(rng.choice([0.0, between(1.0, 500.0)]), between(1.0, 500.0))),
+        effects=Effects(
+            free_tendon=FreeTendon(rng.choice([0.0, between(1.0, 500.0)]), between(1.0, 500.0))
+        ),
     )
 
 

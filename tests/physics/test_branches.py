@@ -19,7 +19,7 @@ SOFT = GROUP_A._replace(
     sheath_length_mm=410.0,
     total_bend_rad=2.3,
     preload_N=4.0,
-    effects=Effects(FreeTendon(900.0, 0.0)),
+    effects=Effects(free_tendon=FreeTendon(900.0, 0.0)),
 )
 NESTED = [2.0, 0.9, 1.7, 1.1, 1.5, 1.2, 1.4, 1.15, 1.6, 0.95, 1.9, 0.5, 3.0, 0.3, 2.9, 0.31, 3.5]
 

@@ -17,7 +17,7 @@ from tsas_cli.physics.branches import branches
 from tsas_cli.physics.slip_chain import DISPLACEMENT, FORCE, Boundary, slip_chain
 from tsas_cli.physics.static import static_model
 
-rig = GROUP_A._replace(effects=Effects(FreeTendon(152.0, 61.0)))
+rig = GROUP_A._replace(effects=Effects(free_tendon=FreeTendon(152.0, 61.0)))
 x = np.interp(np.linspace(0, 7, 300), np.arange(8), [0, 14, 13.9, 13.95, 13.2, -60, 13, 12])
 wrap, preload = np.linspace(0.3, 0.5, 300), np.linspace(25.0, 20.0, 300)
 spiral = 14 + 0.1 * np.linspace(1, 0, 100) * (-1.0) ** np.arange(100)

@@ -2,16 +2,118 @@
 
 from typing import NamedTuple
 
+from tsas_cli.effects.backlash import BACKLASH, Backlash
+from tsas_cli.effects.bend_drift import BEND_DRIFT, BendDrift
+from tsas_cli.effects.channel_delay import CHANNEL_DELAY, ChannelDelay
+from tsas_cli.effects.direction_dependent_friction import (
+    DIRECTION_DEPENDENT_FRICTION,
+    DirectionDependentFriction,
+)
+from tsas_cli.effects.drive_compliance import DRIVE_COMPLIANCE, DriveCompliance
+from tsas_cli.effects.drive_friction import DRIVE_FRICTION, DriveFriction
+from tsas_cli.effects.drive_ripple import DRIVE_RIPPLE, DriveRipple
 from tsas_cli.effects.effect import Effect, Parameter
+from tsas_cli.effects.force_sensor_drift import FORCE_SENSOR_DRIFT, ForceSensorDrift
+from tsas_cli.effects.force_sensor_gain import FORCE_SENSOR_GAIN, ForceSensorGain
+from tsas_cli.effects.force_sensor_offset import FORCE_SENSOR_OFFSET, ForceSensorOffset
 from tsas_cli.effects.free_tendon import FREE_TENDON, FreeTendon
+from tsas_cli.effects.friction_drift import FRICTION_DRIFT, FrictionDrift
+from tsas_cli.effects.load_dependent_friction import LOAD_DEPENDENT_FRICTION, LoadDependentFriction
+from tsas_cli.effects.load_friction import LOAD_FRICTION, LoadFriction
+from tsas_cli.effects.load_inertia import LOAD_INERTIA, LoadInertia
+from tsas_cli.effects.load_spring_nonlinearity import (
+    LOAD_SPRING_NONLINEARITY,
+    LoadSpringNonlinearity,
+)
+from tsas_cli.effects.position_sensor_gain import POSITION_SENSOR_GAIN, PositionSensorGain
+from tsas_cli.effects.preload_loss import PRELOAD_LOSS, PreloadLoss
+from tsas_cli.effects.presliding import PRESLIDING, Presliding
+from tsas_cli.effects.proximal_spring import PROXIMAL_SPRING, ProximalSpring
+from tsas_cli.effects.sheath_compression import SHEATH_COMPRESSION, SheathCompression
+from tsas_cli.effects.stribeck_friction import STRIBECK_FRICTION, StribeckFriction
+from tsas_cli.effects.viscous_friction import VISCOUS_FRICTION, ViscousFriction
 
-EFFECTS: tuple[Effect, ...] = (FREE_TENDON,)
+EFFECTS: tuple[Effect, ...] = (  # from the drive to the load, then the sensors
+    BACKLASH,
+    DRIVE_FRICTION,
+    DRIVE_RIPPLE,
+    DRIVE_COMPLIANCE,
+    PROXIMAL_SPRING,
+    FREE_TENDON,
+    SHEATH_COMPRESSION,
+    DIRECTION_DEPENDENT_FRICTION,
+    STRIBECK_FRICTION,
+    VISCOUS_FRICTION,
+    LOAD_DEPENDENT_FRICTION,
+    PRESLIDING,
+    BEND_DRIFT,
+    FRICTION_DRIFT,
+    PRELOAD_LOSS,
+    LOAD_SPRING_NONLINEARITY,
+    LOAD_FRICTION,
+    LOAD_INERTIA,
+    FORCE_SENSOR_GAIN,
+    FORCE_SENSOR_OFFSET,
+    FORCE_SENSOR_DRIFT,
+    POSITION_SENSOR_GAIN,
+    CHANNEL_DELAY,
+)
 
 
 class Effects(NamedTuple):
     """The values of every effect's parameters, neutral unless said otherwise."""
 
+    backlash: Backlash = Backlash()
+    drive_friction: DriveFriction = DriveFriction()
+    drive_ripple: DriveRipple = DriveRipple()
+    drive_compliance: DriveCompliance = DriveCompliance()
+    proximal_spring: ProximalSpring = ProximalSpring()
     free_tendon: FreeTendon = FreeTendon()
+    sheath_compression: SheathCompression = SheathCompression()
+    direction_dependent_friction: DirectionDependentFriction = DirectionDependentFriction()
+    stribeck_friction: StribeckFriction = StribeckFriction()
+    viscous_friction: ViscousFriction = ViscousFriction()
+    load_dependent_friction: LoadDependentFriction = LoadDependentFriction()
+    presliding: Presliding = Presliding()
+    bend_drift: BendDrift = BendDrift()
+    friction_drift: FrictionDrift = FrictionDrift()
+    preload_loss: PreloadLoss = PreloadLoss()
+    load_spring_nonlinearity: LoadSpringNonlinearity = LoadSpringNonlinearity()
+    load_friction: LoadFriction = LoadFriction()
+    load_inertia: LoadInertia = LoadInertia()
+    force_sensor_gain: ForceSensorGain = ForceSensorGain()
+    force_sensor_offset: ForceSensorOffset = ForceSensorOffset()
+    force_sensor_drift: ForceSensorDrift = ForceSensorDrift()
+    position_sensor_gain: PositionSensorGain = PositionSensorGain()
+    channel_delay: ChannelDelay = ChannelDelay()
 
 
-__all__ = ["EFFECTS", "Effect", "Effects", "FreeTendon", "Parameter"]
+__all__ = [
+    "EFFECTS",
+    "Backlash",
+    "BendDrift",
+    "ChannelDelay",
+    "DirectionDependentFriction",
+    "DriveCompliance",
+    "DriveFriction",
+    "DriveRipple",
+    "Effect",
+    "Effects",
+    "ForceSensorDrift",
+    "ForceSensorGain",
+    "ForceSensorOffset",
+    "FreeTendon",
+    "FrictionDrift",
+    "LoadDependentFriction",
+    "LoadFriction",
+    "LoadInertia",
+    "LoadSpringNonlinearity",
+    "Parameter",
+    "PositionSensorGain",
+    "PreloadLoss",
+    "Presliding",
+    "ProximalSpring",
+    "SheathCompression",
+    "StribeckFriction",
+    "ViscousFriction",
+]

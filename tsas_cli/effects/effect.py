@@ -1,11 +1,16 @@
 """What an effect says about itself: its parameters, and the record that the catalogue lists."""
 
 from dataclasses import dataclass
+from typing import Literal
 
 
 @dataclass(frozen=True)
 class Parameter:
-    """One parameter of an effect: unit, exact neutral value, start of a fit, plausible bounds."""
+    """One parameter of an effect: unit, exact neutral value, start of a fit, plausible bounds.
+
+    A `shape` parameter matters only where another one of the effect is not neutral. `starts` are
+    the values from which a fit begins in turn; empty means `start` alone.
+    """
 
     name: str
     unit: str
@@ -13,17 +18,34 @@ class Parameter:
     start: float
     lower: float
     upper: float
+    shape: bool = False
+    starts: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
 class Effect:
     """One cause that makes a real rig differ from the nominal one.
 
-    `doc` is the docstring of the effect's file: what a person reads about it. `experiment` is the
-    measurement that isolates it.
+    `equation` is the law as reports print it. `doc` is the docstring of the effect's file: what a
+    person reads about it. `experiment` is the measurement that isolates it.
     """
 
     name: str
+    title: str
+    acts_on: Literal["drive", "tendon", "load", "sensor"]
+    equation: str
     doc: str
     parameters: tuple[Parameter, ...]
     experiment: str
+
+
+SETTLING = Parameter(
+    "settling_per_s",
+    "1/s",
+    neutral=0.0,
+    start=0.05,
+    lower=0.0,
+    upper=100.0,
+    shape=True,
+    starts=(0.0, 0.1, 0.5),
+)

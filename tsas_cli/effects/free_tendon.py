@@ -5,8 +5,9 @@ dead bands look softer at the drive (proximal length), loaded slopes fall slight
 Equation: a free length l under tension F is longer by (F − F0) l/(EA), Hooke's law as in Yang
 2025, Eq. (3), without friction. The paper supposes this effect under its Fig. 4 and does not
 test it.
-Mistaken for: a lower tendon modulus (recordings with two sheath lengths tell them apart), a
-compliant drive, a soft load spring.
+Mistaken for: drive_compliance (the same as a proximal length, c = l/EA); sheath_compression, a
+lower tendon modulus (recordings with two sheath lengths tell them apart); position_sensor_gain
+(x_out over f_out is wrong too); a soft load spring.
 Not validated: tendon that touches a guide on its free length.
 """
 
@@ -31,6 +32,9 @@ def free_compliance(length_mm: float, tendon_stiffness_N: float) -> float:
 
 FREE_TENDON = Effect(
     name="free_tendon",
+    title="Tendon outside the sheath",
+    acts_on="tendon",
+    equation="x_in − x_sheath = (T0 − F0)·l_proximal/EA,  x_sheath − x_out = (TL − F0)·l_distal/EA",
     doc=__doc__,
     parameters=(
         Parameter("proximal_length_mm", "mm", neutral=0.0, start=50.0, lower=0.0, upper=5000.0),

@@ -1,0 +1,42 @@
+"""After every reversal the drive turns a little before the tendon follows.
+
+What one sees: when x_in turns back, f_in, f_out and x_out all stand still for the same travel of
+x_in, whatever the tension and the speed; only then does the usual dead band begin. f_in over x_in
+has a flat piece of this width at every corner.
+Equation: the play operator: the tendon's end p stays where it is until x_in has crossed the play.
+Common description of gear backlash; not in the paper.
+Mistaken for: drive_compliance, free_tendon (they soften the dead band more the more tension
+turns round, without a flat piece); presliding (f_in rises from the first micrometre);
+channel_delay (the flat piece grows with speed).
+Not validated: gears that the tendon's pull keeps on one flank; their play does not open at a
+reversal, but only where the torque changes its sign.
+"""
+
+from typing import NamedTuple
+
+from tsas_cli.effects.effect import Effect, Parameter
+from tsas_cli.numerics.compiled import kernel
+
+
+class Backlash(NamedTuple):
+    """Travel of the drive between its two flanks [mm]."""
+
+    play_mm: float = 0.0
+
+
+@kernel
+def follow_play(position: float, drive: float, play: float) -> float:
+    """Return where the tendon's end is [mm], from where it was and where the drive is now."""
+    return min(max(position, drive - 0.5 * play), drive + 0.5 * play)
+
+
+BACKLASH = Effect(
+    name="backlash",
+    title="Backlash of the drive",
+    acts_on="drive",
+    equation="p = min(max(p, x_in − play/2), x_in + play/2)",
+    doc=__doc__,
+    parameters=(Parameter("play_mm", "mm", neutral=0.0, start=0.1, lower=0.0, upper=20.0),),
+    experiment="Slow nested strokes at two preloads: the travel for which f_in stands still after "
+    "a reversal is the same at both.",
+)

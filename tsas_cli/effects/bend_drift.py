@@ -1,0 +1,49 @@
+"""During a run the sheath is bent more, or less.
+
+What one sees: at the same x_in the loop of f_in over f_out opens (or closes) as the run goes on:
+f_in drifts up on pulls and down on releases, in proportion to the tension. Every run begins anew.
+Equation: Yang 2025, Eq. (7), with the total bend θ(t) of Eq. (6), which starts at a rate and
+settles (numerics/settling.py); the paper's title calls it time-varying.
+Mistaken for: friction_drift (only μθ shows: told apart only by runs with different bends, where a
+bend drifts by the same angle and friction by the same share); force_sensor_drift, preload_loss
+(the same sign on pull and release).
+Not validated: what bending does to the length of the tendon's path.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tsas_cli.effects.effect import SETTLING, Effect, Parameter
+from tsas_cli.numerics.compiled import kernel
+from tsas_cli.numerics.settling import settling
+
+
+class BendDrift(NamedTuple):
+    """First rate of the drift [rad/s] and how fast it settles [1/s]."""
+
+    rate_rad_per_s: float = 0.0
+    settling_per_s: float = 0.0
+
+
+@kernel
+def drifted_bend(bend: float, drift: BendDrift, time_s: float) -> float:
+    """Return the total bend [rad] at a time since the run began, not below 0."""
+    drifted = bend + settling(drift.rate_rad_per_s, drift.settling_per_s, time_s)
+    angle: float = np.maximum(drifted, 0.0)
+    return angle
+
+
+BEND_DRIFT = Effect(
+    name="bend_drift",
+    title="Bend that drifts",
+    acts_on="tendon",
+    equation="θ(t) = θ + rate·(1 − exp(−ν t))/ν",
+    doc=__doc__,
+    parameters=(
+        Parameter("rate_rad_per_s", "rad/s", neutral=0.0, start=0.005, lower=-10.0, upper=10.0),
+        SETTLING,
+    ),
+    experiment="The same long run with the sheath laid free and tied to a board: tied down, the "
+    "drift is gone.",
+)

@@ -1,0 +1,39 @@
+"""A channel is recorded later, or earlier, than x_in.
+
+What one sees: the channel is wrong in proportion to how fast it changes: most where f_in is steep,
+in dead bands and at their ends, with opposite sign on pull and release. Twice the speed gives
+twice the error; at rest there is none.
+Equation: a channel shows at time t what was there at t − delay, on the clock of x_in; a delay of
+x_in itself is the opposite of one in all other channels.
+Mistaken for: backlash, presliding (the same travel at every speed); viscous_friction (goes with the
+speed, and hardly shows in dead bands); load_inertia (goes with the acceleration of x_out).
+Not validated: delays that change during a run; filters, which delay each frequency by another time
+and round the corners.
+"""
+
+from typing import NamedTuple
+
+from tsas_cli.effects.effect import Effect, Parameter
+
+
+class ChannelDelay(NamedTuple):
+    """How much later than x_in each channel is recorded [s]."""
+
+    f_in_delay_s: float = 0.0
+    f_out_delay_s: float = 0.0
+    x_out_delay_s: float = 0.0
+
+
+CHANNEL_DELAY = Effect(
+    name="channel_delay",
+    title="Delay of a channel",
+    acts_on="sensor",
+    equation="channel(t) = signal(t − delay)",
+    doc=__doc__,
+    parameters=(
+        Parameter("f_in_delay_s", "s", neutral=0.0, start=0.01, lower=-1.0, upper=1.0),
+        Parameter("f_out_delay_s", "s", neutral=0.0, start=0.01, lower=-1.0, upper=1.0),
+        Parameter("x_out_delay_s", "s", neutral=0.0, start=0.01, lower=-1.0, upper=1.0),
+    ),
+    experiment="Tap the taut tendon: every channel must show the blow at the same time.",
+)

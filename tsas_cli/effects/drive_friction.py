@@ -1,0 +1,41 @@
+"""Friction between the drive's force sensor and the tendon takes the same force at any tension.
+
+What one sees: f_in jumps by twice the friction at every reversal of x_in, up when a pull begins
+and down when a release begins, as high at low tension as at high; f_out and x_out know nothing of
+it. f_in over f_out is wider by a constant, its two slopes are the usual ones.
+Equation: Coulomb friction that does not depend on the tension T0 behind it; a line with intercept
+beside the capstan law of Yang 2025, Eq. (7). Not in the paper.
+Mistaken for: a larger friction coefficient (its share grows with tension); load_friction (the
+sheath enlarges it on a pull and reduces it on a release); viscous_friction (grows with speed);
+force_sensor_offset (the same sign in both directions).
+Not validated: a drive at rest: the friction keeps the side of the last motion.
+"""
+
+from typing import NamedTuple
+
+from tsas_cli.effects.effect import Effect, Parameter
+from tsas_cli.numerics.compiled import kernel
+
+
+class DriveFriction(NamedTuple):
+    """Friction force at the drive [N]."""
+
+    friction_N: float = 0.0
+
+
+@kernel
+def drive_friction_force(friction: float, direction: float) -> float:
+    """Return what the drive pulls with on top of the tension [N]; direction +1, −1, or 0."""
+    return friction * direction
+
+
+DRIVE_FRICTION = Effect(
+    name="drive_friction",
+    title="Friction at the drive",
+    acts_on="drive",
+    equation="f_in = T0 + Fc · sgn(v)",
+    doc=__doc__,
+    parameters=(Parameter("friction_N", "N", neutral=0.0, start=1.0, lower=0.0, upper=1000.0),),
+    experiment="The same strokes at two preloads: the jump of f_in at a reversal is as high at "
+    "both.",
+)

@@ -1,0 +1,70 @@
+"""The gear moves the tendon's end a little ahead and behind, again and again at the same places.
+
+What one sees: a wave on f_in, f_out and x_out with a fixed period in x_in; twice the speed gives
+twice its frequency in time. On f_in it is much higher in dead bands than in full slip, because
+the tendon is stiff there.
+Equation: first harmonic of the kinematic error of a gear (for harmonic drives e.g. Tuttle and
+Seering 1996, IEEE Trans. Robotics and Automation 12(3)). Two waves per turn of the wave generator
+make a period of 2π r1/(2 im), 0.7095 mm for the drive of Yang 2025, Eq. (48): r1 = 27.1 mm,
+im = 120.
+Mistaken for: mains hum on a sensor (its period is one of time); load_spring_nonlinearity (where
+the period is longer than the stroke).
+Not validated: higher harmonics; a ripple that changes with torque; one so steep that
+2π·amplitude/period exceeds 1, which turns the tendon's end back.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from tsas_cli.effects.effect import Effect, Parameter
+from tsas_cli.numerics.compiled import kernel
+
+PERIOD_MM = 0.7095
+LONGEST_MM, SHORTEST_MM, PERIODS = 20.0, 0.3, 60
+
+
+class DriveRipple(NamedTuple):
+    """Two amplitudes of the wave and its period in travel of the drive [mm]."""
+
+    sine_mm: float = 0.0
+    cosine_mm: float = 0.0
+    period_mm: float = PERIOD_MM
+
+
+@kernel
+def rippled(drive: float, ripple: DriveRipple) -> float:
+    """Return where the drive's output is [mm] when its input is at `drive`; both are 0 at rest."""
+    angle = 2.0 * math.pi * drive / ripple.period_mm
+    sine: float = np.sin(angle)
+    cosine: float = np.cos(angle)
+    return drive + ripple.sine_mm * sine + ripple.cosine_mm * (cosine - 1.0)
+
+
+DRIVE_RIPPLE = Effect(
+    name="drive_ripple",
+    title="Ripple of the drive's gear",
+    acts_on="drive",
+    equation="p = x_in + s·sin(2π x_in/period) + c·(cos(2π x_in/period) − 1)",
+    doc=__doc__,
+    parameters=(
+        Parameter("sine_mm", "mm", neutral=0.0, start=0.05, lower=-5.0, upper=5.0),
+        Parameter("cosine_mm", "mm", neutral=0.0, start=0.05, lower=-5.0, upper=5.0),
+        Parameter(
+            "period_mm",
+            "mm",
+            neutral=PERIOD_MM,
+            start=PERIOD_MM,
+            lower=0.05,
+            upper=200.0,
+            shape=True,
+            starts=(
+                PERIOD_MM,
+                *(1.0 / f for f in np.linspace(1 / LONGEST_MM, 1 / SHORTEST_MM, PERIODS).tolist()),
+            ),
+        ),
+    ),
+    experiment="One slow stroke at two constant speeds: the wave keeps its period in x_in and "
+    "doubles its frequency in time with the speed.",
+)

@@ -1,0 +1,46 @@
+"""The reading of a force sensor creeps away during a run.
+
+What one sees: one force channel leaves the model steadily as the run goes on, by the same amount on
+pull and release and at every tension; the other channels fit to the end. Every run begins anew.
+Equation: the reading is the tension plus a drift that starts at a rate and settles
+(numerics/settling.py), as a sensor that warms up does; both sensors settle at one rate.
+Mistaken for: preload_loss (f_in and f_out fall together, tied by the sheath's friction);
+friction_drift, bend_drift (opposite on pull and release); force_sensor_offset (there from the
+start, and constant).
+Not validated: drift that goes on from one run to the next; creep that follows the force.
+"""
+
+from typing import NamedTuple
+
+from tsas_cli.effects.effect import SETTLING, Effect, Parameter
+from tsas_cli.numerics.compiled import kernel
+from tsas_cli.numerics.settling import settling
+
+
+class ForceSensorDrift(NamedTuple):
+    """First rate of each force sensor's drift [N/s] and how fast both settle [1/s]."""
+
+    f_in_rate_N_per_s: float = 0.0
+    f_out_rate_N_per_s: float = 0.0
+    settling_per_s: float = 0.0
+
+
+@kernel
+def drift_reading(force: float, rate: float, settling_per_s: float, time_s: float) -> float:
+    """Return what a drifting sensor reads [N] at a time since the run began."""
+    return force + settling(rate, settling_per_s, time_s)
+
+
+FORCE_SENSOR_DRIFT = Effect(
+    name="force_sensor_drift",
+    title="Drift of a force sensor",
+    acts_on="sensor",
+    equation="reading = T + rate·(1 − exp(−ν t))/ν",
+    doc=__doc__,
+    parameters=(
+        Parameter("f_in_rate_N_per_s", "N/s", neutral=0.0, start=0.02, lower=-100.0, upper=100.0),
+        Parameter("f_out_rate_N_per_s", "N/s", neutral=0.0, start=0.02, lower=-100.0, upper=100.0),
+        SETTLING,
+    ),
+    experiment="Hang a weight on each force sensor, switch it on, and record for as long as a run.",
+)

@@ -1,0 +1,47 @@
+"""The guide of the load rubs with the same force at any tension.
+
+What one sees: after a reversal x_out stands still for longer. With friction behind the f_out
+sensor, f_out over x_out is a loop of constant height, and f_out moves while x_out stands. With
+friction before it, f_out over x_out stays a line, and f_in over f_out is wider by a constant that
+is larger on a pull than on a release.
+Equation: Coulomb friction Fc that does not depend on the tension. It passes the sheath like the
+load: Fc e^(μθ) of it reaches f_in on a pull, Fc e^(−μθ) on a release (Yang 2025, Eq. 7). The paper
+has no friction at its load.
+Mistaken for: drive_friction (the same in f_in on pull and release, and x_out does not feel it);
+load_spring_nonlinearity (a curve, not a loop); load_dependent_friction (curves in f_in over f_out);
+backlash (f_in stands still too).
+Not validated: guides that stick harder than they slide, or tilt under the load.
+"""
+
+from typing import NamedTuple
+
+from tsas_cli.effects.effect import Effect, Parameter
+from tsas_cli.numerics.compiled import kernel
+
+
+class LoadFriction(NamedTuple):
+    """Friction on the load's and on the tendon's side of the f_out sensor [N]."""
+
+    after_sensor_N: float = 0.0
+    before_sensor_N: float = 0.0
+
+
+@kernel
+def guide_friction(load: LoadFriction) -> float:
+    """Return the friction on both sides of the sensor together [N]."""
+    return load.after_sensor_N + load.before_sensor_N
+
+
+LOAD_FRICTION = Effect(
+    name="load_friction",
+    title="Friction at the load",
+    acts_on="load",
+    equation="f_out = spring force + Fc_after·sgn(v_out),  TL = f_out + Fc_before·sgn(v_out)",
+    doc=__doc__,
+    parameters=(
+        Parameter("after_sensor_N", "N", neutral=0.0, start=0.5, lower=0.0, upper=1000.0),
+        Parameter("before_sensor_N", "N", neutral=0.0, start=0.5, lower=0.0, upper=1000.0),
+    ),
+    experiment="Take the tendon off and push the load to and fro by its f_out sensor: half the "
+    "height of the loop is the friction.",
+)

@@ -1,0 +1,46 @@
+"""The anchor of the load spring gives way and the preload falls during a run.
+
+What one sees: at the same x_in f_out falls as the run goes on, on pulls and releases alike, and
+f_in with it, by e^(μθ) times as much on a pull and by e^(−μθ) on a release. The line of f_out over
+x_out moves down in parallel.
+Equation: the load of Yang 2025, Eq. (9), with a preload that falls at a rate and settles
+(numerics/settling.py), as an anchor or a sagging spring does.
+Mistaken for: force_sensor_drift (one force channel alone, or both by amounts that the sheath's
+friction does not tie); friction_drift, bend_drift (opposite on pull and release).
+Not validated: a tendon that creeps, which leaves f_out over x_out on its line; a loss that goes
+with the tension; a loss that stays from one run to the next.
+"""
+
+from typing import NamedTuple
+
+from tsas_cli.effects.effect import SETTLING, Effect, Parameter
+from tsas_cli.numerics.compiled import kernel
+from tsas_cli.numerics.settling import settling
+
+
+class PreloadLoss(NamedTuple):
+    """First rate of the loss [N/s] and how fast it settles [1/s]."""
+
+    rate_N_per_s: float = 0.0
+    settling_per_s: float = 0.0
+
+
+@kernel
+def lost_preload(loss: PreloadLoss, time_s: float) -> float:
+    """Return by how much the spring force has fallen [N] at a time since the run began."""
+    return settling(loss.rate_N_per_s, loss.settling_per_s, time_s)
+
+
+PRELOAD_LOSS = Effect(
+    name="preload_loss",
+    title="Loss of preload",
+    acts_on="load",
+    equation="spring force = F0 − rate·(1 − exp(−ν t))/ν + kL·x",
+    doc=__doc__,
+    parameters=(
+        Parameter("rate_N_per_s", "N/s", neutral=0.0, start=0.02, lower=0.0, upper=1000.0),
+        SETTLING,
+    ),
+    experiment="Hold x_in for minutes and watch the anchor with a dial gauge: it moves by the loss "
+    "divided by the spring's stiffness.",
+)

@@ -1,0 +1,40 @@
+"""The sheath gets shorter under the tension that it guides.
+
+What one sees: dead bands are wider and softer, and x_out moves less than x_in by more, exactly as
+with a softer tendon; the share grows with the length of the sheath.
+Equation: the sheath is pressed with the force that the tendon pulls with, so both give in series:
+(1 + ratio)/EA per length of sheathed tendon, ratio = EA of the tendon / EA of the sheath. Hooke's
+law as in Yang 2025, Eq. (3), which takes the sheath as rigid.
+Mistaken for: a lower tendon modulus (exactly the same; only a data sheet's modulus that bounds the
+tendon's tells); free_tendon, drive_compliance (they do not grow with the sheath's length).
+Not validated: a sheath that slides in its clamps, straightens, or keeps a part of its shortening.
+"""
+
+from typing import NamedTuple
+
+from tsas_cli.effects.effect import Effect, Parameter
+from tsas_cli.numerics.compiled import kernel
+
+
+class SheathCompression(NamedTuple):
+    """Axial stiffness of the tendon divided by that of the sheath [1]."""
+
+    compliance_ratio: float = 0.0
+
+
+@kernel
+def softened(compliance: float, ratio: float) -> float:
+    """Return the compliance of sheathed tendon and sheath together, in the unit of the first."""
+    return compliance * (1.0 + ratio)
+
+
+SHEATH_COMPRESSION = Effect(
+    name="sheath_compression",
+    title="Compression of the sheath",
+    acts_on="tendon",
+    equation="dx/ds = (1 + ratio)·(T − F0)/EA in the sheath",
+    doc=__doc__,
+    parameters=(Parameter("compliance_ratio", "1", neutral=0.0, start=0.3, lower=0.0, upper=20.0),),
+    experiment="Pull the tendon alone, then through its sheath: the compliance that comes on top "
+    "is the sheath's.",
+)

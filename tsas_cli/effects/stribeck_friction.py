@@ -1,0 +1,59 @@
+"""Slow sliding has more friction than fast sliding.
+
+What one sees: f_in over f_out is widest near reversals, where the drive is slow, and narrows
+towards the middle of a stroke; a whole run at a lower speed has a wider loop. The error of f_in
+goes with the tension and changes sign with the direction.
+Equation: the exponential Stribeck curve of Yang 2025, Eq. (15), on the friction coefficient of
+Eq. (2); v is the sliding speed of the drive's end. The paper's 0.01 mm/s is far below the speed of
+its strokes, where nothing of it is left.
+Mistaken for: viscous_friction (more at high speed, at any tension the same); presliding (goes by
+travel since the reversal, not by speed); load_dependent_friction (goes with the tension).
+Not validated: stick-slip; the lag of friction behind the speed; places of the tendon that slide
+slower than the drive's end.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tsas_cli.effects.effect import Effect, Parameter
+from tsas_cli.numerics.compiled import kernel
+
+
+class StribeckFriction(NamedTuple):
+    """Excess of friction at rest [1] and the speed at which it has fallen to 1/e [mm/s]."""
+
+    excess: float = 0.0
+    velocity_mm_per_s: float = 5.0
+
+
+@kernel
+def stribeck_factor(speed: float, stribeck: StribeckFriction) -> float:
+    """Return what multiplies the friction coefficient at a sliding speed [mm/s]."""
+    relative = speed / stribeck.velocity_mm_per_s
+    share: float = np.exp(-relative * relative)
+    return 1.0 + stribeck.excess * share
+
+
+STRIBECK_FRICTION = Effect(
+    name="stribeck_friction",
+    title="Higher friction at low speed",
+    acts_on="tendon",
+    equation="μ → μ·(1 + e·exp(−(v/vs)²))",
+    doc=__doc__,
+    parameters=(
+        Parameter("excess", "1", neutral=0.0, start=0.2, lower=0.0, upper=10.0),
+        Parameter(
+            "velocity_mm_per_s",
+            "mm/s",
+            neutral=5.0,
+            start=5.0,
+            lower=0.05,
+            upper=500.0,
+            shape=True,
+            starts=(1.0, 4.0, 15.0),
+        ),
+    ),
+    experiment="The same stroke at constant speeds over two decades: f_in/f_out at one place of "
+    "the stroke, over the speed.",
+)

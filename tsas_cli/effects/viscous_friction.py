@@ -1,0 +1,46 @@
+"""A lubricant takes a force from the tendon that grows with its speed.
+
+What one sees: f_in is too high on a pull and too low on a release, as far as the drive is fast
+and at any tension alike; with a sine as input the loop f_in over x_in is widest in the middle of
+the stroke and right at its ends. Fast runs miss, slow ones fit.
+Equation: the σ2 v term of Yang 2025, Eq. (15), summed over the sheath: Table 1's 4e-4 N s/mm for
+each of 50 lumps make c = 0.02 N s/mm. v is the sliding speed of the drive's end.
+Mistaken for: drive_friction, a larger friction coefficient (one speed cannot tell them; they do
+not grow with it); stribeck_friction (less friction when fast); channel_delay (also in dead bands,
+where f_in is steep); load_inertia (goes with the acceleration).
+Not validated: lubricants that thin with speed or warmth; places of the tendon that slide slower
+than the drive's end.
+"""
+
+from typing import NamedTuple
+
+from tsas_cli.effects.effect import Effect, Parameter
+from tsas_cli.numerics.compiled import kernel
+
+
+class ViscousFriction(NamedTuple):
+    """Tension lost over the whole sheath per sliding speed [N s/mm]."""
+
+    coefficient_N_s_per_mm: float = 0.0
+
+
+@kernel
+def viscous_loss(speed: float, coefficient: float) -> float:
+    """Return the tension lost over the whole sheath [N] at a sliding speed [mm/s]."""
+    return coefficient * abs(speed)
+
+
+VISCOUS_FRICTION = Effect(
+    name="viscous_friction",
+    title="Friction that grows with speed",
+    acts_on="tendon",
+    equation="dT/ds = −λ·(μκT + c|v|/L)",
+    doc=__doc__,
+    parameters=(
+        Parameter(
+            "coefficient_N_s_per_mm", "N s/mm", neutral=0.0, start=0.02, lower=0.0, upper=100.0
+        ),
+    ),
+    experiment="The same stroke at constant speeds, each twice the last: f_in at one place of the "
+    "stroke rises in proportion to the speed.",
+)
