@@ -8,6 +8,7 @@ from typer.exceptions import TyperException
 
 from tsas_cli import __version__
 from tsas_cli.commands.calibrate import calibrate
+from tsas_cli.commands.challenge import challenge
 from tsas_cli.commands.check import check
 from tsas_cli.commands.ingest import ingest
 from tsas_cli.commands.report import report
@@ -43,6 +44,7 @@ app.command("check")(check)
 app.command("calibrate")(calibrate)
 app.command("simulate")(simulate)
 app.command("report")(report)
+app.add_typer(challenge)
 
 
 def main() -> None:

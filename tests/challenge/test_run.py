@@ -1,0 +1,48 @@
+"""Each case in a process of its own: one that fails or dies takes no other along."""
+
+import json
+
+import pytest
+
+from tests.challenge.made import case, diagnosis, tool, write_set
+from tsas_cli.challenge.entry import read_entry
+from tsas_cli.challenge.run import run_cases
+from tsas_cli.errors import InputError
+
+NAMES = ("answers", "dies", "fails", "refuses", "silent", "well")
+
+
+def test_what_went_wrong_is_written_down_and_the_others_answer(tmp_path):
+    sealed = write_set(tmp_path / "set", {name: case() for name in NAMES})
+    (sealed / "answers.json").unlink()  # a run does not need them
+    steps = []
+    log = run_cases(
+        sealed, tmp_path / "entry", workers=2, diagnose=tool, step=lambda: steps.append(1)
+    )
+    assert len(steps) == len(NAMES)
+    assert log == json.loads((tmp_path / "entry" / "entry.json").read_text(encoding="utf-8"))
+    assert log["answered"] == 2
+    assert log["no_answer"].keys() == {"dies", "fails", "refuses", "silent"}
+    assert log["no_answer"]["dies"] == "the process died"
+    assert log["no_answer"]["fails"] == "ZeroDivisionError: division by zero"
+    assert log["no_answer"]["refuses"] == "a.parquet: no such run"
+    assert "diagnosis.json: cannot be read" in log["no_answer"]["silent"]
+    entry = read_entry(tmp_path / "entry", NAMES)
+    assert entry.no_answer == log["no_answer"]
+    assert set(entry.diagnoses) == {"answers", "well"}
+    well = json.loads((tmp_path / "entry" / "well" / "diagnosis.json").read_text(encoding="utf-8"))
+    assert 0.0 <= well.pop("seconds") < 60.0
+    assert well == diagnosis("backlash")
+
+
+def test_a_set_without_cases(tmp_path):
+    with pytest.raises(InputError, match="no cases/ID/dataset here"):
+        run_cases(tmp_path, tmp_path / "entry", workers=1, diagnose=tool)
+
+
+def test_an_entry_is_not_overwritten_unasked(tmp_path):
+    sealed = write_set(tmp_path / "set", {"well": case()})
+    run_cases(sealed, tmp_path / "entry", workers=1, diagnose=tool)
+    with pytest.raises(InputError, match="already exists"):
+        run_cases(sealed, tmp_path / "entry", workers=1, diagnose=tool)
+    run_cases(sealed, tmp_path / "entry", workers=1, force=True, diagnose=tool)

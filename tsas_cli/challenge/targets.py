@@ -1,0 +1,36 @@
+"""What the figures of the summary are held against."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Target:
+    """A share has to be between `low` and `high`; `each_effect` holds it for every effect alone."""
+
+    low: float = 0.0
+    high: float = 1.0
+    each_effect: bool = False
+
+    def text(self) -> str:
+        """Return it in words."""
+        low, high = f"{100 * self.low:g}", f"{100 * self.high:g}"
+        if self.low == 0.0:
+            bounds = f"≤ {high} %"
+        elif self.high == 1.0:
+            bounds = f"≥ {low} %" if self.low < 1.0 else "100 %"
+        else:
+            bounds = f"{low}–{high} %"
+        return f"{bounds} for each effect" if self.each_effect else bounds
+
+
+SIZES = (1.0, 0.4)  # the sizes of single effects that have a target
+TARGETS = {
+    "answered": Target(low=1.0),
+    "size_1_exact": Target(low=0.95, each_effect=True),
+    "size_1_false": Target(high=0.02, each_effect=True),
+    "size_0.4_exact": Target(low=0.85, each_effect=True),
+    "pair_both": Target(low=0.8),
+    "nothing_named": Target(high=0.01),
+    "unknown_false": Target(high=0.1),
+    "coverage": Target(low=0.88, high=0.99),
+}
