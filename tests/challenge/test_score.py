@@ -29,7 +29,7 @@ SAID = {
     "b1": diagnosis(
         named("backlash", play_mm=GOOD), named("drive_friction", friction_N=estimate(1.5, "N"))
     ),
-    "c1": diagnosis(),
+    "c1": diagnosis(verdict="unexplained"),
     "c2": diagnosis("backlash"),
     "d1": diagnosis(verdict="unexplained", unexplained=True),
     "d2": diagnosis("drive_ripple"),
@@ -68,6 +68,7 @@ def test_every_figure_is_the_one_counted_by_hand(sealed, entry):
         "nothing_named": (1, 2),
         "unknown_false": (1, 2),
         "unknown_recognised": (1, 2),
+        "known_unexplained": (1, 6),
         "coverage": (2, 2),
         "without_interval": (1, 3),
     }
@@ -121,6 +122,7 @@ def test_the_confusions_say_who_was_taken_for_whom(sealed, entry):
         ("backlash", "presliding"): 1,
         ("drive_friction", "backlash"): 1,
         ("drive_friction", "no answer"): 1,
+        ("nothing", "unexplained"): 1,
         ("nothing", "backlash"): 1,
         ("hum (not in the catalogue)", "drive_ripple"): 1,
     }
@@ -151,6 +153,11 @@ def test_entries_stand_side_by_side(sealed, entry, tmp_path):
     assert by_title["two effects: both named"] == (
         *("two effects: both named", "≥ 80 %"),
         *("100.0 % [20.7, 100.0] of 1", "yes", "0.0 % [0.0, 79.3] of 1", "no"),
+    )
+    assert by_title["size 1: named exactly"][1::2] == ("", "", "")
+    assert by_title["size 1: named exactly"][2] == "33.3 % [6.1, 79.2] of 3"
+    assert ("  the worst effect", "≤ 2 % for each effect", "1 of 2, backlash", "no") in (
+        row[:4] for row in rows
     )
     assert by_title["nothing hidden: something named"][4:] == ("no cases", "")
     assert by_title["seconds per case"][2:] == ("median 5, max 10", "", "not said", "")

@@ -59,6 +59,15 @@ def figures(judged: Sequence[Judged]) -> list[Figure]:
             "not in the catalogue: called unexplained",
             _share(unknown, "recognised"),
         ),
+        Figure(
+            "known_unexplained",
+            "all others: called unexplained",
+            rate(
+                j.diagnosis.says_unexplained
+                for j in judged
+                if j.case.kind != "unknown" and j.diagnosis is not None
+            ),
+        ),
         Figure("coverage", "95 % intervals that hold the true parameter", rate(stated)),
         Figure(
             "without_interval",

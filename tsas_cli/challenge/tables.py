@@ -1,6 +1,6 @@
 """What `tsas challenge score` prints: the entries side by side, then each by effect."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 from tsas_cli.challenge.answers import CATALOGUE
@@ -27,42 +27,41 @@ def tables(content: dict[str, Any]) -> Iterator[Table]:
 
 def _summary(content: dict[str, Any]) -> Table:
     entries = list(content["entries"].values())
-    columns = (part for label in content["entries"] for part in (label, "met"))
-    rows = [
-        (
-            figures[0]["title"],
-            figures[0]["target"] or "",
-            *(part for f in figures for part in (_rate(f), _met(f))),
-        )
-        for figures in zip(*(entry["figures"] for entry in entries), strict=True)
-    ]
+    columns = _beside(content["entries"], ["met"] * len(entries))
+    blank = [""] * len(entries)
+    rows: list[tuple[str, ...]] = []
+    for figures in zip(*(entry["figures"] for entry in entries), strict=True):
+        title, target = figures[0]["title"], figures[0]["target"] or ""
+        met = [_MET[f["met"]] for f in figures]
+        if any(f["worst"] for f in figures):
+            rows.append((title, "", *_beside(map(_rate, figures), blank)))
+            worst = (_worst(f["worst"]) for f in figures)
+            rows.append(("  the worst effect", target, *_beside(worst, met)))
+        else:
+            rows.append((title, target, *_beside(map(_rate, figures), met)))
     rows += [
-        ("rivals beside each name, mean", "", *_row(entries, _rivals)),
-        ("held-out gain of the best obtainable, median", "", *_row(entries, _gain)),
-        ("seconds per case", "", *_row(entries, _seconds)),
+        ("rivals beside each name, mean", "", *_beside(map(_rivals, entries), blank)),
+        ("held-out gain of the best obtainable, median", "", *_beside(map(_gain, entries), blank)),
+        ("seconds per case", "", *_beside(map(_seconds, entries), blank)),
     ]
     cases = ", ".join(f"{n} {kind}" for kind, n in content["answers"]["cases"].items())
     title = f"set of seed {content['answers']['seed']}: {cases}; rates with 95 % intervals"
     return title, ("figure", "target", *columns), rows
 
 
-def _row(entries: Sequence[dict[str, Any]], cell: Any) -> list[str]:
-    return [part for entry in entries for part in (cell(entry), "")]
+def _beside(cells: Iterable[str], met: Iterable[str]) -> list[str]:
+    return [part for pair in zip(cells, met, strict=True) for part in pair]
 
 
 def _rate(figure: dict[str, Any]) -> str:
     if not figure["cases"]:
         return "no cases"
     low, high = 100 * figure["interval_low"], 100 * figure["interval_high"]
-    said = f"{100 * figure['share']:.1f} % [{low:.1f}, {high:.1f}] of {figure['cases']}"
-    worst = figure["worst"]
-    return said + (
-        f", worst {worst['effect']} {worst['hits']} of {worst['cases']}" if worst else ""
-    )
+    return f"{100 * figure['share']:.1f} % [{low:.1f}, {high:.1f}] of {figure['cases']}"
 
 
-def _met(figure: dict[str, Any]) -> str:
-    return _MET[figure["met"]]
+def _worst(worst: dict[str, Any] | None) -> str:
+    return f"{worst['hits']} of {worst['cases']}, {worst['effect']}" if worst else "no cases"
 
 
 def _rivals(entry: dict[str, Any]) -> str:
