@@ -10,6 +10,8 @@ from tsas_cli import __version__
 from tsas_cli.commands.calibrate import calibrate
 from tsas_cli.commands.challenge import challenge
 from tsas_cli.commands.check import check
+from tsas_cli.commands.effects import effects
+from tsas_cli.commands.explain import explain
 from tsas_cli.commands.ingest import ingest
 from tsas_cli.commands.report import report
 from tsas_cli.commands.simulate import simulate
@@ -44,6 +46,8 @@ app.command("check")(check)
 app.command("calibrate")(calibrate)
 app.command("simulate")(simulate)
 app.command("report")(report)
+app.command("effects")(effects)
+app.command("explain")(explain)
 app.add_typer(challenge)
 
 

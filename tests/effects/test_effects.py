@@ -71,6 +71,7 @@ def test_the_text_is_the_docstring_of_the_file_and_has_its_parts(effect):
     assert effect.doc == import_module(f"tsas_cli.effects.{effect.name}").__doc__
     first, _, rest = effect.doc.partition("\n\n")
     assert first.endswith(".")
+    assert effect.sentence == first
     assert "\n" not in first
     places = [rest.find(f"{part}:") for part in PARTS]
     assert -1 not in places

@@ -38,6 +38,11 @@ class Effect:
     parameters: tuple[Parameter, ...]
     experiment: str
 
+    @property
+    def sentence(self) -> str:
+        """The first sentence of the text."""
+        return self.doc.partition("\n")[0]
+
 
 SETTLING = Parameter(
     "settling_per_s",

@@ -30,7 +30,7 @@ class LoadDependentFriction(NamedTuple):
 @kernel
 def load_factor(tension_ratio: float, exponent: float) -> float:
     """Return what multiplies the friction coefficient where the tension is `tension_ratio` F0."""
-    factor: float = np.maximum(abs(tension_ratio), SMALLEST_RATIO) ** exponent
+    factor: float = np.maximum(np.abs(tension_ratio), SMALLEST_RATIO) ** exponent
     return factor
 
 

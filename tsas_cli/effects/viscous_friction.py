@@ -14,6 +14,8 @@ than the drive's end.
 
 from typing import NamedTuple
 
+import numpy as np
+
 from tsas_cli.effects.effect import Effect, Parameter
 from tsas_cli.numerics.compiled import kernel
 
@@ -27,7 +29,8 @@ class ViscousFriction(NamedTuple):
 @kernel
 def viscous_loss(speed: float, coefficient: float) -> float:
     """Return the tension lost over the whole sheath [N] at a sliding speed [mm/s]."""
-    return coefficient * abs(speed)
+    magnitude: float = np.abs(speed)
+    return coefficient * magnitude
 
 
 VISCOUS_FRICTION = Effect(

@@ -1,0 +1,49 @@
+import json
+
+import pytest
+
+from tsas_cli.effects import EFFECTS
+
+
+@pytest.mark.parametrize("effect", EFFECTS[::7], ids=lambda effect: effect.name)
+def test_it_prints_all_that_a_person_needs(tsas, effect):
+    done = tsas("explain", effect.name)
+    assert (done.returncode, done.stderr) == (0, "")
+    wanted = [effect.title, effect.name, effect.equation, effect.doc.strip(), effect.experiment]
+    printed = " ".join(done.stdout.split())
+    places = [printed.find(" ".join(part.split())) for part in wanted]
+    assert -1 not in places
+    assert places == sorted(places)
+
+
+def test_parameters_come_with_unit_and_bounds(tsas):
+    lines = tsas("explain", "force_sensor_gain").stdout.splitlines()
+    assert ["f_out_gain", "1", "1", "0.01", "100"] in [line.split() for line in lines]
+    header = next(line for line in lines if "neutral" in line)
+    assert header.split() == ["parameter", "unit", "neutral", "lowest", "highest"]
+
+
+def test_json_is_the_record(tsas):
+    content = json.loads(tsas("explain", "stribeck_friction", "--json").stdout)
+    assert content["format"] == 1
+    assert content["name"] == "stribeck_friction"
+    assert content["acts_on"] == "tendon"
+    assert "Mistaken for:" in content["doc"]
+    excess, velocity = content["parameters"]
+    assert (excess["shape"], velocity["shape"]) == (False, True)
+    assert velocity["starts"] == [1.0, 4.0, 15.0]
+
+
+def test_quiet_prints_nothing(tsas):
+    assert tsas("explain", "backlash", "--quiet").stdout == ""
+
+
+@pytest.mark.parametrize(
+    ("name", "hint"), [("drive_friktion", "did you mean drive_friction?"), ("?", "channel_delay")]
+)
+def test_an_unknown_name_is_told_the_nearest(tsas, name, hint):
+    done = tsas("explain", name)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.startswith(f"tsas: there is no effect '{name}'; ")
+    assert hint in done.stderr
+    assert len(done.stderr.splitlines()) == 1
