@@ -37,7 +37,7 @@ def calibrate_dataset(
         runs = []
         for recording in dataset:
             _refuse_wrong_sign(recording, dataset.manifest)
-            runs.append(prepare(recording))
+            runs.append(prepare(recording, dataset.manifest.session_start))
             step()
         result = calibrate(dataset.manifest, runs, step)
         summary = dataset.header("calibrate", out) | _summary(result, dataset.manifest)

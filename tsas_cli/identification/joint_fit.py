@@ -4,7 +4,6 @@ Before the fit, the Jacobian says which parameters the recordings can tell; the 
 values. The errors and their weights are those of `run_errors`.
 """
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
@@ -13,19 +12,19 @@ import numpy.typing as npt
 
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.fit import Fitted, Unknown, fit, identifiable, jacobian
-from tsas_cli.identification.model import DEFAULTS, Model
+from tsas_cli.identification.model import Model
 from tsas_cli.identification.prepared import Prepared
+from tsas_cli.identification.quantities import LOG_SCALE, QUANTITIES
 from tsas_cli.identification.run_errors import RunErrors
 from tsas_cli.identification.samples import kept_samples, lost
 from tsas_cli.numerics.covariance import FEWEST_BLOCKS
-from tsas_cli.physics.parameters import NOMINAL, NOMINAL_BY_NAME
-from tsas_cli.physics.rig import Rig
+from tsas_cli.physics.parameters import NOMINAL
+from tsas_cli.physics.rig import Rig, with_values
 
 Floats = npt.NDArray[np.float64]
 
 MOST_ROUNDS = 4
 ROUGH, FINE = 1e-3, 1e-6  # tolerance of the first fit, whose weights are the start's, and after
-LOG_SCALE = 0.3  # plausible relative change of a positive parameter
 ZERO_SCALE = 0.02  # plausible zero of a displacement sensor, of its range
 
 
@@ -39,12 +38,14 @@ class JointFit:
         samples = [kept_samples(run, start.rig(run.run)) for run in runs]
         self.left_out = [s for run, at in zip(runs, samples, strict=True) for s in lost(run, at)]
         self.runs = [run for run, at in zip(runs, samples, strict=True) if at]
+        self.rigs = [start.rig(run.run) for run in self.runs]
         self.unknowns = _unknowns(start, self.runs)
+        self.chosen: list[int] = []
         self.values = np.array([u.start for u in self.unknowns])
+        kept_at = [at for at in samples if at]
         self.errors = [
-            RunErrors(run, at, start.rig(run.run))
-            for run, at in zip(runs, samples, strict=True)
-            if at
+            RunErrors(run, at, rig)
+            for run, at, rig in zip(self.runs, kept_at, self.rigs, strict=True)
         ]
 
     def solve(self) -> tuple[Model, Fitted | None, list[str]]:
@@ -68,6 +69,7 @@ class JointFit:
             if chosen == before:
                 break
             before = chosen
+        self.chosen = chosen
         told = self._estimates(chosen, result)
         sentences = [*self.left_out, *self._sentences(confounded), *_doubts(told, result)]
         return Model(tuple(told)).over(self.kept), result, sentences
@@ -112,17 +114,12 @@ class JointFit:
     def _kept(self, unknown: Unknown) -> float:
         """Return the scaled value that an unknown keeps where it is not fitted."""
         value = self.kept.value(unknown.name, self._owner(unknown))
-        return _scaled(unknown.name, DEFAULTS[unknown.name] if value is None else value)
+        quantity = QUANTITIES[unknown.name]
+        return quantity.scaled(quantity.default if value is None else value)
 
     def _rig(self, k: int, values: Floats) -> Rig:
         """Return the rig of run k at scaled values of all unknowns."""
-        own = {
-            u.name: _unscaled(u.name, v)
-            for u, v in zip(self.unknowns, values, strict=True)
-            if u.run in (None, k)
-        }
-        rig: Rig = self.start.rig(self.runs[k].run)
-        return Rig(**{**rig._asdict(), **own})
+        return rig_at(self.rigs[k], k, self.unknowns, values)
 
     def _owner(self, unknown: Unknown) -> str | None:
         return None if unknown.run is None else self.runs[unknown.run].run.id
@@ -132,15 +129,15 @@ class JointFit:
         out = []
         for j, v, sd, t, at_bound in found:
             u = self.unknowns[j]
-            parameter = NOMINAL_BY_NAME[u.name]
+            quantity = QUANTITIES[u.name]
             ends = np.clip([v - t * sd, v, v + t * sd], u.lower, u.upper)
-            low, value, high = (_unscaled(u.name, float(end)) for end in ends)
-            stderr = sd * (value if parameter.positive else 1.0)
+            low, value, high = (quantity.unscaled(float(end)) for end in ends)
+            stderr = sd * (value if quantity.positive else quantity.size)
             out.append(
                 Estimate(
                     u.name,
                     value,
-                    parameter.unit,
+                    quantity.unit,
                     "fitted",
                     self._owner(u),
                     float(stderr) if np.isfinite(stderr) else None,
@@ -167,10 +164,20 @@ class JointFit:
         ]
 
 
+def rig_at(rig: Rig, k: int, unknowns: Sequence[Unknown], values: Floats) -> Rig:
+    """Return the rig of run k with the scaled values of the unknowns that are its own or shared."""
+    own = {
+        u.name: QUANTITIES[u.name].unscaled(v)
+        for u, v in zip(unknowns, values, strict=True)
+        if u.run in (None, k)
+    }
+    return with_values(rig, own)
+
+
 def _kept_value(kept: Model, name: str, owner: str) -> str:
     value = kept.value(name, owner or None)
-    unit = NOMINAL_BY_NAME[name].unit.removeprefix("1")
-    return f"{DEFAULTS[name] if value is None else value:.5g} {unit}".rstrip()
+    unit = QUANTITIES[name].unit.removeprefix("1")
+    return f"{QUANTITIES[name].default if value is None else value:.5g} {unit}".rstrip()
 
 
 def _doubts(told: Sequence[Estimate], result: Fitted) -> list[str]:
@@ -211,19 +218,9 @@ def _unknowns(start: Model, runs: Sequence[Prepared]) -> list[Unknown]:
             continue
         for k in owners:
             value = start.value(p.name, None if k is None else runs[k].run.id)
-            value = DEFAULTS[p.name] if value is None else value
+            quantity = QUANTITIES[p.name]
+            scaled = quantity.scaled(quantity.default if value is None else value)
             scale = LOG_SCALE if p.positive else ZERO_SCALE * travel
-            bounds = (_scaled(p.name, p.lower), _scaled(p.name, p.upper))
-            out.append(Unknown(p.name, k, _scaled(p.name, value), *bounds, scale))
+            bounds = (quantity.scaled(p.lower), quantity.scaled(p.upper))
+            out.append(Unknown(p.name, k, scaled, *bounds, scale))
     return out
-
-
-def _scaled(name: str, value: float) -> float:
-    """Return the value, inside its bounds, as it is fitted: a positive one as its logarithm."""
-    p = NOMINAL_BY_NAME[name]
-    inside = min(max(value, p.lower), p.upper)
-    return math.log(inside) if p.positive else inside
-
-
-def _unscaled(name: str, value: float) -> float:
-    return math.exp(value) if NOMINAL_BY_NAME[name].positive else float(value)

@@ -9,11 +9,12 @@ from typing import Any, Literal
 import tomlkit
 from pydantic import BaseModel, ConfigDict
 
-from tsas_cli.effects import EFFECTS, Effects
+from tsas_cli.effects import EFFECTS
 from tsas_cli.errors import InputError, nearest
 from tsas_cli.identification.estimate import Estimate
+from tsas_cli.identification.quantities import DEFAULTS, QUANTITIES
 from tsas_cli.physics.parameters import NOMINAL, NOMINAL_BY_NAME
-from tsas_cli.physics.rig import Rig
+from tsas_cli.physics.rig import Rig, with_values
 from tsas_cli.recordings.manifest import Manifest, Run, parse, read_toml
 
 FILE = "model.toml"
@@ -22,14 +23,6 @@ MOST_WRAP = 20.0  # friction times bend; e^20 is the ratio of the tensions at th
 MAY_BE_ZERO = ("friction_coefficient", "preload_N")  # among the positive parameters
 UNKNOWN_BEND_RAD = 1.0
 UNKNOWN_LENGTH_MM = 1000.0
-DEFAULTS = {
-    "friction_coefficient": 0.1,
-    "load_stiffness_N_per_mm": 1.0,
-    "preload_N": 10.0,
-    "tendon_stiffness_N": 5e4,
-    "x_in_zero_mm": 0.0,
-    "x_out_zero_mm": 0.0,
-}
 
 
 @dataclass(frozen=True)
@@ -71,22 +64,13 @@ class Model:
                 expected=f"at most {MOST_WRAP:.4g} for their product",
                 remedy="is the bend in radians?",
             )
-        return Rig(
+        nominal = Rig(
             sheath_length_mm=run.sheath_length_mm or UNKNOWN_LENGTH_MM,
             total_bend_rad=bend,
-            effects=self._effects(),
             **known,
         )
-
-    def _effects(self) -> Effects:
-        effects = Effects()
-        for effect in EFFECTS:
-            names = (p.name for p in effect.parameters)
-            told = {n: self.value(f"{effect.name}.{n}") for n in names}
-            given = {n: v for n, v in told.items() if v is not None}
-            own = getattr(effects, effect.name)._replace(**given)
-            effects = effects._replace(**{effect.name: own})
-        return effects
+        told = {name: self.value(name) for name in QUANTITIES if "." in name}
+        return with_values(nominal, {n: v for n, v in told.items() if v is not None})
 
 
 def data_sheet(manifest: Manifest) -> Model:

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from datetime import datetime
 from functools import cached_property
 
 import numpy as np
@@ -11,7 +12,7 @@ import numpy.typing as npt
 from tsas_cli.errors import InputError
 from tsas_cli.numerics.conditioning import METHOD, Conditioned, condition
 from tsas_cli.numerics.noise import noise_sd, quantisation_step
-from tsas_cli.physics.quasi_static import Drive
+from tsas_cli.physics.ends import Drive
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.dataset import Recording
 from tsas_cli.recordings.manifest import Load, Run
@@ -35,6 +36,7 @@ class Prepared:
     conditioned: Mapping[str, Conditioned]
     measured: Mapping[str, Floats]
     in_gap: Mask
+    session_s: float = 0.0  # start of the run since the dataset's first
 
     @cached_property
     def drive(self) -> Drive:
@@ -50,6 +52,8 @@ class Prepared:
             load=self.run.load,
             load_values=None if load is None else self.conditioned[load].values,
             start_f_in_N=start,
+            time_s=self.time_s - self.time_s[0],
+            session_s=self.session_s,
         )
 
     @cached_property
@@ -79,8 +83,10 @@ class Prepared:
         }
 
 
-def prepare(recording: Recording) -> Prepared:
+def prepare(recording: Recording, session_start: datetime | None = None) -> Prepared:
     """Condition what drives the model and collect what it is compared with.
+
+    `session_start` is when the first run of the dataset began, where the manifest says it.
 
     Raises
     ------
@@ -129,7 +135,10 @@ def prepare(recording: Recording) -> Prepared:
             remedy=f"there are: {', '.join(columns)}",
         )
     conditioned = {name: condition(time_s, columns[name]) for name in driving}
-    return Prepared(run, time_s, drive, conditioned, measured, gap)
+    session_s = 0.0
+    if session_start is not None and run.started is not None:
+        session_s = (run.started - session_start).total_seconds()
+    return Prepared(run, time_s, drive, conditioned, measured, gap, session_s)
 
 
 def _in_gap(time_s: Floats, values: Floats) -> Mask:

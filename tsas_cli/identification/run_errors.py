@@ -4,6 +4,7 @@ Each error counts in units of its standard deviation: the channel's noise, and w
 noise of the driven ends does to it (large where the tangent stiffness is large).
 """
 
+from copy import copy
 from dataclasses import replace
 from functools import lru_cache
 from itertools import pairwise
@@ -15,7 +16,8 @@ from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.samples import mean_edges, points
 from tsas_cli.numerics.conditioning import Conditioned
 from tsas_cli.numerics.covariance import block_length
-from tsas_cli.physics.quasi_static import Drive, simulate
+from tsas_cli.physics.ends import Drive
+from tsas_cli.physics.quasi_static import simulate
 from tsas_cli.physics.rig import Rig
 
 Floats = npt.NDArray[np.float64]
@@ -34,9 +36,17 @@ class RunErrors:
         self.points = points(run)
         # The fit leaves out what the start still shows in: it may begin at rest.
         self.drive = replace(run.drive, start_f_in_N=None)
+        self.on_mesh = False
         self._answer = lru_cache(maxsize=2)(lambda rig: self._follow(rig, self.drive))
         self.weights: dict[str, Floats] = {}
         self.weigh(rig)
+
+    def meshed(self) -> "RunErrors":
+        """Return the same run with the same weights, answered by the slip chain always."""
+        other = copy(self)
+        other.on_mesh = True
+        other._answer = lru_cache(maxsize=2)(lambda rig: other._follow(rig, other.drive))  # noqa: SLF001
+        return other
 
     @property
     def length(self) -> int:
@@ -101,7 +111,9 @@ class RunErrors:
         """Return the answers to a drive at all samples, straight between those simulated."""
         at = self.points
         load = None if drive.load_values is None else drive.load_values[at]
-        response = simulate(rig, replace(drive, values=drive.values[at], load_values=load))
+        time_s = None if drive.time_s is None else drive.time_s[at]
+        thinned = replace(drive, values=drive.values[at], load_values=load, time_s=time_s)
+        response = simulate(rig, thinned, on_mesh=self.on_mesh)
         samples = np.arange(drive.values.size)
         return {
             "f_in_N": np.interp(samples, at, response.f_in_N),

@@ -46,7 +46,7 @@ def simulate_dataset(
     with new_folder(out, force=force) as folder:
         (folder / "runs").mkdir()
         for recording in dataset:
-            run = prepare(recording)
+            run = prepare(recording, dataset.manifest.session_start)
             answer = compare(run, model, dynamics)
             write_parquet(folder / "runs" / f"{run.run.id}.parquet", _table(run, answer))
             summary["runs"][run.run.id] = answer.as_json(run)

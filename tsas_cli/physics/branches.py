@@ -16,9 +16,13 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.effects.free_tendon import free_compliance
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.capstan import mean_tension_ratio, tension_ratio
+from tsas_cli.physics.compliances import (
+    compliance_at_drive,
+    compliance_at_load,
+    sheath_compliance,
+)
 from tsas_cli.physics.rig import Rig
 
 Floats = npt.NDArray[np.float64]
@@ -67,10 +71,8 @@ def full_slip(direction: float, rig: Rig, wrap: float, c: float) -> tuple[float,
 
     Below x*, where no tension is left, it hangs slack.
     """
-    EA = rig.tendon_stiffness_N
-    spring = 1.0 / rig.load_stiffness_N_per_mm
-    spring += free_compliance(rig.effects.free_tendon.distal_length_mm, EA)
-    sheath = rig.sheath_length_mm / EA
+    spring = 1.0 / rig.load_stiffness_N_per_mm + compliance_at_load(rig)
+    sheath = sheath_compliance(rig)
     compliance = (
         tension_ratio(wrap, direction) * spring + mean_tension_ratio(wrap, direction) * sheath + c
     )
@@ -107,8 +109,8 @@ def branches(x_in: Floats, rig: Rig) -> tuple[Floats, Floats, Phases]:
         in loosening, 0 in a dead band, 2 where it hangs slack.
     """
     wrap = max(rig.friction_coefficient * rig.total_bend_rad, SMALLEST_WRAP)
-    C = rig.sheath_length_mm / (wrap * rig.tendon_stiffness_N)
-    c = free_compliance(rig.effects.free_tendon.proximal_length_mm, rig.tendon_stiffness_N)
+    C = sheath_compliance(rig) / wrap
+    c = compliance_at_drive(rig)
     swing = math.exp(2.0 * wrap)
     rest_high, rest_low = rig.preload_N * math.exp(wrap), rig.preload_N * math.exp(-wrap)
     pulled, slack = full_slip(1.0, rig, wrap, c)

@@ -1,5 +1,6 @@
 """The parameters of one rig during one run, as the kernels take them."""
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 from tsas_cli.effects import Effects
@@ -21,3 +22,15 @@ class Rig(NamedTuple):
     x_in_zero_mm: float = 0.0
     x_out_zero_mm: float = 0.0
     effects: Effects = Effects()
+
+
+def with_values(rig: Rig, values: Mapping[str, float]) -> Rig:
+    """Return the rig with some values replaced; an effect's are named effect.parameter."""
+    own = {name: value for name, value in values.items() if "." not in name}
+    effects = rig.effects
+    for name, value in values.items():
+        effect, dot, parameter = name.partition(".")
+        if dot:
+            changed = getattr(effects, effect)._replace(**{parameter: value})
+            effects = effects._replace(**{effect: changed})
+    return rig._replace(effects=effects, **own)

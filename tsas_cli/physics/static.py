@@ -8,10 +8,10 @@ band only, because a slip front needs a curve.
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.effects.free_tendon import free_compliance
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.branches import SMALLEST_WRAP, full_slip
 from tsas_cli.physics.capstan import dead_band_stiffness, tension_ratio
+from tsas_cli.physics.compliances import compliance_at_drive, sheath_compliance
 from tsas_cli.physics.rig import Rig
 
 Floats = npt.NDArray[np.float64]
@@ -25,8 +25,8 @@ def static_model(x_in: Floats, rig: Rig) -> tuple[Floats, Floats, Phases]:
     Parameters and results are those of `branches`.
     """
     wrap = max(rig.friction_coefficient * rig.total_bend_rad, SMALLEST_WRAP)
-    free = free_compliance(rig.effects.free_tendon.proximal_length_mm, rig.tendon_stiffness_N)
-    stiffness = dead_band_stiffness(wrap, rig.sheath_length_mm, rig.tendon_stiffness_N)
+    free = compliance_at_drive(rig)
+    stiffness = dead_band_stiffness(wrap, 1.0, 1.0 / sheath_compliance(rig))
     stiffness = stiffness / (1.0 + stiffness * free)
     pulled, slack = full_slip(1.0, rig, wrap, free)
     released, slack = full_slip(-1.0, rig, wrap, free)

@@ -85,6 +85,13 @@ class Manifest(_Table):
     run: tuple[Run, ...] = Field(min_length=1)
     ingest: dict[str, Any] | None = None  # the files and the map that `tsas ingest` has read
 
+    @property
+    def session_start(self) -> datetime | None:
+        """When the first run began, or None where not all runs say when they did."""
+        started = [run.started for run in self.run if run.started is not None]
+        zones = {at.tzinfo is None for at in started}
+        return min(started) if len(started) == len(self.run) and len(zones) == 1 else None
+
     @model_validator(mode="after")
     def _ids_differ(self) -> "Manifest":
         ids = [run.id for run in self.run]

@@ -1,0 +1,61 @@
+"""Every number that a fit can free: the nominal parameters and those of the effects."""
+
+import math
+from dataclasses import dataclass
+
+from tsas_cli.effects import EFFECTS
+from tsas_cli.physics.parameters import NOMINAL
+
+LOG_SCALE = 0.3  # plausible relative change of a positive parameter
+DEFAULTS = {
+    "friction_coefficient": 0.1,
+    "load_stiffness_N_per_mm": 1.0,
+    "preload_N": 10.0,
+    "tendon_stiffness_N": 5e4,
+    "x_in_zero_mm": 0.0,
+    "x_out_zero_mm": 0.0,
+}
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """One number: its unit and bounds, its value where nobody knows it, and how it is scaled.
+
+    A positive one is fitted by its logarithm, any other in units of `size`. An effect's is named
+    effect.parameter. One that is not shared has a value for each run.
+    """
+
+    name: str
+    unit: str
+    lower: float
+    upper: float
+    default: float
+    shared: bool = True
+    positive: bool = False
+    size: float = 1.0
+
+    def scaled(self, value: float) -> float:
+        """Return a value, inside its bounds, as it is fitted."""
+        inside = min(max(value, self.lower), self.upper)
+        return math.log(inside) if self.positive else inside / self.size
+
+    def unscaled(self, value: float) -> float:
+        """Return the value behind a fitted number."""
+        return math.exp(value) if self.positive else float(value) * self.size
+
+
+QUANTITIES: dict[str, Quantity] = {
+    p.name: Quantity(p.name, p.unit, p.lower, p.upper, DEFAULTS[p.name], p.shared, p.positive)
+    for p in NOMINAL
+} | {
+    f"{effect.name}.{p.name}": Quantity(
+        f"{effect.name}.{p.name}",
+        p.unit,
+        p.lower,
+        p.upper,
+        p.neutral,
+        size=abs(p.start - p.neutral) or abs(p.start),
+    )
+    for effect in EFFECTS
+    for p in effect.parameters
+}

@@ -1,0 +1,27 @@
+"""What gives in series along the tendon, before any friction."""
+
+from tsas_cli.effects.drive_compliance import drive_give
+from tsas_cli.effects.free_tendon import free_compliance
+from tsas_cli.effects.sheath_compression import softened
+from tsas_cli.numerics.compiled import kernel
+from tsas_cli.physics.rig import Rig
+
+
+@kernel
+def sheath_compliance(rig: Rig) -> float:
+    """Return L/(EA) of the sheathed tendon, the sheath's own give included [mm/N]."""
+    ratio = rig.effects.sheath_compression.compliance_ratio
+    return softened(rig.sheath_length_mm / rig.tendon_stiffness_N, ratio)
+
+
+@kernel
+def compliance_at_drive(rig: Rig) -> float:
+    """Return the compliance between the drive's sensors and the sheath [mm/N]."""
+    free = free_compliance(rig.effects.free_tendon.proximal_length_mm, rig.tendon_stiffness_N)
+    return free + drive_give(1.0, rig.effects.drive_compliance.compliance_mm_per_N)
+
+
+@kernel
+def compliance_at_load(rig: Rig) -> float:
+    """Return the compliance between the sheath and the load [mm/N]."""
+    return free_compliance(rig.effects.free_tendon.distal_length_mm, rig.tendon_stiffness_N)

@@ -1,0 +1,136 @@
+"""From what the sensors read at the driven ends to what acts on the tendon, sample by sample."""
+
+import math
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from tsas_cli.effects import Effects
+from tsas_cli.effects.backlash import follow_play
+from tsas_cli.effects.bend_drift import drifted_bend
+from tsas_cli.effects.direction_dependent_friction import direction_factor
+from tsas_cli.effects.drive_ripple import rippled
+from tsas_cli.effects.friction_drift import friction_factor
+from tsas_cli.effects.preload_loss import lost_preload
+from tsas_cli.effects.stribeck_friction import stribeck_factor
+from tsas_cli.effects.viscous_friction import viscous_loss
+from tsas_cli.numerics.compiled import kernel
+from tsas_cli.physics.chain_step import DISPLACEMENT, FORCE, SPRING, Boundary
+from tsas_cli.physics.rig import Rig
+from tsas_cli.physics.sensors import true_value
+
+Floats = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Drive:
+    """What is given at the two ends during a run, as the sensors read it, shape (n,).
+
+    `time_s` is the time since the run began, shape (n,); without it the run is taken as so slow
+    that no rate and no time plays a part. `session_s` is when the run began, since the first of
+    its dataset. `start_f_in_N` is the tension at the drive when the run begins, where it was
+    measured: the tendon's history before that is chosen so that it fits.
+    """
+
+    values: Floats
+    kind: Literal["displacement", "force"] = "displacement"
+    load: Literal["spring", "force", "displacement"] = "spring"
+    load_values: Floats | None = None
+    start_f_in_N: float | None = None
+    time_s: Floats | None = None
+    session_s: float = 0.0
+
+
+@dataclass(frozen=True)
+class Ends:
+    """What acts on the tendon: the course of `Moment`, shape (7, n), and what it means."""
+
+    course: Floats
+    boundary: Boundary
+    direction: Floats  # in which the tendon's end at the drive moved last, shape (n,)
+
+    @property
+    def drive(self) -> Floats:
+        """The drive's end of the tendon [mm], or the tension given there [N]."""
+        values: Floats = self.course[0]
+        return values
+
+    def after(self, before: list[float]) -> "Ends":
+        """Return the ends with positions of the drive put before the first one."""
+        first = np.repeat(self.course[:, :1], len(before), axis=1)
+        first[0] = before
+        course = np.concatenate((first, self.course), axis=1)
+        course[6, : len(before) + 1] = math.inf  # how fast they were passed is not known
+        direction = np.concatenate((np.zeros(len(before)), self.direction))
+        return replace(self, course=course, direction=direction)
+
+    def first(self) -> "Ends":
+        """Return the first sample alone."""
+        return replace(self, course=self.course[:, :1], direction=self.direction[:1])
+
+
+def ends_of(rig: Rig, drive: Drive) -> Ends:
+    """Return what acts on the tendon of a rig when the ends are driven as measured."""
+    n = drive.values.size
+    boundary = Boundary(
+        FORCE if drive.kind == "force" else DISPLACEMENT,
+        {"force": FORCE, "displacement": DISPLACEMENT, "spring": SPRING}[drive.load],
+    )
+    time_s = np.zeros(n) if drive.time_s is None else drive.time_s
+    if drive.kind == "force":
+        at_drive = true_value("f_in_N", drive.values, time_s, rig)
+        speed = np.zeros(n)
+    else:
+        at_drive = tendon_end(drive.values - rig.x_in_zero_mm, rig.effects)
+        speed = np.zeros(n) if drive.time_s is None or n < 2 else np.gradient(at_drive, time_s)
+    at_load = np.zeros(n)
+    if drive.load_values is not None and drive.load == "force":
+        at_load = true_value("f_out_N", drive.load_values, time_s, rig)
+    if drive.load_values is not None and drive.load == "displacement":
+        at_load = true_value("x_out_mm", drive.load_values, time_s, rig)
+    step_s = np.full(n, math.inf)
+    if drive.time_s is not None:
+        step_s[1:] = np.diff(time_s)
+    friction = friction_course(time_s, speed, drive.session_s, rig)
+    course = np.vstack((at_drive, at_load, friction, step_s))
+    return Ends(course, boundary, last_direction(at_drive))
+
+
+@kernel
+def tendon_end(x: Floats, effects: Effects) -> Floats:
+    """Return where the tendon's end at the drive is, for displacements of the drive [mm]."""
+    out = np.empty(x.size)
+    place = x[0] if x.size else 0.0
+    for i in range(x.size):
+        place = follow_play(place, rippled(x[i], effects.drive_ripple), effects.backlash.play_mm)
+        out[i] = place
+    return out
+
+
+@kernel
+def last_direction(x: Floats) -> Floats:
+    """Return the direction of the last motion at each sample, 0 before the first one."""
+    out = np.zeros(x.size)
+    for i in range(1, x.size):
+        out[i] = np.sign(x[i] - x[i - 1]) if x[i] != x[i - 1] else out[i - 1]
+    return out
+
+
+@kernel
+def friction_course(time_s: Floats, speed: Floats, session_s: float, rig: Rig) -> Floats:
+    """Return a pulled, a released [1], viscous loss [N] and lost preload [N], shape (4, n)."""
+    effects = rig.effects
+    asymmetry = effects.direction_dependent_friction.asymmetry
+    out = np.empty((4, time_s.size))
+    for i in range(time_s.size):
+        t = time_s[i]
+        wrap = rig.friction_coefficient * friction_factor(effects.friction_drift, t, session_s)
+        wrap *= drifted_bend(rig.total_bend_rad, effects.bend_drift, t)
+        wrap *= stribeck_factor(speed[i], effects.stribeck_friction)
+        out[0, i] = wrap * direction_factor(asymmetry, 1.0)
+        out[1, i] = wrap * direction_factor(asymmetry, -1.0)
+        out[2, i] = viscous_loss(speed[i], effects.viscous_friction.coefficient_N_s_per_mm)
+        out[3, i] = lost_preload(effects.preload_loss, t)
+    return out
