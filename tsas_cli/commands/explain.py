@@ -27,7 +27,7 @@ def explain(
         print(f"    {effect.equation}\n\n{effect.doc.strip()}")
         print(textwrap.fill(f"Experiment: {effect.experiment}", 100) + "\n")
     rows = [
-        (p.name, p.unit, *(f"{value:g}" for value in (p.neutral, p.lower, p.upper)))
+        (p.name, p.unit, "any" if p.shape else f"{p.neutral:g}", f"{p.lower:g}", f"{p.upper:g}")
         for p in effect.parameters
     ]
     header = ("parameter", "unit", "neutral", "lowest", "highest")

@@ -4,7 +4,7 @@ What one sees: when x_in turns back, f_in, f_out and x_out all stand still for t
 x_in, whatever the tension and the speed; only then does the usual dead band begin. f_in over x_in
 has a flat piece of this width at every corner.
 Equation: the play operator: the tendon's end p stays where it is until x_in has crossed the play.
-Common description of gear backlash; not in the paper.
+The usual description of play in gears; not in the paper.
 Mistaken for: drive_compliance, free_tendon (they soften the dead band more the more tension
 turns round, without a flat piece); presliding (f_in rises from the first micrometre);
 channel_delay (the flat piece grows with speed).

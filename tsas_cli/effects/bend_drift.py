@@ -3,7 +3,7 @@
 What one sees: at the same x_in the loop of f_in over f_out opens (or closes) as the run goes on:
 f_in drifts up on pulls and down on releases, in proportion to the tension. Every run begins anew.
 Equation: Yang 2025, Eq. (7), with the total bend θ(t) of Eq. (6), which starts at a rate and
-settles (numerics/settling.py); the paper's title calls it time-varying.
+settles. The paper's curvature κ(s, t) may change with time, its θ does not.
 Mistaken for: friction_drift (only μθ shows: told apart only by runs with different bends, where a
 bend drifts by the same angle and friction by the same share); force_sensor_drift, preload_loss
 (the same sign on pull and release).

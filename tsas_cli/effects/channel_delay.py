@@ -4,7 +4,7 @@ What one sees: the channel is wrong in proportion to how fast it changes: most w
 in dead bands and at their ends, with opposite sign on pull and release. Twice the speed gives
 twice the error; at rest there is none.
 Equation: a channel shows at time t what was there at t − delay, on the clock of x_in; a delay of
-x_in itself is the opposite of one in all other channels.
+x_in itself is the opposite of one in all other channels. Not in the paper.
 Mistaken for: backlash, presliding (the same travel at every speed); viscous_friction (goes with the
 speed, and hardly shows in dead bands); load_inertia (goes with the acceleration of x_out).
 Not validated: delays that change during a run; filters, which delay each frequency by another time
@@ -35,5 +35,6 @@ CHANNEL_DELAY = Effect(
         Parameter("f_out_delay_s", "s", neutral=0.0, start=0.01, lower=-1.0, upper=1.0),
         Parameter("x_out_delay_s", "s", neutral=0.0, start=0.01, lower=-1.0, upper=1.0),
     ),
-    experiment="Tap the taut tendon: every channel must show the blow at the same time.",
+    experiment="The same stroke at two speeds: what a channel is late by doubles in mm of x_in and "
+    "stays the same in seconds.",
 )

@@ -5,10 +5,9 @@ other: with more friction on the pull, f_in is too high in both directions, in p
 tension and to the bend. x_out hardly changes.
 Equation: the capstan law of Yang 2025, Eqs. (2) and (7), with a friction coefficient for each
 direction λ of sliding; the paper has one.
-Mistaken for: force_sensor_gain (in full slip exactly the same within one bend, since only
-f_in/f_out shows; at another bend the asymmetry goes with the bend, a gain does not, and the width
-of the dead bands belongs to the friction alone); force_sensor_offset (the same force at every
-tension).
+Mistaken for: force_sensor_gain (in full slip exactly the same within one bend, where only
+f_in/f_out shows; at another bend the asymmetry goes with the bend, a gain does not);
+force_sensor_offset (the same force at every tension).
 Not validated: an asymmetry that changes along the sheath.
 """
 

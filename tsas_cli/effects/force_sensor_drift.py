@@ -2,8 +2,8 @@
 
 What one sees: one force channel leaves the model steadily as the run goes on, by the same amount on
 pull and release and at every tension; the other channels fit to the end. Every run begins anew.
-Equation: the reading is the tension plus a drift that starts at a rate and settles
-(numerics/settling.py), as a sensor that warms up does; both sensors settle at one rate.
+Equation: the reading is the tension plus a drift that starts at a rate and settles, as with
+a sensor that warms up; both sensors settle at one rate. Not in the paper.
 Mistaken for: preload_loss (f_in and f_out fall together, tied by the sheath's friction);
 friction_drift, bend_drift (opposite on pull and release); force_sensor_offset (there from the
 start, and constant).

@@ -4,7 +4,7 @@ What one sees: in f_in over f_out the slopes of pull and release are wrong by th
 every bend; f_out over x_out has a wrong slope too. f_in and x_out fit.
 Equation: f_out reads gain times the tension. A wrong gain of f_in is the same to the model but for
 the load stiffness, the tendon stiffness and the preload, which it scales; so only the ratio of
-both gains shows, and it is written to f_out.
+both gains shows, and it is written to f_out. Not in the paper.
 Mistaken for: direction_dependent_friction (in full slip exactly the same within one bend, but it
 grows with the bend); force_sensor_offset (the same force at every tension); a wrong load
 stiffness or preload, where f_in is missing.

@@ -2,7 +2,7 @@
 
 What one sees: one force channel is off by the same amount at every tension and speed, on pull and
 release, in all runs. In f_in over f_out both lines move the same way; x_out does not move.
-Equation: the reading is the tension plus a constant.
+Equation: the reading is the tension plus a constant; not in the paper.
 Mistaken for: a wrong preload (moves f_in by e^(±μθ) times what it moves f_out); drive_friction,
 load_friction (opposite on pull and release); force_sensor_gain, direction_dependent_friction (grow
 with the tension); force_sensor_drift (changes during a run).

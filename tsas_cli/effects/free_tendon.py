@@ -1,7 +1,7 @@
 """Tendon outside the sheath stretches in series with it, at either end.
 
-What one sees: the output moves less than the model says, by an amount that follows the tension;
-dead bands look softer at the drive (proximal length), loaded slopes fall slightly (both).
+What one sees: x_out moves less than the model says, by an amount that follows the tension; dead
+bands look softer in f_in over x_in (proximal length), loaded slopes fall slightly (both).
 Equation: a free length l under tension F is longer by (F − F0) l/(EA), Hooke's law as in Yang
 2025, Eq. (3), without friction. The paper supposes this effect under its Fig. 4 and does not
 test it.

@@ -3,9 +3,8 @@
 What one sees: at the same x_in the loop of f_in over f_out opens (or closes) as the run goes on:
 f_in drifts up on pulls and down on releases, in proportion to the tension. With a rate of the
 session, later runs start with a wider (or narrower) loop; this needs `started` in the manifest.
-Equation: Yang 2025, Eq. (7), with μ(t): a drift that starts at a rate and settles
-(numerics/settling.py), as in running in and warming up, and a steady one over the session, as in
-wear.
+Equation: Yang 2025, Eq. (7), with μ(t): a drift that starts at a rate and settles, as in running
+in and warming up, and a steady one over the session, as in wear. The paper's μ is constant.
 Mistaken for: bend_drift (only μθ shows: told apart only by runs with different bends, where
 friction drifts by the same share); force_sensor_drift, preload_loss (the same sign on pull and
 release).

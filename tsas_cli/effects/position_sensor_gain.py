@@ -4,7 +4,7 @@ What one sees: x_out is wrong in proportion to its travel, on pull and release a
 f_in and f_out fit. f_out over x_out has a wrong slope.
 Equation: x_out reads gain times the displacement. A wrong gain of x_in, such as a wrong radius of
 the turntable, is the same to the model but for the load stiffness and the tendon stiffness, which
-it scales; so only the ratio of both gains shows, and it is written to x_out.
+it scales; so only the ratio of both gains shows, and it is written to x_out. Not in the paper.
 Mistaken for: a wrong load stiffness (changes f_in and f_out over x_in too); free_tendon,
 drive_compliance, sheath_compression (x_out moves less, but f_out over x_out keeps its slope).
 Not validated: a gain that changes along the travel, as with a laser that looks at an angle.
@@ -35,6 +35,6 @@ POSITION_SENSOR_GAIN = Effect(
     equation="reading of x_out = gain · x",
     doc=__doc__,
     parameters=(Parameter("x_out_gain", "1", neutral=1.0, start=1.02, lower=0.01, upper=100.0),),
-    experiment="Move drive and load together by gauge blocks, without the tendon: x_in and x_out "
-    "must read the same travel.",
+    experiment="Move each position sensor by the same gauge block: x_in and x_out must read the "
+    "same travel.",
 )

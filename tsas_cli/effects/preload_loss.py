@@ -3,8 +3,8 @@
 What one sees: at the same x_in f_out falls as the run goes on, on pulls and releases alike, and
 f_in with it, by e^(μθ) times as much on a pull and by e^(−μθ) on a release. The line of f_out over
 x_out moves down in parallel.
-Equation: the load of Yang 2025, Eq. (9), with a preload that falls at a rate and settles
-(numerics/settling.py), as an anchor or a sagging spring does.
+Equation: the load of Yang 2025, Eq. (9), with a preload that falls at a rate and settles, as with
+an anchor that slides or a spring that sags. The paper's F0 is constant.
 Mistaken for: force_sensor_drift (one force channel alone, or both by amounts that the sheath's
 friction does not tie); friction_drift, bend_drift (opposite on pull and release).
 Not validated: a tendon that creeps, which leaves f_out over x_out on its line; a loss that goes

@@ -1,7 +1,7 @@
 """The sheath gets shorter under the tension that it guides.
 
-What one sees: dead bands are wider and softer, and x_out moves less than x_in by more, exactly as
-with a softer tendon; the share grows with the length of the sheath.
+What one sees: dead bands are wider and softer, and x_out falls further behind x_in as the tension
+rises, exactly as with a softer tendon and in proportion to the sheath's length.
 Equation: the sheath is pressed with the force that the tendon pulls with, so both give in series:
 (1 + ratio)/EA per length of sheathed tendon, ratio = EA of the tendon / EA of the sheath. Hooke's
 law as in Yang 2025, Eq. (3), which takes the sheath as rigid.
@@ -35,6 +35,6 @@ SHEATH_COMPRESSION = Effect(
     equation="dx/ds = (1 + ratio)·(T − F0)/EA in the sheath",
     doc=__doc__,
     parameters=(Parameter("compliance_ratio", "1", neutral=0.0, start=0.3, lower=0.0, upper=20.0),),
-    experiment="Pull the tendon alone, then through its sheath: the compliance that comes on top "
-    "is the sheath's.",
+    experiment="Measure the stiffness of the tendon alone, outside the sheath: what the dead bands "
+    "give way beyond it is the sheath's.",
 )

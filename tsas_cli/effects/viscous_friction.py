@@ -1,8 +1,8 @@
 """A lubricant takes a force from the tendon that grows with its speed.
 
-What one sees: f_in is too high on a pull and too low on a release, as far as the drive is fast
-and at any tension alike; with a sine as input the loop f_in over x_in is widest in the middle of
-the stroke and right at its ends. Fast runs miss, slow ones fit.
+What one sees: f_in is too high on a pull and too low on a release, in proportion to the speed and
+at any tension alike; with a sine as input the loop of f_in over x_in is too wide in the middle of
+the stroke and fits at its ends. Fast runs miss, slow ones fit.
 Equation: the σ2 v term of Yang 2025, Eq. (15), summed over the sheath: Table 1's 4e-4 N s/mm for
 each of 50 lumps make c = 0.02 N s/mm. v is the sliding speed of the drive's end.
 Mistaken for: drive_friction, a larger friction coefficient (one speed cannot tell them; they do
