@@ -17,21 +17,30 @@ CASES = {
     "c2": case(),
     "d1": case(unknown="rough_spot"),
     "d2": case(unknown="hum"),
+    "d3": case(unknown="hum"),
 }
 GOOD = estimate(0.12, "mm", 0.01)
-CHANNEL = {"rmse_before": 1.0, "rmse_after": 0.4, "noise_floor": 0.1, "best_obtainable": 0.2}
+
+
+def channels(after):
+    """Return a gain of 0.75 for 0.4, 1 for 0.2, 0 for 1.0."""
+    return {"f_in_N": {"rmse_before": 1.0, "rmse_after": after, "best_obtainable": 0.2}}
+
+
 SAID = {
     "a1": diagnosis(
-        named("backlash", "free_tendon", play_mm=GOOD), channels={"f_in_N": CHANNEL}, seconds=3.0
+        named("backlash", "free_tendon", play_mm=GOOD), channels=channels(0.4), seconds=3.0
     ),
     "a2": diagnosis("presliding", seconds=5.0),
-    "a3": diagnosis(named("backlash", "drive_friction"), seconds=10.0),
+    "a3": diagnosis(named("backlash", "drive_friction"), channels=channels(0.2), seconds=10.0),
     "b1": diagnosis(
-        named("backlash", play_mm=GOOD), named("drive_friction", friction_N=estimate(1.5, "N"))
+        named("backlash", play_mm=GOOD),
+        named("drive_friction", friction_N=estimate(1.5, "N")),
+        channels=channels(1.0),
     ),
     "c1": diagnosis(verdict="unexplained"),
     "c2": diagnosis("backlash"),
-    "d1": diagnosis(verdict="unexplained", unexplained=True),
+    "d1": diagnosis(verdict="unexplained", unexplained=True, channels=channels(0.9)),
     "d2": diagnosis("drive_ripple"),
 }
 
@@ -53,7 +62,7 @@ def scored(sealed, entry):
 def test_every_figure_is_the_one_counted_by_hand(sealed, entry):
     figures = {f["name"]: (f["hits"], f["cases"]) for f in scored(sealed, entry)["figures"]}
     assert figures == {
-        "answered": (8, 9),
+        "answered": (8, 10),
         "size_1_exact": (1, 3),
         "size_1_alone": (0, 3),
         "size_1_rivals": (1, 3),
@@ -67,7 +76,7 @@ def test_every_figure_is_the_one_counted_by_hand(sealed, entry):
         "pair_false": (0, 1),
         "nothing_named": (1, 2),
         "unknown_false": (1, 2),
-        "unknown_recognised": (1, 2),
+        "unknown_recognised": (1, 3),
         "known_unexplained": (1, 6),
         "coverage": (2, 2),
         "without_interval": (1, 3),
@@ -100,11 +109,11 @@ def test_one_bad_effect_is_not_hidden_by_many_good_ones(tmp_path):
 
 def test_the_rest_of_the_summary(sealed, entry):
     content = scored(sealed, entry)
-    assert content["gain"] == {"median": pytest.approx(0.75), "cases": 1}
+    assert content["gain"] == {"median": pytest.approx(0.75), "cases": 3}
     assert content["seconds"] == {"median": 5.0, "max": 10.0, "cases": 3}
     # a1 and a3 list one each; a2, b1 (two names), c2 and d2 list none
     assert content["rivals_per_name"] == {"mean": pytest.approx(2 / 7), "names": 7}
-    assert content["no_answer"] == {"a4": "no diagnosis.json"}
+    assert content["no_answer"] == dict.fromkeys(("a4", "d3"), "no diagnosis.json")
 
 
 def test_the_classes_by_effect(sealed, entry):
@@ -125,6 +134,7 @@ def test_the_confusions_say_who_was_taken_for_whom(sealed, entry):
         ("nothing", "unexplained"): 1,
         ("nothing", "backlash"): 1,
         ("hum (not in the catalogue)", "drive_ripple"): 1,
+        ("hum (not in the catalogue)", "no answer"): 1,
     }
 
 
@@ -145,9 +155,9 @@ def test_hidden_and_named_exchanged_is_another_score(tmp_path):
 def test_entries_stand_side_by_side(sealed, entry, tmp_path):
     other = write_entry(tmp_path / "baseline", {"a1": diagnosis()})
     content = score_entries(sealed, [entry, other])
-    assert content["answers"]["cases"] == {"one": 4, "pair": 1, "nothing": 2, "unknown": 2}
+    assert content["answers"]["cases"] == {"one": 4, "pair": 1, "nothing": 2, "unknown": 3}
     title, header, rows = next(tables(content))
-    assert "seed 17: 4 one, 1 pair, 2 nothing, 2 unknown" in title
+    assert "seed 17: 4 one, 1 pair, 2 nothing, 3 unknown" in title
     assert header == ("figure", "target", str(entry), "met", str(other), "met")
     by_title = {row[0]: row for row in rows}
     assert by_title["two effects: both named"] == (

@@ -51,11 +51,9 @@ def score(answers: Answers, entry: Entry) -> dict[str, Any]:
     """Return the score of one entry, as docs/challenge.md describes it."""
     judged = judge(answers, entry)
     cases = list(judged.values())
-    seconds = [
-        j.diagnosis.seconds for j in cases if j.diagnosis and j.diagnosis.seconds is not None
-    ]
-    mendable = [j for j in cases if j.case.hidden]
-    gains = [gain for j in mendable for gain in [j.gain] if gain is not None]
+    said = entry.diagnoses.values()
+    seconds = [diagnosis.seconds for diagnosis in said if diagnosis.seconds is not None]
+    gains = [j.gain for j in cases if j.case.hidden and j.gain is not None]
     rivals = [count for j in cases for count in j.rivals]
     return {
         "figures": [_figure(figure) for figure in figures(cases)],
