@@ -67,3 +67,21 @@ def test_a_seed_tells_the_recording():
     one, again, other = (measure(ramp(), Sensors(), seed=seed) for seed in (1, 1, 2))
     np.testing.assert_array_equal(one["f_in_N"], again["f_in_N"])
     assert np.any(one["f_in_N"] != other["f_in_N"])
+
+
+def test_wrong_gain_offset_drift_and_hum_add_up_as_written():
+    still = CleanRun({"time_s": TIME, "f_in_N": np.full(TIME.size, 40.0)})
+    sensor = Sensor(gain=1.1, offset=-2.0, rate_per_s=0.1, settling_per_s=0.2, hum=0.5, hum_Hz=3.0)
+    values = measure(still, Sensors(f_in_N=sensor), seed=1)["f_in_N"]
+    drift = 0.1 * (1.0 - np.exp(-0.2 * TIME)) / 0.2
+    hum = 0.5 * np.sin(6.0 * np.pi * TIME)
+    np.testing.assert_allclose(values, 44.0 - 2.0 + drift + hum, atol=1e-9)
+    even = measure(still, Sensors(f_in_N=Sensor(rate_per_s=0.1)), seed=1)["f_in_N"]
+    np.testing.assert_allclose(even, 40.0 + 0.1 * TIME, atol=1e-9)
+
+
+def test_lost_counts_stay_lost():
+    sensor = Sensor(jumps=((2.0, -0.1), (5.0, -0.3)))
+    x = measure(ramp(), Sensors(x_in_mm=sensor), seed=1)["x_in_mm"] - 2.0 * TIME
+    for at, off in ((1.999, 0.0), (2.0, -0.1), (4.999, -0.1), (5.0, -0.3), (20.0, -0.3)):
+        assert x[round(at * 1000)] == pytest.approx(off)

@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from tsas_cli.challenge.rig.courses import settled
 from tsas_cli.challenge.rig.motions import Floats
 from tsas_cli.challenge.rig.tendon import CleanRun
 
@@ -22,6 +23,14 @@ class Sensor:
         Standard deviation and correlation time of an added first-order coloured noise.
     delay_s
         How much later than the clock says the channel shows a value.
+    gain, offset
+        The reading is gain × value + offset.
+    rate_per_s, settling_per_s
+        An offset that grows at first at this rate, and how fast that settles.
+    hum, hum_Hz, hum_phase_rad
+        A sine that is picked up: its amplitude, frequency and phase at the start.
+    jumps
+        Moments [s] and what the reading is off by from then on; 0 before the first.
     """
 
     noise: float = 0.0
@@ -29,6 +38,14 @@ class Sensor:
     slow_noise: float = 0.0
     slow_time_s: float = 1.0
     delay_s: float = 0.0
+    gain: float = 1.0
+    offset: float = 0.0
+    rate_per_s: float = 0.0
+    settling_per_s: float = 0.0
+    hum: float = 0.0
+    hum_Hz: float = 3.0
+    hum_phase_rad: float = 0.0
+    jumps: tuple[tuple[float, float], ...] = ()
 
 
 def _position() -> Sensor:
@@ -76,8 +93,19 @@ def measure(clean: CleanRun, sensors: Sensors, *, seed: int) -> dict[str, Floats
         if name != "time_s":
             sensor = getattr(sensors, name)
             true = np.interp(instants - sensor.delay_s, clean.time_s, values)
-            columns[name] = _read_out(true, sensor, sensors.rate_Hz, rng)
+            wrong = _systematic(true, sensor, instants)
+            columns[name] = _read_out(wrong, sensor, sensors.rate_Hz, rng)
     return columns
+
+
+def _systematic(true: Floats, sensor: Sensor, instants: Floats) -> Floats:
+    """Return what the sensor would read without noise."""
+    drift = settled(sensor.rate_per_s, sensor.settling_per_s, instants)
+    hum = sensor.hum * np.sin(2.0 * np.pi * sensor.hum_Hz * instants + sensor.hum_phase_rad)
+    at = np.array([time for time, _ in sensor.jumps])
+    off = np.array([0.0, *(by for _, by in sensor.jumps)])
+    lost = off[np.searchsorted(at, instants, side="right")]
+    return np.asarray(sensor.gain * true + sensor.offset + drift + hum + lost)
 
 
 def _read_out(true: Floats, sensor: Sensor, rate_Hz: float, rng: np.random.Generator) -> Floats:

@@ -6,15 +6,17 @@ columns = measure(clean, Sensors(), seed=1)          # in tsas_cli.challenge.rig
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from tsas_cli.challenge.rig import continuum
+from tsas_cli.challenge.rig.courses import ONE, Course, course, settled
+from tsas_cli.challenge.rig.drive_end import DriveEnd, sensed_force, tendon_end
+from tsas_cli.challenge.rig.friction import Friction, over_time
+from tsas_cli.challenge.rig.give import Give, path
+from tsas_cli.challenge.rig.load_end import LoadEnd, load
 from tsas_cli.challenge.rig.motions import Floats, Motion
-
-Course = tuple[tuple[float, float], ...]
-ONE: Course = ((0.0, 1.0),)
 
 
 @dataclass(frozen=True)
@@ -39,6 +41,10 @@ class Rig:
         "spring", or "force" and "displacement": what is prescribed at the distal end.
     presliding_length_mm
         Displacement over which friction turns round; small enough to pass for Coulomb.
+    sheath_compliance_ratio
+        How much more the sheath is compressed than the tendon stretches.
+    drive_end, friction, load_end, give
+        What else there is along the way; nothing by default. The load's end needs a spring.
     """
 
     friction_coefficient: float = 0.125
@@ -56,6 +62,11 @@ class Rig:
     bend_course: Course = ONE
     preload_course: Course = ONE
     presliding_length_mm: float = 5e-6
+    sheath_compliance_ratio: float = 0.0
+    drive_end: DriveEnd = field(default_factory=DriveEnd)
+    friction: Friction = field(default_factory=Friction)
+    load_end: LoadEnd = field(default_factory=LoadEnd)
+    give: Give = field(default_factory=Give)
     cells: int = 200
 
     @property
@@ -76,7 +87,9 @@ class CleanRun:
         return self.columns["time_s"]
 
 
-def simulate(rig: Rig, motion: Motion, *, distal: Floats | None = None) -> CleanRun:
+def simulate(
+    rig: Rig, motion: Motion, *, distal: Floats | None = None, session_s: float = 0.0
+) -> CleanRun:
     """Drive the rig through a motion, from rest at the preload with x_in = 0 mm.
 
     A motion that starts elsewhere is reached by one straight pull before its first sample.
@@ -90,6 +103,8 @@ def simulate(rig: Rig, motion: Motion, *, distal: Floats | None = None) -> Clean
     distal
         With load "force" the tension [N], with "displacement" x_out [mm] at each sample of the
         motion; left out for a spring.
+    session_s
+        How long after the first run this one begins [s].
 
     Returns
     -------
@@ -103,54 +118,83 @@ def simulate(rig: Rig, motion: Motion, *, distal: Floats | None = None) -> Clean
     """
     if (rig.load == "spring") != (distal is None):
         raise ValueError(f"load {rig.load!r} and distal values do not go together")
+    if rig.load != "spring" and rig.load_end != LoadEnd():
+        raise ValueError(f"load {rig.load!r} has no load end")
     t, x_in = motion.time_s, motion.x_in_mm
-    c_out = rig.distal_length_mm / rig.axial_stiffness
-    q, p, r = _distal_end(rig, t, c_out, distal)
+    tendon = _tendon(rig)
+    q = _distal_end(rig, t, tendon.c_out, distal)
+    mu = rig.friction_coefficient * course(rig.friction_course, t) * course(rig.bend_course, t)
+    mu = mu * over_time(rig.friction, rig.total_bend_rad, t, session_s)
+    position = tendon_end(rig.drive_end, x_in)
+    t_in, t_out, u_end, guide, solved = continuum.run(tendon, path(rig.give), t, position, mu, q)
+    if solved < t.size:
+        what = "the tendon is slack" if np.isfinite(t_in[solved]) else "the step fails"
+        raise ValueError(f"{what} at {t[solved]:.6g} s")
+    return CleanRun(
+        {
+            "time_s": t,
+            "x_in_mm": x_in,
+            "x_out_mm": u_end - tendon.c_out * (t_out - rig.preload_N),
+            "f_in_N": sensed_force(rig.drive_end, position, t_in),
+            "f_out_N": t_out - rig.load_end.friction_before_N * guide,
+        }
+    )
+
+
+def _tendon(rig: Rig) -> continuum.Tendon:
+    """Return the rig for the solver."""
+    EA, f = rig.axial_stiffness, rig.friction
     s = continuum.nodes(rig.sheath_length_mm, rig.cells)
-    tendon = continuum.Tendon(
+    c_out = rig.distal_length_mm / EA
+    p, r = _ends_of(rig.load, rig.load_stiffness_N_per_mm, c_out)
+    return continuum.Tendon(
         bend=_bend_per_node(rig, s),
-        k=rig.axial_stiffness / np.diff(s),
-        c_in=rig.proximal_length_mm / rig.axial_stiffness,
+        k=EA / np.diff(s) / (1.0 + rig.sheath_compliance_ratio),
+        c_in=rig.proximal_length_mm / EA + rig.drive_end.compliance_mm_per_N,
         p=p,
         r=r,
         preload=rig.preload_N,
-        delta=rig.presliding_length_mm,
-    )
-    mu = rig.friction_coefficient * _course(rig.friction_course, t) * _course(rig.bend_course, t)
-    f_in, f_out, u_end, solved = continuum.run(tendon, x_in, mu, q)
-    if solved < t.size:
-        what = "the tendon is slack" if np.isfinite(f_in[solved]) else "the step fails"
-        raise ValueError(f"{what} at {t[solved]:.6g} s")
-    x_out = u_end - c_out * (f_out - rig.preload_N)
-    return CleanRun(
-        {"time_s": t, "x_in_mm": x_in, "x_out_mm": x_out, "f_in_N": f_in, "f_out_N": f_out}
+        delta=rig.presliding_length_mm + f.presliding_mm,
+        c_out=c_out,
+        load=load(rig.load_end, rig.load_stiffness_N_per_mm),
+        asymmetry=f.asymmetry,
+        excess=f.stribeck_excess,
+        velocity=f.stribeck_velocity_mm_per_s,
+        exponent=f.load_exponent,
+        viscous=f.viscous_N_s_per_mm * np.diff(_edges(s)) / rig.sheath_length_mm,
     )
 
 
-def _distal_end(
-    rig: Rig, t: Floats, c_out: float, distal: Floats | None
-) -> tuple[Floats, float, float]:
-    """Return q, p, r of p T_out = q + r u_end, the free tendon at the load included."""
-    F0, kL = rig.preload_N, rig.load_stiffness_N_per_mm
-    if rig.load == "spring":
-        return F0 * (_course(rig.preload_course, t) + kL * c_out), 1.0 + kL * c_out, kL
+def _distal_end(rig: Rig, t: Floats, c_out: float, distal: Floats | None) -> Floats:
+    """Return q of p T_out = q + r u_end, the free tendon at the load included."""
+    F0, kL, end = rig.preload_N, rig.load_stiffness_N_per_mm, rig.load_end
+    if distal is None:
+        lost = settled(end.anchor_rate_N_per_s, end.anchor_settling_per_s, t)
+        return F0 * (course(rig.preload_course, t) + kL * c_out) - lost
     distal = np.asarray(distal, dtype=float)
-    if rig.load == "force":
-        return distal, 1.0, 0.0
-    if rig.load == "displacement":
-        return c_out * F0 - distal, c_out, 1.0
-    raise ValueError(f"load is {rig.load!r}, expected spring, force or displacement")
+    return distal if rig.load == "force" else c_out * F0 - distal
 
 
-def _course(course: Course, t: Floats) -> Floats:
-    at, value = np.array(course, dtype=float).T
-    return np.asarray(np.interp(t, at, value))
+def _ends_of(load: str, kL: float, c_out: float) -> tuple[float, float]:
+    """Return p and r of p T_out = q + r u_end."""
+    if load == "spring":
+        return 1.0 + kL * c_out, kL
+    if load == "force":
+        return 1.0, 0.0
+    if load == "displacement":
+        return c_out, 1.0
+    raise ValueError(f"load is {load!r}, expected spring, force or displacement")
+
+
+def _edges(s: Floats) -> Floats:
+    """Return the midpoints between nodes, and both ends."""
+    return np.concatenate((s[:1], 0.5 * (s[1:] + s[:-1]), s[-1:]))
 
 
 def _bend_per_node(rig: Rig, s: Floats) -> Floats:
     """Return the bend angle between the midpoints around each node [rad]."""
     fine = np.linspace(0.0, rig.sheath_length_mm, 20001)
-    curvature = _course(rig.bend_profile, fine / rig.sheath_length_mm)
+    curvature = course(rig.bend_profile, fine / rig.sheath_length_mm)
     angle = np.concatenate(([0.0], np.cumsum(0.5 * (curvature[1:] + curvature[:-1]))))
-    edges = np.concatenate((s[:1], 0.5 * (s[1:] + s[:-1]), s[-1:]))
-    return np.asarray(rig.total_bend_rad * np.diff(np.interp(edges, fine, angle / angle[-1])))
+    bend = np.diff(np.interp(_edges(s), fine, angle / angle[-1]))
+    return np.asarray(rig.total_bend_rad * bend)
