@@ -1,8 +1,8 @@
 """Where the tendon sticks, friction turns round over a small elastic travel and not at once.
 
-What one sees: after a reversal f_in leaves with a finite slope instead of a sharp corner, the dead
-band is rounder and a little longer, by the same travel at low and at high tension. Strokes below
-that travel are lines without a loop.
+What one sees: after a reversal f_in leaves with a finite slope instead of a sharp corner; f_out and
+x_out set off gently, and the whole tendon slides later by twice the same travel, at low tension as
+at high. Strokes below that travel are lines without a loop.
 Equation: the bristle of Yang 2025, Eq. (15), as a spring: friction changes by (its limit/length)
 per mm of motion, up to the limit.
 Mistaken for: backlash (a flat piece first); drive_compliance, free_tendon (longer at higher
