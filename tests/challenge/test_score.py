@@ -8,12 +8,12 @@ from tsas_cli.challenge.tables import tables
 from tsas_cli.errors import InputError
 
 CASES = {
+    "c1": case(),
     "a1": case("backlash"),
     "a2": case("backlash"),
     "a3": case("drive_friction"),
     "a4": case("drive_friction", size=0.4),
     "b1": case("backlash", "drive_friction"),
-    "c1": case(),
     "c2": case(),
     "d1": case(unknown="rough_spot"),
     "d2": case(unknown="hum"),

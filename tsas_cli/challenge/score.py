@@ -4,10 +4,10 @@ from collections import Counter
 from collections.abc import Iterable
 from pathlib import Path
 from statistics import mean, median
-from typing import Any
+from typing import Any, get_args
 
 from tsas_cli import __version__
-from tsas_cli.challenge.answers import CATALOGUE, FILE, Answers, read_answers
+from tsas_cli.challenge.answers import CATALOGUE, FILE, Answers, Kind, read_answers
 from tsas_cli.challenge.entry import Entry, read_entry
 from tsas_cli.challenge.figures import Figure, by_effect, figures, of_size, sizes
 from tsas_cli.challenge.judge import NO_ANSWER, Judged, judge
@@ -32,6 +32,7 @@ def score_entries(sealed: Path, folders: Iterable[Path]) -> dict[str, Any]:
         if label in entries:
             raise InputError("the entry is given twice", where=folder)
         entries[label] = score(answers, read_entry(folder, answers.cases))
+    kinds = Counter(case.kind for case in answers.cases.values())
     single = {e for case in answers.cases.values() if case.kind == "one" for e in case.effects}
     return {
         "format": 1,
@@ -40,7 +41,7 @@ def score_entries(sealed: Path, folders: Iterable[Path]) -> dict[str, Any]:
         "answers": {
             "sha256": sha256_of(sealed / FILE),
             "seed": answers.seed,
-            "cases": dict(Counter(case.kind for case in answers.cases.values())),
+            "cases": {kind: count for kind in get_args(Kind) if (count := kinds[kind])},
             "effects_not_in_the_set": [name for name in CATALOGUE if name not in single],
         },
         "entries": entries,
