@@ -7,9 +7,13 @@ from pathlib import Path
 import pytest
 
 from tests.challenge.made import case, diagnosis, write_entry, write_set
+from tsas_cli.challenge import cases
 from tsas_cli.challenge.answers import read_answers
 from tsas_cli.challenge.entry import read_entry
 from tsas_cli.challenge.targets import TARGETS
+from tsas_cli.commands.challenge import make, score
+from tsas_cli.errors import InputError
+from tsas_cli.recordings.dataset import read_dataset
 
 DOCS = (Path(__file__).parents[2] / "docs" / "challenge.md").read_text(encoding="utf-8")
 
@@ -76,6 +80,25 @@ def test_a_case_that_fails_is_listed_and_scored_as_no_answer(strict, sealed, tmp
     assert entry["no_answer"].keys() == {"a", "b"}
     assert all(reason in done.stdout for reason in entry["no_answer"].values())
     assert {c["outcome"] for c in entry["cases"].values()} == {"no answer"}
+
+
+def test_a_set_is_made_scored_and_not_overwritten_unasked(monkeypatch, capsys, tmp_path):
+    """Two cases stand for all of a seed, which take minutes."""
+    few = cases.cases(17)[:2]
+    monkeypatch.setattr(cases, "cases", {17: few}.__getitem__)
+    make(tmp_path / "set", seed=17, rate=50.0, as_json=True)
+    summary = json.loads(capsys.readouterr().out)
+    assert (summary["seed"], summary["cases"]) == (17, {"one": 2})
+    answers = read_answers(tmp_path / "set")
+    assert answers.seed == 17
+    for name in answers.cases:
+        assert len(list(read_dataset(tmp_path / "set" / "cases" / name / "dataset"))) == 4
+    right = {name: diagnosis(*case.effects) for name, case in answers.cases.items()}
+    score(tmp_path / "set", [write_entry(tmp_path / "entry", right)], as_json=True)
+    (entry,) = json.loads(capsys.readouterr().out)["entries"].values()
+    assert {case["outcome"] for case in entry["cases"].values()} == {"exact"}
+    with pytest.raises(InputError, match="already exists"):
+        make(tmp_path / "set", seed=17, rate=50.0)
 
 
 @pytest.mark.parametrize("command", ["run", "score"])

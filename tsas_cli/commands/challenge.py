@@ -16,6 +16,48 @@ challenge = typer.Typer(
 SealedSet = Annotated[Path, typer.Argument(metavar="SET", help="A sealed set's folder.")]
 
 
+@challenge.command("make")
+def make(
+    out: OutFolder,
+    seed: Annotated[
+        int, typer.Option("--seed", min=0, help="0 to 999 for tuning, 10000 to 19999 for scoring.")
+    ],
+    rate: Annotated[
+        float, typer.Option("--rate", metavar="HZ", min=50.0, max=500.0, help="Samples per second.")
+    ] = 200.0,
+    force: Force = False,
+    quiet: Quiet = False,
+    as_json: Json = False,
+) -> None:
+    """Make recordings with known causes, and seal the truth beside them."""
+    from collections import Counter
+
+    from tsas_cli import __version__
+    from tsas_cli.challenge.cases import cases
+    from tsas_cli.challenge.make import make as make_set
+    from tsas_cli.files import new_folder
+
+    listed = cases(seed)
+    with (
+        new_folder(out, force=force) as folder,
+        progress("challenge", len(listed), quiet=quiet or as_json) as step,
+    ):
+        make_set(folder, listed, rate_Hz=rate, step=step)
+    kinds = Counter(case.kind for case in listed)
+    summary = {
+        "format": 1,
+        "stage": "challenge make",
+        "version": __version__,
+        "folder": str(out),
+        "seed": seed,
+        "rate_Hz": rate,
+        "cases": dict(kinds),
+    }
+    rows = [(kind, str(count)) for kind, count in kinds.items()]
+    title = f"{out}: {len(listed)} cases of seed {seed}"
+    show(summary, [(title, ("hidden", "cases"), rows)], quiet=quiet, as_json=as_json)
+
+
 @challenge.command("run")
 def run(
     sealed: SealedSet,
