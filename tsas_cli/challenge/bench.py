@@ -10,6 +10,7 @@ import numpy as np
 from tsas_cli.challenge.cases import Hidden
 from tsas_cli.challenge.rig.courses import Course
 from tsas_cli.challenge.rig.hidden import hide
+from tsas_cli.challenge.rig.load_end import LoadEnd
 from tsas_cli.challenge.rig.motions import Floats, Motion, clock
 from tsas_cli.challenge.rig.recordings import DATA_SHEET
 from tsas_cli.challenge.rig.sensors import Sensor, Sensors, measure
@@ -28,6 +29,7 @@ ACCELERATION_MM_S2 = 40.0
 FINER = 2  # samples of the rig's clock per sample of the recording
 CELLS = 60
 PRELOAD_N = 25.0
+LOOSE_SHARE = 0.5  # of a hidden mass, so that it does not swing long on the tendon
 OFF = 0.1  # a nominal parameter differs from its data sheet by up to this share
 FIRST_RUN = datetime(2026, 3, 2, 9, 30)  # noqa: DTZ001 # a lab's clock has no zone
 SENSORS = Sensors(
@@ -103,6 +105,7 @@ def rig_of(bench: Bench, run: str) -> Rig:
         sheath_length_mm=radius * bend,
         bend_profile=bench.bend_profile,
         cells=CELLS,
+        load_end=LoadEnd(loose_share=LOOSE_SHARE),
         **bench.nominal,  # type: ignore[arg-type] # all of them are numbers
     )
 

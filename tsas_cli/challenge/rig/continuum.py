@@ -96,7 +96,7 @@ def run(
     """
     m, n = x_in.size, tendon.bend.size
     state = State(np.zeros(n), np.zeros(n), np.zeros(n))
-    load = LoadState(0.0, 0.0, 0.0, 0.0)
+    load = LoadState(0.0, 0.0, 0.0, 0.0, 0.0)
     t_in, t_out = np.full(m, np.nan), np.full(m, np.nan)
     u_end, guide = np.full(m, np.nan), np.full(m, np.nan)
     before = Ends(0.0, mu[0], tendon.p * tendon.preload)

@@ -16,6 +16,7 @@ PRESLIDING_MM = 1e-4
 TONNE_PER_KG = 1e-3
 # Newmark's method, second order but for a little damping of what the clock cannot follow.
 BETA, GAMMA = 0.3025, 0.6
+LOOSE_S = 0.015  # in which a loose part of the mass takes up the load's speed
 
 
 @dataclass(frozen=True)
@@ -30,6 +31,8 @@ class LoadEnd:
         Coulomb friction of the guide on the load's and on the tendon's side of the sensor.
     mass_kg
         What moves with the load.
+    loose_share
+        The share of it that a damper carries along: without one a load on a tendon swings long.
     stop_at_mm, stop_N_per_mm
         A stop with a stiffness, met when x_out exceeds its place.
     anchor_rate_N_per_s, anchor_settling_per_s
@@ -41,6 +44,7 @@ class LoadEnd:
     friction_after_N: float = 0.0
     friction_before_N: float = 0.0
     mass_kg: float = 0.0
+    loose_share: float = 0.0
     stop_at_mm: float = inf
     stop_N_per_mm: float = 0.0
     anchor_rate_N_per_s: float = 0.0
@@ -54,16 +58,21 @@ class Load(NamedTuple):
     cubic: float
     friction: float
     mass: float
+    loose: float
     stop_at: float
     stop: float
 
 
 class LoadState(NamedTuple):
-    """Position [mm], speed [mm/s] and acceleration [mm/s²] of the load; state of its guide."""
+    """Position [mm], speed [mm/s] and acceleration [mm/s²] of the load, speed of its loose part.
+
+    Beside them the friction state of the guide.
+    """
 
     y: float
     v: float
     a: float
+    v_loose: float
     guide: float
 
 
@@ -73,7 +82,8 @@ def load(end: LoadEnd, stiffness_N_per_mm: float) -> Load:
         quadratic=stiffness_N_per_mm * end.quadratic_per_mm,
         cubic=stiffness_N_per_mm * end.cubic_per_mm2,
         friction=end.friction_after_N + end.friction_before_N,
-        mass=end.mass_kg * TONNE_PER_KG,
+        mass=end.mass_kg * TONNE_PER_KG * (1.0 - end.loose_share),
+        loose=end.mass_kg * TONNE_PER_KG * end.loose_share,
         stop_at=end.stop_at_mm,
         stop=end.stop_N_per_mm,
     )
@@ -82,9 +92,9 @@ def load(end: LoadEnd, stiffness_N_per_mm: float) -> Load:
 @compiled
 def moved(before: LoadState, y: float, h: float) -> LoadState:
     """Return the state after the load has gone to y within h seconds."""
-    a = _acceleration(before, y, h)
-    v = before.v + h * ((1.0 - GAMMA) * before.a + GAMMA * a)
-    return LoadState(y, v, a, dahl(y - before.y, before.guide, PRESLIDING_MM, 0.0, 1.0))
+    a, v = _newmark(before, y, h)
+    v_loose = before.v_loose + _taken_up(before, v, h) * h
+    return LoadState(y, v, a, v_loose, dahl(y - before.y, before.guide, PRESLIDING_MM, 0.0, 1.0))
 
 
 @compiled
@@ -95,8 +105,9 @@ def extra_force(load: Load, before: LoadState, y: float, h: float) -> tuple[floa
     slope = (2.0 * load.quadratic + 3.0 * load.cubic * y) * y
     force += load.friction * dahl(dy, before.guide, PRESLIDING_MM, 0.0, 1.0)
     slope += load.friction * dahl_slope(dy, before.guide, PRESLIDING_MM, 0.0, 1.0)
-    force += load.mass * _acceleration(before, y, h)
-    slope += load.mass / (BETA * h * h)
+    a, v = _newmark(before, y, h)
+    force += load.mass * a + load.loose * _taken_up(before, v, h)
+    slope += load.mass / (BETA * h * h) + load.loose * GAMMA / (BETA * h * (LOOSE_S + h))
     if y > load.stop_at:
         force += load.stop * (y - load.stop_at)
         slope += load.stop
@@ -104,6 +115,14 @@ def extra_force(load: Load, before: LoadState, y: float, h: float) -> tuple[floa
 
 
 @compiled
-def _acceleration(before: LoadState, y: float, h: float) -> float:
+def _newmark(before: LoadState, y: float, h: float) -> tuple[float, float]:
+    """Return acceleration and speed after the load has gone to y within h seconds."""
     gone = y - before.y - h * before.v - h * h * (0.5 - BETA) * before.a
-    return gone / (BETA * h * h)
+    a = gone / (BETA * h * h)
+    return a, before.v + h * ((1.0 - GAMMA) * before.a + GAMMA * a)
+
+
+@compiled
+def _taken_up(before: LoadState, v: float, h: float) -> float:
+    """Return the acceleration of the loose part [mm/s²] by an implicit Euler step."""
+    return (v - before.v_loose) / (LOOSE_S + h)
