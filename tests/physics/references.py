@@ -6,8 +6,9 @@ from itertools import pairwise
 import numpy as np
 
 from tsas_cli.effects import Effects, FreeTendon
+from tsas_cli.physics.chain_step import DISPLACEMENT, FORCE, SPRING, Boundary
 from tsas_cli.physics.rig import Rig
-from tsas_cli.physics.slip_chain import DISPLACEMENT, FORCE, Boundary, slip_chain
+from tsas_cli.physics.slip_chain import slip_chain
 
 GROUP_A = Rig(
     friction_coefficient=0.125,
@@ -19,9 +20,9 @@ GROUP_A = Rig(
 )
 FREE = GROUP_A._replace(effects=Effects(free_tendon=FreeTendon(152.0, 61.0)))
 
-LOADED_BY_SPRING = Boundary(DISPLACEMENT, DISPLACEMENT, 1.0 / GROUP_A.load_stiffness_N_per_mm)
-LOADED_BY_FORCE = Boundary(DISPLACEMENT, FORCE, 0.0)
-LOADED_BY_DISPLACEMENT = Boundary(DISPLACEMENT, DISPLACEMENT, 0.0)
+LOADED_BY_SPRING = Boundary(DISPLACEMENT, SPRING)
+LOADED_BY_FORCE = Boundary(DISPLACEMENT, FORCE)
+LOADED_BY_DISPLACEMENT = Boundary(DISPLACEMENT, DISPLACEMENT)
 DRIVEN_BY_FORCE = LOADED_BY_SPRING._replace(drive=FORCE)
 
 
@@ -35,15 +36,26 @@ def through(*turns, samples=400):
     return np.concatenate(legs)
 
 
-def follow(
-    drive, *, load=None, rig=GROUP_A, boundary=LOADED_BY_SPRING, n=30, wrap=None, preload=None
+def follow(drive, *, rig=GROUP_A, boundary=LOADED_BY_SPRING, n=30, **given):
+    """Run the slip chain, with the rig's own friction and all the time unless said otherwise."""
+    return slip_chain(course_of(drive, rig, **given), rig, boundary, n)
+
+
+def course_of(
+    drive, rig, *, load=0.0, pulled=None, released=None, viscous=0.0, lost=0.0, step=math.inf
 ):
-    """Run the slip chain with friction and preload of the rig unless they are given."""
-    drive = np.asarray(drive, dtype=float)
-    load = np.zeros_like(drive) if load is None else np.asarray(load, dtype=float)
-    wrap = np.array([wrap_of(rig)]) if wrap is None else wrap
-    preload = np.array([rig.preload_N]) if preload is None else preload
-    return slip_chain(drive, load, wrap, preload, rig, boundary, n)
+    """Return the course of `Moment`; friction is that of the rig unless it is given."""
+    wrap = wrap_of(rig)
+    rows = (
+        drive,
+        load,
+        wrap if pulled is None else pulled,
+        wrap if released is None else released,
+        viscous,
+        lost,
+        step,
+    )
+    return np.array([np.broadcast_to(np.asarray(row, dtype=float), len(drive)) for row in rows])
 
 
 class Profile:
@@ -107,7 +119,9 @@ def pulled_through(rig, tensions, points=40001):
     return tuple(np.array(passed).T)
 
 
-def relaxed_chain(drive, load, wrap, preload, compliance, *, drive_by_force, load_by_force):
+def relaxed_chain(
+    drive, load, pulled, released, preload, compliance, *, drive_by_force, load_by_force
+):
     """Return x and T after each sample, node by node until no node moves (Gauss-Seidel).
 
     A node keeps its place unless the tensions beside it leave the capstan cone; then it goes
@@ -116,7 +130,7 @@ def relaxed_chain(drive, load, wrap, preload, compliance, *, drive_by_force, loa
     n = compliance.size - 1
     x, history = np.zeros(n + 2), []
     for i in range(len(drive)):
-        ratio = math.exp(-wrap[i] / n)
+        ratios = math.exp(-pulled[i] / n), math.exp(-released[i] / n)
         held = x.copy()
         if not drive_by_force:
             x[0] = drive[i]
@@ -125,23 +139,23 @@ def relaxed_chain(drive, load, wrap, preload, compliance, *, drive_by_force, loa
         for _ in range(20000):
             moved = 0.0
             for j in range(1, n + 1):
-                before = line(x[j - 1], -1.0, compliance[j - 1], preload[i])
-                behind = line(-x[j + 1], 1.0, compliance[j], preload[i])
+                before = line(x[j - 1], -1.0, compliance[j - 1], preload)
+                behind = line(-x[j + 1], 1.0, compliance[j], preload)
                 if j == 1 and drive_by_force:
                     before = (drive[i], 0.0)
                 if j == n and load_by_force:
                     behind = (load[i], 0.0)
-                to = node_position(held[j], before, behind, ratio)
+                to = node_position(held[j], before, behind, *ratios)
                 moved, x[j] = max(moved, abs(to - x[j])), to
             if moved < 1e-15:
                 break
-        T = preload[i] + (x[:-1] - x[1:]) / compliance
+        T = preload + (x[:-1] - x[1:]) / compliance
         if drive_by_force:
             T[0] = drive[i]
-            x[0] = x[1] + compliance[0] * (T[0] - preload[i])
+            x[0] = x[1] + compliance[0] * (T[0] - preload)
         if load_by_force:
             T[n] = load[i]
-            x[n + 1] = x[n] - compliance[n] * (T[n] - preload[i])
+            x[n + 1] = x[n] - compliance[n] * (T[n] - preload)
         history.append((x.copy(), T))
     return history
 
@@ -151,13 +165,16 @@ def line(end, sign, compliance, preload):
     return preload + end / compliance, sign / compliance
 
 
-def node_position(held, before, behind, ratio):
-    """Return where a node goes whose segments' tensions are straight lines over its position."""
+def node_position(held, before, behind, pulled, released):
+    """Return where a node goes whose segments' tensions are straight lines over its position.
+
+    `pulled` and `released` are what its friction leaves of the tension in either direction.
+    """
 
     def tension(segment, x):
         return segment[0] + segment[1] * x
 
-    for least, sign in ((ratio, 1.0), (1.0 / ratio, -1.0)):
+    for least, sign in ((pulled, 1.0), (1.0 / released, -1.0)):
         T = tension(before, held)
         edge = least * T if T >= 0.0 else T / least
         if sign * (tension(behind, held) - edge) < 0.0:

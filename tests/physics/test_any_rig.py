@@ -5,12 +5,13 @@ import math
 import numpy as np
 import pytest
 
-from tests.physics.references import Profile, wrap_of
+from tests.physics.references import Profile, course_of, wrap_of
 from tsas_cli.effects import Effects, FreeTendon
 from tsas_cli.physics.branches import branches
+from tsas_cli.physics.chain_step import DISPLACEMENT, FORCE, SPRING, Boundary
 from tsas_cli.physics.quasi_static import UNSETTLED
 from tsas_cli.physics.rig import Rig
-from tsas_cli.physics.slip_chain import DISPLACEMENT, FORCE, Boundary, slip_chain
+from tsas_cli.physics.slip_chain import slip_chain
 from tsas_cli.physics.static import static_model
 
 SEEDS = range(1000)
@@ -45,13 +46,9 @@ def any_motion(rng, rig, samples=300):
 
 
 def chain(rig, drive, load, values, n=20):
-    boundary = Boundary(
-        DISPLACEMENT,
-        FORCE if load == "force" else DISPLACEMENT,
-        1.0 / rig.load_stiffness_N_per_mm if load == "spring" else 0.0,
-    )
+    kinds = {"spring": SPRING, "force": FORCE, "displacement": DISPLACEMENT}
     return slip_chain(
-        drive, values, np.array([wrap_of(rig)]), np.array([rig.preload_N]), rig, boundary, n
+        course_of(drive, rig, load=values), rig, Boundary(DISPLACEMENT, kinds[load]), n
     )
 
 

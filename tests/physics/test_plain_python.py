@@ -11,24 +11,26 @@ PROGRAM = """
 import json
 import sys
 import numpy as np
-from tests.physics.references import GROUP_A
+from tests.physics.references import GROUP_A, course_of
 from tsas_cli.effects import Effects, FreeTendon
 from tsas_cli.physics.branches import branches
-from tsas_cli.physics.slip_chain import DISPLACEMENT, FORCE, Boundary, slip_chain
+from tsas_cli.physics.chain_step import DISPLACEMENT, FORCE, SPRING, Boundary
+from tsas_cli.physics.slip_chain import slip_chain
 from tsas_cli.physics.static import static_model
 
 rig = GROUP_A._replace(effects=Effects(free_tendon=FreeTendon(152.0, 61.0)))
 x = np.interp(np.linspace(0, 7, 300), np.arange(8), [0, 14, 13.9, 13.95, 13.2, -60, 13, 12])
-wrap, preload = np.linspace(0.3, 0.5, 300), np.linspace(25.0, 20.0, 300)
+varying = {"pulled": np.linspace(0.3, 0.5, 300), "lost": np.linspace(0.0, 5.0, 300)}
 spiral = 14 + 0.1 * np.linspace(1, 0, 100) * (-1.0) ** np.arange(100)
 answers = [branches(x, rig), branches(spiral, rig), static_model(x, rig)]
 for drive, load, boundary in (
-    (x, 0.0 * x, Boundary(DISPLACEMENT, DISPLACEMENT, 1.0 / 1.579)),
-    (x, 25.0 - 3.0 * x, Boundary(DISPLACEMENT, FORCE, 0.0)),
-    (x, 0.9 * x, Boundary(DISPLACEMENT, DISPLACEMENT, 0.0)),
-    (25.0 + x, 0.0 * x, Boundary(FORCE, DISPLACEMENT, 1.0 / 1.579)),
+    (x, 0.0 * x, Boundary(DISPLACEMENT, SPRING)),
+    (x, 25.0 - 3.0 * x, Boundary(DISPLACEMENT, FORCE)),
+    (x, 0.9 * x, Boundary(DISPLACEMENT, DISPLACEMENT)),
+    (25.0 + x, 0.0 * x, Boundary(FORCE, SPRING)),
 ):
-    answers.append(slip_chain(drive, load, wrap, preload, rig, boundary, 10))
+    course = course_of(drive, rig, load=load, **varying)
+    answers.append(slip_chain(course, rig, boundary, 10))
 columns = [column.tolist() for answer in answers for column in answer]
 print(json.dumps(["numba" in sys.modules, columns]))
 """

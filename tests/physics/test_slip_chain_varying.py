@@ -1,4 +1,4 @@
-"""The slip chain while friction, bend, preload and both ends change at once."""
+"""The slip chain while friction, bend, the spring's anchor and both ends change at once."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,7 @@ import pytest
 from tests.physics.references import FREE, GROUP_A, follow, relaxed_chain, through, wrap_of
 from tsas_cli.challenge.rig import tendon
 from tsas_cli.challenge.rig.motions import Motion
-from tsas_cli.physics.slip_chain import DISPLACEMENT, FORCE, Boundary
+from tsas_cli.physics.chain_step import DISPLACEMENT, FORCE, SPRING, Boundary
 
 A = wrap_of(GROUP_A)
 BRUTE_NODES = 6
@@ -43,18 +43,19 @@ def wandering(rng, scale, samples=80):
     ],
 )
 def test_everything_that_varies_at_once_is_that_of_the_relaxed_chain(drive, load, seed):
-    """Friction, bend and preload change together with what is given at both ends."""
+    """Friction of both directions and the anchor change with what is given at both ends.
+
+    To the reference an anchor that has lost a force is the far end of the spring, moved.
+    """
     rng = np.random.default_rng(seed)
     compliance = 1.0 / 30.0 if load == "spring" else 0.0
-    boundary = Boundary(
-        FORCE if drive == "force" else DISPLACEMENT,
-        FORCE if load in {"force", "push-pull"} else DISPLACEMENT,
-        compliance,
-    )
-    wrap, preload = A + wandering(rng, 0.3 * A), 25.0 + wandering(rng, 4.0)
+    kinds = {"spring": SPRING, "force": FORCE, "push-pull": FORCE, "displacement": DISPLACEMENT}
+    boundary = Boundary(FORCE if drive == "force" else DISPLACEMENT, kinds[load])
+    pulled, released = A + wandering(rng, 0.3 * A), A + wandering(rng, 0.3 * A)
+    lost = wandering(rng, 4.0)
     at_drive = 25.0 + wandering(rng, 20.0) if drive == "force" else wandering(rng, 1.5)
     at_load = {
-        "spring": np.zeros(80),
+        "spring": lost * compliance,
         "force": 25.0 + wandering(rng, 10.0),
         "displacement": wandering(rng, 0.5),
         "push-pull": wandering(rng, 30.0),
@@ -65,26 +66,28 @@ def test_everything_that_varies_at_once_is_that_of_the_relaxed_chain(drive, load
         rig=SPRINGY,
         boundary=boundary,
         n=BRUTE_NODES,
-        wrap=wrap,
-        preload=preload,
+        pulled=pulled,
+        released=released,
+        lost=lost,
     )
     history = relaxed_chain(
         at_drive,
         at_load,
-        wrap,
-        preload,
+        pulled,
+        released,
+        SPRINGY.preload_N,
         compliances(SPRINGY, compliance),
         drive_by_force=drive == "force",
         load_by_force=boundary.load == FORCE,
     )
     assert set(phase) == {0, 1, -1}
     assert (f_in.min() < -10.0) == (load == "push-pull")
-    spring = (f_out - preload) * compliance
+    stretched = (f_out - SPRINGY.preload_N) * compliance
     for answer, reference, tolerance in (
         (f_in, [T[0] for _, T in history], 1e-6),
         (f_out, [T[-1] for _, T in history], 1e-6),
         (x_in, [x[0] for x, _ in history], 1e-7),
-        (x_out - spring, [x[-1] for x, _ in history], 1e-7),
+        (x_out - stretched, [x[-1] for x, _ in history], 1e-7),
     ):
         # The chain goes in smaller steps where one is too large, the reference never does.
         apart = np.abs(answer - reference) > tolerance
@@ -94,7 +97,7 @@ def test_everything_that_varies_at_once_is_that_of_the_relaxed_chain(drive, load
 
 def test_constant_arrays_are_scalars_to_the_last_bit():
     motion = through(20.0, 5.0, 15.0, 14.9, 14.95, 14.8, -30.0)
-    constant = follow(motion, wrap=np.full(motion.size, A), preload=np.full(motion.size, 25.0))
+    constant = follow(motion, pulled=np.full(motion.size, A), released=np.full(motion.size, A))
     for array, scalar in zip(constant, follow(motion), strict=True):
         np.testing.assert_array_equal(array, scalar)
 
@@ -109,7 +112,9 @@ def test_friction_that_fades_while_nothing_moves_is_that_of_the_rig():
     )
     expected = tendon.simulate(made, motion).columns
     wrap = A * np.interp(t, *np.transpose(fading))
-    _, x_out, f_in, f_out, phase = follow(motion.x_in_mm, rig=FREE, wrap=wrap, n=60)
+    _, x_out, f_in, f_out, phase = follow(
+        motion.x_in_mm, rig=FREE, pulled=wrap, released=wrap, n=60
+    )
     assert np.ptp(f_in[100:200]) > 10.0
     np.testing.assert_allclose(f_in, expected["f_in_N"], atol=0.05)
     np.testing.assert_allclose(f_out, expected["f_out_N"], atol=0.05)

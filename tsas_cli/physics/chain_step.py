@@ -37,7 +37,8 @@ DISPLACEMENT, FORCE, SPRING = 0, 1, 2  # what is given at an end
 TOLERANCE = 1e-10  # of the tension and of a segment's elongation, for rounding
 MOST_REVISIONS = 20  # of the slipping set, and two more for each node
 BALANCED = 1e-9  # of the tension, at a load whose law is not straight
-STIFFEST_BRISTLE = 1e3  # times a segment's stiffness; more does not show on the mesh
+STIFFEST_BRISTLE = 100.0  # times a segment's stiffness; more does not show on the mesh
+LEAST_FRICTION = 1e-9  # of the preload, so that a bristle keeps some stiffness
 
 
 class Boundary(NamedTuple):
@@ -73,8 +74,8 @@ class Moment(NamedTuple):
     step_s: float  # time since the moment before, infinite where it plays no part
 
 
-# The state, one row each over the nodes from 0 at the drive to n + 1 at the load, shape (13, n + 2).
-# One array and not thirteen: a compiled call counts the references of every array that it is given.
+# The state, a row for each over the nodes from 0 at the drive to n + 1 at the load, shape
+# (ROWS, n + 2). In one array, since a compiled call counts the references of each that it is given.
 X, X_OLD = 0, 1  # position, now and when the last step had settled [mm]
 T, T_OLD = 2, 3  # tension of the segment behind the node, likewise [N]
 SLIP = 4  # direction in which the node slips, 0 where it sticks
@@ -83,7 +84,8 @@ GIVE = 6  # compliance of the segment behind the node [mm/N]
 P, Q, R = 7, 8, 9  # T = (P x + Q)/R of the segment behind the node, x its position
 SPEED = 10  # of the load when the last step had settled [mm/s]
 PULLED, RELEASED = 11, 12  # what the node's share of the bend leaves of the tension, e^(−a/n)
-ROWS = 13
+BRISTLE = 13  # stiffness with which the node sticks [N/mm], infinite without presliding
+ROWS = 14
 
 
 @kernel
@@ -139,13 +141,17 @@ def load_law(chain: Floats, now: Moment, laws: Laws) -> tuple[float, float]:
 
 
 @kernel
-def bristle_of(i: int, chain: Floats, now: Moment, laws: Laws) -> float:
-    """Return the stiffness with which a node sticks [N/mm]."""
-    tension = 0.5 * (chain[T_OLD, i - 1] + chain[T_OLD, i])
-    change = 1.0 - chain[PULLED, i]
-    limit = change * abs(tension) + now.viscous_N / (chain.shape[1] - 2)
-    stiffest = STIFFEST_BRISTLE / chain[GIVE, i]
-    return min(bristle_stiffness(limit, laws.presliding_mm), stiffest)
+def set_bristles(chain: Floats, now: Moment, laws: Laws) -> None:
+    """Renew how stiffly each node sticks: its limit of friction over the presliding length."""
+    n = chain.shape[1] - 2
+    if laws.presliding_mm == 0.0:
+        return
+    for i in range(1, n + 1):
+        tension = abs(0.5 * (chain[T_OLD, i - 1] + chain[T_OLD, i]))
+        held_back = 1.0 - 0.5 * (chain[PULLED, i] + chain[RELEASED, i])
+        limit = held_back * tension + now.viscous_N / n + LEAST_FRICTION * laws.preload_N
+        stiffest = STIFFEST_BRISTLE / chain[GIVE, i]
+        chain[BRISTLE, i] = min(bristle_stiffness(limit, laws.presliding_mm), stiffest)
 
 
 @kernel
@@ -154,6 +160,7 @@ def sweep_to_drive(chain: Floats, now: Moment, boundary: Boundary, laws: Laws) -
     F0, n = laws.preload_N, chain.shape[1] - 2
     loss = now.viscous_N / n
     guide = friction_at_load(boundary, laws)
+    rigid = laws.presliding_mm == 0.0
     p, q, r = 0.0, 0.0, 1.0
     held = boundary.load == DISPLACEMENT or (chain[SLIP, n + 1] == 0 and guide > 0.0)
     place = now.load if boundary.load == DISPLACEMENT else chain[X_OLD, n + 1]
@@ -165,18 +172,18 @@ def sweep_to_drive(chain: Floats, now: Moment, boundary: Boundary, laws: Laws) -
         q += chain[SLIP, n + 1] * guide
     for i in range(n + 1, 0, -1):  # node i, then the segment before it
         give = chain[GIVE, i - 1]
-        bristle = math.inf
         if i <= n:
             held = chain[SLIP, i] == 0
             place = chain[X_OLD, i]
             if not held:
                 q += chain[SLIP, i] * loss * r
                 r *= chain[PASSES, i]
-            elif laws.presliding_mm > 0.0:
-                bristle = bristle_of(i, chain, now, laws)
-                p += bristle * r
-                q += (chain[T_OLD, i - 1] - chain[T_OLD, i] - bristle * place) * r
-        if held and bristle == math.inf:
+            elif not rigid:
+                bristle = chain[BRISTLE, i]
+                p, q, r = p / r + bristle, q / r, 1.0  # without this they would outgrow a float
+                q += chain[T_OLD, i - 1] - chain[T_OLD, i] - bristle * place
+                held = False
+        if held:
             p, q, r = 1.0, give * F0 - place, give
         else:
             q += p * give * F0
@@ -199,10 +206,10 @@ def start_of_drive(chain: Floats, now: Moment, boundary: Boundary, laws: Laws) -
         return now.drive
     friction = laws.drive_friction_N
     if chain[SLIP, 0] == 0 and friction > 0.0:
-        return chain[X_OLD, 0]
+        return float(chain[X_OLD, 0])
     p, q, r = chain[P, 0], chain[Q, 0], chain[R, 0]
     stiffness = proximal_spring_force(1.0, laws.proximal_spring_N_per_mm)
-    return ((now.drive - chain[SLIP, 0] * friction) * r - q) / (p + stiffness * r)
+    return float(((now.drive - chain[SLIP, 0] * friction) * r - q) / (p + stiffness * r))
 
 
 @kernel
@@ -229,44 +236,54 @@ def sweep_to_load(chain: Floats, now: Moment, boundary: Boundary, laws: Laws) ->
 
 
 @kernel
-def went_back(i: int, chain: Floats, scale: float) -> bool:
-    """Say whether a slipping node has moved against its own direction."""
-    return chain[SLIP, i] * (chain[X, i] - chain[X_OLD, i]) < -TOLERANCE * scale
+def slid_back(i: int, chain: Floats, scale: float) -> bool:
+    """Say whether a slipping node has slid against its own direction, its bristle's give aside."""
+    slid = chain[X, i] - chain[X_OLD, i]
+    if chain[BRISTLE, i] < math.inf:
+        friction = chain[T, i - 1] - chain[T, i]
+        slid -= (friction - (chain[T_OLD, i - 1] - chain[T_OLD, i])) / chain[BRISTLE, i]
+    return bool(chain[SLIP, i] * slid < -TOLERANCE * scale)
 
 
 @kernel
-def revise(chain: Floats, now: Moment, scale: float) -> bool:
+def revise(chain: Floats, now: Moment, scale: float, most: int) -> int:
     """Free the nodes whose tensions exceed their friction, hold those that slip backwards.
 
-    Returns whether any node was wrong.
+    Returns how many nodes it revised, at most so many, from the drive on.
     """
     n = chain.shape[1] - 2
     loss = now.viscous_N / n
-    wrong = False
+    revised = 0
     for i in range(1, n + 1):
-        if chain[SLIP, i] == 0:
-            margin = TOLERANCE * abs(chain[T, i - 1])
-            lower, upper = ratio_passed(1.0, i, chain), ratio_passed(-1.0, i, chain)
-            if chain[T, i] < lower * chain[T, i - 1] - loss - margin:
-                chain[SLIP, i] = 1
-                wrong = True
-            elif chain[T, i] > upper * chain[T, i - 1] + loss + margin:
-                chain[SLIP, i] = -1
-                wrong = True
-        elif went_back(i, chain, scale):
-            chain[SLIP, i] = 0
-            chain[X, i] = chain[X_OLD, i]
-            wrong = True
-    return wrong
+        before = chain[SLIP, i]
+        if before == 0.0:
+            chain[SLIP, i] = pulled_loose(i, loss, chain)
+        elif slid_back(i, chain, scale):
+            chain[SLIP, i] = 0.0
+        if chain[SLIP, i] != before:
+            revised += 1
+            if revised == most:
+                break
+    return revised
+
+
+@kernel
+def pulled_loose(i: int, loss: float, chain: Floats) -> float:
+    """Return the direction in which the tensions pull a node that sticks, 0 where it holds."""
+    margin = TOLERANCE * abs(chain[T, i - 1])
+    if chain[T, i] < ratio_passed(1.0, i, chain) * chain[T, i - 1] - loss - margin:
+        return 1.0
+    if chain[T, i] > ratio_passed(-1.0, i, chain) * chain[T, i - 1] + loss + margin:
+        return -1.0
+    return 0.0
 
 
 @kernel
 def revise_end(i: int, pull: float, friction: float, chain: Floats, scale: float) -> bool:
     """Do the same for an end with friction that does not depend on tension."""
     if chain[SLIP, i] != 0:
-        if went_back(i, chain, scale):
+        if slid_back(i, chain, scale):
             chain[SLIP, i] = 0
-            chain[X, i] = chain[X_OLD, i]
             return True
     elif abs(pull) > friction * (1.0 + TOLERANCE):
         chain[SLIP, i] = 1 if pull > 0.0 else -1
@@ -301,19 +318,22 @@ def pulls_back(chain: Floats, now: Moment, boundary: Boundary, laws: Laws) -> fl
     if boundary.load == FORCE:
         return now.load
     slope, value = load_law(chain, now, laws)
-    return slope * chain[X, chain.shape[1] - 1] + value
+    return float(slope * chain[X, chain.shape[1] - 1] + value)
 
 
 @kernel
 def settle(chain: Floats, now: Moment, boundary: Boundary, laws: Laws, scale: float) -> bool:
     """Find the slipping nodes at a moment; return whether the set was found."""
     set_friction(chain, now, laws)
+    set_bristles(chain, now, laws)
     corrected = laws.friction_exponent == 0.0
-    for _ in range(MOST_REVISIONS + 2 * chain.shape[1]):
+    n = chain.shape[1] - 2
+    for revision in range(MOST_REVISIONS + 2 * n):
         set_ratios(chain)
         sweep_to_drive(chain, now, boundary, laws)
         sweep_to_load(chain, now, boundary, laws)
-        wrong = revise(chain, now, scale)
+        most = n if revision < MOST_REVISIONS else 1  # one by one ends where all at once cycle
+        wrong = revise(chain, now, scale, most) > 0
         wrong = revise_ends(chain, now, boundary, laws, scale) or wrong
         if wrong or set_ratios(chain):
             continue

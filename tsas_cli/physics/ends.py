@@ -80,16 +80,16 @@ def ends_of(rig: Rig, drive: Drive) -> Ends:
     )
     time_s = np.zeros(n) if drive.time_s is None else drive.time_s
     if drive.kind == "force":
-        at_drive = true_value("f_in_N", drive.values, time_s, rig)
+        at_drive = true_value("f_in_N", drive.values, drive.time_s, rig)
         speed = np.zeros(n)
     else:
         at_drive = tendon_end(drive.values - rig.x_in_zero_mm, rig.effects)
         speed = np.zeros(n) if drive.time_s is None or n < 2 else np.gradient(at_drive, time_s)
     at_load = np.zeros(n)
     if drive.load_values is not None and drive.load == "force":
-        at_load = true_value("f_out_N", drive.load_values, time_s, rig)
+        at_load = true_value("f_out_N", drive.load_values, drive.time_s, rig)
     if drive.load_values is not None and drive.load == "displacement":
-        at_load = true_value("x_out_mm", drive.load_values, time_s, rig)
+        at_load = true_value("x_out_mm", drive.load_values, drive.time_s, rig)
     step_s = np.full(n, math.inf)
     if drive.time_s is not None:
         step_s[1:] = np.diff(time_s)

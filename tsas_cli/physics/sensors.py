@@ -16,19 +16,26 @@ Floats = npt.NDArray[np.float64]
 Channel = Literal["f_in_N", "f_out_N", "x_out_mm"]
 
 
-def reading(channel: Channel, values: Floats, time_s: Floats, rig: Rig) -> Floats:
-    """Return what a channel shows of true values, shape (n,): late, scaled, shifted."""
-    late = _delay(channel, rig)
-    seen = values if late == 0.0 else np.interp(time_s - late, time_s, values)
-    gain = _gain(channel, rig)
-    return seen * gain + _shift(channel, time_s, rig)
+def reading(channel: Channel, values: Floats, time_s: Floats | None, rig: Rig) -> Floats:
+    """Return what a channel shows of true values, shape (n,): late, scaled, shifted.
+
+    Without times nothing is late and nothing has drifted.
+    """
+    seen = _later(values, time_s, _delay(channel, rig))
+    return seen * _gain(channel, rig) + _shift(channel, time_s, rig)
 
 
-def true_value(channel: Channel, readings: Floats, time_s: Floats, rig: Rig) -> Floats:
+def true_value(channel: Channel, readings: Floats, time_s: Floats | None, rig: Rig) -> Floats:
     """Return the true values behind what a channel shows, the inverse of `reading`."""
-    late = _delay(channel, rig)
     seen = (readings - _shift(channel, time_s, rig)) / _gain(channel, rig)
-    return seen if late == 0.0 else np.interp(time_s + late, time_s, seen)
+    return _later(seen, time_s, -_delay(channel, rig))
+
+
+def _later(values: Floats, time_s: Floats | None, delay_s: float) -> Floats:
+    """Return values that come later by a delay; the first and the last one hold on."""
+    if time_s is None or delay_s == 0.0:
+        return values
+    return np.interp(time_s - delay_s, time_s, values)
 
 
 def _delay(channel: Channel, rig: Rig) -> float:
@@ -48,15 +55,15 @@ def _gain(channel: Channel, rig: Rig) -> float:
     return 1.0
 
 
-def _shift(channel: Channel, time_s: Floats, rig: Rig) -> Floats | float:
-    """Return what is added to a reading: the zero of a displacement, offset and drift of a force."""
+def _shift(channel: Channel, time_s: Floats | None, rig: Rig) -> Floats | float:
+    """Return what is added: the zero of a displacement, offset and drift of a force."""
     offset, drift = rig.effects.force_sensor_offset, rig.effects.force_sensor_drift
     if channel == "x_out_mm":
         return rig.x_out_zero_mm
     here = offset.f_in_offset_N if channel == "f_in_N" else offset.f_out_offset_N
     rate = drift.f_in_rate_N_per_s if channel == "f_in_N" else drift.f_out_rate_N_per_s
     start = offset_reading(0.0, here)
-    if rate == 0.0:
+    if rate == 0.0 or time_s is None:
         return start
     return drifting(start, rate, drift.settling_per_s, time_s)
 

@@ -16,6 +16,7 @@ import numpy.typing as npt
 from tsas_cli.effects.load_spring_nonlinearity import spring_force, spring_tangent
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.chain_step import (
+    BRISTLE,
     DISPLACEMENT,
     FORCE,
     GIVE,
@@ -116,6 +117,7 @@ def at_rest(rig: Rig, n: int) -> Floats:
     chain = np.zeros((ROWS, n + 2))
     chain[T] = rig.preload_N
     chain[T_OLD] = rig.preload_N
+    chain[BRISTLE] = math.inf
     chain[GIVE, : n + 1] = segment_compliances(rig, n)
     return chain
 
@@ -160,7 +162,7 @@ def advance(
         to = min(done + step, 1.0)
         now = between(start, end, to, end.step_s * (to - done))
         if settle(chain, now, boundary, laws, scale):
-            chain[SPEED] = (chain[X] - chain[X_OLD]) / now.step_s
+            chain[SPEED, -1] = (chain[X, -1] - chain[X_OLD, -1]) / now.step_s
             keep(chain)
             done = to
             step *= 2.0
@@ -182,7 +184,7 @@ def keep(chain: Floats) -> None:
 
 @kernel
 def between(start: Moment, end: Moment, part: float, step_s: float) -> Moment:
-    """Return the moment at a part of the way, reached in a step of its own; the last one exactly."""
+    """Return the moment at a part of the way, after a step of its own; the last one exactly."""
     if part == 1.0:
         drive, load, pulled, released = end.drive, end.load, end.pulled, end.released
         return Moment(drive, load, pulled, released, end.viscous_N, end.lost_N, step_s)
@@ -218,7 +220,7 @@ def tension_at_sensor(chain: Floats, now: Moment, boundary: Boundary, laws: Laws
     if before == 0.0:
         return tension
     if boundary.load == DISPLACEMENT:
-        return tension - chain[SLIP, n + 1] * before
+        return float(tension - chain[SLIP, n + 1] * before)
     share = before / friction_at_load(boundary, laws)
     return tension - share * (tension - pulls_back(chain, now, boundary, laws))
 
