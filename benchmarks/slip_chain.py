@@ -9,13 +9,20 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.row import Row
-from tests.physics.references import GROUP_A
+from tests.physics.references import (
+    GROUP_A,
+    LOADED_BY_DISPLACEMENT,
+    LOADED_BY_FORCE,
+    LOADED_BY_SPRING,
+    course_of,
+)
+from tsas_cli.effects import EFFECTS
 from tsas_cli.numerics.conditioning import condition
 from tsas_cli.physics.branches import branches
-from tsas_cli.physics.slip_chain import DISPLACEMENT, FORCE, Boundary, slip_chain
+from tsas_cli.physics.ends import Drive, ends_of
+from tsas_cli.physics.rig import Rig, with_values
+from tsas_cli.physics.slip_chain import slip_chain
 
-WRAP = np.array([GROUP_A.friction_coefficient * GROUP_A.total_bend_rad])
-PRELOAD = np.array([GROUP_A.preload_N])
 TIME_S = np.arange(12566) / 1000.0  # two periods
 REPEATS = 30
 TIMES_LONGER = 100  # the run whose memory is looked at
@@ -30,21 +37,22 @@ def measure() -> Iterator[Row]:
     drive = as_measured(x_in, noise=0.005, step=0.002)
     yield Row("closed form", best_ns(lambda: branches(drive, GROUP_A)), "ns", at_most=20.0)
 
-    spring = Boundary(DISPLACEMENT, DISPLACEMENT, 1.0 / GROUP_A.load_stiffness_N_per_mm)
     loads = {
-        "spring": (np.zeros_like(drive), spring),
-        "force": (as_measured(f_out, noise=0.08, step=0.01), Boundary(DISPLACEMENT, FORCE, 0.0)),
-        "displacement": (
-            as_measured(x_out, noise=0.005, step=0.002),
-            Boundary(DISPLACEMENT, DISPLACEMENT, 0.0),
-        ),
+        "spring": (0.0, LOADED_BY_SPRING),
+        "force": (as_measured(f_out, noise=0.08, step=0.01), LOADED_BY_FORCE),
+        "displacement": (as_measured(x_out, noise=0.005, step=0.002), LOADED_BY_DISPLACEMENT),
     }
     for n, at_most in ((30, 2000.0), (60, None)):
         for name, (load, boundary) in loads.items():
-            ns = best_ns(lambda: slip_chain(drive, load, WRAP, PRELOAD, GROUP_A, boundary, n))  # noqa: B023 # called at once
+            course = course_of(drive, GROUP_A, load=load)
+            ns = best_ns(lambda: slip_chain(course, GROUP_A, boundary, n))  # noqa: B023 # called at once
             yield Row(f"slip chain, {n} nodes, load {name}", ns, "ns", at_most)
+    rig = with_every_effect()
+    ends = ends_of(rig, Drive(drive, time_s=TIME_S))
+    ns = best_ns(lambda: slip_chain(ends.course, rig, ends.boundary, 30))
+    yield Row("slip chain, 30 nodes, every effect at once", ns, "ns")
     if sys.platform == "linux":
-        megabytes = memory_beyond_output(np.tile(drive, TIMES_LONGER), spring)
+        megabytes = memory_beyond_output(np.tile(drive, TIMES_LONGER))
         yield Row(f"memory beyond output, {TIMES_LONGER} such runs", megabytes, "MB", at_most=1.0)
 
 
@@ -65,12 +73,18 @@ def best_ns(solve: Callable[[], object]) -> float:
     return best / TIME_S.size
 
 
-def memory_beyond_output(drive: np.ndarray, boundary: Boundary) -> float:
+def with_every_effect() -> Rig:
+    """Return the rig with every effect at the value from which a fit begins."""
+    start = {f"{e.name}.{p.name}": p.start for e in EFFECTS for p in e.parameters}
+    return with_values(GROUP_A, start)
+
+
+def memory_beyond_output(drive: np.ndarray) -> float:
     """Return by how much the process grows at most over what the chain returns [MB]."""
-    load = np.zeros_like(drive)
+    course = course_of(drive, GROUP_A)
     Path("/proc/self/clear_refs").write_text("5", encoding="ascii")  # forgets earlier peaks
     before = memory(NOW)
-    output = slip_chain(drive, load, WRAP, PRELOAD, GROUP_A, boundary, 30)
+    output = slip_chain(course, GROUP_A, LOADED_BY_SPRING, 30)
     return (memory(PEAK) - before - sum(column.nbytes for column in output)) / 1e6
 
 

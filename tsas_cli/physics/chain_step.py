@@ -35,8 +35,11 @@ Phases = npt.NDArray[np.int8]
 
 DISPLACEMENT, FORCE, SPRING = 0, 1, 2  # what is given at an end
 TOLERANCE = 1e-10  # of the tension and of a segment's elongation, for rounding
-MOST_REVISIONS = 20  # of the slipping set, and two more for each node
-BALANCED = 1e-9  # of the tension, at a load whose law is not straight
+MOST_AT_ONCE = 20  # revisions of the slipping set
+MOST_ONE_BY_ONE = 5  # more, for each node
+BALANCED = 1e-9  # of the tension, where a law is not straight
+STRONGEST = 30.0  # friction of a node times its bend, so that it passes on more than nothing
+MOST_BENT = 0.5  # of the ratio that a node passes on: how far a tangent may turn it
 STIFFEST_BRISTLE = 100.0  # times a segment's stiffness; more does not show on the mesh
 LEAST_FRICTION = 1e-9  # of the preload, so that a bristle keeps some stiffness
 
@@ -79,13 +82,13 @@ class Moment(NamedTuple):
 X, X_OLD = 0, 1  # position, now and when the last step had settled [mm]
 T, T_OLD = 2, 3  # tension of the segment behind the node, likewise [N]
 SLIP = 4  # direction in which the node slips, 0 where it sticks
-PASSES = 5  # T[i]/T[i−1] where it slips, viscous part aside
+PASSES, TAKES = 5, 14  # where it slips, T[i] = PASSES T[i−1] − TAKES
 GIVE = 6  # compliance of the segment behind the node [mm/N]
 P, Q, R = 7, 8, 9  # T = (P x + Q)/R of the segment behind the node, x its position
 SPEED = 10  # of the load when the last step had settled [mm/s]
 PULLED, RELEASED = 11, 12  # what the node's share of the bend leaves of the tension, e^(−a/n)
 BRISTLE = 13  # stiffness with which the node sticks [N/mm], infinite without presliding
-ROWS = 14
+ROWS = 15
 
 
 @kernel
@@ -99,8 +102,8 @@ def set_friction(chain: Floats, now: Moment, laws: Laws) -> None:
     for i in range(1, n + 1):
         tension = 0.5 * (chain[T, i - 1] + chain[T, i])
         factor = load_factor(tension / laws.preload_N, laws.friction_exponent)
-        chain[PULLED, i] = math.exp(-pulled * factor)
-        chain[RELEASED, i] = math.exp(-released * factor)
+        chain[PULLED, i] = math.exp(-min(pulled * factor, STRONGEST))
+        chain[RELEASED, i] = math.exp(-min(released * factor, STRONGEST))
 
 
 @kernel
@@ -112,14 +115,33 @@ def ratio_passed(direction: float, i: int, chain: Floats) -> float:
 
 
 @kernel
-def set_ratios(chain: Floats) -> bool:
-    """Renew the ratios of all slipping nodes; return whether any differs from what was used."""
+def set_slides(chain: Floats, now: Moment, laws: Laws) -> bool:
+    """Renew what all slipping nodes pass on; return whether it differs from what was used.
+
+    Friction that depends on the tension is a tangent (Newton's method): with E = e^(∓a f/n) of the
+    mean tension m of both sides, T[i] = E T[i−1] − loss, and dE/dm = ∓(a/n) E f β/m.
+    """
+    n = chain.shape[1] - 2
+    straight = laws.friction_exponent == 0.0
     changed = False
-    for i in range(1, chain.shape[1] - 1):
-        if chain[SLIP, i] != 0.0:
-            ratio = ratio_passed(chain[SLIP, i], i, chain)
+    for i in range(1, n + 1):
+        if chain[SLIP, i] == 0.0:
+            continue
+        ratio = ratio_passed(chain[SLIP, i], i, chain)
+        loss = chain[SLIP, i] * now.viscous_N / n
+        if straight:
             changed = changed or ratio != chain[PASSES, i]
-            chain[PASSES, i] = ratio
+            chain[PASSES, i], chain[TAKES, i] = ratio, loss
+            continue
+        before, behind = chain[T, i - 1], chain[T, i]
+        off = behind - ratio * before + loss
+        changed = changed or abs(off) > BALANCED * (abs(before) + laws.preload_N)
+        mean = before + behind
+        bent = math.log(ratio) * ratio * laws.friction_exponent * before / mean if mean else 0.0
+        bent = min(max(bent, -MOST_BENT), MOST_BENT)
+        passes = (ratio + bent) / (1.0 - bent)
+        chain[PASSES, i] = passes
+        chain[TAKES, i] = passes * before - behind + off / (1.0 - bent)
     return changed
 
 
@@ -158,7 +180,6 @@ def set_bristles(chain: Floats, now: Moment, laws: Laws) -> None:
 def sweep_to_drive(chain: Floats, now: Moment, boundary: Boundary, laws: Laws) -> None:
     """Write each segment's tension as (p x + q)/r of the node before it, from the load on."""
     F0, n = laws.preload_N, chain.shape[1] - 2
-    loss = now.viscous_N / n
     guide = friction_at_load(boundary, laws)
     rigid = laws.presliding_mm == 0.0
     p, q, r = 0.0, 0.0, 1.0
@@ -176,7 +197,7 @@ def sweep_to_drive(chain: Floats, now: Moment, boundary: Boundary, laws: Laws) -
             held = chain[SLIP, i] == 0
             place = chain[X_OLD, i]
             if not held:
-                q += chain[SLIP, i] * loss * r
+                q += chain[TAKES, i] * r
                 r *= chain[PASSES, i]
             elif not rigid:
                 bristle = chain[BRISTLE, i]
@@ -216,14 +237,13 @@ def start_of_drive(chain: Floats, now: Moment, boundary: Boundary, laws: Laws) -
 def sweep_to_load(chain: Floats, now: Moment, boundary: Boundary, laws: Laws) -> None:
     """Find positions and tensions, from the drive on."""
     n = chain.shape[1] - 2
-    loss = now.viscous_N / n
     rigid = laws.presliding_mm == 0.0
     chain[X, 0] = start_of_drive(chain, now, boundary, laws)
     chain[T, 0] = (chain[P, 0] * chain[X, 0] + chain[Q, 0]) / chain[R, 0]
     for i in range(1, n + 1):
         place = chain[X, i - 1] - chain[GIVE, i - 1] * (chain[T, i - 1] - laws.preload_N)
         if chain[SLIP, i] != 0:
-            chain[T, i] = chain[PASSES, i] * chain[T, i - 1] - chain[SLIP, i] * loss
+            chain[T, i] = chain[PASSES, i] * chain[T, i - 1] - chain[TAKES, i]
         else:
             place = chain[X_OLD, i] if rigid else place
             chain[T, i] = (chain[P, i] * place + chain[Q, i]) / chain[R, i]
@@ -324,22 +344,19 @@ def pulls_back(chain: Floats, now: Moment, boundary: Boundary, laws: Laws) -> fl
 @kernel
 def settle(chain: Floats, now: Moment, boundary: Boundary, laws: Laws, scale: float) -> bool:
     """Find the slipping nodes at a moment; return whether the set was found."""
+    n = chain.shape[1] - 2
     set_friction(chain, now, laws)
     set_bristles(chain, now, laws)
-    corrected = laws.friction_exponent == 0.0
-    n = chain.shape[1] - 2
-    for revision in range(MOST_REVISIONS + 2 * n):
-        set_ratios(chain)
+    set_slides(chain, now, laws)
+    for revision in range(MOST_AT_ONCE + MOST_ONE_BY_ONE * n):
         sweep_to_drive(chain, now, boundary, laws)
         sweep_to_load(chain, now, boundary, laws)
-        most = n if revision < MOST_REVISIONS else 1  # one by one ends where all at once cycle
+        if laws.friction_exponent != 0.0:
+            set_friction(chain, now, laws)
+        most = n if revision < MOST_AT_ONCE else 1  # one by one ends where all at once cycle
         wrong = revise(chain, now, scale, most) > 0
         wrong = revise_ends(chain, now, boundary, laws, scale) or wrong
-        if wrong or set_ratios(chain):
-            continue
-        if corrected:
+        wrong = set_slides(chain, now, laws) or wrong
+        if not wrong:
             return True
-        # Friction that depends on the tension was that of the tension before: once more.
-        set_friction(chain, now, laws)
-        corrected = True
     return False

@@ -44,7 +44,7 @@ from tsas_cli.physics.rig import Rig
 Floats = npt.NDArray[np.float64]
 Phases = npt.NDArray[np.int8]
 
-SMALLEST_STEP = 2.0**-20  # of the way between two samples
+MOST_STEPS = 100  # between two samples, those included that did not settle
 
 
 @kernel
@@ -158,21 +158,21 @@ def advance(
     The way between two samples is a straight line. Returns whether every step settled.
     """
     done, step = 0.0, 1.0
-    while done < 1.0:
+    for _ in range(MOST_STEPS):
         to = min(done + step, 1.0)
         now = between(start, end, to, end.step_s * (to - done))
         if settle(chain, now, boundary, laws, scale):
             chain[SPEED, -1] = (chain[X, -1] - chain[X_OLD, -1]) / now.step_s
             keep(chain)
+            if to == 1.0:
+                return True
             done = to
             step *= 2.0
         else:
             for j in range(chain.shape[1]):
                 chain[X, j], chain[T, j], chain[SLIP, j] = chain[X_OLD, j], chain[T_OLD, j], 0.0
             step *= 0.5
-            if step < SMALLEST_STEP:
-                return False
-    return True
+    return False
 
 
 @kernel
