@@ -36,7 +36,11 @@ BACKLASH = Effect(
     acts_on="drive",
     equation="p = min(max(p, x_in − play/2), x_in + play/2)",
     doc=__doc__,
-    parameters=(Parameter("play_mm", "mm", neutral=0.0, start=0.1, lower=0.0, upper=20.0),),
+    parameters=(
+        Parameter(
+            "play_mm", "mm", neutral=0.0, start=0.1, lower=0.0, upper=20.0, starts=(0.01, 0.1)
+        ),
+    ),
     experiment="Slow nested strokes at two preloads: the travel for which f_in stands still after "
     "a reversal is the same at both.",
 )

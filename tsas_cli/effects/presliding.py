@@ -36,7 +36,11 @@ PRESLIDING = Effect(
     acts_on="tendon",
     equation="df/dx = limit/length while |f| < limit",
     doc=__doc__,
-    parameters=(Parameter("length_mm", "mm", neutral=0.0, start=0.02, lower=0.0, upper=20.0),),
+    parameters=(
+        Parameter(
+            "length_mm", "mm", neutral=0.0, start=0.02, lower=0.0, upper=20.0, starts=(0.005, 0.05)
+        ),
+    ),
     experiment="Strokes that shrink from 1 mm to a hundredth about one tension: below the length "
     "the loop of f_in over x_in closes into a line.",
 )

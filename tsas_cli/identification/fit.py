@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.numerics.covariance import jackknife
+from tsas_cli.numerics.least_squares import least_squares
 
 Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
@@ -38,6 +39,19 @@ class Unknown:
     lower: float
     upper: float
     scale: float
+
+
+@dataclass(frozen=True)
+class Solution:
+    """The least squares: scaled values, bound flags, residual (n,) and Jacobian (n, p) there."""
+
+    values: Floats
+    at_bound: npt.NDArray[np.bool_]
+    residual: Floats
+    jacobian: Floats
+    converged: bool
+    message: str
+    evaluations: int
 
 
 @dataclass(frozen=True)
@@ -97,6 +111,39 @@ def identifiable(unknowns: Sequence[Unknown], J: Floats) -> tuple[list[int], dic
     return chosen, confounded
 
 
+def solve(
+    unknowns: Sequence[Unknown], runs: int, residuals: Residuals, *, tolerance: float
+) -> Solution:
+    """Minimise the squares of all runs' residuals within the bounds.
+
+    `tolerance` is the part of the squares that a last step may still have saved.
+    """
+
+    def errors(values: Floats) -> Floats:
+        return np.concatenate([residuals(r, values) for r in range(runs)])
+
+    def slopes(values: Floats) -> Floats:
+        return jacobian(unknowns, runs, values, residuals)
+
+    lower = np.array([u.lower for u in unknowns])
+    upper = np.array([u.upper for u in unknowns])
+    start = np.array([u.start for u in unknowns])
+    found = least_squares(
+        errors, slopes, start, (lower, upper), tolerance=tolerance, most=MOST_EVALUATIONS
+    )
+    near = NEARLY_BOUND * (upper - lower)
+    at_bound = (found.values - lower < near) | (upper - found.values < near)
+    return Solution(
+        found.values,
+        at_bound,
+        found.residual,
+        found.jacobian,
+        found.converged,
+        found.message,
+        found.evaluations,
+    )
+
+
 def fit(
     unknowns: Sequence[Unknown],
     blocks: Sequence[Indices],
@@ -104,7 +151,7 @@ def fit(
     *,
     tolerance: float,
 ) -> Fitted:
-    """Minimise the squares of all runs' residuals within the bounds.
+    """Minimise the squares of all runs' residuals within the bounds, and say how sure it is.
 
     Parameters
     ----------
@@ -117,44 +164,37 @@ def fit(
     tolerance
         The part of the squares that a last step may still have saved.
     """
-    from scipy.optimize import least_squares
-
-    runs = len(blocks)
-    lower = np.array([u.lower for u in unknowns])
-    upper = np.array([u.upper for u in unknowns])
-
-    def errors(values: Floats) -> Floats:
-        return np.concatenate([residuals(r, values) for r in range(runs)])
-
-    def slopes(values: Floats) -> Floats:
-        return jacobian(unknowns, runs, values, residuals)
-
-    solution = least_squares(
-        errors,
-        np.clip([u.start for u in unknowns], lower, upper),
-        jac=slopes,
-        bounds=(lower, upper),
-        x_scale=np.array([u.scale for u in unknowns]),
-        max_nfev=MOST_EVALUATIONS,
-        xtol=1e-6,
-        ftol=tolerance,
-        gtol=1e-10,
+    solution = solve(unknowns, len(blocks), residuals, tolerance=tolerance)
+    stderr, t = uncertainty(unknowns, solution.jacobian, solution.residual, blocks)
+    return Fitted(
+        solution.values,
+        stderr,
+        t,
+        solution.at_bound,
+        solution.converged,
+        solution.message,
+        solution.evaluations,
     )
+
+
+def uncertainty(
+    unknowns: Sequence[Unknown], J: Floats, residual: Floats, blocks: Sequence[Indices]
+) -> tuple[Floats, Floats]:
+    """Return standard errors and Student's t of fitted unknowns, shape (p,), from blocks of runs.
+
+    Where the model is wrong its error repeats from block to block, and only runs are independent:
+    shared unknowns take the wider one of both.
+    """
+    runs = len(blocks)
     offsets = np.concatenate(([0], np.cumsum([b.max() + 1 for b in blocks])))[:-1]
     block = np.concatenate([b + o for b, o in zip(blocks, offsets, strict=True)])
-    J = np.asarray(solution.jac)
-    stderr, t = _errors(J, solution.fun, block)
-    if np.mean(solution.fun**2) > WRONG and runs >= FEWEST_RUNS:
-        # The error of a wrong model repeats from block to block: only runs are independent.
+    stderr, t = _errors(J, residual, block)
+    if np.mean(residual**2) > WRONG and runs >= FEWEST_RUNS:
         own = np.repeat(np.arange(runs), [b.size for b in blocks])
-        run_stderr, run_t = _errors(J, solution.fun, own)
+        run_stderr, run_t = _errors(J, residual, own)
         wider = (run_t * run_stderr > t * stderr) & [u.run is None for u in unknowns]
         stderr, t = np.where(wider, run_stderr, stderr), np.where(wider, run_t, t)
-    near = NEARLY_BOUND * (upper - lower)
-    at_bound = (solution.x - lower < near) | (upper - solution.x < near)
-    return Fitted(
-        solution.x, stderr, t, at_bound, solution.status > 0, solution.message, solution.nfev
-    )
+    return stderr, t
 
 
 def _errors(J: Floats, residual: Floats, block: Indices) -> tuple[Floats, Floats]:

@@ -31,15 +31,24 @@ ZERO_SCALE = 0.02  # plausible zero of a displacement sensor, of its range
 class JointFit:
     """The joint fit of one dataset: its unknowns and its runs."""
 
-    def __init__(self, start: Model, kept: Model, runs: Sequence[Prepared]) -> None:
-        """Take the values to start from, and those to keep where the recordings do not tell."""
+    def __init__(
+        self,
+        start: Model,
+        kept: Model,
+        runs: Sequence[Prepared],
+        plausible: Mapping[str, tuple[float, float]] | None = None,
+    ) -> None:
+        """Take the values to start from, and those to keep where the recordings do not tell.
+
+        `plausible` narrows the bounds of parameters, by name.
+        """
         self.start = start
         self.kept = kept
         samples = [kept_samples(run, start.rig(run.run)) for run in runs]
         self.left_out = [s for run, at in zip(runs, samples, strict=True) for s in lost(run, at)]
         self.runs = [run for run, at in zip(runs, samples, strict=True) if at]
         self.rigs = [start.rig(run.run) for run in self.runs]
-        self.unknowns = _unknowns(start, self.runs)
+        self.unknowns = _unknowns(start, self.runs, plausible or {})
         self.chosen: list[int] = []
         self.values = np.array([u.start for u in self.unknowns])
         kept_at = [at for at in samples if at]
@@ -202,7 +211,9 @@ def _doubts(told: Sequence[Estimate], result: Fitted) -> list[str]:
     return out
 
 
-def _unknowns(start: Model, runs: Sequence[Prepared]) -> list[Unknown]:
+def _unknowns(
+    start: Model, runs: Sequence[Prepared], plausible: Mapping[str, tuple[float, float]]
+) -> list[Unknown]:
     """Return all candidates, in the order in which they are asked for.
 
     With a load that is no spring the preload is only a name for the zeros: it keeps its value.
@@ -219,8 +230,9 @@ def _unknowns(start: Model, runs: Sequence[Prepared]) -> list[Unknown]:
         for k in owners:
             value = start.value(p.name, None if k is None else runs[k].run.id)
             quantity = QUANTITIES[p.name]
+            low, high = plausible.get(p.name, (p.lower, p.upper))
             scaled = quantity.scaled(quantity.default if value is None else value)
             scale = LOG_SCALE if p.positive else ZERO_SCALE * travel
-            bounds = (quantity.scaled(p.lower), quantity.scaled(p.upper))
-            out.append(Unknown(p.name, k, scaled, *bounds, scale))
+            bounds = (quantity.scaled(low), quantity.scaled(high))
+            out.append(Unknown(p.name, k, min(max(scaled, bounds[0]), bounds[1]), *bounds, scale))
     return out

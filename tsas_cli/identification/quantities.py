@@ -22,7 +22,8 @@ class Quantity:
     """One number: its unit and bounds, its value where nobody knows it, and how it is scaled.
 
     A positive one is fitted by its logarithm, any other in units of `size`. An effect's is named
-    effect.parameter. One that is not shared has a value for each run.
+    effect.parameter. One that is not shared has a value for each run; a shape matters only where
+    another parameter of its effect is not neutral.
     """
 
     name: str
@@ -33,11 +34,16 @@ class Quantity:
     shared: bool = True
     positive: bool = False
     size: float = 1.0
+    shape: bool = False
 
     def scaled(self, value: float) -> float:
         """Return a value, inside its bounds, as it is fitted."""
         inside = min(max(value, self.lower), self.upper)
         return math.log(inside) if self.positive else inside / self.size
+
+    def closer(self, value: float, part: float) -> float:
+        """Return a value that is only a part as far from the neutral one; a shape stays."""
+        return value if self.shape else self.default + part * (value - self.default)
 
     def unscaled(self, value: float) -> float:
         """Return the value behind a fitted number."""
@@ -55,6 +61,7 @@ QUANTITIES: dict[str, Quantity] = {
         p.upper,
         p.neutral,
         size=abs(p.start - p.neutral) or abs(p.start),
+        shape=p.shape,
     )
     for effect in EFFECTS
     for p in effect.parameters

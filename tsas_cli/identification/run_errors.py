@@ -1,7 +1,9 @@
 """One run in the joint fit: its model's answers, and its errors in units of what is uncertain.
 
 Each error counts in units of its standard deviation: the channel's noise, and what the remaining
-noise of the driven ends does to it (large where the tangent stiffness is large).
+noise of the driven ends does to it (large where the tangent stiffness is large). An error of the
+place where the drive turned back lasts for a whole dead band: what has its shape is known to be
+uncertain by more, and is taken down accordingly.
 """
 
 from copy import copy
@@ -23,6 +25,7 @@ from tsas_cli.physics.rig import Rig
 Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
 
+TURN = 3.0  # standard deviations by which the place of a reversal may be wrong
 WINDOWS_PER_BLOCK = 2.0  # of the conditioning: the error of a cleaned drive lasts that long
 
 
@@ -36,15 +39,16 @@ class RunErrors:
         self.points = points(run)
         # The fit leaves out what the start still shows in: it may begin at rest.
         self.drive = replace(run.drive, start_f_in_N=None)
-        self.on_mesh = False
+        self.nodes: int | None = None
         self._answer = lru_cache(maxsize=2)(lambda rig: self._follow(rig, self.drive))
         self.weights: dict[str, Floats] = {}
+        self.turns: dict[str, list[tuple[slice, Floats]]] = {}
         self.weigh(rig)
 
-    def meshed(self) -> "RunErrors":
-        """Return the same run with the same weights, answered by the slip chain always."""
+    def meshed(self, nodes: int) -> "RunErrors":
+        """Return the same run with the same weights, answered by a slip chain always."""
         other = copy(self)
-        other.on_mesh = True
+        other.nodes = nodes
         other._answer = lru_cache(maxsize=2)(lambda rig: other._follow(rig, other.drive))  # noqa: SLF001
         return other
 
@@ -64,7 +68,10 @@ class RunErrors:
             name: np.full(self.run.time_s.size, max(noise, 1e-9) ** 2)
             for name, noise in self.run.noise.items()
         }
-        for column, conditioned in self.run.conditioned.items():
+        change: dict[str, Floats] = {}
+        drive_last = sorted(self.run.conditioned, key=lambda c: c == self.run.drive_column)
+        for column in drive_last:
+            conditioned = self.run.conditioned[column]
             values = _moved_on(conditioned)
             moved = (
                 replace(self.drive, values=values)
@@ -73,16 +80,41 @@ class RunErrors:
             )
             answers = self._follow(rig, moved)
             for name in square:
-                square[name] += (answers[name] - plain[name]) ** 2
+                change[name] = answers[name] - plain[name]
+                square[name] += change[name] ** 2
+                _before_turns(square[name], change[name], conditioned)
         self.weights = {name: np.sqrt(values) for name, values in square.items()}
+        self.turns = {
+            name: self._turns(change[name] / self.weights[name], at)
+            for name, at in self.samples.items()
+        }
+
+    def _turns(self, change: Floats, at: Indices) -> list[tuple[slice, Floats]]:
+        """Return the samples of each stroke and the shape that a wrong start of it gives them.
+
+        A shape s is scaled so that errors e − s (s·e) have unit variance where those of the place
+        of the reversal are `TURN` standard deviations: (I + TURN² c cᵀ)^(−1/2) = I − s sᵀ.
+        """
+        out = []
+        for first, end in pairwise(self.run.conditioned[self.run.drive_column].reversals):
+            part = slice(*np.searchsorted(at, (first + 1, end + 1)))
+            shape = change[at[part]]
+            size = float(shape @ shape)
+            if size > 0.0:
+                share = 1.0 - 1.0 / np.sqrt(1.0 + TURN**2 * size)
+                out.append((part, shape * np.sqrt(share / size)))
+        return out
 
     def errors(self, rig: Rig) -> dict[str, Floats]:
         """Return the weighted errors of each channel, at the samples that count."""
         answer = self._answer(rig)
-        return {
-            name: ((answer[name] - self.run.measured[name]) / self.weights[name])[at]
-            for name, at in self.samples.items()
-        }
+        out = {}
+        for name, at in self.samples.items():
+            errors = ((answer[name] - self.run.measured[name]) / self.weights[name])[at]
+            for part, shape in self.turns[name]:
+                errors[part] -= shape * (shape @ errors[part])
+            out[name] = errors
+        return out
 
     def residuals(self, rig: Rig) -> Floats:
         """Return means of neighbouring errors that keep a variance of one, channel by channel."""
@@ -113,13 +145,30 @@ class RunErrors:
         load = None if drive.load_values is None else drive.load_values[at]
         time_s = None if drive.time_s is None else drive.time_s[at]
         thinned = replace(drive, values=drive.values[at], load_values=load, time_s=time_s)
-        response = simulate(rig, thinned, on_mesh=self.on_mesh)
+        if self.nodes is None:
+            response = simulate(rig, thinned)
+        else:
+            response = simulate(rig, thinned, on_mesh=True, nodes=self.nodes)
         samples = np.arange(drive.values.size)
         return {
             "f_in_N": np.interp(samples, at, response.f_in_N),
             "f_out_N": np.interp(samples, at, response.f_out_N),
             "x_out_mm": np.interp(samples, at, response.x_out_mm),
         }
+
+
+def _before_turns(square: Floats, change: Floats, conditioned: Conditioned) -> None:
+    """Add the uncertainty behind each reversal to the samples just before it, in place.
+
+    So close to the extremum that its noise hides it, the drive may have turned back already.
+    """
+    x, sd = conditioned.values, conditioned.sd
+    for turn in conditioned.reversals[1:-1]:
+        reach = TURN * sd[turn]
+        far = np.flatnonzero(np.abs(x[:turn] - x[turn]) > reach)
+        first = int(far[-1]) + 1 if far.size else 0
+        behind = change[turn : 2 * turn - first + 2]
+        square[first : turn + 1] += np.max(behind**2)
 
 
 def _moved_on(conditioned: Conditioned) -> Floats:

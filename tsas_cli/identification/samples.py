@@ -11,7 +11,7 @@ from tsas_cli.physics.rig import Rig
 
 Indices = npt.NDArray[np.int64]
 
-MOST_MEANS = 2000  # means of neighbouring residuals that enter the fit, for a channel of a run
+MOST_MEANS = 1000  # means of neighbouring residuals that enter the fit, for a channel of a run
 FEWEST_SAMPLES = 16  # of a channel, after the start of a run
 SHARP = 4  # strides after a reversal in which every sample is simulated
 

@@ -1,0 +1,177 @@
+"""Find the smallest set of effects that no other set beats on held-out runs.
+
+One effect after the other is added while the best one convinces; after each, every earlier one
+has to prove itself again without the others' help. Where single effects leave something, pairs
+are looked at together, because effects of opposite sign hide each other.
+"""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from itertools import combinations
+
+import numpy as np
+import numpy.typing as npt
+
+from tsas_cli.diagnosis.evidence import TELLING, Gain, gain
+from tsas_cli.diagnosis.held_out import Folds, held_out_squares
+from tsas_cli.diagnosis.screening import Screened, projector, screen
+from tsas_cli.effects import EFFECTS, Effect
+from tsas_cli.identification.extension import TOLERANCE, Bench, Trial
+from tsas_cli.identification.quantities import QUANTITIES
+
+Floats = npt.NDArray[np.float64]
+Names = frozenset[str]
+
+MOST_EFFECTS = 4
+SHARE = 0.4  # of what is beyond the noise, that a cause has to take away
+BLURRED = 0.15  # mean square by which a model that lacks nothing may miss the noise it is held to
+WORTH = 0.1 * TELLING  # part of the squares that a signature has to explain to be fitted
+BESIDE_BEST = 0.02  # of what the best signature explains
+FRESH_STARTS, CLOSER = 4, 0.2
+PAIRS = 4  # that are fitted, of those that explain most together
+
+
+@dataclass
+class Search:
+    """The hypotheses that were fitted to one dataset, with their held-out squares."""
+
+    bench: Bench
+    folds: Folds
+    step: Callable[[], None] = lambda: None
+    effects: tuple[Effect, ...] = EFFECTS
+    trials: dict[tuple[Names, bool], Trial] = field(default_factory=dict)
+    squares: dict[tuple[Names, bool], Floats] = field(default_factory=dict)
+    screened: dict[Names, list[Screened]] = field(default_factory=dict)
+
+    def run(self) -> Names:
+        """Return the effects that are convincing together."""
+        named: Names = frozenset()
+        while len(named) < MOST_EFFECTS:
+            better = self._best_addition(named)
+            if better is None:
+                break
+            named = self._without_idle(better)
+        return named
+
+    def trial(self, names: Names, *, on_mesh: bool = False) -> Trial:
+        """Return the fit of a set of effects, made on the mesh if any of it needs one."""
+        mesh = on_mesh or self.bench.on_mesh(names)
+        if (names, mesh) not in self.trials:
+            near = self.trials.get((names, not mesh))
+            self._keep(names, self.bench.fit(sorted(names), near=near, on_mesh=mesh))
+        return self.trials[names, mesh]
+
+    def held_out(self, names: Names, *, on_mesh: bool = False) -> Floats:
+        """Return the held-out squares of a set of effects, block by block."""
+        trial = self.trial(names, on_mesh=on_mesh)
+        return self.squares[names, trial.on_mesh]
+
+    def gain(self, before: Names, after: Names) -> Gain:
+        """Compare two sets of effects, both on the mesh if one needs it."""
+        mesh = self.bench.on_mesh(before | after)
+        return gain(self.held_out(before, on_mesh=mesh), self.held_out(after, on_mesh=mesh))
+
+    def matters(self, before: Names, added: Iterable[str]) -> bool:
+        """Say whether effects take away a good share of what was beyond the noise before."""
+        mesh = self.bench.on_mesh(before | set(added))
+        excess = [
+            self.held_out(names, on_mesh=mesh).sum() / self.folds.block.size - 1.0
+            for names in (before, before | set(added))
+        ]
+        allowed = 0.0 if before else BLURRED
+        return bool(excess[0] - excess[1] > SHARE * (excess[0] - allowed))
+
+    def add(self, names: Names) -> list[tuple[str, Gain]]:
+        """Fit each further effect that is worth it; return them with their gains, best first."""
+        seen = self.screen(names)
+        best = max((s.part for s in seen), default=0.0)
+        found = []
+        for s in seen:
+            if s.part < max(WORTH, BESIDE_BEST * best):
+                continue
+            together = names | {s.effect.name}
+            self._fit(names, together, s.start)
+            found.append((s.effect.name, self.gain(names, together)))
+        return sorted(found, key=lambda f: -f[1].part)
+
+    def screen(self, names: Names) -> list[Screened]:
+        """Look at all further effects linearly, the one that explains most first."""
+        if names not in self.screened:
+            bases = {}
+            out = []
+            for effect in self.effects:
+                if effect.name in names:
+                    continue
+                mesh = self.bench.on_mesh([*names, effect.name])
+                trial = self.trial(names, on_mesh=mesh)
+                if mesh not in bases:
+                    bases[mesh] = projector(trial)
+                out.append(screen(self.bench, trial, effect, bases[mesh]))
+                self.step()
+            self.screened[names] = sorted(out, key=lambda s: -s.part)
+        return self.screened[names]
+
+    def _best_addition(self, names: Names) -> Names | None:
+        singles = [(n, g) for n, g in self.add(names) if g.convincing and self.matters(names, {n})]
+        if singles:
+            return names | {self._simplest(names, singles)}
+        pair = self._best_pair(names) if len(names) + 2 <= MOST_EFFECTS else None
+        return None if pair is None else names | pair
+
+    def _simplest(self, names: Names, singles: list[tuple[str, Gain]]) -> str:
+        """Return the best effect, or one with fewer parameters that it does not beat."""
+        best = singles[0][0]
+        count = {e.name: len(e.parameters) for e in self.effects}
+        for name, _ in sorted(singles, key=lambda s: count[s[0]]):
+            if count[name] >= count[best]:
+                break
+            if not self.gain(names | {name}, names | {best}).convincing:
+                return name
+        return best
+
+    def _best_pair(self, names: Names) -> Names | None:
+        """Return two effects that are convincing only together."""
+        seen = self.screen(names)
+        parts = []
+        for a, b in combinations(seen, 2):
+            mesh = self.bench.on_mesh([*names, a.effect.name, b.effect.name])
+            both = np.hstack((a.signatures, b.signatures))
+            residual = self.trial(names, on_mesh=mesh).solution.residual
+            basis = np.linalg.qr(both)[0]
+            part = float(np.sum((basis.T @ residual) ** 2)) / float(residual @ residual)
+            parts.append((part - a.part - b.part, a, b))
+        parts.sort(key=lambda p: -p[0])
+        for surplus, a, b in parts[:PAIRS]:
+            if surplus < TELLING:
+                break
+            pair = frozenset({a.effect.name, b.effect.name})
+            self._fit(names, names | pair, a.start | b.start)
+            if self.gain(names, names | pair).convincing and self.matters(names, pair):
+                return pair
+        return None
+
+    def _without_idle(self, names: Names) -> Names:
+        """Leave out, one by one, what the others do not need."""
+        for name in sorted(names):
+            fewer = names - {name}
+            if fewer and not self.gain(fewer, names).convincing:
+                return self._without_idle(fewer)
+        return names
+
+    def _fit(self, near: Names, names: Names, start: dict[str, float]) -> None:
+        mesh = self.bench.on_mesh(names)
+        if (names, mesh) in self.trials:
+            return
+        known = self.trial(near, on_mesh=mesh)
+        for _ in range(FRESH_STARTS):
+            trial = self.bench.fit(sorted(names), start, near=known, on_mesh=mesh)
+            if trial.mean_square <= known.mean_square * (1.0 + TOLERANCE):
+                break
+            # More freedom cannot fit worse: the start was too far off.
+            start = {n: QUANTITIES[n].closer(v, CLOSER) for n, v in start.items()}
+        self._keep(names, trial)
+        self.step()
+
+    def _keep(self, names: Names, trial: Trial) -> None:
+        self.trials[names, trial.on_mesh] = trial
+        self.squares[names, trial.on_mesh] = held_out_squares(trial, self.folds)

@@ -1,0 +1,160 @@
+"""The calibrated runs with effects freed: every hypothesis is fitted and held out alike."""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from tsas_cli.identification.fit import Solution, Unknown, solve
+from tsas_cli.identification.joint_fit import JointFit, rig_at
+from tsas_cli.identification.quantities import QUANTITIES
+from tsas_cli.identification.run_errors import RunErrors
+from tsas_cli.physics.quasi_static import CHAIN_ONLY, is_closed
+from tsas_cli.physics.rig import Rig
+
+Floats = npt.NDArray[np.float64]
+
+TOLERANCE = 1e-5  # of the squares, for the last step of a fit that is one of many
+NODES, COARSE_NODES = 40, 12  # of the slip chain in fits, and for a first look
+
+
+@dataclass(frozen=True)
+class Trial:
+    """One hypothesis fitted: the effects freed, and the least squares with them.
+
+    `start` holds the values of the effects' parameters from which the fit began.
+    """
+
+    effects: tuple[str, ...]
+    unknowns: tuple[Unknown, ...]
+    solution: Solution
+    sizes: tuple[int, ...]  # residuals of each run
+    on_mesh: bool
+
+    @property
+    def mean_square(self) -> float:
+        """Mean square of the residuals, 1 where nothing but noise is left."""
+        return float(np.mean(self.solution.residual**2))
+
+    @cached_property
+    def parts(self) -> list[tuple[Floats, Floats]]:
+        """Residual and Jacobian of each run."""
+        edges = np.cumsum(self.sizes)[:-1]
+        residuals = np.split(self.solution.residual, edges)
+        return list(zip(residuals, np.split(self.solution.jacobian, edges), strict=True))
+
+    def values(self) -> dict[str, float]:
+        """Return the fitted values of the effects' parameters."""
+        return {
+            u.name: QUANTITIES[u.name].unscaled(v)
+            for u, v in zip(self.unknowns, self.solution.values, strict=True)
+            if "." in u.name
+        }
+
+
+class Bench:
+    """A calibrated dataset on which hypotheses are tried."""
+
+    def __init__(self, base: JointFit) -> None:
+        """Take the base fit: its unknowns stay free, its weights and samples stay as they are."""
+        self.base = base
+        self.rigs = [rig_at(rig, k, base.unknowns, base.values) for k, rig in enumerate(base.rigs)]
+        self.own = [replace(base.unknowns[j], start=float(base.values[j])) for j in base.chosen]
+        self.closed: list[RunErrors] = base.errors
+        self.meshed = [errors.meshed(NODES) for errors in base.errors]
+        self.coarse = [errors.meshed(COARSE_NODES) for errors in base.errors]
+        self.never_closed = not all(
+            is_closed(rig, errors.drive) for rig, errors in zip(self.rigs, base.errors, strict=True)
+        )
+
+    def on_mesh(self, effects: Iterable[str]) -> bool:
+        """Say whether a hypothesis needs the slip chain."""
+        return self.never_closed or any(name in CHAIN_ONLY for name in effects)
+
+    def fit(
+        self,
+        effects: Sequence[str] = (),
+        start: dict[str, float] | None = None,
+        *,
+        near: Trial | None = None,
+        on_mesh: bool = False,
+    ) -> Trial:
+        """Fit the base unknowns and the effects' parameters.
+
+        Parameters
+        ----------
+        effects
+            The effects that are freed.
+        start
+            Values of their parameters to start from, in their units; else those of `near`, else
+            each parameter's own.
+        near
+            A trial whose base values to start from.
+        on_mesh
+            Whether to use the slip chain although the closed form would do.
+        """
+        known = {} if near is None else {(u.name, u.run): float(v) for u, v in _pairs(near)}
+        base = [replace(u, start=known.get((u.name, u.run), u.start)) for u in self.own]
+        freed = []
+        for name in _parameters(effects):
+            quantity = QUANTITIES[name]
+            value = known.get((name, None))
+            if start is not None and name in start:
+                value = quantity.scaled(start[name])
+            freed.append(unknown_of(name, value))
+        unknowns = (*base, *freed)
+        mesh = on_mesh or self.on_mesh(effects)
+        runs = len(self.rigs)
+        solution = solve(
+            unknowns, runs, self._residuals(unknowns, on_mesh=mesh), tolerance=TOLERANCE
+        )
+        sizes = tuple(self._residual(k, unknowns, solution.values, mesh).size for k in range(runs))
+        return Trial(tuple(effects), unknowns, solution, sizes, mesh)
+
+    def errors_at(self, trial: Trial, changes: Mapping[str, float]) -> Floats:
+        """Return all residuals at a trial's values with some effects' parameters set.
+
+        A first look: where it needs a mesh the mesh is coarse, and what differs between two
+        such looks is what counts.
+        """
+        unknowns = [*trial.unknowns, *(unknown_of(name) for name in changes)]
+        scaled = [QUANTITIES[name].scaled(value) for name, value in changes.items()]
+        at = np.concatenate((trial.solution.values, scaled))
+        errors = self.coarse if trial.on_mesh else self.closed
+        return np.concatenate(
+            [run.residuals(rig_at(self.rigs[k], k, unknowns, at)) for k, run in enumerate(errors)]
+        )
+
+    def rig(self, trial: Trial, k: int) -> Rig:
+        """Return the rig of run k with a trial's values."""
+        return rig_at(self.rigs[k], k, trial.unknowns, trial.solution.values)
+
+    def _residuals(
+        self, unknowns: Sequence[Unknown], *, on_mesh: bool
+    ) -> Callable[[int, Floats], Floats]:
+        return lambda k, values: self._residual(k, unknowns, values, on_mesh)
+
+    def _residual(
+        self, k: int, unknowns: Sequence[Unknown], values: Floats, on_mesh: bool
+    ) -> Floats:
+        errors = self.meshed[k] if on_mesh else self.closed[k]
+        return errors.residuals(rig_at(self.rigs[k], k, unknowns, values))
+
+
+def _pairs(trial: Trial) -> list[tuple[Unknown, float]]:
+    return list(zip(trial.unknowns, trial.solution.values, strict=True))
+
+
+def _parameters(effects: Sequence[str]) -> list[str]:
+    return [name for name in QUANTITIES if name.split(".")[0] in effects and "." in name]
+
+
+def unknown_of(name: str, value: float | None = None) -> Unknown:
+    """Return the unknown of an effect's parameter, from a scaled value or its neutral one."""
+    quantity = QUANTITIES[name]
+    start = quantity.scaled(quantity.default) if value is None else value
+    return Unknown(
+        name, None, start, quantity.scaled(quantity.lower), quantity.scaled(quantity.upper), 1.0
+    )
