@@ -169,9 +169,10 @@ def set_bristles(chain: Floats, now: Moment, laws: Laws) -> None:
     if laws.presliding_mm == 0.0:
         return
     for i in range(1, n + 1):
-        tension = abs(0.5 * (chain[T_OLD, i - 1] + chain[T_OLD, i]))
-        held_back = 1.0 - 0.5 * (chain[PULLED, i] + chain[RELEASED, i])
-        limit = held_back * tension + now.viscous_N / n + LEAST_FRICTION * laws.preload_N
+        both_sides = abs(chain[T_OLD, i - 1] + chain[T_OLD, i])
+        passed = 0.5 * (chain[PULLED, i] + chain[RELEASED, i])
+        limit = both_sides * (1.0 - passed) / (1.0 + passed)
+        limit += now.viscous_N / n + LEAST_FRICTION * laws.preload_N
         stiffest = STIFFEST_BRISTLE / chain[GIVE, i]
         chain[BRISTLE, i] = min(bristle_stiffness(limit, laws.presliding_mm), stiffest)
 

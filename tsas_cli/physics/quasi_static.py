@@ -24,6 +24,7 @@ Answer = tuple[Floats, Floats, Floats, Floats, Phases]
 Dynamics = Literal["static", "slip"]
 
 NODES = 60  # of the slip chain, where the closed form does not hold
+CLOSED = 0  # nodes of the closed form
 MOST_DOUBLINGS = 30  # of the way that the drive goes before a run
 SLACK, UNSETTLED = 2, 3  # phases beside +1, 0, −1
 CHAIN_ONLY = (
@@ -58,23 +59,29 @@ class Response:
 
 
 def simulate(
-    rig: Rig, drive: Drive, dynamics: Dynamics = "slip", *, on_mesh: bool = False
+    rig: Rig,
+    drive: Drive,
+    dynamics: Dynamics = "slip",
+    *,
+    on_mesh: bool = False,
+    nodes: int = NODES,
 ) -> Response:
     """Follow a run with the distributed model (`slip`) or the paper's lumped one (`static`).
 
     The distributed model takes the closed form where that holds (`is_closed`), and the slip chain
     everywhere else, or where `on_mesh` asks for it: models that are compared must share a mesh.
-    The lumped one knows what the closed form knows.
+    The lumped one knows what the closed form knows. `nodes` is the mesh of the chain.
     """
     ends = ends_of(rig, drive)
     if dynamics == "static":
         f_in, f_out, phase = static_model(ends.drive, rig)
         answer = _with_spring(rig, ends, f_in, f_out, phase)
         return _as_read(rig, drive, answer, 0, "lumped dead bands")
-    closed = is_closed(rig, drive) and not on_mesh
-    before = _history(rig, ends, drive.start_f_in_N, closed=closed)
-    solver = "closed form" if closed else f"slip chain, {NODES} nodes"
-    answer = _solve(rig, ends.after(before), closed=closed)
+    if is_closed(rig, drive) and not on_mesh:
+        nodes = CLOSED
+    before = _history(rig, ends, drive.start_f_in_N, nodes)
+    solver = "closed form" if nodes == CLOSED else f"slip chain, {nodes} nodes"
+    answer = _solve(rig, ends.after(before), nodes)
     return _as_read(rig, drive, answer, len(before), solver)
 
 
@@ -90,24 +97,23 @@ def is_closed(rig: Rig, drive: Drive) -> bool:
 
 def _as_read(rig: Rig, drive: Drive, answer: Answer, skip: int, solver: str) -> Response:
     """Drop the samples before the run and return what the sensors read of the others."""
-    x_in, x_out, f_in, f_out, phase = (column[skip:] for column in answer)
-    time_s = np.zeros(x_in.size) if drive.time_s is None else drive.time_s
+    x_in, x_out, f_in, f_out = (column[skip:] for column in answer[:4])
     given = drive.values if drive.kind == "displacement" else x_in + rig.x_in_zero_mm
     return Response(
         given,
-        reading("x_out_mm", x_out, time_s, rig),
-        reading("f_in_N", f_in, time_s, rig),
-        reading("f_out_N", f_out, time_s, rig),
-        phase,
+        reading("x_out_mm", x_out, drive.time_s, rig),
+        reading("f_in_N", f_in, drive.time_s, rig),
+        reading("f_out_N", f_out, drive.time_s, rig),
+        answer[4][skip:],
         solver,
     )
 
 
-def _solve(rig: Rig, ends: Ends, *, closed: bool) -> Answer:
+def _solve(rig: Rig, ends: Ends, nodes: int) -> Answer:
     """Return x_in, x_out, f_in, f_out and phase, free of the sensors' errors."""
-    if closed:
+    if nodes == CLOSED:
         return _with_spring(rig, ends, *branches(ends.drive, rig))
-    x_in, x_out, f_in, f_out, phase = slip_chain(ends.course, rig, ends.boundary, NODES)
+    x_in, x_out, f_in, f_out, phase = slip_chain(ends.course, rig, ends.boundary, nodes)
     if ends.boundary.drive == DISPLACEMENT:
         f_in = f_in + _at_drive(rig, ends)
     return x_in, x_out, f_in, f_out, phase
@@ -134,14 +140,14 @@ def forgotten(rig: Rig, drive: Drive) -> int | None:
     The tendon has forgotten that when it slips as a whole in the same direction (or hangs slack),
     whether the drive came from far above or from far below.
     """
-    ends, closed = ends_of(rig, drive), is_closed(rig, drive)
-    far = [_far(rig, ends, side, closed=closed) for side in (1.0, -1.0)]
-    phases = [_solve(rig, ends.after([x]), closed=closed)[4][1:] for x in far]
+    ends, nodes = ends_of(rig, drive), CLOSED if is_closed(rig, drive) else NODES
+    far = [_far(rig, ends, side, nodes) for side in (1.0, -1.0)]
+    phases = [_solve(rig, ends.after([x]), nodes)[4][1:] for x in far]
     same = np.flatnonzero((phases[0] == phases[1]) & np.isin(phases[0], (1, -1, SLACK)))
     return int(same[0]) if same.size else None
 
 
-def _far(rig: Rig, ends: Ends, side: float, *, closed: bool) -> float:
+def _far(rig: Rig, ends: Ends, side: float, nodes: int) -> float:
     """Return a drive from which the way back to the first sample makes the whole tendon slip."""
     first = float(ends.drive[0])
     stretch = rig.preload_N * rig.sheath_length_mm / rig.tendon_stiffness_N
@@ -149,13 +155,13 @@ def _far(rig: Rig, ends: Ends, side: float, *, closed: bool) -> float:
     for _ in range(MOST_DOUBLINGS):
         by_force = ends.boundary.drive == FORCE
         past = first * (1.0 + step) ** side if by_force else first + side * step * stretch
-        if _solve(rig, ends.first().after([past]), closed=closed)[4][-1] in (1, -1, SLACK):
+        if _solve(rig, ends.first().after([past]), nodes)[4][-1] in (1, -1, SLACK):
             break
         step *= 2.0
     return past
 
 
-def _history(rig: Rig, ends: Ends, wanted_f_in: float | None, *, closed: bool) -> list[float]:
+def _history(rig: Rig, ends: Ends, wanted_f_in: float | None, nodes: int) -> list[float]:
     """Return a drive position to pass before the first sample, if one is needed, so that f_in fits.
 
     From rest the drive goes past its first position and back; how far decides the tension there,
@@ -165,13 +171,13 @@ def _history(rig: Rig, ends: Ends, wanted_f_in: float | None, *, closed: bool) -
         return []
 
     def f_in(before: list[float]) -> float:
-        answer = _solve(rig, first.after(before), closed=closed)[2][-1:]
-        return float(reading("f_in_N", answer, np.zeros(1), rig)[0])
+        answer = _solve(rig, first.after(before), nodes)[2][-1:]
+        return float(reading("f_in_N", answer, None, rig)[0])
 
     x = float(ends.drive[0])
     first = ends.first()
     side = math.copysign(1.0, f_in([]) - wanted_f_in)  # pulling past and back lowers the tension
-    near, far = x, _far(rig, ends, side, closed=closed)
+    near, far = x, _far(rig, ends, side, nodes)
     for _ in range(40):
         middle = 0.5 * (near + far)
         if (f_in([middle]) - wanted_f_in) * side > 0.0:

@@ -1,0 +1,138 @@
+"""What acts along the tendon, against the sheath's equation solved in closed form.
+
+In full slip the tension follows dF/ds = −λ(a F f(F) + C) over the unit length of the sheath.
+"""
+
+import math
+
+import numpy as np
+import pytest
+
+from tests.effects.runs import UP_AND_DOWN, A, run
+from tests.physics.references import GROUP_A, LOADED_BY_DISPLACEMENT, course_of
+from tsas_cli.physics.quasi_static import NODES
+from tsas_cli.physics.rig import with_values
+from tsas_cli.physics.slip_chain import slip_chain
+
+
+def in_slip(response, direction, after=0.2):
+    """Return the samples of full slip, without the last and first ones of a stroke."""
+    slip = response.phase == direction
+    moving = np.sign(np.gradient(response.x_in_mm)) == direction
+    turn = np.abs(response.x_in_mm - 14.0) > after
+    found = slip & moving & turn
+    assert found.sum() > 300
+    return found
+
+
+@pytest.mark.parametrize("direction", [1, -1])
+def test_each_direction_has_its_own_capstan_ratio(direction):
+    answer = run({"direction_dependent_friction.asymmetry": 0.2})
+    slip = in_slip(answer, direction)
+    wrap = A * (1.2 if direction == 1 else 0.8)
+    np.testing.assert_allclose(
+        np.log(answer.f_in_N[slip] / answer.f_out_N[slip]), direction * wrap, rtol=1e-8
+    )
+
+
+DRIFTS = {
+    "bend_drift": ({"rate_rad_per_s": 0.05}, lambda settled: 0.125 * (math.pi + 0.05 * settled)),
+    "friction_drift": ({"rate_per_s": 0.02}, lambda settled: A * (1.0 + 0.02 * settled)),
+}
+
+
+@pytest.mark.parametrize("settling", [0.0, 0.2])
+@pytest.mark.parametrize("direction", [1, -1])
+@pytest.mark.parametrize("name", DRIFTS)
+def test_the_wrap_follows_the_time(name, direction, settling):
+    rates, wrap = DRIFTS[name]
+    values = {f"{name}.{key}": value for key, value in rates.items()}
+    answer = run(values | {f"{name}.settling_per_s": settling})
+    slip = in_slip(answer, direction)
+    time_s = np.arange(UP_AND_DOWN.size)[slip] * 0.02
+    settled = (1.0 - np.exp(-settling * time_s)) / settling if settling else time_s
+    ratio = np.log(answer.f_in_N[slip] / answer.f_out_N[slip])
+    np.testing.assert_allclose(ratio, direction * wrap(settled), rtol=1e-8)
+
+
+def test_wear_follows_the_session():
+    answer = run({"friction_drift.session_rate_per_s": 1e-3}, session_s=200.0)
+    slip = in_slip(answer, 1)
+    np.testing.assert_allclose(
+        np.log(answer.f_in_N[slip] / answer.f_out_N[slip]), 1.2 * A, rtol=1e-8
+    )
+
+
+@pytest.mark.parametrize("speed", [0.5, 2.0, 8.0])
+@pytest.mark.parametrize("direction", [1, -1])
+def test_slow_sliding_has_more_friction(direction, speed):
+    stribeck = {"excess": 0.3, "velocity_mm_per_s": 3.0}
+    values = {f"stribeck_friction.{name}": value for name, value in stribeck.items()}
+    answer = run(values, speed=speed)
+    slip = in_slip(answer, direction)
+    wrap = A * (1.0 + 0.3 * math.exp(-((speed / 3.0) ** 2)))
+    np.testing.assert_allclose(
+        np.log(answer.f_in_N[slip] / answer.f_out_N[slip]), direction * wrap, rtol=1e-8
+    )
+
+
+@pytest.mark.parametrize("direction", [1, -1])
+def test_a_viscous_loss_comes_on_top_along_the_sheath(direction):
+    """F + C/a falls by e^(−λa): exact but for half a node's friction on the loss."""
+    speed, coefficient = 4.0, 0.5
+    lost = speed * coefficient
+    answer = run({"viscous_friction.coefficient_N_s_per_mm": coefficient}, speed=speed)
+    slip = in_slip(answer, direction)
+    f_out = (answer.f_in_N[slip] + lost / A) * math.exp(-direction * A) - lost / A
+    np.testing.assert_allclose(answer.f_out_N[slip], f_out, atol=lost * A / NODES)
+
+
+@pytest.mark.parametrize("exponent", [0.4, -0.4])
+@pytest.mark.parametrize("direction", [1, -1])
+def test_friction_that_depends_on_the_tension_bends_the_capstan(direction, exponent):
+    """(F/F0)^−β grows by λβa over the sheath."""
+    answer = run({"load_dependent_friction.exponent": exponent})
+    slip = in_slip(answer, direction)
+    powers = (answer.f_in_N[slip] / 25.0) ** -exponent + direction * exponent * A
+    np.testing.assert_allclose(answer.f_out_N[slip], 25.0 * powers ** (-1.0 / exponent), rtol=1e-5)
+
+
+def test_a_compressed_sheath_is_a_softer_tendon():
+    softer = GROUP_A._replace(tendon_stiffness_N=GROUP_A.tendon_stiffness_N / 1.4)
+    pressed, soft = run({"sheath_compression.compliance_ratio": 0.4}), run({}, rig=softer)
+    np.testing.assert_allclose(pressed.f_in_N, soft.f_in_N, rtol=1e-9)
+
+
+LENGTH = 0.05
+
+
+def held_at_the_load(drive, load, rig, n):
+    """Follow both ends; return how friction changes the tension from end to end."""
+    course = course_of(drive, rig, load=load)
+    return slip_chain(course, rig, LOADED_BY_DISPLACEMENT, n)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_tendon_at_rest_is_a_rod_on_bristles(sign):
+    """EA x'' = k x with k = aF0/(L·length): stiffness EA q coth(qL), q² = k/EA, and no loop."""
+    EA, L = GROUP_A.tendon_stiffness_N, GROUP_A.sheath_length_mm
+    rig = with_values(GROUP_A, {"presliding.length_mm": LENGTH})
+    x = sign * 0.5 * LENGTH * np.sin(np.linspace(0.0, 4.0 * np.pi, 401)) * 0.05
+    f_in = held_at_the_load(x, 0.0, rig, NODES)[2]
+    q = math.sqrt(A * 25.0 / (L * LENGTH) / EA)
+    np.testing.assert_allclose(f_in - 25.0, EA * q / math.tanh(q * L) * x, atol=2e-4)
+
+
+def test_a_long_stroke_on_bristles_loses_what_a_slider_on_a_spring_loses():
+    """Both ends of a stiff tendon move alike: a loop of 4 f (stroke − length)."""
+    rig = GROUP_A._replace(friction_coefficient=1e-3)
+    rig = with_values(rig, {"presliding.length_mm": LENGTH})
+    x = 0.4 * np.interp(np.linspace(0, 9, 9001), np.arange(10), [0, 1, -1, 1, -1, 1, -1, 1, -1, 1])
+    _, _, f_in, f_out, _ = held_at_the_load(x, x, rig, 30)
+    loop = slice(1000, 3001)
+    friction = 25.0 * math.pi * 1e-3
+    work = np.trapezoid((f_in - f_out)[loop], x[loop])
+    assert work == pytest.approx(4.0 * friction * (0.4 - LENGTH), rel=0.005)
+    reversal = slice(1000, 1000 + int(LENGTH / 0.4 * 1000))
+    slope = np.polyfit(x[reversal], (f_in - f_out)[reversal], 1)[0]
+    assert slope == pytest.approx(friction / LENGTH, rel=0.01)
