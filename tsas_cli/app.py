@@ -10,6 +10,7 @@ from tsas_cli import __version__
 from tsas_cli.commands.calibrate import calibrate
 from tsas_cli.commands.challenge import challenge
 from tsas_cli.commands.check import check
+from tsas_cli.commands.diagnose import diagnose
 from tsas_cli.commands.effects import effects
 from tsas_cli.commands.explain import explain
 from tsas_cli.commands.ingest import ingest
@@ -45,6 +46,7 @@ app.command("ingest")(ingest)
 app.command("check")(check)
 app.command("calibrate")(calibrate)
 app.command("simulate")(simulate)
+app.command("diagnose")(diagnose)
 app.command("report")(report)
 app.command("effects")(effects)
 app.command("explain")(explain)
@@ -53,6 +55,8 @@ app.add_typer(challenge)
 
 def main() -> None:
     """Run the command line; what goes wrong is one line on stderr and an exit code."""
+    # Many small matrices: threads inside of each product cost three times what they save.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     try:
         code = app(prog_name="tsas", standalone_mode=False)
         sys.stdout.flush()

@@ -19,7 +19,7 @@ Diagnose = Callable[[Path, Path], None]
 
 def diagnose(dataset: Path, out: Path) -> None:
     """Diagnose one dataset with this program; writes `out/diagnosis.json`."""
-    from tsas_cli.diagnosis.diagnose_stage import (  # type: ignore[import-untyped]
+    from tsas_cli.diagnosis.diagnose_stage import (
         diagnose_dataset,
     )
     from tsas_cli.recordings.dataset import read_dataset

@@ -12,6 +12,10 @@ from tsas_cli.errors import printable
 
 DatasetFolder = Annotated[Path, typer.Argument(metavar="DATASET", help="A dataset's folder.")]
 OutFolder = Annotated[Path, typer.Option("--out", metavar="DIR", help="The folder to write.")]
+ModelFile = Annotated[
+    Path | None,
+    typer.Option("--model", metavar="M.toml", help="The model; the data sheet's without it."),
+]
 Force = Annotated[bool, typer.Option("--force", help="Replace the output if it is there.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
 Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON instead of a table.")]
@@ -47,8 +51,11 @@ def _print_table(title: str, header: Sequence[str], rows: Sequence[Sequence[str]
 
 
 @contextmanager
-def progress(label: str, total: int, *, quiet: bool) -> Iterator[Any]:
-    """Show a bar on a terminal; yield a function that moves it by one."""
+def progress(label: str, total: int | None, *, quiet: bool) -> Iterator[Any]:
+    """Show a bar on a terminal; yield a function that moves it by one.
+
+    Without a total the bar only shows that work goes on.
+    """
     if quiet or not sys.stderr.isatty():
         yield lambda: None
         return

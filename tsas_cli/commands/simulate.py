@@ -1,12 +1,20 @@
 """`tsas simulate`: run a model on the recorded inputs and compare."""
 
 from enum import StrEnum
-from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from tsas_cli.commands.common import DatasetFolder, Force, Json, OutFolder, Quiet, progress, show
+from tsas_cli.commands.common import (
+    DatasetFolder,
+    Force,
+    Json,
+    ModelFile,
+    OutFolder,
+    Quiet,
+    progress,
+    show,
+)
 
 
 class DynamicsOption(StrEnum):
@@ -19,10 +27,7 @@ class DynamicsOption(StrEnum):
 def simulate(
     dataset: DatasetFolder,
     out: OutFolder,
-    model: Annotated[
-        Path | None,
-        typer.Option("--model", metavar="M.toml", help="The model; the data sheet's without it."),
-    ] = None,
+    model: ModelFile = None,
     dynamics: Annotated[
         DynamicsOption, typer.Option("--dynamics", help="static: the paper's; slip: distributed.")
     ] = DynamicsOption.slip,

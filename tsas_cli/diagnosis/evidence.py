@@ -39,7 +39,9 @@ def gain(before: Floats, after: Floats) -> Gain:
     return Gain(part, float(relative.sum()) / spread if spread > 0.0 else 0.0)
 
 
-def gain_percent(before: Floats, after: Floats, rng: np.random.Generator) -> tuple[float, ...]:
+def gain_percent(
+    before: Floats, after: Floats, rng: np.random.Generator
+) -> tuple[float, float, float]:
     """Return by how much the root mean square falls [%], with its 95 % interval over blocks."""
     chosen = rng.integers(0, before.size, (RESAMPLED, before.size))
     falls = 100.0 * (1.0 - np.sqrt(after[chosen].sum(axis=1) / before[chosen].sum(axis=1)))

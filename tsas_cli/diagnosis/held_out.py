@@ -12,7 +12,6 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.identification.extension import Trial
-from tsas_cli.numerics.covariance import block_numbers
 
 Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
@@ -48,7 +47,7 @@ def folds_of(blocks: Sequence[Indices]) -> Folds:
     block = np.concatenate([b + o for b, o in zip(blocks, offsets, strict=True)])
     if len(blocks) >= FEWEST_RUNS:
         return Folds(run, block, run, by_run=True)
-    parts = [block_numbers([int(b.max()) + 1], (int(b.max()) + 1) / STRETCHES)[b] for b in blocks]
+    parts = [b * STRETCHES // (int(b.max()) + 1) for b in blocks]
     fold = np.concatenate([p + STRETCHES * k for k, p in enumerate(parts)])
     return Folds(fold, block, run, by_run=False)
 
@@ -86,4 +85,4 @@ def held_out_squares(trial: Trial, folds: Folds) -> Floats:
         left = folds.fold == fold
         step = held_out_values(trial, folds, fold) - trial.solution.values
         out[left] = r[left] + J[left] @ step
-    return np.bincount(folds.block, out**2, minlength=folds.blocks)
+    return np.bincount(folds.block, out**2, minlength=folds.blocks).astype(np.float64)

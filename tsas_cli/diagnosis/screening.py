@@ -49,7 +49,7 @@ def screen(bench: Bench, trial: Trial, effect: Effect, basis: Floats) -> Screene
     without = bench.errors_at(trial, {})
     amplitudes = [p for p in effect.parameters if not p.shape]
     shapes = [p for p in effect.parameters if p.shape]
-    best: Screened | None = None
+    best = Screened(effect, -1.0, {}, np.zeros((residual.size, 0)))
     for values in product(*(p.starts or (p.start,) for p in (*shapes, *amplitudes))):
         at = {_name(effect, p): v for p, v in zip((*shapes, *amplitudes), values, strict=True)}
         shape = {_name(effect, p): at[_name(effect, p)] for p in shapes}
@@ -63,13 +63,12 @@ def screen(bench: Bench, trial: Trial, effect: Effect, basis: Floats) -> Screene
         amounts = _amounts(own, residual, amplitudes, sizes)
         left = residual + own @ amounts
         part = 1.0 - float(left @ left) / float(residual @ residual)
-        if best is None or part > best.part:
+        if part > best.part:
             start = shape | {
                 _name(effect, p): p.neutral + a * size
                 for p, a, size in zip(amplitudes, amounts, sizes, strict=True)
             }
             best = Screened(effect, part, start, own)
-    assert best is not None  # every effect has an amplitude
     return best
 
 

@@ -53,6 +53,32 @@ class Search:
             named = self._without_idle(better)
         return named
 
+    def weighed_again(self, named: Names) -> "Search":
+        """Return a search whose errors are weighed by what is named, and that knows little more.
+
+        It holds the fits of what is named, of nothing, and of all but one.
+        """
+        bench = self.bench.weighed_by(self.trial(named))
+        other = Search(bench, self.folds, self.step, self.effects)
+        mesh = bench.on_mesh(named)
+        for names in {frozenset(), named, *(named - {name} for name in named)}:
+            near = self.trial(names, on_mesh=mesh)
+            other._keep(names, bench.fit(sorted(names), near=near, on_mesh=mesh))
+            self.step()
+        return other
+
+    def rivals(self, named: Names, name: str) -> tuple[str, ...]:
+        """Return the effects that would do as well in place of a named one."""
+        fewer = named - {name}
+        out = []
+        for other, found in self.add(fewer):
+            instead = fewer | {other}
+            if other in named or not found.convincing:
+                continue
+            if self.trial(instead).solution.converged and not self.gain(instead, named).convincing:
+                out.append(other)
+        return tuple(out)
+
     def trial(self, names: Names, *, on_mesh: bool = False) -> Trial:
         """Return the fit of a set of effects, made on the mesh if any of it needs one."""
         mesh = on_mesh or self.bench.on_mesh(names)

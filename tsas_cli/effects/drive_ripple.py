@@ -22,7 +22,7 @@ from tsas_cli.effects.effect import Effect, Parameter
 from tsas_cli.numerics.compiled import kernel
 
 PERIOD_MM = 0.7095
-LONGEST_MM, SHORTEST_MM, PERIODS = 20.0, 0.3, 60
+LONGEST_MM, SHORTEST_MM, PERIODS = 10.0, 0.3, 60
 
 
 class DriveRipple(NamedTuple):
@@ -57,7 +57,7 @@ DRIVE_RIPPLE = Effect(
             neutral=PERIOD_MM,
             start=PERIOD_MM,
             lower=0.05,
-            upper=200.0,
+            upper=LONGEST_MM,  # beyond it a ripple is a gain to the strokes of most rigs
             shape=True,
             starts=(
                 PERIOD_MM,

@@ -4,22 +4,17 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from tsas_cli.identification.base_fit import base_fit, slopes_of
 from tsas_cli.identification.comparison import Compared, compare
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.fit import Fitted
-from tsas_cli.identification.joint_fit import JointFit
 from tsas_cli.identification.model import CORRECTION, Model, data_sheet
 from tsas_cli.identification.phases import Segment, segment
 from tsas_cli.identification.prepared import Prepared
-from tsas_cli.identification.starts import read_off
 from tsas_cli.identification.stiffness import Slope, slopes
 from tsas_cli.identification.transfer import tension_transfer
-from tsas_cli.physics.parameters import NOMINAL_BY_NAME
 from tsas_cli.recordings.manifest import Manifest
-
-Floats = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -48,17 +43,12 @@ def calibrate(
     segments, measured = [], []
     for run in runs:
         segments.append(segment(run))
-        measured.append(_slopes(run, run.measured.get("f_in_N"), segments[-1]))
+        measured.append(slopes_of(run, segments[-1]))
         step()
-    stated = data_sheet(manifest)
-    read = _read_off(stated, runs, segments, measured)
-    fit = JointFit(read.over(stated), stated.over(read), runs)
+    fit = base_fit(data_sheet(manifest), runs, segments, measured)
     model, fitted, sentences = fit.solve()
     answers = [compare(run, model) for run in runs]
-    expected = [
-        _slopes(run, a.response.f_in_N, s)
-        for run, a, s in zip(runs, answers, segments, strict=True)
-    ]
+    expected = [_answered(*each) for each in zip(runs, answers, segments, strict=True)]
     cannot = [*fit.misfit(), *_unknown_conditions(runs), *sentences]
     return Calibration(
         _with_correction(model, runs),
@@ -73,32 +63,11 @@ def calibrate(
     )
 
 
-def _slopes(run: Prepared, f_in: Floats | None, segments: list[Segment]) -> list[Slope]:
-    if f_in is None or "x_in_mm" not in run.conditioned:
+def _answered(run: Prepared, answer: Compared, segments: list[Segment]) -> list[Slope]:
+    """Return the stiffness that the same linear fit gives on the model's answer."""
+    if "f_in_N" not in run.measured or "x_in_mm" not in run.conditioned:
         return []
-    return slopes(run.conditioned["x_in_mm"].values, f_in, segments)
-
-
-def _read_off(
-    stated: Model,
-    runs: Sequence[Prepared],
-    segments: Sequence[list[Segment]],
-    measured: Sequence[list[Slope]],
-) -> Model:
-    """Return what the phases of the runs show, to start from; the median where runs share it."""
-    found: dict[tuple[str, str | None], list[float]] = {}
-    for run, parts, km in zip(runs, segments, measured, strict=True):
-        rig = stated.rig(run.run)
-        values = read_off(run, parts, km, rig.sheath_length_mm, max(rig.total_bend_rad, 1e-3))
-        for name, value in values.items():
-            owner = None if NOMINAL_BY_NAME[name].shared else run.run.id
-            found.setdefault((name, owner), []).append(value)
-    return Model(
-        tuple(
-            Estimate(name, float(np.median(seen)), NOMINAL_BY_NAME[name].unit, "default", owner)
-            for (name, owner), seen in found.items()
-        )
-    )
+    return slopes(run.conditioned["x_in_mm"].values, answer.response.f_in_N, segments)
 
 
 def _with_correction(model: Model, runs: Sequence[Prepared]) -> Model:

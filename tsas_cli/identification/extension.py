@@ -45,6 +45,11 @@ class Trial:
         residuals = np.split(self.solution.residual, edges)
         return list(zip(residuals, np.split(self.solution.jacobian, edges), strict=True))
 
+    @property
+    def solver(self) -> str:
+        """What computed it."""
+        return f"slip chain, {NODES} nodes" if self.on_mesh else "closed form"
+
     def values(self) -> dict[str, float]:
         """Return the fitted values of the effects' parameters."""
         return {
@@ -68,6 +73,12 @@ class Bench:
         self.never_closed = not all(
             is_closed(rig, errors.drive) for rig, errors in zip(self.rigs, base.errors, strict=True)
         )
+
+    def weighed_by(self, trial: Trial) -> "Bench":
+        """Return the same bench with the errors weighed as a trial's model asks for."""
+        for k, errors in enumerate(self.closed):
+            errors.weigh(self.rig(trial, k))
+        return Bench(self.base)
 
     def on_mesh(self, effects: Iterable[str]) -> bool:
         """Say whether a hypothesis needs the slip chain."""
@@ -126,6 +137,15 @@ class Bench:
         return np.concatenate(
             [run.residuals(rig_at(self.rigs[k], k, unknowns, at)) for k, run in enumerate(errors)]
         )
+
+    @property
+    def channels(self) -> list[str]:
+        """The channels that are compared, in a fixed order."""
+        return sorted({name for run in self.closed for name in run.samples})
+
+    def errors_for(self, trial: Trial) -> list[RunErrors]:
+        """Return the runs as a trial sees them."""
+        return self.meshed if trial.on_mesh else self.closed
 
     def rig(self, trial: Trial, k: int) -> Rig:
         """Return the rig of run k with a trial's values."""

@@ -79,7 +79,7 @@ class JointFit:
                 break
             before = chosen
         self.chosen = chosen
-        told = self._estimates(chosen, result)
+        told = estimates_of([self.unknowns[j] for j in chosen], result, self.ids())
         sentences = [*self.left_out, *self._sentences(confounded), *_doubts(told, result)]
         return Model(tuple(told)).over(self.kept), result, sentences
 
@@ -130,32 +130,12 @@ class JointFit:
         """Return the rig of run k at scaled values of all unknowns."""
         return rig_at(self.rigs[k], k, self.unknowns, values)
 
+    def ids(self) -> list[str]:
+        """Return the ids of the runs that are fitted."""
+        return [run.run.id for run in self.runs]
+
     def _owner(self, unknown: Unknown) -> str | None:
         return None if unknown.run is None else self.runs[unknown.run].run.id
-
-    def _estimates(self, chosen: list[int], result: Fitted) -> list[Estimate]:
-        found = zip(chosen, result.values, result.stderr, result.t, result.at_bound, strict=True)
-        out = []
-        for j, v, sd, t, at_bound in found:
-            u = self.unknowns[j]
-            quantity = QUANTITIES[u.name]
-            ends = np.clip([v - t * sd, v, v + t * sd], u.lower, u.upper)
-            low, value, high = (quantity.unscaled(float(end)) for end in ends)
-            stderr = sd * (value if quantity.positive else quantity.size)
-            out.append(
-                Estimate(
-                    u.name,
-                    value,
-                    quantity.unit,
-                    "fitted",
-                    self._owner(u),
-                    float(stderr) if np.isfinite(stderr) else None,
-                    low,
-                    high,
-                    bool(at_bound),
-                )
-            )
-        return out
 
     def _sentences(self, confounded: Mapping[int, list[int]]) -> list[str]:
         """Say what is kept and why, one sentence for each parameter and reason."""
@@ -171,6 +151,31 @@ class JointFit:
             f"it is kept at {_kept_value(self.kept, name, owners[0])}."
             for (name, why), owners in reasons.items()
         ]
+
+
+def estimates_of(unknowns: Sequence[Unknown], found: Fitted, runs: Sequence[str]) -> list[Estimate]:
+    """Return what a fit says of its unknowns, in their units; `runs` are the ids of the runs."""
+    out = []
+    told = zip(unknowns, found.values, found.stderr, found.t, found.at_bound, strict=True)
+    for u, v, sd, t, at_bound in told:
+        quantity = QUANTITIES[u.name]
+        ends = np.clip([v - t * sd, v, v + t * sd], u.lower, u.upper)
+        low, value, high = (quantity.unscaled(float(end)) for end in ends)
+        stderr = sd * (value if quantity.positive else quantity.size)
+        out.append(
+            Estimate(
+                u.name,
+                value,
+                quantity.unit,
+                "fitted",
+                None if u.run is None else runs[u.run],
+                float(stderr) if np.isfinite(stderr) else None,
+                low,
+                high,
+                bool(at_bound),
+            )
+        )
+    return out
 
 
 def rig_at(rig: Rig, k: int, unknowns: Sequence[Unknown], values: Floats) -> Rig:

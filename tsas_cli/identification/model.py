@@ -9,7 +9,7 @@ from typing import Any, Literal
 import tomlkit
 from pydantic import BaseModel, ConfigDict
 
-from tsas_cli.effects import EFFECTS
+from tsas_cli.effects import EFFECTS, Effects
 from tsas_cli.errors import InputError, nearest
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.quantities import DEFAULTS, QUANTITIES
@@ -67,6 +67,7 @@ class Model:
         nominal = Rig(
             sheath_length_mm=run.sheath_length_mm or UNKNOWN_LENGTH_MM,
             total_bend_rad=bend,
+            effects=Effects(),
             **known,
         )
         told = {name: self.value(name) for name in QUANTITIES if "." in name}

@@ -24,6 +24,7 @@ from tsas_cli.physics.rig import Rig
 
 Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
+Bits = npt.NDArray[np.bool_]
 
 TURN = 3.0  # standard deviations by which the place of a reversal may be wrong
 WINDOWS_PER_BLOCK = 2.0  # of the conditioning: the error of a cleaned drive lasts that long
@@ -72,17 +73,17 @@ class RunErrors:
         drive_last = sorted(self.run.conditioned, key=lambda c: c == self.run.drive_column)
         for column in drive_last:
             conditioned = self.run.conditioned[column]
-            values = _moved_on(conditioned)
+            shifted = _moved_on(conditioned)
             moved = (
-                replace(self.drive, values=values)
+                replace(self.drive, values=shifted)
                 if column == self.run.drive_column
-                else replace(self.drive, load_values=values)
+                else replace(self.drive, load_values=shifted)
             )
             answers = self._follow(rig, moved)
-            for name in square:
+            for name, values in square.items():
                 change[name] = answers[name] - plain[name]
-                square[name] += change[name] ** 2
-                _before_turns(square[name], change[name], conditioned)
+                values += change[name] ** 2
+                _before_turns(values, change[name], conditioned)
         self.weights = {name: np.sqrt(values) for name, values in square.items()}
         self.turns = {
             name: self._turns(change[name] / self.weights[name], at)
@@ -116,6 +117,18 @@ class RunErrors:
             out[name] = errors
         return out
 
+    def answers(self, rig: Rig) -> dict[str, Floats]:
+        """Return the model's answers at all samples, shape (n,)."""
+        return self._answer(rig)
+
+    def raw(self, rig: Rig) -> dict[str, Floats]:
+        """Return measured less simulated of each channel, at the samples that count."""
+        answer = self._answer(rig)
+        return {
+            name: self.run.measured[name][at] - answer[name][at]
+            for name, at in self.samples.items()
+        }
+
     def residuals(self, rig: Rig) -> Floats:
         """Return means of neighbouring errors that keep a variance of one, channel by channel."""
         parts = []
@@ -124,6 +137,18 @@ class RunErrors:
             counts = np.diff([*edges, errors.size])
             parts.append(np.add.reduceat(errors, edges) / np.sqrt(counts))
         return np.concatenate(parts)
+
+    def spread(self, name: str, chosen: Bits) -> Bits:
+        """Return which samples of a channel belong to the chosen residuals of the run."""
+        start = 0
+        for channel, at in self.samples.items():
+            edges = mean_edges(at.size)
+            if channel == name:
+                counts = np.diff([*edges, at.size])
+                spread: Bits = np.repeat(chosen[start : start + edges.size], counts)
+                return spread
+            start += edges.size
+        raise KeyError(name)
 
     def blocks(self, rig: Rig, longest: int) -> Indices:
         """Return the block of each residual: longer than its memory, but at least two in the run.

@@ -1,0 +1,275 @@
+"""Name what a calibrated model lacks: the whole way from runs to a verdict."""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from tsas_cli.diagnosis.evidence import gain_percent
+from tsas_cli.diagnosis.held_out import Folds, folds_of, held_out_values
+from tsas_cli.diagnosis.remainder import Remainder, remainder
+from tsas_cli.diagnosis.search import BLURRED, Names, Search
+from tsas_cli.effects import EFFECTS
+from tsas_cli.identification.base_fit import base_fit, slopes_of
+from tsas_cli.identification.estimate import Estimate
+from tsas_cli.identification.extension import Bench, Trial
+from tsas_cli.identification.fit import Fitted, uncertainty
+from tsas_cli.identification.joint_fit import JointFit, estimates_of, rig_at
+from tsas_cli.identification.model import Model
+from tsas_cli.identification.phases import segment
+from tsas_cli.identification.prepared import Prepared
+from tsas_cli.numerics.covariance import FEWEST_BLOCKS
+from tsas_cli.recordings.manifest import Manifest
+
+Floats = npt.NDArray[np.float64]
+Verdict = Literal["named", "ambiguous", "sufficient", "unexplained", "undecided"]
+
+PLAUSIBLE = 0.15  # by which a tendon's axial stiffness may differ from its data sheet
+LEFT = 0.05  # of what was beyond the noise, that the named causes may leave unexplained
+MOSTLY_LEFT = 0.3  # of it, beyond which the verdict is that it is unexplained
+SPOKEN = 2.0 * BLURRED  # mean square beyond the noise that needs an explanation
+FEW_BLOCKS = 6  # too few to tell anything from chance
+SEED = 1  # of the resampling of blocks
+
+
+@dataclass(frozen=True)
+class Cause:
+    """An effect that is named, with its parameters and what it gains on held-out data [%]."""
+
+    effect: str
+    rivals: tuple[str, ...]
+    parameters: tuple[Estimate, ...]
+    gain_percent: float
+    gain_interval_percent: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Channel:
+    """Root mean squares of one channel's error on held-out data, in its unit."""
+
+    rmse_before: float
+    rmse_after: float
+    noise_floor: float
+    best_obtainable: float
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """The verdict and all that it rests on; nothing of that where it is undecided.
+
+    `search` holds all hypotheses, `judged` those that count with the final weights, among them
+    the nominal model `before` and the `final` one.
+    """
+
+    verdict: Verdict
+    reason: str
+    model: Model
+    causes: tuple[Cause, ...] = ()
+    channels: dict[str, Channel] = field(default_factory=dict)
+    remainder: Remainder | None = None
+    share_left: float = 0.0
+    search: Search | None = None
+    judged: Search | None = None
+    before: Trial | None = None
+    final: Trial | None = None
+    cannot_tell: tuple[str, ...] = ()
+
+    @property
+    def unexplained(self) -> bool:
+        """Whether structure is left that no effect accounts for."""
+        if self.remainder is None:
+            return False
+        return self.remainder.mean_square > 1.0 + BLURRED and (
+            self.share_left > LEFT if self.causes else self.verdict == "unexplained"
+        )
+
+
+def diagnose(
+    manifest: Manifest,
+    stated: Model,
+    runs: Sequence[Prepared],
+    step: Callable[[], None] = lambda: None,
+) -> Diagnosis:
+    """Find the effects that a model of these runs lacks; `step` is called after each piece of work.
+
+    Parameters
+    ----------
+    manifest
+        What the data sheet says.
+    stated
+        The data sheet as a model, or a model to start from.
+    runs
+        The runs, prepared.
+    """
+    base = _base(manifest, stated, runs)
+    model, fitted, sentences = base.solve()
+    step()
+    reason = _not_possible(base, fitted)
+    if reason is not None:
+        return Diagnosis("undecided", reason, model, cannot_tell=tuple(sentences))
+    bench = Bench(base)
+    search = Search(bench, _folds(bench), step)
+    if search.folds.blocks < FEW_BLOCKS:
+        reason = f"only {search.folds.blocks} stretches are independent of each other: too few."
+        return Diagnosis("undecided", reason, model, cannot_tell=tuple(sentences))
+    return _concluded(search, search.run(), model, tuple(sentences))
+
+
+def _base(manifest: Manifest, stated: Model, runs: Sequence[Prepared]) -> JointFit:
+    segments = [segment(run) for run in runs]
+    measured = [slopes_of(run, parts) for run, parts in zip(runs, segments, strict=True)]
+    plausible = {}
+    told = stated.value("tendon_stiffness_N")
+    if told is not None and manifest.rig.tendon_modulus_GPa is not None:
+        plausible["tendon_stiffness_N"] = (told * (1.0 - PLAUSIBLE), told / (1.0 - PLAUSIBLE))
+    return base_fit(stated, runs, segments, measured, plausible)
+
+
+def _not_possible(base: JointFit, fitted: Fitted | None) -> str | None:
+    """Say why nothing can be diagnosed, or None."""
+    if not base.runs:
+        return "no run lasts beyond the time in which the tendon forgets how it began."
+    if fitted is None:
+        return "these recordings identify no parameter of the nominal model."
+    if not fitted.converged:
+        return f"the fit of the nominal model did not converge ({fitted.message})."
+    return None
+
+
+def _folds(bench: Bench) -> Folds:
+    longest = sum(run.length for run in bench.closed) // FEWEST_BLOCKS
+    return folds_of(
+        [run.blocks(rig, longest) for run, rig in zip(bench.closed, bench.rigs, strict=True)]
+    )
+
+
+def _concluded(search: Search, named: Names, model: Model, sentences: tuple[str, ...]) -> Diagnosis:
+    rivals = {name: search.rivals(named, name) for name in _in_order(named)}
+    search.screen(frozenset())  # before the weights change
+    judged = search.weighed_again(named) if named else search
+    before = judged.trial(frozenset(), on_mesh=judged.bench.on_mesh(named))
+    final = judged.trial(named)
+    causes = tuple(_cause(judged, named, name, rivals[name]) for name in rivals)
+    left = remainder(judged.bench, final, judged.folds)
+    start = remainder(judged.bench, before, judged.folds) if named else left
+    excess = [max(r.mean_square - 1.0, 0.0) for r in (start, left)]
+    share = max(excess[1] - BLURRED, 0.0) / excess[0] if excess[0] > 0.0 else 0.0
+    verdict: Verdict
+    if not named:
+        verdict = "unexplained" if left.mean_square > 1.0 + SPOKEN else "sufficient"
+    elif share > MOSTLY_LEFT:
+        verdict = "unexplained"
+    else:
+        verdict = "ambiguous" if any(c.rivals for c in causes) else "named"
+    extended = Model(tuple(_estimates(judged, final))).over(model)
+    return Diagnosis(
+        verdict,
+        _reason(verdict, causes, start, left),
+        extended,
+        causes,
+        _channels(judged, before, final, start, left),
+        left,
+        share if named else 1.0,
+        search,
+        judged,
+        before,
+        final,
+        sentences,
+    )
+
+
+def _in_order(named: Names) -> list[str]:
+    return [effect.name for effect in EFFECTS if effect.name in named]
+
+
+def _cause(search: Search, named: Names, name: str, rivals: tuple[str, ...]) -> Cause:
+    fewer = named - {name}
+    mesh = search.bench.on_mesh(named)
+    gains = gain_percent(
+        search.held_out(fewer, on_mesh=mesh),
+        search.held_out(named),
+        np.random.default_rng(SEED),
+    )
+    estimates = [
+        e for e in _estimates(search, search.trial(named)) if e.name.startswith(f"{name}.")
+    ]
+    return Cause(name, rivals, tuple(estimates), gains[0], (gains[1], gains[2]))
+
+
+def _estimates(search: Search, trial: Trial) -> list[Estimate]:
+    """Return what a trial says of its unknowns."""
+    solution = trial.solution
+    blocks = [search.folds.block[search.folds.run == k] for k in range(len(search.bench.rigs))]
+    counted = [np.unique(block, return_inverse=True)[1] for block in blocks]
+    stderr, t = uncertainty(trial.unknowns, solution.jacobian, solution.residual, counted)
+    fitted = Fitted(
+        solution.values,
+        stderr,
+        t,
+        solution.at_bound,
+        solution.converged,
+        solution.message,
+        solution.evaluations,
+    )
+    return estimates_of(trial.unknowns, fitted, search.bench.base.ids())
+
+
+def _channels(
+    search: Search, before: Trial, final: Trial, start: Remainder, left: Remainder
+) -> dict[str, Channel]:
+    """Return the errors of each channel on held-out data, simulated anew."""
+    rmse = {id(t): _held_out_rmse(search, t) for t in (before, final)}
+    out = {}
+    for name in search.bench.channels:
+        floor = [
+            run.weights[name][run.samples[name]]
+            for run in search.bench.closed
+            if name in run.samples
+        ]
+        first, after = rmse[id(before)][name], rmse[id(final)][name]
+        noise = float(np.sqrt(np.mean(np.concatenate(floor) ** 2)))
+        could = [
+            math.sqrt(max(first**2 - start.explained[name] * noise**2, 0.0)),
+            math.sqrt(max(after**2 - left.explained[name] * noise**2, 0.0)),
+        ]
+        out[name] = Channel(first, after, noise, max(min(could), min(noise, after)))
+    return out
+
+
+def _held_out_rmse(search: Search, trial: Trial) -> dict[str, float]:
+    """Return each channel's error, every run simulated with what the others say."""
+    bench, folds = search.bench, search.folds
+    squares: dict[str, float] = {}
+    counts: dict[str, int] = {}
+    for k, run in enumerate(bench.errors_for(trial)):
+        for fold in np.unique(folds.fold[folds.run == k]):
+            values = held_out_values(trial, folds, int(fold))
+            rig = rig_at(bench.rigs[k], k, trial.unknowns, values)
+            here = folds.fold[folds.run == k] == fold
+            for name, errors in run.raw(rig).items():
+                kept = errors[run.spread(name, here)]
+                squares[name] = squares.get(name, 0.0) + float(kept @ kept)
+                counts[name] = counts.get(name, 0) + kept.size
+    return {name: float(np.sqrt(squares[name] / counts[name])) for name in squares}
+
+
+def _reason(verdict: Verdict, causes: Sequence[Cause], start: Remainder, left: Remainder) -> str:
+    titles = {effect.name: effect.title.lower() for effect in EFFECTS}
+    names = " and ".join(titles[c.effect] for c in causes)
+    much = f"{np.sqrt(start.mean_square):.2g} times what noise explains"
+    less = f"{np.sqrt(left.mean_square):.2g} times"
+    depends = f" It depends on {', '.join(left.depends_on)}." if left.depends_on else ""
+    if verdict == "sufficient":
+        return "The nominal model is at the noise floor: nothing is missing that these runs show."
+    if not causes:
+        return f"The model misses the runs by {much}, and no known effect accounts for it.{depends}"
+    said = f"What the nominal model lacks is: {names}. It takes the error from {much} to {less}."
+    if verdict == "unexplained":
+        return f"{said} Most of the rest is explained by no known effect.{depends}"
+    rivals = sorted({titles[r] for c in causes for r in c.rivals})
+    if rivals:
+        return f"{said} These recordings cannot tell it from: {', '.join(rivals)}."
+    return said

@@ -1,0 +1,232 @@
+"""The diagnose stage: `diagnosis.json` and `model-extended.toml` of a dataset."""
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tsas_cli import __version__
+from tsas_cli.diagnosis.diagnose import Cause, Diagnosis, diagnose
+from tsas_cli.diagnosis.next_experiment import next_experiment
+from tsas_cli.diagnosis.residual_map import residual_map
+from tsas_cli.diagnosis.search import Search
+from tsas_cli.effects import EFFECTS
+from tsas_cli.files import new_folder, sha256_of, write_json
+from tsas_cli.identification.estimate import Estimate
+from tsas_cli.identification.model import FILE, data_sheet, read_model, write_model
+from tsas_cli.identification.prepared import prepare
+from tsas_cli.recordings.columns import BY_NAME
+from tsas_cli.recordings.dataset import Dataset
+
+Table = tuple[str, Sequence[str], Sequence[Sequence[str]]]
+
+EXTENDED = "model-extended.toml"
+SHOWN = 8  # hypotheses that are printed
+_ERRORS = ("rmse_before", "rmse_after", "noise_floor", "best_obtainable")
+
+
+def diagnose_dataset(
+    dataset: Dataset,
+    model_path: Path | None,
+    out: Path,
+    *,
+    force: bool = False,
+    step: Callable[[], None] = lambda: None,
+) -> dict[str, Any]:
+    """Diagnose and write `diagnosis.json` and `model-extended.toml` into a new folder.
+
+    The model, or else the data sheet, is where the refit of the nominal parameters begins.
+
+    Raises
+    ------
+    InputError
+        A recording or the model is wrong, or `out` exists and `force` is not set.
+    """
+    if model_path is not None and model_path.is_dir():
+        model_path = model_path / FILE
+    stated = data_sheet(dataset.manifest)
+    if model_path is not None:
+        stated = read_model(model_path).over(stated)
+    summary = dataset.header("diagnose", out)
+    summary["model"] = (
+        {"file": "data sheet"}
+        if model_path is None
+        else {"file": model_path.name, "sha256": sha256_of(model_path)}
+    )
+    with new_folder(out, force=force) as folder:
+        runs = []
+        for recording in dataset:
+            runs.append(prepare(recording, dataset.manifest.session_start))
+            step()
+        result = diagnose(dataset.manifest, stated, runs, step)
+        summary |= as_json(result)
+        write_json(folder / "diagnosis.json", summary)
+        write_model(
+            folder / EXTENDED, result.model, version=__version__, dataset=summary["dataset"]
+        )
+    return summary
+
+
+def as_json(result: Diagnosis) -> dict[str, Any]:
+    """Return what `diagnosis.json` says of a diagnosis."""
+    left = result.remainder
+    return {
+        "verdict": result.verdict,
+        "reason": result.reason,
+        "named": [_cause(cause) for cause in result.causes],
+        "channels": {
+            name: {"unit": BY_NAME[name].unit, **vars(channel)}
+            for name, channel in result.channels.items()
+        },
+        "remainder": {
+            "unexplained": result.unexplained,
+            "depends_on": [] if left is None else list(left.depends_on),
+            "share_percent": 100.0 * result.share_left,
+            "mean_square": None if left is None else left.mean_square,
+        },
+        "next_experiment": next_experiment(result),
+        "candidates": [] if result.search is None else _candidates(result.search),
+        "signatures": {} if result.search is None else _signatures(result.search),
+        "residual_map": _maps(result),
+        "evidence": {} if result.search is None else _evidence(result.search),
+        "cannot_tell": list(result.cannot_tell),
+        "solver": "" if result.final is None else result.final.solver,
+    }
+
+
+def _cause(cause: Cause) -> dict[str, Any]:
+    effect = next(e for e in EFFECTS if e.name == cause.effect)
+    return {
+        "effect": cause.effect,
+        "title": effect.title,
+        "equation": effect.equation,
+        "rivals": list(cause.rivals),
+        "parameters": {
+            e.name.split(".")[1]: {
+                "value": e.value,
+                "stderr": e.stderr,
+                "unit": e.unit,
+                "at_bound": e.at_bound,
+                "interval_low": e.interval_low,
+                "interval_high": e.interval_high,
+            }
+            for e in cause.parameters
+        },
+        "gain_percent": cause.gain_percent,
+        "gain_interval_percent": list(cause.gain_interval_percent),
+    }
+
+
+def _candidates(search: Search) -> list[dict[str, Any]]:
+    """Return all hypotheses that were fitted, the best first."""
+    rows = []
+    nothing: frozenset[str] = frozenset()
+    for names, mesh in search.trials:
+        if not names or mesh != search.bench.on_mesh(names):
+            continue
+        trial, found = search.trial(names), search.gain(nothing, names)
+        rows.append(
+            {
+                "effects": sorted(names),
+                "gain_percent": 100.0 * (1.0 - float(np.sqrt(1.0 - found.part))),
+                "sureness": found.sureness,
+                "convincing": found.convincing,
+                "mean_square": trial.mean_square,
+                "converged": trial.solution.converged,
+                "parameters": trial.values(),
+            }
+        )
+    return sorted(rows, key=lambda row: -row["gain_percent"])
+
+
+def _signatures(search: Search) -> dict[str, Any]:
+    """Return how visible each effect is on these inputs, and how alike each two are."""
+    seen = sorted(search.screen(frozenset()), key=lambda s: s.effect.name)
+    columns = [s.signatures @ np.ones(s.signatures.shape[1]) for s in seen]
+    sizes = [float(np.linalg.norm(c)) for c in columns]
+    likeness = [
+        [
+            float(abs(a @ b) / (p * q)) if p > 0.0 and q > 0.0 else 0.0
+            for b, q in zip(columns, sizes, strict=True)
+        ]
+        for a, p in zip(columns, sizes, strict=True)
+    ]
+    return {"effects": [s.effect.name for s in seen], "visible": sizes, "likeness": likeness}
+
+
+def _maps(result: Diagnosis) -> dict[str, Any]:
+    if result.judged is None or result.before is None or result.final is None:
+        return {}
+    bench = result.judged.bench
+    return {
+        "before": residual_map(bench, result.before),
+        "after": residual_map(bench, result.final),
+    }
+
+
+def _evidence(search: Search) -> dict[str, Any]:
+    folds, runs = search.folds, len(search.bench.rigs)
+    if folds.by_run:
+        how = f"each of {runs} runs is predicted by a fit to the others"
+    else:
+        how = f"with {runs} run(s), stretches are predicted by a fit to the rest"
+    return {
+        "held_out": "runs" if folds.by_run else "stretches",
+        "blocks": folds.blocks,
+        "runs": runs,
+        "sentence": f"{how}; {folds.blocks} blocks longer than the error's memory count as "
+        "evidence. Noise is told from the high-frequency part of each channel.",
+    }
+
+
+def tables(summary: dict[str, Any], out: Path) -> list[Table]:
+    """Return what the stage prints: what is named, the errors before and after, the ranking."""
+    named = [
+        (
+            cause["effect"],
+            name,
+            Estimate(
+                name,
+                p["value"],
+                p["unit"],
+                "fitted",
+                None,
+                p["stderr"],
+                p["interval_low"],
+                p["interval_high"],
+                p["at_bound"],
+            ).text(),
+            p["unit"],
+            ", ".join(cause["rivals"]),
+        )
+        for cause in summary["named"]
+        for name, p in cause["parameters"].items()
+    ]
+    errors = [
+        (name, *(f"{c[key]:.3g}" for key in _ERRORS), c["unit"])
+        for name, c in summary["channels"].items()
+    ]
+    ranking = [
+        (
+            " + ".join(row["effects"]),
+            f"{row['gain_percent']:.1f}",
+            f"{row['sureness']:.1f}",
+            "" if row["converged"] else "not converged",
+        )
+        for row in summary["candidates"][:SHOWN]
+    ]
+    title = f"causes → {out / EXTENDED}"
+    return [
+        *(
+            [(title, ("effect", "parameter", "value [95 %]", "unit", "rivals"), named)]
+            if named
+            else []
+        ),
+        (
+            "error on held-out data",
+            ("channel", "before", "after", "noise", "obtainable", "unit"),
+            errors,
+        ),
+        ("hypotheses", ("effects", "gain [%]", "sureness", ""), ranking),
+    ]

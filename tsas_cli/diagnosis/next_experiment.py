@@ -1,0 +1,25 @@
+"""What to measure next, so that the verdict becomes surer."""
+
+from tsas_cli.diagnosis.diagnose import Diagnosis
+from tsas_cli.effects import EFFECTS
+
+
+def next_experiment(result: Diagnosis) -> str:
+    """Return a sentence for a person with the rig."""
+    experiments = {effect.name: effect.experiment for effect in EFFECTS}
+    if result.verdict == "undecided":
+        return (
+            "Record at least three runs in which the drive travels through several whole strokes, "
+            "with f_in_N and one of f_out_N and x_out_mm."
+        )
+    if result.causes:
+        first = max(result.causes, key=lambda cause: cause.gain_percent)
+        return experiments[first.effect]
+    if result.unexplained:
+        return (
+            "Repeat one run without any change: what comes back is the rig's, what does not is "
+            "chance; then change one condition at a time among "
+            + (", ".join(result.remainder.depends_on) if result.remainder else "all")
+            + "."
+        )
+    return "Nothing is missing here; other loads, speeds and bends would show more."

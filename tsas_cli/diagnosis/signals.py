@@ -1,0 +1,51 @@
+"""The signals of a run that an error may depend on, as a person would name them."""
+
+import numpy as np
+import numpy.typing as npt
+
+from tsas_cli.identification.prepared import Prepared
+from tsas_cli.recordings.columns import BY_NAME
+
+Floats = npt.NDArray[np.float64]
+
+DIRECTION = "direction"
+
+
+def signals_of(run: Prepared, f_in_N: Floats) -> dict[str, Floats]:
+    """Return the signals of a run at all samples, shape (n,) each.
+
+    Parameters
+    ----------
+    run
+        The run; where the drive is a force there is no x_in, and what follows from it is left out.
+    f_in_N
+        The model's tension at the drive, shape (n,).
+    """
+    out: dict[str, Floats] = {"f_in_N": f_in_N, "time_s": run.time_s - run.time_s[0]}
+    drive = run.conditioned[run.drive_column]
+    if run.drive_column == "x_in_mm":
+        out["x_in_mm"] = drive.values
+        out["speed_mm_per_s"] = np.gradient(drive.values, run.time_s)
+        out["travel_since_reversal_mm"] = _since_reversal(drive.values, drive.reversals)
+    out[DIRECTION] = _direction(drive.values, drive.reversals)
+    return out
+
+
+def unit_of(signal: str) -> str:
+    """Return the unit of a signal, empty where it has none."""
+    column = BY_NAME.get(signal)
+    own = {"speed_mm_per_s": "mm/s", "travel_since_reversal_mm": "mm"}
+    return own.get(signal, "") if column is None else column.unit
+
+
+def _since_reversal(values: Floats, reversals: npt.NDArray[np.int64]) -> Floats:
+    start = np.searchsorted(reversals, np.arange(values.size), side="right") - 1
+    start = np.clip(start, 0, max(reversals.size - 2, 0))
+    return np.abs(values - values[reversals[start]])
+
+
+def _direction(values: Floats, reversals: npt.NDArray[np.int64]) -> Floats:
+    """Return +1 while the drive pulls, −1 while it lets go."""
+    stroke = np.searchsorted(reversals, np.arange(values.size), side="left")
+    end = np.clip(stroke, 1, reversals.size - 1)
+    return np.where(values[reversals[end]] >= values[reversals[end - 1]], 1.0, -1.0)

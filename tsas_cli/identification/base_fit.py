@@ -1,0 +1,66 @@
+"""The fit of the nominal parameters, started from the data sheet and from what the phases show."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from tsas_cli.identification.estimate import Estimate
+from tsas_cli.identification.joint_fit import JointFit
+from tsas_cli.identification.model import Model
+from tsas_cli.identification.phases import Segment
+from tsas_cli.identification.prepared import Prepared
+from tsas_cli.identification.starts import read_off
+from tsas_cli.identification.stiffness import Slope, slopes
+from tsas_cli.physics.parameters import NOMINAL_BY_NAME
+
+
+def base_fit(
+    stated: Model,
+    runs: Sequence[Prepared],
+    segments: Sequence[list[Segment]],
+    measured: Sequence[list[Slope]],
+    plausible: Mapping[str, tuple[float, float]] | None = None,
+) -> JointFit:
+    """Return the joint fit of all runs, not yet solved.
+
+    Parameters
+    ----------
+    stated
+        What the data sheet, or a model, says; kept where the recordings do not tell better.
+    runs, segments, measured
+        The runs, their phases and the stiffness in each.
+    plausible
+        Narrower bounds of some parameters.
+    """
+    read = _read_off(stated, runs, segments, measured)
+    return JointFit(read.over(stated), stated.over(read), runs, plausible)
+
+
+def slopes_of(run: Prepared, segments: list[Segment]) -> list[Slope]:
+    """Return the stiffness km of a run's phases, none where f_in or x_in was not measured."""
+    f_in = run.measured.get("f_in_N")
+    if f_in is None or "x_in_mm" not in run.conditioned:
+        return []
+    return slopes(run.conditioned["x_in_mm"].values, f_in, segments)
+
+
+def _read_off(
+    stated: Model,
+    runs: Sequence[Prepared],
+    segments: Sequence[list[Segment]],
+    measured: Sequence[list[Slope]],
+) -> Model:
+    """Return what the phases of the runs show, to start from; the median where runs share it."""
+    found: dict[tuple[str, str | None], list[float]] = {}
+    for run, parts, km in zip(runs, segments, measured, strict=True):
+        rig = stated.rig(run.run)
+        values = read_off(run, parts, km, rig.sheath_length_mm, max(rig.total_bend_rad, 1e-3))
+        for name, value in values.items():
+            owner = None if NOMINAL_BY_NAME[name].shared else run.run.id
+            found.setdefault((name, owner), []).append(value)
+    return Model(
+        tuple(
+            Estimate(name, float(np.median(seen)), NOMINAL_BY_NAME[name].unit, "default", owner)
+            for (name, owner), seen in found.items()
+        )
+    )
