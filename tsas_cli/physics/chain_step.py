@@ -38,6 +38,7 @@ TOLERANCE = 1e-10  # of the tension and of a segment's elongation, for rounding
 MOST_AT_ONCE = 20  # revisions of the slipping set
 MOST_ONE_BY_ONE = 5  # more, for each node
 BALANCED = 1e-9  # of the tension, where a law is not straight
+SLIPS_ALONG_S = 0.01  # in which the mass of the load takes up its speed; a rigid one would swing on
 STRONGEST = 30.0  # friction of a node times its bend, so that it passes on more than nothing
 MOST_BENT = 0.5  # of the ratio that a node passes on: how far a tangent may turn it
 STIFFEST_BRISTLE = 100.0  # times a segment's stiffness; more does not show on the mesh
@@ -85,7 +86,7 @@ SLIP = 4  # direction in which the node slips, 0 where it sticks
 PASSES, TAKES = 5, 14  # where it slips, T[i] = PASSES T[i−1] − TAKES
 GIVE = 6  # compliance of the segment behind the node [mm/N]
 P, Q, R = 7, 8, 9  # T = (P x + Q)/R of the segment behind the node, x its position
-SPEED = 10  # of the load when the last step had settled [mm/s]
+SPEED = 10  # of the load's mass when the last step had settled [mm/s]
 PULLED, RELEASED = 11, 12  # what the node's share of the bend leaves of the tension, e^(−a/n)
 BRISTLE = 13  # stiffness with which the node sticks [N/mm], infinite without presliding
 ROWS = 15
@@ -156,10 +157,19 @@ def load_law(chain: Floats, now: Moment, laws: Laws) -> tuple[float, float]:
     value += laws.preload_N - now.lost_N
     mass = laws.load_mass_kg
     if mass > 0.0 and now.step_s < math.inf:  # implicit Euler, first order in the step
-        slope += inertia_force(1.0 / now.step_s**2, mass)
-        gone = chain[X_OLD, n + 1] / now.step_s**2 + chain[SPEED, n + 1] / now.step_s
-        value -= inertia_force(gone, mass)
+        per_speed = 1.0 / (SLIPS_ALONG_S + now.step_s)
+        slope += inertia_force(per_speed / now.step_s, mass)
+        gone = chain[X_OLD, n + 1] / now.step_s + chain[SPEED, n + 1]
+        value -= inertia_force(per_speed * gone, mass)
     return slope, value
+
+
+@kernel
+def keep_speed(chain: Floats, step_s: float) -> None:
+    """Renew the speed of the load's mass after a step."""
+    speed = (chain[X, -1] - chain[X_OLD, -1]) / step_s
+    share = 1.0 / (1.0 + SLIPS_ALONG_S / step_s)
+    chain[SPEED, -1] += share * (speed - chain[SPEED, -1])
 
 
 @kernel

@@ -31,6 +31,7 @@ from tsas_cli.physics.chain_step import (
     T,
     X,
     friction_at_load,
+    keep_speed,
     pulls_back,
     settle,
 )
@@ -44,7 +45,7 @@ from tsas_cli.physics.rig import Rig
 Floats = npt.NDArray[np.float64]
 Phases = npt.NDArray[np.int8]
 
-MOST_STEPS = 100  # between two samples, those included that did not settle
+MOST_STEPS = 60  # between two samples, those included that did not settle
 
 
 @kernel
@@ -162,7 +163,7 @@ def advance(
         to = min(done + step, 1.0)
         now = between(start, end, to, end.step_s * (to - done))
         if settle(chain, now, boundary, laws, scale):
-            chain[SPEED, -1] = (chain[X, -1] - chain[X_OLD, -1]) / now.step_s
+            keep_speed(chain, now.step_s)
             keep(chain)
             if to == 1.0:
                 return True
