@@ -17,9 +17,9 @@ def report(
     quiet: Quiet = False,
     as_json: Json = False,
 ) -> None:
-    """Write one self-contained HTML page: recordings, model, simulation and residual.
+    """Write one self-contained HTML page: diagnosis, recordings, model, simulation and residual.
 
-    Each DIR is a dataset or what `tsas check`, `tsas calibrate` or `tsas simulate` wrote.
+    Each DIR is a dataset or what `tsas check`, `calibrate`, `simulate` or `diagnose` wrote.
     """
     from tsas_cli.files import new_file
     from tsas_cli.reporting.inputs import read_inputs

@@ -13,6 +13,9 @@ ROLES = (
     "dead-band-down",
     "rest",
     "unknown",
+    "before",
+    "after",
+    "alike",
 )
 STAND_IN = {role: f"#c0ffe{number:x}" for number, role in enumerate(ROLES)}
 

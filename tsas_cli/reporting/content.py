@@ -49,16 +49,19 @@ class Group:
 
 @dataclass(frozen=True)
 class Section:
-    """One section: what it shows, in the order of the fields."""
+    """One section: what it shows, in the order of the fields; `parts` have their own headings."""
 
     anchor: str
     title: str
-    intro: tuple[str, ...]
+    intro: tuple[str, ...] = ()
+    points: tuple[str, ...] = ()
+    equations: tuple[str, ...] = ()
+    commands: tuple[str, ...] = ()
     tables: tuple[Table, ...] = ()
     pictures: tuple[Picture, ...] = ()
     groups: tuple[Group, ...] = ()
-    points: tuple[str, ...] = ()
-    commands: tuple[str, ...] = ()
+    closing: tuple[str, ...] = ()
+    parts: tuple["Section", ...] = ()
 
 
 def missing(anchor: str, title: str, *, what: str, stage: str) -> Section:

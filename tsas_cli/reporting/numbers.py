@@ -39,6 +39,17 @@ def with_interval(value: float | None, low: float | None, high: float | None) ->
     return _fixed(value, decimals), f"{_fixed(low, decimals)} to {_fixed(high, decimals)}"
 
 
+def fixed(value: float | None, decimals: int) -> str:
+    """Return a number with so many decimals; an en dash where there is none.
+
+    Examples
+    --------
+    >>> fixed(48.24, 1), fixed(-0.01, 1), fixed(None, 1)
+    ('48.2', '0.0', '–')
+    """
+    return ABSENT if value is None or not math.isfinite(value) else _fixed(value, decimals)
+
+
 def _exponent(value: float) -> int:
     return math.floor(math.log10(abs(value))) if value else 0
 

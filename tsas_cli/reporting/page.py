@@ -10,6 +10,7 @@ from tsas_cli.errors import printable
 from tsas_cli.reporting.content import Section
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.sections import (
+    diagnosis,
     loops,
     parameters,
     recordings,
@@ -21,6 +22,7 @@ from tsas_cli.reporting.sections import (
 )
 
 SECTIONS: tuple[Callable[[Inputs], Section], ...] = (
+    diagnosis.section,
     recordings.section,
     stiffness.section,
     transfer.section,

@@ -10,7 +10,7 @@ from tsas_cli import __version__
 from tsas_cli.files import sha256_of
 from tsas_cli.reporting.content import Section, Table
 from tsas_cli.reporting.inputs import Inputs
-from tsas_cli.reporting.stage_files import Calibration, Check, Simulation
+from tsas_cli.reporting.stage_files import Calibration, Check, Diagnosis, Simulation
 
 _LIBRARIES = ("numpy", "scipy", "numba", "matplotlib")
 
@@ -40,6 +40,8 @@ def _commands(inputs: Inputs) -> Iterator[list[str]]:
         yield ["tsas", "check", dataset, "--out", folder[Check]]
     if Calibration in folder:
         yield ["tsas", "calibrate", dataset, "--out", folder[Calibration]]
+    if Diagnosis in folder:
+        yield ["tsas", "diagnose", dataset, "--out", folder[Diagnosis]]
     if simulation := inputs.get(Simulation):
         options = ["--dynamics", simulation.dynamics, "--out", folder[Simulation]]
         yield ["tsas", "simulate", dataset, *_model(simulation, inputs), *options]
@@ -62,5 +64,7 @@ def _versions(inputs: Inputs) -> Iterator[tuple[str, str]]:
         yield "tsas, calibration", calibration.version
     if simulation := inputs.get(Simulation):
         yield "tsas, simulation", simulation.version
+    if diagnosis := inputs.get(Diagnosis):
+        yield "tsas, diagnosis", diagnosis.version
     yield "Python", platform.python_version()
     yield from ((name, version(name)) for name in _LIBRARIES)

@@ -1,0 +1,239 @@
+import json
+import re
+import shutil
+from html import unescape
+
+import pytest
+from matplotlib.figure import Figure
+
+from tests.reporting.made_folders import REASONS, make_dataset, make_diagnosis
+from tests.reporting.test_page import Outline
+from tsas_cli.effects import EFFECTS
+from tsas_cli.reporting.colours import STAND_IN
+from tsas_cli.reporting.figures.gains import draw_gains
+from tsas_cli.reporting.figures.residual_map import Panel, draw_residual_map
+from tsas_cli.reporting.inputs import read_inputs
+from tsas_cli.reporting.page import page
+from tsas_cli.reporting.stage_files import Bin, HeldOut
+
+
+@pytest.fixture(scope="module")
+def dataset(tmp_path_factory):
+    return make_dataset(tmp_path_factory.mktemp("diagnosis") / "dataset", ("a",), samples=400)
+
+
+@pytest.fixture(scope="module")
+def sections(dataset):
+    """The section of the diagnosis, by verdict."""
+    return {v: written(make_diagnosis(dataset, dataset.parent / v, v)) for v in REASONS}
+
+
+def written(folder):
+    whole = page(read_inputs([folder]))
+    Outline(whole)
+    return whole[whole.index('<section id="diagnosis"') : whole.index('<section id="recordings"')]
+
+
+def headings(text):
+    return [unescape(t) for t in re.findall("<h3>(.*?)</h3>", text)]
+
+
+def words(text):
+    return unescape(re.sub("<[^>]*>", "", text))
+
+
+def labels(text):
+    return [unescape(label) for label in re.findall('aria-label="([^"]*)"', text)]
+
+
+def rows(text):
+    return [
+        [unescape(cell) for cell in re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", row)]
+        for row in re.findall(r"<tr>(.*?)</tr>", text, re.DOTALL)
+    ]
+
+
+@pytest.mark.parametrize("verdict", REASONS)
+def test_the_first_sentence_is_the_verdict(sections, verdict):
+    assert f"<h2>Diagnosis</h2>\n<p>{REASONS[verdict]}</p>" in sections[verdict]
+
+
+def test_a_named_cause_says_what_it_is_with_equation_and_gain(sections):
+    text = sections["named"]
+    sentence = next(e.sentence for e in EFFECTS if e.name == "free_tendon")
+    order = [
+        "<h3>Tendon outside the sheath</h3>",
+        sentence,
+        "x_in − x_sheath = (T0 − F0)·l/EA",
+        "Parameters of free_tendon",
+        "takes away 48.2 % of the root mean square error (95 % interval 44.9 to 51.0 %)",
+        "Judged on each of 4 runs",
+        "What was tried",
+        "What is left",
+        "Next experiment",
+        "twice the sheath length",
+        "Cannot tell",
+        "The preload stays open: no run is at &lt;rest&gt;.",
+    ]
+    places = [text.index(part) for part in order]
+    assert places == sorted(places)
+    assert "cannot tell it from" not in text
+
+
+def test_each_parameter_has_its_interval_unit_and_bound(sections):
+    found = rows(sections["named"])
+    assert ["proximal_length_mm", "152.0", "145.9 to 158.1", "mm", "no"] in found
+    assert ["distal_length_mm", "0.000", "–", "mm", "yes"] in found
+
+
+def test_an_ambiguous_cause_shares_its_heading_with_its_rival(sections):
+    text = sections["ambiguous"]
+    assert headings(text)[0] == "Tendon outside the sheath, or compliance of the drive"
+    sentence = next(e.sentence for e in EFFECTS if e.name == "drive_compliance")
+    told = "These recordings cannot tell it from compliance of the drive (drive_compliance)."
+    assert f"{told} {sentence}" in words(text)
+
+
+def test_errors_before_and_after_stand_in_their_columns(sections):
+    found = rows(sections["named"])
+    header = ["channel", "before", "with what is named", "best obtainable", "noise floor", "unit"]
+    assert header in found
+    assert ["f_in_N", "0.910", "0.110", "0.105", "0.100", "N"] in found
+    (bars,) = (label for label in labels(sections["named"]) if "held-out data. " in label)
+    assert "tension at the drive: before 0.910, with what is named 0.110, best obtain" in bars
+
+
+@pytest.mark.parametrize("verdict", ["sufficient", "unexplained"])
+def test_without_a_name_there_is_no_after(sections, verdict):
+    text = sections[verdict]
+    assert ["channel", "nominal model", "best obtainable", "noise floor", "unit"] in rows(text)
+    assert "var(--after)" not in text
+    assert headings(text)[0] == "Error on held-out data"
+
+
+def test_what_is_not_explained_says_on_what_it_depends(sections):
+    text = words(sections["unexplained"])
+    assert "no effect of the catalogue accounts for" in text
+    assert "depends on time_s (f_in_N swings at 3.1 Hz) and speed of the drive." in text
+    assert "38.4 times the mean square" in text
+    assert "take away 61 % of its squares" in text
+    assert "no effect of the catalogue" not in words(sections["named"])
+
+
+def test_too_little_data_leaves_the_reason_and_the_next_experiment(sections):
+    assert headings(sections["undecided"]) == ["Next experiment"]
+    assert "<svg" not in sections["undecided"]
+
+
+def maps_of(text):
+    return [label for label in labels(text) if label.startswith("Mean error over")]
+
+
+def test_errors_that_do_not_stand_out_of_the_noise_are_not_drawn(dataset, tmp_path):
+    flat = {"from": 0.0, "to": 1.0, "label": "", "mean": 0.1, "sd": 1.0, "samples": 9}
+    maps = {"before": {"f_in_N": {"x_in_mm": [flat, flat]}}}
+    text = written(make_diagnosis(dataset, tmp_path / "d", "sufficient", residual_map=maps))
+    assert "Over no signal does the mean error stand out of the noise." in text
+    assert not maps_of(text)
+
+
+def test_maps_show_the_strongest_first_and_only_the_channels_that_are_off(sections):
+    shown = maps_of(sections["named"])
+    assert "over the phase of the cycle" in shown[0]
+    assert "f_in_N: before −0.91 to 8.2, after −0.020 to 0.18" in shown[0]
+    assert len(shown) == 4
+    assert not any("f_out_N:" in label for label in shown)
+
+
+def test_candidates_stand_in_order_with_gain_and_sureness(sections):
+    found = rows(sections["named"])
+    first = found.index(["free_tendon + backlash", "87.2", "6.0", "yes", "1.02", ""])
+    assert found[first + 1][:4] == ["backlash", "43.6", "5.0", "yes"]
+    assert found[first + 5][-1] == "did not converge"
+    assert "the best 10 of 12" in sections["named"]
+    assert "bend_drift" not in sections["named"]
+
+
+def test_effects_that_look_alike_are_grouped_and_hidden_ones_named(sections):
+    text = words(sections["named"])
+    group = "drive_compliance, free_tendon and sheath_compression look alike here (0.970 or more)."
+    assert group in text
+    assert "direction_dependent_friction and force_sensor_gain look alike" in text
+    assert "backlash and" not in text
+    assert "These inputs hardly show load_inertia at" in text
+
+
+@pytest.mark.parametrize("key", ["reason", "next_experiment"])
+def test_sentences_from_the_file_show_as_text(dataset, tmp_path, key):
+    text = written(make_diagnosis(dataset, tmp_path / "d", "undecided", **{key: "<i>`a`\x07"}))
+    assert "&lt;i&gt;<code>a</code>\\x07" in text
+
+
+def test_names_from_the_file_show_as_text_and_need_not_be_in_the_catalogue(dataset, tmp_path):
+    content = json.loads(
+        (make_diagnosis(dataset, tmp_path / "d", "ambiguous") / "diagnosis.json").read_text()
+    )
+    content["named"][0] |= {"effect": "<b>", "title": "", "equation": "", "rivals": ["<u>", "<s>"]}
+    content["channels"] = {"<c>_N": content["channels"]["f_in_N"]}
+    content["residual_map"]["before"] = {"<c>_N": content["residual_map"]["before"]["f_in_N"]}
+    content["candidates"][0]["effects"] = ["<e>"]
+    (tmp_path / "d" / "diagnosis.json").write_text(json.dumps(content))
+    text = written(tmp_path / "d")
+    assert headings(text)[0] == "<b>, or one of 2 others"
+    assert not re.search("<[busce]>", text)
+
+
+def test_the_section_does_not_change_when_nothing_changed(dataset, sections, tmp_path):
+    assert written(make_diagnosis(dataset, tmp_path / "d", "named")) == sections["named"]
+
+
+def test_the_commands_repeat_the_diagnosis(dataset, tmp_path):
+    folder = make_diagnosis(dataset, tmp_path / "d", "undecided")
+    assert f"tsas diagnose {dataset} --out {folder}" in page(read_inputs([folder]))
+
+
+def test_a_diagnosis_of_minimal_keys_makes_a_page(dataset, tmp_path):
+    folder = make_diagnosis(dataset, tmp_path / "d", "named")
+    content = json.loads((folder / "diagnosis.json").read_text())
+    kept = ("format", "stage", "version", "dataset", "verdict", "reason", "named", "channels")
+    cause = content["named"][0]
+    for name in ("title", "equation", "gain_percent", "gain_interval_percent"):
+        del cause[name]
+    shutil.rmtree(folder)
+    folder.mkdir()
+    (folder / "diagnosis.json").write_text(json.dumps({k: content[k] for k in kept}))
+    text = written(folder)
+    law = next(e.equation for e in EFFECTS if e.name == "free_tendon")
+    assert law in unescape(text)
+
+
+def test_the_bar_after_is_as_long_as_the_error_after():
+    channel = HeldOut(
+        unit="N", rmse_before=0.91, rmse_after=0.11, noise_floor=0.1, best_obtainable=0.105
+    )
+    figure = Figure()
+    draw_gains(figure, {"f_in_N": channel}, named=True)
+    (axes,) = figure.axes
+    assert {bar.get_label(): bar.patches[0].get_width() for bar in axes.containers} == {
+        "before": 0.91,
+        "with what is named": 0.11,
+    }
+    marks = {line.get_label(): line.get_xdata()[0] for line in axes.lines}
+    assert marks == {"best obtainable": 0.105, "noise floor": 0.1}
+
+
+def test_the_map_draws_before_and_after_in_their_colours_at_their_means():
+    bins = [
+        tuple(
+            Bin.model_validate({"from": a, "to": a + 1, "mean": sign * a, "sd": 2, "samples": 9})
+            for a in (1.0, 3.0)
+        )
+        for sign in (1, -1)
+    ]
+    figure = Figure()
+    draw_residual_map(figure, [Panel("f_in_N", "x_in_mm", *bins)], label="x")
+    drawn = {bar.get_label(): bar.lines[0] for bar in figure.axes[0].containers}
+    assert drawn["before"].get_color() == STAND_IN["before"]
+    assert list(drawn["before"].get_ydata()) == [1.0, 3.0]
+    assert list(drawn["after"].get_ydata()) == [-1.0, -3.0]
+    assert drawn["after"].get_xdata() == pytest.approx([1.5, 3.5], abs=0.3)

@@ -1,0 +1,66 @@
+"""Each named cause: what it is, its equation, its parameters, its rivals, and what it gains."""
+
+from collections.abc import Iterator
+
+from tsas_cli.reporting.content import Section, Table
+from tsas_cli.reporting.diagnosis.words import EFFECT, sentence_of, title_of, within
+from tsas_cli.reporting.numbers import ABSENT, plain, with_interval
+from tsas_cli.reporting.stage_files import Cause, Diagnosis
+
+
+def parts(diagnosis: Diagnosis) -> Iterator[Section]:
+    """Yield one part for each named cause."""
+    for cause in diagnosis.named:
+        law = EFFECT[cause.effect].equation if cause.effect in EFFECT else ""
+        equation = cause.equation or law
+        yield Section(
+            f"diagnosis-{cause.effect}",
+            _heading(cause),
+            tuple(text for text in (sentence_of(cause.effect),) if text),
+            equations=(equation,) if equation else (),
+            tables=(_parameters(cause),),
+            closing=(*_rivals(cause), *_gain(cause)),
+        )
+
+
+def _heading(cause: Cause) -> str:
+    title = cause.title or title_of(cause.effect)
+    if not cause.rivals:
+        return title
+    if len(cause.rivals) == 1:
+        return f"{title}, or {within(title_of(cause.rivals[0]))}"
+    return f"{title}, or one of {len(cause.rivals)} others"
+
+
+def _parameters(cause: Cause) -> Table:
+    rows = tuple(
+        (
+            name,
+            *with_interval(p.value, p.interval_low, p.interval_high),
+            p.unit or ABSENT,
+            "yes" if p.at_bound else "no",
+        )
+        for name, p in cause.parameters.items()
+    )
+    header = ("parameter", "value", "95 % interval", "unit", "at its bound")
+    return Table(f"Parameters of {cause.effect}", header, rows, numeric=frozenset({1, 2}))
+
+
+def _rivals(cause: Cause) -> Iterator[str]:
+    for rival in cause.rivals:
+        yield (
+            f"These recordings cannot tell it from {within(title_of(rival))} (`{rival}`). "
+            f"{sentence_of(rival)}"
+        )
+
+
+def _gain(cause: Cause) -> Iterator[str]:
+    if cause.gain_percent is None:
+        return
+    low, high = cause.gain_interval_percent or (None, None)
+    gain, interval = with_interval(cause.gain_percent, low, high)
+    if interval == ABSENT:
+        gain, sure = plain(cause.gain_percent, 3), ""
+    else:
+        sure = f" (95 % interval {interval} %)"
+    yield f"On held-out data it takes away {gain} % of the root mean square error{sure}."

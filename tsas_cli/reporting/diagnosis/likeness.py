@@ -1,0 +1,93 @@
+"""Which effects these inputs can and cannot tell apart, before any is fitted."""
+
+from collections.abc import Iterator
+from functools import partial
+
+import numpy as np
+import numpy.typing as npt
+
+from tsas_cli.reporting.content import Section
+from tsas_cli.reporting.diagnosis.words import listed
+from tsas_cli.reporting.drawing import picture
+from tsas_cli.reporting.figures.likeness import draw_likeness, height_in
+from tsas_cli.reporting.numbers import plain
+from tsas_cli.reporting.stage_files import Diagnosis
+
+Floats = npt.NDArray[np.float64]
+
+_ALIKE = 0.95  # less than a third of one is then left that the other cannot imitate
+_RESEMBLES = 0.5
+_VISIBLE = 5.0  # standard deviations of noise
+_WHAT = (
+    "What an effect would do to the channels, less what the nominal parameters can do, is its "
+    f"signature. Two signatures are alike by 0 to 1; at {_ALIKE} and above less than a third of "
+    "one is left that the other cannot imitate, and the effects are hard to tell apart."
+)
+
+
+def part(diagnosis: Diagnosis) -> Section | None:
+    """Return the part, None where no signatures were compared."""
+    names = np.array(diagnosis.signatures.effects, dtype=object)
+    if names.size < 2:
+        return None
+    likeness = np.array(diagnosis.signatures.likeness, dtype=float)
+    visible = np.array(diagnosis.signatures.visible, dtype=float) >= _VISIBLE
+    others = np.where(np.eye(names.size) > 0.0, 0.0, likeness)
+    points = (
+        *_alike(names[visible], likeness[np.ix_(visible, visible)]),
+        *_hidden(names, np.array(diagnosis.signatures.visible, dtype=float)),
+    )
+    shown = visible & (others[:, visible] >= _RESEMBLES).any(axis=1)
+    title = "Which effects these inputs can tell apart"
+    if shown.sum() < 2:
+        alone = "No two effects that these inputs show resemble each other."
+        return Section("diagnosis-likeness", title, (_WHAT, alone), points=points)
+    order = np.flatnonzero(shown)[_neighbours(likeness[np.ix_(shown, shown)])]
+    matrix = picture(
+        partial(
+            draw_likeness,
+            effects=tuple(names[order]),
+            likeness=likeness[np.ix_(order, order)],
+            alike=_ALIKE,
+        ),
+        key="diagnosis-likeness",
+        alt=f"Likeness of the signatures of {', '.join(names[order])}. "
+        + (" ".join(points) or "No two are alike."),
+        caption="Likeness of each two signatures, as the size of the square. Effects that "
+        f"resemble no other by {_RESEMBLES} are left out.",
+        height_in=height_in(int(shown.sum())),
+    )
+    return Section("diagnosis-likeness", title, (_WHAT,), points=points, pictures=(matrix,))
+
+
+def _neighbours(likeness: Floats) -> npt.NDArray[np.int64]:
+    """Return an order in which effects that look alike stand together."""
+    from scipy.cluster.hierarchy import leaves_list, linkage
+
+    return np.asarray(leaves_list(linkage(_apart(likeness), "average")))
+
+
+def _alike(names: npt.NDArray[np.object_], likeness: Floats) -> Iterator[str]:
+    """Yield a sentence for each group in which all look alike."""
+    from scipy.cluster.hierarchy import fcluster, linkage
+
+    if names.size < 2:
+        return
+    groups = fcluster(linkage(_apart(likeness), "complete"), 1.0 - _ALIKE, "distance")
+    for number in dict.fromkeys(groups):
+        inside = np.flatnonzero(groups == number)
+        if inside.size > 1:
+            pairs = likeness[np.ix_(inside, inside)][np.triu_indices(inside.size, 1)]
+            group = listed([f"`{name}`" for name in names[inside]])
+            yield f"{group} look alike here ({plain(float(pairs.min()), 3)} or more)."
+
+
+def _apart(likeness: Floats) -> Floats:
+    """Return the distances above the diagonal, row by row, as scipy's clustering takes them."""
+    return 1.0 - likeness[np.triu_indices(len(likeness), 1)]
+
+
+def _hidden(names: npt.NDArray[np.object_], visible: Floats) -> Iterator[str]:
+    hidden = [f"`{name}`" for name in names[visible < _VISIBLE]]
+    if hidden:
+        yield f"These inputs hardly show {listed(hidden)} at a size that is plausible."
