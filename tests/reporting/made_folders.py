@@ -197,7 +197,7 @@ REASONS = {
     "ambiguous": "The drive gives way: a free tendon or its compliance, these runs cannot tell.",
     "sufficient": "The nominal model is as near as noise allows.",
     "unexplained": "Something is left that no effect explains.",
-    "undecided": "Two strokes are too few to hold any out.",
+    "undecided": "two strokes are too few to hold any out.",
 }
 
 
@@ -230,7 +230,7 @@ def make_diagnosis(dataset: Path, folder: Path, verdict: str, **more) -> Path:
                 "depends_on": ["time_s (f_in_N swings at 3.1 Hz)", "speed_mm_per_s"]
                 if left
                 else [],
-                "share_percent": 61.0 if left else 0.4,
+                "share_percent": 12.0 if named else 100.0,
                 "mean_square": 38.4 if left else 1.02,
             },
             "candidates": _candidates(gain=87.2 if named else 0.1),
@@ -240,7 +240,7 @@ def make_diagnosis(dataset: Path, folder: Path, verdict: str, **more) -> Path:
                 "held_out": "runs",
                 "blocks": 55,
                 "runs": 4,
-                "sentence": "Judged on each of 4 runs while fitting the others, in 55 blocks.",
+                "sentence": "each of 4 runs is predicted by a fit to the others; 55 blocks count.",
             },
             "cannot_tell": ["The preload stays open: no run is at <rest>."],
             "solver": "closed form",

@@ -55,7 +55,8 @@ def rows(text):
 
 @pytest.mark.parametrize("verdict", REASONS)
 def test_the_first_sentence_is_the_verdict(sections, verdict):
-    assert f"<h2>Diagnosis</h2>\n<p>{REASONS[verdict]}</p>" in sections[verdict]
+    first = ("Undecided: " if verdict == "undecided" else "") + REASONS[verdict]
+    assert f"<h2>Diagnosis</h2>\n<p>{first}</p>" in sections[verdict]
 
 
 def test_a_named_cause_says_what_it_is_with_equation_and_gain(sections):
@@ -67,7 +68,7 @@ def test_a_named_cause_says_what_it_is_with_equation_and_gain(sections):
         "x_in − x_sheath = (T0 − F0)·l/EA",
         "Parameters of free_tendon",
         "takes away 48.2 % of the root mean square error (95 % interval 44.9 to 51.0 %)",
-        "Judged on each of 4 runs",
+        "Each of 4 runs is predicted",
         "What was tried",
         "What is left",
         "Next experiment",
@@ -78,6 +79,14 @@ def test_a_named_cause_says_what_it_is_with_equation_and_gain(sections):
     places = [text.index(part) for part in order]
     assert places == sorted(places)
     assert "cannot tell it from" not in text
+
+
+def test_an_equation_of_several_lines_stands_on_several(dataset, tmp_path):
+    folder = make_diagnosis(dataset, tmp_path / "d", "named")
+    content = json.loads((folder / "diagnosis.json").read_text())
+    content["named"][0]["equation"] = "a < b,  c = d"
+    (folder / "diagnosis.json").write_text(json.dumps(content))
+    assert "<code>a &lt; b</code>\n<code>c = d</code>" in written(folder)
 
 
 def test_each_parameter_has_its_interval_unit_and_bound(sections):
@@ -116,8 +125,9 @@ def test_what_is_not_explained_says_on_what_it_depends(sections):
     assert "no effect of the catalogue accounts for" in text
     assert "depends on time_s (f_in_N swings at 3.1 Hz) and speed of the drive." in text
     assert "38.4 times the mean square" in text
-    assert "take away 61 % of its squares" in text
+    assert "after what is named" not in text
     assert "no effect of the catalogue" not in words(sections["named"])
+    assert "beyond the noise, 12 % is left after what is named" in words(sections["named"])
 
 
 def test_too_little_data_leaves_the_reason_and_the_next_experiment(sections):
@@ -133,16 +143,27 @@ def test_errors_that_do_not_stand_out_of_the_noise_are_not_drawn(dataset, tmp_pa
     flat = {"from": 0.0, "to": 1.0, "label": "", "mean": 0.1, "sd": 1.0, "samples": 9}
     maps = {"before": {"f_in_N": {"x_in_mm": [flat, flat]}}}
     text = written(make_diagnosis(dataset, tmp_path / "d", "sufficient", residual_map=maps))
-    assert "Over no signal does the mean error stand out of the noise." in text
+    assert "Over no signal does the error stand out of the noise." in text
     assert not maps_of(text)
 
 
 def test_maps_show_the_strongest_first_and_only_the_channels_that_are_off(sections):
     shown = maps_of(sections["named"])
     assert "over the phase of the cycle" in shown[0]
-    assert "f_in_N: before −0.91 to 8.2, after −0.020 to 0.18" in shown[0]
+    assert "f_in_N: before −0.91 to 8.2 with scatter up to 1.0, after −0.020 to 0.18" in shown[0]
     assert len(shown) == 4
     assert not any("f_out_N:" in label for label in shown)
+
+
+def test_an_error_that_shows_only_in_the_scatter_is_drawn(dataset, tmp_path):
+    bins = [
+        {"from": k, "to": k + 1.0, "label": "", "mean": 0.0, "sd": sd, "samples": 9}
+        for k, sd in enumerate((8.0, 1.0, 1.0))
+    ]
+    maps = {"before": {"f_in_N": {"travel_since_reversal_mm": bins}}}
+    text = written(make_diagnosis(dataset, tmp_path / "d", "unexplained", residual_map=maps))
+    (label,) = maps_of(text)
+    assert "f_in_N: 0.0 to 0.0 with scatter up to 8.0" in label
 
 
 def test_candidates_stand_in_order_with_gain_and_sureness(sections):
@@ -192,6 +213,14 @@ def test_the_commands_repeat_the_diagnosis(dataset, tmp_path):
     assert f"tsas diagnose {dataset} --out {folder}" in page(read_inputs([folder]))
 
 
+def test_the_command_names_the_model_that_was_diagnosed(dataset, tmp_path):
+    model = {"file": "my model.toml", "sha256": "ab" * 32}
+    folder = make_diagnosis(dataset, tmp_path / "d", "undecided", model=model)
+    text = unescape(page(read_inputs([folder])))
+    assert f"tsas diagnose {dataset} --model 'my model.toml' --out {folder}" in text
+    assert "ab" * 32 in text
+
+
 def test_a_diagnosis_of_minimal_keys_makes_a_page(dataset, tmp_path):
     folder = make_diagnosis(dataset, tmp_path / "d", "named")
     content = json.loads((folder / "diagnosis.json").read_text())
@@ -204,7 +233,7 @@ def test_a_diagnosis_of_minimal_keys_makes_a_page(dataset, tmp_path):
     (folder / "diagnosis.json").write_text(json.dumps({k: content[k] for k in kept}))
     text = written(folder)
     law = next(e.equation for e in EFFECTS if e.name == "free_tendon")
-    assert law in unescape(text)
+    assert all(f"<code>{line}</code>" in text for line in law.split(",  "))
 
 
 def test_the_bar_after_is_as_long_as_the_error_after():

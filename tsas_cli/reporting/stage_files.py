@@ -120,7 +120,7 @@ class Calibration(StageFile):
 
 
 class ModelFile(_Record):
-    """The model that was simulated: its file and checksum, None for that of the data sheet."""
+    """The model that a stage has read: its file and checksum, None for that of the data sheet."""
 
     file: str
     sha256: str | None = None
@@ -251,6 +251,7 @@ class Diagnosis(StageFile):
     version: str
     verdict: Literal["named", "ambiguous", "sufficient", "unexplained", "undecided"]
     reason: str
+    model: ModelFile = ModelFile(file="data sheet")
     named: tuple[Cause, ...] = ()
     channels: dict[str, HeldOut] = {}
     remainder: Remainder = Remainder()

@@ -17,7 +17,7 @@ def parts(diagnosis: Diagnosis) -> Iterator[Section]:
             f"diagnosis-{cause.effect}",
             _heading(cause),
             tuple(text for text in (sentence_of(cause.effect),) if text),
-            equations=(equation,) if equation else (),
+            equations=tuple(equation.split(",  ")) if equation else (),
             tables=(_parameters(cause),),
             closing=(*_rivals(cause), *_gain(cause)),
         )

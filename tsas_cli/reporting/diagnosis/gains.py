@@ -32,10 +32,15 @@ def part(diagnosis: Diagnosis) -> Section | None:
     return Section(
         "diagnosis-gains",
         "Error on held-out data" + (", before and after" if named else ""),
-        tuple(text for text in (diagnosis.evidence.sentence, _BOUNDS) if text),
+        tuple(text for text in (_judged(diagnosis), _BOUNDS) if text),
         tables=(_table(diagnosis, named=named),),
         pictures=(shown,),
     )
+
+
+def _judged(diagnosis: Diagnosis) -> str:
+    how = diagnosis.evidence.sentence
+    return how[:1].upper() + how[1:]
 
 
 def _table(diagnosis: Diagnosis, *, named: bool) -> Table:

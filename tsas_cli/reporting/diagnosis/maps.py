@@ -11,7 +11,7 @@ from tsas_cli.reporting.figures.residual_map import Panel, draw_residual_map, he
 from tsas_cli.reporting.numbers import plain
 from tsas_cli.reporting.stage_files import Bin, Diagnosis
 
-_SEEN = 0.5  # in units of noise, root mean square of the bins' means
+_SEEN = 0.5  # in units of noise
 _SIGNALS = 4
 _WHAT = (
     "Measured minus simulated in units of what noise explains: the mean in each bin, and bars of "
@@ -30,7 +30,7 @@ def part(diagnosis: Diagnosis) -> Section | None:
         strength[panel.signal] = max(strength.get(panel.signal, 0.0), _strength(panel))
     seen = [name for name, size in strength.items() if size > _SEEN]
     if not seen:
-        nothing = "Over no signal does the mean error stand out of the noise."
+        nothing = "Over no signal does the error stand out of the noise."
         return Section("diagnosis-maps", title, (nothing,))
     strongest = sorted(seen, key=lambda name: -strength[name])[:_SIGNALS]
     pictures = tuple(_picture(diagnosis, signal) for signal in strongest)
@@ -50,9 +50,14 @@ def _strength(panel: Panel) -> float:
 
 
 def _size(bins: tuple[Bin, ...]) -> float:
-    """Return the root mean square of the bins' means, each by its samples."""
-    samples = sum(b.samples for b in bins)
-    return math.sqrt(sum(b.samples * b.mean**2 for b in bins) / samples) if samples else 0.0
+    """Return how far the means leave zero, and the scatter its mean, as one root mean square.
+
+    An error of opposite sign on pull and release shows in the scatter alone.
+    """
+    samples = sum(b.samples for b in bins) or 1
+    usual = sum(b.samples * b.sd for b in bins) / samples
+    squares = sum(b.samples * (b.mean**2 + (b.sd - usual) ** 2) for b in bins)
+    return math.sqrt(squares / samples)
 
 
 def _picture(diagnosis: Diagnosis, signal: str) -> Picture:
@@ -75,4 +80,5 @@ def _in_words(panel: Panel) -> str:
 
 def _range(bins: tuple[Bin, ...]) -> str:
     means = [b.mean for b in bins]
-    return f"{plain(min(means), 2)} to {plain(max(means), 2)}"
+    scatter = plain(max(b.sd for b in bins), 2)
+    return f"{plain(min(means), 2)} to {plain(max(means), 2)} with scatter up to {scatter}"

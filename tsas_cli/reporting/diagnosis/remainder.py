@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from tsas_cli.reporting.content import Section
 from tsas_cli.reporting.diagnosis.words import listed, signal_in_words
-from tsas_cli.reporting.numbers import plain
+from tsas_cli.reporting.numbers import fixed, plain
 from tsas_cli.reporting.stage_files import Diagnosis
 
 
@@ -25,14 +25,11 @@ def _left(diagnosis: Diagnosis) -> Iterator[str]:
             f"The errors that are left have {plain(left.mean_square, 3)} times the mean square "
             "that noise explains; 1 is nothing but noise."
         )
+    if diagnosis.named and left.share_percent is not None:
+        share = fixed(left.share_percent, 0)
+        yield f"Of what was beyond the noise, {share} % is left after what is named."
     if left.unexplained:
         yield "There is structure in them that no effect of the catalogue accounts for."
     if left.depends_on:
         signals = listed([signal_in_words(name) for name in left.depends_on])
         yield f"What is left depends on {signals}."
-    if left.depends_on and left.share_percent is not None:
-        share = plain(left.share_percent, 2)
-        yield (
-            f"A regression on the recorded signals would take away {share} % of its squares on "
-            "held-out data. It tells how much a model lacks, and is no cause."
-        )

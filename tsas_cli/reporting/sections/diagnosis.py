@@ -17,10 +17,15 @@ def section(inputs: Inputs) -> Section:
     return Section(
         "diagnosis",
         _TITLE,
-        (diagnosis.reason,),
+        (_verdict(diagnosis),),
         parts=(
             *causes.parts(diagnosis),
             *(part for part in evidence if part is not None),
             *remainder.parts(diagnosis),
         ),
     )
+
+
+def _verdict(diagnosis: Diagnosis) -> str:
+    undecided = diagnosis.verdict == "undecided"
+    return f"Undecided: {diagnosis.reason}" if undecided else diagnosis.reason

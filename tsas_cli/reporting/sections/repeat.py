@@ -10,7 +10,7 @@ from tsas_cli import __version__
 from tsas_cli.files import sha256_of
 from tsas_cli.reporting.content import Section, Table
 from tsas_cli.reporting.inputs import Inputs
-from tsas_cli.reporting.stage_files import Calibration, Check, Diagnosis, Simulation
+from tsas_cli.reporting.stage_files import Calibration, Check, Diagnosis, ModelFile, Simulation
 
 _LIBRARIES = ("numpy", "scipy", "numba", "matplotlib")
 
@@ -18,9 +18,9 @@ _LIBRARIES = ("numpy", "scipy", "numba", "matplotlib")
 def section(inputs: Inputs) -> Section:
     """Return the section on how to repeat the page."""
     hashes = inputs.dataset.hashes()
-    simulation = inputs.get(Simulation)
-    if simulation and simulation.model.sha256:
-        hashes[simulation.model.file] = simulation.model.sha256
+    for stage in (inputs.get(Simulation), inputs.get(Diagnosis)):
+        if stage and stage.model.sha256:
+            hashes[stage.model.file] = stage.model.sha256
     return Section(
         "repeat",
         "How to repeat it",
@@ -40,22 +40,23 @@ def _commands(inputs: Inputs) -> Iterator[list[str]]:
         yield ["tsas", "check", dataset, "--out", folder[Check]]
     if Calibration in folder:
         yield ["tsas", "calibrate", dataset, "--out", folder[Calibration]]
-    if Diagnosis in folder:
-        yield ["tsas", "diagnose", dataset, "--out", folder[Diagnosis]]
+    if diagnosis := inputs.get(Diagnosis):
+        options = ["--out", folder[Diagnosis]]
+        yield ["tsas", "diagnose", dataset, *_model(diagnosis.model, inputs), *options]
     if simulation := inputs.get(Simulation):
         options = ["--dynamics", simulation.dynamics, "--out", folder[Simulation]]
-        yield ["tsas", "simulate", dataset, *_model(simulation, inputs), *options]
+        yield ["tsas", "simulate", dataset, *_model(simulation.model, inputs), *options]
     yield ["tsas", "report", dataset, *folder.values(), "--out", "report.html"]
 
 
-def _model(simulation: Simulation, inputs: Inputs) -> list[str]:
-    """Return the option that names the model: the calibration's where it is the one simulated."""
-    if simulation.model.sha256 is None:
+def _model(model: ModelFile, inputs: Inputs) -> list[str]:
+    """Return the option that names the model: the calibration's where it is the one read."""
+    if model.sha256 is None:
         return []
     folder = inputs.folders.get(Calibration)
-    calibrated = folder / simulation.model.file if folder else Path(simulation.model.file)
-    same = calibrated.is_file() and sha256_of(calibrated) == simulation.model.sha256
-    return ["--model", str(calibrated) if same else simulation.model.file]
+    calibrated = folder / model.file if folder else Path(model.file)
+    same = calibrated.is_file() and sha256_of(calibrated) == model.sha256
+    return ["--model", str(calibrated) if same else model.file]
 
 
 def _versions(inputs: Inputs) -> Iterator[tuple[str, str]]:
