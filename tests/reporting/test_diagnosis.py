@@ -171,8 +171,26 @@ def test_candidates_stand_in_order_with_gain_and_sureness(sections):
     first = found.index(["free_tendon + backlash", "87.2", "6.0", "yes", "1.02", ""])
     assert found[first + 1][:4] == ["backlash", "43.6", "5.0", "yes"]
     assert found[first + 5][-1] == "did not converge"
-    assert "the best 10 of 12" in sections["named"]
+    assert "Hypotheses, 10 of 12, best first" in sections["named"]
     assert "bend_drift" not in sections["named"]
+
+
+def test_what_is_named_and_its_rivals_are_marked_wherever_they_rank(dataset, tmp_path):
+    alone = {"gain_percent": 9.0, "sureness": 3.0, "convincing": True, "mean_square": 1.0}
+    tried = [{"effects": ["backlash", f"e{n}"], **alone} for n in range(12)]
+    tried += [{"effects": [e], **alone} for e in ("free_tendon", "presliding", "drive_compliance")]
+    named = written(make_diagnosis(dataset, tmp_path / "a", "ambiguous", candidates=tried))
+    marks = {row[0]: row[-1] for row in rows(named) if len(row) == 6 and row[-1]}
+    assert marks["free_tendon"] == "named"
+    assert marks["drive_compliance"] == "rival"
+    assert "presliding" not in marks
+    assert ">backlash + e9<" in named
+    assert ">backlash + e10<" not in named
+
+
+def test_where_screening_left_nothing_the_page_says_so(dataset, tmp_path):
+    text = written(make_diagnosis(dataset, tmp_path / "d", "unexplained", candidates=[]))
+    assert "Screening left no effect" in text
 
 
 def test_effects_that_look_alike_are_grouped_and_hidden_ones_named(sections):

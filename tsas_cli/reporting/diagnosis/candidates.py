@@ -1,10 +1,13 @@
 """Every hypothesis that was fitted, best first."""
 
+from collections.abc import Sequence
+
 from tsas_cli.reporting.content import Section, Table
 from tsas_cli.reporting.numbers import fixed, plain
-from tsas_cli.reporting.stage_files import Candidate, Diagnosis
+from tsas_cli.reporting.stage_files import Candidate, Cause, Diagnosis
 
-_SHOWN = 10
+_TITLE = "What was tried"
+_SHOWN = 10  # and what is named, and its rivals
 _WHAT = (
     "Each of these was fitted together with all parameters of the nominal model. Gain: by how "
     "much the root mean square error on held-out data falls. Sureness: how many standard "
@@ -12,28 +15,46 @@ _WHAT = (
 )
 
 
+_NONE = "Screening left no effect that could explain enough of the error to be fitted."
+
+
 def part(diagnosis: Diagnosis) -> Section | None:
-    """Return the part, None where nothing was fitted."""
+    """Return the part, None where it was undecided before anything was tried."""
     tried = diagnosis.candidates
     if not tried:
-        return None
-    of = f", the best {_SHOWN} of {len(tried)}" if len(tried) > _SHOWN else ""
-    header = ("effects", "gain [%]", "sureness", "convincing", "mean square / noise", "fit")
+        if diagnosis.verdict == "undecided":
+            return None
+        return Section("diagnosis-candidates", _TITLE, (_NONE,))
+    standing = {frozenset(c.effects): _standing(c, diagnosis.named) for c in tried}
+    shown = [c for place, c in enumerate(tried) if place < _SHOWN or standing[frozenset(c.effects)]]
+    of = f", {len(shown)} of {len(tried)}, best first" if len(shown) < len(tried) else ""
+    header = ("effects", "gain [%]", "sureness", "convincing", "mean square / noise", "remark")
     table = Table(
         f"Hypotheses{of}",
         header,
-        tuple(_row(candidate) for candidate in tried[:_SHOWN]),
+        tuple(_row(c, standing[frozenset(c.effects)]) for c in shown),
         numeric=frozenset({1, 2, 4}),
     ).without_empty()
-    return Section("diagnosis-candidates", "What was tried", (_WHAT,), tables=(table,))
+    return Section("diagnosis-candidates", _TITLE, (_WHAT,), tables=(table,))
 
 
-def _row(candidate: Candidate) -> tuple[str, ...]:
+def _standing(candidate: Candidate, named: Sequence[Cause]) -> str:
+    """Say whether a hypothesis is what is named, or has a rival in place of a cause."""
+    causes = {cause.effect for cause in named}
+    if not causes:
+        return ""
+    if set(candidate.effects) == causes:
+        return "named"
+    rivals = [causes - {c.effect} | {rival} for c in named for rival in c.rivals]
+    return "rival" if set(candidate.effects) in rivals else ""
+
+
+def _row(candidate: Candidate, standing: str) -> tuple[str, ...]:
     return (
         " + ".join(candidate.effects),
         fixed(candidate.gain_percent, 1),
         fixed(candidate.sureness, 1),
         "yes" if candidate.convincing else "no",
         plain(candidate.mean_square, 3),
-        "" if candidate.converged else "did not converge",
+        standing if candidate.converged else "did not converge",
     )
