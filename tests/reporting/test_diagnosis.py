@@ -3,7 +3,9 @@ import re
 import shutil
 from html import unescape
 
+import numpy as np
 import pytest
+from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
 from tests.reporting.made_folders import REASONS, make_dataset, make_diagnosis
@@ -11,6 +13,7 @@ from tests.reporting.test_page import Outline
 from tsas_cli.effects import EFFECTS
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.figures.gains import draw_gains
+from tsas_cli.reporting.figures.likeness import draw_likeness
 from tsas_cli.reporting.figures.residual_map import Panel, draw_residual_map
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.page import page
@@ -284,3 +287,15 @@ def test_the_map_draws_before_and_after_in_their_colours_at_their_means():
     assert list(drawn["before"].get_ydata()) == [1.0, 3.0]
     assert list(drawn["after"].get_ydata()) == [-1.0, -3.0]
     assert drawn["after"].get_xdata() == pytest.approx([1.5, 3.5], abs=0.3)
+
+
+def test_the_square_of_two_effects_is_as_large_as_their_likeness_and_loud_where_alike():
+    likeness = np.array([[1.0, 0.97, 0.1], [0.0, 1.0, 0.5], [0.0, 0.0, 1.0]]).T
+    figure = Figure()
+    draw_likeness(figure, ["a", "b", "c"], likeness, alike=0.95)
+    alike, muted = figure.axes[0].patches
+    assert to_hex(alike.get_facecolor()) == STAND_IN["alike"]
+    for patch, place, side in ((alike, (0, 1), 0.97), (muted, (1, 2), 0.5)):
+        corners = patch.get_path().get_extents()
+        assert ((corners.x0 + corners.x1) / 2, (corners.y0 + corners.y1) / 2) == place
+        assert corners.width == pytest.approx(0.94 * side)
