@@ -12,6 +12,7 @@ from tsas_cli.diagnosis.evidence import gain_percent
 from tsas_cli.diagnosis.held_out import Folds, folds_of, held_out_values
 from tsas_cli.diagnosis.remainder import Remainder, remainder
 from tsas_cli.diagnosis.search import BLURRED, Names, Search
+from tsas_cli.diagnosis.signals import spoken
 from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.base_fit import base_fit, slopes_of
 from tsas_cli.identification.estimate import Estimate
@@ -235,7 +236,8 @@ def _channels(
             math.sqrt(max(first**2 - start.explained[name] * noise**2, 0.0)),
             math.sqrt(max(after**2 - left.explained[name] * noise**2, 0.0)),
         ]
-        out[name] = Channel(first, after, noise, max(min(could), min(noise, after)))
+        reached = min(noise, after)  # what was reached cannot be below it
+        out[name] = Channel(first, after, reached, max(min(could), reached))
     return out
 
 
@@ -261,7 +263,8 @@ def _reason(verdict: Verdict, causes: Sequence[Cause], start: Remainder, left: R
     names = " and ".join(titles[c.effect] for c in causes)
     much = f"{np.sqrt(start.mean_square):.2g} times what noise explains"
     less = f"{np.sqrt(left.mean_square):.2g} times"
-    depends = f" It depends on {', '.join(left.depends_on)}." if left.depends_on else ""
+    depends = ", ".join(spoken(signal) for signal in left.depends_on)
+    depends = f" It depends on {depends}." if depends else ""
     if verdict == "sufficient":
         return "The nominal model is at the noise floor: nothing is missing that these runs show."
     if not causes:

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from tsas_cli import __version__
 from tsas_cli.diagnosis.diagnose import Cause, Diagnosis, diagnose
@@ -19,6 +20,7 @@ from tsas_cli.identification.prepared import prepare
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.dataset import Dataset
 
+Floats = npt.NDArray[np.float64]
 Table = tuple[str, Sequence[str], Sequence[Sequence[str]]]
 
 EXTENDED = "model-extended.toml"
@@ -86,7 +88,7 @@ def as_json(result: Diagnosis) -> dict[str, Any]:
             "mean_square": None if left is None else left.mean_square,
         },
         "next_experiment": next_experiment(result),
-        "candidates": [] if result.search is None else _candidates(result.search),
+        "candidates": [] if result.search is None else _candidates(result),
         "signatures": {} if result.search is None else _signatures(result.search),
         "residual_map": _maps(result),
         "evidence": {} if result.search is None else _evidence(result.search),
@@ -118,12 +120,17 @@ def _cause(cause: Cause) -> dict[str, Any]:
     }
 
 
-def _candidates(search: Search) -> list[dict[str, Any]]:
-    """Return all hypotheses that were fitted, the best first."""
+def _candidates(result: Diagnosis) -> list[dict[str, Any]]:
+    """Return single effects, and what stands in place of the named ones, the best first."""
+    search = result.search
+    if search is None:
+        return []
     rows = []
     nothing: frozenset[str] = frozenset()
+    named = frozenset(cause.effect for cause in result.causes)
     for names, mesh in search.trials:
-        if not names or mesh != search.bench.on_mesh(names):
+        instead = len(names) == len(named) and len(names - named) <= 1
+        if mesh != search.bench.on_mesh(names) or not (len(names) == 1 or (names and instead)):
             continue
         trial, found = search.trial(names), search.gain(nothing, names)
         rows.append(
@@ -143,16 +150,22 @@ def _candidates(search: Search) -> list[dict[str, Any]]:
 def _signatures(search: Search) -> dict[str, Any]:
     """Return how visible each effect is on these inputs, and how alike each two are."""
     seen = sorted(search.screen(frozenset()), key=lambda s: s.effect.name)
-    columns = [s.signatures @ np.ones(s.signatures.shape[1]) for s in seen]
-    sizes = [float(np.linalg.norm(c)) for c in columns]
-    likeness = [
-        [
-            float(abs(a @ b) / (p * q)) if p > 0.0 and q > 0.0 else 0.0
-            for b, q in zip(columns, sizes, strict=True)
-        ]
-        for a, p in zip(columns, sizes, strict=True)
-    ]
+    sizes = [float(np.linalg.norm(s.signatures.sum(axis=1))) for s in seen]
+    spaces = [_orthonormal(s.signatures) for s in seen]
+    likeness = [[_likeness(a, b) for b in spaces] for a in spaces]
     return {"effects": [s.effect.name for s in seen], "visible": sizes, "likeness": likeness}
+
+
+def _orthonormal(signatures: Floats) -> Floats:
+    u, sizes, _ = np.linalg.svd(signatures, full_matrices=False)
+    return np.asarray(u[:, sizes > 1e-6 * max(float(sizes.max()), 1e-12)])
+
+
+def _likeness(a: Floats, b: Floats) -> float:
+    """Return the cosine of the smallest angle between what two effects can do, 1 if they share."""
+    if a.shape[1] == 0 or b.shape[1] == 0:
+        return 0.0
+    return float(min(np.linalg.svd(a.T @ b, compute_uv=False).max(), 1.0))
 
 
 def _maps(result: Diagnosis) -> dict[str, Any]:

@@ -18,8 +18,6 @@ def next_experiment(result: Diagnosis) -> str:
     if result.unexplained:
         return (
             "Repeat one run without any change: what comes back is the rig's, what does not is "
-            "chance; then change one condition at a time among "
-            + (", ".join(result.remainder.depends_on) if result.remainder else "all")
-            + "."
+            "chance; then change speed, load and bend one at a time."
         )
     return "Nothing is missing here; other loads, speeds and bends would show more."

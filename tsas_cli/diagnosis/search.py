@@ -14,10 +14,10 @@ import numpy.typing as npt
 
 from tsas_cli.diagnosis.evidence import TELLING, Gain, gain
 from tsas_cli.diagnosis.held_out import Folds, held_out_squares
-from tsas_cli.diagnosis.screening import Screened, projector, screen
 from tsas_cli.effects import EFFECTS, Effect
 from tsas_cli.identification.extension import TOLERANCE, Bench, Trial
 from tsas_cli.identification.quantities import QUANTITIES
+from tsas_cli.identification.screening import Screened, projector, screen
 
 Floats = npt.NDArray[np.float64]
 Names = frozenset[str]

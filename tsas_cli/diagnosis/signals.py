@@ -31,6 +31,20 @@ def signals_of(run: Prepared, f_in_N: Floats) -> dict[str, Floats]:
     return out
 
 
+def spoken(signal: str) -> str:
+    """Return a signal's name in words, for a sentence."""
+    words = {
+        "f_in_N": "the tension at the drive",
+        "time_s": "the time in the run",
+        "x_in_mm": "the place of the drive",
+        "speed_mm_per_s": "the speed",
+        "travel_since_reversal_mm": "the travel since the drive turned back",
+        DIRECTION: "the direction",
+    }
+    name, _, rest = signal.partition(" ")
+    return f"{words.get(name, name)} {rest}".rstrip()
+
+
 def unit_of(signal: str) -> str:
     """Return the unit of a signal, empty where it has none."""
     column = BY_NAME.get(signal)

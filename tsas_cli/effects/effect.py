@@ -50,7 +50,7 @@ SETTLING = Parameter(
     neutral=0.0,
     start=0.05,
     lower=0.0,
-    upper=100.0,
+    upper=0.5,  # what settles faster is a step to most recordings
     shape=True,
-    starts=(0.0, 0.1, 0.5),
+    starts=(0.0, 0.1, 0.3),
 )

@@ -9,6 +9,7 @@ from tsas_cli.identification.base_fit import base_fit, slopes_of
 from tsas_cli.identification.comparison import Compared, compare
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.fit import Fitted
+from tsas_cli.identification.missing_effects import widened
 from tsas_cli.identification.model import CORRECTION, Model, data_sheet
 from tsas_cli.identification.phases import Segment, segment
 from tsas_cli.identification.prepared import Prepared
@@ -49,7 +50,12 @@ def calibrate(
     model, fitted, sentences = fit.solve()
     answers = [compare(run, model) for run in runs]
     expected = [_answered(*each) for each in zip(runs, answers, segments, strict=True)]
-    cannot = [*fit.misfit(), *_unknown_conditions(runs), *sentences]
+    missed = fit.misfit()
+    if missed and fitted is not None:
+        wider = widened(fit, model.estimates)
+        model = Model(wider.estimates)
+        missed += _widened_by(wider.effects)
+    cannot = [*missed, *_unknown_conditions(runs), *sentences]
     return Calibration(
         _with_correction(model, runs),
         runs,
@@ -61,6 +67,18 @@ def calibrate(
         cannot,
         fitted,
     )
+
+
+def _widened_by(effects: Sequence[str]) -> list[str]:
+    if not effects:
+        return ["No known effect explains it: the intervals may miss the rig's own values."]
+    names = " or ".join(effects)
+    return [
+        (
+            f"The intervals hold what {names} would do to each value, which explains most of what "
+            "is missed; `tsas diagnose` looks for the cause."
+        )
+    ]
 
 
 def _answered(run: Prepared, answer: Compared, segments: list[Segment]) -> list[Slope]:

@@ -91,7 +91,7 @@ class JointFit:
                 worst[name] = max(worst.get(name, 0.0), float(np.sqrt(np.mean(errors**2))))
         return [
             f"{name} is missed by up to {ratio:.3g} times what noise explains: the nominal model "
-            "is wrong somewhere, and the intervals are those of the nearest nominal model, not of "
+            "is wrong somewhere, and its values are those of the nearest nominal model, not of "
             "the rig."
             for name, ratio in worst.items()
             if ratio > 2.0

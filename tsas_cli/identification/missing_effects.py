@@ -1,0 +1,94 @@
+"""What an effect that the nominal model lacks would do to the calibrated values.
+
+Where the nominal model is proven wrong, the interval of its parameters is that of the nearest
+nominal model, and the rig's own value may lie far outside. So the effects of the catalogue that
+explain most of what is wrong are freed, one at a time, and each interval is widened to hold what
+the parameter would then be. Which of them it is, and whether it is one of them, is for `diagnose`
+to say.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tsas_cli.effects import EFFECTS
+from tsas_cli.identification.estimate import Estimate
+from tsas_cli.identification.extension import Bench, Trial
+from tsas_cli.identification.fit import Fitted, uncertainty
+from tsas_cli.identification.joint_fit import JointFit, estimates_of
+from tsas_cli.identification.screening import projector, screen
+from tsas_cli.numerics.covariance import FEWEST_BLOCKS
+
+WORTH = 0.5  # of what the best effect explains linearly, for an effect to be fitted
+NEAR = 2.0  # times the best effect's excess over the noise, for an effect to count
+NORMAL = 1.96
+
+
+@dataclass(frozen=True)
+class Widened:
+    """Estimates whose intervals hold what some effects would do, and the names of these."""
+
+    estimates: tuple[Estimate, ...]
+    effects: tuple[str, ...]
+
+
+def widened(fit: JointFit, told: Sequence[Estimate]) -> Widened:
+    """Widen the intervals of a solved fit by the effects that explain most of what it misses."""
+    bench = Bench(fit)
+    trials = _best_trials(bench)
+    if not trials:
+        return Widened(tuple(told), ())
+    least = min(t.mean_square for t in trials)
+    near = [t for t in trials if t.mean_square - 1.0 <= NEAR * max(least - 1.0, 0.0)] or [
+        min(trials, key=lambda t: t.mean_square)
+    ]
+    others = [{(e.name, e.run): e for e in _estimates(bench, trial)} for trial in near]
+    return Widened(
+        tuple(_hull(e, [o[e.name, e.run] for o in others if (e.name, e.run) in o]) for e in told),
+        tuple(trial.effects[0] for trial in near),
+    )
+
+
+def _best_trials(bench: Bench) -> list[Trial]:
+    """Return the converged fits with one effect each that are better than without."""
+    seen = []
+    bases = {}
+    for effect in EFFECTS:
+        mesh = bench.on_mesh([effect.name])
+        if mesh not in bases:
+            trial = bench.fit(on_mesh=mesh)
+            bases[mesh] = trial, projector(trial)
+        seen.append((screen(bench, bases[mesh][0], effect, bases[mesh][1]), bases[mesh][0]))
+    best = max(s.part for s, _ in seen)
+    out = []
+    for s, base in seen:
+        if s.part >= WORTH * best:
+            trial = bench.fit([s.effect.name], s.start, near=base)
+            if trial.solution.converged and trial.mean_square < base.mean_square:
+                out.append(trial)
+    return out
+
+
+def _estimates(bench: Bench, trial: Trial) -> list[Estimate]:
+    longest = sum(run.length for run in bench.closed) // FEWEST_BLOCKS
+    blocks = [run.blocks(bench.rig(trial, k), longest) for k, run in enumerate(bench.closed)]
+    found = trial.solution
+    stderr, t = uncertainty(trial.unknowns, found.jacobian, found.residual, blocks)
+    fitted = Fitted(
+        found.values, stderr, t, found.at_bound, found.converged, found.message, found.evaluations
+    )
+    return estimates_of(trial.unknowns, fitted, bench.base.ids())
+
+
+def _hull(own: Estimate, others: Sequence[Estimate]) -> Estimate:
+    """Return an estimate whose interval, and error, reach as far as those of the others."""
+    if own.interval_low is None or own.interval_high is None:
+        return own
+    low = min([own.interval_low, *(o.interval_low for o in others if o.interval_low is not None)])
+    high = max(
+        [own.interval_high, *(o.interval_high for o in others if o.interval_high is not None)]
+    )
+    reach = max(high - own.value, own.value - low) / NORMAL
+    stderr = None if own.stderr is None else float(np.maximum(own.stderr, reach))
+    return replace(own, interval_low=low, interval_high=high, stderr=stderr)
