@@ -2,7 +2,7 @@ from collections import Counter
 
 import pytest
 
-from tsas_cli.challenge.cases import BUILDING, FULL, PAIRS, SCORING, SIZES, cases
+from tsas_cli.challenge.cases import BUILDING, FULL, PAIRS, SCORING, SIZES, cases, part
 from tsas_cli.challenge.rig.unknowns import UNKNOWNS
 from tsas_cli.effects import EFFECTS
 
@@ -65,3 +65,12 @@ def test_signs_vary_where_they_can_and_gains_stay_about_one():
 
 def test_seeds_to_build_with_and_to_score_with_are_apart():
     assert not set(BUILDING) & set(SCORING)
+
+
+def test_a_small_part_has_each_effect_once_at_full_size_and_a_few_of_what_is_none():
+    small = part(ALL)
+    one = Counter(c.hidden[0].cause for c in small if c.kind == "one")
+    assert one == dict.fromkeys(CATALOGUE, 1)
+    assert {c.size for c in small if c.kind == "one"} == {1.0}
+    assert Counter(c.kind for c in small if c.kind != "one") == {"nothing": 2, "unknown": 2}
+    assert all(case in ALL for case in small)

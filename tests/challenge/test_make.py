@@ -1,13 +1,12 @@
 import json
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 from tsas_cli.challenge.answers import read_answers
 from tsas_cli.challenge.bench import RUNS, clean_run, drawn_bench, motion
-from tsas_cli.challenge.cases import Case, Hidden, cases
+from tsas_cli.challenge.cases import Hidden, cases
 from tsas_cli.challenge.make import make
 from tsas_cli.recordings.dataset import read_dataset
 
@@ -122,8 +121,17 @@ def test_wear_over_the_session_is_counted_from_the_first_run():
         assert np.array_equal(plain.columns["f_in_N"], later.columns["f_in_N"]) is same
 
 
-def test_cases_of_several_seeds_are_refused(tmp_path: Path):
-    mixed = (*CASES, Case("nothing", "nothing", 0.0, (), 6, 0))
-    for wrong in (mixed, ()):
-        with pytest.raises(ValueError, match="one seed"):
-            make(tmp_path, wrong, rate_Hz=50.0)
+def test_several_seeds_make_one_set_of_the_same_cases(sealed, tmp_path):
+    other = tuple(case for case in cases(6) if case.name == "nothing 1")
+    make(tmp_path, (*other, *CASES), rate_Hz=50.0)
+    assert read_answers(tmp_path).seed == (5, 6)
+    content = json.loads((tmp_path / "answers.json").read_text(encoding="utf-8"))
+    assert sorted(case["seed"] for case in content["cases"].values()) == [5, 5, 5, 5, 6]
+    both, one = files(tmp_path / "cases"), files(sealed / "cases")
+    assert one.items() < both.items()
+    assert len({name.parts[0] for name in both}) == len(CASES) + 1
+
+
+def test_a_set_of_no_cases(tmp_path):
+    with pytest.raises(ValueError, match="no cases"):
+        make(tmp_path, (), rate_Hz=50.0)

@@ -73,7 +73,7 @@ class Answers(_Record):
 
     format: Literal[1]
     kind: Literal["challenge-answers"]
-    seed: int
+    seed: int | tuple[int, ...]
     cases: dict[CaseId, Case] = Field(min_length=1)
 
 

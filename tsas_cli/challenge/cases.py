@@ -5,7 +5,7 @@ A seed tells everything: `cases(seed)` gives every effect of the catalogue at fu
 builds or tunes a tool uses the seeds of BUILDING; those of SCORING are for measuring it, once.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -18,6 +18,7 @@ SIZES = (1.0, 0.4)
 VARIES = 0.2  # a size differs from seed to seed by up to this share
 NOTHING = 10
 RANDOM_PAIRS = 4
+FEW = 2  # cases of a kind in a small part of a set
 
 Kind = Literal["one", "pair", "nothing", "unknown"]
 
@@ -127,6 +128,15 @@ def cases(seed: int) -> tuple[Case, ...]:
         Case(name, kind, size, hidden, seed, number)
         for number, (name, kind, size, hidden) in enumerate(_all(np.random.default_rng(seed)))
     )
+
+
+def part(of: Iterable[Case]) -> tuple[Case, ...]:
+    """Return a small part of the cases: each effect once at full size, a few of what is none."""
+    listed = list(of)
+    kept = [case for case in listed if case.kind == "one" and case.size == max(SIZES)]
+    for kind in ("nothing", "unknown"):
+        kept += [case for case in listed if case.kind == kind][:FEW]
+    return tuple(kept)
 
 
 def _all(

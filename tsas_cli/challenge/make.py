@@ -35,7 +35,7 @@ def make(
     out
         An empty folder.
     cases
-        Cases of one seed.
+        Cases of one or more seeds.
     rate_Hz
         Sample rate of the recordings.
     step
@@ -44,11 +44,11 @@ def make(
     Raises
     ------
     ValueError
-        The cases are of different seeds, or there is none.
+        There are no cases.
     """
-    seeds = {case.seed for case in cases}
-    if len(seeds) != 1:
-        raise ValueError(f"cases of one seed are needed, got {len(seeds)} seeds")
+    seeds = sorted({case.seed for case in cases})
+    if not seeds:
+        raise ValueError("no cases to make a set of")
     answers = {}
     for name, case in sorted(((_id(case), case) for case in cases), key=itemgetter(0)):
         rng = np.random.default_rng([case.seed, case.number, RECORDINGS])
@@ -59,7 +59,7 @@ def make(
     sealed = {
         "format": 1,
         "kind": "challenge-answers",
-        "seed": seeds.pop(),
+        "seed": seeds[0] if len(seeds) == 1 else seeds,
         "rate_Hz": rate_Hz,
         "cases": answers,
     }
@@ -97,6 +97,7 @@ def _answer(case: Case, bench: Bench) -> dict[str, Any]:
     unknown = case.kind == "unknown"
     return {
         "name": case.name,
+        "seed": case.seed,
         "kind": case.kind,
         "size": case.size,
         "hidden": [] if unknown else causes,

@@ -45,8 +45,12 @@ def _summary(content: dict[str, Any]) -> Table:
         ("seconds per case", "", *_beside(map(_seconds, entries), blank)),
     ]
     cases = ", ".join(f"{n} {kind}" for kind, n in content["answers"]["cases"].items())
-    title = f"set of seed {content['answers']['seed']}: {cases}; rates with 95 % intervals"
+    title = f"set of {_seeds(content['answers']['seed'])}: {cases}; rates with 95 % intervals"
     return title, ("figure", "target", *columns), rows
+
+
+def _seeds(seed: int | Sequence[int]) -> str:
+    return f"seed {seed}" if isinstance(seed, int) else f"seeds {', '.join(map(str, seed))}"
 
 
 def _beside(cells: Iterable[str], met: Iterable[str]) -> list[str]:
