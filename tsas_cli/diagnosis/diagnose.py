@@ -105,21 +105,22 @@ def diagnose(
     runs
         The runs, prepared.
     """
-    base = _base(manifest, stated, runs)
+    base = nominal_fit(manifest, stated, runs)
     model, fitted, sentences = base.solve()
     step()
     reason = _not_possible(base, fitted)
     if reason is not None:
         return Diagnosis("undecided", reason, model, cannot_tell=tuple(sentences))
     bench = Bench(base)
-    search = Search(bench, _folds(bench), step)
+    search = Search(bench, bench_folds(bench), step)
     if search.folds.blocks < FEW_BLOCKS:
         reason = f"only {search.folds.blocks} stretches are independent of each other: too few."
         return Diagnosis("undecided", reason, model, cannot_tell=tuple(sentences))
     return _concluded(search, search.run(), model, tuple(sentences))
 
 
-def _base(manifest: Manifest, stated: Model, runs: Sequence[Prepared]) -> JointFit:
+def nominal_fit(manifest: Manifest, stated: Model, runs: Sequence[Prepared]) -> JointFit:
+    """Return the fit of the nominal parameters, not yet solved; the tendon stays near its sheet."""
     segments = [segment(run) for run in runs]
     measured = [slopes_of(run, parts) for run, parts in zip(runs, segments, strict=True)]
     plausible = {}
@@ -140,7 +141,8 @@ def _not_possible(base: JointFit, fitted: Fitted | None) -> str | None:
     return None
 
 
-def _folds(bench: Bench) -> Folds:
+def bench_folds(bench: Bench) -> Folds:
+    """Return what of a bench's runs is held out together, in blocks longer than its memory."""
     longest = sum(run.length for run in bench.closed) // FEWEST_BLOCKS
     return folds_of(
         [run.blocks(rig, longest) for run, rig in zip(bench.closed, bench.rigs, strict=True)]
@@ -205,7 +207,9 @@ def _estimates(search: Search, trial: Trial) -> list[Estimate]:
     solution = trial.solution
     blocks = [search.folds.block[search.folds.run == k] for k in range(len(search.bench.rigs))]
     counted = [np.unique(block, return_inverse=True)[1] for block in blocks]
-    stderr, t = uncertainty(trial.unknowns, solution.jacobian, solution.residual, counted)
+    stderr, t = uncertainty(
+        trial.unknowns, solution.jacobian, solution.residual, counted, by_run=True
+    )
     fitted = Fitted(
         solution.values,
         stderr,

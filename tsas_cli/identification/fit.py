@@ -178,18 +178,23 @@ def fit(
 
 
 def uncertainty(
-    unknowns: Sequence[Unknown], J: Floats, residual: Floats, blocks: Sequence[Indices]
+    unknowns: Sequence[Unknown],
+    J: Floats,
+    residual: Floats,
+    blocks: Sequence[Indices],
+    *,
+    by_run: bool = False,
 ) -> tuple[Floats, Floats]:
     """Return standard errors and Student's t of fitted unknowns, shape (p,), from blocks of runs.
 
-    Where the model is wrong its error repeats from block to block, and only runs are independent:
-    shared unknowns take the wider one of both.
+    Where the model is wrong, or `by_run` does not take it for right, its error repeats from block
+    to block, and only runs are independent: shared unknowns take the wider one of both.
     """
     runs = len(blocks)
     offsets = np.concatenate(([0], np.cumsum([b.max() + 1 for b in blocks])))[:-1]
     block = np.concatenate([b + o for b, o in zip(blocks, offsets, strict=True)])
     stderr, t = _errors(J, residual, block)
-    if np.mean(residual**2) > WRONG and runs >= FEWEST_RUNS:
+    if (by_run or np.mean(residual**2) > WRONG) and runs >= FEWEST_RUNS:
         own = np.repeat(np.arange(runs), [b.size for b in blocks])
         run_stderr, run_t = _errors(J, residual, own)
         wider = (run_t * run_stderr > t * stderr) & [u.run is None for u in unknowns]
