@@ -73,6 +73,8 @@ def tool(dataset: Path, out: Path) -> None:
         raise InputError("no such run", where="a.parquet")
     if name == "silent":
         return
+    if name == "threads":
+        raise RuntimeError(f"{os.environ['OPENBLAS_NUM_THREADS']} threads")
     out.mkdir()
     (out / "diagnosis.json").write_text(json.dumps(diagnosis("backlash")), encoding="utf-8")
     if name == "fails":

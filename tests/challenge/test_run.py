@@ -46,3 +46,11 @@ def test_an_entry_is_not_overwritten_unasked(tmp_path):
     with pytest.raises(InputError, match="already exists"):
         run_cases(sealed, tmp_path / "entry", workers=1, diagnose=tool)
     run_cases(sealed, tmp_path / "entry", workers=1, force=True, diagnose=tool)
+
+
+def test_a_case_has_one_thread_for_linear_algebra(tmp_path, monkeypatch):
+    monkeypatch.delenv("OPENBLAS_NUM_THREADS", raising=False)
+    sealed = write_set(tmp_path / "set", {"threads": case()})
+    log = run_cases(sealed, tmp_path / "entry", workers=1, diagnose=tool)
+    assert log["no_answer"] == {"threads": "RuntimeError: 1 threads"}
+    assert log["tool"] == "tool"

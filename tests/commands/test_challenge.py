@@ -10,8 +10,9 @@ from tests.challenge.made import case, diagnosis, write_entry, write_set
 from tsas_cli.challenge import cases
 from tsas_cli.challenge.answers import read_answers
 from tsas_cli.challenge.entry import read_entry
+from tsas_cli.challenge.run import TOOLS
 from tsas_cli.challenge.targets import TARGETS
-from tsas_cli.commands.challenge import make, score
+from tsas_cli.commands.challenge import ToolOption, make, score
 from tsas_cli.errors import InputError
 from tsas_cli.recordings.dataset import read_dataset
 
@@ -99,6 +100,23 @@ def test_a_set_is_made_scored_and_not_overwritten_unasked(monkeypatch, capsys, t
     assert {case["outcome"] for case in entry["cases"].values()} == {"exact"}
     with pytest.raises(InputError, match="already exists"):
         make(tmp_path / "set", seed=17, rate=50.0)
+
+
+def test_several_seeds_are_one_set(monkeypatch, capsys, tmp_path):
+    few = {seed: cases.cases(seed)[-1:] for seed in (17, 18)}
+    monkeypatch.setattr(cases, "cases", few.__getitem__)
+    make(tmp_path / "set", seed=17, seeds=2, rate=50.0)
+    assert "2 cases of seeds 17 to 18" in capsys.readouterr().out
+    assert read_answers(tmp_path / "set").seed == (17, 18)
+    right = {name: diagnosis(unexplained=True) for name in read_answers(tmp_path / "set").cases}
+    score(tmp_path / "set", [write_entry(tmp_path / "entry", right)])
+    assert "set of seeds 17, 18: 2 unknown" in capsys.readouterr().out
+
+
+def test_every_tool_can_be_asked_for():
+    assert [option.value for option in ToolOption] == list(TOOLS)
+    section = DOCS.split("## Baselines")[1].split("\n## ")[0]
+    assert all(f"| `{name}` |" in section for name in TOOLS if name != "diagnose")
 
 
 @pytest.mark.parametrize("command", ["run", "score"])

@@ -1,6 +1,7 @@
 """`tsas challenge`: make a sealed set of recordings, let a tool diagnose it, score the answers."""
 
 import os
+from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
@@ -16,12 +17,28 @@ challenge = typer.Typer(
 SealedSet = Annotated[Path, typer.Argument(metavar="SET", help="A sealed set's folder.")]
 
 
+class ToolOption(StrEnum):
+    """What can diagnose the cases of a set."""
+
+    diagnose = "diagnose"
+    bic = "bic"
+    training = "training"
+    sparse = "sparse"
+
+
 @challenge.command("make")
 def make(
     out: OutFolder,
     seed: Annotated[
         int, typer.Option("--seed", min=0, help="0 to 999 for tuning, 10000 to 19999 for scoring.")
     ],
+    seeds: Annotated[
+        int, typer.Option("--seeds", min=1, help="How many seeds, from that one on.")
+    ] = 1,
+    small: Annotated[
+        bool,
+        typer.Option("--small", help="Each effect once at full size, and a few of what is none."),
+    ] = False,
     rate: Annotated[
         float, typer.Option("--rate", metavar="HZ", min=50.0, max=500.0, help="Samples per second.")
     ] = 200.0,
@@ -33,11 +50,13 @@ def make(
     from collections import Counter
 
     from tsas_cli import __version__
-    from tsas_cli.challenge.cases import cases
+    from tsas_cli.challenge.cases import cases, part
     from tsas_cli.challenge.make import make as make_set
     from tsas_cli.files import new_folder
 
-    listed = cases(seed)
+    listed = [case for each in range(seed, seed + seeds) for case in cases(each)]
+    if small:
+        listed = list(part(listed))
     with (
         new_folder(out, force=force) as folder,
         progress("challenge", len(listed), quiet=quiet or as_json) as step,
@@ -50,11 +69,13 @@ def make(
         "version": __version__,
         "folder": str(out),
         "seed": seed,
+        "seeds": seeds,
         "rate_Hz": rate,
         "cases": dict(kinds),
     }
     rows = [(kind, str(count)) for kind, count in kinds.items()]
-    title = f"{out}: {len(listed)} cases of seed {seed}"
+    said = f"seed {seed}" if seeds == 1 else f"seeds {seed} to {seed + seeds - 1}"
+    title = f"{out}: {len(listed)} cases of {said}"
     show(summary, [(title, ("hidden", "cases"), rows)], quiet=quiet, as_json=as_json)
 
 
@@ -62,6 +83,9 @@ def make(
 def run(
     sealed: SealedSet,
     out: OutFolder,
+    tool: Annotated[
+        ToolOption, typer.Option("--tool", help="diagnose: this program's; the rest are baselines.")
+    ] = ToolOption.diagnose,
     workers: Annotated[
         int, typer.Option("--workers", min=1, help="How many cases at a time.")
     ] = os.cpu_count() or 1,
@@ -69,12 +93,12 @@ def run(
     quiet: Quiet = False,
     as_json: Json = False,
 ) -> None:
-    """Diagnose every case of a sealed set with `tsas diagnose`; the answers stay unread."""
-    from tsas_cli.challenge.run import case_folders, run_cases
+    """Diagnose every case of a sealed set; the answers stay unread."""
+    from tsas_cli.challenge.run import TOOLS, case_folders, run_cases
 
     cases = len(case_folders(sealed))
     with progress("challenge", cases, quiet=quiet or as_json) as step:
-        log = run_cases(sealed, out, workers=workers, force=force, step=step)
+        log = run_cases(sealed, out, workers=workers, force=force, diagnose=TOOLS[tool], step=step)
     title = f"{out}: {log['answered']} of {cases} cases answered"
     table = (title, ("no answer", "reason"), list(log["no_answer"].items()))
     show(log, [table], quiet=quiet, as_json=as_json)

@@ -1,0 +1,25 @@
+# The blind benchmark: this program's diagnosis and three baselines on the same sealed recordings.
+#
+# make challenge                             one seed for scoring, about half an hour on two cores
+# make challenge SEED=10100 SEEDS=3          others, and more of them
+SEED ?= 10000
+SEEDS ?= 1
+CHALLENGE_OUT ?= reports/challenge
+CHALLENGE_TOOLS := diagnose bic training sparse
+
+.PHONY: challenge challenge-ci challenge-table
+challenge: challenge-table  ## make a sealed set, let every tool diagnose it, print the table of scores
+
+# Always the same: a seed for building, each effect once, a few cases of what is none.
+challenge-ci: SEED = 3
+challenge-ci: SEEDS = 1
+challenge-ci: CHALLENGE_OUT = reports/challenge-ci
+challenge-ci: CHALLENGE_PART = --small --rate 100
+challenge-ci: challenge-table  ## the same on a small fixed set
+
+challenge-table: setup
+	$(TSAS) challenge make --seed $(SEED) --seeds $(SEEDS) $(CHALLENGE_PART) --out '$(CHALLENGE_OUT)/set' --force
+	@for tool in $(CHALLENGE_TOOLS); do \
+		$(TSAS) challenge run '$(CHALLENGE_OUT)/set' --tool $$tool --out '$(CHALLENGE_OUT)'/$$tool --force || exit; \
+	done
+	$(TSAS) challenge score '$(CHALLENGE_OUT)/set' $(CHALLENGE_TOOLS:%='$(CHALLENGE_OUT)/%') --out '$(CHALLENGE_OUT)/score' --force
