@@ -10,6 +10,7 @@ from copy import copy
 from dataclasses import replace
 from functools import lru_cache
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -30,6 +31,14 @@ TURN = 3.0  # standard deviations by which the place of a reversal may be wrong
 WINDOWS_PER_BLOCK = 2.0  # of the conditioning: the error of a cleaned drive lasts that long
 
 
+class Turns(NamedTuple):
+    """What a wrong place of each reversal would do to a channel's errors, stroke by stroke."""
+
+    shape: Floats  # (n,), in units of the errors' standard deviations
+    starts: Indices  # of the strokes, (m,)
+    counts: Indices  # of their samples, (m,)
+
+
 class RunErrors:
     """The errors of one run for any rig, with weights that are renewed on demand."""
 
@@ -43,7 +52,7 @@ class RunErrors:
         self.nodes: int | None = None
         self._answer = lru_cache(maxsize=2)(lambda rig: self._follow(rig, self.drive))
         self.weights: dict[str, Floats] = {}
-        self.turns: dict[str, list[tuple[slice, Floats]]] = {}
+        self.turns: dict[str, Turns] = {}
         self.weigh(rig)
 
     def meshed(self, nodes: int) -> "RunErrors":
@@ -90,32 +99,21 @@ class RunErrors:
             for name, at in self.samples.items()
         }
 
-    def _turns(self, change: Floats, at: Indices) -> list[tuple[slice, Floats]]:
-        """Return the samples of each stroke and the shape that a wrong start of it gives them.
+    def _turns(self, change: Floats, at: Indices) -> Turns:
+        """Return the shape that a wrong start of each stroke gives the errors of its samples.
 
         A shape s is scaled so that errors e − s (s·e) have unit variance where those of the place
         of the reversal are `TURN` standard deviations: (I + TURN² c cᵀ)^(−1/2) = I − s sᵀ.
         """
-        out = []
-        for first, end in pairwise(self.run.conditioned[self.run.drive_column].reversals):
-            part = slice(*np.searchsorted(at, (first + 1, end + 1)))
-            shape = change[at[part]]
-            size = float(shape @ shape)
-            if size > 0.0:
-                share = 1.0 - 1.0 / np.sqrt(1.0 + TURN**2 * size)
-                out.append((part, shape * np.sqrt(share / size)))
-        return out
-
-    def errors(self, rig: Rig) -> dict[str, Floats]:
-        """Return the weighted errors of each channel, at the samples that count."""
-        answer = self._answer(rig)
-        out = {}
-        for name, at in self.samples.items():
-            errors = ((answer[name] - self.run.measured[name]) / self.weights[name])[at]
-            for part, shape in self.turns[name]:
-                errors[part] -= shape * (shape @ errors[part])
-            out[name] = errors
-        return out
+        reversals = self.run.conditioned[self.run.drive_column].reversals
+        starts = np.unique(np.searchsorted(at, reversals[:-1] + 1))
+        starts = np.unique([0, *starts[starts < at.size]])
+        counts = np.diff([*starts, at.size])
+        shape = change[at]
+        size = np.add.reduceat(shape**2, starts)
+        share = 1.0 - 1.0 / np.sqrt(1.0 + TURN**2 * size)
+        scale = np.sqrt(np.divide(share, size, out=np.zeros(size.size), where=size > 0.0))
+        return Turns(shape * np.repeat(scale, counts), starts, counts)
 
     def answers(self, rig: Rig) -> dict[str, Floats]:
         """Return the model's answers at all samples, shape (n,)."""
@@ -128,6 +126,17 @@ class RunErrors:
             name: self.run.measured[name][at] - answer[name][at]
             for name, at in self.samples.items()
         }
+
+    def errors(self, rig: Rig) -> dict[str, Floats]:
+        """Return the weighted errors of each channel, at the samples that count."""
+        answer = self._answer(rig)
+        out = {}
+        for name, at in self.samples.items():
+            errors = ((answer[name] - self.run.measured[name]) / self.weights[name])[at]
+            turns = self.turns[name]
+            alike = np.add.reduceat(turns.shape * errors, turns.starts)
+            out[name] = errors - turns.shape * np.repeat(alike, turns.counts)
+        return out
 
     def residuals(self, rig: Rig) -> Floats:
         """Return means of neighbouring errors that keep a variance of one, channel by channel."""
