@@ -26,9 +26,14 @@ class Gain:
     sureness: float
 
     @property
+    def sure(self) -> bool:
+        """Whether the gain is beyond chance."""
+        return self.sureness > SURE and self.part > 0.0
+
+    @property
     def convincing(self) -> bool:
         """Whether the gain is beyond chance, and large enough to matter."""
-        return self.sureness > SURE and self.part > TELLING
+        return self.sure and self.part > TELLING
 
 
 def gain(before: Floats, after: Floats) -> Gain:

@@ -28,6 +28,7 @@ BLURRED = 0.15  # mean square by which a model that lacks nothing may miss the n
 WORTH = 0.1 * TELLING  # part of the squares that a signature has to explain to be fitted
 BESIDE_BEST = 0.02  # of what the best signature explains
 FRESH_STARTS, CLOSER = 4, 0.2
+WEIGHED = 3  # times that the errors are weighed by what was found, and it is fitted again
 PAIRS = 4  # that are fitted, of those that explain most together
 
 
@@ -46,7 +47,7 @@ class Search:
     def run(self) -> Names:
         """Return the effects that are convincing together."""
         named: Names = frozenset()
-        while len(named) < MOST_EFFECTS:
+        while len(named) < MOST_EFFECTS and not (named and self.is_quiet(named)):
             better = self._best_addition(named)
             if better is None:
                 break
@@ -58,9 +59,12 @@ class Search:
 
         It holds the fits of what is named, of nothing, and of all but one.
         """
-        bench = self.bench.weighed_by(self.trial(named))
+        mesh, bench, trial = self.bench.on_mesh(named), self.bench, self.trial(named)
+        for _ in range(WEIGHED):
+            bench = bench.weighed_by(trial)
+            trial = bench.fit(sorted(named), near=trial, on_mesh=mesh)
+            self.step()
         other = Search(bench, self.folds, self.step, self.effects)
-        mesh = bench.on_mesh(named)
         for names in {frozenset(), named, *(named - {name} for name in named)}:
             near = self.trial(names, on_mesh=mesh)
             other._keep(names, bench.fit(sorted(names), near=near, on_mesh=mesh))
@@ -75,7 +79,7 @@ class Search:
             instead = fewer | {other}
             if other in named or not found.convincing:
                 continue
-            if self.trial(instead).solution.converged and not self.gain(instead, named).convincing:
+            if self.trial(instead).solution.converged and not self.gain(instead, named).sure:
                 out.append(other)
         return tuple(out)
 
@@ -96,6 +100,10 @@ class Search:
         """Compare two sets of effects, both on the mesh if one needs it."""
         mesh = self.bench.on_mesh(before | after)
         return gain(self.held_out(before, on_mesh=mesh), self.held_out(after, on_mesh=mesh))
+
+    def is_quiet(self, names: Names) -> bool:
+        """Say whether so little is left that a further cause could not be told from blur."""
+        return bool(self.held_out(names).sum() / self.folds.block.size < 1.0 + BLURRED)
 
     def matters(self, before: Names, added: Iterable[str]) -> bool:
         """Say whether effects take away a good share of what was beyond the noise before."""
@@ -151,7 +159,7 @@ class Search:
         for name, _ in sorted(singles, key=lambda s: count[s[0]]):
             if count[name] >= count[best]:
                 break
-            if not self.gain(names | {name}, names | {best}).convincing:
+            if not self.gain(names | {name}, names | {best}).sure:
                 return name
         return best
 
