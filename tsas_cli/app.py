@@ -14,6 +14,7 @@ from tsas_cli.commands.diagnose import diagnose
 from tsas_cli.commands.effects import effects
 from tsas_cli.commands.explain import explain
 from tsas_cli.commands.ingest import ingest
+from tsas_cli.commands.plan import plan
 from tsas_cli.commands.report import report
 from tsas_cli.commands.simulate import simulate
 from tsas_cli.errors import InputError, printable
@@ -47,6 +48,7 @@ app.command("check")(check)
 app.command("calibrate")(calibrate)
 app.command("simulate")(simulate)
 app.command("diagnose")(diagnose)
+app.command("plan")(plan)
 app.command("report")(report)
 app.command("effects")(effects)
 app.command("explain")(explain)

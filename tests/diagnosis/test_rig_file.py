@@ -1,0 +1,69 @@
+import pytest
+
+from tsas_cli.diagnosis.rig_file import read_rig_file
+from tsas_cli.errors import InputError
+
+TEXT = """
+format = 1
+kind = "plan"
+name = "bench"
+
+[rig]
+friction_coefficient = 0.125
+
+[sensors]
+rate_Hz = 100
+x_in_mm = 0.01
+f_in_N = 0.1
+
+[[run]]
+id = "a"
+sheath_length_mm = 785.4
+total_bend_rad = 3.1416
+preload_N = 25.0
+motion = "sine"
+amplitude_mm = 10.0
+frequency_Hz = 0.25
+"""
+
+
+def read(tmp_path, text):
+    path = tmp_path / "rig.toml"
+    path.write_text(text, encoding="utf-8")
+    return read_rig_file(path)
+
+
+def test_a_frequency_means_a_highest_speed(tmp_path):
+    (run,) = read(tmp_path, TEXT).run
+    assert run.speed == pytest.approx(10.0 * 2.0 * 3.14159265 * 0.25)
+    (ramps,) = read(tmp_path, TEXT.replace("sine", "ramps")).run
+    assert ramps.speed == pytest.approx(2.0 * 2.0 * 10.0 * 0.25)
+
+
+def test_only_named_sensors_record(tmp_path):
+    assert read(tmp_path, TEXT).sensors.outputs == {"f_in_N": 0.1}
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("frequency_Hz = 0.25", "", "one of speed_mm_per_s and frequency_Hz"),
+        ("0.25", "0.25\nspeed_mm_per_s = 3.0", "one of speed_mm_per_s and frequency_Hz"),
+        ('"sine"', '"nested"', "nested takes speed_mm_per_s"),
+        ('"sine"', '"chirp"\ndwell_s = 1.0', "chirp takes no dwell_s"),
+        ('"sine"', '"sinus"', "run.0.motion"),
+        ("f_in_N = 0.1", "", "one of f_in_N, f_out_N, x_out_mm is needed"),
+        ("friction_coefficient", "friction_coeficient", "did you mean friction_coefficient?"),
+        ("rate_Hz", "rate_hz", "did you mean rate_Hz?"),
+        ("preload_N = 25.0", "preload_N = -1.0", "run.0.preload_N"),
+    ],
+)
+def test_what_is_wrong_is_said(tmp_path, old, new, said):
+    with pytest.raises(InputError, match=r"rig\.toml") as raised:
+        read(tmp_path, TEXT.replace(old, new))
+    assert said in raised.value.line()
+
+
+def test_two_runs_of_one_name(tmp_path):
+    with pytest.raises(InputError, match="run id 'a' is there twice"):
+        read(tmp_path, TEXT + TEXT[TEXT.index("[[run]]") :])

@@ -1,0 +1,77 @@
+"""Recordings of runs that nobody has made: what the nominal rig would answer, with noise."""
+
+from collections.abc import Callable, Sequence
+from datetime import datetime, timedelta
+
+import numpy as np
+
+from tsas_cli.diagnosis.motions import motion
+from tsas_cli.diagnosis.rig_file import MOST_SAMPLES, PlannedRun, Sensors
+from tsas_cli.errors import InputError
+from tsas_cli.physics.ends import Drive
+from tsas_cli.physics.quasi_static import simulate
+from tsas_cli.physics.rig import Rig
+from tsas_cli.recordings.dataset import Recording
+from tsas_cli.recordings.manifest import Run
+
+SEED = 1  # the same plan gives the same numbers
+APART = timedelta(minutes=5)  # from the end of one run to the start of the next
+
+
+def made(
+    runs: Sequence[PlannedRun],
+    sensors: Sensors,
+    rig_of: Callable[[Run], Rig],
+    started: datetime,
+    *,
+    seed: int = SEED,
+) -> list[Recording]:
+    """Return the recordings of planned runs, one after the other from `started` on.
+
+    Parameters
+    ----------
+    runs, sensors
+        What is done, and how it is measured.
+    rig_of
+        The rig in a run's conditions.
+    started
+        When the first run begins.
+    seed
+        Of the noise.
+
+    Raises
+    ------
+    InputError
+        A run is too long.
+    """
+    rng = np.random.default_rng(seed)
+    out = []
+    for planned in runs:
+        t, x = _moved(planned, sensors.rate_Hz)
+        conditions = planned.model_dump(include={"sheath_length_mm", "total_bend_rad", "preload_N"})
+        file = f"runs/{planned.id}.parquet"
+        run = Run(id=planned.id, file=file, sha256="0" * 64, started=started, **conditions)
+        answer = simulate(rig_of(run), Drive(x, time_s=t))
+        columns = {"time_s": t, "x_in_mm": x + sensors.x_in_mm * rng.standard_normal(t.size)}
+        for name, sd in sensors.outputs.items():
+            columns[name] = getattr(answer, name) + sd * rng.standard_normal(t.size)
+        out.append(Recording(run, columns))
+        started += timedelta(seconds=float(t[-1])) + APART
+    return out
+
+
+def _moved(run: PlannedRun, rate_Hz: float) -> tuple[np.ndarray, np.ndarray]:
+    travel = 2.0 * run.amplitude_mm * run.periods * 2.0
+    if 10.0 * (travel / run.speed + 10.0 * run.periods * run.dwell_s) * rate_Hz > MOST_SAMPLES:
+        raise InputError(
+            f"run {run.id} would take more than {MOST_SAMPLES} samples",
+            remedy="is its speed_mm_per_s or frequency_Hz right?",
+        )
+    return motion(
+        run.motion,
+        amplitude_mm=run.amplitude_mm,
+        speed_mm_per_s=run.speed,
+        periods=run.periods,
+        dwell_s=run.dwell_s,
+        rate_Hz=rate_Hz,
+    )

@@ -1,0 +1,185 @@
+"""What a set of runs could show before anyone measures, and which further run shows most."""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from itertools import combinations
+
+from tsas_cli.diagnosis.candidates import Candidate, candidates, planned_limits, within
+from tsas_cli.diagnosis.evidence import SURE
+from tsas_cli.diagnosis.further_runs import (
+    FurtherRuns,
+    beside,
+    beside_recorded,
+    recorded_in_thought,
+)
+from tsas_cli.diagnosis.made_runs import made
+from tsas_cli.diagnosis.rig_file import RigFile
+from tsas_cli.diagnosis.visibility import Cause, Seen
+from tsas_cli.effects import EFFECTS, Effect
+from tsas_cli.identification.base_fit import base_fit, slopes_of
+from tsas_cli.identification.extension import Bench, Trial
+from tsas_cli.identification.model import data_sheet
+from tsas_cli.identification.phases import segment
+from tsas_cli.identification.prepared import prepare
+from tsas_cli.recordings.dataset import Dataset
+from tsas_cli.recordings.manifest import Manifest, Run
+
+PROPOSED = 3
+WORTH_SAYING = 1.2  # factor by which a size has to fall
+FIRST = datetime(2000, 1, 1)  # noqa: DTZ001 # of runs that nobody has made; a rig has no zone
+
+
+@dataclass(frozen=True)
+class Better:
+    """The size from which on a cause is named, before a run is added and with it."""
+
+    cause: Cause
+    before: float
+    after: float
+
+    @property
+    def sentence(self) -> str:
+        """What is better."""
+        unit = self.cause.parameter.unit.removeprefix("1")
+        after = f"{self.after:.2g} {unit}".rstrip()
+        instead = f"instead of {self.before:.2g}" if math.isfinite(self.before) else "at all"
+        return f"{self.cause.name} is named from {after} on {instead}"
+
+
+@dataclass(frozen=True)
+class Proposal:
+    """A further run, and what it improves, the most first.
+
+    `score` is the mean logarithm by which the sizes fall from which on causes are named.
+    """
+
+    candidate: Candidate
+    score: float
+    better: tuple[Better, ...]
+
+    def best_of(self, count: int) -> str:
+        """Say what is improved most."""
+        return "; ".join(b.sentence for b in self.better[:count])
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What the planned runs could show.
+
+    `groups` are pairs of effects that hide in each other, `cannot_tell` says what the runs do not
+    show, and why.
+    """
+
+    seen: tuple[Seen, ...]
+    groups: tuple[tuple[str, str], ...]
+    proposals: tuple[Proposal, ...]
+    cannot_tell: tuple[str, ...]
+
+
+def plan_rig(file: RigFile, step: Callable[[], None] = lambda: None) -> Plan:
+    """Return what the runs of a rig file could show.
+
+    Raises
+    ------
+    InputError
+        None of the runs makes the whole tendon slip, or one is too long.
+    """
+    # A manifest has a run; of this one only the rig is read.
+    nobody = Run(id="none", file="none", sha256="0" * 64)
+    sheet = Manifest(format=1, name=file.name, kind="simulated", rig=file.rig, run=(nobody,))
+    model = data_sheet(sheet)
+    runs = [prepare(r, FIRST) for r in made(file.run, file.sensors, model.rig, FIRST)]
+    usual = model.rig(runs[0].run)
+    proposed = candidates(within(file.limits, planned_limits(file.run)), usual, file.run[0])
+    further = recorded_in_thought(proposed, file.sensors, usual, runs)
+    return _plan(beside(runs, further, model, model), step)
+
+
+def plan_dataset(dataset: Dataset, step: Callable[[], None] = lambda: None) -> Plan:
+    """Return what the runs of a dataset can show.
+
+    Raises
+    ------
+    InputError
+        A recording is wrong, or none makes the whole tendon slip.
+    """
+    manifest = dataset.manifest
+    runs = [prepare(recording, manifest.session_start) for recording in dataset]
+    segments = [segment(run) for run in runs]
+    measured = [slopes_of(run, parts) for run, parts in zip(runs, segments, strict=True)]
+    base = base_fit(data_sheet(manifest), runs, segments, measured)
+    base.solve()
+    return _plan(beside_recorded(Bench(base)), step)
+
+
+def propose(bench: Bench, trial: Trial, effects: Sequence[str]) -> str:
+    """Return as a sentence the run that tells effects apart best.
+
+    Parameters
+    ----------
+    bench
+        The runs that are there.
+    trial
+        A fit of them; its other effects stay free.
+    effects
+        The effects that are to be told apart: a single one from all others, none: all.
+    """
+    chosen = [e for e in EFFECTS if e.name in effects] or list(EFFECTS)
+    rivals = chosen if len(chosen) > 1 else EFFECTS
+    free = {name: v for name, v in trial.values().items() if name.split(".")[0] not in effects}
+    runs = beside_recorded(bench, free)
+    found = _proposals(runs, runs.part().seen(chosen, rivals), rivals, lambda: None)
+    if not found or not found[0].better:
+        apart = " and ".join(e.title.lower() for e in chosen)
+        return f"No further run within the range of these tells {apart} apart."
+    return f"Record {found[0].candidate.sentence}. With it {found[0].best_of(2)}."
+
+
+def _plan(runs: FurtherRuns, step: Callable[[], None]) -> Plan:
+    step()
+    seen = runs.part().seen(EFFECTS, EFFECTS)
+    step()
+    proposals = _proposals(runs, seen, EFFECTS, step)
+    cannot_tell = [*runs.left_out, *_few(runs.part().blocks)]
+    return Plan(tuple(seen), _groups(seen), tuple(proposals[:PROPOSED]), tuple(cannot_tell))
+
+
+def _few(blocks: int) -> list[str]:
+    """Say where the blocks are too few: if all of them gain, that is √blocks of chance."""
+    least = math.floor(SURE**2) + 1
+    sentence = f"These runs have {blocks} independent stretches; no diagnosis is sure with fewer"
+    return [f"{sentence} than {least}."] if blocks < least else []
+
+
+def _proposals(
+    runs: FurtherRuns, seen: Sequence[Seen], rivals: Sequence[Effect], step: Callable[[], None]
+) -> list[Proposal]:
+    """Return the runs that might be added and improve something, the best first."""
+    effects = list({s.cause.effect.name: s.cause.effect for s in seen}.values())
+    out = []
+    for k, candidate in runs.added.items():
+        out.append(_proposal(candidate, seen, runs.part(k).seen(effects, rivals)))
+        step()
+    return sorted((p for p in out if p.score > 0.0), key=lambda p: -p.score)
+
+
+def _proposal(candidate: Candidate, before: Sequence[Seen], after: Sequence[Seen]) -> Proposal:
+    falls = {}
+    for b, a in zip(before, after, strict=True):
+        largest = b.cause.largest
+        falls[b.cause.name] = math.log(min(b.counted, largest) / min(a.counted, largest))
+    better = sorted(
+        (Better(b.cause, b.counted, a.counted) for b, a in zip(before, after, strict=True)),
+        key=lambda pair: -falls[pair.cause.name],
+    )
+    worth = [p for p in better if p.before > WORTH_SAYING * p.after]
+    return Proposal(candidate, sum(falls.values()) / len(falls), tuple(worth))
+
+
+def _groups(seen: Sequence[Seen]) -> tuple[tuple[str, str], ...]:
+    """Return the pairs of effects that hide in each other."""
+    hidden = {(s.cause.effect.name, rival) for s in seen for rival in s.hidden_in}
+    pairs = combinations([e.name for e in EFFECTS], 2)
+    return tuple(pair for pair in pairs if pair in hidden and pair[::-1] in hidden)

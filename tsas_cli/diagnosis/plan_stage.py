@@ -1,0 +1,135 @@
+"""The plan stage: what a dataset's or a rig file's runs could show, as JSON and as tables."""
+
+import math
+import os
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+from tsas_cli import __version__
+from tsas_cli.diagnosis.plan import Plan, Proposal, plan_dataset, plan_rig
+from tsas_cli.diagnosis.rig_file import read_rig_file
+from tsas_cli.diagnosis.visibility import Seen
+from tsas_cli.files import new_folder, sha256_of, write_json
+from tsas_cli.recordings.dataset import read_dataset
+
+Table = tuple[str, Sequence[str], Sequence[Sequence[str]]]
+FILE = "plan.json"
+SAID = 4  # improvements of a proposal that are printed
+STEPS = 13  # about: two for the runs, one for each that may be added
+
+
+def plan_path(
+    path: Path,
+    out: Path | None,
+    *,
+    force: bool = False,
+    step: Callable[[], None] = lambda: None,
+) -> dict[str, Any]:
+    """Plan with a dataset's folder or a rig file; write `plan.json` into a new folder `out`.
+
+    Raises
+    ------
+    InputError
+        The dataset or the file is wrong, no run shows anything, or `out` exists without `force`.
+    """
+    if path.is_dir():
+        dataset = read_dataset(path)
+        summary = dataset.header("plan", out or Path())
+        plan = plan_dataset(dataset, step)
+    else:
+        file = read_rig_file(path)
+        where = Path(os.path.relpath(path.resolve(), (out or Path()).resolve())).as_posix()
+        rig = {"name": file.name, "file": where, "sha256": sha256_of(path)}
+        summary = {"format": 1, "stage": "plan", "version": __version__, "rig": rig}
+        plan = plan_rig(file, step)
+    summary |= as_json(plan)
+    if out is not None:
+        with new_folder(out, force=force) as folder:
+            write_json(folder / FILE, summary)
+    return summary
+
+
+def as_json(plan: Plan) -> dict[str, Any]:
+    """Return what `plan.json` says of a plan."""
+    return {
+        "effects": [_seen(seen) for seen in plan.seen],
+        "groups": [list(group) for group in plan.groups],
+        "proposals": [_proposal(proposal) for proposal in plan.proposals],
+        "cannot_tell": list(plan.cannot_tell),
+    }
+
+
+def _seen(seen: Seen) -> dict[str, Any]:
+    return {
+        "effect": seen.cause.effect.name,
+        "parameter": seen.cause.parameter.name,
+        "unit": seen.cause.parameter.unit,
+        "shape": {name.split(".")[1]: value for name, value in seen.cause.shape.items()},
+        "found_from": _finite(seen.found),
+        "named_from": _finite(seen.named),
+        "nearest": seen.nearest,
+        "hidden_in": seen.hidden_in,
+    }
+
+
+def _proposal(proposal: Proposal) -> dict[str, Any]:
+    return {
+        "run": proposal.candidate.run.model_dump(exclude={"id"}, exclude_none=True),
+        "sentence": proposal.candidate.sentence,
+        "falls_percent": 100.0 * (1.0 - math.exp(-proposal.score)),
+        "better": [
+            {
+                "effect": better.cause.effect.name,
+                "parameter": better.cause.parameter.name,
+                "unit": better.cause.parameter.unit,
+                "named_from": _finite(better.before),
+                "named_from_with_it": _finite(better.after),
+            }
+            for better in proposal.better
+        ],
+    }
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None
+
+
+def tables(summary: dict[str, Any]) -> list[Table]:
+    """Return what the stage prints: each effect, the pairs, the proposals."""
+    rows = [
+        (
+            row["effect"],
+            row["parameter"],
+            row["unit"],
+            _size(row["found_from"], "not shown"),
+            _size(row["named_from"], "" if row["found_from"] is None else "never"),
+            ", ".join(row["hidden_in"]) or row["nearest"] or "",
+        )
+        for row in summary["effects"]
+    ]
+    header = ("effect", "parameter", "unit", "found from", "named from", "nearest")
+    out: list[Table] = [("smallest size of each effect, less its neutral value", header, rows)]
+    if summary["groups"]:
+        out.append(("cannot be told apart", ("effect", "and"), summary["groups"]))
+    return [*out, *(_proposal_table(proposal) for proposal in summary["proposals"])]
+
+
+def _proposal_table(proposal: dict[str, Any]) -> Table:
+    rows = [
+        (
+            row["effect"],
+            row["parameter"],
+            row["unit"],
+            _size(row["named_from"], "never"),
+            _size(row["named_from_with_it"], "never"),
+        )
+        for row in proposal["better"][:SAID]
+    ]
+    much = f"{proposal['falls_percent']:.0f} %"
+    title = f"add {proposal['sentence']}: sizes fall by {much} on average"
+    return title, ("effect", "parameter", "unit", "named from", "with it"), rows
+
+
+def _size(value: float | None, otherwise: str) -> str:
+    return otherwise if value is None else f"{value:.2g}"

@@ -1,0 +1,110 @@
+"""The file that describes a rig and the runs that somebody means to record, before any is there."""
+
+from pathlib import Path
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from tsas_cli.diagnosis.motions import PEAK, Kind
+from tsas_cli.errors import InputError
+from tsas_cli.recordings.manifest import Rig, parse, read_toml
+
+MOST_SAMPLES = 1_000_000  # of a run
+OUTPUTS = ("f_in_N", "f_out_N", "x_out_mm")
+
+
+class _Table(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+
+class Sensors(_Table):
+    """The sample rate, and the standard deviation of each channel's noise; none: not recorded."""
+
+    rate_Hz: float = Field(gt=0)
+    x_in_mm: float = Field(ge=0)
+    x_out_mm: float | None = Field(default=None, gt=0)
+    f_in_N: float | None = Field(default=None, gt=0)
+    f_out_N: float | None = Field(default=None, gt=0)
+
+    @model_validator(mode="after")
+    def _measures(self) -> "Sensors":
+        if not self.outputs:
+            raise ValueError(f"one of {', '.join(OUTPUTS)} is needed beside x_in_mm")
+        return self
+
+    @property
+    def outputs(self) -> dict[str, float]:
+        """The noise of each channel that is recorded, beside the drive."""
+        noise = {name: getattr(self, name) for name in OUTPUTS}
+        return {name: sd for name, sd in noise.items() if sd is not None}
+
+
+class PlannedRun(_Table):
+    """One run: its conditions and its motion."""
+
+    id: str = Field(min_length=1)
+    sheath_length_mm: float = Field(gt=0)
+    total_bend_rad: float = Field(ge=0)
+    preload_N: float = Field(gt=0)
+    motion: Kind
+    amplitude_mm: float = Field(gt=0)
+    speed_mm_per_s: float | None = Field(default=None, gt=0)
+    frequency_Hz: float | None = Field(default=None, gt=0)
+    periods: int = Field(default=2, ge=1)
+    dwell_s: float = Field(default=0.0, ge=0)
+
+    @model_validator(mode="after")
+    def _one_speed(self) -> "PlannedRun":
+        if (self.speed_mm_per_s is None) == (self.frequency_Hz is None):
+            raise ValueError("one of speed_mm_per_s and frequency_Hz is needed")
+        if self.frequency_Hz is not None and self.motion not in PEAK:
+            raise ValueError(f"{self.motion} takes speed_mm_per_s, not frequency_Hz")
+        if self.dwell_s > 0.0 and self.motion == "chirp":
+            raise ValueError("a chirp takes no dwell_s")
+        return self
+
+    @property
+    def speed(self) -> float:
+        """The highest speed [mm/s]."""
+        if self.speed_mm_per_s is not None:
+            return self.speed_mm_per_s
+        return PEAK[self.motion] * self.amplitude_mm * (self.frequency_Hz or 0.0)
+
+
+class Limits(_Table):
+    """What the rig can do; what is not said is what the planned runs do."""
+
+    amplitude_mm: float | None = Field(default=None, gt=0)
+    speed_mm_per_s: float | None = Field(default=None, gt=0)
+    preload_N: tuple[float, ...] = ()
+    total_bend_rad: tuple[float, ...] = ()
+
+
+class RigFile(_Table):
+    """The whole file."""
+
+    format: Literal[1]
+    kind: Literal["plan"]
+    name: str
+    rig: Rig = Rig()
+    sensors: Sensors
+    limits: Limits = Limits()
+    run: tuple[PlannedRun, ...] = Field(min_length=1)
+
+
+def read_rig_file(path: Path) -> RigFile:
+    """Read and check a file of planned runs.
+
+    Raises
+    ------
+    InputError
+        It is missing, not TOML, or says something that the format does not allow.
+    """
+    file = parse(RigFile, read_toml(path), path)
+    for key, hint in file.rig.unknown_keys().items():
+        raise InputError(f"unknown key rig.{key}", where=path, remedy=hint)
+    ids = [run.id for run in file.run]
+    twice = [i for i in ids if ids.count(i) > 1]
+    if twice:
+        raise InputError(f"run id {twice[0]!r} is there twice", where=path)
+    return file
