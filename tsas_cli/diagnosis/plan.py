@@ -42,22 +42,24 @@ class Better:
     @property
     def sentence(self) -> str:
         """What is better."""
-        unit = self.cause.parameter.unit.removeprefix("1")
-        after = f"{self.after:.2g} {unit}".rstrip()
-        instead = f"instead of {self.before:.2g}" if math.isfinite(self.before) else "at all"
-        return f"{self.cause.name} is named from {after} on {instead}"
+        unit = "" if self.cause.parameter.unit == "1" else f" {self.cause.parameter.unit}"
+        named_before = math.isfinite(self.before)
+        instead = f"instead of {self.before:.2g}" if named_before else "not without it"
+        return f"{self.cause.name} is named from {self.after:.2g}{unit} on, {instead}"
 
 
 @dataclass(frozen=True)
 class Proposal:
     """A further run, and what it improves, the most first.
 
-    `score` is the mean logarithm by which the sizes fall from which on causes are named.
+    `score` is the mean logarithm by which the sizes fall from which on causes are named, `groups`
+    are pairs of effects that hide in each other all the same.
     """
 
     candidate: Candidate
     score: float
     better: tuple[Better, ...]
+    groups: tuple[tuple[str, str], ...]
 
     def best_of(self, count: int) -> str:
         """Say what is improved most."""
@@ -134,7 +136,8 @@ def propose(bench: Bench, trial: Trial, effects: Sequence[str]) -> str:
     if not found or not found[0].better:
         apart = " and ".join(e.title.lower() for e in chosen)
         return f"No further run within the range of these tells {apart} apart."
-    return f"Record {found[0].candidate.sentence}. With it {found[0].best_of(2)}."
+    still = "".join(f" It does not tell {a} from {b}." for a, b in found[0].groups)
+    return f"Record {found[0].candidate.sentence}. With it {found[0].best_of(2)}.{still}"
 
 
 def _plan(runs: FurtherRuns, step: Callable[[], None]) -> Plan:
@@ -175,7 +178,7 @@ def _proposal(candidate: Candidate, before: Sequence[Seen], after: Sequence[Seen
         key=lambda pair: -falls[pair.cause.name],
     )
     worth = [p for p in better if p.before > WORTH_SAYING * p.after]
-    return Proposal(candidate, sum(falls.values()) / len(falls), tuple(worth))
+    return Proposal(candidate, sum(falls.values()) / len(falls), tuple(worth), _groups(after))
 
 
 def _groups(seen: Sequence[Seen]) -> tuple[tuple[str, str], ...]:
