@@ -10,6 +10,8 @@ Floats = npt.NDArray[np.float64]
 
 SURE = 2.6  # standard deviations of a sum with random signs; 1 in 200 by chance
 TELLING = 0.005  # of the squares, that a cause has to take away
+APART = 0.01  # of the squares, that tells a cause from a rival
+RICHER = 0.03  # of the squares, that a cause with more parameters has to gain on a simpler one
 RESAMPLED = 2000
 
 
@@ -25,15 +27,14 @@ class Gain:
     part: float
     sureness: float
 
-    @property
-    def sure(self) -> bool:
-        """Whether the gain is beyond chance."""
-        return self.sureness > SURE and self.part > 0.0
+    def beyond(self, part: float) -> bool:
+        """Say whether the gain is beyond chance, and larger than a part of the squares."""
+        return self.sureness > SURE and self.part > part
 
     @property
     def convincing(self) -> bool:
         """Whether the gain is beyond chance, and large enough to matter."""
-        return self.sure and self.part > TELLING
+        return self.beyond(TELLING)
 
 
 def gain(before: Floats, after: Floats) -> Gain:

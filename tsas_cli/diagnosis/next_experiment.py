@@ -1,6 +1,7 @@
 """What to measure next, so that the verdict becomes surer."""
 
 from tsas_cli.diagnosis.diagnose import Diagnosis
+from tsas_cli.diagnosis.plan import propose
 from tsas_cli.effects import EFFECTS
 
 
@@ -12,6 +13,11 @@ def next_experiment(result: Diagnosis) -> str:
             "Record at least three runs in which the drive travels through several whole strokes, "
             "with f_in_N and one of f_out_N and x_out_mm."
         )
+    unsure = [cause for cause in result.causes if cause.rivals]
+    if unsure and result.judged is not None and result.final is not None:
+        among = [unsure[0].effect, *unsure[0].rivals]
+        further = propose(result.judged.bench, result.final, among)
+        return f"{further} {experiments[unsure[0].effect]}"
     if result.causes:
         first = max(result.causes, key=lambda cause: cause.gain_percent)
         return experiments[first.effect]

@@ -12,7 +12,7 @@ from itertools import combinations
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.diagnosis.evidence import TELLING, Gain, gain
+from tsas_cli.diagnosis.evidence import APART, RICHER, TELLING, Gain, gain
 from tsas_cli.diagnosis.held_out import Folds, held_out_squares
 from tsas_cli.effects import EFFECTS, Effect
 from tsas_cli.identification.extension import TOLERANCE, Bench, Trial
@@ -79,7 +79,9 @@ class Search:
             instead = fewer | {other}
             if other in named or not found.convincing:
                 continue
-            if self.trial(instead).solution.converged and not self.gain(instead, named).sure:
+            if self.trial(instead).solution.converged and not self.gain(instead, named).beyond(
+                APART
+            ):
                 out.append(other)
         return tuple(out)
 
@@ -159,7 +161,7 @@ class Search:
         for name, _ in sorted(singles, key=lambda s: count[s[0]]):
             if count[name] >= count[best]:
                 break
-            if not self.gain(names | {name}, names | {best}).sure:
+            if not self.gain(names | {name}, names | {best}).beyond(RICHER):
                 return name
         return best
 
