@@ -26,7 +26,7 @@ def test_parameters_come_with_unit_and_bounds(tsas):
 def test_a_shape_is_neutral_at_any_value(tsas):
     lines = tsas("explain", "preload_loss").stdout.splitlines()
     assert ["rate_N_per_s", "N/s", "0", "0", "1000"] in [line.split() for line in lines]
-    assert ["settling_per_s", "1/s", "any", "0", "100"] in [line.split() for line in lines]
+    assert ["settling_per_s", "1/s", "any", "0", "0.5"] in [line.split() for line in lines]
 
 
 def test_json_is_the_record(tsas):

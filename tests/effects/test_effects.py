@@ -108,9 +108,9 @@ def test_it_is_mistaken_for_effects_that_are_there(effect):
 
 
 def test_every_period_of_a_ripple_is_tried():
-    """Sixty, evenly spaced in 1/period from 0.3 to 20 mm, and the one of the paper's gear."""
+    """Sixty, evenly spaced in 1/period from 0.3 to 10 mm, and the one of the paper's gear."""
     period = {p.name: p for p in BY_NAME["drive_ripple"].parameters}["period_mm"]
     assert period.start == pytest.approx(2 * math.pi * 27.1 / (2 * 120), abs=5e-5)
     assert period.start in period.starts
     rest = np.sort(1.0 / np.array([value for value in period.starts if value != period.start]))
-    np.testing.assert_allclose(rest, np.linspace(1 / 20.0, 1 / 0.3, 60))
+    np.testing.assert_allclose(rest, np.linspace(1 / 10.0, 1 / 0.3, 60))
