@@ -45,6 +45,7 @@ from tsas_cli.physics.rig import Rig
 Floats = npt.NDArray[np.float64]
 Phases = npt.NDArray[np.int8]
 
+MOST_UNSETTLED = 40  # samples, after which a run is given up
 MOST_STEPS = 60  # between two samples, those included that did not settle
 
 
@@ -72,7 +73,8 @@ def slip_chain(
         drive's friction (as given, where that is given) and at the load's sensor; the phase is
         +1 where the whole tendon slips in contraction, −1 in loosening, 0 where a part of it
         sticks, 2 where it hangs slack, 3 where the set of slipping nodes was not found and the
-        sample is not to be trusted.
+        sample is not to be trusted. Many such samples, and the rest of the run is given up: it
+        keeps the last values.
     """
     m = course.shape[1]
     x_in, x_out, f_in, f_out = np.empty(m), np.empty(m), np.empty(m), np.empty(m)
@@ -82,12 +84,19 @@ def slip_chain(
     rest_drive = rig.preload_N if boundary.drive == FORCE else 0.0
     rest_load = rig.preload_N if boundary.load == FORCE else 0.0
     before = Moment(rest_drive, rest_load, course[2, 0], course[3, 0], 0.0, 0.0, math.inf)
+    unsettled = 0
     for i in range(m):
+        if unsettled > MOST_UNSETTLED:
+            x_in[i], x_out[i] = x_in[i - 1], x_out[i - 1]
+            f_in[i], f_out[i] = f_in[i - 1], f_out[i - 1]
+            phase[i] = 3
+            continue
         now = moment(course, i)
         if boundary.load == DISPLACEMENT and now.load != before.load:
             chain[SLIP, n + 1] = 1 if now.load > before.load else -1
         found = advance(chain, before, now, boundary, laws, scale)
         before = now
+        unsettled += not found
         phase[i] = phase_of(chain) if found else 3
         if boundary.load != FORCE and chain[T, 0] < 0.0:
             phase[i] = 2
