@@ -30,6 +30,7 @@ Verdict = Literal["named", "ambiguous", "sufficient", "unexplained", "undecided"
 
 PLAUSIBLE = 0.15  # by which a tendon's axial stiffness may differ from its data sheet
 LEFT = 0.02  # of what was beyond the noise, that the named causes may leave unexplained
+MUCH = 4.0  # mean square, twice the noise, that nobody calls explained whatever is named
 MOSTLY_LEFT = 0.5  # of it, beyond which the verdict is that it is unexplained
 SPOKEN = 2.0 * BLURRED  # mean square beyond the noise that needs an explanation
 FEW_BLOCKS = 6  # too few to tell anything from chance
@@ -84,9 +85,10 @@ class Diagnosis:
         """Whether structure is left that no effect accounts for."""
         if self.remainder is None:
             return False
-        return self.remainder.mean_square > 1.0 + BLURRED and (
-            self.share_left > LEFT if self.causes else self.verdict == "unexplained"
-        )
+        if not self.causes:
+            return self.verdict == "unexplained"
+        left = self.remainder.mean_square
+        return left > MUCH or (left > 1.0 + BLURRED and self.share_left > LEFT)
 
 
 def diagnose(
@@ -221,21 +223,23 @@ def _estimates(search: Search, trial: Trial) -> list[Estimate]:
         solution.evaluations,
     )
     told = estimates_of(trial.unknowns, fitted, search.bench.base.ids())
-    return [_as_sure_as_the_data_sheet(e) if e.name == SHEATH else e for e in told]
+    return [_as_sure_as_the_data_sheet(e, trial) if e.name == SHEATH else e for e in told]
 
 
-def _as_sure_as_the_data_sheet(ratio: Estimate) -> Estimate:
+def _as_sure_as_the_data_sheet(ratio: Estimate, trial: Trial) -> Estimate:
     """Return the sheath's compliance with the interval that the tendon's data sheet leaves it.
 
     The recordings tell (1 + ratio)/EA only, so the ratio is as uncertain as EA is.
     """
+    EA = next((j for j, u in enumerate(trial.unknowns) if u.name == "tendon_stiffness_N"), None)
+    if EA is None:
+        return ratio
+    unknown, fitted = trial.unknowns[EA], float(trial.solution.values[EA])
     whole = 1.0 + ratio.value
-    return replace(
-        ratio,
-        stderr=PLAUSIBLE * whole / 1.96,
-        interval_low=max(whole * (1.0 - PLAUSIBLE) - 1.0, 0.0),
-        interval_high=whole * (1.0 + PLAUSIBLE) - 1.0,
-    )
+    low = max(whole * math.exp(unknown.lower - fitted) - 1.0, 0.0)
+    high = whole * math.exp(unknown.upper - fitted) - 1.0
+    stderr = max(high - ratio.value, ratio.value - low) / 1.96
+    return replace(ratio, stderr=stderr, interval_low=low, interval_high=high)
 
 
 def _channels(

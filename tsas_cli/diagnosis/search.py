@@ -24,6 +24,7 @@ Names = frozenset[str]
 
 MOST_EFFECTS = 4
 SHARE = 0.4  # of what is beyond the noise, that a cause has to take away
+LEAST = 0.003  # of what the nominal model was beyond it, that a further cause has to take away
 BLURRED = 0.15  # mean square by which a model that lacks nothing may miss the noise it is held to
 WORTH = 0.1 * TELLING  # part of the squares that a signature has to explain to be fitted
 BESIDE_BEST = 0.02  # of what the best signature explains
@@ -114,8 +115,11 @@ class Search:
             self.held_out(names, on_mesh=mesh).sum() / self.folds.block.size - 1.0
             for names in (before, before | set(added))
         ]
-        allowed = 0.0 if before else BLURRED
-        return bool(excess[0] - excess[1] > SHARE * (excess[0] - allowed))
+        saved = excess[0] - excess[1]
+        if not before:
+            return bool(saved > SHARE * (excess[0] - BLURRED))
+        first = self.held_out(frozenset(), on_mesh=mesh).sum() / self.folds.block.size - 1.0
+        return bool(saved > max(SHARE * excess[0], LEAST * first))
 
     def add(self, names: Names) -> list[tuple[str, Gain]]:
         """Fit each further effect that is worth it; return them with their gains, best first."""
