@@ -78,7 +78,5 @@ def measure() -> Iterable[Row]:
                 pairs = np.array([p for answer in answers for p in answer.get(name, [])])
                 if pairs.size:
                     share = 100.0 * float(pairs[:, 0].mean())
-                    yield Row(
-                        f"{name}, {label}: covered", share, "%", at_most=99.0, at_least=85.0
-                    )
+                    yield Row(f"{name}, {label}: covered", share, "%", at_most=99.0, at_least=85.0)
                     yield Row(f"{name}, {label}: half width", float(pairs[:, 1].mean()), "")

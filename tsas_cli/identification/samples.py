@@ -22,12 +22,12 @@ def mean_edges(size: int) -> Indices:
 
 
 def points(run: Prepared) -> Indices:
-    """Return the samples that are simulated: twice as many as means, and all after a reversal.
+    """Return the samples that are simulated: four times as many as means, and all after a reversal.
 
     The model depends on the path alone, and where the drive turns back its answer bends sharply.
     """
     n = run.time_s.size
-    stride = max(1, n // (2 * MOST_MEANS))
+    stride = max(1, n // (4 * MOST_MEANS))
     there = np.arange(n) % stride == 0
     there[-1] = True
     for turn in run.conditioned[run.drive_column].reversals:
