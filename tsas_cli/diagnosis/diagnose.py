@@ -19,7 +19,7 @@ from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.extension import Bench, Trial
 from tsas_cli.identification.fit import Fitted, uncertainty
 from tsas_cli.identification.joint_fit import JointFit, estimates_of, rig_at
-from tsas_cli.identification.model import Model
+from tsas_cli.identification.model import Model, data_sheet
 from tsas_cli.identification.phases import segment
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.numerics.covariance import FEWEST_BLOCKS
@@ -127,8 +127,8 @@ def nominal_fit(manifest: Manifest, stated: Model, runs: Sequence[Prepared]) -> 
     segments = [segment(run) for run in runs]
     measured = [slopes_of(run, parts) for run, parts in zip(runs, segments, strict=True)]
     plausible = {}
-    told = stated.value("tendon_stiffness_N")
-    if told is not None and manifest.rig.tendon_modulus_GPa is not None:
+    told = data_sheet(manifest).value("tendon_stiffness_N")
+    if told is not None:
         plausible["tendon_stiffness_N"] = (told * (1.0 - PLAUSIBLE), told / (1.0 - PLAUSIBLE))
     return base_fit(stated, runs, segments, measured, plausible)
 

@@ -9,6 +9,7 @@ import numpy.typing as npt
 Floats = npt.NDArray[np.float64]
 
 SURE = 2.6  # standard deviations of a sum with random signs; 1 in 200 by chance
+AGREE = 0.8  # of the surest that so many blocks can be, where they are few
 TELLING = 0.005  # of the squares, that a cause has to take away
 APART = 0.01  # of the squares, that tells a cause from a rival
 RICHER = 0.03  # of the squares, that a cause with more parameters has to gain on a simpler one
@@ -21,15 +22,17 @@ class Gain:
 
     `part` is of all squares; `sureness` is the sum of the blocks' relative gains in standard
     deviations of the same sum with random signs (a sign-flip test: a block that gains nothing
-    does not speak).
+    does not speak). Few blocks cannot be surer than their root, so most of them have to agree:
+    `needed` is how sure is sure.
     """
 
     part: float
     sureness: float
+    needed: float = SURE
 
     def beyond(self, part: float) -> bool:
         """Say whether the gain is beyond chance, and larger than a part of the squares."""
-        return self.sureness > SURE and self.part > part
+        return self.sureness > self.needed and self.part > part
 
     @property
     def convincing(self) -> bool:
@@ -42,7 +45,8 @@ def gain(before: Floats, after: Floats) -> Gain:
     relative = np.log(before / after)
     spread = math.sqrt(float(relative @ relative))
     part = 1.0 - float(after.sum()) / float(before.sum())
-    return Gain(part, float(relative.sum()) / spread if spread > 0.0 else 0.0)
+    sureness = float(relative.sum()) / spread if spread > 0.0 else 0.0
+    return Gain(part, sureness, min(SURE, AGREE * math.sqrt(before.size)))
 
 
 def gain_percent(

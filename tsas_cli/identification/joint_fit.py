@@ -24,6 +24,7 @@ from tsas_cli.physics.rig import Rig, with_values
 Floats = npt.NDArray[np.float64]
 
 MOST_ROUNDS = 4
+MISSED = 1.3  # times what noise explains: the model is wrong
 ROUGH, FINE = 1e-3, 1e-6  # tolerance of the first fit, whose weights are the start's, and after
 ZERO_SCALE = 0.02  # plausible zero of a displacement sensor, of its range
 
@@ -94,7 +95,7 @@ class JointFit:
             "is wrong somewhere, and its values are those of the nearest nominal model, not of "
             "the rig."
             for name, ratio in worst.items()
-            if ratio > 2.0
+            if ratio > MISSED
         ]
 
     def _fit(self, chosen: list[int], *, tolerance: float) -> Fitted:
