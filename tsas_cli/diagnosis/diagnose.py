@@ -119,7 +119,7 @@ def diagnose(
     if search.folds.blocks < FEW_BLOCKS:
         reason = f"only {search.folds.blocks} stretches are independent of each other: too few."
         return Diagnosis("undecided", reason, model, cannot_tell=tuple(sentences))
-    return _concluded(search, search.run(), model, tuple(sentences))
+    return _concluded(search, search.run(), model, tuple(base.untold))
 
 
 def nominal_fit(manifest: Manifest, stated: Model, runs: Sequence[Prepared]) -> JointFit:

@@ -51,6 +51,7 @@ class JointFit:
         self.rigs = [start.rig(run.run) for run in self.runs]
         self.unknowns = _unknowns(start, self.runs, plausible or {})
         self.chosen: list[int] = []
+        self.untold = self.left_out  # what the recordings do not say, once it is solved
         self.values = np.array([u.start for u in self.unknowns])
         kept_at = [at for at in samples if at]
         self.errors = [
@@ -81,8 +82,8 @@ class JointFit:
             before = chosen
         self.chosen = chosen
         told = estimates_of([self.unknowns[j] for j in chosen], result, self.ids())
-        sentences = [*self.left_out, *self._sentences(confounded), *_doubts(told, result)]
-        return Model(tuple(told)).over(self.kept), result, sentences
+        self.untold = [*self.left_out, *self._sentences(confounded)]
+        return Model(tuple(told)).over(self.kept), result, [*self.untold, *_doubts(told, result)]
 
     def misfit(self) -> list[str]:
         """Say which channels are further from the model than what is known to be uncertain."""

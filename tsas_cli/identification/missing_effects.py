@@ -2,15 +2,13 @@
 
 Where the nominal model is proven wrong, the interval of its parameters is that of the nearest
 nominal model, and the rig's own value may lie far outside. So the effects of the catalogue that
-explain most of what is wrong are freed, one at a time, and each interval is widened to hold what
-the parameter would then be. Which of them it is, and whether it is one of them, is for `diagnose`
-to say.
+explain most of what is wrong are freed, one at a time, and each interval reaches from the nominal
+value over what the parameter would then be. Which of them it is, and whether it is one of them,
+is for `diagnose` to say.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-
-import numpy as np
 
 from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.estimate import Estimate
@@ -22,6 +20,7 @@ from tsas_cli.numerics.covariance import FEWEST_BLOCKS
 
 WORTH = 0.5  # of what the best effect explains linearly, for an effect to be fitted
 NEAR = 2.0  # times the best effect's excess over the noise, for an effect to count
+EXPLAINED = 2.0  # mean square of the residuals, beyond which a model is still wrong
 NORMAL = 1.96
 
 
@@ -44,6 +43,8 @@ def widened(fit: JointFit, told: Sequence[Estimate]) -> Widened:
         min(trials, key=lambda t: t.mean_square)
     ]
     others = [{(e.name, e.run): e for e in _estimates(bench, trial)} for trial in near]
+    if least > EXPLAINED:  # none of them is the rig either: what the nominal model says counts too
+        others.append({(e.name, e.run): e for e in told})
     return Widened(
         tuple(_hull(e, [o[e.name, e.run] for o in others if (e.name, e.run) in o]) for e in told),
         tuple(trial.effects[0] for trial in near),
@@ -82,13 +83,11 @@ def _estimates(bench: Bench, trial: Trial) -> list[Estimate]:
 
 
 def _hull(own: Estimate, others: Sequence[Estimate]) -> Estimate:
-    """Return an estimate whose interval, and error, reach as far as those of the others."""
+    """Return an estimate whose interval reaches from its value over all intervals of the others."""
     if own.interval_low is None or own.interval_high is None:
         return own
-    low = min([own.interval_low, *(o.interval_low for o in others if o.interval_low is not None)])
-    high = max(
-        [own.interval_high, *(o.interval_high for o in others if o.interval_high is not None)]
-    )
+    low = min([own.value, *(o.interval_low for o in others if o.interval_low is not None)])
+    high = max([own.value, *(o.interval_high for o in others if o.interval_high is not None)])
     reach = max(high - own.value, own.value - low) / NORMAL
-    stderr = None if own.stderr is None else float(np.maximum(own.stderr, reach))
+    stderr = None if own.stderr is None else reach
     return replace(own, interval_low=low, interval_high=high, stderr=stderr)
