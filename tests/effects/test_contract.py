@@ -1,14 +1,11 @@
 """What every effect owes the model: neutral is nothing, no energy, one answer from every solver."""
 
-import json
-import os
-import subprocess
-import sys
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from tests.both_ways import answers
 from tests.physics.references import GROUP_A
 from tsas_cli.effects import EFFECTS, Effects
 from tsas_cli.physics.ends import Drive
@@ -189,17 +186,8 @@ print(json.dumps(["numba" in sys.modules, columns]))
 """
 
 
-def run(plain):
-    environment = os.environ | {"TSAS_PLAIN_PYTHON": "1" if plain else "0"}
-    call = [sys.executable, "-W", "error", "-c", PROGRAM]
-    done = subprocess.run(call, env=environment, capture_output=True, text=True, check=True)
-    compiled, columns = json.loads(done.stdout)
-    assert compiled != plain
-    return columns
-
-
 def test_compiled_is_plain_python_to_rounding():
-    plain, compiled = run(plain=True), run(plain=False)
+    plain, compiled = answers(PROGRAM, plain=True), answers(PROGRAM, plain=False)
     assert len(plain) == 5 * len(LOADS) * len(Effects._fields)
     for ours, theirs in zip(plain, compiled, strict=True):
         assert ours == pytest.approx(theirs, rel=1e-8, abs=1e-8)

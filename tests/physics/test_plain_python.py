@@ -1,11 +1,8 @@
 """Compiled and plain Python are the same program."""
 
-import json
-import os
-import subprocess
-import sys
-
 import pytest
+
+from tests.both_ways import answers
 
 PROGRAM = """
 import json
@@ -36,17 +33,8 @@ print(json.dumps(["numba" in sys.modules, columns]))
 """
 
 
-def answers(plain):
-    environment = os.environ | {"TSAS_PLAIN_PYTHON": "1" if plain else "0"}
-    call = [sys.executable, "-W", "error", "-c", PROGRAM]
-    done = subprocess.run(call, env=environment, capture_output=True, text=True, check=True)
-    compiled, columns = json.loads(done.stdout)
-    assert compiled != plain
-    return columns
-
-
 def test_compiled_is_plain_python_to_rounding():
-    plain, compiled = answers(plain=True), answers(plain=False)
+    plain, compiled = answers(PROGRAM, plain=True), answers(PROGRAM, plain=False)
     assert len(plain) == 3 * 3 + 4 * 5
     for ours, theirs in zip(plain, compiled, strict=True):
         assert ours == pytest.approx(theirs, rel=1e-9, abs=1e-9)

@@ -17,12 +17,12 @@ from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.base_fit import base_fit, slopes_of
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.extension import Bench, Trial
-from tsas_cli.identification.fit import Fitted, uncertainty
+from tsas_cli.identification.fit import Fitted, with_errors
 from tsas_cli.identification.joint_fit import JointFit, estimates_of, rig_at
 from tsas_cli.identification.model import Model, data_sheet
 from tsas_cli.identification.phases import segment
 from tsas_cli.identification.prepared import Prepared
-from tsas_cli.numerics.covariance import FEWEST_BLOCKS
+from tsas_cli.identification.run_errors import blocks_of
 from tsas_cli.recordings.manifest import Manifest
 
 Floats = npt.NDArray[np.float64]
@@ -146,10 +146,7 @@ def _not_possible(base: JointFit, fitted: Fitted | None) -> str | None:
 
 def bench_folds(bench: Bench) -> Folds:
     """Return what of a bench's runs is held out together, in blocks longer than its memory."""
-    longest = sum(run.length for run in bench.closed) // FEWEST_BLOCKS
-    return folds_of(
-        [run.blocks(rig, longest) for run, rig in zip(bench.closed, bench.rigs, strict=True)]
-    )
+    return folds_of(blocks_of(bench.closed, bench.rigs))
 
 
 def _concluded(search: Search, named: Names, model: Model, sentences: tuple[str, ...]) -> Diagnosis:
@@ -158,7 +155,8 @@ def _concluded(search: Search, named: Names, model: Model, sentences: tuple[str,
     judged = search.weighed_again(named) if named else search
     before = judged.trial(frozenset(), on_mesh=judged.bench.on_mesh(named))
     final = judged.trial(named)
-    causes = tuple(_cause(judged, named, name, rivals[name]) for name in rivals)
+    estimates = _estimates(judged, final)
+    causes = tuple(_cause(judged, named, name, rivals[name], estimates) for name in rivals)
     left = remainder(judged.bench, final, judged.folds)
     start = remainder(judged.bench, before, judged.folds) if named else left
     excess = [max(r.mean_square - 1.0, 0.0) for r in (start, left)]
@@ -170,7 +168,7 @@ def _concluded(search: Search, named: Names, model: Model, sentences: tuple[str,
         verdict = "unexplained"
     else:
         verdict = "ambiguous" if any(c.rivals for c in causes) else "named"
-    extended = Model(tuple(_estimates(judged, final))).over(model)
+    extended = Model(tuple(estimates)).over(model)
     return Diagnosis(
         verdict,
         _reason(verdict, causes, start, left),
@@ -191,7 +189,13 @@ def _in_order(named: Names) -> list[str]:
     return [effect.name for effect in EFFECTS if effect.name in named]
 
 
-def _cause(search: Search, named: Names, name: str, rivals: tuple[str, ...]) -> Cause:
+def _cause(
+    search: Search,
+    named: Names,
+    name: str,
+    rivals: tuple[str, ...],
+    estimates: Sequence[Estimate],
+) -> Cause:
     fewer = named - {name}
     mesh = search.bench.on_mesh(named)
     gains = gain_percent(
@@ -199,10 +203,8 @@ def _cause(search: Search, named: Names, name: str, rivals: tuple[str, ...]) -> 
         search.held_out(named),
         np.random.default_rng(SEED),
     )
-    estimates = [
-        e for e in _estimates(search, search.trial(named)) if e.name.startswith(f"{name}.")
-    ]
-    return Cause(name, rivals, tuple(estimates), gains[0], (gains[1], gains[2]))
+    own = tuple(e for e in estimates if e.name.startswith(f"{name}."))
+    return Cause(name, rivals, own, gains[0], (gains[1], gains[2]))
 
 
 def _estimates(search: Search, trial: Trial) -> list[Estimate]:
@@ -210,18 +212,7 @@ def _estimates(search: Search, trial: Trial) -> list[Estimate]:
     solution = trial.solution
     blocks = [search.folds.block[search.folds.run == k] for k in range(len(search.bench.rigs))]
     counted = [np.unique(block, return_inverse=True)[1] for block in blocks]
-    stderr, t = uncertainty(
-        trial.unknowns, solution.jacobian, solution.residual, counted, by_run=True
-    )
-    fitted = Fitted(
-        solution.values,
-        stderr,
-        t,
-        solution.at_bound,
-        solution.converged,
-        solution.message,
-        solution.evaluations,
-    )
+    fitted = with_errors(trial.unknowns, solution, counted, by_run=True)
     told = estimates_of(trial.unknowns, fitted, search.bench.base.ids())
     return [_as_sure_as_the_data_sheet(e, trial) if e.name == SHEATH else e for e in told]
 

@@ -4,7 +4,6 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.identification.prepared import Prepared
-from tsas_cli.recordings.columns import BY_NAME
 
 Floats = npt.NDArray[np.float64]
 
@@ -43,13 +42,6 @@ def spoken(signal: str) -> str:
     }
     name, _, rest = signal.partition(" ")
     return f"{words.get(name, name)} {rest}".rstrip()
-
-
-def unit_of(signal: str) -> str:
-    """Return the unit of a signal, empty where it has none."""
-    column = BY_NAME.get(signal)
-    own = {"speed_mm_per_s": "mm/s", "travel_since_reversal_mm": "mm"}
-    return own.get(signal, "") if column is None else column.unit
 
 
 def _since_reversal(values: Floats, reversals: npt.NDArray[np.int64]) -> Floats:

@@ -22,8 +22,8 @@ from tsas_cli.effects import Effect, Parameter
 from tsas_cli.identification.extension import Bench, Trial
 from tsas_cli.identification.fit import jacobian
 from tsas_cli.identification.joint_fit import rig_at
+from tsas_cli.identification.run_errors import blocks_of
 from tsas_cli.identification.screening import projector
-from tsas_cli.numerics.covariance import FEWEST_BLOCKS
 
 Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
@@ -123,11 +123,7 @@ class Look:
         slopes = _slopes(bench, trial)
         self.trial = replace(trial, solution=replace(trial.solution, jacobian=slopes))
         self.run: Indices = np.repeat(np.arange(len(trial.sizes)), trial.sizes)
-        longest = sum(run.length for run in bench.closed) // FEWEST_BLOCKS
-        numbered = [
-            run.blocks(rig, longest) for run, rig in zip(bench.closed, bench.rigs, strict=True)
-        ]
-        self.block = folds_of(numbered).block
+        self.block = folds_of(blocks_of(bench.closed, bench.rigs)).block
         self._signatures: dict[tuple[str, float, tuple[float, ...]], Floats] = {}
 
     def part(self, runs: Sequence[int]) -> "Part":

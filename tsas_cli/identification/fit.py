@@ -165,7 +165,30 @@ def fit(
         The part of the squares that a last step may still have saved.
     """
     solution = solve(unknowns, len(blocks), residuals, tolerance=tolerance)
-    stderr, t = uncertainty(unknowns, solution.jacobian, solution.residual, blocks)
+    return with_errors(unknowns, solution, blocks)
+
+
+def with_errors(
+    unknowns: Sequence[Unknown],
+    solution: Solution,
+    blocks: Sequence[Indices],
+    *,
+    by_run: bool = False,
+) -> Fitted:
+    """Return a solution with standard errors and Student's t of its unknowns, from blocks of runs.
+
+    Where the model is wrong, or `by_run` does not take it for right, its error repeats from block
+    to block, and only runs are independent: shared unknowns take the wider one of both.
+    """
+    J, residual, runs = solution.jacobian, solution.residual, len(blocks)
+    offsets = np.concatenate(([0], np.cumsum([b.max() + 1 for b in blocks])))[:-1]
+    block = np.concatenate([b + o for b, o in zip(blocks, offsets, strict=True)])
+    stderr, t = _errors(J, residual, block)
+    if (by_run or np.mean(residual**2) > WRONG) and runs >= FEWEST_RUNS:
+        own = np.repeat(np.arange(runs), [b.size for b in blocks])
+        run_stderr, run_t = _errors(J, residual, own)
+        wider = (run_t * run_stderr > t * stderr) & [u.run is None for u in unknowns]
+        stderr, t = np.where(wider, run_stderr, stderr), np.where(wider, run_t, t)
     return Fitted(
         solution.values,
         stderr,
@@ -175,31 +198,6 @@ def fit(
         solution.message,
         solution.evaluations,
     )
-
-
-def uncertainty(
-    unknowns: Sequence[Unknown],
-    J: Floats,
-    residual: Floats,
-    blocks: Sequence[Indices],
-    *,
-    by_run: bool = False,
-) -> tuple[Floats, Floats]:
-    """Return standard errors and Student's t of fitted unknowns, shape (p,), from blocks of runs.
-
-    Where the model is wrong, or `by_run` does not take it for right, its error repeats from block
-    to block, and only runs are independent: shared unknowns take the wider one of both.
-    """
-    runs = len(blocks)
-    offsets = np.concatenate(([0], np.cumsum([b.max() + 1 for b in blocks])))[:-1]
-    block = np.concatenate([b + o for b, o in zip(blocks, offsets, strict=True)])
-    stderr, t = _errors(J, residual, block)
-    if (by_run or np.mean(residual**2) > WRONG) and runs >= FEWEST_RUNS:
-        own = np.repeat(np.arange(runs), [b.size for b in blocks])
-        run_stderr, run_t = _errors(J, residual, own)
-        wider = (run_t * run_stderr > t * stderr) & [u.run is None for u in unknowns]
-        stderr, t = np.where(wider, run_stderr, stderr), np.where(wider, run_t, t)
-    return stderr, t
 
 
 def _errors(J: Floats, residual: Floats, block: Indices) -> tuple[Floats, Floats]:

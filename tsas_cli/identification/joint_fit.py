@@ -15,9 +15,8 @@ from tsas_cli.identification.fit import Fitted, Unknown, fit, identifiable, jaco
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.quantities import LOG_SCALE, QUANTITIES
-from tsas_cli.identification.run_errors import RunErrors
+from tsas_cli.identification.run_errors import RunErrors, blocks_of
 from tsas_cli.identification.samples import kept_samples, lost
-from tsas_cli.numerics.covariance import FEWEST_BLOCKS
 from tsas_cli.physics.parameters import NOMINAL
 from tsas_cli.physics.rig import Rig, with_values
 
@@ -108,10 +107,8 @@ class JointFit:
             return self._residuals(k, base)
 
         sought = [replace(self.unknowns[j], start=float(self.values[j])) for j in chosen]
-        longest = sum(run.length for run in self.errors) // FEWEST_BLOCKS
-        blocks = [
-            run.blocks(self._rig(k, self.values), longest) for k, run in enumerate(self.errors)
-        ]
+        rigs = [self._rig(k, self.values) for k in range(len(self.errors))]
+        blocks = blocks_of(self.errors, rigs)
         result = fit(sought, blocks, residuals, tolerance=tolerance)
         base[chosen] = result.values
         self.values = base

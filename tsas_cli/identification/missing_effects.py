@@ -13,10 +13,10 @@ from dataclasses import dataclass, replace
 from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.extension import Bench, Trial
-from tsas_cli.identification.fit import Fitted, uncertainty
+from tsas_cli.identification.fit import with_errors
 from tsas_cli.identification.joint_fit import JointFit, estimates_of
+from tsas_cli.identification.run_errors import blocks_of
 from tsas_cli.identification.screening import projector, screen
-from tsas_cli.numerics.covariance import FEWEST_BLOCKS
 
 WORTH = 0.5  # of what the best effect explains linearly, for an effect to be fitted
 NEAR = 2.0  # times the best effect's excess over the noise, for an effect to count
@@ -72,13 +72,8 @@ def _best_trials(bench: Bench) -> list[Trial]:
 
 
 def _estimates(bench: Bench, trial: Trial) -> list[Estimate]:
-    longest = sum(run.length for run in bench.closed) // FEWEST_BLOCKS
-    blocks = [run.blocks(bench.rig(trial, k), longest) for k, run in enumerate(bench.closed)]
-    found = trial.solution
-    stderr, t = uncertainty(trial.unknowns, found.jacobian, found.residual, blocks)
-    fitted = Fitted(
-        found.values, stderr, t, found.at_bound, found.converged, found.message, found.evaluations
-    )
+    rigs = [bench.rig(trial, k) for k in range(len(bench.rigs))]
+    fitted = with_errors(trial.unknowns, trial.solution, blocks_of(bench.closed, rigs))
     return estimates_of(trial.unknowns, fitted, bench.base.ids())
 
 

@@ -6,6 +6,7 @@ place where the drive turned back lasts for a whole dead band: what has its shap
 uncertain by more, and is taken down accordingly.
 """
 
+from collections.abc import Sequence
 from copy import copy
 from dataclasses import replace
 from functools import lru_cache
@@ -18,7 +19,7 @@ import numpy.typing as npt
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.samples import mean_edges, points
 from tsas_cli.numerics.conditioning import Conditioned
-from tsas_cli.numerics.covariance import block_length
+from tsas_cli.numerics.covariance import FEWEST_BLOCKS, block_length
 from tsas_cli.physics.ends import Drive
 from tsas_cli.physics.quasi_static import simulate
 from tsas_cli.physics.rig import Rig
@@ -189,6 +190,12 @@ class RunErrors:
             "f_out_N": np.interp(samples, at, response.f_out_N),
             "x_out_mm": np.interp(samples, at, response.x_out_mm),
         }
+
+
+def blocks_of(runs: Sequence[RunErrors], rigs: Sequence[Rig]) -> list[Indices]:
+    """Return the blocks of each run's residuals at its rig, a fair number of them over all."""
+    longest = sum(run.length for run in runs) // FEWEST_BLOCKS
+    return [run.blocks(rig, longest) for run, rig in zip(runs, rigs, strict=True)]
 
 
 def _before_turns(square: Floats, change: Floats, conditioned: Conditioned) -> None:
