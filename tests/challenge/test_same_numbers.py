@@ -39,8 +39,8 @@ APART = {
     "channel_delay": 0.1,
     "drive_compliance": 0.05,
     "free_tendon": 0.05,
+    "presliding": 0.08,  # the sharp corner without it, on the mesh
     "stribeck_friction": 0.25,  # each place's own speed, with a memory
-    "presliding": 0.4,  # Dahl's law instead of a linear one
     "load_inertia": 0.6,  # how the load swings after it has set off
 }
 VARIANTS = [(effect, parameters) for effect, variants in FULL.items() for parameters in variants]

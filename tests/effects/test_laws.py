@@ -30,7 +30,7 @@ from tsas_cli.effects.load_inertia import inertia_force
 from tsas_cli.effects.load_spring_nonlinearity import spring_force, spring_tangent
 from tsas_cli.effects.position_sensor_gain import read_position
 from tsas_cli.effects.preload_loss import lost_preload
-from tsas_cli.effects.presliding import bristle_stiffness
+from tsas_cli.effects.presliding import share_turned, turning_rate
 from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.effects.sheath_compression import softened
 from tsas_cli.effects.stribeck_friction import stribeck_factor
@@ -65,7 +65,7 @@ ODD = 12.345678901234567  # a value whose last bit shows any arithmetic that is 
         (ODD - lost_preload(PreloadLoss(), 7.0), ODD),
         (spring_force(ODD, 1.579, LoadSpringNonlinearity()), 1.579 * ODD),
         (spring_tangent(ODD, 1.579, LoadSpringNonlinearity()), 1.579),
-        (bristle_stiffness(4.0, 0.0), math.inf),
+        (ODD * share_turned(0.3, 1e-9, 0.0), ODD),
     ],
 )
 def test_neutral_gives_back_what_went_in_to_the_last_bit(left, expected):
@@ -136,9 +136,22 @@ def test_an_elastic_contact_has_less_friction_at_more_tension():
     assert load_factor(1e-9, -1.0) == load_factor(0.01, -1.0) == pytest.approx(100.0)
 
 
-def test_a_bristle_reaches_its_limit_after_its_length():
-    assert bristle_stiffness(4.0, 0.02) * 0.02 == pytest.approx(4.0)
-    assert bristle_stiffness(4.0, 0.02) == pytest.approx(200.0)
+@pytest.mark.parametrize("way", [0.003, 0.02, 0.1, -0.003, -0.02, -0.1])
+@pytest.mark.parametrize("before", [-1.0, -0.2, 0.0, 0.7, 1.0])
+def test_friction_turns_round_by_dahls_law(before, way):
+    """dz/dx = (1 − z sgn(dx))/length, integrated in small steps."""
+    length, z = 0.02, before
+    for step in np.full(20_000, way / 20_000):
+        z += step * (1.0 - z * np.sign(step)) / length
+    assert share_turned(before, way, length) == pytest.approx(z, abs=1e-3)
+    slope = (share_turned(before, way + 1e-7, length) - share_turned(before, way, length)) / 1e-7
+    assert turning_rate(before, way, length) == pytest.approx(slope, rel=1e-4, abs=1e-6)
+
+
+@pytest.mark.parametrize("before", [-1.0, -0.2, 0.7])
+def test_before_any_way_the_steeper_side_counts(before):
+    sides = [turning_rate(before, way, 0.02) for way in (1e-12, -1e-12)]
+    assert turning_rate(before, 0.0, 0.02) == pytest.approx(max(sides))
 
 
 def test_a_bend_drifts_at_its_rate_settles_and_never_turns_the_other_way():

@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 
 from tsas_cli.effects import Effects, FreeTendon
-from tsas_cli.physics.chain_step import DISPLACEMENT, FORCE, SPRING, Boundary
+from tsas_cli.physics.chain_state import DISPLACEMENT, FORCE, SPRING, Boundary
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.slip_chain import slip_chain
 

@@ -11,7 +11,7 @@ import numpy as np
 from tests.physics.references import GROUP_A, course_of
 from tsas_cli.effects import Effects, FreeTendon
 from tsas_cli.physics.branches import branches
-from tsas_cli.physics.chain_step import DISPLACEMENT, FORCE, SPRING, Boundary
+from tsas_cli.physics.chain_state import DISPLACEMENT, FORCE, SPRING, Boundary
 from tsas_cli.physics.slip_chain import slip_chain
 from tsas_cli.physics.static import static_model
 

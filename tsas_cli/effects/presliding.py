@@ -1,14 +1,14 @@
-"""Where the tendon sticks, friction turns round over a small elastic travel and not at once.
+"""Where the tendon sticks, friction turns round over a small travel and not at once.
 
 What one sees: after a reversal f_in leaves with a finite slope instead of a sharp corner; f_out and
-x_out set off gently, and the whole tendon slides later by twice the same travel, at low tension as
-at high. Strokes below that travel are lines without a loop.
-Equation: the bristle of Yang 2025, Eq. (15), as a spring: friction changes by (its limit/length)
-per mm of motion, up to the limit.
+x_out set off gently, and the whole tendon slides later by about twice the travel, at low tension as
+at high. Strokes far below that travel are lines without a loop.
+Equation: the bristles of Yang 2025, Eq. (15), without their time: the share z of its limit that
+friction has reached follows dz/dx = (1 − z sgn(dx))/length (P. R. Dahl, AIAA Journal 14, 1976).
 Mistaken for: backlash (a flat piece first); drive_compliance, free_tendon (longer at higher
 tension); stribeck_friction (goes with speed); x_in smoothed too much before the fit, which rounds
 the same corners.
-Not validated: bristles that yield gradually, as Dahl's do; a length that depends on the tension.
+Not validated: bristles that yield all at once at their limit; a length that depends on the tension.
 """
 
 import math
@@ -19,22 +19,34 @@ from tsas_cli.numerics.compiled import kernel
 
 
 class Presliding(NamedTuple):
-    """Travel over which friction grows from nothing to its limit [mm]."""
+    """Travel over which friction comes within 1/e of its limit [mm]."""
 
     length_mm: float = 0.0
 
 
 @kernel
-def bristle_stiffness(limit: float, length: float) -> float:
-    """Return friction per travel [N/mm] where its limit is `limit` [N]; infinite for length 0."""
-    return limit / length if length > 0.0 else math.inf
+def share_turned(before: float, moved: float, length: float) -> float:
+    """Return the share of its limit that friction has reached after a way of one sign [1]."""
+    limit = 1.0 if moved > 0.0 else -1.0
+    if length == 0.0:
+        return limit
+    return limit + (before - limit) * math.exp(-abs(moved) / length)
+
+
+@kernel
+def turning_rate(before: float, moved: float, length: float) -> float:
+    """Return d share/d way [1/mm]; of both sides the steeper one before any way."""
+    steepest = 1.0 - before if moved > 0.0 else 1.0 + before
+    if moved == 0.0:
+        steepest = 1.0 + abs(before)
+    return steepest / length * math.exp(-abs(moved) / length)
 
 
 PRESLIDING = Effect(
     name="presliding",
     title="Elastic travel before sliding",
     acts_on="tendon",
-    equation="df/dx = limit/length while |f| < limit",
+    equation="dz/dx = (1 − z·sgn(dx))/length, friction = z·limit",
     doc=__doc__,
     parameters=(
         Parameter(

@@ -11,7 +11,7 @@ from tsas_cli.effects import Effects
 from tsas_cli.effects.drive_friction import drive_friction_force
 from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.physics.branches import branches
-from tsas_cli.physics.chain_step import DISPLACEMENT, FORCE
+from tsas_cli.physics.chain_state import DISPLACEMENT, FORCE
 from tsas_cli.physics.ends import Drive, Ends, ends_of
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.sensors import reading

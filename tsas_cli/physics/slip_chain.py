@@ -11,39 +11,37 @@ the last sample's set of slipping nodes.
 import math
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.effects.load_spring_nonlinearity import spring_force, spring_tangent
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.physics.chain_step import (
-    BRISTLE,
+from tsas_cli.physics.chain_ends import friction_at_load, keep_speed, pulls_back
+from tsas_cli.physics.chain_nodes import keep
+from tsas_cli.physics.chain_state import (
     DISPLACEMENT,
     FORCE,
     GIVE,
+    MOVED,
     ROWS,
     SLIP,
     SPEED,
     T_OLD,
+    TURNED,
     X_OLD,
     Boundary,
+    Floats,
     Laws,
     Moment,
+    Phases,
     T,
     X,
-    friction_at_load,
-    keep_speed,
-    pulls_back,
-    settle,
 )
+from tsas_cli.physics.chain_step import settle
 from tsas_cli.physics.compliances import (
     compliance_at_drive,
     compliance_at_load,
     sheath_compliance,
 )
 from tsas_cli.physics.rig import Rig
-
-Floats = npt.NDArray[np.float64]
-Phases = npt.NDArray[np.int8]
 
 MOST_UNSETTLED = 40  # samples, after which a run is given up
 MOST_STEPS = 60  # between two samples, those included that did not settle
@@ -127,7 +125,6 @@ def at_rest(rig: Rig, n: int) -> Floats:
     chain = np.zeros((ROWS, n + 2))
     chain[T] = rig.preload_N
     chain[T_OLD] = rig.preload_N
-    chain[BRISTLE] = math.inf
     chain[GIVE, : n + 1] = segment_compliances(rig, n)
     return chain
 
@@ -173,7 +170,7 @@ def advance(
         now = between(start, end, to, end.step_s * (to - done))
         if settle(chain, now, boundary, laws, scale):
             keep_speed(chain, now.step_s)
-            keep(chain)
+            keep(chain, laws)
             if to == 1.0:
                 return True
             done = to
@@ -181,15 +178,9 @@ def advance(
         else:
             for j in range(chain.shape[1]):
                 chain[X, j], chain[T, j], chain[SLIP, j] = chain[X_OLD, j], chain[T_OLD, j], 0.0
+                chain[MOVED, j] = 0.0
             step *= 0.5
     return False
-
-
-@kernel
-def keep(chain: Floats) -> None:
-    """Take the present state as the settled one."""
-    for j in range(chain.shape[1]):
-        chain[X_OLD, j], chain[T_OLD, j] = chain[X, j], chain[T, j]
 
 
 @kernel
@@ -252,4 +243,5 @@ def hang_slack(chain: Floats, now: Moment, boundary: Boundary, laws: Laws) -> No
             chain[SLIP, j] = 1.0
     chain[SLIP, last] = 1.0
     chain[SPEED, last] = 0.0
-    keep(chain)
+    keep(chain, laws)
+    chain[TURNED], chain[MOVED] = 1.0, 0.0

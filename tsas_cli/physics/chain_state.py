@@ -1,0 +1,68 @@
+"""What the slip chain is at one moment: its nodes, the laws that hold there, what is given."""
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from tsas_cli.effects.load_friction import LoadFriction
+from tsas_cli.effects.load_spring_nonlinearity import LoadSpringNonlinearity
+
+Floats = npt.NDArray[np.float64]
+Phases = npt.NDArray[np.int8]
+
+DISPLACEMENT, FORCE, SPRING = 0, 1, 2  # what is given at an end
+TOLERANCE = 1e-10  # of the tension and of a segment's elongation, for rounding
+BALANCED = 1e-9  # of the tension, where a law is not straight
+
+
+class Boundary(NamedTuple):
+    """What is given at the two ends: the kind of each."""
+
+    drive: int
+    load: int
+
+
+class Laws(NamedTuple):
+    """What of the rig a static problem needs; the whole rig would be copied at every call."""
+
+    preload_N: float
+    load_stiffness_N_per_mm: float
+    load_spring: LoadSpringNonlinearity
+    load_friction: LoadFriction
+    load_mass_kg: float
+    drive_friction_N: float
+    proximal_spring_N_per_mm: float
+    friction_exponent: float
+    presliding_mm: float
+
+
+class Moment(NamedTuple):
+    """All that changes from outside, at one moment."""
+
+    drive: float  # displacement [mm] or tension at the sensor [N]
+    load: float  # displacement [mm] or tension at the sensor [N]; unused with a spring
+    pulled: float  # friction times bend in contraction [1]
+    released: float  # friction times bend in loosening [1]
+    viscous_N: float  # tension lost over the whole sheath to viscous friction
+    lost_N: float  # preload that the load spring's anchor has lost
+    step_s: float  # time since the moment before, infinite where it plays no part
+
+
+# The state, a row for each over the nodes from 0 at the drive to n + 1 at the load, shape
+# (ROWS, n + 2). In one array, since a compiled call counts the references of each that it is given.
+X, X_OLD = 0, 1  # position, now and when the last step had settled [mm]
+T, T_OLD = 2, 3  # tension of the segment behind the node, likewise [N]
+SLIP = 4  # direction in which the node slips, 0 where it sticks
+PASSES, TAKES, BRISTLE = (
+    5,
+    6,
+    7,
+)  # where it does not stick, T[i] = PASSES T[i−1] − TAKES − BRISTLE x
+GIVE = 8  # compliance of the segment behind the node [mm/N]
+P, Q, R = 9, 10, 11  # T = (P x + Q)/R of the segment behind the node, x its position
+SPEED = 12  # of the load's mass when the last step had settled [mm/s]
+PULLED, RELEASED = 13, 14  # what the node's share of the bend leaves of the tension, e^(−a/n)
+TURNED = 15  # with presliding, the share of its limit that friction had reached
+MOVED = 16  # with presliding, the way since then at which PASSES, TAKES and BRISTLE hold [mm]
+ROWS = 17
