@@ -71,3 +71,15 @@ def test_few_runs_are_held_out_in_stretches():
     assert not np.intersect1d(folds.fold[folds.run == 0], folds.fold[folds.run == 1]).size
     for block in range(12):  # a block is never cut
         assert np.unique(folds.fold[folds.block == block]).size == 1
+
+
+def test_values_move_as_in_a_refit_where_the_residuals_change(linear):
+    shared, own, data = linear
+    J = np.hstack((shared, own))
+    names = [unknown("a"), unknown("b"), *(unknown("zero", k) for k in range(RUNS))]
+    trial = trial_of(J, data, names)
+    changes = np.random.default_rng(3).standard_normal((data.size, 2))
+    moved = trial.moved_by(changes)
+    for k in range(2):
+        refitted = np.linalg.lstsq(J, data - changes[:, k], rcond=None)[0]
+        np.testing.assert_allclose(moved[:, k], refitted - trial.solution.values, rtol=1e-6)

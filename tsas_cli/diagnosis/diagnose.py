@@ -208,11 +208,13 @@ def _cause(
 
 
 def _estimates(search: Search, trial: Trial) -> list[Estimate]:
-    """Return what a trial says of its unknowns."""
+    """Return what a trial says of its unknowns, as far as an uneven bend leaves them sure."""
     solution = trial.solution
     blocks = [search.folds.block[search.folds.run == k] for k in range(len(search.bench.rigs))]
     counted = [np.unique(block, return_inverse=True)[1] for block in blocks]
     fitted = with_errors(trial.unknowns, solution, counted, by_run=True)
+    uneven = trial.moved_by(search.bench.unevenness(trial))
+    fitted = replace(fitted, stderr=np.sqrt(fitted.stderr**2 + np.sum(uneven**2, axis=1)))
     told = estimates_of(trial.unknowns, fitted, search.bench.base.ids())
     return [_as_sure_as_the_data_sheet(e, trial) if e.name == SHEATH else e for e in told]
 

@@ -12,12 +12,13 @@ from tsas_cli.identification.joint_fit import JointFit, rig_at
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.identification.run_errors import RunErrors
 from tsas_cli.physics.quasi_static import CHAIN_ONLY, is_closed
-from tsas_cli.physics.rig import Rig
+from tsas_cli.physics.rig import Rig, with_values
 
 Floats = npt.NDArray[np.float64]
 
 TOLERANCE = 1e-5  # of the squares, for the last step of a fit that is one of many
 NODES, COARSE_NODES = 40, 12  # of the slip chain in fits, and for a first look
+UNEVEN = 0.05  # by which a sheath's curvature may be larger here than there, a standard deviation
 
 
 @dataclass(frozen=True)
@@ -44,6 +45,14 @@ class Trial:
         edges = np.cumsum(self.sizes)[:-1]
         residuals = np.split(self.solution.residual, edges)
         return list(zip(residuals, np.split(self.solution.jacobian, edges), strict=True))
+
+    def moved_by(self, changes: Floats) -> Floats:
+        """Return by how much the values move where the residuals change, (n, m), shape (p, m)."""
+        free = ~self.solution.at_bound
+        J = self.solution.jacobian[:, free]
+        moves = np.zeros((free.size, changes.shape[1]))
+        moves[free] = -np.linalg.pinv(J.T @ J, hermitian=True) @ (J.T @ changes)
+        return moves
 
     @property
     def solver(self) -> str:
@@ -137,6 +146,21 @@ class Bench:
         return np.concatenate(
             [run.residuals(rig_at(self.rigs[k], k, unknowns, at)) for k, run in enumerate(errors)]
         )
+
+    def unevenness(self, trial: Trial) -> Floats:
+        """Return how the residuals of a trial would change if the sheath were bent unevenly.
+
+        Shape (n, 2), one standard deviation of each of the first two ways.
+        """
+        rigs = [self.rig(trial, k) for k in range(len(self.rigs))]
+        columns = []
+        for way in ("bend_slope", "bend_bow"):
+            changes = [
+                run.residuals(with_values(rig, {way: UNEVEN})) - run.residuals(rig)
+                for run, rig in zip(self.meshed, rigs, strict=True)
+            ]
+            columns.append(np.concatenate(changes))
+        return np.array(columns).T
 
     @property
     def channels(self) -> list[str]:

@@ -15,6 +15,12 @@ def sheath_compliance(rig: Rig) -> float:
 
 
 @kernel
+def length_per_angle(place: float, rig: Rig) -> float:
+    """Return the sheath's length per bend angle over its mean, `place` from −1 (drive) to 1."""
+    return 1.0 + rig.bend_slope * place + rig.bend_bow * (1.5 * place * place - 0.5)
+
+
+@kernel
 def compliance_at_drive(rig: Rig) -> float:
     """Return the compliance between the drive's sensors and the sheath [mm/N]."""
     free = free_compliance(rig.effects.free_tendon.proximal_length_mm, rig.tendon_stiffness_N)

@@ -91,6 +91,7 @@ def is_closed(rig: Rig, drive: Drive) -> bool:
     return (
         drive.kind == "displacement"
         and drive.load == "spring"
+        and rig.bend_slope == rig.bend_bow == 0.0
         and all(getattr(rig.effects, name) == getattr(neutral, name) for name in CHAIN_ONLY)
     )
 

@@ -21,6 +21,8 @@ class Rig(NamedTuple):
     preload_N: float  # [F0]
     x_in_zero_mm: float = 0.0
     x_out_zero_mm: float = 0.0
+    bend_slope: float = 0.0  # share by which length per bend angle rises from drive to load
+    bend_bow: float = 0.0  # and to both ends (amplitudes of Legendre's P₁ and P₂)
     effects: Effects = Effects()
 
 

@@ -39,6 +39,7 @@ from tsas_cli.physics.chain_step import settle
 from tsas_cli.physics.compliances import (
     compliance_at_drive,
     compliance_at_load,
+    length_per_angle,
     sheath_compliance,
 )
 from tsas_cli.physics.rig import Rig
@@ -150,9 +151,13 @@ def laws_of(rig: Rig) -> Laws:
 def segment_compliances(rig: Rig, n: int) -> Floats:
     """Return the compliance of each of the n + 1 segments, shape (n + 1,) [mm/N]."""
     sheathed = sheath_compliance(rig) / n
-    compliance = np.full(n + 1, sheathed)
-    compliance[0] = 0.5 * sheathed + compliance_at_drive(rig)
-    compliance[n] = 0.5 * sheathed + compliance_at_load(rig)
+    compliance = np.empty(n + 1)
+    for i in range(n + 1):
+        start, end = max(2 * i - 1, 0), min(2 * i + 1, 2 * n)  # in halves of a node's bend
+        at = 0.5 * (start + end) / n - 1.0
+        compliance[i] = 0.5 * (end - start) * sheathed * length_per_angle(at, rig)
+    compliance[0] += compliance_at_drive(rig)
+    compliance[n] += compliance_at_load(rig)
     return compliance
 
 

@@ -1,0 +1,44 @@
+"""A sheath that is bent more here than there, against the independent rig."""
+
+import numpy as np
+import pytest
+
+from tests.physics.references import GROUP_A
+from tsas_cli.challenge.rig.motions import sine
+from tsas_cli.challenge.rig.tendon import Rig as VirtualRig
+from tsas_cli.challenge.rig.tendon import simulate as run_rig
+from tsas_cli.physics.quasi_static import Drive, simulate
+from tsas_cli.physics.slip_chain import segment_compliances
+
+MOTION = sine(omega_rad_s=1.0)
+SHARE = 0.3
+
+
+@pytest.mark.parametrize("way", ["bend_slope", "bend_bow"])
+def test_the_tendon_is_as_long_as_before(way):
+    uneven = segment_compliances(GROUP_A._replace(**{way: SHARE}), 200)
+    even = segment_compliances(GROUP_A, 200)
+    assert uneven.sum() == pytest.approx(even.sum(), rel=1e-4)
+    assert np.ptp(uneven[1:-1] / even[1:-1]) == pytest.approx(
+        SHARE * (2.0, 1.5)[way == "bend_bow"], rel=0.03
+    )
+
+
+@pytest.mark.parametrize("way", ["bend_slope", "bend_bow"])
+def test_an_uneven_bend_does_what_it_does_to_the_rig(way):
+    """Where length per angle is larger by a share, the curvature is smaller by it."""
+    angle = np.linspace(-1.0, 1.0, 401)
+    shape = angle if way == "bend_slope" else 1.5 * angle**2 - 0.5
+    length = np.cumsum(1.0 + SHARE * shape)
+    place = (length - length[0]) / (length[-1] - length[0])
+    profile = tuple(zip(place.tolist(), (1.0 / (1.0 + SHARE * shape)).tolist(), strict=True))
+    rigs, models = {}, {}
+    for share in (0.0, SHARE):
+        virtual = VirtualRig(cells=120, bend_profile=profile if share else ((0.0, 1.0),))
+        columns = run_rig(virtual, MOTION).columns
+        model = GROUP_A._replace(tendon_stiffness_N=virtual.axial_stiffness, **{way: share})
+        response = simulate(model, Drive(columns["x_in_mm"]), on_mesh=True, nodes=120)
+        rigs[share], models[share] = columns["f_in_N"], response.f_in_N
+    change, expected = models[SHARE] - models[0.0], rigs[SHARE] - rigs[0.0]
+    assert np.abs(expected).max() > 0.5
+    assert np.sqrt(np.mean((change - expected) ** 2)) < 0.03 * np.sqrt(np.mean(expected**2))
