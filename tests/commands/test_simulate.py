@@ -162,3 +162,39 @@ def test_an_extended_model_is_taken(strict, folder, model, tmp_path):
         assert (done.returncode, done.stderr) == (0, "")
         rmse.append(json.loads(done.stdout)["runs"]["a"]["channels"]["f_in_N"]["rmse"])
     assert rmse[1] > 3.0 * rmse[0]
+
+
+def test_a_run_that_was_not_fitted_is_predicted_once_its_own_zeros_are_known(
+    strict, recorded, model, tmp_path
+):
+    """A shifted sensor ruins the prediction; friction stays what the model says."""
+    shifted = recorded | {"x_in_mm": recorded["x_in_mm"] + 0.4}
+    folder = write_dataset(
+        tmp_path / "d",
+        [Run("a", recorded, conditions(TRUE)), Run("b", shifted, conditions(TRUE))],
+    )
+    wrong = model.read_text(encoding="utf-8").replace("value = 0.16", "value = 0.15")
+    (tmp_path / "wrong.toml").write_text(wrong, encoding="utf-8")
+    answers = {}
+    for name, file, options in (
+        ("as it is", model, ()),
+        ("own", model, ("--fit-own",)),
+        ("wrong", tmp_path / "wrong.toml", ("--fit-own",)),
+    ):
+        call = ("--model", file, *options, "--runs", "b", "--out", tmp_path / name, "--json")
+        done = strict("simulate", folder, *call)
+        assert (done.returncode, done.stderr) == (0, "")
+        summary = json.loads(done.stdout)
+        assert list(summary["runs"]) == summary["chosen"] == ["b"]
+        answers[name] = summary["runs"]["b"]["channels"]["f_in_N"]
+    assert answers["own"]["rmse"] < 2.0 * answers["own"]["noise"]
+    assert answers["as it is"]["rmse"] > 5.0 * answers["own"]["rmse"]
+    assert answers["wrong"]["rmse"] > 3.0 * answers["own"]["rmse"]
+
+
+@pytest.mark.parametrize("stage", ["calibrate", "diagnose", "simulate"])
+def test_a_run_that_is_not_there_is_named(strict, folder, tmp_path, stage):
+    done = strict(stage, folder, "--runs", "a,A", "--out", tmp_path / "out")
+    assert done.returncode == 2
+    assert "there is no run 'A'" in done.stderr
+    assert not (tmp_path / "out").exists()

@@ -216,3 +216,22 @@ def test_a_column_that_is_there_twice_is_refused(dataset: Path, columns: Columns
     force = pa.array(columns["f_in_N"])
     put(dataset, pa.table(columns).append_column("f_in_N", force))
     assert refusal(dataset) == ": column f_in_N is there twice"
+
+
+def test_chosen_runs_come_in_the_order_of_the_manifest(tmp_path: Path, columns: Columns) -> None:
+    table = pa.table(columns)
+    manifest = Manifest.model_validate(
+        {
+            "format": 1,
+            "name": "",
+            "kind": "measured",
+            "run": [{"id": i, "file": f"runs/{i}.parquet", "sha256": "0" * 64} for i in "abc"],
+        }
+    )
+    write_dataset(tmp_path, manifest, dict.fromkeys("abc", table))
+    whole = read_dataset(tmp_path)
+    chosen = whole.only(["c", "a"])
+    assert [recording.run.id for recording in chosen] == ["a", "c"]
+    assert chosen.header("x", tmp_path)["dataset"] == whole.header("x", tmp_path)["dataset"]
+    with pytest.raises(InputError, match="there is no run 'd'"):
+        whole.only(["d"])

@@ -4,11 +4,14 @@ import sys
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from tsas_cli.errors import printable
+
+if TYPE_CHECKING:
+    from tsas_cli.recordings.dataset import Dataset
 
 DatasetFolder = Annotated[Path, typer.Argument(metavar="DATASET", help="A dataset's folder.")]
 OutFolder = Annotated[Path, typer.Option("--out", metavar="DIR", help="The folder to write.")]
@@ -16,9 +19,27 @@ ModelFile = Annotated[
     Path | None,
     typer.Option("--model", metavar="M.toml", help="The model; the data sheet's without it."),
 ]
+ChosenRuns = Annotated[
+    str | None,
+    typer.Option("--runs", metavar="IDS", help="Only these runs, with commas between; else all."),
+]
 Force = Annotated[bool, typer.Option("--force", help="Replace the output if it is there.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
 Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON instead of a table.")]
+
+
+def opened(folder: Path, runs: str | None) -> "Dataset":
+    """Open a dataset with the runs that were asked for.
+
+    Raises
+    ------
+    InputError
+        It is none, or has no such run.
+    """
+    from tsas_cli.recordings.dataset import read_dataset
+
+    dataset = read_dataset(folder)
+    return dataset if runs is None else dataset.only(name.strip() for name in runs.split(","))
 
 
 def show(

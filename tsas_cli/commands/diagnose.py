@@ -1,12 +1,14 @@
 """`tsas diagnose`: what the model gets wrong, its cause, the extended model, the gain."""
 
 from tsas_cli.commands.common import (
+    ChosenRuns,
     DatasetFolder,
     Force,
     Json,
     ModelFile,
     OutFolder,
     Quiet,
+    opened,
     progress,
     show,
 )
@@ -16,15 +18,15 @@ def diagnose(
     dataset: DatasetFolder,
     out: OutFolder,
     model: ModelFile = None,
+    runs: ChosenRuns = None,
     force: Force = False,
     quiet: Quiet = False,
     as_json: Json = False,
 ) -> None:
     """Show what the simulation gets wrong, name the cause, extend the model, measure the gain."""
     from tsas_cli.diagnosis.diagnose_stage import diagnose_dataset, tables
-    from tsas_cli.recordings.dataset import read_dataset
 
-    data = read_dataset(dataset)
+    data = opened(dataset, runs)
     with progress("diagnose", None, quiet=quiet or as_json) as step:
         summary = diagnose_dataset(data, model, out, force=force, step=step)
     show(summary, tables(summary, out), quiet=quiet, as_json=as_json)

@@ -6,12 +6,14 @@ from typing import Annotated
 import typer
 
 from tsas_cli.commands.common import (
+    ChosenRuns,
     DatasetFolder,
     Force,
     Json,
     ModelFile,
     OutFolder,
     Quiet,
+    opened,
     progress,
     show,
 )
@@ -31,17 +33,23 @@ def simulate(
     dynamics: Annotated[
         DynamicsOption, typer.Option("--dynamics", help="static: the paper's; slip: distributed.")
     ] = DynamicsOption.slip,
+    fit_own: Annotated[
+        bool,
+        typer.Option(help="Fit what belongs to each run alone first: its preload and its zeros."),
+    ] = False,
+    runs: ChosenRuns = None,
     force: Force = False,
     quiet: Quiet = False,
     as_json: Json = False,
 ) -> None:
     """Simulate every run with a model and say how far it is from the measurement."""
     from tsas_cli.identification.simulation import simulate_dataset
-    from tsas_cli.recordings.dataset import read_dataset
 
-    data = read_dataset(dataset)
-    with progress("simulate", len(data.manifest.run), quiet=quiet or as_json) as step:
-        summary = simulate_dataset(data, model, dynamics.value, out, force=force, step=step)
+    data = opened(dataset, runs)
+    with progress("simulate", len(data.runs), quiet=quiet or as_json) as step:
+        summary = simulate_dataset(
+            data, model, dynamics.value, out, fit_own=fit_own, force=force, step=step
+        )
     rows = [
         (run, name, f"{c['rmse']:.4g}", f"{c['noise']:.2g}", c["unit"], answer["solver"])
         for run, answer in summary["runs"].items()

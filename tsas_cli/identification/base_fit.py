@@ -7,7 +7,7 @@ import numpy as np
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.joint_fit import JointFit
 from tsas_cli.identification.model import Model
-from tsas_cli.identification.phases import Segment
+from tsas_cli.identification.phases import Segment, segment
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.starts import read_off
 from tsas_cli.identification.stiffness import Slope, slopes
@@ -34,6 +34,16 @@ def base_fit(
     """
     read = _read_off(stated, runs, segments, measured)
     return JointFit(read.over(stated), stated.over(read), runs, plausible)
+
+
+def with_own_values(model: Model, run: Prepared) -> Model:
+    """Return a model with what belongs to a run alone fitted to it; all else stays as it is."""
+    parts = segment(run)
+    read = _read_off(model, [run], [parts], [slopes_of(run, parts)])
+    own = Model(tuple(e for e in read.estimates if e.run is not None))
+    fit = JointFit(own.over(model), model.over(own), [run])
+    fit.keep_shared()
+    return fit.solve()[0]
 
 
 def slopes_of(run: Prepared, segments: list[Segment]) -> list[Slope]:

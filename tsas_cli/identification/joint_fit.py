@@ -58,6 +58,11 @@ class JointFit:
             for run, at, rig in zip(self.runs, kept_at, self.rigs, strict=True)
         ]
 
+    def keep_shared(self) -> None:
+        """Leave free only what belongs to one run alone."""
+        self.unknowns = [u for u in self.unknowns if u.run is not None]
+        self.values = np.array([u.start for u in self.unknowns])
+
     def solve(self) -> tuple[Model, Fitted | None, list[str]]:
         """Fit what can be told; again with the weights of the result, until the choice stays.
 

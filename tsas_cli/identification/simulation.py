@@ -8,6 +8,7 @@ import numpy as np
 import pyarrow as pa
 
 from tsas_cli.files import new_folder, sha256_of, write_json
+from tsas_cli.identification.base_fit import with_own_values
 from tsas_cli.identification.comparison import Compared, compare
 from tsas_cli.identification.model import FILE, data_sheet, read_model
 from tsas_cli.identification.prepared import Prepared, prepare
@@ -21,12 +22,15 @@ def simulate_dataset(
     dynamics: Dynamics,
     out: Path,
     *,
+    fit_own: bool = False,
     force: bool = False,
     step: Callable[[], None] = lambda: None,
 ) -> dict[str, Any]:
     """Simulate all runs and write `runs/ID.parquet` and `simulation.json` into a new folder.
 
-    Without a model file the manifest's data sheet is simulated. `step` is called after each run.
+    Without a model file the manifest's data sheet is simulated. With `fit_own` the preload and the
+    zeros of each run are fitted first, all else stays as the model says: so a model predicts runs
+    that it was not fitted to. `step` is called after each run.
 
     Raises
     ------
@@ -42,12 +46,13 @@ def simulate_dataset(
         if model_path is None
         else {"file": model_path.name, "sha256": sha256_of(model_path)}
     )
-    summary |= {"dynamics": dynamics, "runs": {}}
+    summary |= {"dynamics": dynamics, "own_values_fitted": fit_own, "runs": {}}
     with new_folder(out, force=force) as folder:
         (folder / "runs").mkdir()
         for recording in dataset:
             run = prepare(recording, dataset.manifest.session_start)
-            answer = compare(run, model, dynamics)
+            own = with_own_values(model, run) if fit_own else model
+            answer = compare(run, own, dynamics)
             write_parquet(folder / "runs" / f"{run.run.id}.parquet", _table(run, answer))
             summary["runs"][run.run.id] = answer.as_json(run)
             step()

@@ -1,8 +1,8 @@
 """A dataset on disk: one Parquet file per run, and the manifest beside them (format 1)."""
 
 import os
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +12,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from tsas_cli import __version__
-from tsas_cli.errors import InputError
+from tsas_cli.errors import InputError, nearest
 from tsas_cli.files import sha256_of
 from tsas_cli.recordings.columns import BY_NAME, INPUTS, OUTPUTS, TIME, has_input_and_output
 from tsas_cli.recordings.manifest import FILE, Manifest, Run, read_manifest, write_manifest
@@ -39,14 +39,42 @@ class Recording:
 
 @dataclass(frozen=True)
 class Dataset:
-    """A dataset's folder and manifest; the recordings are read when they are asked for."""
+    """A dataset's folder and manifest; the recordings are read when they are asked for.
+
+    `chosen` holds the ids of the runs that count, all without it.
+    """
 
     folder: Path
     manifest: Manifest
+    chosen: tuple[str, ...] | None = None
+
+    @property
+    def runs(self) -> list[Run]:
+        """The runs that count, in the order of the manifest."""
+        return [r for r in self.manifest.run if self.chosen is None or r.id in self.chosen]
+
+    def only(self, ids: Iterable[str]) -> "Dataset":
+        """Return the same dataset with these runs alone.
+
+        Raises
+        ------
+        InputError
+            There is no such run.
+        """
+        known = [run.id for run in self.manifest.run]
+        chosen = tuple(ids)
+        for name in chosen:
+            if name not in known:
+                raise InputError(
+                    f"there is no run {name!r}",
+                    where=self.folder / FILE,
+                    remedy=nearest(name, known),
+                )
+        return replace(self, chosen=chosen)
 
     def __iter__(self) -> Iterator[Recording]:
         """Read one recording after the other, in the order of the manifest."""
-        return (read_recording(self.folder, run) for run in self.manifest.run)
+        return (read_recording(self.folder, run) for run in self.runs)
 
     def header(self, stage: str, folder: Path) -> dict[str, Any]:
         """Return the first keys of the JSON that a stage writes into `folder`."""
@@ -56,7 +84,7 @@ class Dataset:
             "stage": stage,
             "version": __version__,
             "dataset": {"name": self.manifest.name, "folder": path, "hashes": self.hashes()},
-        }
+        } | ({} if self.chosen is None else {"chosen": [run.id for run in self.runs]})
 
     def hashes(self) -> dict[str, str]:
         """Return the checksum of the manifest and of each run's file, by path in the dataset."""
