@@ -16,12 +16,12 @@ from tsas_cli.challenge.entry import FILE, LOG
 from tsas_cli.diagnosis.diagnose_stage import diagnose_dataset
 from tsas_cli.errors import InputError
 from tsas_cli.files import new_folder, read_json, write_json
+from tsas_cli.numerics.side_by_side import THREADS
 from tsas_cli.recordings.dataset import read_dataset
 
 Diagnose = Callable[[Path, Path], None]
 
-# A case is one process; threads on matrices that small make it three times slower.
-ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1"}
+ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", THREADS: "1"}  # a case is one process
 
 
 def diagnose(dataset: Path, out: Path) -> None:

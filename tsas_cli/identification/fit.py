@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from tsas_cli.numerics.covariance import jackknife
 from tsas_cli.numerics.least_squares import least_squares
+from tsas_cli.numerics.side_by_side import each
 
 Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
@@ -71,15 +72,20 @@ def jacobian(
     unknowns: Sequence[Unknown], runs: int, values: Floats, residuals: Residuals
 ) -> Floats:
     """Return the Jacobian of all runs' residuals by finite differences, shape (n, p)."""
-    base = [residuals(r, values) for r in range(runs)]
+    base = each(lambda r: residuals(r, values), range(runs))
     starts = np.concatenate(([0], np.cumsum([b.size for b in base])))
-    out = np.zeros((int(starts[-1]), len(unknowns)))
-    for j, unknown in enumerate(unknowns):
+
+    def slope(at: tuple[int, int]) -> Floats:
+        r, j = at
         moved = values.copy()
-        moved[j] += STEP if values[j] + STEP <= unknown.upper else -STEP
-        for r in range(runs) if unknown.run is None else (unknown.run,):
-            change = residuals(r, moved) - base[r]
-            out[starts[r] : starts[r + 1], j] = change / (moved[j] - values[j])
+        moved[j] += STEP if values[j] + STEP <= unknowns[j].upper else -STEP
+        change: Floats = residuals(r, moved) - base[r]
+        return change / float(moved[j] - values[j])
+
+    places = [(r, j) for j, u in enumerate(unknowns) for r in range(runs) if u.run in (None, r)]
+    out = np.zeros((int(starts[-1]), len(unknowns)))
+    for (r, j), column in zip(places, each(slope, places), strict=True):
+        out[starts[r] : starts[r + 1], j] = column
     return out
 
 
@@ -120,7 +126,7 @@ def solve(
     """
 
     def errors(values: Floats) -> Floats:
-        return np.concatenate([residuals(r, values) for r in range(runs)])
+        return np.concatenate(each(lambda r: residuals(r, values), range(runs)))
 
     def slopes(values: Floats) -> Floats:
         return jacobian(unknowns, runs, values, residuals)

@@ -108,8 +108,9 @@ class JointFit:
         base = np.array([self._kept(u) for u in self.unknowns])
 
         def residuals(k: int, values: Floats) -> Floats:
-            base[chosen] = values
-            return self._residuals(k, base)
+            at = base.copy()
+            at[chosen] = values
+            return self._residuals(k, at)
 
         sought = [replace(self.unknowns[j], start=float(self.values[j])) for j in chosen]
         rigs = [self._rig(k, self.values) for k in range(len(self.errors))]

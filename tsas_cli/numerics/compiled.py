@@ -25,7 +25,9 @@ def kernel(function: Function) -> Function:
 
     folder = _cache_folder()
     numba.config.CACHE_DIR = folder or ""  # type: ignore[attr-defined] # numba sets it by name
-    return cast("Function", numba.njit(cache=folder is not None, error_model="numpy")(function))
+    return cast(
+        "Function", numba.njit(cache=folder is not None, error_model="numpy", nogil=True)(function)
+    )
 
 
 @cache

@@ -1,0 +1,25 @@
+"""Calls side by side: as one after the other, and really at once."""
+
+import threading
+
+import pytest
+
+from tsas_cli.numerics.side_by_side import THREADS, each
+
+
+@pytest.mark.parametrize("threads", ["1", "2", "5"])
+def test_the_answers_come_in_the_order_of_the_items(monkeypatch, threads):
+    monkeypatch.setenv(THREADS, threads)
+    assert each(lambda k: k * k, range(40)) == [k * k for k in range(40)]
+
+
+def test_calls_run_at_once(monkeypatch):
+    monkeypatch.setenv(THREADS, "2")
+    both = threading.Barrier(2, timeout=20.0)
+    assert each(lambda k: both.wait() >= 0 and k, [3, 4]) == [3, 4]
+
+
+def test_what_a_call_raises_is_raised(monkeypatch):
+    monkeypatch.setenv(THREADS, "2")
+    with pytest.raises(ZeroDivisionError):
+        each(lambda k: 1 / k, [1, 0])
