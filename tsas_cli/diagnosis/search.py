@@ -47,13 +47,24 @@ class Search:
 
     def run(self) -> Names:
         """Return the effects that are convincing together."""
-        named: Names = frozenset()
-        while len(named) < MOST_EFFECTS and not (named and self.is_quiet(named)):
-            better = self._best_addition(named)
-            if better is None:
-                break
-            named = self._without_idle(better)
-        return named
+        return self._grown(frozenset(), frozenset())
+
+    def _grown(self, named: Names, before: frozenset[Names]) -> Names:
+        """Add to the named effects while something convinces; `before` holds the sets passed.
+
+        Where a simpler effect is not worse than the best one by enough, both ways are gone to
+        their ends: what a simpler effect leaves may be what nothing else explains.
+        """
+        if len(named) >= MOST_EFFECTS or (named and self.is_quiet(named)) or named in before:
+            return named
+        ends = [
+            self._grown(self._without_idle(better), before | {named})
+            for better in self._better(named)
+        ]
+        if not ends:
+            return named
+        simple, best = ends[0], ends[-1]
+        return best if self.gain(simple, best).beyond(RICHER) else simple
 
     def weighed_again(self, named: Names) -> "Search":
         """Return a search whose errors are weighed by what is named, and that knows little more.
@@ -151,12 +162,14 @@ class Search:
             self.screened[names] = sorted(out, key=lambda s: -s.part)
         return self.screened[names]
 
-    def _best_addition(self, names: Names) -> Names | None:
+    def _better(self, names: Names) -> list[Names]:
+        """Return the sets to go on with: with a simple effect, with the best one if it differs."""
         singles = [(n, g) for n, g in self.add(names) if g.convincing and self.matters(names, {n})]
         if singles:
-            return names | {self._simplest(names, singles)}
+            ways = dict.fromkeys((self._simplest(names, singles), singles[0][0]))
+            return [names | {name} for name in ways]
         pair = self._best_pair(names) if len(names) + 2 <= MOST_EFFECTS else None
-        return None if pair is None else names | pair
+        return [] if pair is None else [names | pair]
 
     def _simplest(self, names: Names, singles: list[tuple[str, Gain]]) -> str:
         """Return the best effect, or one with fewer parameters that it does not beat."""

@@ -17,6 +17,7 @@ from tsas_cli.physics.rig import Rig, with_values
 Floats = npt.NDArray[np.float64]
 
 TOLERANCE = 1e-5  # of the squares, for the last step of a fit that is one of many
+ROUGHER = 100.0  # times that, at most, for a model that is as many times further off than noise
 NODES, COARSE_NODES = 40, 12  # of the slip chain in fits, and for a first look
 UNEVEN = 0.05  # by which a sheath's curvature may be larger here than there, a standard deviation
 
@@ -127,9 +128,10 @@ class Bench:
         unknowns = (*base, *freed)
         mesh = on_mesh or self.on_mesh(effects)
         runs = len(self.rigs)
-        solution = solve(
-            unknowns, runs, self._residuals(unknowns, on_mesh=mesh), tolerance=TOLERANCE
-        )
+        missed = 1.0 if near is None else near.mean_square
+        tolerance = TOLERANCE * min(max(missed, 1.0), ROUGHER)
+        residuals = self._residuals(unknowns, on_mesh=mesh)
+        solution = solve(unknowns, runs, residuals, tolerance=tolerance)
         sizes = tuple(self._residual(k, unknowns, solution.values, mesh).size for k in range(runs))
         return Trial(tuple(effects), unknowns, solution, sizes, mesh)
 

@@ -44,8 +44,9 @@ from tsas_cli.physics.compliances import (
 )
 from tsas_cli.physics.rig import Rig
 
-MOST_UNSETTLED = 40  # samples, after which a run is given up
+MOST_UNSETTLED = 10  # samples, after which a run is given up
 MOST_STEPS = 60  # between two samples, those included that did not settle
+SHORTEST_STEP = 1e-3  # of the way between two samples; where that does not settle, nothing does
 
 
 @kernel
@@ -171,6 +172,8 @@ def advance(
     """
     done, step = 0.0, 1.0
     for _ in range(MOST_STEPS):
+        if step < SHORTEST_STEP:
+            return False
         to = min(done + step, 1.0)
         now = between(start, end, to, end.step_s * (to - done))
         if settle(chain, now, boundary, laws, scale):
