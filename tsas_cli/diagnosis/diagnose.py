@@ -169,9 +169,9 @@ def _concluded(search: Search, named: Names, model: Model, sentences: tuple[str,
     else:
         verdict = "ambiguous" if any(c.rivals for c in causes) else "named"
     extended = Model(tuple(estimates)).over(model)
-    return Diagnosis(
+    found = Diagnosis(
         verdict,
-        _reason(verdict, causes, start, left),
+        "",
         extended,
         causes,
         _channels(judged, before, final, start, left),
@@ -183,6 +183,7 @@ def _concluded(search: Search, named: Names, model: Model, sentences: tuple[str,
         final,
         sentences,
     )
+    return replace(found, reason=_reason(found, start, left))
 
 
 def _in_order(named: Names) -> list[str]:
@@ -275,21 +276,31 @@ def _held_out_rmse(search: Search, trial: Trial) -> dict[str, float]:
     return {name: float(np.sqrt(squares[name] / counts[name])) for name in squares}
 
 
-def _reason(verdict: Verdict, causes: Sequence[Cause], start: Remainder, left: Remainder) -> str:
+def _reason(found: Diagnosis, start: Remainder, left: Remainder) -> str:
+    """Return the verdict in a few plain sentences."""
     titles = {effect.name: effect.title.lower() for effect in EFFECTS}
-    names = " and ".join(titles[c.effect] for c in causes)
-    much = f"{np.sqrt(start.mean_square):.2g} times what noise explains"
-    less = f"{np.sqrt(left.mean_square):.2g} times"
+    names = " and ".join(titles[c.effect] for c in found.causes)
+    before, after = (_two_digits(math.sqrt(r.mean_square)) for r in (start, left))
     depends = ", ".join(spoken(signal) for signal in left.depends_on)
     depends = f" It depends on {depends}." if depends else ""
-    if verdict == "sufficient":
+    if found.verdict == "sufficient":
         return "The nominal model is at the noise floor: nothing is missing that these runs show."
-    if not causes:
-        return f"The model misses the runs by {much}, and no known effect accounts for it.{depends}"
-    said = f"What the nominal model lacks is: {names}. It takes the error from {much} to {less}."
-    if verdict == "unexplained":
-        return f"{said} Most of the rest is explained by no known effect.{depends}"
-    rivals = sorted({titles[r] for c in causes for r in c.rivals})
+    if not found.causes:
+        return (
+            f"The model misses the runs by {before} times what noise explains, and no known "
+            f"effect accounts for it.{depends}"
+        )
+    said = f"What the nominal model lacks is: {names}. "
+    said += f"It takes the error from {before} to {after} times what noise explains."
+    rivals = sorted({titles[r] for c in found.causes for r in c.rivals})
     if rivals:
-        return f"{said} These recordings cannot tell it from: {', '.join(rivals)}."
+        said += f" These recordings cannot tell it from: {', '.join(rivals)}."
+    if found.verdict == "unexplained":
+        return f"{said} Most of the rest is explained by no known effect.{depends}"
+    if found.unexplained:
+        return f"{said} What is left no known effect explains.{depends}"
     return said
+
+
+def _two_digits(value: float) -> str:
+    return f"{value:#.2g}" if value < 9.95 else f"{float(f'{value:.2g}'):.0f}"
