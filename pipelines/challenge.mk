@@ -2,13 +2,20 @@
 #
 # make challenge                             one seed for scoring, about half an hour on two cores
 # make challenge SEED=10100 SEEDS=3          others, and more of them
+# make challenge-nothing SEED=10200          300 cases in which nothing is hidden: a quarter of an hour
 SEED ?= 10000
 SEEDS ?= 1
 CHALLENGE_OUT ?= reports/challenge
 CHALLENGE_TOOLS := diagnose bic training sparse
 
-.PHONY: challenge challenge-ci challenge-table
+.PHONY: challenge challenge-nothing challenge-ci challenge-table
 challenge: challenge-table  ## make a sealed set, let every tool diagnose it, print the table of scores
+
+challenge-nothing: SEEDS = 30
+challenge-nothing: CHALLENGE_OUT = reports/challenge-nothing
+challenge-nothing: CHALLENGE_PART = --kind nothing
+challenge-nothing: CHALLENGE_TOOLS = diagnose
+challenge-nothing: challenge-table  ## how often something is named where nothing is hidden, in 300 cases
 
 # Always the same: a seed for building, each effect once, a few cases of what is none.
 challenge-ci: SEED = 3

@@ -12,7 +12,7 @@ from tsas_cli.challenge.answers import read_answers
 from tsas_cli.challenge.entry import read_entry
 from tsas_cli.challenge.run import TOOLS
 from tsas_cli.challenge.targets import TARGETS
-from tsas_cli.commands.challenge import ToolOption, make, score
+from tsas_cli.commands.challenge import KindOption, ToolOption, make, score
 from tsas_cli.errors import InputError
 from tsas_cli.recordings.dataset import read_dataset
 
@@ -111,6 +111,21 @@ def test_several_seeds_are_one_set(monkeypatch, capsys, tmp_path):
     right = {name: diagnosis(unexplained=True) for name in read_answers(tmp_path / "set").cases}
     score(tmp_path / "set", [write_entry(tmp_path / "entry", right)])
     assert "set of seeds 17, 18: 2 unknown" in capsys.readouterr().out
+
+
+def test_cases_of_one_kind_are_a_set(monkeypatch, capsys, tmp_path):
+    few = [c for c in cases.cases(17) if c.kind in ("nothing", "pair")][-2:]
+    monkeypatch.setattr(cases, "cases", {17: few}.__getitem__)
+    make(tmp_path / "set", seed=17, kind=KindOption.nothing, rate=50.0, as_json=True)
+    summary = json.loads(capsys.readouterr().out)
+    assert summary["cases"] == {"nothing": len([c for c in few if c.kind == "nothing"])}
+    with pytest.raises(InputError, match="keeps no case"):
+        make(tmp_path / "none", seed=17, small=True, kind=KindOption.pair, rate=50.0)
+    assert not (tmp_path / "none").exists()
+
+
+def test_every_kind_can_be_asked_for():
+    assert {option.value for option in KindOption} == {c.kind for c in cases.cases(17)}
 
 
 def test_every_tool_can_be_asked_for():

@@ -26,6 +26,15 @@ class ToolOption(StrEnum):
     sparse = "sparse"
 
 
+class KindOption(StrEnum):
+    """What can be hidden in a case."""
+
+    one = "one"
+    pair = "pair"
+    nothing = "nothing"
+    unknown = "unknown"
+
+
 @challenge.command("make")
 def make(
     out: OutFolder,
@@ -39,6 +48,9 @@ def make(
         bool,
         typer.Option("--small", help="Each effect once at full size, and a few of what is none."),
     ] = False,
+    kind: Annotated[
+        KindOption | None, typer.Option("--kind", help="Only cases in which this is hidden.")
+    ] = None,
     rate: Annotated[
         float, typer.Option("--rate", metavar="HZ", min=50.0, max=500.0, help="Samples per second.")
     ] = 200.0,
@@ -52,11 +64,16 @@ def make(
     from tsas_cli import __version__
     from tsas_cli.challenge.cases import cases, part
     from tsas_cli.challenge.make import make as make_set
+    from tsas_cli.errors import InputError
     from tsas_cli.files import new_folder
 
     listed = [case for each in range(seed, seed + seeds) for case in cases(each)]
     if small:
         listed = list(part(listed))
+    if kind is not None:
+        listed = [case for case in listed if case.kind == kind.value]
+    if not listed:
+        raise InputError("--small keeps no case of --kind pair", remedy="leave one of them out")
     with (
         new_folder(out, force=force) as folder,
         progress("challenge", len(listed), quiet=quiet or as_json) as step,
