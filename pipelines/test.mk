@@ -5,4 +5,4 @@ test: setup  ## ruff, mypy, import-linter and pytest
 	@$(BIN)/ruff format --check --quiet || { echo 'ruff format would change files: run .venv/bin/ruff format' >&2; exit 1; }
 	@$(BIN)/mypy --no-error-summary
 	@$(BIN)/lint-imports > .venv/lint-imports.txt || { cat .venv/lint-imports.txt; exit 1; }
-	@$(BIN)/pytest -n 2
+	@TSAS_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/pytest -n 2

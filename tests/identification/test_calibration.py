@@ -9,6 +9,7 @@ from tests.identification.recorded import manifest, prepared
 from tsas_cli.challenge.rig.motions import sine
 from tsas_cli.challenge.rig.tendon import Rig
 from tsas_cli.identification.calibration import calibrate
+from tsas_cli.numerics.side_by_side import THREADS
 
 TRUE = Rig(friction_coefficient=0.135, load_stiffness_N_per_mm=1.45, preload_N=27.0)
 OTHER = Rig(
@@ -142,3 +143,12 @@ def test_intervals_hold_the_truth_over_seeds():
             if e.name in VALUES
         ]
     assert np.mean(inside) > 0.8
+
+
+def test_threads_change_no_bit(monkeypatch):
+    runs = [prepared(TRUE, seed=1), prepared(OTHER, seed=2, run_id="b")]
+    models = []
+    for threads in ("1", "3"):
+        monkeypatch.setenv(THREADS, threads)
+        models.append(calibrate(manifest(*runs), runs).model)
+    assert models[0] == models[1]
