@@ -13,6 +13,7 @@ from tsas_cli.diagnosis.held_out import Folds, folds_of, held_out_values
 from tsas_cli.diagnosis.remainder import Remainder, remainder
 from tsas_cli.diagnosis.search import BLURRED, Names, Search
 from tsas_cli.diagnosis.signals import spoken
+from tsas_cli.diagnosis.uneven_bend import stderr_of_unevenness
 from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.base_fit import base_fit, slopes_of
 from tsas_cli.identification.estimate import Estimate
@@ -214,8 +215,8 @@ def _estimates(search: Search, trial: Trial) -> list[Estimate]:
     blocks = [search.folds.block[search.folds.run == k] for k in range(len(search.bench.rigs))]
     counted = [np.unique(block, return_inverse=True)[1] for block in blocks]
     fitted = with_errors(trial.unknowns, solution, counted, by_run=True)
-    uneven = trial.moved_by(search.bench.unevenness(trial))
-    fitted = replace(fitted, stderr=np.sqrt(fitted.stderr**2 + np.sum(uneven**2, axis=1)))
+    uneven = stderr_of_unevenness(search.bench, trial, counted)
+    fitted = replace(fitted, stderr=np.hypot(fitted.stderr, uneven))
     told = estimates_of(trial.unknowns, fitted, search.bench.base.ids())
     return [_as_sure_as_the_data_sheet(e, trial) if e.name == SHEATH else e for e in told]
 
