@@ -10,7 +10,7 @@ Floats = npt.NDArray[np.float64]
 
 SURE = 2.6  # standard deviations of a sum with random signs; 1 in 200 by chance
 AGREE = 0.8  # of the surest that so many blocks can be, where they are few
-TELLING = 0.005  # of the squares, that a cause has to take away
+TELLING = 0.025  # of the squares, that a cause has to take away; conditioning leaves up to 0.01
 APART = 0.01  # of the squares, that tells a cause from a rival
 RICHER = 0.03  # of the squares, that a cause with more parameters has to gain on a simpler one
 RESAMPLED = 2000
