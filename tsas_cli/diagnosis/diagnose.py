@@ -8,8 +8,9 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
+from tsas_cli.diagnosis.channel_errors import Channel, channel_errors
 from tsas_cli.diagnosis.evidence import gain_percent
-from tsas_cli.diagnosis.held_out import Folds, folds_of, held_out_values
+from tsas_cli.diagnosis.held_out import Folds, folds_of
 from tsas_cli.diagnosis.remainder import Remainder, remainder
 from tsas_cli.diagnosis.search import BLURRED, Names, Search
 from tsas_cli.diagnosis.signals import spoken
@@ -19,7 +20,7 @@ from tsas_cli.identification.base_fit import base_fit, slopes_of
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.extension import Bench, Trial
 from tsas_cli.identification.fit import Fitted, with_errors
-from tsas_cli.identification.joint_fit import JointFit, estimates_of, rig_at
+from tsas_cli.identification.joint_fit import JointFit, estimates_of
 from tsas_cli.identification.model import Model, data_sheet
 from tsas_cli.identification.phases import segment
 from tsas_cli.identification.prepared import Prepared
@@ -48,16 +49,6 @@ class Cause:
     parameters: tuple[Estimate, ...]
     gain_percent: float
     gain_interval_percent: tuple[float, float]
-
-
-@dataclass(frozen=True)
-class Channel:
-    """Root mean squares of one channel's error on held-out data, in its unit."""
-
-    rmse_before: float
-    rmse_after: float
-    noise_floor: float
-    best_obtainable: float
 
 
 @dataclass(frozen=True)
@@ -175,7 +166,7 @@ def _concluded(search: Search, named: Names, model: Model, sentences: tuple[str,
         "",
         extended,
         causes,
-        _channels(judged, before, final, start, left),
+        channel_errors(judged, before, final, start, left),
         left,
         share if named else 1.0,
         search,
@@ -235,46 +226,6 @@ def _as_sure_as_the_data_sheet(ratio: Estimate, trial: Trial) -> Estimate:
     high = whole * math.exp(unknown.upper - fitted) - 1.0
     stderr = max(high - ratio.value, ratio.value - low) / 1.96
     return replace(ratio, stderr=stderr, interval_low=low, interval_high=high)
-
-
-def _channels(
-    search: Search, before: Trial, final: Trial, start: Remainder, left: Remainder
-) -> dict[str, Channel]:
-    """Return the errors of each channel on held-out data, simulated anew."""
-    rmse = {id(t): _held_out_rmse(search, t) for t in (before, final)}
-    out = {}
-    for name in search.bench.channels:
-        floor = [
-            run.weights[name][run.samples[name]]
-            for run in search.bench.closed
-            if name in run.samples
-        ]
-        first, after = rmse[id(before)][name], rmse[id(final)][name]
-        noise = float(np.sqrt(np.mean(np.concatenate(floor) ** 2)))
-        could = [
-            math.sqrt(max(first**2 - start.explained[name] * noise**2, 0.0)),
-            math.sqrt(max(after**2 - left.explained[name] * noise**2, 0.0)),
-        ]
-        reached = min(noise, after)  # what was reached cannot be below it
-        out[name] = Channel(first, after, reached, max(min(could), reached))
-    return out
-
-
-def _held_out_rmse(search: Search, trial: Trial) -> dict[str, float]:
-    """Return each channel's error, every run simulated with what the others say."""
-    bench, folds = search.bench, search.folds
-    squares: dict[str, float] = {}
-    counts: dict[str, int] = {}
-    for k, run in enumerate(bench.errors_for(trial)):
-        for fold in np.unique(folds.fold[folds.run == k]):
-            values = held_out_values(trial, folds, int(fold))
-            rig = rig_at(bench.rigs[k], k, trial.unknowns, values)
-            here = folds.fold[folds.run == k] == fold
-            for name, errors in run.raw(rig).items():
-                kept = errors[run.spread(name, here)]
-                squares[name] = squares.get(name, 0.0) + float(kept @ kept)
-                counts[name] = counts.get(name, 0) + kept.size
-    return {name: float(np.sqrt(squares[name] / counts[name])) for name in squares}
 
 
 def _reason(found: Diagnosis, start: Remainder, left: Remainder) -> str:

@@ -154,15 +154,13 @@ class Bench:
 
         Shape (n, 2), one standard deviation of each of the first two ways.
         """
-        rigs = [self.rig(trial, k) for k in range(len(self.rigs))]
-        columns = []
-        for way in ("bend_slope", "bend_bow"):
-            changes = [
-                run.residuals(with_values(rig, {way: UNEVEN})) - run.residuals(rig)
-                for run, rig in zip(self.meshed, rigs, strict=True)
-            ]
-            columns.append(np.concatenate(changes))
-        return np.array(columns).T
+        parts = []
+        for k, run in enumerate(self.meshed):
+            rig = self.rig(trial, k)
+            even = run.residuals(rig)
+            ways = [with_values(rig, {way: UNEVEN}) for way in ("bend_slope", "bend_bow")]
+            parts.append(np.array([run.residuals(uneven) - even for uneven in ways]).T)
+        return np.concatenate(parts)
 
     @property
     def channels(self) -> list[str]:

@@ -1,0 +1,62 @@
+"""The errors of each channel on held-out data, before and after, in the channel's own unit."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from tsas_cli.diagnosis.held_out import held_out_values
+from tsas_cli.diagnosis.remainder import Remainder
+from tsas_cli.diagnosis.search import Search
+from tsas_cli.identification.extension import Trial
+from tsas_cli.identification.joint_fit import rig_at
+
+
+@dataclass(frozen=True)
+class Channel:
+    """Root mean squares of one channel's error on held-out data, in its unit."""
+
+    rmse_before: float
+    rmse_after: float
+    noise_floor: float
+    best_obtainable: float
+
+
+def channel_errors(
+    search: Search, before: Trial, final: Trial, start: Remainder, left: Remainder
+) -> dict[str, Channel]:
+    """Return the errors of each channel on held-out data, simulated anew."""
+    rmse = {id(t): _held_out_rmse(search, t) for t in (before, final)}
+    out = {}
+    for name in search.bench.channels:
+        floor = [
+            run.weights[name][run.samples[name]]
+            for run in search.bench.closed
+            if name in run.samples
+        ]
+        first, after = rmse[id(before)][name], rmse[id(final)][name]
+        noise = float(np.sqrt(np.mean(np.concatenate(floor) ** 2)))
+        could = [
+            math.sqrt(max(first**2 - start.explained[name] * noise**2, 0.0)),
+            math.sqrt(max(after**2 - left.explained[name] * noise**2, 0.0)),
+        ]
+        reached = min(noise, after)  # what was reached cannot be below it
+        out[name] = Channel(first, after, reached, max(min(could), reached))
+    return out
+
+
+def _held_out_rmse(search: Search, trial: Trial) -> dict[str, float]:
+    """Return each channel's error, every run simulated with what the others say."""
+    bench, folds = search.bench, search.folds
+    squares: dict[str, float] = {}
+    counts: dict[str, int] = {}
+    for k, run in enumerate(bench.errors_for(trial)):
+        for fold in np.unique(folds.fold[folds.run == k]):
+            values = held_out_values(trial, folds, int(fold))
+            rig = rig_at(bench.rigs[k], k, trial.unknowns, values)
+            here = folds.fold[folds.run == k] == fold
+            for name, errors in run.raw(rig).items():
+                kept = errors[run.spread(name, here)]
+                squares[name] = squares.get(name, 0.0) + float(kept @ kept)
+                counts[name] = counts.get(name, 0) + kept.size
+    return {name: float(np.sqrt(squares[name] / counts[name])) for name in squares}
