@@ -24,6 +24,7 @@ class DynamicsOption(StrEnum):
 
     static = "static"
     slip = "slip"
+    lugre = "lugre"
 
 
 def simulate(
@@ -31,7 +32,8 @@ def simulate(
     out: OutFolder,
     model: ModelFile = None,
     dynamics: Annotated[
-        DynamicsOption, typer.Option("--dynamics", help="static: the paper's; slip: distributed.")
+        DynamicsOption,
+        typer.Option("--dynamics", help="static: the paper's; slip: distributed; lugre: dynamic."),
     ] = DynamicsOption.slip,
     fit_own: Annotated[
         bool,

@@ -35,6 +35,14 @@ def stribeck_factor(speed: float, stribeck: StribeckFriction) -> float:
     return 1.0 + stribeck.excess * share
 
 
+@kernel
+def stribeck_slope(speed: float, stribeck: StribeckFriction) -> float:
+    """Return the slope of `stribeck_factor` over the speed [s/mm]."""
+    relative = speed / stribeck.velocity_mm_per_s
+    share: float = np.exp(-relative * relative)
+    return -2.0 * relative / stribeck.velocity_mm_per_s * stribeck.excess * share
+
+
 STRIBECK_FRICTION = Effect(
     name="stribeck_friction",
     title="Higher friction at low speed",

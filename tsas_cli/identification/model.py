@@ -13,6 +13,7 @@ from tsas_cli.effects import EFFECTS, Effects
 from tsas_cli.errors import InputError, nearest
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.quantities import DEFAULTS, QUANTITIES
+from tsas_cli.physics.bristles import Bristles
 from tsas_cli.physics.parameters import NOMINAL, NOMINAL_BY_NAME
 from tsas_cli.physics.rig import Rig, with_values
 from tsas_cli.recordings.manifest import Manifest, Run, parse, read_toml
@@ -68,6 +69,7 @@ class Model:
             sheath_length_mm=run.sheath_length_mm or UNKNOWN_LENGTH_MM,
             total_bend_rad=bend,
             effects=Effects(),
+            bristles=Bristles(),
             **known,
         )
         told = {name: self.value(name) for name in QUANTITIES if "." in name}

@@ -13,17 +13,20 @@ from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.physics.branches import branches
 from tsas_cli.physics.chain_state import DISPLACEMENT, FORCE
 from tsas_cli.physics.ends import Drive, Ends, ends_of
+from tsas_cli.physics.lugre_chain import lugre_chain
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.sensors import reading
-from tsas_cli.physics.slip_chain import slip_chain
+from tsas_cli.physics.slip_chain import rest_after, slip_chain
 from tsas_cli.physics.static import static_model
 
 Floats = npt.NDArray[np.float64]
 Phases = npt.NDArray[np.int8]
 Answer = tuple[Floats, Floats, Floats, Floats, Phases]
-Dynamics = Literal["static", "slip"]
+Dynamics = Literal["static", "slip", "lugre"]
 
 NODES = 60  # of the slip chain, where the closed form does not hold
+LUMPS = 50  # of the dynamic chain
+TOLERANCE = 5e-5  # of a tension: what a step of the dynamic chain may add to its error
 CLOSED = 0  # nodes of the closed form
 MOST_DOUBLINGS = 30  # of the way that the drive goes before a run
 SLACK, UNSETTLED = 2, 3  # phases beside +1, 0, −1
@@ -72,6 +75,8 @@ def simulate(
     everywhere else, or where `on_mesh` asks for it: models that are compared must share a mesh.
     The lumped one knows what the closed form knows. `nodes` is the mesh of the chain.
     """
+    if dynamics == "lugre":
+        return _dynamic(rig, drive, LUMPS)
     ends = ends_of(rig, drive)
     if dynamics == "static":
         f_in, f_out, phase = static_model(ends.drive, rig)
@@ -83,6 +88,28 @@ def simulate(
     solver = "closed form" if nodes == CLOSED else f"slip chain, {nodes} nodes"
     answer = _solve(rig, ends.after(before), nodes)
     return _as_read(rig, drive, answer, len(before), solver)
+
+
+def _dynamic(rig: Rig, drive: Drive, lumps: int) -> Response:
+    """Follow a run with the dynamic chain, from a state of rest that the slip chain gives it."""
+    if drive.time_s is None:
+        raise ValueError("the dynamic model needs the times of its samples")
+    ends = ends_of(rig, drive)
+    before = _history(rig, ends, drive.start_f_in_N, lumps)
+    start = rest_after(ends.first().after(before).course, rig, ends.boundary, lumps)
+    neutral = Effects()
+    by_place = rig.effects._replace(
+        stribeck_friction=neutral.stribeck_friction, viscous_friction=neutral.viscous_friction
+    )  # each lump has its own speed
+    course = ends_of(rig._replace(effects=by_place), drive).course
+    columns, phase, progress = lugre_chain(
+        drive.time_s, course, start, rig, ends.boundary, lumps, TOLERANCE, math.inf
+    )
+    x_in, x_out, f_in, f_out = columns
+    if ends.boundary.drive == DISPLACEMENT:
+        f_in = f_in + _at_drive(rig, ends)
+    solver = f"LuGre chain, {lumps} lumps, {progress.steps} steps"
+    return _as_read(rig, drive, (x_in, x_out, f_in, f_out, phase), 0, solver)
 
 
 def is_closed(rig: Rig, drive: Drive) -> bool:

@@ -1,9 +1,10 @@
 """The parameters of one rig during one run, as the kernels take them."""
 
 from collections.abc import Mapping
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from tsas_cli.effects import Effects
+from tsas_cli.physics.bristles import Bristles
 
 
 class Rig(NamedTuple):
@@ -24,15 +25,21 @@ class Rig(NamedTuple):
     bend_slope: float = 0.0  # share by which length per bend angle rises from drive to load
     bend_bow: float = 0.0  # and to both ends (amplitudes of Legendre's P₁ and P₂)
     effects: Effects = Effects()
+    bristles: Bristles = Bristles()  # of the dynamic model
 
 
 def with_values(rig: Rig, values: Mapping[str, float]) -> Rig:
-    """Return the rig with some values replaced; an effect's are named effect.parameter."""
-    own = {name: value for name, value in values.items() if "." not in name}
-    effects = rig.effects
+    """Return the rig with some values replaced.
+
+    An effect's are named effect.parameter, those of the dynamic model bristles.parameter.
+    """
+    own: dict[str, Any] = {name: value for name, value in values.items() if "." not in name}
+    effects, bristles = rig.effects, rig.bristles
     for name, value in values.items():
-        effect, dot, parameter = name.partition(".")
-        if dot:
-            changed = getattr(effects, effect)._replace(**{parameter: value})
-            effects = effects._replace(**{effect: changed})
-    return rig._replace(effects=effects, **own)
+        group, dot, parameter = name.partition(".")
+        if group == "bristles":
+            bristles = bristles._replace(**{parameter: value})
+        elif dot:
+            changed = getattr(effects, group)._replace(**{parameter: value})
+            effects = effects._replace(**{group: changed})
+    return rig._replace(effects=effects, bristles=bristles, **own)

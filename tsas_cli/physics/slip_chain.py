@@ -76,10 +76,28 @@ def slip_chain(
         sample is not to be trusted. Many such samples, and the rest of the run is given up: it
         keeps the last values.
     """
-    m = course.shape[1]
+    return follow(course, at_rest(rig, n), rig, boundary)
+
+
+@kernel
+def rest_after(course: Floats, rig: Rig, boundary: Boundary, n: int) -> Floats:
+    """Return where a course leaves the nodes and the tensions behind them, shape (2, n + 2)."""
+    chain = at_rest(rig, n)
+    follow(course, chain, rig, boundary)
+    out = np.empty((2, n + 2))
+    out[0], out[1] = chain[X], chain[T]
+    return out
+
+
+@kernel
+def follow(
+    course: Floats, chain: Floats, rig: Rig, boundary: Boundary
+) -> tuple[Floats, Floats, Floats, Floats, Phases]:
+    """Let a chain follow a course; see `slip_chain`."""
+    m, n = course.shape[1], chain.shape[1] - 2
     x_in, x_out, f_in, f_out = np.empty(m), np.empty(m), np.empty(m), np.empty(m)
     phase = np.zeros(m, dtype=np.int8)
-    chain, laws = at_rest(rig, n), laws_of(rig)
+    laws = laws_of(rig)
     scale = rig.sheath_length_mm * rig.preload_N / rig.tendon_stiffness_N / n + 1e-9
     rest_drive = rig.preload_N if boundary.drive == FORCE else 0.0
     rest_load = rig.preload_N if boundary.load == FORCE else 0.0

@@ -1,0 +1,75 @@
+"""Friction of one place of the tendon that yields before it slides: LuGre's bristles.
+
+Yang 2025, Eq. (15): the deflection z of the bristles follows dz/dt = v − |v| z/z∞, and friction is
+f = g z/z∞ + σ1 dz/dt + σ2 v. Its limit is g; z∞ = g/σ0 + l, where l is the travel of Dahl's law
+(`presliding`), which does not depend on the tension. With l = 0 that is σ0 z in the first term.
+"""
+
+import math
+from typing import NamedTuple
+
+from tsas_cli.numerics.compiled import kernel
+
+TONNES_PER_KG = 1e-3
+TONNES_PER_MM = 1e-6  # of kg/m
+
+
+class Bristles(NamedTuple):
+    """The constants of the dynamic model, of the whole sheath (Table 1 of Yang 2025, 50 lumps).
+
+    A damping that is not a number stands for the critical one.
+    """
+
+    stiffness_N_per_mm: float = 5000.0  # [σ0 n]
+    damping_N_s_per_mm: float = math.nan  # [σ1 n]; the paper's 15.8 is 80 times critical
+    tendon_mass_kg_per_m: float = 0.0025  # [ρ]
+    tendon_damping_N_s_per_mm: float = 0.002  # [c/n]
+
+
+class Bristle(NamedTuple):
+    """The constants of one place."""
+
+    stiffness: float  # [N/mm]
+    damping: float  # [N s/mm]
+    viscous: float  # [N s/mm]
+    travel: float  # of Dahl's law [mm]
+
+
+@kernel
+def tendon_mass(bristles: Bristles, length_mm: float) -> float:
+    """Return the mass of the tendon in the sheath [t]."""
+    return bristles.tendon_mass_kg_per_m * TONNES_PER_MM * length_mm
+
+
+@kernel
+def bristle_damping(bristles: Bristles, length_mm: float, limit_N: float, travel: float) -> float:
+    """Return σ1 of the whole sheath [N s/mm], where none is given 2 √(k m).
+
+    k is the stiffness of the bristles at the preload: σ0 in series with limit/travel.
+    """
+    if not math.isnan(bristles.damping_N_s_per_mm):
+        return bristles.damping_N_s_per_mm
+    stiffness = limit_N / (limit_N / bristles.stiffness_N_per_mm + travel)
+    return 2.0 * math.sqrt(stiffness * tendon_mass(bristles, length_mm))
+
+
+@kernel
+def friction(
+    before: float, speed: float, step: float, limit: float, bristle: Bristle
+) -> tuple[float, float, float, float]:
+    """Return friction, its slopes over speed and over its limit, and the deflection.
+
+    The deflection after an implicit step: z = Z + h (v − |v| z/z∞), Z (`before`) and h (`step`)
+    those of the integration formula.
+    """
+    direction = 1.0 if speed >= 0.0 else -1.0
+    longest = limit / bristle.stiffness + bristle.travel
+    inverse = 1.0 / (longest + step * speed * direction)
+    share = (before + step * speed) * inverse
+    damping = bristle.damping / step
+    force = limit + damping * longest
+    by_share = force * inverse
+    by_speed = by_share * step * (1.0 - direction * share) + bristle.viscous
+    by_limit = share + (damping * share - by_share * share) / bristle.stiffness
+    total = force * share - damping * before + bristle.viscous * speed
+    return total, by_speed, by_limit, longest * share

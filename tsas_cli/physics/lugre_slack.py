@@ -1,0 +1,110 @@
+"""The tendon hangs slack: where it does, until when, and from what state it is pulled again."""
+
+import numpy as np
+
+from tsas_cli.effects.load_spring_nonlinearity import spring_force, spring_tangent
+from tsas_cli.numerics.compiled import kernel
+from tsas_cli.physics.chain_state import FORCE, SPRING, Boundary, Phases
+from tsas_cli.physics.lugre_input import DRIVE, LOAD, LOST, given_at
+from tsas_cli.physics.lugre_state import STIFFNESS, Floats, Law
+
+NEWTON = 5  # iterations of a load spring without tension; a straight one takes one
+SLACK = 2  # phase
+HALVINGS = 40  # of the time between two samples
+
+
+@kernel
+def rest_of_load(lost_N: float, law: Law) -> float:
+    """Return where the load's spring leaves the load without tension [mm]."""
+    x = 0.0
+    for _ in range(NEWTON):
+        force = law.preload_N - lost_N
+        force += spring_force(x, law.load_stiffness_N_per_mm, law.load_spring)
+        x -= force / spring_tangent(x, law.load_stiffness_N_per_mm, law.load_spring)
+    return x
+
+
+@kernel
+def load_place(
+    times: Floats, course: Floats, k: int, t: float, boundary: Boundary, law: Law
+) -> float:
+    """Return where the load is while the tendon is slack [mm]."""
+    if boundary.load == SPRING:
+        return rest_of_load(course[LOST, k], law)
+    return given_at(times, course, LOAD, k, t)[0]
+
+
+@kernel
+def shortening(s: Floats, law: Law) -> float:
+    """Return by how much the tendon without tension is shorter than at the preload [mm]."""
+    total = 0.0
+    for j in range(law.n + 1):
+        total += law.preload_N / s[STIFFNESS + j]
+    return total
+
+
+@kernel
+def is_slack(
+    s: Floats, times: Floats, course: Floats, k: int, t: float, boundary: Boundary, law: Law
+) -> bool:
+    """Say whether nothing pulls at a time from sample k to the next."""
+    drive = given_at(times, course, DRIVE, k, t)[0]
+    if boundary.drive == FORCE:
+        return drive <= 0.0
+    return drive <= load_place(times, course, k, t, boundary, law) - shortening(s, law)
+
+
+@kernel
+def pulled_again(
+    s: Floats, times: Floats, course: Floats, k: int, t: float, boundary: Boundary, law: Law
+) -> tuple[int, float]:
+    """Return the sample before the time at which the tendon is pulled again, and that time.
+
+    Without such a time the last sample and its time are returned.
+    """
+    last = times.size - 1
+    while k < last and is_slack(s, times, course, k, times[k + 1], boundary, law):
+        k += 1
+    if k == last:
+        return last, times[last]
+    slack, pulled = max(t, times[k]), times[k + 1]
+    for _ in range(HALVINGS):
+        middle = 0.5 * (slack + pulled)
+        if is_slack(s, times, course, k, middle, boundary, law):
+            slack = middle
+        else:
+            pulled = middle
+    return k, pulled
+
+
+@kernel
+def write_slack(
+    columns: Floats,
+    phase: Phases,
+    s: Floats,
+    times: Floats,
+    course: Floats,
+    samples: tuple[int, int],
+    boundary: Boundary,
+    law: Law,
+) -> None:
+    """Write the samples of a slack tendon, from one to before another."""
+    for i in range(samples[0], samples[1]):
+        x_out = load_place(times, course, i, times[i], boundary, law)
+        columns[0, i], columns[1, i] = course[DRIVE, i], x_out
+        columns[2, i] = columns[3, i] = 0.0
+        if boundary.drive == FORCE:
+            columns[0, i], columns[2, i] = x_out - shortening(s, law), course[DRIVE, i]
+        phase[i] = SLACK
+
+
+@kernel
+def without_tension(
+    s: Floats, times: Floats, course: Floats, k: int, t: float, boundary: Boundary, law: Law
+) -> Floats:
+    """Return the state of rest of a tendon without tension, shape (2, n + 2) [mm, N]."""
+    start = np.zeros((2, law.n + 2))
+    start[0, law.n + 1] = load_place(times, course, k, t, boundary, law)
+    for j in range(law.n, -1, -1):
+        start[0, j] = start[0, j + 1] - law.preload_N / s[STIFFNESS + j]
+    return start
