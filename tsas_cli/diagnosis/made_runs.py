@@ -9,7 +9,7 @@ from tsas_cli.diagnosis.motions import motion
 from tsas_cli.diagnosis.rig_file import MOST_SAMPLES, PlannedRun, Sensors
 from tsas_cli.errors import InputError
 from tsas_cli.physics.ends import Drive
-from tsas_cli.physics.quasi_static import simulate
+from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import Rig
 from tsas_cli.recordings.dataset import Recording
 from tsas_cli.recordings.manifest import Run

@@ -19,6 +19,8 @@ import numpy as np
 from tsas_cli.effects.effect import Effect, Parameter
 from tsas_cli.numerics.compiled import kernel
 
+GONE = 6.5  # Stribeck velocities: e^−42 is less than rounding, and what underflows is slow
+
 
 class StribeckFriction(NamedTuple):
     """Excess of friction at rest [1] and the speed at which it has fallen to 1/e [mm/s]."""
@@ -28,19 +30,17 @@ class StribeckFriction(NamedTuple):
 
 
 @kernel
-def stribeck_factor(speed: float, stribeck: StribeckFriction) -> float:
-    """Return what multiplies the friction coefficient at a sliding speed [mm/s]."""
-    relative = speed / stribeck.velocity_mm_per_s
-    share: float = np.exp(-relative * relative)
-    return 1.0 + stribeck.excess * share
+def stribeck(speed: float, law: StribeckFriction) -> tuple[float, float]:
+    """Return what multiplies friction at a sliding speed [mm/s], and its slope [s/mm]."""
+    relative = np.minimum(np.maximum(speed / law.velocity_mm_per_s, -GONE), GONE)
+    left = law.excess * np.exp(-relative * relative)
+    return 1.0 + left, -2.0 * relative / law.velocity_mm_per_s * left
 
 
 @kernel
-def stribeck_slope(speed: float, stribeck: StribeckFriction) -> float:
-    """Return the slope of `stribeck_factor` over the speed [s/mm]."""
-    relative = speed / stribeck.velocity_mm_per_s
-    share: float = np.exp(-relative * relative)
-    return -2.0 * relative / stribeck.velocity_mm_per_s * stribeck.excess * share
+def stribeck_factor(speed: float, law: StribeckFriction) -> float:
+    """Return what multiplies the friction coefficient at a sliding speed [mm/s]."""
+    return stribeck(speed, law)[0]
 
 
 STRIBECK_FRICTION = Effect(

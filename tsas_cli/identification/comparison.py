@@ -9,7 +9,7 @@ import numpy.typing as npt
 from tsas_cli.errors import InputError
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.prepared import Prepared
-from tsas_cli.physics.quasi_static import SLACK, UNSETTLED, Dynamics, Response, simulate
+from tsas_cli.physics.response import SLACK, UNSETTLED, Dynamics, Response, simulate
 from tsas_cli.recordings.columns import BY_NAME
 
 Floats = npt.NDArray[np.float64]

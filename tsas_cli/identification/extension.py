@@ -11,7 +11,7 @@ from tsas_cli.identification.fit import Solution, Unknown, solve
 from tsas_cli.identification.joint_fit import JointFit, rig_at
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.identification.run_errors import RunErrors
-from tsas_cli.physics.quasi_static import CHAIN_ONLY, is_closed
+from tsas_cli.physics.response import CHAIN_ONLY, is_closed
 from tsas_cli.physics.rig import Rig, with_values
 
 Floats = npt.NDArray[np.float64]

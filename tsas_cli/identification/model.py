@@ -1,7 +1,7 @@
 """The model: the nominal rig's parameters and the effects' values, with what is known of each."""
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
@@ -129,6 +129,7 @@ class _File(BaseModel):
     dataset: dict[str, Any] = {}
     parameters: dict[str, _Value] = {}
     runs: dict[str, dict[str, _Value]] = {}
+    bristles: dict[str, _Value] = {}
     effects: dict[str, dict[str, _Value]] = {}
 
 
@@ -141,17 +142,22 @@ def write_model(path: Path, model: Model, *, version: str, dataset: Mapping[str,
         "dataset": dict(dataset),
         "parameters": {},
         "runs": {},
+        "bristles": {},
         "effects": {},
     }
     for e in model.estimates:
         entry = {k: v for k, v in e.as_json().items() if v is not None and k not in ("name", "run")}
-        if "." in e.name:
-            effect, name = e.name.split(".")
-            content["effects"].setdefault(effect, {})[name] = entry
+        group, _, name = e.name.rpartition(".")
+        if group == "bristles":
+            content["bristles"][name] = entry
+        elif group:
+            content["effects"].setdefault(group, {})[name] = entry
         elif e.run is None:
             content["parameters"][e.name] = entry
         else:
             content["runs"].setdefault(e.run, {})[e.name] = entry
+    if not content["bristles"]:
+        del content["bristles"]
     path.write_text(tomlkit.dumps(content), encoding="utf-8")
 
 
@@ -166,20 +172,19 @@ def read_model(path: Path) -> Model:
     if path.is_dir():
         path = path / FILE
     file = parse(_File, read_toml(path), path)
-    nominal = [p.name for p in NOMINAL]
-    known_effects = {f"{e.name}.{p.name}": p.unit for e in EFFECTS for p in e.parameters}
-    units = {p.name: p.unit for p in NOMINAL} | {CORRECTION: "N"} | known_effects
+    units = {name: q.unit for name, q in QUANTITIES.items()} | {CORRECTION: "N"}
     values: list[tuple[str, str | None, _Value]] = []
     values += [(name, None, v) for name, v in file.parameters.items()]
     values += [(name, run, v) for run, named in file.runs.items() for name, v in named.items()]
+    values += [(f"bristles.{name}", None, v) for name, v in file.bristles.items()]
     values += [
         (f"{effect}.{name}", None, v)
         for effect, named in file.effects.items()
         for name, v in named.items()
     ]
     for name, _, value in values:
-        known: Iterable[str] = known_effects if "." in name else [*nominal, CORRECTION]
         if name not in units:
+            known = [other for other in units if ("." in other) == ("." in name)]
             raise InputError(f"unknown parameter {name}", where=path, remedy=nearest(name, known))
         _check_value(name, value, units[name], path)
     return Model(
@@ -196,7 +201,7 @@ def _check_value(name: str, value: _Value, unit: str, path: Path) -> None:
     zero = value.value == 0.0 and name in MAY_BE_ZERO
     if nominal and nominal.positive and value.value <= 0.0 and not zero:
         raise InputError(f"{name} is {value.value}", where=path, expected="a positive number")
-    bounds = next((p for e in EFFECTS for p in e.parameters if f"{e.name}.{p.name}" == name), None)
+    bounds = QUANTITIES[name] if "." in name else None
     if bounds and not bounds.lower <= value.value <= bounds.upper:
         raise InputError(
             f"{name} is {value.value} {unit}",

@@ -1,10 +1,11 @@
-"""Every number that a fit can free: the nominal parameters and those of the effects."""
+"""Every number that a fit can free: of the rig, of its bristles, of the effects."""
 
 import math
 from dataclasses import dataclass
 
 from tsas_cli.effects import EFFECTS
-from tsas_cli.physics.parameters import NOMINAL
+from tsas_cli.physics.bristles import Bristles
+from tsas_cli.physics.parameters import BRISTLES, NOMINAL
 
 LOG_SCALE = 0.3  # plausible relative change of a positive parameter
 DEFAULTS = {
@@ -50,19 +51,33 @@ class Quantity:
         return math.exp(value) if self.positive else float(value) * self.size
 
 
-QUANTITIES: dict[str, Quantity] = {
-    p.name: Quantity(p.name, p.unit, p.lower, p.upper, DEFAULTS[p.name], p.shared, p.positive)
-    for p in NOMINAL
-} | {
-    f"{effect.name}.{p.name}": Quantity(
-        f"{effect.name}.{p.name}",
-        p.unit,
-        p.lower,
-        p.upper,
-        p.neutral,
-        size=abs(p.start - p.neutral) or abs(p.start),
-        shape=p.shape,
-    )
-    for effect in EFFECTS
-    for p in effect.parameters
-}
+QUANTITIES: dict[str, Quantity] = (
+    {
+        p.name: Quantity(p.name, p.unit, p.lower, p.upper, DEFAULTS[p.name], p.shared, p.positive)
+        for p in NOMINAL
+    }
+    | {
+        f"bristles.{p.name}": Quantity(
+            f"bristles.{p.name}",
+            p.unit,
+            p.lower,
+            p.upper,
+            getattr(Bristles(), p.name),
+            positive=True,
+        )
+        for p in BRISTLES
+    }
+    | {
+        f"{effect.name}.{p.name}": Quantity(
+            f"{effect.name}.{p.name}",
+            p.unit,
+            p.lower,
+            p.upper,
+            p.neutral,
+            size=abs(p.start - p.neutral) or abs(p.start),
+            shape=p.shape,
+        )
+        for effect in EFFECTS
+        for p in effect.parameters
+    }
+)

@@ -21,7 +21,7 @@ from tsas_cli.identification.samples import mean_edges, points
 from tsas_cli.numerics.conditioning import Conditioned
 from tsas_cli.numerics.covariance import FEWEST_BLOCKS, block_length
 from tsas_cli.physics.ends import Drive
-from tsas_cli.physics.quasi_static import simulate
+from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import Rig
 
 Floats = npt.NDArray[np.float64]

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.identification.prepared import Prepared
-from tsas_cli.physics.quasi_static import forgotten
+from tsas_cli.physics.response import forgotten
 from tsas_cli.physics.rig import Rig
 
 Indices = npt.NDArray[np.int64]

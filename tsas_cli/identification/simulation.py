@@ -12,7 +12,7 @@ from tsas_cli.identification.base_fit import with_own_values
 from tsas_cli.identification.comparison import Compared, compare
 from tsas_cli.identification.model import FILE, data_sheet, read_model
 from tsas_cli.identification.prepared import Prepared, prepare
-from tsas_cli.physics.quasi_static import Dynamics
+from tsas_cli.physics.response import Dynamics
 from tsas_cli.recordings.dataset import Dataset, write_parquet
 
 

@@ -11,7 +11,7 @@ from tsas_cli.effects.load_friction import guide_friction
 from tsas_cli.effects.load_inertia import inertia_force
 from tsas_cli.effects.load_spring_nonlinearity import spring_force, spring_tangent
 from tsas_cli.effects.proximal_spring import proximal_spring_force
-from tsas_cli.effects.stribeck_friction import stribeck_factor, stribeck_slope
+from tsas_cli.effects.stribeck_friction import stribeck
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.bristles import friction
 from tsas_cli.physics.chain_state import DISPLACEMENT, FORCE, SPRING, Boundary
@@ -80,9 +80,8 @@ def set_limits(s: Floats, step: Step, law: Law) -> None:
             s[LIMIT_BY_T + i] *= factor * (1.0 + law.friction_exponent)
     if law.stribeck.excess != 0.0:
         for i in range(1, law.n + 1):
-            speed = s[W + i] + step.speed
-            factor = stribeck_factor(speed, law.stribeck)
-            s[LIMIT_BY_V + i] = s[LIMIT + i] * stribeck_slope(speed, law.stribeck)
+            factor, slope = stribeck(s[W + i] + step.speed, law.stribeck)
+            s[LIMIT_BY_V + i] = s[LIMIT + i] * slope
             s[LIMIT + i] *= factor
             s[LIMIT_BY_T + i] *= factor
 

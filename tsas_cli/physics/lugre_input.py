@@ -85,7 +85,7 @@ def step_at(
     times: Floats, course: Floats, k: int, t: float, gh: float, n: int, boundary: Boundary
 ) -> Step:
     """Return what is given at the end of a step, at a time from sample k to the next."""
-    drive, speed = given_at(times, course, DRIVE, k, t)
+    drive, rate = given_at(times, course, DRIVE, k, t)
     load = 0.0
     if boundary.load != SPRING:
         load, _ = given_at(times, course, LOAD, k, t)
@@ -97,9 +97,10 @@ def step_at(
     return Step(
         gh,
         drive,
+        rate,
         load,
         framed * drive,
-        framed * speed,
+        framed * rate,
         2.0 * np.tanh(0.5 * pulled / n),
         2.0 * np.tanh(0.5 * released / n),
         lost,
@@ -121,21 +122,3 @@ def turns(course: Floats, row: int, i: int) -> bool:
     """Say whether a row turns, stops or sets off at a sample between others."""
     before, after = course[row, i] - course[row, i - 1], course[row, i + 1] - course[row, i]
     return bool(before * after <= 0.0 and before != after)
-
-
-@kernel
-def departs(times: Floats, course: Floats, row: int, t: float, k: int, t1: float, k1: int) -> float:
-    """Return by how much samples within a step leave the cubic that the step sees.
-
-    k and k1 are the samples at or before its ends; three samples are looked at.
-    """
-    if k1 - k < 2:
-        return 0.0
-    x0, v0 = given_at(times, course, row, k, t)
-    x1, v1 = given_at(times, course, row, k1, t1)
-    largest = 0.0
-    for quarter in range(1, 4):
-        i = k + 1 + quarter * (k1 - k - 1) // 4
-        seen = hermite((times[i] - t) / (t1 - t), t1 - t, x0, v0, x1, v1)
-        largest = max(largest, abs(course[row, i] - seen))
-    return largest

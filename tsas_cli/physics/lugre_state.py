@@ -56,6 +56,7 @@ class Step(NamedTuple):
 
     gh: float  # [s]
     drive: float  # displacement [mm] or tension [N]
+    drive_rate: float
     load: float  # likewise; unused with a spring
     position: float  # of the frame that positions are relative to [mm]
     speed: float  # of that frame [mm/s]

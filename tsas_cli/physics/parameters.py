@@ -1,4 +1,4 @@
-"""The nominal rig's parameters: unit, plausible bounds, and whether runs share them."""
+"""The parameters of rig and dynamic model: unit, plausible bounds, whether runs share them."""
 
 from dataclasses import dataclass
 
@@ -73,6 +73,44 @@ NOMINAL = (
         shared=False,
         positive=False,
         meaning="what x_out_mm reads at the preload",
+    ),
+)
+BRISTLES = (  # the fields of `bristles.Bristles`
+    NominalParameter(
+        "stiffness_N_per_mm",
+        "N/mm",
+        1e-2,
+        1e9,
+        shared=True,
+        positive=True,
+        meaning="stiffness of the bristles of the whole sheath, σ0",
+    ),
+    NominalParameter(
+        "damping_N_s_per_mm",
+        "N s/mm",
+        1e-6,
+        1e4,
+        shared=True,
+        positive=True,
+        meaning="damping of the bristles of the whole sheath, σ1; critical where it is not given",
+    ),
+    NominalParameter(
+        "tendon_mass_kg_per_m",
+        "kg/m",
+        1e-6,
+        1e2,
+        shared=True,
+        positive=True,
+        meaning="mass of the tendon per length, ρ",
+    ),
+    NominalParameter(
+        "tendon_damping_N_s_per_mm",
+        "N s/mm",
+        1e-9,
+        1e2,
+        shared=True,
+        positive=True,
+        meaning="damping of the tendon's stretch over the whole sheath, c",
     ),
 )
 NOMINAL_BY_NAME = {parameter.name: parameter for parameter in NOMINAL}

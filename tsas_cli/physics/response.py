@@ -1,4 +1,4 @@
-"""Simulate one run quasi-statically: which solver, how it starts, what the sensors would read."""
+"""Simulate one run: which solver, how it starts, what the sensors would read."""
 
 import math
 from dataclasses import dataclass
@@ -67,16 +67,18 @@ def simulate(
     dynamics: Dynamics = "slip",
     *,
     on_mesh: bool = False,
-    nodes: int = NODES,
+    nodes: int | None = None,
 ) -> Response:
-    """Follow a run with the distributed model (`slip`) or the paper's lumped one (`static`).
+    """Follow a run with the distributed model (`slip`), the paper's lumped or its dynamic one.
 
     The distributed model takes the closed form where that holds (`is_closed`), and the slip chain
     everywhere else, or where `on_mesh` asks for it: models that are compared must share a mesh.
-    The lumped one knows what the closed form knows. `nodes` is the mesh of the chain.
+    The lumped one (`static`) knows what the closed form knows; the dynamic one (`lugre`) needs the
+    times of the samples. `nodes` is the mesh of a chain.
     """
     if dynamics == "lugre":
-        return _dynamic(rig, drive, LUMPS)
+        return _dynamic(rig, drive, nodes or LUMPS)
+    nodes = nodes or NODES
     ends = ends_of(rig, drive)
     if dynamics == "static":
         f_in, f_out, phase = static_model(ends.drive, rig)

@@ -1,0 +1,123 @@
+"""Both ends of the tendon after a step of the dynamic chain, and what samples within it read."""
+
+from typing import NamedTuple
+
+from tsas_cli.effects.load_friction import guide_friction
+from tsas_cli.numerics.compiled import kernel
+from tsas_cli.physics.chain_state import DISPLACEMENT, FORCE, Boundary
+from tsas_cli.physics.lugre_input import DRIVE, LOAD, hermite
+from tsas_cli.physics.lugre_state import FRICTION, STIFFNESS, Y_NEW, Y_PAST, Floats, Law, Step, T, W
+
+
+class Ends(NamedTuple):
+    """Both ends of the tendon at the end of a step, with rates for what is read in between."""
+
+    drive: float  # what is given [mm or N]
+    drive_rate: float
+    x_in: float  # relative to the drive [mm]
+    w_in: float
+    x_out: float  # relative to the drive [mm]
+    w_out: float
+    f_in: float  # tension [N]
+    f_in_rate: float
+    f_out: float
+    f_out_rate: float
+    guide: float  # friction of the load's guide [N]
+
+
+@kernel
+def ends_after(s: Floats, step: Step, law: Law) -> Ends:
+    """Return what the ends are after a step; positions go to Y_NEW."""
+    n, last = law.n, law.n + 1
+    for i in range(n + 2):
+        s[Y_NEW + i] = s[Y_PAST + i] + step.gh * s[W + i]
+    return Ends(
+        step.drive,
+        step.drive_rate,
+        s[Y_NEW],
+        s[W],
+        s[Y_NEW + last],
+        s[W + last],
+        s[T],
+        s[STIFFNESS] * (s[W] - s[W + 1]),
+        s[T + n],
+        s[STIFFNESS + n] * (s[W + n] - s[W + last]),
+        s[FRICTION + last],
+    )
+
+
+@kernel
+def departs(
+    times: Floats, course: Floats, k: int, k1: int, t: float, h: float, before: Ends, step: Step
+) -> float:
+    """Return by how much drive samples within a step leave the cubic that the step sees.
+
+    k and k1 are the samples at or before its ends; three samples are looked at.
+    """
+    largest = 0.0
+    if k1 - k > 1:
+        for quarter in range(1, 4):
+            i = k + 1 + quarter * (k1 - k - 1) // 4
+            part = (times[i] - t) / h
+            seen = hermite(part, h, before.drive, before.drive_rate, step.drive, step.drive_rate)
+            largest = max(largest, abs(course[DRIVE, i] - seen))
+    return largest
+
+
+@kernel
+def felt_by_drive(before: Ends, after: Ends) -> float:
+    """Return how much the tension at the drive changed for what is given there."""
+    moved = abs(after.drive - before.drive)
+    return abs(after.f_in - before.f_in) / moved if moved > 0.0 else 0.0
+
+
+@kernel
+def write_samples(
+    columns: Floats,
+    first: int,
+    end: int,
+    times: Floats,
+    course: Floats,
+    t: float,
+    h: float,
+    a: Ends,
+    b: Ends,
+    boundary: Boundary,
+    law: Law,
+) -> None:
+    """Write what the ends are at the samples from the first to before the end.
+
+    They lie in the step h from a to b that begins at t.
+    """
+    x_in, x_out, f_in, f_out = columns[0], columns[1], columns[2], columns[3]
+    given = course[DRIVE]
+    for i in range(first, end):
+        part = (times[i] - t) / h
+        f_in[i] = hermite(part, h, a.f_in, a.f_in_rate, b.f_in, b.f_in_rate)
+        f_out[i] = hermite(part, h, a.f_out, a.f_out_rate, b.f_out, b.f_out_rate)
+        x_out[i] = hermite(part, h, a.x_out, a.w_out, b.x_out, b.w_out)
+        x_in[i] = hermite(part, h, a.x_in, a.w_in, b.x_in, b.w_in)
+    if boundary.drive == FORCE:
+        f_in[first:end] = given[first:end]
+    else:
+        x_in[first:end] = given[first:end]
+        x_out[first:end] += given[first:end]
+    share = sensor_share(boundary, law)
+    if boundary.load == FORCE:
+        f_out[first:end] = course[LOAD, first:end]
+    elif share > 0.0:
+        for i in range(first, end):
+            f_out[i] -= share * (a.guide + (times[i] - t) / h * (b.guide - a.guide))
+    if boundary.load == DISPLACEMENT:
+        x_out[first:end] = course[LOAD, first:end]
+
+
+@kernel
+def sensor_share(boundary: Boundary, law: Law) -> float:
+    """Return the share of the guide's friction that the load's force sensor does not feel."""
+    before = law.load_friction.before_sensor_N
+    if before == 0.0:
+        return 0.0
+    if boundary.load == DISPLACEMENT:
+        return 1.0
+    return before / guide_friction(law.load_friction)

@@ -1,0 +1,105 @@
+"""The dynamic chain before its first step: the laws of a rig, its segments, nodes at rest."""
+
+from tsas_cli.numerics.compiled import kernel
+from tsas_cli.physics.bristles import Bristle, bristle_damping, tendon_mass
+from tsas_cli.physics.chain_state import DISPLACEMENT, Boundary
+from tsas_cli.physics.lugre_balance import balance
+from tsas_cli.physics.lugre_ends import Ends, ends_after
+from tsas_cli.physics.lugre_input import step_at
+from tsas_cli.physics.lugre_state import (
+    DAMPING,
+    LIMIT,
+    PITCH,
+    REST,
+    ROWS,
+    STIFFNESS,
+    T_BY_W,
+    T_PAST,
+    V_PAST,
+    Y_PAST,
+    Z_PAST,
+    Floats,
+    Law,
+    V,
+    W,
+    Y,
+    Z,
+)
+from tsas_cli.physics.rig import Rig
+from tsas_cli.physics.slip_chain import segment_compliances
+
+NO_TIME_S = 1e-13  # step of the balance at rest
+
+
+@kernel
+def law_of(rig: Rig, n: int) -> Law:
+    """Return what of the rig holds at every step."""
+    effects, bristles = rig.effects, rig.bristles
+    stiffness = bristles.stiffness_N_per_mm
+    travel = effects.presliding.length_mm
+    limit = rig.preload_N * rig.friction_coefficient * rig.total_bend_rad
+    damping = bristle_damping(bristles, rig.sheath_length_mm, limit, travel)
+    viscous = effects.viscous_friction.coefficient_N_s_per_mm / n
+    return Law(
+        n,
+        rig.preload_N,
+        tendon_mass(bristles, rig.sheath_length_mm) / n,
+        Bristle(stiffness / n, damping / n, viscous, travel),
+        Bristle(stiffness, damping, 0.0, 0.0),
+        effects.load_dependent_friction.exponent,
+        effects.stribeck_friction,
+        rig.load_stiffness_N_per_mm,
+        effects.load_spring_nonlinearity,
+        effects.load_friction,
+        effects.load_inertia.mass_kg,
+        effects.drive_friction.friction_N,
+        effects.proximal_spring.stiffness_N_per_mm,
+    )
+
+
+@kernel
+def lay_out(s: Floats, rig: Rig, n: int) -> None:
+    """Set the tendon's segments."""
+    for row in range(ROWS):
+        for i in range(n + 2):
+            s[PITCH * row + i] = 0.0
+    bristles = rig.bristles
+    relaxation_s = bristles.tendon_damping_N_s_per_mm * rig.sheath_length_mm
+    relaxation_s /= rig.tendon_stiffness_N
+    compliance = segment_compliances(rig, n)
+    for j in range(n + 1):
+        s[STIFFNESS + j] = 1.0 / compliance[j]
+        s[DAMPING + j] = relaxation_s / compliance[j]
+
+
+@kernel
+def set_off(
+    s: Floats,
+    start: Floats,
+    times: Floats,
+    course: Floats,
+    k: int,
+    t: float,
+    boundary: Boundary,
+    law: Law,
+) -> Ends:
+    """Lay the nodes down at rest, their bristles holding what the tensions leave over.
+
+    `start` holds positions and tensions, shape (2, n + 2) [mm, N]; returns the ends.
+    """
+    last = law.n + 1
+    step = step_at(times, course, k, t, NO_TIME_S, law.n, boundary)
+    for i in range(law.n + 2):
+        s[Y + i] = s[Y_PAST + i] = start[0, i] - step.position
+        s[T_PAST + i], s[T_BY_W + i] = start[1, i], 0.0
+        s[V + i], s[V_PAST + i], s[W + i] = 0.0, 0.0, -step.speed
+        s[Z_PAST + i] = 0.0
+    if boundary.drive == DISPLACEMENT:
+        s[W], s[V] = 0.0, step.speed
+    balance(s, step, boundary, law)
+    for i in range(1, law.n + 1):
+        share = min(max(s[REST + i] / s[LIMIT + i], -1.0), 1.0)
+        s[Z + i] = s[REST + i] / law.bristle.stiffness + share * law.bristle.travel
+    s[Z] = s[REST] / law.end_bristle.stiffness
+    s[Z + last] = s[REST + last] / law.end_bristle.stiffness
+    return ends_after(s, step, law)
