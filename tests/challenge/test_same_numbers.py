@@ -16,8 +16,8 @@ from tsas_cli.challenge.rig.load_end import LoadEnd
 from tsas_cli.challenge.rig.sensors import PERFECT, measure
 from tsas_cli.challenge.rig.tendon import Rig as VirtualRig
 from tsas_cli.challenge.rig.tendon import simulate as run_rig
-from tsas_cli.physics.quasi_static import Drive
-from tsas_cli.physics.quasi_static import simulate as run_model
+from tsas_cli.physics.response import Drive
+from tsas_cli.physics.response import simulate as run_model
 from tsas_cli.physics.rig import Rig, with_values
 
 CHANNELS = ("f_in_N", "f_out_N", "x_out_mm")

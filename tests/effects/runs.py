@@ -4,7 +4,7 @@ import numpy as np
 
 from tests.physics.references import GROUP_A
 from tsas_cli.physics.ends import Drive
-from tsas_cli.physics.quasi_static import simulate
+from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import with_values
 
 A = GROUP_A.friction_coefficient * GROUP_A.total_bend_rad

@@ -80,7 +80,7 @@ from tsas_cli.identification.model import data_sheet
 from tsas_cli.identification.phases import segment
 from tsas_cli.identification.prepared import prepare
 from tsas_cli.physics.ends import Drive
-from tsas_cli.physics.quasi_static import simulate
+from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import Rig, with_values
 from tsas_cli.recordings.dataset import Recording
 from tsas_cli.recordings.manifest import Manifest, Run

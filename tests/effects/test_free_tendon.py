@@ -7,7 +7,7 @@ from tests.physics.references import GROUP_A
 from tsas_cli.effects import Effects, FreeTendon
 from tsas_cli.effects.free_tendon import free_compliance
 from tsas_cli.physics.branches import branches
-from tsas_cli.physics.quasi_static import Drive, simulate
+from tsas_cli.physics.response import Drive, simulate
 
 EA = GROUP_A.tendon_stiffness_N
 MOTION = np.interp(np.linspace(0, 6, 3000), np.arange(7), [0, 14, 13.9, 13.95, 3, 9, -4])

@@ -8,7 +8,7 @@ import pytest
 from tests.effects.runs import UP_AND_DOWN, run
 from tests.physics.references import GROUP_A
 from tsas_cli.physics.ends import Drive
-from tsas_cli.physics.quasi_static import simulate
+from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import with_values
 
 TIME_S = np.arange(UP_AND_DOWN.size) * 0.02

@@ -10,7 +10,7 @@ import pytest
 
 from tests.effects.runs import UP_AND_DOWN, A, run
 from tests.physics.references import GROUP_A, LOADED_BY_DISPLACEMENT, course_of
-from tsas_cli.physics.quasi_static import NODES
+from tsas_cli.physics.response import NODES
 from tsas_cli.physics.rig import with_values
 from tsas_cli.physics.slip_chain import slip_chain
 

@@ -7,7 +7,7 @@ from tsas_cli.challenge.rig.motions import dwell, nested, sine, triangle
 from tsas_cli.challenge.rig.tendon import Rig as VirtualRig
 from tsas_cli.challenge.rig.tendon import simulate as rig_run
 from tsas_cli.numerics.conditioning import condition, monotone_between
-from tsas_cli.physics.quasi_static import Drive, simulate
+from tsas_cli.physics.response import Drive, simulate
 from tsas_cli.physics.rig import Rig
 
 NOISE_mm = 0.005

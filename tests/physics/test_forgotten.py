@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tsas_cli.physics.ends import Drive
-from tsas_cli.physics.quasi_static import forgotten, simulate
+from tsas_cli.physics.response import forgotten, simulate
 from tsas_cli.physics.rig import Rig
 
 MU, EA, KL, L, BEND, F0 = 0.125, 67858.4, 1.579, 785.398, math.pi, 25.0
