@@ -59,3 +59,6 @@ def simulate(
     ]
     header = ("run", "channel", "RMSE", "noise", "unit", "solver")
     show(summary, [(f"{dynamics.value} model → {out}", header, rows)], quiet=quiet, as_json=as_json)
+    if not quiet and not as_json:
+        for sentence in summary["notes"]:
+            print(f"- {sentence}")

@@ -56,7 +56,7 @@ STRIBECK_FRICTION = Effect(
             "mm/s",
             neutral=5.0,
             start=5.0,
-            lower=0.05,
+            lower=0.01,
             upper=500.0,
             shape=True,
             starts=(1.0, 4.0, 15.0),

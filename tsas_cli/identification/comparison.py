@@ -7,6 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.errors import InputError
+from tsas_cli.identification.dynamic_notes import dynamic_notes
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.physics.response import SLACK, UNSETTLED, Dynamics, Response, simulate
@@ -23,6 +24,7 @@ class Compared:
     channels: dict[str, Floats]
     rmse: dict[str, float]
     samples: dict[str, int]
+    notes: tuple[str, ...] = ()
 
     def as_json(self, run: Prepared) -> dict[str, Any]:
         """Return what `simulation.json` says of the run."""
@@ -34,6 +36,7 @@ class Compared:
             "samples": int(run.time_s.size),
             "slack_samples": int(np.count_nonzero(self.response.phase == SLACK)),
             "unconverged_samples": int(np.count_nonzero(self.response.phase == UNSETTLED)),
+            "notes": list(self.notes),
             "channels": {
                 name: {
                     "rmse": self.rmse[name],
@@ -80,4 +83,5 @@ def compare(run: Prepared, model: Model, dynamics: Dynamics = "slip") -> Compare
         channels,
         {name: float(np.sqrt(np.mean(e**2))) for name, e in error.items()},
         {name: int(e.size) for name, e in error.items()},
+        tuple(dynamic_notes(run, model, response)) if dynamics == "lugre" else (),
     )

@@ -56,8 +56,21 @@ def simulate_dataset(
             write_parquet(folder / "runs" / f"{run.run.id}.parquet", _table(run, answer))
             summary["runs"][run.run.id] = answer.as_json(run)
             step()
+        summary["notes"] = _notes(summary["runs"])
         write_json(folder / "simulation.json", summary)
     return summary
+
+
+def _notes(runs: dict[str, Any]) -> list[str]:
+    """Return the runs' notes, each once, with the runs that it is of."""
+    of: dict[str, list[str]] = {}
+    for run_id, answer in runs.items():
+        for note in answer["notes"]:
+            of.setdefault(note, []).append(run_id)
+    return [
+        note if len(ids) == len(runs) else f"run {', '.join(ids)}: {note}"
+        for note, ids in of.items()
+    ]
 
 
 def _table(run: Prepared, answer: Compared) -> pa.Table:

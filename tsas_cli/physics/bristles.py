@@ -73,3 +73,13 @@ def friction(
     by_limit = share + (damping * share - by_share * share) / bristle.stiffness
     total = force * share - damping * before + bristle.viscous * speed
     return total, by_speed, by_limit, longest * share
+
+
+@kernel
+def friction_now(
+    deflection: float, speed: float, limit: float, bristle: Bristle
+) -> tuple[float, float]:
+    """Return friction at a moment, and how fast the deflection changes, Yang 2025, Eq. (15)."""
+    longest = limit / bristle.stiffness + bristle.travel
+    rate = speed - abs(speed) * deflection / longest
+    return limit * deflection / longest + bristle.damping * rate + bristle.viscous * speed, rate

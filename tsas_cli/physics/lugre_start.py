@@ -58,18 +58,22 @@ def law_of(rig: Rig, n: int) -> Law:
 
 
 @kernel
+def segments(rig: Rig, n: int) -> tuple[Floats, Floats]:
+    """Return stiffness and damping of the n + 1 segments [N/mm, N s/mm]."""
+    stiffness = 1.0 / segment_compliances(rig, n)
+    relaxation_s = rig.bristles.tendon_damping_N_s_per_mm * rig.sheath_length_mm
+    return stiffness, relaxation_s / rig.tendon_stiffness_N * stiffness
+
+
+@kernel
 def lay_out(s: Floats, rig: Rig, n: int) -> None:
-    """Set the tendon's segments."""
+    """Set the tendon's segments, and everything else to zero."""
     for row in range(ROWS):
         for i in range(n + 2):
             s[PITCH * row + i] = 0.0
-    bristles = rig.bristles
-    relaxation_s = bristles.tendon_damping_N_s_per_mm * rig.sheath_length_mm
-    relaxation_s /= rig.tendon_stiffness_N
-    compliance = segment_compliances(rig, n)
+    stiffness, damping = segments(rig, n)
     for j in range(n + 1):
-        s[STIFFNESS + j] = 1.0 / compliance[j]
-        s[DAMPING + j] = relaxation_s / compliance[j]
+        s[STIFFNESS + j], s[DAMPING + j] = stiffness[j], damping[j]
 
 
 @kernel

@@ -155,6 +155,7 @@ class Simulation(StageFile):
     version: str
     model: ModelFile
     dynamics: str
+    notes: tuple[str, ...] = ()
     runs: dict[str, SimulatedRun]
 
 

@@ -36,7 +36,12 @@ def section(inputs: Inputs) -> Section:
         if (pictures := tuple(_pictures(inputs, recording, channels, number)))
     )
     return Section(
-        "simulation", _TITLE, intro, tables=(_table(simulation), _inputs(simulation)), groups=groups
+        "simulation",
+        _TITLE,
+        intro,
+        tables=(_table(simulation), _inputs(simulation)),
+        groups=groups,
+        points=simulation.notes,
     )
 
 

@@ -1,0 +1,58 @@
+"""What a run with the dynamic model says of itself: unstable sliding, borrowed bristles, an end."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from tsas_cli.identification.model import Model
+from tsas_cli.identification.prepared import Prepared
+from tsas_cli.physics.bristles import Bristles, bristle_damping
+from tsas_cli.physics.lugre_chain import MOST_PER_SAMPLE, MOST_TRIES
+from tsas_cli.physics.lugre_stability import Stability, stability
+from tsas_cli.physics.response import UNSETTLED, Response, simulate
+from tsas_cli.physics.rig import Rig
+
+HIGH_DAMPING = 3.0  # times critical, from which on the bristles are what makes sliding unstable
+
+
+def dynamic_notes(run: Prepared, model: Model, response: Response) -> Iterator[str]:
+    """Say what of the dynamic model's answer to a run is not to be trusted, and why."""
+    rig = model.rig(run.run)
+    if model.value("bristles.stiffness_N_per_mm") is None:
+        yield (
+            "the bristles are those of Yang 2025, Table 1: the model has no "
+            "[bristles.stiffness_N_per_mm] of this rig"
+        )
+    slow = simulate(rig, run.drive)
+    found = stability(rig, run.time_s, slow.x_in_mm, slow.f_in_N, slow.phase)
+    if found is not None and found.unstable:
+        yield _unstable(found, rig)
+    given_up = response.phase == UNSETTLED
+    if np.any(given_up):
+        yield (
+            f"given up at {run.time_s[np.argmax(given_up)]:.4g} s, after {MOST_TRIES} steps and "
+            f"{MOST_PER_SAMPLE} more for each sample: what comes later is not simulated"
+        )
+
+
+def _unstable(found: Stability, rig: Rig) -> str:
+    moment = found.moment
+    where = "where the whole tendon slides" if moment.whole else "in a dead band"
+    sentence = (
+        f"sliding is unstable {where}, at {moment.speed_mm_s:.3g} mm/s and f_in of "
+        f"{moment.f_in_N:.3g} N: a disturbance grows e-fold in {1e3 / found.growth_per_s:.2g} ms"
+    )
+    times = _damping(rig, rig.bristles) / _damping(rig, Bristles(rig.bristles.stiffness_N_per_mm))
+    if times > HIGH_DAMPING:
+        return (
+            f"{sentence}; the bristles' damping is {times:.3g} times critical, and critical where "
+            "[bristles.damping_N_s_per_mm] is left out"
+        )
+    return f"{sentence}; friction falls with speed by more than anything damps"
+
+
+def _damping(rig: Rig, bristles: Bristles) -> float:
+    limit = rig.preload_N * rig.friction_coefficient * rig.total_bend_rad
+    travel = rig.effects.presliding.length_mm
+    same = bristles._replace(tendon_mass_kg_per_m=rig.bristles.tendon_mass_kg_per_m)
+    return bristle_damping(same, rig.sheath_length_mm, limit, travel)
