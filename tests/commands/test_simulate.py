@@ -62,7 +62,7 @@ def test_it_writes_what_is_documented(strict, folder, tmp_path):
     assert set(summary) == documented("simulation.json")
     assert set(summary["runs"]["a"]) == {
         *("solver", "conditioning", "start", "samples", "slack_samples"),
-        *("unconverged_samples", "channels"),
+        *("unconverged_samples", "notes", "channels"),
     }
     assert set(summary["runs"]["a"]["channels"]["f_in_N"]) == {"rmse", "noise", "samples", "unit"}
     table = pq.read_table(tmp_path / "out" / "runs" / "a.parquet")
@@ -197,4 +197,50 @@ def test_a_run_that_is_not_there_is_named(strict, folder, tmp_path, stage):
     done = strict(stage, folder, "--runs", "a,A", "--out", tmp_path / "out")
     assert done.returncode == 2
     assert "there is no run 'A'" in done.stderr
+    assert not (tmp_path / "out").exists()
+
+
+BRISTLES = """
+[bristles]
+stiffness_N_per_mm = {{ value = {stiffness}, unit = "N/mm" }}
+damping_N_s_per_mm = {{ value = {damping}, unit = "N s/mm" }}
+"""
+
+
+def with_bristles(path, **values):
+    text = 'format = 1\nkind = "model"\n' + BRISTLES.format(**values)
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_the_dynamic_model_says_whose_bristles_it_takes(strict, folder, tmp_path):
+    done = strict("simulate", folder, "--dynamics", "lugre", "--out", tmp_path / "out")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "LuGre chain, 50 lumps" in done.stdout
+    notes = [line for line in done.stdout.splitlines() if line.startswith("- ")]
+    assert len(notes) == 1
+    assert "Table 1" in notes[0]
+
+
+def test_the_dynamic_model_says_where_sliding_is_unstable(strict, folder, tmp_path):
+    for damping, unstable in ((15.8, True), (0.2, False)):
+        model = with_bristles(tmp_path / "model.toml", stiffness=5000.0, damping=damping)
+        call = ("--model", model, "--dynamics", "lugre", "--out", tmp_path / "out", "--force")
+        done = strict("simulate", folder, *call)
+        assert done.returncode == 0
+        assert ("sliding is unstable in a dead band" in done.stdout) == unstable
+        assert ("79.7 times critical" in done.stdout) == unstable
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "damping"), [(-1.0, 0.2), (0.0, 0.2), (5000.0, -0.1), ("nan", 0.2)]
+)
+def test_bristles_that_cannot_be_are_refused(strict, folder, tmp_path, stiffness, damping):
+    model = with_bristles(tmp_path / "model.toml", stiffness=stiffness, damping=damping)
+    done = strict(
+        "simulate", folder, "--model", model, "--dynamics", "lugre", "--out", tmp_path / "out"
+    )
+    assert done.returncode == 2
+    assert len(done.stderr.splitlines()) == 1
+    assert "bristles." in done.stderr
     assert not (tmp_path / "out").exists()

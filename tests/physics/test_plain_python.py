@@ -9,9 +9,10 @@ import json
 import sys
 import numpy as np
 from tests.physics.references import GROUP_A, course_of
-from tsas_cli.effects import Effects, FreeTendon
+from tsas_cli.effects import Effects, FreeTendon, StribeckFriction
 from tsas_cli.physics.branches import branches
 from tsas_cli.physics.chain_state import DISPLACEMENT, FORCE, SPRING, Boundary
+from tsas_cli.physics.lugre_chain import lugre_chain
 from tsas_cli.physics.slip_chain import slip_chain
 from tsas_cli.physics.static import static_model
 
@@ -28,6 +29,16 @@ for drive, load, boundary in (
 ):
     course = course_of(drive, rig, load=load, **varying)
     answers.append(slip_chain(course, rig, boundary, 10))
+    few, start = course[:, 40:80].copy(), np.zeros((2, 7))
+    few[0] -= few[0, 0] * (boundary.drive == DISPLACEMENT)
+    few[1] -= few[1, 0] * (boundary.load == DISPLACEMENT)
+    start[1] = rig.preload_N
+    lively = rig._replace(effects=Effects(stribeck_friction=StribeckFriction(0.1, 8.0)))
+    # Equal steps: their control would magnify rounding.
+    columns, phase, progress = lugre_chain(
+        np.arange(40) / 100, few, start, lively, boundary, 5, 1e3, 2e-3
+    )
+    answers.append([*columns, phase, np.array(progress)])
 columns = [column.tolist() for answer in answers for column in answer]
 print(json.dumps(["numba" in sys.modules, columns]))
 """
@@ -35,6 +46,6 @@ print(json.dumps(["numba" in sys.modules, columns]))
 
 def test_compiled_is_plain_python_to_rounding():
     plain, compiled = answers(PROGRAM, plain=True), answers(PROGRAM, plain=False)
-    assert len(plain) == 3 * 3 + 4 * 5
+    assert len(plain) == 3 * 3 + 4 * 5 + 4 * 6
     for ours, theirs in zip(plain, compiled, strict=True):
         assert ours == pytest.approx(theirs, rel=1e-9, abs=1e-9)

@@ -28,7 +28,7 @@ from tsas_cli.physics.lugre_state import (
     Law,
     Phases,
 )
-from tsas_cli.physics.lugre_step import error, formula_length, keep, look_back, newton
+from tsas_cli.physics.lugre_step import error, formula_of, keep, look_back, newton
 from tsas_cli.physics.rig import Rig
 
 SHORTEST_S = 1e-13
@@ -96,7 +96,7 @@ def lugre_chain(
     columns, phase = np.empty((4, m)), np.full(m, 3, dtype=np.int8)
     s, law = np.empty(ROWS * PITCH), law_of(rig, n)
     lay_out(s, rig, n)
-    ends = set_off(s, start, times, course, 0, times[0], boundary, law)
+    ends = earlier = set_off(s, start, times, course, 0, times[0], boundary, law)
     write_samples(columns, 0, 1, times, course, times[0] - 1.0, 1.0, ends, ends, boundary, law)
     phase[0] = 0
     k, t, turn = 0, times[0], next_turn(times, course, 0, boundary)
@@ -111,26 +111,28 @@ def lugre_chain(
         h, lands = fitted(min(h, longest_s), times[turn] - t)
         t1 = times[turn] if lands else t + h
         k1 = sample_before(times, k, t1)
-        step = step_at(times, course, k1, t1, formula_length(h, h1), n, boundary)
+        formula = formula_of(h, h1, h2)
+        drives = ends.drive, earlier.drive
+        step = step_at(times, course, k1, t1, formula, drives, n, boundary)
         off, done = math.inf, 0
         if departs(times, course, k, k1, t, h, ends, step) * felt <= scale:
-            look_back(s, law, step.gh, h, h1, h2)
+            look_back(s, law, formula)
             leaves = min(LEAVES * scale, LEAVES_AT_MOST * tension)
             done, solved = newton(s, step, boundary, law, leaves)
-            off = error(s, law, step.gh, h, h1, h2) if solved else math.inf
+            off = error(s, law, formula) if solved else math.inf
         iterations += done
         change = CAREFUL * (scale / (off + 1e-300)) ** (1.0 / 3.0 if h2 < math.inf else 0.5)
         if not off <= scale:
             h *= max(SHORTER, change)
             continue
         steps += 1
-        before, ends = ends, ends_after(s, step, law)
+        earlier, ends = ends, ends_after(s, step, law)
         since = k + 1
         k = k1 + 1 if times[k1 + 1] <= t1 else k1
-        write_samples(columns, since, k + 1, times, course, t, h, before, ends, boundary, law)
+        write_samples(columns, since, k + 1, times, course, t, h, earlier, ends, boundary, law)
         phase[since : k + 1] = phase_of(s, law)
         keep(s, step, law)
-        felt = max(felt_by_drive(before, ends), law.load_stiffness_N_per_mm)
+        felt = max(felt_by_drive(earlier, ends), law.load_stiffness_N_per_mm)
         first = h if h1 == math.inf else first
         t, h, h1, h2 = t1, h * min(LONGER, change), h, h1
         if hangs(s, times, course, k, t, ends, boundary, law):

@@ -16,8 +16,8 @@ class Ends(NamedTuple):
     drive_rate: float
     x_in: float  # relative to the drive [mm]
     w_in: float
-    x_out: float  # relative to the drive [mm]
-    w_out: float
+    x_out: float  # [mm]
+    v_out: float
     f_in: float  # tension [N]
     f_in_rate: float
     f_out: float
@@ -36,8 +36,8 @@ def ends_after(s: Floats, step: Step, law: Law) -> Ends:
         step.drive_rate,
         s[Y_NEW],
         s[W],
-        s[Y_NEW + last],
-        s[W + last],
+        s[Y_NEW + last] + step.position,
+        s[W + last] + step.speed,
         s[T],
         s[STIFFNESS] * (s[W] - s[W + 1]),
         s[T + n],
@@ -95,13 +95,12 @@ def write_samples(
         part = (times[i] - t) / h
         f_in[i] = hermite(part, h, a.f_in, a.f_in_rate, b.f_in, b.f_in_rate)
         f_out[i] = hermite(part, h, a.f_out, a.f_out_rate, b.f_out, b.f_out_rate)
-        x_out[i] = hermite(part, h, a.x_out, a.w_out, b.x_out, b.w_out)
+        x_out[i] = hermite(part, h, a.x_out, a.v_out, b.x_out, b.v_out)
         x_in[i] = hermite(part, h, a.x_in, a.w_in, b.x_in, b.w_in)
     if boundary.drive == FORCE:
         f_in[first:end] = given[first:end]
     else:
         x_in[first:end] = given[first:end]
-        x_out[first:end] += given[first:end]
     share = sensor_share(boundary, law)
     if boundary.load == FORCE:
         f_out[first:end] = course[LOAD, first:end]

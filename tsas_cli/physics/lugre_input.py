@@ -9,7 +9,7 @@ import numpy as np
 
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.chain_state import DISPLACEMENT, SPRING, Boundary
-from tsas_cli.physics.lugre_state import Floats, Step
+from tsas_cli.physics.lugre_state import Floats, Formula, Step
 
 DRIVE, LOAD, PULLED, RELEASED, LOST = 0, 1, 2, 3, 5  # rows of the course
 
@@ -82,9 +82,19 @@ def given_at(times: Floats, course: Floats, row: int, k: int, t: float) -> tuple
 
 @kernel
 def step_at(
-    times: Floats, course: Floats, k: int, t: float, gh: float, n: int, boundary: Boundary
+    times: Floats,
+    course: Floats,
+    k: int,
+    t: float,
+    formula: Formula,
+    drives: tuple[float, float],
+    n: int,
+    boundary: Boundary,
 ) -> Step:
-    """Return what is given at the end of a step, at a time from sample k to the next."""
+    """Return what is given at the end of a step, at a time from sample k to the next.
+
+    `drives` is what was given there at the ends of the last two steps.
+    """
     drive, rate = given_at(times, course, DRIVE, k, t)
     load = 0.0
     if boundary.load != SPRING:
@@ -94,13 +104,14 @@ def step_at(
     released = course[RELEASED, k] + part * (course[RELEASED, k + 1] - course[RELEASED, k])
     lost = course[LOST, k] + part * (course[LOST, k + 1] - course[LOST, k])
     framed = 1.0 if boundary.drive == DISPLACEMENT else 0.0
+    moved = drive - formula.near * drives[0] + formula.far * drives[1]
     return Step(
-        gh,
+        formula.gh,
         drive,
         rate,
         load,
         framed * drive,
-        framed * rate,
+        framed * moved / formula.gh,
         2.0 * np.tanh(0.5 * pulled / n),
         2.0 * np.tanh(0.5 * released / n),
         lost,

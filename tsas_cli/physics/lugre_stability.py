@@ -17,7 +17,7 @@ from tsas_cli.effects.load_dependent_friction import load_factor
 from tsas_cli.effects.load_spring_nonlinearity import spring_tangent
 from tsas_cli.effects.stribeck_friction import stribeck_factor
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.physics.bristles import friction_now
+from tsas_cli.physics.bristles import TONNES_PER_KG, friction_now
 from tsas_cli.physics.lugre_start import law_of, segments
 from tsas_cli.physics.lugre_state import Law, Phases
 from tsas_cli.physics.rig import Rig
@@ -25,14 +25,15 @@ from tsas_cli.physics.rig import Rig
 Floats = npt.NDArray[np.float64]
 
 LUMPS = 24  # the growth is the same for 24 to 200
-GROWS_PER_S = 1.0  # a disturbance that grows slower than this is no instability
+FOLDS = 3.0  # e-folds by which a disturbance may grow while its moment lasts
+STEEPEST = 0.7  # of the Stribeck velocity, where friction falls fastest with speed
 SLOW = 0.02  # of the highest speed: below it the drive turns
 NUDGE = 1e-6  # of a state, for its slope by central differences
 
 
 @dataclass(frozen=True)
 class Sliding:
-    """One moment: the tension at the drive, its rate, and the drive's speed.
+    """One moment: the tension at the drive, its rate, the drive's speed, and how long that lasts.
 
     `whole` says whether the whole tendon slides, or only the half next to the drive.
     """
@@ -41,6 +42,7 @@ class Sliding:
     f_in_rate: float
     speed_mm_s: float
     whole: bool
+    lasts_s: float = math.inf
 
 
 def growth_rate(rig: Rig, moment: Sliding) -> float:
@@ -57,7 +59,8 @@ def growth_rate(rig: Rig, moment: Sliding) -> float:
 class _Lumps:
     """The lumps that slide at a moment, next to the drive, and the equations of what disturbs them.
 
-    The state is the disturbance of positions and of speeds, and the deflection of the bristles.
+    The state is the disturbance of positions and of speeds, the deflection of the bristles, and
+    with a load that has a mass, the disturbance of its position and speed.
     """
 
     def __init__(self, rig: Rig, moment: Sliding) -> None:
@@ -65,9 +68,10 @@ class _Lumps:
         count = LUMPS if moment.whole else LUMPS // 2
         stiffness, damping = segments(rig, LUMPS)
         self.stiffness, self.damping = stiffness[: count + 1], damping[: count + 1]
-        if moment.whole:  # the load's spring in series; what damps it is slower than any lump
-            spring = spring_tangent(0.0, rig.load_stiffness_N_per_mm, self.law.load_spring)
-            self.stiffness[-1] = 1.0 / (1.0 / self.stiffness[-1] + 1.0 / spring)
+        self.spring = spring_tangent(0.0, rig.load_stiffness_N_per_mm, self.law.load_spring)
+        self.load_mass = TONNES_PER_KG * self.law.load_mass_kg if moment.whole else 0.0
+        if moment.whole and self.load_mass == 0.0:  # in series; its damping is slower than a lump
+            self.stiffness[-1] = 1.0 / (1.0 / self.stiffness[-1] + 1.0 / self.spring)
             self.damping[-1] = 0.0
         place: Floats = np.linspace(0.5, count - 0.5, count)
         direction = math.copysign(1.0, moment.speed_mm_s)
@@ -80,17 +84,23 @@ class _Lumps:
         longest = limit / self.law.bristle.stiffness
         lag = longest * moment.f_in_rate / moment.f_in_N / np.abs(self.speed)
         deflection = direction * (longest + self.law.bristle.travel) * (1.0 - lag)
-        self.state = np.concatenate((np.zeros(2 * count), deflection))
+        load = np.zeros(2 if self.load_mass > 0.0 else 0)
+        self.state = np.concatenate((np.zeros(2 * count), deflection, load))
 
     def rates(self, state: Floats) -> Floats:
         """Return how fast a state changes, but for what does not depend on it."""
-        place, speed, deflection = np.split(state, 3)
-        pull = -self.stiffness * np.diff(place, prepend=0.0, append=0.0)
-        pull -= self.damping * np.diff(speed, prepend=0.0, append=0.0)
+        place, speed, deflection = state[: 3 * self.speed.size].reshape(3, -1)
+        x, v = state[3 * self.speed.size :] if self.load_mass > 0.0 else (0.0, 0.0)
+        pull = -self.stiffness * np.diff(place, prepend=0.0, append=x)
+        pull -= self.damping * np.diff(speed, prepend=0.0, append=v)
         sliding = self.speed + speed
         tension = self.tension + 0.5 * (pull[:-1] + pull[1:])
         _, rubbing, turning = rub(deflection, sliding, tension, self.friction, self.law)
-        return np.concatenate((speed, (-np.diff(pull) - rubbing) / self.law.lump_mass, turning))
+        faster = (-np.diff(pull) - rubbing) / self.law.lump_mass
+        rates = np.concatenate((speed, faster, turning))
+        if self.load_mass == 0.0:
+            return rates
+        return np.append(rates, (v, (pull[-1] - self.spring * x) / self.load_mass))
 
 
 @kernel
@@ -116,8 +126,13 @@ class Stability:
 
     @property
     def unstable(self) -> bool:
-        """Whether it grows."""
-        return self.growth_per_s > GROWS_PER_S
+        """Whether it grows much while the moment lasts."""
+        return self.folds > FOLDS
+
+    @property
+    def folds(self) -> float:
+        """By how many e-folds it grows."""
+        return self.growth_per_s * self.moment.lasts_s
 
 
 def stability(
@@ -135,23 +150,29 @@ def stability(
     Returns
     -------
         The least stable of some moments: in full slip, in either direction, where the drive is
-        fastest and where speed over tension is largest; in dead bands where the tension changes
-        as it does half way. None where the drive never moves under tension.
+        fastest, where speed over tension is largest, and where friction falls fastest with speed;
+        in dead bands where the tension changes as it does half way. None where the drive never
+        moves under tension.
     """
     speed, rate = np.gradient(x_in_mm, time_s), np.gradient(f_in_N, time_s)
-    moves = (np.abs(speed) > SLOW * np.max(np.abs(speed))) & (f_in_N > 0.0)
+    lasts = np.abs(speed) / (np.abs(np.gradient(speed, time_s)) + 1e-300)
+    moves = (speed != 0.0) & (f_in_N > 0.0)
+    steepest = STEEPEST * rig.effects.stribeck_friction.velocity_mm_per_s
     chosen: list[tuple[int, bool]] = []
     for direction in (1, -1):
         slips = np.flatnonzero(moves & (phase == direction))
         if slips.size:
             fast = np.abs(speed[slips])
-            chosen += [(int(slips[np.argmax(v)]), True) for v in (fast, fast / f_in_N[slips])]
-        band = np.flatnonzero(moves & (phase == 0) & (np.sign(speed) == direction))
+            most = [fast, fast / f_in_N[slips], -np.abs(fast - steepest)]
+            chosen += [(int(slips[np.argmax(v)]), True) for v in most]
+        fast_enough = np.abs(speed) > SLOW * np.max(np.abs(speed))
+        band = np.flatnonzero(moves & fast_enough & (phase == 0) & (np.sign(speed) == direction))
         if band.size:
             steep = np.abs(rate[band] / speed[band])
             chosen.append((int(band[np.argsort(steep)[band.size // 2]]), False))
     found = []
     for i, whole in dict.fromkeys(chosen):
-        moment = Sliding(float(f_in_N[i]), float(rate[i]), float(speed[i]), whole)
+        lasting = min(float(lasts[i]), float(time_s[-1] - time_s[0]))
+        moment = Sliding(float(f_in_N[i]), float(rate[i]), float(speed[i]), whole, lasting)
         found.append(Stability(growth_rate(rig, moment), moment))
-    return max(found, key=lambda s: s.growth_per_s, default=None)
+    return max(found, key=lambda s: s.folds, default=None)

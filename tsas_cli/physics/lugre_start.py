@@ -1,11 +1,13 @@
 """The dynamic chain before its first step: the laws of a rig, its segments, nodes at rest."""
 
+import math
+
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.bristles import Bristle, bristle_damping, tendon_mass
-from tsas_cli.physics.chain_state import DISPLACEMENT, Boundary
+from tsas_cli.physics.chain_state import Boundary
 from tsas_cli.physics.lugre_balance import balance
 from tsas_cli.physics.lugre_ends import Ends, ends_after
-from tsas_cli.physics.lugre_input import step_at
+from tsas_cli.physics.lugre_input import DRIVE, given_at, step_at
 from tsas_cli.physics.lugre_state import (
     DAMPING,
     LIMIT,
@@ -25,6 +27,7 @@ from tsas_cli.physics.lugre_state import (
     Y,
     Z,
 )
+from tsas_cli.physics.lugre_step import formula_of
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.slip_chain import segment_compliances
 
@@ -92,14 +95,13 @@ def set_off(
     `start` holds positions and tensions, shape (2, n + 2) [mm, N]; returns the ends.
     """
     last = law.n + 1
-    step = step_at(times, course, k, t, NO_TIME_S, law.n, boundary)
+    drive = given_at(times, course, DRIVE, k, t)[0]
+    formula = formula_of(NO_TIME_S, math.inf, math.inf)
+    step = step_at(times, course, k, t, formula, (drive, drive), law.n, boundary)
     for i in range(law.n + 2):
         s[Y + i] = s[Y_PAST + i] = start[0, i] - step.position
         s[T_PAST + i], s[T_BY_W + i] = start[1, i], 0.0
-        s[V + i], s[V_PAST + i], s[W + i] = 0.0, 0.0, -step.speed
-        s[Z_PAST + i] = 0.0
-    if boundary.drive == DISPLACEMENT:
-        s[W], s[V] = 0.0, step.speed
+        s[V + i] = s[V_PAST + i] = s[W + i] = s[Z_PAST + i] = 0.0
     balance(s, step, boundary, law)
     for i in range(1, law.n + 1):
         share = min(max(s[REST + i] / s[LIMIT + i], -1.0), 1.0)

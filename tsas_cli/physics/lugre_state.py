@@ -51,6 +51,17 @@ class Law(NamedTuple):
     proximal_spring_N_per_mm: float
 
 
+class Formula(NamedTuple):
+    """A step and the two before it, infinite where there was none; y = near y1 − far y2 + gh w."""
+
+    h: float  # [s]
+    h1: float
+    h2: float
+    gh: float
+    near: float
+    far: float
+
+
 class Step(NamedTuple):
     """One step: its length in the formula y = Y_PAST + gh w, and what is given at its end."""
 
@@ -59,7 +70,7 @@ class Step(NamedTuple):
     drive_rate: float
     load: float  # likewise; unused with a spring
     position: float  # of the frame that positions are relative to [mm]
-    speed: float  # of that frame [mm/s]
+    speed: float  # of that frame, by the same formula [mm/s]
     pulled: float  # friction over the mean tension of a lump's two sides in contraction [1]
     released: float  # and in loosening [1]
     lost_N: float  # preload that the load spring's anchor has lost

@@ -27,6 +27,7 @@ from tsas_cli.physics.lugre_state import (
     Z_NEW,
     Z_PAST,
     Floats,
+    Formula,
     Law,
     Step,
     V,
@@ -39,20 +40,19 @@ MOST_ITERATIONS = 8
 
 
 @kernel
-def formula_length(h: float, h1: float) -> float:
-    """Return gh of a step h after one of h1 [s]; without one before, that of backward Euler."""
+def formula_of(h: float, h1: float, h2: float) -> Formula:
+    """Return the formula of a step after two others; without one before, backward Euler's."""
     ratio = h / h1
-    return h * (1.0 + ratio) / (1.0 + 2.0 * ratio)
+    below = 1.0 + 2.0 * ratio
+    gh = h * (1.0 + ratio) / below
+    return Formula(h, h1, h2, gh, (1.0 + ratio) ** 2 / below, ratio * ratio / below)
 
 
 @kernel
-def look_back(s: Floats, law: Law, gh: float, h: float, h1: float, h2: float) -> None:
-    """Set the history terms of a step, and guess its speeds by extrapolation.
-
-    h1 and h2 are the two steps before, infinite where there was none.
-    """
+def look_back(s: Floats, law: Law, formula: Formula) -> None:
+    """Set the history terms of a step, and guess its speeds by extrapolation."""
+    h, h1, h2, gh, near, far = formula
     ratio = h / h1
-    near, far = (1.0 + ratio) ** 2 / (1.0 + 2.0 * ratio), ratio * ratio / (1.0 + 2.0 * ratio)
     g0, g1, g2 = 1.0, 0.0, 0.0
     if h1 < math.inf:
         g0, g1 = 1.0 + ratio, -ratio
@@ -99,8 +99,9 @@ def newton(
 
 
 @kernel
-def error(s: Floats, law: Law, gh: float, h: float, h1: float, h2: float) -> float:
+def error(s: Floats, law: Law, formula: Formula) -> float:
     """Return the error of a step as a tension, from how far its guess was off [N]."""
+    h, h1, h2, gh, _, _ = formula
     largest = 0.0
     for j in range(law.n + 1):
         off = (s[W + j] - s[W_GUESS + j]) - (s[W + j + 1] - s[W_GUESS + j + 1])
