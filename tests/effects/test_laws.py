@@ -145,7 +145,8 @@ def test_friction_turns_round_by_dahls_law(before, way):
         z += step * (1.0 - z * np.sign(step)) / length
     assert share_turned(before, way, length) == pytest.approx(z, abs=1e-3)
     slope = (share_turned(before, way + 1e-7, length) - share_turned(before, way, length)) / 1e-7
-    assert turning_rate(before, way, length) == pytest.approx(slope, rel=1e-4, abs=1e-6)
+    share = share_turned(before, way, length)
+    assert turning_rate(share, way, length) == pytest.approx(slope, rel=1e-4, abs=1e-6)
 
 
 @pytest.mark.parametrize("before", [-1.0, -0.2, 0.7])

@@ -34,12 +34,11 @@ def share_turned(before: float, moved: float, length: float) -> float:
 
 
 @kernel
-def turning_rate(before: float, moved: float, length: float) -> float:
-    """Return d share/d way [1/mm]; of both sides the steeper one before any way."""
-    steepest = 1.0 - before if moved > 0.0 else 1.0 + before
+def turning_rate(share: float, moved: float, length: float) -> float:
+    """Return d share/d way after a way [1/mm]; of both sides the steeper one before any way."""
     if moved == 0.0:
-        steepest = 1.0 + abs(before)
-    return steepest / length * math.exp(-abs(moved) / length)
+        return (1.0 + abs(share)) / length
+    return (1.0 - share if moved > 0.0 else 1.0 + share) / length
 
 
 PRESLIDING = Effect(

@@ -18,7 +18,9 @@ from tsas_cli.physics.chain_state import (
     MOVED,
     PASSES,
     PULLED,
+    PULLED_BY,
     RELEASED,
+    RELEASED_BY,
     SLIP,
     T_OLD,
     TAKES,
@@ -43,21 +45,36 @@ def set_friction(chain: Floats, now: Moment, laws: Laws) -> None:
     n = chain.shape[1] - 2
     pulled, released = now.pulled / n, now.released / n
     if laws.friction_exponent == 0.0:
+        chain[PULLED_BY], chain[RELEASED_BY] = pulled, released
         chain[PULLED], chain[RELEASED] = math.exp(-pulled), math.exp(-released)
         return
     for i in range(1, n + 1):
         tension = 0.5 * (chain[T, i - 1] + chain[T, i])
         factor = load_factor(tension / laws.preload_N, laws.friction_exponent)
-        chain[PULLED, i] = math.exp(-min(pulled * factor, STRONGEST))
-        chain[RELEASED, i] = math.exp(-min(released * factor, STRONGEST))
+        chain[PULLED_BY, i] = min(pulled * factor, STRONGEST)
+        chain[RELEASED_BY, i] = min(released * factor, STRONGEST)
 
 
 @kernel
-def ratio_passed(share: float, i: int, chain: Floats) -> float:
+def is_straight(laws: Laws) -> bool:
+    """Say whether a sliding node passes on the same ratio of any tension."""
+    return laws.friction_exponent == 0.0 and laws.presliding_mm == 0.0
+
+
+@kernel
+def wrap_of(share: float, i: int, chain: Floats) -> float:
+    """Return friction times bend of a node whose friction has reached a share of its limit."""
+    own: float = chain[PULLED_BY, i] if share > 0.0 else chain[RELEASED_BY, i]
+    return abs(share) * own
+
+
+@kernel
+def ratio_passed(share: float, i: int, chain: Floats, laws: Laws) -> float:
     """Return T[i]/T[i−1] of a node whose friction has reached a share of its limit, −1 to 1."""
-    ratio: float = chain[PULLED, i] if share > 0.0 else chain[RELEASED, i]
-    if abs(share) != 1.0:
-        ratio = ratio ** abs(share)
+    if is_straight(laws):
+        ratio: float = chain[PULLED, i] if share > 0.0 else chain[RELEASED, i]
+    else:
+        ratio = math.exp(-wrap_of(share, i, chain))
     negative = chain[T, i - 1] + chain[T, i] < 0.0
     return ratio if (share > 0.0) != negative else 1.0 / ratio
 
@@ -71,7 +88,7 @@ def set_slides(chain: Floats, now: Moment, laws: Laws) -> bool:
     dE/dm = ∓(a/n) E f β/m, m the mean tension of both sides; a bristle by dz/dx of the node's way.
     """
     n = chain.shape[1] - 2
-    straight = laws.friction_exponent == 0.0 and laws.presliding_mm == 0.0
+    straight = is_straight(laws)
     changed = False
     for i in range(1, n + 1):
         share = chain[SLIP, i]
@@ -80,7 +97,7 @@ def set_slides(chain: Floats, now: Moment, laws: Laws) -> bool:
             changed = changed or chain[MOVED, i] != chain[X, i] - chain[X_OLD, i]
         elif share == 0.0:
             continue
-        ratio = ratio_passed(share, i, chain)
+        ratio = ratio_passed(share, i, chain, laws)
         half = 0.5 * share * now.viscous_N / n
         if straight:
             changed = changed or ratio != chain[PASSES, i]
@@ -90,23 +107,23 @@ def set_slides(chain: Floats, now: Moment, laws: Laws) -> bool:
         carried, mean = before - half, before + behind
         off = behind + half - ratio * carried
         changed = changed or abs(off) > BALANCED * (abs(before) + laws.preload_N)
-        bent = math.log(ratio) * ratio * laws.friction_exponent * carried / mean if mean else 0.0
+        wrap = wrap_of(share, i, chain) if ratio > 1.0 else -wrap_of(share, i, chain)
+        bent = wrap * ratio * laws.friction_exponent * carried / mean if mean else 0.0
         bent = min(max(bent, -MOST_BENT), MOST_BENT)
         passes = (ratio + bent) / (1.0 - bent)
         takes = passes * before - behind + off / (1.0 - bent)
         chain[PASSES, i], chain[TAKES, i] = passes, takes
         if laws.presliding_mm > 0.0:
-            passed = chain[PULLED, i] if share > 0.0 else chain[RELEASED, i]
-            limit = 0.5 * (1.0 + ratio) * now.viscous_N / n
-            limit -= ratio * abs(carried) * math.log(passed)
-            lean_on_bristle(i, limit / (1.0 - bent), chain, laws)
+            own = chain[PULLED_BY, i] if share > 0.0 else chain[RELEASED_BY, i]
+            limit = 0.5 * (1.0 + ratio) * now.viscous_N / n + ratio * abs(carried) * own
+            lean_on_bristle(i, share, limit / (1.0 - bent), chain, laws)
     return changed
 
 
 @kernel
-def lean_on_bristle(i: int, limit: float, chain: Floats, laws: Laws) -> None:
+def lean_on_bristle(i: int, share: float, limit: float, chain: Floats, laws: Laws) -> None:
     """Let what a node takes rise with its way, from where its tangent was taken."""
-    rate = turning_rate(chain[TURNED, i], chain[MOVED, i], laws.presliding_mm)
+    rate = turning_rate(share, chain[MOVED, i], laws.presliding_mm)
     chain[BRISTLE, i] = limit * rate
     chain[TAKES, i] -= chain[BRISTLE, i] * (chain[X_OLD, i] + chain[MOVED, i])
 
@@ -149,12 +166,12 @@ def slid_back(i: int, chain: Floats, scale: float) -> bool:
 
 
 @kernel
-def pulled_loose(i: int, loss: float, chain: Floats) -> float:
+def pulled_loose(i: int, loss: float, chain: Floats, laws: Laws) -> float:
     """Return the direction in which the tensions pull a node that sticks, 0 where it holds."""
     before, behind, half = chain[T, i - 1], chain[T, i], 0.5 * loss
     margin = TOLERANCE * abs(before)
-    if behind + half < ratio_passed(1.0, i, chain) * (before - half) - margin:
+    if behind + half < ratio_passed(1.0, i, chain, laws) * (before - half) - margin:
         return 1.0
-    if behind - half > ratio_passed(-1.0, i, chain) * (before + half) + margin:
+    if behind - half > ratio_passed(-1.0, i, chain, laws) * (before + half) + margin:
         return -1.0
     return 0.0

@@ -65,4 +65,5 @@ SPEED = 12  # of the load's mass when the last step had settled [mm/s]
 PULLED, RELEASED = 13, 14  # what the node's share of the bend leaves of the tension, e^(−a/n)
 TURNED = 15  # with presliding, the share of its limit that friction had reached
 MOVED = 16  # with presliding, the way since then at which PASSES, TAKES and BRISTLE hold [mm]
-ROWS = 17
+PULLED_BY, RELEASED_BY = 17, 18  # that share, a/n
+ROWS = 19

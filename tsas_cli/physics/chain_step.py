@@ -65,7 +65,7 @@ def settle(chain: Floats, now: Moment, boundary: Boundary, laws: Laws, scale: fl
         if laws.friction_exponent != 0.0:
             set_friction(chain, now, laws)
         most = n if revision < MOST_AT_ONCE else 1  # one by one ends where all at once cycle
-        wrong = laws.presliding_mm == 0.0 and revise(chain, now, scale, most) > 0
+        wrong = laws.presliding_mm == 0.0 and revise(chain, now, laws, scale, most) > 0
         wrong = set_slides(chain, now, laws) or wrong
         if not wrong or most == n:
             wrong = revise_ends(chain, now, boundary, laws, scale) or wrong
@@ -131,7 +131,7 @@ def sweep_to_load(chain: Floats, now: Moment, boundary: Boundary, laws: Laws) ->
 
 
 @kernel
-def revise(chain: Floats, now: Moment, scale: float, most: int) -> int:
+def revise(chain: Floats, now: Moment, laws: Laws, scale: float, most: int) -> int:
     """Free the nodes whose tensions exceed their friction, hold those that slip backwards.
 
     Returns how many nodes it revised, at most so many, from the drive on.
@@ -142,7 +142,7 @@ def revise(chain: Floats, now: Moment, scale: float, most: int) -> int:
     for i in range(1, n + 1):
         before = chain[SLIP, i]
         if before == 0.0:
-            chain[SLIP, i] = pulled_loose(i, loss, chain)
+            chain[SLIP, i] = pulled_loose(i, loss, chain, laws)
         elif slid_back(i, chain, scale):
             chain[SLIP, i] = 0.0
         if chain[SLIP, i] != before:
