@@ -6,13 +6,15 @@ that slides passes on e^(−μθ/n), Eq. 7). The ends have no mass: their forces
 depends on the speeds of a node and its two neighbours: a tridiagonal matrix, exactly.
 """
 
+import math
+
 from tsas_cli.effects.load_dependent_friction import load_factor
 from tsas_cli.effects.load_friction import guide_friction
 from tsas_cli.effects.load_inertia import inertia_force
 from tsas_cli.effects.load_spring_nonlinearity import spring_force, spring_tangent
 from tsas_cli.effects.proximal_spring import proximal_spring_force
-from tsas_cli.effects.stribeck_friction import stribeck
-from tsas_cli.numerics.compiled import kernel
+from tsas_cli.effects.stribeck_friction import GONE, stribeck
+from tsas_cli.numerics.compiled import inlined
 from tsas_cli.physics.bristles import friction
 from tsas_cli.physics.chain_state import DISPLACEMENT, FORCE, SPRING, Boundary
 from tsas_cli.physics.lugre_state import (
@@ -37,10 +39,11 @@ from tsas_cli.physics.lugre_state import (
     W,
 )
 
+TOGETHER = 8  # lumps whose speeds are looked at together
 LEAST_LIMIT_N = 1e-9  # where no tension presses, so that a bristle has a limit at all
 
 
-@kernel
+@inlined
 def balance(s: Floats, step: Step, boundary: Boundary, law: Law) -> float:
     """Set up Newton's equations at the speeds W; return the sum of what the forces leave [N]."""
     set_tensions(s, law)
@@ -48,20 +51,32 @@ def balance(s: Floats, step: Step, boundary: Boundary, law: Law) -> float:
     balance_lumps(s, step, law)
     balance_drive(s, step, boundary, law)
     balance_load(s, step, boundary, law)
-    left = 0.0
-    for i in range(law.n + 2):
-        left += abs(s[REST + i])
-    return left
+    return sum_of_sizes(s, law.n + 2)
 
 
-@kernel
+@inlined
+def sum_of_sizes(s: Floats, count: int) -> float:
+    """Return the sum of |REST|, by four sums side by side: one alone waits for each addition."""
+    a, b, c, d = 0.0, 0.0, 0.0, 0.0
+    whole = count - count % 4
+    for i in range(0, whole, 4):
+        a += abs(s[REST + i])
+        b += abs(s[REST + i + 1])
+        c += abs(s[REST + i + 2])
+        d += abs(s[REST + i + 3])
+    for i in range(whole, count):
+        a += abs(s[REST + i])
+    return a + b + c + d
+
+
+@inlined
 def set_tensions(s: Floats, law: Law) -> None:
     """Find the segments' tensions, Yang 2025, Eq. (11)."""
     for j in range(law.n + 1):
         s[T + j] = s[T_PAST + j] + s[T_BY_W + j] * (s[W + j] - s[W + j + 1])
 
 
-@kernel
+@inlined
 def set_limits(s: Floats, step: Step, law: Law) -> None:
     """Find the limits of the lumps' friction and their slopes, Yang 2025, Eqs. (16) to (19)."""
     for i in range(1, law.n + 1):
@@ -79,14 +94,26 @@ def set_limits(s: Floats, step: Step, law: Law) -> None:
             s[LIMIT + i] *= factor
             s[LIMIT_BY_T + i] *= factor * (1.0 + law.friction_exponent)
     if law.stribeck.excess != 0.0:
-        for i in range(1, law.n + 1):
-            factor, slope = stribeck(s[W + i] + step.speed, law.stribeck)
-            s[LIMIT_BY_V + i] = s[LIMIT + i] * slope
-            s[LIMIT + i] *= factor
-            s[LIMIT_BY_T + i] *= factor
+        for first in range(1, law.n + 1, TOGETHER):
+            set_stribeck(s, step, law, first, min(first + TOGETHER, law.n + 1))
 
 
-@kernel
+@inlined
+def set_stribeck(s: Floats, step: Step, law: Law, first: int, end: int) -> None:
+    """Raise the limits of some lumps where one of them is slow enough to feel it."""
+    slowest = math.inf
+    for i in range(first, end):
+        slowest = min(slowest, abs(s[W + i] + step.speed))
+    if slowest > GONE * law.stribeck.velocity_mm_per_s:
+        return
+    for i in range(first, end):
+        factor, slope = stribeck(s[W + i] + step.speed, law.stribeck)
+        s[LIMIT_BY_V + i] = s[LIMIT + i] * slope
+        s[LIMIT + i] *= factor
+        s[LIMIT_BY_T + i] *= factor
+
+
+@inlined
 def balance_lumps(s: Floats, step: Step, law: Law) -> None:
     """Set up the rows of the lumps."""
     inertia = law.lump_mass / step.gh
@@ -106,7 +133,7 @@ def balance_lumps(s: Floats, step: Step, law: Law) -> None:
         s[Z_NEW + i] = deflection
 
 
-@kernel
+@inlined
 def balance_drive(s: Floats, step: Step, boundary: Boundary, law: Law) -> None:
     """Set up the row of the drive's end: at its place, or pulled by a force against friction."""
     s[LOWER] = 0.0
@@ -122,7 +149,7 @@ def balance_drive(s: Floats, step: Step, boundary: Boundary, law: Law) -> None:
     s[FRICTION], s[Z_NEW] = rubbing, deflection
 
 
-@kernel
+@inlined
 def balance_load(s: Floats, step: Step, boundary: Boundary, law: Law) -> None:
     """Set up the row of the load's end: spring, mass and guide, a given force, or its place."""
     last = law.n + 1
@@ -152,7 +179,7 @@ def balance_load(s: Floats, step: Step, boundary: Boundary, law: Law) -> None:
     s[FRICTION + last], s[Z_NEW + last] = rubbing, deflection
 
 
-@kernel
+@inlined
 def rub(
     before: float, speed: float, step: Step, limit: float, law: Law
 ) -> tuple[float, float, float]:

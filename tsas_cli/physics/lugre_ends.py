@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from tsas_cli.effects.load_friction import guide_friction
-from tsas_cli.numerics.compiled import kernel
+from tsas_cli.numerics.compiled import inlined, kernel
 from tsas_cli.physics.chain_state import DISPLACEMENT, FORCE, Boundary
 from tsas_cli.physics.lugre_input import DRIVE, LOAD, hermite
 from tsas_cli.physics.lugre_state import FRICTION, STIFFNESS, Y_NEW, Y_PAST, Floats, Law, Step, T, W
@@ -46,7 +46,7 @@ def ends_after(s: Floats, step: Step, law: Law) -> Ends:
     )
 
 
-@kernel
+@inlined
 def departs(
     times: Floats, course: Floats, k: int, k1: int, t: float, h: float, before: Ends, step: Step
 ) -> float:
@@ -91,16 +91,15 @@ def write_samples(
     """
     x_in, x_out, f_in, f_out = columns[0], columns[1], columns[2], columns[3]
     given = course[DRIVE]
-    for i in range(first, end):
-        part = (times[i] - t) / h
-        f_in[i] = hermite(part, h, a.f_in, a.f_in_rate, b.f_in, b.f_in_rate)
-        f_out[i] = hermite(part, h, a.f_out, a.f_out_rate, b.f_out, b.f_out_rate)
-        x_out[i] = hermite(part, h, a.x_out, a.v_out, b.x_out, b.v_out)
-        x_in[i] = hermite(part, h, a.x_in, a.w_in, b.x_in, b.w_in)
+    cubic(x_out, first, end, times, t, h, (a.x_out, a.v_out, b.x_out, b.v_out))
     if boundary.drive == FORCE:
         f_in[first:end] = given[first:end]
+        cubic(x_in, first, end, times, t, h, (a.x_in, a.w_in, b.x_in, b.w_in))
     else:
         x_in[first:end] = given[first:end]
+        cubic(f_in, first, end, times, t, h, (a.f_in, a.f_in_rate, b.f_in, b.f_in_rate))
+    if boundary.load != FORCE:
+        cubic(f_out, first, end, times, t, h, (a.f_out, a.f_out_rate, b.f_out, b.f_out_rate))
     share = sensor_share(boundary, law)
     if boundary.load == FORCE:
         f_out[first:end] = course[LOAD, first:end]
@@ -109,6 +108,25 @@ def write_samples(
             f_out[i] -= share * (a.guide + (times[i] - t) / h * (b.guide - a.guide))
     if boundary.load == DISPLACEMENT:
         x_out[first:end] = course[LOAD, first:end]
+
+
+@inlined
+def cubic(
+    out: Floats,
+    first: int,
+    end: int,
+    times: Floats,
+    t: float,
+    h: float,
+    ends: tuple[float, float, float, float],
+) -> None:
+    """Write the cubic through value and slope at both ends of a step at the samples within it."""
+    x0, v0, x1, v1 = ends
+    rise, inverse = (x1 - x0) / h, 1.0 / h
+    square, cube = (3.0 * rise - 2.0 * v0 - v1) * inverse, (v0 + v1 - 2.0 * rise) * inverse**2
+    for i in range(first, end):
+        since = times[i] - t
+        out[i] = x0 + since * (v0 + since * (square + since * cube))
 
 
 @kernel
