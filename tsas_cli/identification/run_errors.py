@@ -72,7 +72,8 @@ class RunErrors:
         """Renew each channel's standard deviation per sample: its noise, and those of the ends.
 
         What the error of an end does is found by a simulation with each of its strokes moved on
-        by one standard deviation, so that turning points move too.
+        by one standard deviation, so that turning points move too; what a reversal does that was
+        taken for noise, by one with it left in.
         """
         plain = self._answer(rig)
         square = {
@@ -83,22 +84,24 @@ class RunErrors:
         drive_last = sorted(self.run.conditioned, key=lambda c: c == self.run.drive_column)
         for column in drive_last:
             conditioned = self.run.conditioned[column]
-            shifted = _moved_on(conditioned)
-            moved = (
-                replace(self.drive, values=shifted)
-                if column == self.run.drive_column
-                else replace(self.drive, load_values=shifted)
-            )
-            answers = self._follow(rig, moved)
+            answers = self._follow(rig, self._driven_by(column, _moved_on(conditioned)))
+            unseen = conditioned.values + conditioned.unseen
+            turned = self._follow(rig, self._driven_by(column, unseen))
             for name, values in square.items():
                 change[name] = answers[name] - plain[name]
-                values += change[name] ** 2
+                values += change[name] ** 2 + (turned[name] - plain[name]) ** 2
                 _before_turns(values, change[name], conditioned)
         self.weights = {name: np.sqrt(values) for name, values in square.items()}
         self.turns = {
             name: self._turns(change[name] / self.weights[name], at)
             for name, at in self.samples.items()
         }
+
+    def _driven_by(self, column: str, values: Floats) -> Drive:
+        """Return the run's drive with the values of one driven end replaced."""
+        if column == self.run.drive_column:
+            return replace(self.drive, values=values)
+        return replace(self.drive, load_values=values)
 
     def _turns(self, change: Floats, at: Indices) -> Turns:
         """Return the shape that a wrong start of each stroke gives the errors of its samples.

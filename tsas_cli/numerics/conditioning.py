@@ -39,13 +39,15 @@ VISIBLE = 2.0  # and of the raw noise: a jump of the acceleration makes the fits
 class Conditioned:
     """A cleaned signal, shape (n,), in the unit of the raw one.
 
-    `sd` is the standard deviation of its error per sample, `window_s` the median window,
-    `noise` the raw noise, `reversals` the indices of the extrema that were kept, with both ends,
-    `smallest_reversal` the smallest move back that was told from noise.
+    `sd` is the standard deviation of its error per sample, `unseen` what was taken off so that it
+    turns at the reversals only, `window_s` the median window, `noise` the raw noise, `reversals` the
+    indices of the extrema that were kept, with both ends, `smallest_reversal` the smallest move back
+    that was told from noise.
     """
 
     values: Floats
     sd: Floats
+    unseen: Floats
     window_s: float
     noise: float
     reversals: Indices
@@ -66,7 +68,8 @@ def condition(time_s: Floats, values: Floats) -> Conditioned:
     step = quantisation_step(values)
     noise = max(noise_sd(values), step / math.sqrt(12.0))
     if not noise > 0.0:  # noise-free, or too short to tell
-        return Conditioned(values, np.zeros(values.size), 0.0, 0.0, turning_points(values, 0.0))
+        nothing = np.zeros(values.size)
+        return Conditioned(values, nothing, nothing, 0.0, 0.0, turning_points(values, 0.0))
     memory = _plateau(values) if step > 0.0 else 1.0
     whole = np.array([0, values.size], dtype=np.int64)
     # Corners spoil the blocks that they lie in; the smooth blocks tell the window to seek them by.
@@ -80,7 +83,7 @@ def condition(time_s: Floats, values: Floats) -> Conditioned:
     reversals = turning_points(smooth, threshold)
     window_s = float(np.median(2 * half + 1) * np.median(np.diff(time_s)))
     clean = monotone_between(smooth, reversals)
-    return Conditioned(clean, sd, window_s, noise, reversals, threshold)
+    return Conditioned(clean, sd, smooth - clean, window_s, noise, reversals, threshold)
 
 
 def _with_gaps(cleaned: Conditioned, time_s: Floats, there: Indices) -> Conditioned:
@@ -91,6 +94,7 @@ def _with_gaps(cleaned: Conditioned, time_s: Floats, there: Indices) -> Conditio
         cleaned,
         values=np.interp(time_s, time_s[there], cleaned.values),
         sd=np.interp(time_s, time_s[there], cleaned.sd),
+        unseen=np.interp(time_s, time_s[there], cleaned.unseen),
         reversals=reversals,
     )
 
