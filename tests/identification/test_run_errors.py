@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tests.identification.recorded import manifest, prepared
-from tsas_cli.challenge.rig.motions import nested, sine, triangle, two_sines
+from tsas_cli.challenge.rig.motions import Motion, nested, sine, triangle, two_sines
 from tsas_cli.challenge.rig.sensors import Sensor, Sensors
 from tsas_cli.challenge.rig.tendon import Rig
 from tsas_cli.identification.model import data_sheet
@@ -44,3 +44,24 @@ def test_a_reversal_too_near_the_end_to_be_seen_is_left_out():
     run = prepared(Rig(), motion, sensors=Sensors(x_in_mm=Sensor(0.02), f_in_N=Sensor(0.1)))
     errors, _ = errors_of(run)
     assert errors.samples["f_in_N"].max() < last_turn
+
+
+def stroke_with_a_short_turn(depth_mm=0.012):
+    """A slow sine that stops half way and turns back by about the noise, for 40 ms."""
+    time_s = np.arange(0.0, 13.0, 1e-3)
+    phase = 2.0 * time_s
+    stroke = 10.0 * (1.0 - np.cos(phase)) * (0.75 + 0.25 * np.cos(phase / 2.6))
+    x_in = stroke + 1.2 * np.sin(3.7 * phase) ** 2
+    turns = np.flatnonzero(np.diff(np.sign(np.diff(x_in)))) + 1
+    assert np.min(np.abs(np.diff(x_in[turns]))) == pytest.approx(depth_mm, rel=0.05)
+    return Motion(time_s, x_in)
+
+
+@pytest.mark.parametrize("seed", [0, 2, 3, 5])
+def test_a_reversal_taken_for_noise_is_known_to_be_possible(seed):
+    """It costs f_in nine newtons for a moment: without its weight this is 4.5, not 1."""
+    sensors = Sensors(rate_Hz=250.0, x_in_mm=Sensor(0.01), f_in_N=Sensor(0.1))
+    run = prepared(Rig(), stroke_with_a_short_turn(), sensors=sensors, seed=seed)
+    errors, rig = errors_of(run)
+    assert np.sqrt(np.mean(errors.errors(rig)["f_in_N"] ** 2)) < 1.3
+    assert np.median(errors.weights["f_in_N"] / run.noise["f_in_N"]) < 1.05

@@ -40,9 +40,9 @@ class Conditioned:
     """A cleaned signal, shape (n,), in the unit of the raw one.
 
     `sd` is the standard deviation of its error per sample, `unseen` what was taken off so that it
-    turns at the reversals only, `window_s` the median window, `noise` the raw noise, `reversals` the
-    indices of the extrema that were kept, with both ends, `smallest_reversal` the smallest move back
-    that was told from noise.
+    turns at the reversals only, `window_s` the median window, `noise` the raw noise, `reversals`
+    the indices of the extrema that were kept, with both ends, `smallest_reversal` the smallest
+    move back that was told from noise.
     """
 
     values: Floats
