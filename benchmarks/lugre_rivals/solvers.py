@@ -1,0 +1,252 @@
+"""General solvers as rivals, each tuned for the least time at an error of 0.05 % of F_in's range.
+
+None waits for Python more than it must: right hand side and Jacobian are compiled, linear algebra
+is banded, and where a solver's own output costs more than its steps, the steps are joined by
+cubics whose slopes are known.
+"""
+
+import time
+from collections.abc import Callable
+from functools import partial
+from typing import Any, NamedTuple, TypeAlias
+
+import numpy as np
+from scipy.integrate import BDF, Radau, odeint
+from scipy.linalg import get_lapack_funcs
+
+from benchmarks.lugre_rivals import ode
+from benchmarks.lugre_rivals.compiled import BANDS, LOWER, UPPER, jacobian, rate, spread
+from benchmarks.lugre_rivals.drives import Floats, Samples
+from benchmarks.lugre_rivals.native import cvode_in_c
+from benchmarks.lugre_rivals.ode import Problem
+from benchmarks.lugre_rivals.solution import (
+    NotAvailableError,
+    Solution,
+    Tolerance,
+    at_times,
+    joined,
+)
+
+MOST_STEPS = 1_000_000
+LONGEST_JOINT_S = 0.005  # that LSODA's outputs are joined over by cubics
+
+Rate: TypeAlias = Callable[[float, Floats], Floats]
+
+
+def sundae(
+    problem: Problem,
+    tolerance: Tolerance,
+    *,
+    max_order: int = 2,
+    max_newton: int = 2,
+    steps_only: bool = True,
+) -> Solution:
+    """CVODE through scikit-sundae, banded; its Newton coefficient cannot be set.
+
+    Parameters
+    ----------
+    problem, tolerance
+        What is solved, and how well.
+    max_order, max_newton
+        Highest order of the BDF formulas; most Newton iterations of a step.
+    steps_only
+        Ask for the steps, and join them by cubics; otherwise for the state at each time, which are
+        then counted as the steps.
+    """
+    try:
+        from sksundae.cvode import CVODE
+    except ImportError as error:
+        raise NotAvailableError("scikit-sundae is not installed") from error
+
+    begin = time.perf_counter()
+    given, size = _tables(problem), problem.start().size
+    columns = np.zeros((size, BANDS))
+
+    def fill(t: float, state: Floats, _: Floats, J: Floats) -> None:
+        jacobian(t, state, columns, *given)
+        spread(columns, J)
+
+    solver = CVODE(
+        lambda t, state, out: rate(t, state, out, *given),
+        jacfn=fill,
+        linsolver="band",
+        lband=LOWER,
+        uband=UPPER,
+        rtol=tolerance.relative,
+        atol=tolerance.absolute(problem.model.lumps),
+        max_order=max_order,
+        max_nonlin_iters=max_newton,
+        max_num_steps=MOST_STEPS,
+    )
+    wanted = problem.time_s[[0, -1]] if steps_only else problem.time_s
+    found = solver.solve(wanted, problem.start())
+    if not found.success:
+        raise RuntimeError(found.message)
+    seen = joined(problem, found.t, found.y) if steps_only else at_times(problem, found.y)
+    return Solution(seen, time.perf_counter() - begin, found.t.size - 1)
+
+
+def lsoda(problem: Problem, tolerance: Tolerance, *, max_order: int = 2) -> Solution:
+    """LSODA through `odeint`, banded; where the drive is smooth, its outputs are joined."""
+    begin = time.perf_counter()
+    given = _tables(problem)
+    out = np.empty(problem.start().size)
+    columns = np.zeros((out.size, BANDS))
+
+    def rate_of(t: float, state: Floats) -> Floats:
+        rate(t, state, out, *given)
+        return out
+
+    def jacobian_of(t: float, state: Floats) -> Floats:
+        jacobian(t, state, columns, *given)
+        return columns
+
+    every = 1
+    if not isinstance(problem.drive, Samples):
+        every = max(1, int(LONGEST_JOINT_S / (problem.time_s[1] - problem.time_s[0])))
+    wanted = np.append(problem.time_s[:-1:every], problem.time_s[-1])
+    states, record = odeint(
+        rate_of,
+        problem.start(),
+        wanted,
+        tfirst=True,
+        Dfun=jacobian_of,
+        col_deriv=True,
+        ml=LOWER,
+        mu=UPPER,
+        rtol=tolerance.relative,
+        atol=tolerance.absolute(problem.model.lumps),
+        mxords=max_order,
+        mxstep=MOST_STEPS,
+        full_output=True,
+    )
+    seen = at_times(problem, states) if every == 1 else joined(problem, wanted, states)
+    return Solution(seen, time.perf_counter() - begin, int(record["nst"][-1]))
+
+
+def bdf(problem: Problem, tolerance: Tolerance) -> Solution:
+    """Solve by scipy's BDF with banded linear algebra, its steps joined by cubics."""
+    begin = time.perf_counter()
+    solver = _banded(BDF, problem, tolerance, _compiled_rate(problem))
+    times, states = [solver.t], [solver.y]
+    while solver.status == "running":
+        _step(solver)
+        times.append(solver.t)
+        states.append(solver.y)
+    seen = joined(problem, np.array(times), np.array(states))
+    return Solution(seen, time.perf_counter() - begin, len(times) - 1)
+
+
+def radau(problem: Problem, tolerance: Tolerance, *, max_step_s: float = 0.16) -> Solution:
+    """Solve by scipy's Radau with banded linear algebra and its own polynomials between steps.
+
+    Newton starts from the state before the step, since the last step's polynomial leads it astray
+    at a reversal. `max_step_s` keeps a step from going far beyond one.
+    """
+    begin = time.perf_counter()
+    solver = _banded(Radau, problem, tolerance, _compiled_rate(problem), max_step=max_step_s)
+    at = np.empty((problem.time_s.size, solver.n))
+    at[0], done, steps = solver.y, 1, 0
+    while solver.status == "running":
+        solver.sol = None
+        _step(solver)
+        steps += 1
+        to = int(np.searchsorted(problem.time_s, solver.t, side="right"))
+        if to > done:
+            at[done:to] = solver.dense_output()(problem.time_s[done:to]).T
+            done = to
+    return Solution(at_times(problem, at), time.perf_counter() - begin, steps)
+
+
+def radau_in_numpy(problem: Problem, tolerance: Tolerance) -> Solution:
+    """Solve by scipy's Radau with the equations in numpy and a step's end at each time: slow."""
+    begin = time.perf_counter()
+    solver = _banded(Radau, problem, tolerance, partial(ode.rate, problem=problem))
+    at, steps = [solver.y], 0
+    for wanted in problem.time_s[1:]:
+        solver.t_bound, solver.status = wanted, "running"
+        while solver.status == "running":
+            solver.sol = None
+            _step(solver)
+            steps += 1
+        at.append(solver.y)
+    return Solution(at_times(problem, np.array(at)), time.perf_counter() - begin, steps)
+
+
+def _banded(
+    method: Any, problem: Problem, tolerance: Tolerance, rate_of: Rate, **options: Any
+) -> Any:
+    """Return one of scipy's implicit solvers, with banded linear algebra in place of its own."""
+    given, start = _tables(problem), problem.start()
+    factors = {
+        np.dtype(kind): get_lapack_funcs(("gbtrf", "gbtrs"), dtype=kind)
+        for kind in (float, complex)
+    }
+
+    def jacobian_of(t: float, state: Floats, _: Floats | None = None) -> Floats:
+        bands = np.zeros((state.size, LOWER + BANDS))  # gbtrf fills the first ones
+        jacobian(t, state, bands[:, LOWER:], *given)
+        return bands.T
+
+    def factorised(bands: Any) -> Any:
+        factor, solve = factors[bands.dtype]
+        lu, pivots, _ = factor(bands, LOWER, UPPER, overwrite_ab=True)
+        return solve, lu, pivots
+
+    def solved(factorisation: Any, b: Any) -> Any:
+        solve, lu, pivots = factorisation
+        return solve(lu, LOWER, UPPER, b, pivots)[0]
+
+    solver = method(
+        rate_of,
+        problem.time_s[0],
+        start,
+        problem.time_s[-1],
+        jac=np.zeros((start.size, start.size)),
+        rtol=tolerance.relative,
+        atol=tolerance.absolute(problem.model.lumps),
+        **options,
+    )
+    solver.jac, solver.J = jacobian_of, jacobian_of(problem.time_s[0], start)
+    solver.I = np.zeros_like(solver.J)
+    solver.I[LOWER + UPPER] = 1.0
+    solver.lu, solver.solve_lu = factorised, solved
+    return solver
+
+
+def _compiled_rate(problem: Problem) -> Rate:
+    given, size = _tables(problem), problem.start().size
+
+    def rate_of(t: float, state: Floats) -> Floats:
+        out = np.empty(size)
+        rate(t, state, out, *given)
+        return out
+
+    return rate_of
+
+
+def _step(solver: Any) -> None:
+    failure = solver.step()
+    if failure:
+        raise RuntimeError(failure)
+
+
+def _tables(problem: Problem) -> tuple[Floats, Floats, Floats]:
+    return np.array(problem.model.constants()), *problem.drive.tables()
+
+
+class Rival(NamedTuple):
+    """A solver, and the tolerance at which it is fastest with an error of at most 0.05 %."""
+
+    name: str
+    solve: Callable[[Problem, Tolerance], Solution]
+    tolerance: Tolerance
+
+
+RIVALS = (
+    Rival("CVODE in C", cvode_in_c, Tolerance(5e-4, 3.5e-3, 3.5e-6, 9e-8)),
+    Rival("LSODA", lsoda, Tolerance(3e-4, 4.5e-2, 2.6e-6)),
+    Rival("CVODE, scikit-sundae", sundae, Tolerance(4.6e-5, 3.6e-4, 1.2e-6, 2e-7)),
+    Rival("BDF, scipy", bdf, Tolerance(1.8e-5, 4e-3, 1.2e-6, 2e-4)),
+    Rival("Radau, scipy", radau, Tolerance(1.4e-4, 1.2e-3, 1.4e-5, 5.6e-3)),
+)
