@@ -1,0 +1,107 @@
+"""The dynamic chain beside general solvers on the same equations, at equal error, in one run."""
+
+import math
+import os
+import time
+from collections.abc import Callable, Iterator
+
+import numpy as np
+
+from benchmarks.lugre_rivals.drives import Sine, Sines
+from benchmarks.lugre_rivals.ode import Model, Output, Problem
+from benchmarks.lugre_rivals.solution import NotAvailableError, Tolerance
+from benchmarks.lugre_rivals.solvers import RIVALS, sundae
+from benchmarks.row import Row
+from tests.physics.references import GROUP_A, LOADED_BY_SPRING, course_of
+from tsas_cli.effects import Effects, StribeckFriction, ViscousFriction
+from tsas_cli.numerics.side_by_side import each
+from tsas_cli.physics.lugre_chain import Progress, lugre_chain
+from tsas_cli.physics.response import TOLERANCE
+from tsas_cli.physics.rig import Rig
+
+LUMPS = 50
+TIME_S = np.arange(12566) / 1000.0  # two periods of group a
+DRIVE = Sines((Sine(10.0, 1.0),))
+RIG = GROUP_A._replace(
+    effects=Effects(
+        viscous_friction=ViscousFriction(0.02), stribeck_friction=StribeckFriction(0.04, 0.01)
+    )
+)
+COURSE = course_of(DRIVE.position(TIME_S), RIG)
+REFERENCE = Tolerance(1e-9, 1e-6, 1e-10, 1e-9)
+AT_LEAST = {"CVODE in C": 30.0, "LSODA": 100.0, "CVODE, scikit-sundae": 150.0}  # times slower
+REPEATS, RIVALS_REPEATS = 60, 5
+SETS = 64
+EVERY_SAMPLE = 1e3  # a tolerance that never shortens a step
+
+
+def measure() -> Iterator[Row]:
+    """Time the chain, the rivals after each other, a fixed step, and many rigs at once."""
+    problem = Problem(Model(LUMPS), DRIVE, TIME_S)
+    exact = sundae(problem, REFERENCE).output
+    columns, progress = own()
+    seconds = best(own)
+    yield Row("two periods", 1e3 * seconds, "ms")
+    yield Row("times faster than real", TIME_S[-1] / seconds, "")
+    yield from errors("own", Output(columns[2], columns[3], columns[1]), exact, limit=0.05)
+    per = seconds / (LUMPS * (progress.iterations + progress.tries))
+    yield Row("per lump and evaluation", 1e9 * per, "ns", at_most=10.0)
+    for rival in RIVALS:
+        try:
+            found = rival.solve(problem, rival.tolerance)
+        except NotAvailableError as error:
+            yield Row(f"{rival.name}: {error}", math.nan, "")
+            continue
+        slow, fast = math.inf, math.inf
+        for _ in range(RIVALS_REPEATS):
+            slow = min(slow, rival.solve(problem, rival.tolerance).seconds)
+            fast = min(fast, best(own, repeats=REPEATS // RIVALS_REPEATS))
+        yield Row(rival.name, 1e3 * slow, "ms")
+        yield from errors(rival.name, found.output, exact)
+        yield Row(f"{rival.name}, times slower", slow / fast, "", at_least=AT_LEAST.get(rival.name))
+    fixed = best(lambda: own(tolerance=EVERY_SAMPLE, longest_s=1e-3), repeats=10)
+    yield Row("a step at every ms, times faster than real", TIME_S[-1] / fixed, "", at_least=1500.0)
+    os.environ["TSAS_THREADS"] = "2"
+    rigs = [RIG._replace(friction_coefficient=0.1 + 0.001 * i) for i in range(SETS)]
+    many = best(lambda: each(own, rigs), repeats=5)
+    yield Row(f"{SETS} rigs on two threads, over one", many / best(own), "", at_most=40.0)
+
+
+def own(
+    rig: Rig = RIG, *, tolerance: float = TOLERANCE, longest_s: float = math.inf
+) -> tuple[np.ndarray, Progress]:
+    """Follow the run from rest."""
+    course = COURSE.copy()
+    course[2:4] = rig.friction_coefficient * rig.total_bend_rad
+    start = np.zeros((2, LUMPS + 2))
+    start[1] = rig.preload_N
+    columns, _, progress = lugre_chain(
+        TIME_S,
+        course,
+        start,
+        rig,
+        LOADED_BY_SPRING,
+        LUMPS,
+        tolerance,
+        longest_s,
+    )
+    return columns, progress
+
+
+def errors(name: str, found: Output, exact: Output, limit: float | None = None) -> Iterator[Row]:
+    """Return the largest differences of both tensions, over their ranges."""
+    for channel, at_most in (("f_in_N", limit), ("f_out_N", None)):
+        off = np.abs(getattr(found, channel) - getattr(exact, channel))
+        share = np.max(off) / np.ptp(getattr(exact, channel))
+        yield Row(f"{name}, largest error of {channel}", 100.0 * share, "%", at_most=at_most)
+
+
+def best(solve: Callable[[], object], repeats: int = REPEATS) -> float:
+    """Return the time of the fastest repeat [s]; the first call compiles."""
+    solve()
+    fastest = math.inf
+    for _ in range(repeats):
+        start = time.perf_counter()
+        solve()
+        fastest = min(fastest, time.perf_counter() - start)
+    return fastest

@@ -1,0 +1,61 @@
+"""The dynamic chain against the solutions of two general solvers of its equations."""
+
+import math
+
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+
+from benchmarks.lugre_rivals.references import FOLDER, problems
+from tests.physics.references import LOADED_BY_SPRING, course_of
+from tests.physics.test_lugre_chain import TABLE_1
+from tsas_cli.physics.lugre_chain import lugre_chain
+from tsas_cli.physics.response import TOLERANCE
+
+PROBLEMS = problems()
+FINER = 20  # samples from one time of a reference to the next
+
+
+def apart(name, tolerance):
+    """Return the largest difference of each channel from the reference, over its range."""
+    problem, table = PROBLEMS[name], pq.read_table(FOLDER / f"{name}.parquet")
+    lumps = problem.model.lumps
+    finer = 1 if name.startswith("noisy") else FINER
+    samples = np.arange(finer * (problem.time_s.size - 1) + 1)
+    times = np.interp(samples, samples[::finer], problem.time_s)
+    x_in = problem.drive.position(times)
+    start = np.zeros((2, lumps + 2))
+    start[1] = TABLE_1.preload_N
+    columns, phase, _ = lugre_chain(
+        times,
+        course_of(x_in, TABLE_1),
+        start,
+        TABLE_1,
+        LOADED_BY_SPRING,
+        lumps,
+        tolerance,
+        math.inf,
+    )
+    assert not np.any(phase == 3)
+    off = {}
+    for channel, row in (("x_out_mm", 1), ("f_in_N", 2), ("f_out_N", 3)):
+        # Noise sets the drive off with a jump of its speed, which the reference feels at once.
+        expected, found = table[channel].to_numpy()[1:], columns[row, finer::finer]
+        off[channel] = np.max(np.abs(found - expected)) / np.ptp(expected)
+    return off
+
+
+@pytest.mark.parametrize("name", PROBLEMS)
+def test_at_its_tolerance_it_is_within_a_thousandth_of_the_range(name):
+    """And within two of them where noise turns the drive 400 times a second."""
+    off = apart(name, TOLERANCE)
+    assert off["f_in_N"] < (2e-3 if name.startswith("noisy") else 1e-3)
+    assert off["f_out_N"] < 1e-4
+    assert off["x_out_mm"] < 1e-4
+
+
+@pytest.mark.parametrize("name", [name for name in PROBLEMS if not name.startswith("noisy")])
+def test_with_a_tight_one_it_is_the_reference(name):
+    off = apart(name, 1e-7)
+    assert off["f_in_N"] < 1e-4
+    assert off["f_out_N"] < 1e-5
