@@ -22,7 +22,8 @@ LIBRARIES = ("numba", "numpy", "pyarrow", "scipy", "typer")
 
 def main() -> None:
     """Read the call, measure, print and write."""
-    known = sorted({module.name for module in iter_modules(benchmarks.__path__)} - HARNESS)
+    modules = [module for module in iter_modules(benchmarks.__path__) if not module.ispkg]
+    known = sorted({module.name for module in modules} - HARNESS)
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
     parser.add_argument("names", nargs="*", help=f"of {', '.join(known)}; all where none is named")
     parser.add_argument("--out", type=Path, metavar="FILE", help="the JSON file to write")

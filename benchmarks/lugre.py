@@ -9,8 +9,9 @@ import numpy as np
 
 from benchmarks.lugre_rivals.drives import Sine, Sines
 from benchmarks.lugre_rivals.ode import Model, Output, Problem
-from benchmarks.lugre_rivals.solution import NotAvailableError, Tolerance
-from benchmarks.lugre_rivals.solvers import RIVALS, sundae
+from benchmarks.lugre_rivals.references import tight
+from benchmarks.lugre_rivals.solution import NotAvailableError
+from benchmarks.lugre_rivals.solvers import RIVALS
 from benchmarks.row import Row
 from tests.physics.references import GROUP_A, LOADED_BY_SPRING, course_of
 from tsas_cli.effects import Effects, StribeckFriction, ViscousFriction
@@ -28,7 +29,6 @@ RIG = GROUP_A._replace(
     )
 )
 COURSE = course_of(DRIVE.position(TIME_S), RIG)
-REFERENCE = Tolerance(1e-9, 1e-6, 1e-10, 1e-9)
 AT_LEAST = {"CVODE in C": 30.0, "LSODA": 100.0, "CVODE, scikit-sundae": 150.0}  # times slower
 REPEATS, RIVALS_REPEATS = 60, 5
 SETS = 64
@@ -38,7 +38,7 @@ EVERY_SAMPLE = 1e3  # a tolerance that never shortens a step
 def measure() -> Iterator[Row]:
     """Time the chain, the rivals after each other, a fixed step, and many rigs at once."""
     problem = Problem(Model(LUMPS), DRIVE, TIME_S)
-    exact = sundae(problem, REFERENCE).output
+    exact = tight(problem)
     columns, progress = own()
     seconds = best(own)
     yield Row("two periods", 1e3 * seconds, "ms")

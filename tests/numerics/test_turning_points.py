@@ -71,5 +71,11 @@ def test_strokes_alternate_exceed_the_threshold_and_miss_nothing(
     if len(strokes) > 1:
         assert (strokes[1:] * strokes[:-1] < 0).all()
     for start, end, stroke in zip(turns, turns[1:], strokes, strict=False):
-        piece = np.asarray(values[start : end + 1]) * (1 if stroke > 0 else -1)
-        assert (np.maximum.accumulate(piece) - piece).max() <= threshold
+        piece = np.asarray(values[start : end + 1])
+        back = [(np.maximum.accumulate(way) - way).max() for way in (piece, -piece)]
+        falls_back = min(back) if stroke == 0 else back[0 if stroke > 0 else 1]
+        assert falls_back <= threshold
+
+
+def test_a_signal_that_ends_where_it_began_may_be_one_stroke() -> None:
+    assert found([1, 0, 3, 1], 2) == [0, 3]
