@@ -10,6 +10,7 @@ from tests.physics.references import (
     DRIVEN_BY_FORCE,
     GROUP_A,
     LOADED_BY_DISPLACEMENT,
+    LOADED_BY_FORCE,
     LOADED_BY_SPRING,
     course_of,
 )
@@ -190,3 +191,22 @@ def test_a_tendon_at_rest_stays_at_rest(boundary):
     )
     assert columns[:2] == pytest.approx(np.zeros((2, 200)), abs=1e-9)
     assert columns[2:] == pytest.approx(np.full((2, 200), 25.0), abs=1e-6)
+
+
+@pytest.mark.parametrize(("boundary", "row"), [(LOADED_BY_SPRING, 0), (LOADED_BY_FORCE, 1)])
+def test_a_bump_of_what_is_given_is_not_stepped_over(boundary, row):
+    """At either end, in full slip and without a turn: it runs ahead and is back after 40 ms."""
+    times = np.arange(0.0, 3.0, 1e-3)
+    smooth = 5.0 - 5.0 * np.cos(times)
+    course = course_of(smooth, TABLE_1, load=25.0 + 1.5 * smooth)
+    course[row] += 0.04 * np.exp(-(((times - 1.503) / 0.014) ** 2))
+    assert np.all(np.diff(course[row]) > 0.0)
+    start = np.zeros((2, 52))
+    start[1] = TABLE_1.preload_N
+
+    def f_in(longest_s):
+        call = (times, course, start, TABLE_1, boundary, 50, 3e-5, longest_s)
+        return lugre_chain(*call)[0][2]
+
+    fine = f_in(2e-4)
+    assert np.max(np.abs(fine - f_in(math.inf))[1000:2000]) < 2e-4 * np.max(fine)

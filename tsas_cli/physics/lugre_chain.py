@@ -11,9 +11,11 @@ from typing import NamedTuple
 import numpy as np
 
 from tsas_cli.numerics.compiled import inlined, kernel
-from tsas_cli.physics.chain_state import FORCE, Boundary
-from tsas_cli.physics.lugre_ends import Ends, departs, ends_after, felt_by_drive, write_samples
+from tsas_cli.physics.chain_state import FORCE, SPRING, Boundary
+from tsas_cli.physics.lugre_ends import Ends, departs, ends_after, felt, write_samples
 from tsas_cli.physics.lugre_input import (
+    DRIVE,
+    LOAD,
     next_turn,
     step_at,
 )
@@ -102,7 +104,8 @@ def lugre_chain(
     k, t, turn = 0, times[0], next_turn(times, course, 0, boundary)
     first = h = 0.1 * (times[min(1, m - 1)] - t)
     h1 = h2 = math.inf  # the two steps before; none yet
-    felt = law.load_stiffness_N_per_mm  # tension for what is given at the drive
+    least = law.load_stiffness_N_per_mm  # tension for what is given at an end
+    felt_in = felt_out = least
     steps = tries = iterations = 0
     while k < m - 1 and h > SHORTEST_S and tries < MOST_TRIES + MOST_PER_SAMPLE * m:
         tries += 1
@@ -114,8 +117,13 @@ def lugre_chain(
         formula = formula_of(h, h1, h2)
         drives = ends.drive, earlier.drive
         step = step_at(times, course, k1, t1, formula, drives, n, boundary)
+        given = (ends.drive, ends.drive_rate, step.drive, step.drive_rate)
+        unseen = felt_in * departs(times, course, DRIVE, k, k1, t, h, given)
+        if boundary.load != SPRING:
+            given = (ends.load, ends.load_rate, step.load, step.load_rate)
+            unseen += felt_out * departs(times, course, LOAD, k, k1, t, h, given)
         off, done = math.inf, 0
-        if departs(times, course, k, k1, t, h, ends, step) * felt <= scale:
+        if unseen <= scale:
             look_back(s, law, formula)
             leaves = min(LEAVES * scale, LEAVES_AT_MOST * tension)
             done, solved = newton(s, step, boundary, law, leaves)
@@ -132,7 +140,8 @@ def lugre_chain(
         write_samples(columns, since, k + 1, times, course, t, h, earlier, ends, boundary, law)
         phase[since : k + 1] = phase_of(s, law)
         keep(s, step, law)
-        felt = max(felt_by_drive(earlier, ends), law.load_stiffness_N_per_mm)
+        felt_in = felt(ends.f_in - earlier.f_in, ends.drive - earlier.drive, least)
+        felt_out = felt(ends.f_out - earlier.f_out, ends.load - earlier.load, least)
         first = h if h1 == math.inf else first
         t, h, h1, h2 = t1, h * min(LONGER, change), h, h1
         if hangs(s, times, course, k, t, ends, boundary, law):

@@ -12,8 +12,10 @@ from tsas_cli.physics.lugre_state import FRICTION, STIFFNESS, Y_NEW, Y_PAST, Flo
 class Ends(NamedTuple):
     """Both ends of the tendon at the end of a step, with rates for what is read in between."""
 
-    drive: float  # what is given [mm or N]
+    drive: float  # what is given there [mm or N]
     drive_rate: float
+    load: float  # likewise
+    load_rate: float
     x_in: float  # relative to the drive [mm]
     w_in: float
     x_out: float  # [mm]
@@ -34,6 +36,8 @@ def ends_after(s: Floats, step: Step, law: Law) -> Ends:
     return Ends(
         step.drive,
         step.drive_rate,
+        step.load,
+        step.load_rate,
         s[Y_NEW],
         s[W],
         s[Y_NEW + last] + step.position,
@@ -48,27 +52,33 @@ def ends_after(s: Floats, step: Step, law: Law) -> Ends:
 
 @inlined
 def departs(
-    times: Floats, course: Floats, k: int, k1: int, t: float, h: float, before: Ends, step: Step
+    times: Floats,
+    course: Floats,
+    row: int,
+    k: int,
+    k1: int,
+    t: float,
+    h: float,
+    ends: tuple[float, float, float, float],
 ) -> float:
-    """Return by how much drive samples within a step leave the cubic that the step sees.
+    """Return by how much samples of a row leave the cubic that a step sees.
 
-    k and k1 are the samples at or before its ends; three samples are looked at.
+    The cubic has these values and rates at the ends of the step, k and k1 are the samples at or
+    before them; three samples in between are looked at.
     """
     largest = 0.0
     if k1 - k > 1:
         for quarter in range(1, 4):
             i = k + 1 + quarter * (k1 - k - 1) // 4
-            part = (times[i] - t) / h
-            seen = hermite(part, h, before.drive, before.drive_rate, step.drive, step.drive_rate)
-            largest = max(largest, abs(course[DRIVE, i] - seen))
+            seen = hermite((times[i] - t) / h, h, ends[0], ends[1], ends[2], ends[3])
+            largest = max(largest, abs(course[row, i] - seen))
     return largest
 
 
 @kernel
-def felt_by_drive(before: Ends, after: Ends) -> float:
-    """Return how much the tension at the drive changed for what is given there."""
-    moved = abs(after.drive - before.drive)
-    return abs(after.f_in - before.f_in) / moved if moved > 0.0 else 0.0
+def felt(tension: float, given: float, least: float) -> float:
+    """Return how much a tension changed for what is given at its end, at least so much."""
+    return max(abs(tension / given), least) if given != 0.0 else least
 
 
 @kernel

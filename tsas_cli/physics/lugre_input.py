@@ -96,9 +96,9 @@ def step_at(
     `drives` is what was given there at the ends of the last two steps.
     """
     drive, rate = given_at(times, course, DRIVE, k, t)
-    load = 0.0
+    load, load_rate = 0.0, 0.0
     if boundary.load != SPRING:
-        load, _ = given_at(times, course, LOAD, k, t)
+        load, load_rate = given_at(times, course, LOAD, k, t)
     part = (t - times[k]) / (times[k + 1] - times[k])
     pulled = course[PULLED, k] + part * (course[PULLED, k + 1] - course[PULLED, k])
     released = course[RELEASED, k] + part * (course[RELEASED, k + 1] - course[RELEASED, k])
@@ -110,6 +110,7 @@ def step_at(
         drive,
         rate,
         load,
+        load_rate,
         framed * drive,
         framed * moved / formula.gh,
         2.0 * np.tanh(0.5 * pulled / n),

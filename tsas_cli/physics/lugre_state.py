@@ -69,6 +69,7 @@ class Step(NamedTuple):
     drive: float  # displacement [mm] or tension [N]
     drive_rate: float
     load: float  # likewise; unused with a spring
+    load_rate: float
     position: float  # of the frame that positions are relative to [mm]
     speed: float  # of that frame, by the same formula [mm/s]
     pulled: float  # friction over the mean tension of a lump's two sides in contraction [1]
