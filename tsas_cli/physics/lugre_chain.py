@@ -148,9 +148,10 @@ def lugre_chain(
             since = k + 1
             k, t = pulled_again(s, times, course, k, t, boundary, law)
             write_slack(columns, phase, s, times, course, (since, k + 1), boundary, law)
-            start = without_tension(s, times, course, k, t, boundary, law)
-            ends = set_off(s, start, times, course, k, t, boundary, law)
             lands = True
+            if k < m - 1:
+                start = without_tension(s, times, course, k, t, boundary, law)
+                ends = set_off(s, start, times, course, k, t, boundary, law)
         if lands and k < m - 1:
             turn = next_turn(times, course, k, boundary)
             h, h1, h2 = first, math.inf, math.inf

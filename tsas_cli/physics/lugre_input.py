@@ -71,8 +71,9 @@ def hermite_slope(part: float, h: float, x0: float, v0: float, x1: float, v1: fl
 @kernel
 def given_at(times: Floats, course: Floats, row: int, k: int, t: float) -> tuple[float, float]:
     """Return value and slope of drive or load at a time from sample k to the next."""
-    if t == times[k]:
-        return course[row, k], slope_at(times, course, row, k)
+    for at in (k, k + 1):
+        if t == times[at]:
+            return course[row, at], slope_at(times, course, row, at)
     h = times[k + 1] - times[k]
     part = (t - times[k]) / h
     x0, x1 = course[row, k], course[row, k + 1]
@@ -105,6 +106,7 @@ def step_at(
     lost = course[LOST, k] + part * (course[LOST, k + 1] - course[LOST, k])
     framed = 1.0 if boundary.drive == DISPLACEMENT else 0.0
     moved = drive - formula.near * drives[0] + formula.far * drives[1]
+    limits = lump_share(pulled, n)
     return Step(
         formula.gh,
         drive,
@@ -113,10 +115,16 @@ def step_at(
         load_rate,
         framed * drive,
         framed * moved / formula.gh,
-        2.0 * np.tanh(0.5 * pulled / n),
-        2.0 * np.tanh(0.5 * released / n),
+        limits,
+        limits if released == pulled else lump_share(released, n),
         lost,
     )
+
+
+@kernel
+def lump_share(wrap: float, n: int) -> float:
+    """Return the limit of a lump's friction over its mean tension, of n that share a wrap."""
+    return float(2.0 * np.tanh(0.5 * wrap / n))
 
 
 @kernel
