@@ -16,7 +16,7 @@ from benchmarks.row import Row
 from tsas_cli.commands.common import show
 from tsas_cli.files import new_file, write_json
 
-HARNESS = {"__main__", "row"}
+HARNESS = {"__main__", "row", "timing"}
 LIBRARIES = ("numba", "numpy", "pyarrow", "scipy", "typer")
 
 

@@ -2,8 +2,7 @@
 
 import math
 import os
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -13,8 +12,8 @@ from benchmarks.lugre_rivals.references import tight
 from benchmarks.lugre_rivals.solution import NotAvailableError
 from benchmarks.lugre_rivals.solvers import RIVALS
 from benchmarks.row import Row
-from tests.physics.references import GROUP_A, LOADED_BY_SPRING, course_of
-from tsas_cli.effects import Effects, StribeckFriction, ViscousFriction
+from benchmarks.timing import best
+from tests.physics.references import LOADED_BY_SPRING, TABLE_1, course_of
 from tsas_cli.numerics.side_by_side import each
 from tsas_cli.physics.lugre_chain import Progress, lugre_chain
 from tsas_cli.physics.response import TOLERANCE
@@ -23,12 +22,7 @@ from tsas_cli.physics.rig import Rig
 LUMPS = 50
 TIME_S = np.arange(12566) / 1000.0  # two periods of group a
 DRIVE = Sines((Sine(10.0, 1.0),))
-RIG = GROUP_A._replace(
-    effects=Effects(
-        viscous_friction=ViscousFriction(0.02), stribeck_friction=StribeckFriction(0.04, 0.01)
-    )
-)
-COURSE = course_of(DRIVE.position(TIME_S), RIG)
+COURSE = course_of(DRIVE.position(TIME_S), TABLE_1)
 AT_LEAST = {"CVODE in C": 30.0, "LSODA": 100.0, "CVODE, scikit-sundae": 150.0}  # times slower
 REPEATS, RIVALS_REPEATS = 60, 5
 SETS = 64
@@ -40,7 +34,7 @@ def measure() -> Iterator[Row]:
     problem = Problem(Model(LUMPS), DRIVE, TIME_S)
     exact = tight(problem)
     columns, progress = own()
-    seconds = best(own)
+    seconds = best(own, REPEATS)
     yield Row("two periods", 1e3 * seconds, "ms")
     yield Row("times faster than real", TIME_S[-1] / seconds, "")
     yield from errors("own", Output(columns[2], columns[3], columns[1]), exact, limit=0.05)
@@ -62,13 +56,13 @@ def measure() -> Iterator[Row]:
     fixed = best(lambda: own(tolerance=EVERY_SAMPLE, longest_s=1e-3), repeats=10)
     yield Row("a step at every ms, times faster than real", TIME_S[-1] / fixed, "", at_least=1500.0)
     os.environ["TSAS_THREADS"] = "2"
-    rigs = [RIG._replace(friction_coefficient=0.1 + 0.001 * i) for i in range(SETS)]
+    rigs = [TABLE_1._replace(friction_coefficient=0.1 + 0.001 * i) for i in range(SETS)]
     many = best(lambda: each(own, rigs), repeats=5)
-    yield Row(f"{SETS} rigs on two threads, over one", many / best(own), "", at_most=40.0)
+    yield Row(f"{SETS} rigs on two threads, over one", many / best(own, REPEATS), "", at_most=40.0)
 
 
 def own(
-    rig: Rig = RIG, *, tolerance: float = TOLERANCE, longest_s: float = math.inf
+    rig: Rig = TABLE_1, *, tolerance: float = TOLERANCE, longest_s: float = math.inf
 ) -> tuple[np.ndarray, Progress]:
     """Follow the run from rest."""
     course = COURSE.copy()
@@ -94,14 +88,3 @@ def errors(name: str, found: Output, exact: Output, limit: float | None = None) 
         off = np.abs(getattr(found, channel) - getattr(exact, channel))
         share = np.max(off) / np.ptp(getattr(exact, channel))
         yield Row(f"{name}, largest error of {channel}", 100.0 * share, "%", at_most=at_most)
-
-
-def best(solve: Callable[[], object], repeats: int = REPEATS) -> float:
-    """Return the time of the fastest repeat [s]; the first call compiles."""
-    solve()
-    fastest = math.inf
-    for _ in range(repeats):
-        start = time.perf_counter()
-        solve()
-        fastest = min(fastest, time.perf_counter() - start)
-    return fastest

@@ -1,14 +1,13 @@
 """Nanoseconds per sample of the distributed model on a measured input, and its memory."""
 
-import math
 import sys
-import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
 
 from benchmarks.row import Row
+from benchmarks.timing import best
 from tests.physics.references import (
     GROUP_A,
     LOADED_BY_DISPLACEMENT,
@@ -64,13 +63,7 @@ def as_measured(values: np.ndarray, *, noise: float, step: float) -> np.ndarray:
 
 def best_ns(solve: Callable[[], object]) -> float:
     """Return the time per sample of the fastest repeat; the first call compiles."""
-    solve()
-    best = math.inf
-    for _ in range(REPEATS):
-        start = time.perf_counter_ns()
-        solve()
-        best = min(best, time.perf_counter_ns() - start)
-    return best / TIME_S.size
+    return 1e9 * best(solve, REPEATS) / TIME_S.size
 
 
 def with_every_effect() -> Rig:

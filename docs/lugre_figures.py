@@ -1,4 +1,4 @@
-"""Draw the figures of docs/lugre.md: `.venv/bin/python docs/lugre_figures.py`."""
+"""Draw the figures of docs/lugre.md: `.venv/bin/python -m docs.lugre_figures`."""
 
 import math
 from pathlib import Path
@@ -6,28 +6,16 @@ from pathlib import Path
 import matplotlib as mpl
 import numpy as np
 
-from tsas_cli.effects import Effects, StribeckFriction, ViscousFriction
+from tests.physics.references import TABLE_1, wrap_of
 from tsas_cli.physics.bristles import Bristles
 from tsas_cli.physics.lugre_stability import Sliding, growth_rate
-from tsas_cli.physics.rig import Rig
 
 mpl.use("svg")
 import matplotlib.pyplot as plt
 
-TABLE_1 = Rig(
-    friction_coefficient=0.125,
-    tendon_stiffness_N=60e3 * math.pi / 4.0 * 1.2**2,
-    load_stiffness_N_per_mm=1.579,
-    sheath_length_mm=250.0 * math.pi,
-    total_bend_rad=math.pi,
-    preload_N=25.0,
-    effects=Effects(
-        viscous_friction=ViscousFriction(0.02), stribeck_friction=StribeckFriction(0.04, 0.01)
-    ),
-)
 AS_PRINTED = 50 * 0.31622  # N s/mm over the whole sheath
 CRITICAL = 2.0 * math.sqrt(5000.0 * 2.5e-9 * TABLE_1.sheath_length_mm)
-WRAP = TABLE_1.friction_coefficient * TABLE_1.total_bend_rad
+WRAP = wrap_of(TABLE_1)
 
 
 def growth(damping: float, moment: Sliding) -> float:
@@ -42,6 +30,7 @@ def contraction(speed: float, f_out: float) -> Sliding:
 
 def main() -> None:
     """Draw the map of steady contraction, and the dead band of loosening over the damping."""
+    mpl.rcParams["svg.hashsalt"] = "lugre"  # the same file each time
     figure, (left, right) = plt.subplots(1, 2, figsize=(9.0, 3.4), layout="constrained")
     speeds, tensions = np.linspace(1.0, 40.0, 40), np.linspace(10.0, 80.0, 36)
     rates = [[growth(AS_PRINTED, contraction(v, f)) for v in speeds] for f in tensions]

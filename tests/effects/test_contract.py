@@ -8,8 +8,9 @@ import pytest
 from tests.both_ways import answers
 from tests.physics.references import GROUP_A
 from tsas_cli.effects import EFFECTS, Effects
+from tsas_cli.physics.chain_state import UNSETTLED
 from tsas_cli.physics.ends import Drive
-from tsas_cli.physics.response import CHAIN_ONLY, UNSETTLED, is_closed, simulate
+from tsas_cli.physics.response import CHAIN_ONLY, is_closed, simulate
 from tsas_cli.physics.rig import with_values
 
 CHANNELS = ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N")

@@ -15,7 +15,8 @@ from tsas_cli.errors import InputError
 from tsas_cli.identification.calibration import calibrate
 from tsas_cli.identification.comparison import compare
 from tsas_cli.identification.prepared import prepare
-from tsas_cli.physics.response import SLACK, Drive, simulate
+from tsas_cli.physics.chain_state import SLACK
+from tsas_cli.physics.response import Drive, simulate
 from tsas_cli.physics.rig import Rig as ModelRig
 from tsas_cli.recordings.dataset import Recording
 from tsas_cli.recordings.manifest import Manifest, Run

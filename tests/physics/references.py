@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from tsas_cli.effects import Effects, FreeTendon
+from tsas_cli.effects import Effects, FreeTendon, StribeckFriction, ViscousFriction
 from tsas_cli.physics.chain_state import DISPLACEMENT, FORCE, SPRING, Boundary
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.slip_chain import slip_chain
@@ -17,6 +17,11 @@ GROUP_A = Rig(
     sheath_length_mm=250.0 * math.pi,
     total_bend_rad=math.pi,
     preload_N=25.0,
+)
+TABLE_1 = GROUP_A._replace(  # with the constants of its dynamic model
+    effects=Effects(
+        viscous_friction=ViscousFriction(0.02), stribeck_friction=StribeckFriction(0.04, 0.01)
+    )
 )
 FREE = GROUP_A._replace(effects=Effects(free_tendon=FreeTendon(152.0, 61.0)))
 

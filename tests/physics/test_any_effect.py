@@ -7,8 +7,8 @@ import pytest
 
 from tests.physics.test_any_rig import any_motion, any_rig
 from tsas_cli.physics.branches import branches
+from tsas_cli.physics.chain_state import UNSETTLED
 from tsas_cli.physics.ends import Drive, ends_of
-from tsas_cli.physics.response import UNSETTLED
 from tsas_cli.physics.rig import with_values
 from tsas_cli.physics.slip_chain import slip_chain
 

@@ -7,8 +7,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from benchmarks.lugre_rivals.references import FOLDER, problems
-from tests.physics.references import LOADED_BY_SPRING, course_of
-from tests.physics.test_lugre_chain import TABLE_1
+from tests.physics.references import LOADED_BY_SPRING, TABLE_1, course_of
 from tsas_cli.physics.lugre_chain import lugre_chain
 from tsas_cli.physics.response import TOLERANCE
 

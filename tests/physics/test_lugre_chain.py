@@ -12,9 +12,10 @@ from tests.physics.references import (
     LOADED_BY_DISPLACEMENT,
     LOADED_BY_FORCE,
     LOADED_BY_SPRING,
+    TABLE_1,
     course_of,
 )
-from tsas_cli.effects import Effects, StribeckFriction, ViscousFriction
+from tsas_cli.effects import Effects, StribeckFriction
 from tsas_cli.physics.lugre_chain import lugre_chain
 from tsas_cli.physics.lugre_input import DRIVE, given_at, next_turn
 from tsas_cli.physics.lugre_solve import solve
@@ -29,11 +30,6 @@ from tsas_cli.physics.lugre_state import (
     UPPER,
 )
 
-TABLE_1 = GROUP_A._replace(
-    effects=Effects(
-        viscous_friction=ViscousFriction(0.02), stribeck_friction=StribeckFriction(0.04, 0.01)
-    )
-)
 TIGHT = 1e-7
 TIME_S = np.arange(0.0, 4.8, 1e-3)
 SINE = 10.0 - 10.0 * np.cos(TIME_S)

@@ -9,8 +9,10 @@ import pytest
 from tests.physics.references import GROUP_A
 from tsas_cli.effects import EFFECTS
 from tsas_cli.physics.bristles import Bristles
+from tsas_cli.physics.chain_state import SLACK, UNSETTLED
 from tsas_cli.physics.ends import Drive
-from tsas_cli.physics.response import SLACK, UNSETTLED, simulate
+from tsas_cli.physics.lugre_state import MOST_LUMPS
+from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import with_values
 
 TIME_S = np.arange(0.0, 2.0 * math.pi, 2e-3)
@@ -88,3 +90,9 @@ def test_the_slip_chain_is_approached_with_the_stiffness_of_the_bristles():
     assert off[0] > 3e-3
     for softer, stiffer in pairwise(off):
         assert stiffer < 0.45 * softer  # 4 times as stiff
+
+
+@pytest.mark.parametrize("lumps", [1, -3, MOST_LUMPS + 1])
+def test_a_number_of_lumps_that_cannot_be_is_refused(lumps):
+    with pytest.raises(ValueError, match=f"{lumps} lumps; expected 2 to {MOST_LUMPS}"):
+        simulate(STIFF, Drive(NESTED, time_s=TIME_S), "lugre", nodes=lumps)

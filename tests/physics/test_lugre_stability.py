@@ -5,7 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from tests.physics.test_lugre_chain import SINE, TABLE_1, TIME_S, follow
+from tests.physics.references import TABLE_1
+from tests.physics.test_lugre_chain import SINE, TIME_S, follow
 from tsas_cli.effects import Effects, StribeckFriction
 from tsas_cli.physics.bristles import Bristles
 from tsas_cli.physics.ends import Drive

@@ -10,7 +10,8 @@ from tsas_cli.errors import InputError
 from tsas_cli.identification.dynamic_notes import dynamic_notes
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.prepared import Prepared
-from tsas_cli.physics.response import SLACK, UNSETTLED, Dynamics, Response, simulate
+from tsas_cli.physics.chain_state import SLACK, UNSETTLED
+from tsas_cli.physics.response import Dynamics, Response, simulate
 from tsas_cli.recordings.columns import BY_NAME
 
 Floats = npt.NDArray[np.float64]

@@ -1,15 +1,17 @@
 """What a run with the dynamic model says of itself: unstable sliding, borrowed bristles, an end."""
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
 
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.prepared import Prepared
-from tsas_cli.physics.bristles import Bristles, bristle_damping
+from tsas_cli.physics.chain_state import UNSETTLED
 from tsas_cli.physics.lugre_chain import MOST_PER_SAMPLE, MOST_TRIES
 from tsas_cli.physics.lugre_stability import Stability, stability
-from tsas_cli.physics.response import UNSETTLED, Response, simulate
+from tsas_cli.physics.lugre_start import law_of
+from tsas_cli.physics.response import Response, simulate
 from tsas_cli.physics.rig import Rig
 
 HIGH_DAMPING = 3.0  # times critical, from which on the bristles are what makes sliding unstable
@@ -42,17 +44,11 @@ def _unstable(found: Stability, rig: Rig) -> str:
         f"sliding is unstable {where}, at {moment.speed_mm_s:.3g} mm/s and f_in of "
         f"{moment.f_in_N:.3g} N: a disturbance grows e-fold in {1e3 / found.growth_per_s:.2g} ms"
     )
-    times = _damping(rig, rig.bristles) / _damping(rig, Bristles(rig.bristles.stiffness_N_per_mm))
+    critical = rig._replace(bristles=rig.bristles._replace(damping_N_s_per_mm=math.nan))
+    times = law_of(rig, 1).bristle.damping / law_of(critical, 1).bristle.damping
     if times > HIGH_DAMPING:
         return (
             f"{sentence}; the bristles' damping is {times:.3g} times critical, and critical where "
             "[bristles.damping_N_s_per_mm] is left out"
         )
     return f"{sentence}; friction falls with speed by more than anything damps"
-
-
-def _damping(rig: Rig, bristles: Bristles) -> float:
-    limit = rig.preload_N * rig.friction_coefficient * rig.total_bend_rad
-    travel = rig.effects.presliding.length_mm
-    same = bristles._replace(tendon_mass_kg_per_m=rig.bristles.tendon_mass_kg_per_m)
-    return bristle_damping(same, rig.sheath_length_mm, limit, travel)

@@ -4,7 +4,11 @@ import math
 
 from tsas_cli.effects.load_friction import guide_friction
 from tsas_cli.effects.load_inertia import inertia_force
-from tsas_cli.effects.load_spring_nonlinearity import spring_force, spring_tangent
+from tsas_cli.effects.load_spring_nonlinearity import (
+    LoadSpringNonlinearity,
+    spring_force,
+    spring_tangent,
+)
 from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.chain_nodes import slid_back
@@ -119,3 +123,14 @@ def pulls_back(chain: Floats, now: Moment, boundary: Boundary, laws: Laws) -> fl
         return now.load
     slope, value = load_law(chain, now, laws)
     return float(slope * chain[X, chain.shape[1] - 1] + value)
+
+
+@kernel
+def without_pull(
+    x: float, preload_N: float, stiffness: float, shape: LoadSpringNonlinearity
+) -> float:
+    """Return where a spring of a preload leaves the load without tension [mm], sought from x."""
+    for _ in range(5):  # Newton's method, exact at once for a straight spring
+        force = preload_N + spring_force(x, stiffness, shape)
+        x -= force / spring_tangent(x, stiffness, shape)
+    return x

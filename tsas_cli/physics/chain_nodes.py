@@ -114,7 +114,7 @@ def set_slides(chain: Floats, now: Moment, laws: Laws) -> bool:
         takes = passes * before - behind + off / (1.0 - bent)
         chain[PASSES, i], chain[TAKES, i] = passes, takes
         if laws.presliding_mm > 0.0:
-            own = chain[PULLED_BY, i] if share > 0.0 else chain[RELEASED_BY, i]
+            own = wrap_of(1.0 if share > 0.0 else -1.0, i, chain)
             limit = 0.5 * (1.0 + ratio) * now.viscous_N / n + ratio * abs(carried) * own
             lean_on_bristle(i, share, limit / (1.0 - bent), chain, laws)
     return changed

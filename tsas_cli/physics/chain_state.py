@@ -12,6 +12,7 @@ Floats = npt.NDArray[np.float64]
 Phases = npt.NDArray[np.int8]
 
 DISPLACEMENT, FORCE, SPRING = 0, 1, 2  # what is given at an end
+SLACK, UNSETTLED = 2, 3  # phases beside +1, 0, −1
 TOLERANCE = 1e-10  # of the tension and of a segment's elongation, for rounding
 BALANCED = 1e-9  # of the tension, where a law is not straight
 

@@ -165,14 +165,14 @@ def balance_load(s: Floats, step: Step, boundary: Boundary, law: Law) -> None:
     if boundary.load == FORCE:
         guide = law.load_friction.before_sensor_N
     rubbing, by_speed, deflection = rub(s[Z_PAST + last], speed, step, guide, law)
-    pull, by_place = step.load, 0.0
+    pull, by_place, inertia = step.load, 0.0, 0.0
     if boundary.load == SPRING:
         place = s[Y_PAST + last] + step.gh * s[W + last] + step.position
         stiffness = law.load_stiffness_N_per_mm
         pull = law.preload_N - step.lost_N + spring_force(place, stiffness, law.load_spring)
-        pull += inertia_force((speed - s[V_PAST + last]) / step.gh, law.load_mass_kg)
+        inertia = inertia_force(1.0, law.load_mass_kg) / step.gh
+        pull += inertia * (speed - s[V_PAST + last])
         by_place = spring_tangent(place, stiffness, law.load_spring)
-    inertia = inertia_force(1.0, law.load_mass_kg) / step.gh if boundary.load == SPRING else 0.0
     s[LOWER + last] = -behind
     s[DIAGONAL + last] = behind + by_place * step.gh + inertia + by_speed
     s[REST + last] = s[T + law.n] - pull - rubbing

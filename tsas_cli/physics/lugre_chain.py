@@ -11,7 +11,8 @@ from typing import NamedTuple
 import numpy as np
 
 from tsas_cli.numerics.compiled import inlined, kernel
-from tsas_cli.physics.chain_state import FORCE, SPRING, Boundary
+from tsas_cli.physics.chain_nodes import SLIDES
+from tsas_cli.physics.chain_state import FORCE, SPRING, UNSETTLED, Boundary
 from tsas_cli.physics.lugre_ends import Ends, departs, ends_after, felt, write_samples
 from tsas_cli.physics.lugre_input import (
     DRIVE,
@@ -38,7 +39,6 @@ MOST_TRIES, MOST_PER_SAMPLE = 20_000, 40  # steps of a run, together
 LEAVES = 0.1  # of the error of a step: what Newton's method may leave,
 LEAVES_AT_MOST = 1e-5  # and of a tension, since more looks right and is not
 LONGER, SHORTER, CAREFUL = 2.0, 0.25, 0.9  # how the step may change, and how much of it is taken
-SLIDES = 0.99  # share of its limit from which a lump is said to slip
 
 
 class Progress(NamedTuple):
@@ -95,7 +95,7 @@ def lugre_chain(
         How it went.
     """
     m = times.size
-    columns, phase = np.empty((4, m)), np.full(m, 3, dtype=np.int8)
+    columns, phase = np.empty((4, m)), np.full(m, UNSETTLED, dtype=np.int8)
     s, law = np.empty(ROWS * PITCH), law_of(rig, n)
     lay_out(s, rig, n)
     ends = earlier = set_off(s, start, times, course, 0, times[0], boundary, law)

@@ -2,26 +2,13 @@
 
 import numpy as np
 
-from tsas_cli.effects.load_spring_nonlinearity import spring_force, spring_tangent
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.physics.chain_state import FORCE, SPRING, Boundary, Phases
+from tsas_cli.physics.chain_ends import without_pull
+from tsas_cli.physics.chain_state import FORCE, SLACK, SPRING, Boundary, Phases
 from tsas_cli.physics.lugre_input import DRIVE, LOAD, LOST, given_at
 from tsas_cli.physics.lugre_state import STIFFNESS, Floats, Law
 
-NEWTON = 5  # iterations of a load spring without tension; a straight one takes one
-SLACK = 2  # phase
 HALVINGS = 40  # of the time between two samples
-
-
-@kernel
-def rest_of_load(lost_N: float, law: Law) -> float:
-    """Return where the load's spring leaves the load without tension [mm]."""
-    x = 0.0
-    for _ in range(NEWTON):
-        force = law.preload_N - lost_N
-        force += spring_force(x, law.load_stiffness_N_per_mm, law.load_spring)
-        x -= force / spring_tangent(x, law.load_stiffness_N_per_mm, law.load_spring)
-    return x
 
 
 @kernel
@@ -30,7 +17,8 @@ def load_place(
 ) -> float:
     """Return where the load is while the tendon is slack [mm]."""
     if boundary.load == SPRING:
-        return rest_of_load(course[LOST, k], law)
+        preload_N = law.preload_N - course[LOST, k]
+        return without_pull(0.0, preload_N, law.load_stiffness_N_per_mm, law.load_spring)
     return given_at(times, course, LOAD, k, t)[0]
 
 

@@ -11,9 +11,10 @@ from tsas_cli.effects import Effects
 from tsas_cli.effects.drive_friction import drive_friction_force
 from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.physics.branches import branches
-from tsas_cli.physics.chain_state import DISPLACEMENT, FORCE
+from tsas_cli.physics.chain_state import DISPLACEMENT, FORCE, SLACK
 from tsas_cli.physics.ends import Drive, Ends, ends_of
 from tsas_cli.physics.lugre_chain import lugre_chain
+from tsas_cli.physics.lugre_state import MOST_LUMPS
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.sensors import reading
 from tsas_cli.physics.slip_chain import rest_after, slip_chain
@@ -29,7 +30,6 @@ LUMPS = 50  # of the dynamic chain
 TOLERANCE = 3e-5  # of a tension: what a step of the dynamic chain may add to its error
 CLOSED = 0  # nodes of the closed form
 MOST_DOUBLINGS = 30  # of the way that the drive goes before a run
-SLACK, UNSETTLED = 2, 3  # phases beside +1, 0, −1
 CHAIN_ONLY = (
     "direction_dependent_friction",
     "stribeck_friction",
@@ -96,6 +96,8 @@ def _dynamic(rig: Rig, drive: Drive, lumps: int) -> Response:
     """Follow a run with the dynamic chain, from a state of rest that the slip chain gives it."""
     if drive.time_s is None:
         raise ValueError("the dynamic model needs the times of its samples")
+    if not 2 <= lumps <= MOST_LUMPS:
+        raise ValueError(f"{lumps} lumps; expected 2 to {MOST_LUMPS}")
     ends = ends_of(rig, drive)
     before = _history(rig, ends, drive.start_f_in_N, lumps)
     start = rest_after(ends.first().after(before).course, rig, ends.boundary, lumps)

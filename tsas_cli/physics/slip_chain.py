@@ -12,9 +12,8 @@ import math
 
 import numpy as np
 
-from tsas_cli.effects.load_spring_nonlinearity import spring_force, spring_tangent
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.physics.chain_ends import friction_at_load, keep_speed, pulls_back
+from tsas_cli.physics.chain_ends import friction_at_load, keep_speed, pulls_back, without_pull
 from tsas_cli.physics.chain_nodes import keep
 from tsas_cli.physics.chain_state import (
     DISPLACEMENT,
@@ -257,11 +256,8 @@ def hang_slack(chain: Floats, now: Moment, boundary: Boundary, laws: Laws) -> No
     """Lay the tendon without tension against the load; the next pull finds all nodes slipping."""
     last = chain.shape[1] - 1
     if boundary.load != DISPLACEMENT:
-        shape, stiffness = laws.load_spring, laws.load_stiffness_N_per_mm
-        for _ in range(5):  # Newton's method, exact at once for a straight spring
-            x = chain[X, last]
-            force = laws.preload_N - now.lost_N + spring_force(x, stiffness, shape)
-            chain[X, last] = x - force / spring_tangent(x, stiffness, shape)
+        preload_N, stiffness = laws.preload_N - now.lost_N, laws.load_stiffness_N_per_mm
+        chain[X, last] = without_pull(chain[X, last], preload_N, stiffness, laws.load_spring)
     for j in range(last - 1, -1, -1):
         chain[T, j] = 0.0
         if j > 0:
