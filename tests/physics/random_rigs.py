@@ -16,7 +16,7 @@ from tsas_cli.effects import (
 )
 from tsas_cli.physics.bristles import Bristles
 from tsas_cli.physics.ends import Drive
-from tsas_cli.physics.lugre_chain import Progress, lugre_chain
+from tsas_cli.physics.lugre_chain import OWN_STEPS, Progress, lugre_chain
 from tsas_cli.physics.lugre_stability import stability
 from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import Rig
@@ -88,7 +88,7 @@ def followed(case, tolerance):
         LOADED_BY_SPRING,
         case.lumps,
         tolerance,
-        math.inf,
+        OWN_STEPS,
     )
     return Followed(columns, progress, progress.reached_s >= case.time_s[-1] * (1.0 - 1e-12))
 

@@ -1,14 +1,12 @@
 """The dynamic chain against the solutions of two general solvers of its equations."""
 
-import math
-
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
 from benchmarks.lugre_rivals.references import FOLDER, problems
 from tests.physics.references import LOADED_BY_SPRING, TABLE_1, course_of
-from tsas_cli.physics.lugre_chain import lugre_chain
+from tsas_cli.physics.lugre_chain import OWN_STEPS, lugre_chain
 from tsas_cli.physics.response import TOLERANCE
 
 PROBLEMS = problems()
@@ -33,7 +31,7 @@ def apart(name, tolerance):
         LOADED_BY_SPRING,
         lumps,
         tolerance,
-        math.inf,
+        OWN_STEPS,
     )
     assert not np.any(phase == 3)
     off = {}

@@ -20,6 +20,7 @@ rig = GROUP_A._replace(effects=Effects(free_tendon=FreeTendon(152.0, 61.0)))
 x = np.interp(np.linspace(0, 7, 300), np.arange(8), [0, 14, 13.9, 13.95, 13.2, -60, 13, 12])
 varying = {"pulled": np.linspace(0.3, 0.5, 300), "lost": np.linspace(0.0, 5.0, 300)}
 spiral = 14 + 0.1 * np.linspace(1, 0, 100) * (-1.0) ** np.arange(100)
+equal_steps = np.arange(2e-3, 0.4, 2e-3)
 answers = [branches(x, rig), branches(spiral, rig), static_model(x, rig)]
 for drive, load, boundary in (
     (x, 0.0 * x, Boundary(DISPLACEMENT, SPRING)),
@@ -36,16 +37,16 @@ for drive, load, boundary in (
     lively = rig._replace(effects=Effects(stribeck_friction=StribeckFriction(0.1, 8.0)))
     # Equal steps: their control would magnify rounding.
     columns, phase, progress = lugre_chain(
-        np.arange(40) / 100, few, start, lively, boundary, 5, 1e3, 2e-3
+        np.arange(40) / 100, few, start, lively, boundary, 5, 1e3, equal_steps
     )
-    answers.append([*columns, phase, np.array(progress)])
+    answers.append([*columns, phase, np.hstack(progress)])
 few[0], start = np.linspace(0, -20, 40), np.zeros((2, 7))  # it ends slack
 start[1] = rig.preload_N
 columns, phase, progress = lugre_chain(
-    np.arange(40) / 100, few, start, rig, Boundary(DISPLACEMENT, SPRING), 5, 1e3, 2e-3
+    np.arange(40) / 100, few, start, rig, Boundary(DISPLACEMENT, SPRING), 5, 1e3, equal_steps
 )
 assert phase[-1] == 2
-answers.append([*columns, phase, np.array(progress)])
+answers.append([*columns, phase, np.hstack(progress)])
 columns = [column.tolist() for answer in answers for column in answer]
 print(json.dumps(["numba" in sys.modules, columns]))
 """

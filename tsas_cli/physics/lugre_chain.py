@@ -3,6 +3,7 @@
 Yang 2025, Eqs. (10) to (21), with half springs at both ends (second order in 1/n) and constants
 that belong to the whole sheath, so that n does not change the physics. Steps are as long as the
 error of a tension allows, and end where drive or load turn; samples in between are read off cubics.
+With the steps of another run in place of its own control, what differs between two rigs is smooth.
 """
 
 import math
@@ -37,15 +38,17 @@ from tsas_cli.physics.rig import Rig
 SHORTEST_S = 1e-13
 MOST_TRIES, MOST_PER_SAMPLE = 20_000, 40  # steps of a run, together
 LEAVES = 0.1  # of the error of a step: what Newton's method may leave,
-LEAVES_AT_MOST = 1e-5  # and of a tension, since more looks right and is not
+LEAVES_AT_MOST = 1e-5  # and of a tension, since more looks right and is not;
+LEAVES_GIVEN = 1e-9  # of a tension where steps are given
+OWN_STEPS = np.empty(0)  # as long as the error allows
 LONGER, SHORTER, CAREFUL = 2.0, 0.25, 0.9  # how the step may change, and how much of it is taken
 
 
 class Progress(NamedTuple):
     """How a run went."""
 
-    steps: int
-    tries: int  # those included that were too long
+    step_ends_s: Floats  # where steps ended
+    tries: int  # the steps, and those that were too long
     iterations: int  # of Newton's method
     reached_s: float  # time to which the run was followed
 
@@ -59,7 +62,7 @@ def lugre_chain(
     boundary: Boundary,
     n: int,
     tolerance: float,
-    longest_s: float,
+    step_ends_s: Floats,
 ) -> tuple[Floats, Phases, Progress]:
     """Follow the motion of both ends from a state of rest.
 
@@ -81,8 +84,9 @@ def lugre_chain(
         Number of lumps, 2 to `MOST_LUMPS`.
     tolerance
         Error of a tension that a step may add, over the larger of the tensions at both ends.
-    longest_s
-        Longest step.
+    step_ends_s
+        Where steps end, beside turns, rising [s], shape (p,): nothing limits their error then.
+        Empty: as far as the error allows.
 
     Returns
     -------
@@ -107,11 +111,16 @@ def lugre_chain(
     least = law.load_stiffness_N_per_mm  # tension for what is given at an end
     felt_in = felt_out = least
     steps = tries = iterations = 0
-    while k < m - 1 and h > SHORTEST_S and tries < MOST_TRIES + MOST_PER_SAMPLE * m:
+    ends_s = np.empty(most_tries(m))
+    controlled, stop = step_ends_s.size == 0, 0
+    while k < m - 1 and h > SHORTEST_S and tries < ends_s.size:
         tries += 1
         tension = max(abs(ends.f_in), abs(ends.f_out), 0.1 * law.preload_N)
         scale = tolerance * tension
-        h, lands = fitted(min(h, longest_s), times[turn] - t)
+        if not controlled:
+            stop = sample_after(step_ends_s, stop, t + SHORTEST_S)
+            h = min(h, step_ends_s[stop] - t) if stop < step_ends_s.size else h
+        h, lands = fitted(h, times[turn] - t)
         t1 = times[turn] if lands else t + h
         k1 = sample_before(times, k, t1)
         formula = formula_of(h, h1, h2)
@@ -123,16 +132,19 @@ def lugre_chain(
             given = (ends.load, ends.load_rate, step.load, step.load_rate)
             unseen += felt_out * departs(times, course, LOAD, k, k1, t, h, given)
         off, done = math.inf, 0
-        if unseen <= scale:
+        if unseen <= scale or not controlled:
             look_back(s, law, formula)
             leaves = min(LEAVES * scale, LEAVES_AT_MOST * tension)
+            leaves = leaves if controlled else LEAVES_GIVEN * tension
             done, solved = newton(s, step, boundary, law, leaves)
             off = error(s, law, formula) if solved else math.inf
+            off = off if controlled or not solved else 0.0
         iterations += done
         change = CAREFUL * (scale / (off + 1e-300)) ** (1.0 / 3.0 if h2 < math.inf else 0.5)
         if not off <= scale:
             h *= max(SHORTER, change)
             continue
+        ends_s[steps] = t1
         steps += 1
         earlier, ends = ends, ends_after(s, step, law)
         since = k + 1
@@ -143,7 +155,7 @@ def lugre_chain(
         felt_in = felt(ends.f_in - earlier.f_in, ends.drive - earlier.drive, least)
         felt_out = felt(ends.f_out - earlier.f_out, ends.load - earlier.load, least)
         first = h if h1 == math.inf else first
-        t, h, h1, h2 = t1, h * min(LONGER, change), h, h1
+        t, h, h1, h2 = t1, h * min(LONGER, change) if controlled else math.inf, h, h1
         if hangs(s, times, course, k, t, ends, boundary, law):
             since = k + 1
             k, t = pulled_again(s, times, course, k, t, boundary, law)
@@ -154,10 +166,10 @@ def lugre_chain(
                 ends = set_off(s, start, times, course, k, t, boundary, law)
         if lands and k < m - 1:
             turn = next_turn(times, course, k, boundary)
-            h, h1, h2 = first, math.inf, math.inf
+            h, h1, h2 = first if controlled else math.inf, math.inf, math.inf
     for i in range(k + 1, m):
         columns[:, i] = columns[:, k]
-    return columns, phase, Progress(steps, tries, iterations, t)
+    return columns, phase, Progress(ends_s[:steps].copy(), tries, iterations, t)
 
 
 @kernel
@@ -169,6 +181,20 @@ def fitted(h: float, left: float) -> tuple[float, bool]:
     if h > (1.0 - 1e-9) * left:
         return left, True
     return (0.5 * left if 2.0 * h > left else h), False
+
+
+@kernel
+def most_tries(samples: int) -> int:
+    """Return how many steps a run may try."""
+    return MOST_TRIES + MOST_PER_SAMPLE * samples
+
+
+@kernel
+def sample_after(times: Floats, k: int, t: float) -> int:
+    """Return the first of some times from k on that is after a time, or their number."""
+    while k < times.size and times[k] <= t:
+        k += 1
+    return k
 
 
 @kernel

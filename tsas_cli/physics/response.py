@@ -1,7 +1,7 @@
 """Simulate one run: which solver, how it starts, what the sensors would read."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
@@ -13,7 +13,7 @@ from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.physics.branches import branches
 from tsas_cli.physics.chain_state import DISPLACEMENT, FORCE, SLACK
 from tsas_cli.physics.ends import Drive, Ends, ends_of
-from tsas_cli.physics.lugre_chain import lugre_chain
+from tsas_cli.physics.lugre_chain import OWN_STEPS, lugre_chain
 from tsas_cli.physics.lugre_state import MOST_LUMPS
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.sensors import reading
@@ -50,7 +50,8 @@ class Response:
     """What the model answers, as the sensors would read it, shape (n,) [mm, N].
 
     `phase` is +1 in contraction and −1 in loosening with the whole tendon slipping, 0 in a dead
-    band, 2 slack, 3 not settled. `solver` says what computed it.
+    band, 2 slack, 3 not settled. `solver` says what computed it; `step_ends_s` is where the steps
+    of the dynamic chain ended, none with any other solver.
     """
 
     x_in_mm: Floats
@@ -59,6 +60,7 @@ class Response:
     f_out_N: Floats
     phase: Phases
     solver: str
+    step_ends_s: Floats = field(default_factory=OWN_STEPS.copy)
 
 
 def simulate(
@@ -68,16 +70,18 @@ def simulate(
     *,
     on_mesh: bool = False,
     nodes: int | None = None,
+    step_ends_s: Floats = OWN_STEPS,
 ) -> Response:
     """Follow a run with the distributed model (`slip`), the paper's lumped or its dynamic one.
 
     The distributed model takes the closed form where that holds (`is_closed`), and the slip chain
     everywhere else, or where `on_mesh` asks for it: models that are compared must share a mesh.
     The lumped one (`static`) knows what the closed form knows; the dynamic one (`lugre`) needs the
-    times of the samples. `nodes` is the mesh of a chain.
+    times of the samples. `nodes` is the mesh of a chain; `step_ends_s` has the dynamic one take the
+    steps of another run.
     """
     if dynamics == "lugre":
-        return _dynamic(rig, drive, nodes or LUMPS)
+        return _dynamic(rig, drive, nodes or LUMPS, step_ends_s)
     nodes = nodes or NODES
     ends = ends_of(rig, drive)
     if dynamics == "static":
@@ -92,7 +96,7 @@ def simulate(
     return _as_read(rig, drive, answer, len(before), solver)
 
 
-def _dynamic(rig: Rig, drive: Drive, lumps: int) -> Response:
+def _dynamic(rig: Rig, drive: Drive, lumps: int, step_ends_s: Floats) -> Response:
     """Follow a run with the dynamic chain, from a state of rest that the slip chain gives it."""
     if drive.time_s is None:
         raise ValueError("the dynamic model needs the times of its samples")
@@ -107,13 +111,14 @@ def _dynamic(rig: Rig, drive: Drive, lumps: int) -> Response:
     )  # each lump has its own speed
     course = ends_of(rig._replace(effects=by_place), drive).course
     columns, phase, progress = lugre_chain(
-        drive.time_s, course, start, rig, ends.boundary, lumps, TOLERANCE, math.inf
+        drive.time_s, course, start, rig, ends.boundary, lumps, TOLERANCE, step_ends_s
     )
     x_in, x_out, f_in, f_out = columns
     if ends.boundary.drive == DISPLACEMENT:
         f_in = f_in + _at_drive(rig, ends)
-    solver = f"LuGre chain, {lumps} lumps, {progress.steps} steps"
-    return _as_read(rig, drive, (x_in, x_out, f_in, f_out, phase), 0, solver)
+    solver = f"LuGre chain, {lumps} lumps, {progress.step_ends_s.size} steps"
+    answer = _as_read(rig, drive, (x_in, x_out, f_in, f_out, phase), 0, solver)
+    return replace(answer, step_ends_s=progress.step_ends_s)
 
 
 def is_closed(rig: Rig, drive: Drive) -> bool:
