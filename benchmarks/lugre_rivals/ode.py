@@ -46,7 +46,7 @@ class Model:
     density_t_per_mm: float = 2.5e-9
     damping_per_lump_N_s_per_mm: float = 0.1 / 50
     bristle_stiffness_N_per_mm: float = 5000.0
-    bristle_damping: Literal["critical", "literal"] = "critical"
+    bristle_damping: Literal["critical", "literal"] | float = "critical"  # [N s/mm]
     viscous_N_s_per_mm: float = 0.02
     friction_coefficient: float = 0.125
     stribeck_excess: float = 0.04
@@ -54,7 +54,9 @@ class Model:
 
     @property
     def whole_bristle_damping(self) -> float:
-        """σ1 [N s/mm]: critical for the mass on its bristles, or the published value."""
+        """σ1 [N s/mm]: critical for the mass on its bristles, the published value, or any other."""
+        if isinstance(self.bristle_damping, float):
+            return self.bristle_damping
         if self.bristle_damping == "literal":
             return LITERAL_BRISTLE_DAMPING_N_S_PER_MM
         return 2.0 * math.sqrt(self.bristle_stiffness_N_per_mm * self.mass_t)

@@ -10,6 +10,7 @@ import argparse
 import json
 import math
 import sys
+from dataclasses import replace
 from importlib import metadata
 from pathlib import Path
 from typing import Any
@@ -29,6 +30,7 @@ KEY = b"lugre"
 INTERVALS = 400
 CVODE_TOLERANCE = Tolerance(y_mm=1e-10, w_mm_s=1e-7, z_mm=1e-11, relative=1e-10)
 RADAU_TOLERANCE = Tolerance(y_mm=1e-8, w_mm_s=1e-5, z_mm=1e-9, relative=1e-8)
+SPEEDS_S = 13.0  # one slow stroke there and back, at 200 Hz
 RAMP_S, NOISY_S = 0.4, 0.6  # the noisy run turns after the first
 
 
@@ -44,6 +46,15 @@ def problems() -> dict[str, Problem]:
     model, drive = group("a")
     nested = Sines((*drive.sines, Sine(3.0, 5.0)))
     found["nested-50"] = Problem(model, nested, np.linspace(0.0, 2.0 * math.pi, INTERVALS + 1))
+    model = replace(
+        model,
+        bristle_damping=2.0,
+        viscous_N_s_per_mm=0.4,
+        stribeck_excess=0.1,
+        stribeck_speed_mm_s=8.0,
+    )
+    fast_and_slow = Sines((Sine(10.0, 0.5), Sine(3.0, 4.0)))
+    found["speeds-50"] = Problem(model, fast_and_slow, np.linspace(0.0, SPEEDS_S, 2601))
     model, drive = group("b")
     omega = drive.sines[0].omega_rad_s
     turning = noisy(Sines((Sine(10.0, omega, math.pi / 2.0 - omega * RAMP_S),)), seconds=NOISY_S)

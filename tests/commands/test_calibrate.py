@@ -15,6 +15,7 @@ from tsas_cli.challenge.rig.recordings import Run, conditions, record, write_dat
 from tsas_cli.challenge.rig.sensors import Sensors
 from tsas_cli.challenge.rig.tendon import Rig
 
+LUGRE = Path(__file__).parents[1] / "physics" / "lugre_references"
 IDS = ["a", "ü → 'b'", "<script>", "..c", "n" * 200]
 
 
@@ -158,6 +159,31 @@ def test_drive_data_have_nothing_to_compare_with(strict, tmp_path):
     assert done.returncode == 2
     assert done.stderr.count("\n") == 1
     assert "nothing to compare a model with" in done.stderr
+
+
+def test_what_the_dynamic_model_is_fitted_to_drives_it_again(strict, tmp_path):
+    """Bristles and friction over speed go into the model, and `simulate` takes them from there."""
+    table = pq.read_table(LUGRE / "speeds-50.parquet")
+    rng = np.random.default_rng(5)
+    columns = {name: table[name].to_numpy() for name in table.column_names}
+    for name in set(columns) - {"time_s"}:
+        noise = 0.03 if name.endswith("_N") else 0.002
+        columns[name] = columns[name] + noise * rng.standard_normal(len(table))
+    folder = write_dataset(tmp_path / "d", [Run("a", columns, conditions(Rig()))])
+    done = strict("calibrate", folder, "--dynamics", "lugre", "--out", tmp_path / "c", "--json")
+    assert (done.returncode, done.stderr) == (0, "")
+    summary = json.loads(done.stdout)
+    assert (summary["dynamics"], summary["fit"]["solver"][0][:5]) == ("lugre", "LuGre")
+    model = tomllib.loads((tmp_path / "c" / "model.toml").read_text(encoding="utf-8"))
+    assert model["bristles"]["stiffness_N_per_mm"]["origin"] == "fitted"
+    assert model["effects"]["stribeck_friction"]["excess"]["value"] == pytest.approx(0.1, rel=0.02)
+    call = ("simulate", folder, "--model", tmp_path / "c", "--dynamics")
+    rmse = {}
+    for dynamics in ("lugre", "slip"):
+        done = strict(*call, dynamics, "--out", tmp_path / dynamics, "--json")
+        rmse[dynamics] = json.loads(done.stdout)["runs"]["a"]["channels"]["f_in_N"]["rmse"]
+    assert rmse["lugre"] == pytest.approx(summary["channels"]["a"]["f_in_N"]["rmse"])
+    assert rmse["slip"] > 5.0 * rmse["lugre"]
 
 
 def test_a_short_recording_is_no_error_and_no_number(strict, recorded, tmp_path):

@@ -8,9 +8,20 @@ from benchmarks.lugre_rivals.references import FOLDER, problems
 from tests.physics.references import LOADED_BY_SPRING, TABLE_1, course_of
 from tsas_cli.physics.lugre_chain import OWN_STEPS, lugre_chain
 from tsas_cli.physics.response import TOLERANCE
+from tsas_cli.physics.rig import with_values
 
 PROBLEMS = problems()
 FINER = 20  # samples from one time of a reference to the next
+
+
+def rig_of(model):
+    """Return Table 1 of Yang 2025 with the friction of a reference's model."""
+    values = {"viscous_friction.coefficient_N_s_per_mm": model.viscous_N_s_per_mm}
+    if model.bristle_damping != "critical":
+        values["bristles.damping_N_s_per_mm"] = model.whole_bristle_damping
+    values["stribeck_friction.excess"] = model.stribeck_excess
+    values["stribeck_friction.velocity_mm_per_s"] = model.stribeck_speed_mm_s
+    return with_values(TABLE_1, values)
 
 
 def apart(name, tolerance):
@@ -18,16 +29,17 @@ def apart(name, tolerance):
     problem, table = PROBLEMS[name], pq.read_table(FOLDER / f"{name}.parquet")
     lumps = problem.model.lumps
     finer = 1 if name.startswith("noisy") else FINER
+    rig = rig_of(problem.model)
     samples = np.arange(finer * (problem.time_s.size - 1) + 1)
     times = np.interp(samples, samples[::finer], problem.time_s)
     x_in = problem.drive.position(times)
     start = np.zeros((2, lumps + 2))
-    start[1] = TABLE_1.preload_N
+    start[1] = rig.preload_N
     columns, phase, _ = lugre_chain(
         times,
-        course_of(x_in, TABLE_1),
+        course_of(x_in, rig),
         start,
-        TABLE_1,
+        rig,
         LOADED_BY_SPRING,
         lumps,
         tolerance,

@@ -1,5 +1,10 @@
 """`tsas calibrate`: phases, stiffness per phase, and the joint fit of the nominal model."""
 
+from enum import StrEnum
+from typing import Annotated
+
+import typer
+
 from tsas_cli.commands.common import (
     ChosenRuns,
     DatasetFolder,
@@ -13,9 +18,22 @@ from tsas_cli.commands.common import (
 )
 
 
+class DynamicsOption(StrEnum):
+    """The models of the tendon that can be calibrated."""
+
+    slip = "slip"
+    lugre = "lugre"
+
+
 def calibrate(
     dataset: DatasetFolder,
     out: OutFolder,
+    dynamics: Annotated[
+        DynamicsOption,
+        typer.Option(
+            "--dynamics", help="slip: distributed; lugre: dynamic, with bristles and speed."
+        ),
+    ] = DynamicsOption.slip,
     runs: ChosenRuns = None,
     force: Force = False,
     quiet: Quiet = False,
@@ -26,7 +44,7 @@ def calibrate(
 
     data = opened(dataset, runs)
     with progress("calibrate", 2 * len(data.runs), quiet=quiet or as_json) as step:
-        summary = calibrate_dataset(data, out, force=force, step=step)
+        summary = calibrate_dataset(data, out, dynamics.value, force=force, step=step)
     show(summary, tables(summary, out), quiet=quiet, as_json=as_json)
     if not quiet and not as_json:
         for sentence in summary["cannot_tell"]:

@@ -13,6 +13,7 @@ from tsas_cli.identification.model import FILE, Model, data_sheet, write_model
 from tsas_cli.identification.prepared import Prepared, prepare
 from tsas_cli.identification.stiffness import Slope
 from tsas_cli.physics.capstan import dead_band_stiffness, slip_stiffness, speed_per_stiffness
+from tsas_cli.physics.response import Dynamics
 from tsas_cli.physics.rig import Rig
 from tsas_cli.recordings.dataset import Dataset, Recording
 from tsas_cli.recordings.manifest import Manifest
@@ -24,7 +25,12 @@ Table = tuple[str, Sequence[str], Sequence[Sequence[str]]]
 
 
 def calibrate_dataset(
-    dataset: Dataset, out: Path, *, force: bool = False, step: Callable[[], None] = lambda: None
+    dataset: Dataset,
+    out: Path,
+    dynamics: Dynamics = "slip",
+    *,
+    force: bool = False,
+    step: Callable[[], None] = lambda: None,
 ) -> dict[str, Any]:
     """Calibrate and write `model.toml` and `calibration.json` into a new folder.
 
@@ -39,8 +45,9 @@ def calibrate_dataset(
             _refuse_wrong_sign(recording, dataset.manifest)
             runs.append(prepare(recording, dataset.manifest.session_start))
             step()
-        result = calibrate(dataset.manifest, runs, step)
-        summary = dataset.header("calibrate", out) | _summary(result, dataset.manifest)
+        result = calibrate(dataset.manifest, runs, step, dynamics=dynamics)
+        summary = dataset.header("calibrate", out) | {"dynamics": dynamics}
+        summary |= _summary(result, dataset.manifest)
         write_model(folder / FILE, result.model, version=__version__, dataset=summary["dataset"])
         write_json(folder / "calibration.json", summary)
     return summary

@@ -7,6 +7,7 @@ import numpy as np
 
 from tsas_cli.identification.base_fit import base_fit, slopes_of
 from tsas_cli.identification.comparison import Compared, compare
+from tsas_cli.identification.dynamic_fit import dynamic_fit
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.fit import Fitted
 from tsas_cli.identification.missing_effects import widened
@@ -15,6 +16,7 @@ from tsas_cli.identification.phases import Segment, segment
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.stiffness import Slope, slopes
 from tsas_cli.identification.transfer import tension_transfer
+from tsas_cli.physics.response import Dynamics
 from tsas_cli.recordings.manifest import Manifest
 
 
@@ -34,12 +36,17 @@ class Calibration:
 
 
 def calibrate(
-    manifest: Manifest, runs: Sequence[Prepared], step: Callable[[], None] = lambda: None
+    manifest: Manifest,
+    runs: Sequence[Prepared],
+    step: Callable[[], None] = lambda: None,
+    *,
+    dynamics: Dynamics = "slip",
 ) -> Calibration:
     """Calibrate the nominal model; `step` is called after each run's phases are found.
 
     Where a run holds no f_in_N there are no slopes for it; where nothing can be told, the model is
-    that of the data sheet and `cannot_tell` says why.
+    that of the data sheet and `cannot_tell` says why. With the dynamic model (`lugre`) its bristles
+    and what friction does over speed are calibrated too.
     """
     segments, measured = [], []
     for run in runs:
@@ -48,13 +55,20 @@ def calibrate(
         step()
     fit = base_fit(data_sheet(manifest), runs, segments, measured)
     model, fitted, sentences = fit.solve()
-    answers = [compare(run, model) for run in runs]
+    dynamic = None
+    if dynamics == "lugre" and fitted is not None:
+        dynamic = dynamic_fit(model, fit.runs)
+        model, fitted = dynamic.model, dynamic.fitted
+    answers = [compare(run, model, dynamics) for run in runs]
     expected = [_answered(*each) for each in zip(runs, answers, segments, strict=True)]
-    missed = fit.misfit()
-    if missed and fitted is not None:
-        wider = widened(fit, model.estimates)
-        model = Model(wider.estimates)
-        missed += _widened_by(wider.effects)
+    if dynamic is not None:
+        missed, sentences = dynamic.misfit, [*dynamic.cannot_tell, *_notes(answers)]
+    else:
+        missed = fit.misfit()
+        if missed and fitted is not None:
+            wider = widened(fit, model.estimates)
+            model = Model(wider.estimates)
+            missed += _widened_by(wider.effects)
     cannot = [*missed, *_unknown_conditions(runs), *sentences]
     return Calibration(
         _with_correction(model, runs),
@@ -67,6 +81,11 @@ def calibrate(
         cannot,
         fitted,
     )
+
+
+def _notes(answers: Sequence[Compared]) -> list[str]:
+    """Return what the dynamic model says of its answers, each once."""
+    return list(dict.fromkeys(note for answer in answers for note in answer.notes))
 
 
 def _widened_by(effects: Sequence[str]) -> list[str]:

@@ -65,7 +65,7 @@ def compare(run: Prepared, model: Model, dynamics: Dynamics = "slip") -> Compare
             where=f"run {run.run.id}",
             remedy="use --dynamics slip",
         )
-    response = simulate(model.rig(run.run), run.drive, dynamics)
+    response = simulate(model.rig(run.run), run.drive, dynamics, tolerance=run.step_tolerance)
     answers = {
         "f_in_N": response.f_in_N,
         "f_out_N": response.f_out_N,

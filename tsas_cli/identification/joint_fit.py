@@ -4,6 +4,7 @@ Before the fit, the Jacobian says which parameters the recordings can tell; the 
 values. The errors and their weights are those of `run_errors`.
 """
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
@@ -17,7 +18,9 @@ from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.quantities import LOG_SCALE, QUANTITIES
 from tsas_cli.identification.run_errors import RunErrors, blocks_of
 from tsas_cli.identification.samples import kept_samples, lost
+from tsas_cli.numerics.side_by_side import each
 from tsas_cli.physics.parameters import NOMINAL
+from tsas_cli.physics.response import Dynamics
 from tsas_cli.physics.rig import Rig, with_values
 
 Floats = npt.NDArray[np.float64]
@@ -25,6 +28,7 @@ Floats = npt.NDArray[np.float64]
 MOST_ROUNDS = 4
 MISSED = 1.3  # times what noise explains: the model is wrong
 ROUGH, FINE = 1e-3, 1e-6  # tolerance of the first fit, whose weights are the start's, and after
+FURTHER_SCALE = 7.0  # plausible change of what nobody knows: in logarithms, or of an effect's size
 ZERO_SCALE = 0.02  # plausible zero of a displacement sensor, of its range
 
 
@@ -37,10 +41,14 @@ class JointFit:
         kept: Model,
         runs: Sequence[Prepared],
         plausible: Mapping[str, tuple[float, float]] | None = None,
+        *,
+        dynamics: Dynamics = "slip",
+        further: Sequence[str] = (),
     ) -> None:
         """Take the values to start from, and those to keep where the recordings do not tell.
 
-        `plausible` narrows the bounds of parameters, by name.
+        `plausible` narrows the bounds of parameters, by name; `dynamics` is the model that is
+        fitted; `further` names parameters to free beside the nominal ones.
         """
         self.start = start
         self.kept = kept
@@ -49,12 +57,13 @@ class JointFit:
         self.runs = [run for run, at in zip(runs, samples, strict=True) if at]
         self.rigs = [start.rig(run.run) for run in self.runs]
         self.unknowns = _unknowns(start, self.runs, plausible or {})
+        self.unknowns += [_shared(name, start) for name in further]
         self.chosen: list[int] = []
         self.untold = self.left_out  # what the recordings do not say, once it is solved
         self.values = np.array([u.start for u in self.unknowns])
         kept_at = [at for at in samples if at]
         self.errors = [
-            RunErrors(run, at, rig)
+            RunErrors(run, at, rig, dynamics)
             for run, at, rig in zip(self.runs, kept_at, self.rigs, strict=True)
         ]
 
@@ -72,7 +81,8 @@ class JointFit:
             return self.kept, None, self.left_out
         before: list[int] = []
         for _ in range(MOST_ROUNDS):
-            J = jacobian(self.unknowns, len(self.runs), self.values, self._residuals)
+            at = np.where(np.isnan(self.values), [u.start for u in self.unknowns], self.values)
+            J = jacobian(self.unknowns, len(self.runs), at, self._residuals)
             chosen, confounded = identifiable(self.unknowns, J)
             # One that was fitted to a value too small to show is told: it is that small.
             small = [j for j in before if confounded.get(j) == []]
@@ -85,7 +95,7 @@ class JointFit:
                 break
             before = chosen
         self.chosen = chosen
-        told = estimates_of([self.unknowns[j] for j in chosen], result, self.ids())
+        told = estimates_of(self.told(), result, self.ids())
         self.untold = [*self.left_out, *self._sentences(confounded)]
         return Model(tuple(told)).over(self.kept), result, [*self.untold, *_doubts(told, result)]
 
@@ -102,6 +112,48 @@ class JointFit:
             for name, ratio in worst.items()
             if ratio > MISSED
         ]
+
+    def told(self) -> list[Unknown]:
+        """Return the unknowns that the recordings tell, once it is solved."""
+        return [self.unknowns[j] for j in self.chosen]
+
+    def residuals_with(self, changes: Mapping[str, float]) -> Floats:
+        """Return the residuals of all runs where it ended, with some shared values changed."""
+        changed = [with_values(rig, changes) for rig in self.solved_rigs()]
+        pairs = zip(self.errors, changed, strict=True)
+        return np.concatenate(each(lambda pair: pair[0].residuals(pair[1]), list(pairs)))
+
+    def solved_rigs(self) -> list[Rig]:
+        """Return the rig of each run where it ended."""
+        return [self._rig(k, self.values) for k in range(len(self.runs))]
+
+    def slopes(self) -> Floats:
+        """Return the Jacobian by what is told, where it ended, shape (n, p)."""
+        return jacobian(self.told(), len(self.runs), self.values[self.chosen], self._beside)
+
+    def moved(self, moves: Floats) -> Model:
+        """Return the values where it ended with those told moved, scaled, as a model."""
+        at = self.values.copy()
+        at[self.chosen] += moves
+        return Model(
+            tuple(
+                Estimate(
+                    u.name,
+                    QUANTITIES[u.name].unscaled(float(np.clip(v, u.lower, u.upper))),
+                    QUANTITIES[u.name].unit,
+                    "default",
+                    self._owner(u),
+                )
+                for u, v in zip(self.unknowns, at, strict=True)
+                if np.isfinite(v)
+            )
+        )
+
+    def _beside(self, k: int, told: Floats) -> Floats:
+        """Return the residuals of run k at scaled values of what is told, the rest as it is."""
+        at = self.values.copy()
+        at[self.chosen] = told
+        return self._residuals(k, at)
 
     def _fit(self, chosen: list[int], *, tolerance: float) -> Fitted:
         """Fit the chosen unknowns, the others as they are kept; renew values and weights."""
@@ -195,18 +247,25 @@ def rig_at(rig: Rig, k: int, unknowns: Sequence[Unknown], values: Floats) -> Rig
 
 def _kept_value(kept: Model, name: str, owner: str) -> str:
     value = kept.value(name, owner or None)
+    value = QUANTITIES[name].default if value is None else value
     unit = QUANTITIES[name].unit.removeprefix("1")
-    return f"{QUANTITIES[name].default if value is None else value:.5g} {unit}".rstrip()
+    return "its critical value" if math.isnan(value) else f"{value:.5g} {unit}".rstrip()
 
 
 def _doubts(told: Sequence[Estimate], result: Fitted) -> list[str]:
     """Say what makes the fitted values unreliable."""
     names = {e: f"{e.name} of run {e.run}" if e.run else e.name for e in told}
+    nothing = [e for e in told if e.at_bound and e.value == QUANTITIES[e.name].default]
     out = [
+        f"{names[e]} ended at {e.value:.5g}, where it does nothing: at most {e.interval_high:.2g} "
+        f"{e.unit} would go unseen."
+        for e in nothing
+    ]
+    out += [
         f"{names[e]} ended at the bound of what is plausible, {e.value:.5g}: it is not to be "
         "relied on."
         for e in told
-        if e.at_bound
+        if e.at_bound and e not in nothing
     ]
     out += [
         f"{names[e]} does not show where the fit ended: its interval is all that is plausible."
@@ -219,6 +278,19 @@ def _doubts(told: Sequence[Estimate], result: Fitted) -> list[str]:
             "relied on."
         )
     return out
+
+
+def _shared(name: str, start: Model) -> Unknown:
+    """Return the unknown of a parameter of the bristles or of an effect, which all runs share."""
+    quantity, value = QUANTITIES[name], start.value(name)
+    return Unknown(
+        name,
+        None,
+        quantity.scaled(quantity.default if value is None else value),
+        quantity.scaled(quantity.lower),
+        quantity.scaled(quantity.upper),
+        FURTHER_SCALE,
+    )
 
 
 def _unknowns(

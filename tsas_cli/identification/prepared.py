@@ -13,6 +13,7 @@ from tsas_cli.errors import InputError
 from tsas_cli.numerics.conditioning import METHOD, Conditioned, condition
 from tsas_cli.numerics.noise import noise_sd, quantisation_step
 from tsas_cli.physics.ends import Drive
+from tsas_cli.physics.response import TOLERANCE
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.dataset import Recording
 from tsas_cli.recordings.manifest import Load, Run
@@ -23,6 +24,8 @@ Mask = npt.NDArray[np.bool_]
 CHANNELS = ("f_in_N", "f_out_N", "x_out_mm")  # what the models answer, where it drives nothing
 LOAD_COLUMNS: Mapping[Load, str] = {"force": "f_out_N", "displacement": "x_out_mm"}
 GAP = 1.5  # times the usual time between a column's samples
+HIDDEN = 0.03  # of its noise: what a step may add to f_in, for all of them to stay below a third
+FINEST_TOLERANCE = 1e-7  # of a step of the dynamic chain
 START_SAMPLES = 20  # whose mean is the tension at the start
 
 
@@ -63,6 +66,15 @@ class Prepared:
         Zero where a channel never changes, NaN where too few samples are there to tell.
         """
         return {name: _noise(values) for name, values in self.measured.items()}
+
+    @cached_property
+    def step_tolerance(self) -> float:
+        """Error of a step of the dynamic chain, over the tension, that the noise of f_in hides."""
+        noise, f_in = self.noise.get("f_in_N", math.nan), self.measured.get("f_in_N")
+        if f_in is None or not noise > 0.0:
+            return TOLERANCE
+        hidden = HIDDEN * noise / float(np.nanmax(np.abs(f_in)))
+        return min(max(hidden, FINEST_TOLERANCE), TOLERANCE)
 
     def channel(self, name: str) -> Floats | None:
         """Return a column, as measured or as conditioned where it drives the model, or None."""

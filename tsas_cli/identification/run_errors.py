@@ -21,7 +21,8 @@ from tsas_cli.identification.samples import mean_edges, points
 from tsas_cli.numerics.conditioning import Conditioned
 from tsas_cli.numerics.covariance import FEWEST_BLOCKS, block_length
 from tsas_cli.physics.ends import Drive
-from tsas_cli.physics.response import simulate
+from tsas_cli.physics.lugre_chain import OWN_STEPS
+from tsas_cli.physics.response import Dynamics, Response, simulate
 from tsas_cli.physics.rig import Rig
 
 Floats = npt.NDArray[np.float64]
@@ -43,15 +44,19 @@ class Turns(NamedTuple):
 class RunErrors:
     """The errors of one run for any rig, with weights that are renewed on demand."""
 
-    def __init__(self, run: Prepared, samples: dict[str, Indices], rig: Rig) -> None:
-        """Take the samples of each channel that count, and the rig that gives the weights."""
+    def __init__(
+        self, run: Prepared, samples: dict[str, Indices], rig: Rig, dynamics: Dynamics = "slip"
+    ) -> None:
+        """Take the samples of each channel that count, the rig that gives weights, the model."""
         self.run = run
         self.samples = samples
         self.points = points(run)
         # The fit leaves out what the start still shows in: it may begin at rest.
         self.drive = replace(run.drive, start_f_in_N=None)
+        self.dynamics: Dynamics = dynamics
         self.nodes: int | None = None
-        self._answer = lru_cache(maxsize=2)(lambda rig: self._follow(rig, self.drive))
+        self.step_ends_s = OWN_STEPS
+        self._answer = lru_cache(maxsize=2)(self._plain)
         self.weights: dict[str, Floats] = {}
         self.turns: dict[str, Turns] = {}
         self.weigh(rig)
@@ -60,7 +65,7 @@ class RunErrors:
         """Return the same run with the same weights, answered by a slip chain always."""
         other = copy(self)
         other.nodes = nodes
-        other._answer = lru_cache(maxsize=2)(lambda rig: other._follow(rig, other.drive))  # noqa: SLF001
+        other._answer = lru_cache(maxsize=2)(other._plain)  # noqa: SLF001
         return other
 
     @property
@@ -73,8 +78,13 @@ class RunErrors:
 
         What the error of an end does is found by a simulation with each of its strokes moved on
         by one standard deviation, so that turning points move too; what a reversal does that was
-        taken for noise, by one with it left in.
+        taken for noise, by one with it left in. The dynamic model's steps are renewed with them,
+        and taken at any other rig: with steps of its own each would have its own small errors,
+        in which finite differences drown.
         """
+        if self.dynamics == "lugre":
+            self.step_ends_s = self._response(rig, self.drive, OWN_STEPS).step_ends_s
+            self._answer.cache_clear()
         plain = self._answer(rig)
         square = {
             name: np.full(self.run.time_s.size, max(noise, 1e-9) ** 2)
@@ -177,21 +187,37 @@ class RunErrors:
         numbers: Indices = np.unique(np.concatenate(first) // length, return_inverse=True)[1]
         return numbers
 
+    def _plain(self, rig: Rig) -> dict[str, Floats]:
+        """Return the answers to the run's own drive, with the steps of all rigs."""
+        return self._at_samples(self._response(rig, self.drive, self.step_ends_s))
+
     def _follow(self, rig: Rig, drive: Drive) -> dict[str, Floats]:
-        """Return the answers to a drive at all samples, straight between those simulated."""
+        """Return the answers to another drive, with steps of its own."""
+        return self._at_samples(self._response(rig, drive, OWN_STEPS))
+
+    def _response(self, rig: Rig, drive: Drive, step_ends_s: Floats) -> Response:
+        """Simulate the samples that are followed."""
         at = self.points
         load = None if drive.load_values is None else drive.load_values[at]
         time_s = None if drive.time_s is None else drive.time_s[at]
         thinned = replace(drive, values=drive.values[at], load_values=load, time_s=time_s)
-        if self.nodes is None:
-            response = simulate(rig, thinned)
-        else:
-            response = simulate(rig, thinned, on_mesh=True, nodes=self.nodes)
-        samples = np.arange(drive.values.size)
+        return simulate(
+            rig,
+            thinned,
+            self.dynamics,
+            on_mesh=self.nodes is not None,
+            nodes=self.nodes,
+            tolerance=self.run.step_tolerance,
+            step_ends_s=step_ends_s,
+        )
+
+    def _at_samples(self, response: Response) -> dict[str, Floats]:
+        """Return the answers at all samples, straight between those simulated."""
+        samples = np.arange(self.drive.values.size)
         return {
-            "f_in_N": np.interp(samples, at, response.f_in_N),
-            "f_out_N": np.interp(samples, at, response.f_out_N),
-            "x_out_mm": np.interp(samples, at, response.x_out_mm),
+            "f_in_N": np.interp(samples, self.points, response.f_in_N),
+            "f_out_N": np.interp(samples, self.points, response.f_out_N),
+            "x_out_mm": np.interp(samples, self.points, response.x_out_mm),
         }
 
 

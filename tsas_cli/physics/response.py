@@ -70,6 +70,7 @@ def simulate(
     *,
     on_mesh: bool = False,
     nodes: int | None = None,
+    tolerance: float = TOLERANCE,
     step_ends_s: Floats = OWN_STEPS,
 ) -> Response:
     """Follow a run with the distributed model (`slip`), the paper's lumped or its dynamic one.
@@ -77,11 +78,12 @@ def simulate(
     The distributed model takes the closed form where that holds (`is_closed`), and the slip chain
     everywhere else, or where `on_mesh` asks for it: models that are compared must share a mesh.
     The lumped one (`static`) knows what the closed form knows; the dynamic one (`lugre`) needs the
-    times of the samples. `nodes` is the mesh of a chain; `step_ends_s` has the dynamic one take the
+    times of the samples. `nodes` is the mesh of a chain; `tolerance` is what a step of the dynamic
+    one may add to a tension's error, over the larger one at the ends; `step_ends_s` has it take the
     steps of another run.
     """
     if dynamics == "lugre":
-        return _dynamic(rig, drive, nodes or LUMPS, step_ends_s)
+        return _dynamic(rig, drive, nodes or LUMPS, tolerance, step_ends_s)
     nodes = nodes or NODES
     ends = ends_of(rig, drive)
     if dynamics == "static":
@@ -96,7 +98,7 @@ def simulate(
     return _as_read(rig, drive, answer, len(before), solver)
 
 
-def _dynamic(rig: Rig, drive: Drive, lumps: int, step_ends_s: Floats) -> Response:
+def _dynamic(rig: Rig, drive: Drive, lumps: int, tolerance: float, step_ends_s: Floats) -> Response:
     """Follow a run with the dynamic chain, from a state of rest that the slip chain gives it."""
     if drive.time_s is None:
         raise ValueError("the dynamic model needs the times of its samples")
@@ -111,7 +113,7 @@ def _dynamic(rig: Rig, drive: Drive, lumps: int, step_ends_s: Floats) -> Respons
     )  # each lump has its own speed
     course = ends_of(rig._replace(effects=by_place), drive).course
     columns, phase, progress = lugre_chain(
-        drive.time_s, course, start, rig, ends.boundary, lumps, TOLERANCE, step_ends_s
+        drive.time_s, course, start, rig, ends.boundary, lumps, tolerance, step_ends_s
     )
     x_in, x_out, f_in, f_out = columns
     if ends.boundary.drive == DISPLACEMENT:

@@ -1,0 +1,220 @@
+"""The fit of the dynamic model: its bristles, and friction over speed, beside the nominal values.
+
+First the stiffness of the bristles and viscous friction are freed. Friction at rest, then the
+bristles' damping, are looked at from there, at many velocities and sizes, since a fit that starts
+where it shows nothing, or where sliding is unstable, ends there. What saves most is freed too, and
+kept where it is told; where not, it is said what the recordings would have shown.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from tsas_cli.identification.estimate import Estimate
+from tsas_cli.identification.fit import Fitted
+from tsas_cli.identification.joint_fit import JointFit, estimates_of
+from tsas_cli.identification.model import Model
+from tsas_cli.identification.prepared import Prepared
+from tsas_cli.identification.quantities import QUANTITIES
+from tsas_cli.physics.lugre_start import law_of
+
+Floats = npt.NDArray[np.float64]
+
+STIFFNESS, DAMPING = "bristles.stiffness_N_per_mm", "bristles.damping_N_s_per_mm"
+VISCOUS = "viscous_friction.coefficient_N_s_per_mm"
+EXCESS, VELOCITY = "stribeck_friction.excess", "stribeck_friction.velocity_mm_per_s"
+VELOCITIES = np.geomspace(0.01, 100.0, 17)  # Stribeck velocities that may show [mm/s]
+TIMES = 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0  # by which what is not told may be larger
+SMALL = 1e-3  # excess of friction at rest by which its effect is found
+FIRST_EXCESS = 0.01, 1.0  # range of the excess to start from
+WORTH = 25.0  # squares in units of noise that what is freed must save
+SEEN = 0.1  # excess of friction at rest that would show
+CLEARLY = 10.0  # times noise
+
+
+@dataclass(frozen=True)
+class DynamicFit:
+    """The model, the least squares behind it (None without any), what it does not tell or meet."""
+
+    model: Model
+    fitted: Fitted | None
+    cannot_tell: list[str]
+    misfit: list[str]
+
+
+@dataclass(frozen=True)
+class Look:
+    """Values of what is not free yet, seen from where a fit ended."""
+
+    values: Mapping[str, float]
+    moves: Floats  # of what is told, with them, scaled, (p,)
+    saves: float  # squares, in units of noise
+    shows: bool = False
+
+
+@dataclass(frozen=True)
+class Solved:
+    """A joint fit with its result; `further` is what was freed beside the nominal values."""
+
+    fit: JointFit
+    further: tuple[str, ...]
+    model: Model
+    fitted: Fitted
+    cannot_tell: list[str]
+
+
+def dynamic_fit(nominal: Model, runs: Sequence[Prepared]) -> DynamicFit:
+    """Fit nominal values, bristles and friction over speed with the dynamic chain.
+
+    `nominal` is what the fit of the slip model found, where this one starts from.
+    """
+    stiffness = nominal.rig(runs[0].run).bristles.stiffness_N_per_mm
+    first = {STIFFNESS: stiffness, VISCOUS: QUANTITIES[VISCOUS].size}
+    solved = _solved(_model_of(first).over(nominal), nominal, runs, tuple(first))
+    if solved is None:
+        return DynamicFit(nominal, None, [], [])
+    solved = _from_better_stiffness(solved) or solved
+    at_rest = _friction_at_rest(solved.fit)
+    with_rest = _freed(solved, at_rest)
+    solved = with_rest or solved
+    solved = _freed(solved, _sizes(solved.fit, DAMPING)) or solved
+    said, fitted = list(solved.cannot_tell), solved.fitted
+    if with_rest is None:
+        said.append(_unseen_rest(at_rest))
+    for name in (STIFFNESS, DAMPING, VISCOUS):
+        if not _tells(solved.fit, name):
+            looks = _sizes(solved.fit, name)
+            best = max(look.saves for look in looks)
+            like = [look for look in looks if look.saves > best - WORTH]
+            fitted = _widened(fitted, like)
+            said.append(_alike(name, like))
+    told = estimates_of(solved.fit.told(), fitted, solved.fit.ids())
+    return DynamicFit(Model(tuple(told)).over(solved.model), fitted, said, solved.fit.misfit())
+
+
+def _solved(
+    start: Model, kept: Model, runs: Sequence[Prepared], further: tuple[str, ...]
+) -> Solved | None:
+    """Return a fit that has ended; None where the recordings tell nothing."""
+    fit = JointFit(start, kept, runs, dynamics="lugre", further=further)
+    model, fitted, sentences = fit.solve()
+    return None if fitted is None else Solved(fit, further, model, fitted, sentences)
+
+
+def _model_of(values: Mapping[str, float]) -> Model:
+    """Return values to start from as a model."""
+    return Model(
+        tuple(Estimate(name, v, QUANTITIES[name].unit, "default") for name, v in values.items())
+    )
+
+
+def _friction_at_rest(fit: JointFit) -> list[Look]:
+    """Look at friction at rest with many Stribeck velocities, its size as the errors ask for."""
+    left, slopes = fit.residuals_with({}), fit.slopes()
+    looks = []
+    for velocity in map(float, VELOCITIES):
+        small, seen = (
+            (fit.residuals_with({EXCESS: excess, VELOCITY: velocity}) - left) / excess
+            for excess in (SMALL, SEEN)
+        )
+        *moves, asked = _asked(np.column_stack((slopes, small)), left)
+        saved = np.sum(left**2) - np.sum((left + slopes @ moves + small * asked) ** 2)
+        # A low velocity does less than it promises, and a high one is a change of friction.
+        own = min(np.linalg.norm(e + slopes @ _asked(slopes, e)) for e in (small, seen))
+        looks.append(
+            Look(
+                {EXCESS: float(np.clip(asked, *FIRST_EXCESS)), VELOCITY: velocity},
+                np.array(moves),
+                float(saved) if asked > 0.0 else 0.0,
+                bool(SEEN * own > CLEARLY),
+            )
+        )
+    return looks
+
+
+def _sizes(fit: JointFit, name: str) -> list[Look]:
+    """Look at values of one that is not told, from the usual one up; of the stiffness down too."""
+    left, slopes = fit.residuals_with({}), fit.slopes()
+    rigs = fit.solved_rigs()
+    usual = {
+        STIFFNESS: rigs[0].bristles.stiffness_N_per_mm,
+        DAMPING: max(law_of(rig, 1).bristle.damping for rig in rigs),
+        VISCOUS: QUANTITIES[VISCOUS].size,
+    }[name]
+    times = (*TIMES, *(1.0 / t for t in TIMES)) if name == STIFFNESS else TIMES
+    looks = []
+    for value in (usual * t for t in times):
+        there = fit.residuals_with({name: value})
+        moves = _asked(slopes, there)
+        saved = float(np.sum(left**2) - np.sum((there + slopes @ moves) ** 2))
+        looks.append(Look({name: value}, moves, saved))
+    return looks
+
+
+def _tells(fit: JointFit, name: str) -> bool:
+    return any(u.name == name for u in fit.told())
+
+
+def _from_better_stiffness(solved: Solved) -> Solved | None:
+    """Fit again from the stiffness that fits best, where it is not told but another fits better."""
+    if _tells(solved.fit, STIFFNESS):
+        return None
+    best = max(_sizes(solved.fit, STIFFNESS), key=lambda look: look.saves)
+    if best.saves < WORTH:
+        return None
+    stiffness, fit = _model_of(best.values), solved.fit
+    start = stiffness.over(fit.moved(best.moves))
+    return _solved(start, stiffness.over(fit.kept), fit.runs, solved.further)
+
+
+def _asked(slopes: Floats, left: Floats) -> Floats:
+    """Return the moves that take down most of some errors."""
+    return np.asarray(np.linalg.lstsq(slopes, -left, rcond=None)[0])
+
+
+def _freed(solved: Solved, looks: Sequence[Look]) -> Solved | None:
+    """Fit with the values of the best look freed too; None where they are not told after all."""
+    best = max(looks, key=lambda look: look.saves)
+    if best.saves < WORTH:
+        return None
+    start = _model_of(best.values).over(solved.fit.moved(best.moves))
+    further = (*solved.further, *best.values)
+    more = _solved(start, solved.fit.kept, solved.fit.runs, further)
+    if more is None:
+        return None
+    told = {e.name: e for e in more.model.estimates if e.stderr is not None and not e.at_bound}
+    for name in best.values:
+        low = told[name].interval_low if name in told else None
+        if low is None or low <= QUANTITIES[name].lower:
+            return None
+    return more
+
+
+def _unseen_rest(looks: Sequence[Look]) -> str:
+    """Say with which Stribeck velocity friction at rest would have shown."""
+    shown = [look.values[VELOCITY] for look in looks if look.shows]
+    what = f"{EXCESS} and {VELOCITY} do not show in these recordings"
+    if not shown:
+        return f"{what}, whatever they are."
+    return (
+        f"{what}: {SEEN:.0%} more friction at rest would, if its velocity were "
+        f"{min(shown):.2g} to {max(shown):.3g} mm/s; of others nothing is known."
+    )
+
+
+def _alike(name: str, like: Sequence[Look]) -> str:
+    """Say which values of one that is not told fit as well."""
+    values = [look.values[name] for look in like]
+    lowest = f"{min(values):.2g}" if name == STIFFNESS else "0"
+    return (
+        f"{name} is not told: {lowest} to {max(values):.2g} {QUANTITIES[name].unit} fit alike, and "
+        "the other intervals allow for it."
+    )
+
+
+def _widened(fitted: Fitted, like: Sequence[Look]) -> Fitted:
+    """Widen the errors by what values that fit alike do to the others."""
+    most = np.max([np.abs(look.moves) for look in like], axis=0, initial=0.0)
+    return replace(fitted, stderr=np.hypot(fitted.stderr, most / fitted.t))
