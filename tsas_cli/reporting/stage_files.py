@@ -111,6 +111,7 @@ class Calibration(StageFile):
     FILE: ClassVar[str] = "calibration.json"
     stage: Literal["calibrate"]
     version: str
+    dynamics: str = "slip"
     segments: dict[str, tuple[Segment, ...]]
     stiffness: tuple[Stiffness, ...]
     transfer: tuple[Parameter, ...] = ()

@@ -38,8 +38,9 @@ def _commands(inputs: Inputs) -> Iterator[list[str]]:
     folder = {kind: str(path) for kind, path in inputs.folders.items()}
     if Check in folder:
         yield ["tsas", "check", dataset, "--out", folder[Check]]
-    if Calibration in folder:
-        yield ["tsas", "calibrate", dataset, "--out", folder[Calibration]]
+    if calibration := inputs.get(Calibration):
+        options = ["--dynamics", calibration.dynamics, "--out", folder[Calibration]]
+        yield ["tsas", "calibrate", dataset, *options]
     if diagnosis := inputs.get(Diagnosis):
         options = ["--out", folder[Diagnosis]]
         yield ["tsas", "diagnose", dataset, *_model(diagnosis.model, inputs), *options]
