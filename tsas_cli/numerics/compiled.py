@@ -5,7 +5,7 @@ import os
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
-from typing import Any, Literal, TypeVar, cast
+from typing import Any, TypeVar, cast
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -16,25 +16,19 @@ PLAIN = os.environ.get("TSAS_PLAIN_PYTHON") == "1"
 def kernel(function: Function) -> Function:
     """Compile a numeric function with numba, once per version of the package's sources.
 
+    It becomes part of every compiled caller: calls count references, which costs up to a fifth.
     With `TSAS_PLAIN_PYTHON=1` in the environment the function stays as it is, for debugging and
     for the tests that hold the compiled code against the plain one.
     """
-    return _compiled(function, inline="never")
-
-
-def inlined(function: Function) -> Function:
-    """Compile a function into each of its callers: a sixth faster where calls count references."""
-    return _compiled(function, inline="always")
-
-
-def _compiled(function: Function, *, inline: Literal["never", "always"]) -> Function:
     if PLAIN:
         return function
     import numba
 
     folder = _cache_folder()
     numba.config.CACHE_DIR = folder or ""  # type: ignore[attr-defined] # numba sets it by name
-    compiler = numba.njit(cache=folder is not None, error_model="numpy", nogil=True, inline=inline)
+    compiler = numba.njit(
+        cache=folder is not None, error_model="numpy", nogil=True, forceinline=True
+    )
     return cast("Function", compiler(function))
 
 

@@ -14,7 +14,7 @@ from tsas_cli.effects.load_inertia import inertia_force
 from tsas_cli.effects.load_spring_nonlinearity import spring_force, spring_tangent
 from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.effects.stribeck_friction import GONE, stribeck
-from tsas_cli.numerics.compiled import inlined
+from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.bristles import friction
 from tsas_cli.physics.chain_state import DISPLACEMENT, FORCE, SPRING, Boundary
 from tsas_cli.physics.lugre_state import (
@@ -43,7 +43,7 @@ TOGETHER = 8  # lumps whose speeds are looked at together
 LEAST_LIMIT_N = 1e-9  # where no tension presses, so that a bristle has a limit at all
 
 
-@inlined
+@kernel
 def balance(s: Floats, step: Step, boundary: Boundary, law: Law) -> float:
     """Set up Newton's equations at the speeds W; return the sum of what the forces leave [N]."""
     set_tensions(s, law)
@@ -54,7 +54,7 @@ def balance(s: Floats, step: Step, boundary: Boundary, law: Law) -> float:
     return sum_of_sizes(s, law.n + 2)
 
 
-@inlined
+@kernel
 def sum_of_sizes(s: Floats, count: int) -> float:
     """Return the sum of |REST|, by four sums side by side: one alone waits for each addition."""
     a, b, c, d = 0.0, 0.0, 0.0, 0.0
@@ -69,14 +69,14 @@ def sum_of_sizes(s: Floats, count: int) -> float:
     return a + b + c + d
 
 
-@inlined
+@kernel
 def set_tensions(s: Floats, law: Law) -> None:
     """Find the segments' tensions, Yang 2025, Eq. (11)."""
     for j in range(law.n + 1):
         s[T + j] = s[T_PAST + j] + s[T_BY_W + j] * (s[W + j] - s[W + j + 1])
 
 
-@inlined
+@kernel
 def set_limits(s: Floats, step: Step, law: Law) -> None:
     """Find the limits of the lumps' friction and their slopes, Yang 2025, Eqs. (16) to (19)."""
     for i in range(1, law.n + 1):
@@ -98,7 +98,7 @@ def set_limits(s: Floats, step: Step, law: Law) -> None:
             set_stribeck(s, step, law, first, min(first + TOGETHER, law.n + 1))
 
 
-@inlined
+@kernel
 def set_stribeck(s: Floats, step: Step, law: Law, first: int, end: int) -> None:
     """Raise the limits of some lumps where one of them is slow enough to feel it."""
     slowest = math.inf
@@ -113,7 +113,7 @@ def set_stribeck(s: Floats, step: Step, law: Law, first: int, end: int) -> None:
         s[LIMIT_BY_T + i] *= factor
 
 
-@inlined
+@kernel
 def balance_lumps(s: Floats, step: Step, law: Law) -> None:
     """Set up the rows of the lumps."""
     inertia = law.lump_mass / step.gh
@@ -133,7 +133,7 @@ def balance_lumps(s: Floats, step: Step, law: Law) -> None:
         s[Z_NEW + i] = deflection
 
 
-@inlined
+@kernel
 def balance_drive(s: Floats, step: Step, boundary: Boundary, law: Law) -> None:
     """Set up the row of the drive's end: at its place, or pulled by a force against friction."""
     s[LOWER] = 0.0
@@ -149,7 +149,7 @@ def balance_drive(s: Floats, step: Step, boundary: Boundary, law: Law) -> None:
     s[FRICTION], s[Z_NEW] = rubbing, deflection
 
 
-@inlined
+@kernel
 def balance_load(s: Floats, step: Step, boundary: Boundary, law: Law) -> None:
     """Set up the row of the load's end: spring, mass and guide, a given force, or its place."""
     last = law.n + 1
@@ -179,7 +179,7 @@ def balance_load(s: Floats, step: Step, boundary: Boundary, law: Law) -> None:
     s[FRICTION + last], s[Z_NEW + last] = rubbing, deflection
 
 
-@inlined
+@kernel
 def rub(
     before: float, speed: float, step: Step, limit: float, law: Law
 ) -> tuple[float, float, float]:

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tsas_cli.numerics.compiled import inlined, kernel
+from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.chain_nodes import SLIDES
 from tsas_cli.physics.chain_state import FORCE, SPRING, UNSETTLED, Boundary
 from tsas_cli.physics.lugre_ends import Ends, departs, ends_after, felt, write_samples
@@ -222,7 +222,7 @@ def hangs(
     return is_slack(s, times, course, min(k, times.size - 2), t, boundary, law)
 
 
-@inlined
+@kernel
 def phase_of(s: Floats, law: Law) -> int:
     """Return +1 or −1 where all lumps slip alike, 0 otherwise."""
     pulled = released = 0

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from tsas_cli.effects.load_friction import guide_friction
-from tsas_cli.numerics.compiled import inlined, kernel
+from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.chain_state import DISPLACEMENT, FORCE, Boundary
 from tsas_cli.physics.lugre_input import DRIVE, LOAD, hermite
 from tsas_cli.physics.lugre_state import FRICTION, STIFFNESS, Y_NEW, Y_PAST, Floats, Law, Step, T, W
@@ -50,7 +50,7 @@ def ends_after(s: Floats, step: Step, law: Law) -> Ends:
     )
 
 
-@inlined
+@kernel
 def departs(
     times: Floats,
     course: Floats,
@@ -120,7 +120,7 @@ def write_samples(
         x_out[first:end] = course[LOAD, first:end]
 
 
-@inlined
+@kernel
 def cubic(
     out: Floats,
     first: int,

@@ -6,7 +6,7 @@ one before it. A minor is no less than about half of the one before it, so that 
 leave the floats.
 """
 
-from tsas_cli.numerics.compiled import inlined
+from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.lugre_state import (
     CHANGE,
     DIAGONAL,
@@ -19,7 +19,7 @@ from tsas_cli.physics.lugre_state import (
 )
 
 
-@inlined
+@kernel
 def solve(s: Floats, n: int) -> None:
     """Write the solution for the nodes 0 to n + 1 to CHANGE."""
     last = n + 1
@@ -50,7 +50,7 @@ def solve(s: Floats, n: int) -> None:
     spread(s, n, middle)
 
 
-@inlined
+@kernel
 def meet(s: Floats, middle: int, p_before: float, r_before: float) -> None:
     """Solve the two rows at which both eliminations meet."""
     a, b = s[MINOR + middle - 1], s[UPPER + middle - 1] * p_before
@@ -60,7 +60,7 @@ def meet(s: Floats, middle: int, p_before: float, r_before: float) -> None:
     s[CHANGE + middle] = (a * s[SCALED + middle] - c * s[SCALED + middle - 1]) * inverse
 
 
-@inlined
+@kernel
 def spread(s: Floats, n: int, middle: int) -> None:
     """Substitute from the middle to both ends."""
     for i in range(1, middle):  # towards x[i−1] = q/p − (u p before/p) x[i]

@@ -6,7 +6,7 @@ y = (1+ω)²/(1+2ω) y1 − ω²/(1+2ω) y2 + gh dy/dt with gh = h(1+ω)/(1+2ω)
 
 import math
 
-from tsas_cli.numerics.compiled import inlined, kernel
+from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.chain_state import DISPLACEMENT, Boundary
 from tsas_cli.physics.lugre_balance import balance
 from tsas_cli.physics.lugre_solve import solve
@@ -48,7 +48,7 @@ def formula_of(h: float, h1: float, h2: float) -> Formula:
     return Formula(h, h1, h2, gh, (1.0 + ratio) ** 2 / below, ratio * ratio / below)
 
 
-@inlined
+@kernel
 def look_back(s: Floats, law: Law, formula: Formula) -> None:
     """Set the history terms of a step, and guess its speeds by extrapolation."""
     h, h1, h2, gh, near, far = formula
@@ -71,7 +71,7 @@ def look_back(s: Floats, law: Law, formula: Formula) -> None:
         s[T_PAST + j] = law.preload_N + s[STIFFNESS + j] * (s[Y_PAST + j] - s[Y_PAST + j + 1])
 
 
-@inlined
+@kernel
 def newton(
     s: Floats, step: Step, boundary: Boundary, law: Law, leaves_N: float
 ) -> tuple[int, bool]:
@@ -98,7 +98,7 @@ def newton(
     return MOST_ITERATIONS, False
 
 
-@inlined
+@kernel
 def error(s: Floats, law: Law, formula: Formula) -> float:
     """Return the error of a step as a tension, from how far its guess was off [N]."""
     h, h1, h2, gh, _, _ = formula
@@ -114,7 +114,7 @@ def error(s: Floats, law: Law, formula: Formula) -> float:
     return gh * largest * corrected / (corrected + guessed)
 
 
-@inlined
+@kernel
 def largest_of(s: Floats, count: int) -> float:
     """Return the largest of CHANGE, by two searches side by side."""
     a, b = s[CHANGE], 0.0
@@ -124,7 +124,7 @@ def largest_of(s: Floats, count: int) -> float:
     return largest
 
 
-@inlined
+@kernel
 def keep(s: Floats, step: Step, law: Law) -> None:
     """Take the step's end as the present."""
     for i in range(law.n + 2):
