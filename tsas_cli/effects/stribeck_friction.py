@@ -14,12 +14,9 @@ slower than the drive's end.
 
 from typing import NamedTuple
 
-import numpy as np
-
 from tsas_cli.effects.effect import Effect, Parameter
 from tsas_cli.numerics.compiled import kernel
-
-GONE = 6.5  # Stribeck velocities: e^−42 is less than rounding, and what underflows is slow
+from tsas_cli.numerics.decay import decay
 
 
 class StribeckFriction(NamedTuple):
@@ -32,9 +29,10 @@ class StribeckFriction(NamedTuple):
 @kernel
 def stribeck(speed: float, law: StribeckFriction) -> tuple[float, float]:
     """Return what multiplies friction at a sliding speed [mm/s], and its slope [s/mm]."""
-    relative = np.minimum(np.maximum(speed / law.velocity_mm_per_s, -GONE), GONE)
-    left = law.excess * np.exp(-relative * relative)
-    return 1.0 + left, -2.0 * relative / law.velocity_mm_per_s * left
+    per_mm_s = 1.0 / law.velocity_mm_per_s  # found once by a loop over places
+    relative = speed * per_mm_s
+    left = law.excess * decay(relative * relative)
+    return 1.0 + left, -2.0 * relative * per_mm_s * left
 
 
 @kernel

@@ -6,14 +6,12 @@ that slides passes on e^(−μθ/n), Eq. 7). The ends have no mass: their forces
 depends on the speeds of a node and its two neighbours: a tridiagonal matrix, exactly.
 """
 
-import math
-
 from tsas_cli.effects.load_dependent_friction import load_factor
 from tsas_cli.effects.load_friction import guide_friction
 from tsas_cli.effects.load_inertia import inertia_force
 from tsas_cli.effects.load_spring_nonlinearity import spring_force, spring_tangent
 from tsas_cli.effects.proximal_spring import proximal_spring_force
-from tsas_cli.effects.stribeck_friction import GONE, stribeck
+from tsas_cli.effects.stribeck_friction import stribeck
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.bristles import friction
 from tsas_cli.physics.chain_state import DISPLACEMENT, FORCE, SPRING, Boundary
@@ -39,7 +37,6 @@ from tsas_cli.physics.lugre_state import (
     W,
 )
 
-TOGETHER = 8  # lumps whose speeds are looked at together
 LEAST_LIMIT_N = 1e-9  # where no tension presses, so that a bristle has a limit at all
 
 
@@ -94,19 +91,13 @@ def set_limits(s: Floats, step: Step, law: Law) -> None:
             s[LIMIT + i] *= factor
             s[LIMIT_BY_T + i] *= factor * (1.0 + law.friction_exponent)
     if law.stribeck.excess != 0.0:
-        for first in range(1, law.n + 1, TOGETHER):
-            set_stribeck(s, step, law, first, min(first + TOGETHER, law.n + 1))
+        set_stribeck(s, step, law)
 
 
 @kernel
-def set_stribeck(s: Floats, step: Step, law: Law, first: int, end: int) -> None:
-    """Raise the limits of some lumps where one of them is slow enough to feel it."""
-    slowest = math.inf
-    for i in range(first, end):
-        slowest = min(slowest, abs(s[W + i] + step.speed))
-    if slowest > GONE * law.stribeck.velocity_mm_per_s:
-        return
-    for i in range(first, end):
+def set_stribeck(s: Floats, step: Step, law: Law) -> None:
+    """Raise the limits of the lumps' friction by their speeds."""
+    for i in range(1, law.n + 1):
         factor, slope = stribeck(s[W + i] + step.speed, law.stribeck)
         s[LIMIT_BY_V + i] = s[LIMIT + i] * slope
         s[LIMIT + i] *= factor
