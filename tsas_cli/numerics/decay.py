@@ -13,7 +13,7 @@ GONE = 42.0  # e^−42 is less than rounding of what is not decayed
 def decay(x: float) -> float:
     """Return e^−x for x ≥ 0, within 1e-12 of itself to x = 42, from where on it stays.
 
-    e^−x = (e^z)^512 with z = −x/512, no less than −0.082, and e^z by its series to the eighth power.
+    e^−x = (e^z)^512 with z = −x/512, no less than −0.082, and e^z by its series to z⁸.
     """
     z = min(x, GONE) * (-1.0 / 512.0)
     power = 1.0 / 5040.0 + z * (1.0 / 40320.0)

@@ -37,11 +37,11 @@ from tsas_cli.physics.rig import Rig
 
 SHORTEST_S = 1e-13
 MOST_TRIES, MOST_PER_SAMPLE = 20_000, 40  # steps of a run, together
-LEAVES = 0.1  # of the error of a step: what Newton's method may leave,
+LEAVES = 0.3  # of the error of a step: what Newton's method may leave,
 LEAVES_AT_MOST = 1e-5  # and of a tension, since more looks right and is not;
 LEAVES_GIVEN = 1e-9  # of a tension where steps are given
 OWN_STEPS = np.empty(0)  # as long as the error allows
-LONGER, SHORTER, CAREFUL = 2.0, 0.25, 0.9  # how the step may change, and how much of it is taken
+LONGER, SHORTER, CAREFUL = 2.0, 0.25, 0.85  # how the step may change, and how much of it is taken
 
 
 class Progress(NamedTuple):
@@ -140,7 +140,8 @@ def lugre_chain(
             off = error(s, law, formula) if solved else math.inf
             off = off if controlled or not solved else 0.0
         iterations += done
-        change = CAREFUL * (scale / (off + 1e-300)) ** (1.0 / 3.0 if h2 < math.inf else 0.5)
+        spare = scale / (off + 1e-300)
+        change = CAREFUL * (np.cbrt(spare) if h2 < math.inf else math.sqrt(spare))
         if not off <= scale:
             h *= max(SHORTER, change)
             continue
@@ -150,7 +151,9 @@ def lugre_chain(
         since = k + 1
         k = k1 + 1 if times[k1 + 1] <= t1 else k1
         write_samples(columns, since, k + 1, times, course, t, h, earlier, ends, boundary, law)
-        phase[since : k + 1] = phase_of(s, law)
+        now = phase_of(s, law)
+        for i in range(since, k + 1):
+            phase[i] = now
         keep(s, step, law)
         felt_in = felt(ends.f_in - earlier.f_in, ends.drive - earlier.drive, least)
         felt_out = felt(ends.f_out - earlier.f_out, ends.load - earlier.load, least)

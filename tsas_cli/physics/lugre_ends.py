@@ -4,9 +4,11 @@ from typing import NamedTuple
 
 from tsas_cli.effects.load_friction import guide_friction
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.physics.chain_state import DISPLACEMENT, FORCE, Boundary
+from tsas_cli.physics.chain_state import DISPLACEMENT, FORCE, SPRING, Boundary
 from tsas_cli.physics.lugre_input import DRIVE, LOAD, hermite
 from tsas_cli.physics.lugre_state import FRICTION, STIFFNESS, Y_NEW, Y_PAST, Floats, Law, Step, T, W
+
+X_IN, X_OUT, F_IN, F_OUT = 0, 1, 2, 3  # rows of the columns
 
 
 class Ends(NamedTuple):
@@ -99,30 +101,29 @@ def write_samples(
 
     They lie in the step h from a to b that begins at t.
     """
-    x_in, x_out, f_in, f_out = columns[0], columns[1], columns[2], columns[3]
-    given = course[DRIVE]
-    cubic(x_out, first, end, times, t, h, (a.x_out, a.v_out, b.x_out, b.v_out))
+    read(columns, X_OUT, first, end, times, t, h, (a.x_out, a.v_out, b.x_out, b.v_out))
     if boundary.drive == FORCE:
-        f_in[first:end] = given[first:end]
-        cubic(x_in, first, end, times, t, h, (a.x_in, a.w_in, b.x_in, b.w_in))
+        read(columns, X_IN, first, end, times, t, h, (a.x_in, a.w_in, b.x_in, b.w_in))
     else:
-        x_in[first:end] = given[first:end]
-        cubic(f_in, first, end, times, t, h, (a.f_in, a.f_in_rate, b.f_in, b.f_in_rate))
+        read(columns, F_IN, first, end, times, t, h, (a.f_in, a.f_in_rate, b.f_in, b.f_in_rate))
     if boundary.load != FORCE:
-        cubic(f_out, first, end, times, t, h, (a.f_out, a.f_out_rate, b.f_out, b.f_out_rate))
+        read(
+            columns, F_OUT, first, end, times, t, h, (a.f_out, a.f_out_rate, b.f_out, b.f_out_rate)
+        )
     share = sensor_share(boundary, law)
-    if boundary.load == FORCE:
-        f_out[first:end] = course[LOAD, first:end]
-    elif share > 0.0:
-        for i in range(first, end):
-            f_out[i] -= share * (a.guide + (times[i] - t) / h * (b.guide - a.guide))
-    if boundary.load == DISPLACEMENT:
-        x_out[first:end] = course[LOAD, first:end]
+    for i in range(first, end):
+        columns[F_IN if boundary.drive == FORCE else X_IN, i] = course[DRIVE, i]
+        if boundary.load != SPRING:
+            columns[F_OUT if boundary.load == FORCE else X_OUT, i] = course[LOAD, i]
+        if boundary.load != FORCE and share > 0.0:
+            guide = a.guide + (times[i] - t) / h * (b.guide - a.guide)
+            columns[F_OUT, i] -= share * guide
 
 
 @kernel
-def cubic(
-    out: Floats,
+def read(
+    columns: Floats,
+    row: int,
     first: int,
     end: int,
     times: Floats,
@@ -136,7 +137,7 @@ def cubic(
     square, cube = (3.0 * rise - 2.0 * v0 - v1) * inverse, (v0 + v1 - 2.0 * rise) * inverse**2
     for i in range(first, end):
         since = times[i] - t
-        out[i] = x0 + since * (v0 + since * (square + since * cube))
+        columns[row, i] = x0 + since * (v0 + since * (square + since * cube))
 
 
 @kernel
