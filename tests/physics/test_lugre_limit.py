@@ -9,9 +9,8 @@ import pytest
 from tests.physics.references import GROUP_A
 from tsas_cli.effects import EFFECTS
 from tsas_cli.physics.bristles import Bristles
-from tsas_cli.physics.chain_state import SLACK, UNSETTLED
+from tsas_cli.physics.chain_state import MOST_NODES, SLACK, UNSETTLED
 from tsas_cli.physics.ends import Drive
-from tsas_cli.physics.lugre_state import MOST_LUMPS
 from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import with_values
 
@@ -92,7 +91,7 @@ def test_the_slip_chain_is_approached_with_the_stiffness_of_the_bristles():
         assert stiffer < 0.45 * softer  # 4 times as stiff
 
 
-@pytest.mark.parametrize("lumps", [1, -3, MOST_LUMPS + 1])
+@pytest.mark.parametrize("lumps", [1, -3, MOST_NODES + 1])
 def test_a_number_of_lumps_that_cannot_be_is_refused(lumps):
-    with pytest.raises(ValueError, match=f"{lumps} lumps; expected 2 to {MOST_LUMPS}"):
+    with pytest.raises(ValueError, match=f"{lumps} nodes; expected 2 to {MOST_NODES}"):
         simulate(STIFF, Drive(NESTED, time_s=TIME_S), "lugre", nodes=lumps)

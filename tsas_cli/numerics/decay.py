@@ -4,6 +4,8 @@ The library's is called for one place after another, 5 to 10 ns each; this is so
 products without a branch, which the compiler lays side by side.
 """
 
+import numpy as np
+
 from tsas_cli.numerics.compiled import kernel
 
 GONE = 42.0  # e^−42 is less than rounding of what is not decayed
@@ -15,7 +17,7 @@ def decay(x: float) -> float:
 
     e^−x = (e^z)^512 with z = −x/512, no less than −0.082, and e^z by its series to z⁸.
     """
-    z = min(x, GONE) * (-1.0 / 512.0)
+    z = np.minimum(x, GONE) * (-1.0 / 512.0)
     power = 1.0 / 5040.0 + z * (1.0 / 40320.0)
     power = 1.0 / 720.0 + z * power
     power = 1.0 / 120.0 + z * power

@@ -38,8 +38,8 @@ SLIPS_ALONG_S = 0.01  # in which the mass of the load takes up its speed; a rigi
 @kernel
 def load_law(chain: Floats, now: Moment, laws: Laws) -> tuple[float, float]:
     """Return slope and value at x = 0 of what the load pulls back with, as a tangent [N/mm, N]."""
-    n = chain.shape[1] - 2
-    x = chain[X, n + 1]
+    n = laws.n
+    x = chain[X + n + 1]
     shape = laws.load_spring
     slope = spring_tangent(x, laws.load_stiffness_N_per_mm, shape)
     value = spring_force(x, laws.load_stiffness_N_per_mm, shape) - slope * x
@@ -48,17 +48,18 @@ def load_law(chain: Floats, now: Moment, laws: Laws) -> tuple[float, float]:
     if mass > 0.0 and now.step_s < math.inf:  # implicit Euler, first order in the step
         per_speed = 1.0 / (SLIPS_ALONG_S + now.step_s)
         slope += inertia_force(per_speed / now.step_s, mass)
-        gone = chain[X_OLD, n + 1] / now.step_s + chain[SPEED, n + 1]
+        gone = chain[X_OLD + n + 1] / now.step_s + chain[SPEED + n + 1]
         value -= inertia_force(per_speed * gone, mass)
     return slope, value
 
 
 @kernel
-def keep_speed(chain: Floats, step_s: float) -> None:
+def keep_speed(chain: Floats, step_s: float, n: int) -> None:
     """Renew the speed of the load's mass after a step."""
-    speed = (chain[X, -1] - chain[X_OLD, -1]) / step_s
+    last = n + 1
+    speed = (chain[X + last] - chain[X_OLD + last]) / step_s
     share = 1.0 / (1.0 + SLIPS_ALONG_S / step_s)
-    chain[SPEED, -1] += share * (speed - chain[SPEED, -1])
+    chain[SPEED + last] += share * (speed - chain[SPEED + last])
 
 
 @kernel
@@ -75,22 +76,22 @@ def start_of_drive(chain: Floats, now: Moment, boundary: Boundary, laws: Laws) -
     if boundary.drive == DISPLACEMENT:
         return now.drive
     friction = laws.drive_friction_N
-    if chain[SLIP, 0] == 0 and friction > 0.0:
-        return float(chain[X_OLD, 0])
-    p, q, r = chain[P, 0], chain[Q, 0], chain[R, 0]
+    if chain[SLIP + 0] == 0 and friction > 0.0:
+        return float(chain[X_OLD + 0])
+    p, q, r = chain[P + 0], chain[Q + 0], chain[R + 0]
     stiffness = proximal_spring_force(1.0, laws.proximal_spring_N_per_mm)
-    return float(((now.drive - chain[SLIP, 0] * friction) * r - q) / (p + stiffness * r))
+    return float(((now.drive - chain[SLIP + 0] * friction) * r - q) / (p + stiffness * r))
 
 
 @kernel
 def revise_end(i: int, pull: float, friction: float, chain: Floats, scale: float) -> bool:
     """Do the same for an end with friction that does not depend on tension."""
-    if chain[SLIP, i] != 0:
+    if chain[SLIP + i] != 0:
         if slid_back(i, chain, scale):
-            chain[SLIP, i] = 0
+            chain[SLIP + i] = 0
             return True
     elif abs(pull) > friction * (1.0 + TOLERANCE):
-        chain[SLIP, i] = 1 if pull > 0.0 else -1
+        chain[SLIP + i] = 1 if pull > 0.0 else -1
         return True
     return False
 
@@ -98,21 +99,21 @@ def revise_end(i: int, pull: float, friction: float, chain: Floats, scale: float
 @kernel
 def revise_ends(chain: Floats, now: Moment, boundary: Boundary, laws: Laws, scale: float) -> bool:
     """Revise the two ends, and the tangent of a load spring that is not straight."""
-    n = chain.shape[1] - 2
+    n = laws.n
     wrong = False
     if boundary.drive == FORCE:
         stiffness = laws.proximal_spring_N_per_mm
-        pull = now.drive - chain[T, 0] - proximal_spring_force(chain[X, 0], stiffness)
+        pull = now.drive - chain[T + 0] - proximal_spring_force(chain[X + 0], stiffness)
         if laws.drive_friction_N > 0.0:
             wrong = revise_end(0, pull, laws.drive_friction_N, chain, scale)
     if boundary.load != DISPLACEMENT:
-        pull = chain[T, n] - pulls_back(chain, now, boundary, laws)
+        pull = chain[T + n] - pulls_back(chain, now, boundary, laws)
         friction = friction_at_load(boundary, laws)
         if friction > 0.0:
             wrong = revise_end(n + 1, pull, friction, chain, scale) or wrong
-        if friction == 0.0 or chain[SLIP, n + 1] != 0:
-            off = abs(pull - chain[SLIP, n + 1] * friction)
-            wrong = off > BALANCED * (abs(chain[T, n]) + laws.preload_N) or wrong
+        if friction == 0.0 or chain[SLIP + n + 1] != 0:
+            off = abs(pull - chain[SLIP + n + 1] * friction)
+            wrong = off > BALANCED * (abs(chain[T + n]) + laws.preload_N) or wrong
     return wrong
 
 
@@ -122,7 +123,7 @@ def pulls_back(chain: Floats, now: Moment, boundary: Boundary, laws: Laws) -> fl
     if boundary.load == FORCE:
         return now.load
     slope, value = load_law(chain, now, laws)
-    return float(slope * chain[X, chain.shape[1] - 1] + value)
+    return float(slope * chain[X + laws.n + 1] + value)
 
 
 @kernel

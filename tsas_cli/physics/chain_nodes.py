@@ -42,17 +42,19 @@ SLIDES = 0.99  # share of its limit from which a node on a bristle is said to sl
 @kernel
 def set_friction(chain: Floats, now: Moment, laws: Laws) -> None:
     """Renew what each node's friction leaves of the tension, Eq. (7) of Yang 2025 for its bend."""
-    n = chain.shape[1] - 2
+    n = laws.n
     pulled, released = now.pulled / n, now.released / n
     if laws.friction_exponent == 0.0:
-        chain[PULLED_BY], chain[RELEASED_BY] = pulled, released
-        chain[PULLED], chain[RELEASED] = math.exp(-pulled), math.exp(-released)
+        passed, kept = math.exp(-pulled), math.exp(-released)
+        for i in range(1, n + 1):
+            chain[PULLED_BY + i], chain[RELEASED_BY + i] = pulled, released
+            chain[PULLED + i], chain[RELEASED + i] = passed, kept
         return
     for i in range(1, n + 1):
-        tension = 0.5 * (chain[T, i - 1] + chain[T, i])
+        tension = 0.5 * (chain[T + i - 1] + chain[T + i])
         factor = load_factor(tension / laws.preload_N, laws.friction_exponent)
-        chain[PULLED_BY, i] = min(pulled * factor, STRONGEST)
-        chain[RELEASED_BY, i] = min(released * factor, STRONGEST)
+        chain[PULLED_BY + i] = min(pulled * factor, STRONGEST)
+        chain[RELEASED_BY + i] = min(released * factor, STRONGEST)
 
 
 @kernel
@@ -64,7 +66,7 @@ def is_straight(laws: Laws) -> bool:
 @kernel
 def wrap_of(share: float, i: int, chain: Floats) -> float:
     """Return friction times bend of a node whose friction has reached a share of its limit."""
-    own: float = chain[PULLED_BY, i] if share > 0.0 else chain[RELEASED_BY, i]
+    own: float = chain[PULLED_BY + i] if share > 0.0 else chain[RELEASED_BY + i]
     return abs(share) * own
 
 
@@ -72,10 +74,10 @@ def wrap_of(share: float, i: int, chain: Floats) -> float:
 def ratio_passed(share: float, i: int, chain: Floats, laws: Laws) -> float:
     """Return T[i]/T[i−1] of a node whose friction has reached a share of its limit, −1 to 1."""
     if is_straight(laws):
-        ratio: float = chain[PULLED, i] if share > 0.0 else chain[RELEASED, i]
+        ratio: float = chain[PULLED + i] if share > 0.0 else chain[RELEASED + i]
     else:
         ratio = math.exp(-wrap_of(share, i, chain))
-    negative = chain[T, i - 1] + chain[T, i] < 0.0
+    negative = chain[T + i - 1] + chain[T + i] < 0.0
     return ratio if (share > 0.0) != negative else 1.0 / ratio
 
 
@@ -87,23 +89,23 @@ def set_slides(chain: Floats, now: Moment, laws: Laws) -> bool:
     of the bend, E = e^(∓a f z/n). Friction that depends on the tension turns it by
     dE/dm = ∓(a/n) E f β/m, m the mean tension of both sides; a bristle by dz/dx of the node's way.
     """
-    n = chain.shape[1] - 2
+    n = laws.n
     straight = is_straight(laws)
     changed = False
     for i in range(1, n + 1):
-        share = chain[SLIP, i]
+        share = chain[SLIP + i]
         if laws.presliding_mm > 0.0:
             share = follow(i, chain, laws)
-            changed = changed or chain[MOVED, i] != chain[X, i] - chain[X_OLD, i]
+            changed = changed or chain[MOVED + i] != chain[X + i] - chain[X_OLD + i]
         elif share == 0.0:
             continue
         ratio = ratio_passed(share, i, chain, laws)
         half = 0.5 * share * now.viscous_N / n
         if straight:
-            changed = changed or ratio != chain[PASSES, i]
-            chain[PASSES, i], chain[TAKES, i] = ratio, half + ratio * half
+            changed = changed or ratio != chain[PASSES + i]
+            chain[PASSES + i], chain[TAKES + i] = ratio, half + ratio * half
             continue
-        before, behind = chain[T, i - 1], chain[T, i]
+        before, behind = chain[T + i - 1], chain[T + i]
         carried, mean = before - half, before + behind
         off = behind + half - ratio * carried
         changed = changed or abs(off) > BALANCED * (abs(before) + laws.preload_N)
@@ -112,7 +114,7 @@ def set_slides(chain: Floats, now: Moment, laws: Laws) -> bool:
         bent = min(max(bent, -MOST_BENT), MOST_BENT)
         passes = (ratio + bent) / (1.0 - bent)
         takes = passes * before - behind + off / (1.0 - bent)
-        chain[PASSES, i], chain[TAKES, i] = passes, takes
+        chain[PASSES + i], chain[TAKES + i] = passes, takes
         if laws.presliding_mm > 0.0:
             own = wrap_of(1.0 if share > 0.0 else -1.0, i, chain)
             limit = 0.5 * (1.0 + ratio) * now.viscous_N / n + ratio * abs(carried) * own
@@ -123,52 +125,52 @@ def set_slides(chain: Floats, now: Moment, laws: Laws) -> bool:
 @kernel
 def lean_on_bristle(i: int, share: float, limit: float, chain: Floats, laws: Laws) -> None:
     """Let what a node takes rise with its way, from where its tangent was taken."""
-    rate = turning_rate(share, chain[MOVED, i], laws.presliding_mm)
-    chain[BRISTLE, i] = limit * rate
-    chain[TAKES, i] -= chain[BRISTLE, i] * (chain[X_OLD, i] + chain[MOVED, i])
+    rate = turning_rate(share, chain[MOVED + i], laws.presliding_mm)
+    chain[BRISTLE + i] = limit * rate
+    chain[TAKES + i] -= chain[BRISTLE + i] * (chain[X_OLD + i] + chain[MOVED + i])
 
 
 @kernel
 def follow(i: int, chain: Floats, laws: Laws) -> float:
     """Take a node's way so far, no further than to its turning; return its share of friction."""
-    moved = chain[X, i] - chain[X_OLD, i]
-    if moved * chain[MOVED, i] < 0.0:
+    moved = chain[X + i] - chain[X_OLD + i]
+    if moved * chain[MOVED + i] < 0.0:
         moved = 0.0
-    chain[MOVED, i] = moved
-    return share_turned(chain[TURNED, i], moved, laws.presliding_mm)
+    chain[MOVED + i] = moved
+    return share_turned(chain[TURNED + i], moved, laws.presliding_mm)
 
 
 @kernel
-def expect(chain: Floats) -> None:
+def expect(chain: Floats, laws: Laws) -> None:
     """Let each node on a bristle set off by the way of the last step."""
-    for i in range(1, chain.shape[1] - 1):
-        chain[X, i] = chain[X_OLD, i] + chain[MOVED, i]
+    for i in range(1, laws.n + 1):
+        chain[X + i] = chain[X_OLD + i] + chain[MOVED + i]
 
 
 @kernel
 def keep(chain: Floats, laws: Laws) -> None:
     """Take the present state as the settled one."""
     if laws.presliding_mm > 0.0:
-        for i in range(1, chain.shape[1] - 1):
-            moved = chain[X, i] - chain[X_OLD, i]
-            share = share_turned(chain[TURNED, i], moved, laws.presliding_mm)
-            chain[TURNED, i], chain[MOVED, i] = share, moved
-            chain[SLIP, i] = math.copysign(1.0, share) if abs(share) > SLIDES else 0.0
-    for j in range(chain.shape[1]):
-        chain[X_OLD, j], chain[T_OLD, j] = chain[X, j], chain[T, j]
+        for i in range(1, laws.n + 1):
+            moved = chain[X + i] - chain[X_OLD + i]
+            share = share_turned(chain[TURNED + i], moved, laws.presliding_mm)
+            chain[TURNED + i], chain[MOVED + i] = share, moved
+            chain[SLIP + i] = math.copysign(1.0, share) if abs(share) > SLIDES else 0.0
+    for j in range(laws.n + 2):
+        chain[X_OLD + j], chain[T_OLD + j] = chain[X + j], chain[T + j]
 
 
 @kernel
 def slid_back(i: int, chain: Floats, scale: float) -> bool:
     """Say whether a slipping node has slid against its own direction."""
-    slid = chain[X, i] - chain[X_OLD, i]
-    return bool(chain[SLIP, i] * slid < -TOLERANCE * scale)
+    slid = chain[X + i] - chain[X_OLD + i]
+    return bool(chain[SLIP + i] * slid < -TOLERANCE * scale)
 
 
 @kernel
 def pulled_loose(i: int, loss: float, chain: Floats, laws: Laws) -> float:
     """Return the direction in which the tensions pull a node that sticks, 0 where it holds."""
-    before, behind, half = chain[T, i - 1], chain[T, i], 0.5 * loss
+    before, behind, half = chain[T + i - 1], chain[T + i], 0.5 * loss
     margin = TOLERANCE * abs(before)
     if behind + half < ratio_passed(1.0, i, chain, laws) * (before - half) - margin:
         return 1.0

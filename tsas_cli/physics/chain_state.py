@@ -27,6 +27,7 @@ class Boundary(NamedTuple):
 class Laws(NamedTuple):
     """What of the rig a static problem needs; the whole rig would be copied at every call."""
 
+    n: int  # nodes of the sheath
     preload_N: float
     load_stiffness_N_per_mm: float
     load_spring: LoadSpringNonlinearity
@@ -50,21 +51,20 @@ class Moment(NamedTuple):
     step_s: float  # time since the moment before, infinite where it plays no part
 
 
-# The state, a row for each over the nodes from 0 at the drive to n + 1 at the load, shape
-# (ROWS, n + 2). In one array, since a compiled call counts the references of each that it is given.
-X, X_OLD = 0, 1  # position, now and when the last step had settled [mm]
-T, T_OLD = 2, 3  # tension of the segment behind the node, likewise [N]
-SLIP = 4  # direction in which the node slips, 0 where it sticks
-PASSES, TAKES, BRISTLE = (
-    5,
-    6,
-    7,
-)  # where it does not stick, T[i] = PASSES T[i−1] − TAKES − BRISTLE x
-GIVE = 8  # compliance of the segment behind the node [mm/N]
-P, Q, R = 9, 10, 11  # T = (P x + Q)/R of the segment behind the node, x its position
-SPEED = 12  # of the load's mass when the last step had settled [mm/s]
-PULLED, RELEASED = 13, 14  # what the node's share of the bend leaves of the tension, e^(−a/n)
-TURNED = 15  # with presliding, the share of its limit that friction had reached
-MOVED = 16  # with presliding, the way since then at which PASSES, TAKES and BRISTLE hold [mm]
-PULLED_BY, RELEASED_BY = 17, 18  # that share, a/n
+PITCH = 1088  # known when compiled, so that loops over rows become vector instructions
+MOST_NODES = 1000
+
+# Rows of the state, over the nodes from 0 at the drive to n + 1 at the load: chain[X + i].
+X, X_OLD = 0, PITCH  # position, now and when the last step had settled [mm]
+T, T_OLD = PITCH * 2, PITCH * 3  # tension of the segment behind the node, likewise [N]
+SLIP = PITCH * 4  # direction in which the node slips, 0 where it sticks
+PASSES = PITCH * 5  # where it does not stick, T[i] = PASSES T[i−1] − TAKES − BRISTLE x
+TAKES, BRISTLE = PITCH * 6, PITCH * 7
+GIVE = PITCH * 8  # compliance of the segment behind the node [mm/N]
+P, Q, R = (PITCH * row for row in range(9, 12))  # its T = (P x + Q)/R, x the node's position
+SPEED = PITCH * 12  # of the load's mass when the last step had settled [mm/s]
+PULLED, RELEASED = PITCH * 13, PITCH * 14  # what the node's bend leaves of the tension, e^(−a/n)
+TURNED = PITCH * 15  # with presliding, the share of its limit that friction had reached
+MOVED = PITCH * 16  # with presliding, the way since then at which PASSES to BRISTLE hold [mm]
+PULLED_BY, RELEASED_BY = PITCH * 17, PITCH * 18  # the node's share of friction times bend, a/n
 ROWS = 19

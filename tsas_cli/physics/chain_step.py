@@ -54,10 +54,10 @@ MOST_ONE_BY_ONE = 5  # more, for each node
 @kernel
 def settle(chain: Floats, now: Moment, boundary: Boundary, laws: Laws, scale: float) -> bool:
     """Find the slipping nodes at a moment; return whether the set was found."""
-    n = chain.shape[1] - 2
+    n = laws.n
     set_friction(chain, now, laws)
     if laws.presliding_mm > 0.0:
-        expect(chain)
+        expect(chain, laws)
     set_slides(chain, now, laws)
     for revision in range(MOST_AT_ONCE + MOST_ONE_BY_ONE * n):
         sweep_to_drive(chain, now, boundary, laws)
@@ -77,57 +77,57 @@ def settle(chain: Floats, now: Moment, boundary: Boundary, laws: Laws, scale: fl
 @kernel
 def sweep_to_drive(chain: Floats, now: Moment, boundary: Boundary, laws: Laws) -> None:
     """Write each segment's tension as (p x + q)/r of the node before it, from the load on."""
-    F0, n = laws.preload_N, chain.shape[1] - 2
+    F0, n = laws.preload_N, laws.n
     guide = friction_at_load(boundary, laws)
     bristles = laws.presliding_mm > 0.0
     p, q, r = 0.0, 0.0, 1.0
-    held = boundary.load == DISPLACEMENT or (chain[SLIP, n + 1] == 0 and guide > 0.0)
-    place = now.load if boundary.load == DISPLACEMENT else chain[X_OLD, n + 1]
+    held = boundary.load == DISPLACEMENT or (chain[SLIP + n + 1] == 0 and guide > 0.0)
+    place = now.load if boundary.load == DISPLACEMENT else chain[X_OLD + n + 1]
     if not held:
         if boundary.load == SPRING:
             p, q = load_law(chain, now, laws)
         else:
             q = now.load
-        q += chain[SLIP, n + 1] * guide
+        q += chain[SLIP + n + 1] * guide
     for i in range(n + 1, 0, -1):  # node i, then the segment before it
-        give = chain[GIVE, i - 1]
+        give = chain[GIVE + i - 1]
         if i <= n:
-            place = chain[X_OLD, i]
-            held = chain[SLIP, i] == 0 and not bristles
+            place = chain[X_OLD + i]
+            held = chain[SLIP + i] == 0 and not bristles
             if bristles:  # without the division they would outgrow a float
-                p, q = p / r + chain[BRISTLE, i], q / r + chain[TAKES, i]
-                r = chain[PASSES, i]
+                p, q = p / r + chain[BRISTLE + i], q / r + chain[TAKES + i]
+                r = chain[PASSES + i]
             elif not held:
-                q += chain[TAKES, i] * r
-                r *= chain[PASSES, i]
+                q += chain[TAKES + i] * r
+                r *= chain[PASSES + i]
         if held:
             p, q, r = 1.0, give * F0 - place, give
         else:
             q += p * give * F0
             r += p * give
-        chain[P, i - 1], chain[Q, i - 1], chain[R, i - 1] = p, q, r
+        chain[P + i - 1], chain[Q + i - 1], chain[R + i - 1] = p, q, r
 
 
 @kernel
 def sweep_to_load(chain: Floats, now: Moment, boundary: Boundary, laws: Laws) -> None:
     """Find positions and tensions, from the drive on."""
-    n = chain.shape[1] - 2
+    n = laws.n
     bristles = laws.presliding_mm > 0.0
-    chain[X, 0] = start_of_drive(chain, now, boundary, laws)
-    chain[T, 0] = (chain[P, 0] * chain[X, 0] + chain[Q, 0]) / chain[R, 0]
+    chain[X + 0] = start_of_drive(chain, now, boundary, laws)
+    chain[T + 0] = (chain[P + 0] * chain[X + 0] + chain[Q + 0]) / chain[R + 0]
     for i in range(1, n + 1):
-        place = chain[X, i - 1] - chain[GIVE, i - 1] * (chain[T, i - 1] - laws.preload_N)
-        if chain[SLIP, i] != 0 and not bristles:
-            chain[T, i] = chain[PASSES, i] * chain[T, i - 1] - chain[TAKES, i]
+        place = chain[X + i - 1] - chain[GIVE + i - 1] * (chain[T + i - 1] - laws.preload_N)
+        if chain[SLIP + i] != 0 and not bristles:
+            chain[T + i] = chain[PASSES + i] * chain[T + i - 1] - chain[TAKES + i]
         else:
-            place = place if bristles else chain[X_OLD, i]
-            chain[T, i] = (chain[P, i] * place + chain[Q, i]) / chain[R, i]
-        chain[X, i] = place
-    chain[X, n + 1] = chain[X, n] - chain[GIVE, n] * (chain[T, n] - laws.preload_N)
+            place = place if bristles else chain[X_OLD + i]
+            chain[T + i] = (chain[P + i] * place + chain[Q + i]) / chain[R + i]
+        chain[X + i] = place
+    chain[X + n + 1] = chain[X + n] - chain[GIVE + n] * (chain[T + n] - laws.preload_N)
     if boundary.load == DISPLACEMENT:
-        chain[X, n + 1] = now.load
-    elif chain[SLIP, n + 1] == 0 and friction_at_load(boundary, laws) > 0.0:
-        chain[X, n + 1] = chain[X_OLD, n + 1]
+        chain[X + n + 1] = now.load
+    elif chain[SLIP + n + 1] == 0 and friction_at_load(boundary, laws) > 0.0:
+        chain[X + n + 1] = chain[X_OLD + n + 1]
 
 
 @kernel
@@ -136,16 +136,16 @@ def revise(chain: Floats, now: Moment, laws: Laws, scale: float, most: int) -> i
 
     Returns how many nodes it revised, at most so many, from the drive on.
     """
-    n = chain.shape[1] - 2
+    n = laws.n
     loss = now.viscous_N / n
     revised = 0
     for i in range(1, n + 1):
-        before = chain[SLIP, i]
+        before = chain[SLIP + i]
         if before == 0.0:
-            chain[SLIP, i] = pulled_loose(i, loss, chain, laws)
+            chain[SLIP + i] = pulled_loose(i, loss, chain, laws)
         elif slid_back(i, chain, scale):
-            chain[SLIP, i] = 0.0
-        if chain[SLIP, i] != before:
+            chain[SLIP + i] = 0.0
+        if chain[SLIP + i] != before:
             revised += 1
             if revised == most:
                 break

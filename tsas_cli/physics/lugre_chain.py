@@ -13,7 +13,7 @@ import numpy as np
 
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.chain_nodes import SLIDES
-from tsas_cli.physics.chain_state import FORCE, SPRING, UNSETTLED, Boundary
+from tsas_cli.physics.chain_state import FORCE, PITCH, SPRING, UNSETTLED, Boundary
 from tsas_cli.physics.lugre_ends import Ends, departs, ends_after, felt, write_samples
 from tsas_cli.physics.lugre_input import (
     DRIVE,
@@ -25,7 +25,6 @@ from tsas_cli.physics.lugre_slack import is_slack, pulled_again, without_tension
 from tsas_cli.physics.lugre_start import law_of, lay_out, set_off
 from tsas_cli.physics.lugre_state import (
     LIMIT,
-    PITCH,
     ROWS,
     Z_NEW,
     Floats,
@@ -81,7 +80,7 @@ def lugre_chain(
     boundary
         What is given at the ends.
     n
-        Number of lumps, 2 to `MOST_LUMPS`.
+        Number of lumps, 2 to `MOST_NODES`.
     tolerance
         Error of a tension that a step may add, over the larger of the tensions at both ends.
     step_ends_s

@@ -4,14 +4,13 @@ import math
 
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.bristles import Bristle, bristle_damping, tendon_mass
-from tsas_cli.physics.chain_state import Boundary
+from tsas_cli.physics.chain_state import PITCH, Boundary
 from tsas_cli.physics.lugre_balance import balance
 from tsas_cli.physics.lugre_ends import Ends, ends_after
 from tsas_cli.physics.lugre_input import DRIVE, given_at, step_at
 from tsas_cli.physics.lugre_state import (
     DAMPING,
     LIMIT,
-    PITCH,
     REST,
     ROWS,
     STIFFNESS,

@@ -9,12 +9,10 @@ from tsas_cli.effects.load_friction import LoadFriction
 from tsas_cli.effects.load_spring_nonlinearity import LoadSpringNonlinearity
 from tsas_cli.effects.stribeck_friction import StribeckFriction
 from tsas_cli.physics.bristles import Bristle
+from tsas_cli.physics.chain_state import PITCH
 
 Floats = npt.NDArray[np.float64]
 Phases = npt.NDArray[np.int8]
-
-PITCH = 1088  # known when compiled, so that loops over rows become vector instructions
-MOST_LUMPS = 1000
 
 # Rows of the state, over the nodes from 0 at the drive to n + 1 at the load: s[Y + i]. Positions
 # are relative to the drive, where that is given: 4 times fewer steps.

@@ -11,10 +11,9 @@ from tsas_cli.effects import Effects
 from tsas_cli.effects.drive_friction import drive_friction_force
 from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.physics.branches import branches
-from tsas_cli.physics.chain_state import DISPLACEMENT, FORCE, SLACK
+from tsas_cli.physics.chain_state import DISPLACEMENT, FORCE, MOST_NODES, SLACK
 from tsas_cli.physics.ends import Drive, Ends, ends_of
 from tsas_cli.physics.lugre_chain import OWN_STEPS, lugre_chain
-from tsas_cli.physics.lugre_state import MOST_LUMPS
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.sensors import reading
 from tsas_cli.physics.slip_chain import rest_after, slip_chain
@@ -82,6 +81,8 @@ def simulate(
     one may add to a tension's error, over the larger one at the ends; `step_ends_s` has it take the
     steps of another run.
     """
+    if nodes is not None and not 2 <= nodes <= MOST_NODES:
+        raise ValueError(f"{nodes} nodes; expected 2 to {MOST_NODES}")
     if dynamics == "lugre":
         return _dynamic(rig, drive, nodes or LUMPS, tolerance, step_ends_s)
     nodes = nodes or NODES
@@ -102,8 +103,6 @@ def _dynamic(rig: Rig, drive: Drive, lumps: int, tolerance: float, step_ends_s: 
     """Follow a run with the dynamic chain, from a state of rest that the slip chain gives it."""
     if drive.time_s is None:
         raise ValueError("the dynamic model needs the times of its samples")
-    if not 2 <= lumps <= MOST_LUMPS:
-        raise ValueError(f"{lumps} lumps; expected 2 to {MOST_LUMPS}")
     ends = ends_of(rig, drive)
     before = _history(rig, ends, drive.start_f_in_N, lumps)
     start = rest_after(ends.first().after(before).course, rig, ends.boundary, lumps)

@@ -20,6 +20,7 @@ from tsas_cli.physics.chain_state import (
     FORCE,
     GIVE,
     MOVED,
+    PITCH,
     ROWS,
     SLIP,
     SPEED,
@@ -75,28 +76,29 @@ def slip_chain(
         sample is not to be trusted. Many such samples, and the rest of the run is given up: it
         keeps the last values.
     """
-    return follow(course, at_rest(rig, n), rig, boundary)
+    return follow(course, at_rest(rig, n), rig, boundary, n)
 
 
 @kernel
 def rest_after(course: Floats, rig: Rig, boundary: Boundary, n: int) -> Floats:
     """Return where a course leaves the nodes and the tensions behind them, shape (2, n + 2)."""
     chain = at_rest(rig, n)
-    follow(course, chain, rig, boundary)
+    follow(course, chain, rig, boundary, n)
     out = np.empty((2, n + 2))
-    out[0], out[1] = chain[X], chain[T]
+    for j in range(n + 2):
+        out[0, j], out[1, j] = chain[X + j], chain[T + j]
     return out
 
 
 @kernel
 def follow(
-    course: Floats, chain: Floats, rig: Rig, boundary: Boundary
+    course: Floats, chain: Floats, rig: Rig, boundary: Boundary, n: int
 ) -> tuple[Floats, Floats, Floats, Floats, Phases]:
     """Let a chain follow a course; see `slip_chain`."""
-    m, n = course.shape[1], chain.shape[1] - 2
+    m = course.shape[1]
     x_in, x_out, f_in, f_out = np.empty(m), np.empty(m), np.empty(m), np.empty(m)
     phase = np.zeros(m, dtype=np.int8)
-    laws = laws_of(rig)
+    laws = laws_of(rig, n)
     scale = rig.sheath_length_mm * rig.preload_N / rig.tendon_stiffness_N / n + 1e-9
     rest_drive = rig.preload_N if boundary.drive == FORCE else 0.0
     rest_load = rig.preload_N if boundary.load == FORCE else 0.0
@@ -110,16 +112,16 @@ def follow(
             continue
         now = moment(course, i)
         if boundary.load == DISPLACEMENT and now.load != before.load:
-            chain[SLIP, n + 1] = 1 if now.load > before.load else -1
+            chain[SLIP + n + 1] = 1 if now.load > before.load else -1
         found = advance(chain, before, now, boundary, laws, scale)
         before = now
         unsettled += not found
-        phase[i] = phase_of(chain) if found else 3
-        if boundary.load != FORCE and chain[T, 0] < 0.0:
+        phase[i] = phase_of(chain, n) if found else 3
+        if boundary.load != FORCE and chain[T + 0] < 0.0:
             phase[i] = 2
             hang_slack(chain, now, boundary, laws)
-        x_in[i], x_out[i] = chain[X, 0], chain[X, n + 1]
-        f_in[i] = now.drive if boundary.drive == FORCE else chain[T, 0]
+        x_in[i], x_out[i] = chain[X + 0], chain[X + n + 1]
+        f_in[i] = now.drive if boundary.drive == FORCE else chain[T + 0]
         f_out[i] = tension_at_sensor(chain, now, boundary, laws)
     return x_in, x_out, f_in, f_out, phase
 
@@ -141,18 +143,23 @@ def moment(course: Floats, i: int) -> Moment:
 @kernel
 def at_rest(rig: Rig, n: int) -> Floats:
     """Return the chain at uniform preload."""
-    chain = np.zeros((ROWS, n + 2))
-    chain[T] = rig.preload_N
-    chain[T_OLD] = rig.preload_N
-    chain[GIVE, : n + 1] = segment_compliances(rig, n)
+    chain = np.empty(ROWS * PITCH)
+    for row in range(ROWS):
+        for j in range(n + 2):
+            chain[PITCH * row + j] = 0.0
+    gives = segment_compliances(rig, n)
+    for j in range(n + 2):
+        chain[T + j] = chain[T_OLD + j] = rig.preload_N
+        chain[GIVE + j] = gives[min(j, n)]
     return chain
 
 
 @kernel
-def laws_of(rig: Rig) -> Laws:
+def laws_of(rig: Rig, n: int) -> Laws:
     """Return what of the rig a static problem needs."""
     effects = rig.effects
     return Laws(
+        n,
         rig.preload_N,
         rig.load_stiffness_N_per_mm,
         effects.load_spring_nonlinearity,
@@ -194,16 +201,20 @@ def advance(
         to = min(done + step, 1.0)
         now = between(start, end, to, end.step_s * (to - done))
         if settle(chain, now, boundary, laws, scale):
-            keep_speed(chain, now.step_s)
+            keep_speed(chain, now.step_s, laws.n)
             keep(chain, laws)
             if to == 1.0:
                 return True
             done = to
             step *= 2.0
         else:
-            for j in range(chain.shape[1]):
-                chain[X, j], chain[T, j], chain[SLIP, j] = chain[X_OLD, j], chain[T_OLD, j], 0.0
-                chain[MOVED, j] = 0.0
+            for j in range(laws.n + 2):
+                chain[X + j], chain[T + j], chain[SLIP + j] = (
+                    chain[X_OLD + j],
+                    chain[T_OLD + j],
+                    0.0,
+                )
+                chain[MOVED + j] = 0.0
             step *= 0.5
     return False
 
@@ -226,11 +237,11 @@ def between(start: Moment, end: Moment, part: float, step_s: float) -> Moment:
 
 
 @kernel
-def phase_of(chain: Floats) -> int:
+def phase_of(chain: Floats, n: int) -> int:
     """Return +1 or −1 where all nodes of the sheath slip alike, 0 otherwise."""
-    first = chain[SLIP, 1]
-    for i in range(2, chain.shape[1] - 1):
-        if chain[SLIP, i] != first:
+    first = chain[SLIP + 1]
+    for i in range(2, n + 1):
+        if chain[SLIP + i] != first:
             return 0
     return int(first)
 
@@ -238,15 +249,15 @@ def phase_of(chain: Floats) -> int:
 @kernel
 def tension_at_sensor(chain: Floats, now: Moment, boundary: Boundary, laws: Laws) -> float:
     """Return what a force sensor at the load feels [N], friction before it taken off."""
-    n = chain.shape[1] - 2
-    tension: float = chain[T, n]
+    n = laws.n
+    tension: float = chain[T + n]
     if boundary.load == FORCE:
         return now.load
     before = laws.load_friction.before_sensor_N
     if before == 0.0:
         return tension
     if boundary.load == DISPLACEMENT:
-        return float(tension - chain[SLIP, n + 1] * before)
+        return float(tension - chain[SLIP + n + 1] * before)
     share = before / friction_at_load(boundary, laws)
     return tension - share * (tension - pulls_back(chain, now, boundary, laws))
 
@@ -254,16 +265,17 @@ def tension_at_sensor(chain: Floats, now: Moment, boundary: Boundary, laws: Laws
 @kernel
 def hang_slack(chain: Floats, now: Moment, boundary: Boundary, laws: Laws) -> None:
     """Lay the tendon without tension against the load; the next pull finds all nodes slipping."""
-    last = chain.shape[1] - 1
+    last = laws.n + 1
     if boundary.load != DISPLACEMENT:
         preload_N, stiffness = laws.preload_N - now.lost_N, laws.load_stiffness_N_per_mm
-        chain[X, last] = without_pull(chain[X, last], preload_N, stiffness, laws.load_spring)
+        chain[X + last] = without_pull(chain[X + last], preload_N, stiffness, laws.load_spring)
     for j in range(last - 1, -1, -1):
-        chain[T, j] = 0.0
+        chain[T + j] = 0.0
         if j > 0:
-            chain[X, j] = chain[X, j + 1] - chain[GIVE, j] * laws.preload_N
-            chain[SLIP, j] = 1.0
-    chain[SLIP, last] = 1.0
-    chain[SPEED, last] = 0.0
+            chain[X + j] = chain[X + j + 1] - chain[GIVE + j] * laws.preload_N
+            chain[SLIP + j] = 1.0
+    chain[SLIP + last] = 1.0
+    chain[SPEED + last] = 0.0
     keep(chain, laws)
-    chain[TURNED], chain[MOVED] = 1.0, 0.0
+    for i in range(1, last):
+        chain[TURNED + i], chain[MOVED + i] = 1.0, 0.0
