@@ -219,7 +219,6 @@ TIMES = np.array([0.0, 3.0, 20.0])
         lambda t: rippled(t, DriveRipple(0.03, 0.02, 0.5)),
         lambda t: stribeck_factor(t, StribeckFriction(0.2, 4.0)),
         lambda t: viscous_loss(t, 0.02),
-        lambda t: load_factor(t, -0.4),
         lambda t: drifted_bend(1.0, BendDrift(-0.1, 0.05), t),
         lambda t: friction_factor(FrictionDrift(-0.1, 0.05, 0.0005), t, 100.0),
         lambda t: lost_preload(PreloadLoss(0.02, 0.05), t),

@@ -13,10 +13,9 @@ Not validated: tensions below a hundredth of the preload, where the law is cut.
 
 from typing import NamedTuple
 
-import numpy as np
-
 from tsas_cli.effects.effect import Effect, Parameter
 from tsas_cli.numerics.compiled import kernel
+from tsas_cli.numerics.elementary import exponential, logarithm
 
 SMALLEST_RATIO = 0.01  # below it a negative exponent would let friction grow without limit
 
@@ -30,8 +29,8 @@ class LoadDependentFriction(NamedTuple):
 @kernel
 def load_factor(tension_ratio: float, exponent: float) -> float:
     """Return what multiplies the friction coefficient where the tension is `tension_ratio` F0."""
-    factor: float = np.maximum(np.abs(tension_ratio), SMALLEST_RATIO) ** exponent
-    return factor
+    ratio = max(abs(tension_ratio), SMALLEST_RATIO)
+    return exponential(exponent * logarithm(ratio))
 
 
 LOAD_DEPENDENT_FRICTION = Effect(

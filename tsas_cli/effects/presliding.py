@@ -11,11 +11,11 @@ the same corners.
 Not validated: bristles that yield all at once at their limit; a length that depends on the tension.
 """
 
-import math
 from typing import NamedTuple
 
 from tsas_cli.effects.effect import Effect, Parameter
 from tsas_cli.numerics.compiled import kernel
+from tsas_cli.numerics.elementary import exponential
 
 
 class Presliding(NamedTuple):
@@ -30,7 +30,7 @@ def share_turned(before: float, moved: float, length: float) -> float:
     limit = 1.0 if moved > 0.0 else -1.0
     if length == 0.0:
         return limit
-    return limit + (before - limit) * math.exp(-abs(moved) / length)
+    return limit + (before - limit) * exponential(-abs(moved) / length)
 
 
 @kernel

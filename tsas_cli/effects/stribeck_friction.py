@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 from tsas_cli.effects.effect import Effect, Parameter
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.numerics.decay import decay
+from tsas_cli.numerics.elementary import exponential
 
 
 class StribeckFriction(NamedTuple):
@@ -31,7 +31,7 @@ def stribeck(speed: float, law: StribeckFriction) -> tuple[float, float]:
     """Return what multiplies friction at a sliding speed [mm/s], and its slope [s/mm]."""
     per_mm_s = 1.0 / law.velocity_mm_per_s  # found once by a loop over places
     relative = speed * per_mm_s
-    left = law.excess * decay(relative * relative)
+    left = law.excess * exponential(-relative * relative)
     return 1.0 + left, -2.0 * relative * per_mm_s * left
 
 

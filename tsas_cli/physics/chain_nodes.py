@@ -12,6 +12,7 @@ import math
 from tsas_cli.effects.load_dependent_friction import load_factor
 from tsas_cli.effects.presliding import share_turned, turning_rate
 from tsas_cli.numerics.compiled import kernel
+from tsas_cli.numerics.elementary import exponential
 from tsas_cli.physics.chain_state import (
     BALANCED,
     BRISTLE,
@@ -21,8 +22,10 @@ from tsas_cli.physics.chain_state import (
     PULLED_BY,
     RELEASED,
     RELEASED_BY,
+    SHARE,
     SLIP,
     T_OLD,
+    T_ROSE,
     TAKES,
     TOLERANCE,
     TURNED,
@@ -55,96 +58,126 @@ def set_friction(chain: Floats, now: Moment, laws: Laws) -> None:
         factor = load_factor(tension / laws.preload_N, laws.friction_exponent)
         chain[PULLED_BY + i] = min(pulled * factor, STRONGEST)
         chain[RELEASED_BY + i] = min(released * factor, STRONGEST)
+    if laws.presliding_mm == 0.0:
+        for i in range(1, n + 1):
+            chain[PULLED + i] = exponential(-chain[PULLED_BY + i])
+        for i in range(1, n + 1):
+            chain[RELEASED + i] = exponential(-chain[RELEASED_BY + i])
 
 
 @kernel
 def is_straight(laws: Laws) -> bool:
-    """Say whether a sliding node passes on the same ratio of any tension."""
-    return laws.friction_exponent == 0.0 and laws.presliding_mm == 0.0
+    """Say whether all that is not straight is the set of nodes that slip."""
+    return (
+        laws.friction_exponent == 0.0
+        and laws.presliding_mm == 0.0
+        and laws.load_mass_kg == 0.0
+        and laws.load_spring.quadratic_per_mm == 0.0
+        and laws.load_spring.cubic_per_mm2 == 0.0
+    )
 
 
 @kernel
-def wrap_of(share: float, i: int, chain: Floats) -> float:
-    """Return friction times bend of a node whose friction has reached a share of its limit."""
-    own: float = chain[PULLED_BY + i] if share > 0.0 else chain[RELEASED_BY + i]
-    return abs(share) * own
-
-
-@kernel
-def ratio_passed(share: float, i: int, chain: Floats, laws: Laws) -> float:
-    """Return T[i]/T[i−1] of a node whose friction has reached a share of its limit, −1 to 1."""
-    if is_straight(laws):
-        ratio: float = chain[PULLED + i] if share > 0.0 else chain[RELEASED + i]
-    else:
-        ratio = math.exp(-wrap_of(share, i, chain))
+def ratio_passed(direction: float, i: int, chain: Floats) -> float:
+    """Return T[i]/T[i−1] of a node that slips in a direction, 1 or −1."""
+    ratio: float = chain[PULLED + i] if direction > 0.0 else chain[RELEASED + i]
     negative = chain[T + i - 1] + chain[T + i] < 0.0
-    return ratio if (share > 0.0) != negative else 1.0 / ratio
+    return ratio if (direction > 0.0) != negative else 1.0 / ratio
 
 
 @kernel
 def set_slides(chain: Floats, now: Moment, laws: Laws) -> bool:
-    """Renew what all sliding nodes pass on; return whether it differs from what was used.
+    """Renew what all sliding nodes pass on; return whether it differs from what was used."""
+    if laws.presliding_mm > 0.0:
+        turned = follow_ways(chain, laws)
+        return set_tangents(chain, now, laws) or turned
+    if laws.friction_exponent == 0.0:
+        return set_ratios(chain, now, laws)
+    for i in range(1, laws.n + 1):
+        chain[SHARE + i] = chain[SLIP + i]
+    return set_tangents(chain, now, laws)
 
-    The tangent of (T[i] + w z/2) = E (T[i−1] − w z/2), half of the viscous loss w on either side
-    of the bend, E = e^(∓a f z/n). Friction that depends on the tension turns it by
-    dE/dm = ∓(a/n) E f β/m, m the mean tension of both sides; a bristle by dz/dx of the node's way.
-    """
+
+@kernel
+def set_ratios(chain: Floats, now: Moment, laws: Laws) -> bool:
+    """Set what sliding nodes pass on where that is the same of any tension."""
     n = laws.n
-    straight = is_straight(laws)
     changed = False
     for i in range(1, n + 1):
-        share = chain[SLIP + i]
-        if laws.presliding_mm > 0.0:
-            share = follow(i, chain, laws)
-            changed = changed or chain[MOVED + i] != chain[X + i] - chain[X_OLD + i]
-        elif share == 0.0:
-            continue
-        ratio = ratio_passed(share, i, chain, laws)
-        half = 0.5 * share * now.viscous_N / n
-        if straight:
+        slip = chain[SLIP + i]
+        if slip != 0.0:
+            ratio = ratio_passed(slip, i, chain)
+            half = 0.5 * slip * now.viscous_N / n
             changed = changed or ratio != chain[PASSES + i]
             chain[PASSES + i], chain[TAKES + i] = ratio, half + ratio * half
-            continue
-        before, behind = chain[T + i - 1], chain[T + i]
-        carried, mean = before - half, before + behind
-        off = behind + half - ratio * carried
-        changed = changed or abs(off) > BALANCED * (abs(before) + laws.preload_N)
-        wrap = wrap_of(share, i, chain) if ratio > 1.0 else -wrap_of(share, i, chain)
-        bent = wrap * ratio * laws.friction_exponent * carried / mean if mean else 0.0
-        bent = min(max(bent, -MOST_BENT), MOST_BENT)
-        passes = (ratio + bent) / (1.0 - bent)
-        takes = passes * before - behind + off / (1.0 - bent)
-        chain[PASSES + i], chain[TAKES + i] = passes, takes
-        if laws.presliding_mm > 0.0:
-            own = wrap_of(1.0 if share > 0.0 else -1.0, i, chain)
-            limit = 0.5 * (1.0 + ratio) * now.viscous_N / n + ratio * abs(carried) * own
-            lean_on_bristle(i, share, limit / (1.0 - bent), chain, laws)
     return changed
 
 
 @kernel
-def lean_on_bristle(i: int, share: float, limit: float, chain: Floats, laws: Laws) -> None:
-    """Let what a node takes rise with its way, from where its tangent was taken."""
-    rate = turning_rate(share, chain[MOVED + i], laws.presliding_mm)
-    chain[BRISTLE + i] = limit * rate
-    chain[TAKES + i] -= chain[BRISTLE + i] * (chain[X_OLD + i] + chain[MOVED + i])
+def set_tangents(chain: Floats, now: Moment, laws: Laws) -> bool:
+    """Set what sliding nodes pass on by a tangent, all at once; a node that sticks gets one too.
+
+    The tangent of (T[i] + w z/2) = E (T[i−1] − w z/2), half of the viscous loss w on either side
+    of the bend, E = e^(∓a f z/n), z the share of its limit that friction has reached. Friction that
+    depends on the tension turns it by dE/dm = ∓(a/n) E f β/m, m the mean tension of both sides; a
+    bristle by dz/dx of the node's way.
+    """
+    n = laws.n
+    loss = now.viscous_N / n
+    wrong = 0
+    for i in range(1, n + 1):
+        share, before, behind = chain[SHARE + i], chain[T + i - 1], chain[T + i]
+        half, mean = 0.5 * share * loss, before + behind
+        carried = before - half
+        pulled, released = chain[PULLED_BY + i], chain[RELEASED_BY + i]
+        limit = pulled if share > 0.0 else released
+        wrap = -share * limit if mean >= 0.0 else share * limit
+        ratio = exponential(wrap)
+        off = behind + half - ratio * carried
+        bent = wrap * ratio * laws.friction_exponent * carried / (mean if mean != 0.0 else math.inf)
+        bent = min(max(bent, -MOST_BENT), MOST_BENT)
+        inverse = 1.0 / (1.0 - bent)
+        passes = (ratio + bent) * inverse
+        chain[PASSES + i] = passes
+        chain[TAKES + i] = passes * before - behind + off * inverse
+        # How what is passed on falls with the share: what a bristle turns into a slope.
+        chain[BRISTLE + i] = (0.5 * (1.0 + ratio) * loss + ratio * abs(carried) * limit) * inverse
+        wrong += abs(share * off) > BALANCED * abs(share) * (abs(before) + laws.preload_N)
+    if laws.presliding_mm > 0.0:
+        lean_on_bristles(chain, laws)
+    return wrong > 0
 
 
 @kernel
-def follow(i: int, chain: Floats, laws: Laws) -> float:
-    """Take a node's way so far, no further than to its turning; return its share of friction."""
-    moved = chain[X + i] - chain[X_OLD + i]
-    if moved * chain[MOVED + i] < 0.0:
-        moved = 0.0
-    chain[MOVED + i] = moved
-    return share_turned(chain[TURNED + i], moved, laws.presliding_mm)
+def lean_on_bristles(chain: Floats, laws: Laws) -> None:
+    """Let what each node takes rise with its way, from where its tangent was taken."""
+    for i in range(1, laws.n + 1):
+        moved = chain[MOVED + i]
+        rate = turning_rate(chain[SHARE + i], moved, laws.presliding_mm)
+        chain[BRISTLE + i] *= rate
+        chain[TAKES + i] -= chain[BRISTLE + i] * (chain[X_OLD + i] + moved)
+
+
+@kernel
+def follow_ways(chain: Floats, laws: Laws) -> bool:
+    """Take the nodes' ways so far, none further than to its turning; return whether one turned."""
+    turned = 0
+    for i in range(1, laws.n + 1):
+        moved = chain[X + i] - chain[X_OLD + i]
+        back = moved * chain[MOVED + i] < 0.0
+        turned += back
+        moved = 0.0 if back else moved
+        chain[MOVED + i] = moved
+        chain[SHARE + i] = share_turned(chain[TURNED + i], moved, laws.presliding_mm)
+    return turned > 0
 
 
 @kernel
 def expect(chain: Floats, laws: Laws) -> None:
-    """Let each node on a bristle set off by the way of the last step."""
-    for i in range(1, laws.n + 1):
-        chain[X + i] = chain[X_OLD + i] + chain[MOVED + i]
+    """Go on as in the last step: laws that are not straight are bent about what comes out."""
+    for j in range(laws.n + 2):
+        chain[X + j] = chain[X_OLD + j] + chain[MOVED + j]
+        chain[T + j] = chain[T_OLD + j] + chain[T_ROSE + j]
 
 
 @kernel
@@ -152,10 +185,14 @@ def keep(chain: Floats, laws: Laws) -> None:
     """Take the present state as the settled one."""
     if laws.presliding_mm > 0.0:
         for i in range(1, laws.n + 1):
-            moved = chain[X + i] - chain[X_OLD + i]
-            share = share_turned(chain[TURNED + i], moved, laws.presliding_mm)
-            chain[TURNED + i], chain[MOVED + i] = share, moved
-            chain[SLIP + i] = math.copysign(1.0, share) if abs(share) > SLIDES else 0.0
+            share = chain[SHARE + i]
+            direction = 1.0 if share > 0.0 else -1.0
+            chain[TURNED + i] = share
+            chain[SLIP + i] = direction if abs(share) > SLIDES else 0.0
+    if not is_straight(laws):
+        for j in range(laws.n + 2):
+            chain[MOVED + j] = chain[X + j] - chain[X_OLD + j]
+            chain[T_ROSE + j] = chain[T + j] - chain[T_OLD + j]
     for j in range(laws.n + 2):
         chain[X_OLD + j], chain[T_OLD + j] = chain[X + j], chain[T + j]
 
@@ -168,12 +205,12 @@ def slid_back(i: int, chain: Floats, scale: float) -> bool:
 
 
 @kernel
-def pulled_loose(i: int, loss: float, chain: Floats, laws: Laws) -> float:
+def pulled_loose(i: int, loss: float, chain: Floats) -> float:
     """Return the direction in which the tensions pull a node that sticks, 0 where it holds."""
     before, behind, half = chain[T + i - 1], chain[T + i], 0.5 * loss
     margin = TOLERANCE * abs(before)
-    if behind + half < ratio_passed(1.0, i, chain, laws) * (before - half) - margin:
+    if behind + half < ratio_passed(1.0, i, chain) * (before - half) - margin:
         return 1.0
-    if behind - half > ratio_passed(-1.0, i, chain, laws) * (before + half) + margin:
+    if behind - half > ratio_passed(-1.0, i, chain) * (before + half) + margin:
         return -1.0
     return 0.0

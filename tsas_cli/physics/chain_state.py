@@ -65,6 +65,8 @@ P, Q, R = (PITCH * row for row in range(9, 12))  # its T = (P x + Q)/R, x the no
 SPEED = PITCH * 12  # of the load's mass when the last step had settled [mm/s]
 PULLED, RELEASED = PITCH * 13, PITCH * 14  # what the node's bend leaves of the tension, e^(−a/n)
 TURNED = PITCH * 15  # with presliding, the share of its limit that friction had reached
-MOVED = PITCH * 16  # with presliding, the way since then at which PASSES to BRISTLE hold [mm]
+MOVED = PITCH * 16  # way since the last step, as expected, at which PASSES to BRISTLE hold [mm]
 PULLED_BY, RELEASED_BY = PITCH * 17, PITCH * 18  # the node's share of friction times bend, a/n
-ROWS = 19
+SHARE = PITCH * 19  # of its limit that friction reaches, with its sign
+T_ROSE = PITCH * 20  # by how much the tension rose in the last step [N]
+ROWS = 21

@@ -22,6 +22,7 @@ from tsas_cli.physics.chain_ends import (
 )
 from tsas_cli.physics.chain_nodes import (
     expect,
+    is_straight,
     pulled_loose,
     set_friction,
     set_slides,
@@ -47,6 +48,7 @@ from tsas_cli.physics.chain_state import (
     X,
 )
 
+TOGETHER = 8  # nodes that share a division
 MOST_AT_ONCE = 20  # revisions of the slipping set
 MOST_ONE_BY_ONE = 5  # more, for each node
 
@@ -55,9 +57,9 @@ MOST_ONE_BY_ONE = 5  # more, for each node
 def settle(chain: Floats, now: Moment, boundary: Boundary, laws: Laws, scale: float) -> bool:
     """Find the slipping nodes at a moment; return whether the set was found."""
     n = laws.n
-    set_friction(chain, now, laws)
-    if laws.presliding_mm > 0.0:
+    if not is_straight(laws):
         expect(chain, laws)
+    set_friction(chain, now, laws)
     set_slides(chain, now, laws)
     for revision in range(MOST_AT_ONCE + MOST_ONE_BY_ONE * n):
         sweep_to_drive(chain, now, boundary, laws)
@@ -77,57 +79,72 @@ def settle(chain: Floats, now: Moment, boundary: Boundary, laws: Laws, scale: fl
 @kernel
 def sweep_to_drive(chain: Floats, now: Moment, boundary: Boundary, laws: Laws) -> None:
     """Write each segment's tension as (p x + q)/r of the node before it, from the load on."""
-    F0, n = laws.preload_N, laws.n
+    last = laws.n + 1
     guide = friction_at_load(boundary, laws)
-    bristles = laws.presliding_mm > 0.0
-    p, q, r = 0.0, 0.0, 1.0
-    held = boundary.load == DISPLACEMENT or (chain[SLIP + n + 1] == 0 and guide > 0.0)
-    place = now.load if boundary.load == DISPLACEMENT else chain[X_OLD + n + 1]
-    if not held:
-        if boundary.load == SPRING:
-            p, q = load_law(chain, now, laws)
-        else:
-            q = now.load
-        q += chain[SLIP + n + 1] * guide
-    for i in range(n + 1, 0, -1):  # node i, then the segment before it
+    give, F0 = chain[GIVE + laws.n], laws.preload_N
+    if boundary.load == DISPLACEMENT:
+        p, q, r = 1.0, give * F0 - now.load, give
+    elif chain[SLIP + last] == 0.0 and guide > 0.0:
+        p, q, r = 1.0, give * F0 - chain[X_OLD + last], give
+    else:
+        p, q = load_law(chain, now, laws) if boundary.load == SPRING else (0.0, now.load)
+        q += chain[SLIP + last] * guide + p * give * F0
+        r = 1.0 + p * give
+    chain[P + laws.n], chain[Q + laws.n], chain[R + laws.n] = p, q, r
+    if laws.presliding_mm > 0.0:
+        pass_leaning(chain, p, q, r, laws)
+    else:
+        pass_sliding(chain, p, q, r, laws)
+
+
+@kernel
+def pass_sliding(chain: Floats, p: float, q: float, r: float, laws: Laws) -> None:
+    """Go on to the drive over nodes that slip or stick."""
+    F0 = laws.preload_N
+    for i in range(laws.n, 0, -1):  # node i, then the segment before it
         give = chain[GIVE + i - 1]
-        if i <= n:
-            place = chain[X_OLD + i]
-            held = chain[SLIP + i] == 0 and not bristles
-            if bristles:  # without the division they would outgrow a float
-                p, q = p / r + chain[BRISTLE + i], q / r + chain[TAKES + i]
-                r = chain[PASSES + i]
-            elif not held:
-                q += chain[TAKES + i] * r
-                r *= chain[PASSES + i]
-        if held:
-            p, q, r = 1.0, give * F0 - place, give
+        if chain[SLIP + i] == 0.0:
+            p, q, r = 1.0, give * F0 - chain[X_OLD + i], give
         else:
-            q += p * give * F0
-            r += p * give
+            q += chain[TAKES + i] * r + p * give * F0
+            r = r * chain[PASSES + i] + p * give
+        chain[P + i - 1], chain[Q + i - 1], chain[R + i - 1] = p, q, r
+
+
+@kernel
+def pass_leaning(chain: Floats, p: float, q: float, r: float, laws: Laws) -> None:
+    """Go on to the drive over nodes on bristles, which all slide."""
+    F0 = laws.preload_N
+    for i in range(laws.n, 0, -1):
+        give = chain[GIVE + i - 1]
+        if i % TOGETHER == 0:  # without any division they would outgrow a float
+            p, q, r = p / r, q / r, 1.0
+        p, q = p + chain[BRISTLE + i] * r, q + chain[TAKES + i] * r
+        q += p * give * F0
+        r = r * chain[PASSES + i] + p * give
         chain[P + i - 1], chain[Q + i - 1], chain[R + i - 1] = p, q, r
 
 
 @kernel
 def sweep_to_load(chain: Floats, now: Moment, boundary: Boundary, laws: Laws) -> None:
     """Find positions and tensions, from the drive on."""
-    n = laws.n
+    n, last = laws.n, laws.n + 1
+    chain[X] = start_of_drive(chain, now, boundary, laws)
+    chain[T] = (chain[P] * chain[X] + chain[Q]) / chain[R]
     bristles = laws.presliding_mm > 0.0
-    chain[X + 0] = start_of_drive(chain, now, boundary, laws)
-    chain[T + 0] = (chain[P + 0] * chain[X + 0] + chain[Q + 0]) / chain[R + 0]
     for i in range(1, n + 1):
         place = chain[X + i - 1] - chain[GIVE + i - 1] * (chain[T + i - 1] - laws.preload_N)
-        if chain[SLIP + i] != 0 and not bristles:
+        if chain[SLIP + i] != 0.0 and not bristles:
             chain[T + i] = chain[PASSES + i] * chain[T + i - 1] - chain[TAKES + i]
         else:
             place = place if bristles else chain[X_OLD + i]
             chain[T + i] = (chain[P + i] * place + chain[Q + i]) / chain[R + i]
         chain[X + i] = place
-    chain[X + n + 1] = chain[X + n] - chain[GIVE + n] * (chain[T + n] - laws.preload_N)
+    chain[X + last] = chain[X + n] - chain[GIVE + n] * (chain[T + n] - laws.preload_N)
     if boundary.load == DISPLACEMENT:
-        chain[X + n + 1] = now.load
-    elif chain[SLIP + n + 1] == 0 and friction_at_load(boundary, laws) > 0.0:
-        chain[X + n + 1] = chain[X_OLD + n + 1]
+        chain[X + last] = now.load
+    elif chain[SLIP + last] == 0.0 and friction_at_load(boundary, laws) > 0.0:
+        chain[X + last] = chain[X_OLD + last]
 
 
 @kernel
@@ -142,7 +159,7 @@ def revise(chain: Floats, now: Moment, laws: Laws, scale: float, most: int) -> i
     for i in range(1, n + 1):
         before = chain[SLIP + i]
         if before == 0.0:
-            chain[SLIP + i] = pulled_loose(i, loss, chain, laws)
+            chain[SLIP + i] = pulled_loose(i, loss, chain)
         elif slid_back(i, chain, scale):
             chain[SLIP + i] = 0.0
         if chain[SLIP + i] != before:

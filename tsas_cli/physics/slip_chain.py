@@ -25,6 +25,7 @@ from tsas_cli.physics.chain_state import (
     SLIP,
     SPEED,
     T_OLD,
+    T_ROSE,
     TURNED,
     X_OLD,
     Boundary,
@@ -277,5 +278,5 @@ def hang_slack(chain: Floats, now: Moment, boundary: Boundary, laws: Laws) -> No
     chain[SLIP + last] = 1.0
     chain[SPEED + last] = 0.0
     keep(chain, laws)
-    for i in range(1, last):
-        chain[TURNED + i], chain[MOVED + i] = 1.0, 0.0
+    for j in range(laws.n + 2):
+        chain[TURNED + j], chain[MOVED + j], chain[T_ROSE + j] = 1.0, 0.0, 0.0
