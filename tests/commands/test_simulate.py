@@ -244,3 +244,50 @@ def test_bristles_that_cannot_be_are_refused(strict, folder, tmp_path, stiffness
     assert len(done.stderr.splitlines()) == 1
     assert "bristles." in done.stderr
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("dynamics", ["slip", "lugre"])
+def test_more_nodes_are_nearer_to_many(strict, folder, model, tmp_path, dynamics):
+    f_in = {}
+    for nodes in (5, 20, 200):
+        call = ("--model", model, "--dynamics", dynamics, "--nodes", str(nodes), "--out")
+        done = strict("simulate", folder, *call, tmp_path / f"{nodes}", "--json")
+        assert (done.returncode, done.stderr) == (0, "")
+        summary = json.loads(done.stdout)
+        assert summary["nodes"] == nodes
+        assert f" {nodes} " in summary["runs"]["a"]["solver"]
+        table = pq.read_table(tmp_path / f"{nodes}" / "runs" / "a.parquet")
+        f_in[nodes] = table["f_in_N"].to_numpy()
+    off = {nodes: np.sqrt(np.mean((f_in[nodes] - f_in[200]) ** 2)) for nodes in (5, 20)}
+    assert off[5] > 4.0 * off[20] > 0.0
+
+
+@pytest.mark.parametrize(
+    ("nodes", "dynamics", "says"),
+    [
+        ("1", "slip", "expected 2 to 1000"),
+        ("1001", "lugre", "expected 2 to 1000"),
+        ("50", "static", "the static model has no nodes"),
+    ],
+)
+def test_nodes_that_no_chain_can_have(strict, folder, tmp_path, nodes, dynamics, says):
+    call = ("simulate", folder, "--nodes", nodes, "--dynamics", dynamics)
+    done = strict(*call, "--out", tmp_path / "s")
+    assert done.returncode == 2
+    assert done.stderr.count("\n") == 1
+    assert says in done.stderr
+    assert not (tmp_path / "s").exists()
+
+
+def test_a_tendon_that_sticks_and_slips_is_said_to(strict, folder, model, tmp_path):
+    text = model.read_text(encoding="utf-8")
+    text += (
+        "[effects.stribeck_friction.excess]\nvalue = 0.15\nunit = '1'\n"
+        "[effects.stribeck_friction.velocity_mm_per_s]\nvalue = 3.0\nunit = 'mm/s'\n"
+    )
+    model.write_text(text, encoding="utf-8")
+    call = ("simulate", folder, "--model", model, "--dynamics", "lugre", "--out", tmp_path / "s")
+    done = strict(*call)
+    assert done.returncode == 0
+    assert "sticks and slips" in done.stdout
+    assert "friction falls with speed by more than anything damps" in done.stdout

@@ -39,6 +39,10 @@ def simulate(
         bool,
         typer.Option(help="Fit what belongs to each run alone first: its preload and its zeros."),
     ] = False,
+    nodes: Annotated[
+        int | None,
+        typer.Option(help="Nodes of the chain, 2 to 1000, where not as usual."),
+    ] = None,
     runs: ChosenRuns = None,
     force: Force = False,
     quiet: Quiet = False,
@@ -50,7 +54,14 @@ def simulate(
     data = opened(dataset, runs)
     with progress("simulate", len(data.runs), quiet=quiet or as_json) as step:
         summary = simulate_dataset(
-            data, model, dynamics.value, out, fit_own=fit_own, force=force, step=step
+            data,
+            model,
+            dynamics.value,
+            out,
+            fit_own=fit_own,
+            nodes=nodes,
+            force=force,
+            step=step,
         )
     rows = [
         (run, name, f"{c['rmse']:.4g}", f"{c['noise']:.2g}", c["unit"], answer["solver"])

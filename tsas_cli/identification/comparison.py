@@ -50,8 +50,12 @@ class Compared:
         }
 
 
-def compare(run: Prepared, model: Model, dynamics: Dynamics = "slip") -> Compared:
+def compare(
+    run: Prepared, model: Model, dynamics: Dynamics = "slip", nodes: int | None = None
+) -> Compared:
     """Simulate a run with a model and hold the answer against the measurement.
+
+    `nodes` asks for a chain with as many of them.
 
     Raises
     ------
@@ -65,7 +69,14 @@ def compare(run: Prepared, model: Model, dynamics: Dynamics = "slip") -> Compare
             where=f"run {run.run.id}",
             remedy="use --dynamics slip",
         )
-    response = simulate(model.rig(run.run), run.drive, dynamics, tolerance=run.step_tolerance)
+    response = simulate(
+        model.rig(run.run),
+        run.drive,
+        dynamics,
+        on_mesh=nodes is not None,
+        nodes=nodes,
+        tolerance=run.step_tolerance,
+    )
     answers = {
         "f_in_N": response.f_in_N,
         "f_out_N": response.f_out_N,

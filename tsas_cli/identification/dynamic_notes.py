@@ -14,6 +14,7 @@ from tsas_cli.physics.lugre_start import law_of
 from tsas_cli.physics.response import Response, simulate
 from tsas_cli.physics.rig import Rig
 
+MANY = 10  # steps for each sample
 HIGH_DAMPING = 3.0  # times critical, from which on the bristles are what makes sliding unstable
 
 
@@ -29,6 +30,12 @@ def dynamic_notes(run: Prepared, model: Model, response: Response) -> Iterator[s
     found = stability(rig, run.time_s, slow.x_in_mm, slow.f_in_N, slow.phase)
     if found is not None and found.unstable:
         yield _unstable(found, rig)
+    steps, samples = response.step_ends_s.size, run.time_s.size
+    if steps > MANY * samples:
+        yield (
+            f"{steps} steps for {samples} samples: the tendon sticks and slips, or its load rings, "
+            "much faster than the samples show"
+        )
     given_up = response.phase == UNSETTLED
     if np.any(given_up):
         yield (

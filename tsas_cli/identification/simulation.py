@@ -7,11 +7,13 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
+from tsas_cli.errors import InputError
 from tsas_cli.files import new_folder, sha256_of, write_json
 from tsas_cli.identification.base_fit import with_own_values
 from tsas_cli.identification.comparison import Compared, compare
 from tsas_cli.identification.model import FILE, data_sheet, read_model
 from tsas_cli.identification.prepared import Prepared, prepare
+from tsas_cli.physics.chain_state import MOST_NODES
 from tsas_cli.physics.response import Dynamics
 from tsas_cli.recordings.dataset import Dataset, write_parquet
 
@@ -23,6 +25,7 @@ def simulate_dataset(
     out: Path,
     *,
     fit_own: bool = False,
+    nodes: int | None = None,
     force: bool = False,
     step: Callable[[], None] = lambda: None,
 ) -> dict[str, Any]:
@@ -30,13 +33,16 @@ def simulate_dataset(
 
     Without a model file the manifest's data sheet is simulated. With `fit_own` the preload and the
     zeros of each run are fitted first, all else stays as the model says: so a model predicts runs
-    that it was not fitted to. `step` is called after each run.
+    that it was not fitted to. `nodes` asks for a chain with as many of them. `step` is called after
+    each run.
 
     Raises
     ------
     InputError
-        The model or a recording is wrong, or `out` exists and `force` is not set.
+        The model, a recording or the number of nodes is wrong, or `out` exists and `force` is not
+        set.
     """
+    _refuse_nodes(nodes, dynamics)
     if model_path is not None and model_path.is_dir():
         model_path = model_path / FILE
     model = data_sheet(dataset.manifest) if model_path is None else read_model(model_path)
@@ -46,19 +52,30 @@ def simulate_dataset(
         if model_path is None
         else {"file": model_path.name, "sha256": sha256_of(model_path)}
     )
-    summary |= {"dynamics": dynamics, "own_values_fitted": fit_own, "runs": {}}
+    summary |= {"dynamics": dynamics, "nodes": nodes, "own_values_fitted": fit_own, "runs": {}}
     with new_folder(out, force=force) as folder:
         (folder / "runs").mkdir()
         for recording in dataset:
             run = prepare(recording, dataset.manifest.session_start)
             own = with_own_values(model, run) if fit_own else model
-            answer = compare(run, own, dynamics)
+            answer = compare(run, own, dynamics, nodes)
             write_parquet(folder / "runs" / f"{run.run.id}.parquet", _table(run, answer))
             summary["runs"][run.run.id] = answer.as_json(run)
             step()
         summary["notes"] = _notes(summary["runs"])
         write_json(folder / "simulation.json", summary)
     return summary
+
+
+def _refuse_nodes(nodes: int | None, dynamics: Dynamics) -> None:
+    if nodes is None:
+        return
+    if dynamics == "static":
+        raise InputError(
+            "the static model has no nodes", where="--nodes", remedy="use --dynamics slip or lugre"
+        )
+    if not 2 <= nodes <= MOST_NODES:
+        raise InputError(f"{nodes} nodes", where="--nodes", expected=f"2 to {MOST_NODES}")
 
 
 def _notes(runs: dict[str, Any]) -> list[str]:

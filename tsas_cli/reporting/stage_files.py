@@ -156,6 +156,8 @@ class Simulation(StageFile):
     version: str
     model: ModelFile
     dynamics: str
+    nodes: int | None = None
+    own_values_fitted: bool = False
     notes: tuple[str, ...] = ()
     runs: dict[str, SimulatedRun]
 

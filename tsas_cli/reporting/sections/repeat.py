@@ -46,6 +46,10 @@ def _commands(inputs: Inputs) -> Iterator[list[str]]:
         yield ["tsas", "diagnose", dataset, *_model(diagnosis.model, inputs), *options]
     if simulation := inputs.get(Simulation):
         options = ["--dynamics", simulation.dynamics, "--out", folder[Simulation]]
+        if simulation.nodes is not None:
+            options += ["--nodes", str(simulation.nodes)]
+        if simulation.own_values_fitted:
+            options += ["--fit-own"]
         yield ["tsas", "simulate", dataset, *_model(simulation.model, inputs), *options]
     yield ["tsas", "report", dataset, *folder.values(), "--out", "report.html"]
 
