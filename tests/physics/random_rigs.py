@@ -18,11 +18,11 @@ from tsas_cli.physics.bristles import Bristles
 from tsas_cli.physics.ends import Drive
 from tsas_cli.physics.lugre_chain import OWN_STEPS, Progress, lugre_chain
 from tsas_cli.physics.lugre_stability import stability
-from tsas_cli.physics.response import simulate
+from tsas_cli.physics.response import TOLERANCE, simulate
 from tsas_cli.physics.rig import Rig
 
 SAMPLES = 1500
-USUAL, TIGHT = 3e-5, 1e-6  # tolerances
+USUAL, TIGHT = TOLERANCE, 1e-6
 
 
 class Case(NamedTuple):

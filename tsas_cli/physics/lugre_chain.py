@@ -40,6 +40,7 @@ LEAVES = 0.3  # of the error of a step: what Newton's method may leave,
 LEAVES_AT_MOST = 1e-5  # and of a tension, since more looks right and is not;
 LEAVES_GIVEN = 1e-9  # of a tension where steps are given
 OWN_STEPS = np.empty(0)  # as long as the error allows
+SWINGS = 0.1  # of the tolerance, with a mass that swings on: its errors add up
 LONGER, SHORTER, CAREFUL = 2.0, 0.25, 0.85  # how the step may change, and how much of it is taken
 
 
@@ -115,7 +116,7 @@ def lugre_chain(
     while k < m - 1 and h > SHORTEST_S and tries < ends_s.size:
         tries += 1
         tension = max(abs(ends.f_in), abs(ends.f_out), 0.1 * law.preload_N)
-        scale = tolerance * tension
+        scale = tolerance * tension * (SWINGS if law.load_mass_kg > 0.0 else 1.0)
         if not controlled:
             stop = sample_after(step_ends_s, stop, t + SHORTEST_S)
             h = min(h, step_ends_s[stop] - t) if stop < step_ends_s.size else h
