@@ -186,6 +186,29 @@ def test_what_the_dynamic_model_is_fitted_to_drives_it_again(strict, tmp_path):
     assert rmse["slip"] > 5.0 * rmse["lugre"]
 
 
+def test_effects_of_a_model_stay(strict, tmp_path):
+    """The shipped groups have free tendon at both ends and no bristles; without it they seem to."""
+    (tmp_path / "m.toml").write_text(
+        "format = 1\n[effects.free_tendon]\n"
+        "proximal_length_mm = { value = 152.0, unit = 'mm' }\n"
+        "distal_length_mm = { value = 61.0, unit = 'mm' }\n",
+        encoding="utf-8",
+    )
+    shipped = Path(__file__).parents[2] / "datasets" / "paper-groups"
+    call = ("calibrate", shipped, "--model", tmp_path / "m.toml", "--dynamics", "lugre", "--json")
+    done = strict(*call, "--out", tmp_path / "c")
+    assert (done.returncode, done.stderr) == (0, "")
+    summary = json.loads(done.stdout)
+    assert summary["model"]["file"] == "m.toml"
+    values = {p["name"]: p["value"] for p in summary["parameters"]}
+    assert values["free_tendon.proximal_length_mm"] == 152.0
+    assert values["friction_coefficient"] == pytest.approx(0.125, rel=2e-3)
+    assert values["tendon_stiffness_N"] == pytest.approx(67858.4, rel=6e-3)
+    (said,) = [s for s in summary["cannot_tell"] if "fit alike" in s and "stiffness" in s]
+    assert float(said.split("told: ")[1].split(" ")[0]) > 2e4
+    assert not any("missed by" in s for s in summary["cannot_tell"])
+
+
 def test_a_short_recording_is_no_error_and_no_number(strict, recorded, tmp_path):
     """Two rows: the data sheet's values without intervals, and the reason."""
     short = {name: v[100:102] for name, v in recorded.items()}

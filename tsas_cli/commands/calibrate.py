@@ -1,6 +1,7 @@
 """`tsas calibrate`: phases, stiffness per phase, and the joint fit of the nominal model."""
 
 from enum import StrEnum
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -28,6 +29,10 @@ class DynamicsOption(StrEnum):
 def calibrate(
     dataset: DatasetFolder,
     out: OutFolder,
+    model: Annotated[
+        Path | None,
+        typer.Option(metavar="M.toml", help="A model to begin with, whose effects stay."),
+    ] = None,
     dynamics: Annotated[
         DynamicsOption,
         typer.Option(
@@ -44,7 +49,7 @@ def calibrate(
 
     data = opened(dataset, runs)
     with progress("calibrate", 2 * len(data.runs), quiet=quiet or as_json) as step:
-        summary = calibrate_dataset(data, out, dynamics.value, force=force, step=step)
+        summary = calibrate_dataset(data, out, dynamics.value, model, force=force, step=step)
     show(summary, tables(summary, out), quiet=quiet, as_json=as_json)
     if not quiet and not as_json:
         for sentence in summary["cannot_tell"]:

@@ -13,9 +13,9 @@ from tsas_cli.diagnosis.next_experiment import next_experiment
 from tsas_cli.diagnosis.residual_map import residual_map
 from tsas_cli.diagnosis.search import Search
 from tsas_cli.effects import EFFECTS
-from tsas_cli.files import new_folder, sha256_of, write_json
+from tsas_cli.files import new_folder, write_json
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.model import FILE, data_sheet, read_model, write_model
+from tsas_cli.identification.model import source_of, stated_model, write_model
 from tsas_cli.identification.prepared import prepare
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.dataset import Dataset
@@ -45,17 +45,8 @@ def diagnose_dataset(
     InputError
         A recording or the model is wrong, or `out` exists and `force` is not set.
     """
-    if model_path is not None and model_path.is_dir():
-        model_path = model_path / FILE
-    stated = data_sheet(dataset.manifest)
-    if model_path is not None:
-        stated = read_model(model_path).over(stated)
-    summary = dataset.header("diagnose", out)
-    summary["model"] = (
-        {"file": "data sheet"}
-        if model_path is None
-        else {"file": model_path.name, "sha256": sha256_of(model_path)}
-    )
+    stated = stated_model(dataset.manifest, model_path)
+    summary = dataset.header("diagnose", out) | {"model": source_of(model_path)}
     with new_folder(out, force=force) as folder:
         runs = []
         for recording in dataset:

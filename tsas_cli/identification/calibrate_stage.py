@@ -9,7 +9,14 @@ from tsas_cli.errors import InputError
 from tsas_cli.files import new_folder, write_json
 from tsas_cli.identification.calibration import Calibration, calibrate
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.model import FILE, Model, data_sheet, write_model
+from tsas_cli.identification.model import (
+    FILE,
+    Model,
+    data_sheet,
+    source_of,
+    stated_model,
+    write_model,
+)
 from tsas_cli.identification.prepared import Prepared, prepare
 from tsas_cli.identification.stiffness import Slope
 from tsas_cli.physics.capstan import dead_band_stiffness, slip_stiffness, speed_per_stiffness
@@ -28,25 +35,31 @@ def calibrate_dataset(
     dataset: Dataset,
     out: Path,
     dynamics: Dynamics = "slip",
+    model_path: Path | None = None,
     *,
     force: bool = False,
     step: Callable[[], None] = lambda: None,
 ) -> dict[str, Any]:
     """Calibrate and write `model.toml` and `calibration.json` into a new folder.
 
+    The model, or else the data sheet, is where the fit begins; its effects stay as they are.
+
     Raises
     ------
     InputError
-        A recording is wrong, a channel has the wrong sign, or `out` exists and `force` is not set.
+        A recording or the model is wrong, a channel has the wrong sign, or `out` exists and `force`
+        is not set.
     """
+    stated = stated_model(dataset.manifest, model_path)
     with new_folder(out, force=force) as folder:
         runs = []
         for recording in dataset:
             _refuse_wrong_sign(recording, dataset.manifest)
             runs.append(prepare(recording, dataset.manifest.session_start))
             step()
-        result = calibrate(dataset.manifest, runs, step, dynamics=dynamics)
-        summary = dataset.header("calibrate", out) | {"dynamics": dynamics}
+        result = calibrate(dataset.manifest, runs, step, dynamics=dynamics, stated=stated)
+        summary = dataset.header("calibrate", out) | {"model": source_of(model_path)}
+        summary["dynamics"] = dynamics
         summary |= _summary(result, dataset.manifest)
         write_model(folder / FILE, result.model, version=__version__, dataset=summary["dataset"])
         write_json(folder / "calibration.json", summary)

@@ -19,6 +19,11 @@ from tsas_cli.identification.transfer import tension_transfer
 from tsas_cli.physics.response import Dynamics
 from tsas_cli.recordings.manifest import Manifest
 
+LACKING = (
+    "The intervals allow for no effect that the model lacks: `tsas diagnose` names it, and --model "
+    "begins with the model that it extends."
+)
+
 
 @dataclass(frozen=True)
 class Calibration:
@@ -41,19 +46,22 @@ def calibrate(
     step: Callable[[], None] = lambda: None,
     *,
     dynamics: Dynamics = "slip",
+    stated: Model | None = None,
 ) -> Calibration:
     """Calibrate the nominal model; `step` is called after each run's phases are found.
 
     Where a run holds no f_in_N there are no slopes for it; where nothing can be told, the model is
     that of the data sheet and `cannot_tell` says why. With the dynamic model (`lugre`) its bristles
-    and what friction does over speed are calibrated too.
+    and what friction does over speed are calibrated too. `stated` is the model to start from, whose
+    effects stay; the data sheet's without it.
     """
+    stated = stated or data_sheet(manifest)
     segments, measured = [], []
     for run in runs:
         segments.append(segment(run))
         measured.append(slopes_of(run, segments[-1]))
         step()
-    fit = base_fit(data_sheet(manifest), runs, segments, measured)
+    fit = base_fit(stated, runs, segments, measured)
     model, fitted, sentences = fit.solve()
     dynamic = None
     if dynamics == "lugre" and fitted is not None:
@@ -63,6 +71,8 @@ def calibrate(
     expected = [_answered(*each) for each in zip(runs, answers, segments, strict=True)]
     if dynamic is not None:
         missed, sentences = dynamic.misfit, [*dynamic.cannot_tell, *_notes(answers)]
+        if missed:
+            missed.append(LACKING)
     else:
         missed = fit.misfit()
         if missed and fitted is not None:

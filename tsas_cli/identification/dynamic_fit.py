@@ -27,6 +27,7 @@ VISCOUS = "viscous_friction.coefficient_N_s_per_mm"
 EXCESS, VELOCITY = "stribeck_friction.excess", "stribeck_friction.velocity_mm_per_s"
 VELOCITIES = np.geomspace(0.01, 100.0, 17)  # Stribeck velocities that may show [mm/s]
 TIMES = 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0  # by which what is not told may be larger
+VAGUE = 100.0  # ratio of the ends of an interval that says nothing
 SMALL = 1e-3  # excess of friction at rest by which its effect is found
 FIRST_EXCESS = 0.01, 1.0  # range of the excess to start from
 WORTH = 25.0  # squares in units of noise that what is freed must save
@@ -75,7 +76,7 @@ def dynamic_fit(nominal: Model, runs: Sequence[Prepared]) -> DynamicFit:
     solved = _solved(_model_of(first).over(nominal), nominal, runs, tuple(first))
     if solved is None:
         return DynamicFit(nominal, None, [], [])
-    solved = _from_better_stiffness(solved) or solved
+    solved = _from_better_stiffness(solved) or _at_stiffness(solved) or solved
     at_rest = _friction_at_rest(solved.fit)
     with_rest = _freed(solved, at_rest)
     solved = with_rest or solved
@@ -167,6 +168,19 @@ def _from_better_stiffness(solved: Solved) -> Solved | None:
     stiffness, fit = _model_of(best.values), solved.fit
     start = stiffness.over(fit.moved(best.moves))
     return _solved(start, stiffness.over(fit.kept), fit.runs, solved.further)
+
+
+def _at_stiffness(solved: Solved) -> Solved | None:
+    """Fit again at the stiffness where the fit ended, where it is told by its name alone."""
+    for e in solved.model.estimates:
+        if e.name == STIFFNESS and e.interval_low is not None and e.interval_high is not None:
+            if e.interval_high < VAGUE * e.interval_low:
+                return None
+            there, fit = _model_of({STIFFNESS: e.value}), solved.fit
+            further = tuple(name for name in solved.further if name != STIFFNESS)
+            start = fit.moved(np.zeros(len(fit.told())))
+            return _solved(there.over(start), there.over(fit.kept), fit.runs, further)
+    return None
 
 
 def _asked(slopes: Floats, left: Floats) -> Floats:

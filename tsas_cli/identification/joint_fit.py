@@ -81,8 +81,7 @@ class JointFit:
             return self.kept, None, self.left_out
         before: list[int] = []
         for _ in range(MOST_ROUNDS):
-            at = np.where(np.isnan(self.values), [u.start for u in self.unknowns], self.values)
-            J = jacobian(self.unknowns, len(self.runs), at, self._residuals)
+            J = jacobian(self.unknowns, len(self.runs), self._numbers(), self._residuals)
             chosen, confounded = identifiable(self.unknowns, J)
             # One that was fitted to a value too small to show is told: it is that small.
             small = [j for j in before if confounded.get(j) == []]
@@ -132,22 +131,26 @@ class JointFit:
         return jacobian(self.told(), len(self.runs), self.values[self.chosen], self._beside)
 
     def moved(self, moves: Floats) -> Model:
-        """Return the values where it ended with those told moved, scaled, as a model."""
+        """Return the model where it ended with the values told moved, scaled, to start from."""
         at = self.values.copy()
         at[self.chosen] += moves
-        return Model(
-            tuple(
-                Estimate(
-                    u.name,
-                    QUANTITIES[u.name].unscaled(float(np.clip(v, u.lower, u.upper))),
-                    QUANTITIES[u.name].unit,
-                    "default",
-                    self._owner(u),
-                )
-                for u, v in zip(self.unknowns, at, strict=True)
-                if np.isfinite(v)
+        there = [
+            Estimate(
+                u.name,
+                QUANTITIES[u.name].unscaled(float(np.clip(v, u.lower, u.upper))),
+                QUANTITIES[u.name].unit,
+                "default",
+                self._owner(u),
             )
-        )
+            for u, v in zip(self.unknowns, at, strict=True)
+            if np.isfinite(v)
+        ]
+        return Model(tuple(there)).over(self.start)
+
+    def _numbers(self) -> Floats:
+        """Return the values, of one that is kept critical the one to start from."""
+        starts = [u.start for u in self.unknowns]
+        return np.where(np.isnan(self.values), starts, self.values)
 
     def _beside(self, k: int, told: Floats) -> Floats:
         """Return the residuals of run k at scaled values of what is told, the rest as it is."""
@@ -164,7 +167,8 @@ class JointFit:
             at[chosen] = values
             return self._residuals(k, at)
 
-        sought = [replace(self.unknowns[j], start=float(self.values[j])) for j in chosen]
+        at = self._numbers()
+        sought = [replace(self.unknowns[j], start=float(at[j])) for j in chosen]
         rigs = [self._rig(k, self.values) for k in range(len(self.errors))]
         blocks = blocks_of(self.errors, rigs)
         result = fit(sought, blocks, residuals, tolerance=tolerance)

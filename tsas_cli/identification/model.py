@@ -11,6 +11,7 @@ from pydantic import BaseModel, ConfigDict
 
 from tsas_cli.effects import EFFECTS, Effects
 from tsas_cli.errors import InputError, nearest
+from tsas_cli.files import sha256_of
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.quantities import DEFAULTS, QUANTITIES
 from tsas_cli.physics.bristles import Bristles
@@ -74,6 +75,26 @@ class Model:
         )
         told = {name: self.value(name) for name in QUANTITIES if "." in name}
         return with_values(nominal, {n: v for n, v in told.items() if v is not None})
+
+
+def stated_model(manifest: Manifest, path: Path | None) -> Model:
+    """Return the model of a file, and of the manifest's data sheet what is missing there.
+
+    Raises
+    ------
+    InputError
+        As `read_model` raises it.
+    """
+    stated = data_sheet(manifest)
+    return stated if path is None else read_model(path).over(stated)
+
+
+def source_of(path: Path | None) -> dict[str, str]:
+    """Return what a stage writes of the model that it has read: its file and checksum."""
+    if path is None:
+        return {"file": "data sheet"}
+    path = path / FILE if path.is_dir() else path
+    return {"file": path.name, "sha256": sha256_of(path)}
 
 
 def data_sheet(manifest: Manifest) -> Model:

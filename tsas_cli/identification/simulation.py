@@ -8,10 +8,10 @@ import numpy as np
 import pyarrow as pa
 
 from tsas_cli.errors import InputError
-from tsas_cli.files import new_folder, sha256_of, write_json
+from tsas_cli.files import new_folder, write_json
 from tsas_cli.identification.base_fit import with_own_values
 from tsas_cli.identification.comparison import Compared, compare
-from tsas_cli.identification.model import FILE, data_sheet, read_model
+from tsas_cli.identification.model import data_sheet, read_model, source_of
 from tsas_cli.identification.prepared import Prepared, prepare
 from tsas_cli.physics.chain_state import MOST_NODES
 from tsas_cli.physics.response import Dynamics
@@ -43,15 +43,8 @@ def simulate_dataset(
         set.
     """
     _refuse_nodes(nodes, dynamics)
-    if model_path is not None and model_path.is_dir():
-        model_path = model_path / FILE
     model = data_sheet(dataset.manifest) if model_path is None else read_model(model_path)
-    summary = dataset.header("simulate", out)
-    summary["model"] = (
-        {"file": "data sheet"}
-        if model_path is None
-        else {"file": model_path.name, "sha256": sha256_of(model_path)}
-    )
+    summary = dataset.header("simulate", out) | {"model": source_of(model_path)}
     summary |= {"dynamics": dynamics, "nodes": nodes, "own_values_fitted": fit_own, "runs": {}}
     with new_folder(out, force=force) as folder:
         (folder / "runs").mkdir()

@@ -105,12 +105,20 @@ class Fit(_Record):
     message: str = ""
 
 
+class ModelFile(_Record):
+    """The model that a stage has read: its file and checksum, None for that of the data sheet."""
+
+    file: str
+    sha256: str | None = None
+
+
 class Calibration(StageFile):
     """The content of `calibration.json`."""
 
     FILE: ClassVar[str] = "calibration.json"
     stage: Literal["calibrate"]
     version: str
+    model: ModelFile = ModelFile(file="data sheet")
     dynamics: str = "slip"
     segments: dict[str, tuple[Segment, ...]]
     stiffness: tuple[Stiffness, ...]
@@ -118,13 +126,6 @@ class Calibration(StageFile):
     parameters: tuple[Parameter, ...]
     cannot_tell: tuple[str, ...]
     fit: Fit
-
-
-class ModelFile(_Record):
-    """The model that a stage has read: its file and checksum, None for that of the data sheet."""
-
-    file: str
-    sha256: str | None = None
 
 
 class Conditioning(_Record):

@@ -40,6 +40,8 @@ def _commands(inputs: Inputs) -> Iterator[list[str]]:
         yield ["tsas", "check", dataset, "--out", folder[Check]]
     if calibration := inputs.get(Calibration):
         options = ["--dynamics", calibration.dynamics, "--out", folder[Calibration]]
+        if calibration.model.sha256 is not None:
+            options += ["--model", calibration.model.file]
         yield ["tsas", "calibrate", dataset, *options]
     if diagnosis := inputs.get(Diagnosis):
         options = ["--out", folder[Diagnosis]]
