@@ -22,7 +22,7 @@ from tsas_cli.physics.response import TOLERANCE, simulate
 from tsas_cli.physics.rig import Rig
 
 SAMPLES = 1500
-USUAL, TIGHT = TOLERANCE, 1e-6
+USUAL, TIGHT = TOLERANCE, 2e-7
 
 
 class Case(NamedTuple):
