@@ -260,7 +260,7 @@ RIVALS = (
     Rival(
         "CVODE, scikit-sundae, usual call",
         partial(sundae, max_order=5, max_newton=3, steps_only=False),
-        Tolerance(1e-6, 1e-6, 1e-6, 1e-3),
+        Tolerance(1e-5, 1e-5, 1e-5, 1e-5),
     ),
     Rival("BDF, scipy", bdf, Tolerance(1.8e-5, 4e-3, 1.2e-6, 2e-4)),
     Rival("Radau, scipy", radau, Tolerance(1.4e-4, 1.2e-3, 1.4e-5, 5.6e-3)),
