@@ -29,8 +29,13 @@ class LoadDependentFriction(NamedTuple):
 @kernel
 def load_factor(tension_ratio: float, exponent: float) -> float:
     """Return what multiplies the friction coefficient where the tension is `tension_ratio` F0."""
-    ratio = max(abs(tension_ratio), SMALLEST_RATIO)
-    return exponential(exponent * logarithm(ratio))
+    return exponential(load_exponent(tension_ratio, exponent))
+
+
+@kernel
+def load_exponent(tension_ratio: float, exponent: float) -> float:
+    """Return the logarithm of `load_factor`."""
+    return exponent * logarithm(max(abs(tension_ratio), SMALLEST_RATIO))
 
 
 LOAD_DEPENDENT_FRICTION = Effect(

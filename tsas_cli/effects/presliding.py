@@ -30,7 +30,8 @@ def share_turned(before: float, moved: float, length: float) -> float:
     limit = 1.0 if moved > 0.0 else -1.0
     if length == 0.0:
         return limit
-    return limit + (before - limit) * exponential(-abs(moved) / length)
+    per_mm = 1.0 / length  # found once by a loop over nodes
+    return limit + (before - limit) * exponential(-abs(moved) * per_mm)
 
 
 @kernel

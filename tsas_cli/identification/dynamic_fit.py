@@ -19,6 +19,7 @@ from tsas_cli.identification.model import Model
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.physics.lugre_start import law_of
+from tsas_cli.physics.response import LUMPS
 
 Floats = npt.NDArray[np.float64]
 
@@ -88,7 +89,12 @@ def dynamic_fit(nominal: Model, runs: Sequence[Prepared]) -> DynamicFit:
         if not _tells(solved.fit, name):
             looks = _sizes(solved.fit, name)
             best = max(look.saves for look in looks)
-            like = [look for look in looks if look.saves > best - WORTH]
+            finest = _finest_stiffness(solved.fit)
+            like = [
+                look
+                for look in looks
+                if look.saves > best - WORTH or look.values.get(STIFFNESS, 0.0) >= finest
+            ]
             fitted = _widened(fitted, like)
             said.append(_alike(name, like))
     told = estimates_of(solved.fit.told(), fitted, solved.fit.ids())
@@ -171,16 +177,26 @@ def _from_better_stiffness(solved: Solved) -> Solved | None:
 
 
 def _at_stiffness(solved: Solved) -> Solved | None:
-    """Fit again at the stiffness where the fit ended, where it is told by its name alone."""
+    """Fit again at the stiffness where the fit ended, where it is told by its name alone.
+
+    Its interval may hold anything, or the mesh be too coarse to show it.
+    """
+    finest = _finest_stiffness(solved.fit)
     for e in solved.model.estimates:
         if e.name == STIFFNESS and e.interval_low is not None and e.interval_high is not None:
-            if e.interval_high < VAGUE * e.interval_low:
+            if e.interval_high < VAGUE * e.interval_low and e.value < finest:
                 return None
-            there, fit = _model_of({STIFFNESS: e.value}), solved.fit
+            there, fit = _model_of({STIFFNESS: min(e.value, finest)}), solved.fit
             further = tuple(name for name in solved.further if name != STIFFNESS)
             start = fit.moved(np.zeros(len(fit.told())))
             return _solved(there.over(start), there.over(fit.kept), fit.runs, further)
     return None
+
+
+def _finest_stiffness(fit: JointFit) -> float:
+    """Return the stiffness whose way into the sheath, √(EA L/σ0), is as short as a lump [N/mm]."""
+    rig = fit.solved_rigs()[0]
+    return rig.tendon_stiffness_N * LUMPS**2 / rig.sheath_length_mm
 
 
 def _asked(slopes: Floats, left: Floats) -> Floats:

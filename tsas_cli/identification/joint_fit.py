@@ -259,10 +259,10 @@ def _kept_value(kept: Model, name: str, owner: str) -> str:
 def _doubts(told: Sequence[Estimate], result: Fitted) -> list[str]:
     """Say what makes the fitted values unreliable."""
     names = {e: f"{e.name} of run {e.run}" if e.run else e.name for e in told}
-    nothing = [e for e in told if e.at_bound and e.value == QUANTITIES[e.name].default]
+    nothing = [e for e in told if e.at_bound and e.interval_low == QUANTITIES[e.name].default]
     out = [
-        f"{names[e]} ended at {e.value:.5g}, where it does nothing: at most {e.interval_high:.2g} "
-        f"{e.unit} would go unseen."
+        f"{names[e]} ended where it does nothing: at most {e.interval_high:.2g} {e.unit} would go "
+        "unseen."
         for e in nothing
     ]
     out += [

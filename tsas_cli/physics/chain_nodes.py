@@ -9,17 +9,19 @@ would leave its side stops there first.
 
 import math
 
-from tsas_cli.effects.load_dependent_friction import load_factor
+from tsas_cli.effects.load_dependent_friction import load_exponent
 from tsas_cli.effects.presliding import share_turned, turning_rate
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.numerics.elementary import exponential
 from tsas_cli.physics.chain_state import (
     BALANCED,
     BRISTLE,
+    LIMIT,
     MOVED,
     PASSES,
     PULLED,
     PULLED_BY,
+    RATIO,
     RELEASED,
     RELEASED_BY,
     SHARE,
@@ -29,6 +31,7 @@ from tsas_cli.physics.chain_state import (
     TAKES,
     TOLERANCE,
     TURNED,
+    WRAP,
     X_OLD,
     Floats,
     Laws,
@@ -53,9 +56,12 @@ def set_friction(chain: Floats, now: Moment, laws: Laws) -> None:
             chain[PULLED_BY + i], chain[RELEASED_BY + i] = pulled, released
             chain[PULLED + i], chain[RELEASED + i] = passed, kept
         return
+    per_N = 0.5 / laws.preload_N
+    for i in range(1, n + 1):  # short loops: in one, the compiler runs out of registers
+        mean = (chain[T + i - 1] + chain[T + i]) * per_N
+        chain[PULLED_BY + i] = load_exponent(mean, laws.friction_exponent)
     for i in range(1, n + 1):
-        tension = 0.5 * (chain[T + i - 1] + chain[T + i])
-        factor = load_factor(tension / laws.preload_N, laws.friction_exponent)
+        factor = exponential(chain[PULLED_BY + i])
         chain[PULLED_BY + i] = min(pulled * factor, STRONGEST)
         chain[RELEASED_BY + i] = min(released * factor, STRONGEST)
     if laws.presliding_mm == 0.0:
@@ -126,13 +132,17 @@ def set_tangents(chain: Floats, now: Moment, laws: Laws) -> bool:
     loss = now.viscous_N / n
     wrong = 0
     for i in range(1, n + 1):
+        share, mean = chain[SHARE + i], chain[T + i - 1] + chain[T + i]
+        pulled, released = chain[PULLED_BY + i], chain[RELEASED_BY + i]
+        limit = pulled if share > 0.0 else released
+        chain[LIMIT + i] = limit
+        chain[WRAP + i] = -share * limit if mean >= 0.0 else share * limit
+        chain[RATIO + i] = exponential(chain[WRAP + i])
+    for i in range(1, n + 1):
         share, before, behind = chain[SHARE + i], chain[T + i - 1], chain[T + i]
         half, mean = 0.5 * share * loss, before + behind
         carried = before - half
-        pulled, released = chain[PULLED_BY + i], chain[RELEASED_BY + i]
-        limit = pulled if share > 0.0 else released
-        wrap = -share * limit if mean >= 0.0 else share * limit
-        ratio = exponential(wrap)
+        limit, wrap, ratio = chain[LIMIT + i], chain[WRAP + i], chain[RATIO + i]
         off = behind + half - ratio * carried
         bent = wrap * ratio * laws.friction_exponent * carried / (mean if mean != 0.0 else math.inf)
         bent = min(max(bent, -MOST_BENT), MOST_BENT)

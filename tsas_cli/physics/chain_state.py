@@ -69,4 +69,6 @@ MOVED = PITCH * 16  # way since the last step, as expected, at which PASSES to B
 PULLED_BY, RELEASED_BY = PITCH * 17, PITCH * 18  # the node's share of friction times bend, a/n
 SHARE = PITCH * 19  # of its limit that friction reaches, with its sign
 T_ROSE = PITCH * 20  # by how much the tension rose in the last step [N]
-ROWS = 21
+LIMIT = PITCH * 21  # that share's limit, a/n at the node's tension
+WRAP, RATIO = PITCH * 22, PITCH * 23  # friction times bend with its sign, and e to it
+ROWS = 24

@@ -48,7 +48,7 @@ from tsas_cli.physics.chain_state import (
     X,
 )
 
-TOGETHER = 8  # nodes that share a division
+TOGETHER = 16  # nodes that share a division
 MOST_AT_ONCE = 20  # revisions of the slipping set
 MOST_ONE_BY_ONE = 5  # more, for each node
 
@@ -101,13 +101,15 @@ def sweep_to_drive(chain: Floats, now: Moment, boundary: Boundary, laws: Laws) -
 def pass_sliding(chain: Floats, p: float, q: float, r: float, laws: Laws) -> None:
     """Go on to the drive over nodes that slip or stick."""
     F0 = laws.preload_N
-    for i in range(laws.n, 0, -1):  # node i, then the segment before it
+    for k in range(laws.n):
+        i = laws.n - k  # node i, then the segment before it
         give = chain[GIVE + i - 1]
         if chain[SLIP + i] == 0.0:
             p, q, r = 1.0, give * F0 - chain[X_OLD + i], give
         else:
-            q += chain[TAKES + i] * r + p * give * F0
-            r = r * chain[PASSES + i] + p * give
+            pull = p * give
+            q += chain[TAKES + i] * r + pull * F0
+            r = chain[PASSES + i] * r + pull
         chain[P + i - 1], chain[Q + i - 1], chain[R + i - 1] = p, q, r
 
 
@@ -115,13 +117,14 @@ def pass_sliding(chain: Floats, p: float, q: float, r: float, laws: Laws) -> Non
 def pass_leaning(chain: Floats, p: float, q: float, r: float, laws: Laws) -> None:
     """Go on to the drive over nodes on bristles, which all slide."""
     F0 = laws.preload_N
-    for i in range(laws.n, 0, -1):
-        give = chain[GIVE + i - 1]
-        if i % TOGETHER == 0:  # without any division they would outgrow a float
+    for k in range(laws.n):
+        i = laws.n - k
+        if k % TOGETHER == 0:  # without any division they would outgrow a float
             p, q, r = p / r, q / r, 1.0
-        p, q = p + chain[BRISTLE + i] * r, q + chain[TAKES + i] * r
-        q += p * give * F0
-        r = r * chain[PASSES + i] + p * give
+        p += chain[BRISTLE + i] * r
+        pull = p * chain[GIVE + i - 1]
+        q += chain[TAKES + i] * r + pull * F0
+        r = chain[PASSES + i] * r + pull
         chain[P + i - 1], chain[Q + i - 1], chain[R + i - 1] = p, q, r
 
 
@@ -130,21 +133,46 @@ def sweep_to_load(chain: Floats, now: Moment, boundary: Boundary, laws: Laws) ->
     """Find positions and tensions, from the drive on."""
     n, last = laws.n, laws.n + 1
     chain[X] = start_of_drive(chain, now, boundary, laws)
-    chain[T] = (chain[P] * chain[X] + chain[Q]) / chain[R]
-    bristles = laws.presliding_mm > 0.0
-    for i in range(1, n + 1):
-        place = chain[X + i - 1] - chain[GIVE + i - 1] * (chain[T + i - 1] - laws.preload_N)
-        if chain[SLIP + i] != 0.0 and not bristles:
-            chain[T + i] = chain[PASSES + i] * chain[T + i - 1] - chain[TAKES + i]
-        else:
-            place = place if bristles else chain[X_OLD + i]
-            chain[T + i] = (chain[P + i] * place + chain[Q + i]) / chain[R + i]
-        chain[X + i] = place
+    if laws.presliding_mm > 0.0:
+        place_leaning(chain, laws)
+    else:
+        place_sliding(chain, laws)
     chain[X + last] = chain[X + n] - chain[GIVE + n] * (chain[T + n] - laws.preload_N)
     if boundary.load == DISPLACEMENT:
         chain[X + last] = now.load
     elif chain[SLIP + last] == 0.0 and friction_at_load(boundary, laws) > 0.0:
         chain[X + last] = chain[X_OLD + last]
+
+
+@kernel
+def place_sliding(chain: Floats, laws: Laws) -> None:
+    """Find places and tensions of nodes that slip or stick."""
+    chain[T] = (chain[P] * chain[X] + chain[Q]) / chain[R]
+    for i in range(1, laws.n + 1):
+        if chain[SLIP + i] != 0.0:
+            drawn = chain[GIVE + i - 1] * (chain[T + i - 1] - laws.preload_N)
+            chain[X + i] = chain[X + i - 1] - drawn
+            chain[T + i] = chain[PASSES + i] * chain[T + i - 1] - chain[TAKES + i]
+        else:
+            chain[X + i] = chain[X_OLD + i]
+            chain[T + i] = (chain[P + i] * chain[X + i] + chain[Q + i]) / chain[R + i]
+
+
+@kernel
+def place_leaning(chain: Floats, laws: Laws) -> None:
+    """Find places and tensions of nodes on bristles; only the places follow from each other."""
+    for j in range(laws.n + 1):
+        inverse = 1.0 / chain[R + j]
+        chain[P + j] *= inverse
+        chain[Q + j] *= inverse
+        chain[R + j] = 1.0
+    place = chain[X]
+    for i in range(1, laws.n + 1):
+        give = chain[GIVE + i - 1]
+        place = (1.0 - give * chain[P + i - 1]) * place + give * (laws.preload_N - chain[Q + i - 1])
+        chain[X + i] = place
+    for j in range(laws.n + 1):
+        chain[T + j] = chain[P + j] * chain[X + j] + chain[Q + j]
 
 
 @kernel
