@@ -18,9 +18,10 @@ from tsas_cli.challenge.sparse import regression
 from tsas_cli.diagnosis.held_out import folds_of
 from tsas_cli.effects import EFFECTS
 from tsas_cli.errors import InputError
-from tsas_cli.identification.extension import Trial, unknown_of
+from tsas_cli.identification.extension import Trial
 from tsas_cli.identification.fit import Solution
 from tsas_cli.identification.prepared import prepare
+from tsas_cli.identification.unknowns import unknown_of
 from tsas_cli.recordings.dataset import read_dataset
 
 HIDDEN = Hidden("proximal_spring", {"stiffness_N_per_mm": 0.12})

@@ -81,13 +81,14 @@ def dynamic_fit(nominal: Model, runs: Sequence[Prepared]) -> DynamicFit:
     at_rest = _friction_at_rest(solved.fit)
     with_rest = _freed(solved, at_rest)
     solved = with_rest or solved
-    solved = _freed(solved, _sizes(solved.fit, DAMPING)) or solved
+    dampings = _sizes(solved.fit, DAMPING)
+    solved = _freed(solved, dampings) or solved
     said, fitted = list(solved.cannot_tell), solved.fitted
     if with_rest is None:
         said.append(_unseen_rest(at_rest))
     for name in (STIFFNESS, DAMPING, VISCOUS):
         if not _tells(solved.fit, name):
-            looks = _sizes(solved.fit, name)
+            looks = dampings if name == DAMPING else _sizes(solved.fit, name)
             best = max(look.saves for look in looks)
             finest = _finest_stiffness(solved.fit)
             like = [

@@ -11,6 +11,7 @@ from tsas_cli.identification.fit import Solution, Unknown, solve
 from tsas_cli.identification.joint_fit import JointFit, rig_at
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.identification.run_errors import RunErrors
+from tsas_cli.identification.unknowns import unknown_of
 from tsas_cli.physics.response import CHAIN_ONLY, is_closed
 from tsas_cli.physics.rig import Rig, with_values
 
@@ -193,12 +194,3 @@ def _pairs(trial: Trial) -> list[tuple[Unknown, float]]:
 
 def _parameters(effects: Sequence[str]) -> list[str]:
     return [name for name in QUANTITIES if name.split(".")[0] in effects and "." in name]
-
-
-def unknown_of(name: str, value: float | None = None) -> Unknown:
-    """Return the unknown of an effect's parameter, from a scaled value or its neutral one."""
-    quantity = QUANTITIES[name]
-    start = quantity.scaled(quantity.default) if value is None else value
-    return Unknown(
-        name, None, start, quantity.scaled(quantity.lower), quantity.scaled(quantity.upper), 1.0
-    )

@@ -12,14 +12,14 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.fit import Fitted, Unknown, fit, identifiable, jacobian
+from tsas_cli.identification.fit import Fitted, Residuals, Unknown, fit, identifiable, jacobian
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.prepared import Prepared
-from tsas_cli.identification.quantities import LOG_SCALE, QUANTITIES
+from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.identification.run_errors import RunErrors, blocks_of
 from tsas_cli.identification.samples import kept_samples, lost
+from tsas_cli.identification.unknowns import further_unknown, nominal_unknowns
 from tsas_cli.numerics.side_by_side import each
-from tsas_cli.physics.parameters import NOMINAL
 from tsas_cli.physics.response import Dynamics
 from tsas_cli.physics.rig import Rig, with_values
 
@@ -28,8 +28,6 @@ Floats = npt.NDArray[np.float64]
 MOST_ROUNDS = 4
 MISSED = 1.3  # times what noise explains: the model is wrong
 ROUGH, FINE = 1e-3, 1e-6  # tolerance of the first fit, whose weights are the start's, and after
-FURTHER_SCALE = 7.0  # plausible change of what nobody knows: in logarithms, or of an effect's size
-ZERO_SCALE = 0.02  # plausible zero of a displacement sensor, of its range
 
 
 class JointFit:
@@ -56,8 +54,8 @@ class JointFit:
         self.left_out = [s for run, at in zip(runs, samples, strict=True) for s in lost(run, at)]
         self.runs = [run for run, at in zip(runs, samples, strict=True) if at]
         self.rigs = [start.rig(run.run) for run in self.runs]
-        self.unknowns = _unknowns(start, self.runs, plausible or {})
-        self.unknowns += [_shared(name, start) for name in further]
+        self.unknowns = nominal_unknowns(start, self.runs, plausible or {})
+        self.unknowns += [further_unknown(name, start) for name in further]
         self.chosen: list[int] = []
         self.untold = self.left_out  # what the recordings do not say, once it is solved
         self.values = np.array([u.start for u in self.unknowns])
@@ -128,7 +126,8 @@ class JointFit:
 
     def slopes(self) -> Floats:
         """Return the Jacobian by what is told, where it ended, shape (n, p)."""
-        return jacobian(self.told(), len(self.runs), self.values[self.chosen], self._beside)
+        residuals = self._beside(self.values, self.chosen)
+        return jacobian(self.told(), len(self.runs), self.values[self.chosen], residuals)
 
     def moved(self, moves: Floats) -> Model:
         """Return the model where it ended with the values told moved, scaled, to start from."""
@@ -152,26 +151,24 @@ class JointFit:
         starts = [u.start for u in self.unknowns]
         return np.where(np.isnan(self.values), starts, self.values)
 
-    def _beside(self, k: int, told: Floats) -> Floats:
-        """Return the residuals of run k at scaled values of what is told, the rest as it is."""
-        at = self.values.copy()
-        at[self.chosen] = told
-        return self._residuals(k, at)
-
-    def _fit(self, chosen: list[int], *, tolerance: float) -> Fitted:
-        """Fit the chosen unknowns, the others as they are kept; renew values and weights."""
-        base = np.array([self._kept(u) for u in self.unknowns])
+    def _beside(self, base: Floats, chosen: list[int]) -> Residuals:
+        """Return the residuals of a run at scaled values of the chosen, the others as in `base`."""
 
         def residuals(k: int, values: Floats) -> Floats:
             at = base.copy()
             at[chosen] = values
             return self._residuals(k, at)
 
+        return residuals
+
+    def _fit(self, chosen: list[int], *, tolerance: float) -> Fitted:
+        """Fit the chosen unknowns, the others as they are kept; renew values and weights."""
+        base = np.array([self._kept(u) for u in self.unknowns])
         at = self._numbers()
         sought = [replace(self.unknowns[j], start=float(at[j])) for j in chosen]
         rigs = [self._rig(k, self.values) for k in range(len(self.errors))]
         blocks = blocks_of(self.errors, rigs)
-        result = fit(sought, blocks, residuals, tolerance=tolerance)
+        result = fit(sought, blocks, self._beside(base, chosen), tolerance=tolerance)
         base[chosen] = result.values
         self.values = base
         for k, run in enumerate(self.errors):
@@ -281,44 +278,4 @@ def _doubts(told: Sequence[Estimate], result: Fitted) -> list[str]:
             f"The fit did not converge ({result.message.rstrip('.')}): its values are not to be "
             "relied on."
         )
-    return out
-
-
-def _shared(name: str, start: Model) -> Unknown:
-    """Return the unknown of a parameter of the bristles or of an effect, which all runs share."""
-    quantity, value = QUANTITIES[name], start.value(name)
-    return Unknown(
-        name,
-        None,
-        quantity.scaled(quantity.default if value is None else value),
-        quantity.scaled(quantity.lower),
-        quantity.scaled(quantity.upper),
-        FURTHER_SCALE,
-    )
-
-
-def _unknowns(
-    start: Model, runs: Sequence[Prepared], plausible: Mapping[str, tuple[float, float]]
-) -> list[Unknown]:
-    """Return all candidates, in the order in which they are asked for.
-
-    With a load that is no spring the preload is only a name for the zeros: it keeps its value.
-    """
-    out = []
-    travel = max((float(np.ptp(r.drive.values)) for r in runs), default=0.0)
-    springs = [k for k, run in enumerate(runs) if run.run.load == "spring"]
-    for p in NOMINAL:
-        owners: Sequence[int | None] = [None] if p.shared else range(len(runs))
-        if p.name == "preload_N":
-            owners = springs
-        if p.name == "load_stiffness_N_per_mm" and not springs:
-            continue
-        for k in owners:
-            value = start.value(p.name, None if k is None else runs[k].run.id)
-            quantity = QUANTITIES[p.name]
-            low, high = plausible.get(p.name, (p.lower, p.upper))
-            scaled = quantity.scaled(quantity.default if value is None else value)
-            scale = LOG_SCALE if p.positive else ZERO_SCALE * travel
-            bounds = (quantity.scaled(low), quantity.scaled(high))
-            out.append(Unknown(p.name, k, min(max(scaled, bounds[0]), bounds[1]), *bounds, scale))
     return out

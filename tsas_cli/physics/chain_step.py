@@ -3,8 +3,8 @@
 Given how the nodes slide, the chain is a row of affine relations. From the load backwards each
 segment's tension is T = (p x + q)/r with the position x of the node before it: a sliding node
 multiplies (and adds its bristle), a node that sticks starts anew, a segment adds its compliance.
-From the drive forwards the positions follow. No sweep divides in the recursion, and none can
-blow up: p and r are positive. Then every node is held against its own law (`chain_nodes`), and
+From the drive forwards the positions follow. No sweep waits for a division at every node, and none
+can blow up: p and r are positive. Then every node is held against its own law (`chain_nodes`), and
 those that break it are revised: an active set of those that slip, tangents of what is not straight
 (a semi-smooth Newton method).
 

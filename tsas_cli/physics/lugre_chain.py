@@ -111,7 +111,7 @@ def lugre_chain(
     least = law.load_stiffness_N_per_mm  # tension for what is given at an end
     felt_in = felt_out = least
     steps = tries = iterations = 0
-    ends_s = np.empty(most_tries(m))
+    ends_s = np.empty(MOST_TRIES + MOST_PER_SAMPLE * m)  # as many as may be tried
     controlled, stop = step_ends_s.size == 0, 0
     while k < m - 1 and h > SHORTEST_S and tries < ends_s.size:
         tries += 1
@@ -137,8 +137,8 @@ def lugre_chain(
             leaves = min(LEAVES * scale, LEAVES_AT_MOST * tension)
             leaves = leaves if controlled else LEAVES_GIVEN * tension
             done, solved = newton(s, step, boundary, law, leaves)
-            off = error(s, law, formula) if solved else math.inf
-            off = off if controlled or not solved else 0.0
+            if solved:
+                off = error(s, law, formula) if controlled else 0.0
         iterations += done
         spare = scale / (off + 1e-300)
         change = CAREFUL * (np.cbrt(spare) if h2 < math.inf else math.sqrt(spare))
@@ -184,12 +184,6 @@ def fitted(h: float, left: float) -> tuple[float, bool]:
     if h > (1.0 - 1e-9) * left:
         return left, True
     return (0.5 * left if 2.0 * h > left else h), False
-
-
-@kernel
-def most_tries(samples: int) -> int:
-    """Return how many steps a run may try."""
-    return MOST_TRIES + MOST_PER_SAMPLE * samples
 
 
 @kernel

@@ -5,6 +5,7 @@ import numpy as np
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.chain_ends import without_pull
 from tsas_cli.physics.chain_state import FORCE, SLACK, SPRING, Boundary, Phases
+from tsas_cli.physics.lugre_ends import F_IN, F_OUT, X_IN, X_OUT
 from tsas_cli.physics.lugre_input import DRIVE, LOAD, LOST, given_at
 from tsas_cli.physics.lugre_state import STIFFNESS, Floats, Law
 
@@ -79,10 +80,10 @@ def write_slack(
     """Write the samples of a slack tendon, from one to before another."""
     for i in range(samples[0], samples[1]):
         x_out = load_place(times, course, i, times[i], boundary, law)
-        columns[0, i], columns[1, i] = course[DRIVE, i], x_out
-        columns[2, i] = columns[3, i] = 0.0
+        columns[X_IN, i], columns[X_OUT, i] = course[DRIVE, i], x_out
+        columns[F_IN, i] = columns[F_OUT, i] = 0.0
         if boundary.drive == FORCE:
-            columns[0, i], columns[2, i] = x_out - shortening(s, law), course[DRIVE, i]
+            columns[X_IN, i], columns[F_IN, i] = x_out - shortening(s, law), course[DRIVE, i]
         phase[i] = SLACK
 
 
