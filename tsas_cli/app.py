@@ -17,6 +17,7 @@ from tsas_cli.commands.ingest import ingest
 from tsas_cli.commands.plan import plan
 from tsas_cli.commands.report import report
 from tsas_cli.commands.simulate import simulate
+from tsas_cli.commands.track import track
 from tsas_cli.errors import InputError, printable
 
 app = typer.Typer(
@@ -49,6 +50,7 @@ app.command("calibrate")(calibrate)
 app.command("simulate")(simulate)
 app.command("diagnose")(diagnose)
 app.command("plan")(plan)
+app.command("track")(track)
 app.command("report")(report)
 app.command("effects")(effects)
 app.command("explain")(explain)

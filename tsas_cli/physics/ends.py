@@ -120,17 +120,28 @@ def last_direction(x: Floats) -> Floats:
 
 @kernel
 def friction_course(time_s: Floats, speed: Floats, session_s: float, rig: Rig) -> Floats:
-    """Return a pulled, a released [1], viscous loss [N] and lost preload [N], shape (4, n)."""
-    effects = rig.effects
-    asymmetry = effects.direction_dependent_friction.asymmetry
+    """Return `friction_at` at each time, shape (4, n)."""
     out = np.empty((4, time_s.size))
     for i in range(time_s.size):
-        t = time_s[i]
-        wrap = rig.friction_coefficient * friction_factor(effects.friction_drift, t, session_s)
-        wrap *= drifted_bend(rig.total_bend_rad, effects.bend_drift, t)
-        wrap *= stribeck_factor(speed[i], effects.stribeck_friction)
-        out[0, i] = wrap * direction_factor(asymmetry, 1.0)
-        out[1, i] = wrap * direction_factor(asymmetry, -1.0)
-        out[2, i] = viscous_loss(speed[i], effects.viscous_friction.coefficient_N_s_per_mm)
-        out[3, i] = lost_preload(effects.preload_loss, t)
+        out[0, i], out[1, i], out[2, i], out[3, i] = friction_at(
+            time_s[i], speed[i], session_s, rig
+        )
     return out
+
+
+@kernel
+def friction_at(
+    time_s: float, speed: float, session_s: float, rig: Rig
+) -> tuple[float, float, float, float]:
+    """Return a pulled, a released [1], viscous loss [N] and lost preload [N] at one moment."""
+    effects = rig.effects
+    asymmetry = effects.direction_dependent_friction.asymmetry
+    wrap = rig.friction_coefficient * friction_factor(effects.friction_drift, time_s, session_s)
+    wrap *= drifted_bend(rig.total_bend_rad, effects.bend_drift, time_s)
+    wrap *= stribeck_factor(speed, effects.stribeck_friction)
+    return (
+        wrap * direction_factor(asymmetry, 1.0),
+        wrap * direction_factor(asymmetry, -1.0),
+        viscous_loss(speed, effects.viscous_friction.coefficient_N_s_per_mm),
+        lost_preload(effects.preload_loss, time_s),
+    )

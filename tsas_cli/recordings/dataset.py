@@ -122,6 +122,25 @@ def read_recording(folder: Path, run: Run, *, strict: bool = True) -> Recording:
     return Recording(run, columns)
 
 
+def read_columns(path: Path) -> dict[str, Floats]:
+    """Read the canonical columns of a Parquet file that belongs to no dataset.
+
+    Raises
+    ------
+    InputError
+        It is not there or not Parquet; `time_s` is missing or does not increase; a column is in
+        another unit or not of numbers.
+    """
+    if not path.is_file():
+        raise InputError("is not there", where=path, expected="a Parquet file")
+    table = _table_of(path)
+    columns = {name: _floats(table, name, path) for name in table.column_names if name in BY_NAME}
+    if TIME not in columns or len(columns[TIME]) < 2:
+        raise InputError("column time_s is missing or short", where=path, expected="time in s")
+    _check_time(columns[TIME], path)
+    return columns
+
+
 def write_dataset(folder: Path, manifest: Manifest, tables: Mapping[str, pa.Table]) -> None:
     """Write the runs' tables and the manifest with their checksums into an empty folder."""
     runs = tuple(write_run(folder, run, tables[run.id]) for run in manifest.run)
@@ -163,13 +182,21 @@ def _read_parquet(path: Path, folder: Path, run: Run) -> pa.Table:
     if not path.resolve().is_relative_to(folder.resolve()):
         raise InputError("a link leads out of the dataset's folder", where=path)
     try:
-        if sha256_of(path) != run.sha256.lower():
-            raise InputError(
-                "the checksum differs from the manifest's",
-                where=path,
-                expected=run.sha256.lower(),
-                remedy="the file has changed since ingest: restore it or ingest again",
-            )
+        digest = sha256_of(path)
+    except OSError as error:
+        raise InputError(f"cannot be read ({error.strerror})", where=path) from error
+    if digest != run.sha256.lower():
+        raise InputError(
+            "the checksum differs from the manifest's",
+            where=path,
+            expected=run.sha256.lower(),
+            remedy="the file has changed since ingest: restore it or ingest again",
+        )
+    return _table_of(path)
+
+
+def _table_of(path: Path) -> pa.Table:
+    try:
         table = pq.ParquetFile(path).read()
         _check_names_and_units(table, path)
     except (pa.ArrowException, OSError, UnicodeDecodeError) as error:

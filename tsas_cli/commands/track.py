@@ -1,0 +1,96 @@
+"""`tsas track`: close the loop on a simulated rig and say how well a wanted force is followed."""
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from tsas_cli.commands.common import Force, Json, OutFolder, Quiet, progress, show
+
+COLUMNS = (
+    ("RMSE [N]", "rmse_N"),
+    ("lowest [N]", "lowest_error_N"),
+    ("highest [N]", "highest_error_N"),
+    ("effort [rpm]", "effort_rpm"),
+    ("chatter [rpm/s]", "chatter_rpm_per_s"),
+    ("outside 2 % [%]", "outside_percent"),
+)
+
+
+def track(
+    out: OutFolder,
+    model: Annotated[
+        Path | None,
+        typer.Option(metavar="M.toml", help="What the controller knows; else the paper's rig."),
+    ] = None,
+    plant: Annotated[
+        Path | None,
+        typer.Option(metavar="P.toml", help="What it acts on; else the same as --model."),
+    ] = None,
+    controller: Annotated[
+        str,
+        typer.Option(metavar="NAMES", help="One or several, with commas between, or all."),
+    ] = "adaptive-sliding-mode",
+    compare: Annotated[
+        bool,
+        typer.Option("--compare", help="All controllers, with and without disturbance, 10 seeds."),
+    ] = False,
+    reference: Annotated[
+        str,
+        typer.Option(help="sine, two-frequency, steps, ramps, or a Parquet file (f_out_ref_N)."),
+    ] = "sine",
+    disturb: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME=VALUE[@S]", help="Change the plant, from S seconds on."),
+    ] = None,
+    as_printed: Annotated[
+        bool,
+        typer.Option(help="ks of the sliding modes per mm as the paper prints it: a relay."),
+    ] = False,
+    settings: Annotated[
+        Path | None,
+        typer.Option(metavar="S.toml", help="Rig, drive, sensors, reference and gains."),
+    ] = None,
+    seeds: Annotated[int | None, typer.Option(min=1, help="How many seeds of noise.")] = None,
+    seed: Annotated[int, typer.Option(min=0, help="The first of them.")] = 1,
+    force: Force = False,
+    quiet: Quiet = False,
+    as_json: Json = False,
+) -> None:
+    """Follow a wanted force with a controller that sees x_in alone."""
+    from tsas_cli.tracking.conditions import PROXIMAL_SPRING, Condition, disturbed
+    from tsas_cli.tracking.settings import CONTROLLERS
+    from tsas_cli.tracking.track_stage import Call, track_all
+
+    names = CONTROLLERS if compare or controller == "all" else tuple(controller.split(","))
+    conditions = [disturbed(disturb)] if disturb else []
+    if compare:
+        conditions = [Condition("undisturbed"), *(conditions or [disturbed([PROXIMAL_SPRING])])]
+    call = Call(
+        model=model,
+        plant=plant,
+        settings=settings,
+        controllers=tuple(name.strip() for name in names),
+        conditions=tuple(conditions) or (Condition("undisturbed"),),
+        reference=reference,
+        as_printed=as_printed,
+        seeds=seeds or (10 if compare else 1),
+        first_seed=seed,
+    )
+    total = len(call.controllers) * len(call.conditions) * call.seeds
+    with progress("track", total, quiet=quiet or as_json) as step:
+        summary = track_all(call, out, force=force, step=step)
+    header = ("controller", "condition", *(title for title, _ in COLUMNS))
+    rows = [
+        (row["controller"], row["condition"], *(_cell(row["scores"][key]) for _, key in COLUMNS))
+        for row in summary["results"]
+    ]
+    show(summary, [(f"tracking → {out}", header, rows)], quiet=quiet, as_json=as_json)
+    if not quiet and not as_json:
+        for sentence in summary["notes"]:
+            print(f"- {sentence}")
+
+
+def _cell(number: dict[str, Any]) -> str:
+    spread = number["sd"]
+    return f"{number['mean']:.4g}" + ("" if spread is None else f" ± {spread:.2g}")

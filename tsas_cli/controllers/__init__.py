@@ -1,0 +1,1 @@
+"""Controllers of the drive that see x_in alone, and the closed loop with plant and sensors."""

@@ -1,0 +1,60 @@
+"""Adaptive sliding mode: a sliding mode that learns the drive's parameters as it goes.
+
+Law (Yang 2025, Eqs. 44 and 45): that of `sliding_mode` with estimates φ̂, which follow
+dφ̂1/dt = ψ1 s (c1 de/dt + c2 d²e/dt² + x⃛_inv), dφ̂2/dt = ψ2 s dx_in/dt, dφ̂3/dt = ψ3 s d²x_in/dt²,
+each kept between its bounds (projection). V = ½ φ1 s² + Σ (φ − φ̂)²/(2ψ) then never grows (53–55),
+where rates are exact and ε exceeds the disturbance; explicit Euler, first order, once a sample.
+When it fails: noise in s drives the estimates though nothing is to be learned; a motion that does
+not excite a parameter lets it wander between its bounds.
+"""
+
+from typing import NamedTuple
+
+from tsas_cli.controllers.signals import Floats, Signals
+from tsas_cli.controllers.sliding_mode import (
+    Phi,
+    Surface,
+    distance,
+    sliding_mode,
+    wanted_jerk,
+)
+from tsas_cli.numerics.compiled import kernel
+
+PHI = 0  # of the memory: the three estimates
+
+
+class AdaptiveSlidingMode(NamedTuple):
+    """Surface, start and bounds of the estimates, and how fast they follow."""
+
+    surface: Surface
+    start: Phi
+    lowest: Phi
+    highest: Phi
+    psi: Phi
+
+
+@kernel
+def adaptive_sliding_mode(
+    seen: Signals, law: AdaptiveSlidingMode, memory: Floats, step_s: float
+) -> float:
+    """Return the motor speed [rpm] on top of the feedforward, and renew the estimates."""
+    estimates = Phi(memory[PHI], memory[PHI + 1], memory[PHI + 2])
+    u = sliding_mode(seen, law.surface, estimates)
+    grown = step_s * distance(seen, law.surface)
+    jerk, v, a = wanted_jerk(seen, law.surface), seen.v - seen.de, seen.a - seen.dde
+    memory[PHI] = within(
+        estimates.phi1 + law.psi.phi1 * grown * jerk, law.lowest.phi1, law.highest.phi1
+    )
+    memory[PHI + 1] = within(
+        estimates.phi2 + law.psi.phi2 * grown * v, law.lowest.phi2, law.highest.phi2
+    )
+    memory[PHI + 2] = within(
+        estimates.phi3 + law.psi.phi3 * grown * a, law.lowest.phi3, law.highest.phi3
+    )
+    return u
+
+
+@kernel
+def within(value: float, lowest: float, highest: float) -> float:
+    """Return a value kept between its bounds."""
+    return min(max(value, lowest), highest)

@@ -1,0 +1,36 @@
+"""PID: pulls x_in back in proportion to its error, the error's sum and its rate.
+
+Law: u = KP e + KI ∫e dt + KD de/dt, e = x_inv − x_in. The sum is held while the motor is at its
+limit. With the gains of Yang 2025 ("Comparative verification", e in mm, u in rpm) the loop closes
+at KP K = 0.6 rad/s: the error that a reversal leaves, while the motor winds up the gear, takes
+seconds to go.
+When it fails: disturbances faster than the loop; a rate taken from a noisy x_in.
+"""
+
+from typing import NamedTuple
+
+from tsas_cli.controllers.signals import Floats, Signals
+from tsas_cli.numerics.compiled import kernel
+
+SUM = 0  # of the memory: ∫e dt [mm s]
+
+
+class Pid(NamedTuple):
+    """Gains from mm, mm s and mm/s to rpm."""
+
+    proportional_rpm_per_mm: float = 25.0
+    integral_rpm_per_mm_s: float = 65.0
+    derivative_rpm_s_per_mm: float = 1.0
+
+
+@kernel
+def pid(seen: Signals, gains: Pid, memory: Floats, step_s: float) -> float:
+    """Return the motor speed [rpm] on top of the feedforward."""
+    if not seen.limited:
+        memory[SUM] += seen.e * step_s
+    u: float = (
+        gains.proportional_rpm_per_mm * seen.e
+        + gains.integral_rpm_per_mm_s * memory[SUM]
+        + gains.derivative_rpm_s_per_mm * seen.de
+    )
+    return u

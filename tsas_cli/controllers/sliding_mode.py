@@ -1,0 +1,67 @@
+"""Sliding mode: drives a mix of the error and its rates to zero and holds it there.
+
+Law (Yang 2025, Eqs. 41 to 43 with fixed φ): s = c1 e + c2 de/dt + d²e/dt²,
+u = φ1 (c1 de/dt + c2 d²e/dt² + x⃛_inv) + φ2 dx_in/dt + φ3 d²x_in/dt² + ε sat(s/width) + ks s.
+φ are those of the drive equation φ1 x⃛ + φ3 ẍ + φ2 ẋ + d1 = u (Eq. 37). The sign function is
+replaced by a straight line within the boundary layer. In whose units the paper's ks is, it does
+not say: per mm the sampled loop is a relay, per m (the default here) it is not.
+When it fails: where the filtered loop is too fast for the drive's resonance or for the sampling, it
+is a relay that the motor's limit alone tames; where c2² < 4 c1 the error rings on the surface.
+"""
+
+from typing import NamedTuple
+
+from tsas_cli.controllers.signals import Signals
+from tsas_cli.numerics.compiled import kernel
+
+
+class Surface(NamedTuple):
+    """The sliding surface and how it is reached."""
+
+    c1: float
+    c2: float
+    epsilon: float
+    ks: float
+    width: float
+
+
+class Phi(NamedTuple):
+    """Parameters of the drive equation (37)."""
+
+    phi1: float  # [rpm s³/mm]
+    phi2: float  # [rpm s/mm]
+    phi3: float  # [rpm s²/mm]
+
+
+class SlidingMode(NamedTuple):
+    """Surface and the fixed parameters."""
+
+    surface: Surface
+    phi: Phi
+
+
+@kernel
+def distance(seen: Signals, surface: Surface) -> float:
+    """Return s, Eq. (41)."""
+    return surface.c1 * seen.e_filtered + surface.c2 * seen.de + seen.dde
+
+
+@kernel
+def wanted_jerk(seen: Signals, surface: Surface) -> float:
+    """Return c1 de/dt + c2 d²e/dt² + x⃛_inv, which keeps s where it is."""
+    return surface.c1 * seen.de + surface.c2 * seen.dde + seen.jerk
+
+
+@kernel
+def reaching(s: float, surface: Surface) -> float:
+    """Return ε sat(s/width) + ks s, Eq. (43)."""
+    return surface.epsilon * min(max(s / surface.width, -1.0), 1.0) + surface.ks * s
+
+
+@kernel
+def sliding_mode(seen: Signals, surface: Surface, phi: Phi) -> float:
+    """Return the motor speed [rpm] on top of the feedforward, Eq. (45)."""
+    s = distance(seen, surface)
+    along = phi.phi1 * wanted_jerk(seen, surface)
+    along += phi.phi2 * (seen.v - seen.de) + phi.phi3 * (seen.a - seen.dde)
+    return along + reaching(s, surface)

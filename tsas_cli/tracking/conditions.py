@@ -1,0 +1,90 @@
+"""What is done to the plant: changes of its rig from the start, or in the middle of a run."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from tsas_cli.errors import InputError, nearest
+from tsas_cli.identification.quantities import QUANTITIES
+from tsas_cli.physics.rig import with_values
+from tsas_cli.tracking.track import Plant
+
+OPTION = "--disturb"
+ALLOWED = {name: (q.lower, q.upper, q.unit) for name, q in QUANTITIES.items()} | {
+    "total_bend_rad": (0.0, 100.0, "rad")
+}
+ONLY_FROM_THE_START = ("preload_N", "tendon_stiffness_N")
+PROXIMAL_SPRING = "proximal_spring.stiffness_N_per_mm=12.5"  # Fig. 11 of Yang 2025
+
+
+@dataclass(frozen=True)
+class Change:
+    """One quantity of the plant and its new value, from a time on."""
+
+    name: str
+    value: float
+    from_s: float
+
+
+@dataclass(frozen=True)
+class Condition:
+    """A name for the table, and the changes."""
+
+    name: str
+    changes: tuple[Change, ...] = ()
+
+    def of(self, plant: Plant) -> Plant:
+        """Return the plant under this condition."""
+        early = {c.name: c.value for c in self.changes if c.from_s <= 0.0}
+        late = {c.name: c.value for c in self.changes if c.from_s > 0.0}
+        rig = with_values(plant.rig, early)
+        if not late:
+            return replace(plant, rig=rig)
+        change_s = next(c.from_s for c in self.changes if c.from_s > 0.0)
+        return replace(plant, rig=rig, later=with_values(rig, late), change_s=change_s)
+
+
+def disturbed(options: Sequence[str]) -> Condition:
+    """Return the condition that options such as `friction_coefficient=0.16@10` describe.
+
+    Raises
+    ------
+    InputError
+        One is no NAME=VALUE[@SECONDS], names an unknown quantity, has a value that is not allowed,
+        or they begin at more than one time within the run.
+    """
+    changes = tuple(_change(option) for option in options)
+    times = sorted({c.from_s for c in changes if c.from_s > 0.0})
+    if len(times) > 1:
+        raise InputError(
+            f"changes begin at {', '.join(f'{t:g} s' for t in times)}",
+            where=OPTION,
+            expected="one time within the run",
+        )
+    return Condition("disturbed", changes)
+
+
+def _change(option: str) -> Change:
+    name, _, rest = option.partition("=")
+    value, _, from_s = rest.partition("@")
+    if name not in ALLOWED:
+        raise InputError(f"unknown quantity {name}", where=OPTION, remedy=nearest(name, ALLOWED))
+    try:
+        change = Change(name, float(value), float(from_s or 0.0))
+    except ValueError as error:
+        raise InputError(
+            f"{option!r} is no change", where=OPTION, expected="NAME=VALUE or NAME=VALUE@SECONDS"
+        ) from error
+    lower, upper, unit = ALLOWED[name]
+    if not lower <= change.value <= upper:
+        raise InputError(
+            f"{name} of {change.value:g}",
+            where=OPTION,
+            expected=f"{lower:g} to {upper:g} {unit}",
+        )
+    if change.from_s > 0.0 and name in ONLY_FROM_THE_START:
+        raise InputError(
+            f"{name} cannot change during a run",
+            where=OPTION,
+            remedy=f"leave out @{from_s}: all displacements count from the preload",
+        )
+    return change

@@ -1,0 +1,89 @@
+"""A run of the closed loop as a recording: what the sensors read, in a dataset of format 1."""
+
+from collections.abc import Mapping
+
+import numpy as np
+import numpy.typing as npt
+import pyarrow as pa
+
+from tsas_cli.controllers.closed_loop import (
+    ASKED,
+    DISTANCE,
+    F_IN,
+    F_OUT,
+    MEMORY_AT,
+    X_OUT,
+    X_SEEN,
+)
+from tsas_cli.controllers.path import Path
+from tsas_cli.physics.rig import Rig
+from tsas_cli.physics.sensors import reading
+from tsas_cli.recordings.manifest import Manifest, Run
+from tsas_cli.recordings.manifest import Rig as DataSheet
+from tsas_cli.tracking.settings import Settings
+from tsas_cli.tracking.track import Tracked
+
+Floats = npt.NDArray[np.float64]
+NO_CHECKSUM = "0" * 64  # until the run's file is written
+NOISE = 1  # of the streams of a seed; the loop's own is another
+MEMORIES = {
+    "pid": ("error_sum_mm_s",),
+    "adaptive-sliding-mode": ("phi1_rpm_s3_per_mm", "phi2_rpm_s_per_mm", "phi3_rpm_s2_per_mm"),
+    "disturbance-observer": ("error_estimate_mm", "disturbance_rpm"),
+}
+SURFACES = ("sliding-mode", "adaptive-sliding-mode")
+
+
+def table_of(
+    run: Tracked, path: Path, rig: Rig, controller: str, seed: int, settings: Settings
+) -> pa.Table:
+    """Return the recording of a run, with what the controller wanted and remembered."""
+    rng = np.random.default_rng((seed, NOISE))
+    sensor, time_s, columns = settings.sensor, run.time_s, run.columns
+
+    def seen(channel: str, values: Floats, noise: float) -> Floats:
+        true = reading(channel, values, time_s, rig)  # type: ignore[arg-type]
+        return true + noise * rng.standard_normal(true.size)
+
+    table = {
+        "time_s": time_s,
+        "x_in_mm": columns[X_SEEN],
+        "x_out_mm": seen("x_out_mm", columns[X_OUT], sensor.noise_mm),
+        "f_in_N": seen("f_in_N", columns[F_IN], sensor.force_noise_N),
+        "f_out_N": seen("f_out_N", columns[F_OUT], sensor.force_noise_N),
+        "motor_speed_rpm": columns[ASKED],
+        "f_out_ref_N": run.wanted_N,
+        "f_out_true_N": columns[F_OUT],
+        "x_inv_mm": path.drive[0, : time_s.size],
+    }
+    if controller in SURFACES:
+        table["sliding_distance_mm_per_s2"] = columns[DISTANCE]
+    for i, name in enumerate(MEMORIES.get(controller, ())):
+        table[name] = columns[MEMORY_AT + i]
+    return pa.table({name: pa.array(values) for name, values in table.items()})
+
+
+def conditions(run_id: str, settings: Settings) -> Run:
+    """Return a run of a manifest with the settings' conditions."""
+    return Run(
+        id=run_id,
+        file=f"runs/{run_id}.parquet",
+        sha256=NO_CHECKSUM,
+        sheath_length_mm=settings.rig.sheath_length_mm,
+        total_bend_rad=settings.rig.total_bend_rad,
+        preload_N=settings.rig.preload_N,
+    )
+
+
+def manifest(run_ids: Mapping[str, object] | tuple[str, ...], settings: Settings) -> Manifest:
+    """Return the manifest of tracked runs; its data sheet is the settings'."""
+    stated = {**settings.rig.model_dump(), **settings.drive.model_dump()}
+    sheet = {key: value for key, value in stated.items() if key in DataSheet.model_fields}
+    return Manifest(
+        format=1,
+        name="tracking",
+        kind="simulated",
+        description="Simulated, not measured: closed loop of tsas track, with sensor noise.",
+        rig=DataSheet(**sheet),
+        run=tuple(conditions(run_id, settings) for run_id in run_ids),
+    )

@@ -1,0 +1,95 @@
+"""The wanted force over time: shapes by name, or a trajectory that was recorded."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from tsas_cli.errors import InputError, nearest
+from tsas_cli.recordings.dataset import read_columns
+from tsas_cli.tracking.settings import ReferenceSettings
+
+Floats = npt.NDArray[np.float64]
+WANTED, MEASURED = "f_out_ref_N", "f_out_N"
+
+
+def sine(t: Floats, form: ReferenceSettings) -> Floats:
+    """Mean + amplitude sin(ω t − π/2), as in Figs. 10 and 11 of Yang 2025."""
+    return form.mean_N - form.amplitude_N * np.cos(form.angular_frequency_rad_per_s * t)
+
+
+def two_frequency(t: Floats, form: ReferenceSettings) -> Floats:
+    """The sine at twice its frequency for two of its periods, then as it is, as in Fig. 9."""
+    w = form.angular_frequency_rad_per_s
+    switch = 2.0 * np.pi / w
+    return form.mean_N - form.amplitude_N * np.cos(np.where(t < switch, 2.0 * w * t, w * t))
+
+
+def steps(t: Floats, form: ReferenceSettings) -> Floats:
+    """Four levels a period, each held: low, middle, high, middle."""
+    part = np.floor(4.0 * t * form.angular_frequency_rad_per_s / (2.0 * np.pi)).astype(int) % 4
+    return form.mean_N + form.amplitude_N * np.array([-1.0, 0.0, 1.0, 0.0])[part]
+
+
+def ramps(t: Floats, form: ReferenceSettings) -> Floats:
+    """A triangle of the sine's period and range."""
+    part = (t * form.angular_frequency_rad_per_s / (2.0 * np.pi)) % 1.0
+    return form.mean_N + form.amplitude_N * (1.0 - 4.0 * np.abs(part - 0.5))
+
+
+SHAPES: dict[str, Callable[[Floats, ReferenceSettings], Floats]] = {
+    "sine": sine,
+    "two-frequency": two_frequency,
+    "steps": steps,
+    "ramps": ramps,
+}
+
+
+def reference(name: str, form: ReferenceSettings, step_s: float) -> Floats:
+    """Return the wanted force at each sample, shape (m,) [N].
+
+    `name` is a shape, or a Parquet file with `time_s` and `f_out_ref_N` (or else `f_out_N`), which is
+    followed linearly between its samples.
+
+    Raises
+    ------
+    InputError
+        There is no such shape or file, the file lacks a column or has gaps, or the force is not
+        positive somewhere.
+    """
+    if name in SHAPES:
+        time_s = np.arange(round(form.duration_s / step_s) + 1) * step_s
+        wanted = SHAPES[name](time_s, form)
+        where = f"reference {name}"
+    elif Path(name).suffix == ".parquet" or Path(name).exists():
+        time_s, wanted = _recorded(Path(name), step_s)
+        where = name
+    else:
+        raise InputError(
+            f"unknown reference {name}", remedy=f"{nearest(name, SHAPES)} or name a Parquet file"
+        )
+    low = np.flatnonzero(wanted <= 0.0)
+    if low.size:
+        raise InputError(
+            f"asks for {wanted[low[0]]:.4g} N at {time_s[low[0]]:.4g} s",
+            where=where,
+            expected="a tension above zero: a tendon cannot push",
+        )
+    return wanted
+
+
+def _recorded(path: Path, step_s: float) -> tuple[Floats, Floats]:
+    columns = read_columns(path)
+    name = WANTED if WANTED in columns else MEASURED
+    if name not in columns:
+        raise InputError(
+            f"column {WANTED} is missing", where=path, expected=f"{WANTED} or {MEASURED}"
+        )
+    values, time_s = columns[name], columns["time_s"]
+    if not np.isfinite(values).all():
+        row = int(np.flatnonzero(~np.isfinite(values))[0])
+        raise InputError(f"{name} has a gap", where=f"{path}, row {row}", expected="a force")
+    count = int((time_s[-1] - time_s[0]) / step_s + 1e-9) + 1
+    at = np.arange(count) * step_s
+    return at, np.interp(at, time_s - time_s[0], values)

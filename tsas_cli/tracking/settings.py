@@ -1,0 +1,206 @@
+"""What a closed loop is made of beside model and drive; without a file it is the paper's rig.
+
+Lengths, bend, preload and reference are those of Yang 2025, "Verification of the proposed controller".
+What the paper does not give (rate, sensor, motor limit, filter, crossing) is chosen here and said.
+"""
+
+import math
+from pathlib import Path
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from tsas_cli.controllers.adaptive_sliding_mode import AdaptiveSlidingMode
+from tsas_cli.controllers.closed_loop import Laws
+from tsas_cli.controllers.disturbance_observer import DisturbanceObserver
+from tsas_cli.controllers.pid import Pid
+from tsas_cli.controllers.sliding_mode import Phi, SlidingMode, Surface
+from tsas_cli.physics.capstan import speed_per_stiffness
+from tsas_cli.physics.plant import Actuator
+from tsas_cli.recordings.manifest import parse, read_toml
+
+CONTROLLERS = ("pid", "sliding-mode", "adaptive-sliding-mode", "disturbance-observer")
+MM_PER_M = 1e3
+
+
+class _Table(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+
+class RigSettings(_Table):
+    """The rig: its conditions, and what a model would say where none is given."""
+
+    tendon_diameter_mm: float = Field(default=1.2, gt=0)
+    tendon_modulus_GPa: float = Field(default=60.0, gt=0)
+    friction_coefficient: float = Field(default=0.125, ge=0)
+    load_stiffness_N_per_mm: float = Field(default=1.579, gt=0)
+    sheath_length_mm: float = Field(default=785.0, gt=0)
+    total_bend_rad: float = Field(default=math.pi, ge=0)
+    preload_N: float = Field(default=25.0, gt=0)
+
+
+class DriveSettings(_Table):
+    """The plant's drive. Stiffness is the km chosen for kr in Eq. (34); the lag is not the paper's."""
+
+    turntable_radius_mm: float = Field(default=27.1, gt=0)
+    gear_ratio: float = Field(default=120.0, gt=0)
+    inertia_N_mm_s2: float = Field(default=0.1296, gt=0)
+    damping_N_s_per_mm: float = Field(default=0.007, ge=0)
+    drive_stiffness_N_per_mm: float = Field(default=52.0, gt=0)
+    motor_lag_s: float = Field(default=0.002, ge=0)
+    speed_limit_rpm: float = Field(default=3000.0, gt=0)
+
+    def actuator(self) -> Actuator:
+        """Return the drive as the plant takes it."""
+        radius = self.turntable_radius_mm
+        return Actuator(
+            speed_per_stiffness(radius, self.gear_ratio),
+            self.drive_stiffness_N_per_mm,
+            self.inertia_N_mm_s2 / radius**2,
+            self.damping_N_s_per_mm,
+            self.motor_lag_s,
+            self.speed_limit_rpm,
+        )
+
+
+class ReferenceSettings(_Table):
+    """The wanted force mean − amplitude · cos(ω t), or what other shapes make of it."""
+
+    mean_N: float = 43.0
+    amplitude_N: float = Field(default=18.0, gt=0)
+    angular_frequency_rad_per_s: float = Field(default=1.0, gt=0)
+    duration_s: float = Field(default=8.0 * math.pi, gt=0, le=3600)
+
+
+class SensorSettings(_Table):
+    """The encoder of x_in and its rate; noise and steps of the other channels are recorded only."""
+
+    rate_Hz: float = Field(default=1000.0, ge=50, le=20000)
+    noise_mm: float = Field(default=0.005, ge=0)
+    step_mm: float = Field(default=0.002, ge=0)
+    force_noise_N: float = Field(default=0.05, ge=0)
+
+
+class LoopSettings(_Table):
+    """How the drive's path is made and its rates are estimated."""
+
+    crossing_s: float = Field(default=0.1, gt=0, le=10)
+    filter_Hz: float = Field(default=10.0, gt=0)
+    nodes: int = Field(default=50, ge=2, le=1000)
+    substeps: int = Field(default=4, ge=1, le=100)
+
+
+class PidSettings(_Table):
+    """Gains of the paper; e in mm, u in rpm."""
+
+    proportional_rpm_per_mm: float = 25.0
+    integral_rpm_per_mm_s: float = 65.0
+    derivative_rpm_s_per_mm: float = 1.0
+
+
+class SlidingSettings(_Table):
+    """Gains of the paper, ks read per metre; the parameters are where Table 4 starts."""
+
+    c1: float = Field(default=800.0, gt=0)
+    c2: float = Field(default=1.0, gt=0)
+    epsilon_rpm: float = Field(default=1.0, ge=0)
+    ks: float = Field(default=1200.0 / MM_PER_M, ge=0)
+    boundary_mm_per_s2: float = Field(default=80.0, gt=0)
+    phi: tuple[float, float, float] = (0.005, 18.0, 0.02)
+
+
+class AdaptiveSettings(SlidingSettings):
+    """Gains of the paper, ks read per metre; bounds are those of Table 4."""
+
+    c1: float = Field(default=900.0, gt=0)
+    ks: float = Field(default=1115.0 / MM_PER_M, ge=0)
+    lowest: tuple[float, float, float] = (0.0005, 1.8, 0.002)
+    highest: tuple[float, float, float] = (0.05, 180.0, 0.2)
+    psi: tuple[float, float, float] = (1e-8, 2e-4, 1e-6)
+
+
+class ObserverSettings(_Table):
+    """Bandwidths of loop and observer."""
+
+    loop_rad_per_s: float = Field(default=10.0, gt=0)
+    observer_rad_per_s: float = Field(default=40.0, gt=0)
+
+
+class ControllerSettings(_Table):
+    """Every controller's gains."""
+
+    pid: PidSettings = PidSettings()
+    sliding_mode: SlidingSettings = Field(default=SlidingSettings(), alias="sliding-mode")
+    adaptive_sliding_mode: AdaptiveSettings = Field(
+        default=AdaptiveSettings(), alias="adaptive-sliding-mode"
+    )
+    disturbance_observer: ObserverSettings = Field(
+        default=ObserverSettings(), alias="disturbance-observer"
+    )
+
+
+class Settings(_Table):
+    """The whole file; every key optional."""
+
+    format: int = Field(default=1, ge=1, le=1)
+    rig: RigSettings = RigSettings()
+    drive: DriveSettings = DriveSettings()
+    reference: ReferenceSettings = ReferenceSettings()
+    sensor: SensorSettings = SensorSettings()
+    loop: LoopSettings = LoopSettings()
+    controllers: ControllerSettings = ControllerSettings()
+
+    @property
+    def step_s(self) -> float:
+        """Return the time between samples."""
+        return 1.0 / self.sensor.rate_Hz
+
+    def laws(self, controller: str, gain_mm_per_s_rpm: float) -> Laws:
+        """Return every controller's gains as the kernel takes them, one of them at work."""
+        gains = self.controllers
+        sliding, adaptive = gains.sliding_mode, gains.adaptive_sliding_mode
+        observer = gains.disturbance_observer
+        return Laws(
+            CONTROLLERS.index(controller),
+            Pid(**gains.pid.model_dump()),
+            SlidingMode(_surface(sliding), Phi(*sliding.phi)),
+            AdaptiveSlidingMode(
+                _surface(adaptive),
+                Phi(*adaptive.phi),
+                Phi(*adaptive.lowest),
+                Phi(*adaptive.highest),
+                Phi(*adaptive.psi),
+            ),
+            DisturbanceObserver(
+                observer.loop_rad_per_s, observer.observer_rad_per_s, gain_mm_per_s_rpm
+            ),
+        )
+
+
+def _surface(gains: SlidingSettings) -> Surface:
+    return Surface(gains.c1, gains.c2, gains.epsilon_rpm, gains.ks, gains.boundary_mm_per_s2)
+
+
+def read_settings(path: Path | None) -> Settings:
+    """Read a settings file; without one the paper's rig.
+
+    Raises
+    ------
+    InputError
+        It cannot be read, or says something that is unknown or not allowed.
+    """
+    return Settings() if path is None else parse(Settings, read_toml(path), path)
+
+
+def printed_gains(settings: Settings) -> Settings:
+    """Return the settings with the sliding modes' ks as the paper prints it, per millimetre."""
+    changed: dict[str, Any] = {
+        name: law.model_copy(update={"ks": law.ks * MM_PER_M})
+        for name, law in (
+            ("sliding_mode", settings.controllers.sliding_mode),
+            ("adaptive_sliding_mode", settings.controllers.adaptive_sliding_mode),
+        )
+    }
+    return settings.model_copy(
+        update={"controllers": settings.controllers.model_copy(update=changed)}
+    )

@@ -1,0 +1,156 @@
+"""One run of the closed loop: the controller's model makes the path, the plant answers."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from tsas_cli.controllers.closed_loop import (
+    ASKED,
+    F_OUT,
+    X_IN,
+    close_loop,
+    followed_from,
+)
+from tsas_cli.controllers.path import Path, follow
+from tsas_cli.controllers.signals import error_filter
+from tsas_cli.errors import InputError
+from tsas_cli.physics.plant import Actuator
+from tsas_cli.physics.rig import Rig
+from tsas_cli.tracking.scores import Score, score
+from tsas_cli.tracking.settings import Settings
+
+Floats = npt.NDArray[np.float64]
+RELAY_S = 0.5  # for so long at the limit, and …
+RELAY_TURNS_PER_S = 20.0  # … so often from one limit to the other, and a loop is a relay
+
+
+@dataclass(frozen=True)
+class Known:
+    """What the controller knows: its model of the rig and of the drive.
+
+    A drive whose stiffness is infinite is the paper's, Eq. (51): the feedforward is kinematics.
+    """
+
+    rig: Rig
+    actuator: Actuator
+
+
+@dataclass(frozen=True)
+class Plant:
+    """What the controller acts on; from `change_s` on the rig is `later`."""
+
+    rig: Rig
+    actuator: Actuator
+    later: Rig | None = None
+    change_s: float = 0.0
+
+
+@dataclass(frozen=True)
+class Tracked:
+    """One run: the columns of `closed_loop` by name, shape (m,) each, and how well it followed."""
+
+    time_s: Floats
+    wanted_N: Floats
+    columns: Floats
+    score: Score
+    unsettled: int
+
+
+def plan(wanted_N: Floats, known: Known, settings: Settings) -> Path:
+    """Return the path of the drive by the controller's model; see `controllers.path.follow`."""
+    return follow(
+        wanted_N,
+        settings.step_s,
+        known.rig,
+        known.actuator,
+        crossing_s=settings.loop.crossing_s,
+        nodes=settings.loop.nodes,
+    )
+
+
+def feedforward(path: Path, actuator: Actuator) -> Floats:
+    """Return kV dx/dt + kA d²x/dt² of the motor's path, shape (m,) [rpm], Eq. (51)."""
+    speed, acceleration = path.motor[1], path.motor[2]
+    answer: Floats = (speed + actuator.motor_lag_s * acceleration) / actuator.gain_mm_per_s_rpm
+    return answer
+
+
+def track(
+    wanted_N: Floats,
+    path: Path,
+    known: Known,
+    plant: Plant,
+    controller: str,
+    settings: Settings,
+    seed: int,
+    *,
+    relay: bool = False,
+) -> Tracked:
+    """Run the loop once, from rest at the path's first place.
+
+    Raises
+    ------
+    InputError
+        The loop is unstable: x_in has run away, or the motor swings from limit to limit (`relay`
+        follows that nevertheless).
+    """
+    step_s, m = settings.step_s, wanted_N.size
+    rng = np.random.default_rng(seed)
+    noise = settings.sensor.noise_mm * rng.standard_normal(m)
+    A, b = error_filter(settings.loop.filter_Hz, step_s)
+    limit_rpm = plant.actuator.speed_limit_rpm
+    nodes = settings.loop.nodes
+    table, chain = followed_from(float(path.drive[0, 0]), plant.rig, plant.actuator, nodes)
+    columns, unsettled, done = close_loop(
+        np.ascontiguousarray(path.drive[:, :m]),
+        feedforward(path, known.actuator)[:m],
+        noise,
+        settings.sensor.step_mm,
+        A,
+        b,
+        settings.laws(controller, known.actuator.gain_mm_per_s_rpm),
+        table,
+        chain,
+        (plant.rig, plant.later or plant.rig),
+        round(plant.change_s / step_s) if plant.later else -1,
+        plant.actuator,
+        nodes,
+        step_s,
+        settings.loop.substeps,
+    )
+    time_s = np.arange(m) * step_s
+    if done < m:
+        raise InputError(
+            f"the loop is unstable: x_in is {columns[X_IN, done - 1]:.4g} mm at "
+            f"{time_s[done]:.4g} s, where {path.drive[0, done]:.4g} mm is wanted",
+            where=f"controller {controller}",
+            remedy="lower its gains or the filter's cutoff",
+        )
+    asked = columns[ASKED]
+    if not relay:
+        _refuse_relay(asked, limit_rpm, time_s, controller)
+    return Tracked(
+        time_s,
+        wanted_N,
+        columns,
+        score(wanted_N, columns[F_OUT], asked, step_s, limit_rpm),
+        unsettled,
+    )
+
+
+def _refuse_relay(asked: Floats, limit_rpm: float, time_s: Floats, controller: str) -> None:
+    """Stop at a motor that swings between its limits: an unstable loop that the limit alone holds."""
+    side = np.where(np.abs(asked) >= limit_rpm, np.sign(asked), 0.0)
+    width = max(int(RELAY_S / (time_s[1] - time_s[0])), 1)
+    at_limit = np.convolve(side != 0.0, np.ones(width), "valid")
+    turns = np.convolve(np.append(side[1:] * side[:-1] < 0.0, False), np.ones(width), "valid")
+    swings = np.flatnonzero((at_limit > 0.5 * width) & (turns > RELAY_TURNS_PER_S * RELAY_S))
+    if swings.size:
+        k = int(swings[0])
+        raise InputError(
+            f"the loop is unstable: from {time_s[k]:.4g} s on the motor swings between its limits "
+            f"of ±{limit_rpm:g} rpm, {turns[k] / RELAY_S:.0f} times a second",
+            where=f"controller {controller}",
+            remedy="lower its gains or the filter's cutoff",
+        )

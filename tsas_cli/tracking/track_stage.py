@@ -1,0 +1,164 @@
+"""The track stage: controllers on conditions over seeds, their runs and scores in a folder.
+
+The folder is a dataset too: what was recorded can be calibrated and diagnosed.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import inf
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+
+from tsas_cli import __version__
+from tsas_cli.controllers.path import Path as DrivePath
+from tsas_cli.errors import InputError, nearest
+from tsas_cli.files import new_folder, sha256_of, write_json
+from tsas_cli.identification.model import data_sheet, read_model, source_of
+from tsas_cli.recordings.dataset import write_dataset
+from tsas_cli.tracking.conditions import Condition
+from tsas_cli.tracking.recorded import conditions, manifest, table_of
+from tsas_cli.tracking.references import reference
+from tsas_cli.tracking.scores import over_seeds
+from tsas_cli.tracking.settings import CONTROLLERS, Settings, printed_gains, read_settings
+from tsas_cli.tracking.track import Known, Plant, Tracked, feedforward, plan, track
+
+OFTEN_PERCENT = 5.0  # of the time at the motor's limit, from which it is said
+
+
+@dataclass(frozen=True)
+class Call:
+    """What the stage is asked for; see `tsas track --help`."""
+
+    model: Path | None = None
+    plant: Path | None = None
+    settings: Path | None = None
+    controllers: tuple[str, ...] = ("adaptive-sliding-mode",)
+    conditions: tuple[Condition, ...] = (Condition("undisturbed"),)
+    reference: str = "sine"
+    as_printed: bool = False
+    seeds: int = 1
+    first_seed: int = 1
+
+
+def track_all(
+    call: Call, out: Path, *, force: bool = False, step: Callable[[], None] = lambda: None
+) -> dict[str, Any]:
+    """Run every controller under every condition; write runs, dataset and `tracking.json`.
+
+    Raises
+    ------
+    InputError
+        A file is wrong, a controller unknown, the reference out of reach, the loop unstable, or
+        `out` exists and `force` is not set.
+    """
+    for name in call.controllers:
+        if name not in CONTROLLERS:
+            raise InputError(f"unknown controller {name}", remedy=nearest(name, CONTROLLERS))
+    settings = read_settings(call.settings)
+    if call.as_printed:
+        settings = printed_gains(settings)
+    known, plant = what_is_known(call, settings)
+    wanted = reference(call.reference, settings.reference, settings.step_s)
+    path = plan(wanted, known, settings)
+    results, tables = [], dict[str, pa.Table]()
+    with new_folder(out, force=force) as folder:
+        for condition in call.conditions:
+            real = condition.of(plant)
+            for name in call.controllers:
+                runs = []
+                for seed in range(call.first_seed, call.first_seed + call.seeds):
+                    relay = call.as_printed
+                    runs.append(track(wanted, path, known, real, name, settings, seed, relay=relay))
+                    step()
+                run_id = f"{name}-{condition.name}"
+                first, seed = runs[0], call.first_seed
+                tables[run_id] = table_of(first, path, real.rig, name, seed, settings)
+                results.append(_result(run_id, name, condition, runs))
+        summary = _header(call, settings) | {"results": results}
+        summary["notes"] = _notes(path, known, plant, results)
+        write_dataset(folder, manifest(tables, settings), tables)
+        write_json(folder / "tracking.json", summary)
+    return summary
+
+
+def what_is_known(call: Call, settings: Settings) -> tuple[Known, Plant]:
+    """Return what the controller knows of rig and drive, and the plant that it acts on.
+
+    Raises
+    ------
+    InputError
+        A model file is wrong.
+    """
+    run = conditions("track", settings)
+    stated = data_sheet(manifest(("track",), settings))
+    model = stated if call.model is None else read_model(call.model).over(stated)
+    real = model if call.plant is None else read_model(call.plant).over(stated)
+    actuator = settings.drive.actuator()
+    kinematic = actuator._replace(stiffness_N_per_mm=inf, motor_lag_s=0.0)
+    return Known(model.rig(run), kinematic), Plant(real.rig(run), actuator)
+
+
+def _result(run_id: str, name: str, condition: Condition, runs: list[Tracked]) -> dict[str, Any]:
+    return {
+        "controller": name,
+        "condition": condition.name,
+        "run": run_id,
+        "scores": over_seeds([run.score for run in runs]),
+        "unsettled_steps": sum(run.unsettled for run in runs),
+    }
+
+
+def _header(call: Call, settings: Settings) -> dict[str, Any]:
+    given = None if call.settings is None else call.settings.name
+    return {
+        "format": 1,
+        "stage": "track",
+        "version": __version__,
+        "model": source_of(call.model),
+        "plant": source_of(call.plant or call.model),
+        "settings": {"file": given, **settings.model_dump(mode="json", by_alias=True)},
+        "reference": _reference(call.reference),
+        "gains": "as printed" if call.as_printed else "default",
+        "seeds": [call.first_seed, call.first_seed + call.seeds - 1],
+        "conditions": {
+            condition.name: [
+                {"quantity": c.name, "value": c.value, "from_s": c.from_s}
+                for c in condition.changes
+            ]
+            for condition in call.conditions
+        },
+    }
+
+
+def _reference(name: str) -> dict[str, str]:
+    path = Path(name)
+    return {"file": path.name, "sha256": sha256_of(path)} if path.is_file() else {"shape": name}
+
+
+def _notes(path: DrivePath, known: Known, plant: Plant, results: list[dict[str, Any]]) -> list[str]:
+    """Return what of the runs is not to be trusted or not to be reached, and why."""
+    notes = []
+    if path.missed:
+        notes.append(f"{path.missed} samples of the wanted force are met by no place of the drive")
+    limit = plant.actuator.speed_limit_rpm
+    beyond = np.abs(feedforward(path, known.actuator)) > limit
+    if beyond.any():
+        notes.append(
+            f"the reference asks for more than the motor's {limit:g} rpm in {beyond.sum()} samples,"
+            f" up to {np.abs(feedforward(path, known.actuator)).max():.0f} rpm"
+        )
+    for result in results:
+        at_limit = result["scores"]["at_limit_percent"]["mean"]
+        if at_limit > OFTEN_PERCENT:
+            notes.append(
+                f"{result['run']}: the motor is at its limit for {at_limit:.0f} % of the time; "
+                f"the loop is a relay"
+            )
+        if result["unsettled_steps"]:
+            notes.append(
+                f"{result['run']}: {result['unsettled_steps']} steps of the tendon did not settle"
+            )
+    return notes
