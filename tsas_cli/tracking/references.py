@@ -15,25 +15,26 @@ WANTED, MEASURED = "f_out_ref_N", "f_out_N"
 
 
 def sine(t: Floats, form: ReferenceSettings) -> Floats:
-    """Mean + amplitude sin(ω t − π/2), as in Figs. 10 and 11 of Yang 2025."""
+    """Return mean + amplitude sin(ω t − π/2), as in Figs. 10 and 11 of Yang 2025."""
     return form.mean_N - form.amplitude_N * np.cos(form.angular_frequency_rad_per_s * t)
 
 
 def two_frequency(t: Floats, form: ReferenceSettings) -> Floats:
-    """The sine at twice its frequency for two of its periods, then as it is, as in Fig. 9."""
+    """Begin with two periods of the sine at twice its frequency, as in Fig. 9, then go on with it."""
     w = form.angular_frequency_rad_per_s
     switch = 2.0 * np.pi / w
     return form.mean_N - form.amplitude_N * np.cos(np.where(t < switch, 2.0 * w * t, w * t))
 
 
 def steps(t: Floats, form: ReferenceSettings) -> Floats:
-    """Four levels a period, each held: low, middle, high, middle."""
+    """Return four levels a period, each held: low, middle, high, middle."""
     part = np.floor(4.0 * t * form.angular_frequency_rad_per_s / (2.0 * np.pi)).astype(int) % 4
-    return form.mean_N + form.amplitude_N * np.array([-1.0, 0.0, 1.0, 0.0])[part]
+    levels: Floats = form.mean_N + form.amplitude_N * np.array([-1.0, 0.0, 1.0, 0.0])
+    return levels[part]
 
 
 def ramps(t: Floats, form: ReferenceSettings) -> Floats:
-    """A triangle of the sine's period and range."""
+    """Return a triangle of the sine's period and range."""
     part = (t * form.angular_frequency_rad_per_s / (2.0 * np.pi)) % 1.0
     return form.mean_N + form.amplitude_N * (1.0 - 4.0 * np.abs(part - 0.5))
 
@@ -49,8 +50,8 @@ SHAPES: dict[str, Callable[[Floats, ReferenceSettings], Floats]] = {
 def reference(name: str, form: ReferenceSettings, step_s: float) -> Floats:
     """Return the wanted force at each sample, shape (m,) [N].
 
-    `name` is a shape, or a Parquet file with `time_s` and `f_out_ref_N` (or else `f_out_N`), which is
-    followed linearly between its samples.
+    `name` is a shape, or a Parquet file with `time_s` and `f_out_ref_N` (or else `f_out_N`),
+    linear between its samples.
 
     Raises
     ------
@@ -59,7 +60,7 @@ def reference(name: str, form: ReferenceSettings, step_s: float) -> Floats:
         positive somewhere.
     """
     if name in SHAPES:
-        time_s = np.arange(round(form.duration_s / step_s) + 1) * step_s
+        time_s: Floats = np.arange(round(form.duration_s / step_s) + 1) * step_s
         wanted = SHAPES[name](time_s, form)
         where = f"reference {name}"
     elif Path(name).suffix == ".parquet" or Path(name).exists():
@@ -91,5 +92,5 @@ def _recorded(path: Path, step_s: float) -> tuple[Floats, Floats]:
         row = int(np.flatnonzero(~np.isfinite(values))[0])
         raise InputError(f"{name} has a gap", where=f"{path}, row {row}", expected="a force")
     count = int((time_s[-1] - time_s[0]) / step_s + 1e-9) + 1
-    at = np.arange(count) * step_s
+    at: Floats = np.arange(count) * step_s
     return at, np.interp(at, time_s - time_s[0], values)

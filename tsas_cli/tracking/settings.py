@@ -1,7 +1,7 @@
 """What a closed loop is made of beside model and drive; without a file it is the paper's rig.
 
-Lengths, bend, preload and reference are those of Yang 2025, "Verification of the proposed controller".
-What the paper does not give (rate, sensor, motor limit, filter, crossing) is chosen here and said.
+Lengths, bend, preload and reference are those of Yang 2025 ("Verification of the proposed
+controller"). What the paper does not give (rate, sensor, motor limit, filter, crossing) is chosen here and said.
 """
 
 import math
@@ -40,7 +40,7 @@ class RigSettings(_Table):
 
 
 class DriveSettings(_Table):
-    """The plant's drive. Stiffness is the km chosen for kr in Eq. (34); the lag is not the paper's."""
+    """The plant's drive: stiffness is the km chosen for kr, Eq. (34); the lag is not the paper's."""
 
     turntable_radius_mm: float = Field(default=27.1, gt=0)
     gear_ratio: float = Field(default=120.0, gt=0)

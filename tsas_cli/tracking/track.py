@@ -119,7 +119,7 @@ def track(
         step_s,
         settings.loop.substeps,
     )
-    time_s = np.arange(m) * step_s
+    time_s: Floats = np.arange(m) * step_s
     if done < m:
         raise InputError(
             f"the loop is unstable: x_in is {columns[X_IN, done - 1]:.4g} mm at "
@@ -140,7 +140,7 @@ def track(
 
 
 def _refuse_relay(asked: Floats, limit_rpm: float, time_s: Floats, controller: str) -> None:
-    """Stop at a motor that swings between its limits: an unstable loop that the limit alone holds."""
+    """Stop at a motor that swings between its limits: the limit alone holds an unstable loop."""
     side = np.where(np.abs(asked) >= limit_rpm, np.sign(asked), 0.0)
     width = max(int(RELAY_S / (time_s[1] - time_s[0])), 1)
     at_limit = np.convolve(side != 0.0, np.ones(width), "valid")
