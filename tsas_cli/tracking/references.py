@@ -20,7 +20,7 @@ def sine(t: Floats, form: ReferenceSettings) -> Floats:
 
 
 def two_frequency(t: Floats, form: ReferenceSettings) -> Floats:
-    """Begin with two periods of the sine at twice its frequency, as in Fig. 9, then go on with it."""
+    """Begin with two periods at twice the frequency, as in Fig. 9, then go on with the sine."""
     w = form.angular_frequency_rad_per_s
     switch = 2.0 * np.pi / w
     return form.mean_N - form.amplitude_N * np.cos(np.where(t < switch, 2.0 * w * t, w * t))
@@ -30,7 +30,8 @@ def steps(t: Floats, form: ReferenceSettings) -> Floats:
     """Return four levels a period, each held: low, middle, high, middle."""
     part = np.floor(4.0 * t * form.angular_frequency_rad_per_s / (2.0 * np.pi)).astype(int) % 4
     levels: Floats = form.mean_N + form.amplitude_N * np.array([-1.0, 0.0, 1.0, 0.0])
-    return levels[part]
+    wanted: Floats = levels[part]
+    return wanted
 
 
 def ramps(t: Floats, form: ReferenceSettings) -> Floats:
@@ -60,7 +61,7 @@ def reference(name: str, form: ReferenceSettings, step_s: float) -> Floats:
         positive somewhere.
     """
     if name in SHAPES:
-        time_s: Floats = np.arange(round(form.duration_s / step_s) + 1) * step_s
+        time_s: Floats = np.arange(round(form.duration_s / step_s) + 1, dtype=np.float64) * step_s
         wanted = SHAPES[name](time_s, form)
         where = f"reference {name}"
     elif Path(name).suffix == ".parquet" or Path(name).exists():
@@ -92,5 +93,5 @@ def _recorded(path: Path, step_s: float) -> tuple[Floats, Floats]:
         row = int(np.flatnonzero(~np.isfinite(values))[0])
         raise InputError(f"{name} has a gap", where=f"{path}, row {row}", expected="a force")
     count = int((time_s[-1] - time_s[0]) / step_s + 1e-9) + 1
-    at: Floats = np.arange(count) * step_s
+    at: Floats = np.arange(count, dtype=np.float64) * step_s
     return at, np.interp(at, time_s - time_s[0], values)

@@ -1,7 +1,8 @@
 """What a closed loop is made of beside model and drive; without a file it is the paper's rig.
 
 Lengths, bend, preload and reference are those of Yang 2025 ("Verification of the proposed
-controller"). What the paper does not give (rate, sensor, motor limit, filter, crossing) is chosen here and said.
+controller"). What the paper does not give (rate, sensor, motor limit, filter, crossing) is chosen
+here and said.
 """
 
 import math
@@ -40,7 +41,7 @@ class RigSettings(_Table):
 
 
 class DriveSettings(_Table):
-    """The plant's drive: stiffness is the km chosen for kr, Eq. (34); the lag is not the paper's."""
+    """The plant's drive: the stiffness is km as chosen for kr, Eq. (34); the lag is ours."""
 
     turntable_radius_mm: float = Field(default=27.1, gt=0)
     gear_ratio: float = Field(default=120.0, gt=0)

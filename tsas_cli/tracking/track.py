@@ -119,7 +119,7 @@ def track(
         step_s,
         settings.loop.substeps,
     )
-    time_s: Floats = np.arange(m) * step_s
+    time_s: Floats = np.arange(m, dtype=np.float64) * step_s
     if done < m:
         raise InputError(
             f"the loop is unstable: x_in is {columns[X_IN, done - 1]:.4g} mm at "
