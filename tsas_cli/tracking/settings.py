@@ -63,6 +63,10 @@ class DriveSettings(_Table):
             self.speed_limit_rpm,
         )
 
+    def kinematic(self) -> Actuator:
+        """Return the drive as Eq. (51) knows it: radius and gear ratio, stiff, without lag."""
+        return self.actuator()._replace(stiffness_N_per_mm=math.inf, motor_lag_s=0.0)
+
 
 class ReferenceSettings(_Table):
     """The wanted force mean − amplitude · cos(ω t), or what other shapes make of it."""

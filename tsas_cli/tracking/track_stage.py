@@ -5,7 +5,6 @@ The folder is a dataset too: what was recorded can be calibrated and diagnosed.
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import inf
 from pathlib import Path
 from typing import Any
 
@@ -97,8 +96,7 @@ def what_is_known(call: Call, settings: Settings) -> tuple[Known, Plant]:
     model = stated if call.model is None else read_model(call.model).over(stated)
     real = model if call.plant is None else read_model(call.plant).over(stated)
     actuator = settings.drive.actuator()
-    kinematic = actuator._replace(stiffness_N_per_mm=inf, motor_lag_s=0.0)
-    return Known(model.rig(run), kinematic), Plant(real.rig(run), actuator)
+    return Known(model.rig(run), settings.drive.kinematic()), Plant(real.rig(run), actuator)
 
 
 def _result(run_id: str, name: str, condition: Condition, runs: list[Tracked]) -> dict[str, Any]:
