@@ -10,6 +10,7 @@ from tsas_cli import __version__
 from tsas_cli.commands.calibrate import calibrate
 from tsas_cli.commands.challenge import challenge
 from tsas_cli.commands.check import check
+from tsas_cli.commands.close_loop import close_loop
 from tsas_cli.commands.diagnose import diagnose
 from tsas_cli.commands.effects import effects
 from tsas_cli.commands.explain import explain
@@ -51,6 +52,7 @@ app.command("simulate")(simulate)
 app.command("diagnose")(diagnose)
 app.command("plan")(plan)
 app.command("track")(track)
+app.command("close-loop")(close_loop)
 app.command("report")(report)
 app.command("effects")(effects)
 app.command("explain")(explain)

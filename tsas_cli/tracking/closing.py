@@ -6,7 +6,7 @@ tracks a reference with four models in inverse and feedforward: the data sheet's
 one, the extended one, and the plant's own, which is the limit.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -24,6 +24,7 @@ from tsas_cli.tracking.scores import over_seeds
 from tsas_cli.tracking.settings import CONTROLLERS, Settings
 from tsas_cli.tracking.track import Known, Plant, plan, track
 
+STEPS = 7  # pieces of work of a case
 MODELS = ("data sheet", "calibrated", "extended", "true")
 RECORDER = "disturbance-observer"
 RECORDED_EVERY = 5  # samples of the loop
@@ -56,8 +57,17 @@ CASES = (
 )
 
 
-def close(case: Case, settings: Settings, folder: Path, seeds: Sequence[int]) -> dict[str, Any]:
+def close(
+    case: Case,
+    settings: Settings,
+    folder: Path,
+    seeds: Sequence[int],
+    step: Callable[[], None] = lambda: None,
+) -> dict[str, Any]:
     """Record, diagnose and track one case; what the stages write goes into a folder.
+
+    The controllers know the drive, so that what the tendon's model lacks stands alone. `step` is
+    called after each piece of work.
 
     Raises
     ------
@@ -65,37 +75,49 @@ def close(case: Case, settings: Settings, folder: Path, seeds: Sequence[int]) ->
         As the stages raise it.
     """
     run = conditions("track", settings)
-    stated = data_sheet(manifest(("track",), settings))
-    actuator = settings.drive.actuator()
-    sheet = stated.rig(run)
-    plant = Plant(with_values(sheet, case.hidden), actuator)
-    record(plant, Known(sheet, settings.drive.kinematic()), settings, folder / "dataset")
+    sheet = data_sheet(manifest(("track",), settings)).rig(run)
+    drive = settings.drive.actuator()
+    plant = Plant(with_values(sheet, case.hidden), drive)
+    record(plant, Known(sheet, drive), settings, folder / "dataset")
+    step()
     dataset = read_dataset(folder / "dataset")
     calibrate_dataset(dataset, folder / "calibrate")
+    step()
     found = diagnose_dataset(dataset, folder / "calibrate", folder / "diagnose")
-    rigs = {
-        "data sheet": sheet,
-        "calibrated": read_model(folder / "calibrate" / FILE).rig(run),
-        "extended": read_model(folder / "diagnose" / EXTENDED).rig(run),
-        "true": plant.rig,
-    }
+    step()
+    rigs = (
+        sheet,
+        read_model(folder / "calibrate" / FILE).rig(run),
+        read_model(folder / "diagnose" / EXTENDED).rig(run),
+        plant.rig,
+    )
     wanted = reference("sine", settings.reference, settings.step_s)
     scores: dict[str, dict[str, Any]] = {name: {} for name in CONTROLLERS}
-    for model, rig in rigs.items():
-        known = Known(rig, actuator)
+    for model, rig in zip(MODELS, rigs, strict=True):
+        known = Known(rig, drive)
         path = plan(wanted, known, settings)
         for name in CONTROLLERS:
             runs = [track(wanted, path, known, plant, name, settings, seed) for seed in seeds]
             scores[name][model] = over_seeds([one.score for one in runs])
+        step()
     return {
         "case": case.name,
         "title": case.title,
         "hidden": case.hidden,
         "verdict": found["verdict"],
-        "named": [cause["effect"] for cause in found["named"]],
         "reason": found["reason"],
-        "scores": scores,
+        "named": [{"effect": c["effect"], "rivals": c["rivals"]} for c in found["named"]],
+        "controllers": [
+            {"controller": name, "models": by_model, "over_limit": over_limit(by_model)}
+            for name, by_model in scores.items()
+        ],
     }
+
+
+def over_limit(by_model: dict[str, Any]) -> float:
+    """Return by which factor the RMSE with the extended model is above that with the true one."""
+    extended, true = (by_model[model]["rmse_N"]["mean"] for model in MODELS[2:])
+    return float(extended / true)
 
 
 def record(plant: Plant, known: Known, settings: Settings, folder: Path) -> None:

@@ -8,7 +8,6 @@ from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.physics.rig import with_values
 from tsas_cli.tracking.track import Plant
 
-OPTION = "--disturb"
 ALLOWED = {name: (q.lower, q.upper, q.unit) for name, q in QUANTITIES.items()} | {
     "total_bend_rad": (0.0, 100.0, "rad")
 }
@@ -43,7 +42,7 @@ class Condition:
         return replace(plant, rig=rig, later=with_values(rig, late), change_s=change_s)
 
 
-def disturbed(options: Sequence[str]) -> Condition:
+def disturbed(options: Sequence[str], where: str = "--disturb") -> Condition:
     """Return the condition that options such as `friction_coefficient=0.16@10` describe.
 
     Raises
@@ -52,39 +51,39 @@ def disturbed(options: Sequence[str]) -> Condition:
         One is no NAME=VALUE[@SECONDS], names an unknown quantity, has a value that is not allowed,
         or they begin at more than one time within the run.
     """
-    changes = tuple(_change(option) for option in options)
+    changes = tuple(_change(option, where) for option in options)
     times = sorted({c.from_s for c in changes if c.from_s > 0.0})
     if len(times) > 1:
         raise InputError(
             f"changes begin at {', '.join(f'{t:g} s' for t in times)}",
-            where=OPTION,
+            where=where,
             expected="one time within the run",
         )
     return Condition("disturbed", changes)
 
 
-def _change(option: str) -> Change:
+def _change(option: str, where: str) -> Change:
     name, _, rest = option.partition("=")
     value, _, from_s = rest.partition("@")
     if name not in ALLOWED:
-        raise InputError(f"unknown quantity {name}", where=OPTION, remedy=nearest(name, ALLOWED))
+        raise InputError(f"unknown quantity {name}", where=where, remedy=nearest(name, ALLOWED))
     try:
         change = Change(name, float(value), float(from_s or 0.0))
     except ValueError as error:
         raise InputError(
-            f"{option!r} is no change", where=OPTION, expected="NAME=VALUE or NAME=VALUE@SECONDS"
+            f"{option!r} is no change", where=where, expected="NAME=VALUE or NAME=VALUE@SECONDS"
         ) from error
     lower, upper, unit = ALLOWED[name]
     if not lower <= change.value <= upper:
         raise InputError(
             f"{name} of {change.value:g}",
-            where=OPTION,
+            where=where,
             expected=f"{lower:g} to {upper:g} {unit}",
         )
     if change.from_s > 0.0 and name in ONLY_FROM_THE_START:
         raise InputError(
             f"{name} cannot change during a run",
-            where=OPTION,
+            where=where,
             remedy=f"leave out @{from_s}: all displacements count from the preload",
         )
     return change
