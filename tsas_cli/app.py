@@ -16,6 +16,7 @@ from tsas_cli.commands.explain import explain
 from tsas_cli.commands.ingest import ingest
 from tsas_cli.commands.plan import plan
 from tsas_cli.commands.report import report
+from tsas_cli.commands.reproduce import reproduce
 from tsas_cli.commands.simulate import simulate
 from tsas_cli.errors import InputError, printable
 
@@ -50,6 +51,7 @@ app.command("simulate")(simulate)
 app.command("diagnose")(diagnose)
 app.command("plan")(plan)
 app.command("report")(report)
+app.command("reproduce")(reproduce)
 app.command("effects")(effects)
 app.command("explain")(explain)
 app.add_typer(challenge)

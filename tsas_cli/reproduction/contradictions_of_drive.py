@@ -41,9 +41,9 @@ def excluded(paper: Paper) -> list[Row]:
 
 def drive_without_reaction(paper: Paper) -> list[Row]:
     """5: φ2 of the identified inverse against Eq. (37), and with the drive's own stiffness."""
-    lead, kr = paper["feedforward.lead"], paper.value("stiffness.chosen.kr")
+    lead, kinematics = paper["feedforward.lead"], 1.0 / kr_per_km(paper)
     kL, km = paper.value("rig.load_stiffness"), paper.value("stiffness.chosen.km")
-    kinematics = 1.0 / kr_per_km(paper)
+    kr = km / kinematics
     without, with_it = kL / kr, (kL + km) / kr
     return [
         within(
@@ -53,7 +53,7 @@ def drive_without_reaction(paper: Paper) -> list[Row]:
             percent=LEAD_PERCENT,
             because="Eq. (25) pushes the tendon by km times the motor's position, whatever the "
             f"tendon does; the identified φ2 is {lead.value / without:.0f} times larger",
-            evidence=f"kL/kr = {kL:g}/{kr:g} = {without:.3f}; Eq. (47) leads with {lead.value:g}.",
+            evidence=f"kL/kr = {kL:g}/{kr:.4f} = {without:.3f}; Eq. (47) leads with {lead.value:g}.",
         ),
         within(
             "φ2 of the identified inverse is (kL + km)/kr: the drive's stiffness reacts on x_in",
@@ -62,7 +62,7 @@ def drive_without_reaction(paper: Paper) -> list[Row]:
             percent=LEAD_PERCENT,
             because="the drive's stiffness explains another φ2",
             evidence=f"km (x_motor − x_in) in place of km x_motor gives {without:.2f} + "
-            f"{km / kr:.2f} = {with_it:.2f}, of which km/kr is 60 im/(2π r1) = {kinematics:.4f}, "
+            f"{km / kr:.2f} = {with_it:.2f}; km/kr is 60 im/(2π r1) = {kinematics:.4f} for any km, "
             "kinematics alone.",
         ),
     ]

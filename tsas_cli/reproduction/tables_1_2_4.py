@@ -13,6 +13,7 @@ STEEL_GPA = 200.0
 SHARE_PERCENT = 10.0
 KINEMATICS_PERCENT = 0.1
 GREEK = {"phi1": "φ1", "phi2": "φ2", "phi3": "φ3"}
+ROUNDED_PERCENT = 0.01
 BLOCK_KG = 1.0  # for which the constants of the bristles are those of a textbook
 
 
@@ -26,9 +27,11 @@ def tables_1_2_4(paper: Paper) -> Group:
             _length(paper),
             _lead(paper),
             _preload(paper),
+            _friction(paper),
             *_tendon(paper),
             _bristles(paper),
             *_bounds(paper),
+            *_gains(paper),
             *_widths(paper),
         ),
     )
@@ -76,6 +79,15 @@ def _preload(paper: Paper) -> Row:
     )
 
 
+def _friction(paper: Paper) -> Row:
+    return to_the_digit(
+        "Friction coefficient of the static model is that of the dynamic one in motion",
+        paper["rig.friction_coefficient"],
+        paper.value("rig.dynamic_friction_coefficient"),
+        evidence=f"At rest it is {paper.value('rig.static_friction_coefficient'):g}.",
+    )
+
+
 def _tendon(paper: Paper) -> list[Row]:
     area_mm2 = math.pi / 4.0 * paper.value("rig.tendon_diameter") ** 2
     solid = STEEL_KG_PER_M3 * 1e-6 * area_mm2 * 100.0  # kg per 100 m
@@ -109,10 +121,11 @@ def _bristles(paper: Paper) -> Row:
     sigma0, sigma1 = paper.value("rig.bristle_stiffness"), paper["rig.micro_damping"]
     lump_kg = lump_mass_kg(paper)
     critical = 2.0 * math.sqrt(1e-3 * sigma0 * lump_kg)
-    return to_the_digit(
+    return within(
         f"Damping of the bristles is √(σ0 · {BLOCK_KG:g} kg)",
         sigma1,
         math.sqrt(1e-3 * sigma0 * BLOCK_KG),
+        percent=ROUNDED_PERCENT,
         evidence=f"A lump of this tendon weighs {lump_kg:.2g} kg: its critical damping is "
         f"{critical:.4f} N s/mm, so Table 1's is {sigma1.value / critical:.0f} times that.",
     )
@@ -143,6 +156,29 @@ def _bounds(paper: Paper) -> list[Row]:
             )
         )
     return rows
+
+
+def _gains(paper: Paper) -> list[Row]:
+    """Judge "the parameters of the proposed ASMCC were consistent with those of the SMCC"."""
+    return [
+        to_the_digit(
+            f"{gain} of the adaptive controller is that of the sliding mode controller",
+            paper[f"controllers.adaptive_sliding_mode.{gain}"],
+            paper.value(f"controllers.sliding_mode.{gain}"),
+            because="the text gives each controller a value of its own, and then says that they are "
+            "the same",
+            evidence="; ".join(
+                f"{words}: c1 {paper.value(f'controllers.{name}.c1'):g}, "
+                f"ks {paper.value(f'controllers.{name}.ks'):g}"
+                for name, words in (
+                    ("adaptive_sliding_mode", "adaptive"),
+                    ("sliding_mode", "sliding mode"),
+                )
+            )
+            + ".",
+        )
+        for gain in ("c1", "ks")
+    ]
 
 
 def _widths(paper: Paper) -> list[Row]:
