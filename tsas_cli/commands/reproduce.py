@@ -6,7 +6,7 @@ from tsas_cli.commands.common import Force, Json, OutFolder, Quiet, progress, sh
 def reproduce(
     out: OutFolder, force: Force = False, quiet: Quiet = False, as_json: Json = False
 ) -> None:
-    """Compute the tables and figures of Yang et al. 2025 again, and say what agrees and what not."""
+    """Compute the tables and figures of Yang et al. 2025 again, and say what agrees."""
     from tsas_cli.files import new_folder, write_json
     from tsas_cli.paper import yang2025
     from tsas_cli.reporting.reproduction import reproduction_page

@@ -8,39 +8,39 @@ from tsas_cli.reporting.content import Group as Fold
 from tsas_cli.reporting.content import Picture, Section, Table
 from tsas_cli.reporting.drawing import picture
 from tsas_cli.reporting.figures.curves import draw_curves
-from tsas_cli.reporting.numbers import ABSENT, plain
+from tsas_cli.reporting.numbers import ABSENT, as_printed, plain
 from tsas_cli.reporting.rendered import rendered
 from tsas_cli.reproduction.group import Figure, Group, Row
 from tsas_cli.reproduction.summary import sentence, verdict_table
 
-HEADER = ("what", "paper", "ours", "ours / paper", "verdict", "evidence", "in the paper")
+HEADER = ("what", "paper", "ours", "ours / paper", "verdict")
+WITHOUT_UNIT = {"1", "not printed", ""}
+_HOW = (
+    "Every number and statement that can be computed is a row: the paper's value, ours, and a "
+    "verdict that follows from a stated tolerance. Under it stand the reason, the numbers behind "
+    "it, and in brackets where the paper says it. Where the paper is held against itself, ours is "
+    "what follows from its other numbers. Nothing is fitted to its results."
+)
 NUMERIC = frozenset({1, 2, 3})
 
 
 def reproduction_page(paper: Paper, groups: Sequence[Group]) -> str:
     """Return the whole page as HTML."""
-    citation = paper.citation
     return rendered(
         name="The paper done again",
-        about=citation["title"],
+        about=paper.citation["title"],
         summary=sentence(groups),
         sections=(_overview(paper, groups), *(_section(group) for group in groups)),
     )
 
 
 def _overview(paper: Paper, groups: Sequence[Group]) -> Section:
-    citation = paper.citation
+    cited = "{authors}: {title}. {journal}, doi {doi}.".format(**paper.citation)
     header, rows = verdict_table(groups)
     return Section(
         "overview",
         "What is compared",
-        (
-            f"{citation['authors']}: {citation['title']}. {citation['journal']}, "
-            f"doi {citation['doi']}.",
-            "Every number and statement that can be computed is a row: the paper's value, ours, and a "
-            "verdict that follows from a stated tolerance. Where they differ, the reason stands with "
-            "the numbers behind it. Nothing is fitted to the paper's results.",
-        ),
+        (cited, _HOW),
         commands=("tsas reproduce --out reports/paper",),
         tables=(Table("Verdicts", header, tuple(rows), numeric=frozenset(range(1, len(header)))),),
     )
@@ -50,7 +50,13 @@ def _section(group: Group) -> Section:
     folds: dict[str, list[Picture]] = {}
     for figure in group.figures:
         folds.setdefault(figure.part, []).append(_picture(figure))
-    table = Table(group.title, HEADER, tuple(_cells(row) for row in group.rows), numeric=NUMERIC)
+    table = Table(
+        "The paper's values and ours",
+        HEADER,
+        tuple(_cells(row) for row in group.rows),
+        numeric=NUMERIC,
+        notes=tuple(_note(row) for row in group.rows),
+    )
     return Section(
         group.anchor,
         group.title,
@@ -65,17 +71,22 @@ def _section(group: Group) -> Section:
 def _cells(row: Row) -> tuple[str, ...]:
     return (
         row.what,
-        _with_unit(row.paper, row.unit),
-        _with_unit(row.ours, row.unit),
+        _with_unit(as_printed(row.paper), row.unit),
+        _with_unit(plain(row.ours), row.unit),
         plain(row.ratio),
-        row.words,
-        row.evidence,
-        row.source,
+        row.verdict,
     )
 
 
-def _with_unit(value: float | None, unit: str) -> str:
-    return ABSENT if value is None else f"{plain(value)} {unit}"
+def _note(row: Row) -> str:
+    """Return the verdict in words, what it rests on, and where the paper says it."""
+    words = f"{row.words[0].upper()}{row.words[1:]}."
+    return " ".join(part for part in (words, row.evidence, f"[{row.source}]") if part)
+
+
+def _with_unit(number: str, unit: str) -> str:
+    shown = unit.replace("^2", "²").replace("^3", "³")
+    return number if number == ABSENT or unit in WITHOUT_UNIT else f"{number} {shown}"
 
 
 def _picture(figure: Figure) -> Picture:

@@ -1,6 +1,7 @@
 """The paper done again: every table and figure that can be computed, held against what it prints.
 
-A group of rows is one file with one function from the `Paper` to a `Group`, and its line in `GROUPS`.
+Each table or figure is one file with one function from the `Paper` to a `Group`, and its line in
+`GROUPS`.
 """
 
 from collections.abc import Callable

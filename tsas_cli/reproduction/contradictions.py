@@ -3,6 +3,8 @@
 "Differs" in these rows is the contradiction; a row that agrees would say that it is gone.
 """
 
+from dataclasses import replace
+
 from tsas_cli.paper import Paper
 from tsas_cli.reproduction.contradictions_of_drive import drive_without_reaction, excluded, swapped
 from tsas_cli.reproduction.contradictions_of_model import (
@@ -33,17 +35,12 @@ def contradictions(paper: Paper) -> Group:
     return Group(
         "contradictions",
         "Where the paper contradicts itself or its rig",
-        (
-            "Nine places. \"Differs\" is the contradiction itself; under one number may stand what "
-            "resolves it.",
-        ),
+        ("Nine places, some with several rows. Where a row differs, that is the contradiction.",),
         tuple(_numbered(number, row) for number, rows in enumerate(found, 1) for row in rows),
     )
 
 
 def _numbered(number: int, row: Row) -> Row:
-    from dataclasses import replace
-
     return replace(row, what=f"{number}. {row.what}")
 
 

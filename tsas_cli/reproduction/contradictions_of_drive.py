@@ -27,7 +27,7 @@ def excluded(paper: Paper) -> list[Row]:
                 f"{GREEK[name]} of Eq. (37) lies inside the bounds of Table 4",
                 f"{lower.source}, Eq. (37)",
                 true=lower.value <= value <= upper.value,
-                criterion=f"({lower.value:g} to {upper.value:g})",
+                criterion=f"with {lower.value:g} to {upper.value:g}",
                 unit=lower.unit,
                 paper=near.value if not lower.value <= value <= upper.value else start,
                 ours=value,
@@ -53,7 +53,7 @@ def drive_without_reaction(paper: Paper) -> list[Row]:
             percent=LEAD_PERCENT,
             because="Eq. (25) pushes the tendon by km times the motor's position, whatever the "
             f"tendon does; the identified φ2 is {lead.value / without:.0f} times larger",
-            evidence=f"kL/kr = {kL:g}/{kr:.4f} = {without:.3f}; Eq. (47) leads with {lead.value:g}.",
+            evidence=f"kL/kr = {kL:g}/{kr:.4f} = {without:.3f}; Eq. (47) has {lead.value:g}.",
         ),
         within(
             "φ2 of the identified inverse is (kL + km)/kr: the drive's stiffness reacts on x_in",
@@ -87,12 +87,12 @@ def swapped(paper: Paper) -> list[Row]:
                 f"With the disturbance RMSE and largest error grow together, {words}",
                 "Table 5; Figs. 10 and 11, text",
                 true=(growth > 1.0) == (of_rms > 1.0),
-                criterion="(both above or both below 1)",
-                unit="times",
+                criterion="in both being above or both below 1",
+                unit="1",
                 paper=of_rms,
                 ours=growth,
-                because=f"RMSE becomes {of_rms:.2f} times, the largest error {growth:.2f} times what "
-                "it was",
+                because=f"RMSE becomes {of_rms:.2f} times what it was, and the largest error "
+                f"{growth:.2f} times",
                 evidence=f"RMSE {rms[0]:g} to {rms[1]:g} N, largest error {largest[0]:g} to "
                 f"{largest[1]:g} N: {peak[0]:.1f} and {peak[1]:.1f} times RMSE.",
             )

@@ -17,7 +17,7 @@ from tsas_cli.reproduction.rig import (
     dynamic_rig,
     motion,
     quasi_static_rig,
-    tendon_stiffness_N,
+    tendon_stiffness,
     wrap_of,
 )
 from tsas_cli.reproduction.verdicts import holds, signed, untold, within
@@ -31,10 +31,10 @@ def last_lump(paper: Paper) -> list[Row]:
     """3: K(n, n) of Eq. (14) against the balance of forces of the last lump."""
     n, kL = int(paper.value("rig.microelements")), paper.value("rig.load_stiffness")
     L = paper.value("rig.sheath_length")
-    k = tendon_stiffness_N(paper) * n / L
+    k = tendon_stiffness(paper) * n / L
     printed, right = -2.0 * k, -(k + kL)
     seen = [_stiffness_at_drive(k, n, corner) for corner in (printed, right)]
-    series = 1.0 / (L / tendon_stiffness_N(paper) + 1.0 / kL)
+    series = 1.0 / (L / tendon_stiffness(paper) + 1.0 / kL)
     return [
         holds(
             "K(n, n) = −2k of Eq. (14) is the balance of the last lump",
@@ -44,10 +44,10 @@ def last_lump(paper: Paper) -> list[Row]:
             unit="N/mm",
             paper=printed,
             ours=right,
-            because=f"the load's spring stands behind the last lump, not a segment: −(k + kL), with "
-            f"k = {k:.0f} and kL = {kL:g} N/mm",
-            evidence=f"Without friction the drive would feel {seen[0]:.1f} N/mm, a tendon clamped at "
-            f"its end; with −(k + kL) it feels {seen[1]:.4f}, tendon and load spring in series "
+            because="the load's spring stands behind the last lump, not a segment: −(k + kL), "
+            f"with k = {k:.0f} and kL = {kL:g} N/mm",
+            evidence=f"Without friction the drive would feel {seen[0]:.1f} N/mm, a tendon clamped "
+            f"at its end; with −(k + kL) it feels {seen[1]:.4f}, tendon and load spring in series "
             f"({series:.4f}).",
         )
     ]
@@ -65,9 +65,9 @@ def free_tendon(paper: Paper) -> list[Row]:
     """7: tendon outside of the sheath, which the paper supposes and does not test."""
     theory = paper.value("stiffness.theory.km_dead_band")
     up, down = paper["stiffness.measured.km_f_b"], paper["stiffness.measured.km_c_e"]
-    length = tendon_stiffness_N(paper) * (1.0 / up.value - 1.0 / theory)
-    for_down = tendon_stiffness_N(paper) * (1.0 / down.value - 1.0 / theory)
-    both = 1.0 / (1.0 / theory + length / tendon_stiffness_N(paper))
+    length = tendon_stiffness(paper) * (1.0 / up.value - 1.0 / theory)
+    for_down = tendon_stiffness(paper) * (1.0 / down.value - 1.0 / theory)
+    both = 1.0 / (1.0 / theory + length / tendon_stiffness(paper))
     rig, (_, drive) = quasi_static_rig(paper), motion(paper, "a")
     plain = simulate(rig, drive)
     free = simulate(rig._replace(effects=Effects(free_tendon=FreeTendon(length, 0.0))), drive)
@@ -80,8 +80,8 @@ def free_tendon(paper: Paper) -> list[Row]:
             percent=PERCENT,
             because="tendon in series makes both bands softer; for c-e its length would have to be "
             f"{signed(for_down, 0)} mm",
-            evidence=f"{length:.0f} mm in series with {theory:g} N/mm give {both:.2f} N/mm, in both "
-            f"bands; measured are {up.value:g} (f-b) and {down.value:g} N/mm (c-e).",
+            evidence=f"{length:.0f} mm in series with {theory:g} N/mm give {both:.2f} N/mm, in "
+            f"both bands; measured are {up.value:g} (f-b) and {down.value:g} N/mm (c-e).",
         ),
         untold(
             "Tendon outside of the sheath makes the measured x_out smaller than calculated",
@@ -102,7 +102,7 @@ def biased(paper: Paper) -> list[Row]:
         printed, slope = paper["stiffness.theory.km_dead_band"], band.slope()
         rows.append(
             within(
-                f"A straight line through the dead band {name.replace('_', '-')} has km of Eq. (29)",
+                f"A line through the dead band {name.replace('_', '-')} has km of Eq. (29)",
                 printed,
                 slope,
                 percent=PERCENT,
@@ -132,15 +132,15 @@ def ill_posed(paper: Paper) -> list[Row]:
                 f"Contraction of group {group} is stable as printed",
                 "Eq. (15), Table 1, Fig. 4",
                 true=limit is None or fastest < limit,
-                criterion="(fastest speed below the limit)",
+                criterion="with its fastest speed below the limit",
                 unit="mm/s",
                 paper=fastest,
                 ours=limit,
-                because=f"at f_out = {F_OUT_N:g} N sliding is unstable above {limit or 0.0:.1f} mm/s, "
-                "and Fig. 4 shows a curve all the same",
+                because=f"at f_out = {F_OUT_N:g} N sliding is unstable above the limit, and Fig. 4 "
+                "shows a curve all the same",
                 evidence=f"At {fastest:g} mm/s the fastest disturbance grows by "
-                f"{signed(rates[0], 0)}/s as printed, {signed(rates[1], 0)}/s with critically damped "
-                "bristles.",
+                f"{signed(rates[0], 0)}/s as printed, {signed(rates[1], 0)}/s with critically "
+                "damped bristles.",
             )
         )
     return rows

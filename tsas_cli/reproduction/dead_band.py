@@ -38,7 +38,9 @@ class DeadBand:
 
         if not self.slope() <= slope <= self.slope(SMALLEST_SHARE):
             return None
-        return float(brentq(lambda share: self.slope(share) - slope, SMALLEST_SHARE, 1.0, xtol=1e-4))
+        return float(
+            brentq(lambda share: self.slope(share) - slope, SMALLEST_SHARE, 1.0, xtol=1e-4)
+        )
 
     @property
     def width_mm(self) -> float:
@@ -71,7 +73,7 @@ def dead_band(rig: Rig, top_mm: float, *, up: bool) -> DeadBand:
 
 
 def _width(rig: Rig, f_out_N: float) -> float:
-    """Return the drive's travel in a whole dead band, tendon outside of the sheath included [mm]."""
+    """Return the drive's travel in a whole dead band, free tendon included [mm]."""
     wrap = wrap_of(rig)
     inside = dead_band_width(f_out_N, wrap, rig.sheath_length_mm, rig.tendon_stiffness_N)
     return inside + 2.0 * math.sinh(wrap) * f_out_N * compliance_at_drive(rig)

@@ -39,15 +39,17 @@ class Runs:
     period_s: float
     time_s: Floats
     second: npt.NDArray[np.bool_]
-    at_p: int
+    sample_at_p: int
     models: dict[str, Response]
     unstable: tuple[Stability, ...]
 
     @property
     def diverging(self) -> Stability | None:
-        """The fastest growth in full slip as printed; None where only turns and dead bands chatter."""
+        """The fastest growth in full slip as printed, but for turns; None where it is stable."""
         turning = SLOW * max(abs(np.gradient(self.models["slip"].x_in_mm, self.time_s)))
-        sliding = [s for s in self.unstable if s.moment.whole and abs(s.moment.speed_mm_s) > turning]
+        sliding = [
+            s for s in self.unstable if s.moment.whole and abs(s.moment.speed_mm_s) > turning
+        ]
         return max(sliding, key=lambda s: s.folds, default=None)
 
     @property
@@ -56,9 +58,9 @@ class Runs:
         bands = [s for s in self.unstable if not s.moment.whole]
         return max(bands, key=lambda s: s.folds, default=None)
 
-    def at_P(self, model: str) -> float:
+    def f_in_at_p(self, model: str) -> float:
         """Return f_in at point P of the second period [N]."""
-        return float(self.models[model].f_in_N[self.at_p])
+        return float(self.models[model].f_in_N[self.sample_at_p])
 
     def difference(
         self, model: str, other: str, channel: str, *, outside: bool = False
@@ -124,7 +126,7 @@ def effect_of_mass(paper: Paper, group: str) -> float:
 
 
 def effect_of_speed(slow: Runs, fast: Runs) -> Difference:
-    """Return how far f_in of the dynamic model is apart at two speeds of one motion [% of range]."""
+    """Return how far f_in of the dynamic model is apart at two speeds [% of its range]."""
     angles = np.linspace(2.0 * math.pi, 4.0 * math.pi, 4001)[1:-1]
     one, two = (
         np.interp(angles, 2.0 * math.pi * runs.time_s / runs.period_s, runs.models["fine"].f_in_N)

@@ -63,7 +63,7 @@ class Row:
 
 @dataclass(frozen=True)
 class Line:
-    """One curve, shape (n,) each; `dashed` for what is not simulated, a `mark` for single points."""
+    """One curve, shape (n,) each; `dashed` for what is no model, a `mark` for single points."""
 
     label: str
     x: Floats
@@ -86,7 +86,7 @@ class Figure:
 
 @dataclass(frozen=True)
 class Group:
-    """A table or figure of the paper: how it was done again, its rows, its figures, what follows."""
+    """A table or figure of the paper: how it is done again, rows, figures, what follows."""
 
     anchor: str
     title: str

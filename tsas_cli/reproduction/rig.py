@@ -27,8 +27,8 @@ def sheath_length_mm(paper: Paper, group: str) -> float:
     )
 
 
-def tendon_stiffness_N(paper: Paper) -> float:
-    """Return EA."""
+def tendon_stiffness(paper: Paper) -> float:
+    """Return EA [N]."""
     area_mm2 = math.pi / 4.0 * paper.value("rig.tendon_diameter") ** 2
     return 1e3 * paper.value("rig.tendon_modulus") * area_mm2
 
@@ -37,7 +37,7 @@ def quasi_static_rig(paper: Paper, group: str = "a") -> Rig:
     """Return the rig of a group, with the length of Table 2 and no friction but Coulomb's."""
     return Rig(
         friction_coefficient=paper.value("rig.friction_coefficient"),
-        tendon_stiffness_N=tendon_stiffness_N(paper),
+        tendon_stiffness_N=tendon_stiffness(paper),
         load_stiffness_N_per_mm=paper.value("rig.load_stiffness"),
         sheath_length_mm=sheath_length_mm(paper, group),
         total_bend_rad=paper.value(f"groups.{group}.total_bend"),
@@ -92,6 +92,4 @@ def motion(paper: Paper, group: str, *, periods: float = 2.0) -> tuple[Floats, D
 
 def kr_per_km(paper: Paper) -> float:
     """Return kr/km = 2π r1/(60 im) [mm/s per rpm], Eq. (25)."""
-    return speed_per_stiffness(
-        paper.value("rig.turntable_radius"), paper.value("rig.gear_ratio")
-    )
+    return speed_per_stiffness(paper.value("rig.turntable_radius"), paper.value("rig.gear_ratio"))

@@ -28,8 +28,8 @@ def sentence(groups: Sequence[Group]) -> str:
     """Return the outcome in one sentence."""
     total = counted(groups)
     return (
-        f"Of {sum(total.values())} numbers and statements of the paper {total['agrees']} agree with "
-        f"ours, {total['differs']} differ, and {total['cannot tell']} cannot be told."
+        f"Of {sum(total.values())} numbers and statements of the paper {total['agrees']} agree "
+        f"with ours, {total['differs']} differ, and {total['cannot tell']} cannot be told."
     )
 
 

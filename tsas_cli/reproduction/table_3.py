@@ -10,6 +10,10 @@ from tsas_cli.reproduction.verdicts import holds, signed, to_the_digit
 
 PHASES = ("contraction", "dead_band", "loosening")
 NEGLIGIBLE_PERCENT = 5.0
+_WHAT = (
+    "km is the slope of the tension over the displacement at the drive, kr = km · 2π r1/(60 im) "
+    "how fast the tension rises per speed of the motor; the table prints no unit for kr."
+)
 
 
 def table_3(paper: Paper) -> Group:
@@ -18,10 +22,7 @@ def table_3(paper: Paper) -> Group:
     return Group(
         "table-3",
         "Table 3: stiffness by theory",
-        (
-            "km is the slope of the tension over the displacement at the drive, kr = km · 2π r1/(60 im)"
-            " what the speed of the motor makes of it; the table prints no unit for kr.",
-        ),
+        (_WHAT,),
         (*_km_rows(paper, km), *_kr_rows(paper, km), *_elastic_rows(paper, km)),
     )
 

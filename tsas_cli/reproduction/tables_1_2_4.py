@@ -22,7 +22,7 @@ def tables_1_2_4(paper: Paper) -> Group:
     return Group(
         "tables-1-2-4",
         "Tables 1, 2 and 4: their numbers among each other",
-        (),
+        ("Numbers that follow from others of the tables or of the text.",),
         (
             _length(paper),
             _lead(paper),
@@ -75,7 +75,7 @@ def _preload(paper: Paper) -> Row:
         "The reference of Figs. 9 to 11 begins at the preload",
         paper["rig.preload"],
         lowest,
-        evidence=f"{paper.value('reference.mean'):g} less {paper.value('reference.amplitude'):g} N.",
+        evidence=f"{paper.value('reference.mean'):g} − {paper.value('reference.amplitude'):g} N.",
     )
 
 
@@ -126,7 +126,7 @@ def _bristles(paper: Paper) -> Row:
         sigma1,
         math.sqrt(1e-3 * sigma0 * BLOCK_KG),
         percent=ROUNDED_PERCENT,
-        evidence=f"A lump of this tendon weighs {lump_kg:.2g} kg: its critical damping is "
+        evidence=f"A lump of this tendon weighs {1e6 * lump_kg:.0f} mg: its critical damping is "
         f"{critical:.4f} N s/mm, so Table 1's is {sigma1.value / critical:.0f} times that.",
     )
 
@@ -165,8 +165,8 @@ def _gains(paper: Paper) -> list[Row]:
             f"{gain} of the adaptive controller is that of the sliding mode controller",
             paper[f"controllers.adaptive_sliding_mode.{gain}"],
             paper.value(f"controllers.sliding_mode.{gain}"),
-            because="the text gives each controller a value of its own, and then says that they are "
-            "the same",
+            because="the text gives each controller a value of its own, and then says that they "
+            "are the same",
             evidence="; ".join(
                 f"{words}: c1 {paper.value(f'controllers.{name}.c1'):g}, "
                 f"ks {paper.value(f'controllers.{name}.ks'):g}"
@@ -186,9 +186,7 @@ def _widths(paper: Paper) -> list[Row]:
     rig, mean = bench_rig(paper), paper.value("reference.mean")
     rows = []
     for tension in (rig.preload_N, mean + paper.value("reference.amplitude")):
-        width = dead_band_width(
-            tension, wrap_of(rig), rig.sheath_length_mm, rig.tendon_stiffness_N
-        )
+        width = dead_band_width(tension, wrap_of(rig), rig.sheath_length_mm, rig.tendon_stiffness_N)
         share = 100.0 * width / (2.0 * paper.value("rig.input_amplitude"))
         rows.append(
             untold(

@@ -4,7 +4,7 @@
 """
 
 from tsas_cli.paper import Printed
-from tsas_cli.reproduction.group import Row
+from tsas_cli.reproduction.group import Row, Verdict
 
 NOT_KNOWN = "of a cause that is not known here"
 
@@ -14,7 +14,8 @@ def to_the_digit(
 ) -> Row:
     """Compare with a printed number as far as its digits go."""
     agrees = abs(ours - printed.value) <= printed.half_a_digit * (1.0 + 1e-9)
-    criterion = f"to the last digit printed (± {printed.half_a_digit:g} {printed.unit})"
+    half = f"{printed.half_a_digit:.12f}".rstrip("0").rstrip(".")
+    criterion = f"to the last digit printed, ± {half}"
     return _row(what, printed, ours, agrees, criterion, because, evidence)
 
 
@@ -45,7 +46,8 @@ def holds(
     evidence: str = "",
 ) -> Row:
     """Judge a statement of the paper; `criterion` says in words when `true` is."""
-    verdict, cause = ("agrees", "") if true else ("differs", because or NOT_KNOWN)
+    verdict: Verdict = "agrees" if true else "differs"
+    cause = "" if true else because or NOT_KNOWN
     return Row(what, source, unit, paper, ours, verdict, criterion, cause, evidence)
 
 

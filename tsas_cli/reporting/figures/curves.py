@@ -23,6 +23,4 @@ def draw_curves(drawing: Any, figure: Figure) -> None:
             label=line.label,
         )
     axes.set(xlabel=figure.axes[0], ylabel=figure.axes[1])
-    drawing.legend(
-        loc="outside upper left", ncols=COLUMNS, handlelength=1.8, columnspacing=1.2
-    )
+    drawing.legend(loc="outside upper left", ncols=COLUMNS, handlelength=1.8, columnspacing=1.2)
