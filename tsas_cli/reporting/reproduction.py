@@ -19,7 +19,7 @@ _HOW = (
     "Every number and statement that can be computed is a row: the paper's value, ours, and a "
     "verdict that follows from a stated tolerance. Under it stand the reason, the numbers behind "
     "it, and in brackets where the paper says it. Where the paper is held against itself, ours is "
-    "what follows from its other numbers. Nothing is fitted to its results."
+    "what follows from its other numbers. No value of ours is fitted to its results."
 )
 NUMERIC = frozenset({1, 2, 3})
 

@@ -27,7 +27,7 @@ def excluded(paper: Paper) -> list[Row]:
                 f"{GREEK[name]} of Eq. (37) lies inside the bounds of Table 4",
                 f"{lower.source}, Eq. (37)",
                 true=lower.value <= value <= upper.value,
-                criterion=f"with {lower.value:g} to {upper.value:g}",
+                criterion=f"in lying between {lower.value:g} and {upper.value:g}",
                 unit=lower.unit,
                 paper=near.value if not lower.value <= value <= upper.value else start,
                 ours=value,

@@ -96,7 +96,9 @@ def _rows(runs: Runs) -> list[Row]:
             unit="N",
             ours=at_p["dynamic"],
             because="the figure prints no number",
-            evidence=", ".join(f"{label} {value:.1f} N" for label, value in at_p.items()) + ".",
+            evidence="Models: "
+            + ", ".join(f"{label} {value:.1f} N" for label, value in at_p.items())
+            + ".",
         ),
     ]
 
@@ -143,12 +145,14 @@ def _statements(paper: Paper, groups: list[Runs]) -> list[Row]:
     mass = effect_of_mass(paper, "a")
     speed = effect_of_speed(groups[0], groups[1])
     static = groups[0].difference("static", "fine", "f_in_N")
+    outside = groups[0].difference("static", "fine", "f_in_N", outside=True)
     at_p = {model: groups[0].f_in_at_p(model) for model in ("static", "slip", "dynamic")}
-    causes = (("the tendon is light", mass), ("it moves slowly", speed.largest))
+    causes = (("the tendon is light", mass), ("motion is slow", speed.largest))
     evidence = (
         f"A tenth of the mass changes f_in of group a by {mass:.2g} %; group b, twice as fast, "
         f"differs by {speed.largest:.2g} % at most, {speed.rms:.2g} % rms. Static and dynamic are "
-        f"{static.largest:.3g} % apart all the same, for another reason: the dead bands."
+        f"{static.largest:.3g} % apart all the same, {outside.largest:.2g} % outside of the dead "
+        "bands."
     )
     return [
         *(

@@ -148,11 +148,12 @@ def _rig_with_both(paper: Paper) -> tuple[float, float]:
         a, kL = unknown[0] * rig.total_bend_rad, unknown[1]
         sizes = (kL, rig.sheath_length_mm, rig.tendon_stiffness_N)
         slopes: Floats = np.array([slip_stiffness(a, side, *sizes) for side in (1.0, -1.0)])
-        return slopes - wanted
+        missing: Floats = slopes - wanted
+        return missing
 
     start = [rig.friction_coefficient, rig.load_stiffness_N_per_mm]
-    friction, stiffness = root(off, start).x
-    return float(friction), float(stiffness)
+    found = root(off, start).x
+    return float(found[0]), float(found[1])
 
 
 def _same_in_both(bands: dict[str, DeadBand]) -> Row:

@@ -151,8 +151,7 @@ def _bounds(paper: Paper) -> list[Row]:
                 true=math.isclose(low, 0.1) and math.isclose(high, 10.0),
                 criterion="exactly",
                 because=f"they are {low:g} and {high:g} times the start",
-                evidence=f"{lower:g}, {initial:g}, {upper:g} "
-                f"{paper[f'adaptation.{name}.initial'].unit}; Eq. (37) gives {value:.3g}.",
+                evidence=f"{lower:g}, {initial:g} and {upper:g}; Eq. (37) gives {value:.3g}.",
             )
         )
     return rows
@@ -171,7 +170,7 @@ def _gains(paper: Paper) -> list[Row]:
                 f"{words}: c1 {paper.value(f'controllers.{name}.c1'):g}, "
                 f"ks {paper.value(f'controllers.{name}.ks'):g}"
                 for name, words in (
-                    ("adaptive_sliding_mode", "adaptive"),
+                    ("adaptive_sliding_mode", "Adaptive"),
                     ("sliding_mode", "sliding mode"),
                 )
             )
