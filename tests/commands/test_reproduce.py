@@ -1,12 +1,15 @@
 """`tsas reproduce` in a process of its own, with every warning an error."""
 
 import json
+from pathlib import Path
 
 import pytest
 
 from tests.commands.documented import documented
 from tsas_cli.reproduction import GROUPS
 from tsas_cli.reproduction.group import VERDICTS
+
+DOCS = Path(__file__).parents[2] / "docs" / "paper.md"
 
 
 @pytest.mark.slow
@@ -29,6 +32,9 @@ def test_it_writes_what_is_documented_and_the_same_again(strict, tmp_path):
             assert row["evidence"]
             assert bool(row["because"]) == (row["verdict"] != "agrees")
             assert bool(row["criterion"]) == (row["verdict"] != "cannot tell")
+    for group in summary["groups"]:
+        counts = " | ".join(str(group["counts"][verdict]) for verdict in VERDICTS)
+        assert f"| {group['title']} | {counts} |" in DOCS.read_text(encoding="utf-8")
     pages = [(tmp_path / name / "index.html").read_bytes() for name in ("one", "two")]
     assert pages[0] == pages[1]
     assert pages[0].startswith(b"<!DOCTYPE html>")

@@ -28,7 +28,7 @@ def test_within_takes_percent_of_the_papers_value():
 
 def test_what_differs_says_why_or_that_nobody_knows():
     row = within("f", KM, 3.0, percent=1.0)
-    assert row.words == f"differs, because {NOT_KNOWN}"
+    assert row.words == f"differs (not within 1 %), because {NOT_KNOWN}"
     assert row.ratio == pytest.approx(3.0 / 2.338)
 
 
@@ -36,7 +36,10 @@ def test_a_statement_holds_or_not():
     row = holds("it fits", "Table 1", true=True, criterion="with room", because="it is thick")
     assert (row.verdict, row.words, row.ratio) == ("agrees", "agrees with room", None)
     row = holds("it fits", "Table 1", true=False, criterion="with room", because="it is thick")
-    assert (row.verdict, row.words) == ("differs", "differs, because it is thick")
+    assert (row.verdict, row.words) == (
+        "differs",
+        "differs (not with room), because it is thick",
+    )
 
 
 def test_what_cannot_be_told_keeps_its_reason():

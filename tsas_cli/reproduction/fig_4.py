@@ -135,7 +135,7 @@ def _literal(runs: Runs) -> Row:
         f"Group {runs.group}: steady sliding is stable in the dynamic model as printed",
         "Fig. 4, Table 1",
         true=growing is None,
-        criterion="for the whole tendon in contraction and in loosening, not in the dead bands",
+        criterion="wherever the whole tendon slides",
         because=because,
         evidence=evidence,
     )

@@ -131,8 +131,9 @@ def _part_of_band(band: DeadBand, slope: float) -> str:
         )
     if slope < band.last_tangent:
         return (
-            f"something in series is softer than this rig: no part of the band has a slope below "
-            f"its last tangent, {band.last_tangent:.1f} N/mm"
+            "no part of the band has a slope below its last tangent, "
+            f"{band.last_tangent:.1f} N/mm: something in series gives, or the line reaches into "
+            "contraction"
         )
     return ""
 

@@ -42,8 +42,9 @@ class Row:
         """The verdict as a person reads it."""
         if self.verdict == "agrees":
             return f"agrees {self.criterion}"
-        opening = "differs" if self.verdict == "differs" else "cannot be told"
-        return f"{opening}, because {self.because}"
+        if self.verdict == "differs":
+            return f"differs (not {self.criterion}), because {self.because}"
+        return f"cannot be told, because {self.because}"
 
     def as_json(self) -> dict[str, Any]:
         """Return the row as it is written."""
