@@ -17,6 +17,7 @@ from tsas_cli.commands.explain import explain
 from tsas_cli.commands.ingest import ingest
 from tsas_cli.commands.plan import plan
 from tsas_cli.commands.report import report
+from tsas_cli.commands.reproduce import reproduce
 from tsas_cli.commands.simulate import simulate
 from tsas_cli.commands.track import track
 from tsas_cli.errors import InputError, printable
@@ -54,6 +55,7 @@ app.command("plan")(plan)
 app.command("track")(track)
 app.command("close-loop")(close_loop)
 app.command("report")(report)
+app.command("reproduce")(reproduce)
 app.command("effects")(effects)
 app.command("explain")(explain)
 app.add_typer(challenge)

@@ -9,12 +9,16 @@ from tsas_cli.reporting.numbers import ABSENT
 
 @dataclass(frozen=True)
 class Table:
-    """A table: its caption, header and rows of text; columns in `numeric` stand to the right."""
+    """A table: its caption, header and rows of text; columns in `numeric` stand to the right.
+
+    `notes`, where there are any, are sentences under each row, over the whole width.
+    """
 
     caption: str
     header: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
     numeric: frozenset[int] = frozenset()
+    notes: tuple[str, ...] = ()
 
     def without_empty(self) -> "Table":
         """Return the table without the columns in which nothing stands."""
@@ -28,6 +32,7 @@ class Table:
             tuple(self.header[column] for column in kept),
             tuple(tuple(row[column] for column in kept) for row in self.rows),
             frozenset(place for place, column in enumerate(kept) if column in self.numeric),
+            self.notes,
         )
 
 

@@ -5,6 +5,7 @@ import math
 MINUS = "\N{MINUS SIGN}"
 ABSENT = "\N{EN DASH}"
 _MOST_DECIMALS = 9
+_DIGITS = 5  # of what others print
 _SMALL = 4  # zeros after the point, beyond which a power of ten reads better
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
@@ -20,6 +21,20 @@ def plain(value: float | None, digits: int = 4) -> str:
     if value is None or not math.isfinite(value):
         return ABSENT
     return _fixed(value, digits - 1 - _exponent(value))
+
+
+def as_printed(value: float | None) -> str:
+    """Return a number with the digits it has, five at most; an en dash where there is none.
+
+    Examples
+    --------
+    >>> as_printed(101.96), as_printed(25.0), as_printed(-8644.38)
+    ('101.96', '25', '−8644.4')
+    """
+    if value is None or not math.isfinite(value):
+        return ABSENT
+    fixed = _fixed(value, _DIGITS - 1 - _exponent(value))
+    return fixed.rstrip("0").rstrip(".") if "." in fixed else fixed
 
 
 def with_interval(value: float | None, low: float | None, high: float | None) -> tuple[str, str]:
