@@ -58,14 +58,14 @@ def track(
     as_json: Json = False,
 ) -> None:
     """Follow a wanted force with a controller that sees x_in alone."""
-    from tsas_cli.tracking.conditions import PROXIMAL_SPRING, Condition, disturbed
+    from tsas_cli.tracking.conditions import Condition, disturbed, proximal_spring
     from tsas_cli.tracking.settings import CONTROLLERS
     from tsas_cli.tracking.track_stage import Call, track_all
 
     names = CONTROLLERS if compare or controller == "all" else tuple(controller.split(","))
     conditions = [disturbed(disturb)] if disturb else []
     if compare:
-        conditions = [Condition("undisturbed"), *(conditions or [disturbed([PROXIMAL_SPRING])])]
+        conditions = [Condition("undisturbed"), *(conditions or [proximal_spring()])]
     call = Call(
         model=model,
         plant=plant,

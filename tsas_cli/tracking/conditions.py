@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 from tsas_cli.errors import InputError, nearest
 from tsas_cli.identification.quantities import QUANTITIES
+from tsas_cli.paper import yang2025
 from tsas_cli.physics.rig import with_values
 from tsas_cli.tracking.track import Plant
 
@@ -12,7 +13,6 @@ ALLOWED = {name: (q.lower, q.upper, q.unit) for name, q in QUANTITIES.items()} |
     "total_bend_rad": (0.0, 100.0, "rad")
 }
 ONLY_FROM_THE_START = ("preload_N", "tendon_stiffness_N")
-PROXIMAL_SPRING = "proximal_spring.stiffness_N_per_mm=12.5"  # Fig. 11 of Yang 2025
 
 
 @dataclass(frozen=True)
@@ -60,6 +60,14 @@ def disturbed(options: Sequence[str], where: str = "--disturb") -> Condition:
             expected="one time within the run",
         )
     return Condition("disturbed", changes)
+
+
+def proximal_spring() -> Condition:
+    """Return the disturbance of Fig. 11: a spring at the drive's end of the tendon."""
+    stiffness = yang2025().value("reference.disturbance_stiffness")
+    return Condition(
+        "disturbed", (Change("proximal_spring.stiffness_N_per_mm", stiffness, from_s=0.0),)
+    )
 
 
 def _change(option: str, where: str) -> Change:
