@@ -162,6 +162,13 @@ class ControllerSettings(_Table):
         default_factory=ObserverSettings, alias="disturbance-observer"
     )
 
+    def sliding_modes(self) -> dict[str, SlidingSettings]:
+        """Return the two sliding modes by the names of their fields."""
+        return {
+            "sliding_mode": self.sliding_mode,
+            "adaptive_sliding_mode": self.adaptive_sliding_mode,
+        }
+
 
 class Settings(_Table):
     """The whole file; every key optional."""
@@ -178,6 +185,15 @@ class Settings(_Table):
     def step_s(self) -> float:
         """Return the time between samples."""
         return 1.0 / self.sensor.rate_Hz
+
+    def with_phi2(self, phi2: float) -> "Settings":
+        """Return the settings with another φ2 of both sliding modes, as it starts [rpm s/mm]."""
+        gains = self.controllers
+        changed = {
+            name: law.model_copy(update={"phi": (law.phi[0], phi2, law.phi[2])})
+            for name, law in gains.sliding_modes().items()
+        }
+        return self.model_copy(update={"controllers": gains.model_copy(update=changed)})
 
     def laws(self, controller: str, gain_mm_per_s_rpm: float) -> Laws:
         """Return every controller's gains as the kernel takes them, one of them at work."""
@@ -220,10 +236,7 @@ def printed_gains(settings: Settings) -> Settings:
     """Return the settings with the sliding modes' ks as the paper prints it, per millimetre."""
     changed: dict[str, Any] = {
         name: law.model_copy(update={"ks": law.ks * MM_PER_M})
-        for name, law in (
-            ("sliding_mode", settings.controllers.sliding_mode),
-            ("adaptive_sliding_mode", settings.controllers.adaptive_sliding_mode),
-        )
+        for name, law in settings.controllers.sliding_modes().items()
     }
     return settings.model_copy(
         update={"controllers": settings.controllers.model_copy(update=changed)}
