@@ -39,7 +39,10 @@ def _intro(tracking: Tracking, conditions: tuple[Condition, ...]) -> list[str]:
     said += [_change(condition) for condition in conditions if condition.changes]
     if tracking.gains != "default":
         said.append(f"The gains are {tracking.gains}.")
-    said.append("Errors are wanted less true force. Plots show the runs with the first seed.")
+    said.append(
+        "Errors are wanted less true force at the load; outside 2 % is the time in which they are "
+        "beyond 2 % of the wanted force's range. Plots show the runs with the first seed."
+    )
     return [*said, "Keep in mind:"] if tracking.notes else said
 
 

@@ -1,17 +1,16 @@
 """The scores of every controller under every condition, with their spread over the seeds."""
 
 from tsas_cli.reporting.content import Table
-from tsas_cli.reporting.numbers import with_spread
+from tsas_cli.reporting.numbers import ABSENT, with_spread
 from tsas_cli.reporting.tracking_file import Spread, Tracking
 
 _COLUMNS = (
     ("RMSE [N]", "rmse_N"),
-    ("lowest error [N]", "lowest_error_N"),
-    ("highest error [N]", "highest_error_N"),
-    ("time outside 2 % [%]", "outside_percent"),
+    ("lowest [N]", "lowest_error_N"),
+    ("highest [N]", "highest_error_N"),
+    ("outside 2 % [%]", "outside_percent"),
     ("effort [rpm]", "effort_rpm"),
     ("chatter [rpm/s]", "chatter_rpm_per_s"),
-    ("time at the limit [%]", "at_limit_percent"),
 )
 
 
@@ -24,12 +23,13 @@ def table(tracking: Tracking) -> Table:
             result.controller,
             result.condition,
             *(_cell(getattr(result.scores, key)) for _, key in _COLUMNS),
+            _limit(result.scores.at_limit_percent),
         )
         for result in tracking.results
     )
-    header = ("controller", "condition", *(title for title, _ in _COLUMNS))
+    header = ("controller", "condition", *(title for title, _ in _COLUMNS), "at its limit [%]")
     numeric = frozenset(range(2, len(header)))
-    return Table(f"Scores of true force{over}", header, rows, numeric=numeric)
+    return Table(f"Scores{over}", header, rows, numeric=numeric).without_empty()
 
 
 def best_and_worst(tracking: Tracking) -> list[str]:
@@ -57,3 +57,8 @@ def best_and_worst(tracking: Tracking) -> list[str]:
 
 def _cell(number: Spread) -> str:
     return with_spread(number.mean, number.sd)
+
+
+def _limit(number: Spread) -> str:
+    """Return how long the motor is at its speed limit; nothing where it never is."""
+    return _cell(number) if number.mean else ABSENT
