@@ -40,19 +40,19 @@ def with_interval(value: float | None, low: float | None, high: float | None) ->
 
 
 def with_spread(value: float | None, spread: float | None) -> str:
-    """Return a value and its standard deviation: four digits, or fewer where that says more.
+    """Return a value and its standard deviation: four digits, or up to the spread's first.
 
     Examples
     --------
     >>> with_spread(0.867303, 0.000108), with_spread(0.867303, 0.12), with_spread(0.0, 0.0)
-    ('0.8673 ± 0.00011', '0.87 ± 0.12', '0')
+    ('0.8673 ± 0.0001', '0.9 ± 0.1', '0')
     """
     if value is None or not math.isfinite(value):
         return ABSENT
     if not spread or not math.isfinite(spread):
         return plain(value) if value else "0"
-    decimals = min(1 - _exponent(spread), 3 - _exponent(value))
-    return f"{_fixed(value, decimals)} ± {plain(spread, 2)}"
+    decimals = min(-_exponent(spread), 3 - _exponent(value))
+    return f"{_fixed(value, decimals)} ± {plain(spread, 1)}"
 
 
 def fixed(value: float | None, decimals: int) -> str:
