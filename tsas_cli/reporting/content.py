@@ -54,7 +54,10 @@ class Group:
 
 @dataclass(frozen=True)
 class Section:
-    """One section: what it shows, in the order of the fields; `parts` have their own headings."""
+    """One section: what it shows, in the order of the fields; `parts` have their own headings.
+
+    `given` says whether there was anything to make it from.
+    """
 
     anchor: str
     title: str
@@ -67,10 +70,10 @@ class Section:
     groups: tuple[Group, ...] = ()
     closing: tuple[str, ...] = ()
     parts: tuple["Section", ...] = ()
+    given: bool = True
 
 
 def missing(anchor: str, title: str, *, what: str, stage: str) -> Section:
     """Return a section that only says what was not given, and which stage writes it."""
-    return Section(
-        anchor, title, (f"No {what} was given: add a folder written by `tsas {stage}`.",)
-    )
+    sentence = f"No {what} was given: add a folder written by `tsas {stage}`."
+    return Section(anchor, title, (sentence,), given=False)

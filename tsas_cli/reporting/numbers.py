@@ -54,6 +54,22 @@ def with_interval(value: float | None, low: float | None, high: float | None) ->
     return _fixed(value, decimals), f"{_fixed(low, decimals)} to {_fixed(high, decimals)}"
 
 
+def with_spread(value: float | None, spread: float | None) -> str:
+    """Return a value and its standard deviation: four digits, or up to the spread's first.
+
+    Examples
+    --------
+    >>> with_spread(0.867303, 0.000108), with_spread(0.867303, 0.12), with_spread(0.0, 0.0)
+    ('0.8673 ± 0.0001', '0.9 ± 0.1', '0')
+    """
+    if value is None or not math.isfinite(value):
+        return ABSENT
+    if not spread or not math.isfinite(spread):
+        return plain(value) if value else "0"
+    decimals = min(-_exponent(spread), 3 - _exponent(value))
+    return f"{_fixed(value, decimals)} ± {plain(spread, 1)}"
+
+
 def fixed(value: float | None, decimals: int) -> str:
     """Return a number with so many decimals; an en dash where there is none.
 

@@ -14,10 +14,13 @@ from tsas_cli.reporting.sections import (
     simulation,
     stiffness,
     summary,
+    tracking,
     transfer,
 )
+from tsas_cli.reporting.tracking_file import Tracking
 
-SECTIONS: tuple[Callable[[Inputs], Section], ...] = (
+SECTIONS: tuple[Callable[[Inputs], Section | None], ...] = (
+    tracking.section,
     diagnosis.section,
     recordings.section,
     stiffness.section,
@@ -32,14 +35,19 @@ SECTIONS: tuple[Callable[[Inputs], Section], ...] = (
 def page(inputs: Inputs, advance: Callable[[], None] = lambda: None) -> str:
     """Return the whole page as HTML; `advance` is called after each of `SECTIONS`.
 
+    A page of tracked runs leaves out what was not given; any other page says what is missing.
+
     Raises
     ------
     InputError
         A recording or a simulated run cannot be read.
     """
+    tracked = inputs.get(Tracking) is not None
     sections = []
-    for section in SECTIONS:
-        sections.append(section(inputs))
+    for make in SECTIONS:
+        section = make(inputs)
+        if section is not None and (section.given or not tracked):
+            sections.append(section)
         advance()
     return rendered(
         name=inputs.dataset.manifest.name,
