@@ -152,7 +152,7 @@ def track(
 
 
 def _swings(asked: Floats, limit_rpm: float, step_s: float) -> tuple[int, float] | None:
-    """Return the sample from which the motor swings between its limits, and how often a second.
+    """Return the sample from which the motor swings between limits, and how often a second.
 
     A stable loop can keep the motor at one limit for long, but not throw it from one to the other.
     """
