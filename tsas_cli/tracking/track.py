@@ -136,7 +136,7 @@ def track(
         k, often = swings
         raise InputError(
             f"the loop is unstable: from {time_s[k]:.4g} s on the motor swings between its limits "
-            f"of ±{limit_rpm:g} rpm, {often:.0f} times a second; x_in is {columns[X_IN, k]:.4g} mm, "
+            f"of ±{limit_rpm:g} rpm, {often:.0f} times a second; x_in is {columns[X_IN, k]:.4g}, "
             f"wanted {path.drive[0, k]:.4g} mm",
             where=f"controller {controller}",
             remedy="lower its gains or the filter's cutoff",
