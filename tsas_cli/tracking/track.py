@@ -1,6 +1,7 @@
 """One run of the closed loop: the controller's model makes the path, the plant answers."""
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -15,12 +16,14 @@ from tsas_cli.controllers.closed_loop import (
 from tsas_cli.controllers.path import Path, follow
 from tsas_cli.controllers.signals import error_filter
 from tsas_cli.errors import InputError
+from tsas_cli.physics.lugre_plant import no_lumps
 from tsas_cli.physics.plant import Actuator
 from tsas_cli.physics.rig import Rig
 from tsas_cli.tracking.scores import Score, score
 from tsas_cli.tracking.settings import Settings
 
 Floats = npt.NDArray[np.float64]
+TendonDynamics = Literal["slip", "lugre"]
 RELAY_S = 0.5  # for so long at the limit, and …
 RELAY_TURNS_PER_S = 20.0  # … so often from one limit to the other, and a loop is a relay
 
@@ -85,9 +88,12 @@ def track(
     settings: Settings,
     seed: int,
     *,
+    dynamics: TendonDynamics = "slip",
     relay: bool = False,
 ) -> Tracked:
     """Run the loop once, from rest at the path's first place.
+
+    `dynamics` is the plant's; the controller's model is quasi-static.
 
     Raises
     ------
@@ -118,6 +124,7 @@ def track(
         nodes,
         step_s,
         settings.loop.substeps,
+        no_lumps() if dynamics == "lugre" else None,
     )
     time_s: Floats = np.arange(m, dtype=np.float64) * step_s
     if done < m:
