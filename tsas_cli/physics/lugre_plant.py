@@ -44,7 +44,7 @@ from tsas_cli.physics.plant import Actuator, Reach, Turntable, moved, pulled_to,
 from tsas_cli.physics.rig import Rig
 
 TOLERANCE = 1e-3  # of a tension: what a step of the lumps may add to its error
-SHORTEST = 1e-3  # of a step of the plant; where that does not do, nothing does
+SHORTEST = 1e-6  # of a step of the plant; where that does not do, nothing does
 MOST_TRIES = 100  # of steps of the lumps in one of the plant
 
 
@@ -72,7 +72,8 @@ def lay_lumps(s: Floats, chain: Floats, f_in: float, rig: Rig, n: int) -> Tendon
     for j in range(n + 2):
         start[0, j], start[1, j] = chain[slip.X + j], chain[slip.T + j]
     step = given_by(f_in, 0.0, rig, n)
-    return begun(lay_down(s, start, step, Boundary(FORCE, SPRING), law), True)
+    ends = lay_down(s, start, step, Boundary(FORCE, SPRING), law)
+    return hung(step, law) if s[Y] < taut_place(s, step, law) else begun(ends, True)
 
 
 @kernel
