@@ -2,7 +2,7 @@
 
 The lumps take the same step of BDF2 as the turntable, which is a spring at the tendon's end then.
 Where Newton's method fails or a tension is off by too much they take shorter ones, over which the
-spring's other end moves straight. Where something jumps (the play catches the tendon's end or lets
+force moves straight. Where something jumps (the play catches the tendon's end or lets
 go of it, a slack tendon is pulled, the rig changes) they begin with backward Euler.
 """
 
@@ -43,9 +43,9 @@ from tsas_cli.physics.lugre_step import MOST_ITERATIONS, formula_of, keep
 from tsas_cli.physics.plant import Actuator, Reach, Turntable, moved, pulled_to, reach_of
 from tsas_cli.physics.rig import Rig
 
-TOLERANCE = 1e-3  # of a tension: what a step of the lumps may add to its error
-SHORTEST = 1e-6  # of a step of the plant; where that does not do, nothing does
-MOST_TRIES = 100  # of steps of the lumps in one of the plant
+TOLERANCE = 1e-4  # of a tension: what a step of the lumps may add to its error
+ROUGH = 1.0  # the same where that is not to be had
+CAREFUL_TRIES, MOST_TRIES = 200, 300  # of steps of the lumps in one of the plant
 
 
 class Tendon(NamedTuple):
@@ -103,14 +103,14 @@ def step_lumped_plant(
     """Move turntable, tendon and load by h to a time, the motor being there already.
 
     Returns the turntable, the tendon, and whether its steps were solved and within their error.
-    Where they were not the tendon is left behind, for the next step to catch up with.
+    Where Newton's method fails the tendon is left behind, for the next step to catch up with.
     """
     p = s[Y]
     reach = reach_of(table, p, rig, actuator, h)
     step = given_by(reach.drive, time_s, rig, law.n)
     if tendon.touched != reach.touches and not tendon.slack:
         tendon = begun(tendon.ends, reach.touches)
-    settled, x, f_in = True, reach.x, table.f_in
+    settled, arrived, x, f_in = True, True, reach.x, table.f_in
     boundary, held = Boundary(DISPLACEMENT, SPRING), law
     if reach.touches:
         boundary, held = Boundary(FORCE, SPRING), held_law(law, reach.share)
@@ -119,14 +119,14 @@ def step_lumped_plant(
     tension = tendon.ends.f_in
     if not tendon.slack:
         before = table.f_in + reach.share * p
-        tendon, settled = advance_lumps(s, tendon, before, step, boundary, held, h)
+        tendon, arrived, settled = advance_lumps(s, tendon, before, step, boundary, held, h)
     if not reach.touches:
         f_in += tendon.ends.f_in - tension
     else:
         if tendon.ends.f_in < 0.0 and s[Y] <= taut_place(s, step, law):
             s[Y] = (step.drive - s[FRICTION]) / held.proximal_spring_N_per_mm
             tendon = hung(step, law)
-        if settled:
+        if arrived:
             x, f_in = pulled_to(s[Y], reach)
     return moved(table, x, f_in, (s[Y] - p) / h, h), tendon, settled
 
@@ -140,19 +140,22 @@ def advance_lumps(
     boundary: Boundary,
     law: Law,
     h: float,
-) -> tuple[Tendon, bool]:
+) -> tuple[Tendon, bool, bool]:
     """Move the lumps by h, the force at the drive going straight from before to the step's.
 
-    Returns the tendon and whether that was possible; where not it has come a part of the way.
+    Returns the tendon, whether it has arrived, and whether every step was within its error, which
+    does not count any more after many tries.
     """
     ends, length, h1, h2, _, _ = tendon
-    length, done = min(length, h), 0.0
-    for _ in range(MOST_TRIES):
+    length, done, tolerance = min(length, h), 0.0, TOLERANCE
+    for tries in range(MOST_TRIES):
+        if tries == CAREFUL_TRIES:
+            length, h1, h2, tolerance = h - done, math.inf, math.inf, ROUGH
         length, lands = fitted(length, h - done)
         part = 1.0 if lands else (done + length) / h
         formula = formula_of(length, h1, h2)
         to = driven(step, before + part * (step.drive - before), formula.gh)
-        most = allowed(ends, law, TOLERANCE)
+        most = allowed(ends, law, tolerance)
         off, _ = attempt(s, to, formula, boundary, law, most)
         change = change_of(off, most, formula)
         if off < most.error_N:
@@ -160,12 +163,10 @@ def advance_lumps(
             keep(s, to, law)
             done, length, h1, h2 = done + length, length * change, length, h1
             if lands:
-                return Tendon(ends, length, h1, h2, tendon.touched, False), True
-        elif length < SHORTEST * h:
-            break
+                return Tendon(ends, length, h1, h2, tendon.touched, False), True, tolerance == TOLERANCE
         else:
             length *= change
-    return begun(ends, tendon.touched), False
+    return begun(ends, tendon.touched), False, False
 
 
 @kernel
