@@ -54,6 +54,7 @@ STEPS_TO_START = 200
 MEMORY_AT = 8
 COLUMNS = MEMORY_AT + MEMORY
 RUNAWAY_MM = 1e3  # from the wanted place, at which a run has diverged
+GIVEN_UP = 0.01  # of the steps: where more do not settle, the tendon is not followed any further
 
 
 class Laws(NamedTuple):
@@ -148,7 +149,7 @@ def close_loop(
         if encoder_step_mm > 0.0:
             x_seen = encoder_step_mm * np.round(x_seen / encoder_step_mm)
         e = path[0, k] - x_seen
-        if not abs(e) < RUNAWAY_MM:
+        if not abs(e) < RUNAWAY_MM or unsettled > GIVEN_UP * m * substeps:
             return columns, unsettled, k
         filtered(state, e, A, b)
         seen = Signals(

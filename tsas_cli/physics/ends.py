@@ -142,9 +142,7 @@ def friction_at(
 
 
 @kernel
-def friction_without_speed(
-    time_s: float, session_s: float, rig: Rig
-) -> tuple[float, float, float]:
+def friction_without_speed(time_s: float, session_s: float, rig: Rig) -> tuple[float, float, float]:
     """Return a pulled, a released [1] and lost preload [N], where speed acts place by place."""
     effects = rig.effects
     asymmetry = effects.direction_dependent_friction.asymmetry

@@ -1,4 +1,4 @@
-"""How long the steps of the dynamic chain are: as the error of a tension and Newton's method allow."""
+"""How long steps of the dynamic chain are: as the error of a tension and Newton's method allow."""
 
 import math
 from typing import NamedTuple
@@ -27,7 +27,7 @@ class Allowed(NamedTuple):
 
 @kernel
 def allowed(ends: Ends, law: Law, tolerance: float) -> Allowed:
-    """Return what a step from these ends may be off by; an infinite tolerance is for given steps."""
+    """Return what a step from these ends may be off by, by an infinite tolerance a given one."""
     tension = max(abs(ends.f_in), abs(ends.f_out), 0.1 * law.preload_N)
     if tolerance == math.inf:
         return Allowed(math.inf, LEAVES_GIVEN * tension)

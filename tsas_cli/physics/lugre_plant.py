@@ -40,7 +40,7 @@ from tsas_cli.physics.lugre_state import (
     Z,
 )
 from tsas_cli.physics.lugre_step import MOST_ITERATIONS, formula_of, keep
-from tsas_cli.physics.plant import Actuator, Reach, Turntable, moved, pulled_to, reach_of
+from tsas_cli.physics.plant import Actuator, Turntable, moved, pulled_to, reach_of
 from tsas_cli.physics.rig import Rig
 
 TOLERANCE = 1e-4  # of a tension: what a step of the lumps may add to its error
@@ -163,7 +163,11 @@ def advance_lumps(
             keep(s, to, law)
             done, length, h1, h2 = done + length, length * change, length, h1
             if lands:
-                return Tendon(ends, length, h1, h2, tendon.touched, False), True, tolerance == TOLERANCE
+                return (
+                    Tendon(ends, length, h1, h2, tendon.touched, False),
+                    True,
+                    tolerance == TOLERANCE,
+                )
         else:
             length *= change
     return begun(ends, tendon.touched), False, False

@@ -9,6 +9,7 @@ import numpy.typing as npt
 from tsas_cli.controllers.closed_loop import (
     ASKED,
     F_OUT,
+    GIVEN_UP,
     X_IN,
     close_loop,
     followed_from,
@@ -26,6 +27,13 @@ Floats = npt.NDArray[np.float64]
 TendonDynamics = Literal["slip", "lugre"]
 RELAY_S = 0.5  # for so long at the limit, and …
 RELAY_TURNS_PER_S = 20.0  # … so often from one limit to the other, and a loop is a relay
+
+
+REMEDIES: dict[TendonDynamics, str] = {
+    "slip": "use more substeps in [loop] of the settings",
+    "lugre": "leave out [bristles.damping_N_s_per_mm], which is critical then, or use more "
+    "substeps in [loop] of the settings",
+}
 
 
 @dataclass(frozen=True)
@@ -99,7 +107,7 @@ def track(
     ------
     InputError
         The loop is unstable: x_in has run away, or the motor swings from limit to limit (`relay`
-        follows that nevertheless).
+        follows that nevertheless). Or the tendon cannot be followed.
     """
     step_s, m = settings.step_s, wanted_N.size
     rng = np.random.default_rng(seed)
@@ -127,6 +135,13 @@ def track(
         no_lumps() if dynamics == "lugre" else None,
     )
     time_s: Floats = np.arange(m, dtype=np.float64) * step_s
+    if unsettled > GIVEN_UP * m * settings.loop.substeps:
+        raise InputError(
+            f"the tendon cannot be followed: {unsettled} steps do not settle until "
+            f"{done * step_s:.4g} s",
+            where=f"plant, --dynamics {dynamics}",
+            remedy=REMEDIES[dynamics],
+        )
     if done < m:
         raise InputError(
             f"the loop is unstable: x_in is {columns[X_IN, done - 1]:.4g} mm at "
