@@ -1,11 +1,20 @@
 """`tsas track`: close the loop on a simulated rig and say how well a wanted force is followed."""
 
+from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
 from tsas_cli.commands.common import Force, Json, OutFolder, Quiet, progress, show
+
+
+class TendonOption(StrEnum):
+    """The models of the plant's tendon; the controller's own is the slip chain."""
+
+    slip = "slip"
+    lugre = "lugre"
+
 
 COLUMNS = (
     ("RMSE [N]", "rmse_N"),
@@ -47,6 +56,10 @@ def track(
         bool,
         typer.Option(help="ks of the sliding modes per mm as the paper prints it: a relay."),
     ] = False,
+    dynamics: Annotated[
+        TendonOption,
+        typer.Option("--dynamics", help="The plant's tendon; slip: quasi-static; lugre: dynamic."),
+    ] = TendonOption.slip,
     settings: Annotated[
         Path | None,
         typer.Option(metavar="S.toml", help="Rig, drive, sensors, reference and gains."),
@@ -74,6 +87,7 @@ def track(
         conditions=tuple(conditions) or (Condition("undisturbed"),),
         reference=reference,
         as_printed=as_printed,
+        dynamics=dynamics.value,
         seeds=seeds or (10 if compare else 1),
         first_seed=seed,
     )

@@ -21,6 +21,13 @@ from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.chain_state import FORCE, GIVE, SPRING, Boundary, Moment, X
 from tsas_cli.physics.ends import Drive, ends_of
+from tsas_cli.physics.lugre_plant import (
+    lay_lumps,
+    step_lumped_plant,
+    tension_at_load,
+    with_rig,
+)
+from tsas_cli.physics.lugre_start import law_of
 from tsas_cli.physics.plant import Actuator, Turntable, step_plant, turned
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.slip_chain import (
@@ -47,6 +54,7 @@ STEPS_TO_START = 200
 MEMORY_AT = 8
 COLUMNS = MEMORY_AT + MEMORY
 RUNAWAY_MM = 1e3  # from the wanted place, at which a run has diverged
+GIVEN_UP = 0.01  # of the steps: where more do not settle, the tendon is not followed any further
 
 
 class Laws(NamedTuple):
@@ -106,8 +114,13 @@ def close_loop(
     n: int,
     step_s: float,
     substeps: int,
+    lumps: Floats | None = None,
 ) -> tuple[Floats, int, int]:
-    """Run the loop; return its columns, shape (COLUMNS, m), unsettled steps, samples followed."""
+    """Run the loop; return its columns, shape (COLUMNS, m), unsettled steps, samples followed.
+
+    `chain` is the tendon at rest. With room for lumps (`lugre_plant.no_lumps`) they follow it from
+    there, else the slip chain itself does; only what does so is compiled.
+    """
     m = path.shape[1]
     columns = np.zeros((COLUMNS, m))
     memory, state = np.zeros(MEMORY), np.zeros(3)
@@ -119,6 +132,8 @@ def close_loop(
     scale = rig.sheath_length_mm * rig.preload_N / rig.tendon_stiffness_N / n + 1e-9
     now = Moment(table.f_in, 0.0, 0.0, 0.0, 0.0, 0.0, np.inf)
     boundary = Boundary(FORCE, SPRING)
+    if lumps is not None:
+        law, tendon = law_of(rig, n), lay_lumps(lumps, chain, table.f_in, rig, n)
     h = step_s / substeps
     applied, limited, unsettled = 0.0, False, 0
     for k in range(m):
@@ -128,11 +143,13 @@ def close_loop(
             gives = segment_compliances(rig, n)
             for j in range(n + 2):
                 chain[GIVE + j] = gives[min(j, n)]
+            if lumps is not None:
+                law, tendon = law_of(rig, n), with_rig(lumps, tendon, rig, n)
         x_seen = table.x + noise[k]
         if encoder_step_mm > 0.0:
             x_seen = encoder_step_mm * np.round(x_seen / encoder_step_mm)
         e = path[0, k] - x_seen
-        if not abs(e) < RUNAWAY_MM:
+        if not abs(e) < RUNAWAY_MM or unsettled > GIVEN_UP * m * substeps:
             return columns, unsettled, k
         filtered(state, e, A, b)
         seen = Signals(
@@ -153,14 +170,22 @@ def close_loop(
         columns[X_IN, k], columns[X_SEEN, k] = table.x, x_seen
         columns[X_OUT, k], columns[F_IN, k] = chain[X + n + 1], table.f_in
         columns[F_OUT, k] = tension_at_sensor(chain, now, boundary, chain_laws)
+        if lumps is not None:
+            columns[X_OUT, k] = tendon.ends.x_out
+            columns[F_OUT, k] = tension_at_load(tendon, law)
         columns[ASKED, k], columns[MOTOR, k], columns[DISTANCE, k] = asked, table.motor_rpm, s
         for j in range(MEMORY):
             columns[MEMORY_AT + j, k] = memory[j]
         for sub in range(substeps):
             table = turned(table, asked, actuator, h)
             time_s = (k + (sub + 1) / substeps) * step_s
-            table, now, settled = step_plant(
-                table, chain, now, time_s, rig, chain_laws, actuator, h, scale
-            )
+            if lumps is not None:
+                table, tendon, settled = step_lumped_plant(
+                    table, lumps, tendon, time_s, rig, law, actuator, h
+                )
+            else:
+                table, now, settled = step_plant(
+                    table, chain, now, time_s, rig, chain_laws, actuator, h, scale
+                )
             unsettled += not settled
     return columns, unsettled, m

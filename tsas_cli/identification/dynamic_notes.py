@@ -4,16 +4,19 @@ import math
 from collections.abc import Iterator
 
 import numpy as np
+import numpy.typing as npt
 
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.physics.chain_state import UNSETTLED
+from tsas_cli.physics.ends import Drive
 from tsas_cli.physics.lugre_chain import MOST_PER_SAMPLE, MOST_TRIES
 from tsas_cli.physics.lugre_stability import Stability, stability
 from tsas_cli.physics.lugre_start import law_of
 from tsas_cli.physics.response import Response, simulate
 from tsas_cli.physics.rig import Rig
 
+Floats = npt.NDArray[np.float64]
 MANY = 10  # steps for each sample
 HIGH_DAMPING = 3.0  # times critical, from which on the bristles are what makes sliding unstable
 
@@ -26,10 +29,7 @@ def dynamic_notes(run: Prepared, model: Model, response: Response) -> Iterator[s
             "the bristles are those of Yang 2025, Table 1: the model has no "
             "[bristles.stiffness_N_per_mm] of this rig"
         )
-    slow = simulate(rig, run.drive)
-    found = stability(rig, run.time_s, slow.x_in_mm, slow.f_in_N, slow.phase)
-    if found is not None and found.unstable:
-        yield _unstable(found, rig)
+    yield from unstable_sliding(rig, run.time_s, run.drive)
     steps, samples = response.step_ends_s.size, run.time_s.size
     if steps > MANY * samples:
         yield (
@@ -42,6 +42,14 @@ def dynamic_notes(run: Prepared, model: Model, response: Response) -> Iterator[s
             f"given up at {run.time_s[np.argmax(given_up)]:.4g} s, after {MOST_TRIES} steps and "
             f"{MOST_PER_SAMPLE} more for each sample: what comes later is not simulated"
         )
+
+
+def unstable_sliding(rig: Rig, time_s: Floats, drive: Drive) -> Iterator[str]:
+    """Say where sliding is unstable during a run, if it is anywhere that is looked at."""
+    slow = simulate(rig, drive)
+    found = stability(rig, time_s, slow.x_in_mm, slow.f_in_N, slow.phase)
+    if found is not None and found.unstable:
+        yield _unstable(found, rig)
 
 
 def _unstable(found: Stability, rig: Rig) -> str:

@@ -135,13 +135,21 @@ def friction_at(
 ) -> tuple[float, float, float, float]:
     """Return a pulled, a released [1], viscous loss [N] and lost preload [N] at one moment."""
     effects = rig.effects
+    pulled, released, lost_N = friction_without_speed(time_s, session_s, rig)
+    factor = stribeck_factor(speed, effects.stribeck_friction)
+    viscous_N = viscous_loss(speed, effects.viscous_friction.coefficient_N_s_per_mm)
+    return factor * pulled, factor * released, viscous_N, lost_N
+
+
+@kernel
+def friction_without_speed(time_s: float, session_s: float, rig: Rig) -> tuple[float, float, float]:
+    """Return a pulled, a released [1] and lost preload [N], where speed acts place by place."""
+    effects = rig.effects
     asymmetry = effects.direction_dependent_friction.asymmetry
     wrap = rig.friction_coefficient * friction_factor(effects.friction_drift, time_s, session_s)
     wrap *= drifted_bend(rig.total_bend_rad, effects.bend_drift, time_s)
-    wrap *= stribeck_factor(speed, effects.stribeck_friction)
     return (
         wrap * direction_factor(asymmetry, 1.0),
         wrap * direction_factor(asymmetry, -1.0),
-        viscous_loss(speed, effects.viscous_friction.coefficient_N_s_per_mm),
         lost_preload(effects.preload_loss, time_s),
     )

@@ -13,14 +13,10 @@ import numpy as np
 
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.chain_nodes import SLIDES
-from tsas_cli.physics.chain_state import FORCE, PITCH, SPRING, UNSETTLED, Boundary
-from tsas_cli.physics.lugre_ends import Ends, departs, ends_after, felt, write_samples
-from tsas_cli.physics.lugre_input import (
-    DRIVE,
-    LOAD,
-    next_turn,
-    step_at,
-)
+from tsas_cli.physics.chain_state import FORCE, PITCH, UNSETTLED, Boundary
+from tsas_cli.physics.lugre_ends import Ends, ends_after, felt, unseen, write_samples
+from tsas_cli.physics.lugre_input import next_turn, step_at
+from tsas_cli.physics.lugre_pace import allowed, attempt, change_of, fitted
 from tsas_cli.physics.lugre_slack import is_slack, pulled_again, without_tension, write_slack
 from tsas_cli.physics.lugre_start import law_of, lay_out, set_off
 from tsas_cli.physics.lugre_state import (
@@ -31,17 +27,12 @@ from tsas_cli.physics.lugre_state import (
     Law,
     Phases,
 )
-from tsas_cli.physics.lugre_step import error, formula_of, keep, look_back, newton
+from tsas_cli.physics.lugre_step import formula_of, keep
 from tsas_cli.physics.rig import Rig
 
 SHORTEST_S = 1e-13
 MOST_TRIES, MOST_PER_SAMPLE = 20_000, 40  # steps of a run, together
-LEAVES = 0.3  # of the error of a step: what Newton's method may leave,
-LEAVES_AT_MOST = 1e-5  # and of a tension, since more looks right and is not;
-LEAVES_GIVEN = 1e-9  # of a tension where steps are given
 OWN_STEPS = np.empty(0)  # as long as the error allows
-SWINGS = 0.1  # of the tolerance, with a mass that swings on: its errors add up
-LONGER, SHORTER, CAREFUL = 2.0, 0.25, 0.85  # how the step may change, and how much of it is taken
 
 
 class Progress(NamedTuple):
@@ -109,14 +100,13 @@ def lugre_chain(
     first = h = 0.1 * (times[min(1, m - 1)] - t)
     h1 = h2 = math.inf  # the two steps before; none yet
     least = law.load_stiffness_N_per_mm  # tension for what is given at an end
-    felt_in = felt_out = least
+    answers = least, least
     steps = tries = iterations = 0
     ends_s = np.empty(MOST_TRIES + MOST_PER_SAMPLE * m)  # as many as may be tried
     controlled, stop = step_ends_s.size == 0, 0
     while k < m - 1 and h > SHORTEST_S and tries < ends_s.size:
         tries += 1
-        tension = max(abs(ends.f_in), abs(ends.f_out), 0.1 * law.preload_N)
-        scale = tolerance * tension * (SWINGS if law.load_mass_kg > 0.0 else 1.0)
+        most = allowed(ends, law, tolerance if controlled else math.inf)
         if not controlled:
             stop = sample_after(step_ends_s, stop, t + SHORTEST_S)
             h = min(h, step_ends_s[stop] - t) if stop < step_ends_s.size else h
@@ -126,24 +116,13 @@ def lugre_chain(
         formula = formula_of(h, h1, h2)
         drives = ends.drive, earlier.drive
         step = step_at(times, course, k1, t1, formula, drives, n, boundary)
-        given = (ends.drive, ends.drive_rate, step.drive, step.drive_rate)
-        unseen = felt_in * departs(times, course, DRIVE, k, k1, t, h, given)
-        if boundary.load != SPRING:
-            given = (ends.load, ends.load_rate, step.load, step.load_rate)
-            unseen += felt_out * departs(times, course, LOAD, k, k1, t, h, given)
         off, done = math.inf, 0
-        if unseen <= scale or not controlled:
-            look_back(s, law, formula)
-            leaves = min(LEAVES * scale, LEAVES_AT_MOST * tension)
-            leaves = leaves if controlled else LEAVES_GIVEN * tension
-            done, solved = newton(s, step, boundary, law, leaves)
-            if solved:
-                off = error(s, law, formula) if controlled else 0.0
+        if unseen(times, course, k, k1, t, h, ends, step, answers, boundary) <= most.error_N:
+            off, done = attempt(s, step, formula, boundary, law, most)
         iterations += done
-        spare = scale / (off + 1e-300)
-        change = CAREFUL * (np.cbrt(spare) if h2 < math.inf else math.sqrt(spare))
-        if not off <= scale:
-            h *= max(SHORTER, change)
+        change = change_of(off, most, formula)
+        if not off < most.error_N:
+            h *= change
             continue
         ends_s[steps] = t1
         steps += 1
@@ -155,10 +134,9 @@ def lugre_chain(
         for i in range(since, k + 1):
             phase[i] = now
         keep(s, step, law)
-        felt_in = felt(ends.f_in - earlier.f_in, ends.drive - earlier.drive, least)
-        felt_out = felt(ends.f_out - earlier.f_out, ends.load - earlier.load, least)
+        answers = felt(earlier, ends, least)
         first = h if h1 == math.inf else first
-        t, h, h1, h2 = t1, h * min(LONGER, change) if controlled else math.inf, h, h1
+        t, h, h1, h2 = t1, h * change if controlled else math.inf, h, h1
         if hangs(s, times, course, k, t, ends, boundary, law):
             since = k + 1
             k, t = pulled_again(s, times, course, k, t, boundary, law)
@@ -173,17 +151,6 @@ def lugre_chain(
     for i in range(k + 1, m):
         columns[:, i] = columns[:, k]
     return columns, phase, Progress(ends_s[:steps].copy(), tries, iterations, t)
-
-
-@kernel
-def fitted(h: float, left: float) -> tuple[float, bool]:
-    """Return a step that does not pass what is left to the next turn, and whether it lands there.
-
-    Before a short rest it takes half of both.
-    """
-    if h > (1.0 - 1e-9) * left:
-        return left, True
-    return (0.5 * left if 2.0 * h > left else h), False
 
 
 @kernel

@@ -78,7 +78,38 @@ def departs(
 
 
 @kernel
-def felt(tension: float, given: float, least: float) -> float:
+def unseen(
+    times: Floats,
+    course: Floats,
+    k: int,
+    k1: int,
+    t: float,
+    h: float,
+    ends: Ends,
+    step: Step,
+    answers: tuple[float, float],
+    boundary: Boundary,
+) -> float:
+    """Return what a step does not see of drive and load, as tensions by how they answer [N]."""
+    given = (ends.drive, ends.drive_rate, step.drive, step.drive_rate)
+    off = answers[0] * departs(times, course, DRIVE, k, k1, t, h, given)
+    if boundary.load != SPRING:
+        given = (ends.load, ends.load_rate, step.load, step.load_rate)
+        off += answers[1] * departs(times, course, LOAD, k, k1, t, h, given)
+    return off
+
+
+@kernel
+def felt(earlier: Ends, ends: Ends, least: float) -> tuple[float, float]:
+    """Return how much both tensions changed for what is given at their ends, at least so much."""
+    return (
+        answer(ends.f_in - earlier.f_in, ends.drive - earlier.drive, least),
+        answer(ends.f_out - earlier.f_out, ends.load - earlier.load, least),
+    )
+
+
+@kernel
+def answer(tension: float, given: float, least: float) -> float:
     """Return how much a tension changed for what is given at its end, at least so much."""
     return max(abs(tension / given), least) if given != 0.0 else least
 

@@ -18,9 +18,15 @@ def load_place(
 ) -> float:
     """Return where the load is while the tendon is slack [mm]."""
     if boundary.load == SPRING:
-        preload_N = law.preload_N - course[LOST, k]
-        return without_pull(0.0, preload_N, law.load_stiffness_N_per_mm, law.load_spring)
+        return load_without_pull(course[LOST, k], law)
     return given_at(times, course, LOAD, k, t)[0]
+
+
+@kernel
+def load_without_pull(lost_N: float, law: Law) -> float:
+    """Return where the load's spring is at rest without a pull [mm]."""
+    preload_N = law.preload_N - lost_N
+    return without_pull(0.0, preload_N, law.load_stiffness_N_per_mm, law.load_spring)
 
 
 @kernel
@@ -91,9 +97,15 @@ def write_slack(
 def without_tension(
     s: Floats, times: Floats, course: Floats, k: int, t: float, boundary: Boundary, law: Law
 ) -> Floats:
-    """Return the state of rest of a tendon without tension, shape (2, n + 2) [mm, N]."""
+    """Return the state of rest of a tendon without tension; see `limp`."""
+    return limp(s, load_place(times, course, k, t, boundary, law), law)
+
+
+@kernel
+def limp(s: Floats, load: float, law: Law) -> Floats:
+    """Return a tendon straight but without tension up to the load's place, shape (2, n + 2)."""
     start = np.zeros((2, law.n + 2))
-    start[0, law.n + 1] = load_place(times, course, k, t, boundary, law)
+    start[0, law.n + 1] = load
     for j in range(law.n, -1, -1):
         start[0, j] = start[0, j + 1] - law.preload_N / s[STIFFNESS + j]
     return start

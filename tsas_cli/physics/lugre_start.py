@@ -21,6 +21,7 @@ from tsas_cli.physics.lugre_state import (
     Z_PAST,
     Floats,
     Law,
+    Step,
     V,
     W,
     Y,
@@ -73,6 +74,12 @@ def lay_out(s: Floats, rig: Rig, n: int) -> None:
     for row in range(ROWS):
         for i in range(n + 2):
             s[PITCH * row + i] = 0.0
+    set_segments(s, rig, n)
+
+
+@kernel
+def set_segments(s: Floats, rig: Rig, n: int) -> None:
+    """Set stiffness and damping of the tendon's segments."""
     stiffness, damping = segments(rig, n)
     for j in range(n + 1):
         s[STIFFNESS + j], s[DAMPING + j] = stiffness[j], damping[j]
@@ -89,14 +96,21 @@ def set_off(
     boundary: Boundary,
     law: Law,
 ) -> Ends:
-    """Lay the nodes down at rest, their bristles holding what the tensions leave over.
-
-    `start` holds positions and tensions, shape (2, n + 2) [mm, N]; returns the ends.
-    """
-    last = law.n + 1
+    """Lay the nodes down at rest at a time from sample k to the next; see `lay_down`."""
     drive = given_at(times, course, DRIVE, k, t)[0]
     formula = formula_of(NO_TIME_S, math.inf, math.inf)
     step = step_at(times, course, k, t, formula, (drive, drive), law.n, boundary)
+    return lay_down(s, start, step, boundary, law)
+
+
+@kernel
+def lay_down(s: Floats, start: Floats, step: Step, boundary: Boundary, law: Law) -> Ends:
+    """Lay the nodes down at rest, their bristles holding what the tensions leave over.
+
+    `start` holds positions and tensions, shape (2, n + 2) [mm, N], and `step`, of no time, what is
+    given; returns the ends.
+    """
+    last = law.n + 1
     for i in range(law.n + 2):
         s[Y + i] = s[Y_PAST + i] = start[0, i] - step.position
         s[T_PAST + i], s[T_BY_W + i] = start[1, i], 0.0

@@ -62,6 +62,20 @@ class Turntable(NamedTuple):
     speed: float  # of the tendon's end [mm/s]
 
 
+class Reach(NamedTuple):
+    """What the turntable is for the tendon's end p at the end of a step: a spring.
+
+    It pulls with drive − share p where it touches the tendon, p = ahead + slope x there.
+    """
+
+    touches: bool  # False while it crosses its play
+    x: float  # where the tendon's end rests [mm]
+    ahead: float
+    slope: float
+    share: float  # [N/mm]
+    drive: float  # [N]
+
+
 @kernel
 def turned(table: Turntable, asked_rpm: float, actuator: Actuator, h: float) -> Turntable:
     """Return motor speed and travel after h with a speed asked for, exactly."""
@@ -97,6 +111,25 @@ def step_plant(
 
     Returns the turntable, the moment that the chain has come to, and whether it settled.
     """
+    p = chain[X]
+    reach = reach_of(table, p, rig, actuator, h)
+    settled, now, x, f_in = True, before, reach.x, table.f_in
+    if reach.touches:
+        pulled, released, viscous_N, lost_N = friction_at(time_s, table.speed, 0.0, rig)
+        now = Moment(reach.drive, 0.0, pulled, released, viscous_N, lost_N, h)
+        boundary = Boundary(FORCE, SPRING)
+        settled = advance(chain, before, now, boundary, held_by(laws, reach.share), scale)
+        if chain[T] < 0.0:
+            hang_slack(chain, now, boundary, laws)
+            rubs = chain[SLIP] * laws.drive_friction_N
+            chain[X] = (reach.drive - rubs) / (reach.share + laws.proximal_spring_N_per_mm)
+        x, f_in = pulled_to(chain[X], reach)
+    return moved(table, x, f_in, (chain[X] - p) / h, h), now, settled
+
+
+@kernel
+def reach_of(table: Turntable, p: float, rig: Rig, actuator: Actuator, h: float) -> Reach:
+    """Return what a turntable is for the tendon, whose end is at p, at the end of a step."""
     c, m = 1.5 / h, actuator.inertia_N_s2_per_mm
     v_rest = (-4.0 * table.x + table.x_before) / (2.0 * h)
     a_rest = c * v_rest + (-4.0 * table.v + table.v_before) / (2.0 * h)
@@ -105,35 +138,27 @@ def step_plant(
     pull -= actuator.damping_N_s_per_mm * v_rest
     ahead, slope = ripple_at(2.0 * table.x - table.x_before, rig.effects.drive_ripple)
     half = 0.5 * rig.effects.backlash.play_mm
-    p, F0 = chain[X], laws.preload_N
-
-    x = (pull - slope * (table.f_in - F0)) / stiffness  # with the tendon's end where it is
+    x = (pull - slope * (table.f_in - rig.preload_N)) / stiffness  # with the end where it is
     if half > 0.0:
         x = across_play(x, table, p, ahead, slope, half, rubbing(table.f_in, rig) / stiffness)
     gap = ahead + slope * x - p
-    settled, now, f_in = True, before, table.f_in
-    if abs(gap) > half or half == 0.0:
-        side = math.copysign(half, gap)
-        share = stiffness / (slope * slope)
-        pulled, released, viscous_N, lost_N = friction_at(time_s, table.speed, 0.0, rig)
-        drive = pull / slope + F0 + share * (ahead - side)
-        now = Moment(drive, 0.0, pulled, released, viscous_N, lost_N, h)
-        boundary = Boundary(FORCE, SPRING)
-        settled = advance(chain, before, now, boundary, held_by(laws, share), scale)
-        if chain[T] < 0.0:
-            hang_slack(chain, now, boundary, laws)
-            rubs = chain[SLIP] * laws.drive_friction_N
-            chain[X] = (drive - rubs) / (share + laws.proximal_spring_N_per_mm)
-        f_in = drive - share * chain[X]
-        x = (chain[X] + side - ahead) / slope
-    v = c * x + v_rest
-    return (
-        Turntable(
-            table.motor_rpm, table.motor_mm, x, table.x, v, table.v, f_in, (chain[X] - p) / h
-        ),
-        now,
-        settled,
-    )
+    ahead -= math.copysign(half, gap)
+    share = stiffness / (slope * slope)
+    drive = pull / slope + rig.preload_N + share * ahead
+    return Reach(abs(gap) > half or half == 0.0, x, ahead, slope, share, drive)
+
+
+@kernel
+def pulled_to(p: float, reach: Reach) -> tuple[float, float]:
+    """Return where a turntable is that holds the tendon's end at p, and its force there."""
+    return (p - reach.ahead) / reach.slope, reach.drive - reach.share * p
+
+
+@kernel
+def moved(table: Turntable, x: float, f_in: float, speed: float, h: float) -> Turntable:
+    """Return the turntable after a step of BDF2 to x."""
+    v = (3.0 * x - 4.0 * table.x + table.x_before) / (2.0 * h)
+    return Turntable(table.motor_rpm, table.motor_mm, x, table.x, v, table.v, f_in, speed)
 
 
 @kernel

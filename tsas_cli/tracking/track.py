@@ -1,6 +1,7 @@
 """One run of the closed loop: the controller's model makes the path, the plant answers."""
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -8,6 +9,7 @@ import numpy.typing as npt
 from tsas_cli.controllers.closed_loop import (
     ASKED,
     F_OUT,
+    GIVEN_UP,
     X_IN,
     close_loop,
     followed_from,
@@ -16,15 +18,24 @@ from tsas_cli.controllers.path import Path, follow
 from tsas_cli.controllers.signals import error_filter
 from tsas_cli.errors import InputError
 from tsas_cli.physics.ends import last_direction
+from tsas_cli.physics.lugre_plant import no_lumps
 from tsas_cli.physics.plant import Actuator
 from tsas_cli.physics.rig import Rig
 from tsas_cli.tracking.scores import Score, score
 from tsas_cli.tracking.settings import Settings
 
 Floats = npt.NDArray[np.float64]
+TendonDynamics = Literal["slip", "lugre"]
 RELAY_S = 0.5  # in which …
 RELAY_SHARE = 0.25  # … a loop whose motor is at its limits for so much of the time, and …
 RELAY_TURNS_PER_S = 20.0  # … goes so often from one to the other, is a relay
+
+
+REMEDIES: dict[TendonDynamics, str] = {
+    "slip": "use more substeps in [loop] of the settings",
+    "lugre": "leave out [bristles.damping_N_s_per_mm], which is critical then, or use more "
+    "substeps in [loop] of the settings",
+}
 
 
 @dataclass(frozen=True)
@@ -88,15 +99,18 @@ def track(
     settings: Settings,
     seed: int,
     *,
+    dynamics: TendonDynamics = "slip",
     relay: bool = False,
 ) -> Tracked:
     """Run the loop once, from rest at the path's first place.
+
+    `dynamics` is the plant's; the controller's model is quasi-static.
 
     Raises
     ------
     InputError
         The loop is unstable: x_in has run away, or the motor swings from limit to limit (`relay`
-        follows that nevertheless).
+        follows that nevertheless). Or the tendon cannot be followed.
     """
     step_s, m = settings.step_s, wanted_N.size
     rng = np.random.default_rng(seed)
@@ -121,8 +135,16 @@ def track(
         nodes,
         step_s,
         settings.loop.substeps,
+        no_lumps() if dynamics == "lugre" else None,
     )
     time_s: Floats = np.arange(m, dtype=np.float64) * step_s
+    if unsettled > GIVEN_UP * m * settings.loop.substeps:
+        raise InputError(
+            f"the tendon cannot be followed: {unsettled} steps do not settle until "
+            f"{done * step_s:.4g} s",
+            where=f"plant, --dynamics {dynamics}",
+            remedy=REMEDIES[dynamics],
+        )
     if done < m:
         raise InputError(
             f"the loop is unstable: x_in is {columns[X_IN, done - 1]:.4g} mm at "

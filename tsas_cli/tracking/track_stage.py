@@ -18,11 +18,20 @@ from tsas_cli.files import new_folder, sha256_of, write_json
 from tsas_cli.identification.model import data_sheet, read_model, source_of
 from tsas_cli.recordings.dataset import write_dataset
 from tsas_cli.tracking.conditions import Condition
+from tsas_cli.tracking.dynamic_notes import dynamic_notes
 from tsas_cli.tracking.recorded import conditions, manifest, table_of
 from tsas_cli.tracking.references import reference
 from tsas_cli.tracking.scores import over_seeds
 from tsas_cli.tracking.settings import CONTROLLERS, Settings, printed_gains, read_settings
-from tsas_cli.tracking.track import Known, Plant, Tracked, feedforward, plan, track
+from tsas_cli.tracking.track import (
+    Known,
+    Plant,
+    TendonDynamics,
+    Tracked,
+    feedforward,
+    plan,
+    track,
+)
 
 OFTEN_PERCENT = 5.0  # of the time at the motor's limit, from which it is said
 
@@ -38,6 +47,7 @@ class Call:
     conditions: tuple[Condition, ...] = (Condition("undisturbed"),)
     reference: str = "sine"
     as_printed: bool = False
+    dynamics: TendonDynamics = "slip"
     seeds: int = 1
     first_seed: int = 1
 
@@ -69,8 +79,18 @@ def track_all(
             for name in call.controllers:
                 runs = []
                 for seed in range(call.first_seed, call.first_seed + call.seeds):
-                    relay = call.as_printed
-                    runs.append(track(wanted, path, known, real, name, settings, seed, relay=relay))
+                    run = track(
+                        wanted,
+                        path,
+                        known,
+                        real,
+                        name,
+                        settings,
+                        seed,
+                        dynamics=call.dynamics,
+                        relay=call.as_printed,
+                    )
+                    runs.append(run)
                     step()
                 run_id = f"{name}-{condition.name}"
                 first, seed = runs[0], call.first_seed
@@ -78,6 +98,8 @@ def track_all(
                 results.append(_result(run_id, name, condition, runs))
         summary = _header(call, settings) | {"results": results}
         summary["notes"] = _notes(path, known, plant, results)
+        if call.dynamics == "lugre":
+            summary["notes"] += dynamic_notes(path, plant, call.conditions, settings.step_s)
         write_dataset(folder, manifest(tables, settings), tables)
         write_json(folder / "tracking.json", summary)
     return summary
@@ -125,6 +147,7 @@ def _header(call: Call, settings: Settings) -> dict[str, Any]:
             **settings.model_dump(mode="json", by_alias=True),
         },
         "reference": _reference(call.reference),
+        "dynamics": call.dynamics,
         "gains": "as printed" if call.as_printed else "default",
         "seeds": [call.first_seed, call.first_seed + call.seeds - 1],
         "conditions": {
