@@ -113,6 +113,15 @@ def test_the_model_driven_along_the_path_gives_the_force(values, wanted):
     np.testing.assert_allclose(there.f_in_N, tension, atol=1e-4)
 
 
+@pytest.mark.parametrize("n", [5, 10, 20, 30, 50])
+@pytest.mark.parametrize("speed", [1.0, 2.0])
+def test_a_dead_band_in_which_the_answer_trembles_is_crossed(n, speed):
+    """A curved spring's answer is right to rounding only; the path stays on its rising branch."""
+    rig = with_values(GROUP_A, {"load_spring_nonlinearity.quadratic_per_mm": 0.03})
+    path, _ = path_to(43.0 - 18.0 * np.cos(speed * T), rig, n=n)
+    assert path.min() > -0.2
+
+
 @pytest.mark.parametrize("values", [v for v in EFFECTS.values() if v], ids=list(EFFECTS)[1:])
 def test_every_one_of_these_effects_moves_the_path(values):
     assert np.abs(path_to(SINE, with_values(GROUP_A, values))[0] - path_to(SINE)[0]).max() > 0.01
