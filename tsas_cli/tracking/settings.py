@@ -9,7 +9,7 @@ import math
 from pathlib import Path
 from typing import Any
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from tsas_cli.controllers.adaptive_sliding_mode import AdaptiveSlidingMode
 from tsas_cli.controllers.closed_loop import Laws
@@ -118,6 +118,13 @@ class AdaptiveSettings(SlidingSettings):
     lowest: tuple[float, float, float] = (0.0005, 1.8, 0.002)
     highest: tuple[float, float, float] = (0.05, 180.0, 0.2)
     psi: tuple[float, float, float] = (1e-8, 2e-4, 1e-6)
+
+    @model_validator(mode="after")
+    def _start_within_bounds(self) -> "AdaptiveSettings":
+        ordered = zip(self.lowest, self.phi, self.highest, strict=True)
+        if not all(low <= start <= high for low, start, high in ordered):
+            raise ValueError("phi must lie between lowest and highest")
+        return self
 
 
 class ObserverSettings(_Table):

@@ -93,9 +93,15 @@ def track(
     ------
     InputError
         The loop is unstable: x_in has run away, or the motor swings from limit to limit (`relay`
-        follows that nevertheless).
+        follows that nevertheless). The plant changes after the run's end.
     """
     step_s, m = settings.step_s, wanted_N.size
+    change_at = round(plant.change_s / step_s) if plant.later else -1
+    if change_at >= m:
+        raise InputError(
+            f"the plant changes at {plant.change_s:g} s",
+            expected=f"a time within the reference's {(m - 1) * step_s:g} s",
+        )
     rng = np.random.default_rng(seed)
     noise = settings.sensor.noise_mm * rng.standard_normal(m)
     A, b = error_filter(settings.loop.filter_Hz, step_s)
@@ -113,7 +119,7 @@ def track(
         table,
         chain,
         (plant.rig, plant.later or plant.rig),
-        round(plant.change_s / step_s) if plant.later else -1,
+        change_at,
         plant.actuator,
         nodes,
         step_s,
@@ -143,8 +149,8 @@ def _refuse_relay(asked: Floats, limit_rpm: float, time_s: Floats, controller: s
     """Stop at a motor that swings between its limits: the limit alone holds an unstable loop."""
     side = np.where(np.abs(asked) >= limit_rpm, np.sign(asked), 0.0)
     width = max(int(RELAY_S / (time_s[1] - time_s[0])), 1)
-    at_limit = np.convolve(side != 0.0, np.ones(width), "valid")
-    turns = np.convolve(np.append(side[1:] * side[:-1] < 0.0, False), np.ones(width), "valid")
+    at_limit = _within(side != 0.0, width)
+    turns = _within(np.append(side[1:] * side[:-1] < 0.0, False), width)
     swings = np.flatnonzero((at_limit > 0.5 * width) & (turns > RELAY_TURNS_PER_S * RELAY_S))
     if swings.size:
         k = int(swings[0])
@@ -154,3 +160,11 @@ def _refuse_relay(asked: Floats, limit_rpm: float, time_s: Floats, controller: s
             where=f"controller {controller}",
             remedy="lower its gains or the filter's cutoff",
         )
+
+
+def _within(true: npt.NDArray[np.bool_], width: int) -> npt.NDArray[np.int64]:
+    """Return how many are true of each `width` in a row; of a shorter array, of all."""
+    total = np.concatenate(([0], np.cumsum(true)))
+    width = min(width, true.size)
+    count: npt.NDArray[np.int64] = total[width:] - total[:-width]
+    return count
