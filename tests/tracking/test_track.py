@@ -17,6 +17,7 @@ from tsas_cli.controllers.closed_loop import (
     X_OUT,
     X_SEEN,
 )
+from tsas_cli.controllers.signals import error_filter
 from tsas_cli.errors import InputError
 from tsas_cli.physics.ends import Drive
 from tsas_cli.physics.response import simulate
@@ -69,15 +70,48 @@ def test_more_steps_between_samples_change_ever_less():
     assert np.sqrt(np.mean(fine**2)) < 0.2 * np.sqrt(np.mean(coarse**2))
 
 
-def test_the_tensions_are_those_of_the_model_moved_along_x_in():
-    """Sample by sample: what is recorded belongs together."""
-    one = run(sensor=RATE | SILENT)
-    _, _, _, plant = loop_of(settings_of(sensor=RATE | SILENT))
+@pytest.mark.parametrize("drift_per_s", [0.0, 0.2])
+def test_the_tensions_are_those_of_the_model_moved_along_x_in(drift_per_s):
+    """Sample by sample, and at its time: what is recorded belongs together."""
+    _, _, _, plant = loop_of(settings_of())
+    rig = with_values(plant.rig, {"friction_drift.rate_per_s": drift_per_s})
+    one = run(rig=rig, sensor=RATE | SILENT)
     c = one.columns
-    there = simulate(plant.rig, Drive(c[X_IN]), on_mesh=True, nodes=8)
+    there = simulate(rig, Drive(c[X_IN], time_s=one.time_s), on_mesh=True, nodes=8)
     np.testing.assert_allclose(c[F_OUT], there.f_out_N, atol=0.05)
     np.testing.assert_allclose(c[X_OUT], there.x_out_mm, atol=0.05)
     assert np.sqrt(np.mean((c[F_IN] - there.f_in_N) ** 2)) < 0.3
+
+
+def test_what_is_asked_for_is_the_law_of_what_was_seen():
+    """The sliding mode's speed, from the recorded x_in by Eq. (45) and the feedforward."""
+    one, gains = run("sliding-mode"), settings_of().controllers.sliding_mode
+    _, path, known, _ = loop_of(settings_of())
+    x, v, a, jerk = path.drive[:, : one.time_s.size]
+    A, b = error_filter(settings_of().loop.filter_Hz, 0.002)
+    state, rows = np.zeros(3), []
+    for e in x - one.columns[X_SEEN]:
+        state = A @ state + b * e
+        rows.append(state)
+    e, de, dde = np.array(rows).T
+    s = gains.c1 * e + gains.c2 * de + dde
+    phi1, phi2, phi3 = gains.phi
+    u = phi1 * (gains.c1 * de + gains.c2 * dde + jerk) + phi2 * (v - de) + phi3 * (a - dde)
+    u += gains.epsilon_rpm * np.clip(s / gains.boundary_mm_per_s2, -1.0, 1.0) + gains.ks * s
+    asked = u + feedforward(path, known.actuator)[: s.size]
+    np.testing.assert_allclose(one.columns[DISTANCE], s, atol=1e-8)
+    np.testing.assert_allclose(one.columns[ASKED], asked, atol=1e-8)
+
+
+def test_the_sum_of_the_pid_is_held_after_samples_at_the_limit():
+    one = run("pid", drive={"speed_limit_rpm": 500.0})
+    _, path, _, _ = loop_of(settings_of(drive={"speed_limit_rpm": 500.0}))
+    e = path.drive[0, : one.time_s.size] - one.columns[X_SEEN]
+    grown = np.diff(one.columns[MEMORY_AT])
+    limited = np.abs(one.columns[ASKED][:-1]) == 500.0
+    assert 10 < limited.sum() < 900
+    assert not grown[limited].any()
+    np.testing.assert_allclose(grown[~limited], 0.002 * e[1:][~limited], atol=1e-12)
 
 
 def test_the_motor_is_asked_within_its_limit_and_follows_with_its_lag():
