@@ -75,7 +75,8 @@ def track(
     from tsas_cli.tracking.settings import CONTROLLERS
     from tsas_cli.tracking.track_stage import Call, track_all
 
-    names = CONTROLLERS if compare or controller == "all" else tuple(controller.split(","))
+    named = tuple(dict.fromkeys(name.strip() for name in controller.split(",")))
+    names = CONTROLLERS if compare or controller == "all" else named
     conditions = [disturbed(disturb)] if disturb else []
     if compare:
         conditions = [Condition("undisturbed"), *(conditions or [proximal_spring()])]
@@ -83,7 +84,7 @@ def track(
         model=model,
         plant=plant,
         settings=settings,
-        controllers=tuple(name.strip() for name in names),
+        controllers=names,
         conditions=tuple(conditions) or (Condition("undisturbed"),),
         reference=reference,
         as_printed=as_printed,

@@ -145,7 +145,7 @@ def reach_of(table: Turntable, p: float, rig: Rig, actuator: Actuator, h: float)
     ahead -= math.copysign(half, gap)
     share = stiffness / (slope * slope)
     drive = pull / slope + rig.preload_N + share * ahead
-    return Reach(abs(gap) > half or half == 0.0, x, ahead, slope, share, drive)
+    return Reach(abs(gap) * FLANK > half or half == 0.0, x, ahead, slope, share, drive)
 
 
 @kernel

@@ -1,18 +1,29 @@
 """What is done to the plant: changes of its rig from the start, or in the middle of a run."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from tsas_cli.effects import EFFECTS
 from tsas_cli.errors import InputError, nearest
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.paper import yang2025
 from tsas_cli.physics.rig import with_values
 from tsas_cli.tracking.track import Plant
 
-ALLOWED = {name: (q.lower, q.upper, q.unit) for name, q in QUANTITIES.items()} | {
-    "total_bend_rad": (0.0, 100.0, "rad")
+ALLOWED = {
+    name: (q.lower, q.upper, q.unit) for name, q in QUANTITIES.items() if name != "x_in_zero_mm"
+} | {"total_bend_rad": (0.0, 100.0, "rad")}
+ONLY_FROM_THE_START = {
+    "preload_N": "all displacements count from the preload",
+    "tendon_stiffness_N": "all displacements count from the preload",
+    "x_out_zero_mm": "a sensor stays as it is",
+} | {
+    f"{effect.name}.{p.name}": "a sensor stays as it is"
+    for effect in EFFECTS
+    if effect.acts_on == "sensor"
+    for p in effect.parameters
 }
-ONLY_FROM_THE_START = ("preload_N", "tendon_stiffness_N")
 
 
 @dataclass(frozen=True)
@@ -81,6 +92,8 @@ def _change(option: str, where: str) -> Change:
         raise InputError(
             f"{option!r} is no change", where=where, expected="NAME=VALUE or NAME=VALUE@SECONDS"
         ) from error
+    if not 0.0 <= change.from_s < math.inf:
+        raise InputError(f"{option!r} begins at {from_s} s", where=where, expected="0 s or later")
     lower, upper, unit = ALLOWED[name]
     if not lower <= change.value <= upper:
         raise InputError(
@@ -92,6 +105,6 @@ def _change(option: str, where: str) -> Change:
         raise InputError(
             f"{name} cannot change during a run",
             where=where,
-            remedy=f"leave out @{from_s}: all displacements count from the preload",
+            remedy=f"leave out @{from_s}: {ONLY_FROM_THE_START[name]}",
         )
     return change

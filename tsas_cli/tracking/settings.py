@@ -9,7 +9,7 @@ import math
 from pathlib import Path
 from typing import Any
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from tsas_cli.controllers.adaptive_sliding_mode import AdaptiveSlidingMode
 from tsas_cli.controllers.closed_loop import Laws
@@ -141,6 +141,13 @@ class AdaptiveSettings(SlidingSettings):
     psi: tuple[float, float, float] = Field(
         default_factory=lambda: _three("controllers.adaptive_sliding_mode.psi{}")
     )
+
+    @model_validator(mode="after")
+    def _start_within_bounds(self) -> "AdaptiveSettings":
+        ordered = zip(self.lowest, self.phi, self.highest, strict=True)
+        if not all(low <= start <= high for low, start, high in ordered):
+            raise ValueError("phi must lie between lowest and highest")
+        return self
 
 
 class ObserverSettings(_Table):

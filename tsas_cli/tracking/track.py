@@ -110,9 +110,16 @@ def track(
     ------
     InputError
         The loop is unstable: x_in has run away, or the motor swings from limit to limit (`relay`
-        follows that nevertheless). Or the tendon cannot be followed.
+        follows that nevertheless). The plant changes after the run's end. Or the tendon cannot be
+        followed.
     """
     step_s, m = settings.step_s, wanted_N.size
+    change_at = round(plant.change_s / step_s) if plant.later else -1
+    if change_at >= m:
+        raise InputError(
+            f"the plant changes at {plant.change_s:g} s",
+            expected=f"a time within the reference's {(m - 1) * step_s:g} s",
+        )
     rng = np.random.default_rng(seed)
     noise = settings.sensor.noise_mm * rng.standard_normal(m)
     A, b = error_filter(settings.loop.filter_Hz, step_s)
@@ -130,7 +137,7 @@ def track(
         table,
         chain,
         (plant.rig, plant.later or plant.rig),
-        round(plant.change_s / step_s) if plant.later else -1,
+        change_at,
         plant.actuator,
         nodes,
         step_s,
@@ -181,7 +188,15 @@ def _swings(asked: Floats, limit_rpm: float, step_s: float) -> tuple[int, float]
     side = np.where(np.abs(asked) >= limit_rpm, np.sign(asked), 0.0)
     last = last_direction(np.cumsum(side))  # the limit it was at last
     width = max(int(RELAY_S / step_s), 1)
-    at_limit = np.convolve(side != 0.0, np.ones(width), "valid")
-    turns = np.convolve(np.append(last[1:] * last[:-1] < 0.0, False), np.ones(width), "valid")
+    at_limit = _within(side != 0.0, width)
+    turns = _within(np.append(last[1:] * last[:-1] < 0.0, False), width)
     found = np.flatnonzero((at_limit > RELAY_SHARE * width) & (turns > RELAY_TURNS_PER_S * RELAY_S))
     return (int(found[0]), float(turns[found[0]]) / RELAY_S) if found.size else None
+
+
+def _within(true: npt.NDArray[np.bool_], width: int) -> npt.NDArray[np.int64]:
+    """Return how many are true of each `width` in a row; of a shorter array, of all."""
+    total = np.concatenate(([0], np.cumsum(true)))
+    width = min(width, true.size)
+    count: npt.NDArray[np.int64] = total[width:] - total[:-width]
+    return count
