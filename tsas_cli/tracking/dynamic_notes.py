@@ -19,8 +19,8 @@ def dynamic_notes(
 
     Looked at is the path of the drive that the controller wants.
     """
-    if plant.rig.bristles == Bristles():
-        yield "the bristles of the plant are those of Yang 2025, Table 1: its model has none"
+    if plant.rig.bristles.stiffness_N_per_mm == Bristles().stiffness_N_per_mm:
+        yield "the stiffness of the plant's bristles is that of Yang 2025, Table 1"
     time_s = step_s * np.arange(path.drive.shape[1], dtype=np.float64)
     for condition in conditions:
         real = condition.of(plant)
