@@ -1,5 +1,6 @@
 """The plant with a dynamic tendon: the slip chain's where that holds, a linear one exactly."""
 
+import itertools
 import math
 
 import numpy as np
@@ -195,7 +196,7 @@ def test_a_rig_left_alone_rings_down_and_rests():
     rings = lugre["x_in_mm"][422:]
     swings = [np.ptp(rings[i : i + 50]) for i in range(0, 1000, 50)]
     assert swings[0] > 0.01
-    assert all(b <= a + 1e-9 for a, b in zip(swings, swings[1:], strict=False))
+    assert all(b <= a + 1e-9 for a, b in itertools.pairwise(swings))
     assert swings[-1] < 1e-6
 
 
