@@ -53,7 +53,7 @@ RIPPLE, PLAY = DRIVE_RIPPLE.parameters, BACKLASH.parameters[0]
 GAIN = Quantity("gain_mm_per_s_rpm", "mm/(s rpm)", 0.02, 1e-7, 1e3)
 DAMPING = Quantity("damping_ratio", "1", 0.1, 1e-3, 3.0)
 TERMS: dict[str, tuple[Quantity, ...]] = {
-    "lag": (Quantity("motor_lag_s", "s", 0.005, 1e-5, 5.0),),
+    "lag": (Quantity("motor_lag_s", "s", 0.005, 0.0, 5.0, positive=False, size=0.01),),
     "delay": (Quantity("delay_s", "s", 0.005, 0.0, 0.5, positive=False, size=0.01),),
     "spring": (Quantity("natural_frequency_Hz", "Hz", 50.0, 0.05, 2e3), DAMPING),
     "leak": (Quantity("leak_per_s", "1/s", 0.0, 0.0, 10.0, positive=False, size=1e-3),),
