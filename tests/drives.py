@@ -11,7 +11,7 @@ RATE_HZ = 500.0
 DATA_SHEET = {"turntable_radius_mm": 27.1, "gear_ratio": 120.0}
 # So stiff and light, and a motor so quick, that x_in is the motor's angle.
 STIFF = Drive(
-    inertia_N_mm_s2=1e-3, drive_stiffness_N_per_mm=5e4, damping_N_s_per_mm=0.5, motor_lag_s=1e-6
+    inertia_N_mm_s2=1e-3, drive_stiffness_N_per_mm=5e4, damping_N_s_per_mm=0.05, motor_lag_s=1e-6
 )
 SPRUNG = Drive(motor_lag_s=1e-6)
 
@@ -23,9 +23,11 @@ def speeds(seed=0, duration_s=12.0, to_Hz=60.0, rate_Hz=RATE_HZ):
     growth = np.log(to_Hz / 0.3) / duration_s
     chirp = 1200.0 * np.sin(2.0 * np.pi * 0.3 * np.expm1(growth * t) / growth)
     levels = rng.uniform(-500.0, 500.0, int(duration_s / 0.8) + 1)
-    steps = np.interp(t % 0.8, [0.0, 0.02], [0.0, 1.0]) * np.diff(levels, prepend=0.0)[
-        (t / 0.8).astype(int)
-    ] + np.concatenate(([0.0], levels[:-1]))[(t / 0.8).astype(int)]
+    steps = (
+        np.interp(t % 0.8, [0.0, 0.02], [0.0, 1.0])
+        * np.diff(levels, prepend=0.0)[(t / 0.8).astype(int)]
+        + np.concatenate(([0.0], levels[:-1]))[(t / 0.8).astype(int)]
+    )
     sines = 500.0 * np.sin(2.0 * t) + 200.0 * np.sin(11.0 * t)
     return {"chirp": (t, chirp), "steps": (t, steps), "sines": (t, sines)}
 

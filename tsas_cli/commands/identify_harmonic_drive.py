@@ -1,7 +1,7 @@
 """`tsas identify-harmonic-drive`: from motor speed to x_in: G(s), its inverse, what it lacks."""
 
 from enum import StrEnum
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -16,6 +16,9 @@ from tsas_cli.commands.common import (
     progress,
     show,
 )
+
+if TYPE_CHECKING:
+    from tsas_cli.numerics.linear_response import Hold
 
 
 class SpeedOption(StrEnum):
@@ -47,7 +50,7 @@ def identify_harmonic_drive(
 
     data = opened(dataset, runs)
     with progress("identify", None, quiet=quiet or as_json) as step:
-        hold = "first" if speed is SpeedOption.measured else "zero"
+        hold: Hold = "first" if speed is SpeedOption.measured else "zero"
         summary = identify_drive(data, out, hold, force=force, step=step)
     show(summary, tables(summary, out), quiet=quiet, as_json=as_json)
     if not quiet and not as_json:

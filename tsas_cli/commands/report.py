@@ -19,15 +19,16 @@ def report(
 ) -> None:
     """Write one self-contained HTML page: diagnosis, recordings, model, simulation and residual.
 
-    Each DIR is a dataset or what `tsas check`, `calibrate`, `simulate` or `diagnose` wrote.
+    Each DIR is a dataset or what `tsas check`, `calibrate`, `simulate`, `diagnose` or
+    `identify-harmonic-drive` wrote.
     """
     from tsas_cli.files import new_file
     from tsas_cli.reporting.inputs import read_inputs
-    from tsas_cli.reporting.page import SECTIONS, page
+    from tsas_cli.reporting.page import page, sections_for
 
     with new_file(out, force=force) as path:
         inputs = read_inputs(folders)
-        with progress("drawing", len(SECTIONS), quiet=quiet) as advance:
+        with progress("drawing", len(sections_for(inputs)), quiet=quiet) as advance:
             path.write_text(page(inputs, advance), encoding="utf-8")
     read = {"dataset.toml": str(inputs.dataset.folder)}
     read |= {kind.FILE: str(folder) for kind, folder in inputs.folders.items()}

@@ -1,9 +1,12 @@
 """What the nominal drive equation lacks: the verdict, its causes and their gains.
 
-Nominal is Yang 2025, Eqs. (23)-(25): (J/r1²) d²x/dt² + B dx/dt + k_p x = k_d x_m, dx_m/dt = K u. Where
-the data sheet gives J, r1 and k_p, its natural frequency is known, and k_d and B are fitted. Where
-it does not, any frequency could be its own; then nominal is what the equation says of slow motion,
-x = g ∫u dt, and a spring with inertia behind it is what the drive was not said to have.
+Nominal is Yang 2025, Eqs. (23)-(25):
+
+    (J/r1²) d²x/dt² + B dx/dt + k_p x = k_d x_m,  dx_m/dt = K u
+
+Where the data sheet gives J, r1 and k_p, its natural frequency is known, and k_d and B are fitted.
+Where it does not, any frequency could be its own; then nominal is what the equation says of slow
+motion, x = g ∫u dt, and a spring with inertia behind it is what the drive was not said to have.
 """
 
 import math
@@ -85,9 +88,8 @@ def diagnose_drive(
     floor = min(noise, rmse[1])
     channel = Channel(rmse[0], rmse[1], floor, max(floor, rmse[1] * math.sqrt(1.0 - could)))
     verdict = _verdict(search, causes, left, share)
-    unexplained = verdict == "unexplained" or bool(causes) and (
-        left > MUCH or (left > 1.0 + BLURRED and share > LEFT)
-    )
+    much = left > MUCH or (left > 1.0 + BLURRED and share > LEFT)
+    unexplained = verdict == "unexplained" or (bool(causes) and much)
     found = DriveDiagnosis(
         verdict, "", nominal, explained, causes, channel,
         _gain_percent(search, nominal, explained), left, share if causes else 1.0,
@@ -212,5 +214,3 @@ def _spoken(cause: DriveCause, titles: dict[str, str]) -> str:
     if cause.effect == "drive_compliance":
         return "the compliance of the drive, whose stiffness reacts on the position"
     return f"a {cause.kind} of the motor" if cause.kind else f"the {titles[cause.effect]}"
-
-

@@ -50,6 +50,9 @@ class DriveSearch:
     def folds(self) -> Folds:
         """What is held out together; the blocks outlast the memory of what the best one leaves."""
         best = min((self.trial(t) for t in self.structures()), key=lambda t: t.mean_square)
+        return self._folds_by(best)
+
+    def _folds_by(self, best: DriveTrial) -> Folds:
         sizes = [run.x_in.size for run in self.bench.runs]
         residuals = np.split(best.solution.residual, np.cumsum(sizes)[:-1])
         return drive_folds(self.bench.runs, residuals)
@@ -57,7 +60,8 @@ class DriveSearch:
     def trial(self, terms: Terms) -> DriveTrial:
         """Return the fit of a set of terms, no worse than that of any simpler one known."""
         if terms not in self.trials:
-            simpler = [self.trials[terms - {t}] for t in sorted(terms) if terms - {t} in self.trials]
+            known = (self.trials.get(terms - {t}) for t in sorted(terms))
+            simpler = [trial for trial in known if trial is not None]
             self.trials[terms] = self.bench.fit(terms, simpler)
             self.step()
         return self.trials[terms]
@@ -94,13 +98,12 @@ class DriveSearch:
         """Return the terms that the recordings show."""
         named = self.chosen(NOTHING)
         for _ in range(ROUNDS):
-            gear = named & frozenset(GEAR)
             more = self._more(named)
             if more == named:
                 return named
-            gear = more & frozenset(GEAR)
-            named = self.chosen(gear)
-            named = self._without_idle_gear(named)
+            # What is left now has a shorter memory: more blocks speak.
+            self.folds, self.squares = self._folds_by(self.trial(more)), {}
+            named = self._without_idle_gear(self.chosen(more & frozenset(GEAR)))
         return named
 
     def rivals(self, named: Terms, term: str) -> tuple[str, ...]:
@@ -159,6 +162,6 @@ def _covered(runs: Sequence[DriveRun]) -> bool:
     """Say whether each run's band is seen by another one as well."""
     if len(runs) < 2:
         return False
-    bands = [frequency_response([run]).band_Hz for run in runs]
+    bands = [frequency_response([run]).band for run in runs]
     highest = sorted(0.0 if band is None else band[1] for band in bands)
     return highest[-1] > 0.0 and highest[-2] >= COVERED * highest[-1]

@@ -59,7 +59,7 @@ def identify_drive(
         runs = drive_runs(dataset, hold)
         step()
         seen, sheet = frequency_response(runs), drive_sheet(dataset.manifest)
-        search = DriveSearch(DriveBench(runs, seen, sheet.stated_Hz), step)
+        search = DriveSearch(DriveBench(runs, seen, sheet.stated_frequency), step)
         final = search.run()
         trial, folds = search.trial(final), search.folds
         blocks = [folds.block[folds.run == k] for k in range(len(runs))]
@@ -105,7 +105,8 @@ def equation_of(terms: Terms) -> str:
     """Return G(s) as reports print it."""
     late = " e^(−Ts)" if "delay" in terms else ""
     below = ["(s + a)" if "leak" in terms else "s", *(_FACTORS[t] for t in _FACTORS if t in terms)]
-    return f"G(s) = K{late} / ({' '.join(below)})" if len(below) > 1 else f"G(s) = K{late} / {below[0]}"
+    whole = " ".join(below)
+    return f"G(s) = K{late} / ({whole})" if len(below) > 1 else f"G(s) = K{late} / {whole}"
 
 
 def _given(sheet: DataSheet) -> dict[str, Estimate]:
@@ -170,7 +171,7 @@ def _response(seen: FrequencyResponse, values: DriveValues) -> dict[str, Any]:
         off = measured[k] - float(np.interp(at[k], curve, phase))
         measured -= 360.0 * round(off / 360.0)
     return {
-        "band_Hz": None if seen.band_Hz is None else list(seen.band_Hz),
+        "band_Hz": None if seen.band is None else list(seen.band),
         "measured": {
             "frequency_Hz": at,
             "magnitude": np.abs(told),
@@ -184,7 +185,7 @@ def _response(seen: FrequencyResponse, values: DriveValues) -> dict[str, Any]:
 
 def _poles(values: DriveValues, seen: FrequencyResponse) -> list[dict[str, Any]]:
     """Return the poles, and 1/T of a delay, with whether the input shows their frequency."""
-    band = seen.band_Hz
+    band = seen.band
     out = []
     for pole in poles(values):
         if abs(pole) < 1e-9 or pole.imag < 0.0:
@@ -260,9 +261,7 @@ def _cause(cause: DriveCause) -> dict[str, Any]:
         "kind": cause.kind,
         "rivals": list(cause.rivals),
         "parameters": {
-            e.name: {
-                k: v for k, v in e.as_json().items() if k not in ("name", "run", "origin")
-            }
+            e.name: {k: v for k, v in e.as_json().items() if k not in ("name", "run", "origin")}
             for e in cause.parameters
         },
         "gain_percent": cause.gain_percent,
@@ -277,7 +276,7 @@ def _next(found: DriveDiagnosis) -> str:
             "play shows at each reversal of slow sines of different amplitude."
         )
     if found.unexplained:
-        return "Repeat a run without any change: what comes back is the drive's, the rest is chance."
+        return "Repeat a run without change: what comes back is the drive's, the rest is chance."
     return "The same chirp with half the amplitude: what is linear scales with it, play does not."
 
 
@@ -291,13 +290,13 @@ def _cannot_tell(
             "No frequency has a coherence above 0.8: x_in shows little that the motor's speed "
             "explains linearly, and start values came from the travel alone."
         )
-    for pole in summary["poles"]:
-        if not pole["in_band"] and band is not None:
-            said.append(
-                f"A {pole['kind']} lies at {pole['frequency_Hz']:.3g} Hz, outside of the band that "
-                f"the input shows ({band[0]:.3g} to {band[1]:.3g} Hz): it is only seen by its "
-                "tail, and another lag may look the same. Record a chirp beyond it."
-            )
+    said += [
+        f"A {pole['kind']} lies at {pole['frequency_Hz']:.3g} Hz, outside of the band that "
+        f"the input shows ({band[0]:.3g} to {band[1]:.3g} Hz): it is only seen by its tail, and another lag "
+        "may look the same. Record a chirp beyond it."
+        for pole in summary["poles"]
+        if band is not None and not pole["in_band"]
+    ]
     if "spring" not in final:
         said.append(
             "These recordings show no resonance: the drive is stiffer than they tell"
@@ -309,7 +308,7 @@ def _cannot_tell(
             "Speed and position show ratios of J, B, k_d and k_p only: inertia_N_mm_s2 under [rig] "
             "of the manifest would turn the resonance into a stiffness."
         )
-    if "spring" in final and sheet.stated_Hz is None:
+    if "spring" in final and sheet.stated_frequency is None:
         said.append(
             "Without J, r1 and k_p = kL e^(μθ) of the data sheet a pull-back k_p that is as large "
             "as k_d + k_p would look like the reaction of the drive's stiffness in Eq. (25)."
@@ -320,9 +319,7 @@ def _cannot_tell(
     return said
 
 
-def _write_runs(
-    folder: Path, search: DriveSearch, found: DriveDiagnosis, final: Terms
-) -> None:
+def _write_runs(folder: Path, search: DriveSearch, found: DriveDiagnosis, final: Terms) -> None:
     folder.mkdir()
     for r, run in enumerate(search.bench.runs):
         columns = {

@@ -50,7 +50,7 @@ class DataSheet:
         return self.inertia_N_mm_s2 / self.turntable_radius_mm**2
 
     @property
-    def stated_Hz(self) -> float | None:
+    def stated_frequency(self) -> float | None:
         """The natural frequency by Eqs. (23)-(25), in which only k_p holds the drive [Hz]."""
         if self.mass is None or self.pull_back_N_per_mm is None:
             return None
@@ -60,7 +60,9 @@ class DataSheet:
 def drive_sheet(manifest: Manifest) -> DataSheet:
     """Return what the data sheet says; k_p is kL e^{μθ}, the pull in contraction (31)."""
     rig = manifest.rig
-    return DataSheet(rig.turntable_radius_mm, rig.gear_ratio, rig.inertia_N_mm_s2, _pull(rig, manifest))
+    return DataSheet(
+        rig.turntable_radius_mm, rig.gear_ratio, rig.inertia_N_mm_s2, _pull(rig, manifest)
+    )
 
 
 def _pull(rig: Rig, manifest: Manifest) -> float | None:

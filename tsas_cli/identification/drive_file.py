@@ -116,9 +116,7 @@ def write_drive(
         "structure": dict(structure),
         "parameters": {
             name: {
-                k: v
-                for k, v in e.as_json().items()
-                if k not in ("name", "run") and _writable(v)
+                k: v for k, v in e.as_json().items() if k not in ("name", "run") and _writable(v)
             }
             for name, e in estimates.items()
         },

@@ -11,11 +11,19 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.effects import BACKLASH, DRIVE_RIPPLE
+from tsas_cli.effects.backlash import BACKLASH
+from tsas_cli.effects.drive_ripple import DRIVE_RIPPLE
 from tsas_cli.identification.drive_runs import DriveRun
 from tsas_cli.identification.fit import Solution, Unknown, solve
 from tsas_cli.identification.frequency_response import FrequencyResponse
-from tsas_cli.physics.drive import DriveValues, drive_response, free_motion, lag_coefficients
+from tsas_cli.physics.drive import (
+    DriveValues,
+    free_motion,
+    gear_response,
+    has_gear,
+    lag_coefficients,
+    linear_response,
+)
 
 Floats = npt.NDArray[np.float64]
 Terms = frozenset[str]
@@ -23,6 +31,7 @@ Terms = frozenset[str]
 TOLERANCE = 1e-6  # of the squares, for the last step
 LOG_SCALE = 0.5  # plausible relative change of a positive number
 SMALL_MM = 0.01
+SETTLED = 4  # times that where a run began is told anew from the ripple that it tells
 FOLLOWED = 2  # of the starts, the best ones
 WEIGHT = 0.05  # relative error of one point of the measured response, for start values
 
@@ -51,7 +60,7 @@ class Quantity:
 
 RIPPLE, PLAY = DRIVE_RIPPLE.parameters, BACKLASH.parameters[0]
 GAIN = Quantity("gain_mm_per_s_rpm", "mm/(s rpm)", 0.02, 1e-7, 1e3)
-DAMPING = Quantity("damping_ratio", "1", 0.1, 1e-3, 3.0)
+DAMPING = Quantity("damping_ratio", "1", 0.1, 1e-3, 1.0)  # beyond 1 it is two lags
 TERMS: dict[str, tuple[Quantity, ...]] = {
     "lag": (Quantity("motor_lag_s", "s", 0.005, 0.0, 5.0, positive=False, size=0.01),),
     "delay": (Quantity("delay_s", "s", 0.005, 0.0, 0.5, positive=False, size=0.01),),
@@ -136,9 +145,7 @@ class DriveBench:
         values = self._values(quantities, solution.values, terms)
         return DriveTrial(terms, tuple(unknowns), solution, values)
 
-    def _values(
-        self, quantities: Sequence[Quantity], scaled: Floats, terms: Terms
-    ) -> DriveValues:
+    def _values(self, quantities: Sequence[Quantity], scaled: Floats, terms: Terms) -> DriveValues:
         known = {q.name: q.unscaled(v) for q, v in zip(quantities, scaled, strict=True)}
         if "stated" in terms and self.stated_Hz is not None:
             known["natural_frequency_Hz"] = self.stated_Hz
@@ -146,8 +153,13 @@ class DriveBench:
 
     def _error(self, r: int, values: DriveValues) -> Floats:
         run = self.runs[r]
-        start = float(np.median(run.x_in[:10]))
-        error = (drive_response(run.u, values, start) - run.x_in) / run.noise_mm
+        error = linear_response(run.u, values) - run.x_in
+        if has_gear(values):
+            linear, start = error, -float(error.mean())
+            for _ in range(SETTLED if values.sine_mm or values.cosine_mm else 1):
+                error = linear + gear_response(run.u, values, start)
+                start = -float(error.mean())
+        error = error / run.noise_mm
         if run.at_rest:
             return np.asarray(error - error.mean())
         basis = np.column_stack((np.ones(error.size), free_motion(run.u, values)))
@@ -159,7 +171,7 @@ class DriveBench:
         linear = [t for t in TERMS if t in terms and t not in ("ripple", "play")]
         quantities = quantities_of(linear)
         seen = self.seen
-        jw = 2j * math.pi * seen.frequency_Hz[seen.excited]
+        jw = (2j * math.pi * seen.frequency_Hz[seen.excited]).astype(np.complex128)
         told = seen.response[seen.excited]
         guesses = [_guess(linear, jw, told, self.gain, part) for part in (1.0, 0.3)]
         if jw.size <= 2 * len(quantities):

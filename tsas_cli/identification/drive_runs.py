@@ -34,7 +34,7 @@ class DriveRun:
     @property
     def time_s(self) -> Floats:
         """Time since the first sample [s]."""
-        return self.u.step_s * np.arange(self.x_in.size)
+        return np.asarray(self.u.step_s * np.arange(self.x_in.size), dtype=np.float64)
 
 
 def drive_runs(recordings: Iterable[Recording], hold: Hold) -> list[DriveRun]:
@@ -133,7 +133,7 @@ def _refuse_unrelated(run: DriveRun, where: str) -> None:
             f"x_in_mm does not follow the turns of the motor{turned} (correlation {follows:.2f})",
             where=where,
             expected="an x_in_mm that goes with the integral of motor_speed_rpm",
-            remedy="are the columns, their signs or the runs exchanged? see the map of `tsas ingest`",
+            remedy="are columns, signs or runs exchanged? see the map of `tsas ingest`",
         )
 
 

@@ -27,7 +27,7 @@ class FrequencyResponse:
     excited: npt.NDArray[np.bool_]
 
     @property
-    def band_Hz(self) -> tuple[float, float] | None:
+    def band(self) -> tuple[float, float] | None:
         """Lowest and highest frequency that the input shows, None where there is none."""
         at = self.frequency_Hz[self.excited]
         return (float(at[0]), float(at[-1])) if at.size else None

@@ -67,29 +67,32 @@ def _spring(values: DriveValues) -> Floats:
     return np.array([1.0, 2.0 * values.damping_ratio / w, 1.0 / (w * w)])
 
 
-def drive_response(u: Sampled, values: DriveValues, start_mm: float = 0.0) -> Floats:
-    """Return x_in − x_in(0) [mm] from rest at each sample, shape (n,).
+def linear_response(u: Sampled, values: DriveValues) -> Floats:
+    """Return x_in − x_in(0) [mm] of a perfect gear from rest, at each sample of u [rpm], (n,)."""
+    later = delayed(u, values.delay_s)
+    answer = integrator_with_lags(later, values.leak_per_s, lag_coefficients(values))
+    return np.asarray(values.gain_mm_per_s_rpm * answer)
 
-    Parameters
-    ----------
-    u
-        The motor's speed [rpm].
-    values
-        The drive.
-    start_mm
-        Where x_in begins: it says in which angle the wave generator stands, x_in = 0 at zero.
+
+def gear_response(u: Sampled, values: DriveValues, start_mm: float) -> Floats:
+    """Return what ripple and play of the gear add to that [mm], shape (n,).
+
+    `start_mm` is where x_in begins: it says at which angle the wave generator stands, whose waves
+    are zero at x_in = 0.
     """
     later = delayed(u, values.delay_s)
-    g = values.gain_mm_per_s_rpm
-    linear: Floats = g * integrator_with_lags(later, values.leak_per_s, lag_coefficients(values))
-    if values.sine_mm == 0.0 and values.cosine_mm == 0.0 and values.play_mm == 0.0:
-        return linear
     motor = np.array([1.0, values.motor_lag_s]) if values.motor_lag_s > 0.0 else np.ones(1)
+    g = values.gain_mm_per_s_rpm
     stiff = g * integrator_with_lags(later, values.leak_per_s, motor)
     period = g * SECONDS_PER_MINUTE / WAVES
     ripple = DriveRipple(float(values.sine_mm), float(values.cosine_mm), period)
     off = _through_gear(stiff, float(start_mm), ripple, float(values.play_mm)) - stiff
-    return linear + _behind_the_spring(off, u.step_s, values)
+    return _behind_the_spring(off, u.step_s, values)
+
+
+def has_gear(values: DriveValues) -> bool:
+    """Say whether the gear is not perfect."""
+    return values.sine_mm != 0.0 or values.cosine_mm != 0.0 or values.play_mm != 0.0
 
 
 def free_motion(u: Sampled, values: DriveValues) -> Floats:

@@ -39,7 +39,9 @@ class Inputs:
         """Return what a stage wrote, or None where it was not given."""
         return cast("Stage | None", self.stages.get(kind))
 
-    def simulated(self, recording: Recording, column: str) -> Floats:
+    def simulated(
+        self, recording: Recording, column: str, stage: type[StageFile] = Simulation
+    ) -> Floats:
         """Return a simulated channel of a run, shape (n,) as the recording, NaN for gaps.
 
         Raises
@@ -47,7 +49,7 @@ class Inputs:
         InputError
             The file cannot be read, or does not belong to this recording.
         """
-        path = self.folders[Simulation] / "runs" / f"{recording.run.id}.parquet"
+        path = self.folders[stage] / "runs" / f"{recording.run.id}.parquet"
         try:
             values = pq.ParquetFile(path).read(columns=[column]).column(column)
         except (pa.ArrowException, OSError, KeyError) as error:
@@ -58,7 +60,7 @@ class Inputs:
                 f"{len(values)} rows",
                 where=path,
                 expected=f"{recording.time_s.size}, as the recording has",
-                remedy="run `tsas simulate` again",
+                remedy="run the stage again",
             )
         array: Floats = values.to_numpy()
         return array

@@ -11,6 +11,7 @@ from tsas_cli.reporting.content import Section
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.sections import (
     diagnosis,
+    drive,
     loops,
     parameters,
     recordings,
@@ -20,9 +21,11 @@ from tsas_cli.reporting.sections import (
     summary,
     transfer,
 )
+from tsas_cli.reporting.stage_files import Calibration, Diagnosis, Drive, Simulation
 
 SECTIONS: tuple[Callable[[Inputs], Section], ...] = (
     diagnosis.section,
+    drive.section,
     recordings.section,
     stiffness.section,
     transfer.section,
@@ -33,8 +36,19 @@ SECTIONS: tuple[Callable[[Inputs], Section], ...] = (
 )
 
 
+_OF_THE_DRIVE = (drive.section, recordings.section, repeat.section)
+
+
+def sections_for(inputs: Inputs) -> tuple[Callable[[Inputs], Section], ...]:
+    """Return the sections of a page: of the drive, of the tendon, or of both, as was given."""
+    if inputs.get(Drive) is None:
+        return tuple(section for section in SECTIONS if section is not drive.section)
+    tendon = any(inputs.get(kind) for kind in (Calibration, Simulation, Diagnosis))
+    return SECTIONS if tendon else _OF_THE_DRIVE
+
+
 def page(inputs: Inputs, advance: Callable[[], None] = lambda: None) -> str:
-    """Return the whole page as HTML; `advance` is called after each of `SECTIONS`.
+    """Return the whole page as HTML; `advance` is called after each section.
 
     Raises
     ------
@@ -42,7 +56,7 @@ def page(inputs: Inputs, advance: Callable[[], None] = lambda: None) -> str:
         A recording or a simulated run cannot be read.
     """
     sections = []
-    for section in SECTIONS:
+    for section in sections_for(inputs):
         sections.append(section(inputs))
         advance()
     environment = Environment(

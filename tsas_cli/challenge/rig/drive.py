@@ -8,8 +8,8 @@ k_d is the stiffness of the drive in series and reacts on the position; k_p is w
 sheath pulls back with, a linear stand-in (kL e^{μθ}, contraction) for the hysteretic one. See
 Yang 2025, Eqs. (23)–(25), which lack the reaction of k_d, and (46)–(48).
 
-With a `Gear` x_m gets the waves of its flexspline and passes through play before the spring, and the
-motor hears of u later; this is integrated on a finer clock.
+With a `Gear` x_m gets the waves of its flexspline and passes through play before the spring, and
+the motor hears of u later; this is integrated on a finer clock.
 """
 
 import math

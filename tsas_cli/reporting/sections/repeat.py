@@ -10,7 +10,14 @@ from tsas_cli import __version__
 from tsas_cli.files import sha256_of
 from tsas_cli.reporting.content import Section, Table
 from tsas_cli.reporting.inputs import Inputs
-from tsas_cli.reporting.stage_files import Calibration, Check, Diagnosis, ModelFile, Simulation
+from tsas_cli.reporting.stage_files import (
+    Calibration,
+    Check,
+    Diagnosis,
+    Drive,
+    ModelFile,
+    Simulation,
+)
 
 _LIBRARIES = ("numpy", "scipy", "numba", "matplotlib")
 
@@ -53,6 +60,9 @@ def _commands(inputs: Inputs) -> Iterator[list[str]]:
         if simulation.own_values_fitted:
             options += ["--fit-own"]
         yield ["tsas", "simulate", dataset, *_model(simulation.model, inputs), *options]
+    if drive := inputs.get(Drive):
+        options = ["--speed", "measured" if drive.hold == "first" else "commanded"]
+        yield ["tsas", "identify-harmonic-drive", dataset, *options, "--out", folder[Drive]]
     yield ["tsas", "report", dataset, *folder.values(), "--out", "report.html"]
 
 
@@ -74,5 +84,7 @@ def _versions(inputs: Inputs) -> Iterator[tuple[str, str]]:
         yield "tsas, simulation", simulation.version
     if diagnosis := inputs.get(Diagnosis):
         yield "tsas, diagnosis", diagnosis.version
+    if drive := inputs.get(Drive):
+        yield "tsas, drive", drive.version
     yield "Python", platform.python_version()
     yield from ((name, version(name)) for name in _LIBRARIES)
