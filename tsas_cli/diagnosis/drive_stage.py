@@ -97,7 +97,7 @@ def identify_drive(
 def name_of(terms: Terms) -> str:
     """Return a structure of G(s) in words."""
     lags = [_NAMES[t] for t in ("lag", "spring", "delay") if t in terms]
-    head = "integrator with a small constant" if "leak" in terms else "integrator"
+    head = "1/(s + a)" if "leak" in terms else "integrator"
     return " with ".join([head, " and ".join(lags)]) if lags else head
 
 
@@ -227,9 +227,9 @@ def _runs(search: DriveSearch, found: DriveDiagnosis, final: Terms) -> dict[str,
 
 def _diagnosis(search: DriveSearch, found: DriveDiagnosis) -> dict[str, Any]:
     folds = search.folds
-    how = "each run is predicted by a fit to the others"
+    how = "Each run is predicted by a fit to the others"
     if not folds.by_run:
-        how = "stretches are predicted by a fit to the rest"
+        how = "Stretches are predicted by a fit to the rest"
     return {
         "verdict": found.verdict,
         "reason": found.reason,
@@ -291,9 +291,9 @@ def _cannot_tell(
             "explains linearly, and start values came from the travel alone."
         )
     said += [
-        f"A {pole['kind']} lies at {pole['frequency_Hz']:.3g} Hz, outside of the band that "
-        f"the input shows ({band[0]:.3g} to {band[1]:.3g} Hz): it is only seen by its tail, and another lag "
-        "may look the same. Record a chirp beyond it."
+        f"A {pole['kind']} lies at {pole['frequency_Hz']:.3g} Hz, outside of the band that the "
+        f"input shows ({band[0]:.3g} to {band[1]:.3g} Hz): it is only seen by its tail, and "
+        "another lag may look the same. Record a chirp beyond it."
         for pole in summary["poles"]
         if band is not None and not pole["in_band"]
     ]

@@ -32,7 +32,7 @@ TOLERANCE = 1e-6  # of the squares, for the last step
 LOG_SCALE = 0.5  # plausible relative change of a positive number
 SMALL_MM = 0.01
 SETTLED = 4  # times that where a run began is told anew from the ripple that it tells
-FOLLOWED = 2  # of the starts, the best ones
+FOLLOWED = 3  # of the starts, the best ones
 WEIGHT = 0.05  # relative error of one point of the measured response, for start values
 
 
@@ -116,9 +116,11 @@ class DriveBench:
         for known in (fresh, *(trial.values for trial in simpler)):
             lacking = [q for q in quantities if getattr(known, q.name) == 0.0]
             starts.append(known._replace(**{q.name: getattr(fresh, q.name) for q in lacking}))
-            for size in (0.1, 1.0) if lacking else ():
-                little = {q.name: size * q.size if not q.positive else q.start for q in lacking}
-                starts.append(known._replace(**little))
+            if lacking and not any(q.positive for q in lacking):
+                starts += [
+                    known._replace(**{q.name: size * q.size for q in lacking})
+                    for size in (0.0, 0.1, 1.0)
+                ]
         starts.sort(key=self._squares)
         found = [self._solved(quantities, start, terms) for start in starts[:FOLLOWED]]
         return min(found, key=lambda trial: (not trial.solution.converged, trial.mean_square))
@@ -141,7 +143,7 @@ class DriveBench:
         def residuals(r: int, scaled: Floats) -> Floats:
             return self._error(r, self._values(quantities, scaled, terms))
 
-        solution = solve(unknowns, len(self.runs), residuals, tolerance=TOLERANCE)
+        solution = solve(unknowns, len(self.runs), residuals, tolerance=TOLERANCE, at_once=False)
         values = self._values(quantities, solution.values, terms)
         return DriveTrial(terms, tuple(unknowns), solution, values)
 
@@ -187,7 +189,7 @@ class DriveBench:
         least = math.inf
         for guess in guesses:
             unknowns = [_unknown(q, getattr(guess, q.name)) for q in quantities]
-            found = solve(unknowns, 1, residuals, tolerance=1e-4)
+            found = solve(unknowns, 1, residuals, tolerance=1e-4, at_once=False)
             squares = float(found.residual @ found.residual)
             if squares < least:
                 best, least = self._values(quantities, found.values, frozenset(linear)), squares

@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.decimation import kept_samples
+from tsas_cli.reporting.numbers import plain
 from tsas_cli.reporting.stage_files import Curve, MeasuredResponse, Pole
 
 Floats = npt.NDArray[np.float64]
@@ -43,8 +44,16 @@ def draw_bode(
         for axes in rows:
             axes.axvspan(*band_Hz, color=STAND_IN["line"], alpha=0.5, linewidth=0.0, zorder=0)
     rows[0].set_xlim(at[0], at[-1])
+    # The page's text is no mathematics: powers of ten are written out.
+    rows[0].yaxis.set_major_formatter(_power)
+    rows[2].xaxis.set_major_formatter("{x:g}")
+    rows[2].xaxis.set_minor_formatter("")
     figure.align_ylabels()
     rows[0].legend(loc="lower left", handlelength=1.6)
+
+
+def _power(value: float, _: object) -> str:
+    return plain(value, 1)
 
 
 def draw_poles(figure: Any, poles: Sequence[Pole], band_Hz: tuple[float, float] | None) -> None:
