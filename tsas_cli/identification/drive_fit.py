@@ -14,6 +14,7 @@ import numpy.typing as npt
 from tsas_cli.effects.backlash import BACKLASH
 from tsas_cli.effects.drive_ripple import DRIVE_RIPPLE
 from tsas_cli.identification.drive_runs import DriveRun
+from tsas_cli.identification.extension import ROUGHER
 from tsas_cli.identification.fit import Solution, Unknown, solve
 from tsas_cli.identification.frequency_response import FrequencyResponse
 from tsas_cli.physics.drive import (
@@ -31,7 +32,7 @@ Terms = frozenset[str]
 TOLERANCE = 1e-6  # of the squares, for the last step
 LOG_SCALE = 0.5  # plausible relative change of a positive number
 SMALL_MM = 0.01
-SETTLED = 4  # times that where a run began is told anew from the ripple that it tells
+SETTLED = 3  # times that where a run began is told anew from the ripple that it tells
 FOLLOWED = 3  # of the starts, the best ones
 WEIGHT = 0.05  # relative error of one point of the measured response, for start values
 
@@ -72,10 +73,10 @@ TERMS: dict[str, tuple[Quantity, ...]] = {
     ),
     "play": (Quantity(PLAY.name, PLAY.unit, 0.0, 0.0, PLAY.upper, positive=False, size=0.1),),
     # The spring of Eq. (25): the data sheet's frequency, without reaction.
-    "stated": (DAMPING,),
+    "stated": (Quantity("damping_ratio", "1", 0.5, 1e-3, 1e3),),
 }
 LINEAR = ("lag", "delay", "spring", "leak")
-QUANTITIES = {q.name: q for q in (GAIN, *(q for term in TERMS.values() for q in term))}
+QUANTITIES = {q.name: q for q in (GAIN, *(q for t in TERMS if t != "stated" for q in TERMS[t]))}
 
 
 @dataclass(frozen=True)
@@ -121,13 +122,15 @@ class DriveBench:
                     known._replace(**{q.name: size * q.size for q in lacking})
                     for size in (0.0, 0.1, 1.0)
                 ]
-        starts.sort(key=self._squares)
-        found = [self._solved(quantities, start, terms) for start in starts[:FOLLOWED]]
+        ranked = sorted(((self._mean_square(s), k) for k, s in enumerate(starts)))[:FOLLOWED]
+        # Far from the noise a rougher fit tells as much.
+        tolerance = TOLERANCE * min(max(ranked[0][0], 1.0), ROUGHER)
+        found = [self._solved(quantities, starts[k], terms, tolerance) for _, k in ranked]
         return min(found, key=lambda trial: (not trial.solution.converged, trial.mean_square))
 
-    def _squares(self, values: DriveValues) -> float:
+    def _mean_square(self, values: DriveValues) -> float:
         errors = [self._error(r, values) for r in range(len(self.runs))]
-        return float(sum(e @ e for e in errors))
+        return float(sum(e @ e for e in errors)) / sum(e.size for e in errors)
 
     def simulated(self, r: int, values: DriveValues) -> Floats:
         """Return x_in of a run [mm] as a drive moves it, begun where it fits best, shape (n,)."""
@@ -136,14 +139,14 @@ class DriveBench:
         return run.x_in + run.noise_mm * error
 
     def _solved(
-        self, quantities: Sequence[Quantity], start: DriveValues, terms: Terms
+        self, quantities: Sequence[Quantity], start: DriveValues, terms: Terms, tolerance: float
     ) -> DriveTrial:
         unknowns = [_unknown(q, getattr(start, q.name)) for q in quantities]
 
         def residuals(r: int, scaled: Floats) -> Floats:
             return self._error(r, self._values(quantities, scaled, terms))
 
-        solution = solve(unknowns, len(self.runs), residuals, tolerance=TOLERANCE, at_once=False)
+        solution = solve(unknowns, len(self.runs), residuals, tolerance=tolerance, at_once=False)
         values = self._values(quantities, solution.values, terms)
         return DriveTrial(terms, tuple(unknowns), solution, values)
 

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.decimation import kept_samples
-from tsas_cli.reporting.numbers import plain
+from tsas_cli.reporting.numbers import RAISED
 from tsas_cli.reporting.stage_files import Curve, MeasuredResponse, Pole
 
 Floats = npt.NDArray[np.float64]
@@ -53,7 +53,7 @@ def draw_bode(
 
 
 def _power(value: float, _: object) -> str:
-    return plain(value, 1)
+    return "10" + str(round(math.log10(value))).translate(RAISED) if value > 0.0 else ""
 
 
 def draw_poles(figure: Any, poles: Sequence[Pole], band_Hz: tuple[float, float] | None) -> None:
