@@ -42,11 +42,12 @@ def columns(drive, gear, time_s, speed, seed):
     return measure(clean, Sensors(rate_Hz=rate), seed=seed)
 
 
-def drive_dataset(folder, drive=STIFF, gear=None, *, seed=1, data_sheet=None, **options):
-    """Write a dataset of three runs of a drive, and open it."""
+def drive_dataset(folder, drive=STIFF, gear=None, *, seed=1, data_sheet=None, only=None, **options):
+    """Write a dataset of three runs of a drive, or only some, and open it."""
     runs = [
         Run(name, columns(drive, gear or Gear(), t, u, seed=10 * seed + k))
         for k, (name, (t, u)) in enumerate(speeds(seed, **options).items())
+        if only is None or name in only
     ]
     write_dataset(folder, runs, data_sheet=DATA_SHEET if data_sheet is None else data_sheet)
     return read_dataset(folder)
