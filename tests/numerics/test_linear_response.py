@@ -46,7 +46,7 @@ def test_kept_between_samples_it_is_a_fine_staircase(lags, leak):
 
 @pytest.mark.parametrize("hold", ["zero", "first"])
 def test_a_delay_of_whole_samples_is_a_shift(hold):
-    u = sampled(H, speed(), hold)
+    u = sampled(H, speed() - speed()[0], hold)
     answer, late = (integrator_with_lags(v, 0.0, LAGS["both"]) for v in (u, delayed(u, 7 * H)))
     np.testing.assert_allclose(late[7:], answer[:-7], atol=1e-9 * np.abs(answer).max())
     assert not late[:7].any()

@@ -39,7 +39,10 @@ def sampled(step_s: float, values: Floats, hold: Hold) -> Sampled:
 
 
 def delayed(u: Sampled, delay_s: float) -> Sampled:
-    """Return an input that comes later; before its first sample there is nothing."""
+    """Return an input that comes later; before its first sample there is nothing.
+
+    A linear one that does not begin at zero rises over one sample.
+    """
     if delay_s == 0.0:
         return u
     time = u.step_s * np.arange(u.values.size)
