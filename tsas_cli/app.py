@@ -14,6 +14,7 @@ from tsas_cli.commands.close_loop import close_loop
 from tsas_cli.commands.diagnose import diagnose
 from tsas_cli.commands.effects import effects
 from tsas_cli.commands.explain import explain
+from tsas_cli.commands.identify_harmonic_drive import identify_harmonic_drive
 from tsas_cli.commands.ingest import ingest
 from tsas_cli.commands.plan import plan
 from tsas_cli.commands.report import report
@@ -49,6 +50,7 @@ def _options(
 app.command("ingest")(ingest)
 app.command("check")(check)
 app.command("calibrate")(calibrate)
+app.command("identify-harmonic-drive")(identify_harmonic_drive)
 app.command("simulate")(simulate)
 app.command("diagnose")(diagnose)
 app.command("plan")(plan)

@@ -7,17 +7,30 @@ for every hypothesis alike. With fewer than three runs, stretches of the runs ar
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.identification.extension import Trial
+from tsas_cli.identification.fit import Solution, Unknown
 
 Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
 
 FEWEST_RUNS = 3  # of which one can be left out
 STRETCHES = 4  # of each run, where runs are too few
+
+
+class Hypothesis(Protocol):
+    """What was fitted: the unknowns, and the least squares with them."""
+
+    @property
+    def unknowns(self) -> Sequence[Unknown]:
+        """What was sought."""
+
+    @property
+    def solution(self) -> Solution:
+        """What was found."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +65,7 @@ def folds_of(blocks: Sequence[Indices]) -> Folds:
     return Folds(fold, block, run, by_run=False)
 
 
-def held_out_values(trial: Trial, folds: Folds, fold: int) -> Floats:
+def held_out_values(trial: Hypothesis, folds: Folds, fold: int) -> Floats:
     """Return the scaled values of a trial without one fold, that run's own ones fitted to it."""
     left = folds.fold == fold
     J, r = trial.solution.jacobian, trial.solution.residual
@@ -77,7 +90,7 @@ def held_out_values(trial: Trial, folds: Folds, fold: int) -> Floats:
     return np.clip(trial.solution.values + step, lower, upper)
 
 
-def held_out_squares(trial: Trial, folds: Folds) -> Floats:
+def held_out_squares(trial: Hypothesis, folds: Folds) -> Floats:
     """Return the sum of squares of the held-out residuals in each block, shape (blocks,)."""
     J, r = trial.solution.jacobian, trial.solution.residual
     out = np.empty(r.size)

@@ -59,15 +59,15 @@ def remainder(bench: Bench, trial: Trial, folds: Folds) -> Remainder:
         here = channel == number
         before = _by_block(residual[here], folds, here)
         used = before > 0.0
-        whole = [_hats(signals[s][here], signals[DIRECTION][here]) for s in names]
-        left = residual[here] - _predicted(np.hstack(whole), residual[here], folds.fold[here])
+        whole = [hats(signals[s][here], signals[DIRECTION][here]) for s in names]
+        left = residual[here] - regressed(np.hstack(whole), residual[here], folds.fold[here])
         after = _by_block(left, folds, here)
         best = gain(before[used], after[used])
         # A residual is the mean of some samples, scaled to the noise of one.
         of_mean = float(np.mean(residual[here] ** 2)) * here.sum() / samples[name]
         explained[name] = max(best.part, 0.0) * of_mean if best.convincing else 0.0
         for signal, hats in zip(names, whole, strict=True):
-            own = residual[here] - _predicted(hats, residual[here], folds.fold[here])
+            own = residual[here] - regressed(hats, residual[here], folds.fold[here])
             part = 1.0 - float(own @ own) / float(residual[here] @ residual[here])
             share = float(residual[here] @ residual[here]) / float(residual @ residual)
             alone[signal] = alone.get(signal, 0.0) + max(part, 0.0) * share
@@ -99,7 +99,7 @@ def _signals(bench: Bench, trial: Trial) -> tuple[dict[str, Floats], Floats]:
     return {name: np.concatenate(v) for name, v in out.items()}, np.concatenate(channel)
 
 
-def _hats(signal: Floats, direction: Floats) -> Floats:
+def hats(signal: Floats, direction: Floats) -> Floats:
     """Return straight-line interpolation weights of a signal, for both directions, shape (n, p)."""
     knots = np.unique(np.quantile(signal, np.linspace(0.0, 1.0, HATS)))
     if knots.size < 2:
@@ -109,7 +109,7 @@ def _hats(signal: Floats, direction: Floats) -> Floats:
     return np.hstack((hats * pulling, hats * ~pulling))
 
 
-def _predicted(columns: Floats, residual: Floats, fold: npt.NDArray[np.int64]) -> Floats:
+def regressed(columns: Floats, residual: Floats, fold: npt.NDArray[np.int64]) -> Floats:
     """Return the ridge regression's answer in each fold, fitted to all others, shape (n,)."""
     out = np.zeros(residual.size)
     gram, score = columns.T @ columns, columns.T @ residual

@@ -69,10 +69,15 @@ class Fitted:
 
 
 def jacobian(
-    unknowns: Sequence[Unknown], runs: int, values: Floats, residuals: Residuals
+    unknowns: Sequence[Unknown],
+    runs: int,
+    values: Floats,
+    residuals: Residuals,
+    *,
+    at_once: bool = True,
 ) -> Floats:
     """Return the Jacobian of all runs' residuals by finite differences, shape (n, p)."""
-    base = each(lambda r: residuals(r, values), range(runs))
+    base = each(lambda r: residuals(r, values), range(runs), at_once=at_once)
     starts = np.concatenate(([0], np.cumsum([b.size for b in base])))
 
     def slope(at: tuple[int, int]) -> Floats:
@@ -84,7 +89,7 @@ def jacobian(
 
     places = [(r, j) for j, u in enumerate(unknowns) for r in range(runs) if u.run in (None, r)]
     out = np.zeros((int(starts[-1]), len(unknowns)))
-    for (r, j), column in zip(places, each(slope, places), strict=True):
+    for (r, j), column in zip(places, each(slope, places, at_once=at_once), strict=True):
         out[starts[r] : starts[r + 1], j] = column
     return out
 
@@ -118,18 +123,24 @@ def identifiable(unknowns: Sequence[Unknown], J: Floats) -> tuple[list[int], dic
 
 
 def solve(
-    unknowns: Sequence[Unknown], runs: int, residuals: Residuals, *, tolerance: float
+    unknowns: Sequence[Unknown],
+    runs: int,
+    residuals: Residuals,
+    *,
+    tolerance: float,
+    at_once: bool = True,
 ) -> Solution:
     """Minimise the squares of all runs' residuals within the bounds.
 
-    `tolerance` is the part of the squares that a last step may still have saved.
+    `tolerance` is the part of the squares that a last step may still have saved; `at_once` whether
+    simulations are long enough to be worth a thread each.
     """
 
     def errors(values: Floats) -> Floats:
-        return np.concatenate(each(lambda r: residuals(r, values), range(runs)))
+        return np.concatenate(each(lambda r: residuals(r, values), range(runs), at_once=at_once))
 
     def slopes(values: Floats) -> Floats:
-        return jacobian(unknowns, runs, values, residuals)
+        return jacobian(unknowns, runs, values, residuals, at_once=at_once)
 
     lower = np.array([u.lower for u in unknowns])
     upper = np.array([u.upper for u in unknowns])

@@ -12,8 +12,16 @@ Result = TypeVar("Result")
 THREADS = "TSAS_THREADS"  # in the environment: how many, one for each core without it
 
 
-def each(function: Callable[[Item], Result], items: Sequence[Item]) -> list[Result]:
-    """Return the function of each item, in their order; it must not change what others read."""
+def each(
+    function: Callable[[Item], Result], items: Sequence[Item], *, at_once: bool = True
+) -> list[Result]:
+    """Return the function of each item, in their order; it must not change what others read.
+
+    What is short, or mostly Python, loses more to the interpreter's lock than threads save:
+    it is called without `at_once`.
+    """
+    if not at_once:
+        return [function(item) for item in items]
     threads = int(os.environ.get(THREADS) or os.cpu_count() or 1)
     if threads < 2 or len(items) < 2:
         return [function(item) for item in items]

@@ -35,6 +35,7 @@ class Rig(_Table):
     load_stiffness_N_per_mm: float | None = Field(default=None, gt=0)
     turntable_radius_mm: float | None = Field(default=None, gt=0)
     gear_ratio: float | None = Field(default=None, gt=0)
+    inertia_N_mm_s2: float | None = Field(default=None, gt=0)
     proximal_length_mm: float | None = Field(default=None, ge=0)
     distal_length_mm: float | None = Field(default=None, ge=0)
 

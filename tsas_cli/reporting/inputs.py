@@ -16,6 +16,7 @@ from tsas_cli.files import read_json
 from tsas_cli.recordings.dataset import Dataset, Recording, read_dataset
 from tsas_cli.recordings.manifest import FILE, parse
 from tsas_cli.recordings.quality import check_dataset
+from tsas_cli.reporting.drive_file import Drive
 from tsas_cli.reporting.stage_files import (
     Calibration,
     Check,
@@ -27,7 +28,14 @@ from tsas_cli.reporting.stage_files import (
 from tsas_cli.reporting.tracking_file import Tracking
 
 Floats = npt.NDArray[np.float64]
-STAGES: tuple[type[StageFile], ...] = (Check, Calibration, Simulation, Diagnosis, Tracking)
+STAGES: tuple[type[StageFile], ...] = (
+    Check,
+    Calibration,
+    Simulation,
+    Diagnosis,
+    Drive,
+    Tracking,
+)
 Stage = TypeVar("Stage", bound=StageFile)
 
 
@@ -48,7 +56,9 @@ class Inputs:
         """Return what a stage wrote, or None where it was not given."""
         return cast("Stage | None", self.stages.get(kind))
 
-    def simulated(self, recording: Recording, column: str) -> Floats:
+    def simulated(
+        self, recording: Recording, column: str, stage: type[StageFile] = Simulation
+    ) -> Floats:
         """Return a simulated channel of a run, shape (n,) as the recording, NaN for gaps.
 
         Raises
@@ -56,14 +66,14 @@ class Inputs:
         InputError
             The file cannot be read, or does not belong to this recording.
         """
-        path = self.folders[Simulation] / "runs" / f"{recording.run.id}.parquet"
+        path = self.folders[stage] / "runs" / f"{recording.run.id}.parquet"
         values = _columns(path, (column,))[column]
         if len(values) != recording.time_s.size:
             raise InputError(
                 f"{len(values)} rows",
                 where=path,
                 expected=f"{recording.time_s.size}, as the recording has",
-                remedy="run `tsas simulate` again",
+                remedy="run the stage again",
             )
         return values
 

@@ -7,7 +7,7 @@ ABSENT = "\N{EN DASH}"
 _MOST_DECIMALS = 9
 _DIGITS = 5  # of what others print
 _SMALL = 4  # zeros after the point, beyond which a power of ten reads better
-_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def plain(value: float | None, digits: int = 4) -> str:
@@ -89,7 +89,7 @@ def _fixed(value: float, decimals: int) -> str:
     """Round to a number of decimals, or of tens where it is negative; powers of ten if needed."""
     exponent = _exponent(value)
     if decimals > _MOST_DECIMALS and value and exponent < -_SMALL:
-        power = str(exponent).translate(_RAISED)
+        power = str(exponent).translate(RAISED)
         return (
             f"{_fixed(value / 10.0**exponent, min(decimals + exponent, _MOST_DECIMALS))}·10{power}"
         )

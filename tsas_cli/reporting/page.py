@@ -3,10 +3,12 @@
 from collections.abc import Callable
 
 from tsas_cli.reporting.content import Section
+from tsas_cli.reporting.drive_file import Drive
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.rendered import rendered
 from tsas_cli.reporting.sections import (
     diagnosis,
+    drive,
     loops,
     parameters,
     recordings,
@@ -22,6 +24,7 @@ from tsas_cli.reporting.tracking_file import Tracking
 SECTIONS: tuple[Callable[[Inputs], Section | None], ...] = (
     tracking.section,
     diagnosis.section,
+    drive.section,
     recordings.section,
     stiffness.section,
     transfer.section,
@@ -35,18 +38,19 @@ SECTIONS: tuple[Callable[[Inputs], Section | None], ...] = (
 def page(inputs: Inputs, advance: Callable[[], None] = lambda: None) -> str:
     """Return the whole page as HTML; `advance` is called after each of `SECTIONS`.
 
-    A page of tracked runs leaves out what was not given; any other page says what is missing.
+    A page of tracked runs or of a drive leaves out what was not given; any other says what is
+    missing.
 
     Raises
     ------
     InputError
         A recording or a simulated run cannot be read.
     """
-    tracked = inputs.get(Tracking) is not None
+    alone = any(inputs.get(kind) is not None for kind in (Tracking, Drive))
     sections = []
     for make in SECTIONS:
         section = make(inputs)
-        if section is not None and (section.given or not tracked):
+        if section is not None and (section.given or not alone):
             sections.append(section)
         advance()
     return rendered(

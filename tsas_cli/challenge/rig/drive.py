@@ -7,6 +7,9 @@
 k_d is the stiffness of the drive in series and reacts on the position; k_p is what the tendon
 sheath pulls back with, a linear stand-in (kL e^{μθ}, contraction) for the hysteretic one. See
 Yang 2025, Eqs. (23)–(25), which lack the reaction of k_d, and (46)–(48).
+
+With a `Gear` x_m gets the waves of its flexspline and passes through play before the spring, and
+the motor hears of u later; this is integrated on a finer clock.
 """
 
 import math
@@ -15,6 +18,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import expm
 
+from tsas_cli.challenge.rig.compiled import compiled
+from tsas_cli.challenge.rig.drive_end import followed
 from tsas_cli.challenge.rig.motions import Floats
 from tsas_cli.challenge.rig.tendon import CleanRun
 
@@ -63,3 +68,62 @@ def run_drive(drive: Drive, time_s: Floats, motor_speed_rpm: Floats) -> CleanRun
         y = step[:4, :4] @ y + step[:4, 4] * motor_speed_rpm[i] + step[:4, 5] * slope[i]
         x[i + 1] = y[2]
     return CleanRun({"time_s": time_s, "motor_speed_rpm": motor_speed_rpm, "x_in_mm": x})
+
+
+@dataclass(frozen=True)
+class Gear:
+    """What is not perfect between the asked speed and the drive's spring; all zeros are.
+
+    Attributes
+    ----------
+    delay_s
+        How much later the motor hears of the asked speed.
+    ripple_sine_mm, ripple_cosine_mm
+        sine · sin(2φ) + cosine · (cos(2φ) − 1) is added to x_m, φ the motor's angle: two waves for
+        each turn of the wave generator.
+    play_mm
+        Of the gear, which starts in its middle.
+    """
+
+    delay_s: float = 0.0
+    ripple_sine_mm: float = 0.0
+    ripple_cosine_mm: float = 0.0
+    play_mm: float = 0.0
+
+
+def run_geared(
+    drive: Drive, gear: Gear, time_s: Floats, motor_speed_rpm: Floats, finer: int = 10
+) -> CleanRun:
+    """Drive from rest with an imperfect gear, on a clock so many times as fine as the samples."""
+    fine = np.interp(
+        np.arange(finer * (time_s.size - 1) + 1) / finer, np.arange(time_s.size), time_s
+    )
+    u = np.interp(fine - gear.delay_s, time_s, motor_speed_rpm, left=0.0)
+    h = fine[1] - fine[0]
+    A, b = drive.matrices()
+    turned = _linear(A[:2, :2], b[:2], h, u)[:, 1]
+    angle = 2.0 * np.pi * turned / drive.gain_mm_per_s_rpm / 60.0
+    waves = gear.ripple_sine_mm * np.sin(2.0 * angle)
+    waves += gear.ripple_cosine_mm * (np.cos(2.0 * angle) - 1.0)
+    dragged = followed(turned + waves, gear.play_mm)
+    x = _linear(A[2:, 2:], A[2:, 1], h, dragged)[::finer, 0]
+    return CleanRun({"time_s": time_s, "motor_speed_rpm": motor_speed_rpm, "x_in_mm": x})
+
+
+def _linear(A: Floats, b: Floats, h: float, u: Floats) -> Floats:
+    """Return the states of dy/dt = A y + b u from rest, u linear between samples, shape (n, 2)."""
+    whole = np.zeros((4, 4))
+    whole[:2, :2], whole[:2, 2], whole[2, 3] = A, b, 1.0
+    step = expm(whole * h)
+    now, then = step[:2, 2] - step[:2, 3] / h, step[:2, 3] / h
+    return _stepped(np.ascontiguousarray(step[:2, :2]), now, then, u)
+
+
+@compiled
+def _stepped(step: Floats, now: Floats, then: Floats, u: Floats) -> Floats:
+    y = np.zeros((u.size, 2))
+    for i in range(u.size - 1):
+        for j in range(2):
+            y[i + 1, j] = step[j, 0] * y[i, 0] + step[j, 1] * y[i, 1]
+            y[i + 1, j] += now[j] * u[i] + then[j] * u[i + 1]
+    return y

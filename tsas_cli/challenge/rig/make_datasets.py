@@ -67,7 +67,8 @@ def drive_chirp(folder: Path) -> None:
     runs = []
     for seed, (name, (time_s, wanted_rpm)) in enumerate(speeds().items(), start=11):
         speed = quantised(wanted_rpm, SPEED_STEP_RPM)
-        runs.append(Run(name, measure(run_drive(Drive(), time_s, speed), SENSORS, seed=seed)))
+        columns = measure(run_drive(Drive(), time_s, speed), SENSORS, seed=seed)
+        runs.append(Run(name, columns, {"total_bend_rad": round(math.pi, 6)}))
     write_dataset(
         folder,
         runs,
@@ -75,7 +76,13 @@ def drive_chirp(folder: Path) -> None:
         description="Simulated, not measured: a harmonic drive from motor speed to tendon "
         "displacement, a linear model integrated exactly, with sensor noise and quantisation.",
         license=LICENSE,
-        data_sheet={"turntable_radius_mm": 27.1, "gear_ratio": 120.0},
+        data_sheet={
+            "turntable_radius_mm": 27.1,
+            "gear_ratio": 120.0,
+            "inertia_N_mm_s2": 0.1296,
+            "load_stiffness_N_per_mm": 1.579,
+            "friction_coefficient": 0.125,
+        },
     )
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from tsas_cli import __version__
 from tsas_cli.files import sha256_of
 from tsas_cli.reporting.content import Section, Table
+from tsas_cli.reporting.drive_file import Drive
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.stage_files import Calibration, Check, Diagnosis, ModelFile, Simulation
 from tsas_cli.reporting.tracking import call
@@ -59,6 +60,9 @@ def _commands(inputs: Inputs) -> Iterator[list[str]]:
         if simulation.own_values_fitted:
             options += ["--fit-own"]
         yield ["tsas", "simulate", dataset, *_model(simulation.model, inputs), *options]
+    if drive := inputs.get(Drive):
+        options = ["--speed", "measured" if drive.hold == "first" else "commanded"]
+        yield ["tsas", "identify-harmonic-drive", dataset, *options, "--out", folder[Drive]]
     read = dict.fromkeys([dataset, *folder.values()])  # one folder may hold more than one kind
     yield ["tsas", "report", *read, "--out", "report.html"]
 
@@ -83,5 +87,7 @@ def _versions(inputs: Inputs) -> Iterator[tuple[str, str]]:
         yield "tsas, diagnosis", diagnosis.version
     if tracking := inputs.get(Tracking):
         yield "tsas, tracking", tracking.version
+    if drive := inputs.get(Drive):
+        yield "tsas, drive", drive.version
     yield "Python", platform.python_version()
     yield from ((name, version(name)) for name in _LIBRARIES)

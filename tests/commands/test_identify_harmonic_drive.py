@@ -1,0 +1,106 @@
+"""`tsas identify-harmonic-drive` in a process of its own, with every warning an error."""
+
+import json
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.commands.documented import documented
+from tests.drives import DATA_SHEET, STIFF, columns, speeds
+from tsas_cli.challenge.rig.drive import Gear
+from tsas_cli.challenge.rig.recordings import Run, write_dataset
+from tsas_cli.identification.drive_file import read_drive
+
+SHIPPED = Path(__file__).parents[2] / "datasets" / "drive-chirp"
+
+
+@pytest.fixture(scope="module")
+def recorded():
+    t, u = speeds(duration_s=4.0)["sines"]
+    return columns(STIFF, Gear(), t, u, seed=1)
+
+
+def test_the_worked_case(strict, tmp_path):
+    """Yang's Eq. (25) on a drive whose stiffness reacts: the reaction is what it lacks."""
+    done = strict("identify-harmonic-drive", SHIPPED, "--out", tmp_path / "out", "--json")
+    assert (done.returncode, done.stderr) == (0, "")
+    summary = json.loads((tmp_path / "out" / "drive.json").read_text(encoding="utf-8"))
+    assert json.loads(done.stdout) == summary
+    assert set(summary) == documented("drive.json")
+    truth = tomllib.loads((SHIPPED / "truth.toml").read_text(encoding="utf-8"))
+    told = {p["name"]: p for p in summary["parameters"]}
+    named = (
+        "drive_stiffness_N_per_mm",
+        "pull_back_N_per_mm",
+        "motor_lag_s",
+        "damping_N_s_per_mm",
+    )
+    for name in named:
+        value = truth[name]
+        assert told[name]["interval_low"] < value < told[name]["interval_high"], name
+        assert told[name]["stderr"] < 0.01 * value
+    found = summary["diagnosis"]
+    assert found["verdict"] == "named"
+    assert found["nominal"] == "Eq. (25) without reaction"
+    assert [c["effect"] for c in found["named"]] == ["drive_compliance", "channel_delay"]
+    channel = found["channels"]["x_in_mm"]
+    assert channel["rmse_before"] > 10.0 * channel["rmse_after"]
+    assert channel["rmse_after"] == pytest.approx(0.005, rel=0.03)
+    lead = summary["kinematics"]
+    assert lead["kinematic_lead_rpm_s_per_mm"] == pytest.approx(42.2847, abs=1e-3)
+    assert lead["fitted_lead_rpm_s_per_mm"] == pytest.approx(44.19, abs=0.01)
+    drive = read_drive(tmp_path / "out")
+    assert drive.kA_rpm_s2_per_mm == pytest.approx(44.19 * (0.002 + 0.007 / 54.34), rel=2e-3)
+    assert drive.turntable_radius_mm == 27.1
+
+
+@pytest.mark.parametrize(
+    ("changed", "said"),
+    [
+        ({"motor_speed_rpm": 0.0}, "the motor stands still"),
+        ({"motor_speed_rpm": 300.0}, "keeps one speed, 300 rpm"),
+        ({"x_in_mm": 1.0}, "x_in_mm does not move"),
+        ({"x_in_mm": "noise"}, "does not follow the turns of the motor"),
+        ({"x_in_mm": "turned"}, "but its opposite"),
+        ({"motor_speed_rpm": "gap"}, "motor_speed_rpm has 3 gaps"),
+        ({"x_in_mm": "gap"}, "x_in_mm has 3 gaps"),
+        ("exchanged", "does not follow the turns of the motor"),
+        ("no speed", "column motor_speed_rpm is missing"),
+        ("short", "100 samples are too few"),
+        ("uneven", "an even clock"),
+    ],
+)
+def test_what_does_not_serve_is_refused_in_one_line(strict, recorded, tmp_path, changed, said):
+    made = dict(recorded)
+    if changed == "exchanged":
+        made["x_in_mm"], made["motor_speed_rpm"] = recorded["motor_speed_rpm"], recorded["x_in_mm"]
+    elif changed == "no speed":
+        made["f_in_N"] = made.pop("motor_speed_rpm")
+    elif changed == "short":
+        made = {name: values[:100] for name, values in made.items()}
+    elif changed == "uneven":
+        made = {name: np.delete(values, 700) for name, values in made.items()}
+    else:
+        ((name, how),) = changed.items()
+        made[name] = spoiled(recorded[name], how)
+    folder = write_dataset(tmp_path / "dataset", [Run("a", made)], data_sheet=DATA_SHEET)
+    done = strict("identify-harmonic-drive", folder, "--out", tmp_path / "out")
+    assert done.returncode == 2
+    assert done.stderr.count("\n") == 1
+    assert said in done.stderr
+    assert "runs/a.parquet" in done.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def spoiled(values, how):
+    out = values.copy()
+    if how == "noise":
+        return np.random.default_rng(1).standard_normal(values.size)
+    if how == "turned":
+        return -out
+    if how == "gap":
+        out[10:13] = np.nan
+        return out
+    return np.full(values.size, how)

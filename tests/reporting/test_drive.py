@@ -1,0 +1,45 @@
+"""The page of a drive, from what the stage really writes."""
+
+import re
+
+import pytest
+
+from tests.drives import SPRUNG, drive_dataset
+from tsas_cli.diagnosis.drive_stage import identify_drive
+from tsas_cli.reporting.inputs import read_inputs
+from tsas_cli.reporting.page import page
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    root = tmp_path_factory.mktemp("drive")
+    data = drive_dataset(root / "dataset", SPRUNG, duration_s=6.0, to_Hz=120.0)
+    summary = identify_drive(data, root / "out")
+    return summary, page(read_inputs([root / "out"]))
+
+
+def test_a_drive_alone_has_no_sections_of_the_tendon(made):
+    _, text = made
+    assert re.findall(r'<section id="([a-z]+)"', text) == ["drive", "recordings", "repeat"]
+    assert "was given" not in text
+
+
+def test_the_verdict_its_numbers_and_plots_stand_on_the_page(made):
+    summary, text = made
+    (cause,) = summary["diagnosis"]["named"]
+    assert cause["effect"] == "drive_compliance"
+    assert "compliance of the drive, whose stiffness reacts" in text
+    assert "42.28" in text
+    pictures = re.findall(r'<svg[^>]*aria-label="([^"]*)"', text)
+    assert [p.split(",")[0].split(" ")[0] for p in pictures] == ["Magnitude", "Poles", "Measured"]
+    assert "88" in pictures[1]
+    assert "tsas identify-harmonic-drive" in text
+
+
+def test_the_plots_show_powers_of_ten_and_both_curves(made):
+    _, text = made
+    bode = next(p for p in re.findall(r"<svg.*?</svg>", text, re.DOTALL) if "Magnitude" in p)
+    assert "10⁻³" in bode
+    assert "mathdefault" not in bode
+    assert "var(--measured)" in bode
+    assert "var(--simulated)" in bode
