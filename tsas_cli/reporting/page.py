@@ -2,10 +2,12 @@
 
 from collections.abc import Callable
 
+from tsas_cli.reporting.closing_file import Closing
 from tsas_cli.reporting.content import Section
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.rendered import rendered
 from tsas_cli.reporting.sections import (
+    closing,
     diagnosis,
     loops,
     parameters,
@@ -20,6 +22,7 @@ from tsas_cli.reporting.sections import (
 from tsas_cli.reporting.tracking_file import Tracking
 
 SECTIONS: tuple[Callable[[Inputs], Section | None], ...] = (
+    closing.section,
     tracking.section,
     diagnosis.section,
     recordings.section,
@@ -35,23 +38,27 @@ SECTIONS: tuple[Callable[[Inputs], Section | None], ...] = (
 def page(inputs: Inputs, advance: Callable[[], None] = lambda: None) -> str:
     """Return the whole page as HTML; `advance` is called after each of `SECTIONS`.
 
-    A page of tracked runs leaves out what was not given; any other page says what is missing.
+    A page of tracked runs, or of what a better model is worth in tracking, leaves out what was not
+    given; any other page says what is missing.
 
     Raises
     ------
     InputError
         A recording or a simulated run cannot be read.
     """
-    tracked = inputs.get(Tracking) is not None
+    tracked = inputs.get(Tracking) is not None or inputs.get(Closing) is not None
     sections = []
     for make in SECTIONS:
         section = make(inputs)
         if section is not None and (section.given or not tracked):
             sections.append(section)
         advance()
+    name, about = "From diagnosis to tracking", "hidden differences, named and tracked"
+    if inputs.dataset is not None:
+        name, about = inputs.dataset.manifest.name, "recordings, model and residual"
     return rendered(
-        name=inputs.dataset.manifest.name,
-        about="recordings, model and residual",
+        name=name,
+        about=about,
         summary=" ".join(summary.sentences(inputs)),
         sections=sections,
     )
