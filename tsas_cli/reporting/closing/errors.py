@@ -11,7 +11,8 @@ from tsas_cli.reporting.drawing import picture
 from tsas_cli.reporting.figures.closing import MODELS, draw_dots, height_in
 from tsas_cli.reporting.numbers import plain, with_spread
 
-NEAR = 1.1  # of the limit, and of no difference
+NEAR = 1.1  # a ratio that is no more than this, up or down, makes no difference
+_PERCENT = f"{100.0 * (NEAR - 1.0):.0f} %"
 
 
 def table(closing: Closing) -> Table:
@@ -54,22 +55,20 @@ def dots(closing: Closing) -> Picture:
 def worth(closing: Closing) -> Iterator[str]:
     """Yield, for each controller, what the extended model is worth, and where it falls short."""
     for name, rows in closing.of_controllers().items():
-        yield f"`{name}`: {_gain(rows)}; {_limit(rows)}."
+        yield f"`{name}`: {_gain(rows)} {_limit(rows)}"
 
 
 def most_and_least(closing: Closing) -> Iterator[str]:
     """Yield for which controller the extended model matters most, and for which least."""
-    gains = {
-        name: median(row.gain for row in rows.values())
-        for name, rows in closing.of_controllers().items()
-    }
+    gains = {name: _median_gain(rows) for name, rows in closing.of_controllers().items()}
     ranked = sorted(gains, key=lambda name: gains[name])
     if len(ranked) > 1:
-        sizes = [plain(gains[name], 2) for name in (ranked[-1], ranked[0])]
-        many = "in the median over the cases, " if len(closing.cases) > 1 else ""
+        most, least = (plain(gains[name], 2) for name in (ranked[-1], ranked[0]))
+        over = " (median over the cases)" if len(closing.cases) > 1 else ""
         yield (
-            f"The extended model matters most for {ranked[-1]}, least for {ranked[0]}: {many}it "
-            f"divides the RMSE with the data sheet's by {sizes[0]} and {sizes[1]}."
+            f"The extended model matters most for {ranked[-1]}, whose RMSE with the data sheet's "
+            f"is {most} times that with the extended one{over}, least for {ranked[0]} ({least} "
+            "times)."
         )
 
 
@@ -77,34 +76,37 @@ def _said(case: str, row: Row) -> str:
     return f"{case} {', '.join(plain(rmse.mean, 2) for rmse in row.by_model.values())}"
 
 
+def _median_gain(rows: dict[str, Row]) -> float:
+    return median(row.gain for row in rows.values())
+
+
 def _gain(rows: dict[str, Row]) -> str:
-    """Return how much the extended model lowers the error of the data sheet's."""
-    gains = [row.gain for row in rows.values()]
-    middle = median(gains)
-    verdict = (
-        "the better model matters"
-        if middle > NEAR
-        else "the better model harms"
-        if middle < 1.0 / NEAR
-        else "the better model hardly matters"
-    )
-    size = f"the RMSE with the data sheet's is {plain(middle, 2)} times that with the extended"
-    if len(gains) == 1:
-        return f"{verdict}, {size}"
-    low, high = plain(min(gains), 2), plain(max(gains), 2)
-    worse = [case for case, row in rows.items() if row.gain < 1.0 / NEAR]
-    but = f", but it is larger with the extended in {listed(worse)}" if worse else ""
-    return f"{verdict}, {size} (median over {len(gains)} cases, {low} to {high}){but}"
+    """Return in sentences how much the extended model lowers the error of the data sheet's."""
+    middle = _median_gain(rows)
+    said = f"the better model {_matters(middle)}. RMSE data sheet / extended is {plain(middle, 2)}"
+    if len(rows) == 1:
+        return f"{said}."
+    gains = {case: row.gain for case, row in rows.items()}
+    low, high = plain(min(gains.values()), 2), plain(max(gains.values()), 2)
+    worse = [f"{case} ({plain(gain, 2)})" for case, gain in gains.items() if gain < 1.0 / NEAR]
+    but = f"; the data sheet's is better by more than {_PERCENT} in {listed(worse)}"
+    return f"{said} (median of {len(rows)} cases, {low} to {high}){but if worse else ''}."
+
+
+def _matters(gain: float) -> str:
+    if gain > NEAR:
+        return "matters"
+    return "hardly matters" if gain > 1.0 / NEAR else "does harm"
 
 
 def _limit(rows: dict[str, Row]) -> str:
-    """Return where the extended model is not as good as the true one."""
+    """Return in a sentence where the extended model is not as good as the true one."""
     off = [
         f"{case} ({plain(row.over_limit, 3)} times)"
         for case, row in rows.items()
         if row.over_limit > NEAR
     ]
-    percent = f"{100.0 * (NEAR - 1.0):.0f} %"
-    if not off:
-        return f"everywhere the extended model is within {percent} of the limit"
-    return f"the extended model is more than {percent} above the limit in {listed(off)}"
+    if off:
+        return f"The extended model is more than {_PERCENT} above the limit in {listed(off)}."
+    where = "in every case " if len(rows) > 1 else ""
+    return f"The extended model is {where}within {_PERCENT} of the limit, or better."

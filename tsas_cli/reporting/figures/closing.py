@@ -42,7 +42,7 @@ def draw_dots(figure: Any, *, controllers: Mapping[str, Mapping[str, Row]]) -> N
     controllers
         By controller and case, the RMSE with each model.
     """
-    from matplotlib.ticker import LogFormatter, LogLocator, NullFormatter
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
     heights = [len(rows) + 0.2 for rows in controllers.values()]
     panels = figure.subplots(
@@ -54,7 +54,7 @@ def draw_dots(figure: Any, *, controllers: Mapping[str, Mapping[str, Row]]) -> N
     last = panels[-1]
     last.set_xscale("log")
     last.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-    last.xaxis.set_major_formatter(LogFormatter(labelOnlyBase=False, minor_thresholds=(9, 9)))
+    last.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     last.xaxis.set_minor_formatter(NullFormatter())
     last.set_xlabel("RMSE of the force [N]")
     handles, labels = last.get_legend_handles_labels()
