@@ -33,6 +33,10 @@ def test_wear_is_named_and_the_extended_model_tracks_as_the_true_one_does(strict
     assert rmse(observer, "extended") < 0.5 * rmse(observer, "data sheet")
     assert rmse(observer, "extended") < 0.2 * rmse(observer, "calibrated")
 
+    done = strict("report", out, "--out", tmp_path / "page.html", "--json")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert json.loads(done.stdout)["read"] == {"closing.json": str(out)}
+
     # The extended model's preloads are its own, also for runs that it has not seen.
     calibrated = read_model(out / "friction_drift" / "calibrate").value(CORRECTION)
     extended = read_model(out / "friction_drift" / "diagnose" / "model-extended.toml")

@@ -11,6 +11,7 @@ import pyarrow as pa
 
 from tsas_cli.recordings.dataset import read_dataset, write_dataset, write_parquet
 from tsas_cli.recordings.manifest import Manifest, Run
+from tsas_cli.tracking.settings import Settings
 
 A = 0.125 * math.pi
 NOISE = 0.1
@@ -404,6 +405,67 @@ def _result(controller, condition, run_id, rmse):
         "run": run_id,
         "scores": scores,
         "unsettled_steps": 0,
+    }
+
+
+CASES = {  # case: title, hidden, named, and by controller the RMSE from data sheet to true
+    "backlash": (
+        "backlash",
+        {"backlash.play_mm": 0.15},
+        [{"effect": "backlash", "rivals": []}],
+        {"pid": (0.4, 0.3, 0.1, 0.08), "disturbance-observer": (0.6, 0.4, 0.2, 0.2)},
+    ),
+    "bend": (
+        "a <bend>",
+        {"total_bend_rad": 4.0, "friction_drift.rate_per_s": 0.01},
+        [],
+        {"pid": (0.2, 0.3, 0.25, 0.24), "disturbance-observer": (1.2, 0.5, 0.04, 0.05)},
+    ),
+    "free_tendon": (
+        "tendon outside the sheath",
+        {"free_tendon.proximal_length_mm": 150.0},
+        [
+            {"effect": "drive_compliance", "rivals": ["free_tendon"]},
+            {"effect": "presliding", "rivals": []},
+        ],
+        {"pid": (0.105, 0.3, 0.1, 0.1), "disturbance-observer": (0.9, 0.4, 0.1, 0.1)},
+    ),
+}
+
+
+def make_closing(folder: Path, cases=CASES, **more) -> Path:
+    """Write what `tsas close-loop` would say, without the folders of the cases."""
+    content = {
+        "format": 1,
+        "stage": "close-loop",
+        "version": "0.1.0",
+        "settings": Settings().model_dump(mode="json", by_alias=True),
+        "seeds": [3, 7],
+        "cases": [
+            {
+                "case": name,
+                "title": title,
+                "hidden": hidden,
+                "verdict": "named" if named else "sufficient",
+                "reason": "",
+                "named": named,
+                "controllers": [_closed(*row) for row in rows.items()],
+            }
+            for name, (title, hidden, named, rows) in cases.items()
+        ],
+    }
+    return _write(folder, "closing.json", content | more)
+
+
+def _closed(controller, rmse):
+    models = ("data sheet", "calibrated", "extended", "true")
+    return {
+        "controller": controller,
+        "models": {
+            model: {"rmse_N": {"mean": mean, "sd": 0.002}}
+            for model, mean in zip(models, rmse, strict=True)
+        },
+        "over_limit": rmse[2] / rmse[3],
     }
 
 

@@ -20,7 +20,7 @@ def report(
     """Write one self-contained HTML page: diagnosis, recordings, model, simulation and residual.
 
     Each DIR is a dataset or what `tsas check`, `calibrate`, `simulate` or `diagnose` wrote. What
-    `tsas track` or `identify-harmonic-drive` wrote makes a page of its own.
+    `tsas track`, `close-loop` or `identify-harmonic-drive` wrote makes a page of its own.
     """
     from tsas_cli.files import new_file
     from tsas_cli.reporting.inputs import read_inputs
@@ -30,7 +30,7 @@ def report(
         inputs = read_inputs(folders)
         with progress("drawing", len(SECTIONS), quiet=quiet) as advance:
             path.write_text(page(inputs, advance), encoding="utf-8")
-    read = {"dataset.toml": str(inputs.dataset.folder)}
+    read = {} if inputs.dataset is None else {"dataset.toml": str(inputs.dataset.folder)}
     read |= {kind.FILE: str(folder) for kind, folder in inputs.folders.items()}
     size = out.stat().st_size
     show(

@@ -1,6 +1,7 @@
 """Colours by role: drawn as stand-ins, then named in the page's style, once light and once dark."""
 
 CONTROLLERS = ("pid", "sliding-mode", "adaptive-sliding-mode", "disturbance-observer")
+MODELS = ("data-sheet", "calibrated", "extended", "true")
 ROLES = (
     "ink",
     "muted",
@@ -18,6 +19,7 @@ ROLES = (
     "after",
     "alike",
     *CONTROLLERS,
+    *MODELS,
 )
 STAND_IN = {role: f"#c0ff{number:02x}" for number, role in enumerate(ROLES)}
 

@@ -1,7 +1,7 @@
 """What the page is made from: the dataset, and what the stages wrote about it."""
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeVar, cast
@@ -16,6 +16,7 @@ from tsas_cli.files import read_json
 from tsas_cli.recordings.dataset import Dataset, Recording, read_dataset
 from tsas_cli.recordings.manifest import FILE, parse
 from tsas_cli.recordings.quality import check_dataset
+from tsas_cli.reporting.closing_file import Closing
 from tsas_cli.reporting.drive_file import Drive
 from tsas_cli.reporting.stage_files import (
     Calibration,
@@ -35,22 +36,31 @@ STAGES: tuple[type[StageFile], ...] = (
     Diagnosis,
     Drive,
     Tracking,
+    Closing,
 )
 Stage = TypeVar("Stage", bound=StageFile)
 
 
 @dataclass(frozen=True)
 class Inputs:
-    """The dataset, and by kind of stage what was given: its file's content, and its folder."""
+    """The dataset, and by kind of stage what was given: its file's content, and its folder.
 
-    dataset: Dataset
+    Without a dataset there is only what `tsas close-loop` wrote, which has one for each case.
+    """
+
+    dataset: Dataset | None
     stages: Mapping[type[StageFile], StageFile]
     folders: Mapping[type[StageFile], Path]
 
     @property
     def check(self) -> Check:
-        """What the checks say; it is always there."""
+        """What the checks say; they are there wherever a dataset is."""
         return cast("Check", self.stages[Check])
+
+    @property
+    def recordings(self) -> Iterable[Recording]:
+        """The dataset's recordings, none without one."""
+        return () if self.dataset is None else self.dataset
 
     def get(self, kind: type[Stage]) -> Stage | None:
         """Return what a stage wrote, or None where it was not given."""
@@ -105,12 +115,19 @@ def read_inputs(folders: Sequence[Path]) -> Inputs:
         kind: parse(kind, read_json(folder / kind.FILE), folder / kind.FILE)
         for kind, folder in where.items()
     }
-    named = (_dataset_of(stage, where[kind] / kind.FILE) for kind, stage in stages.items())
-    dataset = read_dataset(by_file[FILE] if FILE in by_file else next(named))
+    named = (
+        _dataset_of(stage, where[kind] / kind.FILE)
+        for kind, stage in stages.items()
+        if kind is not Closing
+    )
+    folder = by_file[FILE] if FILE in by_file else next(named, None)
+    if folder is None:
+        return Inputs(None, stages, where)
+    dataset = read_dataset(folder)
     for kind, stage in stages.items():
         if isinstance(stage, OfDataset):
             _check_hashes(stage, dataset, where[kind] / kind.FILE)
-        else:
+        elif kind is Tracking:
             _check_own(dataset, where[kind] / kind.FILE)
     if Check not in stages:
         stages[Check] = _own_check(dataset)

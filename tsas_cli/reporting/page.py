@@ -2,11 +2,13 @@
 
 from collections.abc import Callable
 
+from tsas_cli.reporting.closing_file import Closing
 from tsas_cli.reporting.content import Section
 from tsas_cli.reporting.drive_file import Drive
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.rendered import rendered
 from tsas_cli.reporting.sections import (
+    closing,
     diagnosis,
     drive,
     loops,
@@ -22,6 +24,7 @@ from tsas_cli.reporting.sections import (
 from tsas_cli.reporting.tracking_file import Tracking
 
 SECTIONS: tuple[Callable[[Inputs], Section | None], ...] = (
+    closing.section,
     tracking.section,
     diagnosis.section,
     drive.section,
@@ -38,24 +41,27 @@ SECTIONS: tuple[Callable[[Inputs], Section | None], ...] = (
 def page(inputs: Inputs, advance: Callable[[], None] = lambda: None) -> str:
     """Return the whole page as HTML; `advance` is called after each of `SECTIONS`.
 
-    A page of tracked runs or of a drive leaves out what was not given; any other says what is
-    missing.
+    A page of a drive, of tracked runs, or of what a better model is worth in tracking, leaves out
+    what was not given; any other says what is missing.
 
     Raises
     ------
     InputError
         A recording or a simulated run cannot be read.
     """
-    alone = any(inputs.get(kind) is not None for kind in (Tracking, Drive))
+    alone = any(inputs.get(kind) is not None for kind in (Closing, Tracking, Drive))
     sections = []
     for make in SECTIONS:
         section = make(inputs)
         if section is not None and (section.given or not alone):
             sections.append(section)
         advance()
+    name, about = "From diagnosis to tracking", "hidden differences, named and tracked"
+    if inputs.dataset is not None:
+        name, about = inputs.dataset.manifest.name, "recordings, model and residual"
     return rendered(
-        name=inputs.dataset.manifest.name,
-        about="recordings, model and residual",
+        name=name,
+        about=about,
         summary=" ".join(summary.sentences(inputs)),
         sections=sections,
     )

@@ -21,8 +21,10 @@ _X = "x_in_mm"
 Floats = npt.NDArray[np.float64]
 
 
-def section(inputs: Inputs) -> Section:
-    """Return the section of the loops, one group per run."""
+def section(inputs: Inputs) -> Section | None:
+    """Return the section of the loops, one group per run, None where there is no dataset."""
+    if inputs.dataset is None:
+        return None
     intro = "Each cycle runs through four phases, numbered in the order in which they follow."
     calibration = inputs.get(Calibration)
     if calibration is None:
@@ -30,7 +32,7 @@ def section(inputs: Inputs) -> Section:
     segments = calibration.segments if calibration else {}
     groups = tuple(
         Group(f"Run {recording.run.id}", pictures)
-        for number, recording in enumerate(inputs.dataset)
+        for number, recording in enumerate(inputs.recordings)
         if (pictures := tuple(_pictures(recording, segments.get(recording.run.id, ()), number)))
     )
     if not groups:

@@ -3,7 +3,8 @@
 from collections.abc import Sequence
 
 from tsas_cli.recordings.columns import BY_NAME, TIME
-from tsas_cli.recordings.dataset import Recording
+from tsas_cli.recordings.dataset import Dataset, Recording
+from tsas_cli.recordings.manifest import Manifest
 from tsas_cli.reporting.content import Section, Table
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import ABSENT, plain
@@ -13,13 +14,15 @@ _SEVERITIES = ("error", "warning", "note")
 _SHOWN = 4
 
 
-def section(inputs: Inputs) -> Section:
-    """Return the section of the recordings and the findings about them."""
+def section(inputs: Inputs) -> Section | None:
+    """Return the section of the recordings and the findings, None where there is no dataset."""
+    if inputs.dataset is None:
+        return None
     manifest = inputs.dataset.manifest
     kind = {"measured": "measured on a rig", "simulated": "simulated, not measured"}[manifest.kind]
     intro = [f"The dataset {manifest.name} holds {len(manifest.run)} recordings, {kind}."]
-    intro += [text for text in (manifest.description, _credit(inputs)) if text]
-    tables = [_runs(inputs)]
+    intro += [text for text in (manifest.description, _credit(manifest)) if text]
+    tables = [_runs(inputs.dataset)]
     if inputs.check.findings:
         tables.append(_findings(inputs.check))
     if inputs.check.not_checked:
@@ -27,16 +30,13 @@ def section(inputs: Inputs) -> Section:
     return Section("recordings", "Recordings", tuple(intro), tables=tuple(tables))
 
 
-def _credit(inputs: Inputs) -> str:
-    manifest = inputs.dataset.manifest
+def _credit(manifest: Manifest) -> str:
     parts = [("Source", manifest.source), ("License", manifest.license)]
     return " ".join(f"{name}: {text.rstrip('.')}." for name, text in parts if text)
 
 
-def _runs(inputs: Inputs) -> Table:
-    more = list(
-        dict.fromkeys(key for run in inputs.dataset.manifest.run for key in run.model_extra or {})
-    )
+def _runs(dataset: Dataset) -> Table:
+    more = list(dict.fromkeys(key for run in dataset.manifest.run for key in run.model_extra or {}))
     header = (
         "run",
         "channels",
@@ -50,7 +50,7 @@ def _runs(inputs: Inputs) -> Table:
         "started",
         "load",
     )
-    rows = tuple(_run(recording, more) for recording in inputs.dataset)
+    rows = tuple(_run(recording, more) for recording in dataset)
     numeric = frozenset(range(2, 8 + len(more)))
     return Table("The recordings", header, rows, numeric=numeric).without_empty()
 

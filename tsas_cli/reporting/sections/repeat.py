@@ -2,16 +2,25 @@
 
 import platform
 import shlex
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from importlib.metadata import version
 from pathlib import Path
 
 from tsas_cli import __version__
 from tsas_cli.files import sha256_of
+from tsas_cli.reporting.closing import call as closing_call
+from tsas_cli.reporting.closing_file import Closing
 from tsas_cli.reporting.content import Section, Table
 from tsas_cli.reporting.drive_file import Drive
 from tsas_cli.reporting.inputs import Inputs
-from tsas_cli.reporting.stage_files import Calibration, Check, Diagnosis, ModelFile, Simulation
+from tsas_cli.reporting.stage_files import (
+    Calibration,
+    Check,
+    Diagnosis,
+    ModelFile,
+    Simulation,
+    StageFile,
+)
 from tsas_cli.reporting.tracking import call
 from tsas_cli.reporting.tracking_file import Tracking
 
@@ -20,27 +29,49 @@ _LIBRARIES = ("numpy", "scipy", "numba", "matplotlib")
 
 def section(inputs: Inputs) -> Section:
     """Return the section on how to repeat the page."""
-    hashes = inputs.dataset.hashes()
+    hashes = {} if inputs.dataset is None else inputs.dataset.hashes()
     for stage in (inputs.get(Simulation), inputs.get(Diagnosis)):
         if stage and stage.model.sha256:
             hashes[stage.model.file] = stage.model.sha256
     if tracking := inputs.get(Tracking):
         hashes |= call.files_read(tracking)
+    tables = [Table("Versions", ("program", "version"), tuple(_versions(inputs)))]
+    if hashes:
+        tables.append(Table("Files read", ("file", "SHA-256"), tuple(hashes.items())))
     return Section(
         "repeat",
         "How to repeat it",
-        ("These commands make the same page from the same files.",),
-        tables=(
-            Table("Versions", ("program", "version"), tuple(_versions(inputs))),
-            Table("Files read", ("file", "SHA-256"), tuple(hashes.items())),
-        ),
+        tuple(_intro(inputs)),
+        tables=tuple(tables),
         commands=tuple(shlex.join(command) for command in _commands(inputs)),
     )
 
 
+def _intro(inputs: Inputs) -> Iterator[str]:
+    yield "These commands make the same page from the same files."
+    closing = inputs.get(Closing)
+    if closing and closing_call.own_settings(closing):
+        yield (
+            f"`{closing_call.SETTINGS}` stands for a file with the settings that `{Closing.FILE}` "
+            "holds; they are not the defaults."
+        )
+
+
 def _commands(inputs: Inputs) -> Iterator[list[str]]:
-    dataset = str(inputs.dataset.folder)
     folder = {kind: str(path) for kind, path in inputs.folders.items()}
+    if closing := inputs.get(Closing):
+        yield ["tsas", "close-loop", *closing_call.options(closing), "--out", folder[Closing]]
+    read = list(folder.values())
+    if inputs.dataset is not None:
+        read.insert(0, str(inputs.dataset.folder))
+        yield from _of_dataset(inputs, read[0], folder)
+    read = list(dict.fromkeys(read))  # one folder may hold more than one kind
+    yield ["tsas", "report", *read, "--out", "report.html"]
+
+
+def _of_dataset(
+    inputs: Inputs, dataset: str, folder: Mapping[type[StageFile], str]
+) -> Iterator[list[str]]:
     if tracking := inputs.get(Tracking):
         yield ["tsas", "track", *call.options(tracking), "--out", folder[Tracking]]
     if Check in folder:
@@ -63,8 +94,6 @@ def _commands(inputs: Inputs) -> Iterator[list[str]]:
     if drive := inputs.get(Drive):
         options = ["--speed", "measured" if drive.hold == "first" else "commanded"]
         yield ["tsas", "identify-harmonic-drive", dataset, *options, "--out", folder[Drive]]
-    read = dict.fromkeys([dataset, *folder.values()])  # one folder may hold more than one kind
-    yield ["tsas", "report", *read, "--out", "report.html"]
 
 
 def _model(model: ModelFile, inputs: Inputs) -> list[str]:
@@ -89,5 +118,7 @@ def _versions(inputs: Inputs) -> Iterator[tuple[str, str]]:
         yield "tsas, tracking", tracking.version
     if drive := inputs.get(Drive):
         yield "tsas, drive", drive.version
+    if closing := inputs.get(Closing):
+        yield "tsas, close-loop", closing.version
     yield "Python", platform.python_version()
     yield from ((name, version(name)) for name in _LIBRARIES)

@@ -32,7 +32,7 @@ def section(inputs: Inputs) -> Section:
     channels = {run_id: run.channels for run_id, run in simulation.runs.items()}
     groups = tuple(
         Group(f"Run {recording.run.id}", pictures)
-        for number, recording in enumerate(inputs.dataset)
+        for number, recording in enumerate(inputs.recordings)
         if (pictures := tuple(_pictures(inputs, recording, channels, number)))
     )
     return Section(

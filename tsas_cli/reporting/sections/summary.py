@@ -3,7 +3,10 @@
 from collections.abc import Iterator
 
 from tsas_cli.recordings.columns import BY_NAME
+from tsas_cli.recordings.manifest import Manifest
 from tsas_cli.reporting.channels import in_words
+from tsas_cli.reporting.closing import cases, errors
+from tsas_cli.reporting.closing_file import Closing
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import plain
 from tsas_cli.reporting.stage_files import Calibration, Check, Simulation
@@ -13,7 +16,14 @@ from tsas_cli.reporting.tracking_file import Tracking
 
 def sentences(inputs: Inputs) -> Iterator[str]:
     """Yield the sentences of the summary."""
-    manifest = inputs.dataset.manifest
+    if closing := inputs.get(Closing):
+        yield cases.summary(closing)
+        yield from errors.most_and_least(closing)
+    if inputs.dataset is not None:
+        yield from _of_dataset(inputs, inputs.dataset.manifest)
+
+
+def _of_dataset(inputs: Inputs, manifest: Manifest) -> Iterator[str]:
     many = "1 recording" if len(manifest.run) == 1 else f"{len(manifest.run)} recordings"
     yield f"{manifest.name} holds {many}, {manifest.kind}."
     if tracking := inputs.get(Tracking):

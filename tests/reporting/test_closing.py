@@ -1,0 +1,219 @@
+import json
+import re
+import shlex
+from html import unescape
+
+import numpy as np
+import pytest
+from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
+
+from tests.reporting.made_folders import (
+    CASES,
+    make_calibration,
+    make_closing,
+    make_dataset,
+    make_tracking,
+)
+from tests.reporting.test_page import Outline
+from tests.reporting.test_tracking import cells
+from tsas_cli.errors import InputError
+from tsas_cli.reporting import colours
+from tsas_cli.reporting.closing import call
+from tsas_cli.reporting.closing_file import Closing
+from tsas_cli.reporting.colours import STAND_IN
+from tsas_cli.reporting.figures.closing import MODELS, draw_dots
+from tsas_cli.reporting.inputs import read_inputs
+from tsas_cli.reporting.page import page
+from tsas_cli.tracking import closing
+from tsas_cli.tracking.closing_stage import chosen
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return make_closing(tmp_path_factory.mktemp("closing") / "loop")
+
+
+@pytest.fixture(scope="module")
+def whole(folder):
+    return page(read_inputs([folder]))
+
+
+def points(text):
+    return [unescape(re.sub("<.*?>", "", one)) for one in re.findall("<li>(.*?)</li>", text)]
+
+
+def page_of(folder, case):
+    """Return a page with one case of `CASES`."""
+    return page(read_inputs([make_closing(folder, {case: CASES[case]})]))
+
+
+def test_the_page_is_well_formed_and_holds_nothing_of_a_dataset(whole):
+    outline = Outline(whole)
+    assert max(np.diff(outline.headings)) == 1
+    assert len(outline.ids) == len(set(outline.ids))
+    titles = ["Does a better model track better?", "How to repeat it"]
+    assert re.findall("<h2>(.*?)</h2>", whole) == titles
+    assert "was given" not in whole
+
+
+def test_the_page_does_not_change_when_nothing_changed(folder, whole):
+    assert page(read_inputs([folder])) == whole
+
+
+def test_hidden_values_stand_beside_what_was_named_with_its_rivals(whole):
+    backlash, bend, tendon = cells(whole, "What was hidden")[1:]
+    assert backlash[2:] == [
+        "<code>backlash.play_mm</code> = 0.15",
+        "named",
+        "<code>backlash</code>",
+    ]
+    assert bend[1:] == [
+        "a <bend>",
+        "<code>total_bend_rad</code> = 4, <code>friction_drift.rate_per_s</code> = 0.01",
+        "sufficient",
+        "nothing",
+    ]
+    either = "<code>drive_compliance</code> or <code>free_tendon</code>"
+    assert tendon[-1] == f"{either}, <code>presliding</code>"
+
+
+def test_errors_stand_by_model_with_spread_and_ratio(whole):
+    header, first, *_, last = cells(whole, "RMSE of the force [N] by model, mean ± standard")
+    assert header[2:] == ["data sheet", "calibrated", "extended", "true", "extended / true"]
+    assert first == [
+        *("backlash", "pid", "0.400 ± 0.002", "0.300 ± 0.002", "0.100 ± 0.002", "0.080 ± 0.002"),
+        "1.25",
+    ]
+    assert last[:2] == ["free_tendon", "disturbance-observer"]
+
+
+def test_it_says_for_whom_the_better_model_matters_and_where_it_falls_short(whole):
+    """Data sheet / extended is 4, 0.8 and 1.05 of one controller, 3, 30 and 9 of the other."""
+    pid, observer = (p for p in points(whole) if "the better model" in p)
+    assert pid == (
+        "pid: the better model hardly matters. RMSE data sheet / extended is 1.0 (median of 3 "
+        "cases, 0.80 to 4.0); the data sheet's is better by more than 10 % in bend (0.80). "
+        "The extended model is more than 10 % above the limit in backlash (1.25 times)."
+    )
+    assert observer == (
+        "disturbance-observer: the better model matters. RMSE data sheet / extended is 9.0 (median "
+        "of 3 cases, 3.0 to 30). The extended model is in every case within 10 % of the limit, "
+        "or better."
+    )
+
+
+def test_a_model_that_makes_it_worse_is_said_to_do_harm(tmp_path):
+    text = page_of(tmp_path / "loop", "bend")
+    (pid, _) = (p for p in points(text) if "the better model" in p)
+    assert pid.startswith("pid: the better model does harm. RMSE data sheet / extended is 0.80. ")
+    assert "median" not in text
+
+
+def test_the_summary_says_how_many_are_named_and_for_whom_it_matters_most(whole, tmp_path):
+    said = re.search('<p class="summary">(.*?)</p>', whole)[1]
+    assert "Of 3 differences that are hidden in the plant, a cause is named for 2." in said
+    assert "most for disturbance-observer" in said
+    assert "least for pid (1.0 times)" in said
+    one = page_of(tmp_path / "loop", "bend")
+    assert "One difference is hidden in the plant; a cause is not named." in one
+
+
+def test_each_model_has_a_mark_at_its_error_in_its_own_colour_and_form(folder):
+    controllers = read_inputs([folder]).get(Closing).of_controllers()
+    figure = Figure()
+    draw_dots(figure, controllers=controllers)
+    assert [axes.get_title(loc="left") for axes in figure.axes] == list(controllers)
+    for axes, name in zip(figure.axes, controllers, strict=True):
+        assert axes.get_xscale() == "log"
+        assert [label.get_text() for label in axes.get_yticklabels()] == list(CASES)
+        marks = {line.get_label(): line for line in axes.lines if line.get_marker() != "None"}
+        assert len({line.get_marker() for line in marks.values()}) == len(MODELS)
+        for place, (role, look) in enumerate(MODELS.items()):
+            line = marks[look.label]
+            assert to_hex(line.get_color()) == STAND_IN[role]
+            expected = [case[3][name][place] for case in CASES.values()]
+            assert list(line.get_xdata()) == expected
+            assert list(line.get_ydata()) == [0, 1, 2]
+
+
+def test_the_models_are_those_that_the_stage_tracks_with(whole):
+    assert tuple(look.label for look in MODELS.values()) == closing.MODELS
+    assert tuple(MODELS) == colours.MODELS
+    for role in MODELS:
+        assert f"stroke: var(--{role})" in whole
+
+
+def test_the_picture_says_its_numbers(whole):
+    (label,) = re.findall('<svg[^>]*aria-label="([^"]*)"', whole)
+    assert "pid: backlash 0.40, 0.30, 0.10, 0.080, bend 0.20, 0.30, 0.25, 0.24," in label
+
+
+@pytest.mark.parametrize(
+    ("hide", "option"),
+    [(False, ["--cases", "backlash,free_tendon"]), (True, ["--hide", "backlash.play_mm=0.15"])],
+)
+def test_the_command_asks_for_the_same_cases(tmp_path, hide, option):
+    names = ["backlash"] if hide else ["backlash", "free_tendon"]
+    made = {("hidden" if hide else name): CASES[name] for name in names}
+    inputs = read_inputs([make_closing(tmp_path / "loop", made)])
+    options = list(call.options(inputs.get(Closing)))
+    assert options == [*option, "--seeds", "5", "--seed", "3"]
+    again = chosen(None, [option[1]]) if hide else chosen(option[1], [])
+    assert [case.name for case in again] == list(made)
+    if hide:
+        assert again[0].hidden == CASES["backlash"][1]
+    commands = re.search("<pre[^>]*><code>(.*?)</code>", page(inputs), re.DOTALL)[1].splitlines()
+    where = str(tmp_path / "loop")
+    assert [shlex.split(unescape(c)) for c in commands] == [
+        ["tsas", "close-loop", *options, "--out", where],
+        ["tsas", "report", where, "--out", "report.html"],
+    ]
+
+
+def test_settings_that_are_not_the_defaults_are_said(folder, tmp_path, whole):
+    assert "--settings" not in whole
+    content = json.loads((folder / "closing.json").read_text())
+    content["settings"]["sensor"]["noise_mm"] = 0.5
+    text = page(read_inputs([make_closing(tmp_path / "loop", settings=content["settings"])]))
+    assert "--settings settings.toml" in text
+    assert "they are not the defaults" in text
+
+
+def test_beside_a_dataset_the_page_shows_both(folder, tmp_path):
+    dataset = make_dataset(tmp_path / "dataset", ("a",), samples=400)
+    calibrated = make_calibration(dataset, tmp_path / "cal")
+    text = page(read_inputs([folder, calibrated]))
+    Outline(text)
+    titles = re.findall("<h2>(.*?)</h2>", text)
+    assert titles[:2] == ["Does a better model track better?", "Recordings"]
+    assert "No diagnosis was given" not in text
+    assert f"tsas report {dataset} {calibrated} {folder} --out" in text
+
+
+def test_beside_tracked_runs_the_page_shows_both(folder, tmp_path):
+    tracked = make_tracking(tmp_path / "tracked", ("pid",))
+    titles = re.findall("<h2>(.*?)</h2>", page(read_inputs([tracked, folder])))
+    assert titles[:3] == ["Does a better model track better?", "Tracking", "Recordings"]
+
+
+@pytest.mark.parametrize(
+    ("spoil", "said"),
+    [
+        (lambda c: c.pop("cases"), "cases is missing"),
+        (lambda c: c.update(cases=[]), "cases"),
+        (lambda c: c["cases"][0]["controllers"][0]["models"].pop("data sheet"), "data sheet"),
+        (
+            lambda c: c["cases"][0]["controllers"][0]["models"]["true"]["rmse_N"].update(mean=0.0),
+            "true.rmse_N.mean",
+        ),
+        (lambda c: c.update(format=2), "format"),
+    ],
+)
+def test_a_file_that_is_not_whole_is_refused(tmp_path, spoil, said):
+    folder = make_closing(tmp_path / "loop")
+    content = json.loads((folder / "closing.json").read_text())
+    spoil(content)
+    (folder / "closing.json").write_text(json.dumps(content))
+    with pytest.raises(InputError, match=re.escape(said)):
+        read_inputs([folder])

@@ -1,0 +1,32 @@
+"""What was hidden in the plant, and what the diagnosis named."""
+
+from tsas_cli.reporting.closing_file import Case, Closing, Named
+from tsas_cli.reporting.content import Table
+from tsas_cli.reporting.numbers import as_printed
+
+
+def table(closing: Closing) -> Table:
+    """Return the table, one row for each case."""
+    rows = tuple(
+        (case.case, case.title, _hidden(case), case.verdict, _named(case.named))
+        for case in closing.cases
+    )
+    header = ("case", "what differs", "hidden", "verdict", "named")
+    return Table("What was hidden in the plant, and what the diagnosis named", header, rows)
+
+
+def summary(closing: Closing) -> str:
+    """Return in a sentence how many cases there are and of how many a cause is named."""
+    total, named = len(closing.cases), sum(bool(case.named) for case in closing.cases)
+    if total == 1:
+        return f"One difference is hidden in the plant; a cause is {'' if named else 'not '}named."
+    return f"Of {total} differences that are hidden in the plant, a cause is named for {named}."
+
+
+def _hidden(case: Case) -> str:
+    return ", ".join(f"`{name}` = {as_printed(value)}" for name, value in case.hidden.items())
+
+
+def _named(named: tuple[Named, ...]) -> str:
+    causes = (" or ".join(f"`{name}`" for name in (it.effect, *it.rivals)) for it in named)
+    return ", ".join(causes) or "nothing"

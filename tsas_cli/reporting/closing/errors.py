@@ -1,0 +1,112 @@
+"""The RMSE of every controller in every case, by the model in its inverse and feedforward."""
+
+from collections.abc import Iterator
+from functools import partial
+from statistics import median
+
+from tsas_cli.reporting.closing_file import Closing, Row
+from tsas_cli.reporting.content import Picture, Table
+from tsas_cli.reporting.diagnosis.words import listed
+from tsas_cli.reporting.drawing import picture
+from tsas_cli.reporting.figures.closing import MODELS, draw_dots, height_in
+from tsas_cli.reporting.numbers import plain, with_spread
+
+NEAR = 1.1  # a ratio that is no more than this, up or down, makes no difference
+_PERCENT = f"{100.0 * (NEAR - 1.0):.0f} %"
+
+
+def table(closing: Closing) -> Table:
+    """Return the table, with its spread where there is more than one seed."""
+    seeds = closing.seeds[1] - closing.seeds[0] + 1
+    over = f", mean ± standard deviation over {seeds} seeds of noise" if seeds > 1 else ""
+    rows = tuple(
+        (
+            case.case,
+            row.controller,
+            *(with_spread(rmse.mean, rmse.sd) for rmse in row.by_model.values()),
+            plain(row.over_limit, 3),
+        )
+        for case in closing.cases
+        for row in case.controllers
+    )
+    header = ("case", "controller", *(it.label for it in MODELS.values()), "extended / true")
+    numeric = frozenset(range(2, len(header)))
+    return Table(f"RMSE of the force [N] by model{over}", header, rows, numeric=numeric)
+
+
+def dots(closing: Closing) -> Picture:
+    """Return the picture of the same errors, one panel for each controller."""
+    controllers = closing.of_controllers()
+    said = "; ".join(
+        f"{name}: {', '.join(_said(case, row) for case, row in rows.items())}"
+        for name, rows in controllers.items()
+    )
+    return picture(
+        partial(draw_dots, controllers=controllers),
+        key="closing-rmse",
+        alt="RMSE of the force in newton on a logarithmic axis, with the model of the data sheet, "
+        f"calibrated, extended and true, by controller and case. {said}.",
+        caption="RMSE of the force by controller, case and model, on a logarithmic axis: further "
+        "left is better, and the true model is the limit.",
+        height_in=height_in([len(rows) for rows in controllers.values()]),
+    )
+
+
+def worth(closing: Closing) -> Iterator[str]:
+    """Yield, for each controller, what the extended model is worth, and where it falls short."""
+    for name, rows in closing.of_controllers().items():
+        yield f"`{name}`: {_gain(rows)} {_limit(rows)}"
+
+
+def most_and_least(closing: Closing) -> Iterator[str]:
+    """Yield for which controller the extended model matters most, and for which least."""
+    gains = {name: _median_gain(rows) for name, rows in closing.of_controllers().items()}
+    ranked = sorted(gains, key=lambda name: gains[name])
+    if len(ranked) > 1:
+        most, least = (plain(gains[name], 2) for name in (ranked[-1], ranked[0]))
+        over = " (median over the cases)" if len(closing.cases) > 1 else ""
+        yield (
+            f"The extended model matters most for {ranked[-1]}, whose RMSE with the data sheet's "
+            f"is {most} times that with the extended one{over}, least for {ranked[0]} ({least} "
+            "times)."
+        )
+
+
+def _said(case: str, row: Row) -> str:
+    return f"{case} {', '.join(plain(rmse.mean, 2) for rmse in row.by_model.values())}"
+
+
+def _median_gain(rows: dict[str, Row]) -> float:
+    return median(row.gain for row in rows.values())
+
+
+def _gain(rows: dict[str, Row]) -> str:
+    """Return in sentences how much the extended model lowers the error of the data sheet's."""
+    middle = _median_gain(rows)
+    said = f"the better model {_matters(middle)}. RMSE data sheet / extended is {plain(middle, 2)}"
+    if len(rows) == 1:
+        return f"{said}."
+    gains = {case: row.gain for case, row in rows.items()}
+    low, high = plain(min(gains.values()), 2), plain(max(gains.values()), 2)
+    worse = [f"{case} ({plain(gain, 2)})" for case, gain in gains.items() if gain < 1.0 / NEAR]
+    but = f"; the data sheet's is better by more than {_PERCENT} in {listed(worse)}"
+    return f"{said} (median of {len(rows)} cases, {low} to {high}){but if worse else ''}."
+
+
+def _matters(gain: float) -> str:
+    if gain > NEAR:
+        return "matters"
+    return "hardly matters" if gain > 1.0 / NEAR else "does harm"
+
+
+def _limit(rows: dict[str, Row]) -> str:
+    """Return in a sentence where the extended model is not as good as the true one."""
+    off = [
+        f"{case} ({plain(row.over_limit, 3)} times)"
+        for case, row in rows.items()
+        if row.over_limit > NEAR
+    ]
+    if off:
+        return f"The extended model is more than {_PERCENT} above the limit in {listed(off)}."
+    where = "in every case " if len(rows) > 1 else ""
+    return f"The extended model is {where}within {_PERCENT} of the limit, or better."
