@@ -10,12 +10,14 @@ from tsas_cli import __version__
 from tsas_cli.commands.calibrate import calibrate
 from tsas_cli.commands.challenge import challenge
 from tsas_cli.commands.check import check
+from tsas_cli.commands.close_loop import close_loop
 from tsas_cli.commands.diagnose import diagnose
 from tsas_cli.commands.effects import effects
 from tsas_cli.commands.explain import explain
 from tsas_cli.commands.ingest import ingest
 from tsas_cli.commands.plan import plan
 from tsas_cli.commands.report import report
+from tsas_cli.commands.reproduce import reproduce
 from tsas_cli.commands.simulate import simulate
 from tsas_cli.commands.track import track
 from tsas_cli.errors import InputError, printable
@@ -51,7 +53,9 @@ app.command("simulate")(simulate)
 app.command("diagnose")(diagnose)
 app.command("plan")(plan)
 app.command("track")(track)
+app.command("close-loop")(close_loop)
 app.command("report")(report)
+app.command("reproduce")(reproduce)
 app.command("effects")(effects)
 app.command("explain")(explain)
 app.add_typer(challenge)

@@ -327,6 +327,86 @@ def _maps(size):
     }
 
 
+BOUNDS = {"lowest": [0.001, 2.0, 0.01], "highest": [0.1, 200.0, 0.4]}
+LATE = {"quantity": "friction_coefficient", "value": 0.16, "from_s": 6.0}
+
+
+def make_tracking(folder: Path, controllers=("pid", "adaptive-sliding-mode"), **more) -> Path:
+    """Write what `tsas track` would say about a force that is missed by 1 N, and by 2 N later.
+
+    The drive lags behind by 0.25 (1 - cos t) mm, and phi1 lies at its upper bound half of the time.
+    """
+    time_s = np.arange(0.0, 4 * math.pi, 0.01)
+    wanted = 43.0 - 18.0 * np.cos(time_s)
+    x_inv = 12.0 - 12.0 * np.cos(time_s)
+    table = {
+        "time_s": time_s,
+        "x_in_mm": x_inv - 0.25 * (1.0 - np.cos(time_s)),
+        "f_out_N": wanted,
+        "motor_speed_rpm": 500.0 * np.sin(time_s),
+        "f_out_ref_N": wanted,
+        "x_inv_mm": x_inv,
+    }
+    estimates = {
+        "phi1_rpm_s3_per_mm": np.where(time_s < 2 * math.pi, 0.005, 0.1),
+        "phi2_rpm_s_per_mm": 18.0 + time_s,
+        "phi3_rpm_s2_per_mm": np.full(time_s.size, 0.02),
+    }
+    conditions = {"undisturbed": [], "disturbed": [LATE]}
+    results, tables = [], {}
+    for missed_N, condition in enumerate(conditions, start=1):
+        for number, name in enumerate(controllers):
+            run_id = f"{name}-{condition}"
+            own = table | {"f_out_true_N": wanted - missed_N}
+            if name == "adaptive-sliding-mode":
+                own |= estimates
+            tables[run_id] = pa.table(own)
+            results.append(_result(name, condition, run_id, 0.2 + 0.6 * number))
+    folder.mkdir(parents=True)
+    runs = [Run(id=i, file=f"runs/{i}.parquet", sha256="0" * 64) for i in tables]
+    manifest = Manifest(format=1, name="tracking", kind="simulated", run=tuple(runs))
+    write_dataset(folder, manifest, tables)
+    content = {
+        "format": 1,
+        "stage": "track",
+        "version": "0.1.0",
+        "model": {"file": "data sheet"},
+        "plant": {"file": "rig.toml", "sha256": "ab" * 32},
+        "settings": {
+            "file": None,
+            "sensor": {"rate_Hz": 100.0, "noise_mm": 0.005, "step_mm": 0.002},
+            "loop": {"filter_Hz": 10.0},
+            "controllers": {"adaptive-sliding-mode": BOUNDS},
+        },
+        "reference": {"shape": "sine"},
+        "gains": "default",
+        "seeds": [3, 7],
+        "conditions": conditions,
+        "results": results,
+        "notes": ["pid-disturbed: the motor is at its <limit>"],
+    }
+    return _write(folder, "tracking.json", content | more)
+
+
+def _result(controller, condition, run_id, rmse):
+    scores = {
+        "rmse_N": {"mean": rmse, "sd": 0.0031},
+        "lowest_error_N": {"mean": -2.5, "sd": 0.02},
+        "highest_error_N": {"mean": 1.5, "sd": 0.02},
+        "outside_percent": {"mean": 0.0, "sd": 0.0},
+        "effort_rpm": {"mean": 353.6, "sd": 0.1},
+        "chatter_rpm_per_s": {"mean": 1234.0, "sd": None},
+        "at_limit_percent": {"mean": 12.5 if condition == "disturbed" else 0.0, "sd": 0.5},
+    }
+    return {
+        "controller": controller,
+        "condition": condition,
+        "run": run_id,
+        "scores": scores,
+        "unsettled_steps": 0,
+    }
+
+
 def _write(folder: Path, name: str, content: dict) -> Path:
     folder.mkdir(parents=True, exist_ok=True)
     (folder / name).write_text(json.dumps(content), encoding="utf-8")

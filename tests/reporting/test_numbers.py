@@ -2,7 +2,7 @@ import math
 
 import pytest
 
-from tsas_cli.reporting.numbers import ABSENT, plain, with_interval
+from tsas_cli.reporting.numbers import ABSENT, plain, with_interval, with_spread
 
 
 @pytest.mark.parametrize(
@@ -46,3 +46,20 @@ def test_an_interval_of_no_width_to_speak_of_is_printed():
     value, interval = with_interval(-10.806, -10.806 - 1e-15, -10.806 + 1e-15)
     assert value == "−10.806000000"
     assert interval == f"{value} to {value}"
+
+
+@pytest.mark.parametrize(
+    ("value", "spread", "shown"),
+    [
+        (0.867303, 0.000108, "0.8673 ± 0.0001"),
+        (0.8673, 0.12, "0.9 ± 0.1"),
+        (-2.087, 0.0003, "−2.087 ± 0.0003"),
+        (1449.2, 5.6, "1449 ± 6"),
+        (0.8673, None, "0.8673"),
+        (0.0, 0.0, "0"),
+        (None, None, ABSENT),
+        (math.inf, 1.0, ABSENT),
+    ],
+)
+def test_a_spread_stands_beside_its_value(value, spread, shown):
+    assert with_spread(value, spread) == shown

@@ -19,7 +19,8 @@ def report(
 ) -> None:
     """Write one self-contained HTML page: diagnosis, recordings, model, simulation and residual.
 
-    Each DIR is a dataset or what `tsas check`, `calibrate`, `simulate` or `diagnose` wrote.
+    Each DIR is a dataset or what `tsas check`, `calibrate`, `simulate` or `diagnose` wrote. What
+    `tsas track` wrote makes a page of its own.
     """
     from tsas_cli.files import new_file
     from tsas_cli.reporting.inputs import read_inputs

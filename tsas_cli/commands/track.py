@@ -71,19 +71,20 @@ def track(
     as_json: Json = False,
 ) -> None:
     """Follow a wanted force with a controller that sees x_in alone."""
-    from tsas_cli.tracking.conditions import PROXIMAL_SPRING, Condition, disturbed
+    from tsas_cli.tracking.conditions import Condition, disturbed, proximal_spring
     from tsas_cli.tracking.settings import CONTROLLERS
     from tsas_cli.tracking.track_stage import Call, track_all
 
-    names = CONTROLLERS if compare or controller == "all" else tuple(controller.split(","))
+    named = tuple(dict.fromkeys(name.strip() for name in controller.split(",")))
+    names = CONTROLLERS if compare or controller == "all" else named
     conditions = [disturbed(disturb)] if disturb else []
     if compare:
-        conditions = [Condition("undisturbed"), *(conditions or [disturbed([PROXIMAL_SPRING])])]
+        conditions = [Condition("undisturbed"), *(conditions or [proximal_spring()])]
     call = Call(
         model=model,
         plant=plant,
         settings=settings,
-        controllers=tuple(name.strip() for name in names),
+        controllers=names,
         conditions=tuple(conditions) or (Condition("undisturbed"),),
         reference=reference,
         as_printed=as_printed,

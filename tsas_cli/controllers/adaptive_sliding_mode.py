@@ -40,18 +40,23 @@ def adaptive_sliding_mode(
     """Return the motor speed [rpm] on top of the feedforward, and renew the estimates."""
     estimates = Phi(memory[PHI], memory[PHI + 1], memory[PHI + 2])
     u = sliding_mode(seen, law.surface, estimates)
-    grown = step_s * distance(seen, law.surface)
-    jerk, v, a = wanted_jerk(seen, law.surface), seen.v - seen.de, seen.a - seen.dde
-    memory[PHI] = within(
-        estimates.phi1 + law.psi.phi1 * grown * jerk, law.lowest.phi1, law.highest.phi1
-    )
-    memory[PHI + 1] = within(
-        estimates.phi2 + law.psi.phi2 * grown * v, law.lowest.phi2, law.highest.phi2
-    )
-    memory[PHI + 2] = within(
-        estimates.phi3 + law.psi.phi3 * grown * a, law.lowest.phi3, law.highest.phi3
-    )
+    rates = adaptation(seen, law.surface, law.psi)
+    low, high = law.lowest, law.highest
+    memory[PHI] = within(estimates.phi1 + step_s * rates.phi1, low.phi1, high.phi1)
+    memory[PHI + 1] = within(estimates.phi2 + step_s * rates.phi2, low.phi2, high.phi2)
+    memory[PHI + 2] = within(estimates.phi3 + step_s * rates.phi3, low.phi3, high.phi3)
     return u
+
+
+@kernel
+def adaptation(seen: Signals, surface: Surface, psi: Phi) -> Phi:
+    """Return the rates of the estimates, Eq. (44)."""
+    s = distance(seen, surface)
+    return Phi(
+        psi.phi1 * s * wanted_jerk(seen, surface),
+        psi.phi2 * s * (seen.v - seen.de),
+        psi.phi3 * s * (seen.a - seen.dde),
+    )
 
 
 @kernel

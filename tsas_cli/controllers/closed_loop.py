@@ -2,7 +2,7 @@
 
 At each sample x_in is measured (noise, steps of the encoder), the controller answers at once, and
 the motor is asked for that speed until the next sample, within its limit. Between two samples the
-plant moves in `substeps` equal steps. From `Change.at` on the rig is another one.
+plant moves in `substeps` equal steps. From sample `change_at` on the rig is another one.
 """
 
 from typing import NamedTuple

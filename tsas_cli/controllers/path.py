@@ -4,7 +4,7 @@ The inverse model jumps over the dead band where the wanted force turns. The pat
 B-spline of fourth order (four moving means in a row, each a quarter of `crossing_s` long, centred,
 so that the path is known ahead and nothing comes late): a jump is crossed in `crossing_s` with
 continuous speed and acceleration, and rates are exact differences of the means. Where the path is
-smooth already, that takes off x″ crossing_s²/96.
+smooth already, that adds x″ crossing_s²/96. The ripple of the gear is taken back last, unsmoothed.
 """
 
 from dataclasses import dataclass
@@ -14,9 +14,10 @@ import numpy.typing as npt
 
 from tsas_cli.effects import Effects
 from tsas_cli.effects.drive_friction import drive_friction_force
-from tsas_cli.effects.drive_ripple import rippled
+from tsas_cli.effects.drive_ripple import DriveRipple, rippled
 from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.errors import InputError
+from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.ends import friction_course, last_direction
 from tsas_cli.physics.inverse import inverse_chain
 from tsas_cli.physics.plant import Actuator
@@ -25,7 +26,7 @@ from tsas_cli.physics.rig import Rig
 Floats = npt.NDArray[np.float64]
 MEANS = 4
 PASSES = 4  # of the path, where friction depends on its speed
-RIPPLE_PASSES = 30
+HALVINGS = 50  # of the ripple's height, in which the drive is sought
 
 
 @dataclass(frozen=True)
@@ -51,7 +52,7 @@ def follow(
     Raises
     ------
     InputError
-        The force is not positive somewhere, or it is shorter than the crossing.
+        The reference is shorter than the crossing.
     """
     width = max(round(crossing_s / step_s / MEANS), 1)
     if wanted_N.size < MEANS * width:
@@ -71,23 +72,47 @@ def follow(
         end, tension, missed = inverse_chain(held, friction, step_s, rig, nodes)
         smooth = smoothed(end, width, step_s)[1]
         speed = np.concatenate((np.zeros(ahead), smooth, np.zeros(held.size - ahead - smooth.size)))
-    drive = drive_at(end, rig.effects)
+    geared = smoothed(geared_at(end, rig.effects), width, step_s)
     direction = last_direction(end)
     force = tension - rig.preload_N
     force += drive_friction_force(1.0, rig.effects.drive_friction.friction_N) * direction
     force += proximal_spring_force(1.0, rig.effects.proximal_spring.stiffness_N_per_mm) * end
-    motor = drive + force / actuator.stiffness_N_per_mm
-    return Path(smoothed(drive, width, step_s), smoothed(motor, width, step_s), missed)
+    drive = drive_at(geared, rig.effects.drive_ripple, step_s)
+    wound = smoothed(force / actuator.stiffness_N_per_mm, width, step_s)
+    return Path(drive, drive + wound, missed)
 
 
-def drive_at(end: Floats, effects: Effects) -> Floats:
-    """Return where the drive is for places of the tendon's end: play and ripple taken back."""
-    geared = end + 0.5 * effects.backlash.play_mm * last_direction(end)
-    drive = geared.copy()
-    ripple = effects.drive_ripple
-    if ripple.sine_mm != 0.0 or ripple.cosine_mm != 0.0:
-        for _ in range(RIPPLE_PASSES):
-            drive += geared - np.array([rippled(x, ripple) for x in drive])
+def geared_at(end: Floats, effects: Effects) -> Floats:
+    """Return where the gear's output is for places of the tendon's end, come to from 0: play."""
+    direction = last_direction(np.concatenate(([0.0], end)))[1:]
+    geared: Floats = end + 0.5 * effects.backlash.play_mm * direction
+    return geared
+
+
+def drive_at(geared: Floats, ripple: DriveRipple, step_s: float) -> Floats:
+    """Return place and three rates of the drive for those of the gear's output, shape (4, m)."""
+    if ripple.sine_mm == ripple.cosine_mm == 0.0:
+        return geared
+    rows = [unrippled(geared[0], ripple)]
+    for _ in range(3):
+        rows.append(np.gradient(rows[-1], step_s))
+    return np.vstack(rows)
+
+
+@kernel
+def unrippled(geared: Floats, ripple: DriveRipple) -> Floats:
+    """Return where the drive is for places of the gear's output, by bisection."""
+    drive = np.empty(geared.size)
+    reach = abs(ripple.sine_mm) + 2.0 * abs(ripple.cosine_mm)
+    for i in range(geared.size):
+        low, high = geared[i] - reach, geared[i] + reach
+        for _ in range(HALVINGS):
+            middle = 0.5 * (low + high)
+            if rippled(middle, ripple) < geared[i]:
+                low = middle
+            else:
+                high = middle
+        drive[i] = 0.5 * (low + high)
     return drive
 
 

@@ -23,6 +23,7 @@ from tsas_cli.identification.fit import Fitted, with_errors
 from tsas_cli.identification.joint_fit import JointFit, estimates_of
 from tsas_cli.identification.model import Model, data_sheet
 from tsas_cli.identification.phases import segment
+from tsas_cli.identification.preload_correction import with_preload_correction
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.run_errors import blocks_of
 from tsas_cli.recordings.manifest import Manifest
@@ -111,7 +112,8 @@ def diagnose(
     if search.folds.blocks < FEW_BLOCKS:
         reason = f"only {search.folds.blocks} stretches are independent of each other: too few."
         return Diagnosis("undecided", reason, model, cannot_tell=tuple(sentences))
-    return _concluded(search, search.run(), model, tuple(base.untold))
+    found = _concluded(search, search.run(), model, tuple(base.untold))
+    return replace(found, model=with_preload_correction(found.model, runs))
 
 
 def nominal_fit(manifest: Manifest, stated: Model, runs: Sequence[Prepared]) -> JointFit:

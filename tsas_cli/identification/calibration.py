@@ -3,16 +3,15 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from tsas_cli.identification.base_fit import base_fit, slopes_of
 from tsas_cli.identification.comparison import Compared, compare
 from tsas_cli.identification.dynamic_fit import dynamic_fit
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.fit import Fitted
 from tsas_cli.identification.missing_effects import widened
-from tsas_cli.identification.model import CORRECTION, Model, data_sheet
+from tsas_cli.identification.model import Model, data_sheet
 from tsas_cli.identification.phases import Segment, segment
+from tsas_cli.identification.preload_correction import with_preload_correction
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.stiffness import Slope, slopes
 from tsas_cli.identification.transfer import tension_transfer
@@ -81,7 +80,7 @@ def calibrate(
             missed += _widened_by(wider.effects)
     cannot = [*missed, *_unknown_conditions(runs), *sentences]
     return Calibration(
-        _with_correction(model, runs),
+        with_preload_correction(model, runs),
         runs,
         segments,
         measured,
@@ -115,37 +114,6 @@ def _answered(run: Prepared, answer: Compared, segments: list[Segment]) -> list[
     if "f_in_N" not in run.measured or "x_in_mm" not in run.conditioned:
         return []
     return slopes(run.conditioned["x_in_mm"].values, answer.response.f_in_N, segments)
-
-
-def _with_correction(model: Model, runs: Sequence[Prepared]) -> Model:
-    """Add the mean difference of fitted and stated preload, for runs that are not calibrated.
-
-    Its interval is the one that a further run's difference lies in; one run alone gives none.
-    """
-    from scipy.stats import t
-
-    fitted = {e.run: e.value for e in model.estimates if e.name == "preload_N" and e.stderr}
-    off = [
-        fitted[r.run.id] - r.run.preload_N
-        for r in runs
-        if r.run.id in fitted and r.run.preload_N is not None
-    ]
-    count = len(off)
-    if count < 2:
-        return model
-    mean = float(np.mean(off))
-    spread = float(np.std(off, ddof=1)) * (1.0 + 1.0 / count) ** 0.5
-    half = float(t.ppf(0.975, count - 1)) * spread
-    correction = Estimate(
-        CORRECTION,
-        mean,
-        "N",
-        "fitted",
-        stderr=spread,
-        interval_low=mean - half,
-        interval_high=mean + half,
-    )
-    return Model((*model.estimates, correction))
 
 
 def _unknown_conditions(runs: Sequence[Prepared]) -> list[str]:

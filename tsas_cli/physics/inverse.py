@@ -113,7 +113,9 @@ def meet(
         elif bracketed:
             off_a *= 0.5  # the end that stays counts half (Illinois)
         else:
-            step *= 2.0 if off == off_b else min(2.0, off / (off_b - off))
+            nearer = off_b - off  # in a dead band no more than rounding
+            part = off / nearer if abs(nearer) > EXACT_N else 2.0
+            step *= min(part, 2.0) if part > 0.0 else 2.0
         b, off_b = x, off
     keep_rows(kept, chain, laws.n)
     return before, False

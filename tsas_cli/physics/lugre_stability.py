@@ -135,24 +135,14 @@ class Stability:
         return self.growth_per_s * self.moment.lasts_s
 
 
-def stability(
+def moments(
     rig: Rig, time_s: Floats, x_in_mm: Floats, f_in_N: Floats, phase: Phases
-) -> Stability | None:
-    """Return how stable sliding is over the speeds and tensions of a run.
+) -> list[Sliding]:
+    """Return the moments of a run at which sliding is looked at.
 
-    Parameters
-    ----------
-    rig
-        The rig.
-    time_s, x_in_mm, f_in_N, phase
-        The run as the quasi-static model follows it, shape (n,).
-
-    Returns
-    -------
-        The least stable of some moments: in full slip, in either direction, where the drive is
-        fastest, where speed over tension is largest, and where friction falls fastest with speed;
-        in dead bands where the tension changes as it does half way. None where the drive never
-        moves under tension.
+    In full slip, in either direction, where the drive is fastest, where speed over tension is
+    largest, and where friction falls fastest with speed; in dead bands where the tension changes as
+    it does half way. Parameters are those of `stability`.
     """
     speed, rate = np.gradient(x_in_mm, time_s), np.gradient(f_in_N, time_s)
     lasts = np.abs(speed) / (np.abs(np.gradient(speed, time_s)) + 1e-300)
@@ -170,9 +160,34 @@ def stability(
         if band.size:
             steep = np.abs(rate[band] / speed[band])
             chosen.append((int(band[np.argsort(steep)[band.size // 2]]), False))
-    found = []
-    for i, whole in dict.fromkeys(chosen):
-        lasting = min(float(lasts[i]), float(time_s[-1] - time_s[0]))
-        moment = Sliding(float(f_in_N[i]), float(rate[i]), float(speed[i]), whole, lasting)
-        found.append(Stability(growth_rate(rig, moment), moment))
+    return [
+        Sliding(
+            float(f_in_N[i]),
+            float(rate[i]),
+            float(speed[i]),
+            whole,
+            min(float(lasts[i]), float(time_s[-1] - time_s[0])),
+        )
+        for i, whole in dict.fromkeys(chosen)
+    ]
+
+
+def stability(
+    rig: Rig, time_s: Floats, x_in_mm: Floats, f_in_N: Floats, phase: Phases
+) -> Stability | None:
+    """Return how stable sliding is over the speeds and tensions of a run.
+
+    Parameters
+    ----------
+    rig
+        The rig.
+    time_s, x_in_mm, f_in_N, phase
+        The run as the quasi-static model follows it, shape (n,).
+
+    Returns
+    -------
+        The least stable of its `moments`; None where the drive never moves under tension.
+    """
+    looked_at = moments(rig, time_s, x_in_mm, f_in_N, phase)
+    found = [Stability(growth_rate(rig, moment), moment) for moment in looked_at]
     return max(found, key=lambda s: s.folds, default=None)

@@ -11,7 +11,7 @@ Discretisation: the motor exactly for a speed that is held, the turntable by BDF
 step (second order), in which F is implicit: a turntable after a step is a linear spring of
 stiffness m c² + B c + k_d, c = 3/(2h), at whose end the slip chain hangs. The speed in what
 depends on speed (viscous, Stribeck friction) is that of the step before: first order there. While
-the drive crosses its play the tendon's end rests and keeps pulling at the turntable.
+the drive crosses its play the tendon's end rests and pulls on; the play rubs (`rubbing`).
 """
 
 import math
@@ -34,6 +34,7 @@ from tsas_cli.physics.ends import friction_at
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.slip_chain import advance, hang_slack
 
+FLANK = 1.0 - 1e-9  # of half the play, from which the drive is at its flank
 RIPPLE_STEP_MM = 1e-4  # over which the slope of the ripple is taken
 
 
@@ -137,12 +138,14 @@ def reach_of(table: Turntable, p: float, rig: Rig, actuator: Actuator, h: float)
     pull -= actuator.damping_N_s_per_mm * v_rest
     ahead, slope = ripple_at(2.0 * table.x - table.x_before, rig.effects.drive_ripple)
     half = 0.5 * rig.effects.backlash.play_mm
-    x = (pull - slope * (table.f_in - rig.preload_N)) / stiffness
+    x = (pull - slope * (table.f_in - rig.preload_N)) / stiffness  # with the end where it is
+    if half > 0.0:
+        x = across_play(x, table, p, ahead, slope, half, rubbing(table.f_in, rig) / stiffness)
     gap = ahead + slope * x - p
     ahead -= math.copysign(half, gap)
     share = stiffness / (slope * slope)
     drive = pull / slope + rig.preload_N + share * ahead
-    return Reach(abs(gap) > half or half == 0.0, x, ahead, slope, share, drive)
+    return Reach(abs(gap) * FLANK > half or half == 0.0, x, ahead, slope, share, drive)
 
 
 @kernel
@@ -156,6 +159,31 @@ def moved(table: Turntable, x: float, f_in: float, speed: float, h: float) -> Tu
     """Return the turntable after a step of BDF2 to x."""
     v = (3.0 * x - 4.0 * table.x + table.x_before) / (2.0 * h)
     return Turntable(table.motor_rpm, table.motor_mm, x, table.x, v, table.v, f_in, speed)
+
+
+@kernel
+def rubbing(tension: float, rig: Rig) -> float:
+    """Return what holds the drive while it crosses its play [N].
+
+    Up and down it is crossed at different tensions T1 and T2: each time that would give energy but
+    for a friction of at least (T1 − T2)/(T1 + T2), which is tanh(μθ) in full slip.
+    """
+    return tension * math.tanh(rig.friction_coefficient * rig.total_bend_rad)
+
+
+@kernel
+def across_play(
+    x: float, table: Turntable, p: float, ahead: float, slope: float, half: float, held: float
+) -> float:
+    """Return where the drive is with the tendon's end at rest, friction in the play counted.
+
+    `x` is where it would be without. At a flank and pushing against it nothing rubs.
+    """
+    at = ahead + slope * table.x - p
+    gap = ahead + slope * x - p
+    if abs(at) >= half * FLANK and abs(gap) > half and at * gap > 0.0:
+        return x
+    return min(max(table.x, x - held), x + held)
 
 
 @kernel

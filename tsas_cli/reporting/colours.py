@@ -1,5 +1,6 @@
 """Colours by role: drawn as stand-ins, then named in the page's style, once light and once dark."""
 
+CONTROLLERS = ("pid", "sliding-mode", "adaptive-sliding-mode", "disturbance-observer")
 ROLES = (
     "ink",
     "muted",
@@ -16,8 +17,14 @@ ROLES = (
     "before",
     "after",
     "alike",
+    *CONTROLLERS,
 )
-STAND_IN = {role: f"#c0ffe{number:x}" for number, role in enumerate(ROLES)}
+STAND_IN = {role: f"#c0ff{number:02x}" for number, role in enumerate(ROLES)}
+
+
+def of_controller(name: str) -> str:
+    """Return the stand-in of a controller's colour, the same in every plot."""
+    return STAND_IN[name if name in CONTROLLERS else "unknown"]
 
 
 def themed(svg: str) -> str:

@@ -9,12 +9,16 @@ from tsas_cli.reporting.numbers import ABSENT
 
 @dataclass(frozen=True)
 class Table:
-    """A table: its caption, header and rows of text; columns in `numeric` stand to the right."""
+    """A table: its caption, header and rows of text; columns in `numeric` stand to the right.
+
+    `notes`, where there are any, are sentences under each row, over the whole width.
+    """
 
     caption: str
     header: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
     numeric: frozenset[int] = frozenset()
+    notes: tuple[str, ...] = ()
 
     def without_empty(self) -> "Table":
         """Return the table without the columns in which nothing stands."""
@@ -28,6 +32,7 @@ class Table:
             tuple(self.header[column] for column in kept),
             tuple(tuple(row[column] for column in kept) for row in self.rows),
             frozenset(place for place, column in enumerate(kept) if column in self.numeric),
+            self.notes,
         )
 
 
@@ -49,7 +54,10 @@ class Group:
 
 @dataclass(frozen=True)
 class Section:
-    """One section: what it shows, in the order of the fields; `parts` have their own headings."""
+    """One section: what it shows, in the order of the fields; `parts` have their own headings.
+
+    `given` says whether there was anything to make it from.
+    """
 
     anchor: str
     title: str
@@ -62,10 +70,10 @@ class Section:
     groups: tuple[Group, ...] = ()
     closing: tuple[str, ...] = ()
     parts: tuple["Section", ...] = ()
+    given: bool = True
 
 
 def missing(anchor: str, title: str, *, what: str, stage: str) -> Section:
     """Return a section that only says what was not given, and which stage writes it."""
-    return Section(
-        anchor, title, (f"No {what} was given: add a folder written by `tsas {stage}`.",)
-    )
+    sentence = f"No {what} was given: add a folder written by `tsas {stage}`."
+    return Section(anchor, title, (sentence,), given=False)

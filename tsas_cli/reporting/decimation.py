@@ -7,6 +7,7 @@ Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
 
 POINTS = 2400  # a bin is then narrower than a pixel of a plot of 30 rem
+CELLS = 300  # across and down a plot of half that width
 
 
 def kept_samples(*series: Floats, points: int = POINTS) -> Indices:
@@ -36,3 +37,26 @@ def kept_samples(*series: Floats, points: int = POINTS) -> Indices:
         kept.append(starts + np.where(missing, np.inf, bins).argmin(axis=1))
         kept.append(starts + np.where(missing, -np.inf, bins).argmax(axis=1))
     return np.unique(np.concatenate(kept))
+
+
+def kept_cells(x: Floats, y: Floats, *, cells: int = CELLS) -> Indices:
+    """Return the samples at which a curve in a plane enters another cell of an even grid.
+
+    A curve that hurries here and waits there keeps its shape everywhere, to within a cell.
+
+    Parameters
+    ----------
+    x, y
+        The curve, shape (n,), without gaps.
+    cells
+        How many there are along each axis of the curve's own range.
+    """
+    places = [_cells(values, cells) for values in (x, y)]
+    enters = (np.diff(places[0]) != 0) | (np.diff(places[1]) != 0)
+    return np.unique(np.concatenate(([0], np.flatnonzero(enters) + 1, [x.size - 1])))
+
+
+def _cells(values: Floats, cells: int) -> Indices:
+    span = float(np.ptp(values)) or 1.0
+    places: Indices = np.floor((values - values.min()) / span * cells).astype(np.int64)
+    return places

@@ -16,9 +16,18 @@ from tsas_cli.files import read_json
 from tsas_cli.recordings.dataset import Dataset, Recording, read_dataset
 from tsas_cli.recordings.manifest import FILE, parse
 from tsas_cli.recordings.quality import check_dataset
-from tsas_cli.reporting.stage_files import STAGES, Check, Simulation, StageFile
+from tsas_cli.reporting.stage_files import (
+    Calibration,
+    Check,
+    Diagnosis,
+    OfDataset,
+    Simulation,
+    StageFile,
+)
+from tsas_cli.reporting.tracking_file import Tracking
 
 Floats = npt.NDArray[np.float64]
+STAGES: tuple[type[StageFile], ...] = (Check, Calibration, Simulation, Diagnosis, Tracking)
 Stage = TypeVar("Stage", bound=StageFile)
 
 
@@ -48,11 +57,7 @@ class Inputs:
             The file cannot be read, or does not belong to this recording.
         """
         path = self.folders[Simulation] / "runs" / f"{recording.run.id}.parquet"
-        try:
-            values = pq.ParquetFile(path).read(columns=[column]).column(column)
-        except (pa.ArrowException, OSError, KeyError) as error:
-            reason = str(error).splitlines()[0]
-            raise InputError(f"cannot be read ({reason})", where=path) from error
+        values = _columns(path, (column,))[column]
         if len(values) != recording.time_s.size:
             raise InputError(
                 f"{len(values)} rows",
@@ -60,8 +65,17 @@ class Inputs:
                 expected=f"{recording.time_s.size}, as the recording has",
                 remedy="run `tsas simulate` again",
             )
-        array: Floats = values.to_numpy()
-        return array
+        return values
+
+    def tracked(self, run: str, names: Sequence[str]) -> dict[str, Floats]:
+        """Return columns of a run of the closed loop by name, shape (n,) each.
+
+        Raises
+        ------
+        InputError
+            The file cannot be read or lacks a column.
+        """
+        return _columns(self.folders[Tracking] / "runs" / f"{run}.parquet", names)
 
 
 def read_inputs(folders: Sequence[Path]) -> Inputs:
@@ -72,8 +86,8 @@ def read_inputs(folders: Sequence[Path]) -> Inputs:
     Raises
     ------
     InputError
-        A folder is of no known kind, a kind is there twice, no dataset can be found, or a stage
-        has read other recordings than the dataset holds.
+        A folder is of no known kind, a kind is there twice, no dataset can be found, a stage has
+        read other recordings than the dataset holds, or tracked runs are not in it.
     """
     by_file = _by_file(folders)
     where = {kind: by_file[kind.FILE] for kind in STAGES if kind.FILE in by_file}
@@ -84,7 +98,10 @@ def read_inputs(folders: Sequence[Path]) -> Inputs:
     named = (_dataset_of(stage, where[kind] / kind.FILE) for kind, stage in stages.items())
     dataset = read_dataset(by_file[FILE] if FILE in by_file else next(named))
     for kind, stage in stages.items():
-        _check_hashes(stage, dataset, where[kind] / kind.FILE)
+        if isinstance(stage, OfDataset):
+            _check_hashes(stage, dataset, where[kind] / kind.FILE)
+        else:
+            _check_own(dataset, where[kind] / kind.FILE)
     if Check not in stages:
         stages[Check] = _own_check(dataset)
     return Inputs(dataset, stages, where)
@@ -113,7 +130,19 @@ def _by_file(folders: Sequence[Path]) -> dict[str, Path]:
     return found
 
 
+def _columns(path: Path, names: Sequence[str]) -> dict[str, Floats]:
+    """Read columns of a stage's own file."""
+    try:
+        table = pq.ParquetFile(path).read(columns=list(names))
+        return {name: table.column(name).to_numpy() for name in names}
+    except (pa.ArrowException, OSError, KeyError) as error:
+        reason = str(error).splitlines()[0]
+        raise InputError(f"cannot be read ({reason})", where=path) from error
+
+
 def _dataset_of(stage: StageFile, path: Path) -> Path:
+    if not isinstance(stage, OfDataset):
+        return path.parent
     folder = Path(os.path.normpath(path.parent / stage.dataset.folder))
     if not (folder / FILE).is_file():
         raise InputError(
@@ -130,7 +159,18 @@ def _own_check(dataset: Dataset) -> Check:
     return Check.model_validate(content)
 
 
-def _check_hashes(stage: StageFile, dataset: Dataset, path: Path) -> None:
+def _check_own(dataset: Dataset, path: Path) -> None:
+    """Refuse a stage that writes a dataset, where it is not the one at hand."""
+    if dataset.folder.resolve() != path.parent.resolve():
+        raise InputError(
+            f"its runs are not in the dataset {dataset.folder}",
+            where=path,
+            expected=f"{FILE} in the same folder",
+            remedy="give this folder alone, or write it again with `tsas track`",
+        )
+
+
+def _check_hashes(stage: OfDataset, dataset: Dataset, path: Path) -> None:
     then, now = stage.dataset.hashes, dataset.hashes()
     for file in sorted(now.keys() | then.keys()):
         if now.get(file, "").lower() != then.get(file, "").lower():

@@ -5,6 +5,7 @@ import math
 MINUS = "\N{MINUS SIGN}"
 ABSENT = "\N{EN DASH}"
 _MOST_DECIMALS = 9
+_DIGITS = 5  # of what others print
 _SMALL = 4  # zeros after the point, beyond which a power of ten reads better
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
@@ -22,6 +23,20 @@ def plain(value: float | None, digits: int = 4) -> str:
     return _fixed(value, digits - 1 - _exponent(value))
 
 
+def as_printed(value: float | None) -> str:
+    """Return a number with the digits it has, five at most; an en dash where there is none.
+
+    Examples
+    --------
+    >>> as_printed(101.96), as_printed(25.0), as_printed(-8644.38)
+    ('101.96', '25', '−8644.4')
+    """
+    if value is None or not math.isfinite(value):
+        return ABSENT
+    fixed = _fixed(value, _DIGITS - 1 - _exponent(value))
+    return fixed.rstrip("0").rstrip(".") if "." in fixed else fixed
+
+
 def with_interval(value: float | None, low: float | None, high: float | None) -> tuple[str, str]:
     """Return a value and its interval, both cut at the second digit of the interval's half width.
 
@@ -37,6 +52,22 @@ def with_interval(value: float | None, low: float | None, high: float | None) ->
         return plain(value), ABSENT
     decimals = 1 - _exponent(width)
     return _fixed(value, decimals), f"{_fixed(low, decimals)} to {_fixed(high, decimals)}"
+
+
+def with_spread(value: float | None, spread: float | None) -> str:
+    """Return a value and its standard deviation: four digits, or up to the spread's first.
+
+    Examples
+    --------
+    >>> with_spread(0.867303, 0.000108), with_spread(0.867303, 0.12), with_spread(0.0, 0.0)
+    ('0.8673 ± 0.0001', '0.9 ± 0.1', '0')
+    """
+    if value is None or not math.isfinite(value):
+        return ABSENT
+    if not spread or not math.isfinite(spread):
+        return plain(value) if value else "0"
+    decimals = min(-_exponent(spread), 3 - _exponent(value))
+    return f"{_fixed(value, decimals)} ± {plain(spread, 1)}"
 
 
 def fixed(value: float | None, decimals: int) -> str:

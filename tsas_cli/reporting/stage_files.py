@@ -5,12 +5,14 @@ from typing import ClassVar, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 
-class _Record(BaseModel):
+class Record(BaseModel):
+    """What a stage has written down, as far as the page reads it."""
+
     # The stages may say more than the page shows.
     model_config = ConfigDict(frozen=True, extra="ignore")
 
 
-class Source(_Record):
+class Source(Record):
     """The dataset that a stage has read: where it is, relative to the stage's folder."""
 
     name: str
@@ -18,15 +20,20 @@ class Source(_Record):
     hashes: dict[str, str]
 
 
-class StageFile(_Record):
-    """What all stages say: the format, and what they have read; `FILE` is the file's name."""
+class StageFile(Record):
+    """What all stages say; `FILE` is the file's name."""
 
     FILE: ClassVar[str]
     format: Literal[1]
+
+
+class OfDataset(StageFile):
+    """What a stage says that has read a dataset."""
+
     dataset: Source
 
 
-class Finding(_Record):
+class Finding(Record):
     """One thing that `tsas check` says about the recordings."""
 
     code: str
@@ -37,7 +44,7 @@ class Finding(_Record):
     remedy: str = ""
 
 
-class NotChecked(_Record):
+class NotChecked(Record):
     """A check that could not tell, with the reason."""
 
     code: str
@@ -45,7 +52,7 @@ class NotChecked(_Record):
     reason: str
 
 
-class Check(StageFile):
+class Check(OfDataset):
     """The content of `check.json`."""
 
     FILE: ClassVar[str] = "check.json"
@@ -54,7 +61,7 @@ class Check(StageFile):
     not_checked: tuple[NotChecked, ...] = ()
 
 
-class Segment(_Record):
+class Segment(Record):
     """A stretch of one run that is in one phase, from `start_s` up to and with `end_s`."""
 
     start_s: float
@@ -62,7 +69,7 @@ class Segment(_Record):
     phase: str
 
 
-class Parameter(_Record):
+class Parameter(Record):
     """One value with its 95 % interval; None where it has none."""
 
     name: str
@@ -76,7 +83,7 @@ class Parameter(_Record):
     origin: str
 
 
-class Stiffness(_Record):
+class Stiffness(Record):
     """One phase of one run: its stiffness as fitted, by theory, and as a fit should find it."""
 
     run: str
@@ -90,7 +97,7 @@ class Stiffness(_Record):
     note: str | None = None
 
 
-class Channel(_Record):
+class Channel(Record):
     """How far a simulated channel is from the measured one, and how noisy that is."""
 
     rmse: float | None
@@ -98,21 +105,21 @@ class Channel(_Record):
     unit: str | None = None
 
 
-class Fit(_Record):
+class Fit(Record):
     """How the joint fit ended."""
 
     converged: bool
     message: str = ""
 
 
-class ModelFile(_Record):
+class ModelFile(Record):
     """The model that a stage has read: its file and checksum, None for that of the data sheet."""
 
     file: str
     sha256: str | None = None
 
 
-class Calibration(StageFile):
+class Calibration(OfDataset):
     """The content of `calibration.json`."""
 
     FILE: ClassVar[str] = "calibration.json"
@@ -128,7 +135,7 @@ class Calibration(StageFile):
     fit: Fit
 
 
-class Conditioning(_Record):
+class Conditioning(Record):
     """How a measured input was cleaned before it drove the model."""
 
     method: str
@@ -138,7 +145,7 @@ class Conditioning(_Record):
     reversals: int
 
 
-class SimulatedRun(_Record):
+class SimulatedRun(Record):
     """What `tsas simulate` says about one run."""
 
     solver: str = ""
@@ -149,7 +156,7 @@ class SimulatedRun(_Record):
     channels: dict[str, Channel]
 
 
-class Simulation(StageFile):
+class Simulation(OfDataset):
     """The content of `simulation.json`; its series are in `runs/ID.parquet`."""
 
     FILE: ClassVar[str] = "simulation.json"
@@ -163,7 +170,7 @@ class Simulation(StageFile):
     runs: dict[str, SimulatedRun]
 
 
-class CauseParameter(_Record):
+class CauseParameter(Record):
     """One parameter of a named cause, with its 95 % interval where it has one."""
 
     value: float | None
@@ -174,7 +181,7 @@ class CauseParameter(_Record):
     interval_high: float | None = None
 
 
-class Cause(_Record):
+class Cause(Record):
     """An effect that the diagnosis names; `rivals` are those that may be it just as well."""
 
     effect: str
@@ -186,7 +193,7 @@ class Cause(_Record):
     gain_interval_percent: tuple[float, float] | None = None
 
 
-class HeldOut(_Record):
+class HeldOut(Record):
     """One channel's error on data that no fit has seen, in its unit."""
 
     unit: str = ""
@@ -196,7 +203,7 @@ class HeldOut(_Record):
     best_obtainable: float | None = None
 
 
-class Remainder(_Record):
+class Remainder(Record):
     """What is left; `mean_square` is in units of what noise explains."""
 
     unexplained: bool = False
@@ -205,7 +212,7 @@ class Remainder(_Record):
     mean_square: float | None = None
 
 
-class Candidate(_Record):
+class Candidate(Record):
     """One hypothesis that was fitted, and by how much it lowers the error on held-out data."""
 
     effects: tuple[str, ...]
@@ -216,7 +223,7 @@ class Candidate(_Record):
     converged: bool = True
 
 
-class Signatures(_Record):
+class Signatures(Record):
     """How visible each effect is in these inputs, and how much each two look alike, 0 to 1."""
 
     effects: tuple[str, ...] = ()
@@ -224,7 +231,7 @@ class Signatures(_Record):
     likeness: tuple[tuple[float, ...], ...] = ()
 
 
-class Bin(_Record):
+class Bin(Record):
     """The error where a signal lies between two values, in units of noise."""
 
     low: float | None = Field(default=None, alias="from")
@@ -235,20 +242,20 @@ class Bin(_Record):
     samples: int
 
 
-class ResidualMaps(_Record):
+class ResidualMaps(Record):
     """The error of each channel over each signal, before and after."""
 
     before: dict[str, dict[str, tuple[Bin, ...]]] = {}
     after: dict[str, dict[str, tuple[Bin, ...]]] = {}
 
 
-class Evidence(_Record):
+class Evidence(Record):
     """How the diagnosis judged."""
 
     sentence: str = ""
 
 
-class Diagnosis(StageFile):
+class Diagnosis(OfDataset):
     """The content of `diagnosis.json`."""
 
     FILE: ClassVar[str] = "diagnosis.json"
@@ -267,6 +274,3 @@ class Diagnosis(StageFile):
     evidence: Evidence = Evidence()
     cannot_tell: tuple[str, ...] = ()
     solver: str = ""
-
-
-STAGES: tuple[type[StageFile], ...] = (Check, Calibration, Simulation, Diagnosis)

@@ -1,19 +1,29 @@
 """What is done to the plant: changes of its rig from the start, or in the middle of a run."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from tsas_cli.effects import EFFECTS
 from tsas_cli.errors import InputError, nearest
 from tsas_cli.identification.quantities import QUANTITIES
+from tsas_cli.paper import yang2025
 from tsas_cli.physics.rig import with_values
 from tsas_cli.tracking.track import Plant
 
-OPTION = "--disturb"
-ALLOWED = {name: (q.lower, q.upper, q.unit) for name, q in QUANTITIES.items()} | {
-    "total_bend_rad": (0.0, 100.0, "rad")
+ALLOWED = {
+    name: (q.lower, q.upper, q.unit) for name, q in QUANTITIES.items() if name != "x_in_zero_mm"
+} | {"total_bend_rad": (0.0, 100.0, "rad")}
+ONLY_FROM_THE_START = {
+    "preload_N": "all displacements count from the preload",
+    "tendon_stiffness_N": "all displacements count from the preload",
+    "x_out_zero_mm": "a sensor stays as it is",
+} | {
+    f"{effect.name}.{p.name}": "a sensor stays as it is"
+    for effect in EFFECTS
+    if effect.acts_on == "sensor"
+    for p in effect.parameters
 }
-ONLY_FROM_THE_START = ("preload_N", "tendon_stiffness_N")
-PROXIMAL_SPRING = "proximal_spring.stiffness_N_per_mm=12.5"  # Fig. 11 of Yang 2025
 
 
 @dataclass(frozen=True)
@@ -43,7 +53,7 @@ class Condition:
         return replace(plant, rig=rig, later=with_values(rig, late), change_s=change_s)
 
 
-def disturbed(options: Sequence[str]) -> Condition:
+def disturbed(options: Sequence[str], where: str = "--disturb") -> Condition:
     """Return the condition that options such as `friction_coefficient=0.16@10` describe.
 
     Raises
@@ -52,39 +62,49 @@ def disturbed(options: Sequence[str]) -> Condition:
         One is no NAME=VALUE[@SECONDS], names an unknown quantity, has a value that is not allowed,
         or they begin at more than one time within the run.
     """
-    changes = tuple(_change(option) for option in options)
+    changes = tuple(_change(option, where) for option in options)
     times = sorted({c.from_s for c in changes if c.from_s > 0.0})
     if len(times) > 1:
         raise InputError(
             f"changes begin at {', '.join(f'{t:g} s' for t in times)}",
-            where=OPTION,
+            where=where,
             expected="one time within the run",
         )
     return Condition("disturbed", changes)
 
 
-def _change(option: str) -> Change:
+def proximal_spring() -> Condition:
+    """Return the disturbance of Fig. 11: a spring at the drive's end of the tendon."""
+    stiffness = yang2025().value("reference.disturbance_stiffness")
+    return Condition(
+        "disturbed", (Change("proximal_spring.stiffness_N_per_mm", stiffness, from_s=0.0),)
+    )
+
+
+def _change(option: str, where: str) -> Change:
     name, _, rest = option.partition("=")
     value, _, from_s = rest.partition("@")
     if name not in ALLOWED:
-        raise InputError(f"unknown quantity {name}", where=OPTION, remedy=nearest(name, ALLOWED))
+        raise InputError(f"unknown quantity {name}", where=where, remedy=nearest(name, ALLOWED))
     try:
         change = Change(name, float(value), float(from_s or 0.0))
     except ValueError as error:
         raise InputError(
-            f"{option!r} is no change", where=OPTION, expected="NAME=VALUE or NAME=VALUE@SECONDS"
+            f"{option!r} is no change", where=where, expected="NAME=VALUE or NAME=VALUE@SECONDS"
         ) from error
+    if not 0.0 <= change.from_s < math.inf:
+        raise InputError(f"{option!r} begins at {from_s} s", where=where, expected="0 s or later")
     lower, upper, unit = ALLOWED[name]
     if not lower <= change.value <= upper:
         raise InputError(
             f"{name} of {change.value:g}",
-            where=OPTION,
+            where=where,
             expected=f"{lower:g} to {upper:g} {unit}",
         )
     if change.from_s > 0.0 and name in ONLY_FROM_THE_START:
         raise InputError(
             f"{name} cannot change during a run",
-            where=OPTION,
-            remedy=f"leave out @{from_s}: all displacements count from the preload",
+            where=where,
+            remedy=f"leave out @{from_s}: {ONLY_FROM_THE_START[name]}",
         )
     return change

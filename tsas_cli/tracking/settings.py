@@ -9,19 +9,34 @@ import math
 from pathlib import Path
 from typing import Any
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from tsas_cli.controllers.adaptive_sliding_mode import AdaptiveSlidingMode
 from tsas_cli.controllers.closed_loop import Laws
 from tsas_cli.controllers.disturbance_observer import DisturbanceObserver
 from tsas_cli.controllers.pid import Pid
 from tsas_cli.controllers.sliding_mode import Phi, SlidingMode, Surface
+from tsas_cli.paper import yang2025
 from tsas_cli.physics.capstan import speed_per_stiffness
 from tsas_cli.physics.plant import Actuator
 from tsas_cli.recordings.manifest import parse, read_toml
 
 CONTROLLERS = ("pid", "sliding-mode", "adaptive-sliding-mode", "disturbance-observer")
 MM_PER_M = 1e3
+
+
+def printed(name: str, factor: float = 1.0, **limits: Any) -> Any:
+    """Return a field whose default is a number that the paper prints."""
+    return Field(default_factory=lambda: factor * yang2025().value(name), **limits)
+
+
+def _three(name: str) -> tuple[float, float, float]:
+    one, two, three = (yang2025().value(name.format(i)) for i in (1, 2, 3))
+    return one, two, three
+
+
+def _of_phi(key: str) -> tuple[float, float, float]:
+    return _three(f"adaptation.phi{{}}.{key}")
 
 
 class _Table(BaseModel):
@@ -31,23 +46,23 @@ class _Table(BaseModel):
 class RigSettings(_Table):
     """The rig: its conditions, and what a model would say where none is given."""
 
-    tendon_diameter_mm: float = Field(default=1.2, gt=0)
-    tendon_modulus_GPa: float = Field(default=60.0, gt=0)
-    friction_coefficient: float = Field(default=0.125, ge=0)
-    load_stiffness_N_per_mm: float = Field(default=1.579, gt=0)
-    sheath_length_mm: float = Field(default=785.0, gt=0)
-    total_bend_rad: float = Field(default=math.pi, ge=0)
-    preload_N: float = Field(default=25.0, gt=0)
+    tendon_diameter_mm: float = printed("rig.tendon_diameter", gt=0)
+    tendon_modulus_GPa: float = printed("rig.tendon_modulus", gt=0)
+    friction_coefficient: float = printed("rig.friction_coefficient", ge=0)
+    load_stiffness_N_per_mm: float = printed("rig.load_stiffness", gt=0)
+    sheath_length_mm: float = printed("rig.sheath_length", gt=0)
+    total_bend_rad: float = printed("groups.a.total_bend", ge=0)
+    preload_N: float = printed("rig.preload", gt=0)
 
 
 class DriveSettings(_Table):
     """The plant's drive: the stiffness is km as chosen for kr, Eq. (34); the lag is ours."""
 
-    turntable_radius_mm: float = Field(default=27.1, gt=0)
-    gear_ratio: float = Field(default=120.0, gt=0)
-    inertia_N_mm_s2: float = Field(default=0.1296, gt=0)
-    damping_N_s_per_mm: float = Field(default=0.007, ge=0)
-    drive_stiffness_N_per_mm: float = Field(default=52.0, gt=0)
+    turntable_radius_mm: float = printed("rig.turntable_radius", gt=0)
+    gear_ratio: float = printed("rig.gear_ratio", gt=0)
+    inertia_N_mm_s2: float = printed("rig.inertia", gt=0)
+    damping_N_s_per_mm: float = printed("rig.drive_damping", ge=0)
+    drive_stiffness_N_per_mm: float = printed("stiffness.chosen.km", gt=0)
     motor_lag_s: float = Field(default=0.002, ge=0)
     speed_limit_rpm: float = Field(default=3000.0, gt=0)
 
@@ -63,13 +78,17 @@ class DriveSettings(_Table):
             self.speed_limit_rpm,
         )
 
+    def kinematic(self) -> Actuator:
+        """Return the drive as Eq. (51) knows it: radius and gear ratio, stiff, without lag."""
+        return self.actuator()._replace(stiffness_N_per_mm=math.inf, motor_lag_s=0.0)
+
 
 class ReferenceSettings(_Table):
     """The wanted force mean − amplitude · cos(ω t), or what other shapes make of it."""
 
-    mean_N: float = 43.0
-    amplitude_N: float = Field(default=18.0, gt=0)
-    angular_frequency_rad_per_s: float = Field(default=1.0, gt=0)
+    mean_N: float = printed("reference.mean")
+    amplitude_N: float = printed("reference.amplitude", gt=0)
+    angular_frequency_rad_per_s: float = printed("reference.second_angular_frequency", gt=0)
     duration_s: float = Field(default=8.0 * math.pi, gt=0, le=3600)
 
 
@@ -94,30 +113,41 @@ class LoopSettings(_Table):
 class PidSettings(_Table):
     """Gains of the paper; e in mm, u in rpm."""
 
-    proportional_rpm_per_mm: float = 25.0
-    integral_rpm_per_mm_s: float = 65.0
-    derivative_rpm_s_per_mm: float = 1.0
+    proportional_rpm_per_mm: float = printed("controllers.pid.proportional")
+    integral_rpm_per_mm_s: float = printed("controllers.pid.integral")
+    derivative_rpm_s_per_mm: float = printed("controllers.pid.derivative")
 
 
 class SlidingSettings(_Table):
     """Gains of the paper, ks read per metre; the parameters are where Table 4 starts."""
 
-    c1: float = Field(default=800.0, gt=0)
-    c2: float = Field(default=1.0, gt=0)
-    epsilon_rpm: float = Field(default=1.0, ge=0)
-    ks: float = Field(default=1200.0 / MM_PER_M, ge=0)
+    c1: float = printed("controllers.sliding_mode.c1", gt=0)
+    c2: float = printed("controllers.sliding_mode.c2", gt=0)
+    epsilon_rpm: float = printed("controllers.sliding_mode.epsilon", ge=0)
+    ks: float = printed("controllers.sliding_mode.ks", 1.0 / MM_PER_M, ge=0)
     boundary_mm_per_s2: float = Field(default=80.0, gt=0)
-    phi: tuple[float, float, float] = (0.005, 18.0, 0.02)
+    phi: tuple[float, float, float] = Field(default_factory=lambda: _of_phi("initial"))
 
 
 class AdaptiveSettings(SlidingSettings):
     """Gains of the paper, ks read per metre; bounds are those of Table 4."""
 
-    c1: float = Field(default=900.0, gt=0)
-    ks: float = Field(default=1115.0 / MM_PER_M, ge=0)
-    lowest: tuple[float, float, float] = (0.0005, 1.8, 0.002)
-    highest: tuple[float, float, float] = (0.05, 180.0, 0.2)
-    psi: tuple[float, float, float] = (1e-8, 2e-4, 1e-6)
+    c1: float = printed("controllers.adaptive_sliding_mode.c1", gt=0)
+    c2: float = printed("controllers.adaptive_sliding_mode.c2", gt=0)
+    epsilon_rpm: float = printed("controllers.adaptive_sliding_mode.epsilon", ge=0)
+    ks: float = printed("controllers.adaptive_sliding_mode.ks", 1.0 / MM_PER_M, ge=0)
+    lowest: tuple[float, float, float] = Field(default_factory=lambda: _of_phi("lower"))
+    highest: tuple[float, float, float] = Field(default_factory=lambda: _of_phi("upper"))
+    psi: tuple[float, float, float] = Field(
+        default_factory=lambda: _three("controllers.adaptive_sliding_mode.psi{}")
+    )
+
+    @model_validator(mode="after")
+    def _start_within_bounds(self) -> "AdaptiveSettings":
+        ordered = zip(self.lowest, self.phi, self.highest, strict=True)
+        if not all(low <= start <= high for low, start, high in ordered):
+            raise ValueError("phi must lie between lowest and highest")
+        return self
 
 
 class ObserverSettings(_Table):
@@ -130,31 +160,47 @@ class ObserverSettings(_Table):
 class ControllerSettings(_Table):
     """Every controller's gains."""
 
-    pid: PidSettings = PidSettings()
-    sliding_mode: SlidingSettings = Field(default=SlidingSettings(), alias="sliding-mode")
+    pid: PidSettings = Field(default_factory=PidSettings)
+    sliding_mode: SlidingSettings = Field(default_factory=SlidingSettings, alias="sliding-mode")
     adaptive_sliding_mode: AdaptiveSettings = Field(
-        default=AdaptiveSettings(), alias="adaptive-sliding-mode"
+        default_factory=AdaptiveSettings, alias="adaptive-sliding-mode"
     )
     disturbance_observer: ObserverSettings = Field(
-        default=ObserverSettings(), alias="disturbance-observer"
+        default_factory=ObserverSettings, alias="disturbance-observer"
     )
+
+    def sliding_modes(self) -> dict[str, SlidingSettings]:
+        """Return the two sliding modes by the names of their fields."""
+        return {
+            "sliding_mode": self.sliding_mode,
+            "adaptive_sliding_mode": self.adaptive_sliding_mode,
+        }
 
 
 class Settings(_Table):
     """The whole file; every key optional."""
 
     format: int = Field(default=1, ge=1, le=1)
-    rig: RigSettings = RigSettings()
-    drive: DriveSettings = DriveSettings()
-    reference: ReferenceSettings = ReferenceSettings()
-    sensor: SensorSettings = SensorSettings()
-    loop: LoopSettings = LoopSettings()
-    controllers: ControllerSettings = ControllerSettings()
+    rig: RigSettings = Field(default_factory=RigSettings)
+    drive: DriveSettings = Field(default_factory=DriveSettings)
+    reference: ReferenceSettings = Field(default_factory=ReferenceSettings)
+    sensor: SensorSettings = Field(default_factory=SensorSettings)
+    loop: LoopSettings = Field(default_factory=LoopSettings)
+    controllers: ControllerSettings = Field(default_factory=ControllerSettings)
 
     @property
     def step_s(self) -> float:
         """Return the time between samples."""
         return 1.0 / self.sensor.rate_Hz
+
+    def with_phi2(self, phi2: float) -> "Settings":
+        """Return the settings with another φ2 of both sliding modes, as it starts [rpm s/mm]."""
+        gains = self.controllers
+        changed = {
+            name: law.model_copy(update={"phi": (law.phi[0], phi2, law.phi[2])})
+            for name, law in gains.sliding_modes().items()
+        }
+        return self.model_copy(update={"controllers": gains.model_copy(update=changed)})
 
     def laws(self, controller: str, gain_mm_per_s_rpm: float) -> Laws:
         """Return every controller's gains as the kernel takes them, one of them at work."""
@@ -197,10 +243,7 @@ def printed_gains(settings: Settings) -> Settings:
     """Return the settings with the sliding modes' ks as the paper prints it, per millimetre."""
     changed: dict[str, Any] = {
         name: law.model_copy(update={"ks": law.ks * MM_PER_M})
-        for name, law in (
-            ("sliding_mode", settings.controllers.sliding_mode),
-            ("adaptive_sliding_mode", settings.controllers.adaptive_sliding_mode),
-        )
+        for name, law in settings.controllers.sliding_modes().items()
     }
     return settings.model_copy(
         update={"controllers": settings.controllers.model_copy(update=changed)}

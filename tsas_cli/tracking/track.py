@@ -17,6 +17,7 @@ from tsas_cli.controllers.closed_loop import (
 from tsas_cli.controllers.path import Path, follow
 from tsas_cli.controllers.signals import error_filter
 from tsas_cli.errors import InputError
+from tsas_cli.physics.ends import last_direction
 from tsas_cli.physics.lugre_plant import no_lumps
 from tsas_cli.physics.plant import Actuator
 from tsas_cli.physics.rig import Rig
@@ -25,8 +26,9 @@ from tsas_cli.tracking.settings import Settings
 
 Floats = npt.NDArray[np.float64]
 TendonDynamics = Literal["slip", "lugre"]
-RELAY_S = 0.5  # for so long at the limit, and …
-RELAY_TURNS_PER_S = 20.0  # … so often from one limit to the other, and a loop is a relay
+RELAY_S = 0.5  # in which …
+RELAY_SHARE = 0.25  # … a loop whose motor is at its limits for so much of the time, and …
+RELAY_TURNS_PER_S = 20.0  # … goes so often from one to the other, is a relay
 
 
 REMEDIES: dict[TendonDynamics, str] = {
@@ -66,6 +68,7 @@ class Tracked:
     columns: Floats
     score: Score
     unsettled: int
+    is_relay: bool
 
 
 def plan(wanted_N: Floats, known: Known, settings: Settings) -> Path:
@@ -107,9 +110,16 @@ def track(
     ------
     InputError
         The loop is unstable: x_in has run away, or the motor swings from limit to limit (`relay`
-        follows that nevertheless). Or the tendon cannot be followed.
+        follows that nevertheless). The plant changes after the run's end. Or the tendon cannot be
+        followed.
     """
     step_s, m = settings.step_s, wanted_N.size
+    change_at = round(plant.change_s / step_s) if plant.later else -1
+    if change_at >= m:
+        raise InputError(
+            f"the plant changes at {plant.change_s:g} s",
+            expected=f"a time within the reference's {(m - 1) * step_s:g} s",
+        )
     rng = np.random.default_rng(seed)
     noise = settings.sensor.noise_mm * rng.standard_normal(m)
     A, b = error_filter(settings.loop.filter_Hz, step_s)
@@ -127,7 +137,7 @@ def track(
         table,
         chain,
         (plant.rig, plant.later or plant.rig),
-        round(plant.change_s / step_s) if plant.later else -1,
+        change_at,
         plant.actuator,
         nodes,
         step_s,
@@ -150,29 +160,43 @@ def track(
             remedy="lower its gains or the filter's cutoff",
         )
     asked = columns[ASKED]
-    if not relay:
-        _refuse_relay(asked, limit_rpm, time_s, controller)
+    swings = _swings(asked, limit_rpm, step_s)
+    if swings is not None and not relay:
+        k, often = swings
+        raise InputError(
+            f"the loop is unstable: from {time_s[k]:.4g} s on the motor swings between its limits "
+            f"of ±{limit_rpm:g} rpm, {often:.0f} times a second; x_in is {columns[X_IN, k]:.4g}, "
+            f"wanted {path.drive[0, k]:.4g} mm",
+            where=f"controller {controller}",
+            remedy="lower its gains or the filter's cutoff",
+        )
     return Tracked(
         time_s,
         wanted_N,
         columns,
         score(wanted_N, columns[F_OUT], asked, step_s, limit_rpm),
         unsettled,
+        swings is not None,
     )
 
 
-def _refuse_relay(asked: Floats, limit_rpm: float, time_s: Floats, controller: str) -> None:
-    """Stop at a motor that swings between its limits: the limit alone holds an unstable loop."""
+def _swings(asked: Floats, limit_rpm: float, step_s: float) -> tuple[int, float] | None:
+    """Return the sample from which the motor swings between limits, and how often a second.
+
+    A stable loop can keep the motor at one limit for long, but not throw it from one to the other.
+    """
     side = np.where(np.abs(asked) >= limit_rpm, np.sign(asked), 0.0)
-    width = max(int(RELAY_S / (time_s[1] - time_s[0])), 1)
-    at_limit = np.convolve(side != 0.0, np.ones(width), "valid")
-    turns = np.convolve(np.append(side[1:] * side[:-1] < 0.0, False), np.ones(width), "valid")
-    swings = np.flatnonzero((at_limit > 0.5 * width) & (turns > RELAY_TURNS_PER_S * RELAY_S))
-    if swings.size:
-        k = int(swings[0])
-        raise InputError(
-            f"the loop is unstable: from {time_s[k]:.4g} s on the motor swings between its limits "
-            f"of ±{limit_rpm:g} rpm, {turns[k] / RELAY_S:.0f} times a second",
-            where=f"controller {controller}",
-            remedy="lower its gains or the filter's cutoff",
-        )
+    last = last_direction(np.cumsum(side))  # the limit it was at last
+    width = max(int(RELAY_S / step_s), 1)
+    at_limit = _within(side != 0.0, width)
+    turns = _within(np.append(last[1:] * last[:-1] < 0.0, False), width)
+    found = np.flatnonzero((at_limit > RELAY_SHARE * width) & (turns > RELAY_TURNS_PER_S * RELAY_S))
+    return (int(found[0]), float(turns[found[0]]) / RELAY_S) if found.size else None
+
+
+def _within(true: npt.NDArray[np.bool_], width: int) -> npt.NDArray[np.int64]:
+    """Return how many are true of each `width` in a row; of a shorter array, of all."""
+    total = np.concatenate(([0], np.cumsum(true)))
+    width = min(width, true.size)
+    count: npt.NDArray[np.int64] = total[width:] - total[:-width]
+    return count

@@ -5,7 +5,6 @@ The folder is a dataset too: what was recorded can be calibrated and diagnosed.
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import inf
 from pathlib import Path
 from typing import Any
 
@@ -119,8 +118,7 @@ def what_is_known(call: Call, settings: Settings) -> tuple[Known, Plant]:
     model = stated if call.model is None else read_model(call.model).over(stated)
     real = model if call.plant is None else read_model(call.plant).over(stated)
     actuator = settings.drive.actuator()
-    kinematic = actuator._replace(stiffness_N_per_mm=inf, motor_lag_s=0.0)
-    return Known(model.rig(run), kinematic), Plant(real.rig(run), actuator)
+    return Known(model.rig(run), settings.drive.kinematic()), Plant(real.rig(run), actuator)
 
 
 def _result(run_id: str, name: str, condition: Condition, runs: list[Tracked]) -> dict[str, Any]:
@@ -129,19 +127,25 @@ def _result(run_id: str, name: str, condition: Condition, runs: list[Tracked]) -
         "condition": condition.name,
         "run": run_id,
         "scores": over_seeds([run.score for run in runs]),
+        "relay": any(run.is_relay for run in runs),
         "unsettled_steps": sum(run.unsettled for run in runs),
     }
 
 
 def _header(call: Call, settings: Settings) -> dict[str, Any]:
-    given = None if call.settings is None else call.settings.name
+    file = None if call.settings is None else call.settings.name
+    checksum = None if call.settings is None else sha256_of(call.settings)
     return {
         "format": 1,
         "stage": "track",
         "version": __version__,
         "model": source_of(call.model),
         "plant": source_of(call.plant or call.model),
-        "settings": {"file": given, **settings.model_dump(mode="json", by_alias=True)},
+        "settings": {
+            "file": file,
+            "sha256": checksum,
+            **settings.model_dump(mode="json", by_alias=True),
+        },
         "reference": _reference(call.reference),
         "dynamics": call.dynamics,
         "gains": "as printed" if call.as_printed else "default",
@@ -177,8 +181,8 @@ def _notes(path: DrivePath, known: Known, plant: Plant, results: list[dict[str, 
         at_limit = result["scores"]["at_limit_percent"]["mean"]
         if at_limit > OFTEN_PERCENT:
             notes.append(
-                f"{result['run']}: the motor is at its limit for {at_limit:.0f} % of the time; "
-                f"the loop is a relay"
+                f"{result['run']}: the motor is at its limit for {at_limit:.0f} % of the time"
+                + ("; the loop is a relay" if result["relay"] else "")
             )
         if result["unsettled_steps"]:
             notes.append(

@@ -93,3 +93,15 @@ def test_a_computed_recording_that_was_interpolated_is_not_stuck_in_the_dead_ban
     time = np.arange(0.0, 15.9, 0.001)
     finer = {name: np.interp(time, measured["time_s"], v) for name, v in measured.items()}
     assert complaints(finer, "spring") == []
+
+
+def test_a_spring_that_pulls_beside_the_tendon_is_no_other_unit_of_f_out():
+    measured = columns(Bench())
+    level = np.median(measured["f_out_N"])
+    wanted = 4.448 * level - np.median(measured["f_in_N"])
+    measured["f_in_N"] += wanted / np.median(measured["x_in_mm"]) * measured["x_in_mm"]
+    assert "unit" not in {code for code, _ in complaints(measured, "spring")}
+    # Where no stiffness of the load is stated it cannot be told apart.
+    subject = trial(measured, {}, "spring")
+    unit = next(check for check in RUN_CHECKS if check.code == "unit")
+    assert any("pound-force" in said.sentence for said in unit.find(subject))

@@ -11,6 +11,8 @@ from tsas_cli.files import sha256_of
 from tsas_cli.reporting.content import Section, Table
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.stage_files import Calibration, Check, Diagnosis, ModelFile, Simulation
+from tsas_cli.reporting.tracking import call
+from tsas_cli.reporting.tracking_file import Tracking
 
 _LIBRARIES = ("numpy", "scipy", "numba", "matplotlib")
 
@@ -21,6 +23,8 @@ def section(inputs: Inputs) -> Section:
     for stage in (inputs.get(Simulation), inputs.get(Diagnosis)):
         if stage and stage.model.sha256:
             hashes[stage.model.file] = stage.model.sha256
+    if tracking := inputs.get(Tracking):
+        hashes |= call.files_read(tracking)
     return Section(
         "repeat",
         "How to repeat it",
@@ -36,6 +40,8 @@ def section(inputs: Inputs) -> Section:
 def _commands(inputs: Inputs) -> Iterator[list[str]]:
     dataset = str(inputs.dataset.folder)
     folder = {kind: str(path) for kind, path in inputs.folders.items()}
+    if tracking := inputs.get(Tracking):
+        yield ["tsas", "track", *call.options(tracking), "--out", folder[Tracking]]
     if Check in folder:
         yield ["tsas", "check", dataset, "--out", folder[Check]]
     if calibration := inputs.get(Calibration):
@@ -53,7 +59,8 @@ def _commands(inputs: Inputs) -> Iterator[list[str]]:
         if simulation.own_values_fitted:
             options += ["--fit-own"]
         yield ["tsas", "simulate", dataset, *_model(simulation.model, inputs), *options]
-    yield ["tsas", "report", dataset, *folder.values(), "--out", "report.html"]
+    read = dict.fromkeys([dataset, *folder.values()])  # one folder may hold more than one kind
+    yield ["tsas", "report", *read, "--out", "report.html"]
 
 
 def _model(model: ModelFile, inputs: Inputs) -> list[str]:
@@ -74,5 +81,7 @@ def _versions(inputs: Inputs) -> Iterator[tuple[str, str]]:
         yield "tsas, simulation", simulation.version
     if diagnosis := inputs.get(Diagnosis):
         yield "tsas, diagnosis", diagnosis.version
+    if tracking := inputs.get(Tracking):
+        yield "tsas, tracking", tracking.version
     yield "Python", platform.python_version()
     yield from ((name, version(name)) for name in _LIBRARIES)

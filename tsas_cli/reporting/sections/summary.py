@@ -7,6 +7,8 @@ from tsas_cli.reporting.channels import in_words
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import plain
 from tsas_cli.reporting.stage_files import Calibration, Check, Simulation
+from tsas_cli.reporting.tracking.scores import best_and_worst
+from tsas_cli.reporting.tracking_file import Tracking
 
 
 def sentences(inputs: Inputs) -> Iterator[str]:
@@ -14,6 +16,8 @@ def sentences(inputs: Inputs) -> Iterator[str]:
     manifest = inputs.dataset.manifest
     many = "1 recording" if len(manifest.run) == 1 else f"{len(manifest.run)} recordings"
     yield f"{manifest.name} holds {many}, {manifest.kind}."
+    if tracking := inputs.get(Tracking):
+        yield from best_and_worst(tracking)
     yield _findings(inputs.check)
     simulation = inputs.get(Simulation)
     if simulation and (distances := _distances(simulation)):

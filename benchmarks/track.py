@@ -1,0 +1,29 @@
+"""How long the closed loop takes: 30 s at 1 kHz with 50 nodes, and the path that it follows."""
+
+from collections.abc import Iterator
+
+from benchmarks.row import Row
+from benchmarks.timing import best
+from tsas_cli.identification.model import data_sheet
+from tsas_cli.tracking.recorded import conditions, manifest
+from tsas_cli.tracking.references import reference
+from tsas_cli.tracking.settings import CONTROLLERS, ReferenceSettings, Settings
+from tsas_cli.tracking.track import Known, Plant, plan, track
+
+DURATION_S = 30.0
+REPEATS = 5
+
+
+def measure() -> Iterator[Row]:
+    """Time the paper's rig with its sine, once compiled."""
+    settings = Settings(reference=ReferenceSettings(duration_s=DURATION_S))
+    rig = data_sheet(manifest(("track",), settings)).rig(conditions("track", settings))
+    known, plant = Known(rig, settings.drive.kinematic()), Plant(rig, settings.drive.actuator())
+    wanted = reference("sine", settings.reference, settings.step_s)
+    path = plan(wanted, known, settings)
+    yield Row(
+        "inverse model, 30 s at 1 kHz", best(lambda: plan(wanted, known, settings), REPEATS), "s"
+    )
+    for name in CONTROLLERS:
+        took = best(lambda n=name: track(wanted, path, known, plant, n, settings, 1), REPEATS)
+        yield Row(f"closed loop with {name}, 30 s", took, "s", at_most=1.0)

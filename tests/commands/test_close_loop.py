@@ -1,0 +1,69 @@
+"""`tsas close-loop` in a process of its own, with every warning an error."""
+
+import json
+
+import pytest
+
+from tests.commands.documented import documented
+from tsas_cli.identification.model import CORRECTION, read_model
+from tsas_cli.recordings.dataset import read_dataset
+
+
+def rmse(row, model):
+    return row["models"][model]["rmse_N"]["mean"]
+
+
+@pytest.mark.slow
+def test_wear_is_named_and_the_extended_model_tracks_as_the_true_one_does(strict, tmp_path):
+    out = tmp_path / "out"
+    done = strict("close-loop", "--cases", "friction_drift", "--seeds", "2", "--out", out, "--json")
+    assert (done.returncode, done.stderr) == (0, "")
+    summary = json.loads(done.stdout)
+    assert json.loads((out / "closing.json").read_text(encoding="utf-8")) == summary
+    case = summary["cases"][0]
+    assert set(summary) | {"controllers"} == documented("closing.json")
+    runs = {run.id for run in read_dataset(out / "friction_drift" / "dataset").manifest.run}
+    assert runs == {"slow", "middle", "fast"}
+
+    named = {e for cause in case["named"] for e in (cause["effect"], *cause["rivals"])}
+    assert "friction_drift" in named
+    observer = next(r for r in case["controllers"] if r["controller"] == "disturbance-observer")
+    assert observer["over_limit"] == rmse(observer, "extended") / rmse(observer, "true")
+    assert observer["over_limit"] < 1.1
+    assert rmse(observer, "extended") < 0.5 * rmse(observer, "data sheet")
+    assert rmse(observer, "extended") < 0.2 * rmse(observer, "calibrated")
+
+    # The extended model's preloads are its own, also for runs that it has not seen.
+    calibrated = read_model(out / "friction_drift" / "calibrate").value(CORRECTION)
+    extended = read_model(out / "friction_drift" / "diagnose" / "model-extended.toml")
+    assert abs(extended.value(CORRECTION)) < 0.01 < 0.05 < abs(calibrated)
+
+
+@pytest.mark.slow
+def test_where_nothing_is_hidden_nothing_is_named_and_nothing_changes(strict, tmp_path):
+    call = ("close-loop", "--hide", "friction_coefficient=0.125", "--seeds", "1")
+    done = strict(*call, "--out", tmp_path / "out", "--json")
+    assert (done.returncode, done.stderr) == (0, "")
+    case = json.loads(done.stdout)["cases"][0]
+    assert (case["verdict"], case["named"]) == ("sufficient", [])
+    for row in case["controllers"]:
+        values = [rmse(row, model) for model in row["models"]]
+        assert max(values) - min(values) < 0.005  # N, of a range of 36
+
+
+@pytest.mark.parametrize(
+    ("option", "value", "told"),
+    [
+        ("--cases", "backlsh", "did you mean backlash?"),
+        ("--hide", "friction_coeficient=3", "did you mean friction_coefficient?"),
+        ("--hide", "backlash.play_mm=0.1@3", "begins with the run"),
+        ("--hide", "backlash.play_mm=-1", "expected 0 to 20 mm"),
+        ("--hide", "backlash.play_mm", "expected NAME=VALUE"),
+    ],
+)
+def test_a_wrong_call_writes_nothing(strict, tmp_path, option, value, told):
+    done = strict("close-loop", option, value, "--out", tmp_path / "out")
+    assert done.returncode == 2
+    assert told in done.stderr
+    assert option in done.stderr
+    assert not (tmp_path / "out").exists()

@@ -1,0 +1,247 @@
+import json
+import re
+import shlex
+from html import unescape
+
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
+
+from tests.reporting.made_folders import make_tracking
+from tests.reporting.test_page import Outline
+from tsas_cli.app import main
+from tsas_cli.errors import InputError
+from tsas_cli.reporting.colours import CONTROLLERS, STAND_IN, of_controller
+from tsas_cli.reporting.figures.over_time import Curve, draw_panels
+from tsas_cli.reporting.inputs import read_inputs
+from tsas_cli.reporting.page import page
+from tsas_cli.tracking import settings
+
+PICTURES = ("force", "error", "phase", "adaptation", "effort")
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return make_tracking(tmp_path_factory.mktemp("tracking") / "tracked")
+
+
+@pytest.fixture(scope="module")
+def whole(folder):
+    return page(read_inputs([folder]))
+
+
+@pytest.fixture
+def spoiled(tmp_path):
+    """Return a folder in which the JSON has been changed."""
+
+    def spoil(change):
+        folder = make_tracking(tmp_path / "tracked")
+        content = json.loads((folder / "tracking.json").read_text())
+        change(content)
+        (folder / "tracking.json").write_text(json.dumps(content))
+        return folder
+
+    return spoil
+
+
+def labels(text):
+    """Return what the pictures of the section say."""
+    section = text[text.index('<section id="tracking"') : text.index('<section id="recordings"')]
+    return [unescape(label) for label in re.findall('<svg[^>]*aria-label="([^"]*)"', section)]
+
+
+def svg(text, start):
+    (one,) = (s for s in re.findall(r"<svg.*?</svg>", text, re.DOTALL) if f'"{start}' in s)
+    return one
+
+
+def cells(text, caption):
+    table = text[text.index(f"<caption>{caption}") :].partition("</table>")[0]
+    rows = re.findall(r"<tr>(.*?)</tr>", table, re.DOTALL)
+    return [[unescape(c) for c in re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", row)] for row in rows]
+
+
+def test_the_page_is_well_formed_and_every_picture_says_what_it_shows(whole):
+    outline = Outline(whole)
+    assert max(np.diff(outline.headings)) == 1
+    assert len(outline.ids) == len(set(outline.ids))
+    shown = labels(whole)
+    assert len(shown) == 2 * len(PICTURES)
+    assert len(set(shown)) == len(shown)
+    assert all(len(label) > 40 for label in shown)
+
+
+def test_it_leaves_out_what_was_not_given_and_leads_with_tracking(whole):
+    assert "was given" not in whole
+    assert re.findall("<h2>(.*?)</h2>", whole)[0] == "Tracking"
+
+
+def test_the_page_does_not_change_when_nothing_changed(folder, whole):
+    assert page(read_inputs([folder])) == whole
+
+
+def test_scores_stand_with_their_spread_and_the_limit_where_it_was_reached(whole):
+    header, first, *_, last = cells(whole, "Scores, mean ± standard deviation over 5 seeds")
+    assert first[:3] == ["pid", "undisturbed", "0.200 ± 0.003"]
+    assert first[3:] == ["−2.50 ± 0.02", "1.50 ± 0.02", "0", "353.6 ± 0.1", "1234", "–"]
+    assert (header[-1], last[-1]) == ("at its limit [%]", "12.5 ± 0.5")
+
+
+def test_without_one_at_its_limit_there_is_no_such_column(spoiled):
+    def never(content):
+        for result in content["results"]:
+            result["scores"]["at_limit_percent"] = {"mean": 0.0, "sd": 0.0}
+
+    assert "at its limit" not in cells(page(read_inputs([spoiled(never)])), "Scores")[0]
+
+
+def test_the_summary_says_who_follows_best_under_each_condition(whole):
+    best = "pid follows best (RMSE 0.2000 N), adaptive-sliding-mode worst (0.8000 N)."
+    assert f"Undisturbed, {best} Disturbed, {best}" in whole
+
+
+def test_the_error_is_wanted_less_true_force(whole):
+    shown = [label for label in labels(whole) if label.startswith("Tracking error")]
+    assert "undisturbed, in newton: pid 1.00 to 1.00;" in shown[0]
+    assert "disturbed, in newton: pid 2.00 to 2.00;" in shown[1]
+
+
+def test_the_phase_portrait_has_the_error_and_its_rate(whole):
+    """An error of 0.25 (1 - cos t) mm goes to 0.5 mm, its rate to 0.25 mm/s."""
+    (shown, _) = (label for label in labels(whole) if label.startswith("Phase portraits"))
+    error, rate = re.search(r"pid error up to (\S+) mm, rate up to (\S+) mm/s", shown).groups()
+    assert float(error) == pytest.approx(0.5, rel=0.01)
+    assert float(rate) == pytest.approx(0.25, rel=0.01)
+
+
+def test_adapted_parameters_stand_between_their_bounds(whole):
+    _, *rows = cells(whole, "Adapted parameters")
+    assert rows[0] == [
+        *("φ̂1", "undisturbed", "0.00500", "0.100", "0.001", "0.1", "rpm s³/mm", "50"),
+    ]
+    assert rows[1][2:] == ["18.0", "30.6", "2", "200", "rpm s/mm", "0"]
+    assert rows[5][:2] == ["φ̂3", "disturbed"]
+
+
+def test_a_controller_that_does_not_adapt_has_no_such_part(tmp_path):
+    text = page(read_inputs([make_tracking(tmp_path / "tracked", ("pid", "sliding-mode"))]))
+    Outline(text)
+    assert "Adapted parameters" not in text
+    assert len(labels(text)) == 2 * (len(PICTURES) - 1)
+
+
+def test_one_controller_under_one_condition_is_a_page_too(spoiled):
+    def one(content):
+        content.update(results=content["results"][:1], seeds=[1, 1], notes=[])
+        content["conditions"] = {"undisturbed": []}
+
+    text = page(read_inputs([spoiled(one)]))
+    Outline(text)
+    assert "pid follows the wanted force with an RMSE of 0.2000 N." in text
+    assert "Keep in mind" not in text
+    assert "over 5 seeds" not in text
+
+
+@pytest.mark.parametrize("what", ["force", "error", "phase", "effort"])
+def test_each_controller_is_drawn_in_its_own_colour(whole, what):
+    for condition in range(2):
+        shown = svg(whole, f"tracking-{what}-{condition}-")
+        assert "stroke: var(--pid)" in shown
+        assert "stroke: var(--adaptive-sliding-mode)" in shown
+
+
+def test_every_controller_has_a_colour_and_one_that_is_not_known_has_one_too():
+    assert CONTROLLERS == settings.CONTROLLERS
+    assert len({of_controller(name) for name in CONTROLLERS}) == len(CONTROLLERS)
+    assert of_controller("made by another version") == STAND_IN["unknown"]
+
+
+def test_notes_and_changes_of_the_plant_are_said(whole):
+    assert "<li>pid-disturbed: the motor is at its &lt;limit&gt;</li>" in whole
+    assert "<code>friction_coefficient</code> = 0.16 from 6 s on (dotted line)" in whole
+    assert "It knows the data sheet; the plant is rig.toml." in whole
+
+
+def test_a_change_within_the_run_is_a_line_at_its_time_in_every_panel():
+    time_s = np.linspace(0.0, 10.0, 50)
+    curves = [Curve(name, name, np.sin(time_s)) for name in ("pid", "sliding-mode")]
+    for change_s, lines in ((6.0, 1), (None, 0)):
+        figure = Figure()
+        draw_panels(figure, time_s=time_s, curves=curves, label="", change_s=change_s, band=0.5)
+        for axes, curve in zip(figure.axes, curves, strict=True):
+            upright = [line for line in axes.lines if list(line.get_xdata()) == [6.0, 6.0]]
+            assert len(upright) == lines
+            colours = [to_hex(line.get_color()) for line in axes.lines]
+            assert of_controller(curve.controller) in colours
+            levels = {line.get_ydata()[0] for line in axes.lines if len(line.get_xdata()) == 2}
+            assert {-0.5, 0.0, 0.5} <= levels
+
+
+def test_the_command_says_all_that_was_asked_for(whole):
+    commands = re.search("<pre[^>]*><code>(.*?)</code>", whole, re.DOTALL)[1]
+    (command,) = re.findall("^tsas track .*", commands, re.MULTILINE)
+    words = shlex.split(unescape(command))
+    assert words[2:-2] == [
+        *("--plant", "rig.toml", "--compare", "--disturb", "friction_coefficient=0.16@6.0"),
+        *("--reference", "sine", "--seeds", "5", "--seed", "3"),
+    ]
+    assert ["rig.toml", "ab" * 32] in cells(whole, "Files read")
+
+
+@pytest.mark.parametrize("column", ["f_out_true_N", "phi2_rpm_s_per_mm"])
+def test_a_run_that_lacks_a_column_is_refused(tmp_path, column):
+    folder = make_tracking(tmp_path / "tracked")
+    path = folder / "runs" / "adaptive-sliding-mode-disturbed.parquet"
+    pq.write_table(pq.read_table(path).drop_columns([column]), path)
+    with pytest.raises(InputError, match=r"adaptive-sliding-mode-disturbed\.parquet"):
+        page(read_inputs([folder]))
+
+
+def test_runs_that_are_not_beside_the_file_are_refused(tmp_path):
+    folder = make_tracking(tmp_path / "tracked")
+    (tmp_path / "elsewhere").mkdir()
+    (folder / "dataset.toml").rename(tmp_path / "elsewhere" / "dataset.toml")
+    with pytest.raises(InputError, match=r"no dataset.toml here"):
+        read_inputs([folder])
+    with pytest.raises(InputError, match="its runs are not in the dataset"):
+        read_inputs([folder, tmp_path / "elsewhere"])
+
+
+@pytest.mark.parametrize(
+    ("spoil", "said"),
+    [
+        (lambda content: content.pop("results"), "results is missing"),
+        (lambda content: content.update(results=[]), "results"),
+        (lambda content: content["results"][0].pop("run"), "results.0.run is missing"),
+        (lambda content: content.update(format=2), "format"),
+    ],
+)
+def test_a_file_that_is_not_whole_is_refused(spoiled, spoil, said):
+    with pytest.raises(InputError, match=re.escape(said)):
+        read_inputs([spoiled(spoil)])
+
+
+def test_the_commands_of_the_page_make_the_same_page(tmp_path, monkeypatch, capsys):
+    """What `tsas track` writes, the page reads; and its commands do it again."""
+
+    def call(words):
+        monkeypatch.setattr("sys.argv", words)
+        with pytest.raises(SystemExit) as end:
+            main()
+        assert not end.value.code, capsys.readouterr().err
+
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "short.toml").write_text(
+        "format = 1\n[reference]\nduration_s = 0.5\n[loop]\nnodes = 5\n[sensor]\nrate_Hz = 500\n"
+    )
+    options = "--controller pid,adaptive-sliding-mode --disturb friction_coefficient=0.16@0.25"
+    rest = "--reference ramps --settings short.toml --seeds 2 --seed 4 --out tracked"
+    call(["tsas", "track", *options.split(), *rest.split()])
+    call(["tsas", "report", "tracked", "--out", "first.html"])
+    first = (tmp_path / "first.html").read_text()
+    commands = unescape(re.search("<pre[^>]*><code>(.*?)</code>", first, re.DOTALL)[1])
+    for command in commands.splitlines():
+        call([*shlex.split(command), "--force"])
+    assert (tmp_path / "report.html").read_text() == first

@@ -1,0 +1,36 @@
+"""From sections to one HTML file that needs nothing else."""
+
+import re
+from collections.abc import Sequence
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup, escape
+
+from tsas_cli.errors import printable
+from tsas_cli.reporting.content import Section
+
+
+def rendered(*, name: str, about: str, summary: str, sections: Sequence[Section]) -> str:
+    """Return a page as HTML: its name, what it is about (for the window's title), its sections."""
+    environment = Environment(
+        loader=PackageLoader("tsas_cli.reporting"),
+        autoescape=True,
+        finalize=_visible,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters["prose"] = _prose
+    return environment.get_template("page.html").render(
+        name=name, about=about, summary=summary, sections=sections
+    )
+
+
+def _prose(text: str) -> Markup:
+    """Escape a sentence; what stands between backticks in it becomes code."""
+    return Markup(re.sub("`([^`]+)`", r"<code>\1</code>", str(escape(printable(text)))))  # noqa: S704
+
+
+def _visible(value: object) -> object:
+    """Make control characters in names from files visible; leave our own markup as it is."""
+    return value if isinstance(value, Markup) else printable(str(value))

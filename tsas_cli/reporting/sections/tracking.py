@@ -1,0 +1,81 @@
+"""How well a wanted force is followed, by whom, and at what cost."""
+
+import numpy as np
+
+from tsas_cli.reporting.content import Section
+from tsas_cli.reporting.inputs import Inputs
+from tsas_cli.reporting.numbers import plain
+from tsas_cli.reporting.stage_files import ModelFile
+from tsas_cli.reporting.tracking import adaptation, effort, forces, portraits, scores
+from tsas_cli.reporting.tracking.runs import WANTED, Condition, read_conditions
+from tsas_cli.reporting.tracking_file import Tracking
+
+
+def section(inputs: Inputs) -> Section | None:
+    """Return the section of the closed loop, None where nothing was tracked."""
+    tracking = inputs.get(Tracking)
+    if tracking is None:
+        return None
+    conditions = read_conditions(inputs, tracking)
+    parts = (
+        forces.followed(conditions),
+        forces.errors(conditions),
+        portraits.part(conditions, tracking.settings),
+        adaptation.part(conditions, tracking.settings.controllers.adaptive),
+        effort.part(conditions),
+    )
+    return Section(
+        "tracking",
+        "Tracking",
+        tuple(_intro(tracking, conditions)),
+        points=tracking.notes,
+        tables=(scores.table(tracking),),
+        parts=tuple(part for part in parts if part is not None),
+    )
+
+
+def _intro(tracking: Tracking, conditions: tuple[Condition, ...]) -> list[str]:
+    said = [_wanted(tracking, conditions[0]), _loop(tracking)]
+    said += [_change(condition) for condition in conditions if condition.changes]
+    if tracking.gains != "default":
+        said.append(f"The gains are {tracking.gains}.")
+    said.append(
+        "Errors are wanted less true force at the load; outside 2 % is the time in which they are "
+        "beyond 2 % of the wanted force's range. Plots show the runs with the first seed."
+    )
+    return [*said, "Keep in mind:"] if tracking.notes else said
+
+
+def _wanted(tracking: Tracking, condition: Condition) -> str:
+    run = condition.runs[0]
+    wanted = run.columns[WANTED]
+    low, high = plain(float(wanted.min()), 3), plain(float(wanted.max()), 3)
+    what = tracking.reference.shape or tracking.reference.file
+    return (
+        f"The wanted force at the load ({what}) goes from {low} to {high} N, for "
+        f"{plain(float(np.ptp(run.time_s)), 3)} s. Simulated, not measured."
+    )
+
+
+def _loop(tracking: Tracking) -> str:
+    sensor = tracking.settings.sensor
+    same = tracking.model == tracking.plant
+    rig = "the same model is the plant" if same else f"the plant is {_name(tracking.plant)}"
+    return (
+        f"A controller sees x_in alone, {sensor.rate_Hz:g} times a second, with noise of "
+        f"{sensor.noise_mm:g} mm and steps of {sensor.step_mm:g} mm. It knows "
+        f"{_name(tracking.model)}; {rig}."
+    )
+
+
+def _name(model: ModelFile) -> str:
+    return "the data sheet" if model.sha256 is None else model.file
+
+
+def _change(condition: Condition) -> str:
+    changes = ", ".join(
+        f"`{c.quantity}` = {c.value:g} "
+        + (f"from {c.from_s:g} s on (dotted line)" if c.from_s > 0.0 else "from the start")
+        for c in condition.changes
+    )
+    return f"{condition.name.capitalize()}: the plant has {changes}, which no controller is told."

@@ -1,0 +1,1 @@
+"""The parts of the page's section on tracking, one file each."""

@@ -1,0 +1,88 @@
+"""What the adaptive sliding mode has learned: its estimates over time, between their bounds."""
+
+from collections.abc import Iterator
+from functools import partial
+
+import numpy as np
+
+from tsas_cli.reporting.content import Picture, Section, Table
+from tsas_cli.reporting.drawing import picture
+from tsas_cli.reporting.figures.adaptation import Estimate, draw_estimates
+from tsas_cli.reporting.numbers import plain
+from tsas_cli.reporting.tracking.runs import ESTIMATES, Condition, Followed
+from tsas_cli.reporting.tracking_file import ADAPTIVE, Adaptive
+
+_WHAT = (
+    "The estimates φ̂ of the drive's parameters (Yang 2025, Eq. 44), which stay between the dashed "
+    "bounds. They serve the sliding surface; they need not come to the drive's true values."
+)
+_SYMBOLS = (("φ̂1", "rpm s³/mm"), ("φ̂2", "rpm s/mm"), ("φ̂3", "rpm s²/mm"))
+
+
+def part(conditions: tuple[Condition, ...], law: Adaptive) -> Section | None:
+    """Return the part, None where no controller adapts."""
+    runs = [(c, run) for c in conditions for run in c.runs if run.name == ADAPTIVE]
+    if not runs:
+        return None
+    rows = tuple(row for condition, run in runs for row in _rows(condition.name, run, law))
+    header = (
+        "parameter",
+        "condition",
+        "at the start",
+        "at the end",
+        "lower bound",
+        "upper bound",
+        "unit",
+        "time at a bound [%]",
+    )
+    table = Table("Adapted parameters", header, rows, numeric=frozenset({2, 3, 4, 5, 7}))
+    return Section(
+        "tracking-adaptation",
+        "Adapted parameters",
+        (_WHAT,),
+        tables=(table,),
+        pictures=tuple(_picture(condition, run, law) for condition, run in runs),
+    )
+
+
+def _estimates(run: Followed, law: Adaptive) -> Iterator[Estimate]:
+    names = zip(ESTIMATES, _SYMBOLS, law.lowest, law.highest, strict=True)
+    for column, (symbol, unit), lowest, highest in names:
+        yield Estimate(symbol, unit, run.columns[column], lowest, highest)
+
+
+def _rows(condition: str, run: Followed, law: Adaptive) -> Iterator[tuple[str, ...]]:
+    for it in _estimates(run, law):
+        at_bound = (it.values <= it.lowest) | (it.values >= it.highest)
+        yield (
+            it.symbol,
+            condition,
+            plain(float(it.values[0]), 3),
+            plain(float(it.values[-1]), 3),
+            f"{it.lowest:g}",
+            f"{it.highest:g}",
+            it.unit,
+            f"{100.0 * float(np.mean(at_bound)):.0f}",
+        )
+
+
+def _picture(condition: Condition, run: Followed, law: Adaptive) -> Picture:
+    estimates = tuple(_estimates(run, law))
+    said = "; ".join(
+        f"{it.symbol} from {plain(float(it.values[0]), 3)} to {plain(float(it.values[-1]), 3)} "
+        f"{it.unit}, bounds {it.lowest:g} and {it.highest:g}"
+        for it in estimates
+    )
+    return picture(
+        partial(
+            draw_estimates,
+            time_s=run.time_s,
+            estimates=estimates,
+            role=ADAPTIVE,
+            change_s=condition.change_s,
+        ),
+        key=f"tracking-adaptation-{condition.number}",
+        alt=f"Adapted parameters over time, {condition.name}: {said}.",
+        caption=f"{condition.name.capitalize()}: estimates over time, bounds dashed.",
+        height_in=4.2,
+    )

@@ -1,0 +1,73 @@
+"""The runs that the plots show: for each condition, each controller's with the first seed."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from tsas_cli.reporting.inputs import Inputs
+from tsas_cli.reporting.tracking_file import ADAPTIVE, Change, Result, Tracking
+
+Floats = npt.NDArray[np.float64]
+WANTED, TRUE, ASKED = "f_out_ref_N", "f_out_true_N", "motor_speed_rpm"
+X_IN, X_INV = "x_in_mm", "x_inv_mm"
+ESTIMATES = ("phi1_rpm_s3_per_mm", "phi2_rpm_s_per_mm", "phi3_rpm_s2_per_mm")
+_COLUMNS = ("time_s", WANTED, TRUE, ASKED, X_IN, X_INV)
+
+
+@dataclass(frozen=True)
+class Followed:
+    """One run: its scores, and its columns by name, shape (n,) each."""
+
+    result: Result
+    columns: Mapping[str, Floats]
+
+    @property
+    def name(self) -> str:
+        """The controller."""
+        return self.result.controller
+
+    @property
+    def time_s(self) -> Floats:
+        """Time [s]."""
+        return self.columns["time_s"]
+
+    @property
+    def error(self) -> Floats:
+        """Wanted less true force at the load [N]."""
+        return self.columns[WANTED] - self.columns[TRUE]
+
+
+@dataclass(frozen=True)
+class Condition:
+    """What is done to the plant, and the runs under it, at least one."""
+
+    name: str
+    number: int
+    changes: tuple[Change, ...]
+    runs: tuple[Followed, ...]
+
+    @property
+    def change_s(self) -> float | None:
+        """When within the run the plant changes, or None where it does not."""
+        return max((c.from_s for c in self.changes if c.from_s > 0.0), default=None)
+
+
+def read_conditions(inputs: Inputs, tracking: Tracking) -> tuple[Condition, ...]:
+    """Read what the plots need, in the order of the file.
+
+    Raises
+    ------
+    InputError
+        A run cannot be read, or lacks a column.
+    """
+    found: dict[str, list[Followed]] = {}
+    for result in tracking.results:
+        more = ESTIMATES if result.controller == ADAPTIVE else ()
+        followed = Followed(result, inputs.tracked(result.run, (*_COLUMNS, *more)))
+        found.setdefault(result.condition, []).append(followed)
+    return tuple(
+        Condition(name, number, tracking.conditions.get(name, ()), tuple(runs))
+        for number, (name, runs) in enumerate(found.items())
+    )

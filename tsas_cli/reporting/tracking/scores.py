@@ -1,0 +1,64 @@
+"""The scores of every controller under every condition, with their spread over the seeds."""
+
+from tsas_cli.reporting.content import Table
+from tsas_cli.reporting.numbers import ABSENT, with_spread
+from tsas_cli.reporting.tracking_file import Spread, Tracking
+
+_COLUMNS = (
+    ("RMSE [N]", "rmse_N"),
+    ("lowest [N]", "lowest_error_N"),
+    ("highest [N]", "highest_error_N"),
+    ("outside 2 % [%]", "outside_percent"),
+    ("effort [rpm]", "effort_rpm"),
+    ("chatter [rpm/s]", "chatter_rpm_per_s"),
+)
+
+
+def table(tracking: Tracking) -> Table:
+    """Return the table, with its spread where there is more than one seed."""
+    seeds = tracking.seeds[1] - tracking.seeds[0] + 1
+    over = f", mean ± standard deviation over {seeds} seeds of noise" if seeds > 1 else ""
+    rows = tuple(
+        (
+            result.controller,
+            result.condition,
+            *(_cell(getattr(result.scores, key)) for _, key in _COLUMNS),
+            _limit(result.scores.at_limit_percent),
+        )
+        for result in tracking.results
+    )
+    header = ("controller", "condition", *(title for title, _ in _COLUMNS), "at its limit [%]")
+    numeric = frozenset(range(2, len(header)))
+    return Table(f"Scores{over}", header, rows, numeric=numeric).without_empty()
+
+
+def best_and_worst(tracking: Tracking) -> list[str]:
+    """Return, for each condition, who follows best and who worst, in a sentence."""
+    said = []
+    for condition in dict.fromkeys(result.condition for result in tracking.results):
+        rmse = {
+            r.controller: r.scores.rmse_N.mean
+            for r in tracking.results
+            if r.condition == condition and r.scores.rmse_N.mean is not None
+        }
+        ranked = sorted(rmse, key=lambda name: rmse[name])
+        if not ranked:
+            continue
+        sizes = [with_spread(rmse[name], None) for name in (ranked[0], ranked[-1])]
+        words = f"{condition.capitalize()}, {ranked[0]} "
+        if len(ranked) == 1:
+            said.append(f"{words}follows the wanted force with an RMSE of {sizes[0]} N.")
+        else:
+            said.append(
+                f"{words}follows best (RMSE {sizes[0]} N), {ranked[-1]} worst ({sizes[1]} N)."
+            )
+    return said
+
+
+def _cell(number: Spread) -> str:
+    return with_spread(number.mean, number.sd)
+
+
+def _limit(number: Spread) -> str:
+    """Return how long the motor is at its speed limit; nothing where it never is."""
+    return _cell(number) if number.mean else ABSENT

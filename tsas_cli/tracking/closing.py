@@ -1,0 +1,140 @@
+"""From diagnosis to tracking, to see whether the better model tracks better.
+
+A plant differs from what the controller knows by a hidden effect. It is recorded while it tracks
+with the model of the data sheet, calibrated and diagnosed from these recordings alone, and then
+tracks a reference with four models in inverse and feedforward: the data sheet's, the calibrated
+one, the extended one, and the plant's own, which is the limit.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+
+from tsas_cli.diagnosis.diagnose_stage import EXTENDED, diagnose_dataset
+from tsas_cli.identification.calibrate_stage import calibrate_dataset
+from tsas_cli.identification.model import FILE, data_sheet, read_model
+from tsas_cli.physics.rig import with_values
+from tsas_cli.recordings.dataset import read_dataset, write_dataset
+from tsas_cli.tracking.recorded import conditions, manifest, table_of
+from tsas_cli.tracking.references import reference
+from tsas_cli.tracking.scores import over_seeds
+from tsas_cli.tracking.settings import CONTROLLERS, Settings
+from tsas_cli.tracking.track import Known, Plant, plan, track
+
+STEPS = 7  # pieces of work of a case
+MODELS = ("data sheet", "calibrated", "extended", "true")
+RECORDER = "disturbance-observer"
+RECORDED_EVERY = 5  # samples of the loop
+MOTIONS = {  # shape, mean [N], amplitude [N], angular frequency [rad/s]; 25 s each
+    "slow": ("ramps", 43.0, 18.0, 0.5),
+    "middle": ("sine", 38.0, 12.0, 1.0),
+    "fast": ("two-frequency", 46.0, 14.0, 1.5),
+}
+
+
+@dataclass(frozen=True)
+class Case:
+    """A hidden difference of the plant: its name for the table, and the quantities it changes."""
+
+    name: str
+    title: str
+    hidden: dict[str, float]
+
+
+CASES = (
+    Case(
+        "free_tendon",
+        "tendon outside the sheath",
+        {"free_tendon.proximal_length_mm": 150.0, "free_tendon.distal_length_mm": 60.0},
+    ),
+    Case("friction_drift", "wear during the run", {"friction_drift.rate_per_s": 0.01}),
+    Case("load_friction", "a guide that rubs", {"load_friction.after_sensor_N": 1.0}),
+    Case("backlash", "backlash", {"backlash.play_mm": 0.15}),
+    Case("bend", "a bend that changed after calibration", {"total_bend_rad": 4.0}),
+)
+
+
+def close(
+    case: Case,
+    settings: Settings,
+    folder: Path,
+    seeds: Sequence[int],
+    step: Callable[[], None] = lambda: None,
+) -> dict[str, Any]:
+    """Record, diagnose and track one case; what the stages write goes into a folder.
+
+    The controllers know the drive, so that what the tendon's model lacks stands alone. `step` is
+    called after each piece of work.
+
+    Raises
+    ------
+    InputError
+        As the stages raise it.
+    """
+    run = conditions("track", settings)
+    sheet = data_sheet(manifest(("track",), settings)).rig(run)
+    drive = settings.drive.actuator()
+    plant = Plant(with_values(sheet, case.hidden), drive)
+    record(plant, Known(sheet, drive), settings, folder / "dataset")
+    step()
+    dataset = read_dataset(folder / "dataset")
+    calibrate_dataset(dataset, folder / "calibrate")
+    step()
+    found = diagnose_dataset(dataset, folder / "calibrate", folder / "diagnose")
+    step()
+    rigs = (
+        sheet,
+        read_model(folder / "calibrate" / FILE).rig(run),
+        read_model(folder / "diagnose" / EXTENDED).rig(run),
+        plant.rig,
+    )
+    wanted = reference("sine", settings.reference, settings.step_s)
+    scores: dict[str, dict[str, Any]] = {name: {} for name in CONTROLLERS}
+    for model, rig in zip(MODELS, rigs, strict=True):
+        known = Known(rig, drive)
+        path = plan(wanted, known, settings)
+        for name in CONTROLLERS:
+            runs = [track(wanted, path, known, plant, name, settings, seed) for seed in seeds]
+            scores[name][model] = over_seeds([one.score for one in runs])
+        step()
+    return {
+        "case": case.name,
+        "title": case.title,
+        "hidden": case.hidden,
+        "verdict": found["verdict"],
+        "reason": found["reason"],
+        "named": [{"effect": c["effect"], "rivals": c["rivals"]} for c in found["named"]],
+        "controllers": [
+            {"controller": name, "models": by_model, "over_limit": over_limit(by_model)}
+            for name, by_model in scores.items()
+        ],
+    }
+
+
+def over_limit(by_model: dict[str, Any]) -> float:
+    """Return by which factor the RMSE with the extended model is above that with the true one."""
+    extended, true = (by_model[model]["rmse_N"]["mean"] for model in MODELS[2:])
+    return float(extended / true)
+
+
+def record(plant: Plant, known: Known, settings: Settings, folder: Path) -> None:
+    """Track some motions and write what the sensors read as a dataset."""
+    tables = {}
+    for seed, (name, (shape, mean, amplitude, frequency)) in enumerate(MOTIONS.items(), start=101):
+        form = settings.reference.model_copy(
+            update={
+                "mean_N": mean,
+                "amplitude_N": amplitude,
+                "angular_frequency_rad_per_s": frequency,
+            }
+        )
+        wanted = reference(shape, form, settings.step_s)
+        path = plan(wanted, known, settings)
+        run = track(wanted, path, known, plant, RECORDER, settings, seed)
+        whole = table_of(run, path, plant.rig, RECORDER, seed, settings)
+        tables[name] = whole.take(pa.array(range(0, whole.num_rows, RECORDED_EVERY)))
+    folder.mkdir(parents=True)
+    write_dataset(folder, manifest(tables, settings), tables)
