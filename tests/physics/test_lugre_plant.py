@@ -1,6 +1,5 @@
 """The plant with a dynamic tendon: the slip chain's where that holds, a linear one exactly."""
 
-import itertools
 import math
 
 import numpy as np
@@ -146,16 +145,15 @@ def test_without_friction_it_is_the_linear_rig_to_second_order():
     time_s = np.arange(300) * 1e-3
     exact = linear(rig, actuator, 6, 20.0, 1e-3, time_s.size)
     off = []
-    for substeps in (4, 8, 16, 32):
+    for substeps in (16, 32, 64):
         how = {"n": 6, "actuator": actuator, "substeps": substeps}
         found, _, unsettled = run(rig, 20.0 * time_s, 1e-3, lumped=True, **how)
         assert unsettled == 0
         errors = {c: np.max(np.abs(found[c] - exact[c])) / np.ptp(exact[c]) for c in exact}
-        assert max(errors.values()) < 1e-3
+        assert max(errors.values()) < 1e-4
         off.append(max(errors["x_in_mm"], errors["x_out_mm"]))
-    assert off[1] < off[0] / 3.0
-    assert off[2] < off[1] / 3.0
-    assert off[3] < off[2] / 3.0
+    assert off[1] < off[0] / 3.5
+    assert off[2] < off[1] / 3.5
 
 
 def test_shorter_steps_come_closer_with_friction():
@@ -196,8 +194,9 @@ def test_a_rig_left_alone_rings_down_and_rests():
     rings = lugre["x_in_mm"][422:]
     swings = [np.ptp(rings[i : i + 50]) for i in range(0, 1000, 50)]
     assert swings[0] > 0.01
-    assert all(b <= a + 1e-9 for a, b in itertools.pairwise(swings))
-    assert swings[-1] < 1e-6
+    assert swings[1] < 0.05 * swings[0]
+    assert swings[2] < 0.05 * swings[1]
+    assert max(swings[10:]) < 1e-6
 
 
 PROGRAM = """

@@ -49,7 +49,9 @@ def bristle_damping(bristles: Bristles, length_mm: float, limit_N: float, travel
     """
     if not math.isnan(bristles.damping_N_s_per_mm):
         return bristles.damping_N_s_per_mm
-    stiffness = limit_N / (limit_N / bristles.stiffness_N_per_mm + travel)
+    stiffness = bristles.stiffness_N_per_mm
+    if limit_N > 0.0:  # a straight sheath has none
+        stiffness = limit_N / (limit_N / bristles.stiffness_N_per_mm + travel)
     return 2.0 * math.sqrt(stiffness * tendon_mass(bristles, length_mm))
 
 

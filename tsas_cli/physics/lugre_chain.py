@@ -32,6 +32,8 @@ from tsas_cli.physics.rig import Rig
 
 SHORTEST_S = 1e-13
 MOST_TRIES, MOST_PER_SAMPLE = 20_000, 40  # steps of a run, together
+LEAVES_AT_MOST = 1e-5  # of a tension by Newton's method, since more looks right and is not
+LEAVES_GIVEN = 1e-9  # where steps are given
 OWN_STEPS = np.empty(0)  # as long as the error allows
 
 
@@ -106,8 +108,9 @@ def lugre_chain(
     controlled, stop = step_ends_s.size == 0, 0
     while k < m - 1 and h > SHORTEST_S and tries < ends_s.size:
         tries += 1
-        most = allowed(ends, law, tolerance if controlled else math.inf)
+        most = allowed(ends, law, tolerance, LEAVES_AT_MOST)
         if not controlled:
+            most = allowed(ends, law, math.inf, LEAVES_GIVEN)
             stop = sample_after(step_ends_s, stop, t + SHORTEST_S)
             h = min(h, step_ends_s[stop] - t) if stop < step_ends_s.size else h
         h, lands = fitted(h, times[turn] - t)

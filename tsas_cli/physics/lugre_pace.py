@@ -11,9 +11,7 @@ from tsas_cli.physics.lugre_ends import Ends
 from tsas_cli.physics.lugre_state import Floats, Formula, Law, Step
 from tsas_cli.physics.lugre_step import error, look_back, newton
 
-LEAVES = 0.3  # of the error of a step: what Newton's method may leave,
-LEAVES_AT_MOST = 1e-5  # and of a tension, since more looks right and is not;
-LEAVES_GIVEN = 1e-9  # of a tension where steps are given
+LEAVES = 0.3  # of the error of a step: what Newton's method may leave
 SWINGS = 0.1  # of the tolerance, with a mass that swings on: its errors add up
 LONGER, SHORTER, CAREFUL = 2.0, 0.25, 0.85  # how the step may change, and how much of it is taken
 
@@ -26,13 +24,14 @@ class Allowed(NamedTuple):
 
 
 @kernel
-def allowed(ends: Ends, law: Law, tolerance: float) -> Allowed:
-    """Return what a step from these ends may be off by, by an infinite tolerance a given one."""
+def allowed(ends: Ends, law: Law, tolerance: float, leaves: float) -> Allowed:
+    """Return what a step from these ends may be off by, and leave at most, as shares of a tension.
+
+    An infinite tolerance is for steps that are given.
+    """
     tension = max(abs(ends.f_in), abs(ends.f_out), 0.1 * law.preload_N)
-    if tolerance == math.inf:
-        return Allowed(math.inf, LEAVES_GIVEN * tension)
     most = tolerance * tension * (SWINGS if law.load_mass_kg > 0.0 else 1.0)
-    return Allowed(most, min(LEAVES * most, LEAVES_AT_MOST * tension))
+    return Allowed(most, min(LEAVES * most, leaves * tension))
 
 
 @kernel

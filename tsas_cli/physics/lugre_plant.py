@@ -44,6 +44,7 @@ from tsas_cli.physics.plant import Actuator, Turntable, moved, pulled_to, reach_
 from tsas_cli.physics.rig import Rig
 
 TOLERANCE = 1e-4  # of a tension: what a step of the lumps may add to its error
+LEAVES = 1e-7  # what Newton's method may leave: more shakes a turntable that is at rest
 ROUGH = 1.0  # the same where that is not to be had
 CAREFUL_TRIES, MOST_TRIES = 200, 300  # of steps of the lumps in one of the plant
 
@@ -155,7 +156,7 @@ def advance_lumps(
         part = 1.0 if lands else (done + length) / h
         formula = formula_of(length, h1, h2)
         to = driven(step, before + part * (step.drive - before), formula.gh)
-        most = allowed(ends, law, tolerance)
+        most = allowed(ends, law, tolerance, LEAVES)
         off, _ = attempt(s, to, formula, boundary, law, most)
         change = change_of(off, most, formula)
         if off < most.error_N:

@@ -1,0 +1,53 @@
+"""`track` with a dynamic tendon: close to the quasi-static one, honest where it cannot go on."""
+
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+
+from tsas_cli.errors import InputError
+from tsas_cli.tracking.conditions import disturbed
+from tsas_cli.tracking.track_stage import Call, track_all
+
+SETTINGS = """
+[reference]
+duration_s = 7.0
+"""
+DAMPING = "bristles.damping_N_s_per_mm"  # 15.8 is the paper's, 80 times critical
+
+
+@pytest.fixture
+def settings(tmp_path):
+    path = tmp_path / "settings.toml"
+    path.write_text(SETTINGS)
+    return path
+
+
+def test_the_plant_is_dynamic_and_nearly_the_same(tmp_path, settings):
+    forces, summaries = [], []
+    for dynamics in ("slip", "lugre"):
+        out = tmp_path / dynamics
+        summaries.append(track_all(Call(settings=settings, dynamics=dynamics), out))
+        run = pq.read_table(out / "runs" / "adaptive-sliding-mode-undisturbed.parquet")
+        forces.append(run["f_out_true_N"].to_numpy())
+    off = np.max(np.abs(forces[1] - forces[0])) / np.ptp(forces[0])
+    assert 1e-5 < off < 1e-2
+    slip, lugre = summaries
+    assert (slip["dynamics"], lugre["dynamics"]) == ("slip", "lugre")
+    assert lugre["results"][0]["unsettled_steps"] == 0
+    assert slip["notes"] == []
+    assert lugre["notes"] == ["the stiffness of the plant's bristles is that of Yang 2025, Table 1"]
+
+
+def test_unstable_sliding_is_said(tmp_path, settings):
+    strong = disturbed([f"{DAMPING}=5", "bristles.stiffness_N_per_mm=6000"])
+    call = Call(settings=settings, dynamics="lugre", conditions=(strong,))
+    notes = track_all(call, tmp_path / "out")["notes"]
+    assert any(note.startswith("disturbed: sliding is unstable in a dead band") for note in notes)
+
+
+def test_a_tendon_that_cannot_be_followed_is_one_line(tmp_path, settings):
+    printed = disturbed([f"{DAMPING}=15.8"])
+    call = Call(settings=settings, dynamics="lugre", conditions=(printed,))
+    with pytest.raises(InputError, match=r"cannot be followed.*leave out \[bristles.damping"):
+        track_all(call, tmp_path / "out")
+    assert not (tmp_path / "out").exists()
