@@ -36,6 +36,10 @@ def track(
         Path | None,
         typer.Option(metavar="P.toml", help="What it acts on; else the same as --model."),
     ] = None,
+    drive: Annotated[
+        Path | None,
+        typer.Option(metavar="D.toml", help="What the controller knows of the drive; else r1, im."),
+    ] = None,
     controller: Annotated[
         str,
         typer.Option(metavar="NAMES", help="One or several, with commas between, or all."),
@@ -83,6 +87,7 @@ def track(
     call = Call(
         model=model,
         plant=plant,
+        drive=drive,
         settings=settings,
         controllers=names,
         conditions=tuple(conditions) or (Condition("undisturbed"),),

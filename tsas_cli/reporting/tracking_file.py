@@ -98,6 +98,7 @@ class Tracking(StageFile):
     version: str
     model: ModelFile
     plant: ModelFile
+    drive: ModelFile
     settings: Settings
     reference: Reference
     gains: str

@@ -14,10 +14,12 @@ from typing import Any
 import pyarrow as pa
 
 from tsas_cli.diagnosis.diagnose_stage import EXTENDED, diagnose_dataset
+from tsas_cli.diagnosis.drive_stage import identify_drive
 from tsas_cli.identification.calibrate_stage import calibrate_dataset
 from tsas_cli.identification.model import FILE, data_sheet, read_model
-from tsas_cli.physics.rig import with_values
+from tsas_cli.physics.rig import Rig, with_values
 from tsas_cli.recordings.dataset import read_dataset, write_dataset
+from tsas_cli.tracking.closing_drive import known_drives, record_drive
 from tsas_cli.tracking.recorded import conditions, manifest, table_of
 from tsas_cli.tracking.references import reference
 from tsas_cli.tracking.scores import over_seeds
@@ -37,7 +39,10 @@ MOTIONS = {  # shape, mean [N], amplitude [N], angular frequency [rad/s]; 25 s e
 
 @dataclass(frozen=True)
 class Case:
-    """A hidden difference of the plant: its name for the table, and the quantities it changes."""
+    """A hidden difference of the plant: its name for the table, and the quantities it changes.
+
+    The drive's case changes none: its plant is as ever, and what is known of it is less.
+    """
 
     name: str
     title: str
@@ -54,6 +59,7 @@ CASES = (
     Case("load_friction", "a guide that rubs", {"load_friction.after_sensor_N": 1.0}),
     Case("backlash", "backlash", {"backlash.play_mm": 0.15}),
     Case("bend", "a bend that changed after calibration", {"total_bend_rad": 4.0}),
+    Case("drive", "a gear that winds up", {}),
 )
 
 
@@ -74,27 +80,13 @@ def close(
     InputError
         As the stages raise it.
     """
-    run = conditions("track", settings)
-    sheet = data_sheet(manifest(("track",), settings)).rig(run)
-    drive = settings.drive.actuator()
-    plant = Plant(with_values(sheet, case.hidden), drive)
-    record(plant, Known(sheet, drive), settings, folder / "dataset")
-    step()
-    dataset = read_dataset(folder / "dataset")
-    calibrate_dataset(dataset, folder / "calibrate")
-    step()
-    found = diagnose_dataset(dataset, folder / "calibrate", folder / "diagnose")
-    step()
-    rigs = (
-        sheet,
-        read_model(folder / "calibrate" / FILE).rig(run),
-        read_model(folder / "diagnose" / EXTENDED).rig(run),
-        plant.rig,
-    )
+    sheet = data_sheet(manifest(("track",), settings)).rig(conditions("track", settings))
+    plant = Plant(with_values(sheet, case.hidden), settings.drive.actuator())
+    find = _find_drive if case.name == "drive" else _find_tendon
+    found, models = find(plant, sheet, settings, folder, step)
     wanted = reference("sine", settings.reference, settings.step_s)
     scores: dict[str, dict[str, Any]] = {name: {} for name in CONTROLLERS}
-    for model, rig in zip(MODELS, rigs, strict=True):
-        known = Known(rig, drive)
+    for model, known in zip(MODELS, models, strict=True):
         path = plan(wanted, known, settings)
         for name in CONTROLLERS:
             runs = [track(wanted, path, known, plant, name, settings, seed) for seed in seeds]
@@ -112,6 +104,37 @@ def close(
             for name, by_model in scores.items()
         ],
     }
+
+
+def _find_tendon(
+    plant: Plant, sheet: Rig, settings: Settings, folder: Path, step: Callable[[], None]
+) -> tuple[dict[str, Any], tuple[Known, ...]]:
+    """Record, calibrate and diagnose; return the diagnosis and what is known by each model."""
+    drive, run = plant.actuator, conditions("track", settings)
+    record(plant, Known(sheet, drive), settings, folder / "dataset")
+    step()
+    dataset = read_dataset(folder / "dataset")
+    calibrate_dataset(dataset, folder / "calibrate")
+    step()
+    found = diagnose_dataset(dataset, folder / "calibrate", folder / "diagnose")
+    step()
+    calibrated = read_model(folder / "calibrate" / FILE).rig(run)
+    extended = read_model(folder / "diagnose" / EXTENDED).rig(run)
+    return found, tuple(Known(rig, drive) for rig in (sheet, calibrated, extended, plant.rig))
+
+
+def _find_drive(
+    plant: Plant, sheet: Rig, settings: Settings, folder: Path, step: Callable[[], None]
+) -> tuple[dict[str, Any], tuple[Known, ...]]:
+    """Record and identify the drive; return its diagnosis and what is known by each model."""
+    del plant  # its drive is the settings'
+    record_drive(settings, folder / "dataset")
+    step()
+    found = identify_drive(read_dataset(folder / "dataset"), folder / "identify", "zero")
+    step()
+    drives = known_drives(folder / "identify", settings)
+    step()
+    return found["diagnosis"], tuple(Known(sheet, drive) for drive in drives)
 
 
 def over_limit(by_model: dict[str, Any]) -> float:

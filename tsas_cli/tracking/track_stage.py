@@ -18,6 +18,7 @@ from tsas_cli.files import new_folder, sha256_of, write_json
 from tsas_cli.identification.model import data_sheet, read_model, source_of
 from tsas_cli.recordings.dataset import write_dataset
 from tsas_cli.tracking.conditions import Condition
+from tsas_cli.tracking.drives import known_drive, source_of_drive
 from tsas_cli.tracking.dynamic_notes import dynamic_notes
 from tsas_cli.tracking.recorded import conditions, manifest, table_of
 from tsas_cli.tracking.references import reference
@@ -42,6 +43,7 @@ class Call:
 
     model: Path | None = None
     plant: Path | None = None
+    drive: Path | None = None
     settings: Path | None = None
     controllers: tuple[str, ...] = ("adaptive-sliding-mode",)
     conditions: tuple[Condition, ...] = (Condition("undisturbed"),)
@@ -118,7 +120,9 @@ def what_is_known(call: Call, settings: Settings) -> tuple[Known, Plant]:
     model = stated if call.model is None else read_model(call.model).over(stated)
     real = model if call.plant is None else read_model(call.plant).over(stated)
     actuator = settings.drive.actuator()
-    return Known(model.rig(run), settings.drive.kinematic()), Plant(real.rig(run), actuator)
+    return Known(model.rig(run), known_drive(call.drive, settings.drive)), Plant(
+        real.rig(run), actuator
+    )
 
 
 def _result(run_id: str, name: str, condition: Condition, runs: list[Tracked]) -> dict[str, Any]:
@@ -141,6 +145,7 @@ def _header(call: Call, settings: Settings) -> dict[str, Any]:
         "version": __version__,
         "model": source_of(call.model),
         "plant": source_of(call.plant or call.model),
+        "drive": source_of_drive(call.drive),
         "settings": {
             "file": file,
             "sha256": checksum,

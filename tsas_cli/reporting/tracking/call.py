@@ -12,6 +12,8 @@ def options(tracking: Tracking) -> Iterator[str]:
         yield from ("--model", tracking.model.file)
     if tracking.plant.sha256 is not None and tracking.plant != tracking.model:
         yield from ("--plant", tracking.plant.file)
+    if tracking.drive.sha256 is not None:
+        yield from ("--drive", tracking.drive.file)
     if len(tracking.conditions) > 1:
         yield "--compare"  # which takes all controllers
     else:
@@ -31,5 +33,5 @@ def options(tracking: Tracking) -> Iterator[str]:
 
 def files_read(tracking: Tracking) -> dict[str, str]:
     """Return the checksums of models and reference by file, of those that were given."""
-    named = (tracking.model, tracking.plant, tracking.reference)
+    named = (tracking.model, tracking.plant, tracking.drive, tracking.reference)
     return {one.file: one.sha256 for one in named if one.sha256 is not None}

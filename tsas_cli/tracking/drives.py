@@ -1,0 +1,54 @@
+"""What a controller knows of the drive: the paper's kinematics, or an identified `drive.toml`."""
+
+import math
+from pathlib import Path
+
+from tsas_cli.files import sha256_of
+from tsas_cli.identification.drive_file import FILE, IdentifiedDrive, read_drive
+from tsas_cli.physics.capstan import speed_per_stiffness
+from tsas_cli.physics.plant import Actuator
+from tsas_cli.tracking.settings import DriveSettings
+
+
+def known_drive(path: Path | None, settings: DriveSettings) -> Actuator:
+    """Return the drive of the feedforward.
+
+    Without a file it is kinematics, 60 im/(2π r1) (Yang 2025, Eq. 48).
+
+    Raises
+    ------
+    InputError
+        The file is no `drive.toml`.
+    """
+    if path is None:
+        return settings.kinematic()
+    return actuator_of(read_drive(path), settings.speed_limit_rpm)
+
+
+def actuator_of(drive: IdentifiedDrive, speed_limit_rpm: float) -> Actuator:
+    """Return an identified drive as the feedforward takes it.
+
+    Where its stiffness, radius and gear ratio are known the motor's own path is, so that it can be
+    led by how far the gear winds up. Else it is Eq. (51) with the fitted kV and kA.
+    """
+    radius, ratio = drive.turntable_radius_mm, drive.gear_ratio
+    stiffness = drive.drive_stiffness_N_per_mm
+    if stiffness is None or radius is None or ratio is None:
+        lag_s = drive.kA_rpm_s2_per_mm / drive.kV_rpm_s_per_mm
+        return Actuator(1.0 / drive.kV_rpm_s_per_mm, math.inf, 0.0, 0.0, lag_s, speed_limit_rpm)
+    return Actuator(
+        speed_per_stiffness(radius, ratio),
+        stiffness,
+        (drive.inertia_N_mm_s2 or 0.0) / radius**2,
+        drive.damping_N_s_per_mm or 0.0,
+        drive.motor_lag_s + drive.delay_s,
+        speed_limit_rpm,
+    )
+
+
+def source_of_drive(path: Path | None) -> dict[str, str]:
+    """Return what a stage writes of the drive file that it has read."""
+    if path is None:
+        return {"file": "kinematics"}
+    path = path / FILE if path.is_dir() else path
+    return {"file": path.name, "sha256": sha256_of(path)}
