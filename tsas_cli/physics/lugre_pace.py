@@ -12,7 +12,7 @@ from tsas_cli.physics.lugre_state import Floats, Formula, Law, Step
 from tsas_cli.physics.lugre_step import error, look_back, newton
 
 LEAVES = 0.3  # of the error of a step: what Newton's method may leave
-SWINGS = 0.1  # of the tolerance, with a mass that swings on: its errors add up
+SWINGS = 0.04  # of the tolerance, with a mass that swings on: its errors add up
 LONGER, SHORTER, CAREFUL = 2.0, 0.25, 0.85  # how the step may change, and how much of it is taken
 
 

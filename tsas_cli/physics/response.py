@@ -26,7 +26,7 @@ Dynamics = Literal["static", "slip", "lugre"]
 
 NODES = 60  # of the slip chain, where the closed form does not hold
 LUMPS = 50  # of the dynamic chain
-TOLERANCE = 5e-6  # of a tension: what a step of the dynamic chain may add to its error
+TOLERANCE = 2.5e-6  # of a tension: what a step of the dynamic chain may add to its error
 CLOSED = 0  # nodes of the closed form
 MOST_DOUBLINGS = 30  # of the way that the drive goes before a run
 CHAIN_ONLY = (
