@@ -46,7 +46,8 @@ def identify_harmonic_drive(
     as_json: Json = False,
 ) -> None:
     """Fit the drive from motor speed to x_in, diagnose it, and give its feedforward."""
-    from tsas_cli.diagnosis.drive_stage import identify_drive, tables
+    from tsas_cli.diagnosis.drive_stage import identify_drive
+    from tsas_cli.diagnosis.drive_tables import tables
 
     data = opened(dataset, runs)
     with progress("identify", None, quiet=quiet or as_json) as step:

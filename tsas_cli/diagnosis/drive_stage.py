@@ -1,7 +1,7 @@
 """The identify-harmonic-drive stage: `drive.toml`, `drive.json` and the simulated x_in."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -11,13 +11,19 @@ import pyarrow as pa
 from tsas_cli import __version__
 from tsas_cli.diagnosis.drive_diagnosis import DriveCause, DriveDiagnosis, diagnose_drive
 from tsas_cli.diagnosis.drive_search import DriveSearch
+from tsas_cli.diagnosis.drive_words import (
+    cannot_tell,
+    equation_of,
+    inverse_of,
+    name_of,
+    next_run,
+)
 from tsas_cli.effects import EFFECTS
 from tsas_cli.files import new_folder, write_json
 from tsas_cli.identification.drive_estimates import (
     DataSheet,
     drive_sheet,
     estimates_of,
-    total_lag_s,
 )
 from tsas_cli.identification.drive_file import FILE, UNITS, write_drive
 from tsas_cli.identification.drive_fit import LINEAR, DriveBench, Terms, quantities_of
@@ -29,15 +35,8 @@ from tsas_cli.numerics.linear_response import Hold
 from tsas_cli.physics.drive import DriveValues
 from tsas_cli.recordings.dataset import Dataset, write_parquet
 
-Table = tuple[str, Sequence[str], Sequence[Sequence[str]]]
-
 CURVE_POINTS = 200
 BESIDE_BAND = 1.05  # of its edge, up to which a pole counts as inside
-_FACTORS = {
-    "lag": "(τs + 1)",
-    "spring": "(s²/ω² + 2ζs/ω + 1)",
-}
-_NAMES = {"lag": "lag", "delay": "delay", "spring": "second-order lag", "leak": "1/(s + a)"}
 
 
 def identify_drive(
@@ -73,7 +72,7 @@ def identify_drive(
             "structures": _structures(search, final),
             "parameters": [e.as_json() for e in known.values()],
             "kinematics": _kinematics(sheet, fitted),
-            "inverse": _inverse(trial.values),
+            "inverse": inverse_of(trial.values),
             "frequency_response": _response(seen, trial.values),
             "poles": _poles(trial.values, seen),
             "runs": _runs(search, found, final),
@@ -84,7 +83,7 @@ def identify_drive(
             },
             "diagnosis": _diagnosis(search, found),
         }
-        summary["cannot_tell"] = _cannot_tell(summary, sheet, final, known)
+        summary["cannot_tell"] = cannot_tell(summary, sheet, final, known)
         write_json(folder / "drive.json", summary)
         structure = {"name": summary["structure"]["name"], "hold": hold}
         write_drive(
@@ -92,21 +91,6 @@ def identify_drive(
         )
         _write_runs(folder / "runs", search, found, final)
     return summary
-
-
-def name_of(terms: Terms) -> str:
-    """Return a structure of G(s) in words."""
-    lags = [_NAMES[t] for t in ("lag", "spring", "delay") if t in terms]
-    head = "1/(s + a)" if "leak" in terms else "integrator"
-    return " with ".join([head, " and ".join(lags)]) if lags else head
-
-
-def equation_of(terms: Terms) -> str:
-    """Return G(s) as reports print it."""
-    late = " e^(−Ts)" if "delay" in terms else ""
-    below = ["(s + a)" if "leak" in terms else "s", *(_FACTORS[t] for t in _FACTORS if t in terms)]
-    whole = " ".join(below)
-    return f"G(s) = K{late} / ({whole})" if len(below) > 1 else f"G(s) = K{late} / {whole}"
 
 
 def _given(sheet: DataSheet) -> dict[str, Estimate]:
@@ -149,14 +133,6 @@ def _kinematics(sheet: DataSheet, fitted: dict[str, Estimate]) -> dict[str, Any]
         "fitted_lead_rpm_s_per_mm": lead.value,
         "fitted_above_kinematic_percent": None if K is None else 100.0 * (lead.value * K - 1.0),
     }
-
-
-def _inverse(values: DriveValues) -> str:
-    """Return the inverse that the feedforward realises (48)-(51)."""
-    K, lag = values.gain_mm_per_s_rpm, total_lag_s(values)
-    own = f" + {values.leak_per_s / K:.4g}" if values.leak_per_s else ""
-    second = f" + {lag / K:.4g} s²" if lag > 0.0 else ""
-    return f"G⁻¹(s) ≈ {1.0 / K:.4g} s{second}{own}; u_ff = kV dx/dt + kA d²x/dt²"
 
 
 def _response(seen: FrequencyResponse, values: DriveValues) -> dict[str, Any]:
@@ -249,7 +225,7 @@ def _diagnosis(search: DriveSearch, found: DriveDiagnosis) -> dict[str, Any]:
             "blocks": folds.blocks,
             "sentence": f"{how}; {folds.blocks} blocks longer than the error's memory count.",
         },
-        "next_experiment": _next(found),
+        "next_experiment": next_run(found),
     }
 
 
@@ -269,56 +245,6 @@ def _cause(cause: DriveCause) -> dict[str, Any]:
     }
 
 
-def _next(found: DriveDiagnosis) -> str:
-    if any(cause.rivals for cause in found.causes):
-        return (
-            "A chirp to higher frequencies: a lag lets the amplitude fall, a delay does not, and "
-            "play shows at each reversal of slow sines of different amplitude."
-        )
-    if found.unexplained:
-        return "Repeat a run without change: what comes back is the drive's, the rest is chance."
-    return "The same chirp with half the amplitude: what is linear scales with it, play does not."
-
-
-def _cannot_tell(
-    summary: dict[str, Any], sheet: DataSheet, final: Terms, known: dict[str, Estimate]
-) -> list[str]:
-    band = summary["frequency_response"]["band_Hz"]
-    said = []
-    if band is None:
-        said.append(
-            "No frequency has a coherence above 0.8: x_in shows little that the motor's speed "
-            "explains linearly, and start values came from the travel alone."
-        )
-    said += [
-        f"A {pole['kind']} lies at {pole['frequency_Hz']:.3g} Hz, outside of the band that the "
-        f"input shows ({band[0]:.3g} to {band[1]:.3g} Hz): it is only seen by its tail, and "
-        "another lag may look the same. Record a chirp beyond it."
-        for pole in summary["poles"]
-        if band is not None and not pole["in_band"]
-    ]
-    if "spring" not in final:
-        said.append(
-            "These recordings show no resonance: the drive is stiffer than they tell"
-            + ("" if band is None else f", beyond {band[1]:.3g} Hz")
-            + "."
-        )
-    elif sheet.inertia_N_mm_s2 is None:
-        said.append(
-            "Speed and position show ratios of J, B, k_d and k_p only: inertia_N_mm_s2 under [rig] "
-            "of the manifest would turn the resonance into a stiffness."
-        )
-    if "spring" in final and sheet.stated_frequency is None:
-        said.append(
-            "Without J, r1 and k_p = kL e^(μθ) of the data sheet a pull-back k_p that is as large "
-            "as k_d + k_p would look like the reaction of the drive's stiffness in Eq. (25)."
-        )
-    said += [f"{e.name} ended at its bound." for e in known.values() if e.at_bound]
-    if not summary["fit"]["converged"]:
-        said.append(f"The fit did not converge: {summary['fit']['message']}.")
-    return said
-
-
 def _write_runs(folder: Path, search: DriveSearch, found: DriveDiagnosis, final: Terms) -> None:
     folder.mkdir()
     for r, run in enumerate(search.bench.runs):
@@ -328,72 +254,3 @@ def _write_runs(folder: Path, search: DriveSearch, found: DriveDiagnosis, final:
             "x_in_nominal_mm": search.bench.simulated(r, search.trial(found.nominal).values),
         }
         write_parquet(folder / f"{run.id}.parquet", pa.table(columns))
-
-
-def tables(summary: dict[str, Any], out: Path) -> list[Table]:
-    """Return what the stage prints."""
-    estimates = [Estimate(**p) for p in summary["parameters"]]
-    kinematic = summary["kinematics"]
-    lead = kinematic["kinematic_lead_rpm_s_per_mm"]
-    rows = [(e.name, e.text(), e.unit) for e in estimates]
-    if lead is not None:
-        rows.append(("60 im/(2π r1), kinematic", f"{lead:.5g}", "rpm s/mm"))
-    found = summary["diagnosis"]
-    named = [
-        (
-            cause["effect"],
-            name,
-            Estimate(name=name, origin="fitted", **p).text(),
-            p["unit"],
-            f"{cause['gain_percent']:.1f}",
-            ", ".join(cause["rivals"]),
-        )
-        for cause in found["named"]
-        for name, p in cause["parameters"].items()
-    ]
-    error = found["channels"]["x_in_mm"]
-    keys = ("rmse_before", "rmse_after", "noise_floor", "best_obtainable")
-    return [
-        (
-            "structures of G(s), error on held-out data in times the noise",
-            ("structure", "parameters", "error", ""),
-            [
-                (
-                    s["name"],
-                    str(s["parameters"]),
-                    f"{s['held_out_times_noise']:.3g}",
-                    "chosen" if s["chosen"] else "" if s["converged"] else "not converged",
-                )
-                for s in summary["structures"]
-            ],
-        ),
-        (
-            f"{summary['structure']['equation']} → {out / FILE}",
-            ("name", "value [95 %]", "unit"),
-            rows,
-        ),
-        (
-            "x_in against measurement [mm]",
-            ("run", "RMSE", "nominal", "noise"),
-            [
-                (run, f"{r['rmse']:.4g}", f"{r['rmse_nominal']:.4g}", f"{r['noise']:.2g}")
-                for run, r in summary["runs"].items()
-            ],
-        ),
-        *(
-            [
-                (
-                    "causes",
-                    ("effect", "parameter", "value [95 %]", "unit", "gain [%]", "rivals"),
-                    named,
-                )
-            ]
-            if named
-            else []
-        ),
-        (
-            "error on held-out data",
-            ("channel", "before", "after", "noise", "obtainable", "unit"),
-            [("x_in_mm", *(f"{error[k]:.3g}" for k in keys), "mm")],
-        ),
-    ]
