@@ -66,8 +66,8 @@ def remainder(bench: Bench, trial: Trial, folds: Folds) -> Remainder:
         # A residual is the mean of some samples, scaled to the noise of one.
         of_mean = float(np.mean(residual[here] ** 2)) * here.sum() / samples[name]
         explained[name] = max(best.part, 0.0) * of_mean if best.convincing else 0.0
-        for signal, hats in zip(names, whole, strict=True):
-            own = residual[here] - regressed(hats, residual[here], folds.fold[here])
+        for signal, columns in zip(names, whole, strict=True):
+            own = residual[here] - regressed(columns, residual[here], folds.fold[here])
             part = 1.0 - float(own @ own) / float(residual[here] @ residual[here])
             share = float(residual[here] @ residual[here]) / float(residual @ residual)
             alone[signal] = alone.get(signal, 0.0) + max(part, 0.0) * share
@@ -104,9 +104,9 @@ def hats(signal: Floats, direction: Floats) -> Floats:
     knots = np.unique(np.quantile(signal, np.linspace(0.0, 1.0, HATS)))
     if knots.size < 2:
         return np.zeros((signal.size, 0))
-    hats = np.array([np.interp(signal, knots, row) for row in np.eye(knots.size)]).T
+    weights = np.array([np.interp(signal, knots, row) for row in np.eye(knots.size)]).T
     pulling = (direction > 0.0)[:, None]
-    return np.hstack((hats * pulling, hats * ~pulling))
+    return np.hstack((weights * pulling, weights * ~pulling))
 
 
 def regressed(columns: Floats, residual: Floats, fold: npt.NDArray[np.int64]) -> Floats:
