@@ -60,7 +60,7 @@ def test_it_writes_what_is_documented_and_a_dataset(strict, quick, tmp_path):
     scores = summary["results"][0]["scores"]
     nested = {"shape", "file", "sha256", *scores, "mean", "sd", "unsettled_steps", "relay"}
     nested |= {"quantity", "value", "from_s", "controller", "condition", "run", "scores"}
-    nested |= {"slip", "lugre"}
+    nested |= {"slip", "lugre", "printed_rmse_N"}
     assert set(summary) == documented("tracking.json") - nested
     assert summary["conditions"]["disturbed"] == [
         {"quantity": "friction_coefficient", "value": 0.16, "from_s": 1.0}

@@ -100,11 +100,16 @@ def track(
     total = len(call.controllers) * len(call.conditions) * call.seeds
     with progress("track", total, quiet=quiet or as_json) as step:
         summary = track_all(call, out, force=force, step=step)
-    header = ("controller", "condition", *(title for title, _ in COLUMNS))
+    header = ["controller", "condition", *(title for title, _ in COLUMNS)]
     rows = [
-        (row["controller"], row["condition"], *(_cell(row["scores"][key]) for _, key in COLUMNS))
+        [row["controller"], row["condition"], *(_cell(row["scores"][key]) for _, key in COLUMNS)]
         for row in summary["results"]
     ]
+    printed = [row["printed_rmse_N"] for row in summary["results"]]
+    if any(value is not None for value in printed):
+        header.insert(3, "Table 5 [N]")
+        for row, value in zip(rows, printed, strict=True):
+            row.insert(3, "" if value is None else f"{value:g}")
     show(summary, [(f"tracking → {out}", header, rows)], quiet=quiet, as_json=as_json)
     if not quiet and not as_json:
         for sentence in summary["notes"]:

@@ -24,6 +24,7 @@ from tsas_cli.tracking.recorded import conditions, manifest, table_of
 from tsas_cli.tracking.references import reference
 from tsas_cli.tracking.scores import over_seeds
 from tsas_cli.tracking.settings import CONTROLLERS, Settings, printed_gains, read_settings
+from tsas_cli.tracking.table_5 import printed_rmse
 from tsas_cli.tracking.track import (
     Known,
     Plant,
@@ -97,7 +98,10 @@ def track_all(
                 run_id = f"{name}-{condition.name}"
                 first, seed = runs[0], call.first_seed
                 tables[run_id] = table_of(first, path, real.rig, name, seed, settings)
-                results.append(_result(run_id, name, condition, runs))
+                printed = None
+                if call.model is None and call.plant is None and call.drive is None:
+                    printed = printed_rmse(name, condition, call.reference, settings)
+                results.append(_result(run_id, name, condition, runs, printed))
         summary = _header(call, settings) | {"results": results}
         summary["notes"] = _notes(path, known, plant, results)
         if call.dynamics == "lugre":
@@ -125,12 +129,15 @@ def what_is_known(call: Call, settings: Settings) -> tuple[Known, Plant]:
     )
 
 
-def _result(run_id: str, name: str, condition: Condition, runs: list[Tracked]) -> dict[str, Any]:
+def _result(
+    run_id: str, name: str, condition: Condition, runs: list[Tracked], printed_rmse: float | None
+) -> dict[str, Any]:
     return {
         "controller": name,
         "condition": condition.name,
         "run": run_id,
         "scores": over_seeds([run.score for run in runs]),
+        "printed_rmse_N": printed_rmse,
         "relay": any(run.is_relay for run in runs),
         "unsettled_steps": sum(run.unsettled for run in runs),
     }
