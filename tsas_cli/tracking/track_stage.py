@@ -130,14 +130,14 @@ def what_is_known(call: Call, settings: Settings) -> tuple[Known, Plant]:
 
 
 def _result(
-    run_id: str, name: str, condition: Condition, runs: list[Tracked], printed_rmse: float | None
+    run_id: str, name: str, condition: Condition, runs: list[Tracked], printed: float | None
 ) -> dict[str, Any]:
     return {
         "controller": name,
         "condition": condition.name,
         "run": run_id,
         "scores": over_seeds([run.score for run in runs]),
-        "printed_rmse_N": printed_rmse,
+        "printed_rmse_N": printed,
         "relay": any(run.is_relay for run in runs),
         "unsettled_steps": sum(run.unsettled for run in runs),
     }
