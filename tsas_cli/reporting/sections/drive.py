@@ -131,7 +131,7 @@ def _pictures(inputs: Inputs, drive: Drive) -> Iterator[Picture]:
         height_in=4.0,
     )
     runs = {}
-    for recording in inputs.dataset or ():
+    for recording in inputs.recordings:
         run, x_in = drive.runs.get(recording.run.id), recording.get("x_in_mm")
         if run is None or x_in is None or run.noise is None:
             continue

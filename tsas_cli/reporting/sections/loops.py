@@ -37,7 +37,7 @@ def section(inputs: Inputs) -> Section | None:
     )
     if not groups:
         intro = "No run holds x_in_mm and a tension: there is no loop to show."
-    return Section("loops", "Loops and phases", (intro,), groups=groups)
+    return Section("loops", "Loops and phases", (intro,), groups=groups, given=bool(groups))
 
 
 def _pictures(
