@@ -373,6 +373,8 @@ def make_tracking(folder: Path, controllers=("pid", "adaptive-sliding-mode"), **
         "version": "0.1.0",
         "model": {"file": "data sheet"},
         "plant": {"file": "rig.toml", "sha256": "ab" * 32},
+        "drive": {"file": "drive.toml", "sha256": "cd" * 32},
+        "dynamics": "lugre",
         "settings": {
             "file": None,
             "sensor": {"rate_Hz": 100.0, "noise_mm": 0.005, "step_mm": 0.002},

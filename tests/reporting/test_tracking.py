@@ -161,7 +161,10 @@ def test_every_controller_has_a_colour_and_one_that_is_not_known_has_one_too():
 def test_notes_and_changes_of_the_plant_are_said(whole):
     assert "<li>pid-disturbed: the motor is at its &lt;limit&gt;</li>" in whole
     assert "<code>friction_coefficient</code> = 0.16 from 6 s on (dotted line)" in whole
-    assert "It knows the data sheet; the plant is rig.toml." in whole
+    assert (
+        "It knows the data sheet, and of the drive drive.toml; the plant is rig.toml, with the "
+        in whole
+    )
 
 
 def test_a_change_within_the_run_is_a_line_at_its_time_in_every_panel():
@@ -184,10 +187,12 @@ def test_the_command_says_all_that_was_asked_for(whole):
     (command,) = re.findall("^tsas track .*", commands, re.MULTILINE)
     words = shlex.split(unescape(command))
     assert words[2:-2] == [
-        *("--plant", "rig.toml", "--compare", "--disturb", "friction_coefficient=0.16@6.0"),
+        *("--plant", "rig.toml", "--drive", "drive.toml", "--dynamics", "lugre"),
+        *("--compare", "--disturb", "friction_coefficient=0.16@6.0"),
         *("--reference", "sine", "--seeds", "5", "--seed", "3"),
     ]
     assert ["rig.toml", "ab" * 32] in cells(whole, "Files read")
+    assert ["drive.toml", "cd" * 32] in cells(whole, "Files read")
 
 
 @pytest.mark.parametrize("column", ["f_out_true_N", "phi2_rpm_s_per_mm"])

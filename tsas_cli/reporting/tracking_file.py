@@ -99,6 +99,7 @@ class Tracking(StageFile):
     model: ModelFile
     plant: ModelFile
     drive: ModelFile
+    dynamics: Literal["slip", "lugre"]
     settings: Settings
     reference: Reference
     gains: str

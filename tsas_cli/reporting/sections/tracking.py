@@ -60,11 +60,12 @@ def _wanted(tracking: Tracking, condition: Condition) -> str:
 def _loop(tracking: Tracking) -> str:
     sensor = tracking.settings.sensor
     same = tracking.model == tracking.plant
+    tendon = ", with the dynamic chain as its tendon" if tracking.dynamics == "lugre" else ""
     rig = "the same model is the plant" if same else f"the plant is {_name(tracking.plant)}"
     return (
         f"A controller sees x_in alone, {sensor.rate_Hz:g} times a second, with noise of "
         f"{sensor.noise_mm:g} mm and steps of {sensor.step_mm:g} mm. It knows "
-        f"{_name(tracking.model)}; {rig}."
+        f"{_name(tracking.model)}, and of the drive {tracking.drive.file}; {rig}{tendon}."
     )
 
 

@@ -14,6 +14,8 @@ def options(tracking: Tracking) -> Iterator[str]:
         yield from ("--plant", tracking.plant.file)
     if tracking.drive.sha256 is not None:
         yield from ("--drive", tracking.drive.file)
+    if tracking.dynamics != "slip":
+        yield from ("--dynamics", tracking.dynamics)
     if len(tracking.conditions) > 1:
         yield "--compare"  # which takes all controllers
     else:
