@@ -95,7 +95,7 @@ def close(
     return {
         "case": case.name,
         "title": case.title,
-        "hidden": case.hidden,
+        "hidden": case.hidden or _of_drive(settings),
         "verdict": found["verdict"],
         "reason": found["reason"],
         "named": [{"effect": c["effect"], "rivals": c["rivals"]} for c in found["named"]],
@@ -135,6 +135,15 @@ def _find_drive(
     drives = known_drives(folder / "identify", settings)
     step()
     return found["diagnosis"], tuple(Known(sheet, drive) for drive in drives)
+
+
+def _of_drive(settings: Settings) -> dict[str, float]:
+    """Return what kinematics do not know of the drive."""
+    drive = settings.drive
+    return {
+        "drive_stiffness_N_per_mm": drive.drive_stiffness_N_per_mm,
+        "motor_lag_s": drive.motor_lag_s,
+    }
 
 
 def over_limit(by_model: dict[str, Any]) -> float:
