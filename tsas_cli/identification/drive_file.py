@@ -11,6 +11,7 @@ from pydantic import BaseModel, ConfigDict
 
 from tsas_cli.errors import InputError, nearest
 from tsas_cli.identification.estimate import Estimate
+from tsas_cli.identification.stored_value import StoredValue
 from tsas_cli.recordings.manifest import parse, read_toml
 
 FILE = "drive.toml"
@@ -69,18 +70,6 @@ class IdentifiedDrive:
     gear_ratio: float | None = None
 
 
-class _Value(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-    value: float
-    unit: str
-    origin: Literal["fitted", "data sheet", "default"] = "data sheet"
-    stderr: float | None = None
-    interval_low: float | None = None
-    interval_high: float | None = None
-    at_bound: bool = False
-
-
 class _Structure(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
@@ -96,7 +85,7 @@ class _File(BaseModel):
     version: str = ""
     dataset: dict[str, Any] = {}
     structure: _Structure
-    parameters: dict[str, _Value]
+    parameters: dict[str, StoredValue]
 
 
 def write_drive(
@@ -153,7 +142,7 @@ def read_drive(path: Path) -> IdentifiedDrive:
     return IdentifiedDrive(**{name: value for name, value in values.items() if name in known})
 
 
-def _check(name: str, value: _Value, path: Path) -> None:
+def _check(name: str, value: StoredValue, path: Path) -> None:
     if name not in UNITS:
         raise InputError(f"unknown parameter {name}", where=path, remedy=nearest(name, UNITS))
     if value.unit != UNITS[name]:

@@ -17,6 +17,7 @@ from tsas_cli.identification.drive_runs import DriveRun
 from tsas_cli.identification.extension import ROUGHER
 from tsas_cli.identification.fit import Solution, Unknown, solve
 from tsas_cli.identification.frequency_response import FrequencyResponse
+from tsas_cli.identification.quantities import Quantity
 from tsas_cli.physics.drive import (
     DriveValues,
     free_motion,
@@ -37,43 +38,24 @@ FOLLOWED = 3  # of the starts, the best ones
 WEIGHT = 0.05  # relative error of one point of the measured response, for start values
 
 
-@dataclass(frozen=True)
-class Quantity:
-    """One number of a drive; a positive one is fitted by its logarithm, any other over `size`."""
-
-    name: str
-    unit: str
-    start: float
-    lower: float
-    upper: float
-    positive: bool = True
-    size: float = 1.0
-
-    def scaled(self, value: float) -> float:
-        """Return a value, inside of its bounds, as it is fitted."""
-        inside = min(max(value, self.lower), self.upper)
-        return math.log(inside) if self.positive else inside / self.size
-
-    def unscaled(self, value: float) -> float:
-        """Return the value behind a fitted number."""
-        return math.exp(value) if self.positive else float(value) * self.size
+def _positive(name: str, unit: str, start: float, lower: float, upper: float) -> Quantity:
+    return Quantity(name, unit, lower, upper, start, positive=True)
 
 
 RIPPLE, PLAY = DRIVE_RIPPLE.parameters, BACKLASH.parameters[0]
-GAIN = Quantity("gain_mm_per_s_rpm", "mm/(s rpm)", 0.02, 1e-7, 1e3)
-DAMPING = Quantity("damping_ratio", "1", 0.1, 1e-3, 1.0)  # beyond 1 it is two lags
+GAIN = _positive("gain_mm_per_s_rpm", "mm/(s rpm)", 0.02, 1e-7, 1e3)
+DAMPING = _positive("damping_ratio", "1", 0.1, 1e-3, 1.0)  # beyond 1 it is two lags
 TERMS: dict[str, tuple[Quantity, ...]] = {
-    "lag": (Quantity("motor_lag_s", "s", 0.005, 0.0, 5.0, positive=False, size=0.01),),
-    "delay": (Quantity("delay_s", "s", 0.005, 0.0, 0.5, positive=False, size=0.01),),
-    "spring": (Quantity("natural_frequency_Hz", "Hz", 50.0, 0.05, 2e3), DAMPING),
-    "leak": (Quantity("leak_per_s", "1/s", 0.0, 0.0, 10.0, positive=False, size=1e-3),),
+    "lag": (Quantity("motor_lag_s", "s", 0.0, 5.0, 0.005, size=0.01),),
+    "delay": (Quantity("delay_s", "s", 0.0, 0.5, 0.005, size=0.01),),
+    "spring": (_positive("natural_frequency_Hz", "Hz", 50.0, 0.05, 2e3), DAMPING),
+    "leak": (Quantity("leak_per_s", "1/s", 0.0, 10.0, 0.0, size=1e-3),),
     "ripple": tuple(
-        Quantity(p.name, p.unit, 0.0, p.lower, p.upper, positive=False, size=SMALL_MM)
-        for p in RIPPLE[:2]
+        Quantity(p.name, p.unit, p.lower, p.upper, 0.0, size=SMALL_MM) for p in RIPPLE[:2]
     ),
-    "play": (Quantity(PLAY.name, PLAY.unit, 0.0, 0.0, PLAY.upper, positive=False, size=0.1),),
+    "play": (Quantity(PLAY.name, PLAY.unit, 0.0, PLAY.upper, 0.0, size=0.1),),
     # The spring of Eq. (25): the data sheet's frequency, without reaction.
-    "stated": (Quantity("damping_ratio", "1", 0.5, 1e-3, 1e3),),
+    "stated": (_positive("damping_ratio", "1", 0.5, 1e-3, 1e3),),
 }
 LINEAR = ("lag", "delay", "spring", "leak")
 QUANTITIES = {q.name: q for q in (GAIN, *(q for t in TERMS if t != "stated" for q in TERMS[t]))}
@@ -259,5 +241,5 @@ def _guess(
 
 def replace_defaults(terms: Sequence[str], gain: float) -> DriveValues:
     """Return the usual start of each term."""
-    known = {q.name: q.start for q in quantities_of(terms)}
+    known = {q.name: q.default for q in quantities_of(terms)}
     return DriveValues(**known)._replace(gain_mm_per_s_rpm=gain)

@@ -14,6 +14,7 @@ from tsas_cli.errors import InputError, nearest
 from tsas_cli.files import sha256_of
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.quantities import DEFAULTS, QUANTITIES
+from tsas_cli.identification.stored_value import StoredValue
 from tsas_cli.physics.bristles import Bristles
 from tsas_cli.physics.parameters import NOMINAL, NOMINAL_BY_NAME
 from tsas_cli.physics.rig import Rig, with_values
@@ -129,18 +130,6 @@ def _axial_stiffness(diameter_mm: float | None, modulus_GPa: float | None) -> fl
     return 1e3 * modulus_GPa * math.pi / 4.0 * diameter_mm**2
 
 
-class _Value(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-    value: float
-    unit: str
-    origin: Literal["fitted", "data sheet", "default"] = "data sheet"
-    stderr: float | None = None
-    interval_low: float | None = None
-    interval_high: float | None = None
-    at_bound: bool = False
-
-
 class _File(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
@@ -148,10 +137,10 @@ class _File(BaseModel):
     kind: Literal["model"] = "model"
     version: str = ""
     dataset: dict[str, Any] = {}
-    parameters: dict[str, _Value] = {}
-    runs: dict[str, dict[str, _Value]] = {}
-    bristles: dict[str, _Value] = {}
-    effects: dict[str, dict[str, _Value]] = {}
+    parameters: dict[str, StoredValue] = {}
+    runs: dict[str, dict[str, StoredValue]] = {}
+    bristles: dict[str, StoredValue] = {}
+    effects: dict[str, dict[str, StoredValue]] = {}
 
 
 def write_model(path: Path, model: Model, *, version: str, dataset: Mapping[str, Any]) -> None:
@@ -194,7 +183,7 @@ def read_model(path: Path) -> Model:
         path = path / FILE
     file = parse(_File, read_toml(path), path)
     units = {name: q.unit for name, q in QUANTITIES.items()} | {CORRECTION: "N"}
-    values: list[tuple[str, str | None, _Value]] = []
+    values: list[tuple[str, str | None, StoredValue]] = []
     values += [(name, None, v) for name, v in file.parameters.items()]
     values += [(name, run, v) for run, named in file.runs.items() for name, v in named.items()]
     values += [(f"bristles.{name}", None, v) for name, v in file.bristles.items()]
@@ -213,7 +202,7 @@ def read_model(path: Path) -> Model:
     )
 
 
-def _check_value(name: str, value: _Value, unit: str, path: Path) -> None:
+def _check_value(name: str, value: StoredValue, unit: str, path: Path) -> None:
     if value.unit != unit:
         raise InputError(f"{name} is in {value.unit!r}", where=path, expected=f"the unit {unit!r}")
     nominal = NOMINAL_BY_NAME.get(name)
