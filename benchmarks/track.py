@@ -4,8 +4,7 @@ from collections.abc import Iterator
 
 from benchmarks.row import Row
 from benchmarks.timing import best
-from tsas_cli.identification.model import data_sheet
-from tsas_cli.tracking.recorded import conditions, manifest
+from tsas_cli.tracking.recorded import stated_rig
 from tsas_cli.tracking.references import reference
 from tsas_cli.tracking.settings import CONTROLLERS, ReferenceSettings, Settings
 from tsas_cli.tracking.track import Known, Plant, plan, track
@@ -17,7 +16,7 @@ REPEATS = 5
 def measure() -> Iterator[Row]:
     """Time the paper's rig with its sine, once compiled."""
     settings = Settings(reference=ReferenceSettings(duration_s=DURATION_S))
-    rig = data_sheet(manifest(("track",), settings)).rig(conditions("track", settings))
+    rig = stated_rig(settings)
     known, plant = Known(rig, settings.drive.kinematic()), Plant(rig, settings.drive.actuator())
     wanted = reference("sine", settings.reference, settings.step_s)
     path = plan(wanted, known, settings)

@@ -8,10 +8,9 @@ import pytest
 
 from tsas_cli.errors import InputError
 from tsas_cli.identification.drive_file import IdentifiedDrive
-from tsas_cli.identification.model import data_sheet
 from tsas_cli.tracking.closing_drive import driven, known_drives, record_drive, spring_alone
 from tsas_cli.tracking.drives import actuator_of, known_drive
-from tsas_cli.tracking.recorded import conditions, manifest
+from tsas_cli.tracking.recorded import stated_rig
 from tsas_cli.tracking.references import reference
 from tsas_cli.tracking.settings import ReferenceSettings, Settings
 from tsas_cli.tracking.track import Known, Plant, feedforward, plan, track
@@ -54,7 +53,7 @@ def test_without_it_the_fitted_inverse_feeds_forward(missing):
 
 
 def test_the_motor_leads_by_how_far_the_gear_winds_up_and_that_is_worth_it():
-    rig = data_sheet(manifest(("track",), SETTINGS)).rig(conditions("track", SETTINGS))
+    rig = stated_rig(SETTINGS)
     wanted = reference("sine", SETTINGS.reference, SETTINGS.step_s)
     plant = Plant(rig, SETTINGS.drive.actuator())
     errors, ways = [], []

@@ -80,8 +80,21 @@ class Diagnosis:
             return False
         if not self.causes:
             return self.verdict == "unexplained"
-        left = self.remainder.mean_square
-        return left > MUCH or (left > 1.0 + BLURRED and self.share_left > LEFT)
+        return leaves_much(self.remainder.mean_square, self.share_left)
+
+
+def verdict_of(rivals: Sequence[tuple[str, ...]], mean_square: float, share: float) -> Verdict:
+    """Return the verdict on what is left with the causes, by the rivals of each."""
+    if not rivals:
+        return "unexplained" if mean_square > 1.0 + SPOKEN else "sufficient"
+    if share > MOSTLY_LEFT:
+        return "unexplained"
+    return "ambiguous" if any(rivals) else "named"
+
+
+def leaves_much(mean_square: float, share: float) -> bool:
+    """Say whether named causes leave what no effect accounts for."""
+    return mean_square > MUCH or (mean_square > 1.0 + BLURRED and share > LEFT)
 
 
 def diagnose(
@@ -155,13 +168,7 @@ def _concluded(search: Search, named: Names, model: Model, sentences: tuple[str,
     start = remainder(judged.bench, before, judged.folds) if named else left
     excess = [max(r.mean_square - 1.0, 0.0) for r in (start, left)]
     share = max(excess[1] - BLURRED, 0.0) / excess[0] if excess[0] > 0.0 else 0.0
-    verdict: Verdict
-    if not named:
-        verdict = "unexplained" if left.mean_square > 1.0 + SPOKEN else "sufficient"
-    elif share > MOSTLY_LEFT:
-        verdict = "unexplained"
-    else:
-        verdict = "ambiguous" if any(c.rivals for c in causes) else "named"
+    verdict = verdict_of([cause.rivals for cause in causes], left.mean_square, share)
     extended = Model(tuple(estimates)).over(model)
     found = Diagnosis(
         verdict,

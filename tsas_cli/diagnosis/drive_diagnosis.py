@@ -10,13 +10,13 @@ motion, x = g ∫u dt, and a spring with inertia behind it is what the drive was
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.diagnosis.channel_errors import Channel
-from tsas_cli.diagnosis.diagnose import FEW_BLOCKS, LEFT, MOSTLY_LEFT, MUCH, SEED, SPOKEN, Verdict
+from tsas_cli.diagnosis.diagnose import FEW_BLOCKS, SEED, Verdict, leaves_much, verdict_of
 from tsas_cli.diagnosis.drive_search import EFFECT_OF, NOTHING, DriveSearch
 from tsas_cli.diagnosis.evidence import gain, gain_percent
 from tsas_cli.diagnosis.remainder import DEPENDS, hats, regressed
@@ -88,14 +88,13 @@ def diagnose_drive(
     floor = min(noise, rmse[1])
     channel = Channel(rmse[0], rmse[1], floor, max(floor, rmse[1] * math.sqrt(1.0 - could)))
     verdict = _verdict(search, causes, left, share)
-    much = left > MUCH or (left > 1.0 + BLURRED and share > LEFT)
-    unexplained = verdict == "unexplained" or (bool(causes) and much)
+    unexplained = verdict == "unexplained" or (bool(causes) and leaves_much(left, share))
     found = DriveDiagnosis(
         verdict, "", nominal, explained, causes, channel,
         _gain_percent(search, nominal, explained), left, share if causes else 1.0,
         unexplained, depends if left > 1.0 + BLURRED else (),
     )  # fmt: skip
-    return DriveDiagnosis(**{**vars(found), "reason": _reason(found, start)})
+    return replace(found, reason=_reason(found, start))
 
 
 def _verdict(
@@ -103,11 +102,7 @@ def _verdict(
 ) -> Verdict:
     if search.folds.blocks < FEW_BLOCKS:
         return "undecided"
-    if not causes:
-        return "unexplained" if left > 1.0 + SPOKEN else "sufficient"
-    if share > MOSTLY_LEFT:
-        return "unexplained"
-    return "ambiguous" if any(cause.rivals for cause in causes) else "named"
+    return verdict_of([cause.rivals for cause in causes], left, share)
 
 
 def _cause(
@@ -126,9 +121,7 @@ def _cause(
         if len(own) == 1
         for other in search.rivals(final, term)
     )
-    whole = gain_percent(
-        search.held_out(fewer), search.held_out(final), np.random.default_rng(SEED)
-    )
+    whole = _gain_percent(search, fewer, final)
     kind = " and ".join(KIND[term] for term in sorted(own) if term in KIND)
     told = tuple(estimates[name] for name in PARAMETERS[effect] if name in estimates)
     return DriveCause(effect, kind, tuple(rivals), told, whole[0], (whole[1], whole[2]))

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import pyarrow as pa
 
 from tsas_cli import __version__
@@ -34,6 +35,8 @@ from tsas_cli.identification.transfer_function import bode_curve, poles
 from tsas_cli.numerics.linear_response import Hold
 from tsas_cli.physics.drive import DriveValues
 from tsas_cli.recordings.dataset import Dataset, write_parquet
+
+Floats = npt.NDArray[np.float64]
 
 CURVE_POINTS = 200
 BESIDE_BAND = 1.05  # of its edge, up to which a pole counts as inside
@@ -65,6 +68,7 @@ def identify_drive(
         counted = [np.unique(block, return_inverse=True)[1] for block in blocks]
         fitted = estimates_of(trial, counted, sheet, by_run=folds.by_run)
         found = diagnose_drive(search, final, fitted)
+        by_fit, by_nominal = _simulated(search, final), _simulated(search, found.nominal)
         known = fitted | _given(sheet)
         summary = dataset.header("identify-harmonic-drive", out) | {
             "hold": hold,
@@ -75,7 +79,7 @@ def identify_drive(
             "inverse": inverse_of(trial.values),
             "frequency_response": _response(seen, trial.values),
             "poles": _poles(trial.values, seen),
-            "runs": _runs(search, found, final),
+            "runs": _runs(search, by_fit, by_nominal),
             "fit": {
                 "converged": trial.solution.converged,
                 "message": trial.solution.message,
@@ -89,7 +93,7 @@ def identify_drive(
         write_drive(
             folder / FILE, known, structure, version=__version__, dataset=summary["dataset"]
         )
-        _write_runs(folder / "runs", search, found, final)
+        _write_runs(folder / "runs", search, by_fit, by_nominal)
     return summary
 
 
@@ -183,13 +187,16 @@ def _poles(values: DriveValues, seen: FrequencyResponse) -> list[dict[str, Any]]
     ]
 
 
-def _runs(search: DriveSearch, found: DriveDiagnosis, final: Terms) -> dict[str, Any]:
+def _simulated(search: DriveSearch, terms: Terms) -> list[Floats]:
+    """Return x_in of every run by a set of terms."""
+    values = search.trial(terms).values
+    return [search.bench.simulated(r, values) for r in range(len(search.bench.runs))]
+
+
+def _runs(search: DriveSearch, fitted: list[Floats], nominal: list[Floats]) -> dict[str, Any]:
     out = {}
-    for r, run in enumerate(search.bench.runs):
-        errors = {
-            key: search.bench.simulated(r, search.trial(terms).values) - run.x_in
-            for key, terms in (("rmse", final), ("rmse_nominal", found.nominal))
-        }
+    for run, by_fit, by_nominal in zip(search.bench.runs, fitted, nominal, strict=True):
+        errors = {"rmse": by_fit - run.x_in, "rmse_nominal": by_nominal - run.x_in}
         out[run.id] = {
             "samples": int(run.x_in.size),
             "rate_Hz": 1.0 / run.u.step_s,
@@ -245,12 +252,10 @@ def _cause(cause: DriveCause) -> dict[str, Any]:
     }
 
 
-def _write_runs(folder: Path, search: DriveSearch, found: DriveDiagnosis, final: Terms) -> None:
+def _write_runs(
+    folder: Path, search: DriveSearch, fitted: list[Floats], nominal: list[Floats]
+) -> None:
     folder.mkdir()
-    for r, run in enumerate(search.bench.runs):
-        columns = {
-            "time_s": run.time_s,
-            "x_in_mm": search.bench.simulated(r, search.trial(final).values),
-            "x_in_nominal_mm": search.bench.simulated(r, search.trial(found.nominal).values),
-        }
+    for run, by_fit, by_nominal in zip(search.bench.runs, fitted, nominal, strict=True):
+        columns = {"time_s": run.time_s, "x_in_mm": by_fit, "x_in_nominal_mm": by_nominal}
         write_parquet(folder / f"{run.id}.parquet", pa.table(columns))

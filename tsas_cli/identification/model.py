@@ -90,11 +90,16 @@ def stated_model(manifest: Manifest, path: Path | None) -> Model:
     return stated if path is None else read_model(path).over(stated)
 
 
-def source_of(path: Path | None) -> dict[str, str]:
-    """Return what a stage writes of the model that it has read: its file and checksum."""
+def source_of(
+    path: Path | None, name: str = FILE, *, without: str = "data sheet"
+) -> dict[str, str]:
+    """Return what a stage writes of the model that it has read: its file and checksum.
+
+    `name` is that of the file in a folder, `without` what was taken where none was given.
+    """
     if path is None:
-        return {"file": "data sheet"}
-    path = path / FILE if path.is_dir() else path
+        return {"file": without}
+    path = path / name if path.is_dir() else path
     return {"file": path.name, "sha256": sha256_of(path)}
 
 

@@ -13,10 +13,9 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.controllers.path import Path
-from tsas_cli.identification.model import data_sheet
 from tsas_cli.numerics.side_by_side import each
 from tsas_cli.tracking.conditions import Condition, proximal_spring
-from tsas_cli.tracking.recorded import conditions, manifest
+from tsas_cli.tracking.recorded import stated_rig
 from tsas_cli.tracking.references import reference
 from tsas_cli.tracking.scores import Score
 from tsas_cli.tracking.settings import Settings, printed_gains
@@ -38,7 +37,7 @@ def settings_for(reading: Reading) -> Settings:
 
 def paper_plant(settings: Settings, condition: str) -> tuple[Known, Plant]:
     """Return what the controllers know, the paper's models, and the plant."""
-    rig = data_sheet(manifest(("track",), settings)).rig(conditions("track", settings))
+    rig = stated_rig(settings)
     plant = Plant(rig, settings.drive.actuator())
     return Known(rig, settings.drive.kinematic()), CONDITIONS[condition].of(plant)
 

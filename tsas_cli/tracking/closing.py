@@ -16,11 +16,11 @@ import pyarrow as pa
 from tsas_cli.diagnosis.diagnose_stage import EXTENDED, diagnose_dataset
 from tsas_cli.diagnosis.drive_stage import identify_drive
 from tsas_cli.identification.calibrate_stage import calibrate_dataset
-from tsas_cli.identification.model import FILE, data_sheet, read_model
+from tsas_cli.identification.model import FILE, read_model
 from tsas_cli.physics.rig import Rig, with_values
 from tsas_cli.recordings.dataset import read_dataset, write_dataset
 from tsas_cli.tracking.closing_drive import known_drives, record_drive
-from tsas_cli.tracking.recorded import conditions, manifest, table_of
+from tsas_cli.tracking.recorded import conditions, manifest, stated_rig, table_of
 from tsas_cli.tracking.references import reference
 from tsas_cli.tracking.scores import over_seeds
 from tsas_cli.tracking.settings import CONTROLLERS, Settings
@@ -80,7 +80,7 @@ def close(
     InputError
         As the stages raise it.
     """
-    sheet = data_sheet(manifest(("track",), settings)).rig(conditions("track", settings))
+    sheet = stated_rig(settings)
     plant = Plant(with_values(sheet, case.hidden), settings.drive.actuator())
     find = _find_drive if case.name == "drive" else _find_tendon
     found, models = find(plant, sheet, settings, folder, step)

@@ -3,8 +3,7 @@
 import math
 from pathlib import Path
 
-from tsas_cli.files import sha256_of
-from tsas_cli.identification.drive_file import FILE, IdentifiedDrive, read_drive
+from tsas_cli.identification.drive_file import IdentifiedDrive, read_drive
 from tsas_cli.physics.capstan import speed_per_stiffness
 from tsas_cli.physics.plant import Actuator
 from tsas_cli.tracking.settings import DriveSettings
@@ -44,11 +43,3 @@ def actuator_of(drive: IdentifiedDrive, speed_limit_rpm: float) -> Actuator:
         drive.motor_lag_s + drive.delay_s,
         speed_limit_rpm,
     )
-
-
-def source_of_drive(path: Path | None) -> dict[str, str]:
-    """Return what a stage writes of the drive file that it has read."""
-    if path is None:
-        return {"file": "kinematics"}
-    path = path / FILE if path.is_dir() else path
-    return {"file": path.name, "sha256": sha256_of(path)}

@@ -16,6 +16,7 @@ from tsas_cli.controllers.closed_loop import (
     X_SEEN,
 )
 from tsas_cli.controllers.path import Path
+from tsas_cli.identification.model import Model, data_sheet
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.sensors import reading
 from tsas_cli.recordings.manifest import Manifest, Run
@@ -73,6 +74,16 @@ def conditions(run_id: str, settings: Settings) -> Run:
         total_bend_rad=settings.rig.total_bend_rad,
         preload_N=settings.rig.preload_N,
     )
+
+
+def stated_model(settings: Settings) -> Model:
+    """Return the model that the settings' data sheet states."""
+    return data_sheet(manifest(("track",), settings))
+
+
+def stated_rig(settings: Settings) -> Rig:
+    """Return the rig of that model under the settings' conditions."""
+    return stated_model(settings).rig(conditions("track", settings))
 
 
 def manifest(run_ids: Mapping[str, object] | tuple[str, ...], settings: Settings) -> Manifest:

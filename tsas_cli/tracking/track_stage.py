@@ -15,12 +15,13 @@ from tsas_cli import __version__
 from tsas_cli.controllers.path import Path as DrivePath
 from tsas_cli.errors import InputError, nearest
 from tsas_cli.files import new_folder, sha256_of, write_json
-from tsas_cli.identification.model import data_sheet, read_model, source_of
+from tsas_cli.identification.drive_file import FILE as DRIVE_FILE
+from tsas_cli.identification.model import read_model, source_of
 from tsas_cli.recordings.dataset import write_dataset
 from tsas_cli.tracking.conditions import Condition
-from tsas_cli.tracking.drives import known_drive, source_of_drive
+from tsas_cli.tracking.drives import known_drive
 from tsas_cli.tracking.dynamic_notes import dynamic_notes
-from tsas_cli.tracking.recorded import conditions, manifest, table_of
+from tsas_cli.tracking.recorded import conditions, manifest, stated_model, table_of
 from tsas_cli.tracking.references import reference
 from tsas_cli.tracking.scores import over_seeds
 from tsas_cli.tracking.settings import CONTROLLERS, Settings, printed_gains, read_settings
@@ -120,7 +121,7 @@ def what_is_known(call: Call, settings: Settings) -> tuple[Known, Plant]:
         A model file is wrong.
     """
     run = conditions("track", settings)
-    stated = data_sheet(manifest(("track",), settings))
+    stated = stated_model(settings)
     model = stated if call.model is None else read_model(call.model).over(stated)
     real = model if call.plant is None else read_model(call.plant).over(stated)
     actuator = settings.drive.actuator()
@@ -152,7 +153,7 @@ def _header(call: Call, settings: Settings) -> dict[str, Any]:
         "version": __version__,
         "model": source_of(call.model),
         "plant": source_of(call.plant or call.model),
-        "drive": source_of_drive(call.drive),
+        "drive": source_of(call.drive, DRIVE_FILE, without="kinematics"),
         "settings": {
             "file": file,
             "sha256": checksum,

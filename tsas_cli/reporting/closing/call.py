@@ -3,14 +3,14 @@
 from collections.abc import Iterator
 
 from tsas_cli.reporting.closing_file import Closing
-from tsas_cli.tracking.closing import CASES
-from tsas_cli.tracking.settings import Settings
 
 SETTINGS = "settings.toml"
 
 
 def options(closing: Closing) -> Iterator[str]:
     """Yield the options; settings that are not the defaults as if they stood in `SETTINGS`."""
+    from tsas_cli.tracking.closing import CASES
+
     names = [case.case for case in closing.cases]
     if set(names) <= {case.name for case in CASES}:
         yield from ("--cases", ",".join(names))
@@ -26,4 +26,6 @@ def options(closing: Closing) -> Iterator[str]:
 
 def own_settings(closing: Closing) -> bool:
     """Return whether the settings are others than the defaults."""
+    from tsas_cli.tracking.settings import Settings
+
     return closing.settings != Settings().model_dump(mode="json", by_alias=True)
