@@ -7,7 +7,8 @@ from typing import Annotated
 
 import typer
 
-from tsas_cli.commands.common import Force, Json, OutFolder, Quiet, progress, show
+from tsas_cli.commands.common import Force, Json, OutFolder, Quiet, show
+from tsas_cli.commands.progress import progress
 
 challenge = typer.Typer(
     name="challenge",
@@ -76,7 +77,7 @@ def make(
         raise InputError("--small keeps no case of --kind pair", remedy="leave one of them out")
     with (
         new_folder(out, force=force) as folder,
-        progress("challenge", len(listed), quiet=quiet or as_json) as step,
+        progress("challenge", len(listed), quiet=quiet) as step,
     ):
         make_set(folder, listed, rate_Hz=rate, step=step)
     kinds = Counter(case.kind for case in listed)
@@ -114,7 +115,7 @@ def run(
     from tsas_cli.challenge.run import TOOLS, case_folders, run_cases
 
     cases = len(case_folders(sealed))
-    with progress("challenge", cases, quiet=quiet or as_json) as step:
+    with progress("challenge", cases, quiet=quiet) as step:
         log = run_cases(sealed, out, workers=workers, force=force, diagnose=TOOLS[tool], step=step)
     title = f"{out}: {log['answered']} of {cases} cases answered"
     table = (title, ("no answer", "reason"), list(log["no_answer"].items()))
