@@ -1,6 +1,7 @@
 """What a shell completes beside options and files; nothing here loads a heavy library."""
 
 import tomllib
+from collections.abc import Sequence
 from pathlib import Path
 
 import typer
@@ -9,13 +10,14 @@ import tsas_cli
 from tsas_cli.controllers import CONTROLLERS
 from tsas_cli.tracking import SHAPE_NAMES
 
-ABOUT_EFFECTS = ("__init__", "effect")  # files beside those of the effects
+ABOUT_EFFECTS = {"__init__", "effect"}  # files beside those of the effects
 
 
 def effect_names(incomplete: str) -> list[str]:
     """Return the effects that begin so: each is a file."""
     files = (Path(tsas_cli.__file__).parent / "effects").glob("*.py")
-    return [name for name in sorted(f.stem for f in files) if _fits(name, incomplete)]
+    names = sorted({file.stem for file in files} - ABOUT_EFFECTS)
+    return [name for name in names if name.startswith(incomplete)]
 
 
 def controllers(incomplete: str) -> list[str]:
@@ -30,19 +32,19 @@ def references(incomplete: str) -> list[str]:
 
 def run_ids(context: typer.Context, incomplete: str) -> list[str]:
     """Return the lists of runs that continue what is there, of the dataset that was named."""
+    manifests = (Path(word) / "dataset.toml" for word in context.args)
+    manifest = next((path for path in manifests if path.is_file()), None)
+    if manifest is None:
+        return []  # none was named yet
     try:
-        text = (Path(context.params["dataset"]) / "dataset.toml").read_text(encoding="utf-8")
-        ids = [str(run["id"]) for run in tomllib.loads(text)["run"]]
+        runs = tomllib.loads(manifest.read_text(encoding="utf-8"))["run"]
+        ids = [str(run["id"]) for run in runs]
     except (KeyError, TypeError, OSError, ValueError):
-        return []  # no dataset yet, or none that could be read
+        return []  # what is wrong with it, the command will say
     return _continued(ids, incomplete)
 
 
-def _fits(name: str, incomplete: str) -> bool:
-    return name not in ABOUT_EFFECTS and name.startswith(incomplete)
-
-
-def _continued(words: "tuple[str, ...] | list[str]", incomplete: str) -> list[str]:
+def _continued(words: Sequence[str], incomplete: str) -> list[str]:
     """Return the words that fit after the last comma, with what stands before it."""
     before, comma, begun = incomplete.rpartition(",")
     told = before.split(",")
