@@ -51,7 +51,7 @@ def diagnosis(inputs: Inputs) -> str | None:
 
 def _short(inputs: Inputs) -> Iterator[Section]:
     if found := inputs.get(Diagnosis):
-        tables = (_causes(found.named), gains.table(found))
+        tables = (_causes(found.named), _held_out(found))
         after = (f"Next: {found.next_experiment}",) if found.next_experiment else ()
         yield Section(
             "diagnosis", "Diagnosis", (found.reason,), tables=_filled(tables), closing=after
@@ -91,6 +91,15 @@ def _causes(named: tuple[Cause, ...]) -> Table:
         rows,
         numeric=frozenset({1, 2}),
     )
+
+
+def _held_out(found: Diagnosis) -> Table:
+    rows = tuple(
+        (name, plain(c.rmse_before, 3), plain(c.rmse_after, 3), plain(c.noise_floor, 3), c.unit)
+        for name, c in found.channels.items()
+    )
+    header = ("channel", "before", "after", "noise", "unit")
+    return Table("Error on held-out data", header, rows, numeric=frozenset({1, 2, 3}))
 
 
 def _errors(simulation: Simulation) -> Table:
