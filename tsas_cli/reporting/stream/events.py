@@ -37,7 +37,7 @@ def record_events(recorder: Recorder, run: SeenRun, kind: str, events: Sequence[
         recorder.events(
             (*events_of(run), kind),
             run.clock.times(np.array([event.at_s for event in events])),
-            [event.text for event in events],
+            [f"{event.at_s:.3f} s: {event.text}" for event in events],
             [event.level for event in events],
         )
 
