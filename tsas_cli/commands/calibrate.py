@@ -14,6 +14,8 @@ from tsas_cli.commands.common import (
     Json,
     OutFolder,
     Quiet,
+    Rrd,
+    add_stream,
     names,
     present,
 )
@@ -41,6 +43,7 @@ def calibrate(
         ),
     ] = DynamicsOption.slip,
     runs: ChosenRuns = None,
+    rrd: Rrd = False,
     force: Force = False,
     quiet: Quiet = False,
     as_json: Json = False,
@@ -56,4 +59,6 @@ def calibrate(
             force=force,
             step=step,
         )
+    if rrd:
+        add_stream(out, quiet=quiet or as_json)
     present(result, quiet=quiet, as_json=as_json)

@@ -12,10 +12,13 @@ from tsas_cli.commands.common import (
     Force,
     Json,
     Quiet,
+    Rrd,
+    add_stream,
     names,
     present,
 )
 from tsas_cli.commands.progress import progress
+from tsas_cli.errors import InputError
 
 
 def check(
@@ -24,11 +27,16 @@ def check(
         Path | None, typer.Option("--out", metavar="DIR", help="Also write DIR/check.json.")
     ] = None,
     runs: ChosenRuns = None,
+    rrd: Rrd = False,
     force: Force = False,
     quiet: Quiet = False,
     as_json: Json = False,
 ) -> None:
     """Say what is wrong with recordings before anyone fits anything."""
+    if rrd and out is None:
+        raise InputError("--rrd has no folder to write to", remedy="give one with --out")
     with progress("check", quiet=quiet) as step:
         result = tsas.check(dataset, out=out, runs=names(runs), force=force, step=step)
+    if rrd and out is not None:
+        add_stream(out, quiet=quiet or as_json)
     present(result, quiet=quiet, as_json=as_json)

@@ -6,7 +6,16 @@ from typing import Annotated
 import typer
 
 import tsas_cli as tsas
-from tsas_cli.commands.common import Force, Json, OutFolder, Quiet, names, present
+from tsas_cli.commands.common import (
+    Force,
+    Json,
+    OutFolder,
+    Quiet,
+    Rrd,
+    add_stream,
+    names,
+    present,
+)
 from tsas_cli.commands.progress import progress
 
 
@@ -26,6 +35,7 @@ def close_loop(
     ] = None,
     seeds: Annotated[int, typer.Option(min=1, help="How many seeds of noise.")] = 5,
     seed: Annotated[int, typer.Option(min=0, help="The first of them.")] = 1,
+    rrd: Rrd = False,
     force: Force = False,
     quiet: Quiet = False,
     as_json: Json = False,
@@ -42,4 +52,9 @@ def close_loop(
             force=force,
             step=step,
         )
+    if rrd:
+        for case in result.summary["cases"]:
+            folder = out / case["case"]
+            stages = (folder / name for name in ("dataset", "calibrate", "diagnose"))
+            add_stream(folder, *stages, quiet=quiet or as_json)
     present(result, quiet=quiet, as_json=as_json)

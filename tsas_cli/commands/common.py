@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from tsas_cli.commands.completion import run_ids
+from tsas_cli.commands.progress import progress
 from tsas_cli.errors import printable
 
 if TYPE_CHECKING:
@@ -29,6 +30,9 @@ ChosenRuns = Annotated[
     ),
 ]
 Force = Annotated[bool, typer.Option("--force", help="Replace the output if it is there.")]
+Rrd = Annotated[
+    bool, typer.Option("--rrd", help="Also write DIR/stream.rrd, to be looked at with tsas view.")
+]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
 Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON instead of a table.")]
 
@@ -44,6 +48,25 @@ def present(result: "Result", *, quiet: bool, as_json: bool) -> None:
         for line in result.intro():
             print(line)
     show(result.summary, result.tables(), result.sentences(), quiet=quiet, as_json=as_json)
+
+
+def add_stream(folder: Path, *folders: Path, quiet: bool) -> None:
+    """Write `stream.rrd` into a folder that a stage has finished.
+
+    It shows what stands in that folder, or in `folders` where they are given.
+
+    Raises
+    ------
+    InputError
+        A file cannot be read.
+    """
+    from tsas_cli.reporting.inputs import read_inputs
+    from tsas_cli.reporting.stream import FILE, write_stream
+
+    inputs = read_inputs(folders or (folder,))
+    runs = 0 if inputs.dataset is None else len(inputs.dataset.runs)
+    with progress("recording", runs, quiet=quiet) as step:
+        write_stream(inputs, folder / FILE, force=True, step=step)
 
 
 def show(

@@ -9,6 +9,8 @@ from tsas_cli.commands.common import (
     ModelFile,
     OutFolder,
     Quiet,
+    Rrd,
+    add_stream,
     names,
     present,
 )
@@ -20,6 +22,7 @@ def diagnose(
     out: OutFolder,
     model: ModelFile = None,
     runs: ChosenRuns = None,
+    rrd: Rrd = False,
     force: Force = False,
     quiet: Quiet = False,
     as_json: Json = False,
@@ -29,4 +32,6 @@ def diagnose(
         result = tsas.diagnose(
             dataset, out=out, model=model, runs=names(runs), force=force, step=step
         )
+    if rrd:
+        add_stream(out, quiet=quiet or as_json)
     present(result, quiet=quiet, as_json=as_json)

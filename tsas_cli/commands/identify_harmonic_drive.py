@@ -13,6 +13,8 @@ from tsas_cli.commands.common import (
     Json,
     OutFolder,
     Quiet,
+    Rrd,
+    add_stream,
     names,
     present,
 )
@@ -39,6 +41,7 @@ def identify_harmonic_drive(
         ),
     ] = SpeedOption.measured,
     runs: ChosenRuns = None,
+    rrd: Rrd = False,
     force: Force = False,
     quiet: Quiet = False,
     as_json: Json = False,
@@ -48,4 +51,6 @@ def identify_harmonic_drive(
         result = tsas.identify_harmonic_drive(
             dataset, out=out, speed=speed.value, runs=names(runs), force=force, step=step
         )
+    if rrd:
+        add_stream(out, quiet=quiet or as_json)
     present(result, quiet=quiet, as_json=as_json)

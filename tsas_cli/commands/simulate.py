@@ -14,6 +14,8 @@ from tsas_cli.commands.common import (
     ModelFile,
     OutFolder,
     Quiet,
+    Rrd,
+    add_stream,
     names,
     present,
 )
@@ -45,6 +47,7 @@ def simulate(
         typer.Option(help="Nodes of the chain, 2 to 1000, where not as usual."),
     ] = None,
     runs: ChosenRuns = None,
+    rrd: Rrd = False,
     force: Force = False,
     quiet: Quiet = False,
     as_json: Json = False,
@@ -62,4 +65,6 @@ def simulate(
             force=force,
             step=step,
         )
+    if rrd:
+        add_stream(out, quiet=quiet or as_json)
     present(result, quiet=quiet, as_json=as_json)

@@ -7,7 +7,16 @@ from typing import Annotated
 import typer
 
 import tsas_cli as tsas
-from tsas_cli.commands.common import Force, Json, OutFolder, Quiet, names, present
+from tsas_cli.commands.common import (
+    Force,
+    Json,
+    OutFolder,
+    Quiet,
+    Rrd,
+    add_stream,
+    names,
+    present,
+)
 from tsas_cli.commands.completion import controllers, references
 from tsas_cli.commands.progress import progress
 
@@ -70,6 +79,7 @@ def track(
     ] = None,
     seeds: Annotated[int | None, typer.Option(min=1, help="How many seeds of noise.")] = None,
     seed: Annotated[int, typer.Option(min=0, help="The first of them.")] = 1,
+    rrd: Rrd = False,
     force: Force = False,
     quiet: Quiet = False,
     as_json: Json = False,
@@ -93,4 +103,6 @@ def track(
             force=force,
             step=step,
         )
+    if rrd:
+        add_stream(out, quiet=quiet or as_json)
     present(result, quiet=quiet, as_json=as_json)

@@ -13,6 +13,7 @@ from tsas_cli.files import folder_if, write_json
 from tsas_cli.identification.base_fit import with_own_values
 from tsas_cli.identification.comparison import Compared, compare
 from tsas_cli.identification.model import Model, data_sheet, model_of, source_of
+from tsas_cli.identification.phases import segment, segments_as_json
 from tsas_cli.identification.prepared import Prepared, prepare
 from tsas_cli.physics.chain_state import MOST_NODES
 from tsas_cli.physics.response import Dynamics
@@ -86,6 +87,7 @@ def simulate_dataset(
     taken = data_sheet(dataset.manifest) if model is None else model_of(model)
     summary = dataset.header("simulate", out) | {"model": source_of(model)}
     summary |= {"dynamics": dynamics, "nodes": nodes, "own_values_fitted": fit_own, "runs": {}}
+    summary["segments"] = {}
     runs = {}
     with folder_if(out, force=force) as folder:
         step.ahead(len(dataset.runs))
@@ -95,6 +97,7 @@ def simulate_dataset(
             answer = compare(run, own, dynamics, nodes)
             runs[run.run.id] = Recording(run.run, _columns(run, answer))
             summary["runs"][run.run.id] = answer.as_json(run)
+            summary["segments"][run.run.id] = segments_as_json(run, segment(run))
             step()
         summary["notes"] = _notes(summary["runs"])
         if folder is not None:

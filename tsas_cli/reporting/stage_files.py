@@ -28,9 +28,10 @@ class StageFile(Record):
 
 
 class OfDataset(StageFile):
-    """What a stage says that has read a dataset."""
+    """What a stage says that has read a dataset; `chosen` are the runs, None where it is all."""
 
     dataset: Source
+    chosen: tuple[str, ...] | None = None
 
 
 class Finding(Record):
@@ -42,6 +43,7 @@ class Finding(Record):
     column: str | None = None
     sentence: str
     remedy: str = ""
+    first_s: float | None = None
 
 
 class NotChecked(Record):
@@ -168,6 +170,7 @@ class Simulation(OfDataset):
     own_values_fitted: bool = False
     notes: tuple[str, ...] = ()
     runs: dict[str, SimulatedRun]
+    segments: dict[str, tuple[Segment, ...]] = {}
 
 
 class CauseParameter(Record):
@@ -274,3 +277,4 @@ class Diagnosis(OfDataset):
     evidence: Evidence = Evidence()
     cannot_tell: tuple[str, ...] = ()
     solver: str = ""
+    segments: dict[str, tuple[Segment, ...]] = {}
