@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tsas_cli.errors import printable
+from tsas_cli.commands.tables import print_table
 
 if TYPE_CHECKING:
     from tsas_cli.recordings.dataset import Dataset
@@ -56,19 +56,7 @@ def show(
         sys.stdout.write(json_text(summary))
     elif not quiet:
         for title, header, rows in tables:
-            _print_table(title, header, rows)
-
-
-def _print_table(title: str, header: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
-    print(printable(title))
-    if rows:
-        lines = [[printable(str(cell)) for cell in row] for row in (header, *rows)]
-        widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
-        lines.insert(1, ["-" * width for width in widths])
-        for line in lines:
-            cells = (cell.ljust(width) for cell, width in zip(line, widths, strict=True))
-            print("  " + "  ".join(cells).rstrip())
-    print()
+            print_table(title, header, rows)
 
 
 @contextmanager

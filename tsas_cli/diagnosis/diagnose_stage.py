@@ -15,7 +15,7 @@ from tsas_cli.diagnosis.search import Search
 from tsas_cli.effects import EFFECTS
 from tsas_cli.files import new_folder, write_json
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.model import source_of, stated_model, write_model
+from tsas_cli.identification.model import fitted_to, source_of, stated_model, write_model
 from tsas_cli.identification.prepared import prepare
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.dataset import Dataset
@@ -56,7 +56,7 @@ def diagnose_dataset(
         summary |= as_json(result)
         write_json(folder / "diagnosis.json", summary)
         write_model(
-            folder / EXTENDED, result.model, version=__version__, dataset=summary["dataset"]
+            folder / EXTENDED, result.model, version=__version__, dataset=fitted_to(summary)
         )
     return summary
 

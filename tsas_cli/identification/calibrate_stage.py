@@ -13,6 +13,7 @@ from tsas_cli.identification.model import (
     FILE,
     Model,
     data_sheet,
+    fitted_to,
     source_of,
     stated_model,
     write_model,
@@ -61,7 +62,7 @@ def calibrate_dataset(
         summary = dataset.header("calibrate", out) | {"model": source_of(model_path)}
         summary["dynamics"] = dynamics
         summary |= _summary(result, dataset.manifest)
-        write_model(folder / FILE, result.model, version=__version__, dataset=summary["dataset"])
+        write_model(folder / FILE, result.model, version=__version__, dataset=fitted_to(summary))
         write_json(folder / "calibration.json", summary)
     return summary
 
