@@ -210,7 +210,6 @@ def test_what_cannot_be_compared_is_refused(root, tmp_path):
         (model, tmp_path / "two", {}, "calibration.json and simulation.json"),
         (model, tmp_path / "s", {}, "nothing to compare"),
         (tmp_path / "s", tmp_path / "s", {"on": data}, "does not hold its model"),
-        (model, model, {"fit_own": True}, "--on DATASET"),
     ):
         with pytest.raises(InputError, match=said):
             compare(a, b, **more)

@@ -80,7 +80,7 @@ def compare(
         A or B is none of these, there is nothing that both hold, or a recording cannot be read.
     """
     sides = read_side(a), read_side(b)
-    _refuse(sides, on=on, fit_own=fit_own)
+    _refuse(sides, on)
     answers = Answers(step)
     answered = [
         answers.of(side, on or (None if side.kind == "model" else side.dataset), fit_own=fit_own)
@@ -99,7 +99,7 @@ def compare(
     )
 
 
-def _refuse(sides: tuple[Side, Side], *, on: Dataset | None, fit_own: bool) -> None:
+def _refuse(sides: tuple[Side, Side], on: Dataset | None) -> None:
     """Refuse what has nothing in common, or asks for a model where there is none."""
     without = [side for side in sides if side.model is None]
     if without and on is not None:
@@ -114,13 +114,6 @@ def _refuse(sides: tuple[Side, Side], *, on: Dataset | None, fit_own: bool) -> N
             where=without[0].path,
             expected="two models, or two folders that hold errors",
             remedy="give the simulation's model, or simulate the other one too",
-        )
-    if fit_own and on is None:
-        raise InputError(
-            "there are no recordings to fit each run's own values to",
-            where="--fit-own",
-            expected="a dataset to hold both models to",
-            remedy="add --on DATASET",
         )
     gone = [side for side in without if side.dataset is None]
     if gone:
