@@ -9,6 +9,7 @@ from tsas_cli.comparing.compare import compare
 from tsas_cli.comparing.sentences import findings, notes
 from tsas_cli.comparing.stage import as_json, tables
 from tsas_cli.errors import InputError
+from tsas_cli.identification.calibrate_stage import calibrate_dataset
 from tsas_cli.identification.simulation import simulate_dataset
 from tsas_cli.recordings.dataset import read_dataset
 
@@ -190,6 +191,9 @@ def test_a_dataset_that_is_gone_or_has_changed_leaves_the_values(root, tmp_path)
     it = compare(root / "calibrated-2", tmp_path / "calibrated-1")
     assert [p.name for p in it.differing] == ["friction_coefficient"]
     assert any("has changed" in note for note in notes(it))
+    (tmp_path / "data-1" / "dataset.toml").write_text("what?")
+    it = compare(root / "calibrated-2", tmp_path / "calibrated-1")
+    assert any("is not TOML" in note for note in notes(it))
     shutil.rmtree(tmp_path / "data-1")
     it = compare(root / "calibrated-2", tmp_path / "calibrated-1")
     assert [p.name for p in it.differing] == ["friction_coefficient"]
@@ -213,6 +217,17 @@ def test_what_cannot_be_compared_is_refused(root, tmp_path):
     ):
         with pytest.raises(InputError, match=said):
             compare(a, b, **more)
+
+
+def test_runs_of_one_dataset_that_were_fitted_apart_are_independent(root, tmp_path):
+    data = read_dataset(root / "data-1")
+    for run in ("slow", "fast"):
+        calibrate_dataset(data.only([run]), tmp_path / run)
+    for pair in (("slow", "fast"), ("slow/model.toml", "fast/model.toml")):
+        it = compare(*(tmp_path / name for name in pair))
+        assert it.overlap == "none"
+        assert it.tested
+        assert it.differing == []
 
 
 def test_a_series_of_another_length_is_refused(root, tmp_path):

@@ -134,7 +134,10 @@ def _dataset(
     folder = Path(os.path.normpath(home / source.folder))
     if not source.folder or not (folder / MANIFEST).is_file():
         return None, f"the dataset {source.name} is no longer at {folder}"
-    dataset = read_dataset(folder)
+    try:
+        dataset = read_dataset(folder)
+    except InputError as error:
+        return None, error.line()
     then = {file: digest.lower() for file, digest in source.hashes.items()}
     if then != {file: digest.lower() for file, digest in dataset.hashes().items()}:
         return None, f"the dataset {folder} has changed since it was read"
