@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from tsas_cli.api.catalogue import catalogue, explain
     from tsas_cli.api.check import check
     from tsas_cli.api.close_loop import close_loop
+    from tsas_cli.api.compare import compare
     from tsas_cli.api.diagnose import diagnose
     from tsas_cli.api.identify_harmonic_drive import identify_harmonic_drive
     from tsas_cli.api.ingest import ingest
@@ -34,6 +35,7 @@ __all__ = [
     "catalogue",
     "check",
     "close_loop",
+    "compare",
     "diagnose",
     "explain",
     "identify_harmonic_drive",

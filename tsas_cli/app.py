@@ -11,6 +11,7 @@ from tsas_cli.commands.calibrate import calibrate
 from tsas_cli.commands.challenge import challenge
 from tsas_cli.commands.check import check
 from tsas_cli.commands.close_loop import close_loop
+from tsas_cli.commands.compare import compare
 from tsas_cli.commands.diagnose import diagnose
 from tsas_cli.commands.effects import effects
 from tsas_cli.commands.explain import explain
@@ -52,6 +53,7 @@ app.command("calibrate")(calibrate)
 app.command("identify-harmonic-drive")(identify_harmonic_drive)
 app.command("simulate")(simulate)
 app.command("diagnose")(diagnose)
+app.command("compare")(compare)
 app.command("plan")(plan)
 app.command("track")(track)
 app.command("close-loop")(close_loop)

@@ -1,13 +1,14 @@
 """What a stage hands back: the content of its JSON file, and the tables and sentences of it."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
 from typing import Any
 
 from tsas_cli.errors import printable
+from tsas_cli.text_table import table_text
 
 Table = tuple[str, Sequence[str], Sequence[Sequence[str]]]
 
@@ -45,7 +46,7 @@ class Result(ABC):
 
     def __repr__(self) -> str:
         """Return what the command prints."""
-        lines = [line for table in self.tables() for line in (*table_lines(*table), "")]
+        lines = [line for table in self.tables() for line in (*table_text(*table), "")]
         return "\n".join([*self.intro(), *lines, *self.sentences()]).rstrip("\n")
 
     def _repr_html_(self) -> str:
@@ -58,19 +59,6 @@ class Result(ABC):
 def notes(sentences: Sequence[str]) -> list[str]:
     """Return sentences as the list below a stage's tables."""
     return [f"- {sentence}" for sentence in sentences]
-
-
-def table_lines(title: str, header: Sequence[str], rows: Sequence[Sequence[str]]) -> Iterator[str]:
-    """Yield the lines of a table of text: its title, and its columns aligned."""
-    yield printable(title)
-    if not rows:
-        return
-    lines = [[printable(str(cell)) for cell in row] for row in (header, *rows)]
-    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
-    lines.insert(1, ["-" * width for width in widths])
-    for line in lines:
-        cells = (cell.ljust(width) for cell, width in zip(line, widths, strict=True))
-        yield "  " + "  ".join(cells).rstrip()
 
 
 def _html(title: str, header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:

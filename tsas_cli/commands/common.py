@@ -1,5 +1,6 @@
 """What the subcommands share: their options, and how a result and hints are printed."""
 
+import shutil
 import sys
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -10,6 +11,7 @@ import typer
 from tsas_cli.commands.completion import run_ids
 from tsas_cli.commands.progress import progress
 from tsas_cli.errors import printable
+from tsas_cli.text_table import table_text
 
 if TYPE_CHECKING:
     from tsas_cli.result import Result
@@ -35,6 +37,9 @@ Rrd = Annotated[
 ]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
 Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON instead of a table.")]
+
+
+NARROWEST = 16  # columns of a terminal that are made use of
 
 
 def names(listed: str | None) -> list[str] | None:
@@ -84,24 +89,20 @@ def show(
         sys.stdout.write(json_text(summary))
     elif not quiet:
         for title, header, rows in tables:
-            _print_table(title, header, rows)
+            for line in table_text(title, header, rows, _terminal_width()):
+                print(line)
+            print()
         for sentence in sentences:
             print(printable(sentence))
+
+
+def _terminal_width() -> int | None:
+    if not sys.stdout.isatty():
+        return None
+    return max(shutil.get_terminal_size().columns, NARROWEST)
 
 
 def hint(text: str, *, quiet: bool, as_json: bool) -> None:
     """Say to a person at a terminal, on standard error, what else the program can do."""
     if sys.stderr.isatty() and not (quiet or as_json):
         print(text, file=sys.stderr)
-
-
-def _print_table(title: str, header: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
-    print(printable(title))
-    if rows:
-        lines = [[printable(str(cell)) for cell in row] for row in (header, *rows)]
-        widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
-        lines.insert(1, ["-" * width for width in widths])
-        for line in lines:
-            cells = (cell.ljust(width) for cell, width in zip(line, widths, strict=True))
-            print("  " + "  ".join(cells).rstrip())
-    print()

@@ -17,7 +17,7 @@ from tsas_cli.effects import EFFECTS
 from tsas_cli.files import folder_if, write_json
 from tsas_cli.identification.comparison import compare
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.model import Model, source_of, stated_model, write_model
+from tsas_cli.identification.model import Model, fitted_to, source_of, stated_model, write_model
 from tsas_cli.identification.phases import segment, segments_as_json
 from tsas_cli.identification.prepared import Prepared, prepare
 from tsas_cli.recordings.columns import BY_NAME, nominal_name
@@ -115,7 +115,7 @@ def diagnose_dataset(
 def _write(folder: Path, summary: dict[str, Any], result: Diagnosis, runs: list[Prepared]) -> None:
     write_json(folder / "diagnosis.json", summary)
     for name, model in ((EXTENDED, result.model), (NOMINAL, result.nominal)):
-        write_model(folder / name, model, version=__version__, dataset=summary["dataset"])
+        write_model(folder / name, model, version=__version__, dataset=fitted_to(summary))
     (folder / "runs").mkdir()
     for run in runs:
         table = _answers(run, result.model, result.nominal)

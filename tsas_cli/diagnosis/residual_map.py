@@ -1,5 +1,6 @@
 """Where the simulation is wrong: the error of each channel over each signal, bin by bin."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,8 @@ from tsas_cli.identification.extension import Bench, Trial
 Floats = npt.NDArray[np.float64]
 
 BINS = 12
+RUN = "run"
+LABELS = (RUN, DIRECTION)
 
 
 def residual_map(bench: Bench, trial: Trial) -> dict[str, Any]:
@@ -23,7 +26,7 @@ def residual_map(bench: Bench, trial: Trial) -> dict[str, Any]:
     for k, run_errors in enumerate(bench.errors_for(trial)):
         run, rig = run_errors.run, bench.rig(trial, k)
         signals = signals_of(run, run_errors.answers(rig)["f_in_N"])
-        signals["run"] = np.full(run.time_s.size, float(k))
+        signals[RUN] = np.full(run.time_s.size, float(k))
         for channel, values in run_errors.errors(rig).items():
             errors.setdefault(channel, []).append(-values)
             at = run_errors.samples[channel]
@@ -39,14 +42,33 @@ def residual_map(bench: Bench, trial: Trial) -> dict[str, Any]:
     }
 
 
-def _bins(signal: Floats, error: Floats, name: str, ids: list[str]) -> list[dict[str, Any]]:
-    """Return bins of one signal, with equal counts, or one for each value that is a label."""
-    if name in ("run", DIRECTION):
-        values = np.unique(signal)
-        labels = ids if name == "run" else ["letting go", "pulling"]
-        parts = [(labels[int(v if name == "run" else v > 0.0)], signal == v) for v in values]
+def edges_of(signal: Floats, name: str) -> Floats:
+    """Return the edges of bins with equal counts; of a signal that is a label its values."""
+    if name in LABELS:
+        return np.unique(signal)
+    return np.unique(np.quantile(signal, np.linspace(0.0, 1.0, BINS + 1)))
+
+
+def binned(
+    signal: Floats, error: Floats, edges: Floats, name: str, ids: Sequence[str] = ()
+) -> list[dict[str, Any]]:
+    """Return the bins between the edges, or one for each value that is a label.
+
+    Parameters
+    ----------
+    signal, error
+        At the same samples, shape (n,) each.
+    edges
+        What `edges_of` gives for this signal, or for more of its samples.
+    name
+        Of the signal.
+    ids
+        Of the runs, where the signal is the run's number.
+    """
+    if name in LABELS:
+        labels = ids if name == RUN else ["letting go", "pulling"]
+        parts = [(labels[int(v if name == RUN else v > 0.0)], signal == v) for v in edges]
     else:
-        edges = np.unique(np.quantile(signal, np.linspace(0.0, 1.0, BINS + 1)))
         number = np.clip(np.searchsorted(edges, signal, side="right") - 1, 0, edges.size - 2)
         parts = [
             (f"{edges[i]:.3g} to {edges[i + 1]:.3g}", number == i) for i in range(edges.size - 1)
@@ -63,3 +85,7 @@ def _bins(signal: Floats, error: Floats, name: str, ids: list[str]) -> list[dict
         for label, part in parts
         if part.any()
     ]
+
+
+def _bins(signal: Floats, error: Floats, name: str, ids: Sequence[str]) -> list[dict[str, Any]]:
+    return binned(signal, error, edges_of(signal, name), name, ids)

@@ -14,6 +14,7 @@ from tsas_cli.identification.model import (
     FILE,
     Model,
     data_sheet,
+    fitted_to,
     source_of,
     stated_model,
     write_model,
@@ -91,8 +92,9 @@ def calibrate_dataset(
         summary["dynamics"] = dynamics
         summary |= _summary(result, dataset.manifest)
         if folder is not None:
-            of = summary["dataset"]
-            write_model(folder / FILE, result.model, version=__version__, dataset=of)
+            write_model(
+                folder / FILE, result.model, version=__version__, dataset=fitted_to(summary)
+            )
             write_json(folder / "calibration.json", summary)
     return CalibrationResult(summary, out, result)
 

@@ -177,6 +177,12 @@ def _axial_stiffness(diameter_mm: float | None, modulus_GPa: float | None) -> fl
     return 1e3 * modulus_GPa * math.pi / 4.0 * diameter_mm**2
 
 
+def fitted_to(summary: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what a model file says of the recordings behind it, from its stage's summary."""
+    chosen = {"chosen": summary["chosen"]} if "chosen" in summary else {}
+    return {**summary["dataset"], **chosen}
+
+
 class _File(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 

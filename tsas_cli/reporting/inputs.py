@@ -89,7 +89,7 @@ class Inputs:
             The file cannot be read, or does not belong to this recording.
         """
         path = self._answers(run, stage)
-        values = _columns(path, (column,))[column]
+        values = columns_of(path, (column,))[column]
         if len(values) != rows:
             raise InputError(
                 f"{len(values)} rows",
@@ -127,7 +127,7 @@ class Inputs:
         InputError
             The file cannot be read or lacks a column.
         """
-        return _columns(self.folders[Tracking] / "runs" / f"{run}.parquet", names)
+        return columns_of(self.folders[Tracking] / "runs" / f"{run}.parquet", names)
 
 
 def read_inputs(folders: Sequence[Path]) -> Inputs:
@@ -185,8 +185,14 @@ def _by_file(folders: Sequence[Path]) -> dict[str, Path]:
     return found
 
 
-def _columns(path: Path, names: Sequence[str]) -> dict[str, Floats]:
-    """Read columns of a stage's own file."""
+def columns_of(path: Path, names: Sequence[str]) -> dict[str, Floats]:
+    """Read columns of a stage's own file by name, shape (n,) each.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read or lacks a column.
+    """
     try:
         table = pq.ParquetFile(path).read(columns=list(names))
         return {name: table.column(name).to_numpy() for name in names}

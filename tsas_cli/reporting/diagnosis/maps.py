@@ -1,13 +1,13 @@
 """Where the error was and where it is now: its mean and scatter over the strongest signals."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import partial
 
 from tsas_cli.reporting.content import Picture, Section
 from tsas_cli.reporting.diagnosis.words import listed, signal_at_axis, signal_in_words
 from tsas_cli.reporting.drawing import picture
-from tsas_cli.reporting.figures.residual_map import Panel, draw_residual_map, height_in
+from tsas_cli.reporting.figures.residual_map import NAMES, Panel, draw_residual_map, height_in
 from tsas_cli.reporting.numbers import plain
 from tsas_cli.reporting.stage_files import Bin, Diagnosis
 
@@ -25,16 +25,29 @@ def part(diagnosis: Diagnosis) -> Section | None:
     if not maps.before:
         return None
     title = "Where the error was, and where it is now" if diagnosis.named else "Where the error is"
-    strength: dict[str, float] = {}
-    for panel in _panels(diagnosis):
-        strength[panel.signal] = max(strength.get(panel.signal, 0.0), _strength(panel))
-    seen = [name for name, size in strength.items() if size > _SEEN]
-    if not seen:
+    shown = pictures(list(_panels(diagnosis)), key="diagnosis-map")
+    if not shown:
         nothing = "Over no signal does the error stand out of the noise."
         return Section("diagnosis-maps", title, (nothing,))
+    return Section("diagnosis-maps", title, (_WHAT,), pictures=shown)
+
+
+def pictures(
+    panels: Sequence[Panel], *, key: str, names: tuple[str, str] = NAMES
+) -> tuple[Picture, ...]:
+    """Return a picture for each of the signals over which the error stands out most.
+
+    `names` are those of the two series of a panel, `key` begins each picture's own word.
+    """
+    strength: dict[str, float] = {}
+    for panel in panels:
+        strength[panel.signal] = max(strength.get(panel.signal, 0.0), _strength(panel))
+    seen = [name for name, size in strength.items() if size > _SEEN]
     strongest = sorted(seen, key=lambda name: -strength[name])[:_SIGNALS]
-    pictures = tuple(_picture(diagnosis, signal) for signal in strongest)
-    return Section("diagnosis-maps", title, (_WHAT,), pictures=pictures)
+    return tuple(
+        _picture([p for p in panels if p.signal == signal], signal, key, names)
+        for signal in strongest
+    )
 
 
 def _panels(diagnosis: Diagnosis) -> Iterator[Panel]:
@@ -60,22 +73,24 @@ def _size(bins: tuple[Bin, ...]) -> float:
     return math.sqrt(squares / samples)
 
 
-def _picture(diagnosis: Diagnosis, signal: str) -> Picture:
-    panels = [p for p in _panels(diagnosis) if p.signal == signal and _strength(p) > _SEEN]
+def _picture(panels: Sequence[Panel], signal: str, key: str, names: tuple[str, str]) -> Picture:
+    seen = [panel for panel in panels if _strength(panel) > _SEEN]
     words = signal_in_words(signal)
+    said = "; ".join(_in_words(panel, names) for panel in seen)
     return picture(
-        partial(draw_residual_map, panels=panels, label=signal_at_axis(signal)),
-        key=f"diagnosis-map-{signal}",
-        alt=f"Mean error over the {words}, in units of noise. {'; '.join(map(_in_words, panels))}.",
-        caption=f"{listed([p.channel for p in panels])} over the {words}.",
-        height_in=height_in(panels),
+        partial(draw_residual_map, panels=seen, label=signal_at_axis(signal), names=names),
+        key=f"{key}-{signal}",
+        alt=f"Mean error over the {words}, in units of noise. {said}.",
+        caption=f"{listed([p.channel for p in seen])} over the {words}.",
+        height_in=height_in(seen),
     )
 
 
-def _in_words(panel: Panel) -> str:
+def _in_words(panel: Panel, names: tuple[str, str]) -> str:
     if not panel.after:
         return f"{panel.channel}: {_range(panel.before)}"
-    return f"{panel.channel}: before {_range(panel.before)}, after {_range(panel.after)}"
+    both = zip(names, (panel.before, panel.after), strict=True)
+    return f"{panel.channel}: {', '.join(f'{name} {_range(bins)}' for name, bins in both)}"
 
 
 def _range(bins: tuple[Bin, ...]) -> str:

@@ -8,6 +8,7 @@ from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.phases import label_of
 from tsas_cli.reporting.stage_files import Bin
 
+NAMES = ("before", "after")  # of the two series of a panel
 _MOST_LABELS = 8
 
 
@@ -26,10 +27,12 @@ def height_in(panels: Sequence[Panel]) -> float:
     return 0.9 + 1.25 * len(panels)
 
 
-def draw_residual_map(figure: Any, panels: Sequence[Panel], *, label: str) -> None:
+def draw_residual_map(
+    figure: Any, panels: Sequence[Panel], *, label: str, names: tuple[str, str] = NAMES
+) -> None:
     """Draw panels that share the axis of one signal, whose name is `label`.
 
-    The error is in units of noise.
+    The error is in units of noise; `names` are those of the two series.
     """
     rows = figure.subplots(len(panels), 1, sharex=True, squeeze=False)[:, 0]
     by_label = all(b.low == b.high for panel in panels for b in panel.before)
@@ -39,10 +42,11 @@ def draw_residual_map(figure: Any, panels: Sequence[Panel], *, label: str) -> No
         places = _places(panel.before, by_label=by_label)
         spread = 0.12 if by_label else 0.12 * (places[-1] - places[0]) / max(len(places) - 1, 1)
         joined = "none" if by_label else "-"
-        for bins, role, side in ((panel.before, "before", -1), (panel.after, "after", 1)):
+        series = zip((panel.before, panel.after), NAMES, names, (-1, 1), strict=True)
+        for bins, role, name, side in series:
             if bins:
                 shift = side * spread * bool(panel.after)
-                word = role if panel.after else "nominal model"
+                word = name if panel.after else "nominal model"
                 style = {"color": STAND_IN[role], "label": word, "linestyle": joined}
                 _series(axes, bins, shift=shift, by_label=by_label, **style)
         axes.set_ylabel(f"{panel.channel.rsplit('_', 1)[0]} / noise")

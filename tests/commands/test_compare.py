@@ -1,0 +1,82 @@
+import json
+
+import pytest
+
+from tests.commands.documented import documented
+from tests.comparing.made import NOMINAL, ROUGH, calibrated
+from tsas_cli.app import main
+
+
+@pytest.fixture(scope="module")
+def root(tmp_path_factory):
+    root = tmp_path_factory.mktemp("compare")
+    calibrated(root, NOMINAL, seed=1)
+    calibrated(root, ROUGH, seed=2)
+    return root
+
+
+@pytest.fixture
+def run(monkeypatch, capsys, root):
+    def call(*words):
+        monkeypatch.setattr("sys.argv", ["tsas", "compare", *map(str, words)])
+        monkeypatch.chdir(root)
+        with pytest.raises(SystemExit) as end:
+            main()
+        return end.value.code or 0, *capsys.readouterr()
+
+    return call
+
+
+def test_the_table_says_what_differs(run):
+    code, out, err = run("calibrated-1", "calibrated-2")
+    assert (code, err) == (0, "")
+    (row,) = (line.split() for line in out.splitlines() if "yes" in line)
+    assert row[:3] == ["friction_coefficient", "all", "0.125"]
+    assert "friction_coefficient is larger in B" in out
+    assert "- A and B were fitted to different recordings" in out
+
+
+def test_out_holds_the_page_and_all_that_json_prints(run, tmp_path):
+    out = tmp_path / "compared"
+    models = ("calibrated-1/model.toml", "calibrated-2/model.toml")
+    code, said, _ = run(*models, "--on", "data-2", "--runs", "slow", "--out", out, "--json")
+    assert code == 0
+    assert sorted(path.name for path in out.iterdir()) == ["compare.json", "report.html"]
+    content = json.loads((out / "compare.json").read_text())
+    assert json.loads(said) == content
+    assert {row["run_a"] for row in content["errors"]} == {"slow"}
+    assert content["on"]["chosen"] == ["slow"]
+    page = (out / "report.html").read_text()
+    assert page.startswith("<!DOCTYPE html>")
+    assert "tsas compare calibrated-1/model.toml" in page
+
+
+def test_the_keys_are_documented(run):
+    content = json.loads(run("calibrated-1", "calibrated-2", "--json")[1])
+    assert set(content) <= documented("compare.json")
+
+
+def test_quiet_says_nothing_and_an_output_stays_without_force(run, tmp_path):
+    pair = ("calibrated-1/model.toml", "calibrated-2/model.toml")
+    assert run(*pair, "--out", tmp_path / "o", "-q") == (0, "", "")
+    code, out, err = run(*pair, "--out", tmp_path / "o")
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert "--force" in err
+    assert run(*pair, "--out", tmp_path / "o", "-q", "--force") == (0, "", "")
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("calibrated-1", "nowhere"), "nowhere: nothing that can be compared is here"),
+        (("calibrated-1", "data-1"), "data-1: nothing that can be compared is here"),
+        (("calibrated-1", "calibrated-2", "--runs", "slow"), "add --on"),
+        (("calibrated-1", "calibrated-2", "--fit-own"), "add --on DATASET"),
+        (("calibrated-1", "calibrated-2", "--on", "data-1", "--runs", "sl"), "no run 'sl'"),
+    ],
+)
+def test_a_wrong_call_is_one_line_and_writes_nothing(run, tmp_path, words, said):
+    code, out, err = run(*words, "--out", tmp_path / "o")
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert said in err
+    assert list(tmp_path.iterdir()) == []

@@ -1,0 +1,119 @@
+import json
+import re
+import shutil
+
+import pytest
+
+from tests.commands.documented import documented
+from tests.reporting.test_page import Outline
+from tsas_cli.comparing.tracked import are_tracked, compare_tracked
+from tsas_cli.comparing.tracked_stage import as_json, tables
+from tsas_cli.errors import InputError
+from tsas_cli.reporting.comparing.tracked import tracked_page
+from tsas_cli.tracking.conditions import disturbed
+from tsas_cli.tracking.track_stage import Call, track_all
+
+QUICK = """
+[reference]
+duration_s = 2.0
+mean_N = 44.0
+angular_frequency_rad_per_s = 3.0
+[sensor]
+rate_Hz = 500
+[loop]
+nodes = 8
+"""
+WEAKER = QUICK + "[controllers.pid]\nproportional_rpm_per_mm = 2.0\n"
+
+
+@pytest.fixture(scope="module")
+def root(tmp_path_factory):
+    """Folders of a PID controller, and of a weaker one."""
+    root = tmp_path_factory.mktemp("tracked")
+    for name, text in (("usual", QUICK), ("weaker", WEAKER)):
+        (root / f"{name}.toml").write_text(text, encoding="utf-8")
+        call = Call(settings=root / f"{name}.toml", controllers=("pid",), seeds=2)
+        track_all(call, root / name)
+    return root
+
+
+@pytest.fixture(scope="module")
+def it(root):
+    return compare_tracked(root / "usual", root / "weaker")
+
+
+def test_the_setting_that_differs_is_named_with_both_values(it):
+    known = {s.name: (s.a, s.b) for s in it.settings}
+    assert known.pop("settings.controllers.pid.proportional_rpm_per_mm") == (25.0, 2.0)
+    assert set(known) == {"settings.file", "settings.sha256"}
+    assert it.other_task == []
+
+
+def test_the_scores_stand_beside_each_other_and_turn_with_the_sides(root, it):
+    (both,) = it.followed
+    for side, result in (("usual", both.a), ("weaker", both.b)):
+        (said,) = json.loads((root / side / "tracking.json").read_text())["results"]
+        assert result.scores["rmse_N"].mean == said["scores"]["rmse_N"]["mean"]
+    scatter = max(r.scores["rmse_N"].sd / r.scores["rmse_N"].mean for r in (both.a, both.b))
+    assert both.ratio("rmse_N") > 1.0 + 10.0 * scatter > 1.0
+    (turned,) = compare_tracked(root / "weaker", root / "usual").followed
+    assert turned.ratio("rmse_N") == pytest.approx(1.0 / both.ratio("rmse_N"))
+
+
+def test_the_same_folder_differs_in_nothing(root):
+    it = compare_tracked(root / "usual", root / "usual")
+    assert it.settings == []
+    assert it.followed[0].ratio("rmse_N") == 1.0
+    assert "Both were asked for the same." in as_json(it)["notes"]
+
+
+def test_a_condition_of_the_same_name_that_is_another_one_is_not_matched(root, tmp_path):
+    for name, value in (("one", 0.2), ("two", 0.3)):
+        condition = disturbed([f"friction_coefficient={value}"])
+        call = Call(settings=root / "usual.toml", controllers=("pid",), conditions=(condition,))
+        track_all(call, tmp_path / name)
+    it = compare_tracked(tmp_path / "one", tmp_path / "two")
+    assert it.followed == []
+    assert [len(runs) for runs in it.alone.values()] == [1, 1]
+    assert any("In A alone" in note for note in as_json(it)["notes"])
+
+
+def test_another_plant_is_another_task(root, tmp_path):
+    shutil.copytree(root / "usual", tmp_path / "usual")
+    path = tmp_path / "usual" / "tracking.json"
+    content = json.loads(path.read_text())
+    content["plant"] = {"file": "<b>.toml", "sha256": "0" * 64}
+    path.write_text(json.dumps(content))
+    it = compare_tracked(root / "usual", tmp_path / "usual")
+    assert it.other_task == ["plant.file", "plant.sha256"]
+    assert "another one" in as_json(it)["notes"][0]
+    page = tracked_page(it)
+    assert "&lt;b&gt;.toml" in page
+    assert "<b>" not in page
+
+
+def test_everything_that_is_printed_is_in_the_json_whose_keys_are_documented(it):
+    content = as_json(it)
+    assert set(content) <= documented("compare.json")
+    printed = {title: rows for title, _, rows in tables(it)}
+    assert len(printed["scores"]) == len(content["scores"]) == 4
+    assert len(printed["what differs in the call"]) == len(content["settings"])
+    assert content["scores"][0]["score"] == "rmse_N"
+    assert content["scores"][0]["a"]["sd"] is not None
+
+
+def test_the_page_is_well_formed_and_shows_both_errors(it):
+    outline = Outline(tracked_page(it))
+    steps = [b - a for a, b in zip(outline.headings, outline.headings[1:], strict=False)]
+    assert max(steps) == 1
+    (label,) = (svg["aria-label"] for svg in outline.pictures)
+    assert re.search(r"of A and of B\. pid, undisturbed: RMSE [\d.]+ ± [\d.]+ N in A", label)
+
+
+def test_tracked_runs_are_held_against_tracked_runs_only(root, tmp_path):
+    assert are_tracked(root / "usual", root / "weaker")
+    assert not are_tracked(tmp_path, tmp_path)
+    for pair in ((root / "usual", tmp_path), (tmp_path, root / "usual")):
+        with pytest.raises(InputError, match="tracked runs only") as error:
+            are_tracked(*pair)
+        assert error.value.where == str(tmp_path)

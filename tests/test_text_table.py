@@ -1,0 +1,129 @@
+import fcntl
+import os
+import pty
+import struct
+import subprocess
+import sys
+import termios
+
+import pytest
+
+from tsas_cli.text_table import table_lines
+
+PRINT = """
+from tsas_cli.text_table import print_table
+header = ("name", "run", "A [95 %]", "B [95 %]", "B − A [95 %]", "differs", "unit")
+long = "[0.12499, 0.12502]"
+rows = [(f"name_{n}", "a", f"0.1{n} {long}", f"0.2{n} {long}", f"0.3{n} {long}", "no", f"u{n}")
+        for n in range(12)]
+print_table("parameters of a model → a/folder/with/a/long/name/that/has/no/blank/in/it/model.toml",
+            header, rows)
+"""
+HEADER = ("effect", "RMSE [N]", "what it is")
+ROWS = [
+    HEADER,
+    ("free_tendon", "0.125", "tendon outside of the sheath, in series with it"),
+    ("drive_compliance", "12.5", "the drive gives way"),
+]
+
+
+def printed_at(columns: int) -> list[str]:
+    """Return what a process prints on a terminal of so many columns."""
+    outside, inside = pty.openpty()
+    fcntl.ioctl(inside, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
+    environment = {name: value for name, value in os.environ.items() if name != "COLUMNS"}
+    with subprocess.Popen([sys.executable, "-c", PRINT], stdout=inside, env=environment):
+        os.close(inside)
+        out = b""
+        while True:
+            try:
+                part = os.read(outside, 65536)
+            except OSError:  # the other end is closed
+                part = b""
+            if not part:
+                break
+            out += part
+    os.close(outside)
+    return out.decode().replace("\r\n", "\n").splitlines()
+
+
+@pytest.mark.parametrize("columns", [40, 80, 120])
+def test_no_line_is_longer_than_the_terminal_and_no_value_is_lost(columns: int) -> None:
+    lines = printed_at(columns)
+    assert max(map(len, lines)) <= columns
+    words = " ".join(lines).split()
+    for n in range(12):
+        for value in (f"name_{n}", f"0.1{n}", f"0.2{n}", f"0.3{n}", f"u{n}"):
+            assert value in words
+    assert words.count("[0.12499,") == words.count("0.12502]") == 36
+    assert words.count("no") == 12
+
+
+def test_a_table_that_fits_looks_as_in_a_file() -> None:
+    assert printed_at(200)[1:] == piped()[1:]
+
+
+def piped() -> list[str]:
+    done = subprocess.run([sys.executable, "-c", PRINT], capture_output=True, text=True, check=True)
+    return done.stdout.splitlines()
+
+
+def test_piped_output_stays_whole_and_plain() -> None:
+    lines = piped()
+    assert len(lines) == 1 + 2 + 12 + 1
+    assert max(map(len, lines)) > 80
+    assert "\x1b" not in "".join(lines)
+
+
+def test_a_cell_is_folded_between_words() -> None:
+    assert list(table_lines("t", ROWS, 50)) == [
+        "t",
+        "  effect            RMSE [N]  what it is",
+        "  ----------------  --------  --------------------",
+        "  free_tendon       0.125     tendon outside of",
+        "                              the sheath, in",
+        "                              series with it",
+        "  drive_compliance  12.5      the drive gives way",
+    ]
+
+
+def test_columns_that_do_not_fit_follow_beside_what_tells_the_rows_apart() -> None:
+    assert list(table_lines("t", ROWS, 30)) == [
+        "t",
+        "  effect            RMSE [N]",
+        "  ----------------  --------",
+        "  free_tendon       0.125",
+        "  drive_compliance  12.5",
+        "",
+        "  effect            what it is",
+        "  ----------------  ----------",
+        "  free_tendon       tendon",
+        "                    outside of",
+        "                    the",
+        "                    sheath, in",
+        "                    series",
+        "                    with it",
+        "  drive_compliance  the drive",
+        "                    gives way",
+    ]
+
+
+def test_where_nothing_fits_each_row_is_a_block() -> None:
+    lines = list(table_lines("t", ROWS, 20))
+    assert lines[:3] == ["t", "  effect    free_ten", "            don"]
+    assert max(map(len, lines)) <= 20
+    assert "".join(line[12:] for line in lines[1:3]) == "free_tendon"
+
+
+def test_a_row_that_a_part_says_nothing_of_is_left_out_of_it() -> None:
+    rows = [("name", "run", "A", ""), ("x", "a", "1" * 15, ""), ("x", "a", "", "2" * 15)]
+    assert list(table_lines("t", rows, 30)) == [
+        "t",
+        "  name  run  A",
+        "  ----  ---  ---------------",
+        "  x     a    111111111111111",
+        "",
+        "  name  run",
+        "  ----  ---  ---------------",
+        "  x     a    222222222222222",
+    ]

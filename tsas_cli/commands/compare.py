@@ -1,0 +1,41 @@
+"""`tsas compare`: two models, or what two stages wrote, side by side."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+import tsas_cli as tsas
+from tsas_cli.commands.common import ChosenRuns, Force, Json, Quiet, names, present
+from tsas_cli.commands.progress import progress
+
+
+def compare(
+    a: Annotated[Path, typer.Argument(metavar="A", help="A model, or a stage's folder.")],
+    b: Annotated[Path, typer.Argument(metavar="B", help="What it is compared with, likewise.")],
+    on: Annotated[
+        Path | None,
+        typer.Option(metavar="DATASET", help="Simulate both models on these recordings."),
+    ] = None,
+    fit_own: Annotated[
+        bool,
+        typer.Option(help="With --on: fit each run's own preload and zeros first."),
+    ] = False,
+    runs: ChosenRuns = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(metavar="DIR", help="Also write DIR/compare.json and DIR/report.html."),
+    ] = None,
+    force: Force = False,
+    quiet: Quiet = False,
+    as_json: Json = False,
+) -> None:
+    """Say what differs between two models, and whether that is more than the uncertainty.
+
+    A and B are model files, or what `tsas calibrate`, `diagnose`, `simulate` or `track` wrote.
+    """
+    with progress("compare", quiet=quiet) as step:
+        result = tsas.compare(
+            a, b, out=out, on=on, runs=names(runs), fit_own=fit_own, force=force, step=step
+        )
+    present(result, quiet=quiet, as_json=as_json)

@@ -1,0 +1,1 @@
+"""Two models, or what two stages wrote about them, side by side."""

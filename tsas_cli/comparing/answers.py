@@ -1,0 +1,220 @@
+"""What each side answers to recordings, and how far that is from what was measured."""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from tsas_cli.comparing.sides import Side
+from tsas_cli.comparing.values import same_runs
+from tsas_cli.errors import InputError
+from tsas_cli.identification.base_fit import with_own_values
+from tsas_cli.identification.comparison import compare as simulated
+from tsas_cli.identification.model import Model
+from tsas_cli.identification.prepared import CHANNELS, Prepared, prepare
+from tsas_cli.recordings.columns import BY_NAME
+from tsas_cli.recordings.dataset import Dataset
+from tsas_cli.recordings.manifest import Run
+from tsas_cli.steps import SILENT, Steps
+
+Floats = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Answer:
+    """One run: the model's tension at the drive, and measured less simulated, shape (n,) each."""
+
+    run: Prepared
+    f_in_N: Floats
+    errors: dict[str, Floats]
+
+    def rmse(self, channel: str) -> float | None:
+        """Return the root mean square of a channel's error, None where it has none."""
+        error = self.errors.get(channel)
+        if error is None or not np.isfinite(error).any():
+            return None
+        return float(np.sqrt(np.nanmean(error**2)))
+
+    def noise(self, channel: str) -> float | None:
+        """Return the noise of a channel in its unit, None where it is not told."""
+        noise = self.run.noise.get(channel, np.nan)
+        return float(noise) if np.isfinite(noise) else None
+
+
+@dataclass(frozen=True)
+class Both:
+    """One recording and what the sides answer to it; one of them may be missing."""
+
+    a: Answer | None
+    b: Answer | None
+
+    @property
+    def ids(self) -> tuple[str | None, str | None]:
+        """The run's id in A and in B."""
+        one, other = (None if side is None else side.run.run.id for side in (self.a, self.b))
+        return one, other
+
+    @property
+    def digest(self) -> str:
+        """The recording's checksum."""
+        answer = self.a or self.b
+        return "" if answer is None else answer.run.run.sha256.lower()
+
+
+@dataclass(frozen=True)
+class ErrorRow:
+    """One channel of one run: the root mean squares of both sides' errors, in its unit.
+
+    `fitted_a` says whether A's fit has seen the recording, None where that is not known.
+    """
+
+    run_a: str | None
+    run_b: str | None
+    channel: str
+    unit: str
+    rmse_a: float | None
+    rmse_b: float | None
+    noise: float | None
+    fitted_a: bool | None
+    fitted_b: bool | None
+
+    @property
+    def ratio(self) -> float | None:
+        """B over A."""
+        return self.rmse_b / self.rmse_a if self.rmse_a and self.rmse_b is not None else None
+
+
+class Answers:
+    """Answers to recordings, each of which is read and made ready once."""
+
+    def __init__(self, step: Steps = SILENT) -> None:
+        """Take what is called after each answer."""
+        self._prepared: dict[tuple[Path, str], Prepared] = {}
+        self._step = step
+
+    def of(self, side: Side, dataset: Dataset | None, *, fit_own: bool = False) -> list[Answer]:
+        """Return what a side answers to the runs of a dataset, none where it is not there.
+
+        Raises
+        ------
+        InputError
+            A recording, or what a simulation has written, cannot be read.
+        """
+        if dataset is None:
+            return []
+        out = []
+        for run in dataset.runs:
+            ready = self._ready(dataset, run)
+            if side.model is None:
+                out.append(_written(side, ready))
+            else:
+                model = _for_run(side.model, side.recordings, run)
+                model = with_own_values(model, ready) if fit_own else model
+                out.append(_simulated(model, side, ready))
+            self._step()
+        return out
+
+    def _ready(self, dataset: Dataset, run: Run) -> Prepared:
+        key = (dataset.folder.resolve(), run.id)
+        if key not in self._prepared:
+            (recording,) = dataset.only([run.id])
+            self._prepared[key] = prepare(recording, dataset.manifest.session_start)
+        return self._prepared[key]
+
+
+def matched(a: list[Answer], b: list[Answer]) -> list[Both]:
+    """Return the recordings that both answer to, by checksum, then those of A and of B alone."""
+    first, second = ({x.run.run.id: x for x in side} for side in (a, b))
+    digests = (
+        {run: x.run.run.sha256.lower() for run, x in side.items()} for side in (first, second)
+    )
+    runs = same_runs(*digests)
+    both = [Both(first[one], second[other]) for one, other in runs.items()]
+    alone = [Both(x, None) for run, x in first.items() if run not in runs]
+    return both + alone + [Both(None, x) for run, x in second.items() if run not in runs.values()]
+
+
+def error_rows(a: Side, b: Side, recordings: list[Both]) -> list[ErrorRow]:
+    """Return the errors of every channel of every recording, in the order of the recordings."""
+    return [
+        ErrorRow(
+            *both.ids,
+            channel,
+            BY_NAME[channel].unit,
+            None if both.a is None else both.a.rmse(channel),
+            None if both.b is None else both.b.rmse(channel),
+            _noise(both, channel),
+            _fitted(a, both),
+            _fitted(b, both),
+        )
+        for both in recordings
+        for channel in channels(both)
+    ]
+
+
+def channels(both: Both) -> list[str]:
+    """Return the channels of a recording that a side answers, in their usual order."""
+    there = {name for answer in (both.a, both.b) if answer is not None for name in answer.errors}
+    return [name for name in CHANNELS if name in there]
+
+
+def _noise(both: Both, channel: str) -> float | None:
+    answer = both.a or both.b
+    return None if answer is None else answer.noise(channel)
+
+
+def _fitted(side: Side, both: Both) -> bool | None:
+    """Say whether the side's fit has seen a recording; a simulation does not say it."""
+    if side.recordings is None or side.kind == "simulation":
+        return None
+    return both.digest in side.recordings.values()
+
+
+def _for_run(model: Model, recordings: dict[str, str] | None, run: Run) -> Model:
+    """Return a model with those values of a single run that belong to this recording.
+
+    Another recording of the same name has a preload and zeros of its own. A model that does not
+    say what it was fitted to is taken by its names.
+    """
+    if recordings is None:
+        return model
+    digest = run.sha256.lower()
+    same = {known for known, there in recordings.items() if there == digest}
+    owner = run.id if run.id in same else min(same, default="")
+    return Model(
+        tuple(
+            e if e.run is None else replace(e, run=run.id)
+            for e in model.estimates
+            if e.run in (None, owner)
+        )
+    )
+
+
+def _simulated(model: Model, side: Side, run: Prepared) -> Answer:
+    answer = simulated(run, model, side.dynamics)
+    errors = {name: measured - answer.channels[name] for name, measured in run.measured.items()}
+    return Answer(run, answer.response.f_in_N, errors)
+
+
+def _written(side: Side, run: Prepared) -> Answer:
+    """Return the answer that `tsas simulate` has written."""
+    path = side.path / "runs" / f"{run.run.id}.parquet"
+    try:
+        table = pq.ParquetFile(path).read()
+        columns = {name: table.column(name).to_numpy() for name in table.column_names}
+    except (pa.ArrowException, OSError) as error:
+        reason = str(error).splitlines()[0]
+        raise InputError(f"cannot be read ({reason})", where=path) from error
+    if table.num_rows != run.time_s.size:
+        raise InputError(
+            f"{table.num_rows} rows",
+            where=path,
+            expected=f"{run.time_s.size}, as the recording has",
+            remedy="run `tsas simulate` again",
+        )
+    errors = {n: values - columns[n] for n, values in run.measured.items() if n in columns}
+    f_in = columns.get("f_in_N", run.channel("f_in_N"))
+    return Answer(run, np.full(run.time_s.size, np.nan) if f_in is None else f_in, errors)

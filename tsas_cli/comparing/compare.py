@@ -1,0 +1,120 @@
+"""Two sides held against each other: values, causes, errors per run, and where the errors are."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from tsas_cli.comparing.answers import Answers, Both, ErrorRow, error_rows, matched
+from tsas_cli.comparing.maps import residual_maps
+from tsas_cli.comparing.sides import Side, read_side
+from tsas_cli.comparing.values import Overlap, Pair, overlap, pairs
+from tsas_cli.errors import InputError
+from tsas_cli.recordings.dataset import Dataset
+from tsas_cli.steps import SILENT, Steps
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """What two sides say, side by side.
+
+    `on` is the dataset that both models are held to, None where each is held to what it has read;
+    `own_fitted` says whether each run's own preload and zeros were fitted to it first.
+    """
+
+    a: Side
+    b: Side
+    overlap: Overlap
+    pairs: list[Pair]
+    recordings: list[Both]
+    errors: list[ErrorRow]
+    maps: dict[str, Any]
+    on: Dataset | None = None
+    own_fitted: bool = False
+
+    @property
+    def sides(self) -> dict[str, Side]:
+        """Both sides by their names."""
+        return {"A": self.a, "B": self.b}
+
+    @property
+    def tested(self) -> list[Pair]:
+        """The parameters whose difference has an interval."""
+        return [p for p in self.pairs if p.difference and p.difference.excludes_zero is not None]
+
+    @property
+    def differing(self) -> list[Pair]:
+        """The parameters that differ by more than their uncertainty."""
+        return [p for p in self.tested if p.difference and p.difference.excludes_zero]
+
+    @property
+    def shared(self) -> list[Both]:
+        """The recordings that both sides answer to."""
+        return [both for both in self.recordings if both.a and both.b]
+
+
+def compare(
+    a: Path,
+    b: Path,
+    *,
+    on: Dataset | None = None,
+    fit_own: bool = False,
+    step: Steps = SILENT,
+) -> Comparison:
+    """Hold two models, or what two stages wrote, against each other.
+
+    Parameters
+    ----------
+    a, b
+        Model files, or folders that `tsas calibrate`, `diagnose` or `simulate` have written.
+    on
+        A dataset that both models are simulated on. Without it a folder's model is held to the
+        recordings that the stage has read, and a model file to none.
+    fit_own
+        Whether each run's own preload and zeros are fitted to `on` first, all else kept.
+    step
+        Called after each simulation.
+
+    Raises
+    ------
+    InputError
+        A or B is none of these, there is nothing that both hold, or a recording cannot be read.
+    """
+    sides = read_side(a), read_side(b)
+    _refuse(sides, on)
+    answers = Answers(step)
+    answered = [
+        answers.of(side, on or (None if side.kind == "model" else side.dataset), fit_own=fit_own)
+        for side in sides
+    ]
+    recordings = matched(*answered)
+    return Comparison(
+        *sides,
+        overlap(*sides),
+        pairs(*sides),
+        recordings,
+        error_rows(*sides, recordings),
+        residual_maps(recordings),
+        on,
+        fit_own,
+    )
+
+
+def _refuse(sides: tuple[Side, Side], on: Dataset | None) -> None:
+    """Refuse what has nothing in common, or asks for a model where there is none."""
+    without = [side for side in sides if side.model is None]
+    if without and on is not None:
+        raise InputError(
+            "a simulation does not hold its model, so that it cannot be simulated on --on",
+            where=without[0].path,
+            remedy="give the model that it was made with",
+        )
+    if without and any(side.kind == "model" for side in sides):
+        raise InputError(
+            "a simulation and a model file have nothing to compare",
+            where=without[0].path,
+            expected="two models, or two folders that hold errors",
+            remedy="give the simulation's model, or simulate the other one too",
+        )
+    gone = [side for side in without if side.dataset is None]
+    if gone:
+        raise InputError(gone[0].gone, where=gone[0].path, remedy="run `tsas simulate` again")

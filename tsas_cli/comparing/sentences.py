@@ -1,0 +1,158 @@
+"""What a comparison comes to, in plain sentences."""
+
+from collections.abc import Iterator
+
+from tsas_cli.comparing.compare import Comparison
+from tsas_cli.comparing.values import FALSE_CLAIMS, Pair, rounded
+from tsas_cli.identification.prepared import CHANNELS
+
+SHOWN = 4  # names that are listed
+
+
+def findings(it: Comparison) -> list[str]:
+    """Return what differs: values, causes, errors; the most important first."""
+    return [*_values(it), *_effects(it), *_errors(it)]
+
+
+def notes(it: Comparison) -> list[str]:
+    """Return what to keep in mind, what could not be matched, and what would give more."""
+    return [*_recordings(it), *_doubts(it), *_unmatched(it), *_more(it)]
+
+
+def _values(it: Comparison) -> Iterator[str]:
+    common = [p for p in it.pairs if p.difference]
+    if not common:
+        return
+    for pair in it.differing:
+        yield _differs(pair)
+    if it.tested and not it.differing:
+        yield (
+            "No value differs by more than its uncertainty: every 95 % interval of a difference "
+            f"holds 0 ({len(it.tested)} of them)."
+        )
+    if len(it.tested) > 1 and it.differing:
+        chance = FALSE_CLAIMS * len(it.tested)
+        yield (
+            f"{len(it.differing)} of {len(it.tested)} intervals exclude 0; {chance:.2g} would by "
+            "chance if nothing differed."
+        )
+
+
+def _differs(pair: Pair) -> str:
+    a, b, d = pair.a, pair.b, pair.difference
+    if a is None or b is None or d is None or d.low is None or d.high is None:
+        return ""
+    unit = "" if pair.unit == "1" else f" {pair.unit}"
+    of = "" if pair.run == "all" else f" of run {pair.run}"
+    more, ends = ("larger", (d.low, d.high)) if d.value > 0 else ("smaller", (-d.high, -d.low))
+    value, low, high = rounded(abs(d.value), *ends)
+    return (
+        f"{pair.name}{of} is {more} in B, by {value} [{low}, {high}]{unit} "
+        f"({a.value:.4g} in A, {b.value:.4g} in B): more than both uncertainties."
+    )
+
+
+def _effects(it: Comparison) -> Iterator[str]:
+    if it.a.model is None or it.b.model is None:
+        return
+    a, b = it.a.effects, it.b.effects
+    for name, own, other in (("A", a, b), ("B", b, a)):
+        alone = [effect for effect in own if effect not in other]
+        if alone:
+            yield f"{name} alone holds {', '.join(alone)}."
+    for name, side in it.sides.items():
+        if side.verdict in ("undecided", "unexplained"):
+            yield f"The diagnosis {name} is {side.verdict}: {side.reason}"
+
+
+def _errors(it: Comparison) -> Iterator[str]:
+    for channel in CHANNELS:
+        ratios = [r.ratio for r in it.errors if r.channel == channel and r.ratio is not None]
+        if ratios:
+            low, high = (f"{end(ratios):.3g}" for end in (min, max))
+            span = low if low == high else f"{low} to {high}"
+            runs = "1 run" if len(ratios) == 1 else f"{len(ratios)} runs"
+            yield f"In {channel} the RMSE of B is {span} times that of A ({runs})."
+
+
+def _recordings(it: Comparison) -> Iterator[str]:
+    if it.a.model is None or it.b.model is None:
+        return
+    if it.overlap == "none":
+        yield (
+            "A and B were fitted to different recordings, so that their errors are taken to be "
+            "independent. What both models lack alike is in neither interval."
+        )
+    elif it.overlap == "unknown":
+        quiet = [name for name, side in it.sides.items() if side.recordings is None]
+        yield (
+            f"{' and '.join(quiet)} does not say which recordings it was fitted to, so that no "
+            "difference has an interval."
+            if len(quiet) == 1
+            else "Neither says which recordings it was fitted to, so that no difference has an "
+            "interval."
+        )
+    else:
+        how = "the same" if it.overlap == "all" else "in part the same"
+        yield (
+            f"A and B were fitted to {how} recordings: their errors are not independent, and no "
+            "difference has an interval."
+            + (" What differs comes from the models, not from the rig." * (it.overlap == "all"))
+        )
+    if set(it.a.effects) != set(it.b.effects):
+        yield (
+            "The models hold different effects: a value that both have means in each what its "
+            "effects leave to it."
+        )
+
+
+def _doubts(it: Comparison) -> Iterator[str]:
+    for name, side in it.sides.items():
+        if side.not_converged:
+            yield (
+                f"The fit of {name} did not converge ({side.not_converged.rstrip('.')}): its "
+                "values are not to be relied on."
+            )
+    bound = [p.name for p in it.pairs if p.difference and p.difference.why_none == "at its bound"]
+    if bound:
+        yield f"At a bound, so that no difference is claimed: {_some(bound)}."
+    if any({r.fitted_a, r.fitted_b} == {True, False} for r in it.errors if r.ratio is not None):
+        yield (
+            "Some recordings were seen by one fit and not by the other, which favours the one that "
+            "has seen them."
+        )
+
+
+def _unmatched(it: Comparison) -> Iterator[str]:
+    names: dict[str, list[str]] = {"A": [], "B": []}
+    for both in it.recordings:
+        run_a, run_b = both.ids
+        if run_b is None:
+            names["A"].append(run_a or "")
+        elif run_a is None:
+            names["B"].append(run_b)
+    alone = [f"{_some(runs)} of {name}" for name, runs in names.items() if runs]
+    if alone:
+        yield f"Not in both, by the checksum of the recording: {'; '.join(alone)}."
+    if same := [run for run in names["A"] if run in names["B"]]:
+        yield f"The same name does not make the same recording: {_some(same)}."
+
+
+def _more(it: Comparison) -> Iterator[str]:
+    if it.on is None:
+        for name, side in it.sides.items():
+            if side.kind != "model" and side.dataset is None:
+                yield f"There are no errors of {name}: {side.gone}."
+    if it.a.model is None or it.b.model is None:
+        yield "A simulation does not hold its model: compare the model files for their values."
+    elif not it.shared:
+        yield (
+            "With `--on DATASET` both models are simulated on the same recordings, which gives "
+            "errors for each run and shows where they are."
+        )
+
+
+def _some(names: list[str]) -> str:
+    rest = len(names) - SHOWN
+    shown = ", ".join(names[:SHOWN])
+    return f"{shown} and {rest} more" if rest > 0 else shown

@@ -1,0 +1,150 @@
+"""Two folders of `tsas track` held against each other: what was asked for, and the scores."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+from pydantic import BaseModel, ConfigDict
+
+from tsas_cli.errors import InputError
+from tsas_cli.files import read_json, sha256_of
+from tsas_cli.recordings.manifest import parse
+
+FILE = "tracking.json"
+SCORES = {  # those that are better the smaller they are, with their units
+    "rmse_N": "N",
+    "outside_percent": "%",
+    "effort_rpm": "rpm",
+    "chatter_rpm_per_s": "rpm/s",
+}
+ASKED = ("model", "plant", "drive", "dynamics", "gains", "reference", "settings", "seeds")
+TASK = ("plant", "dynamics", "reference", "settings.reference")  # with others the task is another
+
+
+class _Record(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="ignore")
+
+
+class Spread(_Record):
+    """Mean and standard deviation over the seeds; of one seed no spread."""
+
+    mean: float | None
+    sd: float | None = None
+
+
+class Result(_Record):
+    """One controller under one condition; `run` is the recording of the first seed."""
+
+    controller: str
+    condition: str
+    run: str
+    scores: dict[str, Spread]
+
+
+class _Tracking(_Record):
+    format: Literal[1]
+    stage: Literal["track"]
+    conditions: dict[str, tuple[dict[str, Any], ...]]
+    results: tuple[Result, ...]
+
+
+@dataclass(frozen=True)
+class Setting:
+    """Something that was asked for in another way; None where a side does not have it."""
+
+    name: str
+    a: Any
+    b: Any
+
+
+@dataclass(frozen=True)
+class Followed:
+    """One controller under one condition in both folders."""
+
+    a: Result
+    b: Result
+
+    def ratio(self, score: str) -> float | None:
+        """Return B over A of a score's mean."""
+        first, second = self.a.scores[score].mean, self.b.scores[score].mean
+        return second / first if first and second is not None else None
+
+
+@dataclass(frozen=True)
+class Tracks:
+    """Two folders of tracked runs: what differs in the call, and the results that both have.
+
+    `alone` holds, under A and B, the runs that the other one lacks.
+    """
+
+    paths: dict[str, Path]
+    checksums: dict[str, str]
+    settings: list[Setting]
+    followed: list[Followed]
+    alone: dict[str, list[str]]
+
+    @property
+    def other_task(self) -> list[str]:
+        """What differs of the task itself: the plant, or the wanted force."""
+        return [s.name for s in self.settings if s.name.startswith(TASK)]
+
+
+def are_tracked(a: Path, b: Path) -> bool:
+    """Say whether both are folders of `tsas track`.
+
+    Raises
+    ------
+    InputError
+        Only one of them is.
+    """
+    there = [(path / FILE).is_file() for path in (a, b)]
+    if any(there) and not all(there):
+        raise InputError(
+            "tracked runs can be compared with tracked runs only",
+            where=b if there[0] else a,
+            expected=f"a folder with {FILE}",
+        )
+    return all(there)
+
+
+def compare_tracked(a: Path, b: Path) -> Tracks:
+    """Hold two folders against each other, by controller and condition.
+
+    Raises
+    ------
+    InputError
+        A file cannot be read, or is not whole.
+    """
+    raw = [read_json(path / FILE) for path in (a, b)]
+    one, other = (parse(_Tracking, r, p / FILE) for r, p in zip(raw, (a, b), strict=True))
+    same = {n for n, what in one.conditions.items() if other.conditions.get(n) == what}
+    first, second = (
+        {(r.controller, r.condition): r for r in side.results} for side in (one, other)
+    )
+    both = [key for key in first if key in second and key[1] in same]
+    return Tracks(
+        {"A": a, "B": b},
+        {name: sha256_of(path / FILE) for name, path in (("A", a), ("B", b))},
+        _settings(*raw),
+        [Followed(first[key], second[key]) for key in both],
+        {
+            name: [result.run for key, result in side.items() if key not in both]
+            for name, side in (("A", first), ("B", second))
+        },
+    )
+
+
+def _settings(a: Mapping[str, Any], b: Mapping[str, Any]) -> list[Setting]:
+    flat = [dict(_flat({name: side.get(name) for name in ASKED})) for side in (a, b)]
+    names = dict.fromkeys([*flat[0], *flat[1]])
+    found = (Setting(name, flat[0].get(name), flat[1].get(name)) for name in names)
+    return [s for s in found if s.a != s.b]
+
+
+def _flat(content: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+    for key, value in content.items():
+        if isinstance(value, dict):
+            yield from _flat(value, f"{prefix}{key}.")
+        else:
+            yield f"{prefix}{key}", value

@@ -1,0 +1,107 @@
+"""What `tsas compare` writes and prints of two folders of tracked runs."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from tsas_cli import __version__
+from tsas_cli.comparing.stage import Table
+from tsas_cli.comparing.tracked import FILE, SCORES, Spread, Tracks
+
+
+def as_json(it: Tracks) -> dict[str, Any]:
+    """Return the content of `compare.json`."""
+    return {
+        "format": 1,
+        "stage": "compare",
+        "version": __version__,
+        **{
+            name.lower(): {
+                "path": path.as_posix(),
+                "kind": "tracking",
+                "files": {FILE: it.checksums[name]},
+            }
+            for name, path in it.paths.items()
+        },
+        "settings": [vars(setting) for setting in it.settings],
+        "scores": [
+            {
+                "controller": both.a.controller,
+                "condition": both.a.condition,
+                "score": score,
+                "unit": unit,
+                "a": both.a.scores[score].model_dump(),
+                "b": both.b.scores[score].model_dump(),
+                "ratio": both.ratio(score),
+            }
+            for both in it.followed
+            for score, unit in SCORES.items()
+        ],
+        "findings": findings(it),
+        "notes": list(_notes(it)),
+    }
+
+
+def findings(it: Tracks) -> list[str]:
+    """Return the RMSE of B over that of A by controller, in a sentence for each condition."""
+    out = []
+    for condition in dict.fromkeys(both.a.condition for both in it.followed):
+        ratios = {
+            both.a.controller: ratio
+            for both in it.followed
+            if both.a.condition == condition and (ratio := both.ratio("rmse_N")) is not None
+        }
+        said = ", ".join(f"{name} {ratio:.3g}" for name, ratio in ratios.items())
+        if said:
+            out.append(f"RMSE of the force, {condition}, B over A: {said}.")
+    return out
+
+
+def _notes(it: Tracks) -> Iterator[str]:
+    if it.other_task:
+        yield (
+            f"The task is another one ({', '.join(it.other_task)}): the scores are not of the same "
+            "plant and wanted force."
+        )
+    if not it.settings:
+        yield "Both were asked for the same."
+    for name, runs in it.alone.items():
+        if runs:
+            yield f"In {name} alone, by controller and condition: {', '.join(runs)}."
+    spreads = [both.a.scores["rmse_N"].sd for both in it.followed]
+    if any(sd is None for sd in spreads):
+        yield "With one seed of noise nothing says how far the scores scatter: take `--seeds 10`."
+
+
+def tables(it: Tracks) -> list[Table]:
+    """Return what the stage prints."""
+    asked = [(s.name, shown(s.a), shown(s.b)) for s in it.settings]
+    scores = [
+        (
+            both.a.controller,
+            both.a.condition,
+            score,
+            _spread(both.a.scores[score]),
+            _spread(both.b.scores[score]),
+            "" if (ratio := both.ratio(score)) is None else f"{ratio:.3g}",
+            unit,
+        )
+        for both in it.followed
+        for score, unit in SCORES.items()
+    ]
+    every: list[Table] = [
+        ("what differs in the call", ("setting", "A", "B"), asked),
+        ("scores", ("controller", "condition", "score", "A", "B", "B / A", "unit"), scores),
+    ]
+    return [table for table in every if table[2]]
+
+
+def shown(value: object) -> str:
+    """Return a setting as text, a checksum in short."""
+    text = "" if value is None else str(value)
+    return f"{text[:12]}…" if len(text) == 64 else text
+
+
+def _spread(number: Spread) -> str:
+    if number.mean is None:
+        return ""
+    return f"{number.mean:.4g}" + ("" if number.sd is None else f" ± {number.sd:.2g}")

@@ -1,0 +1,106 @@
+"""The page of two folders of tracked runs: what was asked for, the scores, the errors over time."""
+
+import shlex
+from collections.abc import Callable, Iterator
+from functools import partial
+
+from tsas_cli.comparing.tracked import FILE, SCORES, Followed, Tracks
+from tsas_cli.comparing.tracked_stage import as_json, shown
+from tsas_cli.reporting.content import Picture, Section, Table
+from tsas_cli.reporting.drawing import picture
+from tsas_cli.reporting.figures.two_residuals import Residuals, draw_two_residuals, height_in
+from tsas_cli.reporting.inputs import columns_of
+from tsas_cli.reporting.numbers import ABSENT, fixed, with_spread
+from tsas_cli.reporting.rendered import rendered
+from tsas_cli.reporting.tracking.runs import TRUE, WANTED
+
+
+def tracked_page(it: Tracks, advance: Callable[[], None] = lambda: None) -> str:
+    """Return the whole page as HTML; `advance` is called after each section.
+
+    Raises
+    ------
+    InputError
+        A run cannot be read.
+    """
+    sections = []
+    for section in _sections(it):
+        sections.append(section)
+        advance()
+    said = as_json(it)["findings"]
+    return rendered(
+        name="A and B, side by side",
+        about=" and ".join(str(path) for path in it.paths.values()),
+        summary=" ".join(said) or "There is no controller and condition that both have.",
+        sections=sections,
+    )
+
+
+def _sections(it: Tracks) -> Iterator[Section]:
+    sides = Table("Folders", ("", "path"), tuple((n, str(p)) for n, p in it.paths.items()))
+    asked = tuple((s.name, shown(s.a) or ABSENT, shown(s.b) or ABSENT) for s in it.settings)
+    settings = Table("What differs in the call", ("setting", "A", "B"), asked)
+    yield Section(
+        "sides",
+        "What is compared",
+        points=tuple(as_json(it)["notes"]),
+        tables=(sides, settings) if asked else (sides,),
+    )
+    if it.followed:
+        yield Section("scores", "Scores", tables=(_scores(it),))
+    if pictures := tuple(_pictures(it)):
+        what = "Wanted less true force at the load, with the first seed of noise."
+        yield Section("tracking-error", "Tracking error", (what,), pictures=pictures)
+    files = tuple((n, FILE, digest) for n, digest in it.checksums.items())
+    yield Section(
+        "repeat",
+        "How to repeat it",
+        ("This command makes the same page from the same files.",),
+        tables=(Table("Files read", ("side", "file", "SHA-256"), files),),
+        commands=(
+            shlex.join(["tsas", "compare", *map(str, it.paths.values()), "--out", "compared"]),
+        ),
+    )
+
+
+def _scores(it: Tracks) -> Table:
+    rows = tuple(
+        (
+            both.a.controller,
+            both.a.condition,
+            score,
+            *(with_spread(r.scores[score].mean, r.scores[score].sd) for r in (both.a, both.b)),
+            fixed(both.ratio(score), 3),
+            unit,
+        )
+        for both in it.followed
+        for score, unit in SCORES.items()
+    )
+    header = ("controller", "condition", "score", "A", "B", "B / A", "unit")
+    caption = "Scores, with their standard deviation over the seeds of noise where there are some"
+    return Table(caption, header, rows, numeric=frozenset({3, 4, 5}))
+
+
+def _pictures(it: Tracks) -> Iterator[Picture]:
+    """Yield the errors over time of each pair whose runs have the same clock."""
+    for number, both in enumerate(it.followed):
+        a, b = (
+            columns_of(path / "runs" / f"{result.run}.parquet", ("time_s", WANTED, TRUE))
+            for path, result in zip(it.paths.values(), (both.a, both.b), strict=True)
+        )
+        if a["time_s"].shape != b["time_s"].shape or (a["time_s"] != b["time_s"]).any():
+            continue
+        panel = Residuals("error [N]", a[WANTED] - a[TRUE], b[WANTED] - b[TRUE], None)
+        words = _words(both)
+        yield picture(
+            partial(draw_two_residuals, time_s=a["time_s"], panels=[panel]),
+            key=f"tracked-{number}",
+            alt=f"Wanted less true force at the load over time, of A and of B. {words}",
+            caption=words,
+            height_in=height_in(1) + 0.6,
+        )
+
+
+def _words(both: Followed) -> str:
+    a, b = (with_spread(r.scores["rmse_N"].mean, r.scores["rmse_N"].sd) for r in (both.a, both.b))
+    return f"{both.a.controller}, {both.a.condition}: RMSE {a} N in A, {b} N in B."

@@ -1,0 +1,99 @@
+"""The values of both models with their intervals, and what differs by more than these."""
+
+from collections.abc import Iterator
+from functools import partial
+
+from tsas_cli.comparing.compare import Comparison
+from tsas_cli.comparing.stage import differs
+from tsas_cli.comparing.values import Pair
+from tsas_cli.identification.estimate import Estimate
+from tsas_cli.reporting.content import Picture, Section, Table
+from tsas_cli.reporting.drawing import picture
+from tsas_cli.reporting.figures.values import Strip, Value, draw_values, height_in
+from tsas_cli.reporting.numbers import ABSENT, plain, with_interval
+
+_MOST = 8  # strips of a picture
+_HOW = (
+    "B − A has a 95 % interval where both values were fitted, to different recordings: it goes as "
+    "far as the two intervals in quadrature, each side on its own. Where it does not hold 0, the "
+    "difference is more than the uncertainty of both."
+)
+
+
+def section(it: Comparison) -> Section:
+    """Return the section of the values: a picture of those that both have, and the table."""
+    header = (
+        "parameter",
+        "run",
+        "differs",
+        "A",
+        "95 % of A",
+        "B",
+        "95 % of B",
+        "B − A",
+        "95 % of B − A",
+        "unit",
+        "at its bound",
+        "not fitted",
+    )
+    rows = tuple(_row(pair) for pair in it.pairs)
+    table = Table("The values of A and B", header, rows, numeric=frozenset(range(3, 9)))
+    every = Section("values-table", "Every value", tables=(table.without_empty(),))
+    pictures = tuple(_pictures(it))
+    shared = Section("values-both", "Values that both have", pictures=pictures)
+    how = (_HOW,) if it.tested else ()
+    return Section("values", "Values", how, parts=(shared, every) if pictures else (every,))
+
+
+def _row(pair: Pair) -> tuple[str, ...]:
+    d = pair.difference
+    both = [(name, e) for name, e in (("A", pair.a), ("B", pair.b)) if e is not None]
+    bound = [name for name, e in both if e.at_bound]
+    given = [f"{name} ({e.origin})" for name, e in both if e.origin != "fitted"]
+    return (
+        pair.name,
+        pair.run,
+        differs(pair),
+        *_estimate(pair.a),
+        *_estimate(pair.b),
+        *((ABSENT, ABSENT) if d is None else with_interval(d.value, d.low, d.high)),
+        pair.unit,
+        " and ".join(bound),
+        ", ".join(given),
+    )
+
+
+def _estimate(e: Estimate | None) -> tuple[str, str]:
+    if e is None:
+        return ABSENT, ABSENT
+    return with_interval(e.value, e.interval_low, e.interval_high)
+
+
+def _pictures(it: Comparison) -> Iterator[Picture]:
+    """Yield the picture of fitted values, differing ones first, those of single runs last."""
+    shown = [p for p in it.pairs if p.a and p.b and "fitted" in (p.a.origin, p.b.origin)]
+    shown.sort(key=lambda pair: (pair not in it.differing, pair.run != "all"))
+    strips = [_strip(pair) for pair in shown[:_MOST]]
+    if not strips:
+        return
+    said = "; ".join(
+        f"{s.label}: A {plain(s.a.value)}, B {plain(s.b.value)}"
+        f"{', which differs' if s.differs else ''}"
+        for s in strips
+    )
+    star = " A star marks a difference beyond both uncertainties." if it.tested else ""
+    yield picture(
+        partial(draw_values, strips=strips),
+        key="values",
+        alt=f"Values of A and B with 95 % intervals, each on its own axis. {said}.",
+        caption=f"Values of A and B with their 95 % intervals, each on its own axis.{star}",
+        height_in=height_in(len(strips)),
+    )
+
+
+def _strip(pair: Pair) -> Strip:
+    a, b = (
+        Value(e.value, e.interval_low, e.interval_high) for e in (pair.a, pair.b) if e is not None
+    )
+    run = "" if pair.run == "all" else f"\nrun {pair.run}"
+    return Strip(f"{pair.name.rpartition('.')[2]}{run}", a, b, differs(pair) == "yes")
