@@ -28,9 +28,9 @@ class Bar(Steps):
         """Move the bar by one, and say how long the rest takes at the pace so far."""
         self.done += 1
         so_far_s = self.shown.tasks[0].elapsed or 0.0
-        rest = max(self.total - self.done, 0)
-        left = timedelta(seconds=round(so_far_s / self.done * rest))
-        self.shown.update(self.task, completed=self.done, left=f"about {left} left")
+        left = timedelta(seconds=round(so_far_s / self.done * (self.total - self.done)))
+        said = f"about {left} left" if self.total > self.done else ""
+        self.shown.update(self.task, completed=self.done, left=said)
 
 
 @contextmanager
