@@ -30,7 +30,10 @@ def folder(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def calibrated(folder):
-    return tsas.calibrate(folder, out=folder.parent / "calibrate")
+    counted = Counted()
+    result = tsas.calibrate(folder, out=folder.parent / "calibrate", step=counted)
+    assert counted.all_of(least=20)  # effects are looked at, since the nominal model misses
+    return result
 
 
 @pytest.fixture(scope="module")

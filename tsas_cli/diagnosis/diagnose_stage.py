@@ -96,13 +96,14 @@ def diagnose_dataset(
     stated = stated_model(dataset.manifest, model)
     summary = dataset.header("diagnose", out) | {"model": source_of(model)}
     with folder_if(out, force=force) as folder:
-        step.ahead(len(dataset.runs))
+        step.ahead(len(dataset.runs) + 1)
         runs = []
         for recording in dataset:
             runs.append(prepare(recording, dataset.manifest.session_start))
             step()
         result = diagnose(dataset.manifest, stated, runs, step)
         summary |= as_json(result, step)
+        step()
         if folder is not None:
             of = summary["dataset"]
             write_json(folder / "diagnosis.json", summary)
