@@ -30,7 +30,10 @@ def folder(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def calibrated(folder):
-    return tsas.calibrate(folder, out=folder.parent / "calibrate")
+    counted = Counted()
+    result = tsas.calibrate(folder, out=folder.parent / "calibrate", step=counted)
+    assert counted.all_of(least=20)  # effects are looked at, since the nominal model misses
+    return result
 
 
 @pytest.fixture(scope="module")
@@ -262,6 +265,9 @@ def test_check_is_told_by_run(folder, tmp_path):
         (lambda folder: tsas.track(controllers="p"), "unknown controller p"),
         (lambda folder: tsas.track(controllers=[]), "no controller is named"),
         (lambda folder: tsas.track(dynamics="static"), "expected slip or lugre"),
+        (lambda folder: tsas.track(seeds=0), "seeds is 0; expected 1 or more"),
+        (lambda folder: tsas.track(disturb="frction_coefficient=0.2"), "did you mean friction"),
+        (lambda folder: tsas.close_loop(out="none", first_seed=-1), "first_seed is -1"),
         (lambda folder: tsas.plan(folder / "none.toml"), "cannot be read"),
         (lambda folder: tsas.report(folder.parent, out=folder.parent / "r.html"), "neither a"),
         (lambda folder: tsas.explain("backlsh"), "did you mean backlash"),

@@ -39,7 +39,7 @@ def calibrate(
     force
         Replace the folder if it is there.
     step
-        Told of two pieces of work per run.
+        Told of two pieces of work per run, and of every fit.
 
     Returns
     -------

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Literal
 
 from tsas_cli import __version__
-from tsas_cli.api.given import Named, one_of, path_of
+from tsas_cli.api.given import Named, at_least, one_of, path_of
 from tsas_cli.challenge import cases
 from tsas_cli.challenge.make import make
 from tsas_cli.challenge.run import TOOLS, case_folders, run_cases
@@ -94,7 +94,8 @@ def make_set(
     InputError
         No case is left, or `out` exists and `force` is not set.
     """
-    listed = [case for each in range(seed, seed + seeds) for case in cases.cases(each)]
+    first, count = at_least(0, seed, "seed"), at_least(1, seeds, "seeds")
+    listed = [case for each in range(first, first + count) for case in cases.cases(each)]
     if small:
         listed = list(cases.part(listed))
     if kind is not None:

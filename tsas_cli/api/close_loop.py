@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from tsas_cli.api.given import Named, path_of
+from tsas_cli.api.given import Named, at_least, listed, path_of
 from tsas_cli.steps import SILENT, Steps
 from tsas_cli.tracking.closing_stage import ClosingResult, chosen, close_all
 from tsas_cli.tracking.settings import read_settings
@@ -12,8 +12,8 @@ from tsas_cli.tracking.settings import read_settings
 def close_loop(
     *,
     out: Named,
-    cases: Sequence[str] | None = None,
-    hide: Sequence[str] = (),
+    cases: str | Sequence[str] | None = None,
+    hide: str | Sequence[str] = (),
     settings: Named | None = None,
     seeds: int = 5,
     first_seed: int = 1,
@@ -53,6 +53,7 @@ def close_loop(
     InputError
         A case or a setting is wrong, a loop is unstable, or `out` exists and `force` is not set.
     """
-    wanted, read = chosen(cases, hide), read_settings(path_of(settings))
-    seeds_taken = range(first_seed, first_seed + seeds)
+    wanted = chosen(None if cases is None else listed(cases), listed(hide))
+    read, first = read_settings(path_of(settings)), at_least(0, first_seed, "first_seed")
+    seeds_taken = range(first, first + at_least(1, seeds, "seeds"))
     return close_all(wanted, read, Path(out), seeds_taken, force=force, step=step)

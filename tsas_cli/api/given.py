@@ -26,7 +26,7 @@ def dataset_of(given: Dataset | Named, runs: Iterable[str] | None = None) -> Dat
         The folder is none, or there is no such run.
     """
     dataset = given if isinstance(given, Dataset) else read_dataset(Path(given))
-    return dataset if runs is None else dataset.only(_listed(runs))
+    return dataset if runs is None else dataset.only(listed(runs))
 
 
 def one_of(words: Sequence[Word], given: str, name: str) -> Word:
@@ -45,5 +45,19 @@ def one_of(words: Sequence[Word], given: str, name: str) -> Word:
     )
 
 
-def _listed(runs: Iterable[str]) -> list[str]:
-    return [runs] if isinstance(runs, str) else list(runs)
+def at_least(least: int, given: int, name: str) -> int:
+    """Return a whole number that is no less than the least one.
+
+    Raises
+    ------
+    InputError
+        It is less.
+    """
+    if given < least:
+        raise InputError(f"{name} is {given}", expected=f"{least} or more")
+    return given
+
+
+def listed(words: str | Iterable[str]) -> list[str]:
+    """Return words as a list, a single one too."""
+    return [words] if isinstance(words, str) else list(words)

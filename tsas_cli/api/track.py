@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import Literal
 
-from tsas_cli.api.given import Named, one_of, path_of
+from tsas_cli.api.given import Named, at_least, listed, one_of, path_of
 from tsas_cli.controllers import CONTROLLERS
 from tsas_cli.errors import InputError
 from tsas_cli.identification.drive_file import IdentifiedDrive
@@ -26,7 +26,7 @@ def track(
     controllers: str | Sequence[str] = "adaptive-sliding-mode",
     compare: bool = False,
     reference: Named = "sine",
-    disturb: Sequence[str] = (),
+    disturb: str | Sequence[str] = (),
     as_printed: bool = False,
     dynamics: Literal["slip", "lugre"] = "slip",
     settings: Named | None = None,
@@ -84,10 +84,10 @@ def track(
         A file is wrong, a controller unknown, the reference out of reach, the loop unstable, or
         `out` exists and `force` is not set.
     """
-    named = (controllers,) if isinstance(controllers, str) else tuple(controllers)
+    named = tuple(listed(controllers))
     if not named:
         raise InputError("no controller is named", expected=f"some of {', '.join(CONTROLLERS)}")
-    conditions = [disturbed(disturb)] if disturb else []
+    conditions = [disturbed(listed(disturb))] if disturb else []
     if compare:
         conditions = [Condition("undisturbed"), *(conditions or [proximal_spring()])]
     call = Call(
@@ -100,7 +100,7 @@ def track(
         reference=str(reference),
         as_printed=as_printed,
         dynamics=one_of(DYNAMICS, dynamics, "dynamics"),
-        seeds=seeds or (COMPARED_SEEDS if compare else 1),
-        first_seed=first_seed,
+        seeds=(COMPARED_SEEDS if compare else 1) if seeds is None else at_least(1, seeds, "seeds"),
+        first_seed=at_least(0, first_seed, "first_seed"),
     )
     return track_all(call, path_of(out), force=force, step=step)

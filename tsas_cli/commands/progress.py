@@ -22,15 +22,20 @@ class Bar(Steps):
     def ahead(self, pieces: int) -> None:
         """Make the total grow."""
         self.total += pieces
-        self.shown.update(self.task, total=self.total)
+        self._show()
 
     def __call__(self) -> None:
-        """Move the bar by one, and say how long the rest takes at the pace so far."""
+        """Move the bar by one."""
         self.done += 1
-        so_far_s = self.shown.tasks[0].elapsed or 0.0
-        rest = max(self.total - self.done, 0)
-        left = timedelta(seconds=round(so_far_s / self.done * rest))
-        self.shown.update(self.task, completed=self.done, left=f"about {left} left")
+        self._show()
+
+    def _show(self) -> None:
+        """Draw the bar, and say how long the rest takes at the pace so far."""
+        rest, left = self.total - self.done, ""
+        if self.done and rest > 0:
+            so_far_s = self.shown.tasks[0].elapsed or 0.0
+            left = f"about {timedelta(seconds=round(so_far_s / self.done * rest))} left"
+        self.shown.update(self.task, total=self.total or None, completed=self.done, left=left)
 
 
 @contextmanager

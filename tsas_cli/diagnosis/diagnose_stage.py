@@ -99,13 +99,14 @@ def diagnose_dataset(
     stated = stated_model(dataset.manifest, model)
     summary = dataset.header("diagnose", out) | {"model": source_of(model)}
     with folder_if(out, force=force) as folder:
-        step.ahead(len(dataset.runs))
+        step.ahead(len(dataset.runs) + 1)
         runs = []
         for recording in dataset:
             runs.append(prepare(recording, dataset.manifest.session_start))
             step()
         result = diagnose(dataset.manifest, stated, runs, step)
         summary |= as_json(result, step)
+        step()
         summary["segments"] = {run.run.id: segments_as_json(run, segment(run)) for run in runs}
         if folder is not None:
             _write(folder, summary, result, runs)

@@ -108,7 +108,7 @@ def identify_drive(
         A recording does not serve (`drive_runs`), or `out` exists and `force` is not set.
     """
     with folder_if(out, force=force) as folder:
-        step.ahead(1)
+        step.ahead(2)
         runs = drive_runs(dataset, hold)
         step()
         seen, sheet = frequency_response(runs), drive_sheet(dataset.manifest)
@@ -139,6 +139,7 @@ def identify_drive(
             "diagnosis": _diagnosis(search, found),
         }
         summary["cannot_tell"] = cannot_tell(summary, sheet, final, known)
+        step()
         simulated = _recordings(dataset.runs, search, by_fit, by_nominal)
         if folder is not None:
             write_json(folder / "drive.json", summary)

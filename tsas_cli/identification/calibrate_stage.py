@@ -81,7 +81,7 @@ def calibrate_dataset(
     """
     stated = stated_model(dataset.manifest, model)
     with folder_if(out, force=force) as folder:
-        step.ahead(2 * len(dataset.runs))
+        step.ahead(len(dataset.runs))
         runs = []
         for recording in dataset:
             _refuse_wrong_sign(recording, dataset.manifest)

@@ -1,6 +1,6 @@
 """Calibrate the nominal model on a dataset: phases, stiffness per phase, joint fit."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from tsas_cli.identification.base_fit import base_fit, slopes_of
@@ -17,6 +17,7 @@ from tsas_cli.identification.stiffness import Slope, slopes
 from tsas_cli.identification.transfer import tension_transfer
 from tsas_cli.physics.response import Dynamics
 from tsas_cli.recordings.manifest import Manifest
+from tsas_cli.steps import SILENT, Steps
 
 LACKING = (
     "The intervals allow for no effect that the model lacks: `tsas diagnose` names it, and --model "
@@ -42,12 +43,12 @@ class Calibration:
 def calibrate(
     manifest: Manifest,
     runs: Sequence[Prepared],
-    step: Callable[[], None] = lambda: None,
+    step: Steps = SILENT,
     *,
     dynamics: Dynamics = "slip",
     stated: Model | None = None,
 ) -> Calibration:
-    """Calibrate the nominal model; `step` is called after each run's phases are found.
+    """Calibrate the nominal model; `step` follows each run's phases, each fit and each answer.
 
     Where a run holds no f_in_N there are no slopes for it; where nothing can be told, the model is
     that of the data sheet and `cannot_tell` says why. With the dynamic model (`lugre`) its bristles
@@ -55,6 +56,7 @@ def calibrate(
     effects stay; the data sheet's without it.
     """
     stated = stated or data_sheet(manifest)
+    step.ahead(len(runs) + 1)
     segments, measured = [], []
     for run in runs:
         segments.append(segment(run))
@@ -62,9 +64,10 @@ def calibrate(
         step()
     fit = base_fit(stated, runs, segments, measured)
     model, fitted, sentences = fit.solve()
+    step()
     dynamic = None
     if dynamics == "lugre" and fitted is not None:
-        dynamic = dynamic_fit(model, fit.runs)
+        dynamic = dynamic_fit(model, fit.runs, step)
         model, fitted = dynamic.model, dynamic.fitted
     answers = [compare(run, model, dynamics) for run in runs]
     expected = [_answered(*each) for each in zip(runs, answers, segments, strict=True)]
@@ -75,7 +78,7 @@ def calibrate(
     else:
         missed = fit.misfit()
         if missed and fitted is not None:
-            wider = widened(fit, model.estimates)
+            wider = widened(fit, model.estimates, step)
             model = Model(wider.estimates)
             missed += _widened_by(wider.effects)
     cannot = [*missed, *_unknown_conditions(runs), *sentences]

@@ -20,6 +20,7 @@ from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.physics.lugre_start import law_of
 from tsas_cli.physics.response import LUMPS
+from tsas_cli.steps import SILENT, Steps
 
 Floats = npt.NDArray[np.float64]
 
@@ -67,28 +68,29 @@ class Solved:
     cannot_tell: list[str]
 
 
-def dynamic_fit(nominal: Model, runs: Sequence[Prepared]) -> DynamicFit:
+def dynamic_fit(nominal: Model, runs: Sequence[Prepared], step: Steps = SILENT) -> DynamicFit:
     """Fit nominal values, bristles and friction over speed with the dynamic chain.
 
-    `nominal` is what the fit of the slip model found, where this one starts from.
+    `nominal` is what the fit of the slip model found, where this one starts from. `step` is told
+    of each fit, and of each value that is looked at.
     """
     stiffness = nominal.rig(runs[0].run).bristles.stiffness_N_per_mm
     first = {STIFFNESS: stiffness, VISCOUS: QUANTITIES[VISCOUS].size}
-    solved = _solved(_model_of(first).over(nominal), nominal, runs, tuple(first))
+    solved = _solved(_model_of(first).over(nominal), nominal, runs, tuple(first), step)
     if solved is None:
         return DynamicFit(nominal, None, [], [])
-    solved = _from_better_stiffness(solved) or _at_stiffness(solved) or solved
-    at_rest = _friction_at_rest(solved.fit)
-    with_rest = _freed(solved, at_rest)
+    solved = _from_better_stiffness(solved, step) or _at_stiffness(solved, step) or solved
+    at_rest = _friction_at_rest(solved.fit, step)
+    with_rest = _freed(solved, at_rest, step)
     solved = with_rest or solved
-    dampings = _sizes(solved.fit, DAMPING)
-    solved = _freed(solved, dampings) or solved
+    dampings = _sizes(solved.fit, DAMPING, step)
+    solved = _freed(solved, dampings, step) or solved
     said, fitted = list(solved.cannot_tell), solved.fitted
     if with_rest is None:
         said.append(_unseen_rest(at_rest))
     for name in (STIFFNESS, DAMPING, VISCOUS):
         if not _tells(solved.fit, name):
-            looks = dampings if name == DAMPING else _sizes(solved.fit, name)
+            looks = dampings if name == DAMPING else _sizes(solved.fit, name, step)
             best = max(look.saves for look in looks)
             finest = _finest_stiffness(solved.fit)
             like = [
@@ -103,11 +105,13 @@ def dynamic_fit(nominal: Model, runs: Sequence[Prepared]) -> DynamicFit:
 
 
 def _solved(
-    start: Model, kept: Model, runs: Sequence[Prepared], further: tuple[str, ...]
+    start: Model, kept: Model, runs: Sequence[Prepared], further: tuple[str, ...], step: Steps
 ) -> Solved | None:
     """Return a fit that has ended; None where the recordings tell nothing."""
+    step.ahead(1)
     fit = JointFit(start, kept, runs, dynamics="lugre", further=further)
     model, fitted, sentences = fit.solve()
+    step()
     return None if fitted is None else Solved(fit, further, model, fitted, sentences)
 
 
@@ -118,8 +122,9 @@ def _model_of(values: Mapping[str, float]) -> Model:
     )
 
 
-def _friction_at_rest(fit: JointFit) -> list[Look]:
+def _friction_at_rest(fit: JointFit, step: Steps) -> list[Look]:
     """Look at friction at rest with many Stribeck velocities, its size as the errors ask for."""
+    step.ahead(len(VELOCITIES))
     left, slopes = fit.residuals_with({}), fit.slopes()
     looks = []
     for velocity in map(float, VELOCITIES):
@@ -139,10 +144,11 @@ def _friction_at_rest(fit: JointFit) -> list[Look]:
                 bool(SEEN * own > CLEARLY),
             )
         )
+        step()
     return looks
 
 
-def _sizes(fit: JointFit, name: str) -> list[Look]:
+def _sizes(fit: JointFit, name: str, step: Steps) -> list[Look]:
     """Look at values of one that is not told, from the usual one up; of the stiffness down too."""
     left, slopes = fit.residuals_with({}), fit.slopes()
     rigs = fit.solved_rigs()
@@ -152,12 +158,14 @@ def _sizes(fit: JointFit, name: str) -> list[Look]:
         VISCOUS: QUANTITIES[VISCOUS].size,
     }[name]
     times = (*TIMES, *(1.0 / t for t in TIMES)) if name == STIFFNESS else TIMES
+    step.ahead(len(times))
     looks = []
     for value in (usual * t for t in times):
         there = fit.residuals_with({name: value})
         moves = _asked(slopes, there)
         saved = float(np.sum(left**2) - np.sum((there + slopes @ moves) ** 2))
         looks.append(Look({name: value}, moves, saved))
+        step()
     return looks
 
 
@@ -165,19 +173,19 @@ def _tells(fit: JointFit, name: str) -> bool:
     return any(u.name == name for u in fit.told())
 
 
-def _from_better_stiffness(solved: Solved) -> Solved | None:
+def _from_better_stiffness(solved: Solved, step: Steps) -> Solved | None:
     """Fit again from the stiffness that fits best, where it is not told but another fits better."""
     if _tells(solved.fit, STIFFNESS):
         return None
-    best = max(_sizes(solved.fit, STIFFNESS), key=lambda look: look.saves)
+    best = max(_sizes(solved.fit, STIFFNESS, step), key=lambda look: look.saves)
     if best.saves < WORTH:
         return None
     stiffness, fit = _model_of(best.values), solved.fit
     start = stiffness.over(fit.moved(best.moves))
-    return _solved(start, stiffness.over(fit.kept), fit.runs, solved.further)
+    return _solved(start, stiffness.over(fit.kept), fit.runs, solved.further, step)
 
 
-def _at_stiffness(solved: Solved) -> Solved | None:
+def _at_stiffness(solved: Solved, step: Steps) -> Solved | None:
     """Fit again at the stiffness where the fit ended, where it is told by its name alone.
 
     Its interval may hold anything, or the mesh be too coarse to show it.
@@ -190,7 +198,7 @@ def _at_stiffness(solved: Solved) -> Solved | None:
             there, fit = _model_of({STIFFNESS: min(e.value, finest)}), solved.fit
             further = tuple(name for name in solved.further if name != STIFFNESS)
             start = fit.moved(np.zeros(len(fit.told())))
-            return _solved(there.over(start), there.over(fit.kept), fit.runs, further)
+            return _solved(there.over(start), there.over(fit.kept), fit.runs, further, step)
     return None
 
 
@@ -205,14 +213,14 @@ def _asked(slopes: Floats, left: Floats) -> Floats:
     return np.asarray(np.linalg.lstsq(slopes, -left, rcond=None)[0])
 
 
-def _freed(solved: Solved, looks: Sequence[Look]) -> Solved | None:
+def _freed(solved: Solved, looks: Sequence[Look], step: Steps) -> Solved | None:
     """Fit with the values of the best look freed too; None where they are not told after all."""
     best = max(looks, key=lambda look: look.saves)
     if best.saves < WORTH:
         return None
     start = _model_of(best.values).over(solved.fit.moved(best.moves))
     further = (*solved.further, *best.values)
-    more = _solved(start, solved.fit.kept, solved.fit.runs, further)
+    more = _solved(start, solved.fit.kept, solved.fit.runs, further, step)
     if more is None:
         return None
     told = {e.name: e for e in more.model.estimates if e.stderr is not None and not e.at_bound}

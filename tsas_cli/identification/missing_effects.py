@@ -17,6 +17,7 @@ from tsas_cli.identification.fit import with_errors
 from tsas_cli.identification.joint_fit import JointFit, estimates_of
 from tsas_cli.identification.run_errors import blocks_of
 from tsas_cli.identification.screening import projector, screen
+from tsas_cli.steps import SILENT, Steps
 
 WORTH = 0.5  # of what the best effect explains linearly, for an effect to be fitted
 NEAR = 2.0  # times the best effect's excess over the noise, for an effect to count
@@ -32,10 +33,13 @@ class Widened:
     effects: tuple[str, ...]
 
 
-def widened(fit: JointFit, told: Sequence[Estimate]) -> Widened:
-    """Widen the intervals of a solved fit by the effects that explain most of what it misses."""
+def widened(fit: JointFit, told: Sequence[Estimate], step: Steps = SILENT) -> Widened:
+    """Widen the intervals of a solved fit by the effects that explain most of what it misses.
+
+    `step` is told of each effect that is looked at, and of each that is fitted.
+    """
     bench = Bench(fit)
-    trials = _best_trials(bench)
+    trials = _best_trials(bench, step)
     if not trials:
         return Widened(tuple(told), ())
     least = min(t.mean_square for t in trials)
@@ -51,23 +55,27 @@ def widened(fit: JointFit, told: Sequence[Estimate]) -> Widened:
     )
 
 
-def _best_trials(bench: Bench) -> list[Trial]:
+def _best_trials(bench: Bench, step: Steps) -> list[Trial]:
     """Return the converged fits with one effect each that are better than without."""
     seen = []
     bases = {}
+    step.ahead(len(EFFECTS))
     for effect in EFFECTS:
         mesh = bench.on_mesh([effect.name])
         if mesh not in bases:
             trial = bench.fit(on_mesh=mesh)
             bases[mesh] = trial, projector(trial)
         seen.append((screen(bench, bases[mesh][0], effect, bases[mesh][1]), bases[mesh][0]))
+        step()
     best = max(s.part for s, _ in seen)
+    worth = [(s, base) for s, base in seen if s.part >= WORTH * best]
+    step.ahead(len(worth))
     out = []
-    for s, base in seen:
-        if s.part >= WORTH * best:
-            trial = bench.fit([s.effect.name], s.start, near=base)
-            if trial.solution.converged and trial.mean_square < base.mean_square:
-                out.append(trial)
+    for s, base in worth:
+        trial = bench.fit([s.effect.name], s.start, near=base)
+        if trial.solution.converged and trial.mean_square < base.mean_square:
+            out.append(trial)
+        step()
     return out
 
 
