@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from tsas_cli.commands.common import ChosenRuns, Force, Json, Quiet, opened, progress, show
-from tsas_cli.errors import InputError
+from tsas_cli.errors import InputError, printable
 
 
 def compare(
@@ -62,9 +62,9 @@ def compare(
     show(summary, printed, quiet=quiet, as_json=as_json)
     if not quiet and not as_json:
         for sentence in summary["findings"]:
-            print(sentence)
+            print(printable(sentence))
         for sentence in summary["notes"]:
-            print(f"- {sentence}")
+            print(f"- {printable(sentence)}")
 
 
 def _refuse(*, on: Path | None, runs: str | None, fit_own: bool, tracks: bool) -> None:
