@@ -5,8 +5,12 @@ import struct
 import subprocess
 import sys
 import termios
+from collections import Counter
+from itertools import chain
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from tsas_cli.text_table import table_lines
 
@@ -57,6 +61,22 @@ def test_no_line_is_longer_than_the_terminal_and_no_value_is_lost(columns: int) 
             assert value in words
     assert words.count("[0.12499,") == words.count("0.12502]") == 36
     assert words.count("no") == 12
+
+
+@settings(deadline=None)
+@given(
+    st.integers(1, 6).flatmap(
+        lambda n: st.lists(
+            st.lists(st.text("ab-. ", max_size=30), min_size=n, max_size=n), min_size=2, max_size=5
+        )
+    ),
+    st.integers(16, 90),
+)
+def test_every_table_fits_and_keeps_its_letters(rows: list[list[str]], width: int) -> None:
+    lines = list(table_lines("t", rows, width))
+    assert max(map(len, lines)) <= width
+    printed, held = (Counter("".join(of)) for of in (lines, chain(*rows[1:])))
+    assert all(printed[letter] >= held[letter] for letter in "ab.")
 
 
 def test_a_table_that_fits_looks_as_in_a_file() -> None:

@@ -34,7 +34,7 @@ def table_lines(title: str, rows: Sequence[Row], width: int | None) -> Iterator[
     width
         Columns of the terminal, None where the output is no terminal.
     """
-    yield from [title] if width is None else wrap(title, width) or [""]
+    yield from [title] if width is None else wrap(title, width, break_on_hyphens=False) or [""]
     if not rows:
         return
     every = list(range(len(rows[0])))

@@ -1,4 +1,5 @@
 import json
+import shutil
 
 import pytest
 
@@ -63,6 +64,19 @@ def test_quiet_says_nothing_and_an_output_stays_without_force(run, tmp_path):
     assert (code, out, err.count("\n")) == (2, "", 1)
     assert "--force" in err
     assert run(*pair, "--out", tmp_path / "o", "-q", "--force") == (0, "", "")
+
+
+def test_names_from_files_cannot_steer_the_terminal(run, root, tmp_path):
+    folder = shutil.copytree(root / "calibrated-1", tmp_path / "c")
+    path = folder / "calibration.json"
+    content = json.loads(path.read_text())
+    content["dataset"]["name"] = "\x1b[2Jbench"
+    path.write_text(json.dumps(content))
+    code, out, _ = run(folder, "calibrated-2")
+    assert code == 0
+    assert "no longer at" in out  # the copy does not stand beside its dataset
+    assert out.count("\\x1b[2Jbench") == 2
+    assert "\x1b" not in out
 
 
 @pytest.mark.parametrize(

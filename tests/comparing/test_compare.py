@@ -1,5 +1,6 @@
 import json
 import shutil
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -237,6 +238,14 @@ def test_a_series_of_another_length_is_refused(root, tmp_path):
     shutil.copy(runs / "fast.parquet", runs / "slow.parquet")
     with pytest.raises(InputError, match="rows"):
         compare(tmp_path / "s", tmp_path / "s")
+
+
+def test_doubts_are_said(on_second):
+    doubtful = replace(on_second.b, dynamics="lugre", not_converged="it wandered.")
+    said = " ".join(notes(replace(on_second, b=doubtful)))
+    assert "two laws of motion: A slip, B lugre" in said
+    assert "fit of B did not converge (it wandered)" in said
+    assert "converge" not in " ".join(notes(on_second))
 
 
 def test_a_model_without_its_recordings_makes_no_claim(root, tmp_path):

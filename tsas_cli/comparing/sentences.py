@@ -113,6 +113,8 @@ def _doubts(it: Comparison) -> Iterator[str]:
                 f"The fit of {name} did not converge ({side.not_converged.rstrip('.')}): its "
                 "values are not to be relied on."
             )
+    if it.errors and it.a.dynamics != it.b.dynamics:
+        yield f"The errors are of two laws of motion: A {it.a.dynamics}, B {it.b.dynamics}."
     bound = [p.name for p in it.pairs if p.difference and p.difference.why_none == "at its bound"]
     if bound:
         yield f"At a bound, so that no difference is claimed: {_some(bound)}."

@@ -21,42 +21,63 @@ _HOW = (
 
 
 def section(it: Comparison) -> Section:
-    """Return the section of the values: a picture of those that both have, and the table."""
+    """Return the section of the values: a picture of those that both have, and the tables."""
+    parts = (
+        Section("values-both", "Values that both have", pictures=tuple(_pictures(it))),
+        Section("values-differences", "Differences", tables=(_differences(it),)),
+        Section("values-all", "Every value", tables=(_values(it),)),
+    )
+    return Section(
+        "values",
+        "Values",
+        (_HOW,) if it.tested else (),
+        parts=tuple(p for p in parts if p.pictures or any(table.rows for table in p.tables)),
+    )
+
+
+def _differences(it: Comparison) -> Table:
+    rows = tuple(
+        (
+            pair.name,
+            pair.run,
+            *with_interval(pair.difference.value, pair.difference.low, pair.difference.high),
+            pair.unit,
+            differs(pair),
+            pair.difference.why_none,
+        )
+        for pair in it.pairs
+        if pair.difference is not None
+    )
+    header = ("parameter", "run", "B − A", "95 % interval", "unit", "differs", "no interval")
+    caption = "B less A" + (", and whether that is more than both uncertainties" * bool(it.tested))
+    return Table(caption, header, rows, numeric=frozenset({2, 3})).without_empty()
+
+
+def _values(it: Comparison) -> Table:
     header = (
         "parameter",
         "run",
-        "differs",
         "A",
         "95 % of A",
         "B",
         "95 % of B",
-        "B − A",
-        "95 % of B − A",
         "unit",
         "at its bound",
         "not fitted",
     )
     rows = tuple(_row(pair) for pair in it.pairs)
-    table = Table("The values of A and B", header, rows, numeric=frozenset(range(3, 9)))
-    every = Section("values-table", "Every value", tables=(table.without_empty(),))
-    pictures = tuple(_pictures(it))
-    shared = Section("values-both", "Values that both have", pictures=pictures)
-    how = (_HOW,) if it.tested else ()
-    return Section("values", "Values", how, parts=(shared, every) if pictures else (every,))
+    return Table("Values of A and B", header, rows, numeric=frozenset(range(2, 6))).without_empty()
 
 
 def _row(pair: Pair) -> tuple[str, ...]:
-    d = pair.difference
     both = [(name, e) for name, e in (("A", pair.a), ("B", pair.b)) if e is not None]
     bound = [name for name, e in both if e.at_bound]
     given = [f"{name} ({e.origin})" for name, e in both if e.origin != "fitted"]
     return (
         pair.name,
         pair.run,
-        differs(pair),
         *_estimate(pair.a),
         *_estimate(pair.b),
-        *((ABSENT, ABSENT) if d is None else with_interval(d.value, d.low, d.high)),
         pair.unit,
         " and ".join(bound),
         ", ".join(given),
