@@ -1,0 +1,34 @@
+"""When to look at a tendon: evenly in time, and densely where its tensions change fast."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+Floats = npt.NDArray[np.float64]
+Indices = npt.NDArray[np.int64]
+
+PER_SECOND = 15.0
+PER_SPAN = 120.0  # while a tension goes through all that it has in the run: half a dead band of
+#   the source paper's rig then takes about thirty
+MOST = 1500  # of one run, whatever its length
+
+
+def moments(time_s: Floats, tensions: Sequence[Floats]) -> Indices:
+    """Return the samples to look at, rising, the first and the last one among them.
+
+    Parameters
+    ----------
+    time_s
+        Time of the samples, shape (n,).
+    tensions
+        What must not jump from one to the next: tensions of all models shown, shape (n,) each.
+    """
+    steps = PER_SECOND * np.diff(time_s)
+    for tension in tensions:
+        span = float(np.ptp(tension))
+        if span > 0.0:
+            steps = np.maximum(steps, PER_SPAN / span * np.abs(np.diff(tension)))
+    passed = np.concatenate(([0.0], np.cumsum(steps)))
+    frames = np.arange(0.0, passed[-1], max(1.0, passed[-1] / MOST))
+    return np.unique(np.append(np.searchsorted(passed, frames), time_s.size - 1))
