@@ -58,11 +58,11 @@ def read(path: Path) -> dict[str, Read]:
                 entity.rows[name] += column.to_pylist()
         if not chunk.is_static:
             entity.chunks.append(chunk.num_rows)
-    return found
+    return dict(found)
 
 
 def make_diagnosed(dataset: Path, folder: Path, verdict: str = "named") -> Path:
-    """Write what `tsas diagnose` would: the nominal model is off by 2 N, the extended one is not."""
+    """Write what `tsas diagnose` would: by 2 N the nominal model is off, the extended one not."""
     make_diagnosis(dataset, folder, verdict)
     (folder / "model-extended.toml").write_text(MODEL, encoding="utf-8")
     (folder / "runs").mkdir()
