@@ -8,11 +8,19 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from tsas_cli import __version__
 from tsas_cli.errors import InputError
 from tsas_cli.files import folder_if, write_json
 from tsas_cli.identification.base_fit import with_own_values
 from tsas_cli.identification.comparison import Compared, compare
-from tsas_cli.identification.model import Model, data_sheet, model_of, source_of
+from tsas_cli.identification.model import (
+    FILE,
+    Model,
+    data_sheet,
+    model_of,
+    source_of,
+    write_model,
+)
 from tsas_cli.identification.phases import segment, segments_as_json
 from tsas_cli.identification.prepared import Prepared, prepare
 from tsas_cli.physics.chain_state import MOST_NODES
@@ -70,7 +78,7 @@ def simulate_dataset(
     force: bool = False,
     step: Steps = SILENT,
 ) -> SimulationResult:
-    """Simulate all runs; write `runs/ID.parquet` and `simulation.json` into a new folder if any.
+    """Simulate all runs; write answers, errors and the model as used into a new folder if any.
 
     Without a model the manifest's data sheet is simulated. With `fit_own` the preload and the
     zeros of each run are fitted first, all else stays as the model says: so a model predicts runs
@@ -88,12 +96,13 @@ def simulate_dataset(
     summary = dataset.header("simulate", out) | {"model": source_of(model)}
     summary |= {"dynamics": dynamics, "nodes": nodes, "own_values_fitted": fit_own, "runs": {}}
     summary["segments"] = {}
-    runs = {}
+    runs, used = {}, taken
     with folder_if(out, force=force) as folder:
         step.ahead(len(dataset.runs))
         for recording in dataset:
             run = prepare(recording, dataset.manifest.session_start)
             own = with_own_values(taken, run) if fit_own else taken
+            used = _of_run(own, run.run.id).over(used)
             answer = compare(run, own, dynamics, nodes)
             runs[run.run.id] = Recording(run.run, _columns(run, answer))
             summary["runs"][run.run.id] = answer.as_json(run)
@@ -103,7 +112,14 @@ def simulate_dataset(
         if folder is not None:
             write_runs(folder / "runs", runs)
             write_json(folder / "simulation.json", summary)
+            # What the model was fitted to, its own file says; these recordings are only followed.
+            write_model(folder / FILE, used, version=__version__, dataset={})
     return SimulationResult(summary, out, taken, runs)
+
+
+def _of_run(model: Model, run: str) -> Model:
+    """Return what of a model belongs to a run alone."""
+    return Model(tuple(e for e in model.estimates if e.run == run))
 
 
 def _refuse_nodes(nodes: int | None, dynamics: Dynamics) -> None:

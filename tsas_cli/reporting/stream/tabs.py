@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from tsas_cli.reporting.channels import at_axis
 from tsas_cli.reporting.stream.channels import residuals_of, series_of
-from tsas_cli.reporting.stream.events import REVERSALS, events_of
+from tsas_cli.reporting.stream.events import REVERSALS, events_of, happens
 from tsas_cli.reporting.stream.phases import phases_of
 from tsas_cli.reporting.stream.portraits import view_of
 from tsas_cli.reporting.stream.recorder.layout import (
@@ -21,7 +21,8 @@ from tsas_cli.reporting.stream.recorder.layout import (
 )
 from tsas_cli.reporting.stream.recorder.paths import Entity
 from tsas_cli.reporting.stream.seen import X_IN, SeenRun
-from tsas_cli.reporting.stream.tracking import tracking_tab
+from tsas_cli.reporting.stream.tendon.content import view_of_tendon
+from tsas_cli.reporting.stream.tracking import FORCE, tracking_tab, true_of
 
 OVERVIEW, DIAGNOSIS = ("about", "overview"), ("about", "diagnosis")
 TABS = ("Overview", "Residuals", "Tendon", "Tracking", "Diagnosis")
@@ -29,24 +30,25 @@ ALL_RUNS = 12  # beyond which their loops are too small to be seen beside each o
 _ACROSS = 4
 _ORDER = ("f_in_N", "f_out_N", "x_in_mm", "x_out_mm")  # what is looked at first
 _TALL, _LANE = 1.6, 0.8  # height of the first plot, and of the phases, over that of the others
+_LOG = 0.6  # height of the events over that of a loop
 
 
-def layout_of(runs: Sequence[SeenRun], *, diagnosed: bool, tendon: Part | None = None) -> Layout:
+def layout_of(runs: Sequence[SeenRun], *, diagnosed: bool) -> Layout:
     """Return the tabs; what was tracked opens on it, all else on the overview.
 
-    `diagnosed` says whether there is a text on it, `tendon` is the picture of it.
+    `diagnosed` says whether there is a text on it.
     """
     made = {
         "Overview": _overview(runs),
         "Residuals": _by_run(runs, _residuals),
-        "Tendon": tendon,
+        "Tendon": _by_run(runs, view_of_tendon),
         "Tracking": tracking_tab(runs),
         "Diagnosis": Text("Diagnosis", DIAGNOSIS) if diagnosed else None,
     }
     parts = [Rows([part], name=name) for name in TABS if (part := made[name]) is not None]
     names = [part.name for part in parts]
     on_top = names.index("Tracking") if "Tracking" in names else 0
-    moves = tendon is not None or any(run.loops for run in runs)
+    moves = made["Tendon"] is not None or any(run.loops for run in runs)
     return Layout(Tabs(parts, on_top=on_top), plays=moves)
 
 
@@ -74,13 +76,17 @@ def _run(run: SeenRun) -> Part | None:
     series = series_of(run)
     if X_IN in series and run.segments:
         series[X_IN].append(run.entity(X_IN, REVERSALS))
+    if run.tracked is not None:
+        series[FORCE].append(true_of(run))
     rows = _over_phases(run, series)
     if rows is None:
         return None
     beside: list[Part] = [view_of(run, channel) for channel in run.loops]
-    if run.segments:
+    shares = [1.0] * len(beside)
+    if happens(run):
         beside.append(Log("events", [events_of(run)]))
-    return Columns([rows, Rows(beside)], shares=(3.0, 2.0)) if beside else rows
+        shares.append(_LOG)
+    return Columns([rows, Rows(beside, shares)], shares=(3.0, 2.0)) if beside else rows
 
 
 def _residuals(run: SeenRun) -> Part | None:

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 import rerun as rr
 
+from tsas_cli.errors import InputError
 from tsas_cli.reporting.stream.recorder.blueprint import blueprint_of
 from tsas_cli.reporting.stream.recorder.clock import Times
 from tsas_cli.reporting.stream.recorder.layout import Layout
@@ -20,6 +21,7 @@ Floats = npt.NDArray[np.float64]
 Colour = int  # 0xRRGGBBAA
 Colours = npt.NDArray[np.uint32]
 
+SLOWEST_S = 10.0  # that a viewer or a disk may take for what it was sent
 ROWS = 8192  # of a series that are sent at a time
 _EXTREMES = rr.components.AggregationPolicy.MinMax  # the usual average flattens what is fast
 
@@ -29,6 +31,7 @@ class Recorder:
     """Writes entities to one stream; `opened.to_file` and `opened.to_viewer` open it."""
 
     stream: rr.RecordingStream
+    where: object = ""
 
     def lay_out(self, layout: Layout) -> None:
         """Say what the viewer opens with; the last one counts."""
@@ -51,6 +54,19 @@ class Recorder:
             if not there.all():
                 columns = columns.partition(there.astype(np.int64))
             self._columns(entity, piece, columns)
+
+    def settle(self) -> None:
+        """Wait until what was recorded is written: what waits for it is kept in memory.
+
+        Raises
+        ------
+        InputError
+            The file or the viewer does not take it.
+        """
+        try:
+            self.stream.flush(timeout_sec=SLOWEST_S)
+        except RuntimeError as error:
+            raise InputError(f"does not take the stream ({error})", where=self.where) from error
 
     def marks(self, entity: Entity, name: str, colour: Colour, *, size: float = 4.0) -> None:
         """Say that the series of an entity is drawn as marks that are not joined."""
@@ -159,24 +175,6 @@ class Recorder:
             entity, rr.LineStrips3D(list(curves), colors=colours, radii=radii, labels=labels)
         )
 
-    def segments_3d(
-        self,
-        entity: Entity,
-        segments: Floats,
-        times: Times,
-        colours: Colours,
-        *,
-        radii: float | Sequence[float] = -4.0,
-    ) -> None:
-        """Set a curve of m pieces, shape (m, 2, 3), and add their colours over time, shape (n, m).
-
-        A strip has one colour, hence pieces of two points each; where they are stands still.
-        """
-        self._static(entity, rr.LineStrips3D(segments.astype(np.float32), radii=radii))
-        moments, pieces = colours.shape
-        columns = rr.LineStrips3D.columns(colors=np.ascontiguousarray(colours).ravel())
-        self._columns(entity, times, columns.partition(np.full(moments, pieces)))
-
     def points_3d(
         self,
         entity: Entity,
@@ -204,15 +202,6 @@ class Recorder:
         """Set texts in space at places of shape (n, 3); they hold at all times."""
         look = rr.Points3D(places, labels=list(labels), colors=colour, radii=0.0, show_labels=True)
         self._static(entity, look)
-
-    def mesh_3d(
-        self, entity: Entity, corners: Floats, triangles: npt.NDArray[np.uint32], colour: Colour
-    ) -> None:
-        """Set a surface of corners, shape (n, 3), and triangles of them, shape (m, 3)."""
-        self._static(
-            entity,
-            rr.Mesh3D(vertex_positions=corners, triangle_indices=triangles, albedo_factor=colour),
-        )
 
     def _static(self, entity: Entity, look: rr.AsComponents) -> None:
         self.stream.log(path_of(entity), look, static=True, strict=True)
