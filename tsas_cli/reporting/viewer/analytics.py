@@ -1,0 +1,29 @@
+"""What a person should know before the viewer starts: it counts how it is used."""
+
+import os
+from pathlib import Path
+
+NOTE = (
+    "the viewer is Rerun's and sends its makers usage statistics (never your data): "
+    "`rerun analytics disable` turns that off for the window, CI=true in the environment for one "
+    "call; the viewer in a browser knows neither. This is said once."
+)
+
+
+def note_once() -> str:
+    """Return the note the first time that a user is about to start the viewer, then nothing.
+
+    Where nothing can be remembered it is returned each time.
+    """
+    import platformdirs
+
+    root = os.environ.get("TSAS_STATE_DIR") or platformdirs.user_state_dir("tsas")
+    marker = Path(root) / "viewer-analytics-said"
+    try:
+        marker.parent.mkdir(parents=True, exist_ok=True)
+        marker.touch(exist_ok=False)
+    except FileExistsError:
+        return ""
+    except OSError:
+        return NOTE
+    return NOTE
