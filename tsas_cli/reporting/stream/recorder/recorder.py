@@ -1,0 +1,285 @@
+"""What is recorded: series, states, events, curves in two and three dimensions, and texts.
+
+An entity is named by its parts, `("run", "a", "f_in_N")`; names from files need no escaping. Rerun
+is strict here: columns of different lengths raise `ValueError`, else they would only be dropped.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+import rerun as rr
+
+from tsas_cli.errors import InputError
+from tsas_cli.files import new_file
+from tsas_cli.reporting.stream.recorder.blueprint import blueprint_of
+from tsas_cli.reporting.stream.recorder.clock import Times
+from tsas_cli.reporting.stream.recorder.layout import Layout
+from tsas_cli.reporting.stream.recorder.paths import Entity, path_of
+
+Floats = npt.NDArray[np.float64]
+Colour = int  # 0xRRGGBBAA
+Colours = npt.NDArray[np.uint32]
+
+SLOWEST_S = 10.0  # that a viewer may take to read what it is sent
+_EXTREMES = rr.components.AggregationPolicy.MinMax  # the usual average flattens what is fast
+
+
+@dataclass(frozen=True)
+class Recorder:
+    """Writes entities to one stream; `to_file` and `to_viewer` open it."""
+
+    stream: rr.RecordingStream
+
+    def lay_out(self, layout: Layout) -> None:
+        """Say what the viewer opens with; the last one counts."""
+        self.stream.send_blueprint(blueprint_of(layout))
+
+    def line(self, entity: Entity, name: str, colour: Colour, *, width: float = 1.5) -> None:
+        """Say how the series of an entity is drawn, and what the legend calls it."""
+        style = rr.SeriesLines(
+            names=name, colors=colour, widths=width, aggregation_policy=_EXTREMES
+        )
+        self._static(entity, style)
+
+    def scalars(self, entity: Entity, times: Times, values: Floats) -> None:
+        """Add samples of a series, shape (n,); NaN is a gap, which stays one."""
+        there = ~np.isnan(values)
+        columns = rr.Scalars.columns(scalars=values[there])
+        if not there.all():
+            columns = columns.partition(there.astype(np.int64))
+        self._columns(entity, times, columns)
+
+    def states(
+        self,
+        entity: Entity,
+        times: Times,
+        states: Sequence[str],
+        *,
+        colours: Mapping[str, Colour],
+        labels: Mapping[str, str] | None = None,
+    ) -> None:
+        """Add the states that begin at these times; an empty one ends the last.
+
+        `colours` and `labels` are of all states that there may be.
+        """
+        names = list(colours)
+        shown = [(labels or {}).get(name, name) for name in names]
+        look = rr.StateConfiguration(values=names, labels=shown, colors=list(colours.values()))
+        self._static(entity, look)
+        self._columns(entity, times, rr.StateChange.columns(state=list(states)))
+
+    def events(
+        self, entity: Entity, times: Times, texts: Sequence[str], *, level: str = "INFO"
+    ) -> None:
+        """Add lines of text, one at each time; `level` is INFO, WARN or ERROR."""
+        self._columns(
+            entity, times, rr.TextLog.columns(text=list(texts), level=[level] * len(texts))
+        )
+
+    def markdown(self, entity: Entity, text: str) -> None:
+        """Set a text that holds at all times, as Markdown."""
+        self._static(entity, rr.TextDocument(text, media_type=rr.MediaType.MARKDOWN))
+
+    def curves_2d(
+        self,
+        entity: Entity,
+        curves: Sequence[Floats],
+        colour: Colour,
+        *,
+        radius: float = -1.0,
+        labels: Sequence[str] | None = None,
+        order: float = 0.0,
+    ) -> None:
+        """Set curves in a plane, shape (n, 2) each, y downwards; they hold at all times.
+
+        A negative radius is in points of the screen, here and below; higher `order` lies on top.
+        """
+        look = rr.LineStrips2D(
+            list(curves), colors=colour, radii=radius, labels=labels, draw_order=order
+        )
+        self._static(entity, look)
+
+    def labels_2d(
+        self, entity: Entity, places: Floats, labels: Sequence[str], colour: Colour
+    ) -> None:
+        """Set texts in a plane at places of shape (n, 2), y downwards; they hold at all times."""
+        look = rr.Points2D(places, labels=list(labels), colors=colour, radii=0.0, show_labels=True)
+        self._static(entity, look)
+
+    def segments_2d(
+        self,
+        entity: Entity,
+        times: Times,
+        segments: Floats,
+        colour: Colour,
+        *,
+        radius: float = -1.5,
+        order: float = 1.0,
+    ) -> None:
+        """Add a piece of a curve at each time, shape (n, 2, 2): ends, then x and y (downwards).
+
+        A view with a range of time around the cursor shows the last stretch of the curve.
+        """
+        self._static(
+            entity, rr.LineStrips2D.from_fields(colors=colour, radii=radius, draw_order=order)
+        )
+        self._columns(entity, times, rr.LineStrips2D.columns(strips=segments.astype(np.float32)))
+
+    def points_2d(
+        self,
+        entity: Entity,
+        times: Times,
+        places: Floats,
+        colour: Colour,
+        *,
+        radius: float = -5.0,
+        order: float = 2.0,
+    ) -> None:
+        """Add one point at each time, shape (n, 2), y downwards."""
+        self._static(entity, rr.Points2D.from_fields(colors=colour, radii=radius, draw_order=order))
+        self._columns(entity, times, rr.Points2D.columns(positions=places.astype(np.float32)))
+
+    def curves_3d(
+        self,
+        entity: Entity,
+        curves: Sequence[Floats],
+        colours: Colour | Sequence[Colour],
+        *,
+        radii: float | Sequence[float] = -1.5,
+        labels: Sequence[str] | None = None,
+    ) -> None:
+        """Set curves in space, shape (n, 3) each; they hold at all times."""
+        self._static(
+            entity, rr.LineStrips3D(list(curves), colors=colours, radii=radii, labels=labels)
+        )
+
+    def segments_3d(
+        self,
+        entity: Entity,
+        segments: Floats,
+        times: Times,
+        colours: Colours,
+        *,
+        radii: float | Sequence[float] = -4.0,
+    ) -> None:
+        """Set a curve of m pieces, shape (m, 2, 3), and add their colours over time, shape (n, m).
+
+        A strip has one colour, hence pieces of two points each; where they are stands still.
+        """
+        self._static(entity, rr.LineStrips3D(segments.astype(np.float32), radii=radii))
+        moments, pieces = colours.shape
+        columns = rr.LineStrips3D.columns(colors=np.ascontiguousarray(colours).ravel())
+        self._columns(entity, times, columns.partition(np.full(moments, pieces)))
+
+    def points_3d(
+        self,
+        entity: Entity,
+        times: Times,
+        places: Sequence[Floats],
+        colours: Colour | Sequence[Colours],
+        *,
+        radii: float = -6.0,
+    ) -> None:
+        """Add any number of points at each time, shape (k, 3), k may be 0, and their colours."""
+        counts = np.array([len(at) for at in places])
+        flat = np.concatenate([np.reshape(at, (-1, 3)) for at in places]).astype(np.float32)
+        columns = rr.Points3D.columns(positions=flat).partition(counts)
+        self._static(entity, rr.Points3D.from_fields(radii=radii))
+        if isinstance(colours, int):
+            self._static(entity, rr.Points3D.from_fields(colors=colours))
+        else:
+            over_time = rr.Points3D.columns(colors=np.concatenate(list(colours)))
+            columns = rr.ComponentColumnList([*columns, *over_time.partition(counts)])
+        self._columns(entity, times, columns)
+
+    def labels_3d(
+        self, entity: Entity, places: Floats, labels: Sequence[str], colour: Colour
+    ) -> None:
+        """Set texts in space at places of shape (n, 3); they hold at all times."""
+        look = rr.Points3D(places, labels=list(labels), colors=colour, radii=0.0, show_labels=True)
+        self._static(entity, look)
+
+    def mesh_3d(
+        self, entity: Entity, corners: Floats, triangles: npt.NDArray[np.uint32], colour: Colour
+    ) -> None:
+        """Set a surface of corners, shape (n, 3), and triangles of them, shape (m, 3)."""
+        self._static(
+            entity,
+            rr.Mesh3D(vertex_positions=corners, triangle_indices=triangles, albedo_factor=colour),
+        )
+
+    def _static(self, entity: Entity, look: rr.AsComponents) -> None:
+        self.stream.log(path_of(entity), look, static=True, strict=True)
+
+    def _columns(self, entity: Entity, times: Times, columns: rr.ComponentColumnList) -> None:
+        self.stream.send_columns(path_of(entity), times.columns, columns, strict=True)
+
+
+@contextmanager
+def to_file(path: Path, name: str, *, force: bool = False) -> Iterator[Recorder]:
+    """Record into a file that is there, whole, when the block ends without an error.
+
+    Parameters
+    ----------
+    path
+        The file, usually `….rrd`.
+    name
+        What the viewer calls the recording; it keeps one layout for each name.
+    force
+        Replace the file if it is there.
+
+    Raises
+    ------
+    InputError
+        The file is there, or cannot be written; Rerun is switched off.
+    """
+    with new_file(path, force=force) as temporary, _strict():
+        stream = _opened(name)
+        stream.save(temporary)
+        try:
+            yield Recorder(stream)
+        finally:
+            stream.disconnect()  # writes the footer
+
+
+@contextmanager
+def to_viewer(address: str, name: str) -> Iterator[Recorder]:
+    """Record into a viewer that listens at `rerun+http://HOST:PORT/proxy`.
+
+    Raises
+    ------
+    InputError
+        It does not take what it is sent; Rerun is switched off.
+    """
+    with _strict():
+        stream = _opened(name)
+        stream.connect_grpc(address)
+        try:
+            yield Recorder(stream)
+            stream.flush(timeout_sec=SLOWEST_S)
+        except RuntimeError as error:
+            raise InputError(f"no viewer takes the stream ({error})", where=address) from error
+        finally:
+            stream.disconnect()
+
+
+def _opened(name: str) -> rr.RecordingStream:
+    stream = rr.RecordingStream(name)
+    if not rr.is_enabled(stream):
+        raise InputError("Rerun is switched off", where="RERUN", remedy="unset this variable")
+    stream.send_recording_name(name)
+    return stream
+
+
+@contextmanager
+def _strict() -> Iterator[None]:
+    before = rr.strict_mode()
+    rr.set_strict_mode(True)
+    try:
+        yield
+    finally:
+        rr.set_strict_mode(before)
