@@ -4,9 +4,8 @@ import os
 from pathlib import Path
 
 NOTE = (
-    "the viewer is Rerun's and sends its makers usage statistics (never your data): "
-    "`rerun analytics disable` turns that off for the window, CI=true in the environment for one "
-    "call; the viewer in a browser knows neither. This is said once."
+    "the viewer is Rerun's; its window sends Rerun usage statistics, never data, until you run "
+    "`rerun analytics disable`; in the browser tsas keeps it from calling anyone (said once)"
 )
 
 

@@ -1,5 +1,6 @@
 """The viewer as a child process that never outlives this one."""
 
+import math
 import os
 import signal
 import socket
@@ -34,16 +35,17 @@ class Child:
     process: subprocess.Popen[bytes]
     log: IO[bytes]
 
-    def wait(self) -> None:
-        """Return when the viewer has been closed.
+    def wait(self, at_most_s: float = math.inf) -> None:
+        """Return when the viewer has been closed, or after some seconds.
 
         Raises
         ------
         InputError
             It has failed.
         """
-        while self.process.poll() is None:  # a signal interrupts a short sleep everywhere
-            time.sleep(LOOK_S)
+        until = time.monotonic() + at_most_s
+        while self.process.poll() is None and time.monotonic() < until:
+            time.sleep(LOOK_S)  # short: not every system lets a signal interrupt a long wait
         self.refuse_failure()
 
     def refuse_failure(self) -> None:

@@ -12,6 +12,8 @@ from tsas_cli.reporting.viewer.ports import LOOPBACK, free_ports
 
 BIND = ("--bind", LOOPBACK)
 ALL_OF_IT = ("--server-memory-limit", "75%")  # beyond it the oldest data go without a word
+OPENS_S = 1.0  # after its port answers, a viewer without screen or graphics has failed by then
+NO_WELCOME = ("--hide-welcome-screen",)  # it would load examples from elsewhere
 
 
 @dataclass(frozen=True)
@@ -30,8 +32,7 @@ class Viewer:
 @contextmanager
 def window_of(path: Path, *, port: int | None = None) -> Iterator[Viewer]:
     """Show a file in a window; `port` is its own, any that is free without it."""
-    (own,) = free_ports(1, port)
-    with viewer_child([*BIND, "--port", str(own), str(path)], port=own) as child:
+    with _window(port, str(path)) as (child, _):
         yield Viewer(child)
 
 
@@ -50,9 +51,7 @@ def page_of(path: Path, *, port: int | None = None) -> Iterator[Viewer]:
 @contextmanager
 def window_for_live(*, port: int | None = None) -> Iterator[Viewer]:
     """Open a window that shows what is sent to it; `port` is its own."""
-    (own,) = free_ports(1, port)
-    arguments = [*BIND, *ALL_OF_IT, "--port", str(own), "--expect-data-soon"]
-    with viewer_child(arguments, port=own) as child:
+    with _window(port, *ALL_OF_IT) as (child, own):
         yield Viewer(child, proxy=_proxy(own))
 
 
@@ -75,6 +74,15 @@ def _address(page: int, data: str) -> str:
     """Return the page's address with what it shows; WebGL is what every browser draws."""
     query = {"url": data, "renderer": "webgl", "hide_welcome_screen": "true"}
     return f"http://{LOOPBACK}:{page}/?{urlencode(query)}"
+
+
+@contextmanager
+def _window(port: int | None, *arguments: str) -> Iterator[tuple[Child, int]]:
+    (own,) = free_ports(1, port)
+    call = [*BIND, *NO_WELCOME, "--port", str(own), *arguments]
+    with viewer_child(call, port=own) as child:
+        child.wait(OPENS_S)
+        yield child, own
 
 
 @contextmanager
