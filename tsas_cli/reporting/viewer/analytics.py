@@ -1,6 +1,7 @@
 """What a person should know before the viewer starts: it counts how it is used."""
 
 import os
+from contextlib import suppress
 from pathlib import Path
 
 NOTE = (
@@ -18,11 +19,9 @@ def note_once() -> str:
 
     root = os.environ.get("TSAS_STATE_DIR") or platformdirs.user_state_dir("tsas")
     marker = Path(root) / "viewer-analytics-said"
-    try:
-        marker.parent.mkdir(parents=True, exist_ok=True)
-        marker.touch(exist_ok=False)
-    except FileExistsError:
+    if marker.exists():
         return ""
-    except OSError:
-        return NOTE
+    with suppress(OSError):
+        marker.parent.mkdir(parents=True, exist_ok=True)
+        marker.touch()
     return NOTE
