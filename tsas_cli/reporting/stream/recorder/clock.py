@@ -32,11 +32,16 @@ class Times:
             columns.append(rr.TimeColumn(SESSION, timestamp=self.of_day))
         return columns
 
+    def at(self, indices: npt.NDArray[np.int64] | slice) -> "Times":
+        """Return some of the moments."""
+        of_day = None if self.of_day is None else self.of_day[indices]
+        return Times(self.within[indices], of_day)
+
     def pieces(self, most: int) -> Iterator[tuple[slice, "Times"]]:
         """Yield stretches of at most so many moments, and where they are."""
         for first in range(0, len(self), most):
             at = slice(first, first + most)
-            yield at, Times(self.within[at], None if self.of_day is None else self.of_day[at])
+            yield at, self.at(at)
 
 
 @dataclass(frozen=True)

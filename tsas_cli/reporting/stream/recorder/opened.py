@@ -1,5 +1,6 @@
 """Where a recording goes: into a file, or to a viewer while it is made."""
 
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -62,7 +63,8 @@ def to_viewer(address: str, name: str) -> Iterator[Recorder]:
 
 
 def _opened(name: str) -> rr.RecordingStream:
-    stream = rr.RecordingStream(name)
+    plain = re.sub(r"[^A-Za-z0-9]+", "-", f"tsas {name}").strip("-")  # all that Rerun takes
+    stream = rr.RecordingStream(plain)
     if not rr.is_enabled(stream):
         raise InputError("Rerun is switched off", where="RERUN", remedy="unset this variable")
     stream.send_recording_name(name)

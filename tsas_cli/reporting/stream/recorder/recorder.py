@@ -77,12 +77,10 @@ class Recorder:
         self._columns(entity, times, rr.StateChange.columns(state=list(states)))
 
     def events(
-        self, entity: Entity, times: Times, texts: Sequence[str], *, level: str = "INFO"
+        self, entity: Entity, times: Times, texts: Sequence[str], levels: Sequence[str]
     ) -> None:
-        """Add lines of text, one at each time; `level` is INFO, WARN or ERROR."""
-        self._columns(
-            entity, times, rr.TextLog.columns(text=list(texts), level=[level] * len(texts))
-        )
+        """Add lines of text, one at each time; a level is INFO, WARN or ERROR."""
+        self._columns(entity, times, rr.TextLog.columns(text=list(texts), level=list(levels)))
 
     def markdown(self, entity: Entity, text: str) -> None:
         """Set a text that holds at all times, as Markdown."""
