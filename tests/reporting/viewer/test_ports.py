@@ -22,7 +22,7 @@ def test_ports_asked_for_follow_each_other():
 def test_a_port_in_use_is_refused_whoever_it_is_bound_to(address):
     with socket.create_server((address, 0)) as taken:
         port = taken.getsockname()[1]
-        with pytest.raises(InputError, match=rf"port {port} cannot be had .*in use.*--port"):
+        with pytest.raises(InputError, match=rf"port {port} cannot be had .*in use"):
             free_ports(1, port)
 
 

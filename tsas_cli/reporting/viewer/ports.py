@@ -6,6 +6,7 @@ from contextlib import ExitStack
 from tsas_cli.errors import InputError
 
 LOOPBACK = "127.0.0.1"
+LAST = 65535
 
 
 def free_ports(count: int, first: int | None = None) -> tuple[int, ...]:
@@ -22,12 +23,14 @@ def free_ports(count: int, first: int | None = None) -> tuple[int, ...]:
 
 
 def _listening(port: int) -> socket.socket:
-    try:
-        return socket.create_server((LOOPBACK, port))
-    except (OSError, OverflowError) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise InputError(
-            f"port {port} cannot be had ({reason})",
-            where="--port",
-            remedy="choose another one, or leave --port out",
-        ) from error
+    reason = f"the last is {LAST}"
+    if port <= LAST:
+        try:
+            return socket.create_server((LOOPBACK, port))
+        except OSError as error:
+            reason = str(error.strerror)
+    raise InputError(
+        f"port {port} cannot be had ({reason})",
+        where="--port",
+        remedy="choose another one, or leave --port out",
+    )
