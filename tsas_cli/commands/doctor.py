@@ -17,7 +17,7 @@ Rows = Sequence[tuple[str, ...]]
 def doctor(quiet: Quiet = False, as_json: Json = False) -> None:
     """Say what is installed, what is missing and which command installs it.
 
-    It ends with exit code 2 where tsas lacks what it needs; extras, viewer and browser are only told.
+    It ends with exit code 2 where tsas lacks what it needs; the rest is only told.
     """
     from tsas_cli import __version__
     from tsas_cli.errors import InputError
@@ -38,8 +38,7 @@ def doctor(quiet: Quiet = False, as_json: Json = False) -> None:
         "python": {"version": python, "program": sys.executable},
         "packages": [asdict(package) for package in core],
         "extras": [
-            asdict(extra) | {"missing": extra.missing, "install": _install(extra)}
-            for extra in more
+            asdict(extra) | {"missing": extra.missing, "install": _install(extra)} for extra in more
         ],
         "machine": [asdict(ability) for ability in machine],
     }

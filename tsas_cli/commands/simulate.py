@@ -1,6 +1,7 @@
 """`tsas simulate`: run a model on the recorded inputs and compare."""
 
 from enum import StrEnum
+from functools import partial
 from typing import Annotated
 
 import typer
@@ -17,6 +18,7 @@ from tsas_cli.commands.common import (
     progress,
     show,
 )
+from tsas_cli.commands.live import Live, unseen, watched
 
 
 class DynamicsOption(StrEnum):
@@ -44,6 +46,7 @@ def simulate(
         typer.Option(help="Nodes of the chain, 2 to 1000, where not as usual."),
     ] = None,
     runs: ChosenRuns = None,
+    live: Live = False,
     force: Force = False,
     quiet: Quiet = False,
     as_json: Json = False,
@@ -52,24 +55,32 @@ def simulate(
     from tsas_cli.identification.simulation import simulate_dataset
 
     data = opened(dataset, runs)
-    with progress("simulate", len(data.runs), quiet=quiet or as_json) as step:
-        summary = simulate_dataset(
-            data,
-            model,
-            dynamics.value,
-            out,
-            fit_own=fit_own,
-            nodes=nodes,
-            force=force,
-            step=step,
+    with watched(live, f"{data.manifest.name} · simulation", quiet=quiet) as stream:
+        each = partial(stream.simulated, data) if stream else unseen
+        with progress("simulate", len(data.runs), quiet=quiet or as_json) as step:
+            summary = simulate_dataset(
+                data,
+                model,
+                dynamics.value,
+                out,
+                fit_own=fit_own,
+                nodes=nodes,
+                force=force,
+                step=step,
+                each=each,
+            )
+        rows = [
+            (run, name, f"{c['rmse']:.4g}", f"{c['noise']:.2g}", c["unit"], answer["solver"])
+            for run, answer in summary["runs"].items()
+            for name, c in answer["channels"].items()
+        ]
+        header = ("run", "channel", "RMSE", "noise", "unit", "solver")
+        show(
+            summary,
+            [(f"{dynamics.value} model → {out}", header, rows)],
+            quiet=quiet,
+            as_json=as_json,
         )
-    rows = [
-        (run, name, f"{c['rmse']:.4g}", f"{c['noise']:.2g}", c["unit"], answer["solver"])
-        for run, answer in summary["runs"].items()
-        for name, c in answer["channels"].items()
-    ]
-    header = ("run", "channel", "RMSE", "noise", "unit", "solver")
-    show(summary, [(f"{dynamics.value} model → {out}", header, rows)], quiet=quiet, as_json=as_json)
-    if not quiet and not as_json:
-        for sentence in summary["notes"]:
-            print(f"- {sentence}")
+        if not quiet and not as_json:
+            for sentence in summary["notes"]:
+                print(f"- {sentence}")

@@ -7,6 +7,7 @@ from typing import Annotated, Any
 import typer
 
 from tsas_cli.commands.common import Force, Json, OutFolder, Quiet, progress, show
+from tsas_cli.commands.live import Live, unseen, watched
 
 
 class TendonOption(StrEnum):
@@ -70,6 +71,7 @@ def track(
     ] = None,
     seeds: Annotated[int | None, typer.Option(min=1, help="How many seeds of noise.")] = None,
     seed: Annotated[int, typer.Option(min=0, help="The first of them.")] = 1,
+    live: Live = False,
     force: Force = False,
     quiet: Quiet = False,
     as_json: Json = False,
@@ -98,22 +100,28 @@ def track(
         first_seed=seed,
     )
     total = len(call.controllers) * len(call.conditions) * call.seeds
-    with progress("track", total, quiet=quiet or as_json) as step:
-        summary = track_all(call, out, force=force, step=step)
-    header = ["controller", "condition", *(title for title, _ in COLUMNS)]
-    rows = [
-        [row["controller"], row["condition"], *(_cell(row["scores"][key]) for _, key in COLUMNS)]
-        for row in summary["results"]
-    ]
-    printed = [row["printed_rmse_N"] for row in summary["results"]]
-    if any(value is not None for value in printed):
-        header.insert(3, "Table 5 [N]")
-        for row, value in zip(rows, printed, strict=True):
-            row.insert(3, "" if value is None else f"{value:g}")
-    show(summary, [(f"tracking → {out}", header, rows)], quiet=quiet, as_json=as_json)
-    if not quiet and not as_json:
-        for sentence in summary["notes"]:
-            print(f"- {sentence}")
+    with watched(live, "tracking", quiet=quiet) as stream:
+        each = stream.tracked if stream else unseen
+        with progress("track", total, quiet=quiet or as_json) as step:
+            summary = track_all(call, out, force=force, step=step, each=each)
+        header = ["controller", "condition", *(title for title, _ in COLUMNS)]
+        rows = [
+            [
+                row["controller"],
+                row["condition"],
+                *(_cell(row["scores"][key]) for _, key in COLUMNS),
+            ]
+            for row in summary["results"]
+        ]
+        printed = [row["printed_rmse_N"] for row in summary["results"]]
+        if any(value is not None for value in printed):
+            header.insert(3, "Table 5 [N]")
+            for row, value in zip(rows, printed, strict=True):
+                row.insert(3, "" if value is None else f"{value:g}")
+        show(summary, [(f"tracking → {out}", header, rows)], quiet=quiet, as_json=as_json)
+        if not quiet and not as_json:
+            for sentence in summary["notes"]:
+                print(f"- {sentence}")
 
 
 def _cell(number: dict[str, Any]) -> str:

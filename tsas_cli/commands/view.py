@@ -26,8 +26,8 @@ def view(
 ) -> None:
     """Show what was measured, simulated and found, over time, until you close it.
 
-    Each PATH is a dataset or what a stage wrote, together one stream; or one .rrd file. It opens in a
-    window, and where there is no screen as a page whose address is printed.
+    Each PATH is a dataset or what a stage wrote, together one stream; or one .rrd file. A window
+    opens, and where there is no screen a page is served whose address is printed.
     """
     from tsas_cli.reporting.viewer.analytics import note_once
     from tsas_cli.reporting.viewer.open import page_of, window_of
@@ -36,15 +36,14 @@ def view(
     from tsas_cli.reporting.viewer.stream_of import stream_of
 
     in_browser = web or not has_screen()
-    with until_stopped(), stream_of(paths) as (stream, notes):
-        with (page_of if in_browser else window_of)(stream, port=port) as viewer:
-            if not quiet:
-                for note in (*notes, note_once(), ENDS[in_browser]):
-                    if note:
-                        print(f"- {note}", file=sys.stderr)
-            if as_json:
-                show({"stage": "view", "stream": str(stream), "address": viewer.page}, (), quiet=True, as_json=True)
-            elif viewer.page is not None and not quiet:
-                print(viewer.page)
-            sys.stdout.flush()
-            viewer.wait()
+    opened = page_of if in_browser else window_of
+    with until_stopped(), stream_of(paths) as (stream, notes), opened(stream, port=port) as viewer:
+        talk = () if quiet else (*notes, note_once(), ENDS[in_browser])
+        for sentence in filter(None, talk):
+            print(f"- {sentence}", file=sys.stderr)
+        summary = {"stage": "view", "stream": str(stream), "address": viewer.page or None}
+        show(summary, (), quiet=quiet, as_json=as_json)
+        if viewer.page and not quiet and not as_json:
+            print(viewer.page)
+        sys.stdout.flush()
+        viewer.wait()

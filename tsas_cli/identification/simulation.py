@@ -29,13 +29,14 @@ def simulate_dataset(
     nodes: int | None = None,
     force: bool = False,
     step: Callable[[], None] = lambda: None,
+    each: Callable[[dict[str, Any], str, pa.Table], None] = lambda *_: None,
 ) -> dict[str, Any]:
     """Simulate all runs and write `runs/ID.parquet` and `simulation.json` into a new folder.
 
     Without a model file the manifest's data sheet is simulated. With `fit_own` the preload and the
     zeros of each run are fitted first, all else stays as the model says: so a model predicts runs
-    that it was not fitted to. `nodes` asks for a chain with as many of them. `step` is called after
-    each run.
+    that it was not fitted to. `nodes` asks for a chain with as many of them. After each run
+    `step` is called, and `each` with the summary so far, the run's name and its table.
 
     Raises
     ------
@@ -54,9 +55,11 @@ def simulate_dataset(
             run = prepare(recording, dataset.manifest.session_start)
             own = with_own_values(model, run) if fit_own else model
             answer = compare(run, own, dynamics, nodes)
-            write_parquet(folder / "runs" / f"{run.run.id}.parquet", _table(run, answer))
+            table = _table(run, answer)
+            write_parquet(folder / "runs" / f"{run.run.id}.parquet", table)
             summary["runs"][run.run.id] = answer.as_json(run)
             summary["segments"][run.run.id] = segments_as_json(run, segment(run))
+            each(summary, run.run.id, table)
             step()
         summary["notes"] = _notes(summary["runs"])
         write_json(folder / "simulation.json", summary)

@@ -1,1 +1,1 @@
-"""What is installed here, and what that allows: for `tsas doctor`, with as few imports as can be."""
+"""What is installed here, and what that allows, told with as few imports as can be."""

@@ -1,6 +1,6 @@
 """The packages that tsas asks for, in the versions that are there."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib import import_module
 from importlib.metadata import PackageNotFoundError, metadata, version

@@ -57,9 +57,17 @@ class Call:
 
 
 def track_all(
-    call: Call, out: Path, *, force: bool = False, step: Callable[[], None] = lambda: None
+    call: Call,
+    out: Path,
+    *,
+    force: bool = False,
+    step: Callable[[], None] = lambda: None,
+    each: Callable[[dict[str, Any], str, pa.Table], None] = lambda *_: None,
 ) -> dict[str, Any]:
     """Run every controller under every condition; write runs, dataset and `tracking.json`.
+
+    `step` is called after each run, and `each` after those of all seeds, with the summary so far,
+    the recording's name and its table.
 
     Raises
     ------
@@ -77,6 +85,7 @@ def track_all(
     wanted = reference(call.reference, settings.reference, settings.step_s)
     path = plan(wanted, known, settings)
     results, tables = [], dict[str, pa.Table]()
+    header = _header(call, settings)
     with new_folder(out, force=force) as folder:
         for condition in call.conditions:
             real = condition.of(plant)
@@ -103,7 +112,8 @@ def track_all(
                 if call.model is None and call.plant is None and call.drive is None:
                     printed = printed_rmse(name, condition, call.reference, settings)
                 results.append(_result(run_id, name, condition, runs, printed))
-        summary = _header(call, settings) | {"results": results}
+                each(header | {"results": results}, run_id, tables[run_id])
+        summary = header | {"results": results}
         summary["notes"] = _notes(path, known, plant, results)
         if call.dynamics == "lugre":
             summary["notes"] += dynamic_notes(path, plant, call.conditions, settings.step_s)

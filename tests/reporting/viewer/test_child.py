@@ -86,18 +86,18 @@ def test_a_wait_can_be_short(script):
 
 def test_a_viewer_that_fails_is_quoted(script):
     script(FAIL)
-    with pytest.raises(InputError, match=r"failed \(Error: no adapter\).*--web.*tsas doctor"):
-        with viewer_child([], port=free_ports(1)[0]):
-            pytest.fail("never runs")
+    told = r"failed \(Error: no adapter\).*--web.*tsas doctor"
+    with pytest.raises(InputError, match=told), viewer_child([], port=free_ports(1)[0]):
+        pytest.fail("never runs")
 
 
 def test_a_viewer_that_does_not_answer_is_ended(script, monkeypatch):
     script(SERVE)
     monkeypatch.setattr(child, "START_S", 0.3)
     port, other = free_ports(2)
-    with pytest.raises(InputError, match=f"does not answer on port {other}"):
-        with viewer_child([str(port), ""], port=other):
-            pytest.fail("never runs")
+    told = f"does not answer on port {other}"
+    with pytest.raises(InputError, match=told), viewer_child([str(port), ""], port=other):
+        pytest.fail("never runs")
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="only Linux ends the children of the dead")

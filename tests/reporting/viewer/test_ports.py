@@ -18,7 +18,7 @@ def test_ports_asked_for_follow_each_other():
     assert free_ports(2, first) == (first, first + 1)
 
 
-@pytest.mark.parametrize("address", [LOOPBACK, "0.0.0.0"])
+@pytest.mark.parametrize("address", [LOOPBACK, "0.0.0.0"])  # noqa: S104 # by others
 def test_a_port_in_use_is_refused_whoever_it_is_bound_to(address):
     with socket.create_server((address, 0)) as taken:
         port = taken.getsockname()[1]

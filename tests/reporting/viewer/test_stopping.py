@@ -29,8 +29,7 @@ def test_other_errors_are_no_end():
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_stage_that_is_stopped_has_not_done_its_work(number):
     with pytest.raises(KeyboardInterrupt), cleaned_up_when_stopped():
-        os.kill(os.getpid(), number)
-        time.sleep(5)
+        signal.raise_signal(number)
 
 
 def test_handlers_are_as_before():

@@ -52,10 +52,21 @@ def record(recorder: Recorder, inputs: Inputs, step: Callable[[], None] = lambda
     if told is not None:
         recorder.markdown(DIAGNOSIS, told)
     for run in runs:
-        read = replace(run)  # a copy, so that what it has read goes with it
-        for content in CONTENT:
-            content(recorder, read)
+        record_run(recorder, run)
         step()
+
+
+def record_run(recorder: Recorder, run: SeenRun) -> None:
+    """Record all there is to see of one run.
+
+    Raises
+    ------
+    InputError
+        A file cannot be read.
+    """
+    read = replace(run)  # a copy, so that what it has read goes with it
+    for content in CONTENT:
+        content(recorder, read)
 
 
 def name_of(inputs: Inputs) -> str:

@@ -58,7 +58,7 @@ class Child:
         said = next((line.strip() for line in reversed(lines) if line.strip()), f"exit code {code}")
         raise InputError(
             f"the viewer has failed ({said})",
-            remedy="show it in a browser with --web; `tsas doctor` says what the viewer can do here",
+            remedy="try `tsas view --web`; `tsas doctor` says what the viewer can do here",
         )
 
 

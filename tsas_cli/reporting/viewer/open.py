@@ -18,11 +18,11 @@ NO_WELCOME = ("--hide-welcome-screen",)  # it would load examples from elsewhere
 
 @dataclass(frozen=True)
 class Viewer:
-    """An open viewer: its page where it is in the browser, and where it takes what is live."""
+    """An open viewer; `page` is its address in the browser, `proxy` takes what is live."""
 
     child: Child
-    page: str | None = None
-    proxy: str | None = None
+    page: str = ""
+    proxy: str = ""
 
     def wait(self) -> None:
         """Return when the viewer has been closed; see `Child.wait`."""

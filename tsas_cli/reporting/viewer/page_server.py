@@ -77,7 +77,7 @@ def served_page(
             finally:
                 connection.close()
 
-        def log_message(self, format: str, *args: object) -> None:
+        def log_message(self, format: str, *args: object) -> None:  # noqa: A002 # theirs
             """Say nothing: the terminal is for the person."""
 
     with ThreadingHTTPServer((LOOPBACK, port), Handler) as server:

@@ -1,0 +1,77 @@
+"""Runs on their way into a viewer while they are computed, each as soon as it is there."""
+
+import json
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import pyarrow as pa
+
+from tsas_cli.files import json_text
+from tsas_cli.recordings.dataset import Dataset, read_dataset, write_dataset, write_parquet
+from tsas_cli.reporting.inputs import Inputs
+from tsas_cli.reporting.stage_files import Simulation
+from tsas_cli.reporting.stream import texts
+from tsas_cli.reporting.stream.recorder import Recorder, to_viewer
+from tsas_cli.reporting.stream.seen import SeenRun, seen_runs
+from tsas_cli.reporting.stream.stream import record_run
+from tsas_cli.reporting.stream.tabs import OVERVIEW, layout_of
+from tsas_cli.reporting.tracking_file import Tracking
+from tsas_cli.tracking.recorded import manifest
+from tsas_cli.tracking.settings import Settings
+
+
+@dataclass
+class LiveStream:
+    """Shows a run as the stage's own file would be shown; what is laid out grows with the runs."""
+
+    recorder: Recorder
+    folder: Path
+    runs: list[SeenRun] = field(default_factory=list)
+
+    def simulated(
+        self, dataset: Dataset, summary: dict[str, Any], run: str, table: pa.Table
+    ) -> None:
+        """Show a simulated run beside its recording; `summary` is that of the runs so far."""
+        (self.folder / "runs").mkdir(exist_ok=True)
+        write_parquet(self.folder / "runs" / f"{run}.parquet", table)
+        stage = Simulation.model_validate(_plain(summary))
+        self._show(Inputs(dataset.only([run]), {Simulation: stage}, {Simulation: self.folder}))
+
+    def tracked(self, summary: dict[str, Any], run: str, table: pa.Table) -> None:
+        """Show a run of the closed loop; `summary` is that of the runs so far."""
+        stated = {k: v for k, v in summary["settings"].items() if k not in {"file", "sha256"}}
+        folder = self.folder / run
+        folder.mkdir()
+        write_dataset(folder, manifest((run,), Settings.model_validate(stated)), {run: table})
+        stage = Tracking.model_validate(_plain(summary))
+        self._show(Inputs(read_dataset(folder), {Tracking: stage}, {Tracking: folder}))
+
+    def _show(self, inputs: Inputs) -> None:
+        new = list(seen_runs(inputs))
+        self.runs += new
+        self.recorder.lay_out(layout_of(self.runs, diagnosed=False))
+        self.recorder.markdown(OVERVIEW, texts.overview(inputs))
+        for run in new:
+            record_run(self.recorder, run)
+
+
+@contextmanager
+def live_stream(address: str, name: str) -> Iterator[LiveStream]:
+    """Yield a stream into the viewer at `address`; see `to_viewer`.
+
+    Raises
+    ------
+    InputError
+        The viewer does not take it.
+    """
+    with TemporaryDirectory(prefix="tsas-live-") as folder, to_viewer(address, name) as recorder:
+        yield LiveStream(recorder, Path(folder))
+
+
+def _plain(summary: dict[str, Any]) -> Any:
+    """Return what the stage's file would hold."""
+    return json.loads(json_text(summary))
