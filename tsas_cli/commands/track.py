@@ -6,7 +6,16 @@ from typing import Annotated, Any
 
 import typer
 
-from tsas_cli.commands.common import Force, Json, OutFolder, Quiet, progress, show
+from tsas_cli.commands.common import (
+    Force,
+    Json,
+    OutFolder,
+    Quiet,
+    Rrd,
+    add_stream,
+    progress,
+    show,
+)
 from tsas_cli.commands.live import Live, unseen, watched
 
 
@@ -71,6 +80,7 @@ def track(
     ] = None,
     seeds: Annotated[int | None, typer.Option(min=1, help="How many seeds of noise.")] = None,
     seed: Annotated[int, typer.Option(min=0, help="The first of them.")] = 1,
+    rrd: Rrd = False,
     live: Live = False,
     force: Force = False,
     quiet: Quiet = False,
@@ -104,6 +114,8 @@ def track(
         each = stream.tracked if stream else unseen
         with progress("track", total, quiet=quiet or as_json) as step:
             summary = track_all(call, out, force=force, step=step, each=each)
+        if rrd:
+            add_stream(out, quiet=quiet or as_json)
         header = ["controller", "condition", *(title for title, _ in COLUMNS)]
         rows = [
             [

@@ -3,7 +3,7 @@
 import json
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -14,11 +14,9 @@ from tsas_cli.files import json_text
 from tsas_cli.recordings.dataset import Dataset, read_dataset, write_dataset, write_parquet
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.stage_files import Simulation
-from tsas_cli.reporting.stream import texts
 from tsas_cli.reporting.stream.recorder import Recorder, to_viewer
-from tsas_cli.reporting.stream.seen import SeenRun, seen_runs
-from tsas_cli.reporting.stream.stream import record_run
-from tsas_cli.reporting.stream.tabs import OVERVIEW, layout_of
+from tsas_cli.reporting.stream.seen import SeenRun
+from tsas_cli.reporting.stream.stream import stream_of
 from tsas_cli.reporting.tracking_file import Tracking
 from tsas_cli.tracking.recorded import manifest
 from tsas_cli.tracking.settings import Settings
@@ -51,12 +49,10 @@ class LiveStream:
         self._show(Inputs(read_dataset(folder), {Tracking: stage}, {Tracking: folder}))
 
     def _show(self, inputs: Inputs) -> None:
-        new = list(seen_runs(inputs))
-        self.runs += new
-        self.recorder.lay_out(layout_of(self.runs, diagnosed=False))
-        self.recorder.markdown(OVERVIEW, texts.overview(inputs))
-        for run in new:
-            record_run(self.recorder, run)
+        new = stream_of(inputs)
+        self.runs += new.runs
+        self.recorder.lay_out(replace(new, runs=tuple(self.runs)).layout)
+        new.record(self.recorder)
 
 
 @contextmanager

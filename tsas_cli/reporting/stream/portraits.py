@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.reporting.channels import at_axis, in_words
-from tsas_cli.reporting.decimation import Indices, kept_cells, kept_samples
+from tsas_cli.reporting.decimation import Indices, kept_samples
 from tsas_cli.reporting.phases import PHASES, Phase, phase_of_samples
 from tsas_cli.reporting.stream.events import reversals
 from tsas_cli.reporting.stream.palette import colour
@@ -26,9 +26,10 @@ from tsas_cli.reporting.stream.sources import Source
 
 Floats = npt.NDArray[np.float64]
 
-MOMENTS = 6000  # about how many there are of a moving point
+POINTS, MOMENTS = 10_000, 4000  # about how many the loop has, and its moving point
 PART, USUAL_S = 0.3, 1.0  # of a stroke, and where no stroke is known: what runs along
 FAINT = 0x70
+_TRAIL_RADIUS, _NOW_RADIUS = 2.0, 6.0  # in points of the screen
 LOOP, TRAIL, NOW = "loop", "trail", "now"
 
 
@@ -63,37 +64,54 @@ class Portrait:
         at = self._entity("axes")
         recorder.curves_2d(at, self.frame.lines(), colour("muted"), radius=-0.6, order=-1.0)
         places, texts = self.frame.texts(at_axis(X_IN), at_axis(self.channel.column))
-        recorder.labels_2d(self._entity("names"), places, texts, colour("paper"))
+        recorder.labels_2d(self._entity("names"), places, texts, colour("ink"))
         for phase, curves in self._by_phase():
             recorder.curves_2d(
                 self._entity("phase", phase.key), curves, colour(phase.colour, FAINT), radius=-1.0
             )
-        self._record_stretch(recorder, MEASURED, self.y, colour("ink"))
+        self._record_stretch(recorder, MEASURED, self.y, colour("ink"), place=0)
 
     def record_answer(self, recorder: Recorder, source: Source, values: Floats) -> None:
         """Record the stretch that a model answers, shape (n,), over the measured displacement."""
         if self.there.any():
-            self._record_stretch(recorder, source.key, values, colour(source.role))
+            place = 1 + self.channel.sources.index(source)
+            self._record_stretch(recorder, source.key, values, colour(source.role), place)
 
-    def _record_stretch(self, recorder: Recorder, key: str, values: Floats, shown: int) -> None:
-        at = self.moments
+    def _record_stretch(
+        self, recorder: Recorder, key: str, values: Floats, shown: int, place: int
+    ) -> None:
+        """Record a stretch that runs along; those with a later place are thinner and on top."""
+        at, size, order = self.moments, 1.0 / (1.0 + 0.5 * place), 1.0 + 2.0 * place
         times = self.run.clock.times(self.run.time_s[at])
         places = self.frame.place(self.x[at], values[at])
         pieces = np.stack((places[:-1], places[1:]), axis=1)
         joined = np.isfinite(pieces).all(axis=(1, 2))
         recorder.segments_2d(
-            self._entity(TRAIL, key), times.at(1 + np.flatnonzero(joined)), pieces[joined], shown
+            self._entity(TRAIL, key),
+            times.at(1 + np.flatnonzero(joined)),
+            pieces[joined],
+            shown,
+            radius=-_TRAIL_RADIUS * size,
+            order=order,
         )
         there = np.flatnonzero(np.isfinite(places).all(axis=1))
-        recorder.points_2d(self._entity(NOW, key), times.at(there), places[there], shown)
+        recorder.points_2d(
+            self._entity(NOW, key),
+            times.at(there),
+            places[there],
+            shown,
+            radius=-_NOW_RADIUS * size,
+            order=order + 1.0,
+        )
 
     def _by_phase(self) -> Iterator[tuple[Phase, list[Floats]]]:
         """Yield each phase with its stretches, thinned, up to the first point of the next one."""
-        x, y = self.x[self.there], self.y[self.there]
-        phase = phase_of_samples(self.run.time_s[self.there], self.run.segments)
-        kept = kept_cells(self.frame.x.place(x), self.frame.y.place(y))
-        kept = np.union1d(kept, np.flatnonzero(phase[1:] != phase[:-1]) + 1)
-        places, phase = self.frame.place(x[kept], y[kept]), phase[kept]
+        time_s, x, y = (values[self.there] for values in (self.run.time_s, self.x, self.y))
+        begun = np.searchsorted(time_s, [segment.start_s for segment in self.run.segments])
+        kept = np.union1d(kept_samples(x, y, points=POINTS), begun[begun < x.size])
+        kept = kept.astype(np.int64)
+        phase = phase_of_samples(time_s[kept], self.run.segments)
+        places = self.frame.place(x[kept], y[kept])
         edges = [0, *(np.flatnonzero(phase[1:] != phase[:-1]) + 1), phase.size]
         stretches = [(phase[first], places[first : end + 1]) for first, end in pairwise(edges)]
         for one in PHASES:
@@ -109,9 +127,9 @@ def view_of(run: SeenRun, channel: Channel, titled: str = "") -> Plane:
     base = run.entity(channel.column, LOOP)
     keys = (MEASURED, *(source.key for source in channel.sources))
     stretch = stretch_s(run)
-    name = in_words(channel.column)
+    name = f"{in_words(channel.column)} over displacement"
     return Plane(
-        f"{titled}: {name}" if titled else f"{name} over {in_words(X_IN)}",
+        f"{titled}: {name}" if titled else name,
         [base],
         ACROSS,
         DOWN,
