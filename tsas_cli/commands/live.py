@@ -40,15 +40,18 @@ def watched(live: bool, name: str, *, quiet: bool) -> Iterator["LiveStream | Non
     opened = window_for_live if has_screen() else page_for_live
     with cleaned_up_when_stopped(), opened() as viewer:
         _say(note_once(), f"live at {viewer.page}" if viewer.page else "", quiet=quiet)
-        computed = False
+        computed, failure = False, None
         try:
             with live_stream(viewer.proxy, name) as stream:
                 yield stream
+                failure = stream.failure
                 computed = True
         except InputError as error:
             if not computed:
                 raise
-            _say(f"not all was shown: {error.line()}", quiet=quiet)  # but all is written
+            failure = error
+        if failure is not None:
+            _say(f"not all was shown, but all is written: {failure.line()}", quiet=quiet)
             return
         sys.stdout.flush()
         end = "Ctrl-C" if viewer.page else "close the window or press Ctrl-C"

@@ -10,6 +10,7 @@ from typing import Any
 
 import pyarrow as pa
 
+from tsas_cli.errors import InputError
 from tsas_cli.files import json_text
 from tsas_cli.recordings.dataset import Dataset, read_dataset, write_dataset, write_parquet
 from tsas_cli.reporting.inputs import Inputs
@@ -24,11 +25,15 @@ from tsas_cli.tracking.settings import Settings
 
 @dataclass
 class LiveStream:
-    """Shows a run as the stage's own file would be shown; what is laid out grows with the runs."""
+    """Shows runs as the stage's own files would be shown; what is laid out grows with them.
+
+    `failure` is why it has shown nothing since.
+    """
 
     recorder: Recorder
     folder: Path
     runs: list[SeenRun] = field(default_factory=list)
+    failure: InputError | None = None
 
     def simulated(
         self, dataset: Dataset, summary: dict[str, Any], run: str, table: pa.Table
@@ -49,10 +54,17 @@ class LiveStream:
         self._show(Inputs(read_dataset(folder), {Tracking: stage}, {Tracking: folder}))
 
     def _show(self, inputs: Inputs) -> None:
-        new = stream_of(inputs)
-        self.runs += new.runs
-        self.recorder.lay_out(replace(new, runs=tuple(self.runs)).layout)
-        new.record(self.recorder)
+        """Show what is new; a viewer that has gone costs the stage nothing but what it shows."""
+        if self.failure is not None:
+            return
+        try:
+            new = stream_of(inputs)
+            self.runs += new.runs
+            self.recorder.lay_out(replace(new, runs=tuple(self.runs)).layout)
+            new.record(self.recorder)
+            self.recorder.settle()
+        except InputError as error:
+            self.failure = error
 
 
 @contextmanager

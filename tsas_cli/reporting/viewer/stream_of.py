@@ -6,9 +6,8 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from tsas_cli.errors import InputError
-from tsas_cli.reporting.inputs import read_inputs
+from tsas_cli.reporting.stream import FILE
 from tsas_cli.reporting.stream.recorder.reading import is_finished
-from tsas_cli.reporting.stream.stream import FILE, write_stream
 
 
 @contextmanager
@@ -39,6 +38,9 @@ def stream_of(
                 where=path,
                 expected="folders of stages, or one .rrd file alone",
             )
+    from tsas_cli.reporting.inputs import read_inputs
+    from tsas_cli.reporting.stream.stream import write_stream
+
     inputs = read_inputs(paths)
     with tempfile.TemporaryDirectory(prefix="tsas-view-") as folder:
         stream = Path(folder) / FILE
