@@ -47,8 +47,9 @@ def doctor(quiet: Quiet = False, as_json: Json = False) -> None:
     sys.stdout.flush()
     if wrong := [package for package in core if package.problem]:
         said = ", ".join(f"{p.name} {p.found or ''} {p.problem}".replace("  ", " ") for p in wrong)
-        asked = [f"{p.name}{p.asked}" for p in wrong]
-        raise InputError(f"tsas lacks what it needs: {said}", remedy=_pip(asked))
+        asked = [f"{p.name}{p.asked}" for p in wrong if p.name != "Python"]
+        remedy = _pip(asked) if asked else f"use Python {wrong[0].asked}"
+        raise InputError(f"tsas lacks what it needs: {said}", remedy=remedy)
 
 
 def _tables(

@@ -56,7 +56,8 @@ def _compiled_code() -> Ability:
             "name a folder that you may write to in TSAS_CACHE_DIR",
         )
     size = sum(path.stat().st_size for path in Path(folder).rglob("*") if path.is_file())
-    return Ability("compiled code", True, f"{folder}, {size / 1e6:.1f} MB")
+    kept = f"{size / 1e6:.1f} MB" if size else "empty: the first calls compile for seconds"
+    return Ability("compiled code", True, f"{folder}, {kept}")
 
 
 def _screen() -> Ability:

@@ -1,11 +1,13 @@
 """The packages that tsas asks for, in the versions that are there."""
 
+import platform
 from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib import import_module
 from importlib.metadata import PackageNotFoundError, metadata, version
 
 from packaging.requirements import Requirement
+from packaging.specifiers import SpecifierSet
 
 PROJECT = "tsas"
 MODULES = {"rerun-sdk": "rerun"}  # where the module is called otherwise
@@ -43,7 +45,10 @@ class Extra:
 
 
 def core_packages() -> Iterator[Package]:
-    """Yield every package that tsas cannot do without, each imported once."""
+    """Yield Python and every package that tsas cannot do without, each imported once."""
+    asked, python = SpecifierSet(metadata(PROJECT)["Requires-Python"]), platform.python_version()
+    fits = asked.contains(python, prereleases=True)
+    yield Package("Python", str(asked), python, "" if fits else "wrong version")
     for requirement in _requirements():
         if _always(requirement):
             package = _package(requirement)

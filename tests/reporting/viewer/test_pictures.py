@@ -2,6 +2,7 @@
 
 import json
 import time
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -86,6 +87,6 @@ def test_every_tab_is_drawn_and_no_view_reports_an_error(viewer, tmp_path):
     for drawn in pictures:
         assert len(np.unique(drawn.reshape(-1, 3), axis=0)) > COLOURS
         assert (np.ptp(drawn.astype(int), axis=2) > 40).mean() > COLOURED
-    for one, other in zip(pictures, pictures[1:], strict=False):
+    for one, other in pairwise(pictures):
         assert (one != other).any(axis=2).mean() > 0.02
     assert [entry for entry in viewer.get_logs() if entry.level == "ERROR"] == []
