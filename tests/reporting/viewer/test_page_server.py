@@ -1,10 +1,12 @@
 """The page's server in front of one that stands for Rerun's own."""
 
 import re
+import resource
 from contextlib import contextmanager
 from http.client import HTTPConnection
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from threading import Thread
+from urllib.request import urlopen
 
 import pytest
 
@@ -96,6 +98,17 @@ def test_a_page_elsewhere_that_names_this_machine_its_own_gets_nothing(inside, f
         for path in ("/", "/stream.rrd"):
             assert get(port, path, host=f"evil.example:{port}")[0] == 403
             assert get(port, path, host=f"localhost:{port}")[0] == 200
+
+
+def test_a_large_file_is_not_in_memory(inside, tmp_path):
+    path = tmp_path / "large"
+    with path.open("wb") as stream:
+        stream.truncate(400_000_000)  # takes no place on the disk
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    with served(inside, file=path) as port, urlopen(f"http://{LOOPBACK}:{port}/stream.rrd") as got:  # noqa: S310
+        size = sum(len(piece) for piece in iter(lambda: got.read(1 << 20), b""))
+    assert size == 400_000_000
+    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 50_000  # kB
 
 
 def test_the_port_is_free_again_afterwards(inside):
