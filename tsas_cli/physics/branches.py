@@ -18,11 +18,13 @@ import numpy.typing as npt
 
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.capstan import mean_tension_ratio, tension_ratio
+from tsas_cli.physics.chain_state import SLACK
 from tsas_cli.physics.compliances import (
     compliance_at_drive,
     compliance_at_load,
     sheath_compliance,
 )
+from tsas_cli.physics.frames import Frames, is_next
 from tsas_cli.physics.rig import Rig
 
 Floats = npt.NDArray[np.float64]
@@ -93,7 +95,7 @@ def strokes(x_in: Floats) -> int:
 
 
 @kernel
-def branches(x_in: Floats, rig: Rig) -> tuple[Floats, Floats, Phases]:
+def branches(x_in: Floats, rig: Rig, frames: Frames | None = None) -> tuple[Floats, Floats, Phases]:
     """Follow a motion of the drive that starts at rest at x = 0 [mm].
 
     Parameters
@@ -102,6 +104,8 @@ def branches(x_in: Floats, rig: Rig) -> tuple[Floats, Floats, Phases]:
         Displacement of the drive from the state of uniform preload, shape (n,) [mm].
     rig
         The rig; its zeros are not looked at.
+    frames
+        Where to write down what is along the tendon, on any number of elements.
 
     Returns
     -------
@@ -125,6 +129,7 @@ def branches(x_in: Floats, rig: Rig) -> tuple[Floats, Floats, Phases]:
     turn_T = np.empty(turn_x.size)
     depth = 0
     base = REST
+    taken = 0
     x, T, out, direction = 0.0, rig.preload_N, rig.preload_N, 0
     for i in range(n):
         if x_in[i] != x:
@@ -153,9 +158,54 @@ def branches(x_in: Floats, rig: Rig) -> tuple[Floats, Floats, Phases]:
             if depth == 0 and base == SLIP:
                 T = max((pulled if direction > 0 else released) * (x - slack), 0.0)
                 out = T * (out_pulled if direction > 0 else out_released)
-                phase[i] = direction if T > 0.0 else 2
-        elif i > 0 and phase[i - 1] == 2:
-            phase[i] = 2
+                phase[i] = direction if T > 0.0 else SLACK
+        elif i > 0 and phase[i - 1] == SLACK:
+            phase[i] = SLACK
         f_in[i] = T
         f_out[i] = out
+        if frames is not None and is_next(frames, taken, i):  # compiled away where there are none
+            write_profile(frames, taken, T, direction, turn_T[:depth], base, rig.preload_N, wrap)
+            taken += 1
     return f_in, f_out, phase
+
+
+@kernel
+def write_profile(
+    frames: Frames,
+    k: int,
+    T0: float,
+    direction: int,
+    turns: Floats,
+    base: int,
+    preload: float,
+    wrap: float,
+) -> None:
+    """Write down the profile that the strokes have left, the last one up to its front.
+
+    Each stroke lays T0 e^(∓a s/L) over what the ones before have left, as far as that is above
+    (contraction) or below (loosening); a stroke that has slid the whole tendon leaves nothing of
+    what was before.
+    """
+    m = frames.slip.shape[1]
+    depth = turns.size
+    for half in range(2 * m + 1):  # places at the even ones, the middles of elements between
+        s = 0.5 * half / m
+        tension, laid = preload, False
+        for stroke in range(depth + 1):
+            way = direction if (depth - stroke) % 2 == 0 else -direction
+            at_drive = turns[stroke] if stroke < depth else T0
+            new = at_drive * math.exp(-way * wrap * s)
+            laid = (base == SLIP and stroke == 0) or (new - tension) * way > 0.0
+            tension = new if laid else tension
+        if half % 2 == 0:
+            frames.tension_N[k, half // 2] = tension
+        elif T0 == 0.0:
+            frames.slip[k, half // 2] = SLACK
+        else:
+            frames.slip[k, half // 2] = direction if laid else 0
+    if T0 == 0.0 or direction == 0:
+        frames.front[k] = 0.0
+    elif depth > 0:
+        frames.front[k] = min(abs(math.log(T0 / turns[depth - 1])) / (2.0 * wrap), 1.0)
+    else:
+        frames.front[k] = 1.0 if base == SLIP else min(abs(math.log(T0 / preload)) / wrap, 1.0)

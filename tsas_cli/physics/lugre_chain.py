@@ -12,17 +12,16 @@ from typing import NamedTuple
 import numpy as np
 
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.physics.chain_nodes import SLIDES
 from tsas_cli.physics.chain_state import FORCE, PITCH, UNSETTLED, Boundary
+from tsas_cli.physics.frames import Frames
 from tsas_cli.physics.lugre_ends import Ends, ends_after, felt, unseen, write_samples
+from tsas_cli.physics.lugre_frames import note, slides, write_along, write_limp
 from tsas_cli.physics.lugre_input import next_turn, step_at
 from tsas_cli.physics.lugre_pace import allowed, attempt, change_of, fitted
 from tsas_cli.physics.lugre_slack import is_slack, pulled_again, without_tension, write_slack
 from tsas_cli.physics.lugre_start import law_of, lay_out, set_off
 from tsas_cli.physics.lugre_state import (
-    LIMIT,
     ROWS,
-    Z_NEW,
     Floats,
     Law,
     Phases,
@@ -56,6 +55,7 @@ def lugre_chain(
     n: int,
     tolerance: float,
     step_ends_s: Floats,
+    frames: Frames | None = None,
 ) -> tuple[Floats, Phases, Progress]:
     """Follow the motion of both ends from a state of rest.
 
@@ -80,6 +80,8 @@ def lugre_chain(
     step_ends_s
         Where steps end, beside turns, rising [s], shape (p,): nothing limits their error then.
         Empty: as far as the error allows.
+    frames
+        Where to write down what is along the tendon, n elements with a lump in each.
 
     Returns
     -------
@@ -106,6 +108,11 @@ def lugre_chain(
     steps = tries = iterations = 0
     ends_s = np.empty(MOST_TRIES + MOST_PER_SAMPLE * m)  # as many as may be tried
     controlled, stop = step_ends_s.size == 0, 0
+    taken, along = 0, np.empty((4, n + 1))
+    if frames is not None:  # here and below compiled away where none are asked for
+        note(s, along, law)
+        note(s, along, law)
+        taken = write_along(frames, taken, times, 0, t, 1.0, s, along, law)
     while k < m - 1 and h > SHORTEST_S and tries < ends_s.size:
         tries += 1
         most = allowed(ends, law, tolerance, LEAVES_AT_MOST)
@@ -134,8 +141,10 @@ def lugre_chain(
         k = k1 + 1 if times[k1 + 1] <= t1 else k1
         write_samples(columns, since, k + 1, times, course, t, h, earlier, ends, boundary, law)
         now = phase_of(s, law)
-        for i in range(since, k + 1):
-            phase[i] = now
+        phase[since : k + 1] = now
+        if frames is not None:
+            note(s, along, law)
+            taken = write_along(frames, taken, times, k, t, h, s, along, law)
         keep(s, step, law)
         answers = felt(earlier, ends, least)
         first = h if h1 == math.inf else first
@@ -148,6 +157,9 @@ def lugre_chain(
             if k < m - 1:
                 start = without_tension(s, times, course, k, t, boundary, law)
                 ends = set_off(s, start, times, course, k, t, boundary, law)
+            if frames is not None:
+                taken = write_limp(frames, taken, k)
+                note(s, along, law)
         if lands and k < m - 1:
             turn = next_turn(times, course, k, boundary)
             h, h1, h2 = first if controlled else math.inf, math.inf, math.inf
@@ -194,7 +206,7 @@ def phase_of(s: Floats, law: Law) -> int:
     """Return +1 or −1 where all lumps slip alike, 0 otherwise."""
     pulled = released = 0
     for i in range(1, law.n + 1):
-        longest = s[LIMIT + i] / law.bristle.stiffness + law.bristle.travel
-        pulled += s[Z_NEW + i] > SLIDES * longest
-        released += s[Z_NEW + i] < -SLIDES * longest
+        way = slides(s, i, law)
+        pulled += way > 0
+        released += way < 0
     return int(pulled == law.n) - int(released == law.n)

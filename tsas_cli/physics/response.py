@@ -13,6 +13,7 @@ from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.physics.branches import branches
 from tsas_cli.physics.chain_state import DISPLACEMENT, FORCE, MOST_NODES, SLACK
 from tsas_cli.physics.ends import Drive, Ends, ends_of
+from tsas_cli.physics.frames import Frames, Indices, empty_frames
 from tsas_cli.physics.lugre_chain import OWN_STEPS, lugre_chain
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.sensors import reading
@@ -28,6 +29,7 @@ NODES = 60  # of the slip chain, where the closed form does not hold
 LUMPS = 50  # of the dynamic chain
 TOLERANCE = 2.5e-6  # of a tension: what a step of the dynamic chain may add to its error
 CLOSED = 0  # nodes of the closed form
+ELEMENTS = 60  # on which the closed form says what is along the tendon
 MOST_DOUBLINGS = 30  # of the way that the drive goes before a run
 CHAIN_ONLY = (
     "direction_dependent_friction",
@@ -50,7 +52,9 @@ class Response:
 
     `phase` is +1 in contraction and −1 in loosening with the whole tendon slipping, 0 in a dead
     band, 2 slack, 3 not settled. `solver` says what computed it; `step_ends_s` is where the steps
-    of the dynamic chain ended, none with any other solver.
+    of the dynamic chain ended, none with any other solver. `frames` is what is along the tendon
+    at the samples that were asked for, free of the sensors' errors; None where none were, and with
+    the lumped model, which does not say it.
     """
 
     x_in_mm: Floats
@@ -60,6 +64,7 @@ class Response:
     phase: Phases
     solver: str
     step_ends_s: Floats = field(default_factory=OWN_STEPS.copy)
+    frames: Frames | None = None
 
 
 def simulate(
@@ -71,6 +76,7 @@ def simulate(
     nodes: int | None = None,
     tolerance: float = TOLERANCE,
     step_ends_s: Floats = OWN_STEPS,
+    looked_at: Indices | None = None,
 ) -> Response:
     """Follow a run with the distributed model (`slip`), the paper's lumped or its dynamic one.
 
@@ -79,12 +85,13 @@ def simulate(
     The lumped one (`static`) knows what the closed form knows; the dynamic one (`lugre`) needs the
     times of the samples. `nodes` is the mesh of a chain; `tolerance` is what a step of the dynamic
     one may add to a tension's error, over the larger one at the ends; `step_ends_s` has it take the
-    steps of another run.
+    steps of another run. `looked_at` are samples, rising, shape (k,), at which the answer says what
+    is along the tendon.
     """
     if nodes is not None and not 2 <= nodes <= MOST_NODES:
         raise ValueError(f"{nodes} nodes; expected 2 to {MOST_NODES}")
     if dynamics == "lugre":
-        return _dynamic(rig, drive, nodes or LUMPS, tolerance, step_ends_s)
+        return _dynamic(rig, drive, nodes or LUMPS, tolerance, step_ends_s, looked_at)
     nodes = nodes or NODES
     ends = ends_of(rig, drive)
     if dynamics == "static":
@@ -95,11 +102,22 @@ def simulate(
         nodes = CLOSED
     before = _history(rig, ends, drive.start_f_in_N, nodes)
     solver = "closed form" if nodes == CLOSED else f"slip chain, {nodes} nodes"
-    answer = _solve(rig, ends.after(before), nodes)
-    return _as_read(rig, drive, answer, len(before), solver)
+    skip, frames = len(before), None
+    if looked_at is not None:
+        frames = empty_frames(looked_at + skip, nodes or ELEMENTS)
+    answer = _solve(rig, ends.after(before), nodes, frames)
+    response = _as_read(rig, drive, answer, skip, solver)
+    return replace(response, frames=frames and frames._replace(samples=frames.samples - skip))
 
 
-def _dynamic(rig: Rig, drive: Drive, lumps: int, tolerance: float, step_ends_s: Floats) -> Response:
+def _dynamic(
+    rig: Rig,
+    drive: Drive,
+    lumps: int,
+    tolerance: float,
+    step_ends_s: Floats,
+    looked_at: Indices | None,
+) -> Response:
     """Follow a run with the dynamic chain, from a state of rest that the slip chain gives it."""
     if drive.time_s is None:
         raise ValueError("the dynamic model needs the times of its samples")
@@ -111,15 +129,16 @@ def _dynamic(rig: Rig, drive: Drive, lumps: int, tolerance: float, step_ends_s: 
         stribeck_friction=neutral.stribeck_friction, viscous_friction=neutral.viscous_friction
     )  # each lump has its own speed
     course = ends_of(rig._replace(effects=by_place), drive).course
+    frames = None if looked_at is None else empty_frames(looked_at, lumps)
     columns, phase, progress = lugre_chain(
-        drive.time_s, course, start, rig, ends.boundary, lumps, tolerance, step_ends_s
+        drive.time_s, course, start, rig, ends.boundary, lumps, tolerance, step_ends_s, frames
     )
     x_in, x_out, f_in, f_out = columns
     if ends.boundary.drive == DISPLACEMENT:
         f_in = f_in + _at_drive(rig, ends)
     solver = f"LuGre chain, {lumps} lumps, {progress.step_ends_s.size} steps"
     answer = _as_read(rig, drive, (x_in, x_out, f_in, f_out, phase), 0, solver)
-    return replace(answer, step_ends_s=progress.step_ends_s)
+    return replace(answer, step_ends_s=progress.step_ends_s, frames=frames)
 
 
 def is_closed(rig: Rig, drive: Drive) -> bool:
@@ -147,11 +166,11 @@ def _as_read(rig: Rig, drive: Drive, answer: Answer, skip: int, solver: str) -> 
     )
 
 
-def _solve(rig: Rig, ends: Ends, nodes: int) -> Answer:
+def _solve(rig: Rig, ends: Ends, nodes: int, frames: Frames | None = None) -> Answer:
     """Return x_in, x_out, f_in, f_out and phase, free of the sensors' errors."""
     if nodes == CLOSED:
-        return _with_spring(rig, ends, *branches(ends.drive, rig))
-    x_in, x_out, f_in, f_out, phase = slip_chain(ends.course, rig, ends.boundary, nodes)
+        return _with_spring(rig, ends, *branches(ends.drive, rig, frames))
+    x_in, x_out, f_in, f_out, phase = slip_chain(ends.course, rig, ends.boundary, nodes, frames)
     if ends.boundary.drive == DISPLACEMENT:
         f_in = f_in + _at_drive(rig, ends)
     return x_in, x_out, f_in, f_out, phase

@@ -22,11 +22,13 @@ from tsas_cli.physics.chain_state import (
     MOVED,
     PITCH,
     ROWS,
+    SLACK,
     SLIP,
     SPEED,
     T_OLD,
     T_ROSE,
     TURNED,
+    UNSETTLED,
     X_OLD,
     Boundary,
     Floats,
@@ -43,6 +45,7 @@ from tsas_cli.physics.compliances import (
     length_per_angle,
     sheath_compliance,
 )
+from tsas_cli.physics.frames import Frames, is_next, slips_up_to
 from tsas_cli.physics.rig import Rig
 
 MOST_UNSETTLED = 10  # samples, after which a run is given up
@@ -52,7 +55,7 @@ SHORTEST_STEP = 1e-3  # of the way between two samples; where that does not sett
 
 @kernel
 def slip_chain(
-    course: Floats, rig: Rig, boundary: Boundary, n: int
+    course: Floats, rig: Rig, boundary: Boundary, n: int, frames: Frames | None = None
 ) -> tuple[Floats, Floats, Floats, Floats, Phases]:
     """Follow the motion of both ends, starting from rest at the preload.
 
@@ -66,6 +69,8 @@ def slip_chain(
         What is given at the ends.
     n
         Number of nodes.
+    frames
+        Where to write down what is along the tendon, n elements with a node in each.
 
     Returns
     -------
@@ -77,7 +82,7 @@ def slip_chain(
         sample is not to be trusted. Many such samples, and the rest of the run is given up: it
         keeps the last values.
     """
-    return follow(course, at_rest(rig, n), rig, boundary, n)
+    return follow(course, at_rest(rig, n), rig, boundary, n, frames)
 
 
 @kernel
@@ -93,7 +98,12 @@ def rest_after(course: Floats, rig: Rig, boundary: Boundary, n: int) -> Floats:
 
 @kernel
 def follow(
-    course: Floats, chain: Floats, rig: Rig, boundary: Boundary, n: int
+    course: Floats,
+    chain: Floats,
+    rig: Rig,
+    boundary: Boundary,
+    n: int,
+    frames: Frames | None = None,
 ) -> tuple[Floats, Floats, Floats, Floats, Phases]:
     """Let a chain follow a course; see `slip_chain`."""
     m = course.shape[1]
@@ -104,12 +114,14 @@ def follow(
     rest_drive = rig.preload_N if boundary.drive == FORCE else 0.0
     rest_load = rig.preload_N if boundary.load == FORCE else 0.0
     before = Moment(rest_drive, rest_load, course[2, 0], course[3, 0], 0.0, 0.0, math.inf)
-    unsettled = 0
+    unsettled = taken = 0
     for i in range(m):
         if unsettled > MOST_UNSETTLED:
             x_in[i], x_out[i] = x_in[i - 1], x_out[i - 1]
             f_in[i], f_out[i] = f_in[i - 1], f_out[i - 1]
-            phase[i] = 3
+            phase[i] = UNSETTLED
+            if frames is not None:
+                taken = write_frame(frames, taken, i, chain, n, UNSETTLED)
             continue
         now = moment(course, i)
         if boundary.load == DISPLACEMENT and now.load != before.load:
@@ -117,14 +129,29 @@ def follow(
         found = advance(chain, before, now, boundary, laws, scale)
         before = now
         unsettled += not found
-        phase[i] = phase_of(chain, n) if found else 3
+        phase[i] = phase_of(chain, n) if found else UNSETTLED
         if boundary.load != FORCE and chain[T + 0] < 0.0:
-            phase[i] = 2
+            phase[i] = SLACK
             hang_slack(chain, now, boundary, laws)
         x_in[i], x_out[i] = chain[X + 0], chain[X + n + 1]
         f_in[i] = now.drive if boundary.drive == FORCE else chain[T + 0]
         f_out[i] = tension_at_sensor(chain, now, boundary, laws)
+        if frames is not None:  # compiled away where none are asked for
+            taken = write_frame(frames, taken, i, chain, n, phase[i])
     return x_in, x_out, f_in, f_out, phase
+
+
+@kernel
+def write_frame(frames: Frames, taken: int, i: int, chain: Floats, n: int, phase: int) -> int:
+    """Write down the chain at sample i, if it is to be; return how many frames are written."""
+    if not is_next(frames, taken, i):
+        return taken
+    for j in range(n + 1):
+        frames.tension_N[taken, j] = chain[T + j]
+    for j in range(n):
+        frames.slip[taken, j] = phase if phase in (SLACK, UNSETTLED) else chain[SLIP + j + 1]
+    frames.front[taken] = slips_up_to(frames, taken)
+    return taken + 1
 
 
 @kernel

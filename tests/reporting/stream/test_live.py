@@ -9,6 +9,7 @@ import pytest
 from rerun.chunk import RrdReader
 
 from tests.reporting.made_folders import make_dataset, make_simulation, make_tracking
+from tsas_cli.identification.model import data_sheet
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.reporting.stream.live import LiveStream
 from tsas_cli.reporting.stream.recorder import to_file
@@ -46,11 +47,13 @@ def test_each_simulated_run_is_there_before_the_next_is_computed(seen, tmp_path)
     dataset = make_dataset(tmp_path / "dataset", ("a", "b"), samples=300)
     simulated = make_simulation(dataset, tmp_path / "simulated")
     summary = json.loads((simulated / "simulation.json").read_text())
+    opened = read_dataset(dataset)
+    model = data_sheet(opened.manifest)
     table = pa.table({"time_s": np.arange(300.0), "f_in_N": np.ones(300), "x_in_mm": np.ones(300)})
 
     def step(run):
         so_far = summary | {"runs": {run: summary["runs"][run]}}
-        return lambda live: live.simulated(read_dataset(dataset), so_far, run, table)
+        return lambda live: live.simulated(opened, so_far, run, table, model)
 
     first, both = seen([step("a"), step("b")])
     assert first["/run/a/f_in_N/simulated"] == 300

@@ -10,8 +10,11 @@ from typing import Any
 
 import pyarrow as pa
 
+from tsas_cli import __version__
 from tsas_cli.errors import InputError
 from tsas_cli.files import json_text
+from tsas_cli.identification.model import FILE as MODEL
+from tsas_cli.identification.model import Model, write_model
 from tsas_cli.recordings.dataset import Dataset, read_dataset, write_dataset, write_parquet
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.stage_files import Simulation
@@ -36,11 +39,12 @@ class LiveStream:
     failure: InputError | None = None
 
     def simulated(
-        self, dataset: Dataset, summary: dict[str, Any], run: str, table: pa.Table
+        self, dataset: Dataset, summary: dict[str, Any], run: str, table: pa.Table, model: Model
     ) -> None:
         """Show a simulated run beside its recording; `summary` is that of the runs so far."""
         (self.folder / "runs").mkdir(exist_ok=True)
         write_parquet(self.folder / "runs" / f"{run}.parquet", table)
+        write_model(self.folder / MODEL, model, version=__version__, dataset=summary["dataset"])
         stage = Simulation.model_validate(_plain(summary))
         self._show(Inputs(dataset.only([run]), {Simulation: stage}, {Simulation: self.folder}))
 

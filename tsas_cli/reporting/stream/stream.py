@@ -13,6 +13,7 @@ from tsas_cli.reporting.stream.recorder import Recorder, to_file
 from tsas_cli.reporting.stream.recorder.layout import Layout
 from tsas_cli.reporting.stream.seen import SeenRun, seen_runs
 from tsas_cli.reporting.stream.tabs import DIAGNOSIS, OVERVIEW, layout_of
+from tsas_cli.reporting.stream.tendon.content import record_tendon
 from tsas_cli.reporting.stream.tracking import record_tracking
 
 FILE = "stream.rrd"
@@ -21,6 +22,7 @@ CONTENT: tuple[Callable[[Recorder, SeenRun], None], ...] = (
     record_tracking,
     record_phases,
     record_own_events,
+    record_tendon,
 )
 
 

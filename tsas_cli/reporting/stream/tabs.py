@@ -21,6 +21,7 @@ from tsas_cli.reporting.stream.recorder.layout import (
 )
 from tsas_cli.reporting.stream.recorder.paths import Entity
 from tsas_cli.reporting.stream.seen import X_IN, SeenRun
+from tsas_cli.reporting.stream.tendon.content import view_of_tendon
 from tsas_cli.reporting.stream.tracking import FORCE, tracking_tab, true_of
 
 OVERVIEW, DIAGNOSIS = ("about", "overview"), ("about", "diagnosis")
@@ -32,22 +33,22 @@ _TALL, _LANE = 1.6, 0.8  # height of the first plot, and of the phases, over tha
 _LOG = 0.6  # height of the events over that of a loop
 
 
-def layout_of(runs: Sequence[SeenRun], *, diagnosed: bool, tendon: Part | None = None) -> Layout:
+def layout_of(runs: Sequence[SeenRun], *, diagnosed: bool) -> Layout:
     """Return the tabs; what was tracked opens on it, all else on the overview.
 
-    `diagnosed` says whether there is a text on it, `tendon` is the picture of it.
+    `diagnosed` says whether there is a text on it.
     """
     made = {
         "Overview": _overview(runs),
         "Residuals": _by_run(runs, _residuals),
-        "Tendon": tendon,
+        "Tendon": _by_run(runs, view_of_tendon),
         "Tracking": tracking_tab(runs),
         "Diagnosis": Text("Diagnosis", DIAGNOSIS) if diagnosed else None,
     }
     parts = [Rows([part], name=name) for name in TABS if (part := made[name]) is not None]
     names = [part.name for part in parts]
     on_top = names.index("Tracking") if "Tracking" in names else 0
-    moves = tendon is not None or any(run.loops for run in runs)
+    moves = made["Tendon"] is not None or any(run.loops for run in runs)
     return Layout(Tabs(parts, on_top=on_top), plays=moves)
 
 

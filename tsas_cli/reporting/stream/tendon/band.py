@@ -1,0 +1,104 @@
+"""The dead band from near: tension at the drive over its travel since it turned."""
+
+from collections.abc import Mapping
+
+import numpy as np
+import numpy.typing as npt
+
+from tsas_cli.reporting.stream.palette import colour
+from tsas_cli.reporting.stream.plane import ACROSS, DOWN, Frame, frame_of
+from tsas_cli.reporting.stream.recorder import Clock, Recorder
+from tsas_cli.reporting.stream.recorder.layout import Plane
+from tsas_cli.reporting.stream.recorder.moving import points_2d
+from tsas_cli.reporting.stream.recorder.paths import Entity
+from tsas_cli.reporting.stream.tendon.key import record_key
+from tsas_cli.reporting.tendon.followed import Followed, Which
+
+Floats = npt.NDArray[np.float64]
+
+BEYOND = 1.4  # of the widest dead band: how much of a stroke is shown
+POINTS, LEAST, MOST = 80, 12, 60_000  # of a stroke, usually and at least, and of all of a run
+X_LABEL, Y_LABEL = "travel of the drive since it turned [mm]", "tension at the drive [N]"
+
+
+def view_of_band(entity: Entity) -> Plane:
+    """Return the view that shows it."""
+    return Plane("The dead band from near", [entity], ACROSS, DOWN)
+
+
+def record_band(
+    recorder: Recorder,
+    entity: Entity,
+    clock: Clock,
+    tendons: Mapping[Which, Followed],
+    f_in_N: Floats | None,
+) -> None:
+    """Record the strokes of one run, one after the other.
+
+    Parameters
+    ----------
+    recorder, entity, clock
+        Where to, under which name, and when the run began.
+    tendons
+        The models' answers.
+    f_in_N
+        Measured, shape (n,), NaN for gaps; None where it was not.
+    """
+    widest = max((_width(one) for one in tendons.values()), default=0.0)
+    if widest == 0.0:
+        return
+    curves = {which: _strokes(one, one.response.f_in_N, widest) for which, one in tendons.items()}
+    every = np.concatenate([strokes[..., 1].ravel() for _, strokes in curves.values()])
+    frame = frame_of(np.array([0.0, widest]), every)
+    recorder.curves_2d([*entity, "axes"], frame.lines(), colour("muted"), radius=-0.6, order=-1.0)
+    places, texts = frame.texts(X_LABEL, Y_LABEL)
+    recorder.labels_2d([*entity, "names"], places, texts, colour("muted"))
+    record_key(recorder, entity, tendons, measured=f_in_N is not None)
+    if f_in_N is not None:
+        at, strokes = _strokes(next(iter(tendons.values())), f_in_N, widest)
+        under, shade = [*entity, "measured"], colour("measured")
+        placed = _placed(frame, strokes)
+        recorder.segments_2d(under, clock.times(at), placed, shade, radius=-3.5, order=0.0)
+    for which, one in tendons.items():
+        mine, shade = [*entity, which.key], colour(which.role)
+        at, strokes = curves[which]
+        placed = _placed(frame, strokes)
+        recorder.segments_2d([*mine, "stroke"], clock.times(at), placed, shade, radius=-1.2)
+        x, f_in = one.response.x_in_mm, one.response.f_in_N[one.frames.samples]
+        travel = np.abs(x[one.frames.samples] - x[one.turned()])
+        now = frame.place(travel, f_in)
+        there = [now[k : k + seen] for k, seen in enumerate(travel <= widest)]
+        points_2d(recorder, [*mine, "now"], clock.times(one.time_s), there, shade)
+
+
+def _width(one: Followed) -> float:
+    """Return how much of a stroke is to be shown [mm]."""
+    x = one.response.x_in_mm
+    through = [
+        abs(x[run.arrived] - x[run.start]) for run in one.passages if run.arrived is not None
+    ]
+    return BEYOND * float(max(through, default=np.ptp(x) if x.size else 0.0))
+
+
+def _strokes(one: Followed, f_in: Floats, widest: float) -> tuple[Floats, Floats]:
+    """Return when strokes began [s], shape (k,), and their tension over travel, shape (k, p, 2).
+
+    Those of which nothing is known, since the tension is NaN, are left out.
+    """
+    x, runs = one.response.x_in_mm, one.passages
+    ends = [*(run.start for run in runs[1:]), x.size - 1]
+    points = min(POINTS, max(LEAST, MOST // max(len(runs), 1)))
+    at, strokes = [], []
+    for run, end in zip(runs, ends, strict=False):
+        travel = np.abs(x[run.start : end + 1] - x[run.start])
+        shown = np.flatnonzero((travel <= widest) & np.isfinite(f_in[run.start : end + 1]))
+        if shown.size:
+            kept = shown[np.linspace(0, shown.size - 1, points).astype(int)]
+            at.append(one.sample_time_s[run.start])
+            strokes.append(np.column_stack((travel[kept], f_in[run.start + kept])))
+    return np.array(at), np.array(strokes).reshape(-1, points, 2)
+
+
+def _placed(frame: Frame, strokes: Floats) -> Floats:
+    flat = strokes.reshape(-1, 2)
+    return frame.place(flat[:, 0], flat[:, 1]).reshape(strokes.shape)

@@ -1,0 +1,118 @@
+"""The tendon of a run, followed again with the models that the stages wrote down."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import cast
+
+from tsas_cli.identification.model import FILE, Model, read_model
+from tsas_cli.identification.prepared import drive_of, prepare, seconds_into
+from tsas_cli.physics.ends import Drive
+from tsas_cli.physics.response import Dynamics
+from tsas_cli.physics.rig import Rig
+from tsas_cli.recordings.columns import nominal_name
+from tsas_cli.recordings.dataset import Dataset, read_recording
+from tsas_cli.recordings.manifest import Run
+from tsas_cli.reporting.stage_files import Diagnosis, Simulation, StageFile
+from tsas_cli.reporting.stream.seen import X_IN, SeenRun
+from tsas_cli.reporting.tendon.followed import (
+    EXTENDED,
+    NOMINAL,
+    SIMULATED,
+    Followed,
+    Which,
+    follow,
+)
+
+F_IN, F_OUT = "f_in_N", "f_out_N"
+
+
+@dataclass(frozen=True)
+class Told:
+    """The models that a stage followed a run with, and how."""
+
+    stage: type[StageFile]
+    models: Mapping[Which, Model]
+    dynamics: Dynamics
+    nodes: int | None
+
+    def rigs(self, run: Run) -> list[Rig]:
+        """Return the rig of a run by each model."""
+        return [model.rig(run) for model in self.models.values()]
+
+
+def told_of(run: SeenRun) -> Told | None:
+    """Return both models of a diagnosis, else the simulated one.
+
+    None where neither stage took the run or wrote its models, and for the lumped model, which
+    does not say what is along the tendon.
+
+    Raises
+    ------
+    InputError
+        A model's file cannot be read.
+    """
+    diagnosis, simulation = run.inputs.get(Diagnosis), run.inputs.get(Simulation)
+    if diagnosis is not None:
+        which = (NOMINAL, EXTENDED) if diagnosis.named else (NOMINAL,)
+        return _told(run, Diagnosis, which, "slip", None)
+    if simulation is not None and simulation.dynamics != "static":
+        dynamics = cast("Dynamics", simulation.dynamics)
+        return _told(run, Simulation, (SIMULATED,), dynamics, simulation.nodes)
+    return None
+
+
+def _told(
+    run: SeenRun,
+    stage: type[StageFile],
+    shown: tuple[Which, ...],
+    dynamics: Dynamics,
+    nodes: int | None,
+) -> Told | None:
+    files = {which: run.inputs.folders[stage] / _file(which) for which in shown}
+    if not run.inputs.answered(run.id, stage) or not all(p.is_file() for p in files.values()):
+        return None
+    models = {which: read_model(path) for which, path in files.items()}
+    return Told(stage, models, dynamics, nodes)
+
+
+def tendons_of(run: SeenRun) -> dict[Which, Followed]:
+    """Return the run followed with the models that are told of it; none where none are.
+
+    Raises
+    ------
+    InputError
+        A file cannot be read, or is not what it was.
+    """
+    told = told_of(run)
+    if told is None:
+        return {}
+    there, rows = run.inputs.answered(run.id, told.stage), run.file.rows
+    columns = [c for name in (F_IN, F_OUT) for c in (name, nominal_name(name)) if c in there]
+    answers = [run.inputs.answer(run.id, rows, name, told.stage) for name in columns]
+    drive = _drive(run, told.stage)
+    return follow(run.file.run, run.time_s, drive, told.models, answers, told.dynamics, told.nodes)
+
+
+def _file(which: Which) -> str:
+    from tsas_cli.diagnosis.diagnose_stage import EXTENDED as EXTENDED_FILE
+    from tsas_cli.diagnosis.diagnose_stage import NOMINAL as NOMINAL_FILE
+
+    return {NOMINAL: NOMINAL_FILE, EXTENDED: EXTENDED_FILE, SIMULATED: FILE}[which]
+
+
+def _drive(run: SeenRun, stage: type[StageFile]) -> Drive:
+    """Return what drives the run, as the stage has conditioned it, where it has written it down."""
+    dataset = cast("Dataset", run.inputs.dataset)
+    started, told = dataset.manifest.session_start, run.file.run
+    if told.load != "spring" or X_IN not in run.file.names:
+        return prepare(read_recording(Path(dataset.folder), told), started).drive
+    return drive_of(
+        told,
+        run.time_s,
+        run.inputs.answer(run.id, run.file.rows, X_IN, stage),
+        by_force=False,
+        load_values=None,
+        f_in_N=run.measured(F_IN) if F_IN in run.file.names else None,
+        session_s=seconds_into(started, told.started),
+    )

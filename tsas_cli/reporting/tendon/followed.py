@@ -1,0 +1,136 @@
+"""A run followed along the tendon, with one model or with two at the same moments."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from tsas_cli.identification.model import Model
+from tsas_cli.physics.compliances import compliance_at_drive, sheath_compliance
+from tsas_cli.physics.ends import Drive
+from tsas_cli.physics.frames import Frames
+from tsas_cli.physics.passages import Passage, passages, turns
+from tsas_cli.physics.response import Dynamics, Response, simulate
+from tsas_cli.physics.rig import Rig
+from tsas_cli.recordings.manifest import Run
+from tsas_cli.reporting.tendon.moments import moments
+
+Floats = npt.NDArray[np.float64]
+Indices = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Which:
+    """Which model a picture is of: its name in paths, its name in words, its colour's role."""
+
+    key: str
+    label: str
+    role: str
+
+
+SIMULATED = Which("simulated", "simulated", "simulated")
+NOMINAL = Which("model", "nominal model", "before")
+EXTENDED = Which("model_extended", "extended model", "after")
+
+
+@dataclass(frozen=True)
+class Followed:
+    """What one model says along the tendon of a run, at k moments of its n samples.
+
+    `sample_time_s`, shape (n,), is the recording's own time; `passages` are of all samples.
+    """
+
+    rig: Rig
+    sample_time_s: Floats
+    response: Response
+    frames: Frames
+    passages: list[Passage]
+
+    @property
+    def time_s(self) -> Floats:
+        """Time of the moments, shape (k,)."""
+        times: Floats = self.sample_time_s[self.frames.samples]
+        return times
+
+    @property
+    def x_in_mm(self) -> Floats:
+        """Displacement of the drive from the state of uniform preload, shape (k,)."""
+        shown: Floats = self.response.x_in_mm[self.frames.samples] - self.rig.x_in_zero_mm
+        return shown
+
+    @property
+    def x_out_mm(self) -> Floats:
+        """Displacement of the load from there, shape (k,)."""
+        shown: Floats = self.response.x_out_mm[self.frames.samples] - self.rig.x_out_zero_mm
+        return shown
+
+    @property
+    def slips(self) -> npt.NDArray[np.bool_]:
+        """Whether each element slips, shape (k, m)."""
+        return np.isin(self.frames.slip, (1, -1))
+
+    @property
+    def front_runs_now(self) -> npt.NDArray[np.bool_]:
+        """Whether a front is on its way from the drive to the load, shape (k,)."""
+        return (self.frames.front > 0.0) & (self.frames.front < 1.0)
+
+    def tension_at_front(self) -> Floats:
+        """Return the tension where the front is, shape (k,) [N]."""
+        frames = self.frames
+        rows = zip(frames.front, np.nan_to_num(frames.tension_N), strict=True)
+        return np.array([np.interp(front, frames.places, row) for front, row in rows])
+
+    def turned(self) -> Indices:
+        """Return for each moment the sample at which the drive has turned last, shape (k,)."""
+        starts = np.array([0, *(run.start for run in self.passages)])
+        last: Indices = starts[np.searchsorted(starts, self.frames.samples, side="right") - 1]
+        return last
+
+    def moved_mm(self) -> Floats:
+        """Return how far each place has moved towards the drive, shape (k, m + 1) [mm].
+
+        It is the drive's way less the stretch of the tendon in between (Hooke's law).
+        """
+        excess = self.frames.tension_N - self.rig.preload_N
+        give = sheath_compliance(self.rig) / self.frames.slip.shape[1]
+        stretch = np.cumsum(0.5 * give * (excess[:, 1:] + excess[:, :-1]), axis=1)
+        at_mouth = self.x_in_mm - compliance_at_drive(self.rig) * excess[:, 0]
+        return np.column_stack((at_mouth, at_mouth[:, None] - stretch))
+
+
+def follow(
+    run: Run,
+    time_s: Floats,
+    drive: Drive,
+    models: Mapping[Which, Model],
+    answers: Sequence[Floats],
+    dynamics: Dynamics = "slip",
+    nodes: int | None = None,
+) -> dict[Which, Followed]:
+    """Follow a run with each model, all at the same moments.
+
+    Parameters
+    ----------
+    run, time_s, drive
+        The run, the time of its samples, shape (n,), and what is given at its ends.
+    models
+        What follows it.
+    answers
+        Tensions that the models have answered, shape (n,) each, which tell when to look.
+    dynamics, nodes
+        As `simulate` takes them. The lumped model does not say what is along the tendon: with it
+        nothing is found.
+    """
+    at = moments(time_s, answers, turns(drive.values))
+    found = {}
+    for which, model in models.items():
+        rig = model.rig(run)
+        answer = simulate(
+            rig, drive, dynamics, on_mesh=nodes is not None, nodes=nodes, looked_at=at
+        )
+        if answer.frames is not None:
+            found[which] = Followed(
+                rig, time_s, answer, answer.frames, passages(answer.x_in_mm, answer.phase)
+            )
+    return found
