@@ -29,7 +29,7 @@ HEAVY = {
     "scipy",
     "tomlkit",
 }
-HELPERS = {"__init__", "common", "completion", "progress"}  # files that are no command
+HELPERS = {"__init__", "common", "completion", "live", "progress"}  # files that are no command
 COMMANDS = typer.main.get_command(tsas_cli.app.app).commands  # type: ignore[attr-defined]
 CALLS = {  # `tsas challenge` is a group: its commands stand in its place
     f"{name} {inner}".strip(): call

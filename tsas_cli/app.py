@@ -13,6 +13,7 @@ from tsas_cli.commands.check import check
 from tsas_cli.commands.close_loop import close_loop
 from tsas_cli.commands.compare import compare
 from tsas_cli.commands.diagnose import diagnose
+from tsas_cli.commands.doctor import doctor
 from tsas_cli.commands.effects import effects
 from tsas_cli.commands.explain import explain
 from tsas_cli.commands.identify_harmonic_drive import identify_harmonic_drive
@@ -22,6 +23,7 @@ from tsas_cli.commands.report import report
 from tsas_cli.commands.reproduce import reproduce
 from tsas_cli.commands.simulate import simulate
 from tsas_cli.commands.track import track
+from tsas_cli.commands.view import view
 from tsas_cli.errors import InputError, printable
 
 app = typer.Typer(
@@ -58,6 +60,8 @@ app.command("plan")(plan)
 app.command("track")(track)
 app.command("close-loop")(close_loop)
 app.command("report")(report)
+app.command("view")(view)
+app.command("doctor")(doctor)
 app.command("reproduce")(reproduce)
 app.command("effects")(effects)
 app.command("explain")(explain)

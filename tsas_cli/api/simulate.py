@@ -1,12 +1,12 @@
 """Run a model on the recorded inputs."""
 
-from collections.abc import Iterable
-from typing import Literal
+from collections.abc import Callable, Iterable
+from typing import Any, Literal
 
 from tsas_cli.api.given import Named, dataset_of, one_of, path_of
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.simulation import SimulationResult, simulate_dataset
-from tsas_cli.recordings.dataset import Dataset
+from tsas_cli.recordings.dataset import Dataset, Recording
 from tsas_cli.steps import SILENT, Steps
 
 DYNAMICS: tuple[Literal["static", "slip", "lugre"], ...] = ("static", "slip", "lugre")
@@ -23,6 +23,7 @@ def simulate(
     runs: Iterable[str] | None = None,
     force: bool = False,
     step: Steps = SILENT,
+    each: Callable[[dict[str, Any], Recording, Model], None] = lambda *_: None,
 ) -> SimulationResult:
     """Simulate every run with a model and say how far it is from the measurement.
 
@@ -46,6 +47,8 @@ def simulate(
         Replace the folder if it is there.
     step
         Told of a piece of work per run.
+    each
+        Called after each run with the summary so far, the answer to it, and the model as used.
 
     Returns
     -------
@@ -70,4 +73,5 @@ def simulate(
         nodes=nodes,
         force=force,
         step=step,
+        each=each,
     )

@@ -1,7 +1,9 @@
 """Follow a wanted force on a simulated rig."""
 
-from collections.abc import Sequence
-from typing import Literal
+from collections.abc import Callable, Sequence
+from typing import Any, Literal
+
+import pyarrow as pa
 
 from tsas_cli.api.given import Named, at_least, listed, one_of, path_of
 from tsas_cli.controllers import CONTROLLERS
@@ -34,6 +36,7 @@ def track(
     first_seed: int = 1,
     force: bool = False,
     step: Steps = SILENT,
+    each: Callable[[dict[str, Any], str, pa.Table], None] = lambda *_: None,
 ) -> TrackingResult:
     """Follow a wanted force with a controller that sees x_in alone.
 
@@ -70,6 +73,8 @@ def track(
         Replace the folder if it is there.
     step
         Told of a piece of work per run.
+    each
+        Called for each recording with the summary so far, its name and its table.
 
     Returns
     -------
@@ -103,4 +108,4 @@ def track(
         seeds=(COMPARED_SEEDS if compare else 1) if seeds is None else at_least(1, seeds, "seeds"),
         first_seed=at_least(0, first_seed, "first_seed"),
     )
-    return track_all(call, path_of(out), force=force, step=step)
+    return track_all(call, path_of(out), force=force, step=step, each=each)

@@ -1,6 +1,7 @@
 """`tsas simulate`: run a model on the recorded inputs and compare."""
 
 from enum import StrEnum
+from functools import partial
 from typing import Annotated
 
 import typer
@@ -19,6 +20,7 @@ from tsas_cli.commands.common import (
     names,
     present,
 )
+from tsas_cli.commands.live import Live, unseen, watched
 from tsas_cli.commands.progress import progress
 
 
@@ -48,23 +50,26 @@ def simulate(
     ] = None,
     runs: ChosenRuns = None,
     rrd: Rrd = False,
+    live: Live = False,
     force: Force = False,
     quiet: Quiet = False,
     as_json: Json = False,
 ) -> None:
     """Simulate every run with a model and say how far it is from the measurement."""
-    with progress("simulate", quiet=quiet) as step:
-        result = tsas.simulate(
-            dataset,
-            out=out,
-            model=model,
-            dynamics=dynamics.value,
-            fit_own=fit_own,
-            nodes=nodes,
-            runs=names(runs),
-            force=force,
-            step=step,
-        )
-    if rrd:
-        add_stream(out, quiet=quiet or as_json)
-    present(result, quiet=quiet, as_json=as_json)
+    data = tsas.read(dataset, runs=names(runs))
+    with watched(live, f"{data.manifest.name} · simulation", quiet=quiet) as stream:
+        with progress("simulate", quiet=quiet) as step:
+            result = tsas.simulate(
+                data,
+                out=out,
+                model=model,
+                dynamics=dynamics.value,
+                fit_own=fit_own,
+                nodes=nodes,
+                force=force,
+                step=step,
+                each=partial(stream.simulated, data) if stream else unseen,
+            )
+        if rrd:
+            add_stream(out, quiet=quiet or as_json)
+        present(result, quiet=quiet, as_json=as_json)

@@ -18,6 +18,7 @@ from tsas_cli.commands.common import (
     present,
 )
 from tsas_cli.commands.completion import controllers, references
+from tsas_cli.commands.live import Live, unseen, watched
 from tsas_cli.commands.progress import progress
 
 
@@ -80,29 +81,32 @@ def track(
     seeds: Annotated[int | None, typer.Option(min=1, help="How many seeds of noise.")] = None,
     seed: Annotated[int, typer.Option(min=0, help="The first of them.")] = 1,
     rrd: Rrd = False,
+    live: Live = False,
     force: Force = False,
     quiet: Quiet = False,
     as_json: Json = False,
 ) -> None:
     """Follow a wanted force with a controller that sees x_in alone."""
-    with progress("track", quiet=quiet) as step:
-        result = tsas.track(
-            out=out,
-            model=model,
-            plant=plant,
-            drive=drive,
-            controllers=names(controller) or (),
-            compare=compare,
-            reference=reference,
-            disturb=disturb or (),
-            as_printed=as_printed,
-            dynamics=dynamics.value,
-            settings=settings,
-            seeds=seeds,
-            first_seed=seed,
-            force=force,
-            step=step,
-        )
-    if rrd:
-        add_stream(out, quiet=quiet or as_json)
-    present(result, quiet=quiet, as_json=as_json)
+    with watched(live, "tracking", quiet=quiet) as stream:
+        with progress("track", quiet=quiet) as step:
+            result = tsas.track(
+                out=out,
+                model=model,
+                plant=plant,
+                drive=drive,
+                controllers=names(controller) or (),
+                compare=compare,
+                reference=reference,
+                disturb=disturb or (),
+                as_printed=as_printed,
+                dynamics=dynamics.value,
+                settings=settings,
+                seeds=seeds,
+                first_seed=seed,
+                force=force,
+                step=step,
+                each=stream.tracked if stream else unseen,
+            )
+        if rrd:
+            add_stream(out, quiet=quiet or as_json)
+        present(result, quiet=quiet, as_json=as_json)

@@ -1,6 +1,6 @@
 """The simulate stage: every run of a dataset with one model, written beside its errors."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -77,13 +77,14 @@ def simulate_dataset(
     nodes: int | None = None,
     force: bool = False,
     step: Steps = SILENT,
+    each: Callable[[dict[str, Any], Recording, Model], None] = lambda *_: None,
 ) -> SimulationResult:
     """Simulate all runs; write answers, errors and the model as used into a new folder if any.
 
     Without a model the manifest's data sheet is simulated. With `fit_own` the preload and the
     zeros of each run are fitted first, all else stays as the model says: so a model predicts runs
-    that it was not fitted to. `nodes` asks for a chain with as many of them. `step` is called after
-    each run.
+    that it was not fitted to. `nodes` asks for a chain with as many of them. After each run
+    `step` is called, and `each` with the summary so far, the answer and the model.
 
     Raises
     ------
@@ -107,6 +108,7 @@ def simulate_dataset(
             runs[run.run.id] = Recording(run.run, _columns(run, answer))
             summary["runs"][run.run.id] = answer.as_json(run)
             summary["segments"][run.run.id] = segments_as_json(run, segment(run))
+            each(summary, runs[run.run.id], used)
             step()
         summary["notes"] = _notes(summary["runs"])
         if folder is not None:

@@ -24,7 +24,7 @@ def kernel(function: Function) -> Function:
         return function
     import numba
 
-    folder = _cache_folder()
+    folder = cache_folder()
     numba.config.CACHE_DIR = folder or ""  # type: ignore[attr-defined] # numba sets it by name
     compiler = numba.njit(
         cache=folder is not None, error_model="numpy", nogil=True, forceinline=True
@@ -33,7 +33,7 @@ def kernel(function: Function) -> Function:
 
 
 @cache
-def _cache_folder() -> str | None:
+def cache_folder() -> str | None:
     """Return a folder named after the sources, or None where none can be written.
 
     Numba by itself does not see edits in the kernels that a kernel calls.

@@ -6,6 +6,8 @@ from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 from typing import TypeVar
 
+from tsas_cli.errors import InputError
+
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 
@@ -22,10 +24,26 @@ def each(
     """
     if not at_once:
         return [function(item) for item in items]
-    threads = int(os.environ.get(THREADS) or os.cpu_count() or 1)
-    if threads < 2 or len(items) < 2:
+    pool = threads()
+    if pool < 2 or len(items) < 2:
         return [function(item) for item in items]
-    return list(_pool(threads).map(function, items))
+    return list(_pool(pool).map(function, items))
+
+
+def threads() -> int:
+    """Return how many threads share such calls.
+
+    Raises
+    ------
+    InputError
+        The environment asks for what is no number.
+    """
+    asked = os.environ.get(THREADS) or str(os.cpu_count() or 1)
+    if not asked.isdecimal():
+        raise InputError(
+            f"{THREADS} is {asked!r}", where="environment", expected="a whole number, 1 or more"
+        )
+    return int(asked)
 
 
 @cache

@@ -289,8 +289,13 @@ def write_runs(folder: Path, runs: Mapping[str, Recording]) -> None:
     """Write runs that belong to no dataset into a new folder, one file each, NaN as null."""
     folder.mkdir()
     for name, recording in runs.items():
-        columns = {n: pa.array(v, from_pandas=True) for n, v in recording.columns.items()}
-        write_parquet(folder / f"{name}.parquet", pa.table(columns))
+        write_parquet(folder / f"{name}.parquet", table_of(recording))
+
+
+def table_of(recording: Recording) -> pa.Table:
+    """Return a run's columns as a table, NaN as null."""
+    columns = {name: pa.array(v, from_pandas=True) for name, v in recording.columns.items()}
+    return pa.table(columns)
 
 
 def write_parquet(path: Path, table: pa.Table) -> None:

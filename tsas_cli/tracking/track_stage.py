@@ -3,7 +3,7 @@
 The folder is a dataset too: what was recorded can be calibrated and diagnosed.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -96,11 +96,19 @@ class TrackingResult(Result):
 
 
 def track_all(
-    call: Call, out: Path | None, *, force: bool = False, step: Steps = SILENT
+    call: Call,
+    out: Path | None,
+    *,
+    force: bool = False,
+    step: Steps = SILENT,
+    each: Callable[[dict[str, Any], str, pa.Table], None] = lambda *_: None,
 ) -> TrackingResult:
     """Run every controller under every condition.
 
     Runs, dataset and `tracking.json` are written into a new folder if there is one.
+
+    `step` is called after each run, and `each` after those of all seeds, with the summary so far,
+    the recording's name and its table.
 
     Raises
     ------
@@ -118,6 +126,7 @@ def track_all(
     wanted = reference(call.reference, settings.reference, settings.step_s)
     path = plan(wanted, known, settings)
     results, tables = [], dict[str, pa.Table]()
+    header = _header(call, settings)
     with folder_if(out, force=force) as folder:
         step.ahead(len(call.controllers) * len(call.conditions) * call.seeds)
         for condition in call.conditions:
@@ -145,7 +154,8 @@ def track_all(
                 if call.model is None and call.plant is None and call.drive is None:
                     printed = printed_rmse(name, condition, call.reference, settings)
                 results.append(_result(run_id, name, condition, runs, printed))
-        summary = _header(call, settings) | {"results": results}
+                each(header | {"results": results}, run_id, tables[run_id])
+        summary = header | {"results": results}
         summary["notes"] = _notes(path, known, plant, results)
         if call.dynamics == "lugre":
             summary["notes"] += dynamic_notes(path, plant, call.conditions, settings.step_s)

@@ -1,0 +1,88 @@
+import json
+import os
+
+import pytest
+
+from tsas_cli import __version__
+from tsas_cli.app import main
+from tsas_cli.installation import machine, packages
+from tsas_cli.installation.packages import Extra, Package
+
+
+@pytest.fixture
+def doctor(monkeypatch, capsys):
+    """Call the doctor on an installation that is described, not looked for."""
+    monkeypatch.setattr(machine, "drawn_with", lambda: "Vulkan on a card")
+
+    def call(*words, core=(), extras=()):
+        monkeypatch.setattr(packages, "core_packages", lambda: iter(core))
+        monkeypatch.setattr(packages, "extras", lambda: list(extras))
+        monkeypatch.setattr("sys.argv", ["tsas", "doctor", *words])
+        with pytest.raises(SystemExit) as end:
+            main()
+        return end.value.code or 0, *capsys.readouterr()
+
+    return call
+
+
+THERE = Package("numpy", ">=2.2", "2.4.6")
+OLD = Package("scipy", ">=1.15", "1.9", "wrong version")
+GONE = Package("pint", ">=0.24", None, "missing")
+MAT = Extra("mat", "MATLAB v7.3 files", (Package("h5py", ">=3.12", None, "missing"),))
+
+
+def test_here_all_is_there_that_tsas_needs(tsas):
+    result = tsas("doctor", "--json", env=os.environ | {"CI": "true"})
+    assert (result.returncode, result.stderr) == (0, "")
+    summary = json.loads(result.stdout)
+    assert summary["version"] == __version__
+    found = {p["name"]: p for p in summary["packages"]}
+    assert {"Python", "numpy", "rerun-sdk", "packaging"} <= found.keys()
+    assert {p["problem"] for p in summary["packages"]} == {""}
+    assert {e["name"] for e in summary["extras"]} == {"mat", "mdf", "challenge", "bench", "all"}
+    names = ["compiled code", "threads", "viewer", "drawing", "screen", "Chromium"]
+    assert [a["name"] for a in summary["machine"]] == names
+
+
+def test_a_missing_extra_is_told_with_its_command_and_is_no_failure(doctor):
+    code, out, err = doctor(core=[THERE], extras=[MAT])
+    assert (code, err) == (0, "")
+    assert "-m pip install 'tsas[mat]'" in out
+    assert "h5py" in out
+    assert "pip install" not in doctor(core=[THERE], extras=[Extra("mat", "", (THERE,))])[1]
+
+
+def test_what_is_needed_and_missing_is_one_line_with_the_command(doctor):
+    code, out, err = doctor(core=[THERE, OLD, GONE])
+    assert code == 2
+    assert out.startswith(f"tsas {__version__} on Python")
+    assert err.startswith("tsas: tsas lacks what it needs: scipy 1.9 wrong version, pint missing; ")
+    assert err.endswith("-m pip install 'scipy>=1.15' 'pint>=0.24'\n")
+    assert err.count("\n") == 1
+
+
+def test_quiet_says_only_what_is_wrong(doctor):
+    assert doctor("--quiet", core=[THERE], extras=[MAT]) == (0, "", "")
+    code, out, err = doctor("--quiet", core=[GONE])
+    assert (code, out, err.count("\n")) == (2, "", 1)
+
+
+def test_json_tells_all_of_it(doctor):
+    code, out, _ = doctor("--json", core=[OLD], extras=[MAT])
+    summary = json.loads(out)
+    assert code == 2
+    assert summary["packages"] == [
+        {"name": "scipy", "asked": ">=1.15", "found": "1.9", "problem": "wrong version"}
+    ]
+    assert summary["extras"][0]["missing"] == ["h5py"]
+    assert summary["extras"][0]["install"].endswith("pip install 'tsas[mat]'")
+
+
+def test_a_hidden_package_is_found_missing(tsas, tmp_path):
+    (tmp_path / "pint").mkdir()
+    (tmp_path / "pint" / "__init__.py").write_text("raise ImportError('hidden')")
+    env = os.environ | {"PYTHONPATH": str(tmp_path), "CI": "true"}
+    result = tsas("doctor", "--quiet", env=env)
+    assert result.returncode == 2
+    assert "pint" in result.stderr
+    assert "cannot be loaded: ImportError: hidden" in result.stderr

@@ -1,0 +1,213 @@
+import json
+import os
+import re
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import time
+from urllib.parse import parse_qs, urlsplit
+from urllib.request import urlopen
+
+import pytest
+
+from tests.commands.viewing import (
+    ADDRESS,
+    alive,
+    ended,
+    family,
+    line_with_address,
+    listening,
+    started,
+)
+from tests.reporting.made_folders import make_dataset, make_simulation
+from tests.reporting.viewer.streams import make_stream
+from tsas_cli.app import main
+from tsas_cli.reporting.viewer.ports import free_ports
+from tsas_cli.reporting.viewer.screen import SCREENS
+
+LOOPBACK = "0100007F"  # 127.0.0.1, as /proc/net writes it
+on_linux = pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
+
+
+@pytest.fixture(scope="module")
+def stream(tmp_path_factory):
+    return make_stream(tmp_path_factory.mktemp("view") / "waves.rrd")
+
+
+@pytest.fixture(scope="module")
+def folders(tmp_path_factory):
+    root = tmp_path_factory.mktemp("folders")
+    dataset = make_dataset(root / "dataset", ("a",), samples=400)
+    make_simulation(dataset, root / "simulated")
+    return root
+
+
+@pytest.fixture
+def run(monkeypatch, capsys, tmp_path):
+    """Call the command line here; only for calls that end by themselves."""
+
+    def call(*words):
+        monkeypatch.setattr("sys.argv", ["tsas", *map(str, words)])
+        monkeypatch.setenv("CI", "true")
+        monkeypatch.setenv("TSAS_STATE_DIR", str(tmp_path))
+        with pytest.raises(SystemExit) as end:
+            main()
+        return end.value.code, *capsys.readouterr()
+
+    return call
+
+
+def refused(result):
+    """Return the one line that a refused call prints."""
+    code, out, err = result
+    assert (code, out) == (2, "")
+    assert err.count("\n") == 1
+    return err
+
+
+def read(address):
+    with urlopen(address, timeout=10) as answer:  # noqa: S310 # an address of this machine
+        return answer.read()
+
+
+def shown_by(address):
+    """Return the file that the viewer's page is told to show."""
+    (url,) = parse_qs(urlsplit(address).query)["url"]
+    return read(url)
+
+
+@on_linux
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_the_page_is_served_here_alone_and_ends_without_a_trace(stream, tmp_path, number):
+    with started("view", stream, state=tmp_path) as process:
+        address = line_with_address(process.stdout)
+        assert b"re_viewer.js" in read(address[0])
+        assert len(read(f"http://127.0.0.1:{address[1]}/re_viewer_bg.wasm")) > 1e7
+        assert shown_by(address[0]) == stream.read_bytes()
+        processes = family(process.pid)
+        assert len(processes) == 2  # this one and the viewer's own program
+        places = listening(processes)
+        assert {where for where, _ in places} == {LOOPBACK}
+        assert int(address[1]) in {port for _, port in places}
+        begun = time.monotonic()
+        code, out, err = ended(process, number)
+        assert (code, out) == (0, "")
+        assert time.monotonic() - begun < 6
+        assert err.endswith("- Ctrl-C ends it\n")
+        assert alive(processes) == set()
+
+
+def test_a_taken_port_is_refused(stream, run):
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        line = refused(run("view", stream, "--web", "--port", port))
+    assert re.match(rf"tsas: --port: port {port} cannot be had \(.*\); choose", line)
+
+
+def test_it_is_told_once_of_analytics_and_the_port_and_form_can_be_chosen(stream, tmp_path):
+    (port,) = free_ports(1)
+    with started("view", stream, "--web", "--port", port, state=tmp_path) as process:
+        assert int(line_with_address(process.stdout)[1]) == port
+        assert ended(process)[2].count("rerun analytics disable") == 1
+    with started("view", stream, "--json", state=tmp_path) as process:
+        content = ""
+        while not content.endswith("}\n"):
+            content += process.stdout.readline()
+        assert ended(process) == (0, "", "- Ctrl-C ends it\n")
+    summary = json.loads(content)
+    assert summary["stream"] == str(stream)
+    assert ADDRESS.fullmatch(summary["address"])
+
+
+def test_folders_make_a_stream_that_is_gone_afterwards(folders, tmp_path):
+    temporary = tmp_path / "temporary"
+    temporary.mkdir()
+    paths = [folders / "dataset", folders / "simulated"]
+    with started("view", *paths, state=tmp_path, TMPDIR=str(temporary)) as process:
+        content = shown_by(line_with_address(process.stdout)[0])
+        assert content.startswith(b"RRF2")
+        assert b"simulation" in content
+        assert list(temporary.glob("tsas-view-*/stream.rrd"))
+        assert ended(process)[0] == 0
+    assert list(temporary.iterdir()) == []
+
+
+def test_a_stream_in_the_folder_is_what_is_shown(folders, stream, tmp_path):
+    folder = shutil.copytree(folders / "dataset", tmp_path / "dataset")
+    shutil.copy(stream, folder / "stream.rrd")
+    with started("view", folder, state=tmp_path) as process:
+        assert shown_by(line_with_address(process.stdout)[0]) == stream.read_bytes()
+        assert ended(process)[0] == 0
+
+
+def spoilt(name, stream, folder):
+    """Return a path that cannot be shown."""
+    path = folder / name
+    contents = {"junk": b"junk" * 99, "empty": b"", "cut": stream.read_bytes()[:-20_000]}
+    if name == "folder":
+        path.mkdir()
+    elif name in contents:
+        path.write_bytes(contents[name])
+    return path
+
+
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [
+        ("missing", "is not there"),
+        ("junk", "Not an RRD file"),
+        ("empty", "too small"),
+        ("cut", "exceeds file size"),
+        ("folder", "neither a dataset nor what a stage wrote"),
+    ],
+)
+def test_what_cannot_be_shown_is_one_line(stream, tmp_path, run, name, told):
+    path = spoilt(name, stream, tmp_path)
+    line = refused(run("view", path))
+    assert line.startswith(f"tsas: {path}: ")
+    assert told in line
+
+
+def test_a_file_among_folders_is_refused(folders, stream, run):
+    assert f"{stream}: is a file among others" in refused(run("view", folders / "dataset", stream))
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere there is always a screen")
+def test_a_screen_that_cannot_be_reached_is_one_line(stream, run, monkeypatch):
+    for name in SCREENS:
+        monkeypatch.setenv(name, ":4711" if name == "DISPLAY" else "")
+    line = refused(run("view", stream))
+    assert line.startswith("tsas: the viewer has failed (")
+    assert "tsas view --web" in line
+
+
+@on_linux
+@pytest.mark.skipif(shutil.which("Xvfb") is None, reason="no Xvfb here to open a window on")
+def test_a_window_opens_where_there_is_a_screen(stream, tmp_path):
+    reader, writer = os.pipe()
+    call = ["Xvfb", "-displayfd", str(writer), "-screen", "0", "800x600x24"]
+    with subprocess.Popen(call, pass_fds=[writer], stderr=subprocess.DEVNULL) as screen:
+        os.close(writer)
+        display = ":" + os.read(reader, 20).decode().strip()
+        os.close(reader)
+        try:
+            with started("view", stream, state=tmp_path, DISPLAY=display) as process:
+                line = process.stderr.readline()
+                while "close the window" not in line:
+                    assert "failed" not in line or pytest.skip(f"no window here: {line}")
+                    line = process.stderr.readline()
+                processes = family(process.pid)
+                assert {where for where, _ in listening(processes)} == {LOOPBACK}
+                assert ended(process)[:2] == (0, "")
+                assert alive(processes) == set()
+        finally:
+            screen.terminate()
+
+
+def test_without_the_viewer_it_is_said_what_to_install(stream, run, monkeypatch):
+    monkeypatch.setattr("tsas_cli.reporting.viewer.program.find_spec", lambda name: None)
+    line = refused(run("view", stream, "--web"))
+    assert line.startswith("tsas: package rerun-sdk: the viewer's program is not installed")
+    assert "pip install" in line

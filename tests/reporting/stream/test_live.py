@@ -1,0 +1,77 @@
+"""What goes to the viewer while runs are computed; a file stands for the viewer here."""
+
+import json
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+from rerun.chunk import RrdReader
+
+from tests.reporting.made_folders import make_dataset, make_simulation, make_tracking
+from tsas_cli.identification.model import data_sheet
+from tsas_cli.recordings.dataset import read_dataset
+from tsas_cli.reporting.stream.live import LiveStream
+from tsas_cli.reporting.stream.recorder import to_file
+
+
+@pytest.fixture
+def seen(tmp_path):
+    """Give a live stream to a function; return the samples of each run after each of its steps."""
+
+    def record(steps):
+        counts = []
+        for n in range(1, len(steps) + 1):
+            path, folder = tmp_path / f"{n}.rrd", tmp_path / f"live{n}"
+            folder.mkdir()
+            with to_file(path, "live") as recorder:
+                live = LiveStream(recorder, folder)
+                for step in steps[:n]:
+                    step(live)
+            counts.append(rows_by_run(path))
+        return counts
+
+    return record
+
+
+def rows_by_run(path):
+    """Return by entity below a run how many rows it has over time."""
+    rows = {}
+    for chunk in RrdReader(path).stream():
+        if chunk.entity_path.startswith("/run/") and not chunk.is_static:
+            rows[chunk.entity_path] = rows.get(chunk.entity_path, 0) + chunk.num_rows
+    return rows
+
+
+def test_each_simulated_run_is_there_before_the_next_is_computed(seen, tmp_path):
+    dataset = make_dataset(tmp_path / "dataset", ("a", "b"), samples=300)
+    simulated = make_simulation(dataset, tmp_path / "simulated")
+    summary = json.loads((simulated / "simulation.json").read_text())
+    opened = read_dataset(dataset)
+    model = data_sheet(opened.manifest)
+    table = pa.table({"time_s": np.arange(300.0), "f_in_N": np.ones(300), "x_in_mm": np.ones(300)})
+
+    def step(run):
+        so_far = summary | {"runs": {run: summary["runs"][run]}}
+        return lambda live: live.simulated(opened, so_far, run, table, model)
+
+    first, both = seen([step("a"), step("b")])
+    assert first["/run/a/f_in_N/simulated"] == 300
+    assert first["/run/a/f_in_N/measured"] == 300
+    assert not any(path.startswith("/run/b") for path in first)
+    assert both["/run/b/f_in_N/simulated"] == 300
+    assert both.items() >= first.items()
+
+
+def test_tracked_runs_too(seen, tmp_path):
+    folder = make_tracking(tmp_path / "tracked")
+    summary = json.loads((folder / "tracking.json").read_text())
+    runs = [result["run"] for result in summary["results"]][:2]
+
+    def step(run):
+        table = pq.read_table(folder / "runs" / f"{run}.parquet")
+        return lambda live: live.tracked(summary, run, table)
+
+    first, both = seen([step(run) for run in runs])
+    assert len({path for path in first if "tracking_error" in path}) == 1
+    assert len({path for path in both if "tracking_error" in path}) == 2

@@ -1,0 +1,25 @@
+import pytest
+
+from tsas_cli.reporting.viewer.analytics import NOTE, note_once
+
+
+@pytest.fixture
+def state(tmp_path, monkeypatch):
+    monkeypatch.setenv("TSAS_STATE_DIR", str(tmp_path / "state"))
+    return tmp_path / "state"
+
+
+def test_it_is_said_once_and_names_the_command(state):
+    assert "rerun analytics disable" in NOTE
+    assert [note_once(), note_once(), note_once()] == [NOTE, "", ""]
+
+
+def test_another_user_is_told_too(state, monkeypatch):
+    note_once()
+    monkeypatch.setenv("TSAS_STATE_DIR", str(state / "other"))
+    assert note_once() == NOTE
+
+
+def test_where_nothing_can_be_remembered_it_is_said_each_time(state):
+    state.write_text("a file")
+    assert [note_once(), note_once()] == [NOTE, NOTE]

@@ -1,0 +1,122 @@
+"""A script stands for the viewer here; tests/commands/test_view.py starts the real one."""
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from tsas_cli.errors import InputError
+from tsas_cli.reporting.viewer import child
+from tsas_cli.reporting.viewer.child import viewer_child
+from tsas_cli.reporting.viewer.ports import LOOPBACK, free_ports
+
+SERVE = f"""#!{sys.executable}
+import signal, socket, subprocess, sys, time
+if sys.argv[2] == "stubborn":
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)
+server = socket.create_server(("{LOOPBACK}", int(sys.argv[1])))
+time.sleep(0.2 if sys.argv[2] == "closed" else 60)
+"""
+FAIL = f"""#!{sys.executable}
+import sys
+print("starting\\n\\nError: no adapter\\n", file=sys.stderr)
+sys.exit(3)
+"""
+
+
+def alive(pid):
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rsplit(") ", 1)[1][0] != "Z"
+    except OSError:
+        return False
+
+
+@pytest.fixture
+def script(tmp_path, monkeypatch):
+    def install(text):
+        path = tmp_path / "viewer"
+        path.write_text(text)
+        path.chmod(0o755)
+        monkeypatch.setattr(child, "program", lambda: path)
+        return path
+
+    return install
+
+
+@pytest.mark.parametrize("kind", ["willing", "stubborn"])
+def test_it_answers_in_the_block_and_is_gone_after_it(script, monkeypatch, kind):
+    script(SERVE)
+    monkeypatch.setattr(child, "END_S", 0.3)
+    (port,) = free_ports(1)
+    with viewer_child([str(port), kind], port=port) as running:
+        socket.create_connection((LOOPBACK, port), timeout=1).close()
+        assert os.getpgid(running.process.pid) == running.process.pid
+    assert not alive(running.process.pid)
+    assert running.process.returncode == (-signal.SIGKILL if kind == "stubborn" else -15)
+
+
+def test_it_is_gone_after_an_error_too(script):
+    script(SERVE)
+    (port,) = free_ports(1)
+    with pytest.raises(ZeroDivisionError), viewer_child([str(port), ""], port=port) as running:
+        1 / 0  # noqa: B018
+    assert not alive(running.process.pid)
+
+
+def test_a_viewer_that_is_closed_is_no_failure(script):
+    script(SERVE)
+    (port,) = free_ports(1)
+    with viewer_child([str(port), "closed"], port=port) as running:
+        running.wait()
+    assert running.process.returncode == 0
+
+
+def test_a_wait_can_be_short(script):
+    script(SERVE)
+    (port,) = free_ports(1)
+    with viewer_child([str(port), ""], port=port) as running:
+        running.wait(0.1)
+        assert alive(running.process.pid)
+
+
+def test_a_viewer_that_fails_is_quoted(script):
+    script(FAIL)
+    told = r"failed \(Error: no adapter\).*--web.*tsas doctor"
+    with pytest.raises(InputError, match=told), viewer_child([], port=free_ports(1)[0]):
+        pytest.fail("never runs")
+
+
+def test_a_viewer_that_does_not_answer_is_ended(script, monkeypatch):
+    script(SERVE)
+    monkeypatch.setattr(child, "START_S", 0.3)
+    port, other = free_ports(2)
+    told = f"does not answer on port {other}"
+    with pytest.raises(InputError, match=told), viewer_child([str(port), ""], port=other):
+        pytest.fail("never runs")
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux ends the children of the dead")
+def test_it_dies_with_a_parent_that_is_killed(script):
+    path = script(SERVE)
+    (port,) = free_ports(1)
+    parent = f"""
+from pathlib import Path
+from tsas_cli.reporting.viewer import child
+child.program = lambda: Path({str(path)!r})
+with child.viewer_child(["{port}", ""], port={port}) as running:
+    print(running.process.pid, flush=True)
+    running.wait()
+"""
+    with subprocess.Popen([sys.executable, "-c", parent], stdout=subprocess.PIPE) as process:
+        pid = int(process.stdout.readline())
+        assert alive(pid)
+        process.kill()
+    until = time.monotonic() + 5
+    while alive(pid) and time.monotonic() < until:
+        time.sleep(0.02)
+    assert not alive(pid)

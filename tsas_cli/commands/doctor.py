@@ -1,0 +1,73 @@
+"""`tsas doctor`: what is installed, what is missing, and what to do about it."""
+
+import sys
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict
+from typing import TYPE_CHECKING
+
+from tsas_cli.commands.common import Json, Quiet, show
+from tsas_cli.commands.progress import progress
+
+if TYPE_CHECKING:
+    from tsas_cli.installation.machine import Ability
+    from tsas_cli.installation.packages import Extra, Package
+
+Rows = Sequence[tuple[str, ...]]
+
+
+def doctor(quiet: Quiet = False, as_json: Json = False) -> None:
+    """Say what is installed, what is missing and which command installs it.
+
+    It ends with exit code 2 where tsas lacks what it needs; the rest is only told.
+    """
+    from tsas_cli import __version__
+    from tsas_cli.errors import InputError
+
+    try:
+        from tsas_cli.installation.packages import core_packages, extras
+    except ModuleNotFoundError as error:
+        raise InputError(f"{error.name} is missing", remedy=_pip([str(error.name)])) from error
+    from tsas_cli.installation.machine import abilities
+
+    with progress("looking", quiet=quiet):
+        core, more, machine = list(core_packages()), extras(), list(abilities())
+    python = sys.version.split()[0]
+    summary = {
+        "format": 1,
+        "stage": "doctor",
+        "version": __version__,
+        "python": {"version": python, "program": sys.executable},
+        "packages": [asdict(package) for package in core],
+        "extras": [
+            asdict(extra) | {"missing": extra.missing, "install": _install(extra)} for extra in more
+        ],
+        "machine": [asdict(ability) for ability in machine],
+    }
+    title = f"tsas {__version__} on Python {python}, {sys.executable}"
+    show(summary, _tables(title, core, more, machine), quiet=quiet, as_json=as_json)
+    sys.stdout.flush()
+    if wrong := [package for package in core if package.problem]:
+        said = ", ".join(f"{p.name} {p.found or ''} {p.problem}".replace("  ", " ") for p in wrong)
+        asked = [f"{p.name}{p.asked}" for p in wrong if p.name != "Python"]
+        remedy = _pip(asked) if asked else f"use Python {wrong[0].asked}"
+        raise InputError(f"tsas lacks what it needs: {said}", remedy=remedy)
+
+
+def _tables(
+    title: str, core: Sequence["Package"], more: Sequence["Extra"], machine: Sequence["Ability"]
+) -> Iterator[tuple[str, tuple[str, ...], Rows]]:
+    rows = [(p.name, p.asked, p.found or "", p.problem or "there") for p in core]
+    yield title, ("package", "asked", "found", "state"), rows
+    rows = [(e.name, e.purpose, ", ".join(e.missing) or "there", _install(e)) for e in more]
+    yield "extras", ("extra", "for", "missing", "install it with"), rows
+    rows = [(a.name, "yes" if a.works else "no", a.found, a.remedy) for a in machine]
+    yield "this machine", ("what", "there", "found", "what to do"), rows
+
+
+def _install(extra: "Extra") -> str:
+    return _pip([f"tsas[{extra.name}]"]) if extra.missing else ""
+
+
+def _pip(requirements: Sequence[str]) -> str:
+    wanted = " ".join(f"'{requirement}'" for requirement in requirements)
+    return f"{sys.executable} -m pip install {wanted}"

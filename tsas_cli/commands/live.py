@@ -1,0 +1,66 @@
+"""`--live`: the viewer beside a stage, which shows each run as soon as it is computed."""
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from tsas_cli.errors import InputError
+
+if TYPE_CHECKING:
+    from tsas_cli.reporting.stream.live import LiveStream
+
+Live = Annotated[
+    bool, typer.Option("--live", help="Show each run in the viewer as soon as it is computed.")
+]
+
+
+def unseen(*run: object) -> None:
+    """Show nothing of a run."""
+    del run
+
+
+@contextmanager
+def watched(live: bool, name: str, *, quiet: bool) -> Iterator["LiveStream | None"]:
+    """Open the viewer, yield its stream, and stay until a person closes it; None without `live`.
+
+    What is said is said on standard error: standard output holds the stage's result alone.
+    """
+    if not live:
+        yield None
+        return
+    from tsas_cli.reporting.stream.live import live_stream
+    from tsas_cli.reporting.viewer.analytics import note_once
+    from tsas_cli.reporting.viewer.open import page_for_live, window_for_live
+    from tsas_cli.reporting.viewer.screen import has_screen
+    from tsas_cli.reporting.viewer.stopping import cleaned_up_when_stopped, until_stopped
+
+    opened = window_for_live if has_screen() else page_for_live
+    with cleaned_up_when_stopped(), opened() as viewer:
+        _say(note_once(), f"live at {viewer.page}" if viewer.page else "", quiet=quiet)
+        computed, failure = False, None
+        try:
+            with live_stream(viewer.proxy, name) as stream:
+                yield stream
+                failure = stream.failure
+                computed = True
+        except InputError as error:
+            if not computed:
+                raise
+            failure = error
+        if failure is not None:
+            _say(f"not all was shown, but all is written: {failure.line()}", quiet=quiet)
+            return
+        sys.stdout.flush()
+        end = "Ctrl-C" if viewer.page else "close the window or press Ctrl-C"
+        _say(f"all runs are there and written; {end} to end the viewer", quiet=quiet)
+        with until_stopped():
+            viewer.wait()
+
+
+def _say(*sentences: str, quiet: bool) -> None:
+    for sentence in sentences:
+        if sentence and not quiet:
+            print(f"- {sentence}", file=sys.stderr, flush=True)

@@ -1,0 +1,77 @@
+"""What this machine allows: where compiled code is kept, threads, the viewer, a PDF."""
+
+import os
+import platform
+import shutil
+import sys
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from tsas_cli.errors import InputError
+from tsas_cli.numerics.compiled import cache_folder
+from tsas_cli.numerics.side_by_side import THREADS, threads
+from tsas_cli.reporting.viewer.drawing import drawn_with
+from tsas_cli.reporting.viewer.program import program
+from tsas_cli.reporting.viewer.screen import SCREENS, has_screen
+
+BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
+
+
+@dataclass(frozen=True)
+class Ability:
+    """Something this machine can do or not, what was found, and what to do where it cannot."""
+
+    name: str
+    works: bool
+    found: str
+    remedy: str = ""
+
+
+def abilities() -> Iterator[Ability]:
+    """Yield what this machine can do; none of it is needed for a calibration or a diagnosis."""
+    yield _compiled_code()
+    yield _asked("threads", lambda: f"{threads()} of {os.cpu_count()} cores, {THREADS} sets it")
+    yield _asked("viewer", lambda: str(program()))
+    yield _asked("drawing", drawn_with)
+    yield _screen()
+    yield _browser()
+
+
+def _asked(name: str, question: Callable[[], str]) -> Ability:
+    try:
+        return Ability(name, True, question())
+    except InputError as error:
+        found = f"{error.where}: {error.what}" if error.where else error.what
+        return Ability(name, False, found, error.remedy or error.expected)
+
+
+def _compiled_code() -> Ability:
+    folder = cache_folder()
+    if folder is None:
+        return Ability(
+            "compiled code",
+            False,
+            "cannot be kept: every call compiles for seconds",
+            "name a folder that you may write to in TSAS_CACHE_DIR",
+        )
+    size = sum(path.stat().st_size for path in Path(folder).rglob("*") if path.is_file())
+    kept = f"{size / 1e6:.1f} MB" if size else "empty: the first calls compile for seconds"
+    return Ability("compiled code", True, f"{folder}, {kept}")
+
+
+def _screen() -> Ability:
+    if has_screen():
+        names = [f"{name}={os.environ[name]}" for name in SCREENS if os.environ.get(name)]
+        return Ability("screen", True, ", ".join(names) or platform.system())
+    return Ability(
+        "screen", False, "none", "`tsas view` serves a page for the browser and prints its address"
+    )
+
+
+def _browser() -> Ability:
+    found = next((path for name in BROWSERS if (path := shutil.which(name))), None)
+    if found is not None:
+        return Ability("Chromium", True, found)
+    command = "`apt install chromium`" if sys.platform == "linux" else "install it"
+    return Ability("Chromium", False, "not found", f"for PDF: {command}, or print from any browser")

@@ -1,0 +1,97 @@
+"""The packages that tsas asks for, in the versions that are there."""
+
+import platform
+from collections.abc import Iterator
+from dataclasses import dataclass
+from importlib import import_module
+from importlib.metadata import PackageNotFoundError, metadata, version
+
+from packaging.requirements import Requirement
+from packaging.specifiers import SpecifierSet
+
+PROJECT = "tsas"
+MODULES = {"rerun-sdk": "rerun"}  # where the module is called otherwise
+PURPOSES = {
+    "mat": "MATLAB v7.3 files",
+    "mdf": "MDF4 files",
+    "challenge": "the sparse-regression baseline of tsas challenge",
+    "bench": "the general solvers that make bench compares with",
+    "all": "every file format and baseline",
+}
+
+
+@dataclass(frozen=True)
+class Package:
+    """A package: the versions asked for, the one found, and what is wrong with it, if anything."""
+
+    name: str
+    asked: str
+    found: str | None
+    problem: str = ""
+
+
+@dataclass(frozen=True)
+class Extra:
+    """Packages that only some tasks need, and the command that installs what is missing of them."""
+
+    name: str
+    purpose: str
+    packages: tuple[Package, ...]
+
+    @property
+    def missing(self) -> tuple[str, ...]:
+        """The packages that are not there as asked for."""
+        return tuple(package.name for package in self.packages if package.problem)
+
+
+def core_packages() -> Iterator[Package]:
+    """Yield Python and every package that tsas cannot do without, each imported once."""
+    asked, python = SpecifierSet(metadata(PROJECT)["Requires-Python"]), platform.python_version()
+    fits = asked.contains(python, prereleases=True)
+    yield Package("Python", str(asked), python, "" if fits else "wrong version")
+    for requirement in _requirements():
+        if _always(requirement):
+            package = _package(requirement)
+            yield package if package.problem else _imported(package)
+
+
+def extras() -> list[Extra]:
+    """Return the extras; their packages are looked up, not imported."""
+    found = []
+    for name in metadata(PROJECT).get_all("Provides-Extra") or []:
+        only = [r for r in _requirements() if not _always(r) and _holds(r, name)]
+        own = tuple(_package(requirement) for requirement in only)
+        found.append(Extra(name, PURPOSES.get(name, ""), own))
+    return found
+
+
+def _requirements() -> list[Requirement]:
+    return [Requirement(text) for text in metadata(PROJECT).get_all("Requires-Dist") or []]
+
+
+def _always(requirement: Requirement) -> bool:
+    return _holds(requirement, "")
+
+
+def _holds(requirement: Requirement, extra: str) -> bool:
+    return requirement.marker is None or requirement.marker.evaluate({"extra": extra})
+
+
+def _package(requirement: Requirement) -> Package:
+    asked = str(requirement.specifier)
+    try:
+        found = version(requirement.name)
+    except PackageNotFoundError:
+        return Package(requirement.name, asked, None, "missing")
+    fits = requirement.specifier.contains(found, prereleases=True)
+    return Package(requirement.name, asked, found, "" if fits else "wrong version")
+
+
+def _imported(package: Package) -> Package:
+    """Return the package with what its import says; half an installation raises anything."""
+    try:
+        import_module(MODULES.get(package.name, package.name.replace("-", "_")))
+    except Exception as error:  # noqa: BLE001 # what it raises is what is told
+        reason = f"{type(error).__name__}: {error}".splitlines()[0]
+        return Package(package.name, package.asked, package.found, f"cannot be loaded: {reason}")
+    return package

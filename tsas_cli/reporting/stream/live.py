@@ -1,0 +1,97 @@
+"""Runs on their way into a viewer while they are computed, each as soon as it is there."""
+
+import json
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import pyarrow as pa
+
+from tsas_cli import __version__
+from tsas_cli.errors import InputError
+from tsas_cli.files import json_text
+from tsas_cli.identification.model import FILE as MODEL
+from tsas_cli.identification.model import Model, write_model
+from tsas_cli.recordings.dataset import (
+    Dataset,
+    Recording,
+    read_dataset,
+    table_of,
+    write_dataset,
+    write_parquet,
+)
+from tsas_cli.reporting.inputs import Inputs
+from tsas_cli.reporting.stage_files import Simulation
+from tsas_cli.reporting.stream.recorder import Recorder, to_viewer
+from tsas_cli.reporting.stream.seen import SeenRun
+from tsas_cli.reporting.stream.stream import stream_of
+from tsas_cli.reporting.tracking_file import Tracking
+from tsas_cli.tracking.recorded import manifest
+from tsas_cli.tracking.settings import Settings
+
+
+@dataclass
+class LiveStream:
+    """Shows runs as the stage's own files would be shown; what is laid out grows with them.
+
+    `failure` is why it has shown nothing since.
+    """
+
+    recorder: Recorder
+    folder: Path
+    runs: list[SeenRun] = field(default_factory=list)
+    failure: InputError | None = None
+
+    def simulated(
+        self, dataset: Dataset, summary: dict[str, Any], answer: Recording, model: Model
+    ) -> None:
+        """Show a simulated run beside its recording; `summary` is that of the runs so far."""
+        (self.folder / "runs").mkdir(exist_ok=True)
+        run = answer.run.id
+        write_parquet(self.folder / "runs" / f"{run}.parquet", table_of(answer))
+        write_model(self.folder / MODEL, model, version=__version__, dataset=summary["dataset"])
+        stage = Simulation.model_validate(_plain(summary))
+        self._show(Inputs(dataset.only([run]), {Simulation: stage}, {Simulation: self.folder}))
+
+    def tracked(self, summary: dict[str, Any], run: str, table: pa.Table) -> None:
+        """Show a run of the closed loop; `summary` is that of the runs so far."""
+        stated = {k: v for k, v in summary["settings"].items() if k not in {"file", "sha256"}}
+        folder = self.folder / run
+        folder.mkdir()
+        write_dataset(folder, manifest((run,), Settings.model_validate(stated)), {run: table})
+        stage = Tracking.model_validate(_plain(summary))
+        self._show(Inputs(read_dataset(folder), {Tracking: stage}, {Tracking: folder}))
+
+    def _show(self, inputs: Inputs) -> None:
+        """Show what is new; a viewer that has gone costs the stage nothing but what it shows."""
+        if self.failure is not None:
+            return
+        try:
+            new = stream_of(inputs)
+            self.runs += new.runs
+            self.recorder.lay_out(replace(new, runs=tuple(self.runs)).layout)
+            new.record(self.recorder)
+            self.recorder.settle()
+        except InputError as error:
+            self.failure = error
+
+
+@contextmanager
+def live_stream(address: str, name: str) -> Iterator[LiveStream]:
+    """Yield a stream into the viewer at `address`; see `to_viewer`.
+
+    Raises
+    ------
+    InputError
+        The viewer does not take it.
+    """
+    with TemporaryDirectory(prefix="tsas-live-") as folder, to_viewer(address, name) as recorder:
+        yield LiveStream(recorder, Path(folder))
+
+
+def _plain(summary: dict[str, Any]) -> Any:
+    """Return what the stage's file would hold."""
+    return json.loads(json_text(summary))

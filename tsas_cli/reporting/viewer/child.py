@@ -1,0 +1,120 @@
+"""The viewer as a child process that never outlives this one."""
+
+import math
+import os
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from typing import IO
+
+from tsas_cli.errors import InputError
+from tsas_cli.reporting.viewer.ports import LOOPBACK
+from tsas_cli.reporting.viewer.program import program
+
+START_S = 30.0  # a program of 300 MB, read from a slow disk
+END_S = 3.0
+LOOK_S = 0.05
+# Linux ends a child whose parent dies, where the child asks for it before it becomes the viewer.
+ASK = (
+    "import ctypes, os, signal, sys\n"
+    "ctypes.CDLL(None).prctl(1, signal.SIGKILL)\n"
+    "os.execv(sys.argv[1], sys.argv[1:])"
+)
+
+
+@dataclass(frozen=True)
+class Child:
+    """The running viewer."""
+
+    process: subprocess.Popen[bytes]
+    log: IO[bytes]
+
+    def wait(self, at_most_s: float = math.inf) -> None:
+        """Return when the viewer has been closed, or after some seconds.
+
+        Raises
+        ------
+        InputError
+            It has failed.
+        """
+        until = time.monotonic() + at_most_s
+        while self.process.poll() is None and time.monotonic() < until:
+            time.sleep(LOOK_S)  # short: not every system lets a signal interrupt a long wait
+        self.refuse_failure()
+
+    def refuse_failure(self) -> None:
+        """Raise what the viewer said last, where it has failed."""
+        code = self.process.poll()
+        if not code:
+            return
+        self.log.seek(0)
+        lines = self.log.read().decode(errors="replace").split("\n")
+        said = next((line.strip() for line in reversed(lines) if line.strip()), f"exit code {code}")
+        raise InputError(
+            f"the viewer has failed ({said})",
+            remedy="try `tsas view --web`; `tsas doctor` says what the viewer can do here",
+        )
+
+
+@contextmanager
+def viewer_child(arguments: Sequence[str], *, port: int) -> Iterator[Child]:
+    """Start the viewer, wait until its port answers, and end it when the block ends.
+
+    Raises
+    ------
+    InputError
+        It is not installed, fails at its start, or does not answer.
+    """
+    call = [str(program()), *arguments]
+    if sys.platform == "linux":
+        call = [sys.executable, "-I", "-S", "-c", ASK, *call]
+    quiet = {"RUST_LOG": "warn", "NO_COLOR": "1"}
+    with tempfile.TemporaryFile() as log:
+        process = subprocess.Popen(  # noqa: S603 # the program of a package of ours
+            call,
+            stdin=subprocess.DEVNULL,
+            stdout=log,
+            stderr=log,
+            env=quiet | os.environ,
+            start_new_session=True,  # Ctrl-C in the terminal comes here, and we end the viewer
+        )
+        child = Child(process, log)
+        try:
+            _await_answer(child, port)
+            yield child
+        finally:
+            _end(process)
+
+
+def _await_answer(child: Child, port: int) -> None:
+    until = time.monotonic() + START_S
+    while time.monotonic() < until:
+        child.refuse_failure()
+        with suppress(OSError), socket.create_connection((LOOPBACK, port), timeout=1.0):
+            return
+        time.sleep(LOOK_S)
+    raise InputError(
+        f"the viewer does not answer on port {port} after {START_S:g} s",
+        remedy="`tsas doctor` says what the viewer can do here",
+    )
+
+
+def _end(process: subprocess.Popen[bytes]) -> None:
+    """Ask the viewer and whatever it has started to end; end them where they do not."""
+    if process.poll() is not None:
+        return
+    if sys.platform == "win32":
+        process.terminate()
+    else:
+        os.killpg(process.pid, signal.SIGTERM)
+    try:
+        process.wait(END_S)
+    except subprocess.TimeoutExpired:
+        process.kill() if sys.platform == "win32" else os.killpg(process.pid, signal.SIGKILL)
+        process.wait()

@@ -1,0 +1,54 @@
+"""The stream to show: one that is there, or one made for this look alone."""
+
+import tempfile
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+from tsas_cli.errors import InputError
+from tsas_cli.reporting.stream import FILE
+from tsas_cli.reporting.stream.recorder.reading import is_finished
+
+
+@contextmanager
+def stream_of(
+    paths: Sequence[Path], step: Callable[[], None] = lambda: None
+) -> Iterator[tuple[Path, list[str]]]:
+    """Yield the stream's file, and sentences about it; what is made here is gone afterwards.
+
+    A folder that holds a stream shows that; several folders make one of their own, and `step` is
+    called after each run.
+
+    Raises
+    ------
+    InputError
+        A path is missing, no stream and no folder of a stage, or a file stands among others.
+    """
+    for path in paths:
+        if not path.exists():
+            raise InputError("is not there", where=path, expected="an .rrd file or a folder")
+    first, *others = paths
+    if not others and (stream := first / FILE if first.is_dir() else first).is_file():
+        yield stream, _notes(stream)
+        return
+    for path in paths:
+        if not path.is_dir():
+            raise InputError(
+                "is a file among others",
+                where=path,
+                expected="folders of stages, or one .rrd file alone",
+            )
+    from tsas_cli.reporting.inputs import read_inputs
+    from tsas_cli.reporting.stream.stream import write_stream
+
+    inputs = read_inputs(paths)
+    with tempfile.TemporaryDirectory(prefix="tsas-view-") as folder:
+        stream = Path(folder) / FILE
+        write_stream(inputs, stream, step=step)
+        yield stream, []
+
+
+def _notes(stream: Path) -> list[str]:
+    if is_finished(stream):
+        return []
+    return [f"{stream} has no end: its writer was stopped, or it is cut off; all it holds is shown"]
