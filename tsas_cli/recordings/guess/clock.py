@@ -1,0 +1,131 @@
+"""Which column is the clock, and in which unit."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from tsas_cli.numerics.turning_points import turning_points
+from tsas_cli.recordings.columns import TIME
+from tsas_cli.recordings.guess.columns import Column
+from tsas_cli.recordings.guess.looks import increases, is_even
+from tsas_cli.recordings.guess.proposed import Proposed
+from tsas_cli.recordings.ingest_map import QUESTION
+from tsas_cli.recordings.units import conversion
+
+_USUAL_S = (2.5e-5, 0.2)  # sample intervals of a rig that nobody has to explain
+_FASTEST_S = 5e-6
+_LONG_STROKE_S = 500.0
+_UNITS = ("s", "ms", "us")
+
+
+def clock(columns: Sequence[Column]) -> Proposed:
+    """Return the time of a file, or the question for it."""
+    named = [c for c in columns if c.quantity == "time"]
+    if len(named) > 1:
+        named = [c for c in named if c.kind == "time" and increases(c.values)] or named
+    if len(named) == 1:
+        return _with_unit(named[0], columns, named=True)
+    if named:
+        return _which(named, "several columns are called a time")
+    even = [c for c in columns if _may_be_clock(c)]
+    if len(even) == 1:
+        return _with_unit(even[0], columns, named=False)
+    if even:
+        return _which(even, "several columns increase evenly, as a time does")
+    counters = [c for c in columns if c.quantity == "counter" and increases(c.values)]
+    why = tuple(f"{c.shown} counts samples" for c in counters) or (
+        "no column is called a time, and none increases evenly",
+    )
+    asked = {"rate_Hz": "how many samples a second? Or name the clock: source and unit instead."}
+    return Proposed(TIME, {"rate_Hz": QUESTION}, "open", why, asked)
+
+
+def interval(values: Column) -> float:
+    """Return the typical step of a clock, in its own unit."""
+    return float(np.nanmedian(np.diff(values.values)))
+
+
+def _may_be_clock(c: Column) -> bool:
+    unnamed = c.words.quantity is None and c.words.place is None and c.kind in (None, "time")
+    return unnamed and increases(c.values) and is_even(c.values)
+
+
+def _which(found: Sequence[Column], why: str) -> Proposed:
+    candidates = tuple(f"{c.shown}, in steps of {interval(c):.6g} {c.unit}".strip() for c in found)
+    asked = {"source": f"which one is the clock: {', '.join(c.shown for c in found)}?"}
+    return Proposed(TIME, {"source": QUESTION}, "open", (why,), asked, candidates)
+
+
+def _with_unit(column: Column, columns: Sequence[Column], *, named: bool) -> Proposed:
+    entry = {"source": column.source}
+    why = column.reasons
+    rises = increases(column.values)
+    if rises:
+        why.append("it increases from row to row" + (", evenly" if is_even(column.values) else ""))
+    else:
+        why.append("it stands still or runs backwards somewhere, which ingest refuses with the row")
+    stroke = _rows_per_stroke(columns, column)
+    step = interval(column)
+    asked: dict[str, str] = {}
+    sure = "sure" if named and rises and column.kind == "time" else "likely"
+    alternatives: tuple[str, ...] = ()
+    if column.kind == "time":
+        seconds = step * conversion(column.unit, "s")[0]
+        if _odd(seconds, stroke):
+            asked["unit"] = (
+                f"its unit is said to be {column.unit}, which makes {_rate(seconds)} and "
+                f"{seconds * column.values.size:.3g} s in all; {_listed(step)}"
+            )
+        elif not column.own_unit:
+            entry["unit"] = column.unit
+    else:
+        likely = [u for u in _UNITS if _usual(step, u)]
+        counts = step == 1.0 and bool((column.values == np.round(column.values)).all())
+        if len(likely) == 1 and not counts:
+            entry["unit"] = likely[0]
+            why.append(f"no unit is said; {likely[0]} makes {_rate(_seconds(step, likely[0]))}")
+            alternatives = tuple(
+                f"{u}: {_rate(_seconds(step, u))}" for u in (*_UNITS, "min") if u != likely[0]
+            )
+        else:
+            asked["unit"] = f"no unit is said; {_listed(step)}" + (
+                "; if it counts samples, rate_Hz in place of source and unit" if counts else ""
+            )
+    entry |= dict.fromkeys(asked, QUESTION)
+    if abs(float(column.values[0])) > 0.5 * abs(step):
+        entry["offset"] = "first"
+        why.append(f"it begins at {column.values[0]:.6g}, which becomes 0")
+    return Proposed(TIME, entry, "open" if asked else sure, tuple(why), asked, alternatives)
+
+
+def _odd(interval_s: float, rows: float) -> bool:
+    slow = interval_s >= _USUAL_S[1] and interval_s * rows > _LONG_STROKE_S
+    return interval_s < _FASTEST_S or slow
+
+
+def _usual(step: float, unit: str) -> bool:
+    return _USUAL_S[0] <= _seconds(step, unit) <= _USUAL_S[1]
+
+
+def _seconds(step: float, unit: str) -> float:
+    return step * conversion(unit, "s")[0]
+
+
+def _listed(step: float) -> str:
+    return ", ".join(f"{unit} makes {_rate(_seconds(step, unit))}" for unit in _UNITS)
+
+
+def _rate(interval_s: float) -> str:
+    return f"{1.0 / interval_s:.4g} Hz"
+
+
+def _rows_per_stroke(columns: Sequence[Column], clock: Column) -> float:
+    """Return how many rows a stroke takes, by the median of the channels that move."""
+    rows = []
+    for column in columns:
+        values = column.values[np.isfinite(column.values)]
+        if column is clock or values.size < 2 or np.ptp(values) == 0.0:
+            continue
+        turns = turning_points(np.ascontiguousarray(values), 0.5 * float(np.ptp(values)))
+        rows.append(values.size / max(turns.size - 1, 1))
+    return float(np.median(rows)) if rows else float(clock.values.size)
