@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from tsas_cli.recordings.columns import NAMES, has_input_and_output
 from tsas_cli.recordings.guess.columns import Column
 from tsas_cli.recordings.guess.ends import Ends, settle
-from tsas_cli.recordings.guess.proposed import Proposed, with_unit
+from tsas_cli.recordings.guess.proposed import Proposed, Sureness, with_unit
 from tsas_cli.recordings.guess.signs import Sign, signs
 from tsas_cli.recordings.ingest_map import QUESTION
 
@@ -89,7 +89,7 @@ def _channel(name: str, column: Column, ends: Ends, sign: Sign) -> Proposed:
     if sign[0] != 1:
         entry["sign"] = sign[0]
     named = column.place is not None
-    sure = "sure" if named and _motion(column, ends) else "likely"
+    sure: Sureness = "sure" if named and _motion(column, ends) else "likely"
     return Proposed(name, entry, "open" if asked else sure, tuple(why), asked)
 
 
@@ -107,7 +107,7 @@ def _motion(column: Column, ends: Ends) -> list[str]:
 
 
 def _asked(ends: Ends) -> dict[str, Proposed]:
-    """Return the channels whose column is one of several; of a column that is alone, one question."""
+    """Return the channels whose column is in question; for a column alone, one of the two."""
     found: dict[str, Proposed] = {}
     for name, candidates in ends.asked.items():
         other = {"x_out_mm": "x_in_mm", "f_out_N": "f_in_N"}.get(name)

@@ -8,13 +8,13 @@ from tsas_cli.numerics.turning_points import turning_points
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.guess.columns import Column
 from tsas_cli.recordings.guess.looks import increases, is_even
-from tsas_cli.recordings.guess.proposed import Proposed
+from tsas_cli.recordings.guess.proposed import Proposed, Sureness
 from tsas_cli.recordings.ingest_map import QUESTION
 from tsas_cli.recordings.units import conversion
 
 _USUAL_S = (2.5e-5, 0.2)  # sample intervals of a rig that nobody has to explain
 _FASTEST_S = 5e-6
-_LONG_STROKE_S = 500.0
+_STROKE_S = (0.02, 500.0)  # strokes that a rig makes
 _UNITS = ("s", "ms", "us")
 
 
@@ -23,11 +23,14 @@ def clock(columns: Sequence[Column]) -> Proposed:
     named = [c for c in columns if c.quantity == "time"]
     if len(named) > 1:
         named = [c for c in named if c.kind == "time" and increases(c.values)] or named
+    even = [c for c in columns if like_a_clock(c)]
+    if len(named) == 1 and not increases(named[0].values) and even:
+        return _which([*named, *even], "what is called a time does not increase, another does")
     if len(named) == 1:
         return _with_unit(named[0], columns, named=True)
     if named:
         return _which(named, "several columns are called a time")
-    even = [c for c in columns if _may_be_clock(c)]
+    even = [c for c in even if c.words.quantity is None and c.words.place is None]
     if len(even) == 1:
         return _with_unit(even[0], columns, named=False)
     if even:
@@ -45,9 +48,10 @@ def interval(values: Column) -> float:
     return float(np.nanmedian(np.diff(values.values)))
 
 
-def _may_be_clock(c: Column) -> bool:
-    unnamed = c.words.quantity is None and c.words.place is None and c.kind in (None, "time")
-    return unnamed and increases(c.values) and is_even(c.values)
+def like_a_clock(column: Column) -> bool:
+    """Say whether a column increases evenly, and no unit says that it is no time."""
+    may_be = column.kind in (None, "label", "time") and column.quantity != "counter"
+    return may_be and increases(column.values) and is_even(column.values)
 
 
 def _which(found: Sequence[Column], why: str) -> Proposed:
@@ -67,7 +71,7 @@ def _with_unit(column: Column, columns: Sequence[Column], *, named: bool) -> Pro
     stroke = _rows_per_stroke(columns, column)
     step = interval(column)
     asked: dict[str, str] = {}
-    sure = "sure" if named and rises and column.kind == "time" else "likely"
+    sure: Sureness = "sure" if named and rises and column.kind == "time" else "likely"
     alternatives: tuple[str, ...] = ()
     if column.kind == "time":
         seconds = step * conversion(column.unit, "s")[0]
@@ -99,8 +103,8 @@ def _with_unit(column: Column, columns: Sequence[Column], *, named: bool) -> Pro
 
 
 def _odd(interval_s: float, rows: float) -> bool:
-    slow = interval_s >= _USUAL_S[1] and interval_s * rows > _LONG_STROKE_S
-    return interval_s < _FASTEST_S or slow
+    slow = interval_s >= _USUAL_S[1] and interval_s * rows > _STROKE_S[1]
+    return interval_s < _FASTEST_S or interval_s * rows < _STROKE_S[0] or slow
 
 
 def _usual(step: float, unit: str) -> bool:

@@ -55,7 +55,7 @@ class Column:
             return said
         if self.disagrees:
             return None
-        return "other" if said == "other" else QUANTITY_OF[self.kind]  # type: ignore[index]
+        return "other" if said == "other" else QUANTITY_OF[self.kind]
 
     @property
     def place(self) -> Place | None:
@@ -70,7 +70,7 @@ class Column:
         said, kind = self.words.quantity, self.kind
         if said in (None, "other") or kind in (None, "label", "other"):
             return False
-        return not fits(said, kind)  # type: ignore[arg-type]
+        return not fits(said, kind)
 
     @property
     def reasons(self) -> list[str]:
@@ -123,6 +123,7 @@ def _column(source: Source, name: str, values: Floats, told: str) -> Column:
     bracket = _BRACKETS.search(name)
     stem = name[: bracket.start()] if bracket else name
     if told:
+        stem, _ = unit_behind(stem)
         kind = kind_of(told)
         where = "in its name" if bracket and bracket[1].strip() == told else "in the file"
         if kind is not None:

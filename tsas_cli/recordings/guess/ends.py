@@ -13,10 +13,13 @@ from tsas_cli.recordings.guess.columns import Column
 from tsas_cli.recordings.guess.looks import goes_ahead
 
 _X, _F = ("x_in_mm", "x_out_mm"), ("f_in_N", "f_out_N")
-# Nearer to the drive first. With both ends of a kind there, a load with friction of its own may
-# put f_out ahead of x_in.
-_ORDER = (("f_in_N", "x_in_mm"), ("x_in_mm", "x_out_mm"), ("f_in_N", "f_out_N"))
-_ALONE = (("x_in_mm", "f_out_N"), ("f_in_N", "x_out_mm"))
+# Nearer to the drive first.
+_ORDER = (
+    ("f_in_N", "x_in_mm"),
+    ("f_in_N", "x_out_mm"),
+    ("f_in_N", "f_out_N"),
+    ("x_in_mm", "x_out_mm"),
+)
 Way = Mapping[str, Column | None]
 
 
@@ -38,15 +41,13 @@ def settle(displacements: Sequence[Column], tensions: Sequence[Column]) -> Ends:
     motion = _Motion()
     ways = list(_ways(displacements, tensions))
     by_name = [way for way in ways if _as_named(way)]
-    left = [way for way in by_name if _as_moved(way, displacements, tensions, motion)]
+    left = [way for way in by_name if _as_moved(way, motion)]
     ahead = motion.told((*displacements, *tensions))
+    if not by_name:
+        return _apart(displacements, tensions, ahead)
     if not left:
-        reason = (
-            "the names give the ends one way, the motion another"
-            if by_name
-            else "the names do not give one column to each end"
-        )
-        return _apart(displacements, tensions, reason, ahead)
+        reason = "the names give the ends one way, the motion another"
+        return Ends({}, _every(displacements, tensions), reason, ahead)
     settled: dict[str, Column] = {}
     asked = {}
     for name in (*_X, *_F):
@@ -63,18 +64,24 @@ def settle(displacements: Sequence[Column], tensions: Sequence[Column]) -> Ends:
 def _apart(
     displacements: Sequence[Column],
     tensions: Sequence[Column],
-    reason: str,
     ahead: tuple[tuple[Column, Column], ...],
 ) -> Ends:
-    """Return what is asked where nothing fits: one kind, if it alone is at fault, else all."""
-    asked = dict.fromkeys(_X, tuple(displacements)) | dict.fromkeys(_F, tuple(tensions))
+    """Return what is asked where names fit no way: one kind, if the other is named well."""
+    reason = "the names do not give one column to each end"
+    asked = _every(displacements, tensions)
     if displacements and tensions:
         x, f = settle(displacements, ()), settle((), tensions)
         if bool(x.settled) != bool(f.settled):
-            good = x if x.settled else f
-            kept = {n: c for n, c in asked.items() if n not in (_X if x.settled else _F)}
-            return Ends(good.settled, {**kept, **good.asked}, reason, ahead)
-    return Ends({}, {name: columns for name, columns in asked.items() if columns}, reason, ahead)
+            good, bad = (x, f) if x.settled else (f, x)
+            return Ends(good.settled, {**good.asked, **bad.asked}, reason, ahead)
+    return Ends({}, asked, reason, ahead)
+
+
+def _every(
+    displacements: Sequence[Column], tensions: Sequence[Column]
+) -> dict[str, tuple[Column, ...]]:
+    asked = dict.fromkeys(_X, tuple(displacements)) | dict.fromkeys(_F, tuple(tensions))
+    return {name: columns for name, columns in asked.items() if columns}
 
 
 class _Motion:
@@ -118,12 +125,12 @@ def _as_named(way: Way) -> bool:
     )
 
 
-def _as_moved(
-    way: Way, displacements: Sequence[Column], tensions: Sequence[Column], motion: _Motion
-) -> bool:
-    alone = len(displacements) == 1 or len(tensions) == 1
-    for near, far in (*_ORDER, *(_ALONE if alone else ())):
+def _as_moved(way: Way, motion: _Motion) -> bool:
+    def order(near: str, far: str) -> int:
         a, b = way[near], way[far]
-        if a is not None and b is not None and motion(a, b) == -1:
-            return False
-    return True
+        return 0 if a is None or b is None else motion(a, b)
+
+    if any(order(*pair) == -1 for pair in _ORDER):
+        return False
+    # A load with friction of its own may put f_out ahead of x_in, which x_out then shows.
+    return order("x_in_mm", "x_out_mm") == 1 or order("x_in_mm", "f_out_N") != -1

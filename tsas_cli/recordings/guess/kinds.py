@@ -44,9 +44,9 @@ _FITTING: dict[Quantity, tuple[Kind, ...]] = {
 }
 # Behind a name without brackets: time_ms, Force N. `in`, `m`, `g` and `A` are missing, because
 # they are ends, masters and sensors as often as units.
-_SUFFIXES = frozenset(
+_SUFFIXES = (
     "s ms us µs ns sec mm cm µm um inch N kN mN lbf kgf kg lbs Nm Nmm mNm deg ° rad rev rpm degC "
-    "°C counts cts ticks V mV".split()
+    "°C counts cts ticks V mV"
 )
 _SUFFIX = re.compile(r"^(.+?)[_\s.,/-]+([A-Za-zµ°]+)$")
 
@@ -72,7 +72,7 @@ def fits(quantity: Quantity, kind: Kind) -> bool:
 def unit_behind(name: str) -> tuple[str, str]:
     """Return a name without the unit at its end, and the unit; empty text where none is there."""
     found = _SUFFIX.match(name.strip())
-    if found is None or found[2] not in _SUFFIXES:
+    if found is None or found[2] not in _SUFFIXES.split():
         return name, ""
     stem, unit = found[1], found[2]
     kind, words = kind_of(unit), words_of(stem)

@@ -111,20 +111,20 @@ def _table(path: Path) -> Iterator[tuple[str, tuple[Any, str]]]:
 
 def _preamble(path: Path, said: dict[str, tuple[Any, str]]) -> dict[str, tuple[Any, str]]:
     """Return how many lines stand above a text table, where they keep it from being read."""
-    if path.suffix.lower() not in _TEXT:
+    if path.suffix.lower() not in _TEXT or _columns_in(path, said) > 1:
         return {}
-    try:
-        names(path, _options(said))
-    except InputError as error:
-        for skip in range(1, _PREAMBLE):
-            key = {"skip_lines": (skip, f"the table begins with line {skip + 1}")}
-            try:
-                if len(names(path, _options(said | key))) > 1:
-                    return key
-            except InputError:
-                continue
-        raise error from None
+    for skip in range(1, _PREAMBLE):
+        key = {"skip_lines": (skip, f"the table begins with line {skip + 1}")}
+        if _columns_in(path, said | key) > 1:
+            return key
     return {}
+
+
+def _columns_in(path: Path, said: dict[str, tuple[Any, str]]) -> int:
+    try:
+        return len(names(path, _options(said)))
+    except InputError:
+        return 0
 
 
 def _all_or_each(

@@ -9,7 +9,7 @@ from typing import Any
 
 from tsas_cli.errors import InputError
 from tsas_cli.recordings.guess.channels import channels
-from tsas_cli.recordings.guess.clock import clock
+from tsas_cli.recordings.guess.clock import clock, like_a_clock
 from tsas_cli.recordings.guess.columns import Column, columns_of
 from tsas_cli.recordings.guess.looks import together
 from tsas_cli.recordings.guess.opening import Opened, open_file
@@ -82,6 +82,8 @@ def propose(files: Sequence[Path]) -> Proposal:
     columns = columns_of(opened)
     time = clock(columns)
     rest = [c for c in columns if c.source != time.entry.get("source")]
+    if time.entry.get("source") == QUESTION:
+        rest = [c for c in rest if not like_a_clock(c)]
     found = (time, *channels(rest))
     return Proposal(
         _name(opened.path),

@@ -89,7 +89,7 @@ def _read(proposal: Proposal) -> Table:
         for source, reason in proposal.not_taken.items():
             _say(table, f"- {source}: {reason}.", indent="  ")
         listed = ", ".join(tomlkit.item(source).as_string() for source in proposal.not_taken)
-        _say(table, f"extra = [{listed}]")
+        table.add(tomlkit.comment(f"extra = [{listed}]"))
     for name, reason in proposal.looked_at.left_out.items():
         _say(table, f"{name} cannot be taken: {reason}.")
     return table
@@ -122,12 +122,11 @@ def _run(proposal: Proposal) -> Table:
             _say(table, f"{condition} =   # for all runs: {meaning}")
     if groups:
         _say(table, f"The file's name, {proposal.looked_at.path.name}, may say these; if so, take:")
-        _say(table, "[run.from_file_name]")
-        _say(table, f"pattern = '(?i){pattern}'")
+        lines = ["[run.from_file_name]", f"pattern = '(?i){pattern}'"]
         for condition, (group, unit) in groups.items():
-            _say(table, f"[run.conditions.{condition}]")
-            _say(table, f'from = "{group}"')
-            _say(table, f'unit = "{unit}"')
+            lines += [f"[run.conditions.{condition}]", f'from = "{group}"', f'unit = "{unit}"']
+        for line in lines:
+            table.add(tomlkit.comment(line))
     missing = [c for c in COLUMNS[:5] if c.name not in {p.name for p in proposal.channels}]
     for column in missing:
         _say(table, f"No column looks like {column.name} ({column.meaning}).")

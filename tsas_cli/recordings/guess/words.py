@@ -19,7 +19,8 @@ _QUANTITIES: dict[Quantity, str] = {
     "secondes 时间",
     "counter": "sample samples index idx count row nr no messpunkt 序号",
     "displacement": "x s displacement disp displ position pos travel stroke encoder enc lvdt "
-    "crosshead extension verschiebung auslenkung hub weg pfad deplacement course excursion laser 位移 行程",
+    "crosshead extension verschiebung auslenkung hub weg pfad deplacement course excursion "
+    "laser 位移 行程",
     "angle": "angle winkel theta phi rotation turntable rotary drehwinkel 角度 转角",
     "force": "f force tension loadcell cell kraft zugkraft seilkraft effort dynamometer "
     "tendonforce 力 张力 拉力",
@@ -36,7 +37,7 @@ _PLACES: dict[Place, str] = {
     "abtrieb abtriebsseite lastseite sortie aval 输出 远端 末端",
     "motor": "motor moteur servo 电机",
 }
-WEAK = frozenset("load last charge dist end 负载".split())  # an end only beside another word
+WEAK = frozenset({"load", "last", "charge", "dist", "end", "负载"})  # an end only beside a quantity
 _WISHES = (
     "ref reference desired target setpoint set soll sollwert wanted cmd command commanded "
     "demand trajectory goal consigne 期望 参考"
@@ -66,7 +67,7 @@ def words_of(name: str) -> Words:
     quantities = _told(parts, _QUANTITIES)
     places = _told(parts, _PLACES)
     if "t" in parts and len(parts) > 1 and places:
-        quantities = {"force": "t"} | {k: v for k, v in quantities.items() if v != "t"}
+        quantities = {k: v for k, v in quantities.items() if v != "t"} | {"force": "t"}
     weak = next((p for p in parts if p in WEAK), None)
     if weak and not places and (quantities or weak not in ("end", "dist")):
         places["out"] = weak
