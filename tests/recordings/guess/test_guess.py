@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 from asammdf import MDF, Signal
 from hypothesis import HealthCheck, given, settings
@@ -112,6 +113,11 @@ def save_parquet(path):
     write_parquet(path, pa.table(run()))
 
 
+def save_parquet_of_another_tool(path):
+    names = [f"{n.rsplit('_', 1)[0]} [{n.rsplit('_', 1)[1]}]" for n in CHANNELS]
+    pq.write_table(pa.table(dict(zip(names, run().values(), strict=True))), path)
+
+
 def save_json(path):
     import json
 
@@ -150,10 +156,15 @@ def save_mdf(path):
         file.save(path, overwrite=True)
 
 
+def _parts(name, source):
+    return name.rsplit("_", 1) if "{1}" in source else [name]
+
+
 @pytest.mark.parametrize(
     ("suffix", "save", "source", "open_"),
     [
         (".parquet", save_parquet, "{}", 0),
+        (".parquet", save_parquet_of_another_tool, "{0} [{1}]", 0),
         (".json", save_json, "{}", 0),
         (".mat", save_mat, "log.{}", 0),
         (".mat", save_mat_73, "log.{}", 0),
@@ -167,7 +178,7 @@ def test_every_format_is_opened(tmp_path, suffix, save, source, open_):
     proposal = propose([path])
     sources = {c.name: c.entry["source"] for c in proposal.channels}
     if source:
-        at = {name: source.format(name) for name in CHANNELS}
+        at = {name: source.format(*_parts(name, source)) for name in CHANNELS}
         if save is save_capture:
             at["time_s"] = "time"
         assert sources == at

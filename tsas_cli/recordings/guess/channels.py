@@ -96,13 +96,13 @@ def _channel(name: str, column: Column, ends: Ends, sign: Sign) -> Proposed:
 def _motion(column: Column, ends: Ends) -> list[str]:
     """Return what the motion says of a column's place, against the other settled ones."""
     settled = {id(c) for c in ends.settled.values()}
-    before = [b.shown for a, b in ends.ahead if a is column and id(b) in settled]
+    first = [b.shown for a, b in ends.ahead if a is column and id(b) in settled]
     behind = [a.shown for a, b in ends.ahead if b is column and id(a) in settled]
     said = []
-    if before:
-        said.append(f"it goes ahead of {', '.join(before)}, as friction lets what is at the drive")
+    if first:
+        said.append(f"after a turn it moves before {', '.join(first)}: it is nearer to the drive")
     if behind:
-        said.append(f"it stays behind {', '.join(behind)}, held back by friction")
+        said.append(f"after a turn it comes behind {', '.join(behind)}, held back by friction")
     return said
 
 

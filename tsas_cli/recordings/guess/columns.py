@@ -120,19 +120,18 @@ def columns_of(opened: Opened) -> list[Column]:
 
 
 def _column(source: Source, name: str, values: Floats, told: str) -> Column:
+    """Return a column; `told` is the unit that ingest finds by itself, if any."""
     bracket = _BRACKETS.search(name)
-    stem = name[: bracket.start()] if bracket else name
-    if told:
-        stem, _ = unit_behind(stem)
-        kind = kind_of(told)
-        where = "in its name" if bracket and bracket[1].strip() == told else "in the file"
+    inside = bracket[1].strip() if bracket else ""
+    stem, behind = unit_behind(name[: bracket.start()] if bracket else name)
+    where = "in its name" if told == inside else "in the file"
+    for unit, own, place in (
+        (told, True, where),
+        (told.strip(" ?"), False, where),
+        (inside.strip(" ?"), False, "in its name"),
+        (behind, False, "at the end of its name"),
+    ):
+        kind = kind_of(unit) if unit else None
         if kind is not None:
-            return Column(source, name, values, words_of(stem), told, kind, True, where)
-        plain = told.strip(" ?")
-        kind = kind_of(plain)
-        if kind is not None:
-            return Column(source, name, values, words_of(stem), plain, kind, False, where)
-        return Column(source, name, values, words_of(name), "", None, False, "")
-    stem, unit = unit_behind(name)
-    kind = kind_of(unit) if unit else None
-    return Column(source, name, values, words_of(stem), unit, kind, False, "at the end of its name")
+            return Column(source, name, values, words_of(stem), unit, kind, own, place)
+    return Column(source, name, values, words_of(name), "", None, False, "")

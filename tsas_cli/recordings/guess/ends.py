@@ -20,6 +20,7 @@ _ORDER = (
     ("f_in_N", "f_out_N"),
     ("x_in_mm", "x_out_mm"),
 )
+_MOST = 5  # columns of one kind whose motion is compared
 Way = Mapping[str, Column | None]
 
 
@@ -38,6 +39,11 @@ class Ends:
 
 def settle(displacements: Sequence[Column], tensions: Sequence[Column]) -> Ends:
     """Give displacements and tensions to their ends, as far as names and motion tell."""
+    if max(len(displacements), len(tensions)) > _MOST:
+        displacements, tensions = _with_place(displacements), _with_place(tensions)
+    if max(len(displacements), len(tensions)) > _MOST:
+        reason = "there are too many columns of one kind to tell them by their motion"
+        return Ends({}, _every(displacements, tensions), reason, ())
     motion = _Motion()
     ways = list(_ways(displacements, tensions))
     by_name = [way for way in ways if _as_named(way)]
@@ -59,6 +65,11 @@ def settle(displacements: Sequence[Column], tensions: Sequence[Column]) -> Ends:
             settled[name] = first
     reason = "neither the names nor the motion tell the ends apart"
     return Ends(settled, asked, reason, ahead)
+
+
+def _with_place(columns: Sequence[Column]) -> list[Column]:
+    """Return the columns whose names speak of an end, all where none does."""
+    return [c for c in columns if c.place is not None] or list(columns)
 
 
 def _apart(

@@ -15,6 +15,7 @@ from tsas_cli.numerics.turning_points import turning_points
 from tsas_cli.recordings.readers.table import Floats
 
 _FEWEST = 64  # samples
+_ROWS = 50_000  # of a longer run so many are looked at, evenly
 _TOGETHER = 0.5  # the correlation below which two channels do not go together
 _NARROW = 0.001  # of the span: half the width of a loop that is none
 _ALIKE = 0.2  # the narrowest loop over the widest, below which the strokes do not agree
@@ -71,7 +72,8 @@ def held_back(over: Floats, values: Floats) -> float | None:
     two strokes, or the strokes do not agree.
     """
     there = np.isfinite(over) & np.isfinite(values)
-    u, v = over[there], values[there]
+    every = over.size // _ROWS + 1
+    u, v = over[there][::every], values[there][::every]
     if u.size < _FEWEST or abs(together(u, v)) < _TOGETHER:
         return None
     v = v * np.sign(together(u, v))

@@ -37,6 +37,6 @@ def tables(proposal: Proposal, out: object) -> Iterator[tuple[str, tuple[str, ..
         (channel.name, str(channel.entry.get("source", "")), channel.sure)
         for channel in proposal.channels
     ]
-    yield f"map {out}", ("channel", "source", "sureness"), rows
+    yield f"map {out}", ("channel", "source", "how sure"), rows
     if proposal.questions:
         yield "to be answered in it", ("key", "question"), list(proposal.questions.items())
