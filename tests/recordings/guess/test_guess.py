@@ -1,4 +1,5 @@
 import os
+import tomllib
 from itertools import combinations
 from pathlib import Path
 
@@ -338,6 +339,46 @@ def test_a_wrong_call_is_one_line(tmp_path, tsas):
         done = tsas("ingest", "a.csv", *words, cwd=tmp_path)
         assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
         assert said in done.stderr
+
+
+def test_text_gaps_and_what_rests_are_left_out_with_the_reason(tmp_path):
+    names = ("time [s]", "x_in [mm]", "f_in [N]", "Operator", "Nothing", "Idle [mm]")
+    rows = [f"{t},{x},{f},Jo,,4" for t, x, f in zip(*(run()[n][::4] for n in _SOME), strict=True)]
+    (tmp_path / "a.csv").write_text("\n".join([",".join(names), *rows]))
+    proposal = propose([tmp_path / "a.csv"])
+    assert [c.entry["source"] for c in proposal.channels] == list(names[:3])
+    assert proposal.looked_at.left_out == {"Operator": "column Operator holds 'Jo'"}
+    assert set(proposal.not_taken) == {"Nothing", "Idle [mm]"}
+    text = map_text(proposal)
+    assert "Operator cannot be taken" in text
+    assert '# extra = ["Nothing", "Idle [mm]"]' in text
+
+
+_SOME = ("time_s", "x_in_mm", "f_in_N")
+
+
+@settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+@given(data=st.data())
+def test_any_numbers_make_a_map_and_no_defect(tmp_path_factory, data):
+    path = tmp_path_factory.mktemp("f") / "a.csv"
+    names = data.draw(
+        st.lists(
+            st.sampled_from(
+                ["time", "t [s]", "x_in", "F [N]", "F [mm]", "x [V]", "sample", "é?", ""]
+            ),
+            min_size=1,
+            max_size=6,
+        )
+    )
+    cell = st.sampled_from(["", "0", "1", "-1", "1e300", "inf", "nan", "-0.0", "3.5"])
+    few = st.integers(1, 80)
+    rows = [[data.draw(cell) for _ in names] for _ in range(data.draw(few))]
+    path.write_text("\n".join(",".join(row) for row in [names, *rows]) + "\n")
+    try:
+        text = map_text(propose([path]))
+    except InputError:
+        return
+    tomllib.loads(text)
 
 
 def public(name):

@@ -8,7 +8,7 @@ from tsas_cli.numerics.turning_points import turning_points
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.guess.columns import Column
 from tsas_cli.recordings.guess.looks import increases, is_even
-from tsas_cli.recordings.guess.proposed import Proposed, Sureness
+from tsas_cli.recordings.guess.proposed import Proposed, Sureness, with_unit
 from tsas_cli.recordings.ingest_map import QUESTION
 from tsas_cli.recordings.units import conversion
 
@@ -43,9 +43,9 @@ def clock(columns: Sequence[Column]) -> Proposed:
     return Proposed(TIME, {"rate_Hz": QUESTION}, "open", why, asked)
 
 
-def interval(values: Column) -> float:
-    """Return the typical step of a clock, in its own unit."""
-    return float(np.nanmedian(np.diff(values.values)))
+def interval(column: Column) -> float:
+    """Return the typical step of a clock that increases, in its own unit."""
+    return float(np.median(np.diff(column.values)))
 
 
 def like_a_clock(column: Column) -> bool:
@@ -55,51 +55,53 @@ def like_a_clock(column: Column) -> bool:
 
 
 def _which(found: Sequence[Column], why: str) -> Proposed:
-    candidates = tuple(f"{c.shown}, in steps of {interval(c):.6g} {c.unit}".strip() for c in found)
     asked = {"source": f"which one is the clock: {', '.join(c.shown for c in found)}?"}
-    return Proposed(TIME, {"source": QUESTION}, "open", (why,), asked, candidates)
+    return Proposed(TIME, {"source": QUESTION}, "open", (why,), asked)
 
 
 def _with_unit(column: Column, columns: Sequence[Column], *, named: bool) -> Proposed:
-    entry = {"source": column.source}
     why = column.reasons
-    rises = increases(column.values)
-    if rises:
-        why.append("it increases from row to row" + (", evenly" if is_even(column.values) else ""))
-    else:
+    if not increases(column.values):
         why.append("it stands still or runs backwards somewhere, which ingest refuses with the row")
-    stroke = _rows_per_stroke(columns, column)
-    step = interval(column)
-    asked: dict[str, str] = {}
-    sure: Sureness = "sure" if named and rises and column.kind == "time" else "likely"
-    alternatives: tuple[str, ...] = ()
-    if column.kind == "time":
-        seconds = step * conversion(column.unit, "s")[0]
-        if _odd(seconds, stroke):
-            asked["unit"] = (
-                f"its unit is said to be {column.unit}, which makes {_rate(seconds)} and "
-                f"{seconds * column.values.size:.3g} s in all; {_listed(step)}"
-            )
-        elif not column.own_unit:
-            entry["unit"] = column.unit
-    else:
-        likely = [u for u in _UNITS if _usual(step, u)]
-        counts = step == 1.0 and bool((column.values == np.round(column.values)).all())
-        if len(likely) == 1 and not counts:
-            entry["unit"] = likely[0]
-            why.append(f"no unit is said; {likely[0]} makes {_rate(_seconds(step, likely[0]))}")
-            alternatives = tuple(
-                f"{u}: {_rate(_seconds(step, u))}" for u in (*_UNITS, "min") if u != likely[0]
-            )
-        else:
-            asked["unit"] = f"no unit is said; {_listed(step)}" + (
-                "; if it counts samples, rate_Hz in place of source and unit" if counts else ""
-            )
-    entry |= dict.fromkeys(asked, QUESTION)
-    if abs(float(column.values[0])) > 0.5 * abs(step):
+        entry, asked = with_unit(column, TIME)
+        return Proposed(TIME, entry, "open" if asked else "likely", tuple(why), asked)
+    why.append("it increases from row to row" + (", evenly" if is_even(column.values) else ""))
+    entry = {"source": column.source}
+    unit, sentence, others = _unit(column, _rows_per_stroke(columns, column))
+    asked = {"unit": sentence} if unit == QUESTION else {}
+    if unit:
+        entry["unit"] = unit
+    if sentence and not asked:
+        why.append(sentence)
+    if abs(float(column.values[0])) > 0.5 * interval(column):
         entry["offset"] = "first"
         why.append(f"it begins at {column.values[0]:.6g}, which becomes 0")
-    return Proposed(TIME, entry, "open" if asked else sure, tuple(why), asked, alternatives)
+    sure: Sureness = "sure" if named and column.kind == "time" else "likely"
+    return Proposed(TIME, entry, "open" if asked else sure, tuple(why), asked, others)
+
+
+def _unit(column: Column, rows: float) -> tuple[str, str, tuple[str, ...]]:
+    """Return the unit that a map has to say, the reason or the question, and other units.
+
+    Empty where ingest finds it by itself. A unit that is said has to make a rate and strokes (of
+    so many rows) that a rig has; without one, only one unit may do so.
+    """
+    step = interval(column)
+    if column.kind == "time":
+        seconds = _seconds(step, column.unit)
+        if not _odd(seconds, rows):
+            return "" if column.own_unit else column.unit, "", ()
+        said = f"its unit is said to be {column.unit}, which makes {_rate(seconds)} and "
+        said += f"{seconds * column.values.size:.3g} s in all"
+        return QUESTION, f"{said}; {_listed(step)}", ()
+    likely = [unit for unit in _UNITS if _usual(step, unit)]
+    counts = step == 1.0 and bool((column.values == np.round(column.values)).all())
+    if len(likely) != 1 or counts:
+        or_count = "; if it counts samples, rate_Hz in place of source and unit" if counts else ""
+        return QUESTION, f"no unit is said; {_listed(step)}{or_count}", ()
+    (unit,) = likely
+    others = [f"{u}: {_rate(_seconds(step, u))}" for u in (*_UNITS, "min") if u != unit]
+    return unit, f"no unit is said; {unit} makes {_rate(_seconds(step, unit))}", tuple(others)
 
 
 def _odd(interval_s: float, rows: float) -> bool:

@@ -114,9 +114,13 @@ _PLACE: dict[Place, str] = {"in": "the drive", "out": "the load", "motor": "the 
 def columns_of(opened: Opened) -> list[Column]:
     """Return the columns of a file in their order."""
     return [
-        _column(source, opened.names[source], values, opened.table.units.get(source, ""))
+        _column(source, opened.names[source], _finite(values), opened.table.units.get(source, ""))
         for source, values in opened.table.columns.items()
     ]
+
+
+def _finite(values: Floats) -> Floats:
+    return np.where(np.isfinite(values), values, np.nan)
 
 
 def _column(source: Source, name: str, values: Floats, told: str) -> Column:

@@ -48,7 +48,9 @@ def together(a: Floats, b: Floats) -> float:
     a, b = a[there], b[there]
     if a.size < _FEWEST or np.ptp(a) == 0.0 or np.ptp(b) == 0.0:
         return 0.0
-    return float(np.corrcoef(a, b)[0, 1])
+    with np.errstate(over="ignore", invalid="ignore"):  # 1e300 stands for a gap in some files
+        found = float(np.corrcoef(a, b)[0, 1])
+    return found if np.isfinite(found) else 0.0
 
 
 def goes_ahead(a: Floats, b: Floats) -> int:

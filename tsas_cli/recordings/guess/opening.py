@@ -57,6 +57,8 @@ def open_file(path: Path) -> Opened:
     if table is None or not table.columns:
         raise InputError("holds no column of numbers", where=path)
     columns, short = _longest(table)
+    if next(iter(columns.values())).size < 2:
+        raise InputError("holds one row", where=path, expected="at least two samples")
     found = Table(columns, table.units, table.header, table.first_row)
     kept = {source: sources[source] for source in columns}
     return Opened(path, said, found, kept, left_out | short)
