@@ -14,9 +14,11 @@ from scipy.io import savemat
 
 from tests.recordings.guess.rig_files import CHANNELS, in_unit, run, verdicts, write_csv
 from tests.recordings.readers.matlab_files import controldesk, numbers, save_73, struct
+from tsas_cli.commands.common import show
 from tsas_cli.errors import InputError
 from tsas_cli.recordings.dataset import write_parquet
 from tsas_cli.recordings.guess.proposal import propose
+from tsas_cli.recordings.guess.summary import tables
 from tsas_cli.recordings.guess.text import map_text
 from tsas_cli.recordings.ingest_map import read_map
 
@@ -297,6 +299,19 @@ def test_the_map_is_whole_or_says_what_it_asks(tmp_path, tsas):
     (tmp_path / "m.toml").write_text(text.replace('"?"\n', "27.1\n"))
     done = tsas("ingest", "a.csv", "--map", "m.toml", "--out", "d", cwd=tmp_path)
     assert (done.returncode, done.stderr) == (0, "")
+
+
+@pytest.mark.parametrize("page", ["docs/ingest.md", "README.md"])
+def test_the_pages_show_what_is_printed(tmp_path, capsys, page):
+    path = write_csv(tmp_path / "bend180.csv", columns_of("readme"))
+    proposal = propose([path])
+    show({}, tables(proposal, "bench.toml"), quiet=False, as_json=False)
+    shown = (REPOSITORY / page).read_text(encoding="utf-8")
+    assert capsys.readouterr().out.strip() in shown
+    if page == "docs/ingest.md":
+        text = map_text(proposal)
+        begin, end = text.index("[columns.x_in_mm]"), text.index('pulley_radius_mm = "?"')
+        assert text[begin:end] in shown
 
 
 def test_every_key_of_a_map_has_a_comment_above_or_beside_it(tmp_path):
