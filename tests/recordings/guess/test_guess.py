@@ -232,6 +232,16 @@ def test_signs_that_are_turned_are_turned_back(tmp_path):
     assert set(verdicts(path, {n: n for n in CHANNELS}).values()) == {"right"}
 
 
+def test_a_third_displacement_does_not_unsettle_the_two_that_are_named(tmp_path):
+    columns = [(n, run()[n]) for n in CHANNELS]
+    columns.insert(1, ("Crosshead [mm]", run()["x_in_mm"] + 3.0))
+    path = write_csv(tmp_path / "a.csv", columns)
+    assert set(verdicts(path, {n: n for n in CHANNELS}).values()) == {"right"}
+    columns = [(n if n != "x_out_mm" else "LVDT [mm]", v) for n, v in columns]
+    judged = verdicts(write_csv(path, columns), {n: n for n in CHANNELS if n != "x_out_mm"})
+    assert (judged["x_in_mm"], judged["x_out_mm"]) == ("right", "open")
+
+
 def test_half_a_loop_tells_no_ends(tmp_path):
     names = ["1 [s]", "2 [mm]", "3 [mm]", "4 [N]", "5 [N]"]
     columns = [(n, v[:300]) for n, v in zip(names, run().values(), strict=True)]

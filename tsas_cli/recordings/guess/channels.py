@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from tsas_cli.recordings.columns import NAMES, has_input_and_output
 from tsas_cli.recordings.guess.columns import Column
-from tsas_cli.recordings.guess.ends import Ends, settle
+from tsas_cli.recordings.guess.ends import FORCES, LENGTHS, Ends, settle
 from tsas_cli.recordings.guess.proposed import Proposed, Sureness, with_unit
 from tsas_cli.recordings.guess.signs import Sign, signs
 from tsas_cli.recordings.ingest_map import QUESTION
@@ -21,8 +21,8 @@ def channels(columns: Sequence[Column]) -> list[Proposed]:
     others = _others(columns)
     taken = {id(c) for found in others.values() for c in found}
     free = [c for c in moving if id(c) not in taken and not c.words.wish]
-    displacements = [c for c in free if c.quantity in ("displacement", "angle")]
-    tensions = [c for c in free if c.quantity in ("force", "torque") and not _of_motor(c)]
+    displacements = [c for c in free if c.quantity in LENGTHS]
+    tensions = [c for c in free if c.quantity in FORCES and not _of_motor(c)]
     ends = settle(displacements, tensions)
     found = _settled(ends) | _asked(ends) | {n: _one(n, c) for n, c in others.items()}
     if not has_input_and_output(frozenset(n for n, p in found.items() if p.sure != "open")):

@@ -20,6 +20,7 @@ _ORDER = (
     ("f_in_N", "f_out_N"),
     ("x_in_mm", "x_out_mm"),
 )
+LENGTHS, FORCES = ("displacement", "angle"), ("force", "torque")
 _MOST = 5  # columns of one kind whose motion is compared
 Way = Mapping[str, Column | None]
 
@@ -46,7 +47,7 @@ def settle(displacements: Sequence[Column], tensions: Sequence[Column]) -> Ends:
         return Ends({}, _every(displacements, tensions), reason, ())
     motion = _Motion()
     ways = list(_ways(displacements, tensions))
-    by_name = [way for way in ways if _as_named(way)]
+    by_name = [way for way in ways if _as_named(way, (*displacements, *tensions))]
     left = [way for way in by_name if _as_moved(way, motion)]
     ahead = motion.told((*displacements, *tensions))
     if not by_name:
@@ -126,14 +127,19 @@ def _pairs(columns: Sequence[Column]) -> list[tuple[Column | None, Column | None
     return list(permutations(columns, 2))
 
 
-def _as_named(way: Way) -> bool:
-    ends = {"x_in_mm": "out", "f_in_N": "out", "x_out_mm": "in", "f_out_N": "in"}
-    return not any(
-        column is not None
-        and (column.place == wrong or (column.place == "motor" and wrong == "in"))
-        for (name, wrong) in ends.items()
-        for column in [way[name]]
-    )
+def _as_named(way: Way, columns: Sequence[Column]) -> bool:
+    """Say whether each column is where it is named for, and none where another is named for."""
+    for name, column in way.items():
+        end = "in" if name.endswith(("in_mm", "in_N")) else "out"
+        if column is None:
+            continue
+        if column.place is None:
+            kind = LENGTHS if name in _X else FORCES
+            if any(c.place == end and c.quantity in kind for c in columns):
+                return False
+        elif column.place != end and (column.place, end) != ("motor", "in"):
+            return False
+    return True
 
 
 def _as_moved(way: Way, motion: _Motion) -> bool:
