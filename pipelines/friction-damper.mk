@@ -14,7 +14,7 @@ friction-damper: $(DAMPER)/report.html $(DAMPER)/nominal/simulation.json $(DAMPE
 
 friction-damper-dataset: $(PROGRAM)
 	+@test -d '$(TSAS_DATA)/friction-damper' || { echo 'no recordings in $(TSAS_DATA)/friction-damper: set TSAS_DATA to the folder that holds friction-damper/ (docs/ingest.md says where to get it)' >&2; exit 2; }
-	+@$(INGESTED) RAW='$(TSAS_DATA)/friction-damper' MAP=datasets/maps/friction-damper.toml DATASET='$(DAMPER)/dataset' '$(DAMPER)/dataset/dataset.toml'
+	+@$(INGESTED) RAW='$(TSAS_DATA)/friction-damper' MAP=datasets/maps/friction-damper.toml DATASET='$(DAMPER)/dataset' OUT='$(DAMPER)' '$(DAMPER)/dataset/dataset.toml'
 
 $(DAMPER)/dataset/dataset.toml: friction-damper-dataset ;
 

@@ -6,7 +6,7 @@
 STEPS := tsas_cli/project/make
 SETTINGS = --no-print-directory --eval '$(PROGRAM):' PROGRAM='$(PROGRAM)' TSAS='$(TSAS)' STAGE='$(STAGE)'
 DIAGNOSED = $(MAKE) -f $(STEPS)/chain.mk $(SETTINGS)
-INGESTED = $(MAKE) -f $(STEPS)/ingest.mk -f $(STEPS)/chain.mk $(SETTINGS)
+INGESTED = $(MAKE) -f $(STEPS)/chain.mk -f $(STEPS)/ingest.mk $(SETTINGS)
 
 .PHONY: run pipeline
 run: $(PROGRAM)  ## check, calibrate, simulate, diagnose and report on the shipped recordings

@@ -118,6 +118,17 @@ def test_a_stage_that_fails_is_not_taken_for_done(chain, bench):
     assert chain() == []
 
 
+def test_another_dataset_or_option_is_seen(chain, bench):
+    (bench.folder / "other").mkdir()
+    (bench.folder / "other" / "dataset.toml").touch()
+    bench.age("my data", "my result", "other")
+    assert chain("DIAGNOSE=--runs a") == ["diagnose", "report"]
+    assert chain("DIAGNOSE=--runs a") == []
+    assert chain("DATASET=other") == CHAIN
+    assert chain("DATASET=other") == []
+    assert chain() == CHAIN
+
+
 def test_a_folder_that_is_gone_is_made_again(chain, bench):
     shutil.rmtree(bench.folder / "my result" / "simulate")
     assert chain() == ["simulate", "report"]
@@ -143,6 +154,10 @@ def test_a_project_looks_at_every_raw_file_and_at_those_that_go(bench, name):
     bench.touch(raw / name)
     assert made() == ["ingest", *CHAIN]
     bench.touch("project/bench.toml")
+    assert made() == ["ingest", *CHAIN]
+    (project / "other.toml").touch()
+    bench.age("project")
+    assert bench.make("MAP=other.toml", cwd=project) == ["ingest", *CHAIN]
     assert made() == ["ingest", *CHAIN]
     (raw / "README.md").touch()
     bench.age("project")

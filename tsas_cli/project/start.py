@@ -11,7 +11,7 @@ from tsas_cli.recordings.guess.text import map_text
 from tsas_cli.recordings.ingest import find_files
 
 HERE = Path(__file__).parent
-MAKE = ("settings.mk", "ingest.mk", "chain.mk")
+MAKE = ("settings.mk", "chain.mk", "ingest.mk")
 MAP, RAW = "bench.toml", "raw"
 
 

@@ -2,5 +2,5 @@
 # comes or goes.
 raw := $(shell find '$(RAW)' ! -name '.*' ! -name 'README*' | sed 's/[] :*?[]/\\&/g')
 
-$(subst $() ,\ ,$(DATASET))/dataset.toml: $(subst $() ,\ ,$(MAP)) $(raw) $(PROGRAM)
+$(data)/dataset.toml: $(subst $() ,\ ,$(MAP)) $(raw) $(call told,ingest,$(RAW) $(MAP) $(DATASET)) $(PROGRAM)
 	$(TSAS) ingest '$(RAW)' --map '$(MAP)' --out '$(DATASET)' --force

@@ -1,5 +1,5 @@
-# From the files in raw/ to a page: `make`. A step runs again when what it reads has changed, and
-# `make -n` shows which ones would. A step that fails leaves what it made before as it was.
+# From the files in raw/ to a page: `make`. A step runs again when what it reads, or what it is told
+# here, has changed; `make -n` shows which ones would. A step that fails leaves what it made before.
 
 # Your files, and the map that says what they hold.
 RAW = raw
@@ -14,7 +14,7 @@ TSAS = tsas
 PROGRAM =
 
 # What steps are told besides: DIAGNOSE = --runs bend90,bend180 leaves the other runs out; CALIBRATE
-# and SIMULATE take --dynamics lugre. `make -B` makes everything again with them.
+# and SIMULATE take --dynamics lugre.
 STAGE = --force
 CALIBRATE =
 SIMULATE =
