@@ -1,6 +1,6 @@
 import os
 import tomllib
-from itertools import combinations
+from itertools import permutations
 from pathlib import Path
 
 import numpy as np
@@ -192,20 +192,32 @@ def test_every_format_is_opened(tmp_path, suffix, save, source, open_):
     assert len(proposal.questions) == open_
 
 
-@pytest.mark.parametrize("pair", list(combinations(range(5), 2)))
-@pytest.mark.parametrize("units", [["[s]", "[mm]", "[mm]", "[N]", "[N]"], [""] * 5])
-def test_names_that_are_exchanged_are_not_believed(tmp_path, pair, units):
-    if pair == (2, 4) and not any(units):
-        pytest.skip("displacement and tension of a spring look alike: without units names decide")
-    stems = ["time", "x_in", "x_out", "f_in", "f_out"]
-    i, j = pair
-    stems[i], stems[j] = stems[j], stems[i]
-    names = [f"{stem} {unit}".strip() for stem, unit in zip(stems, units, strict=True)]
-    columns = list(zip(names, run().values(), strict=True))
-    path = write_csv(tmp_path / "a.csv", columns)
+@pytest.mark.parametrize("other", [1, 2, 3, 4])
+def test_a_time_that_is_none_is_not_believed(tmp_path, other):
+    names = ["time", "x_in", "x_out", "f_in", "f_out"]
+    names[0], names[other] = names[other], names[0]
+    path = write_csv(tmp_path / "a.csv", list(zip(names, run().values(), strict=True)))
     judged = verdicts(path, dict(zip(CHANNELS, names, strict=True)))
     assert "wrong" not in judged.values()
-    assert judged[CHANNELS[i]] != "right" or judged[CHANNELS[j]] != "right"
+    assert judged["time_s"] == "open"
+
+
+def test_exchanged_load_cells_leave_the_displacements_as_they_are(tmp_path):
+    names = ["time [s]", "x_in [mm]", "x_out [mm]", "f_out [N]", "f_in [N]"]
+    path = write_csv(tmp_path / "a.csv", list(zip(names, run().values(), strict=True)))
+    judged = verdicts(path, dict(zip(CHANNELS, names, strict=True)))
+    assert judged == dict.fromkeys(CHANNELS, "right") | {"f_in_N": "open", "f_out_N": "open"}
+
+
+@pytest.mark.parametrize("order", list(permutations(range(4)))[1:])
+@pytest.mark.parametrize("units", [["[mm]", "[mm]", "[N]", "[N]"], [""] * 4])
+def test_no_exchange_of_names_is_believed(tmp_path, order, units):
+    if order == (0, 3, 2, 1) and not any(units):
+        pytest.skip("displacement and tension of a spring look alike: without units names decide")
+    stems = [("x_in", "x_out", "f_in", "f_out")[i] for i in order]
+    names = ["time [s]", *(f"{s} {u}".strip() for s, u in zip(stems, units, strict=True))]
+    path = write_csv(tmp_path / "a.csv", list(zip(names, run().values(), strict=True)))
+    assert "wrong" not in verdicts(path, dict(zip(CHANNELS, names, strict=True))).values()
 
 
 @pytest.mark.parametrize("names", [["A", "B", "C", "D", "E"], [""] * 5])

@@ -118,9 +118,7 @@ def _asked(ends: Ends) -> dict[str, Proposed]:
         if len(candidates) == 1:
             asked = {"source": f"is {shown} this? If it is at the load, rename the table."}
         why = (ends.reason, *_orders(candidates, ends))
-        found[name] = Proposed(
-            name, {"source": QUESTION}, "open", why, asked, tuple(_told(c) for c in candidates)
-        )
+        found[name] = _open(name, candidates, why, asked)
     return found
 
 
@@ -133,8 +131,15 @@ def _unknown(columns: Sequence[Column], names: Sequence[str], ends: Ends) -> dic
         *_orders(columns, free),
     )
     asked = {"source": f"which column is this, if any: {shown}?"}
+    return {name: _open(name, columns, why, asked) for name in names}
+
+
+def _open(
+    name: str, columns: Sequence[Column], why: tuple[str, ...], asked: dict[str, str]
+) -> Proposed:
     told = tuple(_told(c) for c in columns)
-    return {name: Proposed(name, {"source": QUESTION}, "open", why, asked, told) for name in names}
+    sources = tuple(c.source for c in columns)
+    return Proposed(name, {"source": QUESTION}, "open", why, asked, told, sources)
 
 
 def _orders(columns: Sequence[Column], ends: Ends) -> list[str]:

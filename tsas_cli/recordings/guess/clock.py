@@ -56,7 +56,9 @@ def like_a_clock(column: Column) -> bool:
 
 def _which(found: Sequence[Column], why: str) -> Proposed:
     asked = {"source": f"which one is the clock: {', '.join(c.shown for c in found)}?"}
-    return Proposed(TIME, {"source": QUESTION}, "open", (why,), asked)
+    return Proposed(
+        TIME, {"source": QUESTION}, "open", (why,), asked, (), tuple(c.source for c in found)
+    )
 
 
 def _with_unit(column: Column, columns: Sequence[Column], *, named: bool) -> Proposed:

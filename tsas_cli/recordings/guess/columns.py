@@ -1,7 +1,7 @@
 """One column of a file with what its name and its unit say of it."""
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -117,6 +117,19 @@ def columns_of(opened: Opened) -> list[Column]:
         _column(source, opened.names[source], _finite(values), opened.table.units.get(source, ""))
         for source, values in opened.table.columns.items()
     ]
+
+
+def believed(columns: list[Column]) -> tuple[list[Column], str]:
+    """Return the columns, without what their names say where one name and its unit disagree.
+
+    Then names may stand over the wrong columns: units and motion alone are believed, and the
+    sentence says so.
+    """
+    odd = [c.shown for c in columns if c.disagrees]
+    if not odd:
+        return columns, ""
+    sentence = f"Name and unit of {', '.join(odd)} do not go together, so that no name is believed."
+    return [replace(c, words=Words(None, None, wish=False)) for c in columns], sentence
 
 
 def _finite(values: Floats) -> Floats:

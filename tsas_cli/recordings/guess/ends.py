@@ -53,8 +53,7 @@ def settle(displacements: Sequence[Column], tensions: Sequence[Column]) -> Ends:
     if not by_name:
         return _apart(displacements, tensions, ahead)
     if not left:
-        reason = "the names give the ends one way, the motion another"
-        return Ends({}, _every(displacements, tensions), reason, ahead)
+        return _against(displacements, tensions, ahead)
     settled: dict[str, Column] = {}
     asked = {}
     for name in (*_X, *_F):
@@ -87,6 +86,25 @@ def _apart(
             good, bad = (x, f) if x.settled else (f, x)
             return Ends(good.settled, {**good.asked, **bad.asked}, reason, ahead)
     return Ends({}, asked, reason, ahead)
+
+
+def _against(
+    displacements: Sequence[Column],
+    tensions: Sequence[Column],
+    ahead: tuple[tuple[Column, Column], ...],
+) -> Ends:
+    """Return what is asked where names and motion disagree.
+
+    One kind, where units tell the kinds apart and both agree on the other; else everything.
+    """
+    reason = "the names give the ends one way, the motion another"
+    told = all(c.kind not in (None, "label") for c in (*displacements, *tensions))
+    if displacements and tensions and told:
+        x, f = settle(displacements, ()), settle((), tensions)
+        for good, bad in ((x, f), (f, x)):
+            if not bad.settled and good.ahead and not good.asked:
+                return Ends(good.settled, bad.asked, reason, ahead)
+    return Ends({}, _every(displacements, tensions), reason, ahead)
 
 
 def _every(

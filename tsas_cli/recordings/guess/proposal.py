@@ -10,7 +10,7 @@ from typing import Any
 from tsas_cli.errors import InputError
 from tsas_cli.recordings.guess.channels import channels
 from tsas_cli.recordings.guess.clock import clock, like_a_clock
-from tsas_cli.recordings.guess.columns import Column, columns_of
+from tsas_cli.recordings.guess.columns import Column, believed, columns_of
 from tsas_cli.recordings.guess.looks import together
 from tsas_cli.recordings.guess.opening import Opened, open_file
 from tsas_cli.recordings.guess.proposed import Proposed
@@ -40,6 +40,8 @@ class Proposal:
         The columns that no channel takes, and what is known of them.
     run
         The keys of `[run]` that are not as usual, with values and reasons.
+    doubt
+        Why no name is believed, empty where names are.
     """
 
     name: str
@@ -50,6 +52,7 @@ class Proposal:
     channels: tuple[Proposed, ...]
     not_taken: dict[Source, str]
     run: dict[str, tuple[Any, str]]
+    doubt: str
 
     @property
     def questions(self) -> dict[str, str]:
@@ -79,7 +82,7 @@ def propose(files: Sequence[Path]) -> Proposal:
             reason = _unlike(path, opened)
             unlike |= {path: reason} if reason else {}
             alike += [] if reason else [path]
-    columns = columns_of(opened)
+    columns, doubt = believed(columns_of(opened))
     time = clock(columns)
     rest = [c for c in columns if c.source != time.entry.get("source")]
     if time.entry.get("source") == QUESTION:
@@ -94,6 +97,7 @@ def propose(files: Sequence[Path]) -> Proposal:
         found,
         _not_taken(columns, found),
         _load(columns, found) | _id([opened.path, *alike]),
+        doubt,
     )
 
 
@@ -156,14 +160,13 @@ def _load(columns: Sequence[Column], found: Sequence[Proposed]) -> dict[str, tup
 
 def _not_taken(columns: Sequence[Column], found: Sequence[Proposed]) -> dict[Source, str]:
     taken = {channel.entry.get("source") for channel in found}
+    taken |= {source for channel in found for source in channel.candidates}
     return {c.source: _why_not(c) for c in columns if c.source not in taken}
 
 
 def _why_not(column: Column) -> str:
     if not column.moves:
         return "it does not change"
-    if column.disagrees:
-        return f"its name and its unit do not go together: {'; '.join(column.reasons)}"
     if column.words.wish:
         return f'"{column.words.told["wish"]}" in its name: it was wanted, not measured'
     return "; ".join(column.reasons) or "nothing says what it is"

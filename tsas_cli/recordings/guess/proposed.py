@@ -6,6 +6,7 @@ from typing import Any, Literal
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.guess.columns import Column
 from tsas_cli.recordings.ingest_map import QUESTION
+from tsas_cli.recordings.readers.table import Source
 
 Sureness = Literal["sure", "likely", "open"]
 
@@ -29,6 +30,8 @@ class Proposed:
         What to answer, by key of the entry.
     alternatives
         What else it could be.
+    candidates
+        The columns that it may be, where that is the question.
     """
 
     name: str
@@ -37,6 +40,7 @@ class Proposed:
     why: tuple[str, ...] = ()
     questions: dict[str, str] = field(default_factory=dict)
     alternatives: tuple[str, ...] = ()
+    candidates: tuple[Source, ...] = ()
 
 
 def with_unit(column: Column, name: str) -> tuple[dict[str, Any], dict[str, str]]:

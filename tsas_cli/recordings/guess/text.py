@@ -51,6 +51,8 @@ def _head(proposal: Proposal) -> Iterable[str]:
     )
     if proposal.alike:
         yield from _wrapped(f"{len(proposal.alike)} more files have the same columns.")
+    if proposal.doubt:
+        yield from _wrapped(proposal.doubt)
     for path, reason in proposal.unlike.items():
         yield from _wrapped(f"{path.name} does not go with it: {reason}.")
     asked = len(proposal.questions)
@@ -101,8 +103,8 @@ def _channel(channel: Proposed) -> Table:
     _say(table, f"{meaning[0].upper()}{meaning[1:]}: {_SURE[channel.sure]}.")
     for sentence in channel.why:
         _say(table, f"- {sentence}", indent="  ")
-    if channel.alternatives:
-        _say(table, f"It could be: {'; '.join(channel.alternatives)}.")
+    for other in channel.alternatives:
+        _say(table, f"- it could be {other}", indent="  ")
     for key, value in channel.entry.items():
         _add(table, key, value, _asked(channel.questions.get(key, "")))
     return table
