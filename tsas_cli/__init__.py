@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from tsas_cli.api.close_loop import close_loop
     from tsas_cli.api.compare import compare
     from tsas_cli.api.diagnose import diagnose
+    from tsas_cli.api.guess import guess
     from tsas_cli.api.identify_harmonic_drive import identify_harmonic_drive
     from tsas_cli.api.ingest import ingest
     from tsas_cli.api.plan import plan
@@ -38,6 +39,7 @@ __all__ = [
     "compare",
     "diagnose",
     "explain",
+    "guess",
     "identify_harmonic_drive",
     "ingest",
     "plan",

@@ -6,21 +6,45 @@ from typing import Annotated
 import typer
 
 import tsas_cli as tsas
-from tsas_cli.commands.common import Force, Json, OutFolder, Quiet, present
+from tsas_cli.commands.common import Force, Json, Quiet, present
 from tsas_cli.commands.progress import progress
+from tsas_cli.errors import InputError
+from tsas_cli.result import Result
 
 
 def ingest(
     sources: Annotated[
         list[Path], typer.Argument(metavar="SOURCE", help="Files, or folders to search.")
     ],
-    map_path: Annotated[Path, typer.Option("--map", metavar="MAP.toml", help="What they hold.")],
-    out: OutFolder,
+    map_path: Annotated[
+        Path | None, typer.Option("--map", metavar="MAP.toml", help="What they hold.")
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", metavar="DIR", help="The folder to write; with --guess, the map."),
+    ] = None,
+    guess: Annotated[
+        bool, typer.Option("--guess", help="Propose a map, on standard output or into --out.")
+    ] = False,
     force: Force = False,
     quiet: Quiet = False,
     as_json: Json = False,
 ) -> None:
-    """Turn files of a rig into a dataset, as a map says (docs/ingest.md shows one)."""
-    with progress("ingest", quiet=quiet) as step:
-        result = tsas.ingest(sources, map=map_path, out=out, force=force, step=step)
+    """Turn files of a rig into a dataset, as a map says; or propose the map (docs/ingest.md)."""
+    result: Result
+    if guess:
+        if map_path is not None:
+            raise InputError(
+                "--guess proposes a map, --map takes one", remedy="leave one of them out"
+            )
+        result = tsas.guess(sources, out=out, force=force)
+    elif map_path is None or out is None:
+        raise InputError(
+            f"--{'out' if map_path else 'map'} is missing",
+            expected="--map MAP.toml --out DATASET",
+            remedy=f"`tsas ingest {sources[0]} --guess --out MAP.toml` proposes a map",
+        )
+    else:
+        with progress("ingest", quiet=quiet) as step:
+            result = tsas.ingest(sources, map=map_path, out=out, force=force, step=step)
     present(result, quiet=quiet, as_json=as_json)

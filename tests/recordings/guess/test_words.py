@@ -1,0 +1,70 @@
+import pytest
+
+from tsas_cli.recordings.guess.kinds import kind_of, unit_behind
+from tsas_cli.recordings.guess.words import words_of
+
+
+@pytest.mark.parametrize(
+    ("name", "quantity", "place", "wish"),
+    [
+        ("Fin", "force", "in", False),
+        ("T_out", "force", "out", False),
+        ("t", "time", None, False),
+        ("xOut", "displacement", "out", False),
+        ("LoadCellDistal", "force", "out", False),
+        ("Load cell 2", "force", None, False),
+        ("Eingangskraft", "force", "in", False),
+        ("Déplacement sortie", "displacement", "out", False),
+        ("输入力", "force", "in", False),
+        ("Back-end CUI Encoder", "displacement", "in", False),
+        ("End effector position", "displacement", "out", False),
+        ("Motor speed", "speed", "motor", False),
+        ("Motor current", "other", "motor", False),
+        ("Force setpoint", "force", None, True),
+        ("f_out_ref", "force", "out", True),
+        ("Extension", "displacement", None, False),  # no tension
+        ("Distance", None, None, False),  # not distal
+        ("Force in and out", "force", None, False),
+        ("A", None, None, False),
+    ],
+)
+def test_words_say_quantity_end_and_wish(name, quantity, place, wish):
+    words = words_of(name)
+    assert (words.quantity, words.place, words.wish) == (quantity, place, wish)
+
+
+@pytest.mark.parametrize(
+    ("name", "stem", "unit"),
+    [
+        ("time_ms", "time", "ms"),
+        ("Force N", "Force", "N"),
+        ("x_in_mm", "x_in", "mm"),
+        ("time_s", "time", "s"),
+        ("F_s", "F_s", ""),  # a slave, no second
+        ("x_in", "x_in", ""),  # an end, no inch
+        ("x_m", "x_m", ""),
+        ("force_mm", "force_mm", ""),  # no unit of a force
+        ("A", "A", ""),
+    ],
+)
+def test_a_unit_behind_a_name_has_to_fit_it(name, stem, unit):
+    assert unit_behind(name) == (stem, unit)
+
+
+@pytest.mark.parametrize(
+    ("unit", "kind"),
+    [
+        ("ms", "time"),
+        ("in", "length"),
+        ("kgf", "force"),
+        ("Grad", "angle"),
+        ("N-m", "torque"),
+        ("U/min", "rotation"),
+        ("°C", "temperature"),
+        ("counts", "label"),
+        ("mm/s", "other"),
+        ("raw", None),
+    ],
+)
+def test_what_a_unit_is_of(unit, kind):
+    assert kind_of(unit) == kind
