@@ -11,18 +11,18 @@ from markupsafe import Markup
 
 from tsas_cli.errors import printable
 from tsas_cli.reporting.colours import STAND_IN, themed
-from tsas_cli.reporting.content import Picture
+from tsas_cli.reporting.content import Picture, anchor
 
-WIDTH_IN = 5.0  # a phone shows this at about its own size, so that the text stays readable
+WIDTH_IN = 4.6  # a phone shows this at about its own size, so that the text stays readable
 _STYLE: dict[Any, Any] = {
     "svg.fonttype": "none",
     "svg.hashsalt": "tsas",
     "text.parse_math": False,
-    "font.size": 9.5,
-    "axes.labelsize": 9.5,
-    "xtick.labelsize": 9.0,
-    "ytick.labelsize": 9.0,
-    "legend.fontsize": 9.0,
+    "font.size": 10.0,
+    "axes.labelsize": 10.0,
+    "xtick.labelsize": 9.5,
+    "ytick.labelsize": 9.5,
+    "legend.fontsize": 9.5,
     "legend.frameon": False,
     "axes.spines.top": False,
     "axes.spines.right": False,
@@ -57,7 +57,7 @@ def picture(
     draw
         Draws on the `matplotlib.figure.Figure` that it is given, with colours of `STAND_IN`.
     key
-        A word of its own for each picture of the page, for the names inside the SVG.
+        Words of its own for each picture of the page, for the names inside the SVG.
     alt
         What the plot shows, for a reader who does not see it.
     caption
@@ -75,7 +75,15 @@ def picture(
         draw(figure)
         stream = io.StringIO()
         figure.savefig(stream, format="svg", metadata=_NOTHING)
-    return Picture(svg=_inline(stream.getvalue(), key=key, alt=alt), caption=caption)
+    svg = _inline(_visible(stream.getvalue()), key=anchor(key), alt=alt)
+    return Picture(svg=svg, caption=caption)
+
+
+def _visible(svg: str) -> str:
+    """Make control characters in names from files visible, some of which XML cannot hold."""
+    if svg.replace("\n", "").isprintable():
+        return svg
+    return "\n".join(map(printable, svg.split("\n")))
 
 
 def _inline(text: str, *, key: str, alt: str) -> Markup:
@@ -95,7 +103,7 @@ def _inline(text: str, *, key: str, alt: str) -> Markup:
         element.tail = None
     for name in ("width", "height", "version"):
         root.attrib.pop(name, None)
-    root.attrib.update({"role": "img", "aria-label": printable(alt)})
+    root.attrib.update({"role": "img", "aria-label": printable(alt.replace("`", ""))})
     return Markup(themed(ET.tostring(root, encoding="unicode")))  # noqa: S704
 
 
