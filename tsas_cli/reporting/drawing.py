@@ -42,6 +42,7 @@ _STYLE: dict[Any, Any] = {
     "ytick.labelcolor": STAND_IN["ink"],
     "lines.linewidth": 1.3,
 }
+_LONGEST, _LONGEST_UPRIGHT, _LONGEST_TICK = 48, 44, 22  # letters
 _NOTHING = {"Creator": None, "Date": None, "Format": None, "Type": None}
 _SVG = "{http://www.w3.org/2000/svg}"
 _LINK = "{http://www.w3.org/1999/xlink}href"
@@ -73,10 +74,39 @@ def picture(
         warnings.filterwarnings("ignore", message="Glyph .* missing from", category=UserWarning)
         figure = Figure(figsize=(WIDTH_IN, height_in), layout="constrained")
         draw(figure)
+        _shorten(figure)
         stream = io.StringIO()
         figure.savefig(stream, format="svg", metadata=_NOTHING)
     svg = _inline(_visible(stream.getvalue()), key=anchor(key), alt=alt)
     return Picture(svg=svg, caption=caption)
+
+
+def shortened(text: str, most: int) -> str:
+    """Return a text with its middle left out where it has more letters.
+
+    Examples
+    --------
+    >>> shortened("a-long-name-of-a-run", 11)
+    'a-lon…a-run'
+    """
+    half = most // 2
+    return text if len(text) <= most else f"{text[:half]}…{text[len(text) - (most - half - 1) :]}"
+
+
+def _shorten(figure: Any) -> None:
+    """Keep long names from files from leaving no room for the plot."""
+    from matplotlib.text import Text
+
+    for text in figure.findobj(Text):
+        text.set_text("\n".join(shortened(one, _LONGEST) for one in text.get_text().split("\n")))
+    for axes in figure.axes:
+        axes.set_ylabel(shortened(axes.get_ylabel(), _LONGEST_UPRIGHT))
+        for axis in (axes.xaxis, axes.yaxis):
+            names = [label.get_text() for label in axis.get_ticklabels()]
+            if any(len(name) > _LONGEST_TICK for name in names):
+                axis.set_ticks(
+                    axis.get_ticklocs(), [shortened(name, _LONGEST_TICK) for name in names]
+                )
 
 
 def _visible(svg: str) -> str:
