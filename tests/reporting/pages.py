@@ -39,7 +39,7 @@ def pipeline(root: Path, ids=("a", "b"), **more) -> list[Path]:
 
 
 def _pipeline(root: Path) -> str:
-    return page(read_inputs(pipeline(root)))
+    return page(read_inputs(pipeline(root, samples=1000)))
 
 
 def _diagnosis(root: Path) -> str:
