@@ -100,7 +100,8 @@ def _shorten(figure: Any) -> None:
     for text in figure.findobj(Text):
         text.set_text("\n".join(shortened(one, _LONGEST) for one in text.get_text().split("\n")))
     for axes in figure.axes:
-        axes.set_ylabel(shortened(axes.get_ylabel(), _LONGEST_UPRIGHT))
+        upright = axes.yaxis.label
+        upright.set_text(shortened(upright.get_text(), _LONGEST_UPRIGHT))
         for axis in (axes.xaxis, axes.yaxis):
             names = [label.get_text() for label in axis.get_ticklabels()]
             if any(len(name) > _LONGEST_TICK for name in names):
