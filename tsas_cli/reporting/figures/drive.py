@@ -43,6 +43,8 @@ def draw_bode(
     if band_Hz is not None:
         for axes in rows:
             axes.axvspan(*band_Hz, color=STAND_IN["line"], alpha=0.5, linewidth=0.0, zorder=0)
+            for edge in band_Hz:
+                axes.axvline(edge, color=STAND_IN["muted"], linewidth=0.5, zorder=0)
     rows[0].set_xlim(at[0], at[-1])
     # The page's text is no mathematics: powers of ten are written out.
     rows[0].yaxis.set_major_formatter(_power)
