@@ -24,8 +24,9 @@ def report(
     """Write one self-contained HTML page: diagnosis, recordings, model, simulation and residual.
 
     Each DIR is a dataset or what `tsas check`, `calibrate`, `simulate` or `diagnose` wrote. What
-    `tsas track`, `close-loop` or `identify-harmonic-drive` wrote makes a page of its own. With
-    `--pdf` report.html is printed to report.pdf beside it.
+    `tsas track`, `close-loop` or `identify-harmonic-drive` wrote makes a page of its own.
+
+    With `--pdf` report.html is printed to report.pdf beside it.
     """
     from tsas_cli.files import new_file
     from tsas_cli.reporting.inputs import read_inputs
