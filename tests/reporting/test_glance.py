@@ -57,6 +57,13 @@ def test_two_causes_are_one_sentence_and_each_has_its_gain(dataset, tmp_path):
     assert facts(it)["taken away by mine"] == ("", "7.25 %", "")
 
 
+def test_what_is_unknown_beside_a_cause_is_not_kept_back(dataset, tmp_path):
+    named = [{"effect": "backlash", "title": "Backlash", "parameters": {}}]
+    it = of(make_diagnosis(dataset, tmp_path / "d", "unexplained", named=named))
+    assert it.kind == "Cause found, and something unknown beside it"
+    assert it.verdict == "Backlash"
+
+
 def test_a_rival_stands_in_the_verdict(dataset, tmp_path):
     it = of(make_diagnosis(dataset, tmp_path / "d", "ambiguous"))
     assert it.kind == "Cause found, but these recordings leave open which"

@@ -20,6 +20,7 @@ _KINDS = {
     "unexplained": "Something unknown is missing",
     "undecided": "Cannot tell",
 }
+_BESIDE = "Cause found, and something unknown beside it"
 _NO_CAUSE = {
     "sufficient": "The nominal model explains these recordings",
     "unexplained": "No known effect explains what the model misses",
@@ -50,7 +51,8 @@ def _of_diagnosis(diagnosis: Diagnosis | DriveDiagnosis) -> Glance:
     shown = tuple(fact for fact in facts if ABSENT not in fact.value)
     if named:
         numbers += ", before → after"
-    return Glance(_KINDS[diagnosis.verdict], verdict, numbers if shown else "", shown)
+    kind = _BESIDE if named and diagnosis.verdict == "unexplained" else _KINDS[diagnosis.verdict]
+    return Glance(kind, verdict, numbers if shown else "", shown)
 
 
 def _causes(named: Sequence[Cause]) -> str:
