@@ -135,3 +135,46 @@ def test_a_truncated_stage_file_is_refused(folder, run):
 
 def test_report_is_registered_once():
     assert [c.name for c in app.registered_commands].count("report") == 1
+
+
+@pytest.fixture
+def printer(monkeypatch):
+    """Print without a browser."""
+    from tsas_cli.reporting import pdf
+
+    monkeypatch.setattr(pdf, "browser", lambda: "chromium")
+    monkeypatch.setattr(
+        pdf, "print_page", lambda html, path: path.write_bytes(b"%PDF" + html[:9].encode())
+    )
+
+
+def test_the_pdf_stands_beside_the_page(folder, run, printer):
+    code, out, _ = run("report", folder / "check", "--out", folder / "r.html", "--pdf", "--json")
+    assert code == 0
+    assert json.loads(out)["pdf"] == str(folder / "r.pdf")
+    assert (folder / "r.pdf").read_bytes() == b"%PDF<!DOCTYPE"
+    assert (folder / "r.html").is_file()
+    code, out, _ = run("report", folder / "check", "--out", folder / "t.html", "--pdf")
+    assert "t.pdf, 0.00 MB" in out
+
+
+def test_an_existing_pdf_stays_without_force_and_no_page_is_written(folder, run, printer):
+    (folder / "r.pdf").write_text("mine")
+    words = ["report", folder / "check", "--out", folder / "r.html", "--pdf"]
+    refused(run(*words), "r.pdf", "--force")
+    assert (folder / "r.pdf").read_text() == "mine"
+    assert not (folder / "r.html").exists()
+    assert run(*words, "--force")[0] == 0
+    assert (folder / "r.pdf").read_bytes().startswith(b"%PDF")
+
+
+def test_the_page_may_not_have_the_name_of_the_pdf(folder, run, printer):
+    words = ["report", folder / "check", "--out", folder / "r.pdf", "--pdf"]
+    refused(run(*words), "r.pdf", ".html")
+
+
+def test_without_a_browser_neither_page_nor_pdf_is_written(folder, run, monkeypatch):
+    monkeypatch.setattr("shutil.which", lambda name: None)
+    words = ["report", folder / "check", "--out", folder / "r.html", "--pdf"]
+    refused(run(*words), "no Chromium", "apt install chromium")
+    assert [p.name for p in folder.iterdir() if "r." in p.name] == []

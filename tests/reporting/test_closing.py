@@ -15,7 +15,7 @@ from tests.reporting.made_folders import (
     make_dataset,
     make_tracking,
 )
-from tests.reporting.test_page import Outline
+from tests.reporting.test_page import Outline, headings
 from tests.reporting.test_tracking import cells
 from tsas_cli.errors import InputError
 from tsas_cli.reporting import colours
@@ -53,7 +53,7 @@ def test_the_page_is_well_formed_and_holds_nothing_of_a_dataset(whole):
     assert max(np.diff(outline.headings)) == 1
     assert len(outline.ids) == len(set(outline.ids))
     titles = ["Does a better model track better?", "How to repeat it"]
-    assert re.findall("<h2>(.*?)</h2>", whole) == titles
+    assert headings(whole, 2) == titles
     assert "was given" not in whole
 
 
@@ -185,7 +185,7 @@ def test_beside_a_dataset_the_page_shows_both(folder, tmp_path):
     calibrated = make_calibration(dataset, tmp_path / "cal")
     text = page(read_inputs([folder, calibrated]))
     Outline(text)
-    titles = re.findall("<h2>(.*?)</h2>", text)
+    titles = headings(text, 2)
     assert titles[:2] == ["Does a better model track better?", "Recordings"]
     assert "No diagnosis was given" not in text
     assert f"tsas report {dataset} {calibrated} {folder} --out" in text
@@ -193,7 +193,7 @@ def test_beside_a_dataset_the_page_shows_both(folder, tmp_path):
 
 def test_beside_tracked_runs_the_page_shows_both(folder, tmp_path):
     tracked = make_tracking(tmp_path / "tracked", ("pid",))
-    titles = re.findall("<h2>(.*?)</h2>", page(read_inputs([tracked, folder])))
+    titles = headings(page(read_inputs([tracked, folder])), 2)
     assert titles[:3] == ["Does a better model track better?", "Tracking", "Recordings"]
 
 

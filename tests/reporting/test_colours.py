@@ -5,7 +5,7 @@ import pytest
 
 from tsas_cli.reporting.colours import ROLES
 
-STYLE = (files("tsas_cli.reporting") / "templates" / "page.css").read_text(encoding="utf-8")
+STYLE = (files("tsas_cli.reporting") / "templates" / "colours.css").read_text(encoding="utf-8")
 SCHEMES = [
     dict(re.findall(r"--([\w-]+): (#[0-9a-f]{6})", block))
     for block in re.findall(r":root \{(.*?)\}", STYLE, re.DOTALL)
@@ -35,3 +35,9 @@ def test_every_colour_is_defined_light_and_dark():
 def test_text_and_curves_stand_out_from_the_paper(scheme):
     for role in (set(ROLES) | TEXT) - {"paper", "line"}:
         assert contrast(scheme[role], scheme["paper"]) >= (4.5 if role in TEXT else 3.0), role
+
+
+@pytest.mark.parametrize("scheme", SCHEMES, ids=["light", "dark"])
+def test_text_stands_out_from_the_surface_under_code_too(scheme):
+    for role in ("ink", "link"):
+        assert contrast(scheme[role], scheme["surface"]) >= 4.5, role

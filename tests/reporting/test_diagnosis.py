@@ -9,7 +9,7 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
 from tests.reporting.made_folders import REASONS, make_dataset, make_diagnosis
-from tests.reporting.test_page import Outline
+from tests.reporting.test_page import Outline, headings
 from tsas_cli.effects import EFFECTS
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.figures.gains import draw_gains
@@ -37,10 +37,6 @@ def written(folder):
     return whole[whole.index('<section id="diagnosis"') : whole.index('<section id="recordings"')]
 
 
-def headings(text):
-    return [unescape(t) for t in re.findall("<h3>(.*?)</h3>", text)]
-
-
 def words(text):
     return unescape(re.sub("<[^>]*>", "", text))
 
@@ -59,14 +55,14 @@ def rows(text):
 @pytest.mark.parametrize("verdict", REASONS)
 def test_the_first_sentence_is_the_verdict(sections, verdict):
     first = ("Undecided: " if verdict == "undecided" else "") + REASONS[verdict]
-    assert f"<h2>Diagnosis</h2>\n<p>{first}</p>" in sections[verdict]
+    assert f">Diagnosis</a></h2>\n<p>{first}</p>" in sections[verdict]
 
 
 def test_a_named_cause_says_what_it_is_with_equation_and_gain(sections):
     text = sections["named"]
     sentence = next(e.sentence for e in EFFECTS if e.name == "free_tendon")
     order = [
-        "<h3>Tendon outside the sheath</h3>",
+        ">Tendon outside the sheath</a></h3>",
         sentence,
         "x_in − x_sheath = (T0 − F0)·l/EA",
         "Parameters of free_tendon",
@@ -100,7 +96,7 @@ def test_each_parameter_has_its_interval_unit_and_bound(sections):
 
 def test_an_ambiguous_cause_shares_its_heading_with_its_rival(sections):
     text = sections["ambiguous"]
-    assert headings(text)[0] == "Tendon outside the sheath, or compliance of the drive"
+    assert headings(text, 3)[0] == "Tendon outside the sheath, or compliance of the drive"
     sentence = next(e.sentence for e in EFFECTS if e.name == "drive_compliance")
     told = "These recordings cannot tell it from compliance of the drive (drive_compliance)."
     assert f"{told} {sentence}" in words(text)
@@ -120,7 +116,7 @@ def test_without_a_name_there_is_no_after(sections, verdict):
     text = sections[verdict]
     assert ["channel", "nominal model", "best obtainable", "noise floor", "unit"] in rows(text)
     assert "var(--after)" not in text
-    assert headings(text)[0] == "Error on held-out data"
+    assert headings(text, 3)[0] == "Error on held-out data"
 
 
 def test_what_is_not_explained_says_on_what_it_depends(sections):
@@ -134,7 +130,7 @@ def test_what_is_not_explained_says_on_what_it_depends(sections):
 
 
 def test_too_little_data_leaves_the_reason_and_the_next_experiment(sections):
-    assert headings(sections["undecided"]) == ["Next experiment"]
+    assert headings(sections["undecided"], 3) == ["Next experiment"]
     assert "<svg" not in sections["undecided"]
 
 
@@ -221,7 +217,7 @@ def test_names_from_the_file_show_as_text_and_need_not_be_in_the_catalogue(datas
     content["candidates"][0]["effects"] = ["<e>"]
     (tmp_path / "d" / "diagnosis.json").write_text(json.dumps(content))
     text = written(tmp_path / "d")
-    assert headings(text)[0] == "<b>, or one of 2 others"
+    assert headings(text, 3)[0] == "<b>, or one of 2 others"
     assert not re.search("<[busce]>", text)
 
 

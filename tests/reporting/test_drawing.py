@@ -2,9 +2,10 @@ import re
 from xml.etree import ElementTree as ET
 
 import numpy as np
+import pytest
 
 from tsas_cli.reporting.colours import ROLES, STAND_IN
-from tsas_cli.reporting.drawing import picture
+from tsas_cli.reporting.drawing import picture, shortened
 
 
 def draw(figure):
@@ -43,3 +44,27 @@ def test_nothing_in_it_holds_for_the_whole_page_or_asks_the_network():
     svg = str(picture(draw, key="one", alt="", caption="").svg)
     assert "<style" not in svg
     assert "http" not in svg
+
+
+def test_long_names_leave_room_for_the_plot_and_keep_their_ends():
+    def long(figure):
+        axes = figure.add_subplot()
+        axes.plot([0.0, 1.0], [0.0, 1.0], label="l" + 99 * "o" + "ng")
+        axes.set(title="t" + 99 * "o" + "ng", ylabel="y" + 99 * "o" + "ng [mm]")
+        axes.set_yticks([0.0, 1.0], ["short", "n" + 99 * "o" + "ne"])
+        figure.legend(loc="outside upper left")
+
+    svg = str(picture(long, key="one", alt="", caption="").svg)
+    shown = ["".join(text.itertext()) for text in ET.fromstring(svg).iter("text")]  # noqa: S314
+    assert "short" in shown
+    cut = [text for text in shown if "…" in text]
+    assert sorted(text[0] for text in cut) == ["l", "n", "t", "y"]
+    assert max(map(len, cut)) == 48
+    assert "looooo" in next(text for text in cut if text[0] == "l")
+    assert next(text for text in cut if text[0] == "y").endswith("ng [mm]")
+    assert len(next(text for text in cut if text[0] == "n")) == 22
+
+
+@pytest.mark.parametrize(("most", "said"), [(6, "abcdef"), (5, "ab…ef"), (4, "ab…f")])
+def test_what_is_too_long_loses_its_middle(most, said):
+    assert shortened("abcdef", most) == said

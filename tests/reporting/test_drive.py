@@ -31,14 +31,16 @@ def test_the_verdict_its_numbers_and_plots_stand_on_the_page(made):
     assert "compliance of the drive, whose stiffness reacts" in text
     assert "42.28" in text
     pictures = re.findall(r'<svg[^>]*aria-label="([^"]*)"', text)
-    assert [p.split(",")[0].split(" ")[0] for p in pictures] == ["Magnitude", "Poles", "Measured"]
-    assert "88" in pictures[1]
+    assert [p.split(" ")[0] for p in pictures] == ["From", "Poles", "Measured"]
+    assert "magnitude and phase: 1.67 Hz 0.00216 mm" in pictures[0]
+    assert "pole at 88" in pictures[1]
+    assert "nominal −" in pictures[2]
     assert "tsas identify-harmonic-drive" in text
 
 
 def test_the_plots_show_powers_of_ten_and_both_curves(made):
     _, text = made
-    bode = next(p for p in re.findall(r"<svg.*?</svg>", text, re.DOTALL) if "Magnitude" in p)
+    bode = next(p for p in re.findall(r"<svg.*?</svg>", text, re.DOTALL) if "Fitted magnitude" in p)
     assert "10⁻³" in bode
     assert "mathdefault" not in bode
     assert "var(--measured)" in bode

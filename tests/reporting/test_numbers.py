@@ -1,8 +1,9 @@
 import math
 
+import numpy as np
 import pytest
 
-from tsas_cli.reporting.numbers import ABSENT, plain, with_interval, with_spread
+from tsas_cli.reporting.numbers import ABSENT, plain, spanned, with_interval, with_spread
 
 
 @pytest.mark.parametrize(
@@ -63,3 +64,8 @@ def test_an_interval_of_no_width_to_speak_of_is_printed():
 )
 def test_a_spread_stands_beside_its_value(value, spread, shown):
     assert with_spread(value, spread) == shown
+
+
+def test_a_span_leaves_gaps_out_and_says_where_there_is_nothing():
+    assert spanned(np.array([np.nan, 2.0, -0.5])) == "−0.500 to 2.00"
+    assert spanned(np.array([np.nan])) == ABSENT

@@ -2,6 +2,7 @@ import hashlib
 import json
 import re
 import shutil
+from html import unescape
 from html.parser import HTMLParser
 from importlib.resources import files
 from pathlib import Path
@@ -42,11 +43,19 @@ class Outline(HTMLParser):
         attrs = dict(attrs)
         self.headings += [int(tag[1])] if re.fullmatch("h[1-6]", tag) else []
         self.ids += [attrs["id"]] if "id" in attrs else []
-        self.addresses += [attrs[name] for name in ("src", "href") if name in attrs]
+        if tag != "link":
+            self.addresses += [attrs[name] for name in ("src", "href") if name in attrs]
         self.pictures += [attrs] if tag in {"svg", "img"} else []
 
     def handle_endtag(self, tag):
         assert self.open.pop() == tag
+
+
+def headings(text, level):
+    """Return the headings of a level in order; each is a link to itself."""
+    found = re.findall(rf'id="([^"]+)">\n<h{level}><a href="#([^"]+)">(.*?)</a></h{level}>', text)
+    assert all(own == address for own, address, _ in found)
+    return [unescape(title) for _, _, title in found]
 
 
 @pytest.fixture(scope="module")
@@ -77,20 +86,24 @@ def test_the_page_is_well_formed_with_headings_in_order(whole):
 
 def test_the_contents_lead_to_every_section(whole):
     outline = Outline(whole)
-    anchors = [a[1:] for a in outline.addresses if a.startswith("#") and "-" not in a]
+    contents = re.search("<nav.*?</nav>", whole, re.DOTALL)[0]
+    anchors = re.findall('href="#([^"]+)"', contents)
     assert len(anchors) == len(SECTIONS) - 3  # nothing was tracked, no drive identified
-    assert set(anchors) <= set(outline.ids)
+    assert anchors == re.findall('<section id="([^"]+)"', whole)
+    assert {address[1:] for address in outline.addresses} <= set(outline.ids)
 
 
 def test_every_plot_is_there_and_says_what_it_shows(whole):
     labels = [svg["aria-label"] for svg in Outline(whole).pictures]
     assert len(labels) == 4 + 2 * 2 + 2 * 2  # phases; two loops and two channels of two runs
     assert len(set(labels)) == len(labels)
-    assert all(len(label) > 40 for label in labels)
+    assert all(len(label) > 40 and len(re.findall(r"\d", label)) > 5 for label in labels)
 
 
 def test_nothing_is_asked_from_the_network(whole):
     assert all(address.startswith("#") for address in Outline(whole).addresses)
+    icon = '<link rel="icon" href="data:,">'  # which is none, so that no browser asks for one
+    assert re.findall("<link.*?>", whole) == [icon]
     assert not re.search(r"https?:|@import|url\((?!#)|<script", whole)
 
 

@@ -10,7 +10,7 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
 from tests.reporting.made_folders import make_tracking
-from tests.reporting.test_page import Outline
+from tests.reporting.test_page import Outline, headings
 from tsas_cli.app import main
 from tsas_cli.errors import InputError
 from tsas_cli.reporting.colours import CONTROLLERS, STAND_IN, of_controller
@@ -75,7 +75,7 @@ def test_the_page_is_well_formed_and_every_picture_says_what_it_shows(whole):
 
 def test_it_leaves_out_what_was_not_given_and_leads_with_tracking(whole):
     assert "was given" not in whole
-    assert re.findall("<h2>(.*?)</h2>", whole)[0] == "Tracking"
+    assert headings(whole, 2)[0] == "Tracking"
 
 
 def test_the_page_does_not_change_when_nothing_changed(folder, whole):
@@ -104,8 +104,8 @@ def test_the_summary_says_who_follows_best_under_each_condition(whole):
 
 def test_the_error_is_wanted_less_true_force(whole):
     shown = [label for label in labels(whole) if label.startswith("Tracking error")]
-    assert "undisturbed, in newton: pid 1.00 to 1.00;" in shown[0]
-    assert "disturbed, in newton: pid 2.00 to 2.00;" in shown[1]
+    assert "undisturbed, in newton: pid, RMSE 1.00 N, 1.00 to 1.00;" in shown[0]
+    assert "disturbed, in newton: pid, RMSE 2.00 N, 2.00 to 2.00;" in shown[1]
 
 
 def test_the_phase_portrait_has_the_error_and_its_rate(whole):

@@ -1,24 +1,35 @@
 """Write one HTML page of what the stages found."""
 
 from collections.abc import Iterable
+from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 
 from tsas_cli.api.given import Named
+from tsas_cli.errors import InputError
 from tsas_cli.files import new_file
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.page import SECTIONS, page
+from tsas_cli.reporting.pdf import browser, print_page
 from tsas_cli.result import Result, Table
 from tsas_cli.steps import SILENT, Steps
 
 
 @dataclass(frozen=True, repr=False, eq=False)
 class ReportResult(Result):
-    """A page that was written, and from what; `out` is the page."""
+    """A page that was written, and from what; `out` is the page.
+
+    Parameters
+    ----------
+    sizes
+        Each file that was written, in bytes.
+    """
+
+    sizes: dict[str, int]
 
     def tables(self) -> list[Table]:
         """Return what was read."""
-        title = f"{self.out}, {self.summary['bytes'] / 1e6:.2f} MB"
+        title = "; ".join(f"{path}, {size / 1e6:.2f} MB" for path, size in self.sizes.items())
         return [(title, ("file", "folder"), list(self.summary["read"].items()))]
 
 
@@ -26,6 +37,7 @@ def report(
     folders: Named | Iterable[Named],
     *,
     out: Named,
+    pdf: bool = False,
     force: bool = False,
     step: Steps = SILENT,
 ) -> ReportResult:
@@ -37,8 +49,10 @@ def report(
         A dataset's folder and those that the stages have written, one of each kind.
     out
         The HTML file to write.
+    pdf
+        Print it to a PDF beside it too, with Chromium.
     force
-        Replace the file if it is there.
+        Replace what is there.
     step
         Told of a piece of work per section.
 
@@ -50,17 +64,39 @@ def report(
     Raises
     ------
     InputError
-        A folder is of no known kind, does not belong to the dataset, or `out` exists and `force`
-        is not set.
+        A folder is of no known kind, does not belong to the dataset, `out` exists and `force` is
+        not set, or there is no Chromium to print with.
     """
     listed = [folders] if isinstance(folders, str | Path) else list(folders)
-    page_path = Path(out)
-    with new_file(page_path, force=force) as path:
+    pages = [Path(out)]
+    if pdf:
+        browser()  # before the work, where there is none
+        pages.append(_beside(Path(out)))
+    with ExitStack() as stack:
+        html, *printed = (stack.enter_context(new_file(path, force=force)) for path in pages)
         inputs = read_inputs([Path(folder) for folder in listed])
         step.ahead(len(SECTIONS))
-        path.write_text(page(inputs, step), encoding="utf-8")
+        text = page(inputs, step)
+        html.write_text(text, encoding="utf-8")
+        for path in printed:
+            print_page(text, path)
     read = {} if inputs.dataset is None else {"dataset.toml": str(inputs.dataset.folder)}
     read |= {kind.FILE: str(folder) for kind, folder in inputs.folders.items()}
-    size = page_path.stat().st_size
-    summary = {"stage": "report", "page": str(page_path), "bytes": size, "read": read}
-    return ReportResult(summary, page_path)
+    sizes = {str(path): path.stat().st_size for path in pages}
+    summary = {"stage": "report", "page": str(out), "bytes": sizes[str(pages[0])], "read": read}
+    if pdf:
+        summary["pdf"] = str(pages[1])
+    return ReportResult(summary, pages[0], sizes)
+
+
+def _beside(out: Path) -> Path:
+    """Return where the PDF goes, which must not be where the page goes."""
+    path = out.with_suffix(".pdf")
+    if path == out:
+        raise InputError(
+            "is the name of the PDF",
+            where=out,
+            expected="another name for the page",
+            remedy="choose an --out that ends in .html",
+        )
+    return path

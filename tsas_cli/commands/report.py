@@ -15,6 +15,9 @@ def report(
         list[Path], typer.Argument(metavar="DIR", help="Folders that the stages have written.")
     ],
     out: Annotated[Path, typer.Option("--out", metavar="FILE", help="The HTML page to write.")],
+    pdf: Annotated[
+        bool, typer.Option("--pdf", help="Write it as PDF beside the page too; needs Chromium.")
+    ] = False,
     force: Force = False,
     quiet: Quiet = False,
     as_json: Json = False,
@@ -23,7 +26,9 @@ def report(
 
     Each DIR is a dataset or what `tsas check`, `calibrate`, `simulate` or `diagnose` wrote. What
     `tsas track`, `close-loop` or `identify-harmonic-drive` wrote makes a page of its own.
+
+    With `--pdf` report.html is printed to report.pdf beside it.
     """
     with progress("report", quiet=quiet) as step:
-        result = tsas.report(folders, out=out, force=force, step=step)
+        result = tsas.report(folders, out=out, pdf=pdf, force=force, step=step)
     present(result, quiet=quiet, as_json=as_json)

@@ -14,6 +14,11 @@ def in_words(name: str) -> str:
     return BY_NAME[name].meaning.split(",")[0]
 
 
+def called(name: str) -> str:
+    """Return what a column means in a few words; of one that is not canonical its name."""
+    return in_words(name) if name in BY_NAME else name
+
+
 def at_axis(name: str) -> str:
     """Return the words with the unit in brackets.
 

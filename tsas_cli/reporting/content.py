@@ -1,5 +1,6 @@
-"""What a section of the page is made of."""
+"""What the first screen and the sections of the page are made of."""
 
+import re
 from dataclasses import dataclass
 
 from markupsafe import Markup
@@ -53,6 +54,32 @@ class Group:
 
 
 @dataclass(frozen=True)
+class Fact:
+    """One number of the first screen: what it is, the number, and what to hold it against.
+
+    Where there was another number before, `before` holds it.
+    """
+
+    label: str
+    value: str
+    note: str = ""
+    before: str = ""
+
+
+@dataclass(frozen=True)
+class Glance:
+    """The first screen: the kind of answer, the answer in a few words, the numbers behind it.
+
+    `numbers` says what the facts are.
+    """
+
+    kind: str
+    verdict: str
+    numbers: str = ""
+    facts: tuple[Fact, ...] = ()
+
+
+@dataclass(frozen=True)
 class Section:
     """One section: what it shows, in the order of the fields; `parts` have their own headings.
 
@@ -71,6 +98,17 @@ class Section:
     closing: tuple[str, ...] = ()
     parts: tuple["Section", ...] = ()
     given: bool = True
+
+
+def anchor(*words: str) -> str:
+    """Return words as one name that can be an id and an address, whatever letters they hold.
+
+    Examples
+    --------
+    >>> anchor("diagnosis", "free_tendon"), anchor("map", "a b")
+    ('diagnosis-free_tendon', 'map-a.20b')
+    """
+    return "-".join(re.sub(r"[^\w-]", lambda letter: f".{ord(letter[0]):x}", w) for w in words)
 
 
 def missing(anchor: str, title: str, *, what: str, stage: str) -> Section:

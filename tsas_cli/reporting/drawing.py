@@ -11,18 +11,18 @@ from markupsafe import Markup
 
 from tsas_cli.errors import printable
 from tsas_cli.reporting.colours import STAND_IN, themed
-from tsas_cli.reporting.content import Picture
+from tsas_cli.reporting.content import Picture, anchor
 
-WIDTH_IN = 5.0  # a phone shows this at about its own size, so that the text stays readable
+WIDTH_IN = 4.6  # a phone shows this at about its own size, so that the text stays readable
 _STYLE: dict[Any, Any] = {
     "svg.fonttype": "none",
     "svg.hashsalt": "tsas",
     "text.parse_math": False,
-    "font.size": 9.5,
-    "axes.labelsize": 9.5,
-    "xtick.labelsize": 9.0,
-    "ytick.labelsize": 9.0,
-    "legend.fontsize": 9.0,
+    "font.size": 10.0,
+    "axes.labelsize": 10.0,
+    "xtick.labelsize": 9.5,
+    "ytick.labelsize": 9.5,
+    "legend.fontsize": 9.5,
     "legend.frameon": False,
     "axes.spines.top": False,
     "axes.spines.right": False,
@@ -42,6 +42,7 @@ _STYLE: dict[Any, Any] = {
     "ytick.labelcolor": STAND_IN["ink"],
     "lines.linewidth": 1.3,
 }
+_LONGEST, _LONGEST_UPRIGHT, _LONGEST_TICK = 48, 44, 22  # letters
 _NOTHING = {"Creator": None, "Date": None, "Format": None, "Type": None}
 _SVG = "{http://www.w3.org/2000/svg}"
 _LINK = "{http://www.w3.org/1999/xlink}href"
@@ -57,7 +58,7 @@ def picture(
     draw
         Draws on the `matplotlib.figure.Figure` that it is given, with colours of `STAND_IN`.
     key
-        A word of its own for each picture of the page, for the names inside the SVG.
+        Words of its own for each picture of the page, for the names inside the SVG.
     alt
         What the plot shows, for a reader who does not see it.
     caption
@@ -73,9 +74,47 @@ def picture(
         warnings.filterwarnings("ignore", message="Glyph .* missing from", category=UserWarning)
         figure = Figure(figsize=(WIDTH_IN, height_in), layout="constrained")
         draw(figure)
+        _shorten(figure)
         stream = io.StringIO()
         figure.savefig(stream, format="svg", metadata=_NOTHING)
-    return Picture(svg=_inline(stream.getvalue(), key=key, alt=alt), caption=caption)
+    svg = _inline(_visible(stream.getvalue()), key=anchor(key), alt=alt)
+    return Picture(svg=svg, caption=caption)
+
+
+def shortened(text: str, most: int) -> str:
+    """Return a text with its middle left out where it has more letters.
+
+    Examples
+    --------
+    >>> shortened("a-long-name-of-a-run", 11)
+    'a-lon…a-run'
+    """
+    half = most // 2
+    return text if len(text) <= most else f"{text[:half]}…{text[len(text) - (most - half - 1) :]}"
+
+
+def _shorten(figure: Any) -> None:
+    """Keep long names from files from leaving no room for the plot."""
+    from matplotlib.text import Text
+
+    for text in figure.findobj(Text):
+        text.set_text("\n".join(shortened(one, _LONGEST) for one in text.get_text().split("\n")))
+    for axes in figure.axes:
+        upright = axes.yaxis.label
+        upright.set_text(shortened(upright.get_text(), _LONGEST_UPRIGHT))
+        for axis in (axes.xaxis, axes.yaxis):
+            names = [label.get_text() for label in axis.get_ticklabels()]
+            if any(len(name) > _LONGEST_TICK for name in names):
+                axis.set_ticks(
+                    axis.get_ticklocs(), [shortened(name, _LONGEST_TICK) for name in names]
+                )
+
+
+def _visible(svg: str) -> str:
+    """Make control characters in names from files visible, some of which XML cannot hold."""
+    if svg.replace("\n", "").isprintable():
+        return svg
+    return "\n".join(map(printable, svg.split("\n")))
 
 
 def _inline(text: str, *, key: str, alt: str) -> Markup:
@@ -95,7 +134,7 @@ def _inline(text: str, *, key: str, alt: str) -> Markup:
         element.tail = None
     for name in ("width", "height", "version"):
         root.attrib.pop(name, None)
-    root.attrib.update({"role": "img", "aria-label": printable(alt)})
+    root.attrib.update({"role": "img", "aria-label": printable(alt.replace("`", ""))})
     return Markup(themed(ET.tostring(root, encoding="unicode")))  # noqa: S704
 
 

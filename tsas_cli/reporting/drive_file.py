@@ -4,7 +4,15 @@ from typing import ClassVar, Literal
 
 from pydantic import Field
 
-from tsas_cli.reporting.stage_files import Cause, Evidence, Fit, OfDataset, Parameter, Record
+from tsas_cli.reporting.stage_files import (
+    Cause,
+    Evidence,
+    Fit,
+    HeldOut,
+    OfDataset,
+    Parameter,
+    Record,
+)
 
 
 class Curve(Record):
@@ -78,6 +86,7 @@ class DriveDiagnosis(Record):
     verdict: Literal["named", "ambiguous", "sufficient", "unexplained", "undecided"]
     reason: str
     named: tuple[Cause, ...] = ()
+    channels: dict[str, HeldOut] = Field(default_factory=dict)
     evidence: Evidence = Evidence()
     next_experiment: str = ""
 

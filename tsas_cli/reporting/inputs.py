@@ -5,14 +5,14 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TypeVar, cast
+from typing import Any, TypeVar, cast
 
 import numpy as np
 import numpy.typing as npt
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from tsas_cli.errors import InputError
+from tsas_cli.errors import InputError, printable
 from tsas_cli.files import read_json
 from tsas_cli.recordings.dataset import Dataset, Recording, read_dataset
 from tsas_cli.recordings.manifest import FILE, parse
@@ -141,10 +141,7 @@ def read_inputs(folders: Sequence[Path]) -> Inputs:
     """
     by_file = _by_file(folders)
     where = {kind: by_file[kind.FILE] for kind in STAGES if kind.FILE in by_file}
-    stages = {
-        kind: parse(kind, read_json(folder / kind.FILE), folder / kind.FILE)
-        for kind, folder in where.items()
-    }
+    stages = {kind: read_stage(kind, folder) for kind, folder in where.items()}
     named = (
         _dataset_of(stage, where[kind] / kind.FILE)
         for kind, stage in stages.items()
@@ -160,6 +157,33 @@ def read_inputs(folders: Sequence[Path]) -> Inputs:
         elif kind is Tracking:
             _check_own(dataset, where[kind] / kind.FILE)
     return Inputs(dataset, stages, where)
+
+
+def read_stage(kind: type[Stage], folder: Path) -> Stage:
+    """Read what a stage has written; control characters in its texts are made visible.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, or does not say what such a file says.
+    """
+    path = folder / kind.FILE
+    content = read_json(path)
+    return parse(kind, _visible(content) if isinstance(content, dict) else content, path)
+
+
+def _visible(content: Any) -> Any:
+    """Make texts and keys printable, but the dataset's paths, by which files are looked up."""
+    if isinstance(content, str):
+        return printable(content)
+    if isinstance(content, list):
+        return [_visible(value) for value in content]
+    if isinstance(content, dict):
+        return {
+            printable(key): value if key == "dataset" else _visible(value)
+            for key, value in content.items()
+        }
+    return content
 
 
 def _by_file(folders: Sequence[Path]) -> dict[str, Path]:

@@ -2,6 +2,9 @@
 
 import math
 
+import numpy as np
+import numpy.typing as npt
+
 MINUS = "\N{MINUS SIGN}"
 ABSENT = "\N{EN DASH}"
 _MOST_DECIMALS = 9
@@ -68,6 +71,21 @@ def with_spread(value: float | None, spread: float | None) -> str:
         return plain(value) if value else "0"
     decimals = min(-_exponent(spread), 3 - _exponent(value))
     return f"{_fixed(value, decimals)} ± {plain(spread, 1)}"
+
+
+def spanned(values: npt.NDArray[np.float64], digits: int = 3) -> str:
+    """Return the lowest and the highest of some numbers, gaps left out.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> spanned(np.array([2.0, np.nan, -0.5]))
+    '−0.500 to 2.00'
+    """
+    there = values[np.isfinite(values)]
+    if not there.size:
+        return ABSENT
+    return f"{plain(float(there.min()), digits)} to {plain(float(there.max()), digits)}"
 
 
 def fixed(value: float | None, decimals: int) -> str:

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from tsas_cli.reporting.closing_file import Closing
 from tsas_cli.reporting.content import Section
 from tsas_cli.reporting.drive_file import Drive
+from tsas_cli.reporting.glance import glance
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.rendered import rendered
 from tsas_cli.reporting.sections import (
@@ -64,4 +65,5 @@ def page(inputs: Inputs, advance: Callable[[], None] = lambda: None) -> str:
         about=about,
         summary=" ".join(summary.sentences(inputs)),
         sections=sections,
+        glance=glance(inputs),
     )

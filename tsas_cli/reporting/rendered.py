@@ -6,12 +6,32 @@ from collections.abc import Sequence
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 
+from tsas_cli import __version__
 from tsas_cli.errors import printable
-from tsas_cli.reporting.content import Section
+from tsas_cli.reporting.content import Glance, Section
 
 
-def rendered(*, name: str, about: str, summary: str, sections: Sequence[Section]) -> str:
-    """Return a page as HTML: its name, what it is about (for the window's title), its sections."""
+def rendered(
+    *,
+    name: str,
+    about: str,
+    summary: str,
+    sections: Sequence[Section],
+    glance: Glance | None = None,
+) -> str:
+    """Return a page as HTML.
+
+    Parameters
+    ----------
+    name, about
+        The heading, and what the page is about, which follows it in the window's title.
+    summary
+        The first paragraph; what stands between backticks becomes code.
+    sections
+        What follows, in order; each is in the contents, and so are its parts.
+    glance
+        The answer and its numbers, above the first paragraph.
+    """
     environment = Environment(
         loader=PackageLoader("tsas_cli.reporting"),
         autoescape=True,
@@ -22,7 +42,12 @@ def rendered(*, name: str, about: str, summary: str, sections: Sequence[Section]
     )
     environment.filters["prose"] = _prose
     return environment.get_template("page.html").render(
-        name=name, about=about, summary=summary, sections=sections
+        name=name,
+        about=about,
+        summary=summary,
+        sections=sections,
+        glance=glance,
+        version=__version__,
     )
 
 

@@ -3,15 +3,17 @@
 from collections.abc import Sequence
 from functools import partial
 
+import numpy as np
+
 from tsas_cli.paper import Paper
+from tsas_cli.reporting.content import Fact, Glance, Picture, Section, Table
 from tsas_cli.reporting.content import Group as Fold
-from tsas_cli.reporting.content import Picture, Section, Table
 from tsas_cli.reporting.drawing import picture
 from tsas_cli.reporting.figures.curves import draw_curves
-from tsas_cli.reporting.numbers import ABSENT, as_printed, plain
+from tsas_cli.reporting.numbers import ABSENT, as_printed, plain, spanned
 from tsas_cli.reporting.rendered import rendered
-from tsas_cli.reproduction.group import Figure, Group, Row
-from tsas_cli.reproduction.summary import sentence, verdict_table
+from tsas_cli.reproduction.group import Figure, Group, Line, Row
+from tsas_cli.reproduction.summary import counted, sentence, verdict_table
 
 HEADER = ("what", "paper", "ours", "ours / paper", "verdict")
 WITHOUT_UNIT = {"1", "not printed", ""}
@@ -30,8 +32,17 @@ def reproduction_page(paper: Paper, groups: Sequence[Group]) -> str:
         name="The paper done again",
         about=paper.citation["title"],
         summary=sentence(groups),
+        glance=_glance(groups),
         sections=(_overview(paper, groups), *(_section(group) for group in groups)),
     )
+
+
+def _glance(groups: Sequence[Group]) -> Glance:
+    counts = counted(groups)
+    facts = tuple(Fact(verdict, str(count)) for verdict, count in counts.items())
+    total = sum(counts.values())
+    verdict = f"{counts['agrees']} of {total} numbers and statements agree"
+    return Glance("What the paper prints, computed again", verdict, "", facts)
 
 
 def _overview(paper: Paper, groups: Sequence[Group]) -> Section:
@@ -89,11 +100,22 @@ def _with_unit(number: str, unit: str) -> str:
     return number if number == ABSENT or unit in WITHOUT_UNIT else f"{number} {shown}"
 
 
+def _in_words(line: Line) -> str:
+    """Return where a curve goes, or where a single point lies."""
+    if line.x.size == 1:
+        return f"{line.label}: {plain(float(line.y[0]))} at {plain(float(line.x[0]))}"
+    most = int(np.nanargmax(line.y))
+    return (
+        f"{line.label}: {spanned(line.y)} over {spanned(line.x)}, highest at "
+        f"{plain(float(line.x[most]), 3)}"
+    )
+
+
 def _picture(figure: Figure) -> Picture:
-    labels = ", ".join(line.label for line in figure.lines)
+    said = "; ".join(map(_in_words, figure.lines))
     return picture(
         partial(draw_curves, figure=figure),
         key=figure.key,
-        alt=f"{figure.caption} {figure.axes[1]} over {figure.axes[0]}: {labels}.",
+        alt=f"{figure.caption} {figure.axes[1]} over {figure.axes[0]}. {said}.",
         caption=figure.caption,
     )

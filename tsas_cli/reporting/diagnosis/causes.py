@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator
 
-from tsas_cli.reporting.content import Section, Table
-from tsas_cli.reporting.diagnosis.words import EFFECT, sentence_of, title_of, within
+from tsas_cli.reporting.content import Section, Table, anchor
+from tsas_cli.reporting.diagnosis.words import EFFECT, heading_of, sentence_of, title_of, within
 from tsas_cli.reporting.numbers import ABSENT, plain, with_interval
 from tsas_cli.reporting.stage_files import Cause, Diagnosis
 
@@ -14,22 +14,13 @@ def parts(diagnosis: Diagnosis) -> Iterator[Section]:
         law = EFFECT[cause.effect].equation if cause.effect in EFFECT else ""
         equation = cause.equation or law
         yield Section(
-            f"diagnosis-{cause.effect}",
-            _heading(cause),
+            anchor("diagnosis", cause.effect),
+            heading_of(cause),
             tuple(text for text in (sentence_of(cause.effect),) if text),
             equations=tuple(equation.split(",  ")) if equation else (),
             tables=(_parameters(cause),),
             closing=(*_rivals(cause), *_gain(cause)),
         )
-
-
-def _heading(cause: Cause) -> str:
-    title = cause.title or title_of(cause.effect)
-    if not cause.rivals:
-        return title
-    if len(cause.rivals) == 1:
-        return f"{title}, or {within(title_of(cause.rivals[0]))}"
-    return f"{title}, or one of {len(cause.rivals)} others"
 
 
 def _parameters(cause: Cause) -> Table:

@@ -2,8 +2,7 @@
 
 from functools import partial
 
-from tsas_cli.recordings.columns import BY_NAME
-from tsas_cli.reporting.channels import in_words
+from tsas_cli.reporting.channels import called
 from tsas_cli.reporting.content import Section, Table
 from tsas_cli.reporting.drawing import picture
 from tsas_cli.reporting.figures.gains import draw_gains, height_in
@@ -26,7 +25,7 @@ def part(diagnosis: Diagnosis) -> Section | None:
         partial(draw_gains, channels=diagnosis.channels, named=named),
         key="diagnosis-gains",
         alt=f"Root mean square error on held-out data. {alt}.",
-        caption="Root mean square error on held-out data, one bar for each channel.",
+        caption="Root mean square error on held-out data, by channel.",
         height_in=height_in(len(diagnosis.channels)),
     )
     return Section(
@@ -67,7 +66,7 @@ def _in_words(name: str, channel: HeldOut, *, named: bool) -> str:
     first = "before" if named else "nominal model"
     after = f", with what is named {plain(channel.rmse_after, 3)}" if named else ""
     return (
-        f"{in_words(name) if name in BY_NAME else name}: {first} {plain(channel.rmse_before, 3)}"
+        f"{called(name)}: {first} {plain(channel.rmse_before, 3)}"
         f"{after}, best obtainable {plain(channel.best_obtainable, 3)}, noise floor "
         f"{plain(channel.noise_floor, 3)} {channel.unit}"
     )

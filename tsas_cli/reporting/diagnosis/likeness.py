@@ -53,7 +53,7 @@ def part(diagnosis: Diagnosis) -> Section | None:
         key="diagnosis-likeness",
         alt=f"Likeness of the signatures of {', '.join(names[order])}. "
         + (" ".join(points) or "No two are alike."),
-        caption="Likeness of each two signatures, as the size of the square. Effects that "
+        caption="Likeness of each two signatures, as the size of the block. Effects that "
         f"resemble no other by {_RESEMBLES} are left out.",
         height_in=height_in(int(shown.sum())),
     )

@@ -4,7 +4,8 @@ from collections.abc import Sequence
 
 from tsas_cli.effects import EFFECTS
 from tsas_cli.recordings.columns import BY_NAME
-from tsas_cli.reporting.channels import in_words
+from tsas_cli.reporting.channels import called
+from tsas_cli.reporting.stage_files import Cause
 
 EFFECT = {effect.name: effect for effect in EFFECTS}
 _SIGNALS = {  # in words, and the unit
@@ -33,6 +34,16 @@ def within(title: str) -> str:
     return title[:1].lower() + title[1:]
 
 
+def heading_of(cause: Cause) -> str:
+    """Return a cause's title, with its rival where there is one, or how many there are."""
+    title = cause.title or title_of(cause.effect)
+    if not cause.rivals:
+        return title
+    if len(cause.rivals) == 1:
+        return f"{title}, or {within(title_of(cause.rivals[0]))}"
+    return f"{title}, or one of {len(cause.rivals)} others"
+
+
 def sentence_of(name: str) -> str:
     """Return the first sentence on an effect, empty where the catalogue has none."""
     return EFFECT[name].sentence if name in EFFECT else ""
@@ -42,7 +53,7 @@ def signal_in_words(name: str) -> str:
     """Return what a signal is; a text that is no known name stays as it is."""
     if name in _SIGNALS:
         return _SIGNALS[name][0]
-    return in_words(name) if name in BY_NAME else name
+    return called(name)
 
 
 def signal_at_axis(name: str) -> str:

@@ -43,13 +43,16 @@ def draw_bode(
     if band_Hz is not None:
         for axes in rows:
             axes.axvspan(*band_Hz, color=STAND_IN["line"], alpha=0.5, linewidth=0.0, zorder=0)
+            for edge in band_Hz:
+                axes.axvline(edge, color=STAND_IN["muted"], linewidth=0.5, zorder=0)
     rows[0].set_xlim(at[0], at[-1])
     # The page's text is no mathematics: powers of ten are written out.
     rows[0].yaxis.set_major_formatter(_power)
     rows[2].xaxis.set_major_formatter("{x:g}")
     rows[2].xaxis.set_minor_formatter("")
     figure.align_ylabels()
-    rows[0].legend(loc="lower left", handlelength=1.6)
+    handles, labels = rows[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside upper left", ncols=2, handlelength=1.6)
 
 
 def _power(value: float, _: object) -> str:
@@ -94,13 +97,13 @@ def draw_residuals(figure: Any, runs: Mapping[str, tuple[Floats, Floats, Floats,
     """
     rows = figure.subplots(len(runs), 1, squeeze=False)[:, 0]
     for axes, (name, (time_s, nominal, fitted, noise)) in zip(rows, runs.items(), strict=True):
-        for values, role, label, alpha in (
-            (nominal, "before", "nominal", 0.55),
-            (fitted, "after", "identified", 1.0),
+        for values, role, label in (
+            (nominal, "before", "nominal"),
+            (fitted, "after", "identified"),
         ):
             kept = kept_samples(values)
             axes.plot(
-                time_s[kept], values[kept], color=STAND_IN[role], alpha=alpha, linewidth=0.7,
+                time_s[kept], values[kept], color=STAND_IN[role], linewidth=0.7,
                 label=label,
             )  # fmt: skip
         edge = {"color": STAND_IN["ink"], "linewidth": 1.0, "linestyle": (0, (4, 3)), "zorder": 3}

@@ -1,4 +1,4 @@
-"""One bar for each channel: the error before and after, and what noise and the best model leave."""
+"""Bars for each channel: the error before and after, and what noise and the best model leave."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -27,12 +27,12 @@ def draw_gains(figure: Any, channels: Mapping[str, HeldOut], *, named: bool) -> 
     rows = figure.subplots(len(channels), 1, squeeze=False)[:, 0]
     first = "before" if named else "nominal model"
     for axes, (name, channel) in zip(rows, channels.items(), strict=True):
-        _bar(axes, channel.rmse_before, thick=0.8, role="before", alpha=0.45, label=first)
+        _bar(axes, channel.rmse_before, at=0.2 * named, role="before", label=first)
         if named:
-            _bar(axes, channel.rmse_after, thick=0.4, role="after", label="with what is named")
-        _mark(axes, channel.best_obtainable, linestyle=(0, (2, 1.5)), label="best obtainable")
+            _bar(axes, channel.rmse_after, at=-0.2, role="after", label="with what is named")
         _mark(axes, channel.noise_floor, linestyle="-", label="noise floor")
-        axes.set(ylim=(-0.55, 0.55), yticks=[], xlim=(0, None))
+        _mark(axes, channel.best_obtainable, linestyle=(0, (2, 1.5)), label="best obtainable")
+        axes.set(ylim=(-0.5, 0.5), yticks=[], xlim=(0, None))
         axes.set_ylabel(
             f"{name.rsplit('_', 1)[0]} [{channel.unit}]", rotation=0, ha="right", va="center"
         )
@@ -43,11 +43,9 @@ def draw_gains(figure: Any, channels: Mapping[str, HeldOut], *, named: bool) -> 
     )
 
 
-def _bar(
-    axes: Any, value: float | None, *, thick: float, role: str, label: str, alpha: float = 1.0
-) -> None:
+def _bar(axes: Any, value: float | None, *, at: float, role: str, label: str) -> None:
     if value is not None:
-        axes.barh(0.0, value, thick, color=STAND_IN[role], alpha=alpha, label=label)
+        axes.barh(at, value, 0.36, color=STAND_IN[role], label=label)
 
 
 def _mark(axes: Any, value: float | None, **style: Any) -> None:

@@ -38,7 +38,8 @@ def draw_residual_map(
     by_label = all(b.low == b.high for panel in panels for b in panel.before)
     for axes, panel in zip(rows, panels, strict=True):
         axes.axhspan(-1.0, 1.0, color=STAND_IN["muted"], alpha=0.3, linewidth=0, label="± noise")
-        axes.axhline(0.0, color=STAND_IN["muted"], linewidth=1.0)
+        for level, width in ((-1.0, 0.5), (0.0, 1.0), (1.0, 0.5)):
+            axes.axhline(level, color=STAND_IN["muted"], linewidth=width)
         places = _places(panel.before, by_label=by_label)
         spread = 0.12 if by_label else 0.12 * (places[-1] - places[0]) / max(len(places) - 1, 1)
         joined = "none" if by_label else "-"

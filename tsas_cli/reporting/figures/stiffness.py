@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from tsas_cli.reporting.colours import STAND_IN
+from tsas_cli.reporting.drawing import shortened
 from tsas_cli.reporting.phases import BY_KEY
 from tsas_cli.reporting.stage_files import Stiffness
 
@@ -24,7 +25,7 @@ def draw_stiffness(figure: Any, rows: Sequence[Stiffness]) -> None:
     theory = [row.theory_N_per_mm for row in rows]
     _draw_marks(axes, model, marker="D", markersize=6, label="calibrated model")
     _draw_marks(axes, theory, marker="|", markersize=11, label="theory")
-    axes.set_yticks(range(len(rows)), [_short(row.run) for row in rows])
+    axes.set_yticks(range(len(rows)), [shortened(row.run, _NAME_LENGTH) for row in rows])
     axes.set_ylim(len(rows) - 0.4, -0.6)
     axes.margins(x=0.12)
     axes.set_xlabel(f"km in {phase.label} [N/mm]")
@@ -47,10 +48,3 @@ def _draw_marks(axes: Any, values: Sequence[float | None], **style: Any) -> None
     look = {"color": STAND_IN["ink"], "markerfacecolor": "none", "markeredgewidth": 1.5} | style
     if there:
         axes.plot(*zip(*there, strict=True), linestyle="none", **look)
-
-
-def _short(name: str) -> str:
-    if len(name) <= _NAME_LENGTH:
-        return name
-    half = _NAME_LENGTH // 2
-    return f"{name[:half]}…{name[-half + 1 :]}"

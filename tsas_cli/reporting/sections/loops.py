@@ -12,7 +12,7 @@ from tsas_cli.reporting.content import Group, Picture, Section
 from tsas_cli.reporting.drawing import picture
 from tsas_cli.reporting.figures.loops import draw_loop
 from tsas_cli.reporting.inputs import Inputs
-from tsas_cli.reporting.numbers import plain
+from tsas_cli.reporting.numbers import spanned
 from tsas_cli.reporting.phases import PHASES, phase_of_samples
 from tsas_cli.reporting.stage_files import Calibration, Segment
 
@@ -58,10 +58,7 @@ def _pictures(
 
 
 def _alt(run: str, x: Floats, y: Floats, phase: npt.NDArray[np.object_], column: str) -> str:
-    shown = ", ".join(one.label for one in PHASES if (phase == one.key).any())
-    return f"Loop of run {run}: {_span(column, y)} over {_span(_X, x)}; phases: {shown}."
-
-
-def _span(column: str, values: Floats) -> str:
-    low, high = float(np.nanmin(values)), float(np.nanmax(values))
-    return f"{at_axis(column)} from {plain(low)} to {plain(high)}"
+    whole = f"{at_axis(column)} {spanned(y)} over {at_axis(_X)} {spanned(x)}"
+    told = [one for one in PHASES if one.number and np.isfinite(y[phase == one.key]).any()]
+    each = "; ".join(f"{one.label} {spanned(y[phase == one.key])}" for one in told)
+    return f"Loop of run {run}: {whole}. By phase: {each or 'not told apart'}."

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping
 from functools import partial
 
 import numpy as np
+import numpy.typing as npt
 
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.dataset import Recording
@@ -12,9 +13,10 @@ from tsas_cli.reporting.content import Group, Picture, Section, Table, missing
 from tsas_cli.reporting.drawing import picture
 from tsas_cli.reporting.figures.comparison import draw_comparison
 from tsas_cli.reporting.inputs import Inputs
-from tsas_cli.reporting.numbers import ABSENT, plain
+from tsas_cli.reporting.numbers import ABSENT, plain, spanned
 from tsas_cli.reporting.stage_files import Channel, Simulation
 
+Floats = npt.NDArray[np.float64]
 _TITLE = "Simulation and measurement"
 
 
@@ -114,6 +116,17 @@ def _unit(name: str, channel: Channel) -> str:
     return channel.unit or (BY_NAME[name].unit if name in BY_NAME else ABSENT)
 
 
+def _residual_in_words(time_s: Floats, residual: Floats, channel: Channel, unit: str) -> str:
+    """Return the residual's span, where it is largest, and how much of it noise explains."""
+    there = np.isfinite(residual)
+    at = float(time_s[np.nanargmax(np.abs(residual))])
+    said = f"residual {spanned(residual)} {unit}, largest at {plain(at, 3)} s"
+    if not channel.noise:
+        return said
+    inside = float(np.mean(np.abs(residual[there]) <= 2 * channel.noise))
+    return f"{said}, {100.0 * inside:.0f} % of it within twice the noise"
+
+
 def _pictures(
     inputs: Inputs,
     recording: Recording,
@@ -128,6 +141,7 @@ def _pictures(
         if not np.isfinite(measured - simulated).any():
             continue
         unit, what = _unit(name, channel), in_words(name)
+        lasts = plain(float(np.ptp(recording.time_s)), 3)
         distance = f"RMSE {plain(channel.rmse, 3)} {unit}, noise {plain(channel.noise, 3)} {unit}."
         yield picture(
             partial(
@@ -139,7 +153,10 @@ def _pictures(
                 labels=(f"{name.rsplit('_', 1)[0]} [{unit}]", f"residual [{unit}]"),
             ),
             key=f"simulation-{number}-{name}",
-            alt=f"Run {recording.run.id}, {what}: measured, simulated and residual; {distance}",
+            alt=f"Run {recording.run.id}, {what} over {lasts} s: "
+            f"measured {spanned(measured)}, simulated {spanned(simulated)} {unit}; "
+            f"{_residual_in_words(recording.time_s, measured - simulated, channel, unit)}. "
+            f"{distance}",
             caption=f"{what.capitalize()}: {distance}",
             height_in=4.0,
         )

@@ -8,7 +8,7 @@ import numpy.typing as npt
 from tsas_cli.reporting.content import Picture, Section
 from tsas_cli.reporting.drawing import picture
 from tsas_cli.reporting.figures.over_time import Curve, draw_panels, draw_together, panels_in
-from tsas_cli.reporting.numbers import plain
+from tsas_cli.reporting.numbers import plain, spanned
 from tsas_cli.reporting.tracking.runs import TRUE, WANTED, Condition, Followed
 
 Floats = npt.NDArray[np.float64]
@@ -40,7 +40,7 @@ def _force(condition: Condition) -> Picture:
     first = condition.runs[0]
     wanted = first.columns[WANTED]
     curves = [Curve(run.name, run.name, run.columns[TRUE]) for run in condition.runs]
-    spans = "; ".join(f"{c.label} {_span(c.values)}" for c in curves)
+    spans = "; ".join(f"{c.label} {spanned(c.values)}" for c in curves)
     return picture(
         partial(
             draw_together,
@@ -52,7 +52,7 @@ def _force(condition: Condition) -> Picture:
         ),
         key=f"tracking-force-{condition.number}",
         alt=f"Force at the load over time, {condition.name}, in newton: wanted "
-        f"{_span(wanted)}; {spans}.",
+        f"{spanned(wanted)}; {spans}.",
         caption=f"{condition.name.capitalize()}: wanted force, and what each controller gives.",
     )
 
@@ -60,7 +60,7 @@ def _force(condition: Condition) -> Picture:
 def _error(condition: Condition) -> Picture:
     first = condition.runs[0]
     curves = [_error_curve(run) for run in condition.runs]
-    spans = "; ".join(f"{c.controller} {_span(c.values)}" for c in curves)
+    spans = "; ".join(f"{c.label}, {spanned(c.values)}" for c in curves)
     return picture(
         partial(
             draw_panels,
@@ -81,7 +81,3 @@ def _error_curve(run: Followed) -> Curve:
     error = run.error
     rmse = plain(float(np.sqrt(np.mean(error**2))), 3)
     return Curve(f"{run.name}, RMSE {rmse} N", run.name, error)
-
-
-def _span(values: Floats) -> str:
-    return f"{plain(float(values.min()), 3)} to {plain(float(values.max()), 3)}"

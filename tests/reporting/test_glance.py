@@ -1,0 +1,127 @@
+"""The first screen says what came out, with the numbers that it rests on."""
+
+import re
+from html import unescape
+
+import pytest
+
+from tests.reporting.made_folders import (
+    CASES,
+    make_closing,
+    make_dataset,
+    make_diagnosis,
+    make_simulation,
+    make_tracking,
+)
+from tests.reporting.test_reproduction import GROUPS, PAPER
+from tsas_cli.reporting.glance import glance
+from tsas_cli.reporting.inputs import read_inputs
+from tsas_cli.reporting.page import page
+from tsas_cli.reporting.reproduction import reproduction_page
+
+
+@pytest.fixture(scope="module")
+def dataset(tmp_path_factory):
+    return make_dataset(tmp_path_factory.mktemp("glance") / "dataset", ("a",), samples=400)
+
+
+def of(*folders):
+    return glance(read_inputs(list(folders)))
+
+
+def facts(it):
+    return {fact.label: (fact.before, fact.value, fact.note) for fact in it.facts}
+
+
+def test_a_named_cause_with_its_gain_and_the_error_before_and_after(dataset, tmp_path):
+    it = of(make_diagnosis(dataset, tmp_path / "d", "named"))
+    assert (it.kind, it.verdict) == ("Cause found", "Tendon outside the sheath")
+    assert "before → after" in it.numbers
+    assert facts(it) == {
+        "taken away": ("", "48.2 %", "95 % interval: 44.9 to 51.0 %"),
+        "tension at the drive": ("0.910", "0.110 N", "noise alone: 0.100 N"),
+        "tension at the load": ("0.104", "0.0960 N", "noise alone: 0.0800 N"),
+        "displacement of the tendon at the load": (
+            "0.0243",
+            "0.00920 mm",
+            "noise alone: 0.00800 mm",
+        ),
+    }
+
+
+def test_two_causes_are_one_sentence_and_each_has_its_gain(dataset, tmp_path):
+    cause = {"effect": "backlash", "gain_percent": 7.25, "parameters": {}}
+    named = [cause | {"title": "Backlash"}, cause | {"effect": "mine", "title": "Own thing"}]
+    it = of(make_diagnosis(dataset, tmp_path / "d", "named", named=named))
+    assert it.verdict == "Backlash and own thing"
+    assert facts(it)["taken away by mine"] == ("", "7.25 %", "")
+
+
+def test_what_is_unknown_beside_a_cause_is_not_kept_back(dataset, tmp_path):
+    named = [{"effect": "backlash", "title": "Backlash", "parameters": {}}]
+    it = of(make_diagnosis(dataset, tmp_path / "d", "unexplained", named=named))
+    assert it.kind == "Cause found, and something unknown beside it"
+    assert it.verdict == "Backlash"
+
+
+def test_a_rival_stands_in_the_verdict(dataset, tmp_path):
+    it = of(make_diagnosis(dataset, tmp_path / "d", "ambiguous"))
+    assert it.kind == "Cause found, but these recordings leave open which"
+    assert it.verdict == "Tendon outside the sheath, or compliance of the drive"
+
+
+@pytest.mark.parametrize(
+    ("verdict", "said"),
+    [
+        ("sufficient", "The nominal model explains these recordings"),
+        ("unexplained", "No known effect explains what the model misses"),
+        ("undecided", "These recordings hold too little to decide"),
+    ],
+)
+def test_without_a_cause_there_is_no_before_and_no_gain(dataset, tmp_path, verdict, said):
+    it = of(make_diagnosis(dataset, tmp_path / "d", verdict))
+    assert it.verdict == said
+    assert "after" not in it.numbers
+    assert not any(fact.before or fact.label == "taken away" for fact in it.facts)
+    assert bool(it.facts) is (verdict != "undecided")
+
+
+def test_tracking_says_who_follows_best_and_under_which_condition(tmp_path):
+    it = of(make_tracking(tmp_path / "t"))
+    assert it.verdict == "Pid follows best"
+    assert it.numbers == "Root mean square error of the force, undisturbed"
+    assert facts(it)["adaptive-sliding-mode"] == ("", "0.800 N", "disturbed: 0.800 N")
+    assert of(make_tracking(tmp_path / "one", ("pid",))).verdict == "Followed by pid"
+
+
+def test_a_closed_loop_shows_the_median_with_the_poor_the_better_and_the_true_model(tmp_path):
+    it = of(make_closing(tmp_path / "c"))
+    assert it.verdict == "A cause is named in 2 of 3 cases"
+    assert "median of 3 cases" in it.numbers
+    assert facts(it)["disturbance-observer"] == ("0.90", "0.10 N", "with the true model: 0.10 N")
+    one = of(make_closing(tmp_path / "one", {"bend": CASES["bend"]}))
+    assert one.verdict == "A cause is not named"
+    assert "median" not in one.numbers
+
+
+def test_a_simulation_alone_says_how_near_it_is(dataset, tmp_path):
+    it = of(make_simulation(dataset, tmp_path / "s"))
+    assert it.verdict == "Within 2.0 times the noise"
+    assert facts(it)["tension at the load"] == ("", "2.0", "")
+
+
+def test_recordings_alone_have_no_verdict(dataset):
+    assert of(dataset) is None
+    assert 'class="glance"' not in page(read_inputs([dataset]))
+
+
+def test_it_stands_above_everything_else(dataset, tmp_path):
+    text = page(read_inputs([make_diagnosis(dataset, tmp_path / "d", "named")]))
+    assert text.index('class="verdict">Tendon outside') < text.index("<nav")
+    shown = unescape(re.sub("<[^>]*>", "", text[text.index("<dl>") : text.index("</dl>")]))
+    assert "0.910 → 0.110 N" in shown
+
+
+def test_the_reproduction_counts_its_verdicts():
+    text = reproduction_page(PAPER, GROUPS)
+    assert 'class="verdict">1 of 3 numbers and statements agree' in text

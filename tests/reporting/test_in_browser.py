@@ -1,0 +1,175 @@
+"""Every kind of page in a real browser: whole, quiet, accessible, on a phone and on a desk."""
+
+from importlib import resources
+
+import pytest
+
+from tests.reporting.pages import PAGES, chromium
+
+PHONE, DESK = 390, 1280
+LOOKS = [(width, scheme) for width in (PHONE, DESK) for scheme in ("light", "dark")]
+# What is inside of a picture counts as one image with its text.
+JUDGE = "axe.run({exclude: [['svg > *']]}, {resultTypes: ['violations']})"
+# Folds are opened first: what is folded away is neither drawn nor judged.
+UNFOLD = "document.querySelectorAll('details').forEach(fold => fold.open = true)"
+SIZES = """Array.from(document.querySelectorAll('svg, img'), it => {
+    const outer = it.getBoundingClientRect(), drawn = it.getBBox ? it.getBBox() : outer;
+    return [outer.left, outer.right, outer.height, drawn.width, drawn.height];
+})"""
+WIDTHS = "[document.documentElement.scrollWidth, document.body.scrollWidth]"
+
+
+@pytest.fixture(scope="module")
+def browser():
+    with chromium() as opened:
+        yield opened
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory, browser):
+    """By kind, the file of a page; each is made when it is asked for."""
+    files = {}
+
+    def make(kind):
+        if kind not in files:
+            root = tmp_path_factory.mktemp(kind)
+            files[kind] = root / "page.html"
+            files[kind].write_text(PAGES[kind](root), encoding="utf-8")
+        return files[kind].as_uri()
+
+    return make
+
+
+@pytest.fixture
+def tab(browser):
+    """Return a function that opens a page; its faults and requests gather in two lists."""
+    contexts = []
+
+    def open_(address, width, scheme="light", **more):
+        context = browser.new_context(
+            viewport={"width": width, "height": 844}, color_scheme=scheme, **more
+        )
+        contexts.append(context)
+        one = context.new_page()
+        one.faults, one.asked = [], []
+        one.on("console", lambda message: one.faults.append(message.text))
+        one.on("pageerror", lambda error: one.faults.append(str(error)))
+        one.on("request", lambda request: one.asked.append(request.url))
+        one.goto(address)
+        return one
+
+    yield open_
+    for context in contexts:
+        context.close()
+
+
+@pytest.fixture(scope="module")
+def axe():
+    """Return the script of axe-core, which a package for tests carries."""
+    pytest.importorskip("axe_playwright_python")
+    script = resources.files("axe_playwright_python") / "axe.min.js"
+    return script.read_text(encoding="utf-8")
+
+
+def judged(one, axe):
+    """Return each serious or critical fault that axe-core finds, with where it is."""
+    one.evaluate(axe)
+    found = one.evaluate(JUDGE)
+    return [
+        (fault["id"], node["html"][:200])
+        for fault in found["violations"]
+        if fault["impact"] in {"serious", "critical"}
+        for node in fault["nodes"]
+    ]
+
+
+def test_the_judge_finds_faults_where_there_are_some(tab, axe, tmp_path):
+    path = tmp_path / "poor.html"
+    path.write_text("<html><p style='color: #aaa'>pale</p><svg role='img'><g/></svg>")
+    faults = {name for name, _ in judged(tab(path.as_uri(), PHONE), axe)}
+    assert {"color-contrast", "svg-img-alt", "html-has-lang"} <= faults
+
+
+@pytest.mark.parametrize(("width", "scheme"), LOOKS)
+@pytest.mark.parametrize("kind", PAGES)
+def test_it_is_drawn_whole_and_no_serious_fault_is_found(made, tab, axe, kind, width, scheme):
+    one = tab(made(kind), width, scheme)
+    assert max(one.evaluate(WIDTHS)) <= width
+    one.evaluate(UNFOLD)
+    assert max(one.evaluate(WIDTHS)) <= width
+    sizes = one.evaluate(SIZES)
+    assert sizes
+    for left, right, height, drawn_width, drawn_height in sizes:
+        assert 0 <= left < right <= width
+        assert min(height, drawn_width, drawn_height) > 20
+    assert judged(one, axe) == []
+    assert one.faults == []
+    assert one.asked == [made(kind)]
+
+
+def test_the_keyboard_reaches_the_content_at_once_and_shows_where_it_is(made, tab):
+    one = tab(made("pipeline"), DESK)
+    focused = "document.activeElement.textContent.trim()"
+    one.keyboard.press("Tab")
+    assert one.evaluate(focused) == "Skip to the content"
+    assert one.locator(".skip").bounding_box()["y"] >= 0
+    outline = "getComputedStyle(document.activeElement).outlineStyle"
+    assert one.evaluate(outline) != "none"
+    one.keyboard.press("Enter")
+    assert one.evaluate("document.activeElement.id") == "content"
+    one.keyboard.press("Tab")
+    assert one.evaluate(focused) == one.locator("main h2").first.inner_text()
+    assert one.evaluate(outline) != "none"
+
+
+def test_a_fold_opens_with_the_keyboard(made, tab):
+    one = tab(made("pipeline"), PHONE)
+    fold = one.locator("main details").nth(1)
+    assert not fold.locator("svg").first.is_visible()
+    fold.locator("summary").press("Enter")
+    assert fold.locator("svg").first.is_visible()
+
+
+def test_contents_are_folded_on_a_phone_and_stay_beside_the_text_on_a_desk(made, tab):
+    link = "nav ol ol a"
+    one = tab(made("pipeline"), PHONE)
+    assert not one.locator(link).first.is_visible()
+    one.locator("nav summary").click()
+    assert one.locator(link).first.is_visible()
+    one = tab(made("pipeline"), DESK)
+    assert one.locator(link).first.is_visible()
+    one.evaluate("window.scrollTo(0, document.body.scrollHeight)")
+    nav, main = (one.locator(name).bounding_box() for name in ("nav", "main"))
+    assert 0 <= nav["y"] < 50
+    assert nav["x"] + nav["width"] < main["x"]
+
+
+def test_every_address_leads_into_view_and_into_folds(made, tab):
+    one = tab(made("pipeline"), PHONE)
+    ids = one.evaluate("Array.from(document.querySelectorAll('main [id]'), it => it.id)")
+    ids = [name for name in ids if not one.locator(f"svg [id='{name}']").count()]
+    assert len(ids) > 15
+    for name in ids:
+        one.evaluate("name => { location.hash = name }", name)
+        there = one.locator(f"[id='{name}']").bounding_box()
+        assert there["height"] > 0
+        assert there["y"] < 844
+
+
+def test_paper_is_light_whole_and_unfolded(made, tab):
+    one = tab(made("pipeline"), 700, "dark")
+    one.emulate_media(media="print", color_scheme="dark")
+    assert one.locator("main details:not([open]) svg").last.is_visible()
+    assert one.evaluate("getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
+    assert not one.locator(".skip").is_visible()
+    overflow = one.locator(".scroll").first.evaluate("it => getComputedStyle(it).overflowX")
+    assert overflow == "visible"
+
+
+def test_on_a_phone_a_wide_table_scrolls_in_its_own_region(made, tab):
+    one = tab(made("pipeline"), PHONE)
+    wide = one.locator(".scroll").evaluate_all(
+        "them => them.filter(it => it.scrollWidth > it.clientWidth).map(it => it.tabIndex)"
+    )
+    assert wide
+    assert set(wide) == {0}

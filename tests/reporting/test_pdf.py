@@ -1,0 +1,90 @@
+import os
+import re
+from pathlib import Path
+
+import pytest
+
+from tests.reporting.pages import pipeline
+from tsas_cli.errors import InputError
+from tsas_cli.reporting import pdf
+from tsas_cli.reporting.inputs import read_inputs
+from tsas_cli.reporting.page import page
+
+
+@pytest.fixture
+def only(tmp_path, monkeypatch):
+    """Return a function that makes a program the only browser of this machine."""
+    folder = tmp_path / "bin"
+    folder.mkdir()
+
+    def make(name, script):
+        program = folder / name
+        program.write_text(f"#!/bin/sh\n{script}\n")
+        program.chmod(0o755)
+        return program
+
+    monkeypatch.setattr(pdf.shutil, "which", lambda name: _found(folder / name))
+    return make
+
+
+def _found(program: Path):
+    return str(program) if os.access(program, os.X_OK) else None
+
+
+def test_the_first_browser_that_is_there_prints(only, tmp_path):
+    only("microsoft-edge", "exit 1")
+    chosen = only("chromium-browser", 'for o; do case $o in --print-to-pdf=*) printf %s "%PDF-1.4 $*" > "${o#*=}";; esac; done')  # fmt: skip  # noqa: E501
+    pdf.print_page("<p>x", tmp_path / "page.pdf")
+    call = (tmp_path / "page.pdf").read_text()
+    assert pdf.browser() == str(chosen)
+    assert "--no-pdf-header-footer" in call
+    assert re.search(r"file:///\S+/page\.html$", call)
+    assert ("--no-sandbox" in call) is (os.geteuid() == 0)
+
+
+def test_without_a_browser_it_is_said_which_would_do(only, tmp_path):
+    with pytest.raises(InputError, match=r"chromium.*google-chrome.*apt install chromium"):
+        pdf.print_page("<p>x", tmp_path / "page.pdf")
+    assert not (tmp_path / "page.pdf").exists()
+
+
+def test_a_browser_that_fails_is_quoted(only, tmp_path):
+    only("chromium", "echo first >&2; echo no display >&2; exit 1")
+    with pytest.raises(InputError, match="chromium: made no PDF \\(no display\\)"):
+        pdf.print_page("<p>x", tmp_path / "page.pdf")
+    assert not (tmp_path / "page.pdf").exists()
+
+
+def test_a_browser_that_hangs_is_ended_with_all_that_it_started(only, tmp_path, monkeypatch):
+    monkeypatch.setattr(pdf, "_LONGEST_S", 0.3)
+    only("chromium", f"sleep 60 & echo $! > {tmp_path}/child; wait")
+    with pytest.raises(InputError, match=r"not done after 0\.3 s"):
+        pdf.print_page("<p>x", tmp_path / "page.pdf")
+    state = Path(f"/proc/{(tmp_path / 'child').read_text().strip()}/stat")
+    assert not state.exists() or state.read_text().split()[2] == "Z"
+
+
+@pytest.fixture(scope="module")
+def printed(tmp_path_factory):
+    """Return the bytes of a page that the machine's own browser has printed."""
+    try:
+        pdf.browser()
+    except InputError as error:
+        pytest.skip(f"nothing to print with: {error}")
+    root = tmp_path_factory.mktemp("pdf")
+    pdf.print_page(page(read_inputs(pipeline(root, samples=400))), root / "page.pdf")
+    return (root / "page.pdf").read_bytes()
+
+
+def test_it_is_on_a4_with_a_title_an_outline_and_structure(printed):
+    sizes = re.findall(rb"/MediaBox\s*\[0 0 ([\d.]+) ([\d.]+)\]", printed)
+    assert len(sizes) > 3
+    assert {(round(float(w)), round(float(h))) for w, h in sizes} == {(595, 842)}
+    assert b"/Outlines" in printed
+    assert b"/StructTreeRoot" in printed
+    assert b"/Title (bench: recordings" in printed
+
+
+def test_links_lead_within_the_document_and_nowhere_else(printed):
+    assert b"/Dest" in printed
+    assert b"/URI" not in printed

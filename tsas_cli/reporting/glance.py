@@ -1,0 +1,143 @@
+"""The first screen of the page: the answer in a few words, and the numbers that it rests on."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from statistics import median
+
+from tsas_cli.reporting.channels import called
+from tsas_cli.reporting.closing_file import Closing
+from tsas_cli.reporting.content import Fact, Glance
+from tsas_cli.reporting.diagnosis.words import heading_of, listed, title_of, within
+from tsas_cli.reporting.drive_file import Drive, DriveDiagnosis
+from tsas_cli.reporting.inputs import Inputs
+from tsas_cli.reporting.numbers import ABSENT, plain, with_interval
+from tsas_cli.reporting.stage_files import Cause, Diagnosis, HeldOut, Simulation
+from tsas_cli.reporting.tracking_file import Tracking
+
+_KINDS = {
+    "named": "Cause found",
+    "ambiguous": "Cause found, but these recordings leave open which",
+    "sufficient": "Nothing is missing",
+    "unexplained": "Something unknown is missing",
+    "undecided": "Cannot tell",
+}
+_BESIDE = "Cause found, and something unknown beside it"
+_NO_CAUSE = {
+    "sufficient": "The nominal model explains these recordings",
+    "unexplained": "No known effect explains what the model misses",
+    "undecided": "These recordings hold too little to decide",
+}
+
+
+def glance(inputs: Inputs) -> Glance | None:
+    """Return the first screen, None where there are only recordings."""
+    if closing := inputs.get(Closing):
+        return _of_closing(closing)
+    if tracking := inputs.get(Tracking):
+        return _of_tracking(tracking)
+    if diagnosis := inputs.get(Diagnosis):
+        return _of_diagnosis(diagnosis)
+    if drive := inputs.get(Drive):
+        return _of_diagnosis(drive.diagnosis)
+    if simulation := inputs.get(Simulation):
+        return _of_simulation(simulation)
+    return None
+
+
+def _of_diagnosis(diagnosis: Diagnosis | DriveDiagnosis) -> Glance:
+    named = diagnosis.named
+    verdict = _causes(named) if named else _NO_CAUSE.get(diagnosis.verdict, diagnosis.reason)
+    numbers = "Root mean square error on data that no fit has seen"
+    facts = (*_gains(named), *_errors(diagnosis.channels, named=bool(named)))
+    shown = tuple(fact for fact in facts if ABSENT not in fact.value)
+    if named:
+        numbers += ", before → after"
+    kind = _BESIDE if named and diagnosis.verdict == "unexplained" else _KINDS[diagnosis.verdict]
+    return Glance(kind, verdict, numbers if shown else "", shown)
+
+
+def _causes(named: Sequence[Cause]) -> str:
+    first, *more = (heading_of(cause) for cause in named)
+    return listed([first, *map(within, more)])
+
+
+def _errors(channels: Mapping[str, HeldOut], *, named: bool) -> Iterator[Fact]:
+    for name, channel in channels.items():
+        before, after = plain(channel.rmse_before, 3), plain(channel.rmse_after, 3)
+        value = f"{after if named else before} {channel.unit}"
+        noise = f"noise alone: {plain(channel.noise_floor, 3)} {channel.unit}"
+        yield Fact(called(name), value, noise, before if named else "")
+
+
+def _gains(named: Sequence[Cause]) -> Iterator[Fact]:
+    for cause in named:
+        low, high = cause.gain_interval_percent or (None, None)
+        gain, interval = with_interval(cause.gain_percent, low, high)
+        by = f" by {within(title_of(cause.effect))}" if len(named) > 1 else ""
+        if interval == ABSENT:
+            yield Fact(f"taken away{by}", f"{plain(cause.gain_percent, 3)} %")
+        else:
+            yield Fact(f"taken away{by}", f"{gain} %", f"95 % interval: {interval} %")
+
+
+def _of_tracking(tracking: Tracking) -> Glance:
+    by_controller: dict[str, dict[str, str]] = {}
+    means: dict[str, float] = {}
+    for result in tracking.results:
+        rmse = result.scores.rmse_N
+        shown = f"{plain(rmse.mean, 3)} N"
+        by_controller.setdefault(result.controller, {})[result.condition] = shown
+        if rmse.mean is not None and len(by_controller[result.controller]) == 1:
+            means[result.controller] = rmse.mean
+    first = tracking.results[0].condition
+    verdict = f"Followed by {listed(list(by_controller))}"
+    if len(means) > 1:
+        verdict = f"{min(means, key=lambda name: means[name]).capitalize()} follows best"
+    facts = []
+    for name, by_condition in by_controller.items():
+        (_, value), *others = by_condition.items()
+        facts.append(Fact(name, value, "; ".join(f"{c}: {rmse}" for c, rmse in others)))
+    numbers = f"Root mean square error of the force, {first}"
+    return Glance("Tracking, simulated", verdict, numbers, tuple(facts))
+
+
+def _of_closing(closing: Closing) -> Glance:
+    total, named = len(closing.cases), sum(bool(case.named) for case in closing.cases)
+    facts = []
+    for name, rows in closing.of_controllers().items():
+        sheet, _, extended, true = (
+            plain(median(values), 2)
+            for values in zip(
+                *([rmse.mean for rmse in row.by_model.values()] for row in rows.values()),
+                strict=True,
+            )
+        )
+        facts.append(Fact(name, f"{extended} N", f"with the true model: {true} N", sheet))
+    numbers = "RMSE of the force with the data sheet's model → with the extended one"
+    verdict = f"A cause is {'' if named else 'not '}named"
+    if total > 1:
+        numbers += f", median of {total} cases"
+        verdict = f"A cause is named in {named} of {total} cases"
+    return Glance("Hidden differences, diagnosed and tracked", verdict, numbers, tuple(facts))
+
+
+def _of_simulation(simulation: Simulation) -> Glance | None:
+    ratios: dict[str, list[float]] = {}
+    for run in simulation.runs.values():
+        for name, channel in run.channels.items():
+            if channel.rmse is not None and channel.noise:
+                ratios.setdefault(name, []).append(channel.rmse / channel.noise)
+    if not ratios:
+        return None
+    worst = max(map(max, ratios.values()))
+    facts = (Fact(called(name), _range(found), "") for name, found in ratios.items())
+    return Glance(
+        "Simulation against measurement",
+        f"Within {plain(worst, 2)} times the noise",
+        "Root mean square error in times the noise, over the runs",
+        tuple(facts),
+    )
+
+
+def _range(values: list[float]) -> str:
+    low, high = plain(min(values), 2), plain(max(values), 2)
+    return low if low == high else f"{low} to {high}"

@@ -1,0 +1,96 @@
+"""A page as PDF, printed by the Chromium that this machine has."""
+
+import os
+import shutil
+import signal
+import subprocess
+import tempfile
+from pathlib import Path
+
+from tsas_cli.errors import InputError
+
+BROWSERS = (
+    "chromium",
+    "chromium-browser",
+    "google-chrome",
+    "google-chrome-stable",
+    "microsoft-edge",
+)
+_LONGEST_S = 120.0
+_OPTIONS = (
+    "--headless",
+    "--disable-gpu",
+    "--no-first-run",
+    "--disable-extensions",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--host-resolver-rules=MAP * ~NOTFOUND",
+    "--no-pdf-header-footer",
+    "--generate-pdf-document-outline",
+)
+
+
+def browser() -> str:
+    """Return the path of the first of `BROWSERS` that is there.
+
+    Raises
+    ------
+    InputError
+        None is.
+    """
+    for name in BROWSERS:
+        if path := shutil.which(name):
+            return path
+    raise InputError(
+        "no Chromium to print with",
+        expected=f"one of {', '.join(BROWSERS)} on the PATH",
+        remedy="install one (Debian: apt install chromium), or print the page from your browser",
+    )
+
+
+def print_page(html: str, pdf: Path) -> None:
+    """Print a page into a file, on A4, with its headings as the outline.
+
+    Raises
+    ------
+    InputError
+        No browser is there, or it fails.
+    """
+    program = browser()
+    with tempfile.TemporaryDirectory(prefix="tsas-pdf-", ignore_cleanup_errors=True) as name:
+        folder = Path(name)
+        page, made = folder / "page.html", folder / "page.pdf"
+        page.write_text(html, encoding="utf-8")
+        call = [program, *_OPTIONS, f"--user-data-dir={folder / 'profile'}"]
+        if os.geteuid() == 0:
+            call.append("--no-sandbox")  # as root Chromium starts in no other way
+        said = _run([*call, f"--print-to-pdf={made}", page.as_uri()])
+        if not made.is_file() or not made.read_bytes().startswith(b"%PDF"):
+            last = said.strip().splitlines()[-1:] or ["it said nothing"]
+            raise InputError(
+                f"made no PDF ({last[0]})",
+                where=program,
+                remedy="print the page from your browser",
+            )
+        shutil.copyfile(made, pdf)
+
+
+def _run(call: list[str]) -> str:
+    """Run the browser to its end, or end it with all its processes; return what it said."""
+    with subprocess.Popen(  # noqa: S603  our own options, and files that we have named
+        call,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+        errors="replace",
+        start_new_session=True,
+    ) as process:
+        try:
+            return process.communicate(timeout=_LONGEST_S)[1]
+        except subprocess.TimeoutExpired:
+            return f"not done after {_LONGEST_S:g} s"
+        finally:
+            if process.poll() is None:
+                os.killpg(process.pid, signal.SIGKILL)
