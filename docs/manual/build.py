@@ -11,12 +11,18 @@ import tomlkit
 from docs.manual import pages
 from docs.manual.colours import site_style
 from docs.manual.commands import command_page
-from docs.manual.effects import effect_pages
+from docs.manual.effects import PLACES, effect_pages
 from docs.manual.links import for_site, targets
 from tsas_cli.effects import EFFECTS
 
 ASSETS = Path(__file__).parent / "assets"
 SETTINGS = Path(__file__).parent / "zensical.toml"
+GENERATED = {  # where links of the repository lead in the site, beside its pages
+    "README.md": pages.HOME.site,
+    "tsas_cli/commands": "commands.md",
+    "tsas_cli/effects": "effects/index.md",
+    **{f"tsas_cli/effects/{effect.name}.py": f"effects/{effect.name}.md" for effect in EFFECTS},
+}
 
 
 def write_sources(folder: Path, effects: dict[str, str]) -> None:
@@ -32,7 +38,7 @@ def write_sources(folder: Path, effects: dict[str, str]) -> None:
     for asset in ASSETS.iterdir():
         shutil.copy(asset, source / "assets")
     (source / "assets" / "tsas.css").write_text(site_style(), encoding="utf-8")
-    sites = {page.source: page.site for page in pages.pages()} | {"README.md": pages.HOME.site}
+    sites = {page.source: page.site for page in pages.pages()} | GENERATED
     texts = {
         page: (pages.ROOT / page.source).read_text(encoding="utf-8") for page in pages.pages()
     }
@@ -74,7 +80,14 @@ def _contents() -> list[dict[str, Any]]:
         return [{page.title: page.site} for page in some]
 
     effects: list[Any] = [
-        {effect.title: f"effects/{effect.name}.md"} for effect in EFFECTS
+        {
+            place.capitalize(): [
+                {effect.title: f"effects/{effect.name}.md"}
+                for effect in EFFECTS
+                if effect.acts_on == place
+            ]
+        }
+        for place in PLACES
     ]
     return [
         {pages.HOME.title: pages.HOME.site},

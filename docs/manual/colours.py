@@ -18,7 +18,7 @@ def site_style() -> str:
     light, dark = palettes()
     return f""":root {{ {light} }}
 [data-md-color-scheme="slate"] {{ {dark} }}
-.md-typeset figure {{ margin: 1.2em 0; max-width: 36rem; }}
+.md-typeset figure {{ margin: 1.2em 0; max-width: 31rem; }}
 .md-typeset figure svg {{ display: block; width: 100%; height: auto; overflow: visible; }}
 .md-typeset figure svg text {{ font-family: inherit !important; }}
 .md-typeset figcaption {{
@@ -26,6 +26,7 @@ def site_style() -> str:
   color: var(--md-default-fg-color--light);
 }}
 .md-typeset pre > code {{ font-size: 0.78em; }}
+.md-typeset table:not([class]) th {{ min-width: 0; }}
 .md-typeset table:not([class]) code {{ white-space: nowrap; }}
 .md-typeset img {{ max-width: 100%; height: auto; }}
 """

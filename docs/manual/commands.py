@@ -52,7 +52,7 @@ def example(name: str) -> tuple[str, str]:
         No page shows the command.
     """
     for prompt in (r"\$ ", ""):
-        call = re.compile(rf"^{prompt}({re.escape(name)} [^\n\[…]*?)( +#[^\n]*)?$", re.MULTILINE)
+        call = re.compile(rf"^{prompt}({re.escape(name)}(?![\w-])[^\n]*?)( +#[^\n]*)?$", re.MULTILINE)
         for page in SHOWN_IN:
             text = (ROOT / page).read_text(encoding="utf-8") if (ROOT / page).is_file() else ""
             if found := call.search(text):

@@ -51,7 +51,7 @@ def signature_picture(effect: Effect, signature: Signature) -> Picture:
         draw,
         key=effect.name,
         alt=f"{effect.title}, drawn without and with it. {signature.look}",
-        caption=f"{signature.look} ({_sizes(effect, signature)})",
+        caption=f"{signature.look} Drawn with {_sizes(effect, signature)}.",
         height_in=4.4,
     )
 
@@ -118,4 +118,7 @@ def _sizes(effect: Effect, signature: Signature) -> str:
     """Return the values that are drawn, with their units."""
     units = {p.name: p.unit for p in effect.parameters}
     values = dict(item for variant in signature.variants for item in variant.values.items())
-    return ", ".join(f"{name} {value:g} {units[name]}" for name, value in values.items())
+    return ", ".join(
+        f"{name} {value:g}{'' if units[name] == '1' else ' ' + units[name]}"
+        for name, value in values.items()
+    )

@@ -24,8 +24,14 @@ def parts_of(doc: str) -> dict[str, str]:
     pieces = re.split(rf"^({'|'.join(PARTS)}): ", doc.strip(), flags=re.MULTILINE)
     if tuple(pieces[1::2]) != PARTS:
         raise ValueError(f"expected the parts {PARTS}, found {pieces[1::2]}")
-    texts = [" ".join(piece.split()) for piece in pieces[::2]]
+    texts = [_begun(" ".join(piece.split())) for piece in pieces[::2]]
     return dict(zip(("", *PARTS), texts, strict=True))
+
+
+def _begun(text: str) -> str:
+    """Return a part with a capital where it begins with a word, and not with a name."""
+    word = text.split(maxsplit=1)[0]
+    return text if "_" in word or len(word) == 1 and word != "a" else text[0].upper() + text[1:]
 
 
 def effect_pages(draw: Callable[[Effect], str] | None = None) -> dict[str, str]:
