@@ -29,6 +29,7 @@ HEAVY = {
     "scipy",
     "tomlkit",
 }
+HELPERS = {"__init__", "common", "completion", "progress"}  # files that are no command
 COMMANDS = typer.main.get_command(tsas_cli.app.app).commands  # type: ignore[attr-defined]
 CALLS = {  # `tsas challenge` is a group: its commands stand in its place
     f"{name} {inner}".strip(): call
@@ -65,7 +66,7 @@ def test_help_loads_no_library_that_it_does_not_need() -> None:
 
 def test_every_command_file_is_a_command() -> None:
     files = {path.stem for path in (Path(tsas_cli.__file__).parent / "commands").glob("*.py")}
-    assert {name.replace("-", "_") for name in COMMANDS} == files - {"__init__", "common"}
+    assert {name.replace("-", "_") for name in COMMANDS} == files - HELPERS
 
 
 @pytest.mark.parametrize("name", CALLS)

@@ -26,7 +26,6 @@ from tsas_cli.errors import InputError, printable
 app = typer.Typer(
     name="tsas",
     no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
     help="From recordings of a tendon-sheath rig to a calibrated model and its errors.",
 )

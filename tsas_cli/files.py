@@ -49,6 +49,22 @@ def new_folder(path: Path, *, force: bool = False) -> Iterator[Path]:
 
 
 @contextmanager
+def folder_if(path: Path | None, *, force: bool = False) -> Iterator[Path | None]:
+    """Yield a new folder as `new_folder` does, or None where no path says where to write.
+
+    Raises
+    ------
+    InputError
+        As `new_folder` raises it.
+    """
+    if path is None:
+        yield None
+        return
+    with new_folder(path, force=force) as folder:
+        yield folder
+
+
+@contextmanager
 def new_file(path: Path, *, force: bool = False) -> Iterator[Path]:
     """Yield a temporary file name that becomes `path` when the block ends without an error.
 

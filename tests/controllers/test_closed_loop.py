@@ -15,7 +15,7 @@ DRIVE = Actuator(0.0236, 52.0, 1.8e-4, 0.007, 0.002, 3000.0)
 PROGRAM = """
 import json, sys
 from tests.tracking.runs import run
-from tsas_cli.tracking.settings import CONTROLLERS
+from tsas_cli.controllers import CONTROLLERS
 
 form = {"duration_s": 0.12, "mean_N": 44.0, "angular_frequency_rad_per_s": 40.0}
 tables = {

@@ -14,7 +14,7 @@ from tsas_cli.reporting.page import page
 def made(tmp_path_factory):
     root = tmp_path_factory.mktemp("drive")
     data = drive_dataset(root / "dataset", SPRUNG, duration_s=6.0, to_Hz=120.0)
-    summary = identify_drive(data, root / "out")
+    summary = identify_drive(data, root / "out").summary
     return summary, page(read_inputs([root / "out"]))
 
 

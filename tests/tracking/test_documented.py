@@ -9,7 +9,8 @@ import pyarrow.parquet as pq
 import pytest
 
 from tests.commands.documented import documented
-from tsas_cli.tracking.settings import CONTROLLERS, Settings
+from tsas_cli.controllers import CONTROLLERS
+from tsas_cli.tracking.settings import Settings
 from tsas_cli.tracking.track_stage import Call, track_all
 
 TEXT = (Path(__file__).parents[2] / "docs" / "tracking.md").read_text(encoding="utf-8")

@@ -26,7 +26,7 @@ def test_the_plant_is_dynamic_and_nearly_the_same(tmp_path, settings):
     forces, summaries = [], []
     for dynamics in ("slip", "lugre"):
         out = tmp_path / dynamics
-        summaries.append(track_all(Call(settings=settings, dynamics=dynamics), out))
+        summaries.append(track_all(Call(settings=settings, dynamics=dynamics), out).summary)
         run = pq.read_table(out / "runs" / "adaptive-sliding-mode-undisturbed.parquet")
         forces.append(run["f_out_true_N"].to_numpy())
     off = np.max(np.abs(forces[1] - forces[0])) / np.ptp(forces[0])
@@ -41,7 +41,7 @@ def test_the_plant_is_dynamic_and_nearly_the_same(tmp_path, settings):
 def test_unstable_sliding_is_said(tmp_path, settings):
     strong = disturbed([f"{DAMPING}=5", "bristles.stiffness_N_per_mm=6000"])
     call = Call(settings=settings, dynamics="lugre", conditions=(strong,))
-    notes = track_all(call, tmp_path / "out")["notes"]
+    notes = track_all(call, tmp_path / "out").summary["notes"]
     assert any(note.startswith("disturbed: sliding is unstable in a dead band") for note in notes)
 
 

@@ -4,9 +4,10 @@ import math
 
 import pytest
 
+from tsas_cli.controllers import CONTROLLERS
 from tsas_cli.controllers.closed_loop import ADAPTIVE, OBSERVER, PID, SLIDING
 from tsas_cli.errors import InputError
-from tsas_cli.tracking.settings import CONTROLLERS, Settings, printed_gains, read_settings
+from tsas_cli.tracking.settings import Settings, printed_gains, read_settings
 
 
 def test_the_drive_is_that_of_the_paper():

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from tests.tracking.runs import loop_of, run, settings_of
+from tsas_cli.controllers import CONTROLLERS
 from tsas_cli.controllers.closed_loop import (
     ASKED,
     DISTANCE,
@@ -22,7 +23,6 @@ from tsas_cli.errors import InputError
 from tsas_cli.physics.ends import Drive
 from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import with_values
-from tsas_cli.tracking.settings import CONTROLLERS
 from tsas_cli.tracking.track import feedforward
 
 SILENT = {"noise_mm": 0.0, "step_mm": 0.0}

@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+import tsas_cli as tsas
 from tsas_cli.commands.common import (
     ChosenRuns,
     DatasetFolder,
@@ -13,10 +14,10 @@ from tsas_cli.commands.common import (
     Json,
     OutFolder,
     Quiet,
-    opened,
-    progress,
-    show,
+    names,
+    present,
 )
+from tsas_cli.commands.progress import progress
 
 
 class DynamicsOption(StrEnum):
@@ -45,12 +46,14 @@ def calibrate(
     as_json: Json = False,
 ) -> None:
     """Fit the nominal model to a dataset, and the stiffness km of each phase."""
-    from tsas_cli.identification.calibrate_stage import calibrate_dataset, tables
-
-    data = opened(dataset, runs)
-    with progress("calibrate", 2 * len(data.runs), quiet=quiet or as_json) as step:
-        summary = calibrate_dataset(data, out, dynamics.value, model, force=force, step=step)
-    show(summary, tables(summary, out), quiet=quiet, as_json=as_json)
-    if not quiet and not as_json:
-        for sentence in summary["cannot_tell"]:
-            print(f"- {sentence}")
+    with progress("calibrate", quiet=quiet) as step:
+        result = tsas.calibrate(
+            dataset,
+            out=out,
+            model=model,
+            dynamics=dynamics.value,
+            runs=names(runs),
+            force=force,
+            step=step,
+        )
+    present(result, quiet=quiet, as_json=as_json)

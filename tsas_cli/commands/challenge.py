@@ -7,7 +7,8 @@ from typing import Annotated
 
 import typer
 
-from tsas_cli.commands.common import Force, Json, OutFolder, Quiet, progress, show
+from tsas_cli.commands.common import Force, Json, OutFolder, Quiet, present
+from tsas_cli.commands.progress import progress
 
 challenge = typer.Typer(
     name="challenge",
@@ -59,41 +60,20 @@ def make(
     as_json: Json = False,
 ) -> None:
     """Make recordings with known causes, and seal the truth beside them."""
-    from collections import Counter
+    from tsas_cli.api.challenge import make_set
 
-    from tsas_cli import __version__
-    from tsas_cli.challenge.cases import cases, part
-    from tsas_cli.challenge.make import make as make_set
-    from tsas_cli.errors import InputError
-    from tsas_cli.files import new_folder
-
-    listed = [case for each in range(seed, seed + seeds) for case in cases(each)]
-    if small:
-        listed = list(part(listed))
-    if kind is not None:
-        listed = [case for case in listed if case.kind == kind.value]
-    if not listed:
-        raise InputError("--small keeps no case of --kind pair", remedy="leave one of them out")
-    with (
-        new_folder(out, force=force) as folder,
-        progress("challenge", len(listed), quiet=quiet or as_json) as step,
-    ):
-        make_set(folder, listed, rate_Hz=rate, step=step)
-    kinds = Counter(case.kind for case in listed)
-    summary = {
-        "format": 1,
-        "stage": "challenge make",
-        "version": __version__,
-        "folder": str(out),
-        "seed": seed,
-        "seeds": seeds,
-        "rate_Hz": rate,
-        "cases": dict(kinds),
-    }
-    rows = [(kind, str(count)) for kind, count in kinds.items()]
-    said = f"seed {seed}" if seeds == 1 else f"seeds {seed} to {seed + seeds - 1}"
-    title = f"{out}: {len(listed)} cases of {said}"
-    show(summary, [(title, ("hidden", "cases"), rows)], quiet=quiet, as_json=as_json)
+    with progress("challenge", quiet=quiet) as step:
+        result = make_set(
+            out=out,
+            seed=seed,
+            seeds=seeds,
+            small=small,
+            kind=None if kind is None else kind.value,
+            rate_Hz=rate,
+            force=force,
+            step=step,
+        )
+    present(result, quiet=quiet, as_json=as_json)
 
 
 @challenge.command("run")
@@ -111,14 +91,11 @@ def run(
     as_json: Json = False,
 ) -> None:
     """Diagnose every case of a sealed set; the answers stay unread."""
-    from tsas_cli.challenge.run import TOOLS, case_folders, run_cases
+    from tsas_cli.api.challenge import run_set
 
-    cases = len(case_folders(sealed))
-    with progress("challenge", cases, quiet=quiet or as_json) as step:
-        log = run_cases(sealed, out, workers=workers, force=force, diagnose=TOOLS[tool], step=step)
-    title = f"{out}: {log['answered']} of {cases} cases answered"
-    table = (title, ("no answer", "reason"), list(log["no_answer"].items()))
-    show(log, [table], quiet=quiet, as_json=as_json)
+    with progress("challenge", quiet=quiet) as step:
+        result = run_set(sealed, out=out, tool=tool.value, workers=workers, force=force, step=step)
+    present(result, quiet=quiet, as_json=as_json)
 
 
 @challenge.command("score")
@@ -135,12 +112,7 @@ def score(
     as_json: Json = False,
 ) -> None:
     """Score the answers of one or more tools against the truth, side by side."""
-    from tsas_cli.challenge.score import score_entries
-    from tsas_cli.challenge.tables import tables
-    from tsas_cli.files import new_folder, write_json
+    from tsas_cli.api.challenge import score_set
 
-    content = score_entries(sealed, entries)
-    if out is not None:
-        with new_folder(out, force=force) as folder:
-            write_json(folder / "score.json", content)
-    show(content, tables(content), quiet=quiet, as_json=as_json)
+    result = score_set(sealed, entries, out=out, force=force)
+    present(result, quiet=quiet, as_json=as_json)

@@ -5,7 +5,9 @@ from typing import Annotated
 
 import typer
 
-from tsas_cli.commands.common import Force, Json, OutFolder, Quiet, progress, show
+import tsas_cli as tsas
+from tsas_cli.commands.common import Force, Json, OutFolder, Quiet, names, present
+from tsas_cli.commands.progress import progress
 
 
 def close_loop(
@@ -29,12 +31,15 @@ def close_loop(
     as_json: Json = False,
 ) -> None:
     """Say what a diagnosis is worth in tracking: nominal, extended and true model side by side."""
-    from tsas_cli.tracking.closing import STEPS
-    from tsas_cli.tracking.closing_stage import chosen, close_all, tables
-    from tsas_cli.tracking.settings import read_settings
-
-    wanted = chosen(cases, hide or [])
-    read = read_settings(settings)
-    with progress("close-loop", STEPS * len(wanted), quiet=quiet or as_json) as step:
-        summary = close_all(wanted, read, out, range(seed, seed + seeds), force=force, step=step)
-    show(summary, tables(summary, out), quiet=quiet, as_json=as_json)
+    with progress("close-loop", quiet=quiet) as step:
+        result = tsas.close_loop(
+            out=out,
+            cases=names(cases),
+            hide=hide or (),
+            settings=settings,
+            seeds=seeds,
+            first_seed=seed,
+            force=force,
+            step=step,
+        )
+    present(result, quiet=quiet, as_json=as_json)

@@ -1,17 +1,17 @@
-"""What the subcommands share: their options, the table they print, and the summary they write."""
+"""What the subcommands share: their options, and how a result and hints are printed."""
 
 import sys
-from collections.abc import Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from tsas_cli.commands.completion import run_ids
 from tsas_cli.errors import printable
 
 if TYPE_CHECKING:
-    from tsas_cli.recordings.dataset import Dataset
+    from tsas_cli.result import Result
 
 DatasetFolder = Annotated[Path, typer.Argument(metavar="DATASET", help="A dataset's folder.")]
 OutFolder = Annotated[Path, typer.Option("--out", metavar="DIR", help="The folder to write.")]
@@ -21,35 +21,40 @@ ModelFile = Annotated[
 ]
 ChosenRuns = Annotated[
     str | None,
-    typer.Option("--runs", metavar="IDS", help="Only these runs, with commas between; else all."),
+    typer.Option(
+        "--runs",
+        metavar="IDS",
+        help="Only these runs, with commas between; else all.",
+        autocompletion=run_ids,
+    ),
 ]
 Force = Annotated[bool, typer.Option("--force", help="Replace the output if it is there.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
 Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON instead of a table.")]
 
 
-def opened(folder: Path, runs: str | None) -> "Dataset":
-    """Open a dataset with the runs that were asked for.
+def names(listed: str | None) -> list[str] | None:
+    """Return what stands between the commas of an option, or None where it was not given."""
+    return None if listed is None else [name.strip() for name in listed.split(",")]
 
-    Raises
-    ------
-    InputError
-        It is none, or has no such run.
-    """
-    from tsas_cli.recordings.dataset import read_dataset
 
-    dataset = read_dataset(folder)
-    return dataset if runs is None else dataset.only(name.strip() for name in runs.split(","))
+def present(result: "Result", *, quiet: bool, as_json: bool) -> None:
+    """Print a stage's result on standard output: as JSON, or its tables and sentences."""
+    if not (quiet or as_json):
+        for line in result.intro():
+            print(line)
+    show(result.summary, result.tables(), result.sentences(), quiet=quiet, as_json=as_json)
 
 
 def show(
     summary: dict[str, Any],
     tables: Iterable[tuple[str, Sequence[str], Sequence[Sequence[str]]]],
+    sentences: Iterable[str] = (),
     *,
     quiet: bool,
     as_json: bool,
 ) -> None:
-    """Print a stage's result: its summary as JSON, or its tables (title, header, rows)."""
+    """Print a summary as JSON, or tables (title, header, rows) and the sentences below them."""
     if as_json:
         from tsas_cli.files import json_text
 
@@ -57,6 +62,14 @@ def show(
     elif not quiet:
         for title, header, rows in tables:
             _print_table(title, header, rows)
+        for sentence in sentences:
+            print(printable(sentence))
+
+
+def hint(text: str, *, quiet: bool, as_json: bool) -> None:
+    """Say to a person at a terminal, on standard error, what else the program can do."""
+    if sys.stderr.isatty() and not (quiet or as_json):
+        print(text, file=sys.stderr)
 
 
 def _print_table(title: str, header: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
@@ -69,20 +82,3 @@ def _print_table(title: str, header: Sequence[str], rows: Sequence[Sequence[str]
             cells = (cell.ljust(width) for cell, width in zip(line, widths, strict=True))
             print("  " + "  ".join(cells).rstrip())
     print()
-
-
-@contextmanager
-def progress(label: str, total: int | None, *, quiet: bool) -> Iterator[Any]:
-    """Show a bar on a terminal; yield a function that moves it by one.
-
-    Without a total the bar only shows that work goes on.
-    """
-    if quiet or not sys.stderr.isatty():
-        yield lambda: None
-        return
-    from rich.console import Console
-    from rich.progress import Progress
-
-    with Progress(console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(label, total=total)
-        yield lambda: bar.advance(task)

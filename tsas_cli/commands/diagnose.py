@@ -1,5 +1,6 @@
 """`tsas diagnose`: what the model gets wrong, its cause, the extended model, the gain."""
 
+import tsas_cli as tsas
 from tsas_cli.commands.common import (
     ChosenRuns,
     DatasetFolder,
@@ -8,10 +9,10 @@ from tsas_cli.commands.common import (
     ModelFile,
     OutFolder,
     Quiet,
-    opened,
-    progress,
-    show,
+    names,
+    present,
 )
+from tsas_cli.commands.progress import progress
 
 
 def diagnose(
@@ -24,14 +25,8 @@ def diagnose(
     as_json: Json = False,
 ) -> None:
     """Show what the simulation gets wrong, name the cause, extend the model, measure the gain."""
-    from tsas_cli.diagnosis.diagnose_stage import diagnose_dataset, tables
-
-    data = opened(dataset, runs)
-    with progress("diagnose", None, quiet=quiet or as_json) as step:
-        summary = diagnose_dataset(data, model, out, force=force, step=step)
-    show(summary, tables(summary, out), quiet=quiet, as_json=as_json)
-    if not quiet and not as_json:
-        print(summary["reason"])
-        print(f"Next: {summary['next_experiment']}")
-        for sentence in summary["cannot_tell"]:
-            print(f"- {sentence}")
+    with progress("diagnose", quiet=quiet) as step:
+        result = tsas.diagnose(
+            dataset, out=out, model=model, runs=names(runs), force=force, step=step
+        )
+    present(result, quiet=quiet, as_json=as_json)

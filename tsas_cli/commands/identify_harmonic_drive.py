@@ -1,10 +1,11 @@
 """`tsas identify-harmonic-drive`: from motor speed to x_in: G(s), its inverse, what it lacks."""
 
 from enum import StrEnum
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
+import tsas_cli as tsas
 from tsas_cli.commands.common import (
     ChosenRuns,
     DatasetFolder,
@@ -12,13 +13,10 @@ from tsas_cli.commands.common import (
     Json,
     OutFolder,
     Quiet,
-    opened,
-    progress,
-    show,
+    names,
+    present,
 )
-
-if TYPE_CHECKING:
-    from tsas_cli.numerics.linear_response import Hold
+from tsas_cli.commands.progress import progress
 
 
 class SpeedOption(StrEnum):
@@ -46,17 +44,8 @@ def identify_harmonic_drive(
     as_json: Json = False,
 ) -> None:
     """Fit the drive from motor speed to x_in, diagnose it, and give its feedforward."""
-    from tsas_cli.diagnosis.drive_stage import identify_drive
-    from tsas_cli.diagnosis.drive_tables import tables
-
-    data = opened(dataset, runs)
-    with progress("identify", None, quiet=quiet or as_json) as step:
-        hold: Hold = "first" if speed is SpeedOption.measured else "zero"
-        summary = identify_drive(data, out, hold, force=force, step=step)
-    show(summary, tables(summary, out), quiet=quiet, as_json=as_json)
-    if not quiet and not as_json:
-        print(summary["diagnosis"]["reason"])
-        print(summary["inverse"])
-        print(f"Next: {summary['diagnosis']['next_experiment']}")
-        for sentence in summary["cannot_tell"]:
-            print(f"- {sentence}")
+    with progress("identify", quiet=quiet) as step:
+        result = tsas.identify_harmonic_drive(
+            dataset, out=out, speed=speed.value, runs=names(runs), force=force, step=step
+        )
+    present(result, quiet=quiet, as_json=as_json)

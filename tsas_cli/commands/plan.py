@@ -5,7 +5,9 @@ from typing import Annotated
 
 import typer
 
-from tsas_cli.commands.common import Force, Json, Quiet, progress, show
+import tsas_cli as tsas
+from tsas_cli.commands.common import Force, Json, Quiet, present
+from tsas_cli.commands.progress import progress
 
 
 def plan(
@@ -20,11 +22,6 @@ def plan(
     as_json: Json = False,
 ) -> None:
     """Say from which size on runs would show each effect, and which further run helps most."""
-    from tsas_cli.diagnosis.plan_stage import STEPS, plan_path, tables
-
-    with progress("plan", STEPS, quiet=quiet or as_json) as step:
-        summary = plan_path(path, out, force=force, step=step)
-    show(summary, tables(summary), quiet=quiet, as_json=as_json)
-    if not quiet and not as_json:
-        for sentence in summary["cannot_tell"]:
-            print(f"- {sentence}")
+    with progress("plan", quiet=quiet) as step:
+        result = tsas.plan(path, out=out, force=force, step=step)
+    present(result, quiet=quiet, as_json=as_json)

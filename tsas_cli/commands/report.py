@@ -5,7 +5,9 @@ from typing import Annotated
 
 import typer
 
-from tsas_cli.commands.common import Force, Json, Quiet, progress, show
+import tsas_cli as tsas
+from tsas_cli.commands.common import Force, Json, Quiet, present
+from tsas_cli.commands.progress import progress
 
 
 def report(
@@ -22,20 +24,6 @@ def report(
     Each DIR is a dataset or what `tsas check`, `calibrate`, `simulate` or `diagnose` wrote. What
     `tsas track`, `close-loop` or `identify-harmonic-drive` wrote makes a page of its own.
     """
-    from tsas_cli.files import new_file
-    from tsas_cli.reporting.inputs import read_inputs
-    from tsas_cli.reporting.page import SECTIONS, page
-
-    with new_file(out, force=force) as path:
-        inputs = read_inputs(folders)
-        with progress("drawing", len(SECTIONS), quiet=quiet) as advance:
-            path.write_text(page(inputs, advance), encoding="utf-8")
-    read = {} if inputs.dataset is None else {"dataset.toml": str(inputs.dataset.folder)}
-    read |= {kind.FILE: str(folder) for kind, folder in inputs.folders.items()}
-    size = out.stat().st_size
-    show(
-        {"stage": "report", "page": str(out), "bytes": size, "read": read},
-        [(f"{out}, {size / 1e6:.2f} MB", ("file", "folder"), list(read.items()))],
-        quiet=quiet,
-        as_json=as_json,
-    )
+    with progress("report", quiet=quiet) as step:
+        result = tsas.report(folders, out=out, force=force, step=step)
+    present(result, quiet=quiet, as_json=as_json)

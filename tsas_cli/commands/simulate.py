@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+import tsas_cli as tsas
 from tsas_cli.commands.common import (
     ChosenRuns,
     DatasetFolder,
@@ -13,10 +14,10 @@ from tsas_cli.commands.common import (
     ModelFile,
     OutFolder,
     Quiet,
-    opened,
-    progress,
-    show,
+    names,
+    present,
 )
+from tsas_cli.commands.progress import progress
 
 
 class DynamicsOption(StrEnum):
@@ -49,27 +50,16 @@ def simulate(
     as_json: Json = False,
 ) -> None:
     """Simulate every run with a model and say how far it is from the measurement."""
-    from tsas_cli.identification.simulation import simulate_dataset
-
-    data = opened(dataset, runs)
-    with progress("simulate", len(data.runs), quiet=quiet or as_json) as step:
-        summary = simulate_dataset(
-            data,
-            model,
-            dynamics.value,
-            out,
+    with progress("simulate", quiet=quiet) as step:
+        result = tsas.simulate(
+            dataset,
+            out=out,
+            model=model,
+            dynamics=dynamics.value,
             fit_own=fit_own,
             nodes=nodes,
+            runs=names(runs),
             force=force,
             step=step,
         )
-    rows = [
-        (run, name, f"{c['rmse']:.4g}", f"{c['noise']:.2g}", c["unit"], answer["solver"])
-        for run, answer in summary["runs"].items()
-        for name, c in answer["channels"].items()
-    ]
-    header = ("run", "channel", "RMSE", "noise", "unit", "solver")
-    show(summary, [(f"{dynamics.value} model → {out}", header, rows)], quiet=quiet, as_json=as_json)
-    if not quiet and not as_json:
-        for sentence in summary["notes"]:
-            print(f"- {sentence}")
+    present(result, quiet=quiet, as_json=as_json)

@@ -2,11 +2,14 @@
 
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
-from tsas_cli.commands.common import Force, Json, OutFolder, Quiet, progress, show
+import tsas_cli as tsas
+from tsas_cli.commands.common import Force, Json, OutFolder, Quiet, names, present
+from tsas_cli.commands.completion import controllers, references
+from tsas_cli.commands.progress import progress
 
 
 class TendonOption(StrEnum):
@@ -14,16 +17,6 @@ class TendonOption(StrEnum):
 
     slip = "slip"
     lugre = "lugre"
-
-
-COLUMNS = (
-    ("RMSE [N]", "rmse_N"),
-    ("lowest [N]", "lowest_error_N"),
-    ("highest [N]", "highest_error_N"),
-    ("effort [rpm]", "effort_rpm"),
-    ("chatter [rpm/s]", "chatter_rpm_per_s"),
-    ("outside 2 % [%]", "outside_percent"),
-)
 
 
 def track(
@@ -42,7 +35,11 @@ def track(
     ] = None,
     controller: Annotated[
         str,
-        typer.Option(metavar="NAMES", help="One or several, with commas between, or all."),
+        typer.Option(
+            metavar="NAMES",
+            help="One or several, with commas between, or all.",
+            autocompletion=controllers,
+        ),
     ] = "adaptive-sliding-mode",
     compare: Annotated[
         bool,
@@ -50,7 +47,10 @@ def track(
     ] = False,
     reference: Annotated[
         str,
-        typer.Option(help="sine, two-frequency, steps, ramps, or a Parquet file (f_out_ref_N)."),
+        typer.Option(
+            help="sine, two-frequency, steps, ramps, or a Parquet file (f_out_ref_N).",
+            autocompletion=references,
+        ),
     ] = "sine",
     disturb: Annotated[
         list[str] | None,
@@ -75,47 +75,22 @@ def track(
     as_json: Json = False,
 ) -> None:
     """Follow a wanted force with a controller that sees x_in alone."""
-    from tsas_cli.tracking.conditions import Condition, disturbed, proximal_spring
-    from tsas_cli.tracking.settings import CONTROLLERS
-    from tsas_cli.tracking.track_stage import Call, track_all
-
-    named = tuple(dict.fromkeys(name.strip() for name in controller.split(",")))
-    names = CONTROLLERS if compare or controller == "all" else named
-    conditions = [disturbed(disturb)] if disturb else []
-    if compare:
-        conditions = [Condition("undisturbed"), *(conditions or [proximal_spring()])]
-    call = Call(
-        model=model,
-        plant=plant,
-        drive=drive,
-        settings=settings,
-        controllers=names,
-        conditions=tuple(conditions) or (Condition("undisturbed"),),
-        reference=reference,
-        as_printed=as_printed,
-        dynamics=dynamics.value,
-        seeds=seeds or (10 if compare else 1),
-        first_seed=seed,
-    )
-    total = len(call.controllers) * len(call.conditions) * call.seeds
-    with progress("track", total, quiet=quiet or as_json) as step:
-        summary = track_all(call, out, force=force, step=step)
-    header = ["controller", "condition", *(title for title, _ in COLUMNS)]
-    rows = [
-        [row["controller"], row["condition"], *(_cell(row["scores"][key]) for _, key in COLUMNS)]
-        for row in summary["results"]
-    ]
-    printed = [row["printed_rmse_N"] for row in summary["results"]]
-    if any(value is not None for value in printed):
-        header.insert(3, "Table 5 [N]")
-        for row, value in zip(rows, printed, strict=True):
-            row.insert(3, "" if value is None else f"{value:g}")
-    show(summary, [(f"tracking → {out}", header, rows)], quiet=quiet, as_json=as_json)
-    if not quiet and not as_json:
-        for sentence in summary["notes"]:
-            print(f"- {sentence}")
-
-
-def _cell(number: dict[str, Any]) -> str:
-    spread = number["sd"]
-    return f"{number['mean']:.4g}" + ("" if spread is None else f" ± {spread:.2g}")
+    with progress("track", quiet=quiet) as step:
+        result = tsas.track(
+            out=out,
+            model=model,
+            plant=plant,
+            drive=drive,
+            controllers=names(controller) or (),
+            compare=compare,
+            reference=reference,
+            disturb=disturb or (),
+            as_printed=as_printed,
+            dynamics=dynamics.value,
+            settings=settings,
+            seeds=seeds,
+            first_seed=seed,
+            force=force,
+            step=step,
+        )
+    present(result, quiet=quiet, as_json=as_json)

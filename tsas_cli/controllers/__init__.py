@@ -1,1 +1,3 @@
 """Controllers of the drive that see x_in alone, and the closed loop with plant and sensors."""
+
+CONTROLLERS = ("pid", "sliding-mode", "adaptive-sliding-mode", "disturbance-observer")

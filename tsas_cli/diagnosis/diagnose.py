@@ -1,7 +1,7 @@
 """Name what a calibrated model lacks: the whole way from runs to a verdict."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
@@ -27,6 +27,7 @@ from tsas_cli.identification.preload_correction import with_preload_correction
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.run_errors import blocks_of
 from tsas_cli.recordings.manifest import Manifest
+from tsas_cli.steps import SILENT, Steps
 
 Floats = npt.NDArray[np.float64]
 Verdict = Literal["named", "ambiguous", "sufficient", "unexplained", "undecided"]
@@ -101,7 +102,7 @@ def diagnose(
     manifest: Manifest,
     stated: Model,
     runs: Sequence[Prepared],
-    step: Callable[[], None] = lambda: None,
+    step: Steps = SILENT,
 ) -> Diagnosis:
     """Find the effects that a model of these runs lacks; `step` is called after each piece of work.
 
@@ -114,6 +115,7 @@ def diagnose(
     runs
         The runs, prepared.
     """
+    step.ahead(1)
     base = nominal_fit(manifest, stated, runs)
     model, fitted, sentences = base.solve()
     step()

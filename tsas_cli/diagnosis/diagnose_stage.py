@@ -1,6 +1,6 @@
 """The diagnose stage: `diagnosis.json` and `model-extended.toml` of a dataset."""
 
-from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -8,35 +8,83 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli import __version__
-from tsas_cli.diagnosis.diagnose import Cause, Diagnosis, diagnose
+from tsas_cli.diagnosis.diagnose import Cause, Diagnosis, Verdict, diagnose
 from tsas_cli.diagnosis.next_experiment import next_experiment
 from tsas_cli.diagnosis.residual_map import residual_map
 from tsas_cli.diagnosis.search import Search
 from tsas_cli.effects import EFFECTS
-from tsas_cli.files import new_folder, write_json
+from tsas_cli.files import folder_if, write_json
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.model import source_of, stated_model, write_model
+from tsas_cli.identification.model import Model, source_of, stated_model, write_model
 from tsas_cli.identification.prepared import prepare
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.dataset import Dataset
+from tsas_cli.result import Result, Table, notes
+from tsas_cli.steps import SILENT, Steps
 
 Floats = npt.NDArray[np.float64]
-Table = tuple[str, Sequence[str], Sequence[Sequence[str]]]
 
 EXTENDED = "model-extended.toml"
 SHOWN = 8  # hypotheses that are printed
 _ERRORS = ("rmse_before", "rmse_after", "noise_floor", "best_obtainable")
 
 
+@dataclass(frozen=True, repr=False, eq=False)
+class DiagnosisResult(Result):
+    """A verdict on what the nominal model lacks, and the extended model.
+
+    Parameters
+    ----------
+    diagnosis
+        The verdict and all that it rests on: causes, errors, what is left, every hypothesis.
+    """
+
+    diagnosis: Diagnosis
+
+    @property
+    def verdict(self) -> Verdict:
+        """`named`, `ambiguous`, `sufficient`, `unexplained` or `undecided`."""
+        return self.diagnosis.verdict
+
+    @property
+    def reason(self) -> str:
+        """The verdict in one plain sentence."""
+        return self.diagnosis.reason
+
+    @property
+    def causes(self) -> tuple[Cause, ...]:
+        """What is named, with rivals, parameters and the gain on held-out data [%]."""
+        return self.diagnosis.causes
+
+    @property
+    def model(self) -> Model:
+        """The extended model; where nothing is named the nominal one, fitted again."""
+        return self.diagnosis.model
+
+    @property
+    def next_experiment(self) -> str:
+        """What to measure next."""
+        return str(self.summary["next_experiment"])
+
+    def tables(self) -> list[Table]:
+        """Return what is named, the errors before and after, and the ranking."""
+        return _tables(self.summary, self.titled("causes", EXTENDED))
+
+    def sentences(self) -> list[str]:
+        """Return the verdict, what to measure next, and what the recordings do not say."""
+        cannot_tell = notes(self.summary["cannot_tell"])
+        return [self.reason, f"Next: {self.next_experiment}", *cannot_tell]
+
+
 def diagnose_dataset(
     dataset: Dataset,
-    model_path: Path | None,
-    out: Path,
+    model: Model | Path | None,
+    out: Path | None,
     *,
     force: bool = False,
-    step: Callable[[], None] = lambda: None,
-) -> dict[str, Any]:
-    """Diagnose and write `diagnosis.json` and `model-extended.toml` into a new folder.
+    step: Steps = SILENT,
+) -> DiagnosisResult:
+    """Diagnose, and write `diagnosis.json` and `model-extended.toml` into a new folder if any.
 
     The model, or else the data sheet, is where the refit of the nominal parameters begins.
 
@@ -45,20 +93,21 @@ def diagnose_dataset(
     InputError
         A recording or the model is wrong, or `out` exists and `force` is not set.
     """
-    stated = stated_model(dataset.manifest, model_path)
-    summary = dataset.header("diagnose", out) | {"model": source_of(model_path)}
-    with new_folder(out, force=force) as folder:
+    stated = stated_model(dataset.manifest, model)
+    summary = dataset.header("diagnose", out) | {"model": source_of(model)}
+    with folder_if(out, force=force) as folder:
+        step.ahead(len(dataset.runs))
         runs = []
         for recording in dataset:
             runs.append(prepare(recording, dataset.manifest.session_start))
             step()
         result = diagnose(dataset.manifest, stated, runs, step)
         summary |= as_json(result)
-        write_json(folder / "diagnosis.json", summary)
-        write_model(
-            folder / EXTENDED, result.model, version=__version__, dataset=summary["dataset"]
-        )
-    return summary
+        if folder is not None:
+            of = summary["dataset"]
+            write_json(folder / "diagnosis.json", summary)
+            write_model(folder / EXTENDED, result.model, version=__version__, dataset=of)
+    return DiagnosisResult(summary, out, result)
 
 
 def as_json(result: Diagnosis) -> dict[str, Any]:
@@ -184,8 +233,8 @@ def _evidence(search: Search) -> dict[str, Any]:
     }
 
 
-def tables(summary: dict[str, Any], out: Path) -> list[Table]:
-    """Return what the stage prints: what is named, the errors before and after, the ranking."""
+def _tables(summary: dict[str, Any], title: str) -> list[Table]:
+    """Return what is named under its title, the errors before and after, and the ranking."""
     named = [
         (
             cause["effect"],
@@ -220,7 +269,6 @@ def tables(summary: dict[str, Any], out: Path) -> list[Table]:
         )
         for row in summary["candidates"][:SHOWN]
     ]
-    title = f"causes → {out / EXTENDED}"
     return [
         *(
             [(title, ("effect", "parameter", "value [95 %]", "unit", "rivals"), named)]

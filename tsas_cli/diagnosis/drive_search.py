@@ -5,7 +5,7 @@ beat. Where it leaves more than noise, ripple and play are tried on top, and wit
 the structure is chosen again, since lags imitate play and the other way round.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import combinations
@@ -20,6 +20,7 @@ from tsas_cli.identification.drive_fit import LINEAR, DriveBench, DriveTrial, Te
 from tsas_cli.identification.drive_runs import DriveRun
 from tsas_cli.identification.frequency_response import frequency_response
 from tsas_cli.numerics.covariance import block_length, block_numbers
+from tsas_cli.steps import SILENT, Steps
 
 Floats = npt.NDArray[np.float64]
 
@@ -42,14 +43,14 @@ class DriveSearch:
     """The sets of terms that were fitted to one dataset, with their held-out squares."""
 
     bench: DriveBench
-    step: Callable[[], None] = lambda: None
+    step: Steps = SILENT
     trials: dict[Terms, DriveTrial] = field(default_factory=dict)
     squares: dict[Terms, Floats] = field(default_factory=dict)
 
     @cached_property
     def folds(self) -> Folds:
         """What is held out together; the blocks outlast the memory of what the best one leaves."""
-        best = min((self.trial(t) for t in self.structures()), key=lambda t: t.mean_square)
+        best = min(self.trials_of(self.structures()), key=lambda t: t.mean_square)
         return self._folds_by(best)
 
     def _folds_by(self, best: DriveTrial) -> Folds:
@@ -65,6 +66,11 @@ class DriveSearch:
             self.trials[terms] = self.bench.fit(terms, simpler)
             self.step()
         return self.trials[terms]
+
+    def trials_of(self, sets: Sequence[Terms]) -> list[DriveTrial]:
+        """Return the fits of sets of terms; those that are not known yet lie ahead."""
+        self.step.ahead(sum(terms not in self.trials for terms in sets))
+        return [self.trial(terms) for terms in sets]
 
     def held_out(self, terms: Terms) -> Floats:
         """Return the held-out squares of a set of terms, block by block."""
@@ -88,8 +94,7 @@ class DriveSearch:
     def chosen(self, gear: Terms) -> Terms:
         """Return the simplest structure that the best one does not surely beat."""
         structures = self.structures(gear)
-        for terms in structures:
-            self.trial(terms)
+        self.trials_of(structures)
         told = [t for t in structures if self.trial(t).solution.converged] or structures
         best = min(told, key=lambda t: float(self.held_out(t).sum()))
         return next(t for t in told if t == best or not self.gain(t, best).beyond(RICHER))
@@ -125,6 +130,7 @@ class DriveSearch:
         if not left or self.mean_square(named) < 1.0 + BLURRED:
             return named
         sets = [frozenset({g}) for g in left] + ([frozenset(left)] if len(left) > 1 else [])
+        self.trials_of([named | s for s in sets])
         found = [(s, self.gain(named, named | s)) for s in sets]
         good = [(s, g) for s, g in found if g.convincing]
         if not good:

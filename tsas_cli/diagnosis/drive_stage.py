@@ -1,17 +1,18 @@
 """The identify-harmonic-drive stage: `drive.toml`, `drive.json` and the simulated x_in."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-import pyarrow as pa
 
 from tsas_cli import __version__
 from tsas_cli.diagnosis.drive_diagnosis import DriveCause, DriveDiagnosis, diagnose_drive
 from tsas_cli.diagnosis.drive_search import DriveSearch
+from tsas_cli.diagnosis.drive_tables import tables
 from tsas_cli.diagnosis.drive_words import (
     cannot_tell,
     equation_of,
@@ -20,13 +21,13 @@ from tsas_cli.diagnosis.drive_words import (
     next_run,
 )
 from tsas_cli.effects import EFFECTS
-from tsas_cli.files import new_folder, write_json
+from tsas_cli.files import folder_if, write_json
 from tsas_cli.identification.drive_estimates import (
     DataSheet,
     drive_sheet,
     estimates_of,
 )
-from tsas_cli.identification.drive_file import FILE, UNITS, write_drive
+from tsas_cli.identification.drive_file import FILE, UNITS, IdentifiedDrive, drive_of, write_drive
 from tsas_cli.identification.drive_fit import LINEAR, DriveBench, Terms, quantities_of
 from tsas_cli.identification.drive_runs import drive_runs
 from tsas_cli.identification.estimate import Estimate
@@ -34,7 +35,10 @@ from tsas_cli.identification.frequency_response import FrequencyResponse, freque
 from tsas_cli.identification.transfer_function import bode_curve, poles
 from tsas_cli.numerics.linear_response import Hold
 from tsas_cli.physics.drive import DriveValues
-from tsas_cli.recordings.dataset import Dataset, write_parquet
+from tsas_cli.recordings.dataset import Dataset, Recording, recording_of, write_runs
+from tsas_cli.recordings.manifest import Run
+from tsas_cli.result import Result, Table, notes
+from tsas_cli.steps import SILENT, Steps
 
 Floats = npt.NDArray[np.float64]
 
@@ -42,22 +46,69 @@ CURVE_POINTS = 200
 BESIDE_BAND = 1.05  # of its edge, up to which a pole counts as inside
 
 
+@dataclass(frozen=True, repr=False, eq=False)
+class DriveResult(Result):
+    """An identified drive, what the nominal drive equation lacks, and the simulated runs.
+
+    Parameters
+    ----------
+    estimates
+        Every parameter by name: fitted, derived, or given by the data sheet.
+    diagnosis
+        The verdict on the nominal drive equation, with causes and gains on held-out data.
+    runs
+        By id the simulated runs: columns of shape (n,) as in the recording, `x_in_mm` and that of
+        the nominal drive, `x_in_nominal_mm` [mm].
+    """
+
+    estimates: Mapping[str, Estimate]
+    diagnosis: DriveDiagnosis
+    runs: Mapping[str, Recording]
+
+    @property
+    def drive(self) -> IdentifiedDrive:
+        """The drive as `drive.toml` holds it, for the controllers of `track`."""
+        known = self.estimates.items()
+        return drive_of({n: e.value for n, e in known if math.isfinite(e.value)})
+
+    def __getitem__(self, run: str) -> Recording:
+        """Return a simulated run."""
+        return recording_of(self.runs, run)
+
+    def tables(self) -> list[Table]:
+        """Return structures, parameters, errors and causes."""
+        return tables(self.summary, self.titled(self.summary["structure"]["equation"], FILE))
+
+    def sentences(self) -> list[str]:
+        """Return the verdict, the inverse, what to measure next, and what cannot be told."""
+        found = self.summary["diagnosis"]
+        return [
+            found["reason"],
+            self.summary["inverse"],
+            f"Next: {found['next_experiment']}",
+            *notes(self.summary["cannot_tell"]),
+        ]
+
+
 def identify_drive(
     dataset: Dataset,
-    out: Path,
+    out: Path | None,
     hold: Hold = "first",
     *,
     force: bool = False,
-    step: Callable[[], None] = lambda: None,
-) -> dict[str, Any]:
-    """Identify and diagnose a drive; write `drive.toml`, `drive.json`, `runs/ID.parquet`.
+    step: Steps = SILENT,
+) -> DriveResult:
+    """Identify and diagnose a drive.
+
+    `drive.toml`, `drive.json` and `runs/ID.parquet` are written into a new folder if there is one.
 
     Raises
     ------
     InputError
         A recording does not serve (`drive_runs`), or `out` exists and `force` is not set.
     """
-    with new_folder(out, force=force) as folder:
+    with folder_if(out, force=force) as folder:
+        step.ahead(1)
         runs = drive_runs(dataset, hold)
         step()
         seen, sheet = frequency_response(runs), drive_sheet(dataset.manifest)
@@ -88,13 +139,13 @@ def identify_drive(
             "diagnosis": _diagnosis(search, found),
         }
         summary["cannot_tell"] = cannot_tell(summary, sheet, final, known)
-        write_json(folder / "drive.json", summary)
-        structure = {"name": summary["structure"]["name"], "hold": hold}
-        write_drive(
-            folder / FILE, known, structure, version=__version__, dataset=summary["dataset"]
-        )
-        _write_runs(folder / "runs", search, by_fit, by_nominal)
-    return summary
+        simulated = _recordings(dataset.runs, search, by_fit, by_nominal)
+        if folder is not None:
+            write_json(folder / "drive.json", summary)
+            structure, of = {"name": name_of(final), "hold": hold}, summary["dataset"]
+            write_drive(folder / FILE, known, structure, version=__version__, dataset=of)
+            write_runs(folder / "runs", simulated)
+    return DriveResult(summary, out, known, found, simulated)
 
 
 def _given(sheet: DataSheet) -> dict[str, Estimate]:
@@ -252,10 +303,13 @@ def _cause(cause: DriveCause) -> dict[str, Any]:
     }
 
 
-def _write_runs(
-    folder: Path, search: DriveSearch, fitted: list[Floats], nominal: list[Floats]
-) -> None:
-    folder.mkdir()
-    for run, by_fit, by_nominal in zip(search.bench.runs, fitted, nominal, strict=True):
+def _recordings(
+    entries: list[Run], search: DriveSearch, fitted: list[Floats], nominal: list[Floats]
+) -> dict[str, Recording]:
+    """Return the simulated runs."""
+    simulated = {}
+    each = zip(entries, search.bench.runs, fitted, nominal, strict=True)
+    for entry, run, by_fit, by_nominal in each:
         columns = {"time_s": run.time_s, "x_in_mm": by_fit, "x_in_nominal_mm": by_nominal}
-        write_parquet(folder / f"{run.id}.parquet", pa.table(columns))
+        simulated[entry.id] = Recording(entry, columns)
+    return simulated

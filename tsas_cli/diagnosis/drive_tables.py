@@ -1,17 +1,13 @@
 """What `tsas identify-harmonic-drive` prints."""
 
-from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
-from tsas_cli.identification.drive_file import FILE
 from tsas_cli.identification.estimate import Estimate
+from tsas_cli.result import Table
 
-Table = tuple[str, Sequence[str], Sequence[Sequence[str]]]
 
-
-def tables(summary: dict[str, Any], out: Path) -> list[Table]:
-    """Return the tables of the content of `drive.json`; `out` is the stage's folder."""
+def tables(summary: dict[str, Any], title: str) -> list[Table]:
+    """Return the tables of the content of `drive.json`; the title is that of the parameters."""
     estimates = [Estimate(**p) for p in summary["parameters"]]
     kinematic = summary["kinematics"]
     lead = kinematic["kinematic_lead_rpm_s_per_mm"]
@@ -48,7 +44,7 @@ def tables(summary: dict[str, Any], out: Path) -> list[Table]:
             ],
         ),
         (
-            f"{summary['structure']['equation']} → {out / FILE}",
+            title,
             ("name", "value [95 %]", "unit"),
             rows,
         ),

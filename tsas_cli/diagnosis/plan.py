@@ -1,7 +1,7 @@
 """What a set of runs could show before anyone measures, and which further run shows most."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from itertools import combinations
@@ -25,6 +25,7 @@ from tsas_cli.identification.phases import segment
 from tsas_cli.identification.prepared import prepare
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Manifest, Run
+from tsas_cli.steps import SILENT, Steps
 
 PROPOSED = 3
 WORTH_SAYING = 1.2  # factor by which a size has to fall
@@ -80,7 +81,7 @@ class Plan:
     cannot_tell: tuple[str, ...]
 
 
-def plan_rig(file: RigFile, step: Callable[[], None] = lambda: None) -> Plan:
+def plan_rig(file: RigFile, step: Steps = SILENT) -> Plan:
     """Return what the runs of a rig file could show.
 
     Raises
@@ -99,7 +100,7 @@ def plan_rig(file: RigFile, step: Callable[[], None] = lambda: None) -> Plan:
     return _plan(beside(runs, further, model, model), step)
 
 
-def plan_dataset(dataset: Dataset, step: Callable[[], None] = lambda: None) -> Plan:
+def plan_dataset(dataset: Dataset, step: Steps = SILENT) -> Plan:
     """Return what the runs of a dataset can show.
 
     Raises
@@ -132,7 +133,7 @@ def propose(bench: Bench, trial: Trial, effects: Sequence[str]) -> str:
     rivals = chosen if len(chosen) > 1 else EFFECTS
     free = {name: v for name, v in trial.values().items() if name.split(".")[0] not in effects}
     runs = beside_recorded(bench, free)
-    found = _proposals(runs, runs.part().seen(chosen, rivals), rivals, lambda: None)
+    found = _proposals(runs, runs.part().seen(chosen, rivals), rivals, SILENT)
     if not found or not found[0].better:
         apart = " and ".join(e.title.lower() for e in chosen)
         return f"No further run within the range of these tells {apart} apart."
@@ -140,8 +141,8 @@ def propose(bench: Bench, trial: Trial, effects: Sequence[str]) -> str:
     return f"Record {found[0].candidate.sentence}. With it {found[0].best_of(2)}.{still}"
 
 
-def _plan(runs: FurtherRuns, step: Callable[[], None]) -> Plan:
-    step()
+def _plan(runs: FurtherRuns, step: Steps) -> Plan:
+    step.ahead(1 + len(runs.added))
     seen = runs.part().seen(EFFECTS, EFFECTS)
     step()
     proposals = _proposals(runs, seen, EFFECTS, step)
@@ -157,7 +158,7 @@ def _few(blocks: int) -> list[str]:
 
 
 def _proposals(
-    runs: FurtherRuns, seen: Sequence[Seen], rivals: Sequence[Effect], step: Callable[[], None]
+    runs: FurtherRuns, seen: Sequence[Seen], rivals: Sequence[Effect], step: Steps
 ) -> list[Proposal]:
     """Return the runs that might be added and improve something, the best first."""
     effects = list({s.cause.effect.name: s.cause.effect for s in seen}.values())

@@ -2,7 +2,7 @@
 
 import math
 import os
-from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -10,44 +10,60 @@ from tsas_cli import __version__
 from tsas_cli.diagnosis.plan import Plan, Proposal, plan_dataset, plan_rig
 from tsas_cli.diagnosis.rig_file import read_rig_file
 from tsas_cli.diagnosis.visibility import Seen
-from tsas_cli.files import new_folder, sha256_of, write_json
-from tsas_cli.recordings.dataset import read_dataset
+from tsas_cli.files import folder_if, sha256_of, write_json
+from tsas_cli.recordings.dataset import Dataset
+from tsas_cli.result import Result, Table, notes
+from tsas_cli.steps import SILENT, Steps
 
-Table = tuple[str, Sequence[str], Sequence[Sequence[str]]]
 FILE = "plan.json"
 SAID = 4  # improvements of a proposal that are printed
-STEPS = 13  # about: two for the runs, one for each that may be added
 
 
-def plan_path(
-    path: Path,
-    out: Path | None,
-    *,
-    force: bool = False,
-    step: Callable[[], None] = lambda: None,
-) -> dict[str, Any]:
-    """Plan with a dataset's folder or a rig file; write `plan.json` into a new folder `out`.
+@dataclass(frozen=True, repr=False, eq=False)
+class PlanResult(Result):
+    """What a set of runs could show, and which further run helps most.
+
+    Parameters
+    ----------
+    plan
+        From which size on each effect is seen and named, what hides in what, and the proposals.
+    """
+
+    plan: Plan
+
+    def tables(self) -> list[Table]:
+        """Return each effect, the pairs, the proposals."""
+        return _tables(self.summary)
+
+    def sentences(self) -> list[str]:
+        """Return what the runs do not show, and why."""
+        return notes(self.summary["cannot_tell"])
+
+
+def plan_runs(
+    runs: Dataset | Path, out: Path | None, *, force: bool = False, step: Steps = SILENT
+) -> PlanResult:
+    """Plan with a dataset or a rig file; write `plan.json` into a new folder if there is one.
 
     Raises
     ------
     InputError
         The dataset or the file is wrong, no run shows anything, or `out` exists without `force`.
     """
-    if path.is_dir():
-        dataset = read_dataset(path)
-        summary = dataset.header("plan", out or Path())
-        plan = plan_dataset(dataset, step)
-    else:
-        file = read_rig_file(path)
-        where = Path(os.path.relpath(path.resolve(), (out or Path()).resolve())).as_posix()
-        rig = {"name": file.name, "file": where, "sha256": sha256_of(path)}
-        summary = {"format": 1, "stage": "plan", "version": __version__, "rig": rig}
-        plan = plan_rig(file, step)
-    summary |= as_json(plan)
-    if out is not None:
-        with new_folder(out, force=force) as folder:
+    with folder_if(out, force=force) as folder:
+        if isinstance(runs, Dataset):
+            summary = runs.header("plan", out)
+            plan = plan_dataset(runs, step)
+        else:
+            file = read_rig_file(runs)
+            where = Path(os.path.relpath(runs.resolve(), (out or Path()).resolve())).as_posix()
+            rig = {"name": file.name, "file": where, "sha256": sha256_of(runs)}
+            summary = {"format": 1, "stage": "plan", "version": __version__, "rig": rig}
+            plan = plan_rig(file, step)
+        summary |= as_json(plan)
+        if folder is not None:
             write_json(folder / FILE, summary)
-    return summary
+    return PlanResult(summary, out, plan)
 
 
 def as_json(plan: Plan) -> dict[str, Any]:
@@ -95,8 +111,8 @@ def _finite(value: float) -> float | None:
     return value if math.isfinite(value) else None
 
 
-def tables(summary: dict[str, Any]) -> list[Table]:
-    """Return what the stage prints: each effect, the pairs, the proposals."""
+def _tables(summary: dict[str, Any]) -> list[Table]:
+    """Return each effect, the pairs, the proposals."""
     rows = [
         (
             row["effect"],

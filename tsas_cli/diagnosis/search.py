@@ -5,7 +5,7 @@ has to prove itself again without the others' help. Where single effects leave s
 are looked at together, because effects of opposite sign hide each other.
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from itertools import combinations
 
@@ -18,6 +18,7 @@ from tsas_cli.effects import EFFECTS, Effect
 from tsas_cli.identification.extension import TOLERANCE, Bench, Trial
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.identification.screening import Screened, projector, screen
+from tsas_cli.steps import SILENT, Steps
 
 Floats = npt.NDArray[np.float64]
 Names = frozenset[str]
@@ -39,7 +40,7 @@ class Search:
 
     bench: Bench
     folds: Folds
-    step: Callable[[], None] = lambda: None
+    step: Steps = SILENT
     effects: tuple[Effect, ...] = EFFECTS
     trials: dict[tuple[Names, bool], Trial] = field(default_factory=dict)
     squares: dict[tuple[Names, bool], Floats] = field(default_factory=dict)
@@ -72,12 +73,14 @@ class Search:
         It holds the fits of what is named, of nothing, and of all but one.
         """
         mesh, bench, trial = self.bench.on_mesh(named), self.bench, self.trial(named)
+        sets = {frozenset[str](), named, *(named - {name} for name in named)}
+        self.step.ahead(WEIGHED + len(sets))
         for _ in range(WEIGHED):
             bench = bench.weighed_by(trial)
             trial = bench.fit(sorted(named), near=trial, on_mesh=mesh)
             self.step()
         other = Search(bench, self.folds, self.step, self.effects)
-        for names in {frozenset(), named, *(named - {name} for name in named)}:
+        for names in sets:
             near = self.trial(names, on_mesh=mesh)
             other._keep(names, bench.fit(sorted(names), near=near, on_mesh=mesh))
             self.step()
@@ -136,10 +139,10 @@ class Search:
         """Fit each further effect that is worth it; return them with their gains, best first."""
         seen = self.screen(names)
         best = max((s.part for s in seen), default=0.0)
+        worth = [s for s in seen if s.part >= max(WORTH, BESIDE_BEST * best)]
+        self.step.ahead(sum(self._is_new(names | {s.effect.name}) for s in worth))
         found = []
-        for s in seen:
-            if s.part < max(WORTH, BESIDE_BEST * best):
-                continue
+        for s in worth:
             together = names | {s.effect.name}
             self._fit(names, together, s.start)
             found.append((s.effect.name, self.gain(names, together)))
@@ -150,9 +153,9 @@ class Search:
         if names not in self.screened:
             bases = {}
             out = []
-            for effect in self.effects:
-                if effect.name in names:
-                    continue
+            further = [effect for effect in self.effects if effect.name not in names]
+            self.step.ahead(len(further))
+            for effect in further:
                 mesh = self.bench.on_mesh([*names, effect.name])
                 trial = self.trial(names, on_mesh=mesh)
                 if mesh not in bases:
@@ -198,6 +201,7 @@ class Search:
             if surplus < TELLING:
                 break
             pair = frozenset({a.effect.name, b.effect.name})
+            self.step.ahead(self._is_new(names | pair))
             self._fit(names, names | pair, a.start | b.start)
             if self.gain(names, names | pair).convincing and self.matters(names, pair):
                 return pair
@@ -211,10 +215,14 @@ class Search:
                 return self._without_idle(fewer)
         return names
 
+    def _is_new(self, names: Names) -> bool:
+        """Say whether a set of effects has not been fitted yet."""
+        return (names, self.bench.on_mesh(names)) not in self.trials
+
     def _fit(self, near: Names, names: Names, start: dict[str, float]) -> None:
-        mesh = self.bench.on_mesh(names)
-        if (names, mesh) in self.trials:
+        if not self._is_new(names):
             return
+        mesh = self.bench.on_mesh(names)
         known = self.trial(near, on_mesh=mesh)
         for _ in range(FRESH_STARTS):
             trial = self.bench.fit(sorted(names), start, near=known, on_mesh=mesh)

@@ -1,12 +1,13 @@
 """The calibrate stage: `model.toml` and `calibration.json` of a dataset."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from tsas_cli import __version__
 from tsas_cli.errors import InputError
-from tsas_cli.files import new_folder, write_json
+from tsas_cli.files import folder_if, write_json
 from tsas_cli.identification.calibration import Calibration, calibrate
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import (
@@ -27,20 +28,46 @@ from tsas_cli.recordings.manifest import Manifest
 from tsas_cli.recordings.quality.checks import sign
 from tsas_cli.recordings.quality.finding import Remark
 from tsas_cli.recordings.quality.trial import Trial
+from tsas_cli.result import Result, Table, notes
+from tsas_cli.steps import SILENT, Steps
 
-Table = tuple[str, Sequence[str], Sequence[Sequence[str]]]
+
+@dataclass(frozen=True, repr=False, eq=False)
+class CalibrationResult(Result):
+    """A calibrated model, and what was found on the way.
+
+    Parameters
+    ----------
+    calibration
+        The calibrated model and, run by run, phases, slopes and answers.
+    """
+
+    calibration: Calibration
+
+    @property
+    def model(self) -> Model:
+        """The calibrated model: every parameter with its interval and unit."""
+        return self.calibration.model
+
+    def tables(self) -> list[Table]:
+        """Return the slopes, the parameters and the errors."""
+        return _tables(self.summary, self.titled("parameters", FILE))
+
+    def sentences(self) -> list[str]:
+        """Return what these recordings do not say, and why."""
+        return notes(self.summary["cannot_tell"])
 
 
 def calibrate_dataset(
     dataset: Dataset,
-    out: Path,
+    out: Path | None,
     dynamics: Dynamics = "slip",
-    model_path: Path | None = None,
+    model: Model | Path | None = None,
     *,
     force: bool = False,
-    step: Callable[[], None] = lambda: None,
-) -> dict[str, Any]:
-    """Calibrate and write `model.toml` and `calibration.json` into a new folder.
+    step: Steps = SILENT,
+) -> CalibrationResult:
+    """Calibrate, and write `model.toml` and `calibration.json` into a new folder if there is one.
 
     The model, or else the data sheet, is where the fit begins; its effects stay as they are.
 
@@ -50,20 +77,23 @@ def calibrate_dataset(
         A recording or the model is wrong, a channel has the wrong sign, or `out` exists and `force`
         is not set.
     """
-    stated = stated_model(dataset.manifest, model_path)
-    with new_folder(out, force=force) as folder:
+    stated = stated_model(dataset.manifest, model)
+    with folder_if(out, force=force) as folder:
+        step.ahead(2 * len(dataset.runs))
         runs = []
         for recording in dataset:
             _refuse_wrong_sign(recording, dataset.manifest)
             runs.append(prepare(recording, dataset.manifest.session_start))
             step()
         result = calibrate(dataset.manifest, runs, step, dynamics=dynamics, stated=stated)
-        summary = dataset.header("calibrate", out) | {"model": source_of(model_path)}
+        summary = dataset.header("calibrate", out) | {"model": source_of(model)}
         summary["dynamics"] = dynamics
         summary |= _summary(result, dataset.manifest)
-        write_model(folder / FILE, result.model, version=__version__, dataset=summary["dataset"])
-        write_json(folder / "calibration.json", summary)
-    return summary
+        if folder is not None:
+            of = summary["dataset"]
+            write_model(folder / FILE, result.model, version=__version__, dataset=of)
+            write_json(folder / "calibration.json", summary)
+    return CalibrationResult(summary, out, result)
 
 
 def _refuse_wrong_sign(recording: Recording, manifest: Manifest) -> None:
@@ -180,8 +210,8 @@ def _theory(rig: Rig, slope: Slope, run: Prepared) -> tuple[float | None, float 
     )
 
 
-def tables(summary: dict[str, Any], out: Path) -> list[Table]:
-    """Return what the stage prints: the slopes, the parameters, the errors."""
+def _tables(summary: dict[str, Any], title: str) -> list[Table]:
+    """Return the slopes, the parameters under their title, and the errors."""
     parameters = [Estimate(**p) for p in summary["parameters"]]
     slope_rows = [
         (
@@ -206,7 +236,7 @@ def tables(summary: dict[str, Any], out: Path) -> list[Table]:
         ),
         *_transfer_table(summary["transfer"]),
         (
-            f"parameters → {out / FILE}",
+            title,
             ("name", "run", "value [95 %]", "unit"),
             [(e.name, e.run or "all", e.text(), e.unit) for e in parameters],
         ),

@@ -138,6 +138,11 @@ def read_drive(path: Path) -> IdentifiedDrive:
             expected="what `tsas identify-harmonic-drive` writes",
         )
     values.setdefault("kV_rpm_s_per_mm", 1.0 / values["gain_mm_per_s_rpm"])
+    return drive_of(values)
+
+
+def drive_of(values: Mapping[str, float]) -> IdentifiedDrive:
+    """Return a drive by its values, of which those that are no property of a drive are left out."""
     known = IdentifiedDrive.__dataclass_fields__
     return IdentifiedDrive(**{name: value for name, value in values.items() if name in known})
 

@@ -21,6 +21,7 @@ from tsas_cli.physics.rig import Rig, with_values
 from tsas_cli.recordings.manifest import Manifest, Run, parse, read_toml
 
 FILE = "model.toml"
+IN_MEMORY = "in memory"  # in place of a file, for a model that was handed over in Python
 CORRECTION = "preload_correction_N"  # mean of fitted less stated preload, for runs not calibrated
 MOST_WRAP = 20.0  # friction times bend; e^20 is the ratio of the tensions at the two ends
 MAY_BE_ZERO = ("friction_coefficient", "preload_N")  # among the positive parameters
@@ -38,6 +39,24 @@ class Model:
         """Return a value for a run, else the shared one, else None."""
         known = {(e.name, e.run): e.value for e in self.estimates}
         return known.get((name, run), known.get((name, None)))
+
+    def estimate(self, name: str, run: str | None = None) -> Estimate:
+        """Return what is known of a value: for a run, else the shared one.
+
+        Raises
+        ------
+        InputError
+            The model does not hold it.
+        """
+        known = {(e.name, e.run): e for e in self.estimates}
+        found = known.get((name, run), known.get((name, None)))
+        if found is None:
+            of = "" if run is None else f" of run {run}"
+            raise InputError(
+                f"the model holds no {name}{of}",
+                remedy=nearest(name, [e.name for e in self.estimates]),
+            )
+        return found
 
     def over(self, other: "Model") -> "Model":
         """Return these estimates, and of another model those that are missing here."""
@@ -78,8 +97,19 @@ class Model:
         return with_values(nominal, {n: v for n, v in told.items() if v is not None})
 
 
-def stated_model(manifest: Manifest, path: Path | None) -> Model:
-    """Return the model of a file, and of the manifest's data sheet what is missing there.
+def model_of(given: Model | Path) -> Model:
+    """Return a model as it is, or that of a file.
+
+    Raises
+    ------
+    InputError
+        As `read_model` raises it.
+    """
+    return given if isinstance(given, Model) else read_model(given)
+
+
+def stated_model(manifest: Manifest, given: Model | Path | None) -> Model:
+    """Return a model, or that of a file, and of the manifest's data sheet what is missing there.
 
     Raises
     ------
@@ -87,19 +117,22 @@ def stated_model(manifest: Manifest, path: Path | None) -> Model:
         As `read_model` raises it.
     """
     stated = data_sheet(manifest)
-    return stated if path is None else read_model(path).over(stated)
+    return stated if given is None else model_of(given).over(stated)
 
 
 def source_of(
-    path: Path | None, name: str = FILE, *, without: str = "data sheet"
+    given: object | None, name: str = FILE, *, without: str = "data sheet"
 ) -> dict[str, str]:
-    """Return what a stage writes of the model that it has read: its file and checksum.
+    """Return what a stage writes of the model that it was given: its file and checksum.
 
-    `name` is that of the file in a folder, `without` what was taken where none was given.
+    `name` is that of the file in a folder, `without` what was taken where none was given. What is
+    no path was handed over in Python.
     """
-    if path is None:
+    if given is None:
         return {"file": without}
-    path = path / name if path.is_dir() else path
+    if not isinstance(given, Path):
+        return {"file": IN_MEMORY}
+    path = given / name if given.is_dir() else given
     return {"file": path.name, "sha256": sha256_of(path)}
 
 

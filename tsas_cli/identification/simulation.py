@@ -1,37 +1,77 @@
 """The simulate stage: every run of a dataset with one model, written beside its errors."""
 
-from collections.abc import Callable
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pyarrow as pa
+import numpy.typing as npt
 
 from tsas_cli.errors import InputError
-from tsas_cli.files import new_folder, write_json
+from tsas_cli.files import folder_if, write_json
 from tsas_cli.identification.base_fit import with_own_values
 from tsas_cli.identification.comparison import Compared, compare
-from tsas_cli.identification.model import data_sheet, read_model, source_of
+from tsas_cli.identification.model import Model, data_sheet, model_of, source_of
 from tsas_cli.identification.prepared import Prepared, prepare
 from tsas_cli.physics.chain_state import MOST_NODES
 from tsas_cli.physics.response import Dynamics
-from tsas_cli.recordings.dataset import Dataset, write_parquet
+from tsas_cli.recordings.dataset import Dataset, Recording, recording_of, write_runs
+from tsas_cli.result import Result, Table, notes
+from tsas_cli.steps import SILENT, Steps
+
+Floats = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class SimulationResult(Result):
+    """Every run as a model answers it; `result["a"]` is run a.
+
+    Parameters
+    ----------
+    model
+        The model that was simulated.
+    runs
+        By id the answer to each run: columns of shape (n,) as in the recording, `x_in_mm` as
+        conditioned [mm], `f_in_N` and `f_out_N` [N], `x_out_mm` [mm]; NaN in gaps of the drive.
+    """
+
+    model: Model
+    runs: Mapping[str, Recording]
+
+    def __getitem__(self, run: str) -> Recording:
+        """Return the answer to a run."""
+        return recording_of(self.runs, run)
+
+    def tables(self) -> list[Table]:
+        """Return how far each channel of each run is from the measurement."""
+        rows = [
+            (run, name, f"{c['rmse']:.4g}", f"{c['noise']:.2g}", c["unit"], answer["solver"])
+            for run, answer in self.summary["runs"].items()
+            for name, c in answer["channels"].items()
+        ]
+        header = ("run", "channel", "RMSE", "noise", "unit", "solver")
+        return [(self.titled(f"{self.summary['dynamics']} model"), header, rows)]
+
+    def sentences(self) -> Sequence[str]:
+        """Return what of the simulation is not to be trusted, and why."""
+        return notes(self.summary["notes"])
 
 
 def simulate_dataset(
     dataset: Dataset,
-    model_path: Path | None,
+    model: Model | Path | None,
     dynamics: Dynamics,
-    out: Path,
+    out: Path | None,
     *,
     fit_own: bool = False,
     nodes: int | None = None,
     force: bool = False,
-    step: Callable[[], None] = lambda: None,
-) -> dict[str, Any]:
-    """Simulate all runs and write `runs/ID.parquet` and `simulation.json` into a new folder.
+    step: Steps = SILENT,
+) -> SimulationResult:
+    """Simulate all runs; write `runs/ID.parquet` and `simulation.json` into a new folder if any.
 
-    Without a model file the manifest's data sheet is simulated. With `fit_own` the preload and the
+    Without a model the manifest's data sheet is simulated. With `fit_own` the preload and the
     zeros of each run are fitted first, all else stays as the model says: so a model predicts runs
     that it was not fitted to. `nodes` asks for a chain with as many of them. `step` is called after
     each run.
@@ -43,21 +83,24 @@ def simulate_dataset(
         set.
     """
     _refuse_nodes(nodes, dynamics)
-    model = data_sheet(dataset.manifest) if model_path is None else read_model(model_path)
-    summary = dataset.header("simulate", out) | {"model": source_of(model_path)}
+    taken = data_sheet(dataset.manifest) if model is None else model_of(model)
+    summary = dataset.header("simulate", out) | {"model": source_of(model)}
     summary |= {"dynamics": dynamics, "nodes": nodes, "own_values_fitted": fit_own, "runs": {}}
-    with new_folder(out, force=force) as folder:
-        (folder / "runs").mkdir()
+    runs = {}
+    with folder_if(out, force=force) as folder:
+        step.ahead(len(dataset.runs))
         for recording in dataset:
             run = prepare(recording, dataset.manifest.session_start)
-            own = with_own_values(model, run) if fit_own else model
+            own = with_own_values(taken, run) if fit_own else taken
             answer = compare(run, own, dynamics, nodes)
-            write_parquet(folder / "runs" / f"{run.run.id}.parquet", _table(run, answer))
+            runs[run.run.id] = Recording(run.run, _columns(run, answer))
             summary["runs"][run.run.id] = answer.as_json(run)
             step()
         summary["notes"] = _notes(summary["runs"])
-        write_json(folder / "simulation.json", summary)
-    return summary
+        if folder is not None:
+            write_runs(folder / "runs", runs)
+            write_json(folder / "simulation.json", summary)
+    return SimulationResult(summary, out, taken, runs)
 
 
 def _refuse_nodes(nodes: int | None, dynamics: Dynamics) -> None:
@@ -83,9 +126,7 @@ def _notes(runs: dict[str, Any]) -> list[str]:
     ]
 
 
-def _table(run: Prepared, answer: Compared) -> pa.Table:
-    """Return time, the conditioned or simulated x_in, and the answers; NaN as null."""
+def _columns(run: Prepared, answer: Compared) -> dict[str, Floats]:
+    """Return time, the conditioned or simulated x_in, and the answers."""
     columns = {"time_s": run.time_s, "x_in_mm": answer.response.x_in_mm, **answer.channels}
-    return pa.table(
-        {name: pa.array(v.astype(np.float64), from_pandas=True) for name, v in columns.items()}
-    )
+    return {name: values.astype(np.float64) for name, values in columns.items()}

@@ -4,7 +4,7 @@ import os
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -17,15 +17,38 @@ from tsas_cli.files import sha256_of
 from tsas_cli.recordings.columns import BY_NAME, INPUTS, OUTPUTS, TIME, has_input_and_output
 from tsas_cli.recordings.manifest import FILE, Manifest, Run, read_manifest, write_manifest
 
+if TYPE_CHECKING:
+    import pandas as pd
+
 Floats = npt.NDArray[np.float64]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False, eq=False)
 class Recording:
-    """One run: its manifest entry, and its canonical columns as float64 arrays, null as NaN."""
+    """One run: its manifest entry, and its columns.
+
+    Parameters
+    ----------
+    run
+        What the manifest says of it: conditions, file, checksum.
+    columns
+        By name (with the unit in it) float64 arrays of shape (n,); NaN where the file has null.
+    """
 
     run: Run
     columns: Mapping[str, Floats]
+
+    def __repr__(self) -> str:
+        """Return a line: how many samples of which columns over which time."""
+        time_s = self.time_s
+        names = " ".join(self.columns)
+        return f"run {self.run.id}: {time_s.size} rows, {time_s[-1] - time_s[0]:.6g} s: {names}"
+
+    def frame(self) -> "pd.DataFrame":
+        """Return the columns as a pandas table with `time_s` as its index."""
+        import pandas as pd
+
+        return pd.DataFrame(dict(self.columns)).set_index(TIME)
 
     @property
     def time_s(self) -> Floats:
@@ -37,11 +60,20 @@ class Recording:
         return self.columns.get(name)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Dataset:
     """A dataset's folder and manifest; the recordings are read when they are asked for.
 
-    `chosen` holds the ids of the runs that count, all without it.
+    `dataset["a"]` reads run a; a loop over the dataset reads one run after the other.
+
+    Parameters
+    ----------
+    folder
+        Where it is.
+    manifest
+        What `dataset.toml` says.
+    chosen
+        The ids of the runs that count, all without it.
     """
 
     folder: Path
@@ -72,13 +104,34 @@ class Dataset:
                 )
         return replace(self, chosen=chosen)
 
+    def __repr__(self) -> str:
+        """Return a line: where it is, and which runs it holds."""
+        return (
+            f"dataset {self.manifest.name} in {self.folder}: {', '.join(r.id for r in self.runs)}"
+        )
+
+    def __getitem__(self, run: str) -> Recording:
+        """Read one of the runs.
+
+        Raises
+        ------
+        InputError
+            There is no such run, or its file is wrong (`read_recording`).
+        """
+        entry = self.only([run]).runs[0]
+        return read_recording(self.folder, entry)
+
     def __iter__(self) -> Iterator[Recording]:
         """Read one recording after the other, in the order of the manifest."""
         return (read_recording(self.folder, run) for run in self.runs)
 
-    def header(self, stage: str, folder: Path) -> dict[str, Any]:
-        """Return the first keys of the JSON that a stage writes into `folder`."""
-        path = Path(os.path.relpath(self.folder.resolve(), folder.resolve())).as_posix()
+    def header(self, stage: str, folder: Path | None) -> dict[str, Any]:
+        """Return the first keys of the JSON that a stage writes into `folder`.
+
+        Without a folder the dataset's place is said from the current one.
+        """
+        here = (folder or Path()).resolve()
+        path = Path(os.path.relpath(self.folder.resolve(), here)).as_posix()
         return {
             "format": 1,
             "stage": stage,
@@ -153,6 +206,27 @@ def write_run(folder: Path, run: Run, table: pa.Table) -> Run:
     path.parent.mkdir(exist_ok=True)
     write_parquet(path, table)
     return run.model_copy(update={"sha256": sha256_of(path)})
+
+
+def recording_of(runs: Mapping[str, Recording], run: str) -> Recording:
+    """Return a run by its id.
+
+    Raises
+    ------
+    InputError
+        There is none.
+    """
+    if run not in runs:
+        raise InputError(f"there is no run {run!r}", remedy=nearest(run, runs))
+    return runs[run]
+
+
+def write_runs(folder: Path, runs: Mapping[str, Recording]) -> None:
+    """Write runs that belong to no dataset into a new folder, one file each, NaN as null."""
+    folder.mkdir()
+    for name, recording in runs.items():
+        columns = {n: pa.array(v, from_pandas=True) for n, v in recording.columns.items()}
+        write_parquet(folder / f"{name}.parquet", pa.table(columns))
 
 
 def write_parquet(path: Path, table: pa.Table) -> None:

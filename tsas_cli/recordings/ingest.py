@@ -1,6 +1,6 @@
 """From a person's files to a dataset."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatch
 from pathlib import Path
@@ -19,6 +19,7 @@ from tsas_cli.recordings.ingest_map import IngestMap
 from tsas_cli.recordings.manifest import Manifest, Run, parse, write_manifest
 from tsas_cli.recordings.readers import SUFFIXES, read
 from tsas_cli.recordings.readers.table import Floats, Table
+from tsas_cli.steps import SILENT, Steps
 
 
 @dataclass(frozen=True)
@@ -65,9 +66,11 @@ def ingest_files(
     map_path: Path,
     folder: Path,
     *,
-    step: Callable[[], None] = lambda: None,
+    step: Steps = SILENT,
 ) -> list[Ingested]:
-    """Write the files as the runs of a dataset into an empty folder; `step` follows each file.
+    """Write the files as the runs of a dataset into an empty folder.
+
+    `step` follows each piece of work: a file is read, brought to units, written.
 
     Raises
     ------
@@ -76,8 +79,10 @@ def ingest_files(
     """
     runs: list[Run] = []
     ingested: dict[str, Ingested] = {}
+    step.ahead(3 * len(files))
     for path in files:
         table = read(path, mapping.read, mapping.sources())
+        step()
         run = _run(path, table, mapping)
         if run.id in ingested:
             raise InputError(
@@ -87,6 +92,7 @@ def ingest_files(
                 remedy='tell them apart in the map: id = "{folder}_{stem}" under [run]',
             )
         columns = canonical_columns(table, mapping, path, map_path)
+        step()
         runs.append(write_run(folder, run, _with_nulls(columns)))
         ingested[run.id] = _summary(run.id, path, columns)
         step()

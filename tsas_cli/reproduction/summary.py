@@ -1,17 +1,19 @@
 """The whole reproduction: all groups, how many rows have which verdict, what is written of it."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from tsas_cli import __version__
 from tsas_cli.paper import Paper
 from tsas_cli.reproduction import GROUPS
 from tsas_cli.reproduction.group import VERDICTS, Group, Verdict
+from tsas_cli.steps import SILENT, Steps
 
 
-def reproduce(paper: Paper, step: Callable[[], None] = lambda: None) -> list[Group]:
+def reproduce(paper: Paper, step: Steps = SILENT) -> list[Group]:
     """Compute every group; `step` is called after each."""
     groups = []
+    step.ahead(len(GROUPS))
     for group in GROUPS:
         groups.append(group(paper))
         step()

@@ -13,6 +13,7 @@ from typing import Any
 
 import pyarrow as pa
 
+from tsas_cli.controllers import CONTROLLERS
 from tsas_cli.diagnosis.diagnose_stage import EXTENDED, diagnose_dataset
 from tsas_cli.diagnosis.drive_stage import identify_drive
 from tsas_cli.identification.calibrate_stage import calibrate_dataset
@@ -23,7 +24,7 @@ from tsas_cli.tracking.closing_drive import known_drives, record_drive
 from tsas_cli.tracking.recorded import conditions, manifest, stated_rig, table_of
 from tsas_cli.tracking.references import reference
 from tsas_cli.tracking.scores import over_seeds
-from tsas_cli.tracking.settings import CONTROLLERS, Settings
+from tsas_cli.tracking.settings import Settings
 from tsas_cli.tracking.track import Known, Plant, plan, track
 
 STEPS = 7  # pieces of work of a case
@@ -116,7 +117,7 @@ def _find_tendon(
     dataset = read_dataset(folder / "dataset")
     calibrate_dataset(dataset, folder / "calibrate")
     step()
-    found = diagnose_dataset(dataset, folder / "calibrate", folder / "diagnose")
+    found = diagnose_dataset(dataset, folder / "calibrate", folder / "diagnose").summary
     step()
     calibrated = read_model(folder / "calibrate" / FILE).rig(run)
     extended = read_model(folder / "diagnose" / EXTENDED).rig(run)
@@ -130,7 +131,7 @@ def _find_drive(
     del plant  # its drive is the settings'
     record_drive(settings, folder / "dataset")
     step()
-    found = identify_drive(read_dataset(folder / "dataset"), folder / "identify", "zero")
+    found = identify_drive(read_dataset(folder / "dataset"), folder / "identify", "zero").summary
     step()
     drives = known_drives(folder / "identify", settings)
     step()

@@ -1,20 +1,30 @@
 """The close-loop stage: hidden effects recorded, diagnosed and tracked, into one table."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from tsas_cli import __version__
 from tsas_cli.errors import InputError, nearest
 from tsas_cli.files import new_folder, write_json
-from tsas_cli.tracking.closing import CASES, MODELS, Case, close
+from tsas_cli.result import Result, Table
+from tsas_cli.steps import SILENT, Steps
+from tsas_cli.tracking.closing import CASES, MODELS, STEPS, Case, close
 from tsas_cli.tracking.conditions import disturbed
 from tsas_cli.tracking.settings import Settings
 
-Table = tuple[str, Sequence[str], Sequence[Sequence[str]]]
+
+@dataclass(frozen=True, repr=False, eq=False)
+class ClosingResult(Result):
+    """What a better model is worth in tracking, case by case."""
+
+    def tables(self) -> list[Table]:
+        """Return what was hidden and named, and the RMSE by model."""
+        return _tables(self.summary, self.titled("what was hidden, and named"))
 
 
-def chosen(names: str | None, hide: Sequence[str]) -> tuple[Case, ...]:
+def chosen(names: Sequence[str] | None, hide: Sequence[str]) -> tuple[Case, ...]:
     """Return the cases by name, or one that hides what options such as `NAME=VALUE` say.
 
     Raises
@@ -28,7 +38,7 @@ def chosen(names: str | None, hide: Sequence[str]) -> tuple[Case, ...]:
             raise InputError("a hidden effect begins with the run", where="--hide")
         return (Case("hidden", ", ".join(hide), {c.name: c.value for c in changes}),)
     known = {case.name: case for case in CASES}
-    wanted = list(known) if names is None else [name.strip() for name in names.split(",")]
+    wanted = list(known) if names is None else list(names)
     for name in wanted:
         if name not in known:
             raise InputError(f"unknown case {name}", where="--cases", remedy=nearest(name, known))
@@ -42,8 +52,8 @@ def close_all(
     seeds: Sequence[int],
     *,
     force: bool = False,
-    step: Callable[[], None] = lambda: None,
-) -> dict[str, Any]:
+    step: Steps = SILENT,
+) -> ClosingResult:
     """Close the loop on each case; write `closing.json` and what the stages wrote on the way.
 
     Raises
@@ -52,6 +62,7 @@ def close_all(
         A loop is unstable, or `out` exists and `force` is not set.
     """
     with new_folder(out, force=force) as folder:
+        step.ahead(STEPS * len(cases))
         found = [close(case, settings, folder / case.name, seeds, step) for case in cases]
         summary = {
             "format": 1,
@@ -62,11 +73,11 @@ def close_all(
             "cases": found,
         }
         write_json(folder / "closing.json", summary)
-    return summary
+    return ClosingResult(summary, out)
 
 
-def tables(summary: dict[str, Any], out: Path) -> list[Table]:
-    """Return what is printed: what was hidden and named, and the RMSE by model."""
+def _tables(summary: dict[str, Any], title: str) -> list[Table]:
+    """Return what was hidden and named, under its title, and the RMSE by model."""
     named = [
         (
             case["title"],
@@ -87,6 +98,6 @@ def tables(summary: dict[str, Any], out: Path) -> list[Table]:
     ]
     header = ("hidden", "controller", *MODELS, "extended/true")
     return [
-        (f"what was hidden, and named → {out}", ("hidden", "verdict", "named"), named),
+        (title, ("hidden", "verdict", "named"), named),
         ("RMSE of the force in N, by the model of inverse and feedforward", header, rows),
     ]

@@ -9,19 +9,20 @@ from tsas_cli.physics.plant import Actuator
 from tsas_cli.tracking.settings import DriveSettings
 
 
-def known_drive(path: Path | None, settings: DriveSettings) -> Actuator:
-    """Return the drive of the feedforward.
+def known_drive(given: IdentifiedDrive | Path | None, settings: DriveSettings) -> Actuator:
+    """Return the drive of the feedforward, as it is or from a file.
 
-    Without a file it is kinematics, 60 im/(2π r1) (Yang 2025, Eq. 48).
+    Without any it is kinematics, 60 im/(2π r1) (Yang 2025, Eq. 48).
 
     Raises
     ------
     InputError
         The file is no `drive.toml`.
     """
-    if path is None:
+    if given is None:
         return settings.kinematic()
-    return actuator_of(read_drive(path), settings.speed_limit_rpm)
+    drive = given if isinstance(given, IdentifiedDrive) else read_drive(given)
+    return actuator_of(drive, settings.speed_limit_rpm)
 
 
 def actuator_of(drive: IdentifiedDrive, speed_limit_rpm: float) -> Actuator:

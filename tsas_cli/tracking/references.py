@@ -8,6 +8,7 @@ import numpy.typing as npt
 
 from tsas_cli.errors import InputError, nearest
 from tsas_cli.recordings.dataset import read_columns
+from tsas_cli.tracking import SHAPE_NAMES
 from tsas_cli.tracking.settings import ReferenceSettings
 
 Floats = npt.NDArray[np.float64]
@@ -40,12 +41,9 @@ def ramps(t: Floats, form: ReferenceSettings) -> Floats:
     return form.mean_N + form.amplitude_N * (1.0 - 4.0 * np.abs(part - 0.5))
 
 
-SHAPES: dict[str, Callable[[Floats, ReferenceSettings], Floats]] = {
-    "sine": sine,
-    "two-frequency": two_frequency,
-    "steps": steps,
-    "ramps": ramps,
-}
+SHAPES: dict[str, Callable[[Floats, ReferenceSettings], Floats]] = dict(
+    zip(SHAPE_NAMES, (sine, two_frequency, steps, ramps), strict=True)
+)
 
 
 def reference(name: str, form: ReferenceSettings, step_s: float) -> Floats:

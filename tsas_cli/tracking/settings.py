@@ -11,6 +11,7 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
+from tsas_cli.controllers import CONTROLLERS
 from tsas_cli.controllers.adaptive_sliding_mode import AdaptiveSlidingMode
 from tsas_cli.controllers.closed_loop import Laws
 from tsas_cli.controllers.disturbance_observer import DisturbanceObserver
@@ -21,7 +22,6 @@ from tsas_cli.physics.capstan import speed_per_stiffness
 from tsas_cli.physics.plant import Actuator
 from tsas_cli.recordings.manifest import parse, read_toml
 
-CONTROLLERS = ("pid", "sliding-mode", "adaptive-sliding-mode", "disturbance-observer")
 MM_PER_M = 1e3
 
 

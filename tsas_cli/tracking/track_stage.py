@@ -3,7 +3,7 @@
 The folder is a dataset too: what was recorded can be calibrated and diagnosed.
 """
 
-from collections.abc import Callable
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -12,19 +12,23 @@ import numpy as np
 import pyarrow as pa
 
 from tsas_cli import __version__
+from tsas_cli.controllers import CONTROLLERS
 from tsas_cli.controllers.path import Path as DrivePath
 from tsas_cli.errors import InputError, nearest
-from tsas_cli.files import new_folder, sha256_of, write_json
+from tsas_cli.files import folder_if, sha256_of, write_json
 from tsas_cli.identification.drive_file import FILE as DRIVE_FILE
-from tsas_cli.identification.model import read_model, source_of
-from tsas_cli.recordings.dataset import write_dataset
+from tsas_cli.identification.drive_file import IdentifiedDrive
+from tsas_cli.identification.model import Model, model_of, source_of
+from tsas_cli.recordings.dataset import Recording, recording_of, write_dataset
+from tsas_cli.result import Result, Table, notes
+from tsas_cli.steps import SILENT, Steps
 from tsas_cli.tracking.conditions import Condition
 from tsas_cli.tracking.drives import known_drive
 from tsas_cli.tracking.dynamic_notes import dynamic_notes
 from tsas_cli.tracking.recorded import conditions, manifest, stated_model, table_of
 from tsas_cli.tracking.references import reference
 from tsas_cli.tracking.scores import over_seeds
-from tsas_cli.tracking.settings import CONTROLLERS, Settings, printed_gains, read_settings
+from tsas_cli.tracking.settings import Settings, printed_gains, read_settings
 from tsas_cli.tracking.table_5 import printed_rmse
 from tsas_cli.tracking.track import (
     Known,
@@ -36,6 +40,14 @@ from tsas_cli.tracking.track import (
     track,
 )
 
+COLUMNS = (
+    ("RMSE [N]", "rmse_N"),
+    ("lowest [N]", "lowest_error_N"),
+    ("highest [N]", "highest_error_N"),
+    ("effort [rpm]", "effort_rpm"),
+    ("chatter [rpm/s]", "chatter_rpm_per_s"),
+    ("outside 2 % [%]", "outside_percent"),
+)
 OFTEN_PERCENT = 5.0  # of the time at the motor's limit, from which it is said
 
 
@@ -43,9 +55,9 @@ OFTEN_PERCENT = 5.0  # of the time at the motor's limit, from which it is said
 class Call:
     """What the stage is asked for; see `tsas track --help`."""
 
-    model: Path | None = None
-    plant: Path | None = None
-    drive: Path | None = None
+    model: Model | Path | None = None
+    plant: Model | Path | None = None
+    drive: IdentifiedDrive | Path | None = None
     settings: Path | None = None
     controllers: tuple[str, ...] = ("adaptive-sliding-mode",)
     conditions: tuple[Condition, ...] = (Condition("undisturbed"),)
@@ -56,10 +68,39 @@ class Call:
     first_seed: int = 1
 
 
+@dataclass(frozen=True, repr=False, eq=False)
+class TrackingResult(Result):
+    """How well the wanted force is followed; `result["pid-undisturbed"]` is a run.
+
+    Parameters
+    ----------
+    runs
+        By `controller-condition` the recording of the first seed: columns of shape (m,), among
+        them `f_out_ref_N` (wanted), `f_out_true_N`, `f_out_N` (with noise), `x_in_mm` and
+        `motor_speed_rpm` (docs/tracking.md).
+    """
+
+    runs: Mapping[str, Recording]
+
+    def __getitem__(self, run: str) -> Recording:
+        """Return a run."""
+        return recording_of(self.runs, run)
+
+    def tables(self) -> list[Table]:
+        """Return the scores, one row for each controller and condition."""
+        return [_table(self.summary["results"], self.titled("tracking"))]
+
+    def sentences(self) -> list[str]:
+        """Return what of the runs is not to be trusted or not to be reached, and why."""
+        return notes(self.summary["notes"])
+
+
 def track_all(
-    call: Call, out: Path, *, force: bool = False, step: Callable[[], None] = lambda: None
-) -> dict[str, Any]:
-    """Run every controller under every condition; write runs, dataset and `tracking.json`.
+    call: Call, out: Path | None, *, force: bool = False, step: Steps = SILENT
+) -> TrackingResult:
+    """Run every controller under every condition.
+
+    Runs, dataset and `tracking.json` are written into a new folder if there is one.
 
     Raises
     ------
@@ -77,7 +118,8 @@ def track_all(
     wanted = reference(call.reference, settings.reference, settings.step_s)
     path = plan(wanted, known, settings)
     results, tables = [], dict[str, pa.Table]()
-    with new_folder(out, force=force) as folder:
+    with folder_if(out, force=force) as folder:
+        step.ahead(len(call.controllers) * len(call.conditions) * call.seeds)
         for condition in call.conditions:
             real = condition.of(plant)
             for name in call.controllers:
@@ -107,9 +149,19 @@ def track_all(
         summary["notes"] = _notes(path, known, plant, results)
         if call.dynamics == "lugre":
             summary["notes"] += dynamic_notes(path, plant, call.conditions, settings.step_s)
-        write_dataset(folder, manifest(tables, settings), tables)
-        write_json(folder / "tracking.json", summary)
-    return summary
+        if folder is not None:
+            write_dataset(folder, manifest(tables, settings), tables)
+            write_json(folder / "tracking.json", summary)
+    return TrackingResult(summary, out, _recordings(tables, settings))
+
+
+def _recordings(tables: Mapping[str, pa.Table], settings: Settings) -> dict[str, Recording]:
+    return {
+        run: Recording(
+            conditions(run, settings), {name: table[name].to_numpy() for name in table.column_names}
+        )
+        for run, table in tables.items()
+    }
 
 
 def what_is_known(call: Call, settings: Settings) -> tuple[Known, Plant]:
@@ -122,8 +174,8 @@ def what_is_known(call: Call, settings: Settings) -> tuple[Known, Plant]:
     """
     run = conditions("track", settings)
     stated = stated_model(settings)
-    model = stated if call.model is None else read_model(call.model).over(stated)
-    real = model if call.plant is None else read_model(call.plant).over(stated)
+    model = stated if call.model is None else model_of(call.model).over(stated)
+    real = model if call.plant is None else model_of(call.plant).over(stated)
     actuator = settings.drive.actuator()
     return Known(model.rig(run), known_drive(call.drive, settings.drive)), Plant(
         real.rig(run), actuator
@@ -202,3 +254,23 @@ def _notes(path: DrivePath, known: Known, plant: Plant, results: list[dict[str, 
                 f"{result['run']}: {result['unsettled_steps']} steps of the tendon did not settle"
             )
     return notes
+
+
+def _table(results: list[dict[str, Any]], title: str) -> Table:
+    """Return the scores; what Table 5 of the paper prints stands beside them where it applies."""
+    header = ["controller", "condition", *(name for name, _ in COLUMNS)]
+    rows = [
+        [row["controller"], row["condition"], *(_cell(row["scores"][key]) for _, key in COLUMNS)]
+        for row in results
+    ]
+    printed = [row["printed_rmse_N"] for row in results]
+    if any(value is not None for value in printed):
+        header.insert(3, "Table 5 [N]")
+        for row, value in zip(rows, printed, strict=True):
+            row.insert(3, "" if value is None else f"{value:g}")
+    return title, header, rows
+
+
+def _cell(number: dict[str, Any]) -> str:
+    spread = number["sd"]
+    return f"{number['mean']:.4g}" + ("" if spread is None else f" ± {spread:.2g}")

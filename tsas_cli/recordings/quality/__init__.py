@@ -36,6 +36,7 @@ from tsas_cli.recordings.quality.finding import (
     Subject,
 )
 from tsas_cli.recordings.quality.trial import Trial
+from tsas_cli.steps import SILENT, Steps
 
 MANIFEST_CHECKS: tuple[Check[Manifest], ...] = (unknown_key.CHECK, manifest_unit.CHECK)
 RUN_CHECKS: tuple[Check[Trial], ...] = (
@@ -73,8 +74,8 @@ class Report:
         }
 
 
-def check_dataset(dataset: Dataset) -> Report:
-    """Run every check on the manifest and on every run of a dataset.
+def check_dataset(dataset: Dataset, step: Steps = SILENT) -> Report:
+    """Run every check on the manifest and on the runs of a dataset; `step` follows each run.
 
     A run that cannot be read is a finding (`unreadable`), as long as another one can.
 
@@ -85,13 +86,15 @@ def check_dataset(dataset: Dataset) -> Report:
     """
     results = list(_look(MANIFEST_CHECKS, dataset.manifest, None))
     failures = []
-    for run in dataset.manifest.run:
+    step.ahead(len(dataset.runs))
+    for run in dataset.runs:
         try:
             results += _look_at_run(dataset, run)
         except InputError as error:
             failures.append(error)
             results.append(_unreadable(run, error))
-    if len(failures) == len(dataset.manifest.run):
+        step()
+    if len(failures) == len(dataset.runs):
         raise failures[0]
     return Report(
         tuple(r for r in results if isinstance(r, Finding)),

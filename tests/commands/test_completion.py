@@ -1,0 +1,78 @@
+"""What a shell completes, and that it does not wait for a library."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+import typer
+
+from tests.test_app import HEAVY
+from tsas_cli.commands import completion
+from tsas_cli.controllers import CONTROLLERS
+from tsas_cli.effects import EFFECTS
+from tsas_cli.tracking import SHAPE_NAMES
+from tsas_cli.tracking.references import SHAPES
+
+COMPLETED = """
+import atexit, json, sys
+atexit.register(lambda: print(json.dumps(sorted(sys.modules)), file=sys.stderr))
+from tsas_cli.app import main
+main()
+"""
+
+
+def completed(monkeypatch, *words):
+    """Return what bash is offered for the last word, and the modules that were loaded for it."""
+    monkeypatch.setenv("_TSAS_COMPLETE", "complete_bash")
+    monkeypatch.setenv("COMP_WORDS", " ".join(map(str, ("tsas", *words))))
+    monkeypatch.setenv("COMP_CWORD", str(len(words)))
+    call = [sys.executable, "-c", COMPLETED]
+    done = subprocess.run(call, capture_output=True, text=True, check=True)
+    return done.stdout.split(), {name.split(".")[0] for name in json.loads(done.stderr)}
+
+
+@pytest.mark.parametrize(
+    ("words", "offered"),
+    [
+        (("explain", "drive_"), ["drive_compliance", "drive_friction", "drive_ripple"]),
+        (("track", "--controller", "pid,s"), ["pid,sliding-mode"]),
+        (("track", "--reference", "s"), ["sine", "steps"]),
+        (("simulate", "--dynamics", "l"), ["lugre"]),
+        (("cal",), ["calibrate"]),
+    ],
+)
+def test_bash_is_offered_what_can_follow(monkeypatch, words, offered):
+    found, loaded = completed(monkeypatch, *words)
+    assert found == offered
+    assert loaded & HEAVY <= {"pydantic"}  # which typer loads for every call
+
+
+def test_runs_are_those_of_the_dataset_that_was_named(monkeypatch, dataset):
+    assert completed(monkeypatch, "calibrate", dataset, "--runs", "")[0] == ["a"]
+    assert completed(monkeypatch, "calibrate", dataset.parent, "--runs", "a")[0] == []
+
+
+def test_what_is_named_already_is_not_offered_again():
+    assert completion.controllers("pid,") == [f"pid,{name}" for name in ("all", *CONTROLLERS[1:])]
+
+
+def test_a_manifest_that_cannot_be_read_offers_nothing(dataset):
+    (dataset / "dataset.toml").write_text("run = 1")
+    context = typer.Context(typer.main.get_command(typer.Typer(callback=lambda: None)))
+    context.args = [str(dataset)]
+    assert completion.run_ids(context, "") == []
+
+
+def test_the_lists_are_those_of_the_program():
+    assert completion.effect_names("") == sorted(effect.name for effect in EFFECTS)
+    assert tuple(SHAPES) == SHAPE_NAMES
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_a_shell_is_told_how(tsas, shell):
+    done = tsas(
+        "--show-completion", shell, env={"_TYPER_COMPLETE_TEST_DISABLE_SHELL_DETECTION": "1"}
+    )
+    assert done.returncode == 0
+    assert "_TSAS_COMPLETE" in done.stdout

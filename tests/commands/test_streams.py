@@ -1,0 +1,186 @@
+"""Results on standard output, talk on standard error: the same rule for every command."""
+
+import json
+import os
+import pty
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import tsas_cli
+import tsas_cli.app
+from tests.test_app import CALLS
+from tsas_cli.result import Result
+
+SUMMARY = {"format": 1, "stage": "any", "value": 1.5}
+VERBS = {  # of commands whose function has another name
+    "effects": "tsas_cli.catalogue",
+    "challenge make": "tsas_cli.api.challenge.make_set",
+    "challenge run": "tsas_cli.api.challenge.run_set",
+    "challenge score": "tsas_cli.api.challenge.score_set",
+}
+PLACEHOLDER = {"<int>": "1", "<float>": "1"}
+BAR = """
+import time
+from tsas_cli.commands.progress import progress
+with progress("fit", quiet={quiet}) as step:
+    step.ahead(2)
+    for k in range(4):
+        time.sleep(0.15)
+        if k == 1:
+            step.ahead(2)
+        step()
+print("the result")
+"""
+
+
+class Anything(Result):
+    """What a stage may have found."""
+
+    def intro(self):
+        return ["before the tables"]
+
+    def tables(self):
+        return [("a table", ("name", "value"), [("x", "1.5")])]
+
+    def sentences(self):
+        return ["- after the tables"]
+
+
+@pytest.fixture
+def called(monkeypatch, capsys):
+    """Call a command whose stage finds anything; return what it prints."""
+
+    def call(name, *options):
+        verb = VERBS.get(name, f"tsas_cli.{name.replace('-', '_')}")
+        found = Anything(SUMMARY, None)
+        monkeypatch.setattr(verb, lambda *_, **__: found, raising=False)
+        arguments = [*needed(CALLS[name]), *options]
+        tsas_cli.app.app([*name.split(), *arguments], prog_name="tsas", standalone_mode=False)
+        return capsys.readouterr()
+
+    return call
+
+
+def needed(command):
+    """Return the words without which a command is no call."""
+    words = []
+    for parameter in command.params:
+        if parameter.required:
+            if parameter.param_type_name == "option":
+                words.append(parameter.opts[0])
+            words.append("1" if parameter.name == "seed" else "some")
+    return words
+
+
+@pytest.mark.parametrize("name", CALLS)
+def test_json_is_one_document_and_nothing_else(called, name):
+    said = called(name, "--json")
+    assert json.loads(said.out) == SUMMARY
+    assert said.err == ""
+
+
+@pytest.mark.parametrize("name", CALLS)
+def test_quiet_is_silent(called, name):
+    assert called(name, "--quiet") == ("", "")
+
+
+@pytest.mark.parametrize("name", CALLS)
+def test_tables_and_sentences_are_the_result(called, name):
+    said = called(name)
+    words = ["before the tables", "a table", "name  value", "1.5", "- after the tables"]
+    places = [said.out.find(word) for word in words]
+    assert -1 not in places
+    assert places == sorted(places)
+    assert said.err == ""
+
+
+def on_terminal(call, **environment):
+    """Run a program whose standard error is a terminal; return what is said there and printed."""
+    master, slave = pty.openpty()
+    environment = os.environ | {"TERM": "xterm-256color", "COLUMNS": "120"} | environment
+    environment.pop("TSAS_THREADS", None)
+    process = subprocess.Popen(call, stdout=subprocess.PIPE, stderr=slave, env=environment)
+    os.close(slave)
+    said = b""
+    while chunk := _read(master):
+        said += chunk
+    printed = process.stdout.read()
+    assert process.wait() == 0
+    process.stdout.close()
+    os.close(master)
+    return said.decode(), printed.decode()
+
+
+def _read(master):
+    try:
+        return os.read(master, 65536)
+    except OSError:  # the terminal is gone with the last that has it open
+        return b""
+
+
+def bar(quiet, **environment):
+    return on_terminal([sys.executable, "-c", BAR.format(quiet=quiet)], **environment)
+
+
+def test_a_bar_says_how_far_it_is_and_how_long_the_rest_takes():
+    said, printed = bar(quiet=False)
+    assert printed == "the result\n"
+    counts = re.findall(r"(\d) of (\d)", said)
+    assert ("1", "2") in counts  # two pieces were known to come …
+    assert ("4", "4") in counts  # … and then two more
+    assert "fit" in said
+    assert re.search(r"about 0:00:0\d left", said)
+
+
+def test_quiet_draws_no_bar():
+    assert bar(quiet=True) == ("", "the result\n")
+
+
+def test_no_colour_is_asked_for():
+    colour = re.compile(r"\x1b\[[0-9;]*3[0-9]m")
+    assert colour.search(bar(quiet=False)[0])
+    assert not colour.search(bar(quiet=False, NO_COLOR="1")[0])
+
+
+def test_a_stage_shows_its_bar_on_a_terminal_and_prints_the_result(dataset):
+    call = [sys.executable, "-m", "tsas_cli", "check", dataset]
+    said, printed = on_terminal(call)
+    assert "check" in said
+    assert "1 of 1" in said
+    assert printed.startswith("the checks found")
+    assert "\x1b" not in printed
+
+
+@pytest.mark.parametrize("environment", [{}, {"NO_COLOR": "1"}], ids=["piped", "asked"])
+def test_help_has_no_colour(environment, monkeypatch):
+    for name in ("FORCE_COLOR", "PY_COLORS", "GITHUB_ACTIONS"):
+        monkeypatch.delenv(name, raising=False)
+    call = [sys.executable, "-m", "tsas_cli", "check", "--help"]
+    if environment:
+        said, _ = on_terminal(["sh", "-c", '"$@" >&2', "sh", *call], **environment)
+        assert not re.search(r"\x1b\[[0-9;]*3[0-9]m", said)
+    else:
+        done = subprocess.run(call, capture_output=True, text=True, check=True)
+        said = done.stdout
+        assert "\x1b" not in said
+    assert "DATASET" in said
+
+
+def test_the_catalogue_says_at_a_terminal_what_tells_more():
+    assert on_terminal([sys.executable, "-m", "tsas_cli", "effects"])[0].strip() == (
+        "`tsas explain NAME` tells more"
+    )
+
+
+def test_every_command_is_a_call_of_the_api():
+    commands = Path(tsas_cli.app.__file__).parent / "commands"
+    for name in CALLS:
+        path = commands / f"{name.split()[0].replace('-', '_')}.py"
+        text = path.read_text(encoding="utf-8")
+        verb = VERBS.get(name, f"tsas_cli.{name.replace('-', '_')}").rpartition(".")[2]
+        assert re.search(rf"\b{verb}\(", text)
+        assert "present(" in text

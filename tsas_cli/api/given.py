@@ -1,0 +1,49 @@
+"""What a caller may hand over: a dataset or its folder, a path or its text, a word of a few."""
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import TypeVar
+
+from tsas_cli.errors import InputError, nearest
+from tsas_cli.recordings.dataset import Dataset, read_dataset
+
+Named = str | Path
+Thing = TypeVar("Thing")
+Word = TypeVar("Word", bound=str)
+
+
+def path_of(given: Thing | str) -> Thing | Path:
+    """Return text as a path, and anything else as it is."""
+    return Path(given) if isinstance(given, str) else given
+
+
+def dataset_of(given: Dataset | Named, runs: Iterable[str] | None = None) -> Dataset:
+    """Return a dataset, or open that of a folder, with the runs that were asked for.
+
+    Raises
+    ------
+    InputError
+        The folder is none, or there is no such run.
+    """
+    dataset = given if isinstance(given, Dataset) else read_dataset(Path(given))
+    return dataset if runs is None else dataset.only(_listed(runs))
+
+
+def one_of(words: Sequence[Word], given: str, name: str) -> Word:
+    """Return a word that is among those that are known.
+
+    Raises
+    ------
+    InputError
+        It is not.
+    """
+    for word in words:
+        if word == given:
+            return word
+    raise InputError(
+        f"{name} is {given!r}", expected=" or ".join(words), remedy=nearest(given, words)
+    )
+
+
+def _listed(runs: Iterable[str]) -> list[str]:
+    return [runs] if isinstance(runs, str) else list(runs)

@@ -1,0 +1,51 @@
+"""What a shell completes beside options and files; nothing here loads a heavy library."""
+
+import tomllib
+from collections.abc import Sequence
+from pathlib import Path
+
+import typer
+
+import tsas_cli
+from tsas_cli.controllers import CONTROLLERS
+from tsas_cli.tracking import SHAPE_NAMES
+
+ABOUT_EFFECTS = {"__init__", "effect"}  # files beside those of the effects
+
+
+def effect_names(incomplete: str) -> list[str]:
+    """Return the effects that begin so: each is a file."""
+    files = (Path(tsas_cli.__file__).parent / "effects").glob("*.py")
+    names = sorted({file.stem for file in files} - ABOUT_EFFECTS)
+    return [name for name in names if name.startswith(incomplete)]
+
+
+def controllers(incomplete: str) -> list[str]:
+    """Return the lists of controllers that continue what is there."""
+    return _continued(("all", *CONTROLLERS), incomplete)
+
+
+def references(incomplete: str) -> list[str]:
+    """Return the shapes of a reference that begin so."""
+    return [name for name in SHAPE_NAMES if name.startswith(incomplete)]
+
+
+def run_ids(context: typer.Context, incomplete: str) -> list[str]:
+    """Return the lists of runs that continue what is there, of the dataset that was named."""
+    manifests = (Path(word) / "dataset.toml" for word in context.args)
+    manifest = next((path for path in manifests if path.is_file()), None)
+    if manifest is None:
+        return []  # none was named yet
+    try:
+        runs = tomllib.loads(manifest.read_text(encoding="utf-8"))["run"]
+        ids = [str(run["id"]) for run in runs]
+    except (KeyError, TypeError, OSError, ValueError):
+        return []  # what is wrong with it, the command will say
+    return _continued(ids, incomplete)
+
+
+def _continued(words: Sequence[str], incomplete: str) -> list[str]:
+    """Return the words that fit after the last comma, with what stands before it."""
+    before, comma, begun = incomplete.rpartition(",")
+    told = before.split(",")
+    return [f"{before}{comma}{w}" for w in words if w.startswith(begun) and w not in told]

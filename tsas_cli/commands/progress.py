@@ -1,0 +1,63 @@
+"""A bar on standard error, where that is a terminal, with the time that is left."""
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from datetime import timedelta
+from typing import TYPE_CHECKING
+
+from tsas_cli.steps import SILENT, Steps
+
+if TYPE_CHECKING:
+    from rich.progress import Progress
+
+
+class Bar(Steps):
+    """Moves a task of a bar; its total grows with what is known to lie ahead."""
+
+    def __init__(self, shown: "Progress", label: str, total: int) -> None:
+        self.shown, self.total, self.done = shown, total, 0
+        self.task = shown.add_task(label, total=total or None, left="")
+
+    def ahead(self, pieces: int) -> None:
+        """Make the total grow."""
+        self.total += pieces
+        self.shown.update(self.task, total=self.total)
+
+    def __call__(self) -> None:
+        """Move the bar by one, and say how long the rest takes at the pace so far."""
+        self.done += 1
+        so_far_s = self.shown.tasks[0].elapsed or 0.0
+        rest = max(self.total - self.done, 0)
+        left = timedelta(seconds=round(so_far_s / self.done * rest))
+        self.shown.update(self.task, completed=self.done, left=f"about {left} left")
+
+
+@contextmanager
+def progress(label: str, total: int = 0, *, quiet: bool) -> Iterator[Steps]:
+    """Show a bar while a stage is at work; yield what the stage tells of its steps.
+
+    Parameters
+    ----------
+    label
+        What is done.
+    total
+        The pieces of work, as far as the stage does not say itself what lies ahead.
+    quiet
+        Show nothing.
+    """
+    if quiet or not sys.stderr.isatty():
+        yield SILENT
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(separator=" of "),
+        TimeElapsedColumn(),
+        TextColumn("{task.fields[left]}"),
+    )
+    with Progress(*columns, console=Console(stderr=True), transient=True) as shown:
+        yield Bar(shown, label, total)
