@@ -50,7 +50,10 @@ def main() -> None:
             for key in ("time_s", "x_in_mm", "f_in_N")
         }
         simulated = {
-            out: {key: column(Path(out, "runs", f"{RUN}.parquet"), key) for key in ("x_in_mm", "f_in_N")}
+            out: {
+                key: column(Path(out, "runs", f"{RUN}.parquet"), key)
+                for key in ("x_in_mm", "f_in_N")
+            }
             for out in MODELS
         }
 
@@ -103,7 +106,8 @@ def standing_alone(svg: str) -> str:
     light, dark = palettes()
     style = (
         f"<style>:root {{ {light} }} @media (prefers-color-scheme: dark) {{ :root {{ {dark} }} }} "
-        "* { stroke-linejoin: round } text { font-family: system-ui, sans-serif !important }</style>"
+        "* { stroke-linejoin: round } text { font-family: system-ui, sans-serif !important }"
+        "</style>"
         '<rect width="100%" height="100%" rx="6" style="fill: var(--paper)"/>'
     )
     head, end, body = svg.partition(">")

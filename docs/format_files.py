@@ -34,9 +34,7 @@ def controldesk(path: str) -> None:
 
 def matlab_5(path: str) -> None:
     """Write a vector, a matrix and a struct."""
-    matlab_files.save_5(
-        Path(path), t=TIME_S, force=np.c_[F_IN_N, F_OUT_N], drive={"x": X_IN_MM}
-    )
+    matlab_files.save_5(Path(path), t=TIME_S, force=np.c_[F_IN_N, F_OUT_N], drive={"x": X_IN_MM})
 
 
 def matlab_73(path: str) -> None:
@@ -78,6 +76,8 @@ def parquet(path: str) -> None:
     import pyarrow.parquet as pq
 
     columns = {"t": (TIME_S, "s"), "x": (X_IN_MM, "mm"), "f1": (F_IN_N, "N"), "f2": (F_OUT_N, "N")}
-    fields = [pa.field(name, pa.float64(), metadata={"unit": u}) for name, (_, u) in columns.items()]
+    fields = [
+        pa.field(name, pa.float64(), metadata={"unit": u}) for name, (_, u) in columns.items()
+    ]
     arrays = [values for values, _ in columns.values()]
     pq.write_table(pa.table(arrays, schema=pa.schema(fields)), path)

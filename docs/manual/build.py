@@ -9,6 +9,7 @@ from typing import Any
 import tomlkit
 
 from docs.manual import pages
+from docs.manual.api import api_page
 from docs.manual.colours import site_style
 from docs.manual.commands import command_page
 from docs.manual.effects import PLACES, effect_pages
@@ -39,9 +40,7 @@ def write_sources(folder: Path, effects: dict[str, str]) -> None:
         shutil.copy(asset, source / "assets")
     (source / "assets" / "tsas.css").write_text(site_style(), encoding="utf-8")
     sites = {page.source: page.site for page in pages.pages()} | GENERATED
-    texts = {
-        page: (pages.ROOT / page.source).read_text(encoding="utf-8") for page in pages.pages()
-    }
+    texts = {page: (pages.ROOT / page.source).read_text(encoding="utf-8") for page in pages.pages()}
     for page, text in texts.items():
         for target in targets(text, page.source):
             if not (pages.ROOT / target).exists():
@@ -49,7 +48,7 @@ def write_sources(folder: Path, effects: dict[str, str]) -> None:
             if target.endswith(".svg"):
                 sites[target] = Path(target).name
                 shutil.copy(pages.ROOT / target, source)
-    generated = {"commands.md": command_page(), **effects}
+    generated = {"commands.md": command_page(), "api.md": api_page(), **effects}
     ours = {page.site: for_site(text, page.source, sites) for page, text in texts.items()}
     for site, text in (generated | ours).items():
         (source / site).parent.mkdir(parents=True, exist_ok=True)
@@ -94,7 +93,13 @@ def _contents() -> list[dict[str, Any]]:
         {pages.TUTORIAL.title: pages.TUTORIAL.site},
         {"How-to": entries(pages.how_to())},
         {"Effects": ["effects/index.md", *effects]},
-        {"Reference": [{"Commands": "commands.md"}, *entries((pages.FORMATS,))]},
+        {
+            "Reference": [
+                {"Commands": "commands.md"},
+                {"Python API": "api.md"},
+                *entries((pages.FORMATS,)),
+            ]
+        },
         {"Method": entries(pages.METHOD)},
         {pages.LIMITS.title: pages.LIMITS.site},
         {"Project": entries(pages.PROJECT)},

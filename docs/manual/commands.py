@@ -19,9 +19,11 @@ def command_page() -> str:
     """Return the page of all commands."""
     lines = [
         "# Command reference",
-        "\nFrom the program's own `--help`. Every command prints JSON with `--json` and nothing "
-        "but errors with `--quiet`. Exit codes: 0 done; 2 the call or the input is wrong, said in "
-        "one line, with nothing half-written; 1 a defect of ours.",
+        (
+            "\nFrom the program's own `--help`. Every command prints JSON with `--json` and "
+            "nothing but errors with `--quiet`. Exit codes: 0 done; 2 the call or the input is "
+            "wrong, said in one line, with nothing half-written; 1 a defect of ours."
+        ),
         "\n| command | |\n|---|---|",
     ]
     found = list(commands())
@@ -52,7 +54,9 @@ def example(name: str) -> tuple[str, str]:
         No page shows the command.
     """
     for prompt in (r"\$ ", ""):
-        call = re.compile(rf"^{prompt}({re.escape(name)}(?![\w-])[^\n]*?)( +#[^\n]*)?$", re.MULTILINE)
+        call = re.compile(
+            rf"^{prompt}({re.escape(name)}(?![\w-])[^\n]*?)( +#[^\n]*)?$", re.MULTILINE
+        )
         for page in SHOWN_IN:
             text = (ROOT / page).read_text(encoding="utf-8") if (ROOT / page).is_file() else ""
             if found := call.search(text):
@@ -65,9 +69,7 @@ def _section(name: str, command: Any) -> list[str]:
     usage = " ".join(command.collect_usage_pieces(context))
     lines = [f"\n## {name}\n\n{command.help}\n\n```console\n$ {name} {usage}\n```"]
     for kind in ("argument", "option"):
-        records = [
-            p.get_help_record(context) for p in command.params if p.param_type_name == kind
-        ]
+        records = [p.get_help_record(context) for p in command.params if p.param_type_name == kind]
         if records:
             lines.append(f"\n| {kind} | |\n|---|---|")
             lines += [f"| `{_cell(names)}` | {_cell(about)} |" for names, about in records]

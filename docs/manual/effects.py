@@ -31,7 +31,7 @@ def parts_of(doc: str) -> dict[str, str]:
 def _begun(text: str) -> str:
     """Return a part with a capital where it begins with a word, and not with a name."""
     word = text.split(maxsplit=1)[0]
-    return text if "_" in word or len(word) == 1 and word != "a" else text[0].upper() + text[1:]
+    return text if "_" in word or (len(word) == 1 and word != "a") else text[0].upper() + text[1:]
 
 
 def effect_pages(draw: Callable[[Effect], str] | None = None) -> dict[str, str]:
@@ -67,8 +67,10 @@ def _page(effect: Effect, figure: str) -> str:
             f"\n## Mistaken for\n\n{_linked(parts['Mistaken for'], but=effect.name)}",
             f"\n## Experiment\n\n{effect.experiment}",
             f"\n## Not validated\n\n{parts['Not validated']}",
-            f"\n`tsas explain {effect.name}` prints this text; grey is the rig of group a of "
-            "Yang 2025 without the effect, simulated on the slip chain.\n",
+            (
+                f"\n`tsas explain {effect.name}` prints this text; grey is the rig of group a of "
+                "Yang 2025 without the effect, simulated on the slip chain.\n"
+            ),
         )
     )
 
@@ -81,11 +83,13 @@ def _linked(text: str, but: str = "") -> str:
 def _index() -> str:
     lines = [
         "# Effects manual",
-        "\nWhat makes a real rig differ from the nominal one, and what a diagnosis can name. Each "
-        "page says what one sees, the law, what it is mistaken for and the experiment that "
-        "isolates it, and draws its signature: the loops without it and with it, and what it "
-        "changes, at a size that the eye sees at once. [How a diagnosis comes about]"
-        "(../diagnosis.md) works with far smaller ones.",
+        (
+            "\nWhat makes a real rig differ from the nominal one: what a diagnosis can name. "
+            "Each page says what one sees, the law, what it is mistaken for and the experiment that "
+            "isolates it, and draws its signature: the loops without it and with it, and what it "
+            "changes, at a size that the eye sees at once. [How a diagnosis comes about]"
+            "(../diagnosis.md) works with far smaller ones."
+        ),
     ]
     for place in PLACES:
         lines.append(f"\n## {place.capitalize()}\n\n| effect | what it is |\n|---|---|")
