@@ -28,5 +28,6 @@ def site_style() -> str:
 .md-typeset pre > code {{ font-size: 0.78em; }}
 .md-typeset table:not([class]) th {{ min-width: 0; }}
 .md-typeset table:not([class]) code {{ white-space: nowrap; }}
+@media (max-width: 40em) {{ .md-typeset table:not([class]) code {{ white-space: normal; }} }}
 .md-typeset img {{ max-width: 100%; height: auto; }}
 """

@@ -27,7 +27,10 @@ def command_page() -> str:
         "\n| command | |\n|---|---|",
     ]
     found = list(commands())
-    lines += [f"| [`{name}`](#{_anchor(name)}) | {_sentence(c)} |" for name, c in found]
+    lines += [
+        f"| [`{name.removeprefix('tsas ')}`](#{_anchor(name)}) | {_sentence(c)} |"
+        for name, c in found
+    ]
     for name, command in found:
         lines += _section(name, command)
     return "\n".join(lines) + "\n"

@@ -85,7 +85,7 @@ def _index() -> str:
         "# Effects manual",
         (
             "\nWhat makes a real rig differ from the nominal one: what a diagnosis can name. "
-            "Each page says what one sees, the law, what it is mistaken for and the experiment that "
+            "Each page says what one sees, the law, what it is mistaken for, the experiment that "
             "isolates it, and draws its signature: the loops without it and with it, and what it "
             "changes, at a size that the eye sees at once. [How a diagnosis comes about]"
             "(../diagnosis.md) works with far smaller ones."

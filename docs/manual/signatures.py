@@ -53,7 +53,7 @@ def _one(channel: Channel = "f_in_N", **values: float) -> tuple[Variant, ...]:
 
 PAPERS = Motion()  # x_in = 10 (1 − cos t) mm, two periods
 STEADY = Motion(kind="ramps")  # at constant speed
-LONG = Motion(periods=6)
+LONG = Motion(periods=4)
 NESTED = Motion(kind="nested", periods=1)
 
 SIGNATURES: Mapping[str, Signature] = MappingProxyType(
@@ -131,21 +131,21 @@ SIGNATURES: Mapping[str, Signature] = MappingProxyType(
         "bend_drift": Signature(
             "Each loop of f_in over f_out is wider than the last: up on pulls and down on "
             "releases, in proportion to the tension.",
-            _one(rate_rad_per_s=0.03),
+            _one(rate_rad_per_s=0.045),
             LONG,
             over="time_s",
         ),
         "friction_drift": Signature(
             "Each loop of f_in over f_out is wider than the last: up on pulls and down on "
             "releases, as with a bend that drifts.",
-            _one(rate_per_s=0.01),
+            _one(rate_per_s=0.015),
             LONG,
             over="time_s",
         ),
         "preload_loss": Signature(
             "All tensions sink as the run goes on, on pull and release alike; the line of f_out "
             "over x_out moves down in parallel.",
-            _one("f_out_N", rate_N_per_s=0.2),
+            _one("f_out_N", rate_N_per_s=0.3),
             LONG,
             (F_IN_OVER_X_IN, F_OUT_OVER_X_OUT),
             over="time_s",
@@ -192,8 +192,8 @@ SIGNATURES: Mapping[str, Signature] = MappingProxyType(
             "One channel leaves the others as the run goes on, by the same amount on pull and "
             "release.",
             (
-                Variant({"f_in_rate_N_per_s": 0.3}, "f_in_N", "of f_in"),
-                Variant({"f_out_rate_N_per_s": 0.2}, "f_out_N", "of f_out"),
+                Variant({"f_in_rate_N_per_s": 0.45}, "f_in_N", "of f_in"),
+                Variant({"f_out_rate_N_per_s": 0.3}, "f_out_N", "of f_out"),
             ),
             LONG,
             over="time_s",
