@@ -80,5 +80,6 @@ def _html(title: str, header: Sequence[str], rows: Sequence[Sequence[str]]) -> s
 
     head = f"<thead><tr>{cells('th', header)}</tr></thead>" if rows else ""
     body = "".join(f"<tr>{cells('td', row)}</tr>" for row in rows)
-    caption = f'<caption style="text-align: left">{escape(printable(title))}</caption>'
-    return f"<table>{caption}{head}<tbody>{body}</tbody></table>"
+    style = "text-align: left; white-space: nowrap; font-weight: bold"
+    caption = f'<caption style="{style}">{escape(printable(title))}</caption>'
+    return f'<table style="margin-bottom: 1em">{caption}{head}<tbody>{body}</tbody></table>'

@@ -8,8 +8,10 @@ _BLOCK = re.compile(r":root \{(.*?)\}", re.DOTALL)
 
 def palettes() -> tuple[str, str]:
     """Return the declarations of light and dark that the report's style sheet makes."""
-    sheet = files("tsas_cli.reporting").joinpath("templates/page.css").read_text(encoding="utf-8")
-    light, dark = (" ".join(block.split()) for block in _BLOCK.findall(sheet)[:2])
+    templates = files("tsas_cli.reporting").joinpath("templates").iterdir()
+    sheets = [t.read_text(encoding="utf-8") for t in templates if t.name.endswith(".css")]
+    blocks = [block for sheet in sheets for block in _BLOCK.findall(sheet) if "--ink:" in block]
+    light, dark = (" ".join(block.split()) for block in blocks[:2])
     return light, dark
 
 

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 
+from tests.counted import Counted
 from tests.drives import SPRUNG, STIFF, drive_dataset
 from tsas_cli.challenge.rig.drive import Gear
 from tsas_cli.diagnosis.drive_stage import identify_drive
@@ -30,7 +31,10 @@ SURE = 4.0  # standard errors, in which no seed of these may miss
 
 def identified(folder, *made, **options):
     dataset = drive_dataset(folder / "dataset", *made, **options)
-    return identify_drive(dataset, folder / "out").summary
+    counted = Counted()
+    summary = identify_drive(dataset, folder / "out", step=counted).summary
+    assert counted.all_of(least=17)  # the recordings, and the structures of G(s)
+    return summary
 
 
 @pytest.mark.parametrize("seed", [1, 2])

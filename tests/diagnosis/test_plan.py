@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from tests.counted import Counted
 from tests.diagnosis.planned import prepared, rig_file, run, seen
 from tsas_cli.diagnosis.plan import plan_rig, propose
 from tsas_cli.effects import EFFECTS
@@ -31,7 +32,10 @@ def slow():
 
 @pytest.fixture(scope="module")
 def plan():
-    return plan_rig(rig_file(run(5.0)))
+    counted = Counted()
+    planned = plan_rig(rig_file(run(5.0)), counted)
+    assert counted.all_of(least=10)  # there are as many runs that might be added
+    return planned
 
 
 def test_a_mass_does_not_show_where_nothing_speeds_up():

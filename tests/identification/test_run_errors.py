@@ -1,5 +1,8 @@
 """What counts in the fit, and how much: weights near reversals, samples near the ends."""
 
+import gc
+import weakref
+
 import numpy as np
 import pytest
 
@@ -65,3 +68,16 @@ def test_a_reversal_taken_for_noise_is_known_to_be_possible(seed):
     errors, rig = errors_of(run)
     assert np.sqrt(np.mean(errors.errors(rig)["f_in_N"] ** 2)) < 1.3
     assert np.median(errors.weights["f_in_N"] / run.noise["f_in_N"]) < 1.05
+
+
+def test_a_run_that_is_done_with_leaves_memory_at_once():
+    """Else thousands of calibrations in one process would wait for the collector of cycles."""
+    errors, rig = errors_of(prepared(Rig(), sine()))
+    errors.errors(rig)
+    gone = weakref.ref(errors)
+    gc.disable()
+    try:
+        del errors
+        assert gone() is None
+    finally:
+        gc.enable()

@@ -102,7 +102,7 @@ def diagnose_dataset(
             runs.append(prepare(recording, dataset.manifest.session_start))
             step()
         result = diagnose(dataset.manifest, stated, runs, step)
-        summary |= as_json(result)
+        summary |= as_json(result, step)
         if folder is not None:
             of = summary["dataset"]
             write_json(folder / "diagnosis.json", summary)
@@ -110,7 +110,7 @@ def diagnose_dataset(
     return DiagnosisResult(summary, out, result)
 
 
-def as_json(result: Diagnosis) -> dict[str, Any]:
+def as_json(result: Diagnosis, step: Steps = SILENT) -> dict[str, Any]:
     """Return what `diagnosis.json` says of a diagnosis."""
     left = result.remainder
     return {
@@ -127,7 +127,7 @@ def as_json(result: Diagnosis) -> dict[str, Any]:
             "share_percent": 100.0 * result.share_left,
             "mean_square": None if left is None else left.mean_square,
         },
-        "next_experiment": next_experiment(result),
+        "next_experiment": next_experiment(result, step),
         "candidates": [] if result.search is None else _candidates(result),
         "signatures": {} if result.search is None else _signatures(result.search),
         "residual_map": _maps(result),

@@ -5,7 +5,7 @@ beat. Where it leaves more than noise, ripple and play are tried on top, and wit
 the structure is chosen again, since lags imitate play and the other way round.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import combinations
@@ -46,6 +46,7 @@ class DriveSearch:
     step: Steps = SILENT
     trials: dict[Terms, DriveTrial] = field(default_factory=dict)
     squares: dict[Terms, Floats] = field(default_factory=dict)
+    ahead: set[Terms] = field(default_factory=set)  # sets of terms that are known to be fitted
 
     @cached_property
     def folds(self) -> Folds:
@@ -61,6 +62,7 @@ class DriveSearch:
     def trial(self, terms: Terms) -> DriveTrial:
         """Return the fit of a set of terms, no worse than that of any simpler one known."""
         if terms not in self.trials:
+            self._expect([terms])
             known = (self.trials.get(terms - {t}) for t in sorted(terms))
             simpler = [trial for trial in known if trial is not None]
             self.trials[terms] = self.bench.fit(terms, simpler)
@@ -69,8 +71,14 @@ class DriveSearch:
 
     def trials_of(self, sets: Sequence[Terms]) -> list[DriveTrial]:
         """Return the fits of sets of terms; those that are not known yet lie ahead."""
-        self.step.ahead(sum(terms not in self.trials for terms in sets))
+        self._expect(sets)
         return [self.trial(terms) for terms in sets]
+
+    def _expect(self, sets: Iterable[Terms]) -> None:
+        """Say which fits lie ahead, each once."""
+        new = set(sets) - self.ahead
+        self.step.ahead(len(new))
+        self.ahead |= new
 
     def held_out(self, terms: Terms) -> Floats:
         """Return the held-out squares of a set of terms, block by block."""

@@ -3,9 +3,10 @@
 from tsas_cli.diagnosis.diagnose import Diagnosis
 from tsas_cli.diagnosis.plan import propose
 from tsas_cli.effects import EFFECTS
+from tsas_cli.steps import SILENT, Steps
 
 
-def next_experiment(result: Diagnosis) -> str:
+def next_experiment(result: Diagnosis, step: Steps = SILENT) -> str:
     """Return a sentence for a person with the rig."""
     experiments = {effect.name: effect.experiment for effect in EFFECTS}
     if result.verdict == "undecided":
@@ -16,7 +17,7 @@ def next_experiment(result: Diagnosis) -> str:
     unsure = [cause for cause in result.causes if cause.rivals]
     if unsure and result.judged is not None and result.final is not None:
         among = [unsure[0].effect, *unsure[0].rivals]
-        further = propose(result.judged.bench, result.final, among)
+        further = propose(result.judged.bench, result.final, among, step)
         return f"{further} {experiments[unsure[0].effect]}"
     if result.causes:
         first = max(result.causes, key=lambda cause: cause.gain_percent)

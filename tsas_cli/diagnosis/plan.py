@@ -89,6 +89,7 @@ def plan_rig(file: RigFile, step: Steps = SILENT) -> Plan:
     InputError
         None of the runs makes the whole tendon slip, or one is too long.
     """
+    step.ahead(1)
     # A manifest has a run; of this one only the rig is read.
     nobody = Run(id="none", file="none", sha256="0" * 64)
     sheet = Manifest(format=1, name=file.name, kind="simulated", rig=file.rig, run=(nobody,))
@@ -108,6 +109,7 @@ def plan_dataset(dataset: Dataset, step: Steps = SILENT) -> Plan:
     InputError
         A recording is wrong, or none makes the whole tendon slip.
     """
+    step.ahead(1)
     manifest = dataset.manifest
     runs = [prepare(recording, manifest.session_start) for recording in dataset]
     segments = [segment(run) for run in runs]
@@ -117,7 +119,7 @@ def plan_dataset(dataset: Dataset, step: Steps = SILENT) -> Plan:
     return _plan(beside_recorded(Bench(base)), step)
 
 
-def propose(bench: Bench, trial: Trial, effects: Sequence[str]) -> str:
+def propose(bench: Bench, trial: Trial, effects: Sequence[str], step: Steps = SILENT) -> str:
     """Return as a sentence the run that tells effects apart best.
 
     Parameters
@@ -128,12 +130,17 @@ def propose(bench: Bench, trial: Trial, effects: Sequence[str]) -> str:
         A fit of them; its other effects stay free.
     effects
         The effects that are to be told apart: a single one from all others, none: all.
+    step
+        Told of a piece of work for each run that might be added.
     """
+    step.ahead(1)
     chosen = [e for e in EFFECTS if e.name in effects] or list(EFFECTS)
     rivals = chosen if len(chosen) > 1 else EFFECTS
     free = {name: v for name, v in trial.values().items() if name.split(".")[0] not in effects}
     runs = beside_recorded(bench, free)
-    found = _proposals(runs, runs.part().seen(chosen, rivals), rivals, SILENT)
+    step()
+    step.ahead(len(runs.added))
+    found = _proposals(runs, runs.part().seen(chosen, rivals), rivals, step)
     if not found or not found[0].better:
         apart = " and ".join(e.title.lower() for e in chosen)
         return f"No further run within the range of these tells {apart} apart."
@@ -142,6 +149,7 @@ def propose(bench: Bench, trial: Trial, effects: Sequence[str]) -> str:
 
 
 def _plan(runs: FurtherRuns, step: Steps) -> Plan:
+    step()
     step.ahead(1 + len(runs.added))
     seen = runs.part().seen(EFFECTS, EFFECTS)
     step()

@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import tomlkit
 from pydantic import BaseModel, ConfigDict
@@ -19,6 +19,9 @@ from tsas_cli.physics.bristles import Bristles
 from tsas_cli.physics.parameters import NOMINAL, NOMINAL_BY_NAME
 from tsas_cli.physics.rig import Rig, with_values
 from tsas_cli.recordings.manifest import Manifest, Run, parse, read_toml
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 FILE = "model.toml"
 IN_MEMORY = "in memory"  # in place of a file, for a model that was handed over in Python
@@ -57,6 +60,12 @@ class Model:
                 remedy=nearest(name, [e.name for e in self.estimates]),
             )
         return found
+
+    def frame(self) -> "pd.DataFrame":
+        """Return the estimates as a pandas table, one row each."""
+        import pandas as pd
+
+        return pd.DataFrame([estimate.as_json() for estimate in self.estimates])
 
     def over(self, other: "Model") -> "Model":
         """Return these estimates, and of another model those that are missing here."""

@@ -9,7 +9,6 @@ uncertain by more, and is taken down accordingly.
 from collections.abc import Sequence
 from copy import copy
 from dataclasses import replace
-from functools import lru_cache
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -56,7 +55,7 @@ class RunErrors:
         self.dynamics: Dynamics = dynamics
         self.nodes: int | None = None
         self.step_ends_s = OWN_STEPS
-        self._answer = lru_cache(maxsize=2)(self._plain)
+        self._known: tuple[tuple[Rig, dict[str, Floats]], ...] = ()
         self.weights: dict[str, Floats] = {}
         self.turns: dict[str, Turns] = {}
         self.weigh(rig)
@@ -65,7 +64,7 @@ class RunErrors:
         """Return the same run with the same weights, answered by a slip chain always."""
         other = copy(self)
         other.nodes = nodes
-        other._answer = lru_cache(maxsize=2)(other._plain)  # noqa: SLF001
+        other._known = ()  # noqa: SLF001
         return other
 
     @property
@@ -84,7 +83,7 @@ class RunErrors:
         """
         if self.dynamics == "lugre":
             self.step_ends_s = self._response(rig, self.drive, OWN_STEPS).step_ends_s
-            self._answer.cache_clear()
+            self._known = ()
         plain = self._answer(rig)
         square = {
             name: np.full(self.run.time_s.size, max(noise, 1e-9) ** 2)
@@ -187,9 +186,18 @@ class RunErrors:
         numbers: Indices = np.unique(np.concatenate(first) // length, return_inverse=True)[1]
         return numbers
 
-    def _plain(self, rig: Rig) -> dict[str, Floats]:
-        """Return the answers to the run's own drive, with the steps of all rigs."""
-        return self._at_samples(self._response(rig, self.drive, self.step_ends_s))
+    def _answer(self, rig: Rig) -> dict[str, Floats]:
+        """Return the answers to the run's own drive, with the steps of all rigs.
+
+        Those of the last two rigs are kept. (A cached method would hold the run in a cycle, and
+        thousands of calibrations in one process would grow by megabytes each.)
+        """
+        answers = next((known for at, known in self._known if at == rig), None)
+        if answers is None:
+            answers = self._at_samples(self._response(rig, self.drive, self.step_ends_s))
+        others = tuple(pair for pair in self._known if pair[0] != rig)
+        self._known = (*others[-1:], (rig, answers))
+        return answers
 
     def _follow(self, rig: Rig, drive: Drive) -> dict[str, Floats]:
         """Return the answers to another drive, with steps of its own."""
