@@ -88,18 +88,18 @@ def _contents() -> list[dict[str, Any]]:
         }
         for place in PLACES
     ]
+    reference = [
+        {"Commands": "commands.md"},
+        *entries((pages.PYTHON,)),
+        {"Python, call by call": "api.md"},
+        *entries((pages.FORMATS,)),
+    ]
     return [
         {pages.HOME.title: pages.HOME.site},
         {pages.TUTORIAL.title: pages.TUTORIAL.site},
         {"How-to": entries(pages.how_to())},
         {"Effects": ["effects/index.md", *effects]},
-        {
-            "Reference": [
-                {"Commands": "commands.md"},
-                {"Python API": "api.md"},
-                *entries((pages.FORMATS,)),
-            ]
-        },
+        {"Reference": reference},
         {"Method": entries(pages.METHOD)},
         {pages.LIMITS.title: pages.LIMITS.site},
         {"Project": entries(pages.PROJECT)},

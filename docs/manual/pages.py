@@ -31,6 +31,7 @@ HOW_TO = (
     _docs("Track a force", "tracking"),
     _docs("Close the loop", "close-loop"),
 )
+PYTHON = _docs("From Python", "python")
 FORMATS = _docs("File formats", "formats")
 METHOD = (
     _docs("How a diagnosis comes about", "diagnosis"),
@@ -52,12 +53,12 @@ LEFT_OUT = {"docs/worklog.md"}  # for those who build it
 
 def pages() -> tuple[Page, ...]:
     """Return every page of the repository that is in the site."""
-    return (HOME, TUTORIAL, *how_to(), FORMATS, *METHOD, LIMITS, *PROJECT)
+    return (HOME, TUTORIAL, *how_to(), PYTHON, FORMATS, *METHOD, LIMITS, *PROJECT)
 
 
 def how_to() -> tuple[Page, ...]:
     """Return the how-to pages: those named above, then whatever else docs/ holds."""
-    named = (HOME, TUTORIAL, *HOW_TO, FORMATS, *METHOD, LIMITS)
+    named = (HOME, TUTORIAL, *HOW_TO, PYTHON, FORMATS, *METHOD, LIMITS)
     others = {f"docs/{path.name}" for path in (ROOT / "docs").glob("*.md")}
     others -= LEFT_OUT | {page.source for page in named}
     return (*HOW_TO, *(_docs(title_of(ROOT / p), Path(p).stem) for p in sorted(others)))
