@@ -43,7 +43,9 @@ def effect_pages(draw: Callable[[Effect], str] | None = None) -> dict[str, str]:
 
 def _figure(effect: Effect) -> str:
     drawn = signature_picture(effect, SIGNATURES[effect.name])
-    return f"<figure>{drawn.svg}<figcaption>{drawn.caption}</figcaption></figure>"
+    return (
+        f"<figure data-search-exclude>{drawn.svg}<figcaption>{drawn.caption}</figcaption></figure>"
+    )
 
 
 def _page(effect: Effect, figure: str) -> str:

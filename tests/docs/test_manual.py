@@ -58,33 +58,74 @@ def test_nothing_is_loaded_from_elsewhere(site):
 
 def test_the_search_knows_the_pages(site):
     items = json.loads((site / "search.json").read_text(encoding="utf-8"))["items"]
-    assert any(item["location"].startswith("effects/backlash.html") for item in items)
+    found = [i["text"] for i in items if i["location"].startswith("effects/backlash.html")]
+    assert "x_in turns back" in " ".join(found)
+    assert "[mm]" not in found[0]  # of an axis
     assert (site / "search.js").is_file()
 
 
-def asked_by(page: Path, work: Path) -> list[str]:
-    """Return the addresses that a page asks the network for; the browser asks for its own."""
+SEARCH = """<script>
+function all(root, sel, out = []) {
+  root.querySelectorAll("*").forEach(e => {
+    if (e.matches(sel)) out.push(e);
+    if (e.shadowRoot) all(e.shadowRoot, sel, out);
+  });
+  return out;
+}
+setTimeout(() => {
+  document.querySelector(".md-search__button").click();
+  setTimeout(() => {
+    const field = all(document, "input[aria-label=Search]")[0];
+    field.value = "backlash";
+    field.dispatchEvent(new InputEvent("input", {bubbles: true, composed: true}));
+    setTimeout(() => {
+      const found = document.createElement("pre");
+      found.textContent = "found " + all(document, "a").map(a => a.href).join(" ");
+      document.body.append(found);
+    }, 3000);
+  }, 2000);
+}, 1500);
+</script></body>"""
+
+
+def opened(page: Path, work: Path) -> tuple[str, list[str]]:
+    """Return a page as a browser makes it, and the addresses that it asks the network for."""
     log = work / "net.json"
     call = [
         *(CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", "--dump-dom"),
         *("--no-first-run", "--disable-background-networking", "--disable-component-update"),
         *("--disable-sync", "--host-resolver-rules=MAP * ~NOTFOUND", f"--log-net-log={log}"),
-        *(f"--user-data-dir={work / 'user'}", "--virtual-time-budget=3000", page.as_uri()),
+        *(f"--user-data-dir={work / 'user'}", "--virtual-time-budget=12000", page.as_uri()),
     ]
-    done = subprocess.run(call, capture_output=True, text=True, check=True, timeout=60)
-    assert "</html>" in done.stdout
+    done = subprocess.run(call, capture_output=True, text=True, check=True, timeout=120)
     lines = [line.rstrip().rstrip(",") for line in log.read_text(encoding="utf-8").splitlines()]
     events = [json.loads(line) for line in lines if line.startswith('{"params"')]
     wanted = [event["params"] for event in events if "initiator" in event["params"]]
-    return [p["url"] for p in wanted if p["initiator"] == "null" and p["url"].startswith("http")]
+    pages = [p["url"] for p in wanted if p["initiator"] == "null"]  # else it is the browser's own
+    return done.stdout, [url for url in pages if url.startswith("http")]
 
 
 @pytest.mark.skipif(CHROMIUM is None, reason="no Chromium here")
-def test_a_browser_asks_for_nothing(site, tmp_path):
+def test_a_browser_asks_for_nothing_and_finds_what_is_searched(site, tmp_path):
     loud = tmp_path / "loud.html"
     loud.write_text('<html><img src="http://elsewhere.invalid/a.png"></html>', encoding="utf-8")
-    assert asked_by(loud, tmp_path) == ["http://elsewhere.invalid/a.png"]
-    assert asked_by(site / "effects" / "backlash.html", tmp_path) == []
+    assert opened(loud, tmp_path)[1] == ["http://elsewhere.invalid/a.png"]
+    page = site / "limits.html"
+    searching = site / "searching.html"
+    text = page.read_text(encoding="utf-8").replace("</body>", SEARCH)
+    searching.write_text(text, encoding="utf-8")
+    shown, asked = opened(searching, tmp_path)
+    searching.unlink()
+    assert asked == []
+    assert "effects/backlash.html?h=backlash" in shown.split("<pre>found ")[1]
+
+
+def test_the_picture_stands_alone():
+    text = (pages.ROOT / "docs" / "before-after.svg").read_text(encoding="utf-8")
+    assert len(text) < 150_000
+    assert set(re.findall(r"var\(--([\w-]+)\)", text)) <= set(re.findall(r"--([\w-]+):", text))
+    assert not re.search(r"(href|src)=.http", text)
+    assert "On held-out runs the error falls from" in text
 
 
 def test_every_page_of_docs_is_in_the_site():
