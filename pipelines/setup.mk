@@ -42,4 +42,4 @@ lock:  ## choose the newest versions that pyproject.toml allows, and lock them w
 	&& "$$folder/bin/python" -m pip -qq --disable-pip-version-check install uv \
 	&& "$$folder/bin/uv" pip compile --quiet --universal --python-version 3.11 --upgrade \
 		--generate-hashes --no-emit-index-url --no-header \
-		--all-extras --group dev pyproject.toml --output-file requirements/lock.txt
+		--all-extras --group dev --group docs pyproject.toml --output-file requirements/lock.txt

@@ -1,0 +1,1 @@
+"""The site of the documentation: `python -m docs.manual` builds it from the repository."""
