@@ -3,7 +3,7 @@
 .SUFFIXES:
 MAKEFLAGS += --no-print-directory
 
-include pipelines/*.mk
+include pipelines/setup.mk $(filter-out pipelines/setup.mk,$(wildcard pipelines/*.mk))
 
 .PHONY: help
 help:  ## list what make can do

@@ -5,6 +5,10 @@
 CLOSE_LOOP_OUT ?= reports/close-loop
 
 .PHONY: close-loop
-close-loop: setup  ## hide effects in a rig, diagnose them, track with the better model, and report
-	$(TSAS) close-loop --out '$(CLOSE_LOOP_OUT)/loop' --force
-	$(TSAS) report '$(CLOSE_LOOP_OUT)/loop' --out '$(CLOSE_LOOP_OUT)/report.html' --force
+close-loop: $(CLOSE_LOOP_OUT)/report.html  ## hide effects in a rig, diagnose them, track with the better model, and report
+
+$(CLOSE_LOOP_OUT)/loop/closing.json: $(PROGRAM)
+	$(TSAS) close-loop --out '$(CLOSE_LOOP_OUT)/loop' $(STAGE)
+
+$(CLOSE_LOOP_OUT)/report.html: $(CLOSE_LOOP_OUT)/loop/closing.json $(PROGRAM)
+	$(TSAS) report '$(CLOSE_LOOP_OUT)/loop' --out $@ --force

@@ -1,15 +1,34 @@
 # The public recordings of a banded friction damper (docs/ingest.md says where they are from): what
 # is learned at 0.5 Hz predicts 1 Hz; works alone too: make -f pipelines/friction-damper.mk
+ifndef STEPS
+.DEFAULT_GOAL := friction-damper
+include pipelines/setup.mk pipelines/recordings.mk
+endif
 TSAS_DATA ?= ../shared/data
-DAMPER := reports/friction-damper
+DAMPER ?= reports/friction-damper
+DAMPER_LEARNED := 0.5Hz20lbtension,0.5Hz80lbtension
+DAMPER_PREDICTED := 1Hz20lbtension,1Hz80lbtension
 
-.PHONY: friction-damper
-friction-damper:  ## diagnose the public recordings of a friction damper at 0.5 Hz, predict those at 1 Hz
-	@test -d '$(TSAS_DATA)/friction-damper' || { echo 'no recordings in $(TSAS_DATA)/friction-damper: set TSAS_DATA to the folder that holds friction-damper/ (docs/ingest.md says where to get it)' >&2; exit 2; }
-	@$(MAKE) --no-print-directory -f Makefile setup
-	.venv/bin/tsas ingest '$(TSAS_DATA)/friction-damper' --map datasets/maps/friction-damper.toml --out $(DAMPER)/dataset --force
-	.venv/bin/tsas calibrate $(DAMPER)/dataset --runs 0.5Hz20lbtension,0.5Hz80lbtension --out $(DAMPER)/calibrate --force
-	.venv/bin/tsas diagnose $(DAMPER)/dataset --runs 0.5Hz20lbtension,0.5Hz80lbtension --out $(DAMPER)/diagnose --force
-	.venv/bin/tsas simulate $(DAMPER)/dataset --runs 1Hz20lbtension,1Hz80lbtension --fit-own --model $(DAMPER)/calibrate --out $(DAMPER)/nominal --force
-	.venv/bin/tsas simulate $(DAMPER)/dataset --runs 1Hz20lbtension,1Hz80lbtension --fit-own --model $(DAMPER)/diagnose/model-extended.toml --out $(DAMPER)/extended --force
-	.venv/bin/tsas report $(DAMPER)/dataset $(DAMPER)/diagnose --out $(DAMPER)/report.html --force
+.PHONY: friction-damper friction-damper-dataset
+friction-damper: $(DAMPER)/report.html $(DAMPER)/nominal/simulation.json $(DAMPER)/extended/simulation.json  ## diagnose the public recordings of a friction damper at 0.5 Hz, predict those at 1 Hz
+
+friction-damper-dataset: $(PROGRAM)
+	+@test -d '$(TSAS_DATA)/friction-damper' || { echo 'no recordings in $(TSAS_DATA)/friction-damper: set TSAS_DATA to the folder that holds friction-damper/ (docs/ingest.md says where to get it)' >&2; exit 2; }
+	+@$(INGESTED) RAW='$(TSAS_DATA)/friction-damper' MAP=datasets/maps/friction-damper.toml DATASET='$(DAMPER)/dataset' '$(DAMPER)/dataset/dataset.toml'
+
+$(DAMPER)/dataset/dataset.toml: friction-damper-dataset ;
+
+$(DAMPER)/calibrate/model.toml: $(DAMPER)/dataset/dataset.toml $(PROGRAM)
+	$(TSAS) calibrate $(DAMPER)/dataset --runs $(DAMPER_LEARNED) --out $(DAMPER)/calibrate $(STAGE)
+
+$(DAMPER)/diagnose/model-extended.toml: $(DAMPER)/dataset/dataset.toml $(PROGRAM)
+	$(TSAS) diagnose $(DAMPER)/dataset --runs $(DAMPER_LEARNED) --out $(DAMPER)/diagnose $(STAGE)
+
+$(DAMPER)/nominal/simulation.json: $(DAMPER)/calibrate/model.toml $(PROGRAM)
+	$(TSAS) simulate $(DAMPER)/dataset --runs $(DAMPER_PREDICTED) --fit-own --model $(DAMPER)/calibrate --out $(DAMPER)/nominal $(STAGE)
+
+$(DAMPER)/extended/simulation.json: $(DAMPER)/diagnose/model-extended.toml $(PROGRAM)
+	$(TSAS) simulate $(DAMPER)/dataset --runs $(DAMPER_PREDICTED) --fit-own --model $(DAMPER)/diagnose/model-extended.toml --out $(DAMPER)/extended $(STAGE)
+
+$(DAMPER)/report.html: $(DAMPER)/dataset/dataset.toml $(DAMPER)/diagnose/model-extended.toml $(PROGRAM)
+	$(TSAS) report $(DAMPER)/dataset $(DAMPER)/diagnose --out $@ --force

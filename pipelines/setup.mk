@@ -4,11 +4,19 @@
 # outdated environment is made again and a current one is left alone.
 PYTHON ?= python3
 BIN := .venv/bin
+TSAS := $(BIN)/tsas
 PIP := $(BIN)/python -m pip -qq --disable-pip-version-check --no-input
 
 digest = $(shell { $(1); } 2>&1 | cksum | cut -d ' ' -f 1)
 LOCKED := .venv/locked-$(call digest,$(PYTHON) -VV; pwd; cat requirements/lock.txt)
 INSTALLED := .venv/installed-$(call digest,cat pyproject.toml)
+
+# What the stages of every pipeline are told besides.
+STAGE = --force
+
+# The program that the stages run: while it is being developed, a change of it makes their outputs
+# out of date too.
+PROGRAM := .venv/program-$(call digest,find tsas_cli -type f ! -name '*.pyc' | sort | xargs cat; cat requirements/lock.txt)
 
 .PHONY: setup lock
 setup: $(INSTALLED)  ## make .venv/ from the locked versions, where it is not current
@@ -24,6 +32,9 @@ $(LOCKED):
 $(INSTALLED): $(LOCKED)
 	@$(PIP) install --no-deps --no-build-isolation --editable .
 	@rm -f .venv/installed-* && touch $@
+
+$(PROGRAM): $(INSTALLED)
+	@rm -f .venv/program-* && touch $@
 
 lock:  ## choose the newest versions that pyproject.toml allows, and lock them with hashes
 	@folder=$$(mktemp -d) && trap 'rm -rf "$$folder"' EXIT \

@@ -5,6 +5,10 @@
 TRACK_OUT ?= reports/track
 
 .PHONY: track
-track: setup  ## let every controller follow a wanted force on a simulated rig, and report
-	$(TSAS) track --compare --out '$(TRACK_OUT)/compare' --force
-	$(TSAS) report '$(TRACK_OUT)/compare' --out '$(TRACK_OUT)/report.html' --force
+track: $(TRACK_OUT)/report.html  ## let every controller follow a wanted force on a simulated rig, and report
+
+$(TRACK_OUT)/compare/tracking.json: $(PROGRAM)
+	$(TSAS) track --compare --out '$(TRACK_OUT)/compare' $(STAGE)
+
+$(TRACK_OUT)/report.html: $(TRACK_OUT)/compare/tracking.json $(PROGRAM)
+	$(TSAS) report '$(TRACK_OUT)/compare' --out $@ --force

@@ -16,6 +16,7 @@ from tsas_cli.commands.effects import effects
 from tsas_cli.commands.explain import explain
 from tsas_cli.commands.identify_harmonic_drive import identify_harmonic_drive
 from tsas_cli.commands.ingest import ingest
+from tsas_cli.commands.init import init
 from tsas_cli.commands.plan import plan
 from tsas_cli.commands.report import report
 from tsas_cli.commands.reproduce import reproduce
@@ -46,6 +47,7 @@ def _options(
     del version
 
 
+app.command("init")(init)
 app.command("ingest")(ingest)
 app.command("check")(check)
 app.command("calibrate")(calibrate)

@@ -1,17 +1,19 @@
 """The map of `tsas ingest`: what a person says about the files of a rig."""
 
+from collections.abc import Iterator
 from pathlib import Path
 from re import Pattern
 from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
 
-from tsas_cli.errors import nearest
+from tsas_cli.errors import InputError, nearest
 from tsas_cli.recordings.columns import NAMES, TIME, has_input_and_output
 from tsas_cli.recordings.manifest import Load, Rig, parse, read_toml
 from tsas_cli.recordings.readers.options import ReadOptions
 from tsas_cli.recordings.readers.table import Source
 
+QUESTION = "?"  # in place of a value: what a guessed map leaves to a person
 Condition = Literal["preload_N", "sheath_length_mm", "total_bend_rad"]
 
 
@@ -118,6 +120,24 @@ def read_map(path: Path) -> IngestMap:
     Raises
     ------
     InputError
-        It is missing, is not TOML, or says something that a map cannot say.
+        It is missing, is not TOML, says something that a map cannot say, or still asks.
     """
-    return parse(IngestMap, read_toml(path), path)
+    content = read_toml(path)
+    asked = list(_questions(content))
+    if asked:
+        raise InputError(
+            f"{len(asked)} question{'s are' if len(asked) > 1 else ' is'} open: {', '.join(asked)}",
+            where=path,
+            expected=f'an answer in place of "{QUESTION}"',
+            remedy="the comment above each says what is known; a channel that is not there goes",
+        )
+    return parse(IngestMap, content, path)
+
+
+def _questions(content: Any, key: str = "") -> Iterator[str]:
+    """Yield the keys whose values are questions."""
+    if content == QUESTION:
+        yield key
+    elif isinstance(content, dict):
+        for name, value in content.items():
+            yield from _questions(value, f"{key}.{name}" if key else name)

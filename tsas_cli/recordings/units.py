@@ -24,6 +24,9 @@ _SPELLINGS = {
     "rps": "turn/s",
     "deg C": "degC",
     "deg F": "degF",
+    "Grad": "degree",  # German; pint takes it for gon
+    "N-m": "N*m",
+    "N-mm": "N*mm",
     "in-lb": "lbf*inch",
     "in-lbf": "lbf*inch",
     "lb-in": "lbf*inch",
@@ -34,7 +37,20 @@ _SPELLINGS = {
 }
 _AS_FORCE = {"lb": "lbf", "lbs": "lbf", "kg": "kgf", "g": "gf", "oz": "ozf", "kp": "kgf"}
 _AS_TEMPERATURE = {"C": "degC", "F": "degF"}
-_LABELS = {"count", "counts", "pulse", "pulses", "tick", "ticks", "inc", "v", "mv", "volt", "volts"}
+_LABELS = {
+    "count",
+    "counts",
+    "cts",
+    "pulse",
+    "pulses",
+    "tick",
+    "ticks",
+    "inc",
+    "v",
+    "mv",
+    "volt",
+    "volts",
+}
 _TORQUE = re.compile(r"([mkM]?N)(mm|cm|m)")
 _CAPITALISED = re.compile(r"[A-Z][a-z]{3,}")
 _ANGLES = ("radian", "degree", "turn", "revolution", "arcminute", "arcsecond", "grade")
@@ -78,7 +94,7 @@ def conversion(
     InputError
         The unit is unknown, or cannot become the canonical one; says what to add.
     """
-    if factor is None and unit.strip().lower() in _LABELS:
+    if factor is None and is_label(unit):
         raise InputError(
             f"unit {unit!r} does not say how many {to} one is",
             where=where,
@@ -98,6 +114,19 @@ def conversion(
         where=where,
         expected="a column in mm from an angle, or in N from a torque",
     )
+
+
+def is_label(unit: str) -> bool:
+    """Say whether a unit is one of counts or volts, which need a factor."""
+    return unit.strip().lower() in _LABELS
+
+
+def is_unit(text: str) -> bool:
+    """Say whether text is a unit at all."""
+    try:
+        return not _parse(text, "", "").dimensionless
+    except InputError:
+        return False
 
 
 def _between(text: str, to: str, where: str) -> tuple[float, float]:
@@ -127,7 +156,9 @@ def _parse(text: str, to: str, where: str) -> Any:
     try:
         return _registry().Unit(spelled)
     except Exception as error:  # pint's parser ends in any of a dozen types
-        raise InputError(f"unit {text!r} is unknown", where=where, expected=_KINDS[to]) from error
+        raise InputError(
+            f"unit {text!r} is unknown", where=where, expected=_KINDS.get(to, "")
+        ) from error
 
 
 def _has_angle(unit: Any) -> bool:

@@ -1,8 +1,10 @@
 """One reader per file format, chosen by the suffix of a file's name."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 from tsas_cli.errors import InputError
 from tsas_cli.recordings.readers.options import ReadOptions
@@ -32,6 +34,26 @@ def read(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Table:
         No reader knows the suffix, the file is empty or damaged, a wanted column is missing, or
         it holds something else than numbers.
     """
+    with _reader(path) as reader:
+        table: Table = reader.read(path, options, wanted)
+    return table
+
+
+def names(path: Path, options: ReadOptions) -> tuple[str, ...]:
+    """Return the names of a file's columns in the order of their numbers; empty where it has none.
+
+    Raises
+    ------
+    InputError
+        As from `read`.
+    """
+    with _reader(path) as reader:
+        return tuple(reader.names(path, options))
+
+
+@contextmanager
+def _reader(path: Path) -> Iterator[Any]:
+    """Yield the module that reads the file; what the system says of the file is one line."""
     module = _READERS.get(path.suffix.lower())
     if module is None:
         raise InputError(
@@ -42,7 +64,6 @@ def read(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Table:
     try:
         if path.stat().st_size == 0:
             raise InputError("is empty", where=path, expected="a recording")
-        table: Table = import_module(f"{__name__}.{module}").read(path, options, wanted)
+        yield import_module(f"{__name__}.{module}")
     except OSError as error:
         raise InputError(f"cannot be read ({error.strerror or error})", where=path) from error
-    return table

@@ -22,7 +22,7 @@ def find_capture(content: Mapping[str, Any], path: Path) -> Mapping[str, Any] | 
     """
     if _is_capture(content):
         return content
-    found = {name: value for name, value in content.items() if _is_capture(value)}
+    found = captures(content)
     if len(found) > 1:
         raise InputError(
             f"holds {len(found)} captures: {', '.join(found)}",
@@ -31,6 +31,16 @@ def find_capture(content: Mapping[str, Any], path: Path) -> Mapping[str, Any] | 
             remedy='name it in the map: table = "…" under [read]',
         )
     return next(iter(found.values()), None)
+
+
+def captures(content: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:
+    """Return the structs among the variables that are captures, by name."""
+    return {name: value for name, value in content.items() if _is_capture(value)}
+
+
+def channel_names(capture: Mapping[str, Any]) -> list[str]:
+    """Return the names of a capture's channels, and of its clock."""
+    return [*_names(_records(capture["Y"])), TIME]
 
 
 def read_capture(
@@ -45,8 +55,7 @@ def read_capture(
         channels' clocks differ and the map does not say `resample = true`.
     """
     channels = _records(capture["Y"])
-    names = [str(channel.get("Name", "")).strip('"') for channel in channels]
-    at = resolve(wanted, [*names, TIME], path)
+    at = resolve(wanted, [*_names(channels), TIME], path)
     clocks = [floats(np.ravel(clock["Data"]), TIME, path) for clock in _records(capture["X"])]
     taken = {source: channels[i] for source, i in at.items() if i < len(channels)}
     series = {s: _series(channel, clocks, s, path) for s, channel in taken.items()}
@@ -58,6 +67,10 @@ def read_capture(
         units,
         (description,) if description else (),
     )
+
+
+def _names(channels: list[Any]) -> list[str]:
+    return [str(channel.get("Name", "")).strip('"') for channel in channels]
 
 
 def _is_capture(value: Any) -> bool:

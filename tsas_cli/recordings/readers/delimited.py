@@ -33,6 +33,11 @@ def read(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Table:
     return Table(columns, units, layout.header, layout.first_line)
 
 
+def names(path: Path, options: ReadOptions) -> Sequence[str]:
+    """Return the names of the columns."""
+    return detect(path, options).names
+
+
 def _fast(
     path: Path, options: ReadOptions, layout: Layout, at: Mapping[Source, int]
 ) -> dict[Source, Floats]:

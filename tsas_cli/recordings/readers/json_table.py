@@ -1,6 +1,6 @@
 """JSON tables: rows, records or columns, at the top or under a key."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +27,27 @@ def read(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Table:
     at = resolve(wanted, names, path)
     header = tuple(f"{key} = {value}" for key, value in above.items() if _is_plain(value))
     return Table({s: floats(columns[i], s, path) for s, i in at.items()}, header=header)
+
+
+def names(path: Path, options: ReadOptions) -> Sequence[str]:
+    """Return the names of the columns."""
+    above, content = _descend(read_json(path), options.table, path)
+    return _columns(content, above.get("columns"), path)[0]
+
+
+def tables(path: Path) -> list[str]:
+    """Return the keys under which rows, records or columns stand, with dots where deep."""
+    return list(_tables(read_json(path), ""))
+
+
+def _tables(content: Any, key: str) -> Iterator[str]:
+    if key and isinstance(content, dict) and all(_is_column(v) for v in content.values()):
+        yield key
+    elif isinstance(content, dict):
+        for name, value in content.items():
+            yield from _tables(value, f"{key}.{name}" if key else name)
+    elif key and isinstance(content, list) and content and isinstance(content[0], list | dict):
+        yield key
 
 
 def _descend(content: Any, keys: str | None, path: Path) -> tuple[dict[str, Any], Any]:
@@ -61,6 +82,10 @@ def _columns(content: Any, names: Any, path: Path) -> tuple[list[str], list[list
         expected="a list of rows, a list of records, or an object of columns",
         remedy=f'name the key that holds it in the map: table = "…" under [read]{keys}',
     )
+
+
+def _is_column(value: Any) -> bool:
+    return isinstance(value, list) and bool(value) and isinstance(value[0], int | float)
 
 
 def _is_plain(value: Any) -> bool:

@@ -8,7 +8,12 @@ import numpy as np
 from scipy.io import loadmat
 
 from tsas_cli.errors import InputError, nearest
-from tsas_cli.recordings.readers.controldesk import find_capture, read_capture
+from tsas_cli.recordings.readers.controldesk import (
+    captures,
+    channel_names,
+    find_capture,
+    read_capture,
+)
 from tsas_cli.recordings.readers.options import ReadOptions
 from tsas_cli.recordings.readers.table import Floats, Source, Table, damaged, floats, resolve
 
@@ -27,13 +32,7 @@ def read(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Table:
     InputError
         The file is damaged, or a column is missing or holds no numbers.
     """
-    try:
-        content = _content(path)
-    except InputError:
-        raise
-    except Exception as error:  # a damaged file ends in any of a dozen types
-        raise damaged(path, "a MATLAB file", error) from error
-    content = _inside(content, options.table, path)
+    content = _inside(_content(path), options.table, path)
     capture = find_capture(content, path)
     if capture is not None:
         return read_capture(capture, options, wanted, path)
@@ -45,7 +44,29 @@ def read(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Table:
     return Table(columns, header=header)
 
 
+def names(path: Path, options: ReadOptions) -> Sequence[str]:
+    """Return the names of the columns; with a capture, its clock is the last."""
+    content = _inside(_content(path), options.table, path)
+    capture = find_capture(content, path)
+    return list(dict(_vectors(content))) if capture is None else channel_names(capture)
+
+
+def tables(path: Path) -> list[str]:
+    """Return the names of the captures, where there is more than one."""
+    found = captures(_content(path))
+    return list(found) if len(found) > 1 else []
+
+
 def _content(path: Path) -> dict[str, Any]:
+    try:
+        return _variables(path)
+    except InputError:
+        raise
+    except Exception as error:  # a damaged file ends in any of a dozen types
+        raise damaged(path, "a MATLAB file", error) from error
+
+
+def _variables(path: Path) -> dict[str, Any]:
     """Return the variables as plain dictionaries, lists, text and arrays."""
     with path.open("rb") as stream:
         head = stream.read(520)

@@ -4,7 +4,8 @@ import gc
 import logging
 import sys
 import traceback
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -26,11 +27,24 @@ def read(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Table:
         asammdf is not installed, the file is damaged, a channel is missing or holds no numbers,
         or the channels' times differ and the map does not say `resample = true`.
     """
+    with _opened(path) as file:
+        return _table(file, options, wanted, path)
+
+
+def names(path: Path, options: ReadOptions) -> Sequence[str]:
+    """Return the names of the channels; the master is the last."""
+    del options
+    with _opened(path) as file:
+        return [*(name for name, _, _ in _channels(file)), TIME]
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[Any]:
     asammdf = optional("asammdf", extra="mdf")
     logging.getLogger("asammdf").setLevel(logging.CRITICAL)  # it logs what our error says
     try:
         with asammdf.MDF(path) as file:
-            return _table(file, options, wanted, path)
+            yield file
     except InputError:
         raise
     except Exception as error:  # a damaged file ends in any of a dozen types
@@ -47,12 +61,7 @@ def _discard_half_made(error: Exception) -> None:
 
 
 def _table(file: Any, options: ReadOptions, wanted: Sequence[Source], path: Path) -> Table:
-    channels = [
-        (channel.name, group, index)
-        for group, content in enumerate(file.groups)
-        for index, channel in enumerate(content.channels)
-        if index != file.masters_db.get(group)
-    ]
+    channels = _channels(file)
     at = resolve(wanted, [*(name for name, _, _ in channels), TIME], path)
     signals = {
         source: file.get(*channels[i], ignore_invalidation_bits=True)
@@ -65,6 +74,16 @@ def _table(file: Any, options: ReadOptions, wanted: Sequence[Source], path: Path
     units |= {source: signal.unit for source, signal in signals.items() if signal.unit}
     header = (str(file.header.comment), f"started {file.start_time.isoformat()}")
     return Table(columns, units, header)
+
+
+def _channels(file: Any) -> list[tuple[str, int, int]]:
+    """Return name, group and index of every channel that is no master."""
+    return [
+        (channel.name, group, index)
+        for group, content in enumerate(file.groups)
+        for index, channel in enumerate(content.channels)
+        if index != file.masters_db.get(group)
+    ]
 
 
 def _values(signal: Any, source: Source, path: Path) -> Floats:

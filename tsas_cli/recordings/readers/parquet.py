@@ -35,3 +35,13 @@ def read(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Table:
         s: f.metadata[b"unit"].decode() for s, f in fields.items() if b"unit" in (f.metadata or {})
     }
     return Table(columns, units)
+
+
+def names(path: Path, options: ReadOptions) -> Sequence[str]:
+    """Return the names of the columns."""
+    del options
+    try:
+        with pq.ParquetFile(path) as file:
+            return list(file.schema_arrow.names)
+    except pa.ArrowException as error:
+        raise damaged(path, "Parquet", error) from error

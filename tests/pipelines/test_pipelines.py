@@ -1,0 +1,227 @@
+"""Which stages run again: the pipelines with a program that only notes what it is asked for."""
+
+import os
+import shutil
+import subprocess
+import time
+from pathlib import Path
+
+import pytest
+
+from tsas_cli.project.start import makefile
+
+REPOSITORY = Path(__file__).parents[2]
+STEPS = REPOSITORY / "tsas_cli" / "project" / "make"
+MAKE = shutil.which("make")
+pytestmark = pytest.mark.skipif(MAKE is None, reason="no make here: apt install make")
+
+# Writes every file that a pipeline waits for into --out, whole or, when told to fail, not at all.
+PROGRAM = """#!/bin/sh
+echo "$1" >> '{log}'
+[ "$1" = "$(cat '{fail}' 2>/dev/null)" ] && exit 2
+stage=$1
+while [ "$1" != --out ]; do shift; done
+case $stage in
+report) echo page > "$2" ;;
+*) mkdir -p "$2"
+   for name in dataset.toml check.json model.toml model-extended.toml simulation.json \\
+               diagnosis.json drive.toml tracking.json closing.json index.html; do
+       case $stage-$name in
+       ingest-dataset.toml|check-check.json|calibrate-model.toml|simulate-simulation.json|\\
+       diagnose-diagnosis.json|diagnose-model-extended.toml|identify-harmonic-drive-drive.toml|\\
+       track-tracking.json|close-loop-closing.json|reproduce-index.html) echo x > "$2/$name" ;;
+       esac
+   done ;;
+esac
+"""
+CHAIN = ["check", "calibrate", "simulate", "diagnose", "report"]
+
+
+class Bench:
+    """A folder with a program, a stamp of its sources, and calls of make that say what ran."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder, self.log, self.fail = folder, folder / "log", folder / "fail"
+        program = folder / "tsas"
+        program.write_text(PROGRAM.format(log=self.log, fail=self.fail))
+        program.chmod(0o755)
+        for i, name in enumerate(("locked", "installed", "stamp")):
+            (folder / name).touch()
+            os.utime(folder / name, (i, i))
+        self.settings = [f"TSAS={program}", f"PROGRAM={folder / 'stamp'}"]
+        self.settings += [f"INSTALLED={folder / 'installed'}", f"LOCKED={folder / 'locked'}"]
+
+    def make(self, *words: str, cwd: Path = REPOSITORY, code: int = 0) -> list[str]:
+        self.log.write_text("")
+        call = [MAKE, *words, *self.settings]
+        done = subprocess.run(call, cwd=cwd, capture_output=True, text=True, check=False)
+        assert done.returncode == code, done.stdout + done.stderr
+        return self.log.read_text().split()
+
+    def touch(self, path: str | Path) -> None:
+        (self.folder / path).touch()
+
+    def age(self, *folders: str) -> None:
+        """Make everything that was made an hour older."""
+        then = time.time() - 3600
+        for folder in folders:
+            for path in [self.folder / folder, *(self.folder / folder).rglob("*")]:
+                os.utime(path, (then, then))
+
+
+@pytest.fixture
+def bench(tmp_path):
+    return Bench(tmp_path)
+
+
+@pytest.fixture
+def chain(bench):
+    (bench.folder / "my data").mkdir()
+    (bench.folder / "my data" / "dataset.toml").touch()
+    words = ["-f", f"{STEPS / 'chain.mk'}", "DATASET=my data", "OUT=my result", "STAGE=--force"]
+
+    def call(*more, code=0):
+        return bench.make(*words, *more, cwd=bench.folder, code=code)
+
+    assert sorted(call()) == sorted(CHAIN)
+    return call
+
+
+@pytest.mark.parametrize(
+    ("touched", "again"),
+    [
+        (None, []),
+        ("my data/dataset.toml", CHAIN),
+        ("stamp", CHAIN),
+        ("my result/check/check.json", ["report"]),
+        ("my result/calibrate/model.toml", ["simulate", "diagnose", "report"]),
+        ("my result/simulate/simulation.json", ["report"]),
+    ],
+)
+def test_a_stage_runs_again_when_what_it_reads_has_changed(chain, bench, touched, again):
+    if touched:
+        bench.age("my data", "my result")
+        bench.touch(touched)
+    assert chain("-n") == []
+    assert chain("-q", code=1 if again else 0) == []
+    assert chain() == again
+
+
+def test_a_stage_that_fails_is_not_taken_for_done(chain, bench):
+    bench.age("my data", "my result")
+    bench.touch("my data/dataset.toml")
+    bench.fail.write_text("simulate")
+    assert chain(code=2)[-1] == "simulate"
+    assert chain(code=2) == ["simulate"]
+    bench.fail.write_text("")
+    assert chain() == ["simulate", "diagnose", "report"]
+    assert chain() == []
+
+
+def test_a_folder_that_is_gone_is_made_again(chain, bench):
+    shutil.rmtree(bench.folder / "my result" / "simulate")
+    assert chain() == ["simulate", "report"]
+
+
+@pytest.mark.parametrize("name", ["b.csv", "b [1].csv", "100 %: #2 $x.csv", "sub/b.csv"])
+def test_a_project_looks_at_every_raw_file_and_at_those_that_go(bench, name):
+    project = bench.folder / "project"
+    raw = project / "raw"
+    (raw / name).parent.mkdir(parents=True)
+    (raw / "a.csv").touch()
+    (raw / name).touch()
+    (project / "bench.toml").touch()
+    (project / "Makefile").write_text(makefile())
+
+    def made():
+        again = bench.make(cwd=project)
+        bench.age("project")
+        return again
+
+    assert made() == ["ingest", *CHAIN]
+    assert made() == []
+    bench.touch(raw / name)
+    assert made() == ["ingest", *CHAIN]
+    bench.touch("project/bench.toml")
+    assert made() == ["ingest", *CHAIN]
+    (raw / "README.md").touch()
+    bench.age("project")
+    (raw / name).unlink()
+    assert made() == ["ingest", *CHAIN]
+    assert made() == []
+
+
+def test_the_settings_of_a_project_reach_its_stages(bench):
+    project = bench.folder / "project"
+    (project / "raw").mkdir(parents=True)
+    (project / "bench.toml").touch()
+    (project / "Makefile").write_text(makefile())
+    call = [MAKE, "-n", "CALIBRATE=--dynamics lugre", "STAGE=--force --quiet", *bench.settings]
+    done = subprocess.run(call, cwd=project, capture_output=True, text=True, check=True)
+    stages = dict(line.split(maxsplit=2)[1:] for line in done.stdout.splitlines())
+    assert stages["calibrate"].endswith("--dynamics lugre --force --quiet")
+    assert stages["diagnose"].endswith("--force --quiet")
+
+
+@pytest.mark.parametrize(
+    ("target", "where", "stages"),
+    [
+        ("track", "TRACK_OUT", ["track", "report"]),
+        ("close-loop", "CLOSE_LOOP_OUT", ["close-loop", "report"]),
+        ("drive", "DRIVE_OUT", ["check", "identify-harmonic-drive", "report"]),
+        ("paper", "PAPER_OUT", ["reproduce"]),
+    ],
+)
+def test_a_pipeline_of_the_project_runs_once_until_the_program_changes(
+    bench, target, where, stages
+):
+    out = f"{where}={bench.folder / 'out'}"
+    assert bench.make(target, out) == stages
+    assert bench.make(target, out) == []
+    assert bench.make("-q", target, out) == []
+    bench.age("out")
+    bench.touch("stamp")
+    assert bench.make("-n", target, out) == []
+    assert bench.make(target, out) == stages
+
+
+def test_own_data_of_the_project_run_once(bench):
+    (bench.folder / "d").mkdir()
+    (bench.folder / "d" / "dataset.toml").touch()
+    words = ["pipeline", f"DATASET={bench.folder / 'd'}", f"OUT={bench.folder / 'out'}"]
+    assert bench.make(*words) == CHAIN
+    assert bench.make(*words) == []
+    assert bench.make("-q", *words) == []
+    assert bench.make("pipeline", code=2) == []
+    assert bench.make("pipeline", f"DATASET={bench.folder}", "OUT=x", code=2) == []
+
+
+def test_public_recordings_run_once_and_again_when_one_changes(bench):
+    files = [bench.folder / "data" / name for name in ("L_4/a.TXT", "pitch/b.TXT")]
+    for path in files:
+        inside = bench.folder / "data" / "mis-tool" / path.relative_to(bench.folder / "data")
+        inside.parent.mkdir(parents=True)
+        inside.touch()
+    words = [
+        "mis-tool-predict",
+        f"TSAS_DATA={bench.folder / 'data'}",
+        f"MIS_TOOL_OUT={bench.folder / 'out'}",
+    ]
+    first = bench.make(*words)
+    assert sorted(set(first)) == sorted({"ingest", *CHAIN})
+    assert [first.count(s) for s in ("ingest", "calibrate", "simulate")] == [2, 4, 8]
+    assert bench.make(*words) == []
+    bench.touch("data/mis-tool/pitch/b.TXT")
+    assert bench.make(*words) == ["ingest", *CHAIN, "simulate", "simulate"]
+    assert bench.make("-f", "pipelines/mis-tool.mk", *words[1:]) == []
+
+
+def test_the_friction_damper_runs_once_and_alone_too(bench):
+    (bench.folder / "data" / "friction-damper").mkdir(parents=True)
+    (bench.folder / "data" / "friction-damper" / "a.json").touch()
+    words = [f"TSAS_DATA={bench.folder / 'data'}", f"DAMPER={bench.folder / 'out'}"]
+    first = bench.make("-f", "pipelines/friction-damper.mk", *words)
+    assert sorted(first) == ["calibrate", "diagnose", "ingest", "report", "simulate", "simulate"]
+    assert bench.make("friction-damper", *words) == []
+    missing = f"TSAS_DATA={bench.folder / 'none'}"
+    assert bench.make("friction-damper", missing, words[1], code=2) == []

@@ -1,0 +1,130 @@
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.recordings.guess.rig_files import CHANNELS, run, write_csv
+from tsas_cli.errors import InputError
+from tsas_cli.project.start import start
+from tsas_cli.recordings.ingest_map import read_map
+
+NAMES = ("Time [s]", "Input position [mm]", "Output position [mm]", "Force in [N]", "Force out [N]")
+MAKE = shutil.which("make")
+
+
+def recording(path, step=20):
+    path.parent.mkdir(exist_ok=True)
+    columns = [(name, run(step)[c]) for c, name in zip(CHANNELS, NAMES, strict=True)]
+    return write_csv(path, columns)
+
+
+def test_a_project_without_recordings_asks_for_everything(tmp_path, tsas):
+    done = tsas("init", tmp_path / "new", "--json")
+    assert (done.returncode, done.stderr) == (0, "")
+    written = sorted(json.loads(done.stdout)["files"])
+    assert written == [".gitignore", "Makefile", "README.md", "bench.toml", "raw/README.md"]
+    readme = (tmp_path / "new" / "README.md").read_text()
+    assert readme.startswith("# new\n")
+    with pytest.raises(InputError, match=r"10 questions are open: columns.time_s.source"):
+        read_map(tmp_path / "new" / "bench.toml")
+
+
+def test_the_map_of_an_empty_project_is_a_map_once_it_is_answered(tmp_path):
+    start(tmp_path / "new", [])
+    path = tmp_path / "new" / "bench.toml"
+    text = path.read_text().replace('source = "?"', 'source = "a"').replace('unit = "?"', "")
+    path.write_text(text)
+    assert set(read_map(path).columns) == set(CHANNELS)
+
+
+def test_recordings_are_copied_and_guessed(tmp_path):
+    source = recording(tmp_path / "bench 1" / "a.csv")
+    files, proposal = start(tmp_path / "new", [source.parent])
+    assert "raw/bench 1/a.csv" in files
+    assert proposal.questions == {}
+    assert (tmp_path / "new" / "raw" / "bench 1" / "a.csv").read_bytes() == source.read_bytes()
+    assert read_map(tmp_path / "new" / "bench.toml").columns["f_in_N"].source == "Force in [N]"
+
+
+def test_a_folder_that_is_there_gets_the_files_beside_its_own(tmp_path, monkeypatch):
+    recording(tmp_path / "raw" / "a.csv")
+    monkeypatch.chdir(tmp_path)
+    files, _ = start(Path(), [Path("raw")])
+    assert "raw/a.csv" not in files
+    assert (tmp_path / "Makefile").is_file()
+    assert (tmp_path / "README.md").read_text().startswith(f"# {tmp_path.name}\n")
+
+
+@pytest.mark.parametrize("there", ["Makefile", "bench.toml", "raw/README.md", "raw/a.csv"])
+def test_nothing_is_overwritten(tmp_path, there):
+    source = recording(tmp_path / "a.csv")
+    (tmp_path / "new" / "raw").mkdir(parents=True)
+    (tmp_path / "new" / there).write_text("mine")
+    with pytest.raises(InputError, match=there):
+        start(tmp_path / "new", [source])
+    assert (tmp_path / "new" / there).read_text() == "mine"
+    left = [p for p in (tmp_path / "new").rglob("*") if p.is_file()]
+    assert left == [tmp_path / "new" / there]
+
+
+def test_what_cannot_be_read_leaves_no_project(tmp_path, tsas):
+    (tmp_path / "a.csv").write_text("bent by hand\n")
+    done = tsas("init", tmp_path / "new", "--from", tmp_path / "a.csv")
+    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
+    assert not (tmp_path / "new").exists()
+    (tmp_path / "b").mkdir()
+    recording(tmp_path / "a.csv")
+    recording(tmp_path / "b" / "a.csv")
+    with pytest.raises(InputError, match="two sources are called"):
+        start(tmp_path / "new", [tmp_path / "a.csv", tmp_path / "b" / "a.csv"])
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(MAKE is None, reason="no make here: apt install make")
+def test_from_a_recording_to_a_page_and_back_to_one_that_is_broken(tmp_path):
+    source = recording(tmp_path / "a [1].csv", step=50)
+    start(tmp_path / "new", [source])
+    bench = tmp_path / "new" / "bench.toml"
+    said = "sheath_length_mm = 785.4\ntotal_bend_rad = 3.1416\npreload_N = 25.0\n"
+    bench.write_text(bench.read_text().split("# sheath_length_mm")[0] + said)
+
+    def make(*words):
+        environment = os.environ | {"PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"}
+        return subprocess.run(
+            [MAKE, *words],
+            cwd=tmp_path / "new",
+            env=environment,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+
+    page = tmp_path / "new" / "result" / "report.html"
+    done = make()
+    assert done.returncode == 0, done.stderr
+    assert "Force" not in done.stderr
+    first = page.read_bytes()
+    assert make("-q").returncode == 0
+
+    raw = tmp_path / "new" / "raw" / "a [1].csv"
+    whole = raw.read_text()
+    raw.write_text(whole.replace("Force in", "Farce in"))
+    for _ in range(2):  # what a failed step leaves is not taken for done
+        done = make()
+        assert done.returncode == 2
+        assert "column Force in [N] is missing; did you mean Farce in [N]?" in done.stderr
+        assert page.read_bytes() == first
+    raw.write_text(whole)
+    (tmp_path / "new" / "result" / "check" / "check.json").touch()
+    assert [line.split()[1] for line in make("-n").stdout.splitlines()] == [
+        "ingest",
+        "check",
+        "calibrate",
+        "simulate",
+        "diagnose",
+        "report",
+    ]

@@ -1,0 +1,85 @@
+"""Files of a shipped run under names and units of any lab, and the verdict on what is guessed."""
+
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+from tsas_cli.recordings.canonical import canonical_columns
+from tsas_cli.recordings.columns import BY_NAME
+from tsas_cli.recordings.dataset import read_dataset
+from tsas_cli.recordings.guess.proposal import propose
+from tsas_cli.recordings.guess.proposed import Proposed
+from tsas_cli.recordings.ingest_map import QUESTION, IngestMap
+from tsas_cli.recordings.readers import read
+from tsas_cli.recordings.units import conversion
+
+SHIPPED = Path(__file__).parents[3] / "datasets" / "paper-groups"
+CHANNELS = ("time_s", "x_in_mm", "x_out_mm", "f_in_N", "f_out_N")
+RADIUS_MM = 27.1
+
+
+@cache
+def run(step: int = 10) -> dict[str, np.ndarray]:
+    """Return group a of the shipped recordings, each `step`th row."""
+    columns = next(iter(read_dataset(SHIPPED))).columns
+    return {name: columns[name][::step] for name in CHANNELS}
+
+
+def in_unit(channel: str, unit: str) -> np.ndarray:
+    """Return a channel in another unit; an angle and a torque are those of a pulley."""
+    radius = RADIUS_MM if unit in ("deg", "rad", "Grad", "N.m", "Nm") else None
+    slope, _ = conversion(unit, BY_NAME[channel].unit, pulley_radius_mm=radius)
+    return run()[channel] / slope
+
+
+def write_csv(path: Path, columns: list[tuple[str, np.ndarray]], *, delimiter=",", decimal="."):
+    """Write named columns; no line of names where no column has one."""
+    names = [name for name, _ in columns]
+    lines = [delimiter.join(names)] if any(names) else []
+    rows = zip(*(values for _, values in columns), strict=True)
+    lines += [delimiter.join(f"{v:.7g}".replace(".", decimal) for v in row) for row in rows]
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    return path
+
+
+def verdicts(path: Path, truth: dict[str, str | int]) -> dict[str, str]:
+    """Return for each channel of the truth or of the guess: right, open, missing or wrong.
+
+    It is wrong when another column is named, or when what ingest would make of it, a radius given,
+    is not the run.
+    """
+    proposal = propose([path])
+    found = {channel.name: channel for channel in proposal.channels}
+    table = read(path, _options(proposal), list(truth.values()))
+    judged = dict.fromkeys(truth, "missing")
+    for name, channel in found.items():
+        judged[name] = _judged(name, channel, truth, table, path)
+    return judged
+
+
+def _options(proposal):
+    from tsas_cli.recordings.readers.options import ReadOptions
+
+    return ReadOptions.model_validate({key: value for key, (value, _) in proposal.read.items()})
+
+
+def _judged(name, channel: Proposed, truth, table, path) -> str:
+    entry = dict(channel.entry)
+    if entry.get("source", QUESTION) == QUESTION:
+        return "open"
+    if entry["source"] != truth.get(name):
+        return "wrong"
+    if "pulley_radius_mm" in channel.questions:
+        entry["pulley_radius_mm"] = RADIUS_MM
+    if QUESTION in entry.values():
+        return "open"
+    some = next(iter(table.columns))
+    columns = {
+        "time_s": {"rate_Hz": 100},
+        "x_in_mm": {"source": some, "unit": "mm"},
+        "f_in_N": {"source": some, "unit": "N"},
+    } | {name: entry}
+    mapping = IngestMap.model_validate({"dataset": {"name": "m"}, "columns": columns})
+    made = canonical_columns(table, mapping, path, Path("map"))[name]
+    return "right" if np.allclose(made, run()[name], rtol=1e-4, atol=1e-4) else "wrong"

@@ -1,0 +1,40 @@
+"""`tsas init`: a project of a person's own, from recordings to a page by `make`."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from tsas_cli import __version__
+from tsas_cli.commands.common import Json, Quiet, show
+
+
+def init(
+    folder: Annotated[
+        Path, typer.Argument(metavar="FOLDER", help="The project's folder; nothing is overwritten.")
+    ],
+    sources: Annotated[
+        list[Path] | None,
+        typer.Option("--from", metavar="SOURCE", help="Recordings to copy and to guess a map for."),
+    ] = None,
+    quiet: Quiet = False,
+    as_json: Json = False,
+) -> None:
+    """Write a small project: a map, a place for recordings, and a Makefile from them to a page."""
+    from tsas_cli.project.start import MAP, start
+
+    files, proposal = start(folder, sources or [])
+    asked = proposal.questions if proposal else {}
+    summary = {
+        "format": 1,
+        "stage": "init",
+        "version": __version__,
+        "folder": str(folder),
+        "files": files,
+        "questions": asked,
+    }
+    tables = [(f"project {folder}", ("file",), [(name,) for name in files])]
+    show(summary, tables, quiet=quiet, as_json=as_json)
+    if not quiet and not as_json:
+        answer = f"answer the questions in {folder / MAP}, then "
+        print(f"Next: {answer if asked or not proposal else ''}`make -C {folder}`")

@@ -1,0 +1,23 @@
+# From a dataset to a page: check, calibrate, simulate, diagnose, report. A step writes its folder
+# whole or not at all, so that one file stands for all of it.
+data := $(subst $() ,\ ,$(DATASET))
+made := $(subst $() ,\ ,$(OUT))
+
+.DEFAULT_GOAL = all
+.PHONY: all
+all: $(made)/report.html
+
+$(made)/check/check.json: $(data)/dataset.toml $(PROGRAM)
+	$(TSAS) check '$(DATASET)' --out '$(OUT)/check' $(STAGE)
+
+$(made)/calibrate/model.toml: $(data)/dataset.toml $(PROGRAM)
+	$(TSAS) calibrate '$(DATASET)' --out '$(OUT)/calibrate' $(CALIBRATE) $(STAGE)
+
+$(made)/simulate/simulation.json: $(data)/dataset.toml $(made)/calibrate/model.toml $(PROGRAM)
+	$(TSAS) simulate '$(DATASET)' --model '$(OUT)/calibrate/model.toml' --out '$(OUT)/simulate' $(SIMULATE) $(STAGE)
+
+$(made)/diagnose/diagnosis.json: $(data)/dataset.toml $(made)/calibrate/model.toml $(PROGRAM)
+	$(TSAS) diagnose '$(DATASET)' --model '$(OUT)/calibrate/model.toml' --out '$(OUT)/diagnose' $(DIAGNOSE) $(STAGE)
+
+$(made)/report.html: $(data)/dataset.toml $(made)/check/check.json $(made)/calibrate/model.toml $(made)/simulate/simulation.json $(made)/diagnose/diagnosis.json $(PROGRAM)
+	$(TSAS) report '$(DATASET)' '$(OUT)/check' '$(OUT)/calibrate' '$(OUT)/simulate' '$(OUT)/diagnose' --out '$(OUT)/report.html' --force

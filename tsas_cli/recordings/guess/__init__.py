@@ -1,0 +1,1 @@
+"""A map proposed from what files show: names, units and the look of the signals."""

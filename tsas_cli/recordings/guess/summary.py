@@ -1,0 +1,42 @@
+"""A proposal as JSON, and as the table that the command prints."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from tsas_cli import __version__
+from tsas_cli.recordings.guess.proposal import Proposal
+from tsas_cli.recordings.guess.text import map_text
+
+
+def content(proposal: Proposal) -> dict[str, Any]:
+    """Return the proposal with the text of its map (docs/ingest.md, format 1)."""
+    return {
+        "format": 1,
+        "stage": "guess",
+        "version": __version__,
+        "looked_at": str(proposal.looked_at.path),
+        "unlike": {str(path): reason for path, reason in proposal.unlike.items()},
+        "columns": {
+            channel.name: {
+                "entry": channel.entry,
+                "sure": channel.sure,
+                "why": channel.why,
+                "alternatives": channel.alternatives,
+            }
+            for channel in proposal.channels
+        },
+        "not_taken": proposal.not_taken,
+        "questions": proposal.questions,
+        "map": map_text(proposal),
+    }
+
+
+def tables(proposal: Proposal, out: object) -> Iterator[tuple[str, tuple[str, ...], list[Any]]]:
+    """Yield which column each channel takes, and what is open."""
+    rows = [
+        (channel.name, str(channel.entry.get("source", "")), channel.sure)
+        for channel in proposal.channels
+    ]
+    yield f"map {out}", ("channel", "source", "how sure"), rows
+    if proposal.questions:
+        yield "to be answered in it", ("key", "question"), list(proposal.questions.items())

@@ -1,0 +1,155 @@
+"""A proposed map as commented TOML."""
+
+from collections.abc import Iterable
+from textwrap import wrap
+from typing import Any
+
+import tomlkit
+from tomlkit.items import Table
+
+from tsas_cli.errors import printable
+from tsas_cli.recordings.columns import BY_NAME, COLUMNS
+from tsas_cli.recordings.guess.file_name import conditions_in
+from tsas_cli.recordings.guess.proposal import Proposal
+from tsas_cli.recordings.guess.proposed import Proposed
+from tsas_cli.recordings.ingest_map import QUESTION
+from tsas_cli.recordings.manifest import Rig
+
+_WIDTH = 96
+_CONDITIONS = {
+    "sheath_length_mm": "the length of the sheath",
+    "total_bend_rad": "its total bend, 3.1416 for half a turn",
+    "preload_N": "the tension at rest",
+}
+_SURE = {"sure": "sure", "likely": "likely", "open": "open"}
+
+
+def map_text(proposal: Proposal) -> str:
+    """Return the map; every key has a comment that says why it is there."""
+    document = tomlkit.document()
+    for line in _head(proposal):
+        document.add(tomlkit.comment(line))
+    document.add("dataset", _dataset(proposal))
+    document.add("rig", _rig())
+    if proposal.read or proposal.not_taken or proposal.looked_at.left_out:
+        document.add("read", _read(proposal))
+    columns = tomlkit.table(is_super_table=True)
+    for channel in proposal.channels:
+        columns.add(channel.name, _channel(channel))
+    document.add("columns", columns)
+    document.add("run", _run(proposal))
+    return tomlkit.dumps(document).rstrip("\n") + "\n"
+
+
+def _head(proposal: Proposal) -> Iterable[str]:
+    opened = proposal.looked_at
+    rows = next(iter(opened.table.columns.values())).size
+    yield from _wrapped(
+        f"A map for `tsas ingest`, proposed after a look at {opened.path.name} ({rows} rows). "
+        "Read every line. Nothing here is known; the comments say what it was told by, and how "
+        "surely."
+    )
+    if proposal.alike:
+        yield from _wrapped(f"{len(proposal.alike)} more files have the same columns.")
+    for path, reason in proposal.unlike.items():
+        yield from _wrapped(f"{path.name} does not go with it: {reason}.")
+    asked = len(proposal.questions)
+    yield from _wrapped(
+        f"{asked} question{'s are' if asked > 1 else ' is'} open: ingest stops until each "
+        f'"{QUESTION}" has an answer.'
+        if asked
+        else "No question is open: ingest takes this map as it is."
+    )
+
+
+def _dataset(proposal: Proposal) -> Table:
+    table = tomlkit.table()
+    table.add("name", proposal.name)
+    table["name"].comment("the folder's name")
+    table.add(tomlkit.comment('description = "…"'))
+    return table
+
+
+def _rig() -> Table:
+    table = tomlkit.table()
+    _say(table, "What the data sheet says; each line is optional:")
+    for key in list(Rig.model_fields)[:4]:
+        table.add(tomlkit.comment(f"{key} ="))
+    return table
+
+
+def _read(proposal: Proposal) -> Table:
+    table = tomlkit.table()
+    for key, (value, why) in proposal.read.items():
+        _add(table, key, value, why)
+    if proposal.not_taken:
+        _say(
+            table, "No channel takes these columns; under extra they would travel along untouched:"
+        )
+        for source, reason in proposal.not_taken.items():
+            _say(table, f"- {source}: {reason}.", indent="  ")
+        listed = ", ".join(tomlkit.item(source).as_string() for source in proposal.not_taken)
+        table.add(tomlkit.comment(f"extra = [{listed}]"))
+    for name, reason in proposal.looked_at.left_out.items():
+        _say(table, f"{name} cannot be taken: {reason}.")
+    return table
+
+
+def _channel(channel: Proposed) -> Table:
+    table = tomlkit.table()
+    meaning = BY_NAME[channel.name].meaning
+    _say(table, f"{meaning[0].upper()}{meaning[1:]}: {_SURE[channel.sure]}.")
+    for sentence in channel.why:
+        _say(table, f"- {sentence}", indent="  ")
+    if channel.alternatives:
+        _say(table, f"It could be: {'; '.join(channel.alternatives)}.")
+    for key, value in channel.entry.items():
+        _add(table, key, value, _asked(channel.questions.get(key, "")))
+    return table
+
+
+def _asked(question: str) -> str:
+    return f"QUESTION: {question}" if question else ""
+
+
+def _run(proposal: Proposal) -> Table:
+    table = tomlkit.table()
+    for key, (value, why) in proposal.run.items():
+        _add(table, key, value, _asked(why) if value == QUESTION else why)
+    pattern, groups = conditions_in(proposal.looked_at.path)
+    for condition, meaning in _CONDITIONS.items():
+        if condition not in groups:
+            _say(table, f"{condition} =   # for all runs: {meaning}")
+    if groups:
+        _say(table, f"The file's name, {proposal.looked_at.path.name}, may say these; if so, take:")
+        lines = ["[run.from_file_name]", f"pattern = '(?i){pattern}'"]
+        for condition, (group, unit) in groups.items():
+            lines += [f"[run.conditions.{condition}]", f'from = "{group}"', f'unit = "{unit}"']
+        for line in lines:
+            table.add(tomlkit.comment(line))
+    missing = [c for c in COLUMNS[:5] if c.name not in {p.name for p in proposal.channels}]
+    for column in missing:
+        _say(table, f"No column looks like {column.name} ({column.meaning}).")
+    return table
+
+
+def _add(table: Table, key: str, value: Any, why: str) -> None:
+    if why:
+        said = why[0].upper() + why[1:]
+        _say(table, said if said.endswith(("?", ".")) else f"{said}.")
+    table.add(key, value)
+
+
+def _say(table: Table, text: str, *, indent: str = "") -> None:
+    for line in _wrapped(text, indent):
+        table.add(tomlkit.comment(line))
+
+
+def _wrapped(text: str, indent: str = "") -> list[str]:
+    return wrap(
+        printable(text),
+        _WIDTH,
+        subsequent_indent=indent,
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
