@@ -54,7 +54,7 @@ def write_sources(folder: Path, effects: dict[str, str]) -> None:
         (source / site).parent.mkdir(parents=True, exist_ok=True)
         (source / site).write_text(text, encoding="utf-8")
     settings = tomlkit.parse(SETTINGS.read_text(encoding="utf-8"))
-    settings["project"]["nav"] = _contents()  # type: ignore[index]
+    settings["project"]["nav"] = _contents()
     (folder / "zensical.toml").write_text(tomlkit.dumps(settings), encoding="utf-8")
 
 
