@@ -25,6 +25,7 @@ TUTORIAL = _docs("Tutorial", "tutorial")
 HOW_TO = (
     _docs("Read your files", "files"),
     _docs("The map, key by key", "ingest"),
+    _docs("A project of your own", "init"),
     _docs("Check recordings", "check"),
     _docs("Plan runs", "plan"),
     _docs("Identify a drive", "drive"),
