@@ -12,7 +12,7 @@ from tests.reporting.made_folders import make_dataset, make_simulation, make_tra
 from tsas_cli.identification.model import data_sheet
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.reporting.stream.live import LiveStream
-from tsas_cli.reporting.stream.recorder import to_file
+from tsas_cli.reporting.stream.recorder import Recorder, to_file
 
 
 @pytest.fixture
@@ -75,3 +75,23 @@ def test_tracked_runs_too(seen, tmp_path):
     first, both = seen([step(run) for run in runs])
     assert len({path for path in first if "tracking_error" in path}) == 1
     assert len({path for path in both if "tracking_error" in path}) == 2
+
+
+def test_layouts_follow_the_runs_and_do_not_crowd_them_out(tmp_path, monkeypatch):
+    laid_out = []
+    monkeypatch.setattr(Recorder, "lay_out", lambda self, layout: laid_out.append(repr(layout)))
+    dataset = make_dataset(tmp_path / "dataset", ("a", "b"), samples=300)
+    simulated = make_simulation(dataset, tmp_path / "simulated")
+    summary = json.loads((simulated / "simulation.json").read_text())
+    opened = read_dataset(dataset)
+    table = pa.table({"time_s": np.arange(300.0), "f_in_N": np.ones(300), "x_in_mm": np.ones(300)})
+    with to_file(tmp_path / "live.rrd", "live") as recorder:
+        live = LiveStream(recorder, tmp_path)
+        for run in "ab":
+            live.simulated(opened, summary, run, table, data_sheet(opened.manifest))
+        assert len(laid_out) == 1
+        live.lay_out()
+        live.lay_out()
+    first, last = laid_out
+    assert "run b" not in first
+    assert "run b" in last

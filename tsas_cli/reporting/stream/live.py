@@ -1,6 +1,8 @@
 """Runs on their way into a viewer while they are computed, each as soon as it is there."""
 
 import json
+import math
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
@@ -27,10 +29,12 @@ from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.stage_files import Simulation
 from tsas_cli.reporting.stream.recorder import Recorder, to_viewer
 from tsas_cli.reporting.stream.seen import SeenRun
-from tsas_cli.reporting.stream.stream import stream_of
+from tsas_cli.reporting.stream.stream import Stream, stream_of
 from tsas_cli.reporting.tracking_file import Tracking
 from tsas_cli.tracking.recorded import manifest
 from tsas_cli.tracking.settings import Settings
+
+PAUSE_S = 2.0  # between two layouts, which grow with the runs: they may not crowd out the runs
 
 
 @dataclass
@@ -43,6 +47,8 @@ class LiveStream:
     recorder: Recorder
     folder: Path
     runs: list[SeenRun] = field(default_factory=list)
+    latest: Stream | None = None
+    laid_out_at: float = -math.inf
     failure: InputError | None = None
 
     def simulated(
@@ -65,6 +71,12 @@ class LiveStream:
         stage = Tracking.model_validate(_plain(summary))
         self._show(Inputs(read_dataset(folder), {Tracking: stage}, {Tracking: folder}))
 
+    def lay_out(self) -> None:
+        """Give every run so far its place in the viewer."""
+        if self.latest is not None and self.failure is None:
+            self.recorder.lay_out(self.latest.layout)
+            self.laid_out_at, self.latest = time.monotonic(), None
+
     def _show(self, inputs: Inputs) -> None:
         """Show what is new; a viewer that has gone costs the stage nothing but what it shows."""
         if self.failure is not None:
@@ -72,7 +84,9 @@ class LiveStream:
         try:
             new = stream_of(inputs)
             self.runs += new.runs
-            self.recorder.lay_out(replace(new, runs=tuple(self.runs)).layout)
+            self.latest = replace(new, runs=tuple(self.runs))
+            if time.monotonic() > self.laid_out_at + PAUSE_S:
+                self.lay_out()
             new.record(self.recorder)
             self.recorder.settle()
         except InputError as error:
@@ -89,7 +103,9 @@ def live_stream(address: str, name: str) -> Iterator[LiveStream]:
         The viewer does not take it.
     """
     with TemporaryDirectory(prefix="tsas-live-") as folder, to_viewer(address, name) as recorder:
-        yield LiveStream(recorder, Path(folder))
+        stream = LiveStream(recorder, Path(folder))
+        yield stream
+        stream.lay_out()
 
 
 def _plain(summary: dict[str, Any]) -> Any:
