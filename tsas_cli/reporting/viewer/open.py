@@ -71,8 +71,12 @@ def _proxy(port: int) -> str:
 
 
 def _address(page: int, data: str) -> str:
-    """Return the page's address with what it shows; WebGL is what every browser draws."""
-    query = {"url": data, "renderer": "webgl", "hide_welcome_screen": "true"}
+    """Return the page's address with what it shows.
+
+    WebGL is what every browser draws; dark is what a window is by itself, and what the colours are
+    chosen for.
+    """
+    query = {"url": data, "renderer": "webgl", "theme": "dark", "hide_welcome_screen": "true"}
     return f"http://{LOOPBACK}:{page}/?{urlencode(query)}"
 
 
