@@ -32,7 +32,7 @@ class Viewer:
 @contextmanager
 def window_of(path: Path, *, port: int | None = None) -> Iterator[Viewer]:
     """Show a file in a window; `port` is its own, any that is free without it."""
-    with _window(port, str(path)) as (child, _):
+    with _window(port, str(path.absolute())) as (child, _):
         yield Viewer(child)
 
 
