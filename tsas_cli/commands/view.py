@@ -1,12 +1,13 @@
 """`tsas view`: look at recordings, and at what the stages found, in the viewer."""
 
 import sys
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from tsas_cli.commands.common import Json, Quiet, show
+from tsas_cli.commands.common import Json, Quiet, progress, show
 
 ENDS = {True: "Ctrl-C ends it", False: "close the window or press Ctrl-C to end it"}
 
@@ -37,7 +38,10 @@ def view(
 
     in_browser = web or not has_screen()
     opened = page_of if in_browser else window_of
-    with until_stopped(), stream_of(paths) as (stream, notes), opened(stream, port=port) as viewer:
+    with until_stopped(), ExitStack() as held:
+        with progress("stream", None, quiet=quiet) as step:
+            stream, notes = held.enter_context(stream_of(paths, step))
+        viewer = held.enter_context(opened(stream, port=port))
         talk = () if quiet else (*notes, note_once(), ENDS[in_browser])
         for sentence in filter(None, talk):
             print(f"- {sentence}", file=sys.stderr)

@@ -32,7 +32,7 @@ class Viewer:
 @contextmanager
 def window_of(path: Path, *, port: int | None = None) -> Iterator[Viewer]:
     """Show a file in a window; `port` is its own, any that is free without it."""
-    with _window(port, str(path)) as (child, _):
+    with _window(port, str(path.absolute())) as (child, _):
         yield Viewer(child)
 
 
@@ -71,8 +71,12 @@ def _proxy(port: int) -> str:
 
 
 def _address(page: int, data: str) -> str:
-    """Return the page's address with what it shows; WebGL is what every browser draws."""
-    query = {"url": data, "renderer": "webgl", "hide_welcome_screen": "true"}
+    """Return the page's address with what it shows.
+
+    WebGL is what every browser draws; dark is what a window is by itself, and what the colours are
+    chosen for.
+    """
+    query = {"url": data, "renderer": "webgl", "theme": "dark", "hide_welcome_screen": "true"}
     return f"http://{LOOPBACK}:{page}/?{urlencode(query)}"
 
 
