@@ -56,13 +56,14 @@ class Cause:
 class Diagnosis:
     """The verdict and all that it rests on; nothing of that where it is undecided.
 
-    `search` holds all hypotheses, `judged` those that count with the final weights, among them
+    `model` is the extended one, `nominal` the one without what is named. `search` holds all hypotheses, `judged` those that count with the final weights, among them
     the nominal model `before` and the `final` one.
     """
 
     verdict: Verdict
     reason: str
     model: Model
+    nominal: Model
     causes: tuple[Cause, ...] = ()
     channels: dict[str, Channel] = field(default_factory=dict)
     remainder: Remainder | None = None
@@ -119,14 +120,15 @@ def diagnose(
     step()
     reason = _not_possible(base, fitted)
     if reason is not None:
-        return Diagnosis("undecided", reason, model, cannot_tell=tuple(sentences))
+        return Diagnosis("undecided", reason, model, model, cannot_tell=tuple(sentences))
     bench = Bench(base)
     search = Search(bench, bench_folds(bench), step)
     if search.folds.blocks < FEW_BLOCKS:
         reason = f"only {search.folds.blocks} stretches are independent of each other: too few."
-        return Diagnosis("undecided", reason, model, cannot_tell=tuple(sentences))
+        return Diagnosis("undecided", reason, model, model, cannot_tell=tuple(sentences))
     found = _concluded(search, search.run(), model, tuple(base.untold))
-    return replace(found, model=with_preload_correction(found.model, runs))
+    extended, nominal = (with_preload_correction(m, runs) for m in (found.model, found.nominal))
+    return replace(found, model=extended, nominal=nominal)
 
 
 def nominal_fit(manifest: Manifest, stated: Model, runs: Sequence[Prepared]) -> JointFit:
@@ -170,10 +172,12 @@ def _concluded(search: Search, named: Names, model: Model, sentences: tuple[str,
     share = max(excess[1] - BLURRED, 0.0) / excess[0] if excess[0] > 0.0 else 0.0
     verdict = verdict_of([cause.rivals for cause in causes], left.mean_square, share)
     extended = Model(tuple(estimates)).over(model)
+    nominal = Model(tuple(_estimates(judged, before))).over(model) if named else extended
     found = Diagnosis(
         verdict,
         "",
         extended,
+        nominal,
         causes,
         channel_errors(judged, before, final, start, left),
         left,

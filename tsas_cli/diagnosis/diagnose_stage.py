@@ -1,4 +1,4 @@
-"""The diagnose stage: `diagnosis.json` and `model-extended.toml` of a dataset."""
+"""The diagnose stage: `diagnosis.json`, both models, and what each answers to the runs."""
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+import pyarrow as pa
 
 from tsas_cli import __version__
 from tsas_cli.diagnosis.diagnose import Cause, Diagnosis, diagnose
@@ -14,16 +15,18 @@ from tsas_cli.diagnosis.residual_map import residual_map
 from tsas_cli.diagnosis.search import Search
 from tsas_cli.effects import EFFECTS
 from tsas_cli.files import new_folder, write_json
+from tsas_cli.identification.comparison import compare
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.model import source_of, stated_model, write_model
-from tsas_cli.identification.prepared import prepare
-from tsas_cli.recordings.columns import BY_NAME
-from tsas_cli.recordings.dataset import Dataset
+from tsas_cli.identification.model import Model, source_of, stated_model, write_model
+from tsas_cli.identification.phases import segment, segments_as_json
+from tsas_cli.identification.prepared import Prepared, prepare
+from tsas_cli.recordings.columns import BY_NAME, nominal_name
+from tsas_cli.recordings.dataset import Dataset, write_parquet
 
 Floats = npt.NDArray[np.float64]
 Table = tuple[str, Sequence[str], Sequence[Sequence[str]]]
 
-EXTENDED = "model-extended.toml"
+EXTENDED, NOMINAL = "model-extended.toml", "model-nominal.toml"
 SHOWN = 8  # hypotheses that are printed
 _ERRORS = ("rmse_before", "rmse_after", "noise_floor", "best_obtainable")
 
@@ -36,7 +39,7 @@ def diagnose_dataset(
     force: bool = False,
     step: Callable[[], None] = lambda: None,
 ) -> dict[str, Any]:
-    """Diagnose and write `diagnosis.json` and `model-extended.toml` into a new folder.
+    """Diagnose and write what was found, both models and their answers into a new folder.
 
     The model, or else the data sheet, is where the refit of the nominal parameters begins.
 
@@ -54,11 +57,23 @@ def diagnose_dataset(
             step()
         result = diagnose(dataset.manifest, stated, runs, step)
         summary |= as_json(result)
+        summary["segments"] = {run.run.id: segments_as_json(run, segment(run)) for run in runs}
         write_json(folder / "diagnosis.json", summary)
-        write_model(
-            folder / EXTENDED, result.model, version=__version__, dataset=summary["dataset"]
-        )
+        for name, model in ((EXTENDED, result.model), (NOMINAL, result.nominal)):
+            write_model(folder / name, model, version=__version__, dataset=summary["dataset"])
+        (folder / "runs").mkdir()
+        for run in runs:
+            table = _answers(run, result.model, result.nominal)
+            write_parquet(folder / "runs" / f"{run.run.id}.parquet", table)
     return summary
+
+
+def _answers(run: Prepared, extended: Model, nominal: Model) -> pa.Table:
+    """Return time, the conditioned or simulated x_in, and what each model answers to it."""
+    after, before = compare(run, extended), compare(run, nominal)
+    columns = {"time_s": run.time_s, "x_in_mm": after.response.x_in_mm, **after.channels}
+    columns |= {nominal_name(name): values for name, values in before.channels.items()}
+    return pa.table({name: pa.array(v, from_pandas=True) for name, v in columns.items()})
 
 
 def as_json(result: Diagnosis) -> dict[str, Any]:

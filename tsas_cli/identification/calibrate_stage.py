@@ -17,6 +17,7 @@ from tsas_cli.identification.model import (
     stated_model,
     write_model,
 )
+from tsas_cli.identification.phases import segments_as_json
 from tsas_cli.identification.prepared import Prepared, prepare
 from tsas_cli.identification.stiffness import Slope
 from tsas_cli.physics.capstan import dead_band_stiffness, slip_stiffness, speed_per_stiffness
@@ -76,14 +77,7 @@ def _refuse_wrong_sign(recording: Recording, manifest: Manifest) -> None:
 def _summary(result: Calibration, manifest: Manifest) -> dict[str, Any]:
     return {
         "segments": {
-            run.run.id: [
-                {
-                    "start_s": float(run.time_s[s.first]),
-                    "end_s": float(run.time_s[min(s.end, run.time_s.size - 1)]),
-                    "phase": s.phase,
-                }
-                for s in segments
-            ]
+            run.run.id: segments_as_json(run, segments)
             for run, segments in zip(result.runs, result.segments, strict=True)
         },
         "stiffness": [

@@ -15,7 +15,7 @@ of the laws is needed for belongs to a phase as a whole; which one, its slope te
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -78,6 +78,19 @@ def segment(run: Prepared) -> list[Segment]:
         else:
             out.append(Segment(stroke.first, stroke.end, dead if slope[0] > border else slip))
     return out
+
+
+def segments_as_json(run: Prepared, segments: Sequence[Segment]) -> list[dict[str, Any]]:
+    """Return what the stages' files say of a run's phases."""
+    last = run.time_s.size - 1
+    return [
+        {
+            "start_s": float(run.time_s[s.first]),
+            "end_s": float(run.time_s[min(s.end, last)]),
+            "phase": s.phase,
+        }
+        for s in segments
+    ]
 
 
 def _strokes(run: Prepared) -> list[_Stroke]:

@@ -12,6 +12,7 @@ from tsas_cli.files import new_folder, write_json
 from tsas_cli.identification.base_fit import with_own_values
 from tsas_cli.identification.comparison import Compared, compare
 from tsas_cli.identification.model import data_sheet, read_model, source_of
+from tsas_cli.identification.phases import segment, segments_as_json
 from tsas_cli.identification.prepared import Prepared, prepare
 from tsas_cli.physics.chain_state import MOST_NODES
 from tsas_cli.physics.response import Dynamics
@@ -46,6 +47,7 @@ def simulate_dataset(
     model = data_sheet(dataset.manifest) if model_path is None else read_model(model_path)
     summary = dataset.header("simulate", out) | {"model": source_of(model_path)}
     summary |= {"dynamics": dynamics, "nodes": nodes, "own_values_fitted": fit_own, "runs": {}}
+    summary["segments"] = {}
     with new_folder(out, force=force) as folder:
         (folder / "runs").mkdir()
         for recording in dataset:
@@ -54,6 +56,7 @@ def simulate_dataset(
             answer = compare(run, own, dynamics, nodes)
             write_parquet(folder / "runs" / f"{run.run.id}.parquet", _table(run, answer))
             summary["runs"][run.run.id] = answer.as_json(run)
+            summary["segments"][run.run.id] = segments_as_json(run, segment(run))
             step()
         summary["notes"] = _notes(summary["runs"])
         write_json(folder / "simulation.json", summary)

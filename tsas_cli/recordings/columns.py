@@ -43,3 +43,15 @@ OUTPUTS = ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N")
 def has_input_and_output(names: frozenset[str]) -> bool:
     """Say whether the columns hold an input and another column that is an output."""
     return any(i != o for i in names.intersection(INPUTS) for o in names.intersection(OUTPUTS))
+
+
+def nominal_name(name: str) -> str:
+    """Return what a column is called that holds the nominal model's answer, beside the extended's.
+
+    Examples
+    --------
+    >>> nominal_name("x_in_mm")
+    'x_in_nominal_mm'
+    """
+    quantity, unit = name.rsplit("_", 1)
+    return f"{quantity}_nominal_{unit}"

@@ -42,6 +42,7 @@ class Finding(Record):
     column: str | None = None
     sentence: str
     remedy: str = ""
+    first_s: float | None = None
 
 
 class NotChecked(Record):
@@ -168,6 +169,7 @@ class Simulation(OfDataset):
     own_values_fitted: bool = False
     notes: tuple[str, ...] = ()
     runs: dict[str, SimulatedRun]
+    segments: dict[str, tuple[Segment, ...]] = {}
 
 
 class CauseParameter(Record):
@@ -274,3 +276,4 @@ class Diagnosis(OfDataset):
     evidence: Evidence = Evidence()
     cannot_tell: tuple[str, ...] = ()
     solver: str = ""
+    segments: dict[str, tuple[Segment, ...]] = {}
