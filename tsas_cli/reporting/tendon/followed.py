@@ -9,6 +9,7 @@ import numpy.typing as npt
 from tsas_cli.identification.comparison import simulated
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.prepared import Prepared
+from tsas_cli.physics.compliances import compliance_at_drive, sheath_compliance
 from tsas_cli.physics.frames import Frames
 from tsas_cli.physics.passages import Passage, passages
 from tsas_cli.physics.response import Dynamics, Response
@@ -16,13 +17,28 @@ from tsas_cli.physics.rig import Rig
 from tsas_cli.reporting.tendon.moments import moments
 
 Floats = npt.NDArray[np.float64]
+Indices = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Which:
+    """Which model a picture is of: its name in paths, its name in words, its colour's role."""
+
+    key: str
+    label: str
+    role: str
+
+
+SIMULATED = Which("simulated", "simulated", "simulated")
+NOMINAL = Which("nominal", "nominal model", "before")
+EXTENDED = Which("extended", "extended model", "after")
 
 
 @dataclass(frozen=True)
 class Followed:
     """What one model says along the tendon of a run, at k moments.
 
-    `time_s`, shape (k,), is on the recording's own clock; `front_runs` are of all samples, whose
+    `time_s`, shape (k,), is on the recording's own clock; `passages` are of all samples, whose
     times are `sample_time_s`.
     """
 
@@ -31,7 +47,7 @@ class Followed:
     frames: Frames
     time_s: Floats
     sample_time_s: Floats
-    front_runs: list[Passage]
+    passages: list[Passage]
 
     @property
     def x_in_mm(self) -> Floats:
@@ -45,13 +61,47 @@ class Followed:
         shown: Floats = self.response.x_out_mm[self.frames.samples] - self.rig.x_out_zero_mm
         return shown
 
+    @property
+    def slips(self) -> npt.NDArray[np.bool_]:
+        """Whether each element slips, shape (k, m)."""
+        return np.isin(self.frames.slip, (1, -1))
+
+    @property
+    def front_runs_now(self) -> npt.NDArray[np.bool_]:
+        """Whether a front is on its way from the drive to the load, shape (k,)."""
+        return (self.frames.front > 0.0) & (self.frames.front < 1.0)
+
+    def tension_at_front(self) -> Floats:
+        """Return the tension where the front is, shape (k,) [N]."""
+        frames = self.frames
+        rows = zip(frames.front, np.nan_to_num(frames.tension_N), strict=True)
+        return np.array([np.interp(front, frames.places, row) for front, row in rows])
+
+    def turned(self) -> Indices:
+        """Return for each moment the one at which the drive has turned last, shape (k,)."""
+        samples = self.frames.samples
+        starts = np.array([0, *(run.start for run in self.passages)])
+        last = starts[np.searchsorted(starts, samples, side="right") - 1]
+        return np.minimum(np.searchsorted(samples, last), samples.size - 1)
+
+    def moved_mm(self) -> Floats:
+        """Return how far each place has moved towards the drive, shape (k, m + 1) [mm].
+
+        It is the drive's way less the stretch of the tendon in between (Hooke's law).
+        """
+        excess = self.frames.tension_N - self.rig.preload_N
+        give = sheath_compliance(self.rig) / self.frames.slip.shape[1]
+        stretch = np.cumsum(0.5 * give * (excess[:, 1:] + excess[:, :-1]), axis=1)
+        at_mouth = self.x_in_mm - compliance_at_drive(self.rig) * excess[:, 0]
+        return np.column_stack((at_mouth, at_mouth[:, None] - stretch))
+
 
 def follow(
     run: Prepared,
-    models: Mapping[str, Model],
+    models: Mapping[Which, Model],
     dynamics: Dynamics = "slip",
     nodes: int | None = None,
-) -> dict[str, Followed]:
+) -> dict[Which, Followed]:
     """Follow a run with each model, all at the same moments.
 
     The lumped model does not say what is along the tendon: it gives none.
@@ -59,12 +109,13 @@ def follow(
     if dynamics == "static":
         return {}
     answers = [simulated(run, model, dynamics, nodes) for model in models.values()]
-    at = moments(run.time_s, [answer.f_in_N for answer in answers])
+    turns = [p.start for answer in answers for p in passages(answer.x_in_mm, answer.phase)]
+    at = moments(run.time_s, [answer.f_in_N for answer in answers], turns)
     found = {}
-    for name, model in models.items():
+    for which, model in models.items():
         answer = simulated(run, model, dynamics, nodes, looked_at=at)
         if answer.frames is not None:
-            found[name] = Followed(
+            found[which] = Followed(
                 model.rig(run.run),
                 answer,
                 answer.frames,

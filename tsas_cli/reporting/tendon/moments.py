@@ -14,8 +14,8 @@ PER_SPAN = 120.0  # while a tension goes through all that it has in the run: hal
 MOST = 1500  # of one run, whatever its length
 
 
-def moments(time_s: Floats, tensions: Sequence[Floats]) -> Indices:
-    """Return the samples to look at, rising, the first and the last one among them.
+def moments(time_s: Floats, tensions: Sequence[Floats], turns: Sequence[int]) -> Indices:
+    """Return the samples to look at, rising, the turns, the first and the last one among them.
 
     Parameters
     ----------
@@ -23,6 +23,8 @@ def moments(time_s: Floats, tensions: Sequence[Floats]) -> Indices:
         Time of the samples, shape (n,).
     tensions
         What must not jump from one to the next: tensions of all models shown, shape (n,) each.
+    turns
+        Samples at which the drive turns.
     """
     steps = PER_SECOND * np.diff(time_s)
     for tension in tensions:
@@ -31,4 +33,4 @@ def moments(time_s: Floats, tensions: Sequence[Floats]) -> Indices:
             steps = np.maximum(steps, PER_SPAN / span * np.abs(np.diff(tension)))
     passed = np.concatenate(([0.0], np.cumsum(steps)))
     frames = np.arange(0.0, passed[-1], max(1.0, passed[-1] / MOST))
-    return np.unique(np.append(np.searchsorted(passed, frames), time_s.size - 1))
+    return np.unique(np.concatenate((np.searchsorted(passed, frames), turns, [time_s.size - 1])).astype(np.int64))

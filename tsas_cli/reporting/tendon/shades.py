@@ -10,7 +10,7 @@ Floats = npt.NDArray[np.float64]
 Bytes = npt.NDArray[np.uint8]
 
 MAP = "plasma"
-FROM, TO = 0.12, 0.97  # of it: its dark end is lost on a dark ground
+FROM, TO = 0.18, 0.97  # of it: its dark end is lost on a dark ground
 STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)
 TICKS = 5  # at most, on the legend
 

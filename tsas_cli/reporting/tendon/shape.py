@@ -25,6 +25,17 @@ class Shape:
     into: Floats  # from the drive into the sheath, length 1, shape (3,)
     out_of: Floats  # out of the sheath towards the load
 
+    def beside(self, distance_mm: float) -> Floats:
+        """Return a curve beside the centre line, on its left (seen along it), shape (m + 1, 3)."""
+        along = np.gradient(self.sheath, axis=0)
+        left = np.cross([0.0, 0.0, 1.0], along)
+        return self.sheath + distance_mm * left / np.linalg.norm(left, axis=1)[:, None]
+
+    def at(self, places: Floats) -> Floats:
+        """Return points of the centre line at places from 0 to 1, shape (k, 3)."""
+        known = np.linspace(0.0, 1.0, len(self.sheath))
+        return np.column_stack([np.interp(places, known, axis) for axis in self.sheath.T])
+
 
 def shape_of(length_mm: float, bend_rad: float, elements: int) -> Shape:
     """Return the shape, with its lowest point on the ground and its middle above the origin.

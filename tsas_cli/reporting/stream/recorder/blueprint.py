@@ -96,6 +96,7 @@ def _(part: Space) -> rrb.View:
     eye = rrb.EyeControls3D(position=part.eye, look_target=part.target, eye_up=(0.0, 0.0, 1.0))
     return rrb.Spatial3DView(
         **_shown(part, part.entities),
+        background=rrb.Background(color=part.ground, kind="SolidColor"),
         eye_controls=eye,
         line_grid=False,
         overrides=_trails(part.trails),

@@ -42,12 +42,16 @@ class Plane:
 
 @dataclass(frozen=True)
 class Space:
-    """A space, z upwards, seen from `eye` towards `target`; of `trails` the last seconds."""
+    """A space, z upwards, seen from `eye` towards `target`; of `trails` the last seconds.
+
+    `ground` is the colour behind it all, 0xRRGGBBAA.
+    """
 
     name: str
     entities: Sequence[Entity]
     eye: Place
     target: Place
+    ground: int = 0x0D1014FF
     trails: Mapping[Entity, float] = field(default_factory=dict)
 
 

@@ -1,0 +1,184 @@
+"""The tendon in space: tension as colour and as a curtain's height, thick where it slips."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from tsas_cli.physics.chain_state import SLACK, UNSETTLED
+from tsas_cli.reporting.stream.palette import colour
+from tsas_cli.reporting.stream.recorder import Clock, Recorder, Times
+from tsas_cli.reporting.stream.recorder.layout import Space
+from tsas_cli.reporting.stream.recorder.moving import captions, coloured_pieces, curves, surface
+from tsas_cli.reporting.stream.recorder.paths import Entity
+from tsas_cli.reporting.tendon.followed import Followed, Which
+from tsas_cli.reporting.tendon.shades import Scale, dimmed, packed, scale_of
+from tsas_cli.reporting.tendon.stage import LEFT, Stand, stage_of
+
+Floats = npt.NDArray[np.float64]
+Bools = npt.NDArray[np.bool_]
+
+GROUND = (13, 16, 20)
+SLIDES, STICKS, SHEATH, MARK = 0xFFFFFFFF, 0x6D7681FF, 0x4A535EFF, 0x0D1014FF
+BRIGHT, PALE, FOOT = 0.1, 0.62, 0.55  # by which colours go down to the ground: slips, sticks, low
+THICK, THIN, RAIL = 0.011, 0.004, 0.022  # radii, and where the sheath is, of the scene's size
+MARKS = 24  # on the tendon, to see it move
+STEPS = 48  # of the legend
+
+
+def record_scene(
+    recorder: Recorder, entity: Entity, clock: Clock, tendons: Mapping[Which, Followed]
+) -> Space:
+    """Record the tendons of one run above each other; return the view that shows them."""
+    every = np.concatenate([one.frames.tension_N.ravel() for one in tendons.values()])
+    scale = scale_of(float(np.nanmin(every)), float(np.nanmax(every)))
+    stage = stage_of(list(tendons.values()), scale.high)
+    for (which, one), stand in zip(tendons.items(), stage.stands, strict=True):
+        mine, times = [*entity, which.key], clock.times(one.time_s)
+        _sheath(recorder, mine, times, one, stand, scale)
+        _curtain(recorder, mine, times, one, stand, scale)
+        _front(recorder, mine, times, one, stand)
+        _ends(recorder, mine, times, one, stand, scale)
+        _captions(recorder, mine, times, one, stand, which)
+    _legend(recorder, [*entity, "tension"], stage.stands[0], scale)
+    return Space("Tendon", [entity], stage.eye, stage.target)
+
+
+def _sheath(
+    recorder: Recorder, entity: Entity, times: Times, one: Followed, stand: Stand, scale: Scale
+) -> None:
+    """Draw the tendon between the sheath's walls, with marks that move with it."""
+    for side in (1.0, -1.0):
+        wall = stand.at + stand.shape.beside(side * RAIL * stand.size)
+        recorder.curves_3d([*entity, "sheath", f"{side:+.0f}"], [wall], SHEATH, radii=-1.5)
+    tension, line = one.frames.tension_N, stand.sheath
+    shades = packed(scale.colours(0.5 * (tension[:, 1:] + tension[:, :-1])))
+    radii = stand.size * np.where(one.slips, THICK, THIN)
+    pieces = np.stack((line[:-1], line[1:]), axis=1)
+    coloured_pieces(recorder, [*entity, "tendon"], times, pieces, shades, radii)
+    painted = (np.arange(2 * MARKS) - 0.5 * MARKS) / MARKS
+    shown = []
+    for by in one.moved_mm() / one.rig.sheath_length_mm:
+        at = painted - np.interp(painted, one.frames.places, by)
+        shown.append(stand.at + stand.shape.at(at[(at >= 0.0) & (at <= 1.0)]))
+    recorder.points_3d([*entity, "marks"], times, shown, MARK, radii=-2.5)
+
+
+def _curtain(
+    recorder: Recorder, entity: Entity, times: Times, one: Followed, stand: Stand, scale: Scale
+) -> None:
+    """Draw a surface from the sheath up to the tension, bright and edged where the tendon slips."""
+    line, tension = stand.sheath, np.nan_to_num(one.frames.tension_N)
+    top, count = stand.raised(tension), len(line)
+    beside = np.zeros(tension.shape, dtype=bool)
+    beside[:, :-1] |= one.slips
+    beside[:, 1:] |= one.slips
+    shades = scale.colours(tension)
+    high = np.where(
+        beside[..., None], dimmed(shades, BRIGHT, GROUND), dimmed(shades, PALE, GROUND)
+    )
+    both = np.concatenate((packed(dimmed(high, FOOT, GROUND)), packed(high)), axis=1)
+    corners = np.concatenate((np.broadcast_to(line, top.shape), top), axis=1)
+    low = np.arange(count - 1, dtype=np.uint32)
+    halves = (low, low + 1, low + count), (low + 1, low + count + 1, low + count)
+    triangles = np.concatenate([np.stack(half, axis=1) for half in halves]).astype(np.uint32)
+    surface(recorder, [*entity, "curtain"], times, corners, triangles, both)
+    for name, where, shade, radius in (
+        ("sticks", ~one.slips, STICKS, -1.0),
+        ("slips", one.slips, SLIDES, -2.2),
+    ):
+        edge = [
+            [points[first : end + 1] for first, end in _stretches(here)]
+            for points, here in zip(top, where, strict=True)
+        ]
+        curves(recorder, [*entity, name], times, edge, shade, radius=radius)
+
+
+def _front(
+    recorder: Recorder, entity: Entity, times: Times, one: Followed, stand: Stand
+) -> None:
+    """Draw the front where it runs: bright points on the tendon and on the curtain's edge."""
+    share, line = one.frames.front, stand.sheath
+    tension = one.tension_at_front()
+    low = stand.at + stand.shape.at(share)
+    high = low + (stand.height_mm_per_N * tension)[:, None] * [0.0, 0.0, 1.0]
+    runs = one.front_runs_now
+    posts = [np.stack(pair) for pair in zip(low, high, strict=True)]
+    nothing = np.empty((0, 3))
+    points = [post if here else nothing for post, here in zip(posts, runs, strict=True)]
+    lines = [[post] if here else [] for post, here in zip(posts, runs, strict=True)]
+    recorder.points_3d([*entity, "front", "ends"], times, points, SLIDES, radii=-6.0)
+    curves(recorder, [*entity, "front", "line"], times, lines, SLIDES, radius=-1.2)
+
+
+def _ends(
+    recorder: Recorder, entity: Entity, times: Times, one: Followed, stand: Stand, scale: Scale
+) -> None:
+    """Draw free tendon, the drive's pulley and the load's spring."""
+    ends, at, muted = stand.ends, stand.at, colour("muted")
+    tension, thick = one.frames.tension_N, THICK * stand.size
+    recorder.curves_3d([*entity, "drive", "rim"], [ends.rim + at], muted, radii=-2.0)
+    spokes = [list(now + at) for now in ends.spokes]
+    curves(recorder, [*entity, "drive", "spokes"], times, spokes, muted, radius=-1.2)
+    for name, lines, felt in (
+        ("drive", np.broadcast_to(ends.proximal, ends.distal.shape), tension[:, 0]),
+        ("load", ends.distal, tension[:, -1]),
+    ):
+        shades, strips = packed(scale.colours(felt)), [[line + at] for line in lines]
+        curves(recorder, [*entity, name, "tendon"], times, strips, shades, radius=thick)
+    springs = [[line + at] for line in ends.spring]
+    curves(recorder, [*entity, "load", "spring"], times, springs, muted, radius=-1.5)
+    recorder.curves_3d([*entity, "load", "anchor"], [ends.anchor + at], muted, radii=-2.5)
+    named = np.stack((ends.rim.mean(axis=0), ends.anchor.mean(axis=0))) + at
+    named[1] += stand.shape.out_of * 0.05 * stand.size
+    recorder.labels_3d([*entity, "names"], named, ["drive", "load"], muted)
+
+
+def _captions(
+    recorder: Recorder, entity: Entity, times: Times, one: Followed, stand: Stand, which: Which
+) -> None:
+    """Write the model's name, and under it what the tendon does at each time."""
+    near, deep = stand.shape.sheath[:, 1].min(), np.ptp(stand.shape.sheath[:, 1])
+    inside = min(1.0, 2.0 * deep / stand.size)  # of an arc there is room for it
+    place = stand.at + [0.0, near + (0.2 * inside - 0.12) * stand.size, 0.0]
+    recorder.labels_3d([*entity, "title"], place[None], [which.label], colour(which.role))
+    below = np.tile(place - [0.0, 0.1 * stand.size, 0.0], (len(one.time_s), 1))
+    captions(recorder, [*entity, "state"], times, below, _said(one), colour("ink"))
+
+
+def _said(one: Followed) -> list[str]:
+    """Say in a few words what the tendon does at each time."""
+    texts = []
+    for slip, front in zip(one.frames.slip, one.frames.front, strict=True):
+        first = slip[0]
+        drive = {1: "the drive pulls", -1: "the drive lets go"}.get(int(first), "")
+        if first in (SLACK, UNSETTLED):
+            texts.append("slack" if first == SLACK else "not settled")
+        elif not drive:
+            texts.append("sticks at the drive")
+        elif front == 1.0:
+            texts.append(f"{drive}: all of it slips")
+        else:
+            texts.append(f"{drive}: dead band, the front is at {100.0 * front:.0f} %")
+    return texts
+
+
+def _legend(recorder: Recorder, entity: Entity, stand: Stand, scale: Scale) -> None:
+    """Draw the scale of tension: a bar as high as the curtains, coloured as they are."""
+    foot = stand.at + [stand.shape.sheath[:, 0].min() - 0.8 * LEFT * stand.size, 0.0, 0.0]
+    up = stand.height_mm_per_N * np.array([0.0, 0.0, 1.0])
+    levels = np.linspace(scale.low, scale.high, STEPS + 1)
+    bar = foot + levels[:, None] * up
+    shades = packed(scale.colours(0.5 * (levels[1:] + levels[:-1]))).tolist()
+    pieces = list(np.stack((bar[:-1], bar[1:]), axis=1))
+    recorder.curves_3d([*entity, "bar"], pieces, shades, radii=0.012 * stand.size)
+    beside = [foot + tick * up - [0.07 * stand.size, 0.0, 0.0] for tick in scale.ticks]
+    names = [f"{tick:g} N" for tick in scale.ticks]
+    recorder.labels_3d([*entity, "ticks"], np.array(beside), names, colour("muted"))
+
+
+def _stretches(where: Bools) -> Sequence[Sequence[int]]:
+    """Return first and end of each stretch that is true."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([False], where, [False])).astype(np.int8)))
+    pairs: Sequence[Sequence[int]] = edges.reshape(-1, 2).tolist()
+    return pairs

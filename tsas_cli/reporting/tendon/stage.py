@@ -1,0 +1,98 @@
+"""Where tendons stand in a scene, and the eye that sees them all at the same size.
+
+They stand above each other as the eye sees it, each as far from it as the others: what is at the
+same place of the sheath is at the same place across the picture.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from tsas_cli.reporting.tendon.ends import Ends, ends_of
+from tsas_cli.reporting.tendon.followed import Followed
+from tsas_cli.reporting.tendon.shape import Shape, shape_of
+
+Floats = npt.NDArray[np.float64]
+
+DOWN_RAD = math.radians(44.0)  # by which the eye looks down
+SEEN = 0.80  # how high and wide a view is at distance 1, with some room; usual ones are wider than high
+TALL = 0.36  # of the scene's size: how high the highest tension is drawn
+GAP = 0.08  # of the size, between two tendons
+LEFT = 0.16  # of the size, kept free for the legend
+_RIGHT = np.array([1.0, 0.0, 0.0])
+_UP = np.array([0.0, math.sin(DOWN_RAD), math.cos(DOWN_RAD)])
+_BACK = np.array([0.0, -math.cos(DOWN_RAD), math.sin(DOWN_RAD)])
+
+
+@dataclass(frozen=True)
+class Stand:
+    """One tendon in the scene; `at` is where its shape's origin is, `size` the scene's [mm]."""
+
+    shape: Shape
+    ends: Ends
+    at: Floats
+    size: float
+    height_mm_per_N: float
+
+    @property
+    def sheath(self) -> Floats:
+        """The centre line in the scene, shape (m + 1, 3)."""
+        return self.shape.sheath + self.at
+
+    def raised(self, tension_N: Floats) -> Floats:
+        """Return points above the sheath by tensions of shape (k, m + 1), shape (k, m + 1, 3)."""
+        return self.sheath + (self.height_mm_per_N * tension_N)[..., None] * [0.0, 0.0, 1.0]
+
+
+@dataclass(frozen=True)
+class Stage:
+    """The stands, and the eye with what it looks at."""
+
+    stands: list[Stand]
+    eye: tuple[float, float, float]
+    target: tuple[float, float, float]
+
+
+def stage_of(tendons: Sequence[Followed], highest_N: float) -> Stage:
+    """Return where tendons stand, up to the highest tension that is drawn."""
+    shapes = [
+        shape_of(one.rig.sheath_length_mm, one.rig.total_bend_rad, one.frames.slip.shape[1])
+        for one in tendons
+    ]
+    size = max(float(np.ptp(shape.sheath, axis=0).max()) for shape in shapes)
+    ends = [_ends(one, shape, size) for one, shape in zip(tendons, shapes, strict=True)]
+    tall = TALL * size
+    boxes = [_seen(shape, end, tall) for shape, end in zip(shapes, ends, strict=True)]
+    low, high = (min(b[0][1] for b in boxes), max(b[1][1] for b in boxes))
+    step = high - low + GAP * size
+    places = [step * (0.5 * (len(shapes) - 1) - k) * _UP for k in range(len(shapes))]
+    left, right = min(b[0][0] for b in boxes) - LEFT * size, max(b[1][0] for b in boxes)
+    away = max(step * len(shapes), right - left) / SEEN
+    target = 0.5 * (low + high) * _UP + 0.5 * (left + right) * _RIGHT
+    stands = [
+        Stand(shape, end, at, size, tall / highest_N)
+        for shape, end, at in zip(shapes, ends, places, strict=True)
+    ]
+    return Stage(stands, _place(target + away * _BACK), _place(target))
+
+
+def _ends(one: Followed, shape: Shape, size: float) -> Ends:
+    free = one.rig.effects.free_tendon
+    lengths = (free.proximal_length_mm, free.distal_length_mm)
+    return ends_of(shape, lengths, size, one.x_in_mm, one.x_out_mm)
+
+
+def _seen(shape: Shape, ends: Ends, tall: float) -> tuple[Floats, Floats]:
+    """Return the corners of what the eye sees of a tendon, to the right and upwards."""
+    above = shape.sheath + [0.0, 0.0, tall]
+    points = np.concatenate((shape.sheath, above, ends.rim, ends.anchor))
+    seen = np.stack((points @ _RIGHT, points @ _UP), axis=1)
+    return seen.min(axis=0), seen.max(axis=0)
+
+
+def _place(point: Floats) -> tuple[float, float, float]:
+    x, y, z = (float(part) for part in point)
+    return x, y, z
