@@ -122,6 +122,64 @@ def read_recording(folder: Path, run: Run, *, strict: bool = True) -> Recording:
     return Recording(run, columns)
 
 
+@dataclass(frozen=True)
+class RunColumns:
+    """One run, whose columns are read one at a time, when they are asked for."""
+
+    run: Run
+    path: Path
+    file: pq.ParquetFile
+
+    @property
+    def names(self) -> list[str]:
+        """The columns of numbers, in the order of the file."""
+        schema = self.file.schema_arrow
+        return [f.name for f in schema if f.name in BY_NAME or pa.types.is_floating(f.type)]
+
+    @property
+    def rows(self) -> int:
+        """How many samples there are."""
+        return int(self.file.metadata.num_rows)
+
+    def read(self, name: str) -> Floats:
+        """Read a column as float64, shape (n,), null as NaN.
+
+        Raises
+        ------
+        InputError
+            It is not of numbers, or cannot be read; the time is not strictly increasing.
+        """
+        try:
+            table = self.file.read(columns=[name])
+        except (pa.ArrowException, OSError) as error:
+            raise _not_parquet(self.path, error) from error
+        values = _floats(table, name, self.path)
+        if name == TIME:
+            _check_time(values, self.path)
+        return values
+
+
+def open_run(folder: Path, run: Run) -> RunColumns:
+    """Open one run and check it as far as that is possible without its samples.
+
+    Raises
+    ------
+    InputError
+        The file is missing, leaves its folder, is not Parquet or has another checksum; the time is
+        missing, or a column is in another unit.
+    """
+    path = folder / run.file
+    _check_file(path, folder, run)
+    try:
+        file = pq.ParquetFile(path)
+        _check_names_and_units(file.schema_arrow, path)
+    except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
+        raise _not_parquet(path, error) from error
+    if TIME not in file.schema_arrow.names or file.metadata.num_rows < 2:
+        raise InputError("column time_s is missing or short", where=path, expected="time in s")
+    return RunColumns(run, path, file)
+
+
 def read_columns(path: Path) -> dict[str, Floats]:
     """Read the canonical columns of a Parquet file that belongs to no dataset.
 
@@ -175,6 +233,12 @@ def _float_names(table: pa.Table) -> list[str]:
 
 
 def _read_parquet(path: Path, folder: Path, run: Run) -> pa.Table:
+    _check_file(path, folder, run)
+    return _table_of(path)
+
+
+def _check_file(path: Path, folder: Path, run: Run) -> None:
+    """Refuse a file that is not there, not in the dataset, or not what the manifest says."""
     if not path.is_file():
         raise InputError(
             "the run's file is missing", where=path, expected=f"the Parquet file of run {run.id}"
@@ -192,26 +256,29 @@ def _read_parquet(path: Path, folder: Path, run: Run) -> pa.Table:
             expected=run.sha256.lower(),
             remedy="the file has changed since ingest: restore it or ingest again",
         )
-    return _table_of(path)
 
 
 def _table_of(path: Path) -> pa.Table:
     try:
         table = pq.ParquetFile(path).read()
-        _check_names_and_units(table, path)
+        _check_names_and_units(table.schema, path)
     except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
-        reason = str(error).splitlines()[0]
-        raise InputError(f"cannot be read as Parquet ({reason})", where=path) from error
+        raise _not_parquet(path, error) from error
     return table
 
 
-def _check_names_and_units(table: pa.Table, path: Path) -> None:
+def _not_parquet(path: Path, error: Exception) -> InputError:
+    reason = str(error).splitlines()[0]
+    return InputError(f"cannot be read as Parquet ({reason})", where=path)
+
+
+def _check_names_and_units(schema: pa.Schema, path: Path) -> None:
     """Refuse a known column that is there twice, or whose metadata name another known unit."""
     units = {column.unit for column in BY_NAME.values()}
-    for field in table.schema:
+    for field in schema:
         if field.name not in BY_NAME:
             continue
-        if table.column_names.count(field.name) > 1:
+        if schema.names.count(field.name) > 1:
             raise InputError(f"column {field.name} is there twice", where=path)
         unit = (field.metadata or {}).get(b"unit", b"").decode("utf-8", "replace")
         expected = BY_NAME[field.name].unit

@@ -3,6 +3,7 @@
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import TypeVar, cast
 
@@ -52,10 +53,11 @@ class Inputs:
     stages: Mapping[type[StageFile], StageFile]
     folders: Mapping[type[StageFile], Path]
 
-    @property
+    @cached_property
     def check(self) -> Check:
-        """What the checks say; they are there wherever a dataset is."""
-        return cast("Check", self.stages[Check])
+        """What the checks say of the dataset; they are run here where no folder holds them."""
+        given = self.get(Check)
+        return _own_check(cast("Dataset", self.dataset)) if given is None else given
 
     @property
     def recordings(self) -> Iterable[Recording]:
@@ -76,16 +78,46 @@ class Inputs:
         InputError
             The file cannot be read, or does not belong to this recording.
         """
-        path = self.folders[stage] / "runs" / f"{recording.run.id}.parquet"
+        return self.answer(recording.run.id, recording.time_s.size, column, stage)
+
+    def answer(self, run: str, rows: int, column: str, stage: type[StageFile]) -> Floats:
+        """Return a column that a stage wrote about a run of so many samples, NaN for gaps.
+
+        Raises
+        ------
+        InputError
+            The file cannot be read, or does not belong to this recording.
+        """
+        path = self._answers(run, stage)
         values = _columns(path, (column,))[column]
-        if len(values) != recording.time_s.size:
+        if len(values) != rows:
             raise InputError(
                 f"{len(values)} rows",
                 where=path,
-                expected=f"{recording.time_s.size}, as the recording has",
+                expected=f"{rows}, as the recording has",
                 remedy="run the stage again",
             )
         return values
+
+    def answered(self, run: str, stage: type[StageFile]) -> frozenset[str]:
+        """Return the columns that a stage wrote about a run, none where it did not take it.
+
+        Raises
+        ------
+        InputError
+            The file cannot be read.
+        """
+        path = self._answers(run, stage)
+        if not path.is_file():
+            return frozenset()
+        try:
+            return frozenset(pq.read_schema(path).names)
+        except (pa.ArrowException, OSError) as error:
+            reason = str(error).splitlines()[0]
+            raise InputError(f"cannot be read ({reason})", where=path) from error
+
+    def _answers(self, run: str, stage: type[StageFile]) -> Path:
+        return self.folders[stage] / "runs" / f"{run}.parquet"
 
     def tracked(self, run: str, names: Sequence[str]) -> dict[str, Floats]:
         """Return columns of a run of the closed loop by name, shape (n,) each.
@@ -100,8 +132,6 @@ class Inputs:
 
 def read_inputs(folders: Sequence[Path]) -> Inputs:
     """Recognise each folder by the files in it, read all, and find the dataset.
-
-    Where no folder holds `check.json`, the checks are run here.
 
     Raises
     ------
@@ -129,8 +159,6 @@ def read_inputs(folders: Sequence[Path]) -> Inputs:
             _check_hashes(stage, dataset, where[kind] / kind.FILE)
         elif kind is Tracking:
             _check_own(dataset, where[kind] / kind.FILE)
-    if Check not in stages:
-        stages[Check] = _own_check(dataset)
     return Inputs(dataset, stages, where)
 
 

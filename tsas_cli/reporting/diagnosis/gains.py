@@ -33,7 +33,7 @@ def part(diagnosis: Diagnosis) -> Section | None:
         "diagnosis-gains",
         "Error on held-out data" + (", before and after" if named else ""),
         tuple(text for text in (_judged(diagnosis), _BOUNDS) if text),
-        tables=(_table(diagnosis, named=named),),
+        tables=(table(diagnosis),),
         pictures=(shown,),
     )
 
@@ -43,7 +43,9 @@ def _judged(diagnosis: Diagnosis) -> str:
     return how[:1].upper() + how[1:]
 
 
-def _table(diagnosis: Diagnosis, *, named: bool) -> Table:
+def table(diagnosis: Diagnosis) -> Table:
+    """Return the errors in numbers."""
+    named = bool(diagnosis.named)
     rows = tuple(
         (
             name,

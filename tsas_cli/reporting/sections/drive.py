@@ -1,6 +1,7 @@
 """The drive: its transfer function, the structures that were tried, and what Eq. (25) lacks."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import partial
 
 from tsas_cli.reporting.content import Picture, Section, Table
@@ -18,6 +19,11 @@ def section(inputs: Inputs) -> Section | None:
     drive = inputs.get(Drive)
     if drive is None:
         return None
+    return replace(told_of(drive), pictures=tuple(_pictures(inputs, drive)))
+
+
+def told_of(drive: Drive) -> Section:
+    """Return the section without its pictures."""
     lead = drive.kinematics
     intro = [drive.diagnosis.reason]
     if lead.kinematic_lead_rpm_s_per_mm is not None:
@@ -35,7 +41,6 @@ def section(inputs: Inputs) -> Section | None:
         points=drive.cannot_tell,
         equations=(drive.structure.equation, drive.inverse),
         tables=(_parameters(drive), *_causes(drive), _structures(drive), _errors(drive)),
-        pictures=tuple(_pictures(inputs, drive)),
         closing=(drive.diagnosis.evidence.sentence, f"Next: {drive.diagnosis.next_experiment}"),
     )
 

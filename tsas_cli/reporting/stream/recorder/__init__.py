@@ -4,6 +4,7 @@ What is recorded and why is said elsewhere; nothing here knows a tendon.
 """
 
 from tsas_cli.reporting.stream.recorder.clock import Clock, Times
-from tsas_cli.reporting.stream.recorder.recorder import Recorder, to_file, to_viewer
+from tsas_cli.reporting.stream.recorder.opened import to_file, to_viewer
+from tsas_cli.reporting.stream.recorder.recorder import Recorder
 
 __all__ = ["Clock", "Recorder", "Times", "to_file", "to_viewer"]

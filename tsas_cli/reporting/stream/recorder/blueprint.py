@@ -69,7 +69,7 @@ def _(part: Grid) -> rrb.Container:
 
 @_part.register
 def _(part: Tabs) -> rrb.Container:
-    return rrb.Tabs(*map(_part, part.parts), active_tab=0, name=part.name or None)
+    return rrb.Tabs(*map(_part, part.parts), active_tab=part.on_top, name=part.name or None)
 
 
 @_part.register

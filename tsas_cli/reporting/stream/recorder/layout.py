@@ -100,10 +100,11 @@ class Grid:
 
 @dataclass(frozen=True)
 class Tabs:
-    """Parts behind each other, the first one on top."""
+    """Parts behind each other, one of them on top."""
 
     parts: Sequence["Part"]
     name: str = ""
+    on_top: int = 0
 
 
 View = Series | States | Plane | Space | Text | Log

@@ -4,17 +4,13 @@ An entity is named by its parts, `("run", "a", "f_in_N")`; names from files need
 is strict here: columns of different lengths raise `ValueError`, else they would only be dropped.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 import rerun as rr
 
-from tsas_cli.errors import InputError
-from tsas_cli.files import new_file
 from tsas_cli.reporting.stream.recorder.blueprint import blueprint_of
 from tsas_cli.reporting.stream.recorder.clock import Times
 from tsas_cli.reporting.stream.recorder.layout import Layout
@@ -24,13 +20,13 @@ Floats = npt.NDArray[np.float64]
 Colour = int  # 0xRRGGBBAA
 Colours = npt.NDArray[np.uint32]
 
-SLOWEST_S = 10.0  # that a viewer may take to read what it is sent
+ROWS = 8192  # of a series that are sent at a time
 _EXTREMES = rr.components.AggregationPolicy.MinMax  # the usual average flattens what is fast
 
 
 @dataclass(frozen=True)
 class Recorder:
-    """Writes entities to one stream; `to_file` and `to_viewer` open it."""
+    """Writes entities to one stream; `opened.to_file` and `opened.to_viewer` open it."""
 
     stream: rr.RecordingStream
 
@@ -47,11 +43,19 @@ class Recorder:
 
     def scalars(self, entity: Entity, times: Times, values: Floats) -> None:
         """Add samples of a series, shape (n,); NaN is a gap, which stays one."""
-        there = ~np.isnan(values)
-        columns = rr.Scalars.columns(scalars=values[there])
-        if not there.all():
-            columns = columns.partition(there.astype(np.int64))
-        self._columns(entity, times, columns)
+        if values.shape != (len(times),):
+            raise ValueError(f"{values.shape} values at {len(times)} times")
+        for at, piece in times.pieces(ROWS):
+            there = ~np.isnan(values[at])
+            columns = rr.Scalars.columns(scalars=values[at][there])
+            if not there.all():
+                columns = columns.partition(there.astype(np.int64))
+            self._columns(entity, piece, columns)
+
+    def marks(self, entity: Entity, name: str, colour: Colour, *, size: float = 4.0) -> None:
+        """Say that the series of an entity is drawn as marks that are not joined."""
+        style = rr.SeriesPoints(names=name, colors=colour, marker_sizes=size)
+        self._static(entity, style)
 
     def states(
         self,
@@ -73,12 +77,10 @@ class Recorder:
         self._columns(entity, times, rr.StateChange.columns(state=list(states)))
 
     def events(
-        self, entity: Entity, times: Times, texts: Sequence[str], *, level: str = "INFO"
+        self, entity: Entity, times: Times, texts: Sequence[str], levels: Sequence[str]
     ) -> None:
-        """Add lines of text, one at each time; `level` is INFO, WARN or ERROR."""
-        self._columns(
-            entity, times, rr.TextLog.columns(text=list(texts), level=[level] * len(texts))
-        )
+        """Add lines of text, one at each time; a level is INFO, WARN or ERROR."""
+        self._columns(entity, times, rr.TextLog.columns(text=list(texts), level=list(levels)))
 
     def markdown(self, entity: Entity, text: str) -> None:
         """Set a text that holds at all times, as Markdown."""
@@ -217,69 +219,3 @@ class Recorder:
 
     def _columns(self, entity: Entity, times: Times, columns: rr.ComponentColumnList) -> None:
         self.stream.send_columns(path_of(entity), times.columns, columns, strict=True)
-
-
-@contextmanager
-def to_file(path: Path, name: str, *, force: bool = False) -> Iterator[Recorder]:
-    """Record into a file that is there, whole, when the block ends without an error.
-
-    Parameters
-    ----------
-    path
-        The file, usually `….rrd`.
-    name
-        What the viewer calls the recording; it keeps one layout for each name.
-    force
-        Replace the file if it is there.
-
-    Raises
-    ------
-    InputError
-        The file is there, or cannot be written; Rerun is switched off.
-    """
-    with new_file(path, force=force) as temporary, _strict():
-        stream = _opened(name)
-        stream.save(temporary)
-        try:
-            yield Recorder(stream)
-        finally:
-            stream.disconnect()  # writes the footer
-
-
-@contextmanager
-def to_viewer(address: str, name: str) -> Iterator[Recorder]:
-    """Record into a viewer that listens at `rerun+http://HOST:PORT/proxy`.
-
-    Raises
-    ------
-    InputError
-        It does not take what it is sent; Rerun is switched off.
-    """
-    with _strict():
-        stream = _opened(name)
-        stream.connect_grpc(address)
-        try:
-            yield Recorder(stream)
-            stream.flush(timeout_sec=SLOWEST_S)
-        except RuntimeError as error:
-            raise InputError(f"no viewer takes the stream ({error})", where=address) from error
-        finally:
-            stream.disconnect()
-
-
-def _opened(name: str) -> rr.RecordingStream:
-    stream = rr.RecordingStream(name)
-    if not rr.is_enabled(stream):
-        raise InputError("Rerun is switched off", where="RERUN", remedy="unset this variable")
-    stream.send_recording_name(name)
-    return stream
-
-
-@contextmanager
-def _strict() -> Iterator[None]:
-    before = rr.strict_mode()
-    rr.set_strict_mode(True)
-    try:
-        yield
-    finally:
-        rr.set_strict_mode(before)

@@ -1,0 +1,83 @@
+"""Every channel over time: measured, what the models answer, and what is left between them.
+
+A column of a file is read once, recorded, and forgotten.
+"""
+
+import numpy as np
+import numpy.typing as npt
+
+from tsas_cli.reporting.stream.palette import colour
+from tsas_cli.reporting.stream.portraits import Portrait
+from tsas_cli.reporting.stream.recorder import Recorder
+from tsas_cli.reporting.stream.recorder.paths import Entity
+from tsas_cli.reporting.stream.seen import MEASURED, RESIDUAL, WANTED, Channel, SeenRun
+from tsas_cli.reporting.stream.sources import Source
+
+Floats = npt.NDArray[np.float64]
+_ROLES = {MEASURED: "measured", WANTED: "ink"}
+_WIDTHS = {MEASURED: 2.5, WANTED: 1.5}  # what is measured shows under what covers it
+
+
+def series_of(run: SeenRun) -> dict[str, list[Entity]]:
+    """Return the entities of all series, by the column that they are shown with."""
+    found: dict[str, list[Entity]] = {}
+    for channel in run.channels:
+        keys = (channel.key, *(source.key for source in channel.sources))
+        found.setdefault(channel.quantity, []).extend(
+            run.entity(channel.quantity, key) for key in keys
+        )
+    return found
+
+
+def residuals_of(run: SeenRun) -> dict[str, list[Entity]]:
+    """Return the entities of the residuals by column."""
+    found = {
+        channel.column: [
+            run.entity(channel.column, RESIDUAL, source.key)
+            for source in channel.sources
+            if not source.cleaned
+        ]
+        for channel in run.channels
+    }
+    return {column: entities for column, entities in found.items() if entities}
+
+
+def record_channels(recorder: Recorder, run: SeenRun) -> None:
+    """Record the channels of one run, its residuals and its loops; of series all samples.
+
+    Raises
+    ------
+    InputError
+        A file cannot be read, or does not belong to the run.
+    """
+    for channel in run.channels:
+        measured = run.measured(channel.column)
+        entity = run.entity(channel.quantity, channel.key)
+        recorder.line(entity, channel.key, colour(_ROLES[channel.key]), width=_WIDTHS[channel.key])
+        recorder.scalars(entity, run.times, measured)
+        portrait = None
+        if channel in run.loops:
+            portrait = Portrait(run, channel, run.x_in_mm, measured)
+            portrait.record(recorder)
+        for source in channel.sources:
+            told = run.told(channel.column, source)
+            _record_told(recorder, run, channel, source, told, measured)
+            if portrait is not None:
+                portrait.record_answer(recorder, source, told)
+
+
+def _record_told(
+    recorder: Recorder,
+    run: SeenRun,
+    channel: Channel,
+    source: Source,
+    told: Floats,
+    measured: Floats,
+) -> None:
+    """Record what a stage says of a channel, and measured less simulated."""
+    series = {run.entity(channel.column, source.key): told}
+    if not source.cleaned:
+        series[run.entity(channel.column, RESIDUAL, source.key)] = measured - told
+    for entity, values in series.items():
+        recorder.line(entity, source.label, colour(source.role))
+        recorder.scalars(entity, run.times, values)

@@ -1,0 +1,77 @@
+"""What happens in a run: the drive turns, a check finds a fault, a slip front comes through."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from tsas_cli.reporting.stage_files import Check, Segment
+from tsas_cli.reporting.stream.palette import colour
+from tsas_cli.reporting.stream.recorder import Recorder
+from tsas_cli.reporting.stream.recorder.paths import Entity
+from tsas_cli.reporting.stream.seen import X_IN, SeenRun
+
+EVENTS, REVERSALS, FAULTS = "events", "reversals", "faults"
+_UP = {"contraction": True, "dead_band_up": True, "loosening": False, "dead_band_down": False}
+_LEVELS = {"error": "ERROR", "warning": "WARN"}
+
+
+@dataclass(frozen=True)
+class Event:
+    """Something that happens at one time of a run; `level` is INFO, WARN or ERROR."""
+
+    at_s: float
+    text: str
+    level: str = "INFO"
+
+
+def events_of(run: SeenRun) -> Entity:
+    """Return the entity under which a run's events are."""
+    return run.entity(EVENTS)
+
+
+def record_events(recorder: Recorder, run: SeenRun, kind: str, events: Sequence[Event]) -> None:
+    """Record events of one kind, such as `reversals`."""
+    if events:
+        recorder.events(
+            (*events_of(run), kind),
+            run.clock.times(np.array([event.at_s for event in events])),
+            [event.text for event in events],
+            [event.level for event in events],
+        )
+
+
+def record_own_events(recorder: Recorder, run: SeenRun) -> None:
+    """Record the reversals that the phases tell, and the faults that were found."""
+    at_s = reversals(run.segments)
+    words = {True: "the drive turns and pulls", False: "the drive turns and lets go"}
+    turns = [Event(at, f"{run.id}: {words[up]}") for at, up in at_s]
+    record_events(recorder, run, REVERSALS, turns)
+    if at_s and X_IN in run.file.names:
+        entity = run.entity(X_IN, REVERSALS)
+        at = np.searchsorted(run.time_s, [s for s, _ in at_s])
+        recorder.marks(entity, "the drive turns", colour("ink"))
+        recorder.scalars(entity, run.times.at(at), run.x_in_mm[at])
+    record_events(recorder, run, FAULTS, faults(run))
+
+
+def reversals(segments: Sequence[Segment]) -> list[tuple[float, bool]]:
+    """Return when the drive turns [s], and whether it pulls from then on."""
+    known = [(s.start_s, _UP[s.phase]) for s in segments if s.phase in _UP]
+    return [(at, up) for (_, before), (at, up) in pairwise(known) if up != before]
+
+
+def faults(run: SeenRun) -> list[Event]:
+    """Return what a check found in a run, at the start where it holds for all of it."""
+    check = run.inputs.get(Check)
+    found = () if check is None else check.findings
+    return [
+        Event(
+            float(run.time_s[0]) if f.first_s is None else f.first_s,
+            f"{run.id}: {f.sentence}",
+            _LEVELS.get(f.severity, "INFO"),
+        )
+        for f in found
+        if f.run == run.id
+    ]

@@ -1,0 +1,89 @@
+"""A frame in the plane of the viewer, where scales are equal and y points downwards.
+
+Both axes are scaled to a frame of fixed size, and ticks at round numbers say what they were.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from tsas_cli.reporting.numbers import as_printed
+
+Floats = npt.NDArray[np.float64]
+
+WIDTH, HEIGHT = 1.4, 1.0  # of the frame
+MARGIN = 0.04  # of the range, beside the curve
+TICKS = 5  # about as many to an axis
+ACROSS, DOWN = (-0.16, WIDTH + 0.06), (-HEIGHT - 0.12, 0.2)  # what a view shows of the plane
+_TICK = 0.015
+
+
+@dataclass(frozen=True)
+class Axis:
+    """One axis: its range, shown from 0 to `length`."""
+
+    low: float
+    high: float
+    length: float
+
+    def place(self, values: Floats) -> Floats:
+        """Return where values stand."""
+        return (values - self.low) / (self.high - self.low) * self.length
+
+    def ticks(self) -> list[float]:
+        """Return round numbers within the range."""
+        rough = (self.high - self.low) / TICKS
+        power = 10.0 ** math.floor(math.log10(rough))
+        step = power * next(s for s in (1.0, 2.0, 5.0, 10.0) if s * power >= rough * 0.999)
+        first, last = math.ceil(self.low / step), math.floor(self.high / step)
+        return [step * k for k in range(first, last + 1)]
+
+
+@dataclass(frozen=True)
+class Frame:
+    """Two axes, x to the right and y upwards as one reads it."""
+
+    x: Axis
+    y: Axis
+
+    def place(self, x: Floats, y: Floats) -> Floats:
+        """Return where points stand, shape (n, 2), y downwards."""
+        return np.column_stack((self.x.place(x), -self.y.place(y)))
+
+    def lines(self) -> list[Floats]:
+        """Return the axes and their ticks as curves."""
+        box = np.array([[0.0, -HEIGHT], [0.0, 0.0], [WIDTH, 0.0]])
+        at_x = [float(self.x.place(np.array(v))) for v in self.x.ticks()]
+        at_y = [-float(self.y.place(np.array(v))) for v in self.y.ticks()]
+        return [
+            box,
+            *(np.array([[x, 0.0], [x, _TICK]]) for x in at_x),
+            *(np.array([[0.0, y], [-_TICK, y]]) for y in at_y),
+        ]
+
+    def texts(self, x_label: str, y_label: str) -> tuple[Floats, list[str]]:
+        """Return where ticks and axes are named, shape (k, 2), and how."""
+        across = [(float(self.x.place(np.array(v))), 0.06, as_printed(v)) for v in self.x.ticks()]
+        up = [(-0.06, -float(self.y.place(np.array(v))), as_printed(v)) for v in self.y.ticks()]
+        named = [(WIDTH / 2.0, 0.14, x_label), (0.0, -HEIGHT - 0.06, y_label)]
+        texts = [*across, *up, *named]
+        return np.array([(x, y) for x, y, _ in texts]), [text for *_, text in texts]
+
+
+def frame_of(x: Floats, y: Floats) -> Frame:
+    """Return the frame of a curve, NaN for gaps.
+
+    Raises
+    ------
+    ValueError
+        It has no point.
+    """
+    return Frame(_axis(x, WIDTH), _axis(y, HEIGHT))
+
+
+def _axis(values: Floats, length: float) -> Axis:
+    low, high = float(np.nanmin(values)), float(np.nanmax(values))
+    room = MARGIN * ((high - low) or abs(high) or 1.0)
+    return Axis(low - room, high + room, length)

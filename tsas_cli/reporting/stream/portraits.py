@@ -1,0 +1,125 @@
+"""A tension over the displacement of the drive: the whole loop, and where the run is in it.
+
+The loop stands faint in the colours of its phases; its last stretch runs along, measured and as
+the models answer it. Curves and moments are thinned to what a screen shows; the series are not.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+import numpy.typing as npt
+
+from tsas_cli.reporting.channels import at_axis, in_words
+from tsas_cli.reporting.decimation import Indices, kept_cells, kept_samples
+from tsas_cli.reporting.phases import PHASES, Phase, phase_of_samples
+from tsas_cli.reporting.stream.events import reversals
+from tsas_cli.reporting.stream.palette import colour
+from tsas_cli.reporting.stream.plane import ACROSS, DOWN, Frame, frame_of
+from tsas_cli.reporting.stream.recorder import Recorder
+from tsas_cli.reporting.stream.recorder.layout import Plane
+from tsas_cli.reporting.stream.recorder.paths import Entity
+from tsas_cli.reporting.stream.seen import MEASURED, X_IN, Channel, SeenRun
+from tsas_cli.reporting.stream.sources import Source
+
+Floats = npt.NDArray[np.float64]
+
+MOMENTS = 6000  # about how many there are of a moving point
+PART, USUAL_S = 0.3, 1.0  # of a stroke, and where no stroke is known: what runs along
+FAINT = 0x70
+LOOP, TRAIL, NOW = "loop", "trail", "now"
+
+
+@dataclass(frozen=True)
+class Portrait:
+    """One loop of one run; x and y are its measured columns, shape (n,), NaN for gaps."""
+
+    run: SeenRun
+    channel: Channel
+    x: Floats
+    y: Floats
+
+    @cached_property
+    def there(self) -> npt.NDArray[np.bool_]:
+        """Where both were measured."""
+        return np.isfinite(self.x) & np.isfinite(self.y)
+
+    @cached_property
+    def frame(self) -> Frame:
+        """The axes."""
+        return frame_of(self.x[self.there], self.y[self.there])
+
+    @cached_property
+    def moments(self) -> Indices:
+        """The samples at which the moving point stands."""
+        return kept_samples(self.x, self.y, points=MOMENTS)
+
+    def record(self, recorder: Recorder) -> None:
+        """Record the axes, the loop in the colours of its phases, and the measured stretch."""
+        if not self.there.any():
+            return
+        at = self._entity("axes")
+        recorder.curves_2d(at, self.frame.lines(), colour("muted"), radius=-0.6, order=-1.0)
+        places, texts = self.frame.texts(at_axis(X_IN), at_axis(self.channel.column))
+        recorder.labels_2d(self._entity("names"), places, texts, colour("paper"))
+        for phase, curves in self._by_phase():
+            recorder.curves_2d(
+                self._entity("phase", phase.key), curves, colour(phase.colour, FAINT), radius=-1.0
+            )
+        self._record_stretch(recorder, MEASURED, self.y, colour("ink"))
+
+    def record_answer(self, recorder: Recorder, source: Source, values: Floats) -> None:
+        """Record the stretch that a model answers, shape (n,), over the measured displacement."""
+        if self.there.any():
+            self._record_stretch(recorder, source.key, values, colour(source.role))
+
+    def _record_stretch(self, recorder: Recorder, key: str, values: Floats, shown: int) -> None:
+        at = self.moments
+        times = self.run.clock.times(self.run.time_s[at])
+        places = self.frame.place(self.x[at], values[at])
+        pieces = np.stack((places[:-1], places[1:]), axis=1)
+        joined = np.isfinite(pieces).all(axis=(1, 2))
+        recorder.segments_2d(
+            self._entity(TRAIL, key), times.at(1 + np.flatnonzero(joined)), pieces[joined], shown
+        )
+        there = np.flatnonzero(np.isfinite(places).all(axis=1))
+        recorder.points_2d(self._entity(NOW, key), times.at(there), places[there], shown)
+
+    def _by_phase(self) -> Iterator[tuple[Phase, list[Floats]]]:
+        """Yield each phase with its stretches, thinned, up to the first point of the next one."""
+        x, y = self.x[self.there], self.y[self.there]
+        phase = phase_of_samples(self.run.time_s[self.there], self.run.segments)
+        kept = kept_cells(self.frame.x.place(x), self.frame.y.place(y))
+        kept = np.union1d(kept, np.flatnonzero(phase[1:] != phase[:-1]) + 1)
+        places, phase = self.frame.place(x[kept], y[kept]), phase[kept]
+        edges = [0, *(np.flatnonzero(phase[1:] != phase[:-1]) + 1), phase.size]
+        stretches = [(phase[first], places[first : end + 1]) for first, end in pairwise(edges)]
+        for one in PHASES:
+            if curves := [curve for key, curve in stretches if key == one.key]:
+                yield one, curves
+
+    def _entity(self, *parts: str) -> Entity:
+        return self.run.entity(self.channel.column, LOOP, *parts)
+
+
+def view_of(run: SeenRun, channel: Channel, titled: str = "") -> Plane:
+    """Return the view of a loop; `titled` names it where it does not stand with its run."""
+    base = run.entity(channel.column, LOOP)
+    keys = (MEASURED, *(source.key for source in channel.sources))
+    stretch = stretch_s(run)
+    name = in_words(channel.column)
+    return Plane(
+        f"{titled}: {name}" if titled else f"{name} over {in_words(X_IN)}",
+        [base],
+        ACROSS,
+        DOWN,
+        {(*base, TRAIL, key): stretch for key in keys},
+    )
+
+
+def stretch_s(run: SeenRun) -> float:
+    """Return how long the stretch is that runs along the loop [s]."""
+    turns = [at_s for at_s, _ in reversals(run.segments)]
+    return PART * float(np.median(np.diff(turns))) if len(turns) > 1 else USUAL_S

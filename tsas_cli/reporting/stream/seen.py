@@ -1,0 +1,153 @@
+"""What there is to see of each run, told from its files' headers before any sample is read."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from tsas_cli.recordings.columns import BY_NAME, TIME
+from tsas_cli.recordings.dataset import RunColumns, open_run
+from tsas_cli.reporting.inputs import Inputs
+from tsas_cli.reporting.stage_files import Calibration, Diagnosis, Segment, Simulation
+from tsas_cli.reporting.stream.recorder import Clock, Times
+from tsas_cli.reporting.stream.recorder.paths import Entity
+from tsas_cli.reporting.stream.sources import Source, sources
+from tsas_cli.reporting.tracking_file import Result, Tracking
+
+Floats = npt.NDArray[np.float64]
+
+MEASURED, WANTED, RESIDUAL = "measured", "wanted", "residual"
+X_IN, TENSIONS = "x_in_mm", ("f_in_N", "f_out_N")
+_WISHES = {"f_out_ref_N": "f_out_N"}  # shown with what they are wishes of
+
+
+@dataclass(frozen=True)
+class Channel:
+    """A column of a run, and what stages say of it."""
+
+    column: str
+    sources: tuple[Source, ...] = ()
+
+    @property
+    def quantity(self) -> str:
+        """The column that it is shown with."""
+        return _WISHES.get(self.column, self.column)
+
+    @property
+    def key(self) -> str:
+        """Whether it is measured or wanted."""
+        return WANTED if self.column in _WISHES else MEASURED
+
+
+@dataclass(frozen=True)
+class SeenRun:
+    """One run: its columns, what models answer, its phases, and what controller made it.
+
+    Time and x_in are kept once they are read; other columns are not.
+    """
+
+    inputs: Inputs
+    file: RunColumns
+    channels: tuple[Channel, ...]
+    segments: Sequence[Segment]
+    tracked: Result | None
+
+    @property
+    def id(self) -> str:
+        """The run's name."""
+        return self.file.run.id
+
+    @property
+    def clock(self) -> Clock:
+        """When the run began."""
+        return Clock(self.file.run.started)
+
+    @property
+    def loops(self) -> tuple[Channel, ...]:
+        """The tensions that can be shown over the displacement of the drive."""
+        there = any(channel.column == X_IN for channel in self.channels)
+        return tuple(c for c in self.channels if there and c.column in TENSIONS)
+
+    @cached_property
+    def time_s(self) -> Floats:
+        """Time [s], shape (n,)."""
+        return self.file.read(TIME)
+
+    @cached_property
+    def times(self) -> Times:
+        """The samples on the timelines."""
+        return self.clock.times(self.time_s)
+
+    @cached_property
+    def x_in_mm(self) -> Floats:
+        """Displacement of the drive [mm], shape (n,), NaN for gaps."""
+        return self.file.read(X_IN)
+
+    def entity(self, *parts: str) -> Entity:
+        """Return the name of something that belongs to the run."""
+        return ("run", self.id, *parts)
+
+    def measured(self, column: str) -> Floats:
+        """Return a column of the recording, shape (n,), NaN for gaps.
+
+        Raises
+        ------
+        InputError
+            It cannot be read.
+        """
+        return self.x_in_mm if column == X_IN else self.file.read(column)
+
+    def told(self, column: str, source: Source) -> Floats:
+        """Return what a stage says of a column, shape (n,), NaN for gaps.
+
+        Raises
+        ------
+        InputError
+            The stage's file cannot be read, or belongs to another recording.
+        """
+        return self.inputs.answer(self.id, self.file.rows, source.named(column), source.stage)
+
+
+def seen_runs(inputs: Inputs) -> Iterator[SeenRun]:
+    """Yield the runs in the order of the manifest, none without a dataset.
+
+    Raises
+    ------
+    InputError
+        A file is missing, or is not what it was.
+    """
+    if inputs.dataset is None:
+        return
+    given, tracking = tuple(sources(inputs)), inputs.get(Tracking)
+    tracked = {} if tracking is None else {result.run: result for result in tracking.results}
+    for run in inputs.dataset.runs:
+        file = open_run(inputs.dataset.folder, run)
+        columns = [name for name in BY_NAME if name in file.names and name != TIME]
+        written = {source.stage: inputs.answered(run.id, source.stage) for source in given}
+        yield SeenRun(
+            inputs,
+            file,
+            tuple(
+                Channel(
+                    column,
+                    tuple(
+                        source
+                        for source in given
+                        if column in source.columns
+                        and source.named(column) in written[source.stage]
+                    ),
+                )
+                for column in columns
+            ),
+            _segments(inputs, run.id),
+            tracked.get(run.id),
+        )
+
+
+def _segments(inputs: Inputs, run: str) -> Sequence[Segment]:
+    for stage in (inputs.get(Calibration), inputs.get(Diagnosis), inputs.get(Simulation)):
+        if stage is not None and run in stage.segments:
+            return stage.segments[run]
+    return ()

@@ -1,0 +1,125 @@
+"""What is said beside what is seen: in short for the overview, and the diagnosis in full."""
+
+from collections.abc import Iterator
+
+from tsas_cli.identification.model import read_model
+from tsas_cli.reporting.content import Section, Table
+from tsas_cli.reporting.diagnosis import candidates, causes, gains, remainder
+from tsas_cli.reporting.drive_file import Drive
+from tsas_cli.reporting.inputs import Inputs
+from tsas_cli.reporting.numbers import plain, with_interval
+from tsas_cli.reporting.sections import parameters
+from tsas_cli.reporting.sections.drive import told_of
+from tsas_cli.reporting.stage_files import Calibration, Cause, Check, Diagnosis, Simulation
+from tsas_cli.reporting.stream.markdown import section_text
+from tsas_cli.reporting.tracking.scores import best_and_worst
+from tsas_cli.reporting.tracking.scores import table as scores
+from tsas_cli.reporting.tracking_file import Tracking
+
+EXTENDED = "model-extended.toml"
+
+
+def overview(inputs: Inputs) -> str:
+    """Return what it is about and what came out, as Markdown."""
+    manifest = None if inputs.dataset is None else inputs.dataset.manifest
+    title = "Recordings" if manifest is None else manifest.name
+    about = "" if manifest is None else manifest.description or ""
+    return section_text(Section("overview", title, (about,), parts=tuple(_short(inputs))))
+
+
+def diagnosis(inputs: Inputs) -> str | None:
+    """Return the diagnosis of the tendon or the drive with its tables, None without one.
+
+    Raises
+    ------
+    InputError
+        The extended model cannot be read.
+    """
+    found, drive = inputs.get(Diagnosis), inputs.get(Drive)
+    if found is not None:
+        parts = (
+            *causes.parts(found),
+            Section("gains", "What it is worth", tables=(gains.table(found),)),
+            candidates.part(found),
+            *remainder.parts(found),
+            _extended(inputs),
+        )
+        told = tuple(part for part in parts if part is not None)
+        return section_text(Section("diagnosis", "Diagnosis", (found.reason,), parts=told))
+    return None if drive is None else section_text(told_of(drive))
+
+
+def _short(inputs: Inputs) -> Iterator[Section]:
+    if found := inputs.get(Diagnosis):
+        tables = (_causes(found.named), gains.table(found))
+        after = (f"Next: {found.next_experiment}",) if found.next_experiment else ()
+        yield Section(
+            "diagnosis", "Diagnosis", (found.reason,), tables=_filled(tables), closing=after
+        )
+    if tracking := inputs.get(Tracking):
+        said = tuple(best_and_worst(tracking))
+        yield Section(
+            "tracking", "Tracking", said, points=tracking.notes, tables=(scores(tracking),)
+        )
+    if drive := inputs.get(Drive):
+        told = told_of(drive)
+        yield Section("drive", "Drive", told.intro, equations=told.equations)
+    if simulation := inputs.get(Simulation):
+        yield Section(
+            "simulation", "Simulation", points=simulation.notes, tables=(_errors(simulation),)
+        )
+    if inputs.get(Calibration):
+        yield parameters.section(inputs)
+    if check := inputs.get(Check):
+        found_out = tuple(f.sentence for f in check.findings) or ("The checks found nothing.",)
+        yield Section("check", "Checks", points=found_out)
+
+
+def _causes(named: tuple[Cause, ...]) -> Table:
+    rows = tuple(
+        (
+            name,
+            *with_interval(p.value, p.interval_low, p.interval_high),
+            p.unit + (" at its bound" if p.at_bound else ""),
+        )
+        for cause in named
+        for name, p in cause.parameters.items()
+    )
+    return Table(
+        "What is named",
+        ("parameter", "value", "95 % interval", "unit"),
+        rows,
+        numeric=frozenset({1, 2}),
+    )
+
+
+def _errors(simulation: Simulation) -> Table:
+    rows = tuple(
+        (run_id, name, plain(channel.rmse, 3), plain(channel.noise, 3))
+        for run_id, run in simulation.runs.items()
+        for name, channel in run.channels.items()
+    )
+    header = ("run", "channel", "RMSE", "noise")
+    return Table("Simulated against measured", header, rows, numeric=frozenset({2, 3}))
+
+
+def _extended(inputs: Inputs) -> Section:
+    model = read_model(inputs.folders[Diagnosis] / EXTENDED)
+    rows = tuple(
+        (
+            e.name,
+            e.run or "all",
+            *with_interval(e.value, e.interval_low, e.interval_high),
+            e.unit,
+            e.origin,
+            "yes" if e.at_bound else "no",
+        )
+        for e in model.estimates
+    )
+    header = ("parameter", "run", "value", "95 % interval", "unit", "origin", "at its bound")
+    table = Table(f"Parameters of {EXTENDED}", header, rows, numeric=frozenset({2, 3}))
+    return Section("model", "The model with what is named", tables=(table,))
+
+
+def _filled(tables: tuple[Table, ...]) -> tuple[Table, ...]:
+    return tuple(table for table in tables if table.rows)
