@@ -11,7 +11,6 @@ from tsas_cli.identification.dynamic_notes import dynamic_notes
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.physics.chain_state import SLACK, UNSETTLED
-from tsas_cli.physics.frames import Indices
 from tsas_cli.physics.response import Dynamics, Response, simulate
 from tsas_cli.recordings.columns import BY_NAME
 
@@ -51,26 +50,6 @@ class Compared:
         }
 
 
-def simulated(
-    run: Prepared,
-    model: Model,
-    dynamics: Dynamics = "slip",
-    nodes: int | None = None,
-    *,
-    looked_at: Indices | None = None,
-) -> Response:
-    """Simulate a run with a model; `nodes` and `looked_at` are those of `simulate`."""
-    return simulate(
-        model.rig(run.run),
-        run.drive,
-        dynamics,
-        on_mesh=nodes is not None,
-        nodes=nodes,
-        tolerance=run.step_tolerance,
-        looked_at=looked_at,
-    )
-
-
 def compare(
     run: Prepared, model: Model, dynamics: Dynamics = "slip", nodes: int | None = None
 ) -> Compared:
@@ -90,7 +69,14 @@ def compare(
             where=f"run {run.run.id}",
             remedy="use --dynamics slip",
         )
-    response = simulated(run, model, dynamics, nodes)
+    response = simulate(
+        model.rig(run.run),
+        run.drive,
+        dynamics,
+        on_mesh=nodes is not None,
+        nodes=nodes,
+        tolerance=run.step_tolerance,
+    )
     answers = {
         "f_in_N": response.f_in_N,
         "f_out_N": response.f_out_N,

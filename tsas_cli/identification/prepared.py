@@ -44,18 +44,14 @@ class Prepared:
     @cached_property
     def drive(self) -> Drive:
         """What is given at the ends, conditioned."""
-        f_in = self.measured.get("f_in_N")
         load = LOAD_COLUMNS.get(self.run.load)
-        start = None
-        if f_in is not None and self.drive_column == "x_in_mm":
-            start = _start_value(self.time_s, f_in)
-        return Drive(
-            values=self.conditioned[self.drive_column].values,
-            kind="displacement" if self.drive_column == "x_in_mm" else "force",
-            load=self.run.load,
+        return drive_of(
+            self.run,
+            self.time_s,
+            self.conditioned[self.drive_column].values,
+            by_force=self.drive_column == "f_in_N",
             load_values=None if load is None else self.conditioned[load].values,
-            start_f_in_N=start,
-            time_s=self.time_s - self.time_s[0],
+            f_in_N=self.measured.get("f_in_N"),
             session_s=self.session_s,
         )
 
@@ -93,6 +89,39 @@ class Prepared:
             }
             for name, c in self.conditioned.items()
         }
+
+
+def drive_of(
+    run: Run,
+    time_s: Floats,
+    values: Floats,
+    *,
+    by_force: bool,
+    load_values: Floats | None,
+    f_in_N: Floats | None,
+    session_s: float,
+) -> Drive:
+    """Return what drives a run: conditioned values at the drive and, where given, at the load.
+
+    The measured tension at the drive, where that is not given, tells how the run begins.
+    """
+    start = None if f_in_N is None or by_force else _start_value(time_s, f_in_N)
+    return Drive(
+        values=values,
+        kind="force" if by_force else "displacement",
+        load=run.load,
+        load_values=load_values,
+        start_f_in_N=start,
+        time_s=time_s - time_s[0],
+        session_s=session_s,
+    )
+
+
+def seconds_into(session_start: datetime | None, started: datetime | None) -> float:
+    """Return when a run began since its dataset's first, zero where that is not known [s]."""
+    if session_start is None or started is None:
+        return 0.0
+    return (started - session_start).total_seconds()
 
 
 def prepare(recording: Recording, session_start: datetime | None = None) -> Prepared:
@@ -147,9 +176,7 @@ def prepare(recording: Recording, session_start: datetime | None = None) -> Prep
             remedy=f"there are: {', '.join(columns)}",
         )
     conditioned = {name: condition(time_s, columns[name]) for name in driving}
-    session_s = 0.0
-    if session_start is not None and run.started is not None:
-        session_s = (run.started - session_start).total_seconds()
+    session_s = seconds_into(session_start, run.started)
     return Prepared(run, time_s, drive, conditioned, measured, gap, session_s)
 
 

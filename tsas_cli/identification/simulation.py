@@ -7,11 +7,19 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
+from tsas_cli import __version__
 from tsas_cli.errors import InputError
 from tsas_cli.files import new_folder, write_json
 from tsas_cli.identification.base_fit import with_own_values
 from tsas_cli.identification.comparison import Compared, compare
-from tsas_cli.identification.model import data_sheet, read_model, source_of
+from tsas_cli.identification.model import (
+    FILE,
+    Model,
+    data_sheet,
+    read_model,
+    source_of,
+    write_model,
+)
 from tsas_cli.identification.phases import segment, segments_as_json
 from tsas_cli.identification.prepared import Prepared, prepare
 from tsas_cli.physics.chain_state import MOST_NODES
@@ -30,7 +38,7 @@ def simulate_dataset(
     force: bool = False,
     step: Callable[[], None] = lambda: None,
 ) -> dict[str, Any]:
-    """Simulate all runs and write `runs/ID.parquet` and `simulation.json` into a new folder.
+    """Simulate all runs and write answers, errors and the model as used into a new folder.
 
     Without a model file the manifest's data sheet is simulated. With `fit_own` the preload and the
     zeros of each run are fitted first, all else stays as the model says: so a model predicts runs
@@ -48,11 +56,13 @@ def simulate_dataset(
     summary = dataset.header("simulate", out) | {"model": source_of(model_path)}
     summary |= {"dynamics": dynamics, "nodes": nodes, "own_values_fitted": fit_own, "runs": {}}
     summary["segments"] = {}
+    used = model
     with new_folder(out, force=force) as folder:
         (folder / "runs").mkdir()
         for recording in dataset:
             run = prepare(recording, dataset.manifest.session_start)
             own = with_own_values(model, run) if fit_own else model
+            used = _of_run(own, run.run.id).over(used)
             answer = compare(run, own, dynamics, nodes)
             write_parquet(folder / "runs" / f"{run.run.id}.parquet", _table(run, answer))
             summary["runs"][run.run.id] = answer.as_json(run)
@@ -60,7 +70,13 @@ def simulate_dataset(
             step()
         summary["notes"] = _notes(summary["runs"])
         write_json(folder / "simulation.json", summary)
+        write_model(folder / FILE, used, version=__version__, dataset=summary["dataset"])
     return summary
+
+
+def _of_run(model: Model, run: str) -> Model:
+    """Return what of a model belongs to a run alone."""
+    return Model(tuple(e for e in model.estimates if e.run == run))
 
 
 def _refuse_nodes(nodes: int | None, dynamics: Dynamics) -> None:

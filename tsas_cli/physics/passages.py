@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 Floats = npt.NDArray[np.float64]
+Indices = npt.NDArray[np.int64]
 Phases = npt.NDArray[np.int8]
 
 
@@ -32,16 +33,22 @@ def passages(x_in: Floats, phase: Phases) -> list[Passage]:
     phase
         As `Response.phase` has it, shape (n,).
     """
-    moved = np.flatnonzero(np.diff(x_in))
-    if moved.size == 0:
-        return []
-    way = np.sign(x_in[moved + 1] - x_in[moved]).astype(int)
-    first = np.concatenate(([0], np.flatnonzero(np.diff(way)) + 1))
-    starts, ways = moved[first], way[first]
+    starts = turns(x_in)
     ends = np.append(starts[1:], x_in.size - 1)
     found = []
-    for start, end, direction in zip(starts, ends, ways, strict=True):
+    for start, end in zip(starts, ends, strict=True):
+        direction = 1 if x_in[end] > x_in[start] else -1
         there = np.flatnonzero(phase[start + 1 : end + 1] == direction)
         arrived = int(start + 1 + there[0]) if there.size else None
-        found.append(Passage(int(direction), int(start), arrived))
+        found.append(Passage(direction, int(start), arrived))
     return found
+
+
+def turns(x_in: Floats) -> Indices:
+    """Return the samples from which the drive moves another way, where it sets off first too.
+
+    A drive that rests in between turns at the end of the rest.
+    """
+    moved = np.flatnonzero(np.diff(x_in))
+    way = x_in[moved + 1] > x_in[moved]
+    return moved[np.flatnonzero(np.diff(way, prepend=~way[:1]))]

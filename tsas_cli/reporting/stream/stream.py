@@ -10,8 +10,10 @@ from tsas_cli.reporting.stream.channels import record_channels
 from tsas_cli.reporting.stream.events import record_own_events
 from tsas_cli.reporting.stream.phases import record_phases
 from tsas_cli.reporting.stream.recorder import Recorder, to_file
+from tsas_cli.reporting.stream.recorder.layout import Part
 from tsas_cli.reporting.stream.seen import SeenRun, seen_runs
 from tsas_cli.reporting.stream.tabs import DIAGNOSIS, OVERVIEW, layout_of
+from tsas_cli.reporting.stream.tendon.content import record_tendon
 from tsas_cli.reporting.stream.tracking import record_tracking
 
 FILE = "stream.rrd"
@@ -47,7 +49,8 @@ def record(recorder: Recorder, inputs: Inputs, step: Callable[[], None] = lambda
     """
     runs = tuple(seen_runs(inputs))
     told = texts.diagnosis(inputs)
-    recorder.lay_out(layout_of(runs, diagnosed=told is not None))
+    tendons: dict[str, Part] = {}
+    recorder.lay_out(layout_of(runs, tendons, diagnosed=told is not None))
     recorder.markdown(OVERVIEW, texts.overview(inputs))
     if told is not None:
         recorder.markdown(DIAGNOSIS, told)
@@ -55,7 +58,12 @@ def record(recorder: Recorder, inputs: Inputs, step: Callable[[], None] = lambda
         read = replace(run)  # a copy, so that what it has read goes with it
         for content in CONTENT:
             content(recorder, read)
+        tendon = record_tendon(recorder, read)
+        if tendon is not None:
+            tendons[run.id] = tendon
         step()
+    if tendons:
+        recorder.lay_out(layout_of(runs, tendons, diagnosed=told is not None))
 
 
 def name_of(inputs: Inputs) -> str:

@@ -1,6 +1,6 @@
 """What the viewer opens with: tabs, of which only those are there that have something to show."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 from tsas_cli.reporting.channels import at_axis
 from tsas_cli.reporting.stream.channels import residuals_of, series_of
@@ -29,15 +29,17 @@ _ACROSS = 4
 _LANE = 0.35  # height of the phases over that of a plot
 
 
-def layout_of(runs: Sequence[SeenRun], *, diagnosed: bool, tendon: Part | None = None) -> Layout:
+def layout_of(
+    runs: Sequence[SeenRun], tendons: Mapping[str, Part], *, diagnosed: bool
+) -> Layout:
     """Return the tabs; what was tracked opens on it, all else on the overview.
 
-    `diagnosed` says whether there is a text on it, `tendon` is the picture of it.
+    `tendons` are the pictures of them, by run; `diagnosed` says whether there is a text on it.
     """
     made = {
         "Overview": _overview(runs),
         "Residuals": _by_run(runs, _residuals),
-        "Tendon": tendon,
+        "Tendon": _by_run(runs, lambda run: tendons.get(run.id)),
         "Tracking": tracking_tab(runs),
         "Diagnosis": Text("Diagnosis", DIAGNOSIS) if diagnosed else None,
     }

@@ -1,19 +1,19 @@
 """A run followed along the tendon, with one model or with two at the same moments."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.identification.comparison import simulated
 from tsas_cli.identification.model import Model
-from tsas_cli.identification.prepared import Prepared
 from tsas_cli.physics.compliances import compliance_at_drive, sheath_compliance
+from tsas_cli.physics.ends import Drive
 from tsas_cli.physics.frames import Frames
-from tsas_cli.physics.passages import Passage, passages
-from tsas_cli.physics.response import Dynamics, Response
+from tsas_cli.physics.passages import Passage, passages, turns
+from tsas_cli.physics.response import Dynamics, Response, simulate
 from tsas_cli.physics.rig import Rig
+from tsas_cli.recordings.manifest import Run
 from tsas_cli.reporting.tendon.moments import moments
 
 Floats = npt.NDArray[np.float64]
@@ -36,18 +36,22 @@ EXTENDED = Which("extended", "extended model", "after")
 
 @dataclass(frozen=True)
 class Followed:
-    """What one model says along the tendon of a run, at k moments.
+    """What one model says along the tendon of a run, at k moments of its n samples.
 
-    `time_s`, shape (k,), is on the recording's own clock; `passages` are of all samples, whose
-    times are `sample_time_s`.
+    `sample_time_s`, shape (n,), is the recording's own time; `passages` are of all samples.
     """
 
     rig: Rig
+    sample_time_s: Floats
     response: Response
     frames: Frames
-    time_s: Floats
-    sample_time_s: Floats
     passages: list[Passage]
+
+    @property
+    def time_s(self) -> Floats:
+        """Time of the moments, shape (k,)."""
+        times: Floats = self.sample_time_s[self.frames.samples]
+        return times
 
     @property
     def x_in_mm(self) -> Floats:
@@ -97,30 +101,39 @@ class Followed:
 
 
 def follow(
-    run: Prepared,
+    run: Run,
+    time_s: Floats,
+    drive: Drive,
     models: Mapping[Which, Model],
+    answers: Sequence[Floats],
     dynamics: Dynamics = "slip",
     nodes: int | None = None,
 ) -> dict[Which, Followed]:
     """Follow a run with each model, all at the same moments.
 
-    The lumped model does not say what is along the tendon: it gives none.
+    Parameters
+    ----------
+    run, time_s, drive
+        The run, the time of its samples, shape (n,), and what is given at its ends.
+    models
+        What follows it.
+    answers
+        Tensions that the models have answered, shape (n,) each, which tell when to look.
+    dynamics, nodes
+        As `simulate` takes them. The lumped model does not say what is along the tendon: it gives
+        none.
     """
     if dynamics == "static":
         return {}
-    answers = [simulated(run, model, dynamics, nodes) for model in models.values()]
-    turns = [p.start for answer in answers for p in passages(answer.x_in_mm, answer.phase)]
-    at = moments(run.time_s, [answer.f_in_N for answer in answers], turns)
+    at = moments(time_s, answers, turns(drive.values))
     found = {}
     for which, model in models.items():
-        answer = simulated(run, model, dynamics, nodes, looked_at=at)
+        rig = model.rig(run)
+        answer = simulate(
+            rig, drive, dynamics, on_mesh=nodes is not None, nodes=nodes, looked_at=at
+        )
         if answer.frames is not None:
             found[which] = Followed(
-                model.rig(run.run),
-                answer,
-                answer.frames,
-                run.time_s[at],
-                run.time_s,
-                passages(answer.x_in_mm, answer.phase),
+                rig, time_s, answer, answer.frames, passages(answer.x_in_mm, answer.phase)
             )
     return found

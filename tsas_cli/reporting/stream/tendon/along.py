@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.reporting.stream.palette import colour
-from tsas_cli.reporting.stream.plane import frame_of
+from tsas_cli.reporting.stream.plane import ACROSS, DOWN, frame_of
 from tsas_cli.reporting.stream.recorder import Clock, Recorder
 from tsas_cli.reporting.stream.recorder.layout import Plane
 from tsas_cli.reporting.stream.recorder.moving import points_2d
@@ -42,5 +42,4 @@ def record_along(
         at = frame.place(one.frames.front * one.rig.sheath_length_mm, one.tension_at_front())
         there = [at[k : k + runs] for k, runs in enumerate(one.front_runs_now)]
         points_2d(recorder, [*entity, which.key, "front"], times, there, shade)
-    x_range, y_range = frame.bounds
-    return Plane("Tension along the sheath", [entity], x_range, y_range)
+    return Plane("Tension along the sheath", [entity], ACROSS, DOWN)

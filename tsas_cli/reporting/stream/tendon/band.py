@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from tsas_cli.physics.passages import Passage
 from tsas_cli.reporting.stream.palette import colour
-from tsas_cli.reporting.stream.plane import Frame, frame_of
+from tsas_cli.reporting.stream.plane import ACROSS, DOWN, Frame, frame_of
 from tsas_cli.reporting.stream.recorder import Clock, Recorder
 from tsas_cli.reporting.stream.recorder.layout import Plane
 from tsas_cli.reporting.stream.recorder.moving import points_2d
@@ -63,8 +63,7 @@ def record_band(
         now = frame.place(travel, one.response.f_in_N[one.frames.samples])
         there = [p[None] if t <= widest else np.empty((0, 2)) for p, t in zip(now, travel, strict=True)]
         points_2d(recorder, [*entity, which.key, "now"], clock.times(one.time_s), there, colour(which.role))
-    x_range, y_range = frame.bounds
-    return Plane("The dead band from near", [entity], x_range, y_range)
+    return Plane("The dead band from near", [entity], ACROSS, DOWN)
 
 
 def _width(one: Followed) -> float:
