@@ -42,6 +42,11 @@ class Stand:
         """The centre line in the scene, shape (m + 1, 3)."""
         return self.shape.sheath + self.at
 
+    @property
+    def captions(self) -> Floats:
+        """Where two lines of text stand, shape (2, 3)."""
+        return _captions(self.shape, self.size) + self.at
+
     def raised(self, tension_N: Floats) -> Floats:
         """Return points above the sheath by tensions of shape (k, m + 1), shape (k, m + 1, 3)."""
         return self.sheath + (self.height_mm_per_N * tension_N)[..., None] * [0.0, 0.0, 1.0]
@@ -65,7 +70,7 @@ def stage_of(tendons: Sequence[Followed], highest_N: float) -> Stage:
     size = max(float(np.ptp(shape.sheath, axis=0).max()) for shape in shapes)
     ends = [_ends(one, shape, size) for one, shape in zip(tendons, shapes, strict=True)]
     tall = TALL * size
-    boxes = [_seen(shape, end, tall) for shape, end in zip(shapes, ends, strict=True)]
+    boxes = [_seen(shape, end, size) for shape, end in zip(shapes, ends, strict=True)]
     low, high = (min(b[0][1] for b in boxes), max(b[1][1] for b in boxes))
     step = high - low + GAP * size
     places = [step * (0.5 * (len(shapes) - 1) - k) * _UP for k in range(len(shapes))]
@@ -85,10 +90,20 @@ def _ends(one: Followed, shape: Shape, size: float) -> Ends:
     return ends_of(shape, lengths, size, one.x_in_mm, one.x_out_mm)
 
 
-def _seen(shape: Shape, ends: Ends, tall: float) -> tuple[Floats, Floats]:
+def _captions(shape: Shape, size: float) -> Floats:
+    """Return where two lines of text stand: within an arc, else before it."""
+    near, deep = shape.sheath[:, 1].min(), np.ptp(shape.sheath[:, 1])
+    coiled = bool(np.ptp(shape.sheath[:, 2]) > 0.0)
+    inside = 0.0 if coiled else min(1.0, 2.0 * deep / size)  # where there is room
+    first = near + (0.2 * inside - (0.25 if coiled else 0.12)) * size
+    return np.array([[0.0, first, 0.0], [0.0, first - 0.1 * size, 0.0]])
+
+
+def _seen(shape: Shape, ends: Ends, size: float) -> tuple[Floats, Floats]:
     """Return the corners of what the eye sees of a tendon, to the right and upwards."""
-    above = shape.sheath + [0.0, 0.0, tall]
-    points = np.concatenate((shape.sheath, above, ends.rim, ends.anchor))
+    above = shape.sheath + [0.0, 0.0, TALL * size]
+    below = _captions(shape, size) - [0.0, 0.05 * size, 0.0]
+    points = np.concatenate((shape.sheath, above, ends.rim, ends.anchor, below))
     seen = np.stack((points @ _RIGHT, points @ _UP), axis=1)
     return seen.min(axis=0), seen.max(axis=0)
 

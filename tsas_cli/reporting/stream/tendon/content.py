@@ -1,7 +1,8 @@
 """The tendon's part of the stream: in space, along the sheath, and the dead band from near."""
 
+from tsas_cli.reporting.stream.portraits import view_of
 from tsas_cli.reporting.stream.recorder import Recorder
-from tsas_cli.reporting.stream.recorder.layout import Columns, Part, Rows
+from tsas_cli.reporting.stream.recorder.layout import Columns, Part, Rows, Tabs
 from tsas_cli.reporting.stream.seen import SeenRun
 from tsas_cli.reporting.stream.tendon.along import record_along
 from tsas_cli.reporting.stream.tendon.band import record_band
@@ -30,5 +31,7 @@ def record_tendon(recorder: Recorder, run: SeenRun) -> Part | None:
     along = record_along(recorder, [*entity, "along"], clock, tendons)
     measured = run.measured(F_IN) if F_IN in run.file.names else None
     band = record_band(recorder, [*entity, "dead-band"], clock, tendons, measured)
-    beside = [along] if band is None else [along, band]
+    near: list[Part] = [] if band is None else [band]
+    near += [view_of(run, channel) for channel in run.loops if channel.column == F_IN]
+    beside: list[Part] = [along, Tabs(near)] if near else [along]
     return Columns([space, Rows(beside)], shares=[3.0, 2.0])

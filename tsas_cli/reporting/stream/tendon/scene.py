@@ -138,12 +138,10 @@ def _captions(
     recorder: Recorder, entity: Entity, times: Times, one: Followed, stand: Stand, which: Which
 ) -> None:
     """Write the model's name, and under it what the tendon does at each time."""
-    near, deep = stand.shape.sheath[:, 1].min(), np.ptp(stand.shape.sheath[:, 1])
-    inside = min(1.0, 2.0 * deep / stand.size)  # of an arc there is room for it
-    place = stand.at + [0.0, near + (0.2 * inside - 0.12) * stand.size, 0.0]
-    recorder.labels_3d([*entity, "title"], place[None], [which.label], colour(which.role))
-    below = np.tile(place - [0.0, 0.1 * stand.size, 0.0], (len(one.time_s), 1))
-    captions(recorder, [*entity, "state"], times, below, _said(one), colour("ink"))
+    title, state = stand.captions
+    recorder.labels_3d([*entity, "title"], title[None], [which.label], colour(which.role))
+    places = np.tile(state, (len(one.time_s), 1))
+    captions(recorder, [*entity, "state"], times, places, _said(one), colour("ink"))
 
 
 def _said(one: Followed) -> list[str]:
