@@ -95,9 +95,7 @@ def strokes(x_in: Floats) -> int:
 
 
 @kernel
-def branches(
-    x_in: Floats, rig: Rig, frames: Frames | None = None
-) -> tuple[Floats, Floats, Phases]:
+def branches(x_in: Floats, rig: Rig, frames: Frames | None = None) -> tuple[Floats, Floats, Phases]:
     """Follow a motion of the drive that starts at rest at x = 0 [mm].
 
     Parameters

@@ -64,4 +64,4 @@ def slips_up_to(frames: Frames, k: int) -> float:
     count = 1
     while count < m and frames.slip[k, count] == first:
         count += 1
-    return count / m
+    return float(count / m)

@@ -37,7 +37,7 @@ def record_events(recorder: Recorder, run: SeenRun, kind: str, events: Sequence[
         recorder.events(
             (*events_of(run), kind),
             run.clock.times(np.array([event.at_s for event in events])),
-            [event.text for event in events],
+            [f"{event.at_s:.3f} s: {event.text}" for event in events],
             [event.level for event in events],
         )
 
@@ -46,7 +46,7 @@ def record_own_events(recorder: Recorder, run: SeenRun) -> None:
     """Record the reversals that the phases tell, and the faults that were found."""
     at_s = reversals(run.segments)
     words = {True: "the drive turns and pulls", False: "the drive turns and lets go"}
-    turns = [Event(at, f"{run.id}: {words[up]}") for at, up in at_s]
+    turns = [Event(at, words[up]) for at, up in at_s]
     record_events(recorder, run, REVERSALS, turns)
     if at_s and X_IN in run.file.names:
         entity = run.entity(X_IN, REVERSALS)
@@ -69,7 +69,7 @@ def faults(run: SeenRun) -> list[Event]:
     return [
         Event(
             float(run.time_s[0]) if f.first_s is None else f.first_s,
-            f"{run.id}: {f.sentence}",
+            f"{f.code}: {f.sentence}",
             _LEVELS.get(f.severity, "INFO"),
         )
         for f in found

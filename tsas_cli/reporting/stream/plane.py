@@ -16,7 +16,7 @@ Floats = npt.NDArray[np.float64]
 WIDTH, HEIGHT = 1.4, 1.0  # of the frame
 MARGIN = 0.04  # of the range, beside the curve
 TICKS = 5  # about as many to an axis
-ACROSS, DOWN = (-0.16, WIDTH + 0.06), (-HEIGHT - 0.12, 0.2)  # what a view shows of the plane
+ACROSS, DOWN = (-0.2, WIDTH + 0.08), (-HEIGHT - 0.1, 0.32)  # what a view shows of the plane
 _TICK = 0.015
 
 
@@ -65,9 +65,11 @@ class Frame:
 
     def texts(self, x_label: str, y_label: str) -> tuple[Floats, list[str]]:
         """Return where ticks and axes are named, shape (k, 2), and how."""
-        across = [(float(self.x.place(np.array(v))), 0.06, as_printed(v)) for v in self.x.ticks()]
-        up = [(-0.06, -float(self.y.place(np.array(v))), as_printed(v)) for v in self.y.ticks()]
-        named = [(WIDTH / 2.0, 0.14, x_label), (0.0, -HEIGHT - 0.06, y_label)]
+        across = [(float(self.x.place(np.array(v))), 0.02, as_printed(v)) for v in self.x.ticks()]
+        up = [
+            (-0.1, -float(self.y.place(np.array(v))) - 0.04, as_printed(v)) for v in self.y.ticks()
+        ]
+        named = [(WIDTH / 2.0, 0.14, x_label), (WIDTH / 5.0, -HEIGHT - 0.06, y_label)]
         texts = [*across, *up, *named]
         return np.array([(x, y) for x, y, _ in texts]), [text for *_, text in texts]
 

@@ -26,9 +26,10 @@ from tsas_cli.reporting.stream.sources import Source
 
 Floats = npt.NDArray[np.float64]
 
-MOMENTS = 6000  # about how many there are of a moving point
+MOMENTS = 4000  # about how many there are of a moving point
 PART, USUAL_S = 0.3, 1.0  # of a stroke, and where no stroke is known: what runs along
 FAINT = 0x70
+_TRAIL_RADIUS, _NOW_RADIUS = 2.0, 6.0  # in points of the screen
 LOOP, TRAIL, NOW = "loop", "trail", "now"
 
 
@@ -63,29 +64,45 @@ class Portrait:
         at = self._entity("axes")
         recorder.curves_2d(at, self.frame.lines(), colour("muted"), radius=-0.6, order=-1.0)
         places, texts = self.frame.texts(at_axis(X_IN), at_axis(self.channel.column))
-        recorder.labels_2d(self._entity("names"), places, texts, colour("paper"))
+        recorder.labels_2d(self._entity("names"), places, texts, colour("ink"))
         for phase, curves in self._by_phase():
             recorder.curves_2d(
                 self._entity("phase", phase.key), curves, colour(phase.colour, FAINT), radius=-1.0
             )
-        self._record_stretch(recorder, MEASURED, self.y, colour("ink"))
+        self._record_stretch(recorder, MEASURED, self.y, colour("ink"), place=0)
 
     def record_answer(self, recorder: Recorder, source: Source, values: Floats) -> None:
         """Record the stretch that a model answers, shape (n,), over the measured displacement."""
         if self.there.any():
-            self._record_stretch(recorder, source.key, values, colour(source.role))
+            place = 1 + self.channel.sources.index(source)
+            self._record_stretch(recorder, source.key, values, colour(source.role), place)
 
-    def _record_stretch(self, recorder: Recorder, key: str, values: Floats, shown: int) -> None:
-        at = self.moments
+    def _record_stretch(
+        self, recorder: Recorder, key: str, values: Floats, shown: int, place: int
+    ) -> None:
+        """Record a stretch that runs along; those with a later place are thinner and on top."""
+        at, size, order = self.moments, 1.0 / (1.0 + 0.5 * place), 1.0 + 2.0 * place
         times = self.run.clock.times(self.run.time_s[at])
         places = self.frame.place(self.x[at], values[at])
         pieces = np.stack((places[:-1], places[1:]), axis=1)
         joined = np.isfinite(pieces).all(axis=(1, 2))
         recorder.segments_2d(
-            self._entity(TRAIL, key), times.at(1 + np.flatnonzero(joined)), pieces[joined], shown
+            self._entity(TRAIL, key),
+            times.at(1 + np.flatnonzero(joined)),
+            pieces[joined],
+            shown,
+            radius=-_TRAIL_RADIUS * size,
+            order=order,
         )
         there = np.flatnonzero(np.isfinite(places).all(axis=1))
-        recorder.points_2d(self._entity(NOW, key), times.at(there), places[there], shown)
+        recorder.points_2d(
+            self._entity(NOW, key),
+            times.at(there),
+            places[there],
+            shown,
+            radius=-_NOW_RADIUS * size,
+            order=order + 1.0,
+        )
 
     def _by_phase(self) -> Iterator[tuple[Phase, list[Floats]]]:
         """Yield each phase with its stretches, thinned, up to the first point of the next one."""
@@ -109,9 +126,9 @@ def view_of(run: SeenRun, channel: Channel, titled: str = "") -> Plane:
     base = run.entity(channel.column, LOOP)
     keys = (MEASURED, *(source.key for source in channel.sources))
     stretch = stretch_s(run)
-    name = in_words(channel.column)
+    name = f"{in_words(channel.column)} over displacement"
     return Plane(
-        f"{titled}: {name}" if titled else f"{name} over {in_words(X_IN)}",
+        f"{titled}: {name}" if titled else name,
         [base],
         ACROSS,
         DOWN,

@@ -16,7 +16,7 @@ DRIVE = frozenset({"x_in_mm"})
 class Source:
     """What a stage says of some columns: `key` ends its entities, `role` is that of its colour.
 
-    `cleaned` where it is the measurement itself, cleaned before it drove a model, and no answer.
+    What comes later in the alphabet is drawn over what comes before. `cleaned` where it is the measurement itself, cleaned before it drove a model, and no answer.
     """
 
     key: str
@@ -34,12 +34,12 @@ def sources(inputs: Inputs) -> Iterator[Source]:
     if simulation is not None:
         yield Source("simulated", "simulated", "simulated", Simulation, TENDON)
     if diagnosis is not None:
-        yield Source("nominal", "nominal model", "before", Diagnosis, TENDON, nominal_name)
+        yield Source("model", "nominal model", "before", Diagnosis, TENDON, nominal_name)
         if diagnosis.named:
-            yield Source("extended", "extended model", "after", Diagnosis, TENDON)
+            yield Source("model_extended", "extended model", "after", Diagnosis, TENDON)
     if simulation is not None or diagnosis is not None:
         stage = Diagnosis if simulation is None else Simulation
-        yield Source("conditioned", "conditioned", "simulated", stage, DRIVE, cleaned=True)
+        yield Source("model_input", "conditioned", "simulated", stage, DRIVE, cleaned=True)
     if inputs.get(Drive) is not None:
-        yield Source("nominal", "nominal drive", "before", Drive, DRIVE, nominal_name)
-        yield Source("identified", "identified drive", "after", Drive, DRIVE)
+        yield Source("model", "nominal drive", "before", Drive, DRIVE, nominal_name)
+        yield Source("model_identified", "identified drive", "after", Drive, DRIVE)

@@ -1,7 +1,7 @@
 """What a person looks at, from what the stages wrote: into one file, or to a viewer."""
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from tsas_cli.reporting.inputs import Inputs
@@ -10,7 +10,7 @@ from tsas_cli.reporting.stream.channels import record_channels
 from tsas_cli.reporting.stream.events import record_own_events
 from tsas_cli.reporting.stream.phases import record_phases
 from tsas_cli.reporting.stream.recorder import Recorder, to_file
-from tsas_cli.reporting.stream.recorder.layout import Part
+from tsas_cli.reporting.stream.recorder.layout import Layout
 from tsas_cli.reporting.stream.seen import SeenRun, seen_runs
 from tsas_cli.reporting.stream.tabs import DIAGNOSIS, OVERVIEW, layout_of
 from tsas_cli.reporting.stream.tendon.content import record_tendon
@@ -22,7 +22,58 @@ CONTENT: tuple[Callable[[Recorder, SeenRun], None], ...] = (
     record_tracking,
     record_phases,
     record_own_events,
+    record_tendon,
 )
+
+
+@dataclass(frozen=True)
+class Stream:
+    """What there is to see, ready to be recorded; no sample is read yet."""
+
+    name: str
+    overview: str
+    diagnosis: str | None
+    runs: tuple[SeenRun, ...]
+
+    @property
+    def layout(self) -> Layout:
+        """What the viewer opens with."""
+        return layout_of(self.runs, diagnosed=self.diagnosis is not None)
+
+    def record(self, recorder: Recorder, step: Callable[[], None] = lambda: None) -> None:
+        """Record texts and runs, one run after the other; `step` is called after each.
+
+        Raises
+        ------
+        InputError
+            A file cannot be read, or does not belong to its run.
+        """
+        recorder.markdown(OVERVIEW, self.overview)
+        if self.diagnosis is not None:
+            recorder.markdown(DIAGNOSIS, self.diagnosis)
+        for run in self.runs:
+            read = replace(run)  # a copy, so that what it has read goes with it
+            for content in CONTENT:
+                content(recorder, read)
+            step()
+
+
+def stream_of(inputs: Inputs) -> Stream:
+    """Return what there is to see of what the stages wrote.
+
+    Raises
+    ------
+    InputError
+        A file is missing, or is not what it was.
+    """
+    dataset = "tsas" if inputs.dataset is None else inputs.dataset.manifest.name
+    stages = [kind.FILE.removesuffix(".json") for kind in inputs.folders]
+    return Stream(
+        ", ".join([dataset, *stages]),
+        texts.overview(inputs),
+        texts.diagnosis(inputs),
+        tuple(seen_runs(inputs)),
+    )
 
 
 def write_stream(
@@ -35,39 +86,6 @@ def write_stream(
     InputError
         A file cannot be read, or `path` exists and `force` is not set.
     """
-    with to_file(path, name_of(inputs), force=force) as recorder:
-        record(recorder, inputs, step)
-
-
-def record(recorder: Recorder, inputs: Inputs, step: Callable[[], None] = lambda: None) -> None:
-    """Record the layout, the texts and every run.
-
-    Raises
-    ------
-    InputError
-        A file cannot be read.
-    """
-    runs = tuple(seen_runs(inputs))
-    told = texts.diagnosis(inputs)
-    tendons: dict[str, Part] = {}
-    recorder.lay_out(layout_of(runs, tendons, diagnosed=told is not None))
-    recorder.markdown(OVERVIEW, texts.overview(inputs))
-    if told is not None:
-        recorder.markdown(DIAGNOSIS, told)
-    for run in runs:
-        read = replace(run)  # a copy, so that what it has read goes with it
-        for content in CONTENT:
-            content(recorder, read)
-        tendon = record_tendon(recorder, read)
-        if tendon is not None:
-            tendons[run.id] = tendon
-        step()
-    if tendons:
-        recorder.lay_out(layout_of(runs, tendons, diagnosed=told is not None))
-
-
-def name_of(inputs: Inputs) -> str:
-    """Return what the viewer calls it: the dataset, and the stages that say something of it."""
-    dataset = "tsas" if inputs.dataset is None else inputs.dataset.manifest.name
-    stages = [kind.FILE.removesuffix(".json") for kind in inputs.folders]
-    return " · ".join([dataset, *stages])
+    stream = stream_of(inputs)
+    with to_file(path, stream.name, stream.layout, force=force) as recorder:
+        stream.record(recorder, step)

@@ -19,34 +19,36 @@ from tsas_cli.reporting.stream.recorder.layout import (
     Tabs,
     Text,
 )
+from tsas_cli.reporting.stream.recorder.paths import Entity
 from tsas_cli.reporting.stream.seen import SeenRun
+from tsas_cli.reporting.stream.tendon.content import view_of_tendon
 from tsas_cli.reporting.stream.tracking import tracking_tab
 
 OVERVIEW, DIAGNOSIS = ("about", "overview"), ("about", "diagnosis")
 TABS = ("Overview", "Residuals", "Tendon", "Tracking", "Diagnosis")
 ALL_RUNS = 12  # beyond which their loops are too small to be seen beside each other
 _ACROSS = 4
-_LANE = 0.35  # height of the phases over that of a plot
+_ORDER = ("f_in_N", "f_out_N", "x_in_mm", "x_out_mm")  # what is looked at first
+_TALL, _LANE = 1.6, 0.8  # height of the first plot, and of the phases, over that of the others
 
 
-def layout_of(
-    runs: Sequence[SeenRun], tendons: Mapping[str, Part], *, diagnosed: bool
-) -> Layout:
+def layout_of(runs: Sequence[SeenRun], *, diagnosed: bool) -> Layout:
     """Return the tabs; what was tracked opens on it, all else on the overview.
 
-    `tendons` are the pictures of them, by run; `diagnosed` says whether there is a text on it.
+    `diagnosed` says whether there is a text on it.
     """
     made = {
         "Overview": _overview(runs),
         "Residuals": _by_run(runs, _residuals),
-        "Tendon": _by_run(runs, lambda run: tendons.get(run.id)),
+        "Tendon": _by_run(runs, view_of_tendon),
         "Tracking": tracking_tab(runs),
         "Diagnosis": Text("Diagnosis", DIAGNOSIS) if diagnosed else None,
     }
     parts = [Rows([part], name=name) for name in TABS if (part := made[name]) is not None]
     names = [part.name for part in parts]
     on_top = names.index("Tracking") if "Tracking" in names else 0
-    return Layout(Tabs(parts, on_top=on_top))
+    moves = made["Tendon"] is not None or any(run.loops for run in runs)
+    return Layout(Tabs(parts, on_top=on_top), plays=moves)
 
 
 def _overview(runs: Sequence[SeenRun]) -> Part:
@@ -70,8 +72,7 @@ def _by_run(
 
 
 def _run(run: SeenRun) -> Part | None:
-    series = [Series(at_axis(column), shown) for column, shown in series_of(run).items()]
-    rows = _over_phases(run, series)
+    rows = _over_phases(run, series_of(run))
     if rows is None:
         return None
     beside: list[Part] = [view_of(run, channel) for channel in run.loops]
@@ -81,21 +82,33 @@ def _run(run: SeenRun) -> Part | None:
 
 
 def _residuals(run: SeenRun) -> Part | None:
-    found = residuals_of(run).items()
-    return _over_phases(
-        run, [Series(f"measured less simulated: {at_axis(c)}", s) for c, s in found]
-    )
+    return _over_phases(run, residuals_of(run), "measured less simulated, ")
 
 
-def _over_phases(run: SeenRun, series: Sequence[Series]) -> Part | None:
-    """Return series under each other, and the phases below, where they are told."""
-    if not series:
+def _over_phases(
+    run: SeenRun, series: Mapping[str, Sequence[Entity]], what: str = ""
+) -> Part | None:
+    """Return series under each other, and the phases below, where they are told.
+
+    A legend stands where a series has a name that is in no plot above.
+    """
+    parts: list[Part] = []
+    named: set[str] = set()
+    for column in sorted(series, key=_rank):
+        keys = {entity[-1] for entity in series[column]}
+        parts.append(Series(what + at_axis(column), series[column], legend=not keys <= named))
+        named |= keys
+    if not parts:
         return None
-    parts: list[Part] = list(series)
+    shares = [_TALL] + [1.0] * (len(parts) - 1)
     if run.segments:
         parts.append(States("phases", [phases_of(run)]))
-    shares = [1.0] * len(series) + [_LANE] * (len(parts) - len(series))
+        shares.append(_LANE)
     return Rows(parts, shares=shares)
+
+
+def _rank(column: str) -> int:
+    return _ORDER.index(column) if column in _ORDER else len(_ORDER)
 
 
 def _all_runs(runs: Sequence[SeenRun]) -> Part | None:

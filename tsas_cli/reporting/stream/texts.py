@@ -8,12 +8,10 @@ from tsas_cli.reporting.diagnosis import candidates, causes, gains, remainder
 from tsas_cli.reporting.drive_file import Drive
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import plain, with_interval
-from tsas_cli.reporting.sections import parameters
 from tsas_cli.reporting.sections.drive import told_of
 from tsas_cli.reporting.stage_files import Calibration, Cause, Check, Diagnosis, Simulation
 from tsas_cli.reporting.stream.markdown import section_text
 from tsas_cli.reporting.tracking.scores import best_and_worst
-from tsas_cli.reporting.tracking.scores import table as scores
 from tsas_cli.reporting.tracking_file import Tracking
 
 EXTENDED = "model-extended.toml"
@@ -23,8 +21,8 @@ def overview(inputs: Inputs) -> str:
     """Return what it is about and what came out, as Markdown."""
     manifest = None if inputs.dataset is None else inputs.dataset.manifest
     title = "Recordings" if manifest is None else manifest.name
-    about = "" if manifest is None else manifest.description or ""
-    return section_text(Section("overview", title, (about,), parts=tuple(_short(inputs))))
+    about = () if manifest is None or not manifest.description else (manifest.description,)
+    return section_text(Section("overview", title, about, parts=tuple(_short(inputs))))
 
 
 def diagnosis(inputs: Inputs) -> str | None:
@@ -50,26 +48,26 @@ def diagnosis(inputs: Inputs) -> str | None:
 
 
 def _short(inputs: Inputs) -> Iterator[Section]:
+    """Yield what each stage says in few words and narrow tables."""
     if found := inputs.get(Diagnosis):
-        tables = (_causes(found.named), gains.table(found))
+        tables = (_causes(found.named), _held_out(found))
         after = (f"Next: {found.next_experiment}",) if found.next_experiment else ()
         yield Section(
             "diagnosis", "Diagnosis", (found.reason,), tables=_filled(tables), closing=after
         )
     if tracking := inputs.get(Tracking):
         said = tuple(best_and_worst(tracking))
-        yield Section(
-            "tracking", "Tracking", said, points=tracking.notes, tables=(scores(tracking),)
-        )
+        table = _scores(tracking)
+        yield Section("tracking", "Tracking", said, points=tracking.notes, tables=(table,))
     if drive := inputs.get(Drive):
         told = told_of(drive)
         yield Section("drive", "Drive", told.intro, equations=told.equations)
     if simulation := inputs.get(Simulation):
-        yield Section(
-            "simulation", "Simulation", points=simulation.notes, tables=(_errors(simulation),)
-        )
-    if inputs.get(Calibration):
-        yield parameters.section(inputs)
+        table = _errors(simulation)
+        yield Section("simulation", "Simulation", points=simulation.notes, tables=(table,))
+    if calibration := inputs.get(Calibration):
+        table, said = _parameters(calibration), calibration.cannot_tell
+        yield Section("calibration", "Calibration", points=said, tables=(table,))
     if check := inputs.get(Check):
         found_out = tuple(f.sentence for f in check.findings) or ("The checks found nothing.",)
         yield Section("check", "Checks", points=found_out)
@@ -80,7 +78,7 @@ def _causes(named: tuple[Cause, ...]) -> Table:
         (
             name,
             *with_interval(p.value, p.interval_low, p.interval_high),
-            p.unit + (" at its bound" if p.at_bound else ""),
+            p.unit + (", at its bound" if p.at_bound else ""),
         )
         for cause in named
         for name, p in cause.parameters.items()
@@ -91,6 +89,35 @@ def _causes(named: tuple[Cause, ...]) -> Table:
         rows,
         numeric=frozenset({1, 2}),
     )
+
+
+def _held_out(found: Diagnosis) -> Table:
+    rows = tuple(
+        (name, plain(c.rmse_before, 3), plain(c.rmse_after, 3), plain(c.noise_floor, 3), c.unit)
+        for name, c in found.channels.items()
+    )
+    header = ("channel", "before", "after", "noise", "unit")
+    return Table("Error on held-out data", header, rows, numeric=frozenset({1, 2, 3}))
+
+
+def _scores(tracking: Tracking) -> Table:
+    rows = tuple(
+        (result.controller, result.condition, plain(result.scores.rmse_N.mean))
+        for result in tracking.results
+    )
+    return Table("How well it is followed", ("controller", "condition", "RMSE [N]"), rows)
+
+
+def _parameters(calibration: Calibration) -> Table:
+    rows = tuple(
+        (
+            p.name if p.run is None else f"{p.name}, run {p.run}",
+            *with_interval(p.value, p.interval_low, p.interval_high),
+            p.unit + (", at its bound" if p.at_bound else ""),
+        )
+        for p in calibration.parameters
+    )
+    return Table("Parameters", ("parameter", "value", "95 % interval", "unit"), rows)
 
 
 def _errors(simulation: Simulation) -> Table:

@@ -10,7 +10,7 @@ from tsas_cli.reporting.colours import CONTROLLERS
 from tsas_cli.reporting.stream import seen
 from tsas_cli.reporting.stream.palette import colour
 from tsas_cli.reporting.stream.recorder import Recorder
-from tsas_cli.reporting.stream.recorder.layout import Part, Rows, Series, Tabs
+from tsas_cli.reporting.stream.recorder.layout import Columns, Part, Rows, Series, Tabs
 from tsas_cli.reporting.stream.recorder.paths import Entity
 from tsas_cli.reporting.stream.seen import SeenRun
 from tsas_cli.reporting.tracking.runs import TRUE, WANTED
@@ -86,14 +86,23 @@ def tracking_tab(runs: Sequence[SeenRun]) -> Part | None:
             conditions.setdefault(run.tracked.condition, []).append(run)
     if not conditions:
         return None
-    parts = [Rows(tuple(_views(found)), name=name) for name, found in conditions.items()]
+    parts = [_condition(name, found) for name, found in conditions.items()]
     return parts[0] if len(parts) == 1 else Tabs(parts)
 
 
-def _views(runs: Sequence[SeenRun]) -> Iterator[Series]:
+def _condition(name: str, runs: Sequence[SeenRun]) -> Part:
+    followed, told = Rows(tuple(_followed(runs))), tuple(_told(runs))
+    return Columns([followed, Rows(told)] if told else [followed], name=name)
+
+
+def _followed(runs: Sequence[SeenRun]) -> Iterator[Series]:
     yield Series("force at the load [N]", [wanted_of(runs[0]), *map(true_of, runs)])
-    yield Series("error: wanted less true force [N]", [run.entity(ERROR) for run in runs])
-    yield Series("motor speed, as asked for [rpm]", [speed_of(run) for run in runs])
+    errors, speeds = [run.entity(ERROR) for run in runs], list(map(speed_of, runs))
+    yield Series("error: wanted less true force [N]", errors, legend=False)
+    yield Series("motor speed, as asked for [rpm]", speeds, legend=False)
+
+
+def _told(runs: Sequence[SeenRun]) -> Iterator[Series]:
     for told in TOLD:
         if entities := [run.entity(told.column) for run in runs if told in told_by(run)]:
             yield Series(told.title, entities)

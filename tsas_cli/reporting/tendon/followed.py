@@ -120,11 +120,9 @@ def follow(
     answers
         Tensions that the models have answered, shape (n,) each, which tell when to look.
     dynamics, nodes
-        As `simulate` takes them. The lumped model does not say what is along the tendon: it gives
-        none.
+        As `simulate` takes them. The lumped model does not say what is along the tendon: with it
+        nothing is found.
     """
-    if dynamics == "static":
-        return {}
     at = moments(time_s, answers, turns(drive.values))
     found = {}
     for which, model in models.items():

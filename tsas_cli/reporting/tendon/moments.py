@@ -14,7 +14,7 @@ PER_SPAN = 120.0  # while a tension goes through all that it has in the run: hal
 MOST = 1500  # of one run, whatever its length
 
 
-def moments(time_s: Floats, tensions: Sequence[Floats], turns: Sequence[int]) -> Indices:
+def moments(time_s: Floats, tensions: Sequence[Floats], turns: Indices) -> Indices:
     """Return the samples to look at, rising, the turns, the first and the last one among them.
 
     Parameters
@@ -24,13 +24,15 @@ def moments(time_s: Floats, tensions: Sequence[Floats], turns: Sequence[int]) ->
     tensions
         What must not jump from one to the next: tensions of all models shown, shape (n,) each.
     turns
-        Samples at which the drive turns.
+        Samples at which the drive turns, shape (p,).
     """
     steps = PER_SECOND * np.diff(time_s)
     for tension in tensions:
-        span = float(np.ptp(tension))
+        span = float(np.nanmax(tension) - np.nanmin(tension))
         if span > 0.0:
-            steps = np.maximum(steps, PER_SPAN / span * np.abs(np.diff(tension)))
+            steps = np.fmax(steps, PER_SPAN / span * np.abs(np.diff(tension)))
     passed = np.concatenate(([0.0], np.cumsum(steps)))
     frames = np.arange(0.0, passed[-1], max(1.0, passed[-1] / MOST))
-    return np.unique(np.concatenate((np.searchsorted(passed, frames), turns, [time_s.size - 1])).astype(np.int64))
+    return np.unique(
+        np.concatenate((np.searchsorted(passed, frames), turns, [time_s.size - 1])).astype(np.int64)
+    )

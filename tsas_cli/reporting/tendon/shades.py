@@ -45,10 +45,11 @@ def scale_of(low: float, high: float) -> Scale:
 def packed(colours: Bytes, alpha: int = 255) -> npt.NDArray[np.uint32]:
     """Return 0xRRGGBBAA of red, green, blue, shape (..., 3)."""
     red, green, blue = (colours[..., k].astype(np.uint32) for k in range(3))
-    return (red << 24) | (green << 16) | (blue << 8) | np.uint32(alpha)
+    return ((red << 24) | (green << 16) | (blue << 8) | alpha).astype(np.uint32)
 
 
-def dimmed(colours: Bytes, share: float, ground: tuple[int, int, int]) -> Bytes:
-    """Return colours mixed with the ground's, by a share."""
-    mixed = (1.0 - share) * colours + share * np.array(ground)
+def dimmed(colours: Bytes, share: float, ground: int) -> Bytes:
+    """Return colours mixed with the ground's, 0xRRGGBBAA, by a share."""
+    under = np.array([ground >> 24, ground >> 16 & 0xFF, ground >> 8 & 0xFF])
+    mixed = (1.0 - share) * colours + share * under
     return np.asarray(mixed.round(), dtype=np.uint8)

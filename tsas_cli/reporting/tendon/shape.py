@@ -29,7 +29,8 @@ class Shape:
         """Return a curve beside the centre line, on its left (seen along it), shape (m + 1, 3)."""
         along = np.gradient(self.sheath, axis=0)
         left = np.cross([0.0, 0.0, 1.0], along)
-        return self.sheath + distance_mm * left / np.linalg.norm(left, axis=1)[:, None]
+        beside: Floats = self.sheath + distance_mm * left / np.linalg.norm(left, axis=1)[:, None]
+        return beside
 
     def at(self, places: Floats) -> Floats:
         """Return points of the centre line at places from 0 to 1, shape (k, 3)."""
@@ -52,7 +53,9 @@ def shape_of(length_mm: float, bend_rad: float, elements: int) -> Shape:
     sheath = np.vstack((np.zeros(3), np.cumsum(steps, axis=0)))
     middle = 0.5 * (sheath.min(axis=0) + sheath.max(axis=0))
     return Shape(
-        sheath - [middle[0], middle[1], 0.0], _direction(turn / 2, rise), _direction(-turn / 2, rise)
+        sheath - [middle[0], middle[1], 0.0],
+        _direction(turn / 2, rise),
+        _direction(-turn / 2, rise),
     )
 
 

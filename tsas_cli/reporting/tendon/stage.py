@@ -11,14 +11,14 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from tsas_cli.physics.rig import Rig
 from tsas_cli.reporting.tendon.ends import Ends, ends_of
-from tsas_cli.reporting.tendon.followed import Followed
 from tsas_cli.reporting.tendon.shape import Shape, shape_of
 
 Floats = npt.NDArray[np.float64]
 
 DOWN_RAD = math.radians(44.0)  # by which the eye looks down
-SEEN = 0.80  # how high and wide a view is at distance 1, with some room; usual ones are wider than high
+SEEN = 0.80  # how high and wide a view is at distance 1, with some room around
 TALL = 0.36  # of the scene's size: how high the highest tension is drawn
 GAP = 0.08  # of the size, between two tendons
 LEFT = 0.16  # of the size, kept free for the legend
@@ -35,7 +35,6 @@ class Stand:
     ends: Ends
     at: Floats
     size: float
-    height_mm_per_N: float
 
     @property
     def sheath(self) -> Floats:
@@ -47,10 +46,6 @@ class Stand:
         """Where two lines of text stand, shape (2, 3)."""
         return _captions(self.shape, self.size) + self.at
 
-    def raised(self, tension_N: Floats) -> Floats:
-        """Return points above the sheath by tensions of shape (k, m + 1), shape (k, m + 1, 3)."""
-        return self.sheath + (self.height_mm_per_N * tension_N)[..., None] * [0.0, 0.0, 1.0]
-
 
 @dataclass(frozen=True)
 class Stage:
@@ -61,33 +56,23 @@ class Stage:
     target: tuple[float, float, float]
 
 
-def stage_of(tendons: Sequence[Followed], highest_N: float) -> Stage:
-    """Return where tendons stand, up to the highest tension that is drawn."""
-    shapes = [
-        shape_of(one.rig.sheath_length_mm, one.rig.total_bend_rad, one.frames.slip.shape[1])
-        for one in tendons
-    ]
+def stage_of(rigs: Sequence[Rig], elements: int) -> Stage:
+    """Return where tendons stand, their centre lines in so many pieces."""
+    shapes = [shape_of(rig.sheath_length_mm, rig.total_bend_rad, elements) for rig in rigs]
     size = max(float(np.ptp(shape.sheath, axis=0).max()) for shape in shapes)
-    ends = [_ends(one, shape, size) for one, shape in zip(tendons, shapes, strict=True)]
-    tall = TALL * size
+    ends = [
+        ends_of(shape, (free.proximal_length_mm, free.distal_length_mm), size)
+        for shape, free in zip(shapes, (rig.effects.free_tendon for rig in rigs), strict=True)
+    ]
     boxes = [_seen(shape, end, size) for shape, end in zip(shapes, ends, strict=True)]
     low, high = (min(b[0][1] for b in boxes), max(b[1][1] for b in boxes))
-    step = high - low + GAP * size
-    places = [step * (0.5 * (len(shapes) - 1) - k) * _UP for k in range(len(shapes))]
     left, right = min(b[0][0] for b in boxes) - LEFT * size, max(b[1][0] for b in boxes)
+    step = high - low + GAP * size
     away = max(step * len(shapes), right - left) / SEEN
     target = 0.5 * (low + high) * _UP + 0.5 * (left + right) * _RIGHT
-    stands = [
-        Stand(shape, end, at, size, tall / highest_N)
-        for shape, end, at in zip(shapes, ends, places, strict=True)
-    ]
+    places = [step * (0.5 * (len(shapes) - 1) - k) * _UP for k in range(len(shapes))]
+    stands = [Stand(*parts, size) for parts in zip(shapes, ends, places, strict=True)]
     return Stage(stands, _place(target + away * _BACK), _place(target))
-
-
-def _ends(one: Followed, shape: Shape, size: float) -> Ends:
-    free = one.rig.effects.free_tendon
-    lengths = (free.proximal_length_mm, free.distal_length_mm)
-    return ends_of(shape, lengths, size, one.x_in_mm, one.x_out_mm)
 
 
 def _captions(shape: Shape, size: float) -> Floats:
@@ -101,7 +86,7 @@ def _captions(shape: Shape, size: float) -> Floats:
 
 def _seen(shape: Shape, ends: Ends, size: float) -> tuple[Floats, Floats]:
     """Return the corners of what the eye sees of a tendon, to the right and upwards."""
-    above = shape.sheath + [0.0, 0.0, TALL * size]
+    above = shape.sheath + TALL * size * np.array([0.0, 0.0, 1.0])
     below = _captions(shape, size) - [0.0, 0.05 * size, 0.0]
     points = np.concatenate((shape.sheath, above, ends.rim, ends.anchor, below))
     seen = np.stack((points @ _RIGHT, points @ _UP), axis=1)

@@ -5,6 +5,7 @@ from functools import singledispatch
 from typing import Any
 
 import rerun.blueprint as rrb
+from rerun.blueprint import encodings
 
 from tsas_cli.reporting.stream.recorder.clock import SESSION, T
 from tsas_cli.reporting.stream.recorder.layout import (
@@ -75,7 +76,12 @@ def _(part: Tabs) -> rrb.Container:
 @_part.register
 def _(part: Series) -> rrb.View:
     axis = None if part.y_range is None else rrb.ScalarAxis(range=part.y_range)
-    return rrb.TimeSeriesView(**_shown(part, part.entities), axis_x=_LINKED, axis_y=axis)
+    return rrb.TimeSeriesView(
+        **_shown(part, part.entities),
+        axis_x=_LINKED,
+        axis_y=axis,
+        plot_legend=rrb.PlotLegend(rrb.Corner2D.LeftTop, visible=part.legend),
+    )
 
 
 @_part.register
@@ -110,7 +116,10 @@ def _(part: Text) -> rrb.View:
 
 @_part.register
 def _(part: Log) -> rrb.View:
-    return rrb.TextLogView(**_shown(part, part.entities))
+    said = [encodings.TextLogColumn(kind) for kind in ("LogLevel", "Body")]
+    return rrb.TextLogView(
+        **_shown(part, part.entities), columns=rrb.TextLogColumns(text_log_columns=said)
+    )
 
 
 def _shown(view: View, entities: Sequence[Entity]) -> dict[str, Any]:

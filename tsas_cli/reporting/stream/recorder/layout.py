@@ -14,11 +14,12 @@ Place = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Series:
-    """Series over time, with a legend; `y_range` where it is not told by what is shown."""
+    """Series over time; `y_range` where it is not told by what is shown."""
 
     name: str
     entities: Sequence[Entity]
     y_range: Range | None = None
+    legend: bool = True
 
 
 @dataclass(frozen=True)

@@ -3,19 +3,23 @@
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
+from hashlib import sha256
 from pathlib import Path
 
 import rerun as rr
 
 from tsas_cli.errors import InputError
 from tsas_cli.files import new_file
+from tsas_cli.reporting.stream.recorder.layout import Layout
 from tsas_cli.reporting.stream.recorder.recorder import Recorder
 
 SLOWEST_S = 10.0  # that a viewer may take to read what it is sent
 
 
 @contextmanager
-def to_file(path: Path, name: str, *, force: bool = False) -> Iterator[Recorder]:
+def to_file(
+    path: Path, name: str, layout: Layout | None = None, *, force: bool = False
+) -> Iterator[Recorder]:
     """Record into a file that is there, whole, when the block ends without an error.
 
     Parameters
@@ -23,7 +27,9 @@ def to_file(path: Path, name: str, *, force: bool = False) -> Iterator[Recorder]
     path
         The file, usually `….rrd`.
     name
-        What the viewer calls the recording; it keeps one layout for each name.
+        What the viewer calls the recording.
+    layout
+        What the viewer opens with, where it is known from the start.
     force
         Replace the file if it is there.
 
@@ -33,16 +39,16 @@ def to_file(path: Path, name: str, *, force: bool = False) -> Iterator[Recorder]
         The file is there, or cannot be written; Rerun is switched off.
     """
     with new_file(path, force=force) as temporary, _strict():
-        stream = _opened(name)
+        stream = _opened(name, layout)
         stream.save(temporary)
         try:
-            yield Recorder(stream)
+            yield _laid_out(stream, layout)
         finally:
             stream.disconnect()  # writes the footer
 
 
 @contextmanager
-def to_viewer(address: str, name: str) -> Iterator[Recorder]:
+def to_viewer(address: str, name: str, layout: Layout | None = None) -> Iterator[Recorder]:
     """Record into a viewer that listens at `rerun+http://HOST:PORT/proxy`.
 
     Raises
@@ -51,10 +57,10 @@ def to_viewer(address: str, name: str) -> Iterator[Recorder]:
         It does not take what it is sent; Rerun is switched off.
     """
     with _strict():
-        stream = _opened(name)
+        stream = _opened(name, layout)
         stream.connect_grpc(address)
         try:
-            yield Recorder(stream)
+            yield _laid_out(stream, layout)
             stream.flush(timeout_sec=SLOWEST_S)
         except RuntimeError as error:
             raise InputError(f"no viewer takes the stream ({error})", where=address) from error
@@ -62,13 +68,25 @@ def to_viewer(address: str, name: str) -> Iterator[Recorder]:
             stream.disconnect()
 
 
-def _opened(name: str) -> rr.RecordingStream:
-    plain = re.sub(r"[^A-Za-z0-9]+", "-", f"tsas {name}").strip("-")  # all that Rerun takes
-    stream = rr.RecordingStream(plain)
+def _opened(name: str, layout: Layout | None) -> rr.RecordingStream:
+    """Open a recording; a viewer keeps the first layout of an application, hence its own for each.
+
+    The application's name may hold plain letters, digits and hyphens.
+    """
+    plain = re.sub(r"[^A-Za-z0-9]+", "-", f"tsas {name}").strip("-")
+    own = sha256(repr(layout).encode()).hexdigest()[:8]
+    stream = rr.RecordingStream(f"{plain}-{own}")
     if not rr.is_enabled(stream):
         raise InputError("Rerun is switched off", where="RERUN", remedy="unset this variable")
     stream.send_recording_name(name)
     return stream
+
+
+def _laid_out(stream: rr.RecordingStream, layout: Layout | None) -> Recorder:
+    recorder = Recorder(stream)
+    if layout is not None:
+        recorder.lay_out(layout)
+    return recorder
 
 
 @contextmanager

@@ -18,10 +18,15 @@ Floats = npt.NDArray[np.float64]
 FAINT = 0x60
 
 
+def view_of_along(entity: Entity) -> Plane:
+    """Return the view that shows it."""
+    return Plane("Tension along the sheath", [entity], ACROSS, DOWN)
+
+
 def record_along(
     recorder: Recorder, entity: Entity, clock: Clock, tendons: Mapping[Which, Followed]
-) -> Plane:
-    """Record the curves of one run; return the view that shows them."""
+) -> None:
+    """Record the curves of one run."""
     every = np.concatenate([one.frames.tension_N.ravel() for one in tendons.values()])
     longest = max(one.rig.sheath_length_mm for one in tendons.values())
     frame = frame_of(np.array([0.0, longest]), every)
@@ -42,4 +47,3 @@ def record_along(
         at = frame.place(one.frames.front * one.rig.sheath_length_mm, one.tension_at_front())
         there = [at[k : k + runs] for k, runs in enumerate(one.front_runs_now)]
         points_2d(recorder, [*entity, which.key, "front"], times, there, shade)
-    return Plane("Tension along the sheath", [entity], ACROSS, DOWN)

@@ -8,7 +8,7 @@ import numpy.typing as npt
 from tsas_cli.physics.passages import Passage
 from tsas_cli.reporting.stream.palette import colour
 from tsas_cli.reporting.stream.plane import ACROSS, DOWN, Frame, frame_of
-from tsas_cli.reporting.stream.recorder import Clock, Recorder
+from tsas_cli.reporting.stream.recorder import Clock, Recorder, Times
 from tsas_cli.reporting.stream.recorder.layout import Plane
 from tsas_cli.reporting.stream.recorder.moving import points_2d
 from tsas_cli.reporting.stream.recorder.paths import Entity
@@ -19,6 +19,12 @@ Floats = npt.NDArray[np.float64]
 
 BEYOND = 1.4  # of the widest dead band: how much of a stroke is shown
 POINTS = 80  # of a curve
+X_LABEL, Y_LABEL = "travel of the drive since it turned [mm]", "tension at the drive [N]"
+
+
+def view_of_band(entity: Entity) -> Plane:
+    """Return the view that shows it."""
+    return Plane("The dead band from near", [entity], ACROSS, DOWN)
 
 
 def record_band(
@@ -27,7 +33,7 @@ def record_band(
     clock: Clock,
     tendons: Mapping[Which, Followed],
     f_in_N: Floats | None,
-) -> Plane | None:
+) -> None:
     """Record the strokes of one run, one after the other; return the view that shows them.
 
     Parameters
@@ -41,35 +47,46 @@ def record_band(
     """
     widest = max((_width(one) for one in tendons.values()), default=0.0)
     if widest == 0.0:
-        return None
+        return
     curves = {
         which: _strokes(one.passages, one.response.x_in_mm, one.response.f_in_N, widest)
         for which, one in tendons.items()
     }
-    frame = frame_of(np.array([0.0, widest]), np.concatenate([c[..., 1].ravel() for c in curves.values()]))
+    every = np.concatenate([curve[..., 1].ravel() for curve in curves.values()])
+    frame = frame_of(np.array([0.0, widest]), every)
     recorder.curves_2d([*entity, "axes"], frame.lines(), colour("muted"), radius=-0.6, order=-1.0)
-    places, texts = frame.texts("travel of the drive since it turned [mm]", "tension at the drive [N]")
+    places, texts = frame.texts(X_LABEL, Y_LABEL)
     recorder.labels_2d([*entity, "names"], places, texts, colour("muted"))
     record_key(recorder, entity, tendons, measured=f_in_N is not None)
-    first = next(iter(tendons.values()))
-    starts = clock.times(first.sample_time_s[[run.start for run in first.passages]])
     if f_in_N is not None:
-        measured = _strokes(first.passages, first.response.x_in_mm, f_in_N, widest)
-        recorder.segments_2d([*entity, "measured"], starts, _placed(frame, measured), colour("measured"), radius=-3.5, order=0.0)
+        one = next(iter(tendons.values()))
+        strokes = _strokes(one.passages, one.response.x_in_mm, f_in_N, widest)
+        at, placed = _starts(clock, one), _placed(frame, strokes)
+        wide, under = -3.5, 0.0
+        seen = colour("measured")
+        recorder.segments_2d([*entity, "measured"], at, placed, seen, radius=wide, order=under)
     for which, one in tendons.items():
-        starts = clock.times(one.sample_time_s[[run.start for run in one.passages]])
-        recorder.segments_2d([*entity, which.key], starts, _placed(frame, curves[which]), colour(which.role), radius=-1.2)
-        travel = np.abs(one.response.x_in_mm[one.frames.samples] - one.response.x_in_mm[one.frames.samples[one.turned()]])
-        now = frame.place(travel, one.response.f_in_N[one.frames.samples])
-        there = [p[None] if t <= widest else np.empty((0, 2)) for p, t in zip(now, travel, strict=True)]
-        points_2d(recorder, [*entity, which.key, "now"], clock.times(one.time_s), there, colour(which.role))
-    return Plane("The dead band from near", [entity], ACROSS, DOWN)
+        mine, shade = [*entity, which.key], colour(which.role)
+        placed = _placed(frame, curves[which])
+        recorder.segments_2d([*mine, "stroke"], _starts(clock, one), placed, shade, radius=-1.2)
+        samples = one.frames.samples
+        x, f_in = one.response.x_in_mm[samples], one.response.f_in_N[samples]
+        travel = np.abs(x - x[one.turned()])
+        now = frame.place(travel, f_in)
+        there = [now[k : k + seen] for k, seen in enumerate(travel <= widest)]
+        points_2d(recorder, [*mine, "now"], clock.times(one.time_s), there, shade)
+
+
+def _starts(clock: Clock, one: Followed) -> Times:
+    return clock.times(one.sample_time_s[[passage.start for passage in one.passages]])
 
 
 def _width(one: Followed) -> float:
     """Return how much of a stroke is to be shown [mm]."""
     x = one.response.x_in_mm
-    through = [abs(x[run.arrived] - x[run.start]) for run in one.passages if run.arrived is not None]
+    through = [
+        abs(x[run.arrived] - x[run.start]) for run in one.passages if run.arrived is not None
+    ]
     return BEYOND * float(max(through, default=np.ptp(x) if x.size else 0.0))
 
 

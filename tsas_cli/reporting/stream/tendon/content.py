@@ -4,18 +4,35 @@ from tsas_cli.reporting.stream.portraits import view_of
 from tsas_cli.reporting.stream.recorder import Recorder
 from tsas_cli.reporting.stream.recorder.layout import Columns, Part, Rows, Tabs
 from tsas_cli.reporting.stream.seen import SeenRun
-from tsas_cli.reporting.stream.tendon.along import record_along
-from tsas_cli.reporting.stream.tendon.band import record_band
+from tsas_cli.reporting.stream.tendon.along import record_along, view_of_along
+from tsas_cli.reporting.stream.tendon.band import record_band, view_of_band
 from tsas_cli.reporting.stream.tendon.fronts import record_passages
-from tsas_cli.reporting.stream.tendon.scene import record_scene
-from tsas_cli.reporting.stream.tendon.told import F_IN, tendons_of
+from tsas_cli.reporting.stream.tendon.scene import record_scene, view_of_scene
+from tsas_cli.reporting.stream.tendon.told import F_IN, tendons_of, told_of
+
+SPACE, ALONG, BAND = ("tendon", "space"), ("tendon", "along"), ("tendon", "dead-band")
 
 
-def record_tendon(recorder: Recorder, run: SeenRun) -> Part | None:
-    """Record the tendon of one run, as one model or two see it; return what shows it.
+def view_of_tendon(run: SeenRun) -> Part | None:
+    """Return what shows the tendon of a run, None where no stage tells a model of it.
 
-    None where no stage tells a model of it, or only the lumped one, which does not say what is
-    along the tendon.
+    Raises
+    ------
+    InputError
+        A model's file cannot be read.
+    """
+    told = told_of(run)
+    if told is None:
+        return None
+    space = view_of_scene(run.entity(*SPACE), told.rigs(run.file.run))
+    along, band = view_of_along(run.entity(*ALONG)), view_of_band(run.entity(*BAND))
+    loops = [view_of(run, channel) for channel in run.loops if channel.column == F_IN]
+    near = Tabs([band, *loops]) if loops else band
+    return Columns([space, Rows([along, near])], shares=[3.0, 2.0])
+
+
+def record_tendon(recorder: Recorder, run: SeenRun) -> None:
+    """Record the tendon of one run, as one model or two see it, and when its fronts came through.
 
     Raises
     ------
@@ -24,14 +41,9 @@ def record_tendon(recorder: Recorder, run: SeenRun) -> Part | None:
     """
     tendons = tendons_of(run)
     if not tendons:
-        return None
-    entity, clock = run.entity("tendon"), run.clock
-    record_passages(recorder, run, tendons)
-    space = record_scene(recorder, [*entity, "space"], clock, tendons)
-    along = record_along(recorder, [*entity, "along"], clock, tendons)
+        return
     measured = run.measured(F_IN) if F_IN in run.file.names else None
-    band = record_band(recorder, [*entity, "dead-band"], clock, tendons, measured)
-    near: list[Part] = [] if band is None else [band]
-    near += [view_of(run, channel) for channel in run.loops if channel.column == F_IN]
-    beside: list[Part] = [along, Tabs(near)] if near else [along]
-    return Columns([space, Rows(beside)], shares=[3.0, 2.0])
+    record_passages(recorder, run, tendons)
+    record_scene(recorder, run.entity(*SPACE), run.clock, tendons)
+    record_along(recorder, run.entity(*ALONG), run.clock, tendons)
+    record_band(recorder, run.entity(*BAND), run.clock, tendons, measured)

@@ -6,6 +6,8 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.physics.chain_state import SLACK, UNSETTLED
+from tsas_cli.physics.response import ELEMENTS
+from tsas_cli.physics.rig import Rig
 from tsas_cli.reporting.stream.palette import colour
 from tsas_cli.reporting.stream.recorder import Clock, Recorder, Times
 from tsas_cli.reporting.stream.recorder.layout import Space
@@ -13,12 +15,12 @@ from tsas_cli.reporting.stream.recorder.moving import captions, coloured_pieces,
 from tsas_cli.reporting.stream.recorder.paths import Entity
 from tsas_cli.reporting.tendon.followed import Followed, Which
 from tsas_cli.reporting.tendon.shades import Scale, dimmed, packed, scale_of
-from tsas_cli.reporting.tendon.stage import LEFT, Stand, stage_of
+from tsas_cli.reporting.tendon.stage import LEFT, TALL, Stand, stage_of
 
 Floats = npt.NDArray[np.float64]
 Bools = npt.NDArray[np.bool_]
 
-GROUND = (13, 16, 20)
+GROUND = 0x0D1014FF
 SLIDES, STICKS, SHEATH, MARK = 0xFFFFFFFF, 0x6D7681FF, 0x4A535EFF, 0x0D1014FF
 BRIGHT, PALE, FOOT = 0.1, 0.62, 0.55  # by which colours go down to the ground: slips, sticks, low
 THICK, THIN, RAIL = 0.011, 0.004, 0.022  # radii, and where the sheath is, of the scene's size
@@ -26,22 +28,28 @@ MARKS = 24  # on the tendon, to see it move
 STEPS = 48  # of the legend
 
 
+def view_of_scene(entity: Entity, rigs: Sequence[Rig]) -> Space:
+    """Return the view of tendons, one for each rig."""
+    stage = stage_of(rigs, ELEMENTS)
+    return Space("Tendon", [entity], stage.eye, stage.target, GROUND)
+
+
 def record_scene(
     recorder: Recorder, entity: Entity, clock: Clock, tendons: Mapping[Which, Followed]
-) -> Space:
-    """Record the tendons of one run above each other; return the view that shows them."""
+) -> None:
+    """Record the tendons of one run above each other."""
     every = np.concatenate([one.frames.tension_N.ravel() for one in tendons.values()])
     scale = scale_of(float(np.nanmin(every)), float(np.nanmax(every)))
-    stage = stage_of(list(tendons.values()), scale.high)
+    followed = list(tendons.values())
+    stage = stage_of([one.rig for one in followed], followed[0].frames.slip.shape[1])
     for (which, one), stand in zip(tendons.items(), stage.stands, strict=True):
         mine, times = [*entity, which.key], clock.times(one.time_s)
         _sheath(recorder, mine, times, one, stand, scale)
         _curtain(recorder, mine, times, one, stand, scale)
-        _front(recorder, mine, times, one, stand)
+        _front(recorder, mine, times, one, stand, scale)
         _ends(recorder, mine, times, one, stand, scale)
         _captions(recorder, mine, times, one, stand, which)
     _legend(recorder, [*entity, "tension"], stage.stands[0], scale)
-    return Space("Tendon", [entity], stage.eye, stage.target)
 
 
 def _sheath(
@@ -69,14 +77,12 @@ def _curtain(
 ) -> None:
     """Draw a surface from the sheath up to the tension, bright and edged where the tendon slips."""
     line, tension = stand.sheath, np.nan_to_num(one.frames.tension_N)
-    top, count = stand.raised(tension), len(line)
+    top, count = line + _raised(stand, scale, tension), len(line)
     beside = np.zeros(tension.shape, dtype=bool)
     beside[:, :-1] |= one.slips
     beside[:, 1:] |= one.slips
     shades = scale.colours(tension)
-    high = np.where(
-        beside[..., None], dimmed(shades, BRIGHT, GROUND), dimmed(shades, PALE, GROUND)
-    )
+    high = np.where(beside[..., None], dimmed(shades, BRIGHT, GROUND), dimmed(shades, PALE, GROUND))
     both = np.concatenate((packed(dimmed(high, FOOT, GROUND)), packed(high)), axis=1)
     corners = np.concatenate((np.broadcast_to(line, top.shape), top), axis=1)
     low = np.arange(count - 1, dtype=np.uint32)
@@ -94,19 +100,21 @@ def _curtain(
         curves(recorder, [*entity, name], times, edge, shade, radius=radius)
 
 
+def _raised(stand: Stand, scale: Scale, tension_N: Floats) -> Floats:
+    """Return how far above the sheath tensions are drawn, shape (..., 3)."""
+    height: Floats = TALL * stand.size / scale.high * tension_N
+    return height[..., None] * np.array([0.0, 0.0, 1.0])
+
+
 def _front(
-    recorder: Recorder, entity: Entity, times: Times, one: Followed, stand: Stand
+    recorder: Recorder, entity: Entity, times: Times, one: Followed, stand: Stand, scale: Scale
 ) -> None:
     """Draw the front where it runs: bright points on the tendon and on the curtain's edge."""
-    share, line = one.frames.front, stand.sheath
-    tension = one.tension_at_front()
-    low = stand.at + stand.shape.at(share)
-    high = low + (stand.height_mm_per_N * tension)[:, None] * [0.0, 0.0, 1.0]
+    low = stand.at + stand.shape.at(one.frames.front)
+    posts = np.stack((low, low + _raised(stand, scale, one.tension_at_front())), axis=1)
     runs = one.front_runs_now
-    posts = [np.stack(pair) for pair in zip(low, high, strict=True)]
-    nothing = np.empty((0, 3))
-    points = [post if here else nothing for post, here in zip(posts, runs, strict=True)]
-    lines = [[post] if here else [] for post, here in zip(posts, runs, strict=True)]
+    points = [post[: 2 * here] for post, here in zip(posts, runs, strict=True)]
+    lines = [[post] * bool(here) for post, here in zip(posts, runs, strict=True)]
     recorder.points_3d([*entity, "front", "ends"], times, points, SLIDES, radii=-6.0)
     curves(recorder, [*entity, "front", "line"], times, lines, SLIDES, radius=-1.2)
 
@@ -118,15 +126,16 @@ def _ends(
     ends, at, muted = stand.ends, stand.at, colour("muted")
     tension, thick = one.frames.tension_N, THICK * stand.size
     recorder.curves_3d([*entity, "drive", "rim"], [ends.rim + at], muted, radii=-2.0)
-    spokes = [list(now + at) for now in ends.spokes]
+    spokes = [list(now) for now in ends.spokes(one.x_in_mm) + at]
     curves(recorder, [*entity, "drive", "spokes"], times, spokes, muted, radius=-1.2)
+    moving = ends.distal(one.x_out_mm)
     for name, lines, felt in (
-        ("drive", np.broadcast_to(ends.proximal, ends.distal.shape), tension[:, 0]),
-        ("load", ends.distal, tension[:, -1]),
+        ("drive", np.broadcast_to(ends.proximal, moving.shape), tension[:, 0]),
+        ("load", moving, tension[:, -1]),
     ):
-        shades, strips = packed(scale.colours(felt)), [[line + at] for line in lines]
+        shades, strips = packed(scale.colours(felt)), [[line] for line in lines + at]
         curves(recorder, [*entity, name, "tendon"], times, strips, shades, radius=thick)
-    springs = [[line + at] for line in ends.spring]
+    springs = [[line] for line in ends.spring(one.x_out_mm) + at]
     curves(recorder, [*entity, "load", "spring"], times, springs, muted, radius=-1.5)
     recorder.curves_3d([*entity, "load", "anchor"], [ends.anchor + at], muted, radii=-2.5)
     named = np.stack((ends.rim.mean(axis=0), ends.anchor.mean(axis=0))) + at
@@ -163,16 +172,17 @@ def _said(one: Followed) -> list[str]:
 
 def _legend(recorder: Recorder, entity: Entity, stand: Stand, scale: Scale) -> None:
     """Draw the scale of tension: a bar as high as the curtains, coloured as they are."""
-    foot = stand.at + [stand.shape.sheath[:, 0].min() - 0.8 * LEFT * stand.size, 0.0, 0.0]
-    up = stand.height_mm_per_N * np.array([0.0, 0.0, 1.0])
+    left = float(stand.shape.sheath[:, 0].min()) - 0.8 * LEFT * stand.size
+    foot = stand.at + left * np.array([1.0, 0.0, 0.0])
     levels = np.linspace(scale.low, scale.high, STEPS + 1)
-    bar = foot + levels[:, None] * up
+    bar = foot + _raised(stand, scale, levels)
     shades = packed(scale.colours(0.5 * (levels[1:] + levels[:-1]))).tolist()
     pieces = list(np.stack((bar[:-1], bar[1:]), axis=1))
     recorder.curves_3d([*entity, "bar"], pieces, shades, radii=0.012 * stand.size)
-    beside = [foot + tick * up - [0.07 * stand.size, 0.0, 0.0] for tick in scale.ticks]
+    beside = foot + _raised(stand, scale, np.array(scale.ticks))
+    beside[:, 0] -= 0.07 * stand.size
     names = [f"{tick:g} N" for tick in scale.ticks]
-    recorder.labels_3d([*entity, "ticks"], np.array(beside), names, colour("muted"))
+    recorder.labels_3d([*entity, "ticks"], beside, names, colour("muted"))
 
 
 def _stretches(where: Bools) -> Sequence[Sequence[int]]:

@@ -1,14 +1,18 @@
 """The tendon of a run, followed again with the models that the stages wrote down."""
 
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import cast
 
-from tsas_cli.identification.model import FILE, read_model
+from tsas_cli.identification.model import FILE, Model, read_model
 from tsas_cli.identification.prepared import drive_of, prepare, seconds_into
 from tsas_cli.physics.ends import Drive
 from tsas_cli.physics.response import Dynamics
+from tsas_cli.physics.rig import Rig
 from tsas_cli.recordings.columns import nominal_name
 from tsas_cli.recordings.dataset import Dataset, read_recording
+from tsas_cli.recordings.manifest import Run
 from tsas_cli.reporting.stage_files import Diagnosis, Simulation, StageFile
 from tsas_cli.reporting.stream.seen import X_IN, SeenRun
 from tsas_cli.reporting.tendon.followed import (
@@ -23,42 +27,71 @@ from tsas_cli.reporting.tendon.followed import (
 F_IN, F_OUT = "f_in_N", "f_out_N"
 
 
-def tendons_of(run: SeenRun) -> dict[Which, Followed]:
-    """Return the run followed with both models of a diagnosis, else with the simulated one.
+@dataclass(frozen=True)
+class Told:
+    """The models that a stage followed a run with, and how."""
 
-    None where neither stage took the run, or wrote no model.
+    stage: type[StageFile]
+    models: Mapping[Which, Model]
+    dynamics: Dynamics
+    nodes: int | None
+
+    def rigs(self, run: Run) -> list[Rig]:
+        """Return the rig of a run by each model."""
+        return [model.rig(run) for model in self.models.values()]
+
+
+def told_of(run: SeenRun) -> Told | None:
+    """Return both models of a diagnosis, else the simulated one.
+
+    None where neither stage took the run or wrote its models, and for the lumped model, which
+    does not say what is along the tendon.
+
+    Raises
+    ------
+    InputError
+        A model's file cannot be read.
+    """
+    diagnosis, simulation = run.inputs.get(Diagnosis), run.inputs.get(Simulation)
+    if diagnosis is not None:
+        which = (NOMINAL, EXTENDED) if diagnosis.named else (NOMINAL,)
+        return _told(run, Diagnosis, which, "slip", None)
+    if simulation is not None and simulation.dynamics != "static":
+        dynamics = cast("Dynamics", simulation.dynamics)
+        return _told(run, Simulation, (SIMULATED,), dynamics, simulation.nodes)
+    return None
+
+
+def _told(
+    run: SeenRun,
+    stage: type[StageFile],
+    shown: tuple[Which, ...],
+    dynamics: Dynamics,
+    nodes: int | None,
+) -> Told | None:
+    files = {which: run.inputs.folders[stage] / _file(which) for which in shown}
+    if not run.inputs.answered(run.id, stage) or not all(p.is_file() for p in files.values()):
+        return None
+    models = {which: read_model(path) for which, path in files.items()}
+    return Told(stage, models, dynamics, nodes)
+
+
+def tendons_of(run: SeenRun) -> dict[Which, Followed]:
+    """Return the run followed with the models that are told of it; none where none are.
 
     Raises
     ------
     InputError
         A file cannot be read, or is not what it was.
     """
-    diagnosis, simulation = run.inputs.get(Diagnosis), run.inputs.get(Simulation)
-    if diagnosis is not None:
-        shown = (NOMINAL, EXTENDED) if diagnosis.named else (NOMINAL,)
-        return _followed(run, Diagnosis, shown)
-    if simulation is not None:
-        dynamics = cast("Dynamics", simulation.dynamics)
-        return _followed(run, Simulation, (SIMULATED,), dynamics, simulation.nodes)
-    return {}
-
-
-def _followed(
-    run: SeenRun,
-    stage: type[StageFile],
-    shown: tuple[Which, ...],
-    dynamics: Dynamics = "slip",
-    nodes: int | None = None,
-) -> dict[Which, Followed]:
-    files = {which: run.inputs.folders[stage] / _file(which) for which in shown}
-    there = run.inputs.answered(run.id, stage)
-    if not there or not all(path.is_file() for path in files.values()):
+    told = told_of(run)
+    if told is None:
         return {}
-    models = {which: read_model(path) for which, path in files.items()}
+    there, rows = run.inputs.answered(run.id, told.stage), run.file.rows
     columns = [c for name in (F_IN, F_OUT) for c in (name, nominal_name(name)) if c in there]
-    answers = [run.inputs.answer(run.id, run.file.rows, name, stage) for name in columns]
-    drive = _drive(run, stage)
-    return follow(run.file.run, run.time_s, drive, models, answers, dynamics, nodes)
+    answers = [run.inputs.answer(run.id, rows, name, told.stage) for name in columns]
+    drive = _drive(run, told.stage)
+    return follow(run.file.run, run.time_s, drive, told.models, answers, told.dynamics, told.nodes)
 
 
 def _file(which: Which) -> str:
