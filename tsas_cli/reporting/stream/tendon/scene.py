@@ -103,7 +103,8 @@ def _curtain(
 def _raised(stand: Stand, scale: Scale, tension_N: Floats) -> Floats:
     """Return how far above the sheath tensions are drawn, shape (..., 3)."""
     height: Floats = TALL * stand.size / scale.high * tension_N
-    return height[..., None] * np.array([0.0, 0.0, 1.0])
+    raised: Floats = height[..., None] * np.array([0.0, 0.0, 1.0])
+    return raised
 
 
 def _front(
