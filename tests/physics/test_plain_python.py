@@ -12,6 +12,7 @@ from tests.physics.references import GROUP_A, course_of
 from tsas_cli.effects import Effects, FreeTendon, StribeckFriction
 from tsas_cli.physics.branches import branches
 from tsas_cli.physics.chain_state import DISPLACEMENT, FORCE, SPRING, Boundary
+from tsas_cli.physics.frames import empty_frames
 from tsas_cli.physics.lugre_chain import lugre_chain
 from tsas_cli.physics.slip_chain import slip_chain
 from tsas_cli.physics.static import static_model
@@ -46,6 +47,15 @@ columns, phase, progress = lugre_chain(
     np.arange(40) / 100, few, start, rig, Boundary(DISPLACEMENT, SPRING), 5, 1e3, equal_steps
 )
 assert phase[-1] == 2
+along = [empty_frames(np.arange(0, 300, 7), 10) for _ in range(2)]
+branches(x, rig, along[0])
+slip_chain(course_of(x, rig), rig, Boundary(DISPLACEMENT, SPRING), 10, along[1])
+along.append(empty_frames(np.arange(0, 40, 3), 5))
+lugre_chain(
+    np.arange(40) / 100, few, start, rig, Boundary(DISPLACEMENT, SPRING), 5, 1e3, equal_steps,
+    along[2],
+)
+answers += [[one.tension_N.ravel(), one.slip.ravel(), one.front] for one in along]
 answers.append([*columns, phase, np.hstack(progress)])
 columns = [column.tolist() for answer in answers for column in answer]
 print(json.dumps(["numba" in sys.modules, columns]))
@@ -54,6 +64,6 @@ print(json.dumps(["numba" in sys.modules, columns]))
 
 def test_compiled_is_plain_python_to_rounding():
     plain, compiled = answers(PROGRAM, plain=True), answers(PROGRAM, plain=False)
-    assert len(plain) == 3 * 3 + 4 * 5 + 5 * 6
+    assert len(plain) == 3 * 3 + 4 * 5 + 5 * 6 + 3 * 3
     for ours, theirs in zip(plain, compiled, strict=True):
         assert ours == pytest.approx(theirs, rel=1e-9, abs=1e-9)

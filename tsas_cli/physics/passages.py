@@ -34,7 +34,7 @@ def passages(x_in: Floats, phase: Phases) -> list[Passage]:
         As `Response.phase` has it, shape (n,).
     """
     starts = turns(x_in)
-    ends = np.append(starts[1:], x_in.size - 1)
+    ends = [*starts[1:], x_in.size - 1][: starts.size]
     found = []
     for start, end in zip(starts, ends, strict=True):
         direction = 1 if x_in[end] > x_in[start] else -1
