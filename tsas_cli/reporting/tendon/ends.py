@@ -88,7 +88,7 @@ class Ends:
 
     def _around(self, angle: Floats) -> Floats:
         """Return places on the rim, from where the tendon touches, in the way that it is wound."""
-        along = np.cross(self._radius, UP)  # from the sheath to the drive, at the touching point
+        along = np.cross(UP, self._radius)  # out of the sheath, where the tendon touches
         turned = np.cos(angle)[..., None] * self._radius + np.sin(angle)[..., None] * along
         place: Floats = self.centre + turned
         return place

@@ -18,7 +18,7 @@ from tsas_cli.reporting.tendon.shape import Shape, shape_of
 Floats = npt.NDArray[np.float64]
 
 DOWN_RAD = math.radians(44.0)  # by which the eye looks down
-SEEN = 0.80  # how high and wide a view is at distance 1, with some room around
+SEEN = 0.77  # how high and wide a view is at distance 1, with some room around
 TALL = 0.36  # of the scene's size: how high the highest tension is drawn
 GAP = 0.08  # of the size, between two tendons
 LEFT = 0.16  # of the size, kept free for the legend
