@@ -6,5 +6,5 @@ CLOSE_LOOP_OUT ?= reports/close-loop
 
 .PHONY: close-loop
 close-loop: setup  ## hide effects in a rig, diagnose them, track with the better model, and report
-	$(TSAS) close-loop --out '$(CLOSE_LOOP_OUT)/loop' --force
+	$(TSAS) close-loop --out '$(CLOSE_LOOP_OUT)/loop' --rrd --force
 	$(TSAS) report '$(CLOSE_LOOP_OUT)/loop' --out '$(CLOSE_LOOP_OUT)/report.html' --force

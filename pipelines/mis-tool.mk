@@ -22,15 +22,15 @@ FULL_LOAD := L_4_09,L_4_49
 
 # Folder, runs to learn from, runs to predict.
 define predict
-	.venv/bin/tsas calibrate $(MIS_TOOL_OUT)/L_4/dataset --runs $(2) --out $(MIS_TOOL_OUT)/$(1)/calibrate --force --quiet
-	.venv/bin/tsas diagnose $(MIS_TOOL_OUT)/L_4/dataset --runs $(2) --out $(MIS_TOOL_OUT)/$(1)/diagnose --force
-	.venv/bin/tsas simulate $(MIS_TOOL_OUT)/L_4/dataset --runs $(3) --fit-own --model $(MIS_TOOL_OUT)/$(1)/calibrate --out $(MIS_TOOL_OUT)/$(1)/nominal --force
-	.venv/bin/tsas simulate $(MIS_TOOL_OUT)/L_4/dataset --runs $(3) --fit-own --model $(MIS_TOOL_OUT)/$(1)/diagnose/model-extended.toml --out $(MIS_TOOL_OUT)/$(1)/extended --force
+	.venv/bin/tsas calibrate $(MIS_TOOL_OUT)/L_4/dataset --runs $(2) --out $(MIS_TOOL_OUT)/$(1)/calibrate --rrd --force --quiet
+	.venv/bin/tsas diagnose $(MIS_TOOL_OUT)/L_4/dataset --runs $(2) --out $(MIS_TOOL_OUT)/$(1)/diagnose --rrd --force
+	.venv/bin/tsas simulate $(MIS_TOOL_OUT)/L_4/dataset --runs $(3) --fit-own --model $(MIS_TOOL_OUT)/$(1)/calibrate --out $(MIS_TOOL_OUT)/$(1)/nominal --rrd --force
+	.venv/bin/tsas simulate $(MIS_TOOL_OUT)/L_4/dataset --runs $(3) --fit-own --model $(MIS_TOOL_OUT)/$(1)/diagnose/model-extended.toml --out $(MIS_TOOL_OUT)/$(1)/extended --rrd --force
 endef
 
 .PHONY: mis-tool-predict
 mis-tool-predict: mis-tool  ## learn from some recordings of mis-tool, predict other speeds, loads and the other instrument
 	$(call predict,speeds,$(AT_0.1_HZ),$(AT_0.5_HZ))
 	$(call predict,loads,$(UP_TO_HALF_LOAD),$(FULL_LOAD))
-	.venv/bin/tsas simulate $(MIS_TOOL_OUT)/pitch/dataset --fit-own --model $(MIS_TOOL_OUT)/L_4/calibrate --out $(MIS_TOOL_OUT)/pitch/by-L_4-nominal --force
-	.venv/bin/tsas simulate $(MIS_TOOL_OUT)/pitch/dataset --fit-own --model $(MIS_TOOL_OUT)/L_4/diagnose/model-extended.toml --out $(MIS_TOOL_OUT)/pitch/by-L_4-extended --force
+	.venv/bin/tsas simulate $(MIS_TOOL_OUT)/pitch/dataset --fit-own --model $(MIS_TOOL_OUT)/L_4/calibrate --out $(MIS_TOOL_OUT)/pitch/by-L_4-nominal --rrd --force
+	.venv/bin/tsas simulate $(MIS_TOOL_OUT)/pitch/dataset --fit-own --model $(MIS_TOOL_OUT)/L_4/diagnose/model-extended.toml --out $(MIS_TOOL_OUT)/pitch/by-L_4-extended --rrd --force

@@ -41,6 +41,11 @@ def test_wear_is_named_and_the_extended_model_tracks_as_the_true_one_does(strict
     calibrated = read_model(out / "friction_drift" / "calibrate").value(CORRECTION)
     extended = read_model(out / "friction_drift" / "diagnose" / "model-extended.toml")
     assert abs(extended.value(CORRECTION)) < 0.01 < 0.05 < abs(calibrated)
+    nominal = read_model(out / "friction_drift" / "diagnose" / "model-nominal.toml")
+    effects = [
+        {e.name.split(".")[0] for e in m.estimates if "." in e.name} for m in (extended, nominal)
+    ]
+    assert effects[0] - effects[1] == {cause["effect"] for cause in case["named"]}
 
 
 @pytest.mark.slow

@@ -13,6 +13,8 @@ from tsas_cli.commands.common import (
     Json,
     OutFolder,
     Quiet,
+    Rrd,
+    add_stream,
     opened,
     progress,
     show,
@@ -40,6 +42,7 @@ def calibrate(
         ),
     ] = DynamicsOption.slip,
     runs: ChosenRuns = None,
+    rrd: Rrd = False,
     force: Force = False,
     quiet: Quiet = False,
     as_json: Json = False,
@@ -50,6 +53,8 @@ def calibrate(
     data = opened(dataset, runs)
     with progress("calibrate", 2 * len(data.runs), quiet=quiet or as_json) as step:
         summary = calibrate_dataset(data, out, dynamics.value, model, force=force, step=step)
+    if rrd:
+        add_stream(out, quiet=quiet or as_json)
     show(summary, tables(summary, out), quiet=quiet, as_json=as_json)
     if not quiet and not as_json:
         for sentence in summary["cannot_tell"]:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tsas_cli.commands.common import DatasetFolder, Force, Json, Quiet, show
+from tsas_cli.commands.common import DatasetFolder, Force, Json, Quiet, Rrd, add_stream, show
 
 if TYPE_CHECKING:
     from tsas_cli.recordings.quality import Report
@@ -17,21 +17,27 @@ def check(
     out: Annotated[
         Path | None, typer.Option("--out", metavar="DIR", help="Also write DIR/check.json.")
     ] = None,
+    rrd: Rrd = False,
     force: Force = False,
     quiet: Quiet = False,
     as_json: Json = False,
 ) -> None:
     """Say what is wrong with recordings before anyone fits anything."""
+    from tsas_cli.errors import InputError
     from tsas_cli.files import new_folder, write_json
     from tsas_cli.recordings.dataset import read_dataset
     from tsas_cli.recordings.quality import check_dataset
 
+    if rrd and out is None:
+        raise InputError("--rrd has no folder to write to", remedy="give one with --out")
     opened = read_dataset(dataset)
     report = check_dataset(opened)
     content = opened.header("check", out or Path()) | report.content()
     if out is not None:
         with new_folder(out, force=force) as folder:
             write_json(folder / "check.json", content)
+        if rrd:
+            add_stream(out, quiet=quiet or as_json)
     show(content, _tables(report), quiet=quiet, as_json=as_json)
 
 

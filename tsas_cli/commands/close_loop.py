@@ -5,7 +5,16 @@ from typing import Annotated
 
 import typer
 
-from tsas_cli.commands.common import Force, Json, OutFolder, Quiet, progress, show
+from tsas_cli.commands.common import (
+    Force,
+    Json,
+    OutFolder,
+    Quiet,
+    Rrd,
+    add_stream,
+    progress,
+    show,
+)
 
 
 def close_loop(
@@ -24,6 +33,7 @@ def close_loop(
     ] = None,
     seeds: Annotated[int, typer.Option(min=1, help="How many seeds of noise.")] = 5,
     seed: Annotated[int, typer.Option(min=0, help="The first of them.")] = 1,
+    rrd: Rrd = False,
     force: Force = False,
     quiet: Quiet = False,
     as_json: Json = False,
@@ -37,4 +47,9 @@ def close_loop(
     read = read_settings(settings)
     with progress("close-loop", STEPS * len(wanted), quiet=quiet or as_json) as step:
         summary = close_all(wanted, read, out, range(seed, seed + seeds), force=force, step=step)
+    if rrd:
+        for case in summary["cases"]:
+            folder = out / case["case"]
+            stages = (folder / name for name in ("dataset", "calibrate", "diagnose"))
+            add_stream(folder, *stages, quiet=quiet or as_json)
     show(summary, tables(summary, out), quiet=quiet, as_json=as_json)

@@ -24,6 +24,9 @@ ChosenRuns = Annotated[
     typer.Option("--runs", metavar="IDS", help="Only these runs, with commas between; else all."),
 ]
 Force = Annotated[bool, typer.Option("--force", help="Replace the output if it is there.")]
+Rrd = Annotated[
+    bool, typer.Option("--rrd", help="Also write DIR/stream.rrd, to be looked at with tsas view.")
+]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
 Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON instead of a table.")]
 
@@ -40,6 +43,25 @@ def opened(folder: Path, runs: str | None) -> "Dataset":
 
     dataset = read_dataset(folder)
     return dataset if runs is None else dataset.only(name.strip() for name in runs.split(","))
+
+
+def add_stream(folder: Path, *folders: Path, quiet: bool) -> None:
+    """Write `stream.rrd` into a folder that a stage has finished.
+
+    It shows what stands in that folder, or in `folders` where they are given.
+
+    Raises
+    ------
+    InputError
+        A file cannot be read.
+    """
+    from tsas_cli.reporting.inputs import read_inputs
+    from tsas_cli.reporting.stream import FILE, write_stream
+
+    inputs = read_inputs(folders or (folder,))
+    runs = 0 if inputs.dataset is None else len(inputs.dataset.runs)
+    with progress("recording", runs, quiet=quiet) as step:
+        write_stream(inputs, folder / FILE, force=True, step=step)
 
 
 def show(

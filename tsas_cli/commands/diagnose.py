@@ -8,6 +8,8 @@ from tsas_cli.commands.common import (
     ModelFile,
     OutFolder,
     Quiet,
+    Rrd,
+    add_stream,
     opened,
     progress,
     show,
@@ -19,6 +21,7 @@ def diagnose(
     out: OutFolder,
     model: ModelFile = None,
     runs: ChosenRuns = None,
+    rrd: Rrd = False,
     force: Force = False,
     quiet: Quiet = False,
     as_json: Json = False,
@@ -29,6 +32,8 @@ def diagnose(
     data = opened(dataset, runs)
     with progress("diagnose", None, quiet=quiet or as_json) as step:
         summary = diagnose_dataset(data, model, out, force=force, step=step)
+    if rrd:
+        add_stream(out, quiet=quiet or as_json)
     show(summary, tables(summary, out), quiet=quiet, as_json=as_json)
     if not quiet and not as_json:
         print(summary["reason"])

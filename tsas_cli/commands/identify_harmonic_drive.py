@@ -12,6 +12,8 @@ from tsas_cli.commands.common import (
     Json,
     OutFolder,
     Quiet,
+    Rrd,
+    add_stream,
     opened,
     progress,
     show,
@@ -41,6 +43,7 @@ def identify_harmonic_drive(
         ),
     ] = SpeedOption.measured,
     runs: ChosenRuns = None,
+    rrd: Rrd = False,
     force: Force = False,
     quiet: Quiet = False,
     as_json: Json = False,
@@ -53,6 +56,8 @@ def identify_harmonic_drive(
     with progress("identify", None, quiet=quiet or as_json) as step:
         hold: Hold = "first" if speed is SpeedOption.measured else "zero"
         summary = identify_drive(data, out, hold, force=force, step=step)
+    if rrd:
+        add_stream(out, quiet=quiet or as_json)
     show(summary, tables(summary, out), quiet=quiet, as_json=as_json)
     if not quiet and not as_json:
         print(summary["diagnosis"]["reason"])

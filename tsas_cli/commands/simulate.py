@@ -13,6 +13,8 @@ from tsas_cli.commands.common import (
     ModelFile,
     OutFolder,
     Quiet,
+    Rrd,
+    add_stream,
     opened,
     progress,
     show,
@@ -44,6 +46,7 @@ def simulate(
         typer.Option(help="Nodes of the chain, 2 to 1000, where not as usual."),
     ] = None,
     runs: ChosenRuns = None,
+    rrd: Rrd = False,
     force: Force = False,
     quiet: Quiet = False,
     as_json: Json = False,
@@ -63,6 +66,8 @@ def simulate(
             force=force,
             step=step,
         )
+    if rrd:
+        add_stream(out, quiet=quiet or as_json)
     rows = [
         (run, name, f"{c['rmse']:.4g}", f"{c['noise']:.2g}", c["unit"], answer["solver"])
         for run, answer in summary["runs"].items()

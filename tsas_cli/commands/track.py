@@ -6,7 +6,16 @@ from typing import Annotated, Any
 
 import typer
 
-from tsas_cli.commands.common import Force, Json, OutFolder, Quiet, progress, show
+from tsas_cli.commands.common import (
+    Force,
+    Json,
+    OutFolder,
+    Quiet,
+    Rrd,
+    add_stream,
+    progress,
+    show,
+)
 
 
 class TendonOption(StrEnum):
@@ -70,6 +79,7 @@ def track(
     ] = None,
     seeds: Annotated[int | None, typer.Option(min=1, help="How many seeds of noise.")] = None,
     seed: Annotated[int, typer.Option(min=0, help="The first of them.")] = 1,
+    rrd: Rrd = False,
     force: Force = False,
     quiet: Quiet = False,
     as_json: Json = False,
@@ -100,6 +110,8 @@ def track(
     total = len(call.controllers) * len(call.conditions) * call.seeds
     with progress("track", total, quiet=quiet or as_json) as step:
         summary = track_all(call, out, force=force, step=step)
+    if rrd:
+        add_stream(out, quiet=quiet or as_json)
     header = ["controller", "condition", *(title for title, _ in COLUMNS)]
     rows = [
         [row["controller"], row["condition"], *(_cell(row["scores"][key]) for _, key in COLUMNS)]

@@ -56,8 +56,9 @@ class Cause:
 class Diagnosis:
     """The verdict and all that it rests on; nothing of that where it is undecided.
 
-    `model` is the extended one, `nominal` the one without what is named. `search` holds all hypotheses, `judged` those that count with the final weights, among them
-    the nominal model `before` and the `final` one.
+    `model` is the extended one, `nominal` the one without what is named. `search` holds all
+    hypotheses, `judged` those that count with the final weights, among them the nominal model
+    `before` and the `final` one.
     """
 
     verdict: Verdict

@@ -28,9 +28,10 @@ class StageFile(Record):
 
 
 class OfDataset(StageFile):
-    """What a stage says that has read a dataset."""
+    """What a stage says that has read a dataset; `chosen` are the runs, None where it is all."""
 
     dataset: Source
+    chosen: tuple[str, ...] | None = None
 
 
 class Finding(Record):

@@ -64,6 +64,7 @@ def record_channels(recorder: Recorder, run: SeenRun) -> None:
             _record_told(recorder, run, channel, source, told, measured)
             if portrait is not None:
                 portrait.record_answer(recorder, source, told)
+        recorder.settle()
 
 
 def _record_told(

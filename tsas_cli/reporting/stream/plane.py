@@ -69,7 +69,7 @@ class Frame:
         up = [
             (-0.1, -float(self.y.place(np.array(v))) - 0.04, as_printed(v)) for v in self.y.ticks()
         ]
-        named = [(WIDTH / 2.0, 0.14, x_label), (WIDTH / 5.0, -HEIGHT - 0.06, y_label)]
+        named = [(WIDTH / 2.0, 0.14, x_label), (0.4 * WIDTH, -HEIGHT - 0.06, y_label)]
         texts = [*across, *up, *named]
         return np.array([(x, y) for x, y, _ in texts]), [text for *_, text in texts]
 

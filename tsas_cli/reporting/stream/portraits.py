@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.reporting.channels import at_axis, in_words
-from tsas_cli.reporting.decimation import Indices, kept_cells, kept_samples
+from tsas_cli.reporting.decimation import Indices, kept_samples
 from tsas_cli.reporting.phases import PHASES, Phase, phase_of_samples
 from tsas_cli.reporting.stream.events import reversals
 from tsas_cli.reporting.stream.palette import colour
@@ -26,7 +26,7 @@ from tsas_cli.reporting.stream.sources import Source
 
 Floats = npt.NDArray[np.float64]
 
-MOMENTS = 4000  # about how many there are of a moving point
+POINTS, MOMENTS = 10_000, 4000  # about how many the loop has, and its moving point
 PART, USUAL_S = 0.3, 1.0  # of a stroke, and where no stroke is known: what runs along
 FAINT = 0x70
 _TRAIL_RADIUS, _NOW_RADIUS = 2.0, 6.0  # in points of the screen
@@ -106,11 +106,12 @@ class Portrait:
 
     def _by_phase(self) -> Iterator[tuple[Phase, list[Floats]]]:
         """Yield each phase with its stretches, thinned, up to the first point of the next one."""
-        x, y = self.x[self.there], self.y[self.there]
-        phase = phase_of_samples(self.run.time_s[self.there], self.run.segments)
-        kept = kept_cells(self.frame.x.place(x), self.frame.y.place(y))
-        kept = np.union1d(kept, np.flatnonzero(phase[1:] != phase[:-1]) + 1)
-        places, phase = self.frame.place(x[kept], y[kept]), phase[kept]
+        time_s, x, y = (values[self.there] for values in (self.run.time_s, self.x, self.y))
+        begun = np.searchsorted(time_s, [segment.start_s for segment in self.run.segments])
+        kept = np.union1d(kept_samples(x, y, points=POINTS), begun[begun < x.size])
+        kept = kept.astype(np.int64)
+        phase = phase_of_samples(time_s[kept], self.run.segments)
+        places = self.frame.place(x[kept], y[kept])
         edges = [0, *(np.flatnonzero(phase[1:] != phase[:-1]) + 1), phase.size]
         stretches = [(phase[first], places[first : end + 1]) for first, end in pairwise(edges)]
         for one in PHASES:

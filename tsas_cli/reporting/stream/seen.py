@@ -8,9 +8,10 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.recordings.columns import BY_NAME, TIME
-from tsas_cli.recordings.dataset import RunColumns, open_run
+from tsas_cli.recordings.dataset import Dataset, RunColumns, open_run
+from tsas_cli.recordings.manifest import Run
 from tsas_cli.reporting.inputs import Inputs
-from tsas_cli.reporting.stage_files import Calibration, Diagnosis, Segment, Simulation
+from tsas_cli.reporting.stage_files import Calibration, Diagnosis, OfDataset, Segment, Simulation
 from tsas_cli.reporting.stream.recorder import Clock, Times
 from tsas_cli.reporting.stream.recorder.paths import Entity
 from tsas_cli.reporting.stream.sources import Source, sources
@@ -122,7 +123,7 @@ def seen_runs(inputs: Inputs) -> Iterator[SeenRun]:
         return
     given, tracking = tuple(sources(inputs)), inputs.get(Tracking)
     tracked = {} if tracking is None else {result.run: result for result in tracking.results}
-    for run in inputs.dataset.runs:
+    for run in _taken(inputs, inputs.dataset):
         file = open_run(inputs.dataset.folder, run)
         columns = [name for name in BY_NAME if name in file.names and name != TIME]
         written = {source.stage: inputs.answered(run.id, source.stage) for source in given}
@@ -144,6 +145,15 @@ def seen_runs(inputs: Inputs) -> Iterator[SeenRun]:
             _segments(inputs, run.id),
             tracked.get(run.id),
         )
+
+
+def _taken(inputs: Inputs, dataset: Dataset) -> list[Run]:
+    """Return the runs that any stage took, all where one took all or none is given."""
+    chosen = [stage.chosen for stage in inputs.stages.values() if isinstance(stage, OfDataset)]
+    if not chosen or None in chosen:
+        return dataset.runs
+    taken = {name for names in chosen for name in names or ()}
+    return [run for run in dataset.runs if run.id in taken]
 
 
 def _segments(inputs: Inputs, run: str) -> Sequence[Segment]:

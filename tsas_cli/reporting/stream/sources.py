@@ -16,7 +16,8 @@ DRIVE = frozenset({"x_in_mm"})
 class Source:
     """What a stage says of some columns: `key` ends its entities, `role` is that of its colour.
 
-    What comes later in the alphabet is drawn over what comes before. `cleaned` where it is the measurement itself, cleaned before it drove a model, and no answer.
+    What comes later in the alphabet is drawn over what comes before. `cleaned` where it is the
+    measurement itself, cleaned before it drove a model, and no answer.
     """
 
     key: str

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from tsas_cli.reporting.channels import at_axis
 from tsas_cli.reporting.stream.channels import residuals_of, series_of
-from tsas_cli.reporting.stream.events import events_of
+from tsas_cli.reporting.stream.events import REVERSALS, events_of
 from tsas_cli.reporting.stream.phases import phases_of
 from tsas_cli.reporting.stream.portraits import view_of
 from tsas_cli.reporting.stream.recorder.layout import (
@@ -20,7 +20,7 @@ from tsas_cli.reporting.stream.recorder.layout import (
     Text,
 )
 from tsas_cli.reporting.stream.recorder.paths import Entity
-from tsas_cli.reporting.stream.seen import SeenRun
+from tsas_cli.reporting.stream.seen import X_IN, SeenRun
 from tsas_cli.reporting.stream.tendon.content import view_of_tendon
 from tsas_cli.reporting.stream.tracking import tracking_tab
 
@@ -72,7 +72,10 @@ def _by_run(
 
 
 def _run(run: SeenRun) -> Part | None:
-    rows = _over_phases(run, series_of(run))
+    series = series_of(run)
+    if X_IN in series and run.segments:
+        series[X_IN].append(run.entity(X_IN, REVERSALS))
+    rows = _over_phases(run, series)
     if rows is None:
         return None
     beside: list[Part] = [view_of(run, channel) for channel in run.loops]

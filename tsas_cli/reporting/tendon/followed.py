@@ -30,8 +30,8 @@ class Which:
 
 
 SIMULATED = Which("simulated", "simulated", "simulated")
-NOMINAL = Which("nominal", "nominal model", "before")
-EXTENDED = Which("extended", "extended model", "after")
+NOMINAL = Which("model", "nominal model", "before")
+EXTENDED = Which("model_extended", "extended model", "after")
 
 
 @dataclass(frozen=True)

@@ -11,9 +11,8 @@ import rerun as rr
 from tsas_cli.errors import InputError
 from tsas_cli.files import new_file
 from tsas_cli.reporting.stream.recorder.layout import Layout
+from tsas_cli.reporting.stream.recorder.reading import is_finished
 from tsas_cli.reporting.stream.recorder.recorder import Recorder
-
-SLOWEST_S = 10.0  # that a viewer may take to read what it is sent
 
 
 @contextmanager
@@ -42,9 +41,13 @@ def to_file(
         stream = _opened(name, layout)
         stream.save(temporary)
         try:
-            yield _laid_out(stream, layout)
+            recorder = _laid_out(Recorder(stream, path), layout)
+            yield recorder
+            recorder.settle()
         finally:
             stream.disconnect()  # writes the footer
+        if not is_finished(temporary):
+            raise InputError("its end cannot be written", where=path, remedy="is the disk full?")
 
 
 @contextmanager
@@ -60,10 +63,9 @@ def to_viewer(address: str, name: str, layout: Layout | None = None) -> Iterator
         stream = _opened(name, layout)
         stream.connect_grpc(address)
         try:
-            yield _laid_out(stream, layout)
-            stream.flush(timeout_sec=SLOWEST_S)
-        except RuntimeError as error:
-            raise InputError(f"no viewer takes the stream ({error})", where=address) from error
+            recorder = _laid_out(Recorder(stream, address), layout)
+            yield recorder
+            recorder.settle()
         finally:
             stream.disconnect()
 
@@ -82,8 +84,7 @@ def _opened(name: str, layout: Layout | None) -> rr.RecordingStream:
     return stream
 
 
-def _laid_out(stream: rr.RecordingStream, layout: Layout | None) -> Recorder:
-    recorder = Recorder(stream)
+def _laid_out(recorder: Recorder, layout: Layout | None) -> Recorder:
     if layout is not None:
         recorder.lay_out(layout)
     return recorder

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 import rerun as rr
 
+from tsas_cli.errors import InputError
 from tsas_cli.reporting.stream.recorder.blueprint import blueprint_of
 from tsas_cli.reporting.stream.recorder.clock import Times
 from tsas_cli.reporting.stream.recorder.layout import Layout
@@ -20,6 +21,7 @@ Floats = npt.NDArray[np.float64]
 Colour = int  # 0xRRGGBBAA
 Colours = npt.NDArray[np.uint32]
 
+SLOWEST_S = 10.0  # that a viewer or a disk may take for what it was sent
 ROWS = 8192  # of a series that are sent at a time
 _EXTREMES = rr.components.AggregationPolicy.MinMax  # the usual average flattens what is fast
 
@@ -29,6 +31,7 @@ class Recorder:
     """Writes entities to one stream; `opened.to_file` and `opened.to_viewer` open it."""
 
     stream: rr.RecordingStream
+    where: object = ""
 
     def lay_out(self, layout: Layout) -> None:
         """Say what the viewer opens with; the last one counts."""
@@ -51,6 +54,19 @@ class Recorder:
             if not there.all():
                 columns = columns.partition(there.astype(np.int64))
             self._columns(entity, piece, columns)
+
+    def settle(self) -> None:
+        """Wait until what was recorded is written: what waits for it is kept in memory.
+
+        Raises
+        ------
+        InputError
+            The file or the viewer does not take it.
+        """
+        try:
+            self.stream.flush(timeout_sec=SLOWEST_S)
+        except RuntimeError as error:
+            raise InputError(f"does not take the stream ({error})", where=self.where) from error
 
     def marks(self, entity: Entity, name: str, colour: Colour, *, size: float = 4.0) -> None:
         """Say that the series of an entity is drawn as marks that are not joined."""

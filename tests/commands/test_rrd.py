@@ -1,0 +1,56 @@
+"""`--rrd`: a stage's folder holds its stream too, and is else the same."""
+
+import json
+import re
+from pathlib import Path
+
+from tests.reporting.stream.streams import read
+
+PIPELINES = Path(__file__).parents[2] / "pipelines"
+WITH_STREAM = (
+    "check",
+    "calibrate",
+    "simulate",
+    "diagnose",
+    "identify-harmonic-drive",
+    "track",
+    "close-loop",
+)
+
+
+def test_a_stage_writes_its_stream_where_it_is_asked_to(strict, dataset, tmp_path):
+    for name, option in {"with": ["--rrd"], "without": []}.items():
+        done = strict("simulate", dataset, "--out", tmp_path / name, *option)
+        assert (done.returncode, done.stderr) == (0, "")
+    made, bare = (
+        {p.relative_to(tmp_path / name): p for p in (tmp_path / name).rglob("*") if p.is_file()}
+        for name in ("with", "without")
+    )
+    assert {str(path) for path in made.keys() - bare.keys()} == {"stream.rrd"}
+    assert all(made[path].read_bytes() == bare[path].read_bytes() for path in bare)
+    found = read(tmp_path / "with" / "stream.rrd")
+    assert found["/run/a/f_in_N/measured"].scalars.size == 500
+    assert found["/run/a/f_in_N/simulated"].scalars.size == 500
+
+
+def test_a_second_stream_replaces_the_first(strict, dataset, tmp_path):
+    out = tmp_path / "checked"
+    for _ in range(2):
+        done = strict("check", dataset, "--out", out, "--rrd", "--json", "--force")
+        assert (done.returncode, done.stderr) == (0, "")
+        assert json.loads(done.stdout)["stage"] == "check"
+    assert {path.name for path in out.iterdir()} == {"check.json", "stream.rrd"}
+
+
+def test_without_a_folder_there_is_nowhere_to_write(strict, dataset):
+    done = strict("check", dataset, "--rrd")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "--rrd has no folder to write to; give one with --out" in done.stderr
+
+
+def test_pipelines_write_a_stream_of_every_stage_that_can():
+    text = "".join(path.read_text(encoding="utf-8") for path in PIPELINES.glob("*.mk"))
+    calls = re.findall(r"tsas\)? ([\w-]+) (.*--out.*)", text, flags=re.IGNORECASE)
+    assert {stage for stage, _ in calls} >= set(WITH_STREAM)
+    for stage, options in calls:
+        assert ("--rrd" in options) == (stage in WITH_STREAM), f"{stage} {options}"

@@ -1,0 +1,75 @@
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+
+from tsas_cli.errors import InputError
+from tsas_cli.files import sha256_of
+from tsas_cli.recordings.dataset import open_run, read_dataset, read_recording, write_run
+
+
+def opened(folder):
+    return open_run(folder, read_dataset(folder).runs[0])
+
+
+def rewritten(folder, table):
+    """Write another file for the run, with its checksum."""
+    run = read_dataset(folder).runs[0]
+    pq.write_table(table, folder / run.file)
+    return open_run(folder, run.model_copy(update={"sha256": sha256_of(folder / run.file)}))
+
+
+def test_columns_are_those_of_the_recording(dataset, columns):
+    run = opened(dataset)
+    whole = read_recording(dataset, run.run)
+    assert run.names == list(columns)
+    assert run.rows == 500
+    for name in run.names:
+        assert (run.read(name) == whole.columns[name]).all()
+
+
+def test_null_is_a_gap_and_extra_columns_of_numbers_can_be_read(dataset):
+    table = {"time_s": [0.0, 1.0, 2.0], "f_in_N": [1.0, None, 3.0], "own": [7.0, 8.0, 9.0]}
+    run = rewritten(dataset, pa.table(table | {"text": ["a", "b", "c"]}))
+    assert run.names == ["time_s", "f_in_N", "own"]
+    assert np.isnan(run.read("f_in_N")).tolist() == [False, True, False]
+    assert run.read("own").tolist() == [7.0, 8.0, 9.0]
+
+
+def test_a_file_that_has_changed_is_refused(dataset, columns):
+    run = read_dataset(dataset).runs[0]
+    write_run(dataset, run, pa.table({name: 2 * values for name, values in columns.items()}))
+    with pytest.raises(InputError, match="checksum"):
+        opened(dataset)
+
+
+@pytest.mark.parametrize(
+    ("table", "said"),
+    [
+        ({"f_in_N": [1.0, 2.0]}, "time_s is missing"),
+        ({"time_s": [0.0], "f_in_N": [1.0]}, "short"),
+    ],
+)
+def test_a_file_without_time_is_refused(dataset, table, said):
+    with pytest.raises(InputError, match=said):
+        rewritten(dataset, pa.table(table))
+
+
+def test_another_unit_is_refused_before_anything_is_read(dataset):
+    field = pa.field("f_in_N", pa.float64(), metadata={"unit": "mm"})
+    schema = pa.schema([pa.field("time_s", pa.float64()), field])
+    with pytest.raises(InputError, match="says that its unit is mm"):
+        rewritten(dataset, pa.table({"time_s": [0.0, 1.0], "f_in_N": [1.0, 2.0]}, schema=schema))
+
+
+def test_time_that_runs_backwards_is_refused_when_it_is_read(dataset):
+    run = rewritten(dataset, pa.table({"time_s": [0.0, 2.0, 1.0], "f_in_N": [1.0, 2.0, 3.0]}))
+    with pytest.raises(InputError, match="row 2: time_s does not increase"):
+        run.read("time_s")
+
+
+def test_what_is_no_parquet_is_said(dataset):
+    run = read_dataset(dataset).runs[0]
+    (dataset / run.file).write_text("no")
+    with pytest.raises(InputError, match="cannot be read as Parquet"):
+        open_run(dataset, run.model_copy(update={"sha256": sha256_of(dataset / run.file)}))

@@ -1,0 +1,78 @@
+"""Streams read back, and folders of stages with what a stream shows beside the JSON."""
+
+from collections import defaultdict
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+from rerun.chunk import RrdReader
+
+from tests.reporting.made_folders import make_diagnosis, play
+from tsas_cli.recordings.dataset import read_dataset, write_parquet
+
+MODEL = """format = 1
+[parameters.friction_coefficient]
+value = 0.125
+unit = '1'
+stderr = 0.001
+interval_low = 0.123
+interval_high = 0.127
+at_bound = false
+origin = "fitted"
+"""
+
+
+@dataclass
+class Read:
+    """One entity: its times [ns] on each timeline, and by component a list of one list a row."""
+
+    times: dict[str, list[np.ndarray]] = field(default_factory=lambda: defaultdict(list))
+    rows: dict[str, list[list]] = field(default_factory=lambda: defaultdict(list))
+    chunks: list[int] = field(default_factory=list)
+    static: dict[str, list] = field(default_factory=dict)
+
+    def at(self, timeline: str = "t") -> np.ndarray:
+        """Return the times of all rows [ns], shape (n,)."""
+        return np.concatenate(self.times[timeline])
+
+    @property
+    def scalars(self) -> np.ndarray:
+        """Return the samples of a series, NaN where there is a gap, shape (n,)."""
+        return np.array([row[0] if row else np.nan for row in self.rows["Scalars:scalars"]])
+
+
+def read(path: Path) -> dict[str, Read]:
+    """Return all entities of a stream by path."""
+    found: dict[str, Read] = defaultdict(Read)
+    for chunk in RrdReader(path).stream():
+        batch, entity = chunk.to_record_batch(), found[chunk.entity_path]
+        for name, column in zip(batch.schema.names, batch.columns, strict=True):
+            if name == "rerun.controls.RowId":
+                continue
+            if name in chunk.timeline_names:
+                entity.times[name].append(column.cast(pa.int64()).to_numpy())
+            elif chunk.is_static:
+                entity.static[name] = column.to_pylist()[0]
+            else:
+                entity.rows[name] += column.to_pylist()
+        if not chunk.is_static:
+            entity.chunks.append(chunk.num_rows)
+    return dict(found)
+
+
+def make_diagnosed(dataset: Path, folder: Path, verdict: str = "named") -> Path:
+    """Write what `tsas diagnose` would: by 2 N the nominal model is off, the extended one not."""
+    make_diagnosis(dataset, folder, verdict)
+    (folder / "model-extended.toml").write_text(MODEL, encoding="utf-8")
+    (folder / "runs").mkdir()
+    for recording in read_dataset(dataset):
+        x_in, f_in, _, _ = play(recording.time_s)
+        columns = {
+            "time_s": recording.time_s,
+            "x_in_mm": x_in,
+            "f_in_N": f_in,
+            "f_in_nominal_N": f_in - 2.0,
+        }
+        write_parquet(folder / "runs" / f"{recording.run.id}.parquet", pa.table(columns))
+    return folder

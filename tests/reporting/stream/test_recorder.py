@@ -1,0 +1,162 @@
+"""What the recorder writes, read back."""
+
+from datetime import UTC, datetime, timedelta, timezone
+
+import numpy as np
+import pytest
+from rerun.chunk import RrdReader
+
+from tests.reporting.stream.streams import read
+from tsas_cli.errors import InputError
+from tsas_cli.reporting.stream.recorder import Clock, to_file
+from tsas_cli.reporting.stream.recorder.layout import Layout, Plane, Rows, Series, Tabs, Text
+from tsas_cli.reporting.stream.recorder.recorder import ROWS
+
+TIME_S = np.array([0.0, 0.001, 0.3, 1234.5678912345])
+NS = [0, 1_000_000, 300_000_000, 1_234_567_891_234]
+LINE = ("run", "a", "f_in_N")
+
+
+def test_times_are_rounded_to_the_nanosecond_and_not_cut(tmp_path):
+    """0.3 s is 0.299999999999999988898 s in binary."""
+    with to_file(tmp_path / "s.rrd", "x") as recorder:
+        recorder.scalars(LINE, Clock().times(TIME_S), np.arange(4.0))
+    line = read(tmp_path / "s.rrd")["/run/a/f_in_N"]
+    assert line.at().tolist() == [0, 1_000_000, 300_000_000, 1_234_567_891_234]
+    assert list(line.times) == ["t"]
+
+
+@pytest.mark.parametrize(
+    "started",
+    [
+        datetime(2026, 3, 2, 9, 30),  # noqa: DTZ001 # as a manifest may say it
+        datetime(2026, 3, 2, 9, 30, tzinfo=UTC),
+        datetime(2026, 3, 2, 11, 30, tzinfo=timezone(timedelta(hours=2))),
+    ],
+)
+def test_a_known_start_puts_the_run_on_the_session(tmp_path, started):
+    with to_file(tmp_path / "s.rrd", "x") as recorder:
+        recorder.scalars(LINE, Clock(started).times(TIME_S), np.arange(4.0))
+    line = read(tmp_path / "s.rrd")["/run/a/f_in_N"]
+    start = int(datetime(2026, 3, 2, 9, 30, tzinfo=UTC).timestamp()) * 10**9
+    assert line.at("session").tolist() == [start + ns for ns in NS]
+    assert line.at().tolist() == NS
+
+
+def test_a_gap_stays_a_gap(tmp_path):
+    values = np.array([1.0, np.nan, np.nan, 4.0])
+    with to_file(tmp_path / "s.rrd", "x") as recorder:
+        recorder.scalars(LINE, Clock().times(TIME_S), values)
+    line = read(tmp_path / "s.rrd")["/run/a/f_in_N"]
+    assert line.rows["Scalars:scalars"] == [[1.0], [], [], [4.0]]
+    assert line.at().tolist() == NS
+
+
+def test_a_long_series_goes_in_whole_in_pieces(tmp_path):
+    n = 2 * ROWS + 5
+    values = np.random.default_rng(1).standard_normal(n)
+    with to_file(tmp_path / "s.rrd", "x") as recorder:
+        recorder.scalars(LINE, Clock().times(np.arange(n) / 1000), values)
+    line = read(tmp_path / "s.rrd")["/run/a/f_in_N"]
+    assert sum(line.chunks) == n
+    assert max(line.chunks) <= ROWS
+    assert (line.scalars == values).all()
+
+
+@pytest.mark.parametrize("values", [np.arange(3.0), np.arange(5.0)])
+def test_columns_of_different_lengths_are_refused_and_nothing_is_written(tmp_path, values):
+    path = tmp_path / "s.rrd"
+    with pytest.raises(ValueError, match="values at 4 times"), to_file(path, "x") as recorder:
+        recorder.scalars(LINE, Clock().times(TIME_S), values)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_rerun_is_strict_while_a_stream_is_open(tmp_path):
+    with pytest.raises(ValueError, match="same length"), to_file(tmp_path / "s.rrd", "x") as made:
+        made.events(LINE, Clock().times(TIME_S), ["one"], ["INFO"])
+
+
+def test_names_from_files_are_one_part_of_a_path_each(tmp_path):
+    odd = ["<script>", "a/b", "a b ", "__x", "é+*", "tab\there", "+ /**"]
+    with to_file(tmp_path / "s.rrd", "x") as recorder:
+        for name in odd:
+            recorder.scalars(("run", name, "f"), Clock().times(TIME_S), np.arange(4.0))
+    found = [path for path in read(tmp_path / "s.rrd") if path.startswith("/run/")]
+    assert len(found) == len(odd)
+    assert all(path.replace("\\/", "").count("/") == 3 for path in found)
+    assert "/run/\\<script\\>/f" in found
+
+
+def test_states_end_where_they_are_said_to(tmp_path):
+    with to_file(tmp_path / "s.rrd", "x") as recorder:
+        times = Clock().times(TIME_S)
+        colours = {"up": 0xFF0000FF, "down": 0x00FF00FF}
+        labels = {"up": "dead band up"}
+        recorder.states(LINE, times, ["up", "down", "up", ""], colours=colours, labels=labels)
+    states = read(tmp_path / "s.rrd")["/run/a/f_in_N"]
+    assert states.rows["StateChange:state"] == [["up"], ["down"], ["up"], [""]]
+    assert states.static["StateConfiguration:values"] == ["up", "down"]
+    assert states.static["StateConfiguration:labels"] == ["dead band up", "down"]
+    assert states.static["StateConfiguration:colors"] == [0xFF0000FF, 0x00FF00FF]
+
+
+def test_a_series_is_drawn_by_its_extremes(tmp_path):
+    """The usual average would draw a fast chirp as if it decayed."""
+    with to_file(tmp_path / "s.rrd", "x") as recorder:
+        recorder.line(LINE, "measured", 0x112233FF)
+    static = read(tmp_path / "s.rrd")["/run/a/f_in_N"].static
+    assert static["SeriesLines:names"] == ["measured"]
+    assert static["SeriesLines:colors"] == [0x112233FF]
+    assert static["SeriesLines:aggregation_policy"] == [5]  # MinMax
+
+
+def test_pieces_in_space_stand_still_and_change_their_colours(tmp_path):
+    pieces = np.arange(18.0).reshape(3, 2, 3)
+    colours = np.arange(12, dtype=np.uint32).reshape(4, 3)
+    with to_file(tmp_path / "s.rrd", "x") as recorder:
+        recorder.segments_3d(LINE, pieces, Clock().times(TIME_S), colours)
+    tendon = read(tmp_path / "s.rrd")["/run/a/f_in_N"]
+    assert np.array(tendon.static["LineStrips3D:strips"]).tolist() == pieces.tolist()
+    assert tendon.rows["LineStrips3D:colors"] == colours.tolist()
+
+
+def test_points_may_be_none_at_a_time(tmp_path):
+    places = [np.zeros((0, 3)), np.ones((1, 3)), np.ones((2, 3)), np.zeros((0, 3))]
+    with to_file(tmp_path / "s.rrd", "x") as recorder:
+        recorder.points_3d(LINE, Clock().times(TIME_S), places, 0xFF00FFFF)
+    found = read(tmp_path / "s.rrd")["/run/a/f_in_N"].rows["Points3D:positions"]
+    assert [len(row) for row in found] == [0, 1, 2, 0]
+
+
+def test_every_layout_is_an_application_of_its_own(tmp_path):
+    """A viewer keeps the first layout that an application has shown."""
+    one = Layout(Tabs([Rows([Text("a", ("a",))], name="A"), Series("s", [LINE])]))
+    other = Layout(Plane("p", [LINE], (0.0, 1.0), (0.0, 1.0), {LINE: 2.0}))
+    ids = []
+    for number, layout in enumerate((one, one, other)):
+        path = tmp_path / f"{number}.rrd"
+        with to_file(path, "Prüfstand <1>", layout) as recorder:
+            recorder.markdown(("a",), "hi")
+        reader = RrdReader(path)
+        (recording,), (blueprint,) = reader.recordings(), reader.blueprints()
+        assert blueprint.application_id == recording.application_id
+        ids.append(recording.application_id)
+    assert ids[0] == ids[1] != ids[2]
+    assert ids[0].startswith("tsas-Pr-fstand-1-")
+
+
+def test_what_fails_leaves_no_file_and_replaces_none(tmp_path):
+    path = tmp_path / "s.rrd"
+    path.write_text("mine")
+    with pytest.raises(InputError, match="already exists"), to_file(path, "x"):
+        pass
+    with pytest.raises(KeyError), to_file(path, "x", force=True):
+        raise KeyError
+    assert path.read_text() == "mine"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_rerun_switched_off_is_said(tmp_path, monkeypatch):
+    monkeypatch.setenv("RERUN", "off")
+    with pytest.raises(InputError, match="switched off"), to_file(tmp_path / "s.rrd", "x"):
+        pass

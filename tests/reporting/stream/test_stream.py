@@ -1,0 +1,253 @@
+"""Streams of made folders, read back and held against the files that they were made from."""
+
+import json
+from datetime import datetime
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+
+from tests.reporting.made_folders import (
+    make_calibration,
+    make_check,
+    make_dataset,
+    make_simulation,
+    make_tracking,
+)
+from tests.reporting.stream.streams import make_diagnosed, read
+from tsas_cli.errors import InputError
+from tsas_cli.recordings.dataset import RunColumns, write_dataset
+from tsas_cli.recordings.manifest import Manifest, Run
+from tsas_cli.reporting.inputs import read_inputs
+from tsas_cli.reporting.phases import BY_KEY
+from tsas_cli.reporting.stream import write_stream
+from tsas_cli.reporting.stream.palette import colour
+from tsas_cli.reporting.stream.recorder.recorder import ROWS
+
+SAMPLES = 2 * ROWS + 100
+
+
+def stream(folder: Path, *stages: Path) -> dict:
+    write_stream(read_inputs(list(stages)), folder / "s.rrd")
+    return read(folder / "s.rrd")
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("made")
+    dataset = make_dataset(folder / "dataset", samples=SAMPLES)
+    make_simulation(dataset, folder / "simulate")
+    make_calibration(dataset, folder / "calibrate")
+    make_diagnosed(dataset, folder / "diagnose")
+    return folder
+
+
+@pytest.fixture(scope="module")
+def found(made):
+    return stream(made, *(made / name for name in ("calibrate", "simulate", "diagnose")))
+
+
+def column(path, name):
+    return pq.read_table(path).column(name).to_numpy()
+
+
+def test_every_sample_is_there_at_the_nanosecond_of_the_parquet(made, found):
+    for number, run in enumerate("ab"):
+        recorded = made / "dataset" / "runs" / f"{number}.parquet"
+        time_ns = np.round(column(recorded, "time_s") * 1e9).astype(np.int64)
+        for name in ("x_in_mm", "f_in_N", "f_out_N"):
+            line = found[f"/run/{run}/{name}/measured"]
+            assert (line.at() == time_ns).all()
+            assert (line.scalars == column(recorded, name)).all()
+            assert line.chunks == [ROWS, ROWS, 100]
+
+
+def test_measured_and_simulated_are_not_swapped(made, found):
+    for key, stage, name in (
+        ("simulated", "simulate", "f_in_N"),
+        ("model", "diagnose", "f_in_nominal_N"),
+        ("model_extended", "diagnose", "f_in_N"),
+    ):
+        measured = column(made / "dataset" / "runs" / "0.parquet", "f_in_N")
+        answer = column(made / stage / "runs" / "a.parquet", name)
+        assert not (measured == answer).all()
+        assert (found[f"/run/a/f_in_N/{key}"].scalars == answer).all()
+        residual = found[f"/run/a/f_in_N/residual/{key}"]
+        assert (residual.scalars == measured - answer).all()
+        assert (residual.at() == found["/run/a/f_in_N/measured"].at()).all()
+
+
+def test_what_was_not_simulated_has_no_answer_and_what_drives_a_model_no_residual(made, tmp_path):
+    found = stream(tmp_path, made / "diagnose")
+    assert "/run/a/f_in_N/model" in found
+    assert "/run/a/f_out_N/model" not in found
+    assert "/run/a/f_in_N/simulated" not in found
+    assert "/run/a/x_in_mm/model_input" in found
+    assert "/run/a/x_in_mm/residual/model_input" not in found
+
+
+def test_series_are_named_and_coloured_as_in_the_report(found):
+    named = {
+        "measured": ("measured", "measured"),
+        "simulated": ("simulated", "simulated"),
+        "model": ("nominal model", "before"),
+        "model_extended": ("extended model", "after"),
+    }
+    for key, (label, role) in named.items():
+        static = found[f"/run/a/f_in_N/{key}"].static
+        assert static["SeriesLines:names"] == [label]
+        assert static["SeriesLines:colors"] == [colour(role)]
+
+
+def test_phases_begin_when_the_file_says_in_the_colours_of_the_report(made, found):
+    said = json.loads((made / "calibrate" / "calibration.json").read_text())["segments"]["a"]
+    phase = found["/run/a/phase"]
+    begun = [(round(s["start_s"] * 1e9), s["phase"]) for s in said]
+    ends = [(round(s["end_s"] * 1e9), "") for s in said]
+    states = [row[0] for row in phase.rows["StateChange:state"]]
+    shown = list(zip(phase.at().tolist(), states, strict=True))
+    assert [state for state in shown if state[1]] == begun
+    assert set(shown) - set(begun) <= set(ends)
+    assert shown[-1] == ends[-1]
+    values, colours = (phase.static[f"StateConfiguration:{what}"] for what in ("values", "colors"))
+    assert dict(zip(values, colours, strict=True)) == {
+        key: colour(one.colour) for key, one in BY_KEY.items()
+    }
+
+
+def test_the_drive_turns_where_it_does(made, found):
+    """It is a sine of 10 mm that begins at its lowest place, for two periods."""
+    at_s = found["/run/a/events/reversals"].at() / 1e9
+    step = 4 * np.pi / SAMPLES
+    assert at_s == pytest.approx([np.pi, 2 * np.pi, 3 * np.pi], abs=3 * step)
+    said = [row[0] for row in found["/run/a/events/reversals"].rows["TextLog:text"]]
+    assert ["lets go" in text for text in said] == [True, False, True]
+    marks = found["/run/a/x_in_mm/reversals"]
+    assert marks.scalars == pytest.approx([20.0, 0.0, 20.0], abs=1e-3)
+
+
+def test_the_loop_stands_in_its_phases_and_the_point_runs_along(made, found):
+    phases = {path.rsplit("/", 1)[1] for path in found if "/run/a/f_in_N/loop/phase/" in path}
+    assert phases == {"contraction", "loosening", "dead_band_up", "dead_band_down"}
+    now, recorded = found["/run/a/f_in_N/loop/now/measured"], made / "dataset/runs/0.parquet"
+    places = np.array([row[0] for row in now.rows["Points2D:positions"]])
+    at = np.searchsorted(np.round(column(recorded, "time_s") * 1e9).astype(np.int64), now.at())
+    x, y = column(recorded, "x_in_mm")[at], column(recorded, "f_in_N")[at]
+    assert np.corrcoef(places[:, 0], x)[0, 1] == pytest.approx(1.0)
+    assert np.corrcoef(places[:, 1], y)[0, 1] == pytest.approx(-1.0)
+    trail = found["/run/a/f_in_N/loop/trail/measured"]
+    ends = np.array([row[0] for row in trail.rows["LineStrips2D:strips"]])
+    assert (ends[:-1, 1] == ends[1:, 0]).all()
+    assert (ends[:, 1] == places[1:].astype(np.float32)).all()
+    assert (trail.at() == now.at()[1:]).all()
+
+
+def test_a_gap_stays_a_gap_and_no_loop_bridges_it(tmp_path):
+    time_s = np.arange(200) / 100
+    f_in = np.where((time_s > 0.5) & (time_s < 0.6), np.nan, 20 + time_s)
+    table = {"time_s": time_s, "x_in_mm": 5 * time_s, "f_in_N": f_in}
+    run = Run(id="<script>", file="runs/a.parquet", sha256="0" * 64)
+    manifest = Manifest(format=1, name="gap", kind="measured", run=(run,))
+    arrays = {name: pa.array(values, from_pandas=True) for name, values in table.items()}
+    (tmp_path / "d").mkdir()
+    write_dataset(tmp_path / "d", manifest, {"<script>": pa.table(arrays)})
+    found = stream(tmp_path, tmp_path / "d")
+    line = found["/run/\\<script\\>/f_in_N/measured"]
+    assert line.scalars.size == 200
+    assert (np.isnan(line.scalars) == np.isnan(f_in)).all()
+    trail = found["/run/\\<script\\>/f_in_N/loop/trail/measured"]
+    gap_ns = (trail.at() > 0.5 * 1e9) & (trail.at() < 0.605 * 1e9)
+    assert not gap_ns.any()
+    assert trail.at().size == 200 - 1 - (np.isnan(f_in).sum() + 1)
+
+
+def test_a_start_puts_all_of_a_run_on_the_session(tmp_path):
+    run = {"id": "a", "file": "runs/a.parquet", "sha256": "0" * 64}
+    run["started"] = datetime(2026, 3, 2, 9, 30)  # noqa: DTZ001 # as a manifest may say it
+    manifest = Manifest.model_validate(
+        {"format": 1, "name": "n", "kind": "measured", "run": [run, run | {"id": "b"}]}
+    )
+    time_s = np.arange(50) / 10
+    table = pa.table({"time_s": time_s, "x_in_mm": time_s, "f_in_N": time_s})
+    (tmp_path / "d").mkdir()
+    write_dataset(tmp_path / "d", manifest, {"a": table, "b": table})
+    found = stream(tmp_path, tmp_path / "d")
+    moving = [entity for path, entity in found.items() if entity.times]
+    assert len(moving) == 2 * (2 + 2)  # two series, and a trail and a point, of each run
+    for entity in moving:
+        began = np.datetime64("2026-03-02T09:30:00", "ns").astype(np.int64)
+        assert (entity.at("session") - began == entity.at()).all()
+
+
+def test_faults_stand_where_they_begin_with_their_severity(tmp_path):
+    dataset = make_dataset(tmp_path / "dataset")
+    finding = {"code": "clipped", "run": "b", "sentence": "f_in_N is clipped", "remedy": ""}
+    late = finding | {"severity": "error", "first_s": 1.25}
+    whole = finding | {"severity": "note", "first_s": None, "sentence": "rate is low"}
+    found = stream(tmp_path, make_check(dataset, tmp_path / "check", [late, whole]))
+    faults = found["/run/b/events/faults"]
+    assert faults.at().tolist() == [0, 1_250_000_000]
+    assert [row[0] for row in faults.rows["TextLog:level"]] == ["INFO", "ERROR"]
+    assert "clipped: f\\_in" not in faults.rows["TextLog:text"][1][0]
+    assert "f_in_N is clipped" in faults.rows["TextLog:text"][1][0]
+    assert "/run/a/events/faults" not in found
+
+
+def test_a_closed_loop_shows_its_error_and_what_the_controller_remembers(tmp_path):
+    """The made force is missed by 1 N undisturbed, and by 2 N disturbed."""
+    found = stream(tmp_path, make_tracking(tmp_path / "tracked"))
+    for condition, missed_N in (("undisturbed", 1.0), ("disturbed", 2.0)):
+        run = f"/run/pid-{condition}"
+        assert found[f"{run}/tracking_error_N"].scalars == pytest.approx(missed_N)
+        wanted, true = (found[f"{run}/f_out_N/{key}"].scalars for key in ("wanted", "true"))
+        assert wanted - true == pytest.approx(missed_N)
+        assert found[f"{run}/f_out_N/true"].static["SeriesLines:names"] == ["pid"]
+    adapted = found["/run/adaptive-sliding-mode-disturbed/phi1_rpm_s3_per_mm"]
+    assert set(adapted.scalars) == {0.005, 0.1}
+    assert "/run/pid-disturbed/phi1_rpm_s3_per_mm" not in found
+
+
+def test_texts_say_what_was_found_and_escape_what_files_hold(made, found):
+    about = found["/about/overview"].static["TextDocument:text"][0]
+    assert "# bench" in about
+    assert "A free length of tendon" in about
+    told = found["/about/diagnosis"].static["TextDocument:text"][0]
+    assert "| proximal\\_length\\_mm | 152" in told
+    assert "<rest>" not in told
+    assert "\\<rest\\>" in told
+    assert "0.1230 to 0.1270" in told  # of the model
+
+
+def test_each_column_is_read_once(made, tmp_path, monkeypatch):
+    read_columns = []
+    real = RunColumns.read
+
+    def counted(self, name):
+        read_columns.append((self.run.id, name))
+        return real(self, name)
+
+    monkeypatch.setattr(RunColumns, "read", counted)
+    stream(tmp_path, made / "calibrate")
+    names = ("time_s", "x_in_mm", "f_in_N", "f_out_N")
+    assert sorted(read_columns) == sorted((run, name) for run in "ab" for name in names)
+
+
+def test_only_runs_that_a_stage_took_are_shown(made, tmp_path):
+    folder = make_simulation(made / "dataset", made / "some")
+    path = folder / "simulation.json"
+    path.write_text(json.dumps(json.loads(path.read_text()) | {"chosen": ["b"]}))
+    found = stream(tmp_path, folder)
+    assert "/run/b/f_in_N/simulated" in found
+    assert not any(path.startswith("/run/a/") for path in found)
+
+
+def test_answers_to_another_recording_are_refused_and_nothing_is_left(tmp_path):
+    dataset = make_dataset(tmp_path / "dataset")
+    folder = make_simulation(dataset, tmp_path / "simulate")
+    path = folder / "runs" / "b.parquet"
+    pq.write_table(pq.read_table(path).slice(0, 100), path)
+    with pytest.raises(InputError, match=r"b\.parquet: 100 rows"):
+        stream(tmp_path, folder)
+    assert not (tmp_path / "s.rrd").exists()

@@ -1,0 +1,88 @@
+"""What the viewer opens with."""
+
+import pytest
+
+from tests.reporting.made_folders import (
+    make_calibration,
+    make_check,
+    make_dataset,
+    make_simulation,
+    make_tracking,
+)
+from tests.reporting.stream.streams import make_diagnosed, read
+from tsas_cli.reporting.inputs import read_inputs
+from tsas_cli.reporting.stream import stream_of, write_stream
+from tsas_cli.reporting.stream.recorder.layout import Log, Plane, Series, States, Text
+from tsas_cli.reporting.stream.recorder.paths import path_of
+
+
+def views(part):
+    """Return all views of a part."""
+    inner = getattr(part, "parts", None)
+    return [part] if inner is None else [view for one in inner for view in views(one)]
+
+
+def tabs(folder):
+    root = stream_of(read_inputs([folder])).layout.root
+    return {part.name: part for part in root.parts}, root.parts[root.on_top].name
+
+
+@pytest.fixture(scope="module")
+def dataset(tmp_path_factory):
+    return make_dataset(tmp_path_factory.mktemp("tabs") / "dataset")
+
+
+def test_only_tabs_are_there_that_have_something_to_show(dataset, tmp_path):
+    made = {
+        dataset: ["Overview"],
+        make_check(dataset, tmp_path / "check"): ["Overview"],
+        make_calibration(dataset, tmp_path / "calibrate"): ["Overview"],
+        make_simulation(dataset, tmp_path / "simulate"): ["Overview", "Residuals"],
+        make_diagnosed(dataset, tmp_path / "diagnose"): ["Overview", "Residuals", "Diagnosis"],
+        make_tracking(tmp_path / "track"): ["Overview", "Tracking"],
+    }
+    for folder, names in made.items():
+        found, opens = tabs(folder)
+        assert list(found) == names
+        assert opens == ("Tracking" if "Tracking" in names else "Overview")
+
+
+def test_every_view_shows_something_that_was_recorded(dataset, tmp_path):
+    folders = [
+        make_calibration(dataset, tmp_path / "calibrate"),
+        make_simulation(dataset, tmp_path / "simulate"),
+        make_diagnosed(dataset, tmp_path / "diagnose"),
+    ]
+    for number, given in enumerate([folders, [make_tracking(tmp_path / "track")]]):
+        inputs, path = read_inputs(given), tmp_path / f"{number}.rrd"
+        write_stream(inputs, path)
+        recorded = set(read(path))
+        shown = views(stream_of(inputs).layout.root)
+        assert {type(view) for view in shown} >= {Series, Plane, Text}
+        for view in shown:
+            wanted = [view.entity] if isinstance(view, Text) else view.entities
+            if isinstance(view, Plane):
+                wanted = [*wanted, *view.trails]
+            for entity in map(path_of, wanted):
+                assert any(one == entity or one.startswith(f"{entity}/") for one in recorded)
+
+
+def test_phases_and_events_stand_with_the_run_that_they_are_of(dataset, tmp_path):
+    found, _ = tabs(make_calibration(dataset, tmp_path / "calibrate"))
+    runs = found["Overview"].parts[0].parts[1].parts
+    assert [run.name for run in runs] == ["run a", "run b", "all runs"]
+    for name, run in zip("ab", runs, strict=False):
+        beside = [view for view in views(run) if isinstance(view, States | Log)]
+        assert len(beside) == 2
+        assert all(entity[1] == name for view in beside for entity in view.entities)
+
+
+def test_a_legend_stands_where_something_new_is_drawn(dataset, tmp_path):
+    found, _ = tabs(make_diagnosed(dataset, tmp_path / "diagnose"))
+    first = found["Overview"].parts[0].parts[1].parts[0]
+    shown = {view.name: view.legend for view in views(first) if isinstance(view, Series)}
+    assert shown == {
+        "tension at the drive [N]": True,
+        "tension at the load [N]": False,
+        "displacement of the tendon at the drive [mm]": True,
+    }
