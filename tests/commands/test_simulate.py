@@ -190,6 +190,9 @@ def test_a_run_that_was_not_fitted_is_predicted_once_its_own_zeros_are_known(
     assert answers["own"]["rmse"] < 2.0 * answers["own"]["noise"]
     assert answers["as it is"]["rmse"] > 5.0 * answers["own"]["rmse"]
     assert answers["wrong"]["rmse"] > 3.0 * answers["own"]["rmse"]
+    again = ("--model", tmp_path / "own", "--runs", "b", "--out", tmp_path / "again", "--json")
+    done = strict("simulate", folder, *again)  # with the model as it was used
+    assert json.loads(done.stdout)["runs"]["b"]["channels"]["f_in_N"] == answers["own"]
 
 
 @pytest.mark.parametrize("stage", ["calibrate", "diagnose", "simulate"])

@@ -110,16 +110,6 @@ def test_a_series_is_drawn_by_its_extremes(tmp_path):
     assert static["SeriesLines:aggregation_policy"] == [5]  # MinMax
 
 
-def test_pieces_in_space_stand_still_and_change_their_colours(tmp_path):
-    pieces = np.arange(18.0).reshape(3, 2, 3)
-    colours = np.arange(12, dtype=np.uint32).reshape(4, 3)
-    with to_file(tmp_path / "s.rrd", "x") as recorder:
-        recorder.segments_3d(LINE, pieces, Clock().times(TIME_S), colours)
-    tendon = read(tmp_path / "s.rrd")["/run/a/f_in_N"]
-    assert np.array(tendon.static["LineStrips3D:strips"]).tolist() == pieces.tolist()
-    assert tendon.rows["LineStrips3D:colors"] == colours.tolist()
-
-
 def test_points_may_be_none_at_a_time(tmp_path):
     places = [np.zeros((0, 3)), np.ones((1, 3)), np.ones((2, 3)), np.zeros((0, 3))]
     with to_file(tmp_path / "s.rrd", "x") as recorder:

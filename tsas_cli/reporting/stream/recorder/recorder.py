@@ -175,24 +175,6 @@ class Recorder:
             entity, rr.LineStrips3D(list(curves), colors=colours, radii=radii, labels=labels)
         )
 
-    def segments_3d(
-        self,
-        entity: Entity,
-        segments: Floats,
-        times: Times,
-        colours: Colours,
-        *,
-        radii: float | Sequence[float] = -4.0,
-    ) -> None:
-        """Set a curve of m pieces, shape (m, 2, 3), and add their colours over time, shape (n, m).
-
-        A strip has one colour, hence pieces of two points each; where they are stands still.
-        """
-        self._static(entity, rr.LineStrips3D(segments.astype(np.float32), radii=radii))
-        moments, pieces = colours.shape
-        columns = rr.LineStrips3D.columns(colors=np.ascontiguousarray(colours).ravel())
-        self._columns(entity, times, columns.partition(np.full(moments, pieces)))
-
     def points_3d(
         self,
         entity: Entity,
@@ -220,15 +202,6 @@ class Recorder:
         """Set texts in space at places of shape (n, 3); they hold at all times."""
         look = rr.Points3D(places, labels=list(labels), colors=colour, radii=0.0, show_labels=True)
         self._static(entity, look)
-
-    def mesh_3d(
-        self, entity: Entity, corners: Floats, triangles: npt.NDArray[np.uint32], colour: Colour
-    ) -> None:
-        """Set a surface of corners, shape (n, 3), and triangles of them, shape (m, 3)."""
-        self._static(
-            entity,
-            rr.Mesh3D(vertex_positions=corners, triangle_indices=triangles, albedo_factor=colour),
-        )
 
     def _static(self, entity: Entity, look: rr.AsComponents) -> None:
         self.stream.log(path_of(entity), look, static=True, strict=True)
