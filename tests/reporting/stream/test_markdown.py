@@ -13,6 +13,9 @@ from tsas_cli.reporting.stream.markdown import plain_text, section_text, table_t
         ("f_in_N *now*", r"f\_in\_N \*now\*"),
         ("two\nlines", r"two\\nlines"),
         ("plain 1.5 N", "plain 1.5 N"),
+        ("run `tsas check <x>` first", "run `tsas check <x>` first"),
+        ("one ` alone <b>", r"one \` alone \<b\>"),
+        ("in a cell `a|b`", r"in a cell a\|b"),
     ],
 )
 def test_nothing_in_a_name_is_read_as_markdown(name, shown):

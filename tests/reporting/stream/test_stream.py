@@ -195,6 +195,23 @@ def test_faults_stand_where_they_begin_with_their_severity(tmp_path):
     assert "/run/a/events/faults" not in found
 
 
+def test_what_the_checks_cannot_read_is_told_and_not_shown(tmp_path):
+    dataset = make_dataset(tmp_path / "dataset")
+    finding = {
+        "code": "unreadable",
+        "severity": "error",
+        "run": "a",
+        "sentence": "a.parquet is empty",
+    }
+    check = make_check(dataset, tmp_path / "check", [finding])
+    (dataset / "runs" / "0.parquet").write_bytes(b"")
+    found = stream(tmp_path, check)
+    assert "/run/b/f_in_N/measured" in found
+    assert not any(path.startswith("/run/a/") for path in found)
+    said = found["/about/overview"].static["TextDocument:text"][0]
+    assert "error, run a, unreadable: a.parquet is empty" in said
+
+
 def test_a_closed_loop_shows_its_error_and_what_the_controller_remembers(tmp_path):
     """The made force is missed by 1 N undisturbed, and by 2 N disturbed."""
     found = stream(tmp_path, make_tracking(tmp_path / "tracked"))

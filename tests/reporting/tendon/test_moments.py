@@ -33,3 +33,5 @@ def test_turns_are_among_them_and_gaps_do_no_harm():
 def test_a_long_run_has_no_more_than_a_limit():
     time_s = np.linspace(0.0, 4000.0, 200_000)
     assert moments(time_s, [np.sin(time_s)], NONE).size <= MOST + 2
+    turns = np.arange(0, time_s.size, 10)
+    assert moments(time_s, [np.full(time_s.size, np.nan)], turns).size <= 2 * MOST + 2

@@ -10,8 +10,14 @@ _SPECIAL = re.compile(r"([\\`*_{}\[\]<>()#+\-!|~&$^])")
 
 
 def plain_text(text: str) -> str:
-    """Return text of which no letter is read as Markdown or HTML."""
-    return _SPECIAL.sub(r"\\\1", printable(text))
+    """Return text of which no letter is read as Markdown or HTML, but for `code`."""
+    text = printable(text)
+    if text.count("`") % 2:
+        return _escaped(text)
+    return "".join(
+        f"`{part}`" if place % 2 and part.strip() and "|" not in part else _escaped(part)
+        for place, part in enumerate(text.split("`"))
+    )
 
 
 def section_text(section: Section, level: int = 1) -> str:
@@ -32,6 +38,10 @@ def table_text(table: Table) -> str:
 def points_text(points: Sequence[str]) -> str:
     """Return sentences as a list."""
     return "\n".join(f"- {plain_text(point)}" for point in points)
+
+
+def _escaped(text: str) -> str:
+    return _SPECIAL.sub(r"\\\1", text)
 
 
 def _blocks(section: Section, level: int) -> Iterator[str]:

@@ -13,10 +13,10 @@ from tsas_cli.reporting.numbers import as_printed
 
 Floats = npt.NDArray[np.float64]
 
-WIDTH, HEIGHT = 1.4, 1.0  # of the frame
+WIDTH, HEIGHT = 1.7, 1.0  # of the frame
 MARGIN = 0.04  # of the range, beside the curve
 TICKS = 5  # about as many to an axis
-ACROSS, DOWN = (-0.2, WIDTH + 0.08), (-HEIGHT - 0.1, 0.32)  # what a view shows of the plane
+ACROSS, DOWN = (-0.2, WIDTH + 0.08), (-HEIGHT - 0.08, 0.28)  # what a view shows of the plane
 _TICK = 0.015
 
 

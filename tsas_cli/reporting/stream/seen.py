@@ -11,7 +11,14 @@ from tsas_cli.recordings.columns import BY_NAME, TIME
 from tsas_cli.recordings.dataset import Dataset, RunColumns, open_run
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.reporting.inputs import Inputs
-from tsas_cli.reporting.stage_files import Calibration, Diagnosis, OfDataset, Segment, Simulation
+from tsas_cli.reporting.stage_files import (
+    Calibration,
+    Check,
+    Diagnosis,
+    OfDataset,
+    Segment,
+    Simulation,
+)
 from tsas_cli.reporting.stream.recorder import Clock, Times
 from tsas_cli.reporting.stream.recorder.paths import Entity
 from tsas_cli.reporting.stream.sources import Source, sources
@@ -21,6 +28,7 @@ Floats = npt.NDArray[np.float64]
 
 MEASURED, WANTED, RESIDUAL = "measured", "wanted", "residual"
 X_IN, TENSIONS = "x_in_mm", ("f_in_N", "f_out_N")
+_BROKEN = {"unreadable", "time-order"}
 _WISHES = {"f_out_ref_N": "f_out_N"}  # shown with what they are wishes of
 
 
@@ -148,12 +156,16 @@ def seen_runs(inputs: Inputs) -> Iterator[SeenRun]:
 
 
 def _taken(inputs: Inputs, dataset: Dataset) -> list[Run]:
-    """Return the runs that any stage took, all where one took all or none is given."""
+    """Return the runs that any stage took, all where one took all or none is given.
+
+    What the checks found to be no recording is left out: it stands among their findings.
+    """
+    check = inputs.get(Check)
+    broken = {f.run for f in check.findings if f.code in _BROKEN} if check else set()
     chosen = [stage.chosen for stage in inputs.stages.values() if isinstance(stage, OfDataset)]
-    if not chosen or None in chosen:
-        return dataset.runs
     taken = {name for names in chosen for name in names or ()}
-    return [run for run in dataset.runs if run.id in taken]
+    every = not chosen or None in chosen
+    return [run for run in dataset.runs if (every or run.id in taken) and run.id not in broken]
 
 
 def _segments(inputs: Inputs, run: str) -> Sequence[Segment]:

@@ -22,7 +22,7 @@ from tsas_cli.reporting.stream.recorder.layout import (
 from tsas_cli.reporting.stream.recorder.paths import Entity
 from tsas_cli.reporting.stream.seen import X_IN, SeenRun
 from tsas_cli.reporting.stream.tendon.content import view_of_tendon
-from tsas_cli.reporting.stream.tracking import tracking_tab
+from tsas_cli.reporting.stream.tracking import FORCE, tracking_tab, true_of
 
 OVERVIEW, DIAGNOSIS = ("about", "overview"), ("about", "diagnosis")
 TABS = ("Overview", "Residuals", "Tendon", "Tracking", "Diagnosis")
@@ -30,6 +30,7 @@ ALL_RUNS = 12  # beyond which their loops are too small to be seen beside each o
 _ACROSS = 4
 _ORDER = ("f_in_N", "f_out_N", "x_in_mm", "x_out_mm")  # what is looked at first
 _TALL, _LANE = 1.6, 0.8  # height of the first plot, and of the phases, over that of the others
+_LOG = 0.6  # height of the events over that of a loop
 
 
 def layout_of(runs: Sequence[SeenRun], *, diagnosed: bool) -> Layout:
@@ -75,13 +76,17 @@ def _run(run: SeenRun) -> Part | None:
     series = series_of(run)
     if X_IN in series and run.segments:
         series[X_IN].append(run.entity(X_IN, REVERSALS))
+    if run.tracked is not None:
+        series[FORCE].append(true_of(run))
     rows = _over_phases(run, series)
     if rows is None:
         return None
     beside: list[Part] = [view_of(run, channel) for channel in run.loops]
+    shares = [1.0] * len(beside)
     if run.segments:
         beside.append(Log("events", [events_of(run)]))
-    return Columns([rows, Rows(beside)], shares=(3.0, 2.0)) if beside else rows
+        shares.append(_LOG)
+    return Columns([rows, Rows(beside, shares)], shares=(3.0, 2.0)) if beside else rows
 
 
 def _residuals(run: SeenRun) -> Part | None:

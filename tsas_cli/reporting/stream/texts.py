@@ -9,7 +9,7 @@ from tsas_cli.reporting.drive_file import Drive
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import plain, with_interval
 from tsas_cli.reporting.sections.drive import told_of
-from tsas_cli.reporting.stage_files import Calibration, Cause, Check, Diagnosis, Simulation
+from tsas_cli.reporting.stage_files import Calibration, Cause, Check, Diagnosis, Finding, Simulation
 from tsas_cli.reporting.stream.markdown import section_text
 from tsas_cli.reporting.tracking.scores import best_and_worst
 from tsas_cli.reporting.tracking_file import Tracking
@@ -69,8 +69,14 @@ def _short(inputs: Inputs) -> Iterator[Section]:
         table, said = _parameters(calibration), calibration.cannot_tell
         yield Section("calibration", "Calibration", points=said, tables=(table,))
     if check := inputs.get(Check):
-        found_out = tuple(f.sentence for f in check.findings) or ("The checks found nothing.",)
-        yield Section("check", "Checks", points=found_out)
+        found_out = tuple(_finding(finding) for finding in check.findings)
+        said = () if found_out else ("The checks found nothing.",)
+        yield Section("check", "Checks", said, points=found_out)
+
+
+def _finding(finding: Finding) -> str:
+    where = f"run {finding.run}, " if finding.run else ""
+    return f"{finding.severity}, {where}{finding.code}: {finding.sentence}"
 
 
 def _causes(named: tuple[Cause, ...]) -> Table:

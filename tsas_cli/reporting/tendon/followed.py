@@ -82,11 +82,10 @@ class Followed:
         return np.array([np.interp(front, frames.places, row) for front, row in rows])
 
     def turned(self) -> Indices:
-        """Return for each moment the one at which the drive has turned last, shape (k,)."""
-        samples = self.frames.samples
+        """Return for each moment the sample at which the drive has turned last, shape (k,)."""
         starts = np.array([0, *(run.start for run in self.passages)])
-        last = starts[np.searchsorted(starts, samples, side="right") - 1]
-        return np.minimum(np.searchsorted(samples, last), samples.size - 1)
+        last: Indices = starts[np.searchsorted(starts, self.frames.samples, side="right") - 1]
+        return last
 
     def moved_mm(self) -> Floats:
         """Return how far each place has moved towards the drive, shape (k, m + 1) [mm].

@@ -39,7 +39,7 @@ def record_along(
         tension = np.nan_to_num(one.frames.tension_N)
         lines = np.stack([frame.place(along, now) for now in tension])
         times = clock.times(one.time_s)
-        turned = lines[one.turned()]
+        turned = lines[np.searchsorted(one.frames.samples, one.turned())]
         before = colour(which.role, FAINT)
         recorder.segments_2d([*entity, which.key, "turned"], times, turned, before, radius=-1.0)
         shade = colour(which.role)

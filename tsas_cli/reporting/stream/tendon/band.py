@@ -5,10 +5,9 @@ from collections.abc import Mapping
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.physics.passages import Passage
 from tsas_cli.reporting.stream.palette import colour
 from tsas_cli.reporting.stream.plane import ACROSS, DOWN, Frame, frame_of
-from tsas_cli.reporting.stream.recorder import Clock, Recorder, Times
+from tsas_cli.reporting.stream.recorder import Clock, Recorder
 from tsas_cli.reporting.stream.recorder.layout import Plane
 from tsas_cli.reporting.stream.recorder.moving import points_2d
 from tsas_cli.reporting.stream.recorder.paths import Entity
@@ -18,7 +17,7 @@ from tsas_cli.reporting.tendon.followed import Followed, Which
 Floats = npt.NDArray[np.float64]
 
 BEYOND = 1.4  # of the widest dead band: how much of a stroke is shown
-POINTS = 80  # of a curve
+POINTS, LEAST, MOST = 80, 12, 60_000  # of a stroke, usually and at least, and of all of a run
 X_LABEL, Y_LABEL = "travel of the drive since it turned [mm]", "tension at the drive [N]"
 
 
@@ -34,7 +33,7 @@ def record_band(
     tendons: Mapping[Which, Followed],
     f_in_N: Floats | None,
 ) -> None:
-    """Record the strokes of one run, one after the other; return the view that shows them.
+    """Record the strokes of one run, one after the other.
 
     Parameters
     ----------
@@ -48,37 +47,28 @@ def record_band(
     widest = max((_width(one) for one in tendons.values()), default=0.0)
     if widest == 0.0:
         return
-    curves = {
-        which: _strokes(one.passages, one.response.x_in_mm, one.response.f_in_N, widest)
-        for which, one in tendons.items()
-    }
-    every = np.concatenate([curve[..., 1].ravel() for curve in curves.values()])
+    curves = {which: _strokes(one, one.response.f_in_N, widest) for which, one in tendons.items()}
+    every = np.concatenate([strokes[..., 1].ravel() for _, strokes in curves.values()])
     frame = frame_of(np.array([0.0, widest]), every)
     recorder.curves_2d([*entity, "axes"], frame.lines(), colour("muted"), radius=-0.6, order=-1.0)
     places, texts = frame.texts(X_LABEL, Y_LABEL)
     recorder.labels_2d([*entity, "names"], places, texts, colour("muted"))
     record_key(recorder, entity, tendons, measured=f_in_N is not None)
     if f_in_N is not None:
-        one = next(iter(tendons.values()))
-        strokes = _strokes(one.passages, one.response.x_in_mm, f_in_N, widest)
-        at, placed = _starts(clock, one), _placed(frame, strokes)
-        wide, under = -3.5, 0.0
-        seen = colour("measured")
-        recorder.segments_2d([*entity, "measured"], at, placed, seen, radius=wide, order=under)
+        at, strokes = _strokes(next(iter(tendons.values())), f_in_N, widest)
+        under, shade = [*entity, "measured"], colour("measured")
+        placed = _placed(frame, strokes)
+        recorder.segments_2d(under, clock.times(at), placed, shade, radius=-3.5, order=0.0)
     for which, one in tendons.items():
         mine, shade = [*entity, which.key], colour(which.role)
-        placed = _placed(frame, curves[which])
-        recorder.segments_2d([*mine, "stroke"], _starts(clock, one), placed, shade, radius=-1.2)
-        samples = one.frames.samples
-        x, f_in = one.response.x_in_mm[samples], one.response.f_in_N[samples]
-        travel = np.abs(x - x[one.turned()])
+        at, strokes = curves[which]
+        placed = _placed(frame, strokes)
+        recorder.segments_2d([*mine, "stroke"], clock.times(at), placed, shade, radius=-1.2)
+        x, f_in = one.response.x_in_mm, one.response.f_in_N[one.frames.samples]
+        travel = np.abs(x[one.frames.samples] - x[one.turned()])
         now = frame.place(travel, f_in)
         there = [now[k : k + seen] for k, seen in enumerate(travel <= widest)]
         points_2d(recorder, [*mine, "now"], clock.times(one.time_s), there, shade)
-
-
-def _starts(clock: Clock, one: Followed) -> Times:
-    return clock.times(one.sample_time_s[[passage.start for passage in one.passages]])
 
 
 def _width(one: Followed) -> float:
@@ -90,17 +80,25 @@ def _width(one: Followed) -> float:
     return BEYOND * float(max(through, default=np.ptp(x) if x.size else 0.0))
 
 
-def _strokes(runs: list[Passage], x: Floats, f_in: Floats, widest: float) -> Floats:
-    """Return tension over travel for each stroke, shape (k, POINTS, 2) [mm, N]."""
+def _strokes(one: Followed, f_in: Floats, widest: float) -> tuple[Floats, Floats]:
+    """Return when strokes began [s], shape (k,), and their tension over travel, shape (k, p, 2).
+
+    Those of which nothing is known, since the tension is NaN, are left out.
+    """
+    x, runs = one.response.x_in_mm, one.passages
     ends = [*(run.start for run in runs[1:]), x.size - 1]
-    strokes = np.empty((len(runs), POINTS, 2))
-    for stroke, run, end in zip(strokes, runs, ends, strict=True):
+    points = min(POINTS, max(LEAST, MOST // max(len(runs), 1)))
+    at, strokes = [], []
+    for run, end in zip(runs, ends, strict=False):
         travel = np.abs(x[run.start : end + 1] - x[run.start])
         shown = np.flatnonzero((travel <= widest) & np.isfinite(f_in[run.start : end + 1]))
-        kept = shown[np.linspace(0, shown.size - 1, POINTS).astype(int)]
-        stroke[:, 0], stroke[:, 1] = travel[kept], f_in[run.start + kept]
-    return strokes
+        if shown.size:
+            kept = shown[np.linspace(0, shown.size - 1, points).astype(int)]
+            at.append(one.sample_time_s[run.start])
+            strokes.append(np.column_stack((travel[kept], f_in[run.start + kept])))
+    return np.array(at), np.array(strokes).reshape(-1, points, 2)
 
 
 def _placed(frame: Frame, strokes: Floats) -> Floats:
-    return np.stack([frame.place(stroke[:, 0], stroke[:, 1]) for stroke in strokes])
+    flat = strokes.reshape(-1, 2)
+    return frame.place(flat[:, 0], flat[:, 1]).reshape(strokes.shape)
