@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.physics.references import FREE, GROUP_A
-from tsas_cli.reporting.tendon.stage import SEEN, TALL, stage_of
+from tsas_cli.reporting.tendon.stage import TALL, stage_of
 
 BENDS = [0.0, math.pi / 2, math.pi, 2 * math.pi, 5 * math.pi]
 
@@ -31,10 +31,12 @@ def test_everything_is_in_the_picture(bend, rigs):
         above = stand.sheath + TALL * stand.size * np.array([0.0, 0.0, 1.0])
         ends = np.concatenate((stand.ends.rim, stand.ends.anchor)) + stand.at
         seen = seen_by(stage, np.concatenate((stand.sheath, above, ends, stand.captions)))
-        # A usual view is 55 degrees high and a little wider: ±0.52 upwards, ±0.57 across.
-        assert np.abs(seen[:, 1]).max() < 0.52
-        assert np.abs(seen[:, 0]).max() < 0.57
-        places.append((seen[:, 1].min(), seen[:, 1].max()))
+        # A usual view is 55 degrees high and a little wider: ±0.52 upwards, ±0.6 across.
+        assert np.abs(seen[:, 1]).max() < 0.50
+        assert np.abs(seen[:, 0]).max() < 0.56
+        places.append((seen[:, 1].min(), seen[:, 1].max(), seen[:, 0].max()))
+    fills = max(places[0][1] / 0.47, -places[-1][0] / 0.47, max(p[2] for p in places) / 0.54)
+    assert fills > 0.9
     if len(places) == 2:
         assert places[0][0] > places[1][1] - 0.03  # the first above the second
 
@@ -46,4 +48,3 @@ def test_the_same_place_is_at_the_same_place_across():
     away = [np.linalg.norm(stand.at - np.array(stage.eye)) for stand in stage.stands]
     assert away[0] == pytest.approx(away[1], rel=0.05)
     assert stage.stands[0].size == stage.stands[1].size
-    assert 0.5 < SEEN < 1.0

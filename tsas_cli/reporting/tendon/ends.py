@@ -52,6 +52,14 @@ class Ends:
         """Free tendon from the pulley to the sheath, shape (2, 3)."""
         return np.stack((self.touching, self.mouths[0]))
 
+    @property
+    def names(self) -> Floats:
+        """Where drive and load are named, shape (2, 3)."""
+        back = (self.touching - self.mouths[0]) / np.linalg.norm(self.touching - self.mouths[0])
+        beyond = (self.foot - self.tip) / np.linalg.norm(self.foot - self.tip)
+        at_drive = self.touching + (RADIUS + FOOT) * self.size * back
+        return np.stack((at_drive, self.foot + FOOT * self.size * beyond))
+
     def spokes(self, x_in_mm: Floats) -> Floats:
         """Return the pulley's spokes, shape (k, SPOKES, 2, 3)."""
         wound = x_in_mm[:, None] / (RADIUS * self.size)

@@ -18,7 +18,8 @@ from tsas_cli.reporting.tendon.shape import Shape, shape_of
 Floats = npt.NDArray[np.float64]
 
 DOWN_RAD = math.radians(44.0)  # by which the eye looks down
-SEEN = 0.77  # how high and wide a view is at distance 1, with some room around
+SEEN = (0.54, 0.47)  # half of what is filled across and upwards, at distance 1
+FITS = 12  # steps towards that
 TALL = 0.36  # of the scene's size: how high the highest tension is drawn
 GAP = 0.08  # of the size, between two tendons
 LEFT = 0.16  # of the size, kept free for the legend
@@ -64,15 +65,28 @@ def stage_of(rigs: Sequence[Rig], elements: int) -> Stage:
         ends_of(shape, (free.proximal_length_mm, free.distal_length_mm), size)
         for shape, free in zip(shapes, (rig.effects.free_tendon for rig in rigs), strict=True)
     ]
-    boxes = [_seen(shape, end, size) for shape, end in zip(shapes, ends, strict=True)]
-    low, high = (min(b[0][1] for b in boxes), max(b[1][1] for b in boxes))
-    left, right = min(b[0][0] for b in boxes) - LEFT * size, max(b[1][0] for b in boxes)
-    step = high - low + GAP * size
-    away = max(step * len(shapes), right - left) / SEEN
-    target = 0.5 * (low + high) * _UP + 0.5 * (left + right) * _RIGHT
+    shown = [_shown(shape, end, size) for shape, end in zip(shapes, ends, strict=True)]
+    heights = np.concatenate(shown) @ _UP
+    step = float(np.ptp(heights)) + GAP * size
     places = [step * (0.5 * (len(shapes) - 1) - k) * _UP for k in range(len(shapes))]
     stands = [Stand(*parts, size) for parts in zip(shapes, ends, places, strict=True)]
-    return Stage(stands, _place(target + away * _BACK), _place(target))
+    everything = [points + at for points, at in zip(shown, places, strict=True)]
+    eye, target = _eye(np.concatenate(everything), 2.0 * size)
+    return Stage(stands, _place(eye), _place(target))
+
+
+def _eye(points: Floats, away: float) -> tuple[Floats, Floats]:
+    """Return from where points fill a view, and where to look; `away` is a first guess."""
+    target = np.zeros(3)
+    for _ in range(FITS):
+        relative = points - target
+        ahead = away - relative @ _BACK
+        seen = np.stack((relative @ _RIGHT, relative @ _UP)) / ahead
+        low, high = seen.min(axis=1), seen.max(axis=1)
+        across, up = 0.5 * away * (low + high)
+        target = target + across * _RIGHT + up * _UP
+        away *= float(np.max(0.5 * (high - low) / SEEN))
+    return target + away * _BACK, target
 
 
 def _captions(shape: Shape, size: float) -> Floats:
@@ -84,13 +98,13 @@ def _captions(shape: Shape, size: float) -> Floats:
     return np.array([[0.0, first, 0.0], [0.0, first - 0.1 * size, 0.0]])
 
 
-def _seen(shape: Shape, ends: Ends, size: float) -> tuple[Floats, Floats]:
-    """Return the corners of what the eye sees of a tendon, to the right and upwards."""
+def _shown(shape: Shape, ends: Ends, size: float) -> Floats:
+    """Return points around all that is drawn of a tendon, the legend and its texts among it."""
     above = shape.sheath + TALL * size * np.array([0.0, 0.0, 1.0])
     below = _captions(shape, size) - [0.0, 0.05 * size, 0.0]
-    points = np.concatenate((shape.sheath, above, ends.rim, ends.anchor, below))
-    seen = np.stack((points @ _RIGHT, points @ _UP), axis=1)
-    return seen.min(axis=0), seen.max(axis=0)
+    beside = shape.sheath.min(axis=0) * [1.0, 0.0, 0.0] - [LEFT * size, 0.0, 0.0]
+    named = ends.names
+    return np.concatenate((shape.sheath, above, ends.rim, ends.anchor, named, below, beside[None]))
 
 
 def _place(point: Floats) -> tuple[float, float, float]:

@@ -139,9 +139,7 @@ def _ends(
     springs = [[line] for line in ends.spring(one.x_out_mm) + at]
     curves(recorder, [*entity, "load", "spring"], times, springs, muted, radius=-1.5)
     recorder.curves_3d([*entity, "load", "anchor"], [ends.anchor + at], muted, radii=-2.5)
-    named = np.stack((ends.rim.mean(axis=0), ends.anchor.mean(axis=0))) + at
-    named[1] += stand.shape.out_of * 0.05 * stand.size
-    recorder.labels_3d([*entity, "names"], named, ["drive", "load"], muted)
+    recorder.labels_3d([*entity, "names"], ends.names + at, ["drive", "load"], muted)
 
 
 def _captions(
