@@ -17,7 +17,7 @@ from tsas_cli.commands.common import show
 from tsas_cli.files import new_file, write_json
 
 HARNESS = {"__main__", "row", "timing"}
-LIBRARIES = ("numba", "numpy", "pyarrow", "scipy", "typer")
+LIBRARIES = ("numba", "numpy", "pyarrow", "rerun-sdk", "scipy", "typer")
 
 
 def main() -> None:

@@ -34,6 +34,8 @@ def test_null_is_a_gap_and_extra_columns_of_numbers_can_be_read(dataset):
     assert run.names == ["time_s", "f_in_N", "own"]
     assert np.isnan(run.read("f_in_N")).tolist() == [False, True, False]
     assert run.read("own").tolist() == [7.0, 8.0, 9.0]
+    with pytest.raises(InputError, match="column text is missing; there are: time_s, f_in_N, own"):
+        run.read("text")
 
 
 def test_a_file_that_has_changed_is_refused(dataset, columns):

@@ -147,8 +147,14 @@ class RunColumns:
         Raises
         ------
         InputError
-            It is not of numbers, or cannot be read; the time is not strictly increasing.
+            It is not there, not of numbers, or cannot be read; the time is not strictly increasing.
         """
+        if name not in self.names:
+            raise InputError(
+                f"column {name} is missing",
+                where=self.path,
+                remedy=f"there are: {', '.join(self.names)}",
+            )
         try:
             table = self.file.read(columns=[name])
         except (pa.ArrowException, OSError) as error:

@@ -77,6 +77,14 @@ def test_phases_and_events_stand_with_the_run_that_they_are_of(dataset, tmp_path
         assert all(entity[1] == name for view in beside for entity in view.entities)
 
 
+def test_faults_stand_beside_the_run_that_has_them(dataset, tmp_path):
+    fault = {"code": "stuck", "severity": "error", "run": "b", "sentence": "f_in_N is stuck"}
+    found, _ = tabs(make_check(dataset, tmp_path / "check", [fault]))
+    runs = found["Overview"].parts[0].parts[1].parts
+    logs = [[view for view in views(run) if isinstance(view, Log)] for run in runs[:2]]
+    assert [len(views) for views in logs] == [0, 1]
+
+
 def test_a_legend_stands_where_something_new_is_drawn(dataset, tmp_path):
     found, _ = tabs(make_diagnosed(dataset, tmp_path / "diagnose"))
     first = found["Overview"].parts[0].parts[1].parts[0]

@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from tsas_cli.reporting.stage_files import Check, Segment
+from tsas_cli.reporting.stage_files import Check, Finding, Segment
 from tsas_cli.reporting.stream.palette import colour
 from tsas_cli.reporting.stream.recorder import Recorder
 from tsas_cli.reporting.stream.recorder.paths import Entity
@@ -31,6 +31,11 @@ def events_of(run: SeenRun) -> Entity:
     return run.entity(EVENTS)
 
 
+def happens(run: SeenRun) -> bool:
+    """Say whether a run has events that are known before its samples are read."""
+    return bool(reversals(run.segments) or faults_of(run))
+
+
 def record_events(recorder: Recorder, run: SeenRun, kind: str, events: Sequence[Event]) -> None:
     """Record events of one kind, such as `reversals`."""
     if events:
@@ -43,7 +48,10 @@ def record_events(recorder: Recorder, run: SeenRun, kind: str, events: Sequence[
 
 
 def record_own_events(recorder: Recorder, run: SeenRun) -> None:
-    """Record the reversals that the phases tell, and the faults that were found."""
+    """Record the reversals that the phases tell, and the faults that were found.
+
+    A fault of the whole run stands at its start.
+    """
     at_s = reversals(run.segments)
     words = {True: "the drive turns and pulls", False: "the drive turns and lets go"}
     turns = [Event(at, words[up]) for at, up in at_s]
@@ -53,7 +61,16 @@ def record_own_events(recorder: Recorder, run: SeenRun) -> None:
         at = np.searchsorted(run.time_s, [s for s, _ in at_s])
         recorder.marks(entity, "the drive turns", colour("ink"))
         recorder.scalars(entity, run.times.at(at), run.x_in_mm[at])
-    record_events(recorder, run, FAULTS, faults(run))
+    start_s = float(run.time_s[0])
+    faults = [
+        Event(
+            start_s if f.first_s is None else f.first_s,
+            f"{f.code}: {f.sentence}",
+            _LEVELS.get(f.severity, "INFO"),
+        )
+        for f in faults_of(run)
+    ]
+    record_events(recorder, run, FAULTS, faults)
 
 
 def reversals(segments: Sequence[Segment]) -> list[tuple[float, bool]]:
@@ -62,16 +79,7 @@ def reversals(segments: Sequence[Segment]) -> list[tuple[float, bool]]:
     return [(at, up) for (_, before), (at, up) in pairwise(known) if up != before]
 
 
-def faults(run: SeenRun) -> list[Event]:
-    """Return what a check found in a run, at the start where it holds for all of it."""
+def faults_of(run: SeenRun) -> list[Finding]:
+    """Return what a check found in a run."""
     check = run.inputs.get(Check)
-    found = () if check is None else check.findings
-    return [
-        Event(
-            float(run.time_s[0]) if f.first_s is None else f.first_s,
-            f"{f.code}: {f.sentence}",
-            _LEVELS.get(f.severity, "INFO"),
-        )
-        for f in found
-        if f.run == run.id
-    ]
+    return [] if check is None else [f for f in check.findings if f.run == run.id]

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from tsas_cli.reporting.channels import at_axis
 from tsas_cli.reporting.stream.channels import residuals_of, series_of
-from tsas_cli.reporting.stream.events import REVERSALS, events_of
+from tsas_cli.reporting.stream.events import REVERSALS, events_of, happens
 from tsas_cli.reporting.stream.phases import phases_of
 from tsas_cli.reporting.stream.portraits import view_of
 from tsas_cli.reporting.stream.recorder.layout import (
@@ -83,7 +83,7 @@ def _run(run: SeenRun) -> Part | None:
         return None
     beside: list[Part] = [view_of(run, channel) for channel in run.loops]
     shares = [1.0] * len(beside)
-    if run.segments:
+    if happens(run):
         beside.append(Log("events", [events_of(run)]))
         shares.append(_LOG)
     return Columns([rows, Rows(beside, shares)], shares=(3.0, 2.0)) if beside else rows
