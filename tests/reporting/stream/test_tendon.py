@@ -8,7 +8,13 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
-from tests.reporting.made_folders import make_dataset, make_diagnosis, make_simulation, source
+from tests.reporting.made_folders import (
+    columns,
+    make_dataset,
+    make_diagnosis,
+    make_simulation,
+    source,
+)
 from tests.reporting.stream.streams import read
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model, write_model
@@ -16,7 +22,8 @@ from tsas_cli.identification.simulation import simulate_dataset
 from tsas_cli.physics.ends import Drive
 from tsas_cli.physics.response import simulate
 from tsas_cli.recordings.columns import nominal_name
-from tsas_cli.recordings.dataset import read_dataset, write_parquet
+from tsas_cli.recordings.dataset import read_dataset, write_dataset, write_parquet
+from tsas_cli.recordings.manifest import Manifest, Run
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.stream import write_stream
 from tsas_cli.reporting.stream.recorder.layout import Plane, Space, Tabs
@@ -61,10 +68,10 @@ def made(tmp_path_factory) -> Path:
         write_model(out / name, MODELS[one], version="0.1.0", dataset=source(dataset, out))
     (out / "runs").mkdir()
     for recording in read_dataset(dataset):
-        columns = {"time_s": recording.time_s, "x_in_mm": recording.columns["x_in_mm"]}
-        columns["f_in_N"] = answer(recording, MODELS[EXTENDED]).f_in_N
-        columns[nominal_name("f_in_N")] = answer(recording, MODELS[NOMINAL]).f_in_N
-        write_parquet(out / "runs" / f"{recording.run.id}.parquet", pa.table(columns))
+        told = {"time_s": recording.time_s, "x_in_mm": recording.columns["x_in_mm"]}
+        told["f_in_N"] = answer(recording, MODELS[EXTENDED]).f_in_N
+        told[nominal_name("f_in_N")] = answer(recording, MODELS[NOMINAL]).f_in_N
+        write_parquet(out / "runs" / f"{recording.run.id}.parquet", pa.table(told))
     write_stream(read_inputs([out]), folder / "s.rrd")
     return folder
 
@@ -219,3 +226,42 @@ def test_the_lumped_model_and_folders_without_a_model_show_none(made, tmp_path):
     assert json.loads((out / "simulation.json").read_text())["dynamics"] == "static"
     assert view_in(out) is None
     assert view_in(dataset) is None
+
+
+def test_runs_with_gaps_without_x_in_and_with_other_loads(tmp_path):
+    """A stage does not write down how it has cleaned forces; they are cleaned again."""
+    whole = columns(3000)
+    gap = whole | {"f_in_N": whole["f_in_N"].copy()}
+    gap["f_in_N"][800:1600] = np.nan  # all of the second stroke
+    by_force = {name: values for name, values in whole.items() if name != "x_in_mm"}
+    given = {"gap": (gap, "spring"), "f_in": (by_force, "spring"), "f_out": (whole, "force")}
+    runs = [
+        Run(
+            id=name,
+            file=f"runs/{name}.parquet",
+            sha256="0" * 64,
+            sheath_length_mm=785.0,
+            total_bend_rad=math.pi,
+            preload_N=25.0,
+            load=load,
+        )
+        for name, (_, load) in given.items()
+    ]
+    (tmp_path / "d").mkdir()
+    tables = {
+        name: pa.table({n: pa.array(v, from_pandas=True) for n, v in table.items()})
+        for name, (table, _) in given.items()
+    }
+    manifest = Manifest(format=1, name="odd", kind="simulated", run=tuple(runs))
+    write_dataset(tmp_path / "d", manifest, tables)
+    write_model(tmp_path / "m.toml", MODELS[NOMINAL], version="0.1.0", dataset={})
+    out = tmp_path / "s"
+    simulate_dataset(read_dataset(tmp_path / "d"), tmp_path / "m.toml", "slip", out, nodes=20)
+    write_stream(read_inputs([out]), tmp_path / "s.rrd")
+    paths = read(tmp_path / "s.rrd")
+    strokes = {}
+    for name in given:
+        assert len(paths[f"/run/{name}/tendon/space/simulated/tendon"].at()) > 150
+        assert len(paths[f"/run/{name}/events/fronts-simulated"].at()) == 4
+        strokes[name] = len(paths[f"/run/{name}/tendon/dead-band/measured"].at())
+    assert strokes == {"gap": 3, "f_in": 4, "f_out": 4}
