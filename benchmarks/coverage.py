@@ -21,8 +21,8 @@ from tsas_cli.challenge.rig.sensors import measure as measured
 from tsas_cli.challenge.rig.tendon import CleanRun, Rig, simulate
 from tsas_cli.identification.calibration import calibrate
 from tsas_cli.identification.prepared import prepare
-from tsas_cli.recordings.dataset import Recording
 from tsas_cli.recordings.manifest import Manifest, Run
+from tsas_cli.recordings.recording import Recording
 
 SEEDS = int(os.environ.get("TSAS_COVERAGE_SEEDS", "200"))
 FIRST_SEED = 50_000  # apart from the shipped data's and the tests' seeds

@@ -11,8 +11,8 @@ import numpy as np
 import pyarrow as pa
 
 from benchmarks.row import Row
-from tsas_cli.recordings.dataset import write_dataset
 from tsas_cli.recordings.manifest import Manifest, Run
+from tsas_cli.recordings.writing import write_dataset
 
 SAMPLES, RATE_HZ = 1_000_000, 1000.0
 CHANNELS = ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N", "motor_speed_rpm", "temperature_C")

@@ -9,8 +9,8 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
-from tsas_cli.recordings.dataset import write_dataset
 from tsas_cli.recordings.manifest import Manifest
+from tsas_cli.recordings.writing import write_dataset
 
 
 @pytest.fixture

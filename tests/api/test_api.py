@@ -16,7 +16,8 @@ from tsas_cli.challenge.rig.recordings import Run, conditions, record, write_dat
 from tsas_cli.challenge.rig.sensors import Sensors
 from tsas_cli.challenge.rig.tendon import Rig
 from tsas_cli.identification.model import read_model
-from tsas_cli.recordings.dataset import Dataset, Recording
+from tsas_cli.recordings.dataset import Dataset
+from tsas_cli.recordings.recording import Recording
 
 RIG = Rig(friction_coefficient=0.16, proximal_length_mm=150.0, distal_length_mm=60.0)
 

@@ -82,7 +82,7 @@ from tsas_cli.identification.prepared import prepare
 from tsas_cli.physics.ends import Drive
 from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import Rig, with_values
-from tsas_cli.recordings.dataset import Recording
+from tsas_cli.recordings.recording import Recording
 from tsas_cli.recordings.manifest import Manifest, Run
 from tsas_cli.recordings.manifest import Rig as Sheet
 

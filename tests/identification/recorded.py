@@ -7,8 +7,8 @@ from tsas_cli.challenge.rig.recordings import DATA_SHEET, conditions
 from tsas_cli.challenge.rig.sensors import Sensors, measure
 from tsas_cli.challenge.rig.tendon import Rig, simulate
 from tsas_cli.identification.prepared import Prepared, prepare
-from tsas_cli.recordings.dataset import Recording
 from tsas_cli.recordings.manifest import Manifest, Run
+from tsas_cli.recordings.recording import Recording
 
 ALL = ("f_in_N", "f_out_N", "x_out_mm")
 

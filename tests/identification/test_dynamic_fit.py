@@ -14,8 +14,8 @@ from tsas_cli.identification.calibration import calibrate
 from tsas_cli.identification.prepared import prepare
 from tsas_cli.physics.lugre_chain import OWN_STEPS, lugre_chain
 from tsas_cli.physics.rig import with_values
-from tsas_cli.recordings.dataset import Recording
 from tsas_cli.recordings.manifest import Manifest, Run
+from tsas_cli.recordings.recording import Recording
 
 SHEET = {
     "friction_coefficient": 0.12,

@@ -18,8 +18,8 @@ from tsas_cli.identification.prepared import prepare
 from tsas_cli.physics.chain_state import SLACK
 from tsas_cli.physics.response import Drive, simulate
 from tsas_cli.physics.rig import Rig as ModelRig
-from tsas_cli.recordings.dataset import Recording
 from tsas_cli.recordings.manifest import Manifest, Run
+from tsas_cli.recordings.recording import Recording
 
 TRUE = Rig(friction_coefficient=0.135, load_stiffness_N_per_mm=1.45, preload_N=27.0)
 VALUES = {

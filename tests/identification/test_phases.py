@@ -11,8 +11,8 @@ from tsas_cli.challenge.rig.sensors import Sensor, Sensors
 from tsas_cli.challenge.rig.tendon import Rig
 from tsas_cli.identification.phases import segment
 from tsas_cli.identification.prepared import prepare
-from tsas_cli.recordings.dataset import Recording
 from tsas_cli.recordings.manifest import Run
+from tsas_cli.recordings.recording import Recording
 
 COARSE = Sensors(
     x_in_mm=Sensor(0.01, 0.01),

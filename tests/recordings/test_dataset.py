@@ -8,8 +8,11 @@ import pyarrow.parquet as pq
 import pytest
 
 from tsas_cli.errors import InputError
-from tsas_cli.recordings.dataset import Recording, read_dataset, read_recording, write_dataset
+from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.manifest import Manifest
+from tsas_cli.recordings.recording import Recording
+from tsas_cli.recordings.run_files import read_recording
+from tsas_cli.recordings.writing import write_dataset
 
 Columns = dict[str, np.ndarray]
 

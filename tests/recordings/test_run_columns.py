@@ -5,7 +5,9 @@ import pytest
 
 from tsas_cli.errors import InputError
 from tsas_cli.files import sha256_of
-from tsas_cli.recordings.dataset import open_run, read_dataset, read_recording, write_run
+from tsas_cli.recordings.dataset import read_dataset
+from tsas_cli.recordings.run_files import open_run, read_recording
+from tsas_cli.recordings.writing import write_run
 
 
 def opened(folder):

@@ -9,8 +9,9 @@ from pathlib import Path
 import numpy as np
 import pyarrow as pa
 
-from tsas_cli.recordings.dataset import read_dataset, write_dataset, write_parquet
+from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.manifest import Manifest, Run
+from tsas_cli.recordings.writing import write_dataset, write_parquet
 from tsas_cli.tracking.settings import Settings
 
 A = 0.125 * math.pi

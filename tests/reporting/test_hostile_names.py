@@ -20,7 +20,8 @@ from tests.reporting.made_folders import (
     make_tracking,
 )
 from tests.reporting.pages import chromium
-from tsas_cli.recordings.dataset import read_dataset, write_dataset
+from tsas_cli.recordings.dataset import read_dataset
+from tsas_cli.recordings.writing import write_dataset
 from tsas_cli.reporting.content import Fact, Glance, Picture, Section, Table, anchor
 from tsas_cli.reporting.drawing import picture
 from tsas_cli.reporting.inputs import read_inputs

@@ -6,7 +6,8 @@ from typing import Any, Literal
 from tsas_cli.api.given import Named, dataset_of, one_of, path_of
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.simulation import SimulationResult, simulate_dataset
-from tsas_cli.recordings.dataset import Dataset, Recording
+from tsas_cli.recordings.dataset import Dataset
+from tsas_cli.recordings.recording import Recording
 from tsas_cli.steps import SILENT, Steps
 
 DYNAMICS: tuple[Literal["static", "slip", "lugre"], ...] = ("static", "slip", "lugre")

@@ -21,7 +21,8 @@ from tsas_cli.identification.model import Model, fitted_to, source_of, stated_mo
 from tsas_cli.identification.phases import segment, segments_as_json
 from tsas_cli.identification.prepared import Prepared, prepare
 from tsas_cli.recordings.columns import BY_NAME, nominal_name
-from tsas_cli.recordings.dataset import Dataset, write_parquet
+from tsas_cli.recordings.dataset import Dataset
+from tsas_cli.recordings.writing import write_parquet
 from tsas_cli.result import Result, Table, notes
 from tsas_cli.steps import SILENT, Steps
 

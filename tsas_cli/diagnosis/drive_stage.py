@@ -35,8 +35,10 @@ from tsas_cli.identification.frequency_response import FrequencyResponse, freque
 from tsas_cli.identification.transfer_function import bode_curve, poles
 from tsas_cli.numerics.linear_response import Hold
 from tsas_cli.physics.drive import DriveValues
-from tsas_cli.recordings.dataset import Dataset, Recording, recording_of, write_runs
+from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Run
+from tsas_cli.recordings.recording import Recording, recording_of
+from tsas_cli.recordings.writing import write_runs
 from tsas_cli.result import Result, Table, notes
 from tsas_cli.steps import SILENT, Steps
 

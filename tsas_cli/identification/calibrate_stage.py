@@ -25,11 +25,12 @@ from tsas_cli.identification.stiffness import Slope
 from tsas_cli.physics.capstan import dead_band_stiffness, slip_stiffness, speed_per_stiffness
 from tsas_cli.physics.response import Dynamics
 from tsas_cli.physics.rig import Rig
-from tsas_cli.recordings.dataset import Dataset, Recording
+from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Manifest
 from tsas_cli.recordings.quality.checks import sign
 from tsas_cli.recordings.quality.finding import Remark
 from tsas_cli.recordings.quality.trial import Trial
+from tsas_cli.recordings.recording import Recording
 from tsas_cli.result import Result, Table, notes
 from tsas_cli.steps import SILENT, Steps
 

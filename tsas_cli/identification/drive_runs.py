@@ -9,7 +9,7 @@ import numpy.typing as npt
 from tsas_cli.errors import InputError
 from tsas_cli.numerics.linear_response import Hold, Sampled, sampled
 from tsas_cli.numerics.noise import noise_sd
-from tsas_cli.recordings.dataset import Recording
+from tsas_cli.recordings.recording import Recording
 
 Floats = npt.NDArray[np.float64]
 

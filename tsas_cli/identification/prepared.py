@@ -15,8 +15,8 @@ from tsas_cli.numerics.noise import noise_sd, quantisation_step
 from tsas_cli.physics.ends import Drive
 from tsas_cli.physics.response import TOLERANCE
 from tsas_cli.recordings.columns import BY_NAME
-from tsas_cli.recordings.dataset import Recording
 from tsas_cli.recordings.manifest import Load, Run
+from tsas_cli.recordings.recording import Recording
 
 Floats = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]

@@ -25,7 +25,9 @@ from tsas_cli.identification.phases import segment, segments_as_json
 from tsas_cli.identification.prepared import Prepared, prepare
 from tsas_cli.physics.chain_state import MOST_NODES
 from tsas_cli.physics.response import Dynamics
-from tsas_cli.recordings.dataset import Dataset, Recording, recording_of, write_runs
+from tsas_cli.recordings.dataset import Dataset
+from tsas_cli.recordings.recording import Recording, recording_of
+from tsas_cli.recordings.writing import write_runs
 from tsas_cli.result import Result, Table, notes
 from tsas_cli.steps import SILENT, Steps
 

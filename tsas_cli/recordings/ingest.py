@@ -14,11 +14,11 @@ from tsas_cli.files import sha256_of
 from tsas_cli.recordings.canonical import canonical_columns
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.conditions import run_conditions
-from tsas_cli.recordings.dataset import write_run
 from tsas_cli.recordings.ingest_map import IngestMap
 from tsas_cli.recordings.manifest import Manifest, Run, parse, write_manifest
 from tsas_cli.recordings.readers import SUFFIXES, read
 from tsas_cli.recordings.readers.table import Floats, Table
+from tsas_cli.recordings.writing import write_run
 from tsas_cli.steps import SILENT, Steps
 
 

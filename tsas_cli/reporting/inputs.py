@@ -14,9 +14,10 @@ import pyarrow.parquet as pq
 
 from tsas_cli.errors import InputError, printable
 from tsas_cli.files import read_json
-from tsas_cli.recordings.dataset import Dataset, Recording, read_dataset
+from tsas_cli.recordings.dataset import Dataset, read_dataset
 from tsas_cli.recordings.manifest import FILE, parse
 from tsas_cli.recordings.quality import check_dataset
+from tsas_cli.recordings.recording import Recording
 from tsas_cli.reporting.closing_file import Closing
 from tsas_cli.reporting.drive_file import Drive
 from tsas_cli.reporting.stage_files import (

@@ -9,8 +9,8 @@ from tsas_cli.identification.phases import segment
 from tsas_cli.identification.prepared import prepare
 from tsas_cli.paper import Paper
 from tsas_cli.physics.response import simulate
-from tsas_cli.recordings.dataset import Recording
 from tsas_cli.recordings.manifest import Run
+from tsas_cli.recordings.recording import Recording
 from tsas_cli.reproduction.rig import bench_rig, motion
 
 PERIODS = 3.0  # of which the first, from rest, is left out

@@ -19,7 +19,8 @@ from tsas_cli.diagnosis.drive_stage import identify_drive
 from tsas_cli.identification.calibrate_stage import calibrate_dataset
 from tsas_cli.identification.model import FILE, read_model
 from tsas_cli.physics.rig import Rig, with_values
-from tsas_cli.recordings.dataset import read_dataset, write_dataset
+from tsas_cli.recordings.dataset import read_dataset
+from tsas_cli.recordings.writing import write_dataset
 from tsas_cli.tracking.closing_drive import known_drives, record_drive
 from tsas_cli.tracking.recorded import conditions, manifest, stated_rig, table_of
 from tsas_cli.tracking.references import reference

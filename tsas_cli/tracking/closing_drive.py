@@ -19,7 +19,7 @@ from tsas_cli.controllers.signals import error_filter
 from tsas_cli.identification.drive_file import read_drive
 from tsas_cli.physics.plant import Actuator
 from tsas_cli.physics.rig import Rig
-from tsas_cli.recordings.dataset import write_dataset
+from tsas_cli.recordings.writing import write_dataset
 from tsas_cli.tracking.drives import actuator_of
 from tsas_cli.tracking.recorded import manifest
 from tsas_cli.tracking.settings import Settings

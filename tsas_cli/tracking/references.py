@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.errors import InputError, nearest
-from tsas_cli.recordings.dataset import read_columns
+from tsas_cli.recordings.run_files import read_columns
 from tsas_cli.tracking import SHAPE_NAMES
 from tsas_cli.tracking.settings import ReferenceSettings
 

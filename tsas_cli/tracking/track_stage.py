@@ -19,7 +19,8 @@ from tsas_cli.files import folder_if, sha256_of, write_json
 from tsas_cli.identification.drive_file import FILE as DRIVE_FILE
 from tsas_cli.identification.drive_file import IdentifiedDrive
 from tsas_cli.identification.model import Model, model_of, source_of
-from tsas_cli.recordings.dataset import Recording, recording_of, write_dataset
+from tsas_cli.recordings.recording import Recording, recording_of
+from tsas_cli.recordings.writing import write_dataset
 from tsas_cli.result import Result, Table, notes
 from tsas_cli.steps import SILENT, Steps
 from tsas_cli.tracking.conditions import Condition

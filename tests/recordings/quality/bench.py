@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from tsas_cli.recordings.dataset import Floats, Recording
 from tsas_cli.recordings.manifest import Rig, Run
 from tsas_cli.recordings.quality.trial import Trial
+from tsas_cli.recordings.recording import Floats, Recording
 
 STIFFNESS, LOAD, PRELOAD, FRICTION = 100.0, 1.5, 25.0, 0.4  # N/mm, N/mm, N, μθ
 

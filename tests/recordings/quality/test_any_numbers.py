@@ -5,9 +5,10 @@ import pyarrow as pa
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from tsas_cli.recordings.dataset import read_dataset, write_dataset
+from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.manifest import Manifest
 from tsas_cli.recordings.quality import check_dataset
+from tsas_cli.recordings.writing import write_dataset
 
 NAMES = ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N", "motor_speed_rpm")
 RAW = {

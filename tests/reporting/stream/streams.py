@@ -9,7 +9,8 @@ import pyarrow as pa
 from rerun.chunk import RrdReader
 
 from tests.reporting.made_folders import make_diagnosis, play
-from tsas_cli.recordings.dataset import read_dataset, write_parquet
+from tsas_cli.recordings.dataset import read_dataset
+from tsas_cli.recordings.writing import write_parquet
 
 MODEL = """format = 1
 [parameters.friction_coefficient]

@@ -18,8 +18,9 @@ from tests.reporting.made_folders import (
 )
 from tests.reporting.stream.streams import make_diagnosed, read
 from tsas_cli.errors import InputError
-from tsas_cli.recordings.dataset import RunColumns, write_dataset
 from tsas_cli.recordings.manifest import Manifest, Run
+from tsas_cli.recordings.run_files import RunColumns
+from tsas_cli.recordings.writing import write_dataset
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.phases import BY_KEY
 from tsas_cli.reporting.stream import write_stream

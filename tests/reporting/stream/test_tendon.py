@@ -22,8 +22,9 @@ from tsas_cli.identification.simulation import simulate_dataset
 from tsas_cli.physics.ends import Drive
 from tsas_cli.physics.response import simulate
 from tsas_cli.recordings.columns import nominal_name
-from tsas_cli.recordings.dataset import read_dataset, write_dataset, write_parquet
+from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.manifest import Manifest, Run
+from tsas_cli.recordings.writing import write_dataset, write_parquet
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.stream import write_stream
 from tsas_cli.reporting.stream.recorder.layout import Plane, Space, Tabs

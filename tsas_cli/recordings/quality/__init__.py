@@ -6,7 +6,7 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from tsas_cli.errors import InputError
-from tsas_cli.recordings.dataset import Dataset, read_recording
+from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Manifest, Run
 from tsas_cli.recordings.quality.checks import (
     clipped,
@@ -36,6 +36,7 @@ from tsas_cli.recordings.quality.finding import (
     Subject,
 )
 from tsas_cli.recordings.quality.trial import Trial
+from tsas_cli.recordings.run_files import read_recording
 from tsas_cli.steps import SILENT, Steps
 
 MANIFEST_CHECKS: tuple[Check[Manifest], ...] = (unknown_key.CHECK, manifest_unit.CHECK)

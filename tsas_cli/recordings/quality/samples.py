@@ -4,7 +4,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.numerics.noise import quantisation_step
-from tsas_cli.recordings.dataset import Floats
+from tsas_cli.recordings.recording import Floats
 
 Booleans = npt.NDArray[np.bool_]
 _FEWEST = 16  # samples below which noise cannot be told

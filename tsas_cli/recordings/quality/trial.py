@@ -9,9 +9,9 @@ import numpy as np
 from tsas_cli.numerics.noise import noise_sd
 from tsas_cli.numerics.turning_points import turning_points
 from tsas_cli.recordings.columns import TIME
-from tsas_cli.recordings.dataset import Floats, Recording
 from tsas_cli.recordings.manifest import Rig
 from tsas_cli.recordings.quality.samples import Booleans, step_of
+from tsas_cli.recordings.recording import Floats, Recording
 
 MECHANICAL = ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N")
 _FOLLOWERS = {"spring": MECHANICAL[1:], "force": ("x_out_mm",), "displacement": ()}

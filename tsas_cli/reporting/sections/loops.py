@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.recordings.dataset import Recording
+from tsas_cli.recordings.recording import Recording
 from tsas_cli.reporting.channels import at_axis, in_words
 from tsas_cli.reporting.content import Group, Picture, Section
 from tsas_cli.reporting.drawing import picture

@@ -3,8 +3,9 @@
 from collections.abc import Sequence
 
 from tsas_cli.recordings.columns import BY_NAME, TIME
-from tsas_cli.recordings.dataset import Dataset, Recording
+from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Manifest
+from tsas_cli.recordings.recording import Recording
 from tsas_cli.reporting.content import Section, Table
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import ABSENT, plain

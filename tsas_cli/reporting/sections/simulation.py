@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.recordings.columns import BY_NAME
-from tsas_cli.recordings.dataset import Recording
+from tsas_cli.recordings.recording import Recording
 from tsas_cli.reporting.channels import in_words
 from tsas_cli.reporting.content import Group, Picture, Section, Table, missing
 from tsas_cli.reporting.drawing import picture

@@ -17,14 +17,9 @@ from tsas_cli.errors import InputError
 from tsas_cli.files import json_text
 from tsas_cli.identification.model import FILE as MODEL
 from tsas_cli.identification.model import Model, write_model
-from tsas_cli.recordings.dataset import (
-    Dataset,
-    Recording,
-    read_dataset,
-    table_of,
-    write_dataset,
-    write_parquet,
-)
+from tsas_cli.recordings.dataset import Dataset, read_dataset
+from tsas_cli.recordings.recording import Recording
+from tsas_cli.recordings.writing import table_of, write_dataset, write_parquet
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.stage_files import Simulation
 from tsas_cli.reporting.stream.recorder import Recorder, to_viewer

@@ -8,8 +8,9 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.recordings.columns import BY_NAME, TIME
-from tsas_cli.recordings.dataset import Dataset, RunColumns, open_run
+from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Run
+from tsas_cli.recordings.run_files import RunColumns, open_run
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.stage_files import (
     Calibration,

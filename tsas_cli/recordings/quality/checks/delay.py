@@ -13,9 +13,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from tsas_cli.recordings.dataset import Floats
 from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
 from tsas_cli.recordings.quality.trial import Trial
+from tsas_cli.recordings.recording import Floats
 
 _ROUNDS = 20
 _ROWS = 40  # rows of a cycle that the smoothing leaves apart, at least

@@ -11,10 +11,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from tsas_cli.recordings.dataset import Floats
 from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
 from tsas_cli.recordings.quality.samples import Booleans, smallest_change
 from tsas_cli.recordings.quality.trial import Trial
+from tsas_cli.recordings.recording import Floats
 
 _BLOCK = 32  # rows
 _MEDIAN_OF_THIRD = 0.6745 * math.sqrt(20.0)  # of |third difference|, for noise of unit deviation

@@ -9,10 +9,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from tsas_cli.recordings.dataset import Floats
 from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
 from tsas_cli.recordings.quality.samples import rows_between_changes, smallest_change
 from tsas_cli.recordings.quality.trial import Trial
+from tsas_cli.recordings.recording import Floats
 
 _FEWEST_CHANGES = 20
 

@@ -11,10 +11,10 @@ import numpy as np
 
 from tsas_cli.numerics.noise import noise_sd
 from tsas_cli.numerics.turning_points import turning_points
-from tsas_cli.recordings.dataset import Floats
 from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark, Severity
 from tsas_cli.recordings.quality.samples import alternates, plateaus, rows_between_changes
 from tsas_cli.recordings.quality.trial import Trial
+from tsas_cli.recordings.recording import Floats
 
 _FEWEST_UPDATES = 20
 _LEAST_NOISE = 1e-4  # of the span; less may be the interpolation of a computed channel

@@ -11,8 +11,9 @@ from tsas_cli.physics.ends import Drive
 from tsas_cli.physics.response import Dynamics
 from tsas_cli.physics.rig import Rig
 from tsas_cli.recordings.columns import nominal_name
-from tsas_cli.recordings.dataset import Dataset, read_recording
+from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Run
+from tsas_cli.recordings.run_files import read_recording
 from tsas_cli.reporting.stage_files import Diagnosis, Simulation, StageFile
 from tsas_cli.reporting.stream.seen import X_IN, SeenRun
 from tsas_cli.reporting.tendon.followed import (
