@@ -54,8 +54,10 @@ def compare(
 
     Parameters
     ----------
-    a, b
-        Model files, or folders that `tsas calibrate`, `diagnose`, `simulate` or `track` wrote.
+    a
+        A model file, or a folder that `tsas calibrate`, `diagnose`, `simulate` or `track` wrote.
+    b
+        What it is compared with, likewise.
     out
         Where to write `compare.json` and `report.html`; None writes nothing.
     on

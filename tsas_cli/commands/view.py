@@ -7,7 +7,8 @@ from typing import Annotated
 
 import typer
 
-from tsas_cli.commands.common import Json, Quiet, progress, show
+from tsas_cli.commands.common import Json, Quiet, show
+from tsas_cli.commands.progress import progress
 
 ENDS = {True: "Ctrl-C ends it", False: "close the window or press Ctrl-C to end it"}
 
