@@ -40,7 +40,7 @@ def view(
     in_browser = web or not has_screen()
     opened = page_of if in_browser else window_of
     with until_stopped(), ExitStack() as held:
-        with progress("stream", None, quiet=quiet) as step:
+        with progress("stream", quiet=quiet) as step:
             stream, notes = held.enter_context(stream_of(paths, step))
         viewer = held.enter_context(opened(stream, port=port))
         talk = () if quiet else (*notes, note_once(), ENDS[in_browser])
