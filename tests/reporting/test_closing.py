@@ -20,11 +20,11 @@ from tests.reporting.test_tracking import cells
 from tsas_cli.errors import InputError
 from tsas_cli.reporting import colours
 from tsas_cli.reporting.closing import call
-from tsas_cli.reporting.closing_file import Closing
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.figures.closing import MODELS, draw_dots
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.page import page
+from tsas_cli.stage_files.closing import Closing
 from tsas_cli.tracking import closing
 from tsas_cli.tracking.closing_stage import chosen
 

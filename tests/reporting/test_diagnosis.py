@@ -17,7 +17,7 @@ from tsas_cli.reporting.figures.likeness import draw_likeness
 from tsas_cli.reporting.figures.residual_map import Panel, draw_residual_map
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.page import page
-from tsas_cli.reporting.stage_files import Bin, HeldOut
+from tsas_cli.stage_files.diagnosis import Bin, HeldOut
 
 
 @pytest.fixture(scope="module")

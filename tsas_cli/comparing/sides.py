@@ -5,15 +5,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
-from tsas_cli.comparing.stage_json import (
-    CalibrationJson,
-    DiagnosisJson,
-    HeldOut,
-    Named,
-    SimulationJson,
-    Source,
-    StageJson,
-)
 from tsas_cli.diagnosis.diagnose_stage import EXTENDED
 from tsas_cli.errors import InputError
 from tsas_cli.files import read_json, sha256_of
@@ -22,9 +13,13 @@ from tsas_cli.physics.response import Dynamics
 from tsas_cli.recordings.dataset import Dataset, read_dataset
 from tsas_cli.recordings.manifest import FILE as MANIFEST
 from tsas_cli.recordings.manifest import parse, read_toml
+from tsas_cli.stage_files.base import OfDataset, Source
+from tsas_cli.stage_files.calibration import Calibration
+from tsas_cli.stage_files.diagnosis import Cause, Diagnosis, HeldOut
+from tsas_cli.stage_files.simulation import Simulation
 
 Kind = Literal["model", "calibration", "diagnosis", "simulation"]
-STAGES: tuple[type[StageJson], ...] = (CalibrationJson, DiagnosisJson, SimulationJson)
+STAGES: tuple[type[OfDataset], ...] = (Calibration, Diagnosis, Simulation)
 
 
 @dataclass(frozen=True)
@@ -47,7 +42,7 @@ class Side:
     recordings: dict[str, str] | None = None
     verdict: str = ""
     reason: str = ""
-    named: tuple[Named, ...] = ()
+    named: tuple[Cause, ...] = ()
     held_out: dict[str, HeldOut] = field(default_factory=dict)
     not_converged: str = ""
 
@@ -102,25 +97,25 @@ def _of_model(path: Path) -> Side:
     )
 
 
-def _of_stage(path: Path, kind: type[StageJson]) -> Side:
+def _of_stage(path: Path, kind: type[OfDataset]) -> Side:
     file = path / kind.FILE
     stage = parse(kind, read_json(file), file)
     files = {kind.FILE: sha256_of(file)}
     dataset, gone = _dataset(stage.dataset, stage.chosen, path)
     read = _recordings(stage.dataset, stage.chosen, dataset)
-    if isinstance(stage, SimulationJson):
+    if isinstance(stage, Simulation):
         return Side(
             path, "simulation", files, None, stage.dynamics, stage.dataset, dataset, gone, read
         )
-    name = EXTENDED if isinstance(stage, DiagnosisJson) else FILE
+    name = EXTENDED if isinstance(stage, Diagnosis) else FILE
     model = read_model(path / name)
     files[name] = sha256_of(path / name)
-    if isinstance(stage, DiagnosisJson):
+    if isinstance(stage, Diagnosis):
         return Side(
             path, "diagnosis", files, model, "slip", stage.dataset, dataset, gone, read,
             stage.verdict, stage.reason, stage.named, stage.channels,
         )  # fmt: skip
-    assert isinstance(stage, CalibrationJson)  # noqa: S101  the only other kind
+    assert isinstance(stage, Calibration)  # noqa: S101  the only other kind
     return Side(
         path, "calibration", files, model, stage.dynamics, stage.dataset, dataset, gone, read,
         not_converged="" if stage.fit.converged else stage.fit.message,

@@ -3,15 +3,14 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
-
-from pydantic import BaseModel, ConfigDict
+from typing import Any
 
 from tsas_cli.errors import InputError
 from tsas_cli.files import read_json, sha256_of
 from tsas_cli.recordings.manifest import parse
+from tsas_cli.stage_files.tracking import Result, Tracking
 
-FILE = "tracking.json"
+FILE = Tracking.FILE
 SCORES = {  # those that are better the smaller they are, with their units
     "rmse_N": "N",
     "outside_percent": "%",
@@ -20,33 +19,6 @@ SCORES = {  # those that are better the smaller they are, with their units
 }
 ASKED = ("model", "plant", "drive", "dynamics", "gains", "reference", "settings", "seeds")
 TASK = ("plant", "dynamics", "reference", "settings.reference")  # with others the task is another
-
-
-class _Record(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="ignore")
-
-
-class Spread(_Record):
-    """Mean and standard deviation over the seeds; of one seed no spread."""
-
-    mean: float | None
-    sd: float | None = None
-
-
-class Result(_Record):
-    """One controller under one condition; `run` is the recording of the first seed."""
-
-    controller: str
-    condition: str
-    run: str
-    scores: dict[str, Spread]
-
-
-class _Tracking(_Record):
-    format: Literal[1]
-    stage: Literal["track"]
-    conditions: dict[str, tuple[dict[str, Any], ...]]
-    results: tuple[Result, ...]
 
 
 @dataclass(frozen=True)
@@ -117,7 +89,7 @@ def compare_tracked(a: Path, b: Path) -> Tracks:
         A file cannot be read, or is not whole.
     """
     raw = [read_json(path / FILE) for path in (a, b)]
-    one, other = (parse(_Tracking, r, p / FILE) for r, p in zip(raw, (a, b), strict=True))
+    one, other = (parse(Tracking, r, p / FILE) for r, p in zip(raw, (a, b), strict=True))
     same = {n for n, what in one.conditions.items() if other.conditions.get(n) == what}
     first, second = (
         {(r.controller, r.condition): r for r in side.results} for side in (one, other)

@@ -5,7 +5,8 @@ from typing import Any
 
 from tsas_cli import __version__
 from tsas_cli.comparing.stage import Table
-from tsas_cli.comparing.tracked import FILE, SCORES, Spread, Tracks
+from tsas_cli.comparing.tracked import FILE, SCORES, Tracks
+from tsas_cli.stage_files.tracking import Spread
 
 
 def as_json(it: Tracks) -> dict[str, Any]:

@@ -4,14 +4,15 @@ from collections.abc import Iterator, Mapping, Sequence
 from statistics import median
 
 from tsas_cli.reporting.channels import called
-from tsas_cli.reporting.closing_file import Closing
 from tsas_cli.reporting.content import Fact, Glance
 from tsas_cli.reporting.diagnosis.words import heading_of, listed, title_of, within
-from tsas_cli.reporting.drive_file import Drive, DriveDiagnosis
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import ABSENT, plain, with_interval
-from tsas_cli.reporting.stage_files import Cause, Diagnosis, HeldOut, Simulation
-from tsas_cli.reporting.tracking_file import Tracking
+from tsas_cli.stage_files.closing import Closing
+from tsas_cli.stage_files.diagnosis import Cause, Diagnosis, HeldOut
+from tsas_cli.stage_files.drive import Drive, DriveDiagnosis
+from tsas_cli.stage_files.simulation import Simulation
+from tsas_cli.stage_files.tracking import Tracking
 
 _KINDS = {
     "named": "Cause found",

@@ -18,17 +18,14 @@ from tsas_cli.recordings.dataset import Dataset, read_dataset
 from tsas_cli.recordings.manifest import FILE, parse
 from tsas_cli.recordings.quality import check_dataset
 from tsas_cli.recordings.recording import Recording
-from tsas_cli.reporting.closing_file import Closing
-from tsas_cli.reporting.drive_file import Drive
-from tsas_cli.reporting.stage_files import (
-    Calibration,
-    Check,
-    Diagnosis,
-    OfDataset,
-    Simulation,
-    StageFile,
-)
-from tsas_cli.reporting.tracking_file import Tracking
+from tsas_cli.stage_files.base import OfDataset, StageFile
+from tsas_cli.stage_files.calibration import Calibration
+from tsas_cli.stage_files.check import Check
+from tsas_cli.stage_files.closing import Closing
+from tsas_cli.stage_files.diagnosis import Diagnosis
+from tsas_cli.stage_files.drive import Drive
+from tsas_cli.stage_files.simulation import Simulation
+from tsas_cli.stage_files.tracking import Tracking
 
 Floats = npt.NDArray[np.float64]
 STAGES: tuple[type[StageFile], ...] = (

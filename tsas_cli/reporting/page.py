@@ -2,9 +2,7 @@
 
 from collections.abc import Callable
 
-from tsas_cli.reporting.closing_file import Closing
 from tsas_cli.reporting.content import Section
-from tsas_cli.reporting.drive_file import Drive
 from tsas_cli.reporting.glance import glance
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.rendered import rendered
@@ -22,7 +20,9 @@ from tsas_cli.reporting.sections import (
     tracking,
     transfer,
 )
-from tsas_cli.reporting.tracking_file import Tracking
+from tsas_cli.stage_files.closing import Closing
+from tsas_cli.stage_files.drive import Drive
+from tsas_cli.stage_files.tracking import Tracking
 
 SECTIONS: tuple[Callable[[Inputs], Section | None], ...] = (
     closing.section,

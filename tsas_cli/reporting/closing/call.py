@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from tsas_cli.reporting.closing_file import Closing
+from tsas_cli.stage_files.closing import Closing
 
 SETTINGS = "settings.toml"
 

@@ -7,7 +7,7 @@ from tsas_cli.reporting.content import Section, Table
 from tsas_cli.reporting.drawing import picture
 from tsas_cli.reporting.figures.gains import draw_gains, height_in
 from tsas_cli.reporting.numbers import ABSENT, plain
-from tsas_cli.reporting.stage_files import Diagnosis, HeldOut
+from tsas_cli.stage_files.diagnosis import Diagnosis, HeldOut
 
 _BOUNDS = (
     "Noise alone leaves the noise floor. Best obtainable is what a flexible regression on the "

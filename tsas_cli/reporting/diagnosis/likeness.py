@@ -11,7 +11,7 @@ from tsas_cli.reporting.diagnosis.words import listed
 from tsas_cli.reporting.drawing import picture
 from tsas_cli.reporting.figures.likeness import draw_likeness, height_in
 from tsas_cli.reporting.numbers import plain
-from tsas_cli.reporting.stage_files import Diagnosis
+from tsas_cli.stage_files.diagnosis import Diagnosis
 
 Floats = npt.NDArray[np.float64]
 

@@ -9,7 +9,7 @@ from tsas_cli.reporting.diagnosis.words import listed, signal_at_axis, signal_in
 from tsas_cli.reporting.drawing import picture
 from tsas_cli.reporting.figures.residual_map import NAMES, Panel, draw_residual_map, height_in
 from tsas_cli.reporting.numbers import plain
-from tsas_cli.reporting.stage_files import Bin, Diagnosis
+from tsas_cli.stage_files.diagnosis import Bin, Diagnosis
 
 _SEEN = 0.5  # in units of noise
 _SIGNALS = 4

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from tsas_cli.reporting.colours import STAND_IN
-from tsas_cli.reporting.stage_files import HeldOut
+from tsas_cli.stage_files.diagnosis import HeldOut
 
 
 def height_in(channels: int) -> float:

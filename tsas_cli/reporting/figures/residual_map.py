@@ -6,7 +6,7 @@ from typing import Any
 
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.phases import label_of
-from tsas_cli.reporting.stage_files import Bin
+from tsas_cli.stage_files.diagnosis import Bin
 
 NAMES = ("before", "after")  # of the two series of a panel
 _MOST_LABELS = 8

@@ -6,7 +6,7 @@ from typing import Any
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.drawing import shortened
 from tsas_cli.reporting.phases import BY_KEY
-from tsas_cli.reporting.stage_files import Stiffness
+from tsas_cli.stage_files.calibration import Stiffness
 
 _NAME_LENGTH = 14
 

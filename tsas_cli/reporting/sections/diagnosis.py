@@ -3,7 +3,7 @@
 from tsas_cli.reporting.content import Section, missing
 from tsas_cli.reporting.diagnosis import candidates, causes, gains, likeness, maps, remainder
 from tsas_cli.reporting.inputs import Inputs
-from tsas_cli.reporting.stage_files import Diagnosis
+from tsas_cli.stage_files.diagnosis import Diagnosis
 
 _TITLE = "Diagnosis"
 

@@ -14,7 +14,8 @@ from tsas_cli.reporting.figures.loops import draw_loop
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import spanned
 from tsas_cli.reporting.phases import PHASES, phase_of_samples
-from tsas_cli.reporting.stage_files import Calibration, Segment
+from tsas_cli.stage_files.base import Segment
+from tsas_cli.stage_files.calibration import Calibration
 
 _TENSIONS = ("f_in_N", "f_out_N")
 _X = "x_in_mm"

@@ -3,7 +3,8 @@
 from tsas_cli.reporting.content import Section, Table, missing
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import with_interval
-from tsas_cli.reporting.stage_files import Calibration, Parameter
+from tsas_cli.stage_files.base import Parameter
+from tsas_cli.stage_files.calibration import Calibration
 
 _TITLE = "Parameters"
 

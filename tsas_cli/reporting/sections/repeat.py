@@ -9,20 +9,17 @@ from pathlib import Path
 from tsas_cli import __version__
 from tsas_cli.files import sha256_of
 from tsas_cli.reporting.closing import call as closing_call
-from tsas_cli.reporting.closing_file import Closing
 from tsas_cli.reporting.content import Section, Table
-from tsas_cli.reporting.drive_file import Drive
 from tsas_cli.reporting.inputs import Inputs
-from tsas_cli.reporting.stage_files import (
-    Calibration,
-    Check,
-    Diagnosis,
-    ModelFile,
-    Simulation,
-    StageFile,
-)
 from tsas_cli.reporting.tracking import call
-from tsas_cli.reporting.tracking_file import Tracking
+from tsas_cli.stage_files.base import ModelFile, StageFile
+from tsas_cli.stage_files.calibration import Calibration
+from tsas_cli.stage_files.check import Check
+from tsas_cli.stage_files.closing import Closing
+from tsas_cli.stage_files.diagnosis import Diagnosis
+from tsas_cli.stage_files.drive import Drive
+from tsas_cli.stage_files.simulation import Simulation
+from tsas_cli.stage_files.tracking import Tracking
 
 _LIBRARIES = ("numpy", "scipy", "numba", "matplotlib")
 

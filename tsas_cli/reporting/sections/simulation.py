@@ -14,7 +14,7 @@ from tsas_cli.reporting.drawing import picture
 from tsas_cli.reporting.figures.comparison import draw_comparison
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import ABSENT, plain, spanned
-from tsas_cli.reporting.stage_files import Channel, Simulation
+from tsas_cli.stage_files.simulation import Channel, Simulation
 
 Floats = npt.NDArray[np.float64]
 _TITLE = "Simulation and measurement"

@@ -8,7 +8,7 @@ from tsas_cli.reporting.figures.stiffness import draw_stiffness, height_in
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import ABSENT, plain, with_interval
 from tsas_cli.reporting.phases import PHASES, label_of
-from tsas_cli.reporting.stage_files import Calibration, Stiffness
+from tsas_cli.stage_files.calibration import Calibration, Stiffness
 
 _TITLE = "Stiffness by phase"
 _WHAT = (

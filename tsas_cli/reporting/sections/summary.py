@@ -6,12 +6,14 @@ from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.manifest import Manifest
 from tsas_cli.reporting.channels import in_words
 from tsas_cli.reporting.closing import cases, errors
-from tsas_cli.reporting.closing_file import Closing
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import plain
-from tsas_cli.reporting.stage_files import Calibration, Check, Simulation
 from tsas_cli.reporting.tracking.scores import best_and_worst
-from tsas_cli.reporting.tracking_file import Tracking
+from tsas_cli.stage_files.calibration import Calibration
+from tsas_cli.stage_files.check import Check
+from tsas_cli.stage_files.closing import Closing
+from tsas_cli.stage_files.simulation import Simulation
+from tsas_cli.stage_files.tracking import Tracking
 
 
 def sentences(inputs: Inputs) -> Iterator[str]:

@@ -21,11 +21,11 @@ from tsas_cli.recordings.dataset import Dataset, read_dataset
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.recordings.writing import table_of, write_dataset, write_parquet
 from tsas_cli.reporting.inputs import Inputs
-from tsas_cli.reporting.stage_files import Simulation
 from tsas_cli.reporting.stream.recorder import Recorder, to_viewer
 from tsas_cli.reporting.stream.seen import SeenRun
 from tsas_cli.reporting.stream.stream import Stream, stream_of
-from tsas_cli.reporting.tracking_file import Tracking
+from tsas_cli.stage_files.simulation import Simulation
+from tsas_cli.stage_files.tracking import Tracking
 from tsas_cli.tracking.recorded import manifest
 from tsas_cli.tracking.settings import Settings
 

@@ -4,9 +4,11 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from tsas_cli.recordings.columns import nominal_name
-from tsas_cli.reporting.drive_file import Drive
 from tsas_cli.reporting.inputs import Inputs
-from tsas_cli.reporting.stage_files import Diagnosis, Simulation, StageFile
+from tsas_cli.stage_files.base import StageFile
+from tsas_cli.stage_files.diagnosis import Diagnosis
+from tsas_cli.stage_files.drive import Drive
+from tsas_cli.stage_files.simulation import Simulation
 
 TENDON = frozenset({"f_in_N", "f_out_N", "x_out_mm"})
 DRIVE = frozenset({"x_in_mm"})

@@ -11,7 +11,7 @@ from tsas_cli.reporting.drawing import picture
 from tsas_cli.reporting.figures.portraits import Orbit, draw_portraits, portraits_in
 from tsas_cli.reporting.numbers import plain
 from tsas_cli.reporting.tracking.runs import X_IN, X_INV, Condition, Followed
-from tsas_cli.reporting.tracking_file import Settings
+from tsas_cli.stage_files.tracking import Settings
 
 Floats = npt.NDArray[np.float64]
 

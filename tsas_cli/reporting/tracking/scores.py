@@ -2,7 +2,7 @@
 
 from tsas_cli.reporting.content import Table
 from tsas_cli.reporting.numbers import ABSENT, with_spread
-from tsas_cli.reporting.tracking_file import Spread, Tracking
+from tsas_cli.stage_files.tracking import Spread, Tracking
 
 _COLUMNS = (
     ("RMSE [N]", "rmse_N"),

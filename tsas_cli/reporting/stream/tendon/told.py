@@ -14,7 +14,6 @@ from tsas_cli.recordings.columns import nominal_name
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.run_files import read_recording
-from tsas_cli.reporting.stage_files import Diagnosis, Simulation, StageFile
 from tsas_cli.reporting.stream.seen import X_IN, SeenRun
 from tsas_cli.reporting.tendon.followed import (
     EXTENDED,
@@ -24,6 +23,9 @@ from tsas_cli.reporting.tendon.followed import (
     Which,
     follow,
 )
+from tsas_cli.stage_files.base import StageFile
+from tsas_cli.stage_files.diagnosis import Diagnosis
+from tsas_cli.stage_files.simulation import Simulation
 
 F_IN, F_OUT = "f_in_N", "f_out_N"
 

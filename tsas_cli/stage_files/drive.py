@@ -1,18 +1,11 @@
-"""What `drive.json` holds, as far as the page reads it (docs/formats.md)."""
+"""What `drive.json` holds, as far as it is read (docs/formats.md)."""
 
 from typing import ClassVar, Literal
 
 from pydantic import Field
 
-from tsas_cli.reporting.stage_files import (
-    Cause,
-    Evidence,
-    Fit,
-    HeldOut,
-    OfDataset,
-    Parameter,
-    Record,
-)
+from tsas_cli.stage_files.base import Evidence, Fit, OfDataset, Parameter, Record
+from tsas_cli.stage_files.diagnosis import Cause, HeldOut
 
 
 class Curve(Record):

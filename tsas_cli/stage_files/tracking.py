@@ -1,10 +1,10 @@
-"""What `tracking.json` holds, as far as the page reads it (docs/formats.md)."""
+"""What `tracking.json` holds, as far as it is read (docs/formats.md)."""
 
 from typing import ClassVar, Literal
 
 from pydantic import Field
 
-from tsas_cli.reporting.stage_files import ModelFile, Record, StageFile
+from tsas_cli.stage_files.base import ModelFile, Record, StageFile
 
 ADAPTIVE = "adaptive-sliding-mode"
 Three = tuple[float, float, float]
@@ -27,6 +27,11 @@ class Scores(Record):
     effort_rpm: Spread
     chatter_rpm_per_s: Spread
     at_limit_percent: Spread
+
+    def __getitem__(self, score: str) -> Spread:
+        """Return a score by its name."""
+        spread: Spread = getattr(self, score)
+        return spread
 
 
 class Result(Record):

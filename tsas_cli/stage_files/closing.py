@@ -1,10 +1,10 @@
-"""What `closing.json` holds, as far as the page reads it (docs/formats.md)."""
+"""What `closing.json` holds, as far as it is read (docs/formats.md)."""
 
 from typing import Any, ClassVar, Literal
 
 from pydantic import Field
 
-from tsas_cli.reporting.stage_files import Record, StageFile
+from tsas_cli.stage_files.base import Record, StageFile
 
 
 class Rmse(Record):
