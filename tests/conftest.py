@@ -1,5 +1,6 @@
 """What many tests need: the command line in a process of its own, and a small dataset."""
 
+import signal
 import subprocess
 import sys
 from collections.abc import Callable
@@ -11,6 +12,10 @@ import pytest
 
 from tsas_cli.recordings.manifest import Manifest
 from tsas_cli.recordings.writing import write_dataset
+
+
+# A shell has those that it starts in the background ignore Ctrl-C, and their children do too.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture

@@ -15,13 +15,13 @@ from hypothesis import strategies as st
 from tsas_cli.text_table import table_lines
 
 PRINT = """
-from tsas_cli.text_table import print_table
+from tsas_cli.commands.common import show
 header = ("name", "run", "A [95 %]", "B [95 %]", "B − A [95 %]", "differs", "unit")
 long = "[0.12499, 0.12502]"
 rows = [(f"name_{n}", "a", f"0.1{n} {long}", f"0.2{n} {long}", f"0.3{n} {long}", "no", f"u{n}")
         for n in range(12)]
-print_table("parameters of a model → a/folder/with/a/long/name/that/has/no/blank/in/it/model.toml",
-            header, rows)
+title = "parameters of a model → a/folder/with/a/long/name/that/has/no/blank/in/it/model.toml"
+show({}, [(title, header, rows)], quiet=False, as_json=False)
 """
 HEADER = ("effect", "RMSE [N]", "what it is")
 ROWS = [

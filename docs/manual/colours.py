@@ -1,17 +1,13 @@
 """The colours of the program's own pages, as styles of the site and of a picture by itself."""
 
-import re
-from importlib.resources import files
-
-_BLOCK = re.compile(r":root \{(.*?)\}", re.DOTALL)
+from tsas_cli.reporting.colours import schemes
 
 
 def palettes() -> tuple[str, str]:
     """Return the declarations of light and dark that the report's style sheet makes."""
-    templates = files("tsas_cli.reporting").joinpath("templates").iterdir()
-    sheets = [t.read_text(encoding="utf-8") for t in templates if t.name.endswith(".css")]
-    blocks = [block for sheet in sheets for block in _BLOCK.findall(sheet) if "--ink:" in block]
-    light, dark = (" ".join(block.split()) for block in blocks[:2])
+    light, dark = (
+        " ".join(f"--{role}: {colour};" for role, colour in scheme.items()) for scheme in schemes()
+    )
     return light, dark
 
 

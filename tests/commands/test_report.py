@@ -140,11 +140,11 @@ def test_report_is_registered_once():
 @pytest.fixture
 def printer(monkeypatch):
     """Print without a browser."""
-    from tsas_cli.reporting import pdf
+    import tsas_cli.api.report as module
 
-    monkeypatch.setattr(pdf, "browser", lambda: "chromium")
+    monkeypatch.setattr(module, "browser", lambda: "chromium")
     monkeypatch.setattr(
-        pdf, "print_page", lambda html, path: path.write_bytes(b"%PDF" + html[:9].encode())
+        module, "print_page", lambda html, path: path.write_bytes(b"%PDF" + html[:9].encode())
     )
 
 

@@ -6,7 +6,8 @@ from pathlib import Path
 
 from tests.reporting.stream.streams import read
 
-PIPELINES = Path(__file__).parents[2] / "pipelines"
+ROOT = Path(__file__).parents[2]
+PIPELINES = (ROOT / "pipelines", ROOT / "tsas_cli" / "project" / "make")
 WITH_STREAM = (
     "check",
     "calibrate",
@@ -49,8 +50,12 @@ def test_without_a_folder_there_is_nowhere_to_write(strict, dataset):
 
 
 def test_pipelines_write_a_stream_of_every_stage_that_can():
-    text = "".join(path.read_text(encoding="utf-8") for path in PIPELINES.glob("*.mk"))
+    files = [path for folder in PIPELINES for path in folder.glob("*.mk")]
+    text = "".join(path.read_text(encoding="utf-8") for path in files)
+    told = re.findall(r"^STAGE = (.*)$", text, flags=re.MULTILINE)
+    assert told
+    assert all("--rrd" in options for options in told)
     calls = re.findall(r"tsas\)? ([\w-]+) (.*--out.*)", text, flags=re.IGNORECASE)
     assert {stage for stage, _ in calls} >= set(WITH_STREAM)
     for stage, options in calls:
-        assert ("--rrd" in options) == (stage in WITH_STREAM), f"{stage} {options}"
+        assert ("(STAGE)" in options) == (stage in WITH_STREAM), f"{stage} {options}"

@@ -22,6 +22,7 @@ VERBS = {  # of commands whose function has another name
     "challenge run": "tsas_cli.api.challenge.run_set",
     "challenge score": "tsas_cli.api.challenge.score_set",
 }
+NEEDED_BESIDES = {"ingest": ("--map", "some", "--out", "some")}  # but for --guess
 OTHERS = ("doctor", "init", "view")  # commands about the program itself and its window
 STAGES = [name for name in CALLS if name not in OTHERS]
 BAR = """
@@ -51,6 +52,13 @@ class Anything(Result):
         return ["- after the tables"]
 
 
+class Opened:
+    """A dataset that was opened, as far as a command itself looks at it."""
+
+    class manifest:  # noqa: N801
+        name = "some"
+
+
 @pytest.fixture
 def called(monkeypatch, capsys):
     """Call a command whose stage finds anything; return what it prints."""
@@ -58,6 +66,7 @@ def called(monkeypatch, capsys):
     def call(name, *options):
         verb = VERBS.get(name, f"tsas_cli.{name.replace('-', '_')}")
         found = Anything(SUMMARY, None)
+        monkeypatch.setattr("tsas_cli.read", lambda *_, **__: Opened(), raising=False)
         monkeypatch.setattr(verb, lambda *_, **__: found, raising=False)
         arguments = [*needed(CALLS[name]), *options]
         tsas_cli.app.app([*name.split(), *arguments], prog_name="tsas", standalone_mode=False)
@@ -74,7 +83,7 @@ def needed(command):
             if parameter.param_type_name == "option":
                 words.append(parameter.opts[0])
             words.append("1" if parameter.name == "seed" else "some")
-    return words
+    return [*words, *NEEDED_BESIDES.get(command.name, ())]
 
 
 @pytest.mark.parametrize("name", STAGES)

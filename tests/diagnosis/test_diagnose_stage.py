@@ -67,8 +67,8 @@ def test_the_models_differ_by_what_is_named(diagnosed):
 
 
 def test_the_phases_follow_each_other_over_the_whole_run(diagnosed):
-    recording, summary, _ = diagnosed
-    segments = summary["segments"]["a"]
+    recording, result, _ = diagnosed
+    segments = result.summary["segments"]["a"]
     assert segments[0]["start_s"] == recording.time_s[0]
     assert segments[-1]["end_s"] == recording.time_s[-1]
     assert all(a["end_s"] == b["start_s"] for a, b in pairwise(segments))

@@ -159,7 +159,7 @@ def test_the_command_asks_for_the_same_cases(tmp_path, hide, option):
     inputs = read_inputs([make_closing(tmp_path / "loop", made)])
     options = list(call.options(inputs.get(Closing)))
     assert options == [*option, "--seeds", "5", "--seed", "3"]
-    again = chosen(None, [option[1]]) if hide else chosen(option[1], [])
+    again = chosen(None, [option[1]]) if hide else chosen(option[1].split(","), [])
     assert [case.name for case in again] == list(made)
     if hide:
         assert again[0].hidden == CASES["backlash"][1]

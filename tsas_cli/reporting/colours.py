@@ -1,5 +1,9 @@
 """Colours by role: drawn as stand-ins, then named in the page's style, once light and once dark."""
 
+import re
+from functools import cache
+from importlib.resources import files
+
 CONTROLLERS = ("pid", "sliding-mode", "adaptive-sliding-mode", "disturbance-observer")
 MODELS = ("data-sheet", "calibrated", "extended", "true")
 ROLES = (
@@ -22,6 +26,15 @@ ROLES = (
     *MODELS,
 )
 STAND_IN = {role: f"#c0ff{number:02x}" for number, role in enumerate(ROLES)}
+
+
+@cache
+def schemes() -> tuple[dict[str, str], dict[str, str]]:
+    """Return the light and the dark scheme of `colours.css`: colours as #rrggbb by role."""
+    style = files("tsas_cli.reporting") / "templates" / "colours.css"
+    blocks = re.findall(r":root \{(.*?)\}", style.read_text(encoding="utf-8"), re.DOTALL)
+    light, dark = (dict(re.findall(r"--([\w-]+): (#[0-9a-f]{6})", block)) for block in blocks)
+    return light, dark
 
 
 def of_controller(name: str) -> str:

@@ -11,6 +11,7 @@ from rerun.chunk import RrdReader
 from tests.reporting.made_folders import make_dataset, make_simulation, make_tracking
 from tsas_cli.identification.model import data_sheet
 from tsas_cli.recordings.dataset import read_dataset
+from tsas_cli.recordings.recording import Recording
 from tsas_cli.reporting.stream.live import LiveStream
 from tsas_cli.reporting.stream.recorder import Recorder, to_file
 
@@ -43,17 +44,23 @@ def rows_by_run(path):
     return rows
 
 
+def answer(dataset, run):
+    """Return what a model may have answered to a run."""
+    ones = np.ones(300)
+    columns = {"time_s": np.arange(300.0), "f_in_N": ones, "x_in_mm": ones}
+    return Recording(dataset.only([run]).runs[0], columns)
+
+
 def test_each_simulated_run_is_there_before_the_next_is_computed(seen, tmp_path):
     dataset = make_dataset(tmp_path / "dataset", ("a", "b"), samples=300)
     simulated = make_simulation(dataset, tmp_path / "simulated")
     summary = json.loads((simulated / "simulation.json").read_text())
     opened = read_dataset(dataset)
     model = data_sheet(opened.manifest)
-    table = pa.table({"time_s": np.arange(300.0), "f_in_N": np.ones(300), "x_in_mm": np.ones(300)})
 
     def step(run):
         so_far = summary | {"runs": {run: summary["runs"][run]}}
-        return lambda live: live.simulated(opened, so_far, run, table, model)
+        return lambda live: live.simulated(opened, so_far, answer(opened, run), model)
 
     first, both = seen([step("a"), step("b")])
     assert first["/run/a/f_in_N/simulated"] == 300
@@ -84,11 +91,10 @@ def test_layouts_follow_the_runs_and_do_not_crowd_them_out(tmp_path, monkeypatch
     simulated = make_simulation(dataset, tmp_path / "simulated")
     summary = json.loads((simulated / "simulation.json").read_text())
     opened = read_dataset(dataset)
-    table = pa.table({"time_s": np.arange(300.0), "f_in_N": np.ones(300), "x_in_mm": np.ones(300)})
     with to_file(tmp_path / "live.rrd", "live") as recorder:
         live = LiveStream(recorder, tmp_path)
         for run in "ab":
-            live.simulated(opened, summary, run, table, data_sheet(opened.manifest))
+            live.simulated(opened, summary, answer(opened, run), data_sheet(opened.manifest))
         assert len(laid_out) == 1
         live.lay_out()
         live.lay_out()
