@@ -3,7 +3,9 @@
 .SUFFIXES:
 MAKEFLAGS += --no-print-directory
 
-include pipelines/setup.mk $(filter-out pipelines/setup.mk,$(wildcard pipelines/*.mk))
+# What the others build on comes first.
+BASE := pipelines/setup.mk pipelines/recordings.mk
+include $(BASE) $(filter-out $(BASE),$(wildcard pipelines/*.mk))
 
 .PHONY: help
 help:  ## list what make can do

@@ -240,3 +240,10 @@ def test_the_friction_damper_runs_once_and_alone_too(bench):
     assert bench.make("friction-damper", *words) == []
     missing = f"TSAS_DATA={bench.folder / 'none'}"
     assert bench.make("friction-damper", missing, words[1], code=2) == []
+
+
+@pytest.mark.parametrize("file", [None, "pipelines/mis-tool.mk", "pipelines/friction-damper.mk"])
+def test_no_rule_is_there_twice(file):
+    words = [MAKE, "-n", *(["-f", file] if file else []), "setup"]
+    done = subprocess.run(words, cwd=REPOSITORY, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
