@@ -13,7 +13,6 @@ import pytest
 from tsas_cli.recordings.manifest import Manifest
 from tsas_cli.recordings.writing import write_dataset
 
-
 # A shell has those that it starts in the background ignore Ctrl-C, and their children do too.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
