@@ -13,8 +13,10 @@ import pytest
 from tsas_cli.recordings.manifest import Manifest
 from tsas_cli.recordings.writing import write_dataset
 
-# A shell has those that it starts in the background ignore Ctrl-C, and their children do too.
+# A shell has those that it starts in the background ignore Ctrl-C, `nohup` a terminal that closes,
+# and their children do too.
 signal.signal(signal.SIGINT, signal.default_int_handler)
+signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 
 @pytest.fixture

@@ -42,9 +42,14 @@ def table_lines(title: str, rows: Sequence[Row], width: int | None) -> Iterator[
     if width is None or _least(rows, every) <= room:
         yield from _table(rows, every, room)
     elif parts := _parts(rows, room):
+        keys = _keys(rows)
         for number, columns in enumerate(parts):
             yield from [""] if number else []
-            told = [row for row in rows[1:] if any(row[k] for k in columns[_keys(rows) :])]
+            told = [
+                row
+                for row in rows[1:]
+                if any(row[k] for k in columns[keys:]) or not (number or any(row[keys:]))
+            ]
             yield from _table([rows[0], *told], columns, room)
     else:
         yield from _blocks(rows, width)

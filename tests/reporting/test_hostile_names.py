@@ -136,7 +136,6 @@ def hostile(tmp_path_factory):
         content["model"] = {"file": EVIL, "sha256": "ab" * 32}
         content["dataset"] = original
         content["notes"] = [EVIL]
-        content["dynamics"] = EVIL
         for run in content["runs"].values():
             run["solver"] = run["start"] = EVIL
             run["conditioning"] = {
