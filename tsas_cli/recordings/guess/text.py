@@ -50,7 +50,9 @@ def _head(proposal: Proposal) -> Iterable[str]:
         "surely."
     )
     if proposal.alike:
-        yield from _wrapped(f"{len(proposal.alike)} more files have the same columns.")
+        more = len(proposal.alike)
+        have = "more file has" if more == 1 else "more files have"
+        yield from _wrapped(f"{more} {have} the same columns.")
     if proposal.doubt:
         yield from _wrapped(proposal.doubt)
     for path, reason in proposal.unlike.items():
