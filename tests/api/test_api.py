@@ -123,6 +123,16 @@ def test_simulated_channels_are_what_is_written(folder, simulated):
     assert told == pytest.approx(float(np.sqrt(np.mean(error**2))))
 
 
+def test_answers_are_the_same_in_memory_and_read_from_what_was_written(folder, simulated):
+    held = tsas.simulate(folder, model=folder.parent / "calibrate")
+    assert list(held.runs) == list(simulated.runs)
+    for name, values in held["a"].columns.items():
+        np.testing.assert_array_equal(simulated["a"].columns[name], values)
+    for result in (held, simulated):
+        with pytest.raises(tsas.InputError, match="there is no run 'z'"):
+            result["z"]
+
+
 def test_a_model_in_hand_and_its_file_are_the_same(folder, simulated):
     by_file = tsas.simulate(folder, model=folder.parent / "calibrate")
     assert by_file.summary["runs"] == simulated.summary["runs"]

@@ -27,7 +27,8 @@ from tsas_cli.physics.chain_state import MOST_NODES
 from tsas_cli.physics.response import Dynamics
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.recording import Recording, recording_of
-from tsas_cli.recordings.writing import write_runs
+from tsas_cli.recordings.run_files import WrittenRuns
+from tsas_cli.recordings.writing import table_of, write_parquet
 from tsas_cli.result import Result, Table, notes
 from tsas_cli.steps import SILENT, Steps
 
@@ -45,6 +46,7 @@ class SimulationResult(Result):
     runs
         By id the answer to each run: columns of shape (n,) as in the recording, `x_in_mm` as
         conditioned [mm], `f_in_N` and `f_out_N` [N], `x_out_mm` [mm]; NaN in gaps of the drive.
+        Those that were written are read when they are asked for.
     """
 
     model: Model
@@ -99,26 +101,32 @@ def simulate_dataset(
     summary = dataset.header("simulate", out) | {"model": source_of(model)}
     summary |= {"dynamics": dynamics, "nodes": nodes, "own_values_fitted": fit_own, "runs": {}}
     summary["segments"] = {}
-    runs, used = {}, taken
+    kept, used = dict[str, Recording](), taken
     with folder_if(out, force=force) as folder:
+        if folder is not None:
+            (folder / "runs").mkdir()
         step.ahead(len(dataset.runs))
         for recording in dataset:
             run = prepare(recording, dataset.manifest.session_start)
             own = with_own_values(taken, run) if fit_own else taken
             used = _of_run(own, run.run.id).over(used)
             answer = compare(run, own, dynamics, nodes)
-            runs[run.run.id] = Recording(run.run, _columns(run, answer))
+            answered = Recording(run.run, _columns(run, answer))
+            if folder is None:
+                kept[run.run.id] = answered
+            else:  # many runs need no more memory than one
+                write_parquet(folder / "runs" / f"{run.run.id}.parquet", table_of(answered))
             summary["runs"][run.run.id] = answer.as_json(run)
             summary["segments"][run.run.id] = segments_as_json(run, segment(run))
-            each(summary, runs[run.run.id], used)
+            each(summary, answered, used)
             step()
         summary["notes"] = _notes(summary["runs"])
         if folder is not None:
-            write_runs(folder / "runs", runs)
             write_json(folder / "simulation.json", summary)
             # What the model was fitted to, its own file says; these recordings are only followed.
             write_model(folder / FILE, used, version=__version__, dataset={})
-    return SimulationResult(summary, out, taken, runs)
+    written = out and WrittenRuns(out / "runs", {run.id: run for run in dataset.runs})
+    return SimulationResult(summary, out, taken, written or kept)
 
 
 def _of_run(model: Model, run: str) -> Model:
