@@ -1,6 +1,7 @@
 """Calls side by side: as one after the other, and really at once."""
 
 import threading
+import time
 
 import pytest
 
@@ -23,3 +24,20 @@ def test_what_a_call_raises_is_raised(monkeypatch):
     monkeypatch.setenv(THREADS, "2")
     with pytest.raises(ZeroDivisionError):
         each(lambda k: 1 / k, [1, 0])
+
+
+def test_after_an_error_no_other_call_begins(monkeypatch):
+    monkeypatch.setenv(THREADS, "2")
+    begun, failed = [], threading.Event()
+
+    def call(k):
+        begun.append(k)
+        if k == 0:
+            failed.set()
+            raise ZeroDivisionError
+        assert failed.wait(20.0)
+        time.sleep(0.05)
+
+    with pytest.raises(ZeroDivisionError):
+        each(call, range(50))
+    assert len(begun) < 5

@@ -1,6 +1,7 @@
 """Independent calls at once, on threads: compiled kernels let go of the interpreter's lock."""
 
 import os
+from collections import deque
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
@@ -27,7 +28,21 @@ def each(
     pool = threads()
     if pool < 2 or len(items) < 2:
         return [function(item) for item in items]
-    return list(_pool(pool).map(function, items))
+    found: dict[int, Result] = {}
+    waiting = iter(range(len(items)))  # all threads take from it: items of their own cost more
+
+    def work(_: int) -> None:
+        try:
+            for k in waiting:
+                found[k] = function(items[k])
+        finally:
+            deque(waiting, maxlen=0)  # after an error none begins another item
+
+    try:
+        deque(_pool(pool).map(work, range(min(pool, len(items)))), maxlen=0)
+    finally:
+        deque(waiting, maxlen=0)  # nor after Ctrl-C
+    return [found[k] for k in range(len(items))]
 
 
 def threads() -> int:
