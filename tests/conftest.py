@@ -9,9 +9,14 @@ from pathlib import Path
 import numpy as np
 import pyarrow as pa
 import pytest
+from hypothesis import settings
 
 from tsas_cli.recordings.manifest import Manifest
 from tsas_cli.recordings.writing import write_dataset
+
+# The same examples in every run; `--hypothesis-profile=default` looks for others.
+settings.register_profile("same", derandomize=True)
+settings.load_profile("same")
 
 # A shell has those that it starts in the background ignore Ctrl-C, `nohup` a terminal that closes,
 # and their children do too.

@@ -135,6 +135,17 @@ def test_where_nothing_fits_each_row_is_a_block() -> None:
     assert "".join(line[12:] for line in lines[1:3]) == "free_tendon"
 
 
+def test_a_table_without_names_in_its_header_is_folded_too() -> None:
+    rows = [[""] * 5, ["", "", "", "", "a" * 10], ["", "a", "", "", ""]]
+    assert list(table_lines("t", rows, 16)) == ["t", "     aaaaaaaaaa", "", "     a"]
+
+
+def test_a_cell_of_blanks_needs_no_room() -> None:
+    rows = [["", "", "a" * 3], [" ", "b" * 7, ""]]
+    lines = list(table_lines("t", rows, 16))
+    assert lines[1:] == ["    " + " " * 9 + "aaa", "    -------  ---", "    bbbbbbb"]
+
+
 def test_a_row_that_a_part_says_nothing_of_is_left_out_of_it() -> None:
     rows = [("name", "run", "A", ""), ("x", "a", "1" * 15, ""), ("x", "a", "", "2" * 15)]
     assert list(table_lines("t", rows, 30)) == [

@@ -103,7 +103,7 @@ def _table(rows: Sequence[Row], columns: Sequence[int], room: float) -> Iterator
 def _folded(row: Row, widths: Sequence[int]) -> Iterator[str]:
     """Yield the lines of one row, each cell folded between words."""
     cells = [
-        [cell] if len(cell) <= width else wrap(cell, width, break_on_hyphens=False)
+        [cell] if len(cell) <= width else wrap(cell, max(width, 1), break_on_hyphens=False) or [""]
         for cell, width in zip(row, widths, strict=True)
     ]
     for k in range(max(map(len, cells))):
@@ -117,7 +117,7 @@ def _folded(row: Row, widths: Sequence[int]) -> Iterator[str]:
 def _blocks(rows: Sequence[Row], width: int) -> Iterator[str]:
     """Yield each row as a block, one line or more for each cell that is not empty."""
     header, *others = rows
-    longest = min(max(map(len, header)), width // 2 - len(GAP))
+    longest = max(1, min(max(map(len, header)), width // 2 - len(GAP)))
     for number, row in enumerate(others):
         if number:
             yield ""
