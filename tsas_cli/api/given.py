@@ -17,6 +17,11 @@ def path_of(given: Thing | str) -> Thing | Path:
     return Path(given) if isinstance(given, str) else given
 
 
+def paths_of(given: Named | Iterable[Named]) -> list[Path]:
+    """Return one path or several as a list."""
+    return [Path(each) for each in ([given] if isinstance(given, str | Path) else given)]
+
+
 def dataset_of(given: Dataset | Named, runs: Iterable[str] | None = None) -> Dataset:
     """Return a dataset, or open that of a folder, with the runs that were asked for.
 

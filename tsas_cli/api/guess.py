@@ -2,9 +2,8 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from pathlib import Path
 
-from tsas_cli.api.given import Named, path_of
+from tsas_cli.api.given import Named, path_of, paths_of
 from tsas_cli.files import new_file
 from tsas_cli.recordings.guess.proposal import Proposal, propose
 from tsas_cli.recordings.guess.summary import content, tables
@@ -62,8 +61,7 @@ def guess(
     InputError
         None of the files can be read, or `out` exists and `force` is not set.
     """
-    listed = [sources] if isinstance(sources, str | Path) else list(sources)
-    proposal, path = propose(find_files([Path(source) for source in listed], "*")), path_of(out)
+    proposal, path = propose(find_files(paths_of(sources), "*")), path_of(out)
     summary = content(proposal)
     if path is not None:
         with new_file(path, force=force) as written:

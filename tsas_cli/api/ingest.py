@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tsas_cli import __version__
-from tsas_cli.api.given import Named
+from tsas_cli.api.given import Named, paths_of
 from tsas_cli.files import new_folder
 from tsas_cli.recordings.dataset import Dataset, read_dataset
 from tsas_cli.recordings.ingest import Ingested, find_files, ingest_files
@@ -80,8 +80,7 @@ def ingest(
     """
     map_path, folder = Path(map), Path(out)
     mapping = read_map(map_path)
-    listed = [sources] if isinstance(sources, str | Path) else list(sources)
-    files = find_files([Path(source) for source in listed], mapping.read.files)
+    files = find_files(paths_of(sources), mapping.read.files)
     with new_folder(folder, force=force) as written:
         runs = ingest_files(files, mapping, map_path, written, step=step)
     summary = {

@@ -5,7 +5,7 @@ from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 
-from tsas_cli.api.given import Named
+from tsas_cli.api.given import Named, paths_of
 from tsas_cli.errors import InputError
 from tsas_cli.files import new_file
 from tsas_cli.reporting.inputs import read_inputs
@@ -67,14 +67,13 @@ def report(
         A folder is of no known kind, does not belong to the dataset, `out` exists and `force` is
         not set, or there is no Chromium to print with.
     """
-    listed = [folders] if isinstance(folders, str | Path) else list(folders)
     pages = [Path(out)]
     if pdf:
         browser()  # before the work, where there is none
         pages.append(_beside(Path(out)))
     with ExitStack() as stack:
         html, *printed = (stack.enter_context(new_file(path, force=force)) for path in pages)
-        inputs = read_inputs([Path(folder) for folder in listed])
+        inputs = read_inputs(paths_of(folders))
         step.ahead(len(SECTIONS))
         text = page(inputs, step)
         html.write_text(text, encoding="utf-8")

@@ -5,12 +5,9 @@ from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
-import pyarrow as pa
-import pyarrow.parquet as pq
 
 from tsas_cli.comparing.sides import Side
 from tsas_cli.comparing.values import same_runs
-from tsas_cli.errors import InputError
 from tsas_cli.identification.base_fit import with_own_values
 from tsas_cli.identification.comparison import compare as simulated
 from tsas_cli.identification.model import Model
@@ -18,6 +15,7 @@ from tsas_cli.identification.prepared import CHANNELS, Prepared, prepare
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Run
+from tsas_cli.recordings.written import answers_of, check_rows, columns_of, names_of
 from tsas_cli.steps import SILENT, Steps
 
 Floats = npt.NDArray[np.float64]
@@ -120,8 +118,7 @@ class Answers:
     def _ready(self, dataset: Dataset, run: Run) -> Prepared:
         key = (dataset.folder.resolve(), run.id)
         if key not in self._prepared:
-            (recording,) = dataset.only([run.id])
-            self._prepared[key] = prepare(recording, dataset.manifest.session_start)
+            self._prepared[key] = prepare(dataset[run.id], dataset.manifest.session_start)
         return self._prepared[key]
 
 
@@ -201,20 +198,10 @@ def _simulated(model: Model, side: Side, run: Prepared) -> Answer:
 
 def _written(side: Side, run: Prepared) -> Answer:
     """Return the answer that `tsas simulate` has written."""
-    path = side.path / "runs" / f"{run.run.id}.parquet"
-    try:
-        table = pq.ParquetFile(path).read()
-        columns = {name: table.column(name).to_numpy() for name in table.column_names}
-    except (pa.ArrowException, OSError) as error:
-        reason = str(error).splitlines()[0]
-        raise InputError(f"cannot be read ({reason})", where=path) from error
-    if table.num_rows != run.time_s.size:
-        raise InputError(
-            f"{table.num_rows} rows",
-            where=path,
-            expected=f"{run.time_s.size}, as the recording has",
-            remedy="run `tsas simulate` again",
-        )
+    path = answers_of(side.path, run.run.id)
+    columns = columns_of(path, names_of(path))
+    for values in columns.values():
+        check_rows(path, values.size, run.time_s.size, stage="`tsas simulate`")
     errors = {n: values - columns[n] for n, values in run.measured.items() if n in columns}
     f_in = columns.get("f_in_N", run.channel("f_in_N"))
     return Answer(run, np.full(run.time_s.size, np.nan) if f_in is None else f_in, errors)

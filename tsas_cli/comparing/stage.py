@@ -1,6 +1,5 @@
 """What `tsas compare` writes and prints: `compare.json`, and the tables."""
 
-from collections.abc import Sequence
 from typing import Any
 
 from tsas_cli import __version__
@@ -9,9 +8,9 @@ from tsas_cli.comparing.sentences import findings, notes
 from tsas_cli.comparing.sides import Side
 from tsas_cli.comparing.values import Pair, shared_name
 from tsas_cli.identification.estimate import Estimate
+from tsas_cli.result import Table
 
 FILE = "compare.json"
-Table = tuple[str, Sequence[str], Sequence[Sequence[str]]]
 
 
 def as_json(it: Comparison) -> dict[str, Any]:

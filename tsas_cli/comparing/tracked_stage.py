@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from typing import Any
 
 from tsas_cli import __version__
-from tsas_cli.comparing.stage import Table
 from tsas_cli.comparing.tracked import FILE, SCORES, Tracks
+from tsas_cli.result import Table
 from tsas_cli.stage_files.tracking import Spread
 
 

@@ -4,13 +4,13 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from tsas_cli import __version__
-from tsas_cli.diagnosis.drive_diagnosis import DriveCause, DriveDiagnosis, diagnose_drive
+from tsas_cli.diagnosis import drive_json
+from tsas_cli.diagnosis.drive_diagnosis import DriveDiagnosis, diagnose_drive
 from tsas_cli.diagnosis.drive_search import DriveSearch
 from tsas_cli.diagnosis.drive_tables import tables
 from tsas_cli.diagnosis.drive_words import (
@@ -18,9 +18,7 @@ from tsas_cli.diagnosis.drive_words import (
     equation_of,
     inverse_of,
     name_of,
-    next_run,
 )
-from tsas_cli.effects import EFFECTS
 from tsas_cli.files import folder_if, write_json
 from tsas_cli.identification.drive_estimates import (
     DataSheet,
@@ -28,13 +26,11 @@ from tsas_cli.identification.drive_estimates import (
     estimates_of,
 )
 from tsas_cli.identification.drive_file import FILE, UNITS, IdentifiedDrive, drive_of, write_drive
-from tsas_cli.identification.drive_fit import LINEAR, DriveBench, Terms, quantities_of
+from tsas_cli.identification.drive_fit import DriveBench, Terms
 from tsas_cli.identification.drive_runs import drive_runs
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.frequency_response import FrequencyResponse, frequency_response
-from tsas_cli.identification.transfer_function import bode_curve, poles
+from tsas_cli.identification.frequency_response import frequency_response
 from tsas_cli.numerics.linear_response import Hold
-from tsas_cli.physics.drive import DriveValues
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.recording import Recording, recording_of
@@ -43,9 +39,6 @@ from tsas_cli.result import Result, Table, notes
 from tsas_cli.steps import SILENT, Steps
 
 Floats = npt.NDArray[np.float64]
-
-CURVE_POINTS = 200
-BESIDE_BAND = 1.05  # of its edge, up to which a pole counts as inside
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -126,19 +119,19 @@ def identify_drive(
         summary = dataset.header("identify-harmonic-drive", out) | {
             "hold": hold,
             "structure": {"name": name_of(final), "equation": equation_of(final)},
-            "structures": _structures(search, final),
+            "structures": drive_json.structures(search, final),
             "parameters": [e.as_json() for e in known.values()],
-            "kinematics": _kinematics(sheet, fitted),
+            "kinematics": drive_json.kinematics(sheet, fitted),
             "inverse": inverse_of(trial.values),
-            "frequency_response": _response(seen, trial.values),
-            "poles": _poles(trial.values, seen),
-            "runs": _runs(search, by_fit, by_nominal),
+            "frequency_response": drive_json.response(seen, trial.values),
+            "poles": drive_json.pole_rows(trial.values, seen),
+            "runs": drive_json.run_rows(search, by_fit, by_nominal),
             "fit": {
                 "converged": trial.solution.converged,
                 "message": trial.solution.message,
                 "evaluations": trial.solution.evaluations,
             },
-            "diagnosis": _diagnosis(search, found),
+            "diagnosis": drive_json.diagnosis(search, found),
         }
         summary["cannot_tell"] = cannot_tell(summary, sheet, final, known)
         step()
@@ -164,146 +157,10 @@ def _given(sheet: DataSheet) -> dict[str, Estimate]:
     }
 
 
-def _structures(search: DriveSearch, final: Terms) -> list[dict[str, Any]]:
-    """Return every structure that was fitted with what is in the gear, the simplest first."""
-    gear = final - frozenset(LINEAR)
-    rows = []
-    for terms in search.structures(gear):
-        trial = search.trial(terms)
-        rows.append(
-            {
-                "name": name_of(terms),
-                "parameters": len(quantities_of(terms)),
-                "held_out_times_noise": math.sqrt(search.mean_square(terms)),
-                "times_noise": math.sqrt(trial.mean_square),
-                "converged": trial.solution.converged,
-                "chosen": terms == final,
-            }
-        )
-    return rows
-
-
-def _kinematics(sheet: DataSheet, fitted: dict[str, Estimate]) -> dict[str, Any]:
-    K, lead = sheet.kinematic_gain, fitted["kV_rpm_s_per_mm"]
-    return {
-        "kinematic_gain_mm_per_s_rpm": K,
-        "kinematic_lead_rpm_s_per_mm": None if K is None else 1.0 / K,
-        "fitted_lead_rpm_s_per_mm": lead.value,
-        "fitted_above_kinematic_percent": None if K is None else 100.0 * (lead.value * K - 1.0),
-    }
-
-
-def _response(seen: FrequencyResponse, values: DriveValues) -> dict[str, Any]:
-    at = seen.frequency_Hz
-    told = seen.response
-    curve = np.geomspace(at[0], at[-1], CURVE_POINTS)
-    magnitude, phase = bode_curve(values, curve)
-    measured = np.degrees(np.unwrap(np.angle(told)))
-    excited = np.flatnonzero(seen.excited)
-    if excited.size:  # the same turn as the fitted curve
-        k = int(excited[0])
-        off = measured[k] - float(np.interp(at[k], curve, phase))
-        measured -= 360.0 * round(off / 360.0)
-    return {
-        "band_Hz": None if seen.band is None else list(seen.band),
-        "measured": {
-            "frequency_Hz": at,
-            "magnitude": np.abs(told),
-            "phase_deg": measured,
-            "coherence": seen.coherence,
-            "excited": seen.excited.tolist(),
-        },
-        "fitted": {"frequency_Hz": curve, "magnitude": magnitude, "phase_deg": phase},
-    }
-
-
-def _poles(values: DriveValues, seen: FrequencyResponse) -> list[dict[str, Any]]:
-    """Return the poles, and 1/T of a delay, with whether the input shows their frequency."""
-    band = seen.band
-    out = []
-    for pole in poles(values):
-        if abs(pole) < 1e-9 or pole.imag < 0.0:
-            continue
-        out.append(("pole", float(pole.real), float(pole.imag), float(abs(pole)) / (2.0 * math.pi)))
-    if values.delay_s > 0.0:
-        rate = 1.0 / values.delay_s
-        out.append(("1/delay", -rate, 0.0, rate / (2.0 * math.pi)))
-    return [
-        {
-            "kind": kind,
-            "real_per_s": real,
-            "imaginary_per_s": imaginary,
-            "frequency_Hz": frequency,
-            "in_band": band is not None
-            and band[0] / BESIDE_BAND <= frequency <= band[1] * BESIDE_BAND,
-        }
-        for kind, real, imaginary, frequency in out
-    ]
-
-
 def _simulated(search: DriveSearch, terms: Terms) -> list[Floats]:
     """Return x_in of every run by a set of terms."""
     values = search.trial(terms).values
     return [search.bench.simulated(r, values) for r in range(len(search.bench.runs))]
-
-
-def _runs(search: DriveSearch, fitted: list[Floats], nominal: list[Floats]) -> dict[str, Any]:
-    out = {}
-    for run, by_fit, by_nominal in zip(search.bench.runs, fitted, nominal, strict=True):
-        errors = {"rmse": by_fit - run.x_in, "rmse_nominal": by_nominal - run.x_in}
-        out[run.id] = {
-            "samples": int(run.x_in.size),
-            "rate_Hz": 1.0 / run.u.step_s,
-            "noise": run.noise_mm,
-            "unit": "mm",
-            **{key: float(np.sqrt(np.mean(e**2))) for key, e in errors.items()},
-            "begins_at_rest": run.at_rest,
-        }
-    return out
-
-
-def _diagnosis(search: DriveSearch, found: DriveDiagnosis) -> dict[str, Any]:
-    folds = search.folds
-    how = "Each run is predicted by a fit to the others"
-    if not folds.by_run:
-        how = "Stretches are predicted by a fit to the rest"
-    return {
-        "verdict": found.verdict,
-        "reason": found.reason,
-        "nominal": "Eq. (25) without reaction" if found.nominal else "x_in = g ∫u dt",
-        "named": [_cause(cause) for cause in found.causes],
-        "gain_percent": found.gain_percent[0],
-        "gain_interval_percent": list(found.gain_percent[1:]),
-        "channels": {"x_in_mm": {"unit": "mm", **vars(found.channel)}},
-        "remainder": {
-            "unexplained": found.unexplained,
-            "depends_on": list(found.depends_on),
-            "share_percent": 100.0 * found.share_left,
-            "mean_square": found.mean_square,
-        },
-        "evidence": {
-            "held_out": "runs" if folds.by_run else "stretches",
-            "blocks": folds.blocks,
-            "sentence": f"{how}; {folds.blocks} blocks longer than the error's memory count.",
-        },
-        "next_experiment": next_run(found),
-    }
-
-
-def _cause(cause: DriveCause) -> dict[str, Any]:
-    effect = next(e for e in EFFECTS if e.name == cause.effect)
-    return {
-        "effect": cause.effect,
-        "title": effect.title,
-        "kind": cause.kind,
-        "rivals": list(cause.rivals),
-        "parameters": {
-            e.name: {k: v for k, v in e.as_json().items() if k not in ("name", "run", "origin")}
-            for e in cause.parameters
-        },
-        "gain_percent": cause.gain_percent,
-        "gain_interval_percent": list(cause.gain_interval_percent),
-    }
 
 
 def _recordings(

@@ -27,8 +27,8 @@ from tsas_cli.physics.chain_state import MOST_NODES
 from tsas_cli.physics.response import Dynamics
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.recording import Recording, recording_of
-from tsas_cli.recordings.run_files import WrittenRuns
-from tsas_cli.recordings.writing import table_of, write_parquet
+from tsas_cli.recordings.writing import write_answer
+from tsas_cli.recordings.written import WrittenRuns
 from tsas_cli.result import Result, Table, notes
 from tsas_cli.steps import SILENT, Steps
 
@@ -115,7 +115,7 @@ def simulate_dataset(
             if folder is None:
                 kept[run.run.id] = answered
             else:  # many runs need no more memory than one
-                write_parquet(folder / "runs" / f"{run.run.id}.parquet", table_of(answered))
+                write_answer(folder / "runs", answered)
             summary["runs"][run.run.id] = answer.as_json(run)
             summary["segments"][run.run.id] = segments_as_json(run, segment(run))
             each(summary, answered, used)

@@ -1,5 +1,6 @@
 """How the slip front ran: from the drive at each reversal, to the load or not."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -42,6 +43,11 @@ def passages(x_in: Floats, phase: Phases) -> list[Passage]:
         arrived = int(start + 1 + there[0]) if there.size else None
         found.append(Passage(direction, int(start), arrived))
     return found
+
+
+def ends_of(found: Sequence[Passage], last: int) -> list[int]:
+    """Return the sample with which each run ends: the start of the next one, or the last of all."""
+    return [*(passage.start for passage in found[1:]), last][: len(found)]
 
 
 def turns(x_in: Floats) -> Indices:

@@ -45,8 +45,9 @@ from tsas_cli.physics.compliances import (
     length_per_angle,
     sheath_compliance,
 )
-from tsas_cli.physics.frames import Frames, is_next, slips_up_to
+from tsas_cli.physics.frames import Frames
 from tsas_cli.physics.rig import Rig
+from tsas_cli.physics.slip_frames import write_frame
 
 MOST_UNSETTLED = 10  # samples, after which a run is given up
 MOST_STEPS = 60  # between two samples, those included that did not settle
@@ -139,19 +140,6 @@ def follow(
         if frames is not None:  # compiled away where none are asked for
             taken = write_frame(frames, taken, i, chain, n, phase[i])
     return x_in, x_out, f_in, f_out, phase
-
-
-@kernel
-def write_frame(frames: Frames, taken: int, i: int, chain: Floats, n: int, phase: int) -> int:
-    """Write down the chain at sample i, if it is to be; return how many frames are written."""
-    if not is_next(frames, taken, i):
-        return taken
-    for j in range(n + 1):
-        frames.tension_N[taken, j] = chain[T + j]
-    for j in range(n):
-        frames.slip[taken, j] = phase if phase in (SLACK, UNSETTLED) else chain[SLIP + j + 1]
-    frames.front[taken] = slips_up_to(frames, taken)
-    return taken + 1
 
 
 @kernel

@@ -1,6 +1,6 @@
 """A run's Parquet file, read whole or a column at a time, and checked against format 1."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -119,38 +119,6 @@ def read_columns(path: Path) -> dict[str, Floats]:
         raise InputError("column time_s is missing or short", where=path, expected="time in s")
     _check_time(columns[TIME], path)
     return columns
-
-
-@dataclass(frozen=True)
-class WrittenRuns(Mapping[str, Recording]):
-    """Runs that a stage has written into a folder, each read when it is asked for."""
-
-    folder: Path
-    runs: Mapping[str, Run]
-
-    def __getitem__(self, run: str) -> Recording:
-        """Read a run.
-
-        Raises
-        ------
-        KeyError
-            There is none.
-        InputError
-            Its file is no longer what the stage has written.
-        """
-        return Recording(self.runs[run], read_columns(self.folder / f"{run}.parquet"))
-
-    def __contains__(self, run: object) -> bool:
-        """Say whether there is such a run, without reading it."""
-        return run in self.runs
-
-    def __iter__(self) -> Iterator[str]:
-        """Return the ids, in the order of the dataset."""
-        return iter(self.runs)
-
-    def __len__(self) -> int:
-        """Return how many there are."""
-        return len(self.runs)
 
 
 def _read_parquet(path: Path, folder: Path, run: Run) -> pa.Table:

@@ -29,8 +29,13 @@ def write_run(folder: Path, run: Run, table: pa.Table) -> Run:
 def write_runs(folder: Path, runs: Mapping[str, Recording]) -> None:
     """Write runs that belong to no dataset into a new folder, one file each, NaN as null."""
     folder.mkdir()
-    for name, recording in runs.items():
-        write_parquet(folder / f"{name}.parquet", table_of(recording))
+    for recording in runs.values():
+        write_answer(folder, recording)
+
+
+def write_answer(folder: Path, answer: Recording) -> None:
+    """Write what a stage says about a run, NaN as null, into the folder of its runs."""
+    write_parquet(folder / f"{answer.run.id}.parquet", table_of(answer))
 
 
 def table_of(recording: Recording) -> pa.Table:

@@ -9,8 +9,6 @@ from typing import Any, TypeVar, cast
 
 import numpy as np
 import numpy.typing as npt
-import pyarrow as pa
-import pyarrow.parquet as pq
 
 from tsas_cli.errors import InputError, printable
 from tsas_cli.files import read_json
@@ -18,6 +16,7 @@ from tsas_cli.recordings.dataset import Dataset, read_dataset
 from tsas_cli.recordings.manifest import FILE, parse
 from tsas_cli.recordings.quality import check_dataset
 from tsas_cli.recordings.recording import Recording
+from tsas_cli.recordings.written import answers_of, check_rows, columns_of, names_of
 from tsas_cli.stage_files.base import OfDataset, StageFile
 from tsas_cli.stage_files.calibration import Calibration
 from tsas_cli.stage_files.check import Check
@@ -86,15 +85,9 @@ class Inputs:
         InputError
             The file cannot be read, or does not belong to this recording.
         """
-        path = self._answers(run, stage)
+        path = answers_of(self.folders[stage], run)
         values = columns_of(path, (column,))[column]
-        if len(values) != rows:
-            raise InputError(
-                f"{len(values)} rows",
-                where=path,
-                expected=f"{rows}, as the recording has",
-                remedy="run the stage again",
-            )
+        check_rows(path, len(values), rows)
         return values
 
     def answered(self, run: str, stage: type[StageFile]) -> frozenset[str]:
@@ -105,17 +98,8 @@ class Inputs:
         InputError
             The file cannot be read.
         """
-        path = self._answers(run, stage)
-        if not path.is_file():
-            return frozenset()
-        try:
-            return frozenset(pq.read_schema(path).names)
-        except (pa.ArrowException, OSError) as error:
-            reason = str(error).splitlines()[0]
-            raise InputError(f"cannot be read ({reason})", where=path) from error
-
-    def _answers(self, run: str, stage: type[StageFile]) -> Path:
-        return self.folders[stage] / "runs" / f"{run}.parquet"
+        path = answers_of(self.folders[stage], run)
+        return frozenset(names_of(path) if path.is_file() else ())
 
     def tracked(self, run: str, names: Sequence[str]) -> dict[str, Floats]:
         """Return columns of a run of the closed loop by name, shape (n,) each.
@@ -125,7 +109,7 @@ class Inputs:
         InputError
             The file cannot be read or lacks a column.
         """
-        return columns_of(self.folders[Tracking] / "runs" / f"{run}.parquet", names)
+        return columns_of(answers_of(self.folders[Tracking], run), names)
 
 
 def read_inputs(folders: Sequence[Path]) -> Inputs:
@@ -205,22 +189,6 @@ def _by_file(folders: Sequence[Path]) -> dict[str, Path]:
                 )
             found[file] = folder
     return found
-
-
-def columns_of(path: Path, names: Sequence[str]) -> dict[str, Floats]:
-    """Read columns of a stage's own file by name, shape (n,) each.
-
-    Raises
-    ------
-    InputError
-        The file cannot be read or lacks a column.
-    """
-    try:
-        table = pq.ParquetFile(path).read(columns=list(names))
-        return {name: table.column(name).to_numpy() for name in names}
-    except (pa.ArrowException, OSError, KeyError) as error:
-        reason = str(error).splitlines()[0]
-        raise InputError(f"cannot be read ({reason})", where=path) from error
 
 
 def _dataset_of(stage: StageFile, path: Path) -> Path:

@@ -6,10 +6,10 @@ from functools import partial
 
 from tsas_cli.comparing.tracked import FILE, SCORES, Followed, Tracks
 from tsas_cli.comparing.tracked_stage import as_json, shown
+from tsas_cli.recordings.written import answers_of, columns_of
 from tsas_cli.reporting.content import Picture, Section, Table
 from tsas_cli.reporting.drawing import picture
 from tsas_cli.reporting.figures.two_residuals import Residuals, draw_two_residuals, height_in
-from tsas_cli.reporting.inputs import columns_of
 from tsas_cli.reporting.numbers import ABSENT, fixed, with_spread
 from tsas_cli.reporting.rendered import rendered
 from tsas_cli.reporting.tracking.runs import TRUE, WANTED
@@ -85,7 +85,7 @@ def _pictures(it: Tracks) -> Iterator[Picture]:
     """Yield the errors over time of each pair whose runs have the same clock."""
     for number, both in enumerate(it.followed):
         a, b = (
-            columns_of(path / "runs" / f"{result.run}.parquet", ("time_s", WANTED, TRUE))
+            columns_of(answers_of(path, result.run), ("time_s", WANTED, TRUE))
             for path, result in zip(it.paths.values(), (both.a, both.b), strict=True)
         )
         if a["time_s"].shape != b["time_s"].shape or (a["time_s"] != b["time_s"]).any():

@@ -19,7 +19,7 @@ from tsas_cli.identification.model import FILE as MODEL
 from tsas_cli.identification.model import Model, write_model
 from tsas_cli.recordings.dataset import Dataset, read_dataset
 from tsas_cli.recordings.recording import Recording
-from tsas_cli.recordings.writing import table_of, write_dataset, write_parquet
+from tsas_cli.recordings.writing import write_answer, write_dataset
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.stream.recorder import Recorder, to_viewer
 from tsas_cli.reporting.stream.seen import SeenRun
@@ -51,11 +51,12 @@ class LiveStream:
     ) -> None:
         """Show a simulated run beside its recording; `summary` is that of the runs so far."""
         (self.folder / "runs").mkdir(exist_ok=True)
-        run = answer.run.id
-        write_parquet(self.folder / "runs" / f"{run}.parquet", table_of(answer))
+        write_answer(self.folder / "runs", answer)
         write_model(self.folder / MODEL, model, version=__version__, dataset=summary["dataset"])
         stage = Simulation.model_validate(_plain(summary))
-        self._show(Inputs(dataset.only([run]), {Simulation: stage}, {Simulation: self.folder}))
+        self._show(
+            Inputs(dataset.only([answer.run.id]), {Simulation: stage}, {Simulation: self.folder})
+        )
 
     def tracked(self, summary: dict[str, Any], run: str, table: pa.Table) -> None:
         """Show a run of the closed loop; `summary` is that of the runs so far."""

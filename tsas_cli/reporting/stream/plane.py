@@ -3,19 +3,22 @@
 Both axes are scaled to a frame of fixed size, and ticks at round numbers say what they were.
 """
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.reporting.numbers import as_printed
+from tsas_cli.reporting.numbers import as_printed, round_ticks
+from tsas_cli.reporting.stream.palette import colour
+from tsas_cli.reporting.stream.recorder import Recorder
+from tsas_cli.reporting.stream.recorder.paths import Entity
 
 Floats = npt.NDArray[np.float64]
 
 WIDTH, HEIGHT = 1.7, 1.0  # of the frame
 MARGIN = 0.04  # of the range, beside the curve
 TICKS = 5  # about as many to an axis
+STEPS = (1.0, 2.0, 5.0, 10.0)
 ACROSS, DOWN = (-0.2, WIDTH + 0.08), (-HEIGHT - 0.08, 0.28)  # what a view shows of the plane
 _TICK = 0.015
 
@@ -34,11 +37,8 @@ class Axis:
 
     def ticks(self) -> list[float]:
         """Return round numbers within the range."""
-        rough = (self.high - self.low) / TICKS
-        power = 10.0 ** math.floor(math.log10(rough))
-        step = power * next(s for s in (1.0, 2.0, 5.0, 10.0) if s * power >= rough * 0.999)
-        first, last = math.ceil(self.low / step), math.floor(self.high / step)
-        return [step * k for k in range(first, last + 1)]
+        least = 0.999 * (self.high - self.low) / TICKS
+        return round_ticks(self.low, self.high, least, STEPS)
 
 
 @dataclass(frozen=True)
@@ -72,6 +72,15 @@ class Frame:
         named = [(WIDTH / 2.0, 0.14, x_label), (0.4 * WIDTH, -HEIGHT - 0.06, y_label)]
         texts = [*across, *up, *named]
         return np.array([(x, y) for x, y, _ in texts]), [text for *_, text in texts]
+
+
+def record_frame(
+    recorder: Recorder, entity: Entity, frame: Frame, names: tuple[str, str], role: str
+) -> None:
+    """Draw a frame's axes below what is in it; `names` are those of x and y, in a role's colour."""
+    recorder.curves_2d((*entity, "axes"), frame.lines(), colour("muted"), radius=-0.6, order=-1.0)
+    places, texts = frame.texts(*names)
+    recorder.labels_2d((*entity, "names"), places, texts, colour(role))
 
 
 def frame_of(x: Floats, y: Floats) -> Frame:

@@ -17,7 +17,7 @@ from tsas_cli.reporting.decimation import Indices, kept_samples
 from tsas_cli.reporting.phases import PHASES, Phase, phase_of_samples
 from tsas_cli.reporting.stream.events import reversals
 from tsas_cli.reporting.stream.palette import colour
-from tsas_cli.reporting.stream.plane import ACROSS, DOWN, Frame, frame_of
+from tsas_cli.reporting.stream.plane import ACROSS, DOWN, Frame, frame_of, record_frame
 from tsas_cli.reporting.stream.recorder import Recorder
 from tsas_cli.reporting.stream.recorder.layout import Plane
 from tsas_cli.reporting.stream.recorder.paths import Entity
@@ -61,10 +61,8 @@ class Portrait:
         """Record the axes, the loop in the colours of its phases, and the measured stretch."""
         if not self.there.any():
             return
-        at = self._entity("axes")
-        recorder.curves_2d(at, self.frame.lines(), colour("muted"), radius=-0.6, order=-1.0)
-        places, texts = self.frame.texts(at_axis(X_IN), at_axis(self.channel.column))
-        recorder.labels_2d(self._entity("names"), places, texts, colour("ink"))
+        names = at_axis(X_IN), at_axis(self.channel.column)
+        record_frame(recorder, self._entity(), self.frame, names, "ink")
         for phase, curves in self._by_phase():
             recorder.curves_2d(
                 self._entity("phase", phase.key), curves, colour(phase.colour, FAINT), radius=-1.0

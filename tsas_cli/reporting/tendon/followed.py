@@ -15,23 +15,10 @@ from tsas_cli.physics.response import Dynamics, Response, simulate
 from tsas_cli.physics.rig import Rig
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.reporting.tendon.moments import moments
+from tsas_cli.reporting.which import Which
 
 Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
-
-
-@dataclass(frozen=True)
-class Which:
-    """Which model a picture is of: its name in paths, its name in words, its colour's role."""
-
-    key: str
-    label: str
-    role: str
-
-
-SIMULATED = Which("simulated", "simulated", "simulated")
-NOMINAL = Which("model", "nominal model", "before")
-EXTENDED = Which("model_extended", "extended model", "after")
 
 
 @dataclass(frozen=True)

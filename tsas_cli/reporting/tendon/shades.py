@@ -1,10 +1,11 @@
 """Colours of tensions: a map that is even to the eye, dimmed where the tendon sticks."""
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+
+from tsas_cli.reporting.numbers import round_ticks
 
 Floats = npt.NDArray[np.float64]
 Bytes = npt.NDArray[np.uint8]
@@ -35,11 +36,7 @@ class Scale:
 def scale_of(low: float, high: float) -> Scale:
     """Return the scale from one tension to another, with round ticks inside [N]."""
     high = max(high, low + 1e-9 * max(abs(low), 1.0))
-    rough = (high - low) / TICKS
-    ten = 10.0 ** math.floor(math.log10(rough))
-    step = next(ten * s for s in STEPS if ten * s >= rough)
-    ticks = np.arange(math.ceil(low / step), math.floor(high / step) + 1) * step
-    return Scale(low, high, tuple(float(tick) for tick in ticks))
+    return Scale(low, high, tuple(round_ticks(low, high, (high - low) / TICKS, STEPS)))
 
 
 def packed(colours: Bytes, alpha: int = 255) -> npt.NDArray[np.uint32]:

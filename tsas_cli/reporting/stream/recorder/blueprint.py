@@ -105,7 +105,6 @@ def _(part: Space) -> rrb.View:
         background=rrb.Background(color=part.ground, kind="SolidColor"),
         eye_controls=eye,
         line_grid=False,
-        overrides=_trails(part.trails),
     )
 
 

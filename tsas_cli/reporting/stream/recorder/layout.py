@@ -43,7 +43,7 @@ class Plane:
 
 @dataclass(frozen=True)
 class Space:
-    """A space, z upwards, seen from `eye` towards `target`; of `trails` the last seconds.
+    """A space, z upwards, seen from `eye` towards `target`.
 
     `ground` is the colour behind it all, 0xRRGGBBAA.
     """
@@ -53,7 +53,6 @@ class Space:
     eye: Place
     target: Place
     ground: int = 0x0D1014FF
-    trails: Mapping[Entity, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

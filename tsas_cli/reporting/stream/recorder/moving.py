@@ -7,7 +7,7 @@ import numpy.typing as npt
 import rerun as rr
 
 from tsas_cli.reporting.stream.recorder.clock import Times
-from tsas_cli.reporting.stream.recorder.paths import Entity, path_of
+from tsas_cli.reporting.stream.recorder.paths import Entity
 from tsas_cli.reporting.stream.recorder.recorder import Colour, Colours, Floats, Recorder
 
 
@@ -24,11 +24,11 @@ def surface(
     The triangles, shape (m, 3), stay the same.
     """
     moments, count = colours.shape
-    _static(recorder, entity, rr.Mesh3D.from_fields(triangle_indices=triangles))
+    recorder.static(entity, rr.Mesh3D.from_fields(triangle_indices=triangles))
     columns = rr.Mesh3D.columns(
         vertex_positions=corners.reshape(-1, 3).astype(np.float32), vertex_colors=colours.ravel()
     )
-    _send(recorder, entity, times, columns.partition(np.full(moments, count)))
+    recorder.columns(entity, times, columns.partition(np.full(moments, count)))
 
 
 def curves(
@@ -44,14 +44,14 @@ def curves(
 
     They have one colour, or one at each time, shape (n,).
     """
-    _static(recorder, entity, rr.LineStrips3D.from_fields(radii=radius))
+    recorder.static(entity, rr.LineStrips3D.from_fields(radii=radius))
     if isinstance(colour, int):
-        _static(recorder, entity, rr.LineStrips3D.from_fields(colors=colour))
+        recorder.static(entity, rr.LineStrips3D.from_fields(colors=colour))
     else:
-        _send(recorder, entity, times, rr.LineStrips3D.columns(colors=colour))
+        recorder.columns(entity, times, rr.LineStrips3D.columns(colors=colour))
     flat = [np.asarray(strip, dtype=np.float32) for at in strips for strip in at]
     columns = rr.LineStrips3D.columns(strips=flat)
-    _send(recorder, entity, times, columns.partition(np.array([len(at) for at in strips])))
+    recorder.columns(entity, times, columns.partition(np.array([len(at) for at in strips])))
 
 
 def coloured_pieces(
@@ -63,10 +63,10 @@ def coloured_pieces(
     radii: Floats,
 ) -> None:
     """Set a curve of m pieces, shape (m, 2, 3), with colours and radii over time, shape (n, m)."""
-    _static(recorder, entity, rr.LineStrips3D(pieces.astype(np.float32)))
+    recorder.static(entity, rr.LineStrips3D(pieces.astype(np.float32)))
     moments, count = colours.shape
     columns = rr.LineStrips3D.columns(colors=colours.ravel(), radii=radii.ravel())
-    _send(recorder, entity, times, columns.partition(np.full(moments, count)))
+    recorder.columns(entity, times, columns.partition(np.full(moments, count)))
 
 
 def points_2d(
@@ -81,10 +81,10 @@ def points_2d(
 ) -> None:
     """Add any number of points at each time, shape (k, 2), y downwards, k may be 0."""
     look = rr.Points2D.from_fields(colors=colour, radii=radius, draw_order=order)
-    _static(recorder, entity, look)
+    recorder.static(entity, look)
     flat = np.concatenate([np.reshape(at, (-1, 2)) for at in places]).astype(np.float32)
     columns = rr.Points2D.columns(positions=flat)
-    _send(recorder, entity, times, columns.partition(np.array([len(at) for at in places])))
+    recorder.columns(entity, times, columns.partition(np.array([len(at) for at in places])))
 
 
 def captions(
@@ -96,16 +96,6 @@ def captions(
     colour: Colour,
 ) -> None:
     """Add one text at each time, at places of shape (n, 3)."""
-    _static(recorder, entity, rr.Points3D.from_fields(colors=colour, radii=0.0, show_labels=True))
+    recorder.static(entity, rr.Points3D.from_fields(colors=colour, radii=0.0, show_labels=True))
     columns = rr.Points3D.columns(positions=places.astype(np.float32), labels=list(texts))
-    _send(recorder, entity, times, columns)
-
-
-def _static(recorder: Recorder, entity: Entity, look: rr.AsComponents) -> None:
-    recorder.stream.log(path_of(entity), look, static=True, strict=True)
-
-
-def _send(
-    recorder: Recorder, entity: Entity, times: Times, columns: rr.ComponentColumnList
-) -> None:
-    recorder.stream.send_columns(path_of(entity), times.columns, columns, strict=True)
+    recorder.columns(entity, times, columns)

@@ -42,7 +42,7 @@ class Recorder:
         style = rr.SeriesLines(
             names=name, colors=colour, widths=width, aggregation_policy=_EXTREMES
         )
-        self._static(entity, style)
+        self.static(entity, style)
 
     def scalars(self, entity: Entity, times: Times, values: Floats) -> None:
         """Add samples of a series, shape (n,); NaN is a gap, which stays one."""
@@ -53,7 +53,7 @@ class Recorder:
             columns = rr.Scalars.columns(scalars=values[at][there])
             if not there.all():
                 columns = columns.partition(there.astype(np.int64))
-            self._columns(entity, piece, columns)
+            self.columns(entity, piece, columns)
 
     def settle(self) -> None:
         """Wait until what was recorded is written: what waits for it is kept in memory.
@@ -71,7 +71,7 @@ class Recorder:
     def marks(self, entity: Entity, name: str, colour: Colour, *, size: float = 4.0) -> None:
         """Say that the series of an entity is drawn as marks that are not joined."""
         style = rr.SeriesPoints(names=name, colors=colour, marker_sizes=size)
-        self._static(entity, style)
+        self.static(entity, style)
 
     def states(
         self,
@@ -89,18 +89,18 @@ class Recorder:
         names = list(colours)
         shown = [(labels or {}).get(name, name) for name in names]
         look = rr.StateConfiguration(values=names, labels=shown, colors=list(colours.values()))
-        self._static(entity, look)
-        self._columns(entity, times, rr.StateChange.columns(state=list(states)))
+        self.static(entity, look)
+        self.columns(entity, times, rr.StateChange.columns(state=list(states)))
 
     def events(
         self, entity: Entity, times: Times, texts: Sequence[str], levels: Sequence[str]
     ) -> None:
         """Add lines of text, one at each time; a level is INFO, WARN or ERROR."""
-        self._columns(entity, times, rr.TextLog.columns(text=list(texts), level=list(levels)))
+        self.columns(entity, times, rr.TextLog.columns(text=list(texts), level=list(levels)))
 
     def markdown(self, entity: Entity, text: str) -> None:
         """Set a text that holds at all times, as Markdown."""
-        self._static(entity, rr.TextDocument(text, media_type=rr.MediaType.MARKDOWN))
+        self.static(entity, rr.TextDocument(text, media_type=rr.MediaType.MARKDOWN))
 
     def curves_2d(
         self,
@@ -119,14 +119,14 @@ class Recorder:
         look = rr.LineStrips2D(
             list(curves), colors=colour, radii=radius, labels=labels, draw_order=order
         )
-        self._static(entity, look)
+        self.static(entity, look)
 
     def labels_2d(
         self, entity: Entity, places: Floats, labels: Sequence[str], colour: Colour
     ) -> None:
         """Set texts in a plane at places of shape (n, 2), y downwards; they hold at all times."""
         look = rr.Points2D(places, labels=list(labels), colors=colour, radii=0.0, show_labels=True)
-        self._static(entity, look)
+        self.static(entity, look)
 
     def segments_2d(
         self,
@@ -142,10 +142,10 @@ class Recorder:
 
         A view with a range of time around the cursor shows the last stretch of the curve.
         """
-        self._static(
+        self.static(
             entity, rr.LineStrips2D.from_fields(colors=colour, radii=radius, draw_order=order)
         )
-        self._columns(entity, times, rr.LineStrips2D.columns(strips=segments.astype(np.float32)))
+        self.columns(entity, times, rr.LineStrips2D.columns(strips=segments.astype(np.float32)))
 
     def points_2d(
         self,
@@ -158,8 +158,8 @@ class Recorder:
         order: float = 2.0,
     ) -> None:
         """Add one point at each time, shape (n, 2), y downwards."""
-        self._static(entity, rr.Points2D.from_fields(colors=colour, radii=radius, draw_order=order))
-        self._columns(entity, times, rr.Points2D.columns(positions=places.astype(np.float32)))
+        self.static(entity, rr.Points2D.from_fields(colors=colour, radii=radius, draw_order=order))
+        self.columns(entity, times, rr.Points2D.columns(positions=places.astype(np.float32)))
 
     def curves_3d(
         self,
@@ -171,7 +171,7 @@ class Recorder:
         labels: Sequence[str] | None = None,
     ) -> None:
         """Set curves in space, shape (n, 3) each; they hold at all times."""
-        self._static(
+        self.static(
             entity, rr.LineStrips3D(list(curves), colors=colours, radii=radii, labels=labels)
         )
 
@@ -180,31 +180,28 @@ class Recorder:
         entity: Entity,
         times: Times,
         places: Sequence[Floats],
-        colours: Colour | Sequence[Colours],
+        colour: Colour,
         *,
         radii: float = -6.0,
     ) -> None:
-        """Add any number of points at each time, shape (k, 3), k may be 0, and their colours."""
+        """Add any number of points at each time, shape (k, 3), k may be 0."""
         counts = np.array([len(at) for at in places])
         flat = np.concatenate([np.reshape(at, (-1, 3)) for at in places]).astype(np.float32)
         columns = rr.Points3D.columns(positions=flat).partition(counts)
-        self._static(entity, rr.Points3D.from_fields(radii=radii))
-        if isinstance(colours, int):
-            self._static(entity, rr.Points3D.from_fields(colors=colours))
-        else:
-            over_time = rr.Points3D.columns(colors=np.concatenate(list(colours)))
-            columns = rr.ComponentColumnList([*columns, *over_time.partition(counts)])
-        self._columns(entity, times, columns)
+        self.static(entity, rr.Points3D.from_fields(colors=colour, radii=radii))
+        self.columns(entity, times, columns)
 
     def labels_3d(
         self, entity: Entity, places: Floats, labels: Sequence[str], colour: Colour
     ) -> None:
         """Set texts in space at places of shape (n, 3); they hold at all times."""
         look = rr.Points3D(places, labels=list(labels), colors=colour, radii=0.0, show_labels=True)
-        self._static(entity, look)
+        self.static(entity, look)
 
-    def _static(self, entity: Entity, look: rr.AsComponents) -> None:
+    def static(self, entity: Entity, look: rr.AsComponents) -> None:
+        """Set components that hold at all times; for the modules of this package."""
         self.stream.log(path_of(entity), look, static=True, strict=True)
 
-    def _columns(self, entity: Entity, times: Times, columns: rr.ComponentColumnList) -> None:
+    def columns(self, entity: Entity, times: Times, columns: rr.ComponentColumnList) -> None:
+        """Add components that are others at each time; for the modules of this package."""
         self.stream.send_columns(path_of(entity), times.columns, columns, strict=True)

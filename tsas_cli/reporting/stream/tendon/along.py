@@ -6,16 +6,18 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.reporting.stream.palette import colour
-from tsas_cli.reporting.stream.plane import ACROSS, DOWN, frame_of
+from tsas_cli.reporting.stream.plane import ACROSS, DOWN, frame_of, record_frame
 from tsas_cli.reporting.stream.recorder import Clock, Recorder
 from tsas_cli.reporting.stream.recorder.layout import Plane
 from tsas_cli.reporting.stream.recorder.moving import points_2d
 from tsas_cli.reporting.stream.recorder.paths import Entity
 from tsas_cli.reporting.stream.tendon.key import record_key
-from tsas_cli.reporting.tendon.followed import Followed, Which
+from tsas_cli.reporting.tendon.followed import Followed
+from tsas_cli.reporting.which import Which
 
 Floats = npt.NDArray[np.float64]
 FAINT = 0x60
+X_LABEL, Y_LABEL = "place along the sheath [mm], drive to load", "tension [N]"
 
 
 def view_of_along(entity: Entity) -> Plane:
@@ -30,9 +32,7 @@ def record_along(
     every = np.concatenate([one.frames.tension_N.ravel() for one in tendons.values()])
     longest = max(one.rig.sheath_length_mm for one in tendons.values())
     frame = frame_of(np.array([0.0, longest]), every)
-    recorder.curves_2d([*entity, "axes"], frame.lines(), colour("muted"), radius=-0.6, order=-1.0)
-    places, texts = frame.texts("place along the sheath [mm], drive to load", "tension [N]")
-    recorder.labels_2d([*entity, "names"], places, texts, colour("muted"))
+    record_frame(recorder, entity, frame, (X_LABEL, Y_LABEL), "muted")
     record_key(recorder, entity, tendons)
     for which, one in tendons.items():
         along = one.frames.places * one.rig.sheath_length_mm

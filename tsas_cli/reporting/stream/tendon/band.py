@@ -5,14 +5,16 @@ from collections.abc import Mapping
 import numpy as np
 import numpy.typing as npt
 
+from tsas_cli.physics.passages import ends_of
 from tsas_cli.reporting.stream.palette import colour
-from tsas_cli.reporting.stream.plane import ACROSS, DOWN, Frame, frame_of
+from tsas_cli.reporting.stream.plane import ACROSS, DOWN, Frame, frame_of, record_frame
 from tsas_cli.reporting.stream.recorder import Clock, Recorder
 from tsas_cli.reporting.stream.recorder.layout import Plane
 from tsas_cli.reporting.stream.recorder.moving import points_2d
 from tsas_cli.reporting.stream.recorder.paths import Entity
 from tsas_cli.reporting.stream.tendon.key import record_key
-from tsas_cli.reporting.tendon.followed import Followed, Which
+from tsas_cli.reporting.tendon.followed import Followed
+from tsas_cli.reporting.which import Which
 
 Floats = npt.NDArray[np.float64]
 
@@ -50,9 +52,7 @@ def record_band(
     curves = {which: _strokes(one, one.response.f_in_N, widest) for which, one in tendons.items()}
     every = np.concatenate([strokes[..., 1].ravel() for _, strokes in curves.values()])
     frame = frame_of(np.array([0.0, widest]), every)
-    recorder.curves_2d([*entity, "axes"], frame.lines(), colour("muted"), radius=-0.6, order=-1.0)
-    places, texts = frame.texts(X_LABEL, Y_LABEL)
-    recorder.labels_2d([*entity, "names"], places, texts, colour("muted"))
+    record_frame(recorder, entity, frame, (X_LABEL, Y_LABEL), "muted")
     record_key(recorder, entity, tendons, measured=f_in_N is not None)
     if f_in_N is not None:
         at, strokes = _strokes(next(iter(tendons.values())), f_in_N, widest)
@@ -86,10 +86,10 @@ def _strokes(one: Followed, f_in: Floats, widest: float) -> tuple[Floats, Floats
     Those of which nothing is known, since the tension is NaN, are left out.
     """
     x, runs = one.response.x_in_mm, one.passages
-    ends = [*(run.start for run in runs[1:]), x.size - 1]
+    ends = ends_of(runs, x.size - 1)
     points = min(POINTS, max(LEAST, MOST // max(len(runs), 1)))
     at, strokes = [], []
-    for run, end in zip(runs, ends, strict=False):
+    for run, end in zip(runs, ends, strict=True):
         travel = np.abs(x[run.start : end + 1] - x[run.start])
         shown = np.flatnonzero((travel <= widest) & np.isfinite(f_in[run.start : end + 1]))
         if shown.size:

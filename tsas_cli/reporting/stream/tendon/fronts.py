@@ -2,10 +2,12 @@
 
 from collections.abc import Mapping
 
+from tsas_cli.physics.passages import ends_of
 from tsas_cli.reporting.stream.events import Event, record_events
 from tsas_cli.reporting.stream.recorder import Recorder
 from tsas_cli.reporting.stream.seen import SeenRun
-from tsas_cli.reporting.tendon.followed import Followed, Which
+from tsas_cli.reporting.tendon.followed import Followed
+from tsas_cli.reporting.which import Which
 
 FRONTS = "fronts"
 _WORDS = {1: "pulled", -1: "let go"}
@@ -19,10 +21,8 @@ def record_passages(recorder: Recorder, run: SeenRun, tendons: Mapping[Which, Fo
 
 
 def _events(run: str, which: Which, one: Followed) -> list[Event]:
-    time_s, last = one.sample_time_s, one.sample_time_s.size - 1
-    ends = [*(passage.start for passage in one.passages[1:]), last]
-    found = []
-    for passage, end in zip(one.passages, ends, strict=True):
+    time_s, found = one.sample_time_s, []
+    for passage, end in zip(one.passages, ends_of(one.passages, time_s.size - 1), strict=True):
         way = _WORDS[passage.direction]
         if passage.arrived is None:
             text = f"the slip front has not reached the load since the drive {way}"

@@ -8,7 +8,7 @@ from tsas_cli.reporting.stream.palette import colour
 from tsas_cli.reporting.stream.plane import HEIGHT, WIDTH
 from tsas_cli.reporting.stream.recorder import Recorder
 from tsas_cli.reporting.stream.recorder.paths import Entity
-from tsas_cli.reporting.tendon.followed import Which
+from tsas_cli.reporting.which import Which
 
 LINE = 0.09  # of the frame's height
 

@@ -15,14 +15,8 @@ from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.run_files import read_recording
 from tsas_cli.reporting.stream.seen import X_IN, SeenRun
-from tsas_cli.reporting.tendon.followed import (
-    EXTENDED,
-    NOMINAL,
-    SIMULATED,
-    Followed,
-    Which,
-    follow,
-)
+from tsas_cli.reporting.tendon.followed import Followed, follow
+from tsas_cli.reporting.which import EXTENDED, NOMINAL, SIMULATED, Which
 from tsas_cli.stage_files.base import StageFile
 from tsas_cli.stage_files.diagnosis import Diagnosis
 from tsas_cli.stage_files.simulation import Simulation

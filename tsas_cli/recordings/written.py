@@ -1,0 +1,104 @@
+"""What stages have written about runs, `runs/ID.parquet` in a folder of theirs, read again."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from tsas_cli.errors import InputError
+from tsas_cli.recordings.manifest import Run
+from tsas_cli.recordings.recording import Recording
+from tsas_cli.recordings.run_files import read_columns
+
+Floats = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class WrittenRuns(Mapping[str, Recording]):
+    """Runs that a stage has written into a folder, each read when it is asked for."""
+
+    folder: Path
+    runs: Mapping[str, Run]
+
+    def __getitem__(self, run: str) -> Recording:
+        """Read a run.
+
+        Raises
+        ------
+        KeyError
+            There is none.
+        InputError
+            Its file is no longer what the stage has written.
+        """
+        return Recording(self.runs[run], read_columns(self.folder / f"{run}.parquet"))
+
+    def __contains__(self, run: object) -> bool:
+        """Say whether there is such a run, without reading it."""
+        return run in self.runs
+
+    def __iter__(self) -> Iterator[str]:
+        """Return the ids, in the order of the dataset."""
+        return iter(self.runs)
+
+    def __len__(self) -> int:
+        """Return how many there are."""
+        return len(self.runs)
+
+
+def answers_of(folder: Path, run: str) -> Path:
+    """Return the file that a stage has written about a run into a folder."""
+    return folder / "runs" / f"{run}.parquet"
+
+
+def names_of(path: Path) -> list[str]:
+    """Return the columns of such a file.
+
+    Raises
+    ------
+    InputError
+        It cannot be read.
+    """
+    try:
+        return list(pq.read_schema(path).names)
+    except (pa.ArrowException, OSError) as error:
+        raise _unreadable(path, error) from error
+
+
+def columns_of(path: Path, names: Sequence[str]) -> dict[str, Floats]:
+    """Read columns of such a file by name, shape (n,) each, null as NaN.
+
+    Raises
+    ------
+    InputError
+        It cannot be read or lacks a column.
+    """
+    try:
+        table = pq.ParquetFile(path).read(columns=list(names))
+        return {name: table.column(name).to_numpy() for name in names}
+    except (pa.ArrowException, OSError, KeyError) as error:
+        raise _unreadable(path, error) from error
+
+
+def check_rows(path: Path, found: int, rows: int, *, stage: str = "the stage") -> None:
+    """Refuse a file that was written about another recording, of other than so many samples.
+
+    Raises
+    ------
+    InputError
+        It has another number of rows; running `stage` again mends that.
+    """
+    if found != rows:
+        raise InputError(
+            f"{found} rows",
+            where=path,
+            expected=f"{rows}, as the recording has",
+            remedy=f"run {stage} again",
+        )
+
+
+def _unreadable(path: Path, error: Exception) -> InputError:
+    return InputError(f"cannot be read ({str(error).splitlines()[0]})", where=path)
