@@ -1,5 +1,7 @@
 """Recordings of drives with something hidden, from the rig that shares no code with the product."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from tsas_cli.challenge.rig.drive import Drive, Gear, run_drive, run_geared
@@ -13,6 +15,7 @@ DATA_SHEET = {"turntable_radius_mm": 27.1, "gear_ratio": 120.0}
 STIFF = Drive(
     inertia_N_mm_s2=1e-3, drive_stiffness_N_per_mm=5e4, damping_N_s_per_mm=0.05, motor_lag_s=1e-6
 )
+LAGGING = replace(STIFF, motor_lag_s=0.004)
 SPRUNG = Drive(motor_lag_s=1e-6)
 
 

@@ -1,5 +1,6 @@
 """The command line: every subcommand, and the one place where an error becomes a line."""
 
+import io
 import os
 import sys
 
@@ -74,6 +75,7 @@ def main() -> None:
     """Run the command line; what goes wrong is one line on stderr and an exit code."""
     # Many small matrices: threads inside of each product cost three times what they save.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    _speak_beyond_ascii()
     try:
         code = app(prog_name="tsas", standalone_mode=False)
         sys.stdout.flush()
@@ -91,6 +93,14 @@ def main() -> None:
         remedy = "please report it with the output of the same call under TSAS_TRACEBACK=1"
         code = _stop(f"a defect of tsas itself: {printable(defect)}; {remedy}", 1)
     sys.exit(code)
+
+
+def _speak_beyond_ascii() -> None:
+    """Let units and names be printed where the language of the shell has no letters for them."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            ascii_only = stream.encoding.lower() in {"ascii", "us-ascii", "ansi_x3.4-1968"}
+            stream.reconfigure(encoding="utf-8" if ascii_only else None, errors="backslashreplace")
 
 
 def _wrong_call(error: TyperException) -> str:

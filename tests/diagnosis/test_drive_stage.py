@@ -5,11 +5,10 @@ from dataclasses import replace
 import pytest
 
 from tests.counted import Counted
-from tests.drives import SPRUNG, STIFF, drive_dataset
+from tests.drives import LAGGING, SPRUNG, STIFF, drive_dataset
 from tsas_cli.challenge.rig.drive import Gear
 from tsas_cli.diagnosis.drive_stage import identify_drive
 
-LAGGING = replace(STIFF, motor_lag_s=0.004)
 HIDDEN = {
     "lag": (LAGGING, Gear(), {"channel_delay": {"motor_lag_s": 0.004}}),
     "delay": (STIFF, Gear(delay_s=0.0047), {"channel_delay": {"delay_s": 0.0047}}),

@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from tsas_cli.errors import InputError
 from tsas_cli.numerics.conditioning import METHOD, Conditioned, condition
+from tsas_cli.numerics.interpolated import interpolated
 from tsas_cli.numerics.noise import noise_sd, quantisation_step
 from tsas_cli.physics.ends import Drive
 from tsas_cli.physics.response import TOLERANCE
@@ -162,6 +163,7 @@ def prepare(recording: Recording, session_start: datetime | None = None) -> Prep
     for name in driving:
         if np.isfinite(columns[name]).sum() < 2:
             raise InputError(f"column {name} is empty", where=run.file, expected="numbers")
+    columns = {n: _recorded(values) for n, values in columns.items() if n in (*driving, *CHANNELS)}
     gap = np.any([_in_gap(time_s, columns[name]) for name in driving], axis=0)
     measured = {
         n: columns[n]
@@ -178,6 +180,12 @@ def prepare(recording: Recording, session_start: datetime | None = None) -> Prep
     conditioned = {name: condition(time_s, columns[name]) for name in driving}
     session_s = seconds_into(session_start, run.started)
     return Prepared(run, time_s, drive, conditioned, measured, gap, session_s)
+
+
+def _recorded(values: Floats) -> Floats:
+    """Return a channel without what was laid between its samples, which says nothing new."""
+    between = interpolated(values)
+    return np.where(between, math.nan, values) if between.any() else values
 
 
 def _in_gap(time_s: Floats, values: Floats) -> Mask:

@@ -13,6 +13,7 @@ from tsas_cli.physics.parameters import NOMINAL_BY_NAME
 
 Floats = npt.NDArray[np.float64]
 
+FAR = 5.0  # times the travel: where a fit that begins at 0 mm does not find a zero any more
 SMALLEST_WRAP = 0.01  # to start from: with less friction than that, a change of it does not show
 
 
@@ -66,8 +67,11 @@ def _spring(run: Prepared, segments: Sequence[Segment], km: dict[str, float]) ->
     if f_out is not None and x_out is not None:
         ok = np.isfinite(f_out) & np.isfinite(x_out)
         if ok.sum() > 2 and np.ptp(x_out[ok]) > 0.0:
-            slope, intercept = np.polyfit(x_out[ok], f_out[ok], 1)
-            return {"load_stiffness_N_per_mm": slope, "preload_N": intercept}
+            slope, intercept = map(float, np.polyfit(x_out[ok], f_out[ok], 1))
+            found = {"load_stiffness_N_per_mm": slope, "preload_N": intercept}
+            if slope > 0.0:
+                found |= _far_zeros(run, f_out, float(x_out[ok][0]), slope, intercept)
+            return found
     if "contraction" not in km or "loosening" not in km:
         return {}
     found = {"load_stiffness_N_per_mm": math.sqrt(km["contraction"] * km["loosening"])}
@@ -80,4 +84,34 @@ def _spring(run: Prepared, segments: Sequence[Segment], km: dict[str, float]) ->
             at_zero.append(float(np.nanmean(offset)))
         if min(at_zero) > 0.0:
             found["preload_N"] = math.sqrt(at_zero[0] * at_zero[1])
+        elif run.run.preload_N is not None:
+            at_preload = [
+                (run.run.preload_N - tension) / km[phase]
+                for phase, tension in zip(("contraction", "loosening"), at_zero, strict=True)
+            ]
+            found["x_in_zero_mm"] = float(np.mean(at_preload))
+    return found
+
+
+def _far_zeros(
+    run: Prepared, f_out: Floats, first_mm: float, slope: float, intercept: float
+) -> dict[str, float]:
+    """Return zeros of displacements that are counted from afar, and the preload with them.
+
+    With zeros at 0 mm the spring would be slack where x_out reads 0 (the tension there is the
+    `intercept` of its line), or the tendon within the run; no fit finds a way out of that. The
+    tendon's own stretch is not counted here.
+    """
+    found = {}
+    preload = intercept
+    if intercept <= 0.0:  # the preload is then stated, or what the run begins with
+        stated = run.run.preload_N
+        preload = intercept + slope * first_mm if stated is None else stated
+        found = {"x_out_zero_mm": (preload - intercept) / slope, "preload_N": preload}
+    if run.drive_column == "x_in_mm":
+        x_in = run.conditioned["x_in_mm"].values
+        zero = float(np.nanmedian(x_in - (f_out - preload) / slope))
+        slack = float(np.min(x_in)) < -preload / slope
+        if slack or abs(zero) > FAR * float(np.ptp(x_in)):
+            found["x_in_zero_mm"] = zero
     return found

@@ -59,8 +59,8 @@ NOMINAL = (
     NominalParameter(
         "x_in_zero_mm",
         "mm",
-        -1e3,
-        1e3,
+        -1e5,
+        1e5,
         shared=False,
         positive=False,
         meaning="what x_in_mm reads at the preload",
@@ -68,8 +68,8 @@ NOMINAL = (
     NominalParameter(
         "x_out_zero_mm",
         "mm",
-        -1e3,
-        1e3,
+        -1e5,
+        1e5,
         shared=False,
         positive=False,
         meaning="what x_out_mm reads at the preload",
