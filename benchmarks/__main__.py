@@ -1,10 +1,12 @@
-"""Run every benchmark of this folder, print one table, and write it as JSON."""
+"""Run every benchmark of this folder, print one table, and write it as JSON.
+
+`python -m benchmarks compare OLD NEW` says what got slower from one such file to another.
+"""
 
 import argparse
 import os
 import platform
 import sys
-from collections.abc import Iterable
 from dataclasses import asdict
 from importlib import import_module, metadata
 from pathlib import Path
@@ -12,16 +14,41 @@ from pkgutil import iter_modules
 from typing import Any
 
 import benchmarks
+from benchmarks.compare import FORMAT, compare
 from benchmarks.row import Row
+from benchmarks.timing import Times
 from tsas_cli.commands.common import show
+from tsas_cli.errors import InputError
 from tsas_cli.files import new_file, write_json
 
-HARNESS = {"__main__", "row", "timing"}
+HARNESS = {"__main__", "compare", "row", "timing", "yardstick"}
 LIBRARIES = ("numba", "numpy", "pyarrow", "rerun-sdk", "scipy", "typer")
 
 
-def main() -> None:
+def main() -> int:
+    """Measure or compare, as the call says; return the exit code."""
+    try:
+        return compared(sys.argv[2:]) if sys.argv[1:2] == ["compare"] else measure()
+    except InputError as error:
+        print(f"benchmarks: {error.line()}", file=sys.stderr)
+        return 2
+
+
+def compared(files: list[str]) -> int:
+    """Print what got slower; return 1 where something did."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks compare")
+    parser.add_argument("old", type=Path, help="what an earlier call wrote with --out")
+    parser.add_argument("new", type=Path, help="what a later one did")
+    call = parser.parse_args(files)
+    found = compare(call.old, call.new)
+    show({}, found.tables(), quiet=False, as_json=False)
+    return 1 if found.slower else 0
+
+
+def measure() -> int:
     """Read the call, measure, print and write."""
+    from benchmarks.yardstick import VERSION
+
     modules = [module for module in iter_modules(benchmarks.__path__) if not module.ispkg]
     known = sorted({module.name for module in modules} - HARNESS)
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
@@ -33,18 +60,30 @@ def main() -> None:
         parser.error(f"no benchmark {', '.join(sorted(unknown))}; there are {', '.join(known)}")
 
     found = {name: measured(name) for name in call.names or known}
-    summary = {"format": 1, "machine": machine(), "benchmarks": found}
-    show(summary, [table(name, rows) for name, rows in found.items()], quiet=False, as_json=False)
+    summary = {
+        "format": FORMAT,
+        "machine": machine(),
+        "yardstick": VERSION,
+        "benchmarks": found,
+    }
+    tables = [table(name, told["rows"]) for name, told in found.items()]
+    show(summary, tables, quiet=False, as_json=False)
     if call.out:
         with new_file(call.out, force=True) as path:
             write_json(path, summary)
+    return 0
 
 
-def measured(name: str) -> list[dict[str, Any]]:
-    """Run one benchmark; say on stderr which one, since some take a minute."""
+def measured(name: str) -> dict[str, Any]:
+    """Run one benchmark between two looks at the yardstick; say which, since some take a minute."""
+    from benchmarks.yardstick import yardstick
+
     print(f"measuring {name} …", file=sys.stderr)
-    rows: Iterable[Row] = import_module(f"benchmarks.{name}").measure()
-    return [asdict(row) | {"holds": row.holds} for row in rows]
+    before = yardstick()
+    rows: list[Row] = list(import_module(f"benchmarks.{name}").measure())
+    beside = Times(before.seconds + yardstick().seconds)
+    told = [asdict(row) | {"kind": row.compared_as, "holds": row.holds} for row in rows]
+    return {"yardstick_s": [beside.least, beside.median, beside.largest], "rows": told}
 
 
 def machine() -> dict[str, Any]:
@@ -85,4 +124,4 @@ def table(name: str, rows: list[dict[str, Any]]) -> tuple[str, list[str], list[l
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from benchmarks.row import Row
+from benchmarks.timing import Times
 
 PAIRS = 25
 BARE = """
@@ -34,9 +35,9 @@ def measure() -> Iterator[Row]:
         for program in (bare, tsas):
             seconds(program)  # the first start writes byte code
         pairs = [(seconds(tsas), seconds(bare)) for _ in range(PAIRS)]
-    ours, theirs = (statistics.median(column) for column in zip(*pairs, strict=True))
-    yield Row("tsas --help", ours * 1000, "ms")
-    yield Row("bare Typer app --help", theirs * 1000, "ms")
+    ours, theirs = (Times(column) for column in zip(*pairs, strict=True))
+    yield Row.timed("tsas --help", ours, "ms", per_s=1e3)
+    yield Row.timed("bare Typer app --help", theirs, "ms", per_s=1e3)
     yield Row("ratio, median of pairs", statistics.median(a / b for a, b in pairs), "", at_most=1.5)
 
 

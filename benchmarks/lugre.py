@@ -12,7 +12,7 @@ from benchmarks.lugre_rivals.references import tight
 from benchmarks.lugre_rivals.solution import NotAvailableError
 from benchmarks.lugre_rivals.solvers import RIVALS
 from benchmarks.row import Row
-from benchmarks.timing import best
+from benchmarks.timing import best, times
 from tests.physics.references import LOADED_BY_SPRING, TABLE_1, course_of
 from tsas_cli.numerics.side_by_side import each
 from tsas_cli.physics.lugre_chain import OWN_STEPS, Progress, lugre_chain
@@ -34,9 +34,10 @@ def measure() -> Iterator[Row]:
     problem = Problem(Model(LUMPS), DRIVE, TIME_S)
     exact = tight(problem)
     columns, progress = own()
-    seconds = best(own, REPEATS)
-    yield Row("two periods", 1e3 * seconds, "ms")
-    yield Row("times faster than real", TIME_S[-1] / seconds, "")
+    took = times(own, REPEATS)
+    seconds = took.least
+    yield Row.timed("two periods", took, "ms", per_s=1e3)
+    yield Row("times faster than real", TIME_S[-1] / seconds, "", kind="rate")
     yield from errors("own", Output(columns[2], columns[3], columns[1]), exact, limit=0.05)
     per = seconds / (LUMPS * (progress.iterations + progress.tries))
     yield Row("per lump and evaluation", 1e9 * per, "ns", at_most=10.0)
@@ -52,11 +53,12 @@ def measure() -> Iterator[Row]:
             fast = min(fast, best(own, repeats=REPEATS // RIVALS_REPEATS))
         yield Row(rival.name, 1e3 * slow, "ms")
         yield from errors(rival.name, found.output, exact)
-        yield Row(f"{rival.name}, times slower", slow / fast, "", at_least=AT_LEAST.get(rival.name))
-    usual = best(lambda: own(tolerance=TOLERANCE), REPEATS)
-    yield Row("at the usual tolerance, two periods", 1e3 * usual, "ms")
-    fixed = best(lambda: own(step_ends_s=TIME_S[1:]), repeats=10)
-    yield Row("a step at every ms, times faster than real", TIME_S[-1] / fixed, "", at_least=1500.0)
+        limit = AT_LEAST.get(rival.name)
+        yield Row(f"{rival.name}, times slower", slow / fast, "", at_least=limit, kind="gain")
+    usual = times(lambda: own(tolerance=TOLERANCE), REPEATS)
+    yield Row.timed("at the usual tolerance, two periods", usual, "ms", per_s=1e3)
+    real = TIME_S[-1] / best(lambda: own(step_ends_s=TIME_S[1:]), repeats=10)
+    yield Row("a step at every ms, times faster than real", real, "", at_least=1500.0, kind="rate")
     os.environ["TSAS_THREADS"] = "2"
     rigs = [TABLE_1._replace(friction_coefficient=0.1 + 0.001 * i) for i in range(SETS)]
     many = best(lambda: each(own, rigs), repeats=5)

@@ -1,13 +1,13 @@
 """Nanoseconds per sample of the distributed model on a measured input, and its memory."""
 
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 
 from benchmarks.row import Row
-from benchmarks.timing import best
+from benchmarks.timing import Times, times
 from tests.physics.references import (
     GROUP_A,
     LOADED_BY_DISPLACEMENT,
@@ -34,8 +34,8 @@ def measure() -> Iterator[Row]:
     _, f_out, _ = branches(x_in, GROUP_A)
     x_out = (f_out - GROUP_A.preload_N) / GROUP_A.load_stiffness_N_per_mm
     drive = as_measured(x_in, noise=0.005, step=0.002)
-    ns = best_ns(lambda: branches(drive, GROUP_A), repeats=1000)  # of 60 µs each
-    yield Row("closed form", ns, "ns", at_most=5.0)
+    took = times(lambda: branches(drive, GROUP_A), repeats=1000)  # of 60 µs each
+    yield per_sample("closed form", took, at_most=5.0)
 
     loads = {
         "spring": (0.0, LOADED_BY_SPRING),
@@ -45,12 +45,12 @@ def measure() -> Iterator[Row]:
     for n, at_most in ((30, 2000.0), (60, None)):
         for name, (load, boundary) in loads.items():
             course = course_of(drive, GROUP_A, load=load)
-            ns = best_ns(lambda: slip_chain(course, GROUP_A, boundary, n))  # noqa: B023 # called at once
-            yield Row(f"slip chain, {n} nodes, load {name}", ns, "ns", at_most)
+            took = times(lambda: slip_chain(course, GROUP_A, boundary, n), REPEATS)  # noqa: B023 # called at once
+            yield per_sample(f"slip chain, {n} nodes, load {name}", took, at_most)
     rig = with_every_effect()
     ends = ends_of(rig, Drive(drive, time_s=TIME_S))
-    ns = best_ns(lambda: slip_chain(ends.course, rig, ends.boundary, 30))
-    yield Row("slip chain, 30 nodes, every effect at once", ns, "ns", at_most=1000.0)
+    took = times(lambda: slip_chain(ends.course, rig, ends.boundary, 30), REPEATS)
+    yield per_sample("slip chain, 30 nodes, every effect at once", took, at_most=1000.0)
     if sys.platform == "linux":
         megabytes = memory_beyond_output(np.tile(drive, TIMES_LONGER))
         yield Row(f"memory beyond output, {TIMES_LONGER} such runs", megabytes, "MB", at_most=1.0)
@@ -62,9 +62,9 @@ def as_measured(values: np.ndarray, *, noise: float, step: float) -> np.ndarray:
     return condition(TIME_S, step * np.round(noisy / step)).values
 
 
-def best_ns(solve: Callable[[], object], repeats: int = REPEATS) -> float:
-    """Return the time per sample of the fastest repeat; the first call compiles."""
-    return 1e9 * best(solve, repeats) / TIME_S.size
+def per_sample(name: str, took: Times, at_most: float | None) -> Row:
+    """Return the time per sample."""
+    return Row.timed(name, took, "ns", per_s=1e9 / TIME_S.size, at_most=at_most)
 
 
 def with_every_effect() -> Rig:

@@ -1,16 +1,44 @@
-"""The time of the fastest repeat, for every benchmark that times a function."""
+"""How long repeats of one piece of work take, for every benchmark that times a function."""
 
-import math
+import statistics
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Times:
+    """Repeats of one piece of work [s]."""
+
+    seconds: tuple[float, ...]
+
+    @property
+    def least(self) -> float:
+        """The time of the fastest repeat: what else ran on the machine only adds to it."""
+        return min(self.seconds)
+
+    @property
+    def median(self) -> float:
+        """The time that half of the repeats need at most."""
+        return statistics.median(self.seconds)
+
+    @property
+    def largest(self) -> float:
+        """The time of the slowest repeat."""
+        return max(self.seconds)
+
+
+def times(solve: Callable[[], object], repeats: int) -> Times:
+    """Return the times of repeats; the first call compiles and does not count."""
+    solve()
+    seconds = []
+    for _ in range(repeats):
+        start = time.perf_counter_ns()
+        solve()
+        seconds.append(1e-9 * (time.perf_counter_ns() - start))
+    return Times(tuple(seconds))
 
 
 def best(solve: Callable[[], object], repeats: int) -> float:
     """Return the time of the fastest repeat [s]; the first call compiles and does not count."""
-    solve()
-    fastest = math.inf
-    for _ in range(repeats):
-        start = time.perf_counter_ns()
-        solve()
-        fastest = min(fastest, time.perf_counter_ns() - start)
-    return 1e-9 * fastest
+    return times(solve, repeats).least

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from benchmarks.row import Row
-from benchmarks.timing import best
+from benchmarks.timing import times
 from tsas_cli.tracking.recorded import stated_rig
 from tsas_cli.tracking.references import reference
 from tsas_cli.tracking.settings import CONTROLLERS, ReferenceSettings, Settings
@@ -20,9 +20,8 @@ def measure() -> Iterator[Row]:
     known, plant = Known(rig, settings.drive.kinematic()), Plant(rig, settings.drive.actuator())
     wanted = reference("sine", settings.reference, settings.step_s)
     path = plan(wanted, known, settings)
-    yield Row(
-        "inverse model, 30 s at 1 kHz", best(lambda: plan(wanted, known, settings), REPEATS), "s"
-    )
+    took = times(lambda: plan(wanted, known, settings), REPEATS)
+    yield Row.timed("inverse model, 30 s at 1 kHz", took, "s")
     for name in CONTROLLERS:
-        took = best(lambda n=name: track(wanted, path, known, plant, n, settings, 1), REPEATS)
-        yield Row(f"closed loop with {name}, 30 s", took, "s", at_most=1.0)
+        took = times(lambda n=name: track(wanted, path, known, plant, n, settings, 1), REPEATS)
+        yield Row.timed(f"closed loop with {name}, 30 s", took, "s", at_most=1.0)

@@ -1,4 +1,4 @@
-"""The main job, twice in different surroundings: the same bytes, and not one call to the network."""
+"""The main job, twice in different surroundings: the same bytes, and no call to the network."""
 
 import os
 import re
@@ -86,7 +86,7 @@ def first(made, log, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def second(made, tmp_path_factory):
-    """Return the job elsewhere in every respect, on a machine without a network where that works."""
+    """Return the job elsewhere in every respect, without a network where that works."""
     root = tmp_path_factory.mktemp("second")
     elsewhere = german(root / "locale") | {
         "TZ": "Asia/Kolkata",
