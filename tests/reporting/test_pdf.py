@@ -88,3 +88,24 @@ def test_it_is_on_a4_with_a_title_an_outline_and_structure(printed):
 def test_links_lead_within_the_document_and_nowhere_else(printed):
     assert b"/Dest" in printed
     assert b"/URI" not in printed
+
+
+def test_the_same_page_is_printed_as_the_same_bytes(printed, tmp_path, monkeypatch):
+    monkeypatch.setenv("TZ", "Asia/Kolkata")
+    pages = []
+    for name in ("first", "second"):
+        pdf.print_page("<title>x</title><h1>x</h1>", tmp_path / name)
+        pages.append((tmp_path / name).read_bytes())
+    assert pages[0] == pages[1]
+    for made in (printed, pages[0]):
+        assert b"Date (" not in made
+
+
+def test_dates_go_and_all_else_stays_in_its_place():
+    about = b"%PDF-1.4\n1 0 obj\n<</Title (a \\(b\\))\n/CreationDate (D:20260101120000+00'00')\n"
+    other = b">>\nendobj\n2 0 obj\n(/ModDate (D:2))\nendobj\n%%EOF"
+    kept = pdf._without_dates(about + b"/ModDate (D:20260101120000Z)" + other)
+    assert len(kept) == len(about) + 28 + len(other)
+    assert kept.startswith(b"%PDF-1.4\n1 0 obj\n<</Title (a \\(b\\))\n   ")
+    assert kept.endswith(other)
+    assert kept.count(b"Date (") == 1

@@ -1,6 +1,7 @@
 """A page as PDF, printed by the Chromium that this machine has."""
 
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -17,6 +18,7 @@ BROWSERS = (
     "microsoft-edge",
 )
 _LONGEST_S = 120.0
+_DATE = re.compile(rb"/(?:Creation|Mod)Date \(D:[^()]*\)")
 _OPTIONS = (
     "--headless",
     "--disable-gpu",
@@ -73,7 +75,17 @@ def print_page(html: str, pdf: Path) -> None:
                 where=program,
                 remedy="print the page from your browser",
             )
-        shutil.copyfile(made, pdf)
+        pdf.write_bytes(_without_dates(made.read_bytes()))
+
+
+def _without_dates(pdf: bytes) -> bytes:
+    """Return a PDF that does not say when it was printed: the same page makes the same bytes.
+
+    The dates of its first object, which describes the document, become spaces, so that all else
+    stays in its place.
+    """
+    about, end, rest = pdf.partition(b"endobj")
+    return _DATE.sub(lambda date: b" " * len(date[0]), about) + end + rest
 
 
 def _run(call: list[str]) -> str:
