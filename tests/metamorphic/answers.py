@@ -1,0 +1,76 @@
+"""What calibrate and diagnose say of recordings, as numbers that can be held against each other."""
+
+from functools import cached_property
+
+import numpy as np
+
+import tsas_cli as tsas
+
+FORCES = ("preload_N", "preload_correction_N", "load_stiffness_N_per_mm", "tendon_stiffness_N")
+
+
+class Answers:
+    """The whole way from files to a verdict; each stage runs when it is first asked for."""
+
+    def __init__(self, raw, folder):
+        """Ingest the files into a folder."""
+        sources, path = raw.write(folder)
+        self.dataset = tsas.ingest(sources, map=path, out=folder / "dataset").dataset
+
+    def columns(self):
+        """Return the columns of each run, as ingested."""
+        return {recording.run.id: recording.columns for recording in self.dataset}
+
+    @cached_property
+    def calibrate(self):
+        """What calibrate says."""
+        return tsas.calibrate(self.dataset)
+
+    @cached_property
+    def diagnose(self):
+        """What diagnose says."""
+        return tsas.diagnose(self.dataset)
+
+    @property
+    def verdict(self):
+        """The verdict with what is named and its rivals."""
+        said = self.diagnose.summary
+        return said["verdict"], [(c["effect"], sorted(c["rivals"])) for c in said["named"]]
+
+
+def fitted(result):
+    """Return what a stage has fitted, by name and run."""
+    return {(e.name, e.run): e for e in result.model.estimates if e.origin == "fitted"}
+
+
+def apart(ours, theirs, *, names=None, times=1.0, moved=None, shared_only=False):
+    """Return by how many standard errors each parameter of two results differs.
+
+    Parameters
+    ----------
+    ours, theirs
+        Results of one stage.
+    names
+        What the second calls the runs of the first.
+    times
+        By what the second's forces are to be larger.
+    moved
+        By what parameters of the second are to be larger, by name.
+    shared_only
+        Leave out what belongs to one run.
+    """
+    found, other = {}, fitted(theirs)
+    for (name, run), one in fitted(ours).items():
+        if shared_only and (run is not None or name == "preload_correction_N"):
+            continue
+        same = other[name, (names or {}).get(run, run)]
+        scale = times if name in FORCES else 1.0
+        off = same.value / scale - one.value - (moved or {}).get(name, 0.0)
+        found[name, run] = abs(off) / max(one.stderr, same.stderr / scale)
+    assert len(found) > 1
+    return found
+
+
+def largest(differences):
+    """Return the largest difference."""
+    return float(np.max(list(differences.values())))
