@@ -4,6 +4,8 @@ Each relation says which outputs must be the same to the last bit, which to roun
 within a part of their standard errors, and why.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
@@ -175,6 +177,16 @@ def test_a_zero_of_x_out_elsewhere_leaves_what_runs_share(nothing, of_nothing, a
         theirs = fitted(other)["preload_N", run].value
         zero = other.model.value("x_out_zero_mm", run) or 0.0
         assert theirs + stiffness * (by_mm - zero) == pytest.approx(ours, abs=0.05)
+
+
+@pytest.mark.parametrize(("column", "by_mm"), [("x_in_mm", -3.0), ("x_out_mm", 40.0)])
+def test_zeros_of_both_ends_need_not_know_of_each_other(nothing, answers, tmp_path, column, by_mm):
+    told = {run: {**c, "load": '"displacement"'} for run, c in nothing.conditions.items()}
+    driven = replace(nothing, conditions=told)
+    ours = Answers(driven, tmp_path / "ours").calibrate
+    moves = {"x_in_zero_mm": by_mm if column == "x_in_mm" else -by_mm}
+    theirs = answers(moved(driven, column, by_mm)).calibrate
+    assert largest(apart(ours, theirs, moved=moves)) < ENDED
 
 
 def test_a_channel_at_half_the_rate_leaves_the_verdict(nothing, of_nothing, answers):

@@ -63,8 +63,7 @@ def _read_off(
     """Return what the phases of the runs show, to start from; the median where runs share it."""
     found: dict[tuple[str, str | None], list[float]] = {}
     for run, parts, km in zip(runs, segments, measured, strict=True):
-        rig = stated.rig(run.run)
-        values = read_off(run, parts, km, rig.sheath_length_mm, max(rig.total_bend_rad, 1e-3))
+        values = read_off(run, parts, km, stated.rig(run.run))
         for name, value in values.items():
             owner = None if NOMINAL_BY_NAME[name].shared else run.run.id
             found.setdefault((name, owner), []).append(value)

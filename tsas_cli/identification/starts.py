@@ -10,22 +10,25 @@ from tsas_cli.identification.phases import Segment
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.stiffness import Slope
 from tsas_cli.physics.parameters import NOMINAL_BY_NAME
+from tsas_cli.physics.rig import Rig
 
 Floats = npt.NDArray[np.float64]
 
 FAR = 5.0  # times the travel: where a fit that begins at 0 mm does not find a zero any more
+SMALLEST_BEND = 1e-3  # rad
 SMALLEST_WRAP = 0.01  # to start from: with less friction than that, a change of it does not show
 
 
 def read_off(
-    run: Prepared, segments: Sequence[Segment], slopes: Sequence[Slope], length: float, bend: float
+    run: Prepared, segments: Sequence[Segment], slopes: Sequence[Slope], rig: Rig
 ) -> dict[str, float]:
     """Return the parameters that the formulas of the static model give from one run.
 
     Friction from the ratio of the tensions in both directions, or of the slopes (Yang 2025, Eqs.
     7, 31, 32); the load spring from f_out over x_out, or from the slopes; the tendon from the
-    dead band (29). What the channels do not show is left out.
+    dead band (29). What the channels do not show is left out. `rig` is the run's own, as stated.
     """
+    length, bend = rig.sheath_length_mm, max(rig.total_bend_rad, SMALLEST_BEND)
     km: dict[str, float] = {s.phase: abs(s.value) for s in slopes if s.value != 0.0}
     wrap = _wrap(run, segments, km)
     found: dict[str, float] = {}
@@ -39,6 +42,8 @@ def read_off(
             )
     if run.run.load == "spring":
         found |= _spring(run, segments, km)
+    elif run.run.load == "displacement":
+        found |= _zero_between(run, rig)
     plausible = {k: (NOMINAL_BY_NAME[k].lower, NOMINAL_BY_NAME[k].upper) for k in found}
     return {k: float(v) for k, v in found.items() if plausible[k][0] <= v <= plausible[k][1]}
 
@@ -115,3 +120,19 @@ def _far_zeros(
         if slack or abs(zero) > FAR * float(np.ptp(x_in)):
             found["x_in_zero_mm"] = zero
     return found
+
+
+def _zero_between(run: Prepared, rig: Rig) -> dict[str, float]:
+    """Return the zero of x_in where both ends are driven and the tendon would be slack with 0 mm.
+
+    Two sensors that do not know of each other are often off by more than the tendon stretches.
+    """
+    tension = [run.measured[name] for name in ("f_in_N", "f_out_N") if name in run.measured]
+    if run.drive_column != "x_in_mm" or not tension:
+        return {}
+    apart = run.conditioned["x_in_mm"].values - run.conditioned["x_out_mm"].values
+    give = rig.sheath_length_mm / rig.tendon_stiffness_N
+    if float(np.min(apart)) >= -rig.preload_N * give:
+        return {}
+    stretch = (np.mean(tension, axis=0) - rig.preload_N) * give
+    return {"x_in_zero_mm": float(np.nanmedian(apart - stretch))}

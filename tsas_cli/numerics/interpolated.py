@@ -12,7 +12,7 @@ Floats = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 MOST_TIMES = 50  # as fast as it was recorded
-STRAIGHT = 1e-4  # bend at a sample, of the usual one, below which the channel is straight there
+STRAIGHT = 0.03  # bend at a sample, of the usual one, that rounding in a file may leave
 KINKED = 0.5  # of the samples that were recorded, that have to be off the line of their neighbours
 FEWEST = 16  # recorded samples, so that it is no chance
 
