@@ -127,12 +127,12 @@ def _zero_between(run: Prepared, rig: Rig) -> dict[str, float]:
 
     Two sensors that do not know of each other are often off by more than the tendon stretches.
     """
-    tension = [run.measured[name] for name in ("f_in_N", "f_out_N") if name in run.measured]
-    if run.drive_column != "x_in_mm" or not tension:
+    tension = run.measured.get("f_in_N", run.measured.get("f_out_N"))
+    if run.drive_column != "x_in_mm" or tension is None:
         return {}
     apart = run.conditioned["x_in_mm"].values - run.conditioned["x_out_mm"].values
     give = rig.sheath_length_mm / rig.tendon_stiffness_N
     if float(np.min(apart)) >= -rig.preload_N * give:
         return {}
-    stretch = (np.mean(tension, axis=0) - rig.preload_N) * give
+    stretch = (tension - rig.preload_N) * give
     return {"x_in_zero_mm": float(np.nanmedian(apart - stretch))}
