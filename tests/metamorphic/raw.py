@@ -16,7 +16,12 @@ from tsas_cli.challenge.rig.sensors import measure, quantised
 RATE_HZ = 50.0
 UNITS = {"time_s": "s", "x_in_mm": "mm", "x_out_mm": "mm", "f_in_N": "N", "f_out_N": "N"}
 IMPERIAL = {"time_s": "ms", "x_in_mm": "in", "x_out_mm": "in", "f_in_N": "lbf", "f_out_N": "lbf"}
-PER_UNIT = {"s": 1.0, "mm": 1.0, "N": 1.0, "ms": 1e-3, "in": 25.4, "lbf": 4.4482216152605}
+PER_UNIT = {"s": 1.0, "mm": 1.0, "N": 1.0, "rpm": 1.0} | {
+    "ms": 1e-3,
+    "in": 25.4,
+    "lbf": 4.4482216152605,
+    "rad/s": 30.0 / np.pi,
+}
 CLOCK = "time_s"
 
 
@@ -120,7 +125,7 @@ def every_second(raw):
     return raw.each(lambda c: {name: values[::2] for name, values in c.items()})
 
 
-def resampled(raw, times=2):
+def resampled(raw, times):
     """Lay all channels on a faster clock, straight between samples."""
 
     def change(c):

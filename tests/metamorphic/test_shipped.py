@@ -2,13 +2,12 @@
 
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 import tsas_cli as tsas
 from tests.drives import LAGGING, drive_dataset
 from tests.metamorphic.answers import Answers, apart, largest
-from tests.metamorphic.raw import CLOCK, IMPERIAL, Raw, in_units, later
+from tests.metamorphic.raw import CLOCK, IMPERIAL, Raw, in_units, later, resampled
 
 SHIPPED = Path(__file__).parents[2] / "datasets" / "paper-groups"
 TOLD = ("sheath_length_mm", "total_bend_rad", "preload_N")
@@ -31,23 +30,28 @@ def test_shipped_recordings_in_other_units_are_calibrated_alike(tmp_path):
     assert largest(apart(ours, theirs)) < ROUNDING
 
 
-def test_a_drive_in_other_units_and_later_is_identified_alike(tmp_path):
+def identified(raw, folder):
+    """Return what is said of a drive."""
+    sources, path = raw.write(folder)
+    tsas.ingest(sources, map=path, out=folder / "dataset")
+    return tsas.identify_harmonic_drive(folder / "dataset").summary
+
+
+def test_a_drive_in_other_units_later_and_on_a_faster_clock_is_identified_alike(tmp_path):
     data = drive_dataset(tmp_path / "drive", LAGGING, duration_s=4.0, only=("chirp",))
     (columns,) = (recording.columns for recording in data)
+    units = {CLOCK: "s", "motor_speed_rpm": "rpm", "x_in_mm": "mm"}
     sheet = data.manifest.rig.model_dump(exclude_none=True)
-    found = {}
-    for name, start_s, per_rpm, unit in (("a", 0.0, 1.0, "rpm"), ("b", 1e4, np.pi / 30.0, "rad/s")):
-        changed = {
-            CLOCK: start_s + columns[CLOCK],
-            "motor_speed_rpm": columns["motor_speed_rpm"] * per_rpm,
-            "x_in_mm": columns["x_in_mm"],
-        }
-        units = {CLOCK: "s", "motor_speed_rpm": unit, "x_in_mm": "mm"}
-        raw = Raw({"chirp": changed}, {"chirp": {}}, sheet, units)
-        sources, path = raw.write(tmp_path / name)
-        tsas.ingest(sources, map=path, out=tmp_path / name / "dataset")
-        found[name] = tsas.identify_harmonic_drive(tmp_path / name / "dataset").summary
-    assert found["a"]["structure"] == found["b"]["structure"]
-    assert found["a"]["diagnosis"]["verdict"] == found["b"]["diagnosis"]["verdict"] == "named"
-    for ours, theirs in zip(found["a"]["parameters"], found["b"]["parameters"], strict=True):
-        assert theirs["value"] == pytest.approx(ours["value"], rel=1e-6), ours["name"]
+    raw = Raw({"chirp": {n: columns[n] for n in units}}, {"chirp": {}}, sheet, units)
+    other = {CLOCK: "ms", "motor_speed_rpm": "rad/s", "x_in_mm": "in"}
+    ours = identified(raw, tmp_path / "ours")
+    assert ours["diagnosis"]["verdict"] == "named"
+    for name, changed, within in (
+        ("units", in_units(later(raw, 1e4), other), 1e-6),
+        ("clock", resampled(raw, 2), 1e-2),  # the lag is told by other weights
+    ):
+        theirs = identified(changed, tmp_path / name)
+        assert theirs["structure"] == ours["structure"]
+        assert theirs["diagnosis"]["verdict"] == "named"
+        for a, b in zip(ours["parameters"], theirs["parameters"], strict=True):
+            assert b["value"] == pytest.approx(a["value"], rel=within), a["name"]

@@ -7,7 +7,9 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.errors import InputError
+from tsas_cli.numerics.interpolated import interpolated
 from tsas_cli.numerics.linear_response import Hold, Sampled, sampled
+from tsas_cli.numerics.noise import FEWEST_SAMPLES as FEWEST_OF_NOISE
 from tsas_cli.numerics.noise import noise_sd
 from tsas_cli.recordings.recording import Recording
 
@@ -78,7 +80,7 @@ def _checked(recording: Recording, hold: Hold) -> DriveRun:
             expected="a motor_speed_rpm that changes",
             remedy="record a chirp, steps or sines, or leave the run out with --runs",
         )
-    noise = _noise(x)
+    noise = _noise(x[~interpolated(x)])
     if float(np.ptp(x)) <= MOVED * noise:
         raise InputError(
             f"x_in_mm does not move (noise {noise:.2g} mm)",
@@ -118,7 +120,8 @@ def _channel(recording: Recording, name: str) -> Floats:
 
 
 def _noise(values: Floats) -> float:
-    return float(np.median([noise_sd(part) for part in np.array_split(values, STRETCHES)]))
+    stretches = max(1, min(STRETCHES, values.size // FEWEST_OF_NOISE))
+    return float(np.median([noise_sd(part) for part in np.array_split(values, stretches)]))
 
 
 def _refuse_unrelated(run: DriveRun, where: str) -> None:

@@ -7,6 +7,7 @@ import numpy.typing as npt
 
 Floats = npt.NDArray[np.float64]
 
+FEWEST_SAMPLES = 16  # that tell it
 _DIFFERENCE = np.array([1.0, -3.0, 3.0, -1.0])  # blind to anything up to a parabola
 _GAIN = math.sqrt(float(np.sum(_DIFFERENCE**2)))
 
@@ -19,7 +20,7 @@ def noise_sd(values: Floats) -> float:
     Slow disturbances are not counted. NaN where fewer than 16 samples are there.
     """
     clean = values[np.isfinite(values)]
-    if clean.size < 16:
+    if clean.size < FEWEST_SAMPLES:
         return math.nan
     third = np.abs(np.convolve(clean, _DIFFERENCE, mode="valid"))
     kept = np.sort(third)[: int(0.95 * third.size)]
