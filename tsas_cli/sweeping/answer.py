@@ -1,0 +1,25 @@
+"""What comes back of a task, as plain data."""
+
+import json
+from typing import Any
+
+Answer = dict[str, Any]
+
+
+def failure(error: str, *, defect: bool = True, seconds: float | None = None) -> Answer:
+    """Return the answer of a task that has no result; a defect is ours, else its input is wrong."""
+    return {"state": "failed", "error": error, "defect": defect, "seconds": seconds}
+
+
+def success(results: dict[str, Any], parameters: list[dict[str, Any]], seconds: float) -> Answer:
+    """Return the answer of a task that is done: its key figures, and the parameters it found."""
+    return {"state": "done", "results": results, "parameters": parameters, "seconds": seconds}
+
+
+def called(work: str, text: str) -> str:
+    """Return the answer of a function, named `module:function`, to a task, both as JSON."""
+    from importlib import import_module
+
+    module, _, name = work.partition(":")
+    answer: Answer = getattr(import_module(module), name)(json.loads(text))
+    return json.dumps(answer)
