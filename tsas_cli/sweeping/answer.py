@@ -11,6 +11,12 @@ def failure(error: str, *, defect: bool = True, seconds: float | None = None) ->
     return {"state": "failed", "error": error, "defect": defect, "seconds": seconds}
 
 
+def death(times: int, said: str = "") -> Answer:
+    """Return the answer of a task whose worker died, as often as it was tried."""
+    often = "the process died" if times == 1 else f"the process died, {times} times"
+    return failure(": ".join([often, *([said] if said else [])]))
+
+
 def success(results: dict[str, Any], parameters: list[dict[str, Any]], seconds: float) -> Answer:
     """Return the answer of a task that is done: its key figures, and the parameters it found."""
     return {"state": "done", "results": results, "parameters": parameters, "seconds": seconds}

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tsas_cli.errors import InputError
-from tsas_cli.sweeping.answer import Answer, called, failure
+from tsas_cli.sweeping.answer import Answer, called, death, failure
 from tsas_cli.sweeping.versions import ONE_THREAD, refuse_others, threads_of_algebra, versions
 
 if TYPE_CHECKING:
@@ -147,8 +147,7 @@ def _answers(
         try:
             yield number, json.loads(future.result())
         except KilledWorker as error:
-            tries = error.allowed_failures + 1
-            yield number, failure(f"the process died, {tries} times")
+            yield number, death(error.allowed_failures + 1)
         except CancelledError as error:
             raise InputError(
                 "the scheduler is gone",

@@ -50,7 +50,7 @@ def _taken(out: Path) -> TextIO:
             )
         (out / TASKS).mkdir(parents=True, exist_ok=True)
         journal = (out / JOURNAL).open("a", encoding="utf-8")
-        _lock(journal.fileno(), out)
+        _lock(journal, out)
         for name in (SUMMARY, TABLE, PARAMETERS):  # they are of the whole
             (out / name).unlink(missing_ok=True)
     except OSError as error:
@@ -62,11 +62,12 @@ def _taken(out: Path) -> TextIO:
     return journal
 
 
-def _lock(descriptor: int, out: Path) -> None:
+def _lock(journal: TextIO, out: Path) -> None:
     """Take the folder; the lock ends with the process, however that ends."""
     try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        fcntl.flock(journal.fileno(), fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError as error:
+        journal.close()
         raise InputError(
             "another sweep is writing here", where=out, remedy="wait for it, or stop it"
         ) from error

@@ -13,7 +13,7 @@ from contextlib import suppress
 from threading import Thread
 from typing import IO
 
-from tsas_cli.sweeping.answer import Answer, failure
+from tsas_cli.sweeping.answer import Answer, death
 from tsas_cli.sweeping.versions import ONE_THREAD
 
 TRIES = 2  # of a task whose worker dies
@@ -100,7 +100,7 @@ class _Lane(Thread):
             if answer is not None:
                 return answer
             said, self.worker = self.worker.ending(), None
-        return failure(f"the process died, {TRIES} times: {said}")
+        return death(TRIES, said)
 
 
 class _Worker:

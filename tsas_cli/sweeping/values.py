@@ -14,6 +14,7 @@ from tsas_cli.identification.model import FILE as MODEL_FILE
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.recordings.dataset import CONDITIONS
 from tsas_cli.recordings.manifest import read_toml
+from tsas_cli.tracking.settings import RigSettings, read_settings
 
 PLANT, SETTINGS = "plant.", "settings."
 FILES = {"model": MODEL_FILE, "plant": MODEL_FILE, "drive": DRIVE_FILE, "settings": ""}
@@ -85,9 +86,9 @@ def sorted_values(given: Mapping[str, Any], options: Options, base: Path) -> Val
         elif name.startswith(SETTINGS) and "settings" in options:
             found.settings[name.removeprefix(SETTINGS)] = value
         else:
-            raise InputError(
-                f"unknown name {name}", where="the plan", remedy=nearest(name, _known(options))
-            )
+            raise InputError(f"unknown name {name}", where="the plan", remedy=_hint(name, options))
+    if found.settings:
+        read_settings(with_settings(found.files.get("settings"), found.settings))
     reference = found.options.get("reference")
     if isinstance(reference, str) and (base / reference).is_file():
         del found.options["reference"]
@@ -95,11 +96,17 @@ def sorted_values(given: Mapping[str, Any], options: Options, base: Path) -> Val
     return found
 
 
-def _known(options: Options) -> list[str]:
-    """Return the names that a stage with such options knows."""
+def _hint(name: str, options: Options) -> str:
+    """Return what may have been meant, of the names that a stage with such options knows."""
+    if "settings" in options and name in RigSettings.model_fields:
+        return f"did you mean {SETTINGS}rig.{name}?"
+    known = list(options)
     if "model" not in options:
-        return list(options)
-    return [*options, *(() if "plant" in options else CONDITIONS), *QUANTITIES]
+        return nearest(name, known)
+    known += [*QUANTITIES, *(() if "plant" in options else CONDITIONS)]
+    of_models = "and what a model holds: see `tsas effects`"
+    hint = nearest(name, known)
+    return hint if hint.startswith("did") else f"{nearest('', options)}, {of_models}"
 
 
 def _option(name: str, value: Any, allowed: TypeAdapter[Any]) -> Any:
