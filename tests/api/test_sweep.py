@@ -13,8 +13,28 @@ from tsas_cli.challenge.rig.recordings import Run, conditions, record, write_dat
 from tsas_cli.challenge.rig.sensors import Sensors
 from tsas_cli.challenge.rig.tendon import Rig
 from tsas_cli.files import sha256_of
+from tsas_cli.identification.estimate import Estimate
+from tsas_cli.identification.model import Model
+from tsas_cli.sweeping.answer import called
+from tsas_cli.sweeping.folder import sweep_folder
+from tsas_cli.sweeping.versions import ONE_THREAD
 
 RIG = Rig(friction_coefficient=0.16)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _done_in_this_process():
+    """Spare each test the start of a worker; tests/sweeping and tests/commands have real ones."""
+
+    def here(work, texts, workers):
+        for number, text in enumerate(texts):
+            yield number, json.loads(called(work, text))
+
+    with pytest.MonkeyPatch.context() as patch:
+        for name, value in ONE_THREAD.items():
+            patch.setenv(name, value)  # as a task sets it
+        patch.setattr("tsas_cli.api.sweep.in_processes", here)
+        yield
 
 
 @pytest.fixture(scope="module")
@@ -62,9 +82,6 @@ def test_each_task_is_the_call_that_anyone_could_write(base, swept):
     model = tsas.simulate(data).model
     values = {"friction_coefficient": 0.2}
     told = [e for e in model.estimates if e.name not in values]
-    from tsas_cli.identification.estimate import Estimate
-    from tsas_cli.identification.model import Model
-
     called = tsas.simulate(
         data, model=Model((Estimate("friction_coefficient", 0.2, "1", "given"), *told))
     )
@@ -115,32 +132,25 @@ def test_what_is_done_is_not_done_again_and_all_is_the_same(base, swept):
     assert again.before == 8
     assert written(out) == before
     assert again.summary["tasks"] == swept[0].summary["tasks"]
+    victim = out / "tasks" / swept[0].summary["tasks"][3]["task"]
+    victim.rename(victim.with_name(f".{victim.name}.killed"))  # as if killed half-way
     more = plan | {"vary": plan["vary"] | {"preload_N": [20.0, 30.0, 40.0]}}
     steps = Counted()
-    assert tsas.sweep(more, out=out, workers=1, step=steps).before == 8
-    assert len(begun(out)) == 12
-    assert steps.all_of(least=4)
+    assert tsas.sweep(more, out=out, workers=1, step=steps).before == 7
+    assert len(begun(out)) == 8 + 5
+    assert steps.all_of(least=5)
+    assert not list((out / "tasks").glob(".*"))
     tsas.sweep(plan, out=out, workers=1)
-    assert {name: before[name] for name in ("sweep.json", "sweep.parquet")} == {
-        name: sha256_of(out / name) for name in ("sweep.json", "sweep.parquet")
+    now = written(out)
+    assert {name: now[name] for name in before if name != "journal.jsonl"} == {
+        name: digest for name, digest in before.items() if name != "journal.jsonl"
     }
 
 
-def test_a_task_that_was_left_half_made_is_done_again(base, swept):
-    out = base / "swept"
-    plan, before = json.loads((out / "sweep.json").read_text())["plan"], written(out / "tasks")
-    victim = next((out / "tasks").iterdir())
-    victim.rename(victim.with_name(f".{victim.name}.killed"))
-    lines = len(begun(out))
-    tsas.sweep(plan, out=out, workers=1)
-    assert len(begun(out)) == lines + 1
-    assert written(out / "tasks") == before
-
-
 def test_a_task_that_fails_is_named_with_its_input_and_the_rest_completes(base):
-    out = base / "checked"
-    plan = {"stage": "check", "datasets": str(base / "rigs/*")}
-    result = tsas.sweep(plan, out=out, workers=2)
+    out = base / "all"
+    plan = {"stage": "simulate", "datasets": str(base / "rigs/*")}
+    result = tsas.sweep(plan, out=out, workers=1)
     assert result.summary["counts"] == {"done": 2, "failed": 1}
     assert result.defects == 0
     ((key, error),) = result.failed.items()
@@ -153,15 +163,9 @@ def test_a_task_that_fails_is_named_with_its_input_and_the_rest_completes(base):
     shutil.copy(base / "rigs/a/runs/x.parquet", base / "rigs/broken/runs/x.parquet")
     mended = tsas.sweep(plan, out=out, workers=1)  # the failed one is tried again, it alone
     assert (mended.before, mended.failed) == (2, {})
-
-
-def test_force_does_all_again(base):
-    out = base / "forced"
-    plan = {"stage": "check", "datasets": str(base / "rigs/a")}
-    tsas.sweep(plan, out=out, workers=1)
     first = written(out / "tasks")
-    tsas.sweep(plan, out=out, workers=1, force=True)
-    assert len(begun(out)) == 2
+    tsas.sweep(plan, out=out, workers=1, force=True)  # all of them once more
+    assert len(begun(out)) == 3 + 1 + 3
     assert written(out / "tasks") == first
 
 
@@ -191,9 +195,6 @@ def test_the_closed_loop_takes_model_plant_and_settings(tmp_path):
     rows = tsas.sweep(plan, out=tmp_path / "out", workers=1).summary["tasks"]
     same, other = (row["rmse_N"] for row in rows)
     assert other > 1.5 * same  # the controller does not know the plant's friction
-    from tsas_cli.identification.estimate import Estimate
-    from tsas_cli.identification.model import Model
-
     settings = {"reference": {"duration_s": 2.0}}
     model = Model((Estimate("friction_coefficient", 0.3, "1", "given"),))
     called = tsas.track(controllers="pid", plant=model, settings=settings)
@@ -213,8 +214,6 @@ def test_a_folder_of_something_else_is_not_touched(base, tmp_path):
 
 
 def test_two_sweeps_do_not_write_into_one_folder(base, tmp_path):
-    from tsas_cli.sweeping.folder import sweep_folder
-
     plan = {"stage": "check", "datasets": str(base / "rigs/a")}
     with (
         sweep_folder(tmp_path / "out"),
