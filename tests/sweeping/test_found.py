@@ -75,7 +75,9 @@ def test_what_is_printed_counts_words_and_spans_numbers_and_names_failures():
         ("fitted_x_at_bound", "1", "1 yes", "", "0 no"),
     ]
     assert words[1:] == (("verdict", "tasks"), [("named", "2"), ("sufficient", "1")])
-    assert failed == ("failed 1", ("task", "error"), [("t3", "no such file")])
+    assert failed == ("failed 1", ("input", "error"), [("nodes=3", "no such file")])
+    row = {"task": "t", "dataset": "rigs/a", "run": "x", "state": "failed", "error": "no"}
+    assert printed([row], [], "title")[-1][2] == [("rigs/a, x", "no")]
     many = [{"task": str(n), "state": "failed", "error": "no"} for n in range(30)]
     title, _, shown = printed(many, [], "title")[-1]
     assert (title, len(shown)) == ("failed 30, the first 20", 20)

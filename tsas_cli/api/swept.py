@@ -50,11 +50,22 @@ def work(task: Told) -> Answer:
         found, parameters = _done(task)
         answer = success(found, parameters, time.perf_counter() - start)
     except InputError as error:
-        answer = failure(error.line(), defect=False, seconds=time.perf_counter() - start)
+        line = _as_named(error.line(), task)
+        answer = failure(line, defect=False, seconds=time.perf_counter() - start)
     except Exception as error:  # noqa: BLE001 # the other tasks go on; this one says what it was
         told = f"a defect of tsas itself: {type(error).__name__}: {error}"
         answer = failure(told, seconds=time.perf_counter() - start)
     return answer | {"where": f"{socket.gethostname()}, process {os.getpid()}"}
+
+
+def _as_named(line: str, task: Told) -> str:
+    """Return a line with files as the plan names them, so that it is the same in every place."""
+    named = {name: source["file"] for name, source in task["inputs"]["files"].items()}
+    if "dataset" in task["inputs"]:
+        named["dataset"] = task["inputs"]["dataset"]["name"]
+    for name, said in named.items():
+        line = line.replace(task["places"][name], said)
+    return line
 
 
 def _done(task: Told) -> tuple[Told, list[Told]]:

@@ -62,7 +62,7 @@ def _column(values: list[Any]) -> pa.Array:
         return pa.array([None if value is None else str(value) for value in values])
 
 
-def printed(rows: Sequence[Row], varied: Iterable[str], title: str) -> list[Table]:
+def printed(rows: Sequence[Row], varied: Sequence[str], title: str) -> list[Table]:
     """Return what is printed: figures over all tasks, words and how often, and who failed."""
     named = {"task", "dataset", "run", "state", "error", *varied}
     done = [row for row in rows if row["state"] == "done"]
@@ -76,12 +76,16 @@ def printed(rows: Sequence[Row], varied: Iterable[str], title: str) -> list[Tabl
             tables.append(("", (name, "tasks"), [(word, str(n)) for word, n in many]))
     failed = [row for row in rows if row["state"] == "failed"]
     if failed:
-        shown = [(row["task"], row["error"]) for row in failed[:MOST_SHOWN]]
-        told = f"failed {len(failed)}" + (
-            f", the first {MOST_SHOWN}" if len(failed) > MOST_SHOWN else ""
-        )
-        tables.append((told, ("task", "error"), shown))
+        more = f", the first {MOST_SHOWN}" if len(failed) > MOST_SHOWN else ""
+        shown = [(_input(row, varied), row["error"]) for row in failed[:MOST_SHOWN]]
+        tables.append((f"failed {len(failed)}{more}", ("input", "error"), shown))
     return tables
+
+
+def _input(row: Row, varied: Iterable[str]) -> str:
+    """Return what tells a task from the others."""
+    told = [str(row[name]) for name in ("dataset", "run") if name in row]
+    return ", ".join([*told, *(f"{name}={row[name]}" for name in varied if name in row)])
 
 
 def _is_told(name: str) -> bool:
