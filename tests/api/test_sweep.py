@@ -228,3 +228,12 @@ def test_workers_and_a_cluster_exclude_each_other(tmp_path):
     with pytest.raises(tsas.InputError, match="workers is 0"):
         tsas.sweep({"stage": "track"}, out=tmp_path / "o", workers=0)
     assert not Path(tmp_path / "o").exists()
+
+
+def test_an_earlier_table_stays_until_the_next_is_whole(base, tmp_path):
+    out, plan = tmp_path / "out", {"stage": "simulate", "datasets": str(base / "rigs/a")}
+    tsas.sweep(plan, out=out, workers=1)
+    before = written(out)
+    with pytest.raises(tsas.InputError, match="scheduler|cluster"):
+        tsas.sweep(plan, out=out, cluster="nonsense://x", force=True)
+    assert written(out) == before

@@ -12,7 +12,7 @@ from pydantic import TypeAdapter
 import tsas_cli as tsas
 from tsas_cli.api.read import read, read_model
 from tsas_cli.errors import InputError
-from tsas_cli.files import new_folder, sha256_of, write_json
+from tsas_cli.files import new_folder, read_json, sha256_of, write_json
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model, data_sheet
 from tsas_cli.identification.quantities import QUANTITIES
@@ -77,10 +77,11 @@ def _done(task: Told) -> tuple[Told, list[Told]]:
     stage = inputs["stage"]
     with new_folder(out / key, force=task["force"]) as folder:
         result = getattr(tsas, stage)(**_arguments(inputs, places), out=folder)
-        found, parameters = figures(stage, result), estimates(stage, result)
         content = {"format": 1, "stage": "sweep", "key": key, "inputs": inputs}
-        write_json(folder / FILE, content | {"results": found, "parameters": parameters})
-    return found, parameters
+        content |= {"results": figures(stage, result), "parameters": estimates(stage, result)}
+        write_json(folder / FILE, content)
+        written: Told = read_json(folder / FILE)  # as a later call will find it
+    return written["results"], written["parameters"]
 
 
 def _arguments(inputs: Told, places: Told) -> Told:

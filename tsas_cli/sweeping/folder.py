@@ -51,8 +51,6 @@ def _taken(out: Path) -> TextIO:
         (out / TASKS).mkdir(parents=True, exist_ok=True)
         journal = (out / JOURNAL).open("a", encoding="utf-8")
         _lock(journal, out)
-        for name in (SUMMARY, TABLE, PARAMETERS):  # they are of the whole
-            (out / name).unlink(missing_ok=True)
     except OSError as error:
         raise InputError(
             f"cannot be written ({error.strerror})",

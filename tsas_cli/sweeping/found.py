@@ -63,7 +63,8 @@ def _of_diagnose(result: Any) -> Figures:
         "rivals": ", ".join(sorted(rivals)),
     }
     for cause in summary["named"]:
-        name, (low, high) = f"gain_percent_{cause['effect']}", cause["gain_interval_percent"]
+        name = f"gain_percent_{cause['effect']}"
+        low, high = cause["gain_interval_percent"] or (None, None)
         found |= {name: cause["gain_percent"], f"{name}_low": low, f"{name}_high": high}
     for channel, error in summary["channels"].items():
         for key in ("before", "after"):

@@ -137,6 +137,8 @@ def _written(
     found = parameter_rows(tasks, answers)
     tables = {TABLE: partial(write_rows, rows=rows)}
     tables |= {PARAMETERS: partial(write_rows, rows=found)} if found else {}
+    if not found:
+        (out / PARAMETERS).unlink(missing_ok=True)  # of an earlier plan
     for name, write in {**tables, SUMMARY: partial(write_json, content=summary)}.items():
         with new_file(out / name, force=True) as path:
             write(path)
