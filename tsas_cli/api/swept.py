@@ -44,18 +44,19 @@ def options_of(stage: str) -> Options:
 def work(task: Told) -> Answer:
     """Do a task; what goes wrong is its answer."""
     os.environ.update(ONE_THREAD)  # this process does one task at a time
-    start = time.perf_counter()
+    start, before = time.perf_counter(), time.process_time()
     try:
         refuse_others(task["inputs"]["versions"], versions(), "this worker")
-        found, parameters = _done(task)
-        answer = success(found, parameters, time.perf_counter() - start)
+        answer = success(*_done(task))
     except InputError as error:
-        line = _as_named(error.line(), task)
-        answer = failure(line, defect=False, seconds=time.perf_counter() - start)
+        answer = failure(_as_named(error.line(), task), defect=False)
     except Exception as error:  # noqa: BLE001 # the other tasks go on; this one says what it was
-        told = f"a defect of tsas itself: {type(error).__name__}: {error}"
-        answer = failure(told, seconds=time.perf_counter() - start)
-    return answer | {"where": f"{socket.gethostname()}, process {os.getpid()}"}
+        answer = failure(f"a defect of tsas itself: {type(error).__name__}: {error}")
+    return answer | {
+        "where": f"{socket.gethostname()}, process {os.getpid()}",
+        "seconds": time.perf_counter() - start,
+        "processor_seconds": time.process_time() - before,
+    }
 
 
 def _as_named(line: str, task: Told) -> str:

@@ -6,9 +6,9 @@ from typing import Any
 Answer = dict[str, Any]
 
 
-def failure(error: str, *, defect: bool = True, seconds: float | None = None) -> Answer:
+def failure(error: str, *, defect: bool = True) -> Answer:
     """Return the answer of a task that has no result; a defect is ours, else its input is wrong."""
-    return {"state": "failed", "error": error, "defect": defect, "seconds": seconds}
+    return {"state": "failed", "error": error, "defect": defect}
 
 
 def death(times: int, said: str = "") -> Answer:
@@ -17,9 +17,9 @@ def death(times: int, said: str = "") -> Answer:
     return failure(": ".join([often, *([said] if said else [])]))
 
 
-def success(results: dict[str, Any], parameters: list[dict[str, Any]], seconds: float) -> Answer:
+def success(results: dict[str, Any], parameters: list[dict[str, Any]]) -> Answer:
     """Return the answer of a task that is done: its key figures, and the parameters it found."""
-    return {"state": "done", "results": results, "parameters": parameters, "seconds": seconds}
+    return {"state": "done", "results": results, "parameters": parameters}
 
 
 def called(work: str, text: str) -> str:

@@ -10,11 +10,12 @@ from typing import Any, TextIO
 
 from tsas_cli.errors import InputError
 from tsas_cli.files import read_json
-from tsas_cli.sweeping.answer import Answer
+from tsas_cli.sweeping.answer import Answer, success
 from tsas_cli.sweeping.tasks import FILE, Task
 
 TASKS = "tasks"
 JOURNAL = "journal.jsonl"  # when what was done where; it also says that this is a sweep's folder
+NOTED = ("state", "seconds", "processor_seconds", "where", "error")
 TABLE, PARAMETERS, SUMMARY = "sweep.parquet", "parameters.parquet", "sweep.json"
 
 
@@ -82,16 +83,11 @@ def what_is_done(tasks: Path, task: Task) -> Answer | None:
     if not path.is_file():
         return None
     content: Mapping[str, Any] = read_json(path)
-    return {
-        "state": "done",
-        "results": content["results"],
-        "parameters": content["parameters"],
-        "seconds": None,
-    }
+    return success(content["results"], content["parameters"])
 
 
 def note(out: Path, task: Task, answer: Answer) -> None:
     """Add a line to the journal: which task ended how, after how many seconds, where."""
-    line = {"task": task.key, **{k: answer.get(k) for k in ("state", "seconds", "where", "error")}}
+    line = {"task": task.key, **{key: answer.get(key) for key in NOTED}}
     with (out / JOURNAL).open("a", encoding="utf-8") as journal:
         journal.write(json.dumps(line, ensure_ascii=False) + "\n")
