@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from tsas_cli.api.report import report
     from tsas_cli.api.reproduce import reproduce
     from tsas_cli.api.simulate import simulate
+    from tsas_cli.api.sweep import sweep
     from tsas_cli.api.track import track
     from tsas_cli.errors import InputError
     from tsas_cli.steps import Steps
@@ -49,6 +50,7 @@ __all__ = [
     "report",
     "reproduce",
     "simulate",
+    "sweep",
     "track",
 ]
 

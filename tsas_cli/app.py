@@ -24,6 +24,7 @@ from tsas_cli.commands.plan import plan
 from tsas_cli.commands.report import report
 from tsas_cli.commands.reproduce import reproduce
 from tsas_cli.commands.simulate import simulate
+from tsas_cli.commands.sweep import sweep
 from tsas_cli.commands.track import track
 from tsas_cli.commands.view import view
 from tsas_cli.errors import InputError, printable
@@ -62,6 +63,7 @@ app.command("compare")(compare)
 app.command("plan")(plan)
 app.command("track")(track)
 app.command("close-loop")(close_loop)
+app.command("sweep")(sweep)
 app.command("report")(report)
 app.command("view")(view)
 app.command("doctor")(doctor)

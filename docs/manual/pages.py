@@ -31,6 +31,7 @@ HOW_TO = (
     _docs("Identify a drive", "drive"),
     _docs("Track a force", "tracking"),
     _docs("Close the loop", "close-loop"),
+    _docs("Many runs: sweeps", "sweep"),
 )
 PYTHON = _docs("From Python", "python")
 FORMATS = _docs("File formats", "formats")

@@ -48,6 +48,15 @@ def test_only_the_runs_that_were_chosen_count(calibration):
     assert [run.id for run in side.dataset.runs] == ["b"]
 
 
+def test_conditions_that_were_told_are_those_of_the_runs(calibration):
+    path = calibration / "calibration.json"
+    told = {"conditions": {"total_bend_rad": 1.5}}
+    path.write_text(json.dumps(json.loads(path.read_text()) | told))
+    assert {run.total_bend_rad for run in read_side(calibration).dataset.runs} == {1.5}
+    model = read_side(calibration / "model.toml")
+    assert 1.5 not in {run.total_bend_rad for run in model.dataset.runs}
+
+
 def test_a_fit_that_did_not_converge_says_so(calibration):
     path = calibration / "calibration.json"
     fit = {"converged": False, "message": "it wandered."}

@@ -16,6 +16,7 @@ NOT_RUN_HERE = {
     "docs/close-loop.md": ["close-loop"],
     "docs/drive.md": ["identify-harmonic-drive"],
     "docs/plan.md": ["plan"],
+    "docs/sweep.md": ["sweep", "sweep"],
     "docs/tracking.md": ["track"],
 }
 SHOWING = [

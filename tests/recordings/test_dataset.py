@@ -238,3 +238,19 @@ def test_chosen_runs_come_in_the_order_of_the_manifest(tmp_path: Path, columns: 
     assert chosen.header("x", tmp_path)["dataset"] == whole.header("x", tmp_path)["dataset"]
     with pytest.raises(InputError, match="there is no run 'd'"):
         whole.only(["d"])
+
+
+def test_other_conditions_are_said_of_every_run_and_stay_on_record(dataset: Path) -> None:
+    whole = read_dataset(dataset)
+    told = whole.under(total_bend_rad=1.5, preload_N=20.0)
+    (recording,) = told
+    assert (recording.run.total_bend_rad, recording.run.preload_N) == (1.5, 20.0)
+    assert recording.run.sheath_length_mm is None
+    assert told.under(preload_N=10.0).conditions == {"total_bend_rad": 1.5, "preload_N": 10.0}
+    assert told.header("x", None) == whole.header("x", None) | {
+        "conditions": {"total_bend_rad": 1.5, "preload_N": 20.0}
+    }
+    with pytest.raises(InputError, match="unknown condition bend; known are sheath_length_mm"):
+        whole.under(bend=1.0)
+    with pytest.raises(InputError, match=r"dataset\.toml: preload_N: input should be greater"):
+        whole.under(preload_N=-1.0)

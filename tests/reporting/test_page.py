@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from tests.reporting.made_folders import make_calibration, make_check, make_dataset, make_simulation
+from tsas_cli.errors import InputError
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.page import SECTIONS, page
 
@@ -180,6 +181,7 @@ def test_the_commands_name_the_calibrated_model_only_where_it_was_simulated(
 
 
 def test_a_simulation_of_the_data_sheet_is_repeated_without_a_model(whole):
+    assert "They lack" not in whole
     (command,) = re.findall(r"tsas simulate .*", whole.partition("<pre")[2])
     assert "--dynamics static" in command
     assert "--model" not in command
@@ -192,3 +194,17 @@ def test_missing_values_of_a_stage_are_dashes(folders, tmp_path):
     content["dataset"]["folder"] = str(folders["dataset"])
     (tmp_path / "calibration.json").write_text(json.dumps(content))
     Outline(page(read_inputs([tmp_path])))
+
+
+def test_conditions_that_were_told_are_those_of_the_page_and_no_command_repeats_them(
+    folders, tmp_path
+):
+    told = shutil.copytree(folders["simulation"], tmp_path / "sim")
+    content = json.loads((told / "simulation.json").read_text())
+    content["conditions"] = {"total_bend_rad": 1.5}
+    (told / "simulation.json").write_text(json.dumps(content))
+    given = [folders["dataset"], told]
+    assert {run.total_bend_rad for run in read_inputs(given).dataset.runs} == {1.5}
+    assert "They lack what was handed over" in page(read_inputs(given))
+    with pytest.raises(InputError, match="was told other conditions of the runs than"):
+        read_inputs([*given, folders["calibration"]])

@@ -1,6 +1,6 @@
 """Follow a wanted force on a simulated rig."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Literal
 
 import pyarrow as pa
@@ -31,7 +31,7 @@ def track(
     disturb: str | Sequence[str] = (),
     as_printed: bool = False,
     dynamics: Literal["slip", "lugre"] = "slip",
-    settings: Named | None = None,
+    settings: Mapping[str, Any] | Named | None = None,
     seeds: int | None = None,
     first_seed: int = 1,
     force: bool = False,
@@ -64,7 +64,7 @@ def track(
     dynamics
         The plant's tendon. `slip`: quasi-static; `lugre`: dynamic.
     settings
-        A file with rig, drive, sensors, reference and gains (docs/tracking.md).
+        A file with rig, drive, sensors, reference and gains, or its content (docs/tracking.md).
     seeds
         How many seeds of noise; 1 without it, 10 with `compare`.
     first_seed

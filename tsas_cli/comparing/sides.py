@@ -83,7 +83,7 @@ def _of_model(path: Path) -> Side:
     said = read_toml(path).get("dataset", {})
     source = parse(Source, said, path) if "hashes" in said else None
     with_bristles = any(e.name.startswith("bristles.") for e in model.estimates)
-    dataset, gone = (None, "") if source is None else _dataset(source, source.chosen, path.parent)
+    dataset, gone = (None, "") if source is None else _dataset(source, source, path.parent)
     return Side(
         path,
         "model",
@@ -101,7 +101,7 @@ def _of_stage(path: Path, kind: type[OfDataset]) -> Side:
     file = path / kind.FILE
     stage = parse(kind, read_json(file), file)
     files = {kind.FILE: sha256_of(file)}
-    dataset, gone = _dataset(stage.dataset, stage.chosen, path)
+    dataset, gone = _dataset(stage.dataset, stage, path)
     read = _recordings(stage.dataset, stage.chosen, dataset)
     if isinstance(stage, Simulation):
         return Side(
@@ -122,9 +122,7 @@ def _of_stage(path: Path, kind: type[OfDataset]) -> Side:
     )  # fmt: skip
 
 
-def _dataset(
-    source: Source, chosen: tuple[str, ...] | None, home: Path
-) -> tuple[Dataset | None, str]:
+def _dataset(source: Source, read: Source | OfDataset, home: Path) -> tuple[Dataset | None, str]:
     """Return the dataset as it was read, with the runs that were; or None, and why."""
     folder = Path(os.path.normpath(home / source.folder))
     if not source.folder or not (folder / MANIFEST).is_file():
@@ -136,7 +134,8 @@ def _dataset(
     then = {file: digest.lower() for file, digest in source.hashes.items()}
     if then != {file: digest.lower() for file, digest in dataset.hashes().items()}:
         return None, f"the dataset {folder} has changed since it was read"
-    return (dataset if chosen is None else dataset.only(chosen)), ""
+    told = dataset.under(**read.conditions)
+    return (told if read.chosen is None else told.only(read.chosen)), ""
 
 
 def _recordings(

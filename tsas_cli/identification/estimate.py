@@ -3,7 +3,7 @@
 from dataclasses import asdict, dataclass
 from typing import Any, Literal
 
-Origin = Literal["fitted", "data sheet", "default"]
+Origin = Literal["fitted", "data sheet", "default", "given"]
 
 
 @dataclass(frozen=True)

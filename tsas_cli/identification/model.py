@@ -179,8 +179,8 @@ def _axial_stiffness(diameter_mm: float | None, modulus_GPa: float | None) -> fl
 
 def fitted_to(summary: Mapping[str, Any]) -> dict[str, Any]:
     """Return what a model file says of the recordings behind it, from its stage's summary."""
-    chosen = {"chosen": summary["chosen"]} if "chosen" in summary else {}
-    return {**summary["dataset"], **chosen}
+    said = {key: summary[key] for key in ("chosen", "conditions") if key in summary}
+    return {**summary["dataset"], **said}
 
 
 class _File(BaseModel):

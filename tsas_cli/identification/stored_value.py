@@ -1,8 +1,8 @@
 """One number in `model.toml` or `drive.toml`."""
 
-from typing import Literal
-
 from pydantic import BaseModel, ConfigDict
+
+from tsas_cli.identification.estimate import Origin
 
 
 class StoredValue(BaseModel):
@@ -12,7 +12,7 @@ class StoredValue(BaseModel):
 
     value: float
     unit: str
-    origin: Literal["fitted", "data sheet", "default"] = "data sheet"
+    origin: Origin = "data sheet"
     stderr: float | None = None
     interval_low: float | None = None
     interval_high: float | None = None

@@ -15,6 +15,7 @@ PURPOSES = {
     "mat": "MATLAB v7.3 files",
     "mdf": "MDF4 files",
     "challenge": "the sparse-regression baseline of tsas challenge",
+    "dask": "tsas sweep --cluster",
     "bench": "the general solvers that make bench compares with",
     "all": "every file format and baseline",
 }

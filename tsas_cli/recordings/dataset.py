@@ -1,17 +1,19 @@
 """A dataset on disk: one Parquet file per run, and the manifest beside them (format 1)."""
 
 import os
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 from tsas_cli import __version__
 from tsas_cli.errors import InputError, nearest
 from tsas_cli.files import sha256_of
-from tsas_cli.recordings.manifest import FILE, Manifest, Run, read_manifest
+from tsas_cli.recordings.manifest import FILE, Manifest, Run, parse, read_manifest
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.recordings.run_files import read_recording
+
+CONDITIONS = ("sheath_length_mm", "total_bend_rad", "preload_N")
 
 
 @dataclass(frozen=True, repr=False)
@@ -28,11 +30,14 @@ class Dataset:
         What `dataset.toml` says.
     chosen
         The ids of the runs that count, all without it.
+    conditions
+        Conditions that are said of every run in place of the manifest's, by key.
     """
 
     folder: Path
     manifest: Manifest
     chosen: tuple[str, ...] | None = None
+    conditions: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def runs(self) -> list[Run]:
@@ -57,6 +62,25 @@ class Dataset:
                     remedy=nearest(name, known),
                 )
         return replace(self, chosen=chosen)
+
+    def under(self, **conditions: float) -> "Dataset":
+        """Return the same recordings with other conditions said of every run.
+
+        Raises
+        ------
+        InputError
+            There is no such condition, or a value is not allowed.
+        """
+        for name in conditions:
+            if name not in CONDITIONS:
+                raise InputError(f"unknown condition {name}", remedy=nearest(name, CONDITIONS))
+        where = self.folder / FILE
+        runs = [
+            parse(Run, run.model_dump(exclude_unset=True) | conditions, where)
+            for run in self.manifest.run
+        ]
+        manifest = self.manifest.model_copy(update={"run": tuple(runs)})
+        return replace(self, manifest=manifest, conditions={**self.conditions, **conditions})
 
     def __repr__(self) -> str:
         """Return a line: where it is, and which runs it holds."""
@@ -91,7 +115,9 @@ class Dataset:
             "stage": stage,
             "version": __version__,
             "dataset": {"name": self.manifest.name, "folder": path, "hashes": self.hashes()},
-        } | ({} if self.chosen is None else {"chosen": [run.id for run in self.runs]})
+            **({} if self.chosen is None else {"chosen": [run.id for run in self.runs]}),
+            **({"conditions": dict(self.conditions)} if self.conditions else {}),
+        }
 
     def hashes(self) -> dict[str, str]:
         """Return the checksum of the manifest and of each run's file, by path in the dataset."""

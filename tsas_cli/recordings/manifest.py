@@ -137,7 +137,7 @@ def read_toml(path: Path) -> dict[str, Any]:
         raise InputError(f"is not TOML ({error})", where=path) from error
 
 
-def parse(model: type[T], content: dict[str, Any], path: Path) -> T:
+def parse(model: type[T], content: dict[str, Any], path: object) -> T:
     """Validate the content of a file; all that is wrong with it becomes one line.
 
     Raises

@@ -132,7 +132,7 @@ def read_inputs(folders: Sequence[Path]) -> Inputs:
     folder = by_file[FILE] if FILE in by_file else next(named, None)
     if folder is None:
         return Inputs(None, stages, where)
-    dataset = read_dataset(folder)
+    dataset = read_dataset(folder).under(**_conditions(stages, where))
     for kind, stage in stages.items():
         if isinstance(stage, OfDataset):
             _check_hashes(stage, dataset, where[kind] / kind.FILE)
@@ -219,6 +219,22 @@ def _check_own(dataset: Dataset, path: Path) -> None:
             expected=f"{FILE} in the same folder",
             remedy="give this folder alone, or write it again with `tsas track`",
         )
+
+
+def _conditions(
+    stages: Mapping[type[StageFile], StageFile], where: Mapping[type[StageFile], Path]
+) -> dict[str, float]:
+    """Return what the stages say of the runs in place of the manifest; they have to agree."""
+    told = {kind: s.conditions for kind, s in stages.items() if isinstance(s, OfDataset)}
+    for kind, conditions in told.items():
+        first = next(iter(told))
+        if conditions != told[first]:
+            raise InputError(
+                f"was told other conditions of the runs than {where[first] / first.FILE}",
+                where=where[kind] / kind.FILE,
+                remedy="write a page for each",
+            )
+    return next(iter(told.values()), {})
 
 
 def _check_hashes(stage: OfDataset, dataset: Dataset, path: Path) -> None:

@@ -15,13 +15,15 @@ class Record(BaseModel):
 class Source(Record):
     """The recordings that were read: their dataset, where it was, and which of its runs.
 
-    `folder` is relative to that of the file; `chosen` are the runs, None where it is all.
+    `folder` is relative to that of the file; `chosen` are the runs, None where it is all;
+    `conditions` what was said of them in place of the manifest's.
     """
 
     name: str
     folder: str = ""
     hashes: dict[str, str]
     chosen: tuple[str, ...] | None = None
+    conditions: dict[str, float] = {}
 
 
 class StageFile(Record):
@@ -32,10 +34,11 @@ class StageFile(Record):
 
 
 class OfDataset(StageFile):
-    """What a stage says that has read a dataset; `chosen` are the runs, None where it is all."""
+    """What a stage says that has read a dataset; `chosen` and `conditions` as of `Source`."""
 
     dataset: Source
     chosen: tuple[str, ...] | None = None
+    conditions: dict[str, float] = {}
 
 
 class ModelFile(Record):

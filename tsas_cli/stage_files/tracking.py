@@ -82,6 +82,7 @@ class Settings(Record):
     """The settings of all runs, and the file that they are from."""
 
     file: str | None = None
+    sha256: str | None = None
     sensor: Sensor
     loop: Loop
     controllers: Controllers

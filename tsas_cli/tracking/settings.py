@@ -6,6 +6,7 @@ here and said.
 """
 
 import math
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -228,15 +229,18 @@ def _surface(gains: SlidingSettings) -> Surface:
     return Surface(gains.c1, gains.c2, gains.epsilon_rpm, gains.ks, gains.boundary_mm_per_s2)
 
 
-def read_settings(path: Path | None) -> Settings:
-    """Read a settings file; without one the paper's rig.
+def read_settings(given: Path | Mapping[str, Any] | None) -> Settings:
+    """Read a settings file, or take its content; without one the paper's rig.
 
     Raises
     ------
     InputError
         It cannot be read, or says something that is unknown or not allowed.
     """
-    return Settings() if path is None else parse(Settings, read_toml(path), path)
+    if given is None:
+        return Settings()
+    path, content = (given, read_toml(given)) if isinstance(given, Path) else ("settings", given)
+    return parse(Settings, dict(content), path)
 
 
 def printed_gains(settings: Settings) -> Settings:

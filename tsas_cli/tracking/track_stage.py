@@ -59,7 +59,7 @@ class Call:
     model: Model | Path | None = None
     plant: Model | Path | None = None
     drive: IdentifiedDrive | Path | None = None
-    settings: Path | None = None
+    settings: Path | Mapping[str, Any] | None = None
     controllers: tuple[str, ...] = ("adaptive-sliding-mode",)
     conditions: tuple[Condition, ...] = (Condition("undisturbed"),)
     reference: str = "sine"
@@ -208,8 +208,7 @@ def _result(
 
 
 def _header(call: Call, settings: Settings) -> dict[str, Any]:
-    file = None if call.settings is None else call.settings.name
-    checksum = None if call.settings is None else sha256_of(call.settings)
+    source = {"file": None} if call.settings is None else source_of(call.settings)
     return {
         "format": 1,
         "stage": "track",
@@ -218,8 +217,8 @@ def _header(call: Call, settings: Settings) -> dict[str, Any]:
         "plant": source_of(call.plant or call.model),
         "drive": source_of(call.drive, DRIVE_FILE, without="kinematics"),
         "settings": {
-            "file": file,
-            "sha256": checksum,
+            "sha256": None,
+            **source,
             **settings.model_dump(mode="json", by_alias=True),
         },
         "reference": _reference(call.reference),

@@ -8,11 +8,12 @@ from pathlib import Path
 
 from tsas_cli import __version__
 from tsas_cli.files import sha256_of
+from tsas_cli.identification.model import IN_MEMORY
 from tsas_cli.reporting.closing import call as closing_call
 from tsas_cli.reporting.content import Section, Table
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.tracking import call
-from tsas_cli.stage_files.base import ModelFile, StageFile
+from tsas_cli.stage_files.base import ModelFile, OfDataset, StageFile
 from tsas_cli.stage_files.calibration import Calibration
 from tsas_cli.stage_files.check import Check
 from tsas_cli.stage_files.closing import Closing
@@ -46,12 +47,24 @@ def section(inputs: Inputs) -> Section:
 
 def _intro(inputs: Inputs) -> Iterator[str]:
     yield "These commands make the same page from the same files."
+    if _in_memory(inputs):
+        yield "They lack what was handed over without a file: a model, settings, or conditions."
     closing = inputs.get(Closing)
     if closing and closing_call.own_settings(closing):
         yield (
             f"`{closing_call.SETTINGS}` stands for a file with the settings that `{Closing.FILE}` "
             "holds; they are not the defaults."
         )
+
+
+def _in_memory(inputs: Inputs) -> bool:
+    """Say whether a stage was given what no file holds."""
+    stages = inputs.stages.values()
+    if any(isinstance(stage, OfDataset) and stage.conditions for stage in stages):
+        return True
+    told = [getattr(s, name, None) for s in stages for name in ("model", "plant", "drive")]
+    told += [s.settings for s in stages if isinstance(s, Tracking)]
+    return any(getattr(one, "file", None) == IN_MEMORY for one in told)
 
 
 def _commands(inputs: Inputs) -> Iterator[list[str]]:

@@ -27,7 +27,7 @@ def options(tracking: Tracking) -> Iterator[str]:
     yield from ("--reference", tracking.reference.shape or tracking.reference.file)
     if tracking.gains == "as printed":
         yield "--as-printed"
-    if tracking.settings.file is not None:
+    if tracking.settings.file is not None and tracking.settings.sha256 is not None:
         yield from ("--settings", tracking.settings.file)
     first, last = tracking.seeds
     yield from ("--seeds", str(last - first + 1), "--seed", str(first))

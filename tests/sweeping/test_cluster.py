@@ -1,0 +1,214 @@
+"""A real scheduler with workers, all of them processes of their own, over TCP."""
+
+import filecmp
+import json
+import os
+import shutil
+import signal
+import sys
+import time
+from contextlib import closing
+from importlib.util import find_spec
+from threading import Thread
+
+import pytest
+
+import tsas_cli as tsas
+from tests.sweeping.clusters import HERE, ROOT, cluster, wait_for
+from tsas_cli.sweeping.cluster import _refuse, on_cluster
+from tsas_cli.sweeping.versions import versions
+
+pytestmark = [
+    pytest.mark.skipif(
+        find_spec("distributed") is None, reason="no Dask here: pip install 'tsas[dask]'"
+    ),
+    # Its connections are closed by a thread of its own, after the test has ended.
+    pytest.mark.filterwarnings("ignore::ResourceWarning"),
+]
+WORKS = "tests.sweeping.works"
+
+
+@pytest.fixture(scope="module")
+def running(tmp_path_factory):
+    with cluster(tmp_path_factory.mktemp("cluster")) as made:
+        yield made
+
+
+@pytest.fixture
+def two(running):
+    """Two workers; where a test has killed one there is a new one."""
+    while running.workers() < 2:
+        running.add()
+    return running
+
+
+@pytest.fixture
+def shared(tmp_path):
+    """Return a file that every worker sees."""
+    path = tmp_path / "shared"
+    path.touch()
+    return path
+
+
+@pytest.fixture
+def recordings(tmp_path, dataset):
+    """Three datasets, one of them broken."""
+    for name in ("rigs/a", "rigs/b", "rigs/broken"):
+        shutil.copytree(dataset, tmp_path / name)
+    (tmp_path / "rigs/broken/runs/a.parquet").write_bytes(b"no Parquet")
+    manifest = tmp_path / "rigs/b/dataset.toml"
+    manifest.write_text(manifest.read_text().replace("bench-42", "bench-43"))
+    return tmp_path / "rigs"
+
+
+def texts(numbers, **more):
+    return [json.dumps({"number": number, **more}) for number in numbers]
+
+
+def answered(made, work, told, shared):
+    return dict(on_cluster(f"{WORKS}:{work}", told, made.address, shared))
+
+
+def files(folder):
+    return sorted(p.relative_to(folder) for p in folder.rglob("*") if p.is_file())
+
+
+def test_every_task_is_answered_and_both_workers_share(two, shared, tmp_path):
+    marks = tmp_path / "marks"
+    marks.mkdir()
+    answers = answered(two, "slow", texts(range(6), folder=str(marks), seconds=0.1), shared)
+    assert [answers[n]["results"]["square"] for n in range(6)] == [0, 1, 4, 9, 16, 25]
+    assert len({answer["where"] for answer in answers.values()}) == 2
+
+
+def test_files_are_the_same_as_by_local_processes_and_a_task_may_fail(two, recordings, tmp_path):
+    plan = {"stage": "simulate", "datasets": f"{recordings}/*", "vary": {"preload_N": [20, 25]}}
+    there = tsas.sweep(plan, out=tmp_path / "there", cluster=two.address)
+    here = tsas.sweep(plan, out=tmp_path / "here", workers=1)
+    assert there.summary == here.summary
+    assert list(there.failed) == [key for key in there.failed if "broken" in key]
+    assert there.summary["counts"] == {"done": 4, "failed": 2}
+    found = files(tmp_path / "there")
+    assert found == files(tmp_path / "here")
+    assert len(found) == 4 * 4 + 3
+    same, other, _ = filecmp.cmpfiles(tmp_path / "there", tmp_path / "here", found, shallow=False)
+    assert [str(path) for path in other] == ["journal.jsonl"]
+    assert len(same) == len(found) - 1
+
+
+def test_what_a_cluster_has_done_local_processes_do_not_do_again(two, recordings, tmp_path):
+    plan = {"stage": "simulate", "datasets": f"{recordings}/[ab]"}
+    tsas.sweep(plan, out=tmp_path / "out", cluster=two.address)
+    again = tsas.sweep(plan, out=tmp_path / "out", workers=1)
+    assert again.before == 2
+    assert len((tmp_path / "out" / "journal.jsonl").read_text().splitlines()) == 2
+
+
+def test_a_worker_killed_in_the_middle_loses_nothing(two, shared, tmp_path):
+    marks = tmp_path / "marks"
+    marks.mkdir()
+    killed = []
+
+    def kill_one():
+        wait_for(lambda: len(list(marks.iterdir())) >= 3)
+        killed.append(max(marks.iterdir(), key=lambda p: p.stat().st_mtime_ns).name)
+        os.kill(int(killed[0].split("-")[1]), signal.SIGKILL)
+
+    killer = Thread(target=kill_one)
+    killer.start()
+    answers = answered(two, "slow", texts(range(8), folder=str(marks), seconds=0.4), shared)
+    killer.join()
+    assert [answers[n]["results"]["square"] for n in range(8)] == [n**2 for n in range(8)]
+    number = killed[0].split("-")[0]
+    assert len(list(marks.glob(f"{number}-*"))) == 2  # it was begun, and begun again elsewhere
+
+
+def test_a_task_that_raises_is_reported_and_the_rest_completes(two, shared):
+    answers = answered(two, "one_raises", texts(range(4)), shared)
+    assert answers.pop(2)["error"] == "ValueError: two"
+    assert [answers[n]["state"] for n in sorted(answers)] == ["done"] * 3
+
+
+def test_who_stops_reading_takes_back_what_nobody_has_begun(two, shared, tmp_path):
+    marks = tmp_path / "marks"
+    marks.mkdir()
+    told = texts(range(40), folder=str(marks), seconds=0.1)
+    with closing(on_cluster(f"{WORKS}:slow", told, two.address, shared)) as answers:
+        next(answers)
+    time.sleep(0.5)
+    begun = len(list(marks.iterdir()))
+    assert begun < 20
+    time.sleep(0.5)
+    assert len(list(marks.iterdir())) == begun
+
+
+def test_a_worker_that_does_not_see_the_folder_is_named(two, tmp_path):
+    with pytest.raises(tsas.InputError, match=r"worker tcp://\S+ does not see .*/nowhere;"):
+        answered(two, "squared", texts([1]), tmp_path / "nowhere" / "journal.jsonl")
+
+
+def test_no_scheduler_is_one_line(monkeypatch, shared):
+    monkeypatch.setattr("tsas_cli.sweeping.cluster.PATIENCE_S", 0.5)
+    with pytest.raises(tsas.InputError, match="no scheduler answers; expected a running"):
+        dict(on_cluster(f"{WORKS}:squared", texts([1]), f"tcp://{HERE}:9", shared))
+    with pytest.raises(tsas.InputError, match="no scheduler answers"):
+        dict(on_cluster(f"{WORKS}:squared", texts([1]), "nonsense://x", shared))
+
+
+def test_without_dask_the_line_says_what_to_install(monkeypatch, shared):
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(tsas.InputError, match=r"pip install 'tsas\[dask\]'"):
+        dict(on_cluster(f"{WORKS}:squared", texts([1]), "tcp://x:1", shared))
+
+
+def test_a_cluster_that_would_do_it_otherwise_is_refused(tmp_path, shared):
+    with cluster(tmp_path / "cluster") as made:
+        with pytest.raises(tsas.InputError, match="has no workers; start some with `OPENBLAS_NUM"):
+            answered(made, "squared", texts([1]), shared)
+        worker = made.add(threads=2)
+        with pytest.raises(tsas.InputError, match="does 2 tasks at once in one process"):
+            answered(made, "squared", texts([1]), shared)
+        worker.terminate()
+        worker.wait()
+        other = other_version(tmp_path / "other")
+        made.add(PYTHONPATH=f"{other}{os.pathsep}{ROOT}")
+        with pytest.raises(tsas.InputError, match=r"worker tcp://\S+: tsas is 9.9.9; expected 0"):
+            answered(made, "squared", texts([1]), shared)
+
+
+def test_a_worker_whose_algebra_takes_more_threads_is_named(shared):
+    found = {"versions": versions(), "sees": True, "threads": "4"}
+    with pytest.raises(tsas.InputError, match="worker w: OPENBLAS_NUM_THREADS is 4; expected 1"):
+        _refuse(found, "worker w", shared, "dask worker")
+    _refuse(found | {"threads": "1"}, "worker w", shared, "dask worker")
+
+
+def test_what_ends_workers_or_the_scheduler_is_told(tmp_path, shared):
+    marks = tmp_path / "marks"
+    marks.mkdir()
+    with cluster(tmp_path / "cluster", DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES="0") as made:
+        made.add()
+        made.add()
+        answers = answered(made, "one_always_kills", texts(range(4)), shared)
+        assert answers.pop(2)["error"] == "the process died"
+        assert [answers[n]["state"] for n in sorted(answers)] == ["done"] * 3
+        told = texts(range(3), folder=str(marks), seconds=0.5)
+
+        def kill():
+            wait_for(lambda: any(marks.iterdir()))
+            made.scheduler.kill()
+
+        killer = Thread(target=kill)
+        killer.start()
+        with pytest.raises(tsas.InputError, match="the scheduler is gone; what is done stays"):
+            answered(made, "slow", told, shared)
+        killer.join()
+
+
+def other_version(folder):
+    """Return a folder with a tsas of another version."""
+    shutil.copytree(ROOT / "tsas_cli", folder / "tsas_cli", ignore=shutil.ignore_patterns("*.pyc"))
+    init = folder / "tsas_cli" / "__init__.py"
+    told = init.read_text().replace(f'"{tsas.__version__}"', '"9.9.9"')
+    init.write_text(told)
+    return folder

@@ -1,0 +1,91 @@
+"""`tsas sweep`: a stage over many datasets or values, on many processes or a cluster."""
+
+import tomllib
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+import tsas_cli as tsas
+from tsas_cli.commands.common import Json, OutFolder, Quiet, present
+from tsas_cli.commands.progress import progress
+from tsas_cli.errors import InputError
+
+WRONG, DEFECT = 2, 1  # exit codes
+
+
+def sweep(
+    what: Annotated[
+        str,
+        typer.Argument(
+            metavar="PLAN|STAGE", help="A plan, or: check, calibrate, simulate, diagnose, track."
+        ),
+    ],
+    datasets: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="[DATASET]...", help="Of a stage: folders, or patterns of them."),
+    ] = None,
+    *,
+    out: OutFolder,
+    options: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="NAME=VALUE", help="An option of the stage, as in a plan."),
+    ] = None,
+    each_run: Annotated[
+        bool, typer.Option("--each-run", help="Every run by itself, not every dataset.")
+    ] = False,
+    workers: Annotated[
+        int | None, typer.Option(min=1, help="How many processes; else one for each core.")
+    ] = None,
+    cluster: Annotated[
+        str | None,
+        typer.Option(metavar="ADDRESS", help="A Dask scheduler, whose workers are taken instead."),
+    ] = None,
+    force: Annotated[
+        bool, typer.Option("--force", help="Do those tasks again that are done.")
+    ] = False,
+    quiet: Quiet = False,
+    as_json: Json = False,
+) -> None:
+    """Call a stage for many datasets or values, and gather what comes out in one table.
+
+    What is done stays: the same call again does only what is left, or has changed.
+    """
+    with progress("sweep", quiet=quiet) as step:
+        result = tsas.sweep(
+            _plan(what, datasets or [], options or [], each_run=each_run),
+            out=out,
+            workers=workers,
+            cluster=cluster,
+            force=force,
+            step=step,
+        )
+    present(result, quiet=quiet, as_json=as_json)
+    if result.failed:
+        raise typer.Exit(DEFECT if result.defects else WRONG)
+
+
+def _plan(
+    what: str, datasets: list[str], options: list[str], *, each_run: bool
+) -> Path | dict[str, Any]:
+    """Return the plan's file, or the content of one that the call stands for."""
+    if what.endswith(".toml"):
+        if datasets or options or each_run:
+            raise InputError(
+                "a plan says all itself", where=what, remedy="write it there, or name a stage"
+            )
+        return Path(what)
+    told = dict(_option(option) for option in options)
+    plan: dict[str, Any] = {"stage": what, "each_run": each_run, "options": told}
+    return plan | ({"datasets": datasets} if datasets else {})
+
+
+def _option(text: str) -> tuple[str, Any]:
+    """Return name and value; a value is written as in TOML, text also without quotes."""
+    name, sign, value = text.partition("=")
+    if not sign:
+        raise InputError(f"{text!r} is no option", where="--set", expected="NAME=VALUE")
+    try:
+        return name, tomllib.loads(f"value = {value}")["value"]
+    except tomllib.TOMLDecodeError:
+        return name, value

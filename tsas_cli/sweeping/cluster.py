@@ -1,0 +1,158 @@
+"""The workers of a running Dask scheduler; nothing else knows Dask.
+
+Tasks and answers are JSON texts. The workers read the datasets and write the results themselves, so
+that all have to see them under the same paths.
+"""
+
+import json
+import logging
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tsas_cli.errors import InputError
+from tsas_cli.sweeping.answer import Answer, called, death, failure
+from tsas_cli.sweeping.versions import ONE_THREAD, refuse_others, threads_of_algebra, versions
+
+if TYPE_CHECKING:
+    from distributed import Client
+
+PATIENCE_S = 10  # until a scheduler that does not answer is given up
+START = "{environment} dask worker {address} --nthreads 1 --nworkers auto"
+
+
+def on_cluster(
+    work: str, texts: Sequence[str], address: str, shared: Path
+) -> Iterator[tuple[int, Answer]]:
+    """Yield the number and the answer of each task as they come.
+
+    The scheduler hands the tasks of a worker that dies to others; after its `allowed-failures` one
+    is given up. When the loop over the answers ends early, what no worker has begun is taken back.
+
+    Parameters
+    ----------
+    work
+        The function that answers, `module:function`.
+    texts
+        The tasks.
+    address
+        The scheduler's, as `dask scheduler` prints it.
+    shared
+        A file that every worker has to see.
+
+    Raises
+    ------
+    InputError
+        Dask is not installed, no scheduler answers at the address or it ends on the way, or a
+        worker is missing, has other versions, or does not see the file.
+    """
+    with _connected(address) as client:
+        _refuse_workers(client, address, shared)
+        futures = client.map(called, [work] * len(texts), list(texts), pure=False)
+        numbers = {future.key: number for number, future in enumerate(futures)}
+        try:
+            yield from _answers(client, futures, numbers, address)
+        finally:
+            client.cancel(futures, force=True)
+
+
+def _connected(address: str) -> "Client":
+    """Return a connection to a scheduler; its library's own talk is not for users."""
+    try:
+        from distributed import Client
+    except ModuleNotFoundError as error:
+        raise InputError(
+            "Dask is not installed", where="--cluster", remedy="pip install 'tsas[dask]'"
+        ) from error
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)
+    try:
+        return Client(address, timeout=PATIENCE_S, set_as_default=False)
+    except (OSError, TimeoutError, ValueError) as error:
+        raise InputError(
+            "no scheduler answers",
+            where=address,
+            expected="a running `dask scheduler`",
+            remedy="start one, or leave out --cluster",
+        ) from error
+
+
+def _refuse_workers(client: "Client", address: str, shared: Path) -> None:
+    """Stop before anything is done where somebody would do it otherwise, or not at all."""
+    told = client.scheduler_info(n_workers=-1)["workers"]
+    environment = " ".join(f"{name}={value}" for name, value in ONE_THREAD.items())
+    start = START.format(environment=environment, address=address)
+    if not told:
+        raise InputError(
+            "the scheduler has no workers", where=address, remedy=f"start some with `{start}`"
+        )
+    for name, worker in told.items():
+        if worker["nthreads"] != 1:
+            raise InputError(
+                f"does {worker['nthreads']} tasks at once in one process",
+                where=f"worker {name}",
+                expected="one",
+                remedy=f"start it with `{start}`",
+            )
+    try:
+        found = json.loads(client.run_on_scheduler(facts, str(shared)))
+    except Exception as error:
+        raise _no_tsas("the scheduler", error) from error
+    refuse_others(versions(), found["versions"], "the scheduler")
+    for name, said in client.run(facts, str(shared), on_error="return").items():
+        if isinstance(said, Exception):
+            raise _no_tsas(f"worker {name}", said) from said
+        _refuse(json.loads(said), f"worker {name}", shared, start)
+
+
+def _refuse(found: Mapping[str, Any], where: str, shared: Path, start: str) -> None:
+    refuse_others(versions(), found["versions"], where)
+    if not found["sees"]:
+        raise InputError(
+            f"does not see {shared.parent}",
+            where=where,
+            expected="the same file system under the same path",
+            remedy="choose an --out that all workers see",
+        )
+    if found["threads"] != ONE_THREAD["OPENBLAS_NUM_THREADS"]:
+        raise InputError(
+            f"OPENBLAS_NUM_THREADS is {found['threads'] or 'not set'}",
+            where=where,
+            expected="1, so that results are the same to the last bit",
+            remedy=f"start it with `{start}`",
+        )
+
+
+def _no_tsas(where: str, error: Exception) -> InputError:
+    return InputError(
+        f"cannot load tsas ({type(error).__name__}: {error})".splitlines()[0],
+        where=where,
+        expected="tsas in the same version",
+        remedy="install it there",
+    )
+
+
+def facts(shared: str) -> str:
+    """Return as JSON what has to be alike everywhere; called where the tasks are done."""
+    sees = Path(shared).is_file()
+    return json.dumps({"versions": versions(), "threads": threads_of_algebra(), "sees": sees})
+
+
+def _answers(
+    client: "Client", futures: Sequence[Any], numbers: Mapping[str, int], address: str
+) -> Iterator[tuple[int, Answer]]:
+    from distributed import CancelledError, KilledWorker, as_completed
+
+    for future in as_completed(futures, loop=client.loop):
+        number = numbers[future.key]
+        try:
+            yield number, json.loads(future.result())
+        except KilledWorker as error:
+            yield number, death(error.allowed_failures + 1)
+        except CancelledError as error:
+            raise InputError(
+                "the scheduler is gone",
+                where=address,
+                remedy="what is done stays; the same call goes on from there",
+            ) from error
+        except Exception as error:  # noqa: BLE001 # the other tasks go on
+            yield number, failure(f"{type(error).__name__}: {error}")

@@ -1,0 +1,151 @@
+"""Worker processes on this machine, each with one task at a time, to know which one died."""
+
+import json
+import os
+import queue
+import signal
+import subprocess
+import sys
+import tempfile
+from collections import deque
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from threading import Thread
+from typing import IO
+
+from tsas_cli.sweeping.answer import Answer, death
+from tsas_cli.sweeping.versions import ONE_THREAD
+
+TRIES = 2  # of a task whose worker dies
+LAST_WORDS = 500  # bytes of what a dead worker said
+
+
+def in_processes(work: str, texts: Sequence[str], workers: int) -> Iterator[tuple[int, Answer]]:
+    """Yield the number and the answer of each task as they come.
+
+    A task whose worker dies is tried once more by a new one. When the loop over the answers ends
+    early, the workers are killed.
+
+    Parameters
+    ----------
+    work
+        The function that answers, `module:function`.
+    texts
+        The tasks.
+    workers
+        How many processes at most.
+    """
+    waiting = deque(enumerate(texts))
+    answers: queue.Queue[tuple[int, Answer] | BaseException] = queue.Queue()
+    lanes = [_Lane(work, waiting, answers) for _ in range(min(workers, len(texts)))]
+    try:
+        for lane in lanes:
+            lane.start()
+        for _ in texts:
+            answer = answers.get()
+            if isinstance(answer, BaseException):
+                raise answer
+            yield answer
+    finally:
+        waiting.clear()
+        for lane in lanes:
+            lane.stop()
+
+
+class _Lane(Thread):
+    """Hands tasks to one worker at a time, and begins another one when that dies."""
+
+    def __init__(
+        self,
+        work: str,
+        waiting: deque[tuple[int, str]],
+        answers: queue.Queue[tuple[int, Answer] | BaseException],
+    ) -> None:
+        super().__init__(daemon=True)
+        self.work, self.waiting, self.answers = work, waiting, answers
+        self.worker: _Worker | None = None
+        self.stopped = False
+
+    def run(self) -> None:
+        """Take tasks until none is left; what goes wrong is told to who waits for answers."""
+        try:
+            while not self.stopped:
+                number, text = self.waiting.popleft()
+                self.answers.put((number, self._answer(text)))
+        except IndexError:
+            pass  # nothing is left
+        except BaseException as error:  # noqa: BLE001 # raised where the answers are read
+            self.answers.put(error)
+
+    def stop(self) -> None:
+        """Kill the worker, if there is one, and wait until both have ended."""
+        self.stopped = True
+        while self.is_alive():  # it may be about to begin another worker
+            self._kill()
+            self.join(0.05)
+        self._kill()
+
+    def _kill(self) -> None:
+        if self.worker is not None:
+            self.worker.kill()
+
+    def _answer(self, text: str) -> Answer:
+        said = ""
+        for _ in range(TRIES):
+            if self.stopped:
+                break
+            if self.worker is None:
+                self.worker = _Worker(self.work)
+            answer = self.worker.ask(text)
+            if answer is not None:
+                return answer
+            said, self.worker = self.worker.ending(), None
+        return death(TRIES, said)
+
+
+class _Worker:
+    """A process that answers one task after the other."""
+
+    def __init__(self, work: str) -> None:
+        self.said: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115 # until the process ends
+        self.process = subprocess.Popen(  # noqa: S603 # our own program
+            [sys.executable, "-P", "-m", "tsas_cli.sweeping.worker", work],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=self.said,
+            text=True,
+            encoding="utf-8",
+            env=os.environ | ONE_THREAD,
+            process_group=0,  # Ctrl-C is for who hands out the tasks
+        )
+
+    def ask(self, text: str) -> Answer | None:
+        """Return the answer to a task, or None where the process died."""
+        assert self.process.stdin is not None  # noqa: S101 # they are pipes
+        assert self.process.stdout is not None  # noqa: S101
+        with suppress(BrokenPipeError):
+            self.process.stdin.write(text + "\n")
+            self.process.stdin.flush()
+        line = self.process.stdout.readline()
+        if not line.endswith("\n"):
+            return None
+        answer: Answer = json.loads(line)
+        return answer
+
+    def ending(self) -> str:
+        """Return how the process has ended, with its last words."""
+        code = self.process.wait()
+        self.said.seek(0)
+        last = self.said.read()[-LAST_WORDS:].decode("utf-8", "replace").strip()
+        self.kill()
+        ended = f"ended by {signal.Signals(-code).name}" if code < 0 else f"ended with {code}"
+        return ": ".join([ended, *last.splitlines()[-1:]])
+
+    def kill(self) -> None:
+        """End the process, whatever it does."""
+        self.process.kill()
+        self.process.wait()
+        for stream in (self.process.stdin, self.process.stdout, self.said):
+            if stream is not None:
+                with suppress(BrokenPipeError, ValueError):
+                    stream.close()

@@ -1,0 +1,96 @@
+"""The plan of a sweep: which stage, over which datasets and values, and what is the same in all."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated, Any, Literal, get_args
+
+import numpy as np
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+
+from tsas_cli.recordings.manifest import parse, read_toml
+
+StageName = Literal["check", "calibrate", "simulate", "diagnose", "track"]
+STAGES: tuple[StageName, ...] = get_args(StageName)
+MOST_STEPS = 100_000
+
+
+def _listed(given: object) -> object:
+    return [given] if isinstance(given, str) else given
+
+
+class _Table(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+
+class Range(_Table):
+    """Values at equal distances, or at equal ratios with `scale = "log"`, both ends among them."""
+
+    first: float = Field(alias="from")
+    last: float = Field(alias="to")
+    steps: int = Field(ge=2, le=MOST_STEPS)
+    scale: Literal["linear", "log"] = "linear"
+
+    @model_validator(mode="after")
+    def _has_logarithms(self) -> "Range":
+        if self.scale == "log" and min(self.first, self.last) <= 0.0:
+            raise ValueError("a log scale needs positive ends")
+        return self
+
+    def values(self) -> list[float]:
+        """Return the values in order; the ends are exact."""
+        space = np.linspace if self.scale == "linear" else np.geomspace
+        return [float(value) for value in space(self.first, self.last, self.steps)]
+
+
+Axis = Annotated[tuple[Any, ...], Field(min_length=1)] | Range
+
+
+class Plan(_Table):
+    """The whole plan."""
+
+    format: Literal[1] = 1
+    kind: Literal["sweep"] = "sweep"
+    stage: StageName
+    datasets: Annotated[tuple[str, ...], BeforeValidator(_listed)] = ()
+    each_run: bool = False
+    options: dict[str, Any] = {}
+    vary: dict[str, Axis] = {}
+    combine: Literal["grid", "zip"] = "grid"
+    sets: str | None = None
+
+    @model_validator(mode="after")
+    def _goes_together(self) -> "Plan":
+        if self.stage == "track" and (self.datasets or self.each_run):
+            raise ValueError("track takes no datasets")
+        if self.stage != "track" and not self.datasets:
+            raise ValueError(f"datasets is missing: {self.stage} takes some")
+        lengths = {name: len(axis) for name, axis in self.axes().items()}
+        if self.combine == "zip" and len(set(lengths.values())) > 1:
+            told = ", ".join(f"{name} {n}" for name, n in lengths.items())
+            raise ValueError(f"lists to be zipped differ in length: {told}")
+        if self.each_run and "runs" in {**self.options, **self.vary}:
+            raise ValueError("each_run takes every run by itself: leave out runs")
+        for name in self.vary:
+            if name in self.options:
+                raise ValueError(f"{name} is in options and in vary")
+        return self
+
+    def axes(self) -> dict[str, list[Any]]:
+        """Return the values of each axis."""
+        return {
+            name: axis.values() if isinstance(axis, Range) else list(axis)
+            for name, axis in self.vary.items()
+        }
+
+
+def read_plan(given: Path | Mapping[str, Any]) -> tuple[Plan, Path]:
+    """Return a plan, from its file or its content, and the folder that its paths begin at.
+
+    Raises
+    ------
+    InputError
+        It cannot be read, or says something that is unknown or not allowed.
+    """
+    if isinstance(given, Path):
+        return parse(Plan, read_toml(given), given), given.parent
+    return parse(Plan, dict(given), "the plan"), Path()

@@ -1,0 +1,81 @@
+"""The datasets that a plan names: their folders, and the checksum that stands for each."""
+
+import glob
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from tsas_cli.errors import InputError
+from tsas_cli.files import sha256_of
+from tsas_cli.recordings.manifest import FILE, read_toml
+
+WILD = "*?["
+
+
+@dataclass(frozen=True)
+class Source:
+    """A dataset as a plan names it, or one run of it; its manifest holds its files' checksums."""
+
+    name: str
+    folder: Path
+    sha256: str
+    run: str | None = None
+
+
+def sources_of(names: tuple[str, ...], base: Path, *, each_run: bool) -> list[Source]:
+    """Return the datasets behind names and patterns, in order; with `each_run` their runs.
+
+    A pattern such as `rigs/*` takes the folders that hold a `dataset.toml` and passes over others.
+
+    Raises
+    ------
+    InputError
+        A folder holds no dataset, or a pattern finds none.
+    """
+    found: dict[Path, Source] = {}
+    for name in names:
+        for source in _matching(name, base):
+            found.setdefault(source.folder.resolve(), source)  # patterns may overlap
+    sources = list(found.values())
+    return [run for source in sources for run in _runs(source)] if each_run else sources
+
+
+def _matching(name: str, base: Path) -> Iterator[Source]:
+    """Yield the datasets behind a name, or a pattern."""
+    if not any(sign in name for sign in WILD) or (base / name).is_dir():
+        yield _source(name, base)
+        return
+    folders = sorted(glob.glob(name, root_dir=base, recursive=True))  # noqa: PTH207 # absolute too
+    taken = [folder for folder in folders if (base / folder / FILE).is_file()]
+    if not taken:
+        raise InputError(
+            "no dataset matches",
+            where=base / name,
+            expected=f"folders with {FILE}",
+            remedy=f"{len(folders)} other files and folders match" if folders else "",
+        )
+    yield from (_source(folder, base) for folder in taken)
+
+
+def _source(name: str, base: Path) -> Source:
+    folder = base / name
+    if not (folder / FILE).is_file():
+        inside = next(folder.glob(f"*/{FILE}"), None) if folder.is_dir() else None
+        raise InputError(
+            "no dataset.toml here",
+            where=folder,
+            expected="a dataset folder",
+            remedy=f"its folders are datasets: name them by '{name}/*'" if inside else "",
+        )
+    return Source(Path(name).as_posix(), folder, sha256_of(folder / FILE))
+
+
+def _runs(source: Source) -> Iterator[Source]:
+    """Yield each run; where the manifest tells none the dataset, whose task says what is wrong."""
+    try:
+        runs = [str(run["id"]) for run in read_toml(source.folder / FILE)["run"]]
+    except (InputError, KeyError, TypeError):
+        runs = []
+    yield from (Source(source.name, source.folder, source.sha256, run) for run in runs)
+    if not runs:
+        yield source

@@ -1,0 +1,111 @@
+"""What came out of a sweep as tables: one row a task, one row a parameter, and what is printed."""
+
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from tsas_cli.result import Table
+from tsas_cli.sweeping.answer import Answer
+from tsas_cli.sweeping.tasks import Task
+
+Row = dict[str, Any]
+MOST_SHOWN = 20  # failed tasks that are printed; the table holds all
+COUNTED = ("verdict", "causes", "codes")  # words of which it is told how often each is there
+
+
+def rows_of(tasks: Sequence[Task], answers: Sequence[Answer]) -> list[Row]:
+    """Return one row a task: its name, its input, how it ended, what came out."""
+    return [
+        {
+            "task": task.key,
+            **({"dataset": task.source.name} if task.source else {}),
+            **({"run": task.source.run} if task.source and task.source.run else {}),
+            **task.point,
+            "state": answer["state"],
+            "error": answer.get("error"),
+            **answer.get("results", {}),
+        }
+        for task, answer in zip(tasks, answers, strict=True)
+    ]
+
+
+def parameter_rows(tasks: Sequence[Task], answers: Sequence[Answer]) -> list[Row]:
+    """Return one row for each parameter of each task, with interval, unit and bound flag."""
+    return [
+        {
+            "task": task.key,
+            **({"dataset": task.source.name} if task.source else {}),
+            **task.point,
+            **{key if key != "run" else "of_run": value for key, value in parameter.items()},
+        }
+        for task, answer in zip(tasks, answers, strict=True)
+        for parameter in answer.get("parameters", [])
+    ]
+
+
+def write_rows(path: Path, rows: Sequence[Row]) -> None:
+    """Write rows as Parquet; a column that holds more than one kind of value is text."""
+    names = list(dict.fromkeys(name for row in rows for name in row))
+    columns = {name: _column([row.get(name) for row in rows]) for name in names}
+    pq.write_table(pa.table(columns), path, compression="zstd")
+
+
+def _column(values: list[Any]) -> pa.Array:
+    try:
+        return pa.array(values)
+    except (pa.ArrowInvalid, pa.ArrowTypeError):
+        return pa.array([None if value is None else str(value) for value in values])
+
+
+def printed(rows: Sequence[Row], varied: Sequence[str], title: str) -> list[Table]:
+    """Return what is printed: figures over all tasks, words and how often, and who failed."""
+    named = {"task", "dataset", "run", "state", "error", *varied}
+    done = [row for row in rows if row["state"] == "done"]
+    names = [name for name in dict.fromkeys(n for row in done for n in row) if name not in named]
+    spans = [_span(name, [row.get(name) for row in done]) for name in names if _is_told(name)]
+    header = ("result", "tasks", "lowest", "median", "highest")
+    tables: list[Table] = [(title, header, [span for span in spans if span is not None])]
+    for name in COUNTED:
+        if name in names:
+            many = Counter(row.get(name) or "none" for row in done).most_common()
+            tables.append(("", (name, "tasks"), [(word, str(n)) for word, n in many]))
+    failed = [row for row in rows if row["state"] == "failed"]
+    if failed:
+        more = f", the first {MOST_SHOWN}" if len(failed) > MOST_SHOWN else ""
+        shown = [(_input(row, varied), row["error"]) for row in failed[:MOST_SHOWN]]
+        tables.append((f"failed {len(failed)}{more}", ("input", "error"), shown))
+    return tables
+
+
+def _input(row: Row, varied: Iterable[str]) -> str:
+    """Return what tells a task from the others."""
+    told = [str(row[name]) for name in ("dataset", "run") if name in row]
+    return ", ".join([*told, *(f"{name}={row[name]}" for name in varied if name in row)])
+
+
+def _is_told(name: str) -> bool:
+    """Say whether a figure is printed: ends of intervals are in the table alone."""
+    return not name.endswith(("_low", "_high", "_sd"))
+
+
+def _span(name: str, values: Sequence[Any]) -> tuple[str, ...] | None:
+    """Return lowest, median and highest of what is a number, how often of what is yes or no."""
+    told = [value for value in values if value is not None]
+    if told and all(isinstance(value, bool) for value in told):
+        return (name, str(len(told)), f"{sum(told)} yes", "", f"{len(told) - sum(told)} no")
+    numbers = [value for value in told if isinstance(value, int | float)]
+    if not numbers:
+        return None
+    ends = (min(numbers), float(np.median(numbers)), max(numbers))
+    return (name, str(len(numbers)), *(f"{value:.4g}" for value in ends))
+
+
+def counts(answers: Iterable[Answer]) -> Mapping[str, int]:
+    """Return how many tasks are done, and how many failed."""
+    states = Counter(answer["state"] for answer in answers)
+    return {state: states[state] for state in ("done", "failed")}

@@ -1,0 +1,169 @@
+"""The named values of a task, sorted by what they are of: an option, a model, a run, a setting."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from pydantic import TypeAdapter, ValidationError
+
+from tsas_cli.errors import InputError, nearest
+from tsas_cli.files import sha256_of
+from tsas_cli.identification.drive_file import FILE as DRIVE_FILE
+from tsas_cli.identification.model import FILE as MODEL_FILE
+from tsas_cli.identification.quantities import QUANTITIES
+from tsas_cli.recordings.dataset import CONDITIONS
+from tsas_cli.recordings.manifest import read_toml
+from tsas_cli.tracking.settings import RigSettings, read_settings
+
+PLANT, SETTINGS = "plant.", "settings."
+FILES = {"model": MODEL_FILE, "plant": MODEL_FILE, "drive": DRIVE_FILE, "settings": ""}
+
+Options = Mapping[str, TypeAdapter[Any]]
+
+
+@dataclass(frozen=True)
+class Values:
+    """What one task is told.
+
+    Attributes
+    ----------
+    options
+        Keywords of the stage's call.
+    files
+        Files among them, by keyword: where they are.
+    sums
+        The files' checksums, by keyword.
+    model, plant
+        Quantities of either, by name, in place of what its file or the data sheet says.
+    conditions
+        Conditions of every run, in place of what the manifest says.
+    settings
+        Settings of the closed loop by their dotted keys.
+    """
+
+    options: dict[str, Any] = field(default_factory=dict)
+    files: dict[str, Path] = field(default_factory=dict)
+    sums: dict[str, dict[str, str]] = field(default_factory=dict)
+    model: dict[str, float] = field(default_factory=dict)
+    plant: dict[str, float] = field(default_factory=dict)
+    conditions: dict[str, float] = field(default_factory=dict)
+    settings: dict[str, Any] = field(default_factory=dict)
+
+
+def sorted_values(given: Mapping[str, Any], options: Options, base: Path) -> Values:
+    """Return named values by what they are of.
+
+    Parameters
+    ----------
+    given
+        The values by name.
+    options
+        What each keyword of the stage's call may be.
+    base
+        The folder that paths begin at.
+
+    Raises
+    ------
+    InputError
+        A name is unknown, a value is not allowed, or a file is not there.
+    """
+    found, of_runs = Values(), "model" in options and "plant" not in options
+    for name, value in given.items():
+        if name in FILES and name in options:
+            path, found.sums[name] = _file(name, value, base)
+            found.files[name] = path
+        elif name in options:
+            found.options[name] = _option(name, value, options[name])
+        elif name in CONDITIONS and of_runs:
+            found.conditions[name] = _number(name, value)
+            if name in QUANTITIES:  # a calibrated model holds the preload of each run
+                found.model[name] = _quantity(name, value, name)
+        elif name in QUANTITIES and "model" in options:
+            found.model[name] = _quantity(name, value, name)
+        elif name.removeprefix(PLANT) in QUANTITIES and "plant" in options:
+            found.plant[name.removeprefix(PLANT)] = _quantity(name, value, name.removeprefix(PLANT))
+        elif name.startswith(SETTINGS) and "settings" in options:
+            found.settings[name.removeprefix(SETTINGS)] = value
+        else:
+            raise InputError(f"unknown name {name}", where="the plan", remedy=_hint(name, options))
+    if found.settings:
+        read_settings(with_settings(found.files.get("settings"), found.settings))
+    reference = found.options.get("reference")
+    if isinstance(reference, str) and (base / reference).is_file():
+        del found.options["reference"]
+        found.files["reference"], found.sums["reference"] = _file("reference", reference, base)
+    return found
+
+
+def _hint(name: str, options: Options) -> str:
+    """Return what may have been meant, of the names that a stage with such options knows."""
+    if "settings" in options and name in RigSettings.model_fields:
+        return f"did you mean {SETTINGS}rig.{name}?"
+    known = list(options)
+    if "model" not in options:
+        return nearest(name, known)
+    known += [*QUANTITIES, *(() if "plant" in options else CONDITIONS)]
+    of_models = "and what a model holds: see `tsas effects`"
+    hint = nearest(name, known)
+    return hint if hint.startswith("did") else f"{nearest('', options)}, {of_models}"
+
+
+def _option(name: str, value: Any, allowed: TypeAdapter[Any]) -> Any:
+    try:
+        allowed.validate_python(value, strict=True)
+    except ValidationError as error:
+        message = error.errors()[0]["msg"]
+        raise InputError(
+            f"{name} is {value!r}", where="the plan", expected=message[0].lower() + message[1:]
+        ) from error
+    return value
+
+
+def _file(name: str, value: Any, base: Path) -> tuple[Path, dict[str, str]]:
+    """Return a file that a value names, or what stands for it in a folder, and its checksum."""
+    if not isinstance(value, str):
+        raise InputError(f"{name} is {value!r}", where="the plan", expected="a file's path")
+    path = base / value
+    file = path / FILES[name] if path.is_dir() and FILES[name] else path
+    if not file.is_file():
+        raise InputError("is not there", where=file, expected=f"the file of {name}")
+    return file, {"file": value, "sha256": sha256_of(file)}
+
+
+def _quantity(said: str, value: Any, name: str) -> float:
+    """Return a quantity of a model that lies within its bounds."""
+    number, quantity = _number(said, value), QUANTITIES[name]
+    if not quantity.lower <= number <= quantity.upper:
+        raise InputError(
+            f"{said} is {number:g}",
+            where="the plan",
+            expected=f"{quantity.lower:g} to {quantity.upper:g} {quantity.unit}",
+        )
+    return number
+
+
+def _number(name: str, value: Any) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise InputError(f"{name} is {value!r}", where="the plan", expected="a number")
+    return float(value)
+
+
+def with_settings(path: Path | None, told: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the content of a settings file, or of none, with some dotted keys told otherwise.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, or a key leads through what is no table.
+    """
+    content = {} if path is None else read_toml(path)
+    for key, value in told.items():
+        *tables, last = key.split(".")
+        inner = content
+        for table in tables:
+            inner = inner.setdefault(table, {})
+            if not isinstance(inner, dict):
+                raise InputError(f"{table} of settings.{key} is no table", where="the plan")
+        inner[last] = value
+    return content

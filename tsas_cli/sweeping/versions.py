@@ -1,0 +1,51 @@
+"""What the last bits of a result depend on, the same for all who share in a sweep."""
+
+import hashlib
+import os
+import platform
+from collections.abc import Mapping
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+
+from tsas_cli import __version__
+from tsas_cli.errors import InputError
+
+LIBRARIES = ("numpy", "scipy", "numba", "pyarrow")
+ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "TSAS_THREADS": "1"}  # a task is one process
+
+
+@cache
+def versions() -> dict[str, str]:
+    """Return the versions of tsas, its sources, Python and the libraries that compute."""
+    digest = hashlib.sha256()
+    package = Path(__file__).parent.parent
+    for source in sorted(package.rglob("*.py")):
+        digest.update(source.read_bytes())
+    python = ".".join(platform.python_version_tuple()[:2])
+    libraries = {name: version(name) for name in LIBRARIES}
+    sources = digest.hexdigest()[:16]
+    return {"tsas": __version__, "digest of tsas": sources, "Python": python, **libraries}
+
+
+def refuse_others(asked: Mapping[str, str], found: Mapping[str, str], where: str) -> None:
+    """Stop where somebody has other versions than the one who asks.
+
+    Raises
+    ------
+    InputError
+        A version differs.
+    """
+    for name, wanted in asked.items():
+        if found.get(name) != wanted:
+            raise InputError(
+                f"{name} is {found.get(name, 'unknown')}",
+                where=where,
+                expected=f"{wanted}, as where the sweep was begun",
+                remedy="install the same there",
+            )
+
+
+def threads_of_algebra() -> str:
+    """Return how many threads a product of matrices takes here, as the environment says."""
+    return os.environ.get("OPENBLAS_NUM_THREADS", "")
