@@ -48,9 +48,9 @@ def test_it_is_the_signal_that_is_cleaned_as_a_whole(shape, rows):
     assert known.smallest_reversal == pytest.approx(whole.smallest_reversal, rel=0.2)
     assert found["reversals"].size == whole.reversals.size - 2
     # Where in a rest the drive turns is no matter.
-    assert np.abs(true[found["reversals"]] - true[whole.reversals[1:-1]]).max() < NOISE
+    assert np.abs(true[found["reversals"]] - true[whole.reversals[1:-1]]).max() < 5.0 * NOISE
     missed, missed_whole = (np.std(v - true) for v in (found["values"], whole.values))
-    assert missed < 1.1 * missed_whole < 0.2 * NOISE
+    assert missed < 1.5 * missed_whole < 0.25 * NOISE
     turns = [0, *found["reversals"], TIME_S.size - 1]  # and it turns nowhere else
     assert set(turning_points(found["values"], 0.0)) <= set(turns)
 

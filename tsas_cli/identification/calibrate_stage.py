@@ -10,6 +10,7 @@ from tsas_cli.errors import InputError
 from tsas_cli.files import folder_if, write_json
 from tsas_cli.identification.calibration import Calibration, calibrate
 from tsas_cli.identification.estimate import Estimate
+from tsas_cli.identification.long_runs import prepare_run
 from tsas_cli.identification.model import (
     FILE,
     Model,
@@ -20,17 +21,18 @@ from tsas_cli.identification.model import (
     write_model,
 )
 from tsas_cli.identification.phases import segments_as_json
-from tsas_cli.identification.prepared import Prepared, prepare
+from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.stiffness import Slope
 from tsas_cli.physics.capstan import dead_band_stiffness, slip_stiffness, speed_per_stiffness
 from tsas_cli.physics.response import Dynamics
 from tsas_cli.physics.rig import Rig
 from tsas_cli.recordings.dataset import Dataset
-from tsas_cli.recordings.manifest import Manifest
+from tsas_cli.recordings.manifest import Manifest, Run
+from tsas_cli.recordings.pieces import long_run
 from tsas_cli.recordings.quality.checks import sign
 from tsas_cli.recordings.quality.finding import Remark
+from tsas_cli.recordings.quality.stretches import look_by_stretches
 from tsas_cli.recordings.quality.trial import Trial
-from tsas_cli.recordings.recording import Recording
 from tsas_cli.result import Result, Table, notes
 from tsas_cli.steps import SILENT, Steps
 
@@ -84,9 +86,9 @@ def calibrate_dataset(
     with folder_if(out, force=force) as folder:
         step.ahead(len(dataset.runs))
         runs = []
-        for recording in dataset:
-            _refuse_wrong_sign(recording, dataset.manifest)
-            runs.append(prepare(recording, dataset.manifest.session_start))
+        for run in dataset.runs:
+            _refuse_wrong_sign(dataset, run)
+            runs.append(prepare_run(dataset, run))
             step()
         result = calibrate(dataset.manifest, runs, step, dynamics=dynamics, stated=stated)
         summary = dataset.header("calibrate", out) | {"model": source_of(model)}
@@ -100,11 +102,16 @@ def calibrate_dataset(
     return CalibrationResult(summary, out, result)
 
 
-def _refuse_wrong_sign(recording: Recording, manifest: Manifest) -> None:
+def _refuse_wrong_sign(dataset: Dataset, run: Run) -> None:
     """Stop at what no parameter mends: a fit would end somewhere, and mean nothing."""
-    for said in sign.find(Trial(recording, manifest.rig)):
-        if isinstance(said, Remark):
-            raise InputError(said.sentence, where=recording.run.file, remedy=said.remedy)
+    long = long_run(dataset.folder, run)
+    if long is None:
+        said = list(sign.find(Trial(dataset[run.id], dataset.manifest.rig)))
+    else:
+        said = look_by_stretches((sign.CHECK,), long, dataset.manifest.rig)[sign.CHECK.code]
+    for one in said:
+        if isinstance(one, Remark):
+            raise InputError(one.sentence, where=run.file, remedy=one.remedy)
 
 
 def _summary(result: Calibration, manifest: Manifest) -> dict[str, Any]:

@@ -55,3 +55,12 @@ def turning_points(values: Floats, threshold: float, direction: int = 0) -> Indi
         found[count] = n - 1
         count += 1
     return found[:count].copy()
+
+
+@kernel
+def last_beyond(values: Floats, i: int, reach: float) -> int:
+    """Return the last sample before i that is further from it than `reach`, −1 where none is."""
+    for j in range(i - 1, -1, -1):
+        if abs(values[j] - values[i]) > reach:
+            return j
+    return -1
