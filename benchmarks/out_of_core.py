@@ -158,7 +158,7 @@ def map_text() -> str:
         f'[columns.{name}]\nsource = "{name}"\nunit = "{unit}"' for name, unit in UNITS.items()
     )
     head = '[dataset]\nname = "big"\nkind = "simulated"'
-    return "\n".join((head, "[rig]", sheet, columns, "[run]", conditions, ""))
+    return f"{head}\n[rig]\n{sheet}\n{columns}\n[run]\n{conditions}\n"
 
 
 def make(path: str, rows: int) -> None:

@@ -86,7 +86,7 @@ def pieces(
     start = count = read = 0
     last_s = -np.inf
     try:
-        for batch in run.file.iter_batches(_ROWS_AT_ONCE, columns=list(names)):
+        for batch in run.file.iter_batches(min(_ROWS_AT_ONCE, MOST_ROWS), columns=list(names)):
             table = pa.Table.from_batches([batch])
             for name in names:
                 held[name].append(floats_of(table, name, run.path, first_row=read))
