@@ -22,7 +22,8 @@ Mask = npt.NDArray[np.bool_]
 Samples = tuple[int, Floats, Floats]  # number of the first row, times, values (NaN in gaps)
 
 FEWEST = 16  # samples of a piece, below which nothing is smoothed
-LOOKED_AT = 8  # pieces at most, whose windows tell the smallest reversal
+LOOKED_AT = 8  # pieces at most, whose windows tell the smallest reversal,
+SAMPLES = 1 << 17  # and so many samples of each
 
 
 @dataclass(frozen=True)
@@ -89,7 +90,7 @@ def plan(pieces: Iterable[Samples], count: int) -> Plan:
         memory.append(lasts)
         interval.append(float(np.median(np.diff(time_s))))
         if here > 0.0 and number % -(-count // LOOKED_AT) == 0:
-            _, sd, window_s = smooth_out(time_s, values, here, lasts)
+            _, sd, window_s = smooth_out(time_s[:SAMPLES], values[:SAMPLES], here, lasts)
             ratio.append(smallest_reversal(sd, here) / here)
             window.append(window_s)
     usual = float(np.median(noise)) if noise else 0.0
