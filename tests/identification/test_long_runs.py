@@ -9,7 +9,7 @@ import pytest
 
 import tsas_cli as tsas
 from tsas_cli.errors import InputError
-from tsas_cli.identification.long_runs import prepare_run
+from tsas_cli.identification.long_runs import open_long
 from tsas_cli.identification.model import data_sheet
 from tsas_cli.identification.prepared import prepare
 from tsas_cli.physics.ends import Drive
@@ -131,7 +131,7 @@ def test_a_fit_sees_even_samples_and_every_reversal(tmp_path, long):
     dataset = read_dataset(written(tmp_path / "d", recorded(), entry()))
     whole = prepare(dataset["a"])
     long()
-    run = prepare_run(dataset, dataset.runs[0])
+    run = open_long(dataset, dataset.runs[0]).prepared()
     assert run.every == 5
     assert ROWS / 5 < run.time_s.size < ROWS / 5 + 20 + whole.conditioned["x_in_mm"].reversals.size
     assert np.isin(whole.time_s[::5], run.time_s).all()
@@ -163,7 +163,7 @@ def test_the_calibration_finds_the_truth_and_says_what_it_has_seen(tmp_path, lon
 def test_a_run_of_as_many_rows_as_a_piece_is_read_whole(tmp_path, long):
     dataset = read_dataset(written(tmp_path / "d", recorded(rows=3000), entry()))
     long(3000)
-    assert prepare_run(dataset, dataset.runs[0]).every == 1
+    assert open_long(dataset, dataset.runs[0]) is None
     assert tsas.calibrate(dataset).summary["cannot_tell"][0].startswith("x_out_zero_mm")
 
 
@@ -227,7 +227,7 @@ def test_memory_does_not_grow_with_the_recording(tmp_path, long, stage):
             tsas.simulate(dataset, out=tmp_path / f"s{rows}")
         else:
             opened = read_dataset(dataset)
-            prepare_run(opened, opened.runs[0])
+            open_long(opened, opened.runs[0]).prepared()
         peaks.append(tracemalloc.get_traced_memory()[1])
         tracemalloc.stop()
     assert peaks[1] < peaks[0] + 0.3 * 48_000 * 5 * 8

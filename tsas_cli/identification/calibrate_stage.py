@@ -1,6 +1,6 @@
 """The calibrate stage: `model.toml` and `calibration.json` of a dataset."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -10,7 +10,7 @@ from tsas_cli.errors import InputError
 from tsas_cli.files import folder_if, write_json
 from tsas_cli.identification.calibration import Calibration, calibrate
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.long_runs import prepare_run
+from tsas_cli.identification.long_runs import open_long
 from tsas_cli.identification.model import (
     FILE,
     Model,
@@ -21,16 +21,15 @@ from tsas_cli.identification.model import (
     write_model,
 )
 from tsas_cli.identification.phases import segments_as_json
-from tsas_cli.identification.prepared import Prepared
+from tsas_cli.identification.prepared import Prepared, prepare
 from tsas_cli.identification.stiffness import Slope
 from tsas_cli.physics.capstan import dead_band_stiffness, slip_stiffness, speed_per_stiffness
 from tsas_cli.physics.response import Dynamics
 from tsas_cli.physics.rig import Rig
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Manifest, Run
-from tsas_cli.recordings.pieces import long_run
 from tsas_cli.recordings.quality.checks import sign
-from tsas_cli.recordings.quality.finding import Remark
+from tsas_cli.recordings.quality.finding import CannotTell, Remark
 from tsas_cli.recordings.quality.stretches import look_by_stretches
 from tsas_cli.recordings.quality.trial import Trial
 from tsas_cli.result import Result, Table, notes
@@ -87,8 +86,7 @@ def calibrate_dataset(
         step.ahead(len(dataset.runs))
         runs = []
         for run in dataset.runs:
-            _refuse_wrong_sign(dataset, run)
-            runs.append(prepare_run(dataset, run))
+            runs.append(_prepared(dataset, run))
             step()
         result = calibrate(dataset.manifest, runs, step, dynamics=dynamics, stated=stated)
         summary = dataset.header("calibrate", out) | {"model": source_of(model)}
@@ -102,13 +100,19 @@ def calibrate_dataset(
     return CalibrationResult(summary, out, result)
 
 
-def _refuse_wrong_sign(dataset: Dataset, run: Run) -> None:
+def _prepared(dataset: Dataset, run: Run) -> Prepared:
+    """Return a run that is ready for the fit; of a long one the samples that the fit takes."""
+    long, rig = open_long(dataset, run), dataset.manifest.rig
+    if long is not None:
+        _refuse_wrong_sign(look_by_stretches((sign.CHECK,), long.columns, rig)["sign"], run)
+        return long.prepared()
+    recording = dataset[run.id]
+    _refuse_wrong_sign(sign.find(Trial(recording, rig)), run)
+    return prepare(recording, dataset.manifest.session_start)
+
+
+def _refuse_wrong_sign(said: Iterable[Remark | CannotTell], run: Run) -> None:
     """Stop at what no parameter mends: a fit would end somewhere, and mean nothing."""
-    long = long_run(dataset.folder, run)
-    if long is None:
-        said = list(sign.find(Trial(dataset[run.id], dataset.manifest.rig)))
-    else:
-        said = look_by_stretches((sign.CHECK,), long, dataset.manifest.rig)[sign.CHECK.code]
     for one in said:
         if isinstance(one, Remark):
             raise InputError(one.sentence, where=run.file, remedy=one.remedy)

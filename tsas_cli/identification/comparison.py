@@ -29,19 +29,18 @@ class Compared:
     samples: dict[str, int]
     notes: tuple[str, ...] = ()
 
-    def as_json(self, run: Prepared) -> dict[str, Any]:
-        """Return what `simulation.json` says of the run."""
+    def told(self) -> "Told":
+        """Return what is told of the answer."""
         phase = self.response.phase
-        told = Told(
+        return Told(
             self.response.solver,
-            int(run.time_s.size),
+            int(phase.size),
             int(np.count_nonzero(phase == SLACK)),
             int(np.count_nonzero(phase == UNSETTLED)),
             self.rmse,
             self.samples,
             self.notes,
         )
-        return told.as_json(run)
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,6 @@ from tsas_cli.identification.prepared import (
     is_empty,
     noise_of,
     nothing_to_compare,
-    prepare,
     seconds_into,
 )
 from tsas_cli.numerics.conditioning import Conditioned
@@ -81,6 +80,10 @@ class LongRun:
             measured = {name: piece.columns[name] for name in self.noise}
             yield Rows(piece.start, piece.columns[TIME], parts, measured, np.any(in_gap, axis=0))
 
+    def prepared(self) -> Prepared:
+        """Read and clean the run, and return it as a fit sees it."""
+        return self.thinned([self.thin(rows) for rows in self.rows()])
+
     def thinned(self, kept: Sequence[Rows]) -> Prepared:
         """Return the run as a fit sees it, from the rows that `thin` has kept of it."""
         time_s = np.concatenate([rows.time_s for rows in kept])
@@ -129,20 +132,6 @@ class LongRun:
         }
         measured = {name: values[here] for name, values in rows.measured.items()}
         return Rows(rows.start, rows.time_s[here], parts, measured, rows.in_gap[here])
-
-
-def prepare_run(dataset: Dataset, run: Run) -> Prepared:
-    """Make a run ready for a fit; thin it where it is too long for memory.
-
-    Raises
-    ------
-    InputError
-        As from `prepare`.
-    """
-    long = open_long(dataset, run)
-    if long is None:
-        return prepare(dataset[run.id], dataset.manifest.session_start)
-    return long.thinned([long.thin(rows) for rows in long.rows()])
 
 
 def open_long(dataset: Dataset, run: Run) -> LongRun | None:

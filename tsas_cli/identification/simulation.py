@@ -13,7 +13,7 @@ from tsas_cli.errors import InputError
 from tsas_cli.files import folder_if, write_json
 from tsas_cli.identification.base_fit import with_own_values
 from tsas_cli.identification.comparison import Compared, compare
-from tsas_cli.identification.long_runs import open_long, prepare_run
+from tsas_cli.identification.long_runs import open_long
 from tsas_cli.identification.long_simulation import simulate_long
 from tsas_cli.identification.model import (
     FILE,
@@ -24,7 +24,7 @@ from tsas_cli.identification.model import (
     write_model,
 )
 from tsas_cli.identification.phases import segment, segments_as_json
-from tsas_cli.identification.prepared import Prepared
+from tsas_cli.identification.prepared import Prepared, prepare
 from tsas_cli.physics.chain_state import MOST_NODES
 from tsas_cli.physics.response import Dynamics
 from tsas_cli.recordings.dataset import Dataset
@@ -111,24 +111,23 @@ def simulate_dataset(
         step.ahead(len(dataset.runs))
         for entry in dataset.runs:
             long = open_long(dataset, entry)
-            own = taken
-            if long is None or fit_own:
-                run = prepare_run(dataset, entry)
-                own = with_own_values(taken, run) if fit_own else taken
-            used = _of_run(own, entry.id).over(used)
             if long is not None:
+                own = with_own_values(taken, long.prepared()) if fit_own else taken
                 told, run = simulate_long(long, own, dynamics, nodes, folder and folder / "runs")
-                summary["runs"][entry.id] = told.as_json(run)
             else:
+                run = prepare(dataset[entry.id], dataset.manifest.session_start)
+                own = with_own_values(taken, run) if fit_own else taken
                 answer = compare(run, own, dynamics, nodes)
+                told = answer.told()
+            used = _of_run(own, entry.id).over(used)
+            summary["runs"][entry.id] = told.as_json(run)
+            summary["segments"][entry.id] = segments_as_json(run, segment(run))
+            if long is None:
                 answered = Recording(entry, _columns(run, answer))
                 if folder is None:
                     kept[entry.id] = answered
                 else:  # many runs need no more memory than one
                     write_answer(folder / "runs", answered)
-                summary["runs"][entry.id] = answer.as_json(run)
-            summary["segments"][entry.id] = segments_as_json(run, segment(run))
-            if long is None:
                 each(summary, answered, used)
             step()
         summary["notes"] = _notes(summary["runs"])
