@@ -41,6 +41,7 @@ METHOD = (
     _docs("Public measurements", "measured"),
     _docs("The dynamic model", "lugre"),
     _docs("The source paper", "paper"),
+    _docs("Scale", "scale"),
     Page("Data: paper-groups", "datasets/paper-groups/README.md", "data/paper-groups.md"),
     Page("Data: drive-chirp", "datasets/drive-chirp/README.md", "data/drive-chirp.md"),
     Page("Data: yang2025", "datasets/yang2025/README.md", "data/yang2025.md"),

@@ -19,7 +19,7 @@ def ask(values=None, units=None, time=TIME, place=PLACE, force=FORCE, **read):
     columns = {"time_s": time, "x_in_mm": place, "f_in_N": force}
     content = {"dataset": {"name": "m"}, "read": read, "columns": columns}
     mapping = IngestMap.model_validate(content)
-    return canonical_columns(table, mapping, Path("a.csv"), Path("map.toml"))
+    return canonical_columns(table, mapping, Path("a.csv"), Path("map.toml"))[0]
 
 
 def test_units_are_converted_and_gaps_stay_gaps():

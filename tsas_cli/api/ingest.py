@@ -66,7 +66,7 @@ def ingest(
     force
         Replace the folder if it is there.
     step
-        Told of three pieces of work per file: read, brought to units, written.
+        Told of two pieces of work per file: opened, written.
 
     Returns
     -------

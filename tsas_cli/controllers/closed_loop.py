@@ -31,9 +31,9 @@ from tsas_cli.physics.lugre_start import law_of
 from tsas_cli.physics.plant import Actuator, Turntable, step_plant, turned
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.slip_chain import (
-    at_rest,
     follow,
     laws_of,
+    resting,
     segment_compliances,
     tension_at_sensor,
 )
@@ -71,15 +71,15 @@ def followed_from(
     drive_mm: float, rig: Rig, actuator: Actuator, n: int
 ) -> tuple[Turntable, Floats]:
     """Return turntable and chain at rest at a place of the drive, come to from x_in = 0."""
-    chain = at_rest(rig, n)
     ends = ends_of(rig, Drive(np.linspace(0.0, drive_mm, 1 + STEPS_TO_START) + rig.x_in_zero_mm))
+    state = resting(ends.course, rig, ends.boundary, n)
     f_in = rig.preload_N
     if drive_mm != 0.0:
-        f_in = float(follow(ends.course, chain, rig, ends.boundary, n)[2][-1])
+        f_in = float(follow(ends.course, state, rig, ends.boundary, n)[2][-1])
         stiffness = rig.effects.proximal_spring.stiffness_N_per_mm
-        f_in += proximal_spring_force(float(chain[X]), stiffness)
+        f_in += proximal_spring_force(float(state.chain[X]), stiffness)
     motor_mm = drive_mm + (f_in - rig.preload_N) / actuator.stiffness_N_per_mm
-    return Turntable(0.0, motor_mm, drive_mm, drive_mm, 0.0, 0.0, f_in, 0.0), chain
+    return Turntable(0.0, motor_mm, drive_mm, drive_mm, 0.0, 0.0, f_in, 0.0), state.chain
 
 
 @kernel

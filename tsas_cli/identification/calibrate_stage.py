@@ -1,6 +1,6 @@
 """The calibrate stage: `model.toml` and `calibration.json` of a dataset."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -10,6 +10,7 @@ from tsas_cli.errors import InputError
 from tsas_cli.files import folder_if, write_json
 from tsas_cli.identification.calibration import Calibration, calibrate
 from tsas_cli.identification.estimate import Estimate
+from tsas_cli.identification.long_runs import open_long
 from tsas_cli.identification.model import (
     FILE,
     Model,
@@ -26,11 +27,11 @@ from tsas_cli.physics.capstan import dead_band_stiffness, slip_stiffness, speed_
 from tsas_cli.physics.response import Dynamics
 from tsas_cli.physics.rig import Rig
 from tsas_cli.recordings.dataset import Dataset
-from tsas_cli.recordings.manifest import Manifest
+from tsas_cli.recordings.manifest import Manifest, Run
 from tsas_cli.recordings.quality.checks import sign
-from tsas_cli.recordings.quality.finding import Remark
+from tsas_cli.recordings.quality.finding import CannotTell, Remark
+from tsas_cli.recordings.quality.stretches import look_by_stretches
 from tsas_cli.recordings.quality.trial import Trial
-from tsas_cli.recordings.recording import Recording
 from tsas_cli.result import Result, Table, notes
 from tsas_cli.steps import SILENT, Steps
 
@@ -84,9 +85,8 @@ def calibrate_dataset(
     with folder_if(out, force=force) as folder:
         step.ahead(len(dataset.runs))
         runs = []
-        for recording in dataset:
-            _refuse_wrong_sign(recording, dataset.manifest)
-            runs.append(prepare(recording, dataset.manifest.session_start))
+        for run in dataset.runs:
+            runs.append(_prepared(dataset, run))
             step()
         result = calibrate(dataset.manifest, runs, step, dynamics=dynamics, stated=stated)
         summary = dataset.header("calibrate", out) | {"model": source_of(model)}
@@ -100,11 +100,22 @@ def calibrate_dataset(
     return CalibrationResult(summary, out, result)
 
 
-def _refuse_wrong_sign(recording: Recording, manifest: Manifest) -> None:
+def _prepared(dataset: Dataset, run: Run) -> Prepared:
+    """Return a run that is ready for the fit; of a long one the samples that the fit takes."""
+    long, rig = open_long(dataset, run), dataset.manifest.rig
+    if long is not None:
+        _refuse_wrong_sign(look_by_stretches((sign.CHECK,), long.columns, rig)["sign"], run)
+        return long.prepared()
+    recording = dataset[run.id]
+    _refuse_wrong_sign(sign.find(Trial(recording, rig)), run)
+    return prepare(recording, dataset.manifest.session_start)
+
+
+def _refuse_wrong_sign(said: Iterable[Remark | CannotTell], run: Run) -> None:
     """Stop at what no parameter mends: a fit would end somewhere, and mean nothing."""
-    for said in sign.find(Trial(recording, manifest.rig)):
-        if isinstance(said, Remark):
-            raise InputError(said.sentence, where=recording.run.file, remedy=said.remedy)
+    for one in said:
+        if isinstance(one, Remark):
+            raise InputError(one.sentence, where=run.file, remedy=one.remedy)
 
 
 def _summary(result: Calibration, manifest: Manifest) -> dict[str, Any]:

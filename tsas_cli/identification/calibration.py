@@ -8,6 +8,7 @@ from tsas_cli.identification.comparison import Compared, compare
 from tsas_cli.identification.dynamic_fit import dynamic_fit
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.fit import Fitted
+from tsas_cli.identification.long_runs import thinned_notes
 from tsas_cli.identification.missing_effects import widened
 from tsas_cli.identification.model import Model, data_sheet
 from tsas_cli.identification.phases import Segment, segment
@@ -81,7 +82,7 @@ def calibrate(
             wider = widened(fit, model.estimates, step)
             model = Model(wider.estimates)
             missed += _widened_by(wider.effects)
-    cannot = [*missed, *_unknown_conditions(runs), *sentences]
+    cannot = [*thinned_notes(runs), *missed, *_unknown_conditions(runs), *sentences]
     return Calibration(
         with_preload_correction(model, runs),
         runs,

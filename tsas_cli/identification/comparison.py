@@ -1,5 +1,6 @@
 """A model's answer to one run, and how far it is from what was measured."""
 
+from collections.abc import Mapping, Set
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,6 +14,7 @@ from tsas_cli.identification.prepared import Prepared
 from tsas_cli.physics.chain_state import SLACK, UNSETTLED
 from tsas_cli.physics.response import Dynamics, Response, simulate
 from tsas_cli.recordings.columns import BY_NAME
+from tsas_cli.recordings.manifest import Run
 
 Floats = npt.NDArray[np.float64]
 
@@ -27,16 +29,42 @@ class Compared:
     samples: dict[str, int]
     notes: tuple[str, ...] = ()
 
+    def told(self) -> "Told":
+        """Return what is told of the answer."""
+        phase = self.response.phase
+        return Told(
+            self.response.solver,
+            int(phase.size),
+            int(np.count_nonzero(phase == SLACK)),
+            int(np.count_nonzero(phase == UNSETTLED)),
+            self.rmse,
+            self.samples,
+            self.notes,
+        )
+
+
+@dataclass(frozen=True)
+class Told:
+    """What is told of an answer: the solver, how many samples, and how far it is from what was."""
+
+    solver: str
+    rows: int
+    slack: int
+    unsettled: int
+    rmse: Mapping[str, float]
+    samples: Mapping[str, int]
+    notes: tuple[str, ...] = ()
+
     def as_json(self, run: Prepared) -> dict[str, Any]:
         """Return what `simulation.json` says of the run."""
         start = run.drive.start_f_in_N
         return {
-            "solver": self.response.solver,
+            "solver": self.solver,
             "conditioning": run.conditioning(),
             "start": "at rest" if start is None else f"f_in_N = {start:.4g} N as measured",
-            "samples": int(run.time_s.size),
-            "slack_samples": int(np.count_nonzero(self.response.phase == SLACK)),
-            "unconverged_samples": int(np.count_nonzero(self.response.phase == UNSETTLED)),
+            "samples": self.rows,
+            "slack_samples": self.slack,
+            "unconverged_samples": self.unsettled,
             "notes": list(self.notes),
             "channels": {
                 name: {
@@ -62,13 +90,7 @@ def compare(
     InputError
         The static model is asked for a load that is not a spring, or for a drive by force.
     """
-    plain = run.run.load == "spring" and run.drive_column == "x_in_mm"
-    if dynamics == "static" and not plain:
-        raise InputError(
-            "the static model knows a spring load and a drive by displacement only",
-            where=f"run {run.run.id}",
-            remedy="use --dynamics slip",
-        )
+    refuse_static(run.run, run.drive_column, dynamics)
     response = simulate(
         model.rig(run.run),
         run.drive,
@@ -77,17 +99,7 @@ def compare(
         nodes=nodes,
         tolerance=run.step_tolerance,
     )
-    answers = {
-        "f_in_N": response.f_in_N,
-        "f_out_N": response.f_out_N,
-        "x_out_mm": response.x_out_mm,
-    }
-    driven = set(run.conditioned)
-    channels = {
-        name: np.where(run.in_gap, np.nan, values)
-        for name, values in answers.items()
-        if name not in driven
-    }
+    channels = channels_of(response, set(run.conditioned), run.in_gap)
     error = {name: run.measured[name] - channels[name] for name in run.measured}
     error = {name: e[np.isfinite(e)] for name, e in error.items()}
     return Compared(
@@ -97,3 +109,36 @@ def compare(
         {name: int(e.size) for name, e in error.items()},
         tuple(dynamic_notes(run, model, response)) if dynamics == "lugre" else (),
     )
+
+
+def refuse_static(run: Run, drive_column: str, dynamics: Dynamics) -> None:
+    """Refuse the static model where it does not hold.
+
+    Raises
+    ------
+    InputError
+        It is asked for a load that is not a spring, or for a drive by force.
+    """
+    plain = run.load == "spring" and drive_column == "x_in_mm"
+    if dynamics == "static" and not plain:
+        raise InputError(
+            "the static model knows a spring load and a drive by displacement only",
+            where=f"run {run.id}",
+            remedy="use --dynamics slip",
+        )
+
+
+def channels_of(
+    response: Response, driven: Set[str], in_gap: npt.NDArray[np.bool_]
+) -> dict[str, Floats]:
+    """Return the channels that a model answers, NaN in gaps of the drive."""
+    answers = {
+        "f_in_N": response.f_in_N,
+        "f_out_N": response.f_out_N,
+        "x_out_mm": response.x_out_mm,
+    }
+    return {
+        name: np.where(in_gap, np.nan, values)
+        for name, values in answers.items()
+        if name not in driven
+    }

@@ -21,6 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.identification.prepared import Prepared
+from tsas_cli.numerics.turning_points import last_beyond
 
 Floats = npt.NDArray[np.float64]
 Phase = Literal["contraction", "loosening", "dead_band_up", "dead_band_down", "unknown"]
@@ -126,10 +127,9 @@ def _start_of_unloading(run: Prepared, turn: int) -> int:
     """
     conditioned, f_in = run.conditioned["x_in_mm"], run.measured.get("f_in_N")
     x = conditioned.values
-    moving = np.flatnonzero(np.abs(x[: turn + 1] - x[turn]) > STILL * conditioned.sd[turn])
-    if f_in is None or not moving.size or turn == x.size - 1:
+    rest = last_beyond(x, turn, STILL * conditioned.sd[turn]) + 1
+    if f_in is None or rest == 0 or turn == x.size - 1:
         return turn
-    rest = int(moving[-1]) + 1
     means = np.convolve(f_in[rest : turn + FEWEST], np.full(FEWEST, 1.0 / FEWEST), mode="valid")
     pulled = means if x[turn] > x[rest - 1] else -means
     margin = UNLOADS * run.noise["f_in_N"] / math.sqrt(FEWEST)

@@ -1,7 +1,7 @@
 """A recording made ready for a model: its drive conditioned, its noise told, its gaps marked."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from functools import cached_property
@@ -32,7 +32,11 @@ START_SAMPLES = 20  # whose mean is the tension at the start
 
 @dataclass(frozen=True)
 class Prepared:
-    """One run, ready to drive a model and to be compared with its answers."""
+    """One run, ready to drive a model and to be compared with its answers.
+
+    Of a run that is too long for memory it holds one in `every` of `all_rows` samples, those where
+    the drive turns back, and `all_noise`, which all samples have told.
+    """
 
     run: Run
     time_s: Floats
@@ -41,6 +45,9 @@ class Prepared:
     measured: Mapping[str, Floats]
     in_gap: Mask
     session_s: float = 0.0  # start of the run since the dataset's first
+    every: int = 1
+    all_rows: int = 0
+    all_noise: Mapping[str, float] | None = None
 
     @cached_property
     def drive(self) -> Drive:
@@ -62,7 +69,9 @@ class Prepared:
 
         Zero where a channel never changes, NaN where too few samples are there to tell.
         """
-        return {name: _noise(values) for name, values in self.measured.items()}
+        if self.all_noise is not None:
+            return {name: self.all_noise[name] for name in self.measured}
+        return {name: noise_of(values) for name, values in self.measured.items()}
 
     @cached_property
     def step_tolerance(self) -> float:
@@ -137,6 +146,33 @@ def prepare(recording: Recording, session_start: datetime | None = None) -> Prep
         holds nothing to compare a model with.
     """
     run, columns = recording.run, recording.columns
+    driving = driving_columns(run, list(columns))
+    time_s = recording.time_s
+    for name in driving:
+        if np.isfinite(columns[name]).sum() < 2:
+            raise is_empty(run, name)
+    columns = {n: _recorded(values) for n, values in columns.items() if n in (*driving, *CHANNELS)}
+    gap = np.any([_in_gap(time_s, columns[name]) for name in driving], axis=0)
+    measured = {
+        n: columns[n]
+        for n in CHANNELS
+        if n in columns and n not in driving and np.isfinite(columns[n][~gap]).any()
+    }
+    if not measured:
+        raise nothing_to_compare(run, list(recording.columns))
+    conditioned = {name: condition(time_s, columns[name]) for name in driving}
+    session_s = seconds_into(session_start, run.started)
+    return Prepared(run, time_s, driving[0], conditioned, measured, gap, session_s)
+
+
+def driving_columns(run: Run, columns: Sequence[str]) -> list[str]:
+    """Return the columns that drive the tendon, and its load where it is driven.
+
+    Raises
+    ------
+    InputError
+        There is none that can.
+    """
     drive = next((name for name in ("x_in_mm", "f_in_N") if name in columns), None)
     if drive is None:
         raise InputError(
@@ -158,28 +194,22 @@ def prepare(recording: Recording, session_start: datetime | None = None) -> Prep
             where=run.file,
             expected="x_in_mm",
         )
-    driving = [drive] if load is None else [drive, load]
-    time_s = recording.time_s
-    for name in driving:
-        if np.isfinite(columns[name]).sum() < 2:
-            raise InputError(f"column {name} is empty", where=run.file, expected="numbers")
-    columns = {n: _recorded(values) for n, values in columns.items() if n in (*driving, *CHANNELS)}
-    gap = np.any([_in_gap(time_s, columns[name]) for name in driving], axis=0)
-    measured = {
-        n: columns[n]
-        for n in CHANNELS
-        if n in columns and n not in driving and np.isfinite(columns[n][~gap]).any()
-    }
-    if not measured:
-        raise InputError(
-            "nothing to compare a model with",
-            where=run.file,
-            expected=f"one of {', '.join(CHANNELS)} beside what drives the tendon",
-            remedy=f"there are: {', '.join(columns)}",
-        )
-    conditioned = {name: condition(time_s, columns[name]) for name in driving}
-    session_s = seconds_into(session_start, run.started)
-    return Prepared(run, time_s, drive, conditioned, measured, gap, session_s)
+    return [drive] if load is None else [drive, load]
+
+
+def is_empty(run: Run, column: str) -> InputError:
+    """Return the error for a column that drives and holds no numbers."""
+    return InputError(f"column {column} is empty", where=run.file, expected="numbers")
+
+
+def nothing_to_compare(run: Run, columns: Sequence[str]) -> InputError:
+    """Return the error for a run without a channel that a model could answer."""
+    return InputError(
+        "nothing to compare a model with",
+        where=run.file,
+        expected=f"one of {', '.join(CHANNELS)} beside what drives the tendon",
+        remedy=f"there are: {', '.join(columns)}",
+    )
 
 
 def _recorded(values: Floats) -> Floats:
@@ -199,7 +229,8 @@ def _in_gap(time_s: Floats, values: Floats) -> Mask:
     return ~inside | (apart > GAP * np.median(np.diff(time_s[there])))
 
 
-def _noise(values: Floats) -> float:
+def noise_of(values: Floats) -> float:
+    """Return the noise of a channel, quantisation counted in; NaN where it cannot be told."""
     noise = noise_sd(values)
     return noise if math.isnan(noise) else max(noise, quantisation_step(values) / math.sqrt(12.0))
 

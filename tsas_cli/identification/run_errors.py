@@ -19,6 +19,7 @@ from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.samples import mean_edges, points
 from tsas_cli.numerics.conditioning import Conditioned
 from tsas_cli.numerics.covariance import FEWEST_BLOCKS, block_length
+from tsas_cli.numerics.turning_points import last_beyond
 from tsas_cli.physics.ends import Drive
 from tsas_cli.physics.lugre_chain import OWN_STEPS
 from tsas_cli.physics.response import Dynamics, Response, simulate
@@ -242,9 +243,7 @@ def _before_turns(square: Floats, change: Floats, conditioned: Conditioned) -> N
     """
     x, sd = conditioned.values, conditioned.sd
     for turn in conditioned.reversals[1:-1]:
-        reach = TURN * sd[turn]
-        far = np.flatnonzero(np.abs(x[:turn] - x[turn]) > reach)
-        first = int(far[-1]) + 1 if far.size else 0
+        first = last_beyond(x, turn, TURN * sd[turn]) + 1
         behind = change[turn : 2 * turn - first + 2]
         square[first : turn + 1] += np.max(behind**2)
 

@@ -13,6 +13,7 @@ Indices = npt.NDArray[np.int64]
 
 MOST_MEANS = 1000  # means of neighbouring residuals that enter the fit, for a channel of a run
 FEWEST_SAMPLES = 16  # of a channel, after the start of a run
+OF_A_STROKE = 100  # samples that are simulated, at least
 SHARP = 4  # strides after a reversal in which every sample is simulated
 
 
@@ -22,15 +23,18 @@ def mean_edges(size: int) -> Indices:
 
 
 def points(run: Prepared) -> Indices:
-    """Return the samples that are simulated: four times as many as means, and all after a reversal.
+    """Return the samples that are simulated: those of a stroke, and all after a reversal.
+
+    They are four times as many as means, or more where it takes more to see each stroke bend.
 
     The model depends on the path alone, and where the drive turns back its answer bends sharply.
     """
     n = run.time_s.size
-    stride = max(1, n // (4 * MOST_MEANS))
+    reversals = run.conditioned[run.drive_column].reversals
+    stride = max(1, n // max(4 * MOST_MEANS, OF_A_STROKE * (reversals.size - 1)))
     there = np.arange(n) % stride == 0
     there[-1] = True
-    for turn in run.conditioned[run.drive_column].reversals:
+    for turn in reversals:
         there[turn : turn + SHARP * stride] = True
     return np.flatnonzero(there)
 

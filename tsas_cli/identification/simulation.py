@@ -13,6 +13,8 @@ from tsas_cli.errors import InputError
 from tsas_cli.files import folder_if, write_json
 from tsas_cli.identification.base_fit import with_own_values
 from tsas_cli.identification.comparison import Compared, compare
+from tsas_cli.identification.long_runs import open_long
+from tsas_cli.identification.long_simulation import simulate_long
 from tsas_cli.identification.model import (
     FILE,
     Model,
@@ -88,7 +90,8 @@ def simulate_dataset(
     Without a model the manifest's data sheet is simulated. With `fit_own` the preload and the
     zeros of each run are fitted first, all else stays as the model says: so a model predicts runs
     that it was not fitted to. `nodes` asks for a chain with as many of them. After each run
-    `step` is called, and `each` with the summary so far, the answer and the model.
+    `step` is called, and `each` with the summary so far, the answer and the model; not after one
+    that is too long for memory, whose answer is in its file alone.
 
     Raises
     ------
@@ -106,19 +109,26 @@ def simulate_dataset(
         if folder is not None:
             (folder / "runs").mkdir()
         step.ahead(len(dataset.runs))
-        for recording in dataset:
-            run = prepare(recording, dataset.manifest.session_start)
-            own = with_own_values(taken, run) if fit_own else taken
-            used = _of_run(own, run.run.id).over(used)
-            answer = compare(run, own, dynamics, nodes)
-            answered = Recording(run.run, _columns(run, answer))
-            if folder is None:
-                kept[run.run.id] = answered
-            else:  # many runs need no more memory than one
-                write_answer(folder / "runs", answered)
-            summary["runs"][run.run.id] = answer.as_json(run)
-            summary["segments"][run.run.id] = segments_as_json(run, segment(run))
-            each(summary, answered, used)
+        for entry in dataset.runs:
+            long = open_long(dataset, entry)
+            if long is not None:
+                own = with_own_values(taken, long.prepared()) if fit_own else taken
+                told, run = simulate_long(long, own, dynamics, nodes, folder and folder / "runs")
+            else:
+                run = prepare(dataset[entry.id], dataset.manifest.session_start)
+                own = with_own_values(taken, run) if fit_own else taken
+                answer = compare(run, own, dynamics, nodes)
+                told = answer.told()
+            used = _of_run(own, entry.id).over(used)
+            summary["runs"][entry.id] = told.as_json(run)
+            summary["segments"][entry.id] = segments_as_json(run, segment(run))
+            if long is None:
+                answered = Recording(entry, _columns(run, answer))
+                if folder is None:
+                    kept[entry.id] = answered
+                else:  # many runs need no more memory than one
+                    write_answer(folder / "runs", answered)
+                each(summary, answered, used)
             step()
         summary["notes"] = _notes(summary["runs"])
         if folder is not None:

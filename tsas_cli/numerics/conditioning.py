@@ -65,12 +65,28 @@ def condition(time_s: Floats, values: Floats) -> Conditioned:
     there = np.flatnonzero(np.isfinite(values))
     if there.size < values.size:
         return _with_gaps(condition(time_s[there], values[there]), time_s, there)
-    step = quantisation_step(values)
-    noise = max(noise_sd(values), step / math.sqrt(12.0))
+    noise, memory = noise_and_memory(values)
     if not noise > 0.0:  # noise-free, or too short to tell
         nothing = np.zeros(values.size)
         return Conditioned(values, nothing, nothing, 0.0, 0.0, turning_points(values, 0.0))
-    memory = _plateau(values) if step > 0.0 else 1.0
+    smooth, sd, window_s = smooth_out(time_s, values, noise, memory)
+    threshold = smallest_reversal(sd, noise)
+    reversals = turning_points(smooth, threshold)
+    clean = monotone_between(smooth, reversals)
+    return Conditioned(clean, sd, smooth - clean, window_s, noise, reversals, threshold)
+
+
+def noise_and_memory(values: Floats) -> tuple[float, float]:
+    """Return the noise of a signal, quantisation counted in, and for how many samples it lasts."""
+    step = quantisation_step(values)
+    noise = max(noise_sd(values), step / math.sqrt(12.0))
+    return noise, _plateau(values) if step > 0.0 else 1.0
+
+
+def smooth_out(
+    time_s: Floats, values: Floats, noise: float, memory: float
+) -> tuple[Floats, Floats, float]:
+    """Fit the signal between its corners; return it, its standard deviation, the window [s]."""
     whole = np.array([0, values.size], dtype=np.int64)
     # Corners spoil the blocks that they lie in; the smooth blocks tell the window to seek them by.
     alone = best_half_windows(time_s, values, whole, noise, memory, degree=2, pooled=1)
@@ -79,11 +95,12 @@ def condition(time_s: Floats, values: Floats) -> Conditioned:
     smooth, sd = smoothed(time_s, values, cuts, half, noise * math.sqrt(memory))
     blunt(smooth, cuts)
     lay_flat(time_s, values, smooth, sd, cuts, int(np.median(half)), noise * math.sqrt(memory))
-    threshold = max(STANDS_OUT * float(np.median(sd)), VISIBLE * noise)
-    reversals = turning_points(smooth, threshold)
-    window_s = float(np.median(2 * half + 1) * np.median(np.diff(time_s)))
-    clean = monotone_between(smooth, reversals)
-    return Conditioned(clean, sd, smooth - clean, window_s, noise, reversals, threshold)
+    return smooth, sd, float(np.median(2 * half + 1) * np.median(np.diff(time_s)))
+
+
+def smallest_reversal(sd: Floats, noise: float) -> float:
+    """Return the smallest move back that stands out of a cleaned signal's noise."""
+    return max(STANDS_OUT * float(np.median(sd)), VISIBLE * noise)
 
 
 def _with_gaps(cleaned: Conditioned, time_s: Floats, there: Indices) -> Conditioned:

@@ -10,7 +10,7 @@ Indices = npt.NDArray[np.int64]
 
 
 @kernel
-def turning_points(values: Floats, threshold: float) -> Indices:
+def turning_points(values: Floats, threshold: float, direction: int = 0) -> Indices:
     """Return the indices of the extrema between which the signal moves by more than a threshold.
 
     The first and the last sample are always there, so that neighbouring indices bound the
@@ -22,6 +22,8 @@ def turning_points(values: Floats, threshold: float) -> Indices:
         The signal, shape (n,), finite.
     threshold
         The smallest move back that counts as a turn, in the signal's unit.
+    direction
+        Of the stroke that the signal begins in, 1 or −1, where it is the rest of a longer one.
     """
     n = values.size
     found = np.zeros(n, dtype=np.int64)
@@ -30,7 +32,6 @@ def turning_points(values: Floats, threshold: float) -> Indices:
     count = 1
     low = 0
     high = 0
-    direction = 0
     for i in range(1, n):
         if values[i] > values[high]:
             high = i
@@ -54,3 +55,12 @@ def turning_points(values: Floats, threshold: float) -> Indices:
         found[count] = n - 1
         count += 1
     return found[:count].copy()
+
+
+@kernel
+def last_beyond(values: Floats, i: int, reach: float) -> int:
+    """Return the last sample before i that is further from it than `reach`, −1 where none is."""
+    for j in range(i - 1, -1, -1):
+        if abs(values[j] - values[i]) > reach:
+            return j
+    return -1

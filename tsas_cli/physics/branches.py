@@ -12,6 +12,7 @@ the first loading from rest, where T0 solves D = c (T0−F0) + C (T0 − F0 − 
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -94,7 +95,6 @@ def strokes(x_in: Floats) -> int:
     return count
 
 
-@kernel
 def branches(x_in: Floats, rig: Rig, frames: Frames | None = None) -> tuple[Floats, Floats, Phases]:
     """Follow a motion of the drive that starts at rest at x = 0 [mm].
 
@@ -113,6 +113,42 @@ def branches(x_in: Floats, rig: Rig, frames: Frames | None = None) -> tuple[Floa
         Tensions at both ends, shape (n,) [N]; +1 where the whole tendon slips in contraction, −1
         in loosening, 0 in a dead band, 2 where it hangs slack.
     """
+    return follow_branches(x_in, rig, at_rest_before(x_in, rig.preload_N), frames)
+
+
+class BranchState(NamedTuple):
+    """What the closed form remembers from one sample to the next; written over as it goes on.
+
+    `now` holds the drive's place [mm], both tensions [N], the direction, how many turning points
+    are on the stack, what lies under it, and the phase.
+    """
+
+    now: Floats  # (7,)
+    turn_x: Floats  # turning points, room for all that may nest
+    turn_T: Floats
+
+
+@kernel
+def at_rest_before(x_in: Floats, preload: float) -> BranchState:
+    """Return the state of uniform preload, with room for the turning points of a motion."""
+    now = np.array([0.0, preload, preload, 0.0, 0.0, float(REST), 0.0])
+    room = strokes(x_in)  # growing it in the loop would cost 20 ns a sample
+    return BranchState(now, np.empty(room), np.empty(room))
+
+
+def with_room(state: BranchState, x_in: Floats) -> BranchState:
+    """Return a copy of a state that has room for the turning points of more motion."""
+    more = np.empty(strokes(x_in))
+    depth = int(state.now[4])
+    turns = (np.concatenate((turn[:depth], more)) for turn in (state.turn_x, state.turn_T))
+    return BranchState(state.now.copy(), *turns)
+
+
+@kernel
+def follow_branches(
+    x_in: Floats, rig: Rig, state: BranchState, frames: Frames | None = None
+) -> tuple[Floats, Floats, Phases]:
+    """Follow a motion from a state, which is written over; see `branches`."""
     wrap = max(rig.friction_coefficient * rig.total_bend_rad, SMALLEST_WRAP)
     C = sheath_compliance(rig) / wrap
     c = compliance_at_drive(rig)
@@ -125,12 +161,11 @@ def branches(x_in: Floats, rig: Rig, frames: Frames | None = None) -> tuple[Floa
     f_in = np.empty(n)
     f_out = np.empty(n)
     phase = np.zeros(n, dtype=np.int8)
-    turn_x = np.empty(strokes(x_in))  # growing them in the loop would cost 20 ns a sample
-    turn_T = np.empty(turn_x.size)
-    depth = 0
-    base = REST
+    turn_x, turn_T = state.turn_x, state.turn_T
+    x, T, out = state.now[0], state.now[1], state.now[2]
+    direction, depth, base = int(state.now[3]), int(state.now[4]), int(state.now[5])
+    before = int(state.now[6])
     taken = 0
-    x, T, out, direction = 0.0, rig.preload_N, rig.preload_N, 0
     for i in range(n):
         if x_in[i] != x:
             now = 1 if x_in[i] > x else -1
@@ -159,13 +194,15 @@ def branches(x_in: Floats, rig: Rig, frames: Frames | None = None) -> tuple[Floa
                 T = max((pulled if direction > 0 else released) * (x - slack), 0.0)
                 out = T * (out_pulled if direction > 0 else out_released)
                 phase[i] = direction if T > 0.0 else SLACK
-        elif i > 0 and phase[i - 1] == SLACK:
+        elif before == SLACK:
             phase[i] = SLACK
+        before = phase[i]
         f_in[i] = T
         f_out[i] = out
         if frames is not None and is_next(frames, taken, i):  # compiled away where there are none
             write_profile(frames, taken, T, direction, turn_T[:depth], base, rig.preload_N, wrap)
             taken += 1
+    state.now[:] = np.array([x, T, out, direction, depth, base, before])
     return f_in, f_out, phase
 
 

@@ -71,8 +71,12 @@ class Ends:
         return replace(self, course=self.course[:, :1], direction=self.direction[:1])
 
 
-def ends_of(rig: Rig, drive: Drive) -> Ends:
-    """Return what acts on the tendon of a rig when the ends are driven as measured."""
+def ends_of(rig: Rig, drive: Drive, start: tuple[float, float] | None = None) -> Ends:
+    """Return what acts on the tendon of a rig when the ends are driven as measured.
+
+    `start` is where the tendon's end at the drive is at the first sample and in which direction it
+    moved last, where the drive is the rest of a run; None at the beginning of one.
+    """
     n = drive.values.size
     boundary = Boundary(
         FORCE if drive.kind == "force" else DISPLACEMENT,
@@ -83,7 +87,8 @@ def ends_of(rig: Rig, drive: Drive) -> Ends:
         at_drive = true_value("f_in_N", drive.values, drive.time_s, rig)
         speed = np.zeros(n)
     else:
-        at_drive = tendon_end(drive.values - rig.x_in_zero_mm, rig.effects)
+        x = drive.values - rig.x_in_zero_mm
+        at_drive = tendon_end(x, rig.effects, float(x[0]) if start is None else start[0])
         speed = np.zeros(n) if drive.time_s is None or n < 2 else np.gradient(at_drive, time_s)
     at_load = np.zeros(n)
     if drive.load_values is not None and drive.load == "force":
@@ -95,14 +100,16 @@ def ends_of(rig: Rig, drive: Drive) -> Ends:
         step_s[1:] = np.diff(time_s)
     friction = friction_course(time_s, speed, drive.session_s, rig)
     course = np.vstack((at_drive, at_load, friction, step_s))
-    return Ends(course, boundary, last_direction(at_drive))
+    return Ends(course, boundary, last_direction(at_drive, 0.0 if start is None else start[1]))
 
 
 @kernel
-def tendon_end(x: Floats, effects: Effects) -> Floats:
-    """Return where the tendon's end at the drive is, for displacements of the drive [mm]."""
+def tendon_end(x: Floats, effects: Effects, place: float) -> Floats:
+    """Return where the tendon's end at the drive is, for displacements of the drive [mm].
+
+    `place` is where it was before.
+    """
     out = np.empty(x.size)
-    place = x[0] if x.size else 0.0
     for i in range(x.size):
         place = follow_play(place, rippled(x[i], effects.drive_ripple), effects.backlash.play_mm)
         out[i] = place
@@ -110,9 +117,9 @@ def tendon_end(x: Floats, effects: Effects) -> Floats:
 
 
 @kernel
-def last_direction(x: Floats) -> Floats:
-    """Return the direction of the last motion at each sample, 0 before the first one."""
-    out = np.zeros(x.size)
+def last_direction(x: Floats, before: float = 0.0) -> Floats:
+    """Return the direction of the last motion at each sample; `before` is that at the first one."""
+    out = np.full(x.size, before)
     for i in range(1, x.size):
         out[i] = np.sign(x[i] - x[i - 1]) if x[i] != x[i - 1] else out[i - 1]
     return out

@@ -96,17 +96,16 @@ def simulate(
     ends = ends_of(rig, drive)
     if dynamics == "static":
         f_in, f_out, phase = static_model(ends.drive, rig)
-        answer = _with_spring(rig, ends, f_in, f_out, phase)
-        return _as_read(rig, drive, answer, 0, "lumped dead bands")
+        answer = with_spring(rig, ends, f_in, f_out, phase)
+        return as_read(rig, drive, answer, 0, solver_of(nodes, dynamics))
     if is_closed(rig, drive) and not on_mesh:
         nodes = CLOSED
-    before = _history(rig, ends, drive.start_f_in_N, nodes)
-    solver = "closed form" if nodes == CLOSED else f"slip chain, {nodes} nodes"
+    before = history(rig, ends, drive.start_f_in_N, nodes)
     skip, frames = len(before), None
     if looked_at is not None:
         frames = empty_frames(looked_at + skip, nodes or ELEMENTS)
     answer = _solve(rig, ends.after(before), nodes, frames)
-    response = _as_read(rig, drive, answer, skip, solver)
+    response = as_read(rig, drive, answer, skip, solver_of(nodes, dynamics))
     return replace(response, frames=frames and frames._replace(samples=frames.samples - skip))
 
 
@@ -122,7 +121,7 @@ def _dynamic(
     if drive.time_s is None:
         raise ValueError("the dynamic model needs the times of its samples")
     ends = ends_of(rig, drive)
-    before = _history(rig, ends, drive.start_f_in_N, lumps)
+    before = history(rig, ends, drive.start_f_in_N, lumps)
     start = rest_after(ends.first().after(before).course, rig, ends.boundary, lumps)
     neutral = Effects()
     by_place = rig.effects._replace(
@@ -135,10 +134,17 @@ def _dynamic(
     )
     x_in, x_out, f_in, f_out = columns
     if ends.boundary.drive == DISPLACEMENT:
-        f_in = f_in + _at_drive(rig, ends)
+        f_in = f_in + at_drive(rig, ends)
     solver = f"LuGre chain, {lumps} lumps, {progress.step_ends_s.size} steps"
-    answer = _as_read(rig, drive, (x_in, x_out, f_in, f_out, phase), 0, solver)
+    answer = as_read(rig, drive, (x_in, x_out, f_in, f_out, phase), 0, solver)
     return replace(answer, step_ends_s=progress.step_ends_s, frames=frames)
+
+
+def solver_of(nodes: int, dynamics: Dynamics) -> str:
+    """Return what is said of how a run was followed, with the lumped or the distributed model."""
+    if dynamics == "static":
+        return "lumped dead bands"
+    return "closed form" if nodes == CLOSED else f"slip chain, {nodes} nodes"
 
 
 def is_closed(rig: Rig, drive: Drive) -> bool:
@@ -152,7 +158,7 @@ def is_closed(rig: Rig, drive: Drive) -> bool:
     )
 
 
-def _as_read(rig: Rig, drive: Drive, answer: Answer, skip: int, solver: str) -> Response:
+def as_read(rig: Rig, drive: Drive, answer: Answer, skip: int, solver: str) -> Response:
     """Drop the samples before the run and return what the sensors read of the others."""
     x_in, x_out, f_in, f_out = (column[skip:] for column in answer[:4])
     given = drive.values if drive.kind == "displacement" else x_in + rig.x_in_zero_mm
@@ -169,19 +175,20 @@ def _as_read(rig: Rig, drive: Drive, answer: Answer, skip: int, solver: str) -> 
 def _solve(rig: Rig, ends: Ends, nodes: int, frames: Frames | None = None) -> Answer:
     """Return x_in, x_out, f_in, f_out and phase, free of the sensors' errors."""
     if nodes == CLOSED:
-        return _with_spring(rig, ends, *branches(ends.drive, rig, frames))
+        return with_spring(rig, ends, *branches(ends.drive, rig, frames))
     x_in, x_out, f_in, f_out, phase = slip_chain(ends.course, rig, ends.boundary, nodes, frames)
     if ends.boundary.drive == DISPLACEMENT:
-        f_in = f_in + _at_drive(rig, ends)
+        f_in = f_in + at_drive(rig, ends)
     return x_in, x_out, f_in, f_out, phase
 
 
-def _with_spring(rig: Rig, ends: Ends, f_in: Floats, f_out: Floats, phase: Phases) -> Answer:
+def with_spring(rig: Rig, ends: Ends, f_in: Floats, f_out: Floats, phase: Phases) -> Answer:
+    """Return the answer of a model that knows a spring load and a drive by displacement."""
     x_out = (f_out - rig.preload_N) / rig.load_stiffness_N_per_mm
-    return ends.drive, x_out, f_in + _at_drive(rig, ends), f_out, phase
+    return ends.drive, x_out, f_in + at_drive(rig, ends), f_out, phase
 
 
-def _at_drive(rig: Rig, ends: Ends) -> Floats | float:
+def at_drive(rig: Rig, ends: Ends) -> Floats | float:
     """Return what the drive's sensor feels beside the tendon [N]."""
     friction = rig.effects.drive_friction.friction_N
     stiffness = rig.effects.proximal_spring.stiffness_N_per_mm
@@ -218,7 +225,7 @@ def _far(rig: Rig, ends: Ends, side: float, nodes: int) -> float:
     return past
 
 
-def _history(rig: Rig, ends: Ends, wanted_f_in: float | None, nodes: int) -> list[float]:
+def history(rig: Rig, ends: Ends, wanted_f_in: float | None, nodes: int) -> list[float]:
     """Return a drive position to pass before the first sample, if one is needed, so that f_in fits.
 
     From rest the drive goes past its first position and back; how far decides the tension there,

@@ -9,6 +9,7 @@ the last sample's set of slipping nodes.
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -54,7 +55,6 @@ MOST_STEPS = 60  # between two samples, those included that did not settle
 SHORTEST_STEP = 1e-3  # of the way between two samples; where that does not settle, nothing does
 
 
-@kernel
 def slip_chain(
     course: Floats, rig: Rig, boundary: Boundary, n: int, frames: Frames | None = None
 ) -> tuple[Floats, Floats, Floats, Floats, Phases]:
@@ -83,43 +83,59 @@ def slip_chain(
         sample is not to be trusted. Many such samples, and the rest of the run is given up: it
         keeps the last values.
     """
-    return follow(course, at_rest(rig, n), rig, boundary, n, frames)
+    return follow(course, resting(course, rig, boundary, n), rig, boundary, n, frames)
 
 
 @kernel
 def rest_after(course: Floats, rig: Rig, boundary: Boundary, n: int) -> Floats:
     """Return where a course leaves the nodes and the tensions behind them, shape (2, n + 2)."""
-    chain = at_rest(rig, n)
-    follow(course, chain, rig, boundary, n)
+    state = resting(course, rig, boundary, n)
+    follow(course, state, rig, boundary, n)
+    chain = state.chain
     out = np.empty((2, n + 2))
     for j in range(n + 2):
         out[0, j], out[1, j] = chain[X + j], chain[T + j]
     return out
 
 
+class ChainState(NamedTuple):
+    """Where a course has left a chain; written over as it goes on."""
+
+    chain: Floats
+    before: Floats  # the fields of the last `Moment`, (7,)
+    last: Floats  # x_in, x_out, f_in, f_out of the last sample, and how many did not settle, (5,)
+
+
+@kernel
+def resting(course: Floats, rig: Rig, boundary: Boundary, n: int) -> ChainState:
+    """Return the state of rest at the preload, before a course."""
+    drive = rig.preload_N if boundary.drive == FORCE else 0.0
+    load = rig.preload_N if boundary.load == FORCE else 0.0
+    before = np.array([drive, load, course[2, 0], course[3, 0], 0.0, 0.0, math.inf])
+    return ChainState(at_rest(rig, n), before, np.zeros(5))
+
+
 @kernel
 def follow(
     course: Floats,
-    chain: Floats,
+    state: ChainState,
     rig: Rig,
     boundary: Boundary,
     n: int,
     frames: Frames | None = None,
 ) -> tuple[Floats, Floats, Floats, Floats, Phases]:
-    """Let a chain follow a course; see `slip_chain`."""
+    """Let a chain follow a course from a state, which is written over; see `slip_chain`."""
     m = course.shape[1]
+    chain, b, last = state.chain, state.before, state.last
     x_in, x_out, f_in, f_out = np.empty(m), np.empty(m), np.empty(m), np.empty(m)
     phase = np.zeros(m, dtype=np.int8)
     laws = laws_of(rig, n)
     scale = rig.sheath_length_mm * rig.preload_N / rig.tendon_stiffness_N / n + 1e-9
-    rest_drive = rig.preload_N if boundary.drive == FORCE else 0.0
-    rest_load = rig.preload_N if boundary.load == FORCE else 0.0
-    before = Moment(rest_drive, rest_load, course[2, 0], course[3, 0], 0.0, 0.0, math.inf)
-    unsettled = taken = 0
+    before = Moment(b[0], b[1], b[2], b[3], b[4], b[5], b[6])
+    unsettled, taken = int(last[4]), 0
     for i in range(m):
         if unsettled > MOST_UNSETTLED:
-            x_in[i], x_out[i] = x_in[i - 1], x_out[i - 1]
-            f_in[i], f_out[i] = f_in[i - 1], f_out[i - 1]
+            x_in[i], x_out[i], f_in[i], f_out[i] = last[0], last[1], last[2], last[3]
             phase[i] = UNSETTLED
             if frames is not None:
                 taken = write_frame(frames, taken, i, chain, n, UNSETTLED)
@@ -137,8 +153,12 @@ def follow(
         x_in[i], x_out[i] = chain[X + 0], chain[X + n + 1]
         f_in[i] = now.drive if boundary.drive == FORCE else chain[T + 0]
         f_out[i] = tension_at_sensor(chain, now, boundary, laws)
+        last[0], last[1], last[2], last[3] = x_in[i], x_out[i], f_in[i], f_out[i]
         if frames is not None:  # compiled away where none are asked for
             taken = write_frame(frames, taken, i, chain, n, phase[i])
+    last[4] = unsettled
+    b[0], b[1], b[2], b[3] = before.drive, before.load, before.pulled, before.released
+    b[4], b[5], b[6] = before.viscous_N, before.lost_N, before.step_s
     return x_in, x_out, f_in, f_out, phase
 
 

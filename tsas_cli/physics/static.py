@@ -18,12 +18,17 @@ Floats = npt.NDArray[np.float64]
 Phases = npt.NDArray[np.int8]
 
 
-@kernel
 def static_model(x_in: Floats, rig: Rig) -> tuple[Floats, Floats, Phases]:
     """Follow a motion of the drive that starts at rest at x = 0 [mm], with a spring load.
 
     Parameters and results are those of `branches`.
     """
+    return follow_static(x_in, rig, np.array([0.0, rig.preload_N, rig.preload_N]))
+
+
+@kernel
+def follow_static(x_in: Floats, rig: Rig, state: Floats) -> tuple[Floats, Floats, Phases]:
+    """Follow a motion from a state (place [mm], both tensions [N]), which is written over."""
     wrap = max(rig.friction_coefficient * rig.total_bend_rad, SMALLEST_WRAP)
     free = compliance_at_drive(rig)
     stiffness = dead_band_stiffness(wrap, 1.0, 1.0 / sheath_compliance(rig))
@@ -32,7 +37,7 @@ def static_model(x_in: Floats, rig: Rig) -> tuple[Floats, Floats, Phases]:
     released, slack = full_slip(-1.0, rig, wrap, free)
     f_in, f_out = np.empty(x_in.size), np.empty(x_in.size)
     phase = np.zeros(x_in.size, dtype=np.int8)
-    x, T, out = 0.0, rig.preload_N, rig.preload_N
+    x, T, out = state[0], state[1], state[2]
     for i in range(x_in.size):
         T += stiffness * (x_in[i] - x)
         x = x_in[i]
@@ -44,4 +49,5 @@ def static_model(x_in: Floats, rig: Rig) -> tuple[Floats, Floats, Phases]:
         if T == 0.0:
             phase[i] = 2
         f_in[i], f_out[i] = T, out
+    state[0], state[1], state[2] = x, T, out
     return f_in, f_out, phase

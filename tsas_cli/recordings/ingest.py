@@ -1,8 +1,9 @@
 """From a person's files to a dataset."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatch
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -16,9 +17,9 @@ from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.conditions import run_conditions
 from tsas_cli.recordings.ingest_map import IngestMap
 from tsas_cli.recordings.manifest import Manifest, Run, parse, write_manifest
-from tsas_cli.recordings.readers import SUFFIXES, read
+from tsas_cli.recordings.readers import SUFFIXES, batches
 from tsas_cli.recordings.readers.table import Floats, Table
-from tsas_cli.recordings.writing import write_run
+from tsas_cli.recordings.writing import parquet_writer
 from tsas_cli.steps import SILENT, Steps
 
 
@@ -70,7 +71,8 @@ def ingest_files(
 ) -> list[Ingested]:
     """Write the files as the runs of a dataset into an empty folder.
 
-    `step` follows each piece of work: a file is read, brought to units, written.
+    `step` follows each piece of work: a file is opened, and it is a run. A file is read, brought to
+    units and written a part at a time where its format allows that (text tables and Parquet).
 
     Raises
     ------
@@ -79,11 +81,12 @@ def ingest_files(
     """
     runs: list[Run] = []
     ingested: dict[str, Ingested] = {}
-    step.ahead(3 * len(files))
+    step.ahead(2 * len(files))
     for path in files:
-        table = read(path, mapping.read, mapping.sources())
+        parts = batches(path, mapping.read, mapping.sources())
+        first = next(parts)
         step()
-        run = _run(path, table, mapping)
+        run = _run(path, first, mapping)
         if run.id in ingested:
             raise InputError(
                 f"run id {run.id!r} comes from {ingested[run.id].source} too",
@@ -91,10 +94,10 @@ def ingest_files(
                 expected="an id for each file",
                 remedy='tell them apart in the map: id = "{folder}_{stem}" under [run]',
             )
-        columns = canonical_columns(table, mapping, path, map_path)
-        step()
-        runs.append(write_run(folder, run, _with_nulls(columns)))
-        ingested[run.id] = _summary(run.id, path, columns)
+        written = folder / run.file
+        written.parent.mkdir(exist_ok=True)
+        ingested[run.id] = _ingest(chain((first,), parts), run.id, path, mapping, map_path, written)
+        runs.append(run.model_copy(update={"sha256": sha256_of(written)}))
         step()
     content = {
         "format": 1,
@@ -144,7 +147,20 @@ def _with_nulls(columns: dict[str, Floats]) -> pa.Table:
     return pa.table({n: pa.array(values, from_pandas=True) for n, values in columns.items()})
 
 
-def _summary(run: str, path: Path, columns: dict[str, Floats]) -> Ingested:
-    time_s = columns[TIME]
-    duration = float(time_s[-1] - time_s[0])
-    return Ingested(run, path, time_s.size, duration, (time_s.size - 1) / duration, tuple(columns))
+def _ingest(
+    parts: Iterator[Table], run: str, path: Path, mapping: IngestMap, map_path: Path, written: Path
+) -> Ingested:
+    """Write one file part by part; say what became of it."""
+    columns, before = canonical_columns(next(parts), mapping, path, map_path)
+    first_s = float(columns[TIME][0])
+    table = _with_nulls(columns)
+    with parquet_writer(written, table.schema) as write:
+        write(table)
+        for part in parts:
+            columns, before = canonical_columns(part, mapping, path, map_path, before)
+            if columns[TIME].size:
+                write(_with_nulls(columns))
+    rows, duration_s = before.kept, before.last[TIME] - first_s
+    if rows < 2:
+        raise InputError("all rows are the same", where=path, expected="at least two samples")
+    return Ingested(run, path, rows, duration_s, (rows - 1) / duration_s, tuple(columns))

@@ -1,6 +1,5 @@
 """A run's Parquet file, read whole or a column at a time, and checked against format 1."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -17,6 +16,8 @@ from tsas_cli.recordings.recording import Recording
 
 Floats = npt.NDArray[np.float64]
 
+BUFFER = 1 << 20  # bytes that are read at a time: a row group need not fit into memory
+
 
 def read_recording(folder: Path, run: Run, *, strict: bool = True) -> Recording:
     """Read one run and check it against its checksum and the rules of format 1.
@@ -31,10 +32,12 @@ def read_recording(folder: Path, run: Run, *, strict: bool = True) -> Recording:
     """
     path = folder / run.file
     table = _read_parquet(path, folder, run)
-    columns = {name: _floats(table, name, path) for name in table.column_names if name in BY_NAME}
-    _check_columns(columns, table.column_names, path)
+    columns = {name: floats_of(table, name, path) for name in table.column_names if name in BY_NAME}
+    check_columns(list(columns), table.column_names, path)
+    if len(columns[TIME]) < 2:
+        raise InputError(f"{len(columns[TIME])} rows", where=path, expected="at least two samples")
     if strict:
-        _check_time(columns[TIME], path)
+        check_time(columns[TIME], path)
     return Recording(run, columns)
 
 
@@ -74,10 +77,10 @@ class RunColumns:
         try:
             table = self.file.read(columns=[name])
         except (pa.ArrowException, OSError) as error:
-            raise _not_parquet(self.path, error) from error
-        values = _floats(table, name, self.path)
+            raise not_parquet(self.path, error) from error
+        values = floats_of(table, name, self.path)
         if name == TIME:
-            _check_time(values, self.path)
+            check_time(values, self.path)
         return values
 
 
@@ -93,10 +96,10 @@ def open_run(folder: Path, run: Run) -> RunColumns:
     path = folder / run.file
     _check_file(path, folder, run)
     try:
-        file = pq.ParquetFile(path)
+        file = pq.ParquetFile(path, buffer_size=BUFFER)
         _check_names_and_units(file.schema_arrow, path)
     except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
-        raise _not_parquet(path, error) from error
+        raise not_parquet(path, error) from error
     if TIME not in file.schema_arrow.names or file.metadata.num_rows < 2:
         raise InputError("column time_s is missing or short", where=path, expected="time in s")
     return RunColumns(run, path, file)
@@ -114,10 +117,10 @@ def read_columns(path: Path) -> dict[str, Floats]:
     if not path.is_file():
         raise InputError("is not there", where=path, expected="a Parquet file")
     table = _table_of(path)
-    columns = {name: _floats(table, name, path) for name in table.column_names if name in BY_NAME}
+    columns = {name: floats_of(table, name, path) for name in table.column_names if name in BY_NAME}
     if TIME not in columns or len(columns[TIME]) < 2:
         raise InputError("column time_s is missing or short", where=path, expected="time in s")
-    _check_time(columns[TIME], path)
+    check_time(columns[TIME], path)
     return columns
 
 
@@ -152,11 +155,12 @@ def _table_of(path: Path) -> pa.Table:
         table = pq.ParquetFile(path).read()
         _check_names_and_units(table.schema, path)
     except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
-        raise _not_parquet(path, error) from error
+        raise not_parquet(path, error) from error
     return table
 
 
-def _not_parquet(path: Path, error: Exception) -> InputError:
+def not_parquet(path: Path, error: Exception) -> InputError:
+    """Return the error for a file that is no whole Parquet file."""
     reason = str(error).splitlines()[0]
     return InputError(f"cannot be read as Parquet ({reason})", where=path)
 
@@ -177,7 +181,14 @@ def _check_names_and_units(schema: pa.Schema, path: Path) -> None:
             )
 
 
-def _floats(table: pa.Table, name: str, path: Path) -> Floats:
+def floats_of(table: pa.Table, name: str, path: Path, *, first_row: int = 0) -> Floats:
+    """Return a column as float64, null as NaN; `first_row` is the number of the table's first.
+
+    Raises
+    ------
+    InputError
+        It holds no numbers, an infinite one, or no time at some row.
+    """
     column = table.column(name)
     if not (
         pa.types.is_floating(column.type)
@@ -189,45 +200,53 @@ def _floats(table: pa.Table, name: str, path: Path) -> Floats:
     if name == TIME and not np.isfinite(values).all():
         row = int(np.flatnonzero(~np.isfinite(values))[0])
         raise InputError(
-            "time_s is null or not finite", where=f"{path}, row {row}", expected="a time in s"
+            "time_s is null or not finite",
+            where=f"{path}, row {first_row + row}",
+            expected="a time in s",
         )
     infinite = np.flatnonzero(np.isinf(values))
     if infinite.size:
         raise InputError(
             f"{name} is infinite",
-            where=f"{path}, row {infinite[0]}",
+            where=f"{path}, row {first_row + int(infinite[0])}",
             expected="a number, or null for a gap",
         )
     return values
 
 
-def _check_columns(columns: Mapping[str, Floats], there: list[str], path: Path) -> None:
+def check_columns(known: list[str], there: list[str], path: Path) -> None:
+    """Refuse a run without time, or without an input and another column that is an output."""
     listed = ", ".join(there) or "none"
-    if TIME not in columns:
+    if TIME not in known:
         raise InputError(
             "column time_s is missing",
             where=path,
             expected="time in s",
             remedy=f"there are: {listed}",
         )
-    if not has_input_and_output(frozenset(columns)):
+    if not has_input_and_output(frozenset(known)):
         raise InputError(
             "an input and an output column are needed",
             where=path,
             expected=f"one of {', '.join(INPUTS)} and another of {', '.join(OUTPUTS)}",
             remedy=f"there are: {listed}",
         )
-    if len(columns[TIME]) < 2:
-        raise InputError(f"{len(columns[TIME])} rows", where=path, expected="at least two samples")
 
 
-def _check_time(time_s: Floats, path: Path) -> None:
+def check_time(time_s: Floats, path: Path, *, first_row: int = 0) -> None:
+    """Refuse time that does not increase; `first_row` is the number of the first sample.
+
+    Raises
+    ------
+    InputError
+        It stands or runs backwards.
+    """
     step = np.diff(time_s)
     if (step <= 0).any():
         row = int(np.flatnonzero(step <= 0)[0]) + 1
         raise InputError(
             f"time_s does not increase ({time_s[row - 1]:.6g} then {time_s[row]:.6g})",
-            where=f"{path}, row {row}",
+            where=f"{path}, row {first_row + row}",
             expected="strictly increasing time",
             remedy="`tsas check` describes it; mend it before ingest",
         )

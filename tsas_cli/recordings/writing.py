@@ -1,6 +1,7 @@
 """Runs and datasets on their way to disk."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 
 import pyarrow as pa
@@ -46,18 +47,23 @@ def table_of(recording: Recording) -> pa.Table:
 
 def write_parquet(path: Path, table: pa.Table) -> None:
     """Write a table of float64 columns; known columns get their unit as field metadata."""
+    with parquet_writer(path, table.schema) as write:
+        write(table)
+
+
+@contextmanager
+def parquet_writer(path: Path, schema: pa.Schema) -> Iterator[Callable[[pa.Table], None]]:
+    """Yield what writes tables of one schema as the row groups of a file; see `write_parquet`."""
     fields = [
         field.with_metadata({"unit": BY_NAME[field.name].unit}) if field.name in BY_NAME else field
-        for field in table.schema
+        for field in schema
     ]
-    pq.write_table(
-        table.cast(pa.schema(fields)),
+    with_units = pa.schema(fields)
+    with pq.ParquetWriter(
         path,
+        with_units,
         compression="zstd",
         use_dictionary=False,
-        use_byte_stream_split=_float_names(table),
-    )
-
-
-def _float_names(table: pa.Table) -> list[str]:
-    return [f.name for f in table.schema if pa.types.is_floating(f.type)]
+        use_byte_stream_split=[f.name for f in schema if pa.types.is_floating(f.type)],
+    ) as writer:
+        yield lambda table: writer.write_table(table.cast(with_units))

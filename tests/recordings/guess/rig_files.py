@@ -81,5 +81,5 @@ def _judged(name, channel: Proposed, truth, table, path) -> str:
         "f_in_N": {"source": some, "unit": "N"},
     } | {name: entry}
     mapping = IngestMap.model_validate({"dataset": {"name": "m"}, "columns": columns})
-    made = canonical_columns(table, mapping, path, Path("map"))[name]
+    made = canonical_columns(table, mapping, path, Path("map"))[0][name]
     return "right" if np.allclose(made, run()[name], rtol=1e-4, atol=1e-4) else "wrong"

@@ -1,13 +1,11 @@
 """What is wrong with recordings, found before anyone fits anything."""
 
-from collections.abc import Iterator
 from dataclasses import asdict, dataclass
-
-import numpy as np
 
 from tsas_cli.errors import InputError
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Manifest, Run
+from tsas_cli.recordings.pieces import long_run
 from tsas_cli.recordings.quality.checks import (
     clipped,
     delay,
@@ -33,8 +31,8 @@ from tsas_cli.recordings.quality.finding import (
     Finding,
     NotChecked,
     Remark,
-    Subject,
 )
+from tsas_cli.recordings.quality.stretches import look, look_by_stretches
 from tsas_cli.recordings.quality.trial import Trial
 from tsas_cli.recordings.run_files import read_recording
 from tsas_cli.steps import SILENT, Steps
@@ -85,7 +83,11 @@ def check_dataset(dataset: Dataset, step: Steps = SILENT) -> Report:
     InputError
         No run can be read.
     """
-    results = list(_look(MANIFEST_CHECKS, dataset.manifest, None))
+    results = [
+        _attributed(said, check.code, None)
+        for check in MANIFEST_CHECKS
+        for said in check.find(dataset.manifest)
+    ]
     failures = []
     step.ahead(len(dataset.runs))
     for run in dataset.runs:
@@ -104,25 +106,13 @@ def check_dataset(dataset: Dataset, step: Steps = SILENT) -> Report:
 
 
 def _look_at_run(dataset: Dataset, run: Run) -> list[Finding | NotChecked]:
-    trial = Trial(read_recording(dataset.folder, run, strict=False), dataset.manifest.rig)
-    results: list[Finding | NotChecked] = []
-    for check in RUN_CHECKS:
-        missing = [name for name in check.needs if name not in trial.channels]
-        if missing:
-            reason = f"{' and '.join(missing)} not recorded"
-            results.append(NotChecked(check.code, run.id, reason))
-            continue
-        with np.errstate(all="ignore"):  # a stray 1e300 is judged like any other number
-            results += _look((check,), trial, run.id)
-    return results
-
-
-def _look(
-    checks: tuple[Check[Subject], ...], subject: Subject, run: str | None
-) -> Iterator[Finding | NotChecked]:
-    for check in checks:
-        for said in check.find(subject):
-            yield _attributed(said, check.code, run)
+    long = long_run(dataset.folder, run)
+    if long is not None:
+        said = look_by_stretches(RUN_CHECKS, long, dataset.manifest.rig)
+    else:
+        trial = Trial(read_recording(dataset.folder, run, strict=False), dataset.manifest.rig)
+        said = {check.code: look(check, trial) for check in RUN_CHECKS}
+    return [_attributed(one, code, run.id) for code, every in said.items() for one in every]
 
 
 def _attributed(said: Remark | CannotTell, code: str, run: str | None) -> Finding | NotChecked:

@@ -33,12 +33,34 @@ class Stroke:
         return slice(self.start, self.stop + 1)
 
 
+def span_of(values: Floats) -> float:
+    """Return how far a channel moves: all but the outermost thousandth at either end."""
+    return float(np.ptp(np.nanpercentile(values, (0.1, 99.9))))
+
+
+@dataclass(frozen=True)
+class Overall:
+    """What a whole run shows of each of its channels, by name."""
+
+    noise: dict[str, float]
+    step: dict[str, float]
+    span: dict[str, float]
+    lowest: dict[str, float]
+    highest: dict[str, float]
+
+
 @dataclass(frozen=True)
 class Trial:
-    """A recording, and what the data sheet says about the rig."""
+    """A recording, and what the data sheet says about the rig.
+
+    Of a long one it is a part, whose first sample is row `first_row`; then `overall` says what the
+    whole run shows.
+    """
 
     recording: Recording
     rig: Rig
+    overall: Overall | None = None
+    first_row: int = 0
 
     @cached_property
     def time_s(self) -> Floats:
@@ -67,20 +89,37 @@ class Trial:
     @cached_property
     def noise(self) -> dict[str, float]:
         """Sample-to-sample noise of each channel (standard deviation)."""
+        if self.overall is not None:
+            return self.overall.noise
         return {name: noise_sd(values) for name, values in self.channels.items()}
 
     @cached_property
     def step(self) -> dict[str, float]:
         """Step of quantisation of each channel, 0 where there is none."""
+        if self.overall is not None:
+            return self.overall.step
         return {name: step_of(values) for name, values in self.channels.items()}
 
     @cached_property
     def span(self) -> dict[str, float]:
         """How far each channel moves: all but the outermost thousandth at either end."""
-        return {
-            name: float(np.ptp(np.nanpercentile(values, (0.1, 99.9))))
-            for name, values in self.channels.items()
-        }
+        if self.overall is not None:
+            return self.overall.span
+        return {name: span_of(values) for name, values in self.channels.items()}
+
+    @cached_property
+    def lowest(self) -> dict[str, float]:
+        """The lowest value of each channel."""
+        if self.overall is not None:
+            return self.overall.lowest
+        return {name: float(np.nanmin(values)) for name, values in self.channels.items()}
+
+    @cached_property
+    def highest(self) -> dict[str, float]:
+        """The highest value of each channel."""
+        if self.overall is not None:
+            return self.overall.highest
+        return {name: float(np.nanmax(values)) for name, values in self.channels.items()}
 
     def visible(self, name: str) -> float:
         """Return the smallest change of a channel that neither noise nor steps explain."""

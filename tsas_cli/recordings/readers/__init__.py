@@ -8,7 +8,7 @@ from typing import Any
 
 from tsas_cli.errors import InputError
 from tsas_cli.recordings.readers.options import ReadOptions
-from tsas_cli.recordings.readers.table import Source, Table
+from tsas_cli.recordings.readers.table import Source, Table, whole
 
 _READERS = {
     ".csv": "delimited",
@@ -34,9 +34,22 @@ def read(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Table:
         No reader knows the suffix, the file is empty or damaged, a wanted column is missing, or
         it holds something else than numbers.
     """
+    return whole(batches(path, options, wanted))
+
+
+def batches(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Iterator[Table]:
+    """Read the wanted columns in parts of `BATCH_ROWS` rows, or whole where the format needs it.
+
+    Raises
+    ------
+    InputError
+        As from `read`; what is wrong further down, when that part is asked for.
+    """
     with _reader(path) as reader:
-        table: Table = reader.read(path, options, wanted)
-    return table
+        if hasattr(reader, "batches"):
+            yield from reader.batches(path, options, wanted)
+        else:
+            yield reader.read(path, options, wanted)
 
 
 def names(path: Path, options: ReadOptions) -> tuple[str, ...]:

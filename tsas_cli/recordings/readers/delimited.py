@@ -1,6 +1,7 @@
 """Text tables: CSV, TSV and their relatives."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
@@ -10,13 +11,22 @@ from pyarrow import csv
 from tsas_cli.errors import InputError
 from tsas_cli.recordings.readers.layout import Layout, comment_text, detect, fields, number
 from tsas_cli.recordings.readers.options import ReadOptions
-from tsas_cli.recordings.readers.table import Floats, Source, Table, not_a_number, resolve
+from tsas_cli.recordings.readers.table import (
+    BATCH_ROWS,
+    Source,
+    Table,
+    in_batches,
+    not_a_number,
+    resolve,
+)
 
 _NULLS = frozenset(csv.ConvertOptions().null_values)
 
 
-def read(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Table:
-    """Read the wanted columns of a text table.
+def batches(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Iterator[Table]:
+    """Read the wanted columns of a text table in parts.
+
+    Where pyarrow stops at a row, what follows is read line by line.
 
     Raises
     ------
@@ -25,12 +35,19 @@ def read(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Table:
     """
     layout = detect(path, options)
     at = resolve(wanted, layout.names, path)
-    try:
-        columns = _fast(path, options, layout, at)
-    except pa.ArrowException:
-        columns = _line_by_line(path, options, layout, at)
     units = {source: layout.units[i] for source, i in at.items() if layout.units[i]}
-    return Table(columns, units, layout.header, layout.first_line)
+    rows = 0
+    try:
+        for table in in_batches(_fast(path, options, layout, at)):
+            columns = {source: table.column(str(i)).to_numpy() for source, i in at.items()}
+            yield Table(columns, units, layout.header, layout.first_line + rows)
+            rows += table.num_rows
+    except pa.ArrowException:
+        lines = islice(_line_by_line(path, options, layout, at), rows, None)
+        while part := list(islice(lines, BATCH_ROWS)):
+            values = dict(zip(at, np.ascontiguousarray(np.transpose(part)), strict=True))
+            yield Table(values, units, layout.header, layout.first_line + rows)
+            rows += len(part)
 
 
 def names(path: Path, options: ReadOptions) -> Sequence[str]:
@@ -40,9 +57,9 @@ def names(path: Path, options: ReadOptions) -> Sequence[str]:
 
 def _fast(
     path: Path, options: ReadOptions, layout: Layout, at: Mapping[Source, int]
-) -> dict[Source, Floats]:
+) -> csv.CSVStreamingReader:
     names = [str(i) for i in range(len(layout.names))]
-    table = csv.read_csv(
+    return csv.open_csv(
         path,
         csv.ReadOptions(
             skip_rows=layout.first_line - 1,
@@ -56,14 +73,12 @@ def _fast(
             decimal_point=layout.decimal,
         ),
     )
-    return {source: table.column(names[i]).to_numpy() for source, i in at.items()}
 
 
 def _line_by_line(
     path: Path, options: ReadOptions, layout: Layout, at: Mapping[Source, int]
-) -> dict[Source, Floats]:
-    """Read what pyarrow refuses (aligned columns, comments between rows), or say what is wrong."""
-    columns: dict[Source, list[float]] = {source: [] for source in at}
+) -> Iterator[list[float]]:
+    """Yield the rows that pyarrow refuses (aligned columns, comments), or say what is wrong."""
     with path.open(encoding=options.encoding) as stream:
         for row, line in enumerate(stream, start=1):
             blank = not line.strip() or comment_text(line, options) is not None
@@ -76,9 +91,7 @@ def _line_by_line(
                     where=f"{path}, row {row}",
                     expected=f"{len(layout.names)}, as in the rows above",
                 )
-            for source, i in at.items():
-                columns[source].append(_cell(cells[i], layout.decimal, source, path, row))
-    return {source: np.array(values) for source, values in columns.items()}
+            yield [_cell(cells[i], layout.decimal, source, path, row) for source, i in at.items()]
 
 
 def _cell(text: str, decimal: str, source: Source, path: Path, row: int) -> float:

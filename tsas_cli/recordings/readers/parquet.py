@@ -1,17 +1,26 @@
 """Parquet files."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
 from tsas_cli.recordings.readers.options import ReadOptions
-from tsas_cli.recordings.readers.table import Source, Table, damaged, floats, resolve
+from tsas_cli.recordings.readers.table import (
+    BATCH_ROWS,
+    Source,
+    Table,
+    damaged,
+    floats,
+    in_batches,
+    resolve,
+)
 
 
-def read(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Table:
-    """Read the wanted columns of a Parquet file; units from the fields' metadata `unit`.
+def batches(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Iterator[Table]:
+    """Read the wanted columns of a Parquet file in parts; units from the fields' metadata `unit`.
 
     Raises
     ------
@@ -23,18 +32,25 @@ def read(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Table:
         with pq.ParquetFile(path) as file:
             schema = file.schema_arrow
             at = resolve(wanted, schema.names, path)
-            table = file.read(columns=[schema.names[i] for i in at.values()])
+            fields = {source: schema.field(i) for source, i in at.items()}
+            units = {
+                s: f.metadata[b"unit"].decode()
+                for s, f in fields.items()
+                if b"unit" in (f.metadata or {})
+            }
+            names = [field.name for field in fields.values()]
+            first = 1
+            for table in in_batches(file.iter_batches(BATCH_ROWS, columns=names)):
+                columns = {
+                    source: floats(table.column(field.name).to_numpy(), source, path, first=first)
+                    for source, field in fields.items()
+                }
+                yield Table(columns, units, first_row=first)
+                first += table.num_rows
+            if first == 1:
+                yield Table({source: np.empty(0) for source in fields}, units)
     except pa.ArrowException as error:
         raise damaged(path, "Parquet", error) from error
-    fields = {source: schema.field(i) for source, i in at.items()}
-    columns = {
-        source: floats(table.column(field.name).to_numpy(), source, path)
-        for source, field in fields.items()
-    }
-    units = {
-        s: f.metadata[b"unit"].decode() for s, f in fields.items() if b"unit" in (f.metadata or {})
-    }
-    return Table(columns, units)
 
 
 def names(path: Path, options: ReadOptions) -> Sequence[str]:

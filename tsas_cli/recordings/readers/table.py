@@ -1,22 +1,25 @@
 """What every reader returns, and how a map's source names a column of a file."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+import pyarrow as pa
 
 from tsas_cli.errors import InputError, nearest
 
 Floats = npt.NDArray[np.float64]
 Source = str | int  # a column's name, or its number counted from 1
 
+BATCH_ROWS = 1 << 20  # of a file that is read in parts: a row group of the run that it becomes
+
 
 @dataclass(frozen=True)
 class Table:
-    """The wanted columns of one file.
+    """The wanted columns of one file, or of some of its rows.
 
     Attributes
     ----------
@@ -54,8 +57,33 @@ def resolve(wanted: Sequence[Source], names: Sequence[str], path: Path) -> dict[
     return {source: _index(source, names, path) for source in wanted}
 
 
-def floats(values: Any, source: Source, path: Path) -> Floats:
-    """Return values as float64; null becomes NaN.
+def whole(parts: Iterable[Table]) -> Table:
+    """Return the parts of one file as one."""
+    tables = list(parts)
+    first = tables[0]
+    if len(tables) == 1:
+        return first
+    columns = {s: np.concatenate([t.columns[s] for t in tables]) for s in first.columns}
+    return replace(first, columns=columns)
+
+
+def in_batches(batches: Iterable[pa.RecordBatch]) -> Iterator[pa.Table]:
+    """Yield tables of `BATCH_ROWS` rows from batches of any; the last one may be shorter."""
+    waiting: list[pa.RecordBatch] = []
+    count = 0
+    for batch in batches:
+        waiting.append(batch)
+        count += batch.num_rows
+        while count >= BATCH_ROWS:
+            table = pa.Table.from_batches(waiting)
+            yield table.slice(0, BATCH_ROWS)
+            waiting, count = table.slice(BATCH_ROWS).to_batches(), count - BATCH_ROWS
+    if count:
+        yield pa.Table.from_batches(waiting)
+
+
+def floats(values: Any, source: Source, path: Path, *, first: int = 1) -> Floats:
+    """Return values as float64; null becomes NaN. `first` is the number of the first row.
 
     Raises
     ------
@@ -65,7 +93,7 @@ def floats(values: Any, source: Source, path: Path) -> Floats:
     try:
         numbers = np.asarray(values, dtype=np.float64)
     except (TypeError, ValueError):
-        numbers = np.array([_number(v, source, path, i) for i, v in enumerate(values, start=1)])
+        numbers = np.array([_number(v, source, path, i) for i, v in enumerate(values, first)])
     if numbers.ndim != 1:
         raise InputError(f"column {source} has {numbers.ndim} dimensions", where=path, expected="1")
     return numbers

@@ -20,11 +20,11 @@ _PASSED = 0.05
 
 def find(trial: Trial) -> Iterator[Remark | CannotTell]:
     """Look at both extremes of each displacement and tension."""
-    for name, values in trial.mechanical.items():
+    for name in trial.mechanical:
         if name == trial.prescribed:
             yield CannotTell(f"{name} is what the load decides, and may stay at its extremes")
             continue
-        if np.nanmin(values) == np.nanmax(values):
+        if trial.lowest[name] == trial.highest[name]:
             continue
         for end, sign in (("highest", 1), ("lowest", -1)):
             yield from _look(trial, name, end, sign)
@@ -32,7 +32,7 @@ def find(trial: Trial) -> Iterator[Remark | CannotTell]:
 
 def _look(trial: Trial, name: str, end: str, sign: int) -> Iterator[Remark]:
     values = trial.channels[name]
-    extreme = sign * np.nanmax(sign * values)
+    extreme = trial.highest[name] if sign > 0 else trial.lowest[name]
     flat = [
         rows
         for rows in plateaus(values, _FEWEST_ROWS)

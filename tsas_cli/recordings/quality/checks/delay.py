@@ -17,6 +17,7 @@ from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
 from tsas_cli.recordings.quality.trial import Trial
 from tsas_cli.recordings.recording import Floats
 
+_MOST_CYCLES = 100  # evenly spread; more would tell no better
 _ROUNDS = 20
 _ROWS = 40  # rows of a cycle that the smoothing leaves apart, at least
 _SLOW = 0.3  # of the typical speed: below, noise decides its sign
@@ -32,6 +33,7 @@ def find(trial: Trial) -> Iterator[Remark | CannotTell]:
         return
     strokes = zip(trial.strokes[::2], trial.strokes[1::2], strict=False)
     cycles = [slice(one.start, other.stop + 1) for one, other in strokes]
+    cycles = cycles[:: max(1, -(-len(cycles) // _MOST_CYCLES))]
     delays = np.array([d for d in (_delay(trial, rows) for rows in cycles) if math.isfinite(d)])
     if delays.size < 2:
         yield CannotTell("fewer than two cycles of changing speed with a load like a spring")

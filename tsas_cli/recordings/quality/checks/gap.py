@@ -48,7 +48,7 @@ def _missing_rows(trial: Trial) -> Iterator[Remark]:
 
 
 def _empty_cells(trial: Trial, name: str, empty: Booleans) -> Remark:
-    if empty.all():
+    if empty.all() and (trial.overall is None or name not in trial.overall.span):
         return Remark("error", f"{name} holds no value at all", "leave the column out", name)
     edges = np.flatnonzero(np.diff(np.concatenate(([False], empty, [False])).astype(np.int8)))
     starts, lengths = edges[::2], edges[1::2] - edges[::2]

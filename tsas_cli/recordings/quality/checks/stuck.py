@@ -26,7 +26,7 @@ def find(trial: Trial) -> Iterator[Remark | CannotTell]:
         if name == trial.prescribed:
             yield CannotTell(f"{name} is what the load decides, and may rest")
             continue
-        if np.nanmin(values) == np.nanmax(values):
+        if trial.lowest[name] == trial.highest[name]:
             yield _remark("warning", trial, name, slice(0, values.size))
             continue
         between = rows_between_changes(values)
@@ -52,7 +52,7 @@ def _remark(severity: Severity, trial: Trial, name: str, rows: slice) -> Remark:
 
 def _hangs(trial: Trial, name: str, rows: slice, *, noisy: bool) -> bool:
     values = trial.channels[name]
-    interior = np.nanmin(values) < values[rows.start] < np.nanmax(values)
+    interior = trial.lowest[name] < values[rows.start] < trial.highest[name]
     for other in trial.references(name):
         motion = trial.channels[other][rows]
         motion = motion[np.isfinite(motion)]

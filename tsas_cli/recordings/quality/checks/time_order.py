@@ -21,8 +21,8 @@ def find(trial: Trial) -> Iterator[Remark | CannotTell]:
     before, after = trial.time_s[row - 1], trial.time_s[row]
     yield Remark(
         "error",
-        f"time does not increase at {rows.size} of {trial.time_s.size} rows, first at row {row} "
-        f"({before:.6g} s, then {after:.6g} s)",
+        f"time does not increase at {rows.size} of {trial.time_s.size} rows, first at row "
+        f"{trial.first_row + row} ({before:.6g} s, then {after:.6g} s)",
         "mend the clock or the order of the rows at the source, then ingest again",
         "time_s",
         float(before),

@@ -1,0 +1,147 @@
+"""A long recording is checked in stretches: what is wrong in one is found, and nothing else."""
+
+from itertools import product
+
+import numpy as np
+import pyarrow as pa
+import pytest
+
+from tests.recordings.quality.bench import LOAD, Bench, columns
+from tsas_cli.errors import InputError
+from tsas_cli.recordings import pieces
+from tsas_cli.recordings.dataset import read_dataset
+from tsas_cli.recordings.manifest import Manifest, Rig, Run
+from tsas_cli.recordings.quality import RUN_CHECKS, check_dataset
+from tsas_cli.recordings.quality.stretches import OVERLAP
+from tsas_cli.recordings.writing import write_dataset
+
+PARTS = 4
+NOISY = {"rate_Hz": 200.0, "noise_mm": 0.02, "noise_N": 0.3}
+
+
+@pytest.fixture
+def check(tmp_path, monkeypatch):
+    """Return a function that checks a run in stretches of a quarter of its rows."""
+
+    def checked(measured, load="spring", parts=PARTS):
+        run = Run(id="a", file="runs/a.parquet", sha256="0" * 64, load=load)
+        rig = Rig(load_stiffness_N_per_mm=LOAD)
+        manifest = Manifest(format=1, name="long", kind="measured", rig=rig, run=(run,))
+        folder = tmp_path / "dataset"
+        folder.mkdir(exist_ok=True)
+        table = pa.table({n: pa.array(v, from_pandas=True) for n, v in measured.items()})
+        write_dataset(folder, manifest, {"a": table})
+        rows = measured["time_s"].size
+        monkeypatch.setattr(pieces, "MOST_ROWS", rows if parts == 1 else rows // parts)
+        return check_dataset(read_dataset(folder))
+
+    return checked
+
+
+def told(report):
+    return [(f.code, f.column, f.severity) for f in report.findings if f.severity != "note"]
+
+
+@pytest.mark.parametrize(
+    ("shape", "load"),
+    list(product(("sine", "triangle", "dwells", "nested"), ("spring", "force", "displacement"))),
+)
+@pytest.mark.parametrize("parts", [3, 10])
+def test_nothing_is_said_about_an_ordinary_recording(check, shape, load, parts):
+    assert told(check(columns(Bench(shape=shape, load=load, seed=3, **NOISY)), load, parts)) == []
+
+
+@pytest.fixture(params=[(16.0, 200.0), (160.0, 20.0)], ids=["few strokes", "many strokes"])
+def measured(request):
+    """Return strokes that are longer or shorter than a stretch."""
+    duration_s, rate_Hz = request.param
+    return columns(Bench(duration_s=duration_s, rate_Hz=rate_Hz, seed=5))
+
+
+def exchanged(measured):
+    measured |= {"f_in_N": measured["f_out_N"], "f_out_N": measured["f_in_N"]}
+
+
+def clipped(measured):
+    measured["f_in_N"] = np.minimum(measured["f_in_N"], 0.9 * measured["f_in_N"].max())
+
+
+def stuck(measured):
+    n = measured["time_s"].size
+    measured["x_out_mm"][n // 2 : 5 * n // 8] = measured["x_out_mm"][n // 2]
+
+
+def turned(measured):
+    measured["x_out_mm"] = -measured["x_out_mm"]
+
+
+def empty(measured):
+    measured["f_out_N"][200:260] = np.nan
+
+
+def inches(measured):
+    measured["x_out_mm"] = measured["x_out_mm"] / 25.4
+
+
+def backwards(measured):
+    measured["time_s"][700] = measured["time_s"][690]
+
+
+def without_rows(measured):
+    for name, values in measured.items():
+        measured[name] = np.delete(values, slice(900, 930))
+
+
+@pytest.mark.parametrize(
+    "harm", [exchanged, clipped, stuck, turned, empty, inches, backwards, without_rows]
+)
+def test_what_is_found_in_the_whole_is_found_in_its_stretches(check, measured, harm):
+    harm(measured)
+    whole, parts = check(measured, parts=1), check(measured)
+    assert told(whole)
+    assert told(parts) == told(whole)
+
+
+def test_rows_are_counted_from_the_beginning_of_the_run(check, measured):
+    backwards(measured)
+    sentence = check(measured).findings[0].sentence
+    assert "first at row 700 " in sentence
+
+
+def test_a_fault_in_one_stretch_is_told_with_its_rows(check, measured):
+    without_rows(measured)
+    size = measured["time_s"].size // PARTS
+    first = size - size // OVERLAP
+    (finding,) = check(measured).findings
+    assert f"rows {first} to {first + size - 1}; in 1 of {PARTS + 1} stretches" in finding.sentence
+
+
+def test_strokes_longer_than_a_stretch_are_strokes(check):
+    slow = columns(Bench(shape="sine", seed=1, **NOISY))
+    rows = np.linspace(0, slow["time_s"].size - 1, 8 * slow["time_s"].size)
+    rng = np.random.default_rng(1)
+    stretched = {n: np.interp(rows, np.arange(v.size), v) for n, v in slow.items()}
+    stretched = {n: v + 0.02 * rng.standard_normal(v.size) for n, v in stretched.items()}
+    stretched["time_s"] = np.arange(rows.size) / 200.0
+    assert told(check(stretched, parts=30)) == []
+
+
+def test_a_drive_that_hardly_turns_back_is_told(check):
+    time_s = np.arange(4000) / 200.0
+    rng = np.random.default_rng(2)
+    x = 10.0 * time_s / time_s[-1] + 0.01 * rng.standard_normal(time_s.size)
+    report = check({"time_s": time_s, "x_in_mm": x, "f_in_N": 20.0 + x})
+    assert ("few-reversals", "x_in_mm", "warning") in told(report)
+
+
+def test_what_cannot_be_told_is_said_once(check, measured):
+    del measured["f_out_N"]
+    report = check(measured)
+    codes = [c.code for c in report.not_checked]
+    assert "exchanged" in codes
+    assert len(codes) == len(set(codes)) <= len(RUN_CHECKS)
+
+
+def test_a_long_run_without_an_output_is_refused(check, measured):
+    with pytest.raises(InputError, match="an input and an output column are needed"):
+        check({name: measured[name] for name in ("time_s", "x_in_mm")})

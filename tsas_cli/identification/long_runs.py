@@ -1,0 +1,252 @@
+"""A run that is too long for memory, ready for a model: row by row, or thinned for a fit.
+
+A model of friction depends on the path alone. So a fit loses no physics when it sees every 64th
+sample and those where the drive turns back: the drive is cleaned with all its samples before, and
+noise is told from all of them.
+"""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from tsas_cli.identification.prepared import (
+    CHANNELS,
+    GAP,
+    START_SAMPLES,
+    Prepared,
+    driving_columns,
+    is_empty,
+    noise_of,
+    nothing_to_compare,
+    seconds_into,
+)
+from tsas_cli.numerics.conditioning import Conditioned
+from tsas_cli.numerics.conditioning_pieces import Cleaned, Plan, Samples, cleaned, plan
+from tsas_cli.recordings import pieces as reading
+from tsas_cli.recordings.columns import TIME
+from tsas_cli.recordings.dataset import Dataset
+from tsas_cli.recordings.manifest import Run
+from tsas_cli.recordings.pieces import known_columns, long_run, pieces
+from tsas_cli.recordings.run_files import RunColumns
+
+Floats = npt.NDArray[np.float64]
+Indices = npt.NDArray[np.int64]
+Mask = npt.NDArray[np.bool_]
+
+FEW = 16  # samples of a stroke, in which no transition is looked for (`phases`)
+BESIDE = 1 / 16  # of a piece, the rows at its ends that only help to clean the others
+
+
+@dataclass(frozen=True)
+class Rows:
+    """Consecutive rows of a run, ready to drive a model and to be compared with its answers."""
+
+    start: int
+    time_s: Floats
+    cleaned: Mapping[str, Cleaned]
+    measured: Mapping[str, Floats]
+    in_gap: Mask
+
+
+@dataclass(frozen=True)
+class LongRun:
+    """A run that is read in pieces: what drives it, what is compared, and what holds throughout."""
+
+    run: Run
+    columns: RunColumns
+    drive_column: str
+    plans: Mapping[str, Plan]
+    noise: Mapping[str, float]
+    session_s: float
+
+    @property
+    def every(self) -> int:
+        """Of how many samples the thinned run keeps one."""
+        return -(-self.columns.rows // reading.MOST_ROWS)
+
+    def rows(self) -> Iterator[Rows]:
+        """Read and clean the run; yield its rows in order, a piece at a time."""
+        beside = int(BESIDE * reading.MOST_ROWS)
+        streams = {
+            name: _Aligned(cleaned(_samples(self.columns, name, 2 * beside), beside, known))
+            for name, known in self.plans.items()
+        }
+        for piece in pieces(self.columns, [TIME, *self.noise]):
+            parts = {name: stream.take(piece.rows) for name, stream in streams.items()}
+            in_gap = [part.apart_s > GAP * self.plans[n].interval_s for n, part in parts.items()]
+            measured = {name: piece.columns[name] for name in self.noise}
+            yield Rows(piece.start, piece.columns[TIME], parts, measured, np.any(in_gap, axis=0))
+
+    def prepared(self) -> Prepared:
+        """Read and clean the run, and return it as a fit sees it."""
+        return self.thinned([self.thin(rows) for rows in self.rows()])
+
+    def thinned(self, kept: Sequence[Rows]) -> Prepared:
+        """Return the run as a fit sees it, from the rows that `thin` has kept of it."""
+        time_s = np.concatenate([rows.time_s for rows in kept])
+        conditioned = {
+            name: _conditioned([rows.cleaned[name] for rows in kept], known, time_s.size)
+            for name, known in self.plans.items()
+        }
+        measured = {n: np.concatenate([rows.measured[n] for rows in kept]) for n in self.noise}
+        in_gap = np.concatenate([rows.in_gap for rows in kept])
+        return Prepared(
+            self.run,
+            time_s,
+            self.drive_column,
+            conditioned,
+            measured,
+            in_gap,
+            self.session_s,
+            self.every,
+            self.columns.rows,
+            self.noise,
+        )
+
+    def seen(self, rows: Rows) -> Mask:
+        """Return which of some rows a fit sees."""
+        numbers = np.arange(rows.start, rows.start + rows.time_s.size)
+        here: Mask = (numbers % self.every == 0) | (numbers < START_SAMPLES)
+        here |= numbers == self.columns.rows - 1
+        for part in rows.cleaned.values():
+            here[part.reversals - rows.start] = True
+        return here
+
+    def thin(self, rows: Rows) -> Rows:
+        """Return what a fit sees of rows; their reversals become places among those kept."""
+        here = self.seen(rows)
+        kept = rows.start + np.flatnonzero(here)
+        parts = {
+            name: Cleaned(
+                rows.start,
+                part.values[here],
+                part.sd[here],
+                part.unseen[here],
+                part.apart_s[here],
+                np.searchsorted(kept, part.reversals),
+            )
+            for name, part in rows.cleaned.items()
+        }
+        measured = {name: values[here] for name, values in rows.measured.items()}
+        return Rows(rows.start, rows.time_s[here], parts, measured, rows.in_gap[here])
+
+
+def open_long(dataset: Dataset, run: Run) -> LongRun | None:
+    """Open a run that is too long for memory; None where it is not.
+
+    Raises
+    ------
+    InputError
+        As from `prepare`.
+    """
+    columns = long_run(dataset.folder, run)
+    if columns is None:
+        return None
+    names = known_columns(columns)
+    driving = driving_columns(run, names)
+    count = -(-columns.rows // reading.MOST_ROWS)
+    plans = {name: plan(_samples(columns, name, 0), count) for name in driving}
+    for name, known in plans.items():
+        if not known.interval_s > 0.0:
+            raise is_empty(run, name)
+    noise = _noise(columns, [n for n in CHANNELS if n in names and n not in driving])
+    if not noise:
+        raise nothing_to_compare(run, names)
+    session_s = seconds_into(dataset.manifest.session_start, run.started)
+    return LongRun(run, columns, driving[0], plans, noise, session_s)
+
+
+def thinned_notes(runs: Sequence[Prepared]) -> list[str]:
+    """Say which runs a fit has seen a part of, and where that is little."""
+    out = []
+    for run in (run for run in runs if run.every > 1):
+        strokes = run.conditioned[run.drive_column].reversals.size - 1
+        said = (
+            f"Run {run.run.id} has {run.all_rows} samples: the fit takes one in {run.every} of "
+            "them, and those where the drive turns back."
+        )
+        if run.time_s.size < FEW * strokes:
+            said += (
+                f" A stroke keeps {run.time_s.size / strokes:.2g} of its samples, too few to see "
+                "its phases."
+            )
+        out.append(said)
+    return out
+
+
+def _noise(run: RunColumns, names: Sequence[str]) -> dict[str, float]:
+    """Return the noise of each channel that holds anything: the median over the pieces."""
+    found: dict[str, list[float]] = {name: [] for name in names}
+    there = dict.fromkeys(names, False)
+    for piece in pieces(run, names) if names else ():
+        for name in names:
+            there[name] = there[name] or bool(np.isfinite(piece.columns[name]).any())
+            noise = noise_of(piece.columns[name])
+            if not math.isnan(noise):
+                found[name].append(noise)
+    return {n: float(np.median(found[n])) if found[n] else math.nan for n in names if there[n]}
+
+
+def _samples(run: RunColumns, name: str, overlap: int) -> Iterator[Samples]:
+    for piece in pieces(run, [TIME, name], overlap=overlap):
+        yield piece.start, piece.columns[TIME], piece.columns[name]
+
+
+class _Aligned:
+    """A cleaned signal, handed out in as many rows as are asked for."""
+
+    def __init__(self, stream: Iterator[Cleaned]) -> None:
+        self.stream = stream
+        self.held = next(stream)
+
+    def take(self, rows: int) -> Cleaned:
+        """Return the next rows; their reversals are those that lie in them."""
+        waiting, count = [self.held], self.held.values.size
+        while count < rows:
+            waiting.append(next(self.stream))
+            count += waiting[-1].values.size
+        whole = _one_after_the_other(waiting)
+        # The reversal that ends what is known comes with it, but belongs to the next rows.
+        border = int(np.searchsorted(whole.reversals, whole.start + rows))
+        self.held = _part(whole, slice(rows, None), whole.reversals[border:])
+        return _part(whole, slice(0, rows), whole.reversals[:border])
+
+
+def _part(whole: Cleaned, rows: slice, reversals: Indices) -> Cleaned:
+    return Cleaned(
+        whole.start + (rows.start or 0),
+        whole.values[rows],
+        whole.sd[rows],
+        whole.unseen[rows],
+        whole.apart_s[rows],
+        reversals,
+    )
+
+
+def _one_after_the_other(parts: Sequence[Cleaned]) -> Cleaned:
+    return Cleaned(
+        parts[0].start,
+        np.concatenate([part.values for part in parts]),
+        np.concatenate([part.sd for part in parts]),
+        np.concatenate([part.unseen for part in parts]),
+        np.concatenate([part.apart_s for part in parts]),
+        np.concatenate([part.reversals for part in parts]),
+    )
+
+
+def _conditioned(parts: Sequence[Cleaned], known: Plan, size: int) -> Conditioned:
+    starts = np.cumsum([0, *(part.values.size for part in parts)])
+    turns = [part.reversals + start for part, start in zip(parts, starts[:-1], strict=True)]
+    whole = _one_after_the_other(parts)
+    return Conditioned(
+        whole.values,
+        whole.sd,
+        whole.unseen,
+        known.window_s,
+        known.noise,
+        np.unique(np.concatenate(([0], *turns, [size - 1]))),
+        known.smallest_reversal,
+    )

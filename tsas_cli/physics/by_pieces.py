@@ -1,0 +1,214 @@
+"""Follow a run that is too long for memory: piece after piece, with the solver's state carried on.
+
+The answer is that of `simulate` for the whole run: each piece goes on where the last one ended.
+Speeds and delays look at samples before and after; so a piece is computed with some of its
+neighbours' samples, which each neighbour computes again.
+"""
+
+from collections.abc import Iterable, Iterator, Sequence
+from copy import deepcopy
+from dataclasses import dataclass, replace
+from itertools import chain
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from tsas_cli.physics.branches import BranchState, at_rest_before, follow_branches, with_room
+from tsas_cli.physics.chain_state import DISPLACEMENT
+from tsas_cli.physics.ends import Drive, Ends, ends_of
+from tsas_cli.physics.response import (
+    CLOSED,
+    NODES,
+    Answer,
+    Dynamics,
+    Response,
+    as_read,
+    at_drive,
+    history,
+    is_closed,
+    solver_of,
+    with_spring,
+)
+from tsas_cli.physics.rig import Rig
+from tsas_cli.physics.slip_chain import ChainState, follow, resting
+from tsas_cli.physics.static import follow_static
+
+Floats = npt.NDArray[np.float64]
+State = BranchState | ChainState | Floats
+
+BESIDE = 2  # samples of a neighbour that a speed needs, and one more
+STATIC = -1  # nodes of the lumped model
+
+
+class Start(NamedTuple):
+    """Where a piece goes on: the solver's state, place [mm] and direction of the drive's end."""
+
+    state: State
+    place: float
+    direction: float
+
+
+@dataclass(frozen=True)
+class _Joined:
+    """A piece with samples of its neighbours beside it, all counted from the first sample here.
+
+    The piece is `first` … `end`−1. The model is followed from `begin` to `until`−1, where delays
+    and speeds have what they look at. The next piece's samples begin at `handover` and its model at
+    `next_begin`; both are None in the last piece.
+    """
+
+    drive: Drive
+    first: int
+    end: int
+    begin: int
+    until: int
+    handover: int | None
+    next_begin: int | None
+
+
+def simulate_pieces(
+    rig: Rig,
+    drives: Iterable[Drive],
+    dynamics: Dynamics = "slip",
+    *,
+    on_mesh: bool = False,
+    nodes: int | None = None,
+) -> Iterator[Response]:
+    """Follow a run given in pieces; yield the answer to each, as `simulate` gives it.
+
+    `drives` are one run's samples in order, with times since the run began; what they say beside
+    their samples is that of the first one. The dynamic model is not followed so.
+
+    Raises
+    ------
+    ValueError
+        The dynamic model is asked for, or a channel's delay is longer than a piece.
+    """
+    if dynamics == "lugre":
+        raise ValueError("the dynamic model is not followed in pieces")
+    start: Start | None = None
+    mesh = 0
+    for joined in _joined(drives, _longest_delay(rig)):
+        ends = ends_of(rig, joined.drive, start and (start.place, start.direction))
+        if start is None:
+            closed = is_closed(rig, joined.drive) and not on_mesh
+            mesh = STATIC if dynamics == "static" else CLOSED if closed else nodes or NODES
+            before = [] if mesh == STATIC else history(rig, ends, joined.drive.start_f_in_N, mesh)
+            passed = ends.first().after(before)
+            state = _resting(rig, passed, mesh)
+            if before:
+                _, state = _follow(rig, _cut(passed, 0, len(before)), mesh, state)
+        else:
+            state = start.state
+        to = joined.until if joined.next_begin is None else joined.next_begin
+        answers, state = _follow(rig, _cut(ends, joined.begin, to), mesh, state)
+        if joined.handover is not None:
+            at = joined.handover
+            start = Start(deepcopy(state), float(ends.drive[at]), float(ends.direction[at]))
+            further, _ = _follow(rig, _cut(ends, to, joined.until), mesh, state)
+            answers = _one_after_the_other(answers, further)
+        drive = _part(joined.drive, joined.begin, joined.until)
+        response = as_read(rig, drive, answers, 0, solver_of(mesh, dynamics))
+        yield _only(response, joined.first - joined.begin, joined.end - joined.begin)
+
+
+def _resting(rig: Rig, ends: Ends, mesh: int) -> State:
+    if mesh == STATIC:
+        return np.array([0.0, rig.preload_N, rig.preload_N])
+    if mesh == CLOSED:
+        return at_rest_before(ends.drive, rig.preload_N)
+    return resting(ends.course, rig, ends.boundary, mesh)
+
+
+def _follow(rig: Rig, ends: Ends, mesh: int, state: State) -> tuple[Answer, State]:
+    """Return the answer and the state where it ends, free of the sensors' errors."""
+    if isinstance(state, BranchState):
+        state = with_room(state, ends.drive)
+        return with_spring(rig, ends, *follow_branches(ends.drive, rig, state)), state
+    if not isinstance(state, ChainState):
+        return with_spring(rig, ends, *follow_static(ends.drive, rig, state)), state
+    x_in, x_out, f_in, f_out, phase = follow(ends.course, state, rig, ends.boundary, mesh)
+    if ends.boundary.drive == DISPLACEMENT:
+        f_in = f_in + at_drive(rig, ends)
+    return (x_in, x_out, f_in, f_out, phase), state
+
+
+def _longest_delay(rig: Rig) -> float:
+    return max(abs(delay) for delay in rig.effects.channel_delay)
+
+
+def _joined(drives: Iterable[Drive], delay_s: float) -> Iterator[_Joined]:
+    """Join each piece with what it needs of its neighbours: twice the longest delay, and more."""
+    tail: Drive | None = None
+    begin = 0
+    coming = iter(drives)
+    now = next(coming)
+    for after in chain(coming, (None,)):
+        first = 0 if tail is None else tail.values.size
+        end = first + now.values.size
+        head = None if after is None else _head(now, after, delay_s)
+        drive = _join([part for part in (tail, now, head) if part is not None])
+        size = drive.values.size
+        if after is None:
+            yield _Joined(drive, first, end, begin, size, None, None)
+            return
+        time_s = _times(drive)
+        next_s = float(_times(after)[0])
+        handover = int(np.searchsorted(time_s, next_s - 2.0 * delay_s)) - BESIDE
+        if handover < begin:
+            raise ValueError("a piece is shorter than what a delay looks back on")
+        far_enough = int(np.searchsorted(time_s, time_s[handover] + delay_s))
+        next_begin = max(handover + 1, far_enough)
+        yield _Joined(drive, first, end, begin, size - 1, handover, next_begin)
+        tail, begin, now = _part(drive, handover, end), next_begin - handover, after
+
+
+def _head(now: Drive, after: Drive, delay_s: float) -> Drive:
+    until = float(_times(now)[-1]) + 2.0 * delay_s
+    return _part(after, 0, int(np.searchsorted(_times(after), until, side="right")) + BESIDE)
+
+
+def _times(drive: Drive) -> Floats:
+    if drive.time_s is None:
+        raise ValueError("pieces need the times of their samples")
+    return drive.time_s
+
+
+def _part(drive: Drive, first: int, end: int) -> Drive:
+    """Return the samples first … end−1 of a drive."""
+    load = None if drive.load_values is None else drive.load_values[first:end]
+    time_s = _times(drive)[first:end]
+    return replace(drive, values=drive.values[first:end], load_values=load, time_s=time_s)
+
+
+def _join(parts: Sequence[Drive]) -> Drive:
+    loads = [part.load_values for part in parts if part.load_values is not None]
+    return replace(
+        parts[0],
+        values=np.concatenate([part.values for part in parts]),
+        load_values=np.concatenate(loads) if loads else None,
+        time_s=np.concatenate([_times(part) for part in parts]),
+    )
+
+
+def _cut(ends: Ends, first: int, end: int) -> Ends:
+    return replace(ends, course=ends.course[:, first:end], direction=ends.direction[first:end])
+
+
+def _one_after_the_other(one: Answer, other: Answer) -> Answer:
+    columns = np.concatenate((one[:4], other[:4]), axis=1)
+    return columns[0], columns[1], columns[2], columns[3], np.concatenate((one[4], other[4]))
+
+
+def _only(response: Response, first: int, end: int) -> Response:
+    """Return an answer without the samples of the neighbours."""
+    rows = slice(first, end)
+    return replace(
+        response,
+        x_in_mm=response.x_in_mm[rows],
+        x_out_mm=response.x_out_mm[rows],
+        f_in_N=response.f_in_N[rows],
+        f_out_N=response.f_out_N[rows],
+        phase=response.phase[rows],
+    )

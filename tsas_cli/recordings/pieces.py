@@ -1,0 +1,107 @@
+"""A recording that is too long for memory, read in pieces of so many rows.
+
+A stage holds a piece and what it has found so far, never a column; so its memory does not grow
+with the recording.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from tsas_cli.recordings.columns import BY_NAME, TIME
+from tsas_cli.recordings.manifest import Run
+from tsas_cli.recordings.recording import Floats
+from tsas_cli.recordings.run_files import (
+    RunColumns,
+    check_columns,
+    check_time,
+    floats_of,
+    not_parquet,
+    open_run,
+)
+
+MOST_ROWS = 1 << 20  # of a recording that is read whole; a piece of a longer one has as many
+_ROWS_AT_ONCE = 1 << 16
+
+
+@dataclass(frozen=True)
+class Piece:
+    """Columns by name, shape (n,), of the rows that begin at `start`; NaN where there is null."""
+
+    start: int
+    columns: dict[str, Floats]
+
+    @property
+    def rows(self) -> int:
+        """How many rows there are."""
+        return next(iter(self.columns.values())).size
+
+    @property
+    def stop(self) -> int:
+        """The row after the last one."""
+        return self.start + self.rows
+
+
+def long_run(folder: Path, run: Run) -> RunColumns | None:
+    """Open a run that has more than `MOST_ROWS` rows; None where it has fewer, or is no Parquet.
+
+    Raises
+    ------
+    InputError
+        Its file, its columns or a unit is not what the manifest and format 1 say.
+    """
+    try:
+        rows = pq.read_metadata(folder / run.file).num_rows
+    except (pa.ArrowException, OSError):
+        return None  # who reads it says what is wrong
+    if rows <= MOST_ROWS:
+        return None
+    opened = open_run(folder, run)
+    check_columns(known_columns(opened), opened.file.schema_arrow.names, opened.path)
+    return opened
+
+
+def known_columns(run: RunColumns) -> list[str]:
+    """Return the names of the canonical columns of a run, in the order of the file."""
+    return [name for name in run.file.schema_arrow.names if name in BY_NAME]
+
+
+def pieces(
+    run: RunColumns, names: Sequence[str], *, overlap: int = 0, strict: bool = True
+) -> Iterator[Piece]:
+    """Read columns in pieces of `MOST_ROWS` rows, the last `overlap` of each in the next one too.
+
+    With `strict=False` time may stand or run backwards.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, a column holds no numbers, or time does not increase.
+    """
+    held: dict[str, list[Floats]] = {name: [] for name in names}
+    start = count = read = 0
+    last_s = -np.inf
+    try:
+        for batch in run.file.iter_batches(min(_ROWS_AT_ONCE, MOST_ROWS), columns=list(names)):
+            table = pa.Table.from_batches([batch])
+            for name in names:
+                held[name].append(floats_of(table, name, run.path, first_row=read))
+            if strict and TIME in names:
+                time_s = np.concatenate(([last_s], held[TIME][-1]))
+                check_time(time_s, run.path, first_row=read - 1)
+                last_s = float(time_s[-1])
+            read += batch.num_rows
+            count += batch.num_rows
+            while count >= MOST_ROWS:
+                joined = {name: np.concatenate(held[name]) for name in names}
+                yield Piece(start, {name: v[:MOST_ROWS] for name, v in joined.items()})
+                held = {name: [v[MOST_ROWS - overlap :].copy()] for name, v in joined.items()}
+                start, count = start + MOST_ROWS - overlap, count - MOST_ROWS + overlap
+    except (pa.ArrowException, OSError) as error:
+        raise not_parquet(run.path, error) from error
+    if count > overlap or start == 0:
+        yield Piece(start, {name: np.concatenate(held[name]) for name in names})
