@@ -26,6 +26,7 @@ from tsas_cli.commands.simulate import simulate
 from tsas_cli.commands.track import track
 from tsas_cli.commands.view import view
 from tsas_cli.errors import InputError, printable
+from tsas_cli.stopping import cleaned_up_when_stopped
 
 app = typer.Typer(
     name="tsas",
@@ -75,7 +76,8 @@ def main() -> None:
     # Many small matrices: threads inside of each product cost three times what they save.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     try:
-        code = app(prog_name="tsas", standalone_mode=False)
+        with cleaned_up_when_stopped():  # typer makes an exit code of it
+            code = app(prog_name="tsas", standalone_mode=False)
         sys.stdout.flush()
     except InputError as error:
         code = _stop(error.line(), 2)
