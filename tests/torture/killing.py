@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-AT_MOST_S = 600.0
+AT_MOST_S = 240.0
 WRITING = {
     "os.rename", "os.remove", "os.mkdir", "os.rmdir", "os.link", "os.chmod", "os.fsync", "os.write",
     "fcntl.flock", "ctypes.dlsym", "tempfile.mkstemp", "tempfile.mkdtemp", "shutil.rmtree",
