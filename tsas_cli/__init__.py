@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from tsas_cli.api.reproduce import reproduce
     from tsas_cli.api.simulate import simulate
     from tsas_cli.api.track import track
+    from tsas_cli.api.verify import verify
     from tsas_cli.errors import InputError
     from tsas_cli.steps import Steps
 
@@ -50,6 +51,7 @@ __all__ = [
     "reproduce",
     "simulate",
     "track",
+    "verify",
 ]
 
 _ELSEWHERE = {

@@ -24,9 +24,12 @@ from tsas_cli.commands.report import report
 from tsas_cli.commands.reproduce import reproduce
 from tsas_cli.commands.simulate import simulate
 from tsas_cli.commands.track import track
+from tsas_cli.commands.verify import verify
 from tsas_cli.commands.view import view
 from tsas_cli.errors import InputError, printable
 from tsas_cli.stopping import cleaned_up_when_stopped
+
+STOPPED = 130  # as typer has it
 
 app = typer.Typer(
     name="tsas",
@@ -63,6 +66,7 @@ app.command("plan")(plan)
 app.command("track")(track)
 app.command("close-loop")(close_loop)
 app.command("report")(report)
+app.command("verify")(verify)
 app.command("view")(view)
 app.command("doctor")(doctor)
 app.command("reproduce")(reproduce)
@@ -83,6 +87,8 @@ def main() -> None:
         code = _stop(error.line(), 2)
     except TyperException as error:
         code = _stop(_wrong_call(error), 2)
+    except KeyboardInterrupt:  # between typer's end and ours
+        code = STOPPED
     except (BrokenPipeError, SystemExit):  # who read the output is gone; typer exits then
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         code = 0

@@ -45,7 +45,7 @@ def new_folder(path: Path, *, force: bool = False) -> Iterator[Path]:
             path.parent.mkdir(parents=True, exist_ok=True)
             temporary = stack.enter_context(temporary_for(path))
             temporary.mkdir(mode=0o700)
-        with _written(path, only=_NO_ROOM):
+        with _written(path, only=_NO_ROOM), _named(temporary, path):
             yield temporary
         with _written(path):
             temporary.chmod(0o755)
@@ -178,6 +178,20 @@ def _written(path: Path, *, only: Collection[int] = ()) -> Iterator[None]:
             raise
         taken = isinstance(error, FileExistsError) and os.path.lexists(path)
         raise (_exists(path) if taken else _unwritable(path, error)) from error
+
+
+@contextmanager
+def _named(temporary: Path, path: Path) -> Iterator[None]:
+    """Say of what is wrong in a temporary folder where it would have been."""
+    try:
+        yield
+    except InputError as error:
+        if str(temporary) not in error.where:
+            raise
+        where = error.where.replace(str(temporary), str(path))
+        raise InputError(
+            error.what, where=where, expected=error.expected, remedy=error.remedy
+        ) from error
 
 
 def _refuse_existing(path: Path, *, force: bool) -> None:

@@ -10,6 +10,7 @@ from tsas_cli.files import new_file, new_folder
 from tsas_cli.recordings.guess.proposal import Proposal, propose
 from tsas_cli.recordings.guess.text import map_text
 from tsas_cli.recordings.ingest import find_files
+from tsas_cli.temporaries import sweep
 
 HERE = Path(__file__).parent
 MAKE = ("settings.mk", "chain.mk", "ingest.mk")
@@ -45,6 +46,8 @@ def start(folder: Path, sources: Sequence[Path]) -> tuple[list[str], Proposal | 
     texts[MAP] = map_text(proposal) if proposal else _file("bench.toml", name)
     there = _there(folder, texts, copies)
     if folder.exists():
+        for home in {folder.parent, *((folder / place).parent for place in (*texts, *copies))}:
+            sweep(home)  # where all is there already, nothing is written that would do it
         for place in [p for p in (*texts, *copies) if p not in there]:
             with new_file(folder / place) as new:
                 _write(new, place, texts, copies)
