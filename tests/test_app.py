@@ -142,3 +142,16 @@ def test_a_reader_that_goes_away_is_no_error() -> None:
     result = subprocess.run(call, stdout=writer, stderr=subprocess.PIPE, check=False)
     os.close(writer)
     assert (result.returncode, result.stderr) == (0, b"")
+
+
+def test_a_stop_beside_the_command_is_an_exit_code_too(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def app(**_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(tsas_cli.app, "app", app)
+    with pytest.raises(SystemExit) as stopped:
+        tsas_cli.app.main()
+    assert stopped.value.code == 130
+    assert capsys.readouterr() == ("", "")

@@ -205,8 +205,7 @@ def test_a_file_never_replaces_one_that_came_meanwhile_where_links_are_unknown(
         raise PermissionError
 
     monkeypatch.setattr(os, "link", no_link)
-    with pytest.raises(InputError, match="already exists"), new_file(tmp_path / "page") as page:
-        page.write_text("mine")
+    with pytest.raises(InputError, match="already exists"), new_file(tmp_path / "page"):
         (tmp_path / "page").write_text("of somebody else")
     assert (tmp_path / "page").read_text() == "of somebody else"
     with new_file(tmp_path / "other") as page:

@@ -123,7 +123,9 @@ def _judged(claim: Claim, walk: _Walk) -> Verified:
         if (claim.found or _sum(path, walk)) == claim.sha256:
             return Verified(_shown(path), "fits", by)
         return Verified(_shown(path), "changed", by, _why(claim))
-    known = walk.known.get((claim.file, claim.sha256)) or _in_raw(claim, walk)
+    known = walk.known.get((claim.file, claim.sha256)) if path is None else None
+    if known is None and claim.by.name != SUMS:
+        known = _in_raw(claim, walk)
     if known is not None:
         walk.claimed.add(known.resolve())
         return Verified(_shown(known), "fits", by)
@@ -156,8 +158,10 @@ def _unclaimed(walk: _Walk, told: set[str]) -> Iterator[Verified]:
             unlisted = f"{SUMS} does not list it"
             files |= dict.fromkeys(path.parent.rglob("*"), unlisted)
         elif not (path.parent / SUMS).is_file():
-            beside = () if path.suffix != ".json" else path.parent.glob("runs/*")
-            files |= dict.fromkeys((path, *beside), "no checksum of it is recorded")
+            beside = [path]
+            if path.suffix == ".json":  # a stage's folder
+                beside += [*path.parent.iterdir(), *path.parent.glob("runs/*")]
+            files |= dict.fromkeys(beside, "no checksum of it is recorded")
     for path, why in sorted(files.items()):
         known = path in walk.claimed or path.name == SUMS or _shown(path) in told
         if path.is_file() and not known:
