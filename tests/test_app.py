@@ -155,3 +155,16 @@ def test_a_stop_beside_the_command_is_an_exit_code_too(
         tsas_cli.app.main()
     assert stopped.value.code == 130
     assert capsys.readouterr() == ("", "")
+
+
+def test_a_stop_that_compiled_code_has_met_is_no_defect(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.delenv("TSAS_TRACEBACK", raising=False)
+    error = SystemError("returned a result with an exception set")
+    error.__cause__ = KeyboardInterrupt()
+    fail_with(error, monkeypatch)
+    with pytest.raises(SystemExit) as stopped:
+        tsas_cli.app.main()
+    assert stopped.value.code == 130
+    assert capsys.readouterr() == ("", "")

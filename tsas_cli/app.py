@@ -95,10 +95,19 @@ def main() -> None:
     except Exception as error:
         if os.environ.get("TSAS_TRACEBACK") == "1":
             raise
+        if _was_stopped(error):
+            sys.exit(STOPPED)
         defect = f"{type(error).__name__}: {error}".strip()
         remedy = "please report it with the output of the same call under TSAS_TRACEBACK=1"
         code = _stop(f"a defect of tsas itself: {printable(defect)}; {remedy}", 1)
     sys.exit(code)
+
+
+def _was_stopped(error: BaseException | None) -> bool:
+    """Say whether an error comes from a request to stop that compiled code has met."""
+    while error is not None and not isinstance(error, KeyboardInterrupt):
+        error = error.__cause__
+    return error is not None
 
 
 def _wrong_call(error: TyperException) -> str:
