@@ -142,3 +142,29 @@ def test_a_reader_that_goes_away_is_no_error() -> None:
     result = subprocess.run(call, stdout=writer, stderr=subprocess.PIPE, check=False)
     os.close(writer)
     assert (result.returncode, result.stderr) == (0, b"")
+
+
+def test_a_stop_beside_the_command_is_an_exit_code_too(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def app(**_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(tsas_cli.app, "app", app)
+    with pytest.raises(SystemExit) as stopped:
+        tsas_cli.app.main()
+    assert stopped.value.code == 130
+    assert capsys.readouterr() == ("", "")
+
+
+def test_a_stop_that_compiled_code_has_met_is_no_defect(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.delenv("TSAS_TRACEBACK", raising=False)
+    error = SystemError("returned a result with an exception set")
+    error.__cause__ = KeyboardInterrupt()
+    fail_with(error, monkeypatch)
+    with pytest.raises(SystemExit) as stopped:
+        tsas_cli.app.main()
+    assert stopped.value.code == 130
+    assert capsys.readouterr() == ("", "")

@@ -26,8 +26,12 @@ from tsas_cli.commands.reproduce import reproduce
 from tsas_cli.commands.simulate import simulate
 from tsas_cli.commands.sweep import sweep
 from tsas_cli.commands.track import track
+from tsas_cli.commands.verify import verify
 from tsas_cli.commands.view import view
 from tsas_cli.errors import InputError, printable
+from tsas_cli.stopping import cleaned_up_when_stopped
+
+STOPPED = 130  # as typer has it
 
 app = typer.Typer(
     name="tsas",
@@ -65,6 +69,7 @@ app.command("track")(track)
 app.command("close-loop")(close_loop)
 app.command("sweep")(sweep)
 app.command("report")(report)
+app.command("verify")(verify)
 app.command("view")(view)
 app.command("doctor")(doctor)
 app.command("reproduce")(reproduce)
@@ -79,18 +84,23 @@ def main() -> None:
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     _speak_beyond_ascii()
     try:
-        code = app(prog_name="tsas", standalone_mode=False)
+        with cleaned_up_when_stopped():  # typer makes an exit code of it
+            code = app(prog_name="tsas", standalone_mode=False)
         sys.stdout.flush()
     except InputError as error:
         code = _stop(error.line(), 2)
     except TyperException as error:
         code = _stop(_wrong_call(error), 2)
+    except KeyboardInterrupt:  # between typer's end and ours
+        code = STOPPED
     except (BrokenPipeError, SystemExit):  # who read the output is gone; typer exits then
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         code = 0
     except Exception as error:
         if os.environ.get("TSAS_TRACEBACK") == "1":
             raise
+        if _was_stopped(error):
+            sys.exit(STOPPED)
         defect = f"{type(error).__name__}: {error}".strip()
         remedy = "please report it with the output of the same call under TSAS_TRACEBACK=1"
         code = _stop(f"a defect of tsas itself: {printable(defect)}; {remedy}", 1)
@@ -103,6 +113,13 @@ def _speak_beyond_ascii() -> None:
         if isinstance(stream, io.TextIOWrapper):
             ascii_only = stream.encoding.lower() in {"ascii", "us-ascii", "ansi_x3.4-1968"}
             stream.reconfigure(encoding="utf-8" if ascii_only else None, errors="backslashreplace")
+
+
+def _was_stopped(error: BaseException | None) -> bool:
+    """Say whether an error comes from a request to stop that compiled code has met."""
+    while error is not None and not isinstance(error, KeyboardInterrupt):
+        error = error.__cause__
+    return error is not None
 
 
 def _wrong_call(error: TyperException) -> str:

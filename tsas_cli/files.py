@@ -1,17 +1,23 @@
 """Whole or absent: outputs appear under their name only when they are complete."""
 
+import errno
 import hashlib
 import json
 import math
 import os
-import shutil
-import tempfile
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Collection, Iterator
+from contextlib import ExitStack, contextmanager
+from contextvars import ContextVar
 from pathlib import Path
 from typing import Any
 
 from tsas_cli.errors import InputError
+from tsas_cli.temporaries import is_empty_folder, place_file, place_folder, temporary_for
+
+SUMS = "SHA256SUMS"
+_FULL = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG})
+_NO_ROOM = _FULL | {errno.EROFS}
+_ADDED: ContextVar[Callable[[Path], None] | None] = ContextVar("added", default=None)
 
 
 def sha256_of(path: Path) -> str:
@@ -30,27 +36,46 @@ def new_folder(path: Path, *, force: bool = False) -> Iterator[Path]:
         `path` exists and is not an empty folder, and `force` is not set; with `force`, where it
         holds something else than an earlier output, or the current folder; it cannot be written.
     """
-    try:
-        if path.is_file():
-            raise InputError("is a file", where=path, expected="a folder's name")
-        _refuse_existing(path, force=force)
-        _refuse_current(path)
-        path.parent.mkdir(parents=True, exist_ok=True)
-        temporary = Path(tempfile.mkdtemp(prefix=f".{path.name}.", dir=path.parent))
-    except OSError as error:
-        raise _unwritable(path, error) from error
-    try:
-        yield temporary
-        temporary.chmod(0o755)
-        _refuse_foreign(path, _files_in(temporary))
-        _replace_folder(temporary, path)
-    finally:
-        shutil.rmtree(temporary, ignore_errors=True)
+    with ExitStack() as stack:
+        with _written(path):
+            if path.is_file():
+                raise InputError("is a file", where=path, expected="a folder's name")
+            _refuse_existing(path, force=force)
+            _refuse_current(path)
+            path.parent.mkdir(parents=True, exist_ok=True)
+            temporary = stack.enter_context(temporary_for(path))
+            temporary.mkdir(mode=0o700)
+        with _written(path, only=_NO_ROOM), _named(temporary, path):
+            yield temporary
+        with _written(path):
+            temporary.chmod(0o755)
+            _refuse_foreign(path, _files_in(temporary))
+            place_folder(temporary, path, replace=force)
+
+
+@contextmanager
+def stage_folder(path: Path, *, force: bool = False) -> Iterator[Path]:
+    """Yield a new folder as `new_folder` does; at its end `SHA256SUMS` lists the files in it.
+
+    Raises
+    ------
+    InputError
+        As `new_folder` raises it.
+    """
+    with new_folder(path, force=force) as folder:
+        add, own = _ADDED.get(), _ADDED.set(None)  # not for what is written inside of it
+        try:
+            yield folder
+            if add is not None:
+                add(folder)
+        finally:
+            _ADDED.reset(own)
+        write_sums(folder)
 
 
 @contextmanager
 def folder_if(path: Path | None, *, force: bool = False) -> Iterator[Path | None]:
-    """Yield a new folder as `new_folder` does, or None where no path says where to write.
+    """Yield a new folder as `stage_folder` does, or None where no path says where to write.
 
     Raises
     ------
@@ -60,8 +85,18 @@ def folder_if(path: Path | None, *, force: bool = False) -> Iterator[Path | None
     if path is None:
         yield None
         return
-    with new_folder(path, force=force) as folder:
+    with stage_folder(path, force=force) as folder:
         yield folder
+
+
+@contextmanager
+def added(add: Callable[[Path], None] | None) -> Iterator[None]:
+    """Have `add` write into the folder of the stage in the block, before it gets its name."""
+    before = _ADDED.set(add)
+    try:
+        yield
+    finally:
+        _ADDED.reset(before)
 
 
 @contextmanager
@@ -73,22 +108,26 @@ def new_file(path: Path, *, force: bool = False) -> Iterator[Path]:
     InputError
         `path` exists and `force` is not set, it is a folder, or it cannot be written.
     """
-    try:
-        if path.is_dir():
-            raise InputError("is a folder", where=path, expected="a file's name")
-        _refuse_existing(path, force=force)
-        path.parent.mkdir(parents=True, exist_ok=True)
-        descriptor, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
-        os.close(descriptor)
-    except OSError as error:
-        raise _unwritable(path, error) from error
-    temporary = Path(name)
-    try:
-        yield temporary
-        temporary.chmod(0o644)
-        temporary.replace(path)
-    finally:
-        temporary.unlink(missing_ok=True)
+    with ExitStack() as stack:
+        with _written(path):
+            if path.is_dir():
+                raise InputError("is a folder", where=path, expected="a file's name")
+            _refuse_existing(path, force=force)
+            path.parent.mkdir(parents=True, exist_ok=True)
+            temporary = stack.enter_context(temporary_for(path))
+            temporary.touch(mode=0o600)
+        with _written(path, only=_NO_ROOM):
+            yield temporary
+        with _written(path):
+            temporary.chmod(0o644)
+            place_file(temporary, path, replace=force)
+
+
+def write_sums(folder: Path) -> None:
+    """Write the checksum of each file in a folder, as `sha256sum --check` reads it."""
+    files = sorted(path for path in folder.rglob("*") if path.is_file())
+    lines = [f"{sha256_of(path)}  {path.relative_to(folder).as_posix()}\n" for path in files]
+    (folder / SUMS).write_text("".join(lines), encoding="utf-8")
 
 
 def write_json(path: Path, content: Any) -> None:
@@ -129,15 +168,44 @@ def _finite(content: Any) -> Any:
     return content
 
 
-def _refuse_existing(path: Path, *, force: bool) -> None:
-    empty_folder = path.is_dir() and not any(path.iterdir())
-    if os.path.lexists(path) and not empty_folder and not force:
+@contextmanager
+def _written(path: Path, *, only: Collection[int] = ()) -> Iterator[None]:
+    """Say in one line why an output cannot be written; `only` for these numbers of errors."""
+    try:
+        yield
+    except OSError as error:
+        if only and error.errno not in only:
+            raise
+        taken = isinstance(error, FileExistsError) and os.path.lexists(path)
+        raise (_exists(path) if taken else _unwritable(path, error)) from error
+
+
+@contextmanager
+def _named(temporary: Path, path: Path) -> Iterator[None]:
+    """Say of what is wrong in a temporary folder where it would have been."""
+    try:
+        yield
+    except InputError as error:
+        if str(temporary) not in error.where:
+            raise
+        where = error.where.replace(str(temporary), str(path))
         raise InputError(
-            "already exists",
-            where=path,
-            expected="a name that is free",
-            remedy="choose another --out, or replace it with --force",
-        )
+            error.what, where=where, expected=error.expected, remedy=error.remedy
+        ) from error
+
+
+def _refuse_existing(path: Path, *, force: bool) -> None:
+    if os.path.lexists(path) and not is_empty_folder(path) and not force:
+        raise _exists(path)
+
+
+def _exists(path: Path) -> InputError:
+    return InputError(
+        "already exists",
+        where=path,
+        expected="a name that is free",
+        remedy="choose another --out, or replace it with --force",
+    )
 
 
 def _refuse_current(path: Path) -> None:
@@ -162,23 +230,14 @@ def _refuse_foreign(path: Path, files: set[str]) -> None:
 
 
 def _files_in(folder: Path) -> set[str]:
-    return {path.name for path in folder.iterdir() if path.is_file()}
-
-
-def _replace_folder(temporary: Path, path: Path) -> None:
-    """Put `temporary` in the place of `path`; the old one goes only when the new one is there."""
-    if not os.path.lexists(path):
-        temporary.rename(path)
-        return
-    old = Path(tempfile.mkdtemp(prefix=f".{path.name}.old.", dir=path.parent))
-    path.rename(old / "old")
-    temporary.rename(path)
-    shutil.rmtree(old, ignore_errors=True)
+    return {path.name for path in folder.iterdir() if path.is_file()} - {SUMS}
 
 
 def _unwritable(path: Path, error: OSError) -> InputError:
     return InputError(
         f"cannot be written ({error.strerror})",
         where=path,
-        remedy="choose an --out in a folder that you may write to",
+        remedy="make room, or choose an --out elsewhere"
+        if error.errno in _FULL
+        else "choose an --out in a folder that you may write to",
     )

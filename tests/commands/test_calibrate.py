@@ -44,7 +44,11 @@ def test_it_writes_what_is_documented(strict, folder, tmp_path):
     summary = json.loads((tmp_path / "out" / "calibration.json").read_text(encoding="utf-8"))
     assert json.loads(done.stdout) == summary
     assert set(summary) == documented("calibration.json")
-    assert {p.name for p in (tmp_path / "out").iterdir()} == {"calibration.json", "model.toml"}
+    assert {p.name for p in (tmp_path / "out").iterdir()} == {
+        "SHA256SUMS",
+        "calibration.json",
+        "model.toml",
+    }
     parameter = {
         *("name", "run", "value", "stderr", "interval_low", "interval_high"),
         *("unit", "at_bound", "origin"),

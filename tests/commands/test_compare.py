@@ -42,7 +42,11 @@ def test_out_holds_the_page_and_all_that_json_prints(run, tmp_path):
     models = ("calibrated-1/model.toml", "calibrated-2/model.toml")
     code, said, _ = run(*models, "--on", "data-2", "--runs", "slow", "--out", out, "--json")
     assert code == 0
-    assert sorted(path.name for path in out.iterdir()) == ["compare.json", "report.html"]
+    assert sorted(path.name for path in out.iterdir()) == [
+        "SHA256SUMS",
+        "compare.json",
+        "report.html",
+    ]
     content = json.loads((out / "compare.json").read_text())
     assert json.loads(said) == content
     assert {row["run_a"] for row in content["errors"]} == {"slow"}

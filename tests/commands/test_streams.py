@@ -42,6 +42,8 @@ print("the result")
 class Anything(Result):
     """What a stage may have found."""
 
+    wrong = ()  # of files that `tsas verify` looks at
+
     def intro(self):
         return ["before the tables"]
 

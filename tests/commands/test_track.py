@@ -164,7 +164,7 @@ def test_a_recorded_force_is_a_reference(track, quick, tmp_path):
     path = tmp_path / "wanted.parquet"
     pq.write_table(pa.table({"time_s": time_s, "f_out_N": 30.0 + 5.0 * time_s}), path)
     summary = track("--settings", quick(), "--reference", path)
-    assert set(summary["reference"]) == {"file", "sha256"}
+    assert set(summary["reference"]) == {"file", "folder", "sha256"}
     run = tmp_path / "out" / "runs" / "adaptive-sliding-mode-undisturbed.parquet"
     wanted = pq.read_table(run).column("f_out_ref_N").to_numpy()
     np.testing.assert_allclose(wanted, np.linspace(30.0, 35.0, 501))

@@ -6,6 +6,7 @@ import pytest
 
 from tests.commands.documented import documented
 from tests.reporting.test_page import Outline
+from tsas_cli.comparing import tracked
 from tsas_cli.comparing.tracked import are_tracked, compare_tracked
 from tsas_cli.comparing.tracked_stage import as_json, tables
 from tsas_cli.errors import InputError
@@ -117,3 +118,12 @@ def test_tracked_runs_are_held_against_tracked_runs_only(root, tmp_path):
         with pytest.raises(InputError, match="tracked runs only") as error:
             are_tracked(*pair)
         assert error.value.where == str(tmp_path)
+
+
+def test_the_same_files_seen_from_elsewhere_are_the_same_settings():
+    here, there = (
+        {"plant": {"file": "model.toml", "folder": folder, "sha256": "ab"}}
+        for folder in ("..", "../..")
+    )
+    assert tracked._settings(here, there) == []
+    assert len(tracked._settings(here, {"plant": {"file": "other.toml"}})) == 2

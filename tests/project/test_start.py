@@ -128,3 +128,17 @@ def test_from_a_recording_to_a_page_and_back_to_one_that_is_broken(tmp_path):
         "diagnose",
         "report",
     ]
+
+
+def test_a_project_that_was_killed_half_way_is_finished_by_the_same_call(tmp_path):
+    source = recording(tmp_path / "a.csv")
+    start(tmp_path / "new", [source])
+    (tmp_path / "new" / "Makefile").unlink()
+    for home in (tmp_path, tmp_path / "new", tmp_path / "new" / "raw"):
+        (home / ".new.abcdefgh.tsas-lock").touch()
+        (home / ".new.abcdefgh.tsas-new").touch()
+    files, _ = start(tmp_path / "new", [source])
+    assert "Makefile" in files
+    there = {str(p.relative_to(tmp_path / "new")) for p in (tmp_path / "new").rglob("*.*")}
+    assert there | {"raw", "Makefile"} == {*files, "raw"}
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.csv", "new"]

@@ -8,11 +8,13 @@ from pathlib import Path
 from tsas_cli.api.given import Named, paths_of
 from tsas_cli.errors import InputError
 from tsas_cli.files import new_file
-from tsas_cli.reporting.inputs import read_inputs
+from tsas_cli.recordings.manifest import FILE as MANIFEST
+from tsas_cli.reporting.inputs import Inputs, read_inputs
 from tsas_cli.reporting.page import SECTIONS, page
 from tsas_cli.reporting.pdf import browser, print_page
 from tsas_cli.result import Result, Table
 from tsas_cli.steps import SILENT, Steps
+from tsas_cli.verifying.seal import with_seal
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -75,7 +77,7 @@ def report(
         html, *printed = (stack.enter_context(new_file(path, force=force)) for path in pages)
         inputs = read_inputs(paths_of(folders))
         step.ahead(len(SECTIONS))
-        text = page(inputs, step)
+        text = with_seal(page(inputs, step), _files_of(inputs), pages[0])
         html.write_text(text, encoding="utf-8")
         for path in printed:
             print_page(text, path)
@@ -86,6 +88,12 @@ def report(
     if pdf:
         summary["pdf"] = str(pages[1])
     return ReportResult(summary, pages[0], sizes)
+
+
+def _files_of(inputs: Inputs) -> list[Path]:
+    """Return the files that say what was read, by which all else is found."""
+    manifests = [] if inputs.dataset is None else [inputs.dataset.folder / MANIFEST]
+    return manifests + [folder / kind.FILE for kind, folder in inputs.folders.items()]
 
 
 def _beside(out: Path) -> Path:

@@ -15,9 +15,9 @@ from tsas_cli.commands.common import (
     OutFolder,
     Quiet,
     Rrd,
-    add_stream,
     names,
     present,
+    with_stream,
 )
 from tsas_cli.commands.progress import progress
 
@@ -49,7 +49,7 @@ def calibrate(
     as_json: Json = False,
 ) -> None:
     """Fit the nominal model to a dataset, and the stiffness km of each phase."""
-    with progress("calibrate", quiet=quiet) as step:
+    with progress("calibrate", quiet=quiet) as step, with_stream(rrd, step):
         result = tsas.calibrate(
             dataset,
             out=out,
@@ -59,6 +59,4 @@ def calibrate(
             force=force,
             step=step,
         )
-    if rrd:
-        add_stream(out, quiet=quiet or as_json)
     present(result, quiet=quiet, as_json=as_json)

@@ -13,9 +13,9 @@ from tsas_cli.commands.common import (
     Json,
     Quiet,
     Rrd,
-    add_stream,
     names,
     present,
+    with_stream,
 )
 from tsas_cli.commands.progress import progress
 from tsas_cli.errors import InputError
@@ -35,8 +35,6 @@ def check(
     """Say what is wrong with recordings before anyone fits anything."""
     if rrd and out is None:
         raise InputError("--rrd has no folder to write to", remedy="give one with --out")
-    with progress("check", quiet=quiet) as step:
+    with progress("check", quiet=quiet) as step, with_stream(rrd, step):
         result = tsas.check(dataset, out=out, runs=names(runs), force=force, step=step)
-    if rrd and out is not None:
-        add_stream(out, quiet=quiet or as_json)
     present(result, quiet=quiet, as_json=as_json)

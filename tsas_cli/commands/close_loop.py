@@ -1,5 +1,6 @@
 """`tsas close-loop`: hide an effect in a rig, diagnose it, and track with the better model."""
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated
 
@@ -12,9 +13,9 @@ from tsas_cli.commands.common import (
     OutFolder,
     Quiet,
     Rrd,
-    add_stream,
     names,
     present,
+    with_stream,
 )
 from tsas_cli.commands.progress import progress
 
@@ -41,7 +42,7 @@ def close_loop(
     as_json: Json = False,
 ) -> None:
     """Say what a diagnosis is worth in tracking: nominal, extended and true model side by side."""
-    with progress("close-loop", quiet=quiet) as step:
+    with progress("close-loop", quiet=quiet) as step, with_stream(rrd, step, _of_each_case):
         result = tsas.close_loop(
             out=out,
             cases=names(cases),
@@ -52,9 +53,15 @@ def close_loop(
             force=force,
             step=step,
         )
-    if rrd:
-        for case in result.summary["cases"]:
-            folder = out / case["case"]
-            stages = (folder / name for name in ("dataset", "calibrate", "diagnose"))
-            add_stream(folder, *stages, quiet=quiet or as_json)
     present(result, quiet=quiet, as_json=as_json)
+
+
+def _of_each_case(folder: Path) -> Iterator[tuple[Path, list[Path]]]:
+    """Return each case's folder, and what in it its stream shows."""
+    from tsas_cli.reporting.inputs import read_stage
+    from tsas_cli.stage_files.closing import Closing
+
+    for case in read_stage(Closing, folder).cases:
+        home = folder / case.case
+        shown = (home / name for name in ("dataset", "calibrate", "diagnose", "identify"))
+        yield home, [path for path in shown if path.is_dir()]

@@ -2,19 +2,20 @@
 
 import shutil
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from tsas_cli.commands.completion import run_ids
-from tsas_cli.commands.progress import progress
 from tsas_cli.errors import printable
 from tsas_cli.text_table import table_text
 
 if TYPE_CHECKING:
     from tsas_cli.result import Result
+    from tsas_cli.steps import Steps
 
 DatasetFolder = Annotated[Path, typer.Argument(metavar="DATASET", help="A dataset's folder.")]
 OutFolder = Annotated[Path, typer.Option("--out", metavar="DIR", help="The folder to write.")]
@@ -55,23 +56,29 @@ def present(result: "Result", *, quiet: bool, as_json: bool) -> None:
     show(result.summary, result.tables(), result.sentences(), quiet=quiet, as_json=as_json)
 
 
-def add_stream(folder: Path, *folders: Path, quiet: bool) -> None:
-    """Write `stream.rrd` into a folder that a stage has finished.
+Streams = Callable[[Path], Iterable[tuple[Path, Sequence[Path]]]]
 
-    It shows what stands in that folder, or in `folders` where they are given.
 
-    Raises
-    ------
-    InputError
-        A file cannot be read.
+def with_stream(
+    wanted: bool, step: "Steps", of: Streams = lambda folder: [(folder, [folder])]
+) -> AbstractContextManager[None]:
+    """Have the stage in the block write `stream.rrd` too, before its folder gets its name.
+
+    `of` says from the stage's folder where streams go, and which folders each shows. `step` is told
+    of a piece of work per run.
     """
-    from tsas_cli.reporting.inputs import read_inputs
-    from tsas_cli.reporting.stream import FILE, write_stream
+    from tsas_cli.files import added
 
-    inputs = read_inputs(folders or (folder,))
-    runs = 0 if inputs.dataset is None else len(inputs.dataset.runs)
-    with progress("recording", runs, quiet=quiet) as step:
-        write_stream(inputs, folder / FILE, force=True, step=step)
+    def add(folder: Path) -> None:
+        from tsas_cli.reporting.inputs import read_inputs
+        from tsas_cli.reporting.stream import FILE, write_stream
+
+        for home, shown in of(folder):
+            inputs = read_inputs(shown)
+            step.ahead(0 if inputs.dataset is None else len(inputs.dataset.runs))
+            write_stream(inputs, home / FILE, step=step)
+
+    return added(add if wanted else None)
 
 
 def show(

@@ -10,9 +10,9 @@ from tsas_cli.commands.common import (
     OutFolder,
     Quiet,
     Rrd,
-    add_stream,
     names,
     present,
+    with_stream,
 )
 from tsas_cli.commands.progress import progress
 
@@ -28,10 +28,8 @@ def diagnose(
     as_json: Json = False,
 ) -> None:
     """Show what the simulation gets wrong, name the cause, extend the model, measure the gain."""
-    with progress("diagnose", quiet=quiet) as step:
+    with progress("diagnose", quiet=quiet) as step, with_stream(rrd, step):
         result = tsas.diagnose(
             dataset, out=out, model=model, runs=names(runs), force=force, step=step
         )
-    if rrd:
-        add_stream(out, quiet=quiet or as_json)
     present(result, quiet=quiet, as_json=as_json)

@@ -14,9 +14,9 @@ from tsas_cli.commands.common import (
     OutFolder,
     Quiet,
     Rrd,
-    add_stream,
     names,
     present,
+    with_stream,
 )
 from tsas_cli.commands.progress import progress
 
@@ -47,10 +47,8 @@ def identify_harmonic_drive(
     as_json: Json = False,
 ) -> None:
     """Fit the drive from motor speed to x_in, diagnose it, and give its feedforward."""
-    with progress("identify", quiet=quiet) as step:
+    with progress("identify", quiet=quiet) as step, with_stream(rrd, step):
         result = tsas.identify_harmonic_drive(
             dataset, out=out, speed=speed.value, runs=names(runs), force=force, step=step
         )
-    if rrd:
-        add_stream(out, quiet=quiet or as_json)
     present(result, quiet=quiet, as_json=as_json)

@@ -16,9 +16,9 @@ from tsas_cli.commands.common import (
     OutFolder,
     Quiet,
     Rrd,
-    add_stream,
     names,
     present,
+    with_stream,
 )
 from tsas_cli.commands.live import Live, unseen, watched
 from tsas_cli.commands.progress import progress
@@ -58,7 +58,7 @@ def simulate(
     """Simulate every run with a model and say how far it is from the measurement."""
     data = tsas.read(dataset, runs=names(runs))
     with watched(live, f"{data.manifest.name} · simulation", quiet=quiet) as stream:
-        with progress("simulate", quiet=quiet) as step:
+        with progress("simulate", quiet=quiet) as step, with_stream(rrd, step):
             result = tsas.simulate(
                 data,
                 out=out,
@@ -70,6 +70,4 @@ def simulate(
                 step=step,
                 each=partial(stream.simulated, data) if stream else unseen,
             )
-        if rrd:
-            add_stream(out, quiet=quiet or as_json)
         present(result, quiet=quiet, as_json=as_json)

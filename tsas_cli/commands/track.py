@@ -13,9 +13,9 @@ from tsas_cli.commands.common import (
     OutFolder,
     Quiet,
     Rrd,
-    add_stream,
     names,
     present,
+    with_stream,
 )
 from tsas_cli.commands.completion import controllers, references
 from tsas_cli.commands.live import Live, unseen, watched
@@ -88,7 +88,7 @@ def track(
 ) -> None:
     """Follow a wanted force with a controller that sees x_in alone."""
     with watched(live, "tracking", quiet=quiet) as stream:
-        with progress("track", quiet=quiet) as step:
+        with progress("track", quiet=quiet) as step, with_stream(rrd, step):
             result = tsas.track(
                 out=out,
                 model=model,
@@ -107,6 +107,4 @@ def track(
                 step=step,
                 each=stream.tracked if stream else unseen,
             )
-        if rrd:
-            add_stream(out, quiet=quiet or as_json)
         present(result, quiet=quiet, as_json=as_json)

@@ -118,5 +118,5 @@ def _flat(content: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, A
     for key, value in content.items():
         if isinstance(value, dict):
             yield from _flat(value, f"{prefix}{key}.")
-        else:
+        elif key != "folder":  # where a file was is no setting
             yield f"{prefix}{key}", value

@@ -88,7 +88,7 @@ def diagnose_dataset(
         A recording or the model is wrong, or `out` exists and `force` is not set.
     """
     stated = stated_model(dataset.manifest, model)
-    summary = dataset.header("diagnose", out) | {"model": source_of(model)}
+    summary = dataset.header("diagnose", out) | {"model": source_of(model, out)}
     with folder_if(out, force=force) as folder:
         step.ahead(len(dataset.runs) + 1)
         runs = []

@@ -89,7 +89,7 @@ def calibrate_dataset(
             runs.append(_prepared(dataset, run))
             step()
         result = calibrate(dataset.manifest, runs, step, dynamics=dynamics, stated=stated)
-        summary = dataset.header("calibrate", out) | {"model": source_of(model)}
+        summary = dataset.header("calibrate", out) | {"model": source_of(model, out)}
         summary["dynamics"] = dynamics
         summary |= _summary(result, dataset.manifest)
         if folder is not None:

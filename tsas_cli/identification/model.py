@@ -11,13 +11,13 @@ from pydantic import BaseModel, ConfigDict
 
 from tsas_cli.effects import EFFECTS, Effects
 from tsas_cli.errors import InputError, nearest
-from tsas_cli.files import sha256_of
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.quantities import DEFAULTS, QUANTITIES
 from tsas_cli.identification.stored_value import StoredValue
 from tsas_cli.physics.bristles import Bristles
 from tsas_cli.physics.parameters import NOMINAL, NOMINAL_BY_NAME
 from tsas_cli.physics.rig import Rig, with_values
+from tsas_cli.recordings.dataset import read_from
 from tsas_cli.recordings.manifest import Manifest, Run, parse, read_toml
 
 if TYPE_CHECKING:
@@ -130,9 +130,9 @@ def stated_model(manifest: Manifest, given: Model | Path | None) -> Model:
 
 
 def source_of(
-    given: object | None, name: str = FILE, *, without: str = "data sheet"
+    given: object | None, out: Path | None, name: str = FILE, *, without: str = "data sheet"
 ) -> dict[str, str]:
-    """Return what a stage writes of the model that it was given: its file and checksum.
+    """Return what a stage writes into `out` of the model that it was given: its file and checksum.
 
     `name` is that of the file in a folder, `without` what was taken where none was given. What is
     no path was handed over in Python.
@@ -142,7 +142,7 @@ def source_of(
     if not isinstance(given, Path):
         return {"file": IN_MEMORY}
     path = given / name if given.is_dir() else given
-    return {"file": path.name, "sha256": sha256_of(path)}
+    return read_from(path, out or Path())
 
 
 def data_sheet(manifest: Manifest) -> Model:

@@ -101,7 +101,7 @@ def simulate_dataset(
     """
     _refuse_nodes(nodes, dynamics)
     taken = data_sheet(dataset.manifest) if model is None else model_of(model)
-    summary = dataset.header("simulate", out) | {"model": source_of(model)}
+    summary = dataset.header("simulate", out) | {"model": source_of(model, out)}
     summary |= {"dynamics": dynamics, "nodes": nodes, "own_values_fitted": fit_own, "runs": {}}
     summary["segments"] = {}
     kept, used = dict[str, Recording](), taken

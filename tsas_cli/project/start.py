@@ -1,14 +1,16 @@
 """A new project: a map, a place for recordings, and the pipeline that takes them to a page."""
 
+import filecmp
 import shutil
 from collections.abc import Sequence
 from pathlib import Path
 
 from tsas_cli.errors import InputError
-from tsas_cli.files import new_folder
+from tsas_cli.files import new_file, new_folder
 from tsas_cli.recordings.guess.proposal import Proposal, propose
 from tsas_cli.recordings.guess.text import map_text
 from tsas_cli.recordings.ingest import find_files
+from tsas_cli.temporaries import sweep
 
 HERE = Path(__file__).parent
 MAKE = ("settings.mk", "chain.mk", "ingest.mk")
@@ -24,12 +26,13 @@ def start(folder: Path, sources: Sequence[Path]) -> tuple[list[str], Proposal | 
     """Write a project; return its files, and the proposal for its map where there are sources.
 
     The sources are copied into `raw/`, a folder with its name. A folder that is there gets the
-    files beside what it holds.
+    files beside what it holds, one after the other: after a kill the same call writes the rest.
 
     Raises
     ------
     InputError
-        A file of that name is there, a source cannot be read, or two have the same name.
+        A file of that name is there with something else in it, a source cannot be read, or two
+        have the same name.
     """
     name = folder.resolve().name or "bench"
     texts = {
@@ -41,12 +44,18 @@ def start(folder: Path, sources: Sequence[Path]) -> tuple[list[str], Proposal | 
     copies = _copies(sources, folder)
     proposal = propose(find_files(sources, "*")) if sources else None
     texts[MAP] = map_text(proposal) if proposal else _file("bench.toml", name)
-    _refuse_existing(folder, [*texts, *copies])
+    there = _there(folder, texts, copies)
     if folder.exists():
-        _write(folder, texts, copies)
+        for home in {folder.parent, *((folder / place).parent for place in (*texts, *copies))}:
+            sweep(home)  # where all is there already, nothing is written that would do it
+        for place in [p for p in (*texts, *copies) if p not in there]:
+            with new_file(folder / place) as new:
+                _write(new, place, texts, copies)
     else:
         with new_folder(folder) as new:
-            _write(new, texts, copies)
+            for place in (*texts, *copies):
+                (new / place).parent.mkdir(parents=True, exist_ok=True)
+                _write(new / place, place, texts, copies)
     return [*texts, *copies], proposal
 
 
@@ -71,24 +80,32 @@ def _copies(sources: Sequence[Path], folder: Path) -> dict[str, Path]:
     return copies
 
 
-def _refuse_existing(folder: Path, names: Sequence[str]) -> None:
+def _there(folder: Path, texts: dict[str, str], copies: dict[str, Path]) -> set[str]:
+    """Return which files are there already; with something else in them they are refused."""
     if folder.is_file():
         raise InputError("is a file", where=folder, expected="a folder's name")
-    there = [name for name in names if (folder / name).exists()]
-    if there:
+    there = [place for place in (*texts, *copies) if (folder / place).exists()]
+    other = [place for place in there if not _is_same(folder / place, place, texts, copies)]
+    if other:
         raise InputError(
-            f"{', '.join(there)} {'is' if len(there) == 1 else 'are'} there already",
+            f"{', '.join(other)} {'is' if len(other) == 1 else 'are'} there already",
             where=folder,
             expected="a folder without them",
             remedy="nothing is overwritten: choose another folder, or move them away",
         )
+    return set(there)
 
 
-def _write(folder: Path, texts: dict[str, str], copies: dict[str, Path]) -> None:
-    for name, text in texts.items():
-        path = folder / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text, encoding="utf-8")
-    for name, source in copies.items():
-        (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        shutil.copyfile(source, folder / name)
+def _is_same(path: Path, place: str, texts: dict[str, str], copies: dict[str, Path]) -> bool:
+    if not path.is_file():
+        return False
+    if place in texts:
+        return path.read_bytes() == texts[place].encode()
+    return filecmp.cmp(path, copies[place], shallow=False)
+
+
+def _write(path: Path, place: str, texts: dict[str, str], copies: dict[str, Path]) -> None:
+    if place in texts:
+        path.write_text(texts[place], encoding="utf-8")
+    else:
+        shutil.copyfile(copies[place], path)

@@ -108,8 +108,7 @@ class Dataset:
 
         Without a folder the dataset's place is said from the current one.
         """
-        here = (folder or Path()).resolve()
-        path = Path(os.path.relpath(self.folder.resolve(), here)).as_posix()
+        path = place_of(self.folder, folder or Path())
         return {
             "format": 1,
             "stage": stage,
@@ -122,6 +121,17 @@ class Dataset:
     def hashes(self) -> dict[str, str]:
         """Return the checksum of the manifest and of each run's file, by path in the dataset."""
         return {FILE: sha256_of(self.folder / FILE)} | {r.file: r.sha256 for r in self.manifest.run}
+
+
+def read_from(path: Path, home: Path) -> dict[str, str]:
+    """Return what is written down in `home` of a file that was read."""
+    return {"file": path.name, "folder": place_of(path.parent, home), "sha256": sha256_of(path)}
+
+
+def place_of(folder: Path, home: Path) -> str:
+    """Return where a folder is, said from a folder that is about to be written."""
+    here = home.parent.resolve() / home.name  # which replaces a link of that name
+    return Path(os.path.relpath(folder.resolve(), here)).as_posix()
 
 
 def read_dataset(folder: Path) -> Dataset:

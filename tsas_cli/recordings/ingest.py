@@ -11,10 +11,10 @@ import pyarrow as pa
 
 from tsas_cli import __version__
 from tsas_cli.errors import InputError
-from tsas_cli.files import sha256_of
 from tsas_cli.recordings.canonical import canonical_columns
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.conditions import run_conditions
+from tsas_cli.recordings.dataset import read_from
 from tsas_cli.recordings.ingest_map import IngestMap
 from tsas_cli.recordings.manifest import Manifest, Run, parse, write_manifest
 from tsas_cli.recordings.readers import SUFFIXES, batches
@@ -104,7 +104,7 @@ def ingest_files(
         **mapping.dataset.model_dump(exclude_none=True),
         "rig": mapping.rig,
         "run": runs,
-        "ingest": _origin(list(ingested.values()), map_path),
+        "ingest": _origin(list(ingested.values()), map_path, folder),
     }
     write_manifest(folder, parse(Manifest, content, map_path))
     return list(ingested.values())
@@ -130,17 +130,13 @@ def _run(path: Path, table: Table, mapping: IngestMap) -> Run:
     return parse(Run, conditions | written, path)
 
 
-def _origin(ingested: Sequence[Ingested], map_path: Path) -> dict[str, Any]:
+def _origin(ingested: Sequence[Ingested], map_path: Path, folder: Path) -> dict[str, Any]:
     """Return what was read, with checksums."""
     return {
         "version": __version__,
-        "map": _named(map_path),
-        "sources": {one.run: _named(one.source) for one in ingested},
+        "map": read_from(map_path, folder),
+        "sources": {one.run: read_from(one.source, folder) for one in ingested},
     }
-
-
-def _named(path: Path) -> dict[str, str]:
-    return {"file": path.name, "sha256": sha256_of(path)}
 
 
 def _with_nulls(columns: dict[str, Floats]) -> pa.Table:

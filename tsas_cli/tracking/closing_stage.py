@@ -7,7 +7,7 @@ from typing import Any
 
 from tsas_cli import __version__
 from tsas_cli.errors import InputError, nearest
-from tsas_cli.files import new_folder, write_json
+from tsas_cli.files import stage_folder, write_json
 from tsas_cli.result import Result, Table
 from tsas_cli.steps import SILENT, Steps
 from tsas_cli.tracking.closing import CASES, MODELS, STEPS, Case, close
@@ -61,7 +61,7 @@ def close_all(
     InputError
         A loop is unstable, or `out` exists and `force` is not set.
     """
-    with new_folder(out, force=force) as folder:
+    with stage_folder(out, force=force) as folder:
         step.ahead(STEPS * len(cases))
         found = [close(case, settings, folder / case.name, seeds, step) for case in cases]
         summary = {

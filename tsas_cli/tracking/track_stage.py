@@ -15,10 +15,11 @@ from tsas_cli import __version__
 from tsas_cli.controllers import CONTROLLERS
 from tsas_cli.controllers.path import Path as DrivePath
 from tsas_cli.errors import InputError, nearest
-from tsas_cli.files import folder_if, sha256_of, write_json
+from tsas_cli.files import folder_if, write_json
 from tsas_cli.identification.drive_file import FILE as DRIVE_FILE
 from tsas_cli.identification.drive_file import IdentifiedDrive
 from tsas_cli.identification.model import Model, model_of, source_of
+from tsas_cli.recordings.dataset import read_from
 from tsas_cli.recordings.recording import Recording, recording_of
 from tsas_cli.recordings.writing import write_dataset
 from tsas_cli.result import Result, Table, notes
@@ -127,7 +128,7 @@ def track_all(
     wanted = reference(call.reference, settings.reference, settings.step_s)
     path = plan(wanted, known, settings)
     results, tables = [], dict[str, pa.Table]()
-    header = _header(call, settings)
+    header = _header(call, settings, out)
     with folder_if(out, force=force) as folder:
         step.ahead(len(call.controllers) * len(call.conditions) * call.seeds)
         for condition in call.conditions:
@@ -207,21 +208,22 @@ def _result(
     }
 
 
-def _header(call: Call, settings: Settings) -> dict[str, Any]:
-    source = {"file": None} if call.settings is None else source_of(call.settings)
+def _header(call: Call, settings: Settings, out: Path | None) -> dict[str, Any]:
+    source: dict[str, str | None] = {"file": None, "sha256": None}
+    if call.settings is not None:
+        source |= source_of(call.settings, out)
     return {
         "format": 1,
         "stage": "track",
         "version": __version__,
-        "model": source_of(call.model),
-        "plant": source_of(call.plant or call.model),
-        "drive": source_of(call.drive, DRIVE_FILE, without="kinematics"),
+        "model": source_of(call.model, out),
+        "plant": source_of(call.plant or call.model, out),
+        "drive": source_of(call.drive, out, DRIVE_FILE, without="kinematics"),
         "settings": {
-            "sha256": None,
             **source,
             **settings.model_dump(mode="json", by_alias=True),
         },
-        "reference": _reference(call.reference),
+        "reference": _reference(call.reference, out),
         "dynamics": call.dynamics,
         "gains": "as printed" if call.as_printed else "default",
         "seeds": [call.first_seed, call.first_seed + call.seeds - 1],
@@ -235,9 +237,9 @@ def _header(call: Call, settings: Settings) -> dict[str, Any]:
     }
 
 
-def _reference(name: str) -> dict[str, str]:
+def _reference(name: str, out: Path | None) -> dict[str, str]:
     path = Path(name)
-    return {"file": path.name, "sha256": sha256_of(path)} if path.is_file() else {"shape": name}
+    return read_from(path, out or Path()) if path.is_file() else {"shape": name}
 
 
 def _notes(path: DrivePath, known: Known, plant: Plant, results: list[dict[str, Any]]) -> list[str]:

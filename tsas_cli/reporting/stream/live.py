@@ -60,7 +60,9 @@ class LiveStream:
 
     def tracked(self, summary: dict[str, Any], run: str, table: pa.Table) -> None:
         """Show a run of the closed loop; `summary` is that of the runs so far."""
-        stated = {k: v for k, v in summary["settings"].items() if k not in {"file", "sha256"}}
+        stated = {
+            k: v for k, v in summary["settings"].items() if k not in {"file", "folder", "sha256"}
+        }
         folder = self.folder / run
         folder.mkdir()
         write_dataset(folder, manifest((run,), Settings.model_validate(stated)), {run: table})

@@ -3,6 +3,7 @@
 What is recorded and why is said elsewhere; nothing here knows a tendon.
 """
 
+from tsas_cli.reporting.stream.recorder import quiet  # noqa: F401  before all others
 from tsas_cli.reporting.stream.recorder.clock import Clock, Times
 from tsas_cli.reporting.stream.recorder.opened import to_file, to_viewer
 from tsas_cli.reporting.stream.recorder.recorder import Recorder

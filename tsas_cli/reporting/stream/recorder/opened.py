@@ -39,7 +39,10 @@ def to_file(
     """
     with new_file(path, force=force) as temporary, _strict():
         stream = _opened(name, layout)
-        stream.save(temporary)
+        try:
+            stream.save(temporary)
+        except RuntimeError as error:
+            raise _unfinished(path) from error
         try:
             recorder = _laid_out(Recorder(stream, path), layout)
             yield recorder
@@ -47,7 +50,7 @@ def to_file(
         finally:
             stream.disconnect()  # writes the footer
         if not is_finished(temporary):
-            raise InputError("its end cannot be written", where=path, remedy="is the disk full?")
+            raise _unfinished(path)
 
 
 @contextmanager
@@ -68,6 +71,10 @@ def to_viewer(address: str, name: str, layout: Layout | None = None) -> Iterator
             recorder.settle()
         finally:
             stream.disconnect()
+
+
+def _unfinished(path: Path) -> InputError:
+    return InputError("cannot be written to its end", where=path, remedy="is the disk full?")
 
 
 def _opened(name: str, layout: Layout | None) -> rr.RecordingStream:

@@ -66,7 +66,11 @@ class Recorder:
         try:
             self.stream.flush(timeout_sec=SLOWEST_S)
         except RuntimeError as error:
-            raise InputError(f"does not take the stream ({error})", where=self.where) from error
+            raise InputError(
+                f"does not take the stream ({error})",
+                where=self.where,
+                remedy="is the disk full, or the viewer gone?",
+            ) from error
 
     def marks(self, entity: Entity, name: str, colour: Colour, *, size: float = 4.0) -> None:
         """Say that the series of an entity is drawn as marks that are not joined."""

@@ -4,7 +4,7 @@ import time
 
 import pytest
 
-from tsas_cli.reporting.viewer.stopping import cleaned_up_when_stopped, until_stopped
+from tsas_cli.stopping import cleaned_up_when_stopped, until_stopped
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])

@@ -1,0 +1,201 @@
+"""A chain from raw recordings to a page: one byte changed anywhere is found and named."""
+
+import json
+import os
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import tsas_cli as tsas
+from tsas_cli.errors import InputError
+from tsas_cli.files import SUMS, added, write_json
+
+MAP = """
+[dataset]
+name = "bench"
+[rig]
+tendon_diameter_mm = 1.2
+tendon_modulus_GPa = 60.0
+friction_coefficient = 0.125
+load_stiffness_N_per_mm = 1.579
+[columns]
+time_s = { source = "Time [s]" }
+x_in_mm = { source = "In [mm]" }
+f_in_N = { source = "Force [N]" }
+[run]
+sheath_length_mm = 785.4
+total_bend_rad = 3.14
+preload_N = 25.0
+"""
+
+
+def make_chain(home: Path) -> None:
+    """Ingest, check, simulate twice, the second time with the model of the first, and report."""
+    (home / "raw").mkdir(parents=True)
+    time_s = np.arange(400) / 200
+    x_in_mm = 10 - 10 * np.cos(np.pi * time_s)
+    rows = np.column_stack([time_s, x_in_mm, 25 + 2.5 * x_in_mm])
+    np.savetxt(
+        home / "raw" / "a.csv", rows, delimiter=",", header="Time [s],In [mm],Force [N]",
+        comments="", fmt="%.6g",
+    )  # fmt: skip
+    (home / "bench.toml").write_text(MAP)
+    data = tsas.ingest(home / "raw", map=home / "bench.toml", out=home / "dataset").dataset
+    tsas.check(data, out=home / "result" / "check")
+    tsas.simulate(data, out=home / "result" / "model")
+    tsas.simulate(data, model=home / "result" / "model", out=home / "result" / "simulate")
+    folders = [home / "dataset", home / "result" / "check", home / "result" / "simulate"]
+    tsas.report(folders, out=home / "result" / "report.html")
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    home = tmp_path_factory.mktemp("chain")
+    make_chain(home)
+    return home
+
+
+@pytest.fixture
+def chain(made, tmp_path, monkeypatch):
+    shutil.copytree(made, tmp_path / "chain")
+    monkeypatch.chdir(tmp_path / "chain")
+    return tmp_path / "chain"
+
+
+FILES = (
+    "raw/a.csv",
+    "bench.toml",
+    "dataset/dataset.toml",
+    "dataset/runs/a.parquet",
+    "result/check/check.json",
+    f"result/check/{SUMS}",
+    "result/model/model.toml",
+    "result/model/simulation.json",
+    "result/model/runs/a.parquet",
+    "result/simulate/model.toml",
+    "result/simulate/simulation.json",
+    "result/simulate/runs/a.parquet",
+    f"result/simulate/{SUMS}",
+    "result/report.html",
+)
+
+
+def test_these_are_all_files_of_the_chain(chain):
+    there = {p.relative_to(chain).as_posix() for p in chain.rglob("*") if p.is_file()}
+    assert there == {*FILES, f"result/model/{SUMS}"}
+
+
+def test_an_untouched_chain_fits(chain):
+    result = tsas.verify("result")
+    assert {one.state for one in result.files} == {"fits"}
+    told = {one.file for one in result.files}
+    assert told == {file for file in FILES if not file.endswith(SUMS)}
+    assert result.wrong == []
+    n = len(result.files)
+    assert result.tables() == [(f"{n} of {n} recorded checksums fit", (), [])]
+
+
+@pytest.mark.parametrize("start", ["result", "result/report.html"])
+@pytest.mark.parametrize("file", FILES)
+def test_one_changed_byte_is_found_and_named(chain, file, start):
+    if start == "result/report.html" and file == f"result/check/{SUMS}":
+        start = "result"  # of a page's stages what they wrote is looked at, not what else says so
+    content = bytearray(Path(file).read_bytes())
+    content[len(content) // 2] ^= 1
+    Path(file).write_bytes(content)
+    wrong = {one.file for one in tsas.verify(start).wrong}
+    if file.endswith(SUMS):  # a checksum or a name in it is another one
+        assert any(name.startswith(str(Path(file).parent)) for name in wrong)
+    else:
+        assert file in wrong
+    assert wrong <= {file} | {other for other in FILES if file.endswith(SUMS)}
+
+
+@pytest.mark.parametrize("file", [file for file in FILES if not file.endswith((SUMS, "html"))])
+def test_a_missing_file_is_named(chain, file):
+    Path(file).unlink()
+    wrong = tsas.verify("result").wrong
+    assert {(one.file, one.state) for one in wrong} == {(file, "missing")}
+
+
+def test_raw_recordings_that_have_moved_are_found_where_one_says(chain):
+    shutil.move("raw", "archive")
+    assert [one.file for one in tsas.verify("result").wrong] == ["raw/a.csv"]
+    result = tsas.verify("result", raw="archive")
+    assert result.wrong == []
+    assert "archive/a.csv" in {one.file for one in result.files}
+    Path("archive/a.csv").write_text("something else")
+    assert [one.file for one in tsas.verify("result", raw="archive").wrong] == ["raw/a.csv"]
+
+
+def test_a_moved_project_fits_as_before(chain, tmp_path):
+    shutil.move(chain, tmp_path / "elsewhere")
+    os.chdir(tmp_path)
+    assert tsas.verify("elsewhere/result").wrong == []
+
+
+def test_folders_of_earlier_versions_are_told_not_to_say(chain):
+    for sums in Path().rglob(SUMS):
+        sums.unlink()
+    found = {one.file: one for one in tsas.verify("result/model").files}
+    for name in ("simulation.json", "model.toml", "runs/a.parquet"):
+        one = found[f"result/model/{name}"]
+        assert (one.state, one.why) == ("cannot tell", "no checksum of it is recorded")
+    assert found["dataset/runs/a.parquet"].state == "fits"
+
+
+def test_a_file_that_came_later_is_told(chain):
+    Path("result/check/notes.txt").write_text("mine")
+    result = tsas.verify("result/check")
+    (row,) = result.tables()[0][2]
+    assert row[:3] == ("cannot tell", "result/check/notes.txt", f"{SUMS} does not list it")
+    assert result.wrong == []
+
+
+def test_what_a_file_says_is_not_believed(chain):
+    content = json.loads(Path("result/check/check.json").read_text())
+    for dataset in ({"hashes": {"x": 5}, "folder": 7}, [], {"hashes": []}):
+        write_json(Path("result/check/check.json"), content | {"dataset": dataset, "model": "x"})
+        wrong = {one.file for one in tsas.verify("result/check").wrong}
+        assert wrong == {"result/check/check.json"}
+    Path("result/check/check.json").write_text("{")
+    assert "is not JSON" in " ".join(one.why for one in tsas.verify("result/check").wrong)
+    Path("dataset/dataset.toml").write_text("run = 5\ningest = 7\n")
+    assert "dataset/dataset.toml" in {one.file for one in tsas.verify("result").wrong}
+
+
+@pytest.mark.parametrize("path", ["nowhere", "raw"])
+def test_where_nothing_is_of_tsas_is_one_line(chain, path):
+    with pytest.raises(InputError, match=r"is not there|holds nothing that tsas has written"):
+        tsas.verify(path)
+
+
+def test_what_is_added_to_a_stage_is_in_its_list_and_whole_or_absent(chain):
+    def add(folder: Path) -> None:
+        (folder / "more").write_text("more")
+
+    with added(add):
+        tsas.check("dataset", out="result/more")
+    assert tsas.verify("result/more").wrong == []
+    assert "result/more/more" in {one.file for one in tsas.verify("result/more").files}
+
+    def fail(folder: Path) -> None:
+        raise InputError("does not work", where=folder / "more")
+
+    with pytest.raises(InputError, match=r"result/failed/more: does not work"), added(fail):
+        tsas.check("dataset", out="result/failed")
+    assert not Path("result/failed").exists()
+
+
+def test_the_command_prints_and_ends_with_2_where_something_does_not_fit(chain, strict):
+    done = strict("verify", "result")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "recorded checksums fit" in done.stdout
+    with Path("raw/a.csv").open("a") as file:
+        file.write(" ")
+    done = strict("verify", "result", "--json")
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+    assert "not what was recorded: raw/a.csv" in done.stderr
+    assert json.loads(done.stdout)["counts"]["changed"] == 1

@@ -1,0 +1,123 @@
+"""What files say about other files: which checksum each had when it was written or read."""
+
+import os
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from tsas_cli.errors import InputError
+from tsas_cli.files import SUMS, read_json
+from tsas_cli.recordings.manifest import FILE as MANIFEST
+from tsas_cli.recordings.manifest import read_toml
+from tsas_cli.verifying.seal import sealed
+
+_SUM = re.compile(r"([0-9a-f]{64})  (.+)")
+_READ = ("model", "plant", "drive", "settings", "reference")  # keys of a stage's JSON
+
+
+@dataclass(frozen=True)
+class Claim:
+    """A file's checksum, and which file recorded it.
+
+    `path` is where it was, None where that is not recorded; `found` is the checksum where it is
+    known already, of a part of a file.
+    """
+
+    by: Path
+    file: str
+    sha256: str
+    path: Path | None = None
+    found: str | None = None
+
+
+def claims_of(path: Path) -> Iterator[Claim]:
+    """Yield what a file says about others; nothing where it is none of ours.
+
+    Raises
+    ------
+    InputError
+        It cannot be read, or is not what its name says.
+    """
+    if path.name == SUMS:
+        yield from _of_sums(path)
+    elif path.name == MANIFEST:
+        yield from _of_manifest(path)
+    elif path.suffix == ".json":
+        content = read_json(path)
+        if isinstance(content, dict) and "stage" in content:
+            yield from _of_stage(path, content)
+    elif path.suffix == ".toml":
+        yield from _of_dataset(path, read_toml(path).get("dataset"))
+    elif path.suffix == ".html":
+        yield from _of_page(path)
+
+
+def _of_sums(path: Path) -> Iterator[Claim]:
+    try:
+        lines = path.read_text(encoding="utf-8").splitlines()
+    except (OSError, ValueError) as error:
+        raise InputError("cannot be read", where=path) from error
+    for number, line in enumerate(lines, start=1):
+        found = _SUM.fullmatch(line)
+        if found is None:
+            raise InputError("is no checksum and a name", where=f"{path}, line {number}")
+        yield Claim(path, found[2], found[1], path.parent / found[2])
+
+
+def _of_manifest(path: Path) -> Iterator[Claim]:
+    content = read_toml(path)
+    runs = content.get("run")
+    for run in runs if isinstance(runs, list) else []:
+        if isinstance(run, dict) and {"file", "sha256"} <= run.keys():
+            file = str(run["file"])
+            yield Claim(path, file, str(run["sha256"]).lower(), path.parent / file)
+    ingest = content.get("ingest")
+    if isinstance(ingest, dict):
+        yield from _of_file(path, ingest.get("map"))
+        sources = ingest.get("sources")
+        for source in sources.values() if isinstance(sources, dict) else ():
+            yield from _of_file(path, source)
+
+
+def _of_stage(path: Path, content: Mapping[str, Any]) -> Iterator[Claim]:
+    yield from _of_dataset(path, content.get("dataset"))
+    yield from _of_dataset(path, content.get("on"))
+    for key in _READ:
+        yield from _of_file(path, content.get(key))
+    rig = content.get("rig")  # of `tsas plan`, whose file is said from the plan's folder
+    yield from _of_file(path, rig | {"folder": ""} if isinstance(rig, dict) else None)
+    for side in (content.get("a"), content.get("b")):  # of `tsas compare`
+        files = side.get("files") if isinstance(side, dict) else None
+        for file, digest in files.items() if isinstance(files, dict) else ():
+            yield Claim(path, str(file), str(digest))
+
+
+def _of_dataset(path: Path, dataset: object) -> Iterator[Claim]:
+    """Yield the files of a dataset that was read; its folder is said from that of the file."""
+    if isinstance(dataset, dict) and isinstance(dataset.get("hashes"), dict):
+        folder = dataset.get("folder")
+        for file, digest in dataset["hashes"].items():
+            where = _from(path, folder, file) if isinstance(folder, str) else None
+            yield Claim(path, str(file), str(digest).lower(), where)
+
+
+def _of_file(path: Path, said: object) -> Iterator[Claim]:
+    if isinstance(said, dict) and isinstance(said.get("sha256"), str):
+        file, folder = str(said.get("file")), said.get("folder")
+        where = _from(path, folder, file) if isinstance(folder, str) else None
+        yield Claim(path, file, said["sha256"], where)
+
+
+def _of_page(path: Path) -> Iterator[Claim]:
+    seal = sealed(path)
+    if seal is None:
+        return
+    yield Claim(path, path.name, seal.sha256, path, seal.found)
+    for said in seal.read:
+        yield from _of_file(path, said)
+
+
+def _from(path: Path, folder: str, file: str) -> Path:
+    return Path(os.path.normpath(path.parent / folder / file))

@@ -1,0 +1,184 @@
+"""Every recorded checksum below a folder, and of what lies behind it, beside the files."""
+
+import os
+from collections import deque
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Literal
+
+from tsas_cli.errors import InputError
+from tsas_cli.files import SUMS, read_json, sha256_of
+from tsas_cli.recordings.manifest import FILE as MANIFEST
+from tsas_cli.verifying.claims import Claim, claims_of
+
+State = Literal["fits", "changed", "missing", "cannot tell"]
+_OURS = {".json", ".toml", ".html"}
+
+
+@dataclass(frozen=True)
+class Verified:
+    """What became of one file: `by` recorded its checksum, empty where nobody did."""
+
+    file: str
+    state: State
+    by: str = ""
+    why: str = ""
+
+
+@dataclass
+class _Walk:
+    """Folders that are looked at, and what was found of their files."""
+
+    raw: Sequence[Path]
+    waiting: deque[Path]
+    step: Callable[[], None]
+    seen: set[Path] = field(default_factory=set)
+    sums: dict[Path, str] = field(default_factory=dict)
+    claimed: set[Path] = field(default_factory=set)
+    known: dict[tuple[str, str], Path] = field(default_factory=dict)
+
+
+def verify_all(
+    start: Path, raw: Sequence[Path] = (), step: Callable[[], None] = lambda: None
+) -> list[Verified]:
+    """Check a page, or all that stages have written into a folder and below it, and what they read.
+
+    `raw` are folders where raw recordings are looked for that are not where they were. `step` is
+    called after each file.
+
+    Raises
+    ------
+    InputError
+        There is nothing that tsas has written.
+    """
+    if not start.exists():
+        raise InputError("is not there", where=start, expected="a folder, or a page")
+    files = [start] if start.is_file() else _ours_below(start)
+    if not files:
+        raise InputError(
+            "holds nothing that tsas has written",
+            where=start,
+            expected=f"the folder of a stage, of a dataset, or one that holds some, or {SUMS}",
+        )
+    walk = _Walk(raw, deque(files), step)
+    claims, found = list[Claim](), list[Verified]()
+    while walk.waiting:
+        path = walk.waiting.popleft()
+        if path.resolve() in walk.seen:
+            continue
+        walk.seen.add(path.resolve())
+        try:
+            for claim in claims_of(path):
+                claims.append(claim)
+                if claim.path is not None and claim.path != path:
+                    walk.waiting.extend(_behind(claim.path))
+        except InputError as error:
+            found.append(Verified(_shown(path), "changed", "", error.what))
+    # What has a place comes first: the files found there are those that others may mean.
+    ordered = sorted(claims, key=lambda claim: claim.path is None)
+    found += [_judged(claim, walk) for claim in ordered]
+    return found + list(_unclaimed(walk, {one.file for one in found}))
+
+
+def _ours_below(folder: Path) -> list[Path]:
+    """Return the files below a folder that speak of others; no hidden folder is entered."""
+    return [
+        path
+        for path in sorted(folder.rglob("*"))
+        if (path.suffix in _OURS or path.name == SUMS)
+        and path.is_file()
+        and not any(part.startswith(".") for part in path.relative_to(folder).parts)
+        and _speaks(path)
+    ]
+
+
+def _speaks(path: Path) -> bool:
+    """Say whether a file is one that tells checksums, or would be if it could be read."""
+    if path.name in {SUMS, MANIFEST} or (path.parent / SUMS).is_file():
+        return True
+    try:
+        if path.suffix == ".json":
+            content = read_json(path)
+            return isinstance(content, dict) and {"format", "stage"} <= content.keys()
+        return any(True for _ in claims_of(path))
+    except InputError:
+        return False
+
+
+def _behind(path: Path) -> Iterator[Path]:
+    """Yield what tells more of a file that was read: its own words, and its folder's."""
+    if path.suffix in _OURS and path.is_file():
+        yield path
+    if (sums := path.parent / SUMS).is_file():
+        yield sums
+        yield from (p for p in sorted(path.parent.iterdir()) if p.suffix in _OURS and p.is_file())
+
+
+def _judged(claim: Claim, walk: _Walk) -> Verified:
+    path, by = claim.path, _shown(claim.by)
+    walk.step()
+    if path is not None and path.is_file():
+        walk.claimed.add(path.resolve())
+        if (claim.found or _sum(path, walk)) == claim.sha256:
+            return Verified(_shown(path), "fits", by)
+        return Verified(_shown(path), "changed", by, _why(claim))
+    known = walk.known.get((claim.file, claim.sha256)) if path is None else None
+    if known is None and claim.by.name != SUMS:
+        known = _in_raw(claim, walk)
+    if known is not None:
+        walk.claimed.add(known.resolve())
+        return Verified(_shown(known), "fits", by)
+    if path is None:
+        return Verified(claim.file, "cannot tell", by, "where it was is not recorded")
+    return Verified(_shown(path), "missing", by, "is not there")
+
+
+def _why(claim: Claim) -> str:
+    if claim.by.name in {SUMS, MANIFEST} or claim.by == claim.path:
+        return "is not what was written"
+    return "has changed since it was read"
+
+
+def _in_raw(claim: Claim, walk: _Walk) -> Path | None:
+    """Return the file among the raw recordings that is what was read."""
+    for folder in walk.raw:
+        for path in sorted(folder.rglob("*")):
+            same = path.name == Path(claim.file).name and path.is_file()
+            if same and _sum(path, walk) == claim.sha256:
+                return path
+    return None
+
+
+def _unclaimed(walk: _Walk, told: set[str]) -> Iterator[Verified]:
+    """Yield the manifests, the pages and the files of the stages that nobody vouches for."""
+    files: dict[Path, str] = {}
+    for path in sorted(walk.seen):
+        if path.name == SUMS:
+            unlisted = f"{SUMS} does not list it"
+            files |= dict.fromkeys(path.parent.rglob("*"), unlisted)
+        elif not (path.parent / SUMS).is_file():
+            beside = [path]
+            if path.suffix == ".json":  # a stage's folder
+                beside += [*path.parent.iterdir(), *path.parent.glob("runs/*")]
+            files |= dict.fromkeys(beside, "no checksum of it is recorded")
+    for path, why in sorted(files.items()):
+        known = path in walk.claimed or path.name == SUMS or _shown(path) in told
+        if path.is_file() and not known:
+            yield Verified(_shown(path), "cannot tell", "", why)
+
+
+def _sum(path: Path, walk: _Walk) -> str:
+    """Return the checksum of a file, which is computed once."""
+    key = path.resolve()
+    if key not in walk.sums:
+        try:
+            walk.sums[key] = sha256_of(path)
+        except OSError as error:
+            walk.sums[key] = f"cannot be read ({error.strerror})"
+        walk.known[path.name, walk.sums[key]] = path
+    return walk.sums[key]
+
+
+def _shown(path: Path) -> str:
+    return os.path.relpath(path)
