@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from tsas_cli.api.read import read, read_drive, read_model
     from tsas_cli.api.report import report
     from tsas_cli.api.reproduce import reproduce
+    from tsas_cli.api.runs import runs
     from tsas_cli.api.simulate import simulate
     from tsas_cli.api.track import track
     from tsas_cli.errors import InputError
@@ -48,6 +49,7 @@ __all__ = [
     "read_model",
     "report",
     "reproduce",
+    "runs",
     "simulate",
     "track",
 ]

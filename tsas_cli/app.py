@@ -22,6 +22,7 @@ from tsas_cli.commands.init import init
 from tsas_cli.commands.plan import plan
 from tsas_cli.commands.report import report
 from tsas_cli.commands.reproduce import reproduce
+from tsas_cli.commands.runs import runs
 from tsas_cli.commands.simulate import simulate
 from tsas_cli.commands.track import track
 from tsas_cli.commands.view import view
@@ -63,6 +64,7 @@ app.command("track")(track)
 app.command("close-loop")(close_loop)
 app.command("report")(report)
 app.command("view")(view)
+app.command("runs")(runs)
 app.command("doctor")(doctor)
 app.command("reproduce")(reproduce)
 app.command("effects")(effects)

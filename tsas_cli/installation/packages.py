@@ -15,8 +15,9 @@ PURPOSES = {
     "mat": "MATLAB v7.3 files",
     "mdf": "MDF4 files",
     "challenge": "the sparse-regression baseline of tsas challenge",
+    "catalogue": "queries over many datasets with tsas runs",
     "bench": "the general solvers that make bench compares with",
-    "all": "every file format and baseline",
+    "all": "every file format, baseline and query",
 }
 
 
