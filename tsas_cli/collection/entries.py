@@ -1,9 +1,9 @@
 """What one manifest or one diagnosis adds to the index."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pyarrow as pa
 import pyarrow.parquet as pq
@@ -14,9 +14,6 @@ from tsas_cli.files import read_json, sha256_of
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.manifest import Rig, Run, parse, read_manifest
 from tsas_cli.stage_files.diagnosis import Diagnosis
-
-if TYPE_CHECKING:
-    from tsas_cli.recordings.manifest import Manifest
 
 RIG = tuple(Rig.model_fields)
 TEXTS = pa.list_(pa.string())
@@ -70,7 +67,7 @@ def entry_of(folder: Path, file: str) -> dict[str, Any]:
 
 
 def _manifest(folder: Path) -> dict[str, Any]:
-    manifest: Manifest = read_manifest(folder)
+    manifest = read_manifest(folder)
     problems: list[str] = []
     return {
         "sha256": sha256_of(folder / MANIFEST),
@@ -141,7 +138,10 @@ def _diagnosis(folder: Path) -> dict[str, Any]:
     }
 
 
-_KINDS: Mapping[str, Any] = {MANIFEST: _manifest, DIAGNOSIS: _diagnosis}
+_KINDS: Mapping[str, Callable[[Path], dict[str, Any]]] = {
+    MANIFEST: _manifest,
+    DIAGNOSIS: _diagnosis,
+}
 
 
 def _utc(at: datetime) -> datetime:

@@ -5,8 +5,6 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from tsas_cli.errors import InputError
-
 MANIFEST, DIAGNOSIS = "dataset.toml", "diagnosis.json"
 
 
@@ -29,17 +27,10 @@ def files_below(roots: Sequence[Path]) -> tuple[dict[Place, Stamp], list[str]]:
     """Return every manifest and diagnosis below some folders, and what could not be looked into.
 
     Hidden folders, links to folders and the recordings of a dataset are not looked into.
-
-    Raises
-    ------
-    InputError
-        One of them is no folder.
     """
     found: dict[Place, Stamp] = {}
     problems: list[str] = []
     for number, root in enumerate(roots):
-        if not root.is_dir():
-            raise InputError("is no folder", where=root, expected="a folder with datasets below it")
         ahead = [""]
         while ahead:
             folder = ahead.pop()

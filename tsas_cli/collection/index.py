@@ -1,7 +1,7 @@
 """An index of all manifests and diagnoses below folders, kept and brought up to date.
 
-It is one Parquet file in the user's cache. A file is read again when its size or the time of its last
-change is another; what is gone from the folders goes from the index.
+It is one Parquet file in the user's cache. A file is read again when its size or the time of its
+last change is another; what is gone from the folders goes from the index.
 """
 
 import hashlib
@@ -41,6 +41,11 @@ def index_of(folders: Sequence[Path], connection: "DuckDBPyConnection", step: St
     InputError
         One of them is no folder.
     """
+    for folder in folders:
+        if not folder.is_dir():
+            raise InputError(
+                "is no folder", where=folder, expected="a folder with datasets below it"
+            )
     roots = [folder.resolve() for folder in folders]
     found, problems = files_below(roots)
     file = _file_for(roots)
@@ -97,10 +102,14 @@ def _renewed(
         step()
     table = pa.Table.from_pylist(entries, schema=SCHEMA)
     if old is not None:
-        before, read_again = pq.read_table(old, schema=SCHEMA), set(changed)
+        before, read_again = pq.ParquetFile(old).read(), set(changed)
         keys = zip(*(before[name].to_pylist() for name in Place._fields), strict=True)
-        stays = [key in found and key not in read_again for key in map(Place._make, keys)]
-        table = pa.concat_tables([before.filter(pa.array(stays, pa.bool_())), table])
+        stays = [
+            row
+            for row, key in enumerate(map(Place._make, keys))
+            if key in found and key not in read_again
+        ]
+        table = pa.concat_tables([before.take(stays).cast(SCHEMA), table])  # filter is far slower
     return table.sort_by([(name, "ascending") for name in Place._fields])
 
 

@@ -34,7 +34,9 @@ SELECT
     diagnosed
 FROM each_run AS e JOIN places AS p USING (root) LEFT JOIN diagnosed AS d
 ON d.manifest_sha256 = e.sha256 AND (chosen IS NULL OR list_contains(chosen, r.run))
-QUALIFY row_number() OVER (PARTITION BY root, e.folder, r.run ORDER BY diagnosed DESC NULLS LAST) = 1
+QUALIFY 1 = row_number() OVER (
+    PARTITION BY root, e.folder, r.run ORDER BY diagnosed DESC NULLS LAST
+)
 """
 BEFORE = "SELECT "  # what DuckDB puts before a condition that it parses
 EXAMPLE = "total_bend_rad > 3 and f_out in channels and started >= 2026-01"
@@ -66,8 +68,9 @@ def connected() -> "DuckDBPyConnection":
         raise InputError(
             "queries need the package duckdb", remedy="install tsas[catalogue]"
         ) from error
-    off = {"autoinstall_known_extensions": "false", "autoload_known_extensions": "false"}
-    return duckdb.connect(config=off)
+    return duckdb.connect(
+        config={"autoinstall_known_extensions": False, "autoload_known_extensions": False}
+    )
 
 
 def asked(
@@ -107,9 +110,11 @@ def asked(
     problems = connection.execute(
         "SELECT folder, file, unnest(problems) FROM entries ORDER BY ALL"
     ).fetchall()
-    said = [f"{Path(folder) / file}: {problem}" for folder, file, problem in problems]
+    in_files = [f"{Path(folder) / file}: {problem}" for folder, file, problem in problems]
     folders = tuple(dict.fromkeys(str(row[-1]) for row in rows))
-    return Answer(chosen, [row[:-1] for row in rows], folders, fit, every, said)
+    return Answer(
+        chosen, [row[:-1] for row in rows], folders, fit, every, [*index.problems, *in_files]
+    )
 
 
 def _locked(connection: "DuckDBPyConnection", index: Index) -> None:
