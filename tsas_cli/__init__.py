@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from tsas_cli.api.runs import runs
     from tsas_cli.api.simulate import simulate
     from tsas_cli.api.track import track
+    from tsas_cli.api.upload import upload
     from tsas_cli.errors import InputError
     from tsas_cli.steps import Steps
 
@@ -52,6 +53,7 @@ __all__ = [
     "runs",
     "simulate",
     "track",
+    "upload",
 ]
 
 _ELSEWHERE = {

@@ -25,6 +25,7 @@ from tsas_cli.commands.reproduce import reproduce
 from tsas_cli.commands.runs import runs
 from tsas_cli.commands.simulate import simulate
 from tsas_cli.commands.track import track
+from tsas_cli.commands.upload import upload
 from tsas_cli.commands.view import view
 from tsas_cli.errors import InputError, printable
 
@@ -65,6 +66,7 @@ app.command("close-loop")(close_loop)
 app.command("report")(report)
 app.command("view")(view)
 app.command("runs")(runs)
+app.command("upload")(upload)
 app.command("doctor")(doctor)
 app.command("reproduce")(reproduce)
 app.command("effects")(effects)

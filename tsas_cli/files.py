@@ -31,6 +31,7 @@ def new_folder(path: Path, *, force: bool = False) -> Iterator[Path]:
         holds something else than an earlier output, or the current folder; it cannot be written.
     """
     try:
+        _refuse_address(path)
         if path.is_file():
             raise InputError("is a file", where=path, expected="a folder's name")
         _refuse_existing(path, force=force)
@@ -74,6 +75,7 @@ def new_file(path: Path, *, force: bool = False) -> Iterator[Path]:
         `path` exists and `force` is not set, it is a folder, or it cannot be written.
     """
     try:
+        _refuse_address(path)
         if path.is_dir():
             raise InputError("is a folder", where=path, expected="a file's name")
         _refuse_existing(path, force=force)
@@ -127,6 +129,17 @@ def _finite(content: Any) -> Any:
     if isinstance(content, float):
         return content if math.isfinite(content) else None
     return content
+
+
+def _refuse_address(path: Path) -> None:
+    """Keep `--out s3://…` from becoming a folder `s3:`."""
+    if path.parts and path.parts[0] in {"s3:", "gs:", "file:"}:
+        raise InputError(
+            "is an address",
+            where=path.as_posix().replace(":/", "://", 1),
+            expected="a local folder or file",
+            remedy="write there, then copy it",
+        )
 
 
 def _refuse_existing(path: Path, *, force: bool) -> None:

@@ -5,7 +5,7 @@ from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 
-from tsas_cli.api.given import Named, paths_of
+from tsas_cli.api.given import Named, places_of
 from tsas_cli.errors import InputError
 from tsas_cli.files import new_file
 from tsas_cli.reporting.inputs import read_inputs
@@ -46,7 +46,8 @@ def report(
     Parameters
     ----------
     folders
-        A dataset's folder and those that the stages have written, one of each kind.
+        A dataset's folder or address, and the folders that the stages have written, one of each
+        kind.
     out
         The HTML file to write.
     pdf
@@ -73,7 +74,7 @@ def report(
         pages.append(_beside(Path(out)))
     with ExitStack() as stack:
         html, *printed = (stack.enter_context(new_file(path, force=force)) for path in pages)
-        inputs = read_inputs(paths_of(folders))
+        inputs = read_inputs(places_of(folders))
         step.ahead(len(SECTIONS))
         text = page(inputs, step)
         html.write_text(text, encoding="utf-8")

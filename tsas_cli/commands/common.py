@@ -16,7 +16,9 @@ from tsas_cli.text_table import table_text
 if TYPE_CHECKING:
     from tsas_cli.result import Result
 
-DatasetFolder = Annotated[Path, typer.Argument(metavar="DATASET", help="A dataset's folder.")]
+DatasetFolder = Annotated[
+    str, typer.Argument(metavar="DATASET", help="A dataset's folder, or its address (s3://…).")
+]
 OutFolder = Annotated[Path, typer.Option("--out", metavar="DIR", help="The folder to write.")]
 ModelFile = Annotated[
     Path | None,

@@ -16,8 +16,10 @@ PURPOSES = {
     "mdf": "MDF4 files",
     "challenge": "the sparse-regression baseline of tsas challenge",
     "catalogue": "queries over many datasets with tsas runs",
+    "s3": "datasets on S3, by address (s3://…)",
+    "gs": "datasets on Google Cloud Storage, by address (gs://…)",
     "bench": "the general solvers that make bench compares with",
-    "all": "every file format, baseline and query",
+    "all": "every file format, storage, baseline and query",
 }
 
 

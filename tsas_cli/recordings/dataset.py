@@ -1,17 +1,17 @@
 """A dataset on disk: one Parquet file per run, and the manifest beside them (format 1)."""
 
-import os
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
+from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
 from tsas_cli import __version__
 from tsas_cli.errors import InputError, nearest
-from tsas_cli.files import sha256_of
 from tsas_cli.recordings.manifest import FILE, Manifest, Run, read_manifest
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.recordings.run_files import read_recording
+from tsas_cli.recordings.storage import Place, told_from
 
 
 @dataclass(frozen=True, repr=False)
@@ -23,14 +23,14 @@ class Dataset:
     Parameters
     ----------
     folder
-        Where it is.
+        Where it is: a local folder, or an address on object storage.
     manifest
         What `dataset.toml` says.
     chosen
         The ids of the runs that count, all without it.
     """
 
-    folder: Path
+    folder: Place
     manifest: Manifest
     chosen: tuple[str, ...] | None = None
 
@@ -82,10 +82,9 @@ class Dataset:
     def header(self, stage: str, folder: Path | None) -> dict[str, Any]:
         """Return the first keys of the JSON that a stage writes into `folder`.
 
-        Without a folder the dataset's place is said from the current one.
+        Without a folder the dataset's place is said from the current one; an address as it is.
         """
-        here = (folder or Path()).resolve()
-        path = Path(os.path.relpath(self.folder.resolve(), here)).as_posix()
+        path = told_from(folder or Path(), self.folder)
         return {
             "format": 1,
             "stage": stage,
@@ -95,11 +94,12 @@ class Dataset:
 
     def hashes(self) -> dict[str, str]:
         """Return the checksum of the manifest and of each run's file, by path in the dataset."""
-        return {FILE: sha256_of(self.folder / FILE)} | {r.file: r.sha256 for r in self.manifest.run}
+        manifest = (self.folder / FILE).read_bytes()
+        return {FILE: sha256(manifest).hexdigest()} | {r.file: r.sha256 for r in self.manifest.run}
 
 
-def read_dataset(folder: Path) -> Dataset:
-    """Open a dataset.
+def read_dataset(folder: Place) -> Dataset:
+    """Open a dataset in a local folder, or at an address.
 
     Raises
     ------

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import IO, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -11,14 +12,16 @@ import pyarrow.parquet as pq
 
 from tsas_cli.errors import InputError
 from tsas_cli.files import sha256_of
+from tsas_cli.recordings.blocks import NotTheSameError, opened
 from tsas_cli.recordings.columns import BY_NAME, INPUTS, OUTPUTS, TIME, has_input_and_output
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.recording import Recording
+from tsas_cli.recordings.storage import Address, Place
 
 Floats = npt.NDArray[np.float64]
 
 
-def read_recording(folder: Path, run: Run, *, strict: bool = True) -> Recording:
+def read_recording(folder: Place, run: Run, *, strict: bool = True) -> Recording:
     """Read one run and check it against its checksum and the rules of format 1.
 
     With `strict=False` the time may run backwards or repeat, for `tsas check` to describe it.
@@ -30,9 +33,12 @@ def read_recording(folder: Path, run: Run, *, strict: bool = True) -> Recording:
         is missing, in another unit or not of numbers; the time is not strictly increasing.
     """
     path = folder / run.file
-    table = _read_parquet(path, folder, run)
-    columns = {name: _floats(table, name, path) for name in table.column_names if name in BY_NAME}
-    _check_columns(columns, table.column_names, path)
+    try:
+        table, names = _table_of(_checked_file(path, folder, run), path)
+    except NotTheSameError as error:
+        raise changed(path, run) from error
+    columns = {name: _floats(table, name, path) for name in table.column_names}
+    _check_columns(columns, names, path)
     if strict:
         _check_time(columns[TIME], path)
     return Recording(run, columns)
@@ -43,7 +49,7 @@ class RunColumns:
     """One run, whose columns are read one at a time, when they are asked for."""
 
     run: Run
-    path: Path
+    path: Place
     file: pq.ParquetFile
 
     @property
@@ -73,6 +79,8 @@ class RunColumns:
             )
         try:
             table = self.file.read(columns=[name])
+        except NotTheSameError as error:
+            raise changed(self.path, self.run) from error
         except (pa.ArrowException, OSError) as error:
             raise _not_parquet(self.path, error) from error
         values = _floats(table, name, self.path)
@@ -81,7 +89,7 @@ class RunColumns:
         return values
 
 
-def open_run(folder: Path, run: Run) -> RunColumns:
+def open_run(folder: Place, run: Run) -> RunColumns:
     """Open one run and check it as far as that is possible without its samples.
 
     Raises
@@ -91,10 +99,12 @@ def open_run(folder: Path, run: Run) -> RunColumns:
         missing, or a column is in another unit.
     """
     path = folder / run.file
-    _check_file(path, folder, run)
+    source = _checked_file(path, folder, run)
     try:
-        file = pq.ParquetFile(path)
+        file = pq.ParquetFile(source)
         _check_names_and_units(file.schema_arrow, path)
+    except NotTheSameError as error:
+        raise changed(path, run) from error
     except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
         raise _not_parquet(path, error) from error
     if TIME not in file.schema_arrow.names or file.metadata.num_rows < 2:
@@ -113,55 +123,85 @@ def read_columns(path: Path) -> dict[str, Floats]:
     """
     if not path.is_file():
         raise InputError("is not there", where=path, expected="a Parquet file")
-    table = _table_of(path)
-    columns = {name: _floats(table, name, path) for name in table.column_names if name in BY_NAME}
+    table, _ = _table_of(path, path)
+    columns = {name: _floats(table, name, path) for name in table.column_names}
     if TIME not in columns or len(columns[TIME]) < 2:
         raise InputError("column time_s is missing or short", where=path, expected="time in s")
     _check_time(columns[TIME], path)
     return columns
 
 
-def _read_parquet(path: Path, folder: Path, run: Run) -> pa.Table:
-    _check_file(path, folder, run)
-    return _table_of(path)
+def _checked_file(path: Place, folder: Place, run: Run) -> Path | IO[bytes]:
+    """Return what Parquet is read from: the file itself once its checksum is that of the manifest.
 
-
-def _check_file(path: Path, folder: Path, run: Run) -> None:
-    """Refuse a file that is not there, not in the dataset, or not what the manifest says."""
-    if not path.is_file():
-        raise InputError(
-            "the run's file is missing", where=path, expected=f"the Parquet file of run {run.id}"
-        )
-    if not path.resolve().is_relative_to(folder.resolve()):
-        raise InputError("a link leads out of the dataset's folder", where=path)
+    What comes from an address is checked while it is read.
+    """
+    if isinstance(path, Address) or isinstance(folder, Address):
+        try:
+            return opened(cast("Address", path), run.sha256.lower())
+        except FileNotFoundError as error:
+            raise _missing(path, run) from error
+        except NotTheSameError as error:
+            raise changed(path, run) from error
+    path = local_file(folder, run)
     try:
         digest = sha256_of(path)
     except OSError as error:
         raise InputError(f"cannot be read ({error.strerror})", where=path) from error
     if digest != run.sha256.lower():
-        raise InputError(
-            "the checksum differs from the manifest's",
-            where=path,
-            expected=run.sha256.lower(),
-            remedy="the file has changed since ingest: restore it or ingest again",
-        )
+        raise changed(path, run)
+    return path
 
 
-def _table_of(path: Path) -> pa.Table:
+def local_file(folder: Path, run: Run) -> Path:
+    """Return a run's file in a local folder.
+
+    Raises
+    ------
+    InputError
+        It is missing, or a link leads out of the folder.
+    """
+    path = folder / run.file
+    if not path.is_file():
+        raise _missing(path, run)
+    if not path.resolve().is_relative_to(folder.resolve()):
+        raise InputError("a link leads out of the dataset's folder", where=path)
+    return path
+
+
+def _missing(path: Place, run: Run) -> InputError:
+    return InputError(
+        "the run's file is missing", where=path, expected=f"the Parquet file of run {run.id}"
+    )
+
+
+def changed(path: Place, run: Run) -> InputError:
+    """Return what is said of a file that is not what the manifest says."""
+    return InputError(
+        "the checksum differs from the manifest's",
+        where=path,
+        expected=run.sha256.lower(),
+        remedy="the file has changed since ingest: restore it or ingest again",
+    )
+
+
+def _table_of(source: Path | IO[bytes], path: Place) -> tuple[pa.Table, list[str]]:
+    """Return the known columns of a file, and the names of all."""
     try:
-        table = pq.ParquetFile(path).read()
-        _check_names_and_units(table.schema, path)
+        file = pq.ParquetFile(source)
+        names = list(file.schema_arrow.names)
+        _check_names_and_units(file.schema_arrow, path)
+        return file.read(columns=[name for name in names if name in BY_NAME]), names
     except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
         raise _not_parquet(path, error) from error
-    return table
 
 
-def _not_parquet(path: Path, error: Exception) -> InputError:
+def _not_parquet(path: Place, error: Exception) -> InputError:
     reason = str(error).splitlines()[0]
     return InputError(f"cannot be read as Parquet ({reason})", where=path)
 
 
-def _check_names_and_units(schema: pa.Schema, path: Path) -> None:
+def _check_names_and_units(schema: pa.Schema, path: Place) -> None:
     """Refuse a known column that is there twice, or whose metadata name another known unit."""
     units = {column.unit for column in BY_NAME.values()}
     for field in schema:
@@ -177,7 +217,7 @@ def _check_names_and_units(schema: pa.Schema, path: Path) -> None:
             )
 
 
-def _floats(table: pa.Table, name: str, path: Path) -> Floats:
+def _floats(table: pa.Table, name: str, path: Place) -> Floats:
     column = table.column(name)
     if not (
         pa.types.is_floating(column.type)
@@ -201,7 +241,7 @@ def _floats(table: pa.Table, name: str, path: Path) -> Floats:
     return values
 
 
-def _check_columns(columns: Mapping[str, Floats], there: list[str], path: Path) -> None:
+def _check_columns(columns: Mapping[str, Floats], there: list[str], path: Place) -> None:
     listed = ", ".join(there) or "none"
     if TIME not in columns:
         raise InputError(
@@ -221,7 +261,7 @@ def _check_columns(columns: Mapping[str, Floats], there: list[str], path: Path) 
         raise InputError(f"{len(columns[TIME])} rows", where=path, expected="at least two samples")
 
 
-def _check_time(time_s: Floats, path: Path) -> None:
+def _check_time(time_s: Floats, path: Place) -> None:
     step = np.diff(time_s)
     if (step <= 0).any():
         row = int(np.flatnonzero(step <= 0)[0]) + 1

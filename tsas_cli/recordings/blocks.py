@@ -1,0 +1,177 @@
+"""A recording on object storage, read in parts of which each is checked.
+
+`tsas upload` puts a list beside each recording: its SHA-256, and one for each block of bytes.
+With the list, what is read are blocks, and each is held against its checksum. Without it, or where
+it belongs to another file, the whole recording is fetched and held against the manifest's checksum.
+"""
+
+import hashlib
+import io
+import json
+import tempfile
+from collections import OrderedDict
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import groupby
+from pathlib import Path
+from typing import IO, Any
+
+from tsas_cli.recordings.storage import Address
+
+SMALLEST, MOST = 64 * 1024, 4096  # bytes of a block; blocks of a file, where it is large
+HELD = 64 * 1024 * 1024  # bytes in memory at once, and at most in one request
+SUFFIX = ".blocks.json"
+
+
+class NotTheSameError(Exception):
+    """What was read is not what the checksum says."""
+
+
+@dataclass(frozen=True)
+class Blocks:
+    """The checksum of a file, its size, and the checksum of each block of `block_bytes`."""
+
+    sha256: str
+    size: int
+    block_bytes: int
+    blocks: tuple[str, ...]
+
+    def content(self) -> bytes:
+        """Return it as JSON."""
+        told = {
+            "format": 1,
+            "sha256": self.sha256,
+            "size": self.size,
+            "block_bytes": self.block_bytes,
+            "blocks": self.blocks,
+        }
+        return (json.dumps(told, indent=1) + "\n").encode()
+
+
+def blocks_of(path: Path) -> Blocks:
+    """Return the checksums of a file."""
+    size = path.stat().st_size
+    block = SMALLEST
+    while block * MOST < size:
+        block *= 2
+    whole, parts = hashlib.sha256(), []
+    with path.open("rb") as file:
+        while piece := file.read(block):
+            whole.update(piece)
+            parts.append(hashlib.sha256(piece).hexdigest())
+    return Blocks(whole.hexdigest(), size, block, tuple(parts))
+
+
+def opened(address: Address, sha256: str) -> IO[bytes]:
+    """Open a recording whose bytes are checked before they are handed out.
+
+    Raises
+    ------
+    FileNotFoundError
+        It is not there.
+    NotTheSameError
+        The recording is another one.
+    InputError
+        The storage cannot be asked.
+    """
+    blocks = _listed(address, sha256)
+    if blocks is None:
+        return _fetched(address, sha256)
+    return io.BufferedReader(CheckedFile(address, blocks))
+
+
+def _listed(address: Address, sha256: str) -> Blocks | None:
+    """Return the list beside a recording, or None where there is none that is of use."""
+    try:
+        told = json.loads(Address(address.scheme, address.path + SUFFIX).read_bytes())
+        blocks = Blocks(
+            str(told["sha256"]), int(told["size"]), int(told["block_bytes"]), tuple(told["blocks"])
+        )
+    except (FileNotFoundError, ValueError, TypeError, KeyError, RecursionError):
+        return None
+    right = blocks.sha256 == sha256 and blocks.block_bytes > 0
+    return blocks if right and len(blocks.blocks) == -(-blocks.size // blocks.block_bytes) else None
+
+
+def _fetched(address: Address, sha256: str) -> IO[bytes]:
+    """Return a whole recording, of which a large one stays on disk until it is closed."""
+    digest = hashlib.sha256()
+    file = tempfile.SpooledTemporaryFile(max_size=HELD)  # noqa: SIM115 # the reader closes it
+    for start in range(0, size := address.size(), HELD):
+        piece = address.read_bytes(start, min(start + HELD, size))
+        digest.update(piece)
+        file.write(piece)
+    if digest.hexdigest() != sha256:
+        file.close()
+        raise NotTheSameError
+    file.seek(0)
+    return file
+
+
+class CheckedFile(io.RawIOBase):
+    """A file of which only what is asked for is fetched, in blocks with a checksum each."""
+
+    def __init__(self, address: Address, blocks: Blocks) -> None:
+        self._address, self._blocks, self._at = address, blocks, 0
+        self._held: OrderedDict[int, bytes] = OrderedDict()
+
+    def readable(self) -> bool:
+        """Say that it can be read."""
+        return True
+
+    def seekable(self) -> bool:
+        """Say that it can be read from any place on."""
+        return True
+
+    def seek(self, offset: int, whence: int = io.SEEK_SET) -> int:
+        """Go to a place."""
+        begins = {io.SEEK_SET: 0, io.SEEK_CUR: self._at, io.SEEK_END: self._blocks.size}
+        self._at = max(begins[whence] + offset, 0)
+        return self._at
+
+    def tell(self) -> int:
+        """Return the place."""
+        return self._at
+
+    def readinto(self, buffer: Any) -> int:
+        """Read as much as there is room for.
+
+        Raises
+        ------
+        NotTheSameError
+            A block is not what its checksum says.
+        """
+        view = memoryview(buffer).cast("B")
+        end = min(self._at + len(view), self._blocks.size)
+        step = self._blocks.block_bytes
+        if end <= self._at:
+            return 0
+        end = min(end, (self._at // step) * step + max(HELD // step, 1) * step)
+        wanted = range(self._at // step, -(-end // step))
+        content = b"".join(self._read(wanted))
+        begin = self._at - wanted.start * step
+        view[: end - self._at] = content[begin : begin + end - self._at]
+        read, self._at = end - self._at, end
+        return read
+
+    def _read(self, wanted: range) -> list[bytes]:
+        """Return some blocks; those that are not held are fetched, neighbours with one request."""
+        missing = [k for k in wanted if k not in self._held]
+        for _, group in groupby(enumerate(missing), lambda pair: pair[1] - pair[0]):
+            numbers = [number for _, number in group]
+            self._held.update(self._fetch(numbers[0], numbers[-1] + 1))
+        blocks = [self._held[k] for k in wanted]
+        for k in wanted:
+            self._held.move_to_end(k)
+        while len(self._held) * self._blocks.block_bytes > HELD:
+            self._held.popitem(last=False)
+        return blocks
+
+    def _fetch(self, first: int, end: int) -> Iterator[tuple[int, bytes]]:
+        step = self._blocks.block_bytes
+        content = self._address.read_bytes(first * step, min(end * step, self._blocks.size))
+        for k in range(first, end):
+            block = content[(k - first) * step : (k - first + 1) * step]
+            if hashlib.sha256(block).hexdigest() != self._blocks.blocks[k]:
+                raise NotTheSameError
+            yield k, block
