@@ -8,17 +8,21 @@ it belongs to another file, the whole recording is fetched and held against the 
 import hashlib
 import io
 import json
+import mmap
 import tempfile
 from collections import OrderedDict
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import groupby
 from pathlib import Path
-from typing import IO, Any
+from typing import IO
 
+import pyarrow as pa
+
+from tsas_cli.errors import InputError
 from tsas_cli.recordings.storage import Address
 
-SMALLEST, MOST = 64 * 1024, 4096  # bytes of a block; blocks of a file, where it is large
+SMALLEST, MOST = 16 * 1024, 16384  # bytes of a block; blocks of a file, where it is large
 HELD = 64 * 1024 * 1024  # bytes in memory at once, and at most in one request
 SUFFIX = ".blocks.json"
 
@@ -62,7 +66,7 @@ def blocks_of(path: Path) -> Blocks:
     return Blocks(whole.hexdigest(), size, block, tuple(parts))
 
 
-def opened(address: Address, sha256: str) -> IO[bytes]:
+def opened(address: Address, sha256: str) -> "CheckedFile | pa.NativeFile":
     """Open a recording whose bytes are checked before they are handed out.
 
     Raises
@@ -77,7 +81,9 @@ def opened(address: Address, sha256: str) -> IO[bytes]:
     blocks = _listed(address, sha256)
     if blocks is None:
         return _fetched(address, sha256)
-    return io.BufferedReader(CheckedFile(address, blocks))
+    if address.size() != blocks.size:
+        raise NotTheSameError
+    return CheckedFile(address, blocks)
 
 
 def _listed(address: Address, sha256: str) -> Blocks | None:
@@ -89,23 +95,33 @@ def _listed(address: Address, sha256: str) -> Blocks | None:
         )
     except (FileNotFoundError, ValueError, TypeError, KeyError, RecursionError):
         return None
-    right = blocks.sha256 == sha256 and blocks.block_bytes > 0
+    right = blocks.sha256 == sha256 and 0 < blocks.block_bytes <= HELD
     return blocks if right and len(blocks.blocks) == -(-blocks.size // blocks.block_bytes) else None
 
 
-def _fetched(address: Address, sha256: str) -> IO[bytes]:
-    """Return a whole recording, of which a large one stays on disk until it is closed."""
-    digest = hashlib.sha256()
-    file = tempfile.SpooledTemporaryFile(max_size=HELD)  # noqa: SIM115 # the reader closes it
-    for start in range(0, size := address.size(), HELD):
-        piece = address.read_bytes(start, min(start + HELD, size))
-        digest.update(piece)
+def _fetched(address: Address, sha256: str) -> pa.NativeFile:
+    """Return a whole recording, which lies on disk as long as somebody reads it."""
+    digest, size = hashlib.sha256(), address.size()
+    with tempfile.TemporaryFile() as file:
+        for start in range(0, size, HELD):
+            piece = address.read_bytes(start, min(start + HELD, size))
+            digest.update(piece)
+            _kept(file, piece)
+        if digest.hexdigest() != sha256 or not size:
+            raise NotTheSameError
+        file.flush()
+        return pa.BufferReader(mmap.mmap(file.fileno(), size, access=mmap.ACCESS_READ))
+
+
+def _kept(file: IO[bytes], piece: bytes) -> None:
+    try:
         file.write(piece)
-    if digest.hexdigest() != sha256:
-        file.close()
-        raise NotTheSameError
-    file.seek(0)
-    return file
+    except OSError as error:
+        raise InputError(
+            f"a recording cannot be kept while it is read ({error.strerror})",
+            where=tempfile.gettempdir(),
+            remedy="make room there, or name another folder in TMPDIR",
+        ) from error
 
 
 class CheckedFile(io.RawIOBase):
@@ -133,26 +149,24 @@ class CheckedFile(io.RawIOBase):
         """Return the place."""
         return self._at
 
-    def readinto(self, buffer: Any) -> int:
-        """Read as much as there is room for.
+    def read(self, size: int = -1) -> bytes:
+        """Return so many bytes from the place on, fewer only at the end.
 
         Raises
         ------
         NotTheSameError
             A block is not what its checksum says.
         """
-        view = memoryview(buffer).cast("B")
-        end = min(self._at + len(view), self._blocks.size)
-        step = self._blocks.block_bytes
+        end = self._blocks.size if size < 0 else min(self._at + size, self._blocks.size)
         if end <= self._at:
-            return 0
-        end = min(end, (self._at // step) * step + max(HELD // step, 1) * step)
-        wanted = range(self._at // step, -(-end // step))
-        content = b"".join(self._read(wanted))
-        begin = self._at - wanted.start * step
-        view[: end - self._at] = content[begin : begin + end - self._at]
-        read, self._at = end - self._at, end
-        return read
+            return b""
+        step, begin = self._blocks.block_bytes, self._at
+        content = bytearray()
+        first, last = begin // step, (end - 1) // step
+        for k in range(first, last + 1, HELD // step):
+            content += b"".join(self._read(range(k, min(k + HELD // step, last + 1))))
+        self._at = end
+        return bytes(memoryview(content)[begin - first * step : end - first * step])
 
     def _read(self, wanted: range) -> list[bytes]:
         """Return some blocks; those that are not held are fetched, neighbours with one request."""

@@ -3,7 +3,6 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -11,12 +10,12 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from tsas_cli.errors import InputError
-from tsas_cli.files import sha256_of
-from tsas_cli.recordings.blocks import NotTheSameError, opened
+from tsas_cli.recordings.blocks import NotTheSameError
+from tsas_cli.recordings.checked import Source, changed, checked_file
 from tsas_cli.recordings.columns import BY_NAME, INPUTS, OUTPUTS, TIME, has_input_and_output
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.recording import Recording
-from tsas_cli.recordings.storage import Address, Place
+from tsas_cli.recordings.storage import Place
 
 Floats = npt.NDArray[np.float64]
 
@@ -34,7 +33,7 @@ def read_recording(folder: Place, run: Run, *, strict: bool = True) -> Recording
     """
     path = folder / run.file
     try:
-        table, names = _table_of(_checked_file(path, folder, run), path)
+        table, names = _table_of(checked_file(path, folder, run), path)
     except NotTheSameError as error:
         raise changed(path, run) from error
     columns = {name: _floats(table, name, path) for name in table.column_names}
@@ -99,7 +98,7 @@ def open_run(folder: Place, run: Run) -> RunColumns:
         missing, or a column is in another unit.
     """
     path = folder / run.file
-    source = _checked_file(path, folder, run)
+    source = checked_file(path, folder, run)
     try:
         file = pq.ParquetFile(source)
         _check_names_and_units(file.schema_arrow, path)
@@ -131,61 +130,7 @@ def read_columns(path: Path) -> dict[str, Floats]:
     return columns
 
 
-def _checked_file(path: Place, folder: Place, run: Run) -> Path | IO[bytes]:
-    """Return what Parquet is read from: the file itself once its checksum is that of the manifest.
-
-    What comes from an address is checked while it is read.
-    """
-    if isinstance(path, Address) or isinstance(folder, Address):
-        try:
-            return opened(cast("Address", path), run.sha256.lower())
-        except FileNotFoundError as error:
-            raise _missing(path, run) from error
-        except NotTheSameError as error:
-            raise changed(path, run) from error
-    path = local_file(folder, run)
-    try:
-        digest = sha256_of(path)
-    except OSError as error:
-        raise InputError(f"cannot be read ({error.strerror})", where=path) from error
-    if digest != run.sha256.lower():
-        raise changed(path, run)
-    return path
-
-
-def local_file(folder: Path, run: Run) -> Path:
-    """Return a run's file in a local folder.
-
-    Raises
-    ------
-    InputError
-        It is missing, or a link leads out of the folder.
-    """
-    path = folder / run.file
-    if not path.is_file():
-        raise _missing(path, run)
-    if not path.resolve().is_relative_to(folder.resolve()):
-        raise InputError("a link leads out of the dataset's folder", where=path)
-    return path
-
-
-def _missing(path: Place, run: Run) -> InputError:
-    return InputError(
-        "the run's file is missing", where=path, expected=f"the Parquet file of run {run.id}"
-    )
-
-
-def changed(path: Place, run: Run) -> InputError:
-    """Return what is said of a file that is not what the manifest says."""
-    return InputError(
-        "the checksum differs from the manifest's",
-        where=path,
-        expected=run.sha256.lower(),
-        remedy="the file has changed since ingest: restore it or ingest again",
-    )
-
-
-def _table_of(source: Path | IO[bytes], path: Place) -> tuple[pa.Table, list[str]]:
+def _table_of(source: Source, path: Place) -> tuple[pa.Table, list[str]]:
     """Return the known columns of a file, and the names of all."""
     try:
         file = pq.ParquetFile(source)

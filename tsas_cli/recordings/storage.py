@@ -19,6 +19,11 @@ from tsas_cli.errors import InputError
 
 PACKAGES = {"s3": "s3fs", "gs": "gcsfs"}  # by scheme; the extras have the schemes' names
 CONNECT_S, READ_S, TRIES = 5.0, 10.0, 2  # what a dead network costs at most is their product
+_S3_WAITS = {
+    "connect_timeout": CONNECT_S,
+    "read_timeout": READ_S,
+    "retries": {"max_attempts": 1},
+}
 SCHEME = re.compile(r"(\w[\w+.-]*)://")
 Returned = TypeVar("Returned")
 
@@ -86,7 +91,7 @@ class Address:
         InputError
             The storage cannot be asked.
         """
-        return bytes(self._asked(lambda files: files.cat_file(self.path, start, end)))
+        return bytes(self._asked(lambda files: files.cat_file(self.path, start=start, end=end)))
 
     def read_text(self, encoding: str) -> str:
         """Return it as text."""
@@ -129,9 +134,9 @@ class Address:
     def _asked(self, call: Callable[[Any], Returned]) -> Returned:
         """Return what the storage answers; what goes wrong on the way is one line."""
         try:
-            return call(_files(self.scheme))
+            return call(files_of(self.scheme))
         except FileNotFoundError as error:
-            if "bucket" not in str(error).lower():
+            if "specified bucket does not exist" not in str(error):
                 raise
             raise InputError("there is no such bucket", where=self) from error
         except InputError:
@@ -194,7 +199,7 @@ def told_from(home: Path, place: Place) -> str:
 
 
 @cache
-def _files(scheme: str) -> Any:
+def files_of(scheme: str) -> Any:
     """Return fsspec's view of a storage, with the credentials that its own library finds."""
     try:
         import fsspec
@@ -205,14 +210,8 @@ def _files(scheme: str) -> Any:
             f"addresses with {scheme}:// need the package {PACKAGES[scheme]}",
             remedy=f"install tsas[{scheme}]",
         ) from error
-    if scheme == "gs":
-        return made(use_listings_cache=False, skip_instance_cache=True, timeout=READ_S)
-    retries = {"max_attempts": 1}
-    files = made(
-        use_listings_cache=False,
-        skip_instance_cache=True,
-        config_kwargs={"connect_timeout": CONNECT_S, "read_timeout": READ_S, "retries": retries},
-    )
+    waits = {"timeout": READ_S} if scheme == "gs" else {"config_kwargs": _S3_WAITS}
+    files = made(use_listings_cache=False, skip_instance_cache=True, **waits)
     files.retries = TRIES
     return files
 
@@ -245,4 +244,12 @@ def _said(address: Address, error: Exception) -> InputError:
     return InputError(f"the storage fails ({type(error).__name__}: {reason})", where=address)
 
 
-_UNREACHED = {"HTTPClientError", "ClientError", "FSTimeoutError", "TransportError"}
+# By name, since their libraries are there only where a storage is used.
+_UNREACHED = {
+    "ConnectionError",
+    "HTTPClientError",
+    "ClientConnectionError",
+    "ClientPayloadError",
+    "FSTimeoutError",
+    "TransportError",
+}

@@ -4,9 +4,9 @@ from pathlib import Path
 
 from tsas_cli.errors import InputError
 from tsas_cli.recordings.blocks import SUFFIX, blocks_of
+from tsas_cli.recordings.checked import changed, local_file
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.manifest import FILE, Run
-from tsas_cli.recordings.run_files import changed, local_file
 from tsas_cli.recordings.storage import Address
 from tsas_cli.steps import Steps
 
