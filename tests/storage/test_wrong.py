@@ -51,9 +51,13 @@ def test_a_server_that_never_answers(keys, monkeypatch):
         assert time.monotonic() - before < 8
 
 
-def test_a_storage_that_stays_silent_is_given_up_within_half_a_minute():
-    # is_file may ask twice: for the object, and for a folder of its name
-    assert 2 * storage.TRIES * max(storage.READ_S, storage.CONNECT_S) <= 40
+def test_a_storage_that_stays_silent_is_given_up_in_time(keys, monkeypatch):
+    monkeypatch.setattr(storage, "ANSWER_S", 1.0)
+    with socket.create_server((HOST, 0)) as silent:
+        monkeypatch.setenv("AWS_ENDPOINT_URL", f"http://{HOST}:{silent.getsockname()[1]}")
+        before = time.monotonic()
+        assert "the storage cannot be reached (FSTimeoutError)" in line_of("s3://a/b")
+        assert time.monotonic() - before < 8
 
 
 def test_a_wire_that_breaks_while_a_recording_is_read(dataset, bucket, wire):

@@ -5,6 +5,7 @@ imported only where there is an address.
 """
 
 import io
+import logging
 import os
 import re
 from collections.abc import Callable
@@ -18,7 +19,7 @@ from urllib.request import url2pathname
 from tsas_cli.errors import InputError
 
 PACKAGES = {"s3": "s3fs", "gs": "gcsfs"}  # by scheme; the extras have the schemes' names
-CONNECT_S, READ_S, TRIES = 5.0, 10.0, 2  # what a dead network costs at most is their product
+CONNECT_S, READ_S, TRIES, ANSWER_S = 5.0, 10.0, 2, 25.0
 _S3_WAITS = {
     "connect_timeout": CONNECT_S,
     "read_timeout": READ_S,
@@ -79,7 +80,7 @@ class Address:
         InputError
             The storage cannot be asked.
         """
-        return int(self._asked(lambda files: files.info(self.path))["size"])
+        return int(self._asked(lambda files: _in_time(files, files._info, self.path))["size"])  # noqa: SLF001
 
     def read_bytes(self, start: int | None = None, end: int | None = None) -> bytes:
         """Return its bytes, or those from `start` up to `end`, with one request.
@@ -213,7 +214,19 @@ def files_of(scheme: str) -> Any:
     waits = {"timeout": READ_S} if scheme == "gs" else {"config_kwargs": _S3_WAITS}
     files = made(use_listings_cache=False, skip_instance_cache=True, **waits)
     files.retries = TRIES
+    logging.getLogger(PACKAGES[scheme]).setLevel(logging.CRITICAL)  # what it logs, it raises too
     return files
+
+
+def _in_time(files: Any, ask: Callable[..., Any], path: str) -> Any:
+    """Return what a storage says of an object, if it does so in time.
+
+    This comes before any other question. The libraries' own limits are per try, and gcsfs tries for
+    a minute.
+    """
+    from fsspec.asyn import sync
+
+    return sync(files.loop, ask, path, timeout=ANSWER_S)
 
 
 def _said(address: Address, error: Exception) -> InputError:
@@ -237,7 +250,7 @@ def _said(address: Address, error: Exception) -> InputError:
         return InputError(
             f"the storage cannot be reached ({type(error).__name__})",
             where=address,
-            remedy="see that the network is up and the endpoint (AWS_ENDPOINT_URL) right",
+            remedy="see that the network is up, and the endpoint right where one is set",
         )
     reason = (str(error).splitlines() or [""])[0]
     reason = re.sub(r"//[^/\s@]+@|\?\S+", "…", reason)
