@@ -51,6 +51,15 @@ def test_one_column_of_six_is_read_without_the_others(large, wire):
     assert [verb for verb, path in wire.requests if path.endswith(OBJECT)] == ["HEAD", "GET", "GET"]
 
 
+def test_what_was_read_is_not_fetched_again(large, wire):
+    _, address = large
+    run = read_dataset(address).runs[0]
+    first = open_run(address, run).read("f_out_N")
+    wire.reset()
+    np.testing.assert_array_equal(open_run(address, run).read("f_out_N"), first)
+    assert [verb for verb, path in wire.requests if path.endswith(OBJECT)] == ["HEAD"]
+
+
 def test_columns_that_tsas_does_not_know_are_not_fetched(tmp_path, manifest, columns, bucket, wire):
     unknown = {"other": np.random.default_rng(7).normal(size=500_000)}
     known = {name: np.linspace(0, 1, 500_000) + values[:1] for name, values in columns.items()}

@@ -15,6 +15,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import groupby
 from pathlib import Path
+from threading import Lock
 from typing import IO
 
 import pyarrow as pa
@@ -129,7 +130,6 @@ class CheckedFile(io.RawIOBase):
 
     def __init__(self, address: Address, blocks: Blocks) -> None:
         self._address, self._blocks, self._at = address, blocks, 0
-        self._held: OrderedDict[int, bytes] = OrderedDict()
 
     def readable(self) -> bool:
         """Say that it can be read."""
@@ -170,16 +170,17 @@ class CheckedFile(io.RawIOBase):
 
     def _read(self, wanted: range) -> list[bytes]:
         """Return some blocks; those that are not held are fetched, neighbours with one request."""
-        missing = [k for k in wanted if k not in self._held]
+        found = {k: _HELD_BLOCKS.get(self._key(k)) for k in wanted}
+        missing = [k for k, block in found.items() if block is None]
         for _, group in groupby(enumerate(missing), lambda pair: pair[1] - pair[0]):
             numbers = [number for _, number in group]
-            self._held.update(self._fetch(numbers[0], numbers[-1] + 1))
-        blocks = [self._held[k] for k in wanted]
-        for k in wanted:
-            self._held.move_to_end(k)
-        while len(self._held) * self._blocks.block_bytes > HELD:
-            self._held.popitem(last=False)
+            found.update(self._fetch(numbers[0], numbers[-1] + 1))
+        blocks = [block for block in found.values() if block is not None]
+        _hold({self._key(k): block for k, block in zip(wanted, blocks, strict=True)})
         return blocks
+
+    def _key(self, number: int) -> tuple[Address, str, int]:
+        return self._address, self._blocks.sha256, number
 
     def _fetch(self, first: int, end: int) -> Iterator[tuple[int, bytes]]:
         step = self._blocks.block_bytes
@@ -189,3 +190,18 @@ class CheckedFile(io.RawIOBase):
             if hashlib.sha256(block).hexdigest() != self._blocks.blocks[k]:
                 raise NotTheSameError
             yield k, block
+
+
+# What was checked last, for those who read a recording again: a report does for each section.
+_HELD_BLOCKS: OrderedDict[tuple[Address, str, int], bytes] = OrderedDict()
+_LOCK = Lock()
+
+
+def _hold(blocks: dict[tuple[Address, str, int], bytes]) -> None:
+    with _LOCK:
+        for key, block in blocks.items():
+            _HELD_BLOCKS[key] = block
+            _HELD_BLOCKS.move_to_end(key)
+        held = sum(map(len, _HELD_BLOCKS.values()))
+        while held > HELD:
+            held -= len(_HELD_BLOCKS.popitem(last=False)[1])
