@@ -142,6 +142,8 @@ def test_the_frame_has_a_row_for_each_run(rigs):
     frame = tsas.runs("folder = 'one/a'").frame()
     assert list(frame.columns) == list(COLUMNS)
     assert frame["total_bend_rad"].tolist() == [3.5, 1.0]
+    assert frame["started"].dt.month.tolist() == [2, 1]
+    assert frame["diagnosed"].isna().all()
 
 
 @pytest.mark.parametrize(
@@ -149,16 +151,18 @@ def test_the_frame_has_a_row_for_each_run(rigs):
     [
         (
             "rows > 1 and bend_rad > 3",
-            "the query, character 14, at 'bend_rad > 3': there is no column bend_rad; did you mean t",
+            "the query, character 14, at 'bend_rad > 3': there is no column bend_rad; did you mean",
         ),
         ("started > 2026-01 and rows >> and 3", "the query, character 31, at 'and 3': syntax"),
         ("f_uot in channels", "the query: no run has a channel f_uot; did you mean f_out_N?"),
+        ("one", "the query, character 1, at 'one': there is no column one; name folders with --in"),
         ("run > 3", "the query: Cannot compare values"),
         ("started > 2026-13", "the query: timestamp field value out of range"),
         ("rows > 1) union select (1", "the query, character 9, at ') union select (1'"),
         ("true; drop table runs", "the query: Cannot have any modifiers"),
         ("run in (select content from read_text('/etc/hostname'))", "the query: Cannot access"),
         ("run in (select file from glob('*'))", "the query: Cannot access"),
+        ("run in (select file from entries)", "the query: Table with name entries does not exist"),
         ("sum(rows) > 3", "the query: WHERE clause cannot contain aggregates"),
     ],
 )

@@ -1,6 +1,8 @@
 """What is fetched of a recording, and that all of it is checked."""
 
 import json
+import subprocess
+import sys
 
 import numpy as np
 import pyarrow as pa
@@ -134,3 +136,24 @@ def test_a_recording_that_is_gone_is_told_as_for_a_folder(large, bucket):
     with pytest.raises(InputError, match="the run's file is missing") as caught:
         read_dataset(address)["a"]
     assert caught.value.where == f"{bucket}/{OBJECT}"
+
+
+def test_a_process_that_was_forked_reads_too(dataset, bucket):
+    tsas.upload(dataset, f"{bucket}/bench")
+    program = """
+import multiprocessing, sys
+import tsas_cli as tsas
+
+def rows(address):
+    return tsas.read(address)["a"].time_s.size
+
+if __name__ == "__main__":
+    with multiprocessing.get_context("fork").Pool(1) as pool:
+        pool.map(len, ["before the storage is opened"])
+    here = rows(sys.argv[1])
+    with multiprocessing.get_context("fork").Pool(1) as pool:
+        print(here, pool.map(rows, [sys.argv[1]]))
+"""
+    call = [sys.executable, "-W", "ignore", "-c", program, f"{bucket}/bench"]
+    done = subprocess.run(call, capture_output=True, text=True, check=True, timeout=60)
+    assert done.stdout == "500 [500]\n"

@@ -1,6 +1,7 @@
 """What a person is told when an address or its storage is wrong."""
 
 import socket
+import subprocess
 import sys
 import time
 
@@ -116,8 +117,6 @@ def test_local_datasets_need_no_storage(tsas, dataset):
         "import sys, tsas_cli as tsas; tsas.check(sys.argv[1]); "
         "print([m for m in ('s3fs', 'gcsfs', 'botocore', 'aiohttp') if m in sys.modules])"
     )
-    import subprocess
-
     done = subprocess.run(
         [sys.executable, "-c", program, str(dataset)], capture_output=True, text=True, check=True
     )

@@ -30,6 +30,7 @@ SHOWN = (
     "verdict",
     "causes",
 )
+TIMES = frozenset({"started", "diagnosed"})
 MOST_SHOWN = 50  # runs in a table for which no limit was asked
 MOST_NOTES = 10
 
@@ -58,7 +59,10 @@ class RunsResult(Result):
         """Return a row for each run, as a pandas table; `tags` is a dict."""
         import pandas as pd
 
-        return pd.DataFrame(self.answer.rows, columns=list(self.answer.columns))
+        frame = pd.DataFrame(self.answer.rows, columns=list(self.answer.columns))
+        for name in TIMES.intersection(frame.columns):
+            frame[name] = pd.to_datetime(frame[name])
+        return frame
 
     def tables(self) -> list[Table]:
         """Return the runs; a column that is empty in all of them is left out."""

@@ -93,7 +93,7 @@ def asked(
     """
     import duckdb
 
-    _locked(connection, index)
+    problems = _opened(connection, index)
     runs = connection.table("runs")
     chosen = tuple(_known(name, runs.columns) for name in columns) or tuple(runs.columns)
     order = ", ".join(_ordered(name, runs.columns) for name in (*sort, "folder", "run"))
@@ -107,32 +107,35 @@ def asked(
         ((fit,),), ((every,),) = (r.aggregate("count(*)").fetchall() for r in (fitting, runs))
     except duckdb.Error as error:
         raise _wrong(query, spelt, error, runs.columns) from error
-    problems = connection.execute(
-        "SELECT folder, file, unnest(problems) FROM entries ORDER BY ALL"
-    ).fetchall()
-    in_files = [f"{Path(folder) / file}: {problem}" for folder, file, problem in problems]
     folders = tuple(dict.fromkeys(str(row[-1]) for row in rows))
-    return Answer(
-        chosen, [row[:-1] for row in rows], folders, fit, every, [*index.problems, *in_files]
-    )
+    return Answer(chosen, [row[:-1] for row in rows], folders, fit, every, problems)
 
 
-def _locked(connection: "DuckDBPyConnection", index: Index) -> None:
-    """Show the index as tables, then take away the right to read anything else."""
+def _opened(connection: "DuckDBPyConnection", index: Index) -> list[str]:
+    """Make the table of all runs; return what was wrong with files.
+
+    From then on there is nothing else to read: no file, and not the index.
+    """
     places = [(k, root.as_posix()) for k, root in enumerate(index.roots)]
     connection.execute("CREATE TEMP TABLE places (root INTEGER, shown VARCHAR)")
     connection.executemany("INSERT INTO places VALUES (?, ?)", places)
     if index.kept is None:
-        connection.register("entries", index.held)
+        connection.register("held", index.held)
+        connection.execute("CREATE TEMP TABLE entries AS SELECT * FROM held")
+        connection.unregister("held")
     else:
-        file = str(index.kept).replace("'", "''")
-        connection.execute(f"SET allowed_paths = ['{file}']")
-        connection.execute(f"CREATE TEMP VIEW entries AS SELECT * FROM read_parquet('{file}')")  # noqa: S608 # our own file's name
+        read = "CREATE TEMP TABLE entries AS SELECT * FROM read_parquet(?)"
+        connection.execute(read, [str(index.kept)])
     connection.execute(RUNS)
+    problems = connection.execute(
+        "SELECT folder, file, unnest(problems) FROM entries ORDER BY ALL"
+    ).fetchall()
     connection.execute(
-        "SET enable_external_access = false; SET errors_as_json = true; "
-        "SET lock_configuration = true"
+        "DROP TABLE entries; DROP TABLE places; SET enable_external_access = false; "
+        "SET errors_as_json = true; SET lock_configuration = true"
     )
+    in_files = [f"{Path(folder) / file}: {problem}" for folder, file, problem in problems]
+    return [*index.problems, *in_files]
 
 
 def _channels(runs: "DuckDBPyRelation") -> list[str]:
@@ -157,7 +160,9 @@ def _wrong(query: str, spelt: Spelt, error: Exception, columns: Sequence[str]) -
         return InputError(
             f"there is no column {missing[1]}",
             where=_place(query, query.find(missing[1])),
-            remedy=nearest(missing[1], sorted(columns)),
+            remedy="name folders with --in"
+            if Path(query).is_dir()
+            else nearest(missing[1], sorted(columns)),
         )
     said, position = _said(str(error))
     at = -1 if position is None else spelt.place(position - len(BEFORE))

@@ -80,7 +80,10 @@ class Address:
         InputError
             The storage cannot be asked.
         """
-        return int(self._asked(lambda files: _in_time(files, files._info, self.path))["size"])  # noqa: SLF001
+        told = self._asked(lambda files: _in_time(files, files._info, self.path))  # noqa: SLF001
+        if told["type"] != "file":
+            raise FileNotFoundError(str(self))
+        return int(told["size"])
 
     def read_bytes(self, start: int | None = None, end: int | None = None) -> bytes:
         """Return its bytes, or those from `start` up to `end`, with one request.
@@ -154,7 +157,7 @@ def is_address(given: str) -> bool:
     return SCHEME.match(given) is not None
 
 
-def place_of(given: str | Path) -> Place:
+def place_of(given: "str | Place") -> Place:
     """Return a local path, or an address on object storage; file:///… is a local path too.
 
     Raises
@@ -162,7 +165,9 @@ def place_of(given: str | Path) -> Place:
     InputError
         The scheme is not known, no bucket is named, or the address holds more than a place.
     """
-    if isinstance(given, Path) or not is_address(given):
+    if not isinstance(given, str):
+        return given
+    if not is_address(given):
         return Path(given)
     parts = urlsplit(given, allow_fragments=False)
     shown = f"{parts.scheme}://{parts.netloc.rpartition('@')[2]}{parts.path}"
@@ -216,6 +221,10 @@ def files_of(scheme: str) -> Any:
     files.retries = TRIES
     logging.getLogger(PACKAGES[scheme]).setLevel(logging.CRITICAL)  # what it logs, it raises too
     return files
+
+
+if hasattr(os, "register_at_fork"):  # a storage's connections are those of one process
+    os.register_at_fork(after_in_child=files_of.cache_clear)
 
 
 def _in_time(files: Any, ask: Callable[..., Any], path: str) -> Any:
