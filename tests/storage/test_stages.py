@@ -1,11 +1,23 @@
 from pathlib import Path
 
+import pyarrow as pa
 import pytest
 
 import tsas_cli as tsas
 from tsas_cli.errors import InputError
 from tsas_cli.recordings.storage import place_of
+from tsas_cli.recordings.writing import write_dataset
 from tsas_cli.reporting.viewer.stream_of import stream_of
+
+
+@pytest.fixture
+def dataset(tmp_path, manifest, columns) -> Path:
+    """Return the folder of a dataset of a few samples, which no stage needs long for."""
+    folder = tmp_path / "dataset"
+    folder.mkdir()
+    few = {name: values[::5] for name, values in columns.items()}
+    write_dataset(folder, manifest, {"a": pa.table(few)})
+    return folder
 
 
 @pytest.fixture
