@@ -24,9 +24,11 @@ if TYPE_CHECKING:
     from tsas_cli.api.read import read, read_drive, read_model
     from tsas_cli.api.report import report
     from tsas_cli.api.reproduce import reproduce
+    from tsas_cli.api.runs import runs
     from tsas_cli.api.simulate import simulate
     from tsas_cli.api.sweep import sweep
     from tsas_cli.api.track import track
+    from tsas_cli.api.upload import upload
     from tsas_cli.api.verify import verify
     from tsas_cli.errors import InputError
     from tsas_cli.steps import Steps
@@ -50,9 +52,11 @@ __all__ = [
     "read_model",
     "report",
     "reproduce",
+    "runs",
     "simulate",
     "sweep",
     "track",
+    "upload",
     "verify",
 ]
 

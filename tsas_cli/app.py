@@ -23,9 +23,11 @@ from tsas_cli.commands.init import init
 from tsas_cli.commands.plan import plan
 from tsas_cli.commands.report import report
 from tsas_cli.commands.reproduce import reproduce
+from tsas_cli.commands.runs import runs
 from tsas_cli.commands.simulate import simulate
 from tsas_cli.commands.sweep import sweep
 from tsas_cli.commands.track import track
+from tsas_cli.commands.upload import upload
 from tsas_cli.commands.verify import verify
 from tsas_cli.commands.view import view
 from tsas_cli.errors import InputError, printable
@@ -71,6 +73,8 @@ app.command("sweep")(sweep)
 app.command("report")(report)
 app.command("verify")(verify)
 app.command("view")(view)
+app.command("runs")(runs)
+app.command("upload")(upload)
 app.command("doctor")(doctor)
 app.command("reproduce")(reproduce)
 app.command("effects")(effects)

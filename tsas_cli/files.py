@@ -38,6 +38,7 @@ def new_folder(path: Path, *, force: bool = False) -> Iterator[Path]:
     """
     with ExitStack() as stack:
         with _written(path):
+            _refuse_address(path)
             if path.is_file():
                 raise InputError("is a file", where=path, expected="a folder's name")
             _refuse_existing(path, force=force)
@@ -110,6 +111,7 @@ def new_file(path: Path, *, force: bool = False) -> Iterator[Path]:
     """
     with ExitStack() as stack:
         with _written(path):
+            _refuse_address(path)
             if path.is_dir():
                 raise InputError("is a folder", where=path, expected="a file's name")
             _refuse_existing(path, force=force)
@@ -192,6 +194,17 @@ def _named(temporary: Path, path: Path) -> Iterator[None]:
         raise InputError(
             error.what, where=where, expected=error.expected, remedy=error.remedy
         ) from error
+
+
+def _refuse_address(path: Path) -> None:
+    """Keep `--out s3://…` from becoming a folder `s3:`."""
+    if path.parts and path.parts[0] in {"s3:", "gs:", "file:"}:
+        raise InputError(
+            "is an address",
+            where=path.as_posix().replace(":/", "://", 1),
+            expected="a local folder or file",
+            remedy="write there, then copy it",
+        )
 
 
 def _refuse_existing(path: Path, *, force: bool) -> None:

@@ -32,6 +32,8 @@ HOW_TO = (
     _docs("Track a force", "tracking"),
     _docs("Close the loop", "close-loop"),
     _docs("Many runs: sweeps", "sweep"),
+    _docs("Find runs among many datasets", "catalogue"),
+    _docs("Datasets on object storage", "object-storage"),
 )
 PYTHON = _docs("From Python", "python")
 FORMATS = _docs("File formats", "formats")

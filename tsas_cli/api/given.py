@@ -6,6 +6,7 @@ from typing import TypeVar
 
 from tsas_cli.errors import InputError, nearest
 from tsas_cli.recordings.dataset import Dataset, read_dataset
+from tsas_cli.recordings.storage import Place, place_of
 
 Named = str | Path
 Thing = TypeVar("Thing")
@@ -22,15 +23,20 @@ def paths_of(given: Named | Iterable[Named]) -> list[Path]:
     return [Path(each) for each in ([given] if isinstance(given, str | Path) else given)]
 
 
+def places_of(given: Named | Iterable[Named]) -> list[Place]:
+    """Return one place or several as a list: local paths, or addresses of datasets."""
+    return [place_of(each) for each in ([given] if isinstance(given, str | Path) else given)]
+
+
 def dataset_of(given: Dataset | Named, runs: Iterable[str] | None = None) -> Dataset:
-    """Return a dataset, or open that of a folder, with the runs that were asked for.
+    """Return a dataset, or open that of a folder or an address, with the runs that were asked for.
 
     Raises
     ------
     InputError
         The folder is none, or there is no such run.
     """
-    dataset = given if isinstance(given, Dataset) else read_dataset(Path(given))
+    dataset = given if isinstance(given, Dataset) else read_dataset(place_of(given))
     return dataset if runs is None else dataset.only(listed(runs))
 
 

@@ -5,6 +5,7 @@ from pathlib import Path
 from tsas_cli.api.given import Named, path_of
 from tsas_cli.diagnosis.plan_stage import PlanResult, plan_runs
 from tsas_cli.recordings.dataset import Dataset, read_dataset
+from tsas_cli.recordings.storage import place_of
 from tsas_cli.steps import SILENT, Steps
 
 
@@ -40,5 +41,7 @@ def plan(
         not set.
     """
     if not isinstance(runs, Dataset):
-        runs = read_dataset(Path(runs)) if Path(runs).is_dir() else Path(runs)
+        place = place_of(runs)
+        planned = isinstance(place, Path) and not place.is_dir()
+        runs = Path(runs) if planned else read_dataset(place)
     return plan_runs(runs, path_of(out), force=force, step=step)

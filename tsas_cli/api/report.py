@@ -5,10 +5,11 @@ from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 
-from tsas_cli.api.given import Named, paths_of
+from tsas_cli.api.given import Named, places_of
 from tsas_cli.errors import InputError
 from tsas_cli.files import new_file
 from tsas_cli.recordings.manifest import FILE as MANIFEST
+from tsas_cli.recordings.storage import Place
 from tsas_cli.reporting.inputs import Inputs, read_inputs
 from tsas_cli.reporting.page import SECTIONS, page
 from tsas_cli.reporting.pdf import browser, print_page
@@ -48,7 +49,8 @@ def report(
     Parameters
     ----------
     folders
-        A dataset's folder and those that the stages have written, one of each kind.
+        A dataset's folder or address, and the folders that the stages have written, one of each
+        kind.
     out
         The HTML file to write.
     pdf
@@ -75,7 +77,7 @@ def report(
         pages.append(_beside(Path(out)))
     with ExitStack() as stack:
         html, *printed = (stack.enter_context(new_file(path, force=force)) for path in pages)
-        inputs = read_inputs(paths_of(folders))
+        inputs = read_inputs(places_of(folders))
         step.ahead(len(SECTIONS))
         text = with_seal(page(inputs, step), _files_of(inputs), pages[0])
         html.write_text(text, encoding="utf-8")
@@ -90,10 +92,12 @@ def report(
     return ReportResult(summary, pages[0], sizes)
 
 
-def _files_of(inputs: Inputs) -> list[Path]:
+def _files_of(inputs: Inputs) -> list[tuple[Place, str]]:
     """Return the files that say what was read, by which all else is found."""
-    manifests = [] if inputs.dataset is None else [inputs.dataset.folder / MANIFEST]
-    return manifests + [folder / kind.FILE for kind, folder in inputs.folders.items()]
+    stages: list[tuple[Place, str]] = [
+        (folder, kind.FILE) for kind, folder in inputs.folders.items()
+    ]
+    return stages if inputs.dataset is None else [(inputs.dataset.folder, MANIFEST), *stages]
 
 
 def _beside(out: Path) -> Path:

@@ -17,7 +17,9 @@ if TYPE_CHECKING:
     from tsas_cli.result import Result
     from tsas_cli.steps import Steps
 
-DatasetFolder = Annotated[Path, typer.Argument(metavar="DATASET", help="A dataset's folder.")]
+DatasetFolder = Annotated[
+    str, typer.Argument(metavar="DATASET", help="A dataset's folder, or its address (s3://…).")
+]
 OutFolder = Annotated[Path, typer.Option("--out", metavar="DIR", help="The folder to write.")]
 ModelFile = Annotated[
     Path | None,

@@ -14,7 +14,7 @@ def compare(
     a: Annotated[Path, typer.Argument(metavar="A", help="A model, or a stage's folder.")],
     b: Annotated[Path, typer.Argument(metavar="B", help="What it is compared with, likewise.")],
     on: Annotated[
-        Path | None,
+        str | None,
         typer.Option(metavar="DATASET", help="Simulate both models on these recordings."),
     ] = None,
     fit_own: Annotated[

@@ -7,6 +7,7 @@ from pathlib import Path
 import typer
 
 import tsas_cli
+from tsas_cli.collection import COLUMNS
 from tsas_cli.controllers import CONTROLLERS
 from tsas_cli.tracking import SHAPE_NAMES
 
@@ -42,6 +43,16 @@ def run_ids(context: typer.Context, incomplete: str) -> list[str]:
     except (KeyError, TypeError, OSError, ValueError):
         return []  # what is wrong with it, the command will say
     return _continued(ids, incomplete)
+
+
+def run_columns(incomplete: str) -> list[str]:
+    """Return the lists of columns of `tsas runs` that continue what is there."""
+    return _continued(COLUMNS, incomplete)
+
+
+def sort_columns(incomplete: str) -> list[str]:
+    """Return the same for sorting, where a minus may stand before a name."""
+    return _continued([*COLUMNS, *(f"-{name}" for name in COLUMNS)], incomplete)
 
 
 def _continued(words: Sequence[str], incomplete: str) -> list[str]:

@@ -12,7 +12,7 @@ from tsas_cli.commands.progress import progress
 
 def plan(
     path: Annotated[
-        Path, typer.Argument(metavar="DATASET|RIG.toml", help="A dataset, or planned runs.")
+        str, typer.Argument(metavar="DATASET|RIG.toml", help="A dataset, or planned runs.")
     ],
     out: Annotated[
         Path | None, typer.Option("--out", metavar="DIR", help="Also write DIR/plan.json.")

@@ -12,7 +12,7 @@ from tsas_cli.commands.progress import progress
 
 def report(
     folders: Annotated[
-        list[Path], typer.Argument(metavar="DIR", help="Folders that the stages have written.")
+        list[str], typer.Argument(metavar="DIR", help="Folders that the stages have written.")
     ],
     out: Annotated[Path, typer.Option("--out", metavar="FILE", help="The HTML page to write.")],
     pdf: Annotated[

@@ -2,7 +2,6 @@
 
 import sys
 from contextlib import ExitStack
-from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -15,7 +14,7 @@ ENDS = {True: "Ctrl-C ends it", False: "close the window or press Ctrl-C to end 
 
 def view(
     paths: Annotated[
-        list[Path], typer.Argument(metavar="PATH", help="An .rrd file, or folders of stages.")
+        list[str], typer.Argument(metavar="PATH", help="An .rrd file, or folders of stages.")
     ],
     web: Annotated[
         bool, typer.Option("--web", help="In the browser, even where a window can be opened.")
@@ -31,6 +30,7 @@ def view(
     Each PATH is a dataset or what a stage wrote, together one stream; or one .rrd file. A window
     opens, and where there is no screen a page is served whose address is printed.
     """
+    from tsas_cli.recordings.storage import place_of
     from tsas_cli.reporting.viewer.analytics import note_once
     from tsas_cli.reporting.viewer.open import page_of, window_of
     from tsas_cli.reporting.viewer.screen import has_screen
@@ -41,7 +41,7 @@ def view(
     opened = page_of if in_browser else window_of
     with until_stopped(), ExitStack() as held:
         with progress("stream", quiet=quiet) as step:
-            stream, notes = held.enter_context(stream_of(paths, step))
+            stream, notes = held.enter_context(stream_of([place_of(path) for path in paths], step))
         viewer = held.enter_context(opened(stream, port=port))
         talk = () if quiet else (*notes, note_once(), ENDS[in_browser])
         for sentence in filter(None, talk):

@@ -1,7 +1,6 @@
 """What each side answers to recordings, and how far that is from what was measured."""
 
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +14,7 @@ from tsas_cli.identification.prepared import CHANNELS, Prepared, prepare
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Run
+from tsas_cli.recordings.storage import Place
 from tsas_cli.recordings.written import answers_of, check_rows, columns_of, names_of
 from tsas_cli.steps import SILENT, Steps
 
@@ -90,7 +90,7 @@ class Answers:
 
     def __init__(self, step: Steps = SILENT) -> None:
         """Take what is called after each answer."""
-        self._prepared: dict[tuple[Path, str], Prepared] = {}
+        self._prepared: dict[tuple[Place, str], Prepared] = {}
         self._step = step
 
     def of(self, side: Side, dataset: Dataset | None, *, fit_own: bool = False) -> list[Answer]:

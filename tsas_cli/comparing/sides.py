@@ -1,6 +1,5 @@
 """One side of a comparison: a model file, or the folder of a stage that says something of one."""
 
-import os
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
@@ -13,6 +12,7 @@ from tsas_cli.physics.response import Dynamics
 from tsas_cli.recordings.dataset import Dataset, read_dataset
 from tsas_cli.recordings.manifest import FILE as MANIFEST
 from tsas_cli.recordings.manifest import parse, read_toml
+from tsas_cli.recordings.storage import place_from
 from tsas_cli.stage_files.base import OfDataset, Source
 from tsas_cli.stage_files.calibration import Calibration
 from tsas_cli.stage_files.diagnosis import Cause, Diagnosis, HeldOut
@@ -124,10 +124,10 @@ def _of_stage(path: Path, kind: type[OfDataset]) -> Side:
 
 def _dataset(source: Source, read: Source | OfDataset, home: Path) -> tuple[Dataset | None, str]:
     """Return the dataset as it was read, with the runs that were; or None, and why."""
-    folder = Path(os.path.normpath(home / source.folder))
-    if not source.folder or not (folder / MANIFEST).is_file():
-        return None, f"the dataset {source.name} is no longer at {folder}"
     try:
+        folder = place_from(home, source.folder)
+        if not source.folder or not (folder / MANIFEST).is_file():
+            return None, f"the dataset {source.name} is no longer at {folder}"
         dataset = read_dataset(folder)
     except InputError as error:
         return None, error.line()

@@ -16,8 +16,11 @@ PURPOSES = {
     "mdf": "MDF4 files",
     "challenge": "the sparse-regression baseline of tsas challenge",
     "dask": "tsas sweep --cluster",
+    "catalogue": "queries over many datasets with tsas runs",
+    "s3": "datasets on S3, by address (s3://…)",
+    "gs": "datasets on Google Cloud Storage, by address (gs://…)",
     "bench": "the general solvers that make bench compares with",
-    "all": "every file format and baseline",
+    "all": "every file format, storage, baseline and query",
 }
 
 

@@ -1,8 +1,8 @@
 """A dataset on disk: one Parquet file per run, and the manifest beside them (format 1)."""
 
-import os
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +12,7 @@ from tsas_cli.files import sha256_of
 from tsas_cli.recordings.manifest import FILE, Manifest, Run, parse, read_manifest
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.recordings.run_files import read_recording
+from tsas_cli.recordings.storage import Place, told_from
 
 CONDITIONS = ("sheath_length_mm", "total_bend_rad", "preload_N")
 
@@ -25,7 +26,7 @@ class Dataset:
     Parameters
     ----------
     folder
-        Where it is.
+        Where it is: a local folder, or an address on object storage.
     manifest
         What `dataset.toml` says.
     chosen
@@ -34,7 +35,7 @@ class Dataset:
         Conditions that are said of every run in place of the manifest's, by key.
     """
 
-    folder: Path
+    folder: Place
     manifest: Manifest
     chosen: tuple[str, ...] | None = None
     conditions: Mapping[str, float] = field(default_factory=dict)
@@ -106,9 +107,9 @@ class Dataset:
     def header(self, stage: str, folder: Path | None) -> dict[str, Any]:
         """Return the first keys of the JSON that a stage writes into `folder`.
 
-        Without a folder the dataset's place is said from the current one.
+        Without a folder the dataset's place is said from the current one; an address as it is.
         """
-        path = place_of(self.folder, folder or Path())
+        path = told_from(folder or Path(), self.folder)
         return {
             "format": 1,
             "stage": stage,
@@ -120,22 +121,17 @@ class Dataset:
 
     def hashes(self) -> dict[str, str]:
         """Return the checksum of the manifest and of each run's file, by path in the dataset."""
-        return {FILE: sha256_of(self.folder / FILE)} | {r.file: r.sha256 for r in self.manifest.run}
+        manifest = (self.folder / FILE).read_bytes()
+        return {FILE: sha256(manifest).hexdigest()} | {r.file: r.sha256 for r in self.manifest.run}
 
 
 def read_from(path: Path, home: Path) -> dict[str, str]:
     """Return what is written down in `home` of a file that was read."""
-    return {"file": path.name, "folder": place_of(path.parent, home), "sha256": sha256_of(path)}
+    return {"file": path.name, "folder": told_from(home, path.parent), "sha256": sha256_of(path)}
 
 
-def place_of(folder: Path, home: Path) -> str:
-    """Return where a folder is, said from a folder that is about to be written."""
-    here = home.parent.resolve() / home.name  # which replaces a link of that name
-    return Path(os.path.relpath(folder.resolve(), here)).as_posix()
-
-
-def read_dataset(folder: Path) -> Dataset:
-    """Open a dataset.
+def read_dataset(folder: Place) -> Dataset:
+    """Open a dataset in a local folder, or at an address.
 
     Raises
     ------

@@ -11,6 +11,7 @@ import pyarrow as pa
 
 from tsas_cli import __version__
 from tsas_cli.errors import InputError
+from tsas_cli.files import sha256_of
 from tsas_cli.recordings.canonical import canonical_columns
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.conditions import run_conditions

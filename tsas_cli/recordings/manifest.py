@@ -9,6 +9,7 @@ import tomlkit
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
 
 from tsas_cli.errors import InputError, nearest
+from tsas_cli.recordings.storage import Place
 
 FILE = "dataset.toml"
 Load = Literal["spring", "force", "displacement"]
@@ -102,7 +103,7 @@ class Manifest(_Table):
         return self
 
 
-def read_manifest(folder: Path) -> Manifest:
+def read_manifest(folder: Place) -> Manifest:
     """Read and check `dataset.toml` in a folder.
 
     Raises
@@ -121,7 +122,7 @@ def read_manifest(folder: Path) -> Manifest:
     return parse(Manifest, read_toml(path), path)
 
 
-def read_toml(path: Path) -> dict[str, Any]:
+def read_toml(path: Place) -> dict[str, Any]:
     """Read a TOML file.
 
     Raises

@@ -12,6 +12,8 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from tsas_cli.recordings.blocks import NotTheSameError
+from tsas_cli.recordings.checked import changed
 from tsas_cli.recordings.columns import BY_NAME, TIME
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.recording import Floats
@@ -23,6 +25,7 @@ from tsas_cli.recordings.run_files import (
     not_parquet,
     open_run,
 )
+from tsas_cli.recordings.storage import Place
 
 MOST_ROWS = 1 << 20  # of a recording that is read whole; a piece of a longer one has as many
 _ROWS_AT_ONCE = 1 << 16
@@ -46,7 +49,7 @@ class Piece:
         return self.start + self.rows
 
 
-def long_run(folder: Path, run: Run) -> RunColumns | None:
+def long_run(folder: Place, run: Run) -> RunColumns | None:
     """Open a run that has more than `MOST_ROWS` rows; None where it has fewer, or is no Parquet.
 
     Raises
@@ -54,15 +57,21 @@ def long_run(folder: Path, run: Run) -> RunColumns | None:
     InputError
         Its file, its columns or a unit is not what the manifest and format 1 say.
     """
-    try:
-        rows = pq.read_metadata(folder / run.file).num_rows
-    except (pa.ArrowException, OSError):
-        return None  # who reads it says what is wrong
-    if rows <= MOST_ROWS:
+    if isinstance(folder, Path) and not _is_long(folder / run.file):
         return None
     opened = open_run(folder, run)
+    if opened.rows <= MOST_ROWS:
+        return None
     check_columns(known_columns(opened), opened.file.schema_arrow.names, opened.path)
     return opened
+
+
+def _is_long(path: Path) -> bool:
+    """Say whether a file has too many rows to be read at once; its reader says what is wrong."""
+    try:
+        return int(pq.read_metadata(path).num_rows) > MOST_ROWS
+    except (pa.ArrowException, OSError):
+        return False
 
 
 def known_columns(run: RunColumns) -> list[str]:
@@ -101,6 +110,8 @@ def pieces(
                 yield Piece(start, {name: v[:MOST_ROWS] for name, v in joined.items()})
                 held = {name: [v[MOST_ROWS - overlap :].copy()] for name, v in joined.items()}
                 start, count = start + MOST_ROWS - overlap, count - MOST_ROWS + overlap
+    except NotTheSameError as error:
+        raise changed(run.path, run.run) from error
     except (pa.ArrowException, OSError) as error:
         raise not_parquet(run.path, error) from error
     if count > overlap or start == 0:

@@ -9,17 +9,19 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from tsas_cli.errors import InputError
-from tsas_cli.files import sha256_of
+from tsas_cli.recordings.blocks import NotTheSameError
+from tsas_cli.recordings.checked import Source, changed, checked_file
 from tsas_cli.recordings.columns import BY_NAME, INPUTS, OUTPUTS, TIME, has_input_and_output
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.recording import Recording
+from tsas_cli.recordings.storage import Place
 
 Floats = npt.NDArray[np.float64]
 
 BUFFER = 1 << 20  # bytes that are read at a time: a row group need not fit into memory
 
 
-def read_recording(folder: Path, run: Run, *, strict: bool = True) -> Recording:
+def read_recording(folder: Place, run: Run, *, strict: bool = True) -> Recording:
     """Read one run and check it against its checksum and the rules of format 1.
 
     With `strict=False` the time may run backwards or repeat, for `tsas check` to describe it.
@@ -31,9 +33,12 @@ def read_recording(folder: Path, run: Run, *, strict: bool = True) -> Recording:
         is missing, in another unit or not of numbers; the time is not strictly increasing.
     """
     path = folder / run.file
-    table = _read_parquet(path, folder, run)
-    columns = {name: floats_of(table, name, path) for name in table.column_names if name in BY_NAME}
-    check_columns(list(columns), table.column_names, path)
+    try:
+        table, names = _table_of(checked_file(path, folder, run), path)
+    except NotTheSameError as error:
+        raise changed(path, run) from error
+    columns = {name: floats_of(table, name, path) for name in table.column_names}
+    check_columns(list(columns), names, path)
     if len(columns[TIME]) < 2:
         raise InputError(f"{len(columns[TIME])} rows", where=path, expected="at least two samples")
     if strict:
@@ -46,7 +51,7 @@ class RunColumns:
     """One run, whose columns are read one at a time, when they are asked for."""
 
     run: Run
-    path: Path
+    path: Place
     file: pq.ParquetFile
 
     @property
@@ -76,6 +81,8 @@ class RunColumns:
             )
         try:
             table = self.file.read(columns=[name])
+        except NotTheSameError as error:
+            raise changed(self.path, self.run) from error
         except (pa.ArrowException, OSError) as error:
             raise not_parquet(self.path, error) from error
         values = floats_of(table, name, self.path)
@@ -84,7 +91,7 @@ class RunColumns:
         return values
 
 
-def open_run(folder: Path, run: Run) -> RunColumns:
+def open_run(folder: Place, run: Run) -> RunColumns:
     """Open one run and check it as far as that is possible without its samples.
 
     Raises
@@ -94,10 +101,12 @@ def open_run(folder: Path, run: Run) -> RunColumns:
         missing, or a column is in another unit.
     """
     path = folder / run.file
-    _check_file(path, folder, run)
+    source = checked_file(path, folder, run)
     try:
-        file = pq.ParquetFile(path, buffer_size=BUFFER)
+        file = pq.ParquetFile(source, buffer_size=BUFFER)
         _check_names_and_units(file.schema_arrow, path)
+    except NotTheSameError as error:
+        raise changed(path, run) from error
     except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
         raise not_parquet(path, error) from error
     if TIME not in file.schema_arrow.names or file.metadata.num_rows < 2:
@@ -116,56 +125,32 @@ def read_columns(path: Path) -> dict[str, Floats]:
     """
     if not path.is_file():
         raise InputError("is not there", where=path, expected="a Parquet file")
-    table = _table_of(path)
-    columns = {name: floats_of(table, name, path) for name in table.column_names if name in BY_NAME}
+    table, _ = _table_of(path, path)
+    columns = {name: floats_of(table, name, path) for name in table.column_names}
     if TIME not in columns or len(columns[TIME]) < 2:
         raise InputError("column time_s is missing or short", where=path, expected="time in s")
     check_time(columns[TIME], path)
     return columns
 
 
-def _read_parquet(path: Path, folder: Path, run: Run) -> pa.Table:
-    _check_file(path, folder, run)
-    return _table_of(path)
-
-
-def _check_file(path: Path, folder: Path, run: Run) -> None:
-    """Refuse a file that is not there, not in the dataset, or not what the manifest says."""
-    if not path.is_file():
-        raise InputError(
-            "the run's file is missing", where=path, expected=f"the Parquet file of run {run.id}"
-        )
-    if not path.resolve().is_relative_to(folder.resolve()):
-        raise InputError("a link leads out of the dataset's folder", where=path)
+def _table_of(source: Source, path: Place) -> tuple[pa.Table, list[str]]:
+    """Return the known columns of a file, and the names of all."""
     try:
-        digest = sha256_of(path)
-    except OSError as error:
-        raise InputError(f"cannot be read ({error.strerror})", where=path) from error
-    if digest != run.sha256.lower():
-        raise InputError(
-            "the checksum differs from the manifest's",
-            where=path,
-            expected=run.sha256.lower(),
-            remedy="the file has changed since ingest: restore it or ingest again",
-        )
-
-
-def _table_of(path: Path) -> pa.Table:
-    try:
-        table = pq.ParquetFile(path).read()
-        _check_names_and_units(table.schema, path)
+        file = pq.ParquetFile(source)
+        names = list(file.schema_arrow.names)
+        _check_names_and_units(file.schema_arrow, path)
+        return file.read(columns=[name for name in names if name in BY_NAME]), names
     except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
         raise not_parquet(path, error) from error
-    return table
 
 
-def not_parquet(path: Path, error: Exception) -> InputError:
+def not_parquet(path: Place, error: Exception) -> InputError:
     """Return the error for a file that is no whole Parquet file."""
     reason = str(error).splitlines()[0]
     return InputError(f"cannot be read as Parquet ({reason})", where=path)
 
 
-def _check_names_and_units(schema: pa.Schema, path: Path) -> None:
+def _check_names_and_units(schema: pa.Schema, path: Place) -> None:
     """Refuse a known column that is there twice, or whose metadata name another known unit."""
     units = {column.unit for column in BY_NAME.values()}
     for field in schema:
@@ -181,7 +166,7 @@ def _check_names_and_units(schema: pa.Schema, path: Path) -> None:
             )
 
 
-def floats_of(table: pa.Table, name: str, path: Path, *, first_row: int = 0) -> Floats:
+def floats_of(table: pa.Table, name: str, path: Place, *, first_row: int = 0) -> Floats:
     """Return a column as float64, null as NaN; `first_row` is the number of the table's first.
 
     Raises
@@ -214,7 +199,7 @@ def floats_of(table: pa.Table, name: str, path: Path, *, first_row: int = 0) -> 
     return values
 
 
-def check_columns(known: list[str], there: list[str], path: Path) -> None:
+def check_columns(known: list[str], there: list[str], path: Place) -> None:
     """Refuse a run without time, or without an input and another column that is an output."""
     listed = ", ".join(there) or "none"
     if TIME not in known:
@@ -233,7 +218,7 @@ def check_columns(known: list[str], there: list[str], path: Path) -> None:
         )
 
 
-def check_time(time_s: Floats, path: Path, *, first_row: int = 0) -> None:
+def check_time(time_s: Floats, path: Place, *, first_row: int = 0) -> None:
     """Refuse time that does not increase; `first_row` is the number of the first sample.
 
     Raises

@@ -1,6 +1,5 @@
 """What the page is made from: the dataset, and what the stages wrote about it."""
 
-import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -16,6 +15,7 @@ from tsas_cli.recordings.dataset import Dataset, read_dataset
 from tsas_cli.recordings.manifest import FILE, parse
 from tsas_cli.recordings.quality import check_dataset
 from tsas_cli.recordings.recording import Recording
+from tsas_cli.recordings.storage import Place, place_from
 from tsas_cli.recordings.written import answers_of, check_rows, columns_of, names_of
 from tsas_cli.stage_files.base import OfDataset, StageFile
 from tsas_cli.stage_files.calibration import Calibration
@@ -112,7 +112,7 @@ class Inputs:
         return columns_of(answers_of(self.folders[Tracking], run), names)
 
 
-def read_inputs(folders: Sequence[Path]) -> Inputs:
+def read_inputs(folders: Sequence[Place]) -> Inputs:
     """Recognise each folder by the files in it, read all, and find the dataset.
 
     Raises
@@ -122,7 +122,7 @@ def read_inputs(folders: Sequence[Path]) -> Inputs:
         read other recordings than the dataset holds, or tracked runs are not in it.
     """
     by_file = _by_file(folders)
-    where = {kind: by_file[kind.FILE] for kind in STAGES if kind.FILE in by_file}
+    where = {kind: cast("Path", by_file[kind.FILE]) for kind in STAGES if kind.FILE in by_file}
     stages = {kind: read_stage(kind, folder) for kind, folder in where.items()}
     named = (
         _dataset_of(stage, where[kind] / kind.FILE)
@@ -168,16 +168,17 @@ def _visible(content: Any) -> Any:
     return content
 
 
-def _by_file(folders: Sequence[Path]) -> dict[str, Path]:
+def _by_file(folders: Sequence[Place]) -> dict[str, Place]:
     known = (FILE, *(kind.FILE for kind in STAGES))
-    found: dict[str, Path] = {}
+    found: dict[str, Place] = {}
     for folder in folders:
-        files = [file for file in known if (folder / file).is_file()]
+        looked_for = known if isinstance(folder, Path) else (FILE,)  # stages write to local folders
+        files = [file for file in looked_for if (folder / file).is_file()]
         if not files:
             raise InputError(
                 "neither a dataset nor what a stage wrote",
                 where=folder,
-                expected=f"a folder with one of {', '.join(known)}",
+                expected=f"a folder with one of {', '.join(looked_for)}",
             )
         for file in files:
             if file in found:
@@ -191,10 +192,10 @@ def _by_file(folders: Sequence[Path]) -> dict[str, Path]:
     return found
 
 
-def _dataset_of(stage: StageFile, path: Path) -> Path:
+def _dataset_of(stage: StageFile, path: Path) -> Place:
     if not isinstance(stage, OfDataset):
         return path.parent
-    folder = Path(os.path.normpath(path.parent / stage.dataset.folder))
+    folder = place_from(path.parent, stage.dataset.folder)
     if not (folder / FILE).is_file():
         raise InputError(
             f"the dataset {stage.dataset.name} is no longer at {folder}",

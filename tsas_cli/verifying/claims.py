@@ -11,6 +11,7 @@ from tsas_cli.errors import InputError
 from tsas_cli.files import SUMS, read_json
 from tsas_cli.recordings.manifest import FILE as MANIFEST
 from tsas_cli.recordings.manifest import read_toml
+from tsas_cli.recordings.storage import is_address
 from tsas_cli.verifying.seal import sealed
 
 _SUM = re.compile(r"([0-9a-f]{64})  (.+)")
@@ -99,15 +100,13 @@ def _of_dataset(path: Path, dataset: object) -> Iterator[Claim]:
     if isinstance(dataset, dict) and isinstance(dataset.get("hashes"), dict):
         folder = dataset.get("folder")
         for file, digest in dataset["hashes"].items():
-            where = _from(path, folder, file) if isinstance(folder, str) else None
-            yield Claim(path, str(file), str(digest).lower(), where)
+            yield _claim(path, folder, str(file), str(digest).lower())
 
 
 def _of_file(path: Path, said: object) -> Iterator[Claim]:
     if isinstance(said, dict) and isinstance(said.get("sha256"), str):
         file, folder = str(said.get("file")), said.get("folder")
-        where = _from(path, folder, file) if isinstance(folder, str) else None
-        yield Claim(path, file, said["sha256"], where)
+        yield _claim(path, folder, file, said["sha256"])
 
 
 def _of_page(path: Path) -> Iterator[Claim]:
@@ -119,5 +118,10 @@ def _of_page(path: Path) -> Iterator[Claim]:
         yield from _of_file(path, said)
 
 
-def _from(path: Path, folder: str, file: str) -> Path:
-    return Path(os.path.normpath(path.parent / folder / file))
+def _claim(path: Path, folder: object, file: str, digest: str) -> Claim:
+    """Return what a file says of one in a folder that is said from its own, or in an address."""
+    if not isinstance(folder, str):
+        return Claim(path, file, digest)
+    if is_address(folder):
+        return Claim(path, f"{folder}/{file}", digest)
+    return Claim(path, file, digest, Path(os.path.normpath(path.parent / folder / file)))

@@ -9,8 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from tsas_cli.errors import InputError
-from tsas_cli.files import sha256_of
-from tsas_cli.recordings.dataset import place_of
+from tsas_cli.recordings.storage import Place, told_from
 
 _READ = "<!-- tsas has read: "
 _SUM = re.compile(rb"<!-- sha256 of all above: ([0-9a-f]{64}) -->\n")
@@ -25,11 +24,18 @@ class Seal:
     read: tuple[Any, ...]
 
 
-def with_seal(text: str, files: Iterable[Path], page: Path) -> str:
-    """Return a page's text with the comments that `sealed` reads; places are said from the page."""
+def with_seal(text: str, files: Iterable[tuple[Place, str]], page: Path) -> str:
+    """Return a page's text with the comments that `sealed` reads; places are said from the page.
+
+    `files` are folders, or addresses, each with the name of a file there.
+    """
     read = [
-        {"file": file.name, "folder": place_of(file.parent, page.parent), "sha256": sha256_of(file)}
-        for file in files
+        {
+            "file": name,
+            "folder": told_from(page.parent, folder),
+            "sha256": hashlib.sha256((folder / name).read_bytes()).hexdigest(),
+        }
+        for folder, name in files
     ]
     said = json.dumps(read, ensure_ascii=False).replace("--", "-\\u002d")  # would end the comment
     body = f"{text.rstrip()}\n{_READ}{said} -->\n"

@@ -10,6 +10,7 @@ from typing import Literal
 from tsas_cli.errors import InputError
 from tsas_cli.files import SUMS, read_json, sha256_of
 from tsas_cli.recordings.manifest import FILE as MANIFEST
+from tsas_cli.recordings.storage import is_address
 from tsas_cli.verifying.claims import Claim, claims_of
 
 State = Literal["fits", "changed", "missing", "cannot tell"]
@@ -130,7 +131,8 @@ def _judged(claim: Claim, walk: _Walk) -> Verified:
         walk.claimed.add(known.resolve())
         return Verified(_shown(known), "fits", by)
     if path is None:
-        return Verified(claim.file, "cannot tell", by, "where it was is not recorded")
+        why = "is on object storage" if is_address(claim.file) else "where it was is not recorded"
+        return Verified(claim.file, "cannot tell", by, why)
     return Verified(_shown(path), "missing", by, "is not there")
 
 

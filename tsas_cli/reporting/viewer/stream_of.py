@@ -6,13 +6,14 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from tsas_cli.errors import InputError
+from tsas_cli.recordings.storage import Place
 from tsas_cli.reporting.stream import FILE
 from tsas_cli.reporting.stream.recorder.reading import is_finished
 
 
 @contextmanager
 def stream_of(
-    paths: Sequence[Path], step: Callable[[], None] = lambda: None
+    paths: Sequence[Place], step: Callable[[], None] = lambda: None
 ) -> Iterator[tuple[Path, list[str]]]:
     """Yield the stream's file, and sentences about it; what is made here is gone afterwards.
 
@@ -24,14 +25,17 @@ def stream_of(
     InputError
         A path is missing, no stream and no folder of a stage, or a file stands among others.
     """
-    for path in paths:
+    local = [path for path in paths if isinstance(path, Path)]
+    for path in local:
         if not path.exists():
             raise InputError("is not there", where=path, expected="an .rrd file or a folder")
     first, *others = paths
-    if not others and (stream := first / FILE if first.is_dir() else first).is_file():
-        yield stream, _notes(stream)
-        return
-    for path in paths:
+    if isinstance(first, Path) and not others:
+        stream = first / FILE if first.is_dir() else first
+        if stream.is_file():
+            yield stream, _notes(stream)
+            return
+    for path in local:
         if not path.is_dir():
             raise InputError(
                 "is a file among others",

@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import cast
 
 from tsas_cli.identification.model import FILE, Model, read_model
@@ -103,7 +102,7 @@ def _drive(run: SeenRun, stage: type[StageFile]) -> Drive:
     dataset = cast("Dataset", run.inputs.dataset)
     started, told = dataset.manifest.session_start, run.file.run
     if told.load != "spring" or X_IN not in run.file.names:
-        return prepare(read_recording(Path(dataset.folder), told), started).drive
+        return prepare(read_recording(dataset.folder, told), started).drive
     return drive_of(
         told,
         run.time_s,

@@ -1,0 +1,210 @@
+import os
+import shutil
+
+import pytest
+
+import tsas_cli as tsas
+from tests.collection.collected import ROWS, RATE_Hz, diagnose, write
+from tests.counted import Counted
+from tsas_cli.collection import COLUMNS
+from tsas_cli.errors import InputError
+
+
+@pytest.fixture(autouse=True)
+def cache(tmp_path_factory, monkeypatch):
+    folder = tmp_path_factory.mktemp("cache")
+    monkeypatch.setenv("TSAS_CACHE_DIR", str(folder))
+    return folder
+
+
+@pytest.fixture
+def rigs(tmp_path, monkeypatch):
+    write(
+        tmp_path / "one" / "a",
+        {"total_bend_rad": 3.5, "started": "2026-02-03T10:00:00", "operator": "bo"},
+        {"total_bend_rad": 1.0, "started": "2025-12-31T23:00:00-02:00", "load": "force"},
+    )
+    write(tmp_path / "two", {"total_bend_rad": 4.0, "preload_N": 25.0}, channels=("f_in_N",))
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def found(*call, **options):
+    rows = tsas.runs(*call, **options).summary["runs"]
+    return [(row["folder"], row["run"]) for row in rows]
+
+
+def test_a_query_is_a_condition_over_all_runs(rigs):
+    assert found() == [("one/a", "r0"), ("one/a", "r1"), ("two", "r0")]
+    assert found("total_bend_rad > 3") == [("one/a", "r0"), ("two", "r0")]
+    assert found("total_bend_rad > 3 and 'f_out_N' in channels") == [("one/a", "r0")]
+    assert found("load = 'force' or preload_N between 20 and 30") == [
+        ("one/a", "r1"),
+        ("two", "r0"),
+    ]
+    assert found("tags['operator'] = 'bo'") == [("one/a", "r0")]
+
+
+def test_what_is_told_of_a_run(rigs):
+    row, other, _ = tsas.runs().summary["runs"]
+    assert tuple(row) == COLUMNS
+    assert (row["dataset"], row["kind"], row["load"], row["gear_ratio"]) == (
+        "a", "measured", "spring", 5.0
+    )  # fmt: skip
+    assert (row["rows"], row["channels"], row["tags"]) == (
+        ROWS, ["x_in_mm", "f_out_N"], {"operator": "bo"}
+    )  # fmt: skip
+    assert row["duration_s"] == pytest.approx((ROWS - 1) / RATE_Hz)
+    assert row["rate_Hz"] == pytest.approx(RATE_Hz)
+    assert row["bytes"] == (rigs / "one/a/runs/r0.parquet").stat().st_size
+    assert row["verdict"] is row["causes"] is row["diagnosed"] is None
+    assert (row["started"], other["started"]) == ("2026-02-03T10:00:00", "2026-01-01T01:00:00")
+
+
+def test_dates_and_channels_need_no_quotes(rigs):
+    assert found("started >= 2026-01-02 and f_out in channels") == [("one/a", "r0")]
+    assert found("started < 2026-02") == [("one/a", "r1")]
+    assert found("f_in NOT IN channels") == [("one/a", "r0"), ("one/a", "r1")]
+
+
+def test_verdicts_are_those_of_the_latest_diagnosis_of_the_same_manifest(rigs):
+    old = diagnose(rigs / "two", rigs / "results" / "old", "named", "backlash")
+    diagnose(rigs / "two", rigs / "results" / "new", "sufficient")
+    os.utime(old / "diagnosis.json", (1, 1))
+    diagnose(rigs / "one" / "a", rigs / "one" / "a" / "d", "named", "free_tendon", chosen=["r1"])
+    rows = tsas.runs(columns=["verdict", "causes"]).summary["runs"]
+    assert [(row["verdict"], row["causes"]) for row in rows] == [
+        (None, None), ("named", ["free_tendon"]), ("sufficient", [])
+    ]  # fmt: skip
+    assert found("'free_tendon' in causes") == [("one/a", "r1")]
+    manifest = rigs / "two" / "dataset.toml"
+    manifest.write_text(manifest.read_text() + "\n# mended\n")
+    assert found("verdict = 'sufficient'") == []
+
+
+def test_only_what_has_changed_is_read_again(rigs):
+    first, again, changed = Counted(), Counted(), Counted()
+    tsas.runs(step=first)
+    tsas.runs(step=again)
+    manifest = rigs / "two" / "dataset.toml"
+    manifest.write_text(manifest.read_text().replace("4.0", "0.5"))
+    assert found("total_bend_rad = 0.5", step=changed) == [("two", "r0")]
+    assert (first.done, again.done, changed.done) == (2, 0, 1)
+
+
+def test_new_datasets_come_in_and_deleted_ones_go(rigs):
+    tsas.runs()
+    shutil.rmtree(rigs / "two")
+    assert found() == [("one/a", "r0"), ("one/a", "r1")]
+    write(rigs / "one" / "b", {})
+    assert found() == [("one/a", "r0"), ("one/a", "r1"), ("one/b", "r0")]
+
+
+def test_a_wrong_manifest_is_told_and_the_rest_is_answered(rigs):
+    (rigs / "bad").mkdir()
+    (rigs / "bad" / "dataset.toml").write_text("format = 2")
+    (rigs / "two" / "runs" / "r0.parquet").write_bytes(b"no")
+    for _ in range(2):  # from the files, and from the index
+        result = tsas.runs()
+        assert len(result.summary["runs"]) == 3
+        about_bad, about_two = result.summary["problems"]
+        assert about_bad.startswith("bad/dataset.toml: format: input should be 1, got 2")
+        assert about_two.startswith("two/dataset.toml: runs/r0.parquet: ")
+        assert "bad/dataset.toml" in repr(result)
+    assert result.summary["runs"][2]["rows"] is None
+
+
+def test_folders_are_named_as_they_were_given(rigs):
+    assert found(folders="two") == [("two", "r0")]
+    assert found(folders=[rigs / "one", "two"]) == [
+        (f"{rigs}/one/a", "r0"), (f"{rigs}/one/a", "r1"), ("two", "r0")
+    ]  # fmt: skip
+    assert tsas.runs(folders="one").paths == ("one/a",)
+
+
+def test_hidden_folders_and_links_are_left_alone(rigs):
+    shutil.copytree(rigs / "two", rigs / ".two.tmp")
+    (rigs / "loop").symlink_to(rigs)
+    assert len(found()) == 3
+
+
+def test_sorting_limit_and_columns(rigs):
+    result = tsas.runs(sort=["-total_bend_rad"], columns=["total_bend_rad"], limit=2)
+    assert result.summary["runs"] == [{"total_bend_rad": 4.0}, {"total_bend_rad": 3.5}]
+    assert (result.summary["fitting"], result.summary["all_runs"]) == (3, 3)
+    assert result.tables()[0][0] == "3 of 3 runs, the first 2 of them"
+    assert result.paths == ("two", "one/a")
+    first = tsas.runs(sort=["preload_N"], limit=1)  # what is missing comes last
+    assert first.summary["runs"][0]["preload_N"] == 25.0
+
+
+def test_the_frame_has_a_row_for_each_run(rigs):
+    frame = tsas.runs("folder = 'one/a'").frame()
+    assert list(frame.columns) == list(COLUMNS)
+    assert frame["total_bend_rad"].tolist() == [3.5, 1.0]
+    assert frame["started"].dt.month.tolist() == [2, 1]
+    assert frame["diagnosed"].isna().all()
+
+
+@pytest.mark.parametrize(
+    ("query", "line"),
+    [
+        (
+            "rows > 1 and bend_rad > 3",
+            "the query, character 14, at 'bend_rad > 3': there is no column bend_rad; did you mean",
+        ),
+        ("started > 2026-01 and rows >> and 3", "the query, character 31, at 'and 3': syntax"),
+        ("f_uot in channels", "the query: no run has a channel f_uot; did you mean f_out_N?"),
+        ("one", "the query, character 1, at 'one': there is no column one; name folders with --in"),
+        ("run > 3", "the query: Cannot compare values"),
+        ("started > 2026-13", "the query: timestamp field value out of range"),
+        ("rows > 1) union select (1", "the query, character 9, at ') union select (1'"),
+        ("true; drop table runs", "the query: Cannot have any modifiers"),
+        ("run in (select content from read_text('/etc/hostname'))", "the query: Cannot access"),
+        ("run in (select file from glob('*'))", "the query: Cannot access"),
+        ("run in (select file from entries)", "the query: Table with name entries does not exist"),
+        ("sum(rows) > 3", "the query: WHERE clause cannot contain aggregates"),
+    ],
+)
+def test_a_wrong_query_is_one_line_that_points_at_the_place(rigs, query, line):
+    with pytest.raises(InputError) as caught:
+        tsas.runs(query)
+    assert caught.value.line().startswith(line)
+    assert "\n" not in caught.value.line()
+
+
+@pytest.mark.parametrize(
+    ("options", "line"),
+    [
+        ({"columns": ["bend"]}, "there is no column 'bend'"),
+        ({"sort": ["-row"]}, "there is no column 'row'; did you mean rows?"),
+        ({"folders": "nowhere"}, "nowhere: is no folder"),
+        ({"limit": -1}, "limit is -1"),
+    ],
+)
+def test_wrong_options_are_refused(rigs, options, line):
+    with pytest.raises(InputError) as caught:
+        tsas.runs(**options)
+    assert caught.value.line().startswith(line)
+
+
+def test_an_index_that_is_damaged_is_made_again(rigs, cache):
+    tsas.runs()
+    (index,) = (cache / "runs").iterdir()
+    index.write_bytes(b"damaged")
+    assert len(found()) == 3
+    assert index.read_bytes().startswith(b"PAR1")
+
+
+def test_an_index_that_cannot_be_kept_is_held_in_memory(rigs, monkeypatch):
+    (rigs / "file").write_text("")
+    monkeypatch.setenv("TSAS_CACHE_DIR", str(rigs / "file"))
+    result = tsas.runs("total_bend_rad > 3")
+    assert len(result.summary["runs"]) == 2
+    assert "cannot be kept" in result.summary["problems"][0]
+
+
+def test_a_folder_without_datasets_has_no_runs(tmp_path):
+    result = tsas.runs(folders=tmp_path)
+    assert result.summary["runs"] == []
+    assert result.tables()[0][0] == "0 of 0 runs"

@@ -1,0 +1,42 @@
+import pytest
+
+import tsas_cli as tsas
+from tsas_cli.errors import InputError
+from tsas_cli.recordings import storage
+
+
+def test_the_manifest_comes_last_and_an_older_one_goes_first(dataset, bucket, wire):
+    tsas.upload(dataset, f"{bucket}/bench")
+    wire.reset()
+    tsas.upload(dataset, f"{bucket}/bench", force=True)
+    changes = [(verb, path.split("/bench/")[1]) for verb, path in wire.requests if verb in WRITE]
+    assert changes == [
+        ("DELETE", "dataset.toml"),
+        ("PUT", "runs/a.parquet"),
+        ("PUT", "runs/a.parquet.blocks.json"),
+        ("PUT", "dataset.toml"),
+    ]
+
+
+WRITE = {"PUT", "DELETE", "POST"}
+
+
+def test_nothing_is_replaced_unasked(dataset, bucket):
+    tsas.upload(dataset, f"{bucket}/bench")
+    with pytest.raises(InputError, match="already exists"):
+        tsas.upload(dataset, f"{bucket}/bench")
+
+
+def test_a_recording_that_has_changed_is_not_uploaded(dataset, bucket):
+    with (dataset / "runs/a.parquet").open("ab") as file:
+        file.write(b"more")
+    with pytest.raises(InputError, match="the checksum differs"):
+        tsas.upload(dataset, f"{bucket}/bench")
+    assert storage.files_of("s3").find(bucket) == []
+
+
+def test_what_is_no_folder_or_no_address_is_refused(dataset, tmp_path):
+    with pytest.raises(InputError, match="is no address"):
+        tsas.upload(dataset, str(tmp_path / "there"))
+    with pytest.raises(InputError, match="is no local folder"):
+        tsas.upload("s3://a/b", "s3://a/c")

@@ -1,0 +1,123 @@
+"""What a person is told when an address or its storage is wrong."""
+
+import socket
+import subprocess
+import sys
+import time
+
+import pytest
+
+import tsas_cli as tsas
+from tests.storage.conftest import HOST, KEY, SECRET, forget, free_port
+from tsas_cli.errors import InputError
+from tsas_cli.recordings import storage
+
+
+def line_of(address: str) -> str:
+    with pytest.raises(InputError) as caught:
+        tsas.read(address)
+    assert SECRET not in caught.value.line()
+    return caught.value.line()
+
+
+def test_a_bucket_or_dataset_that_is_not_there(bucket):
+    assert line_of("s3://no-such-bucket/x") == (
+        "s3://no-such-bucket/x/dataset.toml: there is no such bucket"
+    )
+    assert line_of(f"{bucket}/x").startswith(f"{bucket}/x: no dataset.toml here; expected")
+
+
+def test_no_credentials(bucket, monkeypatch):
+    monkeypatch.delenv("AWS_ACCESS_KEY_ID")
+    monkeypatch.delenv("AWS_SECRET_ACCESS_KEY")
+    forget()
+    assert line_of(f"{bucket}/x").startswith(
+        f"{bucket}/x/dataset.toml: there are no credentials for it; set them"
+    )
+
+
+def test_nothing_listens_at_the_endpoint(keys, monkeypatch):
+    monkeypatch.setenv("AWS_ENDPOINT_URL", f"http://{HOST}:{free_port()}")
+    before = time.monotonic()
+    assert "s3://a/b/dataset.toml: the storage cannot be reached" in line_of("s3://a/b")
+    assert time.monotonic() - before < 10
+
+
+def test_a_server_that_never_answers(keys, monkeypatch):
+    monkeypatch.setitem(storage._S3_WAITS, "read_timeout", 0.5)
+    with socket.create_server((HOST, 0)) as silent:
+        monkeypatch.setenv("AWS_ENDPOINT_URL", f"http://{HOST}:{silent.getsockname()[1]}")
+        before = time.monotonic()
+        assert "the storage cannot be reached" in line_of("s3://a/b")
+        assert time.monotonic() - before < 8
+
+
+def test_a_storage_that_stays_silent_is_given_up_in_time(keys, monkeypatch):
+    monkeypatch.setattr(storage, "ANSWER_S", 1.0)
+    with socket.create_server((HOST, 0)) as silent:
+        monkeypatch.setenv("AWS_ENDPOINT_URL", f"http://{HOST}:{silent.getsockname()[1]}")
+        before = time.monotonic()
+        assert "the storage cannot be reached (FSTimeoutError)" in line_of("s3://a/b")
+        assert time.monotonic() - before < 8
+
+
+def test_a_wire_that_breaks_while_a_recording_is_read(dataset, bucket, wire):
+    tsas.upload(dataset, f"{bucket}/bench")
+    data = tsas.read(f"{bucket}/bench")
+    wire.door.close()
+    wire.target = free_port()
+    forget()
+    with pytest.raises(InputError) as caught:
+        data["a"]
+    assert "cannot be reached" in caught.value.line()
+
+
+@pytest.mark.parametrize(
+    ("address", "line"),
+    [
+        (f"s3://{KEY}:{SECRET}@bucket/x", "s3://bucket/x: an address with a key, a password"),
+        (f"s3://bucket/x?X-Amz-Signature={SECRET}", "s3://bucket/x: an address with a key"),
+        ("http://host/x", "http://host/x: http:// is no storage that is known; expected a folder"),
+        ("s3:///x", "s3:///x: is no place in a bucket"),
+        ("s3://bucket/a/../../other", "s3://bucket/a/../../other: is no place in a bucket"),
+    ],
+)
+def test_addresses_that_are_none(address, line):
+    assert line_of(address).startswith(line)
+
+
+def test_a_package_that_is_not_installed(monkeypatch):
+    monkeypatch.setitem(sys.modules, "s3fs", None)
+    registry = pytest.importorskip("fsspec.registry")
+    monkeypatch.delitem(registry._registry, "s3", raising=False)
+    assert line_of("s3://a/b").endswith("need the package s3fs; install tsas[s3]")
+
+
+def test_a_file_address_is_a_local_folder(dataset):
+    assert tsas.read(dataset.as_uri())["a"].time_s.size == 500
+
+
+def test_an_output_is_a_local_folder(dataset):
+    with pytest.raises(InputError, match=r"s3://bucket/x: is an address; expected a local folder"):
+        tsas.check(dataset, out="s3://bucket/x")
+
+
+def test_the_command_says_it_in_one_line_and_no_secret(tsas, bucket, tmp_path):
+    done = tsas("calibrate", f"{bucket}/x", "--out", tmp_path / "out")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.count("\n") == 1
+    assert not (tmp_path / "out").exists()
+    done = tsas("check", f"s3://{KEY}:{SECRET}@bucket/x")
+    assert done.returncode == 2
+    assert SECRET not in done.stderr
+
+
+def test_local_datasets_need_no_storage(tsas, dataset):
+    program = (
+        "import sys, tsas_cli as tsas; tsas.check(sys.argv[1]); "
+        "print([m for m in ('s3fs', 'gcsfs', 'botocore', 'aiohttp') if m in sys.modules])"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program, str(dataset)], capture_output=True, text=True, check=True
+    )
+    assert done.stdout == "[]\n"

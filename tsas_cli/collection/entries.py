@@ -1,0 +1,153 @@
+"""What one manifest or one diagnosis adds to the index."""
+
+from collections.abc import Callable, Mapping
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from tsas_cli.collection.found import DIAGNOSIS, MANIFEST
+from tsas_cli.errors import InputError
+from tsas_cli.files import read_json, sha256_of
+from tsas_cli.recordings.columns import TIME
+from tsas_cli.recordings.manifest import Rig, Run, parse, read_manifest
+from tsas_cli.stage_files.diagnosis import Diagnosis
+
+RIG = tuple(Rig.model_fields)
+TEXTS = pa.list_(pa.string())
+RUN = pa.struct(
+    {
+        "run": pa.string(),
+        "started": pa.timestamp("us"),
+        "load": pa.string(),
+        "total_bend_rad": pa.float64(),
+        "sheath_length_mm": pa.float64(),
+        "preload_N": pa.float64(),
+        "rows": pa.int64(),
+        "duration_s": pa.float64(),
+        "rate_Hz": pa.float64(),
+        "channels": TEXTS,
+        "bytes": pa.int64(),
+        "tags": pa.map_(pa.string(), pa.string()),
+    }
+)
+SCHEMA = pa.schema(
+    {
+        "root": pa.int32(),
+        "folder": pa.string(),
+        "file": pa.string(),
+        "mtime_ns": pa.int64(),
+        "size": pa.int64(),
+        "problems": TEXTS,
+        # of a manifest
+        "sha256": pa.string(),
+        "dataset": pa.string(),
+        "kind": pa.string(),
+        "rig": pa.struct(dict.fromkeys(RIG, pa.float64())),
+        "runs": pa.list_(RUN),
+        # of a diagnosis
+        "manifest_sha256": pa.string(),
+        "chosen": TEXTS,
+        "verdict": pa.string(),
+        "causes": TEXTS,
+    }
+)
+
+
+def entry_of(folder: Path, file: str) -> dict[str, Any]:
+    """Return what a file says, by the names of the index; what is wrong stands in `problems`."""
+    try:
+        return _KINDS[file](folder)
+    except InputError as error:
+        return {"problems": [_without_place(error)]}
+    except OSError as error:
+        return {"problems": [f"cannot be read ({error.strerror})"]}
+
+
+def _manifest(folder: Path) -> dict[str, Any]:
+    manifest = read_manifest(folder)
+    problems: list[str] = []
+    return {
+        "sha256": sha256_of(folder / MANIFEST),
+        "dataset": manifest.name,
+        "kind": manifest.kind,
+        "rig": {name: getattr(manifest.rig, name) for name in RIG},
+        "runs": [_run(folder, run, problems) for run in manifest.run],
+        "problems": problems,
+    }
+
+
+def _run(folder: Path, run: Run, problems: list[str]) -> dict[str, Any]:
+    said = {
+        "run": run.id,
+        "started": None if run.started is None else _utc(run.started),
+        "load": run.load,
+        "total_bend_rad": run.total_bend_rad,
+        "sheath_length_mm": run.sheath_length_mm,
+        "preload_N": run.preload_N,
+        "tags": {key: str(value) for key, value in (run.model_extra or {}).items()},
+    }
+    try:
+        return said | _footer(folder, run)
+    except (pa.ArrowException, OSError) as error:
+        problems.append(f"{run.file}: {str(error).splitlines()[0]}")
+        return said
+
+
+def _footer(folder: Path, run: Run) -> dict[str, Any]:
+    """Return what the end of a run's Parquet file says of it; no sample is read."""
+    path = folder / run.file
+    if not path.resolve().is_relative_to(folder.resolve()):
+        raise OSError("a link leads out of the dataset's folder")
+    footer = pq.read_metadata(path)
+    names = footer.schema.names
+    duration = _duration_s(footer, names)
+    return {
+        "rows": footer.num_rows,
+        "duration_s": duration,
+        "rate_Hz": (footer.num_rows - 1) / duration if duration else None,
+        "channels": [name for name in names if name != TIME],
+        "bytes": path.stat().st_size,
+    }
+
+
+def _duration_s(footer: pq.FileMetaData, names: list[str]) -> float | None:
+    """Return the time from the first to the last sample [s], None where the file doesn't say."""
+    if TIME not in names:
+        return None
+    groups = range(footer.num_row_groups)
+    told = [footer.row_group(k).column(names.index(TIME)).statistics for k in groups]
+    if not told or not all(each is not None and each.has_min_max for each in told):
+        return None
+    return float(max(each.max for each in told)) - float(min(each.min for each in told))
+
+
+def _diagnosis(folder: Path) -> dict[str, Any]:
+    path = folder / DIAGNOSIS
+    content = read_json(path)
+    said = parse(Diagnosis, content, path)
+    chosen = said.chosen if said.chosen is not None else said.dataset.chosen
+    return {
+        "manifest_sha256": said.dataset.hashes.get(MANIFEST, "").lower(),
+        "chosen": None if chosen is None else list(chosen),
+        "verdict": said.verdict,
+        "causes": [cause.effect for cause in said.named],
+        "problems": [],
+    }
+
+
+_KINDS: Mapping[str, Callable[[Path], dict[str, Any]]] = {
+    MANIFEST: _manifest,
+    DIAGNOSIS: _diagnosis,
+}
+
+
+def _utc(at: datetime) -> datetime:
+    """Return a time without its zone: that of UTC where it has one, else as it was written."""
+    return at if at.tzinfo is None else at.astimezone(UTC).replace(tzinfo=None)
+
+
+def _without_place(error: InputError) -> str:
+    return InputError(error.what, expected=error.expected, remedy=error.remedy).line()

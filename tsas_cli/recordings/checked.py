@@ -1,0 +1,75 @@
+"""A run's file, from a folder or an address, once it is known to be the one that is meant."""
+
+from pathlib import Path
+from typing import TypeAlias, cast
+
+import pyarrow as pa
+
+from tsas_cli.errors import InputError
+from tsas_cli.files import sha256_of
+from tsas_cli.recordings.blocks import CheckedFile, NotTheSameError, opened
+from tsas_cli.recordings.manifest import Run
+from tsas_cli.recordings.storage import Address, Place
+
+Source: TypeAlias = Path | CheckedFile | pa.NativeFile
+
+
+def checked_file(path: Place, folder: Place, run: Run) -> Source:
+    """Return what Parquet is read from: the file itself once its checksum is that of the manifest.
+
+    What comes from an address is checked while it is read.
+
+    Raises
+    ------
+    InputError
+        The file is missing, leaves its folder or has another checksum.
+    NotTheSameError
+        Later, while it is read: it is not what its checksum says.
+    """
+    if isinstance(path, Address) or isinstance(folder, Address):
+        try:
+            return opened(cast("Address", path), run.sha256.lower())
+        except FileNotFoundError as error:
+            raise _missing(path, run) from error
+        except NotTheSameError as error:
+            raise changed(path, run) from error
+    path = local_file(folder, run)
+    try:
+        digest = sha256_of(path)
+    except OSError as error:
+        raise InputError(f"cannot be read ({error.strerror})", where=path) from error
+    if digest != run.sha256.lower():
+        raise changed(path, run)
+    return path
+
+
+def local_file(folder: Path, run: Run) -> Path:
+    """Return a run's file in a local folder.
+
+    Raises
+    ------
+    InputError
+        It is missing, or a link leads out of the folder.
+    """
+    path = folder / run.file
+    if not path.is_file():
+        raise _missing(path, run)
+    if not path.resolve().is_relative_to(folder.resolve()):
+        raise InputError("a link leads out of the dataset's folder", where=path)
+    return path
+
+
+def _missing(path: Place, run: Run) -> InputError:
+    return InputError(
+        "the run's file is missing", where=path, expected=f"the Parquet file of run {run.id}"
+    )
+
+
+def changed(path: Place, run: Run) -> InputError:
+    """Return what is said of a file that is not what the manifest says."""
+    return InputError(
+        "the checksum differs from the manifest's",
+        where=path,
+        expected=run.sha256.lower(),
+        remedy="the file has changed since ingest: restore it or ingest again",
+    )
