@@ -234,6 +234,6 @@ def test_an_earlier_table_stays_until_the_next_is_whole(base, tmp_path):
     out, plan = tmp_path / "out", {"stage": "simulate", "datasets": str(base / "rigs/a")}
     tsas.sweep(plan, out=out, workers=1)
     before = written(out)
-    with pytest.raises(tsas.InputError, match="scheduler|cluster"):
+    with pytest.raises(tsas.InputError, match=r"scheduler|cluster"):
         tsas.sweep(plan, out=out, cluster="nonsense://x", force=True)
     assert written(out) == before
