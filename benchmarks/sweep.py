@@ -29,6 +29,7 @@ DATASET = Path(__file__).parents[1] / "datasets" / "paper-groups"
 OPTIONS: dict[str, Any] = {"dynamics": "lugre", "nodes": 300}
 TASKS = int(os.environ.get("TSAS_SWEEP_TASKS", "10"))  # for each worker
 ROUNDS = int(os.environ.get("TSAS_SWEEP_ROUNDS", "3"))
+WORKER = ONE_THREAD | {"DASK_DISTRIBUTED__WORKER__PROFILE__ENABLED": "False"}  # as docs/sweep.md
 Fastest = dict[str, float]
 
 
@@ -129,10 +130,11 @@ def measure() -> Iterator[Row]:
         timed(spans("two", 2))
         if find_spec("distributed"):
             with tempfile.TemporaryDirectory() as name, cluster(Path(name)) as made:
-                made.add(**ONE_THREAD)
-                timed(spans("one of a cluster", 1, made.address))
-                made.add(**ONE_THREAD)
+                other, _ = made.add(**WORKER), made.add(**WORKER)
                 timed(spans("two of a cluster", 2, made.address))
+                other.terminate()
+                other.wait()
+                timed(spans("one of a cluster", 1, made.address))
     yield from rows({name: min(values) for name, values in found.items()})
 
 
