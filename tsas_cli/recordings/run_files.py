@@ -10,9 +10,11 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from tsas_cli.errors import InputError
-from tsas_cli.files import sha256_of
+from tsas_cli.files import check_unchanged, sha256_of, state_of
+from tsas_cli.limits import out_of_memory
 from tsas_cli.recordings.columns import BY_NAME, INPUTS, OUTPUTS, TIME, has_input_and_output
 from tsas_cli.recordings.manifest import Run
+from tsas_cli.recordings.parquet_files import check_size, is_number, open_parquet
 from tsas_cli.recordings.recording import Recording
 
 Floats = npt.NDArray[np.float64]
@@ -30,9 +32,11 @@ def read_recording(folder: Path, run: Run, *, strict: bool = True) -> Recording:
         is missing, in another unit or not of numbers; the time is not strictly increasing.
     """
     path = folder / run.file
-    table = _read_parquet(path, folder, run)
-    columns = {name: _floats(table, name, path) for name in table.column_names if name in BY_NAME}
-    _check_columns(columns, table.column_names, path)
+    state = _check_file(path, folder, run)
+    table, there = _table_of(path)
+    check_unchanged(path, state)
+    columns = {name: _floats(table, name, path) for name in table.column_names}
+    _check_columns(columns, there, path)
     if strict:
         _check_time(columns[TIME], path)
     return Recording(run, columns)
@@ -71,6 +75,7 @@ class RunColumns:
                 where=self.path,
                 remedy=f"there are: {', '.join(self.names)}",
             )
+        check_size(self.file, self.path, (name,), whole=True)
         try:
             table = self.file.read(columns=[name])
         except (pa.ArrowException, OSError) as error:
@@ -93,7 +98,7 @@ def open_run(folder: Path, run: Run) -> RunColumns:
     path = folder / run.file
     _check_file(path, folder, run)
     try:
-        file = pq.ParquetFile(path)
+        file = open_parquet(path)
         _check_names_and_units(file.schema_arrow, path)
     except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
         raise _not_parquet(path, error) from error
@@ -113,21 +118,19 @@ def read_columns(path: Path) -> dict[str, Floats]:
     """
     if not path.is_file():
         raise InputError("is not there", where=path, expected="a Parquet file")
-    table = _table_of(path)
-    columns = {name: _floats(table, name, path) for name in table.column_names if name in BY_NAME}
+    table, _ = _table_of(path)
+    columns = {name: _floats(table, name, path) for name in table.column_names}
     if TIME not in columns or len(columns[TIME]) < 2:
         raise InputError("column time_s is missing or short", where=path, expected="time in s")
     _check_time(columns[TIME], path)
     return columns
 
 
-def _read_parquet(path: Path, folder: Path, run: Run) -> pa.Table:
-    _check_file(path, folder, run)
-    return _table_of(path)
+def _check_file(path: Path, folder: Path, run: Run) -> tuple[int, ...]:
+    """Refuse a file that is not there, not in the dataset, or not what the manifest says.
 
-
-def _check_file(path: Path, folder: Path, run: Run) -> None:
-    """Refuse a file that is not there, not in the dataset, or not what the manifest says."""
+    Returns its state as it was before.
+    """
     if not path.is_file():
         raise InputError(
             "the run's file is missing", where=path, expected=f"the Parquet file of run {run.id}"
@@ -135,6 +138,7 @@ def _check_file(path: Path, folder: Path, run: Run) -> None:
     if not path.resolve().is_relative_to(folder.resolve()):
         raise InputError("a link leads out of the dataset's folder", where=path)
     try:
+        state = state_of(path)
         digest = sha256_of(path)
     except OSError as error:
         raise InputError(f"cannot be read ({error.strerror})", where=path) from error
@@ -145,15 +149,22 @@ def _check_file(path: Path, folder: Path, run: Run) -> None:
             expected=run.sha256.lower(),
             remedy="the file has changed since ingest: restore it or ingest again",
         )
+    return state
 
 
-def _table_of(path: Path) -> pa.Table:
+def _table_of(path: Path) -> tuple[pa.Table, list[str]]:
+    """Return the canonical columns, and the names of all that are there."""
     try:
-        table = pq.ParquetFile(path).read()
-        _check_names_and_units(table.schema, path)
+        with open_parquet(path) as file:
+            there = file.schema_arrow.names
+            names = [name for name in there if name in BY_NAME]
+            _check_names_and_units(file.schema_arrow, path)
+            check_size(file, path, names, whole=True)
+            return file.read(columns=names), there
+    except MemoryError as error:
+        raise out_of_memory(path) from error
     except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
         raise _not_parquet(path, error) from error
-    return table
 
 
 def _not_parquet(path: Path, error: Exception) -> InputError:
@@ -162,13 +173,17 @@ def _not_parquet(path: Path, error: Exception) -> InputError:
 
 
 def _check_names_and_units(schema: pa.Schema, path: Path) -> None:
-    """Refuse a known column that is there twice, or whose metadata name another known unit."""
+    """Refuse a known column that is there twice, of other than numbers, or in another unit."""
     units = {column.unit for column in BY_NAME.values()}
     for field in schema:
         if field.name not in BY_NAME:
             continue
         if schema.names.count(field.name) > 1:
             raise InputError(f"column {field.name} is there twice", where=path)
+        if not is_number(field.type):
+            raise InputError(
+                f"column {field.name} holds {str(field.type)[:80]}", where=path, expected="float64"
+            )
         unit = (field.metadata or {}).get(b"unit", b"").decode("utf-8", "replace")
         expected = BY_NAME[field.name].unit
         if unit in units - {expected}:
@@ -179,12 +194,6 @@ def _check_names_and_units(schema: pa.Schema, path: Path) -> None:
 
 def _floats(table: pa.Table, name: str, path: Path) -> Floats:
     column = table.column(name)
-    if not (
-        pa.types.is_floating(column.type)
-        or pa.types.is_integer(column.type)
-        or pa.types.is_null(column.type)
-    ):
-        raise InputError(f"column {name} holds {column.type}", where=path, expected="float64")
     values: Floats = column.cast(pa.float64(), safe=False).to_numpy(zero_copy_only=False)
     if name == TIME and not np.isfinite(values).all():
         row = int(np.flatnonzero(~np.isfinite(values))[0])

@@ -4,8 +4,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import pyarrow as pa
-import pyarrow.parquet as pq
 
+from tsas_cli.limits import out_of_memory
+from tsas_cli.recordings.parquet_files import check_size, open_parquet
 from tsas_cli.recordings.readers.options import ReadOptions
 from tsas_cli.recordings.readers.table import Source, Table, damaged, floats, resolve
 
@@ -20,10 +21,14 @@ def read(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Table:
     """
     del options
     try:
-        with pq.ParquetFile(path) as file:
+        with open_parquet(path) as file:
             schema = file.schema_arrow
             at = resolve(wanted, schema.names, path)
-            table = file.read(columns=[schema.names[i] for i in at.values()])
+            names = [schema.names[i] for i in at.values()]
+            check_size(file, path, names, whole=True)
+            table = file.read(columns=names)
+    except MemoryError as error:
+        raise out_of_memory(path) from error
     except pa.ArrowException as error:
         raise damaged(path, "Parquet", error) from error
     fields = {source: schema.field(i) for source, i in at.items()}
@@ -41,7 +46,7 @@ def names(path: Path, options: ReadOptions) -> Sequence[str]:
     """Return the names of the columns."""
     del options
     try:
-        with pq.ParquetFile(path) as file:
+        with open_parquet(path) as file:
             return list(file.schema_arrow.names)
     except pa.ArrowException as error:
         raise damaged(path, "Parquet", error) from error

@@ -1,0 +1,306 @@
+"""How much a file may ask for, checked before the memory is taken; docs/limits.md states it.
+
+What is read in parts (text tables, Parquet) has no limit of rows. What has to be loaded whole may
+take the memory that is there. Nothing may expand to more than a recording can.
+"""
+
+import os
+import re
+import stat
+import sys
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TextIO
+
+from tsas_cli.errors import InputError
+
+MIB = 1 << 20
+TOML_BYTES = 16 * MIB
+TOML_KEYS = 500_000
+JSON_BYTES = 1024 * MIB
+JSON_EXPANDS = 25  # bytes in memory for one in the file, at most
+DEPTH = 100  # tables in tables, lists in lists, groups in groups
+RUNS = 50_000  # of a dataset, and files of one ingest
+UNKNOWN_KEYS = 1_000  # of a table of the manifest
+COLUMNS = 10_000
+NAME = 1_000  # characters of a column's name
+LINE = MIB  # characters of a line of a text table
+HEADER = 16 * MIB  # characters of the comments above it
+FOOTER = 16 * MIB  # bytes of a Parquet file's description of itself
+EXPANSION = 500  # times the size of the file; a recording is not that empty
+HARMLESS = 256 * MIB  # which any file may expand to
+COPIES = 3  # of what is loaded whole, until it is a recording
+ITEMS = 1_000_000  # variables, cells, blocks of one file
+_DOTTED = re.compile(
+    r"""(?<![\w"'.-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){%d}""" % DEPTH  # noqa: UP031
+)
+
+
+def text_of(path: Path, most: int) -> str:
+    """Return the text of a file of at most `most` bytes in UTF-8, without its mark.
+
+    Raises
+    ------
+    InputError
+        It is no regular file, or larger.
+    OSError, UnicodeDecodeError
+        It cannot be read, or is other text.
+    """
+    # Without O_NONBLOCK a pipe that nobody writes to would be waited for.
+    descriptor = os.open(
+        path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
+    )
+    with os.fdopen(descriptor, "rb") as stream:
+        regular(path, os.fstat(descriptor))
+        content = stream.read(most + 1)
+    if len(content) > most:
+        raise InputError(
+            f"is larger than {size(most)}", where=path, expected="what tsas or a person has written"
+        )
+    return content.decode("utf-8-sig")
+
+
+def regular(path: Path, state: os.stat_result | None = None) -> None:
+    """Refuse what is no file but a pipe or a device, which may never end, or has no text as name.
+
+    Raises
+    ------
+    InputError
+        It is one, or has none.
+    OSError
+        It is not there.
+    """
+    mode = (state or path.stat()).st_mode
+    if not stat.S_ISREG(mode):
+        kind = "a folder" if stat.S_ISDIR(mode) else "a pipe or a device"
+        raise InputError(f"is {kind}", where=path, expected="a file")
+    if not _encodable(str(path)):
+        raise InputError("its name is no text", where=path, remedy="rename it")
+
+
+def toml(text: str, path: Path) -> None:
+    """Refuse TOML that would take its parser too long.
+
+    Raises
+    ------
+    InputError
+        It has too many runs or keys, or tables too deep in tables.
+    """
+    runs = text.count("\n[[")
+    if runs > RUNS:
+        raise InputError(
+            f"holds {runs} runs",
+            where=path,
+            expected=f"at most {RUNS}",
+            remedy="make several datasets of it",
+        )
+    keys = text.count("=")
+    if keys > TOML_KEYS:
+        raise InputError(f"holds {keys} keys", where=path, expected=f"at most {TOML_KEYS}")
+    if _DOTTED.search(text):
+        raise too_deep(path)
+
+
+def depth(content: Any, path: Path) -> None:
+    """Refuse tables and lists that are nested too deep.
+
+    Raises
+    ------
+    InputError
+        They are.
+    """
+    level = [content]
+    for _ in range(DEPTH + 1):
+        level = [v for outer in level for v in _members(outer) if isinstance(v, dict | list)]
+        if not level:
+            return
+    raise too_deep(path)
+
+
+def _members(value: Any) -> Iterable[Any]:
+    return value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
+
+
+def reason(error: ValueError) -> str:
+    """Return why text cannot be parsed, for the line of an error."""
+    said = str(error)
+    return "an integer has thousands of digits" if "int_max_str" in said else said[:200]
+
+
+def too_deep(path: Path) -> InputError:
+    """Return the error for what is nested too deep."""
+    return InputError(
+        "is nested too deep", where=path, expected=f"at most {DEPTH} tables or lists in each other"
+    )
+
+
+def lines(stream: TextIO, path: Path) -> Iterator[str]:
+    """Yield the lines of a text table.
+
+    Raises
+    ------
+    InputError
+        A line is longer than any row of a recording.
+    """
+    row = 0
+    while line := stream.readline(LINE + 1):
+        row += 1
+        if len(line) > LINE:
+            raise InputError(
+                f"is longer than {LINE} characters",
+                where=f"{path}, row {row}",
+                expected="a row of numbers that ends with its line",
+                remedy="is this a text table?",
+            )
+        yield line
+
+
+def columns(names: Sequence[str], path: Path) -> None:
+    """Refuse more columns than a recording has, or names that are no names.
+
+    Raises
+    ------
+    InputError
+        There are too many, or one is too long or no text.
+    """
+    if len(names) > COLUMNS:
+        raise InputError(
+            f"holds {len(names)} columns",
+            where=path,
+            expected=f"at most {COLUMNS}",
+            remedy="is this a recording? split it, or export the channels that you need",
+        )
+    for number, name in enumerate(names, start=1):
+        if len(name) > NAME or not _encodable(name):
+            raise InputError(
+                f"the name of column {number} is no text of at most {NAME} characters",
+                where=path,
+                remedy="name it anew",
+            )
+
+
+@dataclass
+class Expanded:
+    """What one file has asked for so far: bytes, and items (variables, cells, blocks)."""
+
+    path: Path
+    of_file: int
+    bytes: int = 0
+    items: int = 0
+
+    @classmethod
+    def of(cls, path: Path) -> "Expanded":
+        """Begin with a file."""
+        return cls(path, path.stat().st_size)
+
+    def add(self, more: int, *, what: str = "") -> None:
+        """Count one item of so many bytes.
+
+        Raises
+        ------
+        InputError
+            The file asks for more than a recording of its size can hold.
+        """
+        self.items += 1
+        if self.items > min(ITEMS, max(1000, self.of_file // 8)):
+            raise InputError(
+                f"holds more than {self.items - 1} variables, or the same again and again",
+                where=self.path,
+                expected="a recording",
+                remedy="export the channels that you need",
+            )
+        self.grow(more, what=what)
+
+    def grow(self, more: int, *, what: str = "") -> None:
+        """Count so many bytes more of the same item.
+
+        Raises
+        ------
+        InputError
+            As from `add`.
+        """
+        self.bytes += more
+        if self.bytes > max(HARMLESS, EXPANSION * self.of_file):
+            asked = f"{what}, {size(self.bytes)}" if what else size(self.bytes)
+            raise InputError(
+                f"{asked} or more from a file of {size(self.of_file)}",
+                where=self.path,
+                expected=f"at most {EXPANSION} times its size",
+                remedy="is it damaged? if not, export it again without compression, or as CSV",
+            )
+
+    def fits(self) -> None:
+        """Refuse what has to be loaded whole and is larger than the memory.
+
+        Raises
+        ------
+        InputError
+            It is.
+        """
+        fits(self.path, COPIES * self.bytes)
+
+
+def fits(path: Path, bytes_: int) -> None:
+    """Refuse what has to be loaded whole and is larger than the memory.
+
+    Raises
+    ------
+    InputError
+        It is.
+    """
+    there = memory()
+    if bytes_ > there:
+        raise InputError(
+            f"takes {size(bytes_)} of memory, and {size(there)} are there",
+            where=path,
+            remedy="use a larger machine, or export it as CSV or Parquet, which are read in parts",
+        )
+
+
+def out_of_memory(path: Path) -> InputError:
+    """Return the error for a file that took more memory than there was."""
+    return InputError(
+        f"takes more memory than there is ({size(memory())} are left)",
+        where=path,
+        remedy="use a larger machine, or export it as CSV or Parquet, which are read in parts",
+    )
+
+
+def memory() -> int:
+    """Return the bytes of memory that this process may still take, as far as it can be told."""
+    import psutil
+
+    there = [psutil.virtual_memory().available, *_of_container()]
+    if sys.platform != "win32":
+        import resource
+
+        most, _ = resource.getrlimit(resource.RLIMIT_AS)
+        taken = psutil.Process().memory_info().vms
+        there += [] if most == resource.RLIM_INFINITY else [most - taken]
+    return int(max(0, min(there)))
+
+
+def _of_container() -> Iterator[int]:
+    """Yield what the container may still take, where this is in one that has a limit."""
+    group = Path("/sys/fs/cgroup")
+    with suppress(OSError, ValueError):  # no such group, or "max"
+        most, taken = (int((group / f).read_text()) for f in ("memory.max", "memory.current"))
+        yield most - taken
+
+
+def size(bytes_: int) -> str:
+    """Return a number of bytes as people say it."""
+    for unit, one in (("TB", 10**12), ("GB", 10**9), ("MB", 10**6), ("kB", 10**3)):
+        if bytes_ >= one:
+            return f"{bytes_ / one:.3g} {unit}"
+    return f"{bytes_} bytes"
+
+
+def _encodable(name: str) -> bool:
+    try:
+        name.encode()
+    except UnicodeEncodeError:
+        return False
+    return True
