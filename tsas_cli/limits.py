@@ -1,4 +1,4 @@
-"""How much a file may ask for, checked before the memory is taken; docs/limits.md states it.
+"""How much a file may ask for, checked before the memory is taken; docs/untrusted.md states it.
 
 What is read in parts (text tables, Parquet) has no limit of rows. What has to be loaded whole may
 take the memory that is there. Nothing may expand to more than a recording can.
@@ -29,7 +29,8 @@ NAME = 1_000  # characters of a column's name
 LINE = MIB  # characters of a line of a text table
 HEADER = 16 * MIB  # characters of the comments above it
 FOOTER = 16 * MIB  # bytes of a Parquet file's description of itself
-EXPANSION = 500  # times the size of the file; a recording is not that empty
+EXPANSION = 500  # times the size of a packed file; zeros reach 1032, recordings 20
+PARQUET_EXPANSION = 5_000  # there an even clock and channels at rest reach 1700
 HARMLESS = 256 * MIB  # which any file may expand to
 COPIES = 3  # of what is loaded whole, until it is a recording
 ITEMS = 1_000_000  # variables, cells, blocks of one file
@@ -165,13 +166,7 @@ def columns(names: Sequence[str], path: Path) -> None:
     InputError
         There are too many, or one is too long or no text.
     """
-    if len(names) > COLUMNS:
-        raise InputError(
-            f"holds {len(names)} columns",
-            where=path,
-            expected=f"at most {COLUMNS}",
-            remedy="is this a recording? split it, or export the channels that you need",
-        )
+    column_count(len(names), path)
     for number, name in enumerate(names, start=1):
         if len(name) > NAME or not _encodable(name):
             raise InputError(
@@ -181,19 +176,37 @@ def columns(names: Sequence[str], path: Path) -> None:
             )
 
 
+def column_count(count: int, path: Path) -> None:
+    """Refuse more columns than a recording has.
+
+    Raises
+    ------
+    InputError
+        There are more.
+    """
+    if count > COLUMNS:
+        raise InputError(
+            f"holds {count} columns",
+            where=path,
+            expected=f"at most {COLUMNS}",
+            remedy="is this a recording? split it, or export the channels that you need",
+        )
+
+
 @dataclass
 class Expanded:
     """What one file has asked for so far: bytes, and items (variables, cells, blocks)."""
 
     path: Path
     of_file: int
+    most: int = EXPANSION
     bytes: int = 0
     items: int = 0
 
     @classmethod
-    def of(cls, path: Path) -> "Expanded":
-        """Begin with a file."""
-        return cls(path, path.stat().st_size)
+    def of(cls, path: Path, most: int = EXPANSION) -> "Expanded":
+        """Begin with a file that may expand to `most` times its size."""
+        return cls(path, path.stat().st_size, most)
 
     def add(self, more: int, *, what: str = "") -> None:
         """Count one item of so many bytes.
@@ -222,12 +235,12 @@ class Expanded:
             As from `add`.
         """
         self.bytes += more
-        if self.bytes > max(HARMLESS, EXPANSION * self.of_file):
+        if self.bytes > max(HARMLESS, self.most * self.of_file):
             asked = f"{what}, {size(self.bytes)}" if what else size(self.bytes)
             raise InputError(
                 f"{asked} or more from a file of {size(self.of_file)}",
                 where=self.path,
-                expected=f"at most {EXPANSION} times its size",
+                expected=f"at most {self.most} times its size",
                 remedy="is it damaged? if not, export it again without compression, or as CSV",
             )
 
@@ -255,7 +268,7 @@ def fits(path: Path, bytes_: int) -> None:
         raise InputError(
             f"takes {size(bytes_)} of memory, and {size(there)} are there",
             where=path,
-            remedy="use a larger machine, or export it as CSV or Parquet, which are read in parts",
+            remedy=_otherwise(path),
         )
 
 
@@ -264,8 +277,13 @@ def out_of_memory(path: Path) -> InputError:
     return InputError(
         f"takes more memory than there is ({size(memory())} are left)",
         where=path,
-        remedy="use a larger machine, or export it as CSV or Parquet, which are read in parts",
+        remedy=_otherwise(path),
     )
+
+
+def _otherwise(path: Path) -> str:
+    in_parts = "" if path.suffix == ".parquet" else ", or export it as CSV or Parquet"
+    return f"use a larger machine{in_parts}"
 
 
 def memory() -> int:

@@ -54,9 +54,8 @@ class Sandbox:
         return Ended(**json.loads(self.process.stdout.readline()))
 
     def close(self) -> None:
-        assert self.process.stdin is not None
-        self.process.stdin.close()
-        self.process.wait(timeout=30)
+        """End it."""
+        self.process.communicate(timeout=30)
 
 
 def _in_child(call: dict[str, Any], out: int, err: int) -> None:

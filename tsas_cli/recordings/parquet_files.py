@@ -55,7 +55,7 @@ def check_size(file: pq.ParquetFile, path: Path, names: Collection[str], *, whol
     InputError
         It does, or, where they are loaded whole, they are larger than the memory.
     """
-    expanded = limits.Expanded.of(path)
+    expanded = limits.Expanded.of(path, limits.PARQUET_EXPANSION)
     metadata = file.metadata
     leaves = [
         leaf

@@ -47,7 +47,7 @@ def detect(path: Path, options: ReadOptions) -> Layout:
         raise InputError("holds no table", where=path, expected="rows of numbers")
     delimiter = options.delimiter or _delimiter([text for _, text in lines])
     rows = [fields(text, delimiter) for _, text in lines]
-    limits.columns(rows[0], path)
+    limits.column_count(len(rows[0]), path)
     decimal = options.decimal or _decimal(rows, delimiter)
     names, units = [], []
     if not _has_number(rows[0], decimal):
