@@ -113,7 +113,7 @@ def depth(content: Any, path: Path) -> None:
         They are.
     """
     level = [content]
-    for _ in range(DEPTH + 1):
+    for _ in range(DEPTH):
         level = [v for outer in level for v in _members(outer) if isinstance(v, dict | list)]
         if not level:
             return

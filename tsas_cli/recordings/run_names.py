@@ -19,7 +19,7 @@ def check_run_name(name: str, *, on_windows: bool = os.name == "nt") -> None:
         a device of Windows.
     """
     bad = _SLASHES + (_ON_WINDOWS if on_windows else "")
-    unusable = name in {".", ".."} or any(c in name for c in bad) or not name.isprintable()
+    unusable = name in {"", ".", ".."} or any(c in name for c in bad) or not name.isprintable()
     if unusable or len(f"{name}.parquet".encode()) > 255 or name != name.strip():
         raise ValueError(
             "must be usable as a file name (no slash, no control character, no blank at its ends, "
