@@ -9,7 +9,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from tsas_cli import limits
+from tsas_cli import limits, memory
 from tsas_cli.errors import InputError
 from tsas_cli.recordings.parquet_files import check_size, open_parquet
 
@@ -77,31 +77,31 @@ def test_columns_are_counted_and_their_names_measured(tmp_path):
 def test_what_a_file_expands_to_counts_against_its_size(tmp_path):
     path = tmp_path / "a.mat"
     path.write_bytes(bytes(2_000_000))
-    expanded = limits.Expanded.of(path)
+    expanded = memory.Expanded.of(path)
     expanded.add(limits.EXPANSION * 2_000_000)
     line = refusal(lambda: expanded.add(1, what="x of (9, 9)"))
     assert "x of (9, 9), 1 GB or more from a file of 2 MB; expected at most 500 times" in line
-    small = limits.Expanded(path, 10)
+    small = memory.Expanded(path, 10)
     small.add(limits.HARMLESS)
     assert "268 MB or more from a file of 10 bytes" in refusal(small.add, 1)
 
 
 def test_items_are_counted(tmp_path):
-    expanded = limits.Expanded(tmp_path, 80_000)
+    expanded = memory.Expanded(tmp_path, 80_000)
     for _ in range(10_000):
         expanded.add(0)
     assert "holds more than 10000 variables" in refusal(expanded.add, 0)
 
 
 def test_what_is_loaded_whole_has_to_fit_into_the_memory(tmp_path, monkeypatch):
-    monkeypatch.setattr(limits, "memory", lambda: 1_000_000_000)
-    limits.fits(tmp_path / "a.mat", 1_000_000_000)
-    line = refusal(limits.fits, tmp_path / "a.mat", 2_000_000_000)
+    monkeypatch.setattr(memory, "available", lambda: 1_000_000_000)
+    memory.fits(tmp_path / "a.mat", 1_000_000_000)
+    line = refusal(memory.fits, tmp_path / "a.mat", 2_000_000_000)
     assert line.endswith(
         "takes 2 GB of memory, and 1 GB are there; use a larger machine, or export it as CSV or "
         "Parquet"
     )
-    expanded = limits.Expanded(tmp_path / "a.mat", 1)
+    expanded = memory.Expanded(tmp_path / "a.mat", 1)
     expanded.bytes = 1_000_000_000 // limits.COPIES
     expanded.fits()
     expanded.bytes += 1
@@ -109,7 +109,7 @@ def test_what_is_loaded_whole_has_to_fit_into_the_memory(tmp_path, monkeypatch):
 
 
 def test_the_memory_that_is_there_is_some(tmp_path):
-    assert 10_000_000 < limits.memory() < 1 << 50
+    assert 10_000_000 < memory.available() < 1 << 50
 
 
 @pytest.mark.parametrize("packed", ["snappy", "zstd"])

@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from tsas_cli import limits
+from tsas_cli import limits, memory
 from tsas_cli.errors import InputError
 
 
@@ -111,7 +111,7 @@ def read_json(path: Path) -> Any:
         The file is missing, cannot be read, is not JSON, holds a key twice, or exceeds a limit.
     """
     try:
-        limits.fits(path, limits.JSON_EXPANDS * path.stat().st_size)
+        memory.fits(path, limits.JSON_EXPANDS * path.stat().st_size)
         text = limits.text_of(path, limits.JSON_BYTES)
         content = json.loads(text, object_pairs_hook=_without_twins)
     except OSError as error:

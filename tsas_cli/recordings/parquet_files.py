@@ -9,6 +9,7 @@ import pyarrow.parquet as pq
 
 from tsas_cli import limits
 from tsas_cli.errors import InputError
+from tsas_cli.memory import Expanded
 
 _TEXT_BEHIND = 8  # bytes at the end: the footer's length and PAR1
 
@@ -55,7 +56,7 @@ def check_size(file: pq.ParquetFile, path: Path, names: Collection[str], *, whol
     InputError
         It does, or, where they are loaded whole, they are larger than the memory.
     """
-    expanded = limits.Expanded.of(path, limits.PARQUET_EXPANSION)
+    expanded = Expanded.of(path, limits.PARQUET_EXPANSION)
     metadata = file.metadata
     leaves = [
         leaf

@@ -11,7 +11,7 @@ import pyarrow.parquet as pq
 
 from tsas_cli.errors import InputError
 from tsas_cli.files import check_unchanged, sha256_of, state_of
-from tsas_cli.limits import out_of_memory
+from tsas_cli.memory import out_of_memory
 from tsas_cli.recordings.columns import BY_NAME, INPUTS, OUTPUTS, TIME, has_input_and_output
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.parquet_files import check_size, is_number, open_parquet

@@ -9,7 +9,7 @@ import numpy.typing as npt
 import pyarrow as pa
 
 from tsas_cli.errors import InputError
-from tsas_cli.limits import out_of_memory
+from tsas_cli.memory import out_of_memory
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.parquet_files import check_size, open_parquet
 from tsas_cli.recordings.recording import Recording

@@ -10,7 +10,7 @@ from scipy.io import loadmat
 from scipy.io.matlab import MatReadWarning
 
 from tsas_cli.errors import InputError, nearest
-from tsas_cli.limits import out_of_memory
+from tsas_cli.memory import out_of_memory
 from tsas_cli.recordings.readers.controldesk import (
     captures,
     channel_names,

@@ -7,6 +7,7 @@ import numpy as np
 
 from tsas_cli import limits
 from tsas_cli.errors import InputError
+from tsas_cli.memory import Expanded
 from tsas_cli.recordings.readers.optional import optional
 
 
@@ -30,7 +31,7 @@ class _Reader:
 
     def __init__(self, path: Path, file: Any, h5py: Any) -> None:
         self.path, self.file, self.h5py = path, file, h5py
-        self.expanded = limits.Expanded.of(path)
+        self.expanded = Expanded.of(path)
         self.seen: set[int] = set()  # structs and cells, by their place in the file
 
     def members(self, group: Any, *, deep: int, but: str = "\0") -> dict[str, Any]:

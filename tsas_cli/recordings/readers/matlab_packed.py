@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from tsas_cli import limits
+from tsas_cli.memory import Expanded
 
 _HEADER, _TAG = 128, 8
 _ORDERS = {b"IM": "<", b"MI": ">"}
@@ -26,7 +27,7 @@ def check_unpacked(path: Path) -> None:
     InputError
         It does, or holds too many variables.
     """
-    claimed, expanded = limits.Expanded.of(path), limits.Expanded.of(path)
+    claimed, expanded = Expanded.of(path), Expanded.of(path)
     if expanded.of_file * _MOST_PACKED <= limits.HARMLESS:
         return
     with path.open("rb") as stream:

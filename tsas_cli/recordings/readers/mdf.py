@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from tsas_cli.errors import InputError
-from tsas_cli.limits import out_of_memory
+from tsas_cli.memory import out_of_memory
 from tsas_cli.recordings.readers.mdf_blocks import check_blocks, check_claims
 from tsas_cli.recordings.readers.optional import optional
 from tsas_cli.recordings.readers.options import ReadOptions

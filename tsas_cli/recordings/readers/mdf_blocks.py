@@ -10,8 +10,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import BinaryIO, NamedTuple
 
-from tsas_cli import limits
 from tsas_cli.errors import InputError
+from tsas_cli.memory import Expanded
 
 _FIRST = 64  # where the header block is
 _VERSION_4 = 400
@@ -43,7 +43,7 @@ def check_blocks(path: Path) -> None:
     InputError
         They do.
     """
-    expanded = limits.Expanded.of(path)
+    expanded = Expanded.of(path)
     with path.open("rb") as stream:
         head = stream.read(_FIRST)
         if len(head) < _FIRST:
@@ -102,7 +102,7 @@ def check_claims(path: Path, cycles: Iterator[int]) -> None:
     InputError
         They do, or they take more than the memory.
     """
-    expanded = limits.Expanded.of(path)
+    expanded = Expanded.of(path)
     for samples in cycles:
         expanded.add(2 * 8 * samples, what=f"{samples} samples of a channel and their times")
     expanded.fits()

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pyarrow as pa
 
-from tsas_cli.limits import out_of_memory
+from tsas_cli.memory import out_of_memory
 from tsas_cli.recordings.parquet_files import check_size, open_parquet
 from tsas_cli.recordings.readers.options import ReadOptions
 from tsas_cli.recordings.readers.table import Source, Table, damaged, floats, resolve
