@@ -100,6 +100,9 @@ def main() -> None:
     except (BrokenPipeError, SystemExit):  # who read the output is gone; typer exits then
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         code = 0
+    except MemoryError:
+        remedy = "use a larger machine, fewer runs at a time (--runs), or shorter recordings"
+        code = _stop(f"this takes more memory than there is; {remedy}", 2)
     except Exception as error:
         if os.environ.get("TSAS_TRACEBACK") == "1":
             raise

@@ -38,6 +38,8 @@ class InputError(Exception):
 
 def printable(text: str) -> str:
     """Return text with control characters made visible, for names that come from files."""
+    if text.isprintable():
+        return text
     return "".join(c if c.isprintable() else repr(c)[1:-1] for c in text)
 
 

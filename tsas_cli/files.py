@@ -11,6 +11,7 @@ from contextvars import ContextVar
 from pathlib import Path
 from typing import Any
 
+from tsas_cli import limits, memory
 from tsas_cli.errors import InputError
 from tsas_cli.temporaries import is_empty_folder, place_file, place_folder, temporary_for
 
@@ -148,14 +149,52 @@ def read_json(path: Path) -> Any:
     Raises
     ------
     InputError
-        The file is missing, cannot be read, or is not JSON.
+        The file is missing, cannot be read, is not JSON, holds a key twice, or exceeds a limit.
     """
     try:
-        return json.loads(path.read_text(encoding="utf-8"))
+        memory.fits(path, limits.JSON_EXPANDS * path.stat().st_size)
+        text = limits.text_of(path, limits.JSON_BYTES)
+        content = json.loads(text, object_pairs_hook=_without_twins)
     except OSError as error:
         raise InputError(f"cannot be read ({error.strerror})", where=path) from error
-    except (ValueError, RecursionError) as error:
-        raise InputError(f"is not JSON ({error})", where=path) from error
+    except RecursionError as error:
+        raise limits.too_deep(path) from error
+    except ValueError as error:
+        raise InputError(f"is not JSON ({limits.reason(error)})", where=path) from error
+    limits.depth(content, path)
+    return content
+
+
+def _without_twins(members: list[tuple[str, Any]]) -> dict[str, Any]:
+    content = dict(members)
+    if len(content) < len(members):
+        names = [name for name, _ in members]
+        twice = next(name for name in names if names.count(name) > 1)
+        raise ValueError(f"the key {twice[:80]!r} is there twice")
+    return content
+
+
+def state_of(path: Path) -> tuple[int, ...]:
+    """Return what changes when somebody writes to a file or puts another in its place."""
+    state = path.stat()
+    return state.st_ino, state.st_size, state.st_mtime_ns
+
+
+def check_unchanged(path: Path, before: tuple[int, ...]) -> None:
+    """Refuse a file that has changed since its `state_of` was taken.
+
+    Raises
+    ------
+    InputError
+        It has.
+    """
+    if state_of(path) != before:
+        raise InputError(
+            "changed while it was read",
+            where=path,
+            expected="a recording that is finished",
+            remedy="wait until nothing writes to it, or copy it first",
+        )
 
 
 def _finite(content: Any) -> Any:

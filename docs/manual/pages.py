@@ -37,6 +37,7 @@ HOW_TO = (
 )
 PYTHON = _docs("From Python", "python")
 FORMATS = _docs("File formats", "formats")
+UNTRUSTED = _docs("Files that you don't trust", "untrusted")
 METHOD = (
     _docs("How a diagnosis comes about", "diagnosis"),
     _docs("The blind benchmark", "challenge"),
@@ -58,7 +59,7 @@ LEFT_OUT = {"docs/worklog.md"}  # for those who build it
 
 def pages() -> tuple[Page, ...]:
     """Return every page of the repository that is in the site."""
-    return (HOME, TUTORIAL, *how_to(), PYTHON, FORMATS, *METHOD, LIMITS, *PROJECT)
+    return (HOME, TUTORIAL, *how_to(), PYTHON, FORMATS, UNTRUSTED, *METHOD, LIMITS, *PROJECT)
 
 
 def how_to() -> tuple[Page, ...]:

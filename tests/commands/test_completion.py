@@ -76,3 +76,13 @@ def test_a_shell_is_told_how(tsas, shell):
     )
     assert done.returncode == 0
     assert "_TSAS_COMPLETE" in done.stdout
+
+
+@pytest.mark.parametrize(
+    "manifest", ["a = " + "[" * 5000, "a." * 200 + "a = 1", "[[run]]\n" * 60_000]
+)
+def test_a_hostile_manifest_completes_nothing(tmp_path, manifest):
+    (tmp_path / "dataset.toml").write_text(manifest)
+    context = typer.Context(typer.main.get_command(typer.Typer(callback=lambda: None)))
+    context.args = [str(tmp_path)]
+    assert completion.run_ids(context, "") == []

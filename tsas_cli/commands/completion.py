@@ -7,8 +7,10 @@ from pathlib import Path
 import typer
 
 import tsas_cli
+from tsas_cli import limits
 from tsas_cli.collection import COLUMNS
 from tsas_cli.controllers import CONTROLLERS
+from tsas_cli.errors import InputError
 from tsas_cli.tracking import SHAPE_NAMES
 
 ABOUT_EFFECTS = {"__init__", "effect"}  # files beside those of the effects
@@ -38,9 +40,11 @@ def run_ids(context: typer.Context, incomplete: str) -> list[str]:
     if manifest is None:
         return []  # none was named yet
     try:
-        runs = tomllib.loads(manifest.read_text(encoding="utf-8"))["run"]
+        text = limits.text_of(manifest, limits.TOML_BYTES)
+        limits.toml(text, manifest)
+        runs = tomllib.loads(text)["run"]
         ids = [str(run["id"]) for run in runs]
-    except (KeyError, TypeError, OSError, ValueError):
+    except (KeyError, TypeError, OSError, ValueError, RecursionError, InputError):
         return []  # what is wrong with it, the command will say
     return _continued(ids, incomplete)
 

@@ -9,7 +9,7 @@ from tsas_cli.errors import InputError
 from tsas_cli.files import sha256_of
 from tsas_cli.recordings.blocks import CheckedFile, NotTheSameError, opened
 from tsas_cli.recordings.manifest import Run
-from tsas_cli.recordings.storage import Address, Place
+from tsas_cli.recordings.storage import Address, Place, check_inside
 
 Source: TypeAlias = Path | CheckedFile | pa.NativeFile
 
@@ -54,8 +54,7 @@ def local_file(folder: Path, run: Run) -> Path:
     path = folder / run.file
     if not path.is_file():
         raise _missing(path, run)
-    if not path.resolve().is_relative_to(folder.resolve()):
-        raise InputError("a link leads out of the dataset's folder", where=path)
+    check_inside(path, folder)
     return path
 
 

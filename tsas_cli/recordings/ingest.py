@@ -9,9 +9,9 @@ from typing import Any
 
 import pyarrow as pa
 
-from tsas_cli import __version__
+from tsas_cli import __version__, limits
 from tsas_cli.errors import InputError
-from tsas_cli.files import sha256_of
+from tsas_cli.files import check_unchanged, sha256_of, state_of
 from tsas_cli.recordings.canonical import canonical_columns
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.conditions import run_conditions
@@ -59,6 +59,13 @@ def find_files(sources: Sequence[Path], pattern: str) -> list[Path]:
                 expected=f"a file, or a folder of files in {', '.join(SUFFIXES)}",
             )
         found += files
+    if len(found) > limits.RUNS:
+        raise InputError(
+            f"{len(found)} files are found",
+            where=sources[0],
+            expected=f"at most {limits.RUNS} for one dataset",
+            remedy="take fewer folders at a time, or say which: files under [read] of the map",
+        )
     return found
 
 
@@ -83,6 +90,7 @@ def ingest_files(
     runs: list[Run] = []
     ingested: dict[str, Ingested] = {}
     step.ahead(2 * len(files))
+    states = {path: state_of(path) for path in files}
     for path in files:
         parts = batches(path, mapping.read, mapping.sources())
         first = next(parts)
@@ -107,6 +115,8 @@ def ingest_files(
         "run": runs,
         "ingest": _origin(list(ingested.values()), map_path, folder),
     }
+    for path, state in states.items():
+        check_unchanged(path, state)
     write_manifest(folder, parse(Manifest, content, map_path))
     return list(ingested.values())
 

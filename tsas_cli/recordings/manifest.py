@@ -1,25 +1,40 @@
 """The manifest `dataset.toml` of a dataset, format 1: what it says and how it is checked."""
 
 import tomllib
+from collections import Counter
 from datetime import datetime
 from pathlib import Path, PurePosixPath
-from typing import Any, Literal, TypeVar
+from typing import Any, Literal, Self, TypeVar
 
 import tomlkit
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
 
+from tsas_cli import limits
 from tsas_cli.errors import InputError, nearest
-from tsas_cli.recordings.storage import Place
+from tsas_cli.recordings.run_names import beside, check_run_name
+from tsas_cli.recordings.storage import Address, Place, check_inside
 
 FILE = "dataset.toml"
 Load = Literal["spring", "force", "displacement"]
 T = TypeVar("T", bound=BaseModel)
+_SAID = 5  # of what is wrong with a file; the rest is counted
+_SHOWN = 80  # characters of a value that is wrong
+_PATH = 1000  # characters of a path in the dataset
 
 
 class _Table(BaseModel):
     # A dataset made with any tool must work: keys that we do not know travel along, and
     # `tsas check` names them with the nearest known one.
     model_config = ConfigDict(frozen=True, extra="allow", allow_inf_nan=False)
+
+    @model_validator(mode="after")
+    def _is_no_flood(self) -> Self:
+        unknown = len(self.model_extra or {})
+        if unknown > limits.UNKNOWN_KEYS:
+            raise ValueError(
+                f"{unknown} keys are unknown, at most {limits.UNKNOWN_KEYS} may travel along"
+            )
+        return self
 
     def unknown_keys(self) -> dict[str, str]:
         """Return each key that format 1 does not know, with the hint that belongs to it."""
@@ -60,17 +75,14 @@ class Run(_Table):
         drive = any(":" in part for part in path.parts[:1])
         if path.is_absolute() or ".." in path.parts or drive:
             raise ValueError("must stay inside the dataset's folder (no '..', no absolute path)")
+        if len(file) > _PATH or any(len(part.encode()) > 255 for part in path.parts):
+            raise ValueError("is too long for a file's name")
         return str(path)
 
     @field_validator("id")
     @classmethod
     def _can_name_a_file(cls, name: str) -> str:
-        too_long = len(f"{name}.parquet".encode()) > 255
-        bad = name in {".", ".."} or any(c in name for c in "/\\") or not name.isprintable()
-        if bad or too_long:
-            raise ValueError(
-                "must be usable as a file name (no slash, no control character, not too long)"
-            )
+        check_run_name(name)
         return name
 
 
@@ -96,10 +108,19 @@ class Manifest(_Table):
 
     @model_validator(mode="after")
     def _ids_differ(self) -> "Manifest":
-        ids = [run.id for run in self.run]
-        twice = sorted({i for i in ids if ids.count(i) > 1})
+        if len(self.run) > limits.RUNS:
+            raise ValueError(
+                f"{len(self.run)} runs, at most {limits.RUNS} in one dataset; make several of it"
+            )
+        names = Counter(run.id for run in self.run)
+        twice = [name for name, count in names.items() if count > 1]
         if twice:
             raise ValueError(f"run id {twice[0]!r} is there twice")
+        alike = beside(names)
+        if alike:
+            raise ValueError(
+                f"run ids {alike[0]!r} and {alike[1]!r} name one file on Windows and macOS"
+            )
         return self
 
 
@@ -119,6 +140,7 @@ def read_manifest(folder: Place) -> Manifest:
             expected="a dataset folder",
             remedy="make one from your files with `tsas ingest`",
         )
+    check_inside(path, folder)
     return parse(Manifest, read_toml(path), path)
 
 
@@ -128,14 +150,24 @@ def read_toml(path: Place) -> dict[str, Any]:
     Raises
     ------
     InputError
-        The file cannot be read or is not TOML.
+        The file cannot be read, is not TOML, or exceeds a limit.
     """
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
+        text = (
+            limits.decoded(path.read_bytes(0, limits.TOML_BYTES + 1), path, limits.TOML_BYTES)
+            if isinstance(path, Address)
+            else limits.text_of(path, limits.TOML_BYTES)
+        )
+        limits.toml(text, path)
+        content = tomllib.loads(text)
     except OSError as error:
         raise InputError(f"cannot be read ({error.strerror})", where=path) from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise InputError(f"is not TOML ({error})", where=path) from error
+    except RecursionError as error:
+        raise limits.too_deep(path) from error
+    except ValueError as error:  # of TOML, of text, or of an integer without end
+        raise InputError(f"is not TOML ({limits.reason(error)})", where=path) from error
+    limits.depth(content, path)
+    return content
 
 
 def parse(model: type[T], content: dict[str, Any], path: object) -> T:
@@ -149,9 +181,10 @@ def parse(model: type[T], content: dict[str, Any], path: object) -> T:
     try:
         return model.model_validate(content)
     except ValidationError as error:
-        raise InputError(
-            "; ".join(_sentence(e, model) for e in error.errors()), where=path
-        ) from error
+        found = [e for e in error.errors(include_url=False) if not _follows(e)]
+        said = [_sentence(e, model) for e in found[:_SAID]]
+        more = [f"and {len(found) - _SAID} more"] if len(found) > _SAID else []
+        raise InputError("; ".join(said + more), where=path) from error
 
 
 def _sentence(error: Any, model: type[BaseModel]) -> str:
@@ -164,8 +197,18 @@ def _sentence(error: Any, model: type[BaseModel]) -> str:
         return f"{place} is missing"
     message = error["msg"].removeprefix("Value error, ")
     message = message[0].lower() + message[1:]
-    got = "" if isinstance(error["input"], dict | list) else f", got {error['input']!r}"
+    got = "" if isinstance(error["input"], dict | list) else f", got {_shown(error['input'])}"
     return f"{place}: {message}{got}" if place else message
+
+
+def _follows(one: Any) -> bool:
+    """Say whether a list is called too short only because what is in it is wrong."""
+    return one["type"] == "too_short" and any(one["input"])
+
+
+def _shown(value: Any) -> str:
+    text = repr(value)
+    return text if len(text) <= _SHOWN else f"{text[:_SHOWN]}…"
 
 
 def _known(model: Any, location: tuple[Any, ...]) -> list[str]:

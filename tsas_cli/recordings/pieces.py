@@ -16,6 +16,7 @@ from tsas_cli.recordings.blocks import NotTheSameError
 from tsas_cli.recordings.checked import changed
 from tsas_cli.recordings.columns import BY_NAME, TIME
 from tsas_cli.recordings.manifest import Run
+from tsas_cli.recordings.parquet_files import check_size
 from tsas_cli.recordings.recording import Floats
 from tsas_cli.recordings.run_files import (
     RunColumns,
@@ -62,7 +63,9 @@ def long_run(folder: Place, run: Run) -> RunColumns | None:
     opened = open_run(folder, run)
     if opened.rows <= MOST_ROWS:
         return None
-    check_columns(known_columns(opened), opened.file.schema_arrow.names, opened.path)
+    known = known_columns(opened)
+    check_columns(known, opened.file.schema_arrow.names, opened.path)
+    check_size(opened.file, opened.path, known, size=opened.size, whole=False)
     return opened
 
 

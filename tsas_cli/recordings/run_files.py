@@ -9,16 +9,17 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from tsas_cli.errors import InputError
+from tsas_cli.files import check_unchanged, state_of
+from tsas_cli.memory import out_of_memory
 from tsas_cli.recordings.blocks import NotTheSameError
 from tsas_cli.recordings.checked import Source, changed, checked_file
 from tsas_cli.recordings.columns import BY_NAME, INPUTS, OUTPUTS, TIME, has_input_and_output
 from tsas_cli.recordings.manifest import Run
+from tsas_cli.recordings.parquet_files import check_size, is_number, open_parquet, size_of
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.recordings.storage import Place
 
 Floats = npt.NDArray[np.float64]
-
-BUFFER = 1 << 20  # bytes that are read at a time: a row group need not fit into memory
 
 
 def read_recording(folder: Place, run: Run, *, strict: bool = True) -> Recording:
@@ -33,10 +34,13 @@ def read_recording(folder: Place, run: Run, *, strict: bool = True) -> Recording
         is missing, in another unit or not of numbers; the time is not strictly increasing.
     """
     path = folder / run.file
+    state = state_of(path) if isinstance(path, Path) and path.is_file() else None
     try:
         table, names = _table_of(checked_file(path, folder, run), path)
     except NotTheSameError as error:
         raise changed(path, run) from error
+    if isinstance(path, Path) and state is not None:
+        check_unchanged(path, state)
     columns = {name: floats_of(table, name, path) for name in table.column_names}
     check_columns(list(columns), names, path)
     if len(columns[TIME]) < 2:
@@ -53,6 +57,7 @@ class RunColumns:
     run: Run
     path: Place
     file: pq.ParquetFile
+    size: int
 
     @property
     def names(self) -> list[str]:
@@ -79,6 +84,7 @@ class RunColumns:
                 where=self.path,
                 remedy=f"there are: {', '.join(self.names)}",
             )
+        check_size(self.file, self.path, (name,), size=self.size, whole=True)
         try:
             table = self.file.read(columns=[name])
         except NotTheSameError as error:
@@ -103,7 +109,7 @@ def open_run(folder: Place, run: Run) -> RunColumns:
     path = folder / run.file
     source = checked_file(path, folder, run)
     try:
-        file = pq.ParquetFile(source, buffer_size=BUFFER)
+        file = open_parquet(source, path)
         _check_names_and_units(file.schema_arrow, path)
     except NotTheSameError as error:
         raise changed(path, run) from error
@@ -111,7 +117,7 @@ def open_run(folder: Place, run: Run) -> RunColumns:
         raise not_parquet(path, error) from error
     if TIME not in file.schema_arrow.names or file.metadata.num_rows < 2:
         raise InputError("column time_s is missing or short", where=path, expected="time in s")
-    return RunColumns(run, path, file)
+    return RunColumns(run, path, file, size_of(source))
 
 
 def read_columns(path: Path) -> dict[str, Floats]:
@@ -134,12 +140,16 @@ def read_columns(path: Path) -> dict[str, Floats]:
 
 
 def _table_of(source: Source, path: Place) -> tuple[pa.Table, list[str]]:
-    """Return the known columns of a file, and the names of all."""
+    """Return the canonical columns of a file, and the names of all that are there."""
     try:
-        file = pq.ParquetFile(source)
-        names = list(file.schema_arrow.names)
-        _check_names_and_units(file.schema_arrow, path)
-        return file.read(columns=[name for name in names if name in BY_NAME]), names
+        with open_parquet(source, path) as file:
+            there = list(file.schema_arrow.names)
+            names = [name for name in there if name in BY_NAME]
+            _check_names_and_units(file.schema_arrow, path)
+            check_size(file, path, names, size=size_of(source), whole=True)
+            return file.read(columns=names), there
+    except MemoryError as error:
+        raise out_of_memory(path) from error
     except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
         raise not_parquet(path, error) from error
 
@@ -151,13 +161,17 @@ def not_parquet(path: Place, error: Exception) -> InputError:
 
 
 def _check_names_and_units(schema: pa.Schema, path: Place) -> None:
-    """Refuse a known column that is there twice, or whose metadata name another known unit."""
+    """Refuse a known column that is there twice, of other than numbers, or in another unit."""
     units = {column.unit for column in BY_NAME.values()}
     for field in schema:
         if field.name not in BY_NAME:
             continue
         if schema.names.count(field.name) > 1:
             raise InputError(f"column {field.name} is there twice", where=path)
+        if not is_number(field.type):
+            raise InputError(
+                f"column {field.name} holds {str(field.type)[:80]}", where=path, expected="float64"
+            )
         unit = (field.metadata or {}).get(b"unit", b"").decode("utf-8", "replace")
         expected = BY_NAME[field.name].unit
         if unit in units - {expected}:
@@ -175,12 +189,6 @@ def floats_of(table: pa.Table, name: str, path: Place, *, first_row: int = 0) ->
         It holds no numbers, an infinite one, or no time at some row.
     """
     column = table.column(name)
-    if not (
-        pa.types.is_floating(column.type)
-        or pa.types.is_integer(column.type)
-        or pa.types.is_null(column.type)
-    ):
-        raise InputError(f"column {name} holds {column.type}", where=path, expected="float64")
     values: Floats = column.cast(pa.float64(), safe=False).to_numpy(zero_copy_only=False)
     if name == TIME and not np.isfinite(values).all():
         row = int(np.flatnonzero(~np.isfinite(values))[0])

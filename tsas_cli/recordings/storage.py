@@ -192,6 +192,20 @@ def place_of(given: "str | Place") -> Place:
     return Address(parts.scheme, f"{parts.netloc}/{inner}".rstrip("/"))
 
 
+def check_inside(path: Place, folder: Place) -> None:
+    """Refuse a file that a link puts outside of its dataset's folder; an address has no links.
+
+    Raises
+    ------
+    InputError
+        It is outside.
+    """
+    if isinstance(path, Address) or isinstance(folder, Address):
+        return
+    if not path.resolve().is_relative_to(folder.resolve()):
+        raise InputError("a link leads out of the dataset's folder", where=path)
+
+
 def place_from(home: Path, told: str) -> Place:
     """Return the place that a stage has written down in `home`: an address, or from there."""
     return place_of(told) if is_address(told) else Path(os.path.normpath(home / told))

@@ -7,12 +7,14 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 import pyarrow as pa
-import pyarrow.parquet as pq
 
 from tsas_cli.errors import InputError
+from tsas_cli.memory import out_of_memory
 from tsas_cli.recordings.manifest import Run
+from tsas_cli.recordings.parquet_files import check_size, open_parquet
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.recordings.run_files import read_columns
+from tsas_cli.recordings.run_names import check_run_name
 
 Floats = npt.NDArray[np.float64]
 
@@ -50,8 +52,21 @@ class WrittenRuns(Mapping[str, Recording]):
 
 
 def answers_of(folder: Path, run: str) -> Path:
-    """Return the file that a stage has written about a run into a folder."""
-    return folder / "runs" / f"{run}.parquet"
+    """Return the file that a stage has written about a run into a folder.
+
+    Raises
+    ------
+    InputError
+        The run's id leads out of the folder, or a link does.
+    """
+    path = folder / "runs" / f"{run}.parquet"
+    try:
+        check_run_name(run)
+    except ValueError as error:
+        raise InputError(f"run id {run[:80]!r} {error}", where=folder) from error
+    if not path.resolve().is_relative_to(folder.resolve()):
+        raise InputError("a link leads out of its folder", where=path)
+    return path
 
 
 def names_of(path: Path) -> list[str]:
@@ -63,7 +78,8 @@ def names_of(path: Path) -> list[str]:
         It cannot be read.
     """
     try:
-        return list(pq.read_schema(path).names)
+        with open_parquet(path) as file:
+            return list(file.schema_arrow.names)
     except (pa.ArrowException, OSError) as error:
         raise _unreadable(path, error) from error
 
@@ -77,8 +93,12 @@ def columns_of(path: Path, names: Sequence[str]) -> dict[str, Floats]:
         It cannot be read or lacks a column.
     """
     try:
-        table = pq.ParquetFile(path).read(columns=list(names))
+        with open_parquet(path) as file:
+            check_size(file, path, names, whole=True)
+            table = file.read(columns=list(names))
         return {name: table.column(name).to_numpy() for name in names}
+    except MemoryError as error:
+        raise out_of_memory(path) from error
     except (pa.ArrowException, OSError, KeyError) as error:
         raise _unreadable(path, error) from error
 

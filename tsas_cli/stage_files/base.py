@@ -9,7 +9,7 @@ class Record(BaseModel):
     """What a stage has written down, as far as the page reads it."""
 
     # The stages may say more than the page shows.
-    model_config = ConfigDict(frozen=True, extra="ignore")
+    model_config = ConfigDict(frozen=True, extra="ignore", allow_inf_nan=False)
 
 
 class Source(Record):

@@ -1,8 +1,8 @@
 """What `diagnosis.json` holds, as far as it is read (docs/formats.md)."""
 
-from typing import ClassVar, Literal
+from typing import ClassVar, Literal, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from tsas_cli.stage_files.base import Evidence, ModelFile, OfDataset, Record, Segment
 
@@ -66,6 +66,13 @@ class Signatures(Record):
     effects: tuple[str, ...] = ()
     visible: tuple[float, ...] = ()
     likeness: tuple[tuple[float, ...], ...] = ()
+
+    @model_validator(mode="after")
+    def _is_square(self) -> Self:
+        count = len(self.effects)
+        if any(len(row) != count for row in (self.visible, self.likeness, *self.likeness)):
+            raise ValueError("visible and likeness need a value for each effect, and for each two")
+        return self
 
 
 class Bin(Record):

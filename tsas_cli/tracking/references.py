@@ -9,7 +9,7 @@ import numpy.typing as npt
 from tsas_cli.errors import InputError, nearest
 from tsas_cli.recordings.run_files import read_columns
 from tsas_cli.tracking import SHAPE_NAMES
-from tsas_cli.tracking.settings import ReferenceSettings
+from tsas_cli.tracking.settings import LONGEST_S, ReferenceSettings
 
 Floats = npt.NDArray[np.float64]
 WANTED, MEASURED = "f_out_ref_N", "f_out_N"
@@ -90,6 +90,11 @@ def _recorded(path: Path, step_s: float) -> tuple[Floats, Floats]:
     if not np.isfinite(values).all():
         row = int(np.flatnonzero(~np.isfinite(values))[0])
         raise InputError(f"{name} has a gap", where=f"{path}, row {row}", expected="a force")
-    count = int((time_s[-1] - time_s[0]) / step_s + 1e-9) + 1
+    duration_s = time_s[-1] - time_s[0]
+    if duration_s > LONGEST_S:
+        raise InputError(
+            f"lasts {duration_s:.6g} s", where=path, expected=f"at most {LONGEST_S:.0f} s to track"
+        )
+    count = int(duration_s / step_s + 1e-9) + 1
     at: Floats = np.arange(count, dtype=np.float64) * step_s
     return at, np.interp(at, time_s - time_s[0], values)

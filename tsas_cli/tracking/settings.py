@@ -24,6 +24,7 @@ from tsas_cli.physics.plant import Actuator
 from tsas_cli.recordings.manifest import parse, read_toml
 
 MM_PER_M = 1e3
+LONGEST_S = 3600.0  # of a wanted force
 
 
 def printed(name: str, factor: float = 1.0, **limits: Any) -> Any:
@@ -90,7 +91,7 @@ class ReferenceSettings(_Table):
     mean_N: float = printed("reference.mean")
     amplitude_N: float = printed("reference.amplitude", gt=0)
     angular_frequency_rad_per_s: float = printed("reference.second_angular_frequency", gt=0)
-    duration_s: float = Field(default=8.0 * math.pi, gt=0, le=3600)
+    duration_s: float = Field(default=8.0 * math.pi, gt=0, le=LONGEST_S)
 
 
 class SensorSettings(_Table):

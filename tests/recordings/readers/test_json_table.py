@@ -46,7 +46,7 @@ def test_what_stands_beside_the_table_is_the_header(ask):
     [
         ("", {}, "is empty"),
         ("{", {}, "is not JSON"),
-        ("[" * 100_000, {}, "is not JSON"),
+        ("[" * 100_000, {}, "is nested too deep"),
         ({"data": ROWS, "dt": 1}, {}, "its keys are: data, dt"),
         ({"data": ROWS}, {"table": "date"}, "did you mean data"),
         ([[0, 1], [1, "fast"]], {}, "row 2: column 2 holds 'fast'"),

@@ -55,7 +55,8 @@ def open_file(path: Path) -> Opened:
         said["resample"] = (True, "the channels have clocks of their own")
         table, left_out = _all_or_each(path, _options(said), list(sources), each=True)
     if table is None or not table.columns:
-        raise InputError("holds no column of numbers", where=path)
+        why = "".join(f" ({reason})" for reason in list(left_out.values())[:1])
+        raise InputError(f"holds no column of numbers{why}", where=path)
     columns, short = _longest(table)
     if next(iter(columns.values())).size < 2:
         raise InputError("holds one row", where=path, expected="at least two samples")

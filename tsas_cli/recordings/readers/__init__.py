@@ -6,6 +6,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+from tsas_cli import limits
 from tsas_cli.errors import InputError
 from tsas_cli.recordings.readers.options import ReadOptions
 from tsas_cli.recordings.readers.table import Source, Table, whole
@@ -61,7 +62,9 @@ def names(path: Path, options: ReadOptions) -> tuple[str, ...]:
         As from `read`.
     """
     with _reader(path) as reader:
-        return tuple(reader.names(path, options))
+        found = tuple(reader.names(path, options))
+    limits.columns(found, path)
+    return found
 
 
 @contextmanager
@@ -75,6 +78,7 @@ def _reader(path: Path) -> Iterator[Any]:
             expected=f"one of {', '.join(SUFFIXES)}",
         )
     try:
+        limits.regular(path)
         if path.stat().st_size == 0:
             raise InputError("is empty", where=path, expected="a recording")
         yield import_module(f"{__name__}.{module}")

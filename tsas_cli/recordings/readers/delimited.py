@@ -8,6 +8,7 @@ import numpy as np
 import pyarrow as pa
 from pyarrow import csv
 
+from tsas_cli import limits
 from tsas_cli.errors import InputError
 from tsas_cli.recordings.readers.layout import Layout, comment_text, detect, fields, number
 from tsas_cli.recordings.readers.options import ReadOptions
@@ -80,7 +81,7 @@ def _line_by_line(
 ) -> Iterator[list[float]]:
     """Yield the rows that pyarrow refuses (aligned columns, comments), or say what is wrong."""
     with path.open(encoding=options.encoding) as stream:
-        for row, line in enumerate(stream, start=1):
+        for row, line in enumerate(limits.lines(stream, path), start=1):
             blank = not line.strip() or comment_text(line, options) is not None
             if row < layout.first_line or blank:
                 continue

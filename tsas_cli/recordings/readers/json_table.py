@@ -1,6 +1,6 @@
 """JSON tables: rows, records or columns, at the top or under a key."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -23,10 +23,10 @@ def read(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Table:
         It is no such table, a column is missing, or a value is no number.
     """
     above, content = _descend(read_json(path), options.table, path)
-    names, columns = _columns(content, above.get("columns"), path)
+    names, column = _columns(content, above.get("columns"), path)
     at = resolve(wanted, names, path)
     header = tuple(f"{key} = {value}" for key, value in above.items() if _is_plain(value))
-    return Table({s: floats(columns[i], s, path) for s, i in at.items()}, header=header)
+    return Table({s: floats(column(i), s, path) for s, i in at.items()}, header=header)
 
 
 def names(path: Path, options: ReadOptions) -> Sequence[str]:
@@ -61,12 +61,13 @@ def _descend(content: Any, keys: str | None, path: Path) -> tuple[dict[str, Any]
     return above, content
 
 
-def _columns(content: Any, names: Any, path: Path) -> tuple[list[str], list[list[Any]]]:
+def _columns(content: Any, names: Any, path: Path) -> tuple[list[str], Callable[[int], list[Any]]]:
+    """Return the names of the columns, and what returns one by its index."""
     if isinstance(content, dict) and all(isinstance(c, list) for c in content.values()):
-        return list(content), list(content.values())
+        return list(content), list(content.values()).__getitem__
     if isinstance(content, list) and content and all(isinstance(r, dict) for r in content):
         names = list(dict.fromkeys(key for record in content for key in record))
-        return names, [[record.get(name) for record in content] for name in names]
+        return names, lambda i: [record.get(names[i]) for record in content]
     if isinstance(content, list) and content and all(isinstance(r, list) for r in content):
         names = [str(n) for n in names] if isinstance(names, list) else [""] * len(content[0])
         for row, cells in enumerate(content, start=1):
@@ -74,7 +75,7 @@ def _columns(content: Any, names: Any, path: Path) -> tuple[list[str], list[list
                 raise InputError(
                     f"{len(cells)} values", where=f"{path}, row {row}", expected=f"{len(names)}"
                 )
-        return names, [list(column) for column in zip(*content, strict=True)]
+        return names, lambda i: [row[i] for row in content]
     keys = f"; its keys are: {', '.join(content)}" if isinstance(content, dict) else ""
     raise InputError(
         "holds no table here",

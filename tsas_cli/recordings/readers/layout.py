@@ -7,10 +7,12 @@ from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 
+from tsas_cli import limits
 from tsas_cli.errors import InputError
 from tsas_cli.recordings.readers.options import ReadOptions
 
 _SAMPLE = 200  # lines of the table that are looked at
+_LONG = 4 * limits.LINE  # characters of them, of which a few lines are enough
 _UNIT_IN_NAME = re.compile(r"[\[(]([^\[\]()]+)[\])]$")
 _DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+([eE][+-]?\d+)?")
 
@@ -45,6 +47,7 @@ def detect(path: Path, options: ReadOptions) -> Layout:
         raise InputError("holds no table", where=path, expected="rows of numbers")
     delimiter = options.delimiter or _delimiter([text for _, text in lines])
     rows = [fields(text, delimiter) for _, text in lines]
+    limits.column_count(len(rows[0]), path)
     decimal = options.decimal or _decimal(rows, delimiter)
     names, units = [], []
     if not _has_number(rows[0], decimal):
@@ -89,17 +92,28 @@ def _head(path: Path, options: ReadOptions) -> tuple[list[str], list[tuple[int, 
     """Return the comments, and the first lines of the table with their numbers."""
     comments: list[str] = []
     lines: list[tuple[int, str]] = []
+    above = taken = 0
     try:
         with path.open(encoding=options.encoding) as stream:
-            for count, line in enumerate(islice(stream, options.skip_lines, None)):
+            for count, line in enumerate(
+                islice(limits.lines(stream, path), options.skip_lines, None)
+            ):
                 text = comment_text(line, options)
                 if text is not None:
                     comments.append(text)
+                    above += len(text)
                 elif line.strip():
                     lines.append((options.skip_lines + count + 1, line.rstrip("\r\n")))
-                if len(lines) == _SAMPLE:
+                    taken += len(line)
+                if above > limits.HEADER:
+                    raise InputError(
+                        f"more than {limits.size(limits.HEADER)} of comments above the table",
+                        where=path,
+                        remedy="is this a text table? what comments begin with is said in the map",
+                    )
+                if len(lines) == _SAMPLE or taken > _LONG:
                     break
-    except (UnicodeError, LookupError) as error:
+    except (UnicodeError, LookupError, ValueError) as error:
         raise InputError(
             f"is not text in the encoding {options.encoding}",
             where=path,

@@ -1,19 +1,23 @@
 """MATLAB files: version 5 and earlier, and the HDF5 of version 7.3."""
 
+import warnings
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from scipy.io import loadmat
+from scipy.io.matlab import MatReadWarning
 
 from tsas_cli.errors import InputError, nearest
+from tsas_cli.memory import out_of_memory
 from tsas_cli.recordings.readers.controldesk import (
     captures,
     channel_names,
     find_capture,
     read_capture,
 )
+from tsas_cli.recordings.readers.matlab_packed import check_unpacked
 from tsas_cli.recordings.readers.options import ReadOptions
 from tsas_cli.recordings.readers.table import Floats, Source, Table, damaged, floats, resolve
 
@@ -62,6 +66,8 @@ def _content(path: Path) -> dict[str, Any]:
         return _variables(path)
     except InputError:
         raise
+    except MemoryError as error:
+        raise out_of_memory(path) from error
     except Exception as error:  # a damaged file ends in any of a dozen types
         raise damaged(path, "a MATLAB file", error) from error
 
@@ -74,7 +80,10 @@ def _variables(path: Path) -> dict[str, Any]:
         from tsas_cli.recordings.readers.matlab_hdf5 import variables
 
         return variables(path)
-    content = loadmat(path, simplify_cells=True)
+    check_unpacked(path)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", MatReadWarning)  # two variables of one name
+        content = loadmat(path, simplify_cells=True)
     return {name: value for name, value in content.items() if not name.startswith("__")}
 
 

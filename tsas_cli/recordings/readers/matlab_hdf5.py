@@ -5,6 +5,9 @@ from typing import Any
 
 import numpy as np
 
+from tsas_cli import limits
+from tsas_cli.errors import InputError
+from tsas_cli.memory import Expanded
 from tsas_cli.recordings.readers.optional import optional
 
 
@@ -14,27 +17,73 @@ def variables(path: Path) -> dict[str, Any]:
     Raises
     ------
     InputError
-        h5py is not installed.
+        h5py is not installed, or the file leads to another one or exceeds a limit.
     OSError
         The file is damaged.
     """
     h5py = optional("h5py", extra="mat")
     with h5py.File(path, "r") as file:
-        return {name: _value(file[name], file) for name in file if not name.startswith("#")}
+        return _Reader(path, file, h5py).members(file, deep=0, but="#")
 
 
-def _value(item: Any, file: Any) -> Any:
-    if hasattr(item, "keys"):
-        members = {name: _value(item[name], file) for name in item}
-        return _records(members) if _is_struct_array(item) else members
-    if item.attrs.get("MATLAB_empty", 0):
-        return "" if _class(item) == "char" else np.empty(0)
-    if item.dtype.kind == "O":  # references, of a cell or of a struct array's member
-        return [_value(file[reference], file) for reference in item[()].T.ravel()]
-    values = np.asarray(item[()]).T  # MATLAB writes columns first
-    if _class(item) == "char":
-        return "".join(chr(code) for code in values.ravel())
-    return values.item() if values.size == 1 else values
+class _Reader:
+    """Reads one file, and keeps count of what it asks for."""
+
+    def __init__(self, path: Path, file: Any, h5py: Any) -> None:
+        self.path, self.file, self.h5py = path, file, h5py
+        self.expanded = Expanded.of(path)
+        self.seen: set[int] = set()  # structs and cells, by their place in the file
+
+    def members(self, group: Any, *, deep: int, but: str = "\0") -> dict[str, Any]:
+        """Return what is in a group, but for names that begin so."""
+        self._enter(group, deep)
+        names = [name for name in group if not name.startswith(but)]
+        limits.columns(names, self.path)
+        for name in names:
+            if not isinstance(group.get(name, getlink=True), self.h5py.HardLink):
+                raise self._elsewhere(name)
+        return {name: self._value(group[name], deep + 1) for name in names}
+
+    def _value(self, item: Any, deep: int) -> Any:
+        if isinstance(item, self.h5py.Group):
+            members = self.members(item, deep=deep)
+            return _records(members) if _is_struct_array(item) else members
+        if not isinstance(item, self.h5py.Dataset):
+            return None  # a type: no variable
+        if item.is_virtual or item.external:
+            raise self._elsewhere(item.name)
+        if item.attrs.get("MATLAB_empty", 0) or item.shape is None:
+            return "" if _class(item) == "char" else np.empty(0)
+        self.expanded.add(item.size * item.dtype.itemsize, what=f"{item.name} of {item.shape}")
+        self.expanded.fits()
+        if self.h5py.check_ref_dtype(item.dtype) is self.h5py.Reference:
+            self._enter(item, deep)
+            return [self._value(self.file[ref], deep + 1) for ref in item[()].T.ravel()]
+        values = np.asarray(item[()]).T  # MATLAB writes columns first
+        if _class(item) == "char":
+            return "".join(chr(code) for code in values.ravel())
+        return values.item() if values.size == 1 else values
+
+    def _enter(self, item: Any, deep: int) -> None:
+        """Refuse what holds itself, and what is nested too deep or in many ways."""
+        place = self.h5py.h5o.get_info(item.id).addr
+        if place in self.seen:
+            raise InputError(
+                f"{str(item.name)[: limits.NAME]} is in it twice",
+                where=self.path,
+                expected="structs and cells that are in one place each",
+            )
+        self.seen.add(place)
+        if deep > limits.DEPTH:
+            raise limits.too_deep(self.path)
+
+    def _elsewhere(self, name: str) -> InputError:
+        return InputError(
+            f"{name[: limits.NAME]} is a link, or its data are in another file",
+            where=self.path,
+            expected="a file that holds its data itself",
+            remedy="copy the data into one file",
+        )
 
 
 def _class(item: Any) -> str:

@@ -12,6 +12,8 @@ from typing import Any
 import numpy as np
 
 from tsas_cli.errors import InputError
+from tsas_cli.memory import out_of_memory
+from tsas_cli.recordings.readers.mdf_blocks import check_blocks, check_claims
 from tsas_cli.recordings.readers.optional import optional
 from tsas_cli.recordings.readers.options import ReadOptions
 from tsas_cli.recordings.readers.table import Floats, Source, Table, damaged, floats, resolve
@@ -42,11 +44,14 @@ def names(path: Path, options: ReadOptions) -> Sequence[str]:
 def _opened(path: Path) -> Iterator[Any]:
     asammdf = optional("asammdf", extra="mdf")
     logging.getLogger("asammdf").setLevel(logging.CRITICAL)  # it logs what our error says
+    check_blocks(path)
     try:
         with asammdf.MDF(path) as file:
             yield file
     except InputError:
         raise
+    except MemoryError as error:
+        raise out_of_memory(path) from error
     except Exception as error:  # a damaged file ends in any of a dozen types
         _discard_half_made(error)
         raise damaged(path, "MDF", error) from error
@@ -63,6 +68,8 @@ def _discard_half_made(error: Exception) -> None:
 def _table(file: Any, options: ReadOptions, wanted: Sequence[Source], path: Path) -> Table:
     channels = _channels(file)
     at = resolve(wanted, [*(name for name, _, _ in channels), TIME], path)
+    groups = (channels[i][1] for i in at.values() if i < len(channels))
+    check_claims(path, (file.groups[group].channel_group.cycles_nr for group in groups))
     signals = {
         source: file.get(*channels[i], ignore_invalidation_bits=True)
         for source, i in at.items()

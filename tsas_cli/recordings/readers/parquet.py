@@ -5,8 +5,9 @@ from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
-import pyarrow.parquet as pq
 
+from tsas_cli.memory import out_of_memory
+from tsas_cli.recordings.parquet_files import check_size, open_parquet
 from tsas_cli.recordings.readers.options import ReadOptions
 from tsas_cli.recordings.readers.table import (
     BATCH_ROWS,
@@ -29,7 +30,7 @@ def batches(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Itera
     """
     del options
     try:
-        with pq.ParquetFile(path) as file:
+        with open_parquet(path) as file:
             schema = file.schema_arrow
             at = resolve(wanted, schema.names, path)
             fields = {source: schema.field(i) for source, i in at.items()}
@@ -39,6 +40,7 @@ def batches(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Itera
                 if b"unit" in (f.metadata or {})
             }
             names = [field.name for field in fields.values()]
+            check_size(file, path, names, whole=False)
             first = 1
             for table in in_batches(file.iter_batches(BATCH_ROWS, columns=names)):
                 columns = {
@@ -49,6 +51,8 @@ def batches(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Itera
                 first += table.num_rows
             if first == 1:
                 yield Table({source: np.empty(0) for source in fields}, units)
+    except MemoryError as error:
+        raise out_of_memory(path) from error
     except pa.ArrowException as error:
         raise damaged(path, "Parquet", error) from error
 
@@ -57,7 +61,7 @@ def names(path: Path, options: ReadOptions) -> Sequence[str]:
     """Return the names of the columns."""
     del options
     try:
-        with pq.ParquetFile(path) as file:
+        with open_parquet(path) as file:
             return list(file.schema_arrow.names)
     except pa.ArrowException as error:
         raise damaged(path, "Parquet", error) from error

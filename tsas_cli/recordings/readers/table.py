@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 import pyarrow as pa
 
+from tsas_cli import limits
 from tsas_cli.errors import InputError, nearest
 
 Floats = npt.NDArray[np.float64]
@@ -53,7 +54,9 @@ def resolve(wanted: Sequence[Source], names: Sequence[str], path: Path) -> dict[
     ------
     InputError
         A column is not there, or its name is there more than once; lists those that are there.
+        There are too many columns.
     """
+    limits.columns(names, path)
     return {source: _index(source, names, path) for source in wanted}
 
 
@@ -92,7 +95,7 @@ def floats(values: Any, source: Source, path: Path, *, first: int = 1) -> Floats
     """
     try:
         numbers = np.asarray(values, dtype=np.float64)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         numbers = np.array([_number(v, source, path, i) for i, v in enumerate(values, first)])
     if numbers.ndim != 1:
         raise InputError(f"column {source} has {numbers.ndim} dimensions", where=path, expected="1")
@@ -121,7 +124,7 @@ def damaged(path: Path, kind: str, error: Exception) -> InputError:
 def _number(value: Any, source: Source, path: Path, row: int) -> float:
     try:
         return float("nan") if value is None else float(value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise not_a_number(value, source, path, row) from None
 
 

@@ -1,0 +1,151 @@
+"""Folders of stages whose JSON lies: paths, sizes, nesting, numbers."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+
+from tests.hostile.case import Case, columns
+from tests.reporting.made_folders import (
+    make_calibration,
+    make_check,
+    make_dataset,
+    make_diagnosis,
+    make_simulation,
+    make_tracking,
+)
+from tsas_cli.recordings.writing import write_parquet
+
+MAKERS: dict[str, Callable[[Path, Path], Path]] = {
+    "check": make_check,
+    "calibration": make_calibration,
+    "simulation": make_simulation,
+    "diagnosis": lambda dataset, folder: make_diagnosis(dataset, folder, "named"),
+}
+Change = Callable[[Any], Any]
+
+
+def stage(kind: str, change: Change, command: str = "report") -> Callable[[Path], list[object]]:
+    """Return a maker of a stage's folder whose JSON is changed: content, or text instead."""
+
+    def make(folder: Path) -> list[object]:
+        data = make_dataset(folder / "data", ("a",), samples=400)
+        where = (
+            make_tracking(folder / "s") if kind == "tracking" else MAKERS[kind](data, folder / "s")
+        )
+        path = where / f"{kind}.json"
+        content = json.loads(path.read_text())
+        changed = change(content)
+        path.write_text(changed if isinstance(changed, str) else json.dumps(content))
+        others = [where] if kind == "tracking" else [data, where]
+        if command == "compare":
+            return ["compare", where, where, "--out", folder / "o"]
+        return ["report", *others, "--out", folder / "page.html"]
+
+    return make
+
+
+def put(*keys: object, value: object) -> Change:
+    def change(content: Any) -> None:
+        for key in keys[:-1]:
+            content = content[key]
+        content[keys[-1]] = value
+
+    return change
+
+
+def deep(content: Any) -> str:
+    return json.dumps(content)[:-1] + ', "x": ' + "[" * 100_000 + "]" * 100_000 + "}"
+
+
+def rather_deep(content: Any) -> str:
+    return json.dumps(content)[:-1] + ', "x": ' + '{"a":' * 400 + "1" + "}" * 400 + "}"
+
+
+def very_long(content: Any) -> str:
+    return json.dumps(content)[:-1] + ', "x": ' + "1" * 100_000 + "}"
+
+
+def outside(content: Any) -> None:
+    for result in content["results"]:
+        result["run"] = "../../secret"
+
+
+def tracked_outside(command: str) -> Callable[[Path], list[object]]:
+    made = stage("tracking", outside, command)
+
+    def make(folder: Path) -> list[object]:
+        call = made(folder)
+        names = ("time_s", "f_out_ref_N", "f_out_true_N")
+        table = pa.table({name: columns()["time_s"] for name in names})
+        write_parquet(folder / "secret.parquet", table)
+        return call
+
+    return make
+
+
+CASES = (
+    Case("nested 100,000 deep", stage("check", deep), "is nested too deep"),
+    Case("nested 400 deep", stage("check", rather_deep), "is nested too deep"),
+    Case(
+        "nested 400 deep, compared",
+        stage("calibration", rather_deep, "compare"),
+        "is nested too deep",
+    ),
+    Case(
+        "an integer of 10^5 digits", stage("check", very_long), "an integer has thousands of digits"
+    ),
+    Case(
+        "a first second of 4000 digits",
+        stage(
+            "check",
+            put(
+                "findings",
+                value=[{"code": "x", "severity": "error", "sentence": "y", "first_s": 10**4000}],
+            ),
+        ),
+        "should be a valid number",
+    ),
+    Case(
+        "hashes of files outside",
+        stage("check", put("dataset", "hashes", value={"../../x": "0" * 64})),
+        "has changed since this stage read it",
+    ),
+    Case(
+        "a parameter of 1e400",
+        stage("calibration", put("parameters", 0, "value", value=float("inf"))),
+        "should be a finite number",
+    ),
+    Case(
+        "a parameter that is NaN",
+        stage("calibration", put("parameters", 0, "value", value=float("nan"))),
+        "should be a finite number",
+    ),
+    Case(
+        "a parameter of 4000 digits",
+        stage("calibration", put("parameters", 0, "value", value=10**4000)),
+        "should be a valid number",
+    ),
+    Case(
+        "a likeness with corners missing",
+        stage("diagnosis", put("signatures", "likeness", value=[[1.0], [], [1.0, 2.0, 3.0]])),
+        "visible and likeness need a value",
+    ),
+    Case(
+        "an infinite gain",
+        stage("diagnosis", put("named", 0, "gain_percent", value=float("-inf"))),
+        "should be a finite number",
+    ),
+    Case(
+        "tracked runs outside",
+        tracked_outside("report"),
+        "run id '../../secret' must be usable as a file name",
+    ),
+    Case(
+        "tracked runs outside, compared",
+        tracked_outside("compare"),
+        "run id '../../secret' must be usable as a file name",
+    ),
+)

@@ -1,0 +1,52 @@
+"""Files made to harm: each costs one line, little memory and little time, and nothing is written.
+
+Every call is a process of its own with 4 GiB of addresses and 20 s.
+"""
+
+import sys
+
+import pytest
+
+pytest.importorskip("h5py")
+pytest.importorskip("asammdf")
+
+from tests.hostile import hdf5, manifests, matlab5, mdfs, parquets, stages, text
+from tests.hostile.sandbox import Sandbox
+
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="memory is limited on Linux only")
+
+KINDS = (hdf5, manifests, matlab5, mdfs, parquets, stages, text)
+CASES = [(kind.__name__.rpartition(".")[2], case) for kind in KINDS for case in kind.CASES]
+OUTPUTS = {"out", "o", "page.html", "o.html"}  # what the calls are told to write
+MOST = 400 << 20  # bytes that any of them may take
+
+
+@pytest.fixture(scope="module")
+def sandbox():
+    box = Sandbox()
+    yield box
+    box.close()
+
+
+@pytest.mark.parametrize("case", [pytest.param(c, id=f"{kind}: {c.name}") for kind, c in CASES])
+def test_it_costs_one_line(case, sandbox, tmp_path):
+    call = case.make(tmp_path)
+    before = everything(tmp_path)
+    ended = sandbox.run(call, tmp_path)
+    assert ended.code == (2 if case.says else 0), ended
+    new = everything(tmp_path) - before
+    if case.says:
+        assert ended.err.startswith("tsas: ")
+        assert ended.err.count("\n") == 1
+        assert case.says in ended.err
+        assert len(ended.err) < 2000
+        assert ended.out == ""
+        assert not new
+    assert {path.split("/")[0] for path in new} <= OUTPUTS
+    assert (ended.err + ended.out).replace("\n", "").isprintable()
+    assert ended.taken < MOST
+
+
+def everything(folder):
+    """Return all that is in a folder, and in no link."""
+    return {str(path.relative_to(folder)) for path in folder.rglob("*")}

@@ -1,0 +1,117 @@
+"""Parquet files, opened only where what they say of themselves is within the limits."""
+
+import io
+import struct
+from collections.abc import Collection
+from pathlib import Path
+from typing import IO, cast
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from tsas_cli import limits
+from tsas_cli.errors import InputError
+from tsas_cli.memory import Expanded
+from tsas_cli.recordings.blocks import CheckedFile
+from tsas_cli.recordings.checked import Source
+from tsas_cli.recordings.storage import Place
+
+BUFFER = 1 << 20  # bytes that are read at a time: a row group need not fit into memory
+_TEXT_BEHIND = 8  # bytes at the end: the footer's length and PAR1
+
+
+def open_parquet(source: Source, where: Place | None = None) -> pq.ParquetFile:
+    """Open a Parquet file; none of its rows is read.
+
+    `where` is what errors name, where the source is no path.
+
+    Raises
+    ------
+    InputError
+        It is no regular file, or holds more columns or a longer footer than a recording.
+    ArrowException, OSError, UnicodeDecodeError
+        It cannot be read.
+    """
+    path = where or source
+    if isinstance(source, Path):
+        limits.regular(source)
+        with source.open("rb") as stream:
+            _check_footer(stream, path)
+    else:
+        _check_footer(source, path)
+    file = pq.ParquetFile(source, buffer_size=BUFFER)
+    limits.columns(file.schema_arrow.names, path)
+    return file
+
+
+def size_of(source: Source) -> int:
+    """Return how many bytes a file has."""
+    if isinstance(source, Path):
+        return source.stat().st_size
+    size = int(source.seek(0, io.SEEK_END))
+    source.seek(0)
+    return size
+
+
+def _check_footer(stream: IO[bytes] | CheckedFile | pa.NativeFile, path: object) -> None:
+    """Refuse a footer that is longer than that of a recording."""
+    size = int(stream.seek(0, io.SEEK_END))
+    stream.seek(max(0, size - _TEXT_BEHIND))
+    length = struct.unpack("<I", stream.read(4).rjust(4, b"\0"))[0]
+    whole = stream.read() == b"PAR1"
+    stream.seek(0)
+    if whole and length > limits.FOOTER:
+        raise InputError(
+            f"its footer has {limits.size(length)}",
+            where=path,
+            expected=f"at most {limits.size(limits.FOOTER)}",
+            remedy="write it with fewer row groups and columns",
+        )
+
+
+def check_size(
+    file: pq.ParquetFile,
+    path: Place,
+    names: Collection[str],
+    *,
+    whole: bool,
+    size: int | None = None,
+) -> None:
+    """Refuse a file that says it holds more than a file of its size can hold.
+
+    Parameters
+    ----------
+    names
+        The columns that will be read.
+    whole
+        Whether they will be in memory at once.
+    size
+        Bytes of the file; those of `path` without it.
+
+    Raises
+    ------
+    InputError
+        It does, or, where they are loaded whole, they are larger than the memory.
+    """
+    of_file = cast("Path", path).stat().st_size if size is None else size
+    expanded = Expanded(path, of_file, limits.PARQUET_EXPANSION)
+    metadata = file.metadata
+    leaves = [
+        leaf
+        for leaf in range(metadata.num_columns)
+        if metadata.schema.column(leaf).path.split(".")[0] in names
+    ]
+    for number in range(metadata.num_row_groups):
+        group = metadata.row_group(number)
+        for leaf in leaves:
+            chunk = group.column(leaf)
+            rows = max(group.num_rows, chunk.num_values)
+            each = 8 if chunk.physical_type != "BYTE_ARRAY" else chunk.total_uncompressed_size
+            expanded.add(rows * each, what=f"{metadata.num_rows} rows")
+    if whole:
+        expanded.fits()
+
+
+def is_number(kind: pa.DataType) -> bool:
+    """Say whether a column's type is one of numbers; of nothing but nulls counts too."""
+    return bool(pa.types.is_floating(kind) or pa.types.is_integer(kind) or pa.types.is_null(kind))
