@@ -13,6 +13,7 @@ from tsas_cli.errors import InputError
 from tsas_cli.files import sha256_of
 from tsas_cli.recordings.columns import BY_NAME, INPUTS, OUTPUTS, TIME, has_input_and_output
 from tsas_cli.recordings.manifest import Run
+from tsas_cli.recordings.readers.table import damaged
 from tsas_cli.recordings.recording import Recording
 
 Floats = npt.NDArray[np.float64]
@@ -96,7 +97,7 @@ def open_run(folder: Path, run: Run) -> RunColumns:
         file = pq.ParquetFile(path)
         _check_names_and_units(file.schema_arrow, path)
     except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
-        raise _not_parquet(path, error) from error
+        raise damaged(path, "Parquet", error) from error
     if TIME not in file.schema_arrow.names or file.metadata.num_rows < 2:
         raise InputError("column time_s is missing or short", where=path, expected="time in s")
     return RunColumns(run, path, file)
@@ -152,13 +153,8 @@ def _table_of(path: Path) -> pa.Table:
         table = pq.ParquetFile(path).read()
         _check_names_and_units(table.schema, path)
     except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
-        raise _not_parquet(path, error) from error
+        raise damaged(path, "Parquet", error) from error
     return table
-
-
-def _not_parquet(path: Path, error: Exception) -> InputError:
-    reason = str(error).splitlines()[0]
-    return InputError(f"cannot be read as Parquet ({reason})", where=path)
 
 
 def _check_names_and_units(schema: pa.Schema, path: Path) -> None:

@@ -11,6 +11,7 @@ import pyarrow.parquet as pq
 
 from tsas_cli.errors import InputError
 from tsas_cli.recordings.manifest import Run
+from tsas_cli.recordings.readers.table import damaged
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.recordings.run_files import read_columns
 
@@ -64,8 +65,8 @@ def names_of(path: Path) -> list[str]:
     """
     try:
         return list(pq.read_schema(path).names)
-    except (pa.ArrowException, OSError) as error:
-        raise _unreadable(path, error) from error
+    except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
+        raise damaged(path, "Parquet", error) from error
 
 
 def columns_of(path: Path, names: Sequence[str]) -> dict[str, Floats]:
@@ -79,8 +80,8 @@ def columns_of(path: Path, names: Sequence[str]) -> dict[str, Floats]:
     try:
         table = pq.ParquetFile(path).read(columns=list(names))
         return {name: table.column(name).to_numpy() for name in names}
-    except (pa.ArrowException, OSError, KeyError) as error:
-        raise _unreadable(path, error) from error
+    except (pa.ArrowException, OSError, KeyError, UnicodeDecodeError) as error:
+        raise damaged(path, "Parquet", error) from error
 
 
 def check_rows(path: Path, found: int, rows: int, *, stage: str = "the stage") -> None:
@@ -98,7 +99,3 @@ def check_rows(path: Path, found: int, rows: int, *, stage: str = "the stage") -
             expected=f"{rows}, as the recording has",
             remedy=f"run {stage} again",
         )
-
-
-def _unreadable(path: Path, error: Exception) -> InputError:
-    return InputError(f"cannot be read ({str(error).splitlines()[0]})", where=path)

@@ -1,12 +1,12 @@
 """One reader per file format, chosen by the suffix of a file's name."""
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 from tsas_cli.errors import InputError
+from tsas_cli.recordings.readers.apart import in_another_process
 from tsas_cli.recordings.readers.options import ReadOptions
 from tsas_cli.recordings.readers.table import Source, Table
 
@@ -22,6 +22,8 @@ _READERS = {
     ".json": "json_table",
     ".parquet": "parquet",
 }
+_APART = {"matlab": "a MATLAB file", "mdf": "MDF"}  # their libraries crash on damaged files
+_WITH_TABLES = ("json_table", "matlab")
 SUFFIXES = tuple(_READERS)
 
 
@@ -34,8 +36,7 @@ def read(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Table:
         No reader knows the suffix, the file is empty or damaged, a wanted column is missing, or
         it holds something else than numbers.
     """
-    with _reader(path) as reader:
-        table: Table = reader.read(path, options, wanted)
+    table: Table = _call("read", path, options, wanted)
     return table
 
 
@@ -47,13 +48,22 @@ def names(path: Path, options: ReadOptions) -> tuple[str, ...]:
     InputError
         As from `read`.
     """
-    with _reader(path) as reader:
-        return tuple(reader.names(path, options))
+    return tuple(_call("names", path, options))
 
 
-@contextmanager
-def _reader(path: Path) -> Iterator[Any]:
-    """Yield the module that reads the file; what the system says of the file is one line."""
+def tables(path: Path) -> list[str]:
+    """Return what `table` in a map may name: where tables stand deeper in a JSON or MATLAB file.
+
+    Raises
+    ------
+    InputError
+        As from `read`.
+    """
+    return list(_call("tables", path)) if _module(path) in _WITH_TABLES else []
+
+
+def _module(path: Path) -> str:
+    """Return the module that reads a file."""
     module = _READERS.get(path.suffix.lower())
     if module is None:
         raise InputError(
@@ -61,9 +71,18 @@ def _reader(path: Path) -> Iterator[Any]:
             where=path,
             expected=f"one of {', '.join(SUFFIXES)}",
         )
+    return module
+
+
+def _call(function: str, path: Path, *rest: Any) -> Any:
+    """Call the module that reads the file; what the system says of the file is one line."""
+    module = _module(path)
+    name = f"{__name__}.{module}"
     try:
         if path.stat().st_size == 0:
             raise InputError("is empty", where=path, expected="a recording")
-        yield import_module(f"{__name__}.{module}")
+        if module in _APART:
+            return in_another_process(name, function, path, *rest, kind=_APART[module])
+        return getattr(import_module(name), function)(path, *rest)
     except OSError as error:
         raise InputError(f"cannot be read ({error.strerror or error})", where=path) from error

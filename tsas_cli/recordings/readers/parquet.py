@@ -24,7 +24,7 @@ def read(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Table:
             schema = file.schema_arrow
             at = resolve(wanted, schema.names, path)
             table = file.read(columns=[schema.names[i] for i in at.values()])
-    except pa.ArrowException as error:
+    except (pa.ArrowException, UnicodeDecodeError) as error:  # the latter is of names
         raise damaged(path, "Parquet", error) from error
     fields = {source: schema.field(i) for source, i in at.items()}
     columns = {
@@ -32,7 +32,7 @@ def read(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Table:
         for source, field in fields.items()
     }
     units = {
-        s: f.metadata[b"unit"].decode() for s, f in fields.items() if b"unit" in (f.metadata or {})
+        s: f.metadata[b"unit"].decode(errors="replace") for s, f in fields.items() if b"unit" in (f.metadata or {})
     }
     return Table(columns, units)
 
@@ -43,5 +43,5 @@ def names(path: Path, options: ReadOptions) -> Sequence[str]:
     try:
         with pq.ParquetFile(path) as file:
             return list(file.schema_arrow.names)
-    except pa.ArrowException as error:
+    except (pa.ArrowException, UnicodeDecodeError) as error:  # the latter is of names
         raise damaged(path, "Parquet", error) from error

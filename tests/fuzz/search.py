@@ -1,0 +1,119 @@
+"""One target searched in processes of its own, a new one for each that dies."""
+
+import re
+import shutil
+import subprocess
+import sys
+import time
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from importlib import import_module
+from pathlib import Path
+
+MOST_DEATHS = 50  # of processes, after which a target is given up
+MOST_BYTES = 2000  # of an input, where a target says nothing else
+HANG_S = 10
+
+
+@dataclass(frozen=True)
+class Budget:
+    """How long each target is searched: executions (-1: any number), seconds (0: any), seed."""
+
+    runs: int
+    seconds: int
+    seed: int
+
+
+@dataclass(frozen=True)
+class Found:
+    """What a search came to."""
+
+    target: str
+    executions: int
+    seconds: float
+    inputs: int
+    edges: int
+    faults: tuple[Path, ...]
+
+
+def search(target: str, budget: Budget, corpus: Path, out: Path) -> Found:
+    """Search one target, from the kept corpus and its seeds on.
+
+    What is learned goes into `out/corpus/NAME`, inputs that break a rule into `out/found/NAME`.
+    """
+    module = import_module(target)
+    name = target.rpartition(".")[2]
+    learned, found = out / "corpus" / name, out / "found" / name
+    shutil.rmtree(found, ignore_errors=True)
+    for folder in (learned, found):
+        folder.mkdir(parents=True, exist_ok=True)
+    for number, seed in enumerate(module.seeds()):
+        (learned / f"seed-{number}").write_bytes(seed)
+    words = out / f"{name}.dict"
+    words.write_text("\n".join(("#", *_quoted(getattr(module, "WORDS", ())))), encoding="ascii")
+    options = [
+        f"-max_len={getattr(module, 'MOST_BYTES', MOST_BYTES)}",
+        f"-timeout={HANG_S}",
+        "-rss_limit_mb=3000",
+        "-len_control=20",
+        "-print_final_stats=1",
+        "-verbosity=1",
+        f"-artifact_prefix={found}/",
+        f"-dict={words}",
+    ]
+    folders = [learned, *([corpus / name] if (corpus / name).is_dir() else [])]
+    started, left, executions, log = time.monotonic(), budget, 0, ""
+    for death in range(MOST_DEATHS):
+        log = _child(target, found, [*options, *_of(left), *map(str, folders)])
+        done = _last(r"stat::number_of_executed_units:\s*(\d+)", log)
+        executions += done
+        used = time.monotonic() - started
+        left = replace(
+            budget,
+            runs=-1 if budget.runs < 0 else budget.runs - executions,
+            seconds=0 if not budget.seconds else max(int(budget.seconds - used), 1),
+            seed=budget.seed + death + 1,
+        )
+        over = (budget.runs >= 0 and left.runs <= 0) or (budget.seconds and left.seconds <= 1)
+        if "Done " in log or over or not done:
+            break
+    (found / "log.txt").write_text(log[-20000:], encoding="utf-8")
+    return Found(
+        target,
+        executions,
+        time.monotonic() - started,
+        sum(1 for _ in learned.iterdir()),
+        _last(r"cov: (\d+)", log),
+        tuple(sorted(p for p in found.iterdir() if p.suffix != ".txt")),
+    )
+
+
+def _of(budget: Budget) -> Iterable[str]:
+    yield f"-seed={budget.seed}"
+    if budget.runs >= 0:
+        yield f"-runs={budget.runs}"
+    if budget.seconds:
+        yield f"-max_total_time={budget.seconds}"
+
+
+def _child(target: str, found: Path, arguments: Iterable[str]) -> str:
+    call = [sys.executable, "-m", "tests.fuzz.child", target, str(found), *arguments]
+    done = subprocess.run(
+        call, stderr=subprocess.STDOUT, stdout=subprocess.PIPE, text=True, errors="replace"
+    )
+    faults = [line for line in done.stdout.splitlines() if line.startswith("FAULT")]
+    print(*faults, sep="\n", end="\n" if faults else "", file=sys.stderr)
+    if "Done " not in done.stdout:
+        told = "\n  ".join(done.stdout.splitlines()[-15:])
+        print(f"the process died ({done.returncode}):\n  {told}", file=sys.stderr)
+    return done.stdout
+
+
+def _last(pattern: str, log: str) -> int:
+    numbers = re.findall(pattern, log)
+    return int(numbers[-1]) if numbers else 0
+
+
+def _quoted(words: Iterable[bytes]) -> Iterable[str]:
+    for word in words:
+        yield '"' + "".join(f"\\x{byte:02x}" for byte in word) + '"'
