@@ -3,6 +3,7 @@
 import argparse
 import sys
 from collections.abc import Iterable, Sequence
+from importlib import import_module
 from pathlib import Path
 from pkgutil import iter_modules
 
@@ -19,7 +20,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Read the call, search, print; return 1 where something was found."""
     parser = argparse.ArgumentParser(prog="python -m tests.fuzz", description=__doc__)
     parser.add_argument("names", nargs="*", help=f"of {', '.join(NAMES)}; all where none is named")
-    parser.add_argument("--runs", type=int, default=-1, help="executions of each target at most")
+    parser.add_argument("--runs", type=int, default=-1, help="executions at most, of all targets together, by their SHARE")
     parser.add_argument("--seconds", type=int, default=0, help="time of each target at most")
     parser.add_argument("--seed", type=int, default=1, help="of the search; 1 where none is given")
     parser.add_argument("--out", type=Path, default=Path("reports/fuzz"), metavar="FOLDER",
@@ -30,11 +31,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
         parser.error(f"no target {', '.join(sorted(unknown))}; there are {', '.join(NAMES)}")
     if call.runs < 0 and not call.seconds:
         parser.error("say how long: --runs or --seconds")
-    budget = Budget(call.runs, call.seconds, call.seed)
+    targets = [import_module(f"tests.fuzz.targets.{name}") for name in call.names or NAMES]
+    shares = [getattr(target, "SHARE", 1.0) for target in targets]
     found = []
-    for name in call.names or NAMES:
-        print(f"searching {name} …", file=sys.stderr, flush=True)
-        found.append(search(f"tests.fuzz.targets.{name}", budget, HERE / "corpus", call.out))
+    for target, share in zip(targets, shares, strict=True):
+        print(f"searching {target.__name__} …", file=sys.stderr, flush=True)
+        runs = -1 if call.runs < 0 else round(call.runs * share / sum(shares))
+        budget = Budget(runs, call.seconds, call.seed)
+        found.append(search(target, budget, HERE / "corpus", call.out))
     table = ("what was searched", HEADER, [*rows(found)])
     show({}, [table], quiet=False, as_json=False)
     kept = [path for one in found for path in one.faults]

@@ -8,9 +8,10 @@ from collections.abc import Callable
 from importlib import import_module
 from pathlib import Path
 from types import ModuleType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from tests.fuzz.rules import Watch
+if TYPE_CHECKING:
+    from tests.fuzz.rules import Watch
 
 PACKAGE = Path(__file__).parents[2] / "tsas_cli"
 COMPILED = ("challenge/rig", "controllers", "effects", "numerics", "physics")  # by numba: not seen
@@ -46,7 +47,7 @@ def _place(error: BaseException) -> str:
     return f"{type(error).__name__} {Path(ours[-1].filename).name}:{ours[-1].lineno}"
 
 
-def guarded(target: ModuleType, faults: Faults, watch: Watch) -> Callable[[bytes], None]:
+def guarded(target: ModuleType, faults: Faults, watch: "Watch") -> Callable[[bytes], None]:
     """Return the target as the fuzzer calls it: what is raised is kept, and the search goes on."""
 
     def one(data: bytes) -> None:
@@ -65,6 +66,8 @@ def main() -> None:
 
     name, found, *arguments = sys.argv[1:]
     with atheris.instrument_imports(include=["tsas_cli", "asammdf"], exclude=_compiled()):
+        from tests.fuzz.rules import Watch
+
         target = import_module(name)
     faults, watch = Faults(Path(found)), Watch()
     one = guarded(target, faults, watch)

@@ -7,12 +7,10 @@ from collections.abc import Callable
 from functools import reduce
 from typing import Any
 
-import tomlkit
-
 Change = Callable[[bytes, int, int], bytes]
 ODD: tuple[Any, ...] = (
     "", "?", "..", "/", "../a", "a/b", "\x1b[2J", "\u202e", "é" * 300, "{stem}", "first", "spring",
-    0, 1, -1, 2**31, -(2**63), 10**30, 0.0, -0.0, 1e-320, 1e308, float("inf"), float("nan"),
+    0, 1, -1, 2**31, -(2**63), 10**30, 10**400, 0.0, -0.0, 1e-320, 1e308, float("inf"), float("nan"),
     True, False, None, reduce(lambda inner, _: [inner], range(400), 1),
     reduce(lambda inner, _: {"a": inner}, range(400), {}), 10**5000, [], {}, [[]], [{}], [1, "a"], {"": {}}, {"a": {"b": [1]}}, "0" * 64,
 )  # fmt: skip
@@ -57,12 +55,28 @@ def _changed(
         for _ in range(chance.choice((1, 1, 2, 4))):
             content = _with_a_change(content, chance)
         return write(content).encode("utf-8", "surrogatepass")[:most]
-    except (ValueError, TypeError, KeyError, RecursionError, tomlkit.exceptions.TOMLKitError):
+    except (ValueError, TypeError, LookupError, ArithmeticError, RecursionError):
         return bytes(Mutate(data, most))
 
 
 def _toml(content: Any) -> str:
-    return tomlkit.dumps(content if isinstance(content, dict) else {"a": content})
+    """Return TOML with all tables inline, several times as fast as a library that keeps layouts."""
+    items = content.items() if isinstance(content, dict) else [("a", content)]
+    return "\n".join(f"{_text(key)} = {_value(value)}" for key, value in items)
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{_text(k)} = {_value(v)}" for k, v in value.items()) + "}"
+    if isinstance(value, list):
+        return "[" + ", ".join(map(_value, value)) + "]"
+    if isinstance(value, str):
+        return _text(value)
+    return str(value).lower()
+
+
+def _text(text: str) -> str:
+    return json.dumps(text, ensure_ascii=False)
 
 
 def _with_a_change(content: Any, chance: random.Random) -> Any:

@@ -54,6 +54,7 @@ class Watch:
         self.on = False
         self.seen: list[str] = []
         self.inside = tuple({os.path.realpath(p) + os.sep for p in (gettempdir(), _MEMORY)})
+        self.inside += (os.devnull + os.sep,)
         sys.addaudithook(self._event)
 
     def _event(self, event: str, arguments: tuple[Any, ...]) -> None:
@@ -69,7 +70,7 @@ class Watch:
             self.seen.append(f"{event} {arguments[0]!r}")
 
     def _path(self, event: str, path: Any) -> None:
-        if not os.path.realpath(os.fsdecode(path)).startswith(self.inside):
+        if not (os.path.realpath(os.fsdecode(path)) + os.sep).startswith(self.inside):
             self.seen.append(f"{event} {path!r}")
 
     @contextmanager

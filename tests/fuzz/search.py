@@ -7,8 +7,8 @@ import sys
 import time
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from importlib import import_module
 from pathlib import Path
+from types import ModuleType
 
 MOST_DEATHS = 50  # of processes, after which a target is given up
 MOST_BYTES = 2000  # of an input, where a target says nothing else
@@ -17,7 +17,7 @@ HANG_S = 10
 
 @dataclass(frozen=True)
 class Budget:
-    """How long each target is searched: executions (-1: any number), seconds (0: any), seed."""
+    """How long a target is searched: executions (-1: any number), seconds (0: any), seed."""
 
     runs: int
     seconds: int
@@ -36,12 +36,12 @@ class Found:
     faults: tuple[Path, ...]
 
 
-def search(target: str, budget: Budget, corpus: Path, out: Path) -> Found:
+def search(module: ModuleType, budget: Budget, corpus: Path, out: Path) -> Found:
     """Search one target, from the kept corpus and its seeds on.
 
     What is learned goes into `out/corpus/NAME`, inputs that break a rule into `out/found/NAME`.
     """
-    module = import_module(target)
+    target = module.__name__
     name = target.rpartition(".")[2]
     learned, found = out / "corpus" / name, out / "found" / name
     shutil.rmtree(found, ignore_errors=True)

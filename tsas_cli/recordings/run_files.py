@@ -75,7 +75,7 @@ class RunColumns:
         try:
             table = self.file.read(columns=[name])
         except (pa.ArrowException, OSError) as error:
-            raise _not_parquet(self.path, error) from error
+            raise damaged(self.path, "Parquet", error) from error
         values = _floats(table, name, self.path)
         if name == TIME:
             _check_time(values, self.path)

@@ -10,6 +10,7 @@ from tsas_cli.recordings.readers import delimited, names, read
 from tsas_cli.recordings.readers.layout import detect
 from tsas_cli.recordings.readers.options import ReadOptions
 
+SHARE = 20
 WORDS = (b"time_s", b"[mm]", b"1e308", b"-1.5", b"nan", b"NULL", b"\r\n", b"\xef\xbb\xbf", b"1,5")
 OPTIONS = tuple(
     ReadOptions.model_validate(said)

@@ -7,6 +7,7 @@ from tests.fuzz.rules import Scratch, answer
 from tsas_cli.identification.drive_file import UNITS, read_drive
 
 __all__ = ["WORDS", "mutate", "one", "seeds"]
+SHARE = 20
 WORDS = (b"[parameters.", b"gain_mm_per_s_rpm", b'hold = "zero"', b"[structure]")
 _scratch = Scratch()
 

@@ -7,8 +7,10 @@ from tests.fuzz.rules import Broken, Scratch, answer
 from tsas_cli.recordings.guess.proposal import propose
 from tsas_cli.recordings.guess.summary import content, tables
 from tsas_cli.recordings.ingest_map import read_map
+from tsas_cli.recordings.readers import delimited, json_table, parquet  # noqa: F401 # instrumented
 
 SUFFIXES = (".csv", ".txt", ".json", ".parquet")
+SHARE = 1
 WORDS = (b"time", b"[ms]", b"f_in (N)", b"Weg", b"motor", b"\r\n", b"[[", b'"data"', b"counts")
 _scratch = Scratch()
 

@@ -8,6 +8,7 @@ from tests.fuzz.rules import Scratch, answer
 from tsas_cli.recordings.ingest_map import read_map
 
 __all__ = ["WORDS", "mutate", "one", "seeds"]
+SHARE = 25
 WORDS = (b"[columns.", b"[run.table.", b"pattern = '(?P<", b"rate_Hz", b'"first"', b"[[", b"= [")
 MAPS = Path(__file__).parents[3] / "datasets" / "maps"
 _scratch = Scratch()

@@ -9,6 +9,7 @@ from tsas_cli.recordings.readers import json_table, names, read
 from tsas_cli.recordings.readers.options import ReadOptions
 
 TABLES = (None, "data", "log.rows", "", ".")
+SHARE = 50
 WORDS = (b'"columns"', b"null", b"NaN", b"Infinity", b"1e999", b"[[", b"[{", b"\\ud800")
 mutate = after_a_byte(json_document)
 _scratch = Scratch()

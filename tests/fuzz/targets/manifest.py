@@ -9,6 +9,7 @@ from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.manifest import FILE, write_manifest
 
 __all__ = ["WORDS", "mutate", "one", "seeds"]
+SHARE = 6
 WORDS = (b"[[run]]", b"sha256", b"started = 2026-01-01T00:00:00Z", b"../", b"0" * 64, b"'''")
 _scratch = Scratch()
 _written = Scratch()

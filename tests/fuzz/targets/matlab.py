@@ -16,6 +16,7 @@ from tests.recordings.readers.matlab_files import controldesk
 from tsas_cli.recordings.readers import matlab
 from tsas_cli.recordings.readers.options import ReadOptions
 
+SHARE = 0.12
 WORDS = tuple(struct.pack("<I", kind) for kind in (*range(1, 19), 0x10001, 0x40006))
 _HEAD, _TAG, _COMPRESSED = 128, 8, 15
 _scratch = Scratch()
@@ -36,7 +37,7 @@ def mutate(data: bytes, most: int, seed: int) -> bytes:
         return bytes(Mutate(data, most))
     which = chance.randrange(len(parts))
     parts[which] = bytes(Mutate(parts[which], most))
-    return data[:_HEAD] + b"".join(map(_closed, parts))
+    return (data[:_HEAD] + b"".join(map(_closed, parts)))[:most]
 
 
 def _opened(data: bytes) -> list[bytes] | None:

@@ -14,6 +14,7 @@ from tsas_cli.recordings.readers import matlab_hdf5 as matlab_hdf5
 from tsas_cli.recordings.readers.options import ReadOptions
 
 MOST_BYTES = 16000
+SHARE = 0.12
 WORDS = (b"TREE", b"HEAP", b"SNOD", b"GCOL", b"OHDR", b"MATLAB_class", b"\xff" * 8, b"MATLAB_empty")
 _scratch = Scratch()
 

@@ -14,6 +14,7 @@ from tsas_cli.recordings.readers import mdf
 from tsas_cli.recordings.readers.options import ReadOptions
 
 MOST_BYTES = 6000
+SHARE = 0.1
 WORDS = (b"##DT", b"##DZ", b"##CN", b"##CG", b"##DG", b"##CC", b"##TX", b"##SD", b"##HL", b"##DL")
 _scratch = Scratch()
 

@@ -10,6 +10,7 @@ from tsas_cli.recordings.manifest import Run
 
 __all__ = ["WORDS", "mutate", "one", "seeds"]
 RUN = Run(id="a", file="a.parquet", sha256="0" * 64, preload_N=25.0, total_bend_rad=3.1)
+SHARE = 5
 WORDS = (b"[parameters.", b"[effects.", b"[bristles.", b"[runs.a.", b'origin = "fitted"')
 _scratch = Scratch()
 

@@ -7,6 +7,7 @@ from tests.fuzz.rules import Scratch, answer
 from tsas_cli.diagnosis.rig_file import read_rig_file
 
 __all__ = ["WORDS", "mutate", "one", "seeds"]
+SHARE = 25
 WORDS = (b"[[run]]", b"[sensors]", b"[limits]", b'"nested"', b'"chirp"', b"frequency_Hz")
 _scratch = Scratch()
 

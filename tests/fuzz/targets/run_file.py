@@ -14,6 +14,7 @@ from tsas_cli.recordings.run_files import open_run, read_columns, read_recording
 from tsas_cli.recordings.written import columns_of, names_of
 
 __all__ = ["MOST_BYTES", "WORDS", "one", "seeds"]
+SHARE = 5
 _scratch = Scratch()
 
 

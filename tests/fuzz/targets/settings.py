@@ -10,6 +10,7 @@ from tsas_cli.controllers import CONTROLLERS
 from tsas_cli.tracking.settings import Settings, printed_gains, read_settings
 
 __all__ = ["WORDS", "mutate", "one", "seeds"]
+SHARE = 6
 WORDS = (b"[controllers.adaptive-sliding-mode]", b"[loop]", b"phi = [", b"[reference]")
 _scratch = Scratch()
 

@@ -16,6 +16,7 @@ from tsas_cli.comparing.tracked import compare_tracked
 from tsas_cli.reporting.inputs import STAGES, read_inputs, read_stage
 from tsas_cli.stage_files.tracking import Tracking
 
+SHARE = 4
 MOST_BYTES = 8000
 mutate = after_a_byte(json_document)
 FILES = (*(kind.FILE for kind in STAGES), answers.FILE, entry.FILE)

@@ -7,6 +7,7 @@ from tsas_cli.recordings.columns import COLUMNS
 from tsas_cli.recordings.guess.kinds import kind_of, unit_behind
 from tsas_cli.recordings.units import _LABELS, _SPELLINGS, conversion, is_label, is_unit
 
+SHARE = 7
 WORDS = tuple(
     word.encode()
     for word in (*_SPELLINGS, *_LABELS, "mm", "newton", "kilogram_force", "**", "^", "²", "µ", "per")

@@ -54,6 +54,7 @@ def _fast(
             include_columns=[names[i] for i in sorted(set(at.values()))],
             column_types=dict.fromkeys(names, pa.float64()),
             decimal_point=layout.decimal,
+            null_values=sorted(_NULLS if layout.delimiter != " " else _NULLS - {""}),
         ),
     )
     return {source: table.column(names[i]).to_numpy() for source, i in at.items()}
@@ -66,8 +67,8 @@ def _line_by_line(
     columns: dict[Source, list[float]] = {source: [] for source in at}
     with path.open(encoding=options.encoding) as stream:
         for row, line in enumerate(stream, start=1):
-            blank = not line.strip() or comment_text(line, options) is not None
-            if row < layout.first_line or blank:
+            no_row = _is_blank(line, layout) or comment_text(line, options) is not None
+            if row < layout.first_line or no_row:
                 continue
             cells = fields(line, layout.delimiter)
             if len(cells) != len(layout.names):
@@ -79,6 +80,14 @@ def _line_by_line(
             for source, i in at.items():
                 columns[source].append(_cell(cells[i], layout.decimal, source, path, row))
     return {source: np.array(values) for source, values in columns.items()}
+
+
+def _is_blank(line: str, layout: Layout) -> bool:
+    """Say whether a line is no row; tabs alone are a row of gaps where they separate columns."""
+    if line.strip():
+        return False
+    spaces = layout.delimiter == " " or (layout.delimiter not in line and len(layout.names) > 1)
+    return spaces or not line.strip("\r\n")
 
 
 def _cell(text: str, decimal: str, source: Source, path: Path, row: int) -> float:

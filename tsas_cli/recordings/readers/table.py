@@ -64,7 +64,7 @@ def floats(values: Any, source: Source, path: Path) -> Floats:
     """
     try:
         numbers = np.asarray(values, dtype=np.float64)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         numbers = np.array([_number(v, source, path, i) for i, v in enumerate(values, start=1)])
     if numbers.ndim != 1:
         raise InputError(f"column {source} has {numbers.ndim} dimensions", where=path, expected="1")
@@ -93,7 +93,7 @@ def damaged(path: Path, kind: str, error: Exception) -> InputError:
 def _number(value: Any, source: Source, path: Path, row: int) -> float:
     try:
         return float("nan") if value is None else float(value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise not_a_number(value, source, path, row) from None
 
 
