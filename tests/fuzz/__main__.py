@@ -8,10 +8,10 @@ from pathlib import Path
 from pkgutil import iter_modules
 
 import tests.fuzz.targets
-from tests.fuzz.search import Budget, Found, search
+from tests.fuzz.search import Budget, Found, keep, search
 from tsas_cli.commands.common import show
 
-HERE = Path(__file__).parent
+CORPUS = Path(__file__).parent / "corpus"
 HEADER = ("target", "executions", "a second", "inputs", "edges", "faults")
 NAMES = tuple(sorted(module.name for module in iter_modules(tests.fuzz.targets.__path__)))
 
@@ -20,11 +20,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Read the call, search, print; return 1 where something was found."""
     parser = argparse.ArgumentParser(prog="python -m tests.fuzz", description=__doc__)
     parser.add_argument("names", nargs="*", help=f"of {', '.join(NAMES)}; all where none is named")
-    parser.add_argument("--runs", type=int, default=-1, help="executions at most, of all targets together, by their SHARE")
+    parser.add_argument(
+        "--runs",
+        type=int,
+        default=-1,
+        help="executions at most, of all targets together, by their SHARE",
+    )
     parser.add_argument("--seconds", type=int, default=0, help="time of each target at most")
     parser.add_argument("--seed", type=int, default=1, help="of the search; 1 where none is given")
     parser.add_argument("--out", type=Path, default=Path("reports/fuzz"), metavar="FOLDER",
                         help="where faults and what was learned are kept")  # fmt: skip
+    parser.add_argument("--keep", action="store_true", help="renew the corpus in tests/fuzz/corpus")
     call = parser.parse_args(arguments)
     unknown = set(call.names) - set(NAMES)
     if unknown:
@@ -38,7 +44,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f"searching {target.__name__} …", file=sys.stderr, flush=True)
         runs = -1 if call.runs < 0 else round(call.runs * share / sum(shares))
         budget = Budget(runs, call.seconds, call.seed)
-        found.append(search(target, budget, HERE / "corpus", call.out))
+        found.append(search(target, budget, CORPUS, call.out))
+        if call.keep:
+            keep(target.__name__, CORPUS, call.out)
     table = ("what was searched", HEADER, [*rows(found)])
     show({}, [table], quiet=False, as_json=False)
     kept = [path for one in found for path in one.faults]

@@ -2,6 +2,7 @@
 
 import hashlib
 import resource
+import shlex
 import sys
 import traceback
 from collections.abc import Callable
@@ -77,7 +78,8 @@ def main() -> None:
     more: dict[str, Any] = {}
     if hasattr(target, "mutate"):
         more["custom_mutator"] = target.mutate
-    atheris.Setup([sys.argv[0], *arguments], one, **more)
+    again = shlex.join([sys.executable, "-m", "tests.fuzz.child", name, found])  # for merging
+    atheris.Setup([again, *arguments], one, **more)
     atheris.Fuzz()
 
 

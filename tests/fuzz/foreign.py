@@ -25,10 +25,10 @@ def ask(reader: ModuleType, path: Path, options: ReadOptions) -> None:
             answer(reader.names, path, options)
         return
     answer(reader.names, path, options)
-    for options in (options, options.model_copy(update={"resample": True})):
+    for said in (options, options.model_copy(update={"resample": True})):
         wanted = list(range(1, len(listed) + 1))[:_MOST_COLUMNS]
-        there = answer(read, path, options, wanted)
-        here = answer(reader.read, path, options, wanted)
+        there = answer(read, path, said, wanted)
+        here = answer(reader.read, path, said, wanted)
         if (there is None) != (here is None) or (there is not None and not _same(there, here)):
             raise Broken(f"{there} is {here} when it is read in this process")
 

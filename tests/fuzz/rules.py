@@ -1,4 +1,4 @@
-"""What must hold for any input: an `InputError` that can be printed, or none, and nothing written."""
+"""What must hold for any input: it is taken, or refused in a line that can be printed."""
 
 import os
 import sys
@@ -18,7 +18,7 @@ _READERS = apart.__name__  # the process in which foreign formats are read
 _MEMORY = Path("/dev/shm")  # noqa: S108 # files that never reach a disk, where there are such
 
 
-class Broken(Exception):
+class Broken(Exception):  # noqa: N818 # as it reads
     """A rule does not hold."""
 
 

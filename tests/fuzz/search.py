@@ -13,6 +13,7 @@ from types import ModuleType
 MOST_DEATHS = 50  # of processes, after which a target is given up
 MOST_BYTES = 2000  # of an input, where a target says nothing else
 HANG_S = 10
+MOST_KEPT, MOST_KEPT_BYTES = 60, 16_000  # of a target's corpus
 
 
 @dataclass(frozen=True)
@@ -88,6 +89,23 @@ def search(module: ModuleType, budget: Budget, corpus: Path, out: Path) -> Found
     )
 
 
+def keep(target: str, corpus: Path, out: Path) -> None:
+    """Put the smallest inputs that reach all that was reached into the kept corpus of a target."""
+    name = target.rpartition(".")[2]
+    kept, learned, merged = corpus / name, out / "corpus" / name, out / "merged" / name
+    shutil.rmtree(merged, ignore_errors=True)
+    for folder in (kept, merged):
+        folder.mkdir(parents=True, exist_ok=True)
+    _child(target, out / "found" / name, ["-merge=1", *map(str, (merged, learned, kept))])
+    shutil.rmtree(kept)
+    kept.mkdir()
+    size = 0
+    for path in sorted(merged.iterdir(), key=lambda p: (p.stat().st_size, p.name))[:MOST_KEPT]:
+        size += path.stat().st_size
+        if size <= MOST_KEPT_BYTES:
+            shutil.copyfile(path, kept / path.name[:16])
+
+
 def _of(budget: Budget) -> Iterable[str]:
     yield f"-seed={budget.seed}"
     if budget.runs >= 0:
@@ -99,11 +117,16 @@ def _of(budget: Budget) -> Iterable[str]:
 def _child(target: str, found: Path, arguments: Iterable[str]) -> str:
     call = [sys.executable, "-m", "tests.fuzz.child", target, str(found), *arguments]
     done = subprocess.run(
-        call, stderr=subprocess.STDOUT, stdout=subprocess.PIPE, text=True, errors="replace"
+        call,
+        stderr=subprocess.STDOUT,
+        stdout=subprocess.PIPE,
+        text=True,
+        errors="replace",
+        check=False,
     )
     faults = [line for line in done.stdout.splitlines() if line.startswith("FAULT")]
     print(*faults, sep="\n", end="\n" if faults else "", file=sys.stderr)
-    if "Done " not in done.stdout:
+    if "Done " not in done.stdout and "MERGE-OUTER: successful" not in done.stdout:
         told = "\n  ".join(done.stdout.splitlines()[-15:])
         print(f"the process died ({done.returncode}):\n  {told}", file=sys.stderr)
     return done.stdout

@@ -42,6 +42,9 @@ def seeds() -> Iterable[bytes]:
     yield b"\0" + "\n".join(["time [s]; x_in [mm]; f_in [N]; load", *lines]).encode()
     yield b"\0" + "\n".join(["rig 3", "recorded by me", "", *lines]).encode()
     yield b"\1" + "\n".join("\t".join(line.split("; ")) for line in lines).encode()
-    yield b"\2" + repr({"log": {"columns": ["t", "x_in", "f_in", "c"], "rows": rows}}).replace(
-        "'", '"'
-    ).encode()
+    yield (
+        b"\2"
+        + repr({"log": {"columns": ["t", "x_in", "f_in", "c"], "rows": rows}})
+        .replace("'", '"')
+        .encode()
+    )

@@ -16,7 +16,7 @@ _written = Scratch()
 
 
 def one(data: bytes) -> None:
-    """A manifest that is taken keeps its runs inside, and one in four is the same written and read again."""
+    """A manifest that is taken keeps its runs inside, and is the same when it is read again."""
     path = _scratch.file(FILE, data)
     dataset = answer(read_dataset, path.parent)
     if dataset is None:
@@ -43,8 +43,9 @@ def seeds() -> Iterable[bytes]:
     head = 'format = 1\nname = "bench"\nkind = "measured"\n'
     yield f"{head}{run}".encode()
     yield (
-        f'{head}description = "d"\nlicense = "CC0"\nwhere = "lab"\n[rig]\ntendon_diameter_mm = 1.2\n'
-        f"tendon_modulus_GPa = 60\nfriction_coefficient = 0.1\nproximal_length_mm = 10\n{run}"
+        f'{head}description = "d"\nlicense = "CC0"\nwhere = "lab"\n[rig]\n'
+        "tendon_diameter_mm = 1.2\ntendon_modulus_GPa = 60\n"
+        f"friction_coefficient = 0.1\nproximal_length_mm = 10\n{run}"
         "started = 2026-01-01T10:00:00\nsheath_length_mm = 785.0\ntotal_bend_rad = 3.1\n"
         'preload_N = 25.0\nload = "force"\nfrequency_Hz = 0.5\n'
         '[ingest]\nversion = "0.1.0"\n[ingest.map]\nfile = "map.toml"\n'

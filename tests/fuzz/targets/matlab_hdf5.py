@@ -9,8 +9,7 @@ import numpy as np
 from tests.fuzz.foreign import ask
 from tests.fuzz.rules import Scratch
 from tests.recordings.readers import matlab_files as made
-from tsas_cli.recordings.readers import matlab
-from tsas_cli.recordings.readers import matlab_hdf5 as matlab_hdf5
+from tsas_cli.recordings.readers import matlab, matlab_hdf5  # noqa: F401 # instrumented
 from tsas_cli.recordings.readers.options import ReadOptions
 
 MOST_BYTES = 16000

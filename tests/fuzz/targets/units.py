@@ -10,7 +10,18 @@ from tsas_cli.recordings.units import _LABELS, _SPELLINGS, conversion, is_label,
 SHARE = 7
 WORDS = tuple(
     word.encode()
-    for word in (*_SPELLINGS, *_LABELS, "mm", "newton", "kilogram_force", "**", "^", "²", "µ", "per")
+    for word in (
+        *_SPELLINGS,
+        *_LABELS,
+        "mm",
+        "newton",
+        "kilogram_force",
+        "**",
+        "^",
+        "²",
+        "µ",
+        "per",
+    )
 )
 MOST_BYTES = 60
 CANONICAL = tuple(dict.fromkeys(column.unit for column in COLUMNS))

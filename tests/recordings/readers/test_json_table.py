@@ -52,6 +52,8 @@ def test_what_stands_beside_the_table_is_the_header(ask):
         ([[0, 1], [1, "fast"]], {}, "row 2: column 2 holds 'fast'"),
         ([[0, 1], [1]], {}, "row 2: 1 values; expected 2"),
         ([], {}, "holds no table"),
+        ([[0, 1], [1, 10**400]], {}, "row 2: column 2 holds '1000"),
+        ([[0, 1], [1, "1_2"]], {}, "row 2: column 2 holds '1_2'"),
     ],
 )
 def test_what_is_wrong_is_said(ask, content, options, said):

@@ -67,8 +67,8 @@ def _head(proposal: Proposal) -> Iterable[str]:
         yield "No question is open: ingest takes this map as it is."
     if not proposal.is_a_recording:
         yield from _wrapped(
-            f"Ingest needs one of {', '.join(INPUTS)} and another of {', '.join(OUTPUTS)}, which no "
-            "columns were found for: add them where the file has them."
+            f"Ingest needs one of {', '.join(INPUTS)}, and another of {', '.join(OUTPUTS)}: no "
+            "columns were found for them."
         )
 
 

@@ -46,10 +46,7 @@ class _Process:
             late = Timer(seconds, process.kill)
             late.start()
             try:
-                assert process.stdin and process.stdout  # noqa: S101 # both are pipes
-                pickle.dump(request, process.stdin)
-                process.stdin.flush()
-                return pickle.load(process.stdout)  # noqa: S301 # our own process wrote it
+                return _asked(process, request)
             except BaseException as error:
                 was_late = late.finished.is_set()
                 self.end()
@@ -71,6 +68,14 @@ class _Process:
             start = _START.format(path=sys.path, module=__name__)
             self.running, self.owner = _started(start), os.getpid()
         return self.running
+
+
+def _asked(process: subprocess.Popen[bytes], request: Any) -> Any:
+    assert process.stdin is not None  # noqa: S101 # both are pipes
+    assert process.stdout is not None  # noqa: S101
+    pickle.dump(request, process.stdin)
+    process.stdin.flush()
+    return pickle.load(process.stdout)  # noqa: S301 # our own process wrote it
 
 
 def _started(python: str) -> subprocess.Popen[bytes]:
@@ -99,7 +104,7 @@ def in_another_process(module: str, function: str, path: Path, *rest: Any, kind:
     seconds = LEAST_S + size / BYTES_PER_S
     memory = LEAST_BYTES + BYTES_PER_BYTE * size
     try:
-        answer = _PROCESS.ask((module, function, (path, *rest), memory, os.getcwd()), seconds)
+        answer = _PROCESS.ask((module, function, (path, *rest), memory, Path.cwd()), seconds)
     except TimeoutError as error:
         late = TimeoutError(f"not done after {seconds:.0f} s")
         raise damaged(path, kind, late) from error

@@ -32,7 +32,9 @@ def read(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Table:
         for source, field in fields.items()
     }
     units = {
-        s: f.metadata[b"unit"].decode(errors="replace") for s, f in fields.items() if b"unit" in (f.metadata or {})
+        s: f.metadata[b"unit"].decode(errors="replace")
+        for s, f in fields.items()
+        if b"unit" in (f.metadata or {})
     }
     return Table(columns, units)
 

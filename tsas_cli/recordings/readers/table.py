@@ -63,8 +63,10 @@ def floats(values: Any, source: Source, path: Path) -> Floats:
         A value is no number; names its row.
     """
     try:
-        numbers = np.asarray(values, dtype=np.float64)
+        numbers = None if _has_text(values) else np.asarray(values, dtype=np.float64)
     except (TypeError, ValueError, OverflowError):
+        numbers = None
+    if numbers is None:
         numbers = np.array([_number(v, source, path, i) for i, v in enumerate(values, start=1)])
     if numbers.ndim != 1:
         raise InputError(f"column {source} has {numbers.ndim} dimensions", where=path, expected="1")
@@ -90,7 +92,15 @@ def damaged(path: Path, kind: str, error: Exception) -> InputError:
     )
 
 
+def _has_text(values: Any) -> bool:
+    if isinstance(values, np.ndarray) and values.dtype.kind in "fiub":
+        return False
+    return any(isinstance(value, str | bytes) for value in values)
+
+
 def _number(value: Any, source: Source, path: Path, row: int) -> float:
+    if isinstance(value, str | bytes) and "_" in str(value):  # Python takes 1_2 for 12
+        raise not_a_number(value, source, path, row)
     try:
         return float("nan") if value is None else float(value)
     except (TypeError, ValueError, OverflowError):
