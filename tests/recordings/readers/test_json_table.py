@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tsas_cli.errors import InputError
-from tsas_cli.recordings.readers import read
+from tsas_cli.recordings.readers import read, tables
 from tsas_cli.recordings.readers.options import ReadOptions
 
 ROWS = [[0, 1.5], [1, None], [2, 3.5]]
@@ -39,6 +39,13 @@ def test_rows_records_and_columns_give_the_same_numbers(ask, content, wanted, ta
 
 def test_what_stands_beside_the_table_is_the_header(ask):
     assert ask({"data": ROWS, "unit": "kip"}, 1, table="data").header == ("unit = kip",)
+
+
+def test_a_file_that_is_nested_deeply_is_one_line(tmp_path):
+    path = tmp_path / "a.json"
+    path.write_text('{"a":' * 3000 + "1" + "}" * 3000)
+    with pytest.raises(InputError, match="is nested too deeply|is not JSON"):
+        tables(path)
 
 
 @pytest.mark.parametrize(
