@@ -6,6 +6,7 @@ import shlex
 import sys
 import traceback
 from collections.abc import Callable
+from contextlib import suppress
 from importlib import import_module
 from pathlib import Path
 from types import ModuleType
@@ -73,7 +74,8 @@ def main() -> None:
     faults, watch = Faults(Path(found)), Watch()
     one = guarded(target, faults, watch)
     for seed in target.seeds():  # what is loaded and compiled at the first use is written then
-        target.one(seed)
+        with suppress(Exception):  # it is tried again below
+            target.one(seed)
     _limit_memory()
     more: dict[str, Any] = {}
     if hasattr(target, "mutate"):

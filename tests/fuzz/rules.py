@@ -1,6 +1,8 @@
 """What must hold for any input: it is taken, or refused in a line that can be printed."""
 
+import atexit
 import os
+import shutil
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -15,7 +17,6 @@ _WRITES = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND
 _CHANGES = {"os.mkdir", "os.rename", "os.remove", "os.rmdir", "os.link", "os.symlink", "os.chmod"}
 _STARTS = {"subprocess.Popen", "os.system", "os.exec", "os.posix_spawn", "socket.connect"}
 _READERS = apart.__name__  # the process in which foreign formats are read
-_MEMORY = Path("/dev/shm")  # noqa: S108 # files that never reach a disk, where there are such
 
 
 class Broken(Exception):  # noqa: N818 # as it reads
@@ -35,10 +36,11 @@ def answer(call: Callable[..., Any], *arguments: Any, **keywords: Any) -> Any:
 
 
 class Scratch:
-    """A folder for one file at a time, in memory where that is possible."""
+    """A folder for one file at a time; it goes with the process, or with the search."""
 
     def __init__(self) -> None:
-        self.folder = Path(mkdtemp(prefix="tsas-fuzz-", dir=_MEMORY if _MEMORY.is_dir() else None))
+        self.folder = Path(mkdtemp(prefix="tsas-fuzz-"))
+        atexit.register(shutil.rmtree, self.folder, ignore_errors=True)
 
     def file(self, name: str, content: bytes) -> Path:
         """Write a file and return its path."""
@@ -53,8 +55,7 @@ class Watch:
     def __init__(self) -> None:
         self.on = False
         self.seen: list[str] = []
-        self.inside = tuple({os.path.realpath(p) + os.sep for p in (gettempdir(), _MEMORY)})
-        self.inside += (os.devnull + os.sep,)
+        self.inside = (os.path.realpath(gettempdir()) + os.sep, os.devnull + os.sep)
         sys.addaudithook(self._event)
 
     def _event(self, event: str, arguments: tuple[Any, ...]) -> None:

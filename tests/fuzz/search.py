@@ -1,18 +1,22 @@
 """One target searched in processes of its own, a new one for each that dies."""
 
+import os
 import re
 import shutil
 import subprocess
 import sys
 import time
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from types import ModuleType
 
-MOST_DEATHS = 50  # of processes, after which a target is given up
+MOST_DEATHS = 5  # of processes, after which a target is given up
 MOST_BYTES = 2000  # of an input, where a target says nothing else
 HANG_S = 10
+LOG = "log.txt"
+MEMORY = Path("/dev/shm")  # noqa: S108 # files that never reach a disk, where there are such
 MOST_KEPT, MOST_KEPT_BYTES = 60, 16_000  # of a target's corpus
 
 
@@ -78,14 +82,16 @@ def search(module: ModuleType, budget: Budget, corpus: Path, out: Path) -> Found
         over = (budget.runs >= 0 and left.runs <= 0) or (budget.seconds and left.seconds <= 1)
         if "Done " in log or over or not done:
             break
-    (found / "log.txt").write_text(log[-20000:], encoding="utf-8")
+    (found / LOG).write_text(log[-20000:], encoding="utf-8")
     return Found(
         target,
         executions,
         time.monotonic() - started,
         sum(1 for _ in learned.iterdir()),
         _last(r"cov: (\d+)", log),
-        tuple(sorted(p for p in found.iterdir() if p.suffix != ".txt")),
+        tuple(
+            sorted(p for p in found.iterdir() if p.suffix != ".txt" or (not done and p.name == LOG))
+        ),
     )
 
 
@@ -116,20 +122,26 @@ def _of(budget: Budget) -> Iterable[str]:
 
 def _child(target: str, found: Path, arguments: Iterable[str]) -> str:
     call = [sys.executable, "-m", "tests.fuzz.child", target, str(found), *arguments]
-    done = subprocess.run(
-        call,
-        stderr=subprocess.STDOUT,
-        stdout=subprocess.PIPE,
-        text=True,
-        errors="replace",
-        check=False,
-    )
+    with TemporaryDirectory(prefix="tsas-fuzz-", dir=MEMORY if MEMORY.is_dir() else None) as folder:
+        done = _run(call, folder)
     faults = [line for line in done.stdout.splitlines() if line.startswith("FAULT")]
     print(*faults, sep="\n", end="\n" if faults else "", file=sys.stderr)
     if "Done " not in done.stdout and "MERGE-OUTER: successful" not in done.stdout:
         told = "\n  ".join(done.stdout.splitlines()[-15:])
         print(f"the process died ({done.returncode}):\n  {told}", file=sys.stderr)
     return done.stdout
+
+
+def _run(call: Sequence[str], folder: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        call,
+        env=os.environ | {"TMPDIR": folder},
+        stderr=subprocess.STDOUT,
+        stdout=subprocess.PIPE,
+        text=True,
+        errors="replace",
+        check=False,
+    )
 
 
 def _last(pattern: str, log: str) -> int:
