@@ -2,6 +2,7 @@
 
 import ctypes
 import os
+import signal
 import subprocess
 import sys
 import time
@@ -27,6 +28,10 @@ def dies(path):
 
 def hangs(path):
     time.sleep(60)
+
+
+def seconds_left(path):
+    return signal.getitimer(signal.ITIMER_REAL)[0]
 
 
 def takes(path, size):
@@ -80,6 +85,11 @@ def test_what_takes_too_long_is_ended(path, monkeypatch):
     monkeypatch.setattr(module, "LEAST_S", 0.5)
     with pytest.raises(InputError, match=r"not done after \d s"):
         ask(path, hangs)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such timer")
+def test_it_ends_by_itself_where_nobody_waits_any_more(path):
+    assert module.LEAST_S < ask(path, seconds_left) < module.LEAST_S + 6
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="memory is limited on Linux only")

@@ -7,6 +7,7 @@ more time or memory than a whole file of its size does, costs that process and i
 import atexit
 import os
 import pickle
+import signal
 import subprocess
 import sys
 import traceback
@@ -104,7 +105,8 @@ def in_another_process(module: str, function: str, path: Path, *rest: Any, kind:
     seconds = LEAST_S + size / BYTES_PER_S
     memory = LEAST_BYTES + BYTES_PER_BYTE * size
     try:
-        answer = _PROCESS.ask((module, function, (path, *rest), memory, Path.cwd()), seconds)
+        request = (module, function, (path, *rest), seconds, memory, Path.cwd())
+        answer = _PROCESS.ask(request, seconds)
     except TimeoutError as error:
         late = TimeoutError(f"not done after {seconds:.0f} s")
         raise damaged(path, kind, late) from error
@@ -124,12 +126,14 @@ def serve() -> None:
             request = pickle.load(sys.stdin.buffer)  # noqa: S301 # from the process that started this
         except EOFError:
             return
-        module, function, arguments, memory, folder = request
+        module, function, arguments, seconds, memory, folder = request
         os.chdir(folder)
         called = getattr(import_module(module), function)
+        _end_after(seconds + 5.0)  # in case that nobody is left to do it
         _limit(memory)
         pickle.dump(_answer(called, arguments), answers)
         answers.flush()
+        _end_after(0.0)  # which means never
 
 
 def _answer(called: Any, arguments: tuple[Any, ...]) -> Any:
@@ -139,6 +143,11 @@ def _answer(called: Any, arguments: tuple[Any, ...]) -> Any:
         return error
     except Exception:  # noqa: BLE001 # a defect, whose own type may not travel
         return RuntimeError(traceback.format_exc())
+
+
+def _end_after(seconds: float) -> None:
+    if sys.platform != "win32":
+        signal.setitimer(signal.ITIMER_REAL, seconds)
 
 
 def _limit(memory: int) -> None:
