@@ -7,7 +7,7 @@ test: setup  ## ruff, mypy, import-linter, pytest and a short search for bad inp
 	@$(BIN)/ruff format --check --quiet || { echo 'ruff format would change files: run .venv/bin/ruff format' >&2; exit 1; }
 	@$(BIN)/mypy --no-error-summary
 	@$(BIN)/lint-imports > .venv/lint-imports.txt || { cat .venv/lint-imports.txt; exit 1; }
-	@$(MAKE) --jobs 2 --output-sync=target pytest fuzz-short
+	@$(MAKE) --jobs 2 pytest fuzz-short
 
 pytest: setup
 	@TSAS_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/pytest -n 3 --dist loadscope
