@@ -9,13 +9,16 @@ from pathlib import Path
 import numpy as np
 import pyarrow as pa
 import pytest
-from hypothesis import settings
+from hypothesis import HealthCheck, settings
 
 from tsas_cli.recordings.manifest import Manifest
 from tsas_cli.recordings.writing import write_dataset
 
-# The same examples in every run; `--hypothesis-profile=default` looks for others.
+# The same examples in every run; `make properties` looks at others, and at many.
 settings.register_profile("same", derandomize=True)
+settings.register_profile(
+    "many", max_examples=5000, deadline=None, suppress_health_check=[HealthCheck.too_slow]
+)
 settings.load_profile("same")
 
 # A shell has those that it starts in the background ignore Ctrl-C, `nohup` a terminal that closes,

@@ -53,6 +53,7 @@ LIMITS = _docs("What it can't do", "limits")
 PROJECT = (
     Page("Changelog", "CHANGELOG.md", "changelog.md"),
     Page("Contributing", "CONTRIBUTING.md", "contributing.md"),
+    _docs("Bad input, searched for", "fuzzing"),
 )
 LEFT_OUT = {"docs/worklog.md"}  # for those who build it
 

@@ -28,6 +28,13 @@ def test_groups_of_the_file_name_become_conditions_in_the_wanted_unit():
     assert "bend" not in found
 
 
+def test_a_name_with_an_underscore_between_digits_is_no_number():
+    found = conditions(
+        path=Path("/rig/run_1_2.csv"), from_file_name={"pattern": "run_(?P<no>.*)[.]"}
+    )
+    assert found["no"] == "1_2"
+
+
 def test_the_folder_is_part_of_the_name_and_of_the_id():
     found = conditions(
         id="{folder}-{stage}-{stem}", from_file_name={"pattern": r"^L_(?P<stage>\d)/bend"}

@@ -149,7 +149,10 @@ def test_what_format_1_does_not_allow_is_refused(
         read(tmp_path, TEXT.replace(old, new))
 
 
-@pytest.mark.parametrize("content", [b"format = ", b"\xff\xfe\x00"])
+@pytest.mark.parametrize(
+    "content",
+    [b"format = ", b"\xff\xfe\x00", b"a = " + b"[" * 5000 + b"]" * 5000, b"a = " + b"1" * 5000],
+)
 def test_what_is_not_toml_is_one_line(tmp_path: Path, content: bytes) -> None:
     (tmp_path / "dataset.toml").write_bytes(content)
     with pytest.raises(InputError, match=r"dataset\.toml: is not TOML"):

@@ -94,6 +94,14 @@ def test_a_factor_says_what_counts_and_volts_are():
         ("1/s", "rpm", "turn/s or rad/s"),
         ("quux", "mm", "is unknown"),
         ("", "mm", "cannot become mm"),
+        ("delta_degC", "°C", "cannot become °C"),
+        ("m,m", "mm", "is unknown"),
+        ("m*" * 60 + "m", "mm", "is unknown"),
+        # What would be worked out to more digits than any memory holds:
+        ("9**9**9**9", "mm", "is unknown"),
+        ("6^6666666666", "mm", "is unknown"),
+        ("9⁹⁹⁹⁹⁹⁹⁹⁹⁹⁹", "mm", "is unknown"),
+        ("9" + " squared" * 9, "mm", "is unknown"),
     ],
 )
 def test_what_does_not_fit_is_refused_with_what_to_add(unit, to, said):

@@ -73,7 +73,7 @@ def _filled(template: str, words: dict[str, str]) -> str:
 
 def _plain(text: str) -> float | int | str:
     """Return a number where the text is one (a decimal comma counts), else the text."""
-    for kind in (int, float):
+    for kind in (int, float) if "_" not in text else ():  # Python takes 1_2 for 12
         try:
             return kind(text.replace(",", "."))
         except ValueError:

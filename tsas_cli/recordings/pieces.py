@@ -17,13 +17,13 @@ from tsas_cli.recordings.checked import changed
 from tsas_cli.recordings.columns import BY_NAME, TIME
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.parquet_files import check_size
+from tsas_cli.recordings.readers.table import damaged
 from tsas_cli.recordings.recording import Floats
 from tsas_cli.recordings.run_files import (
     RunColumns,
     check_columns,
     check_time,
     floats_of,
-    not_parquet,
     open_run,
 )
 from tsas_cli.recordings.storage import Place
@@ -116,6 +116,6 @@ def pieces(
     except NotTheSameError as error:
         raise changed(run.path, run.run) from error
     except (pa.ArrowException, OSError) as error:
-        raise not_parquet(run.path, error) from error
+        raise damaged(run.path, "Parquet", error) from error
     if count > overlap or start == 0:
         yield Piece(start, {name: np.concatenate(held[name]) for name in names})

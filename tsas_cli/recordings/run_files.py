@@ -16,6 +16,7 @@ from tsas_cli.recordings.checked import Source, changed, checked_file
 from tsas_cli.recordings.columns import BY_NAME, INPUTS, OUTPUTS, TIME, has_input_and_output
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.parquet_files import check_size, is_number, open_parquet, size_of
+from tsas_cli.recordings.readers.table import damaged
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.recordings.storage import Place
 
@@ -90,7 +91,7 @@ class RunColumns:
         except NotTheSameError as error:
             raise changed(self.path, self.run) from error
         except (pa.ArrowException, OSError) as error:
-            raise not_parquet(self.path, error) from error
+            raise damaged(self.path, "Parquet", error) from error
         values = floats_of(table, name, self.path)
         if name == TIME:
             check_time(values, self.path)
@@ -114,7 +115,7 @@ def open_run(folder: Place, run: Run) -> RunColumns:
     except NotTheSameError as error:
         raise changed(path, run) from error
     except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
-        raise not_parquet(path, error) from error
+        raise damaged(path, "Parquet", error) from error
     if TIME not in file.schema_arrow.names or file.metadata.num_rows < 2:
         raise InputError("column time_s is missing or short", where=path, expected="time in s")
     return RunColumns(run, path, file, size_of(source))
@@ -151,13 +152,7 @@ def _table_of(source: Source, path: Place) -> tuple[pa.Table, list[str]]:
     except MemoryError as error:
         raise out_of_memory(path) from error
     except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
-        raise not_parquet(path, error) from error
-
-
-def not_parquet(path: Place, error: Exception) -> InputError:
-    """Return the error for a file that is no whole Parquet file."""
-    reason = str(error).splitlines()[0]
-    return InputError(f"cannot be read as Parquet ({reason})", where=path)
+        raise damaged(path, "Parquet", error) from error
 
 
 def _check_names_and_units(schema: pa.Schema, path: Place) -> None:

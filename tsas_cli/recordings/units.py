@@ -1,5 +1,6 @@
 """From the units of a lab to the units of the canonical columns."""
 
+import math
 import re
 from functools import cache
 from typing import Any
@@ -53,6 +54,8 @@ _LABELS = {
 }
 _TORQUE = re.compile(r"([mkM]?N)(mm|cm|m)")
 _CAPITALISED = re.compile(r"[A-Z][a-z]{3,}")
+_LONGEST = 100  # characters of a unit
+_POWER_OF_A_NUMBER = re.compile(r"[\d)]\s*\*\*")  # 9**9**9**9 would be worked out digit by digit
 _ANGLES = ("radian", "degree", "turn", "revolution", "arcminute", "arcsecond", "grade")
 _KINDS = {
     "s": "a time",
@@ -132,15 +135,25 @@ def is_unit(text: str) -> bool:
 def _between(text: str, to: str, where: str) -> tuple[float, float]:
     unit, wanted = _parse(text, to, where), _parse(to, to, where)
     turns = to not in {"rad", "rpm"} or _has_angle(unit)  # else a count or 1/s passes for an angle
-    if unit.dimensionality != wanted.dimensionality or not turns:
+    line = _line(unit, wanted) if unit.dimensionality == wanted.dimensionality and turns else None
+    if line is None:
         raise InputError(
             f"unit {text!r} cannot become {to}",
             where=where,
             expected=_KINDS[to],
             remedy=_remedy(unit, to),
         )
-    zero, one = (float(_registry().Quantity(x, unit).to(wanted).magnitude) for x in (0.0, 1.0))
-    return one - zero, zero
+    return line
+
+
+def _line(unit: Any, wanted: Any) -> tuple[float, float] | None:
+    """Return slope and intercept, or None where there are none (differences of temperatures)."""
+    try:
+        zero, one = (float(_registry().Quantity(x, unit).to(wanted).magnitude) for x in (0.0, 1.0))
+    except (ArithmeticError, TypeError, ValueError):  # pint's DimensionalityError is a TypeError
+        return None
+    slope = one - zero
+    return (slope, zero) if math.isfinite(slope) and slope != 0.0 else None
 
 
 def _parse(text: str, to: str, where: str) -> Any:
@@ -154,11 +167,19 @@ def _parse(text: str, to: str, where: str) -> Any:
     if torque := _TORQUE.fullmatch(spelled):
         spelled = f"{torque[1]}*{torque[2]}"
     try:
-        return _registry().Unit(spelled)
+        return _unit(spelled)
     except Exception as error:  # pint's parser ends in any of a dozen types
         raise InputError(
             f"unit {text!r} is unknown", where=where, expected=_KINDS.get(to, "")
         ) from error
+
+
+def _unit(text: str) -> Any:
+    from pint.util import string_preprocessor
+
+    if "," in text or len(text) > _LONGEST or _POWER_OF_A_NUMBER.search(string_preprocessor(text)):
+        raise ValueError(text)
+    return _registry().Unit(text)
 
 
 def _has_angle(unit: Any) -> bool:

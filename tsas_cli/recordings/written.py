@@ -12,6 +12,7 @@ from tsas_cli.errors import InputError
 from tsas_cli.memory import out_of_memory
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.parquet_files import check_size, open_parquet
+from tsas_cli.recordings.readers.table import damaged
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.recordings.run_files import read_columns
 from tsas_cli.recordings.run_names import check_run_name
@@ -80,8 +81,8 @@ def names_of(path: Path) -> list[str]:
     try:
         with open_parquet(path) as file:
             return list(file.schema_arrow.names)
-    except (pa.ArrowException, OSError) as error:
-        raise _unreadable(path, error) from error
+    except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
+        raise damaged(path, "Parquet", error) from error
 
 
 def columns_of(path: Path, names: Sequence[str]) -> dict[str, Floats]:
@@ -99,8 +100,8 @@ def columns_of(path: Path, names: Sequence[str]) -> dict[str, Floats]:
         return {name: table.column(name).to_numpy() for name in names}
     except MemoryError as error:
         raise out_of_memory(path) from error
-    except (pa.ArrowException, OSError, KeyError) as error:
-        raise _unreadable(path, error) from error
+    except (pa.ArrowException, OSError, KeyError, UnicodeDecodeError) as error:
+        raise damaged(path, "Parquet", error) from error
 
 
 def check_rows(path: Path, found: int, rows: int, *, stage: str = "the stage") -> None:
@@ -118,7 +119,3 @@ def check_rows(path: Path, found: int, rows: int, *, stage: str = "the stage") -
             expected=f"{rows}, as the recording has",
             remedy=f"run {stage} again",
         )
-
-
-def _unreadable(path: Path, error: Exception) -> InputError:
-    return InputError(f"cannot be read ({str(error).splitlines()[0]})", where=path)

@@ -291,7 +291,11 @@ STEMS = {
 }
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(
+    max_examples=settings.default.max_examples * 6 // 10,
+    deadline=None,
+    suppress_health_check=list(HealthCheck),
+)
 @given(data=st.data())
 def test_no_order_and_no_mixture_of_names_is_guessed_wrong(tmp_path_factory, data):
     kept = data.draw(st.permutations(CHANNELS))[: data.draw(st.integers(2, 5))]
@@ -394,7 +398,11 @@ def test_text_gaps_and_what_rests_are_left_out_with_the_reason(tmp_path):
 _SOME = ("time_s", "x_in_mm", "f_in_N")
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(
+    max_examples=settings.default.max_examples * 6 // 10,
+    deadline=None,
+    suppress_health_check=list(HealthCheck),
+)
 @given(data=st.data())
 def test_any_numbers_make_a_map_and_no_defect(tmp_path_factory, data):
     path = tmp_path_factory.mktemp("f") / "a.csv"

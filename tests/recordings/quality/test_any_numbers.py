@@ -25,7 +25,7 @@ RAW = {
 
 
 @settings(
-    max_examples=60,
+    max_examples=settings.default.max_examples * 6 // 10,
     deadline=None,
     derandomize=True,
     suppress_health_check=[HealthCheck.function_scoped_fixture],

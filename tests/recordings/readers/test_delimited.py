@@ -62,6 +62,18 @@ def test_empty_cells_and_nan_are_gaps(ask):
     assert np.isnan(columns["f"]).tolist() == [False, True, True]
 
 
+@pytest.mark.parametrize("end", ["2\t3\n", "2\t3\n# the end\n"])  # read at once, and by lines
+def test_tabs_alone_are_a_row_of_gaps(ask, end):
+    columns, _ = ask(f"t\tf\n0\t1\n\t\n{end}", "t", "f")
+    assert columns["f"] == pytest.approx([1.0, np.nan, 3.0], nan_ok=True)
+
+
+@pytest.mark.parametrize("end", ["2 3\n", "2 3\n# the end\n"])
+def test_spaces_alone_are_no_row(ask, end):
+    columns, _ = ask(f"t f\n0 1\n \n{end}", "t", "f")
+    assert list(columns["f"]) == [1.0, 3.0]
+
+
 def test_comment_lines_are_the_header(ask):
     _, table = ask("% made by hand\n% 0.50 Hz\nt,f\n0,1\n1,2\n", "t")
     assert table.header == ("made by hand", "0.50 Hz")
@@ -88,6 +100,7 @@ def test_encoding_and_lines_to_skip_are_taken_from_the_map(ask):
         ("# nothing\n", ("holds no table",)),
         ("word" * 50_000, ("no row",)),
         ("", ("is empty",)),
+        ("t,f\n0,1\n1,1_2\n", ("row 3", "'1_2'")),
         ("t,f\n0,1\n1,\x1b[31mred\n", ("row 3", "\\x1b[31mred")),
     ],
 )
@@ -104,7 +117,7 @@ def test_the_wrong_encoding_is_said(ask):
         ask("t;µ\n0;1\n1;2\n", "t", bytes_in="cp1252")
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=settings.default.max_examples // 2, deadline=None)
 @given(
     rows=st.lists(st.tuples(st.floats(-1e6, 1e6), st.floats(-1e6, 1e6)), min_size=1, max_size=30),
     marks=st.sampled_from(

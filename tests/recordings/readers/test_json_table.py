@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tsas_cli.errors import InputError
-from tsas_cli.recordings.readers import read
+from tsas_cli.recordings.readers import read, tables
 from tsas_cli.recordings.readers.options import ReadOptions
 
 ROWS = [[0, 1.5], [1, None], [2, 3.5]]
@@ -41,6 +41,13 @@ def test_what_stands_beside_the_table_is_the_header(ask):
     assert ask({"data": ROWS, "unit": "kip"}, 1, table="data").header == ("unit = kip",)
 
 
+def test_a_file_that_is_nested_deeply_is_one_line(tmp_path):
+    path = tmp_path / "a.json"
+    path.write_text('{"a":' * 3000 + "1" + "}" * 3000)
+    with pytest.raises(InputError, match=r"is nested too deeply|is not JSON"):
+        tables(path)
+
+
 @pytest.mark.parametrize(
     ("content", "options", "said"),
     [
@@ -52,6 +59,8 @@ def test_what_stands_beside_the_table_is_the_header(ask):
         ([[0, 1], [1, "fast"]], {}, "row 2: column 2 holds 'fast'"),
         ([[0, 1], [1]], {}, "row 2: 1 values; expected 2"),
         ([], {}, "holds no table"),
+        ([[0, 1], [1, 10**400]], {}, "row 2: column 2 holds '1000"),
+        ([[0, 1], [1, "1_2"]], {}, "row 2: column 2 holds '1_2'"),
     ],
 )
 def test_what_is_wrong_is_said(ask, content, options, said):

@@ -11,7 +11,7 @@ from tests.recordings.readers.matlab_files import (
     text,
 )
 from tsas_cli.errors import InputError
-from tsas_cli.recordings.readers import read
+from tsas_cli.recordings.readers import matlab, read
 from tsas_cli.recordings.readers.options import ReadOptions
 
 T = np.arange(5) / 10
@@ -151,4 +151,4 @@ def test_the_missing_package_is_named(path, monkeypatch):
     plain_73(path)
     monkeypatch.setitem(__import__("sys").modules, "h5py", None)
     with pytest.raises(InputError, match=r"install tsas\[mat\]"):
-        ask(path, "t")
+        matlab.read(path, ReadOptions(), ["t"])

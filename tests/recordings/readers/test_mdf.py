@@ -5,7 +5,7 @@ import pytest
 from asammdf import MDF, Signal
 
 from tsas_cli.errors import InputError
-from tsas_cli.recordings.readers import read
+from tsas_cli.recordings.readers import mdf, read
 from tsas_cli.recordings.readers.options import ReadOptions
 
 T = np.arange(5) / 10
@@ -86,4 +86,4 @@ def test_a_file_that_is_cut_short_is_one_line_and_nothing_else(path, tsas, kept)
 def test_the_missing_package_is_named(path, monkeypatch):
     monkeypatch.setitem(sys.modules, "asammdf", None)
     with pytest.raises(InputError, match=r"install tsas\[mdf\]"):
-        ask(path, "place")
+        mdf.read(path, ReadOptions(), ["place"])

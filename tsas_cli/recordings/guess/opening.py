@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from tsas_cli.errors import InputError
-from tsas_cli.recordings.readers import names, read
+from tsas_cli.recordings.readers import names, read, tables
 from tsas_cli.recordings.readers.options import ReadOptions
 from tsas_cli.recordings.readers.table import Source, Table
 
@@ -96,11 +96,7 @@ def _is_utf_8(head: bytes) -> bool:
 
 def _table(path: Path) -> Iterator[tuple[str, tuple[Any, str]]]:
     """Yield the key `table` where the numbers stand deeper in a JSON or MATLAB file."""
-    from tsas_cli.recordings.readers import json_table, matlab
-
-    kinds: dict[str, Any] = {".json": json_table, ".mat": matlab}
-    kind = kinds.get(path.suffix.lower())
-    found = kind.tables(path) if kind and path.is_file() and path.stat().st_size else []
+    found = tables(path)
     if len(found) > 1:
         raise InputError(
             f"holds {len(found)} tables: {', '.join(found)}",

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from tsas_cli.errors import InputError
+from tsas_cli.recordings.columns import has_input_and_output
 from tsas_cli.recordings.guess.channels import channels
 from tsas_cli.recordings.guess.clock import clock, like_a_clock
 from tsas_cli.recordings.guess.columns import Column, believed, columns_of
@@ -65,6 +66,11 @@ class Proposal:
         return asked | {
             f"run.{k}": why for k, (value, why) in self.run.items() if value == QUESTION
         }
+
+    @property
+    def is_a_recording(self) -> bool:
+        """Whether the channels are enough for ingest: an input and an output."""
+        return has_input_and_output(frozenset(channel.name for channel in self.channels))
 
 
 def propose(files: Sequence[Path]) -> Proposal:

@@ -8,7 +8,7 @@ import tomlkit
 from tomlkit.items import Table
 
 from tsas_cli.errors import printable
-from tsas_cli.recordings.columns import BY_NAME, COLUMNS
+from tsas_cli.recordings.columns import BY_NAME, COLUMNS, INPUTS, OUTPUTS
 from tsas_cli.recordings.guess.file_name import conditions_in
 from tsas_cli.recordings.guess.proposal import Proposal
 from tsas_cli.recordings.guess.proposed import Proposed
@@ -58,12 +58,18 @@ def _head(proposal: Proposal) -> Iterable[str]:
     for path, reason in proposal.unlike.items():
         yield from _wrapped(f"{path.name} does not go with it: {reason}.")
     asked = len(proposal.questions)
-    yield from _wrapped(
-        f"{asked} question{'s are' if asked > 1 else ' is'} open: ingest stops until each "
-        f'"{QUESTION}" has an answer.'
-        if asked
-        else "No question is open: ingest takes this map as it is."
-    )
+    if asked:
+        yield from _wrapped(
+            f"{asked} question{'s are' if asked > 1 else ' is'} open: ingest stops until each "
+            f'"{QUESTION}" has an answer.'
+        )
+    elif proposal.is_a_recording:
+        yield "No question is open: ingest takes this map as it is."
+    if not proposal.is_a_recording:
+        yield from _wrapped(
+            f"Ingest needs one of {', '.join(INPUTS)}, and another of {', '.join(OUTPUTS)}: no "
+            "columns were found for them."
+        )
 
 
 def _dataset(proposal: Proposal) -> Table:

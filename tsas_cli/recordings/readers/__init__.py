@@ -8,6 +8,7 @@ from typing import Any
 
 from tsas_cli import limits
 from tsas_cli.errors import InputError
+from tsas_cli.recordings.readers.apart import in_another_process
 from tsas_cli.recordings.readers.options import ReadOptions
 from tsas_cli.recordings.readers.table import Source, Table, whole
 
@@ -23,6 +24,9 @@ _READERS = {
     ".json": "json_table",
     ".parquet": "parquet",
 }
+_APART = {"matlab": "a MATLAB file", "mdf": "MDF"}  # their libraries crash on damaged files
+_IN_PARTS = ("delimited", "parquet")
+_WITH_TABLES = ("json_table", "matlab")
 SUFFIXES = tuple(_READERS)
 
 
@@ -46,11 +50,11 @@ def batches(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Itera
     InputError
         As from `read`; what is wrong further down, when that part is asked for.
     """
-    with _reader(path) as reader:
-        if hasattr(reader, "batches"):
-            yield from reader.batches(path, options, wanted)
-        else:
-            yield reader.read(path, options, wanted)
+    if _module(path) in _IN_PARTS:
+        with _checked(path) as name:
+            yield from import_module(name).batches(path, options, wanted)
+    else:
+        yield _call("read", path, options, wanted)
 
 
 def names(path: Path, options: ReadOptions) -> tuple[str, ...]:
@@ -61,15 +65,24 @@ def names(path: Path, options: ReadOptions) -> tuple[str, ...]:
     InputError
         As from `read`.
     """
-    with _reader(path) as reader:
-        found = tuple(reader.names(path, options))
+    found = tuple(_call("names", path, options))
     limits.columns(found, path)
     return found
 
 
-@contextmanager
-def _reader(path: Path) -> Iterator[Any]:
-    """Yield the module that reads the file; what the system says of the file is one line."""
+def tables(path: Path) -> list[str]:
+    """Return what `table` in a map may name: where tables stand deeper in a JSON or MATLAB file.
+
+    Raises
+    ------
+    InputError
+        As from `read`.
+    """
+    return list(_call("tables", path)) if _module(path) in _WITH_TABLES else []
+
+
+def _module(path: Path) -> str:
+    """Return the module that reads a file."""
     module = _READERS.get(path.suffix.lower())
     if module is None:
         raise InputError(
@@ -77,10 +90,26 @@ def _reader(path: Path) -> Iterator[Any]:
             where=path,
             expected=f"one of {', '.join(SUFFIXES)}",
         )
+    return module
+
+
+def _call(function: str, path: Path, *rest: Any) -> Any:
+    """Call the module that reads the file, in another process where its library may crash."""
+    with _checked(path) as name:
+        kind = _APART.get(_module(path))
+        if kind is not None:
+            return in_another_process(name, function, path, *rest, kind=kind)
+        return getattr(import_module(name), function)(path, *rest)
+
+
+@contextmanager
+def _checked(path: Path) -> Iterator[str]:
+    """Yield the name of what reads the file; what the system says of the file is one line."""
+    module = _module(path)
     try:
         limits.regular(path)
         if path.stat().st_size == 0:
             raise InputError("is empty", where=path, expected="a recording")
-        yield import_module(f"{__name__}.{module}")
+        yield f"{__name__}.{module}"
     except OSError as error:
         raise InputError(f"cannot be read ({error.strerror or error})", where=path) from error

@@ -72,6 +72,7 @@ def _fast(
             include_columns=[names[i] for i in sorted(set(at.values()))],
             column_types=dict.fromkeys(names, pa.float64()),
             decimal_point=layout.decimal,
+            null_values=sorted(_NULLS if layout.delimiter != " " else _NULLS - {""}),
         ),
     )
 
@@ -82,8 +83,8 @@ def _line_by_line(
     """Yield the rows that pyarrow refuses (aligned columns, comments), or say what is wrong."""
     with path.open(encoding=options.encoding) as stream:
         for row, line in enumerate(limits.lines(stream, path), start=1):
-            blank = not line.strip() or comment_text(line, options) is not None
-            if row < layout.first_line or blank:
+            no_row = _is_blank(line, layout) or comment_text(line, options) is not None
+            if row < layout.first_line or no_row:
                 continue
             cells = fields(line, layout.delimiter)
             if len(cells) != len(layout.names):
@@ -93,6 +94,14 @@ def _line_by_line(
                     expected=f"{len(layout.names)}, as in the rows above",
                 )
             yield [_cell(cells[i], layout.decimal, source, path, row) for source, i in at.items()]
+
+
+def _is_blank(line: str, layout: Layout) -> bool:
+    """Say whether a line is no row; tabs alone are a row of gaps where they separate columns."""
+    if line.strip():
+        return False
+    spaces = layout.delimiter == " " or (layout.delimiter not in line and len(layout.names) > 1)
+    return spaces or not line.strip("\r\n")
 
 
 def _cell(text: str, decimal: str, source: Source, path: Path, row: int) -> float:

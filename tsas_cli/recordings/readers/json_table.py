@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from tsas_cli.errors import InputError, nearest
-from tsas_cli.files import read_json
+from tsas_cli.files import nested_too_deeply, read_json
 from tsas_cli.recordings.readers.options import ReadOptions
 from tsas_cli.recordings.readers.table import Source, Table, floats, resolve
 
@@ -36,8 +36,18 @@ def names(path: Path, options: ReadOptions) -> Sequence[str]:
 
 
 def tables(path: Path) -> list[str]:
-    """Return the keys under which rows, records or columns stand, with dots where deep."""
-    return list(_tables(read_json(path), ""))
+    """Return the keys under which rows, records or columns stand, with dots where deep.
+
+    Raises
+    ------
+    InputError
+        The file is not JSON, or nested too deeply.
+    """
+    content = read_json(path)
+    try:
+        return list(_tables(content, ""))
+    except RecursionError as error:
+        raise nested_too_deeply(path) from error
 
 
 def _tables(content: Any, key: str) -> Iterator[str]:

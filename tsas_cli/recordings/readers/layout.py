@@ -85,7 +85,10 @@ def comment_text(line: str, options: ReadOptions) -> str | None:
 
 def number(text: str, decimal: str) -> float:
     """Return a cell as a number (ValueError where it is none: 1.234,5 may not be guessed at)."""
-    return float(text.replace(".", "·").replace(",", ".") if decimal == "," else text)
+    plain = text.replace(".", "·").replace(",", ".") if decimal == "," else text
+    if "_" in plain:  # Python takes 1_2 for 12
+        raise ValueError(text)
+    return float(plain)
 
 
 def _head(path: Path, options: ReadOptions) -> tuple[list[str], list[tuple[int, str]]]:

@@ -35,7 +35,7 @@ def batches(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Itera
             at = resolve(wanted, schema.names, path)
             fields = {source: schema.field(i) for source, i in at.items()}
             units = {
-                s: f.metadata[b"unit"].decode()
+                s: f.metadata[b"unit"].decode(errors="replace")
                 for s, f in fields.items()
                 if b"unit" in (f.metadata or {})
             }
@@ -53,7 +53,7 @@ def batches(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Itera
                 yield Table({source: np.empty(0) for source in fields}, units)
     except MemoryError as error:
         raise out_of_memory(path) from error
-    except pa.ArrowException as error:
+    except (pa.ArrowException, UnicodeDecodeError) as error:  # the latter is of names
         raise damaged(path, "Parquet", error) from error
 
 
@@ -63,5 +63,5 @@ def names(path: Path, options: ReadOptions) -> Sequence[str]:
     try:
         with open_parquet(path) as file:
             return list(file.schema_arrow.names)
-    except pa.ArrowException as error:
+    except (pa.ArrowException, UnicodeDecodeError) as error:  # the latter is of names
         raise damaged(path, "Parquet", error) from error

@@ -94,8 +94,10 @@ def floats(values: Any, source: Source, path: Path, *, first: int = 1) -> Floats
         A value is no number; names its row.
     """
     try:
-        numbers = np.asarray(values, dtype=np.float64)
+        numbers = None if _has_text(values) else np.asarray(values, dtype=np.float64)
     except (TypeError, ValueError, OverflowError):
+        numbers = None
+    if numbers is None:
         numbers = np.array([_number(v, source, path, i) for i, v in enumerate(values, first)])
     if numbers.ndim != 1:
         raise InputError(f"column {source} has {numbers.ndim} dimensions", where=path, expected="1")
@@ -111,7 +113,7 @@ def not_a_number(found: object, source: Source, path: Path, row: int) -> InputEr
     )
 
 
-def damaged(path: Path, kind: str, error: Exception) -> InputError:
+def damaged(path: object, kind: str, error: Exception) -> InputError:
     """Return the error for a file that the library for its format refuses."""
     reason = str(error).splitlines()[0] if str(error) else type(error).__name__
     return InputError(
@@ -121,7 +123,15 @@ def damaged(path: Path, kind: str, error: Exception) -> InputError:
     )
 
 
+def _has_text(values: Any) -> bool:
+    if isinstance(values, np.ndarray) and values.dtype.kind in "fiub":
+        return False
+    return any(isinstance(value, str | bytes) for value in values)
+
+
 def _number(value: Any, source: Source, path: Path, row: int) -> float:
+    if isinstance(value, str | bytes) and "_" in str(value):  # Python takes 1_2 for 12
+        raise not_a_number(value, source, path, row)
     try:
         return float("nan") if value is None else float(value)
     except (TypeError, ValueError, OverflowError):

@@ -1,0 +1,24 @@
+"""A target that breaks the rules, so that a test can see the search find it."""
+
+import ctypes
+import sys
+from collections.abc import Iterable
+from pathlib import Path
+
+WORDS = (b"R", b"W")
+
+
+def one(data: bytes) -> None:
+    """Raise, die or write outside, by the first bytes."""
+    if data.startswith(b"R"):
+        raise KeyError("a defect")
+    if data.startswith(b"DEAD"):
+        ctypes.string_at(0)
+    if data.startswith(b"W"):
+        Path(sys.executable).with_name("tsas-fuzz-test").mkdir(exist_ok=True)
+        Path(sys.executable).with_name("tsas-fuzz-test").rmdir()
+
+
+def seeds() -> Iterable[bytes]:
+    """Nothing that breaks a rule."""
+    yield b"seed"

@@ -1,0 +1,44 @@
+"""A reader whose library may crash: asked in its own process first, and then here as well."""
+
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+
+from tests.fuzz.rules import Broken, answer
+from tsas_cli.errors import InputError
+from tsas_cli.recordings.readers import names, read, tables
+from tsas_cli.recordings.readers.options import ReadOptions
+from tsas_cli.recordings.readers.table import Table
+
+_MOST_COLUMNS = 12
+
+
+def ask(reader: ModuleType, path: Path, options: ReadOptions) -> None:
+    """Read all columns; where the library takes the file, what comes back is what is read here."""
+    answer(tables, path)
+    try:
+        listed = names(path, options)
+    except InputError as error:
+        answer(_raise, error)
+        if "crashed" not in error.line():
+            answer(reader.names, path, options)
+        return
+    answer(reader.names, path, options)
+    for said in (options, options.model_copy(update={"resample": True})):
+        wanted = list(range(1, len(listed) + 1))[:_MOST_COLUMNS]
+        there = answer(read, path, said, wanted)
+        here = answer(reader.read, path, said, wanted)
+        if (there is None) != (here is None) or (there is not None and not _same(there, here)):
+            raise Broken(f"{there} is {here} when it is read in this process")
+
+
+def _raise(error: InputError) -> None:
+    raise error
+
+
+def _same(one: Table, other: Table) -> bool:
+    return one.columns.keys() == other.columns.keys() and all(
+        np.array_equal(one.columns[source], other.columns[source], equal_nan=True)
+        for source in one.columns
+    )

@@ -1,0 +1,1 @@
+"""What is searched: one file per reader, with `one(data)` and `seeds()`."""

@@ -1,0 +1,50 @@
+"""MATLAB files of version 7.3, which are HDF5."""
+
+from collections.abc import Iterable
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+
+from tests.fuzz.foreign import ask
+from tests.fuzz.rules import Scratch
+from tests.recordings.readers import matlab_files as made
+from tsas_cli.recordings.readers import matlab, matlab_hdf5  # noqa: F401 # instrumented
+from tsas_cli.recordings.readers.options import ReadOptions
+
+MOST_BYTES = 16000
+SHARE = 0.12
+WORDS = (b"TREE", b"HEAP", b"SNOD", b"GCOL", b"OHDR", b"MATLAB_class", b"\xff" * 8, b"MATLAB_empty")
+_scratch = Scratch()
+
+
+def one(data: bytes) -> None:
+    """All of it is the file."""
+    ask(matlab, _scratch.file("a.mat", data), ReadOptions())
+
+
+def seeds() -> Iterable[bytes]:
+    """Vectors, matrices, structs and text; a capture; a compressed dataset."""
+    time_s = np.arange(4) / 10
+
+    def plain(file):  # type: ignore[no-untyped-def]
+        made.numbers(file, "t", time_s)
+        made.numbers(made.struct(file, "s"), "m", np.c_[time_s, time_s])
+        made.text(file, "w", "50 mm")
+
+    def capture(file):  # type: ignore[no-untyped-def]
+        group = made.struct(file, "rec")
+        made.numbers(made.struct(group, "X"), "Data", time_s)
+        channels = [{"Name": name, "Data": time_s, "Unit": "N"} for name in ("f", "g")]
+        made.struct_array(file, group, "Y", channels)
+
+    def packed(file):  # type: ignore[no-untyped-def]
+        data = np.c_[time_s, time_s]
+        item = file.create_dataset("m", data=data, chunks=True, compression="gzip", shuffle=True)
+        item.attrs["MATLAB_class"] = np.bytes_("double")
+
+    with TemporaryDirectory() as name:
+        path = Path(name) / "a.mat"
+        for build in (plain, capture, packed):
+            made.save_73(path, build)
+            yield path.read_bytes()

@@ -1,0 +1,50 @@
+"""MDF files, version 4 and 3."""
+
+from collections.abc import Iterable
+from datetime import UTC, datetime
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+from asammdf import MDF, Signal
+
+from tests.fuzz.foreign import ask
+from tests.fuzz.rules import Scratch
+from tsas_cli.recordings.readers import mdf
+from tsas_cli.recordings.readers.options import ReadOptions
+
+MOST_BYTES = 6000
+SHARE = 0.1
+WORDS = (b"##DT", b"##DZ", b"##CN", b"##CG", b"##DG", b"##CC", b"##TX", b"##SD", b"##HL", b"##DL")
+_scratch = Scratch()
+
+
+def one(data: bytes) -> None:
+    """All of it is the file."""
+    ask(mdf, _scratch.file("a.mf4", data), ReadOptions())
+
+
+def seeds() -> Iterable[bytes]:
+    """One raster; two rasters and invalid samples, compressed; version 3."""
+    time_s = np.arange(4) / 10
+    one = [
+        Signal(time_s, time_s, name="f", unit="N"),
+        Signal(np.arange(4, dtype=np.int16), time_s, name="x", unit="mm"),
+    ]
+    invalid = np.array([0, 1, 0, 0], dtype=bool)
+    more = [Signal(time_s[:2], time_s[:2], name="slow")]
+    odd = [Signal(time_s, time_s, name="p", invalidation_bits=invalid)]
+    words = [Signal(np.array([b"a"] * 4), time_s, name="w", encoding="utf-8")]
+    with TemporaryDirectory() as name:
+        path = Path(name) / "a.mf4"
+        for version, groups, packed in (
+            ("4.10", [one], 0),
+            ("4.10", [one, more, odd, words], 2),
+            ("3.30", [one, more], 0),
+        ):
+            with MDF(version=version) as file:
+                file.start_time = datetime(2026, 1, 1, tzinfo=UTC)
+                for group in groups:
+                    file.append(group)
+                saved = file.save(path.with_suffix(".mf4"), overwrite=True, compression=packed)
+            yield Path(saved).read_bytes()

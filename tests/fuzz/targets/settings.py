@@ -1,0 +1,32 @@
+"""The settings of a closed loop."""
+
+from collections.abc import Iterable
+
+import tomlkit
+
+from tests.fuzz.documents import toml_document as mutate
+from tests.fuzz.rules import Scratch, answer
+from tsas_cli.controllers import CONTROLLERS
+from tsas_cli.tracking.settings import Settings, printed_gains, read_settings
+
+__all__ = ["WORDS", "mutate", "one", "seeds"]
+SHARE = 6
+WORDS = (b"[controllers.adaptive-sliding-mode]", b"[loop]", b"phi = [", b"[reference]")
+_scratch = Scratch()
+
+
+def one(data: bytes) -> None:
+    """Settings that are taken give each controller its laws."""
+    settings: Settings | None = answer(read_settings, _scratch.file("settings.toml", data))
+    if settings is None:
+        return
+    printed_gains(settings.with_phi2(1.0))
+    for controller in CONTROLLERS:
+        settings.laws(controller, 1.0)
+    settings.drive.kinematic()
+
+
+def seeds() -> Iterable[bytes]:
+    """Every setting as it is without a file, and a part of them."""
+    yield tomlkit.dumps(Settings().model_dump(mode="json", by_alias=True)).encode()
+    yield b"[reference]\nmean_N = 40\n[controllers.pid]\nproportional_rpm_per_mm = 2.0\n"

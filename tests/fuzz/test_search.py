@@ -1,0 +1,58 @@
+"""The search finds what breaks a rule: a defect, a death of the process, a folder elsewhere."""
+
+import pytest
+
+from tests.fuzz import faulty
+from tests.fuzz.__main__ import main
+from tests.fuzz.rules import Broken, Scratch, Watch, answer
+from tests.fuzz.search import Budget, search
+from tsas_cli.errors import InputError
+
+
+def test_a_defect_and_a_write_are_found(tmp_path):
+    pytest.importorskip("atheris")
+    found = search(faulty, Budget(5000, 0, 1), tmp_path / "corpus", tmp_path / "out")
+    assert {path.read_bytes()[:1] for path in found.faults} == {b"R", b"W"}
+    assert found.executions >= 5000
+    told = "".join(p.read_text() for p in (tmp_path / "out" / "found" / "faulty").glob("*.txt"))
+    assert "a defect" in told
+    assert "reading does more than read: os.mkdir" in told
+
+
+def test_a_death_of_the_process_is_found(tmp_path, monkeypatch):
+    pytest.importorskip("atheris")
+    monkeypatch.setattr("tests.fuzz.search.MOST_DEATHS", 1)
+    monkeypatch.setattr(faulty, "WORDS", (b"DEAD",))
+    found = search(faulty, Budget(5000, 0, 1), tmp_path / "corpus", tmp_path / "out")
+    assert b"DEAD" in {path.read_bytes()[:4] for path in found.faults}
+
+
+def test_a_refusal_is_an_answer_and_a_defect_is_none():
+    def refuse():
+        raise InputError("no \x1b[31m")
+
+    assert answer(refuse) is None
+    assert answer(lambda: 3) == 3
+    with pytest.raises(ZeroDivisionError):
+        answer(lambda: 1 / 0)
+
+
+def test_writes_are_seen_but_in_temporary_folders(tmp_path, monkeypatch):
+    monkeypatch.setattr("tests.fuzz.rules.gettempdir", lambda: str(tmp_path / "mine"))
+    (tmp_path / "mine").mkdir()
+    watch = Watch()
+    with watch.during():
+        (tmp_path / "mine" / "a").write_text("")
+        (tmp_path / "mine" / "a").read_text()
+    with pytest.raises(Broken, match="open"), watch.during():
+        (tmp_path / "other").write_text("")
+    with pytest.raises(Broken, match=r"os\.rename"), watch.during():
+        (tmp_path / "other").rename(tmp_path / "mine" / "other")
+
+
+def test_a_call_has_to_say_what_and_how_long(capsys):
+    for call in (["units"], ["nothing", "--runs", "1"]):
+        with pytest.raises(SystemExit):
+            main(call)
+    assert "--seconds" in capsys.readouterr().err
+    assert Scratch().file("a", b"b").read_bytes() == b"b"

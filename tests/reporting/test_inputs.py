@@ -1,0 +1,11 @@
+import pytest
+
+from tsas_cli.errors import InputError
+from tsas_cli.reporting.inputs import read_stage
+from tsas_cli.stage_files.check import Check
+
+
+def test_a_file_that_is_nested_deeply_is_one_line(tmp_path):
+    (tmp_path / Check.FILE).write_text('{"a": ' + "[" * 800 + "]" * 800 + "}")
+    with pytest.raises(InputError, match=r"check\.json: is nested too deeply"):
+        read_stage(Check, tmp_path)
