@@ -1,0 +1,179 @@
+"""One mutant in a copy of the tree: the tests that run its line, the quickest first."""
+
+import hashlib
+import json
+import os
+import shutil
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cached_property, partial
+from pathlib import Path
+
+from benchmarks.mutants.children import TIMED_OUT, pytest_in, run
+from benchmarks.mutants.mutations import Mutant
+from benchmarks.mutants.reach import Reach
+
+COPIED = ("tsas_cli", "tests", "benchmarks", "datasets", "docs", "pyproject.toml")
+KILLED, SURVIVED, TIMED = "killed", "survived", "timed out"
+# What compiled code does not raise: such a death in plain Python is no evidence.
+PLAIN_ONLY = ("ZeroDivisionError", "IndexError", "OverflowError", "Interrupted")
+
+
+@dataclass(frozen=True)
+class Bench:
+    """A package, the tests that may reach it, and how they are run.
+
+    Kernels of `physics` run as plain Python: to compile a mutant takes a minute.
+    """
+
+    package: str
+    tests: tuple[str, ...]
+    plain: bool
+    limit_s: float  # of processor time of a test that judges
+    patience_s: float  # of processor time for a mutant
+
+    @property
+    def environment(self) -> dict[str, str]:
+        """Return what the tests' process is told."""
+        threads = {"TSAS_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
+        return threads | {"TSAS_PLAIN_PYTHON": "1" if self.plain else "0"}
+
+
+BENCHES = (
+    Bench("physics", ("tests/physics",), plain=True, limit_s=0.7, patience_s=20),
+    Bench("identification", ("tests/identification",), plain=False, limit_s=4, patience_s=30),
+    Bench("diagnosis", ("tests/diagnosis",), plain=False, limit_s=4, patience_s=30),
+)
+
+
+@dataclass(frozen=True)
+class Workshop:
+    """A folder with the copy of the tree, what its tests reach, and the kernels' machine code."""
+
+    root: Path
+    folder: Path
+
+    @property
+    def tree(self) -> Path:
+        """Return the copy that is mutated."""
+        return self.folder / "tree"
+
+    def copy(self) -> None:
+        """Bring the copy up to date; what is the same keeps its time, and so its machine code."""
+        for name in COPIED:
+            source = self.root / name
+            files = [source] if source.is_file() else sorted(source.rglob("*"))
+            for file in files:
+                if file.is_file() and "__pycache__" not in file.parts:
+                    copy = self.tree / file.relative_to(self.root)
+                    if not copy.exists() or copy.read_bytes() != file.read_bytes():
+                        copy.parent.mkdir(parents=True, exist_ok=True)
+                        shutil.copyfile(file, copy)
+
+    def child(self, bench: Bench, work: Callable[[], int], processor_s: float) -> tuple[int, str]:
+        """Run work in the copy."""
+        environment = bench.environment | {"TSAS_CACHE_DIR": str(self.folder / "kernels")}
+        output = self.folder / "output.txt"
+        return run(work, self.tree, output, environment, processor_s=processor_s)
+
+    def look(self, bench: Bench) -> list[Path]:
+        """Find out which tests reach which lines; return where that is written, by file of tests.
+
+        What was found for the same tests and the same package is not sought again.
+        """
+        package = hashlib.sha256()
+        for source in sorted((self.tree / "tsas_cli" / bench.package).glob("*.py")):
+            package.update(source.read_bytes())
+        found = {}
+        for folder in bench.tests:
+            for tests in sorted((self.tree / folder).rglob("test_*.py")):
+                digest = package.copy()
+                digest.update(tests.read_bytes())
+                name = tests.relative_to(self.tree).as_posix()
+                file = f"{name.replace('/', '.')}-{digest.hexdigest()[:12]}.json"
+                found[name] = self.folder / "reach" / file
+        missing = {name: file for name, file in found.items() if not file.exists()}
+        if missing:
+            self._look(bench, missing)
+        return list(found.values())
+
+    def _look(self, bench: Bench, files: dict[str, Path]) -> None:
+        (self.folder / "reach").mkdir(exist_ok=True)
+
+        def work() -> int:
+            sources = [f"tsas_cli/{bench.package}/*"]
+            plugin = Reach(self.folder / "coverage", sources, bench.limit_s)
+            code = pytest_in(list(files), [plugin])
+            plugin.write(files, self.tree)
+            return code
+
+        code, output = self.child(bench, work, processor_s=3600)
+        (self.folder / f"look-{bench.package}.txt").write_text(output)
+        if code and not bench.plain:  # one that needs compiled code judges no plain mutant
+            raise SystemExit(f"the tests of {bench.package} do not pass:\n{output[-3000:]}")
+
+    @contextmanager
+    def mutated(self, mutant: Mutant) -> Iterator[None]:
+        """Have the mutant in the copy for a while; afterwards the file is as old as it was."""
+        file = self.tree / mutant.path
+        text, stamp = file.read_text(), file.stat()
+        file.write_text(mutant.source(self.tree))
+        try:
+            yield
+        finally:
+            file.write_text(text)
+            os.utime(file, ns=(stamp.st_atime_ns, stamp.st_mtime_ns))
+
+    def judge(self, bench: Bench, mutant: Mutant, tests: list[str]) -> tuple[str, str]:
+        """Return what became of a mutant, and the test that killed it or why it is alive."""
+        if not tests:
+            return SURVIVED, "no test runs this line"
+        with self.mutated(mutant):
+            work = partial(pytest_in, ["-x", *tests])
+            code, output = self.child(bench, work, bench.patience_s)
+        failed = [line for line in output.splitlines() if line.startswith(("FAILED", "ERROR"))]
+        if code == TIMED_OUT:
+            return TIMED, ""
+        if code == 0:
+            return SURVIVED, f"{len(tests)} tests"
+        return KILLED, failed[0] if failed else output[-300:]
+
+
+class Reached:
+    """What is known of the tests of a package."""
+
+    def __init__(self, files: list[Path]) -> None:
+        self._times: dict[str, float] = {}
+        self._lines: dict[str, dict[str, set[str]]] = {}
+        for file in files:
+            found = json.loads(file.read_text())
+            self._times |= found["times_s"]
+            for path, lines in found["lines"].items():
+                known = self._lines.setdefault(path, {})
+                for line, names in lines.items():
+                    known.setdefault(line, set()).update(names)
+
+    @cached_property
+    def _files(self) -> dict[str, set[str]]:
+        return {path: set().union(*lines.values()) for path, lines in self._lines.items()}
+
+    def tests(self, mutant: Mutant, patience_s: float) -> list[str]:
+        """Return the tests that run a line, or its file where it runs on loading; quick ones first.
+
+        Together they take no more than half of the patience, so that a mutant that changes no time
+        never ends by it.
+        """
+        names = self._lines.get(mutant.path, {}).get(str(mutant.line), set())
+        if names <= {""} or not names & set(self._times):
+            names = self._files.get(mutant.path, set()) if "" in names else names
+        mirror = f"test_{Path(mutant.path).name}"
+        ranked = sorted(
+            names & set(self._times), key=lambda name: (mirror not in name, self._times[name])
+        )
+        chosen, total = [], 0.0
+        for name in sorted(ranked, key=self._times.__getitem__):
+            total += self._times[name]
+            if total < patience_s / 2:
+                chosen.append(name)
+        return sorted(chosen, key=ranked.index)
