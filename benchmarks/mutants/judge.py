@@ -36,8 +36,7 @@ class Bench:
     @property
     def environment(self) -> dict[str, str]:
         """Return what the tests' process is told."""
-        threads = {"TSAS_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
-        return threads | {"TSAS_PLAIN_PYTHON": "1" if self.plain else "0"}
+        return {"TSAS_PLAIN_PYTHON": "1" if self.plain else "0"}
 
 
 BENCHES = (
