@@ -39,7 +39,7 @@ def main() -> None:
     judged = {verdict["mutant"]: verdict for verdict in known}
     children.load()
     of = {path: bench for bench in BENCHES for path in files[bench.package]}
-    reached = {bench: Reached(shop.look(bench)) for bench in BENCHES}
+    reached = {bench: Reached(shop.look(bench), shop.tree) for bench in BENCHES}
     # By chance, so that a run that is broken off is a sample too.
     for mutant in random.Random(call.seed).sample(drawn, len(drawn)):  # noqa: S311 # no secret
         if mutant.name not in judged:

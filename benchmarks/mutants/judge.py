@@ -3,6 +3,7 @@
 import hashlib
 import json
 import os
+import re
 import shutil
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -142,7 +143,8 @@ class Workshop:
 class Reached:
     """What is known of the tests of a package."""
 
-    def __init__(self, files: list[Path]) -> None:
+    def __init__(self, files: list[Path], tree: Path) -> None:
+        self._tree = tree
         self._times: dict[str, float] = {}
         self._lines: dict[str, dict[str, set[str]]] = {}
         for file in files:
@@ -155,17 +157,26 @@ class Reached:
 
     @cached_property
     def _files(self) -> dict[str, set[str]]:
+        """The tests that run anything of a file."""
         return {path: set().union(*lines.values()) for path, lines in self._lines.items()}
 
+    def _users(self, path: str) -> set[str]:
+        """Return the tests that run anything of a file, or of one that takes something from it."""
+        module = path.removesuffix(".py").replace("/", ".")
+        takes = re.compile(rf"from {re.escape(module)} import")
+        users = {p for p in self._files if takes.search((self._tree / p).read_text())}
+        return set().union(*(self._files.get(p, set()) for p in users | {path}))
+
     def tests(self, mutant: Mutant, patience_s: float) -> list[str]:
-        """Return the tests that run a line, or its file where it runs on loading; quick ones first.
+        """Return the tests that run a line, or use it where it runs on loading; quick ones first.
 
         Together they take no more than half of the patience, so that a mutant that changes no time
         never ends by it.
         """
-        names = self._lines.get(mutant.path, {}).get(str(mutant.line), set())
-        if names <= {""} or not names & set(self._times):
-            names = self._files.get(mutant.path, set()) if "" in names else names
+        lines = self._lines.get(mutant.path, {})
+        names = set().union(*(lines.get(str(line), set()) for line in mutant.lines))
+        if not names - {""}:
+            names = self._users(mutant.path) if "" in names else set()
         mirror = f"test_{Path(mutant.path).name}"
         ranked = sorted(
             names & set(self._times), key=lambda name: (mirror not in name, self._times[name])

@@ -36,6 +36,8 @@ OPERATORS = (
     "core/ExceptionReplacer",
 )
 
+Place = tuple[int, int]  # line and column
+
 
 @dataclass(frozen=True)
 class Mutant:
@@ -45,6 +47,7 @@ class Mutant:
     operator: str
     occurrence: int
     line: int
+    lines: tuple[int, ...]  # of its statement, but for those of the block below it
 
     @property
     def name(self) -> str:
@@ -74,21 +77,48 @@ def mutants(root: Path, path: str) -> tuple[Mutant, ...]:
     """Return every mutant of a file, none of them in an annotation."""
     text = (root / path).read_text()
     nodes = list(ast_nodes(get_ast(text)))
-    annotated = annotations(text)
+    annotated, calculated, lines = annotations(text), operations(text), statements(text)
     found = []
     for name in OPERATORS:
         operator = cosmic_ray.plugins.get_operator(name)()
         places = [start for node in nodes for start, _ in operator.mutation_positions(node)]
         found += [
-            Mutant(path, name, occurrence, start[0])
+            Mutant(path, name, occurrence, start[0], lines.get(start[0], (start[0],)))
             for occurrence, start in enumerate(places)
-            if not any(first <= start < last for first, last in annotated)
+            if not _within(start, annotated)
+            and ("BinaryOperator" not in name or _within(start, calculated))
         ]
     return tuple(found)
 
 
-def annotations(text: str) -> list[tuple[tuple[int, int], tuple[int, int]]]:
-    """Return from where to where (line, column) annotations stand."""
+def statements(text: str) -> dict[int, tuple[int, ...]]:
+    """Return for each line the lines of the innermost statement that it belongs to."""
+    found: dict[int, tuple[int, ...]] = {}
+    for node in ast.walk(ast.parse(text)):  # those within others come after them
+        if isinstance(node, ast.stmt | ast.ExceptHandler):
+            body = getattr(node, "body", None)
+            last = body[0].lineno - 1 if body else node.end_lineno or node.lineno
+            lines = tuple(range(node.lineno, max(last, node.lineno) + 1))
+            found |= dict.fromkeys(lines, lines)
+    return found
+
+
+def _within(place: Place, parts: list[tuple[Place, Place]]) -> bool:
+    return any(first <= place < last for first, last in parts)
+
+
+def operations(text: str) -> list[tuple[Place, Place]]:
+    """Return from where to where operators stand that calculate: no star of a signature."""
+    nodes = list(ast.walk(ast.parse(text)))
+    pairs = [(n.left, n.right) for n in nodes if isinstance(n, ast.BinOp)]
+    pairs += [(n.target, n.value) for n in nodes if isinstance(n, ast.AugAssign)]
+    return [
+        ((a.end_lineno or 0, a.end_col_offset or 0), (b.lineno, b.col_offset)) for a, b in pairs
+    ]
+
+
+def annotations(text: str) -> list[tuple[Place, Place]]:
+    """Return from where to where annotations stand."""
     nodes = list(ast.walk(ast.parse(text)))
     notes = [n.annotation for n in nodes if isinstance(n, ast.AnnAssign | ast.arg) and n.annotation]
     notes += [n.returns for n in nodes if isinstance(n, ast.FunctionDef) and n.returns]
