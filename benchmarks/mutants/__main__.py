@@ -3,7 +3,6 @@
 import argparse
 import json
 import random
-from itertools import chain
 from pathlib import Path
 
 from benchmarks.mutants import children
@@ -26,19 +25,12 @@ def main() -> None:
     out.mkdir(parents=True, exist_ok=True)
     shop = Workshop(ROOT, out)
     shop.copy()
-    files = {
-        bench.package: sorted(
-            file.relative_to(ROOT).as_posix()
-            for file in (ROOT / "tsas_cli" / bench.package).glob("*.py")
-        )
-        for bench in BENCHES
-    }
-    drawn = sample(ROOT, [*chain(*files.values())], call.size, call.seed)
+    of = {path: bench for bench in BENCHES for path in bench.sources(ROOT)}
+    drawn = sample(ROOT, list(of), call.size, call.seed)
     log = out / f"verdicts-{call.seed}.jsonl"
     known = [json.loads(line) for line in log.read_text().splitlines()] if log.exists() else []
     judged = {verdict["mutant"]: verdict for verdict in known}
     children.load()
-    of = {path: bench for bench in BENCHES for path in files[bench.package]}
     reached = {bench: Reached(shop.look(bench), shop.tree) for bench in BENCHES}
     # By chance, so that a run that is broken off is a sample too.
     for mutant in random.Random(call.seed).sample(drawn, len(drawn)):  # noqa: S311 # no secret
