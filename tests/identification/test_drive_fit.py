@@ -82,13 +82,15 @@ def test_the_response_is_that_of_the_equations():
         ("delay",),
         ("leak", "lag"),
         ("spring", "delay"),
-        ("lag", "delay", "spring", "leak"),
+        ("spring", "leak"),
     ],
 )
 def test_linear_terms_are_found_again(terms):
     kept = {q.name: getattr(TRUTH, q.name) for q in quantities_of(terms)}
     truth = DriveValues(**kept)
-    found = bench(truth).fit(terms)
+    stand = bench(truth)
+    simpler = [stand.fit(set(terms) - {"leak"})] if "leak" in terms else []  # as a search goes
+    found = stand.fit(terms, simpler)
     assert found.mean_square < 1e-3
     for name, value in kept.items():
         assert getattr(found.values, name) == pytest.approx(value, rel=2e-3), name
