@@ -44,13 +44,13 @@ class Bench:
 
 
 BENCHES = (
-    Bench(("physics",), ("tests/physics",), plain=True, limit_s=0.7, patience_s=20),
+    Bench(("physics",), ("tests/physics",), plain=True, limit_s=0.7, patience_s=10),
     Bench(
         ("identification", "diagnosis"),
         ("tests/identification", "tests/diagnosis"),
         plain=False,
-        limit_s=4,
-        patience_s=30,
+        limit_s=3,
+        patience_s=12,
     ),
 )
 

@@ -48,6 +48,7 @@ LIMITS = _docs("What it can't do", "limits")
 PROJECT = (
     Page("Changelog", "CHANGELOG.md", "changelog.md"),
     Page("Contributing", "CONTRIBUTING.md", "contributing.md"),
+    _docs("Do the tests notice?", "mutants"),
 )
 LEFT_OUT = {"docs/worklog.md"}  # for those who build it
 
