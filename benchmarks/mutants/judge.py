@@ -16,6 +16,7 @@ from benchmarks.mutants.mutations import Mutant
 from benchmarks.mutants.reach import Reach
 
 COPIED = ("tsas_cli", "tests", "benchmarks", "datasets", "docs", "pyproject.toml")
+START_S = 10.0  # of processor time: what a child takes before its first test, and more
 KILLED, SURVIVED, TIMED = "killed", "survived", "timed out"
 
 
@@ -30,7 +31,7 @@ class Bench:
     tests: tuple[str, ...]
     plain: bool
     limit_s: float  # of processor time of a test that judges
-    patience_s: float  # of processor time for a mutant
+    patience_s: float  # of processor time of the tests that judge a mutant, together
 
     @property
     def environment(self) -> dict[str, str]:
@@ -44,13 +45,13 @@ class Bench:
 
 
 BENCHES = (
-    Bench(("physics",), ("tests/physics",), plain=True, limit_s=0.7, patience_s=10),
+    Bench(("physics",), ("tests/physics",), plain=True, limit_s=0.7, patience_s=6),
     Bench(
         ("identification", "diagnosis"),
         ("tests/identification", "tests/diagnosis"),
         plain=False,
         limit_s=3,
-        patience_s=12,
+        patience_s=8,
     ),
 )
 
@@ -139,7 +140,7 @@ class Workshop:
             return SURVIVED, "no test runs this line"
         with self.mutated(mutant):
             work = partial(pytest_in, ["-x", *tests])
-            code, output = self.child(bench, work, bench.patience_s)
+            code, output = self.child(bench, work, START_S + 2.0 * bench.patience_s)
         failed = [line for line in output.splitlines() if line.startswith(("FAILED", "ERROR"))]
         if code == TIMED_OUT:
             return TIMED, ""
@@ -178,8 +179,8 @@ class Reached:
     def tests(self, mutant: Mutant, patience_s: float) -> list[str]:
         """Return the tests that run a line, or use it where it runs on loading; quick ones first.
 
-        Together they take no more than half of the patience, so that a mutant that changes no time
-        never ends by it.
+        Together they take no more than the patience, so that a mutant that changes no time never
+        ends by it.
         """
         lines = self._lines.get(mutant.path, {})
         names = set().union(*(lines.get(str(line), set()) for line in mutant.lines))
@@ -192,6 +193,6 @@ class Reached:
         chosen, total = [], 0.0
         for name in sorted(ranked, key=self._times.__getitem__):
             total += self._times[name]
-            if total < patience_s / 2:
+            if total < patience_s:
                 chosen.append(name)
         return sorted(chosen, key=ranked.index)

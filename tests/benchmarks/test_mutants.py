@@ -116,6 +116,6 @@ def test_the_tests_that_judge_are_those_that_run_the_line_the_mirrored_ones_firs
     file.write_text(json.dumps(reach))
     reached = Reached([file], made)
     by_line = {mutant.line: mutant for mutant in mutants(made, "tsas_cli/physics/made.py")}
-    assert reached.tests(by_line[5], 40.0) == [slow, quick]  # late alone takes more than half of it
-    assert reached.tests(by_line[7], 40.0) == []
-    assert reached.tests(by_line[2], 40.0) == [slow, quick]
+    assert reached.tests(by_line[5], 20.0) == [slow, quick]  # late alone takes more
+    assert reached.tests(by_line[7], 20.0) == []
+    assert reached.tests(by_line[2], 20.0) == [slow, quick]
