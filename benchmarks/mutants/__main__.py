@@ -36,8 +36,7 @@ def main() -> None:
     for mutant in random.Random(call.seed).sample(drawn, len(drawn)):  # noqa: S311 # no secret
         if mutant.name not in judged:
             bench = of[mutant.path]
-            tests = reached[bench].tests(mutant, bench.patience_s)
-            outcome, why = shop.judge(bench, mutant, tests)
+            outcome, why = shop.judge(bench, mutant, reached[bench])
             before, after = mutant.change(ROOT)
             verdict = {"mutant": mutant.name, "path": mutant.path, "outcome": outcome}
             verdict |= {"before": before, "after": after, "why": why}

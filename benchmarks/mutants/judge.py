@@ -17,6 +17,8 @@ from benchmarks.mutants.reach import Reach
 
 COPIED = ("tsas_cli", "tests", "benchmarks", "datasets", "docs", "pyproject.toml")
 START_S = 10.0  # of processor time: what a child takes before its first test, and more
+QUICK_S = 0.2  # of processor time under coverage
+FAILED = ("FAILED", "ERROR")
 KILLED, SURVIVED, TIMED = "killed", "survived", "timed out"
 
 
@@ -134,19 +136,26 @@ class Workshop:
             file.write_text(text)
             os.utime(file, ns=(stamp.st_atime_ns, stamp.st_mtime_ns))
 
-    def judge(self, bench: Bench, mutant: Mutant, tests: list[str]) -> tuple[str, str]:
-        """Return what became of a mutant, and the test that killed it or why it is alive."""
+    def judge(self, bench: Bench, mutant: Mutant, reached: "Reached") -> tuple[str, str]:
+        """Return what became of a mutant, and the test that killed it or why it is alive.
+
+        Quick tests alone come first: to load the files of the others takes longer than they do.
+        """
+        tests = reached.tests(mutant, bench.patience_s)
         if not tests:
-            return SURVIVED, "no test runs this line"
+            return SURVIVED, "no test that is quick enough runs this line"
+        quick = reached.quick(tests)
         with self.mutated(mutant):
-            work = partial(pytest_in, ["-x", *tests])
-            code, output = self.child(bench, work, START_S + 2.0 * bench.patience_s)
-        failed = [line for line in output.splitlines() if line.startswith(("FAILED", "ERROR"))]
-        if code == TIMED_OUT:
-            return TIMED, ""
-        if code == 0:
-            return SURVIVED, f"{len(tests)} tests"
-        return KILLED, failed[0] if failed else output[-300:]
+            for part in (quick, [name for name in tests if name not in quick]):
+                if part:
+                    work = partial(pytest_in, ["-x", *part])
+                    code, output = self.child(bench, work, START_S + 2.0 * bench.patience_s)
+                    if code == TIMED_OUT:
+                        return TIMED, ""
+                    if code:
+                        said = [line for line in output.splitlines() if line.startswith(FAILED)]
+                        return KILLED, said[0] if said else output[-300:]
+        return SURVIVED, f"{len(tests)} tests"
 
 
 class Reached:
@@ -186,13 +195,13 @@ class Reached:
         names = set().union(*(lines.get(str(line), set()) for line in mutant.lines))
         if not names - {""}:
             names = self._users(mutant.path) if "" in names else set()
-        mirror = f"test_{Path(mutant.path).name}"
-        ranked = sorted(
-            names & set(self._times), key=lambda name: (mirror not in name, self._times[name])
-        )
         chosen, total = [], 0.0
-        for name in sorted(ranked, key=self._times.__getitem__):
+        for name in sorted(names & set(self._times), key=self._times.__getitem__):
             total += self._times[name]
             if total < patience_s:
                 chosen.append(name)
-        return sorted(chosen, key=ranked.index)
+        return chosen
+
+    def quick(self, tests: list[str]) -> list[str]:
+        """Return those of some tests that take next to no time."""
+        return [name for name in tests if self._times[name] < QUICK_S]

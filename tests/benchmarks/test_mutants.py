@@ -98,7 +98,7 @@ def test_the_table_counts_and_shows_who_lives():
     assert text[-2:] == ["- a + b", "+ a - b"]
 
 
-def test_the_tests_that_judge_are_those_that_run_the_line_the_mirrored_ones_first(made):
+def test_the_tests_that_judge_are_those_that_run_the_line_the_quick_ones_first(made):
     package = made / "tsas_cli" / "physics"
     package.mkdir(parents=True)
     (package / "made.py").write_text(SOURCE)
@@ -116,6 +116,7 @@ def test_the_tests_that_judge_are_those_that_run_the_line_the_mirrored_ones_firs
     file.write_text(json.dumps(reach))
     reached = Reached([file], made)
     by_line = {mutant.line: mutant for mutant in mutants(made, "tsas_cli/physics/made.py")}
-    assert reached.tests(by_line[5], 20.0) == [slow, quick]  # late alone takes more
+    assert reached.tests(by_line[5], 20.0) == [quick, slow]  # late alone takes more
     assert reached.tests(by_line[7], 20.0) == []
-    assert reached.tests(by_line[2], 20.0) == [slow, quick]
+    assert reached.tests(by_line[2], 20.0) == [quick, slow]
+    assert reached.quick([quick, slow]) == [quick]

@@ -14,7 +14,7 @@ from tsas_cli.identification.drive_fit import (
     response_at,
 )
 from tsas_cli.identification.drive_runs import DriveRun
-from tsas_cli.identification.frequency_response import frequency_response
+from tsas_cli.identification.frequency_response import FrequencyResponse, frequency_response
 from tsas_cli.identification.transfer_function import bode_curve, poles
 from tsas_cli.numerics.linear_response import sampled
 from tsas_cli.physics.drive import DriveValues, gear_response, linear_response
@@ -52,7 +52,7 @@ def bench(values, stated_Hz=None):
 def response_by_hand(values, jw):
     lag = jw * values.motor_lag_s + 1.0
     w = 2.0 * math.pi * values.natural_frequency_Hz
-    spring = (jw / w) ** 2 + 2.0 * values.damping_ratio * jw / w + 1.0
+    spring = (jw / w) ** 2 + 2.0 * values.damping_ratio * jw / w + 1.0 if w else 1.0
     late = np.exp(-jw * values.delay_s)
     return values.gain_mm_per_s_rpm * late / ((jw + values.leak_per_s) * lag * spring)
 
@@ -201,3 +201,36 @@ def test_noise_that_has_nothing_to_do_with_the_motor_is_no_band():
     noise = np.random.default_rng(4).standard_normal(TIME_S.size)
     seen = frequency_response([DriveRun("n", run.u, noise, 1.0, at_rest=True)])
     assert seen.band is None or seen.excited.sum() < 4
+
+
+def response_of(values, frequency_Hz, wrong=()):
+    response = response_by_hand(values, 2j * math.pi * frequency_Hz)
+    for k in wrong:
+        response[k] *= -6.0
+    told = np.ones(frequency_Hz.size, dtype=bool)
+    return FrequencyResponse(frequency_Hz, response, np.ones(frequency_Hz.size), told)
+
+
+@pytest.mark.parametrize("wrong", [(), (5,), (5, 30)])
+def test_a_few_wrong_points_of_the_response_do_not_lead_the_start_astray(wrong):
+    truth = DriveValues(0.0236, delay_s=0.02, natural_frequency_Hz=9.0, damping_ratio=0.15)
+    seen = response_of(truth, np.linspace(0.5, 20.0, 40), wrong)
+    start = DriveBench([driven(truth)], seen)._from_response(frozenset(("delay", "spring")))
+    for name in ("gain_mm_per_s_rpm", "natural_frequency_Hz", "damping_ratio", "delay_s"):
+        assert getattr(start, name) == pytest.approx(getattr(truth, name), rel=0.1), name
+
+
+def test_with_too_few_points_the_start_is_read_off_them():
+    """At the resonance the response is 1/(2ζ) as high; what is late is a phase that grows."""
+    truth = DriveValues(0.0236, natural_frequency_Hz=9.0, damping_ratio=0.15)
+    seen = response_of(truth, np.array([3.0, 8.9, 14.0]))
+    start = DriveBench([driven(truth)], seen)._from_response(frozenset(("spring",)))
+    assert start.natural_frequency_Hz == pytest.approx(8.9)
+    assert start.damping_ratio == pytest.approx(0.15, rel=0.05)
+    late = DriveValues(0.0236, delay_s=0.03)
+    seen = response_of(late, np.array([1.0, 2.0, 4.0]))
+    start = DriveBench([driven(late)], seen)._from_response(frozenset(("delay", "lag")))
+    assert start.delay_s == start.motor_lag_s == pytest.approx(0.015)
+    two = response_of(late, np.array([1.0, 2.0]))
+    usual = DriveBench([driven(late)], two)._from_response(frozenset(("delay",)))
+    assert usual.delay_s == replace_defaults(("delay",), 0.02).delay_s
