@@ -184,3 +184,10 @@ def test_segments_in_a_file_end_where_the_next_one_begins():
         (0.0, 5.0, "dead_band_up"),
         (5.0, 13.9, "contraction"),
     ]
+
+
+def test_a_load_that_stands_quite_still_is_in_the_dead_band():
+    """As lazy as can be before the cut, 1/15 after it."""
+    before, after = p._slopes(stroke({"f_out_N": f_out()}), CUT)
+    assert before > 1e9
+    assert after == pytest.approx(1.0 / 15.0)
