@@ -169,7 +169,8 @@ def test_what_the_others_do_not_need_is_left_out_but_never_the_last(made):
     assert made(needed)._without_idle(names(A, B, C)) == names(A, B, C)
 
 
-def test_two_that_hide_each_other_are_found_together(made):
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_two_that_hide_each_other_are_found_together(made, sign):
     """Each takes next to nothing away alone: they are two sides of nearly the same signature."""
     rng = np.random.default_rng(3)
     common, apart, other = np.linalg.qr(rng.standard_normal((SIZE, 3)))[0].T
@@ -179,7 +180,7 @@ def test_two_that_hide_each_other_are_found_together(made):
         C: other[:, None],
     }
     search = made({names(): 4.0, names(A, B): 1.0, names(B): 3.95})
-    search.trial(names()).solution.residual = apart
+    search.trial(names()).solution.residual = sign * apart
     seen(search, names(), (A, 0.0), (B, 0.01), (C, 0.0), signatures=signatures)
     assert search._best_pair(names()) == names(A, B)
     assert {fitted for fitted, _ in search.bench.fits} == {names(), names(A, B)}

@@ -27,7 +27,7 @@ from tsas_cli.physics.frames import empty_frames
 from tsas_cli.physics.lugre_balance import balance, sum_of_sizes
 from tsas_cli.physics.lugre_chain import OWN_STEPS, lugre_chain, sample_after, sample_before
 from tsas_cli.physics.lugre_ends import departs, ends_after, read
-from tsas_cli.physics.lugre_input import hermite, hermite_slope
+from tsas_cli.physics.lugre_input import DRIVE, hermite, hermite_slope, slope_at
 from tsas_cli.physics.lugre_pace import Allowed, change_of, fitted
 from tsas_cli.physics.lugre_start import law_of, lay_out
 from tsas_cli.physics.lugre_state import (
@@ -238,6 +238,7 @@ def test_the_error_of_a_step_is_that_of_a_cubic(times):
     s[nodes] = scale * curve.deriv()(times[-1])
     off = s[Y_PAST : Y_PAST + N + 2] + formula.gh * s[nodes] - scale * curve(times[-1])
     expected = np.abs(s[STIFFNESS : STIFFNESS + N + 1] * np.diff(off)).max()
+    s[CHANGE + LAST] = 1e9  # what Newton's method has left there is no segment's
     assert error(s, law, formula) == pytest.approx(expected, rel=1e-9)
 
 
@@ -303,6 +304,10 @@ def test_what_leaves_the_cubic_within_a_step_is_seen(bumped):
     off = departs(times, course, 1, 1, 9, t, h, ends)
     assert off == pytest.approx(0.25 if bumped in looked_at else 0.0, abs=1e-12)
     assert departs(times, course, 1, bumped - 1, bumped, t, h, ends) == 0.0
+
+
+def test_an_input_of_one_sample_stands_still():
+    assert slope_at(np.zeros(1), course_of([3.0], GROUP_A), DRIVE, 0) == 0.0
 
 
 def test_samples_before_and_after_a_time():
