@@ -54,6 +54,7 @@ PROJECT = (
     Page("Changelog", "CHANGELOG.md", "changelog.md"),
     Page("Contributing", "CONTRIBUTING.md", "contributing.md"),
     _docs("Bad input, searched for", "fuzzing"),
+    _docs("Do the tests notice?", "mutants"),
 )
 LEFT_OUT = {"docs/worklog.md"}  # for those who build it
 

@@ -1,6 +1,6 @@
 import pytest
 
-from tsas_cli.diagnosis.rig_file import read_rig_file
+from tsas_cli.diagnosis.rig_file import PlannedRun, read_rig_file
 from tsas_cli.errors import InputError
 
 TEXT = """
@@ -67,3 +67,32 @@ def test_what_is_wrong_is_said(tmp_path, old, new, said):
 def test_two_runs_of_one_name(tmp_path):
     with pytest.raises(InputError, match="run id 'a' is there twice"):
         read(tmp_path, TEXT + TEXT[TEXT.index("[[run]]") :])
+
+
+CONDITIONS = {
+    "id": "a",
+    "sheath_length_mm": 785.0,
+    "total_bend_rad": 3.0,
+    "preload_N": 25.0,
+    "motion": "sine",
+    "amplitude_mm": 10.0,
+    "speed_mm_per_s": 8.0,
+}
+
+
+@pytest.mark.parametrize(
+    ("name", "least", "too_little"),
+    [
+        ("sheath_length_mm", 1e-6, 0.0),
+        ("total_bend_rad", 0.0, -1e-6),  # a straight sheath is one
+        ("preload_N", 1e-6, 0.0),
+        ("amplitude_mm", 1e-6, 0.0),
+        ("speed_mm_per_s", 1e-6, 0.0),
+        ("periods", 1, 0),
+        ("dwell_s", 0.0, -1e-6),
+    ],
+)
+def test_conditions_that_cannot_be(name, least, too_little):
+    assert getattr(PlannedRun(**CONDITIONS | {name: least}), name) == least
+    with pytest.raises(ValueError, match=name):
+        PlannedRun(**CONDITIONS | {name: too_little})

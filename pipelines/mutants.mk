@@ -1,0 +1,11 @@
+# Mutation testing: one change at a time in physics/, identification/ or diagnosis/, and whether a
+# test notices it (docs/mutants.md).
+#
+# make mutants                               200 mutants by chance
+# make mutants MUTANTS=1000 MUTANTS_SEED=3   others, and more of them
+MUTANTS ?= 200
+MUTANTS_SEED ?= 2
+
+.PHONY: mutants
+mutants: setup  ## judge the tests by mutants of the model, the fits and the diagnosis
+	@$(BIN)/python -m benchmarks.mutants --size $(MUTANTS) --seed $(MUTANTS_SEED)

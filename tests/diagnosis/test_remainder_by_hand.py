@@ -1,0 +1,80 @@
+"""What is left, on errors that are made of known signals."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from tsas_cli.diagnosis.remainder import remainder
+
+SIZE = 800
+TIME_S = 0.05 * np.arange(SIZE)
+X = 10.0 - 10.0 * np.cos(2.0 * np.pi * TIME_S / 10.0)
+REVERSALS = np.array([0, *range(100, SIZE, 100), SIZE - 1])
+
+
+class Run:
+    """A run whose errors are given; a residual is the error of one sample."""
+
+    def __init__(self, errors, f_in):
+        conditioned = SimpleNamespace(values=X, reversals=REVERSALS)
+        self.run = SimpleNamespace(
+            time_s=TIME_S, drive_column="x_in_mm", conditioned={"x_in_mm": conditioned}
+        )
+        self.samples = {name: np.arange(SIZE) for name in errors}
+        self._errors, self._f_in = errors, f_in
+
+    def errors(self, rig):
+        return self._errors
+
+    def answers(self, rig):
+        return {"f_in_N": self._f_in}
+
+
+def left_of(*errors, f_in=None):
+    runs = [Run(e, np.zeros(SIZE) if f_in is None else f_in) for e in errors]
+    bench = SimpleNamespace(
+        rigs=[None] * len(runs),
+        rig=lambda trial, k: None,
+        errors_for=lambda trial: runs,
+        closed=runs,
+        channels=sorted(errors[0]),
+    )
+    residual = np.concatenate([np.concatenate(list(e.values())) for e in errors])
+    block = np.arange(residual.size) // 40
+    folds = SimpleNamespace(block=block, fold=block % 4, blocks=int(block.max()) + 1)
+    trial = SimpleNamespace(solution=SimpleNamespace(residual=residual))
+    return remainder(bench, trial, folds)
+
+
+def noise(seed):
+    return np.random.default_rng(seed).standard_normal(SIZE)
+
+
+def test_what_depends_on_the_place_is_said_to_and_could_be_had():
+    """Of 1 + 9 ·½ squares the part over the place is explained, of one channel of two."""
+    wave = 3.0 * np.sign(np.sin(0.9 * X))
+    found = left_of(
+        {"f_in_N": wave + noise(1), "x_out_mm": noise(2)},
+        {"f_in_N": wave + noise(3), "x_out_mm": noise(4)},
+    )
+    assert found.depends_on[0] == "x_in_mm"
+    assert found.mean_square == pytest.approx(0.5 * (10.0 + 1.0), rel=0.1)
+    assert 5.0 < found.explained["f_in_N"] < 10.0
+    assert found.explained["x_out_mm"] == 0.0
+
+
+def test_noise_depends_on_nothing():
+    found = left_of(*({"f_in_N": noise(k), "f_out_N": noise(10 + k)} for k in range(3)))
+    assert found.depends_on == ()
+    assert found.explained == {"f_in_N": 0.0, "f_out_N": 0.0}
+    assert found.mean_square == pytest.approx(1.0, rel=0.1)
+
+
+def test_an_error_that_swings_by_itself_is_periodic_at_its_frequency():
+    """1.7 Hz: no signal of the run swings so fast."""
+    swing = 4.0 * np.sin(2.0 * np.pi * 1.7 * TIME_S)
+    found = left_of({"f_in_N": swing + noise(1)}, {"f_in_N": swing + noise(2)})
+    assert found.depends_on[0] == "time_s (f_in_N swings at 1.7 Hz)"
+    once = left_of({"f_in_N": swing + noise(1)}, {"f_in_N": noise(2)}, {"f_in_N": noise(3)})
+    assert not any("swings" in signal for signal in once.depends_on)

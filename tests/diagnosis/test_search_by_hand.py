@@ -1,0 +1,199 @@
+"""The decisions of a search, one by one, on fits and squares that are made up."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from tsas_cli.diagnosis import search as s
+from tsas_cli.diagnosis.evidence import Gain
+from tsas_cli.diagnosis.search import Search
+from tsas_cli.effects import EFFECTS
+from tsas_cli.identification.screening import Screened
+
+BLOCKS, SIZE = 20, 200
+A, B, C = "backlash", "free_tendon", "load_friction"
+KNOWN = tuple(e for e in EFFECTS if e.name in (A, B, C))
+OF = {e.name: e for e in KNOWN}
+CONVINCES, DOES_NOT = Gain(0.5, 4.0), Gain(0.5, 1.0)
+
+
+def names(*found):
+    return frozenset(found)
+
+
+class Bench:
+    """Fits whose squares are given by the set of effects; nothing needs a mesh."""
+
+    def __init__(self, mean_squares):
+        self.mean_squares, self.fits = mean_squares, []
+
+    def on_mesh(self, effects):
+        return False
+
+    def fit(self, effects, start=None, *, near=None, on_mesh=False):
+        self.fits.append((frozenset(effects), start))
+        value = self.mean_squares[frozenset(effects)]
+        value = value.pop(0) if isinstance(value, list) else value
+        rng = np.random.default_rng(len(effects))
+        solution = SimpleNamespace(converged=True, residual=rng.standard_normal(SIZE))
+        return SimpleNamespace(mean_square=value, solution=solution, on_mesh=on_mesh)
+
+
+@pytest.fixture
+def made(monkeypatch):
+    """A search over given mean squares; a trial's held-out squares are spread evenly."""
+    monkeypatch.setattr(
+        s, "held_out_squares", lambda trial, _: np.full(BLOCKS, trial.mean_square * SIZE / BLOCKS)
+    )
+
+    def make(mean_squares):
+        folds = SimpleNamespace(block=np.arange(SIZE) * BLOCKS // SIZE, blocks=BLOCKS)
+        return Search(Bench(mean_squares), folds, effects=KNOWN)
+
+    return make
+
+
+@pytest.mark.parametrize(("left", "quiet"), [(1.149, True), (1.151, False)])
+def test_it_is_quiet_where_the_blur_of_a_right_model_begins(made, left, quiet):
+    assert made({names(A): left}).is_quiet(names(A)) == quiet
+
+
+@pytest.mark.parametrize(
+    ("nothing", "one", "two", "matters"),
+    [
+        # A first cause: more than 0.4 of what is beyond noise and blur, 0.4 (2.15 − 1 − 0.15).
+        (2.15, 1.751, None, False),
+        (2.15, 1.749, None, True),
+        # A further one: more than 0.4 of what the first left beyond the noise.
+        (9.0, 2.0, 1.601, False),
+        (9.0, 2.0, 1.599, True),
+        # And more than 0.003 of what there was before any.
+        (501.0, 4.0, 2.501, False),
+        (501.0, 4.0, 2.499, True),
+    ],
+)
+def test_a_cause_matters_by_its_share(made, nothing, one, two, matters):
+    search = made({names(): nothing, names(A): one, names(A, B): two})
+    if two is None:
+        assert search.matters(names(), {A}) == matters
+    else:
+        assert search.matters(names(A), {B}) == matters
+
+
+def test_gains_are_those_of_the_squares(made):
+    search = made({names(): 4.0, names(A): 1.0})
+    found = search.gain(names(), names(A))
+    assert found.part == pytest.approx(0.75)
+    assert found.sureness == pytest.approx(np.sqrt(BLOCKS))
+    assert search.gain(names(A), names()).part == pytest.approx(-3.0)
+
+
+def test_a_trial_is_fitted_once(made):
+    search = made({names(A): 2.0})
+    assert search.trial(names(A)) is search.trial(names(A))
+    assert len(search.bench.fits) == 1
+
+
+def seen(search, at, *parts, signatures=None):
+    search.screened[at] = [
+        Screened(
+            OF[name],
+            part,
+            {f"{name}.{OF[name].parameters[0].name}": 1.0},
+            np.zeros((SIZE, 1)) if signatures is None else signatures[name],
+        )
+        for name, part in parts
+    ]
+
+
+def test_only_what_is_seen_beside_the_best_is_fitted_the_best_gain_first(made):
+    search = made({names(): 4.0, names(A): 3.0, names(B): 2.0, names(C): 1.0})
+    seen(search, names(), (A, 0.5), (B, 0.011), (C, 0.009))  # a fiftieth of the best is 0.01
+    assert [name for name, _ in search.add(names())] == [B, A]
+    assert names(C) not in {fitted for fitted, _ in search.bench.fits}
+
+
+def test_what_explains_next_to_nothing_is_not_fitted(made):
+    search = made({names(): 4.0, names(A): 3.0})
+    seen(search, names(), (A, 0.0006), (B, 0.0004))
+    assert [name for name, _ in search.add(names())] == [A]
+
+
+def test_a_fit_that_is_worse_with_more_freedom_starts_again_closer(made):
+    parameter = OF[B].parameters[0]
+    start = {f"{B}.{parameter.name}": parameter.neutral + 1.0}
+    search = made({names(): 4.0, names(B): [9.0, 5.0, 3.0]})
+    search._fit(names(), names(B), start)
+    starts = [at for fitted, at in search.bench.fits if fitted == names(B)]
+    away = [next(iter(at.values())) - parameter.neutral for at in starts]
+    assert away == pytest.approx([1.0, 0.2, 0.04])
+    assert search.trial(names(B)).mean_square == 3.0
+
+
+def test_it_starts_again_four_times_at_the_most(made):
+    search = made({names(): 4.0, names(B): [9.0, 8.0, 7.0, 6.0, 5.0]})
+    search._fit(names(), names(B), {f"{B}.{OF[B].parameters[0].name}": 1.0})
+    assert search.trial(names(B)).mean_square == 6.0
+    search._fit(names(), names(B), {})
+    assert len(search.bench.fits) == 5  # known by now
+
+
+def test_rivals_convince_too_and_are_not_surely_worse(made):
+    search = made({names(B): 1.001, names(C): 1.001, names(A): 1.0, names(): 4.0})
+    search.add = lambda _: [(A, CONVINCES), (B, CONVINCES), (C, DOES_NOT)]
+    assert search.rivals(names(A), A) == (B,)  # itself is none, and C convinces nobody
+    worse = made({names(B): 1.02, names(A): 1.0, names(): 4.0})
+    worse.add = lambda _: [(B, CONVINCES)]
+    assert worse.rivals(names(A), A) == ()
+    search.trial(names(B)).solution.converged = False
+    assert search.rivals(names(A), A) == ()
+
+
+def test_the_simplest_that_is_not_surely_beaten(made):
+    singles = [(B, CONVINCES), (A, CONVINCES)]
+    assert len(OF[A].parameters) < len(OF[B].parameters)
+    near = made({names(A): 1.02, names(B): 1.0})
+    assert near._simplest(names(), singles) == A  # three hundredths are too little
+    far = made({names(A): 1.04, names(B): 1.0})
+    assert far._simplest(names(), singles) == B
+    assert far._simplest(names(), [(A, CONVINCES), (B, CONVINCES)]) == A
+
+
+def test_what_the_others_do_not_need_is_left_out_but_never_the_last(made):
+    """One after the other, in the order of their names."""
+    squares = {names(A, B, C): 1.0, names(B, C): 1.01, names(C): 1.02, names(B): 2.0}
+    squares |= {names(A, C): 1.5, names(A, B): 3.0, names(): 1.02}
+    assert made(squares)._without_idle(names(A, B, C)) == names(C)
+    needed = {k: (1.0 if k == names(A, B, C) else 9.0) for k in squares}
+    assert made(needed)._without_idle(names(A, B, C)) == names(A, B, C)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_two_that_hide_each_other_are_found_together(made, sign):
+    """Each takes next to nothing away alone: they are two sides of nearly the same signature."""
+    rng = np.random.default_rng(3)
+    common, apart, other = np.linalg.qr(rng.standard_normal((SIZE, 3)))[0].T
+    signatures = {
+        A: common[:, None],
+        B: (common + 0.1 * apart)[:, None],
+        C: other[:, None],
+    }
+    search = made({names(): 4.0, names(A, B): 1.0, names(B): 3.95})
+    search.trial(names()).solution.residual = sign * apart
+    seen(search, names(), (A, 0.0), (B, 0.01), (C, 0.0), signatures=signatures)
+    assert search._best_pair(names()) == names(A, B)
+    assert {fitted for fitted, _ in search.bench.fits} == {names(), names(A, B)}
+    assert search._better(names()) == [names(A, B)]
+
+
+@pytest.mark.parametrize("squares", [3.99, 3.0])
+def test_a_pair_has_to_convince_and_to_matter(made, squares):
+    rng = np.random.default_rng(3)
+    common, apart = np.linalg.qr(rng.standard_normal((SIZE, 2)))[0].T
+    signatures = {A: common[:, None], B: (common + 0.1 * apart)[:, None]}
+    search = made({names(): 4.0, names(A, B): squares, names(B): 3.99})
+    search.trial(names()).solution.residual = apart
+    seen(search, names(), (A, 0.0), (B, 0.01), signatures=signatures)
+    assert search._best_pair(names()) is None
+    assert search._better(names()) == []

@@ -1,0 +1,193 @@
+"""How a stroke is cut, piece by piece: on channels that follow the two laws exactly, or nearly."""
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from tsas_cli.identification import phases as p
+
+N, CUT = 120, 45
+TRAVEL = np.linspace(0.0, 12.0, N)
+
+
+def stroke(channels, travel=TRAVEL):
+    n = travel.size
+    return p._Stroke(0, n, True, np.arange(n), travel, channels)
+
+
+def f_in(slip=20.0, dead=100.0, noise=0.0, seed=1):
+    """Tension over noise: along the front's law up to the cut, straight after it."""
+    D = TRAVEL
+    band = 40.0 * np.sqrt(D) + dead * D
+    line = band[CUT] + slip * (D - D[CUT])
+    return np.where(D[CUT] > D, band, line) + noise * np.random.default_rng(seed).standard_normal(N)
+
+
+def f_out(noise=0.0, seed=2):
+    still = np.where(TRAVEL[CUT] > TRAVEL, 0.0, 15.0 * (TRAVEL - TRAVEL[CUT]))
+    return still + noise * np.random.default_rng(seed).standard_normal(N)
+
+
+@pytest.mark.parametrize("columns", [1, 2, 3])
+def test_squares_that_a_fit_to_the_first_samples_leaves(columns):
+    basis = np.column_stack([TRAVEL**0.5**k for k in range(columns)])
+    basis[:, 0] = 1.0
+    values = 7.0 + np.random.default_rng(3).standard_normal(N)
+    left = p._squares_left(basis, values)
+    assert left.size == N + 1
+    assert left[0] == 0.0
+    for k in (1, 2, 5, 40, N):
+        fit = np.linalg.lstsq(basis[:k], values[:k], rcond=None)[0]
+        direct = np.sum((values[:k] - basis[:k] @ fit) ** 2)
+        assert left[k] == pytest.approx(direct, abs=1e-5)
+
+
+def test_each_channel_has_its_law_on_either_side():
+    dead, slip = p._bases("f_in_N", np.array([0.0, 4.0, 9.0]))
+    assert dead.tolist() == [[1.0, 0.0, 0.0], [1.0, 2.0, 4.0], [1.0, 3.0, 9.0]]
+    assert slip.tolist() == [[1.0, 0.0], [1.0, 4.0], [1.0, 9.0]]
+    still, moving = p._bases("x_out_mm", np.array([0.0, 4.0]))
+    assert still.tolist() == [[1.0], [1.0]]
+    assert moving.tolist() == [[1.0, 0.0], [1.0, 4.0]]
+
+
+@pytest.mark.parametrize("names", [("f_in_N",), ("f_out_N",), ("f_in_N", "f_out_N")])
+def test_the_cut_is_where_both_laws_meet(names):
+    channels = {"f_in_N": f_in(noise=1.0), "f_out_N": f_out(noise=1.0)}
+    found = p._transition(stroke({name: channels[name] for name in names}))
+    assert abs(found - CUT) <= 2
+
+
+def test_a_stroke_that_one_law_is_enough_for_is_not_cut():
+    noise = np.random.default_rng(4).standard_normal(N)
+    assert p._transition(stroke({"f_in_N": 20.0 * TRAVEL + noise})) is None
+    band = 40.0 * np.sqrt(TRAVEL) + 100.0 * TRAVEL + noise
+    assert p._transition(stroke({"f_in_N": band})) is None
+    assert p._transition(stroke({"f_out_N": noise})) is None
+
+
+def test_a_bend_from_gentle_to_steep_is_no_slip():
+    bent = np.where(
+        TRAVEL[CUT] > TRAVEL, 5.0 * TRAVEL, 5.0 * TRAVEL + 60.0 * (TRAVEL - TRAVEL[CUT])
+    )
+    assert p._transition(stroke({"f_in_N": bent})) is None
+
+
+@pytest.mark.parametrize(("slip", "cut"), [(30.0, True), (40.0, False)])
+def test_slip_is_a_third_as_steep_at_the_most(slip, cut):
+    """After a straight rise of 100 per mm; a law with √D fits that too."""
+    D, rng = TRAVEL, np.random.default_rng(5)
+    values = np.where(D[CUT] > D, 100.0 * D, 100.0 * D[CUT] + slip * (D - D[CUT]))
+    found = p._transition(stroke({"f_in_N": values + rng.standard_normal(N)}))
+    assert (found is not None) == cut
+
+
+def test_a_stroke_with_too_few_samples_or_no_channel_is_not_cut():
+    few = slice(CUT - 8, CUT + 8)  # 16: eight for each law would leave none to choose
+    whole = f_in()
+    assert p._transition(stroke({"f_in_N": whole[few]}, TRAVEL[few] - TRAVEL[few][0])) is None
+    assert p._transition(stroke({})) is None
+
+
+def test_how_steep_both_sides_of_a_cut_are():
+    line = np.where(TRAVEL[CUT] > TRAVEL, 50.0 * TRAVEL, 50.0 * TRAVEL[CUT] + 0.0 * TRAVEL)
+    line = line + np.where(TRAVEL[CUT] > TRAVEL, 0.0, -4.0 * (TRAVEL - TRAVEL[CUT]))
+    assert p._slopes(stroke({"f_in_N": line}), CUT) == pytest.approx((50.0, 4.0))
+    before, after = p._slopes(stroke({"x_out_mm": line}), CUT)
+    assert (before, after) == pytest.approx((1.0 / 50.0, 1.0 / 4.0))  # a load that moves slips
+    whole, nothing = p._slopes(stroke({"x_out_mm": 0.0 * line, "f_in_N": 3.0 * TRAVEL}), None)
+    assert whole == pytest.approx(3.0)
+    assert math.isnan(nothing)
+    assert np.isnan(p._slopes(stroke({}), None)).all()
+    short = stroke({"f_in_N": TRAVEL[:7]}, TRAVEL[:7])
+    assert np.isnan(p._slopes(short, None)).all()
+    assert np.isnan(p._steepness(np.ones(5), np.arange(5.0)))
+
+
+def test_the_border_is_the_geometric_mean_of_the_strokes_that_show_both():
+    slopes = [(100.0, 4.0), (400.0, 1.0), (100.0, 4.0), (math.nan, 3.0), (50.0, 0.0)]
+    assert p._border(slopes) == pytest.approx(20.0)
+    assert p._border([(math.nan, 1.0), (5.0, 0.0)]) is None
+
+
+def test_means_of_blocks_the_last_one_shorter():
+    assert p._block_means(np.arange(7.0), 3).tolist() == [1.0, 4.0, 6.0]
+    assert p._block_means(np.arange(4.0), 1).tolist() == [0.0, 1.0, 2.0, 3.0]
+
+
+def resting(way=1.0, noise=0.05, *, channel=True):
+    """A drive that goes, rests from sample 50 on and turns at 100; unloading begins at 70."""
+    t = np.arange(140)
+    x = way * np.interp(t, [0, 50, 100, 139], [0.0, 5.0, 5.0, 1.0])
+    tension = way * np.interp(t, [0, 50, 70, 139], [25.0, 45.0, 45.0, 10.0])
+    conditioned = SimpleNamespace(
+        values=x, sd=np.full(140, 0.01), reversals=np.array([0, 100, 139])
+    )
+    return SimpleNamespace(
+        conditioned={"x_in_mm": conditioned},
+        measured={"f_in_N": tension} if channel else {"f_out_N": tension},
+        noise={"f_in_N": noise, "f_out_N": noise},
+        time_s=0.1 * t,
+        drive_column="x_in_mm",
+    )
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_a_resting_drive_has_turned_where_the_tension_does(way):
+    """The mean of eight samples falls by 5/√8 of the noise some samples after 70."""
+    found = p._start_of_unloading(resting(way), 100)
+    assert 62 <= found <= 70
+    assert p._start_of_unloading(resting(way, noise=1e6), 100) == 100
+
+
+def test_elsewhere_the_drive_turns_where_it_says():
+    assert p._start_of_unloading(resting(channel=False), 100) == 100
+    assert p._start_of_unloading(resting(), 139) == 139
+    assert p._start_of_unloading(resting(), 0) == 0
+
+
+def test_strokes_go_from_turn_to_turn_and_cover_the_run():
+    run = resting(channel=False)
+    first, second = p._strokes(run)
+    assert (first.first, first.end, second.first, second.end) == (0, 100, 100, 140)
+    assert (first.up, second.up) == (True, False)
+    x = run.conditioned["x_in_mm"].values
+    np.testing.assert_allclose(second.travel, np.abs(x[100:] - x[100]))
+    expected = run.measured["f_out_N"][100:] / 0.05
+    np.testing.assert_allclose(second.channels["f_out_N"], expected)
+
+
+def test_long_strokes_are_thinned_by_means():
+    n = 1300
+    x = np.arange(float(n))
+    conditioned = SimpleNamespace(values=x, sd=np.full(n, 0.01), reversals=np.array([0, n - 1]))
+    run = SimpleNamespace(
+        conditioned={"x_in_mm": conditioned},
+        measured={"f_out_N": 2.0 * x},
+        noise={"f_out_N": 0.5},
+        time_s=x,
+        drive_column="x_in_mm",
+    )
+    (whole,) = p._strokes(run)
+    assert set(np.diff(whole.at)) == {3}  # 1300 // 400
+    np.testing.assert_allclose(whole.channels["f_out_N"][:3], [4.0, 16.0, 28.0])
+    (unknown,) = p.segment(SimpleNamespace(drive_column="f_in_N", time_s=x))
+    assert (unknown.first, unknown.end, unknown.phase) == (0, n, "unknown")
+
+
+def test_segments_in_a_file_end_where_the_next_one_begins():
+    segments = [p.Segment(0, 50, "dead_band_up"), p.Segment(50, 140, "contraction")]
+    told = p.segments_as_json(resting(), segments)
+    assert [(s["start_s"], round(s["end_s"], 9), s["phase"]) for s in told] == [
+        (0.0, 5.0, "dead_band_up"),
+        (5.0, 13.9, "contraction"),
+    ]
+
+
+def test_a_load_that_stands_quite_still_is_in_the_dead_band():
+    """As lazy as can be before the cut, 1/15 after it."""
+    before, after = p._slopes(stroke({"f_out_N": f_out()}), CUT)
+    assert before > 1e9
+    assert after == pytest.approx(1.0 / 15.0)
