@@ -1,6 +1,6 @@
 # Every stage and whole pipelines ended at chosen and at random moments, and what they leave judged.
 #
-# make torture                               600 trials, half an hour on two free cores
+# make torture                               600 trials
 # make torture KILLS=100 TORTURE_SEED=2      fewer, other moments
 KILLS ?= 600
 TORTURE_SEED ?= 1

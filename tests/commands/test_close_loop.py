@@ -1,10 +1,12 @@
 """`tsas close-loop` in a process of its own, with every warning an error."""
 
 import json
+from types import SimpleNamespace
 
 import pytest
 
 from tests.commands.documented import documented
+from tsas_cli.commands.close_loop import _of_each_case
 from tsas_cli.identification.model import CORRECTION, read_model
 from tsas_cli.recordings.dataset import read_dataset
 
@@ -76,3 +78,16 @@ def test_a_wrong_call_writes_nothing(strict, tmp_path, option, value, told):
     assert told in done.stderr
     assert option in done.stderr
     assert not (tmp_path / "out").exists()
+
+
+def test_each_case_shows_what_its_stages_wrote(tmp_path, monkeypatch):
+    for path in ("bend/dataset", "bend/calibrate", "bend/diagnose", "drive/dataset"):
+        (tmp_path / path).mkdir(parents=True)
+    (tmp_path / "drive" / "identify").mkdir()
+    cases = SimpleNamespace(cases=[SimpleNamespace(case=name) for name in ("bend", "drive")])
+    monkeypatch.setattr("tsas_cli.reporting.inputs.read_stage", lambda *_: cases)
+    shown = {home.name: [path.name for path in paths] for home, paths in _of_each_case(tmp_path)}
+    assert shown == {
+        "bend": ["dataset", "calibrate", "diagnose"],
+        "drive": ["dataset", "identify"],
+    }
