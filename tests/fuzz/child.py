@@ -68,9 +68,11 @@ def main() -> None:
 
     name, found, *arguments = sys.argv[1:]
     with atheris.instrument_imports(include=["tsas_cli", "asammdf"], exclude=_compiled()):
+        from tests.fuzz import foreign
         from tests.fuzz.rules import Watch
 
         target = import_module(name)
+        foreign.here_too = True
     faults, watch = Faults(Path(found)), Watch()
     one = guarded(target, faults, watch)
     for seed in target.seeds():  # what is loaded and compiled at the first use is written then

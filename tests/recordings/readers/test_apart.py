@@ -81,6 +81,16 @@ def test_a_crash_is_one_line_and_the_next_file_is_read(path):
     assert read(path, ReadOptions(), ["t"]).columns["t"].tolist() == [0, 1, 2, 3, 4]
 
 
+def test_after_a_file_that_was_refused_the_next_one_has_a_new_process(path):
+    other = path.with_name("b.mat")
+    other.write_bytes(path.read_bytes())
+    before = ask(path, prints)
+    with pytest.raises(InputError, match="x is missing"):
+        read(path, ReadOptions(), ["x"])
+    assert ask(path, prints) == before
+    assert ask(other, prints) != before
+
+
 def test_what_takes_too_long_is_ended(path, monkeypatch):
     monkeypatch.setattr(module, "LEAST_S", 0.5)
     with pytest.raises(InputError, match=r"not done after \d s"):

@@ -1,7 +1,8 @@
 """Foreign formats are read in a process of their own, since their libraries crash on damaged files.
 
-The process is kept for the next file; it ends with this one. A file that crashes it, or asks for
-more time or memory than a whole file of its size does, costs that process and is one line here.
+The process is kept for the next file, but not after one that was refused; it ends with this one.
+A file that crashes it, or asks for more time or memory than a whole file of its size does, costs
+that process and is one line here.
 """
 
 import atexit
@@ -29,6 +30,7 @@ class _Process:
 
     def __init__(self) -> None:
         self.lock, self.owner = Lock(), 0
+        self.refused: Path | None = None  # what may have left the library's memory in disorder
         self.running: subprocess.Popen[bytes] | None = None
         atexit.register(self.end)
 
@@ -59,7 +61,7 @@ class _Process:
 
     def end(self) -> None:
         """End the process, where this one has started it."""
-        process, self.running = self.running, None
+        process, self.running, self.refused = self.running, None, None
         if process is not None and self.owner == os.getpid():
             process.kill()
             process.communicate()
@@ -102,6 +104,8 @@ def in_another_process(module: str, function: str, path: Path, *rest: Any, kind:
         The function raises it.
     """
     size = path.stat().st_size
+    if _PROCESS.refused not in (None, path):
+        _PROCESS.end()
     seconds = LEAST_S + size / BYTES_PER_S
     memory = LEAST_BYTES + BYTES_PER_BYTE * size
     try:
@@ -113,6 +117,7 @@ def in_another_process(module: str, function: str, path: Path, *rest: Any, kind:
     except EOFError as error:
         raise damaged(path, kind, EOFError("the library for this format crashed")) from error
     if isinstance(answer, Exception):
+        _PROCESS.refused = path
         raise answer
     return answer
 
