@@ -112,6 +112,10 @@ def test_the_tests_that_judge_are_those_that_run_the_line_the_quick_ones_first(m
             "tsas_cli/physics/user.py": {"1": ["", quick]},
         },
     }
+    for name, text in (("made", "from tsas_cli.physics.made import f\n"), ("other", "")):
+        file = made / "tests" / "physics" / f"test_{name}.py"
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text)
     file = made / "reach.json"
     file.write_text(json.dumps(reach))
     reached = Reached([file], made)
