@@ -16,7 +16,7 @@ ROOT = Path(__file__).parents[2]
 def main() -> None:
     """Read the call, draw, judge and print; what is judged already is not judged again."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.mutants", description=__doc__)
-    parser.add_argument("--size", type=int, default=240, help="how many mutants")
+    parser.add_argument("--size", type=int, default=200, help="how many mutants")
     parser.add_argument("--seed", type=int, default=1, help="which ones")
     parser.add_argument("--out", type=Path, default=ROOT / "reports" / "mutants", metavar="DIR")
     call = parser.parse_args()

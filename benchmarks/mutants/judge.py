@@ -179,11 +179,14 @@ class Reached:
         return {path: set().union(*lines.values()) for path, lines in self._lines.items()}
 
     def _users(self, path: str) -> set[str]:
-        """Return the tests that run anything of a file, or of one that takes something from it."""
+        """Return the tests that run anything of a file, or take from it, or of one that does."""
         module = path.removesuffix(".py").replace("/", ".")
         takes = re.compile(rf"from {re.escape(module)} import")
         users = {p for p in self._files if takes.search((self._tree / p).read_text())}
-        return set().union(*(self._files.get(p, set()) for p in users | {path}))
+        files = {name.split("::")[0] for name in self._times}
+        taking = {file for file in files if takes.search((self._tree / file).read_text())}
+        direct = {name for name in self._times if name.split("::")[0] in taking}
+        return direct.union(*(self._files.get(p, set()) for p in users | {path}))
 
     def tests(self, mutant: Mutant, patience_s: float) -> list[str]:
         """Return the tests that run a line, or use it where it runs on loading; quick ones first.

@@ -22,7 +22,7 @@ from tests.physics.references import (
     TABLE_1,
     course_of,
 )
-from tsas_cli.physics.bristles import Bristle, friction, friction_now
+from tsas_cli.physics.bristles import Bristle, Bristles, friction, friction_now
 from tsas_cli.physics.frames import empty_frames
 from tsas_cli.physics.lugre_balance import balance, sum_of_sizes
 from tsas_cli.physics.lugre_chain import OWN_STEPS, lugre_chain, sample_after, sample_before
@@ -177,6 +177,15 @@ def test_sums_and_largest_ones_miss_no_node(count):
         assert sum_of_sizes(s, count) == 3.0
         if count > 1:
             assert largest_of(s, count) == 3.0
+
+
+def test_usual_constants_are_those_of_table_1_for_the_whole_sheath():
+    """Yang 2025: 100 N/mm for each of 50 lumps, 0.25 kg for 100 m, 0.1 N s/mm for each of 50."""
+    usual = Bristles()
+    assert usual.stiffness_N_per_mm == pytest.approx(100.0 * 50)
+    assert usual.tendon_mass_kg_per_m == pytest.approx(0.25 / 100.0)
+    assert usual.tendon_damping_N_s_per_mm == pytest.approx(0.1 / 50)
+    assert math.isnan(usual.damping_N_s_per_mm)  # critical: the paper's diverges
 
 
 @pytest.mark.parametrize("speed", [0.7, -0.7])

@@ -243,6 +243,9 @@ def test_a_slack_tendon_waits_where_its_spring_leaves_it():
     assert phase.tolist() == [1, 2, 2, 1]
     assert f_in[1:3].tolist() == f_out[1:3].tolist() == [0.0, 0.0]
     np.testing.assert_allclose(x_out[1:3], -rig.preload_N / 30.0)
+    places, tensions = rest_after(course_of(drive[:2], rig), rig, LOADED_BY_SPRING, N)
+    np.testing.assert_allclose(np.diff(places[1:]), gives(rig)[1:] * rig.preload_N)  # straight
+    assert not tensions[:-1].any()
     # From no tension, all of it slips: F_out over the spring, F_in's mean over the sheath.
     share = A / N
     passed = math.exp(-share) ** np.arange(N + 1.0)
