@@ -224,7 +224,7 @@ def test_structures_in_words():
 def test_the_inverse_in_words():
     assert inverse_of(DriveValues(0.02)).startswith("G⁻¹(s) ≈ 50 s; u_ff")
     slow = DriveValues(0.02, motor_lag_s=0.1, leak_per_s=0.3)
-    assert inverse_of(slow).startswith("G⁻¹(s) ≈ 50 s + 5 s² + 15; u_ff")
+    assert inverse_of(slow).startswith("G⁻¹(s) ≈ 51.5 s + 5 s² + 15; u_ff")
 
 
 def found(rivals=(), unexplained=False):

@@ -35,7 +35,8 @@ def inverse_of(values: DriveValues) -> str:
     K, lag = values.gain_mm_per_s_rpm, total_lag_s(values)
     own = f" + {values.leak_per_s / K:.4g}" if values.leak_per_s else ""
     second = f" + {lag / K:.4g} s²" if lag > 0.0 else ""
-    return f"G⁻¹(s) ≈ {1.0 / K:.4g} s{second}{own}; u_ff = kV dx/dt + kA d²x/dt²"
+    first = (1.0 + values.leak_per_s * lag) / K  # (s + a)(Ls + 1) / K
+    return f"G⁻¹(s) ≈ {first:.4g} s{second}{own}; u_ff = kV dx/dt + kA d²x/dt²"
 
 
 def next_run(found: DriveDiagnosis) -> str:
