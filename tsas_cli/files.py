@@ -197,11 +197,6 @@ def check_unchanged(path: Path, before: tuple[int, ...]) -> None:
         )
 
 
-def nested_too_deeply(path: Path) -> InputError:
-    """Return the error for JSON that is read and then cannot be followed to its depth."""
-    return InputError("is nested too deeply", where=path, expected="at most some hundred levels")
-
-
 def _finite(content: Any) -> Any:
     if isinstance(content, dict):
         return {str(key): _finite(value) for key, value in content.items()}

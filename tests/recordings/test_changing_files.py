@@ -47,9 +47,9 @@ def test_a_run_that_changes_between_its_checksum_and_its_rows(dataset, monkeypat
     path = dataset / "runs" / "a.parquet"
     opened = run_files.open_parquet
 
-    def after_a_change(which):
+    def after_a_change(source, where):
         replace(path)
-        return opened(which)
+        return opened(source, where)
 
     assert read_dataset(dataset)["a"].time_s.size == 500
     monkeypatch.setattr(run_files, "open_parquet", after_a_change)

@@ -151,11 +151,17 @@ def test_what_format_1_does_not_allow_is_refused(
 
 @pytest.mark.parametrize(
     "content",
-    [b"format = ", b"\xff\xfe\x00", b"a = " + b"[" * 5000 + b"]" * 5000, b"a = " + b"1" * 5000],
+    [b"format = ", b"\xff\xfe\x00", b"a = " + b"1" * 5000],
 )
 def test_what_is_not_toml_is_one_line(tmp_path: Path, content: bytes) -> None:
     (tmp_path / "dataset.toml").write_bytes(content)
     with pytest.raises(InputError, match=r"dataset\.toml: is not TOML"):
+        read_manifest(tmp_path)
+
+
+def test_what_is_nested_too_deep_is_one_line(tmp_path: Path) -> None:
+    (tmp_path / "dataset.toml").write_bytes(b"a = " + b"[" * 5000 + b"]" * 5000)
+    with pytest.raises(InputError, match=r"dataset\.toml: is nested too deep"):
         read_manifest(tmp_path)
 
 

@@ -7,5 +7,5 @@ from tsas_cli.stage_files.check import Check
 
 def test_a_file_that_is_nested_deeply_is_one_line(tmp_path):
     (tmp_path / Check.FILE).write_text('{"a": ' + "[" * 800 + "]" * 800 + "}")
-    with pytest.raises(InputError, match=r"check\.json: is nested too deeply"):
+    with pytest.raises(InputError, match=r"check\.json: is nested too deep"):
         read_stage(Check, tmp_path)

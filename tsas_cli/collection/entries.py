@@ -101,6 +101,8 @@ def _footer(folder: Path, run: Run) -> dict[str, Any]:
     path = folder / run.file
     if not path.resolve().is_relative_to(folder.resolve()):
         raise OSError("a link leads out of the dataset's folder")
+    if path.exists() and not path.is_file():
+        raise OSError("is no file")  # a pipe would be waited for
     footer = pq.read_metadata(path)
     names = footer.schema.names
     duration = _duration_s(footer, names)

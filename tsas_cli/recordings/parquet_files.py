@@ -96,18 +96,17 @@ def check_size(
     of_file = cast("Path", path).stat().st_size if size is None else size
     expanded = Expanded(path, of_file, limits.PARQUET_EXPANSION)
     metadata = file.metadata
-    leaves = [
-        leaf
-        for leaf in range(metadata.num_columns)
-        if metadata.schema.column(leaf).path.split(".")[0] in names
-    ]
+    every = (metadata.schema.column(leaf) for leaf in range(metadata.num_columns))
+    leaves = [leaf for leaf in every if leaf.path.split(".")[0] in names]
+    for leaf in leaves:
+        if leaf.max_repetition_level > 0:
+            raise InputError(f"column {leaf.path} holds lists", where=path, expected="numbers")
+    # Of the groups alone: asked for a damaged column, pyarrow ends the process.
     for number in range(metadata.num_row_groups):
         group = metadata.row_group(number)
         for leaf in leaves:
-            chunk = group.column(leaf)
-            rows = max(group.num_rows, chunk.num_values)
-            each = 8 if chunk.physical_type != "BYTE_ARRAY" else chunk.total_uncompressed_size
-            expanded.add(rows * each, what=f"{metadata.num_rows} rows")
+            each = 8 if leaf.physical_type != "BYTE_ARRAY" else group.total_byte_size
+            expanded.add(group.num_rows * each, what=f"{metadata.num_rows} rows")
     if whole:
         expanded.fits()
 

@@ -72,7 +72,7 @@ def long_run(folder: Place, run: Run) -> RunColumns | None:
 def _is_long(path: Path) -> bool:
     """Say whether a file has too many rows to be read at once; its reader says what is wrong."""
     try:
-        return int(pq.read_metadata(path).num_rows) > MOST_ROWS
+        return path.is_file() and int(pq.read_metadata(path).num_rows) > MOST_ROWS
     except (pa.ArrowException, OSError):
         return False
 

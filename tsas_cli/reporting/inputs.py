@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.errors import InputError, printable
-from tsas_cli.files import nested_too_deeply, read_json
+from tsas_cli.files import read_json
 from tsas_cli.recordings.dataset import Dataset, read_dataset
 from tsas_cli.recordings.manifest import FILE, parse
 from tsas_cli.recordings.quality import check_dataset
@@ -151,10 +151,7 @@ def read_stage(kind: type[Stage], folder: Path) -> Stage:
     """
     path = folder / kind.FILE
     content = read_json(path)
-    try:
-        visible = _visible(content) if isinstance(content, dict) else content
-    except RecursionError as error:
-        raise nested_too_deeply(path) from error
+    visible = _visible(content) if isinstance(content, dict) else content
     return parse(kind, visible, path)
 
 

@@ -44,7 +44,7 @@ def test_what_stands_beside_the_table_is_the_header(ask):
 def test_a_file_that_is_nested_deeply_is_one_line(tmp_path):
     path = tmp_path / "a.json"
     path.write_text('{"a":' * 3000 + "1" + "}" * 3000)
-    with pytest.raises(InputError, match=r"is nested too deeply|is not JSON"):
+    with pytest.raises(InputError, match="is nested too deep"):
         tables(path)
 
 

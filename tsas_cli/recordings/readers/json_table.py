@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from tsas_cli.errors import InputError, nearest
-from tsas_cli.files import nested_too_deeply, read_json
+from tsas_cli.files import read_json
 from tsas_cli.recordings.readers.options import ReadOptions
 from tsas_cli.recordings.readers.table import Source, Table, floats, resolve
 
@@ -41,13 +41,9 @@ def tables(path: Path) -> list[str]:
     Raises
     ------
     InputError
-        The file is not JSON, or nested too deeply.
+        The file is not JSON, or nested too deep.
     """
-    content = read_json(path)
-    try:
-        return list(_tables(content, ""))
-    except RecursionError as error:
-        raise nested_too_deeply(path) from error
+    return list(_tables(read_json(path), ""))
 
 
 def _tables(content: Any, key: str) -> Iterator[str]:
