@@ -1,10 +1,12 @@
 """Where a recording goes: into a file, or to a viewer while it is made."""
 
+import atexit
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from hashlib import sha256
 from pathlib import Path
+from threading import Thread
 
 import rerun as rr
 
@@ -13,6 +15,8 @@ from tsas_cli.files import new_file
 from tsas_cli.reporting.stream.recorder.layout import Layout
 from tsas_cli.reporting.stream.recorder.reading import is_finished
 from tsas_cli.reporting.stream.recorder.recorder import Recorder
+
+PATIENCE_S = 10.0  # in which a file grows, or is whole
 
 
 @contextmanager
@@ -48,7 +52,7 @@ def to_file(
             yield recorder
             recorder.settle()
         finally:
-            stream.disconnect()  # writes the footer
+            _end(stream, temporary)
         if not is_finished(temporary):
             raise _unfinished(path)
 
@@ -71,6 +75,23 @@ def to_viewer(address: str, name: str, layout: Layout | None = None) -> Iterator
             recorder.settle()
         finally:
             stream.disconnect()
+
+
+def _end(stream: rr.RecordingStream, path: Path) -> None:
+    """Write the footer; give up where nothing is written any more.
+
+    Rerun's writer ends where the disk is full, and whoever then disconnects may wait for ever. So
+    that is left to a thread, and Rerun is not asked to end its streams when the program ends.
+    """
+    ending = Thread(target=stream.disconnect, daemon=True)
+    ending.start()
+    size = -1
+    while ending.is_alive():
+        ending.join(PATIENCE_S)
+        before, size = size, path.stat().st_size
+        if ending.is_alive() and size == before:
+            atexit.unregister(rr.rerun_shutdown)
+            return
 
 
 def _unfinished(path: Path) -> InputError:
