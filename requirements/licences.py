@@ -15,7 +15,7 @@ from requirements.locked import DEVELOPMENT, EXTRA, ROOT, RUN, Locked, locked, u
 PAGE = ROOT / "requirements" / "licences.md"
 PERMISSIVE = frozenset({
     "0BSD", "Apache-2.0", "Apache-2.0 WITH LLVM-exception", "BSD-2-Clause", "BSD-3-Clause",
-    "CC0-1.0", "ISC", "MIT", "MIT-CMU", "PSF-2.0", "Zlib",
+    "CC0-1.0", "ISC", "MIT", "MIT-0", "MIT-CMU", "PSF-2.0", "Zlib",
 })  # fmt: skip
 WEAK = frozenset({"LGPL-2.1-only", "LGPL-3.0-or-later", "MPL-2.0"})
 ALLOWED = {RUN: PERMISSIVE, EXTRA: PERMISSIVE | WEAK, DEVELOPMENT: PERMISSIVE | WEAK}

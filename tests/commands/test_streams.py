@@ -43,6 +43,7 @@ class Anything(Result):
     """What a stage may have found."""
 
     wrong = ()  # of files that `tsas verify` looks at
+    failed = ()  # of tasks of `tsas sweep`
 
     def intro(self):
         return ["before the tables"]

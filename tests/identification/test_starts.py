@@ -15,7 +15,7 @@ from tsas_cli.physics.static import static_model
 
 X = through(20.0, 0.0, 20.0)
 F_IN, F_OUT, PHASE = static_model(X, GROUP_A)
-A, L, BEND = wrap_of(GROUP_A), GROUP_A.sheath_length_mm, GROUP_A.total_bend_rad
+A, BEND = wrap_of(GROUP_A), GROUP_A.total_bend_rad
 # km without the elastic term (Eqs. 31, 32), and of the whole dead band (29).
 KM = {
     "contraction": 1.579 * math.exp(A),
@@ -35,13 +35,14 @@ def read(channels, slopes=KM, load="spring"):
     values = {"f_in_N": F_IN, "f_out_N": F_OUT, "x_out_mm": (F_OUT - 25.0) / 1.579}
     measured = {name: values[name] for name in channels}
     run = SimpleNamespace(
-        run=SimpleNamespace(load=load),
+        run=SimpleNamespace(load=load, preload_N=None),
         measured=measured,
         channel=measured.get,
+        drive_column="x_in_mm",
         conditioned={"x_in_mm": SimpleNamespace(values=X)},
     )
     km = [SimpleNamespace(phase=name, value=value) for name, value in slopes.items()]
-    return read_off(run, segments(), km, L, BEND)
+    return read_off(run, segments(), km, GROUP_A)
 
 
 def test_all_channels_tell_everything():

@@ -90,7 +90,7 @@ def test_files_are_the_same_as_by_local_processes_and_a_task_may_fail(two, recor
     assert there.summary["counts"] == {"done": 4, "failed": 2}
     found = files(tmp_path / "there")
     assert found == files(tmp_path / "here")
-    assert len(found) == 4 * 4 + 3
+    assert len(found) == 4 * 5 + 3
     same, other, _ = filecmp.cmpfiles(tmp_path / "there", tmp_path / "here", found, shallow=False)
     assert [str(path) for path in other] == ["journal.jsonl"]
     assert len(same) == len(found) - 1
@@ -191,7 +191,10 @@ def test_what_ends_workers_or_the_scheduler_is_told(tmp_path, shared):
         made.add()
         answers = answered(made, "one_always_kills", texts(range(4)), shared)
         assert answers.pop(2)["error"] == "the process died"
-        assert [answers[n]["state"] for n in sorted(answers)] == ["done"] * 3
+        # With no failure allowed, what waited on that worker may be given up with it.
+        others = [answer["error"] for answer in answers.values() if answer["state"] != "done"]
+        assert len(others) < 3
+        assert set(others) <= {"the process died"}
         told = texts(range(3), folder=str(marks), seconds=0.5)
 
         def kill():

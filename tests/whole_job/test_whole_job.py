@@ -132,6 +132,9 @@ def test_files_are_the_same_bytes_in_another_folder_zone_language_and_number_of_
     assert list(ours) == list(theirs)
     streams = [name for name in ours if name.endswith(".rrd")]
     assert len(streams) > 4
+    for files in (ours, theirs):  # whose checksums differ too
+        for name in [name for name in files if name.endswith("/SHA256SUMS")]:
+            files[name] = b"".join(x for x in files[name].splitlines(True) if b".rrd" not in x)
     assert {n for n in ours if ours[n] != theirs[n]} <= set(streams)
     suffixes = {Path(name).suffix for name in ours}
     assert {".json", ".toml", ".parquet", ".html", ".txt"} <= suffixes

@@ -17,6 +17,7 @@ from tsas_cli.recordings.checked import Source
 from tsas_cli.recordings.storage import Place
 
 BUFFER = 1 << 20  # bytes that are read at a time: a row group need not fit into memory
+_END = 1 << 16  # bytes of its end that pyarrow begins with
 _TEXT_BEHIND = 8  # bytes at the end: the footer's length and PAR1
 
 
@@ -56,11 +57,10 @@ def size_of(source: Source) -> int:
 def _check_footer(stream: IO[bytes] | CheckedFile | pa.NativeFile, path: object) -> None:
     """Refuse a footer that is longer than that of a recording."""
     size = int(stream.seek(0, io.SEEK_END))
-    stream.seek(max(0, size - _TEXT_BEHIND))
-    length = struct.unpack("<I", stream.read(4).rjust(4, b"\0"))[0]
-    whole = stream.read() == b"PAR1"
+    stream.seek(max(0, size - _END))  # as much as is read next, so that it is fetched once
+    length, mark = struct.unpack("<I4s", stream.read()[-_TEXT_BEHIND:].rjust(_TEXT_BEHIND, b"\0"))
     stream.seek(0)
-    if whole and length > limits.FOOTER:
+    if mark == b"PAR1" and length > limits.FOOTER:
         raise InputError(
             f"its footer has {limits.size(length)}",
             where=path,
