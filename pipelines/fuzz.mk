@@ -2,7 +2,7 @@
 #
 # make fuzz                                  two million executions, an hour or two on one core
 # make fuzz FUZZ_RUNS=100000 FUZZ='units'    fewer, of what is named alone
-# make fuzz-short                            what `make test` does of it: a minute on one core
+# make fuzz-short                            a minute of it on one core
 FUZZ ?=
 FUZZ_RUNS ?= 2000000
 FUZZ_SECONDS ?= 5
@@ -14,7 +14,7 @@ fuzz: setup  ## search for input that breaks a reader, two million times; then m
 	@$(BIN)/python -m tests.fuzz $(FUZZ) --runs $(FUZZ_RUNS)
 	@$(MAKE) properties
 
-fuzz-short: setup
+fuzz-short: setup  ## a minute of that search
 	@$(BIN)/python -m tests.fuzz $(FUZZ_SHORT) --seconds $(FUZZ_SECONDS) --out reports/fuzz-short
 
 properties: setup  ## every property test with thousands of random examples, new ones each time

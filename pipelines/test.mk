@@ -1,13 +1,10 @@
 # Everything that must hold before a change goes in: style, types, floors of the house, behaviour.
 # A module's tests stay together, since they share what takes long to make; three at a time on two
-# cores, since some wait for a browser or a viewer. The short search for bad input runs beside them.
-.PHONY: test pytest
-test: setup  ## ruff, mypy, import-linter, pytest and a short search for bad input
+# cores, since some wait for a browser or a viewer.
+.PHONY: test
+test: setup  ## ruff, mypy, import-linter and pytest
 	@$(BIN)/ruff check --quiet
 	@$(BIN)/ruff format --check --quiet || { echo 'ruff format would change files: run .venv/bin/ruff format' >&2; exit 1; }
 	@$(BIN)/mypy --no-error-summary
 	@$(BIN)/lint-imports > .venv/lint-imports.txt || { cat .venv/lint-imports.txt; exit 1; }
-	@$(MAKE) --jobs 2 pytest fuzz-short
-
-pytest: setup
 	@TSAS_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/pytest -n 3 --dist loadscope

@@ -44,6 +44,7 @@ READ = {
     "numba": "BSD-2-Clause",
     "protobuf": "BSD-3-Clause",
     "yattag": "LGPL-2.1-only",
+    "tzdata": "Apache-2.0",  # on Windows only
     "zstd": "BSD-2-Clause",
 }
 TITLES = {
