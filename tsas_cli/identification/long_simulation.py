@@ -20,7 +20,6 @@ from tsas_cli.physics.chain_state import SLACK, UNSETTLED
 from tsas_cli.physics.ends import Drive
 from tsas_cli.physics.response import Dynamics, Response
 from tsas_cli.recordings.columns import TIME
-from tsas_cli.recordings.recording import Recording
 from tsas_cli.recordings.writing import parquet_writer, table_of
 
 Floats = npt.NDArray[np.float64]
@@ -94,7 +93,7 @@ def simulate_long(
             rows, solver = waiting.popleft(), response.solver
             channels = channels_of(response, driven, rows.in_gap)
             columns = {TIME: rows.time_s, "x_in_mm": response.x_in_mm, **channels}
-            write(table_of(Recording(long.run, {name: columns[name] for name in names})))
+            write(table_of({name: columns[name] for name in names}))
             sums.add(response, channels, rows)
             kept.append(long.thin(rows))
     return sums.told(solver), long.thinned(kept)

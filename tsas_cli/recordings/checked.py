@@ -1,7 +1,7 @@
 """A run's file, from a folder or an address, once it is known to be the one that is meant."""
 
 from pathlib import Path
-from typing import TypeAlias, cast
+from typing import TypeAlias
 
 import pyarrow as pa
 
@@ -14,7 +14,7 @@ from tsas_cli.recordings.storage import Address, Place, check_inside
 Source: TypeAlias = Path | CheckedFile | pa.NativeFile
 
 
-def checked_file(path: Place, folder: Place, run: Run) -> Source:
+def checked_file(folder: Place, run: Run) -> Source:
     """Return what Parquet is read from: the file itself once its checksum is that of the manifest.
 
     What comes from an address is checked while it is read.
@@ -26,21 +26,22 @@ def checked_file(path: Place, folder: Place, run: Run) -> Source:
     NotTheSameError
         Later, while it is read: it is not what its checksum says.
     """
-    if isinstance(path, Address) or isinstance(folder, Address):
+    if isinstance(folder, Address):
+        path = folder / run.file
         try:
-            return opened(cast("Address", path), run.sha256.lower())
+            return opened(path, run.sha256.lower())
         except FileNotFoundError as error:
             raise _missing(path, run) from error
         except NotTheSameError as error:
             raise changed(path, run) from error
-    path = local_file(folder, run)
+    file = local_file(folder, run)
     try:
-        digest = sha256_of(path)
+        digest = sha256_of(file)
     except OSError as error:
-        raise InputError(f"cannot be read ({error.strerror})", where=path) from error
+        raise InputError(f"cannot be read ({error.strerror})", where=file) from error
     if digest != run.sha256.lower():
-        raise changed(path, run)
-    return path
+        raise changed(file, run)
+    return file
 
 
 def local_file(folder: Path, run: Run) -> Path:

@@ -7,8 +7,6 @@ from itertools import chain
 from pathlib import Path
 from typing import Any
 
-import pyarrow as pa
-
 from tsas_cli import __version__, limits
 from tsas_cli.errors import InputError
 from tsas_cli.files import check_unchanged, sha256_of, state_of
@@ -19,8 +17,8 @@ from tsas_cli.recordings.dataset import read_from
 from tsas_cli.recordings.ingest_map import IngestMap
 from tsas_cli.recordings.manifest import Manifest, Run, parse, write_manifest
 from tsas_cli.recordings.readers import SUFFIXES, batches
-from tsas_cli.recordings.readers.table import Floats, Table
-from tsas_cli.recordings.writing import parquet_writer
+from tsas_cli.recordings.readers.table import Table
+from tsas_cli.recordings.writing import parquet_writer, table_of
 from tsas_cli.steps import SILENT, Steps
 
 
@@ -150,23 +148,19 @@ def _origin(ingested: Sequence[Ingested], map_path: Path, folder: Path) -> dict[
     }
 
 
-def _with_nulls(columns: dict[str, Floats]) -> pa.Table:
-    return pa.table({n: pa.array(values, from_pandas=True) for n, values in columns.items()})
-
-
 def _ingest(
     parts: Iterator[Table], run: str, path: Path, mapping: IngestMap, map_path: Path, written: Path
 ) -> Ingested:
     """Write one file part by part; say what became of it."""
     columns, before = canonical_columns(next(parts), mapping, path, map_path)
     first_s = float(columns[TIME][0])
-    table = _with_nulls(columns)
+    table = table_of(columns)
     with parquet_writer(written, table.schema) as write:
         write(table)
         for part in parts:
             columns, before = canonical_columns(part, mapping, path, map_path, before)
             if columns[TIME].size:
-                write(_with_nulls(columns))
+                write(table_of(columns))
     rows, duration_s = before.kept, before.last[TIME] - first_s
     if rows < 2:
         raise InputError("all rows are the same", where=path, expected="at least two samples")

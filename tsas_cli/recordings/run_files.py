@@ -37,7 +37,7 @@ def read_recording(folder: Place, run: Run, *, strict: bool = True) -> Recording
     path = folder / run.file
     state = state_of(path) if isinstance(path, Path) and path.is_file() else None
     try:
-        table, names = _table_of(checked_file(path, folder, run), path)
+        table, names = _table_of(checked_file(folder, run), path)
     except NotTheSameError as error:
         raise changed(path, run) from error
     if isinstance(path, Path) and state is not None:
@@ -108,7 +108,7 @@ def open_run(folder: Place, run: Run) -> RunColumns:
         missing, or a column is in another unit.
     """
     path = folder / run.file
-    source = checked_file(path, folder, run)
+    source = checked_file(folder, run)
     try:
         file = open_parquet(source, path)
         _check_names_and_units(file.schema_arrow, path)

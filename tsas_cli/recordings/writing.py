@@ -10,7 +10,7 @@ import pyarrow.parquet as pq
 from tsas_cli.files import sha256_of
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.manifest import Manifest, Run, write_manifest
-from tsas_cli.recordings.recording import Recording
+from tsas_cli.recordings.recording import Floats, Recording
 
 
 def write_dataset(folder: Path, manifest: Manifest, tables: Mapping[str, pa.Table]) -> None:
@@ -36,13 +36,12 @@ def write_runs(folder: Path, runs: Mapping[str, Recording]) -> None:
 
 def write_answer(folder: Path, answer: Recording) -> None:
     """Write what a stage says about a run, NaN as null, into the folder of its runs."""
-    write_parquet(folder / f"{answer.run.id}.parquet", table_of(answer))
+    write_parquet(folder / f"{answer.run.id}.parquet", table_of(answer.columns))
 
 
-def table_of(recording: Recording) -> pa.Table:
-    """Return a run's columns as a table, NaN as null."""
-    columns = {name: pa.array(v, from_pandas=True) for name, v in recording.columns.items()}
-    return pa.table(columns)
+def table_of(columns: Mapping[str, Floats]) -> pa.Table:
+    """Return columns by name, shape (n,) each, as a table, NaN as null."""
+    return pa.table({name: pa.array(v, from_pandas=True) for name, v in columns.items()})
 
 
 def write_parquet(path: Path, table: pa.Table) -> None:
