@@ -14,7 +14,15 @@ from tsas_cli.errors import InputError
 from tsas_cli.recordings.readers import apart
 
 _WRITES = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND
-_CHANGES = {"os.mkdir", "os.rename", "os.remove", "os.rmdir", "os.link", "os.symlink", "os.chmod"}
+_CHANGES = {  # and which of its arguments is the folder that its path is relative to
+    "os.mkdir": 2,
+    "os.rename": 2,
+    "os.remove": 1,
+    "os.rmdir": 1,
+    "os.link": 2,
+    "os.symlink": 2,
+    "os.chmod": 2,
+}
 _STARTS = {"subprocess.Popen", "os.system", "os.exec", "os.posix_spawn", "socket.connect"}
 _READERS = apart.__name__  # the process in which foreign formats are read
 
@@ -66,12 +74,13 @@ class Watch:
             if flags is not None and flags & _WRITES and isinstance(path, str | bytes):
                 self._path(event, path)
         elif event in _CHANGES:
-            self._path(event, arguments[0])
+            self._path(event, arguments[0], arguments[_CHANGES[event]])
         elif event in _STARTS and _READERS not in str(arguments[1]):
             self.seen.append(f"{event} {arguments[0]!r}")
 
-    def _path(self, event: str, path: Any) -> None:
-        if not (os.path.realpath(os.fsdecode(path)) + os.sep).startswith(self.inside):
+    def _path(self, event: str, path: Any, folder: int = -1) -> None:
+        base = f"/proc/self/fd/{folder}" if folder >= 0 else ""  # Linux, as the search itself
+        if not (os.path.realpath(Path(base, os.fsdecode(path))) + os.sep).startswith(self.inside):
             self.seen.append(f"{event} {path!r}")
 
     @contextmanager

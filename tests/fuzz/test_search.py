@@ -1,5 +1,7 @@
 """The search finds what breaks a rule: a defect, a death of the process, a folder elsewhere."""
 
+import shutil
+
 import pytest
 
 from tests.fuzz import faulty
@@ -48,6 +50,20 @@ def test_writes_are_seen_but_in_temporary_folders(tmp_path, monkeypatch):
         (tmp_path / "other").write_text("")
     with pytest.raises(Broken, match=r"os\.rename"), watch.during():
         (tmp_path / "other").rename(tmp_path / "mine" / "other")
+
+
+def test_a_folder_is_removed_by_names_relative_to_it(tmp_path, monkeypatch):
+    monkeypatch.setattr("tests.fuzz.rules.gettempdir", lambda: str(tmp_path / "mine"))
+    for folder in ("mine/a/b", "other/a/b", "elsewhere"):
+        (tmp_path / folder).mkdir(parents=True)
+        (tmp_path / folder / "file").write_text("")
+    watch = Watch()
+    monkeypatch.chdir(tmp_path / "elsewhere")
+    with watch.during():
+        shutil.rmtree(tmp_path / "mine" / "a")
+    monkeypatch.chdir(tmp_path / "mine")
+    with pytest.raises(Broken, match=r"os\.remove 'file'; os\.rmdir 'b'"), watch.during():
+        shutil.rmtree(tmp_path / "other")
 
 
 def test_a_call_has_to_say_what_and_how_long(capsys):
