@@ -7,6 +7,8 @@ import tsas_cli as tsas
 from tests.collection.collected import ROWS, RATE_Hz, diagnose, write
 from tests.counted import Counted
 from tsas_cli.collection import COLUMNS
+from tsas_cli.collection.entries import entry_of
+from tsas_cli.collection.query import connected
 from tsas_cli.errors import InputError
 
 
@@ -112,6 +114,20 @@ def test_a_wrong_manifest_is_told_and_the_rest_is_answered(rigs):
         assert about_two.startswith("two/dataset.toml: runs/r0.parquet: ")
         assert "bad/dataset.toml" in repr(result)
     assert result.summary["runs"][2]["rows"] is None
+
+
+def test_a_damaged_footer_is_told_or_taken_and_ends_nothing(tmp_path):
+    folder = write(tmp_path / "a[1] *", {})
+    path = folder / "runs" / "r0.parquet"
+    whole = path.read_bytes()
+    connection = connected()
+    (run,) = entry_of(connection, folder, "dataset.toml")["runs"]
+    assert run["duration_s"] == pytest.approx((ROWS - 1) / RATE_Hz)
+    told = 0
+    for place in range(len(whole) - 8 - int.from_bytes(whole[-8:-4], "little"), len(whole)):
+        path.write_bytes(whole[:place] + bytes([whole[place] ^ 1]) + whole[place + 1 :])
+        told += len(entry_of(connection, folder, "dataset.toml")["problems"])
+    assert told > 100
 
 
 def test_folders_are_named_as_they_were_given(rigs):

@@ -2,11 +2,14 @@
 
 from collections.abc import Callable, Mapping
 from datetime import UTC, datetime
+from glob import escape
 from pathlib import Path
 from typing import Any
 
+import duckdb
 import pyarrow as pa
 import pyarrow.parquet as pq
+from duckdb import DuckDBPyConnection
 
 from tsas_cli.collection.found import DIAGNOSIS, MANIFEST
 from tsas_cli.errors import InputError
@@ -55,18 +58,25 @@ SCHEMA = pa.schema(
     }
 )
 
+# pyarrow knows these numbers too, but ends the process where the footer is damaged.
+TIMES = """
+SELECT min(TRY_CAST(stats_min_value AS DOUBLE)), max(TRY_CAST(stats_max_value AS DOUBLE)),
+    count(*) - count(TRY_CAST(stats_min_value AS DOUBLE) + TRY_CAST(stats_max_value AS DOUBLE))
+FROM parquet_metadata(?) WHERE path_in_schema = ?
+"""
 
-def entry_of(folder: Path, file: str) -> dict[str, Any]:
+
+def entry_of(connection: DuckDBPyConnection, folder: Path, file: str) -> dict[str, Any]:
     """Return what a file says, by the names of the index; what is wrong stands in `problems`."""
     try:
-        return _KINDS[file](folder)
+        return _KINDS[file](connection, folder)
     except InputError as error:
         return {"problems": [_without_place(error)]}
     except OSError as error:
         return {"problems": [f"cannot be read ({error.strerror})"]}
 
 
-def _manifest(folder: Path) -> dict[str, Any]:
+def _manifest(connection: DuckDBPyConnection, folder: Path) -> dict[str, Any]:
     manifest = read_manifest(folder)
     problems: list[str] = []
     return {
@@ -74,12 +84,14 @@ def _manifest(folder: Path) -> dict[str, Any]:
         "dataset": manifest.name,
         "kind": manifest.kind,
         "rig": {name: getattr(manifest.rig, name) for name in RIG},
-        "runs": [_run(folder, run, problems) for run in manifest.run],
+        "runs": [_run(connection, folder, run, problems) for run in manifest.run],
         "problems": problems,
     }
 
 
-def _run(folder: Path, run: Run, problems: list[str]) -> dict[str, Any]:
+def _run(
+    connection: DuckDBPyConnection, folder: Path, run: Run, problems: list[str]
+) -> dict[str, Any]:
     said = {
         "run": run.id,
         "started": None if run.started is None else _utc(run.started),
@@ -90,13 +102,13 @@ def _run(folder: Path, run: Run, problems: list[str]) -> dict[str, Any]:
         "tags": {key: str(value) for key, value in (run.model_extra or {}).items()},
     }
     try:
-        return said | _footer(folder, run)
-    except (pa.ArrowException, OSError) as error:
+        return said | _footer(connection, folder, run)
+    except (pa.ArrowException, duckdb.Error, OSError) as error:
         problems.append(f"{run.file}: {str(error).splitlines()[0]}")
         return said
 
 
-def _footer(folder: Path, run: Run) -> dict[str, Any]:
+def _footer(connection: DuckDBPyConnection, folder: Path, run: Run) -> dict[str, Any]:
     """Return what the end of a run's Parquet file says of it; no sample is read."""
     path = folder / run.file
     if not path.resolve().is_relative_to(folder.resolve()):
@@ -105,7 +117,7 @@ def _footer(folder: Path, run: Run) -> dict[str, Any]:
         raise OSError("is no file")  # a pipe would be waited for
     footer = pq.read_metadata(path)
     names = footer.schema.names
-    duration = _duration_s(footer, names)
+    duration = _duration_s(connection, path)
     return {
         "rows": footer.num_rows,
         "duration_s": duration,
@@ -115,18 +127,13 @@ def _footer(folder: Path, run: Run) -> dict[str, Any]:
     }
 
 
-def _duration_s(footer: pq.FileMetaData, names: list[str]) -> float | None:
+def _duration_s(connection: DuckDBPyConnection, path: Path) -> float | None:
     """Return the time from the first to the last sample [s], None where the file doesn't say."""
-    if TIME not in names:
-        return None
-    groups = range(footer.num_row_groups)
-    told = [footer.row_group(k).column(names.index(TIME)).statistics for k in groups]
-    if not told or not all(each is not None and each.has_min_max for each in told):
-        return None
-    return float(max(each.max for each in told)) - float(min(each.min for each in told))
+    ((first, last, silent),) = connection.execute(TIMES, [escape(str(path)), TIME]).fetchall()
+    return None if first is None or silent else float(last) - float(first)
 
 
-def _diagnosis(folder: Path) -> dict[str, Any]:
+def _diagnosis(_: DuckDBPyConnection, folder: Path) -> dict[str, Any]:
     path = folder / DIAGNOSIS
     content = read_json(path)
     said = parse(Diagnosis, content, path)
@@ -140,7 +147,7 @@ def _diagnosis(folder: Path) -> dict[str, Any]:
     }
 
 
-_KINDS: Mapping[str, Callable[[Path], dict[str, Any]]] = {
+_KINDS: Mapping[str, Callable[[DuckDBPyConnection, Path], dict[str, Any]]] = {
     MANIFEST: _manifest,
     DIAGNOSIS: _diagnosis,
 }

@@ -54,7 +54,7 @@ def index_of(folders: Sequence[Path], connection: "DuckDBPyConnection", step: St
     if not changed and len(known) == len(found) and file.is_file():
         return Index(folders, file, None, problems)
     step.ahead(len(changed))
-    table = _renewed(roots, found, changed, file if known else None, step)
+    table = _renewed(connection, roots, found, changed, file if known else None, step)
     if (problem := _kept(table, file)) is not None:
         return Index(folders, None, table, [*problems, problem])
     return Index(folders, file, None, problems)
@@ -83,6 +83,7 @@ def _known(connection: "DuckDBPyConnection", file: Path) -> dict[Place, Stamp]:
 
 
 def _renewed(
+    connection: "DuckDBPyConnection",
     roots: Sequence[Path],
     found: Mapping[Place, Stamp],
     changed: Sequence[Place],
@@ -97,7 +98,7 @@ def _renewed(
 
     entries = []
     for place in changed:
-        entry = entry_of(roots[place.root] / place.folder, place.file)
+        entry = entry_of(connection, roots[place.root] / place.folder, place.file)
         entries.append(place._asdict() | found[place]._asdict() | entry)
         step()
     table = pa.Table.from_pylist(entries, schema=SCHEMA)
