@@ -40,7 +40,8 @@ def open_parquet(source: Source, where: Place | None = None) -> pq.ParquetFile:
             _check_footer(stream, path)
     else:
         _check_footer(source, path)
-    file = pq.ParquetFile(source, buffer_size=BUFFER)
+    # What is read before it is asked for stays in memory until the file is closed.
+    file = pq.ParquetFile(source, buffer_size=BUFFER, pre_buffer=False)
     limits.columns(file.schema_arrow.names, path)
     return file
 

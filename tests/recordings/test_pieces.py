@@ -1,0 +1,27 @@
+"""A recording that is read in pieces: every row once, and a small part of it in memory."""
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from tsas_cli.files import sha256_of
+from tsas_cli.recordings import pieces as reading
+from tsas_cli.recordings.dataset import read_dataset
+from tsas_cli.recordings.run_files import open_run
+
+GROUP, GROUPS = 4096, 60
+
+
+def test_every_row_is_read_and_a_small_part_is_held(dataset, monkeypatch):
+    run, rng = read_dataset(dataset).runs[0], np.random.default_rng(1)
+    values = {name: rng.standard_normal(GROUP * GROUPS) for name in ("x_in_mm", "f_in_N")}
+    table = pa.table({"time_s": np.arange(GROUP * GROUPS) / 100.0} | values)
+    pq.write_table(table, dataset / run.file, row_group_size=GROUP)
+    run = run.model_copy(update={"sha256": sha256_of(dataset / run.file)})
+    monkeypatch.setattr(reading, "MOST_ROWS", GROUP)
+    before, held, seen = pa.total_allocated_bytes(), [], []
+    for piece in reading.pieces(open_run(dataset, run), table.column_names):
+        held.append(pa.total_allocated_bytes() - before)
+        seen.append(piece.columns["f_in_N"])
+    assert (np.concatenate(seen) == values["f_in_N"]).all()
+    assert max(held) < (dataset / run.file).stat().st_size / 10
