@@ -108,3 +108,16 @@ def test_a_drive_that_stands_still_while_it_unloads_is_in_the_dead_band(seed):
     found = labels(prepare(Recording(entry, columns)))
     assert np.mean(found[rests] == "dead_band_down") > 0.7
     assert np.mean(found[top - 700 : top - 50] == "contraction") > 0.9
+
+
+@pytest.mark.parametrize("left", range(2, 12))
+def test_a_run_may_end_right_after_a_reversal(left):
+    """The last stroke has fewer samples than a law is fitted to, and the tension has peaked."""
+    x_in = np.concatenate((np.linspace(0.0, 5.0, 100), 5.0 - 0.3 * np.arange(1, left)))
+    f_in = 20.0 + 4.0 * x_in + np.random.default_rng(1).normal(0.0, 0.01, x_in.size)
+    entry = Run(id="a", file="a.parquet", sha256="0" * 64, preload_N=25.0)
+    columns = {"time_s": np.arange(x_in.size) / 100.0, "x_in_mm": x_in, "f_in_N": f_in}
+    parts = segment(prepare(Recording(entry, columns)))
+    assert [part.end for part in parts] == [*(part.first for part in parts[1:]), x_in.size]
+    assert all(part.first < part.end for part in parts)
+    assert abs(parts[-1].first - 99) <= 1

@@ -130,7 +130,10 @@ def _start_of_unloading(run: Prepared, turn: int) -> int:
     rest = last_beyond(x, turn, STILL * conditioned.sd[turn]) + 1
     if f_in is None or rest == 0 or turn == x.size - 1:
         return turn
-    means = np.convolve(f_in[rest : turn + FEWEST], np.full(FEWEST, 1.0 / FEWEST), mode="valid")
+    around = f_in[rest : turn + FEWEST]
+    if around.size < FEWEST:  # the run ends here
+        return turn
+    means = np.convolve(around, np.full(FEWEST, 1.0 / FEWEST), mode="valid")
     pulled = means if x[turn] > x[rest - 1] else -means
     margin = UNLOADS * run.noise["f_in_N"] / math.sqrt(FEWEST)
     kept = np.flatnonzero(pulled >= pulled.max() - margin)
