@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from importlib import import_module
 from pathlib import Path
 from pkgutil import iter_modules
+from types import ModuleType
 
 import tests.fuzz.targets
 from tests.fuzz.search import Budget, Found, keep, search
@@ -37,12 +38,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
         parser.error(f"no target {', '.join(sorted(unknown))}; there are {', '.join(NAMES)}")
     if call.runs < 0 and not call.seconds:
         parser.error("say how long: --runs or --seconds")
-    targets = [import_module(f"tests.fuzz.targets.{name}") for name in call.names or NAMES]
-    shares = [getattr(target, "SHARE", 1.0) for target in targets]
+    targets = [target_of(name) for name in call.names or NAMES]
+    shares = sum(target.SHARE for target in targets)
     found = []
-    for target, share in zip(targets, shares, strict=True):
+    for target in targets:
         print(f"searching {target.__name__} …", file=sys.stderr, flush=True)
-        runs = -1 if call.runs < 0 else round(call.runs * share / sum(shares))
+        runs = -1 if call.runs < 0 else round(call.runs * target.SHARE / shares)
         budget = Budget(runs, call.seconds, call.seed)
         found.append(search(target, budget, CORPUS, call.out))
         if call.keep:
@@ -53,6 +54,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if kept:
         print("\nInputs that break a rule, with what they do beside each:", *kept, sep="\n  ")
     return 1 if kept else 0
+
+
+def target_of(name: str) -> ModuleType:
+    """Return a target's module."""
+    return import_module(f"tests.fuzz.targets.{name}")
 
 
 def rows(found: Sequence[Found]) -> Iterable[list[str]]:

@@ -5,10 +5,23 @@ import shutil
 import pytest
 
 from tests.fuzz import faulty
-from tests.fuzz.__main__ import main
+from tests.fuzz.__main__ import CORPUS, NAMES, main, target_of
 from tests.fuzz.rules import Broken, Scratch, Watch, answer
-from tests.fuzz.search import Budget, search
+from tests.fuzz.search import LOG, Budget, search
 from tsas_cli.errors import InputError
+
+RUNS = 300  # of a target with a share of one
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_short_search_finds_nothing(name, tmp_path):
+    """It is the same in every run: `make fuzz` looks for longer, and elsewhere."""
+    pytest.importorskip("atheris")
+    target = target_of(name)
+    runs = round(RUNS * target.SHARE)
+    found = search(target, Budget(runs, 0, 1), CORPUS, tmp_path)
+    assert found.faults == (), (tmp_path / "found" / name / LOG).read_text()
+    assert found.executions >= runs
 
 
 def test_a_defect_and_a_write_are_found(tmp_path):

@@ -179,7 +179,9 @@ def _unit(text: str) -> Any:
 
     if "," in text or len(text) > _LONGEST or _POWER_OF_A_NUMBER.search(string_preprocessor(text)):
         raise ValueError(text)
-    return _registry().Unit(text)
+    unit = _registry().Unit(text)
+    _ = unit.dimensionality  # of what pint has made a name for and does not know: Np%
+    return unit
 
 
 def _has_angle(unit: Any) -> bool:
