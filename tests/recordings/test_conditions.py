@@ -86,3 +86,11 @@ def test_what_is_wrong_is_said(content, said):
     with pytest.raises(InputError) as error:
         conditions(**content)
     assert said in error.value.line()
+
+
+def test_a_pattern_that_would_look_for_ever_is_given_up(monkeypatch):
+    monkeypatch.setattr("tsas_cli.recordings.conditions.PATIENCE_S", 0.2)
+    with pytest.raises(InputError, match=r"still looking in 'rig/a+' after 0.2 s; repetitions"):
+        conditions(
+            path=Path(f"/rig/{'a' * 40}"), from_file_name={"pattern": r"(?P<no>(a|aa|a)+)\d$"}
+        )

@@ -6,9 +6,11 @@ from pathlib import Path
 from typing import Any
 
 from tsas_cli.errors import InputError, nearest
+from tsas_cli.patience import at_most
 from tsas_cli.recordings.ingest_map import Converted, FromText, RunMap
 from tsas_cli.recordings.units import conversion
 
+PATIENCE_S = 10.0  # with a pattern, which may look for ever
 _UNITS = {"preload_N": "N", "sheath_length_mm": "mm", "total_bend_rad": "rad"}
 
 
@@ -52,9 +54,19 @@ def _converted(condition: str, rule: Converted, groups: dict[str, str], path: Pa
 def _groups(rule: FromText | None, text: str, path: Path) -> dict[str, str]:
     if rule is None:
         return {}
-    found = rule.pattern.search(text)
+    shown = text if len(text) <= 60 else f"{text[:60]}…"
+    try:
+        with at_most(PATIENCE_S):
+            found = rule.pattern.search(text)
+    except TimeoutError as error:
+        raise InputError(
+            f"the pattern {rule.pattern.pattern!r} is still looking in {shown!r} "
+            f"after {PATIENCE_S:g} s",
+            where=path,
+            remedy="repetitions inside of repetitions, such as (a+)+, take for ever: "
+            "write it simpler",
+        ) from error
     if found is None:
-        shown = text if len(text) <= 60 else f"{text[:60]}…"
         raise InputError(
             f"the pattern {rule.pattern.pattern!r} finds nothing in {shown!r}", where=path
         )
