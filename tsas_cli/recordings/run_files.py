@@ -11,6 +11,7 @@ import pyarrow.parquet as pq
 from tsas_cli.errors import InputError
 from tsas_cli.files import check_unchanged, state_of
 from tsas_cli.memory import out_of_memory
+from tsas_cli.recordings.arrow_columns import floats_from
 from tsas_cli.recordings.blocks import NotTheSameError
 from tsas_cli.recordings.checked import Source, changed, checked_file
 from tsas_cli.recordings.columns import BY_NAME, INPUTS, OUTPUTS, TIME, has_input_and_output
@@ -183,8 +184,7 @@ def floats_of(table: pa.Table, name: str, path: Place, *, first_row: int = 0) ->
     InputError
         It holds no numbers, an infinite one, or no time at some row.
     """
-    column = table.column(name)
-    values: Floats = column.cast(pa.float64(), safe=False).to_numpy(zero_copy_only=False)
+    values = floats_from(table.column(name))
     if name == TIME and not np.isfinite(values).all():
         row = int(np.flatnonzero(~np.isfinite(values))[0])
         raise InputError(

@@ -133,6 +133,8 @@ def is_unit(text: str) -> bool:
 
 
 def _between(text: str, to: str, where: str) -> tuple[float, float]:
+    if text.strip() == to:  # without pint, which takes longer to load than to read a recording
+        return 1.0, 0.0
     unit, wanted = _parse(text, to, where), _parse(to, to, where)
     turns = to not in {"rad", "rpm"} or _has_angle(unit)  # else a count or 1/s passes for an angle
     line = _line(unit, wanted) if unit.dimensionality == wanted.dimensionality and turns else None

@@ -8,6 +8,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from tsas_cli.files import sha256_of
+from tsas_cli.recordings.arrow_columns import column_of
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.manifest import Manifest, Run, write_manifest
 from tsas_cli.recordings.recording import Floats, Recording
@@ -41,7 +42,7 @@ def write_answer(folder: Path, answer: Recording) -> None:
 
 def table_of(columns: Mapping[str, Floats]) -> pa.Table:
     """Return columns by name, shape (n,) each, as a table, NaN as null."""
-    return pa.table({name: pa.array(v, from_pandas=True) for name, v in columns.items()})
+    return pa.Table.from_arrays([column_of(v) for v in columns.values()], list(columns))
 
 
 def write_parquet(path: Path, table: pa.Table) -> None:

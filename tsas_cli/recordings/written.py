@@ -10,6 +10,7 @@ import pyarrow as pa
 
 from tsas_cli.errors import InputError
 from tsas_cli.memory import out_of_memory
+from tsas_cli.recordings.arrow_columns import floats_from
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.parquet_files import check_size, open_parquet
 from tsas_cli.recordings.readers.table import damaged
@@ -97,7 +98,7 @@ def columns_of(path: Path, names: Sequence[str]) -> dict[str, Floats]:
         with open_parquet(path) as file:
             check_size(file, path, names, whole=True)
             table = file.read(columns=list(names))
-        return {name: table.column(name).to_numpy() for name in names}
+        return {name: floats_from(table.column(name)) for name in names}
     except MemoryError as error:
         raise out_of_memory(path) from error
     except (pa.ArrowException, OSError, KeyError, UnicodeDecodeError) as error:

@@ -10,6 +10,7 @@ from pyarrow import csv
 
 from tsas_cli import limits
 from tsas_cli.errors import InputError
+from tsas_cli.recordings.arrow_columns import floats_from
 from tsas_cli.recordings.readers.layout import Layout, comment_text, detect, fields, number
 from tsas_cli.recordings.readers.options import ReadOptions
 from tsas_cli.recordings.readers.table import (
@@ -40,7 +41,7 @@ def batches(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Itera
     rows = 0
     try:
         for table in in_batches(_fast(path, options, layout, at)):
-            columns = {source: table.column(str(i)).to_numpy() for source, i in at.items()}
+            columns = {source: floats_from(table.column(str(i))) for source, i in at.items()}
             yield Table(columns, units, layout.header, layout.first_line + rows)
             rows += table.num_rows
     except pa.ArrowException:
