@@ -117,16 +117,18 @@ def test_a_wrong_manifest_is_told_and_the_rest_is_answered(rigs):
 
 
 def test_a_damaged_footer_is_told_or_taken_and_ends_nothing(tmp_path):
-    folder = write(tmp_path / "a[1] *", {})
+    folder = write(tmp_path / "a[1] *", {}, {})
     path = folder / "runs" / "r0.parquet"
     whole = path.read_bytes()
     connection = connected()
-    (run,) = entry_of(connection, folder, "dataset.toml")["runs"]
-    assert run["duration_s"] == pytest.approx((ROWS - 1) / RATE_Hz)
+    (run, other) = entry_of(connection, folder, "dataset.toml")["runs"]
+    assert run["duration_s"] == other["duration_s"] == pytest.approx((ROWS - 1) / RATE_Hz)
     told = 0
     for place in range(len(whole) - 8 - int.from_bytes(whole[-8:-4], "little"), len(whole)):
         path.write_bytes(whole[:place] + bytes([whole[place] ^ 1]) + whole[place + 1 :])
-        told += len(entry_of(connection, folder, "dataset.toml")["problems"])
+        entry = entry_of(connection, folder, "dataset.toml")
+        told += len(entry["problems"])
+        assert entry["runs"][1] == other
     assert told > 100
 
 
