@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tsas_cli.diagnosis.evidence import TELLING, gain
-from tsas_cli.diagnosis.visibility import Part, causes_of
+from tsas_cli.diagnosis.visibility import TINY, Look, Part, amplitudes_of, causes_of
 from tsas_cli.effects import EFFECTS
 
 BLOCKS, EACH = 40, 200
@@ -56,6 +56,44 @@ def _convincing(signal, rng):
     noise = rng.standard_normal(signal.size)
     squares = [np.sum(r.reshape(BLOCKS, EACH) ** 2, axis=1) for r in (noise + signal, noise)]
     return gain(*squares).convincing
+
+
+class Answers:
+    """A bench whose residuals with a cause are told; without one they are 0."""
+
+    def __init__(self, with_it):
+        self.with_it = with_it
+
+    def errors_at(self, trial, changes):
+        del trial
+        (size,) = changes.values() or (0.0,)
+        return self.with_it(size) if size else np.zeros(BLOCKS * EACH)
+
+
+def looked_at(with_it):
+    look = object.__new__(Look)
+    look.bench, look.trial, look._signatures = Answers(with_it), None, {}
+    whole = part()
+    return Part(look, whole.rows, whole.block, whole.basis)
+
+
+PRESLIDING = next(effect for effect in EFFECTS if effect.name == "presliding")
+
+
+def test_a_model_that_jumps_however_small_the_cause_is_looked_at_at_a_finite_size():
+    jumping = looked_at(lambda size: np.full(BLOCKS * EACH, 1.0 + 0.0 * size))
+    (cause,) = amplitudes_of(PRESLIDING)
+    assert np.isfinite(jumping.own(cause)).all()
+    assert 0.5 * TINY * cause.start < jumping.sizes[cause.name] < TINY * cause.start
+
+
+def test_what_the_model_does_not_get_through_with_is_not_found():
+    lost = looked_at(lambda size: np.full(BLOCKS * EACH, math.nan * size))
+    (seen,) = lost.seen([PRESLIDING], [PRESLIDING])
+    assert seen.found == math.inf
+    other = next(effect for effect in EFFECTS if effect.name == "backlash")
+    (seen,) = lost.seen([PRESLIDING], [other])
+    assert (seen.found, seen.told) == (math.inf, {"backlash": math.inf})
 
 
 def test_every_amplitude_of_every_effect_is_looked_at():

@@ -137,11 +137,16 @@ class Look:
         return Part(self, rows, block, projector(replace(self.trial, solution=solution)))
 
     def signature(self, cause: Cause, size: float) -> Floats:
-        """Return what a cause of a size does to all residuals, for each unit of it, shape (n,)."""
+        """Return what a cause of a size does to all residuals, for each unit of it, shape (n,).
+
+        Nothing, where the model does not get through the runs with it: then it is not found.
+        """
         key = (cause.name, size, tuple(cause.shape.values()))
         if key not in self._signatures:
             at = cause.shape | {cause.name: cause.parameter.neutral + size}
-            self._signatures[key] = (self.bench.errors_at(self.trial, at) - self._without) / size
+            change = (self.bench.errors_at(self.trial, at) - self._without) / size
+            gone_through = bool(np.isfinite(change).all())
+            self._signatures[key] = change if gone_through else np.zeros_like(change)
         return self._signatures[key]
 
     @cached_property
@@ -202,15 +207,17 @@ class Part:
     def _settled(self, cause: Cause) -> float:
         """Return a size between the one that is found and its half: the start times a power of 2.
 
-        Parts thus share signatures. Where nothing is found it is the last one tried.
+        Parts thus share signatures. Where nothing is found it is the last one tried. What is found
+        however small it is, as where the model jumps with it, is looked at at about the size TINY.
         """
+        least = math.floor(math.log2(TINY))
         power, tried = 0, set[int]()
         while power not in tried:
             tried.add(power)
             size = cause.start * 2.0**power
             found = self.smallest(self._own(self.look.signature(cause, size)))
             if found < cause.largest:
-                power = math.floor(math.log2(found / abs(cause.start)))
+                power = max(math.floor(math.log2(found / abs(cause.start))), least)
         return size
 
     def smallest(self, signature: Floats) -> float:
