@@ -14,9 +14,8 @@ from tsas_cli.diagnosis.remainder import Remainder
 class Simulated:
     """A run whose errors are known: each value of the trial adds to them."""
 
-    weights = {"f_in_N": np.array([9.0, 0.3, 0.4]), "x_out_mm": np.array([0.5, 9.0, 9.0])}
-
     def __init__(self, samples):
+        self.weights = {"f_in_N": np.array([9.0, 0.3, 0.4]), "x_out_mm": np.array([0.5, 9.0, 9.0])}
         self.samples = {name: np.array(at) for name, at in samples.items()}
 
     def raw(self, rig):

@@ -150,7 +150,7 @@ class Judged:
 
     def __init__(self, squares, rivals=()):
         self.squares, self.told = squares, dict(rivals)
-        self.bench = SimpleNamespace(on_mesh=lambda named: bool(named))
+        self.bench = SimpleNamespace(on_mesh=bool)
         self.folds, self.asked, self.screened = None, [], []
 
     def trial(self, named, *, on_mesh=None):
@@ -262,7 +262,7 @@ def test_an_uneven_bend_and_the_noise_add_up_in_squares(monkeypatch):
         d, "estimates_of", lambda unknowns, fit, ids: [Estimate("a", fit.stderr[0], "1", "fitted")]
     )
     folds = Folds(np.zeros(6, int), np.array([0, 0, 1, 2, 2, 4]), np.repeat([0, 1], 3), True)
-    bench = SimpleNamespace(rigs=[0, 1], base=SimpleNamespace(ids=lambda: {}))
+    bench = SimpleNamespace(rigs=[0, 1], base=SimpleNamespace(ids=dict))
     trial = SimpleNamespace(unknowns=[], solution=None)
     (told,) = d._estimates(SimpleNamespace(folds=folds, bench=bench), trial)
     assert told.value == 5.0
