@@ -105,7 +105,7 @@ class Run:
         )
         self.given = errors
         everything = np.arange(time_s.size)
-        self.samples = {n: everything if samples is None else samples for n in errors}
+        self.samples = dict.fromkeys(errors, everything if samples is None else samples)
 
     def errors(self, rig):
         return self.given
