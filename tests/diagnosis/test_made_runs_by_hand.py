@@ -72,6 +72,7 @@ def planned(speed, **other):
     [
         # 80 mm at 100 Hz: a hundred thousand samples at 0.08 mm/s.
         (planned(0.0801), True),
+        (planned(0.08), True),
         (planned(0.0799), False),
         (planned(0.0401, periods=1), True),
         (planned(0.0399, periods=1), False),

@@ -288,7 +288,9 @@ def limits(rig, *, bristles=(1.0, -1.0, 1.0), speeds=(0.0, 0.0, 0.0), **other):
     s[W + 1 : W + N + 1] = speeds
     fields = dict.fromkeys(Step._fields, 0.0) | {"gh": 0.1, "pulled": 0.2, "released": 0.1} | other
     set_limits(s, Step(**fields), law_of(rig, N))
-    return [s[row + 1 : row + N + 1] for row in (LIMIT, LIMIT_BY_T, LIMIT_BY_V)]
+    rows = (LIMIT, LIMIT_BY_T, LIMIT_BY_V)
+    assert not any(s[row] or s[row + N + 1] for row in rows)  # an end has a limit of its own
+    return [s[row + 1 : row + N + 1] for row in rows]
 
 
 @pytest.mark.parametrize("exponent", [0.0, 0.5, -0.5, 1.0, -1.0])
