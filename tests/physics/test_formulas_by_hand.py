@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from tests.physics.references import GROUP_A, wrap_of
+from tests.physics.references import GROUP_A, LOADED_BY_SPRING, wrap_of
 from tsas_cli.physics.branches import from_rest
 from tsas_cli.physics.bristles import Bristles, bristle_damping, tendon_mass
 from tsas_cli.physics.capstan import speed_per_stiffness
@@ -31,8 +31,11 @@ from tsas_cli.physics.compliances import (
 from tsas_cli.physics.ends import Drive, ends_of
 from tsas_cli.physics.lugre_ends import Ends
 from tsas_cli.physics.lugre_pace import Allowed, allowed, change_of, fitted
-from tsas_cli.physics.lugre_start import law_of
-from tsas_cli.physics.lugre_state import Formula
+from tsas_cli.physics.lugre_start import law_of, lay_out
+from tsas_cli.physics.lugre_state import PITCH as LUGRE_PITCH
+from tsas_cli.physics.lugre_state import ROWS as LUGRE_ROWS
+from tsas_cli.physics.lugre_state import T_PAST, Formula, Step
+from tsas_cli.physics.lugre_step import newton
 from tsas_cli.physics.rig import with_values
 from tsas_cli.physics.slip_chain import laws_of
 
@@ -106,6 +109,16 @@ def test_the_next_step_follows_from_the_error_of_this_one(off, formula, change):
 )
 def test_a_step_lands_on_a_turn_and_leaves_no_short_rest(h, step, lands):
     assert fitted(h, 1.0) == (step, lands)
+
+
+def test_newtons_method_gives_up_at_once_where_forces_outgrow_a_float():
+    s, law = np.zeros(LUGRE_ROWS * LUGRE_PITCH), law_of(GROUP_A, N)
+    lay_out(s, GROUP_A, N)
+    s[T_PAST : T_PAST + 2] = 1.5e308, -1.5e308
+    given = {"gh": 1e-3, "pulled": 0.1, "released": 0.1}
+    step = Step(**dict.fromkeys(Step._fields, 0.0) | given)
+    with np.errstate(all="ignore"):
+        assert newton(s, step, LOADED_BY_SPRING, law, 1e-6) == (0, False)
 
 
 def test_compliances_in_series():
