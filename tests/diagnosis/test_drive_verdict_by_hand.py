@@ -329,6 +329,8 @@ def test_each_run_has_the_errors_of_both():
     assert found["rmse"] == pytest.approx(math.sqrt((9.0 + 16.0) / 2.0))
     assert found["rmse_nominal"] == pytest.approx(5.0)
     assert (found["samples"], found["rate_Hz"], found["noise"]) == (2, 250.0, 0.1)
+    with pytest.raises(ValueError, match="zip"):
+        dj.run_rows(search, [np.zeros(2)] * 2, [np.zeros(2)])
 
 
 def test_a_diagnosis_of_a_drive_as_json_and_as_tables():

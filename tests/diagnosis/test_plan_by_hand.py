@@ -84,6 +84,8 @@ def test_what_was_not_seen_counts_from_the_largest_size_on():
     assert p._proposal(CANDIDATES[0], before, after).score == pytest.approx(math.log(5.0))
     assert p._proposal(CANDIDATES[0], after, before).score == pytest.approx(-math.log(5.0))
     assert p._proposal(CANDIDATES[0], before, before).score == 0.0
+    with pytest.raises(ValueError, match="zip"):
+        p._proposal(CANDIDATES[0], before, [*after, *after])
 
 
 def test_pairs_hide_in_each_other_both_ways():
@@ -155,7 +157,8 @@ def test_the_run_that_tells_most_is_said(monkeypatch):
         seen(PLAY, 0.1, load_inertia=0.2),
         seen(MASS, 0.5, backlash=0.5),
     ]
-    runs = Further({None: [seen(PLAY, 1.0), seen(MASS, 1.0)], 3: hidden})
+    less = [seen(PLAY, 0.7), seen(MASS, 0.7)]
+    runs = Further({None: [seen(PLAY, 1.0), seen(MASS, 1.0)], 1: less, 3: hidden, 5: less})
     values = {f"{PLAY}.play_mm": 0.1, "presliding.length_mm": 0.2}
     said, asked = proposed(monkeypatch, runs, PLAY, MASS, values=values)
     first, second = better(PLAY, 1.0, 0.2), better(MASS, 1.0, 0.5)
@@ -163,8 +166,8 @@ def test_the_run_that_tells_most_is_said(monkeypatch):
         f"Record {CANDIDATES[3].sentence}. With it {first.sentence}; {second.sentence}."
     )
     assert asked.free == {"presliding.length_mm": 0.2}
-    assert asked.steps.total == asked.steps.done == 2
-    assert runs.asked == [(None, [PLAY, MASS], [PLAY, MASS]), (3, [PLAY, MASS], [PLAY, MASS])]
+    assert asked.steps.total == asked.steps.done == 4
+    assert runs.asked == [(k, [PLAY, MASS], [PLAY, MASS]) for k in (None, 1, 3, 5)]
 
 
 def test_what_it_still_does_not_tell_is_said_too(monkeypatch):

@@ -167,6 +167,7 @@ def test_a_mesh_is_used_for_both_where_one_needs_it(made):
 def test_what_is_new_lies_ahead_and_is_done(made):
     counted = Counted()
     search = made({names(): 4.0} | dict.fromkeys(every(), 3.9), step=counted)
+    search.trial(names())
     assert len(search.add(names())) == 5
     assert counted.total == counted.done == 5
     search.add(names())
