@@ -117,3 +117,47 @@ def test_a_proposal_says_what_to_do():
     )
     (long,) = [c for c in candidates(LIMITS, GROUP_A) if c.title == "a long run"]
     assert "rest" not in long.sentence
+
+
+@pytest.mark.parametrize(
+    ("title", "motion", "share", "periods", "dwell_s", "amplitude_mm"),
+    [
+        ("a slow sine", "sine", 0.1, 2, 0.0, 10.0),
+        ("a fast sine", "sine", 1.0, 6, 0.0, 10.0),
+        ("fast ramps", "ramps", 1.0, 4, 0.0, 10.0),
+        ("nested loops", "nested", 1.0 / 3.0, 2, 0.0, 10.0),
+        ("short strokes", "sine", 1.0 / 3.0, 4, 0.0, 3.0),
+        ("a staircase with rests", "steps", 1.0 / 3.0, 2, 2.0, 10.0),
+        ("a chirp", "chirp", 1.0, 6, 0.0, 10.0),
+        ("a long run", "sine", 1.0 / 3.0, 12, 0.0, 10.0),
+        ("another preload", "sine", 1.0 / 3.0, 2, 0.0, 10.0),
+        ("another bend", "sine", 1.0 / 3.0, 2, 0.0, 10.0),
+    ],
+)
+def test_each_proposal_as_the_documents_list_it(
+    title, motion, share, periods, dwell_s, amplitude_mm
+):
+    (run,) = [c.run for c in candidates(LIMITS, GROUP_A) if c.title == title]
+    assert (run.motion, run.periods, run.dwell_s) == (motion, periods, dwell_s)
+    assert run.speed == pytest.approx(24.0 * share)
+    assert run.amplitude_mm == pytest.approx(amplitude_mm)
+    assert run.sheath_length_mm == GROUP_A.sheath_length_mm
+
+
+def test_without_any_limit_a_millimetre_and_a_millimetre_per_second_are_meant():
+    fast = {c.title: c.run for c in candidates(Limits(), GROUP_A)}["a fast sine"]
+    assert (fast.amplitude_mm, fast.speed) == (1.0, 1.0)
+
+
+def test_bends_of_a_straight_rig_are_other_ones():
+    straight = GROUP_A._replace(total_bend_rad=0.0)
+    bent = Limits(amplitude_mm=1.0, speed_mm_per_s=1.0, total_bend_rad=(0.0, 0.001))
+    runs = {c.title: c.run for c in candidates(bent, straight)}
+    assert runs["another bend"].total_bend_rad == 0.001
+
+
+def test_runs_without_a_preload_say_nothing_of_it():
+    limits = recorded_limits([recorded([0.0, 3.0], preload_N=None, bend=None)])
+    assert (limits.preload_N, limits.total_bend_rad) == ((), ())
+    straight = recorded_limits([recorded([0.0, 3.0], preload_N=0.0, bend=0.0)])
+    assert (straight.preload_N, straight.total_bend_rad) == ((), (0.0,))

@@ -169,6 +169,7 @@ def test_what_is_left_depends_on_what_it_was_made_of():
         ([], 1.29, 1.0, "sufficient"),  # 1 + 2 · 0.15
         ([], 1.31, 1.0, "unexplained"),
         ([()], 1.0, 0.51, "unexplained"),
+        ([()], 1.0, 0.5, "named"),
         ([()], 9.0, 0.49, "named"),
         ([(), ("play",)], 1.0, 0.0, "ambiguous"),
     ],
@@ -181,6 +182,8 @@ def test_the_verdict_on_what_is_left(rivals, left, share, verdict):
     ("left", "share", "much"),
     [
         (4.1, 0.0, True),
+        (4.0, 0.0, False),
+        (2.0, 0.02, False),
         (3.9, 0.019, False),
         (3.9, 0.021, True),
         (1.16, 0.021, True),

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tsas_cli.diagnosis.evidence import gain, gain_percent
+from tsas_cli.diagnosis.evidence import Gain, gain, gain_percent
 
 RNG = np.random.default_rng(1)
 BEFORE = RNG.chisquare(50, 40)
@@ -50,3 +50,39 @@ def test_the_gain_in_percent_is_that_of_the_root_and_lies_in_its_interval():
     assert low < whole < high
     assert whole == pytest.approx(50.0, abs=2.0)
     assert high - low < 3.0
+
+
+def test_to_be_convincing_takes_more_than_the_least_of_both():
+    assert Gain(0.026, 2.61).convincing
+    assert not Gain(0.025, 2.61).convincing
+    assert not Gain(0.026, 2.6).convincing
+    assert Gain(0.026, 2.5, needed=2.4).convincing
+    assert Gain(0.011, 2.61).beyond(0.01)
+    assert not Gain(0.01, 2.61).beyond(0.01)
+
+
+def test_what_changes_nothing_is_not_sure():
+    same = gain(BEFORE, BEFORE)
+    assert (same.part, same.sureness) == (0.0, 0.0)
+
+
+@pytest.mark.parametrize(("blocks", "needed"), [(4, 1.6), (9, 2.4), (10, 0.8 * 10**0.5), (11, 2.6)])
+def test_few_blocks_have_to_agree(blocks, needed):
+    """Four fifths of their root, where that is less than 2.6."""
+    assert gain(np.ones(blocks), np.ones(blocks)).needed == pytest.approx(needed)
+
+
+def test_sureness_is_the_sum_of_relative_gains_over_that_with_random_signs():
+    found = gain(np.array([np.e, 1.0, np.e**3]), np.array([1.0, np.e**2, 1.0]))
+    assert found.sureness == pytest.approx((1.0 - 2.0 + 3.0) / np.sqrt(1.0 + 4.0 + 9.0))
+    assert found.part == pytest.approx(1.0 - (2.0 + np.e**2) / (1.0 + np.e + np.e**3))
+
+
+def test_the_interval_is_that_of_the_mean_over_blocks():
+    """The root falls by 100 (1 − √m): ± 1.96 · 50/√m times the error of the mean m."""
+    after = 0.25 * (1.0 + 0.2 * np.random.default_rng(3).standard_normal(400))
+    whole, low, high = gain_percent(np.ones(400), after, np.random.default_rng(2))
+    mean, error = after.mean(), after.std() / 20.0
+    assert whole == pytest.approx(100.0 * (1.0 - np.sqrt(mean)))
+    assert (high - low) / 2.0 == pytest.approx(1.96 * 50.0 / np.sqrt(mean) * error, rel=0.06)
+    assert (high + low) / 2.0 == pytest.approx(whole, abs=0.02)

@@ -83,3 +83,66 @@ def test_values_move_as_in_a_refit_where_the_residuals_change(linear):
     for k in range(2):
         refitted = np.linalg.lstsq(J, data - changes[:, k], rcond=None)[0]
         np.testing.assert_allclose(moved[:, k], refitted - trial.solution.values, rtol=1e-6)
+
+
+def single(J, residual, unknowns, at_bound=None):
+    """Return a trial at values of 0 with a given residual."""
+    at_bound = np.zeros(len(unknowns), bool) if at_bound is None else np.array(at_bound)
+    values = np.zeros(len(unknowns))
+    solution = Solution(values, at_bound, np.array(residual), np.array(J), True, "", 1)
+    return Trial((), tuple(unknowns), solution, (len(residual),), on_mesh=False)
+
+
+THREE = [np.array([0, 1]), np.array([0, 0]), np.array([0, 1])]
+
+
+def test_blocks_are_counted_on_and_three_runs_are_enough():
+    folds = folds_of(THREE)
+    assert folds.by_run
+    assert folds.block.tolist() == [0, 1, 2, 2, 3, 4]
+    assert folds.fold.tolist() == folds.run.tolist() == [0, 0, 1, 1, 2, 2]
+    assert folds.blocks == 5
+    two = folds_of([np.arange(8), np.arange(3)])
+    assert two.fold.tolist() == [0, 0, 1, 1, 2, 2, 3, 3, 4, 5, 6]
+
+
+def test_the_step_of_one_unknown_by_hand():
+    """Without the last run −Σ J r/(Σ J² + 1/scale²): what nobody tells stays."""
+    J = [[1.0], [2.0], [3.0], [4.0], [5.0], [6.0]]
+    residual = [1.0, -1.0, 2.0, 1.0, 7.0, 7.0]
+    trial = single(J, residual, [Unknown("a", None, 0.0, -9.0, 9.0, 0.5)])
+    step = -(1.0 - 2.0 + 6.0 + 4.0) / (1.0 + 4.0 + 9.0 + 16.0 + 4.0)
+    assert held_out_values(trial, folds_of(THREE), 2) == pytest.approx([step])
+    squares = held_out_squares(trial, folds_of(THREE))
+    assert squares[3:] == pytest.approx([(7.0 + 5.0 * step) ** 2, (7.0 + 6.0 * step) ** 2])
+
+
+def test_values_stay_within_their_bounds_and_at_them():
+    J = np.column_stack((np.ones(6), np.arange(6.0)))
+    residual = np.full(6, 5.0)
+    tight = [Unknown("a", None, 0.0, -0.1, 0.1, 1e3), unknown("b")]
+    found = held_out_values(single(J, residual, tight), folds_of(THREE), 0)
+    assert found[0] == pytest.approx(-0.1)
+    up = held_out_values(single(J, -residual, tight), folds_of(THREE), 0)
+    assert up[0] == pytest.approx(0.1)
+    bound = single(J, residual, [unknown("a"), unknown("b")], [True, False])
+    held = held_out_values(bound, folds_of(THREE), 0)
+    k = np.arange(2.0, 6.0)
+    assert held == pytest.approx([0.0, -5.0 * k.sum() / (k @ k)], rel=1e-5)
+
+
+def test_what_belongs_to_one_run_stays_in_stretches_of_it():
+    """With two runs a zero is told by the rest of its run, not by what is left out."""
+    zero = single(np.ones((8, 1)), [1.0] * 7 + [9.0], [unknown("zero", 0)])
+    folds = folds_of([np.array([0, 0, 1, 1, 2, 2, 3, 3])])
+    assert held_out_values(zero, folds, 3) == pytest.approx([-1.0], rel=1e-5)
+    assert held_out_values(zero, folds, 0) == pytest.approx([-14.0 / 6.0], rel=1e-5)
+
+
+def test_the_first_run_has_zeros_of_its_own_too():
+    J = np.kron(np.eye(3), np.ones((2, 1)))
+    residual = [2.0, 4.0, 1.0, 1.0, 0.0, 0.0]
+    trial = single(J, residual, [unknown("zero", k) for k in range(3)])
+    found = held_out_values(trial, folds_of(THREE), 0)
+    assert found == pytest.approx([-3.0, -1.0, 0.0], abs=1e-5)
+    assert held_out_squares(trial, folds_of(THREE))[:2] == pytest.approx([1.0, 1.0])

@@ -1,6 +1,6 @@
 import pytest
 
-from tsas_cli.diagnosis.rig_file import PlannedRun, read_rig_file
+from tsas_cli.diagnosis.rig_file import Limits, PlannedRun, Sensors, read_rig_file
 from tsas_cli.errors import InputError
 
 TEXT = """
@@ -96,3 +96,44 @@ def test_conditions_that_cannot_be(name, least, too_little):
     assert getattr(PlannedRun(**CONDITIONS | {name: least}), name) == least
     with pytest.raises(ValueError, match=name):
         PlannedRun(**CONDITIONS | {name: too_little})
+
+
+@pytest.mark.parametrize(
+    ("name", "least", "too_little"),
+    [
+        ("rate_Hz", 1e-6, 0.0),
+        ("x_in_mm", 0.0, -1e-6),  # a motor that knows its place
+        ("x_out_mm", 1e-6, 0.0),
+        ("f_in_N", 1e-6, 0.0),
+        ("f_out_N", 1e-6, 0.0),
+    ],
+)
+def test_sensors_that_cannot_be(name, least, too_little):
+    usual = {"rate_Hz": 100.0, "x_in_mm": 0.01, "f_in_N": 0.1}
+    assert getattr(Sensors(**usual | {name: least}), name) == least
+    with pytest.raises(ValueError, match=name):
+        Sensors(**usual | {name: too_little})
+
+
+@pytest.mark.parametrize("name", ["amplitude_mm", "speed_mm_per_s"])
+def test_limits_that_cannot_be(name):
+    assert getattr(Limits(**{name: 1e-6}), name) == 1e-6
+    with pytest.raises(ValueError, match=name):
+        Limits(**{name: 0.0})
+
+
+def test_frequencies_above_0_and_two_periods_unless_said():
+    frequent = CONDITIONS | {"speed_mm_per_s": None, "frequency_Hz": 1e-6}
+    assert PlannedRun(**frequent).frequency_Hz == 1e-6
+    with pytest.raises(ValueError, match="frequency_Hz"):
+        PlannedRun(**frequent | {"frequency_Hz": 0.0})
+    assert (PlannedRun(**CONDITIONS).periods, PlannedRun(**CONDITIONS).dwell_s) == (2, 0.0)
+    chirp = PlannedRun(**frequent | {"motion": "chirp", "frequency_Hz": 0.5})
+    assert chirp.speed == pytest.approx(10.0 * 3.14159265)
+    with pytest.raises(ValueError, match="id"):
+        PlannedRun(**CONDITIONS | {"id": ""})
+
+
+def test_no_run_is_no_plan(tmp_path):
+    with pytest.raises(InputError, match="run"):
+        read(tmp_path, "run = []\n" + TEXT[: TEXT.index("[[run]]")])

@@ -88,6 +88,10 @@ def test_hats_add_up_to_one_for_their_own_direction():
     drawn = columns @ np.tile(3.0 * knots - 1.0, 2)
     np.testing.assert_allclose(drawn, 3.0 * signal - 1.0, atol=1e-12)
     assert hats(np.ones(5), np.ones(5)).shape == (5, 0)
+    # What is at rest does not pull.
+    still = hats(np.arange(20.0), np.zeros(20))
+    assert not still[:, :10].any()
+    np.testing.assert_allclose(still[:, 10:].sum(axis=1), 1.0)
 
 
 def test_a_regression_tells_each_fold_by_the_others_alone():

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from tsas_cli.diagnosis import uneven_bend
 from tsas_cli.diagnosis.uneven_bend import stderr_of_unevenness
 from tsas_cli.identification.extension import Trial
 from tsas_cli.identification.fit import Solution, Unknown
@@ -46,3 +47,37 @@ def test_what_the_recordings_ask_for_is_counted(truly):
     found, off = unsure(0.3 * X + 5.0 * OTHER, truly)
     assert found == pytest.approx(0.3 * abs(truly), rel=0.1)
     assert off == pytest.approx(0.3 * abs(truly), abs=0.1)
+
+
+def test_ways_are_trusted_by_how_sure_they_are(monkeypatch):
+    """Asked for −2 and 3 of two ways that are told to 0.5 and not at all.
+
+    Against a plausible size of 1 the first counts by 1/(1 + 0.25), and that leaves 0.25 of it;
+    the second by nothing, and leaves all of 1.
+    """
+    given = {}
+
+    def with_errors(unknowns, solution, blocks, *, by_run):
+        given.update(names=[u.name for u in unknowns], solution=solution, by_run=by_run)
+        return SimpleNamespace(stderr=np.array([7.0, 7.0, 0.5, np.inf]))
+
+    monkeypatch.setattr(uneven_bend, "with_errors", with_errors)
+    J = np.zeros((6, 2))
+    J[0, 0] = J[1, 1] = 2.0
+    ways = np.zeros((6, 2))
+    ways[0], ways[2, 0], ways[3, 1] = (0.4, 0.6), 1.0, 1.0
+    residual = np.array([0.0, 1.0, 2.0, -3.0, 0.0, 0.0])
+    solution = Solution(np.array([5.0, 6.0]), np.array([False, True]), residual, J, True, "", 1)
+    unknowns = tuple(Unknown(n, None, 0.0, -9.0, 9.0, 1.0) for n in ("a", "b"))
+    trial = Trial((), unknowns, solution, (6,), on_mesh=False)
+    bench = SimpleNamespace(unevenness=lambda _: ways)
+    found = stderr_of_unevenness(bench, trial, [np.arange(6)])
+    first = (0.8 * -2.0) ** 2 + 0.8 * 0.25
+    assert found == pytest.approx([np.sqrt(0.2**2 * first + 0.3**2 * 1.0), 0.0], rel=1e-6)
+    assert len(given["names"]) == 4
+    assert given["by_run"]
+    beside = given["solution"]
+    assert beside.values.tolist() == [5.0, 6.0, 0.0, 0.0]
+    assert beside.at_bound.tolist() == [False, True, False, False]
+    assert not beside.jacobian[:, 1].any()  # what is at its bound does not move
+    np.testing.assert_array_equal(beside.jacobian[:, 2:], ways)

@@ -169,7 +169,7 @@ def drive_folds(runs: Sequence[DriveRun], residuals: Sequence[Floats]) -> Folds:
     run = np.repeat(np.arange(len(runs)), sizes)
     if _covered(runs):
         return Folds(run, block, run, by_run=True)
-    return Folds(block % min(STRETCHES, int(block.max()) + 1), block, run, by_run=False)
+    return Folds(block % STRETCHES, block, run, by_run=False)
 
 
 def _covered(runs: Sequence[DriveRun]) -> bool:

@@ -1,0 +1,297 @@
+"""A verdict and its reason, on searches and fits that are made up."""
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from tests.counted import Counted
+from tsas_cli.diagnosis import diagnose as d
+from tsas_cli.diagnosis.diagnose import Cause, Diagnosis
+from tsas_cli.diagnosis.held_out import Folds
+from tsas_cli.diagnosis.remainder import Remainder
+from tsas_cli.effects import EFFECTS
+from tsas_cli.identification.estimate import Estimate
+from tsas_cli.identification.extension import Trial
+from tsas_cli.identification.fit import Fitted, Solution, Unknown
+from tsas_cli.identification.model import Model
+
+TITLE = {e.name: e.title.lower() for e in EFFECTS}
+PLAY, MASS = "backlash", "load_inertia"
+
+
+def cause(effect, rivals=(), gain=50.0):
+    return Cause(effect, rivals, (), gain, (gain - 1.0, gain + 1.0))
+
+
+def left_of(mean_square, *signals):
+    return Remainder(mean_square, {}, signals)
+
+
+def diagnosis(verdict, *causes, mean_square=1.0, share=0.0, signals=()):
+    left = left_of(mean_square, *signals)
+    return Diagnosis(verdict, "", Model(()), Model(()), causes, {}, left, share)
+
+
+@pytest.mark.parametrize(
+    ("found", "unexplained"),
+    [
+        (Diagnosis("undecided", "", Model(()), Model(())), False),
+        (diagnosis("unexplained"), True),
+        (diagnosis("sufficient", mean_square=9.0, share=1.0), False),
+        (diagnosis("named", cause(PLAY), mean_square=4.1), True),
+        (diagnosis("named", cause(PLAY), mean_square=2.0, share=0.03), True),
+        (diagnosis("named", cause(PLAY), mean_square=2.0, share=0.01), False),
+    ],
+)
+def test_what_is_unexplained(found, unexplained):
+    assert found.unexplained == unexplained
+
+
+def reason(found, start=16.0):
+    return d._reason(found, left_of(start), found.remainder)
+
+
+def test_a_model_that_lacks_nothing_is_at_the_noise_floor():
+    said = "The nominal model is at the noise floor: nothing is missing that these runs show."
+    assert reason(diagnosis("sufficient", signals=("time_s",))) == said
+
+
+def test_what_no_effect_explains_is_said_with_what_it_depends_on():
+    found = diagnosis("unexplained", mean_square=16.0, signals=("time_s", "x_in_mm"))
+    assert reason(found) == (
+        "The model misses the runs by 4.0 times what noise explains, and no known effect accounts "
+        "for it. It depends on the time in the run, the place of the drive."
+    )
+    assert reason(diagnosis("unexplained", mean_square=16.0)).endswith("accounts for it.")
+
+
+def test_causes_are_named_with_what_they_take_away():
+    """From a mean square of 16 to one of 1.44: from 4 times the noise to 1.2 times."""
+    said = reason(diagnosis("named", cause(PLAY), cause(MASS), mean_square=1.44))
+    assert said == (
+        f"What the nominal model lacks is: {TITLE[PLAY]} and {TITLE[MASS]}. "
+        "It takes the error from 4.0 to 1.2 times what noise explains."
+    )
+
+
+def test_rivals_are_told_once_each_in_order():
+    found = diagnosis("ambiguous", cause(PLAY, (MASS, "free_tendon")), cause("presliding", (MASS,)))
+    told = ", ".join(sorted((TITLE[MASS], TITLE["free_tendon"])))
+    assert reason(found).endswith(f" These recordings cannot tell it from: {told}.")
+
+
+def test_a_rest_is_said_by_how_much_of_it_there_is():
+    most = diagnosis("unexplained", cause(PLAY), mean_square=9.0, share=0.6, signals=("time_s",))
+    assert reason(most).endswith(
+        " Most of the rest is explained by no known effect. It depends on the time in the run."
+    )
+    some = diagnosis("named", cause(PLAY), mean_square=2.0, share=0.1, signals=("time_s",))
+    assert reason(some).endswith(
+        " What is left no known effect explains. It depends on the time in the run."
+    )
+
+
+def test_why_nothing_can_be_diagnosed():
+    some, none = SimpleNamespace(runs=[1]), SimpleNamespace(runs=[])
+    good = SimpleNamespace(converged=True, message="")
+    bad = SimpleNamespace(converged=False, message="steps")
+    assert d._not_possible(some, good) is None
+    assert d._not_possible(none, good).startswith("no run lasts")
+    assert d._not_possible(some, None).startswith("these recordings identify no")
+    assert d._not_possible(some, bad).endswith("did not converge (steps).")
+
+
+def test_a_tendon_stays_near_its_data_sheet(monkeypatch):
+    """Told 1000 N, it lies between 0.85 of that and 1/0.85 of it."""
+    given = {}
+    monkeypatch.setattr(d, "base_fit", lambda *rest: given.update(plausible=rest[-1]))
+    for told in (1000.0, None):
+        sheet = SimpleNamespace(value=lambda name, told=told: told)
+        monkeypatch.setattr(d, "data_sheet", lambda manifest, sheet=sheet: sheet)
+        d.nominal_fit(None, None, [])
+        if told is None:
+            assert given["plausible"] == {}
+        else:
+            low, high = given["plausible"]["tendon_stiffness_N"]
+            assert (low, high) == pytest.approx((850.0, 1000.0 / 0.85))
+
+
+def nominal(monkeypatch, converged=True, blocks=9):
+    fitted = SimpleNamespace(converged=converged, message="m")
+    base = SimpleNamespace(runs=[1], solve=lambda: (Model(()), fitted, ["solved"]), untold=["u"])
+    monkeypatch.setattr(d, "nominal_fit", lambda *_: base)
+    monkeypatch.setattr(d, "Bench", lambda base: SimpleNamespace(base=base))
+    monkeypatch.setattr(d, "bench_folds", lambda bench: SimpleNamespace(blocks=blocks))
+    monkeypatch.setattr(d.Search, "run", lambda self: frozenset())
+    concluded = diagnosis("sufficient")
+    monkeypatch.setattr(d, "_concluded", lambda *_: concluded)
+    monkeypatch.setattr(d, "with_preload_correction", lambda model, runs: model)
+
+
+def test_what_cannot_be_decided_is_not(monkeypatch):
+    nominal(monkeypatch, converged=False)
+    found = d.diagnose(None, None, [])
+    assert (found.verdict, found.cannot_tell) == ("undecided", ("solved",))
+    assert "converge" in found.reason
+    nominal(monkeypatch, blocks=5)
+    few = d.diagnose(None, None, [])
+    assert few.verdict == "undecided"
+    assert few.reason == "only 5 stretches are independent of each other: too few."
+    nominal(monkeypatch, blocks=6)
+    counted = Counted()
+    assert d.diagnose(None, None, [], counted).verdict == "sufficient"
+    assert counted.total == counted.done == 1  # the search is made up
+
+
+class Judged:
+    """A search with given trials: a mean square by effects, held-out squares of ten blocks."""
+
+    def __init__(self, squares, rivals=()):
+        self.squares, self.told = squares, dict(rivals)
+        self.bench = SimpleNamespace(on_mesh=bool)
+        self.folds, self.asked, self.screened = None, [], []
+
+    def trial(self, named, *, on_mesh=None):
+        self.asked.append((named, on_mesh))
+        return SimpleNamespace(named=named)
+
+    def held_out(self, named, *, on_mesh=None):
+        self.asked.append((named, on_mesh))
+        return np.full(10, self.squares[named])
+
+    def rivals(self, named, name):
+        return self.told.get(name, ())
+
+    def screen(self, names):
+        self.screened.append(names)
+
+    def weighed_again(self, named):
+        return self
+
+
+@pytest.fixture
+def concluded(monkeypatch):
+    """Conclude from mean squares by set of effects; a square below 1 is noise alone."""
+
+    def conclude(squares, *named, rivals=()):
+        search = Judged({frozenset(k): v for k, v in squares.items()}, rivals)
+        monkeypatch.setattr(
+            d,
+            "remainder",
+            lambda bench, trial, folds: Remainder(search.squares[trial.named], {}, ("time_s",)),
+        )
+        monkeypatch.setattr(d, "channel_errors", lambda *_: {})
+        monkeypatch.setattr(
+            d,
+            "_estimates",
+            lambda search, trial: [
+                Estimate(f"{name}.size", 1.0, "mm", "fitted") for name in sorted(trial.named)
+            ],
+        )
+        return d._concluded(search, frozenset(named), Model(()), ("untold",)), search
+
+    return conclude
+
+
+def test_the_share_left_is_of_what_was_beyond_the_noise(concluded):
+    """Of 9 − 1 there is left 2.15 − 1 − 0.15: an eighth."""
+    found, search = concluded({(): 9.0, (PLAY,): 2.15}, PLAY)
+    assert found.share_left == pytest.approx(1.0 / 8.0)
+    assert (found.verdict, found.cannot_tell) == ("named", ("untold",))
+    assert [c.effect for c in found.causes] == [PLAY]
+    assert [e.name for e in found.causes[0].parameters] == [f"{PLAY}.size"]
+    assert [e.name for e in found.model.estimates] == [f"{PLAY}.size"]
+    assert found.nominal.estimates == ()
+    assert found.causes[0].gain_percent == pytest.approx(100.0 * (1.0 - math.sqrt(2.15 / 9.0)))
+    assert search.screened == [frozenset()]
+    assert (frozenset(), True) in search.asked  # nothing, on the mesh that play needs
+    assert "from 3.0 to 1.5 times" in found.reason
+
+
+def test_what_is_below_the_noise_leaves_nothing(concluded):
+    assert concluded({(): 0.9, (PLAY,): 0.5}, PLAY)[0].share_left == 0.0
+    assert concluded({(): 9.0, (PLAY,): 1.1}, PLAY)[0].share_left == 0.0
+    assert concluded({(): 1.5, (PLAY,): 1.65}, PLAY)[0].share_left == pytest.approx(1.0)
+
+
+def test_where_nothing_is_named_all_is_left(concluded):
+    found, _ = concluded({(): 9.0})
+    assert (found.share_left, found.verdict, found.causes) == (1.0, "unexplained", ())
+    assert found.nominal == found.model
+    assert found.before.named == found.final.named == frozenset()
+
+
+def test_causes_stand_in_the_order_of_the_catalogue_with_their_own_parameters(concluded):
+    squares = {(): 9.0, (PLAY,): 4.0, (MASS,): 2.0, (PLAY, MASS): 1.0}
+    found, _ = concluded(squares, MASS, PLAY, rivals={MASS: ("presliding",)})
+    assert [c.effect for c in found.causes] == [PLAY, MASS]
+    assert [c.rivals for c in found.causes] == [(), ("presliding",)]
+    assert [c.gain_percent for c in found.causes] == pytest.approx(
+        [100.0 * (1.0 - 1.0 / math.sqrt(2.0)), 50.0]
+    )
+    assert [e.name for c in found.causes for e in c.parameters] == [f"{PLAY}.size", f"{MASS}.size"]
+    assert found.verdict == "ambiguous"
+
+
+def test_the_gain_has_the_interval_of_its_blocks():
+    search = Judged({frozenset(): 4.0, frozenset({PLAY}): 1.0})
+    found = d._cause(search, frozenset({PLAY}), PLAY, (), [])
+    assert found.gain_percent == pytest.approx(50.0)
+    assert found.gain_interval_percent == pytest.approx((50.0, 50.0))
+    spread = {frozenset(): np.full(10, 4.0), frozenset({PLAY}): np.linspace(0.5, 1.5, 10)}
+    search.held_out = lambda named, on_mesh=None: spread[named]
+    uneven = d._cause(search, frozenset({PLAY}), PLAY, (), [])
+    low, high = uneven.gain_interval_percent
+    assert 40.0 < low < 49.0 < uneven.gain_percent < 51.0 < high < 60.0
+
+
+def test_an_uneven_bend_and_the_noise_add_up_in_squares(monkeypatch):
+    """Blocks are counted from 0 in each run; 3 and 4 make 5."""
+    given = {}
+    fitted = Fitted(*(np.full(1, v) for v in (7.0, 3.0, 2.0)), np.zeros(1, bool), True, "", 1)
+
+    def with_errors(unknowns, solution, blocks, *, by_run):
+        given.update(blocks=[b.tolist() for b in blocks], by_run=by_run)
+        return fitted
+
+    monkeypatch.setattr(d, "with_errors", with_errors)
+    monkeypatch.setattr(d, "stderr_of_unevenness", lambda *_: np.full(1, 4.0))
+    monkeypatch.setattr(
+        d, "estimates_of", lambda unknowns, fit, ids: [Estimate("a", fit.stderr[0], "1", "fitted")]
+    )
+    folds = Folds(np.zeros(6, int), np.array([0, 0, 1, 2, 2, 4]), np.repeat([0, 1], 3), True)
+    bench = SimpleNamespace(rigs=[0, 1], base=SimpleNamespace(ids=dict))
+    trial = SimpleNamespace(unknowns=[], solution=None)
+    (told,) = d._estimates(SimpleNamespace(folds=folds, bench=bench), trial)
+    assert told.value == 5.0
+    assert given == {"blocks": [[0, 0, 1], [0, 0, 1]], "by_run": True}
+
+
+def test_the_blocks_of_a_bench_are_held_out(monkeypatch):
+    monkeypatch.setattr(d, "blocks_of", lambda closed, rigs: [np.array([0, 0, 1])] * 3)
+    folds = d.bench_folds(SimpleNamespace(closed=[], rigs=[]))
+    assert (folds.blocks, folds.by_run) == (6, True)
+
+
+def test_a_sheath_beside_an_unknown_tendon_is_found_by_its_name():
+    """The tendon need not be the first unknown."""
+    unknowns = [
+        Unknown("friction_coefficient", None, 0.0, -9.0, 9.0, 1.0),
+        Unknown("tendon_stiffness_N", None, 0.0, math.log(0.5), math.log(2.0), 1.0),
+    ]
+    solution = Solution(
+        np.array([5.0, math.log(1.25)]),
+        np.zeros(2, bool),
+        np.zeros(1),
+        np.zeros((1, 2)),
+        True,
+        "",
+        1,
+    )
+    trial = Trial((), tuple(unknowns), solution, (1,), on_mesh=False)
+    found = d._as_sure_as_the_data_sheet(Estimate(d.SHEATH, 1.0, "1", "fitted"), trial)
+    assert found.interval_low == 0.0  # 2 · 0.5/1.25 is less than 1
+    assert found.interval_high == pytest.approx(2.0 * 2.0 / 1.25 - 1.0)
+    assert found.stderr == pytest.approx((2.0 * 2.0 / 1.25 - 2.0) / 1.96)

@@ -1,0 +1,232 @@
+"""Which terms a drive has, decision by decision, on squares that are made up."""
+
+from itertools import combinations
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from tests.counted import Counted
+from tsas_cli.diagnosis import drive_search as ds
+from tsas_cli.diagnosis.drive_search import NOTHING, DriveSearch, drive_folds
+from tsas_cli.identification.drive_fit import LINEAR
+
+BLOCKS = 20
+
+
+def terms(*names):
+    return frozenset(names)
+
+
+class MadeUp(DriveSearch):
+    """A search whose mean squares are given by set of terms; with `after` once folds are new."""
+
+    def __init__(self, squares, default=10.0, *, after=None, failed=()):
+        super().__init__(SimpleNamespace(stated_Hz=None))
+        self.given, self.default, self.after = squares, default, after or {}
+        self.failed, self.fitted, self.folded = failed, [], []
+
+    def held_out(self, names):
+        return np.full(BLOCKS, float(self.given.get(names, self.default)))
+
+    def mean_square(self, names):
+        return float(self.held_out(names)[0])
+
+    def trial(self, names):
+        self.fitted.append(names)
+        good = names not in self.failed
+        return SimpleNamespace(
+            terms=names, solution=SimpleNamespace(converged=good), mean_square=len(self.fitted)
+        )
+
+    def _folds_by(self, best):
+        self.folded.append(best.terms)
+        self.given = self.given | self.after
+
+
+def test_all_sixteen_structures_are_there_the_simplest_first():
+    found = MadeUp({}).structures(terms("play"))
+    every = {terms(*c, "play") for n in range(5) for c in combinations(LINEAR, n)}
+    assert set(found) == every
+    assert len(found) == 16
+    assert found[0] == terms("play")
+    assert found[-1] == terms(*LINEAR, "play")
+    assert set(found[1:4]) == {terms(t, "play") for t in ("lag", "delay", "leak")}  # one number
+
+
+def test_the_simplest_structure_that_is_not_surely_beaten_is_taken():
+    """By three hundredths."""
+    assert MadeUp({terms("lag"): 1.02, terms("lag", "spring"): 1.0}).chosen(NOTHING) == terms("lag")
+    far = MadeUp({terms("lag"): 1.04, terms("lag", "spring"): 1.0})
+    assert far.chosen(NOTHING) == terms("lag", "spring")
+
+
+def test_a_fit_that_did_not_converge_is_not_taken_where_another_did():
+    search = MadeUp({terms("lag"): 1.0, terms("delay"): 2.0}, failed=(terms("lag"),))
+    assert search.chosen(NOTHING) == terms("delay")
+    none = MadeUp({terms("lag"): 1.0}, failed=MadeUp({}).structures())
+    assert none.chosen(NOTHING) == terms("lag")
+
+
+def test_with_the_gear_the_structure_is_chosen_again():
+    """A lag imitates play: with play it is not needed, and the blocks are made anew."""
+    squares = {terms("lag"): 4.0, terms("lag", "play"): 1.0, terms("play"): 1.001}
+    search = MadeUp(squares)
+    search.squares = {NOTHING: "old"}
+    assert search.run() == terms("play")
+    assert search.folded == [terms("lag", "play")]
+    assert search.squares == {}
+
+
+def test_it_ends_after_three_rounds_at_the_latest():
+    search = MadeUp({})
+    asked = []
+    search.chosen = lambda gear: terms("lag") | gear
+    search._more = lambda named: asked.append(named) or named | {f"t{len(asked)}"}
+    search._without_idle_gear = lambda named: named
+    assert search.run() == terms("lag")
+    assert len(asked) == 3
+
+
+def test_gear_that_is_idle_is_left_out_and_the_rest_stays():
+    search = MadeUp({terms("lag", "play", "ripple"): 1.0, terms("lag", "ripple"): 1.01}, 9.0)
+    search.chosen = lambda gear: terms("chosen") | gear
+    named = terms("lag", "play", "ripple")
+    assert search._without_idle_gear(named) == terms("chosen", "ripple")
+
+
+def test_rivals_help_and_are_not_worse_by_a_hundredth():
+    squares = {NOTHING: 5.0, terms("lag"): 1.0, terms("delay"): 1.009, terms("spring"): 1.011}
+    assert MadeUp(squares).rivals(terms("lag"), "lag") == ("delay",)
+
+
+def test_the_gear_is_tried_from_the_blur_on():
+    assert MadeUp({NOTHING: 1.149}, 0.5)._more(NOTHING) == NOTHING
+    assert MadeUp({NOTHING: 1.15}, 0.5)._more(NOTHING) != NOTHING
+
+
+def test_what_is_left_of_the_gear_is_tried_alone():
+    search = MadeUp({terms("play"): 4.0, terms("play", "ripple"): 1.0})
+    assert search._more(terms("play")) == terms("play", "ripple")
+    assert search.fitted == [terms("play", "ripple")]
+
+
+def test_the_best_of_single_gears_is_not_beaten_by_the_first_one():
+    """Both convince; play is better by far, both together are no better than play."""
+    squares = {NOTHING: 4.0, terms("ripple"): 3.0, terms("play"): 1.0}
+    search = MadeUp(squares | {terms("ripple", "play"): 1.0})
+    assert search._more(NOTHING) == terms("play")
+
+
+class Bench:
+    """Fits that say from which simpler ones they began."""
+
+    def __init__(self, runs=()):
+        self.runs, self.began = list(runs), {}
+
+    def fit(self, names, simpler):
+        self.began[names] = [trial.terms for trial in simpler]
+        residual = np.arange(6.0)
+        solution = SimpleNamespace(converged=True, residual=residual)
+        return SimpleNamespace(terms=names, solution=solution, mean_square=9.0 - len(names))
+
+
+def test_a_fit_begins_from_the_simpler_ones_that_are_known():
+    counted = Counted()
+    search = DriveSearch(Bench(), counted)
+    for one in (NOTHING, terms("lag"), terms("lag", "delay")):
+        search.trial(one)
+    assert search.bench.began == {
+        NOTHING: [],
+        terms("lag"): [NOTHING],
+        terms("lag", "delay"): [terms("lag")],
+    }
+    assert search.trial(NOTHING) is search.trials[NOTHING]
+    assert counted.total == counted.done == 3
+
+
+def test_each_fit_lies_ahead_once():
+    counted = Counted()
+    search = DriveSearch(Bench(), counted)
+    search.trials_of([NOTHING, terms("lag")])
+    search.trials_of([terms("lag"), terms("delay")])
+    assert counted.total == counted.done == 3
+
+
+def test_blocks_outlast_the_memory_of_the_best_structure(monkeypatch):
+    """Residuals are split by the runs; the best one leaves least."""
+    given = []
+    runs = [SimpleNamespace(x_in=np.zeros(n)) for n in (1, 2, 3)]
+
+    def folds(runs, residuals):
+        given.append([r.tolist() for r in residuals])
+        return SimpleNamespace(block=np.arange(6) // 2)
+
+    monkeypatch.setattr(ds, "drive_folds", folds)
+    chosen = []
+    search = DriveSearch(Bench(runs))
+    fit = search.bench.fit
+
+    def noted(names, simpler):
+        found = fit(names, simpler)
+        found.solution.residual = found.solution.residual + len(names)
+        return found
+
+    search.bench.fit = noted
+    monkeypatch.setattr(
+        ds, "held_out_squares", lambda trial, folds: chosen.append(trial) or np.ones(3)
+    )
+    assert search.mean_square(NOTHING) == 0.5  # three squares of 1 over six residuals
+    assert given == [[[4.0], [5.0, 6.0], [7.0, 8.0, 9.0]]]  # of all four terms
+    search.mean_square(NOTHING)
+    assert len(chosen) == 1
+
+
+def run_of(band, size=40):
+    return SimpleNamespace(x_in=np.zeros(size), band=band)
+
+
+@pytest.fixture
+def banded(monkeypatch):
+    monkeypatch.setattr(ds, "frequency_response", lambda runs: SimpleNamespace(band=runs[0].band))
+
+
+@pytest.mark.parametrize(
+    ("highest", "covered"),
+    [
+        ([10.0], False),
+        ([10.0, 7.0], True),
+        ([10.0, 6.9], False),
+        ([1.0, 10.0, 8.0], True),
+        ([8.0, 1.0, 10.0], True),
+        ([10.0, 1.0, 1.0], False),
+        ([0.5, 0.4], True),
+        ([0.5, 0.3], False),
+        ([None, None], False),
+        ([10.0, None], False),
+    ],
+)
+def test_the_highest_frequency_has_to_be_seen_by_a_second_run(banded, highest, covered):
+    """Up to 0.7 of it."""
+    runs = [run_of(None if h is None else (0.1, h)) for h in highest]
+    assert ds._covered(runs) == covered
+
+
+@pytest.mark.parametrize(("memory", "length"), [(1, 5), (5, 5), (8, 8)])
+def test_there_are_no_more_than_two_hundred_blocks(banded, monkeypatch, memory, length):
+    """Of a thousand samples blocks of five at the least."""
+    monkeypatch.setattr(ds, "block_length", lambda residuals: memory)
+    residuals = [np.zeros(600), np.zeros(400)]
+    folds = drive_folds([run_of((0.1, 9.0)), run_of((0.1, 9.0))], residuals)
+    assert folds.blocks == round(600 / length) + round(400 / length)
+    assert folds.fold.tolist() == folds.run.tolist() == [0] * 600 + [1] * 400
+
+
+def test_few_blocks_are_all_held_out(banded, monkeypatch):
+    monkeypatch.setattr(ds, "block_length", lambda residuals: 20)
+    folds = drive_folds([run_of((0.1, 9.0))], [np.zeros(60)])
+    assert not folds.by_run
+    assert folds.fold.tolist() == [0] * 20 + [1] * 20 + [2] * 20
+    five = drive_folds([run_of((0.1, 9.0))], [np.zeros(100)])
+    assert np.unique(five.fold[80:]).tolist() == [0]
+    assert five.blocks == 5

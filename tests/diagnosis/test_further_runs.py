@@ -1,0 +1,159 @@
+"""Runs that might be added: when, on which rig and with which sensors they are recorded."""
+
+from datetime import datetime, timedelta
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from tests.physics.references import GROUP_A
+from tsas_cli.diagnosis import further_runs as f
+from tsas_cli.diagnosis.candidates import candidates
+from tsas_cli.diagnosis.rig_file import Limits, Sensors
+from tsas_cli.errors import InputError
+from tsas_cli.recordings.manifest import Run
+
+NOON = datetime(2001, 2, 3, 12)  # noqa: DTZ001 # a rig has no zone
+CANDIDATES = candidates(Limits(amplitude_mm=10.0, speed_mm_per_s=24.0), GROUP_A)
+
+
+def recorded(run_id="a", started=NOON, session_s=0.0, time_s=(3.0, 3.1, 3.3, 63.0), **other):
+    return SimpleNamespace(
+        **{
+            "run": SimpleNamespace(id=run_id, started=started, load="spring"),
+            "session_s": session_s,
+            "time_s": np.array(time_s),
+            "drive_column": "x_in_mm",
+            "noise": {"f_in_N": 0.2, "x_out_mm": 0.0},
+            "conditioned": {"x_in_mm": SimpleNamespace(noise=0.04)},
+        }
+        | other
+    )
+
+
+def test_the_clock_goes_on_after_the_last_run():
+    """It begins at 12 h, an hour after the session did, lasts a minute, and five follow."""
+    runs = [recorded(session_s=3600.0), recorded("b", None, 100.0)]
+    assert f._clock(runs) == (NOON - timedelta(hours=1), NOON + timedelta(minutes=6))
+    assert f._clock(runs[::-1]) == f._clock(runs)
+
+
+@pytest.mark.parametrize("last", [recorded(session_s=0.0), recorded(started=None, session_s=9.0)])
+def test_without_a_clock_there_is_none(last):
+    began, goes_on = f._clock([last])
+    assert began is None
+    assert isinstance(goes_on, datetime)
+
+
+def test_each_is_recorded_right_after_the_last_run_with_noise_of_its_own(monkeypatch):
+    asked = []
+
+    def made(runs, sensors, rig_of, started, *, seed):
+        asked.append((runs[0], sensors, rig_of, started, seed))
+        return [f"recorded {runs[0].id}"]
+
+    monkeypatch.setattr(f, "made", made)
+    monkeypatch.setattr(f, "prepare", lambda recording, began: (recording, began))
+    sensors = Sensors(rate_Hz=100.0, x_in_mm=0.02, f_in_N=0.1)
+    out = f.recorded_in_thought(CANDIDATES, sensors, GROUP_A, [recorded(session_s=60.0)])
+    assert [candidate for candidate, _ in out] == CANDIDATES
+    began = NOON - timedelta(minutes=1)
+    assert [run for _, run in out] == [(f"recorded {c.run.id}", began) for c in CANDIDATES]
+    assert {started for *_, started, _ in asked} == {NOON + timedelta(minutes=6)}
+    assert [run for run, *_ in asked] == [c.run for c in CANDIDATES]
+    assert len({seed for *_, seed in asked}) == len(CANDIDATES)
+
+    rig_of = asked[0][2]
+    said = {"sheath_length_mm": 500.0, "total_bend_rad": 0.0, "preload_N": 9.0}
+    there = Run(id="a", file="a", sha256="0" * 64, **said)
+    assert rig_of(there) == GROUP_A._replace(**said)
+    nothing = Run(id="a", file="a", sha256="0" * 64)
+    assert rig_of(nothing) == GROUP_A
+
+
+@pytest.fixture
+def looked(monkeypatch):
+    """What a fit of some runs is asked for; the fit leaves out what `out` names."""
+    seen = SimpleNamespace(left_out=[], out=(), fits=[], solved=0)
+
+    class Fit:
+        def __init__(self, start, kept, runs):
+            seen.start, seen.kept = start, kept
+            self.runs = [run for run in runs if run.run.id not in seen.out]
+            self.left_out = [f"run {i} is short" for i in seen.out]
+
+        def solve(self):
+            seen.solved += 1
+
+    class Bench:
+        def __init__(self, fit):
+            assert seen.solved
+
+        def fit(self, named, start, *, on_mesh):
+            seen.fits.append((named, start, on_mesh))
+            return "trial"
+
+    parts = SimpleNamespace(part=list)
+    monkeypatch.setattr(f, "JointFit", Fit)
+    monkeypatch.setattr(f, "Bench", Bench)
+    monkeypatch.setattr(f, "Look", lambda bench, trial: parts)
+    return seen
+
+
+def further(*ids):
+    return [
+        (candidate, recorded(run_id)) for candidate, run_id in zip(CANDIDATES, ids, strict=False)
+    ]
+
+
+def test_what_is_there_and_what_is_added_is_told_apart_by_the_runs_names(looked):
+    looked.out = ("b", "two")
+    runs = [recorded(i) for i in ("a", "b", "c")]
+    found = f.beside(runs, further("one", "two", "three"), "start", "kept")
+    assert found.there == (0, 1)
+    assert found.added == {2: CANDIDATES[0], 3: CANDIDATES[2]}
+    assert found.left_out == ("run b is short",)
+    assert found.part() == [0, 1]
+    assert found.part(3) == [0, 1, 3]
+    assert (looked.start, looked.kept, looked.solved) == ("start", "kept", 1)
+    assert looked.fits == [([], {}, True)]
+
+
+def test_effects_that_stay_free_are_fitted_by_their_names(looked):
+    free = {"presliding.stiffness": 2.0, "backlash.play_mm": 0.1, "presliding.damping": 3.0}
+    f.beside([recorded()], [], "start", "kept", free)
+    assert looked.fits == [(["backlash", "presliding"], free, True)]
+
+
+def test_runs_that_show_nothing_are_refused(looked):
+    looked.out = ("a",)
+    with pytest.raises(InputError, match="no run makes the whole tendon slip"):
+        f.beside([recorded()], further("one"), "start", "kept")
+
+
+def test_further_runs_are_recorded_as_the_first_plain_one_was(monkeypatch):
+    """Driven by its place, with a spring behind: at its rate, noise and rig."""
+    given = {}
+
+    def recorded_in_thought(proposed, sensors, rig, runs):
+        given.update(proposed=proposed, sensors=sensors, rig=rig, runs=runs)
+        return "further"
+
+    monkeypatch.setattr(f, "recorded_in_thought", recorded_in_thought)
+    monkeypatch.setattr(f, "recorded_limits", lambda runs: "limits")
+    monkeypatch.setattr(f, "candidates", lambda limits, rig: (limits, rig))
+    monkeypatch.setattr(f, "beside", lambda *what: what)
+    by_force = recorded("f", drive_column="f_in_N")
+    weighted = recorded("w", run=SimpleNamespace(load="force"))
+    plain = recorded(time_s=(0.0, 0.02, 0.04, 5.0))
+    runs = [by_force, weighted, plain, recorded("later")]
+    base = SimpleNamespace(runs=runs, start="start", kept="kept")
+    bench = SimpleNamespace(base=base, rigs=["r0", "r1", "r2", "r3"])
+    found = f.beside_recorded(bench, {"a.b": 1.0})
+    assert found == (runs, "further", "start", "kept", {"a.b": 1.0})
+    assert (given["proposed"], given["rig"], given["runs"]) == (("limits", "r2"), "r2", runs)
+    assert given["sensors"].rate_Hz == pytest.approx(50.0)
+    assert given["sensors"].outputs == {"f_in_N": 0.2}  # x_out has no noise: it never changes
+    assert given["sensors"].x_in_mm == 0.04
+    bench.base.runs = [by_force, weighted]
+    assert f.beside_recorded(bench)[1] == []

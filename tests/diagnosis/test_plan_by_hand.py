@@ -1,0 +1,276 @@
+"""What a plan concludes from sizes that are made up, and how it says so."""
+
+import math
+from types import SimpleNamespace
+
+import pytest
+
+from tests.counted import Counted
+from tests.diagnosis.planned import rig_file, run
+from tests.physics.references import GROUP_A
+from tsas_cli.diagnosis import plan as p
+from tsas_cli.diagnosis import plan_stage
+from tsas_cli.diagnosis.candidates import candidates
+from tsas_cli.diagnosis.plan import Better, Plan, Proposal, plan_rig, propose
+from tsas_cli.diagnosis.rig_file import Limits
+from tsas_cli.diagnosis.visibility import Cause, Seen
+from tsas_cli.effects import EFFECTS
+
+OF = {e.name: e for e in EFFECTS}
+CANDIDATES = candidates(Limits(amplitude_mm=10.0, speed_mm_per_s=24.0), GROUP_A)
+PLAY, MASS, LENGTH = "backlash", "load_inertia", "free_tendon"
+
+
+def cause(name):
+    parameter = next(q for q in OF[name].parameters if not q.shape)
+    return Cause(OF[name], parameter, {})
+
+
+def seen(name, found, **told):
+    return Seen(cause(name), found, told)
+
+
+def better(name, before, after):
+    return Better(cause(name), before, after)
+
+
+def test_what_is_better_is_said_with_its_unit():
+    assert better(PLAY, 0.512, 0.0449).sentence == (
+        "backlash.play_mm is named from 0.045 mm on, instead of 0.51"
+    )
+    assert better(PLAY, math.inf, 0.2).sentence.endswith("from 0.2 mm on, not without it")
+    ratio = better("sheath_compression", 0.3, 0.2)
+    assert ratio.cause.parameter.unit == "1"
+    assert "is named from 0.2 on, instead" in ratio.sentence
+
+
+def test_the_best_of_a_proposal_come_first():
+    three = tuple(better(n, 2.0, 1.0) for n in (PLAY, MASS, LENGTH))
+    said = Proposal(CANDIDATES[0], 1.0, three, ()).best_of(2)
+    assert said == f"{three[0].sentence}; {three[1].sentence}"
+
+
+@pytest.mark.parametrize("blocks", [1, 6])
+def test_fewer_blocks_than_seven_are_too_few(blocks):
+    """√7 is more than the 2.6 that are asked for, √6 is not."""
+    (said,) = p._few(blocks)
+    assert said == (
+        f"These runs have {blocks} independent stretches; no diagnosis is sure with fewer than 7."
+    )
+    assert p._few(7) == []
+
+
+def test_the_score_is_the_mean_logarithm_by_which_sizes_fall():
+    before = [seen(PLAY, 0.4), seen(MASS, 0.1), seen(LENGTH, 3.0)]
+    after = [seen(PLAY, 0.1), seen(MASS, 0.125), seen(LENGTH, 2.0)]
+    found = p._proposal(CANDIDATES[0], before, after)
+    assert found.score == pytest.approx((math.log(4.0) + math.log(0.8) + math.log(1.5)) / 3.0)
+    assert [(b.cause.effect.name, b.before, b.after) for b in found.better] == [
+        (PLAY, 0.4, 0.1),
+        (LENGTH, 3.0, 2.0),
+    ]
+
+
+def test_what_falls_by_less_than_a_fifth_is_not_worth_saying():
+    found = p._proposal(CANDIDATES[0], [seen(PLAY, 1.2)], [seen(PLAY, 1.01)])
+    assert found.better == ()
+    assert found.score == pytest.approx(math.log(1.2 / 1.01))
+    assert p._proposal(CANDIDATES[0], [seen(PLAY, 1.2)], [seen(PLAY, 0.99)]).better
+
+
+def test_what_was_not_seen_counts_from_the_largest_size_on():
+    largest = cause(PLAY).largest
+    before, after = [seen(PLAY, math.inf)], [seen(PLAY, largest / 5.0)]
+    assert p._proposal(CANDIDATES[0], before, after).score == pytest.approx(math.log(5.0))
+    assert p._proposal(CANDIDATES[0], after, before).score == pytest.approx(-math.log(5.0))
+    assert p._proposal(CANDIDATES[0], before, before).score == 0.0
+    with pytest.raises(ValueError, match="zip"):
+        p._proposal(CANDIDATES[0], before, [*after, *after])
+
+
+def test_pairs_hide_in_each_other_both_ways():
+    sizes = [
+        seen(LENGTH, 1.0, drive_compliance=11.0, backlash=11.0),
+        seen("drive_compliance", 1.0, free_tendon=math.inf),
+        seen(PLAY, 1.0, free_tendon=9.0),
+    ]
+    assert p._groups(sizes) == (("drive_compliance", "free_tendon"),)
+
+
+class Further:
+    """Runs that might be added, with what each lets see; None: without any."""
+
+    left_out = ("run b is short.",)
+
+    def __init__(self, sizes, blocks=20):
+        self.sizes, self.blocks = sizes, blocks
+        self.added = {k: CANDIDATES[k] for k in sizes if k is not None}
+        self.asked = []
+
+    def part(self, k=None):
+        def seen(effects, rivals):
+            self.asked.append((k, [e.name for e in effects], [e.name for e in rivals]))
+            return self.sizes[k]
+
+        return SimpleNamespace(seen=seen, blocks=self.blocks)
+
+
+SIZES = {
+    None: [seen(PLAY, 1.0)],
+    1: [seen(PLAY, 0.5)],
+    2: [seen(PLAY, 1.0)],  # does not help
+    4: [seen(PLAY, 0.1)],
+    5: [seen(PLAY, 0.4)],
+    6: [seen(PLAY, 0.3)],
+}
+
+
+def test_three_runs_are_proposed_the_best_first():
+    steps, runs = Counted(), Further(SIZES, blocks=3)
+    steps.ahead(1)
+    found = p._plan(runs, steps)
+    assert [x.candidate for x in found.proposals] == [CANDIDATES[k] for k in (4, 6, 5)]
+    assert found.seen == tuple(SIZES[None])
+    assert found.cannot_tell[0] == "run b is short."
+    assert "3 independent stretches" in found.cannot_tell[1]
+    assert steps.total == steps.done == 2 + 5
+    everything = [e.name for e in EFFECTS]
+    assert runs.asked[0] == (None, everything, everything)
+    assert runs.asked[1] == (1, [PLAY], everything)  # only what was looked at before
+
+
+def proposed(monkeypatch, runs, *effects, values=None):
+    asked = SimpleNamespace()
+
+    def beside_recorded(bench, free):
+        asked.free = free
+        return runs
+
+    monkeypatch.setattr(p, "beside_recorded", beside_recorded)
+    trial = SimpleNamespace(values=lambda: values or {})
+    asked.steps = Counted()
+    return propose(None, trial, effects, asked.steps), asked
+
+
+def test_the_run_that_tells_most_is_said(monkeypatch):
+    hidden = [
+        seen(PLAY, 0.1, load_inertia=0.2),
+        seen(MASS, 0.5, backlash=0.5),
+    ]
+    less = [seen(PLAY, 0.7), seen(MASS, 0.7)]
+    runs = Further({None: [seen(PLAY, 1.0), seen(MASS, 1.0)], 1: less, 3: hidden, 5: less})
+    values = {f"{PLAY}.play_mm": 0.1, "presliding.length_mm": 0.2}
+    said, asked = proposed(monkeypatch, runs, PLAY, MASS, values=values)
+    first, second = better(PLAY, 1.0, 0.2), better(MASS, 1.0, 0.5)
+    assert said == (
+        f"Record {CANDIDATES[3].sentence}. With it {first.sentence}; {second.sentence}."
+    )
+    assert asked.free == {"presliding.length_mm": 0.2}
+    assert asked.steps.total == asked.steps.done == 4
+    assert runs.asked == [(k, [PLAY, MASS], [PLAY, MASS]) for k in (None, 1, 3, 5)]
+
+
+def test_what_it_still_does_not_tell_is_said_too(monkeypatch):
+    alike = [seen(MASS, 0.1, free_tendon=2.0), seen(LENGTH, 0.1, load_inertia=2.0)]
+    runs = Further({None: [seen(PLAY, 1.0), *alike], 3: [seen(PLAY, 0.1), *alike]})
+    said, _ = proposed(monkeypatch, runs, PLAY, MASS, LENGTH)
+    assert said.endswith(f" It does not tell {LENGTH} from {MASS}.")
+
+
+def test_one_effect_is_told_from_all_and_none_means_all(monkeypatch):
+    runs = Further({None: [seen(PLAY, 1.0)], 3: [seen(PLAY, 0.5)]})
+    proposed(monkeypatch, runs, PLAY)
+    assert runs.asked[0] == (None, [PLAY], [e.name for e in EFFECTS])
+    proposed(monkeypatch, runs)
+    assert runs.asked[2] == (None, [e.name for e in EFFECTS], [e.name for e in EFFECTS])
+
+
+@pytest.mark.parametrize("after", [1.0, 0.9])
+def test_where_no_run_helps_that_is_said(monkeypatch, after):
+    """A fall by a tenth is none worth saying."""
+    runs = Further({None: [seen(PLAY, 1.0)], 3: [seen(PLAY, after)]})
+    said, _ = proposed(monkeypatch, runs, PLAY, MASS)
+    titles = f"{OF[PLAY].title.lower()} and {OF[MASS].title.lower()}"
+    assert said == f"No further run within the range of these tells {titles} apart."
+
+
+def test_a_rig_file_is_planned_by_its_own_rig_and_limits(monkeypatch):
+    given = {}
+    monkeypatch.setattr(p, "made", lambda runs, *_: runs)
+    monkeypatch.setattr(p, "prepare", lambda planned, _: SimpleNamespace(run=planned))
+    monkeypatch.setattr(
+        p, "recorded_in_thought", lambda proposed, *rest: given.update(proposed=proposed)
+    )
+    monkeypatch.setattr(p, "beside", lambda runs, *_: runs)
+    monkeypatch.setattr(p, "_plan", lambda runs, step: runs)
+    steps = Counted()
+    runs = plan_rig(rig_file(run(5.0), run(7.0, "b", preload_N=40.0)), steps)
+    assert [r.run.id for r in runs] == ["a", "b"]
+    assert steps.total == 1
+    found = {c.title: c.run for c in given["proposed"]}
+    assert found["run a again"].id == "proposed: a again"
+    assert found["a fast sine"].speed == 14.0
+    assert found["a fast sine"].preload_N == 25.0  # as in the first run
+    assert found["another preload"].preload_N == 60.0
+
+
+HIDDEN = Plan(
+    (
+        seen(PLAY, 0.01234, load_inertia=0.05),
+        seen(MASS, 0.5, free_tendon=6.0, backlash=1.0),
+        seen(LENGTH, math.inf),
+    ),
+    ((LENGTH, MASS),),
+    (
+        Proposal(
+            CANDIDATES[0],
+            math.log(4.0),
+            (*(better(PLAY, 0.4, 0.1) for _ in range(5)), better(MASS, math.inf, 0.3)),
+            (),
+        ),
+    ),
+    ("nobody knows.",),
+)
+
+
+def test_a_plan_as_json():
+    found = plan_stage.as_json(HIDDEN)
+    first, second, third = found["effects"]
+    assert (first["effect"], first["parameter"], first["unit"]) == (PLAY, "play_mm", "mm")
+    assert (first["found_from"], first["named_from"]) == (0.01234, 0.05)
+    assert (first["nearest"], first["hidden_in"]) == (MASS, [])
+    assert second["hidden_in"] == [LENGTH]
+    assert (third["found_from"], third["named_from"], third["nearest"]) == (None, None, None)
+    assert found["groups"] == [[LENGTH, MASS]]
+    (proposal,) = found["proposals"]
+    assert proposal["falls_percent"] == pytest.approx(75.0)
+    assert "id" not in proposal["run"]
+    assert "frequency_Hz" not in proposal["run"]
+    assert proposal["better"][0]["named_from_with_it"] == 0.1
+    assert proposal["better"][-1]["named_from"] is None
+    assert found["cannot_tell"] == ["nobody knows."]
+
+
+def test_shapes_are_named_within_their_effect():
+    shaped = Seen(Cause(OF[PLAY], OF[PLAY].parameters[0], {"backlash.kind": 2.0}), 1.0, {})
+    found = plan_stage.as_json(Plan((shaped,), (), (), ()))["effects"][0]
+    assert found["shape"] == {"kind": 2.0}
+
+
+def test_the_tables_of_a_plan():
+    sizes, groups, proposal = plan_stage._tables(plan_stage.as_json(HIDDEN))
+    assert [row[3:] for row in sizes[2]] == [
+        ("0.012", "0.05", MASS),
+        ("0.5", "6", LENGTH),
+        ("not shown", "", ""),
+    ]
+    assert groups[2] == [[LENGTH, MASS]]
+    title, header, rows = proposal
+    assert title.endswith(": sizes fall by 75 % on average")
+    assert title.startswith("add a slow sine: 2 times")
+    assert len(header) == 5
+    assert len(rows) == 4  # no more are printed
+    assert rows[0] == (PLAY, "play_mm", "mm", "0.4", "0.1")
+    never = Plan((seen(MASS, 0.5, backlash=math.inf),), (), (), ())
+    (only,) = plan_stage._tables(plan_stage.as_json(never))
+    assert only[2][0][3:] == ("0.5", "never", PLAY)

@@ -1,0 +1,286 @@
+"""From which size on, step by step: effects, signatures and blocks that are made up."""
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from tsas_cli.diagnosis import visibility as v
+from tsas_cli.diagnosis.visibility import (
+    Cause,
+    Imitation,
+    Look,
+    Part,
+    Seen,
+    amplitudes_of,
+    causes_of,
+)
+from tsas_cli.effects.effect import Effect, Parameter
+from tsas_cli.identification.extension import Trial
+from tsas_cli.identification.fit import Solution, Unknown
+
+BLOCKS, EACH = 20, 10
+SIZE = BLOCKS * EACH
+
+
+def amplitude(name="size", neutral=0.0, start=0.5, lower=0.0, upper=9.0):
+    return Parameter(name, "mm", neutral, start, lower, upper)
+
+
+def shape(name, *starts, start=7.0):
+    return Parameter(name, "1", 0.0, start, 0.0, 9.0, shape=True, starts=starts)
+
+
+def effect(name, *parameters):
+    return Effect(name, name, "drive", "", "", parameters or (amplitude(),), "")
+
+
+def cause(parameter, name="play"):
+    return Cause(effect(name, parameter), parameter, {})
+
+
+@pytest.mark.parametrize(
+    ("parameter", "start", "one_sided", "largest"),
+    [
+        (amplitude(), 0.5, True, 9.0),
+        (amplitude(start=0.05), 0.05, True, 5.0),  # a hundred times the start
+        (amplitude(neutral=1.0, start=1.02, lower=0.5, upper=1.7), 0.02, False, 0.7),
+        (amplitude(neutral=1.0, start=0.9, lower=0.2, upper=1.7), -0.1, False, 0.8),
+        (amplitude(neutral=1.0, start=0.996, lower=0.0, upper=1.0), -0.004, True, 0.4),
+    ],
+)
+def test_sizes_are_less_the_neutral_value(parameter, start, one_sided, largest):
+    found = cause(parameter)
+    assert found.start == pytest.approx(start)
+    assert found.one_sided == one_sided
+    assert found.largest == pytest.approx(largest)
+    assert found.name == "play.size"
+
+
+@pytest.mark.parametrize(
+    ("told", "named", "hidden", "nearest"),
+    [
+        ({}, 2.0, [], None),
+        ({"a": 2.0, "b": 1.0}, 2.0, [], None),
+        ({"a": 2.5, "b": 3.0}, 3.0, [], "b"),
+        ({"a": 20.0}, 20.0, [], "a"),
+        ({"a": 3.0, "b": 20.1}, 20.1, ["b"], "b"),
+        ({"a": math.inf, "b": 1.0}, math.inf, ["a"], "a"),
+    ],
+)
+def test_what_hides_where(told, named, hidden, nearest):
+    """Ten times the size found tells them apart, or nothing does."""
+    found = Seen(cause(amplitude()), 2.0, told)
+    assert (found.named, found.hidden_in, found.nearest) == (named, hidden, nearest)
+    assert found.counted == (math.inf if hidden else named)
+
+
+def test_few_shapes_are_all_looked_at_of_many_the_start():
+    four = effect("e", amplitude(), shape("a", 1.0, 2.0, 3.0, 4.0))
+    assert [c.shape for c in causes_of(four)] == [{"e.a": x} for x in (1.0, 2.0, 3.0, 4.0)]
+    for many in (
+        effect("e", amplitude(), shape("a", *range(5))),
+        effect("e", amplitude(), shape("a")),
+    ):
+        assert [c.shape for c in causes_of(many)] == [{"e.a": 7.0}]
+    two = effect("e", shape("a", 1.0, 2.0), amplitude("x"), amplitude("y"), shape("b", 3.0, 4.0))
+    found = [(c.parameter.name, *c.shape.values()) for c in causes_of(two)]
+    assert len(found) == len(set(found)) == 8
+    assert found[0] == ("x", 1.0, 3.0)
+    assert [c.name for c in amplitudes_of(two)] == ["e.x", "e.y"]
+    assert {tuple(c.shape.items()) for c in amplitudes_of(two)} == {(("e.a", 1.0), ("e.b", 3.0))}
+
+
+def part(block=None, basis=None, look=None):
+    block = np.repeat(np.arange(BLOCKS), EACH) if block is None else block
+    basis = np.zeros((block.size, 0)) if basis is None else basis
+    return Part(look, np.ones(block.size, dtype=bool), block, basis)
+
+
+def smallest_by_definition(signature, block):
+    """Try sizes one by one, 10^(1/100) apart, from the one that takes a fortieth of the squares."""
+    E, n = [], []
+    for b in sorted(set(block)):
+        E.append(sum(float(y) ** 2 for y in signature[block == b]))
+        n.append(int(sum(block == b)))
+    first = math.sqrt(0.025 / 0.975 * sum(n) / sum(E))
+    for k in range(301):
+        s = first * 10.0 ** (k / 100.0)
+        gains = [math.log(1.0 + s * s * e / m) for e, m in zip(E, n, strict=True)]
+        noise = [2.0 * s * math.sqrt(e) / (m + s * s * e) for e, m in zip(E, n, strict=True)]
+        whole = sum(g * g + d * d for g, d in zip(gains, noise, strict=True))
+        if sum(gains) > 2.6 * math.sqrt(whole):
+            return s
+    return math.inf
+
+
+@pytest.mark.parametrize("blocks", [7, 8, 9, 12, 20, 60])
+@pytest.mark.parametrize("each", [3, 40])
+def test_a_size_is_found_by_the_definition(blocks, each):
+    """Gains log(1 + s² E/n), which noise scatters by 2 s √E/(n + s² E)."""
+    block = np.repeat(np.arange(blocks), each)
+    ramp = 0.3 + block / blocks + np.arange(block.size) % 3
+    found = part(block).smallest(ramp)
+    assert found == pytest.approx(smallest_by_definition(ramp, block), rel=1e-9)
+
+
+def test_what_cannot_be_done_by_what_is_free():
+    """Nothing negative: the second column has to be taken away, which is not done."""
+    imitation = Imitation(np.eye(4)[:, :3], np.array([[2.0, 0.0], [0.0, 0.25], [0.0, 0.0]]))
+    left = imitation.left(np.array([3.0, -1.0, 5.0, 7.0]))
+    np.testing.assert_allclose(left, [0.0, -1.0, 5.0, 7.0], atol=1e-12)
+
+
+def test_sizes_of_columns_do_not_matter_and_none_is_none():
+    columns = np.array([[1e-20, 0.0, 0.0], [0.0, 0.5, 0.0]])
+    left = Imitation(np.eye(3)[:, :2], columns).left(np.array([3.0, 1.0, 1.0]))
+    np.testing.assert_allclose(left, [0.0, 0.0, 1.0], atol=1e-12)
+
+
+class MadeUpLook:
+    """Signatures that are given by name, each for a unit of size; some depend on the size."""
+
+    def __init__(self, **signatures):
+        self.signatures, self.asked = signatures, []
+
+    def signature(self, cause, size):
+        self.asked.append((cause.name, size))
+        given = self.signatures[cause.effect.name]
+        return given(size) if callable(given) else given
+
+
+def wave(k, scale=1.0):
+    return scale * np.sin(2.0 * math.pi * k * np.arange(SIZE) / EACH)
+
+
+def test_the_size_looked_at_is_a_power_of_two_below_the_one_found():
+    given = wave(1)
+    found = part().smallest(given)
+    look = MadeUpLook(e=given)
+    one = cause(amplitude(start=0.01, upper=1e9), "e")
+    settled = part(look=look)._settled(one)
+    assert settled <= found < 2.0 * settled
+    free = cause(amplitude(start=found / 5.0, upper=1e9), "e")
+    assert part(look=look)._settled(free) == pytest.approx(found * 4.0 / 5.0)
+    down = cause(amplitude(start=-found * 3.0, lower=-1e9, upper=1e9), "e")
+    assert part(look=look)._settled(down) == pytest.approx(-found * 3.0 / 4.0)
+
+
+def test_where_nothing_is_found_the_start_is_the_size():
+    look = MadeUpLook(e=np.zeros(SIZE))
+    one = cause(amplitude(start=0.3), "e")
+    assert part(look=look)._settled(one) == 0.3
+    assert [size for _, size in look.asked] == [0.3]
+
+
+def test_a_size_is_settled_once():
+    look = MadeUpLook(e=wave(1))
+    found = part(look=look)
+    one = cause(amplitude(upper=1e9), "e")
+    found.own(one)
+    before = len(look.asked)
+    found.own(one)
+    assert len(look.asked) == before + 1
+
+
+def test_what_free_parameters_do_is_taken_out():
+    free = np.linalg.qr(wave(1)[:, None])[0]
+    look = MadeUpLook(e=wave(1, 5.0) + wave(2, 3.0))
+    found = part(basis=free, look=look)
+    one = cause(amplitude(upper=1e9), "e")
+    np.testing.assert_allclose(found.own(one), wave(2, 3.0), atol=1e-9)
+    np.testing.assert_allclose(found.tiny(one), wave(2, 3.0), atol=1e-9)
+    assert look.asked[-1] == ("e.size", 0.5e-6)
+    assert found.blocks == BLOCKS
+
+
+@pytest.mark.parametrize(("own", "shows"), [(0.031, False), (0.033, True)])
+def test_it_shows_from_a_thousandth_of_the_squares_on(own, shows):
+    """Waves of 1 and of 2 periods per block are orthogonal and of one size."""
+    free = np.linalg.qr(wave(1)[:, None])[0]
+    look = MadeUpLook(e=wave(1) + wave(2, own))
+    assert part(basis=free, look=look).shows(cause(amplitude(), "e")) == shows
+
+
+def seen(look, first, *rivals):
+    found = part(look=look)
+    (told,) = found.seen([first], [first, *rivals])
+    return told
+
+
+def wide(name, **other):
+    return effect(name, amplitude(**{"upper": 1e9, "lower": 0.0} | other))
+
+
+def test_an_effect_is_told_from_what_does_something_else():
+    look = MadeUpLook(a=wave(1), b=wave(2), c=wave(1) + wave(2))
+    told = seen(look, wide("a"), wide("b"), wide("c"))
+    assert set(told.told) == {"b", "c"}
+    assert told.found == pytest.approx(smallest_by_definition(wave(1), part().block))
+    assert told.told["b"] == pytest.approx(told.found)
+    half = 0.5 * (wave(1) - wave(2))  # what is left of a beside the best of c
+    assert told.told["c"] == pytest.approx(smallest_by_definition(half, part().block))
+
+
+def test_one_that_acts_in_one_direction_does_not_hide_the_other():
+    """A rival that is its opposite hides what may act in both directions, nothing else."""
+    look = MadeUpLook(a=wave(1), b=-wave(1))
+    assert seen(look, wide("a"), wide("b")).told["b"] < math.inf
+    assert seen(look, wide("a", lower=-1e9), wide("b")).told["b"] == math.inf
+    assert seen(look, wide("a"), wide("b", lower=-1e9)).told["b"] == math.inf
+    # Starting below the neutral value, it acts in the other direction.
+    below = wide("b", start=-0.5, lower=-1e9, upper=0.0)
+    assert seen(look, wide("a"), below).told["b"] == math.inf
+
+
+def test_what_nearly_imitates_it_hides_it():
+    """A thousandth of the squares is too little to tell."""
+    for off, hidden in ((0.031, True), (0.033, False)):
+        look = MadeUpLook(a=wave(1) + wave(2, off), b=wave(1))
+        assert (seen(look, wide("a"), wide("b")).told["b"] == math.inf) == hidden
+
+
+def test_what_is_imitated_while_it_is_small_is_hidden_though_it_is_not_when_it_is_large():
+    look = MadeUpLook(a=lambda size: wave(1) if abs(size) < 1e-4 else wave(2), b=wave(1))
+    assert seen(look, wide("a"), wide("b")).told["b"] == math.inf
+
+
+def test_no_size_is_larger_than_the_largest():
+    found = smallest_by_definition(wave(1), part().block)
+    for upper, limited in ((1.01 * found, False), (0.99 * found, True)):
+        told = seen(MadeUpLook(a=wave(1), b=wave(2)), wide("a", upper=upper), wide("b"))
+        assert (told.found == math.inf) == limited
+        assert (told.told["b"] == math.inf) == limited
+
+
+def test_a_look_at_some_runs_has_their_rows_alone(monkeypatch):
+    """Three runs of four residuals: those of the first and the last one, blocks counted anew."""
+    slopes = np.arange(12.0)[:, None] + 1.0
+    monkeypatch.setattr(v, "_slopes", lambda bench, trial: slopes)
+    monkeypatch.setattr(v, "blocks_of", lambda closed, rigs: [np.array([0, 0, 1, 1])] * 3)
+    solution = Solution(
+        np.zeros(1), np.zeros(1, bool), np.zeros(12), np.zeros((12, 1)), True, "", 1
+    )
+    trial = Trial((), (Unknown("a", None, 0.0, -9.0, 9.0, 1.0),), solution, (4, 4, 4), on_mesh=True)
+    asked = []
+
+    def errors_at(trial, at):
+        asked.append(at)
+        return np.arange(12.0) * (1.0 + sum(at.values()) ** 2)
+
+    bench = SimpleNamespace(closed=[], rigs=[], errors_at=errors_at)
+    look = Look(bench, trial)
+    found = look.part([0, 2])
+    assert found.rows.tolist() == [True] * 4 + [False] * 4 + [True] * 4
+    assert found.block.tolist() == [0, 0, 1, 1, 2, 2, 3, 3]
+    unit = slopes[found.rows] / np.linalg.norm(slopes[found.rows])
+    np.testing.assert_allclose(np.abs(found.basis), unit)
+    one = Cause(effect("e"), amplitude(neutral=1.0), {"e.shape": 2.0})
+    # (1 + (2 + 1 + 3)²) − 1, for each unit of a size of 3.
+    np.testing.assert_allclose(look.signature(one, 3.0), 12.0 * np.arange(12.0))
+    assert asked == [{"e.shape": 2.0, "e.size": 4.0}, {}]
+    look.signature(one, 3.0)
+    assert len(asked) == 2
+    other = Cause(one.effect, one.parameter, {"e.shape": 0.0})
+    np.testing.assert_allclose(look.signature(other, 3.0), 16.0 / 3.0 * np.arange(12.0))
