@@ -113,3 +113,116 @@ def test_a_tension_that_falls_as_the_other_rises_is_no_capstan():
     run, segments = run_of()
     run.channels["f_in_N"] *= -1.0
     assert told((run, segments)) == {}
+
+
+def left_out(force, pulled, size):
+    """Return the covariance of a line from refits, each without one block of neighbours."""
+    J = np.column_stack((force, np.ones(force.size)))
+    fits = []
+    for first in range(0, force.size, size):
+        rest = np.ones(force.size, dtype=bool)
+        rest[first : first + size] = False
+        fits.append(np.linalg.lstsq(J[rest], pulled[rest], rcond=None)[0])
+    apart = np.array(fits) - np.mean(fits, axis=0)
+    return (len(fits) - 1) / len(fits) * apart.T @ apart
+
+
+def noisy_one_way(amplitudes):
+    """Return a run whose f_in is off by turns up and down: no memory, so blocks of four samples."""
+    run, segments = run_of()
+    off = np.where(np.arange(STROKE) % 2 == 0, 1.0, -1.0) * np.linspace(0.5, 1.5, STROKE)
+    for k, s in enumerate(segments):
+        run.channels["f_in_N"][s.first : s.end] += amplitudes[k % 2] * (1.0 + 0.2 * k) * off
+    return run, segments
+
+
+@pytest.mark.parametrize("amplitudes", [(0.3, 0.0), (0.0, 0.2), (0.3, 0.2)])
+def test_each_direction_has_the_error_of_its_own_line(amplitudes):
+    """Both by leaving out blocks of four, strokes apart; what follows has both in quadrature."""
+    run, segments = noisy_one_way(amplitudes)
+    variances, ratios = [], []
+    for way in range(2):
+        parts = [np.arange(s.first, s.end) for s in segments[way::2]]
+        force, pulled = (
+            np.concatenate([run.channels[name][part] for part in parts])
+            for name in ("f_out_N", "f_in_N")
+        )
+        variances.append(np.diag(left_out(force, pulled, 4)))
+        ratios.append(np.polyfit(force, pulled, 1)[0])
+    found = {name: e for (name, _), e in told((run, segments)).items()}
+    both = 0.5 * math.sqrt(variances[0][1] + variances[1][1])
+    parts = [math.sqrt(v[0]) / r for v, r in zip(variances, ratios, strict=True)]
+    expected = {
+        "ratio_contraction": math.sqrt(variances[0][0]),
+        "ratio_loosening": math.sqrt(variances[1][0]),
+        "intercept_contraction": math.sqrt(variances[0][1]),
+        "intercept_loosening": math.sqrt(variances[1][1]),
+        "wrap": 0.5 * math.hypot(*parts),
+        "constant_friction": both,
+        "offset": both,
+    }
+    for name, error in expected.items():
+        assert found[name].stderr == pytest.approx(error, rel=1e-6, abs=1e-9), name
+    units = {name: e.unit for name, e in found.items()}
+    assert [name for name, unit in units.items() if unit == "N"] == list(expected)[2:4] + [
+        "constant_friction",
+        "offset",
+    ]
+
+
+def test_all_intervals_take_the_larger_t_of_both_directions():
+    run, segments = noisy_one_way((0.3, 0.2))
+    run.channels["f_in_N"][40:44] += 5.0  # one block carries most of what the way down tells
+    found = told((run, segments)).values()
+    t = {round((e.interval_high - e.value) / e.stderr, 9) for e in found}
+    assert t == {round((e.value - e.interval_low) / e.stderr, 9) for e in found}
+    (one,) = t
+    swapped = [
+        Segment(s.first, s.end, "loosening" if s.phase == "contraction" else "contraction")
+        for s in segments
+    ]
+    (other,) = {
+        round((e.interval_high - e.value) / e.stderr, 9) for e in told((run, swapped)).values()
+    }
+    assert one == other > 2.5  # many even blocks would have 2.0
+
+
+def test_how_much_is_enough():
+    """Two strokes, 50 samples and a range of ten times the noise, each of them just so."""
+    cut = [(run_of(strokes=4)[0], [Segment(s.first, s.first + n, s.phase) for s in run_of()[1][:4]])
+           for n in (24, 25)]  # fmt: skip
+    assert told(cut[0]) == {}  # 48 each way
+    assert told(cut[1]) != {}  # 50
+    assert told(run_of(span=(20.0, 20.95))) == {}
+    constant, segments = run_of(span=(20.0, 20.0))
+    constant.noise.clear()
+    assert told((constant, segments)) == {}
+    unknown, segments = run_of(span=(20.0, 20.1))
+    unknown.noise.clear()
+    assert told((unknown, segments)) != {}
+
+
+def test_the_noisier_of_two_runs_says_what_is_wide():
+    for noises in ((1.0, 5.0), (5.0, 1.0)):
+        runs = [run_of("a"), run_of("b")]  # a range of 40 N
+        for (run, _), noise in zip(runs, noises, strict=True):
+            run.noise["f_out_N"] = noise
+        assert told(*runs) == {}
+
+
+def test_a_run_without_both_forces_is_passed_over():
+    for gone in ("f_in_N", "f_out_N"):
+        without, segments = run_of("b")
+        del without.channels[gone]
+        found = told((without, segments), run_of("a"))
+        assert {name for name, _ in found} >= {"wrap", "offset"}
+    without, segments = run_of("b")
+    without.channels["f_in_N"][:] = np.nan
+    assert told((without, segments)) == {}
+
+
+def test_a_ratio_that_is_negative_one_way_alone_is_no_capstan():
+    run, segments = run_of()
+    for s in segments[1::2]:
+        run.channels["f_in_N"][s.first : s.end] *= -1.0
+    assert told((run, segments)) == {}
