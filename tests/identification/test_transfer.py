@@ -10,7 +10,7 @@ from tsas_cli.identification.phases import Segment
 from tsas_cli.identification.transfer import tension_transfer
 
 UP, DOWN = 1.5, 0.7  # f_in over f_out
-C_UP, C_DOWN = 2.0, -1.0  # and what is added [N]
+C_UP, C_DOWN = 4.0, -1.0  # and what is added [N]
 STROKE = 40
 
 
@@ -52,8 +52,8 @@ def test_exact_lines_are_found_and_what_follows_from_them():
             "intercept_contraction": C_UP,
             "intercept_loosening": C_DOWN,
             "wrap": 0.5 * math.log(UP / DOWN),
-            "constant_friction": 1.5,  # half of 2 − (−1)
-            "offset": 0.5,  # half of 2 + (−1)
+            "constant_friction": 2.5,  # half of 4 − (−1)
+            "offset": 1.5,  # half of 4 + (−1)
         }
     )
 
@@ -189,10 +189,13 @@ def test_all_intervals_take_the_larger_t_of_both_directions():
 
 def test_how_much_is_enough():
     """Two strokes, 50 samples and a range of ten times the noise, each of them just so."""
-    cut = [(run_of(strokes=4)[0], [Segment(s.first, s.first + n, s.phase) for s in run_of()[1][:4]])
-           for n in (24, 25)]  # fmt: skip
-    assert told(cut[0]) == {}  # 48 each way
-    assert told(cut[1]) != {}  # 50
+    for sizes, enough in (((24, 25), False), ((25, 25), True)):
+        run, segments = run_of(strokes=4)
+        cut = [
+            Segment(s.first, s.first + sizes[k // 2], s.phase) for k, s in enumerate(segments)
+        ]
+        assert bool(told((run, cut))) == enough
+    assert told(run_of(span=(20.0, 21.05))) != {}
     assert told(run_of(span=(20.0, 20.95))) == {}
     constant, segments = run_of(span=(20.0, 20.0))
     constant.noise.clear()
@@ -225,4 +228,10 @@ def test_a_ratio_that_is_negative_one_way_alone_is_no_capstan():
     run, segments = run_of()
     for s in segments[1::2]:
         run.channels["f_in_N"][s.first : s.end] *= -1.0
+    assert told((run, segments)) == {}
+
+
+def test_a_sensor_that_reads_nothing_is_no_capstan():
+    run, segments = run_of()
+    run.channels["f_in_N"] *= 0.0
     assert told((run, segments)) == {}
