@@ -123,8 +123,14 @@ def test_many_strokes_have_a_hundred_samples_each():
     many = points(12_000, np.linspace(0, 11_999, 61).astype(int))
     assert {1, 2} == set(np.diff(many))
     assert 12_000 / 2 < many.size < 12_000 / 2 + 60 * 4 + 2
+    fewer = points(11_999, np.linspace(0, 11_998, 61).astype(int))
+    assert fewer.tolist() == list(range(11_999))
 
 
 def test_the_last_sample_is_simulated_and_a_turn_may_be_near_it():
     assert points(30_000, [0, 29_990, 29_999])[-10:].tolist() == list(range(29_990, 30_000))
     assert points(9, [0, 8]).tolist() == list(range(9))
+
+
+def test_of_nothing_there_are_no_means():
+    assert s.mean_edges(0).size == 0

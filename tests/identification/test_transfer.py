@@ -196,6 +196,7 @@ def test_how_much_is_enough():
         ]
         assert bool(told((run, cut))) == enough
     assert told(run_of(span=(20.0, 21.05))) != {}
+    assert told(run_of(span=(20.0, 21.0))) != {}  # ten times 0.1, to the last bit
     assert told(run_of(span=(20.0, 20.95))) == {}
     constant, segments = run_of(span=(20.0, 20.0))
     constant.noise.clear()
@@ -235,3 +236,18 @@ def test_a_sensor_that_reads_nothing_is_no_capstan():
     run, segments = run_of()
     run.channels["f_in_N"] *= 0.0
     assert told((run, segments)) == {}
+
+
+def test_one_stroke_each_way_is_too_few_however_long_it_is():
+    """Its samples are of one kind: nothing says how far the next stroke's would be from them."""
+    run, _ = run_of(strokes=4)
+    swapped = np.r_[0:40, 80:120, 40:80, 120:160]  # up, up, down, down: 80 samples in a row
+    for values in run.channels.values():
+        values[:] = values[swapped]
+    one_each = [Segment(0, 80, "contraction"), Segment(80, 160, "loosening")]
+    assert told((run, one_each)) == {}
+    up = [Segment(0, 40, "contraction"), Segment(40, 80, "contraction")]
+    down = [Segment(80, 120, "loosening"), Segment(120, 160, "loosening")]
+    assert told((run, [*up, one_each[1]])) == {}
+    assert told((run, [one_each[0], *down])) == {}
+    assert told((run, [*up, *down])) != {}
