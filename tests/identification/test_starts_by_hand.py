@@ -189,3 +189,32 @@ def test_each_load_is_read_in_its_own_way(monkeypatch):
         for load in ("spring", "displacement", "force")
     }
     assert read == {"spring": {"preload_N": 1.0}, "displacement": {"x_in_zero_mm": 2.0}, "force": {}}
+
+
+def test_a_slope_of_nothing_tells_nothing():
+    run = run_of(load="force", f_in_N=np.full(6, 10.0))
+
+    def read(contraction):
+        told = (("contraction", contraction), ("loosening", 0.25))
+        return s.read_off(run, [], [SimpleNamespace(phase=p, value=v) for p, v in told], GROUP_A)
+
+    assert read(0.0) == {}
+    found = read(-1.0)["friction_coefficient"]  # the wrong sign: its size counts
+    assert found == pytest.approx(math.log(2.0) / GROUP_A.total_bend_rad)
+
+
+@pytest.mark.parametrize(("slope", "afar"), [(0.5, True), (-0.5, False), (0.0, False)])
+def test_a_spring_that_pulls_is_counted_from_where_its_run_begins(monkeypatch, slope, afar):
+    """From the first x_out that comes with a tension, on the line of both."""
+    told = []
+    monkeypatch.setattr(s, "_far_zeros", lambda *asked: told.append(asked[2:]) or {"afar": 1.0})
+    f_out = np.where(np.arange(6) < 1, np.nan, 9.0 + slope * X_OUT)
+    found = s._spring(run_of(f_out_N=f_out, x_out_mm=X_OUT), [], {})
+    assert found.get("afar") == (1.0 if afar else None)
+    assert told == ([pytest.approx((2.0, slope, 9.0))] if afar else [])
+
+
+def test_a_preload_of_less_than_a_newton_is_one():
+    f_in = [0.5, 4.5, 8.5, 4.5, 3.5, 2.5]  # 0.5 + 4 x and 2.5 + x
+    found = s._spring(run_of(X_IN, f_in_N=f_in, preload_N=20.0), [UP, DOWN], KM)
+    assert found["preload_N"] == pytest.approx(math.sqrt(1.25))
