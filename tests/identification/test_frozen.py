@@ -8,6 +8,7 @@ from tsas_cli.identification.calibrate_stage import CalibrationResult
 from tsas_cli.identification.calibration import Calibration
 from tsas_cli.identification.comparison import Compared, Told
 from tsas_cli.identification.drive_estimates import DataSheet
+from tsas_cli.identification.drive_file import IdentifiedDrive
 from tsas_cli.identification.drive_fit import DriveTrial
 from tsas_cli.identification.drive_runs import DriveRun
 from tsas_cli.identification.dynamic_fit import DynamicFit, Look, Solved
@@ -29,7 +30,7 @@ from tsas_cli.identification.transfer import _Line
 
 FROZEN = (
     *(Calibration, CalibrationResult, Compared, DataSheet, DriveRun, DriveTrial, DynamicFit),
-    *(Estimate, Fitted, FrequencyResponse, LongRun, Look, Model, Prepared, Quantity, Rows),
+    *(Estimate, Fitted, FrequencyResponse, IdentifiedDrive, LongRun, Look, Model, Prepared, Quantity, Rows),
     *(Screened, Segment, SimulationResult, Slope, Solution, Solved, Told, Trial, Unknown),
     *(Widened, _Line, _Stroke),
 )

@@ -93,6 +93,8 @@ def test_the_load_spring_is_the_line_of_f_out_over_x_out():
     assert s._spring(two, [], {}) == {}
     still = run_of(np.linspace(0.0, 10.0, 6), f_out_N=X_OUT, x_out_mm=np.full(6, 3.0))
     assert s._spring(still, [], {}) == {}
+    little = run_of(np.linspace(0.0, 1.0, 6), f_out_N=7.0 + 0.2 * X_OUT, x_out_mm=0.1 * X_OUT)
+    assert s._spring(little, [], {})["load_stiffness_N_per_mm"] == pytest.approx(2.0)
     falling = run_of(np.linspace(0.0, 10.0, 6), f_out_N=7.0 - 2.0 * X_OUT, x_out_mm=X_OUT)
     assert s._spring(falling, [], {}) == pytest.approx(
         {"load_stiffness_N_per_mm": -2.0, "preload_N": 7.0}
@@ -135,8 +137,10 @@ def test_zeros_that_are_near_stay_at_nothing():
     f_out = 10.0 + 2.0 * np.array([0.0, 1.0, 2.0])
     assert far([0.0, 1.0, 2.0], f_out) == {}
     assert far([9.9, 10.9, 11.9], f_out) == {}
+    assert far([10.0, 11.0, 12.0], f_out) == {}  # just so
     assert far([10.1, 11.1, 12.1], f_out) == pytest.approx({"x_in_zero_mm": 10.1})
     assert far([-4.9, -3.9, -2.9], f_out) == {}  # 10 N are gone 5 mm below zero
+    assert far([-5.0, -4.0, -3.0], f_out) == {}
     assert far([-5.1, -4.1, -3.1], f_out) == pytest.approx({"x_in_zero_mm": -5.1})
     assert far([10.1, 11.1, 12.1], f_out, drive="f_in_N") == {}
 
@@ -154,6 +158,8 @@ def test_a_spring_that_is_slack_at_zero_is_counted_from_afar(stated, preload):
     assert found == pytest.approx(
         {"x_out_zero_mm": (preload + 10.0) / 2.0, "preload_N": preload}
     )
+    tight = far([0.0, 1.0, 2.0], [0.5, 2.5, 4.5], intercept=0.5, preload_N=14.0)
+    assert tight == {}  # half a newton at zero is enough
     none = far([0.0, 1.0, 2.0], np.full(3, 14.0), intercept=0.0, preload_N=14.0)
     assert none == pytest.approx({"x_out_zero_mm": 7.0, "preload_N": 14.0})
 
