@@ -359,3 +359,35 @@ def test_a_cut_has_to_save_thirty_mean_squares(names, size):
     assert min(saved for saved in decided if saved > 30.0) < 30.8
     assert max(saved for saved in decided if saved < 30.0) > 29.2
     assert all(cut == (saved > 30.0) for saved, cut in decided.items())
+
+
+def test_a_rest_that_a_run_begins_with_tells_no_turn():
+    run = at_rest(1e-6)
+    run.conditioned["x_in_mm"].values[:100] = 5.0
+    assert p._start_of_unloading(run, 100) == 100
+
+
+def test_the_last_sample_is_no_turn_however_long_the_drive_rests():
+    assert p._start_of_unloading(at_rest(1e-6, size=101), 100) == 100
+
+
+def strokes_of(x, *turns):
+    conditioned = SimpleNamespace(values=x, sd=0.01 + 0.0 * x, reversals=np.array(turns))
+    run = SimpleNamespace(
+        conditioned={"x_in_mm": conditioned},
+        measured={},
+        noise={},
+        time_s=np.arange(float(x.size)),
+    )
+    return p._strokes(run)
+
+
+def test_each_stroke_is_thinned_by_its_own_length():
+    x = np.concatenate((np.arange(1000.0), 1000.0 - np.arange(500.0)))
+    first, second = strokes_of(x, 0, 1000, 1499)
+    assert (set(np.diff(first.at)), set(np.diff(second.at))) == ({2}, {1})
+
+
+def test_the_way_of_the_last_stroke_is_told_by_the_last_sample():
+    assert [s.up for s in strokes_of(np.array([0.0, -1.0, -2.0, 1.0]), 0, 3)] == [True]
+    assert [s.up for s in strokes_of(np.array([0.0, 1.0, 2.0, -1.0]), 0, 3)] == [False]
