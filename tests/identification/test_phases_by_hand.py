@@ -423,3 +423,24 @@ def test_a_bend_in_the_first_or_last_eight_samples_is_no_cut(bend):
 
 def test_a_cut_that_leaves_nothing_needs_to_save_next_to_nothing():
     assert abs(p._transition(stroke({"f_out_N": 1e-3 * f_out()})) - CUT) <= 1
+
+
+def test_squares_are_never_negative():
+    basis = np.column_stack((np.ones(N), TRAVEL))
+    for values in (1e6 * TRAVEL, 0.1 * TRAVEL - 7e5):
+        assert p._squares_left(basis, values).min() == 0.0
+
+
+@pytest.mark.parametrize("cut", [None, 20, CUT])
+def test_slopes_are_those_of_lines_through_all_samples_of_a_side(cut):
+    values = np.random.default_rng(6).standard_normal(N)
+    sides = (slice(0, cut), slice(cut, N))
+    steep = [abs(np.polyfit(TRAVEL[side], values[side], 1)[0]) for side in sides]
+    found = p._slopes(stroke({"f_out_N": -values, "f_in_N": values}), cut)
+    assert found[0] == pytest.approx(steep[0])
+    assert math.isnan(found[1]) if cut is None else found[1] == pytest.approx(steep[1])
+
+
+def test_eight_samples_have_a_slope():
+    eight = stroke({"f_in_N": 3.0 * TRAVEL[:8]}, TRAVEL[:8])
+    assert p._slopes(eight, None)[0] == pytest.approx(3.0)
