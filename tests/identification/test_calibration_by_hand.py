@@ -11,9 +11,7 @@ from tsas_cli.identification.model import Model
 from tsas_cli.recordings.manifest import Manifest, Run
 
 RUNS = [
-    SimpleNamespace(
-        run=Run(id=name, file=f"{name}.parquet", sha256="0" * 64, **told), measured={}
-    )
+    SimpleNamespace(run=Run(id=name, file=f"{name}.parquet", sha256="0" * 64, **told), measured={})
     for name, told in (
         ("a", {"total_bend_rad": 3.0, "sheath_length_mm": 700.0}),
         ("b", {"total_bend_rad": 3.0, "sheath_length_mm": 700.0}),

@@ -170,6 +170,14 @@ def test_the_ripple_begins_where_the_run_does(at, kind):
     assert np.abs(error_of(run, values) - error_of(other, values)).max() < 4e-3 * size
 
 
+def test_a_large_ripple_is_sought_from_where_the_run_is():
+    """Of 0.1 mm on a move of 0.025 mm: from the opposite place a wave would still be off."""
+    values = DriveValues(0.02, cosine_mm=0.1)
+    run = run_of(values, 2.0 * np.sin(math.pi * TIME_S), 0.15)
+    size = float(np.abs(run.x_in - run.x_in.mean()).max()) / NOISE_MM
+    assert np.abs(error_of(run, values)).max() < 2e-4 * size
+
+
 GAIN = 0.02
 W = np.array([1.0, 2.0, 4.0, 5.0, 8.0])
 
@@ -261,3 +269,8 @@ def test_the_gain_is_the_slope_of_travel_over_turns():
     runs = [run([4.0, 5.0, 6.0], [1.0, 2.0, 5.0], 0.1), run([0.0, 0.0, 6.0], [0.0, 0.0, 3.0], 1.0)]
     # 4·100 + (4·1 + 4·2)·1 over 2·100 + (4 + 4 + 16)·1
     assert d._start_gain(runs) == pytest.approx(412.0 / 224.0)
+
+
+def test_how_far_a_fit_is_off_is_its_mean_square():
+    solution = SimpleNamespace(residual=np.array([1.0, -2.0, 2.0]))
+    assert d.DriveTrial(frozenset(), (), solution, DriveValues(0.02)).mean_square == 3.0

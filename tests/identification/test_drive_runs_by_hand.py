@@ -100,7 +100,7 @@ def test_nothing_that_turns_or_travels_is_followed():
             run.u.integral[:] = 0.0
         else:
             run.x_in[:] = 0.0
-        with pytest.raises(InputError, match="correlation 0.00"):
+        with pytest.raises(InputError, match=r"correlation 0\.00"):
             d._refuse_unrelated(run, "here")
 
 

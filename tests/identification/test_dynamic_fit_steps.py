@@ -134,9 +134,7 @@ def made(label, told=(), sentences=()):
 def steps(monkeypatch):
     """Run the dynamic fit on made-up steps; return what it found, and in which order they came."""
 
-    def run(
-        first, better=None, fixed=None, rest=None, damped=None, *, sizes=None, finest=1e9
-    ):
+    def run(first, better=None, fixed=None, rest=None, damped=None, *, sizes=None, finest=1e9):
         log = []
 
         def solved(start, kept, runs, further, step):
@@ -167,7 +165,9 @@ def steps(monkeypatch):
         monkeypatch.setattr(d, "_unseen_rest", lambda looks: f"unseen {looks}")
         monkeypatch.setattr(d, "_finest_stiffness", lambda fit: finest)
         monkeypatch.setattr(
-            d, "_alike", lambda name, like: f"{name}: {[v for l in like for v in l.values.values()]}"
+            d,
+            "_alike",
+            lambda name, like: f"{name}: {[v for one in like for v in one.values.values()]}",
         )
         monkeypatch.setattr(
             d,

@@ -73,9 +73,7 @@ def test_unstable_sliding_is_said_where_it_is_found(monkeypatch, found, count):
 
 
 def unstable(damping_times, *, whole=True):
-    critical = TABLE_1._replace(
-        bristles=TABLE_1.bristles._replace(damping_N_s_per_mm=float("nan"))
-    )
+    critical = TABLE_1._replace(bristles=TABLE_1.bristles._replace(damping_N_s_per_mm=float("nan")))
     damping = damping_times * law_of(critical, 1).bristle.damping
     rig = TABLE_1._replace(bristles=TABLE_1.bristles._replace(damping_N_s_per_mm=damping))
     moment = SimpleNamespace(whole=whole, speed_mm_s=1.234, f_in_N=56.78)

@@ -55,9 +55,7 @@ def test_it_is_the_mean_of_segments_each_run_as_long_as_it_is(lengths, segment_s
     seen = frequency_response(runs)
     bins = round(segment_s / 0.02) // 2
     assert seen.frequency_Hz == pytest.approx(np.arange(1, bins) / segment_s)
-    uu, ux, xx = sum(
-        run.time_s[-1] * spectra(run, segment_s)[:, 1:bins] for run in runs
-    )
+    uu, ux, xx = sum(run.time_s[-1] * spectra(run, segment_s)[:, 1:bins] for run in runs)
     np.testing.assert_allclose(seen.response, ux / uu, rtol=1e-6)
     coherence = np.abs(ux) ** 2 / (uu * xx).real
     np.testing.assert_allclose(seen.coherence, coherence, rtol=1e-6)

@@ -30,7 +30,18 @@ from tsas_cli.identification.transfer import _Line
 
 FROZEN = (
     *(Calibration, CalibrationResult, Compared, DataSheet, DriveRun, DriveTrial, DynamicFit),
-    *(Estimate, Fitted, FrequencyResponse, IdentifiedDrive, LongRun, Look, Model, Prepared, Quantity, Rows),
+    *(
+        Estimate,
+        Fitted,
+        FrequencyResponse,
+        IdentifiedDrive,
+        LongRun,
+        Look,
+        Model,
+        Prepared,
+        Quantity,
+        Rows,
+    ),
     *(Screened, Segment, SimulationResult, Slope, Solution, Solved, Told, Trial, Unknown),
     *(Widened, _Line, _Stroke),
 )

@@ -19,9 +19,7 @@ FRICTION, ZERO = "friction_coefficient", "x_in_zero_mm"
 def fitted(values, stderr, t=2.0, at_bound=(), *, converged=True, message="done."):
     n = len(values)
     bound = np.array([k in at_bound for k in range(n)])
-    return Fitted(
-        np.array(values), np.array(stderr), np.full(n, t), bound, converged, message, 1
-    )
+    return Fitted(np.array(values), np.array(stderr), np.full(n, t), bound, converged, message, 1)
 
 
 def unknown(name, run=None, lower=None, upper=None):
@@ -122,8 +120,10 @@ def test_what_is_kept_is_said_once_for_each_reason():
     kept = Model((Estimate(ZERO, 0.25, "mm", "given", "a"),))
     made = fit_of(runs=runs, unknowns=unknowns, kept=kept)
     assert made._sentences({1: [3, 0], 2: [0, 3], 0: [], 3: []}) == [
-        "x_in_zero_mm cannot be told apart from friction_coefficient and preload_N in these "
-        "recordings (runs a, b); it is kept at 0.25 mm.",
+        (
+            "x_in_zero_mm cannot be told apart from friction_coefficient and preload_N in these "
+            "recordings (runs a, b); it is kept at 0.25 mm."
+        ),
         "friction_coefficient does not show in these recordings; it is kept at 0.1.",
         "preload_N does not show in these recordings (runs b); it is kept at 10 N.",
     ]
@@ -180,3 +180,10 @@ def test_runs_alone_stay_free():
     made.keep_shared()
     assert [u.name for u in made.unknowns] == [ZERO]
     assert made.values.tolist() == [0.0]
+
+
+def test_each_unknown_has_its_value():
+    with pytest.raises(ValueError, match="longer"):
+        j.rig_at(GROUP_A, 0, [unknown(FRICTION)], np.zeros(2))
+    with pytest.raises(ValueError, match="longer"):
+        j.estimates_of([unknown(FRICTION)], fitted([0.0, 0.0], [1.0, 1.0]), [])

@@ -41,9 +41,7 @@ def test_what_has_no_interval_or_error_gets_none():
 
 def trial(name, mean_square, value=None, converged=True):
     solution = SimpleNamespace(converged=converged)
-    return SimpleNamespace(
-        effects=(name,), mean_square=mean_square, value=value, solution=solution
-    )
+    return SimpleNamespace(effects=(name,), mean_square=mean_square, value=value, solution=solution)
 
 
 TOLD = [OWN, estimate(5.0, 4.0, 6.0, name="preload_N", run="a")]
@@ -114,7 +112,9 @@ def tried(monkeypatch):
 
         def screen(bench, t, effect, basis):
             log.screened.append((effect.name, t.effects[0], basis))
-            return SimpleNamespace(effect=effect, part=parts[effect.name], start=f"at {effect.name}")
+            return SimpleNamespace(
+                effect=effect, part=parts[effect.name], start=f"at {effect.name}"
+            )
 
         def fit(names=(), start=None, *, near=None, on_mesh=False):
             log.fits.append((tuple(names), start, near and near.effects[0]))

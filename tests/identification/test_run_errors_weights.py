@@ -252,3 +252,5 @@ def test_blocks_leave_eight_of_all_runs(monkeypatch):
 
     assert r.blocks_of([made(30), made(50)], ["a", "b"]) == ["a", "b"]
     assert asked == [("a", 10), ("b", 10)]
+    with pytest.raises(ValueError, match="shorter"):
+        r.blocks_of([made(30), made(50)], ["a"])

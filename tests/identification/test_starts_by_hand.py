@@ -133,7 +133,7 @@ def far(x_in, f_out, *, first=30.0, slope=2.0, intercept=10.0, **told):
 
 
 def test_zeros_that_are_near_stay_at_nothing():
-    """A travel of 2 mm: up to five times as far off, and no slack within the run, they are found."""
+    """A travel of 2 mm: up to five times as far off, without slack in the run, a fit finds them."""
     f_out = 10.0 + 2.0 * np.array([0.0, 1.0, 2.0])
     assert far([0.0, 1.0, 2.0], f_out) == {}
     assert far([9.9, 10.9, 11.9], f_out) == {}
@@ -155,9 +155,7 @@ def test_a_zero_of_x_in_is_the_median_of_what_the_samples_say():
 def test_a_spring_that_is_slack_at_zero_is_counted_from_afar(stated, preload):
     """f_out = −10 + 2 x_out: stated, or what the run begins with at 30 mm."""
     found = far([0.0, 1.0, 2.0], np.full(3, preload), intercept=-10.0, preload_N=stated)
-    assert found == pytest.approx(
-        {"x_out_zero_mm": (preload + 10.0) / 2.0, "preload_N": preload}
-    )
+    assert found == pytest.approx({"x_out_zero_mm": (preload + 10.0) / 2.0, "preload_N": preload})
     tight = far([0.0, 1.0, 2.0], [0.5, 2.5, 4.5], intercept=0.5, preload_N=14.0)
     assert tight == {}  # half a newton at zero is enough
     none = far([0.0, 1.0, 2.0], np.full(3, 14.0), intercept=0.0, preload_N=14.0)
@@ -194,7 +192,11 @@ def test_each_load_is_read_in_its_own_way(monkeypatch):
         load: s.read_off(run_of(load=load), [], [], GROUP_A)
         for load in ("spring", "displacement", "force")
     }
-    assert read == {"spring": {"preload_N": 1.0}, "displacement": {"x_in_zero_mm": 2.0}, "force": {}}
+    assert read == {
+        "spring": {"preload_N": 1.0},
+        "displacement": {"x_in_zero_mm": 2.0},
+        "force": {},
+    }
 
 
 def test_a_slope_of_nothing_tells_nothing():
