@@ -274,3 +274,32 @@ def test_the_gain_is_the_slope_of_travel_over_turns():
 def test_how_far_a_fit_is_off_is_its_mean_square():
     solution = SimpleNamespace(residual=np.array([1.0, -2.0, 2.0]))
     assert d.DriveTrial(frozenset(), (), solution, DriveValues(0.02)).mean_square == 3.0
+
+
+def test_the_best_start_says_how_rough_a_fit_may_be():
+    bench, asked = bench_with(lambda v: 100.0 * v.gain_mm_per_s_rpm)
+    bench.fit([], [simpler(gain_mm_per_s_rpm=0.5), simpler(gain_mm_per_s_rpm=0.03)])
+    assert [t for _, t in asked] == [pytest.approx(2e-6)] * 3
+
+
+def test_a_run_that_begins_in_motion_may_have_moved_already():
+    """What a constant and e^(−0.8 t) make of it is no error; simulated is x_in with that left."""
+    values = DriveValues(0.02, leak_per_s=0.8)
+    off = np.cos(7.0 * TIME_S)
+    u = sampled(STEP_S, 20.0 * np.sin(TIME_S), "first")
+    free = 3.0 + 2.0 * np.exp(-0.8 * TIME_S)
+    x = linear_response(u, values) + free - NOISE_MM * off
+    run = DriveRun("a", u, x, NOISE_MM, at_rest=False)
+    basis = np.column_stack((np.ones(TIME_S.size), np.exp(-0.8 * TIME_S)))
+    left = off - basis @ np.linalg.lstsq(basis, off, rcond=None)[0]
+    np.testing.assert_allclose(error_of(run, values), left, atol=1e-8)
+    bench = object.__new__(d.DriveBench)
+    bench.runs = [run]
+    np.testing.assert_allclose(bench.simulated(0, values), x + NOISE_MM * left, atol=1e-10)
+
+
+def test_the_response_of_an_integrator_with_lags():
+    """At ω = 2, a leak of 1, a lag of 1/2 and a delay of 1/4 s: g e^(−j/2)/((1 + 2j)(1 + j))."""
+    values = DriveValues(0.02, motor_lag_s=0.5, delay_s=0.25, leak_per_s=1.0)
+    (found,) = d.response_at(values, np.array([2j]))
+    assert found == pytest.approx(0.02 * cmath.exp(-0.5j) / ((1 + 2j) * (1 + 1j)))
