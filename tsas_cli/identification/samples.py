@@ -33,8 +33,7 @@ def points(run: Prepared) -> Indices:
     reversals = run.conditioned[run.drive_column].reversals
     stride = max(1, n // max(4 * MOST_MEANS, OF_A_STROKE * (reversals.size - 1)))
     there = np.arange(n) % stride == 0
-    there[-1] = True
-    for turn in reversals:
+    for turn in reversals:  # the last sample is one of them
         there[turn : turn + SHARP * stride] = True
     return np.flatnonzero(there)
 

@@ -1,0 +1,305 @@
+"""The steps of a drive's fit, one by one, on numbers that are written down by hand."""
+
+import cmath
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from tsas_cli.identification import drive_fit as d
+from tsas_cli.identification.drive_runs import DriveRun
+from tsas_cli.numerics.linear_response import sampled
+from tsas_cli.physics.drive import DriveValues, gear_response, linear_response
+
+# What a drive may plausibly be: lower and upper bound, the usual value, and how its change is told.
+PLAUSIBLE = {
+    "gain_mm_per_s_rpm": (1e-7, 1e3, 0.02, "log"),
+    "motor_lag_s": (0.0, 5.0, 0.005, 0.01),
+    "delay_s": (0.0, 0.5, 0.005, 0.01),
+    "natural_frequency_Hz": (0.05, 2e3, 50.0, "log"),
+    "damping_ratio": (1e-3, 1.0, 0.1, "log"),  # beyond 1 it is two lags
+    "leak_per_s": (0.0, 10.0, 0.0, 1e-3),
+    "sine_mm": (-5.0, 5.0, 0.0, 0.01),
+    "cosine_mm": (-5.0, 5.0, 0.0, 0.01),
+    "play_mm": (0.0, 20.0, 0.0, 0.1),
+}
+ALL = ("lag", "delay", "spring", "leak", "ripple", "play")
+
+
+def test_every_number_is_sought_where_it_is_plausible():
+    found = {q.name: q for q in d.quantities_of(ALL)}
+    assert list(found) == list(PLAUSIBLE)
+    for name, (lower, upper, usual, size) in PLAUSIBLE.items():
+        q = found[name]
+        assert (q.lower, q.upper, q.default) == (lower, upper, usual), name
+        assert q.positive == (size == "log"), name
+        assert q.positive or q.size == size, name
+    _, stated = d.quantities_of(["stated"])  # the other one's damping may be as large as it likes
+    assert (stated.lower, stated.upper, stated.default, stated.positive) == (1e-3, 1e3, 0.5, True)
+    assert d.QUANTITIES["damping_ratio"].upper == 1.0
+    assert set(d.QUANTITIES) == set(PLAUSIBLE)
+
+
+def test_a_number_is_scaled_by_its_size_or_its_logarithm():
+    lag, spring = d.TERMS["lag"][0], d.TERMS["spring"][0]
+    u = d._unknown(lag, 0.02)
+    assert (u.name, u.run, u.start, u.lower, u.upper, u.scale) == (
+        "motor_lag_s", None, pytest.approx(2.0), 0.0, pytest.approx(500.0), 1.0,
+    )  # fmt: skip
+    u = d._unknown(spring, 8.0)
+    assert (u.start, u.scale) == (pytest.approx(math.log(8.0)), 0.5)
+
+
+def bench_with(mean_square, answers=lambda start: (1.0, True), fresh=None):
+    """A bench whose fits are made up; it remembers from where it was asked to fit."""
+    bench = object.__new__(d.DriveBench)
+    asked = []
+    bench._from_response = lambda terms: fresh or DriveValues(0.02)
+    bench._mean_square = mean_square
+
+    def solved(quantities, start, terms, tolerance):
+        asked.append((start, tolerance))
+        square, converged = answers(start)
+        solution = SimpleNamespace(converged=converged)
+        return SimpleNamespace(start=start, mean_square=square, solution=solution, terms=terms)
+
+    bench._solved = solved
+    return bench, asked
+
+
+def simpler(**values):
+    return SimpleNamespace(values=DriveValues(**values))
+
+
+def test_what_a_simpler_fit_lacks_begins_fresh_at_nothing_and_at_a_little():
+    """The best three of them are followed: by how far they are from a leak of 0.0001."""
+    fresh = DriveValues(0.02, leak_per_s=0.5)
+    bench, asked = bench_with(lambda v: abs(v.leak_per_s - 1e-4), fresh=fresh)
+    bench.fit(["leak"], [simpler(gain_mm_per_s_rpm=0.03)])
+    followed = [(start.gain_mm_per_s_rpm, round(start.leak_per_s, 9)) for start, _ in asked]
+    assert followed == [(0.03, 1e-4), (0.03, 0.0), (0.03, 1e-3)]
+    bench, asked = bench_with(lambda v: -v.leak_per_s, fresh=fresh)
+    bench.fit(["leak"], [simpler(gain_mm_per_s_rpm=0.03)])
+    followed = [(start.gain_mm_per_s_rpm, round(start.leak_per_s, 9)) for start, _ in asked]
+    assert followed == [(0.02, 0.5), (0.03, 0.5), (0.03, 1e-3)]
+
+
+def test_a_frequency_is_never_nothing():
+    """What is sought by its logarithm begins where the response says."""
+    fresh = DriveValues(0.02, natural_frequency_Hz=9.0, damping_ratio=0.2, motor_lag_s=0.01)
+    bench, asked = bench_with(lambda v: v.gain_mm_per_s_rpm, fresh=fresh)
+    known = simpler(gain_mm_per_s_rpm=0.03, motor_lag_s=0.04)
+    bench.fit(["spring", "lag"], [known])
+    starts = [start for start, _ in asked]
+    whole = known.values._replace(natural_frequency_Hz=9.0, damping_ratio=0.2)
+    assert starts == [fresh, whole]
+
+
+def test_nothing_lacks_where_everything_is_known():
+    known = simpler(gain_mm_per_s_rpm=0.03, leak_per_s=0.2)
+    bench, asked = bench_with(
+        lambda v: -v.gain_mm_per_s_rpm, fresh=DriveValues(0.02, leak_per_s=0.1)
+    )
+    bench.fit(["leak"], [known])
+    assert [start for start, _ in asked] == [known.values, DriveValues(0.02, leak_per_s=0.1)]
+
+
+@pytest.mark.parametrize(
+    ("best", "tolerance"), [(0.5, 1e-6), (1.0, 1e-6), (30.0, 30e-6), (100.0, 1e-4), (1e4, 1e-4)]
+)
+def test_far_from_the_noise_a_fit_is_rougher(best, tolerance):
+    bench, asked = bench_with(lambda v: best)
+    bench.fit([])
+    assert [t for _, t in asked] == [pytest.approx(tolerance)]
+
+
+def test_the_best_fit_that_has_converged_is_taken():
+    answers = {0.01: (3.0, True), 0.02: (1.0, False), 0.03: (2.0, True)}
+    bench, _ = bench_with(
+        lambda v: v.gain_mm_per_s_rpm, lambda start: answers[start.gain_mm_per_s_rpm]
+    )
+    found = bench.fit([], [simpler(gain_mm_per_s_rpm=0.01), simpler(gain_mm_per_s_rpm=0.03)])
+    assert found.start.gain_mm_per_s_rpm == 0.03
+    assert found.terms == frozenset()
+
+
+def test_all_samples_of_all_runs_count_alike():
+    bench = object.__new__(d.DriveBench)
+    bench.runs = ["a", "b"]
+    errors = [np.array([1.0, 2.0]), np.array([3.0, 4.0, 5.0])]
+    bench._error = lambda r, values: errors[r]
+    assert bench._mean_square(DriveValues(0.02)) == (1 + 4 + 9 + 16 + 25) / 5
+
+
+STEP_S = 1e-2
+TIME_S = STEP_S * np.arange(201)
+NOISE_MM = 2e-3
+
+
+def run_of(values, speed, at=1.7, *, noise_mm=NOISE_MM):
+    u = sampled(STEP_S, speed, "first")
+    x = at + linear_response(u, values) + gear_response(u, values, at)
+    return DriveRun("a", u, x, noise_mm, at_rest=True)
+
+
+def error_of(run, values):
+    bench = object.__new__(d.DriveBench)
+    bench.runs = [run]
+    return bench._error(0, values)
+
+
+def test_errors_count_in_units_of_noise_but_for_where_a_run_begins():
+    values = DriveValues(0.02)
+    run = run_of(values, 20.0 * np.sin(TIME_S))
+    off = np.where(TIME_S < 1.0, 3.0, 0.0)
+    wrong = DriveRun("a", run.u, run.x_in - NOISE_MM * off, NOISE_MM, at_rest=True)
+    np.testing.assert_allclose(error_of(wrong, values), off - off.mean(), atol=1e-9)
+
+
+@pytest.mark.parametrize("at", [0.15, -0.4, 1.7])
+@pytest.mark.parametrize("kind", ["sine", "cosine"])
+def test_the_ripple_begins_where_the_run_does(at, kind):
+    """A move of a twentieth of a wave: a wave told wrongly is wrong throughout."""
+    ripple = {f"{kind}_mm": 0.02}
+    values = DriveValues(0.02, **ripple)  # a wave is 0.6 mm long
+    run = run_of(values, 2.0 * np.sin(math.pi * TIME_S), at)
+    size = float(np.abs(run.x_in - run.x_in.mean()).max()) / NOISE_MM
+    assert np.abs(error_of(run, values)).max() < 2e-3 * size
+    other = run_of(values, 2.0 * np.sin(math.pi * TIME_S), at + 0.15)
+    assert np.abs(error_of(run, values) - error_of(other, values)).max() < 4e-3 * size
+
+
+def test_a_large_ripple_is_sought_from_where_the_run_is():
+    """Of 0.1 mm on a move of 0.025 mm: from the opposite place a wave would still be off."""
+    values = DriveValues(0.02, cosine_mm=0.1)
+    run = run_of(values, 2.0 * np.sin(math.pi * TIME_S), 0.15)
+    size = float(np.abs(run.x_in - run.x_in.mean()).max()) / NOISE_MM
+    assert np.abs(error_of(run, values)).max() < 2e-4 * size
+
+
+GAIN = 0.02
+W = np.array([1.0, 2.0, 4.0, 5.0, 8.0])
+
+
+def guess(terms, normal, part=1.0, w=W):
+    jw = 1j * w
+    return d._guess(terms, jw, GAIN * np.asarray(normal) / jw, GAIN, part)
+
+
+def late_by(seconds, w=W):
+    return np.array([cmath.exp(-1j * seconds * float(x)) for x in w])
+
+
+def test_how_late_the_response_is_goes_to_lag_and_delay():
+    late = late_by(0.03)
+    late[4] *= cmath.exp(1j)  # one of five points is wrong: the median is not
+    both = guess(["lag", "delay"], late)
+    assert (both.motor_lag_s, both.delay_s) == pytest.approx((0.015, 0.015))
+    assert guess(["lag"], late).motor_lag_s == pytest.approx(0.03)
+    alone = guess(["delay", "leak"], late, 0.3)
+    assert (alone.motor_lag_s, alone.delay_s) == (0.0, pytest.approx(0.009))
+    early = guess(["delay"], late_by(-0.03))
+    assert early.delay_s == pytest.approx(1e-4)
+    assert guess(["delay"], late_by(0.03)).gain_mm_per_s_rpm == GAIN
+
+
+@pytest.mark.parametrize("height", [1.21, 3.0])
+def test_a_peak_is_where_the_spring_swings(height):
+    """As high as 1/(2ζ)."""
+    found = guess(["spring"], np.array([1.0, 1.1, 1.15, height, 1.0]) * late_by(0.03))
+    assert found.natural_frequency_Hz == pytest.approx(5.0 / (2.0 * math.pi))
+    assert found.damping_ratio == pytest.approx(0.5 / height)
+    assert (found.motor_lag_s, found.delay_s) == (0.0, 0.0)
+
+
+@pytest.mark.parametrize("height", [0.8, 1.19])
+def test_without_a_peak_the_spring_is_as_late_as_the_response(height):
+    """2ζ/ω of about that: with ζ of 0.7 an ω of two over the delay, or nearly so."""
+    found = guess(["spring"], np.array([0.7, 0.7, 0.7, height, 0.7]) * late_by(0.04))
+    assert found.natural_frequency_Hz == pytest.approx(2.0 / 0.04 / (2.0 * math.pi))
+    assert found.damping_ratio == 0.7
+
+
+def test_two_points_say_nothing():
+    two = guess(["delay", "spring"], late_by(0.03, W[:2]), w=W[:2])
+    assert (two.delay_s, two.natural_frequency_Hz, two.damping_ratio) == (0.005, 50.0, 0.1)
+    three = guess(["delay"], late_by(0.03, W[:3]), w=W[:3])
+    assert three.delay_s == pytest.approx(0.03)
+
+
+@pytest.mark.parametrize(("points", "fitted"), [(4, False), (5, True)])
+def test_more_points_than_twice_the_numbers_are_fitted(points, fitted):
+    """Read off is the delay alone; a fit finds the gain too, twice that of the runs' travel."""
+    bench = object.__new__(d.DriveBench)
+    bench.gain, bench.stated_Hz = GAIN, None
+    w = np.linspace(1.0, 8.0, points + 1)
+    told = np.arange(points + 1) < points  # the last one says nothing, and is wrong
+    response = 2.0 * GAIN * late_by(0.03, w) / (1j * w)
+    response[-1] *= 9.0
+    bench.seen = SimpleNamespace(frequency_Hz=w / (2.0 * math.pi), excited=told, response=response)
+    found = bench._from_response(frozenset(["delay", "ripple", "play"]))
+    assert found.delay_s == pytest.approx(0.03, rel=1e-3)
+    assert found.gain_mm_per_s_rpm == pytest.approx(2.0 * GAIN if fitted else GAIN, rel=1e-3)
+
+
+def test_numbers_are_put_together_with_the_stated_frequency():
+    bench = object.__new__(d.DriveBench)
+    bench.stated_Hz = 7.0
+    terms = frozenset(["stated", "lag"])
+    quantities = d.quantities_of(terms)
+    values = bench._values(quantities, np.array([math.log(0.03), 2.0, math.log(0.4)]), terms)
+    assert values == pytest.approx(
+        DriveValues(0.03, 0.02, natural_frequency_Hz=7.0, damping_ratio=0.4)
+    )
+    bench.stated_Hz = None
+    assert bench._values(quantities, np.zeros(3), terms).natural_frequency_Hz == 0.0
+    bench.stated_Hz = 7.0
+    plain = bench._values(d.quantities_of([]), np.zeros(1), frozenset())
+    assert plain.natural_frequency_Hz == 0.0
+
+
+def test_the_gain_is_the_slope_of_travel_over_turns():
+    """Turns of −1, 0, 1 and 0, 0, 6 less their mean; the second run ten times as noisy."""
+
+    def run(turns, x, noise):
+        u = SimpleNamespace(integral=np.array(turns))
+        return SimpleNamespace(u=u, x_in=np.array(x), noise_mm=noise)
+
+    runs = [run([4.0, 5.0, 6.0], [1.0, 2.0, 5.0], 0.1), run([0.0, 0.0, 6.0], [0.0, 0.0, 3.0], 1.0)]
+    # 4·100 + (4·1 + 4·2)·1 over 2·100 + (4 + 4 + 16)·1
+    assert d._start_gain(runs) == pytest.approx(412.0 / 224.0)
+
+
+def test_how_far_a_fit_is_off_is_its_mean_square():
+    solution = SimpleNamespace(residual=np.array([1.0, -2.0, 2.0]))
+    assert d.DriveTrial(frozenset(), (), solution, DriveValues(0.02)).mean_square == 3.0
+
+
+def test_the_best_start_says_how_rough_a_fit_may_be():
+    bench, asked = bench_with(lambda v: 100.0 * v.gain_mm_per_s_rpm)
+    bench.fit([], [simpler(gain_mm_per_s_rpm=0.5), simpler(gain_mm_per_s_rpm=0.03)])
+    assert [t for _, t in asked] == [pytest.approx(2e-6)] * 3
+
+
+def test_a_run_that_begins_in_motion_may_have_moved_already():
+    """What a constant and e^(−0.8 t) make of it is no error; simulated is x_in with that left."""
+    values = DriveValues(0.02, leak_per_s=0.8)
+    off = np.cos(7.0 * TIME_S)
+    u = sampled(STEP_S, 20.0 * np.sin(TIME_S), "first")
+    free = 3.0 + 2.0 * np.exp(-0.8 * TIME_S)
+    x = linear_response(u, values) + free - NOISE_MM * off
+    run = DriveRun("a", u, x, NOISE_MM, at_rest=False)
+    basis = np.column_stack((np.ones(TIME_S.size), np.exp(-0.8 * TIME_S)))
+    left = off - basis @ np.linalg.lstsq(basis, off, rcond=None)[0]
+    np.testing.assert_allclose(error_of(run, values), left, atol=1e-8)
+    bench = object.__new__(d.DriveBench)
+    bench.runs = [run]
+    np.testing.assert_allclose(bench.simulated(0, values), x + NOISE_MM * left, atol=1e-10)
+
+
+def test_the_response_of_an_integrator_with_lags():
+    """At ω = 2, a leak of 1, a lag of 1/2 and a delay of 1/4 s: g e^(−j/2)/((1 + 2j)(1 + j))."""
+    values = DriveValues(0.02, motor_lag_s=0.5, delay_s=0.25, leak_per_s=1.0)
+    (found,) = d.response_at(values, np.array([2j]))
+    assert found == pytest.approx(0.02 * cmath.exp(-0.5j) / ((1 + 2j) * (1 + 1j)))

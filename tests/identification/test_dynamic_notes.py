@@ -1,0 +1,97 @@
+"""What the dynamic model says of its own answer, at each of its limits."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from tests.physics.references import TABLE_1
+from tsas_cli.identification import dynamic_notes as d
+from tsas_cli.identification.estimate import Estimate
+from tsas_cli.identification.model import Model
+from tsas_cli.physics.chain_state import UNSETTLED
+from tsas_cli.physics.lugre_start import law_of
+from tsas_cli.recordings.manifest import Run
+
+KNOWN = Model((Estimate("bristles.stiffness_N_per_mm", 4e3, "N/mm", "fitted"),))
+RUN = SimpleNamespace(
+    run=Run(id="a", file="a.parquet", sha256="0" * 64), time_s=0.5 * np.arange(8), drive=None
+)
+
+
+def notes(monkeypatch, *, model=KNOWN, steps=80, unsettled=(), unstable=()):
+    monkeypatch.setattr(d, "unstable_sliding", lambda rig, time_s, drive: iter(unstable))
+    phase = np.zeros(8)
+    phase[list(unsettled)] = UNSETTLED
+    response = SimpleNamespace(step_ends_s=np.zeros(steps), phase=phase)
+    return list(d.dynamic_notes(RUN, model, response))
+
+
+def test_there_is_nothing_to_say_of_a_plain_answer(monkeypatch):
+    assert notes(monkeypatch) == []
+
+
+def test_bristles_that_are_not_this_rig_s_are_said(monkeypatch):
+    (said,) = notes(monkeypatch, model=Model(()))
+    assert "[bristles.stiffness_N_per_mm]" in said
+
+
+def test_more_than_ten_steps_for_each_sample_are_said(monkeypatch):
+    (said,) = notes(monkeypatch, steps=81)
+    assert said.startswith("81 steps for 8 samples:")
+
+
+def test_where_it_gave_up_is_said(monkeypatch):
+    (said,) = notes(monkeypatch, unsettled=[3, 4, 5, 6, 7])
+    assert said.startswith("given up at 1.5 s, after ")
+    (said,) = notes(monkeypatch, unsettled=[7])
+    assert said.startswith("given up at 3.5 s, after ")
+
+
+def test_notes_come_in_order(monkeypatch):
+    said = notes(monkeypatch, model=Model(()), steps=200, unsettled=[1], unstable=["unstable"])
+    assert [note.split()[0] for note in said] == ["the", "unstable", "200", "given"]
+
+
+@pytest.mark.parametrize(
+    ("found", "count"), [(None, 0), (SimpleNamespace(unstable=False), 0), ("unstable", 1)]
+)
+def test_unstable_sliding_is_said_where_it_is_found(monkeypatch, found, count):
+    looked = {}
+    slow = SimpleNamespace(x_in_mm="x", f_in_N="f", phase="p")
+    monkeypatch.setattr(d, "simulate", lambda rig, drive: looked.update(drive=drive) or slow)
+
+    def stability(*asked):
+        looked["asked"] = asked
+        return SimpleNamespace(unstable=True) if found == "unstable" else found
+
+    monkeypatch.setattr(d, "stability", stability)
+    monkeypatch.setattr(d, "_unstable", lambda found, rig: f"said of {rig}")
+    said = list(d.unstable_sliding("rig", "t", "drive"))
+    assert said == ["said of rig"] * count
+    assert looked == {"drive": "drive", "asked": ("rig", "t", "x", "f", "p")}
+
+
+def unstable(damping_times, *, whole=True):
+    critical = TABLE_1._replace(bristles=TABLE_1.bristles._replace(damping_N_s_per_mm=float("nan")))
+    damping = damping_times * law_of(critical, 1).bristle.damping
+    rig = TABLE_1._replace(bristles=TABLE_1.bristles._replace(damping_N_s_per_mm=damping))
+    moment = SimpleNamespace(whole=whole, speed_mm_s=1.234, f_in_N=56.78)
+    return d._unstable(SimpleNamespace(moment=moment, growth_per_s=40.0), rig)
+
+
+def test_how_fast_a_disturbance_grows_is_said():
+    """By e in a fortieth of a second."""
+    said = unstable(1.0)
+    assert said.startswith(
+        "sliding is unstable where the whole tendon slides, at 1.23 mm/s and f_in of 56.8 N: "
+        "a disturbance grows e-fold in 25 ms"
+    )
+    assert "unstable in a dead band, at 1.23 mm/s" in unstable(1.0, whole=False)
+
+
+@pytest.mark.parametrize(("times", "bristles"), [(0.3, False), (2.95, False), (3.05, True)])
+def test_more_than_three_times_critical_damping_is_the_bristles_doing(times, bristles):
+    said = unstable(times)
+    assert (f"damping is {times:.3g} times critical" in said) == bristles
+    assert ("friction falls with speed" in said) != bristles

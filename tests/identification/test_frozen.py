@@ -1,0 +1,61 @@
+"""What the parts of an identification hand on to each other is not changed behind their backs."""
+
+from dataclasses import FrozenInstanceError, fields
+
+import pytest
+
+from tsas_cli.identification.calibrate_stage import CalibrationResult
+from tsas_cli.identification.calibration import Calibration
+from tsas_cli.identification.comparison import Compared, Told
+from tsas_cli.identification.drive_estimates import DataSheet
+from tsas_cli.identification.drive_file import IdentifiedDrive
+from tsas_cli.identification.drive_fit import DriveTrial
+from tsas_cli.identification.drive_runs import DriveRun
+from tsas_cli.identification.dynamic_fit import DynamicFit, Look, Solved
+from tsas_cli.identification.estimate import Estimate
+from tsas_cli.identification.extension import Trial
+from tsas_cli.identification.fit import Fitted, Solution, Unknown
+from tsas_cli.identification.frequency_response import FrequencyResponse
+from tsas_cli.identification.long_runs import LongRun, Rows
+from tsas_cli.identification.missing_effects import Widened
+from tsas_cli.identification.model import Model
+from tsas_cli.identification.phases import Segment, _Stroke
+from tsas_cli.identification.prepared import Prepared
+from tsas_cli.identification.quantities import Quantity
+from tsas_cli.identification.screening import Screened
+from tsas_cli.identification.simulation import SimulationResult
+from tsas_cli.identification.stiffness import Slope
+from tsas_cli.identification.stored_value import StoredValue
+from tsas_cli.identification.transfer import _Line
+
+FROZEN = (
+    *(Calibration, CalibrationResult, Compared, DataSheet, DriveRun, DriveTrial, DynamicFit),
+    *(
+        Estimate,
+        Fitted,
+        FrequencyResponse,
+        IdentifiedDrive,
+        LongRun,
+        Look,
+        Model,
+        Prepared,
+        Quantity,
+        Rows,
+    ),
+    *(Screened, Segment, SimulationResult, Slope, Solution, Solved, Told, Trial, Unknown),
+    *(Widened, _Line, _Stroke),
+)
+
+
+@pytest.mark.parametrize("made", FROZEN, ids=lambda made: made.__name__)
+def test_what_is_handed_on_stays_as_it_is(made):
+    whole = object.__new__(made)
+    with pytest.raises(FrozenInstanceError):
+        setattr(whole, fields(made)[0].name, None)
+
+
+def test_a_stored_value_stays_as_it_is():
+    value = StoredValue(value=1.0, unit="N")
+    with pytest.raises(ValueError, match="frozen"):
+        value.value = 2.0
+    assert value.at_bound is False

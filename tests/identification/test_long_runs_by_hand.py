@@ -1,0 +1,148 @@
+"""What a fit keeps of a long run, row by row, on pieces of a few rows."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from tsas_cli.identification import long_runs as long
+from tsas_cli.numerics.conditioning_pieces import Cleaned
+from tsas_cli.recordings import pieces as reading
+
+
+def part_of(start, n, reversals=(), begin=0.0):
+    """Cleaned rows whose four columns tell their numbers, each in its own hundred."""
+    k = start + begin + np.arange(float(n))
+    turns = np.array(reversals, dtype=np.int64)
+    return Cleaned(start, 100.0 + k, 200.0 + k, 300.0 + k, 400.0 + k, turns)
+
+
+def rows_of(start, n, reversals=()):
+    k = start + np.arange(n)
+    return long.Rows(
+        start, 0.5 * k, {"x_in_mm": part_of(start, n, reversals)},
+        {"f_in_N": 500.0 + k}, k % 7 == 0,
+    )  # fmt: skip
+
+
+def run_of(rows, names=("x_in_mm",)):
+    plan = SimpleNamespace(window_s=0.25, noise=0.1, smallest_reversal=0.3, interval_s=0.5)
+    return long.LongRun(
+        SimpleNamespace(id="a"),
+        SimpleNamespace(rows=rows),
+        "x_in_mm",
+        dict.fromkeys(names, plan),
+        {"f_in_N": 0.2},
+        60.0,
+    )
+
+
+@pytest.fixture
+def pieces_of(monkeypatch):
+    return lambda rows: monkeypatch.setattr(reading, "MOST_ROWS", rows)
+
+
+@pytest.mark.parametrize(("rows", "every"), [(100, 1), (101, 2), (200, 2), (201, 3)])
+def test_so_many_samples_are_kept_that_they_fit_in_a_piece(pieces_of, rows, every):
+    pieces_of(100)
+    assert run_of(rows).every == every
+
+
+def test_a_fit_sees_the_first_twenty_every_fifth_the_turns_and_the_last(pieces_of):
+    pieces_of(20)
+    run = run_of(98)
+    assert run.every == 5
+    first, second = rows_of(0, 40, [22, 31]), rows_of(40, 58, [43, 96])
+    assert np.flatnonzero(run.seen(first)).tolist() == [*range(20), 20, 22, 25, 30, 31, 35]
+    seen = 40 + np.flatnonzero(run.seen(second))
+    assert seen.tolist() == [40, 43, 45, 50, 55, 60, 65, 70, 75, 80, 85, 90, 95, 96, 97]
+
+
+def test_rows_are_thinned_alike_and_turns_are_places_among_them(pieces_of):
+    pieces_of(20)
+    run = run_of(98)
+    kept = [run.thin(rows_of(0, 40, [22, 31])), run.thin(rows_of(40, 58, [43, 96]))]
+    first, second = ([*range(20), 20, 22, 25, 30, 31, 35], [40, 43, *range(45, 96, 5), 96, 97])
+    for rows, at, turns in ((kept[0], first, [22, 31]), (kept[1], second, [43, 96])):
+        k = np.array(at)
+        assert rows.time_s.tolist() == (0.5 * k).tolist()
+        part = rows.cleaned["x_in_mm"]
+        for values, hundred in zip(
+            (part.values, part.sd, part.unseen, part.apart_s), (100, 200, 300, 400), strict=True
+        ):
+            assert values.tolist() == (hundred + k).tolist()
+        assert [at[place] for place in part.reversals] == turns
+        assert rows.measured["f_in_N"].tolist() == (500 + k).tolist()
+        assert rows.in_gap.tolist() == (k % 7 == 0).tolist()
+    prepared = run.thinned(kept)
+    whole = np.array([*first, *second])
+    conditioned = prepared.conditioned["x_in_mm"]
+    assert conditioned.values.tolist() == (100 + whole).tolist()
+    assert conditioned.sd.tolist() == (200 + whole).tolist()
+    assert conditioned.unseen.tolist() == (300 + whole).tolist()
+    assert whole[conditioned.reversals].tolist() == [0, 22, 31, 43, 96, 97]
+    assert (conditioned.window_s, conditioned.noise) == (0.25, 0.1)
+    assert conditioned.smallest_reversal == 0.3
+    assert prepared.time_s.tolist() == (0.5 * whole).tolist()
+    assert prepared.measured["f_in_N"].tolist() == (500 + whole).tolist()
+    assert (prepared.every, prepared.all_rows, prepared.session_s) == (5, 98, 60.0)
+    assert prepared.noise == {"f_in_N": 0.2}
+
+
+def test_a_cleaned_signal_is_handed_out_in_rows_as_asked():
+    """Pieces of 5, 4 and 6 rows; a reversal at a border belongs to the rows that it begins."""
+    stream = iter([part_of(0, 5, [2, 4]), part_of(5, 4, [8]), part_of(9, 6, [10, 14])])
+    aligned = long._Aligned(stream)
+    found = [aligned.take(n) for n in (4, 6, 5)]
+    assert [part.start for part in found] == [0, 4, 10]
+    assert [part.values.size for part in found] == [4, 6, 5]
+    assert [part.reversals.tolist() for part in found] == [[2], [4, 8], [10, 14]]
+    for column, hundred in (("values", 100), ("sd", 200), ("unseen", 300), ("apart_s", 400)):
+        together = np.concatenate([getattr(part, column) for part in found])
+        assert together.tolist() == [hundred + k for k in range(15)]
+
+
+def thinned(every, samples, strokes):
+    return SimpleNamespace(
+        run=SimpleNamespace(id="a"),
+        every=every,
+        all_rows=1000,
+        time_s=np.zeros(samples),
+        drive_column="x_in_mm",
+        conditioned={"x_in_mm": SimpleNamespace(reversals=np.arange(strokes + 1))},
+    )
+
+
+def test_what_a_fit_has_seen_is_said():
+    assert long.thinned_notes([thinned(1, 10, 5)]) == []
+    (said,) = long.thinned_notes([thinned(2, 160, 10)])
+    assert said == (
+        "Run a has 1000 samples: the fit takes one in 2 of them, and those where the drive turns "
+        "back."
+    )
+    (said,) = long.thinned_notes([thinned(2, 155, 10)])
+    assert said.endswith("A stroke keeps 16 of its samples, too few to see its phases.")
+    (said,) = long.thinned_notes([thinned(3, 25, 10)])
+    assert "A stroke keeps 2.5 of its samples" in said
+
+
+def test_noise_is_the_median_over_the_pieces_that_tell_it(monkeypatch):
+    def piece(f_in, f_out):
+        return SimpleNamespace(
+            columns={
+                "f_in_N": np.array(f_in), "f_out_N": np.array(f_out), "x_out_mm": np.array([np.nan])
+            }
+        )  # fmt: skip
+
+    read = [piece([1.0], [np.nan]), piece([5.0], [9.0]), piece([2.0], [np.nan])]
+    asked = []
+    monkeypatch.setattr(long, "pieces", lambda run, names: asked.append(names) or iter(read))
+    monkeypatch.setattr(
+        long, "noise_of", lambda values: float("nan") if values[0] == 9.0 else float(values[0])
+    )
+    found = long._noise("run", ["f_in_N", "f_out_N", "x_out_mm"])
+    assert found["f_in_N"] == 2.0
+    assert np.isnan(found["f_out_N"])  # there is something, which tells no noise
+    assert set(found) == {"f_in_N", "f_out_N"}
+    assert long._noise("run", []) == {}
+    assert len(asked) == 1

@@ -1,0 +1,191 @@
+"""How far intervals reach, and which effects are looked at, on fits that are made up."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from tsas_cli.identification import missing_effects as m
+from tsas_cli.identification.estimate import Estimate
+
+
+def estimate(value, low, high, *, name="friction_coefficient", run=None, stderr=0.1):
+    return Estimate(name, value, "1", "fitted", run, stderr, low, high)
+
+
+OWN = estimate(10.0, 9.0, 11.5)
+
+
+@pytest.mark.parametrize(
+    ("others", "low", "high"),
+    [
+        ([(12.0, 11.0, 13.0)], 10.0, 13.0),  # from its own value, not from its own interval
+        ([(8.0, 7.0, 9.0)], 7.0, 10.0),
+        ([(12.0, 11.0, 13.0), (8.0, 7.5, 9.0)], 7.5, 13.0),
+        ([], 10.0, 10.0),
+        ([(12.0, None, None), (9.0, 8.0, 9.5)], 8.0, 10.0),
+    ],
+)
+def test_an_interval_reaches_from_the_value_over_those_of_the_others(others, low, high):
+    found = m._hull(OWN, [estimate(*other) for other in others])
+    assert (found.value, found.interval_low, found.interval_high) == (10.0, low, high)
+    assert found.stderr == pytest.approx(max(high - 10.0, 10.0 - low) / 1.96)
+
+
+def test_what_has_no_interval_or_error_gets_none():
+    for own in (estimate(10.0, None, 11.0), estimate(10.0, 9.0, None)):
+        assert m._hull(own, [estimate(12.0, 11.0, 13.0)]) is own
+    free = m._hull(estimate(10.0, 9.0, 11.0, stderr=None), [estimate(12.0, 11.0, 13.0)])
+    assert (free.stderr, free.interval_high) == (None, 13.0)
+
+
+def trial(name, mean_square, value=None, converged=True):
+    solution = SimpleNamespace(converged=converged)
+    return SimpleNamespace(effects=(name,), mean_square=mean_square, value=value, solution=solution)
+
+
+TOLD = [OWN, estimate(5.0, 4.0, 6.0, name="preload_N", run="a")]
+
+
+@pytest.fixture
+def widened(monkeypatch):
+    """Widen what is told by trials whose estimates are one wide about a value."""
+
+    def with_trials(*trials):
+        monkeypatch.setattr(m, "Bench", lambda fit: fit)
+        monkeypatch.setattr(m, "_best_trials", lambda bench, step: list(trials))
+        monkeypatch.setattr(
+            m, "_estimates", lambda bench, t: [estimate(t.value, t.value - 1.0, t.value + 1.0)]
+        )
+        return m.widened(None, TOLD)
+
+    return with_trials
+
+
+def ends(found):
+    return [(e.interval_low, e.interval_high) for e in found.estimates]
+
+
+def test_without_an_effect_that_helps_intervals_stay(widened):
+    found = widened()
+    assert found.estimates == tuple(TOLD)
+    assert found.effects == ()
+
+
+@pytest.mark.parametrize(
+    ("mean_squares", "near"),
+    [
+        ((1.5, 1.99, 2.01), "ab"),  # an excess of 0.5: up to twice that counts
+        ((1.99, 2.01, 1.5), "ac"),
+        ((1.1, 1.19, 1.21), "ab"),
+        ((0.9, 0.99, 1.01), "ab"),  # no excess: nothing beyond the noise counts
+        ((1.0, 1.0, 1.5), "ab"),
+    ],
+)
+def test_effects_with_twice_the_excess_of_the_best_count(widened, mean_squares, near):
+    values = (12.0, 7.0, 3.0)
+    trials = [trial(n, s, v) for n, s, v in zip("abc", mean_squares, values, strict=True)]
+    found = widened(*trials)
+    assert "".join(found.effects) == near
+    ((low, high), other) = ends(found)
+    counted = [t.value for t in trials if t.effects[0] in near]
+    assert (low, high) == (min(10.0, min(counted) - 1.0), max(10.0, max(counted) + 1.0))
+    assert other == (5.0, 5.0)  # no fit tells it
+
+
+@pytest.mark.parametrize(("mean_square", "own_too"), [(1.99, False), (2.01, True), (2.0, False)])
+def test_where_no_effect_explains_it_the_nominal_interval_counts_too(widened, mean_square, own_too):
+    found = widened(trial("a", mean_square, 20.0))
+    low = 9.0 if own_too else 10.0
+    assert ends(found) == [(low, 21.0), (4.0, 6.0) if own_too else (5.0, 5.0)]
+
+
+@pytest.fixture
+def tried(monkeypatch):
+    """Run the search on effects whose parts, meshes and fits are told by name."""
+
+    def search(parts, mean_squares=None, *, converged=(), on_mesh=(), base=9.0):
+        effects = [SimpleNamespace(name=name) for name in parts]
+        monkeypatch.setattr(m, "EFFECTS", effects)
+        monkeypatch.setattr(m, "projector", lambda t: f"basis of {t.effects[0]}")
+        log = SimpleNamespace(screened=[], fits=[], ahead=[], steps=0)
+
+        def screen(bench, t, effect, basis):
+            log.screened.append((effect.name, t.effects[0], basis))
+            return SimpleNamespace(
+                effect=effect, part=parts[effect.name], start=f"at {effect.name}"
+            )
+
+        def fit(names=(), start=None, *, near=None, on_mesh=False):
+            log.fits.append((tuple(names), start, near and near.effects[0]))
+            if not names:
+                return trial("mesh" if on_mesh else "closed", base)
+            (name,) = names
+            square = (mean_squares or {}).get(name, 1.0)
+            return trial(name, square, converged=not converged or name in converged)
+
+        class Step:
+            def ahead(self, count):
+                log.ahead.append(count)
+
+            def __call__(self):
+                log.steps += 1
+
+        monkeypatch.setattr(m, "screen", screen)
+        bench = SimpleNamespace(fit=fit, on_mesh=lambda names: names[0] in on_mesh)
+        found = m._best_trials(bench, Step())
+        return [t.effects[0] for t in found], log
+
+    return search
+
+
+def test_effects_that_explain_half_as_much_as_the_best_are_fitted(tried):
+    found, log = tried({"a": 0.4, "b": 0.8, "c": 0.39, "d": 0.41})
+    assert found == ["a", "b", "d"]
+    assert log.fits[1:] == [((n,), f"at {n}", "closed") for n in "abd"]
+    assert log.ahead == [4, 3]
+    assert log.steps == 7
+
+
+def test_each_is_seen_from_the_fit_that_its_mesh_asks_for(tried):
+    found, log = tried(dict.fromkeys("abc", 0.5), on_mesh="b")
+    assert found == ["a", "b", "c"]
+    assert log.screened == [
+        ("a", "closed", "basis of closed"),
+        ("b", "mesh", "basis of mesh"),
+        ("c", "closed", "basis of closed"),
+    ]
+    assert [near for names, _, near in log.fits if names] == ["closed", "mesh", "closed"]
+    assert [names for names, *_ in log.fits].count(()) == 2  # one for each mesh
+
+
+def test_fits_that_fail_or_are_no_better_are_left_out(tried):
+    squares = {"a": 8.9, "b": 9.0, "c": 9.1, "d": 2.0}
+    assert tried(dict.fromkeys("abcd", 0.5), squares)[0] == ["a", "d"]
+    assert tried(dict.fromkeys("abcd", 0.5), squares, converged="d")[0] == ["d"]
+
+
+def test_an_effect_is_fitted_beside_all_that_was_free(monkeypatch):
+    """The estimates behind it come with errors from the blocks of each run at its rig."""
+    asked = {}
+
+    def blocks_of(runs, rigs):
+        asked["blocks"] = runs, rigs
+        return "blocks"
+
+    def with_errors(unknowns, solution, blocks):
+        asked["errors"] = unknowns, solution, blocks
+        return "fitted"
+
+    monkeypatch.setattr(m, "blocks_of", blocks_of)
+    monkeypatch.setattr(m, "with_errors", with_errors)
+    monkeypatch.setattr(m, "estimates_of", lambda *told: told)
+    bench = SimpleNamespace(
+        rigs=["r", "s"],
+        rig=lambda t, k: f"{t.name} {k}",
+        closed="runs",
+        base=SimpleNamespace(ids=lambda: ["a", "b"]),
+    )
+    made = SimpleNamespace(name="t", unknowns="u", solution=np.pi)
+    assert m._estimates(bench, made) == ("u", "fitted", ["a", "b"])
+    assert asked == {"blocks": ("runs", ["t 0", "t 1"]), "errors": ("u", np.pi, "blocks")}

@@ -1,0 +1,215 @@
+"""A run made ready: gaps, noise, steps and what drives it, on columns of a few samples."""
+
+import math
+from datetime import UTC, datetime
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from tsas_cli.identification import prepared as p
+from tsas_cli.recordings.manifest import Run
+from tsas_cli.recordings.recording import Recording
+
+NAN = math.nan
+
+
+def entry(**told):
+    return Run(id="a", file="a.parquet", sha256="0" * 64, **told)
+
+
+def test_a_gap_is_longer_than_one_and_a_half_samples_and_holds_its_rows():
+    """Known at 0, 1, 2, 4, 5, 6, 7 s: from 2 to 4 it is twice as long as usual."""
+    time_s = np.arange(8.0)
+    values = np.array([1.0, 2.0, 3.0, NAN, 5.0, 6.0, 7.0, 8.0])
+    assert np.flatnonzero(p._in_gap(time_s, values)).tolist() == [3]
+    time_s[4:] -= 0.51  # 1.49 s
+    assert not p._in_gap(time_s, values).any()
+    time_s[4:] += 0.02  # 1.51 s
+    assert np.flatnonzero(p._in_gap(time_s, values)).tolist() == [3]
+
+
+def test_before_the_first_and_after_the_last_value_there_is_a_gap():
+    values = np.array([NAN, NAN, 1.0, 2.0, 3.0, NAN])
+    assert np.flatnonzero(p._in_gap(np.arange(6.0), values)).tolist() == [0, 1, 5]
+
+
+def test_a_slow_column_has_no_gaps_between_its_samples():
+    values = np.full(12, NAN)
+    values[::3] = 1.0
+    assert np.flatnonzero(p._in_gap(np.arange(12.0), values)).tolist() == [10, 11]
+
+
+def test_noise_is_at_least_that_of_quantisation():
+    """A step of 0.5 has a standard deviation of 0.5/√12."""
+    steps = 0.5 * np.repeat(np.arange(10.0), 20)
+    assert p.noise_of(steps) == pytest.approx(0.5 / math.sqrt(12.0))
+    assert math.isnan(p.noise_of(np.arange(5.0)))
+    assert p.noise_of(np.full(100, 3.0)) == 0.0
+    white = np.random.default_rng(1).standard_normal(10_000)
+    assert p.noise_of(white) == pytest.approx(1.0, rel=0.05)
+
+
+def test_a_run_begins_at_the_line_through_its_first_twenty_samples():
+    """3 + 2 t from t = 5 s on: what comes later, and what is missing, does not count."""
+    time_s = 5.0 + 0.1 * np.arange(40)
+    values = 3.0 + 2.0 * (time_s - 5.0)
+    values[20:] = 100.0
+    values[[0, 7]] = NAN
+    assert p._start_value(time_s, values) == pytest.approx(3.0)
+    values[19] += 1.0
+    assert p._start_value(time_s, values) != pytest.approx(3.0)
+    values[2:] = NAN
+    assert p._start_value(time_s, values) is None
+    values[0] = 3.0
+    assert p._start_value(time_s, values) == pytest.approx(3.0)
+
+
+def ready(**told):
+    n = 30
+    columns = {
+        "conditioned": {
+            "x_in_mm": SimpleNamespace(
+                values=np.arange(30.0), noise=0.1, window_s=0.25, reversals=np.array([0, 9, 29])
+            ),
+            "f_out_N": SimpleNamespace(
+                values=7.0 * np.ones(n), noise=0.0, window_s=0.0, reversals=np.array([0])
+            ),
+        },
+        "measured": {"f_in_N": 5.0 + 0.0 * np.arange(n)},
+        "run": entry(load="force"),
+        "drive_column": "x_in_mm",
+    } | told
+    return p.Prepared(
+        columns["run"],
+        10.0 + 0.1 * np.arange(n),
+        columns["drive_column"],
+        columns["conditioned"],
+        columns["measured"],
+        np.zeros(n, bool),
+        session_s=60.0,
+        all_noise=columns.get("noise"),
+    )
+
+
+def test_what_drives_a_run():
+    drive = ready().drive
+    assert drive.values.tolist() == list(range(30))
+    assert (drive.kind, drive.load, drive.session_s) == ("displacement", "force", 60.0)
+    assert drive.load_values.tolist() == [7.0] * 30
+    assert drive.start_f_in_N == pytest.approx(5.0)
+    assert drive.time_s[[0, 1]] == pytest.approx([0.0, 0.1])
+    forced = ready(
+        drive_column="f_in_N",
+        run=entry(),
+        conditioned={"f_in_N": SimpleNamespace(values=np.ones(30))},
+        measured={"x_out_mm": np.ones(30)},
+    ).drive
+    assert (forced.kind, forced.load, forced.load_values) == ("force", "spring", None)
+    assert forced.start_f_in_N is None
+    assert ready(measured={"x_out_mm": np.ones(30)}).drive.start_f_in_N is None
+
+
+def test_a_tension_that_drives_tells_no_start():
+    time_s = np.arange(30.0)
+    how = {"load_values": None, "session_s": 0.0}
+    told = p.drive_of(entry(), time_s, time_s, by_force=True, f_in_N=time_s, **how)
+    assert told.start_f_in_N is None
+    told = p.drive_of(entry(), time_s, time_s, by_force=False, f_in_N=4.0 + time_s, **how)
+    assert told.start_f_in_N == pytest.approx(4.0)
+
+
+def test_a_column_is_as_measured_or_as_conditioned():
+    run = ready()
+    assert run.channel("f_in_N") is run.measured["f_in_N"]
+    assert run.channel("x_in_mm") is run.conditioned["x_in_mm"].values
+    assert run.channel("x_out_mm") is None
+
+
+def test_how_columns_were_conditioned_is_told():
+    told = ready().conditioning()
+    assert told["x_in_mm"] == {
+        "method": p.METHOD, "window_s": 0.25, "noise": 0.1, "unit": "mm", "reversals": 1,
+    }  # fmt: skip
+    assert told["f_out_N"] == {
+        "method": "none: the column holds no noise",
+        "window_s": 0.0, "noise": 0.0, "unit": "N", "reversals": 0,
+    }  # fmt: skip
+
+
+def test_noise_that_all_samples_have_told_is_taken():
+    assert ready(noise={"f_in_N": 0.25, "x_out_mm": 9.0}).noise == {"f_in_N": 0.25}
+    assert ready().noise == {"f_in_N": 0.0}
+
+
+@pytest.mark.parametrize(
+    ("noise", "tolerance"),
+    [(1.0, 1e-3), (1e-3, 6e-6), (1e-5, 1e-7), (0.0, 1e-3), (NAN, 1e-3)],
+)
+def test_a_step_s_error_is_hidden_by_noise(monkeypatch, noise, tolerance):
+    """3 % of the noise, over the largest tension of 5 N; between 1e-7 and the usual tolerance."""
+    monkeypatch.setattr(p, "TOLERANCE", 1e-3)
+    tension = np.where(np.arange(30) == 3, -5.0, 1.0)
+    tension[4] = NAN
+    run = ready(noise={"f_in_N": noise}, measured={"f_in_N": tension})
+    assert run.step_tolerance == pytest.approx(tolerance)
+    other = ready(noise={"x_out_mm": noise}, measured={"x_out_mm": tension})
+    assert other.step_tolerance == 1e-3
+
+
+def test_a_run_begins_seconds_after_the_first_of_its_dataset():
+    first, later = datetime(2025, 1, 1, tzinfo=UTC), datetime(2025, 1, 1, 0, 2, tzinfo=UTC)
+    assert p.seconds_into(first, later) == 120.0
+    assert p.seconds_into(None, later) == p.seconds_into(first, None) == 0.0
+
+
+def recording(**columns):
+    n = 40
+    rng = np.random.default_rng(1)
+    usual = {
+        "time_s": 0.1 * np.arange(n),
+        "x_in_mm": np.sin(np.arange(n)) + 0.01 * rng.standard_normal(n),
+        "f_in_N": rng.standard_normal(n),
+        "x_out_mm": rng.standard_normal(n),
+        "motor_speed_rpm": np.ones(n),
+    }
+    return Recording(entry(), {k: v for k, v in (usual | columns).items() if v is not None})
+
+
+def test_channels_that_hold_anything_outside_gaps_are_measured():
+    only_in_gap = np.full(40, NAN)
+    only_in_gap[[5, 6]] = 1.0
+    x = recording().columns["x_in_mm"].copy()
+    x[4:8] = NAN
+    run = p.prepare(recording(x_in_mm=x, f_out_N=only_in_gap))
+    assert list(run.measured) == ["f_in_N", "x_out_mm"]
+    assert np.flatnonzero(run.in_gap).tolist() == [4, 5, 6, 7]
+    assert (run.drive_column, list(run.conditioned)) == ("x_in_mm", ["x_in_mm"])
+    assert (run.every, run.all_rows, run.session_s) == (1, 0, 0.0)
+
+
+def test_two_numbers_are_enough_to_drive():
+    two = np.full(40, NAN)
+    two[[3, 9]] = 1.0, 2.0
+    assert p.prepare(recording(x_in_mm=two)).drive_column == "x_in_mm"
+    two[9] = NAN
+    with pytest.raises(p.InputError, match="column x_in_mm is empty"):
+        p.prepare(recording(x_in_mm=two))
+
+
+def test_what_drives_a_tendon_and_its_load():
+    assert p.driving_columns(entry(), ["f_in_N", "x_in_mm"]) == ["x_in_mm"]
+    assert p.driving_columns(entry(), ["f_in_N", "f_out_N"]) == ["f_in_N"]
+    assert p.driving_columns(entry(load="force"), ["x_in_mm", "f_out_N"]) == ["x_in_mm", "f_out_N"]
+    both = p.driving_columns(entry(load="displacement"), ["f_in_N", "x_out_mm"])
+    assert both == ["f_in_N", "x_out_mm"]
+
+
+def test_what_was_laid_between_samples_is_nothing_recorded():
+    values = np.interp(np.arange(60), np.arange(0, 60, 3), np.random.default_rng(2).random(20))
+    found = p._recorded(values)
+    assert np.isnan(found).any()
+    kept = np.isfinite(found)
+    np.testing.assert_array_equal(found[kept], values[kept])
+    white = np.random.default_rng(2).random(60)
+    assert p._recorded(white) is white

@@ -1,0 +1,256 @@
+"""How much each error counts, with a model so simple that it can be worked out by hand.
+
+The tension at the drive is k times the drive, that at the load k times the load, and x_out is the
+drive once more; the rig is k.
+"""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from tsas_cli.identification import run_errors as r
+from tsas_cli.physics.ends import Drive
+
+X = np.array([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 4.0, 3.0, 2.0, 1.0, 0.0])
+N = X.size
+TURN_AT = np.array([0, 5, 10])
+WAY = np.array([1.0] * 6 + [-1.0] * 5)
+NOISE = {"f_in_N": 2.0, "f_out_N": 0.5}
+LOAD = 7.0 * np.ones(N)
+EVERY = np.arange(N)
+
+
+class Model:
+    """Answers of the simple model, and what it was asked."""
+
+    def __init__(self):
+        self.asked = []
+
+    def __call__(self, rig, drive, dynamics, **how):
+        self.asked.append((rig, drive, dynamics, how))
+        load = drive.values if drive.load_values is None else drive.load_values
+        return SimpleNamespace(
+            f_in_N=rig * drive.values,
+            f_out_N=rig * load,
+            x_out_mm=drive.values,
+            step_ends_s=np.array([0.25, 0.5]),
+        )
+
+
+def conditioned(values, sd, unseen=0.0):
+    return SimpleNamespace(
+        values=values,
+        sd=np.full(N, sd),
+        unseen=np.full(N, unseen),
+        reversals=TURN_AT,
+        window_s=0.3,
+    )
+
+
+def run_of(*, sd=0.1, unseen=0.0, load_sd=None):
+    ends = {"x_in_mm": conditioned(X, sd, unseen)}
+    if load_sd is not None:
+        ends["f_out_N"] = conditioned(LOAD, load_sd)
+    noise = {n: v for n, v in NOISE.items() if n not in ends}
+    drive = Drive(
+        values=X,
+        load="spring" if load_sd is None else "force",
+        load_values=None if load_sd is None else LOAD,
+        start_f_in_N=3.0,
+        time_s=0.1 * EVERY,
+    )
+    return SimpleNamespace(
+        drive=drive,
+        conditioned=ends,
+        drive_column="x_in_mm",
+        measured={n: np.zeros(N) for n in noise},
+        noise=noise,
+        time_s=0.1 * EVERY,
+        step_tolerance=1e-5,
+    )
+
+
+@pytest.fixture
+def model(monkeypatch):
+    made = Model()
+    monkeypatch.setattr(r, "simulate", made)
+    monkeypatch.setattr(r, "points", lambda run: EVERY)
+    monkeypatch.setattr(r, "_before_turns", lambda square, change, conditioned: None)
+    return made
+
+
+def errors_of(run, rig=3.0, dynamics="slip", samples=EVERY):
+    return r.RunErrors(run, dict.fromkeys(run.measured, samples), rig, dynamics)
+
+
+def test_noise_and_what_moves_the_drive_count_by_their_squares(model):
+    """k = 3: an error of 0.1 mm is 0.3 N, what was taken for noise, 0.2 mm, is 0.6 N."""
+    found = errors_of(run_of(unseen=0.2))
+    np.testing.assert_allclose(found.weights["f_in_N"], np.sqrt(4.0 + 0.09 + 0.36))
+    np.testing.assert_allclose(found.weights["f_out_N"], np.sqrt(0.25 + 0.09 + 0.36))
+
+
+def test_a_load_that_is_driven_has_its_own_error(model):
+    """It moves f_out by k times 0.4 N and f_in by nothing; f_out is not compared then."""
+    run = run_of(load_sd=0.4)
+    run.measured["x_out_mm"], run.noise["x_out_mm"] = np.zeros(N), 0.3
+    run.conditioned["f_out_N"].unseen = np.full(N, 5.0)
+    run.noise["f_out_N"], run.measured["f_out_N"] = 1.0, np.zeros(N)
+    found = errors_of(run)
+    np.testing.assert_allclose(found.weights["f_in_N"], np.sqrt(4.0 + 0.09))
+    np.testing.assert_allclose(found.weights["x_out_mm"], np.sqrt(0.09 + 0.01))
+    np.testing.assert_allclose(found.weights["f_out_N"], np.sqrt(1.0 + 1.44 + 225.0))
+    # The shape of a wrong turn is that of the drive's error, not of the load's.
+    assert found.turns["f_in_N"].shape.any()
+    assert not found.turns["f_out_N"].shape.any()
+
+
+def test_a_channel_without_noise_has_next_to_none(model):
+    run = run_of(sd=0.0)
+    run.noise["f_in_N"] = 0.0
+    found = errors_of(run)
+    np.testing.assert_allclose(found.weights["f_in_N"], 1e-9)
+
+
+def test_what_is_before_a_turn_is_added_for_each_end(monkeypatch, model):
+    added = []
+
+    def before(square, change, conditioned):
+        added.append((change.copy(), conditioned))
+        square += 100.0
+
+    monkeypatch.setattr(r, "_before_turns", before)
+    run = run_of()
+    found = errors_of(run)
+    np.testing.assert_allclose(found.weights["f_in_N"], np.sqrt(4.0 + 0.09 + 100.0))
+    for change, of in added:
+        np.testing.assert_allclose(change, 0.3 * WAY)
+        assert of is run.conditioned["x_in_mm"]
+
+
+LATER = np.arange(1, N)  # a fit never holds the first sample: nothing is forgotten there
+
+
+def test_the_shape_of_a_wrong_turn_is_in_units_of_the_errors(model):
+    """Of two strokes with five samples, all alike: c = ±0.3/√4.09, Σ c² is 5 c²."""
+    turns = errors_of(run_of(), samples=LATER).turns["f_in_N"]
+    assert turns.starts.tolist() == [0, 5]
+    assert turns.counts.tolist() == [5, 5]
+    c = 0.3 / np.sqrt(4.09)
+    size = np.sqrt((1.0 - 1.0 / np.sqrt(1.0 + 9.0 * 5 * c * c)) / 5)
+    np.testing.assert_allclose(turns.shape, [size] * 5 + [-size] * 5)
+
+
+def test_errors_are_simulated_less_measured_without_the_shape_of_a_wrong_turn(model):
+    run = run_of()
+    run.measured["f_in_N"] = 3.0 * X + 1.0
+    found = errors_of(run, samples=LATER)
+    expected = -np.ones(10) / np.sqrt(4.09)
+    shape = found.turns["f_in_N"].shape
+    for part in (slice(0, 5), slice(5, 10)):
+        expected[part] -= shape[part] * (shape[part] @ expected[part])
+    np.testing.assert_allclose(found.errors(3.0)["f_in_N"], expected)
+    np.testing.assert_allclose(found.raw(3.0)["f_in_N"], 1.0)
+    np.testing.assert_allclose(found.answers(2.0)["f_in_N"], 2.0 * X)
+
+
+def test_the_answers_of_the_last_two_rigs_are_kept(model):
+    found = errors_of(run_of())
+    model.asked.clear()
+
+    def asked(rig):
+        found.errors(rig)
+        rigs = [k for k, *_ in model.asked]
+        model.asked.clear()
+        return rigs
+
+    assert asked(3.0) == []  # its weights are those at this rig
+    assert asked(4.0) == [4.0]
+    assert asked(3.0) == []
+    assert asked(5.0) == [5.0]
+    assert asked(3.0) == []
+    assert asked(4.0) == [4.0]
+
+
+def test_a_run_is_answered_as_it_is_asked_for(model):
+    """From rest, with the steps of its own tolerance, on no mesh but where nodes are asked for."""
+    found = errors_of(run_of())
+    _, drive, dynamics, how = model.asked[0]
+    assert drive.start_f_in_N is None
+    assert dynamics == "slip"
+    assert (how["on_mesh"], how["nodes"], how["tolerance"]) == (False, None, 1e-5)
+    assert how["step_ends_s"] is r.OWN_STEPS
+    model.asked.clear()
+    meshed = found.meshed(12)
+    assert meshed.weights is found.weights
+    meshed.errors(3.0)
+    ((_, _, _, how),) = model.asked
+    assert (how["on_mesh"], how["nodes"]) == (True, 12)
+    assert found.nodes is None
+
+
+def test_the_dynamic_model_takes_the_steps_of_the_rig_that_gave_the_weights(model):
+    found = errors_of(run_of(), dynamics="lugre")
+    steps = [how["step_ends_s"] for *_, how in model.asked]
+    own = [s is r.OWN_STEPS for s in steps]
+    assert own == [True, False, True, True]  # its steps, its answer, both errors of the drive
+    assert steps[1].tolist() == [0.25, 0.5]
+    model.asked.clear()
+    found.errors(9.0)
+    assert [how["step_ends_s"].tolist() for *_, how in model.asked] == [[0.25, 0.5]]
+    model.asked.clear()
+    found.weigh(9.0)
+    assert len(model.asked) == 4  # its old answer had other steps
+
+
+def test_between_samples_that_are_simulated_answers_are_straight(monkeypatch, model):
+    """Simulated are 0, 4 and 10: at 2 half way from 0 to 4, at 7 half way from 4 to 0."""
+    monkeypatch.setattr(r, "points", lambda run: np.array([0, 4, 10]))
+    run = run_of(load_sd=0.1)
+    run.drive = Drive(values=X, load="force", load_values=2.0 * X, time_s=0.1 * EVERY)
+    found = errors_of(run)
+    answers = found.answers(3.0)
+    np.testing.assert_allclose(answers["f_in_N"][[0, 2, 4, 7, 10]], [0.0, 6.0, 12.0, 6.0, 0.0])
+    np.testing.assert_allclose(answers["f_out_N"][[2, 7]], [12.0, 12.0])
+    np.testing.assert_allclose(answers["x_out_mm"][[2, 7]], [2.0, 2.0])
+    drive = model.asked[0][1]
+    assert drive.values.tolist() == [0.0, 4.0, 0.0]
+    assert drive.load_values.tolist() == [0.0, 8.0, 0.0]
+    assert drive.time_s == pytest.approx([0.0, 0.4, 1.0])
+
+
+@pytest.mark.parametrize(
+    ("memory", "window_s", "longest", "length"),
+    [
+        (3, 0.05, 100, 3),  # as long as the errors remember
+        (1, 0.2, 100, 4),  # twice as long as the drive was smoothed: four samples
+        (1, 0.2, 2, 2),  # but leave some
+        (50, 0.05, 100, 5),  # and two of a run
+    ],
+)
+def test_a_block_is_longer_than_the_memory_of_errors(
+    monkeypatch, model, memory, window_s, longest, length
+):
+    found = errors_of(run_of(), samples=EVERY)
+    found.samples = {"f_in_N": EVERY, "f_out_N": np.array([0, 9])}
+    found.errors = lambda rig: {"f_in_N": "errors"}
+    monkeypatch.setattr(r, "block_length", lambda residuals: memory)
+    found.run.conditioned["x_in_mm"].window_s = window_s
+    found.run.conditioned["other"] = SimpleNamespace(window_s=0.001)
+    expected = [k // length for k in [*range(N), 0, 9]]
+    assert found.blocks(3.0, longest).tolist() == expected
+
+
+def test_blocks_leave_eight_of_all_runs(monkeypatch):
+    asked = []
+
+    def made(length):
+        return SimpleNamespace(
+            length=length, blocks=lambda rig, longest: asked.append((rig, longest)) or rig
+        )
+
+    assert r.blocks_of([made(30), made(50)], ["a", "b"]) == ["a", "b"]
+    assert asked == [("a", 10), ("b", 10)]
+    with pytest.raises(ValueError, match="shorter"):
+        r.blocks_of([made(30), made(50)], ["a"])

@@ -1,0 +1,136 @@
+"""Which samples count, one by one: on a drive whose travel is written down by hand."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from tsas_cli.identification import samples as s
+
+N = 60
+
+
+def run_of(x, *, gap=(), noise=0.1, smallest=0.5, **measured):
+    """Return a run driven by x; `measured` are its channels, all of them known throughout."""
+    x = np.asarray(x, dtype=float)
+    in_gap = np.zeros(x.size, dtype=bool)
+    in_gap[list(gap)] = True
+    channels = {"f_in_N": np.zeros(x.size)} | measured
+    return SimpleNamespace(
+        run=SimpleNamespace(id="a"),
+        drive_column="x_in_mm",
+        drive=SimpleNamespace(values=x),
+        conditioned={"x_in_mm": SimpleNamespace(values=x, smallest_reversal=smallest)},
+        in_gap=in_gap,
+        measured=channels,
+        noise=dict.fromkeys(channels, noise),
+    )
+
+
+@pytest.fixture
+def forgets(monkeypatch):
+    """Have the tendon forget its start at a given sample."""
+    return lambda first: monkeypatch.setattr(s, "forgotten", lambda rig, drive: first)
+
+
+UP = np.arange(N, dtype=float)
+
+
+def kept(run):
+    return {name: at.tolist() for name, at in s.kept_samples(run, None).items()}
+
+
+def test_the_drive_has_to_travel_as_far_again(forgets):
+    """It forgets at 10 mm of travel: from 20 mm on; up to the last 0.5 mm it counts."""
+    forgets(10)
+    assert kept(run_of(UP)) == {"f_in_N": list(range(20, N - 1))}
+    there_and_back = np.concatenate((np.arange(8.0), np.arange(6.0, -46.0, -1.0)))
+    assert np.abs(np.diff(there_and_back)).tolist() == [1.0] * (N - 1)
+    assert kept(run_of(there_and_back)) == {"f_in_N": list(range(20, N - 1))}
+    forgets(0)
+    assert kept(run_of(UP)) == {"f_in_N": list(range(N - 1))}
+
+
+def test_what_never_forgets_keeps_nothing(forgets):
+    forgets(None)
+    assert kept(run_of(UP)) == {}
+
+
+def test_gaps_of_the_drive_and_of_a_channel_do_not_count(forgets):
+    forgets(5)
+    out = np.zeros(N)
+    out[[30, 31]] = np.nan
+    found = kept(run_of(UP, gap=(40, 41), f_out_N=out))
+    all_but = [k for k in range(10, N - 1) if k not in (40, 41)]
+    assert found == {"f_in_N": all_but, "f_out_N": [k for k in all_but if k not in (30, 31)]}
+
+
+@pytest.mark.parametrize(("smallest", "last"), [(0.5, 58), (3.0, 55), (3.5, 55)])
+def test_a_turn_that_noise_may_hide_is_left_out_with_what_follows(forgets, smallest, last):
+    """What is further from the last place than the smallest reversal counts: 4 mm and more of 3."""
+    forgets(0)
+    assert kept(run_of(UP, smallest=smallest))["f_in_N"] == list(range(last + 1))
+
+
+def test_a_drive_that_never_goes_further_than_that_keeps_all(forgets):
+    forgets(0)
+    assert kept(run_of(UP, smallest=100.0))["f_in_N"] == list(range(N))
+
+
+def test_sixteen_samples_are_enough_and_noise_has_to_be_known(forgets):
+    forgets(0)
+    short = np.where(np.arange(N) < 16, 1.0, np.nan)
+    shorter = np.where(np.arange(N) < 15, 1.0, np.nan)
+    run = run_of(UP, f_out_N=short, x_out_mm=shorter)
+    assert set(kept(run)) == {"f_in_N", "f_out_N"}
+    for noise in (0.0, np.nan):
+        run.noise["f_in_N"] = noise
+        assert set(kept(run)) == {"f_out_N"}
+    run.noise["f_in_N"] = 1e-3
+    assert set(kept(run)) == {"f_in_N", "f_out_N"}
+
+
+def test_what_is_left_out_is_said():
+    run = run_of(UP, f_out_N=UP, x_out_mm=UP)
+    everything = dict.fromkeys(run.measured, UP)
+    assert s.lost(run, everything) == []
+    few = "of run a does not enter the fit: it holds too few samples."
+    assert s.lost(run, {"f_in_N": UP}) == [f"f_out_N {few}", f"x_out_mm {few}"]
+    run.noise["f_in_N"] = 0.0
+    flat = "f_in_N of run a does not enter the fit: it never changes."
+    assert s.lost(run, {"f_out_N": UP}) == [flat, f"x_out_mm {few}"]
+    whole = s.lost(run, {})
+    assert whole[0] == flat
+    assert whole[1].startswith("Run a does not enter the fit: too few samples are left")
+    assert len(whole) == 2
+    run.noise = dict.fromkeys(run.measured, 0.0)
+    assert len(s.lost(run, {})) == 3
+    assert all("never changes" in sentence for sentence in s.lost(run, {}))
+
+
+def points(n, reversals):
+    conditioned = SimpleNamespace(reversals=np.array(reversals))
+    run = SimpleNamespace(
+        time_s=np.arange(float(n)), drive_column="x_in_mm", conditioned={"x_in_mm": conditioned}
+    )
+    return s.points(run)
+
+
+def test_many_strokes_have_a_hundred_samples_each():
+    """12,000 samples are thinned to 4,000, by three; with 60 strokes to 6,000, by two."""
+    few = points(12_000, [0, 6_001, 11_999])
+    assert set(np.diff(few[20:1_000])) == {3}
+    many = points(12_000, np.linspace(0, 11_999, 61).astype(int))
+    assert {1, 2} == set(np.diff(many))
+    assert 12_000 / 2 < many.size < 12_000 / 2 + 60 * 4 + 2
+    fewer = points(11_999, np.linspace(0, 11_998, 61).astype(int))
+    assert fewer.tolist() == list(range(11_999))
+
+
+def test_the_last_sample_is_simulated_and_a_turn_may_be_near_it():
+    assert points(30_000, [0, 29_990, 29_999])[-10:].tolist() == list(range(29_990, 30_000))
+    assert points(9, [0, 8]).tolist() == list(range(9))
+
+
+def test_of_nothing_there_are_no_means():
+    assert s.mean_edges(0).size == 0

@@ -1,0 +1,228 @@
+"""Start values, formula by formula, on a few numbers."""
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from tests.physics.references import GROUP_A
+from tsas_cli.identification import starts as s
+from tsas_cli.identification.phases import Segment
+
+UP, DOWN = Segment(0, 3, "contraction"), Segment(3, 6, "loosening")
+
+
+def run_of(x_in=None, *, load="spring", preload_N=None, drive="x_in_mm", x_out=None, **measured):
+    values = {name: np.asarray(v, dtype=float) for name, v in measured.items()}
+    driven = {} if x_in is None else {"x_in_mm": np.asarray(x_in, dtype=float)}
+    driven |= {} if x_out is None else {"x_out_mm": np.asarray(x_out, dtype=float)}
+    return SimpleNamespace(
+        run=SimpleNamespace(load=load, preload_N=preload_N),
+        measured=values,
+        channel=lambda name: values.get(name, driven.get(name)),
+        drive_column=drive,
+        conditioned={name: SimpleNamespace(values=v) for name, v in driven.items()},
+    )
+
+
+def test_friction_is_half_the_logarithm_of_the_ratios_quotient():
+    """Ratios of 4 and 1/2, each of them the median: of the ratios known."""
+    f_in = [40.0, np.nan, 40.0, 5.0, 5.0, 700.0]
+    run = run_of(f_in_N=f_in, f_out_N=np.full(6, 10.0))
+    assert s._wrap(run, [UP, DOWN], {}) == pytest.approx(0.5 * math.log(8.0))
+    one_way = {"contraction": 9.0, "loosening": 1.0}
+    assert s._wrap(run, [UP], one_way) == pytest.approx(math.log(3.0))  # √9
+    assert s._wrap(run, [DOWN], {}) is None
+    assert s._wrap(run, [UP], {"contraction": 9.0}) is None
+    slack = run_of(f_in_N=f_in, f_out_N=[0.0, 0.0, -1.0, 10.0, 10.0, 10.0])
+    with np.errstate(all="raise"):
+        assert s._wrap(slack, [UP, DOWN], {}) is None
+    alone = run_of(f_in_N=f_in)
+    assert s._wrap(alone, [UP, DOWN], one_way) == pytest.approx(math.log(3.0))
+
+
+def test_a_bend_of_nothing_is_a_thousandth():
+    run = run_of(f_in_N=np.full(6, 10.0), load="force")
+    km = [SimpleNamespace(phase=p, value=v) for p, v in (("contraction", 4.0), ("loosening", 1.0))]
+    straight = s.read_off(run, [], km, GROUP_A._replace(total_bend_rad=0.0))
+    assert straight == {}  # 693: more than is plausible
+    bent = s.read_off(run, [], km, GROUP_A._replace(total_bend_rad=2.0))
+    assert bent == pytest.approx({"friction_coefficient": 0.5 * math.log(2.0)})
+    hardly = [SimpleNamespace(phase=p, value=2.0) for p in KM]
+    for bend, friction in ((0.0, 10.0), (1e-3, 10.0), (0.005, 2.0)):
+        found = s.read_off(run, [], hardly, GROUP_A._replace(total_bend_rad=bend))
+        assert found == pytest.approx({"friction_coefficient": friction})
+
+
+def test_the_tendon_s_stiffness_is_that_of_the_dead_band():
+    """Eq. (29): EA = km L tanh(a/2)/a with a = ln 2."""
+    km = {"contraction": 4.0, "loosening": 1.0, "dead_band_up": 150.0, "dead_band_down": -170.0}
+    slopes = [SimpleNamespace(phase=p, value=v) for p, v in km.items()]
+    a = math.log(2.0)
+    exact = 160.0 * GROUP_A.sheath_length_mm * (1.0 / 3.0) / a  # tanh(ln √2) = 1/3
+    run = run_of(load="force", f_in_N=np.full(6, 10.0))
+    assert s.read_off(run, [], slopes, GROUP_A)["tendon_stiffness_N"] == pytest.approx(exact)
+
+
+def test_what_lies_on_a_bound_is_plausible(monkeypatch):
+    class Bounds(dict):
+        def __missing__(self, name):
+            return SimpleNamespace(lower=1.0, upper=2.0)
+
+    monkeypatch.setattr(s, "NOMINAL_BY_NAME", Bounds())
+    monkeypatch.setattr(
+        s, "_spring", lambda *_: {"below": 0.999, "lower": 1.0, "upper": 2.0, "above": 2.001}
+    )
+    assert set(s.read_off(run_of(), [], [], GROUP_A)) == {"lower", "upper"}
+
+
+X_OUT = np.array([1.0, 2.0, 3.0, 4.0, 5.0, 6.0])
+
+
+def test_the_load_spring_is_the_line_of_f_out_over_x_out():
+    run = run_of(np.linspace(0.0, 10.0, 6), f_out_N=7.0 + 2.0 * X_OUT, x_out_mm=X_OUT)
+    assert s._spring(run, [], {}) == pytest.approx(
+        {"load_stiffness_N_per_mm": 2.0, "preload_N": 7.0}
+    )
+    gone = np.where(np.arange(6) < 3, np.nan, 7.0 + 2.0 * X_OUT)
+    three = run_of(np.linspace(0.0, 10.0, 6), f_out_N=gone, x_out_mm=X_OUT)
+    assert s._spring(three, [], {})["load_stiffness_N_per_mm"] == pytest.approx(2.0)
+    gone = np.where(np.arange(6) < 4, np.nan, 7.0 + 2.0 * X_OUT)
+    two = run_of(np.linspace(0.0, 10.0, 6), f_out_N=gone, x_out_mm=X_OUT)
+    assert s._spring(two, [], {}) == {}
+    still = run_of(np.linspace(0.0, 10.0, 6), f_out_N=X_OUT, x_out_mm=np.full(6, 3.0))
+    assert s._spring(still, [], {}) == {}
+    little = run_of(np.linspace(0.0, 1.0, 6), f_out_N=7.0 + 0.2 * X_OUT, x_out_mm=0.1 * X_OUT)
+    assert s._spring(little, [], {})["load_stiffness_N_per_mm"] == pytest.approx(2.0)
+    falling = run_of(np.linspace(0.0, 10.0, 6), f_out_N=7.0 - 2.0 * X_OUT, x_out_mm=X_OUT)
+    assert s._spring(falling, [], {}) == pytest.approx(
+        {"load_stiffness_N_per_mm": -2.0, "preload_N": 7.0}
+    )
+
+
+KM = {"contraction": 4.0, "loosening": 1.0}
+X_IN = [0.0, 1.0, 2.0, 2.0, 1.0, 0.0]
+
+
+def test_the_load_spring_by_the_slopes_and_the_preload_by_the_lines():
+    """Both are geometric means: of the slopes, and of the tensions of both lines at zero."""
+    f_in = [18.0, 22.0, np.nan, 4.0, 3.0, 2.0]  # 18 + 4 x and 2 + x
+    found = s._spring(run_of(X_IN, f_in_N=f_in), [UP, DOWN], KM)
+    assert found == pytest.approx({"load_stiffness_N_per_mm": 2.0, "preload_N": 6.0})
+    without = s._spring(run_of(X_IN, f_out_N=f_in), [UP, DOWN], KM)
+    assert without == pytest.approx({"load_stiffness_N_per_mm": 2.0})
+    for phase in KM:
+        assert s._spring(run_of(X_IN, f_in_N=f_in), [UP, DOWN], {phase: 4.0}) == {}
+
+
+@pytest.mark.parametrize("at_zero", [-2.0, 0.0])
+def test_a_line_that_is_slack_at_zero_tells_the_zero_of_x_in(at_zero):
+    """From lines of 18 + 4 x and −2 + x to a stated 20 N: at 0.5 mm and 22 mm."""
+    f_in = [18.0, 22.0, 26.0, at_zero + 2.0, at_zero + 1.0, at_zero]
+    stated = run_of(X_IN, f_in_N=f_in, preload_N=20.0)
+    found = s._spring(stated, [UP, DOWN], KM)
+    zero = 0.5 * (0.5 + 20.0 - at_zero)
+    assert found == pytest.approx({"load_stiffness_N_per_mm": 2.0, "x_in_zero_mm": zero})
+    unknown = run_of(X_IN, f_in_N=f_in)
+    assert s._spring(unknown, [UP, DOWN], KM) == pytest.approx({"load_stiffness_N_per_mm": 2.0})
+
+
+def far(x_in, f_out, *, first=30.0, slope=2.0, intercept=10.0, **told):
+    return s._far_zeros(run_of(x_in, **told), np.asarray(f_out), first, slope, intercept)
+
+
+def test_zeros_that_are_near_stay_at_nothing():
+    """A travel of 2 mm: up to five times as far off, without slack in the run, a fit finds them."""
+    f_out = 10.0 + 2.0 * np.array([0.0, 1.0, 2.0])
+    assert far([0.0, 1.0, 2.0], f_out) == {}
+    assert far([9.9, 10.9, 11.9], f_out) == {}
+    assert far([10.0, 11.0, 12.0], f_out) == {}  # just so
+    assert far([10.1, 11.1, 12.1], f_out) == pytest.approx({"x_in_zero_mm": 10.1})
+    assert far([-4.9, -3.9, -2.9], f_out) == {}  # 10 N are gone 5 mm below zero
+    assert far([-5.0, -4.0, -3.0], f_out) == {}
+    assert far([-5.1, -4.1, -3.1], f_out) == pytest.approx({"x_in_zero_mm": -5.1})
+    assert far([10.1, 11.1, 12.1], f_out, drive="f_in_N") == {}
+
+
+def test_a_zero_of_x_in_is_the_median_of_what_the_samples_say():
+    f_out = np.array([10.0, 12.0, np.nan, 16.0])
+    found = far([40.0, 41.0, 42.0, 46.0], f_out)  # 40, 40 and 43
+    assert found == pytest.approx({"x_in_zero_mm": 40.0})
+
+
+@pytest.mark.parametrize(("stated", "preload"), [(14.0, 14.0), (None, 50.0)])
+def test_a_spring_that_is_slack_at_zero_is_counted_from_afar(stated, preload):
+    """f_out = −10 + 2 x_out: stated, or what the run begins with at 30 mm."""
+    found = far([0.0, 1.0, 2.0], np.full(3, preload), intercept=-10.0, preload_N=stated)
+    assert found == pytest.approx({"x_out_zero_mm": (preload + 10.0) / 2.0, "preload_N": preload})
+    tight = far([0.0, 1.0, 2.0], [0.5, 2.5, 4.5], intercept=0.5, preload_N=14.0)
+    assert tight == {}  # half a newton at zero is enough
+    none = far([0.0, 1.0, 2.0], np.full(3, 14.0), intercept=0.0, preload_N=14.0)
+    assert none == pytest.approx({"x_out_zero_mm": 7.0, "preload_N": 14.0})
+
+
+GIVE = 2.0  # mm of stretch by 1 N
+RIG = GROUP_A._replace(sheath_length_mm=1000.0, tendon_stiffness_N=500.0, preload_N=3.0)
+
+
+def between(x_in, x_out, **told):
+    return s._zero_between(run_of(x_in, x_out=x_out, load="displacement", **told), RIG)
+
+
+def test_a_tendon_between_two_drives_is_slack_below_its_stretch():
+    """3 N stretch it by 6 mm: where the ends come closer than that, the zero is off."""
+    f_in = [4.0, 5.0, np.nan]
+    assert between([-4.9, 0.0, 0.0], [1.0, 0.0, 0.0], f_in_N=f_in) == {}
+    assert between([-5.0, 0.0, 0.0], [1.0, 0.0, 0.0], f_in_N=f_in) == {}  # just so
+    found = between([-20.0, -17.0, 0.0], [1.0, 2.0, 0.0], f_in_N=f_in)
+    # −21 less (4 − 3)·2, −19 less (5 − 3)·2; nothing is known of the third
+    assert found == pytest.approx({"x_in_zero_mm": -23.0})
+    assert between([-20.0, 0.0], [1.0, 0.0], f_out_N=[4.0, 4.0])["x_in_zero_mm"] < 0.0
+    assert between([-20.0, 0.0], [1.0, 0.0]) == {}
+    assert between([-20.0, 0.0], [1.0, 0.0], f_in_N=[4.0, 4.0], drive="f_in_N") == {}
+    both = between([-20.0, -20.0], [1.0, 1.0], f_in_N=[4.0, 4.0], f_out_N=[9.0, 9.0])
+    assert both == pytest.approx({"x_in_zero_mm": -23.0})
+
+
+def test_each_load_is_read_in_its_own_way(monkeypatch):
+    monkeypatch.setattr(s, "_spring", lambda *_: {"preload_N": 1.0})
+    monkeypatch.setattr(s, "_zero_between", lambda *_: {"x_in_zero_mm": 2.0})
+    read = {
+        load: s.read_off(run_of(load=load), [], [], GROUP_A)
+        for load in ("spring", "displacement", "force")
+    }
+    assert read == {
+        "spring": {"preload_N": 1.0},
+        "displacement": {"x_in_zero_mm": 2.0},
+        "force": {},
+    }
+
+
+def test_a_slope_of_nothing_tells_nothing():
+    run = run_of(load="force", f_in_N=np.full(6, 10.0))
+
+    def read(contraction):
+        told = (("contraction", contraction), ("loosening", 0.25))
+        return s.read_off(run, [], [SimpleNamespace(phase=p, value=v) for p, v in told], GROUP_A)
+
+    assert read(0.0) == {}
+    found = read(-1.0)["friction_coefficient"]  # the wrong sign: its size counts
+    assert found == pytest.approx(math.log(2.0) / GROUP_A.total_bend_rad)
+
+
+@pytest.mark.parametrize(("slope", "afar"), [(0.5, True), (-0.5, False), (0.0, False)])
+def test_a_spring_that_pulls_is_counted_from_where_its_run_begins(monkeypatch, slope, afar):
+    """From the first x_out that comes with a tension, on the line of both."""
+    told = []
+    monkeypatch.setattr(s, "_far_zeros", lambda *asked: told.append(asked[2:]) or {"afar": 1.0})
+    f_out = np.where(np.arange(6) < 1, np.nan, 9.0 + slope * X_OUT)
+    found = s._spring(run_of(f_out_N=f_out, x_out_mm=X_OUT), [], {})
+    assert found.get("afar") == (1.0 if afar else None)
+    assert told == ([pytest.approx((2.0, slope, 9.0))] if afar else [])
+
+
+def test_a_preload_of_less_than_a_newton_is_one():
+    f_in = [0.5, 4.5, 8.5, 4.5, 3.5, 2.5]  # 0.5 + 4 x and 2.5 + x
+    found = s._spring(run_of(X_IN, f_in_N=f_in, preload_N=20.0), [UP, DOWN], KM)
+    assert found["preload_N"] == pytest.approx(math.sqrt(1.25))
