@@ -101,9 +101,7 @@ def test_friction_follows_a_power_of_the_mean_tension_at_a_node(chain, exponent,
     factor = (MEANS / F0) ** exponent
     for by, passed, wrap in ((PULLED_BY, PULLED, 0.6), (RELEASED_BY, RELEASED, 0.45)):
         np.testing.assert_allclose(row(chain, by)[NODES], wrap / N * factor, rtol=1e-9)
-        np.testing.assert_allclose(
-            row(chain, passed)[NODES], np.exp(-wrap / N * factor), rtol=1e-9
-        )
+        np.testing.assert_allclose(row(chain, passed)[NODES], np.exp(-wrap / N * factor), rtol=1e-9)
 
 
 def test_friction_stays_finite_where_no_tension_is_left(chain):
