@@ -1,4 +1,4 @@
-"""Pieces of the dynamic chain one by one: limits of friction, ends, what a step sees, how it goes."""
+"""Pieces of the dynamic chain: limits of friction, ends, what a step sees, how runs go."""
 
 import math
 
@@ -190,7 +190,7 @@ def test_the_share_of_the_guide_that_the_sensor_does_not_feel():
     "boundary", [LOADED_BY_SPRING, LOADED_BY_FORCE, LOADED_BY_DISPLACEMENT, DRIVEN_BY_FORCE]
 )
 def test_samples_within_a_step_read_what_was_given_and_what_answered(boundary):
-    """Everything goes straight here; the guide's share is taken off what the load's sensor reads."""
+    """Everything goes straight here; the guide's share is taken off what the sensor reads."""
     times, law = np.linspace(0.0, 1.0, 11), law_of(with_values(GROUP_A, GUIDED), N)
     course = np.vstack([np.full(11, 100.0 + k) + times for k in range(7)])
     a = Ends(0.0, 0.0, 0.0, 0.0, 1.0, 10.0, 2.0, 20.0, 30.0, 40.0, 50.0, 60.0, 0.0)
