@@ -29,8 +29,9 @@ from tsas_cli.physics.lugre_ends import (
     write_samples,
 )
 from tsas_cli.physics.lugre_slack import load_without_pull, shortening
-from tsas_cli.physics.lugre_start import law_of, lay_out
+from tsas_cli.physics.lugre_start import law_of, lay_down, lay_out
 from tsas_cli.physics.lugre_state import (
+    FRICTION,
     LIMIT,
     LIMIT_BY_T,
     LIMIT_BY_V,
@@ -45,6 +46,7 @@ from tsas_cli.physics.lugre_state import (
     Step,
     T,
     W,
+    Z,
 )
 from tsas_cli.physics.lugre_step import newton
 from tsas_cli.physics.rig import with_values
@@ -215,6 +217,35 @@ def test_samples_within_a_step_read_what_was_given_and_what_answered(boundary):
     for row, values in expected.items():
         np.testing.assert_allclose(columns[row, 3:7], values)
     assert np.all(columns[:, [0, 1, 2, 7, 8, 9, 10]] == -1.0)
+
+
+@pytest.mark.parametrize("exponent", [0.0, 0.3])
+@pytest.mark.parametrize("length", [0.0, 0.02])
+def test_lumps_that_are_laid_down_stay_where_they_are(length, exponent):
+    """Their bristles carry what the tensions leave over, to either side by its own limit."""
+    values = {
+        "presliding.length_mm": length,
+        "load_dependent_friction.exponent": exponent,
+        "drive_friction.friction_N": 2.0,
+        "load_friction.after_sensor_N": 3.0,
+    }
+    rig = with_values(GROUP_A, values)
+    s, law = lumps(rig)
+    tensions = np.array([21.0, 22.0, 21.5, 22.3])
+    start = np.zeros((2, N + 2))
+    start[1, : N + 1] = tensions
+    start[0] = 0.7, 0.5, 0.3, 0.2, 0.1
+    step = Step(1e-13, 21.5, 0.0, 0.0, 0.0, 0.0, 0.0, 0.14, 0.06, 2.0)
+    ends = lay_down(s, start, step, DRIVEN_BY_FORCE, law)
+    assert (ends.f_in, ends.f_out, ends.x_in, ends.x_out) == (21.0, 22.3, 0.7, 0.1)
+    left = [0.5, *-np.diff(tensions), 22.3 - (23.0 + KL * 0.1)]
+    s[Z_PAST : Z_PAST + N + 2] = s[Z : Z + N + 2]
+    assert balance(s, step, DRIVEN_BY_FORCE, law) == pytest.approx(
+        abs(s[REST]) + abs(s[REST + LAST]), abs=1e-6
+    )
+    np.testing.assert_allclose(s[FRICTION + 1 : FRICTION + LAST], left[1:LAST], rtol=1e-5)
+    stiffness = law.end_bristle.stiffness
+    assert [s[Z], s[Z + LAST]] == pytest.approx([left[0] / stiffness, left[LAST] / stiffness])
 
 
 @pytest.mark.parametrize(
