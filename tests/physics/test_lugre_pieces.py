@@ -41,6 +41,7 @@ from tsas_cli.physics.lugre_state import (
     STIFFNESS,
     T_BY_W,
     T_PAST,
+    W_GUESS,
     Z_NEW,
     Z_PAST,
     Step,
@@ -48,7 +49,7 @@ from tsas_cli.physics.lugre_state import (
     W,
     Z,
 )
-from tsas_cli.physics.lugre_step import newton
+from tsas_cli.physics.lugre_step import error, formula_of, newton
 from tsas_cli.physics.rig import with_values
 
 N, LAST = 3, 4
@@ -143,6 +144,15 @@ def test_newtons_method_gives_up_at_once_where_forces_are_infinite(boundary):
     else:
         step = step._replace(lost_N=math.inf)
     assert newton(s, step, boundary, law, 1e-6) == (0, False)
+
+
+def test_the_error_of_a_first_step_is_half_of_what_its_guess_was_off_by():
+    """Backward Euler leaves out h²/2 of the acceleration, which the guess has not seen."""
+    s, law = lumps(GROUP_A, speeds=(0.0, 0.1, 0.3, -0.2, 0.0))
+    s[W_GUESS : W_GUESS + N + 2] = 0.0, 0.1, 0.1, 0.1, 0.0
+    stretched = s[STIFFNESS : STIFFNESS + N + 1] * np.abs(np.diff([0.0, 0.0, 0.2, -0.3, 0.0]))
+    first = formula_of(0.2, math.inf, math.inf)
+    assert error(s, law, first) == pytest.approx(0.5 * 0.2 * stretched.max())
 
 
 ENDS = Ends(1.0, 2.0, 10.0, 3.0, 0.0, 0.0, 0.0, 0.0, 30.0, 0.0, 20.0, 0.0, 0.5)

@@ -52,6 +52,7 @@ from tsas_cli.physics.chain_state import (
     T_ROSE,
     TAKES,
     TURNED,
+    WRAP,
     X_OLD,
     Moment,
     P,
@@ -200,6 +201,17 @@ def test_the_tangent_of_a_sliding_node_touches_its_law(chain, exponent, slip):
     assert line == pytest.approx(behind, rel=1e-10)  # one step of Newton's method mends it
     row(chain, SLIP)[N] = 0.0
     assert not set_slides(chain, NOW, bent)  # of a node that sticks nothing is asked
+
+
+def test_the_sign_of_the_tension_is_that_of_both_sides_of_a_node(chain):
+    """Whatever the next segment carries: friction of a pull takes from the magnitude here."""
+    bent = laws(load_dependent_friction__exponent=0.3)
+    row(chain, T)[: N + 1] = 40.0, -10.0, -30.0, 50.0
+    row(chain, SLIP)[NODES] = 1.0
+    set_friction(chain, NOW, bent)
+    set_slides(chain, NOW, bent)
+    wraps = 0.2 * (np.array([15.0, 20.0, 10.0]) / F0) ** 0.3
+    np.testing.assert_allclose(row(chain, WRAP)[NODES], [-wraps[0], wraps[1], -wraps[2]])
 
 
 @pytest.mark.parametrize("moved", [0.03, -0.03])
