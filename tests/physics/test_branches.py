@@ -7,7 +7,8 @@ import pytest
 
 from tests.physics.references import FREE, GROUP_A, Profile, pulled_through, wrap_of
 from tsas_cli.effects import Effects, FreeTendon
-from tsas_cli.physics.branches import branches
+from tsas_cli.physics.branches import at_rest_before, branches, strokes, with_room
+from tsas_cli.physics.frames import empty_frames
 
 A = wrap_of(GROUP_A)
 C = GROUP_A.sheath_length_mm / (A * GROUP_A.tendon_stiffness_N)
@@ -175,3 +176,65 @@ def test_friction_and_bend_enter_as_their_product_and_the_length_does_not():
     f_in, f_out, _ = branches(x, longer)
     assert f_in[0] / f_out[0] == pytest.approx(UP)
     assert f_in[0] < plain[0] - 0.1
+
+
+@pytest.mark.parametrize(
+    ("motion", "count"),
+    [
+        ([], 2),
+        ([1.0, 2.0], 2),
+        ([1.0, 2.0, 3.0], 2),
+        ([1.0, 0.0, 1.0], 3),
+        ([1.0, 0.0, 1.0, 0.5, 0.2], 4),
+        ([1.0, 2.0, 2.0, 3.0], 4),
+        ([0.0, -1.0, -1.0, -1.0], 3),
+    ],
+)
+def test_room_for_strokes_is_that_of_turns_and_rests(motion, count):
+    """The way to the first sample, the first stroke, and one for each change after it."""
+    x = np.array(motion)
+    assert strokes(x) == count
+    state = at_rest_before(x, 25.0)
+    assert state.now.tolist() == [0.0, 25.0, 25.0, 0.0, 0.0, 0.0, 0.0]
+    assert state.turn_x.size == state.turn_T.size == count
+    state.now[4] = 2.0
+    roomy = with_room(state, np.array([1.0, 0.0, 1.0]))
+    assert roomy.turn_x.size == roomy.turn_T.size == 2 + 3
+
+
+def test_what_is_along_the_tendon_after_a_few_strokes():
+    """Each lays its exponential over what was before, up to where both meet: its front."""
+    tensions = 25.0 * np.array([1.2, 2.0, 1.5, 1.7, 0.9])
+    x_in, _ = pulled_through(GROUP_A, tensions)
+    frames = empty_frames(np.arange(5), 8)
+    branches(x_in, GROUP_A, frames)
+    s = np.linspace(0.0, 1.0, 9)
+    up, down = np.exp(-A * s), np.exp(A * s)
+    profile, fronts = np.full(9, 25.0), []
+    for T0, before, way in zip(tensions, (25.0, *tensions[:-1]), (1, 1, -1, 1, -1), strict=True):
+        now = np.maximum(profile, T0 * up) if way > 0 else np.minimum(profile, T0 * down)
+        fronts.append((now, abs(math.log(T0 / before)), way))
+        profile = now
+    for k, (now, _, _) in enumerate(fronts):
+        np.testing.assert_allclose(frames.tension_N[k], now, rtol=1e-6)
+    # From rest it runs against a level profile, then against one as steep as its own.
+    expected = [math.log(1.2) / A, 1.0, *(fronts[k][1] / (2.0 * A) for k in (2, 3)), 1.0]
+    np.testing.assert_allclose(frames.front, expected, rtol=1e-6)
+    middles = np.arange(0.5, 8.0) / 8.0
+    for k, (_, _, way) in enumerate(fronts):
+        assert frames.slip[k].tolist() == [way if m < expected[k] else 0 for m in middles]
+
+
+@pytest.mark.parametrize("factor", [1.3, 0.8])
+def test_a_front_from_rest_goes_as_far_as_the_tension_has_changed(factor):
+    x_in, _ = pulled_through(FREE, 25.0 * np.array([factor]))
+    frames = empty_frames(np.array([0]), 4)
+    branches(x_in, FREE, frames)
+    front = abs(math.log(factor)) / A
+    assert 0.5 < front < 0.75
+    assert frames.front[0] == pytest.approx(front, rel=1e-6)
+    way = 1 if factor > 1.0 else -1
+    assert frames.slip[0].tolist() == [way, way, way if front > 0.625 else 0, 0]
+    fading = 25.0 * factor * np.exp(-way * A * np.linspace(0.0, 1.0, 5))
+    expected = np.maximum(fading, 25.0) if way > 0 else np.minimum(fading, 25.0)
+    np.testing.assert_allclose(frames.tension_N[0], expected, rtol=1e-6)

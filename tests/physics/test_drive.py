@@ -108,6 +108,19 @@ def test_the_gear_turns_unevenly_and_has_play(part, play_mm, start_mm):
     assert np.ptp(off) > 0.02
 
 
+def test_what_is_not_said_of_a_drive_is_not_there():
+    """No lag, delay, leak, spring, damping, waves or play: speed is all that is added up."""
+    plain = DriveValues(0.5)
+    assert not any(plain[1:])
+    assert lag_coefficients(plain).tolist() == [1.0]
+    assert not has_gear(plain)
+    answer = linear_response(sampled(0.1, np.array([0.0, 2.0, 2.0, 4.0]), "first"), plain)
+    np.testing.assert_allclose(answer, [0.0, 0.05, 0.15, 0.3])
+    w = 2.0 * math.pi * 12.0
+    undamped = lag_coefficients(plain._replace(natural_frequency_Hz=12.0))
+    np.testing.assert_allclose(undamped, [1.0, 0.0, 1.0 / w**2])
+
+
 def test_what_makes_a_gear_imperfect():
     assert not has_gear(WHOLE)
     for name in ("sine_mm", "cosine_mm", "play_mm"):

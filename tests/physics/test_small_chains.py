@@ -41,7 +41,7 @@ EFFECTS = {
     | {"drive_compliance.compliance_mm_per_N": 0.004, "sheath_compression.compliance_ratio": 0.3},
     "friction rises with tension": {"load_dependent_friction.exponent": 0.25},
     "friction falls with tension": {"load_dependent_friction.exponent": -0.25},
-    "the same friction at any tension": {"load_dependent_friction.exponent": -1.0},
+    "friction is the same at any tension": {"load_dependent_friction.exponent": -1.0},
     "presliding": {"presliding.length_mm": 0.02},
     "presliding and tension": {
         "presliding.length_mm": 0.05,

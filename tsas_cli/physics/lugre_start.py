@@ -5,7 +5,7 @@ import math
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.bristles import Bristle, bristle_damping, tendon_mass
 from tsas_cli.physics.chain_state import PITCH, Boundary
-from tsas_cli.physics.lugre_balance import balance
+from tsas_cli.physics.lugre_balance import balance, set_limits
 from tsas_cli.physics.lugre_ends import Ends, ends_after
 from tsas_cli.physics.lugre_input import DRIVE, given_at, step_at
 from tsas_cli.physics.lugre_state import (
@@ -116,6 +116,9 @@ def lay_down(s: Floats, start: Floats, step: Step, boundary: Boundary, law: Law)
         s[T_PAST + i], s[T_BY_W + i] = start[1, i], 0.0
         s[V + i] = s[V_PAST + i] = s[W + i] = s[Z_PAST + i] = 0.0
     balance(s, step, boundary, law)
+    for i in range(1, law.n + 1):
+        s[Z_PAST + i] = s[REST + i]  # the side to which it leans: each has a limit of its own
+    set_limits(s, step, law)
     for i in range(1, law.n + 1):
         share = min(max(s[REST + i] / s[LIMIT + i], -1.0), 1.0)
         s[Z + i] = s[REST + i] / law.bristle.stiffness + share * law.bristle.travel

@@ -1,0 +1,223 @@
+"""What acts at the ends of a run, and how it is answered, of few samples on few nodes."""
+
+import math
+
+import numpy as np
+import pytest
+
+from tests.physics.references import GROUP_A, wrap_of
+from tsas_cli.effects import EFFECTS
+from tsas_cli.physics import response
+from tsas_cli.physics.chain_state import DISPLACEMENT, FORCE, SPRING, Boundary
+from tsas_cli.physics.ends import (
+    Drive,
+    ends_of,
+    friction_at,
+    friction_without_speed,
+    last_direction,
+)
+from tsas_cli.physics.response import forgotten, is_closed, simulate
+from tsas_cli.physics.rig import with_values
+
+RIG = GROUP_A._replace(x_in_zero_mm=3.0, x_out_zero_mm=-7.0)
+A = wrap_of(GROUP_A)
+VARYING = with_values(
+    GROUP_A,
+    {
+        "direction_dependent_friction.asymmetry": 0.2,
+        "friction_drift.rate_per_s": 0.1,
+        "friction_drift.session_rate_per_s": 0.01,
+        "bend_drift.rate_rad_per_s": 0.3,
+        "preload_loss.rate_N_per_s": 0.5,
+        "stribeck_friction.excess": 0.4,
+        "stribeck_friction.velocity_mm_per_s": 2.0,
+        "viscous_friction.coefficient_N_s_per_mm": 0.05,
+    },
+)
+TIME_S = np.array([0.0, 0.1, 0.3, 0.4])
+
+
+def friction_by_hand(time_s, speed, session_s):
+    """Return friction times bend of a pull and of a release, viscous loss and lost preload."""
+    wrap = 0.125 * (1.0 + 0.1 * time_s + 0.01 * session_s) * (math.pi + 0.3 * time_s)
+    raised = 1.0 + 0.4 * math.exp(-((speed / 2.0) ** 2))
+    return 1.2 * wrap * raised, 0.8 * wrap * raised, 0.05 * abs(speed), 0.5 * time_s
+
+
+@pytest.mark.parametrize("speed", [0.0, 3.0, -1.0])
+def test_friction_at_a_moment_is_all_that_changes_it(speed):
+    expected = friction_by_hand(4.0, speed, 30.0)
+    assert friction_at(4.0, speed, 30.0, VARYING) == pytest.approx(expected)
+    still = friction_by_hand(4.0, math.inf, 30.0)
+    assert friction_without_speed(4.0, 30.0, VARYING) == pytest.approx((*still[:2], still[3]))
+
+
+def test_the_course_of_a_run_is_what_acts_at_each_sample():
+    x = np.array([0.0, 0.2, 0.9, 0.8])
+    ends = ends_of(VARYING, Drive(x, time_s=TIME_S, session_s=30.0))
+    assert ends.boundary == Boundary(DISPLACEMENT, SPRING)
+    np.testing.assert_array_equal(ends.drive, x)
+    np.testing.assert_array_equal(ends.course[1], 0.0)
+    moments = zip(TIME_S, np.gradient(x, TIME_S), strict=True)
+    expected = [friction_by_hand(t, v, 30.0) for t, v in moments]
+    np.testing.assert_allclose(ends.course[2:6].T, expected)
+    np.testing.assert_allclose(ends.course[6], [math.inf, 0.1, 0.2, 0.1])
+    assert ends.direction.tolist() == [0.0, 1.0, 1.0, -1.0]
+    by_force = ends_of(VARYING, Drive(x + 25.0, "force", time_s=TIME_S))  # its speed is not known
+    np.testing.assert_allclose(by_force.course[2:6, 2], friction_by_hand(0.3, 0.0, 0.0))
+    slowly = ends_of(VARYING, Drive(x))
+    np.testing.assert_allclose(slowly.course[2:6].T, [friction_by_hand(0.0, 0.0, 0.0)] * 4)
+    assert slowly.course[6].tolist() == [math.inf] * 4
+    alone = ends_of(VARYING, Drive(x[:1], time_s=TIME_S[:1]))
+    assert alone.course[6].tolist() == [math.inf]
+
+
+@pytest.mark.parametrize(
+    ("load", "expected"),
+    [
+        ("spring", (SPRING, [0.0, 0.0])),
+        ("force", (FORCE, [26.0, 27.0])),
+        ("displacement", (DISPLACEMENT, [33.0, 34.0])),
+    ],
+)
+@pytest.mark.parametrize(
+    ("kind", "drive"), [("displacement", (DISPLACEMENT, [7.0, 8.0])), ("force", (FORCE, [10, 11]))]
+)
+def test_what_is_given_at_the_ends_is_read_with_the_zeros(kind, drive, load, expected):
+    """Both places count from their zeros, no force does."""
+    given = Drive(np.array([10.0, 11.0]), kind, load, np.array([26.0, 27.0]))
+    ends = ends_of(RIG, given)
+    assert ends.boundary == Boundary(drive[0], expected[0])
+    assert ends.course[:2].tolist() == [drive[1], expected[1]]
+
+
+def test_the_drives_end_goes_through_the_play_from_where_it_was():
+    loose = with_values(GROUP_A, {"backlash.play_mm": 0.4})
+    drive = Drive(np.array([1.0, 1.5, 1.5, 1.2, 0.9]))
+    assert ends_of(loose, drive).drive.tolist() == pytest.approx([1.0, 1.3, 1.3, 1.3, 1.1])
+    again = ends_of(loose, drive, (1.1, -1.0))
+    assert again.drive.tolist() == pytest.approx([1.1, 1.3, 1.3, 1.3, 1.1])
+    assert again.direction.tolist() == [-1.0, 1.0, 1.0, 1.0, -1.0]
+    wave = {"drive_ripple.sine_mm": 0.1, "drive_ripple.cosine_mm": 0.2, "drive_ripple.period_mm": 4}
+    uneven = ends_of(with_values(GROUP_A, wave), Drive(np.array([1.0, 2.0])))
+    assert uneven.drive.tolist() == pytest.approx([1.0 + 0.1 - 0.2, 2.0 - 0.4])
+
+
+def test_the_direction_is_that_of_the_last_motion():
+    x = np.array([1.0, 1.0, 2.0, 2.0, 1.5, 1.5])
+    assert last_direction(x).tolist() == [0.0, 0.0, 1.0, 1.0, -1.0, -1.0]
+    assert last_direction(x, -1.0).tolist() == [-1.0, -1.0, 1.0, 1.0, -1.0, -1.0]
+
+
+def test_positions_before_a_run_are_passed_at_no_known_speed():
+    ends = ends_of(VARYING, Drive(np.array([0.5, 0.7, 0.4, 0.6]), time_s=TIME_S))
+    later = ends.after([9.0, 8.0])
+    assert later.drive.tolist() == [9.0, 8.0, 0.5, 0.7, 0.4, 0.6]
+    np.testing.assert_array_equal(later.course[1:, 2:], ends.course[1:])
+    for k in range(2):
+        np.testing.assert_array_equal(later.course[1:6, k], ends.course[1:6, 0])
+    assert later.course[6, :3].tolist() == [math.inf] * 3
+    assert later.direction.tolist() == [0.0, 0.0, 0.0, 1.0, -1.0, 1.0]
+    assert later.boundary == ends.boundary
+    first = ends.first()
+    np.testing.assert_array_equal(first.course, ends.course[:, :1])
+    assert first.direction.tolist() == [0.0]
+
+
+MOTION = np.array([0.5, 1.0, 0.7, 0.7, 0.9])
+
+
+@pytest.mark.parametrize(("friction", "stiffness"), [(2.0, 4.0), (0.0, 4.0), (2.0, 0.0)])
+@pytest.mark.parametrize("on_mesh", [False, True])
+def test_the_sensor_at_the_drive_feels_what_is_beside_the_tendon(friction, stiffness, on_mesh):
+    beside = {
+        "drive_friction.friction_N": friction,
+        "proximal_spring.stiffness_N_per_mm": stiffness,
+    }
+    drive = Drive(MOTION + 3.0)
+    plain = simulate(RIG, drive, on_mesh=on_mesh, nodes=3)
+    answer = simulate(with_values(RIG, beside), drive, on_mesh=on_mesh, nodes=3)
+    directions = np.array([0.0, 1.0, -1.0, -1.0, 1.0])
+    np.testing.assert_allclose(
+        answer.f_in_N - plain.f_in_N, friction * directions + stiffness * MOTION, atol=1e-9
+    )
+    np.testing.assert_allclose(answer.f_out_N, plain.f_out_N)
+    np.testing.assert_array_equal(answer.x_in_mm, MOTION + 3.0)
+
+
+@pytest.mark.parametrize(("load", "read"), [("force", "f_out_N"), ("displacement", "x_out_mm")])
+def test_a_load_that_was_measured_is_read_again(load, read):
+    spring = simulate(RIG, Drive(MOTION + 3.0), on_mesh=True, nodes=3)
+    given = Drive(MOTION + 3.0, load=load, load_values=getattr(spring, read))
+    again = simulate(RIG, given, nodes=3)
+    for name in ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N"):
+        np.testing.assert_allclose(getattr(again, name), getattr(spring, name), atol=1e-6)
+    by_force = simulate(RIG, Drive(spring.f_in_N, "force"), nodes=3)
+    np.testing.assert_allclose(by_force.x_in_mm, spring.x_in_mm, atol=1e-6)
+
+
+def test_who_answers_and_on_what_mesh():
+    """The paper's dynamic chain has 50 lumps."""
+    drive = Drive(MOTION[:2] + 3.0, time_s=TIME_S[:2])
+    assert simulate(RIG, drive).solver == "closed form"
+    assert simulate(RIG, drive, on_mesh=True).solver == "slip chain, 60 nodes"
+    assert simulate(RIG, drive, "static").solver == "lumped dead bands"
+    at_rest = Drive(np.array([3.0, 3.0]), time_s=TIME_S[:2])
+    assert simulate(RIG, at_rest, "lugre").solver.startswith("LuGre chain, 50 lumps, ")
+    for nodes in (2, 1000):
+        assert (
+            simulate(RIG, at_rest, on_mesh=True, nodes=nodes).solver == f"slip chain, {nodes} nodes"
+        )
+    for nodes in (1, 1001):
+        with pytest.raises(ValueError, match=f"{nodes} nodes; expected 2 to 1000"):
+            simulate(RIG, drive, nodes=nodes)
+    with pytest.raises(ValueError, match="times"):
+        simulate(RIG, Drive(MOTION), "lugre")
+
+
+AT_THE_ENDS_ALONE = {  # what the closed form knows, or what is off its path
+    "backlash",
+    "drive_compliance",
+    "drive_friction",
+    "drive_ripple",
+    "free_tendon",
+    "proximal_spring",
+    "sheath_compression",
+}
+
+
+@pytest.mark.parametrize("effect", EFFECTS, ids=[effect.name for effect in EFFECTS])
+def test_where_the_closed_form_holds(effect):
+    """A sensor's fault comes after it, what acts on tendon or load is not in it."""
+    rig = with_values(RIG, {f"{effect.name}.{p.name}": p.start for p in effect.parameters})
+    known = effect.name in AT_THE_ENDS_ALONE or effect.acts_on == "sensor"
+    assert is_closed(rig, Drive(MOTION)) == known
+
+
+def test_where_else_the_closed_form_does_not_hold():
+    assert is_closed(RIG, Drive(MOTION))
+    assert not is_closed(RIG, Drive(MOTION, "force"))
+    assert not is_closed(RIG, Drive(MOTION, load="force", load_values=MOTION))
+    assert not is_closed(RIG._replace(bend_slope=0.1), Drive(MOTION))
+    assert not is_closed(RIG._replace(bend_bow=0.1), Drive(MOTION))
+
+
+@pytest.mark.parametrize("wanted", [38.0, 50.0, 62.0])
+@pytest.mark.parametrize("on_mesh", [False, True])
+def test_the_history_of_a_run_is_chosen_by_its_first_tension(wanted, on_mesh):
+    """At 15 mm between 35 N, let go of, and 62.9 N, pulled; no more than that drive is passed."""
+    drive = Drive(np.array([18.0, 18.1]), start_f_in_N=wanted)
+    answer = simulate(RIG, drive, on_mesh=on_mesh, nodes=3, looked_at=np.array([1]))
+    assert answer.f_in_N.shape == (2,)
+    assert answer.f_in_N[0] == pytest.approx(wanted, abs=1e-6)
+    assert answer.frames.samples.tolist() == [1]
+    assert answer.frames.tension_N[0, 0] == pytest.approx(answer.f_in_N[1])
+
+
+def test_what_is_forgotten_of_a_drive_by_force(monkeypatch):
+    """Let go of, and pulled until it slips as a whole: e^2a times the tension at first."""
+    monkeypatch.setattr(response, "NODES", 3)
+    pull = 25.0 * np.exp(np.linspace(0.0, 1.2, 25))
+    first = forgotten(GROUP_A, Drive(pull, kind="force"))
+    assert first == np.flatnonzero(pull > 25.0 * math.exp(2.0 * A))[0]
+    assert forgotten(GROUP_A, Drive(pull[: first - 1], kind="force")) is None
