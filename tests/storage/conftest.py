@@ -122,6 +122,7 @@ def environment(monkeypatch, tmp_path) -> Iterator[None]:
     monkeypatch.setenv("AWS_CONFIG_FILE", str(tmp_path / "none"))
     monkeypatch.setenv("AWS_SHARED_CREDENTIALS_FILE", str(tmp_path / "none"))
     monkeypatch.setenv("AWS_EC2_METADATA_DISABLED", "true")
+    forget()  # what other tests of this process have opened
     yield
     forget()
 
