@@ -63,7 +63,10 @@ TIMES = """
 SELECT file_name,
     min(TRY_CAST(stats_min_value AS DOUBLE)) FILTER (path_in_schema = $time),
     max(TRY_CAST(stats_max_value AS DOUBLE)) FILTER (path_in_schema = $time),
-    count(*) FILTER (path_in_schema = $time AND TRY_CAST(stats_min_value AS DOUBLE) IS NULL)
+    count(*) FILTER (
+        path_in_schema = $time
+        AND TRY_CAST(stats_min_value AS DOUBLE) + TRY_CAST(stats_max_value AS DOUBLE) IS NULL
+    )
 FROM parquet_metadata($files) GROUP BY file_name
 """
 
