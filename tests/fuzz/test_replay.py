@@ -1,10 +1,8 @@
 """What the search has learned, and every input that once broke a rule, is tried in each run."""
 
-from importlib import import_module
-
 import pytest
 
-from tests.fuzz.__main__ import CORPUS, NAMES
+from tests.fuzz.__main__ import CORPUS, NAMES, target_of
 from tests.fuzz.rules import Watch
 
 FOUND = CORPUS.parent / "found"
@@ -17,7 +15,7 @@ def watch() -> Watch:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_every_kept_input_is_taken_or_refused(name: str, watch: Watch) -> None:
-    target = import_module(f"tests.fuzz.targets.{name}")
+    target = target_of(name)
     kept = [p for folder in (CORPUS, FOUND) for p in sorted((folder / name).glob("*"))]
     inputs = [*target.seeds(), *(path.read_bytes() for path in kept)]
     assert inputs

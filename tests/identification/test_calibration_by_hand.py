@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from tests.counted import Counted
 from tsas_cli.identification import calibration as c
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.missing_effects import Widened
@@ -22,17 +23,6 @@ MANIFEST = Manifest(format=1, name="t", kind="measured", rig={}, run=tuple(r.run
 
 def model_of(value):
     return Model((Estimate("friction_coefficient", value, "1", "fitted"),))
-
-
-class Step:
-    def __init__(self):
-        self.ahead_of, self.done = [], 0
-
-    def ahead(self, count):
-        self.ahead_of.append(count)
-
-    def __call__(self):
-        self.done += 1
 
 
 @pytest.fixture
@@ -77,7 +67,7 @@ def calibrated(monkeypatch):
         monkeypatch.setattr(c, "tension_transfer", lambda runs, segments: (runs, segments))
         monkeypatch.setattr(c, "with_preload_correction", lambda model, runs: model)
         monkeypatch.setattr(c, "thinned_notes", lambda runs: ["thinned"])
-        step = Step()
+        step = Counted()
         found = c.calibrate(MANIFEST, RUNS, step, dynamics=dynamics, stated=stated)
         return found, log, step
 
@@ -99,7 +89,7 @@ def test_a_model_that_is_right_is_told_as_it_was_fitted(calibrated):
     assert (found.model, found.fitted) == (model_of(1.0), "fitted")
     assert list(found.cannot_tell) == ["thinned", "untold"]
     assert set(log) == {"base"}
-    assert (step.ahead_of, step.done) == ([3], 3)
+    assert (step.total, step.done) == (3, 3)
 
 
 def test_it_starts_from_the_model_that_is_stated_or_else_the_data_sheet(calibrated):

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from tests.counted import Counted
 from tests.physics.references import TABLE_1
 from tsas_cli.identification import dynamic_fit as d
 from tsas_cli.identification.estimate import Estimate
@@ -16,17 +17,6 @@ from tsas_cli.recordings.manifest import Run
 
 RUN = SimpleNamespace(run=Run(id="a", file="a.parquet", sha256="0" * 64))
 NOMINAL = Model((Estimate("friction_coefficient", 0.1, "1", "fitted", None, 0.01, 0.08, 0.12),))
-
-
-class Step:
-    def __init__(self):
-        self.ahead_of, self.done = [], 0
-
-    def ahead(self, count):
-        self.ahead_of.append(count)
-
-    def __call__(self):
-        self.done += 1
 
 
 def test_what_is_looked_at():
@@ -67,13 +57,13 @@ def test_a_fit_is_of_the_dynamic_model_with_what_is_freed(monkeypatch, fitted):
             return "model", fitted, ["said"]
 
     monkeypatch.setattr(d, "JointFit", JointFit)
-    step = Step()
+    step = Counted()
     found = d._solved("start", "kept", ["run"], (d.VISCOUS,), step)
     assert asked == {
         "start": "start", "kept": "kept", "runs": ["run"], "dynamics": "lugre",
         "further": (d.VISCOUS,),
     }  # fmt: skip
-    assert (step.ahead_of, step.done) == ([1], 1)
+    assert (step.total, step.done) == (1, 1)
     if fitted is None:
         assert found is None
     else:
@@ -101,9 +91,9 @@ def test_looks_are_counted_as_they_are_made():
         (lambda step: d._sizes(Linear(), d.VISCOUS, step), 7),
         (lambda step: d._friction_at_rest(Linear(), step), 17),
     ):
-        step = Step()
+        step = Counted()
         assert len(looks(step)) == count
-        assert (step.ahead_of, step.done) == ([count], count)
+        assert (step.total, step.done) == (count, count)
 
 
 def test_only_names_that_are_told_are_told():
@@ -176,7 +166,7 @@ def steps(monkeypatch):
                 Estimate("preload_N", 1.0, "N", "fitted", ids[0], float(fitted.stderr[0]))
             ],
         )
-        return d.dynamic_fit(NOMINAL, [RUN, "b"], Step()), log
+        return d.dynamic_fit(NOMINAL, [RUN, "b"], Counted()), log
 
     return run
 
