@@ -86,7 +86,7 @@ def test_how_was_held_out_is_said():
     assert found["sentence"].startswith("each of 3 runs is predicted by a fit to the others; 40")
     folds.by_run = False
     assert j._evidence(search)["held_out"] == "stretches"
-    assert j._evidence(search)["sentence"].startswith("with 3 run(s), stretches")
+    assert j._evidence(search)["sentence"].startswith("with 3 runs, stretches")
 
 
 def test_a_cosine_is_never_more_than_one():

@@ -9,6 +9,7 @@ from tests.physics.references import GROUP_A, LOADED_BY_SPRING, wrap_of
 from tsas_cli.physics.branches import from_rest
 from tsas_cli.physics.bristles import Bristles, bristle_damping, tendon_mass
 from tsas_cli.physics.capstan import speed_per_stiffness
+from tsas_cli.physics.chain_mesh import laws_of
 from tsas_cli.physics.chain_state import (
     DISPLACEMENT,
     FORCE,
@@ -37,7 +38,6 @@ from tsas_cli.physics.lugre_state import ROWS as LUGRE_ROWS
 from tsas_cli.physics.lugre_state import T_PAST, Formula, Step
 from tsas_cli.physics.lugre_step import newton
 from tsas_cli.physics.rig import with_values
-from tsas_cli.physics.slip_chain import laws_of
 
 N = 3
 EA, F0 = GROUP_A.tendon_stiffness_N, GROUP_A.preload_N

@@ -16,6 +16,7 @@ from tests.physics.references import (
     wrap_of,
 )
 from tsas_cli.effects.load_spring_nonlinearity import LoadSpringNonlinearity
+from tsas_cli.physics.chain_mesh import laws_of
 from tsas_cli.physics.chain_nodes import is_straight, ratio_passed, set_friction
 from tsas_cli.physics.chain_state import (
     PITCH,
@@ -46,7 +47,6 @@ from tsas_cli.physics.rig import with_values
 from tsas_cli.physics.sensors import reading, true_value
 from tsas_cli.physics.slip_chain import (
     between,
-    laws_of,
     phase_of,
     rest_after,
     resting,

@@ -8,12 +8,13 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from tests.physics.references import GROUP_A
+from tsas_cli.physics.chain_mesh import at_rest, laws_of
 from tsas_cli.physics.chain_state import GIVE, SPRING, Boundary, Moment, T, X
 from tsas_cli.physics.ends import Drive
 from tsas_cli.physics.plant import Actuator, Turntable, step_plant, turned
 from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import with_values
-from tsas_cli.physics.slip_chain import at_rest, laws_of, tension_at_sensor
+from tsas_cli.physics.slip_chain import tension_at_sensor
 
 K = 2.0 * math.pi * 27.1 / (60.0 * 120.0)
 DRIVE = Actuator(K, 52.0, 0.1296 / 27.1**2, 0.007, 0.002, 3000.0)

@@ -25,6 +25,7 @@ from tsas_cli.physics.chain_ends import (
     start_of_drive,
     without_pull,
 )
+from tsas_cli.physics.chain_mesh import at_rest, laws_of
 from tsas_cli.physics.chain_nodes import (
     expect,
     follow_ways,
@@ -62,7 +63,6 @@ from tsas_cli.physics.chain_state import (
     X,
 )
 from tsas_cli.physics.rig import with_values
-from tsas_cli.physics.slip_chain import at_rest, laws_of
 
 N = 3
 LAST = N + 1

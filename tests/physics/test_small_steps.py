@@ -18,6 +18,7 @@ from tests.physics.references import (
     course_of,
     follow,
 )
+from tsas_cli.physics.chain_mesh import at_rest, laws_of, segment_compliances
 from tsas_cli.physics.chain_nodes import set_friction
 from tsas_cli.physics.chain_state import (
     BRISTLE,
@@ -42,14 +43,11 @@ from tsas_cli.physics.chain_step import revise, settle, sweep_to_drive, sweep_to
 from tsas_cli.physics.frames import empty_frames
 from tsas_cli.physics.rig import with_values
 from tsas_cli.physics.slip_chain import (
-    at_rest,
     between,
     hang_slack,
-    laws_of,
     phase_of,
     rest_after,
     resting,
-    segment_compliances,
     slip_chain,
     tension_at_sensor,
 )

@@ -7,6 +7,7 @@ import pytest
 
 from tests.physics.references import GROUP_A
 from tsas_cli.effects.drive_ripple import DriveRipple
+from tsas_cli.physics.chain_mesh import at_rest, laws_of, segment_compliances
 from tsas_cli.physics.chain_state import SLIP, T, X
 from tsas_cli.physics.plant import (
     Actuator,
@@ -22,7 +23,7 @@ from tsas_cli.physics.plant import (
     turned,
 )
 from tsas_cli.physics.rig import with_values
-from tsas_cli.physics.slip_chain import at_rest, laws_of, moment, segment_compliances
+from tsas_cli.physics.slip_chain import moment
 
 F0, H = 25.0, 0.01
 ACTUATOR = Actuator(0.024, 150.0, 6e-3, 0.4, 0.02, 3000.0)

@@ -84,7 +84,9 @@ def entry_of(connection: DuckDBPyConnection, folder: Path, file: str) -> dict[st
 def _manifest(connection: DuckDBPyConnection, folder: Path) -> dict[str, Any]:
     manifest = read_manifest(folder)
     problems: list[str] = []
-    durations = _durations_s(connection, _inside(folder, manifest.run))
+    paths = [folder / run.file for run in manifest.run]
+    readable = [path for path in paths if path.exists() and _refusal(folder, path) is None]
+    durations = _durations_s(connection, readable)
     return {
         "sha256": sha256_of(folder / MANIFEST),
         "dataset": manifest.name,
@@ -117,10 +119,9 @@ def _run(
 def _footer(folder: Path, run: Run, durations: Mapping[Path, float | None]) -> dict[str, Any]:
     """Return what the end of a run's Parquet file says of it; no sample is read."""
     path = folder / run.file
-    if not path.resolve().is_relative_to(folder.resolve()):
-        raise OSError("a link leads out of the dataset's folder")
-    if path.exists() and not path.is_file():
-        raise OSError("is no file")  # a pipe would be waited for
+    refusal = _refusal(folder, path)
+    if refusal is not None:
+        raise OSError(refusal)
     footer = pq.read_metadata(path)
     names = footer.schema.names
     if path not in durations and footer.num_row_groups:
@@ -135,11 +136,13 @@ def _footer(folder: Path, run: Run, durations: Mapping[Path, float | None]) -> d
     }
 
 
-def _inside(folder: Path, runs: Sequence[Run]) -> list[Path]:
-    """Return the files of runs that are in the dataset's folder."""
-    whole = folder.resolve()
-    paths = [folder / run.file for run in runs]
-    return [p for p in paths if p.is_file() and p.resolve().is_relative_to(whole)]
+def _refusal(folder: Path, path: Path) -> str | None:
+    """Return why a run's file is not read, whether it exists or not; None where it may be."""
+    if not path.resolve().is_relative_to(folder.resolve()):
+        return "a link leads out of the dataset's folder"
+    if path.exists() and not path.is_file():
+        return "is no file"  # a pipe would be waited for
+    return None
 
 
 def _durations_s(connection: DuckDBPyConnection, paths: Sequence[Path]) -> dict[Path, float | None]:

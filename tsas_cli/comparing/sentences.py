@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from tsas_cli.comparing.compare import Comparison
 from tsas_cli.comparing.values import FALSE_CLAIMS, Pair, rounded
 from tsas_cli.identification.prepared import CHANNELS
+from tsas_cli.wording import count_of
 
 SHOWN = 4  # names that are listed
 
@@ -71,7 +72,7 @@ def _errors(it: Comparison) -> Iterator[str]:
         if ratios:
             low, high = (f"{end(ratios):.3g}" for end in (min, max))
             span = low if low == high else f"{low} to {high}"
-            runs = "1 run" if len(ratios) == 1 else f"{len(ratios)} runs"
+            runs = count_of(len(ratios), "run")
             yield f"In {channel} the RMSE of B is {span} times that of A ({runs})."
 
 

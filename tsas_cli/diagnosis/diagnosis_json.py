@@ -12,6 +12,7 @@ from tsas_cli.diagnosis.search import Search
 from tsas_cli.effects import EFFECTS
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.steps import SILENT, Steps
+from tsas_cli.wording import count_of
 
 Floats = npt.NDArray[np.float64]
 
@@ -129,7 +130,7 @@ def _evidence(search: Search) -> dict[str, Any]:
     if folds.by_run:
         how = f"each of {runs} runs is predicted by a fit to the others"
     else:
-        how = f"with {runs} run(s), stretches are predicted by a fit to the rest"
+        how = f"with {count_of(runs, 'run')}, stretches are predicted by a fit to the rest"
     return {
         "held_out": "runs" if folds.by_run else "stretches",
         "blocks": folds.blocks,

@@ -13,6 +13,7 @@ the speeds of the one before.
 import numpy as np
 
 from tsas_cli.numerics.compiled import kernel
+from tsas_cli.physics.chain_mesh import at_rest, laws_of
 from tsas_cli.physics.chain_state import (
     DISPLACEMENT,
     PITCH,
@@ -26,7 +27,7 @@ from tsas_cli.physics.chain_state import (
     X,
 )
 from tsas_cli.physics.rig import Rig
-from tsas_cli.physics.slip_chain import advance, at_rest, laws_of, tension_at_sensor
+from tsas_cli.physics.slip_chain import advance, tension_at_sensor
 
 EXACT_N = 1e-7  # of the wanted force
 MOST_TRIALS = 200  # of places of the tendon's end for one sample

@@ -4,6 +4,7 @@ import math
 
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.bristles import Bristle, bristle_damping, tendon_mass
+from tsas_cli.physics.chain_mesh import segment_compliances
 from tsas_cli.physics.chain_state import PITCH, Boundary
 from tsas_cli.physics.lugre_balance import balance, set_limits
 from tsas_cli.physics.lugre_ends import Ends, ends_after
@@ -29,7 +30,6 @@ from tsas_cli.physics.lugre_state import (
 )
 from tsas_cli.physics.lugre_step import formula_of
 from tsas_cli.physics.rig import Rig
-from tsas_cli.physics.slip_chain import segment_compliances
 
 NO_TIME_S = 1e-13  # step of the balance at rest
 

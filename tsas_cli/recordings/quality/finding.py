@@ -24,11 +24,6 @@ class Remark:
     first_s: float | None = None
 
 
-def counted(number: int, noun: str) -> str:
-    """Return a number with its noun, in the plural where it is not one."""
-    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
-
-
 @dataclass(frozen=True)
 class CannotTell:
     """Why a check does not apply; this is not the same as passed."""

@@ -14,6 +14,7 @@ from tsas_cli.stage_files.check import Check
 from tsas_cli.stage_files.closing import Closing
 from tsas_cli.stage_files.simulation import Simulation
 from tsas_cli.stage_files.tracking import Tracking
+from tsas_cli.wording import count_of
 
 
 def sentences(inputs: Inputs) -> Iterator[str]:
@@ -26,7 +27,7 @@ def sentences(inputs: Inputs) -> Iterator[str]:
 
 
 def _of_dataset(inputs: Inputs, manifest: Manifest) -> Iterator[str]:
-    many = "1 recording" if len(manifest.run) == 1 else f"{len(manifest.run)} recordings"
+    many = count_of(len(manifest.run), "recording")
     yield f"{manifest.name} holds {many}, {manifest.kind}."
     if tracking := inputs.get(Tracking):
         yield from best_and_worst(tracking)

@@ -10,9 +10,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark, counted
+from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
 from tsas_cli.recordings.quality.samples import plateaus
 from tsas_cli.recordings.quality.trial import Trial
+from tsas_cli.wording import count_of
 
 _FEWEST_ROWS = 5
 _PASSED = 0.05
@@ -43,7 +44,7 @@ def _look(trial: Trial, name: str, end: str, sign: int) -> Iterator[Remark]:
         yield Remark(
             "error",
             f"{name} stays at its {end} value {extreme:.6g} for {seconds:.3g} s in "
-            f"{counted(len(flat), 'plateau')} while the motion goes on",
+            f"{count_of(len(flat), 'plateau')} while the motion goes on",
             "raise the sensor's range or lower its gain, check for a stop, and record again",
             name,
             float(trial.time_s[flat[0].start]),

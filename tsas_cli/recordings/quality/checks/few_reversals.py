@@ -6,8 +6,9 @@ once, and nothing says whether it repeats.
 
 from collections.abc import Iterator
 
-from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark, counted
+from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
 from tsas_cli.recordings.quality.trial import Trial
+from tsas_cli.wording import count_of
 
 _ENOUGH = 3
 
@@ -17,7 +18,7 @@ def find(trial: Trial) -> Iterator[Remark | CannotTell]:
     turns = max(len(trial.strokes) - 1, 0)
     if turns >= _ENOUGH:
         return
-    moves = f"turns back {counted(turns, 'time')}"
+    moves = f"turns back {count_of(turns, 'time')}"
     yield Remark(
         "warning",
         f"x_in_mm {moves if trial.strokes else 'does not move visibly'}; two full cycles have "

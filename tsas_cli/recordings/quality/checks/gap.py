@@ -9,9 +9,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from tsas_cli.recordings.columns import TIME
-from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark, counted
+from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
 from tsas_cli.recordings.quality.samples import Booleans
 from tsas_cli.recordings.quality.trial import Trial
+from tsas_cli.wording import count_of
 
 _COMMON = 0.05  # long intervals that are as frequent as this are jitter
 _REMEDY = "look for lost samples at the source; the stages leave the gap out"
@@ -38,7 +39,7 @@ def _missing_rows(trial: Trial) -> Iterator[Remark]:
         longest = gaps[np.argmax(interval[gaps])]
         yield Remark(
             "warning",
-            f"rows are missing at {counted(gaps.size, 'place')}; the longest gap is "
+            f"rows are missing at {count_of(gaps.size, 'place')}; the longest gap is "
             f"{interval[longest]:.4g} s at {trial.time_s[longest]:.6g} s "
             f"(the sample interval is {1e3 * median:.4g} ms)",
             _REMEDY,
@@ -56,7 +57,7 @@ def _empty_cells(trial: Trial, name: str, empty: Booleans) -> Remark:
     return Remark(
         "warning",
         f"{name} is empty in {int(empty.sum())} of {empty.size} rows, at "
-        f"{counted(starts.size, 'place')}; the longest has {lengths[longest]} rows "
+        f"{count_of(starts.size, 'place')}; the longest has {lengths[longest]} rows "
         f"at {trial.time_s[starts[longest]]:.6g} s",
         _REMEDY,
         name,
