@@ -75,9 +75,7 @@ def main() -> None:
         foreign.here_too = True
     faults, watch = Faults(Path(found)), Watch()
     one = guarded(target, faults, watch)
-    for seed in target.seeds():  # what is loaded and compiled at the first use is written then
-        with suppress(Exception):  # it is tried again below
-            target.one(seed)
+    warm_up(target)
     _limit_memory()
     more: dict[str, Any] = {}
     if hasattr(target, "mutate"):
@@ -85,6 +83,13 @@ def main() -> None:
     again = shlex.join([sys.executable, "-m", "tests.fuzz.child", name, found])  # for merging
     atheris.Setup([again, *arguments], one, **more)
     atheris.Fuzz()
+
+
+def warm_up(target: ModuleType) -> None:
+    """Try the seeds: what is loaded and compiled at the first use is written then."""
+    for seed in target.seeds():
+        with suppress(Exception):  # a search tries it again
+            target.one(seed)
 
 
 def _compiled() -> list[str]:

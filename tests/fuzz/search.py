@@ -7,20 +7,17 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from types import ModuleType
 
-MOST_DEATHS = 5  # of processes, after which a target is given up
+MOST_DEATHS = 5  # of processes by the program, after which a target is given up
 MOST_BYTES = 2000  # of an input, where a target says nothing else
 HANG_S = 10
+ALONE_S = 3 * HANG_S  # with the start of a process and the seeds
 LOG = "log.txt"
-_ONCE = """
-import sys
-from importlib import import_module
-import_module(sys.argv[1]).one(open(sys.argv[2], "rb").read())
-"""
 MEMORY = Path("/dev/shm")  # noqa: S108 # files that never reach a disk, where there are such
 MOST_KEPT, MOST_KEPT_BYTES = 60, 16_000  # of a target's corpus
 
@@ -72,13 +69,10 @@ def search(module: ModuleType, budget: Budget, corpus: Path, out: Path) -> Found
         f"-dict={words}",
     ]
     folders = [learned, *([corpus / name] if (corpus / name).is_dir() else [])]
-    started, left, executions, log = time.monotonic(), budget, 0, ""
-    for death in range(MOST_DEATHS):
+    started, left, executions, log, deaths = time.monotonic(), budget, 0, "", 0
+    while deaths < MOST_DEATHS:
         log = _child(target, found, [*options, *_of(left), *map(str, folders)])
-        for path in found.glob("crash-*"):
-            # A library that the program reads with in a process apart ends the search alone.
-            if _run([sys.executable, "-c", _ONCE, target, str(path)]).returncode == 0:
-                path.unlink()
+        deaths += not _forgotten(target, found)
         done = _last(r"stat::number_of_executed_units:\s*(\d+)", log)
         executions += done
         used = time.monotonic() - started
@@ -86,7 +80,7 @@ def search(module: ModuleType, budget: Budget, corpus: Path, out: Path) -> Found
             budget,
             runs=-1 if budget.runs < 0 else budget.runs - executions,
             seconds=0 if not budget.seconds else max(int(budget.seconds - used), 1),
-            seed=budget.seed + death + 1,
+            seed=left.seed + 1,
         )
         over = (budget.runs >= 0 and left.runs <= 0) or (budget.seconds and left.seconds <= 1)
         if "Done " in log or over or not done:
@@ -121,6 +115,25 @@ def keep(target: str, corpus: Path, out: Path) -> None:
             shutil.copyfile(path, kept / path.name[:16])
 
 
+def _forgotten(target: str, found: Path) -> bool:
+    """Forget what does not happen in a process of its own; say whether there was any such fault.
+
+    A library that the program reads with in a process apart crashes in that of the search, or is
+    left in disorder there by a file before.
+    """
+    forgotten = False
+    for path in [path for path in found.iterdir() if path.suffix != ".txt"]:
+        here_too = not path.name.startswith(("crash-", "timeout-", "slow-unit-"))
+        call = [sys.executable, "-m", "tests.fuzz.once", target, str(path)]
+        with suppress(subprocess.TimeoutExpired):
+            if _run([*call, "here-too"] if here_too else call, ALONE_S).returncode != 0:
+                continue
+            path.unlink()
+            path.with_name(f"{path.name}.txt").unlink(missing_ok=True)
+            forgotten = True
+    return forgotten
+
+
 def _of(budget: Budget) -> Iterable[str]:
     yield f"-seed={budget.seed}"
     if budget.runs >= 0:
@@ -139,7 +152,7 @@ def _child(target: str, found: Path, arguments: Iterable[str]) -> str:
     return done.stdout
 
 
-def _run(call: Sequence[str]) -> subprocess.CompletedProcess[str]:
+def _run(call: Sequence[str], seconds: float | None = None) -> subprocess.CompletedProcess[str]:
     with TemporaryDirectory(prefix="tsas-fuzz-", dir=MEMORY if MEMORY.is_dir() else None) as folder:
         return subprocess.run(
             call,
@@ -149,6 +162,7 @@ def _run(call: Sequence[str]) -> subprocess.CompletedProcess[str]:
             text=True,
             errors="replace",
             check=False,
+            timeout=seconds,
         )
 
 

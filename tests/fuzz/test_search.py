@@ -42,6 +42,18 @@ def test_a_death_of_the_process_is_found(tmp_path, monkeypatch):
     assert b"DEAD" in {path.read_bytes()[:4] for path in found.faults}
 
 
+def test_what_a_library_does_to_the_search_alone_is_no_fault(tmp_path, monkeypatch, capfd):
+    pytest.importorskip("atheris")
+    monkeypatch.setattr("tests.fuzz.search.MOST_DEATHS", 1)
+    monkeypatch.setattr(faulty, "WORDS", (b"DIES", b"ODD!"))
+    found = search(faulty, Budget(1000, 0, 1), tmp_path / "corpus", tmp_path / "out")
+    told = capfd.readouterr().err
+    assert "the process died" in told
+    assert "FAULT KeyError faulty.py" in told
+    assert found.executions >= 1000
+    assert {path.read_bytes()[:4] for path in found.faults} <= {b"R", b"W"}
+
+
 def test_a_refusal_is_an_answer_and_a_defect_is_none():
     def refuse():
         raise InputError("no \x1b[31m")
