@@ -75,6 +75,7 @@ def run_of(*, sd=0.1, unseen=0.0, load_sd=None):
 def model(monkeypatch):
     made = Model()
     monkeypatch.setattr(r, "simulate", made)
+    monkeypatch.setattr(r, "is_closed", lambda rig, drive: False)
     monkeypatch.setattr(r, "points", lambda run: EVERY)
     monkeypatch.setattr(r, "_before_turns", lambda square, change, conditioned: None)
     return made
@@ -218,6 +219,28 @@ def test_between_samples_that_are_simulated_answers_are_straight(monkeypatch, mo
     assert drive.values.tolist() == [0.0, 4.0, 0.0]
     assert drive.load_values.tolist() == [0.0, 8.0, 0.0]
     assert drive.time_s == pytest.approx([0.0, 0.4, 1.0])
+
+
+def test_the_closed_form_answers_at_every_sample(monkeypatch, model):
+    """It costs next to nothing; a chain, which somebody asks for, follows some."""
+    monkeypatch.setattr(r, "points", lambda run: np.array([0, 4, 10]))
+    monkeypatch.setattr(r, "is_closed", lambda rig, drive: rig == 3.0)
+    found = errors_of(run_of())
+    assert sizes(model) == {N}
+    assert found.answers(3.0)["f_in_N"].tolist() == (3.0 * X).tolist()
+    assert found.answers(2.0)["f_in_N"][:5].tolist() == [0.0, 2.0, 4.0, 6.0, 8.0]
+    assert sizes(model) == {3}
+    found.meshed(12).answers(3.0)
+    assert sizes(model) == {3}
+    errors_of(run_of(), dynamics="lugre").answers(3.0)
+    assert sizes(model) == {3}
+
+
+def sizes(model):
+    """Return of how many samples the runs were that the model has been asked for since."""
+    found = {drive.values.size for _, drive, _, _ in model.asked}
+    model.asked.clear()
+    return found
 
 
 @pytest.mark.parametrize(

@@ -22,7 +22,7 @@ from tsas_cli.numerics.covariance import FEWEST_BLOCKS, block_length
 from tsas_cli.numerics.turning_points import last_beyond
 from tsas_cli.physics.ends import Drive
 from tsas_cli.physics.lugre_chain import OWN_STEPS
-from tsas_cli.physics.response import Dynamics, Response, simulate
+from tsas_cli.physics.response import Dynamics, Response, is_closed, simulate
 from tsas_cli.physics.rig import Rig
 
 Floats = npt.NDArray[np.float64]
@@ -50,7 +50,7 @@ class RunErrors:
         """Take the samples of each channel that count, the rig that gives weights, the model."""
         self.run = run
         self.samples = samples
-        self.points = points(run)
+        self.points = points(run)  # that a chain follows
         # The fit leaves out what the start still shows in: it may begin at rest.
         self.drive = replace(run.drive, start_f_in_N=None)
         self.dynamics: Dynamics = dynamics
@@ -205,8 +205,9 @@ class RunErrors:
         return self._at_samples(self._response(rig, drive, OWN_STEPS))
 
     def _response(self, rig: Rig, drive: Drive, step_ends_s: Floats) -> Response:
-        """Simulate the samples that are followed."""
-        at = self.points
+        """Simulate all samples by the closed form, those that are followed by a chain."""
+        closed = self.nodes is None and self.dynamics == "slip" and is_closed(rig, drive)
+        at = slice(None) if closed else self.points
         load = None if drive.load_values is None else drive.load_values[at]
         time_s = None if drive.time_s is None else drive.time_s[at]
         thinned = replace(drive, values=drive.values[at], load_values=load, time_s=time_s)
@@ -222,12 +223,15 @@ class RunErrors:
 
     def _at_samples(self, response: Response) -> dict[str, Floats]:
         """Return the answers at all samples, straight between those simulated."""
-        samples = np.arange(self.drive.values.size)
-        return {
-            "f_in_N": np.interp(samples, self.points, response.f_in_N),
-            "f_out_N": np.interp(samples, self.points, response.f_out_N),
-            "x_out_mm": np.interp(samples, self.points, response.x_out_mm),
+        there = {
+            "f_in_N": response.f_in_N,
+            "f_out_N": response.f_out_N,
+            "x_out_mm": response.x_out_mm,
         }
+        n = self.drive.values.size
+        if response.f_in_N.size == n:
+            return there
+        return {name: np.interp(np.arange(n), self.points, each) for name, each in there.items()}
 
 
 def blocks_of(runs: Sequence[RunErrors], rigs: Sequence[Rig]) -> list[Indices]:

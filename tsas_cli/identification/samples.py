@@ -1,4 +1,4 @@
-"""Which samples of a run enter the joint fit, which are simulated for it, and what is left out."""
+"""Which samples of a run enter the joint fit, which a chain follows for it, what is left out."""
 
 from collections.abc import Mapping
 
@@ -13,8 +13,8 @@ Indices = npt.NDArray[np.int64]
 
 MOST_MEANS = 1000  # means of neighbouring residuals that enter the fit, for a channel of a run
 FEWEST_SAMPLES = 16  # of a channel, after the start of a run
-OF_A_STROKE = 100  # samples that are simulated, at least
-SHARP = 4  # strides after a reversal in which every sample is simulated
+OF_A_STROKE = 100  # samples that a chain follows, at least
+SHARP = 4  # strides after a reversal in which it follows every sample
 
 
 def mean_edges(size: int) -> Indices:
@@ -23,7 +23,7 @@ def mean_edges(size: int) -> Indices:
 
 
 def points(run: Prepared) -> Indices:
-    """Return the samples that are simulated: those of a stroke, and all after a reversal.
+    """Return the samples that a chain follows: some of a stroke, and all after a reversal.
 
     They are four times as many as means, or more where it takes more to see each stroke bend.
 
