@@ -116,14 +116,14 @@ def points(n, reversals):
     return s.points(run)
 
 
-def test_many_strokes_have_a_hundred_samples_each():
-    """12,000 samples are thinned to 4,000, by three; with 60 strokes to 6,000, by two."""
+def test_many_strokes_have_three_hundred_samples_each():
+    """12,000 samples are thinned to 4,000, by three; with 20 strokes to 6,000, by two."""
     few = points(12_000, [0, 6_001, 11_999])
     assert set(np.diff(few[20:1_000])) == {3}
-    many = points(12_000, np.linspace(0, 11_999, 61).astype(int))
+    many = points(12_000, np.linspace(0, 11_999, 21).astype(int))
     assert {1, 2} == set(np.diff(many))
-    assert 12_000 / 2 < many.size < 12_000 / 2 + 60 * 4 + 2
-    fewer = points(11_999, np.linspace(0, 11_998, 61).astype(int))
+    assert 12_000 / 2 < many.size < 12_000 / 2 + 20 * 4 + 2
+    fewer = points(11_999, np.linspace(0, 11_998, 21).astype(int))
     assert fewer.tolist() == list(range(11_999))
 
 

@@ -13,7 +13,7 @@ Indices = npt.NDArray[np.int64]
 
 MOST_MEANS = 1000  # means of neighbouring residuals that enter the fit, for a channel of a run
 FEWEST_SAMPLES = 16  # of a channel, after the start of a run
-OF_A_STROKE = 100  # samples that a chain follows, at least
+OF_A_STROKE = 300  # samples that a chain follows, at least
 SHARP = 4  # strides after a reversal in which it follows every sample
 
 
