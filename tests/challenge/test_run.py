@@ -54,3 +54,13 @@ def test_a_case_has_one_thread_for_linear_algebra(tmp_path, monkeypatch):
     log = run_cases(sealed, tmp_path / "entry", workers=1, diagnose=tool)
     assert log["no_answer"] == {"threads": "RuntimeError: 1 threads"}
     assert log["tool"] == "tool"
+
+
+def test_a_file_where_it_is_called_is_no_module(tmp_path, monkeypatch):
+    """A folder of recordings may hold a re.py or a signal.py of somebody's own."""
+    sealed = write_set(tmp_path / "set", {"well": case()})
+    for name in ("re", "signal", "json"):
+        (tmp_path / f"{name}.py").write_text("raise SystemExit('taken for a module')")
+    monkeypatch.chdir(tmp_path)
+    log = run_cases(sealed, tmp_path / "entry", workers=1, diagnose=tool)
+    assert log["no_answer"] == {}

@@ -21,7 +21,8 @@ from tsas_cli.recordings.dataset import read_dataset
 
 Diagnose = Callable[[Path, Path], None]
 
-ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", THREADS: "1"}  # a case is one process
+# A case is one process on one core, and a file in the folder that it starts in is no module.
+SURROUNDINGS = {"OPENBLAS_NUM_THREADS": "1", THREADS: "1", "PYTHONSAFEPATH": "1"}
 
 
 def diagnose(dataset: Path, out: Path) -> None:
@@ -76,7 +77,7 @@ def run_cases(
         The set has no cases, or `out` exists and `force` is not set.
     """
     folders = case_folders(sealed)
-    for name, value in ONE_THREAD.items():
+    for name, value in SURROUNDINGS.items():
         os.environ.setdefault(name, value)  # the new processes take it over
     reasons: dict[str, str] = {}
     with new_folder(out, force=force) as entry, ThreadPoolExecutor(workers) as threads:
