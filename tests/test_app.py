@@ -1,3 +1,4 @@
+import errno
 import json
 import os
 import subprocess
@@ -142,6 +143,51 @@ def test_a_reader_that_goes_away_is_no_error() -> None:
     result = subprocess.run(call, stdout=writer, stderr=subprocess.PIPE, check=False)
     os.close(writer)
     assert (result.returncode, result.stderr) == (0, b"")
+
+
+@pytest.mark.parametrize("closed", ["2>&-", ">&-", "<&- >&- 2>&-"])
+def test_a_closed_stream_loses_what_is_printed_and_nothing_else(tmp_path: Path, closed) -> None:
+    out = tmp_path / "map.toml"
+    (tmp_path / "a.csv").write_text("time [s],x [mm]\n0,1\n0.1,2\n0.2,3\n0.3,4\n")
+    call = f'"{sys.executable}" -m tsas_cli ingest a.csv --guess --out map.toml {closed}'
+    done = subprocess.run(["sh", "-c", call], cwd=tmp_path, check=False)  # noqa: S607
+    assert done.returncode == 0
+    assert "[columns.x_in_mm]" in out.read_text(encoding="utf-8")
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is full")
+def test_no_room_for_what_is_printed_is_one_line() -> None:
+    call = [sys.executable, "-m", "tsas_cli", "effects"]
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(call, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+    assert done.returncode == 2
+    assert done.stderr.count("\n") == 1
+    assert "the system refuses it (No space left on device)" in done.stderr
+
+
+def test_no_more_open_files_is_no_defect(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    fail_with(OSError(errno.EMFILE, os.strerror(errno.EMFILE), "a.parquet"), monkeypatch)
+    with pytest.raises(SystemExit) as stopped:
+        tsas_cli.app.main()
+    assert stopped.value.code == 2
+    assert capsys.readouterr().err.startswith("tsas: a.parquet: the system refuses it (Too many")
+
+
+def test_a_stop_while_the_program_is_loaded_is_quiet() -> None:
+    program = """
+import sys
+class Stop:
+    def find_spec(self, name, *more):
+        if name == "tsas_cli.app":
+            raise KeyboardInterrupt
+sys.meta_path.insert(0, Stop())
+from tsas_cli.__main__ import main
+main()
+"""
+    done = subprocess.run([sys.executable, "-c", program], stderr=subprocess.PIPE, check=False)
+    assert (done.returncode, done.stderr) == (130, b"")
 
 
 def test_a_stop_beside_the_command_is_an_exit_code_too(

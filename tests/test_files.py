@@ -1,4 +1,5 @@
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -8,7 +9,16 @@ import numpy as np
 import pytest
 
 from tsas_cli.errors import InputError
-from tsas_cli.files import json_text, new_file, new_folder, read_json, sha256_of, write_json
+from tsas_cli.files import (
+    json_text,
+    new_file,
+    new_folder,
+    read_json,
+    sha256_of,
+    write_json,
+    write_sums,
+)
+from tsas_cli.replacing import refuse_input
 
 
 def names(folder: Path) -> list[str]:
@@ -61,9 +71,11 @@ def test_force_replaces_an_output_and_keeps_nothing_of_the_old_one(tmp_path: Pat
     out = tmp_path / "out"
     make_old(out)
     (out / "left").write_text("old")
+    (out / ".DS_Store").write_text("of a desktop")
+    write_sums(out)
     with new_folder(out, force=True) as folder:
         (folder / "result").write_text("new")
-        assert names(out) == ["left", "result"]
+        assert names(out) == [".DS_Store", "SHA256SUMS", "left", "result"]
     assert names(out) == ["result"]
     assert (out / "result").read_text() == "new"
     assert names(tmp_path) == ["out"]
@@ -78,11 +90,46 @@ def simulate_into(out: Path) -> None:
 def test_force_never_replaces_recordings_by_what_was_made_of_them(tmp_path: Path) -> None:
     (tmp_path / "dataset" / "runs").mkdir(parents=True)
     (tmp_path / "dataset" / "dataset.toml").write_text("mine")
-    told = r"something else than an earlier output; expected a folder with simulation\.json"
+    told = r"earlier output \(dataset\.toml\); expected a folder with runs, simulation\.json"
     with pytest.raises(InputError, match=told):
         simulate_into(tmp_path / "dataset")
     assert names(tmp_path / "dataset") == ["dataset.toml", "runs"]
     assert names(tmp_path) == ["dataset"]
+
+
+@pytest.mark.parametrize("more", ["notes.txt", "raw", ".git"])
+def test_force_never_deletes_what_no_earlier_output_has_put_there(tmp_path: Path, more) -> None:
+    simulate_into(tmp_path / "out")
+    simulate_into(tmp_path / "out")
+    (tmp_path / "out" / more).mkdir()
+    with pytest.raises(InputError, match=f"earlier output \\({re.escape(more)}\\)"):
+        simulate_into(tmp_path / "out")
+    assert names(tmp_path / "out") == sorted([more, "runs", "simulation.json"])
+
+
+def test_a_device_or_a_pipe_is_never_replaced(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    (tmp_path / "link").symlink_to(os.devnull)
+    for name in ("pipe", "link"):
+        for new in (new_folder, new_file):
+            with pytest.raises(InputError, match="is a device or a pipe"):
+                stack_of(new(tmp_path / name, force=True))
+    assert (tmp_path / "pipe").is_fifo()
+    assert (tmp_path / "link").is_symlink()
+
+
+def stack_of(block) -> None:
+    with block:
+        pytest.fail("the block must not run")
+
+
+def test_what_is_read_is_not_written(tmp_path: Path) -> None:
+    (tmp_path / "a").mkdir()
+    refuse_input(tmp_path / "a", [tmp_path / "b", tmp_path / "a.csv"])
+    (tmp_path / "link").symlink_to(tmp_path / "a")
+    for out in ("a", "link", "a/b.csv"):
+        with pytest.raises(InputError, match="is read, and would be replaced"):
+            refuse_input(tmp_path / out, [tmp_path / "a" / "b.csv"])
 
 
 def test_a_file_is_not_taken_for_a_folder(tmp_path: Path) -> None:

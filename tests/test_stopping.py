@@ -4,7 +4,7 @@ import time
 
 import pytest
 
-from tsas_cli.stopping import cleaned_up_when_stopped, until_stopped
+from tsas_cli.stopping import Stopped, cleaned_up_when_stopped, until_stopped
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
@@ -48,3 +48,19 @@ def test_what_is_ignored_stays_ignored():
         assert signal.getsignal(signal.SIGHUP) is signal.SIG_IGN
     finally:
         signal.signal(signal.SIGHUP, before)
+
+
+def test_a_request_that_a_library_has_lost_can_be_made_again(monkeypatch):
+    monkeypatch.setattr("tsas_cli.stopping.CLEANING_S", 0.1)
+    said = []
+    with until_stopped():
+        try:
+            os.kill(os.getpid(), signal.SIGINT)
+        except Stopped:
+            said.append("lost")  # as a destructor does
+        os.kill(os.getpid(), signal.SIGTERM)  # too soon
+        said.append("goes on")
+        time.sleep(0.2)
+        os.kill(os.getpid(), signal.SIGTERM)
+        said.append("goes on for ever")
+    assert said == ["lost", "goes on"]

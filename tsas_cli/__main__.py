@@ -1,5 +1,17 @@
-"""Run the command line with `python -m tsas_cli`."""
+"""What the command `tsas` calls, and `python -m tsas_cli`."""
 
-from tsas_cli.app import main
+import sys
 
-main()
+
+def main() -> None:
+    """Run the command line; Ctrl-C ends it quietly while it is still being loaded, too."""
+    try:
+        from tsas_cli.app import main as answer
+
+        answer()
+    except KeyboardInterrupt:
+        sys.exit(130)  # as typer has it
+
+
+if __name__ == "__main__":
+    main()

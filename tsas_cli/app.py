@@ -1,8 +1,11 @@
 """The command line: every subcommand, and the one place where an error becomes a line."""
 
+import errno
 import io
 import os
 import sys
+from pathlib import Path
+from typing import TypeGuard
 
 import typer
 from typer.exceptions import TyperException
@@ -34,6 +37,10 @@ from tsas_cli.errors import InputError, printable
 from tsas_cli.stopping import cleaned_up_when_stopped
 
 STOPPED = 130  # as typer has it
+# What the machine refuses: no room, a disk that fails, no more open files.
+REFUSALS = frozenset(
+    {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO, errno.EMFILE, errno.ENFILE}
+)
 
 app = typer.Typer(
     name="tsas",
@@ -86,6 +93,7 @@ def main() -> None:
     """Run the command line; what goes wrong is one line on stderr and an exit code."""
     # Many small matrices: threads inside of each product cost three times what they save.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    _open_what_is_closed()
     _speak_beyond_ascii()
     try:
         with cleaned_up_when_stopped():  # typer makes an exit code of it
@@ -98,7 +106,7 @@ def main() -> None:
     except KeyboardInterrupt:  # between typer's end and ours
         code = STOPPED
     except (BrokenPipeError, SystemExit):  # who read the output is gone; typer exits then
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _forget_output()
         code = 0
     except MemoryError:
         remedy = "use a larger machine, fewer runs at a time (--runs), or shorter recordings"
@@ -108,10 +116,43 @@ def main() -> None:
             raise
         if _was_stopped(error):
             sys.exit(STOPPED)
-        defect = f"{type(error).__name__}: {error}".strip()
-        remedy = "please report it with the output of the same call under TSAS_TRACEBACK=1"
-        code = _stop(f"a defect of tsas itself: {printable(defect)}; {remedy}", 1)
+        code = _refused(error) if _is_refusal(error) else _defect(error)
     sys.exit(code)
+
+
+def _is_refusal(error: Exception) -> TypeGuard[OSError]:
+    return isinstance(error, OSError) and error.errno in REFUSALS
+
+
+def _refused(error: OSError) -> int:
+    """Say what the machine refuses; standard output may be what it refuses to write to."""
+    try:
+        sys.stdout.flush()
+    except OSError:
+        _forget_output()
+    where = f"{error.filename}: " if error.filename else ""
+    remedy = "make room, or allow more, and call again"
+    return _stop(printable(f"{where}the system refuses it ({error.strerror}); {remedy}"), 2)
+
+
+def _defect(error: Exception) -> int:
+    told = printable(f"{type(error).__name__}: {error}".strip())
+    remedy = "please report it with the output of the same call under TSAS_TRACEBACK=1"
+    return _stop(f"a defect of tsas itself: {told}; {remedy}", 1)
+
+
+def _open_what_is_closed() -> None:
+    """Let what is printed to a closed stream be lost, and nothing else; 0 comes first."""
+    for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
+        if getattr(sys, name) is None:
+            stream = Path(os.devnull).open(mode, encoding="utf-8")  # noqa: SIM115 # till the end
+            os.set_inheritable(stream.fileno(), True)
+            setattr(sys, name, stream)
+
+
+def _forget_output() -> None:
+    """Let what is still to be written to standard output be lost."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _speak_beyond_ascii() -> None:

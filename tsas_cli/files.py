@@ -13,9 +13,17 @@ from typing import Any
 
 from tsas_cli import limits, memory
 from tsas_cli.errors import InputError
-from tsas_cli.temporaries import is_empty_folder, place_file, place_folder, temporary_for
+from tsas_cli.replacing import (
+    SUMS,
+    exists,
+    refuse_address,
+    refuse_current,
+    refuse_existing,
+    refuse_foreign,
+    refuse_kind,
+)
+from tsas_cli.temporaries import place_file, place_folder, temporary_for
 
-SUMS = "SHA256SUMS"
 _FULL = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG})
 _NO_ROOM = _FULL | {errno.EROFS}
 _ADDED: ContextVar[Callable[[Path], None] | None] = ContextVar("added", default=None)
@@ -39,11 +47,10 @@ def new_folder(path: Path, *, force: bool = False) -> Iterator[Path]:
     """
     with ExitStack() as stack:
         with _written(path):
-            _refuse_address(path)
-            if path.is_file():
-                raise InputError("is a file", where=path, expected="a folder's name")
-            _refuse_existing(path, force=force)
-            _refuse_current(path)
+            refuse_address(path)
+            refuse_kind(path, folder=True)
+            refuse_existing(path, force=force)
+            refuse_current(path)
             path.parent.mkdir(parents=True, exist_ok=True)
             temporary = stack.enter_context(temporary_for(path))
             temporary.mkdir(mode=0o700)
@@ -51,7 +58,7 @@ def new_folder(path: Path, *, force: bool = False) -> Iterator[Path]:
             yield temporary
         with _written(path):
             temporary.chmod(0o755)
-            _refuse_foreign(path, _files_in(temporary))
+            refuse_foreign(path, temporary)
             place_folder(temporary, path, replace=force)
 
 
@@ -112,10 +119,9 @@ def new_file(path: Path, *, force: bool = False) -> Iterator[Path]:
     """
     with ExitStack() as stack:
         with _written(path):
-            _refuse_address(path)
-            if path.is_dir():
-                raise InputError("is a folder", where=path, expected="a file's name")
-            _refuse_existing(path, force=force)
+            refuse_address(path)
+            refuse_kind(path, folder=False)
+            refuse_existing(path, force=force)
             path.parent.mkdir(parents=True, exist_ok=True)
             temporary = stack.enter_context(temporary_for(path))
             temporary.touch(mode=0o600)
@@ -218,7 +224,7 @@ def _written(path: Path, *, only: Collection[int] = ()) -> Iterator[None]:
         if only and error.errno not in only:
             raise
         taken = isinstance(error, FileExistsError) and os.path.lexists(path)
-        raise (_exists(path) if taken else _unwritable(path, error)) from error
+        raise (exists(path) if taken else _unwritable(path, error)) from error
 
 
 @contextmanager
@@ -233,56 +239,6 @@ def _named(temporary: Path, path: Path) -> Iterator[None]:
         raise InputError(
             error.what, where=where, expected=error.expected, remedy=error.remedy
         ) from error
-
-
-def _refuse_address(path: Path) -> None:
-    """Keep `--out s3://…` from becoming a folder `s3:`."""
-    if path.parts and path.parts[0] in {"s3:", "gs:", "file:"}:
-        raise InputError(
-            "is an address",
-            where=path.as_posix().replace(":/", "://", 1),
-            expected="a local folder or file",
-            remedy="write there, then copy it",
-        )
-
-
-def _refuse_existing(path: Path, *, force: bool) -> None:
-    if os.path.lexists(path) and not is_empty_folder(path) and not force:
-        raise _exists(path)
-
-
-def _exists(path: Path) -> InputError:
-    return InputError(
-        "already exists",
-        where=path,
-        expected="a name that is free",
-        remedy="choose another --out, or replace it with --force",
-    )
-
-
-def _refuse_current(path: Path) -> None:
-    """Keep `--out . --force` from deleting the folder that somebody works in."""
-    if Path.cwd().is_relative_to(path.resolve()):
-        raise InputError(
-            "is the current folder, or holds it",
-            where=path,
-            remedy="choose an --out that is a folder of its own",
-        )
-
-
-def _refuse_foreign(path: Path, files: set[str]) -> None:
-    """Keep `--out DATASET --force` from replacing recordings by what was made of them."""
-    if path.is_dir() and any(path.iterdir()) and not files & _files_in(path):
-        raise InputError(
-            "holds something else than an earlier output",
-            where=path,
-            expected=f"a folder with {', '.join(sorted(files))}",
-            remedy="choose another --out",
-        )
-
-
-def _files_in(folder: Path) -> set[str]:
-    return {path.name for path in folder.iterdir() if path.is_file()} - {SUMS}
 
 
 def _unwritable(path: Path, error: OSError) -> InputError:

@@ -1,12 +1,15 @@
 """Ctrl-C and its kin as the usual end of a command that only shows something."""
 
+import math
 import signal
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
 
 NAMES = ("SIGINT", "SIGTERM", "SIGHUP")  # Ctrl-C, `kill`, a terminal that closes
 SIGNALS = [getattr(signal, name) for name in NAMES if hasattr(signal, name)]
+CLEANING_S = 3.0  # for which more signals are not heard
 
 
 class Stopped(BaseException):
@@ -32,13 +35,19 @@ def cleaned_up_when_stopped() -> Iterator[None]:
 
 @contextmanager
 def _raising(kind: type[BaseException]) -> Iterator[None]:
-    """Raise `kind` at the first signal; more of them do not disturb the cleaning up."""
+    """Raise `kind` at a signal; more of them, soon after, do not disturb the cleaning up.
+
+    A library may lose what is raised, in a destructor for one: a later signal raises it again.
+    """
+    heard_s = -math.inf
 
     def stop(number: int, frame: FrameType | None) -> None:
+        nonlocal heard_s
         del number, frame
-        for each in SIGNALS:
-            signal.signal(each, signal.SIG_IGN)
-        raise kind
+        now_s = time.monotonic()
+        if now_s - heard_s > CLEANING_S:
+            heard_s = now_s
+            raise kind
 
     heard = [number for number in SIGNALS if signal.getsignal(number) != signal.SIG_IGN]
     before = {number: signal.signal(number, stop) for number in heard}

@@ -5,9 +5,9 @@ import pytest
 
 import tsas_cli as tsas
 from tsas_cli.errors import InputError
-from tsas_cli.files import SUMS
 from tsas_cli.recordings.storage import place_of
 from tsas_cli.recordings.writing import write_dataset
+from tsas_cli.replacing import SUMS
 from tsas_cli.reporting.viewer.stream_of import stream_of
 
 

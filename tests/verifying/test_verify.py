@@ -10,7 +10,8 @@ import pytest
 
 import tsas_cli as tsas
 from tsas_cli.errors import InputError
-from tsas_cli.files import SUMS, added, write_json
+from tsas_cli.files import added, write_json
+from tsas_cli.replacing import SUMS
 
 MAP = """
 [dataset]

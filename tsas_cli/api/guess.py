@@ -8,6 +8,7 @@ from tsas_cli.files import new_file
 from tsas_cli.recordings.guess.proposal import Proposal, propose
 from tsas_cli.recordings.guess.summary import content, tables
 from tsas_cli.recordings.ingest import find_files
+from tsas_cli.replacing import refuse_input
 from tsas_cli.result import Result, Table
 
 
@@ -61,7 +62,10 @@ def guess(
     InputError
         None of the files can be read, or `out` exists and `force` is not set.
     """
-    proposal, path = propose(find_files(paths_of(sources), "*")), path_of(out)
+    files, path = find_files(paths_of(sources), "*"), path_of(out)
+    if path is not None:
+        refuse_input(path, files)
+    proposal = propose(files)
     summary = content(proposal)
     if path is not None:
         with new_file(path, force=force) as written:

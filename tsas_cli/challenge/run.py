@@ -15,7 +15,7 @@ from tsas_cli.challenge.baselines import bic, sparse, training
 from tsas_cli.challenge.entry import FILE, LOG
 from tsas_cli.diagnosis.diagnose_stage import diagnose_dataset
 from tsas_cli.errors import InputError
-from tsas_cli.files import new_folder, read_json, write_json
+from tsas_cli.files import read_json, stage_folder, write_json
 from tsas_cli.numerics.side_by_side import THREADS
 from tsas_cli.recordings.dataset import read_dataset
 
@@ -80,7 +80,7 @@ def run_cases(
     for name, value in SURROUNDINGS.items():
         os.environ.setdefault(name, value)  # the new processes take it over
     reasons: dict[str, str] = {}
-    with new_folder(out, force=force) as entry, ThreadPoolExecutor(workers) as threads:
+    with stage_folder(out, force=force) as entry, ThreadPoolExecutor(workers) as threads:
         tasks = {
             threads.submit(_in_a_process, diagnose, case / "dataset", entry / case.name): case.name
             for case in folders

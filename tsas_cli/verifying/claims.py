@@ -8,10 +8,11 @@ from pathlib import Path
 from typing import Any
 
 from tsas_cli.errors import InputError
-from tsas_cli.files import SUMS, read_json
+from tsas_cli.files import read_json
 from tsas_cli.recordings.manifest import FILE as MANIFEST
 from tsas_cli.recordings.manifest import read_toml
 from tsas_cli.recordings.storage import is_address
+from tsas_cli.replacing import SUMS
 from tsas_cli.verifying.seal import sealed
 
 _SUM = re.compile(r"([0-9a-f]{64})  (.+)")

@@ -8,9 +8,10 @@ from pathlib import Path
 from typing import Literal
 
 from tsas_cli.errors import InputError
-from tsas_cli.files import SUMS, read_json, sha256_of
+from tsas_cli.files import read_json, sha256_of
 from tsas_cli.recordings.manifest import FILE as MANIFEST
 from tsas_cli.recordings.storage import is_address
+from tsas_cli.replacing import SUMS
 from tsas_cli.verifying.claims import Claim, claims_of
 
 State = Literal["fits", "changed", "missing", "cannot tell"]
