@@ -90,3 +90,15 @@ def test_an_extra_column_may_not_take_a_name_that_is_taken_or_breaks_the_termina
     with pytest.raises(InputError, match="cannot keep this name") as error:
         ask({name: [1, 2, 3]}, extra=[name])
     assert error.value.line().isprintable()
+
+
+@pytest.mark.parametrize(
+    ("said", "name"),
+    [
+        ({"time": {"rate_Hz": 1e-320}}, "time_s"),
+        ({"place": {"source": "x", "unit": "V", "factor": 1e305, "factor_unit": "m"}}, "x_in_mm"),
+    ],
+)
+def test_what_grows_infinite_is_refused_without_another_word(said, name):
+    with pytest.raises(InputError, match=f"{name} is infinite"):  # warnings are errors in tests
+        ask({"x": [1, 2, 300]}, **said)

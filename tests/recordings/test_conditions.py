@@ -35,6 +35,14 @@ def test_a_name_with_an_underscore_between_digits_is_no_number():
     assert found["no"] == "1_2"
 
 
+def test_a_comma_before_three_digits_is_a_decimal_mark_where_the_map_says_so():
+    rules = RunMap.model_validate({"from_header": {"pattern": r"(?P<preload_N>[\d,]+) N"}})
+    assert run_conditions(PATH, ["0,250 N"], rules)["preload_N"] == 0.25
+    assert run_conditions(PATH, ["1,250 N"], rules, ",")["preload_N"] == 1.25
+    with pytest.raises(InputError, match=r"preload_N is 1,250: .* say decimal = \",\""):
+        run_conditions(PATH, ["1,250 N"], rules)
+
+
 def test_the_folder_is_part_of_the_name_and_of_the_id():
     found = conditions(
         id="{folder}-{stage}-{stem}", from_file_name={"pattern": r"^L_(?P<stage>\d)/bend"}

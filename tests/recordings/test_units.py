@@ -32,6 +32,11 @@ from tsas_cli.recordings.units import conversion
         ("rev/s", "rpm", 60),
         ("rad/s", "rpm", 30 / math.pi),
         ("deg/s", "rpm", 1 / 6),
+        ("rad·s⁻¹", "rpm", 30 / math.pi),
+        ("Å", "mm", 1e-7),
+        ("mm\u00a0", "mm", 1),
+        ("MPa mm²", "N", 1),
+        ("in.", "mm", 25.4),
     ],
 )
 def test_lab_spellings_mean_what_people_mean(unit, to, one):
@@ -55,6 +60,8 @@ def test_temperatures_have_their_zero(unit, celsius_at_100):
         ("Nm", 200),
         ("N m", 200),
         ("N·m", 200),
+        ("N×m", 200),
+        ("N\u00a0m", 200),
         ("Ncm", 2),
         ("mNm", 0.2),
         ("Nmm", 0.2),
@@ -102,6 +109,17 @@ def test_a_factor_says_what_counts_and_volts_are():
         ("6^6666666666", "mm", "is unknown"),
         ("9⁹⁹⁹⁹⁹⁹⁹⁹⁹⁹", "mm", "is unknown"),
         ("9" + " squared" * 9, "mm", "is unknown"),
+        ("px", "mm", "factor and factor_unit"),
+        ("au", "mm", "is unknown"),  # of arbitrary units, not astronomical
+        ("mil", "rad", "is unknown"),  # 0.001 inch in a workshop, an angle in an army
+        # An angle is no number, though pint gives it no dimension:
+        ("mm/deg", "mm", "cannot become mm"),
+        ("mm rad", "mm", "cannot become mm"),
+        ("deg^2", "rad", "cannot become rad"),
+        ("1/deg", "rad", "cannot become rad"),
+        ("rad/deg", "rad", "cannot become rad"),
+        ("rad^2/s", "rpm", "cannot become rpm"),
+        ("km^999", "mm", "is unknown"),  # more than a float holds
     ],
 )
 def test_what_does_not_fit_is_refused_with_what_to_add(unit, to, said):
@@ -109,6 +127,32 @@ def test_what_does_not_fit_is_refused_with_what_to_add(unit, to, said):
         conversion(unit, to, where="map.toml, columns.a")
     assert said in error.value.line()
     assert error.value.line().startswith("map.toml, columns.a: ")
+
+
+@pytest.mark.parametrize("where", ["{}m", "m{}", "m{}s"])
+@pytest.mark.parametrize(
+    "sign", [*"?~$#&!:;<=>@|\\\x00'\"‰¹⁰½√÷−–‐\u200b\ufffd\uf06d╡", "1", "10 ", "m%"]
+)
+def test_no_character_of_a_unit_is_passed_over(where, sign):
+    unit = where.format(sign)
+    with pytest.raises(InputError):
+        conversion(unit, "mm")
+    with pytest.raises(InputError):
+        conversion(unit, "s")
+
+
+def test_an_angle_in_a_factor_is_no_number():
+    for per in ("mm/deg", "mm/turn"):
+        with pytest.raises(InputError, match="cannot become mm"):
+            conversion("deg", "mm", factor=0.2, factor_unit=per)
+    with pytest.raises(InputError, match="cannot become N"):
+        conversion("N m/deg", "N", pulley_radius_mm=5)
+
+
+@pytest.mark.parametrize(("factor", "one"), [(0.0, "0"), (1e308, "inf")])
+def test_a_factor_that_leaves_no_numbers_is_refused(factor, one):
+    with pytest.raises(InputError, match=f"m.toml: one V is {one} mm"):
+        conversion("V", "mm", factor=factor, factor_unit="m", where="m.toml")
 
 
 def test_a_radius_is_for_angles_and_torques_alone():

@@ -57,7 +57,8 @@ def canonical_columns(
     columns, offsets = dict[str, Floats](), dict(before.offsets)
     for name, column in mapping.columns.items():
         where = f"{map_path}, columns.{name}"
-        values = _converted(name, column, table, rows, where, first=before.read)
+        with np.errstate(over="ignore"):  # what is infinite is refused below, with its row
+            values = _converted(name, column, table, rows, where, first=before.read)
         if not isinstance(column.offset, str):
             offsets[name] = column.offset
         elif name not in offsets and np.isfinite(values).any():

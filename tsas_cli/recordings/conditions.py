@@ -8,26 +8,38 @@ from typing import Any
 from tsas_cli.errors import InputError, nearest
 from tsas_cli.patience import at_most
 from tsas_cli.recordings.ingest_map import Converted, FromText, RunMap
+from tsas_cli.recordings.readers.layout import may_be_thousands
 from tsas_cli.recordings.units import conversion
 
 PATIENCE_S = 10.0  # with a pattern, which may look for ever
 _UNITS = {"preload_N": "N", "sheath_length_mm": "mm", "total_bend_rad": "rad"}
 
 
-def run_conditions(path: Path, header: Sequence[str], run_map: RunMap) -> dict[str, Any]:
+def run_conditions(
+    path: Path, header: Sequence[str], run_map: RunMap, decimal: str | None = None
+) -> dict[str, Any]:
     """Return a run's id and conditions, and whatever else the names and headers say about it.
 
     Later sources win: `[run]`, the file's name (with its folder), the header, the converted
     groups, the table entry of the run's id. Groups that are no conditions travel along.
+    A decimal comma counts, in 1,250 only where `decimal` says so: these may be thousands.
 
     Raises
     ------
     InputError
-        A pattern finds nothing, a group is missing or no number, or a unit does not fit.
+        A pattern finds nothing, a group is missing, no number or possibly 1000 times as much, or a
+        unit does not fit.
     """
     folder = path.absolute().parent.name
     groups = _groups(run_map.from_file_name, f"{folder}/{path.name}", path)
     groups |= _groups(run_map.from_header, "\n".join(header), path)
+    for key, text in groups.items():
+        if decimal != "," and may_be_thousands(text):
+            raise InputError(
+                f"group {key} is {text}: is the comma a decimal mark, or does it part thousands?",
+                where=path,
+                remedy='say decimal = "," under [read] of the map, or the value in [run] instead',
+            )
     name = _filled(run_map.id, {"stem": path.stem, "folder": folder} | groups)
     converted = {
         condition: _converted(condition, rule, groups, path)
@@ -84,7 +96,7 @@ def _filled(template: str, words: dict[str, str]) -> str:
 
 
 def _plain(text: str) -> float | int | str:
-    """Return a number where the text is one (a decimal comma counts), else the text."""
+    """Return a number where the text is one, else the text."""
     for kind in (int, float) if "_" not in text else ():  # Python takes 1_2 for 12
         try:
             return kind(text.replace(",", "."))

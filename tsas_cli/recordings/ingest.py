@@ -131,7 +131,7 @@ def _files_in(folder: Path, pattern: str) -> list[Path]:
 
 
 def _run(path: Path, table: Table, mapping: IngestMap) -> Run:
-    conditions = run_conditions(path, table.header, mapping.run)
+    conditions = run_conditions(path, table.header, mapping.run, mapping.read.decimal)
     written = {
         "file": f"runs/{conditions['id']}.parquet",
         "sha256": "0" * 64,  # known once the file is written

@@ -47,6 +47,9 @@ _LABELS = {
     "tick",
     "ticks",
     "inc",
+    "px",
+    "pixel",
+    "pixels",
     "v",
     "mv",
     "volt",
@@ -55,8 +58,13 @@ _LABELS = {
 _TORQUE = re.compile(r"([mkM]?N)(mm|cm|m)")
 _CAPITALISED = re.compile(r"[A-Z][a-z]{3,}")
 _LONGEST = 100  # characters of a unit
+# What a unit is written with. pint drops every other character, which makes metres of `?m`.
+_SPELT = re.compile(r"%|(?:[A-Za-zÅ\u212båöµμΩ\u2126°0-9*/^·().+_ -]|⁻?[²³⁴]|⁻¹)*")
+_TIMES = str.maketrans(dict.fromkeys("⋅×•∙", "*"))
+_NUMBER_AHEAD = re.compile(r"(?!1 ?/)[0-9.]")  # 1/min is a unit, 1m is not
+# On the web, in the sky and in an army: a pixel of a camera, an arbitrary unit, 0.001 inch here.
+_OF_NO_LAB = ("css_pixel", "astronomical_unit", "mil")
 _POWER_OF_A_NUMBER = re.compile(r"[\d)]\s*\*\*")  # 9**9**9**9 would be worked out digit by digit
-_ANGLES = ("radian", "degree", "turn", "revolution", "arcminute", "arcsecond", "grade")
 _KINDS = {
     "s": "a time",
     "mm": "a length",
@@ -95,7 +103,8 @@ def conversion(
     Raises
     ------
     InputError
-        The unit is unknown, or cannot become the canonical one; says what to add.
+        The unit is unknown, or cannot become the canonical one; says what to add. One of it is no
+        finite number of the canonical one, or none.
     """
     if factor is None and is_label(unit):
         raise InputError(
@@ -107,16 +116,20 @@ def conversion(
     text = factor_unit or unit
     if pulley_radius_mm is None:
         slope, intercept = _between(text, to, where)
-        return slope * scale, intercept
-    if to == "mm":
-        return _between(text, "rad", where)[0] * scale * pulley_radius_mm, 0.0
-    if to == "N":
-        return _between(text, "N*mm", where)[0] * scale / pulley_radius_mm, 0.0
-    raise InputError(
-        f"pulley_radius_mm does not apply to {to}",
-        where=where,
-        expected="a column in mm from an angle, or in N from a torque",
-    )
+        slope *= scale
+    elif to == "mm":
+        slope, intercept = _between(text, "rad", where)[0] * scale * pulley_radius_mm, 0.0
+    elif to == "N":
+        slope, intercept = _between(text, "N*mm", where)[0] * scale / pulley_radius_mm, 0.0
+    else:
+        raise InputError(
+            f"pulley_radius_mm does not apply to {to}",
+            where=where,
+            expected="a column in mm from an angle, or in N from a torque",
+        )
+    if slope == 0.0 or not math.isfinite(slope):
+        raise InputError(f"one {unit} is {slope:g} {to}", where=where, expected="not 0, finite")
+    return slope, intercept
 
 
 def is_label(unit: str) -> bool:
@@ -136,8 +149,7 @@ def _between(text: str, to: str, where: str) -> tuple[float, float]:
     if text.strip() == to:  # without pint, which takes longer to load than to read a recording
         return 1.0, 0.0
     unit, wanted = _parse(text, to, where), _parse(to, to, where)
-    turns = to not in {"rad", "rpm"} or _has_angle(unit)  # else a count or 1/s passes for an angle
-    line = _line(unit, wanted) if unit.dimensionality == wanted.dimensionality and turns else None
+    line = _line(unit, wanted) if _roots(unit) == _roots(wanted) else None
     if line is None:
         raise InputError(
             f"unit {text!r} cannot become {to}",
@@ -159,7 +171,7 @@ def _line(unit: Any, wanted: Any) -> tuple[float, float] | None:
 
 
 def _parse(text: str, to: str, where: str) -> Any:
-    spelled = text.strip().replace("⋅", "*")
+    spelled = " ".join(text.translate(_TIMES).split())
     spelled = _SPELLINGS.get(spelled, spelled)
     if to == "N":
         spelled = _AS_FORCE.get(spelled, spelled)
@@ -179,22 +191,26 @@ def _parse(text: str, to: str, where: str) -> Any:
 def _unit(text: str) -> Any:
     from pint.util import string_preprocessor
 
-    if "," in text or len(text) > _LONGEST or _POWER_OF_A_NUMBER.search(string_preprocessor(text)):
+    if not _SPELT.fullmatch(text) or _NUMBER_AHEAD.match(text) or len(text) > _LONGEST:
+        raise ValueError(text)
+    if _POWER_OF_A_NUMBER.search(string_preprocessor(text)):
         raise ValueError(text)
     unit = _registry().Unit(text)
-    _ = unit.dimensionality  # of what pint has made a name for and does not know: Np%
+    _roots(unit)  # there are none of what pint has made a name for and does not know: Np%
+    if any(name.endswith(_OF_NO_LAB) for name, _ in _registry().Quantity(1, unit).unit_items()):
+        raise ValueError(text)
     return unit
 
 
-def _has_angle(unit: Any) -> bool:
-    names = [name for name, _ in _registry().Quantity(1, unit).unit_items()]
-    return any(angle in name for angle in _ANGLES for name in names)
+def _roots(unit: Any) -> Any:
+    """Return what a unit is made of; unlike dimensions, this tells mm/deg from mm, 1/s from rpm."""
+    return _registry().get_root_units(unit)[1]
 
 
 def _remedy(unit: Any, to: str) -> str:
-    if to == "mm" and unit.dimensionless and _has_angle(unit):
+    if to == "mm" and _roots(unit) == _registry().Unit("rad"):
         return "an angle needs pulley_radius_mm to become mm"
-    if to == "N" and unit.dimensionality == _registry().Unit("N*mm").dimensionality:
+    if to == "N" and _roots(unit) == _roots(_registry().Unit("N*mm")):
         return "a torque needs pulley_radius_mm to become N"
     return "is this the right source column, and its unit the one in the file?"
 

@@ -16,6 +16,7 @@ from scipy.io import savemat
 
 from tests.recordings.readers.matlab_files import controldesk, numbers, save_73, struct
 from tsas_cli.recordings.readers import names, read
+from tsas_cli.recordings.readers.layout import may_be_thousands
 from tsas_cli.recordings.readers.options import ReadOptions
 
 LETTERS = "abcdxyzFT_µé°/²-"
@@ -96,7 +97,8 @@ def text_tables(draw: st.DrawFn) -> Known:
     end = draw(st.sampled_from(["\n", "\r\n", "\r"]))
     content = end.join(lines) + (end if draw(st.booleans()) else "")
     options: dict[str, Any] = {} if encoding.startswith("utf-8") else {"encoding": encoding}
-    guessable = count > 1 and not (comma and delimiter == " ")
+    doubtful = any(may_be_thousands(cell) for row in rows for cell in row)
+    guessable = count > 1 and not (comma and (delimiter == " " or doubtful))
     if not guessable or draw(st.booleans()):
         options |= {"delimiter": delimiter, "decimal": "," if comma else "."}
     by_name = has_names and draw(st.booleans())

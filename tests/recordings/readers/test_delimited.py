@@ -57,6 +57,34 @@ def test_units_stand_in_a_row_of_their_own_or_in_brackets(ask):
     assert list(row.units.values()) == list(names.units.values()) == ["ms", "lbf"]
 
 
+@pytest.mark.parametrize(
+    "cells",
+    [
+        ["623", "1,237"],
+        ["-1,237", "0"],
+        ["1,237"] * 300 + ["623"],  # a thousand for as long as the head is looked at
+    ],
+)
+def test_commas_that_may_part_thousands_are_asked_about(ask, cells):
+    text = "t\tf\n" + "".join(f"{i}\t{cell}\n" for i, cell in enumerate(cells))
+    with pytest.raises(InputError, match=r"column 2 holds -?\d+ and -?1,237: .* decimal = \",\""):
+        ask(text, "f")
+    columns, _ = ask(text, "f", decimal=",")
+    assert columns["f"] == [float(cell.replace(",", ".")) for cell in cells]
+
+
+@pytest.mark.parametrize("cells", [["1,237", "2,474"], ["623", "1,237", "0,125"], ["62", "6,2"]])
+def test_commas_that_are_decimal_marks_are_read_so(ask, cells):
+    columns, _ = ask("t;f\n" + "".join(f"{i};{cell}\n" for i, cell in enumerate(cells)), "f")
+    assert columns["f"] == [float(cell.replace(",", ".")) for cell in cells]
+
+
+@pytest.mark.parametrize("delimiter", ["§", "│", "\u00a0"])
+def test_any_character_can_be_the_delimiter(ask, delimiter):
+    columns, _ = ask(f"t{delimiter}f\n0{delimiter}1\n1{delimiter}2.5\n", "f", delimiter=delimiter)
+    assert columns["f"] == [1.0, 2.5]
+
+
 def test_empty_cells_and_nan_are_gaps(ask):
     columns, _ = ask("t\tf\n0\t1\n1\t\n2\tNaN\n", "t", "f")
     assert np.isnan(columns["f"]).tolist() == [False, True, True]

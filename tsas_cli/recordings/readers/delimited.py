@@ -28,7 +28,8 @@ _NULLS = frozenset(csv.ConvertOptions().null_values)
 def batches(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Iterator[Table]:
     """Read the wanted columns of a text table in parts.
 
-    Where pyarrow stops at a row, what follows is read line by line.
+    Where pyarrow stops at a row, or at a delimiter outside of ASCII, what follows is read line by
+    line.
 
     Raises
     ------
@@ -60,6 +61,8 @@ def names(path: Path, options: ReadOptions) -> Sequence[str]:
 def _fast(
     path: Path, options: ReadOptions, layout: Layout, at: Mapping[Source, int]
 ) -> csv.CSVStreamingReader:
+    if not layout.delimiter.isascii():
+        raise pa.ArrowInvalid(layout.delimiter)  # where pyarrow raises a bare ValueError
     names = [str(i) for i in range(len(layout.names))]
     return csv.open_csv(
         path,

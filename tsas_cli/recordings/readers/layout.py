@@ -2,7 +2,7 @@
 
 import csv
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
@@ -15,6 +15,8 @@ _SAMPLE = 200  # lines of the table that are looked at
 _LONG = 4 * limits.LINE  # characters of them, of which a few lines are enough
 _UNIT_IN_NAME = re.compile(r"[\[(]([^\[\]()]+)[\])]$")
 _DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+([eE][+-]?\d+)?")
+_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")  # or three decimals
+_BELOW_THOUSAND = re.compile(r"[+-]?\d{1,3}")
 
 
 @dataclass(frozen=True)
@@ -39,8 +41,8 @@ def detect(path: Path, options: ReadOptions) -> Layout:
     Raises
     ------
     InputError
-        The file is not text in its encoding, holds no row of numbers, or names more or fewer
-        columns than its first row has.
+        The file is not text in its encoding, holds no row of numbers, names more or fewer
+        columns than its first row has, or its commas may be those of thousands.
     """
     comments, lines = _head(path, options)
     if not lines:
@@ -48,7 +50,7 @@ def detect(path: Path, options: ReadOptions) -> Layout:
     delimiter = options.delimiter or _delimiter([text for _, text in lines])
     rows = [fields(text, delimiter) for _, text in lines]
     limits.column_count(len(rows[0]), path)
-    decimal = options.decimal or _decimal(rows, delimiter)
+    decimal = options.decimal or _decimal(rows, delimiter, path, options)
     names, units = [], []
     if not _has_number(rows[0], decimal):
         names = rows.pop(0)
@@ -91,38 +93,47 @@ def number(text: str, decimal: str) -> float:
     return float(plain)
 
 
+def may_be_thousands(text: str) -> bool:
+    """Say whether the comma of a number may stand before thousands as well as before decimals."""
+    return _THOUSANDS.fullmatch(text) is not None
+
+
 def _head(path: Path, options: ReadOptions) -> tuple[list[str], list[tuple[int, str]]]:
     """Return the comments, and the first lines of the table with their numbers."""
     comments: list[str] = []
     lines: list[tuple[int, str]] = []
     above = taken = 0
+    for row, line in _lines(path, options):
+        text = comment_text(line, options)
+        if text is not None:
+            comments.append(text)
+            above += len(text)
+        elif line.strip():
+            lines.append((row, line.rstrip("\r\n")))
+            taken += len(line)
+        if above > limits.HEADER:
+            raise InputError(
+                f"more than {limits.size(limits.HEADER)} of comments above the table",
+                where=path,
+                remedy="is this a text table? what comments begin with is said in the map",
+            )
+        if len(lines) == _SAMPLE or taken > _LONG:
+            break
+    return comments, lines
+
+
+def _lines(path: Path, options: ReadOptions) -> Iterator[tuple[int, str]]:
+    """Yield the lines behind those to skip, with their numbers."""
     try:
         with path.open(encoding=options.encoding) as stream:
-            for count, line in enumerate(
-                islice(limits.lines(stream, path), options.skip_lines, None)
-            ):
-                text = comment_text(line, options)
-                if text is not None:
-                    comments.append(text)
-                    above += len(text)
-                elif line.strip():
-                    lines.append((options.skip_lines + count + 1, line.rstrip("\r\n")))
-                    taken += len(line)
-                if above > limits.HEADER:
-                    raise InputError(
-                        f"more than {limits.size(limits.HEADER)} of comments above the table",
-                        where=path,
-                        remedy="is this a text table? what comments begin with is said in the map",
-                    )
-                if len(lines) == _SAMPLE or taken > _LONG:
-                    break
+            numbered = enumerate(limits.lines(stream, path), start=1)
+            yield from islice(numbered, options.skip_lines, None)
     except (UnicodeError, LookupError, ValueError) as error:
         raise InputError(
             f"is not text in the encoding {options.encoding}",
             where=path,
             remedy='say which it is in the map, such as encoding = "cp1252" under [read]',
         ) from error
-    return comments, lines
 
 
 def _delimiter(lines: Sequence[str]) -> str:
@@ -132,9 +143,28 @@ def _delimiter(lines: Sequence[str]) -> str:
     return ","
 
 
-def _decimal(rows: Sequence[Sequence[str]], delimiter: str) -> str:
-    commas = any(_DECIMAL_COMMA.fullmatch(cell) for row in rows for cell in row)
-    return "," if commas and delimiter != "," else "."
+def _decimal(
+    rows: Sequence[Sequence[str]], delimiter: str, path: Path, options: ReadOptions
+) -> str:
+    if delimiter == "," or not any(_DECIMAL_COMMA.fullmatch(cell) for row in rows for cell in row):
+        return "."
+    with_comma, without = dict[int, str](), dict[int, str]()
+    for _, line in _lines(path, options):  # the first rows may all lie above a thousand
+        for i, cell in enumerate(fields(line, delimiter)):
+            if may_be_thousands(cell):
+                with_comma[i] = cell
+            elif _DECIMAL_COMMA.fullmatch(cell):
+                return ","
+            elif _BELOW_THOUSAND.fullmatch(cell):
+                without[i] = cell
+    for i in with_comma.keys() & without.keys():
+        raise InputError(
+            f"column {i + 1} holds {without[i]} and {with_comma[i]}: "
+            "is the comma a decimal mark, or does it part thousands?",
+            where=path,
+            remedy='say decimal = "," under [read] of the map, or take the commas out of the file',
+        )
+    return ","
 
 
 def _has_number(row: Sequence[str], decimal: str) -> bool:
