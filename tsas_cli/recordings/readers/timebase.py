@@ -19,7 +19,7 @@ def on_one_clock(
     Parameters
     ----------
     series
-        Times [s] and values by source, each of shape (n,) with its own n.
+        Times and values by source, each of shape (n,) with its own n.
     resample
         Where times differ, interpolate linearly onto the times of the channel with the most
         samples, within the stretch that all channels cover.
@@ -27,7 +27,8 @@ def on_one_clock(
     Raises
     ------
     InputError
-        No channel is taken, the times differ and `resample` is not set, or they never overlap.
+        No channel is taken; the times differ and `resample` is not set, they run backwards or
+        stand still, or they never overlap.
     """
     if not series:
         raise InputError("the map takes no channel but the time", where=path)
@@ -44,6 +45,8 @@ def on_one_clock(
         )
     if any(times.size == 0 for times, _ in series.values()):
         raise InputError(f"a channel holds no samples ({described})", where=path)
+    for source, (times, _) in series.items():
+        _check_increases(times, source, path)
     start = max(times[0] for times, _ in series.values())
     end = min(times[-1] for times, _ in series.values())
     clock = clock[(clock >= start) & (clock <= end)]
@@ -52,7 +55,21 @@ def on_one_clock(
     return {TIME: clock} | {s: np.interp(clock, *channel) for s, channel in series.items()}
 
 
+def _check_increases(times: Floats, source: Source, path: Path) -> None:
+    """Refuse times between which nothing can be interpolated: NumPy would answer all the same."""
+    steps = np.diff(times)
+    odd = ~((steps > 0) & np.isfinite(steps))
+    if odd.any():
+        i = int(odd.argmax())
+        raise InputError(
+            f"the time of {source} does not increase ({times[i]:.9g}, then {times[i + 1]:.9g})",
+            where=f"{path}, row {i + 2}",
+            expected="strictly increasing time",
+            remedy="mend the file, or leave the channel out",
+        )
+
+
 def _described(times: Floats) -> str:
     if times.size == 0:
         return "no samples"
-    return f"{times.size} samples, {times[0]:g} to {times[-1]:g} s"
+    return f"{times.size} samples, {times[0]:g} to {times[-1]:g}"
