@@ -41,6 +41,16 @@ def test_channels_units_and_the_master_as_time(path):
     assert table.units == {"time": "s", "place": "mm", 1: "N"}
 
 
+def test_the_master_beside_a_channel_that_is_called_time_has_a_number(tmp_path):
+    path = tmp_path / "a.mf4"
+    with MDF() as file:
+        file.append([Signal(F, T, name="time", unit="mm")])
+        file.save(path)
+    columns, table = ask(path, 2, 1)
+    assert columns == {1: F.tolist(), 2: T.tolist()}
+    assert table.units == {1: "mm", 2: "s"}
+
+
 def test_samples_marked_as_invalid_are_gaps(path):
     columns, _ = ask(path, "patchy")
     assert np.isnan(columns["patchy"]).tolist() == [False, True, False, False, False]

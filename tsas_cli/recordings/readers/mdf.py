@@ -74,15 +74,16 @@ def _table(file: Any, options: ReadOptions, wanted: Sequence[Source], path: Path
     at = resolve(wanted, [*(name for name, _, _ in channels), TIME], path)
     groups = [channels[i][1] for i in at.values() if i < len(channels)]
     check_claims(path, (file.groups[group].channel_group.cycles_nr for group in groups))
-    clock_unit = _clock_unit(file, groups, path, is_wanted=len(channels) in at.values())
+    called = [source for source, i in at.items() if i == len(channels)]
+    clock_unit = _clock_unit(file, groups, path, is_wanted=bool(called))
     signals = {
         source: file.get(*channels[i], ignore_invalidation_bits=True)
         for source, i in at.items()
         if i < len(channels)
     }
     series = {s: (signal.timestamps, _values(signal, s, path)) for s, signal in signals.items()}
-    columns = on_one_clock(series, path, resample=options.resample)
-    units: dict[Source, str] = {TIME: clock_unit}
+    columns = on_one_clock(series, path, called=called, resample=options.resample)
+    units = dict.fromkeys(called, clock_unit)
     units |= {source: signal.unit for source, signal in signals.items() if signal.unit}
     header = (str(file.header.comment), f"started {file.start_time.isoformat()}")
     return Table(columns, units, header)

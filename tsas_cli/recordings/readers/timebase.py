@@ -1,6 +1,6 @@
 """Channels with times of their own, brought onto one clock."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from pathlib import Path
 
 import numpy as np
@@ -12,14 +12,20 @@ TIME = "time"  # how a map names the clock of a file whose channels share it
 
 
 def on_one_clock(
-    series: Mapping[Source, tuple[Floats, Floats]], path: Path, *, resample: bool
+    series: Mapping[Source, tuple[Floats, Floats]],
+    path: Path,
+    *,
+    called: Collection[Source],
+    resample: bool,
 ) -> dict[Source, Floats]:
-    """Return the channels' values and, under `time`, the times that they share.
+    """Return the channels' values and the times that they share.
 
     Parameters
     ----------
     series
         Times and values by source, each of shape (n,) with its own n.
+    called
+        What the map calls the shared times: `time`, its number, both or nothing.
     resample
         Where times differ, interpolate linearly onto the times of the channel with the most
         samples, within the stretch that all channels cover.
@@ -34,7 +40,7 @@ def on_one_clock(
         raise InputError("the map takes no channel but the time", where=path)
     clock = max((times for times, _ in series.values()), key=len)
     if all(np.array_equal(times, clock) for times, _ in series.values()):
-        return {TIME: clock} | {source: values for source, (_, values) in series.items()}
+        return dict.fromkeys(called, clock) | {s: values for s, (_, values) in series.items()}
     described = "; ".join(f"{s}: {_described(times)}" for s, (times, _) in series.items())
     if not resample:
         raise InputError(
@@ -52,7 +58,8 @@ def on_one_clock(
     clock = clock[(clock >= start) & (clock <= end)]
     if clock.size == 0:
         raise InputError(f"the channels never overlap in time ({described})", where=path)
-    return {TIME: clock} | {s: np.interp(clock, *channel) for s, channel in series.items()}
+    resampled = {s: np.interp(clock, *channel) for s, channel in series.items()}
+    return dict.fromkeys(called, clock) | resampled
 
 
 def _check_increases(times: Floats, source: Source, path: Path) -> None:
