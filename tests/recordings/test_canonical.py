@@ -46,6 +46,20 @@ def test_the_files_own_unit_counts_where_the_map_says_none():
         ask(force={"source": "f"})
 
 
+def test_a_map_cannot_say_another_unit_than_the_type_of_a_column():
+    table = Table({s: np.arange(3.0) for s in "txf"}, {"t": "s"}, typed=frozenset("t"))
+
+    def time_s(**said):
+        columns = {"time_s": {"source": "t"} | said, "x_in_mm": PLACE, "f_in_N": FORCE}
+        mapping = IngestMap.model_validate({"dataset": {"name": "m"}, "columns": columns})
+        taken, _ = canonical_columns(table, mapping, Path("a.parquet"), Path("map.toml"))
+        return taken["time_s"].tolist()
+
+    assert time_s() == time_s(unit="s") == [0, 1, 2]
+    with pytest.raises(InputError, match=r"time_s: the map says ms of t, .*expected s, or no unit"):
+        time_s(unit="ms")
+
+
 def test_a_rate_stands_for_a_clock():
     np.testing.assert_allclose(ask(time={"rate_Hz": 50})["time_s"], [0, 0.02, 0.04])
 

@@ -206,13 +206,36 @@ def test_time_that_does_not_increase_is_named_with_its_row(
     np.testing.assert_array_equal(lenient.time_s, columns["time_s"])
 
 
+def say(dataset: Path, columns: Columns, **units: str) -> None:
+    """Put the columns with these units in their metadata."""
+    fields = [pa.field(n, pa.float64(), metadata={"unit": units.get(n, "")}) for n in columns]
+    put(dataset, pa.table(columns, schema=pa.schema(fields)))
+
+
+@pytest.mark.parametrize(
+    ("name", "unit", "expected"),
+    [
+        ("f_in_N", "mm", "N"),
+        ("f_in_N", "kN", "N"),
+        ("f_in_N", "kg", "N"),
+        ("x_in_mm", "µm", "mm"),
+        ("x_in_mm", "m", "mm"),
+        ("x_in_mm", "what", "mm"),
+        ("time_s", "ms", "s"),
+    ],
+)
 def test_a_column_whose_metadata_name_another_unit_is_refused(
-    dataset: Path, columns: Columns
+    dataset: Path, columns: Columns, name: str, unit: str, expected: str
 ) -> None:
-    fields = [pa.field(n, pa.float64(), metadata={"unit": "mm"}) for n in ("x_in_mm", "f_in_N")]
-    schema = pa.schema([pa.field("time_s", pa.float64()), *fields])
-    put(dataset, pa.table(columns, schema=schema))
-    assert refusal(dataset) == ": column f_in_N says that its unit is mm; expected N"
+    say(dataset, columns, **{name: unit})
+    assert refusal(dataset) == f": column {name} says that its unit is {unit}; expected {expected}"
+
+
+def test_a_unit_may_be_spelled_in_other_ways(dataset: Path, columns: Columns) -> None:
+    say(dataset, columns, time_s="sec", x_in_mm="millimeter", f_in_N=" N ")
+    assert read_recording(dataset, read_dataset(dataset).manifest.run[0]).columns.keys() == {
+        *columns
+    }
 
 
 def test_a_column_that_is_there_twice_is_refused(dataset: Path, columns: Columns) -> None:

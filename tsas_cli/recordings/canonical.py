@@ -101,6 +101,12 @@ def _converted(
             where=where,
             remedy='say it in the map: unit = "…"',
         )
+    if column.source in table.typed and unit != table.units[column.source]:
+        raise InputError(
+            f"the map says {unit} of {column.source}, whose type has a unit of its own",
+            where=where,
+            expected=f"{table.units[column.source]}, or no unit",
+        )
     slope, intercept = conversion(
         unit,
         BY_NAME[name].unit,

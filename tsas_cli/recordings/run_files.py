@@ -20,6 +20,7 @@ from tsas_cli.recordings.parquet_files import check_size, is_number, open_parque
 from tsas_cli.recordings.readers.table import damaged
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.recordings.storage import Place
+from tsas_cli.recordings.units import conversion
 
 Floats = npt.NDArray[np.float64]
 
@@ -158,7 +159,6 @@ def _table_of(source: Source, path: Place) -> tuple[pa.Table, list[str]]:
 
 def _check_names_and_units(schema: pa.Schema, path: Place) -> None:
     """Refuse a known column that is there twice, of other than numbers, or in another unit."""
-    units = {column.unit for column in BY_NAME.values()}
     for field in schema:
         if field.name not in BY_NAME:
             continue
@@ -170,10 +170,20 @@ def _check_names_and_units(schema: pa.Schema, path: Place) -> None:
             )
         unit = (field.metadata or {}).get(b"unit", b"").decode("utf-8", "replace")
         expected = BY_NAME[field.name].unit
-        if unit in units - {expected}:
+        if unit.strip() and not _is_same(unit, expected):
             raise InputError(
-                f"column {field.name} says that its unit is {unit}", where=path, expected=expected
+                f"column {field.name} says that its unit is {unit[:80]}",
+                where=path,
+                expected=expected,
             )
+
+
+def _is_same(unit: str, expected: str) -> bool:
+    """Say whether a unit is the expected one, in whatever spelling."""
+    try:
+        return conversion(unit, expected) == (1.0, 0.0)
+    except InputError:
+        return False
 
 
 def floats_of(table: pa.Table, name: str, path: Place, *, first_row: int = 0) -> Floats:

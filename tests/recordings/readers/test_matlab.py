@@ -103,6 +103,13 @@ def test_a_controldesk_capture_of_one_or_more_channels(path, write):
     assert table.units == {"time": "s", FORCE: "N"}
 
 
+def test_the_clock_beside_a_channel_that_is_called_time_has_a_number(path):
+    save_5(path, rec001=controldesk([T], [("time", F, "N", 1)]))
+    columns, table = ask(path, 2, 1)
+    assert columns == {1: F.tolist(), 2: T.tolist()}
+    assert table.units == {1: "N", 2: "s"}
+
+
 def test_a_capture_with_two_rasters_needs_leave_to_interpolate(path):
     slow = T[::2]
     channels = [(FORCE, F, "N", 1), (SPEED, F[::2], "rpm", 2)]
@@ -121,7 +128,7 @@ def test_two_captures_are_not_chosen_between(path):
     save_5(path, **captures)
     with pytest.raises(InputError, match="holds 2 captures: a, b"):
         ask(path, FORCE)
-    assert ask(path, FORCE, table="b")[0] == {"time": T.tolist(), FORCE: F.tolist()}
+    assert ask(path, "time", FORCE, table="b")[0] == {"time": T.tolist(), FORCE: F.tolist()}
 
 
 def test_a_missing_channel_lists_those_that_are_there(path):
@@ -152,3 +159,9 @@ def test_the_missing_package_is_named(path, monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "h5py", None)
     with pytest.raises(InputError, match=r"install tsas\[mat\]"):
         matlab.read(path, ReadOptions(), ["t"])
+
+
+def test_complex_data_of_a_capture_are_refused(path):
+    save_5(path, rec001=controldesk([T], [(FORCE, F + 1j, "N", 1)]))
+    with pytest.raises(InputError, match="holds complex128; expected real numbers"):
+        ask(path, "time", FORCE)

@@ -41,6 +41,16 @@ def test_channels_units_and_the_master_as_time(path):
     assert table.units == {"time": "s", "place": "mm", 1: "N"}
 
 
+def test_the_master_beside_a_channel_that_is_called_time_has_a_number(tmp_path):
+    path = tmp_path / "a.mf4"
+    with MDF() as file:
+        file.append([Signal(F, T, name="time", unit="mm")])
+        file.save(path)
+    columns, table = ask(path, 2, 1)
+    assert columns == {1: F.tolist(), 2: T.tolist()}
+    assert table.units == {1: "mm", 2: "s"}
+
+
 def test_samples_marked_as_invalid_are_gaps(path):
     columns, _ = ask(path, "patchy")
     assert np.isnan(columns["patchy"]).tolist() == [False, True, False, False, False]
@@ -66,6 +76,44 @@ def test_groups_of_other_rates_need_leave_to_interpolate(path):
 def test_what_is_wrong_is_said(path, wanted, said):
     with pytest.raises(InputError, match=said):
         ask(path, wanted)
+
+
+@pytest.mark.parametrize(
+    ("master", "said"),
+    [(("a", 2), "an angle in deg"), (("d", 3), "a distance in m"), (("i", 4), "a count in index")],
+)
+def test_a_master_that_is_no_time_is_not_taken_for_one(tmp_path, master, said):
+    path = tmp_path / "a.mf4"
+    with MDF() as file:
+        file.append([Signal(F, T, name="force", unit="N", master_metadata=master)])
+        file.append([Signal(F, T, name="place", unit="mm")])
+        file.save(path)
+    with pytest.raises(InputError, match=f"clock of the channels is {said}; .*rate_Hz"):
+        ask(path, "time", "force")
+    with pytest.raises(InputError, match=f"clock of the channels is {said}, a time in s;"):
+        ask(path, "force", "place", resample=True)
+    assert ask(path, "force")[0]["force"] == F.tolist()  # for a map with rate_Hz
+
+
+@pytest.mark.parametrize("version", ["3.30", "4.10"])
+@pytest.mark.parametrize(("said", "unit"), [("ms", "ms"), ("", "s")])
+def test_the_unit_of_the_master_counts(tmp_path, version, said, unit):
+    path = tmp_path / ("a.mdf" if version < "4" else "a.mf4")
+    with MDF(version=version) as file:
+        file.append([Signal(F, T, name="force", unit="N")])
+        master = file.groups[0].channels[0]
+        (master.conversion or master).unit = said
+        file.save(path)
+    assert ask(path, "time", "force")[1].units == {"time": unit, "force": "N"}
+
+
+def test_complex_samples_are_refused(tmp_path):
+    path = tmp_path / "a.mf4"
+    with MDF() as file:
+        file.append([Signal(F + 1j, T, name="force", unit="N")])
+        file.save(path)
+    with pytest.raises(InputError, match="column force holds complex128; expected real numbers"):
+        ask(path, "force")
 
 
 @pytest.mark.parametrize("kept", [0, 1, 64, 200, 0.5, 0.99])

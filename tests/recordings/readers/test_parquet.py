@@ -1,9 +1,11 @@
+import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
 from tsas_cli.errors import InputError
-from tsas_cli.recordings.readers import read
+from tsas_cli.recordings.guess.opening import open_file
+from tsas_cli.recordings.readers import batches, parquet, read
 from tsas_cli.recordings.readers.options import ReadOptions
 
 
@@ -42,3 +44,44 @@ def test_a_file_that_is_cut_short_is_one_line(path, kept):
     with pytest.raises(InputError) as error:
         read(path, ReadOptions(), ["t"])
     assert str(path) in error.value.line()
+
+
+@pytest.mark.parametrize("unit", ["s", "ms", "us", "ns"])
+@pytest.mark.parametrize("kind", [pa.timestamp, pa.duration])
+def test_times_become_seconds_by_their_type_and_nulls_are_gaps(tmp_path, kind, unit):
+    a_second = int(np.timedelta64(1, "s") / np.timedelta64(1, unit))
+    start = 1_704_067_200 * a_second if kind is pa.timestamp else 0
+    times = pa.array([start, None, start + 2 * a_second], kind(unit))
+    field = pa.field("t", kind(unit), metadata={"unit": "min"})
+    pq.write_table(pa.table([times], schema=pa.schema([field])), tmp_path / "a.parquet")
+    table = read(tmp_path / "a.parquet", ReadOptions(), ["t"])
+    np.testing.assert_array_equal(table.columns["t"], [0.0, np.nan, 2.0])
+    assert (table.units, table.typed) == ({"t": "s"}, {"t"})
+
+
+def test_dates_keep_their_zero_and_what_is_finer_than_a_microsecond(tmp_path, monkeypatch):
+    monkeypatch.setattr(parquet, "BATCH_ROWS", 2)
+    monkeypatch.setattr("tsas_cli.recordings.readers.table.BATCH_ROWS", 2)
+    start = 1_704_067_200 * 10**9
+    times = pa.array([None, None, start, start + 100, start + 200, None], pa.timestamp("ns"))
+    pq.write_table(pa.table({"t": times}), tmp_path / "a.parquet")
+    parts = [part.columns["t"] for part in batches(tmp_path / "a.parquet", ReadOptions(), ["t"])]
+    assert len(parts) == 3
+    nan = np.nan
+    np.testing.assert_array_equal(np.concatenate(parts), [nan, nan, 0.0, 1e-7, 2e-7, nan])
+
+
+def test_one_of_two_columns_of_a_name_is_taken_by_its_number(tmp_path):
+    path = tmp_path / "a.parquet"
+    columns = [pa.array([float(i), i + 0.5]) for i in range(4)]
+    pq.write_table(pa.Table.from_arrays(columns, ["t", "x", "x", "f"]), path)
+    taken = read(path, ReadOptions(), [3, "f", 2]).columns
+    assert {s: v.tolist() for s, v in taken.items()} == {3: [2, 2.5], "f": [3, 3.5], 2: [1, 1.5]}
+    assert list(open_file(path).table.columns) == ["t", 2, 3, "f"]
+
+
+def test_a_null_of_a_dictionary_is_a_gap(tmp_path):
+    column = pa.array(["1", None, "3"]).dictionary_encode()
+    pq.write_table(pa.table({"f": column}), tmp_path / "a.parquet")
+    table = read(tmp_path / "a.parquet", ReadOptions(), ["f"])
+    np.testing.assert_array_equal(table.columns["f"], [1.0, np.nan, 3.0])

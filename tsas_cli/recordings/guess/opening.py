@@ -1,7 +1,7 @@
 """A file opened without a map: its columns of numbers, and what had to be said to read it."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -60,7 +60,7 @@ def open_file(path: Path) -> Opened:
     columns, short = _longest(table)
     if next(iter(columns.values())).size < 2:
         raise InputError("holds one row", where=path, expected="at least two samples")
-    found = Table(columns, table.units, table.header, table.first_row)
+    found = replace(table, columns=columns)
     kept = {source: sources[source] for source in columns}
     return Opened(path, said, found, kept, left_out | short)
 

@@ -57,13 +57,14 @@ def read_capture(
     channels = _records(capture["Y"])
     at = resolve(wanted, [*_names(channels), TIME], path)
     clocks = [floats(np.ravel(clock["Data"]), TIME, path) for clock in _records(capture["X"])]
+    called = [source for source, i in at.items() if i == len(channels)]
     taken = {source: channels[i] for source, i in at.items() if i < len(channels)}
     series = {s: _series(channel, clocks, s, path) for s, channel in taken.items()}
-    units: dict[Source, str] = {TIME: "s"}
+    units = dict.fromkeys(called, "s")
     units |= {s: unit for s, channel in taken.items() if (unit := str(channel.get("Unit", "")))}
     description = str(capture.get("Description", ""))
     return Table(
-        on_one_clock(series, path, resample=options.resample),
+        on_one_clock(series, path, called=called, resample=options.resample),
         units,
         (description,) if description else (),
     )

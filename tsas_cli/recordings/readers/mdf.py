@@ -4,7 +4,7 @@ import gc
 import logging
 import sys
 import traceback
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -19,15 +19,19 @@ from tsas_cli.recordings.readers.options import ReadOptions
 from tsas_cli.recordings.readers.table import Floats, Source, Table, damaged, floats, resolve
 from tsas_cli.recordings.readers.timebase import TIME, on_one_clock
 
+_KINDS = {1: "a time", 2: "an angle", 3: "a distance", 4: "a count"}  # a master's `cn_sync_type`
+_MASTER_ELSEWHERE = 8  # of `cg_flags`: the master is that of another group
+
 
 def read(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Table:
-    """Read the wanted channels of an MDF file; its master channel is `time`, in s.
+    """Read the wanted channels of an MDF file; its master channel is `time`.
 
     Raises
     ------
     InputError
         asammdf is not installed, the file is damaged, a channel is missing or holds no numbers,
-        or the channels' times differ and the map does not say `resample = true`.
+        the master is wanted and no time, or the channels' masters differ and are no times in one
+        unit for which the map says `resample = true`.
     """
     with _opened(path) as file:
         return _table(file, options, wanted, path)
@@ -68,16 +72,18 @@ def _discard_half_made(error: Exception) -> None:
 def _table(file: Any, options: ReadOptions, wanted: Sequence[Source], path: Path) -> Table:
     channels = _channels(file)
     at = resolve(wanted, [*(name for name, _, _ in channels), TIME], path)
-    groups = (channels[i][1] for i in at.values() if i < len(channels))
+    groups = [channels[i][1] for i in at.values() if i < len(channels)]
     check_claims(path, (file.groups[group].channel_group.cycles_nr for group in groups))
+    called = [source for source, i in at.items() if i == len(channels)]
+    clock_unit = _clock_unit(file, groups, path, is_wanted=bool(called))
     signals = {
         source: file.get(*channels[i], ignore_invalidation_bits=True)
         for source, i in at.items()
         if i < len(channels)
     }
     series = {s: (signal.timestamps, _values(signal, s, path)) for s, signal in signals.items()}
-    columns = on_one_clock(series, path, resample=options.resample)
-    units: dict[Source, str] = {TIME: "s"}
+    columns = on_one_clock(series, path, called=called, resample=options.resample)
+    units = dict.fromkeys(called, clock_unit)
     units |= {source: signal.unit for source, signal in signals.items() if signal.unit}
     header = (str(file.header.comment), f"started {file.start_time.isoformat()}")
     return Table(columns, units, header)
@@ -91,6 +97,33 @@ def _channels(file: Any) -> list[tuple[str, int, int]]:
         for index, channel in enumerate(content.channels)
         if index != file.masters_db.get(group)
     ]
+
+
+def _clock_unit(file: Any, groups: Iterable[int], path: Path, *, is_wanted: bool) -> str:
+    """Return the unit of the groups' master, which has to be a time where it is wanted."""
+    clocks = list(dict.fromkeys(_clock(file, group) for group in groups)) or [("a time", "s")]
+    described = ", ".join(f"{kind} in {unit}" for kind, unit in clocks)
+    if len(clocks) > 1 or (is_wanted and clocks[0][0] != "a time"):
+        raise InputError(
+            f"the clock of the channels is {described}",
+            where=path,
+            expected="a time, in one unit",
+            remedy="take channels of one group; one without a time needs rate_Hz in the map",
+        )
+    return clocks[0][1]
+
+
+def _clock(file: Any, group: int) -> tuple[str, str]:
+    """Return what a group's master is of, and its unit; seconds where a time does not say."""
+    of_group = file.groups[group].channel_group
+    if getattr(of_group, "flags", 0) & _MASTER_ELSEWHERE:
+        return _clock(file, of_group.cg_master_index)
+    index = file.masters_db.get(group)
+    if index is None:
+        return "a count", "samples"
+    master = file.groups[group].channels[index]
+    kind = _KINDS.get(getattr(master, "sync_type", 1), "nothing")  # MDF 3 knows times alone
+    return kind, str(file.get_channel_unit(group=group, index=index)).strip() or "s"
 
 
 def _values(signal: Any, source: Source, path: Path) -> Floats:

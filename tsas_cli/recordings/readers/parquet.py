@@ -2,8 +2,10 @@
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import pyarrow as pa
 
 from tsas_cli.memory import out_of_memory
@@ -11,6 +13,7 @@ from tsas_cli.recordings.parquet_files import check_size, open_parquet
 from tsas_cli.recordings.readers.options import ReadOptions
 from tsas_cli.recordings.readers.table import (
     BATCH_ROWS,
+    Floats,
     Source,
     Table,
     damaged,
@@ -22,6 +25,8 @@ from tsas_cli.recordings.readers.table import (
 
 def batches(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Iterator[Table]:
     """Read the wanted columns of a Parquet file in parts; units from the fields' metadata `unit`.
+
+    Dates become seconds since the first one of their column, durations become seconds.
 
     Raises
     ------
@@ -41,13 +46,21 @@ def batches(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Itera
             }
             names = [field.name for field in fields.values()]
             check_size(file, path, names, whole=False)
+            # A name that is there twice is read twice: which of them it is says its turn.
+            turns = {
+                s: schema.get_all_field_indices(schema.names[i]).index(i) for s, i in at.items()
+            }
+            zeros: dict[Source, Any] = {}
             first = 1
             for table in in_batches(file.iter_batches(BATCH_ROWS, columns=names)):
-                columns = {
-                    source: floats(table.column(field.name).to_numpy(), source, path, first=first)
+                values = {
+                    source: _values(table, field.name, turns[source])
                     for source, field in fields.items()
                 }
-                yield Table(columns, units, first_row=first)
+                typed = frozenset(s for s, found in values.items() if found.dtype.kind in "mM")
+                values |= {source: _seconds(values[source], zeros, source) for source in typed}
+                columns = {s: floats(found, s, path, first=first) for s, found in values.items()}
+                yield Table(columns, units | dict.fromkeys(typed, "s"), (), first, typed)
                 first += table.num_rows
             if first == 1:
                 yield Table({source: np.empty(0) for source in fields}, units)
@@ -65,3 +78,25 @@ def names(path: Path, options: ReadOptions) -> Sequence[str]:
             return list(file.schema_arrow.names)
     except (pa.ArrowException, UnicodeDecodeError) as error:  # the latter is of names
         raise damaged(path, "Parquet", error) from error
+
+
+def _values(table: pa.Table, name: str, turn: int) -> npt.NDArray[Any]:
+    """Return a column, the one of this turn (from 0) among those of its name."""
+    column = table.column(table.schema.get_all_field_indices(name)[turn])
+    if pa.types.is_dictionary(column.type):  # else a null becomes a value of the dictionary
+        column = column.cast(column.type.value_type)
+    values: npt.NDArray[Any] = column.to_numpy()
+    return values
+
+
+def _seconds(values: npt.NDArray[Any], zeros: dict[Source, Any], source: Source) -> Floats:
+    """Return durations, or dates since the first one of the file, in seconds; null is NaN.
+
+    The first date of a source is kept in `zeros`: the parts of a file have one zero. Seconds since
+    1970 would be exact to a quarter of a microsecond only.
+    """
+    if values.dtype.kind == "M":
+        dates = values[~np.isnat(values)]
+        values = values - (zeros.setdefault(source, dates[0]) if dates.size else values)
+    seconds: Floats = values / np.timedelta64(1, "s")
+    return seconds

@@ -32,12 +32,15 @@ class Table:
         The lines above the table, or whatever else the file says in words.
     first_row
         The number of the first row as a person counts it in the file.
+    typed
+        The columns whose unit follows from their type, so that no map can say another.
     """
 
     columns: Mapping[Source, Floats]
     units: Mapping[Source, str] = field(default_factory=dict)
     header: tuple[str, ...] = ()
     first_row: int = 1
+    typed: frozenset[Source] = frozenset()
 
 
 def resolve(wanted: Sequence[Source], names: Sequence[str], path: Path) -> dict[Source, int]:
@@ -91,8 +94,12 @@ def floats(values: Any, source: Source, path: Path, *, first: int = 1) -> Floats
     Raises
     ------
     InputError
-        A value is no number; names its row.
+        A value is no number; names its row. They are complex, or dates or durations.
     """
+    if isinstance(values, np.ndarray) and values.dtype.kind in "cmM":  # NumPy would drop a part
+        raise InputError(
+            f"column {source} holds {values.dtype}", where=path, expected="real numbers"
+        )
     try:
         numbers = None if _has_text(values) else np.asarray(values, dtype=np.float64)
     except (TypeError, ValueError, OverflowError):

@@ -1,6 +1,6 @@
 """Channels with times of their own, brought onto one clock."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from pathlib import Path
 
 import numpy as np
@@ -12,14 +12,20 @@ TIME = "time"  # how a map names the clock of a file whose channels share it
 
 
 def on_one_clock(
-    series: Mapping[Source, tuple[Floats, Floats]], path: Path, *, resample: bool
+    series: Mapping[Source, tuple[Floats, Floats]],
+    path: Path,
+    *,
+    called: Collection[Source],
+    resample: bool,
 ) -> dict[Source, Floats]:
-    """Return the channels' values and, under `time`, the times that they share.
+    """Return the channels' values and the times that they share.
 
     Parameters
     ----------
     series
-        Times [s] and values by source, each of shape (n,) with its own n.
+        Times and values by source, each of shape (n,) with its own n.
+    called
+        What the map calls the shared times: `time`, its number, both or nothing.
     resample
         Where times differ, interpolate linearly onto the times of the channel with the most
         samples, within the stretch that all channels cover.
@@ -27,13 +33,14 @@ def on_one_clock(
     Raises
     ------
     InputError
-        No channel is taken, the times differ and `resample` is not set, or they never overlap.
+        No channel is taken; the times differ and `resample` is not set, they run backwards or
+        stand still, or they never overlap.
     """
     if not series:
         raise InputError("the map takes no channel but the time", where=path)
     clock = max((times for times, _ in series.values()), key=len)
     if all(np.array_equal(times, clock) for times, _ in series.values()):
-        return {TIME: clock} | {source: values for source, (_, values) in series.items()}
+        return dict.fromkeys(called, clock) | {s: values for s, (_, values) in series.items()}
     described = "; ".join(f"{s}: {_described(times)}" for s, (times, _) in series.items())
     if not resample:
         raise InputError(
@@ -44,15 +51,32 @@ def on_one_clock(
         )
     if any(times.size == 0 for times, _ in series.values()):
         raise InputError(f"a channel holds no samples ({described})", where=path)
+    for source, (times, _) in series.items():
+        _check_increases(times, source, path)
     start = max(times[0] for times, _ in series.values())
     end = min(times[-1] for times, _ in series.values())
     clock = clock[(clock >= start) & (clock <= end)]
     if clock.size == 0:
         raise InputError(f"the channels never overlap in time ({described})", where=path)
-    return {TIME: clock} | {s: np.interp(clock, *channel) for s, channel in series.items()}
+    resampled = {s: np.interp(clock, *channel) for s, channel in series.items()}
+    return dict.fromkeys(called, clock) | resampled
+
+
+def _check_increases(times: Floats, source: Source, path: Path) -> None:
+    """Refuse times between which nothing can be interpolated: NumPy would answer all the same."""
+    steps = np.diff(times)
+    odd = ~((steps > 0) & np.isfinite(steps))
+    if odd.any():
+        i = int(odd.argmax())
+        raise InputError(
+            f"the time of {source} does not increase ({times[i]:.9g}, then {times[i + 1]:.9g})",
+            where=f"{path}, row {i + 2}",
+            expected="strictly increasing time",
+            remedy="mend the file, or leave the channel out",
+        )
 
 
 def _described(times: Floats) -> str:
     if times.size == 0:
         return "no samples"
-    return f"{times.size} samples, {times[0]:g} to {times[-1]:g} s"
+    return f"{times.size} samples, {times[0]:g} to {times[-1]:g}"
