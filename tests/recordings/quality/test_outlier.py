@@ -30,7 +30,7 @@ def with_wild(name, rows, value):
 @pytest.mark.parametrize(
     ("name", "value"),
     list(
-        product(("x_in_mm", "x_out_mm", "f_in_N", "f_out_N"), (8.0, -60.0, 1e3, -1e5, 1e10, 3.4e38))
+        product(("x_in_mm", "x_out_mm", "f_in_N", "f_out_N"), (8.0, -60.0, 1e3, -9e5, 1e10, 3.4e38))
     ),
 )
 def test_one_wild_sample_is_found_in_each_channel_and_by_no_other_check(name, value):
@@ -39,6 +39,10 @@ def test_one_wild_sample_is_found_in_each_channel_and_by_no_other_check(name, va
     assert said.first_s == GOOD["time_s"][1234]
     assert "1 sample far off what" in said.sentence
     assert said.sentence.endswith("at 6.17 s, row 1234")
+
+
+def test_a_sample_beside_which_all_others_look_alike_is_found():
+    found(with_wild("f_in_N", 1234, -9e8), "outlier", "f_in_N")
 
 
 @pytest.mark.parametrize("rows", [[0], [N - 1], [7, 8, 9], [100, 101, 700, 1500]])
@@ -75,6 +79,7 @@ def test_it_is_found_in_motion_without_noise_and_in_steps(noise, step):
         np.exp(-50.0 * (TIME % 1.0)) * np.cos(800.0 * TIME),  # blows that ring
         np.repeat(np.sin(6.0 * TIME[::4]), 4),  # held between updates
         np.zeros(TIME.size),
+        (np.arange(TIME.size) == 700) * 0.1,  # one bit flickers once
     ],
     ids=str,
 )

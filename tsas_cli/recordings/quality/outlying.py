@@ -34,8 +34,12 @@ def outlying(
     """
     with np.errstate(all="ignore"):  # a stray 1e300 stands out like any other
         found = np.abs(values) > most
+        if not span > 0.0:  # one other value in a constant channel may be its step
+            return found
         there = np.flatnonzero(np.isfinite(values) & ~found)
-        least = max(_SPAN * span, _STEPS * step, _NOISE * np.nan_to_num(noise))
+        # Beside a value of 1e9 the levels of the others are one, and the step is that value.
+        steps = _STEPS * step if step <= span else 0.0
+        least = max(_SPAN * span, steps, _NOISE * np.nan_to_num(noise))
         found[there[_standing_off(time_s[there], values[there], least, span)]] = True
     return found
 
