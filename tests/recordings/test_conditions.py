@@ -35,6 +35,13 @@ def test_a_name_with_an_underscore_between_digits_is_no_number():
     assert found["no"] == "1_2"
 
 
+def test_a_date_in_a_name_stays_text():
+    found = conditions(
+        path=Path("/rig/rec_20240101.csv"), from_file_name={"pattern": r"rec_(?P<started>\d{8})"}
+    )
+    assert found["started"] == "20240101"
+
+
 def test_the_folder_is_part_of_the_name_and_of_the_id():
     found = conditions(
         id="{folder}-{stage}-{stem}", from_file_name={"pattern": r"^L_(?P<stage>\d)/bend"}
