@@ -30,7 +30,11 @@ EXPANSION = 500  # times the size of a packed file; zeros reach 1032, channels a
 PARQUET_EXPANSION = 5_000  # there an even clock and channels at rest reach 1700
 HARMLESS = 256 * MIB  # which any file may expand to
 COPIES = 3  # of what is loaded whole, until it is a recording
+SEEDS = 10_000  # of noise, in one call
 ITEMS = 1_000_000  # variables, cells, blocks of one file
+# What no rig has, in the units of the canonical columns: a sentinel, or a number of another thing.
+LARGEST = {"mm": 1e6, "N": 1e9, "rpm": 1e9, "rad": 1e9, "°C": 1e6}
+SHORTEST_STEP_S, LONGEST_STEP_S = 1e-10, 1e9  # from a sample to the next
 _DOTTED = re.compile(
     r"""(?<![\w"'.-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){%d}""" % DEPTH  # noqa: UP031
 )

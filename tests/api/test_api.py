@@ -279,6 +279,11 @@ def test_check_is_told_by_run(folder, tmp_path):
         (lambda folder: tsas.track(seeds=0), "seeds is 0; expected 1 or more"),
         (lambda folder: tsas.track(disturb="frction_coefficient=0.2"), "did you mean friction"),
         (lambda folder: tsas.close_loop(out="none", first_seed=-1), "first_seed is -1"),
+        (
+            lambda folder: tsas.close_loop(out="none", seeds=99_999_999_999),
+            "seeds is 99999999999; expected at most 10000",
+        ),
+        (lambda folder: tsas.track(seeds=10_001), "seeds is 10001; expected at most 10000"),
         (lambda folder: tsas.plan(folder / "none.toml"), "cannot be read"),
         (lambda folder: tsas.report(folder.parent, out=folder.parent / "r.html"), "neither a"),
         (lambda folder: tsas.explain("backlsh"), "did you mean backlash"),

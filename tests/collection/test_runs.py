@@ -175,6 +175,7 @@ def test_the_frame_has_a_row_for_each_run(rigs):
         ("started > 2026-01 and rows >> and 3", "the query, character 31, at 'and 3': syntax"),
         ("f_uot in channels", "the query: no run has a channel f_uot; did you mean f_out_N?"),
         ("one", "the query, character 1, at 'one': there is no column one; name folders with --in"),
+        ("a" * 300, "the query, character 1, at 'aaaaaaaaaaaaaaaaaaaa': there is no column aaa"),
         ("run > 3", "the query: Cannot compare values"),
         ("started > 2026-13", "the query: timestamp field value out of range"),
         ("rows > 1) union select (1", "the query, character 9, at ') union select (1'"),

@@ -81,7 +81,7 @@ CONDITIONS = {
 
 
 @pytest.mark.parametrize(
-    ("name", "least", "too_little"),
+    ("name", "allowed", "not_allowed"),
     [
         ("sheath_length_mm", 1e-6, 0.0),
         ("total_bend_rad", 0.0, -1e-6),  # a straight sheath is one
@@ -89,13 +89,14 @@ CONDITIONS = {
         ("amplitude_mm", 1e-6, 0.0),
         ("speed_mm_per_s", 1e-6, 0.0),
         ("periods", 1, 0),
+        ("periods", 10_000, 10_001),
         ("dwell_s", 0.0, -1e-6),
     ],
 )
-def test_conditions_that_cannot_be(name, least, too_little):
-    assert getattr(PlannedRun(**CONDITIONS | {name: least}), name) == least
+def test_conditions_that_cannot_be(name, allowed, not_allowed):
+    assert getattr(PlannedRun(**CONDITIONS | {name: allowed}), name) == allowed
     with pytest.raises(ValueError, match=name):
-        PlannedRun(**CONDITIONS | {name: too_little})
+        PlannedRun(**CONDITIONS | {name: not_allowed})
 
 
 @pytest.mark.parametrize(

@@ -95,6 +95,7 @@ def test_a_bend_in_degrees_is_refused():
         ("format = 1\n" + VALUE.replace("0.1", "nan"), "is nan; expected a finite number"),
         ("format = 1\n" + VALUE.replace("0.1", "-0.1"), "is -0.1; expected a positive number"),
         ("format = 1\n" + VALUE.replace("0.1", "'x'"), "should be a valid number"),
+        ("format = 1\n" + VALUE.replace("0.1", "true"), "value: true and false are no numbers"),
         ("format = 1\n" + VALUE + "stdder = 0.1\n", "did you mean stderr"),
         (
             "format = 1\n[parameters.tendon_stiffness_N]\nvalue = 0\nunit = 'N'\n",

@@ -43,6 +43,13 @@ def test_a_comma_before_three_digits_is_a_decimal_mark_where_the_map_says_so():
         run_conditions(PATH, ["1,250 N"], rules)
 
 
+def test_a_date_in_a_name_stays_text():
+    found = conditions(
+        path=Path("/rig/rec_20240101.csv"), from_file_name={"pattern": r"rec_(?P<started>\d{8})"}
+    )
+    assert found["started"] == "20240101"
+
+
 def test_the_folder_is_part_of_the_name_and_of_the_id():
     found = conditions(
         id="{folder}-{stage}-{stem}", from_file_name={"pattern": r"^L_(?P<stage>\d)/bend"}

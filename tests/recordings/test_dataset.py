@@ -186,6 +186,39 @@ def test_an_infinite_value_is_named_with_its_row(dataset: Path, columns: Columns
     assert refusal(dataset).startswith(", row 12: f_in_N is infinite")
 
 
+@pytest.mark.parametrize(
+    ("column", "value", "most"),
+    [
+        ("x_in_mm", 3.4e38, "1e+06 mm"),
+        ("x_in_mm", -1.1e6, "1e+06 mm"),
+        ("f_in_N", 1e10, "1e+09 N"),
+    ],
+)
+def test_a_value_that_no_rig_has_is_named_with_its_row(
+    dataset: Path, columns: Columns, column: str, value: float, most: str
+) -> None:
+    columns[column][12] = value
+    put(dataset, pa.table(columns))
+    said = refusal(dataset)
+    assert said.startswith(f", row 12: {column} is {value:g}; expected a size of at most {most}")
+    entry = read_dataset(dataset).runs[0]
+    assert read_recording(dataset, entry, strict=False).columns[column][12] == value
+
+
+@pytest.mark.parametrize("scale", [1e-100, 1e100])
+def test_time_in_steps_that_no_clock_has_is_named_with_its_row(
+    dataset: Path, columns: Columns, scale: float
+) -> None:
+    put(dataset, pa.table(columns | {"time_s": scale * columns["time_s"]}))
+    assert refusal(dataset).startswith(", row 1: time_s goes on by ")
+
+
+def test_one_step_that_no_clock_has_is_named_with_its_row(dataset: Path, columns: Columns) -> None:
+    columns["time_s"][:2] = 0.0, 5e-324
+    put(dataset, pa.table(columns))
+    assert refusal(dataset).startswith(", row 1: time_s goes on by 4.94066e-324 s; expected steps")
+
+
 @pytest.mark.parametrize("value", [np.nan, np.inf, None])
 def test_a_time_that_is_no_number_is_named_with_its_row(
     dataset: Path, columns: Columns, value: float | None

@@ -55,6 +55,11 @@ def test_the_smallest_map_and_the_columns_it_takes(ask):
         (WHOLE.replace("[columns.time_s]", "[columns.x_out_mm]"), "time_s is missing"),
         (WHOLE.replace("x_in_mm", "temperature_C"), "an input and an output column"),
         (WHOLE.replace('name = "m"', ""), "dataset.name is missing"),
+        (WHOLE + "offset = true\n", "columns.f_in_N.offset: true and false are no numbers"),
+        (WHOLE + "sign = true\n", "columns.f_in_N.sign: true and false are no numbers"),
+        (WHOLE.replace("source = 1", "rate_Hz = true"), "columns.time_s.rate_Hz: true and false"),
+        (WHOLE.replace("source = 1", "source = true"), "columns.time_s.source: true and false"),
+        (WHOLE + "[read]\nextra = ['a', true]\n", "read.extra.1: true and false are no numbers"),
         ("[dataset", "is not TOML"),
     ],
 )

@@ -8,6 +8,7 @@ from tsas_cli.errors import InputError
 from tsas_cli.recordings.manifest import Manifest, parse, read_manifest, write_manifest
 
 SHA = "0123456789abcdef" * 4
+STARTED = "started = 2026-03-02T09:30:00"
 TEXT = f"""
 format = 1
 name = "bench-42"
@@ -58,6 +59,17 @@ def test_a_manifest_says_what_was_written_by_hand(tmp_path: Path) -> None:
     assert (a.id, a.file, a.sheath_length_mm, a.preload_N) == ("a", "runs/a.parquet", 785.4, 25.0)
     assert a.started == dt.datetime.fromisoformat("2026-03-02T09:30:00")
     assert (a.load, b.load) == ("spring", "force")
+
+
+@pytest.mark.parametrize("said", ["2024-01-31", '"2024-01-31"', '"20240131"', '"20240131T00:00"'])
+def test_a_day_is_a_date_with_dashes_and_without(tmp_path: Path, said: str) -> None:
+    manifest = read(tmp_path, TEXT.replace(STARTED, f"started = {said}"))
+    assert manifest.run[0].started == dt.datetime.fromisoformat("2024-01-31")
+
+
+def test_true_stays_true_where_no_number_is_meant(tmp_path: Path) -> None:
+    manifest = read(tmp_path, TEXT + "\n[lab]\nheated = true\nnumbers = [true, 1]\n")
+    assert manifest.model_extra == {"lab": {"heated": True, "numbers": [True, 1]}}
 
 
 def test_writing_and_reading_gives_the_same_manifest(tmp_path: Path) -> None:
@@ -140,6 +152,15 @@ def test_an_id_that_cannot_name_a_file_is_refused(tmp_path: Path, name: str) -> 
         ("preload_N = 25.0", "preload_N = inf", "run.0.preload_N: .*finite"),
         ("1.579", "0", "rig.load_stiffness_N_per_mm: .*greater than 0, got 0"),
         ("[[run]]", "[[runs]]", "run is missing"),
+        ("format = 1", "format = true", "format: true and false are no numbers"),
+        ("preload_N = 25.0", "total_bend_rad = true", "run.0.total_bend_rad: true and false are"),
+        ("1.579", "true", "rig.load_stiffness_N_per_mm: true and false are no numbers"),
+        (STARTED, "started = 20240101", "run.0.started: is no date such as .* got 20240101"),
+        (STARTED, 'started = "1704067200"', "run.0.started: is no date"),
+        (STARTED, "started = 1.5", "run.0.started: is no date"),
+        (STARTED, "started = true", "run.0.started: is no date"),
+        (STARTED, 'started = "01.02.2024"', "run.0.started: is no date"),
+        (STARTED, 'started = "20240230"', "run.0.started: .* day value"),
     ],
 )
 def test_what_format_1_does_not_allow_is_refused(

@@ -3,7 +3,9 @@
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
+import pytest
 
+from tsas_cli.errors import InputError
 from tsas_cli.files import sha256_of
 from tsas_cli.recordings import pieces as reading
 from tsas_cli.recordings.dataset import read_dataset
@@ -25,3 +27,16 @@ def test_every_row_is_read_and_a_small_part_is_held(dataset, monkeypatch):
         seen.append(piece.columns["f_in_N"])
     assert (np.concatenate(seen) == values["f_in_N"]).all()
     assert max(held) < (dataset / run.file).stat().st_size / 10
+
+
+def test_a_value_that_no_rig_has_is_named_with_its_row_in_the_run(dataset, monkeypatch):
+    run, values = read_dataset(dataset).runs[0], np.ones(3000)
+    values[2100] = 1e10
+    table = pa.table({"time_s": np.arange(3000) / 100.0, "x_in_mm": values})
+    pq.write_table(table, dataset / run.file)
+    run = run.model_copy(update={"sha256": sha256_of(dataset / run.file)})
+    monkeypatch.setattr(reading, "MOST_ROWS", 1000)
+    opened = open_run(dataset, run)
+    with pytest.raises(InputError, match=r"row 2100: x_in_mm is 1e\+10; expected"):
+        list(reading.pieces(opened, table.column_names))
+    assert len(list(reading.pieces(opened, table.column_names, strict=False))) == 3

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Literal
 
 from tsas_cli import __version__
-from tsas_cli.api.given import Named, at_least, one_of, path_of
+from tsas_cli.api.given import Named, at_least, number_of_seeds, one_of, path_of
 from tsas_cli.challenge import cases
 from tsas_cli.challenge.make import make
 from tsas_cli.challenge.run import TOOLS, case_folders, run_cases
@@ -94,7 +94,7 @@ def make_set(
     InputError
         No case is left, or `out` exists and `force` is not set.
     """
-    first, count = at_least(0, seed, "seed"), at_least(1, seeds, "seeds")
+    first, count = at_least(0, seed, "seed"), number_of_seeds(seeds)
     listed = [case for each in range(first, first + count) for case in cases.cases(each)]
     if small:
         listed = list(cases.part(listed))

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from tsas_cli.api.given import Named, at_least, listed, path_of
+from tsas_cli.api.given import Named, at_least, listed, number_of_seeds, path_of
 from tsas_cli.steps import SILENT, Steps
 from tsas_cli.tracking.closing_stage import ClosingResult, chosen, close_all
 from tsas_cli.tracking.settings import read_settings
@@ -55,5 +55,5 @@ def close_loop(
     """
     wanted = chosen(None if cases is None else listed(cases), listed(hide))
     read, first = read_settings(path_of(settings)), at_least(0, first_seed, "first_seed")
-    seeds_taken = range(first, first + at_least(1, seeds, "seeds"))
+    seeds_taken = range(first, first + number_of_seeds(seeds))
     return close_all(wanted, read, Path(out), seeds_taken, force=force, step=step)

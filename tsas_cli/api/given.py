@@ -4,6 +4,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TypeVar
 
+from tsas_cli import limits
 from tsas_cli.errors import InputError, nearest
 from tsas_cli.recordings.dataset import Dataset, read_dataset
 from tsas_cli.recordings.storage import Place, place_of
@@ -66,6 +67,19 @@ def at_least(least: int, given: int, name: str) -> int:
     """
     if given < least:
         raise InputError(f"{name} is {given}", expected=f"{least} or more")
+    return given
+
+
+def number_of_seeds(given: int) -> int:
+    """Return how many seeds are asked for.
+
+    Raises
+    ------
+    InputError
+        There is none, or there are more than anyone waits for.
+    """
+    if at_least(1, given, "seeds") > limits.SEEDS:
+        raise InputError(f"seeds is {given}", expected=f"at most {limits.SEEDS}")
     return given
 
 

@@ -5,7 +5,7 @@ from typing import Any, Literal
 
 import pyarrow as pa
 
-from tsas_cli.api.given import Named, at_least, listed, one_of, path_of
+from tsas_cli.api.given import Named, at_least, listed, number_of_seeds, one_of, path_of
 from tsas_cli.controllers import CONTROLLERS
 from tsas_cli.errors import InputError
 from tsas_cli.identification.drive_file import IdentifiedDrive
@@ -105,7 +105,7 @@ def track(
         reference=str(reference),
         as_printed=as_printed,
         dynamics=one_of(DYNAMICS, dynamics, "dynamics"),
-        seeds=(COMPARED_SEEDS if compare else 1) if seeds is None else at_least(1, seeds, "seeds"),
+        seeds=(COMPARED_SEEDS if compare else 1) if seeds is None else number_of_seeds(seeds),
         first_seed=at_least(0, first_seed, "first_seed"),
     )
     return track_all(call, path_of(out), force=force, step=step, each=each)

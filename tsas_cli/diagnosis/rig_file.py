@@ -50,7 +50,7 @@ class PlannedRun(_Table):
     amplitude_mm: float = Field(gt=0)
     speed_mm_per_s: float | None = Field(default=None, gt=0)
     frequency_Hz: float | None = Field(default=None, gt=0)
-    periods: int = Field(default=2, ge=1)
+    periods: int = Field(default=2, ge=1, le=10_000)
     dwell_s: float = Field(default=0.0, ge=0)
 
     @model_validator(mode="after")

@@ -1,7 +1,10 @@
 """The canonical columns of a recording, with their units and roles (format 1)."""
 
+import math
 from dataclasses import dataclass
 from typing import Literal
+
+from tsas_cli import limits
 
 Role = Literal["time", "input", "output", "other"]
 
@@ -43,6 +46,15 @@ OUTPUTS = ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N")
 def has_input_and_output(names: frozenset[str]) -> bool:
     """Say whether the columns hold an input and another column that is an output."""
     return any(i != o for i in names.intersection(INPUTS) for o in names.intersection(OUTPUTS))
+
+
+def largest(name: str) -> float:
+    """Return the largest size that a value of a column has on any rig, in the column's unit.
+
+    Infinite for the time, of which the steps are limited, and for columns that are not canonical.
+    """
+    column = BY_NAME.get(name)
+    return limits.LARGEST.get(column.unit, math.inf) if column else math.inf
 
 
 def nominal_name(name: str) -> str:

@@ -46,7 +46,11 @@ def run_conditions(
         for condition, rule in run_map.conditions.items()
     }
     used = {rule.group for rule in run_map.conditions.values()}
-    said = {key: _plain(text) for key, text in groups.items() if key not in used}
+    said = {
+        key: text if key == "started" else _plain(text)  # 20260302 is a date, no number
+        for key, text in groups.items()
+        if key not in used
+    }
     defaults = run_map.model_dump(include={"load", *_UNITS}, exclude_none=True)
     return defaults | said | converted | run_map.table.get(name, {}) | {"id": name}
 

@@ -1,13 +1,23 @@
 """The manifest `dataset.toml` of a dataset, format 1: what it says and how it is checked."""
 
+import re
 import tomllib
 from collections import Counter
-from datetime import datetime
+from collections.abc import Iterator
+from datetime import date, datetime
 from pathlib import Path, PurePosixPath
-from typing import Any, Literal, Self, TypeVar
+from typing import Annotated, Any, Literal, Self, TypeVar
 
 import tomlkit
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    ValidationError,
+    field_validator,
+    model_validator,
+)
 
 from tsas_cli import limits
 from tsas_cli.errors import InputError, nearest
@@ -20,6 +30,17 @@ T = TypeVar("T", bound=BaseModel)
 _SAID = 5  # of what is wrong with a file; the rest is counted
 _SHOWN = 80  # characters of a value that is wrong
 _PATH = 1000  # characters of a path in the dataset
+
+
+def _as_date(value: object) -> object:
+    """Return what is a date, or begins like one in ISO 8601; Pydantic takes numbers for seconds."""
+    if isinstance(value, str):
+        value = re.sub(r"^(\d{4})(\d\d)(\d\d)(?!\d)", r"\1-\2-\3", value)
+        if re.match(r"\d{4}-\d\d-\d\d", value):
+            return value
+    elif isinstance(value, date):
+        return value
+    raise ValueError("is no date such as 2026-03-02 or 2026-03-02T09:30:00Z")
 
 
 class _Table(BaseModel):
@@ -62,7 +83,7 @@ class Run(_Table):
     id: str = Field(min_length=1)
     file: str
     sha256: str = Field(pattern=r"^[0-9a-fA-F]{64}$")
-    started: datetime | None = None
+    started: Annotated[datetime, BeforeValidator(_as_date)] | None = None
     sheath_length_mm: float | None = Field(default=None, gt=0)
     total_bend_rad: float | None = Field(default=None, ge=0)
     preload_N: float | None = Field(default=None, ge=0)
@@ -179,12 +200,37 @@ def parse(model: type[T], content: dict[str, Any], path: object) -> T:
         Something is missing, unknown or not allowed.
     """
     try:
-        return model.model_validate(content)
+        read = model.model_validate(content)
     except ValidationError as error:
         found = [e for e in error.errors(include_url=False) if not _follows(e)]
         said = [_sentence(e, model) for e in found[:_SAID]]
         more = [f"and {len(found) - _SAID} more"] if len(found) > _SAID else []
         raise InputError("; ".join(said + more), where=path) from error
+    for place in _counted(content, read):
+        raise InputError(f"{place}: true and false are no numbers", where=path)
+    return read
+
+
+def _counted(written: Any, read: Any) -> Iterator[str]:
+    """Yield the places where true or false is written and was read as 1 or 0.
+
+    Pydantic's own strict mode would refuse 1 for 1.0 too, and lists for tuples.
+    """
+    if isinstance(written, dict):
+        for key, value in written.items():
+            inner = read.get(key) if isinstance(read, dict) else getattr(read, key, None)
+            yield from _counted_inside(str(key), value, inner)
+    elif isinstance(written, list) and isinstance(read, list | tuple):
+        for number, (value, inner) in enumerate(zip(written, read, strict=False)):
+            yield from _counted_inside(str(number), value, inner)
+
+
+def _counted_inside(place: str, written: Any, read: Any) -> Iterator[str]:
+    if isinstance(written, bool):
+        if isinstance(read, int | float) and not isinstance(read, bool):
+            yield place
+    elif isinstance(written, dict | list) and read is not None and read is not written:
+        yield from (f"{place}.{inner}" for inner in _counted(written, read))
 
 
 def _sentence(error: Any, model: type[BaseModel]) -> str:

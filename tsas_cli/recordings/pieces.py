@@ -22,6 +22,7 @@ from tsas_cli.recordings.recording import Floats
 from tsas_cli.recordings.run_files import (
     RunColumns,
     check_columns,
+    check_magnitude,
     check_time,
     floats_of,
     open_run,
@@ -87,25 +88,28 @@ def pieces(
 ) -> Iterator[Piece]:
     """Read columns in pieces of `MOST_ROWS` rows, the last `overlap` of each in the next one too.
 
-    With `strict=False` time may stand or run backwards.
+    With `strict=False` time may stand or run backwards, and values be larger than any rig has.
 
     Raises
     ------
     InputError
-        The file cannot be read, a column holds no numbers, or time does not increase.
+        The file cannot be read, a column holds no numbers or one that no rig has, or time does not
+        increase.
     """
     held: dict[str, list[Floats]] = {name: [] for name in names}
     start = count = read = 0
-    last_s = -np.inf
+    last_s: Floats = np.empty(0)
     try:
         for batch in run.file.iter_batches(min(_ROWS_AT_ONCE, MOST_ROWS), columns=list(names)):
             table = pa.Table.from_batches([batch])
             for name in names:
                 held[name].append(floats_of(table, name, run.path, first_row=read))
+                if strict:
+                    check_magnitude(name, held[name][-1], run.path, first_row=read)
             if strict and TIME in names:
-                time_s = np.concatenate(([last_s], held[TIME][-1]))
-                check_time(time_s, run.path, first_row=read - 1)
-                last_s = float(time_s[-1])
+                time_s = np.concatenate((last_s, held[TIME][-1]))
+                check_time(time_s, run.path, first_row=read - last_s.size)
+                last_s = time_s[-1:]
             read += batch.num_rows
             count += batch.num_rows
             while count >= MOST_ROWS:

@@ -8,13 +8,21 @@ import numpy.typing as npt
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from tsas_cli import limits
 from tsas_cli.errors import InputError
 from tsas_cli.files import check_unchanged, state_of
 from tsas_cli.memory import out_of_memory
 from tsas_cli.recordings.arrow_columns import floats_from
 from tsas_cli.recordings.blocks import NotTheSameError
 from tsas_cli.recordings.checked import Source, changed, checked_file
-from tsas_cli.recordings.columns import BY_NAME, INPUTS, OUTPUTS, TIME, has_input_and_output
+from tsas_cli.recordings.columns import (
+    BY_NAME,
+    INPUTS,
+    OUTPUTS,
+    TIME,
+    has_input_and_output,
+    largest,
+)
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.parquet_files import check_size, is_number, open_parquet, size_of
 from tsas_cli.recordings.readers.table import damaged
@@ -28,13 +36,15 @@ Floats = npt.NDArray[np.float64]
 def read_recording(folder: Place, run: Run, *, strict: bool = True) -> Recording:
     """Read one run and check it against its checksum and the rules of format 1.
 
-    With `strict=False` the time may run backwards or repeat, for `tsas check` to describe it.
+    With `strict=False` the time may run backwards or repeat, and values may be larger than any
+    rig has, for `tsas check` to describe it.
 
     Raises
     ------
     InputError
         The file is missing, leaves its folder, is not Parquet or has another checksum; a column
-        is missing, in another unit or not of numbers; the time is not strictly increasing.
+        is missing, in another unit, not of numbers or holds one that no rig has; the time is not
+        strictly increasing, or in steps that no clock has.
     """
     path = folder / run.file
     state = state_of(path) if isinstance(path, Path) and path.is_file() else None
@@ -50,6 +60,8 @@ def read_recording(folder: Place, run: Run, *, strict: bool = True) -> Recording
         raise InputError(f"{len(columns[TIME])} rows", where=path, expected="at least two samples")
     if strict:
         check_time(columns[TIME], path)
+        for name, values in columns.items():
+            check_magnitude(name, values, path)
     return Recording(run, columns)
 
 
@@ -79,7 +91,8 @@ class RunColumns:
         Raises
         ------
         InputError
-            It is not there, not of numbers, or cannot be read; the time is not strictly increasing.
+            It is not there, not of numbers or holds one that no rig has, or cannot be read; the
+            time is not strictly increasing, or in steps that no clock has.
         """
         if name not in self.names:
             raise InputError(
@@ -97,6 +110,7 @@ class RunColumns:
         values = floats_of(table, name, self.path)
         if name == TIME:
             check_time(values, self.path)
+        check_magnitude(name, values, self.path)
         return values
 
 
@@ -139,6 +153,8 @@ def read_columns(path: Path) -> dict[str, Floats]:
     if TIME not in columns or len(columns[TIME]) < 2:
         raise InputError("column time_s is missing or short", where=path, expected="time in s")
     check_time(columns[TIME], path)
+    for name, values in columns.items():
+        check_magnitude(name, values, path)
     return columns
 
 
@@ -232,14 +248,17 @@ def check_columns(known: list[str], there: list[str], path: Place) -> None:
 
 
 def check_time(time_s: Floats, path: Place, *, first_row: int = 0) -> None:
-    """Refuse time that does not increase; `first_row` is the number of the first sample.
+    """Refuse time that does not increase, or by steps that no clock has.
+
+    `first_row` is the number of the first sample.
 
     Raises
     ------
     InputError
-        It stands or runs backwards.
+        It stands, runs backwards, or has such a step.
     """
-    step = np.diff(time_s)
+    with np.errstate(over="ignore"):  # the step is infinite then, and refused
+        step = np.diff(time_s)
     if (step <= 0).any():
         row = int(np.flatnonzero(step <= 0)[0]) + 1
         raise InputError(
@@ -247,4 +266,34 @@ def check_time(time_s: Floats, path: Place, *, first_row: int = 0) -> None:
             where=f"{path}, row {first_row + row}",
             expected="strictly increasing time",
             remedy="`tsas check` describes it; mend it before ingest",
+        )
+    odd = (step < limits.SHORTEST_STEP_S) | (step > limits.LONGEST_STEP_S)
+    if odd.any():
+        row = int(odd.argmax()) + 1
+        raise InputError(
+            f"time_s goes on by {step[row - 1]:.6g} s",
+            where=f"{path}, row {first_row + row}",
+            expected=f"steps from {limits.SHORTEST_STEP_S:g} s to {limits.LONGEST_STEP_S:g} s",
+            remedy="look up the unit of the time, and ingest again",
+        )
+
+
+def check_magnitude(name: str, values: Floats, path: Place, *, first_row: int = 0) -> None:
+    """Refuse values of a canonical column that no rig has; `first_row` is that of the first.
+
+    Raises
+    ------
+    InputError
+        There is one.
+    """
+    most = largest(name)
+    wild = np.abs(values) > most
+    if wild.any():
+        row = int(wild.argmax())
+        raise InputError(
+            f"{name} is {values[row]:.6g}",
+            where=f"{path}, row {first_row + row}",
+            expected=f"a size of at most {most:g} {BY_NAME[name].unit}",
+            remedy="leave the cell empty where nothing was measured, or look up the unit, "
+            "and ingest again; `tsas check` lists such samples",
         )

@@ -92,8 +92,12 @@ def without_rows(measured):
         measured[name] = np.delete(values, slice(900, 930))
 
 
+def wild(measured):
+    measured["f_in_N"][[1000, 3000]] = 1e4, 3.4e38
+
+
 @pytest.mark.parametrize(
-    "harm", [exchanged, clipped, stuck, turned, empty, inches, backwards, without_rows]
+    "harm", [exchanged, clipped, stuck, turned, empty, inches, backwards, without_rows, wild]
 )
 def test_what_is_found_in_the_whole_is_found_in_its_stretches(check, measured, harm):
     harm(measured)

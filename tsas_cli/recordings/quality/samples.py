@@ -19,6 +19,11 @@ def step_of(values: Floats) -> float:
     return quantisation_step(values) or quantisation_step(increments)
 
 
+def span_of(values: Floats) -> float:
+    """Return how far a channel moves: all but the outermost thousandth at either end."""
+    return float(np.ptp(np.nanpercentile(values, (0.1, 99.9))))
+
+
 def alternates(values: Floats) -> bool:
     """Say whether a channel is noisy: third differences of noise alternate, of motion they do not.
 

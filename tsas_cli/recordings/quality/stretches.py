@@ -28,8 +28,8 @@ from tsas_cli.recordings.quality.checks import (
     unit,
 )
 from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
-from tsas_cli.recordings.quality.samples import step_of
-from tsas_cli.recordings.quality.trial import Overall, Trial, span_of
+from tsas_cli.recordings.quality.samples import span_of, step_of
+from tsas_cli.recordings.quality.trial import Overall, Trial
 from tsas_cli.recordings.recording import Floats, Recording
 from tsas_cli.recordings.run_files import RunColumns
 

@@ -8,9 +8,10 @@ import numpy as np
 
 from tsas_cli.numerics.noise import noise_sd
 from tsas_cli.numerics.turning_points import turning_points
-from tsas_cli.recordings.columns import TIME
+from tsas_cli.recordings.columns import TIME, largest
 from tsas_cli.recordings.manifest import Rig
-from tsas_cli.recordings.quality.samples import Booleans, step_of
+from tsas_cli.recordings.quality.outlying import outlying
+from tsas_cli.recordings.quality.samples import Booleans, span_of, step_of
 from tsas_cli.recordings.recording import Floats, Recording
 
 MECHANICAL = ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N")
@@ -31,11 +32,6 @@ class Stroke:
     def rows(self) -> slice:
         """The rows of the stroke."""
         return slice(self.start, self.stop + 1)
-
-
-def span_of(values: Floats) -> float:
-    """Return how far a channel moves: all but the outermost thousandth at either end."""
-    return float(np.ptp(np.nanpercentile(values, (0.1, 99.9))))
 
 
 @dataclass(frozen=True)
@@ -74,12 +70,32 @@ class Trial:
 
     @cached_property
     def channels(self) -> dict[str, Floats]:
-        """The columns besides time that hold enough numbers to say anything about them."""
+        """The columns besides time that hold enough numbers to say anything about them.
+
+        Samples that stand out are empty in them: they say nothing of the motion.
+        """
+        return _telling(
+            {n: np.where(self.outlying[n], np.nan, v) for n, v in self._recorded.items()}
+        )
+
+    @cached_property
+    def outlying(self) -> dict[str, Booleans]:
+        """Which samples of each channel stand out (`outlying`), shape (n,) each."""
         return {
-            name: values
-            for name, values in self.recording.columns.items()
-            if name != TIME and np.isfinite(values).sum() >= _FEWEST
+            name: outlying(
+                self.time_s,
+                values,
+                most=largest(name),
+                noise=noise_sd(values) if self.overall is None else self.overall.noise[name],
+                step=step_of(values) if self.overall is None else self.overall.step[name],
+                span=span_of(values) if self.overall is None else self.overall.span[name],
+            )
+            for name, values in self._recorded.items()
         }
+
+    @cached_property
+    def _recorded(self) -> dict[str, Floats]:
+        return _telling({n: v for n, v in self.recording.columns.items() if n != TIME})
 
     @cached_property
     def mechanical(self) -> dict[str, Floats]:
@@ -186,3 +202,8 @@ class Trial:
         if not np.isfinite(size).any() or np.nanmean(size) <= self.visible(name):
             return None
         return float(np.nansum(change) / np.nansum(size))
+
+
+def _telling(channels: dict[str, Floats]) -> dict[str, Floats]:
+    """Return the channels that hold enough numbers to say anything about them."""
+    return {n: v for n, v in channels.items() if np.isfinite(v).sum() >= _FEWEST}
