@@ -39,6 +39,7 @@ def new_folder(path: Path, *, force: bool = False) -> Iterator[Path]:
     """
     with ExitStack() as stack:
         with _written(path):
+            limits.text_name(path.absolute())
             _refuse_address(path)
             if path.is_file():
                 raise InputError("is a file", where=path, expected="a folder's name")
@@ -112,6 +113,7 @@ def new_file(path: Path, *, force: bool = False) -> Iterator[Path]:
     """
     with ExitStack() as stack:
         with _written(path):
+            limits.text_name(path.absolute())
             _refuse_address(path)
             if path.is_dir():
                 raise InputError("is a folder", where=path, expected="a file's name")
