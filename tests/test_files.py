@@ -52,6 +52,15 @@ def test_an_error_inside_the_block_leaves_nothing(tmp_path: Path) -> None:
     assert names(tmp_path) == []
 
 
+@pytest.mark.parametrize("new", [new_file, new_folder])
+@pytest.mark.parametrize("name", [b"z\xff", b"w\xe9/out"])
+def test_a_place_whose_name_is_no_text_is_refused(tmp_path: Path, new, name: bytes) -> None:
+    out = tmp_path / os.fsdecode(name)
+    with pytest.raises(InputError, match=r"its name is no text; rename it"), new(out):
+        pytest.fail("the block must not run")
+    assert names(tmp_path) == []
+
+
 def test_an_existing_folder_stays_as_it_is_without_force(tmp_path: Path) -> None:
     make_old(tmp_path / "out")
     with pytest.raises(InputError, match=r"already exists.*--force"), new_folder(tmp_path / "out"):

@@ -47,6 +47,7 @@ def new_folder(path: Path, *, force: bool = False) -> Iterator[Path]:
     """
     with ExitStack() as stack:
         with _written(path):
+            limits.text_name(path.absolute())
             refuse_address(path)
             refuse_kind(path, folder=True)
             refuse_existing(path, force=force)
@@ -119,6 +120,7 @@ def new_file(path: Path, *, force: bool = False) -> Iterator[Path]:
     """
     with ExitStack() as stack:
         with _written(path):
+            limits.text_name(path.absolute())
             refuse_address(path)
             refuse_kind(path, folder=False)
             refuse_existing(path, force=force)

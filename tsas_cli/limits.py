@@ -88,8 +88,24 @@ def regular(path: Path, state: os.stat_result | None = None) -> None:
     if not stat.S_ISREG(mode):
         kind = "a folder" if stat.S_ISDIR(mode) else "a pipe or a device"
         raise InputError(f"is {kind}", where=path, expected="a file")
-    if not _encodable(str(path)):
+    text_name(path)
+
+
+def text_name(path: Path) -> None:
+    """Refuse a place that no file can name, since its name holds bytes that are no UTF-8.
+
+    Raises
+    ------
+    InputError
+        It has such a name.
+    """
+    if not is_text(path):
         raise InputError("its name is no text", where=path, remedy="rename it")
+
+
+def is_text(path: Path) -> bool:
+    """Say whether the name of a place, or of a folder on the way that is given, is text."""
+    return _encodable(str(path))
 
 
 def toml(text: str, path: object) -> None:
@@ -135,7 +151,7 @@ def _members(value: Any) -> Iterable[Any]:
     return value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
 
 
-def reason(error: ValueError) -> str:
+def reason(error: Exception) -> str:
     """Return why text cannot be parsed, for the line of an error."""
     said = str(error)
     return "an integer has thousands of digits" if "int_max_str" in said else said[:200]

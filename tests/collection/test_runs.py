@@ -1,5 +1,7 @@
 import os
 import shutil
+from datetime import UTC, datetime
+from pathlib import Path
 
 import pytest
 
@@ -209,11 +211,53 @@ def test_wrong_options_are_refused(rigs, options, line):
 
 
 def test_an_index_that_is_damaged_is_made_again(rigs, cache):
-    tsas.runs()
-    (index,) = (cache / "runs").iterdir()
-    index.write_bytes(b"damaged")
+    want = tsas.runs().summary
+    (index,) = (cache / "runs").glob("*.parquet")
+    (beside,) = (cache / "runs").glob("*.sha256")
+    whole = index.read_bytes()
+    flipped = [
+        whole[:at] + bytes([whole[at] ^ 16]) + whole[at + 1 :] for at in range(7, len(whole), 199)
+    ]
+    for damaged in [b"", b"damaged", whole[:-1], *flipped]:
+        index.write_bytes(damaged)
+        assert tsas.runs().summary == want
+        assert index.read_bytes() == whole
+    for damaged in (b"", b"\xff"):
+        beside.write_bytes(damaged)
+        assert tsas.runs().summary == want
+    again = Counted()
+    tsas.runs(step=again)
+    assert again.done == 0
+
+
+def test_an_odd_manifest_is_told_and_the_rest_is_answered(rigs):
+    manifest = rigs / "two" / "dataset.toml"
+    whole = manifest.read_text()
+    for line, why in (
+        ("started = 0001-01-01T00:00:00+12:00", "date value out of range"),
+        (f"operator = 0x{'f' * 6000}", "an integer has thousands of digits"),
+    ):
+        manifest.write_text(whole.replace("id = ", f"{line}\nid = ", 1))
+        result = tsas.runs()
+        assert [row["folder"] for row in result.summary["runs"]] == ["one/a", "one/a"]
+        assert result.summary["problems"] == [
+            f"two/dataset.toml: holds a value that cannot be told ({why})"
+        ]
+
+
+@pytest.mark.parametrize("year", [1600, 2400])
+def test_a_file_of_another_century_is_answered(rigs, year):
+    at = int((datetime(year, 1, 1, tzinfo=UTC) - datetime(1970, 1, 1, tzinfo=UTC)).total_seconds())
+    os.utime(rigs / "two" / "dataset.toml", (at, at))
     assert len(found()) == 3
-    assert index.read_bytes().startswith(b"PAR1")
+
+
+def test_a_folder_whose_name_is_no_text_is_told_and_the_rest_is_answered(rigs):
+    latin = Path(os.fsdecode(b"caf\xe9"))
+    shutil.copytree(rigs / "two", latin / "two")
+    result = tsas.runs(folders=[latin, "one"])
+    assert len(result.summary["runs"]) == 2
+    assert "its name is no text; rename it" in result.summary["problems"][0]
 
 
 def test_an_index_that_cannot_be_kept_is_held_in_memory(rigs, monkeypatch):

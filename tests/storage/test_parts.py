@@ -1,6 +1,7 @@
 """What is fetched of a recording, and that all of it is checked."""
 
 import json
+import math
 import subprocess
 import sys
 
@@ -76,7 +77,7 @@ def test_columns_that_tsas_does_not_know_are_not_fetched(tmp_path, manifest, col
     assert wire.received < 0.5 * (folder / "runs/a.parquet").stat().st_size
 
 
-@pytest.mark.parametrize("listed", ["none", "of another file", "no list", "too short"])
+@pytest.mark.parametrize("listed", ["none", "of another file", "no list", "too short", "no end"])
 def test_without_a_list_of_use_the_whole_file_is_fetched(large, bucket, wire, listed):
     folder, address = large
     name = f"{OBJECT}.blocks.json"
@@ -85,6 +86,8 @@ def test_without_a_list_of_use_the_whole_file_is_fetched(large, bucket, wire, li
         storage.files_of("s3").rm_file(f"{bucket}/{name}")
     elif listed == "no list":
         put(bucket, name, b"[1, 2")
+    elif listed == "no end":
+        put(bucket, name, json.dumps(told | {"size": math.inf}).encode())
     else:
         other = {"sha256": "0" * 64} if "another" in listed else {"blocks": told["blocks"][:-1]}
         put(bucket, name, json.dumps(told | other).encode())

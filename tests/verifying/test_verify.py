@@ -167,6 +167,71 @@ def test_what_a_file_says_is_not_believed(chain):
     assert "dataset/dataset.toml" in {one.file for one in tsas.verify("result").wrong}
 
 
+@pytest.mark.parametrize("start", ["result", "result/report.html"])
+def test_a_page_that_is_cut_or_lacks_its_seal_has_changed(chain, start):
+    page = Path("result/report.html")
+    whole = page.read_bytes()
+    for damaged in (
+        whole[: len(whole) // 2],
+        whole[:100],
+        whole[:-1],
+        whole + b"x",
+        whole.replace(b"<!-- tsas has read: ", b"<!-- tsas has reae: "),
+        whole.replace(b"<!-- sha256 of", b"<!-- sha257 of"),
+        whole.replace(b"<!-- a page of", b"<!-- a page off"),
+    ):
+        page.write_bytes(damaged)
+        assert [(one.file, one.state) for one in tsas.verify(start).wrong] == [
+            ("result/report.html", "changed")
+        ]
+
+
+def test_of_an_empty_page_nothing_can_be_told(chain):
+    Path("result/report.html").write_bytes(b"")
+    Path("result/mine.html").write_text("<!DOCTYPE html>\n<p>notes")
+    odd = [one for one in tsas.verify("result").files if one.state != "fits"]
+    assert [(one.file, one.state) for one in odd] == [("result/report.html", "cannot tell")]
+    for page in ("result/report.html", "result/mine.html"):
+        with pytest.raises(InputError, match="no checksum is recorded in it"):
+            tsas.verify(page)
+
+
+def test_a_list_that_is_a_link_to_another_hides_nothing(chain):
+    with Path("result/simulate/runs/a.parquet").open("ab") as file:
+        file.write(b"x")
+    Path(f"result/simulate/{SUMS}").unlink()
+    Path(f"result/simulate/{SUMS}").symlink_to(f"../check/{SUMS}")
+    wrong = {(one.file, one.state) for one in tsas.verify("result").wrong}
+    assert ("result/simulate/check.json", "missing") in wrong
+
+
+def test_a_project_is_read_and_fits_behind_a_link(chain, tmp_path):
+    (tmp_path / "very" / "deep").mkdir(parents=True)
+    Path("linked").symlink_to(tmp_path / "very" / "deep")
+    tsas.simulate("dataset", out="linked/simulate")
+    for page in ("linked/r.html", "linked/simulate/../r2.html", tmp_path / "very" / "r3.html"):
+        tsas.report("linked/simulate", out=page)
+        assert tsas.verify(page).wrong == []
+    for path in ("linked", tmp_path / "very" / "deep"):
+        assert tsas.verify(path).wrong == []
+    Path("page.html").symlink_to("linked/r.html")
+    assert tsas.verify("page.html").wrong == []
+
+
+def test_a_name_in_a_list_without_end_is_missing(chain):
+    with Path(f"result/check/{SUMS}").open("a") as file:
+        file.write(f"{'0' * 64}  {'a' * 5000}\n")
+    (one,) = (one for one in tsas.verify("result/check").wrong if "aaa" in one.file)
+    assert one.state == "missing"
+
+
+def test_a_folder_whose_name_is_no_text_cannot_be_told(chain):
+    latin = Path(os.fsdecode(b"w\xe9"))
+    shutil.copytree("dataset", latin)
+    ((state, why),) = {(one.state, one.why) for one in tsas.verify(latin).files}
+    assert (state, why) == ("cannot tell", "its name is no text")
+
+
 @pytest.mark.parametrize("path", ["nowhere", "raw"])
 def test_where_nothing_is_of_tsas_is_one_line(chain, path):
     with pytest.raises(InputError, match=r"is not there|holds nothing that tsas has written"):

@@ -11,6 +11,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from duckdb import DuckDBPyConnection
 
+from tsas_cli import limits
 from tsas_cli.collection.found import DIAGNOSIS, MANIFEST
 from tsas_cli.errors import InputError
 from tsas_cli.files import read_json, sha256_of
@@ -79,6 +80,8 @@ def entry_of(connection: DuckDBPyConnection, folder: Path, file: str) -> dict[st
         return {"problems": [_without_place(error)]}
     except OSError as error:
         return {"problems": [f"cannot be read ({error.strerror})"]}
+    except (ValueError, OverflowError) as error:  # a time or a number that is valid, but no text
+        return {"problems": [f"holds a value that cannot be told ({limits.reason(error)})"]}
 
 
 def _manifest(connection: DuckDBPyConnection, folder: Path) -> dict[str, Any]:

@@ -5,6 +5,8 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+from tsas_cli.limits import is_text
+
 MANIFEST, DIAGNOSIS = "dataset.toml", "diagnosis.json"
 
 
@@ -14,6 +16,9 @@ class Place(NamedTuple):
     root: int
     folder: str
     file: str
+
+
+_MOST = 2**63 - 1  # what the index keeps, a time in the year 2262
 
 
 class Stamp(NamedTuple):
@@ -31,6 +36,9 @@ def files_below(roots: Sequence[Path]) -> tuple[dict[Place, Stamp], list[str]]:
     found: dict[Place, Stamp] = {}
     problems: list[str] = []
     for number, root in enumerate(roots):
+        if not is_text(root):
+            problems.append(f"{root}: its name is no text; rename it")
+            continue
         ahead = [""]
         while ahead:
             folder = ahead.pop()
@@ -53,7 +61,8 @@ def _looked_into(
             if name in (MANIFEST, DIAGNOSIS):
                 if entry.is_file():
                     seen = entry.stat()
-                    found[Place(number, folder, name)] = Stamp(seen.st_mtime_ns, seen.st_size)
+                    changed_ns = max(-_MOST, min(seen.st_mtime_ns, _MOST))
+                    found[Place(number, folder, name)] = Stamp(changed_ns, seen.st_size)
             elif not name.startswith(".") and entry.is_dir(follow_symlinks=False):
                 if name.isprintable():
                     inner.append(name)

@@ -1,6 +1,7 @@
 """An index of all manifests and diagnoses below folders, kept and brought up to date.
 
-It is one Parquet file in the user's cache. A file is read again when its size or the time of its
+It is one Parquet file in the user's cache, with its checksum in a file beside it: what is damaged
+there is made again. A file is read again when its size or the time of its
 last change is another; what is gone from the folders goes from the index.
 """
 
@@ -13,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from tsas_cli.collection.found import Place, Stamp, files_below
 from tsas_cli.errors import InputError
-from tsas_cli.files import new_file
+from tsas_cli.files import new_file, sha256_of
 from tsas_cli.steps import Steps
 
 if TYPE_CHECKING:
@@ -49,9 +50,10 @@ def index_of(folders: Sequence[Path], connection: "DuckDBPyConnection", step: St
     roots = [folder.resolve() for folder in folders]
     found, problems = files_below(roots)
     file = _file_for(roots)
-    known = _known(connection, file)
+    whole = _whole(file)
+    known = _known(connection, file) if whole else {}
     changed = [place for place, stamp in found.items() if known.get(place) != stamp]
-    if not changed and len(known) == len(found) and file.is_file():
+    if whole and not changed and len(known) == len(found):
         return Index(folders, file, None, problems)
     step.ahead(len(changed))
     table = _renewed(connection, roots, found, changed, file if known else None, step)
@@ -68,17 +70,22 @@ def _file_for(roots: Sequence[Path]) -> Path:
     return cache / "runs" / f"{named.hexdigest()[:16]}-{FORMAT}.parquet"
 
 
-def _known(connection: "DuckDBPyConnection", file: Path) -> dict[Place, Stamp]:
-    """Return what the index holds; nothing where it is not there or cannot be read."""
-    import duckdb
+def _sum_beside(file: Path) -> Path:
+    return file.with_suffix(".sha256")
 
-    if not file.is_file():
-        return {}
-    sql = "SELECT root, folder, file, mtime_ns, size FROM read_parquet(?)"
+
+def _whole(file: Path) -> bool:
+    """Say whether the index is there as it was written."""
     try:
-        rows = connection.execute(sql, [str(file)]).fetchall()
-    except duckdb.Error:
-        return {}
+        return _sum_beside(file).read_bytes() == sha256_of(file).encode()
+    except OSError:
+        return False
+
+
+def _known(connection: "DuckDBPyConnection", file: Path) -> dict[Place, Stamp]:
+    """Return what the index holds."""
+    sql = "SELECT root, folder, file, mtime_ns, size FROM read_parquet(?)"
+    rows = connection.execute(sql, [str(file)]).fetchall()
     return {Place(*row[:3]): Stamp(*row[3:]) for row in rows}
 
 
@@ -121,6 +128,9 @@ def _kept(table: "pa.Table", file: Path) -> str | None:
     try:
         with new_file(file, force=True) as path:
             pq.write_table(table, path, compression="zstd")
+            digest = sha256_of(path)
+        with new_file(_sum_beside(file), force=True) as path:
+            path.write_text(digest, encoding="utf-8")
     except (InputError, OSError) as error:
         return f"the index is made again at every call, since it cannot be kept: {error}"
     return None

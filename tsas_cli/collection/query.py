@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from tsas_cli.collection.index import Index
 from tsas_cli.collection.words import Spelt, spelt_out
-from tsas_cli.errors import InputError, nearest
+from tsas_cli.errors import InputError, nearest, printable
 
 if TYPE_CHECKING:
     from duckdb import DuckDBPyConnection, DuckDBPyRelation
@@ -117,7 +117,7 @@ def _opened(connection: "DuckDBPyConnection", index: Index) -> list[str]:
 
     From then on there is nothing else to read: no file, and not the index.
     """
-    places = [(k, root.as_posix()) for k, root in enumerate(index.roots)]
+    places = [(k, printable(root.as_posix())) for k, root in enumerate(index.roots)]
     connection.execute("CREATE TEMP TABLE places (root INTEGER, shown VARCHAR)")
     connection.executemany("INSERT INTO places VALUES (?, ?)", places)
     if index.kept is None:

@@ -94,7 +94,7 @@ def _listed(address: Address, sha256: str) -> Blocks | None:
         blocks = Blocks(
             str(told["sha256"]), int(told["size"]), int(told["block_bytes"]), tuple(told["blocks"])
         )
-    except (FileNotFoundError, ValueError, TypeError, KeyError, RecursionError):
+    except (FileNotFoundError, ValueError, OverflowError, TypeError, KeyError, RecursionError):
         return None
     right = blocks.sha256 == sha256 and 0 < blocks.block_bytes <= HELD
     return blocks if right and len(blocks.blocks) == -(-blocks.size // blocks.block_bytes) else None

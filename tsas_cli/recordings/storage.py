@@ -20,11 +20,8 @@ from tsas_cli.errors import InputError
 
 PACKAGES = {"s3": "s3fs", "gs": "gcsfs"}  # by scheme; the extras have the schemes' names
 CONNECT_S, READ_S, TRIES, ANSWER_S = 5.0, 10.0, 2, 25.0
-_S3_WAITS = {
-    "connect_timeout": CONNECT_S,
-    "read_timeout": READ_S,
-    "retries": {"max_attempts": 1},
-}
+_S3_WAITS = {"connect_timeout": CONNECT_S, "read_timeout": READ_S, "retries": {"max_attempts": 1}}
+_EXPECTED = "SCHEME://BUCKET/PATH"
 SCHEME = re.compile(r"(\w[\w+.-]*)://")
 Returned = TypeVar("Returned")
 
@@ -169,13 +166,17 @@ def place_of(given: "str | Place") -> Place:
         return given
     if not is_address(given):
         return Path(given)
-    parts = urlsplit(given, allow_fragments=False)
+    try:
+        parts = urlsplit(given, allow_fragments=False)
+    except ValueError as error:
+        shown = f"{given.partition('://')[0]}://…"  # what follows may hold a key
+        raise InputError("is no address", where=shown, expected=_EXPECTED) from error
     shown = f"{parts.scheme}://{parts.netloc.rpartition('@')[2]}{parts.path}"
     if "@" in parts.netloc or parts.query:
         raise InputError(
             "an address with a key, a password or a signature in it",
             where=shown,
-            expected="SCHEME://BUCKET/PATH",
+            expected=_EXPECTED,
             remedy="keys belong into the environment or the storage's own settings",
         )
     if parts.scheme == "file":
@@ -188,7 +189,7 @@ def place_of(given: "str | Place") -> Place:
         )
     inner = parts.path.strip("/")
     if not parts.netloc or ".." in inner.split("/"):
-        raise InputError("is no place in a bucket", where=shown, expected="SCHEME://BUCKET/PATH")
+        raise InputError("is no place in a bucket", where=shown, expected=_EXPECTED)
     return Address(parts.scheme, f"{parts.netloc}/{inner}".rstrip("/"))
 
 
@@ -208,7 +209,13 @@ def check_inside(path: Place, folder: Place) -> None:
 
 def place_from(home: Path, told: str) -> Place:
     """Return the place that a stage has written down in `home`: an address, or from there."""
-    return place_of(told) if is_address(told) else Path(os.path.normpath(home / told))
+    return place_of(told) if is_address(told) else path_from(home, told)
+
+
+def path_from(home: Path, told: str) -> Path:
+    """Return the path that is told from a folder, which may have been reached by a link."""
+    linked = os.path.abspath(home) != str(real := home.resolve())  # noqa: PTH100
+    return Path(os.path.normpath((real if linked else home) / told))
 
 
 def told_from(home: Path, place: Place) -> str:

@@ -1,6 +1,6 @@
 """What files say about other files: which checksum each had when it was written or read."""
 
-import os
+import os.path
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from tsas_cli.errors import InputError
 from tsas_cli.files import read_json
 from tsas_cli.recordings.manifest import FILE as MANIFEST
 from tsas_cli.recordings.manifest import read_toml
-from tsas_cli.recordings.storage import is_address
+from tsas_cli.recordings.storage import is_address, path_from
 from tsas_cli.replacing import SUMS
 from tsas_cli.verifying.seal import sealed
 
@@ -123,6 +123,7 @@ def _claim(path: Path, folder: object, file: str, digest: str) -> Claim:
     """Return what a file says of one in a folder that is said from its own, or in an address."""
     if not isinstance(folder, str):
         return Claim(path, file, digest)
-    if is_address(folder):
-        return Claim(path, f"{folder}/{file}", digest)
-    return Claim(path, file, digest, Path(os.path.normpath(path.parent / folder / file)))
+    told = os.path.join(folder, file)  # noqa: PTH118 # may be an address
+    if is_address(told):
+        return Claim(path, told, digest)
+    return Claim(path, file, digest, path_from(path.resolve().parent, told))

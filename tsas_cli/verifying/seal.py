@@ -1,4 +1,7 @@
-"""The last lines of a page: what it was made from, and the checksum of all above."""
+"""What a page says of itself: at its head whose it is, at its end what it was made from.
+
+The last line is the checksum of all above. The head is there for a page that has lost its end.
+"""
 
 import hashlib
 import json
@@ -11,6 +14,8 @@ from typing import Any
 from tsas_cli.errors import InputError
 from tsas_cli.recordings.storage import Place, told_from
 
+_TYPE = "<!DOCTYPE html>\n"
+_HEAD = "<!-- a page of tsas, which ends with its own checksum -->\n"
 _READ = "<!-- tsas has read: "
 _SUM = re.compile(rb"<!-- sha256 of all above: ([0-9a-f]{64}) -->\n")
 
@@ -29,21 +34,23 @@ def with_seal(text: str, files: Iterable[tuple[Place, str]], page: Path) -> str:
 
     `files` are folders, or addresses, each with the name of a file there.
     """
+    home = page.parent.resolve()
     read = [
         {
             "file": name,
-            "folder": told_from(page.parent, folder),
+            "folder": told_from(home, folder),
             "sha256": hashlib.sha256((folder / name).read_bytes()).hexdigest(),
         }
         for folder, name in files
     ]
     said = json.dumps(read, ensure_ascii=False).replace("--", "-\\u002d")  # would end the comment
-    body = f"{text.rstrip()}\n{_READ}{said} -->\n"
+    marked = text.replace(_TYPE, _TYPE + _HEAD, 1)
+    body = f"{marked.rstrip()}\n{_READ}{said} -->\n"
     return f"{body}<!-- sha256 of all above: {hashlib.sha256(body.encode()).hexdigest()} -->\n"
 
 
 def sealed(path: Path) -> Seal | None:
-    """Return the seal of a page, or None where it has none.
+    """Return the seal of a page, or None where nothing in it is that of a page of ours.
 
     Raises
     ------
@@ -54,7 +61,7 @@ def sealed(path: Path) -> Seal | None:
         content = path.read_bytes()
     except OSError as error:
         raise InputError(f"cannot be read ({error.strerror})", where=path) from error
-    if _READ.encode() not in content:
+    if not any(mark in content for mark in _MARKS):
         return None
     body, line = content[:-_LENGTH], content[-_LENGTH:]
     told = _SUM.fullmatch(line)
@@ -69,4 +76,5 @@ def sealed(path: Path) -> Seal | None:
     return Seal(told[1].decode(), found, tuple(read) if isinstance(read, list) else ())
 
 
+_MARKS = (_HEAD.encode(), _READ.encode(), b"<!-- sha256 of all above: ")
 _LENGTH = len("<!-- sha256 of all above:  -->\n") + 64

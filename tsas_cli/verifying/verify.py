@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
+from tsas_cli import limits
 from tsas_cli.errors import InputError
 from tsas_cli.files import read_json, sha256_of
 from tsas_cli.recordings.manifest import FILE as MANIFEST
@@ -52,7 +53,7 @@ def verify_all(
     Raises
     ------
     InputError
-        There is nothing that tsas has written.
+        There is nothing that tsas has written, or a file that tells no checksum.
     """
     if not start.exists():
         raise InputError("is not there", where=start, expected="a folder, or a page")
@@ -67,19 +68,28 @@ def verify_all(
     claims, found = list[Claim](), list[Verified]()
     while walk.waiting:
         path = walk.waiting.popleft()
-        if path.resolve() in walk.seen:
+        # A list that is a link, say to that of another folder, still speaks for its own folder.
+        itself = path.parent.resolve() / path.name
+        if itself in walk.seen:
             continue
-        walk.seen.add(path.resolve())
+        walk.seen.add(itself)
         try:
             for claim in claims_of(path):
                 claims.append(claim)
                 if claim.path is not None and claim.path != path:
                     walk.waiting.extend(_behind(claim.path))
         except InputError as error:
-            found.append(Verified(_shown(path), "changed", "", error.what))
+            state: State = "changed" if limits.is_text(path) else "cannot tell"
+            found.append(Verified(_shown(path), state, "", error.what))
     # What has a place comes first: the files found there are those that others may mean.
     ordered = sorted(claims, key=lambda claim: claim.path is None)
     found += [_judged(claim, walk) for claim in ordered]
+    if not found and start.is_file():
+        raise InputError(
+            "no checksum is recorded in it, or none is left",
+            where=start,
+            expected="a page of tsas report, or the folder of a stage or of a dataset",
+        )
     return found + list(_unclaimed(walk, {one.file for one in found}))
 
 
@@ -103,16 +113,17 @@ def _speaks(path: Path) -> bool:
         if path.suffix == ".json":
             content = read_json(path)
             return isinstance(content, dict) and {"format", "stage"} <= content.keys()
-        return any(True for _ in claims_of(path))
+        lost = path.suffix == ".html" and not path.stat().st_size  # a page has no words left
+        return lost or any(True for _ in claims_of(path))
     except InputError:
-        return False
+        return path.suffix == ".html"  # only of a page that is ours, or that nobody can read
 
 
 def _behind(path: Path) -> Iterator[Path]:
     """Yield what tells more of a file that was read: its own words, and its folder's."""
-    if path.suffix in _OURS and path.is_file():
+    if path.suffix in _OURS and os.path.isfile(path):  # noqa: PTH113 # false of an endless name too
         yield path
-    if (sums := path.parent / SUMS).is_file():
+    if os.path.isfile(sums := path.parent / SUMS):  # noqa: PTH113
         yield sums
         yield from (p for p in sorted(path.parent.iterdir()) if p.suffix in _OURS and p.is_file())
 
@@ -120,7 +131,7 @@ def _behind(path: Path) -> Iterator[Path]:
 def _judged(claim: Claim, walk: _Walk) -> Verified:
     path, by = claim.path, _shown(claim.by)
     walk.step()
-    if path is not None and path.is_file():
+    if path is not None and os.path.isfile(path):  # noqa: PTH113
         walk.claimed.add(path.resolve())
         if (claim.found or _sum(path, walk)) == claim.sha256:
             return Verified(_shown(path), "fits", by)
