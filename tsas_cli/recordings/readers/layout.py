@@ -150,6 +150,8 @@ def _decimal(
         return "."
     with_comma, without = dict[int, str](), dict[int, str]()
     for _, line in _lines(path, options):  # the first rows may all lie above a thousand
+        if comment_text(line, options) is not None:
+            continue
         for i, cell in enumerate(fields(line, delimiter)):
             if may_be_thousands(cell):
                 with_comma[i] = cell
