@@ -135,10 +135,11 @@ def new_file(path: Path, *, force: bool = False) -> Iterator[Path]:
 
 
 def write_sums(folder: Path) -> None:
-    """Write the checksum of each file in a folder, as `sha256sum --check` reads it."""
-    files = sorted(path for path in folder.rglob("*") if path.is_file())
+    """Write the checksum of each other file in a folder, as `sha256sum --check` reads it."""
+    sums = folder / SUMS
+    files = sorted(path for path in folder.rglob("*") if path.is_file() and path != sums)
     lines = [f"{sha256_of(path)}  {path.relative_to(folder).as_posix()}\n" for path in files]
-    (folder / SUMS).write_text("".join(lines), encoding="utf-8")
+    sums.write_text("".join(lines), encoding="utf-8")
 
 
 def write_json(path: Path, content: Any) -> None:
@@ -226,7 +227,7 @@ def _written(path: Path, *, only: Collection[int] = ()) -> Iterator[None]:
         if only and error.errno not in only:
             raise
         taken = isinstance(error, FileExistsError) and os.path.lexists(path)
-        raise (exists(path) if taken else _unwritable(path, error)) from error
+        raise (exists(path) if taken else unwritable(path, error)) from error
 
 
 @contextmanager
@@ -243,7 +244,8 @@ def _named(temporary: Path, path: Path) -> Iterator[None]:
         ) from error
 
 
-def _unwritable(path: Path, error: OSError) -> InputError:
+def unwritable(path: Path, error: OSError) -> InputError:
+    """Return what is said where the machine refuses an output."""
     return InputError(
         f"cannot be written ({error.strerror})",
         where=path,

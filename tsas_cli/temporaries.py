@@ -86,7 +86,7 @@ def place_folder(new: Path, path: Path, *, replace: bool) -> None:
             raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST))
         if _exchanged(new, path):
             break
-        _remove(old)
+        remove(old)
         with suppress(FileNotFoundError):  # somebody else has just taken it away
             path.rename(old)
     _sync(path.parent)
@@ -167,11 +167,12 @@ def _beside(lock: Path, suffix: str) -> Path:
 
 def _remove_all(lock: Path) -> None:
     for suffix in (NEW, OLD):
-        _remove(_beside(lock, suffix))
+        remove(_beside(lock, suffix))
     lock.unlink(missing_ok=True)
 
 
-def _remove(path: Path) -> None:
+def remove(path: Path) -> None:
+    """Remove a file, a link or a folder with all in it; nothing where there is none."""
     if path.is_dir() and not path.is_symlink():
         shutil.rmtree(path, ignore_errors=True)
     else:

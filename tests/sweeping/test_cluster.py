@@ -2,6 +2,7 @@
 
 import filecmp
 import json
+import logging
 import os
 import shutil
 import signal
@@ -151,8 +152,29 @@ def test_no_scheduler_is_one_line(monkeypatch, shared):
     monkeypatch.setattr("tsas_cli.sweeping.cluster.PATIENCE_S", 0.5)
     with pytest.raises(tsas.InputError, match="no scheduler answers; expected a running"):
         dict(on_cluster(f"{WORKS}:squared", texts([1]), f"tcp://{HERE}:9", shared))
-    with pytest.raises(tsas.InputError, match="no scheduler answers"):
-        dict(on_cluster(f"{WORKS}:squared", texts([1]), "nonsense://x", shared))
+
+
+@pytest.mark.parametrize(
+    "address",
+    [
+        "",
+        "tcp://",
+        "tcp://x",
+        "tcp://x:y",
+        "tcp://x:1/",
+        "tcp://x:65536",
+        "http://x:1",
+        "tcp://ä:1",
+    ],
+)
+def test_what_is_no_address_is_refused_before_anybody_is_asked(address, shared):
+    with pytest.raises(tsas.InputError, match="no address of a scheduler; expected tcp://HOST:PO"):
+        dict(on_cluster(f"{WORKS}:squared", texts([1]), address, shared))
+
+
+def test_without_certificates_tls_is_refused_before_anybody_is_asked(shared):
+    with pytest.raises(tsas.InputError, match="Dask knows no TLS certificates; name them"):
+        dict(on_cluster(f"{WORKS}:squared", texts([1]), "tls://x:1", shared))
 
 
 def test_without_dask_the_line_says_what_to_install(monkeypatch, shared):
@@ -206,6 +228,8 @@ def test_what_ends_workers_or_the_scheduler_is_told(tmp_path, shared):
         with pytest.raises(tsas.InputError, match="the scheduler is gone; what is done stays"):
             answered(made, "slow", told, shared)
         killer.join()
+    for name in ("core", "client", "comm.tcp"):  # one line says it, and the library nothing
+        assert not logging.getLogger(f"distributed.{name}").isEnabledFor(logging.ERROR)
 
 
 def other_version(folder):

@@ -1,5 +1,6 @@
 """The local pool: every task is answered, whatever happens to the workers."""
 
+import errno
 import json
 import os
 import time
@@ -8,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from tsas_cli.errors import InputError
 from tsas_cli.sweeping.local import in_processes
 
 ROOT = Path(__file__).parents[2]
@@ -52,6 +54,17 @@ def test_a_task_that_kills_its_workers_is_reported_and_the_rest_completes():
     assert (bad["state"], bad["defect"]) == ("failed", True)
     assert bad["error"] == "the process died, 2 times: ended by SIGKILL"
     assert [answers[n]["state"] for n in sorted(answers)] == ["done"] * 4
+
+
+def test_a_machine_that_starts_no_more_processes_is_one_line(monkeypatch):
+    def refused(*_, **__):
+        raise OSError(errno.EMFILE, "Too many open files")
+
+    monkeypatch.setattr("subprocess.Popen", refused)
+    with pytest.raises(
+        InputError, match=r"no process can be started \(Too many open files\); take"
+    ):
+        dict(in_processes(f"{WORKS}:squared", texts([1, 2]), workers=2))
 
 
 def test_the_last_words_of_a_worker_say_why_it_ended():

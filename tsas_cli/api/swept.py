@@ -12,18 +12,19 @@ from pydantic import TypeAdapter
 import tsas_cli as tsas
 from tsas_cli.api.read import read, read_model
 from tsas_cli.errors import InputError
-from tsas_cli.files import new_folder, read_json, sha256_of, write_json
+from tsas_cli.files import new_folder, read_json, sha256_of, write_json, write_sums
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model, data_sheet
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import FILE as MANIFEST
 from tsas_cli.sweeping.answer import Answer, failure, success
-from tsas_cli.sweeping.folder import JOURNAL
+from tsas_cli.sweeping.folder import JOURNAL, what_is_done
 from tsas_cli.sweeping.found import estimates, figures
 from tsas_cli.sweeping.tasks import FILE
 from tsas_cli.sweeping.values import FILES, Options, with_settings
 from tsas_cli.sweeping.versions import ONE_THREAD, refuse_others, versions
+from tsas_cli.temporaries import remove
 
 WORK = "tsas_cli.api.swept:work"
 OF_A_SWEEP = {"dataset", "out", "force", "step", "each"}  # not for a plan to say
@@ -47,7 +48,7 @@ def work(task: Told) -> Answer:
     start, before = time.perf_counter(), time.process_time()
     try:
         refuse_others(task["inputs"]["versions"], versions(), "this worker")
-        answer = success(*_done(task))
+        answer = _done(task)
     except InputError as error:
         answer = failure(_as_named(error.line(), task), defect=False)
     except Exception as error:  # noqa: BLE001 # the other tasks go on; this one says what it was
@@ -69,20 +70,26 @@ def _as_named(line: str, task: Told) -> str:
     return line
 
 
-def _done(task: Told) -> tuple[Told, list[Told]]:
+def _done(task: Told) -> Answer:
     """Call the stage, and write its folder with what it was told and what came out."""
     inputs, places, key = task["inputs"], task["places"], task["key"]
     out = Path(places["out"])
     if not (out.parent / JOURNAL).is_file():
         raise InputError("is not there", where=out.parent, expected="the folder of the sweep")
     stage = inputs["stage"]
-    with new_folder(out / key, force=task["force"]) as folder:
+    found = what_is_done(out, key)
+    if found is not None and not task["force"]:  # a worker died between this and its answer
+        return found
+    if found is None:
+        remove(out / key)  # half a result
+    with new_folder(out / key, force=True) as folder:  # another worker may be doing it too
         result = getattr(tsas, stage)(**_arguments(inputs, places), out=folder)
         content = {"format": 1, "stage": "sweep", "key": key, "inputs": inputs}
         content |= {"results": figures(stage, result), "parameters": estimates(stage, result)}
         write_json(folder / FILE, content)
+        write_sums(folder)  # of the stage, now with this file
         written: Told = read_json(folder / FILE)  # as a later call will find it
-    return written["results"], written["parameters"]
+    return success(written["results"], written["parameters"])
 
 
 def _arguments(inputs: Told, places: Told) -> Told:

@@ -6,6 +6,7 @@ that all have to see them under the same paths.
 
 import json
 import logging
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,9 +16,14 @@ from tsas_cli.sweeping.answer import Answer, called, death, failure
 from tsas_cli.sweeping.versions import ONE_THREAD, refuse_others, threads_of_algebra, versions
 
 if TYPE_CHECKING:
-    from distributed import Client
+    from distributed import Client, Security
 
 PATIENCE_S = 10  # until a scheduler that does not answer is given up
+LABEL = "[A-Za-z0-9_-]{1,63}"
+ADDRESS = re.compile(
+    rf"(?:(?P<how>tcp|tls|ws)://)?(?:{LABEL}(?:\.{LABEL})*\.?|\[[0-9A-Za-z:.%]+\]):(?P<port>[0-9]{{1,5}})"
+)
+LOGGERS = ("distributed", "distributed.client")  # Dask's settings give both a level of their own
 START = "{environment} dask worker {address} --nthreads 1 --nworkers auto"
 
 
@@ -59,13 +65,15 @@ def on_cluster(
 def _connected(address: str) -> "Client":
     """Return a connection to a scheduler; its library's own talk is not for users."""
     try:
-        from distributed import Client
+        from distributed import Client, Security
     except ModuleNotFoundError as error:
         raise InputError(
             "Dask is not installed", where="--cluster", remedy="pip install 'tsas[dask]'"
         ) from error
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)
+    for name in LOGGERS:
+        logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
+        _refuse_address(address, Security())
         return Client(address, timeout=PATIENCE_S, set_as_default=False)
     except (OSError, TimeoutError, ValueError) as error:
         raise InputError(
@@ -74,6 +82,23 @@ def _connected(address: str) -> "Client":
             expected="a running `dask scheduler`",
             remedy="start one, or leave out --cluster",
         ) from error
+
+
+def _refuse_address(address: str, security: "Security") -> None:
+    """Stop before a client is made of what it cannot connect to: half-made it would not close."""
+    said = ADDRESS.fullmatch(address)
+    if said is None or not 0 < int(said["port"]) < 65536:
+        raise InputError(
+            f"{address!r} is no address of a scheduler",
+            where="--cluster",
+            expected="tcp://HOST:PORT, as `dask scheduler` prints it",
+        )
+    if said["how"] == "tls" and security.get_connection_args("client")["ssl_context"] is None:
+        raise InputError(
+            "Dask knows no TLS certificates",
+            where=address,
+            remedy="name them in Dask's settings, under distributed.comm.tls",
+        )
 
 
 def _refuse_workers(client: "Client", address: str, shared: Path) -> None:

@@ -2,16 +2,18 @@
 
 import fcntl
 import json
-import shutil
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any, TextIO
+from typing import TextIO
 
 from tsas_cli.errors import InputError
-from tsas_cli.files import read_json
+from tsas_cli.files import read_json, sha256_of, unwritable
+from tsas_cli.replacing import SUMS
 from tsas_cli.sweeping.answer import Answer, success
 from tsas_cli.sweeping.tasks import FILE, Task
+from tsas_cli.temporaries import is_empty_folder, remove
+from tsas_cli.verifying.claims import claims_of
 
 TASKS = "tasks"
 JOURNAL = "journal.jsonl"  # when what was done where; it also says that this is a sweep's folder
@@ -32,6 +34,8 @@ def sweep_folder(out: Path) -> Iterator[Path]:
     """
     tasks = out / TASKS
     with _taken(out):
+        with _writing(out):
+            tasks.mkdir(exist_ok=True)
         _clear(tasks)
         try:
             yield tasks
@@ -41,24 +45,34 @@ def sweep_folder(out: Path) -> Iterator[Path]:
 
 def _taken(out: Path) -> TextIO:
     """Return the journal of a sweep's folder, open and locked until it is closed."""
-    try:
-        if out.is_dir() and any(out.iterdir()) and not (out / JOURNAL).is_file():
+    with _writing(out):
+        if out.is_dir() and not _is_of_a_sweep(out):
             raise InputError(
                 "holds something else than an earlier sweep",
                 where=out,
                 expected="a name that is free, or a sweep to go on with",
                 remedy="choose another --out",
             )
-        (out / TASKS).mkdir(parents=True, exist_ok=True)
+        out.mkdir(parents=True, exist_ok=True)
         journal = (out / JOURNAL).open("a", encoding="utf-8")
         _lock(journal, out)
-    except OSError as error:
-        raise InputError(
-            f"cannot be written ({error.strerror})",
-            where=out,
-            remedy="choose an --out in a folder that you may write to",
-        ) from error
     return journal
+
+
+def _is_of_a_sweep(out: Path) -> bool:
+    """Say whether a folder is an earlier sweep's, or holds nothing yet that anyone could miss."""
+    if (out / JOURNAL).is_file() or ((out / SUMMARY).is_file() and (out / TASKS).is_dir()):
+        return True
+    return all(path.name == TASKS and is_empty_folder(path) for path in out.iterdir())
+
+
+@contextmanager
+def _writing(out: Path) -> Iterator[None]:
+    """Say in one line why a sweep's folder cannot be written."""
+    try:
+        yield
+    except OSError as error:
+        raise unwritable(out, error) from error
 
 
 def _lock(journal: TextIO, out: Path) -> None:
@@ -74,20 +88,29 @@ def _lock(journal: TextIO, out: Path) -> None:
 
 def _clear(tasks: Path) -> None:
     for path in tasks.glob(".*"):
-        shutil.rmtree(path, ignore_errors=True)
+        with suppress(OSError):
+            remove(path)
 
 
-def what_is_done(tasks: Path, task: Task) -> Answer | None:
-    """Return what a finished task has found, or None where it is still to be done."""
-    path = tasks / task.key / FILE
-    if not path.is_file():
+def what_is_done(tasks: Path, key: str) -> Answer | None:
+    """Return what a finished task has found, or None where it is still to be done.
+
+    A task is done where its `task.json` says so, and each file is there that its checksums list,
+    and unchanged; else it is done again.
+    """
+    folder = tasks / key
+    try:
+        sums = {folder / claim.file: claim.sha256 for claim in claims_of(folder / SUMS)}
+        if folder / FILE not in sums or any(sha256_of(path) != sums[path] for path in sums):
+            return None
+        content = read_json(folder / FILE)
+        return success(content["results"], content["parameters"]) if content["key"] == key else None
+    except (InputError, OSError, KeyError, TypeError):
         return None
-    content: Mapping[str, Any] = read_json(path)
-    return success(content["results"], content["parameters"])
 
 
 def note(out: Path, task: Task, answer: Answer) -> None:
     """Add a line to the journal: which task ended how, after how many seconds, where."""
     line = {"task": task.key, **{key: answer.get(key) for key in NOTED}}
-    with (out / JOURNAL).open("a", encoding="utf-8") as journal:
+    with _writing(out / JOURNAL), (out / JOURNAL).open("a", encoding="utf-8") as journal:
         journal.write(json.dumps(line, ensure_ascii=False) + "\n")

@@ -13,6 +13,7 @@ from contextlib import suppress
 from threading import Thread
 from typing import IO
 
+from tsas_cli.errors import InputError
 from tsas_cli.sweeping.answer import Answer, death
 from tsas_cli.sweeping.versions import ONE_THREAD
 
@@ -34,6 +35,11 @@ def in_processes(work: str, texts: Sequence[str], workers: int) -> Iterator[tupl
         The tasks.
     workers
         How many processes at most.
+
+    Raises
+    ------
+    InputError
+        The machine starts no more of them.
     """
     waiting = deque(enumerate(texts))
     answers: queue.Queue[tuple[int, Answer] | BaseException] = queue.Queue()
@@ -95,7 +101,7 @@ class _Lane(Thread):
             if self.stopped:
                 break
             if self.worker is None:
-                self.worker = _Worker(self.work)
+                self.worker = _begun(self.work)
             answer = self.worker.ask(text)
             if answer is not None:
                 return answer
@@ -103,21 +109,36 @@ class _Lane(Thread):
         return death(TRIES, said)
 
 
+def _begun(work: str) -> "_Worker":
+    try:
+        return _Worker(work)
+    except OSError as error:
+        raise InputError(
+            f"no process can be started ({error.strerror})",
+            where="--workers",
+            remedy="take fewer, or raise what `ulimit -a` tells",
+        ) from error
+
+
 class _Worker:
     """A process that answers one task after the other."""
 
     def __init__(self, work: str) -> None:
         self.said: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115 # until the process ends
-        self.process = subprocess.Popen(  # noqa: S603 # our own program
-            [sys.executable, "-P", "-m", "tsas_cli.sweeping.worker", work],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=self.said,
-            text=True,
-            encoding="utf-8",
-            env=os.environ | ONE_THREAD,
-            process_group=0,  # Ctrl-C is for who hands out the tasks
-        )
+        try:
+            self.process = subprocess.Popen(  # noqa: S603 # our own program
+                [sys.executable, "-P", "-m", "tsas_cli.sweeping.worker", work],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=self.said,
+                text=True,
+                encoding="utf-8",
+                env=os.environ | ONE_THREAD,
+                process_group=0,  # Ctrl-C is for who hands out the tasks
+            )
+        except OSError:
+            self.said.close()
+            raise
 
     def ask(self, text: str) -> Answer | None:
         """Return the answer to a task, or None where the process died."""

@@ -99,7 +99,7 @@ def sweep_tasks(
         The folder cannot be used, or the pool cannot work.
     """
     with sweep_folder(out) as folder:
-        done = {} if force else {n: what_is_done(folder, task) for n, task in enumerate(tasks)}
+        done = {} if force else {n: what_is_done(folder, task.key) for n, task in enumerate(tasks)}
         answers = {number: answer for number, answer in done.items() if answer is not None}
         before, left = len(answers), [n for n in range(len(tasks)) if n not in answers]
         step.ahead(len(left))

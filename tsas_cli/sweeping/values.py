@@ -1,5 +1,6 @@
 """The named values of a task, sorted by what they are of: an option, a model, a run, a setting."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,11 +14,13 @@ from tsas_cli.identification.drive_file import FILE as DRIVE_FILE
 from tsas_cli.identification.model import FILE as MODEL_FILE
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.recordings.dataset import CONDITIONS
-from tsas_cli.recordings.manifest import read_toml
+from tsas_cli.recordings.manifest import Run, parse, read_toml
 from tsas_cli.tracking.settings import RigSettings, read_settings
 
 PLANT, SETTINGS = "plant.", "settings."
 FILES = {"model": MODEL_FILE, "plant": MODEL_FILE, "drive": DRIVE_FILE, "settings": ""}
+BITS = 64  # of an integer: no table nor JSON has more for sure
+_ANY_RUN = {"id": "x", "file": "x", "sha256": "0" * 64}  # what is said of it is to be judged
 
 Options = Mapping[str, TypeAdapter[Any]]
 
@@ -70,13 +73,19 @@ def sorted_values(given: Mapping[str, Any], options: Options, base: Path) -> Val
     """
     found, of_runs = Values(), "model" in options and "plant" not in options
     for name, value in given.items():
+        if isinstance(value, int) and value.bit_length() >= BITS:
+            raise InputError(
+                f"{name} is an integer of {value.bit_length() + 1} bits",
+                where="the plan",
+                expected=f"at most {BITS}, as in TOML",
+            )
         if name in FILES and name in options:
             path, found.sums[name] = _file(name, value, base)
             found.files[name] = path
         elif name in options:
             found.options[name] = _option(name, value, options[name])
         elif name in CONDITIONS and of_runs:
-            found.conditions[name] = _number(name, value)
+            found.conditions[name] = _condition(name, value)
             if name in QUANTITIES:  # a calibrated model holds the preload of each run
                 found.model[name] = _quantity(name, value, name)
         elif name in QUANTITIES and "model" in options:
@@ -143,9 +152,18 @@ def _quantity(said: str, value: Any, name: str) -> float:
     return number
 
 
+def _condition(name: str, value: Any) -> float:
+    """Return a condition that the manifest of a run could say."""
+    number = _number(name, value)
+    parse(Run, _ANY_RUN | {name: number}, "the plan")
+    return number
+
+
 def _number(name: str, value: Any) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise InputError(f"{name} is {value!r}", where="the plan", expected="a number")
+    if not math.isfinite(value):
+        raise InputError(f"{name} is {value}", where="the plan", expected="a finite number")
     return float(value)
 
 

@@ -1,0 +1,57 @@
+"""The folder of a sweep: what makes it one, what a kill leaves in it, and where it cannot grow."""
+
+import pytest
+
+from tests.sweeping.test_tasks import rigs, tasks  # noqa: F401 # a fixture
+from tsas_cli.errors import InputError
+from tsas_cli.sweeping.answer import success
+from tsas_cli.sweeping.folder import note, sweep_folder
+
+
+def test_what_a_kill_leaves_goes_with_the_next_call(tmp_path):
+    with sweep_folder(tmp_path / "out") as folder:
+        (folder / ".a-0123456789.abcdefgh.tsas-lock").write_text("tsas\nelsewhere\n\n")
+        (folder / ".a-0123456789.abcdefgh.tsas-new" / "runs").mkdir(parents=True)
+        (folder / "a-0123456789").mkdir()
+    assert [path.name for path in folder.iterdir()] == ["a-0123456789"]
+
+
+@pytest.mark.parametrize("left", [[], ["tasks/"], ["tasks/a/", "sweep.json"], ["journal.jsonl"]])
+def test_a_sweep_goes_on_in_what_is_left_of_one(tmp_path, left):
+    for name in left:
+        path = tmp_path / name
+        path.parent.mkdir(exist_ok=True)
+        path.mkdir(parents=True) if name.endswith("/") else path.touch()
+    with sweep_folder(tmp_path) as folder:
+        assert (tmp_path / "journal.jsonl").is_file()
+        assert folder.is_dir()
+
+
+@pytest.mark.parametrize("other", ["tasks/.mine", "tasks/a", "notes.txt", "sweep.json"])
+def test_a_folder_of_something_else_stays_as_it_is(tmp_path, other):
+    path = tmp_path / other
+    path.parent.mkdir(exist_ok=True)
+    path.touch()
+    with (
+        pytest.raises(InputError, match="holds something else than an earlier sweep"),
+        sweep_folder(tmp_path),
+    ):
+        pass
+    assert [p for p in tmp_path.rglob("*") if p.is_file()] == [path]
+
+
+def test_a_kill_at_the_start_leaves_the_mark_first(tmp_path, monkeypatch):
+    def kill(journal, out):
+        journal.close()
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("tsas_cli.sweeping.folder._lock", kill)
+    with pytest.raises(KeyboardInterrupt), sweep_folder(tmp_path / "out"):
+        pass
+    assert [path.name for path in (tmp_path / "out").iterdir()] == ["journal.jsonl"]
+
+
+def test_a_full_disk_is_one_line(rigs):  # noqa: F811
+    (rigs / "journal.jsonl").symlink_to("/dev/full")
+    with pytest.raises(InputError, match=r"l: cannot be written \(No space .*make room"):
+        note(rigs, tasks(rigs)[0], success({}, []))
