@@ -1,5 +1,7 @@
 """The folder of a sweep: what makes it one, what a kill leaves in it, and where it cannot grow."""
 
+import os
+
 import pytest
 
 from tests.sweeping.test_tasks import rigs, tasks  # noqa: F401 # a fixture
@@ -55,3 +57,10 @@ def test_a_full_disk_is_one_line(rigs):  # noqa: F811
     (rigs / "journal.jsonl").symlink_to("/dev/full")
     with pytest.raises(InputError, match=r"l: cannot be written \(No space .*make room"):
         note(rigs, tasks(rigs)[0], success({}, []))
+
+
+def test_a_folder_whose_name_is_no_text_is_refused(tmp_path):
+    out = tmp_path / os.fsdecode(b"pp\xff")
+    with pytest.raises(InputError, match="its name is no text"), sweep_folder(out):
+        pytest.fail("the block must not run")
+    assert list(tmp_path.iterdir()) == []

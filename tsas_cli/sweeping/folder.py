@@ -9,6 +9,7 @@ from typing import TextIO
 
 from tsas_cli.errors import InputError
 from tsas_cli.files import read_json, sha256_of, unwritable
+from tsas_cli.limits import text_name
 from tsas_cli.replacing import SUMS
 from tsas_cli.sweeping.answer import Answer, success
 from tsas_cli.sweeping.tasks import FILE, Task
@@ -46,6 +47,7 @@ def sweep_folder(out: Path) -> Iterator[Path]:
 def _taken(out: Path) -> TextIO:
     """Return the journal of a sweep's folder, open and locked until it is closed."""
     with _writing(out):
+        text_name(out.absolute())
         if out.is_dir() and not _is_of_a_sweep(out):
             raise InputError(
                 "holds something else than an earlier sweep",
