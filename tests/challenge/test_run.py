@@ -5,6 +5,7 @@ import json
 import pytest
 
 from tests.challenge.made import case, diagnosis, tool, write_set
+from tsas_cli.api.challenge import run_set
 from tsas_cli.challenge.entry import read_entry
 from tsas_cli.challenge.run import run_cases
 from tsas_cli.errors import InputError
@@ -38,6 +39,11 @@ def test_what_went_wrong_is_written_down_and_the_others_answer(tmp_path):
 def test_a_set_without_cases(tmp_path):
     with pytest.raises(InputError, match="no cases/ID/dataset here"):
         run_cases(tmp_path, tmp_path / "entry", workers=1, diagnose=tool)
+
+
+def test_somebody_has_to_do_the_work(tmp_path):
+    with pytest.raises(InputError, match="workers is 0; expected 1 or more"):
+        run_set(tmp_path, out=tmp_path / "entry", workers=0)
 
 
 def test_an_entry_is_not_overwritten_unasked(tmp_path):

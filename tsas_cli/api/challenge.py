@@ -153,12 +153,13 @@ def run_set(
     Raises
     ------
     InputError
-        The set has no cases, the tool is unknown, or `out` exists and `force` is not set.
+        The set has no cases, the tool is unknown, there is no worker, or `out` exists and `force` is
+        not set.
     """
-    path, folder = Path(sealed), Path(out)
+    path, folder, many = Path(sealed), Path(out), at_least(1, workers, "workers")
     taken = TOOLS[one_of(tuple(TOOLS), tool, "tool")]
     step.ahead(len(case_folders(path)))
-    log = run_cases(path, folder, workers=workers, force=force, diagnose=taken, step=step)
+    log = run_cases(path, folder, workers=many, force=force, diagnose=taken, step=step)
     return Entry(log, folder)
 
 
