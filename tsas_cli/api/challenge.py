@@ -153,8 +153,7 @@ def run_set(
     Raises
     ------
     InputError
-        The set has no cases, the tool is unknown, there is no worker, or `out` exists and `force` is
-        not set.
+        The set has no cases, the tool is unknown, nobody works, or `out` exists without `force`.
     """
     path, folder, many = Path(sealed), Path(out), at_least(1, workers, "workers")
     taken = TOOLS[one_of(tuple(TOOLS), tool, "tool")]
