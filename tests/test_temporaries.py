@@ -95,7 +95,7 @@ def test_an_output_is_replaced_with_and_without_an_exchange_of_names(
     if not exchanges:
         monkeypatch.setattr(temporaries, "_exchanged", lambda *_: False)
     make_old(tmp_path / "out")
-    (tmp_path / "out" / "more").touch()
+    (tmp_path / "out" / ".DS_Store").touch()
     with new_folder(tmp_path / "out", force=True) as folder:
         (folder / "result").write_text("new")
     assert names(tmp_path / "out") == ["result"]

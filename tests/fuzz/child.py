@@ -1,6 +1,8 @@
 """Searches one target under atheris, which can do so only once in a process."""
 
+import ctypes
 import hashlib
+import os
 import resource
 import shlex
 import sys
@@ -82,6 +84,7 @@ def main() -> None:
         more["custom_mutator"] = target.mutate
     again = shlex.join([sys.executable, "-m", "tests.fuzz.child", name, found])  # for merging
     atheris.Setup([again, *arguments], one, **more)
+    ctypes.CDLL(None).on_exit(_leave, None)
     atheris.Fuzz()
 
 
@@ -90,6 +93,12 @@ def warm_up(target: ModuleType) -> None:
     for seed in target.seeds():
         with suppress(Exception):  # a search tries it again
             target.one(seed)
+
+
+@ctypes.CFUNCTYPE(None, ctypes.c_int, ctypes.c_void_p)
+def _leave(status: int, _: object) -> None:
+    """End at once: libFuzzer leaves with Python's lock, for which threads of pyarrow may wait."""
+    os._exit(status)
 
 
 def _compiled() -> list[str]:
