@@ -1,6 +1,7 @@
 """Each case in a process of its own: one that fails or dies takes no other along."""
 
 import json
+import os
 
 import pytest
 
@@ -55,10 +56,13 @@ def test_an_entry_is_not_overwritten_unasked(tmp_path):
 
 
 def test_a_case_has_one_thread_for_linear_algebra(tmp_path, monkeypatch):
-    monkeypatch.delenv("OPENBLAS_NUM_THREADS", raising=False)
+    for name in ("OPENBLAS_NUM_THREADS", "PYTHONSAFEPATH"):
+        monkeypatch.delenv(name, raising=False)
     sealed = write_set(tmp_path / "set", {"threads": case()})
     log = run_cases(sealed, tmp_path / "entry", workers=1, diagnose=tool)
     assert log["no_answer"] == {"threads": "RuntimeError: 1 threads"}
+    assert "OPENBLAS_NUM_THREADS" not in os.environ  # of the caller
+    assert "PYTHONSAFEPATH" not in os.environ
     assert log["tool"] == "tool"
 
 

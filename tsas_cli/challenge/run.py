@@ -3,9 +3,10 @@
 import os
 import shutil
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
@@ -77,10 +78,12 @@ def run_cases(
         The set has no cases, or `out` exists and `force` is not set.
     """
     folders = case_folders(sealed)
-    for name, value in SURROUNDINGS.items():
-        os.environ.setdefault(name, value)  # the new processes take it over
     reasons: dict[str, str] = {}
-    with stage_folder(out, force=force) as entry, ThreadPoolExecutor(workers) as threads:
+    with (
+        stage_folder(out, force=force) as entry,
+        _surrounded(),
+        ThreadPoolExecutor(workers) as threads,
+    ):
         tasks = {
             threads.submit(_in_a_process, diagnose, case / "dataset", entry / case.name): case.name
             for case in folders
@@ -104,6 +107,18 @@ def run_cases(
         }
         write_json(entry / LOG, log)
     return log
+
+
+@contextmanager
+def _surrounded() -> Iterator[None]:
+    """Let processes that are started in the block have `SURROUNDINGS`, where nobody says others."""
+    missing = SURROUNDINGS.keys() - os.environ.keys()
+    os.environ.update({name: SURROUNDINGS[name] for name in missing})
+    try:
+        yield
+    finally:
+        for name in missing:
+            del os.environ[name]
 
 
 def _in_a_process(diagnose: Diagnose, dataset: Path, out: Path) -> str | None:
