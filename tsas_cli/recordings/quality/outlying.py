@@ -1,7 +1,6 @@
 """Samples that stand far off both their neighbours, one or a few in a row."""
 
 import numpy as np
-from numpy.lib.stride_tricks import sliding_window_view
 
 from tsas_cli.recordings.quality.samples import Booleans
 from tsas_cli.recordings.recording import Floats
@@ -53,11 +52,14 @@ def _standing_off(time_s: Floats, values: Floats, least: float, span: float) -> 
     change = np.abs(np.diff(values))
     # What lies before the first sample and after the last is taken to be like the other side.
     before, after = np.r_[np.nan, values[:-1]], np.r_[values[1:], np.nan]
+    lowest = highest = values  # of so many in a row
     for count in range(1, _MOST_IN_A_ROW + 1):
-        rows = sliding_window_view(values, count)
-        left, right = before[: rows.shape[0]], after[count - 1 :]
-        above = rows.min(axis=1) - np.fmax(left, right)
-        below = np.fmin(left, right) - rows.max(axis=1)
+        if count > 1:
+            lowest = np.minimum(lowest[:-1], values[count - 1 :])
+            highest = np.maximum(highest[:-1], values[count - 1 :])
+        left, right = before[: lowest.size], after[count - 1 :]
+        above = lowest - np.fmax(left, right)
+        below = np.fmin(left, right) - highest
         off = np.maximum(above, below)
         needed = np.full(off.size, least)
         needed[[0, -1]] = max(least, span)
