@@ -2,6 +2,8 @@
 
 import sys
 
+from tsas_cli.stopping import EXIT_CODE
+
 
 def main() -> None:
     """Run the command line; Ctrl-C ends it quietly while it is still being loaded, too."""
@@ -10,7 +12,7 @@ def main() -> None:
 
         answer()
     except KeyboardInterrupt:
-        sys.exit(130)  # as typer has it
+        sys.exit(EXIT_CODE)
 
 
 if __name__ == "__main__":

@@ -34,9 +34,8 @@ from tsas_cli.commands.upload import upload
 from tsas_cli.commands.verify import verify
 from tsas_cli.commands.view import view
 from tsas_cli.errors import InputError, printable
-from tsas_cli.stopping import cleaned_up_when_stopped
+from tsas_cli.stopping import EXIT_CODE, cleaned_up_when_stopped
 
-STOPPED = 130  # as typer has it
 # What the machine refuses: no room, a disk that fails, no more open files.
 REFUSALS = frozenset(
     {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO, errno.EMFILE, errno.ENFILE}
@@ -104,7 +103,7 @@ def main() -> None:
     except TyperException as error:
         code = _stop(_wrong_call(error), 2)
     except KeyboardInterrupt:  # between typer's end and ours
-        code = STOPPED
+        code = EXIT_CODE
     except (BrokenPipeError, SystemExit):  # who read the output is gone; typer exits then
         _forget_output()
         code = 0
@@ -115,7 +114,7 @@ def main() -> None:
         if os.environ.get("TSAS_TRACEBACK") == "1":
             raise
         if _was_stopped(error):
-            sys.exit(STOPPED)
+            sys.exit(EXIT_CODE)
         code = _refused(error) if _is_refusal(error) else _defect(error)
     sys.exit(code)
 

@@ -62,13 +62,14 @@ def refuse_foreign(path: Path, new: Path) -> None:
     """Keep `--out DATASET --force` from deleting recordings, or what else somebody keeps there."""
     if not path.is_dir():
         return
-    ours = {member.name for member in new.iterdir()} | _listed(path) | {SUMS} | _LEFT_BY_DESKTOPS
-    foreign = sorted({member.name for member in path.iterdir()} - ours)
+    ours = {member.name for member in new.iterdir()}
+    there = {member.name for member in path.iterdir()}
+    foreign = sorted(there - ours - _listed(path) - {SUMS} - _LEFT_BY_DESKTOPS)
     if foreign:
         raise InputError(
             f"holds something else than an earlier output ({', '.join(foreign[:5])})",
             where=path,
-            expected=f"a folder with {', '.join(sorted(member.name for member in new.iterdir()))}",
+            expected=f"a folder with {', '.join(sorted(ours))}",
             remedy="choose another --out",
         )
 

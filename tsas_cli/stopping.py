@@ -9,6 +9,7 @@ from types import FrameType
 
 NAMES = ("SIGINT", "SIGTERM", "SIGHUP")  # Ctrl-C, `kill`, a terminal that closes
 SIGNALS = [getattr(signal, name) for name in NAMES if hasattr(signal, name)]
+EXIT_CODE = 130  # of a command that was stopped, as typer has it
 CLEANING_S = 3.0  # for which more signals are not heard
 
 
