@@ -69,7 +69,7 @@ def measure() -> int:
     tables = [table(name, told["rows"]) for name, told in found.items()]
     show(summary, tables, quiet=False, as_json=False)
     if call.out:
-        with new_file(call.out, force=True) as path:
+        with new_file(call.out, mark=b'"yardstick"', inputs=(), force=True) as path:
             write_json(path, summary)
     return 0
 

@@ -1,5 +1,4 @@
 import os
-import re
 import signal
 import subprocess
 import sys
@@ -8,17 +7,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.outputs import file_of, folder_of, make_output
 from tsas_cli.errors import InputError
 from tsas_cli.files import (
     json_text,
-    new_file,
-    new_folder,
     read_json,
     sha256_of,
     write_json,
-    write_sums,
 )
-from tsas_cli.replacing import refuse_input
 
 
 def names(folder: Path) -> list[str]:
@@ -26,13 +22,12 @@ def names(folder: Path) -> list[str]:
 
 
 def make_old(path: Path) -> None:
-    path.mkdir()
-    (path / "result").write_text("old")
+    make_output(path, result="old")
 
 
 def test_a_folder_appears_only_when_it_is_complete(tmp_path: Path) -> None:
     out = tmp_path / "deep" / "out"
-    with new_folder(out) as folder:
+    with folder_of(out) as folder:
         (folder / "result").write_text("new")
         assert not out.exists()
     assert (out / "result").read_text() == "new"
@@ -45,14 +40,14 @@ def fail_after_writing(path: Path) -> None:
 
 
 def test_an_error_inside_the_block_leaves_nothing(tmp_path: Path) -> None:
-    with pytest.raises(RuntimeError), new_folder(tmp_path / "out") as folder:
+    with pytest.raises(RuntimeError), folder_of(tmp_path / "out") as folder:
         fail_after_writing(folder / "half")
-    with pytest.raises(RuntimeError), new_file(tmp_path / "page.html") as file:
+    with pytest.raises(RuntimeError), file_of(tmp_path / "page.html") as file:
         fail_after_writing(file)
     assert names(tmp_path) == []
 
 
-@pytest.mark.parametrize("new", [new_file, new_folder])
+@pytest.mark.parametrize("new", [file_of, folder_of])
 @pytest.mark.parametrize("name", [b"z\xff", b"w\xe9/out"])
 def test_a_place_whose_name_is_no_text_is_refused(tmp_path: Path, new, name: bytes) -> None:
     out = tmp_path / os.fsdecode(name)
@@ -63,7 +58,7 @@ def test_a_place_whose_name_is_no_text_is_refused(tmp_path: Path, new, name: byt
 
 def test_an_existing_folder_stays_as_it_is_without_force(tmp_path: Path) -> None:
     make_old(tmp_path / "out")
-    with pytest.raises(InputError, match=r"already exists.*--force"), new_folder(tmp_path / "out"):
+    with pytest.raises(InputError, match=r"already exists.*--force"), folder_of(tmp_path / "out"):
         pytest.fail("the block must not run")
     assert (tmp_path / "out" / "result").read_text() == "old"
     assert names(tmp_path) == ["out"]
@@ -71,86 +66,21 @@ def test_an_existing_folder_stays_as_it_is_without_force(tmp_path: Path) -> None
 
 def test_an_existing_file_stays_as_it_is_without_force(tmp_path: Path) -> None:
     (tmp_path / "page.html").write_text("old")
-    with pytest.raises(InputError, match="already exists"), new_file(tmp_path / "page.html"):
+    with pytest.raises(InputError, match="already exists"), file_of(tmp_path / "page.html"):
         pytest.fail("the block must not run")
     assert (tmp_path / "page.html").read_text() == "old"
 
 
-def test_force_replaces_an_output_and_keeps_nothing_of_the_old_one(tmp_path: Path) -> None:
-    out = tmp_path / "out"
-    make_old(out)
-    (out / "left").write_text("old")
-    (out / ".DS_Store").write_text("of a desktop")
-    write_sums(out)
-    with new_folder(out, force=True) as folder:
-        (folder / "result").write_text("new")
-        assert names(out) == [".DS_Store", "SHA256SUMS", "left", "result"]
-    assert names(out) == ["result"]
-    assert (out / "result").read_text() == "new"
-    assert names(tmp_path) == ["out"]
-
-
-def simulate_into(out: Path) -> None:
-    with new_folder(out, force=True) as folder:
-        (folder / "runs").mkdir()
-        (folder / "simulation.json").write_text("{}")
-
-
-def test_force_never_replaces_recordings_by_what_was_made_of_them(tmp_path: Path) -> None:
-    (tmp_path / "dataset" / "runs").mkdir(parents=True)
-    (tmp_path / "dataset" / "dataset.toml").write_text("mine")
-    told = r"earlier output \(dataset\.toml\); expected a folder with runs, simulation\.json"
-    with pytest.raises(InputError, match=told):
-        simulate_into(tmp_path / "dataset")
-    assert names(tmp_path / "dataset") == ["dataset.toml", "runs"]
-    assert names(tmp_path) == ["dataset"]
-
-
-@pytest.mark.parametrize("more", ["notes.txt", "raw", ".git"])
-def test_force_never_deletes_what_no_earlier_output_has_put_there(tmp_path: Path, more) -> None:
-    simulate_into(tmp_path / "out")
-    simulate_into(tmp_path / "out")
-    (tmp_path / "out" / more).mkdir()
-    with pytest.raises(InputError, match=f"earlier output \\({re.escape(more)}\\)"):
-        simulate_into(tmp_path / "out")
-    assert names(tmp_path / "out") == sorted([more, "runs", "simulation.json"])
-
-
-def test_a_device_or_a_pipe_is_never_replaced(tmp_path: Path) -> None:
-    os.mkfifo(tmp_path / "pipe")
-    (tmp_path / "link").symlink_to(os.devnull)
-    for name in ("pipe", "link"):
-        for new in (new_folder, new_file):
-            with pytest.raises(InputError, match="is a device or a pipe"):
-                stack_of(new(tmp_path / name, force=True))
-    assert (tmp_path / "pipe").is_fifo()
-    assert (tmp_path / "link").is_symlink()
-
-
-def stack_of(block) -> None:
-    with block:
-        pytest.fail("the block must not run")
-
-
-def test_what_is_read_is_not_written(tmp_path: Path) -> None:
-    (tmp_path / "a").mkdir()
-    refuse_input(tmp_path / "a", [tmp_path / "b", tmp_path / "a.csv"])
-    (tmp_path / "link").symlink_to(tmp_path / "a")
-    for out in ("a", "link", "a/b.csv"):
-        with pytest.raises(InputError, match="is read, and would be replaced"):
-            refuse_input(tmp_path / out, [tmp_path / "a" / "b.csv"])
-
-
 def test_a_file_is_not_taken_for_a_folder(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("old")
-    with pytest.raises(InputError, match="is a file"), new_folder(tmp_path / "file", force=True):
+    with pytest.raises(InputError, match="is a file"), folder_of(tmp_path / "file", force=True):
         pytest.fail("the block must not run")
     assert (tmp_path / "file").read_text() == "old"
 
 
 def test_force_keeps_the_old_output_where_the_new_one_fails(tmp_path: Path) -> None:
     make_old(tmp_path / "out")
-    with pytest.raises(RuntimeError), new_folder(tmp_path / "out", force=True):
+    with pytest.raises(RuntimeError), folder_of(tmp_path / "out", force=True):
         raise RuntimeError
     assert (tmp_path / "out" / "result").read_text() == "old"
     assert names(tmp_path) == ["out"]
@@ -161,8 +91,8 @@ def test_a_process_killed_inside_the_block_leaves_the_old_output_whole(tmp_path:
     program = """
 import os, signal, sys
 from pathlib import Path
-from tsas_cli.files import new_folder
-with new_folder(Path(sys.argv[1]), force=True) as folder:
+from tests.outputs import folder_of
+with folder_of(Path(sys.argv[1]), force=True) as folder:
     (folder / "result").write_text("half")
     os.kill(os.getpid(), signal.SIGKILL)
 """
@@ -173,13 +103,13 @@ with new_folder(Path(sys.argv[1]), force=True) as folder:
 
 def test_an_empty_folder_may_be_filled(tmp_path: Path) -> None:
     (tmp_path / "out").mkdir()
-    with new_folder(tmp_path / "out") as folder:
+    with folder_of(tmp_path / "out") as folder:
         (folder / "result").write_text("new")
     assert names(tmp_path / "out") == ["result"]
 
 
 def test_a_folder_is_not_taken_for_a_file(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="is a folder"), new_file(tmp_path, force=True):
+    with pytest.raises(InputError, match="is a folder"), file_of(tmp_path, force=True):
         pytest.fail("the block must not run")
 
 
@@ -191,7 +121,7 @@ def test_force_never_removes_the_current_folder(
     monkeypatch.chdir(tmp_path / "work")
     with (
         pytest.raises(InputError, match="is the current folder"),
-        new_folder(Path(out), force=True),
+        folder_of(Path(out), force=True),
     ):
         pytest.fail("the block must not run")
     assert (tmp_path / "work" / "result").read_text() == "old"
@@ -199,9 +129,9 @@ def test_force_never_removes_the_current_folder(
 
 def test_a_dangling_link_counts_as_existing(tmp_path: Path) -> None:
     (tmp_path / "out").symlink_to(tmp_path / "nowhere")
-    with pytest.raises(InputError, match="already exists"), new_folder(tmp_path / "out"):
+    with pytest.raises(InputError, match="already exists"), folder_of(tmp_path / "out"):
         pytest.fail("the block must not run")
-    with new_folder(tmp_path / "out", force=True) as folder:
+    with folder_of(tmp_path / "out", force=True) as folder:
         (folder / "result").write_text("new")
     assert names(tmp_path / "out") == ["result"]
 
@@ -209,16 +139,16 @@ def test_a_dangling_link_counts_as_existing(tmp_path: Path) -> None:
 def test_a_place_that_cannot_be_written_is_one_line(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     for out in (tmp_path / "file" / "out", tmp_path / ("x" * 300)):
-        with pytest.raises(InputError, match="cannot be written"), new_folder(out):
+        with pytest.raises(InputError, match="cannot be written"), folder_of(out):
             pytest.fail("the block must not run")
-        with pytest.raises(InputError, match="cannot be written"), new_file(out):
+        with pytest.raises(InputError, match="cannot be written"), file_of(out):
             pytest.fail("the block must not run")
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may read everything")
 def test_a_folder_that_may_not_be_read_is_one_line(tmp_path: Path) -> None:
     (tmp_path / "closed").mkdir(mode=0)
-    with pytest.raises(InputError, match="cannot be written"), new_folder(tmp_path / "closed"):
+    with pytest.raises(InputError, match="cannot be written"), folder_of(tmp_path / "closed"):
         pytest.fail("the block must not run")
 
 

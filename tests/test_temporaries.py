@@ -7,15 +7,15 @@ from pathlib import Path
 
 import pytest
 
+from tests.outputs import file_of, folder_of, make_output
 from tsas_cli import temporaries
 from tsas_cli.errors import InputError
-from tsas_cli.files import new_file, new_folder
 
 KILLED = """
 import os, signal, sys
 from pathlib import Path
 from tsas_cli import temporaries
-from tsas_cli.files import new_folder
+from tests.outputs import folder_of
 if sys.argv[2] == "between":
     temporaries._exchanged = lambda a, b: False
     rename = Path.rename
@@ -24,7 +24,7 @@ if sys.argv[2] == "between":
         if self == Path(sys.argv[1]):
             os.kill(os.getpid(), signal.SIGKILL)
     Path.rename = killing
-with new_folder(Path(sys.argv[1]), force=True) as folder:
+with folder_of(Path(sys.argv[1]), force=True) as folder:
     (folder / "result").write_text("new")
     if sys.argv[2] == "inside":
         os.kill(os.getpid(), signal.SIGKILL)
@@ -34,17 +34,15 @@ import sys
 from pathlib import Path
 from tsas_cli.app import _stop
 from tsas_cli.errors import InputError
-from tsas_cli.files import new_file, new_folder
+from tests.outputs import file_of, written
 path, force = Path(sys.argv[1]), sys.argv[2] == "force"
 try:
     if sys.argv[3] == "folder":
-        with new_folder(path, force=force) as new:
-            for name in ("a", "b", "result"):
-                (new / name).write_text(sys.argv[4])
+        with written(path, force=force, **dict.fromkeys(("a", "b", "result"), sys.argv[4])):
             print("there", flush=True)
             sys.stdin.readline()
     else:
-        with new_file(path, force=force) as new:
+        with file_of(path, force=force) as new:
             new.write_text(sys.argv[4])
             print("there", flush=True)
             sys.stdin.readline()
@@ -58,8 +56,7 @@ def names(folder: Path) -> list[str]:
 
 
 def make_old(path: Path) -> None:
-    path.mkdir()
-    (path / "result").write_text("old")
+    make_output(path, result="old")
 
 
 def kill(path: Path, when: str) -> None:
@@ -68,7 +65,7 @@ def kill(path: Path, when: str) -> None:
 
 
 def write(path: Path) -> None:
-    with new_folder(path) as folder:
+    with folder_of(path) as folder:
         (folder / "result").write_text("next")
 
 
@@ -96,7 +93,7 @@ def test_an_output_is_replaced_with_and_without_an_exchange_of_names(
         monkeypatch.setattr(temporaries, "_exchanged", lambda *_: False)
     make_old(tmp_path / "out")
     (tmp_path / "out" / ".DS_Store").touch()
-    with new_folder(tmp_path / "out", force=True) as folder:
+    with folder_of(tmp_path / "out", force=True) as folder:
         (folder / "result").write_text("new")
     assert names(tmp_path / "out") == ["result"]
     assert (tmp_path / "out" / "result").read_text() == "new"
@@ -113,10 +110,10 @@ def test_names_are_exchanged_where_the_system_can(tmp_path: Path) -> None:
 
 
 def test_what_a_living_process_makes_stays(tmp_path: Path) -> None:
-    with new_folder(tmp_path / "out") as folder:
+    with folder_of(tmp_path / "out") as folder:
         (folder / "result").write_text("mine")
         write(tmp_path / "another")
-        with new_file(tmp_path / "page.html") as page:
+        with file_of(tmp_path / "page.html") as page:
             page.write_text("page")
             write(tmp_path / "third")
     assert (tmp_path / "out" / "result").read_text() == "mine"
@@ -150,7 +147,7 @@ def test_files_of_a_person_stay(tmp_path: Path) -> None:
 def test_a_link_is_replaced_and_what_it_leads_to_stays(tmp_path: Path) -> None:
     make_old(tmp_path / "there")
     (tmp_path / "out").symlink_to("there")
-    with new_folder(tmp_path / "out", force=True) as folder:
+    with folder_of(tmp_path / "out", force=True) as folder:
         (folder / "result").write_text("new")
     assert (tmp_path / "there" / "result").read_text() == "old"
     assert not (tmp_path / "out").is_symlink()
@@ -167,7 +164,7 @@ def two_at_once(path: Path, force: str, kind: str) -> list[tuple[int, str]]:
             stderr=subprocess.PIPE,
             text=True,
         )
-        for text in ("first", "second")
+        for text in ("mine, first", "mine, second")
     ]
     for process in processes:
         assert process.stdout
@@ -186,15 +183,16 @@ def test_of_two_at_once_one_wins_and_the_other_says_so(tmp_path: Path, kind: str
     assert "already exists" in said
     assert said.count("\n") == 1
     result = tmp_path / "out" / "result" if kind == "folder" else tmp_path / "out"
-    assert result.read_text() == "second"
+    assert result.read_text() == "mine, second"
     assert names(tmp_path) == ["out"]
 
 
 @pytest.mark.parametrize("kind", ["folder", "file"])
 def test_of_two_at_once_with_force_the_last_is_whole(tmp_path: Path, kind: str) -> None:
     assert two_at_once(tmp_path / "out", "force", kind) == [(0, ""), (0, "")]
-    results = (tmp_path / "out").iterdir() if kind == "folder" else [tmp_path / "out"]
-    assert {path.read_text() for path in results} == {"first"}
+    home = tmp_path / "out"
+    results = [home / name for name in ("a", "b", "result")] if kind == "folder" else [home]
+    assert {path.read_text() for path in results} == {"mine, first"}
     assert names(tmp_path) == ["out"]
 
 
@@ -205,10 +203,13 @@ def test_a_file_never_replaces_one_that_came_meanwhile_where_links_are_unknown(
         raise PermissionError
 
     monkeypatch.setattr(os, "link", no_link)
-    with pytest.raises(InputError, match="already exists"), new_file(tmp_path / "page"):
+    with (
+        pytest.raises(InputError, match="already exists"),
+        file_of(tmp_path / "page"),
+    ):
         (tmp_path / "page").write_text("of somebody else")
     assert (tmp_path / "page").read_text() == "of somebody else"
-    with new_file(tmp_path / "other") as page:
+    with file_of(tmp_path / "other") as page:
         page.write_text("mine")
     assert (tmp_path / "other").read_text() == "mine"
     assert names(tmp_path) == ["other", "page"]

@@ -5,9 +5,10 @@ import hashlib
 import json
 import math
 import os
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from contextlib import ExitStack, contextmanager
 from contextvars import ContextVar
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -17,9 +18,8 @@ from tsas_cli.replacing import (
     SUMS,
     exists,
     refuse_address,
-    refuse_current,
-    refuse_existing,
-    refuse_foreign,
+    refuse_file,
+    refuse_folder,
     refuse_kind,
 )
 from tsas_cli.temporaries import place_file, place_folder, temporary_for
@@ -36,22 +36,35 @@ def sha256_of(path: Path) -> str:
 
 
 @contextmanager
-def new_folder(path: Path, *, force: bool = False) -> Iterator[Path]:
+def new_folder(
+    path: Path, *, stage: str, inputs: Iterable[object], force: bool = False
+) -> Iterator[Path]:
     """Yield a temporary folder that becomes `path` when the block ends without an error.
+
+    Parameters
+    ----------
+    path
+        The folder to write.
+    stage
+        The stage that writes it, as its JSON names it.
+    inputs
+        What the call reads, which the folder may neither be, hold nor lie inside of.
+    force
+        Replace an earlier output of the same stage.
 
     Raises
     ------
     InputError
-        `path` exists and is not an empty folder, and `force` is not set; with `force`, where it
-        holds something else than an earlier output, or the current folder; it cannot be written.
+        `path` exists and is not an empty folder, and `force` is not set; with `force`, where it is
+        no earlier output of the same stage, an input, or the current folder; it cannot be written.
     """
+    replaced = partial(refuse_folder, path, stage=stage, inputs=tuple(inputs), force=force)
     with ExitStack() as stack:
         with _written(path):
             limits.text_name(path.absolute())
             refuse_address(path)
             refuse_kind(path, folder=True)
-            refuse_existing(path, force=force)
-            refuse_current(path)
+            replaced()
             path.parent.mkdir(parents=True, exist_ok=True)
             temporary = stack.enter_context(temporary_for(path))
             temporary.mkdir(mode=0o700)
@@ -59,12 +72,14 @@ def new_folder(path: Path, *, force: bool = False) -> Iterator[Path]:
             yield temporary
         with _written(path):
             temporary.chmod(0o755)
-            refuse_foreign(path, temporary)
+            replaced()  # somebody may have put something there meanwhile
             place_folder(temporary, path, replace=force)
 
 
 @contextmanager
-def stage_folder(path: Path, *, force: bool = False) -> Iterator[Path]:
+def stage_folder(
+    path: Path, *, stage: str, inputs: Iterable[object], force: bool = False
+) -> Iterator[Path]:
     """Yield a new folder as `new_folder` does; at its end `SHA256SUMS` lists the files in it.
 
     Raises
@@ -72,7 +87,7 @@ def stage_folder(path: Path, *, force: bool = False) -> Iterator[Path]:
     InputError
         As `new_folder` raises it.
     """
-    with new_folder(path, force=force) as folder:
+    with new_folder(path, stage=stage, inputs=inputs, force=force) as folder:
         add, own = _ADDED.get(), _ADDED.set(None)  # not for what is written inside of it
         try:
             yield folder
@@ -84,7 +99,9 @@ def stage_folder(path: Path, *, force: bool = False) -> Iterator[Path]:
 
 
 @contextmanager
-def folder_if(path: Path | None, *, force: bool = False) -> Iterator[Path | None]:
+def folder_if(
+    path: Path | None, *, stage: str, inputs: Iterable[object], force: bool = False
+) -> Iterator[Path | None]:
     """Yield a new folder as `stage_folder` does, or None where no path says where to write.
 
     Raises
@@ -95,7 +112,7 @@ def folder_if(path: Path | None, *, force: bool = False) -> Iterator[Path | None
     if path is None:
         yield None
         return
-    with stage_folder(path, force=force) as folder:
+    with stage_folder(path, stage=stage, inputs=inputs, force=force) as folder:
         yield folder
 
 
@@ -110,20 +127,36 @@ def added(add: Callable[[Path], None] | None) -> Iterator[None]:
 
 
 @contextmanager
-def new_file(path: Path, *, force: bool = False) -> Iterator[Path]:
+def new_file(
+    path: Path, *, mark: bytes, inputs: Iterable[object], force: bool = False
+) -> Iterator[Path]:
     """Yield a temporary file name that becomes `path` when the block ends without an error.
+
+    Parameters
+    ----------
+    path
+        The file to write.
+    mark
+        What an earlier output of the same command holds in its first 4 KiB; empty where any file
+        may be replaced, since its place is the program's own.
+    inputs
+        What the call reads, which the file may neither be nor lie inside of.
+    force
+        Replace an earlier output of the same command.
 
     Raises
     ------
     InputError
-        `path` exists and `force` is not set, it is a folder, or it cannot be written.
+        `path` exists and `force` is not set; with `force`, where it is no earlier output or an
+        input; it is a folder, or it cannot be written.
     """
+    replaced = partial(refuse_file, path, mark=mark, inputs=tuple(inputs), force=force)
     with ExitStack() as stack:
         with _written(path):
             limits.text_name(path.absolute())
             refuse_address(path)
             refuse_kind(path, folder=False)
-            refuse_existing(path, force=force)
+            replaced()
             path.parent.mkdir(parents=True, exist_ok=True)
             temporary = stack.enter_context(temporary_for(path))
             temporary.touch(mode=0o600)
@@ -131,7 +164,21 @@ def new_file(path: Path, *, force: bool = False) -> Iterator[Path]:
             yield temporary
         with _written(path):
             temporary.chmod(0o644)
+            replaced()
             place_file(temporary, path, replace=force)
+
+
+@contextmanager
+def own_file(path: Path) -> Iterator[Path]:
+    """Yield as `new_file` does, for a file whose place is the program's own: it is replaced.
+
+    Raises
+    ------
+    InputError
+        It is a folder, or cannot be written.
+    """
+    with new_file(path, mark=b"", inputs=(), force=True) as temporary:
+        yield temporary
 
 
 def write_sums(folder: Path) -> None:

@@ -23,6 +23,7 @@ from pathlib import Path
 
 LOCK, NEW, OLD = ".tsas-lock", ".tsas-new", ".tsas-old"
 _LOCK_NAME = re.compile(rf"\.(?P<name>.+)\.[a-z0-9_]{{8}}{LOCK}", re.DOTALL)
+TEMPORARY = re.compile(rf"\.[a-z0-9_]{{8}}({LOCK}|{NEW}|{OLD})$")  # how its name ends
 _BOOT_ID = Path("/proc/sys/kernel/random/boot_id")
 _AT_FDCWD, _RENAME_EXCHANGE = -100, 2  # of Linux
 

@@ -23,7 +23,7 @@ from benchmarks.lugre_rivals.drives import Sine, Sines, noisy
 from benchmarks.lugre_rivals.ode import Output, Problem, group
 from benchmarks.lugre_rivals.solution import Tolerance
 from benchmarks.lugre_rivals.solvers import radau_in_numpy, sundae
-from tsas_cli.files import new_file
+from tsas_cli.files import own_file
 
 FOLDER = Path(__file__).parents[2] / "tests" / "physics" / "lugre_references"
 KEY = b"lugre"
@@ -94,7 +94,7 @@ def make(name: str, problem: Problem, out: Path) -> dict[str, float]:
     x_in = problem.drive.position(problem.time_s)
     columns = {"time_s": problem.time_s, "x_in_mm": x_in, **exact._asdict()}
     table = pa.table(columns).replace_schema_metadata({KEY: json.dumps(about)})
-    with new_file(out / f"{name}.parquet", force=True) as path:
+    with own_file(out / f"{name}.parquet") as path:
         pq.write_table(table, path, compression="zstd")
     return off
 

@@ -7,7 +7,7 @@ import tempfile
 from pathlib import Path
 
 from docs.manual.build import build
-from tsas_cli.files import new_folder
+from tsas_cli.files import stage_folder, write_json
 
 
 def main() -> int:
@@ -21,8 +21,9 @@ def main() -> int:
         except (RuntimeError, ValueError) as error:
             print(error, file=sys.stderr)
             return 1
-        with new_folder(out, force=True) as folder:
+        with stage_folder(out, stage="docs", inputs=(), force=True) as folder:
             shutil.copytree(site, folder, dirs_exist_ok=True)
+            write_json(folder / "site.json", {"stage": "docs"})
     print(f"{out}/index.html")
     return 0
 

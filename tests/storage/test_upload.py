@@ -3,6 +3,7 @@ import pytest
 import tsas_cli as tsas
 from tsas_cli.errors import InputError
 from tsas_cli.recordings import storage
+from tsas_cli.recordings.storage import place_of
 
 
 def test_the_manifest_comes_last_and_an_older_one_goes_first(dataset, bucket, wire):
@@ -25,6 +26,28 @@ def test_nothing_is_replaced_unasked(dataset, bucket):
     tsas.upload(dataset, f"{bucket}/bench")
     with pytest.raises(InputError, match="already exists"):
         tsas.upload(dataset, f"{bucket}/bench")
+
+
+@pytest.mark.parametrize("whole", [True, False])
+def test_what_no_upload_has_put_there_is_not_replaced(dataset, bucket, whole):
+    tsas.upload(dataset, f"{bucket}/bench")
+    there = place_of(f"{bucket}/bench")
+    (there / "runs/a.parquet.blocks.json").remove()
+    (there / "runs/a.parquet").write_bytes(b"of somebody else")
+    if not whole:
+        (there / "dataset.toml").remove()
+    with pytest.raises(InputError, match="was not put there by `tsas upload`"):
+        tsas.upload(dataset, f"{bucket}/bench", force=whole)
+    assert (there / "runs/a.parquet").read_bytes() == b"of somebody else"
+
+
+def test_an_upload_that_was_cut_off_goes_on(dataset, bucket):
+    tsas.upload(dataset, f"{bucket}/bench")
+    there = place_of(f"{bucket}/bench")
+    for name in ("dataset.toml", "runs/a.parquet.blocks.json"):
+        (there / name).remove()
+    tsas.upload(dataset, f"{bucket}/bench")
+    assert tsas.read(f"{bucket}/bench").runs[0].id == "a"
 
 
 def test_a_recording_that_has_changed_is_not_uploaded(dataset, bucket):

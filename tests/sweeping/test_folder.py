@@ -11,7 +11,7 @@ from tsas_cli.sweeping.folder import note, sweep_folder
 
 
 def test_what_a_kill_leaves_goes_with_the_next_call(tmp_path):
-    with sweep_folder(tmp_path / "out") as folder:
+    with sweep_folder(tmp_path / "out", []) as folder:
         (folder / ".a-0123456789.abcdefgh.tsas-lock").write_text("tsas\nelsewhere\n\n")
         (folder / ".a-0123456789.abcdefgh.tsas-new" / "runs").mkdir(parents=True)
         (folder / "a-0123456789").mkdir()
@@ -24,9 +24,33 @@ def test_a_sweep_goes_on_in_what_is_left_of_one(tmp_path, left):
         path = tmp_path / name
         path.parent.mkdir(exist_ok=True)
         path.mkdir(parents=True) if name.endswith("/") else path.touch()
-    with sweep_folder(tmp_path) as folder:
+    with sweep_folder(tmp_path, []) as folder:
         assert (tmp_path / "journal.jsonl").is_file()
         assert folder.is_dir()
+
+
+def test_a_journal_of_another_program_makes_no_sweep(tmp_path):
+    (tmp_path / "journal.jsonl").write_text("{}")
+    (tmp_path / "parameters.csv").write_text("mine")
+    with (
+        pytest.raises(InputError, match="holds something else than an earlier sweep"),
+        sweep_folder(tmp_path, []),
+    ):
+        pass
+
+
+@pytest.mark.parametrize("place", [".", "tasks/a", "link"])
+def test_a_sweep_is_not_written_around_what_it_reads(tmp_path, place):
+    with sweep_folder(tmp_path / "out", []) as folder:
+        (folder / "a").mkdir()
+        (folder / "a" / "model.toml").write_text("mine")
+        (tmp_path / "out" / "link").symlink_to(folder / "a")
+    read = tmp_path / "out" / place / ("model.toml" if place != "." else "tasks/a/model.toml")
+    with (
+        pytest.raises(InputError, match="is read, and would be replaced"),
+        sweep_folder(tmp_path / "out", [read]),
+    ):
+        pass
 
 
 @pytest.mark.parametrize("other", ["tasks/.mine", "tasks/a", "notes.txt", "sweep.json"])
@@ -36,7 +60,7 @@ def test_a_folder_of_something_else_stays_as_it_is(tmp_path, other):
     path.touch()
     with (
         pytest.raises(InputError, match="holds something else than an earlier sweep"),
-        sweep_folder(tmp_path),
+        sweep_folder(tmp_path, []),
     ):
         pass
     assert [p for p in tmp_path.rglob("*") if p.is_file()] == [path]
@@ -48,7 +72,7 @@ def test_a_kill_at_the_start_leaves_the_mark_first(tmp_path, monkeypatch):
         raise KeyboardInterrupt
 
     monkeypatch.setattr("tsas_cli.sweeping.folder._lock", kill)
-    with pytest.raises(KeyboardInterrupt), sweep_folder(tmp_path / "out"):
+    with pytest.raises(KeyboardInterrupt), sweep_folder(tmp_path / "out", []):
         pass
     assert [path.name for path in (tmp_path / "out").iterdir()] == ["journal.jsonl"]
 
@@ -61,6 +85,6 @@ def test_a_full_disk_is_one_line(rigs):  # noqa: F811
 
 def test_a_folder_whose_name_is_no_text_is_refused(tmp_path):
     out = tmp_path / os.fsdecode(b"pp\xff")
-    with pytest.raises(InputError, match="its name is no text"), sweep_folder(out):
+    with pytest.raises(InputError, match="its name is no text"), sweep_folder(out, []):
         pytest.fail("the block must not run")
     assert list(tmp_path.iterdir()) == []

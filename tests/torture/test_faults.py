@@ -90,7 +90,7 @@ def test_a_folder_that_may_not_be_written_is_one_line(dataset, tmp_path):
         "if os.geteuid() == 0: os.setgroups([]); os.setgid(65534); os.setuid(65534)\n"
         "os.chdir(sys.argv[1]) if os.access(sys.argv[1], os.X_OK) else sys.exit(77)\n"
         "try:\n"
-        "    with new_folder(Path('out')): pass\n"
+        "    with new_folder(Path('out'), stage='check', inputs=()): pass\n"
         "except InputError as error: sys.exit(str(error))\n"
     )
     for folder in (tmp_path, *tmp_path.parents[:2]):

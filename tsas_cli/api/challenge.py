@@ -14,7 +14,7 @@ from tsas_cli.challenge.run import TOOLS, case_folders, run_cases
 from tsas_cli.challenge.score import score_entries
 from tsas_cli.challenge.tables import tables
 from tsas_cli.errors import InputError
-from tsas_cli.files import folder_if, new_folder, write_json
+from tsas_cli.files import folder_if, stage_folder, write_json
 from tsas_cli.result import Result, Table
 from tsas_cli.steps import SILENT, Steps
 
@@ -103,7 +103,7 @@ def make_set(
     if not listed:
         raise InputError("--small keeps no case of --kind pair", remedy="leave one of them out")
     path = Path(out)
-    with new_folder(path, force=force) as folder:
+    with stage_folder(path, stage="challenge make", inputs=(), force=force) as folder:
         step.ahead(len(listed))
         make(folder, listed, rate_Hz=rate_Hz, step=step)
     summary = {
@@ -188,9 +188,9 @@ def score_set(
     InputError
         The set or an answer cannot be read, or `out` exists and `force` is not set.
     """
-    folder = path_of(out)
-    with folder_if(folder, force=force) as written:
-        content = score_entries(Path(sealed), [Path(entry) for entry in entries])
+    folder, inputs = path_of(out), [Path(sealed), *map(Path, entries)]
+    with folder_if(folder, stage="challenge score", inputs=inputs, force=force) as written:
+        content = score_entries(inputs[0], inputs[1:])
         if written is not None:
             write_json(written / "score.json", content)
     return Score(content, folder)

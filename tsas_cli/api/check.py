@@ -73,7 +73,7 @@ def check(
         No run can be read, or `out` exists and `force` is not set.
     """
     data, folder = dataset_of(dataset, runs), path_of(out)
-    with folder_if(folder, force=force) as written:
+    with folder_if(folder, stage="check", inputs=[data.folder], force=force) as written:
         report = check_dataset(data, step)
         summary = data.header("check", folder) | report.content()
         if written is not None:

@@ -56,4 +56,6 @@ def close_loop(
     wanted = chosen(None if cases is None else listed(cases), listed(hide))
     read, first = read_settings(path_of(settings)), at_least(0, first_seed, "first_seed")
     seeds_taken = range(first, first + number_of_seeds(seeds))
-    return close_all(wanted, read, Path(out), seeds_taken, force=force, step=step)
+    return close_all(
+        wanted, read, Path(out), seeds_taken, inputs=[path_of(settings)], force=force, step=step
+    )

@@ -87,7 +87,9 @@ def compare(
     tracks = are_tracked(*paths)
     _refuse(on=on is not None, runs=runs is not None, fit_own=fit_own, tracks=tracks)
     data = None if on is None else dataset_of(on, runs)
-    with folder_if(None if out is None else Path(out), force=force) as folder:
+    inputs = [*paths, *([] if data is None else [data.folder])]
+    path = None if out is None else Path(out)
+    with folder_if(path, stage="compare", inputs=inputs, force=force) as folder:
         both = (
             compare_tracked(*paths)
             if tracks
@@ -97,7 +99,7 @@ def compare(
         if folder is not None:
             write_json(folder / stage.FILE, summary)
             (folder / "report.html").write_text(_page(both, step), encoding="utf-8")
-    return CompareResult(summary, None if out is None else Path(out), both)
+    return CompareResult(summary, path, both)
 
 
 def _page(both: Comparison | Tracks, step: Steps) -> str:

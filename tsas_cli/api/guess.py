@@ -7,8 +7,8 @@ from tsas_cli.api.given import Named, path_of, paths_of
 from tsas_cli.files import new_file
 from tsas_cli.recordings.guess.proposal import Proposal, propose
 from tsas_cli.recordings.guess.summary import content, tables
+from tsas_cli.recordings.guess.text import MARK
 from tsas_cli.recordings.ingest import find_files
-from tsas_cli.replacing import refuse_input
 from tsas_cli.result import Result, Table
 
 
@@ -63,11 +63,9 @@ def guess(
         None of the files can be read, or `out` exists and `force` is not set.
     """
     files, path = find_files(paths_of(sources), "*"), path_of(out)
-    if path is not None:
-        refuse_input(path, files)
     proposal = propose(files)
     summary = content(proposal)
     if path is not None:
-        with new_file(path, force=force) as written:
+        with new_file(path, mark=MARK, inputs=files, force=force) as written:
             written.write_text(summary["map"], encoding="utf-8")
     return GuessResult(summary, path, proposal)

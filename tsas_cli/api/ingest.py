@@ -10,7 +10,6 @@ from tsas_cli.files import new_folder
 from tsas_cli.recordings.dataset import Dataset, read_dataset
 from tsas_cli.recordings.ingest import Ingested, find_files, ingest_files
 from tsas_cli.recordings.ingest_map import read_map
-from tsas_cli.replacing import refuse_input
 from tsas_cli.result import Result, Table
 from tsas_cli.steps import SILENT, Steps
 
@@ -82,8 +81,7 @@ def ingest(
     map_path, folder = Path(map), Path(out)
     mapping = read_map(map_path)
     files = find_files(paths_of(sources), mapping.read.files)
-    refuse_input(folder, [*files, map_path])
-    with new_folder(folder, force=force) as written:
+    with new_folder(folder, stage="ingest", inputs=[*files, map_path], force=force) as written:
         runs = ingest_files(files, mapping, map_path, written, step=step)
     summary = {
         "format": 1,

@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 from contextlib import ExitStack
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from tsas_cli.api.given import Named, places_of
@@ -12,9 +13,11 @@ from tsas_cli.recordings.manifest import FILE as MANIFEST
 from tsas_cli.recordings.storage import Place
 from tsas_cli.reporting.inputs import Inputs, read_inputs
 from tsas_cli.reporting.page import SECTIONS, page
+from tsas_cli.reporting.pdf import MARK as PDF_MARK
 from tsas_cli.reporting.pdf import browser, print_page
 from tsas_cli.result import Result, Table
 from tsas_cli.steps import SILENT, Steps
+from tsas_cli.verifying.seal import MARK as PAGE_MARK
 from tsas_cli.verifying.seal import with_seal
 
 
@@ -71,13 +74,17 @@ def report(
         A folder is of no known kind, does not belong to the dataset, `out` exists and `force` is
         not set, or there is no Chromium to print with.
     """
-    pages = [Path(out)]
+    pages, places = [Path(out)], places_of(folders)
     if pdf:
         browser()  # before the work, where there is none
         pages.append(_beside(Path(out)))
     with ExitStack() as stack:
-        html, *printed = (stack.enter_context(new_file(path, force=force)) for path in pages)
-        inputs = read_inputs(places_of(folders))
+        written = partial(new_file, inputs=places, force=force)
+        html, *printed = (
+            stack.enter_context(written(path, mark=mark))
+            for path, mark in zip(pages, (PAGE_MARK, PDF_MARK), strict=False)
+        )
+        inputs = read_inputs(places)
         step.ahead(len(SECTIONS))
         text = with_seal(page(inputs, step), _files_of(inputs), pages[0])
         html.write_text(text, encoding="utf-8")

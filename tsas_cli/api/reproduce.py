@@ -61,7 +61,7 @@ def reproduce(
         `out` exists and `force` is not set.
     """
     paper, folder = yang2025(), path_of(out)
-    with folder_if(folder, force=force) as written:
+    with folder_if(folder, stage="reproduce", inputs=(), force=force) as written:
         groups = reproduce_paper(paper, step)
         summary = summary_of(paper, groups)
         if written is not None:

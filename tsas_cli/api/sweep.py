@@ -6,7 +6,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from tsas_cli.api.given import Named, at_least, path_of
+from tsas_cli.api.given import Named, at_least
 from tsas_cli.api.swept import WORK, options_of
 from tsas_cli.errors import InputError
 from tsas_cli.steps import SILENT, Steps
@@ -62,11 +62,13 @@ def sweep(
         raise InputError(
             "workers are those of the cluster", where="--workers", remedy="leave out one of the two"
         )
-    read, base = read_plan(path_of(plan))
+    given = plan if isinstance(plan, Mapping) else Path(plan)
+    read, base = read_plan(given)
     tasks, folder = tasks_of(read, base, options_of(read.stage)), Path(out)
     if cluster is None:
         many = (os.cpu_count() or 1) if workers is None else at_least(1, workers, "workers")
         pool = partial(in_processes, WORK, workers=many)
     else:
         pool = partial(on_cluster, WORK, address=cluster, shared=(folder / JOURNAL).resolve())
-    return sweep_tasks(read, tasks, folder, pool, force=force, step=step)
+    inputs = [given] if isinstance(given, Path) else []
+    return sweep_tasks(read, tasks, folder, pool, inputs=inputs, force=force, step=step)

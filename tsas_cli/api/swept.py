@@ -82,7 +82,8 @@ def _done(task: Told) -> Answer:
         return found
     if found is None:
         remove(out / key)  # half a result
-    with new_folder(out / key, force=True) as folder:  # another worker may be doing it too
+    # with force, since another worker may be doing it too
+    with new_folder(out / key, stage="sweep", inputs=(), force=True) as folder:
         result = getattr(tsas, stage)(**_arguments(inputs, places), out=folder)
         content = {"format": 1, "stage": "sweep", "key": key, "inputs": inputs}
         content |= {"results": figures(stage, result), "parameters": estimates(stage, result)}

@@ -122,7 +122,7 @@ def write_diagnosis(out: Path, trial: Trial, rivals: Mapping[str, Iterable[str]]
         }
         for effect, beside in rivals.items()
     ]
-    with new_folder(out) as folder:
+    with new_folder(out, stage="challenge run", inputs=()) as folder:
         content = {
             "format": 1,
             "stage": "challenge run",

@@ -58,6 +58,7 @@ def make(
         step()
     sealed = {
         "format": 1,
+        "stage": "challenge make",
         "kind": "challenge-answers",
         "seed": seeds[0] if len(seeds) == 1 else seeds,
         "rate_Hz": rate_Hz,

@@ -80,7 +80,7 @@ def run_cases(
     folders = case_folders(sealed)
     reasons: dict[str, str] = {}
     with (
-        stage_folder(out, force=force) as entry,
+        stage_folder(out, stage="challenge run", inputs=[sealed], force=force) as entry,
         _surrounded(),
         ThreadPoolExecutor(workers) as threads,
     ):

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from tsas_cli.collection.found import Place, Stamp, files_below
 from tsas_cli.errors import InputError
-from tsas_cli.files import new_file, sha256_of
+from tsas_cli.files import own_file, sha256_of
 from tsas_cli.steps import Steps
 
 if TYPE_CHECKING:
@@ -126,10 +126,10 @@ def _kept(table: "pa.Table", file: Path) -> str | None:
     import pyarrow.parquet as pq
 
     try:
-        with new_file(file, force=True) as path:
+        with own_file(file) as path:
             pq.write_table(table, path, compression="zstd")
             digest = sha256_of(path)
-        with new_file(_sum_beside(file), force=True) as path:
+        with own_file(_sum_beside(file)) as path:
             path.write_text(digest, encoding="utf-8")
     except (InputError, OSError) as error:
         return f"the index is made again at every call, since it cannot be kept: {error}"

@@ -89,7 +89,7 @@ def diagnose_dataset(
     """
     stated = stated_model(dataset.manifest, model)
     summary = dataset.header("diagnose", out) | {"model": source_of(model, out)}
-    with folder_if(out, force=force) as folder:
+    with folder_if(out, stage="diagnose", inputs=[dataset.folder, model], force=force) as folder:
         step.ahead(len(dataset.runs) + 1)
         runs = []
         for recording in dataset:

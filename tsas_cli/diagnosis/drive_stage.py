@@ -39,6 +39,7 @@ from tsas_cli.result import Result, Table, notes
 from tsas_cli.steps import SILENT, Steps
 
 Floats = npt.NDArray[np.float64]
+STAGE = "identify-harmonic-drive"
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -102,7 +103,7 @@ def identify_drive(
     InputError
         A recording does not serve (`drive_runs`), or `out` exists and `force` is not set.
     """
-    with folder_if(out, force=force) as folder:
+    with folder_if(out, stage=STAGE, inputs=[dataset.folder], force=force) as folder:
         step.ahead(2)
         runs = drive_runs(dataset, hold)
         step()
@@ -116,7 +117,7 @@ def identify_drive(
         found = diagnose_drive(search, final, fitted)
         by_fit, by_nominal = _simulated(search, final), _simulated(search, found.nominal)
         known = fitted | _given(sheet)
-        summary = dataset.header("identify-harmonic-drive", out) | {
+        summary = dataset.header(STAGE, out) | {
             "hold": hold,
             "structure": {"name": name_of(final), "equation": equation_of(final)},
             "structures": drive_json.structures(search, final),

@@ -50,7 +50,8 @@ def plan_runs(
     InputError
         The dataset or the file is wrong, no run shows anything, or `out` exists without `force`.
     """
-    with folder_if(out, force=force) as folder:
+    read = runs.folder if isinstance(runs, Dataset) else runs
+    with folder_if(out, stage="plan", inputs=[read], force=force) as folder:
         if isinstance(runs, Dataset):
             summary = runs.header("plan", out)
             plan = plan_dataset(runs, step)

@@ -82,7 +82,7 @@ def calibrate_dataset(
         is not set.
     """
     stated = stated_model(dataset.manifest, model)
-    with folder_if(out, force=force) as folder:
+    with folder_if(out, stage="calibrate", inputs=[dataset.folder, model], force=force) as folder:
         step.ahead(len(dataset.runs))
         runs = []
         for run in dataset.runs:

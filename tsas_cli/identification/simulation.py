@@ -105,7 +105,7 @@ def simulate_dataset(
     summary |= {"dynamics": dynamics, "nodes": nodes, "own_values_fitted": fit_own, "runs": {}}
     summary["segments"] = {}
     kept, used = dict[str, Recording](), taken
-    with folder_if(out, force=force) as folder:
+    with folder_if(out, stage="simulate", inputs=[dataset.folder, model], force=force) as folder:
         if folder is not None:
             (folder / "runs").mkdir()
         step.ahead(len(dataset.runs))

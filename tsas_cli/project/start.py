@@ -49,10 +49,10 @@ def start(folder: Path, sources: Sequence[Path]) -> tuple[list[str], Proposal | 
         for home in {folder.parent, *((folder / place).parent for place in (*texts, *copies))}:
             sweep(home)  # where all is there already, nothing is written that would do it
         for place in [p for p in (*texts, *copies) if p not in there]:
-            with new_file(folder / place) as new:
+            with new_file(folder / place, mark=b"", inputs=sources) as new:
                 _write(new, place, texts, copies)
     else:
-        with new_folder(folder) as new:
+        with new_folder(folder, stage="init", inputs=sources) as new:
             for place in (*texts, *copies):
                 (new / place).parent.mkdir(parents=True, exist_ok=True)
                 _write(new / place, place, texts, copies)

@@ -20,7 +20,8 @@ def upload_dataset(folder: Path, target: Address, *, force: bool, step: Steps) -
     Raises
     ------
     InputError
-        The dataset is wrong, one is at the address and `force` is not set, or the storage refuses.
+        The dataset is wrong, one is at the address and `force` is not set or something else than
+        an earlier upload, or the storage refuses.
     """
     dataset = read_dataset(folder)
     manifest = target / FILE
@@ -34,8 +35,10 @@ def upload_dataset(folder: Path, target: Address, *, force: bool, step: Steps) -
         )
     step.ahead(len(dataset.runs))
     for run in dataset.runs:  # before the first byte leaves, and before anything is replaced
-        local_file(folder, run)
+        _refuse_foreign(target, run, local_file(folder, run).stat().st_size)
     if there:
+        for run in read_dataset(target).runs:
+            _refuse_foreign(target, run)
         manifest.remove()
     sizes: dict[str, int] = {}
     for run in dataset.runs:
@@ -44,6 +47,23 @@ def upload_dataset(folder: Path, target: Address, *, force: bool, step: Steps) -
     content = (folder / FILE).read_bytes()
     manifest.write_bytes(content)
     return sizes | {FILE: len(content)}
+
+
+def _refuse_foreign(target: Address, run: Run, size: int | None = None) -> None:
+    """Refuse to replace an object that no upload has put there.
+
+    One that an upload has put there has a list of its blocks beside it, or was cut off before that
+    and has the size of what is uploaded now.
+    """
+    there = target / run.file
+    listed = target / f"{run.file}{SUFFIX}"
+    if there.is_file() and not listed.is_file() and there.size() != size:
+        raise InputError(
+            "was not put there by `tsas upload`",
+            where=there,
+            expected="an address that is free, or a dataset that it has uploaded",
+            remedy="choose another address, or remove the object with the storage's own tools",
+        )
 
 
 def _upload_run(folder: Path, run: Run, target: Address) -> dict[str, int]:

@@ -18,6 +18,7 @@ BROWSERS = (
     "microsoft-edge",
 )
 _LONGEST_S = 120.0
+MARK = b"/Maker (tsas)"  # in the first object, which describes the document
 _DATE = re.compile(rb"/(?:Creation|Mod)Date \(D:[^()]*\)")
 _OPTIONS = (
     "--headless",
@@ -81,11 +82,12 @@ def print_page(html: str, pdf: Path) -> None:
 def _without_dates(pdf: bytes) -> bytes:
     """Return a PDF that does not say when it was printed: the same page makes the same bytes.
 
-    The dates of its first object, which describes the document, become spaces, so that all else
-    stays in its place.
+    The dates of its first object, which describes the document, become `MARK`, filled up with
+    spaces, so that all else stays in its place.
     """
     about, end, rest = pdf.partition(b"endobj")
-    return _DATE.sub(lambda date: b" " * len(date[0]), about) + end + rest
+    marked = _DATE.sub(lambda date: MARK.ljust(len(date[0])), about, count=1)
+    return _DATE.sub(lambda date: b" " * len(date[0]), marked) + end + rest
 
 
 def _run(call: list[str]) -> str:

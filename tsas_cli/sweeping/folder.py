@@ -2,7 +2,7 @@
 
 import fcntl
 import json
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TextIO
@@ -10,10 +10,10 @@ from typing import TextIO
 from tsas_cli.errors import InputError
 from tsas_cli.files import read_json, sha256_of, unwritable
 from tsas_cli.limits import text_name
-from tsas_cli.replacing import SUMS
+from tsas_cli.replacing import LEFT_BY_DESKTOPS, SUMS, refuse_holding, refuse_kind
 from tsas_cli.sweeping.answer import Answer, success
 from tsas_cli.sweeping.tasks import FILE, Task
-from tsas_cli.temporaries import is_empty_folder, remove
+from tsas_cli.temporaries import TEMPORARY, is_empty_folder, remove
 from tsas_cli.verifying.claims import claims_of
 
 TASKS = "tasks"
@@ -23,7 +23,7 @@ TABLE, PARAMETERS, SUMMARY = "sweep.parquet", "parameters.parquet", "sweep.json"
 
 
 @contextmanager
-def sweep_folder(out: Path) -> Iterator[Path]:
+def sweep_folder(out: Path, inputs: Iterable[Path]) -> Iterator[Path]:
     """Yield the folder for the tasks of a sweep; nobody else writes to it meanwhile.
 
     What a killed worker has left half-made is taken away, before and after.
@@ -31,8 +31,11 @@ def sweep_folder(out: Path) -> Iterator[Path]:
     Raises
     ------
     InputError
-        Another sweep writes to it, it holds something else, or it cannot be written.
+        Another sweep writes to it, it holds something else or an input, or it cannot be written.
     """
+    text_name(out.absolute())
+    refuse_kind(out, folder=True)
+    refuse_holding(out, inputs)
     tasks = out / TASKS
     with _taken(out):
         with _writing(out):
@@ -47,7 +50,6 @@ def sweep_folder(out: Path) -> Iterator[Path]:
 def _taken(out: Path) -> TextIO:
     """Return the journal of a sweep's folder, open and locked until it is closed."""
     with _writing(out):
-        text_name(out.absolute())
         if out.is_dir() and not _is_of_a_sweep(out):
             raise InputError(
                 "holds something else than an earlier sweep",
@@ -63,9 +65,10 @@ def _taken(out: Path) -> TextIO:
 
 def _is_of_a_sweep(out: Path) -> bool:
     """Say whether a folder is an earlier sweep's, or holds nothing yet that anyone could miss."""
-    if (out / JOURNAL).is_file() or ((out / SUMMARY).is_file() and (out / TASKS).is_dir()):
-        return True
-    return all(path.name == TASKS and is_empty_folder(path) for path in out.iterdir())
+    there = {path.name for path in out.iterdir() if not TEMPORARY.search(path.name)}
+    if JOURNAL not in there and not {TASKS, SUMMARY} <= there:
+        return all(name == TASKS and is_empty_folder(out / name) for name in there)
+    return there <= {TASKS, JOURNAL, TABLE, PARAMETERS, SUMMARY} | LEFT_BY_DESKTOPS
 
 
 @contextmanager

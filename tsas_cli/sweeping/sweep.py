@@ -1,6 +1,6 @@
 """Do the tasks of a sweep that are not done yet, and write what came out of all."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import closing
 from dataclasses import dataclass
 from functools import partial
@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tsas_cli import __version__
-from tsas_cli.files import new_file, write_json
+from tsas_cli.files import own_file, write_json
 from tsas_cli.result import Result, Table
 from tsas_cli.steps import Steps
 from tsas_cli.sweeping.answer import Answer
@@ -74,7 +74,14 @@ class SweepResult(Result):
 
 
 def sweep_tasks(
-    plan: Plan, tasks: Sequence[Task], out: Path, pool: Pool, *, force: bool, step: Steps
+    plan: Plan,
+    tasks: Sequence[Task],
+    out: Path,
+    pool: Pool,
+    *,
+    inputs: Iterable[Path],
+    force: bool,
+    step: Steps,
 ) -> SweepResult:
     """Do the tasks that are not done, and write the tables of all.
 
@@ -88,6 +95,8 @@ def sweep_tasks(
         The folder, a new one or that of an earlier sweep.
     pool
         Who does tasks.
+    inputs
+        What is read beside what the tasks name.
     force
         Do those again that are done.
     step
@@ -96,9 +105,10 @@ def sweep_tasks(
     Raises
     ------
     InputError
-        The folder cannot be used, or the pool cannot work.
+        The folder cannot be used or holds an input, or the pool cannot work.
     """
-    with sweep_folder(out) as folder:
+    inputs = [*inputs, *{Path(place) for task in tasks for place in task.places.values()}]
+    with sweep_folder(out, inputs) as folder:
         done = {} if force else {n: what_is_done(folder, task.key) for n, task in enumerate(tasks)}
         answers = {number: answer for number, answer in done.items() if answer is not None}
         before, left = len(answers), [n for n in range(len(tasks)) if n not in answers]
@@ -140,6 +150,6 @@ def _written(
     if not found:
         (out / PARAMETERS).unlink(missing_ok=True)  # of an earlier plan
     for name, write in {**tables, SUMMARY: partial(write_json, content=summary)}.items():
-        with new_file(out / name, force=True) as path:
+        with own_file(out / name) as path:
             write(path)
     return summary

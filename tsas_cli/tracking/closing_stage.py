@@ -1,6 +1,6 @@
 """The close-loop stage: hidden effects recorded, diagnosed and tracked, into one table."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -51,17 +51,20 @@ def close_all(
     out: Path,
     seeds: Sequence[int],
     *,
+    inputs: Iterable[object] = (),
     force: bool = False,
     step: Steps = SILENT,
 ) -> ClosingResult:
     """Close the loop on each case; write `closing.json` and what the stages wrote on the way.
+
+    `inputs` are the files that the settings come from.
 
     Raises
     ------
     InputError
         A loop is unstable, or `out` exists and `force` is not set.
     """
-    with stage_folder(out, force=force) as folder:
+    with stage_folder(out, stage="close-loop", inputs=inputs, force=force) as folder:
         step.ahead(STEPS * len(cases))
         found = [close(case, settings, folder / case.name, seeds, step) for case in cases]
         summary = {

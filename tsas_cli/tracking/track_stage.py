@@ -69,6 +69,10 @@ class Call:
     seeds: int = 1
     first_seed: int = 1
 
+    def inputs(self) -> tuple[object, ...]:
+        """Return what the stage reads; a reference's shape is the name of no file."""
+        return self.model, self.plant, self.drive, self.settings, Path(self.reference)
+
 
 @dataclass(frozen=True, repr=False, eq=False)
 class TrackingResult(Result):
@@ -129,7 +133,7 @@ def track_all(
     path = plan(wanted, known, settings)
     results, tables = [], dict[str, pa.Table]()
     header = _header(call, settings, out)
-    with folder_if(out, force=force) as folder:
+    with folder_if(out, stage="track", inputs=call.inputs(), force=force) as folder:
         step.ahead(len(call.controllers) * len(call.conditions) * call.seeds)
         for condition in call.conditions:
             real = condition.of(plant)

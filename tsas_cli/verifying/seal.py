@@ -16,6 +16,7 @@ from tsas_cli.recordings.storage import Place, told_from
 
 _TYPE = "<!DOCTYPE html>\n"
 _HEAD = "<!-- a page of tsas, which ends with its own checksum -->\n"
+MARK = _HEAD.encode()
 _READ = "<!-- tsas has read: "
 _SUM = re.compile(rb"<!-- sha256 of all above: ([0-9a-f]{64}) -->\n")
 
@@ -76,5 +77,5 @@ def sealed(path: Path) -> Seal | None:
     return Seal(told[1].decode(), found, tuple(read) if isinstance(read, list) else ())
 
 
-_MARKS = (_HEAD.encode(), _READ.encode(), b"<!-- sha256 of all above: ")
+_MARKS = (MARK, _READ.encode(), b"<!-- sha256 of all above: ")
 _LENGTH = len("<!-- sha256 of all above:  -->\n") + 64

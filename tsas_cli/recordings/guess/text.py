@@ -21,6 +21,7 @@ _CONDITIONS = {
     "total_bend_rad": "its total bend, 3.1416 for half a turn",
     "preload_N": "the tension at rest",
 }
+MARK = b"# A map for `tsas ingest`"  # with which a proposed map begins
 _SURE = {"sure": "sure", "likely": "likely", "open": "open"}
 
 

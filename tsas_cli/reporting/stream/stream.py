@@ -76,16 +76,14 @@ def stream_of(inputs: Inputs) -> Stream:
     )
 
 
-def write_stream(
-    inputs: Inputs, path: Path, *, force: bool = False, step: Callable[[], None] = lambda: None
-) -> None:
+def write_stream(inputs: Inputs, path: Path, *, step: Callable[[], None] = lambda: None) -> None:
     """Write what there is to see into a file for the Rerun viewer; `step` is called after each run.
 
     Raises
     ------
     InputError
-        A file cannot be read, or `path` exists and `force` is not set.
+        A file cannot be read, or `path` exists.
     """
     stream = stream_of(inputs)
-    with to_file(path, stream.name, stream.layout, force=force) as recorder:
+    with to_file(path, stream.name, stream.layout) as recorder:
         stream.record(recorder, step)

@@ -20,9 +20,7 @@ PATIENCE_S = 10.0  # in which a file grows, or is whole
 
 
 @contextmanager
-def to_file(
-    path: Path, name: str, layout: Layout | None = None, *, force: bool = False
-) -> Iterator[Recorder]:
+def to_file(path: Path, name: str, layout: Layout | None = None) -> Iterator[Recorder]:
     """Record into a file that is there, whole, when the block ends without an error.
 
     Parameters
@@ -33,15 +31,13 @@ def to_file(
         What the viewer calls the recording.
     layout
         What the viewer opens with, where it is known from the start.
-    force
-        Replace the file if it is there.
 
     Raises
     ------
     InputError
         The file is there, or cannot be written; Rerun is switched off.
     """
-    with new_file(path, force=force) as temporary, _strict():
+    with new_file(path, mark=b"", inputs=()) as temporary, _strict():
         stream = _opened(name, layout)
         try:
             stream.save(temporary)
