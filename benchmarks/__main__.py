@@ -18,8 +18,8 @@ from benchmarks.compare import FORMAT, compare
 from benchmarks.row import Row
 from benchmarks.timing import Times
 from tsas_cli.commands.common import show
-from tsas_cli.errors import InputError
-from tsas_cli.files import new_file, write_json
+from tsas_cli.support.errors import InputError
+from tsas_cli.support.files import new_file, write_json
 
 HARNESS = {"__main__", "compare", "row", "timing", "yardstick"}
 LIBRARIES = ("numba", "numpy", "pyarrow", "rerun-sdk", "scipy", "typer")

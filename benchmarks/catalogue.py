@@ -15,8 +15,8 @@ import numpy as np
 import pyarrow as pa
 
 from benchmarks.row import Row
-from tsas_cli.files import sha256_of
 from tsas_cli.recordings.writing import write_parquet
+from tsas_cli.support.files import sha256_of
 
 DATASETS = 10_000
 RUNS = 2  # in each

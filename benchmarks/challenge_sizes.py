@@ -3,7 +3,7 @@
 The independent rig itself is refitted to its own clean recordings with the effect in them:
 friction, load stiffness, tendon modulus and preload of all runs, and the zero of x_in of each
 run, by Gauss-Newton steps with finite differences. What is left is in the unit of the channel,
-RMS over all runs. The full sizes in tsas_cli/challenge/cases.py are chosen by it.
+RMS over all runs. The full sizes in tsas_studies/challenge/cases.py are chosen by it.
 """
 
 from collections.abc import Iterable, Mapping
@@ -12,13 +12,13 @@ from dataclasses import replace
 import numpy as np
 
 from benchmarks.row import Row
-from tsas_cli.challenge.bench import RUNS, SENSORS, Bench, clean_run, drawn_bench, rig_of
-from tsas_cli.challenge.bench import motion as motion_of
-from tsas_cli.challenge.cases import FULL, Hidden, cases
-from tsas_cli.challenge.rig.motions import Motion
-from tsas_cli.challenge.rig.sensors import Sensor, Sensors
-from tsas_cli.challenge.rig.sensors import measure as measured
-from tsas_cli.challenge.rig.tendon import simulate
+from tsas_studies.challenge.bench import RUNS, SENSORS, Bench, clean_run, drawn_bench, rig_of
+from tsas_studies.challenge.bench import motion as motion_of
+from tsas_studies.challenge.cases import FULL, Hidden, cases
+from tsas_studies.challenge.rig.motions import Motion
+from tsas_studies.challenge.rig.sensors import Sensor, Sensors
+from tsas_studies.challenge.rig.sensors import measure as measured
+from tsas_studies.challenge.rig.tendon import simulate
 
 RATE_HZ = 50.0
 SIZE = {"f_in_N": 0.1, "f_out_N": 0.1, "x_out_mm": 0.01}  # weights of the refit: the noise

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from tsas_cli.errors import InputError
-from tsas_cli.files import read_json
+from tsas_cli.support.errors import InputError
+from tsas_cli.support.files import read_json
 
 FORMAT = 2
 FLOOR = 0.1  # relative change that nobody minds

@@ -14,15 +14,15 @@ from multiprocessing import get_context
 import numpy as np
 
 from benchmarks.row import Row
-from tsas_cli.challenge.rig.make_datasets import FREE_TENDON, GROUPS, SENSORS
-from tsas_cli.challenge.rig.motions import sine
-from tsas_cli.challenge.rig.recordings import DATA_SHEET, conditions
-from tsas_cli.challenge.rig.sensors import measure as measured
-from tsas_cli.challenge.rig.tendon import CleanRun, Rig, simulate
-from tsas_cli.identification.calibration import calibrate
+from tsas_cli.identification.calibration import calibrate_runs
 from tsas_cli.identification.prepared import prepare
 from tsas_cli.recordings.manifest import Manifest, Run
 from tsas_cli.recordings.recording import Recording
+from tsas_studies.challenge.rig.make_datasets import FREE_TENDON, GROUPS, SENSORS
+from tsas_studies.challenge.rig.motions import sine
+from tsas_studies.challenge.rig.recordings import DATA_SHEET, conditions
+from tsas_studies.challenge.rig.sensors import measure as measured
+from tsas_studies.challenge.rig.tendon import CleanRun, Rig, simulate
 
 SEEDS = int(os.environ.get("TSAS_COVERAGE_SEEDS", "200"))
 FIRST_SEED = 50_000  # apart from the shipped data's and the tests' seeds
@@ -60,7 +60,7 @@ def held(seed: int, *, told: bool) -> Mapping[str, list[tuple[bool, float]]]:
         {"format": 1, "name": "", "kind": "simulated", "rig": sheet, "run": entries}
     )
     out: dict[str, list[tuple[bool, float]]] = {}
-    for e in calibrate(manifest, runs).model.estimates:
+    for e in calibrate_runs(manifest, runs).model.estimates:
         if e.name in TRUTH and e.interval_low is not None and e.interval_high is not None:
             inside = e.interval_low <= TRUTH[e.name] <= e.interval_high
             half = 0.5 * (e.interval_high - e.interval_low)

@@ -15,11 +15,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from benchmarks.row import Row
-from tsas_cli.challenge.cases import cases
-from tsas_cli.challenge.make import make
-from tsas_cli.diagnosis.diagnose_stage import diagnose_dataset
-from tsas_cli.files import read_json
-from tsas_cli.recordings.dataset import read_dataset
+from tsas_cli.stages.diagnose import diagnose
+from tsas_cli.support.files import read_json
+from tsas_studies.challenge.cases import cases
+from tsas_studies.challenge.make import make
 
 SEED = 5
 CASES = (
@@ -77,7 +76,7 @@ def by_part(made: list[Path], folder: Path) -> Iterator[Row]:
     start = time.perf_counter()
     profile.enable()
     for k, dataset in enumerate(made):
-        diagnose_dataset(read_dataset(dataset), None, folder / f"profiled-{k}")
+        diagnose(dataset, out=folder / f"profiled-{k}")
     profile.disable()
     whole = time.perf_counter() - start
     seconds = dict.fromkeys(PARTS, 0.0)

@@ -73,7 +73,7 @@ print(time.perf_counter() - start)
 INGEST = """
 import sys, time
 import tsas_cli as tsas
-from tsas_cli.api import ingest
+from tsas_cli.stages import ingest
 start = time.perf_counter()
 tsas.ingest(sys.argv[1], map=sys.argv[2], out=sys.argv[3], force=True)
 print(time.perf_counter() - start)

@@ -22,7 +22,7 @@ from benchmarks.row import Row
 from tests.sweeping.clusters import cluster
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model, data_sheet
-from tsas_cli.steps import Steps
+from tsas_cli.support.steps import Steps
 from tsas_cli.sweeping.versions import ONE_THREAD
 
 DATASET = Path(__file__).parents[1] / "datasets" / "paper-groups"

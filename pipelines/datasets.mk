@@ -1,4 +1,4 @@
 # The shipped simulated datasets, made again byte for byte by the virtual rig.
 .PHONY: datasets
 datasets: setup  ## make the shipped simulated datasets again
-	@$(BIN)/python -m tsas_cli.challenge.rig.make_datasets --out datasets
+	@$(BIN)/python -m tsas_studies.challenge.rig.make_datasets --out datasets

@@ -1,6 +1,6 @@
 """A listener to the steps of a stage."""
 
-from tsas_cli.steps import Steps
+from tsas_cli.support.steps import Steps
 
 
 class Counted(Steps):

@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from tsas_cli.challenge.rig.drive import Drive, Gear, run_drive, run_geared
-from tsas_cli.challenge.rig.recordings import Run, write_dataset
-from tsas_cli.challenge.rig.sensors import Sensors, measure
 from tsas_cli.recordings.dataset import read_dataset
+from tsas_studies.challenge.rig.drive import Drive, Gear, run_drive, run_geared
+from tsas_studies.challenge.rig.recordings import Run, write_dataset
+from tsas_studies.challenge.rig.sensors import Sensors, measure
 
 RATE_HZ = 500.0
 DATA_SHEET = {"turntable_radius_mm": 27.1, "gear_ratio": 120.0}

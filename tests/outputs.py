@@ -4,7 +4,7 @@ import json
 from contextlib import contextmanager
 from pathlib import Path
 
-from tsas_cli.files import new_file, new_folder, stage_folder, write_sums
+from tsas_cli.support.files import new_file, new_folder, stage_folder, write_sums
 
 STAGE = "check"
 

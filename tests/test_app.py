@@ -11,7 +11,7 @@ import typer
 
 import tsas_cli
 import tsas_cli.app
-from tsas_cli.errors import InputError
+from tsas_cli.support.errors import InputError
 
 Tsas = Callable[..., subprocess.CompletedProcess[str]]
 HEAVY = {

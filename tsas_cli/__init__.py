@@ -8,30 +8,30 @@ What the commands do, for notebooks and programs: `import tsas_cli as tsas`, the
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-__version__ = "0.1.0"
+from tsas_cli.support import __version__ as __version__
 
 if TYPE_CHECKING:
-    from tsas_cli.api.calibrate import calibrate
-    from tsas_cli.api.catalogue import catalogue, explain
-    from tsas_cli.api.check import check
-    from tsas_cli.api.close_loop import close_loop
-    from tsas_cli.api.compare import compare
-    from tsas_cli.api.diagnose import diagnose
-    from tsas_cli.api.guess import guess
-    from tsas_cli.api.identify_harmonic_drive import identify_harmonic_drive
-    from tsas_cli.api.ingest import ingest
-    from tsas_cli.api.plan import plan
-    from tsas_cli.api.read import read, read_drive, read_model
-    from tsas_cli.api.report import report
-    from tsas_cli.api.reproduce import reproduce
-    from tsas_cli.api.runs import runs
-    from tsas_cli.api.simulate import simulate
-    from tsas_cli.api.sweep import sweep
-    from tsas_cli.api.track import track
-    from tsas_cli.api.upload import upload
-    from tsas_cli.api.verify import verify
-    from tsas_cli.errors import InputError
-    from tsas_cli.steps import Steps
+    from tsas_cli.stages.calibrate import calibrate
+    from tsas_cli.stages.catalogue import catalogue, explain
+    from tsas_cli.stages.check import check
+    from tsas_cli.stages.close_loop import close_loop
+    from tsas_cli.stages.compare import compare
+    from tsas_cli.stages.diagnose import diagnose
+    from tsas_cli.stages.guess import guess
+    from tsas_cli.stages.identify_harmonic_drive import identify_harmonic_drive
+    from tsas_cli.stages.ingest import ingest
+    from tsas_cli.stages.plan import plan
+    from tsas_cli.stages.read import read, read_drive, read_model
+    from tsas_cli.stages.report import report
+    from tsas_cli.stages.runs import runs
+    from tsas_cli.stages.simulate import simulate
+    from tsas_cli.stages.sweep import sweep
+    from tsas_cli.stages.track import track
+    from tsas_cli.stages.upload import upload
+    from tsas_cli.stages.verify import verify
+    from tsas_cli.support.errors import InputError
+    from tsas_cli.support.steps import Steps
+    from tsas_studies.reproduction.reproduce import reproduce
 
 __all__ = [
     "InputError",
@@ -61,11 +61,12 @@ __all__ = [
 ]
 
 _ELSEWHERE = {
-    "InputError": "tsas_cli.errors",
-    "Steps": "tsas_cli.steps",
-    "explain": "tsas_cli.api.catalogue",
-    "read_drive": "tsas_cli.api.read",
-    "read_model": "tsas_cli.api.read",
+    "InputError": "tsas_cli.support.errors",
+    "Steps": "tsas_cli.support.steps",
+    "explain": "tsas_cli.stages.catalogue",
+    "read_drive": "tsas_cli.stages.read",
+    "read_model": "tsas_cli.stages.read",
+    "reproduce": "tsas_studies.reproduction.reproduce",
 }
 
 
@@ -73,7 +74,7 @@ def __getattr__(name: str) -> Any:
     """Load what is asked for; what it needs loads with it, and nothing else."""
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(_ELSEWHERE.get(name, f"tsas_cli.api.{name}")), name)
+    return getattr(import_module(_ELSEWHERE.get(name, f"tsas_cli.stages.{name}")), name)
 
 
 def __dir__() -> list[str]:

@@ -2,15 +2,16 @@
 
 import sys
 
-from tsas_cli.stopping import EXIT_CODE
+from tsas_cli.support.stopping import EXIT_CODE
 
 
 def main() -> None:
     """Run the command line; Ctrl-C ends it quietly while it is still being loaded, too."""
     try:
-        from tsas_cli.app import main as answer
+        import tsas_studies.commands  # noqa: F401 # adds the studies to the command line
+        from tsas_cli.app import run
 
-        answer()
+        run()
     except KeyboardInterrupt:
         sys.exit(EXIT_CODE)
 

@@ -10,9 +10,7 @@ from typing import TypeGuard
 import typer
 from typer.exceptions import TyperException
 
-from tsas_cli import __version__
 from tsas_cli.commands.calibrate import calibrate
-from tsas_cli.commands.challenge import challenge
 from tsas_cli.commands.check import check
 from tsas_cli.commands.close_loop import close_loop
 from tsas_cli.commands.compare import compare
@@ -25,7 +23,6 @@ from tsas_cli.commands.ingest import ingest
 from tsas_cli.commands.init import init
 from tsas_cli.commands.plan import plan
 from tsas_cli.commands.report import report
-from tsas_cli.commands.reproduce import reproduce
 from tsas_cli.commands.runs import runs
 from tsas_cli.commands.simulate import simulate
 from tsas_cli.commands.sweep import sweep
@@ -33,8 +30,9 @@ from tsas_cli.commands.track import track
 from tsas_cli.commands.upload import upload
 from tsas_cli.commands.verify import verify
 from tsas_cli.commands.view import view
-from tsas_cli.errors import InputError, printable
-from tsas_cli.stopping import EXIT_CODE, cleaned_up_when_stopped
+from tsas_cli.support import __version__
+from tsas_cli.support.errors import InputError, printable
+from tsas_cli.support.stopping import EXIT_CODE, cleaned_up_when_stopped
 
 # What the machine refuses: no room, a disk that fails, no more open files.
 REFUSALS = frozenset(
@@ -82,13 +80,11 @@ app.command("view")(view)
 app.command("runs")(runs)
 app.command("upload")(upload)
 app.command("doctor")(doctor)
-app.command("reproduce")(reproduce)
 app.command("effects")(effects)
 app.command("explain")(explain)
-app.add_typer(challenge)
 
 
-def main() -> None:
+def run() -> None:
     """Run the command line; what goes wrong is one line on stderr and an exit code."""
     # Many small matrices: threads inside of each product cost three times what they save.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")

@@ -23,7 +23,7 @@ from benchmarks.lugre_rivals.drives import Sine, Sines, noisy
 from benchmarks.lugre_rivals.ode import Output, Problem, group
 from benchmarks.lugre_rivals.solution import Tolerance
 from benchmarks.lugre_rivals.solvers import radau_in_numpy, sundae
-from tsas_cli.files import own_file
+from tsas_cli.support.files import own_file
 
 FOLDER = Path(__file__).parents[2] / "tests" / "physics" / "lugre_references"
 KEY = b"lugre"

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from tsas_cli.text_table import table_text
+from tsas_cli.support.text_table import table_text
 
 HEADER = ("module", "mutants", "killed", "timed out", "survived", "equivalent", "score [%]", "95 %")
 EQUIVALENT = Path(__file__).with_name("equivalent.toml")

@@ -7,7 +7,7 @@ import tempfile
 from pathlib import Path
 
 from docs.manual.build import build
-from tsas_cli.files import stage_folder, write_json
+from tsas_cli.support.files import stage_folder, write_json
 
 
 def main() -> int:

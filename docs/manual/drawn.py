@@ -16,7 +16,7 @@ from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Picture
 from tsas_cli.reporting.decimation import kept_cells
 from tsas_cli.reporting.drawing import picture
-from tsas_cli.reproduction.rig import quasi_static_rig
+from tsas_studies.reproduction.rig import quasi_static_rig
 
 Floats = npt.NDArray[np.float64]
 Run = dict[Channel, Floats]

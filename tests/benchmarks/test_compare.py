@@ -11,7 +11,7 @@ from benchmarks.compare import compare
 from benchmarks.row import Row
 from benchmarks.timing import Times, times
 from benchmarks.yardstick import yardstick
-from tsas_cli.errors import InputError
+from tsas_cli.support.errors import InputError
 
 QUIET = (0.020, 0.0204, 0.022)  # of the yardstick [s]
 

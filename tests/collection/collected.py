@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 import pyarrow as pa
 
-from tsas_cli.files import sha256_of
 from tsas_cli.recordings.manifest import Manifest
 from tsas_cli.recordings.writing import write_dataset
+from tsas_cli.support.files import sha256_of
 
 ROWS, RATE_Hz = 101, 50.0
 

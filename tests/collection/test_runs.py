@@ -11,7 +11,7 @@ from tests.counted import Counted
 from tsas_cli.collection import COLUMNS
 from tsas_cli.collection.entries import entry_of
 from tsas_cli.collection.query import connected
-from tsas_cli.errors import InputError
+from tsas_cli.support.errors import InputError
 
 
 @pytest.fixture(autouse=True)

@@ -11,9 +11,9 @@ import pyarrow.parquet as pq
 import pytest
 
 from tests.commands.documented import documented
-from tsas_cli.challenge.rig.recordings import Run, conditions, record, write_dataset
-from tsas_cli.challenge.rig.sensors import Sensors
-from tsas_cli.challenge.rig.tendon import Rig
+from tsas_studies.challenge.rig.recordings import Run, conditions, record, write_dataset
+from tsas_studies.challenge.rig.sensors import Sensors
+from tsas_studies.challenge.rig.tendon import Rig
 
 LUGRE = Path(__file__).parents[1] / "physics" / "lugre_references"
 IDS = ["a", "ü → 'b'", "<script>", "..c", "n" * 200]

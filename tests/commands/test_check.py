@@ -4,11 +4,11 @@ import pyarrow as pa
 import pytest
 
 from tests.recordings.quality.bench import LOAD, Bench, columns
-from tsas_cli.files import sha256_of
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.manifest import Manifest
 from tsas_cli.recordings.quality import check_dataset
 from tsas_cli.recordings.writing import write_dataset
+from tsas_cli.support.files import sha256_of
 
 
 @pytest.fixture

@@ -5,7 +5,7 @@ import pytest
 
 from tests.commands.documented import documented
 from tests.comparing.made import NOMINAL, ROUGH, calibrated
-from tsas_cli.app import main
+from tsas_cli.__main__ import main
 
 
 @pytest.fixture(scope="module")

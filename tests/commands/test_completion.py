@@ -17,7 +17,7 @@ from tsas_cli.tracking.references import SHAPES
 COMPLETED = """
 import atexit, json, sys
 atexit.register(lambda: print(json.dumps(sorted(sys.modules)), file=sys.stderr))
-from tsas_cli.app import main
+from tsas_cli.__main__ import main
 main()
 """
 

@@ -3,10 +3,10 @@ import os
 
 import pytest
 
-from tsas_cli import __version__
-from tsas_cli.app import main
+from tsas_cli.__main__ import main
 from tsas_cli.installation import machine, packages
 from tsas_cli.installation.packages import Extra, Package
+from tsas_cli.support import __version__
 
 
 @pytest.fixture

@@ -9,9 +9,9 @@ import pytest
 
 from tests.commands.documented import documented
 from tests.drives import DATA_SHEET, STIFF, columns, speeds
-from tsas_cli.challenge.rig.drive import Gear
-from tsas_cli.challenge.rig.recordings import Run, write_dataset
-from tsas_cli.identification.drive_file import read_drive
+from tsas_cli.drive.file import read_drive
+from tsas_studies.challenge.rig.drive import Gear
+from tsas_studies.challenge.rig.recordings import Run, write_dataset
 
 SHIPPED = Path(__file__).parents[2] / "datasets" / "drive-chirp"
 

@@ -22,7 +22,7 @@ from tests.commands.viewing import (
     started,
 )
 from tests.reporting.made_folders import make_dataset
-from tsas_cli.app import main
+from tsas_cli.__main__ import main
 from tsas_cli.reporting.viewer.ports import LOOPBACK, free_ports
 from tsas_cli.reporting.viewer.program import program
 

@@ -8,11 +8,11 @@ import pytest
 import typer
 
 import tsas_cli as tsas
-from tsas_cli.app import app
-from tsas_cli.errors import InputError
-from tsas_cli.files import write_json, write_sums
 from tsas_cli.identification.model import data_sheet, write_model
 from tsas_cli.recordings.dataset import read_dataset
+from tsas_cli.support.errors import InputError
+from tsas_cli.support.files import write_json, write_sums
+from tsas_studies.commands import app
 
 SHIPPED = Path(__file__).parents[2] / "datasets"
 HERE = "home/"  # inputs lie in folders of their own in it

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from tsas_cli.challenge.rig.motions import sine
-from tsas_cli.challenge.rig.recordings import Run, conditions, record, write_dataset
-from tsas_cli.challenge.rig.sensors import Sensors
-from tsas_cli.challenge.rig.tendon import Rig
 from tsas_cli.effects import EFFECTS
+from tsas_studies.challenge.rig.motions import sine
+from tsas_studies.challenge.rig.recordings import Run, conditions, record, write_dataset
+from tsas_studies.challenge.rig.sensors import Sensors
+from tsas_studies.challenge.rig.tendon import Rig
 
 DOCS = Path(__file__).parents[2] / "docs" / "plan.md"
 

@@ -140,7 +140,7 @@ def test_report_is_registered_once():
 @pytest.fixture
 def printer(monkeypatch):
     """Print without a browser."""
-    import tsas_cli.api.report as module
+    import tsas_cli.stages.report as module
 
     monkeypatch.setattr(module, "browser", lambda: "chromium")
     monkeypatch.setattr(

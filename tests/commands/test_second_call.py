@@ -3,13 +3,13 @@ import subprocess
 import sys
 from pathlib import Path
 
-from tsas_cli.challenge.rig.recordings import Run, conditions, record, write_dataset
-from tsas_cli.challenge.rig.tendon import Rig
+from tsas_studies.challenge.rig.recordings import Run, conditions, record, write_dataset
+from tsas_studies.challenge.rig.tendon import Rig
 
 COUNT_COMPILATIONS = """
 import sys
 from numba.core import event
-from tsas_cli.app import main
+from tsas_cli.__main__ import main
 with event.install_recorder("numba:compile") as compilations:
     try:
         main()

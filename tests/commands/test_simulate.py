@@ -7,9 +7,9 @@ import pyarrow.parquet as pq
 import pytest
 
 from tests.commands.documented import documented
-from tsas_cli.challenge.rig.recordings import Run, conditions, record, write_dataset
-from tsas_cli.challenge.rig.sensors import Sensors
-from tsas_cli.challenge.rig.tendon import Rig
+from tsas_studies.challenge.rig.recordings import Run, conditions, record, write_dataset
+from tsas_studies.challenge.rig.sensors import Sensors
+from tsas_studies.challenge.rig.tendon import Rig
 
 TRUE = Rig(friction_coefficient=0.16)
 

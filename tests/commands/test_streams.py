@@ -13,14 +13,14 @@ import pytest
 import tsas_cli
 import tsas_cli.app
 from tests.test_app import CALLS
-from tsas_cli.result import Result
+from tsas_cli.records.result import Result
 
 SUMMARY = {"format": 1, "stage": "any", "value": 1.5}
 VERBS = {  # of commands whose function has another name
     "effects": "tsas_cli.catalogue",
-    "challenge make": "tsas_cli.api.challenge.make_set",
-    "challenge run": "tsas_cli.api.challenge.run_set",
-    "challenge score": "tsas_cli.api.challenge.score_set",
+    "challenge make": "tsas_studies.challenge.stages.make_set",
+    "challenge run": "tsas_studies.challenge.stages.run_set",
+    "challenge score": "tsas_studies.challenge.stages.score_set",
 }
 NEEDED_BESIDES = {"ingest": ("--map", "some", "--out", "some")}  # but for --guess
 OTHERS = ("doctor", "init", "view")  # commands about the program itself and its window

@@ -12,7 +12,7 @@ import pytest
 
 from tests.commands.documented import documented
 from tsas_cli.commands.sweep import _plan
-from tsas_cli.errors import InputError
+from tsas_cli.support.errors import InputError
 
 CALL = [sys.executable, "-m", "tsas_cli", "sweep"]
 

@@ -10,8 +10,8 @@ import pytest
 from tests.commands.documented import documented
 from tsas_cli.app import app
 from tsas_cli.controllers import CONTROLLERS
-from tsas_cli.errors import InputError
 from tsas_cli.recordings.dataset import read_dataset
+from tsas_cli.support.errors import InputError
 
 QUICK = """
 [reference]

@@ -23,7 +23,7 @@ from tests.commands.viewing import (
 )
 from tests.reporting.made_folders import make_dataset, make_simulation
 from tests.reporting.viewer.streams import make_stream
-from tsas_cli.app import main
+from tsas_cli.__main__ import main
 from tsas_cli.reporting.viewer.ports import free_ports
 from tsas_cli.reporting.viewer.screen import SCREENS
 

@@ -3,12 +3,11 @@
 from dataclasses import replace
 from functools import cache
 
-from tsas_cli.challenge.rig.motions import sine
-from tsas_cli.challenge.rig.recordings import Run, conditions, write_dataset
-from tsas_cli.challenge.rig.sensors import Sensors, measure
-from tsas_cli.challenge.rig.tendon import Rig, simulate
-from tsas_cli.identification.calibrate_stage import calibrate_dataset
-from tsas_cli.recordings.dataset import read_dataset
+from tsas_cli.stages.calibrate import calibrate
+from tsas_studies.challenge.rig.motions import sine
+from tsas_studies.challenge.rig.recordings import Run, conditions, write_dataset
+from tsas_studies.challenge.rig.sensors import Sensors, measure
+from tsas_studies.challenge.rig.tendon import Rig, simulate
 
 NOMINAL = Rig()
 ROUGH = replace(NOMINAL, friction_coefficient=0.15)
@@ -32,5 +31,5 @@ def recorded(folder, rig, *, seed, name="bench"):
 def calibrated(root, rig, *, seed):
     """Record and calibrate; return the folder of the calibration, the dataset beside it."""
     dataset = recorded(root / f"data-{seed}", rig, seed=seed)
-    calibrate_dataset(read_dataset(dataset), root / f"calibrated-{seed}")
+    calibrate(dataset, out=root / f"calibrated-{seed}")
     return root / f"calibrated-{seed}"

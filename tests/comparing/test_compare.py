@@ -9,10 +9,10 @@ from tests.comparing.made import NOMINAL, ROUGH, calibrated
 from tsas_cli.comparing.compare import compare
 from tsas_cli.comparing.sentences import findings, notes
 from tsas_cli.comparing.stage import as_json, tables
-from tsas_cli.errors import InputError
-from tsas_cli.identification.calibrate_stage import calibrate_dataset
-from tsas_cli.identification.simulation import simulate_dataset
 from tsas_cli.recordings.dataset import read_dataset
+from tsas_cli.stages.calibrate import calibrate
+from tsas_cli.stages.simulate import simulate
+from tsas_cli.support.errors import InputError
 
 CHANNELS = ["f_in_N", "f_out_N", "x_out_mm"]
 
@@ -160,7 +160,7 @@ def test_simulations_are_held_to_their_own_series(root, tmp_path):
     data = read_dataset(root / "data-2")
     for seed in (1, 2):
         model = root / f"calibrated-{seed}" / "model.toml"
-        simulate_dataset(data, model, "slip", tmp_path / f"s{seed}")
+        simulate(data, model=model, out=tmp_path / f"s{seed}")
     it = compare(tmp_path / "s1", tmp_path / "s2")
     assert it.pairs == []
     for side, name in (("s1", "rmse_a"), ("s2", "rmse_b")):
@@ -203,7 +203,7 @@ def test_a_dataset_that_is_gone_or_has_changed_leaves_the_values(root, tmp_path)
 
 def test_what_cannot_be_compared_is_refused(root, tmp_path):
     model = root / "calibrated-1" / "model.toml"
-    simulate_dataset(read_dataset(root / "data-1"), model, "slip", tmp_path / "s")
+    simulate(root / "data-1", model=model, out=tmp_path / "s")
     (tmp_path / "empty").mkdir()
     shutil.copytree(root / "calibrated-1", tmp_path / "two")
     shutil.copy(tmp_path / "s" / "simulation.json", tmp_path / "two")
@@ -223,7 +223,7 @@ def test_what_cannot_be_compared_is_refused(root, tmp_path):
 def test_runs_of_one_dataset_that_were_fitted_apart_are_independent(root, tmp_path):
     data = read_dataset(root / "data-1")
     for run in ("slow", "fast"):
-        calibrate_dataset(data.only([run]), tmp_path / run)
+        calibrate(data.only([run]), out=tmp_path / run)
     for pair in (("slow", "fast"), ("slow/model.toml", "fast/model.toml")):
         it = compare(*(tmp_path / name for name in pair))
         assert it.overlap == "none"
@@ -233,7 +233,7 @@ def test_runs_of_one_dataset_that_were_fitted_apart_are_independent(root, tmp_pa
 
 def test_a_series_of_another_length_is_refused(root, tmp_path):
     data = read_dataset(root / "data-1")
-    simulate_dataset(data, root / "calibrated-1" / "model.toml", "slip", tmp_path / "s")
+    simulate(data, model=root / "calibrated-1" / "model.toml", out=tmp_path / "s")
     runs = tmp_path / "s" / "runs"
     shutil.copy(runs / "fast.parquet", runs / "slow.parquet")
     with pytest.raises(InputError, match="rows"):

@@ -4,11 +4,11 @@ import pytest
 
 from tests.reporting.made_folders import make_calibration, make_dataset, source
 from tsas_cli.comparing.sides import read_side
-from tsas_cli.errors import InputError
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model, write_model
 from tsas_cli.physics.parameters import BRISTLES
 from tsas_cli.recordings.dataset import read_dataset
+from tsas_cli.support.errors import InputError
 
 FRICTION = Estimate("friction_coefficient", 0.125, "1", "fitted")
 LENGTH = Estimate("free_tendon.distal_length_mm", 60.0, "mm", "fitted")

@@ -9,10 +9,9 @@ from tests.reporting.test_page import Outline
 from tsas_cli.comparing import tracked
 from tsas_cli.comparing.tracked import are_tracked, compare_tracked
 from tsas_cli.comparing.tracked_stage import as_json, tables
-from tsas_cli.errors import InputError
 from tsas_cli.reporting.comparing.tracked import tracked_page
-from tsas_cli.tracking.conditions import disturbed
-from tsas_cli.tracking.track_stage import Call, track_all
+from tsas_cli.stages.track import track
+from tsas_cli.support.errors import InputError
 
 QUICK = """
 [reference]
@@ -33,8 +32,7 @@ def root(tmp_path_factory):
     root = tmp_path_factory.mktemp("tracked")
     for name, text in (("usual", QUICK), ("weaker", WEAKER)):
         (root / f"{name}.toml").write_text(text, encoding="utf-8")
-        call = Call(settings=root / f"{name}.toml", controllers=("pid",), seeds=2)
-        track_all(call, root / name)
+        track(settings=root / f"{name}.toml", controllers="pid", seeds=2, out=root / name)
     return root
 
 
@@ -70,9 +68,12 @@ def test_the_same_folder_differs_in_nothing(root):
 
 def test_a_condition_of_the_same_name_that_is_another_one_is_not_matched(root, tmp_path):
     for name, value in (("one", 0.2), ("two", 0.3)):
-        condition = disturbed([f"friction_coefficient={value}"])
-        call = Call(settings=root / "usual.toml", controllers=("pid",), conditions=(condition,))
-        track_all(call, tmp_path / name)
+        track(
+            settings=root / "usual.toml",
+            controllers="pid",
+            disturb=f"friction_coefficient={value}",
+            out=tmp_path / name,
+        )
     it = compare_tracked(tmp_path / "one", tmp_path / "two")
     assert it.followed == []
     assert [len(runs) for runs in it.alone.values()] == [1, 1]

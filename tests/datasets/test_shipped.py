@@ -4,8 +4,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tsas_cli.challenge.rig import make_datasets
 from tsas_cli.recordings.dataset import read_dataset
+from tsas_studies.challenge.rig import make_datasets
 
 DATASETS = Path(__file__).parents[2] / "datasets"
 

@@ -13,16 +13,16 @@ from tsas_cli.diagnosis.diagnose import (
     leaves_much,
     verdict_of,
 )
-from tsas_cli.diagnosis.drive_search import NOTHING, DriveSearch, drive_folds
-from tsas_cli.diagnosis.drive_words import (
+from tsas_cli.drive.estimates import DataSheet
+from tsas_cli.drive.runs import DriveRun
+from tsas_cli.drive.search import NOTHING, DriveSearch, drive_folds
+from tsas_cli.drive.words import (
     cannot_tell,
     equation_of,
     inverse_of,
     name_of,
     next_run,
 )
-from tsas_cli.identification.drive_estimates import DataSheet
-from tsas_cli.identification.drive_runs import DriveRun
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.fit import Unknown
 from tsas_cli.numerics.linear_response import sampled

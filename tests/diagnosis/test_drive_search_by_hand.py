@@ -8,8 +8,8 @@ import pytest
 
 from tests.counted import Counted
 from tsas_cli.diagnosis import drive_search as ds
-from tsas_cli.diagnosis.drive_search import NOTHING, DriveSearch, drive_folds
-from tsas_cli.identification.drive_fit import LINEAR
+from tsas_cli.drive.fit import LINEAR
+from tsas_cli.drive.search import NOTHING, DriveSearch, drive_folds
 
 BLOCKS = 20
 

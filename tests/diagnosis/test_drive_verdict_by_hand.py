@@ -9,14 +9,14 @@ import pytest
 from tsas_cli.diagnosis import drive_diagnosis as dd
 from tsas_cli.diagnosis import drive_json as dj
 from tsas_cli.diagnosis.channel_errors import Channel
-from tsas_cli.diagnosis.drive_diagnosis import DriveCause, DriveDiagnosis
-from tsas_cli.diagnosis.drive_search import NOTHING
-from tsas_cli.diagnosis.drive_tables import tables
 from tsas_cli.diagnosis.evidence import gain
+from tsas_cli.drive.diagnosis import DriveCause, DriveDiagnosis
+from tsas_cli.drive.estimates import DataSheet
+from tsas_cli.drive.frequency_response import FrequencyResponse
+from tsas_cli.drive.search import NOTHING
+from tsas_cli.drive.tables import tables
 from tsas_cli.effects import EFFECTS
-from tsas_cli.identification.drive_estimates import DataSheet
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.frequency_response import FrequencyResponse
 from tsas_cli.physics.drive import DriveValues
 
 TITLE = {e.name: e.title for e in EFFECTS}

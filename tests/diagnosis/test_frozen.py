@@ -7,18 +7,18 @@ import pytest
 from tsas_cli.diagnosis.candidates import Candidate
 from tsas_cli.diagnosis.channel_errors import Channel
 from tsas_cli.diagnosis.diagnose import Cause, Diagnosis
-from tsas_cli.diagnosis.diagnose_stage import DiagnosisResult
-from tsas_cli.diagnosis.drive_diagnosis import DriveCause, DriveDiagnosis
-from tsas_cli.diagnosis.drive_stage import DriveResult
 from tsas_cli.diagnosis.evidence import Gain
 from tsas_cli.diagnosis.further_runs import FurtherRuns
 from tsas_cli.diagnosis.held_out import Folds
 from tsas_cli.diagnosis.plan import Better, Plan, Proposal
-from tsas_cli.diagnosis.plan_stage import PlanResult
 from tsas_cli.diagnosis.remainder import Remainder
 from tsas_cli.diagnosis.rig_file import Limits
 from tsas_cli.diagnosis.visibility import Cause as Seeable
 from tsas_cli.diagnosis.visibility import Imitation, Part, Seen
+from tsas_cli.drive.diagnosis import DriveCause, DriveDiagnosis
+from tsas_cli.stages.diagnose import DiagnosisResult
+from tsas_cli.stages.identify_harmonic_drive import DriveResult
+from tsas_cli.stages.plan import PlanResult
 
 RESULTS = (DiagnosisResult, DriveResult, PlanResult)
 FOUND = (

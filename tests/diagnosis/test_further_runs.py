@@ -10,8 +10,8 @@ from tests.physics.references import GROUP_A
 from tsas_cli.diagnosis import further_runs as f
 from tsas_cli.diagnosis.candidates import candidates
 from tsas_cli.diagnosis.rig_file import Limits, Sensors
-from tsas_cli.errors import InputError
 from tsas_cli.recordings.manifest import Run
+from tsas_cli.support.errors import InputError
 
 NOON = datetime(2001, 2, 3, 12)  # noqa: DTZ001 # a rig has no zone
 CANDIDATES = candidates(Limits(amplitude_mm=10.0, speed_mm_per_s=24.0), GROUP_A)

@@ -9,11 +9,11 @@ from tests.counted import Counted
 from tests.diagnosis.planned import prepared, rig_file, run, seen
 from tsas_cli.diagnosis.plan import plan_rig, propose
 from tsas_cli.effects import EFFECTS
-from tsas_cli.errors import InputError
 from tsas_cli.identification.base_fit import base_fit, slopes_of
 from tsas_cli.identification.extension import Bench
 from tsas_cli.identification.model import data_sheet
 from tsas_cli.identification.phases import segment
+from tsas_cli.support.errors import InputError
 
 INERTIA = "load_inertia.mass_kg"
 VISCOUS = "viscous_friction.coefficient_N_s_per_mm"

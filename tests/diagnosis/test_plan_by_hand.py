@@ -9,12 +9,12 @@ from tests.counted import Counted
 from tests.diagnosis.planned import rig_file, run
 from tests.physics.references import GROUP_A
 from tsas_cli.diagnosis import plan as p
-from tsas_cli.diagnosis import plan_stage
 from tsas_cli.diagnosis.candidates import candidates
 from tsas_cli.diagnosis.plan import Better, Plan, Proposal, plan_rig, propose
 from tsas_cli.diagnosis.rig_file import Limits
 from tsas_cli.diagnosis.visibility import Cause, Seen
 from tsas_cli.effects import EFFECTS
+from tsas_cli.stages import plan as plan_stage
 
 OF = {e.name: e for e in EFFECTS}
 CANDIDATES = candidates(Limits(amplitude_mm=10.0, speed_mm_per_s=24.0), GROUP_A)

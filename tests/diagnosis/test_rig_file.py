@@ -1,7 +1,7 @@
 import pytest
 
 from tsas_cli.diagnosis.rig_file import Limits, PlannedRun, Sensors, read_rig_file
-from tsas_cli.errors import InputError
+from tsas_cli.support.errors import InputError
 
 TEXT = """
 format = 1

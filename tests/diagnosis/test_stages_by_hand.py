@@ -8,13 +8,14 @@ import numpy as np
 import pytest
 
 from tests.diagnosis.test_rig_file import TEXT
-from tsas_cli.diagnosis import drive_stage, plan_stage
 from tsas_cli.diagnosis.plan import Plan
-from tsas_cli.errors import InputError
-from tsas_cli.files import sha256_of
-from tsas_cli.identification.drive_estimates import DataSheet
+from tsas_cli.drive.estimates import DataSheet
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.recordings.manifest import Run
+from tsas_cli.stages import identify_harmonic_drive as drive_stage
+from tsas_cli.stages import plan as plan_stage
+from tsas_cli.support.errors import InputError
+from tsas_cli.support.files import sha256_of
 
 NOTHING = Plan((), (), (), ("nobody knows.",))
 
@@ -30,7 +31,7 @@ def rig(tmp_path, monkeypatch):
 
 def test_a_rig_file_is_planned_and_written(rig, tmp_path):
     path, asked = rig
-    result = plan_stage.plan_runs(path, tmp_path / "deep" / "out")
+    result = plan_stage.plan(path, out=tmp_path / "deep" / "out")
     assert [file.name for file in asked] == ["bench"]
     written = json.loads((tmp_path / "deep" / "out" / "plan.json").read_text())
     assert written == result.summary
@@ -47,12 +48,12 @@ def test_a_rig_file_is_planned_and_written(rig, tmp_path):
 def test_without_a_folder_nothing_is_written_and_with_one_nothing_is_overwritten(rig, tmp_path):
     path, _ = rig
     before = sorted(tmp_path.rglob("*"))
-    assert plan_stage.plan_runs(path, None).out is None
+    assert plan_stage.plan(path).out is None
     assert sorted(tmp_path.rglob("*")) == before
-    plan_stage.plan_runs(path, tmp_path / "out")
+    plan_stage.plan(path, out=tmp_path / "out")
     with pytest.raises(InputError):
-        plan_stage.plan_runs(path, tmp_path / "out")
-    plan_stage.plan_runs(path, tmp_path / "out", force=True)
+        plan_stage.plan(path, out=tmp_path / "out")
+    plan_stage.plan(path, out=tmp_path / "out", force=True)
 
 
 def test_what_the_data_sheet_gives_is_given():

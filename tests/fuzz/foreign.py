@@ -6,10 +6,10 @@ from types import ModuleType
 import numpy as np
 
 from tests.fuzz.rules import Broken, answer
-from tsas_cli.errors import InputError
 from tsas_cli.recordings.readers import names, read, tables
 from tsas_cli.recordings.readers.options import ReadOptions
 from tsas_cli.recordings.readers.table import Table
+from tsas_cli.support.errors import InputError
 
 _MOST_COLUMNS = 12
 here_too = False  # only where coverage is measured: the library may take this process along

@@ -10,8 +10,8 @@ from pathlib import Path
 from tempfile import gettempdir, mkdtemp
 from typing import Any
 
-from tsas_cli.errors import InputError
 from tsas_cli.recordings.readers import apart
+from tsas_cli.support.errors import InputError
 
 _WRITES = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND
 _CHANGES = {  # and which of its arguments is the folder that its path is relative to

@@ -8,7 +8,7 @@ from tests.fuzz import faulty
 from tests.fuzz.__main__ import CORPUS, NAMES, main, target_of
 from tests.fuzz.rules import Broken, Scratch, Watch, answer
 from tests.fuzz.search import LOG, Budget, search
-from tsas_cli.errors import InputError
+from tsas_cli.support.errors import InputError
 
 RUNS = 300  # of a target with a share of one
 

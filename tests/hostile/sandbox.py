@@ -59,7 +59,7 @@ class Sandbox:
 
 
 def _in_child(call: dict[str, Any], out: int, err: int) -> None:
-    from tsas_cli.app import main
+    from tsas_cli.__main__ import main
 
     os.chdir(call["cwd"])
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
@@ -117,13 +117,6 @@ def serve() -> None:
     import pyarrow.csv
     import pyarrow.parquet  # noqa: F401
     import scipy.io  # noqa: F401
-
-    import tsas_cli.api.check
-    import tsas_cli.api.compare
-    import tsas_cli.api.guess
-    import tsas_cli.api.ingest
-    import tsas_cli.api.report
-    import tsas_cli.app  # noqa: F401
 
     pint.UnitRegistry()
     for line in sys.stdin:

@@ -2,13 +2,13 @@
 
 from functools import cache
 
-from tsas_cli.challenge.rig.motions import sine
-from tsas_cli.challenge.rig.recordings import DATA_SHEET, conditions
-from tsas_cli.challenge.rig.sensors import Sensors, measure
-from tsas_cli.challenge.rig.tendon import Rig, simulate
 from tsas_cli.identification.prepared import Prepared, prepare
 from tsas_cli.recordings.manifest import Manifest, Run
 from tsas_cli.recordings.recording import Recording
+from tsas_studies.challenge.rig.motions import sine
+from tsas_studies.challenge.rig.recordings import DATA_SHEET, conditions
+from tsas_studies.challenge.rig.sensors import Sensors, measure
+from tsas_studies.challenge.rig.tendon import Rig, simulate
 
 ALL = ("f_in_N", "f_out_N", "x_out_mm")
 

@@ -6,9 +6,9 @@ from types import SimpleNamespace
 import pytest
 
 from tests.physics.references import GROUP_A
-from tsas_cli.identification.calibrate_stage import _stiffness, _tables, _theory
 from tsas_cli.identification.stiffness import Slope
 from tsas_cli.recordings.manifest import Manifest
+from tsas_cli.stages.calibrate import _stiffness, _tables, _theory
 
 SHEET = {
     "friction_coefficient": 0.125,

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from tests.identification.recorded import manifest, prepared
-from tsas_cli.challenge.rig.motions import sine, two_sines
-from tsas_cli.challenge.rig.tendon import Rig
-from tsas_cli.identification.calibration import calibrate
+from tsas_cli.identification.calibration import calibrate_runs
 from tsas_cli.numerics.side_by_side import THREADS
+from tsas_studies.challenge.rig.motions import sine, two_sines
+from tsas_studies.challenge.rig.tendon import Rig
 
 TRUE = Rig(friction_coefficient=0.135, load_stiffness_N_per_mm=1.45, preload_N=27.0)
 OTHER = Rig(
@@ -39,7 +39,7 @@ def test_the_truth_is_found_from_a_data_sheet_that_is_wrong(channels):
         prepared(TRUE, channels=channels, seed=1, preload_N=25.0),
         prepared(OTHER, channels=channels, seed=2, run_id="b", preload_N=25.0),
     ]
-    result = calibrate(manifest(*runs), runs)
+    result = calibrate_runs(manifest(*runs), runs)
     estimates = found(result)
     for name, value in VALUES.items():
         for run in (None, "a", "b"):
@@ -54,7 +54,7 @@ def test_the_truth_is_found_from_a_data_sheet_that_is_wrong(channels):
 
 def test_what_cannot_be_told_is_said():
     run = prepared(TRUE, channels=("f_in_N",))
-    result = calibrate(manifest(run), [run])
+    result = calibrate_runs(manifest(run), [run])
     said = " ".join(result.cannot_tell)
     assert "x_in_zero_mm cannot be told apart from preload_N" in said
     assert "x_out_zero_mm does not show" in said
@@ -63,7 +63,7 @@ def test_what_cannot_be_told_is_said():
 
 def test_without_a_bend_friction_stands_for_the_product():
     run = prepared(TRUE, total_bend_rad=None)
-    result = calibrate(manifest(run), [run])
+    result = calibrate_runs(manifest(run), [run])
     friction = found(result)["friction_coefficient", None]
     assert friction.value == pytest.approx(0.135 * math.pi, rel=2e-3)
     assert any("product of friction and bend" in s for s in result.cannot_tell)
@@ -71,13 +71,15 @@ def test_without_a_bend_friction_stands_for_the_product():
 
 def test_a_right_model_is_not_accused_and_a_wrong_one_is():
     right = prepared(TRUE)
-    assert not any("wrong somewhere" in s for s in calibrate(manifest(right), [right]).cannot_tell)
+    assert not any(
+        "wrong somewhere" in s for s in calibrate_runs(manifest(right), [right]).cannot_tell
+    )
     hidden = Rig(proximal_length_mm=200.0)
     both = [
         prepared(hidden),
         prepared(Rig(sheath_length_mm=300.0, proximal_length_mm=200.0), run_id="b"),
     ]
-    assert any("wrong somewhere" in s for s in calibrate(manifest(*both), both).cannot_tell)
+    assert any("wrong somewhere" in s for s in calibrate_runs(manifest(*both), both).cannot_tell)
 
 
 def test_a_told_free_length_is_used():
@@ -89,8 +91,8 @@ def test_a_told_free_length_is_used():
     runs = [prepared(r, run_id=n, seed=k) for k, (r, n) in enumerate(zip(rigs, "ab", strict=True))]
     told = manifest(*runs, proximal_length_mm=150.0, distal_length_mm=60.0)
     swapped = manifest(*runs, proximal_length_mm=60.0, distal_length_mm=150.0)
-    right = found(calibrate(told, runs))["tendon_stiffness_N", None]
-    wrong = found(calibrate(swapped, runs))["tendon_stiffness_N", None]
+    right = found(calibrate_runs(told, runs))["tendon_stiffness_N", None]
+    wrong = found(calibrate_runs(swapped, runs))["tendon_stiffness_N", None]
     assert right.value == pytest.approx(Rig().axial_stiffness, rel=3e-3)
     assert abs(wrong.value / Rig().axial_stiffness - 1.0) > 0.02
 
@@ -98,7 +100,7 @@ def test_a_told_free_length_is_used():
 def test_the_dead_band_s_bias_is_expected():
     """The line fit misses the theory, and the distributed model says by how much."""
     run = prepared(Rig())
-    result = calibrate(manifest(run), [run])
+    result = calibrate_runs(manifest(run), [run])
     measured = {s.phase: s for s in result.slopes[0]}
     expected = {s.phase: s.value for s in result.expected[0]}
     for phase in ("dead_band_up", "dead_band_down"):
@@ -115,7 +117,7 @@ def test_a_measured_load_takes_the_place_of_the_spring():
         ("displacement", ("f_in_N", "f_out_N", "x_out_mm")),
     ):
         run = prepared(TRUE, sine(rate_Hz=250.0), channels=channels, load=load)
-        estimates = found(calibrate(manifest(run), [run]))
+        estimates = found(calibrate_runs(manifest(run), [run]))
         assert estimates["friction_coefficient", None].value == pytest.approx(0.135, rel=5e-3)
         tendon = estimates["tendon_stiffness_N", None].value
         assert tendon == pytest.approx(TRUE.axial_stiffness, rel=0.03)
@@ -124,7 +126,7 @@ def test_a_measured_load_takes_the_place_of_the_spring():
 
 def test_tension_transfer_is_the_capstan_s():
     run = prepared(TRUE)
-    transfer = {e.name: e for e in calibrate(manifest(run), [run]).transfer}
+    transfer = {e.name: e for e in calibrate_runs(manifest(run), [run]).transfer}
     a = 0.135 * math.pi
     assert transfer["ratio_contraction"].value == pytest.approx(math.exp(a), rel=2e-3)
     assert transfer["ratio_loosening"].value == pytest.approx(math.exp(-a), rel=2e-3)
@@ -139,7 +141,7 @@ def test_intervals_hold_the_truth_over_seeds():
         run = prepared(TRUE, seed=seed)
         inside += [
             e.interval_low <= VALUES[e.name] <= e.interval_high
-            for e in found(calibrate(manifest(run), [run])).values()
+            for e in found(calibrate_runs(manifest(run), [run])).values()
             if e.name in VALUES
         ]
     assert np.mean(inside) > 0.8
@@ -148,7 +150,7 @@ def test_intervals_hold_the_truth_over_seeds():
 def test_many_strokes_hold_the_truth_too():
     """Fifty thousand samples: answers that were straight between some missed by four intervals."""
     run = prepared(TRUE, two_sines(duration_s=50.0), seed=1)
-    estimates = found(calibrate(manifest(run), [run])).values()
+    estimates = found(calibrate_runs(manifest(run), [run])).values()
     wide = [(e.interval_high - e.interval_low, abs(e.value - VALUES[e.name])) for e in estimates]
     assert all(off < width for width, off in wide)
     assert len(wide) == len(VALUES)
@@ -159,5 +161,5 @@ def test_threads_change_no_bit(monkeypatch):
     models = []
     for threads in ("1", "3"):
         monkeypatch.setenv(THREADS, threads)
-        models.append(calibrate(manifest(*runs), runs).model)
+        models.append(calibrate_runs(manifest(*runs), runs).model)
     assert models[0] == models[1]

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tsas_cli.identification.drive_runs import drive_runs
+from tsas_cli.drive.runs import drive_runs
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.recording import Recording
 

@@ -5,10 +5,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from tests.identification.test_drive_runs import PLACE, SPEED, STEP_S, TIME_S, checked
-from tsas_cli.errors import InputError
+from tests.drive.test_runs import PLACE, SPEED, STEP_S, TIME_S, checked
 from tsas_cli.identification import drive_runs as d
 from tsas_cli.numerics.noise import noise_sd
+from tsas_cli.support.errors import InputError
 
 
 @pytest.mark.parametrize(

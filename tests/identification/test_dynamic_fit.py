@@ -10,7 +10,7 @@ from benchmarks.lugre_rivals.references import FOLDER, problems
 from tests.identification.test_odd_recordings import ran as of_the_rig
 from tests.identification.test_odd_recordings import recorded as by_the_rig
 from tests.physics.references import LOADED_BY_SPRING, TABLE_1, course_of
-from tsas_cli.identification.calibration import calibrate
+from tsas_cli.identification.calibration import calibrate_runs
 from tsas_cli.identification.prepared import prepare
 from tsas_cli.physics.lugre_chain import OWN_STEPS, lugre_chain
 from tsas_cli.physics.rig import with_values
@@ -58,7 +58,7 @@ def recorded(name, *, noise_N, noise_mm, seed):
 
 def calibrated(run):
     manifest = Manifest(format=1, name="t", kind="simulated", rig=SHEET, run=(run.run,))
-    return calibrate(manifest, [run], dynamics="lugre")
+    return calibrate_runs(manifest, [run], dynamics="lugre")
 
 
 def fitted(result):

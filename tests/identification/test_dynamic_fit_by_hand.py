@@ -11,7 +11,7 @@ from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.physics.response import LUMPS
-from tsas_cli.steps import SILENT
+from tsas_cli.support.steps import SILENT
 
 SLOPES = np.linalg.qr(np.random.default_rng(1).standard_normal((50, 2)))[0]
 OWN = np.random.default_rng(2).standard_normal(50)

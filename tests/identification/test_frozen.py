@@ -4,18 +4,17 @@ from dataclasses import FrozenInstanceError, fields
 
 import pytest
 
-from tsas_cli.identification.calibrate_stage import CalibrationResult
+from tsas_cli.drive.estimates import DataSheet
+from tsas_cli.drive.file import IdentifiedDrive
+from tsas_cli.drive.fit import DriveTrial
+from tsas_cli.drive.frequency_response import FrequencyResponse
+from tsas_cli.drive.runs import DriveRun
 from tsas_cli.identification.calibration import Calibration
 from tsas_cli.identification.comparison import Compared, Told
-from tsas_cli.identification.drive_estimates import DataSheet
-from tsas_cli.identification.drive_file import IdentifiedDrive
-from tsas_cli.identification.drive_fit import DriveTrial
-from tsas_cli.identification.drive_runs import DriveRun
 from tsas_cli.identification.dynamic_fit import DynamicFit, Look, Solved
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.extension import Trial
 from tsas_cli.identification.fit import Fitted, Solution, Unknown
-from tsas_cli.identification.frequency_response import FrequencyResponse
 from tsas_cli.identification.long_runs import LongRun, Rows
 from tsas_cli.identification.missing_effects import Widened
 from tsas_cli.identification.model import Model
@@ -23,10 +22,11 @@ from tsas_cli.identification.phases import Segment, _Stroke
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.quantities import Quantity
 from tsas_cli.identification.screening import Screened
-from tsas_cli.identification.simulation import SimulationResult
 from tsas_cli.identification.stiffness import Slope
 from tsas_cli.identification.stored_value import StoredValue
 from tsas_cli.identification.transfer import _Line
+from tsas_cli.stages.calibrate import CalibrationResult
+from tsas_cli.stages.simulate import SimulationResult
 
 FROZEN = (
     *(Calibration, CalibrationResult, Compared, DataSheet, DriveRun, DriveTrial, DynamicFit),

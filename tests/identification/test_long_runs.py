@@ -8,7 +8,6 @@ import pyarrow.parquet as pq
 import pytest
 
 import tsas_cli as tsas
-from tsas_cli.errors import InputError
 from tsas_cli.identification.long_runs import open_long
 from tsas_cli.identification.model import data_sheet
 from tsas_cli.identification.prepared import prepare
@@ -18,6 +17,7 @@ from tsas_cli.recordings import pieces
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.manifest import Manifest, Rig, Run
 from tsas_cli.recordings.writing import write_dataset
+from tsas_cli.support.errors import InputError
 
 ROWS, PIECE = 12_000, 2500
 SHEET = Rig(

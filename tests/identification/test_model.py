@@ -3,11 +3,11 @@
 import pytest
 
 from tests.identification.recorded import manifest, prepared
-from tsas_cli.challenge.rig.tendon import Rig
-from tsas_cli.errors import InputError
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import CORRECTION, Model, data_sheet, read_model, write_model
 from tsas_cli.recordings.manifest import Run
+from tsas_cli.support.errors import InputError
+from tsas_studies.challenge.rig.tendon import Rig
 
 MODEL = Model(
     (

@@ -5,7 +5,6 @@ from pathlib import Path
 import pytest
 
 from tests.identification.test_model import MODEL, run
-from tsas_cli.errors import InputError
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import (
     CORRECTION,
@@ -20,6 +19,7 @@ from tsas_cli.identification.model import (
     write_model,
 )
 from tsas_cli.recordings.manifest import Manifest
+from tsas_cli.support.errors import InputError
 
 
 def test_a_rig_of_which_nothing_is_told_is_a_usual_one():

@@ -7,12 +7,7 @@ import numpy as np
 import pytest
 
 from tests.identification.recorded import clean
-from tsas_cli.challenge.rig.motions import dwell, nested, triangle
-from tsas_cli.challenge.rig.recordings import DATA_SHEET, conditions
-from tsas_cli.challenge.rig.sensors import PERFECT, Sensor, Sensors, measure
-from tsas_cli.challenge.rig.tendon import Rig
-from tsas_cli.errors import InputError
-from tsas_cli.identification.calibration import calibrate
+from tsas_cli.identification.calibration import calibrate_runs
 from tsas_cli.identification.comparison import compare
 from tsas_cli.identification.prepared import prepare
 from tsas_cli.physics.chain_state import SLACK
@@ -20,6 +15,11 @@ from tsas_cli.physics.response import Drive, simulate
 from tsas_cli.physics.rig import Rig as ModelRig
 from tsas_cli.recordings.manifest import Manifest, Run
 from tsas_cli.recordings.recording import Recording
+from tsas_cli.support.errors import InputError
+from tsas_studies.challenge.rig.motions import dwell, nested, triangle
+from tsas_studies.challenge.rig.recordings import DATA_SHEET, conditions
+from tsas_studies.challenge.rig.sensors import PERFECT, Sensor, Sensors, measure
+from tsas_studies.challenge.rig.tendon import Rig
 
 TRUE = Rig(friction_coefficient=0.135, load_stiffness_N_per_mm=1.45, preload_N=27.0)
 VALUES = {
@@ -48,7 +48,7 @@ def calibrated(*runs, **sheet):
     manifest = Manifest(
         format=1, name="t", kind="measured", rig=stated, run=tuple(run.run for run in runs)
     )
-    return calibrate(manifest, runs)
+    return calibrate_runs(manifest, runs)
 
 
 def fitted(result):

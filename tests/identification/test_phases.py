@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from tests.identification.recorded import ALL, clean, prepared
-from tsas_cli.challenge.rig.motions import chirp, nested, sine, triangle, two_sines
-from tsas_cli.challenge.rig.sensors import Sensor, Sensors
-from tsas_cli.challenge.rig.tendon import Rig
 from tsas_cli.identification.phases import segment
 from tsas_cli.identification.prepared import prepare
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.recording import Recording
+from tsas_studies.challenge.rig.motions import chirp, nested, sine, triangle, two_sines
+from tsas_studies.challenge.rig.sensors import Sensor, Sensors
+from tsas_studies.challenge.rig.tendon import Rig
 
 COARSE = Sensors(
     x_in_mm=Sensor(0.01, 0.01),

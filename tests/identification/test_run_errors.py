@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from tests.identification.recorded import manifest, prepared
-from tsas_cli.challenge.rig.motions import Motion, nested, sine, triangle, two_sines
-from tsas_cli.challenge.rig.sensors import Sensor, Sensors
-from tsas_cli.challenge.rig.tendon import Rig
 from tsas_cli.identification.model import data_sheet
 from tsas_cli.identification.run_errors import RunErrors
 from tsas_cli.identification.samples import kept_samples
+from tsas_studies.challenge.rig.motions import Motion, nested, sine, triangle, two_sines
+from tsas_studies.challenge.rig.sensors import Sensor, Sensors
+from tsas_studies.challenge.rig.tendon import Rig
 
 
 def errors_of(run):

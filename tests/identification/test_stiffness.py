@@ -5,9 +5,9 @@ import pytest
 from scipy.signal import lfilter
 
 from tests.identification.recorded import clean
-from tsas_cli.challenge.rig.tendon import Rig
 from tsas_cli.identification.phases import Segment
 from tsas_cli.identification.stiffness import slopes
+from tsas_studies.challenge.rig.tendon import Rig
 
 X = np.concatenate((np.linspace(0.0, 10.0, 2000), np.linspace(10.0, 0.0, 2000)))
 PARTS = [Segment(0, 2000, "contraction"), Segment(2000, 4000, "loosening")]

@@ -1,11 +1,11 @@
 import pytest
 
-from tsas_cli.errors import InputError
 from tsas_cli.installation import machine
 from tsas_cli.installation.machine import abilities
 from tsas_cli.numerics import side_by_side
 from tsas_cli.numerics.compiled import cache_folder
 from tsas_cli.reporting.viewer.screen import SCREENS
+from tsas_cli.support.errors import InputError
 
 
 @pytest.fixture

@@ -9,9 +9,9 @@ from datetime import datetime, timedelta
 
 import numpy as np
 
-from tsas_cli.challenge.bench import RUNS, SENSORS, clean_run, data_sheet, drawn_bench
-from tsas_cli.challenge.cases import FULL, Hidden
-from tsas_cli.challenge.rig.sensors import measure, quantised
+from tsas_studies.challenge.bench import RUNS, SENSORS, clean_run, data_sheet, drawn_bench
+from tsas_studies.challenge.cases import FULL, Hidden
+from tsas_studies.challenge.rig.sensors import measure, quantised
 
 RATE_HZ = 50.0
 UNITS = {"time_s": "s", "x_in_mm": "mm", "x_out_mm": "mm", "f_in_N": "N", "f_out_N": "N"}

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from tsas_cli.challenge.rig.motions import dwell, nested, sine, triangle
-from tsas_cli.challenge.rig.tendon import Rig as VirtualRig
-from tsas_cli.challenge.rig.tendon import simulate as rig_run
 from tsas_cli.numerics.conditioning import condition, monotone_between
 from tsas_cli.physics.response import Drive, simulate
 from tsas_cli.physics.rig import Rig
+from tsas_studies.challenge.rig.motions import dwell, nested, sine, triangle
+from tsas_studies.challenge.rig.tendon import Rig as VirtualRig
+from tsas_studies.challenge.rig.tendon import simulate as rig_run
 
 NOISE_mm = 0.005
 FORCE_NOISE_N = 0.08

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from tsas_cli.challenge.rig.sensors import quantised
 from tsas_cli.numerics.interpolated import interpolated
 from tsas_cli.numerics.noise import noise_sd
+from tsas_studies.challenge.rig.sensors import quantised
 
 TIME = np.arange(400) / 100.0
 MOTION = 10.0 - 10.0 * np.cos(TIME)

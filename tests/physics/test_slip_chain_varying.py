@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from tests.physics.references import FREE, GROUP_A, follow, relaxed_chain, through, wrap_of
-from tsas_cli.challenge.rig import tendon
-from tsas_cli.challenge.rig.motions import Motion
 from tsas_cli.physics.chain_state import DISPLACEMENT, FORCE, SPRING, Boundary
+from tsas_studies.challenge.rig import tendon
+from tsas_studies.challenge.rig.motions import Motion
 
 A = wrap_of(GROUP_A)
 BRUTE_NODES = 6

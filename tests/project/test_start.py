@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from tests.recordings.guess.rig_files import CHANNELS, run, write_csv
-from tsas_cli.errors import InputError
 from tsas_cli.project.start import start
 from tsas_cli.recordings.ingest_map import read_map
+from tsas_cli.support.errors import InputError
 
 NAMES = ("Time [s]", "Input position [mm]", "Output position [mm]", "Force in [N]", "Force out [N]")
 MAKE = shutil.which("make")

@@ -3,10 +3,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tsas_cli.errors import InputError
 from tsas_cli.recordings.canonical import canonical_columns
 from tsas_cli.recordings.ingest_map import IngestMap
 from tsas_cli.recordings.readers.table import Table
+from tsas_cli.support.errors import InputError
 
 TIME = {"source": "t", "unit": "ms"}
 PLACE = {"source": "x", "unit": "in"}

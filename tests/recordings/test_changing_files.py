@@ -6,12 +6,12 @@ from pathlib import Path
 import pytest
 
 from tests.hostile.case import MAP
-from tsas_cli.errors import InputError
-from tsas_cli.files import check_unchanged, state_of
 from tsas_cli.recordings import ingest, run_files
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.ingest import find_files, ingest_files
 from tsas_cli.recordings.ingest_map import read_map
+from tsas_cli.support.errors import InputError
+from tsas_cli.support.files import check_unchanged, state_of
 
 CSV = "t,x,f\n" + "".join(f"{i},{i % 7},{i % 5}\n" for i in range(9))
 

@@ -3,9 +3,9 @@ from pathlib import Path
 
 import pytest
 
-from tsas_cli.errors import InputError
 from tsas_cli.recordings.conditions import run_conditions
 from tsas_cli.recordings.ingest_map import RunMap
+from tsas_cli.support.errors import InputError
 
 PATH = Path("/rig/L_4/bend180_0,5Hz.csv")
 NAME = {"pattern": r"bend(?P<bend>\d+)_(?P<frequency_Hz>[\d,]+)Hz"}

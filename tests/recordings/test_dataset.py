@@ -7,12 +7,12 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from tsas_cli.errors import InputError
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.manifest import Manifest
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.recordings.run_files import read_recording
 from tsas_cli.recordings.writing import write_dataset
+from tsas_cli.support.errors import InputError
 
 Columns = dict[str, np.ndarray]
 

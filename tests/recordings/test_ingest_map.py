@@ -3,9 +3,9 @@ from pathlib import Path
 
 import pytest
 
-from tsas_cli.errors import InputError
 from tsas_cli.recordings.ingest_map import ColumnMap, read_map
 from tsas_cli.recordings.readers.options import ReadOptions
+from tsas_cli.support.errors import InputError
 
 REPOSITORY = Path(__file__).parents[2]
 PAGE = (REPOSITORY / "docs" / "ingest.md").read_text(encoding="utf-8")

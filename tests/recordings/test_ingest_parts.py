@@ -5,9 +5,9 @@ import pyarrow.parquet as pq
 import pytest
 
 from tsas_cli import ingest
-from tsas_cli.errors import InputError
 from tsas_cli.recordings.readers import delimited, parquet, table
 from tsas_cli.recordings.writing import write_parquet
+from tsas_cli.support.errors import InputError
 
 ROWS = 1000
 MAP = """

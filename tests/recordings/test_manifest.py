@@ -4,8 +4,8 @@ from typing import Any
 
 import pytest
 
-from tsas_cli.errors import InputError
 from tsas_cli.recordings.manifest import Manifest, parse, read_manifest, write_manifest
+from tsas_cli.support.errors import InputError
 
 SHA = "0123456789abcdef" * 4
 STARTED = "started = 2026-03-02T09:30:00"

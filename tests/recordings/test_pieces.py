@@ -5,11 +5,11 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from tsas_cli.errors import InputError
-from tsas_cli.files import sha256_of
 from tsas_cli.recordings import pieces as reading
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.run_files import open_run
+from tsas_cli.support.errors import InputError
+from tsas_cli.support.files import sha256_of
 
 GROUP, GROUPS = 4096, 60
 

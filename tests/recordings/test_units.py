@@ -4,8 +4,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tsas_cli.errors import InputError
 from tsas_cli.recordings.units import conversion
+from tsas_cli.support.errors import InputError
 
 
 @pytest.mark.parametrize(

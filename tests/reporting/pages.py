@@ -8,7 +8,6 @@ from typing import Any
 import pytest
 
 from tests.drives import SPRUNG, drive_dataset
-from tests.reporting import test_reproduction
 from tests.reporting.made_folders import (
     make_calibration,
     make_check,
@@ -18,12 +17,13 @@ from tests.reporting.made_folders import (
     make_simulation,
     make_tracking,
 )
-from tsas_cli.diagnosis.drive_stage import identify_drive
-from tsas_cli.errors import InputError
+from tests.studies.reproduction import test_page as test_reproduction
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.page import page
 from tsas_cli.reporting.pdf import browser
-from tsas_cli.reporting.reproduction import reproduction_page
+from tsas_cli.stages.identify_harmonic_drive import identify_harmonic_drive
+from tsas_cli.support.errors import InputError
+from tsas_studies.reproduction.page import reproduction_page
 
 
 def pipeline(root: Path, ids=("a", "b"), **more) -> list[Path]:
@@ -53,7 +53,7 @@ def _tracking(root: Path) -> str:
 
 def _drive(root: Path) -> str:
     data = drive_dataset(root / "dataset", SPRUNG, duration_s=4.0, to_Hz=120.0)
-    identify_drive(data, root / "out")
+    identify_harmonic_drive(data, out=root / "out")
     return page(read_inputs([root / "out"]))
 
 

@@ -17,16 +17,16 @@ from tests.reporting.made_folders import (
 )
 from tests.reporting.test_page import Outline, headings
 from tests.reporting.test_tracking import cells
-from tsas_cli.errors import InputError
+from tsas_cli.records.closing import Closing
 from tsas_cli.reporting import colours
 from tsas_cli.reporting.closing import call
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.figures.closing import MODELS, draw_dots
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.page import page
-from tsas_cli.stage_files.closing import Closing
-from tsas_cli.tracking import closing
-from tsas_cli.tracking.closing_stage import chosen
+from tsas_cli.stages import close_cases as closing
+from tsas_cli.stages.close_loop import chosen
+from tsas_cli.support.errors import InputError
 
 
 @pytest.fixture(scope="module")

@@ -11,13 +11,13 @@ from matplotlib.figure import Figure
 from tests.reporting.made_folders import REASONS, make_dataset, make_diagnosis
 from tests.reporting.test_page import Outline, headings
 from tsas_cli.effects import EFFECTS
+from tsas_cli.records.diagnosis import Bin, HeldOut
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.figures.gains import draw_gains
 from tsas_cli.reporting.figures.likeness import draw_likeness
 from tsas_cli.reporting.figures.residual_map import Panel, draw_residual_map
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.page import page
-from tsas_cli.stage_files.diagnosis import Bin, HeldOut
 
 
 @pytest.fixture(scope="module")

@@ -5,16 +5,16 @@ import re
 import pytest
 
 from tests.drives import SPRUNG, drive_dataset
-from tsas_cli.diagnosis.drive_stage import identify_drive
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.page import page
+from tsas_cli.stages.identify_harmonic_drive import identify_harmonic_drive
 
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
     root = tmp_path_factory.mktemp("drive")
     data = drive_dataset(root / "dataset", SPRUNG, duration_s=6.0, to_Hz=120.0)
-    summary = identify_drive(data, root / "out").summary
+    summary = identify_harmonic_drive(data, out=root / "out").summary
     return summary, page(read_inputs([root / "out"]))
 
 

@@ -13,11 +13,11 @@ from tests.reporting.made_folders import (
     make_simulation,
     make_tracking,
 )
-from tests.reporting.test_reproduction import GROUPS, PAPER
+from tests.studies.reproduction.test_page import GROUPS, PAPER
 from tsas_cli.reporting.glance import glance
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.page import page
-from tsas_cli.reporting.reproduction import reproduction_page
+from tsas_studies.reproduction.page import reproduction_page
 
 
 @pytest.fixture(scope="module")

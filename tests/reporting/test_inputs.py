@@ -1,8 +1,8 @@
 import pytest
 
-from tsas_cli.errors import InputError
+from tsas_cli.records.check import Check
 from tsas_cli.reporting.inputs import read_stage
-from tsas_cli.stage_files.check import Check
+from tsas_cli.support.errors import InputError
 
 
 def test_a_file_that_is_nested_deeply_is_one_line(tmp_path):

@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 
 from tests.reporting.made_folders import make_calibration, make_check, make_dataset, make_simulation
-from tsas_cli.errors import InputError
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.page import SECTIONS, page
+from tsas_cli.support.errors import InputError
 
 VOID = {"meta", "link", "br", "hr", "img", "input"}
 FINDING = {

@@ -6,10 +6,10 @@ from pathlib import Path
 import pytest
 
 from tests.reporting.pages import pipeline
-from tsas_cli.errors import InputError
 from tsas_cli.reporting import pdf
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.page import page
+from tsas_cli.support.errors import InputError
 
 
 @pytest.fixture

@@ -1,7 +1,7 @@
 import numpy as np
 
+from tsas_cli.records.base import Segment
 from tsas_cli.reporting.phases import phase_of_samples
-from tsas_cli.stage_files.base import Segment
 
 
 def test_each_sample_has_the_phase_of_its_segment_up_to_and_with_its_end():

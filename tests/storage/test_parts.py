@@ -11,12 +11,12 @@ import pyarrow.parquet as pq
 import pytest
 
 import tsas_cli as tsas
-from tsas_cli.errors import InputError
 from tsas_cli.recordings import storage
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.run_files import open_run
 from tsas_cli.recordings.storage import place_of
 from tsas_cli.recordings.writing import write_dataset
+from tsas_cli.support.errors import InputError
 
 ROWS = 60_000
 NAMES = ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N", "temperature_C")

@@ -4,11 +4,11 @@ import pyarrow as pa
 import pytest
 
 import tsas_cli as tsas
-from tsas_cli.errors import InputError
 from tsas_cli.recordings.storage import place_of
 from tsas_cli.recordings.writing import write_dataset
-from tsas_cli.replacing import SUMS
 from tsas_cli.reporting.viewer.stream_of import stream_of
+from tsas_cli.support.errors import InputError
+from tsas_cli.support.replacing import SUMS
 
 
 @pytest.fixture

@@ -1,9 +1,9 @@
 import pytest
 
 import tsas_cli as tsas
-from tsas_cli.errors import InputError
 from tsas_cli.recordings import storage
 from tsas_cli.recordings.storage import place_of
+from tsas_cli.support.errors import InputError
 
 
 def test_the_manifest_comes_last_and_an_older_one_goes_first(dataset, bucket, wire):

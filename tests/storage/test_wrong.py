@@ -9,8 +9,8 @@ import pytest
 
 import tsas_cli as tsas
 from tests.storage.conftest import HOST, KEY, SECRET, forget, free_port
-from tsas_cli.errors import InputError
 from tsas_cli.recordings import storage
+from tsas_cli.support.errors import InputError
 
 
 def line_of(address: str) -> str:

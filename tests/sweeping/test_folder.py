@@ -5,7 +5,7 @@ import os
 import pytest
 
 from tests.sweeping.test_tasks import rigs, tasks  # noqa: F401 # a fixture
-from tsas_cli.errors import InputError
+from tsas_cli.support.errors import InputError
 from tsas_cli.sweeping.answer import success
 from tsas_cli.sweeping.folder import note, sweep_folder
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tsas_cli.errors import InputError
+from tsas_cli.support.errors import InputError
 from tsas_cli.sweeping.local import in_processes
 
 ROOT = Path(__file__).parents[2]

@@ -6,9 +6,9 @@ import shutil
 import pytest
 
 from tests.sweeping.test_plan import SIMULATE
-from tsas_cli.api.swept import options_of
-from tsas_cli.errors import InputError
 from tsas_cli.recordings.dataset import CONDITIONS
+from tsas_cli.stages.swept import options_of
+from tsas_cli.support.errors import InputError
 from tsas_cli.sweeping import tasks as module
 from tsas_cli.sweeping.plan import read_plan
 from tsas_cli.sweeping.tasks import tasks_of

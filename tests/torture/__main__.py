@@ -15,7 +15,7 @@ import tsas_cli.app
 from tests.torture.bench import STAGES, Stage, make_inputs
 from tests.torture.pipelines import try_pipelines
 from tests.torture.trials import Trials, Tried
-from tsas_cli.text_table import table_text
+from tsas_cli.support.text_table import table_text
 
 # How often each stage is ended, of 100 that are; what is quick is ended more often.
 SHARES = {

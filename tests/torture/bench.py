@@ -9,7 +9,7 @@ from pathlib import Path
 
 from tests.drives import drive_dataset
 from tests.recordings.guess.rig_files import CHANNELS, run, write_csv
-from tsas_cli.replacing import SUMS
+from tsas_cli.support.replacing import SUMS
 
 NAMES = ("Time [s]", "Input position [mm]", "Output position [mm]", "Force in [N]", "Force out [N]")
 DIFFERS = {SUMS, "stream.rrd"}  # a stream holds the time of its making

@@ -89,7 +89,7 @@ def _child(
         os.dup2(descriptor, 2)
         sys.argv = ["tsas", *words]
         count = _watched(moment)
-        from tsas_cli.app import main
+        from tsas_cli.__main__ import main
 
         try:
             main()

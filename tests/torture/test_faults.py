@@ -84,8 +84,8 @@ def test_a_folder_that_may_not_be_written_is_one_line(dataset, tmp_path):
     program = (
         "import os, sys\n"
         "from pathlib import Path\n"
-        "from tsas_cli.errors import InputError\n"
-        "from tsas_cli.files import new_folder\n"
+        "from tsas_cli.support.errors import InputError\n"
+        "from tsas_cli.support.files import new_folder\n"
         "os.chdir('/')\n"
         "if os.geteuid() == 0: os.setgroups([]); os.setgid(65534); os.setuid(65534)\n"
         "os.chdir(sys.argv[1]) if os.access(sys.argv[1], os.X_OK) else sys.exit(77)\n"
@@ -108,12 +108,12 @@ def test_a_stage_that_is_asked_to_end_cleans_up(dataset, tmp_path, number):
     out = tmp_path / "out"
     program = (
         "import os, sys, time\n"
-        "import tsas_cli.recordings.quality as quality, tsas_cli.api.check as check\n"
+        "import tsas_cli.recordings.quality as quality, tsas_cli.stages.check as check\n"
         "def slow(*_):\n"
         "    print('inside', flush=True)\n"
         "    time.sleep(60)\n"
         "check.check_dataset = slow\n"
-        "from tsas_cli.app import main\n"
+        "from tsas_cli.__main__ import main\n"
         "main()\n"
     )
     call = [sys.executable, "-c", program, "check", str(dataset), "--out", str(out)]

@@ -2,10 +2,10 @@
 
 from functools import cache
 
+from tsas_cli.stages.track import Call, what_is_known
 from tsas_cli.tracking.references import reference
 from tsas_cli.tracking.settings import Settings
-from tsas_cli.tracking.track import Plant, plan, track
-from tsas_cli.tracking.track_stage import Call, what_is_known
+from tsas_cli.tracking.track import Plant, plan, run_loop
 
 QUICK = {
     "reference": {"angular_frequency_rad_per_s": 3.0, "duration_s": 2.0, "mean_N": 44.0},
@@ -33,4 +33,4 @@ def run(controller="disturbance-observer", *, seed=1, rig=None, later=None, chan
     settings = settings_of(**tables)
     wanted, path, known, plant = loop_of(settings)
     plant = Plant(rig or plant.rig, plant.actuator, later, change_s)
-    return track(wanted, path, known, plant, controller, settings, seed)
+    return run_loop(wanted, path, known, plant, controller, settings, seed)

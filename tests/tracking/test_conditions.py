@@ -3,7 +3,7 @@
 import pytest
 
 from tests.tracking.runs import loop_of, settings_of
-from tsas_cli.errors import InputError
+from tsas_cli.support.errors import InputError
 from tsas_cli.tracking.conditions import Change, Condition, disturbed, proximal_spring
 
 PROXIMAL_SPRING = "proximal_spring.stiffness_N_per_mm=12.5"

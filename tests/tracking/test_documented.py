@@ -10,8 +10,8 @@ import pytest
 
 from tests.commands.documented import documented
 from tsas_cli.controllers import CONTROLLERS
+from tsas_cli.stages.track import track
 from tsas_cli.tracking.settings import Settings
-from tsas_cli.tracking.track_stage import Call, track_all
 
 TEXT = (Path(__file__).parents[2] / "docs" / "tracking.md").read_text(encoding="utf-8")
 
@@ -39,8 +39,7 @@ def test_every_controller_has_its_line():
 
 def test_files_and_columns_are_documented(tmp_path):
     (tmp_path / "s.toml").write_text("reference.duration_s = 0.2\nloop.nodes = 5\n")
-    call = Call(settings=tmp_path / "s.toml", controllers=CONTROLLERS)
-    track_all(call, tmp_path / "out")
+    track(settings=tmp_path / "s.toml", controllers=CONTROLLERS, out=tmp_path / "out")
     assert set(json.loads((tmp_path / "out" / "tracking.json").read_text())) == documented(
         "tracking.json"
     )

@@ -6,14 +6,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tsas_cli.errors import InputError
-from tsas_cli.identification.drive_file import IdentifiedDrive
-from tsas_cli.tracking.closing_drive import driven, known_drives, record_drive, spring_alone
+from tsas_cli.drive.file import IdentifiedDrive
+from tsas_cli.stages.close_drive import driven, known_drives, record_drive, spring_alone
+from tsas_cli.support.errors import InputError
 from tsas_cli.tracking.drives import actuator_of, known_drive
 from tsas_cli.tracking.recorded import stated_rig
 from tsas_cli.tracking.references import reference
 from tsas_cli.tracking.settings import ReferenceSettings, Settings
-from tsas_cli.tracking.track import Known, Plant, feedforward, plan, track
+from tsas_cli.tracking.track import Known, Plant, feedforward, plan, run_loop
 
 SETTINGS = Settings(reference=ReferenceSettings(duration_s=8.0))
 FOUND = IdentifiedDrive(
@@ -62,7 +62,7 @@ def test_the_motor_leads_by_how_far_the_gear_winds_up_and_that_is_worth_it():
         path = plan(wanted, known, SETTINGS)
         speed = feedforward(path, actuator)
         ways.append(float(np.sum(speed[300:3050]) * SETTINGS.step_s * actuator.gain_mm_per_s_rpm))
-        errors.append(track(wanted, path, known, plant, "pid", SETTINGS, 1).score.rmse_N)
+        errors.append(run_loop(wanted, path, known, plant, "pid", SETTINGS, 1).score.rmse_N)
     # In full slip, where the drive feels e^(0.125 π) times the force at the load.
     wound_up = (wanted[3050] - wanted[300]) * math.exp(0.125 * math.pi) / 52.0
     assert ways[1] - ways[0] == pytest.approx(wound_up, rel=0.01)

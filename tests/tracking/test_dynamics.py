@@ -4,9 +4,8 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
-from tsas_cli.errors import InputError
-from tsas_cli.tracking.conditions import disturbed
-from tsas_cli.tracking.track_stage import Call, track_all
+from tsas_cli.stages.track import track
+from tsas_cli.support.errors import InputError
 
 SETTINGS = """
 [reference]
@@ -26,7 +25,7 @@ def test_the_plant_is_dynamic_and_nearly_the_same(tmp_path, settings):
     forces, summaries = [], []
     for dynamics in ("slip", "lugre"):
         out = tmp_path / dynamics
-        summaries.append(track_all(Call(settings=settings, dynamics=dynamics), out).summary)
+        summaries.append(track(settings=settings, dynamics=dynamics, out=out).summary)
         run = pq.read_table(out / "runs" / "adaptive-sliding-mode-undisturbed.parquet")
         forces.append(run["f_out_true_N"].to_numpy())
     off = np.max(np.abs(forces[1] - forces[0])) / np.ptp(forces[0])
@@ -39,15 +38,17 @@ def test_the_plant_is_dynamic_and_nearly_the_same(tmp_path, settings):
 
 
 def test_unstable_sliding_is_said(tmp_path, settings):
-    strong = disturbed([f"{DAMPING}=5", "bristles.stiffness_N_per_mm=6000"])
-    call = Call(settings=settings, dynamics="lugre", conditions=(strong,))
-    notes = track_all(call, tmp_path / "out").summary["notes"]
+    strong = [f"{DAMPING}=5", "bristles.stiffness_N_per_mm=6000"]
+    notes = track(settings=settings, dynamics="lugre", disturb=strong).summary["notes"]
     assert any(note.startswith("disturbed: sliding is unstable in a dead band") for note in notes)
 
 
 def test_a_tendon_that_cannot_be_followed_is_one_line(tmp_path, settings):
-    printed = disturbed([f"{DAMPING}=15.8"])
-    call = Call(settings=settings, dynamics="lugre", conditions=(printed,))
     with pytest.raises(InputError, match=r"cannot be followed.*leave out \[bristles.damping"):
-        track_all(call, tmp_path / "out")
+        track(
+            settings=settings,
+            dynamics="lugre",
+            disturb=f"{DAMPING}=15.8",
+            out=tmp_path / "out",
+        )
     assert not (tmp_path / "out").exists()

@@ -7,7 +7,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from tsas_cli.errors import InputError
+from tsas_cli.support.errors import InputError
 from tsas_cli.tracking.references import SHAPES, reference
 from tsas_cli.tracking.settings import ReferenceSettings
 

@@ -6,7 +6,7 @@ import pytest
 
 from tsas_cli.controllers import CONTROLLERS
 from tsas_cli.controllers.closed_loop import ADAPTIVE, OBSERVER, PID, SLIDING
-from tsas_cli.errors import InputError
+from tsas_cli.support.errors import InputError
 from tsas_cli.tracking.settings import Settings, printed_gains, read_settings
 
 

@@ -19,10 +19,10 @@ from tsas_cli.controllers.closed_loop import (
     X_SEEN,
 )
 from tsas_cli.controllers.signals import error_filter
-from tsas_cli.errors import InputError
 from tsas_cli.physics.ends import Drive
 from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import with_values
+from tsas_cli.support.errors import InputError
 from tsas_cli.tracking.track import feedforward
 
 SILENT = {"noise_mm": 0.0, "step_mm": 0.0}

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import tsas_cli as tsas
-from tsas_cli.errors import InputError
-from tsas_cli.files import added, write_json
-from tsas_cli.replacing import SUMS
+from tsas_cli.support.errors import InputError
+from tsas_cli.support.files import added, write_json
+from tsas_cli.support.replacing import SUMS
 
 MAP = """
 [dataset]

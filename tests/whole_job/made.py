@@ -3,10 +3,10 @@
 import numpy as np
 
 from tests.drives import LAGGING, drive_dataset
-from tsas_cli.challenge.rig.motions import nested
-from tsas_cli.challenge.rig.recordings import record
-from tsas_cli.challenge.rig.sensors import Sensors
-from tsas_cli.challenge.rig.tendon import Rig
+from tsas_studies.challenge.rig.motions import nested
+from tsas_studies.challenge.rig.recordings import record
+from tsas_studies.challenge.rig.sensors import Sensors
+from tsas_studies.challenge.rig.tendon import Rig
 
 RATE_HZ = 50.0
 RIG = Rig(friction_coefficient=0.14, proximal_length_mm=250.0, cells=30)

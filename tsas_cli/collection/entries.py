@@ -11,13 +11,13 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from duckdb import DuckDBPyConnection
 
-from tsas_cli import limits
 from tsas_cli.collection.found import DIAGNOSIS, MANIFEST
-from tsas_cli.errors import InputError
-from tsas_cli.files import read_json, sha256_of
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.manifest import Rig, Run, parse, read_manifest
-from tsas_cli.stage_files.diagnosis import Diagnosis
+from tsas_cli.records.diagnosis import Diagnosis
+from tsas_cli.support import limits
+from tsas_cli.support.errors import InputError
+from tsas_cli.support.files import read_json, sha256_of
 
 RIG = tuple(Rig.model_fields)
 TEXTS = pa.list_(pa.string())

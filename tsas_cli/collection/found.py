@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from tsas_cli.limits import is_text
+from tsas_cli.support.limits import is_text
 
 MANIFEST, DIAGNOSIS = "dataset.toml", "diagnosis.json"
 

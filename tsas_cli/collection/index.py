@@ -13,9 +13,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tsas_cli.collection.found import Place, Stamp, files_below
-from tsas_cli.errors import InputError
-from tsas_cli.files import own_file, sha256_of
-from tsas_cli.steps import Steps
+from tsas_cli.support.errors import InputError
+from tsas_cli.support.files import own_file, sha256_of
+from tsas_cli.support.steps import Steps
 
 if TYPE_CHECKING:
     import pyarrow as pa

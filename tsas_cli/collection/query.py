@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from tsas_cli.collection.index import Index
 from tsas_cli.collection.words import Spelt, spelt_out
-from tsas_cli.errors import InputError, nearest, printable
+from tsas_cli.support.errors import InputError, nearest, printable
 
 if TYPE_CHECKING:
     from duckdb import DuckDBPyConnection, DuckDBPyRelation

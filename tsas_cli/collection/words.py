@@ -4,7 +4,7 @@ import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
-from tsas_cli.errors import InputError, nearest
+from tsas_cli.support.errors import InputError, nearest
 
 # Texts, quoted names and comments stay as they are.
 QUOTED = r"'(?:[^']|'')*'|\"(?:[^\"]|\"\")*\"|--[^\n]*|/\*.*?\*/"

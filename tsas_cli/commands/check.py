@@ -18,7 +18,7 @@ from tsas_cli.commands.common import (
     with_stream,
 )
 from tsas_cli.commands.progress import progress
-from tsas_cli.errors import InputError
+from tsas_cli.support.errors import InputError
 
 
 def check(

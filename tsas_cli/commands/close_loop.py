@@ -58,8 +58,8 @@ def close_loop(
 
 def _of_each_case(folder: Path) -> Iterator[tuple[Path, list[Path]]]:
     """Return each case's folder, and what in it its stream shows."""
+    from tsas_cli.records.closing import Closing
     from tsas_cli.reporting.inputs import read_stage
-    from tsas_cli.stage_files.closing import Closing
 
     for case in read_stage(Closing, folder).cases:
         home = folder / case.case

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from tsas_cli.commands.completion import run_ids
-from tsas_cli.errors import printable
-from tsas_cli.text_table import table_text
+from tsas_cli.support.errors import printable
+from tsas_cli.support.text_table import table_text
 
 if TYPE_CHECKING:
-    from tsas_cli.result import Result
-    from tsas_cli.steps import Steps
+    from tsas_cli.records.result import Result
+    from tsas_cli.support.steps import Steps
 
 DatasetFolder = Annotated[
     str, typer.Argument(metavar="DATASET", help="A dataset's folder, or its address (s3://…).")
@@ -69,7 +69,7 @@ def with_stream(
     `of` says from the stage's folder where streams go, and which folders each shows. `step` is told
     of a piece of work per run.
     """
-    from tsas_cli.files import added
+    from tsas_cli.support.files import added
 
     def add(folder: Path) -> None:
         from tsas_cli.reporting.inputs import read_inputs
@@ -93,7 +93,7 @@ def show(
 ) -> None:
     """Print a summary as JSON, or tables (title, header, rows) and the sentences below them."""
     if as_json:
-        from tsas_cli.files import json_text
+        from tsas_cli.support.files import json_text
 
         sys.stdout.write(json_text(summary))
     elif not quiet:

@@ -7,10 +7,10 @@ from pathlib import Path
 import typer
 
 import tsas_cli
-from tsas_cli import limits
 from tsas_cli.collection import COLUMNS
 from tsas_cli.controllers import CONTROLLERS
-from tsas_cli.errors import InputError
+from tsas_cli.support import limits
+from tsas_cli.support.errors import InputError
 from tsas_cli.tracking import SHAPE_NAMES
 
 ABOUT_EFFECTS = {"__init__", "effect"}  # files beside those of the effects

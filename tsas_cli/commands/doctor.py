@@ -20,8 +20,8 @@ def doctor(quiet: Quiet = False, as_json: Json = False) -> None:
 
     It ends with exit code 2 where tsas lacks what it needs; the rest is only told.
     """
-    from tsas_cli import __version__
-    from tsas_cli.errors import InputError
+    from tsas_cli.support import __version__
+    from tsas_cli.support.errors import InputError
 
     try:
         from tsas_cli.installation.packages import core_packages, extras

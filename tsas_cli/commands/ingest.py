@@ -8,8 +8,8 @@ import typer
 import tsas_cli as tsas
 from tsas_cli.commands.common import Force, Json, Quiet, present
 from tsas_cli.commands.progress import progress
-from tsas_cli.errors import InputError
-from tsas_cli.result import Result
+from tsas_cli.records.result import Result
+from tsas_cli.support.errors import InputError
 
 
 def ingest(

@@ -5,8 +5,8 @@ from typing import Annotated
 
 import typer
 
-from tsas_cli import __version__
 from tsas_cli.commands.common import Json, Quiet, show
+from tsas_cli.support import __version__
 
 
 def init(

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tsas_cli.errors import InputError
+from tsas_cli.support.errors import InputError
 
 if TYPE_CHECKING:
     from tsas_cli.reporting.stream.live import LiveStream
@@ -35,7 +35,7 @@ def watched(live: bool, name: str, *, quiet: bool) -> Iterator["LiveStream | Non
     from tsas_cli.reporting.viewer.analytics import note_once
     from tsas_cli.reporting.viewer.open import page_for_live, window_for_live
     from tsas_cli.reporting.viewer.screen import has_screen
-    from tsas_cli.stopping import cleaned_up_when_stopped, until_stopped
+    from tsas_cli.support.stopping import cleaned_up_when_stopped, until_stopped
 
     opened = window_for_live if has_screen() else page_for_live
     with cleaned_up_when_stopped(), opened() as viewer:

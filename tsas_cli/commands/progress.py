@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from datetime import timedelta
 from typing import TYPE_CHECKING
 
-from tsas_cli.steps import SILENT, Steps
+from tsas_cli.support.steps import SILENT, Steps
 
 if TYPE_CHECKING:
     from rich.progress import Progress

@@ -9,7 +9,7 @@ import tsas_cli as tsas
 from tsas_cli.commands.common import Json, Quiet, names, present
 from tsas_cli.commands.completion import run_columns, sort_columns
 from tsas_cli.commands.progress import progress
-from tsas_cli.errors import InputError
+from tsas_cli.support.errors import InputError
 
 
 def runs(

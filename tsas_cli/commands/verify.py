@@ -9,7 +9,7 @@ import typer
 import tsas_cli as tsas
 from tsas_cli.commands.common import Json, Quiet, present
 from tsas_cli.commands.progress import progress
-from tsas_cli.errors import InputError
+from tsas_cli.support.errors import InputError
 
 
 def verify(

@@ -35,7 +35,7 @@ def view(
     from tsas_cli.reporting.viewer.open import page_of, window_of
     from tsas_cli.reporting.viewer.screen import has_screen
     from tsas_cli.reporting.viewer.stream_of import stream_of
-    from tsas_cli.stopping import until_stopped
+    from tsas_cli.support.stopping import until_stopped
 
     in_browser = web or not has_screen()
     opened = page_of if in_browser else window_of

@@ -16,7 +16,7 @@ from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.storage import Place
 from tsas_cli.recordings.written import answers_of, check_rows, columns_of, names_of
-from tsas_cli.steps import SILENT, Steps
+from tsas_cli.support.steps import SILENT, Steps
 
 Floats = npt.NDArray[np.float64]
 

@@ -8,9 +8,9 @@ from tsas_cli.comparing.answers import Answers, Both, ErrorRow, error_rows, matc
 from tsas_cli.comparing.maps import residual_maps
 from tsas_cli.comparing.sides import Side, read_side
 from tsas_cli.comparing.values import Overlap, Pair, overlap, pairs
-from tsas_cli.errors import InputError
 from tsas_cli.recordings.dataset import Dataset
-from tsas_cli.steps import SILENT, Steps
+from tsas_cli.support.errors import InputError
+from tsas_cli.support.steps import SILENT, Steps
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from tsas_cli.comparing.compare import Comparison
 from tsas_cli.comparing.values import FALSE_CLAIMS, Pair, rounded
 from tsas_cli.identification.prepared import CHANNELS
-from tsas_cli.wording import count_of
+from tsas_cli.support.wording import count_of
 
 SHOWN = 4  # names that are listed
 

@@ -4,19 +4,18 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
-from tsas_cli.diagnosis.diagnose_stage import EXTENDED
-from tsas_cli.errors import InputError
-from tsas_cli.files import read_json, sha256_of
 from tsas_cli.identification.model import FILE, Model, read_model
 from tsas_cli.physics.response import Dynamics
 from tsas_cli.recordings.dataset import Dataset, read_dataset
 from tsas_cli.recordings.manifest import FILE as MANIFEST
 from tsas_cli.recordings.manifest import parse, read_toml
 from tsas_cli.recordings.storage import place_from
-from tsas_cli.stage_files.base import OfDataset, Source
-from tsas_cli.stage_files.calibration import Calibration
-from tsas_cli.stage_files.diagnosis import Cause, Diagnosis, HeldOut
-from tsas_cli.stage_files.simulation import Simulation
+from tsas_cli.records.base import OfDataset, Source
+from tsas_cli.records.calibration import Calibration
+from tsas_cli.records.diagnosis import EXTENDED_MODEL, Cause, Diagnosis, HeldOut
+from tsas_cli.records.simulation import Simulation
+from tsas_cli.support.errors import InputError
+from tsas_cli.support.files import read_json, sha256_of
 
 Kind = Literal["model", "calibration", "diagnosis", "simulation"]
 STAGES: tuple[type[OfDataset], ...] = (Calibration, Diagnosis, Simulation)
@@ -107,7 +106,7 @@ def _of_stage(path: Path, kind: type[OfDataset]) -> Side:
         return Side(
             path, "simulation", files, None, stage.dynamics, stage.dataset, dataset, gone, read
         )
-    name = EXTENDED if isinstance(stage, Diagnosis) else FILE
+    name = EXTENDED_MODEL if isinstance(stage, Diagnosis) else FILE
     model = read_model(path / name)
     files[name] = sha256_of(path / name)
     if isinstance(stage, Diagnosis):

@@ -2,13 +2,13 @@
 
 from typing import Any
 
-from tsas_cli import __version__
 from tsas_cli.comparing.compare import Comparison
 from tsas_cli.comparing.sentences import findings, notes
 from tsas_cli.comparing.sides import Side
 from tsas_cli.comparing.values import Pair, shared_name
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.result import Table
+from tsas_cli.records.result import Table
+from tsas_cli.support import __version__
 
 FILE = "compare.json"
 

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from tsas_cli.errors import InputError
-from tsas_cli.files import read_json, sha256_of
 from tsas_cli.recordings.manifest import parse
-from tsas_cli.stage_files.tracking import Result, Tracking
+from tsas_cli.records.tracking import Result, Tracking
+from tsas_cli.support.errors import InputError
+from tsas_cli.support.files import read_json, sha256_of
 
 FILE = Tracking.FILE
 SCORES = {  # those that are better the smaller they are, with their units

@@ -3,10 +3,10 @@
 from collections.abc import Iterator
 from typing import Any
 
-from tsas_cli import __version__
 from tsas_cli.comparing.tracked import FILE, SCORES, Tracks
-from tsas_cli.result import Table
-from tsas_cli.stage_files.tracking import Spread
+from tsas_cli.records.result import Table
+from tsas_cli.records.tracking import Spread
+from tsas_cli.support import __version__
 
 
 def as_json(it: Tracks) -> dict[str, Any]:

@@ -27,7 +27,7 @@ from tsas_cli.identification.preload_correction import with_preload_correction
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.run_errors import blocks_of
 from tsas_cli.recordings.manifest import Manifest
-from tsas_cli.steps import SILENT, Steps
+from tsas_cli.support.steps import SILENT, Steps
 
 Floats = npt.NDArray[np.float64]
 Verdict = Literal["named", "ambiguous", "sufficient", "unexplained", "undecided"]
@@ -100,7 +100,7 @@ def leaves_much(mean_square: float, share: float) -> bool:
     return mean_square > MUCH or (mean_square > 1.0 + BLURRED and share > LEFT)
 
 
-def diagnose(
+def diagnose_runs(
     manifest: Manifest,
     stated: Model,
     runs: Sequence[Prepared],

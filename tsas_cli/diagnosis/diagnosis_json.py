@@ -11,8 +11,8 @@ from tsas_cli.diagnosis.residual_map import residual_map
 from tsas_cli.diagnosis.search import Search
 from tsas_cli.effects import EFFECTS
 from tsas_cli.recordings.columns import BY_NAME
-from tsas_cli.steps import SILENT, Steps
-from tsas_cli.wording import count_of
+from tsas_cli.support.steps import SILENT, Steps
+from tsas_cli.support.wording import count_of
 
 Floats = npt.NDArray[np.float64]
 

@@ -3,7 +3,7 @@
 from typing import Any
 
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.result import Table
+from tsas_cli.records.result import Table
 
 SHOWN = 8  # hypotheses that are printed
 _ERRORS = ("rmse_before", "rmse_after", "noise_floor", "best_obtainable")

@@ -10,13 +10,13 @@ from tsas_cli.diagnosis.candidates import Candidate, candidates, recorded_limits
 from tsas_cli.diagnosis.made_runs import APART, made
 from tsas_cli.diagnosis.rig_file import Sensors
 from tsas_cli.diagnosis.visibility import Look, Part
-from tsas_cli.errors import InputError
 from tsas_cli.identification.extension import Bench
 from tsas_cli.identification.joint_fit import JointFit
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.prepared import Prepared, prepare
 from tsas_cli.physics.rig import Rig
 from tsas_cli.recordings.manifest import Run
+from tsas_cli.support.errors import InputError
 
 SEED = 2  # of the noise of runs that might be added
 

@@ -7,12 +7,12 @@ import numpy as np
 
 from tsas_cli.diagnosis.motions import motion
 from tsas_cli.diagnosis.rig_file import MOST_SAMPLES, PlannedRun, Sensors
-from tsas_cli.errors import InputError
 from tsas_cli.physics.ends import Drive
 from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import Rig
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.recording import Recording
+from tsas_cli.support.errors import InputError
 
 SEED = 1  # the same plan gives the same numbers
 APART = timedelta(minutes=5)  # from the end of one run to the start of the next

@@ -3,7 +3,7 @@
 from tsas_cli.diagnosis.diagnose import Diagnosis
 from tsas_cli.diagnosis.plan import propose
 from tsas_cli.effects import EFFECTS
-from tsas_cli.steps import SILENT, Steps
+from tsas_cli.support.steps import SILENT, Steps
 
 
 def next_experiment(result: Diagnosis, step: Steps = SILENT) -> str:

@@ -6,8 +6,8 @@ from typing import Literal
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from tsas_cli.diagnosis.motions import PEAK, Kind
-from tsas_cli.errors import InputError
 from tsas_cli.recordings.manifest import Rig, parse, read_toml
+from tsas_cli.support.errors import InputError
 
 MOST_SAMPLES = 1_000_000  # of a run
 OUTPUTS = ("f_in_N", "f_out_N", "x_out_mm")

@@ -18,7 +18,7 @@ from tsas_cli.effects import EFFECTS, Effect
 from tsas_cli.identification.extension import TOLERANCE, Bench, Trial
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.identification.screening import Screened, projector, screen
-from tsas_cli.steps import SILENT, Steps
+from tsas_cli.support.steps import SILENT, Steps
 
 Floats = npt.NDArray[np.float64]
 Names = frozenset[str]

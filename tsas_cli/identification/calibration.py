@@ -18,7 +18,7 @@ from tsas_cli.identification.stiffness import Slope, slopes
 from tsas_cli.identification.transfer import tension_transfer
 from tsas_cli.physics.response import Dynamics
 from tsas_cli.recordings.manifest import Manifest
-from tsas_cli.steps import SILENT, Steps
+from tsas_cli.support.steps import SILENT, Steps
 
 LACKING = (
     "The intervals allow for no effect that the model lacks: `tsas diagnose` names it, and --model "
@@ -41,7 +41,7 @@ class Calibration:
     fitted: Fitted | None
 
 
-def calibrate(
+def calibrate_runs(
     manifest: Manifest,
     runs: Sequence[Prepared],
     step: Steps = SILENT,

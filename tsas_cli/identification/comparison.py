@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.errors import InputError
 from tsas_cli.identification.dynamic_notes import dynamic_notes
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.prepared import Prepared
@@ -15,6 +14,7 @@ from tsas_cli.physics.chain_state import SLACK, UNSETTLED
 from tsas_cli.physics.response import Dynamics, Response, simulate
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.manifest import Run
+from tsas_cli.support.errors import InputError
 
 Floats = npt.NDArray[np.float64]
 

@@ -20,7 +20,7 @@ from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.physics.lugre_start import law_of
 from tsas_cli.physics.response import LUMPS
-from tsas_cli.steps import SILENT, Steps
+from tsas_cli.support.steps import SILENT, Steps
 
 Floats = npt.NDArray[np.float64]
 

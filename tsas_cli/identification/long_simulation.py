@@ -10,7 +10,6 @@ import numpy as np
 import numpy.typing as npt
 import pyarrow as pa
 
-from tsas_cli.errors import InputError
 from tsas_cli.identification.comparison import Told, channels_of, refuse_static
 from tsas_cli.identification.long_runs import LongRun, Rows
 from tsas_cli.identification.model import Model
@@ -21,6 +20,7 @@ from tsas_cli.physics.ends import Drive
 from tsas_cli.physics.response import Dynamics, Response
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.writing import parquet_writer, table_of
+from tsas_cli.support.errors import InputError
 
 Floats = npt.NDArray[np.float64]
 

@@ -17,7 +17,7 @@ from tsas_cli.identification.fit import with_errors
 from tsas_cli.identification.joint_fit import JointFit, estimates_of
 from tsas_cli.identification.run_errors import blocks_of
 from tsas_cli.identification.screening import projector, screen
-from tsas_cli.steps import SILENT, Steps
+from tsas_cli.support.steps import SILENT, Steps
 
 WORTH = 0.5  # of what the best effect explains linearly, for an effect to be fitted
 NEAR = 2.0  # times the best effect's excess over the noise, for an effect to count

@@ -10,7 +10,6 @@ import tomlkit
 from pydantic import BaseModel, ConfigDict
 
 from tsas_cli.effects import EFFECTS, Effects
-from tsas_cli.errors import InputError, nearest
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.quantities import DEFAULTS, QUANTITIES
 from tsas_cli.identification.stored_value import StoredValue
@@ -19,6 +18,7 @@ from tsas_cli.physics.parameters import NOMINAL, NOMINAL_BY_NAME
 from tsas_cli.physics.rig import Rig, with_values
 from tsas_cli.recordings.dataset import read_from
 from tsas_cli.recordings.manifest import Manifest, Run, parse, read_toml
+from tsas_cli.support.errors import InputError, nearest
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -9,7 +9,6 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.errors import InputError
 from tsas_cli.numerics.conditioning import METHOD, Conditioned, condition
 from tsas_cli.numerics.interpolated import interpolated
 from tsas_cli.numerics.noise import noise_sd, quantisation_step
@@ -18,6 +17,7 @@ from tsas_cli.physics.response import TOLERANCE
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.manifest import Load, Run
 from tsas_cli.recordings.recording import Recording
+from tsas_cli.support.errors import InputError
 
 Floats = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]

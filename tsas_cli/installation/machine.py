@@ -8,12 +8,12 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from tsas_cli.errors import InputError
 from tsas_cli.numerics.compiled import cache_folder
 from tsas_cli.numerics.side_by_side import THREADS, threads
 from tsas_cli.reporting.viewer.drawing import drawn_with
 from tsas_cli.reporting.viewer.program import program
 from tsas_cli.reporting.viewer.screen import SCREENS, has_screen
+from tsas_cli.support.errors import InputError
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
 

@@ -7,7 +7,7 @@ from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 from typing import TypeVar
 
-from tsas_cli.errors import InputError
+from tsas_cli.support.errors import InputError
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")

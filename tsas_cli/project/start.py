@@ -5,12 +5,12 @@ import shutil
 from collections.abc import Sequence
 from pathlib import Path
 
-from tsas_cli.errors import InputError
-from tsas_cli.files import new_file, new_folder
 from tsas_cli.recordings.guess.proposal import Proposal, propose
 from tsas_cli.recordings.guess.text import map_text
 from tsas_cli.recordings.ingest import find_files
-from tsas_cli.temporaries import sweep
+from tsas_cli.support.errors import InputError
+from tsas_cli.support.files import new_file, new_folder
+from tsas_cli.support.temporaries import sweep
 
 HERE = Path(__file__).parent
 MAKE = ("settings.mk", "chain.mk", "ingest.mk")

@@ -20,8 +20,8 @@ from typing import IO
 
 import pyarrow as pa
 
-from tsas_cli.errors import InputError
 from tsas_cli.recordings.storage import Address
+from tsas_cli.support.errors import InputError
 
 SMALLEST, MOST = 16 * 1024, 16384  # bytes of a block; blocks of a file, where it is large
 HELD = 64 * 1024 * 1024  # bytes in memory at once, and at most in one request

@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.errors import InputError
 from tsas_cli.recordings.columns import BY_NAME, TIME
 from tsas_cli.recordings.ingest_map import ColumnMap, IngestMap
 from tsas_cli.recordings.readers.table import Floats, Table
 from tsas_cli.recordings.units import conversion
+from tsas_cli.support.errors import InputError
 
 
 @dataclass(frozen=True)

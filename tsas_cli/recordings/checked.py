@@ -5,11 +5,11 @@ from typing import TypeAlias
 
 import pyarrow as pa
 
-from tsas_cli.errors import InputError
-from tsas_cli.files import sha256_of
 from tsas_cli.recordings.blocks import CheckedFile, NotTheSameError, opened
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.storage import Address, Place, check_inside
+from tsas_cli.support.errors import InputError
+from tsas_cli.support.files import sha256_of
 
 Source: TypeAlias = Path | CheckedFile | pa.NativeFile
 

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
-from tsas_cli import limits
+from tsas_cli.support import limits
 
 Role = Literal["time", "input", "output", "other"]
 

@@ -6,13 +6,13 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
-from tsas_cli import __version__
-from tsas_cli.errors import InputError, nearest
-from tsas_cli.files import sha256_of
 from tsas_cli.recordings.manifest import FILE, Manifest, Run, parse, read_manifest
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.recordings.run_files import read_recording
 from tsas_cli.recordings.storage import Place, told_from
+from tsas_cli.support import __version__
+from tsas_cli.support.errors import InputError, nearest
+from tsas_cli.support.files import sha256_of
 
 CONDITIONS = ("sheath_length_mm", "total_bend_rad", "preload_N")
 

@@ -7,9 +7,6 @@ from itertools import chain
 from pathlib import Path
 from typing import Any
 
-from tsas_cli import __version__, limits
-from tsas_cli.errors import InputError
-from tsas_cli.files import check_unchanged, sha256_of, state_of
 from tsas_cli.recordings.canonical import canonical_columns
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.conditions import run_conditions
@@ -19,7 +16,10 @@ from tsas_cli.recordings.manifest import Manifest, Run, parse, write_manifest
 from tsas_cli.recordings.readers import SUFFIXES, batches
 from tsas_cli.recordings.readers.table import Table
 from tsas_cli.recordings.writing import parquet_writer, table_of
-from tsas_cli.steps import SILENT, Steps
+from tsas_cli.support import __version__, limits
+from tsas_cli.support.errors import InputError
+from tsas_cli.support.files import check_unchanged, sha256_of, state_of
+from tsas_cli.support.steps import SILENT, Steps
 
 
 @dataclass(frozen=True)

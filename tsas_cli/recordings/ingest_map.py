@@ -7,11 +7,11 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
 
-from tsas_cli.errors import InputError, nearest
 from tsas_cli.recordings.columns import NAMES, TIME, has_input_and_output
 from tsas_cli.recordings.manifest import Load, Rig, parse, read_toml
 from tsas_cli.recordings.readers.options import ReadOptions
 from tsas_cli.recordings.readers.table import Source
+from tsas_cli.support.errors import InputError, nearest
 
 QUESTION = "?"  # in place of a value: what a guessed map leaves to a person
 Condition = Literal["preload_N", "sheath_length_mm", "total_bend_rad"]

@@ -19,10 +19,10 @@ from pydantic import (
     model_validator,
 )
 
-from tsas_cli import limits
-from tsas_cli.errors import InputError, nearest
 from tsas_cli.recordings.run_names import beside, check_run_name
 from tsas_cli.recordings.storage import Address, Place, check_inside
+from tsas_cli.support import limits
+from tsas_cli.support.errors import InputError, nearest
 
 FILE = "dataset.toml"
 Load = Literal["spring", "force", "displacement"]

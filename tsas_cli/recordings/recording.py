@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.errors import InputError, nearest
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.manifest import Run
+from tsas_cli.support.errors import InputError, nearest
 
 if TYPE_CHECKING:
     import pandas as pd

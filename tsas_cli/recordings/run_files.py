@@ -8,10 +8,6 @@ import numpy.typing as npt
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from tsas_cli import limits
-from tsas_cli.errors import InputError
-from tsas_cli.files import check_unchanged, state_of
-from tsas_cli.memory import out_of_memory
 from tsas_cli.recordings.arrow_columns import floats_from
 from tsas_cli.recordings.blocks import NotTheSameError
 from tsas_cli.recordings.checked import Source, changed, checked_file
@@ -29,6 +25,10 @@ from tsas_cli.recordings.readers.table import damaged
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.recordings.storage import Place
 from tsas_cli.recordings.units import conversion
+from tsas_cli.support import limits
+from tsas_cli.support.errors import InputError
+from tsas_cli.support.files import check_unchanged, state_of
+from tsas_cli.support.memory import out_of_memory
 
 Floats = npt.NDArray[np.float64]
 

@@ -16,7 +16,7 @@ from typing import Any, TypeVar
 from urllib.parse import urlsplit
 from urllib.request import url2pathname
 
-from tsas_cli.errors import InputError
+from tsas_cli.support.errors import InputError
 
 PACKAGES = {"s3": "s3fs", "gs": "gcsfs"}  # by scheme; the extras have the schemes' names
 CONNECT_S, READ_S, TRIES, ANSWER_S = 5.0, 10.0, 2, 25.0

@@ -5,7 +5,7 @@ import re
 from functools import cache
 from typing import Any
 
-from tsas_cli.errors import InputError
+from tsas_cli.support.errors import InputError
 
 # What people write in header lines and what pint would read otherwise or not at all: it takes
 # `Nm` for number-metre, `1/min` for radians per minute and `U` for an enzyme unit.

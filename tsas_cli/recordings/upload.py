@@ -2,13 +2,13 @@
 
 from pathlib import Path
 
-from tsas_cli.errors import InputError
 from tsas_cli.recordings.blocks import SUFFIX, blocks_of
 from tsas_cli.recordings.checked import changed, local_file
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.manifest import FILE, Run
 from tsas_cli.recordings.storage import Address
-from tsas_cli.steps import Steps
+from tsas_cli.support.errors import InputError
+from tsas_cli.support.steps import Steps
 
 
 def upload_dataset(folder: Path, target: Address, *, force: bool, step: Steps) -> dict[str, int]:

@@ -7,11 +7,11 @@ from pathlib import Path
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from tsas_cli.files import sha256_of
 from tsas_cli.recordings.arrow_columns import column_of
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.manifest import Manifest, Run, write_manifest
 from tsas_cli.recordings.recording import Floats, Recording
+from tsas_cli.support.files import sha256_of
 
 
 def write_dataset(folder: Path, manifest: Manifest, tables: Mapping[str, pa.Table]) -> None:

@@ -8,8 +8,6 @@ import numpy as np
 import numpy.typing as npt
 import pyarrow as pa
 
-from tsas_cli.errors import InputError
-from tsas_cli.memory import out_of_memory
 from tsas_cli.recordings.arrow_columns import floats_from
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.parquet_files import check_size, open_parquet
@@ -17,6 +15,8 @@ from tsas_cli.recordings.readers.table import damaged
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.recordings.run_files import read_columns
 from tsas_cli.recordings.run_names import check_run_name
+from tsas_cli.support.errors import InputError
+from tsas_cli.support.memory import out_of_memory
 
 Floats = npt.NDArray[np.float64]
 

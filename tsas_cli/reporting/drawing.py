@@ -9,9 +9,9 @@ from xml.etree import ElementTree as ET
 
 from markupsafe import Markup
 
-from tsas_cli.errors import printable
 from tsas_cli.reporting.colours import STAND_IN, themed
 from tsas_cli.reporting.content import Picture, anchor
+from tsas_cli.support.errors import printable
 
 WIDTH_IN = 4.6  # a phone shows this at about its own size, so that the text stays readable
 _STYLE: dict[Any, Any] = {

@@ -3,16 +3,16 @@
 from collections.abc import Iterator, Mapping, Sequence
 from statistics import median
 
+from tsas_cli.records.closing import Closing
+from tsas_cli.records.diagnosis import Cause, Diagnosis, HeldOut
+from tsas_cli.records.drive import Drive, DriveDiagnosis
+from tsas_cli.records.simulation import Simulation
+from tsas_cli.records.tracking import Tracking
 from tsas_cli.reporting.channels import called
 from tsas_cli.reporting.content import Fact, Glance
 from tsas_cli.reporting.diagnosis.words import heading_of, listed, title_of, within
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import ABSENT, plain, with_interval
-from tsas_cli.stage_files.closing import Closing
-from tsas_cli.stage_files.diagnosis import Cause, Diagnosis, HeldOut
-from tsas_cli.stage_files.drive import Drive, DriveDiagnosis
-from tsas_cli.stage_files.simulation import Simulation
-from tsas_cli.stage_files.tracking import Tracking
 
 _KINDS = {
     "named": "Cause found",

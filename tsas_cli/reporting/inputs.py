@@ -9,22 +9,22 @@ from typing import Any, TypeVar, cast
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.errors import InputError, printable
-from tsas_cli.files import read_json
 from tsas_cli.recordings.dataset import Dataset, read_dataset
 from tsas_cli.recordings.manifest import FILE, parse
 from tsas_cli.recordings.quality import check_dataset
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.recordings.storage import Place, place_from
 from tsas_cli.recordings.written import answers_of, check_rows, columns_of, names_of
-from tsas_cli.stage_files.base import OfDataset, StageFile
-from tsas_cli.stage_files.calibration import Calibration
-from tsas_cli.stage_files.check import Check
-from tsas_cli.stage_files.closing import Closing
-from tsas_cli.stage_files.diagnosis import Diagnosis
-from tsas_cli.stage_files.drive import Drive
-from tsas_cli.stage_files.simulation import Simulation
-from tsas_cli.stage_files.tracking import Tracking
+from tsas_cli.records.base import OfDataset, StageFile
+from tsas_cli.records.calibration import Calibration
+from tsas_cli.records.check import Check
+from tsas_cli.records.closing import Closing
+from tsas_cli.records.diagnosis import Diagnosis
+from tsas_cli.records.drive import Drive
+from tsas_cli.records.simulation import Simulation
+from tsas_cli.records.tracking import Tracking
+from tsas_cli.support.errors import InputError, printable
+from tsas_cli.support.files import read_json
 
 Floats = npt.NDArray[np.float64]
 STAGES: tuple[type[StageFile], ...] = (

@@ -2,6 +2,9 @@
 
 from collections.abc import Callable
 
+from tsas_cli.records.closing import Closing
+from tsas_cli.records.drive import Drive
+from tsas_cli.records.tracking import Tracking
 from tsas_cli.reporting.content import Section
 from tsas_cli.reporting.glance import glance
 from tsas_cli.reporting.inputs import Inputs
@@ -20,9 +23,6 @@ from tsas_cli.reporting.sections import (
     tracking,
     transfer,
 )
-from tsas_cli.stage_files.closing import Closing
-from tsas_cli.stage_files.drive import Drive
-from tsas_cli.stage_files.tracking import Tracking
 
 SECTIONS: tuple[Callable[[Inputs], Section | None], ...] = (
     closing.section,

@@ -8,7 +8,7 @@ import subprocess
 import tempfile
 from pathlib import Path
 
-from tsas_cli.errors import InputError
+from tsas_cli.support.errors import InputError
 
 BROWSERS = (
     "chromium",

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.stage_files.base import Segment
+from tsas_cli.records.base import Segment
 
 Floats = npt.NDArray[np.float64]
 

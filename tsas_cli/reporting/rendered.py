@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 
-from tsas_cli import __version__
-from tsas_cli.errors import printable
 from tsas_cli.reporting.content import Glance, Section
+from tsas_cli.support import __version__
+from tsas_cli.support.errors import printable
 
 
 def rendered(

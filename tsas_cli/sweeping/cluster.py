@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tsas_cli.errors import InputError
+from tsas_cli.support.errors import InputError
 from tsas_cli.sweeping.answer import Answer, called, death, failure
 from tsas_cli.sweeping.versions import ONE_THREAD, refuse_others, threads_of_algebra, versions
 

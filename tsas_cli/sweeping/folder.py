@@ -7,13 +7,13 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TextIO
 
-from tsas_cli.errors import InputError
-from tsas_cli.files import read_json, sha256_of, unwritable
-from tsas_cli.limits import text_name
-from tsas_cli.replacing import LEFT_BY_DESKTOPS, SUMS, refuse_holding, refuse_kind
+from tsas_cli.support.errors import InputError
+from tsas_cli.support.files import read_json, sha256_of, unwritable
+from tsas_cli.support.limits import text_name
+from tsas_cli.support.replacing import LEFT_BY_DESKTOPS, SUMS, refuse_holding, refuse_kind
+from tsas_cli.support.temporaries import TEMPORARY, is_empty_folder, remove
 from tsas_cli.sweeping.answer import Answer, success
 from tsas_cli.sweeping.tasks import FILE, Task
-from tsas_cli.temporaries import TEMPORARY, is_empty_folder, remove
 from tsas_cli.verifying.claims import claims_of
 
 TASKS = "tasks"

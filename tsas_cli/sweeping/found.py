@@ -8,7 +8,7 @@ import numpy as np
 
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.recordings.recording import Recording
-from tsas_cli.result import Result
+from tsas_cli.records.result import Result
 
 Figures = dict[str, Any]
 FITTING = ("calibrate", "diagnose")

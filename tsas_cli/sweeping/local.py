@@ -13,7 +13,7 @@ from contextlib import suppress
 from threading import Thread
 from typing import IO
 
-from tsas_cli.errors import InputError
+from tsas_cli.support.errors import InputError
 from tsas_cli.sweeping.answer import Answer, death
 from tsas_cli.sweeping.versions import ONE_THREAD
 

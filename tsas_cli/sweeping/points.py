@@ -9,7 +9,7 @@ import pyarrow as pa
 import pyarrow.csv
 import pyarrow.parquet
 
-from tsas_cli.errors import InputError
+from tsas_cli.support.errors import InputError
 from tsas_cli.sweeping.plan import Plan
 
 MOST_TASKS = 1_000_000

@@ -5,9 +5,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from tsas_cli.errors import InputError
-from tsas_cli.files import sha256_of
 from tsas_cli.recordings.manifest import FILE, read_toml
+from tsas_cli.support.errors import InputError
+from tsas_cli.support.files import sha256_of
 
 WILD = "*?["
 

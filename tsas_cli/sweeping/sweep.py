@@ -7,10 +7,10 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tsas_cli import __version__
-from tsas_cli.files import own_file, write_json
-from tsas_cli.result import Result, Table
-from tsas_cli.steps import Steps
+from tsas_cli.records.result import Result, Table
+from tsas_cli.support import __version__
+from tsas_cli.support.files import own_file, write_json
+from tsas_cli.support.steps import Steps
 from tsas_cli.sweeping.answer import Answer
 from tsas_cli.sweeping.folder import (
     PARAMETERS,

@@ -9,7 +9,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from tsas_cli.result import Table
+from tsas_cli.records.result import Table
 from tsas_cli.sweeping.answer import Answer
 from tsas_cli.sweeping.tasks import Task
 

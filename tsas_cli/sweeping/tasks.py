@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from tsas_cli.errors import InputError
+from tsas_cli.support.errors import InputError
 from tsas_cli.sweeping.plan import Plan
 from tsas_cli.sweeping.points import Point, points_of
 from tsas_cli.sweeping.sources import Source, sources_of

@@ -8,8 +8,8 @@ from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 
-from tsas_cli import __version__
-from tsas_cli.errors import InputError
+from tsas_cli.support import __version__
+from tsas_cli.support.errors import InputError
 
 LIBRARIES = ("numpy", "scipy", "numba", "pyarrow")
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "TSAS_THREADS": "1"}  # a task is one process

@@ -5,10 +5,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from tsas_cli.effects import EFFECTS
-from tsas_cli.errors import InputError, nearest
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.paper import yang2025
 from tsas_cli.physics.rig import with_values
+from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.tracking.track import Plant
 
 ALLOWED = {

@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.errors import InputError, nearest
 from tsas_cli.recordings.run_files import read_columns
+from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.tracking import SHAPE_NAMES
 from tsas_cli.tracking.settings import LONGEST_S, ReferenceSettings
 

@@ -16,11 +16,11 @@ from tsas_cli.controllers.closed_loop import (
 )
 from tsas_cli.controllers.path import Path, follow
 from tsas_cli.controllers.signals import error_filter
-from tsas_cli.errors import InputError
 from tsas_cli.physics.ends import last_direction
 from tsas_cli.physics.lugre_plant import no_lumps
 from tsas_cli.physics.plant import Actuator
 from tsas_cli.physics.rig import Rig
+from tsas_cli.support.errors import InputError
 from tsas_cli.tracking.scores import Score, score
 from tsas_cli.tracking.settings import Settings
 
@@ -90,7 +90,7 @@ def feedforward(path: Path, actuator: Actuator) -> Floats:
     return answer
 
 
-def track(
+def run_loop(
     wanted_N: Floats,
     path: Path,
     known: Known,

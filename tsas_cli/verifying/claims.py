@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from tsas_cli.errors import InputError
-from tsas_cli.files import read_json
 from tsas_cli.recordings.manifest import FILE as MANIFEST
 from tsas_cli.recordings.manifest import read_toml
 from tsas_cli.recordings.storage import is_address, path_from
-from tsas_cli.replacing import SUMS
+from tsas_cli.support.errors import InputError
+from tsas_cli.support.files import read_json
+from tsas_cli.support.replacing import SUMS
 from tsas_cli.verifying.seal import sealed
 
 _SUM = re.compile(r"([0-9a-f]{64})  (.+)")

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from tsas_cli.errors import InputError
 from tsas_cli.recordings.storage import Place, told_from
+from tsas_cli.support.errors import InputError
 
 _TYPE = "<!DOCTYPE html>\n"
 _HEAD = "<!-- a page of tsas, which ends with its own checksum -->\n"

@@ -7,12 +7,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
-from tsas_cli import limits
-from tsas_cli.errors import InputError
-from tsas_cli.files import read_json, sha256_of
 from tsas_cli.recordings.manifest import FILE as MANIFEST
 from tsas_cli.recordings.storage import is_address
-from tsas_cli.replacing import SUMS
+from tsas_cli.support import limits
+from tsas_cli.support.errors import InputError
+from tsas_cli.support.files import read_json, sha256_of
+from tsas_cli.support.replacing import SUMS
 from tsas_cli.verifying.claims import Claim, claims_of
 
 State = Literal["fits", "changed", "missing", "cannot tell"]

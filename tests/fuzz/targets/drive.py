@@ -4,7 +4,7 @@ from collections.abc import Iterable
 
 from tests.fuzz.documents import toml_document as mutate
 from tests.fuzz.rules import Scratch, answer
-from tsas_cli.identification.drive_file import UNITS, read_drive
+from tsas_cli.drive.file import UNITS, read_drive
 
 __all__ = ["WORDS", "mutate", "one", "seeds"]
 SHARE = 20

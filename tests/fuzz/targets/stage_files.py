@@ -9,12 +9,12 @@ from typing import Any
 from tests.fuzz.documents import after_a_byte, json_document
 from tests.fuzz.rules import Scratch, answer
 from tests.reporting import made_folders as made
-from tsas_cli.challenge import answers, entry
 from tsas_cli.comparing.sides import STAGES as COMPARED
 from tsas_cli.comparing.sides import read_side
 from tsas_cli.comparing.tracked import compare_tracked
+from tsas_cli.records.tracking import Tracking
 from tsas_cli.reporting.inputs import STAGES, read_inputs, read_stage
-from tsas_cli.stage_files.tracking import Tracking
+from tsas_studies.challenge import answers, entry
 
 SHARE = 4
 MOST_BYTES = 8000

@@ -15,12 +15,12 @@ from scipy.io import savemat
 from tests.recordings.guess.rig_files import CHANNELS, in_unit, run, verdicts, write_csv
 from tests.recordings.readers.matlab_files import controldesk, numbers, save_73, struct
 from tsas_cli.commands.common import show
-from tsas_cli.errors import InputError
 from tsas_cli.recordings.guess.proposal import propose
 from tsas_cli.recordings.guess.summary import tables
 from tsas_cli.recordings.guess.text import map_text
 from tsas_cli.recordings.ingest_map import read_map
 from tsas_cli.recordings.writing import write_parquet
+from tsas_cli.support.errors import InputError
 
 REPOSITORY = Path(__file__).parents[3]
 MAPS = REPOSITORY / "datasets" / "maps"

@@ -7,13 +7,13 @@ import pyarrow as pa
 import pytest
 
 from tests.recordings.quality.bench import LOAD, Bench, columns
-from tsas_cli.errors import InputError
 from tsas_cli.recordings import pieces
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.manifest import Manifest, Rig, Run
 from tsas_cli.recordings.quality import RUN_CHECKS, check_dataset
 from tsas_cli.recordings.quality.stretches import OVERLAP
 from tsas_cli.recordings.writing import write_dataset
+from tsas_cli.support.errors import InputError
 
 PARTS = 4
 NOISY = {"rate_Hz": 200.0, "noise_mm": 0.02, "noise_N": 0.3}

@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 
 from tests.recordings.readers.matlab_files import save_5
-from tsas_cli.errors import InputError
 from tsas_cli.recordings.readers import apart as module
 from tsas_cli.recordings.readers import read
 from tsas_cli.recordings.readers.apart import in_another_process
 from tsas_cli.recordings.readers.options import ReadOptions
 from tsas_cli.recordings.readers.table import Table
+from tsas_cli.support.errors import InputError
 
 COLUMN = np.arange(100_000) / 7
 

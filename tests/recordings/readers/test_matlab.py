@@ -10,9 +10,9 @@ from tests.recordings.readers.matlab_files import (
     struct_array,
     text,
 )
-from tsas_cli.errors import InputError
 from tsas_cli.recordings.readers import matlab, read
 from tsas_cli.recordings.readers.options import ReadOptions
+from tsas_cli.support.errors import InputError
 
 T = np.arange(5) / 10
 F = np.arange(5.0) + 10

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from asammdf import MDF, Signal
 
-from tsas_cli.errors import InputError
 from tsas_cli.recordings.readers import mdf, read
 from tsas_cli.recordings.readers.options import ReadOptions
+from tsas_cli.support.errors import InputError
 
 T = np.arange(5) / 10
 F = np.arange(5.0) + 10

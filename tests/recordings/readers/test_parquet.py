@@ -3,10 +3,10 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from tsas_cli.errors import InputError
 from tsas_cli.recordings.guess.opening import open_file
 from tsas_cli.recordings.readers import batches, parquet, read
 from tsas_cli.recordings.readers.options import ReadOptions
+from tsas_cli.support.errors import InputError
 
 
 @pytest.fixture

@@ -3,8 +3,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tsas_cli.errors import InputError
 from tsas_cli.recordings.readers.timebase import on_one_clock
+from tsas_cli.support.errors import InputError
 
 FAST = np.arange(9) / 10
 

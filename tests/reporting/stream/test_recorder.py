@@ -7,10 +7,10 @@ import pytest
 from rerun.chunk import RrdReader
 
 from tests.reporting.stream.streams import read
-from tsas_cli.errors import InputError
 from tsas_cli.reporting.stream.recorder import Clock, to_file
 from tsas_cli.reporting.stream.recorder.layout import Layout, Plane, Rows, Series, Tabs, Text
 from tsas_cli.reporting.stream.recorder.recorder import ROWS
+from tsas_cli.support.errors import InputError
 
 TIME_S = np.array([0.0, 0.001, 0.3, 1234.5678912345])
 NS = [0, 1_000_000, 300_000_000, 1_234_567_891_234]

@@ -17,7 +17,6 @@ from tests.reporting.made_folders import (
     make_tracking,
 )
 from tests.reporting.stream.streams import make_diagnosed, read
-from tsas_cli.errors import InputError
 from tsas_cli.recordings.manifest import Manifest, Run
 from tsas_cli.recordings.run_files import RunColumns
 from tsas_cli.recordings.writing import write_dataset
@@ -26,6 +25,7 @@ from tsas_cli.reporting.phases import BY_KEY
 from tsas_cli.reporting.stream import write_stream
 from tsas_cli.reporting.stream.palette import colour
 from tsas_cli.reporting.stream.recorder.recorder import ROWS
+from tsas_cli.support.errors import InputError
 
 SAMPLES = 2 * ROWS + 100
 

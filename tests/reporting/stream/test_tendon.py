@@ -8,6 +8,7 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
+import tsas_cli as tsas
 from tests.reporting.made_folders import (
     columns,
     make_dataset,
@@ -18,7 +19,6 @@ from tests.reporting.made_folders import (
 from tests.reporting.stream.streams import read
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model, write_model
-from tsas_cli.identification.simulation import simulate_dataset
 from tsas_cli.physics.ends import Drive
 from tsas_cli.physics.response import simulate
 from tsas_cli.recordings.columns import nominal_name
@@ -208,7 +208,7 @@ def test_a_simulation_shows_its_one_model(made, tmp_path):
     dataset = read_dataset(made / "dataset")
     write_model(tmp_path / "m.toml", MODELS[EXTENDED], version="0.1.0", dataset={})
     out = tmp_path / "simulate"
-    simulate_dataset(dataset, tmp_path / "m.toml", "slip", out, nodes=20)
+    tsas.simulate(dataset, model=tmp_path / "m.toml", out=out, nodes=20)
     write_stream(read_inputs([out]), tmp_path / "s.rrd")
     paths = read(tmp_path / "s.rrd")
     assert "/run/a/tendon/space/simulated/curtain" in paths
@@ -223,7 +223,7 @@ def test_the_lumped_model_and_folders_without_a_model_show_none(made, tmp_path):
     assert view_in(make_simulation(dataset, tmp_path / "simulate")) is None
     assert view_in(make_diagnosis(dataset, tmp_path / "diagnose", "named")) is None
     out = tmp_path / "static"
-    simulate_dataset(read_dataset(dataset), None, "static", out)
+    tsas.simulate(dataset, dynamics="static", out=out)
     assert json.loads((out / "simulation.json").read_text())["dynamics"] == "static"
     assert view_in(out) is None
     assert view_in(dataset) is None
@@ -257,7 +257,7 @@ def test_runs_with_gaps_without_x_in_and_with_other_loads(tmp_path):
     write_dataset(tmp_path / "d", manifest, tables)
     write_model(tmp_path / "m.toml", MODELS[NOMINAL], version="0.1.0", dataset={})
     out = tmp_path / "s"
-    simulate_dataset(read_dataset(tmp_path / "d"), tmp_path / "m.toml", "slip", out, nodes=20)
+    tsas.simulate(tmp_path / "d", model=tmp_path / "m.toml", out=out, nodes=20)
     write_stream(read_inputs([out]), tmp_path / "s.rrd")
     paths = read(tmp_path / "s.rrd")
     strokes = {}

@@ -10,10 +10,10 @@ from pathlib import Path
 
 import pytest
 
-from tsas_cli.errors import InputError
 from tsas_cli.reporting.viewer import child
 from tsas_cli.reporting.viewer.child import viewer_child
 from tsas_cli.reporting.viewer.ports import LOOPBACK, free_ports
+from tsas_cli.support.errors import InputError
 
 SERVE = f"""#!{sys.executable}
 import signal, socket, subprocess, sys, time

@@ -10,14 +10,13 @@ from PIL import Image
 from rerun.experimental import ViewerClient
 
 from tests.reporting.made_folders import make_dataset
-from tsas_cli.errors import InputError
-from tsas_cli.identification.simulation import simulate_dataset
-from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.stream import write_stream
 from tsas_cli.reporting.viewer.child import viewer_child
 from tsas_cli.reporting.viewer.drawing import drawn_with
 from tsas_cli.reporting.viewer.ports import LOOPBACK, free_ports
+from tsas_cli.stages.simulate import simulate
+from tsas_cli.support.errors import InputError
 
 COLOURS = 100
 COLOURED = 0.005  # of the picture; around the views all is grey but a few signs
@@ -34,7 +33,7 @@ def viewer(tmp_path, monkeypatch):
         pytest.skip(f"the viewer cannot draw here: {error}")
     dataset = make_dataset(tmp_path / "dataset", ("a",), samples=2000)
     simulated = tmp_path / "simulated"
-    simulate_dataset(read_dataset(dataset), None, "slip", simulated)
+    simulate(dataset, out=simulated)
     stream = tmp_path / "stream.rrd"
     write_stream(read_inputs([simulated]), stream)
     (port,) = free_ports(1)

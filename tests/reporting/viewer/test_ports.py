@@ -2,8 +2,8 @@ import socket
 
 import pytest
 
-from tsas_cli.errors import InputError
 from tsas_cli.reporting.viewer.ports import LOOPBACK, free_ports
+from tsas_cli.support.errors import InputError
 
 
 def test_free_ports_are_free_and_no_two_are_the_same():

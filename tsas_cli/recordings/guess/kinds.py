@@ -3,9 +3,9 @@
 import re
 from typing import Literal
 
-from tsas_cli.errors import InputError
 from tsas_cli.recordings.guess.words import Quantity, words_of
 from tsas_cli.recordings.units import conversion, is_label, is_unit
+from tsas_cli.support.errors import InputError
 
 Kind = Literal[
     "time", "length", "force", "angle", "torque", "rotation", "temperature", "label", "other"

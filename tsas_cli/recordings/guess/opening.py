@@ -5,10 +5,10 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from tsas_cli.errors import InputError
 from tsas_cli.recordings.readers import names, read, tables
 from tsas_cli.recordings.readers.options import ReadOptions
 from tsas_cli.recordings.readers.table import Source, Table
+from tsas_cli.support.errors import InputError
 
 _TEXT = (".csv", ".tsv", ".txt", ".dat", ".asc")
 _PREAMBLE = 60  # lines above a table that are tried

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from tsas_cli.errors import InputError
 from tsas_cli.recordings.columns import has_input_and_output
 from tsas_cli.recordings.guess.channels import channels
 from tsas_cli.recordings.guess.clock import clock, like_a_clock
@@ -19,6 +18,7 @@ from tsas_cli.recordings.ingest_map import QUESTION
 from tsas_cli.recordings.readers import names
 from tsas_cli.recordings.readers.options import ReadOptions
 from tsas_cli.recordings.readers.table import Source
+from tsas_cli.support.errors import InputError
 
 _SPRING = 0.95  # the correlation of tension and displacement at the load, at least, of a spring
 

@@ -3,9 +3,9 @@
 from collections.abc import Iterator
 from typing import Any
 
-from tsas_cli import __version__
 from tsas_cli.recordings.guess.proposal import Proposal
 from tsas_cli.recordings.guess.text import map_text
+from tsas_cli.support import __version__
 
 
 def content(proposal: Proposal) -> dict[str, Any]:

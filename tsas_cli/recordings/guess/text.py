@@ -7,13 +7,13 @@ from typing import Any
 import tomlkit
 from tomlkit.items import Table
 
-from tsas_cli.errors import printable
 from tsas_cli.recordings.columns import BY_NAME, COLUMNS, INPUTS, OUTPUTS
 from tsas_cli.recordings.guess.file_name import conditions_in
 from tsas_cli.recordings.guess.proposal import Proposal
 from tsas_cli.recordings.guess.proposed import Proposed
 from tsas_cli.recordings.ingest_map import QUESTION
 from tsas_cli.recordings.manifest import Rig
+from tsas_cli.support.errors import printable
 
 _WIDTH = 96
 _CONDITIONS = {

@@ -2,7 +2,6 @@
 
 from dataclasses import asdict, dataclass
 
-from tsas_cli.errors import InputError
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Manifest, Run
 from tsas_cli.recordings.pieces import long_run
@@ -36,7 +35,8 @@ from tsas_cli.recordings.quality.finding import (
 from tsas_cli.recordings.quality.stretches import look, look_by_stretches
 from tsas_cli.recordings.quality.trial import Trial
 from tsas_cli.recordings.run_files import read_recording
-from tsas_cli.steps import SILENT, Steps
+from tsas_cli.support.errors import InputError
+from tsas_cli.support.steps import SILENT, Steps
 
 MANIFEST_CHECKS: tuple[Check[Manifest], ...] = (unknown_key.CHECK, manifest_unit.CHECK)
 RUN_CHECKS: tuple[Check[Trial], ...] = (

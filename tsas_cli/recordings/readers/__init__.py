@@ -6,11 +6,11 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from tsas_cli import limits
-from tsas_cli.errors import InputError
 from tsas_cli.recordings.readers.apart import in_another_process
 from tsas_cli.recordings.readers.options import ReadOptions
 from tsas_cli.recordings.readers.table import Source, Table, whole
+from tsas_cli.support import limits
+from tsas_cli.support.errors import InputError
 
 _READERS = {
     ".csv": "delimited",

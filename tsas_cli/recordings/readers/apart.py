@@ -17,8 +17,8 @@ from pathlib import Path
 from threading import Lock, Timer
 from typing import Any
 
-from tsas_cli.errors import InputError
 from tsas_cli.recordings.readers.table import damaged
+from tsas_cli.support.errors import InputError
 
 LEAST_S, BYTES_PER_S = 60.0, 1e6  # that a file of any size may take, and more for large ones
 LEAST_BYTES, BYTES_PER_BYTE = 2 << 30, 20  # of memory, likewise

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from tsas_cli.errors import InputError
 from tsas_cli.recordings.readers.options import ReadOptions
 from tsas_cli.recordings.readers.table import Floats, Source, Table, floats, resolve
 from tsas_cli.recordings.readers.timebase import TIME, on_one_clock
+from tsas_cli.support.errors import InputError
 
 
 def find_capture(content: Mapping[str, Any], path: Path) -> Mapping[str, Any] | None:

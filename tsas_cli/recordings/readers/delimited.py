@@ -8,8 +8,6 @@ import numpy as np
 import pyarrow as pa
 from pyarrow import csv
 
-from tsas_cli import limits
-from tsas_cli.errors import InputError
 from tsas_cli.recordings.arrow_columns import floats_from
 from tsas_cli.recordings.readers.layout import Layout, comment_text, detect, fields, number
 from tsas_cli.recordings.readers.options import ReadOptions
@@ -21,6 +19,8 @@ from tsas_cli.recordings.readers.table import (
     not_a_number,
     resolve,
 )
+from tsas_cli.support import limits
+from tsas_cli.support.errors import InputError
 
 _NULLS = frozenset(csv.ConvertOptions().null_values)
 

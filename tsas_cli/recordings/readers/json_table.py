@@ -4,10 +4,10 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from tsas_cli.errors import InputError, nearest
-from tsas_cli.files import read_json
 from tsas_cli.recordings.readers.options import ReadOptions
 from tsas_cli.recordings.readers.table import Source, Table, floats, resolve
+from tsas_cli.support.errors import InputError, nearest
+from tsas_cli.support.files import read_json
 
 
 def read(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Table:

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 
-from tsas_cli import limits
-from tsas_cli.errors import InputError
 from tsas_cli.recordings.readers.options import ReadOptions
+from tsas_cli.support import limits
+from tsas_cli.support.errors import InputError
 
 _SAMPLE = 200  # lines of the table that are looked at
 _LONG = 4 * limits.LINE  # characters of them, of which a few lines are enough

@@ -9,8 +9,6 @@ import numpy as np
 from scipy.io import loadmat
 from scipy.io.matlab import MatReadWarning
 
-from tsas_cli.errors import InputError, nearest
-from tsas_cli.memory import out_of_memory
 from tsas_cli.recordings.readers.controldesk import (
     captures,
     channel_names,
@@ -20,6 +18,8 @@ from tsas_cli.recordings.readers.controldesk import (
 from tsas_cli.recordings.readers.matlab_packed import check_unpacked
 from tsas_cli.recordings.readers.options import ReadOptions
 from tsas_cli.recordings.readers.table import Floats, Source, Table, damaged, floats, resolve
+from tsas_cli.support.errors import InputError, nearest
+from tsas_cli.support.memory import out_of_memory
 
 _HDF5 = b"\x89HDF\r\n\x1a\n"
 

@@ -11,13 +11,13 @@ from typing import Any
 
 import numpy as np
 
-from tsas_cli.errors import InputError
-from tsas_cli.memory import out_of_memory
 from tsas_cli.recordings.readers.mdf_blocks import check_blocks, check_claims
 from tsas_cli.recordings.readers.optional import optional
 from tsas_cli.recordings.readers.options import ReadOptions
 from tsas_cli.recordings.readers.table import Floats, Source, Table, damaged, floats, resolve
 from tsas_cli.recordings.readers.timebase import TIME, on_one_clock
+from tsas_cli.support.errors import InputError
+from tsas_cli.support.memory import out_of_memory
 
 _KINDS = {1: "a time", 2: "an angle", 3: "a distance", 4: "a count"}  # a master's `cn_sync_type`
 _MASTER_ELSEWHERE = 8  # of `cg_flags`: the master is that of another group

@@ -3,7 +3,7 @@
 from importlib import import_module
 from types import ModuleType
 
-from tsas_cli.errors import InputError
+from tsas_cli.support.errors import InputError
 
 
 def optional(module: str, *, extra: str) -> ModuleType:

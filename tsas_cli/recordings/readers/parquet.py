@@ -8,7 +8,6 @@ import numpy as np
 import numpy.typing as npt
 import pyarrow as pa
 
-from tsas_cli.memory import out_of_memory
 from tsas_cli.recordings.parquet_files import check_size, open_parquet
 from tsas_cli.recordings.readers.options import ReadOptions
 from tsas_cli.recordings.readers.table import (
@@ -21,6 +20,7 @@ from tsas_cli.recordings.readers.table import (
     in_batches,
     resolve,
 )
+from tsas_cli.support.memory import out_of_memory
 
 
 def batches(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Iterator[Table]:

@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 import pyarrow as pa
 
-from tsas_cli import limits
-from tsas_cli.errors import InputError, nearest
+from tsas_cli.support import limits
+from tsas_cli.support.errors import InputError, nearest
 
 Floats = npt.NDArray[np.float64]
 Source = str | int  # a column's name, or its number counted from 1

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from tsas_cli.errors import InputError
 from tsas_cli.recordings.readers.table import Floats, Source
+from tsas_cli.support.errors import InputError
 
 TIME = "time"  # how a map names the clock of a file whose channels share it
 

@@ -2,14 +2,14 @@
 
 from collections.abc import Iterator
 
-from tsas_cli.stage_files.closing import Closing
+from tsas_cli.records.closing import Closing
 
 SETTINGS = "settings.toml"
 
 
 def options(closing: Closing) -> Iterator[str]:
     """Yield the options; settings that are not the defaults as if they stood in `SETTINGS`."""
-    from tsas_cli.tracking.closing import CASES
+    from tsas_cli.tracking.cases import CASES
 
     names = [case.case for case in closing.cases]
     if set(names) <= {case.name for case in CASES}:

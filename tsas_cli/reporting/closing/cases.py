@@ -1,8 +1,8 @@
 """What was hidden in the plant, and what the diagnosis named."""
 
+from tsas_cli.records.closing import Case, Closing, Named
 from tsas_cli.reporting.content import Table
 from tsas_cli.reporting.numbers import as_printed
-from tsas_cli.stage_files.closing import Case, Closing, Named
 
 
 def table(closing: Closing) -> Table:

@@ -1,10 +1,10 @@
 """Where the errors of both sides are: mean and scatter over the signals, on the same axes."""
 
 from tsas_cli.comparing.compare import Comparison
+from tsas_cli.records.diagnosis import Bin
 from tsas_cli.reporting.content import Section
 from tsas_cli.reporting.diagnosis.maps import pictures
 from tsas_cli.reporting.figures.residual_map import Panel
-from tsas_cli.stage_files.diagnosis import Bin
 
 _WHAT = (
     "Measured minus simulated in units of the channel's noise, in the same bins for both: the mean "

@@ -2,9 +2,9 @@
 
 from collections.abc import Sequence
 
+from tsas_cli.records.diagnosis import Candidate, Cause, Diagnosis
 from tsas_cli.reporting.content import Section, Table
 from tsas_cli.reporting.numbers import fixed, plain
-from tsas_cli.stage_files.diagnosis import Candidate, Cause, Diagnosis
 
 _TITLE = "What was tried"
 _SHOWN = 10  # and what is named, and its rivals

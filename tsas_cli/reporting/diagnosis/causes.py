@@ -2,10 +2,10 @@
 
 from collections.abc import Iterator
 
+from tsas_cli.records.diagnosis import Cause, Diagnosis
 from tsas_cli.reporting.content import Section, Table, anchor
 from tsas_cli.reporting.diagnosis.words import EFFECT, heading_of, sentence_of, title_of, within
 from tsas_cli.reporting.numbers import ABSENT, plain, with_interval
-from tsas_cli.stage_files.diagnosis import Cause, Diagnosis
 
 
 def parts(diagnosis: Diagnosis) -> Iterator[Section]:

@@ -2,12 +2,12 @@
 
 from functools import partial
 
+from tsas_cli.records.diagnosis import Diagnosis, HeldOut
 from tsas_cli.reporting.channels import called
 from tsas_cli.reporting.content import Section, Table
 from tsas_cli.reporting.drawing import picture
 from tsas_cli.reporting.figures.gains import draw_gains, height_in
 from tsas_cli.reporting.numbers import ABSENT, plain
-from tsas_cli.stage_files.diagnosis import Diagnosis, HeldOut
 
 _BOUNDS = (
     "Noise alone leaves the noise floor. Best obtainable is what a flexible regression on the "

@@ -6,12 +6,12 @@ from functools import partial
 import numpy as np
 import numpy.typing as npt
 
+from tsas_cli.records.diagnosis import Diagnosis
 from tsas_cli.reporting.content import Section
 from tsas_cli.reporting.diagnosis.words import listed
 from tsas_cli.reporting.drawing import picture
 from tsas_cli.reporting.figures.likeness import draw_likeness, height_in
 from tsas_cli.reporting.numbers import plain
-from tsas_cli.stage_files.diagnosis import Diagnosis
 
 Floats = npt.NDArray[np.float64]
 

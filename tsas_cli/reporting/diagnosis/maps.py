@@ -4,12 +4,12 @@ import math
 from collections.abc import Iterator, Sequence
 from functools import partial
 
+from tsas_cli.records.diagnosis import Bin, Diagnosis
 from tsas_cli.reporting.content import Picture, Section
 from tsas_cli.reporting.diagnosis.words import listed, signal_at_axis, signal_in_words
 from tsas_cli.reporting.drawing import picture
 from tsas_cli.reporting.figures.residual_map import NAMES, Panel, draw_residual_map, height_in
 from tsas_cli.reporting.numbers import plain
-from tsas_cli.stage_files.diagnosis import Bin, Diagnosis
 
 _SEEN = 0.5  # in units of noise
 _SIGNALS = 4

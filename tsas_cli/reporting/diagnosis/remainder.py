@@ -2,10 +2,10 @@
 
 from collections.abc import Iterator
 
+from tsas_cli.records.diagnosis import Diagnosis
 from tsas_cli.reporting.content import Section
 from tsas_cli.reporting.diagnosis.words import listed, signal_in_words
 from tsas_cli.reporting.numbers import fixed, plain
-from tsas_cli.stage_files.diagnosis import Diagnosis
 
 
 def parts(diagnosis: Diagnosis) -> Iterator[Section]:

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 from tsas_cli.effects import EFFECTS
 from tsas_cli.recordings.columns import BY_NAME
+from tsas_cli.records.diagnosis import Cause
 from tsas_cli.reporting.channels import called
-from tsas_cli.stage_files.diagnosis import Cause
 
 EFFECT = {effect.name: effect for effect in EFFECTS}
 _SIGNALS = {  # in words, and the unit

@@ -4,8 +4,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from tsas_cli.records.closing import Row
 from tsas_cli.reporting.colours import STAND_IN
-from tsas_cli.stage_files.closing import Row
 
 
 @dataclass(frozen=True)

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from tsas_cli.records.drive import Curve, MeasuredResponse, Pole
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.decimation import kept_samples
 from tsas_cli.reporting.numbers import RAISED
-from tsas_cli.stage_files.drive import Curve, MeasuredResponse, Pole
 
 Floats = npt.NDArray[np.float64]
 

@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from typing import Any
 
+from tsas_cli.records.diagnosis import HeldOut
 from tsas_cli.reporting.colours import STAND_IN
-from tsas_cli.stage_files.diagnosis import HeldOut
 
 
 def height_in(channels: int) -> float:

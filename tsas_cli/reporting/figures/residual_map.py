@@ -4,9 +4,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from tsas_cli.records.diagnosis import Bin
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.phases import label_of
-from tsas_cli.stage_files.diagnosis import Bin
 
 NAMES = ("before", "after")  # of the two series of a panel
 _MOST_LABELS = 8

@@ -3,10 +3,10 @@
 from collections.abc import Sequence
 from typing import Any
 
+from tsas_cli.records.calibration import Stiffness
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.drawing import shortened
 from tsas_cli.reporting.phases import BY_KEY
-from tsas_cli.stage_files.calibration import Stiffness
 
 _NAME_LENGTH = 14
 

@@ -1,9 +1,9 @@
 """What a diagnosis is worth in tracking: hidden differences, named, and tracked with each model."""
 
+from tsas_cli.records.closing import Closing
 from tsas_cli.reporting.closing import cases, errors
 from tsas_cli.reporting.content import Section
 from tsas_cli.reporting.inputs import Inputs
-from tsas_cli.stage_files.closing import Closing
 
 _HOW = (
     "A plant differs from what the controller knows. It is recorded while it tracks with the model "

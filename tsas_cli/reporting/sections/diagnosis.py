@@ -1,9 +1,9 @@
 """What the diagnosis says: the verdict, its causes, the evidence, and what to measure next."""
 
+from tsas_cli.records.diagnosis import Diagnosis
 from tsas_cli.reporting.content import Section, missing
 from tsas_cli.reporting.diagnosis import candidates, causes, gains, likeness, maps, remainder
 from tsas_cli.reporting.inputs import Inputs
-from tsas_cli.stage_files.diagnosis import Diagnosis
 
 _TITLE = "Diagnosis"
 

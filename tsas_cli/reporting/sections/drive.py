@@ -5,12 +5,12 @@ from functools import partial
 
 import numpy as np
 
+from tsas_cli.records.drive import Drive, Pole, Response
 from tsas_cli.reporting.content import Picture, Section, Table
 from tsas_cli.reporting.drawing import picture
 from tsas_cli.reporting.figures.drive import draw_bode, draw_poles, draw_residuals
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import plain, spanned, with_interval
-from tsas_cli.stage_files.drive import Drive, Pole, Response
 
 _TITLE = "Drive"
 

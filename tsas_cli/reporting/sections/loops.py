@@ -7,6 +7,8 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.recordings.recording import Recording
+from tsas_cli.records.base import Segment
+from tsas_cli.records.calibration import Calibration
 from tsas_cli.reporting.channels import at_axis, in_words
 from tsas_cli.reporting.content import Group, Picture, Section
 from tsas_cli.reporting.drawing import picture
@@ -14,8 +16,6 @@ from tsas_cli.reporting.figures.loops import draw_loop
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import spanned
 from tsas_cli.reporting.phases import PHASES, phase_of_samples
-from tsas_cli.stage_files.base import Segment
-from tsas_cli.stage_files.calibration import Calibration
 
 _TENSIONS = ("f_in_N", "f_out_N")
 _X = "x_in_mm"

@@ -1,10 +1,10 @@
 """The model's parameters with their intervals, and what the recordings do not say."""
 
+from tsas_cli.records.base import Parameter
+from tsas_cli.records.calibration import Calibration
 from tsas_cli.reporting.content import Section, Table, missing
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import with_interval
-from tsas_cli.stage_files.base import Parameter
-from tsas_cli.stage_files.calibration import Calibration
 
 _TITLE = "Parameters"
 

@@ -6,10 +6,10 @@ from tsas_cli.recordings.columns import BY_NAME, TIME
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Manifest
 from tsas_cli.recordings.recording import Recording
+from tsas_cli.records.check import Check, Finding
 from tsas_cli.reporting.content import Section, Table
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import ABSENT, plain
-from tsas_cli.stage_files.check import Check, Finding
 
 _SEVERITIES = ("error", "warning", "note")
 _SHOWN = 4

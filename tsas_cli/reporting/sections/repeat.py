@@ -6,21 +6,21 @@ from collections.abc import Iterator, Mapping
 from importlib.metadata import version
 from pathlib import Path
 
-from tsas_cli import __version__
-from tsas_cli.files import sha256_of
 from tsas_cli.identification.model import IN_MEMORY
+from tsas_cli.records.base import ModelFile, OfDataset, StageFile
+from tsas_cli.records.calibration import Calibration
+from tsas_cli.records.check import Check
+from tsas_cli.records.closing import Closing
+from tsas_cli.records.diagnosis import Diagnosis
+from tsas_cli.records.drive import Drive
+from tsas_cli.records.simulation import Simulation
+from tsas_cli.records.tracking import Tracking
 from tsas_cli.reporting.closing import call as closing_call
 from tsas_cli.reporting.content import Section, Table
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.tracking import call
-from tsas_cli.stage_files.base import ModelFile, OfDataset, StageFile
-from tsas_cli.stage_files.calibration import Calibration
-from tsas_cli.stage_files.check import Check
-from tsas_cli.stage_files.closing import Closing
-from tsas_cli.stage_files.diagnosis import Diagnosis
-from tsas_cli.stage_files.drive import Drive
-from tsas_cli.stage_files.simulation import Simulation
-from tsas_cli.stage_files.tracking import Tracking
+from tsas_cli.support import __version__
+from tsas_cli.support.files import sha256_of
 
 _LIBRARIES = ("numpy", "scipy", "numba", "matplotlib")
 

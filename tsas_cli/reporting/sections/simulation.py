@@ -8,13 +8,13 @@ import numpy.typing as npt
 
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.recording import Recording
+from tsas_cli.records.simulation import Channel, Simulation
 from tsas_cli.reporting.channels import in_words
 from tsas_cli.reporting.content import Group, Picture, Section, Table, missing
 from tsas_cli.reporting.drawing import picture
 from tsas_cli.reporting.figures.comparison import draw_comparison
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import ABSENT, plain, spanned
-from tsas_cli.stage_files.simulation import Channel, Simulation
 
 Floats = npt.NDArray[np.float64]
 _TITLE = "Simulation and measurement"

@@ -2,13 +2,13 @@
 
 from functools import partial
 
+from tsas_cli.records.calibration import Calibration, Stiffness
 from tsas_cli.reporting.content import Picture, Section, Table, missing
 from tsas_cli.reporting.drawing import picture
 from tsas_cli.reporting.figures.stiffness import draw_stiffness, height_in
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import ABSENT, plain, with_interval
 from tsas_cli.reporting.phases import PHASES, label_of
-from tsas_cli.stage_files.calibration import Calibration, Stiffness
 
 _TITLE = "Stiffness by phase"
 _WHAT = (

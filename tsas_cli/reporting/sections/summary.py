@@ -4,17 +4,17 @@ from collections.abc import Iterator
 
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.manifest import Manifest
+from tsas_cli.records.calibration import Calibration
+from tsas_cli.records.check import Check
+from tsas_cli.records.closing import Closing
+from tsas_cli.records.simulation import Simulation
+from tsas_cli.records.tracking import Tracking
 from tsas_cli.reporting.channels import in_words
 from tsas_cli.reporting.closing import cases, errors
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import plain
 from tsas_cli.reporting.tracking.scores import best_and_worst
-from tsas_cli.stage_files.calibration import Calibration
-from tsas_cli.stage_files.check import Check
-from tsas_cli.stage_files.closing import Closing
-from tsas_cli.stage_files.simulation import Simulation
-from tsas_cli.stage_files.tracking import Tracking
-from tsas_cli.wording import count_of
+from tsas_cli.support.wording import count_of
 
 
 def sentences(inputs: Inputs) -> Iterator[str]:

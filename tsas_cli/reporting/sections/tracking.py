@@ -2,13 +2,13 @@
 
 import numpy as np
 
+from tsas_cli.records.base import ModelFile
+from tsas_cli.records.tracking import Tracking
 from tsas_cli.reporting.content import Section
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import plain
 from tsas_cli.reporting.tracking import adaptation, effort, forces, portraits, scores
 from tsas_cli.reporting.tracking.runs import WANTED, Condition, read_conditions
-from tsas_cli.stage_files.base import ModelFile
-from tsas_cli.stage_files.tracking import Tracking
 
 
 def section(inputs: Inputs) -> Section | None:

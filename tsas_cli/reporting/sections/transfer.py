@@ -1,9 +1,9 @@
 """How tension passes through the sheath in both directions, where both ends were measured."""
 
+from tsas_cli.records.calibration import Calibration
 from tsas_cli.reporting.content import Section, Table, missing
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import with_interval
-from tsas_cli.stage_files.calibration import Calibration
 
 _TITLE = "Tension passed on"
 _WHAT = (

@@ -6,12 +6,12 @@ from itertools import pairwise
 
 import numpy as np
 
+from tsas_cli.records.base import Segment
+from tsas_cli.records.check import Check, Finding
 from tsas_cli.reporting.stream.palette import colour
 from tsas_cli.reporting.stream.recorder import Recorder
 from tsas_cli.reporting.stream.recorder.paths import Entity
 from tsas_cli.reporting.stream.seen import X_IN, SeenRun
-from tsas_cli.stage_files.base import Segment
-from tsas_cli.stage_files.check import Check, Finding
 
 EVENTS, REVERSALS, FAULTS = "events", "reversals", "faults"
 _UP = {"contraction": True, "dead_band_up": True, "loosening": False, "dead_band_down": False}

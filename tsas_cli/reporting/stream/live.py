@@ -12,20 +12,20 @@ from typing import Any
 
 import pyarrow as pa
 
-from tsas_cli import __version__
-from tsas_cli.errors import InputError
-from tsas_cli.files import json_text
 from tsas_cli.identification.model import FILE as MODEL
 from tsas_cli.identification.model import Model, write_model
 from tsas_cli.recordings.dataset import Dataset, read_dataset
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.recordings.writing import write_answer, write_dataset
+from tsas_cli.records.simulation import Simulation
+from tsas_cli.records.tracking import Tracking
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.stream.recorder import Recorder, to_viewer
 from tsas_cli.reporting.stream.seen import SeenRun
 from tsas_cli.reporting.stream.stream import Stream, stream_of
-from tsas_cli.stage_files.simulation import Simulation
-from tsas_cli.stage_files.tracking import Tracking
+from tsas_cli.support import __version__
+from tsas_cli.support.errors import InputError
+from tsas_cli.support.files import json_text
 from tsas_cli.tracking.recorded import manifest
 from tsas_cli.tracking.settings import Settings
 

@@ -3,8 +3,8 @@
 import re
 from collections.abc import Iterator, Sequence
 
-from tsas_cli.errors import printable
 from tsas_cli.reporting.content import Section, Table
+from tsas_cli.support.errors import printable
 
 _SPECIAL = re.compile(r"([\\`*_{}\[\]<>()#+\-!|~&$^])")
 

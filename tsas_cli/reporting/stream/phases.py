@@ -4,12 +4,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from tsas_cli.records.base import Segment
 from tsas_cli.reporting.phases import BY_KEY, PHASES
 from tsas_cli.reporting.stream.palette import colour
 from tsas_cli.reporting.stream.recorder import Recorder
 from tsas_cli.reporting.stream.recorder.paths import Entity
 from tsas_cli.reporting.stream.seen import SeenRun
-from tsas_cli.stage_files.base import Segment
 
 ENDS = ""  # a state that ends the last one
 

@@ -11,16 +11,16 @@ from tsas_cli.recordings.columns import BY_NAME, TIME
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.run_files import RunColumns, open_run
+from tsas_cli.records.base import OfDataset, Segment
+from tsas_cli.records.calibration import Calibration
+from tsas_cli.records.check import Check
+from tsas_cli.records.diagnosis import Diagnosis
+from tsas_cli.records.simulation import Simulation
+from tsas_cli.records.tracking import Result, Tracking
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.stream.recorder import Clock, Times
 from tsas_cli.reporting.stream.recorder.paths import Entity
 from tsas_cli.reporting.stream.sources import Source, sources
-from tsas_cli.stage_files.base import OfDataset, Segment
-from tsas_cli.stage_files.calibration import Calibration
-from tsas_cli.stage_files.check import Check
-from tsas_cli.stage_files.diagnosis import Diagnosis
-from tsas_cli.stage_files.simulation import Simulation
-from tsas_cli.stage_files.tracking import Result, Tracking
 
 Floats = npt.NDArray[np.float64]
 

@@ -4,12 +4,12 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from tsas_cli.recordings.columns import nominal_name
+from tsas_cli.records.base import StageFile
+from tsas_cli.records.diagnosis import Diagnosis
+from tsas_cli.records.drive import Drive
+from tsas_cli.records.simulation import Simulation
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.which import EXTENDED, NOMINAL, SIMULATED, Which
-from tsas_cli.stage_files.base import StageFile
-from tsas_cli.stage_files.diagnosis import Diagnosis
-from tsas_cli.stage_files.drive import Drive
-from tsas_cli.stage_files.simulation import Simulation
 
 TENDON = frozenset({"f_in_N", "f_out_N", "x_out_mm"})
 DRIVE = frozenset({"x_in_mm"})

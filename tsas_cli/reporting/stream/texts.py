@@ -3,6 +3,12 @@
 from collections.abc import Iterator
 
 from tsas_cli.identification.model import read_model
+from tsas_cli.records.calibration import Calibration
+from tsas_cli.records.check import Check, Finding
+from tsas_cli.records.diagnosis import Cause, Diagnosis
+from tsas_cli.records.drive import Drive
+from tsas_cli.records.simulation import Simulation
+from tsas_cli.records.tracking import Tracking
 from tsas_cli.reporting.content import Section, Table
 from tsas_cli.reporting.diagnosis import candidates, causes, gains, remainder
 from tsas_cli.reporting.inputs import Inputs
@@ -10,12 +16,6 @@ from tsas_cli.reporting.numbers import plain, with_interval
 from tsas_cli.reporting.sections.drive import told_of
 from tsas_cli.reporting.stream.markdown import section_text
 from tsas_cli.reporting.tracking.scores import best_and_worst
-from tsas_cli.stage_files.calibration import Calibration
-from tsas_cli.stage_files.check import Check, Finding
-from tsas_cli.stage_files.diagnosis import Cause, Diagnosis
-from tsas_cli.stage_files.drive import Drive
-from tsas_cli.stage_files.simulation import Simulation
-from tsas_cli.stage_files.tracking import Tracking
 
 EXTENDED = "model-extended.toml"
 

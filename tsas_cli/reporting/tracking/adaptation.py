@@ -5,12 +5,12 @@ from functools import partial
 
 import numpy as np
 
+from tsas_cli.records.tracking import ADAPTIVE, Adaptive
 from tsas_cli.reporting.content import Picture, Section, Table
 from tsas_cli.reporting.drawing import picture
 from tsas_cli.reporting.figures.adaptation import Estimate, draw_estimates
 from tsas_cli.reporting.numbers import plain
 from tsas_cli.reporting.tracking.runs import ESTIMATES, Condition, Followed
-from tsas_cli.stage_files.tracking import ADAPTIVE, Adaptive
 
 _WHAT = (
     "The estimates φ̂ of the drive's parameters (Yang 2025, Eq. 44), which stay between the dashed "

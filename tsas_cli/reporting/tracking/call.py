@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from tsas_cli.stage_files.tracking import Tracking
+from tsas_cli.records.tracking import Tracking
 
 
 def options(tracking: Tracking) -> Iterator[str]:

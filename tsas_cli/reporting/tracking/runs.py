@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from tsas_cli.records.tracking import ADAPTIVE, Change, Result, Tracking
 from tsas_cli.reporting.inputs import Inputs
-from tsas_cli.stage_files.tracking import ADAPTIVE, Change, Result, Tracking
 
 Floats = npt.NDArray[np.float64]
 WANTED, TRUE, ASKED = "f_out_ref_N", "f_out_true_N", "motor_speed_rpm"

@@ -1,8 +1,8 @@
 """The scores of every controller under every condition, with their spread over the seeds."""
 
+from tsas_cli.records.tracking import Spread, Tracking
 from tsas_cli.reporting.content import Table
 from tsas_cli.reporting.numbers import ABSENT, with_spread
-from tsas_cli.stage_files.tracking import Spread, Tracking
 
 _COLUMNS = (
     ("RMSE [N]", "rmse_N"),

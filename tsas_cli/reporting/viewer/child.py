@@ -13,9 +13,9 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from typing import IO
 
-from tsas_cli.errors import InputError
 from tsas_cli.reporting.viewer.ports import LOOPBACK
 from tsas_cli.reporting.viewer.program import program
+from tsas_cli.support.errors import InputError
 
 START_S = 30.0  # a program of 300 MB, read from a slow disk
 END_S = 3.0

@@ -6,9 +6,9 @@ import subprocess
 import tempfile
 from pathlib import Path
 
-from tsas_cli.errors import InputError
 from tsas_cli.reporting.viewer.ports import LOOPBACK, free_ports
 from tsas_cli.reporting.viewer.program import program
+from tsas_cli.support.errors import InputError
 
 LONGEST_S = 10.0
 SIZE = "64x64"

@@ -3,7 +3,7 @@
 import socket
 from contextlib import ExitStack
 
-from tsas_cli.errors import InputError
+from tsas_cli.support.errors import InputError
 
 LOOPBACK = "127.0.0.1"
 LAST = 65535

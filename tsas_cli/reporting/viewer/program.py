@@ -7,7 +7,7 @@ import sys
 from importlib.util import find_spec
 from pathlib import Path
 
-from tsas_cli.errors import InputError
+from tsas_cli.support.errors import InputError
 
 NAMES = {"win32": "rerun.exe", "darwin": "Rerun.app/Contents/MacOS/Rerun"}
 

@@ -5,10 +5,10 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
-from tsas_cli.errors import InputError
 from tsas_cli.recordings.storage import Place
 from tsas_cli.reporting.stream import FILE
 from tsas_cli.reporting.stream.recorder.reading import is_finished
+from tsas_cli.support.errors import InputError
 
 
 @contextmanager

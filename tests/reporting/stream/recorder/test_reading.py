@@ -5,8 +5,8 @@ import sys
 import pytest
 
 from tests.reporting.viewer.streams import make_stream
-from tsas_cli.errors import InputError
 from tsas_cli.reporting.stream.recorder.reading import is_finished
+from tsas_cli.support.errors import InputError
 
 
 @pytest.fixture(scope="module")

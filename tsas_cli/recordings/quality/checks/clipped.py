@@ -13,7 +13,7 @@ import numpy as np
 from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
 from tsas_cli.recordings.quality.samples import plateaus
 from tsas_cli.recordings.quality.trial import Trial
-from tsas_cli.wording import count_of
+from tsas_cli.support.wording import count_of
 
 _FEWEST_ROWS = 5
 _PASSED = 0.05

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
 from tsas_cli.recordings.quality.trial import Trial
-from tsas_cli.wording import count_of
+from tsas_cli.support.wording import count_of
 
 _ENOUGH = 3
 

@@ -12,7 +12,7 @@ from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
 from tsas_cli.recordings.quality.samples import Booleans
 from tsas_cli.recordings.quality.trial import Trial
-from tsas_cli.wording import count_of
+from tsas_cli.support.wording import count_of
 
 _COMMON = 0.05  # long intervals that are as frequent as this are jitter
 _REMEDY = "look for lost samples at the source; the stages leave the gap out"

@@ -15,7 +15,7 @@ import numpy as np
 from tsas_cli.recordings.columns import largest
 from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
 from tsas_cli.recordings.quality.trial import Trial
-from tsas_cli.wording import count_of
+from tsas_cli.support.wording import count_of
 
 
 def find(trial: Trial) -> Iterator[Remark | CannotTell]:

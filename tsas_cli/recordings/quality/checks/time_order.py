@@ -8,10 +8,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from tsas_cli.limits import LONGEST_STEP_S, SHORTEST_STEP_S
 from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
 from tsas_cli.recordings.quality.samples import Booleans
 from tsas_cli.recordings.quality.trial import Trial
+from tsas_cli.support.limits import LONGEST_STEP_S, SHORTEST_STEP_S
 
 
 def find(trial: Trial) -> Iterator[Remark | CannotTell]:

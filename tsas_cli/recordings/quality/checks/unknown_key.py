@@ -5,9 +5,9 @@ Such a key travels along unused. A misspelt one is a value that nobody reads.
 
 from collections.abc import Iterator
 
-from tsas_cli.errors import printable
 from tsas_cli.recordings.manifest import Manifest
 from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
+from tsas_cli.support.errors import printable
 
 
 def find(manifest: Manifest) -> Iterator[Remark | CannotTell]:

@@ -10,11 +10,11 @@ from threading import Thread
 
 import rerun as rr
 
-from tsas_cli.errors import InputError
-from tsas_cli.files import new_file
 from tsas_cli.reporting.stream.recorder.layout import Layout
 from tsas_cli.reporting.stream.recorder.reading import is_finished
 from tsas_cli.reporting.stream.recorder.recorder import Recorder
+from tsas_cli.support.errors import InputError
+from tsas_cli.support.files import new_file
 
 PATIENCE_S = 10.0  # in which a file grows, or is whole
 

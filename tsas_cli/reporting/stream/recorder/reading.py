@@ -5,7 +5,7 @@ from pathlib import Path
 
 from rerun.chunk import RrdReader
 
-from tsas_cli.errors import InputError
+from tsas_cli.support.errors import InputError
 
 
 def is_finished(path: Path) -> bool:

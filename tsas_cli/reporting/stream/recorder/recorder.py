@@ -11,11 +11,11 @@ import numpy as np
 import numpy.typing as npt
 import rerun as rr
 
-from tsas_cli.errors import InputError
 from tsas_cli.reporting.stream.recorder.blueprint import blueprint_of
 from tsas_cli.reporting.stream.recorder.clock import Times
 from tsas_cli.reporting.stream.recorder.layout import Layout
 from tsas_cli.reporting.stream.recorder.paths import Entity, path_of
+from tsas_cli.support.errors import InputError
 
 Floats = npt.NDArray[np.float64]
 Colour = int  # 0xRRGGBBAA

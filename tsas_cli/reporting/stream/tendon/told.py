@@ -13,12 +13,12 @@ from tsas_cli.recordings.columns import nominal_name
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.run_files import read_recording
+from tsas_cli.records.base import StageFile
+from tsas_cli.records.diagnosis import EXTENDED_MODEL, NOMINAL_MODEL, Diagnosis
+from tsas_cli.records.simulation import Simulation
 from tsas_cli.reporting.stream.seen import X_IN, SeenRun
 from tsas_cli.reporting.tendon.followed import Followed, follow
 from tsas_cli.reporting.which import EXTENDED, NOMINAL, SIMULATED, Which
-from tsas_cli.stage_files.base import StageFile
-from tsas_cli.stage_files.diagnosis import Diagnosis
-from tsas_cli.stage_files.simulation import Simulation
 
 F_IN, F_OUT = "f_in_N", "f_out_N"
 
@@ -91,10 +91,7 @@ def tendons_of(run: SeenRun) -> dict[Which, Followed]:
 
 
 def _file(which: Which) -> str:
-    from tsas_cli.diagnosis.diagnose_stage import EXTENDED as EXTENDED_FILE
-    from tsas_cli.diagnosis.diagnose_stage import NOMINAL as NOMINAL_FILE
-
-    return {NOMINAL: NOMINAL_FILE, EXTENDED: EXTENDED_FILE, SIMULATED: FILE}[which]
+    return {NOMINAL: NOMINAL_MODEL, EXTENDED: EXTENDED_MODEL, SIMULATED: FILE}[which]
 
 
 def _drive(run: SeenRun, stage: type[StageFile]) -> Drive:

@@ -1,0 +1,55 @@
+import dataclasses
+
+import pytest
+
+from tsas_cli.drive.file import UNITS, IdentifiedDrive, read_drive, write_drive
+from tsas_cli.identification.estimate import Estimate
+from tsas_cli.support.errors import InputError
+
+
+def written(path, **values):
+    estimates = {n: Estimate(n, v, UNITS[n], "fitted", None, 0.1) for n, v in values.items()}
+    write_drive(path, estimates, {"name": "integrator"}, version="0", dataset={"name": "d"})
+    return path
+
+
+def test_what_is_written_is_read(tmp_path):
+    path = written(
+        tmp_path / "drive.toml",
+        gain_mm_per_s_rpm=0.02,
+        motor_lag_s=0.002,
+        natural_frequency_Hz=88.0,
+    )
+    drive = read_drive(path)
+    assert drive == read_drive(tmp_path)
+    assert (drive.gain_mm_per_s_rpm, drive.motor_lag_s) == (0.02, 0.002)
+    assert drive.kV_rpm_s_per_mm == pytest.approx(50.0)
+    assert drive.inertia_N_mm_s2 is None
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        drive.motor_lag_s = 1.0
+
+
+def test_every_number_of_a_drive_has_a_unit():
+    assert set(IdentifiedDrive.__dataclass_fields__) <= set(UNITS)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ('unit = "mm/(s rpm)"', 'unit = "mm/s"', "expected the unit 'mm/(s rpm)'"),
+        ("[parameters.gain_mm_per_s_rpm]", "[parameters.gain_mm]", "did you mean"),
+        ("value = 0.02", "value = -0.02", "a positive number"),
+        ("value = 0.02", "value = nan", "a finite number"),
+        ('kind = "drive"', 'kind = "model"', "kind"),
+        ("format = 1", "format = 2", "format"),
+        ("[parameters.gain_mm_per_s_rpm]", "[parameters.kV_rpm_s_per_mm]", "unit"),
+    ],
+)
+def test_what_does_not_fit_is_refused(tmp_path, old, new, said):
+    path = written(tmp_path / "drive.toml", gain_mm_per_s_rpm=0.02)
+    text = path.read_text(encoding="utf-8")
+    assert old in text
+    path.write_text(text.replace(old, new), encoding="utf-8")
+    with pytest.raises(InputError, match=r"drive\.toml") as error:
+        read_drive(path)
+    assert said in error.value.line()

@@ -1,0 +1,253 @@
+"""Drives fitted to what the independent equations of `physics/drive.py` answer, without noise."""
+
+import math
+
+import numpy as np
+import pytest
+
+from tsas_cli.drive.fit import (
+    GAIN,
+    LOG_SCALE,
+    DriveBench,
+    quantities_of,
+    replace_defaults,
+    response_at,
+)
+from tsas_cli.drive.frequency_response import FrequencyResponse, frequency_response
+from tsas_cli.drive.runs import DriveRun
+from tsas_cli.drive.transfer_function import bode_curve, poles
+from tsas_cli.numerics.linear_response import sampled
+from tsas_cli.physics.drive import DriveValues, gear_response, linear_response
+
+STEP_S = 5e-3
+TIME_S = STEP_S * np.arange(2001)
+NOISE_MM = 1e-3
+TRUTH = DriveValues(
+    gain_mm_per_s_rpm=0.0236,
+    motor_lag_s=0.012,
+    delay_s=0.02,
+    leak_per_s=0.3,
+    natural_frequency_Hz=9.0,
+    damping_ratio=0.15,
+)
+
+
+def speed(kind):
+    if kind == "chirp":
+        return 900.0 * np.sin(2.0 * np.pi * (0.3 * TIME_S + 0.5 * 2.0 * TIME_S**2))
+    return 300.0 * np.sign(np.sin(2.1 * TIME_S)) + 100.0 * np.sin(13.0 * TIME_S)
+
+
+def driven(values, kind="chirp", *, at=1.7, noise_mm=NOISE_MM, at_rest=True):
+    u = sampled(STEP_S, speed(kind), "first")
+    x = at + linear_response(u, values) + gear_response(u, values, at)
+    return DriveRun(kind, u, x, noise_mm, at_rest)
+
+
+def bench(values, stated_Hz=None):
+    runs = [driven(values), driven(values, "steps")]
+    return DriveBench(runs, frequency_response(runs), stated_Hz)
+
+
+def response_by_hand(values, jw):
+    lag = jw * values.motor_lag_s + 1.0
+    w = 2.0 * math.pi * values.natural_frequency_Hz
+    spring = (jw / w) ** 2 + 2.0 * values.damping_ratio * jw / w + 1.0 if w else 1.0
+    late = np.exp(-jw * values.delay_s)
+    return values.gain_mm_per_s_rpm * late / ((jw + values.leak_per_s) * lag * spring)
+
+
+JW = 2j * math.pi * np.geomspace(0.1, 60.0, 40)
+
+
+def test_the_response_is_that_of_the_equations():
+    np.testing.assert_allclose(response_at(TRUTH, JW), response_by_hand(TRUTH, JW), rtol=1e-12)
+    magnitude, phase = bode_curve(TRUTH, JW.imag / (2.0 * math.pi))
+    exact = response_by_hand(TRUTH, JW)
+    np.testing.assert_allclose(magnitude, np.abs(exact), rtol=1e-9)
+    turns = (phase - np.degrees(np.angle(exact))) / 360.0
+    np.testing.assert_allclose(turns, np.round(turns), atol=1e-6)
+    assert np.all(np.diff(phase) < 0.0)
+    w = 2.0 * math.pi * 9.0
+    swinging = complex(-0.15 * w, w * math.sqrt(1.0 - 0.15**2))
+    expected = [-0.3, -1.0 / 0.012, swinging, swinging.conjugate()]
+    np.testing.assert_allclose(np.sort_complex(poles(TRUTH)), np.sort_complex(expected), rtol=1e-6)
+
+
+@pytest.mark.parametrize(
+    "terms",
+    [
+        (),
+        ("lag",),
+        ("delay",),
+        ("leak", "lag"),
+        ("spring", "delay"),
+        ("spring", "leak"),
+    ],
+)
+def test_linear_terms_are_found_again(terms):
+    kept = {q.name: getattr(TRUTH, q.name) for q in quantities_of(terms)}
+    truth = DriveValues(**kept)
+    stand = bench(truth)
+    simpler = [stand.fit(set(terms) - {"leak"})] if "leak" in terms else []  # as a search goes
+    found = stand.fit(terms, simpler)
+    assert found.mean_square < 1e-3
+    for name, value in kept.items():
+        assert getattr(found.values, name) == pytest.approx(value, rel=2e-3), name
+    assert found.solution.converged
+
+
+def test_ripple_and_play_are_found_again():
+    truth = DriveValues(0.0236, sine_mm=0.03, cosine_mm=-0.02, play_mm=0.08)
+    stand = bench(truth)
+    plain = stand.fit(())
+    found = stand.fit(("ripple", "play"), [plain])
+    assert plain.mean_square > 50.0
+    assert found.mean_square < 0.3
+    assert found.values.sine_mm == pytest.approx(0.03, abs=1e-3)
+    assert found.values.cosine_mm == pytest.approx(-0.02, abs=1e-3)
+    assert found.values.play_mm == pytest.approx(0.08, abs=4e-3)
+
+
+def test_a_richer_set_fits_no_worse_than_what_it_starts_from():
+    stand = bench(TRUTH)
+    simpler = stand.fit(("spring",))
+    richer = stand.fit(("spring", "leak"), [simpler])
+    assert richer.mean_square <= simpler.mean_square
+
+
+def test_the_stated_frequency_is_taken_for_granted():
+    truth = TRUTH._replace(motor_lag_s=0.0, delay_s=0.0, leak_per_s=0.0, damping_ratio=0.4)
+    found = bench(truth, stated_Hz=9.0).fit(("stated",))
+    assert found.values.natural_frequency_Hz == 9.0
+    assert found.values.damping_ratio == pytest.approx(0.4, rel=1e-2)
+    assert [u.name for u in found.unknowns] == ["gain_mm_per_s_rpm", "damping_ratio"]
+
+
+def test_positive_numbers_are_sought_by_their_logarithm():
+    found = bench(TRUTH).fit(("lag", "spring"))
+    by_name = {u.name: u for u in found.unknowns}
+    assert by_name["natural_frequency_Hz"].scale == LOG_SCALE
+    assert by_name["natural_frequency_Hz"].upper == pytest.approx(math.log(2e3))
+    assert by_name["motor_lag_s"].scale == 1.0
+    assert by_name["motor_lag_s"].lower == 0.0
+
+
+def test_a_run_is_simulated_from_where_it_fits_best():
+    truth = TRUTH._replace(motor_lag_s=0.0)
+    stand = bench(truth)
+    np.testing.assert_allclose(stand.simulated(0, truth), stand.runs[0].x_in, atol=1e-9)
+    off = truth._replace(gain_mm_per_s_rpm=0.03)
+    simulated = stand.simulated(1, off)
+    assert np.mean(simulated - stand.runs[1].x_in) == pytest.approx(0.0, abs=1e-9)
+    moved = linear_response(stand.runs[1].u, off)
+    np.testing.assert_allclose(simulated - moved, (simulated - moved)[0], atol=1e-9)
+
+
+def test_the_motion_that_a_run_begins_with_is_no_error():
+    """A leaking drive that was let go of at 2 mm comes back by itself."""
+    truth = DriveValues(0.0236, leak_per_s=0.8)
+    run = driven(truth, at_rest=False)
+    run = DriveRun(run.id, run.u, run.x_in + 2.0 * np.exp(-0.8 * TIME_S), NOISE_MM, at_rest=False)
+    begun = DriveBench([run], frequency_response([run]))
+    resting = DriveRun(run.id, run.u, run.x_in, NOISE_MM, at_rest=True)
+    at_rest = DriveBench([resting], begun.seen)
+    assert np.abs(begun.simulated(0, truth) - run.x_in).max() < 1e-8
+    assert np.abs(at_rest.simulated(0, truth) - run.x_in).max() > 0.5
+
+
+def test_the_first_gain_is_the_way_per_turn_the_less_noisy_run_counting_most():
+    two = [
+        driven(DriveValues(0.02), noise_mm=1e-3),
+        driven(DriveValues(0.03), noise_mm=1e-1),
+    ]
+    start = DriveBench(two, frequency_response(two)).gain
+    turns = [run.u.integral - run.u.integral.mean() for run in two]
+    weights = np.array([turn @ turn for turn in turns]) / np.array([1e-6, 1e-2])
+    assert start == pytest.approx(weights @ [0.02, 0.03] / weights.sum(), rel=1e-9)
+    assert 0.02 < start < 0.0201
+    backwards = [driven(DriveValues(-0.02))]
+    assert DriveBench(backwards, frequency_response(backwards)).gain == GAIN.lower
+
+
+def test_the_numbers_of_a_set_are_in_a_fixed_order_the_gain_first():
+    names = [q.name for q in quantities_of(("play", "spring", "lag"))]
+    assert names[:2] == ["gain_mm_per_s_rpm", "motor_lag_s"]
+    assert names[2:] == ["natural_frequency_Hz", "damping_ratio", "play_mm"]
+    usual = replace_defaults(("spring",), 0.5)
+    assert usual.gain_mm_per_s_rpm == 0.5
+    assert usual.natural_frequency_Hz > 0.0
+    assert usual.motor_lag_s == 0.0
+
+
+def test_the_measured_response_is_that_of_the_drive_where_it_is_excited():
+    runs = [driven(TRUTH), driven(TRUTH, "steps")]
+    seen = frequency_response(runs)
+    assert seen.band is not None
+    assert seen.band[0] < 2.5
+    assert 15.0 < seen.band[1] < 40.0
+    jw = 2j * math.pi * seen.frequency_Hz
+    exact = response_by_hand(TRUTH, jw)
+    chosen = seen.excited & (seen.frequency_Hz > 2.0) & (seen.frequency_Hz < 15.0)
+    off = np.abs(seen.response[chosen] / exact[chosen] - 1.0)
+    assert chosen.sum() > 8
+    assert np.median(off) < 0.06
+    assert np.all((seen.coherence >= 0.0) & (seen.coherence <= 1.0 + 1e-9))
+    assert np.all(seen.coherence[seen.excited] > 0.8)
+
+
+def test_noise_that_has_nothing_to_do_with_the_motor_is_no_band():
+    run = driven(TRUTH)
+    noise = np.random.default_rng(4).standard_normal(TIME_S.size)
+    seen = frequency_response([DriveRun("n", run.u, noise, 1.0, at_rest=True)])
+    assert seen.band is None or seen.excited.sum() < 4
+
+
+def response_of(values, frequency_Hz, wrong=()):
+    response = response_by_hand(values, 2j * math.pi * frequency_Hz)
+    for k in wrong:
+        response[k] *= -6.0
+    told = np.ones(frequency_Hz.size, dtype=bool)
+    return FrequencyResponse(frequency_Hz, response, np.ones(frequency_Hz.size), told)
+
+
+@pytest.mark.parametrize("wrong", [(), (5,), (5, 30)])
+def test_a_few_wrong_points_of_the_response_do_not_lead_the_start_astray(wrong):
+    truth = DriveValues(0.0236, delay_s=0.02, natural_frequency_Hz=9.0, damping_ratio=0.15)
+    seen = response_of(truth, np.linspace(0.5, 20.0, 40), wrong)
+    start = DriveBench([driven(truth)], seen)._from_response(frozenset(("delay", "spring")))
+    for name in ("gain_mm_per_s_rpm", "natural_frequency_Hz", "damping_ratio", "delay_s"):
+        assert getattr(start, name) == pytest.approx(getattr(truth, name), rel=0.1), name
+
+
+def test_with_too_few_points_the_start_is_read_off_them():
+    """At the resonance the response is 1/(2ζ) as high; what is late is a phase that grows."""
+    truth = DriveValues(0.0236, natural_frequency_Hz=9.0, damping_ratio=0.15)
+    seen = response_of(truth, np.array([3.0, 8.9, 14.0]))
+    start = DriveBench([driven(truth)], seen)._from_response(frozenset(("spring",)))
+    assert start.natural_frequency_Hz == pytest.approx(8.9)
+    assert start.damping_ratio == pytest.approx(0.15, rel=0.05)
+    late = DriveValues(0.0236, delay_s=0.03)
+    seen = response_of(late, np.array([1.0, 2.0, 4.0]))
+    start = DriveBench([driven(late)], seen)._from_response(frozenset(("delay", "lag")))
+    assert start.delay_s == start.motor_lag_s == pytest.approx(0.015)
+    two = response_of(late, np.array([1.0, 2.0]))
+    usual = DriveBench([driven(late)], two)._from_response(frozenset(("delay",)))
+    assert usual.delay_s == replace_defaults(("delay",), 0.02).delay_s
+
+
+def test_longer_runs_count_for_more_of_the_response():
+    """The same speeds with two gains, for three times as long with the lower one."""
+
+    def run(gain, size):
+        t = STEP_S * np.arange(size)
+        values = 300.0 * sum(np.sin(2.0 * np.pi * f * t + f) for f in (1.0, 2.0, 3.0, 5.0, 8.0))
+        u = sampled(STEP_S, values, "first")
+        return DriveRun("r", u, linear_response(u, DriveValues(gain)), NOISE_MM, at_rest=True)
+
+    short, long = run(0.04, 2001), run(0.02, 6001)
+    seen = frequency_response([short, long])
+    at = np.argmin(np.abs(seen.frequency_Hz - 3.0))
+    mean = (0.04 * 10.0 + 0.02 * 30.0) / 40.0
+    exact = mean / (2.0 * math.pi * 3.0)
+    assert np.abs(seen.response[at]) == pytest.approx(exact, rel=0.03)

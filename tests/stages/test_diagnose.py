@@ -1,0 +1,75 @@
+"""What the stage writes beside the diagnosis: both models, and what they answer."""
+
+from itertools import pairwise
+
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+
+from tsas_cli.diagnosis.diagnose import Diagnosis
+from tsas_cli.identification.estimate import Estimate
+from tsas_cli.identification.model import Model, read_model
+from tsas_cli.recordings.dataset import read_dataset
+from tsas_cli.stages import diagnose as diagnose_stage
+from tsas_studies.challenge.rig.recordings import Run, conditions, record, write_dataset
+from tsas_studies.challenge.rig.sensors import Sensors
+from tsas_studies.challenge.rig.tendon import Rig
+
+TRUE = Rig(proximal_length_mm=150.0)
+LENGTH = Estimate("free_tendon.proximal_length_mm", 150.0, "mm", "fitted")
+
+
+@pytest.fixture(scope="module")
+def diagnosed(tmp_path_factory):
+    """A run whose recordings are known to need a free length, which the nominal model lacks."""
+    folder = tmp_path_factory.mktemp("diagnosed")
+    recorded = record(TRUE, sensors=Sensors(rate_Hz=200.0))
+    dataset = read_dataset(
+        write_dataset(folder / "dataset", [Run("a", recorded, conditions(TRUE))])
+    )
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(
+            diagnose_stage,
+            "diagnose_runs",
+            lambda _, stated, __, ___: Diagnosis(
+                "named", "known", model=Model((LENGTH,)).over(stated), nominal=stated
+            ),
+        )
+        summary = diagnose_stage.diagnose(dataset, out=folder / "out")
+    (recording,) = dataset
+    return recording, summary, folder / "out"
+
+
+def test_each_model_answers_under_its_own_name(diagnosed):
+    recording, _, out = diagnosed
+    table = pq.read_table(out / "runs" / "a.parquet")
+    assert (table.column("time_s").to_numpy() == recording.time_s).all()
+    rmse = {
+        name: np.sqrt(np.mean((recording.columns["f_in_N"] - table.column(name).to_numpy()) ** 2))
+        for name in ("f_in_N", "f_in_nominal_N")
+    }
+    assert rmse["f_in_N"] < 0.2
+    assert rmse["f_in_nominal_N"] > 0.8
+    others = {"x_in_mm", "f_out_N", "x_out_mm", "f_out_nominal_N", "x_out_nominal_mm"}
+    assert others <= set(table.column_names)
+    cleaned = table.column("x_in_mm").to_numpy() - recording.columns["x_in_mm"]
+    assert 0.0 < np.abs(cleaned).max() < 0.05
+
+
+def test_the_models_differ_by_what_is_named(diagnosed):
+    *_, out = diagnosed
+    extended, nominal = (
+        {(e.name, e.run): e.value for e in read_model(out / name).estimates}
+        for name in ("model-extended.toml", "model-nominal.toml")
+    )
+    assert extended.keys() - nominal.keys() == {(LENGTH.name, None)}
+    assert nominal.items() <= extended.items()
+
+
+def test_the_phases_follow_each_other_over_the_whole_run(diagnosed):
+    recording, result, _ = diagnosed
+    segments = result.summary["segments"]["a"]
+    assert segments[0]["start_s"] == recording.time_s[0]
+    assert segments[-1]["end_s"] == recording.time_s[-1]
+    assert all(a["end_s"] == b["start_s"] for a, b in pairwise(segments))
+    assert {"contraction", "loosening", "dead_band_down"} <= {s["phase"] for s in segments}

@@ -1,0 +1,111 @@
+"""One task of a sweep: what is there whole counts as done, and half of it is done again."""
+
+import json
+import shutil
+
+import pytest
+
+from tsas_cli.stages.swept import WORK, options_of
+from tsas_cli.support.files import sha256_of
+from tsas_cli.sweeping.answer import called
+from tsas_cli.sweeping.folder import sweep_folder, what_is_done
+from tsas_cli.sweeping.plan import read_plan
+from tsas_cli.sweeping.tasks import tasks_of
+from tsas_cli.sweeping.versions import ONE_THREAD
+
+
+@pytest.fixture
+def begun(tmp_path, dataset, monkeypatch):
+    """Return two tasks of a sweep, and the folder for them."""
+    for name, value in ONE_THREAD.items():
+        monkeypatch.setenv(name, value)  # as a task sets it
+    shutil.copytree(dataset, tmp_path / "a")
+    shutil.copytree(dataset, tmp_path / "b")
+    plan, _ = read_plan({"stage": "check", "datasets": ["a", "b"]})
+    with sweep_folder(tmp_path / "out") as folder:
+        yield *tasks_of(plan, tmp_path, options_of("check")), folder
+
+
+def answer(task, folder, *, force=False):
+    return json.loads(called(WORK, task.text(folder, force=force)))
+
+
+def written(folder):
+    return {path.name: sha256_of(path) for path in folder.iterdir()}
+
+
+def test_a_task_whose_worker_died_before_it_answered_is_done(begun):
+    task, _, folder = begun
+    first, place = answer(task, folder), (folder / task.key).stat().st_ino
+    again = answer(task, folder)
+    assert (again["state"], again["results"]) == ("done", first["results"])
+    assert (folder / task.key).stat().st_ino == place
+    assert answer(task, folder, force=True)["state"] == "done"
+    assert (folder / task.key).stat().st_ino != place
+
+
+def _other_task(place):
+    (other,) = (path for path in place.parent.iterdir() if path != place)
+    shutil.rmtree(place)
+    shutil.copytree(other, place)
+
+
+def _file(place):
+    shutil.rmtree(place)
+    place.write_text("x")
+
+
+def _foreign(place):
+    shutil.rmtree(place)
+    place.mkdir()
+    (place / "x").touch()
+
+
+DAMAGES = {
+    "truncated": lambda place: (place / "task.json").write_bytes(b'{"format": 1, '),
+    "empty": lambda place: (place / "task.json").write_bytes(b""),
+    "bytes": lambda place: (place / "task.json").write_bytes(b"\xff\x00\x1f"),
+    "no keys": lambda place: (place / "task.json").write_text("{}"),
+    "a list": lambda place: (place / "task.json").write_text("[]"),
+    "no task.json": lambda place: (place / "task.json").unlink(),
+    "no checksums": lambda place: (place / "SHA256SUMS").unlink(),
+    "damaged checksums": lambda place: (place / "SHA256SUMS").write_bytes(b"\xff"),
+    "a changed result": lambda place: (place / "check.json").write_text("{}"),
+    "a missing result": lambda place: (place / "check.json").unlink(),
+    "another task": _other_task,
+    "a file": _file,
+    "other files": _foreign,
+}
+
+
+@pytest.mark.parametrize("damage", DAMAGES.values(), ids=DAMAGES)
+def test_a_damaged_task_is_done_again(begun, damage):
+    task, other, folder = begun
+    first = answer(task, folder)
+    answer(other, folder)
+    before = written(folder / task.key)
+    assert what_is_done(folder, task.key)["results"] == first["results"]
+    damage(folder / task.key)
+    assert what_is_done(folder, task.key) is None
+    assert answer(task, folder)["results"] == first["results"]
+    assert written(folder / task.key) == before
+    assert what_is_done(folder, task.key)["results"] == first["results"]
+
+
+def test_numbers_of_a_task_that_somebody_has_edited_do_not_count(begun):
+    task, _, folder = begun
+    answer(task, folder)
+    path = folder / task.key / "task.json"
+    edited = json.loads(path.read_text())
+    edited["results"]["errors"] = 77
+    path.write_text(json.dumps(edited))
+    assert what_is_done(folder, task.key) is None
+
+
+def test_what_somebody_adds_to_a_task_stays(begun):
+    task, _, folder = begun
+    answer(task, folder)
+    page = folder / task.key / "report.html"
+    page.touch()
+    assert answer(task, folder)["state"] == "done"
+    assert page.exists()

@@ -1,0 +1,41 @@
+import json
+import os
+import subprocess
+import sys
+
+import pytest
+
+USE_THE_RIG = """
+import json
+from numba.core import event
+with event.install_recorder("numba:compile") as compilations:
+    from tsas_studies.challenge.rig.motions import through
+    from tsas_studies.challenge.rig.tendon import Rig, simulate
+    columns = simulate(Rig(cells=10), through([1.0], rate_Hz=50.0)).columns
+print(json.dumps([len(compilations.buffer), float(columns["f_in_N"][-1])]))
+"""
+
+
+def use_the_rig(cache):
+    """Return how often numba compiled, and a result, in a new process."""
+    answer = subprocess.run(
+        [sys.executable, "-c", USE_THE_RIG],
+        env=os.environ | {"TSAS_CACHE_DIR": str(cache)},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    return json.loads(answer.stdout)
+
+
+@pytest.mark.slow
+def test_the_second_process_compiles_nothing_and_no_cache_is_no_obstacle(tmp_path):
+    first, tension = use_the_rig(tmp_path / "cache")
+    second, again = use_the_rig(tmp_path / "cache")
+    assert first > 0
+    assert second == 0
+    assert again == tension
+    (tmp_path / "file").write_text("")
+    without, same = use_the_rig(tmp_path / "file")
+    assert without > 0
+    assert same == tension

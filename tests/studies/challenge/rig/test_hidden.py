@@ -1,0 +1,72 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tsas_cli.effects import EFFECTS
+from tsas_studies.challenge.rig.hidden import CATALOGUE, hide
+from tsas_studies.challenge.rig.motions import nested
+from tsas_studies.challenge.rig.sensors import Sensors, measure
+from tsas_studies.challenge.rig.tendon import Rig, simulate
+from tsas_studies.challenge.rig.unknowns import UNKNOWNS
+
+RIG, SENSORS, MOTION = Rig(cells=20), Sensors(rate_Hz=100.0), nested(rate_Hz=100.0)
+NEUTRAL = {e.name: {p.name: p.neutral for p in e.parameters} for e in EFFECTS}
+SHAPES = {p.name: p.upper for e in EFFECTS for p in e.parameters if p.shape}
+
+
+def recorded(rig, sensors):
+    return measure(simulate(rig, MOTION, session_s=600.0), sensors, seed=3)
+
+
+PLAIN = recorded(RIG, SENSORS)
+
+
+def test_the_rig_knows_the_whole_catalogue_and_nothing_of_it_is_unknown():
+    assert {name: set(places) for name, places in CATALOGUE.items()} == {
+        name: set(parameters) for name, parameters in NEUTRAL.items()
+    }
+    assert not set(CATALOGUE) & set(UNKNOWNS)
+    assert len(UNKNOWNS) >= 6
+
+
+@pytest.mark.parametrize("name", CATALOGUE)
+def test_neutral_changes_nothing_to_the_last_bit(name):
+    parameters = {p: SHAPES.get(p, value) for p, value in NEUTRAL[name].items()}
+    columns = recorded(*hide(name, parameters, RIG, SENSORS))
+    for column, values in PLAIN.items():
+        np.testing.assert_array_equal(columns[column], values)
+
+
+@pytest.mark.parametrize(
+    ("name", "parameter", "value"),
+    [
+        (name, parameter, 1.1 if "gain" in parameter else 0.05)
+        for name, places in CATALOGUE.items()
+        for parameter in places
+        if parameter not in SHAPES and parameter != "mass_kg"
+    ]
+    + [("load_inertia", "mass_kg", 5.0)],
+)
+def test_every_parameter_acts(name, parameter, value):
+    rig, sensors = hide(name, {parameter: value}, RIG, replace(SENSORS))
+    columns = recorded(rig, sensors)
+    assert any(np.any(columns[c] != PLAIN[c]) for c in ("x_out_mm", "f_in_N", "f_out_N"))
+    np.testing.assert_array_equal(columns["x_in_mm"], PLAIN["x_in_mm"])
+
+
+def test_a_shared_settling_reaches_both_force_sensors():
+    _, sensors = hide("force_sensor_drift", {"settling_per_s": 0.3}, RIG, SENSORS)
+    assert sensors.f_in_N.settling_per_s == sensors.f_out_N.settling_per_s == 0.3
+
+
+def test_causes_add_up():
+    rig, sensors = hide("backlash", {"play_mm": 0.1}, RIG, SENSORS)
+    rig, sensors = hide("drive_friction", {"friction_N": 2.0}, rig, sensors)
+    assert (rig.drive_end.play_mm, rig.drive_end.friction_N) == (0.1, 2.0)
+
+
+@pytest.mark.parametrize(("name", "parameter"), [("gremlins", "size"), ("backlash", "size")])
+def test_what_does_not_exist_is_refused(name, parameter):
+    with pytest.raises(KeyError):
+        hide(name, {parameter: 1.0}, RIG, SENSORS)

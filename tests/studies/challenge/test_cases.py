@@ -1,0 +1,76 @@
+from collections import Counter
+
+import pytest
+
+from tsas_cli.effects import EFFECTS
+from tsas_studies.challenge.cases import BUILDING, FULL, PAIRS, SCORING, SIZES, cases, part
+from tsas_studies.challenge.rig.unknowns import UNKNOWNS
+
+ALL = cases(7)
+CATALOGUE = {effect.name: {p.name: p for p in effect.parameters} for effect in EFFECTS}
+
+
+def test_every_effect_is_there_at_every_size_and_the_rest_beside_it():
+    one = Counter((c.hidden[0].cause, c.size) for c in ALL if c.kind == "one")
+    assert one == {(effect, size): 1 for effect in CATALOGUE for size in SIZES}
+    assert {c.hidden[0].cause for c in ALL if c.kind == "unknown"} == set(UNKNOWNS)
+    pairs = [{h.cause for h in c.hidden} for c in ALL if c.kind == "pair"]
+    assert all(set(pair) in pairs for pair in PAIRS)
+    assert len(pairs) > len(PAIRS) >= 12
+    assert all(len(pair) == 2 for pair in pairs)
+    assert all(c.hidden == () for c in ALL if c.kind == "nothing")
+    assert [c.number for c in ALL] == list(range(len(ALL)))
+
+
+def test_a_seed_tells_the_cases():
+    assert cases(7) == ALL
+    assert cases(8) != ALL
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_parameters_are_the_catalogues_inside_its_bounds_and_not_neutral(seed):
+    for case in cases(seed):
+        for hidden in case.hidden if case.kind in ("one", "pair") else ():
+            known = CATALOGUE[hidden.cause]
+            values = hidden.parameters
+            assert all(known[p].lower <= value <= known[p].upper for p, value in values.items())
+            moved = [p for p in values if not known[p].shape and values[p] != known[p].neutral]
+            assert moved, hidden
+
+
+def test_sizes_scale_and_vary_by_a_fifth():
+    def plays(size):
+        of = [c for seed in range(200) for c in cases(seed) if c.name == f"backlash, size {size:g}"]
+        return [c.hidden[0].parameters["play_mm"] for c in of]
+
+    full = FULL["backlash"][0]["play_mm"]
+    for size in SIZES:
+        ratio = [play / (full * size) for play in plays(size)]
+        assert 0.8 <= min(ratio) < 0.82
+        assert 1.18 < max(ratio) <= 1.2
+
+
+def test_signs_vary_where_they_can_and_gains_stay_about_one():
+    found = {"f_out_gain": [], "asymmetry": [], "friction_N": []}
+    for seed in range(40):
+        for case in cases(seed):
+            for hidden in case.hidden if case.kind == "one" else ():
+                for name in found.keys() & hidden.parameters.keys():
+                    found[name].append(hidden.parameters[name])
+    assert min(found["f_out_gain"]) < 1.0 < max(found["f_out_gain"])
+    assert all(0.9 < gain < 1.1 for gain in found["f_out_gain"])
+    assert min(found["asymmetry"]) < 0.0 < max(found["asymmetry"])
+    assert min(found["friction_N"]) > 0.0
+
+
+def test_seeds_to_build_with_and_to_score_with_are_apart():
+    assert not set(BUILDING) & set(SCORING)
+
+
+def test_a_small_part_has_each_effect_once_at_full_size_and_a_few_of_what_is_none():
+    small = part(ALL)
+    one = Counter(c.hidden[0].cause for c in small if c.kind == "one")
+    assert one == dict.fromkeys(CATALOGUE, 1)
+    assert {c.size for c in small if c.kind == "one"} == {1.0}
+    assert Counter(c.kind for c in small if c.kind != "one") == {"nothing": 2, "unknown": 2}
+    assert all(case in ALL for case in small)

@@ -1,0 +1,54 @@
+"""A small fixed part of the blind benchmark: what is hidden has to be found, every time.
+
+Each effect once at full size, two recordings with nothing hidden, two causes that the catalogue
+does not hold; all made by the independent rig. `make challenge` runs the whole.
+"""
+
+import json
+
+import pytest
+
+from tsas_cli.stages.diagnose import diagnose
+from tsas_studies.challenge.cases import cases, part
+from tsas_studies.challenge.make import make
+
+SEED = 3  # for building, never for scoring
+CASES = part(cases(SEED))
+
+
+def diagnosed(case, folder):
+    make(folder, [case], rate_Hz=100.0)
+    (dataset,) = (folder / "cases").glob("*/dataset")
+    diagnose(dataset, out=folder / "answer")
+    return json.loads((folder / "answer" / "diagnosis.json").read_text())
+
+
+def of_kind(kind):
+    return [pytest.param(case, id=case.name) for case in CASES if case.kind == kind]
+
+
+@pytest.mark.parametrize("case", of_kind("one"))
+def test_a_hidden_effect_is_named_and_no_other(case, tmp_path):
+    said = diagnosed(case, tmp_path)
+    (hidden,) = case.hidden
+    assert [cause["effect"] for cause in said["named"]] == [hidden.cause]
+    assert said["verdict"] in ("named", "ambiguous")
+    (cause,) = said["named"]
+    assert cause["gain_percent"] > 2.0
+    low, high = cause["gain_interval_percent"]
+    assert low < cause["gain_percent"] < high
+
+
+@pytest.mark.parametrize("case", of_kind("nothing"))
+def test_where_nothing_is_hidden_nothing_is_named(case, tmp_path):
+    said = diagnosed(case, tmp_path)
+    assert said["verdict"] == "sufficient"
+    assert said["named"] == []
+    assert not said["remainder"]["unexplained"]
+
+
+@pytest.mark.parametrize("case", of_kind("unknown"))
+def test_what_the_catalogue_does_not_hold_is_said_to_be_unexplained(case, tmp_path):
+    said = diagnosed(case, tmp_path)
+    assert said["remainder"]["unexplained"]
+    assert said["remainder"]["depends_on"]

@@ -1,0 +1,76 @@
+"""Each case in a process of its own: one that fails or dies takes no other along."""
+
+import json
+import os
+
+import pytest
+
+from tests.studies.challenge.made import case, diagnosis, tool, write_set
+from tsas_cli.support.errors import InputError
+from tsas_studies.challenge.entry import read_entry
+from tsas_studies.challenge.run import run_cases
+from tsas_studies.challenge.stages import run_set
+
+NAMES = ("answers", "dies", "fails", "refuses", "silent", "well")
+
+
+def test_what_went_wrong_is_written_down_and_the_others_answer(tmp_path):
+    sealed = write_set(tmp_path / "set", {name: case() for name in NAMES})
+    (sealed / "answers.json").unlink()  # a run does not need them
+    steps = []
+    log = run_cases(
+        sealed, tmp_path / "entry", workers=2, diagnose=tool, step=lambda: steps.append(1)
+    )
+    assert len(steps) == len(NAMES)
+    assert log == json.loads((tmp_path / "entry" / "entry.json").read_text(encoding="utf-8"))
+    assert log["answered"] == 2
+    assert log["no_answer"].keys() == {"dies", "fails", "refuses", "silent"}
+    assert log["no_answer"]["dies"] == "the process died"
+    assert log["no_answer"]["fails"] == "ZeroDivisionError: division by zero"
+    assert log["no_answer"]["refuses"] == "a.parquet: no such run"
+    assert "diagnosis.json: cannot be read" in log["no_answer"]["silent"]
+    entry = read_entry(tmp_path / "entry", NAMES)
+    assert entry.no_answer == log["no_answer"]
+    assert set(entry.diagnoses) == {"answers", "well"}
+    well = json.loads((tmp_path / "entry" / "well" / "diagnosis.json").read_text(encoding="utf-8"))
+    assert 0.0 <= well.pop("seconds") < 60.0
+    assert well == diagnosis("backlash")
+
+
+def test_a_set_without_cases(tmp_path):
+    with pytest.raises(InputError, match="no cases/ID/dataset here"):
+        run_cases(tmp_path, tmp_path / "entry", workers=1, diagnose=tool)
+
+
+def test_somebody_has_to_do_the_work(tmp_path):
+    with pytest.raises(InputError, match="workers is 0; expected 1 or more"):
+        run_set(tmp_path, out=tmp_path / "entry", workers=0)
+
+
+def test_an_entry_is_not_overwritten_unasked(tmp_path):
+    sealed = write_set(tmp_path / "set", {"well": case()})
+    run_cases(sealed, tmp_path / "entry", workers=1, diagnose=tool)
+    with pytest.raises(InputError, match="already exists"):
+        run_cases(sealed, tmp_path / "entry", workers=1, diagnose=tool)
+    run_cases(sealed, tmp_path / "entry", workers=1, force=True, diagnose=tool)
+
+
+def test_a_case_has_one_thread_for_linear_algebra(tmp_path, monkeypatch):
+    for name in ("OPENBLAS_NUM_THREADS", "PYTHONSAFEPATH"):
+        monkeypatch.delenv(name, raising=False)
+    sealed = write_set(tmp_path / "set", {"threads": case()})
+    log = run_cases(sealed, tmp_path / "entry", workers=1, diagnose=tool)
+    assert log["no_answer"] == {"threads": "RuntimeError: 1 threads"}
+    assert "OPENBLAS_NUM_THREADS" not in os.environ  # of the caller
+    assert "PYTHONSAFEPATH" not in os.environ
+    assert log["tool"] == "tool"
+
+
+def test_a_file_where_it_is_called_is_no_module(tmp_path, monkeypatch):
+    """A folder of recordings may hold a re.py or a signal.py of somebody's own."""
+    sealed = write_set(tmp_path / "set", {"well": case()})
+    for name in ("re", "signal", "json"):
+        (tmp_path / f"{name}.py").write_text("raise SystemExit('taken for a module')")
+    monkeypatch.chdir(tmp_path)
+    log = run_cases(sealed, tmp_path / "entry", workers=1, diagnose=tool)
+    assert log["no_answer"] == {}

@@ -1,0 +1,143 @@
+"""`tsas challenge` in a process of its own, with every warning an error."""
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+from tests.studies.challenge.made import case, diagnosis, write_entry, write_set
+from tsas_cli.recordings.dataset import read_dataset
+from tsas_cli.support.errors import InputError
+from tsas_studies.challenge import cases
+from tsas_studies.challenge.answers import read_answers
+from tsas_studies.challenge.entry import read_entry
+from tsas_studies.challenge.run import TOOLS
+from tsas_studies.challenge.targets import TARGETS
+from tsas_studies.commands.challenge import KindOption, ToolOption, make, score
+
+DOCS = (Path(__file__).parents[2] / "docs" / "challenge.md").read_text(encoding="utf-8")
+
+
+@pytest.fixture
+def sealed(tmp_path):
+    return write_set(tmp_path / "set", {"a": case("backlash"), "b": case()})
+
+
+@pytest.fixture
+def entry(tmp_path):
+    return write_entry(tmp_path / "mine", {"a": diagnosis("backlash"), "b": diagnosis()})
+
+
+def test_what_is_printed_is_what_is_written(strict, sealed, entry, tmp_path):
+    done = strict("challenge", "score", sealed, entry, "--out", tmp_path / "out", "--json")
+    assert (done.returncode, done.stderr) == (0, "")
+    content = json.loads((tmp_path / "out" / "score.json").read_text(encoding="utf-8"))
+    assert json.loads(done.stdout) == content
+    (mine,) = content["entries"].values()
+    assert mine["cases"]["a"] == {"outcome": "exact", "named_falsely": []}
+    text = strict("challenge", "score", sealed, entry)
+    assert (text.returncode, text.stderr) == (0, "")
+    assert re.search(
+        r"the worst effect +≥ 95 % for each effect +1 of 1, backlash +yes", text.stdout
+    )
+
+
+def test_score_json_is_as_documented(strict, sealed, entry):
+    content = json.loads(strict("challenge", "score", sealed, entry, "--json").stdout)
+    section = DOCS.split("## score.json")[1].split("\n## ")[0]
+    told = set(re.findall(r"`(\w+)`", section))
+    (mine,) = content["entries"].values()
+    assert content.keys() | content["answers"].keys() | mine.keys() <= told
+    (figure,) = re.findall(r"`\{(.*?)\}`", section)
+    assert list(mine["figures"][0]) == figure.split(", ")
+
+
+def test_the_documented_targets_are_those_that_count():
+    section = DOCS.split("| figure | target |")[1].split("\n\n")[0]
+    bounds = (bound for target in TARGETS.values() for bound in (target.low, target.high))
+    meant = [f"{100 * bound:g}" for bound in bounds if 0.0 < bound < 1.0]
+    targets = " ".join(row.split("|")[2] for row in section.splitlines()[2:])
+    assert re.findall(r"\d+", targets) == meant
+
+
+def test_the_documented_files_are_read(tmp_path):
+    blocks = re.findall(r"```json\n(.*?)```", DOCS, re.DOTALL)
+    answers, said = map(json.loads, blocks)
+    (tmp_path / "answers.json").write_text(json.dumps(answers), encoding="utf-8")
+    (name,) = answers["cases"]
+    assert read_answers(tmp_path).cases[name].effects == {"backlash"}
+    entry = read_entry(write_entry(tmp_path / "entry", {name: said}), [name])
+    (named,) = entry.diagnoses[name].named
+    assert named.parameters["play_mm"].interval == pytest.approx((0.11408, 0.12192))
+
+
+def test_a_case_that_fails_is_listed_and_scored_as_no_answer(strict, sealed, tmp_path):
+    done = strict("challenge", "run", sealed, "--out", tmp_path / "entry", "--workers", 2)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "0 of 2 cases answered" in done.stdout
+    scored = strict("challenge", "score", sealed, tmp_path / "entry", "--json")
+    (entry,) = json.loads(scored.stdout)["entries"].values()
+    assert entry["no_answer"].keys() == {"a", "b"}
+    assert all(reason in done.stdout for reason in entry["no_answer"].values())
+    assert {c["outcome"] for c in entry["cases"].values()} == {"no answer"}
+
+
+def test_a_set_is_made_scored_and_not_overwritten_unasked(monkeypatch, capsys, tmp_path):
+    """Two cases stand for all of a seed, which take minutes."""
+    few = cases.cases(17)[:2]
+    monkeypatch.setattr(cases, "cases", {17: few}.__getitem__)
+    make(tmp_path / "set", seed=17, rate=50.0, as_json=True)
+    summary = json.loads(capsys.readouterr().out)
+    assert (summary["seed"], summary["cases"]) == (17, {"one": 2})
+    answers = read_answers(tmp_path / "set")
+    assert answers.seed == 17
+    for name in answers.cases:
+        assert len(list(read_dataset(tmp_path / "set" / "cases" / name / "dataset"))) == 4
+    right = {name: diagnosis(*case.effects) for name, case in answers.cases.items()}
+    score(tmp_path / "set", [write_entry(tmp_path / "entry", right)], as_json=True)
+    (entry,) = json.loads(capsys.readouterr().out)["entries"].values()
+    assert {case["outcome"] for case in entry["cases"].values()} == {"exact"}
+    with pytest.raises(InputError, match="already exists"):
+        make(tmp_path / "set", seed=17, rate=50.0)
+
+
+def test_several_seeds_are_one_set(monkeypatch, capsys, tmp_path):
+    few = {seed: cases.cases(seed)[-1:] for seed in (17, 18)}
+    monkeypatch.setattr(cases, "cases", few.__getitem__)
+    make(tmp_path / "set", seed=17, seeds=2, rate=50.0)
+    assert "2 cases of seeds 17 to 18" in capsys.readouterr().out
+    assert read_answers(tmp_path / "set").seed == (17, 18)
+    right = {name: diagnosis(unexplained=True) for name in read_answers(tmp_path / "set").cases}
+    score(tmp_path / "set", [write_entry(tmp_path / "entry", right)])
+    assert "set of seeds 17, 18: 2 unknown" in capsys.readouterr().out
+
+
+def test_cases_of_one_kind_are_a_set(monkeypatch, capsys, tmp_path):
+    few = [c for c in cases.cases(17) if c.kind in ("nothing", "pair")][-2:]
+    monkeypatch.setattr(cases, "cases", {17: few}.__getitem__)
+    make(tmp_path / "set", seed=17, kind=KindOption.nothing, rate=50.0, as_json=True)
+    summary = json.loads(capsys.readouterr().out)
+    assert summary["cases"] == {"nothing": len([c for c in few if c.kind == "nothing"])}
+    with pytest.raises(InputError, match="keeps no case"):
+        make(tmp_path / "none", seed=17, small=True, kind=KindOption.pair, rate=50.0)
+    assert not (tmp_path / "none").exists()
+
+
+def test_every_kind_can_be_asked_for():
+    assert {option.value for option in KindOption} == {c.kind for c in cases.cases(17)}
+
+
+def test_every_tool_can_be_asked_for():
+    assert [option.value for option in ToolOption] == list(TOOLS)
+    section = DOCS.split("## Baselines")[1].split("\n## ")[0]
+    assert all(f"| `{name}` |" in section for name in TOOLS if name != "diagnose")
+
+
+@pytest.mark.parametrize("command", ["run", "score"])
+def test_a_folder_that_is_no_set(strict, command, entry, tmp_path):
+    more = [entry] if command == "score" else ["--out", tmp_path / "out"]
+    done = strict("challenge", command, tmp_path / "none", *more)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "`tsas challenge make`" in done.stderr
+    assert not (tmp_path / "out").exists()

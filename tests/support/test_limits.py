@@ -1,0 +1,145 @@
+import os
+import re
+import sys
+from io import StringIO
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+
+from tsas_cli.recordings.parquet_files import check_size, open_parquet
+from tsas_cli.support import limits, memory
+from tsas_cli.support.errors import InputError
+
+ROOT = Path(__file__).parent.parent
+
+
+def refusal(call, *arguments):
+    with pytest.raises(InputError) as caught:
+        call(*arguments)
+    return caught.value.line()
+
+
+def nested(deep, content=1):
+    for number in range(deep):
+        content = [content] if number % 2 else {"a": content}
+    return content
+
+
+def test_nesting_is_taken_up_to_the_limit(tmp_path):
+    limits.depth(nested(limits.DEPTH), tmp_path)
+    assert "nested too deep" in refusal(limits.depth, nested(limits.DEPTH + 1), tmp_path)
+    limits.depth("text", tmp_path)
+
+
+def test_dotted_keys_are_taken_up_to_the_limit_in_any_spelling(tmp_path):
+    for part in ("a", '"a.b"', "'a b'", "a-b_9"):
+        for dot in (".", " . "):
+            limits.toml(f"x = 1\n{dot.join([part] * 99)} = 1", tmp_path)
+            deep = f"x = 1\n[{dot.join([part] * 102)}]"
+            assert "nested too deep" in refusal(limits.toml, deep, tmp_path)
+    limits.toml('description = "' + "a line without end " * 10_000 + '"', tmp_path)
+    limits.toml("pi = [" + "3.14159, " * 10_000 + "]", tmp_path)
+
+
+def test_a_file_is_read_up_to_its_limit_without_its_mark(tmp_path):
+    path = tmp_path / "a.toml"
+    path.write_bytes(b"\xef\xbb\xbfabc")
+    assert limits.text_of(path, 6) == "abc"
+    assert "is larger than 5 bytes" in refusal(limits.text_of, path, 5)
+    with pytest.raises(FileNotFoundError):
+        limits.text_of(tmp_path / "b.toml", 5)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="pipes have no place in folders there")
+def test_a_pipe_is_not_waited_for(tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    assert "is a pipe or a device" in refusal(limits.text_of, tmp_path / "pipe", 5)
+    assert "is a folder" in refusal(limits.regular, tmp_path)
+
+
+def test_lines_are_taken_up_to_the_limit(tmp_path):
+    good = "x" * (limits.LINE - 1) + "\n"
+    assert list(limits.lines(StringIO(good + "a\n\nb"), tmp_path)) == [good, "a\n", "\n", "b"]
+    lines = limits.lines(StringIO("a\n" + "x" + good), tmp_path)
+    assert "row 2: is longer than" in refusal(list, lines)
+
+
+def test_columns_are_counted_and_their_names_measured(tmp_path):
+    limits.columns(["Kraft [N]", "力", "", "x" * limits.NAME] * 100, tmp_path)
+    assert "holds 10001 columns" in refusal(limits.columns, ["a"] * 10_001, tmp_path)
+    for bad in ("x" * (limits.NAME + 1), "\ud800"):
+        assert "the name of column 2" in refusal(limits.columns, ["a", bad], tmp_path)
+
+
+def test_what_a_file_expands_to_counts_against_its_size(tmp_path):
+    path = tmp_path / "a.mat"
+    path.write_bytes(bytes(2_000_000))
+    expanded = memory.Expanded.of(path)
+    expanded.add(limits.EXPANSION * 2_000_000)
+    line = refusal(lambda: expanded.add(1, what="x of (9, 9)"))
+    assert "x of (9, 9), 1 GB or more from a file of 2 MB; expected at most 500 times" in line
+    small = memory.Expanded(path, 10)
+    small.add(limits.HARMLESS)
+    assert "268 MB or more from a file of 10 bytes" in refusal(small.add, 1)
+
+
+def test_items_are_counted(tmp_path):
+    expanded = memory.Expanded(tmp_path, 80_000)
+    for _ in range(10_000):
+        expanded.add(0)
+    assert "holds more than 10000 variables" in refusal(expanded.add, 0)
+
+
+def test_what_is_loaded_whole_has_to_fit_into_the_memory(tmp_path, monkeypatch):
+    monkeypatch.setattr(memory, "available", lambda: 1_000_000_000)
+    memory.fits(tmp_path / "a.mat", 1_000_000_000)
+    line = refusal(memory.fits, tmp_path / "a.mat", 2_000_000_000)
+    assert line.endswith(
+        "takes 2 GB of memory, and 1 GB are there; use a larger machine, or export it as CSV or "
+        "Parquet"
+    )
+    expanded = memory.Expanded(tmp_path / "a.mat", 1)
+    expanded.bytes = 1_000_000_000 // limits.COPIES
+    expanded.fits()
+    expanded.bytes += 1
+    assert "takes 1 GB of memory" in refusal(expanded.fits)
+
+
+def test_the_memory_that_is_there_is_some(tmp_path):
+    assert 10_000_000 < memory.available() < 1 << 50
+
+
+@pytest.mark.parametrize("packed", ["snappy", "zstd"])
+def test_a_recording_of_an_even_clock_and_channels_at_rest_is_taken(tmp_path, packed, monkeypatch):
+    monkeypatch.setattr(limits, "HARMLESS", 0)
+    rows = 1_000_000
+    table = {"time_s": np.arange(rows), "x_in_mm": np.zeros(rows), "f_in_N": np.full(rows, 25.0)}
+    path = tmp_path / "a.parquet"
+    pq.write_table(
+        pa.table(table),
+        path,
+        compression=packed,
+        use_dictionary=["x_in_mm", "f_in_N"],
+        column_encoding={"time_s": "DELTA_BINARY_PACKED"},
+    )
+    with open_parquet(path) as file:
+        check_size(file, path, tuple(table), whole=True)
+        monkeypatch.setattr(limits, "PARQUET_EXPANSION", 10)
+        said = refusal(lambda: check_size(file, path, tuple(table), whole=False))
+    assert "1000000 rows" in said
+
+
+def test_the_page_states_the_limits():
+    text = (ROOT / "docs/untrusted.md").read_text(encoding="utf-8").replace(",", "")
+    said = {int(n) for n in re.findall(r"\d+", text)}
+    mib = {limits.TOML_BYTES, limits.LINE, limits.HEADER, limits.FOOTER, limits.HARMLESS}
+    assert limits.JSON_BYTES == 1 << 30
+    assert {n // limits.MIB for n in mib} <= said
+    stated = (
+        limits.TOML_KEYS, limits.JSON_EXPANDS, limits.DEPTH, limits.RUNS, limits.UNKNOWN_KEYS,
+        limits.COLUMNS, limits.NAME, limits.EXPANSION, limits.PARQUET_EXPANSION, limits.ITEMS,
+    )  # fmt: skip
+    assert set(stated) <= said

@@ -1,0 +1,34 @@
+"""A limit to how long something may take."""
+
+import re
+import signal
+import threading
+import time
+
+import pytest
+
+from tsas_cli.support.patience import at_most
+
+
+def test_what_is_late_is_ended_and_what_is_not_goes_on():
+    before = signal.getsignal(signal.SIGALRM)
+    with pytest.raises(TimeoutError), at_most(0.05):
+        re.search("(a|aa)+b", 99 * "a")
+    with at_most(0.05):
+        pass
+    time.sleep(0.1)
+    assert signal.getsignal(signal.SIGALRM) == before
+
+
+def test_beside_the_main_thread_there_is_no_limit():
+    done = []
+
+    def work():
+        with at_most(0.01):
+            time.sleep(0.05)
+            done.append(True)
+
+    thread = threading.Thread(target=work)
+    thread.start()
+    thread.join()
+    assert done == [True]

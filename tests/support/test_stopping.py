@@ -1,0 +1,66 @@
+import os
+import signal
+import time
+
+import pytest
+
+from tsas_cli.support.stopping import Stopped, cleaned_up_when_stopped, until_stopped
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_request_to_end_is_the_end_of_the_block(number):
+    said = []
+    with until_stopped():
+        try:
+            os.kill(os.getpid(), number)
+            time.sleep(5)
+            said.append("still there")
+        finally:
+            os.kill(os.getpid(), number)  # an impatient person
+            said.append("cleaned up")
+    assert said == ["cleaned up"]
+
+
+def test_other_errors_are_no_end():
+    with pytest.raises(ZeroDivisionError), until_stopped():
+        1 / 0  # noqa: B018
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_stage_that_is_stopped_has_not_done_its_work(number):
+    with pytest.raises(KeyboardInterrupt), cleaned_up_when_stopped():
+        signal.raise_signal(number)
+
+
+def test_handlers_are_as_before():
+    before = [signal.getsignal(n) for n in (signal.SIGINT, signal.SIGTERM)]
+    with until_stopped():
+        os.kill(os.getpid(), signal.SIGTERM)
+        time.sleep(5)
+    assert [signal.getsignal(n) for n in (signal.SIGINT, signal.SIGTERM)] == before
+
+
+def test_what_is_ignored_stays_ignored():
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)  # as under nohup
+    try:
+        with until_stopped():
+            os.kill(os.getpid(), signal.SIGHUP)
+        assert signal.getsignal(signal.SIGHUP) is signal.SIG_IGN
+    finally:
+        signal.signal(signal.SIGHUP, before)
+
+
+def test_a_request_that_a_library_has_lost_can_be_made_again(monkeypatch):
+    monkeypatch.setattr("tsas_cli.support.stopping.CLEANING_S", 0.1)
+    said = []
+    with until_stopped():
+        try:
+            os.kill(os.getpid(), signal.SIGINT)
+        except Stopped:
+            said.append("lost")  # as a destructor does
+        os.kill(os.getpid(), signal.SIGTERM)  # too soon
+        said.append("goes on")
+        time.sleep(0.2)
+        os.kill(os.getpid(), signal.SIGTERM)
+        said.append("goes on for ever")
+    assert said == ["lost", "goes on"]

@@ -1,1 +1,0 @@
-"""What the commands do, as functions: one file per verb, used by the commands themselves."""

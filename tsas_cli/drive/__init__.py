@@ -1,0 +1,1 @@
+"""The drive between motor and tendon: its transfer function, fitted and diagnosed."""

@@ -1,0 +1,209 @@
+"""What the nominal drive equation lacks: the verdict, its causes and their gains.
+
+Nominal is Yang 2025, Eqs. (23)-(25):
+
+    (J/r1²) d²x/dt² + B dx/dt + k_p x = k_d x_m,  dx_m/dt = K u
+
+Where the data sheet gives J, r1 and k_p, its natural frequency is known, and k_d and B are fitted.
+Where it does not, any frequency could be its own; then nominal is what the equation says of slow
+motion, x = g ∫u dt, and a spring with inertia behind it is what the drive was not said to have.
+"""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from tsas_cli.diagnosis.channel_errors import Channel
+from tsas_cli.diagnosis.diagnose import FEW_BLOCKS, SEED, Verdict, leaves_much, verdict_of
+from tsas_cli.diagnosis.evidence import gain, gain_percent
+from tsas_cli.diagnosis.remainder import DEPENDS, hats, regressed
+from tsas_cli.diagnosis.search import BLURRED
+from tsas_cli.drive.fit import Terms
+from tsas_cli.drive.search import EFFECT_OF, NOTHING, DriveSearch
+from tsas_cli.effects import EFFECTS
+from tsas_cli.identification.estimate import Estimate
+
+Floats = npt.NDArray[np.float64]
+
+EQUATION = frozenset({"stated"})
+LOOKED_AT = 12000  # residuals, for what is left
+PARAMETERS = {
+    "drive_compliance": (
+        "compliance_mm_per_N", "drive_stiffness_N_per_mm", "natural_frequency_Hz", "damping_ratio",
+    ),
+    "channel_delay": ("motor_lag_s", "delay_s"),
+    "drive_ripple": ("sine_mm", "cosine_mm"),
+    "backlash": ("play_mm",),
+}  # fmt: skip
+KIND = {"lag": "first-order lag", "delay": "pure delay"}
+
+
+@dataclass(frozen=True)
+class DriveCause:
+    """A named effect; `rivals` are effects, or the other kind of delay, that would do as well."""
+
+    effect: str
+    kind: str
+    rivals: tuple[str, ...]
+    parameters: tuple[Estimate, ...]
+    gain_percent: float
+    gain_interval_percent: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class DriveDiagnosis:
+    """The verdict on a drive; `nominal` and `final` are the sets of terms that are compared."""
+
+    verdict: Verdict
+    reason: str
+    nominal: Terms
+    final: Terms
+    causes: tuple[DriveCause, ...]
+    channel: Channel
+    gain_percent: tuple[float, float, float]
+    mean_square: float
+    share_left: float
+    unexplained: bool
+    depends_on: tuple[str, ...]
+
+
+def diagnose_drive(
+    search: DriveSearch, final: Terms, estimates: dict[str, Estimate]
+) -> DriveDiagnosis:
+    """Compare what was found with the nominal drive equation."""
+    nominal = NOTHING if search.bench.stated_Hz is None else EQUATION
+    causes = tuple(
+        cause
+        for effect in PARAMETERS
+        if (cause := _cause(search, nominal, final, effect, estimates)) is not None
+    )
+    explained = final if causes else nominal
+    start, left = search.mean_square(nominal), search.mean_square(explained)
+    share = max(left - 1.0 - BLURRED, 0.0) / (start - 1.0) if start > 1.0 else 0.0
+    depends, could = _left(search, explained)
+    rmse = [_rmse(search, terms) for terms in (nominal, explained)]
+    noise = _noise(search)
+    floor = min(noise, rmse[1])
+    channel = Channel(rmse[0], rmse[1], floor, max(floor, rmse[1] * math.sqrt(1.0 - could)))
+    verdict = _verdict(search, causes, left, share)
+    unexplained = verdict == "unexplained" or (bool(causes) and leaves_much(left, share))
+    found = DriveDiagnosis(
+        verdict, "", nominal, explained, causes, channel,
+        _gain_percent(search, nominal, explained), left, share if causes else 1.0,
+        unexplained, depends if left > 1.0 + BLURRED else (),
+    )  # fmt: skip
+    return replace(found, reason=_reason(found, start))
+
+
+def _verdict(
+    search: DriveSearch, causes: tuple[DriveCause, ...], left: float, share: float
+) -> Verdict:
+    if search.folds.blocks < FEW_BLOCKS:
+        return "undecided"
+    return verdict_of([cause.rivals for cause in causes], left, share)
+
+
+def _cause(
+    search: DriveSearch, nominal: Terms, final: Terms, effect: str, estimates: dict[str, Estimate]
+) -> DriveCause | None:
+    """Return an effect as a cause, or None where the nominal equation does as well without it."""
+    own = frozenset(term for term in final if EFFECT_OF.get(term) == effect)
+    fewer = final - own
+    if effect == "drive_compliance":
+        fewer = fewer | nominal  # the equation has a spring of its own, only no reaction
+    if fewer == final or not search.gain(fewer, final).convincing:
+        return None
+    rivals = dict.fromkeys(
+        f"channel_delay ({KIND[other]})" if EFFECT_OF[other] == effect else EFFECT_OF[other]
+        for term in sorted(own)
+        if len(own) == 1
+        for other in search.rivals(final, term)
+    )
+    whole = _gain_percent(search, fewer, final)
+    kind = " and ".join(KIND[term] for term in sorted(own) if term in KIND)
+    told = tuple(estimates[name] for name in PARAMETERS[effect] if name in estimates)
+    return DriveCause(effect, kind, tuple(rivals), told, whole[0], (whole[1], whole[2]))
+
+
+def _gain_percent(search: DriveSearch, before: Terms, after: Terms) -> tuple[float, float, float]:
+    rng = np.random.default_rng(SEED)
+    return gain_percent(search.held_out(before), search.held_out(after), rng)
+
+
+def _noises(search: DriveSearch) -> Floats:
+    """Return the noise of the run that each block lies in, shape (blocks,)."""
+    noise = np.array([run.noise_mm for run in search.bench.runs])
+    first = np.unique(search.folds.block, return_index=True)[1]
+    return np.asarray(noise[search.folds.run[first]])
+
+
+def _rmse(search: DriveSearch, terms: Terms) -> float:
+    squares = float(np.sum(search.held_out(terms) * _noises(search) ** 2))
+    return math.sqrt(squares / search.folds.block.size)
+
+
+def _noise(search: DriveSearch) -> float:
+    samples = np.bincount(search.folds.block)
+    return math.sqrt(float(samples @ _noises(search) ** 2) / search.folds.block.size)
+
+
+def _left(search: DriveSearch, terms: Terms) -> tuple[tuple[str, ...], float]:
+    """Return the signals that the rest depends on, and the part of it that they explain."""
+    residual, folds = search.trial(terms).solution.residual, search.folds
+    chosen = np.arange(0, residual.size, max(1, residual.size // LOOKED_AT))
+    runs = search.bench.runs
+    signals = {
+        "x_in_mm": np.concatenate([run.x_in for run in runs]),
+        "motor_speed_rpm": np.concatenate([run.u.values for run in runs]),
+        "motor_angle_rad": np.concatenate([run.u.integral * math.pi / 30.0 for run in runs])
+        % (2.0 * math.pi),
+        "time_s": np.concatenate([run.time_s for run in runs]),
+    }
+    direction = np.sign(signals["motor_speed_rpm"])[chosen]
+    here, block, fold = residual[chosen], folds.block[chosen], folds.fold[chosen]
+    columns = {name: hats(values[chosen], direction) for name, values in signals.items()}
+    total = float(here @ here)
+    alone = {name: _part(c, here, fold) for name, c in columns.items()}
+    depends = sorted((n for n, part in alone.items() if part > DEPENDS), key=lambda n: -alone[n])
+    whole = here - regressed(np.hstack(list(columns.values())), here, fold)
+    before, after = (np.bincount(block, v**2, minlength=folds.blocks) for v in (here, whole))
+    used = before > 0.0
+    best = gain(before[used].astype(np.float64), after[used].astype(np.float64))
+    return tuple(depends), max(best.part, 0.0) if best.convincing and total > 0.0 else 0.0
+
+
+def _part(columns: Floats, residual: Floats, fold: npt.NDArray[np.int64]) -> float:
+    own = residual - regressed(columns, residual, fold)
+    return 1.0 - float(own @ own) / float(residual @ residual)
+
+
+def _reason(found: DriveDiagnosis, start: float) -> str:
+    equation = (
+        "The nominal drive equation (Yang 2025, Eq. 25, without reaction)"
+        if found.nominal
+        else "A drive without lag and stiffness, x_in = g ∫u dt,"
+    )
+    times = [f"{math.sqrt(v):.3g}" for v in (start, found.mean_square)]
+    if found.verdict == "undecided":
+        return "too few stretches of these runs are independent of each other."
+    if found.verdict == "sufficient":
+        return f"{equation} is at the noise floor: nothing is missing that these runs show."
+    missed = f"{equation} misses x_in by {times[0]} times what noise explains"
+    depends = f" It depends on {', '.join(found.depends_on)}." if found.depends_on else ""
+    if not found.causes:
+        return f"{missed}, and no known effect of a drive accounts for it.{depends}"
+    titles = {e.name: e.title.lower() for e in EFFECTS}
+    said = f"{missed}. What it lacks is: {' and '.join(_spoken(c, titles) for c in found.causes)}."
+    said += f" With that it is {times[1]} times."
+    rivals = sorted({r for c in found.causes for r in c.rivals})
+    if rivals:
+        said += f" These recordings cannot tell it from: {', '.join(rivals)}."
+    return f"{said} What is left no known effect explains.{depends}" if found.unexplained else said
+
+
+def _spoken(cause: DriveCause, titles: dict[str, str]) -> str:
+    if cause.effect == "drive_compliance":
+        return "the compliance of the drive, whose stiffness reacts on the position"
+    return f"a {cause.kind} of the motor" if cause.kind else f"the {titles[cause.effect]}"

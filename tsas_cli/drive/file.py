@@ -1,0 +1,162 @@
+"""`drive.toml`: an identified drive, written and read."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+import tomlkit
+from pydantic import BaseModel, ConfigDict
+
+from tsas_cli.identification.estimate import Estimate
+from tsas_cli.identification.stored_value import StoredValue
+from tsas_cli.recordings.manifest import parse, read_toml
+from tsas_cli.support.errors import InputError, nearest
+
+FILE = "drive.toml"
+UNITS = {
+    "gain_mm_per_s_rpm": "mm/(s rpm)",
+    "motor_lag_s": "s",
+    "delay_s": "s",
+    "leak_per_s": "1/s",
+    "natural_frequency_Hz": "Hz",
+    "damping_ratio": "1",
+    "sine_mm": "mm",
+    "cosine_mm": "mm",
+    "play_mm": "mm",
+    "kV_rpm_s_per_mm": "rpm s/mm",
+    "kA_rpm_s2_per_mm": "rpm s²/mm",
+    "damping_N_s_per_mm": "N s/mm",
+    "drive_stiffness_N_per_mm": "N/mm",
+    "whole_stiffness_N_per_mm": "N/mm",
+    "pull_back_N_per_mm": "N/mm",
+    "compliance_mm_per_N": "mm/N",
+    "turntable_radius_mm": "mm",
+    "gear_ratio": "1",
+    "inertia_N_mm_s2": "N mm s²",
+}
+POSITIVE = (
+    "gain_mm_per_s_rpm", "natural_frequency_Hz", "damping_ratio", "turntable_radius_mm",
+    "gear_ratio", "inertia_N_mm_s2", "drive_stiffness_N_per_mm", "kV_rpm_s_per_mm",
+)  # fmt: skip
+NOT_NEGATIVE = ("motor_lag_s", "delay_s", "leak_per_s", "play_mm", "kA_rpm_s2_per_mm")
+
+
+@dataclass(frozen=True)
+class IdentifiedDrive:
+    """G(s) = K e^{−Ts} / ((s + a)(τs + 1)(s²/ω² + 2ζs/ω + 1)) from rpm to mm, and what follows.
+
+    A lag, a delay, a leak, a play or a ripple that was not found is 0; None is what the drive does
+    not show (a stiff drive has no natural frequency) or the data sheet would have to tell (J).
+    """
+
+    gain_mm_per_s_rpm: float
+    kV_rpm_s_per_mm: float
+    kA_rpm_s2_per_mm: float = 0.0
+    motor_lag_s: float = 0.0
+    delay_s: float = 0.0
+    leak_per_s: float = 0.0
+    natural_frequency_Hz: float | None = None
+    damping_ratio: float | None = None
+    sine_mm: float = 0.0
+    cosine_mm: float = 0.0
+    play_mm: float = 0.0
+    inertia_N_mm_s2: float | None = None
+    damping_N_s_per_mm: float | None = None
+    drive_stiffness_N_per_mm: float | None = None
+    pull_back_N_per_mm: float | None = None
+    turntable_radius_mm: float | None = None
+    gear_ratio: float | None = None
+
+
+class _Structure(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    name: str
+    hold: Literal["zero", "first"] = "first"
+
+
+class _File(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    format: Literal[1]
+    kind: Literal["drive"]
+    version: str = ""
+    dataset: dict[str, Any] = {}
+    structure: _Structure
+    parameters: dict[str, StoredValue]
+
+
+def write_drive(
+    path: Path,
+    estimates: Mapping[str, Estimate],
+    structure: Mapping[str, str],
+    *,
+    version: str,
+    dataset: Mapping[str, Any],
+) -> None:
+    """Write `drive.toml`."""
+    content = {
+        "format": 1,
+        "kind": "drive",
+        "version": version,
+        "dataset": dict(dataset),
+        "structure": dict(structure),
+        "parameters": {
+            name: {
+                k: v for k, v in e.as_json().items() if k not in ("name", "run") and _writable(v)
+            }
+            for name, e in estimates.items()
+        },
+    }
+    path.write_text(tomlkit.dumps(content), encoding="utf-8")
+
+
+def _writable(value: object) -> bool:
+    return value is not None and not (isinstance(value, float) and not math.isfinite(value))
+
+
+def read_drive(path: Path) -> IdentifiedDrive:
+    """Read `drive.toml`, or the folder that holds it.
+
+    Raises
+    ------
+    InputError
+        The file is missing, not TOML, of another format or kind, names an unknown parameter, lacks
+        the gain, or a value or its unit is not what it has to be.
+    """
+    path = path / FILE if path.is_dir() else path
+    file = parse(_File, read_toml(path), path)
+    for name, value in file.parameters.items():
+        _check(name, value, path)
+    values = {name: value.value for name, value in file.parameters.items()}
+    if "gain_mm_per_s_rpm" not in values:
+        raise InputError(
+            "parameters.gain_mm_per_s_rpm is missing",
+            where=path,
+            expected="what `tsas identify-harmonic-drive` writes",
+        )
+    values.setdefault("kV_rpm_s_per_mm", 1.0 / values["gain_mm_per_s_rpm"])
+    return drive_of(values)
+
+
+def drive_of(values: Mapping[str, float]) -> IdentifiedDrive:
+    """Return a drive by its values, of which those that are no property of a drive are left out."""
+    known = IdentifiedDrive.__dataclass_fields__
+    return IdentifiedDrive(**{name: value for name, value in values.items() if name in known})
+
+
+def _check(name: str, value: StoredValue, path: Path) -> None:
+    if name not in UNITS:
+        raise InputError(f"unknown parameter {name}", where=path, remedy=nearest(name, UNITS))
+    if value.unit != UNITS[name]:
+        raise InputError(
+            f"{name} is in {value.unit!r}", where=path, expected=f"the unit {UNITS[name]!r}"
+        )
+    if not math.isfinite(value.value):
+        raise InputError(f"{name} is {value.value}", where=path, expected="a finite number")
+    if name in POSITIVE and value.value <= 0.0:
+        raise InputError(f"{name} is {value.value}", where=path, expected="a positive number")
+    if name in NOT_NEGATIVE and value.value < 0.0:
+        raise InputError(f"{name} is {value.value}", where=path, expected="zero or more")

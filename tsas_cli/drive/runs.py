@@ -1,0 +1,146 @@
+"""Recordings of a drive, checked: motor speed in, position of the tendon's end out."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from tsas_cli.numerics.interpolated import interpolated
+from tsas_cli.numerics.linear_response import Hold, Sampled, sampled
+from tsas_cli.numerics.noise import FEWEST_SAMPLES as FEWEST_OF_NOISE
+from tsas_cli.numerics.noise import noise_sd
+from tsas_cli.recordings.recording import Recording
+from tsas_cli.support.errors import InputError
+
+Floats = npt.NDArray[np.float64]
+
+FEWEST_SAMPLES = 500
+UNEVEN = 0.02  # of a sampling step, by which another one may differ
+STRETCHES = 40  # in which the noise is told; the median one is not where the drive swings fastest
+AT_REST = 0.01  # of the largest speed
+MOVED = 5.0  # times the noise, that x_in has to travel
+FOLLOWS = 0.5  # correlation of travel and turns below which x_in is not what the motor moves
+
+
+@dataclass(frozen=True)
+class DriveRun:
+    """One run: the motor's speed [rpm] on an even clock, x_in and its noise [mm], shapes (n,)."""
+
+    id: str
+    u: Sampled
+    x_in: Floats
+    noise_mm: float
+    at_rest: bool  # when it begins
+
+    @property
+    def time_s(self) -> Floats:
+        """Time since the first sample [s]."""
+        return np.asarray(self.u.step_s * np.arange(self.x_in.size), dtype=np.float64)
+
+
+def drive_runs(recordings: Iterable[Recording], hold: Hold) -> list[DriveRun]:
+    """Return the runs of a dataset.
+
+    Raises
+    ------
+    InputError
+        A channel is missing, has a gap, does not move or keeps one speed; the clock is uneven; a
+        run is too short; or x_in does not follow the motor.
+    """
+    return [_checked(recording, hold) for recording in recordings]
+
+
+def _checked(recording: Recording, hold: Hold) -> DriveRun:
+    where = recording.run.file
+    u, x = (_channel(recording, name) for name in ("motor_speed_rpm", "x_in_mm"))
+    time_s = recording.time_s
+    if time_s.size < FEWEST_SAMPLES:
+        raise InputError(
+            f"{time_s.size} samples are too few",
+            where=where,
+            expected=f"at least {FEWEST_SAMPLES}",
+            remedy="record longer, or leave the run out with --runs",
+        )
+    step = (float(time_s[-1]) - float(time_s[0])) / (time_s.size - 1)
+    uneven = np.flatnonzero(np.abs(np.diff(time_s) / step - 1.0) > UNEVEN)
+    if uneven.size:
+        k = int(uneven[0])
+        raise InputError(
+            f"time_s goes on by {time_s[k + 1] - time_s[k]:.4g} s, by {step:.4g} s on average",
+            where=f"{where}, row {k + 1}",
+            expected="an even clock",
+            remedy="cut the run there, or resample it before ingest",
+        )
+    if float(np.ptp(u)) == 0.0:
+        still = u[0] == 0.0
+        raise InputError(
+            "the motor stands still" if still else f"the motor keeps one speed, {u[0]:.4g} rpm",
+            where=where,
+            expected="a motor_speed_rpm that changes",
+            remedy="record a chirp, steps or sines, or leave the run out with --runs",
+        )
+    noise = _noise(x[~interpolated(x)])
+    if float(np.ptp(x)) <= MOVED * noise:
+        raise InputError(
+            f"x_in_mm does not move (noise {noise:.2g} mm)",
+            where=where,
+            expected="a drive that moves the tendon",
+            remedy="leave the run out with --runs, or mend the sensor",
+        )
+    run = DriveRun(
+        recording.run.id,
+        sampled(step, u, hold),
+        x,
+        noise if noise > 0.0 else 1e-6 * float(np.ptp(x)),
+        bool(abs(u[0]) <= AT_REST * np.abs(u).max()),
+    )
+    _refuse_unrelated(run, where)
+    return run
+
+
+def _channel(recording: Recording, name: str) -> Floats:
+    values = recording.get(name)
+    if values is None:
+        raise InputError(
+            f"column {name} is missing",
+            where=recording.run.file,
+            expected="motor_speed_rpm and x_in_mm, as a recording of a drive has",
+            remedy=f"there are: {', '.join(recording.columns)}; leave the run out with --runs",
+        )
+    gaps = np.flatnonzero(~np.isfinite(values))
+    if gaps.size:
+        raise InputError(
+            f"{name} has {gaps.size} gap{'s' if gaps.size > 1 else ''}",
+            where=f"{recording.run.file}, row {gaps[0]}",
+            expected="a value in each row: the drive remembers what was asked of it",
+            remedy="cut the run before the gap",
+        )
+    return values
+
+
+def _noise(values: Floats) -> float:
+    stretches = max(1, min(STRETCHES, values.size // FEWEST_OF_NOISE))
+    return float(np.median([noise_sd(part) for part in np.array_split(values, stretches)]))
+
+
+def _refuse_unrelated(run: DriveRun, where: str) -> None:
+    """Stop where x_in is not what the motor's turns make of it, whatever the lags."""
+    time = run.time_s - run.time_s.mean()
+    turns, travel = (_without_line(time, v) for v in (run.u.integral, run.x_in))
+    together = float(turns @ travel) / max(float(np.linalg.norm(turns)), 1e-300)
+    follows = together / max(float(np.linalg.norm(travel)), 1e-300)
+    if follows < FOLLOWS:
+        turned = " but its opposite" if follows < -FOLLOWS else ""
+        raise InputError(
+            f"x_in_mm does not follow the turns of the motor{turned} (correlation {follows:.2f})",
+            where=where,
+            expected="an x_in_mm that goes with the integral of motor_speed_rpm",
+            remedy="are columns, signs or runs exchanged? see the map of `tsas ingest`",
+        )
+
+
+def _without_line(time: Floats, values: Floats) -> Floats:
+    centred = values - values.mean()
+    line: Floats = centred - time * float(time @ centred) / float(time @ time)
+    return line

@@ -1,0 +1,91 @@
+"""An identified drive in words: the structure of G(s), its inverse, what to do next."""
+
+from typing import Any
+
+from tsas_cli.drive.diagnosis import DriveDiagnosis
+from tsas_cli.drive.estimates import DataSheet, total_lag_s
+from tsas_cli.drive.fit import Terms
+from tsas_cli.identification.estimate import Estimate
+from tsas_cli.physics.drive import DriveValues
+
+_FACTORS = {
+    "lag": "(τs + 1)",
+    "spring": "(s²/ω² + 2ζs/ω + 1)",
+}
+_NAMES = {"lag": "lag", "delay": "delay", "spring": "second-order lag", "leak": "1/(s + a)"}
+
+
+def name_of(terms: Terms) -> str:
+    """Return a structure of G(s) in words."""
+    lags = [_NAMES[t] for t in ("lag", "spring", "delay") if t in terms]
+    head = "1/(s + a)" if "leak" in terms else "integrator"
+    return " with ".join([head, " and ".join(lags)]) if lags else head
+
+
+def equation_of(terms: Terms) -> str:
+    """Return G(s) as reports print it."""
+    late = " e^(−Ts)" if "delay" in terms else ""
+    below = ["(s + a)" if "leak" in terms else "s", *(_FACTORS[t] for t in _FACTORS if t in terms)]
+    whole = " ".join(below)
+    return f"G(s) = K{late} / ({whole})" if len(below) > 1 else f"G(s) = K{late} / {whole}"
+
+
+def inverse_of(values: DriveValues) -> str:
+    """Return the inverse that the feedforward realises (48)-(51)."""
+    K, lag = values.gain_mm_per_s_rpm, total_lag_s(values)
+    own = f" + {values.leak_per_s / K:.4g}" if values.leak_per_s else ""
+    second = f" + {lag / K:.4g} s²" if lag > 0.0 else ""
+    first = (1.0 + values.leak_per_s * lag) / K  # (s + a)(Ls + 1) / K
+    return f"G⁻¹(s) ≈ {first:.4g} s{second}{own}; u_ff = kV dx/dt + kA d²x/dt²"
+
+
+def next_run(found: DriveDiagnosis) -> str:
+    """Return what to record next."""
+    if any(cause.rivals for cause in found.causes):
+        return (
+            "A chirp to higher frequencies: a lag lets the amplitude fall, a delay does not, and "
+            "play shows at each reversal of slow sines of different amplitude."
+        )
+    if found.unexplained:
+        return "Repeat a run without change: what comes back is the drive's, the rest is chance."
+    return "The same chirp with half the amplitude: what is linear scales with it, play does not."
+
+
+def cannot_tell(
+    summary: dict[str, Any], sheet: DataSheet, final: Terms, known: dict[str, Estimate]
+) -> list[str]:
+    """Return what the recordings do not say, and why."""
+    band = summary["frequency_response"]["band_Hz"]
+    said = []
+    if band is None:
+        said.append(
+            "No frequency has a coherence above 0.8: x_in shows little that the motor's speed "
+            "explains linearly, and start values came from the travel alone."
+        )
+    said += [
+        f"A {pole['kind']} lies at {pole['frequency_Hz']:.3g} Hz, outside of the band that the "
+        f"input shows ({band[0]:.3g} to {band[1]:.3g} Hz): it is only seen by its tail, and "
+        "another lag may look the same. Record a chirp beyond it."
+        for pole in summary["poles"]
+        if band is not None and not pole["in_band"]
+    ]
+    if "spring" not in final:
+        said.append(
+            "These recordings show no resonance: the drive is stiffer than they tell"
+            + ("" if band is None else f", beyond {band[1]:.3g} Hz")
+            + "."
+        )
+    elif sheet.inertia_N_mm_s2 is None:
+        said.append(
+            "Speed and position show ratios of J, B, k_d and k_p only: inertia_N_mm_s2 under [rig] "
+            "of the manifest would turn the resonance into a stiffness."
+        )
+    if "spring" in final and sheet.stated_frequency is None:
+        said.append(
+            "Without J, r1 and k_p = kL e^(μθ) of the data sheet a pull-back k_p that is as large "
+            "as k_d + k_p would look like the reaction of the drive's stiffness in Eq. (25)."
+        )
+    said += [f"{e.name} ended at its bound." for e in known.values() if e.at_bound]
+    if not summary["fit"]["converged"]:
+        said.append(f"The fit did not converge: {summary['fit']['message']}.")
+    return said

@@ -1,0 +1,90 @@
+"""What `closing.json` holds, as far as it is read (docs/formats.md)."""
+
+from typing import Any, ClassVar, Literal
+
+from pydantic import Field
+
+from tsas_cli.records.base import Record, StageFile
+
+
+class Rmse(Record):
+    """Mean and standard deviation over the seeds [N]; of one seed no spread."""
+
+    mean: float = Field(gt=0)
+    sd: float | None = None
+
+
+class Scores(Record):
+    """How well the wanted force is followed with one model."""
+
+    rmse_N: Rmse
+
+
+class Models(Record):
+    """The scores of one controller with each model in its inverse and feedforward."""
+
+    data_sheet: Scores = Field(alias="data sheet")
+    calibrated: Scores
+    extended: Scores
+    true: Scores
+
+
+class Row(Record):
+    """One controller of a case; `over_limit` is the RMSE with the extended over the true model."""
+
+    controller: str
+    models: Models
+    over_limit: float
+
+    @property
+    def by_model(self) -> dict[str, Rmse]:
+        """The RMSE by the model's role in plots, from the poorest to the limit."""
+        models = self.models
+        return {
+            "data-sheet": models.data_sheet.rmse_N,
+            "calibrated": models.calibrated.rmse_N,
+            "extended": models.extended.rmse_N,
+            "true": models.true.rmse_N,
+        }
+
+    @property
+    def gain(self) -> float:
+        """By which factor the extended model lowers the RMSE of the data sheet's."""
+        return self.models.data_sheet.rmse_N.mean / self.models.extended.rmse_N.mean
+
+
+class Named(Record):
+    """An effect that the diagnosis names; `rivals` are those that may be it just as well."""
+
+    effect: str
+    rivals: tuple[str, ...] = ()
+
+
+class Case(Record):
+    """What was hidden in the plant, what was named, and how each controller tracks then."""
+
+    case: str
+    title: str
+    hidden: dict[str, float]
+    verdict: str
+    named: tuple[Named, ...]
+    controllers: tuple[Row, ...] = Field(min_length=1)
+
+
+class Closing(StageFile):
+    """The content of `closing.json`; each case's dataset and diagnosis lie in a folder below."""
+
+    FILE: ClassVar[str] = "closing.json"
+    stage: Literal["close-loop"]
+    version: str
+    settings: dict[str, Any]
+    seeds: tuple[int, int]
+    cases: tuple[Case, ...] = Field(min_length=1)
+
+    def of_controllers(self) -> dict[str, dict[str, Row]]:
+        """Return the rows by controller, and of each by case."""
+        found: dict[str, dict[str, Row]] = {}
+        for case in self.cases:
+            for row in case.controllers:
+                found.setdefault(row.controller, {})[case.case] = row
+        return found

@@ -1,0 +1,96 @@
+"""Say what is wrong with recordings."""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from tsas_cli.recordings.dataset import Dataset
+from tsas_cli.recordings.quality import Report, check_dataset
+from tsas_cli.recordings.quality.finding import Finding, NotChecked
+from tsas_cli.records.result import Result, Table
+from tsas_cli.stages.given import Named, dataset_of, path_of
+from tsas_cli.support.files import folder_if, write_json
+from tsas_cli.support.steps import SILENT, Steps
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class CheckResult(Result):
+    """What the checks found, and which of them could not tell.
+
+    Parameters
+    ----------
+    report
+        The findings, and the checks that could not tell.
+    """
+
+    report: Report
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """What is wrong: code, severity, run, column, a sentence, and what to do."""
+        return self.report.findings
+
+    @property
+    def not_checked(self) -> tuple[NotChecked, ...]:
+        """Checks that could not tell, with the reason; this is not the same as passed."""
+        return self.report.not_checked
+
+    def tables(self) -> list[Table]:
+        """Return what was found, what to do about it, and what could not be told."""
+        return list(_tables(self.report))
+
+
+def check(
+    dataset: Dataset | Named,
+    *,
+    out: Named | None = None,
+    runs: Iterable[str] | None = None,
+    force: bool = False,
+    step: Steps = SILENT,
+) -> CheckResult:
+    """Say what is wrong with recordings before anyone fits anything.
+
+    Parameters
+    ----------
+    dataset
+        A dataset, or its folder.
+    out
+        Where to write `check.json`; None writes nothing.
+    runs
+        The ids of the runs that are looked at; all without it.
+    force
+        Replace the folder if it is there.
+    step
+        Told of a piece of work per run.
+
+    Returns
+    -------
+    CheckResult
+        `.findings` and `.not_checked`.
+
+    Raises
+    ------
+    InputError
+        No run can be read, or `out` exists and `force` is not set.
+    """
+    data, folder = dataset_of(dataset, runs), path_of(out)
+    with folder_if(folder, stage="check", inputs=[data.folder], force=force) as written:
+        report = check_dataset(data, step)
+        summary = data.header("check", folder) | report.content()
+        if written is not None:
+            write_json(written / "check.json", summary)
+    return CheckResult(summary, folder, report)
+
+
+def _tables(report: Report) -> Iterator[Table]:
+    found = [(str(f.severity), f.code, f.run or "", f.sentence) for f in report.findings]
+    header = ("severity", "code", "run", "finding") if found else ()
+    yield f"the checks found {len(found) or 'nothing'}", header, found
+    remedies = dict.fromkeys((f.code, f.remedy) for f in report.findings)
+    if remedies:
+        yield "what to do", ("code", "remedy"), list(remedies)
+    reasons: dict[tuple[str, str], list[str]] = {}
+    for silent in report.not_checked:
+        reasons.setdefault((silent.code, silent.reason), []).append(silent.run or "")
+    if reasons:
+        rows = [(code, reason, ", ".join(runs)) for (code, reason), runs in reasons.items()]
+        yield "not checked", ("code", "reason", "runs"), rows

@@ -1,0 +1,123 @@
+"""Hold two models, or what two stages wrote, against each other."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from tsas_cli.comparing import stage, tracked_stage
+from tsas_cli.comparing.compare import Comparison
+from tsas_cli.comparing.compare import compare as compare_sides
+from tsas_cli.comparing.tracked import Tracks, are_tracked, compare_tracked
+from tsas_cli.recordings.dataset import Dataset
+from tsas_cli.records.result import Result, Table, notes
+from tsas_cli.stages.given import Named, dataset_of
+from tsas_cli.support.errors import InputError
+from tsas_cli.support.files import folder_if, write_json
+from tsas_cli.support.steps import SILENT, Steps
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class CompareResult(Result):
+    """What differs between A and B, and whether that is more than the uncertainty.
+
+    Parameters
+    ----------
+    both
+        The two sides: models and their answers, or two folders of tracked runs.
+    """
+
+    both: Comparison | Tracks
+
+    def tables(self) -> list[Table]:
+        """Return the values, effects and errors of both sides."""
+        if isinstance(self.both, Tracks):
+            return tracked_stage.tables(self.both)
+        return stage.tables(self.both)
+
+    def sentences(self) -> list[str]:
+        """Return what was found, and what limits it."""
+        return [*self.summary["findings"], *notes(self.summary["notes"])]
+
+
+def compare(
+    a: Named,
+    b: Named,
+    *,
+    out: Named | None = None,
+    on: Dataset | Named | None = None,
+    runs: Iterable[str] | None = None,
+    fit_own: bool = False,
+    force: bool = False,
+    step: Steps = SILENT,
+) -> CompareResult:
+    """Say what differs between two models, and whether that is more than the uncertainty.
+
+    Parameters
+    ----------
+    a
+        A model file, or a folder that `tsas calibrate`, `diagnose`, `simulate` or `track` wrote.
+    b
+        What it is compared with, likewise.
+    out
+        Where to write `compare.json` and `report.html`; None writes nothing.
+    on
+        A dataset that both models are simulated on.
+    runs
+        The ids of its runs that are taken; all without it.
+    fit_own
+        Fit each run's own preload and zeros to `on` first.
+    force
+        Replace the folder if it is there.
+    step
+        Told of a piece of work per simulation and section.
+
+    Returns
+    -------
+    CompareResult
+        `.summary["parameters"]` holds the values of both sides, with the interval of their
+        difference where there is one, in the parameter's unit.
+
+    Raises
+    ------
+    InputError
+        A or B is none of these, there is nothing that both hold, a recording cannot be read, an
+        option has nothing to work on, or `out` exists and `force` is not set.
+    """
+    paths = Path(a), Path(b)
+    tracks = are_tracked(*paths)
+    _refuse(on=on is not None, runs=runs is not None, fit_own=fit_own, tracks=tracks)
+    data = None if on is None else dataset_of(on, runs)
+    inputs = [*paths, *([] if data is None else [data.folder])]
+    path = None if out is None else Path(out)
+    with folder_if(path, stage="compare", inputs=inputs, force=force) as folder:
+        both = (
+            compare_tracked(*paths)
+            if tracks
+            else compare_sides(*paths, on=data, fit_own=fit_own, step=step)
+        )
+        summary = tracked_stage.as_json(both) if isinstance(both, Tracks) else stage.as_json(both)
+        if folder is not None:
+            write_json(folder / stage.FILE, summary)
+            (folder / "report.html").write_text(_page(both, step), encoding="utf-8")
+    return CompareResult(summary, path, both)
+
+
+def _page(both: Comparison | Tracks, step: Steps) -> str:
+    from tsas_cli.reporting.comparing.page import comparison_page
+    from tsas_cli.reporting.comparing.tracked import tracked_page
+
+    return tracked_page(both, step) if isinstance(both, Tracks) else comparison_page(both, step)
+
+
+def _refuse(*, on: bool, runs: bool, fit_own: bool, tracks: bool) -> None:
+    """Refuse options that have nothing to work on."""
+    if tracks and on:
+        raise InputError("closed loops have recordings of their own", where="--on")
+    if runs and not on:
+        raise InputError("there is no dataset to take runs of", where="--runs", remedy="add --on")
+    if fit_own and not on:
+        raise InputError(
+            "there are no recordings to fit each run's own values to",
+            where="--fit-own",
+            remedy="add --on DATASET",
+        )

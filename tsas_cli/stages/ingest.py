@@ -1,0 +1,93 @@
+"""Turn files of a rig into a dataset."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from tsas_cli.recordings.dataset import Dataset, read_dataset
+from tsas_cli.recordings.ingest import Ingested, find_files, ingest_files
+from tsas_cli.recordings.ingest_map import read_map
+from tsas_cli.records.result import Result, Table
+from tsas_cli.stages.given import Named, paths_of
+from tsas_cli.support import __version__
+from tsas_cli.support.files import new_folder
+from tsas_cli.support.steps import SILENT, Steps
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class IngestResult(Result):
+    """What became of the files.
+
+    Parameters
+    ----------
+    dataset
+        The dataset that was written.
+    runs
+        Of each file the run's id, its rows, duration [s], rate [Hz] and columns.
+    """
+
+    dataset: Dataset
+    runs: tuple[Ingested, ...]
+
+    def tables(self) -> list[Table]:
+        """Return a row for each run."""
+        header = ("run", "rows", "duration", "rate", "columns")
+        rows = [
+            (
+                r.run,
+                f"{r.rows}",
+                f"{r.duration_s:.6g} s",
+                f"{r.rate_Hz:.6g} Hz",
+                " ".join(r.columns),
+            )
+            for r in self.runs
+        ]
+        return [(f"dataset {self.out}", header, rows)]
+
+
+def ingest(
+    sources: Named | Iterable[Named],
+    *,
+    map: Named,  # noqa: A002 # as the option is called
+    out: Named,
+    force: bool = False,
+    step: Steps = SILENT,
+) -> IngestResult:
+    """Turn files of a rig into a dataset, as a map says.
+
+    Parameters
+    ----------
+    sources
+        Files (CSV, TSV, MATLAB, MDF4, JSON, Parquet), or folders to search; one or several.
+    map
+        The file that says which column is what, in which unit (docs/ingest.md).
+    out
+        The dataset's folder to write; what makes recordings has no use without it.
+    force
+        Replace the folder if it is there.
+    step
+        Told of two pieces of work per file: opened, written.
+
+    Returns
+    -------
+    IngestResult
+        What became of each file; `.dataset` is the dataset.
+
+    Raises
+    ------
+    InputError
+        The map or a file is wrong, or `out` exists and `force` is not set; nothing is written then.
+    """
+    map_path, folder = Path(map), Path(out)
+    mapping = read_map(map_path)
+    files = find_files(paths_of(sources), mapping.read.files)
+    with new_folder(folder, stage="ingest", inputs=[*files, map_path], force=force) as written:
+        runs = ingest_files(files, mapping, map_path, written, step=step)
+    summary = {
+        "format": 1,
+        "stage": "ingest",
+        "version": __version__,
+        "dataset": {"name": mapping.dataset.name, "folder": str(folder)},
+        "runs": [vars(run) | {"source": str(run.source)} for run in runs],
+    }
+    return IngestResult(summary, folder, read_dataset(folder), tuple(runs))

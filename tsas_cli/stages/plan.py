@@ -1,0 +1,180 @@
+"""The plan stage: what a dataset's or a rig file's runs could show, as JSON and as tables."""
+
+import math
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from tsas_cli.diagnosis.plan import Plan, Proposal, plan_dataset, plan_rig
+from tsas_cli.diagnosis.rig_file import read_rig_file
+from tsas_cli.diagnosis.visibility import Seen
+from tsas_cli.recordings.dataset import Dataset, read_dataset
+from tsas_cli.recordings.storage import place_of
+from tsas_cli.records.result import Result, Table, notes
+from tsas_cli.stages.given import Named, path_of
+from tsas_cli.support import __version__
+from tsas_cli.support.files import folder_if, sha256_of, write_json
+from tsas_cli.support.steps import SILENT, Steps
+
+FILE = "plan.json"
+SAID = 4  # improvements of a proposal that are printed
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class PlanResult(Result):
+    """What a set of runs could show, and which further run helps most.
+
+    Parameters
+    ----------
+    plan
+        From which size on each effect is seen and named, what hides in what, and the proposals.
+    """
+
+    plan: Plan
+
+    def tables(self) -> list[Table]:
+        """Return each effect, the pairs, the proposals."""
+        return _tables(self.summary)
+
+    def sentences(self) -> list[str]:
+        """Return what the runs do not show, and why."""
+        return notes(self.summary["cannot_tell"])
+
+
+def plan(
+    runs: Dataset | Named,
+    *,
+    out: Named | None = None,
+    force: bool = False,
+    step: Steps = SILENT,
+) -> PlanResult:
+    """Say from which size on runs would show each effect, and which further run helps most.
+
+    Parameters
+    ----------
+    runs
+        A dataset, its folder, or a rig file with planned runs (docs/plan.md).
+    out
+        Where to write `plan.json`; None writes nothing.
+    force
+        Replace the folder if it is there.
+    step
+        Told of a piece of work for each run that might be added.
+
+    Returns
+    -------
+    PlanResult
+        `.plan` holds what is seen from which size on, and the proposals.
+
+    Raises
+    ------
+    InputError
+        The dataset or the file is wrong, no run shows anything, or `out` exists and `force` is
+        not set.
+    """
+    if not isinstance(runs, Dataset):
+        place = place_of(runs)
+        is_rig = isinstance(place, Path) and not place.is_dir()
+        runs = Path(runs) if is_rig else read_dataset(place)
+    path = path_of(out)
+    read = runs.folder if isinstance(runs, Dataset) else runs
+    with folder_if(path, stage="plan", inputs=[read], force=force) as folder:
+        if isinstance(runs, Dataset):
+            summary = runs.header("plan", path)
+            planned = plan_dataset(runs, step)
+        else:
+            file = read_rig_file(runs)
+            where = Path(os.path.relpath(runs.resolve(), (path or Path()).resolve())).as_posix()
+            rig = {"name": file.name, "file": where, "sha256": sha256_of(runs)}
+            summary = {"format": 1, "stage": "plan", "version": __version__, "rig": rig}
+            planned = plan_rig(file, step)
+        summary |= as_json(planned)
+        if folder is not None:
+            write_json(folder / FILE, summary)
+    return PlanResult(summary, path, planned)
+
+
+def as_json(plan: Plan) -> dict[str, Any]:
+    """Return what `plan.json` says of a plan."""
+    return {
+        "effects": [_seen(seen) for seen in plan.seen],
+        "groups": [list(group) for group in plan.groups],
+        "proposals": [_proposal(proposal) for proposal in plan.proposals],
+        "cannot_tell": list(plan.cannot_tell),
+    }
+
+
+def _seen(seen: Seen) -> dict[str, Any]:
+    return {
+        "effect": seen.cause.effect.name,
+        "parameter": seen.cause.parameter.name,
+        "unit": seen.cause.parameter.unit,
+        "shape": {name.split(".")[1]: value for name, value in seen.cause.shape.items()},
+        "found_from": _finite(seen.found),
+        "named_from": _finite(seen.named),
+        "nearest": seen.nearest,
+        "hidden_in": seen.hidden_in,
+    }
+
+
+def _proposal(proposal: Proposal) -> dict[str, Any]:
+    return {
+        "run": proposal.candidate.run.model_dump(exclude={"id"}, exclude_none=True),
+        "sentence": proposal.candidate.sentence,
+        "falls_percent": 100.0 * (1.0 - math.exp(-proposal.score)),
+        "better": [
+            {
+                "effect": better.cause.effect.name,
+                "parameter": better.cause.parameter.name,
+                "unit": better.cause.parameter.unit,
+                "named_from": _finite(better.before),
+                "named_from_with_it": _finite(better.after),
+            }
+            for better in proposal.better
+        ],
+    }
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None
+
+
+def _tables(summary: dict[str, Any]) -> list[Table]:
+    """Return each effect, the pairs, the proposals."""
+    rows = [
+        (
+            row["effect"],
+            row["parameter"],
+            row["unit"],
+            _size(row["found_from"], "not shown"),
+            _size(row["named_from"], "" if row["found_from"] is None else "never"),
+            ", ".join(row["hidden_in"]) or row["nearest"] or "",
+        )
+        for row in summary["effects"]
+    ]
+    header = ("effect", "parameter", "unit", "found from", "named from", "nearest")
+    out: list[Table] = [("smallest size of each effect, less its neutral value", header, rows)]
+    if summary["groups"]:
+        out.append(("cannot be told apart", ("effect", "and"), summary["groups"]))
+    return [*out, *(_proposal_table(proposal) for proposal in summary["proposals"])]
+
+
+def _proposal_table(proposal: dict[str, Any]) -> Table:
+    rows = [
+        (
+            row["effect"],
+            row["parameter"],
+            row["unit"],
+            _size(row["named_from"], "never"),
+            _size(row["named_from_with_it"], "never"),
+        )
+        for row in proposal["better"][:SAID]
+    ]
+    much = f"{proposal['falls_percent']:.0f} %"
+    title = f"add {proposal['sentence']}: sizes fall by {much} on average"
+    return title, ("effect", "parameter", "unit", "named from", "with it"), rows
+
+
+def _size(value: float | None, otherwise: str) -> str:
+    return otherwise if value is None else f"{value:.2g}"

@@ -1,0 +1,120 @@
+"""Write one HTML page of what the stages found."""
+
+from collections.abc import Iterable
+from contextlib import ExitStack
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+from tsas_cli.recordings.manifest import FILE as MANIFEST
+from tsas_cli.recordings.storage import Place
+from tsas_cli.records.result import Result, Table
+from tsas_cli.reporting.inputs import Inputs, read_inputs
+from tsas_cli.reporting.page import SECTIONS, page
+from tsas_cli.reporting.pdf import MARK as PDF_MARK
+from tsas_cli.reporting.pdf import browser, print_page
+from tsas_cli.stages.given import Named, places_of
+from tsas_cli.support.errors import InputError
+from tsas_cli.support.files import new_file
+from tsas_cli.support.steps import SILENT, Steps
+from tsas_cli.verifying.seal import MARK as PAGE_MARK
+from tsas_cli.verifying.seal import with_seal
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class ReportResult(Result):
+    """A page that was written, and from what; `out` is the page.
+
+    Parameters
+    ----------
+    sizes
+        Each file that was written, in bytes.
+    """
+
+    sizes: dict[str, int]
+
+    def tables(self) -> list[Table]:
+        """Return what was read."""
+        title = "; ".join(f"{path}, {size / 1e6:.2f} MB" for path, size in self.sizes.items())
+        return [(title, ("file", "folder"), list(self.summary["read"].items()))]
+
+
+def report(
+    folders: Named | Iterable[Named],
+    *,
+    out: Named,
+    pdf: bool = False,
+    force: bool = False,
+    step: Steps = SILENT,
+) -> ReportResult:
+    """Write one self-contained HTML page: diagnosis, recordings, model, simulation and residual.
+
+    Parameters
+    ----------
+    folders
+        A dataset's folder or address, and the folders that the stages have written, one of each
+        kind.
+    out
+        The HTML file to write.
+    pdf
+        Print it to a PDF beside it too, with Chromium.
+    force
+        Replace what is there.
+    step
+        Told of a piece of work per section.
+
+    Returns
+    -------
+    ReportResult
+        `.out` is the page, `.summary` says what was read.
+
+    Raises
+    ------
+    InputError
+        A folder is of no known kind, does not belong to the dataset, `out` exists and `force` is
+        not set, or there is no Chromium to print with.
+    """
+    pages, places = [Path(out)], places_of(folders)
+    if pdf:
+        browser()  # before the work, where there is none
+        pages.append(_beside(Path(out)))
+    with ExitStack() as stack:
+        written = partial(new_file, inputs=places, force=force)
+        html, *printed = (
+            stack.enter_context(written(path, mark=mark))
+            for path, mark in zip(pages, (PAGE_MARK, PDF_MARK), strict=False)
+        )
+        inputs = read_inputs(places)
+        step.ahead(len(SECTIONS))
+        text = with_seal(page(inputs, step), _files_of(inputs), pages[0])
+        html.write_text(text, encoding="utf-8")
+        for path in printed:
+            print_page(text, path)
+    read = {} if inputs.dataset is None else {"dataset.toml": str(inputs.dataset.folder)}
+    read |= {kind.FILE: str(folder) for kind, folder in inputs.folders.items()}
+    sizes = {str(path): path.stat().st_size for path in pages}
+    summary = {"stage": "report", "page": str(out), "bytes": sizes[str(pages[0])], "read": read}
+    if pdf:
+        summary["pdf"] = str(pages[1])
+    return ReportResult(summary, pages[0], sizes)
+
+
+def _files_of(inputs: Inputs) -> list[tuple[Place, str]]:
+    """Return the files that say what was read, by which all else is found."""
+    stages: list[tuple[Place, str]] = [
+        (folder, kind.FILE) for kind, folder in inputs.folders.items()
+    ]
+    return stages if inputs.dataset is None else [(inputs.dataset.folder, MANIFEST), *stages]
+
+
+def _beside(out: Path) -> Path:
+    """Return where the PDF goes, which must not be where the page goes."""
+    path = out.with_suffix(".pdf")
+    if path == out:
+        raise InputError(
+            "is the name of the PDF",
+            where=out,
+            expected="another name for the page",
+            remedy="choose an --out that ends in .html",
+        )
+    return path

@@ -1,0 +1,163 @@
+"""Find runs among those of many datasets."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tsas_cli.collection.index import index_of
+from tsas_cli.collection.query import Answer, asked, connected
+from tsas_cli.records.result import Result, Table, notes
+from tsas_cli.support import __version__
+from tsas_cli.support.errors import InputError
+from tsas_cli.support.steps import SILENT, Steps
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+SHOWN = (
+    "folder",
+    "run",
+    "started",
+    "load",
+    "total_bend_rad",
+    "preload_N",
+    "rows",
+    "rate_Hz",
+    "channels",
+    "tags",
+    "verdict",
+    "causes",
+)
+TIMES = frozenset({"started", "diagnosed"})
+MOST_SHOWN = 50  # runs in a table for which no limit was asked
+MOST_NOTES = 10
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class RunsResult(Result):
+    """The runs that a query names.
+
+    Parameters
+    ----------
+    answer
+        The columns that were asked for, and a row of values for each run.
+    shown
+        The columns of the table.
+    """
+
+    answer: Answer
+    shown: Sequence[str]
+
+    @property
+    def paths(self) -> tuple[str, ...]:
+        """The folders of their datasets, each once."""
+        return self.answer.folders
+
+    def frame(self) -> "pd.DataFrame":
+        """Return a row for each run, as a pandas table; `tags` is a dict."""
+        import pandas as pd
+
+        frame = pd.DataFrame(self.answer.rows, columns=list(self.answer.columns))
+        for name in TIMES.intersection(frame.columns):
+            frame[name] = pd.to_datetime(frame[name])
+        return frame
+
+    def tables(self) -> list[Table]:
+        """Return the runs; a column that is empty in all of them is left out."""
+        limited = self.summary["limit"] is not None
+        rows = self.answer.rows[: None if limited else MOST_SHOWN]
+        cells = [[_cell(value) for value in row] for row in rows]
+        names = self.answer.columns
+        places = [names.index(name) for name in self.shown]
+        told = [k for k in places if any(row[k] for row in cells)]
+        header = [names[k] for k in told]
+        title = f"{self.answer.fitting} of {self.answer.all_runs} runs"
+        if len(rows) < self.answer.fitting:
+            title += f", the first {len(rows)} of them"
+        return [(title, header, [[row[k] for k in told] for row in cells])]
+
+    def sentences(self) -> list[str]:
+        """Return which files could not be read."""
+        problems = self.answer.problems
+        more = len(problems) - MOST_NOTES
+        said = problems[:MOST_NOTES] + ([f"and {more} more, in --json"] if more > 0 else [])
+        return notes(said)
+
+
+def runs(
+    query: str = "",
+    folders: str | Path | Iterable[str | Path] = ".",
+    *,
+    columns: Sequence[str] = (),
+    sort: Sequence[str] = (),
+    limit: int | None = None,
+    step: Steps = SILENT,
+) -> RunsResult:
+    """Find runs among those of all datasets below some folders.
+
+    Parameters
+    ----------
+    query
+        A condition in SQL over the columns (docs/catalogue.md), such as
+        `total_bend_rad > 3 and f_out in channels and started >= 2026-01`; all runs without it.
+    folders
+        Where to look; the current folder without it.
+    columns
+        What is told of each run; all of it without them.
+    sort
+        Columns to sort by, with a minus before the name the other way round.
+    limit
+        How many runs at most.
+    step
+        Told of a piece of work per file that is new or has changed.
+
+    Returns
+    -------
+    RunsResult
+        `.frame()` is a pandas table with a row per run, `.paths` are the datasets' folders.
+
+    Raises
+    ------
+    InputError
+        The query is no condition on these columns, a folder is none, or duckdb is not installed.
+    """
+    named = [folders] if isinstance(folders, str | Path) else list(folders)
+    if limit is not None and limit < 0:
+        raise InputError(f"limit is {limit}", expected="0 or more")
+    with connected() as connection:
+        index = index_of([Path(folder) for folder in named], connection, step)
+        answer = asked(connection, index, query, columns=columns, sort=sort, limit=limit)
+    summary = {
+        "format": 1,
+        "stage": "runs",
+        "version": __version__,
+        "query": query,
+        "folders": [str(folder) for folder in named],
+        "limit": limit,
+        "fitting": answer.fitting,
+        "all_runs": answer.all_runs,
+        "runs": [
+            {name: _plain(value) for name, value in zip(answer.columns, row, strict=True)}
+            for row in answer.rows
+        ],
+        "problems": answer.problems,
+    }
+    return RunsResult(summary, None, answer, tuple(columns) or SHOWN)
+
+
+def _plain(value: Any) -> Any:
+    return value.isoformat() if isinstance(value, datetime) else value
+
+
+def _cell(value: Any) -> str:
+    if value is None:
+        return ""
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    if isinstance(value, datetime):
+        return value.isoformat(sep=" ", timespec="minutes")
+    if isinstance(value, dict):
+        return ", ".join(f"{key}={each}" for key, each in value.items())
+    return ", ".join(value) if isinstance(value, list) else str(value)

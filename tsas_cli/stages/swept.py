@@ -1,0 +1,142 @@
+"""One task of a sweep: a call of a stage's function, and its folder, whole or absent."""
+
+import os
+import socket
+import time
+from inspect import signature
+from pathlib import Path
+from typing import Any, get_type_hints
+
+from pydantic import TypeAdapter
+
+import tsas_cli as tsas
+from tsas_cli.identification.estimate import Estimate
+from tsas_cli.identification.model import Model, data_sheet
+from tsas_cli.identification.quantities import QUANTITIES
+from tsas_cli.recordings.dataset import Dataset
+from tsas_cli.recordings.manifest import FILE as MANIFEST
+from tsas_cli.stages.read import read, read_model
+from tsas_cli.support.errors import InputError
+from tsas_cli.support.files import new_folder, read_json, sha256_of, write_json, write_sums
+from tsas_cli.support.temporaries import remove
+from tsas_cli.sweeping.answer import Answer, failure, success
+from tsas_cli.sweeping.folder import JOURNAL, what_is_done
+from tsas_cli.sweeping.found import estimates, figures
+from tsas_cli.sweeping.tasks import FILE
+from tsas_cli.sweeping.values import FILES, Options, with_settings
+from tsas_cli.sweeping.versions import ONE_THREAD, refuse_others, versions
+
+WORK = "tsas_cli.stages.swept:work"
+OF_A_SWEEP = {"dataset", "out", "force", "step", "each"}  # not for a plan to say
+TRACKED = "track"  # the run of the closed loop's data sheet
+Told = dict[str, Any]
+
+
+def options_of(stage: str) -> Options:
+    """Return the keywords of a stage's function that a plan may set, and what each may be."""
+    hints = get_type_hints(getattr(tsas, stage)) | {"runs": list[str] | None}
+    return {
+        name: TypeAdapter(Any if name in FILES else hints[name])
+        for name in signature(getattr(tsas, stage)).parameters
+        if name not in OF_A_SWEEP
+    }
+
+
+def work(task: Told) -> Answer:
+    """Do a task; what goes wrong is its answer."""
+    os.environ.update(ONE_THREAD)  # this process does one task at a time
+    start, before = time.perf_counter(), time.process_time()
+    try:
+        refuse_others(task["inputs"]["versions"], versions(), "this worker")
+        answer = _done(task)
+    except InputError as error:
+        answer = failure(_as_named(error.line(), task), defect=False)
+    except Exception as error:  # noqa: BLE001 # the other tasks go on; this one says what it was
+        answer = failure(f"a defect of tsas itself: {type(error).__name__}: {error}")
+    return answer | {
+        "where": f"{socket.gethostname()}, process {os.getpid()}",
+        "seconds": time.perf_counter() - start,
+        "processor_seconds": time.process_time() - before,
+    }
+
+
+def _as_named(line: str, task: Told) -> str:
+    """Return a line with files as the plan names them, so that it is the same in every place."""
+    named = {name: source["file"] for name, source in task["inputs"]["files"].items()}
+    if "dataset" in task["inputs"]:
+        named["dataset"] = task["inputs"]["dataset"]["name"]
+    for name, said in named.items():
+        line = line.replace(task["places"][name], said)
+    return line
+
+
+def _done(task: Told) -> Answer:
+    """Call the stage, and write its folder with what it was told and what came out."""
+    inputs, places, key = task["inputs"], task["places"], task["key"]
+    out = Path(places["out"])
+    if not (out.parent / JOURNAL).is_file():
+        raise InputError("is not there", where=out.parent, expected="the folder of the sweep")
+    stage = inputs["stage"]
+    found = what_is_done(out, key)
+    if found is not None and not task["force"]:  # a worker died between this and its answer
+        return found
+    if found is None:
+        remove(out / key)  # half a result
+    # with force, since another worker may be doing it too
+    with new_folder(out / key, stage="sweep", inputs=(), force=True) as folder:
+        result = getattr(tsas, stage)(**_arguments(inputs, places), out=folder)
+        content = {"format": 1, "stage": "sweep", "key": key, "inputs": inputs}
+        content |= {"results": figures(stage, result), "parameters": estimates(stage, result)}
+        write_json(folder / FILE, content)
+        write_sums(folder)  # of the stage, now with this file
+        written: Told = read_json(folder / FILE)  # as a later call will find it
+    return success(written["results"], written["parameters"])
+
+
+def _arguments(inputs: Told, places: Told) -> Told:
+    """Return the keywords of the call."""
+    given: Told = inputs["options"] | {name: Path(places[name]) for name in inputs["files"]}
+    for name, source in inputs["files"].items():
+        _refuse_changed(Path(places[name]), source["sha256"])
+    if "dataset" in inputs:
+        given["dataset"] = dataset = _dataset(inputs, places)
+        if inputs["model"]:
+            base = data_sheet(dataset.manifest) if "model" not in given else given["model"]
+            runs = [run.id for run in dataset.runs]
+            given["model"] = _told(inputs["model"], runs, base)
+        return given
+    base = given.get("model")
+    if inputs["model"]:
+        given["model"] = _told(inputs["model"], [TRACKED], base)
+    if inputs["plant"]:
+        given["plant"] = _told(inputs["plant"], [TRACKED], given.get("plant", given.get("model")))
+    if inputs["settings"]:
+        given["settings"] = with_settings(given.get("settings"), inputs["settings"])
+    return given
+
+
+def _dataset(inputs: Told, places: Told) -> Dataset:
+    folder = Path(places["dataset"])
+    _refuse_changed(folder / MANIFEST, inputs["dataset"]["sha256"])
+    return read(folder).under(**inputs["conditions"])
+
+
+def _told(values: Told, runs: list[str], base: Model | Path | None) -> Model:
+    """Return a model with some values told; what has a value for each run has it for all."""
+    told: list[Estimate] = []
+    for name, value in values.items():
+        quantity = QUANTITIES[name]
+        of = [None] if quantity.shared else [None, *runs]
+        told += [Estimate(name, value, quantity.unit, "given", run) for run in of]
+    known = read_model(base) if isinstance(base, Path) else base or Model(())
+    return Model(tuple(told)).over(known)
+
+
+def _refuse_changed(path: Path, sha256: str) -> None:
+    """Stop where a file is another one than when the sweep was begun, or where the worker is."""
+    if not path.is_file():
+        raise InputError("is not there", where=path, expected="a file that every worker sees")
+    if sha256_of(path) != sha256:
+        raise InputError(
+            "is another file than when the sweep was begun", where=path, remedy="sweep again"
+        )

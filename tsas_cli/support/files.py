@@ -1,0 +1,302 @@
+"""Whole or absent: outputs appear under their name only when they are complete."""
+
+import errno
+import hashlib
+import json
+import math
+import os
+from collections.abc import Callable, Collection, Iterable, Iterator
+from contextlib import ExitStack, contextmanager
+from contextvars import ContextVar
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from tsas_cli.support import limits, memory
+from tsas_cli.support.errors import InputError
+from tsas_cli.support.replacing import (
+    SUMS,
+    exists,
+    refuse_address,
+    refuse_file,
+    refuse_folder,
+    refuse_kind,
+)
+from tsas_cli.support.temporaries import place_file, place_folder, temporary_for
+
+_FULL = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG})
+_NO_ROOM = _FULL | {errno.EROFS}
+_ADDED: ContextVar[Callable[[Path], None] | None] = ContextVar("added", default=None)
+
+
+def sha256_of(path: Path) -> str:
+    """Return the SHA-256 of a file as hexadecimal text."""
+    with path.open("rb") as stream:
+        return hashlib.file_digest(stream, "sha256").hexdigest()
+
+
+@contextmanager
+def new_folder(
+    path: Path, *, stage: str, inputs: Iterable[object], force: bool = False
+) -> Iterator[Path]:
+    """Yield a temporary folder that becomes `path` when the block ends without an error.
+
+    Parameters
+    ----------
+    path
+        The folder to write.
+    stage
+        The stage that writes it, as its JSON names it.
+    inputs
+        What the call reads, which the folder may neither be, hold nor lie inside of.
+    force
+        Replace an earlier output of the same stage.
+
+    Raises
+    ------
+    InputError
+        `path` exists and is not an empty folder, and `force` is not set; with `force`, where it is
+        no earlier output of the same stage, an input, or the current folder; it cannot be written.
+    """
+    replaced = partial(refuse_folder, path, stage=stage, inputs=tuple(inputs), force=force)
+    with ExitStack() as stack:
+        with _written(path):
+            limits.text_name(path.absolute())
+            refuse_address(path)
+            refuse_kind(path, folder=True)
+            replaced()
+            path.parent.mkdir(parents=True, exist_ok=True)
+            temporary = stack.enter_context(temporary_for(path))
+            temporary.mkdir(mode=0o700)
+        with _written(path, only=_NO_ROOM), _named(temporary, path):
+            yield temporary
+        with _written(path):
+            temporary.chmod(0o755)
+            replaced()  # somebody may have put something there meanwhile
+            place_folder(temporary, path, replace=force)
+
+
+@contextmanager
+def stage_folder(
+    path: Path, *, stage: str, inputs: Iterable[object], force: bool = False
+) -> Iterator[Path]:
+    """Yield a new folder as `new_folder` does; at its end `SHA256SUMS` lists the files in it.
+
+    Raises
+    ------
+    InputError
+        As `new_folder` raises it.
+    """
+    with new_folder(path, stage=stage, inputs=inputs, force=force) as folder:
+        add, own = _ADDED.get(), _ADDED.set(None)  # not for what is written inside of it
+        try:
+            yield folder
+            if add is not None:
+                add(folder)
+        finally:
+            _ADDED.reset(own)
+        write_sums(folder)
+
+
+@contextmanager
+def folder_if(
+    path: Path | None, *, stage: str, inputs: Iterable[object], force: bool = False
+) -> Iterator[Path | None]:
+    """Yield a new folder as `stage_folder` does, or None where no path says where to write.
+
+    Raises
+    ------
+    InputError
+        As `new_folder` raises it.
+    """
+    if path is None:
+        yield None
+        return
+    with stage_folder(path, stage=stage, inputs=inputs, force=force) as folder:
+        yield folder
+
+
+@contextmanager
+def added(add: Callable[[Path], None] | None) -> Iterator[None]:
+    """Have `add` write into the folder of the stage in the block, before it gets its name."""
+    before = _ADDED.set(add)
+    try:
+        yield
+    finally:
+        _ADDED.reset(before)
+
+
+@contextmanager
+def new_file(
+    path: Path, *, mark: bytes, inputs: Iterable[object], force: bool = False
+) -> Iterator[Path]:
+    """Yield a temporary file name that becomes `path` when the block ends without an error.
+
+    Parameters
+    ----------
+    path
+        The file to write.
+    mark
+        What an earlier output of the same command holds in its first 4 KiB; empty where any file
+        may be replaced, since its place is the program's own.
+    inputs
+        What the call reads, which the file may neither be nor lie inside of.
+    force
+        Replace an earlier output of the same command.
+
+    Raises
+    ------
+    InputError
+        `path` exists and `force` is not set; with `force`, where it is no earlier output or an
+        input; it is a folder, or it cannot be written.
+    """
+    replaced = partial(refuse_file, path, mark=mark, inputs=tuple(inputs), force=force)
+    with ExitStack() as stack:
+        with _written(path):
+            limits.text_name(path.absolute())
+            refuse_address(path)
+            refuse_kind(path, folder=False)
+            replaced()
+            path.parent.mkdir(parents=True, exist_ok=True)
+            temporary = stack.enter_context(temporary_for(path))
+            temporary.touch(mode=0o600)
+        with _written(path, only=_NO_ROOM):
+            yield temporary
+        with _written(path):
+            temporary.chmod(0o644)
+            replaced()
+            place_file(temporary, path, replace=force)
+
+
+@contextmanager
+def own_file(path: Path) -> Iterator[Path]:
+    """Yield as `new_file` does, for a file whose place is the program's own: it is replaced.
+
+    Raises
+    ------
+    InputError
+        It is a folder, or cannot be written.
+    """
+    with new_file(path, mark=b"", inputs=(), force=True) as temporary:
+        yield temporary
+
+
+def write_sums(folder: Path) -> None:
+    """Write the checksum of each other file in a folder, as `sha256sum --check` reads it."""
+    sums = folder / SUMS
+    files = sorted(path for path in folder.rglob("*") if path.is_file() and path != sums)
+    lines = [f"{sha256_of(path)}  {path.relative_to(folder).as_posix()}\n" for path in files]
+    sums.write_text("".join(lines), encoding="utf-8")
+
+
+def write_json(path: Path, content: Any) -> None:
+    """Write JSON with stable layout; a number that is not finite becomes null."""
+    path.write_text(json_text(content), encoding="utf-8")
+
+
+def json_text(content: Any) -> str:
+    """Return content as JSON text; numpy values become plain ones, not-finite ones null."""
+    return json.dumps(_finite(content), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def read_json(path: Path) -> Any:
+    """Read JSON.
+
+    Raises
+    ------
+    InputError
+        The file is missing, cannot be read, is not JSON, holds a key twice, or exceeds a limit.
+    """
+    try:
+        memory.fits(path, limits.JSON_EXPANDS * path.stat().st_size)
+        text = limits.text_of(path, limits.JSON_BYTES)
+        content = json.loads(text, object_pairs_hook=_without_twins)
+    except OSError as error:
+        raise InputError(f"cannot be read ({error.strerror})", where=path) from error
+    except RecursionError as error:
+        raise limits.too_deep(path) from error
+    except ValueError as error:
+        raise InputError(f"is not JSON ({limits.reason(error)})", where=path) from error
+    limits.depth(content, path)
+    return content
+
+
+def _without_twins(members: list[tuple[str, Any]]) -> dict[str, Any]:
+    content = dict(members)
+    if len(content) < len(members):
+        names = [name for name, _ in members]
+        twice = next(name for name in names if names.count(name) > 1)
+        raise ValueError(f"the key {twice[:80]!r} is there twice")
+    return content
+
+
+def state_of(path: Path) -> tuple[int, ...]:
+    """Return what changes when somebody writes to a file or puts another in its place."""
+    state = path.stat()
+    return state.st_ino, state.st_size, state.st_mtime_ns
+
+
+def check_unchanged(path: Path, before: tuple[int, ...]) -> None:
+    """Refuse a file that has changed since its `state_of` was taken.
+
+    Raises
+    ------
+    InputError
+        It has.
+    """
+    if state_of(path) != before:
+        raise InputError(
+            "changed while it was read",
+            where=path,
+            expected="a recording that is finished",
+            remedy="wait until nothing writes to it, or copy it first",
+        )
+
+
+def _finite(content: Any) -> Any:
+    if isinstance(content, dict):
+        return {str(key): _finite(value) for key, value in content.items()}
+    if isinstance(content, list | tuple):
+        return [_finite(value) for value in content]
+    if hasattr(content, "tolist"):  # numpy arrays and scalars
+        return _finite(content.tolist())
+    if isinstance(content, float):
+        return content if math.isfinite(content) else None
+    return content
+
+
+@contextmanager
+def _written(path: Path, *, only: Collection[int] = ()) -> Iterator[None]:
+    """Say in one line why an output cannot be written; `only` for these numbers of errors."""
+    try:
+        yield
+    except OSError as error:
+        if only and error.errno not in only:
+            raise
+        taken = isinstance(error, FileExistsError) and os.path.lexists(path)
+        raise (exists(path) if taken else unwritable(path, error)) from error
+
+
+@contextmanager
+def _named(temporary: Path, path: Path) -> Iterator[None]:
+    """Say of what is wrong in a temporary folder where it would have been."""
+    try:
+        yield
+    except InputError as error:
+        if str(temporary) not in error.where:
+            raise
+        where = error.where.replace(str(temporary), str(path))
+        raise InputError(
+            error.what, where=where, expected=error.expected, remedy=error.remedy
+        ) from error
+
+
+def unwritable(path: Path, error: OSError) -> InputError:
+    """Return what is said where the machine refuses an output."""
+    return InputError(
+        f"cannot be written ({error.strerror})",
+        where=path,
+        remedy="make room, or choose an --out elsewhere"
+        if error.errno in _FULL
+        else "choose an --out in a folder that you may write to",
+    )

@@ -1,0 +1,241 @@
+"""What an output may replace: with `--force` an earlier output of the same stage, nothing else.
+
+Never an input of the call, nor what holds or lies inside one.
+"""
+
+import json
+import os
+import tomllib
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+from tsas_cli.support.errors import InputError
+from tsas_cli.support.temporaries import is_empty_folder
+
+SUMS = "SHA256SUMS"
+_DATASET = "dataset.toml"
+LEFT_BY_DESKTOPS = frozenset({".DS_Store", "Thumbs.db", "desktop.ini"})
+_SWEEP = "sweep"
+_HEAD_BYTES = 4096  # of a file, in which its mark stands
+
+
+def refuse_address(path: Path) -> None:
+    """Keep `--out s3://…` from becoming a folder `s3:`."""
+    if path.parts and path.parts[0] in {"s3:", "gs:", "file:"}:
+        raise InputError(
+            "is an address",
+            where=path.as_posix().replace(":/", "://", 1),
+            expected="a local folder or file",
+            remedy="write there, then copy it",
+        )
+
+
+def refuse_kind(path: Path, *, folder: bool) -> None:
+    """Keep a folder from replacing a file, a file a folder, and both a device or a pipe."""
+    if not path.exists() or (path.is_dir() if folder else path.is_file()):
+        return
+    kind = "a folder" if path.is_dir() else "a file" if path.is_file() else "a device or a pipe"
+    raise InputError(
+        f"is {kind}", where=path, expected=f"a {'folder' if folder else 'file'}'s name"
+    )
+
+
+def exists(path: Path) -> InputError:
+    """Return what is said of a name that is taken."""
+    return InputError(
+        "already exists",
+        where=path,
+        expected="a name that is free",
+        remedy="choose another --out, or replace it with --force",
+    )
+
+
+def refuse_folder(path: Path, *, stage: str, inputs: Iterable[object], force: bool) -> None:
+    """Keep what is there, unless it is an earlier output of the same stage, and `force` is set.
+
+    Parameters
+    ----------
+    path
+        Where a folder is to be written.
+    stage
+        The stage as its JSON names it; "ingest" for datasets.
+    inputs
+        What the call reads; what is no local path is left alone.
+    force
+        Whether an earlier output may be replaced.
+
+    Raises
+    ------
+    InputError
+        It may not be written there.
+    """
+    refuse_inputs(path, inputs)
+    if not os.path.lexists(path) or is_empty_folder(path):
+        return
+    if not force:
+        raise exists(path)
+    if Path.cwd().is_relative_to(path.resolve()):
+        raise InputError(
+            "is the current folder, or holds it",
+            where=path,
+            remedy="choose an --out that is a folder of its own",
+        )
+    if path.exists():
+        _refuse_foreign(path, stage)
+
+
+def refuse_file(path: Path, *, mark: bytes, inputs: Iterable[object], force: bool) -> None:
+    """Keep what is there, unless it is an earlier output of the same stage, and `force` is set.
+
+    Parameters
+    ----------
+    path
+        Where a file is to be written.
+    mark
+        What an earlier output holds in its first 4 KiB; empty where any file may be replaced,
+        since its place is the program's own.
+    inputs
+        What the call reads; what is no local path is left alone.
+    force
+        Whether an earlier output may be replaced.
+
+    Raises
+    ------
+    InputError
+        It may not be written there.
+    """
+    refuse_inputs(path, inputs)
+    if not os.path.lexists(path):
+        return
+    if not force:
+        raise exists(path)
+    if path.exists() and mark not in _head(path):
+        raise InputError(
+            "is not an earlier output of this command",
+            where=path,
+            expected="a name that is free, or a file that it has written",
+            remedy="choose another --out",
+        )
+
+
+def refuse_inputs(path: Path, inputs: Iterable[object]) -> None:
+    """Keep an output from replacing an input, what holds one, or what lies inside one.
+
+    Links and other spellings of a path are followed.
+
+    Raises
+    ------
+    InputError
+        It would.
+    """
+    if not os.path.lexists(path):
+        return
+    read = [source for source in inputs if isinstance(source, Path) and source.exists()]
+    refuse_holding(path, read)
+    above = _above(path)
+    for source in read:
+        if above & _ids(source):
+            raise InputError(
+                f"lies inside {source}, which is read",
+                where=path,
+                expected="an --out beside what is read, or a name that is free",
+            )
+
+
+def refuse_holding(path: Path, inputs: Iterable[Path]) -> None:
+    """Refuse to write where an input is, or in a folder that holds one.
+
+    Raises
+    ------
+    InputError
+        `path` is an input or holds one, by whatever link or spelling.
+    """
+    if not os.path.lexists(path):
+        return
+    ours = _ids(path)
+    for source in inputs:
+        if ours & _above(source):
+            raise InputError(
+                "is read, and would be replaced", where=source, remedy="choose another --out"
+            )
+
+
+def _ids(path: Path) -> set[tuple[int, int]]:
+    """Return what the system knows a file or folder by, and a link's own beside its target's."""
+    found = {path.lstat()}
+    if path.exists():
+        found.add(path.stat())
+    return {(each.st_dev, each.st_ino) for each in found}
+
+
+def _above(path: Path) -> set[tuple[int, int]]:
+    """Return the ids of a path and of all folders above it, by its name and where links lead."""
+    ids: set[tuple[int, int]] = set()
+    for start in {Path(os.path.abspath(path)), path.resolve()}:  # noqa: PTH100 # keeps links
+        for each in (start, *start.parents):
+            if os.path.lexists(each):
+                ids |= _ids(each)
+    return ids
+
+
+def _refuse_foreign(path: Path, stage: str) -> None:
+    """Refuse a folder that is no output of the stage, or holds what the stage did not write."""
+    ours = _of_ingest(path) if stage == "ingest" else _of_stage(path, stage)
+    if ours is None:
+        raise InputError(
+            f"is not an earlier output of `tsas {stage}`",
+            where=path,
+            expected="a name that is free, or a folder that it has written",
+            remedy="choose another --out",
+        )
+    foreign = sorted(name for name in _files_in(path) if name not in ours)
+    if foreign:
+        raise InputError(
+            f"holds what `tsas {stage}` has not written ({', '.join(foreign[:5])})",
+            where=path,
+            expected="an earlier output alone",
+            remedy="move these elsewhere, or choose another --out",
+        )
+
+
+def _files_in(folder: Path) -> Iterator[str]:
+    """Yield the files in a folder, said from there; a link to a folder is one."""
+    for path in folder.rglob("*"):
+        if (path.is_symlink() or not path.is_dir()) and path.name not in LEFT_BY_DESKTOPS:
+            yield path.relative_to(folder).as_posix()
+
+
+def _of_stage(folder: Path, stage: str) -> set[str] | None:
+    """Return the files of an earlier output of a stage; None where the folder is none."""
+    try:
+        lines = (folder / SUMS).read_text(encoding="utf-8").splitlines()
+    except (OSError, ValueError):
+        return None
+    listed = {line.partition("  ")[2] for line in lines}
+    summaries = (folder / name for name in listed if "/" not in name and name.endswith(".json"))
+    stages = {_stage_in(summary) for summary in summaries} - {None}
+    owner = {_SWEEP} if _SWEEP in stages else stages  # a task holds what its stage has written
+    return listed | {SUMS} if owner == {stage} else None
+
+
+def _stage_in(summary: Path) -> object:
+    try:
+        content = json.loads(summary.read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError):
+        return None
+    return content.get("stage") if isinstance(content, dict) else None
+
+
+def _of_ingest(folder: Path) -> set[str] | None:
+    """Return the files of a dataset that was ingested; None where it was not."""
+    try:
+        content = tomllib.loads((folder / _DATASET).read_text(encoding="utf-8"))
+        ingested = set(content["ingest"]["sources"])
+        return {_DATASET} | {run["file"] for run in content["run"] if run["id"] in ingested}
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
+        return None
+
+
+def _head(path: Path) -> bytes:
+    with path.open("rb") as stream:
+        return stream.read(_HEAD_BYTES)

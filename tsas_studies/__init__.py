@@ -1,0 +1,1 @@
+"""Studies of the program: the blind benchmark, and the source paper computed again."""

@@ -1,0 +1,96 @@
+"""The truth of a sealed set, `answers.json`: what it says and how it is checked."""
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from tsas_cli.effects import EFFECTS
+from tsas_cli.effects.effect import Parameter
+from tsas_cli.recordings.manifest import parse
+from tsas_cli.support.errors import InputError, nearest
+from tsas_cli.support.files import read_json
+
+FILE = "answers.json"
+Kind = Literal["one", "pair", "nothing", "unknown"]
+CaseId = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]+$")]
+CATALOGUE: dict[str, dict[str, Parameter]] = {
+    effect.name: {p.name: p for p in effect.parameters} for effect in EFFECTS
+}
+_HIDDEN: dict[Kind, int] = {"one": 1, "pair": 2, "nothing": 0, "unknown": 0}
+
+
+class _Record(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="ignore", allow_inf_nan=False)
+
+
+class Hidden(_Record):
+    """One hidden effect and the values that its parameters have."""
+
+    effect: str
+    parameters: dict[str, float]
+
+    @model_validator(mode="after")
+    def _in_the_catalogue(self) -> "Hidden":
+        if self.effect not in CATALOGUE:
+            raise ValueError(f"unknown effect {self.effect} ({nearest(self.effect, CATALOGUE)})")
+        known = CATALOGUE[self.effect]
+        for name in self.parameters:
+            if name not in known:
+                raise ValueError(f"{self.effect} has no parameter {name} ({nearest(name, known)})")
+        return self
+
+
+class Case(_Record):
+    """One case: what is hidden in it, and how large it is beside the full size."""
+
+    kind: Kind
+    size: float | None = Field(default=None, ge=0)
+    hidden: tuple[Hidden, ...] = ()
+    unknown: str | None = None
+
+    @property
+    def effects(self) -> frozenset[str]:
+        """The names of the hidden effects."""
+        return frozenset(hidden.effect for hidden in self.hidden)
+
+    @model_validator(mode="after")
+    def _kind_fits(self) -> "Case":
+        if len(self.effects) != _HIDDEN[self.kind] or len(self.hidden) != _HIDDEN[self.kind]:
+            raise ValueError(
+                f"kind {self.kind} goes with {_HIDDEN[self.kind]} hidden effects, "
+                f"got {len(self.hidden)}"
+            )
+        if (self.unknown is not None) != (self.kind == "unknown"):
+            raise ValueError("unknown is given for kind unknown, and only there")
+        if self.kind == "one" and self.size is None:
+            raise ValueError("size is missing")
+        return self
+
+
+class Answers(_Record):
+    """The whole file."""
+
+    format: Literal[1]
+    kind: Literal["challenge-answers"]
+    seed: int | tuple[int, ...]
+    cases: dict[CaseId, Case] = Field(min_length=1)
+
+
+def read_answers(folder: Path) -> Answers:
+    """Read and check `answers.json` in the folder of a sealed set.
+
+    Raises
+    ------
+    InputError
+        It is missing, is not JSON, or says something that its format does not allow.
+    """
+    path = folder / FILE
+    if not path.is_file():
+        raise InputError(
+            f"no {FILE} here",
+            where=folder,
+            expected="the folder of a sealed set",
+            remedy="make one with `tsas challenge make`",
+        )
+    return parse(Answers, read_json(path), path)

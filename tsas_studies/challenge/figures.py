@@ -1,0 +1,136 @@
+"""The rates of the summary.
+
+Shares of what should have been found are over all cases: a missing answer has not found it. Shares
+of what should not have been said are over the cases with an answer.
+"""
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+
+from tsas_studies.challenge.judge import NO_ANSWER, Judged
+from tsas_studies.challenge.rates import Rate, rate
+from tsas_studies.challenge.targets import SIZES, TARGETS, Target
+
+
+@dataclass(frozen=True)
+class Figure:
+    """One rate; `worst` is the effect farthest from the target, where it holds for each one."""
+
+    name: str
+    title: str
+    rate: Rate
+    worst: tuple[str, Rate] | None = None
+
+    @property
+    def target(self) -> Target | None:
+        """What the rate is held against."""
+        return TARGETS.get(self.name)
+
+    @property
+    def met(self) -> bool | None:
+        """Whether the target is met; None without a target or a case."""
+        share = (self.worst[1] if self.worst else self.rate).share
+        if self.target is None or share is None:
+            return None
+        return self.target.low <= share <= self.target.high
+
+
+def figures(judged: Sequence[Judged]) -> list[Figure]:
+    """Return every rate of the summary, in the order in which it is printed."""
+    pairs, nothing, unknown = (
+        [j for j in judged if j.case.kind == kind] for kind in ("pair", "nothing", "unknown")
+    )
+    covered = [inside for j in judged for inside in j.covered]
+    stated = [inside for inside in covered if inside is not None]
+    return [
+        Figure("answered", "answered", rate(j.outcome != NO_ANSWER for j in judged)),
+        *(figure for size in sizes(judged) for figure in _of_one(judged, size)),
+        Figure("pair_both", "two effects: both named", _share(pairs, "both")),
+        Figure("pair_one", "two effects: one of them named", _share(pairs, "one")),
+        Figure("pair_false", "two effects: another one named", _false(pairs)),
+        Figure("nothing_named", "nothing hidden: something named", _false(nothing)),
+        Figure(
+            "unknown_false",
+            "not in the catalogue: named, not called unexplained",
+            rate(j.outcome == "false" for j in _answered(unknown)),
+        ),
+        Figure(
+            "unknown_recognised",
+            "not in the catalogue: called unexplained",
+            _share(unknown, "recognised"),
+        ),
+        Figure(
+            "known_unexplained",
+            "all others: called unexplained",
+            rate(
+                j.diagnosis.says_unexplained
+                for j in judged
+                if j.case.kind != "unknown" and j.diagnosis is not None
+            ),
+        ),
+        Figure("coverage", "95 % intervals that hold the true parameter", rate(stated)),
+        Figure(
+            "without_interval",
+            "parameters without an interval",
+            rate(inside is None for inside in covered),
+        ),
+    ]
+
+
+def sizes(judged: Iterable[Judged]) -> list[float]:
+    """Return the sizes of single effects, the largest first; those with a target are there."""
+    found = {j.case.size for j in judged if j.case.kind == "one" and j.case.size is not None}
+    return sorted(found | set(SIZES), reverse=True)
+
+
+def of_size(judged: Iterable[Judged], size: float) -> list[Judged]:
+    """Return the cases of a single effect at one size."""
+    return [j for j in judged if j.case.kind == "one" and j.case.size == size]
+
+
+def by_effect(judged: Iterable[Judged]) -> dict[str, list[Judged]]:
+    """Return the cases of single effects by the name of the effect."""
+    groups: dict[str, list[Judged]] = {}
+    for one in judged:
+        groups.setdefault(one.case.hidden[0].effect, []).append(one)
+    return groups
+
+
+def _of_one(judged: Iterable[Judged], size: float) -> list[Figure]:
+    cases, name, title = of_size(judged, size), f"size_{size:g}", f"size {size:g}"
+    exact_alone = (j.outcome == "exact" and not any(j.rivals) for j in cases)
+    return [
+        _for_each(f"{name}_exact", f"{title}: named exactly", cases, _exact),
+        Figure(f"{name}_alone", f"{title}: named exactly, no rival beside it", rate(exact_alone)),
+        Figure(f"{name}_rivals", f"{title}: within the rivals", _share(cases, "rivals")),
+        _for_each(f"{name}_false", f"{title}: named falsely", cases, _false),
+    ]
+
+
+def _for_each(
+    name: str, title: str, cases: Sequence[Judged], measure: Callable[[Sequence[Judged]], Rate]
+) -> Figure:
+    target = TARGETS.get(name)
+    rates = {effect: measure(group) for effect, group in by_effect(cases).items()}
+    shares = {effect: r.share for effect, r in rates.items() if r.share is not None}
+    if target is None or not shares:
+        return Figure(name, title, measure(cases))
+    pick = min if target.low > 0.0 else max
+    worst = pick(shares, key=shares.__getitem__)
+    return Figure(name, title, measure(cases), (worst, rates[worst]))
+
+
+def _exact(cases: Sequence[Judged]) -> Rate:
+    return _share(cases, "exact")
+
+
+def _share(cases: Iterable[Judged], outcome: str) -> Rate:
+    return rate(j.outcome == outcome for j in cases)
+
+
+def _false(cases: Iterable[Judged]) -> Rate:
+    return rate(bool(j.false_names) for j in _answered(cases))
+
+
+def _answered(cases: Iterable[Judged]) -> list[Judged]:
+    return [j for j in cases if j.diagnosis is not None]

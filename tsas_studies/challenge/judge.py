@@ -1,0 +1,97 @@
+"""What a diagnosis of one case is worth beside the truth."""
+
+from dataclasses import dataclass
+
+from tsas_studies.challenge.answers import CATALOGUE, Answers, Case
+from tsas_studies.challenge.entry import Diagnosis, Entry
+
+NO_ANSWER = "no answer"
+_WORTH_MENDING = 1.1  # times the best obtainable error; a channel below it has nothing to gain
+
+
+@dataclass(frozen=True)
+class Judged:
+    """One case and the diagnosis of it, None where it is missing."""
+
+    case: Case
+    diagnosis: Diagnosis | None
+
+    @property
+    def outcome(self) -> str:
+        """The class of the case, one of those that docs/challenge.md defines for its kind.
+
+        one: exact, rivals, false, none. pair: both, one, none. nothing: named, quiet.
+        unknown: recognised, false, missed. All of them: no answer.
+        """
+        case, diagnosis = self.case, self.diagnosis
+        if diagnosis is None:
+            return NO_ANSWER
+        if case.kind == "nothing":
+            return "named" if diagnosis.named else "quiet"
+        if case.kind == "unknown":
+            if diagnosis.says_unexplained:
+                return "recognised"
+            return "false" if diagnosis.named else "missed"
+        if case.kind == "pair":
+            return ("none", "one", "both")[len(case.effects & diagnosis.effects)]
+        if self.false_names:
+            return "false"
+        if diagnosis.effects == case.effects:
+            return "exact"
+        return "rivals" if diagnosis.named else "none"
+
+    @property
+    def false_names(self) -> frozenset[str]:
+        """What is named, is not hidden, and has nothing hidden among its rivals."""
+        hidden = self.case.effects
+        named = self.diagnosis.named if self.diagnosis else ()
+        return frozenset(n.effect for n in named if not hidden & {n.effect, *n.rivals})
+
+    @property
+    def rivals(self) -> list[int]:
+        """How many rivals stand beside each named effect."""
+        return [len(n.rivals) for n in self.diagnosis.named] if self.diagnosis else []
+
+    @property
+    def covered(self) -> list[bool | None]:
+        """Whether the stated 95 % interval holds the truth, by parameter; None where none is.
+
+        Counted are the parameters of the named effects where these are exactly the hidden ones,
+        without those that are neutral in truth and those that only shape what another does.
+        """
+        case, diagnosis = self.case, self.diagnosis
+        if not case.hidden or diagnosis is None or diagnosis.effects != case.effects:
+            return []
+        estimates = {named.effect: named.parameters for named in diagnosis.named}
+        found: list[bool | None] = []
+        for hidden in case.hidden:
+            for name, truth in hidden.parameters.items():
+                parameter = CATALOGUE[hidden.effect][name]
+                if parameter.shape or truth == parameter.neutral:
+                    continue
+                estimate = estimates[hidden.effect].get(name)
+                interval = None if estimate is None else estimate.interval
+                found.append(None if interval is None else interval[0] <= truth <= interval[1])
+        return found
+
+    @property
+    def gain(self) -> float | None:
+        """The held-out gain as a share of the best obtainable, the mean over the channels.
+
+        (rmse_before - rmse_after) / (rmse_before - best_obtainable): 1 where the extended model
+        is as good as anything, 0 where it gains nothing, below 0 where it is worse. None where
+        no channel has something to gain, or none says so.
+        """
+        shares = []
+        for channel in self.diagnosis.channels.values() if self.diagnosis else ():
+            before, after, best = channel.rmse_before, channel.rmse_after, channel.best_obtainable
+            if before is None or after is None or best is None:
+                continue
+            if before > _WORTH_MENDING * best:
+                shares.append((before - after) / (before - best))
+        return sum(shares) / len(shares) if shares else None
+
+
+def judge(answers: Answers, entry: Entry) -> dict[str, Judged]:
+    """Put each case beside its diagnosis."""
+    return {name: Judged(c, entry.diagnoses.get(name)) for name, c in answers.cases.items()}

@@ -1,0 +1,111 @@
+"""Write a sealed set: recordings that say nothing of what is hidden in them, and the answers."""
+
+import json
+from collections.abc import Callable, Sequence
+from operator import itemgetter
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tsas_studies.challenge.answers import FILE
+from tsas_studies.challenge.bench import RUNS, SENSORS, Bench, data_sheet, drawn_bench, recorded
+from tsas_studies.challenge.cases import Case
+from tsas_studies.challenge.rig.recordings import DATA_SHEET, Run, write_dataset
+
+IDS, RECORDINGS = 0, 1  # streams of chance
+CHANNELS = ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N")
+DESCRIPTION = "Simulated, not measured: a case of the blind benchmark."
+
+
+def make(
+    out: Path,
+    cases: Sequence[Case],
+    *,
+    rate_Hz: float = 200.0,
+    step: Callable[[], None] = lambda: None,
+) -> None:
+    """Write `cases/ID/dataset` for each case, and `answers.json` beside them, into a folder.
+
+    The same cases give the same files, byte for byte. The ids are drawn, and the folders' order
+    is theirs, so that neither tells a case's place in the list.
+
+    Parameters
+    ----------
+    out
+        An empty folder.
+    cases
+        Cases of one or more seeds.
+    rate_Hz
+        Sample rate of the recordings.
+    step
+        Called after each case.
+
+    Raises
+    ------
+    ValueError
+        There are no cases.
+    """
+    seeds = sorted({case.seed for case in cases})
+    if not seeds:
+        raise ValueError("no cases to make a set of")
+    answers = {}
+    for name, case in sorted(((_id(case), case) for case in cases), key=itemgetter(0)):
+        rng = np.random.default_rng([case.seed, case.number, RECORDINGS])
+        bench = drawn_bench(rng)
+        _write(out / "cases" / name / "dataset", case, bench, rate_Hz, rng)
+        answers[name] = _answer(case, bench)
+        step()
+    sealed = {
+        "format": 1,
+        "stage": "challenge make",
+        "kind": "challenge-answers",
+        "seed": seeds[0] if len(seeds) == 1 else seeds,
+        "rate_Hz": rate_Hz,
+        "cases": answers,
+    }
+    text = json.dumps(sealed, indent=2, allow_nan=False)
+    (out / FILE).write_text(text + "\n", encoding="utf-8")
+
+
+def _id(case: Case) -> str:
+    return np.random.default_rng([case.seed, case.number, IDS]).bytes(6).hex()
+
+
+def _write(
+    folder: Path, case: Case, bench: Bench, rate_Hz: float, rng: np.random.Generator
+) -> None:
+    runs = []
+    for run, (_, _, radius, bend) in RUNS.items():
+        seed = int(rng.integers(2**32))
+        columns = recorded(bench, case.hidden, run, rate_Hz=rate_Hz, seed=seed)
+        told = {
+            "started": bench.started[run],
+            "sheath_length_mm": radius * bend,
+            "total_bend_rad": bend,
+            "preload_N": data_sheet()["preload_N"],
+            "load": "spring",
+        }
+        runs.append(Run(run, columns, told))
+    write_dataset(
+        folder, runs, name="case", description=DESCRIPTION, data_sheet=DATA_SHEET, license="CC0-1.0"
+    )
+
+
+def _answer(case: Case, bench: Bench) -> dict[str, Any]:
+    """Return what is hidden in a case, and what else its rig is like."""
+    causes = [{"effect": h.cause, "parameters": dict(h.parameters)} for h in case.hidden]
+    unknown = case.kind == "unknown"
+    return {
+        "name": case.name,
+        "seed": case.seed,
+        "kind": case.kind,
+        "size": case.size,
+        "hidden": [] if unknown else causes,
+        "unknown": causes[0]["effect"] if unknown else None,
+        "unknown_parameters": causes[0]["parameters"] if unknown else {},
+        "nominal": dict(bench.nominal),
+        "bend_profile": bench.bend_profile,
+        "noise": {channel: getattr(SENSORS, channel).noise for channel in CHANNELS},
+        "jitter_s": SENSORS.jitter_s,
+    }

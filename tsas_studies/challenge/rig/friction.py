@@ -1,0 +1,53 @@
+"""What the friction in the sheath depends on, beyond Coulomb's law."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tsas_studies.challenge.rig.courses import settled
+from tsas_studies.challenge.rig.motions import Floats
+
+
+@dataclass(frozen=True)
+class Friction:
+    """How friction differs by direction, speed, tension and time; all zeros are Coulomb's law.
+
+    Attributes
+    ----------
+    asymmetry
+        Friction is μ (1 ± asymmetry) where the tendon slides towards (+) or from the drive (−).
+    stribeck_excess, stribeck_velocity_mm_per_s
+        It is μ (1 + excess · exp(−(v/velocity)²)) where the tendon slides at v; each place has
+        its own speed and forgets the one before within `continuum.MEMORY_S`.
+    load_exponent
+        It is μ (T/F0)^exponent at each place.
+    viscous_N_s_per_mm
+        Force per speed of the tendon as a whole; each place has its own speed.
+    presliding_mm
+        Displacement over which friction turns round, beyond the rig's own; the work lost until it
+        has turned is that of a friction that changes by its limit per such displacement.
+    rate_per_s, settling_per_s, session_rate_per_s
+        μ grows over a run, relative to its first value, and over the session.
+    bend_rate_rad_per_s, bend_settling_per_s
+        The total bend grows over a run.
+    """
+
+    asymmetry: float = 0.0
+    stribeck_excess: float = 0.0
+    stribeck_velocity_mm_per_s: float = 5.0
+    load_exponent: float = 0.0
+    viscous_N_s_per_mm: float = 0.0
+    presliding_mm: float = 0.0
+    rate_per_s: float = 0.0
+    settling_per_s: float = 0.0
+    session_rate_per_s: float = 0.0
+    bend_rate_rad_per_s: float = 0.0
+    bend_settling_per_s: float = 0.0
+
+
+def over_time(friction: Friction, total_bend_rad: float, t: Floats, session_s: float) -> Floats:
+    """Return the factor on μ at each time of a run that begins session_s after the first."""
+    f = friction
+    worn = 1.0 + settled(f.rate_per_s, f.settling_per_s, t) + f.session_rate_per_s * session_s
+    bend = total_bend_rad + settled(f.bend_rate_rad_per_s, f.bend_settling_per_s, t)
+    return np.maximum(worn, 0.0) * (np.maximum(bend, 0.0) / total_bend_rad)

@@ -1,0 +1,64 @@
+"""What the tendon's path loses by giving way: a loose clamp of the sheath, and creep.
+
+Neither is in the catalogue of effects. Both follow the tension of the sample before, so
+creep has to be slow beside the clock.
+"""
+
+from dataclasses import dataclass
+from math import exp, inf
+from typing import NamedTuple
+
+from tsas_studies.challenge.rig.compiled import compiled
+
+
+@dataclass(frozen=True)
+class Give:
+    """How the path gives way; zeros are a firm one.
+
+    Attributes
+    ----------
+    clamp_step_mm, clamp_up_N, clamp_down_N
+        A loose clamp: the sheath jumps to a stop so far away when the tension at the drive
+        exceeds clamp_up_N, and back when it falls below clamp_down_N.
+    creep_mm_per_N, creep_time_s
+        The tendon stretches further by so much per change of the tension, so slowly.
+    """
+
+    clamp_step_mm: float = 0.0
+    clamp_up_N: float = inf
+    clamp_down_N: float = -inf
+    creep_mm_per_N: float = 0.0
+    creep_time_s: float = 1.0
+
+
+class Path(NamedTuple):
+    """`Give` in the solver, and what has been given so far [mm]: by the clamp and by creep."""
+
+    step: float
+    up: float
+    down: float
+    compliance: float
+    time: float
+    jumped: float
+    crept: float
+
+
+def path(give: Give) -> Path:
+    """Return the path before anything has given way."""
+    g = give
+    return Path(
+        g.clamp_step_mm, g.clamp_up_N, g.clamp_down_N, g.creep_mm_per_N, g.creep_time_s, 0.0, 0.0
+    )
+
+
+@compiled
+def given(path: Path, tension: float, preload: float, h: float) -> Path:
+    """Return the path after h seconds at a tension of the drive's end [N]."""
+    jumped = path.jumped
+    if tension > path.up:
+        jumped = path.step
+    elif tension < path.down:
+        jumped = 0.0
+    wanted = path.compliance * (tension - preload)
+    crept = wanted + (path.crept - wanted) * exp(-h / path.time)
+    return Path(path.step, path.up, path.down, path.compliance, path.time, jumped, crept)

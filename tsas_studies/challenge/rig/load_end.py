@@ -1,0 +1,128 @@
+"""The load's end: guide, force sensor, spring, mass, all moving with x_out.
+
+From the tendon to the ground: friction before the sensor, the sensor f_out, friction after it,
+then side by side the mass, the spring and a stop. The linear part of the spring is in the equation
+of the tendon's last node; what is here adds to it.
+"""
+
+from dataclasses import dataclass
+from math import inf
+from typing import NamedTuple
+
+from tsas_studies.challenge.rig.compiled import compiled
+from tsas_studies.challenge.rig.dahl import dahl, dahl_slope
+
+PRESLIDING_MM = 1e-4
+TONNE_PER_KG = 1e-3
+# Newmark's method, second order but for a little damping of what the clock cannot follow.
+BETA, GAMMA = 0.3025, 0.6
+LOOSE_S = 0.015  # in which a loose part of the mass takes up the load's speed
+
+
+@dataclass(frozen=True)
+class LoadEnd:
+    """What the load is made of beside its linear spring; all zeros are none of it.
+
+    Attributes
+    ----------
+    quadratic_per_mm, cubic_per_mm2
+        The spring's force is F0 + kL x (1 + quadratic x + cubic x²).
+    friction_after_N, friction_before_N
+        Coulomb friction of the guide on the load's and on the tendon's side of the sensor.
+    mass_kg
+        What moves with the load.
+    loose_share
+        The share of it that a damper carries along: without one a load on a tendon swings long.
+    stop_at_mm, stop_N_per_mm
+        A stop with a stiffness, met when x_out exceeds its place.
+    anchor_rate_N_per_s, anchor_settling_per_s
+        The spring's anchor gives way: so fast its force falls, and how fast that settles.
+    """
+
+    quadratic_per_mm: float = 0.0
+    cubic_per_mm2: float = 0.0
+    friction_after_N: float = 0.0
+    friction_before_N: float = 0.0
+    mass_kg: float = 0.0
+    loose_share: float = 0.0
+    stop_at_mm: float = inf
+    stop_N_per_mm: float = 0.0
+    anchor_rate_N_per_s: float = 0.0
+    anchor_settling_per_s: float = 0.0
+
+
+class Load(NamedTuple):
+    """The load in units of the solver: N, mm, tonne."""
+
+    quadratic: float
+    cubic: float
+    friction: float
+    mass: float
+    loose: float
+    stop_at: float
+    stop: float
+
+
+class LoadState(NamedTuple):
+    """Position [mm], speed [mm/s] and acceleration [mm/s²] of the load, speed of its loose part.
+
+    Beside them the friction state of the guide.
+    """
+
+    y: float
+    v: float
+    a: float
+    v_loose: float
+    guide: float
+
+
+def load(end: LoadEnd, stiffness_N_per_mm: float) -> Load:
+    """Return the load for the solver."""
+    return Load(
+        quadratic=stiffness_N_per_mm * end.quadratic_per_mm,
+        cubic=stiffness_N_per_mm * end.cubic_per_mm2,
+        friction=end.friction_after_N + end.friction_before_N,
+        mass=end.mass_kg * TONNE_PER_KG * (1.0 - end.loose_share),
+        loose=end.mass_kg * TONNE_PER_KG * end.loose_share,
+        stop_at=end.stop_at_mm,
+        stop=end.stop_N_per_mm,
+    )
+
+
+@compiled
+def moved(before: LoadState, y: float, h: float) -> LoadState:
+    """Return the state after the load has gone to y within h seconds."""
+    a, v = _newmark(before, y, h)
+    v_loose = before.v_loose + _taken_up(before, v, h) * h
+    return LoadState(y, v, a, v_loose, dahl(y - before.y, before.guide, PRESLIDING_MM, 0.0, 1.0))
+
+
+@compiled
+def extra_force(load: Load, before: LoadState, y: float, h: float) -> tuple[float, float]:
+    """Return the force beside the linear spring's [N] at y, and its slope [N/mm]."""
+    dy = y - before.y
+    force = (load.quadratic + load.cubic * y) * y * y
+    slope = (2.0 * load.quadratic + 3.0 * load.cubic * y) * y
+    force += load.friction * dahl(dy, before.guide, PRESLIDING_MM, 0.0, 1.0)
+    slope += load.friction * dahl_slope(dy, before.guide, PRESLIDING_MM, 0.0, 1.0)
+    a, v = _newmark(before, y, h)
+    force += load.mass * a + load.loose * _taken_up(before, v, h)
+    slope += load.mass / (BETA * h * h) + load.loose * GAMMA / (BETA * h * (LOOSE_S + h))
+    if y > load.stop_at:
+        force += load.stop * (y - load.stop_at)
+        slope += load.stop
+    return force, slope
+
+
+@compiled
+def _newmark(before: LoadState, y: float, h: float) -> tuple[float, float]:
+    """Return acceleration and speed after the load has gone to y within h seconds."""
+    gone = y - before.y - h * before.v - h * h * (0.5 - BETA) * before.a
+    a = gone / (BETA * h * h)
+    return a, before.v + h * ((1.0 - GAMMA) * before.a + GAMMA * a)
+
+
+@compiled
+def _taken_up(before: LoadState, v: float, h: float) -> float:
+    """Return the acceleration of the loose part [mm/s²] by an implicit Euler step."""
+    return (v - before.v_loose) / (LOOSE_S + h)

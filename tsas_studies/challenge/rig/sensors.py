@@ -1,0 +1,134 @@
+"""What the sensors make of a clean run: noise, drift, quantisation, delay, jitter, sample rate."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from tsas_studies.challenge.rig.courses import settled
+from tsas_studies.challenge.rig.motions import Floats
+from tsas_studies.challenge.rig.tendon import CleanRun
+
+
+@dataclass(frozen=True)
+class Sensor:
+    """One channel's errors, in the channel's unit.
+
+    Attributes
+    ----------
+    noise
+        Standard deviation of white noise.
+    step
+        Quantisation step; 0 for none.
+    slow_noise, slow_time_s
+        Standard deviation and correlation time of an added first-order coloured noise.
+    delay_s
+        How much later than the clock says the channel shows a value.
+    gain, offset
+        The reading is gain × value + offset.
+    rate_per_s, settling_per_s
+        An offset that grows at first at this rate, and how fast that settles.
+    hum, hum_Hz, hum_phase_rad
+        A sine that is picked up: its amplitude, frequency and phase at the start.
+    jumps
+        Moments [s] and what the reading is off by from then on; 0 before the first.
+    """
+
+    noise: float = 0.0
+    step: float = 0.0
+    slow_noise: float = 0.0
+    slow_time_s: float = 1.0
+    delay_s: float = 0.0
+    gain: float = 1.0
+    offset: float = 0.0
+    rate_per_s: float = 0.0
+    settling_per_s: float = 0.0
+    hum: float = 0.0
+    hum_Hz: float = 3.0
+    hum_phase_rad: float = 0.0
+    jumps: tuple[tuple[float, float], ...] = ()
+
+
+def _position() -> Sensor:
+    return Sensor(noise=0.005, step=0.002)
+
+
+def _force() -> Sensor:
+    return Sensor(noise=0.08, step=0.01)
+
+
+@dataclass(frozen=True)
+class Sensors:
+    """The sensors of a rig: one per column, and the sampling that they share.
+
+    `jitter_s` is the standard deviation of the true sampling instants about the clock that is
+    written down; it is cut off so that instants stay in order.
+    """
+
+    rate_Hz: float = 1000.0
+    jitter_s: float = 0.0
+    x_in_mm: Sensor = field(default_factory=_position)
+    x_out_mm: Sensor = field(default_factory=_position)
+    f_in_N: Sensor = field(default_factory=_force)
+    f_out_N: Sensor = field(default_factory=_force)
+    motor_speed_rpm: Sensor = field(default_factory=Sensor)
+
+
+PERFECT = Sensors(x_in_mm=Sensor(), x_out_mm=Sensor(), f_in_N=Sensor(), f_out_N=Sensor())
+
+
+def measure(clean: CleanRun, sensors: Sensors, *, seed: int) -> dict[str, Floats]:
+    """Return the recording of a clean run, as columns of format 1.
+
+    The clean run is computed once; another seed gives another recording of it.
+    """
+    rng = np.random.default_rng(seed)
+    end = clean.time_s[-1]
+    time_s = np.round(
+        np.arange(int(np.floor(end * sensors.rate_Hz + 1e-6)) + 1) / sensors.rate_Hz, 9
+    )
+    limit = 0.45 / sensors.rate_Hz
+    instants = time_s + np.clip(sensors.jitter_s * rng.standard_normal(time_s.size), -limit, limit)
+    columns = {"time_s": time_s}
+    for name, values in clean.columns.items():
+        if name != "time_s":
+            sensor = getattr(sensors, name)
+            true = np.interp(instants - sensor.delay_s, clean.time_s, values)
+            wrong = _systematic(true, sensor, instants)
+            columns[name] = _read_out(wrong, sensor, sensors.rate_Hz, rng)
+    return columns
+
+
+def _systematic(true: Floats, sensor: Sensor, instants: Floats) -> Floats:
+    """Return what the sensor would read without noise."""
+    drift = settled(sensor.rate_per_s, sensor.settling_per_s, instants)
+    hum = sensor.hum * np.sin(2.0 * np.pi * sensor.hum_Hz * instants + sensor.hum_phase_rad)
+    at = np.array([time for time, _ in sensor.jumps])
+    off = np.array([0.0, *(by for _, by in sensor.jumps)])
+    lost = off[np.searchsorted(at, instants, side="right")]
+    return np.asarray(sensor.gain * true + sensor.offset + drift + hum + lost)
+
+
+def _read_out(true: Floats, sensor: Sensor, rate_Hz: float, rng: np.random.Generator) -> Floats:
+    white = sensor.noise * rng.standard_normal(true.size)
+    slow = sensor.slow_noise * _coloured(true.size, sensor.slow_time_s * rate_Hz, rng)
+    return quantised(true + white + slow, sensor.step)
+
+
+def _coloured(size: int, samples: float, rng: np.random.Generator) -> Floats:
+    """Return first-order coloured noise of unit variance with a memory of so many samples."""
+    keep = np.exp(-1.0 / samples)
+    kicks = np.sqrt(1.0 - keep**2) * rng.standard_normal(size)
+    kicks[0] = rng.standard_normal()
+    values = np.empty(size)
+    last = 0.0
+    for i, kick in enumerate(kicks):
+        last = keep * last + kick
+        values[i] = last
+    return values
+
+
+def quantised(values: Floats, step: float) -> Floats:
+    """Round to multiples of a step, each the nearest float to its decimal text; 0 for no step."""
+    if step == 0.0:
+        return values
+    return np.round(np.round(values / step) * step, 9) + 0.0  # no negative zero

@@ -1,0 +1,200 @@
+"""A virtual tendon-sheath rig, independent of the product: its options, and its clean recording.
+
+clean = simulate(Rig(distal_length_mm=60.0), sine())
+columns = measure(clean, Sensors(), seed=1)          # in tsas_studies.challenge.rig.sensors
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from tsas_studies.challenge.rig import continuum
+from tsas_studies.challenge.rig.courses import ONE, Course, course, settled
+from tsas_studies.challenge.rig.drive_end import DriveEnd, sensed_force, tendon_end
+from tsas_studies.challenge.rig.friction import Friction, over_time
+from tsas_studies.challenge.rig.give import Give, path
+from tsas_studies.challenge.rig.load_end import LoadEnd, load
+from tsas_studies.challenge.rig.motions import Floats, Motion
+
+
+@dataclass(frozen=True)
+class Rig:
+    """What the rig is made of; the defaults are Table 1 and group a of Table 2 (Yang 2025).
+
+    A profile or a course is a tuple of (position, value) pairs, linear in between and constant
+    outside.
+
+    Attributes
+    ----------
+    proximal_length_mm, distal_length_mm
+        Tendon outside the sheath at the drive and at the load, in series with it.
+    bend_profile
+        Relative curvature over the fraction of the sheath's length; only its shape counts.
+    friction_course, bend_course
+        Factors on the friction and on the bend over time [s].
+    preload_course
+        Factor on the preload of the load spring over time [s] (its anchor gives way); the
+        tendon's length at rest stays that of the first preload.
+    load
+        "spring", or "force" and "displacement": what is prescribed at the distal end.
+    presliding_length_mm
+        Displacement over which friction turns round; small enough to pass for Coulomb.
+    sheath_compliance_ratio
+        How much more the sheath is compressed than the tendon stretches.
+    drive_end, friction, load_end, give
+        What else there is along the way; nothing by default. The load's end needs a spring.
+    """
+
+    friction_coefficient: float = 0.125
+    total_bend_rad: float = math.pi
+    sheath_length_mm: float = 250.0 * math.pi
+    tendon_diameter_mm: float = 1.2
+    tendon_modulus_GPa: float = 60.0
+    preload_N: float = 25.0
+    load_stiffness_N_per_mm: float = 1.579
+    load: str = "spring"
+    proximal_length_mm: float = 0.0
+    distal_length_mm: float = 0.0
+    bend_profile: Course = ONE
+    friction_course: Course = ONE
+    bend_course: Course = ONE
+    preload_course: Course = ONE
+    presliding_length_mm: float = 5e-6
+    sheath_compliance_ratio: float = 0.0
+    drive_end: DriveEnd = field(default_factory=DriveEnd)
+    friction: Friction = field(default_factory=Friction)
+    load_end: LoadEnd = field(default_factory=LoadEnd)
+    give: Give = field(default_factory=Give)
+    cells: int = 200
+
+    @property
+    def axial_stiffness(self) -> float:
+        """Axial stiffness of the tendon times its length [N]."""
+        return self.tendon_modulus_GPa * 1e3 * math.pi / 4.0 * self.tendon_diameter_mm**2
+
+
+@dataclass(frozen=True, eq=False)
+class CleanRun:
+    """A recording without any sensor error: columns named as in format 1, on one fine clock."""
+
+    columns: Mapping[str, Floats]
+
+    @property
+    def time_s(self) -> Floats:
+        """Time of each sample [s]."""
+        return self.columns["time_s"]
+
+
+def simulate(
+    rig: Rig, motion: Motion, *, distal: Floats | None = None, session_s: float = 0.0
+) -> CleanRun:
+    """Drive the rig through a motion, from rest at the preload with x_in = 0 mm.
+
+    A motion that starts elsewhere is reached by one straight pull before its first sample.
+
+    Parameters
+    ----------
+    rig
+        The rig.
+    motion
+        x_in over time; it is linear between its samples.
+    distal
+        With load "force" the tension [N], with "displacement" x_out [mm] at each sample of the
+        motion; left out for a spring.
+    session_s
+        How long after the first run this one begins [s].
+
+    Returns
+    -------
+    CleanRun
+        time_s, x_in_mm, x_out_mm, f_in_N, f_out_N.
+
+    Raises
+    ------
+    ValueError
+        The tendon goes slack, a step does not converge, or `distal` does not fit the load.
+    """
+    if (rig.load == "spring") != (distal is None):
+        raise ValueError(f"load {rig.load!r} and distal values do not go together")
+    if rig.load != "spring" and rig.load_end != LoadEnd():
+        raise ValueError(f"load {rig.load!r} has no load end")
+    t, x_in = motion.time_s, motion.x_in_mm
+    tendon = _tendon(rig)
+    q = _distal_end(rig, t, tendon.c_out, distal)
+    mu = rig.friction_coefficient * course(rig.friction_course, t) * course(rig.bend_course, t)
+    mu = mu * over_time(rig.friction, rig.total_bend_rad, t, session_s)
+    position = tendon_end(rig.drive_end, x_in)
+    t_in, t_out, u_end, guide, solved = continuum.run(tendon, path(rig.give), t, position, mu, q)
+    if solved < t.size:
+        what = "the tendon is slack" if np.isfinite(t_in[solved]) else "the step fails"
+        raise ValueError(f"{what} at {t[solved]:.6g} s")
+    return CleanRun(
+        {
+            "time_s": t,
+            "x_in_mm": x_in,
+            "x_out_mm": u_end - tendon.c_out * (t_out - rig.preload_N),
+            "f_in_N": sensed_force(rig.drive_end, position, t_in),
+            "f_out_N": t_out - rig.load_end.friction_before_N * guide,
+        }
+    )
+
+
+def _tendon(rig: Rig) -> continuum.Tendon:
+    """Return the rig for the solver."""
+    EA, f = rig.axial_stiffness, rig.friction
+    s = continuum.nodes(rig.sheath_length_mm, rig.cells)
+    c_out = rig.distal_length_mm / EA
+    p, r = _ends_of(rig.load, rig.load_stiffness_N_per_mm, c_out)
+    return continuum.Tendon(
+        bend=_bend_per_node(rig, s),
+        k=EA / np.diff(s) / (1.0 + rig.sheath_compliance_ratio),
+        c_in=rig.proximal_length_mm / EA + rig.drive_end.compliance_mm_per_N,
+        p=p,
+        r=r,
+        preload=rig.preload_N,
+        delta=rig.presliding_length_mm + f.presliding_mm,
+        c_out=c_out,
+        load=load(rig.load_end, rig.load_stiffness_N_per_mm),
+        asymmetry=f.asymmetry,
+        excess=f.stribeck_excess,
+        velocity=f.stribeck_velocity_mm_per_s,
+        exponent=f.load_exponent,
+        viscous=f.viscous_N_s_per_mm * np.diff(_edges(s)) / rig.sheath_length_mm,
+    )
+
+
+def _distal_end(rig: Rig, t: Floats, c_out: float, distal: Floats | None) -> Floats:
+    """Return q of p T_out = q + r u_end, the free tendon at the load included."""
+    F0, kL, end = rig.preload_N, rig.load_stiffness_N_per_mm, rig.load_end
+    if distal is None:
+        lost = settled(end.anchor_rate_N_per_s, end.anchor_settling_per_s, t)
+        return F0 * (course(rig.preload_course, t) + kL * c_out) - lost
+    distal = np.asarray(distal, dtype=float)
+    return distal if rig.load == "force" else c_out * F0 - distal
+
+
+def _ends_of(load: str, kL: float, c_out: float) -> tuple[float, float]:
+    """Return p and r of p T_out = q + r u_end."""
+    if load == "spring":
+        return 1.0 + kL * c_out, kL
+    if load == "force":
+        return 1.0, 0.0
+    if load == "displacement":
+        return c_out, 1.0
+    raise ValueError(f"load is {load!r}, expected spring, force or displacement")
+
+
+def _edges(s: Floats) -> Floats:
+    """Return the midpoints between nodes, and both ends."""
+    return np.concatenate((s[:1], 0.5 * (s[1:] + s[:-1]), s[-1:]))
+
+
+def _bend_per_node(rig: Rig, s: Floats) -> Floats:
+    """Return the bend angle between the midpoints around each node [rad]."""
+    fine = np.linspace(0.0, rig.sheath_length_mm, 20001)
+    curvature = course(rig.bend_profile, fine / rig.sheath_length_mm)
+    angle = np.concatenate(([0.0], np.cumsum(0.5 * (curvature[1:] + curvature[:-1]))))
+    bend = np.diff(np.interp(_edges(s), fine, angle / angle[-1]))
+    return np.asarray(rig.total_bend_rad * bend)

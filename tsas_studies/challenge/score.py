@@ -1,0 +1,129 @@
+"""The score of one entry: figures beside targets, the classes by effect, and the confusions."""
+
+from collections import Counter
+from collections.abc import Iterable
+from pathlib import Path
+from statistics import mean, median
+from typing import Any, get_args
+
+from tsas_cli.support import __version__
+from tsas_cli.support.errors import InputError
+from tsas_cli.support.files import sha256_of
+from tsas_studies.challenge.answers import CATALOGUE, FILE, Answers, Kind, read_answers
+from tsas_studies.challenge.entry import Entry, read_entry
+from tsas_studies.challenge.figures import Figure, by_effect, figures, of_size, sizes
+from tsas_studies.challenge.judge import NO_ANSWER, Judged, judge
+
+CLASSES = ("exact", "rivals", "false", "none", NO_ANSWER)
+
+
+def score_entries(sealed: Path, folders: Iterable[Path]) -> dict[str, Any]:
+    """Return what `score.json` holds: the scores of several entries on one sealed set.
+
+    Raises
+    ------
+    InputError
+        The answers or a diagnosis are malformed, or an entry is given twice.
+    """
+    answers = read_answers(sealed)
+    entries: dict[str, Any] = {}
+    for folder in folders:
+        label = str(folder)
+        if label in entries:
+            raise InputError("the entry is given twice", where=folder)
+        entries[label] = score(answers, read_entry(folder, answers.cases))
+    kinds = Counter(case.kind for case in answers.cases.values())
+    single = {e for case in answers.cases.values() if case.kind == "one" for e in case.effects}
+    return {
+        "format": 1,
+        "stage": "challenge score",
+        "version": __version__,
+        "answers": {
+            "sha256": sha256_of(sealed / FILE),
+            "seed": answers.seed,
+            "cases": {kind: count for kind in get_args(Kind) if (count := kinds[kind])},
+            "effects_not_in_the_set": [name for name in CATALOGUE if name not in single],
+        },
+        "entries": entries,
+    }
+
+
+def score(answers: Answers, entry: Entry) -> dict[str, Any]:
+    """Return the score of one entry, as docs/challenge.md describes it."""
+    judged = judge(answers, entry)
+    cases = list(judged.values())
+    said = entry.diagnoses.values()
+    seconds = [diagnosis.seconds for diagnosis in said if diagnosis.seconds is not None]
+    gains = [j.gain for j in cases if j.case.hidden and j.gain is not None]
+    rivals = [count for j in cases for count in j.rivals]
+    return {
+        "figures": [_figure(figure) for figure in figures(cases)],
+        "rivals_per_name": {"mean": mean(rivals) if rivals else None, "names": len(rivals)},
+        "gain": {"median": median(gains) if gains else None, "cases": len(gains)},
+        "seconds": {
+            "median": median(seconds) if seconds else None,
+            "max": max(seconds, default=None),
+            "cases": len(seconds),
+        },
+        "effects": _effects(cases),
+        "confusion": _confusion(cases),
+        "no_answer": entry.no_answer,
+        "cases": {
+            name: {"outcome": j.outcome, "named_falsely": sorted(j.false_names)}
+            for name, j in judged.items()
+        },
+    }
+
+
+def _figure(figure: Figure) -> dict[str, Any]:
+    low, high = figure.rate.interval() or (None, None)
+    worst = figure.worst and {
+        "effect": figure.worst[0],
+        "hits": figure.worst[1].hits,
+        "cases": figure.worst[1].cases,
+    }
+    return {
+        "name": figure.name,
+        "title": figure.title,
+        "hits": figure.rate.hits,
+        "cases": figure.rate.cases,
+        "share": figure.rate.share,
+        "interval_low": low,
+        "interval_high": high,
+        "worst": worst,
+        "target": figure.target and figure.target.text(),
+        "met": figure.met,
+    }
+
+
+def _effects(cases: list[Judged]) -> list[dict[str, Any]]:
+    """Return how many cases of each effect are in each class, by size."""
+    return [
+        {"effect": effect, "size": size, "cases": len(group)}
+        | {name: sum(j.outcome == name for j in group) for name in CLASSES}
+        for size in sizes(cases)
+        for effect, group in by_effect(of_size(cases, size)).items()
+    ]
+
+
+def _confusion(cases: list[Judged]) -> list[dict[str, Any]]:
+    """Return what was said where it is not the truth, the most frequent first."""
+    wrong = [j for j in cases if j.outcome != "recognised" and _truth(j) != _said(j)]
+    found = Counter((_truth(j), _said(j)) for j in wrong)
+    return [
+        {"hidden": truth, "said": said, "cases": count}
+        for (truth, said), count in found.most_common()
+    ]
+
+
+def _truth(judged: Judged) -> str:
+    if judged.case.unknown is not None:
+        return f"{judged.case.unknown} (not in the catalogue)"
+    return " + ".join(sorted(judged.case.effects)) or "nothing"
+
+
+def _said(judged: Judged) -> str:
+    if judged.diagnosis is None:
+        return NO_ANSWER
+    silent = "unexplained" if judged.diagnosis.says_unexplained else "nothing"
+    return " + ".join(sorted(judged.diagnosis.effects)) or silent

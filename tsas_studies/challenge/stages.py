@@ -1,0 +1,196 @@
+"""The blind benchmark: make a sealed set, let a tool answer it, score the answers."""
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+from tsas_cli.records.result import Result, Table
+from tsas_cli.stages.given import Named, at_least, number_of_seeds, one_of, path_of
+from tsas_cli.support import __version__
+from tsas_cli.support.errors import InputError
+from tsas_cli.support.files import folder_if, stage_folder, write_json
+from tsas_cli.support.steps import SILENT, Steps
+from tsas_studies.challenge import cases
+from tsas_studies.challenge.make import make
+from tsas_studies.challenge.run import TOOLS, case_folders, run_cases
+from tsas_studies.challenge.score import score_entries
+from tsas_studies.challenge.tables import tables
+
+Kind = Literal["one", "pair", "nothing", "unknown"]
+Tool = Literal["diagnose", "bic", "training", "sparse"]
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class SealedSet(Result):
+    """A set of recordings with known causes, and the sealed truth beside them."""
+
+    def tables(self) -> list[Table]:
+        """Return how many cases hide what."""
+        seed, seeds, kinds = self.summary["seed"], self.summary["seeds"], self.summary["cases"]
+        said = f"seed {seed}" if seeds == 1 else f"seeds {seed} to {seed + seeds - 1}"
+        title = f"{self.out}: {sum(kinds.values())} cases of {said}"
+        return [(title, ("hidden", "cases"), [(kind, str(n)) for kind, n in kinds.items()])]
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Entry(Result):
+    """What a tool answered."""
+
+    def tables(self) -> list[Table]:
+        """Return which cases have no answer, and why."""
+        answered, missing = self.summary["answered"], self.summary["no_answer"]
+        title = f"{self.out}: {answered} of {answered + len(missing)} cases answered"
+        return [(title, ("no answer", "reason"), list(missing.items()))]
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Score(Result):
+    """The answers of one or more tools against the truth."""
+
+    def tables(self) -> list[Table]:
+        """Return the figures side by side, then each entry by effect."""
+        return list(tables(self.summary))
+
+
+def make_set(
+    *,
+    out: Named,
+    seed: int,
+    seeds: int = 1,
+    small: bool = False,
+    kind: Kind | None = None,
+    rate_Hz: float = 200.0,
+    force: bool = False,
+    step: Steps = SILENT,
+) -> SealedSet:
+    """Make recordings with known causes, and seal the truth beside them.
+
+    Parameters
+    ----------
+    out
+        The folder to write.
+    seed, seeds
+        The first seed, and how many from that one on.
+    small
+        Each effect once at full size, and a few of what is none.
+    kind
+        Only cases in which this is hidden; all without it.
+    rate_Hz
+        Samples per second.
+    force
+        Replace the folder if it is there.
+    step
+        Told of a piece of work per case.
+
+    Returns
+    -------
+    SealedSet
+        `.summary["cases"]` says how many cases hide what.
+
+    Raises
+    ------
+    InputError
+        No case is left, or `out` exists and `force` is not set.
+    """
+    first, count = at_least(0, seed, "seed"), number_of_seeds(seeds)
+    listed = [case for each in range(first, first + count) for case in cases.cases(each)]
+    if small:
+        listed = list(cases.part(listed))
+    if kind is not None:
+        listed = [case for case in listed if case.kind == kind]
+    if not listed:
+        raise InputError("--small keeps no case of --kind pair", remedy="leave one of them out")
+    path = Path(out)
+    with stage_folder(path, stage="challenge make", inputs=(), force=force) as folder:
+        step.ahead(len(listed))
+        make(folder, listed, rate_Hz=rate_Hz, step=step)
+    summary = {
+        "format": 1,
+        "stage": "challenge make",
+        "version": __version__,
+        "folder": str(path),
+        "seed": seed,
+        "seeds": seeds,
+        "rate_Hz": rate_Hz,
+        "cases": dict(Counter(case.kind for case in listed)),
+    }
+    return SealedSet(summary, path)
+
+
+def run_set(
+    sealed: Named,
+    *,
+    out: Named,
+    tool: Tool = "diagnose",
+    workers: int = 1,
+    force: bool = False,
+    step: Steps = SILENT,
+) -> Entry:
+    """Diagnose every case of a sealed set; the answers stay unread.
+
+    Parameters
+    ----------
+    sealed
+        The set's folder.
+    out
+        The folder to write, with `ID/diagnosis.json` for each case.
+    tool
+        `diagnose`: this program's; the rest are baselines.
+    workers
+        How many cases at a time, each in a process of its own.
+    force
+        Replace the folder if it is there.
+    step
+        Told of a piece of work per case.
+
+    Returns
+    -------
+    Entry
+        `.summary["no_answer"]` says why which case has no answer.
+
+    Raises
+    ------
+    InputError
+        The set has no cases, the tool is unknown, nobody works, or `out` exists without `force`.
+    """
+    path, folder, many = Path(sealed), Path(out), at_least(1, workers, "workers")
+    taken = TOOLS[one_of(tuple(TOOLS), tool, "tool")]
+    step.ahead(len(case_folders(path)))
+    log = run_cases(path, folder, workers=many, force=force, diagnose=taken, step=step)
+    return Entry(log, folder)
+
+
+def score_set(
+    sealed: Named, entries: Sequence[Named], *, out: Named | None = None, force: bool = False
+) -> Score:
+    """Score the answers of one or more tools against the truth, side by side.
+
+    Parameters
+    ----------
+    sealed
+        The set's folder.
+    entries
+        Folders with `ID/diagnosis.json`.
+    out
+        Where to write `score.json`; None writes nothing.
+    force
+        Replace the folder if it is there.
+
+    Returns
+    -------
+    Score
+        `.summary` is what `score.json` holds.
+
+    Raises
+    ------
+    InputError
+        The set or an answer cannot be read, or `out` exists and `force` is not set.
+    """
+    folder, inputs = path_of(out), [Path(sealed), *map(Path, entries)]
+    with folder_if(folder, stage="challenge score", inputs=inputs, force=force) as written:
+        content = score_entries(inputs[0], inputs[1:])
+        if written is not None:
+            write_json(written / "score.json", content)
+    return Score(content, folder)

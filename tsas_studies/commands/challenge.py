@@ -1,0 +1,118 @@
+"""`tsas challenge`: make a sealed set of recordings, let a tool diagnose it, score the answers."""
+
+import os
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from tsas_cli.commands.common import Force, Json, OutFolder, Quiet, present
+from tsas_cli.commands.progress import progress
+
+challenge = typer.Typer(
+    name="challenge",
+    no_args_is_help=True,
+    help="A blind benchmark of diagnosis, for this and any other tool (docs/challenge.md).",
+)
+SealedSet = Annotated[Path, typer.Argument(metavar="SET", help="A sealed set's folder.")]
+
+
+class ToolOption(StrEnum):
+    """What can diagnose the cases of a set."""
+
+    diagnose = "diagnose"
+    bic = "bic"
+    training = "training"
+    sparse = "sparse"
+
+
+class KindOption(StrEnum):
+    """What can be hidden in a case."""
+
+    one = "one"
+    pair = "pair"
+    nothing = "nothing"
+    unknown = "unknown"
+
+
+@challenge.command("make")
+def make(
+    out: OutFolder,
+    seed: Annotated[
+        int, typer.Option("--seed", min=0, help="0 to 999 for tuning, 10000 to 19999 for scoring.")
+    ],
+    seeds: Annotated[
+        int, typer.Option("--seeds", min=1, help="How many seeds, from that one on.")
+    ] = 1,
+    small: Annotated[
+        bool,
+        typer.Option("--small", help="Each effect once at full size, and a few of what is none."),
+    ] = False,
+    kind: Annotated[
+        KindOption | None, typer.Option("--kind", help="Only cases in which this is hidden.")
+    ] = None,
+    rate: Annotated[
+        float, typer.Option("--rate", metavar="HZ", min=50.0, max=500.0, help="Samples per second.")
+    ] = 200.0,
+    force: Force = False,
+    quiet: Quiet = False,
+    as_json: Json = False,
+) -> None:
+    """Make recordings with known causes, and seal the truth beside them."""
+    from tsas_studies.challenge.stages import make_set
+
+    with progress("challenge", quiet=quiet) as step:
+        result = make_set(
+            out=out,
+            seed=seed,
+            seeds=seeds,
+            small=small,
+            kind=None if kind is None else kind.value,
+            rate_Hz=rate,
+            force=force,
+            step=step,
+        )
+    present(result, quiet=quiet, as_json=as_json)
+
+
+@challenge.command("run")
+def run(
+    sealed: SealedSet,
+    out: OutFolder,
+    tool: Annotated[
+        ToolOption, typer.Option("--tool", help="diagnose: this program's; the rest are baselines.")
+    ] = ToolOption.diagnose,
+    workers: Annotated[
+        int, typer.Option("--workers", min=1, help="How many cases at a time.")
+    ] = os.cpu_count() or 1,
+    force: Force = False,
+    quiet: Quiet = False,
+    as_json: Json = False,
+) -> None:
+    """Diagnose every case of a sealed set; the answers stay unread."""
+    from tsas_studies.challenge.stages import run_set
+
+    with progress("challenge", quiet=quiet) as step:
+        result = run_set(sealed, out=out, tool=tool.value, workers=workers, force=force, step=step)
+    present(result, quiet=quiet, as_json=as_json)
+
+
+@challenge.command("score")
+def score(
+    sealed: SealedSet,
+    entries: Annotated[
+        list[Path], typer.Argument(metavar="ENTRY", help="Folders with ID/diagnosis.json.")
+    ],
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="DIR", help="Also write DIR/score.json.")
+    ] = None,
+    force: Force = False,
+    quiet: Quiet = False,
+    as_json: Json = False,
+) -> None:
+    """Score the answers of one or more tools against the truth, side by side."""
+    from tsas_studies.challenge.stages import score_set
+
+    result = score_set(sealed, entries, out=out, force=force)
+    present(result, quiet=quiet, as_json=as_json)

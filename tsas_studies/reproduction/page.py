@@ -1,0 +1,121 @@
+"""The page of the reproduction: each table and figure of the paper as rows with a verdict."""
+
+from collections.abc import Sequence
+from functools import partial
+
+import numpy as np
+
+from tsas_cli.paper import Paper
+from tsas_cli.reporting.content import Fact, Glance, Picture, Section, Table
+from tsas_cli.reporting.content import Group as Fold
+from tsas_cli.reporting.drawing import picture
+from tsas_cli.reporting.numbers import ABSENT, as_printed, plain, spanned
+from tsas_cli.reporting.rendered import rendered
+from tsas_studies.reproduction.curves import draw_curves
+from tsas_studies.reproduction.group import Figure, Group, Line, Row
+from tsas_studies.reproduction.summary import counted, sentence, verdict_table
+
+HEADER = ("what", "paper", "ours", "ours / paper", "verdict")
+WITHOUT_UNIT = {"1", "not printed", ""}
+_HOW = (
+    "Every number and statement that can be computed is a row: the paper's value, ours, and a "
+    "verdict that follows from a stated tolerance. Under it stand the reason, the numbers behind "
+    "it, and in brackets where the paper says it. Where the paper is held against itself, ours is "
+    "what follows from its other numbers. No value of ours is fitted to its results."
+)
+NUMERIC = frozenset({1, 2, 3})
+
+
+def reproduction_page(paper: Paper, groups: Sequence[Group]) -> str:
+    """Return the whole page as HTML."""
+    return rendered(
+        name="The paper done again",
+        about=paper.citation["title"],
+        summary=sentence(groups),
+        glance=_glance(groups),
+        sections=(_overview(paper, groups), *(_section(group) for group in groups)),
+    )
+
+
+def _glance(groups: Sequence[Group]) -> Glance:
+    counts = counted(groups)
+    facts = tuple(Fact(verdict, str(count)) for verdict, count in counts.items())
+    total = sum(counts.values())
+    verdict = f"{counts['agrees']} of {total} numbers and statements agree"
+    return Glance("What the paper prints, computed again", verdict, "", facts)
+
+
+def _overview(paper: Paper, groups: Sequence[Group]) -> Section:
+    cited = "{authors}: {title}. {journal}, doi {doi}.".format(**paper.citation)
+    header, rows = verdict_table(groups)
+    return Section(
+        "overview",
+        "What is compared",
+        (cited, _HOW),
+        commands=("tsas reproduce --out reports/paper",),
+        tables=(Table("Verdicts", header, tuple(rows), numeric=frozenset(range(1, len(header)))),),
+    )
+
+
+def _section(group: Group) -> Section:
+    folds: dict[str, list[Picture]] = {}
+    for figure in group.figures:
+        folds.setdefault(figure.part, []).append(_picture(figure))
+    table = Table(
+        "The paper's values and ours",
+        HEADER,
+        tuple(_cells(row) for row in group.rows),
+        numeric=NUMERIC,
+        notes=tuple(_note(row) for row in group.rows),
+    )
+    return Section(
+        group.anchor,
+        group.title,
+        group.intro,
+        tables=(table.without_empty(),),
+        pictures=tuple(folds.pop("", ())),
+        groups=tuple(Fold(part, tuple(pictures)) for part, pictures in folds.items()),
+        closing=group.closing,
+    )
+
+
+def _cells(row: Row) -> tuple[str, ...]:
+    return (
+        row.what,
+        _with_unit(as_printed(row.paper), row.unit),
+        _with_unit(plain(row.ours), row.unit),
+        plain(row.ratio),
+        row.verdict,
+    )
+
+
+def _note(row: Row) -> str:
+    """Return the verdict in words, what it rests on, and where the paper says it."""
+    words = f"{row.words[0].upper()}{row.words[1:]}."
+    return " ".join(part for part in (words, row.evidence, f"[{row.source}]") if part)
+
+
+def _with_unit(number: str, unit: str) -> str:
+    shown = unit.replace("^2", "²").replace("^3", "³")
+    return number if number == ABSENT or unit in WITHOUT_UNIT else f"{number} {shown}"
+
+
+def _in_words(line: Line) -> str:
+    """Return where a curve goes, or where a single point lies."""
+    if line.x.size == 1:
+        return f"{line.label}: {plain(float(line.y[0]))} at {plain(float(line.x[0]))}"
+    most = int(np.nanargmax(line.y))
+    return (
+        f"{line.label}: {spanned(line.y)} over {spanned(line.x)}, highest at "
+        f"{plain(float(line.x[most]), 3)}"
+    )
+
+
+def _picture(figure: Figure) -> Picture:
+    said = "; ".join(map(_in_words, figure.lines))
+    return picture(
+        partial(draw_curves, figure=figure),
+        key=figure.key,
+        alt=f"{figure.caption} {figure.axes[1]} over {figure.axes[0]}. {said}.",
+        caption=figure.caption,
+    )
