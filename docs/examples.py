@@ -142,7 +142,7 @@ def run_page(page: Path, *, long: bool) -> list[Call]:
 
 def output_of(command: str) -> tuple[str, ...]:
     """Run `tsas …` in this process and return the lines that it prints, on both streams."""
-    from tsas_cli.app import main
+    from tsas_cli.__main__ import main
 
     said, code = io.StringIO(), None
     with (

@@ -11,6 +11,7 @@ import typer
 
 import tsas_cli
 import tsas_cli.app
+import tsas_studies.commands
 from tsas_cli.support.errors import InputError
 
 Tsas = Callable[..., subprocess.CompletedProcess[str]]
@@ -31,7 +32,7 @@ HEAVY = {
     "tomlkit",
 }
 HELPERS = {"__init__", "common", "completion", "live", "progress"}  # files that are no command
-COMMANDS = typer.main.get_command(tsas_cli.app.app).commands  # type: ignore[attr-defined]
+COMMANDS = typer.main.get_command(tsas_studies.commands.app).commands  # type: ignore[attr-defined]
 CALLS = {  # `tsas challenge` is a group: its commands stand in its place
     f"{name} {inner}".strip(): call
     for name, command in COMMANDS.items()
@@ -108,7 +109,7 @@ def test_a_wrong_input_is_one_line_and_exit_code_2(
 ) -> None:
     fail_with(InputError("no\nsuch run", where="a\x1b[31m"), monkeypatch)
     with pytest.raises(SystemExit) as stopped:
-        tsas_cli.app.main()
+        tsas_cli.app.run()
     assert stopped.value.code == 2
     assert capsys.readouterr() == ("", "tsas: a\\x1b[31m: no\\nsuch run\n")
 
@@ -119,7 +120,7 @@ def test_a_defect_is_one_line_and_exit_code_1(
     monkeypatch.delenv("TSAS_TRACEBACK", raising=False)
     fail_with(ZeroDivisionError("two\nlines"), monkeypatch)
     with pytest.raises(SystemExit) as stopped:
-        tsas_cli.app.main()
+        tsas_cli.app.run()
     assert stopped.value.code == 1
     error = capsys.readouterr().err
     assert error.startswith("tsas: a defect of tsas itself: ZeroDivisionError: two\\nlines; ")
@@ -133,7 +134,7 @@ def test_a_defect_shows_its_traceback_where_it_is_asked_for(
     monkeypatch.setenv("TSAS_TRACEBACK", "1")
     fail_with(ZeroDivisionError("here"), monkeypatch)
     with pytest.raises(ZeroDivisionError, match="here"):
-        tsas_cli.app.main()
+        tsas_cli.app.run()
 
 
 def test_a_reader_that_goes_away_is_no_error() -> None:
@@ -170,7 +171,7 @@ def test_no_more_open_files_is_no_defect(
 ) -> None:
     fail_with(OSError(errno.EMFILE, os.strerror(errno.EMFILE), "a.parquet"), monkeypatch)
     with pytest.raises(SystemExit) as stopped:
-        tsas_cli.app.main()
+        tsas_cli.app.run()
     assert stopped.value.code == 2
     assert capsys.readouterr().err.startswith("tsas: a.parquet: the system refuses it (Too many")
 
@@ -198,7 +199,7 @@ def test_a_stop_beside_the_command_is_an_exit_code_too(
 
     monkeypatch.setattr(tsas_cli.app, "app", app)
     with pytest.raises(SystemExit) as stopped:
-        tsas_cli.app.main()
+        tsas_cli.app.run()
     assert stopped.value.code == 130
     assert capsys.readouterr() == ("", "")
 
@@ -211,6 +212,6 @@ def test_a_stop_that_compiled_code_has_met_is_no_defect(
     error.__cause__ = KeyboardInterrupt()
     fail_with(error, monkeypatch)
     with pytest.raises(SystemExit) as stopped:
-        tsas_cli.app.main()
+        tsas_cli.app.run()
     assert stopped.value.code == 130
     assert capsys.readouterr() == ("", "")

@@ -38,7 +38,7 @@ def command_page() -> str:
 
 def commands() -> Iterator[tuple[str, Any]]:
     """Yield every command with its whole name; a group's commands stand in its place."""
-    from tsas_cli.app import app
+    from tsas_studies.commands import app
 
     for name, command in typer.main.get_command(app).commands.items():  # type: ignore[attr-defined]
         inner = getattr(command, "commands", None)

@@ -4,7 +4,9 @@ import shutil
 import pytest
 
 from tests.reporting.made_folders import make_calibration, make_check, make_dataset, make_simulation
-from tsas_cli.app import app, main
+from tsas_cli.__main__ import main
+from tsas_cli.app import app
+from tsas_cli.reporting.pdf import MARK
 
 
 @pytest.fixture(scope="module")
@@ -57,11 +59,16 @@ def test_json_names_what_was_read_and_quiet_says_nothing(folder, run):
 
 
 def test_an_existing_page_stays_without_force(folder, run):
-    (folder / "r.html").write_text("mine")
-    refused(run("report", folder / "check", "--out", folder / "r.html"), "r.html", "--force")
-    assert (folder / "r.html").read_text() == "mine"
-    assert run("report", folder / "check", "--out", folder / "r.html", "--force")[0] == 0
-    assert (folder / "r.html").read_text() != "mine"
+    page, call = folder / "r.html", ["report", folder / "check", "--out", folder / "r.html"]
+    assert run(*call)[0] == 0
+    page.write_text(page.read_text() + "earlier")
+    refused(run(*call), "r.html", "--force")
+    assert page.read_text().endswith("earlier")
+    assert run(*call, "--force")[0] == 0
+    assert not page.read_text().endswith("earlier")
+    page.write_text("mine")
+    refused(run(*call, "--force"), "r.html", "not an earlier output")
+    assert page.read_text() == "mine"
 
 
 def test_a_folder_of_another_kind_is_refused_and_nothing_is_written(folder, run):
@@ -144,7 +151,9 @@ def printer(monkeypatch):
 
     monkeypatch.setattr(module, "browser", lambda: "chromium")
     monkeypatch.setattr(
-        module, "print_page", lambda html, path: path.write_bytes(b"%PDF" + html[:9].encode())
+        module,
+        "print_page",
+        lambda html, path: path.write_bytes(b"%PDF" + MARK + html[:9].encode()),
     )
 
 
@@ -152,7 +161,7 @@ def test_the_pdf_stands_beside_the_page(folder, run, printer):
     code, out, _ = run("report", folder / "check", "--out", folder / "r.html", "--pdf", "--json")
     assert code == 0
     assert json.loads(out)["pdf"] == str(folder / "r.pdf")
-    assert (folder / "r.pdf").read_bytes() == b"%PDF<!DOCTYPE"
+    assert (folder / "r.pdf").read_bytes() == b"%PDF" + MARK + b"<!DOCTYPE"
     assert (folder / "r.html").is_file()
     code, out, _ = run("report", folder / "check", "--out", folder / "t.html", "--pdf")
     assert "t.pdf, 0.00 MB" in out
@@ -164,8 +173,12 @@ def test_an_existing_pdf_stays_without_force_and_no_page_is_written(folder, run,
     refused(run(*words), "r.pdf", "--force")
     assert (folder / "r.pdf").read_text() == "mine"
     assert not (folder / "r.html").exists()
-    assert run(*words, "--force")[0] == 0
-    assert (folder / "r.pdf").read_bytes().startswith(b"%PDF")
+    refused(run(*words, "--force"), "r.pdf", "not an earlier output")
+    assert not (folder / "r.html").exists()
+    (folder / "r.pdf").unlink()
+    for more in ((), ("--force",)):
+        assert run(*words, *more)[0] == 0
+        assert (folder / "r.pdf").read_bytes().startswith(b"%PDF")
 
 
 def test_the_page_may_not_have_the_name_of_the_pdf(folder, run, printer):

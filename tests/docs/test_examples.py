@@ -114,7 +114,7 @@ def test_a_defect_stops_the_run(monkeypatch):
     def broken() -> None:
         raise SystemExit(1)
 
-    monkeypatch.setattr("tsas_cli.app.main", broken)
+    monkeypatch.setattr("tsas_cli.__main__.main", broken)
     with pytest.raises(RuntimeError, match="ended with 1"):
         examples.output_of("tsas check x")
 
@@ -124,7 +124,7 @@ def test_every_call_in_the_pages_names_a_command_and_options_that_exist():
         name: {o for p in command.params for o in (*p.opts, *p.secondary_opts)} | {"--help"}
         for name, command in every_command()
     }
-    top = typer.main.get_command(__import__("tsas_cli.app").app.app)
+    top = typer.main.get_command(__import__("tsas_studies.commands").commands.app)
     known["tsas"] = {o for p in top.params for o in p.opts} | {"--help"}
     wrong = []
     for page in PAGES:

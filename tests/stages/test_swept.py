@@ -22,7 +22,7 @@ def begun(tmp_path, dataset, monkeypatch):
     shutil.copytree(dataset, tmp_path / "a")
     shutil.copytree(dataset, tmp_path / "b")
     plan, _ = read_plan({"stage": "check", "datasets": ["a", "b"]})
-    with sweep_folder(tmp_path / "out") as folder:
+    with sweep_folder(tmp_path / "out", []) as folder:
         yield *tasks_of(plan, tmp_path, options_of("check")), folder
 
 

@@ -13,7 +13,7 @@ from tsas_cli.recordings.parquet_files import check_size, open_parquet
 from tsas_cli.support import limits, memory
 from tsas_cli.support.errors import InputError
 
-ROOT = Path(__file__).parent.parent
+ROOT = Path(__file__).parents[2]
 
 
 def refusal(call, *arguments):

@@ -12,6 +12,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 import tsas_cli.app
+import tsas_studies.commands  # noqa: F401 # adds theirs
 from tests.torture.bench import STAGES, Stage, make_inputs
 from tests.torture.pipelines import try_pipelines
 from tests.torture.trials import Trials, Tried
@@ -76,7 +77,7 @@ def _tsas(*words: str) -> int:
     """Run the command line in this process."""
     sys.argv = ["tsas", *words]
     try:
-        tsas_cli.app.main()
+        tsas_cli.app.run()
     except SystemExit as stopped:
         return int(stopped.code or 0)
 

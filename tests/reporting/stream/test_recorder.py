@@ -140,7 +140,7 @@ def test_what_fails_leaves_no_file_and_replaces_none(tmp_path):
     path.write_text("mine")
     with pytest.raises(InputError, match="already exists"), to_file(path, "x"):
         pass
-    with pytest.raises(KeyError), to_file(path, "x", force=True):
+    with pytest.raises(KeyError), to_file(tmp_path / "other.rrd", "x"):
         raise KeyError
     assert path.read_text() == "mine"
     assert list(tmp_path.iterdir()) == [path]

@@ -16,7 +16,7 @@ from tsas_studies.challenge.run import TOOLS
 from tsas_studies.challenge.targets import TARGETS
 from tsas_studies.commands.challenge import KindOption, ToolOption, make, score
 
-DOCS = (Path(__file__).parents[2] / "docs" / "challenge.md").read_text(encoding="utf-8")
+DOCS = (Path(__file__).parents[3] / "docs" / "challenge.md").read_text(encoding="utf-8")
 
 
 @pytest.fixture

@@ -9,7 +9,7 @@ from tests.commands.documented import documented
 from tsas_studies.reproduction import GROUPS
 from tsas_studies.reproduction.group import VERDICTS
 
-DOCS = Path(__file__).parents[2] / "docs" / "paper.md"
+DOCS = Path(__file__).parents[3] / "docs" / "paper.md"
 
 
 @pytest.mark.slow

@@ -7,8 +7,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from tsas_cli.drive import fit as d
 from tsas_cli.drive.runs import DriveRun
-from tsas_cli.identification import drive_fit as d
 from tsas_cli.numerics.linear_response import sampled
 from tsas_cli.physics.drive import DriveValues, gear_response, linear_response
 

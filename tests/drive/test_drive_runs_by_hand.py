@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.drive.test_runs import PLACE, SPEED, STEP_S, TIME_S, checked
-from tsas_cli.identification import drive_runs as d
+from tsas_cli.drive import runs as d
 from tsas_cli.numerics.noise import noise_sd
 from tsas_cli.support.errors import InputError
 

@@ -6,10 +6,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from tsas_cli.diagnosis import drive_diagnosis as dd
-from tsas_cli.diagnosis import drive_json as dj
 from tsas_cli.diagnosis.channel_errors import Channel
 from tsas_cli.diagnosis.evidence import gain
+from tsas_cli.drive import diagnosis as dd
+from tsas_cli.drive import json as dj
 from tsas_cli.drive.diagnosis import DriveCause, DriveDiagnosis
 from tsas_cli.drive.estimates import DataSheet
 from tsas_cli.drive.frequency_response import FrequencyResponse

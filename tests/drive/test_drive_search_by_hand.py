@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from tests.counted import Counted
-from tsas_cli.diagnosis import drive_search as ds
+from tsas_cli.drive import search as ds
 from tsas_cli.drive.fit import LINEAR
 from tsas_cli.drive.search import NOTHING, DriveSearch, drive_folds
 

@@ -6,13 +6,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from tsas_cli.diagnosis import drive_diagnosis as dd
 from tsas_cli.diagnosis.diagnose import (
     _as_sure_as_the_data_sheet,
     _two_digits,
     leaves_much,
     verdict_of,
 )
+from tsas_cli.drive import diagnosis as dd
 from tsas_cli.drive.estimates import DataSheet
 from tsas_cli.drive.runs import DriveRun
 from tsas_cli.drive.search import NOTHING, DriveSearch, drive_folds
