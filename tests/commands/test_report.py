@@ -147,14 +147,14 @@ def test_report_is_registered_once():
 @pytest.fixture
 def printer(monkeypatch):
     """Print without a browser."""
+
+    def printed(html, path):
+        path.write_bytes(b"%PDF" + MARK + html[:9].encode())
+
     import tsas_cli.stages.report as module
 
     monkeypatch.setattr(module, "browser", lambda: "chromium")
-    monkeypatch.setattr(
-        module,
-        "print_page",
-        lambda html, path: path.write_bytes(b"%PDF" + MARK + html[:9].encode()),
-    )
+    monkeypatch.setattr(module, "print_page", printed)
 
 
 def test_the_pdf_stands_beside_the_page(folder, run, printer):
