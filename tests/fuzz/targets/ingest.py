@@ -6,8 +6,8 @@ from pathlib import Path
 import tsas_cli
 from tests.fuzz.documents import toml_document
 from tests.fuzz.rules import Broken, Scratch, answer
-from tsas_cli.api import ingest as _ingest  # noqa: F401 # instrumented
 from tsas_cli.recordings.dataset import read_dataset
+from tsas_cli.stages import ingest as _ingest  # noqa: F401 # instrumented
 
 SHARE = 2
 MOST_BYTES = 3000
