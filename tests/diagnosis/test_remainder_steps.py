@@ -19,21 +19,21 @@ def test_the_largest_value_is_in_the_last_bin_and_the_smallest_in_the_first():
     edges = edges_of(signal, "x_in_mm")
     np.testing.assert_allclose(edges, np.arange(0.0, 25.0, 2.0))
     bins = binned(signal, signal, edges, "x_in_mm")
-    assert [b["samples"] for b in bins] == [2] * 11 + [3]
-    assert (bins[-1]["to"], bins[0]["from"]) == (24.0, 0.0)
-    assert bins[-1]["label"] == "22 to 24"
+    assert [b.samples for b in bins] == [2] * 11 + [3]
+    assert (bins[-1].high, bins[0].low) == (24.0, 0.0)
+    assert bins[-1].label == "22 to 24"
     # Edges of more samples than these: what lies below the first one is in the first bin.
     (below,) = binned(np.array([-1.0, 0.5]), np.array([1.0, 2.0]), np.array([0.0, 1.0]), "x_in_mm")
-    assert (below["samples"], below["label"]) == (2, "0 to 1")
+    assert (below.samples, below.label) == (2, "0 to 1")
 
 
 def test_a_rest_neither_pulls_nor_is_it_its_own_run():
     """Where the direction is 0 the drive does not pull; empty bins are left out."""
     signal = np.array([0.0, 1.0, 1.0])
     rest, pull = binned(signal, signal, edges_of(signal, DIRECTION), DIRECTION)
-    assert (rest["label"], pull["label"]) == ("letting go", "pulling")
+    assert (rest.label, pull.label) == ("letting go", "pulling")
     gone = binned(np.zeros(2), np.zeros(2), np.array([-1.0, 0.0, 5.0, 9.0]), "x_in_mm")
-    assert [b["label"] for b in gone] == ["0 to 5"]
+    assert [b.label for b in gone] == ["0 to 5"]
 
 
 class Errors:
@@ -63,16 +63,16 @@ def test_a_map_holds_measured_less_simulated_over_each_signal():
     found = residual_map(bench, None)
     assert set(found) == {"f_in_N", "x_out_mm"}
     by_run = found["f_in_N"]["run"]
-    assert [(b["label"], b["mean"], b["samples"]) for b in by_run] == [
+    assert [(b.label, b.mean, b.samples) for b in by_run] == [
         ("first", -2.0, 2),
         ("second", 5.0, 1),
     ]
     forces = found["f_in_N"]["f_in_N"]
-    assert (forces[0]["from"], forces[-1]["to"]) == (0.0, 16.0)  # 10 + 6 of the second run
-    assert sum(b["samples"] for b in forces) == 3
+    assert (forces[0].low, forces[-1].high) == (0.0, 16.0)  # 10 + 6 of the second run
+    assert sum(b.samples for b in forces) == 3
     (out,) = found["x_out_mm"]["run"]
-    assert (out["label"], out["mean"], out["from"]) == ("second", -8.0, 1.0)
-    assert [b["label"] for b in found["x_out_mm"][DIRECTION]] == ["letting go"]
+    assert (out.label, out.mean, out.low) == ("second", -8.0, 1.0)
+    assert [b.label for b in found["x_out_mm"][DIRECTION]] == ["letting go"]
 
 
 def test_samples_before_the_first_and_after_the_last_reversal():

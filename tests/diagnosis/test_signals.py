@@ -54,25 +54,25 @@ def test_bins_hold_equally_many_samples_each_once():
     assert edges.size == 13
     assert (edges[0], edges[-1]) == (0.0, 23.0**2)
     bins = binned(signal, error, edges, "x_in_mm")
-    assert sum(b["samples"] for b in bins) == 24
-    assert {b["samples"] for b in bins} == {2}
+    assert sum(b.samples for b in bins) == 24
+    assert {b.samples for b in bins} == {2}
     for k, one in enumerate(bins):
-        assert (one["from"], one["to"]) == ((2.0 * k) ** 2, (2.0 * k + 1.0) ** 2)
-        assert one["mean"] == 2.0 * k + 0.5
-        assert one["sd"] == 0.5
-    assert bins[0]["label"].startswith("0 to ")
+        assert (one.low, one.high) == ((2.0 * k) ** 2, (2.0 * k + 1.0) ** 2)
+        assert one.mean == 2.0 * k + 0.5
+        assert one.sd == 0.5
+    assert bins[0].label.startswith("0 to ")
 
 
 def test_labels_are_bins_of_their_own():
     direction = np.array([1.0, -1.0, -1.0, 1.0, 1.0])
     error = np.array([1.0, 2.0, 4.0, 5.0, 9.0])
     down, up = binned(direction, error, edges_of(direction, DIRECTION), DIRECTION)
-    assert (down["label"], down["mean"], down["samples"]) == ("letting go", 3.0, 2)
-    assert (up["label"], up["mean"], up["samples"]) == ("pulling", 5.0, 3)
+    assert (down.label, down.mean, down.samples) == ("letting go", 3.0, 2)
+    assert (up.label, up.mean, up.samples) == ("pulling", 5.0, 3)
     number = np.array([1.0, 1.0, 0.0, 1.0, 0.0])
     first, second = binned(number, error, edges_of(number, "run"), "run", ["a", "b"])
-    assert (first["label"], first["mean"]) == ("a", 6.5)
-    assert (second["label"], second["samples"]) == ("b", 3)
+    assert (first.label, first.mean) == ("a", 6.5)
+    assert (second.label, second.samples) == ("b", 3)
 
 
 def test_hats_add_up_to_one_for_their_own_direction():

@@ -2,13 +2,13 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from tsas_cli.comparing.answers import Answers, Both, ErrorRow, error_rows, matched
 from tsas_cli.comparing.maps import residual_maps
 from tsas_cli.comparing.sides import Side, read_side
 from tsas_cli.comparing.values import Overlap, Pair, overlap, pairs
 from tsas_cli.recordings.dataset import Dataset
+from tsas_cli.records.diagnosis import Maps
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.steps import SILENT, Steps
 
@@ -27,7 +27,7 @@ class Comparison:
     pairs: list[Pair]
     recordings: list[Both]
     errors: list[ErrorRow]
-    maps: dict[str, Any]
+    maps: dict[str, Maps]
     on: Dataset | None = None
     own_fitted: bool = False
 

@@ -1,19 +1,18 @@
 """Where each side is wrong: the error of each channel over each signal, in the same bins."""
 
-from typing import Any
-
 import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.comparing.answers import Answer, Both
 from tsas_cli.diagnosis.residual_map import LABELS, binned, edges_of
 from tsas_cli.diagnosis.signals import signals_of
+from tsas_cli.records.diagnosis import Maps
 
 Floats = npt.NDArray[np.float64]
 Errors = dict[tuple[str, str], tuple[Floats, Floats]]  # by channel and signal: signal, error
 
 
-def residual_maps(recordings: list[Both]) -> dict[str, Any]:
+def residual_maps(recordings: list[Both]) -> dict[str, Maps]:
     """Return under `a` and `b`, per channel and signal, bins with mean and scatter of the error.
 
     The error is measured less simulated, in units of the channel's noise; the bins hold about as
@@ -23,7 +22,7 @@ def residual_maps(recordings: list[Both]) -> dict[str, Any]:
     shared = [both for both in recordings if both.a and both.b] or recordings
     a = _collected([both.a for both in shared if both.a])
     b = _collected([both.b for both in shared if both.b])
-    out: dict[str, Any] = {"a": {}, "b": {}}
+    out: dict[str, Maps] = {"a": {}, "b": {}}
     for channel, signal in (key for key in a if key in b):
         edges = edges_of(np.concatenate((a[channel, signal][0], b[channel, signal][0])), signal)
         bins = [binned(*side[channel, signal], edges, signal) for side in (a, b)]

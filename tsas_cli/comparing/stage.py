@@ -2,15 +2,20 @@
 
 from typing import Any
 
+from pydantic import TypeAdapter
+
 from tsas_cli.comparing.compare import Comparison
 from tsas_cli.comparing.sentences import findings, notes
 from tsas_cli.comparing.sides import Side
 from tsas_cli.comparing.values import Pair, shared_name
 from tsas_cli.identification.estimate import Estimate
+from tsas_cli.records.diagnosis import Maps
 from tsas_cli.records.result import Table
 from tsas_cli.support import __version__
 
 FILE = "compare.json"
+
+MAPS = TypeAdapter(dict[str, Maps])
 
 
 def as_json(it: Comparison) -> dict[str, Any]:
@@ -31,7 +36,7 @@ def as_json(it: Comparison) -> dict[str, Any]:
         "effects": effects(it),
         "errors": [{**vars(row), "ratio": row.ratio} for row in it.errors],
         "held_out": held_out(it),
-        "residual_map": it.maps,
+        "residual_map": MAPS.dump_python(it.maps, mode="json", by_alias=True),
         "findings": findings(it),
         "notes": notes(it),
     }

@@ -1,13 +1,13 @@
 """Where the simulation is wrong: the error of each channel over each signal, bin by bin."""
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.diagnosis.signals import DIRECTION, signals_of
 from tsas_cli.identification.extension import Bench, Trial
+from tsas_cli.records.diagnosis import Bin, Maps
 
 Floats = npt.NDArray[np.float64]
 
@@ -16,7 +16,7 @@ RUN = "run"
 LABELS = (RUN, DIRECTION)
 
 
-def residual_map(bench: Bench, trial: Trial) -> dict[str, Any]:
+def residual_map(bench: Bench, trial: Trial) -> Maps:
     """Return, per channel and signal, the bins with mean and scatter of the error.
 
     The error is measured less simulated, in units of what noise explains.
@@ -51,7 +51,7 @@ def edges_of(signal: Floats, name: str) -> Floats:
 
 def binned(
     signal: Floats, error: Floats, edges: Floats, name: str, ids: Sequence[str] = ()
-) -> list[dict[str, Any]]:
+) -> tuple[Bin, ...]:
     """Return the bins between the edges, or one for each value that is a label.
 
     Parameters
@@ -73,19 +73,19 @@ def binned(
         parts = [
             (f"{edges[i]:.3g} to {edges[i + 1]:.3g}", number == i) for i in range(edges.size - 1)
         ]
-    return [
-        {
-            "from": float(signal[part].min()),
-            "to": float(signal[part].max()),
-            "label": label,
-            "mean": float(error[part].mean()),
-            "sd": float(error[part].std()),
-            "samples": int(part.sum()),
-        }
+    return tuple(
+        Bin(
+            low=float(signal[part].min()),
+            high=float(signal[part].max()),
+            label=label,
+            mean=float(error[part].mean()),
+            sd=float(error[part].std()),
+            samples=int(part.sum()),
+        )
         for label, part in parts
         if part.any()
-    ]
+    )
 
 
-def _bins(signal: Floats, error: Floats, name: str, ids: Sequence[str]) -> list[dict[str, Any]]:
+def _bins(signal: Floats, error: Floats, name: str, ids: Sequence[str]) -> tuple[Bin, ...]:
     return binned(signal, error, edges_of(signal, name), name, ids)

@@ -1,15 +1,52 @@
-"""What the stages' JSON files have in common, as far as they are read (docs/formats.md)."""
+"""What the stages' JSON files have in common; a file is written and read by the same class.
 
-from typing import ClassVar, Literal
+A number that is not finite becomes None, as JSON has none; what a file holds beyond these fields
+is left alone (docs/formats.md).
+"""
 
-from pydantic import BaseModel, ConfigDict
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated, Any, ClassVar, Literal, Self
+
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    model_serializer,
+    model_validator,
+)
+
+from tsas_cli.support import __version__
+from tsas_cli.support.files import write_json
+
+TWO_SIDED = 1.96  # standard errors on each side of a 95 % interval
+
+
+def number_text(value: float | None, form: str = ".3g") -> str:
+    """Return a number for a printed table; nothing where there is none."""
+    return "" if value is None else f"{value:{form}}"
+
+
+def _none_if_not_finite(value: Any) -> Any:
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+Number = Annotated[float | None, BeforeValidator(_none_if_not_finite)]
+NotNegative = Annotated[Number, Field(ge=0)]
 
 
 class Record(BaseModel):
-    """What a stage has written down, as far as the page reads it."""
+    """A part of what a stage has found."""
 
-    # The stages may say more than the page shows.
-    model_config = ConfigDict(frozen=True, extra="ignore", allow_inf_nan=False)
+    model_config = ConfigDict(
+        frozen=True, extra="ignore", allow_inf_nan=False, populate_by_name=True
+    )
+
+    def content(self) -> dict[str, Any]:
+        """Return what JSON holds of it."""
+        return self.model_dump(mode="json", by_alias=True)
 
 
 class Source(Record):
@@ -25,12 +62,21 @@ class Source(Record):
     chosen: tuple[str, ...] | None = None
     conditions: dict[str, float] = {}
 
+    @model_serializer(mode="wrap")
+    def _without_what_is_usual(self, dump: Callable[[Any], dict[str, Any]]) -> dict[str, Any]:
+        return _but(dump(self), chosen=self.chosen, conditions=self.conditions)
+
 
 class StageFile(Record):
     """What all stages say; `FILE` is the file's name."""
 
     FILE: ClassVar[str]
-    format: Literal[1]
+    format: Literal[1] = 1
+    version: str = __version__
+
+    def write(self, folder: Path) -> None:
+        """Write it into the folder of its stage."""
+        write_json(folder / self.FILE, self.content())
 
 
 class OfDataset(StageFile):
@@ -40,12 +86,31 @@ class OfDataset(StageFile):
     chosen: tuple[str, ...] | None = None
     conditions: dict[str, float] = {}
 
+    @model_serializer(mode="wrap")
+    def _without_what_is_usual(self, dump: Callable[[Any], dict[str, Any]]) -> dict[str, Any]:
+        return _but(dump(self), chosen=self.chosen, conditions=self.conditions)
+
+    def source(self) -> Source:
+        """Return the recordings as a model file names them."""
+        said = {"chosen": self.chosen, "conditions": self.conditions}
+        return self.dataset.model_copy(update=said)
+
+
+def _but(content: dict[str, Any], **usual: object) -> dict[str, Any]:
+    """Return content without the keys whose value says nothing."""
+    return {key: value for key, value in content.items() if key not in usual or usual[key]}
+
 
 class ModelFile(Record):
     """The model that a stage has read: its file and checksum, None for that of the data sheet."""
 
     file: str
+    folder: str | None = None
     sha256: str | None = None
+
+    @model_serializer(mode="wrap")
+    def _without_what_is_not_there(self, dump: Callable[[Any], dict[str, Any]]) -> dict[str, Any]:
+        return _but(dump(self), folder=self.folder, sha256=self.sha256)
 
 
 class Segment(Record):
@@ -56,28 +121,62 @@ class Segment(Record):
     phase: str
 
 
-class Parameter(Record):
-    """One value with its 95 % interval; None where it has none."""
+class Value(Record):
+    """A number with its unit, its standard error and 95 % interval; None where it has none."""
+
+    value: Number
+    stderr: NotNegative = None
+    interval_low: Number = None
+    interval_high: Number = None
+    unit: str
+    at_bound: bool = False
+
+    @model_validator(mode="after")
+    def _interval_has_two_ends(self) -> Self:
+        low, high = self.interval_low, self.interval_high
+        if (low is None) != (high is None):
+            raise ValueError("interval_low and interval_high go together")
+        if low is not None and high is not None and low > high:
+            raise ValueError(f"interval_low {low:g} is above interval_high {high:g}")
+        return self
+
+    def text(self, without: str = "fitted") -> str:
+        """Return value and interval for a printed table, or what it is `without` an interval."""
+        if self.value is None or self.interval_low is None or self.interval_high is None:
+            return f"{number_text(self.value, '.5g')} ({without})"
+        flag = "  AT BOUND" if self.at_bound else ""
+        return f"{self.value:.5g} [{self.interval_low:.5g}, {self.interval_high:.5g}]{flag}"
+
+    @property
+    def interval(self) -> tuple[float, float] | None:
+        """The 95 % interval, from the standard error where no ends are given."""
+        if self.interval_low is not None and self.interval_high is not None:
+            return self.interval_low, self.interval_high
+        if self.stderr is None or self.value is None:
+            return None
+        half = TWO_SIDED * self.stderr
+        return self.value - half, self.value + half
+
+
+class Parameter(Value):
+    """A value with its name, its run where it belongs to one, and where it is from."""
 
     name: str
     run: str | None = None
-    value: float | None
-    stderr: float | None = None
-    interval_low: float | None = None
-    interval_high: float | None = None
-    unit: str
-    at_bound: bool = False
     origin: str
 
 
 class Fit(Record):
-    """How the joint fit ended."""
+    """How a joint fit ended."""
 
     converged: bool
     message: str = ""
 
 
 class Evidence(Record):
-    """How the diagnosis judged."""
+    """How a diagnosis judged: what was held out, of how many runs, in how many blocks."""
 
+    held_out: str = ""
+    blocks: int = 0
+    runs: int = 0
     sentence: str = ""

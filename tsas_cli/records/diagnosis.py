@@ -1,69 +1,82 @@
-"""What `diagnosis.json` holds, as far as it is read (docs/formats.md)."""
+"""What `diagnosis.json` holds (docs/formats.md)."""
 
 from typing import ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
-from tsas_cli.records.base import Evidence, ModelFile, OfDataset, Record, Segment
+from tsas_cli.effects import EFFECTS
+from tsas_cli.records.base import (
+    Evidence,
+    ModelFile,
+    NotNegative,
+    Number,
+    OfDataset,
+    Record,
+    Segment,
+    Value,
+)
 
 EXTENDED_MODEL, NOMINAL_MODEL = "model-extended.toml", "model-nominal.toml"
-
-
-class CauseParameter(Record):
-    """One parameter of a named cause, with its 95 % interval where it has one."""
-
-    value: float | None
-    stderr: float | None = None
-    unit: str
-    at_bound: bool = False
-    interval_low: float | None = None
-    interval_high: float | None = None
+Verdict = Literal["named", "ambiguous", "sufficient", "unexplained", "undecided"]
+UNITS = {effect.name: {p.name: p.unit for p in effect.parameters} for effect in EFFECTS}
 
 
 class Cause(Record):
-    """An effect that the diagnosis names; `rivals` are those that may be it just as well."""
+    """An effect that is named; `rivals` are those that may be it just as well.
+
+    `gain_percent` is what it takes off the RMS of the residual on held-out data.
+    """
 
     effect: str
     title: str = ""
     equation: str = ""
     rivals: tuple[str, ...] = ()
-    parameters: dict[str, CauseParameter] = {}
-    gain_percent: float | None = None
-    gain_interval_percent: tuple[float, float] | None = None
+    parameters: dict[str, Value] = {}
+    gain_percent: Number = None
+    gain_interval_percent: tuple[Number, Number] | None = None
+
+    @model_validator(mode="after")
+    def _units_are_the_catalogues(self) -> Self:
+        for name, unit in UNITS.get(self.effect, {}).items():
+            value = self.parameters.get(name)
+            if value is not None and value.unit != unit:
+                raise ValueError(f"{name} is in {value.unit}, expected {unit}")
+        return self
 
 
 class HeldOut(Record):
-    """One channel's error on data that no fit has seen, in its unit."""
+    """One channel's RMS of the residual on held-out data, in its unit."""
 
     unit: str = ""
-    rmse_before: float | None
-    rmse_after: float | None
-    noise_floor: float | None = None
-    best_obtainable: float | None = None
+    rmse_before: NotNegative = None
+    rmse_after: NotNegative = None
+    noise_floor: NotNegative = None
+    best_obtainable: NotNegative = None
 
 
 class Remainder(Record):
-    """What is left; `mean_square` is in units of what noise explains."""
+    """What is left; `mean_square` is the reduced chi-square."""
 
-    unexplained: bool = False
+    unexplained: bool
     depends_on: tuple[str, ...] = ()
-    share_percent: float | None = None
-    mean_square: float | None = None
+    share_percent: Number = None
+    mean_square: Number = None
 
 
 class Candidate(Record):
-    """One hypothesis that was fitted, and by how much it lowers the error on held-out data."""
+    """One hypothesis that was fitted, and by how much it lowers the residual on held-out data."""
 
     effects: tuple[str, ...]
-    gain_percent: float | None = None
-    sureness: float | None = None
+    gain_percent: Number = None
+    sureness: Number = None
     convincing: bool = False
-    mean_square: float | None = None
+    mean_square: Number = None
     converged: bool = True
+    parameters: dict[str, Number] = {}
 
 
 class Signatures(Record):
-    """How visible each effect is in these inputs, and how much each two look alike, 0 to 1."""
+    """How visible each effect is in these inputs, and how similar each two are, 0 to 1."""
 
     effects: tuple[str, ...] = ()
     visible: tuple[float, ...] = ()
@@ -78,36 +91,62 @@ class Signatures(Record):
 
 
 class Bin(Record):
-    """The error where a signal lies between two values, in units of noise."""
+    """The residual where a signal lies between two values, in units of noise."""
 
-    low: float | None = Field(default=None, alias="from")
-    high: float | None = Field(default=None, alias="to")
+    low: Number = Field(default=None, alias="from")
+    high: Number = Field(default=None, alias="to")
     label: str = ""
     mean: float
     sd: float
     samples: int
 
 
+Maps = dict[str, dict[str, tuple[Bin, ...]]]  # by channel and signal
+
+
 class ResidualMaps(Record):
-    """The error of each channel over each signal, before and after."""
+    """The residual of each channel over each signal, before and after."""
 
-    before: dict[str, dict[str, tuple[Bin, ...]]] = {}
-    after: dict[str, dict[str, tuple[Bin, ...]]] = {}
+    before: Maps = {}
+    after: Maps = {}
 
 
-class Diagnosis(OfDataset):
+class Findings(Record):
+    """The part of a diagnosis that any tool can write, and that the blind benchmark scores."""
+
+    format: Literal[1] = 1
+    verdict: Verdict
+    named: tuple[Cause, ...]
+    channels: dict[str, HeldOut] = {}
+    remainder: Remainder
+    next_experiment: str = ""
+
+    @model_validator(mode="after")
+    def _named_once(self) -> Self:
+        names = [named.effect for named in self.named]
+        twice = sorted({name for name in names if names.count(name) > 1})
+        if twice:
+            raise ValueError(f"{twice[0]} is named twice")
+        return self
+
+    @property
+    def effects(self) -> frozenset[str]:
+        """The names of the named effects."""
+        return frozenset(named.effect for named in self.named)
+
+    @property
+    def says_unexplained(self) -> bool:
+        """Whether it says that something is there which it has no name for."""
+        return self.verdict == "unexplained" or self.remainder.unexplained
+
+
+class Diagnosis(OfDataset, Findings):
     """The content of `diagnosis.json`."""
 
     FILE: ClassVar[str] = "diagnosis.json"
-    stage: Literal["diagnose"]
-    version: str
-    verdict: Literal["named", "ambiguous", "sufficient", "unexplained", "undecided"]
-    reason: str
+    stage: Literal["diagnose"] = "diagnose"
     model: ModelFile = ModelFile(file="data sheet")
-    named: tuple[Cause, ...] = ()
-    channels: dict[str, HeldOut] = {}
-    remainder: Remainder = Remainder()
-    next_experiment: str = ""
+    reason: str
     candidates: tuple[Candidate, ...] = ()
     signatures: Signatures = Signatures()
     residual_map: ResidualMaps = ResidualMaps()

@@ -1,27 +1,28 @@
 """The diagnose stage: `diagnosis.json`, both models, and what each answers to the runs."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
-from tsas_cli.diagnosis.diagnose import Cause, Diagnosis, Verdict, diagnose_runs
-from tsas_cli.diagnosis.diagnosis_json import as_json
-from tsas_cli.diagnosis.diagnosis_tables import tables
+from tsas_cli.diagnosis import found
+from tsas_cli.diagnosis.diagnose import Cause, Diagnosis, diagnose_runs
+from tsas_cli.diagnosis.next_experiment import next_experiment
 from tsas_cli.identification.comparison import compare
-from tsas_cli.identification.model import Model, fitted_to, source_of, stated_model, write_model
+from tsas_cli.identification.model import Model, source_of, stated_model, write_model
 from tsas_cli.identification.phases import segment, segments_as_json
 from tsas_cli.identification.prepared import Prepared, prepare
 from tsas_cli.recordings.columns import nominal_name
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.recordings.writing import write_answer
-from tsas_cli.records.diagnosis import EXTENDED_MODEL, NOMINAL_MODEL
+from tsas_cli.records import diagnosis as records
+from tsas_cli.records.base import number_text
 from tsas_cli.records.result import Result, Table, notes
 from tsas_cli.stages.given import Named, dataset_of, path_of
-from tsas_cli.support import __version__
-from tsas_cli.support.files import folder_if, write_json
+from tsas_cli.support.files import folder_if
 from tsas_cli.support.steps import SILENT, Steps
+
+SHOWN = 8  # hypotheses that are printed
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -30,14 +31,17 @@ class DiagnosisResult(Result):
 
     Parameters
     ----------
+    record
+        What `diagnosis.json` holds.
     diagnosis
         The verdict and all that it rests on: causes, errors, what is left, every hypothesis.
     """
 
+    record: records.Diagnosis
     diagnosis: Diagnosis
 
     @property
-    def verdict(self) -> Verdict:
+    def verdict(self) -> records.Verdict:
         """`named`, `ambiguous`, `sufficient`, `unexplained` or `undecided`."""
         return self.diagnosis.verdict
 
@@ -59,15 +63,15 @@ class DiagnosisResult(Result):
     @property
     def next_experiment(self) -> str:
         """What to measure next."""
-        return str(self.summary["next_experiment"])
+        return self.record.next_experiment
 
     def tables(self) -> list[Table]:
         """Return what is named, the errors before and after, and the ranking."""
-        return tables(self.summary, self.titled("causes", EXTENDED_MODEL))
+        return list(_tables(self.record, self.titled("causes", records.EXTENDED_MODEL)))
 
     def sentences(self) -> list[str]:
         """Return the verdict, what to measure next, and what the recordings do not say."""
-        cannot_tell = notes(self.summary["cannot_tell"])
+        cannot_tell = notes(self.record.cannot_tell)
         return [self.reason, f"Next: {self.next_experiment}", *cannot_tell]
 
 
@@ -111,7 +115,6 @@ def diagnose(
     """
     data, known, path = dataset_of(dataset, runs), path_of(model), path_of(out)
     stated = stated_model(data.manifest, known)
-    summary = data.header("diagnose", path) | {"model": source_of(known, path)}
     with folder_if(path, stage="diagnose", inputs=[data.folder, known], force=force) as folder:
         step.ahead(len(data.runs) + 1)
         prepared = []
@@ -119,18 +122,39 @@ def diagnose(
             prepared.append(prepare(recording, data.manifest.session_start))
             step()
         result = diagnose_runs(data.manifest, stated, prepared, step)
-        summary |= as_json(result, step)
+        record = records.Diagnosis(
+            **data.header("diagnose", path),
+            model=source_of(known, path),
+            verdict=result.verdict,
+            reason=result.reason,
+            named=[found.cause_of(cause) for cause in result.causes],
+            channels=found.held_out_of(result),
+            remainder=found.remainder_of(result),
+            next_experiment=next_experiment(result, step),
+            candidates=found.candidates_of(result),
+            signatures=found.signatures_of(result.search),
+            residual_map=found.residual_maps_of(result),
+            evidence=found.evidence_of(result.search),
+            cannot_tell=result.cannot_tell,
+            solver="" if result.final is None else result.final.solver,
+            segments={run.run.id: segments_as_json(run, segment(run)) for run in prepared},
+        )
         step()
-        summary["segments"] = {run.run.id: segments_as_json(run, segment(run)) for run in prepared}
         if folder is not None:
-            _write(folder, summary, result, prepared)
-    return DiagnosisResult(summary, path, result)
+            _write(folder, record, result, prepared)
+    return DiagnosisResult(record.content(), path, record, result)
 
 
-def _write(folder: Path, summary: dict[str, Any], result: Diagnosis, runs: list[Prepared]) -> None:
-    write_json(folder / "diagnosis.json", summary)
-    for name, model in ((EXTENDED_MODEL, result.model), (NOMINAL_MODEL, result.nominal)):
-        write_model(folder / name, model, version=__version__, dataset=fitted_to(summary))
+def _write(
+    folder: Path, record: records.Diagnosis, result: Diagnosis, runs: Sequence[Prepared]
+) -> None:
+    record.write(folder)
+    fitted = record.source().content()
+    for name, model in (
+        (records.EXTENDED_MODEL, result.model),
+        (records.NOMINAL_MODEL, result.nominal),
+    ):
+        write_model(folder / name, model, version=record.version, dataset=fitted)
     (folder / "runs").mkdir()
     for run in runs:
         write_answer(folder / "runs", _answer(run, result.model, result.nominal))
@@ -142,3 +166,32 @@ def _answer(run: Prepared, extended: Model, nominal: Model) -> Recording:
     columns = {"time_s": run.time_s, "x_in_mm": after.response.x_in_mm, **after.channels}
     columns |= {nominal_name(name): values for name, values in before.channels.items()}
     return Recording(run.run, columns)
+
+
+def _tables(record: records.Diagnosis, title: str) -> Iterator[Table]:
+    """Yield what is named under its title, the errors before and after, and the ranking."""
+    named = [
+        (cause.effect, name, value.text(), value.unit, ", ".join(cause.rivals))
+        for cause in record.named
+        for name, value in cause.parameters.items()
+    ]
+    if named:
+        yield title, ("effect", "parameter", "value [95 %]", "unit", "rivals"), named
+    errors = [
+        (name, *map(number_text, (c.rmse_before, c.rmse_after, c.noise_floor, c.best_obtainable)))
+        for name, c in record.channels.items()
+    ]
+    units = [c.unit for c in record.channels.values()]
+    header = ("channel", "before", "after", "noise", "obtainable", "unit")
+    rows = [(*row, unit) for row, unit in zip(errors, units, strict=True)]
+    yield "error on held-out data", header, rows
+    ranking = [
+        (
+            " + ".join(row.effects),
+            number_text(row.gain_percent, ".1f"),
+            number_text(row.sureness, ".1f"),
+            "" if row.converged else "not converged",
+        )
+        for row in record.candidates[:SHOWN]
+    ]
+    yield "hypotheses", ("effects", "gain [%]", "sureness", ""), ranking

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from tsas_studies.challenge.answers import CATALOGUE, Answers, Case
-from tsas_studies.challenge.entry import Diagnosis, Entry
+from tsas_studies.challenge.entry import Answer, Entry
 
 NO_ANSWER = "no answer"
 _WORTH_MENDING = 1.1  # times the best obtainable error; a channel below it has nothing to gain
@@ -14,7 +14,7 @@ class Judged:
     """One case and the diagnosis of it, None where it is missing."""
 
     case: Case
-    diagnosis: Diagnosis | None
+    diagnosis: Answer | None
 
     @property
     def outcome(self) -> str:

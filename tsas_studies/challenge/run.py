@@ -15,7 +15,7 @@ from tsas_cli.numerics.side_by_side import THREADS
 from tsas_cli.stages.diagnose import diagnose as diagnose_recordings
 from tsas_cli.support import __version__
 from tsas_cli.support.errors import InputError
-from tsas_cli.support.files import read_json, stage_folder, write_json
+from tsas_cli.support.files import read_json, stage_folder, write_json, write_sums
 from tsas_studies.challenge.baselines import bic, sparse, training
 from tsas_studies.challenge.entry import FILE, LOG
 
@@ -140,6 +140,7 @@ def _timed(diagnose: Diagnose, dataset: Path, out: Path) -> str | None:
         seconds = time.perf_counter() - start
         content = read_json(out / FILE)
         write_json(out / FILE, content | {"seconds": seconds})
+        write_sums(out)  # of what is there now
     except InputError as error:
         return error.line()
     except Exception as error:  # noqa: BLE001 # the other cases go on; the reason is written down

@@ -4,12 +4,12 @@ import pytest
 
 from tests.studies.challenge.made import case, diagnosis, estimate, named
 from tsas_studies.challenge.answers import Case
-from tsas_studies.challenge.entry import Diagnosis
+from tsas_studies.challenge.entry import Answer
 from tsas_studies.challenge.judge import Judged
 
 
 def judged(truth, said):
-    return Judged(Case.model_validate(truth), said and Diagnosis.model_validate(said))
+    return Judged(Case.model_validate(truth), said and Answer.model_validate(said))
 
 
 ONE, PAIR, NOTHING = case("backlash"), case("backlash", "drive_friction"), case()

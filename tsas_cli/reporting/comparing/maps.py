@@ -1,7 +1,6 @@
 """Where the errors of both sides are: mean and scatter over the signals, on the same axes."""
 
 from tsas_cli.comparing.compare import Comparison
-from tsas_cli.records.diagnosis import Bin
 from tsas_cli.reporting.content import Section
 from tsas_cli.reporting.diagnosis.maps import pictures
 from tsas_cli.reporting.figures.residual_map import Panel
@@ -18,7 +17,7 @@ _NOTHING = "Over no signal does the error of either side stand out of the noise.
 def section(it: Comparison) -> Section:
     """Return the section of the residual maps."""
     panels = [
-        Panel(channel, signal, _bins(bins), _bins(it.maps["b"][channel][signal]))
+        Panel(channel, signal, bins, it.maps["b"][channel][signal])
         for channel, signals in it.maps["a"].items()
         for signal, bins in signals.items()
     ]
@@ -26,7 +25,3 @@ def section(it: Comparison) -> Section:
     intro = () if it.shared else (_OWN,)
     return Section("maps", "Where the errors are", (*intro, _WHAT if shown else _NOTHING),
                    pictures=shown)  # fmt: skip
-
-
-def _bins(bins: list[dict[str, float]]) -> tuple[Bin, ...]:
-    return tuple(Bin.model_validate(one) for one in bins)

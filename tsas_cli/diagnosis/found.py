@@ -1,0 +1,130 @@
+"""What a diagnosis has found, as the records that are written down (docs/formats.md)."""
+
+import numpy as np
+import numpy.typing as npt
+
+from tsas_cli.diagnosis.diagnose import Cause, Diagnosis
+from tsas_cli.diagnosis.residual_map import residual_map
+from tsas_cli.diagnosis.search import Search
+from tsas_cli.effects import EFFECTS
+from tsas_cli.recordings.columns import BY_NAME
+from tsas_cli.records import diagnosis as records
+from tsas_cli.records.base import Evidence, Value
+from tsas_cli.support.wording import count_of
+
+Floats = npt.NDArray[np.float64]
+
+
+def cause_of(cause: Cause) -> records.Cause:
+    """Return a named effect with its title, equation and values."""
+    effect = next(e for e in EFFECTS if e.name == cause.effect)
+    return records.Cause(
+        effect=cause.effect,
+        title=effect.title,
+        equation=effect.equation,
+        rivals=cause.rivals,
+        parameters={
+            e.name.split(".")[1]: Value.model_validate(e, from_attributes=True)
+            for e in cause.parameters
+        },
+        gain_percent=cause.gain_percent,
+        gain_interval_percent=cause.gain_interval_percent,
+    )
+
+
+def held_out_of(result: Diagnosis) -> dict[str, records.HeldOut]:
+    """Return each channel's errors on held-out data, with its unit."""
+    return {
+        name: records.HeldOut(unit=BY_NAME[name].unit, **vars(channel))
+        for name, channel in result.channels.items()
+    }
+
+
+def remainder_of(result: Diagnosis) -> records.Remainder:
+    """Return what is left, and on what it depends."""
+    left = result.remainder
+    return records.Remainder(
+        unexplained=result.unexplained,
+        depends_on=() if left is None else left.depends_on,
+        share_percent=100.0 * result.share_left,
+        mean_square=None if left is None else left.mean_square,
+    )
+
+
+def candidates_of(result: Diagnosis) -> list[records.Candidate]:
+    """Return single effects, and what stands in place of the named ones, the best first."""
+    search = result.search
+    if search is None:
+        return []
+    rows = []
+    nothing: frozenset[str] = frozenset()
+    named = frozenset(cause.effect for cause in result.causes)
+    for names, mesh in search.trials:
+        instead = len(names) == len(named) and len(names - named) <= 1
+        if mesh != search.bench.on_mesh(names) or not (len(names) == 1 or (names and instead)):
+            continue
+        trial, found = search.trial(names), search.gain(nothing, names)
+        rows.append(
+            records.Candidate(
+                effects=tuple(sorted(names)),
+                gain_percent=100.0 * (1.0 - float(np.sqrt(1.0 - found.part))),
+                sureness=found.sureness,
+                convincing=bool(found.convincing),
+                mean_square=trial.mean_square,
+                converged=bool(trial.solution.converged),
+                parameters=trial.values(),
+            )
+        )
+    return sorted(rows, key=lambda row: -np.inf if row.gain_percent is None else -row.gain_percent)
+
+
+def signatures_of(search: Search | None) -> records.Signatures:
+    """Return how visible each effect is on these inputs, and how similar each two are."""
+    if search is None:
+        return records.Signatures()
+    seen = sorted(search.screen(frozenset()), key=lambda s: s.effect.name)
+    sizes = [float(np.linalg.norm(s.signatures.sum(axis=1))) for s in seen]
+    spaces = [_orthonormal(s.signatures) for s in seen]
+    likeness = [[_likeness(a, b) for b in spaces] for a in spaces]
+    names = tuple(s.effect.name for s in seen)
+    return records.Signatures(effects=names, visible=sizes, likeness=likeness)
+
+
+def _orthonormal(signatures: Floats) -> Floats:
+    u, sizes, _ = np.linalg.svd(signatures, full_matrices=False)
+    return np.asarray(u[:, sizes > 1e-6 * max(float(sizes.max()), 1e-12)])
+
+
+def _likeness(a: Floats, b: Floats) -> float:
+    """Return the cosine of the smallest angle between what two effects can do, 1 if they share."""
+    if a.shape[1] == 0 or b.shape[1] == 0:
+        return 0.0
+    return float(min(np.linalg.svd(a.T @ b, compute_uv=False).max(), 1.0))
+
+
+def residual_maps_of(result: Diagnosis) -> records.ResidualMaps:
+    """Return where each channel is wrong, before and after."""
+    if result.judged is None or result.before is None or result.final is None:
+        return records.ResidualMaps()
+    bench = result.judged.bench
+    return records.ResidualMaps(
+        before=residual_map(bench, result.before), after=residual_map(bench, result.final)
+    )
+
+
+def evidence_of(search: Search | None) -> Evidence:
+    """Return what was held out, and how much of it counts."""
+    if search is None:
+        return Evidence()
+    folds, runs = search.folds, len(search.bench.rigs)
+    if folds.by_run:
+        how = f"each of {runs} runs is predicted by a fit to the others"
+    else:
+        how = f"with {count_of(runs, 'run')}, stretches are predicted by a fit to the rest"
+    return Evidence(
+        held_out="runs" if folds.by_run else "stretches",
+        blocks=folds.blocks,
+        runs=runs,
+        sentence=f"{how}; {folds.blocks} blocks longer than the error's memory count as "
+        "evidence. Noise is told from the high-frequency part of each channel.",
+    )
