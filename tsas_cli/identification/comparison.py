@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping, Set
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -14,6 +13,7 @@ from tsas_cli.physics.chain_state import SLACK, UNSETTLED
 from tsas_cli.physics.response import Dynamics, Response, simulate
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.manifest import Run
+from tsas_cli.records.simulation import Channel, SimulatedRun
 from tsas_cli.support.errors import InputError
 
 Floats = npt.NDArray[np.float64]
@@ -55,27 +55,27 @@ class Told:
     samples: Mapping[str, int]
     notes: tuple[str, ...] = ()
 
-    def as_json(self, run: Prepared) -> dict[str, Any]:
+    def record(self, run: Prepared) -> SimulatedRun:
         """Return what `simulation.json` says of the run."""
         start = run.drive.start_f_in_N
-        return {
-            "solver": self.solver,
-            "conditioning": run.conditioning(),
-            "start": "at rest" if start is None else f"f_in_N = {start:.4g} N as measured",
-            "samples": self.rows,
-            "slack_samples": self.slack,
-            "unconverged_samples": self.unsettled,
-            "notes": list(self.notes),
-            "channels": {
-                name: {
-                    "rmse": self.rmse[name],
-                    "noise": run.noise[name],
-                    "samples": self.samples[name],
-                    "unit": BY_NAME[name].unit,
-                }
+        return SimulatedRun(
+            solver=self.solver,
+            conditioning=run.conditioning(),
+            start="at rest" if start is None else f"f_in_N = {start:.4g} N as measured",
+            samples=self.rows,
+            slack_samples=self.slack,
+            unconverged_samples=self.unsettled,
+            notes=self.notes,
+            channels={
+                name: Channel(
+                    rmse=self.rmse[name],
+                    noise=run.noise[name],
+                    samples=self.samples[name],
+                    unit=BY_NAME[name].unit,
+                )
                 for name in self.rmse
             },
-        }
+        )
 
 
 def compare(

@@ -15,13 +15,14 @@ of the laws is needed for belongs to a phase as a whole; which one, its slope te
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.numerics.turning_points import last_beyond
+from tsas_cli.records import base as records
 
 Floats = npt.NDArray[np.float64]
 Phase = Literal["contraction", "loosening", "dead_band_up", "dead_band_down", "unknown"]
@@ -81,17 +82,17 @@ def segment(run: Prepared) -> list[Segment]:
     return out
 
 
-def segments_as_json(run: Prepared, segments: Sequence[Segment]) -> list[dict[str, Any]]:
+def segment_records(run: Prepared, segments: Sequence[Segment]) -> tuple[records.Segment, ...]:
     """Return what the stages' files say of a run's phases."""
     last = run.time_s.size - 1
-    return [
-        {
-            "start_s": float(run.time_s[s.first]),
-            "end_s": float(run.time_s[min(s.end, last)]),
-            "phase": s.phase,
-        }
+    return tuple(
+        records.Segment(
+            start_s=float(run.time_s[s.first]),
+            end_s=float(run.time_s[min(s.end, last)]),
+            phase=s.phase,
+        )
         for s in segments
-    ]
+    )
 
 
 def _strokes(run: Prepared) -> list[_Stroke]:

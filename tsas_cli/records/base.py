@@ -5,7 +5,7 @@ is left alone (docs/formats.md).
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, Self
 
@@ -140,10 +140,12 @@ class Value(Record):
             raise ValueError(f"interval_low {low:g} is above interval_high {high:g}")
         return self
 
-    def text(self, without: str = "fitted") -> str:
-        """Return value and interval for a printed table, or what it is `without` an interval."""
+    origin: str = Field(default="fitted", exclude=True)
+
+    def text(self) -> str:
+        """Return value and interval for a printed table; where there is none, its origin."""
         if self.value is None or self.interval_low is None or self.interval_high is None:
-            return f"{number_text(self.value, '.5g')} ({without})"
+            return f"{number_text(self.value, '.5g')} ({self.origin})"
         flag = "  AT BOUND" if self.at_bound else ""
         return f"{self.value:.5g} [{self.interval_low:.5g}, {self.interval_high:.5g}]{flag}"
 
@@ -164,6 +166,11 @@ class Parameter(Value):
     name: str
     run: str | None = None
     origin: str
+
+
+def parameters_of(estimates: Iterable[object]) -> tuple[Parameter, ...]:
+    """Return estimates as they are written down."""
+    return tuple(Parameter.model_validate(e, from_attributes=True) for e in estimates)
 
 
 class Fit(Record):

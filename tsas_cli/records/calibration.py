@@ -1,9 +1,17 @@
-"""What `calibration.json` holds, as far as it is read (docs/formats.md)."""
+"""What `calibration.json` holds (docs/formats.md)."""
 
 from typing import ClassVar, Literal
 
 from tsas_cli.physics.response import Dynamics
-from tsas_cli.records.base import Fit, ModelFile, OfDataset, Parameter, Record, Segment
+from tsas_cli.records.base import (
+    Fit,
+    ModelFile,
+    Number,
+    OfDataset,
+    Parameter,
+    Record,
+    Segment,
+)
 
 
 class Stiffness(Record):
@@ -13,19 +21,33 @@ class Stiffness(Record):
     phase: str
     km: Parameter
     kr: Parameter | None = None
-    theory_N_per_mm: float | None = None
-    theory_elastic_N_per_mm: float | None = None
-    expected_N_per_mm: float | None = None
+    theory_N_per_mm: Number = None
+    theory_elastic_N_per_mm: Number = None
+    expected_N_per_mm: Number = None
     occurrences: int
+    samples: int | None = None
     note: str | None = None
+
+
+class NominalFit(Fit):
+    """How the joint fit of the nominal parameters ended, and what simulated the runs."""
+
+    evaluations: int = 0
+    solver: tuple[str, ...] = ()
+
+
+class ChannelError(Record):
+    """RMS of the residual and noise level of a channel, in its unit."""
+
+    rmse: Number
+    noise: Number
 
 
 class Calibration(OfDataset):
     """The content of `calibration.json`."""
 
     FILE: ClassVar[str] = "calibration.json"
-    stage: Literal["calibrate"]
-    version: str
+    stage: Literal["calibrate"] = "calibrate"
     model: ModelFile = ModelFile(file="data sheet")
     dynamics: Dynamics = "slip"
     segments: dict[str, tuple[Segment, ...]]
@@ -33,4 +55,5 @@ class Calibration(OfDataset):
     transfer: tuple[Parameter, ...] = ()
     parameters: tuple[Parameter, ...]
     cannot_tell: tuple[str, ...]
-    fit: Fit
+    fit: NominalFit
+    channels: dict[str, dict[str, ChannelError]] = {}

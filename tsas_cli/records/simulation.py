@@ -1,16 +1,18 @@
-"""What `simulation.json` holds, as far as it is read (docs/formats.md)."""
+"""What `simulation.json` holds (docs/formats.md)."""
 
-from typing import ClassVar, Literal
+from collections.abc import Iterable
+from typing import ClassVar, Literal, Self
 
 from tsas_cli.physics.response import Dynamics
-from tsas_cli.records.base import ModelFile, OfDataset, Record, Segment
+from tsas_cli.records.base import ModelFile, Number, OfDataset, Record, Segment
 
 
 class Channel(Record):
     """How far a simulated channel is from the measured one, and how noisy that is."""
 
-    rmse: float | None
-    noise: float | None
+    rmse: Number
+    noise: Number
+    samples: int | None = None
     unit: str | None = None
 
 
@@ -28,10 +30,12 @@ class SimulatedRun(Record):
     """What `tsas simulate` says about one run."""
 
     solver: str = ""
-    start: str = ""
     conditioning: dict[str, Conditioning] = {}
+    start: str = ""
+    samples: int | None = None
     slack_samples: int = 0
     unconverged_samples: int = 0
+    notes: tuple[str, ...] = ()
     channels: dict[str, Channel]
 
 
@@ -39,12 +43,16 @@ class Simulation(OfDataset):
     """The content of `simulation.json`; its series are in `runs/ID.parquet`."""
 
     FILE: ClassVar[str] = "simulation.json"
-    stage: Literal["simulate"]
-    version: str
+    stage: Literal["simulate"] = "simulate"
     model: ModelFile
     dynamics: Dynamics
     nodes: int | None = None
     own_values_fitted: bool = False
-    notes: tuple[str, ...] = ()
     runs: dict[str, SimulatedRun]
     segments: dict[str, tuple[Segment, ...]] = {}
+    notes: tuple[str, ...] = ()
+
+    def with_run(self, run: str, found: SimulatedRun, segments: Iterable[Segment]) -> Self:
+        """Return it with one run more."""
+        runs, phases = self.runs | {run: found}, self.segments | {run: tuple(segments)}
+        return self.model_copy(update={"runs": runs, "segments": phases})

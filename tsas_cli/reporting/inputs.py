@@ -208,8 +208,12 @@ def _dataset_of(stage: StageFile, path: Path) -> Place:
 
 
 def _own_check(dataset: Dataset) -> Check:
-    content = dataset.header("check", Path()) | check_dataset(dataset).content()
-    return Check.model_validate(content)
+    report = check_dataset(dataset)
+    return Check(
+        **dataset.header("check", Path()),
+        findings=report.findings,
+        not_checked=report.not_checked,
+    )
 
 
 def _check_own(dataset: Dataset, path: Path) -> None:

@@ -1,22 +1,20 @@
 """The calibrate stage: `model.toml` and `calibration.json` of a dataset."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
 from tsas_cli.identification.calibration import Calibration, calibrate_runs
-from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.long_runs import open_long
 from tsas_cli.identification.model import (
     FILE,
     Model,
     data_sheet,
-    fitted_to,
     source_of,
     stated_model,
     write_model,
 )
-from tsas_cli.identification.phases import segments_as_json
+from tsas_cli.identification.phases import segment_records
 from tsas_cli.identification.prepared import Prepared, prepare
 from tsas_cli.identification.stiffness import Slope
 from tsas_cli.physics.capstan import dead_band_stiffness, slip_stiffness, speed_per_stiffness
@@ -27,11 +25,12 @@ from tsas_cli.recordings.quality.checks import sign
 from tsas_cli.recordings.quality.finding import CannotTell, Remark
 from tsas_cli.recordings.quality.stretches import look_by_stretches
 from tsas_cli.recordings.quality.trial import Trial
+from tsas_cli.records import calibration as records
+from tsas_cli.records.base import Parameter, number_text, parameters_of
 from tsas_cli.records.result import Result, Table, notes
 from tsas_cli.stages.given import Named, dataset_of, one_of, path_of
-from tsas_cli.support import __version__
 from tsas_cli.support.errors import InputError
-from tsas_cli.support.files import folder_if, write_json
+from tsas_cli.support.files import folder_if
 from tsas_cli.support.steps import SILENT, Steps
 
 DYNAMICS: tuple[Literal["slip", "lugre"], ...] = ("slip", "lugre")
@@ -43,10 +42,13 @@ class CalibrationResult(Result):
 
     Parameters
     ----------
+    record
+        What `calibration.json` holds.
     calibration
         The calibrated model and, run by run, phases, slopes and answers.
     """
 
+    record: records.Calibration
     calibration: Calibration
 
     @property
@@ -56,11 +58,11 @@ class CalibrationResult(Result):
 
     def tables(self) -> list[Table]:
         """Return the slopes, the parameters and the errors."""
-        return _tables(self.summary, self.titled("parameters", FILE))
+        return list(_tables(self.record, self.titled("parameters", FILE)))
 
     def sentences(self) -> list[str]:
         """Return what these recordings do not say, and why."""
-        return notes(self.summary["cannot_tell"])
+        return notes(self.record.cannot_tell)
 
 
 def calibrate(
@@ -115,15 +117,26 @@ def calibrate(
             prepared.append(_prepared(data, run))
             step()
         result = calibrate_runs(data.manifest, prepared, step, dynamics=taken, stated=stated)
-        summary = data.header("calibrate", path) | {"model": source_of(given, path)}
-        summary["dynamics"] = taken
-        summary |= _summary(result, data.manifest)
+        record = records.Calibration(
+            **data.header("calibrate", path),
+            model=source_of(given, path),
+            dynamics=taken,
+            segments={
+                run.run.id: segment_records(run, segments)
+                for run, segments in zip(result.runs, result.segments, strict=True)
+            },
+            stiffness=tuple(_stiffness_rows(result, data.manifest)),
+            transfer=parameters_of(result.transfer),
+            parameters=parameters_of(result.model.estimates),
+            cannot_tell=result.cannot_tell,
+            fit=_fit(result),
+            channels=_errors(result),
+        )
         if folder is not None:
-            write_model(
-                folder / FILE, result.model, version=__version__, dataset=fitted_to(summary)
-            )
-            write_json(folder / "calibration.json", summary)
-    return CalibrationResult(summary, path, result)
+            fitted = record.source().content()
+            write_model(folder / FILE, result.model, version=record.version, dataset=fitted)
+            record.write(folder)
+    return CalibrationResult(record.content(), path, record, result)
 
 
 def _prepared(dataset: Dataset, run: Run) -> Prepared:
@@ -144,41 +157,37 @@ def _refuse_wrong_sign(said: Iterable[Remark | CannotTell], run: Run) -> None:
             raise InputError(one.sentence, where=run.file, remedy=one.remedy)
 
 
-def _summary(result: Calibration, manifest: Manifest) -> dict[str, Any]:
+def _stiffness_rows(result: Calibration, manifest: Manifest) -> Iterator[records.Stiffness]:
+    """Yield the stiffness of each phase of each run."""
+    for run, slopes, by_model in zip(result.runs, result.slopes, result.expected, strict=True):
+        expected = {slope.phase: slope for slope in reversed(by_model)}
+        for slope in slopes:
+            yield _stiffness(run, slope, expected.get(slope.phase), manifest, result.model)
+
+
+def _fit(result: Calibration) -> records.NominalFit:
+    fitted = result.fitted
+    return records.NominalFit(
+        converged=fitted is not None and bool(fitted.converged),
+        message="nothing to fit" if fitted is None else fitted.message,
+        evaluations=0 if fitted is None else fitted.evaluations,
+        solver=tuple(sorted({a.response.solver for a in result.answers})),
+    )
+
+
+def _errors(result: Calibration) -> dict[str, dict[str, records.ChannelError]]:
     return {
-        "segments": {
-            run.run.id: segments_as_json(run, segments)
-            for run, segments in zip(result.runs, result.segments, strict=True)
-        },
-        "stiffness": [
-            _stiffness(run, slope, expected, manifest, result.model)
-            for run, slopes, by_model in zip(
-                result.runs, result.slopes, result.expected, strict=True
-            )
-            for slope in slopes
-            for expected in [next((e for e in by_model if e.phase == slope.phase), None)]
-        ],
-        "transfer": [e.as_json() for e in result.transfer],
-        "parameters": [e.as_json() for e in result.model.estimates],
-        "cannot_tell": list(result.cannot_tell),
-        "fit": {
-            "converged": result.fitted is not None and result.fitted.converged,
-            "message": "nothing to fit" if result.fitted is None else result.fitted.message,
-            "evaluations": 0 if result.fitted is None else result.fitted.evaluations,
-            "solver": sorted({a.response.solver for a in result.answers}),
-        },
-        "channels": {
-            run.run.id: {
-                name: {"rmse": rmse, "noise": run.noise[name]} for name, rmse in a.rmse.items()
-            }
-            for run, a in zip(result.runs, result.answers, strict=True)
-        },
+        run.run.id: {
+            name: records.ChannelError(rmse=rmse, noise=run.noise[name])
+            for name, rmse in a.rmse.items()
+        }
+        for run, a in zip(result.runs, result.answers, strict=True)
     }
 
 
 def _stiffness(
     run: Prepared, slope: Slope, expected: Slope | None, manifest: Manifest, model: Model
-) -> dict[str, Any]:
+) -> records.Stiffness:
     """Return one row: measured km and kr beside what theory and the calibrated model expect."""
     sheet = manifest.rig
     stated = all(
@@ -195,33 +204,31 @@ def _stiffness(
     theory, elastic = _theory((data_sheet(manifest) if stated else model).rig(run.run), slope, run)
     radius, gear = sheet.turntable_radius_mm, sheet.gear_ratio
     factor = None if radius is None or gear is None else speed_per_stiffness(radius, gear)
-    return {
-        "run": run.run.id,
-        "phase": slope.phase,
-        "km": _estimate("km", slope, "N/mm", 1.0, run.run.id).as_json(),
-        "kr": None
-        if factor is None
-        else _estimate("kr", slope, "N/(s rpm)", factor, run.run.id).as_json(),
-        "theory_N_per_mm": theory,
-        "theory_elastic_N_per_mm": elastic,
-        "expected_N_per_mm": None if expected is None else expected.value,
-        "occurrences": slope.occurrences,
-        "samples": slope.samples,
-        "note": "theory from the data sheet" if stated else "theory from the calibrated values",
-    }
+    return records.Stiffness(
+        run=run.run.id,
+        phase=slope.phase,
+        km=_parameter("km", slope, "N/mm", 1.0, run.run.id),
+        kr=None if factor is None else _parameter("kr", slope, "N/(s rpm)", factor, run.run.id),
+        theory_N_per_mm=theory,
+        theory_elastic_N_per_mm=elastic,
+        expected_N_per_mm=None if expected is None else expected.value,
+        occurrences=slope.occurrences,
+        samples=slope.samples,
+        note="theory from the data sheet" if stated else "theory from the calibrated values",
+    )
 
 
-def _estimate(name: str, slope: Slope, unit: str, factor: float, run: str) -> Estimate:
+def _parameter(name: str, slope: Slope, unit: str, factor: float, run: str) -> Parameter:
     low, high = slope.value - slope.half_width, slope.value + slope.half_width
-    return Estimate(
-        name,
-        slope.value * factor,
-        unit,
-        "fitted",
-        run,
-        slope.stderr * factor,
-        low * factor,
-        high * factor,
+    return Parameter(
+        name=name,
+        value=slope.value * factor,
+        unit=unit,
+        origin="fitted",
+        run=run,
+        stderr=slope.stderr * factor,
+        interval_low=low * factor,
+        interval_high=high * factor,
     )
 
 
@@ -244,45 +251,29 @@ def _theory(rig: Rig, slope: Slope, run: Prepared) -> tuple[float | None, float 
     )
 
 
-def _tables(summary: dict[str, Any], title: str) -> list[Table]:
-    """Return the slopes, the parameters under their title, and the errors."""
-    parameters = [Estimate(**p) for p in summary["parameters"]]
-    slope_rows = [
+def _tables(record: records.Calibration, title: str) -> Iterator[Table]:
+    """Yield the slopes, the parameters under their title, and the errors."""
+    slopes = [
         (
-            row["run"],
-            row["phase"],
-            Estimate(**row["km"]).text(),
-            _number(row["theory_N_per_mm"]),
-            _number(row["expected_N_per_mm"]),
+            row.run,
+            row.phase,
+            row.km.text(),
+            number_text(row.theory_N_per_mm, ".4g"),
+            number_text(row.expected_N_per_mm, ".4g"),
         )
-        for row in summary["stiffness"]
+        for row in record.stiffness
     ]
-    error_rows = [
-        (run, name, f"{c['rmse']:.4g}", f"{c['noise']:.2g}")
-        for run, channels in summary["channels"].items()
+    header = ("run", "phase", "measured [95 %]", "theory", "distributed model")
+    yield "stiffness km [N/mm] by linear fit", header, slopes
+    transfer = [(p.run or "", p.name, p.text(), p.unit) for p in record.transfer]
+    if transfer:
+        about = "tension passed on in full slip, f_in = ratio f_out + intercept"
+        yield about, ("runs", "name", "value [95 %]", "unit"), transfer
+    parameters = [(p.name, p.run or "all", p.text(), p.unit) for p in record.parameters]
+    yield title, ("name", "run", "value [95 %]", "unit"), parameters
+    errors = [
+        (run, name, number_text(c.rmse, ".4g"), number_text(c.noise, ".2g"))
+        for run, channels in record.channels.items()
         for name, c in channels.items()
     ]
-    return [
-        (
-            "stiffness km [N/mm] by linear fit",
-            ("run", "phase", "measured [95 %]", "theory", "distributed model"),
-            slope_rows,
-        ),
-        *_transfer_table(summary["transfer"]),
-        (
-            title,
-            ("name", "run", "value [95 %]", "unit"),
-            [(e.name, e.run or "all", e.text(), e.unit) for e in parameters],
-        ),
-        ("calibrated model against measurement", ("run", "channel", "RMSE", "noise"), error_rows),
-    ]
-
-
-def _transfer_table(transfer: Sequence[dict[str, Any]]) -> list[Table]:
-    rows = [(p["run"], p["name"], Estimate(**p).text(), p["unit"]) for p in transfer]
-    title = "tension passed on in full slip, f_in = ratio f_out + intercept"
-    return [(title, ("runs", "name", "value [95 %]", "unit"), rows)] if rows else []
-
-
-def _number(value: float | None) -> str:
-    return "" if value is None else f"{value:.4g}"
+    yield "calibrated model against measurement", ("run", "channel", "RMSE", "noise"), errors

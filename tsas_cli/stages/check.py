@@ -4,11 +4,12 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from tsas_cli.recordings.dataset import Dataset
-from tsas_cli.recordings.quality import Report, check_dataset
+from tsas_cli.recordings.quality import check_dataset
 from tsas_cli.recordings.quality.finding import Finding, NotChecked
+from tsas_cli.records.check import Check
 from tsas_cli.records.result import Result, Table
 from tsas_cli.stages.given import Named, dataset_of, path_of
-from tsas_cli.support.files import folder_if, write_json
+from tsas_cli.support.files import folder_if
 from tsas_cli.support.steps import SILENT, Steps
 
 
@@ -18,25 +19,25 @@ class CheckResult(Result):
 
     Parameters
     ----------
-    report
-        The findings, and the checks that could not tell.
+    record
+        What `check.json` holds: the findings, and the checks that could not tell.
     """
 
-    report: Report
+    record: Check
 
     @property
     def findings(self) -> tuple[Finding, ...]:
         """What is wrong: code, severity, run, column, a sentence, and what to do."""
-        return self.report.findings
+        return self.record.findings
 
     @property
     def not_checked(self) -> tuple[NotChecked, ...]:
         """Checks that could not tell, with the reason; this is not the same as passed."""
-        return self.report.not_checked
+        return self.record.not_checked
 
     def tables(self) -> list[Table]:
         """Return what was found, what to do about it, and what could not be told."""
-        return list(_tables(self.report))
+        return list(_tables(self.record))
 
 
 def check(
@@ -75,13 +76,17 @@ def check(
     data, folder = dataset_of(dataset, runs), path_of(out)
     with folder_if(folder, stage="check", inputs=[data.folder], force=force) as written:
         report = check_dataset(data, step)
-        summary = data.header("check", folder) | report.content()
+        record = Check(
+            **data.header("check", folder),
+            findings=report.findings,
+            not_checked=report.not_checked,
+        )
         if written is not None:
-            write_json(written / "check.json", summary)
-    return CheckResult(summary, folder, report)
+            record.write(written)
+    return CheckResult(record.content(), folder, record)
 
 
-def _tables(report: Report) -> Iterator[Table]:
+def _tables(report: Check) -> Iterator[Table]:
     found = [(str(f.severity), f.code, f.run or "", f.sentence) for f in report.findings]
     header = ("severity", "code", "run", "finding") if found else ()
     yield f"the checks found {len(found) or 'nothing'}", header, found

@@ -9,7 +9,7 @@ from tsas_cli.diagnosis.diagnose import Cause, Diagnosis, diagnose_runs
 from tsas_cli.diagnosis.next_experiment import next_experiment
 from tsas_cli.identification.comparison import compare
 from tsas_cli.identification.model import Model, source_of, stated_model, write_model
-from tsas_cli.identification.phases import segment, segments_as_json
+from tsas_cli.identification.phases import segment, segment_records
 from tsas_cli.identification.prepared import Prepared, prepare
 from tsas_cli.recordings.columns import nominal_name
 from tsas_cli.recordings.dataset import Dataset
@@ -137,7 +137,7 @@ def diagnose(
             evidence=found.evidence_of(result.search),
             cannot_tell=result.cannot_tell,
             solver="" if result.final is None else result.final.solver,
-            segments={run.run.id: segments_as_json(run, segment(run)) for run in prepared},
+            segments={run.run.id: segment_records(run, segment(run)) for run in prepared},
         )
         step()
         if folder is not None:

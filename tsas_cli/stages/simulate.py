@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -19,7 +19,7 @@ from tsas_cli.identification.model import (
     source_of,
     write_model,
 )
-from tsas_cli.identification.phases import segment, segments_as_json
+from tsas_cli.identification.phases import segment, segment_records
 from tsas_cli.identification.prepared import Prepared, prepare
 from tsas_cli.physics.chain_state import MOST_NODES
 from tsas_cli.physics.response import Dynamics
@@ -27,11 +27,12 @@ from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.recording import Recording, recording_of
 from tsas_cli.recordings.writing import write_answer
 from tsas_cli.recordings.written import WrittenRuns
+from tsas_cli.records import simulation as records
+from tsas_cli.records.base import number_text
 from tsas_cli.records.result import Result, Table, notes
 from tsas_cli.stages.given import Named, dataset_of, one_of, path_of
-from tsas_cli.support import __version__
 from tsas_cli.support.errors import InputError
-from tsas_cli.support.files import folder_if, write_json
+from tsas_cli.support.files import folder_if
 from tsas_cli.support.steps import SILENT, Steps
 
 DYNAMICS: tuple[Literal["static", "slip", "lugre"], ...] = ("static", "slip", "lugre")
@@ -45,6 +46,8 @@ class SimulationResult(Result):
 
     Parameters
     ----------
+    record
+        What `simulation.json` holds.
     model
         The model that was simulated.
     runs
@@ -53,6 +56,7 @@ class SimulationResult(Result):
         Those that were written are read when they are asked for.
     """
 
+    record: records.Simulation
     model: Model
     runs: Mapping[str, Recording]
 
@@ -63,16 +67,23 @@ class SimulationResult(Result):
     def tables(self) -> list[Table]:
         """Return how far each channel of each run is from the measurement."""
         rows = [
-            (run, name, f"{c['rmse']:.4g}", f"{c['noise']:.2g}", c["unit"], answer["solver"])
-            for run, answer in self.summary["runs"].items()
-            for name, c in answer["channels"].items()
+            (
+                run,
+                name,
+                number_text(c.rmse, ".4g"),
+                number_text(c.noise, ".2g"),
+                c.unit or "",
+                found.solver,
+            )
+            for run, found in self.record.runs.items()
+            for name, c in found.channels.items()
         ]
         header = ("run", "channel", "RMSE", "noise", "unit", "solver")
-        return [(self.titled(f"{self.summary['dynamics']} model"), header, rows)]
+        return [(self.titled(f"{self.record.dynamics} model"), header, rows)]
 
     def sentences(self) -> Sequence[str]:
         """Return what of the simulation is not to be trusted, and why."""
-        return notes(self.summary["notes"])
+        return notes(self.record.notes)
 
 
 def simulate(
@@ -86,7 +97,7 @@ def simulate(
     runs: Iterable[str] | None = None,
     force: bool = False,
     step: Steps = SILENT,
-    each: Callable[[dict[str, Any], Recording, Model], None] = lambda *_: None,
+    each: Callable[[records.Simulation, Recording, Model], None] = lambda *_: None,
 ) -> SimulationResult:
     """Simulate every run with a model and say how far it is from the measurement.
 
@@ -130,9 +141,14 @@ def simulate(
     data, known, path = dataset_of(dataset, runs), path_of(model), path_of(out)
     _refuse_nodes(nodes, one_of(DYNAMICS, dynamics, "dynamics"))
     taken = data_sheet(data.manifest) if known is None else model_of(known)
-    summary = data.header("simulate", path) | {"model": source_of(known, path)}
-    summary |= {"dynamics": dynamics, "nodes": nodes, "own_values_fitted": fit_own, "runs": {}}
-    summary["segments"] = {}
+    record = records.Simulation(
+        **data.header("simulate", path),
+        model=source_of(known, path),
+        dynamics=dynamics,
+        nodes=nodes,
+        own_values_fitted=fit_own,
+        runs={},
+    )
     kept, used = dict[str, Recording](), taken
     with folder_if(path, stage="simulate", inputs=[data.folder, known], force=force) as folder:
         if folder is not None:
@@ -149,23 +165,22 @@ def simulate(
                 answer = compare(run, own, dynamics, nodes)
                 told = answer.told()
             used = _of_run(own, entry.id).over(used)
-            summary["runs"][entry.id] = told.as_json(run)
-            summary["segments"][entry.id] = segments_as_json(run, segment(run))
+            record = record.with_run(entry.id, told.record(run), segment_records(run, segment(run)))
             if long is None:
                 answered = Recording(entry, _columns(run, answer))
                 if folder is None:
                     kept[entry.id] = answered
                 else:  # many runs need no more memory than one
                     write_answer(folder / "runs", answered)
-                each(summary, answered, used)
+                each(record, answered, used)
             step()
-        summary["notes"] = _notes(summary["runs"])
+        record = record.model_copy(update={"notes": _notes(record.runs)})
         if folder is not None:
-            write_json(folder / "simulation.json", summary)
+            record.write(folder)
             # What the model was fitted to, its own file says; these recordings are only followed.
-            write_model(folder / FILE, used, version=__version__, dataset={})
+            write_model(folder / FILE, used, version=record.version, dataset={})
     written = path and WrittenRuns(path / "runs", {run.id: run for run in data.runs})
-    return SimulationResult(summary, path, taken, written or kept)
+    return SimulationResult(record.content(), path, record, taken, written or kept)
 
 
 def _of_run(model: Model, run: str) -> Model:
@@ -184,16 +199,16 @@ def _refuse_nodes(nodes: int | None, dynamics: Dynamics) -> None:
         raise InputError(f"{nodes} nodes", where="--nodes", expected=f"2 to {MOST_NODES}")
 
 
-def _notes(runs: dict[str, Any]) -> list[str]:
+def _notes(runs: Mapping[str, records.SimulatedRun]) -> tuple[str, ...]:
     """Return the runs' notes, each once, with the runs that it is of."""
     of: dict[str, list[str]] = {}
     for run_id, answer in runs.items():
-        for note in answer["notes"]:
+        for note in answer.notes:
             of.setdefault(note, []).append(run_id)
-    return [
+    return tuple(
         note if len(ids) == len(runs) else f"run {', '.join(ids)}: {note}"
         for note, ids in of.items()
-    ]
+    )
 
 
 def _columns(run: Prepared, answer: Compared) -> dict[str, Floats]:

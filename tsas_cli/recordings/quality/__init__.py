@@ -1,6 +1,6 @@
 """What is wrong with recordings, found before anyone fits anything."""
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Manifest, Run
@@ -66,13 +66,6 @@ class Report:
 
     findings: tuple[Finding, ...]
     not_checked: tuple[NotChecked, ...]
-
-    def content(self) -> dict[str, list[dict[str, object]]]:
-        """Return the part of `check.json` that the checks fill."""
-        return {
-            "findings": [asdict(finding) for finding in self.findings],
-            "not_checked": [asdict(check) for check in self.not_checked],
-        }
 
 
 def check_dataset(dataset: Dataset, step: Steps = SILENT) -> Report:

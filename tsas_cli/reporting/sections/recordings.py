@@ -5,8 +5,9 @@ from collections.abc import Sequence
 from tsas_cli.recordings.columns import BY_NAME, TIME
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Manifest
+from tsas_cli.recordings.quality.finding import Finding
 from tsas_cli.recordings.recording import Recording
-from tsas_cli.records.check import Check, Finding
+from tsas_cli.records.check import Check
 from tsas_cli.reporting.content import Section, Table
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import ABSENT, plain

@@ -6,8 +6,9 @@ from itertools import pairwise
 
 import numpy as np
 
+from tsas_cli.recordings.quality.finding import Finding
 from tsas_cli.records.base import Segment
-from tsas_cli.records.check import Check, Finding
+from tsas_cli.records.check import Check
 from tsas_cli.reporting.stream.palette import colour
 from tsas_cli.reporting.stream.recorder import Recorder
 from tsas_cli.reporting.stream.recorder.paths import Entity

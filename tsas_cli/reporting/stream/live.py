@@ -23,7 +23,6 @@ from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.stream.recorder import Recorder, to_viewer
 from tsas_cli.reporting.stream.seen import SeenRun
 from tsas_cli.reporting.stream.stream import Stream, stream_of
-from tsas_cli.support import __version__
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import json_text
 from tsas_cli.tracking.recorded import manifest
@@ -47,13 +46,13 @@ class LiveStream:
     failure: InputError | None = None
 
     def simulated(
-        self, dataset: Dataset, summary: dict[str, Any], answer: Recording, model: Model
+        self, dataset: Dataset, stage: Simulation, answer: Recording, model: Model
     ) -> None:
-        """Show a simulated run beside its recording; `summary` is that of the runs so far."""
+        """Show a simulated run beside its recording; `stage` says of the runs so far."""
         (self.folder / "runs").mkdir(exist_ok=True)
         write_answer(self.folder / "runs", answer)
-        write_model(self.folder / MODEL, model, version=__version__, dataset=summary["dataset"])
-        stage = Simulation.model_validate(_plain(summary))
+        fitted = stage.dataset.content()
+        write_model(self.folder / MODEL, model, version=stage.version, dataset=fitted)
         self._show(
             Inputs(dataset.only([answer.run.id]), {Simulation: stage}, {Simulation: self.folder})
         )

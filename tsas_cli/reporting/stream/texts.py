@@ -3,8 +3,9 @@
 from collections.abc import Iterator
 
 from tsas_cli.identification.model import read_model
+from tsas_cli.recordings.quality.finding import Finding
 from tsas_cli.records.calibration import Calibration
-from tsas_cli.records.check import Check, Finding
+from tsas_cli.records.check import Check
 from tsas_cli.records.diagnosis import Cause, Diagnosis
 from tsas_cli.records.drive import Drive
 from tsas_cli.records.simulation import Simulation
