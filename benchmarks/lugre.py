@@ -15,7 +15,7 @@ from benchmarks.row import Row
 from benchmarks.timing import best, times
 from tests.physics.references import LOADED_BY_SPRING, TABLE_1, course_of
 from tsas_cli.numerics.side_by_side import each
-from tsas_cli.physics.lugre_chain import OWN_STEPS, Progress, lugre_chain
+from tsas_cli.physics.lugre.chain import OWN_STEPS, Progress, lugre_chain
 from tsas_cli.physics.response import TOLERANCE
 from tsas_cli.physics.rig import Rig
 

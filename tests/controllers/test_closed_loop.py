@@ -7,9 +7,9 @@ import pytest
 from tests.both_ways import answers
 from tests.physics.references import GROUP_A
 from tsas_cli.controllers.closed_loop import followed_from
-from tsas_cli.physics.chain_state import X
-from tsas_cli.physics.plant import Actuator
+from tsas_cli.physics.plant.turntable import Actuator
 from tsas_cli.physics.rig import with_values
+from tsas_cli.physics.slip.state import X
 
 DRIVE = Actuator(0.0236, 52.0, 1.8e-4, 0.007, 0.002, 3000.0)
 PROGRAM = """

@@ -8,10 +8,10 @@ import pytest
 from tests.both_ways import answers
 from tests.physics.references import GROUP_A
 from tsas_cli.effects import EFFECTS, Effects
-from tsas_cli.physics.chain_state import UNSETTLED
 from tsas_cli.physics.ends import Drive
 from tsas_cli.physics.response import CHAIN_ONLY, is_closed, simulate
 from tsas_cli.physics.rig import with_values
+from tsas_cli.physics.slip.state import UNSETTLED
 
 CHANNELS = ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N")
 X_IN = np.interp(np.linspace(0, 6, 240), np.arange(7), [0, 14, 13.9, 13.95, 3, 9, 8])
@@ -175,7 +175,7 @@ from tests.effects.test_contract import LOADS, X_IN, started
 from tests.physics.references import GROUP_A
 from tsas_cli.effects import EFFECTS
 from tsas_cli.physics.ends import ends_of
-from tsas_cli.physics.slip_chain import slip_chain
+from tsas_cli.physics.slip.chain import slip_chain
 
 columns = []
 for effect in EFFECTS:

@@ -10,7 +10,7 @@ import pytest
 from tsas_cli.identification import drive_fit as d
 from tsas_cli.identification.drive_runs import DriveRun
 from tsas_cli.numerics.linear_response import sampled
-from tsas_cli.physics.drive import DriveValues, gear_response, linear_response
+from tsas_cli.physics.plant.harmonic_drive import DriveValues, gear_response, linear_response
 
 # What a drive may plausibly be: lower and upper bound, the usual value, and how its change is told.
 PLAUSIBLE = {

@@ -12,7 +12,7 @@ from tests.identification.test_odd_recordings import recorded as by_the_rig
 from tests.physics.references import LOADED_BY_SPRING, TABLE_1, course_of
 from tsas_cli.identification.calibration import calibrate
 from tsas_cli.identification.prepared import prepare
-from tsas_cli.physics.lugre_chain import OWN_STEPS, lugre_chain
+from tsas_cli.physics.lugre.chain import OWN_STEPS, lugre_chain
 from tsas_cli.physics.rig import with_values
 from tsas_cli.recordings.manifest import Manifest, Run
 from tsas_cli.recordings.recording import Recording

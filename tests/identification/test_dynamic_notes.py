@@ -9,8 +9,8 @@ from tests.physics.references import TABLE_1
 from tsas_cli.identification import dynamic_notes as d
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model
-from tsas_cli.physics.chain_state import UNSETTLED
-from tsas_cli.physics.lugre_start import law_of
+from tsas_cli.physics.lugre.start import law_of
+from tsas_cli.physics.slip.state import UNSETTLED
 from tsas_cli.recordings.manifest import Run
 
 KNOWN = Model((Estimate("bristles.stiffness_N_per_mm", 4e3, "N/mm", "fitted"),))

@@ -7,11 +7,11 @@ import pytest
 
 from tests.physics.references import Profile, course_of, wrap_of
 from tsas_cli.effects import Effects, FreeTendon
-from tsas_cli.physics.branches import branches
-from tsas_cli.physics.chain_state import DISPLACEMENT, FORCE, SPRING, UNSETTLED, Boundary
+from tsas_cli.physics.closed_form.branches import branches
+from tsas_cli.physics.closed_form.static import static_model
 from tsas_cli.physics.rig import Rig
-from tsas_cli.physics.slip_chain import slip_chain
-from tsas_cli.physics.static import static_model
+from tsas_cli.physics.slip.chain import slip_chain
+from tsas_cli.physics.slip.state import DISPLACEMENT, FORCE, SPRING, UNSETTLED, Boundary
 
 SEEDS = range(1000)
 

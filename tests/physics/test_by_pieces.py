@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 from tests.physics.references import GROUP_A
-from tests.physics.test_any_effect import any_effects
+from tests.physics.slip.test_any_effect import any_effects
 from tests.physics.test_any_rig import any_motion, any_rig
-from tsas_cli.physics.branches import branches
 from tsas_cli.physics.by_pieces import simulate_pieces
-from tsas_cli.physics.chain_state import UNSETTLED
+from tsas_cli.physics.closed_form.branches import branches
 from tsas_cli.physics.ends import Drive
 from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import with_values
+from tsas_cli.physics.slip.state import UNSETTLED
 
 CHANNELS = ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N")
 TIME_S = np.concatenate((np.arange(900) * 0.01, 9.0 + np.arange(600) * 0.013))

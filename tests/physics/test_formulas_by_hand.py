@@ -6,11 +6,26 @@ import numpy as np
 import pytest
 
 from tests.physics.references import GROUP_A, LOADED_BY_SPRING, wrap_of
-from tsas_cli.physics.branches import from_rest
 from tsas_cli.physics.bristles import Bristles, bristle_damping, tendon_mass
-from tsas_cli.physics.capstan import speed_per_stiffness
-from tsas_cli.physics.chain_mesh import laws_of
-from tsas_cli.physics.chain_state import (
+from tsas_cli.physics.closed_form.branches import from_rest
+from tsas_cli.physics.closed_form.capstan import speed_per_stiffness
+from tsas_cli.physics.compliances import (
+    compliance_at_drive,
+    compliance_at_load,
+    length_per_angle,
+    sheath_compliance,
+)
+from tsas_cli.physics.ends import Drive, ends_of
+from tsas_cli.physics.lugre.ends import Ends
+from tsas_cli.physics.lugre.pace import Allowed, allowed, change_of, fitted
+from tsas_cli.physics.lugre.start import law_of, lay_out
+from tsas_cli.physics.lugre.state import PITCH as LUGRE_PITCH
+from tsas_cli.physics.lugre.state import ROWS as LUGRE_ROWS
+from tsas_cli.physics.lugre.state import T_PAST, Formula, Step
+from tsas_cli.physics.lugre.step import newton
+from tsas_cli.physics.rig import with_values
+from tsas_cli.physics.slip.mesh import laws_of
+from tsas_cli.physics.slip.state import (
     DISPLACEMENT,
     FORCE,
     PITCH,
@@ -22,22 +37,7 @@ from tsas_cli.physics.chain_state import (
     Moment,
     T,
 )
-from tsas_cli.physics.chain_step import revise
-from tsas_cli.physics.compliances import (
-    compliance_at_drive,
-    compliance_at_load,
-    length_per_angle,
-    sheath_compliance,
-)
-from tsas_cli.physics.ends import Drive, ends_of
-from tsas_cli.physics.lugre_ends import Ends
-from tsas_cli.physics.lugre_pace import Allowed, allowed, change_of, fitted
-from tsas_cli.physics.lugre_start import law_of, lay_out
-from tsas_cli.physics.lugre_state import PITCH as LUGRE_PITCH
-from tsas_cli.physics.lugre_state import ROWS as LUGRE_ROWS
-from tsas_cli.physics.lugre_state import T_PAST, Formula, Step
-from tsas_cli.physics.lugre_step import newton
-from tsas_cli.physics.rig import with_values
+from tsas_cli.physics.slip.step import revise
 
 N = 3
 EA, F0 = GROUP_A.tendon_stiffness_N, GROUP_A.preload_N

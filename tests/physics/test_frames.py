@@ -18,12 +18,12 @@ from tests.physics.references import (
     wrap_of,
 )
 from tsas_cli.effects import Effects, Presliding
-from tsas_cli.physics.branches import branches
-from tsas_cli.physics.chain_state import SLACK, UNSETTLED
+from tsas_cli.physics.closed_form.branches import branches
 from tsas_cli.physics.ends import Drive
 from tsas_cli.physics.frames import empty_frames
 from tsas_cli.physics.response import simulate
-from tsas_cli.physics.slip_chain import slip_chain
+from tsas_cli.physics.slip.chain import slip_chain
+from tsas_cli.physics.slip.state import SLACK, UNSETTLED
 
 N = 60
 WRAP = wrap_of(GROUP_A)

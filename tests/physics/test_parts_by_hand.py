@@ -16,9 +16,32 @@ from tests.physics.references import (
     wrap_of,
 )
 from tsas_cli.effects.load_spring_nonlinearity import LoadSpringNonlinearity
-from tsas_cli.physics.chain_mesh import laws_of
-from tsas_cli.physics.chain_nodes import is_straight, ratio_passed, set_friction
-from tsas_cli.physics.chain_state import (
+from tsas_cli.physics.ends import friction_at, friction_without_speed, last_direction
+from tsas_cli.physics.frames import empty_frames, is_next, slips_up_to
+from tsas_cli.physics.lugre.balance import set_limits
+from tsas_cli.physics.lugre.ends import Ends, unseen
+from tsas_cli.physics.lugre.start import law_of
+from tsas_cli.physics.lugre.state import LIMIT, LIMIT_BY_T, LIMIT_BY_V, Z_PAST, Step, W
+from tsas_cli.physics.lugre.state import PITCH as LUGRE_PITCH
+from tsas_cli.physics.lugre.state import ROWS as LUGRE_ROWS
+from tsas_cli.physics.lugre.state import T as TENSION
+from tsas_cli.physics.parameters import BRISTLES, NOMINAL
+from tsas_cli.physics.plant.harmonic_drive import DriveValues, has_gear, lag_coefficients
+from tsas_cli.physics.plant.turntable import Turntable, across_play, moved, rubbing
+from tsas_cli.physics.response import at_drive, with_spring
+from tsas_cli.physics.rig import with_values
+from tsas_cli.physics.sensors import reading, true_value
+from tsas_cli.physics.slip.chain import (
+    between,
+    phase_of,
+    rest_after,
+    resting,
+    slip_chain,
+    tension_at_sensor,
+)
+from tsas_cli.physics.slip.mesh import laws_of
+from tsas_cli.physics.slip.nodes import is_straight, ratio_passed, set_friction
+from tsas_cli.physics.slip.state import (
     PITCH,
     PULLED,
     PULLED_BY,
@@ -29,29 +52,6 @@ from tsas_cli.physics.chain_state import (
     Moment,
     T,
     X,
-)
-from tsas_cli.physics.drive import DriveValues, has_gear, lag_coefficients
-from tsas_cli.physics.ends import friction_at, friction_without_speed, last_direction
-from tsas_cli.physics.frames import empty_frames, is_next, slips_up_to
-from tsas_cli.physics.lugre_balance import set_limits
-from tsas_cli.physics.lugre_ends import Ends, unseen
-from tsas_cli.physics.lugre_start import law_of
-from tsas_cli.physics.lugre_state import LIMIT, LIMIT_BY_T, LIMIT_BY_V, Z_PAST, Step, W
-from tsas_cli.physics.lugre_state import PITCH as LUGRE_PITCH
-from tsas_cli.physics.lugre_state import ROWS as LUGRE_ROWS
-from tsas_cli.physics.lugre_state import T as TENSION
-from tsas_cli.physics.parameters import BRISTLES, NOMINAL
-from tsas_cli.physics.plant import Turntable, across_play, moved, rubbing
-from tsas_cli.physics.response import at_drive, with_spring
-from tsas_cli.physics.rig import with_values
-from tsas_cli.physics.sensors import reading, true_value
-from tsas_cli.physics.slip_chain import (
-    between,
-    phase_of,
-    rest_after,
-    resting,
-    slip_chain,
-    tension_at_sensor,
 )
 
 RISING = "load_dependent_friction.exponent"

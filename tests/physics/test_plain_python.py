@@ -10,12 +10,12 @@ import sys
 import numpy as np
 from tests.physics.references import GROUP_A, course_of
 from tsas_cli.effects import Effects, FreeTendon, StribeckFriction
-from tsas_cli.physics.branches import branches
-from tsas_cli.physics.chain_state import DISPLACEMENT, FORCE, SPRING, Boundary
+from tsas_cli.physics.closed_form.branches import branches
+from tsas_cli.physics.slip.state import DISPLACEMENT, FORCE, SPRING, Boundary
 from tsas_cli.physics.frames import empty_frames
-from tsas_cli.physics.lugre_chain import lugre_chain
-from tsas_cli.physics.slip_chain import slip_chain
-from tsas_cli.physics.static import static_model
+from tsas_cli.physics.lugre.chain import lugre_chain
+from tsas_cli.physics.slip.chain import slip_chain
+from tsas_cli.physics.closed_form.static import static_model
 
 rig = GROUP_A._replace(effects=Effects(free_tendon=FreeTendon(152.0, 61.0)))
 x = np.interp(np.linspace(0, 7, 300), np.arange(8), [0, 14, 13.9, 13.95, 13.2, -60, 13, 12])

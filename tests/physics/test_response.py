@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from tests.physics.references import GROUP_A, wrap_of
-from tsas_cli.physics.branches import branches
-from tsas_cli.physics.chain_state import UNSETTLED
+from tsas_cli.physics.closed_form.branches import branches
 from tsas_cli.physics.ends import Drive
 from tsas_cli.physics.response import forgotten, simulate
+from tsas_cli.physics.slip.state import UNSETTLED
 
 RIG = GROUP_A._replace(x_in_zero_mm=3.0, x_out_zero_mm=-7.0)
 UP = math.exp(wrap_of(GROUP_A))

@@ -19,19 +19,19 @@ from tsas_cli.controllers.signals import Floats, Signals, filtered
 from tsas_cli.controllers.sliding_mode import SlidingMode, distance, sliding_mode
 from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.physics.chain_mesh import laws_of, segment_compliances
-from tsas_cli.physics.chain_state import FORCE, GIVE, SPRING, Boundary, Moment, X
 from tsas_cli.physics.ends import Drive, ends_of
-from tsas_cli.physics.lugre_plant import (
+from tsas_cli.physics.lugre.start import law_of
+from tsas_cli.physics.plant.lugre_plant import (
     lay_lumps,
     step_lumped_plant,
     tension_at_load,
     with_rig,
 )
-from tsas_cli.physics.lugre_start import law_of
-from tsas_cli.physics.plant import Actuator, Turntable, step_plant, turned
+from tsas_cli.physics.plant.turntable import Actuator, Turntable, step_plant, turned
 from tsas_cli.physics.rig import Rig
-from tsas_cli.physics.slip_chain import follow, resting, tension_at_sensor
+from tsas_cli.physics.slip.chain import follow, resting, tension_at_sensor
+from tsas_cli.physics.slip.mesh import laws_of, segment_compliances
+from tsas_cli.physics.slip.state import FORCE, GIVE, SPRING, Boundary, Moment, X
 
 PID, SLIDING, ADAPTIVE, OBSERVER = range(4)
 MEMORY = 3

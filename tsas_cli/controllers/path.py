@@ -19,9 +19,9 @@ from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.errors import InputError
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.ends import friction_course, last_direction
-from tsas_cli.physics.inverse import inverse_chain
-from tsas_cli.physics.plant import Actuator
+from tsas_cli.physics.plant.turntable import Actuator
 from tsas_cli.physics.rig import Rig
+from tsas_cli.physics.slip.inverse import inverse_chain
 
 Floats = npt.NDArray[np.float64]
 MEANS = 4

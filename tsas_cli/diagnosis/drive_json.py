@@ -18,7 +18,7 @@ from tsas_cli.identification.drive_fit import LINEAR, Terms, quantities_of
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.frequency_response import FrequencyResponse
 from tsas_cli.identification.transfer_function import bode_curve, poles
-from tsas_cli.physics.drive import DriveValues
+from tsas_cli.physics.plant.harmonic_drive import DriveValues
 
 Floats = npt.NDArray[np.float64]
 

@@ -23,7 +23,11 @@ from tsas_cli.identification.model import (
 from tsas_cli.identification.phases import segments_as_json
 from tsas_cli.identification.prepared import Prepared, prepare
 from tsas_cli.identification.stiffness import Slope
-from tsas_cli.physics.capstan import dead_band_stiffness, slip_stiffness, speed_per_stiffness
+from tsas_cli.physics.closed_form.capstan import (
+    dead_band_stiffness,
+    slip_stiffness,
+    speed_per_stiffness,
+)
 from tsas_cli.physics.response import Dynamics
 from tsas_cli.physics.rig import Rig
 from tsas_cli.recordings.dataset import Dataset

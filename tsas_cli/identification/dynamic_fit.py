@@ -18,7 +18,7 @@ from tsas_cli.identification.joint_fit import JointFit, estimates_of
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.quantities import QUANTITIES
-from tsas_cli.physics.lugre_start import law_of
+from tsas_cli.physics.lugre.start import law_of
 from tsas_cli.physics.response import LUMPS
 from tsas_cli.steps import SILENT, Steps
 

@@ -8,13 +8,13 @@ import numpy.typing as npt
 
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.prepared import Prepared
-from tsas_cli.physics.chain_state import UNSETTLED
 from tsas_cli.physics.ends import Drive
-from tsas_cli.physics.lugre_chain import MOST_PER_SAMPLE, MOST_TRIES
-from tsas_cli.physics.lugre_stability import Stability, stability
-from tsas_cli.physics.lugre_start import law_of
+from tsas_cli.physics.lugre.chain import MOST_PER_SAMPLE, MOST_TRIES
+from tsas_cli.physics.lugre.stability import Stability, stability
+from tsas_cli.physics.lugre.start import law_of
 from tsas_cli.physics.response import Response, simulate
 from tsas_cli.physics.rig import Rig
+from tsas_cli.physics.slip.state import UNSETTLED
 
 Floats = npt.NDArray[np.float64]
 MANY = 10  # steps for each sample

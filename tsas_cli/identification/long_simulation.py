@@ -16,9 +16,9 @@ from tsas_cli.identification.long_runs import LongRun, Rows
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.prepared import CHANNELS, LOAD_COLUMNS, Prepared, drive_of
 from tsas_cli.physics.by_pieces import simulate_pieces
-from tsas_cli.physics.chain_state import SLACK, UNSETTLED
 from tsas_cli.physics.ends import Drive
 from tsas_cli.physics.response import Dynamics, Response
+from tsas_cli.physics.slip.state import SLACK, UNSETTLED
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.writing import parquet_writer, table_of
 

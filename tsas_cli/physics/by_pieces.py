@@ -14,8 +14,13 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.physics.branches import BranchState, at_rest_before, follow_branches, with_room
-from tsas_cli.physics.chain_state import DISPLACEMENT
+from tsas_cli.physics.closed_form.branches import (
+    BranchState,
+    at_rest_before,
+    follow_branches,
+    with_room,
+)
+from tsas_cli.physics.closed_form.static import follow_static
 from tsas_cli.physics.ends import Drive, Ends, ends_of
 from tsas_cli.physics.response import (
     CLOSED,
@@ -31,8 +36,8 @@ from tsas_cli.physics.response import (
     with_spring,
 )
 from tsas_cli.physics.rig import Rig
-from tsas_cli.physics.slip_chain import ChainState, follow, resting
-from tsas_cli.physics.static import follow_static
+from tsas_cli.physics.slip.chain import ChainState, follow, resting
+from tsas_cli.physics.slip.state import DISPLACEMENT
 
 Floats = npt.NDArray[np.float64]
 State = BranchState | ChainState | Floats

@@ -17,9 +17,9 @@ from tsas_cli.effects.preload_loss import lost_preload
 from tsas_cli.effects.stribeck_friction import stribeck_factor
 from tsas_cli.effects.viscous_friction import viscous_loss
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.physics.chain_state import DISPLACEMENT, FORCE, SPRING, Boundary
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.sensors import true_value
+from tsas_cli.physics.slip.state import DISPLACEMENT, FORCE, SPRING, Boundary
 
 Floats = npt.NDArray[np.float64]
 

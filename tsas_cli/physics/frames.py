@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.physics.chain_state import UNSETTLED
+from tsas_cli.physics.slip.state import UNSETTLED
 
 Floats = npt.NDArray[np.float64]
 Phases = npt.NDArray[np.int8]

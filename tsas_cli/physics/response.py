@@ -10,15 +10,15 @@ import numpy.typing as npt
 from tsas_cli.effects import Effects
 from tsas_cli.effects.drive_friction import drive_friction_force
 from tsas_cli.effects.proximal_spring import proximal_spring_force
-from tsas_cli.physics.branches import branches
-from tsas_cli.physics.chain_state import DISPLACEMENT, FORCE, MOST_NODES, SLACK
+from tsas_cli.physics.closed_form.branches import branches
+from tsas_cli.physics.closed_form.static import static_model
 from tsas_cli.physics.ends import Drive, Ends, ends_of
 from tsas_cli.physics.frames import Frames, Indices, empty_frames
-from tsas_cli.physics.lugre_chain import OWN_STEPS, lugre_chain
+from tsas_cli.physics.lugre.chain import OWN_STEPS, lugre_chain
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.sensors import reading
-from tsas_cli.physics.slip_chain import rest_after, slip_chain
-from tsas_cli.physics.static import static_model
+from tsas_cli.physics.slip.chain import rest_after, slip_chain
+from tsas_cli.physics.slip.state import DISPLACEMENT, FORCE, MOST_NODES, SLACK
 
 Floats = npt.NDArray[np.float64]
 Phases = npt.NDArray[np.int8]

@@ -3,7 +3,7 @@
 import math
 
 from tsas_cli.paper import Paper
-from tsas_cli.physics.capstan import dead_band_width
+from tsas_cli.physics.closed_form.capstan import dead_band_width
 from tsas_cli.reproduction.group import Group, Row
 from tsas_cli.reproduction.rig import bench_rig, kr_per_km, sheath_length_mm, wrap_of
 from tsas_cli.reproduction.verdicts import holds, to_the_digit, untold, within

@@ -17,7 +17,7 @@ from tsas_cli.controllers.closed_loop import X_SEEN, close_loop, followed_from
 from tsas_cli.controllers.pid import Pid
 from tsas_cli.controllers.signals import error_filter
 from tsas_cli.identification.drive_file import read_drive
-from tsas_cli.physics.plant import Actuator
+from tsas_cli.physics.plant.turntable import Actuator
 from tsas_cli.physics.rig import Rig
 from tsas_cli.recordings.writing import write_dataset
 from tsas_cli.tracking.drives import actuator_of

@@ -19,8 +19,8 @@ from tsas_cli.controllers.disturbance_observer import DisturbanceObserver
 from tsas_cli.controllers.pid import Pid
 from tsas_cli.controllers.sliding_mode import Phi, SlidingMode, Surface
 from tsas_cli.paper import yang2025
-from tsas_cli.physics.capstan import speed_per_stiffness
-from tsas_cli.physics.plant import Actuator
+from tsas_cli.physics.closed_form.capstan import speed_per_stiffness
+from tsas_cli.physics.plant.turntable import Actuator
 from tsas_cli.recordings.manifest import parse, read_toml
 
 MM_PER_M = 1e3

@@ -18,8 +18,8 @@ from tsas_cli.controllers.path import Path, follow
 from tsas_cli.controllers.signals import error_filter
 from tsas_cli.errors import InputError
 from tsas_cli.physics.ends import last_direction
-from tsas_cli.physics.lugre_plant import no_lumps
-from tsas_cli.physics.plant import Actuator
+from tsas_cli.physics.plant.lugre_plant import no_lumps
+from tsas_cli.physics.plant.turntable import Actuator
 from tsas_cli.physics.rig import Rig
 from tsas_cli.tracking.scores import Score, score
 from tsas_cli.tracking.settings import Settings

@@ -5,9 +5,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.physics.chain_state import SLACK, UNSETTLED
 from tsas_cli.physics.response import ELEMENTS
 from tsas_cli.physics.rig import Rig
+from tsas_cli.physics.slip.state import SLACK, UNSETTLED
 from tsas_cli.reporting.stream.palette import colour
 from tsas_cli.reporting.stream.recorder import Clock, Recorder, Times
 from tsas_cli.reporting.stream.recorder.layout import Space

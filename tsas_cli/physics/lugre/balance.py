@@ -1,0 +1,181 @@
+"""What the lumps' forces leave over, and how that changes with their speeds: Newton's equations.
+
+Each lump: m dv/dt = T before − T behind − f (Yang 2025, Eqs. 10 to 14), f by `bristles` with the
+limit g = μ N, N by the mean of both tensions (Eq. 17; 2 tanh(μθ/2n) for its sine, so that a lump
+that slides passes on e^(−μθ/n), Eq. 7). The ends have no mass: their forces balance. What is left
+depends on the speeds of a node and its two neighbours: a tridiagonal matrix, exactly.
+"""
+
+from tsas_cli.effects.load_dependent_friction import load_factor
+from tsas_cli.effects.load_friction import guide_friction
+from tsas_cli.effects.load_inertia import inertia_force
+from tsas_cli.effects.load_spring_nonlinearity import spring_force, spring_tangent
+from tsas_cli.effects.proximal_spring import proximal_spring_force
+from tsas_cli.effects.stribeck_friction import stribeck
+from tsas_cli.numerics.compiled import kernel
+from tsas_cli.physics.bristles import friction
+from tsas_cli.physics.lugre.state import (
+    DIAGONAL,
+    FRICTION,
+    LIMIT,
+    LIMIT_BY_T,
+    LIMIT_BY_V,
+    LOWER,
+    REST,
+    T_BY_W,
+    T_PAST,
+    UPPER,
+    V_PAST,
+    Y_PAST,
+    Z_NEW,
+    Z_PAST,
+    Floats,
+    Law,
+    Step,
+    T,
+    W,
+)
+from tsas_cli.physics.slip.state import DISPLACEMENT, FORCE, SPRING, Boundary
+
+LEAST_LIMIT_N = 1e-9  # where no tension presses, so that a bristle has a limit at all
+
+
+@kernel
+def balance(s: Floats, step: Step, boundary: Boundary, law: Law) -> float:
+    """Set up Newton's equations at the speeds W; return the sum of what the forces leave [N]."""
+    set_tensions(s, law)
+    set_limits(s, step, law)
+    balance_lumps(s, step, law)
+    balance_drive(s, step, boundary, law)
+    balance_load(s, step, boundary, law)
+    return sum_of_sizes(s, law.n + 2)
+
+
+@kernel
+def sum_of_sizes(s: Floats, count: int) -> float:
+    """Return the sum of |REST|, by four sums side by side: one alone waits for each addition."""
+    a, b, c, d = 0.0, 0.0, 0.0, 0.0
+    whole = count - count % 4
+    for i in range(0, whole, 4):
+        a += abs(s[REST + i])
+        b += abs(s[REST + i + 1])
+        c += abs(s[REST + i + 2])
+        d += abs(s[REST + i + 3])
+    for i in range(whole, count):
+        a += abs(s[REST + i])
+    return a + b + c + d
+
+
+@kernel
+def set_tensions(s: Floats, law: Law) -> None:
+    """Find the segments' tensions, Yang 2025, Eq. (11)."""
+    for j in range(law.n + 1):
+        s[T + j] = s[T_PAST + j] + s[T_BY_W + j] * (s[W + j] - s[W + j + 1])
+
+
+@kernel
+def set_limits(s: Floats, step: Step, law: Law) -> None:
+    """Find the limits of the lumps' friction and their slopes, Yang 2025, Eqs. (16) to (19)."""
+    for i in range(1, law.n + 1):
+        mean = 0.5 * (s[T + i - 1] + s[T + i])
+        deflected = s[Z_PAST + i] + step.gh * (s[W + i] + step.speed)
+        factor = step.pulled if deflected >= 0.0 else step.released
+        factor = factor if mean >= 0.0 else -factor
+        s[LIMIT + i] = factor * mean + LEAST_LIMIT_N
+        s[LIMIT_BY_T + i] = factor
+        s[LIMIT_BY_V + i] = 0.0
+    if law.friction_exponent != 0.0:
+        for i in range(1, law.n + 1):
+            mean = 0.5 * (s[T + i - 1] + s[T + i])
+            factor = load_factor(mean / law.preload_N, law.friction_exponent)
+            s[LIMIT + i] *= factor
+            s[LIMIT_BY_T + i] *= factor * (1.0 + law.friction_exponent)
+    if law.stribeck.excess != 0.0:
+        set_stribeck(s, step, law)
+
+
+@kernel
+def set_stribeck(s: Floats, step: Step, law: Law) -> None:
+    """Raise the limits of the lumps' friction by their speeds."""
+    for i in range(1, law.n + 1):
+        factor, slope = stribeck(s[W + i] + step.speed, law.stribeck)
+        s[LIMIT_BY_V + i] = s[LIMIT + i] * slope
+        s[LIMIT + i] *= factor
+        s[LIMIT_BY_T + i] *= factor
+
+
+@kernel
+def balance_lumps(s: Floats, step: Step, law: Law) -> None:
+    """Set up the rows of the lumps."""
+    inertia = law.lump_mass / step.gh
+    for i in range(1, law.n + 1):
+        speed = s[W + i] + step.speed
+        rubbing, by_speed, by_limit, deflection = friction(
+            s[Z_PAST + i], speed, step.gh, s[LIMIT + i], law.bristle
+        )
+        half = 0.5 * by_limit * s[LIMIT_BY_T + i]
+        before = (half - 1.0) * s[T_BY_W + i - 1]
+        behind = (half + 1.0) * s[T_BY_W + i]
+        s[LOWER + i] = before
+        s[UPPER + i] = -behind
+        s[DIAGONAL + i] = inertia + by_speed + by_limit * s[LIMIT_BY_V + i] - before + behind
+        s[REST + i] = s[T + i - 1] - s[T + i] - rubbing - inertia * (speed - s[V_PAST + i])
+        s[FRICTION + i] = rubbing
+        s[Z_NEW + i] = deflection
+
+
+@kernel
+def balance_drive(s: Floats, step: Step, boundary: Boundary, law: Law) -> None:
+    """Set up the row of the drive's end: at its place, or pulled by a force against friction."""
+    s[LOWER] = 0.0
+    if boundary.drive == DISPLACEMENT:
+        s[UPPER], s[DIAGONAL], s[REST] = 0.0, 1.0, -s[W]
+        return
+    rubbing, by_speed, deflection = rub(s[Z_PAST], s[W], step, law.drive_friction_N, law)
+    stiffness = proximal_spring_force(1.0, law.proximal_spring_N_per_mm)
+    place = s[Y_PAST] + step.gh * s[W]
+    s[UPPER] = -s[T_BY_W]
+    s[DIAGONAL] = s[T_BY_W] + stiffness * step.gh + by_speed
+    s[REST] = step.drive - s[T] - proximal_spring_force(place, stiffness) - rubbing
+    s[FRICTION], s[Z_NEW] = rubbing, deflection
+
+
+@kernel
+def balance_load(s: Floats, step: Step, boundary: Boundary, law: Law) -> None:
+    """Set up the row of the load's end: spring, mass and guide, a given force, or its place."""
+    last = law.n + 1
+    s[UPPER + last] = 0.0
+    if boundary.load == DISPLACEMENT:
+        place = s[Y_PAST + last] + step.gh * s[W + last]
+        s[LOWER + last], s[DIAGONAL + last] = 0.0, 1.0
+        s[REST + last] = (step.load - step.position - place) / step.gh
+        return
+    behind = s[T_BY_W + law.n]
+    speed = s[W + last] + step.speed
+    guide = guide_friction(law.load_friction)
+    if boundary.load == FORCE:
+        guide = law.load_friction.before_sensor_N
+    rubbing, by_speed, deflection = rub(s[Z_PAST + last], speed, step, guide, law)
+    pull, by_place, inertia = step.load, 0.0, 0.0
+    if boundary.load == SPRING:
+        place = s[Y_PAST + last] + step.gh * s[W + last] + step.position
+        stiffness = law.load_stiffness_N_per_mm
+        pull = law.preload_N - step.lost_N + spring_force(place, stiffness, law.load_spring)
+        inertia = inertia_force(1.0, law.load_mass_kg) / step.gh
+        pull += inertia * (speed - s[V_PAST + last])
+        by_place = spring_tangent(place, stiffness, law.load_spring)
+    s[LOWER + last] = -behind
+    s[DIAGONAL + last] = behind + by_place * step.gh + inertia + by_speed
+    s[REST + last] = s[T + law.n] - pull - rubbing
+    s[FRICTION + last], s[Z_NEW + last] = rubbing, deflection
+
+
+@kernel
+def rub(
+    before: float, speed: float, step: Step, limit: float, law: Law
+) -> tuple[float, float, float]:
+    """Return friction of an end, its slope over speed, and its bristle's deflection."""
+    if limit == 0.0:
+        return 0.0, 0.0, 0.0
+    force, by_speed, _, deflection = friction(before, speed, step.gh, limit, law.end_bristle)
+    return force, by_speed, deflection

@@ -1,0 +1,137 @@
+"""The two ends of the slip chain: the load's spring, mass and guide, the drive's friction."""
+
+import math
+
+from tsas_cli.effects.load_friction import guide_friction
+from tsas_cli.effects.load_inertia import inertia_force
+from tsas_cli.effects.load_spring_nonlinearity import (
+    LoadSpringNonlinearity,
+    spring_force,
+    spring_tangent,
+)
+from tsas_cli.effects.proximal_spring import proximal_spring_force
+from tsas_cli.numerics.compiled import kernel
+from tsas_cli.physics.slip.nodes import slid_back
+from tsas_cli.physics.slip.state import (
+    BALANCED,
+    DISPLACEMENT,
+    FORCE,
+    SLIP,
+    SPEED,
+    SPRING,
+    TOLERANCE,
+    X_OLD,
+    Boundary,
+    Floats,
+    Laws,
+    Moment,
+    P,
+    Q,
+    R,
+    T,
+    X,
+)
+
+SLIPS_ALONG_S = 0.01  # in which the mass of the load takes up its speed; a rigid one would swing on
+
+
+@kernel
+def load_law(chain: Floats, now: Moment, laws: Laws) -> tuple[float, float]:
+    """Return slope and value at x = 0 of what the load pulls back with, as a tangent [N/mm, N]."""
+    n = laws.n
+    x = chain[X + n + 1]
+    shape = laws.load_spring
+    slope = spring_tangent(x, laws.load_stiffness_N_per_mm, shape)
+    value = spring_force(x, laws.load_stiffness_N_per_mm, shape) - slope * x
+    value += laws.preload_N - now.lost_N
+    mass = laws.load_mass_kg
+    if mass > 0.0 and now.step_s < math.inf:  # implicit Euler, first order in the step
+        per_speed = 1.0 / (SLIPS_ALONG_S + now.step_s)
+        slope += inertia_force(per_speed / now.step_s, mass)
+        gone = chain[X_OLD + n + 1] / now.step_s + chain[SPEED + n + 1]
+        value -= inertia_force(per_speed * gone, mass)
+    return slope, value
+
+
+@kernel
+def keep_speed(chain: Floats, step_s: float, n: int) -> None:
+    """Renew the speed of the load's mass after a step."""
+    last = n + 1
+    speed = (chain[X + last] - chain[X_OLD + last]) / step_s
+    share = 1.0 / (1.0 + SLIPS_ALONG_S / step_s)
+    chain[SPEED + last] += share * (speed - chain[SPEED + last])
+
+
+@kernel
+def friction_at_load(boundary: Boundary, laws: Laws) -> float:
+    """Return the friction of the load's guide that a moving load end feels [N]."""
+    if boundary.load == SPRING:
+        return guide_friction(laws.load_friction)
+    return laws.load_friction.before_sensor_N if boundary.load == FORCE else 0.0
+
+
+@kernel
+def start_of_drive(chain: Floats, now: Moment, boundary: Boundary, laws: Laws) -> float:
+    """Return where the drive's end is [mm]."""
+    if boundary.drive == DISPLACEMENT:
+        return now.drive
+    friction = laws.drive_friction_N
+    if chain[SLIP + 0] == 0 and friction > 0.0:
+        return float(chain[X_OLD + 0])
+    p, q, r = chain[P + 0], chain[Q + 0], chain[R + 0]
+    stiffness = proximal_spring_force(1.0, laws.proximal_spring_N_per_mm)
+    return float(((now.drive - chain[SLIP + 0] * friction) * r - q) / (p + stiffness * r))
+
+
+@kernel
+def revise_end(i: int, pull: float, friction: float, chain: Floats, scale: float) -> bool:
+    """Do the same for an end with friction that does not depend on tension."""
+    if chain[SLIP + i] != 0:
+        if slid_back(i, chain, scale):
+            chain[SLIP + i] = 0
+            return True
+    elif abs(pull) > friction * (1.0 + TOLERANCE):
+        chain[SLIP + i] = 1 if pull > 0.0 else -1
+        return True
+    return False
+
+
+@kernel
+def revise_ends(chain: Floats, now: Moment, boundary: Boundary, laws: Laws, scale: float) -> bool:
+    """Revise the two ends, and the tangent of a load spring that is not straight."""
+    n = laws.n
+    wrong = False
+    if boundary.drive == FORCE:
+        stiffness = laws.proximal_spring_N_per_mm
+        pull = now.drive - chain[T + 0] - proximal_spring_force(chain[X + 0], stiffness)
+        if laws.drive_friction_N > 0.0:
+            wrong = revise_end(0, pull, laws.drive_friction_N, chain, scale)
+    if boundary.load != DISPLACEMENT:
+        pull = chain[T + n] - pulls_back(chain, now, boundary, laws)
+        friction = friction_at_load(boundary, laws)
+        if friction > 0.0:
+            wrong = revise_end(n + 1, pull, friction, chain, scale) or wrong
+        if friction == 0.0 or chain[SLIP + n + 1] != 0:
+            off = abs(pull - chain[SLIP + n + 1] * friction)
+            wrong = off > BALANCED * (abs(chain[T + n]) + laws.preload_N) or wrong
+    return wrong
+
+
+@kernel
+def pulls_back(chain: Floats, now: Moment, boundary: Boundary, laws: Laws) -> float:
+    """Return what the load pulls back with at its present place, friction aside [N]."""
+    if boundary.load == FORCE:
+        return now.load
+    slope, value = load_law(chain, now, laws)
+    return float(slope * chain[X + laws.n + 1] + value)
+
+
+@kernel
+def without_pull(
+    x: float, preload_N: float, stiffness: float, shape: LoadSpringNonlinearity
+) -> float:
+    """Return where a spring of a preload leaves the load without tension [mm], sought from x."""
+    for _ in range(5):  # Newton's method, exact at once for a straight spring
+        force = preload_N + spring_force(x, stiffness, shape)
+        x -= force / spring_tangent(x, stiffness, shape)
+    return x

@@ -1,0 +1,145 @@
+"""The inverse model: where the drive has to be so that the load feels a wanted force.
+
+For constant friction it is Eq. (22) of Yang 2025, x_in = (Fd − F0)/kL + Δs(Fd, phase) − F0 L/(EA).
+Here the slip chain itself is inverted, sample by sample, so that it holds for every effect and
+there is one law for simulation and inverse: from where the tendon's end was it is moved until the
+chain answers with the force (regula falsi, Illinois variant, since the answer has kinks). At a turn
+of the wanted force that is a jump over the dead band.
+
+What depends on speed or time is given with the samples, so that a path can be found again with
+the speeds of the one before.
+"""
+
+import numpy as np
+
+from tsas_cli.numerics.compiled import kernel
+from tsas_cli.physics.rig import Rig
+from tsas_cli.physics.slip.chain import advance, tension_at_sensor
+from tsas_cli.physics.slip.mesh import at_rest, laws_of
+from tsas_cli.physics.slip.state import (
+    DISPLACEMENT,
+    PITCH,
+    ROWS,
+    SPRING,
+    Boundary,
+    Floats,
+    Laws,
+    Moment,
+    T,
+    X,
+)
+
+EXACT_N = 1e-7  # of the wanted force
+MOST_TRIALS = 200  # of places of the tendon's end for one sample
+
+
+@kernel
+def inverse_chain(
+    wanted_N: Floats, friction: Floats, step_s: float, rig: Rig, n: int
+) -> tuple[Floats, Floats, int]:
+    """Find the path of the tendon's end at the drive that gives the load a wanted force.
+
+    Parameters
+    ----------
+    wanted_N
+        Force at the load's sensor, shape (m,), positive.
+    friction
+        What `ends.friction_at` returns at each sample, shape (4, m).
+    step_s
+        Time between samples.
+    rig
+        The rig, at rest at its preload before the first sample.
+    n
+        Number of nodes.
+
+    Returns
+    -------
+    path, tension, missed
+        Place of the tendon's end [mm] and its tension [N], shape (m,) each, and the number of
+        samples whose force was not met.
+    """
+    m = wanted_N.size
+    path, tension = np.empty(m), np.empty(m)
+    chain, kept = at_rest(rig, n), np.empty(ROWS * PITCH)
+    laws = laws_of(rig, n)
+    scale = rig.sheath_length_mm * rig.preload_N / rig.tendon_stiffness_N / n + 1e-9
+    before = Moment(0.0, 0.0, friction[0, 0], friction[1, 0], 0.0, 0.0, np.inf)
+    missed = 0
+    for i in range(m):
+        step = np.inf if i == 0 else step_s
+        now = Moment(
+            before.drive,
+            0.0,
+            friction[0, i],
+            friction[1, i],
+            friction[2, i],
+            friction[3, i],
+            step,
+        )
+        before, found = meet(chain, kept, before, now, wanted_N[i], laws, scale)
+        missed += not found
+        path[i], tension[i] = chain[X], chain[T]
+    return path, tension, missed
+
+
+@kernel
+def meet(
+    chain: Floats,
+    kept: Floats,
+    before: Moment,
+    now: Moment,
+    wanted_N: float,
+    laws: Laws,
+    scale: float,
+) -> tuple[Moment, bool]:
+    """Move the tendon's end until the load's sensor feels a force; the chain stays there.
+
+    Returns the moment there and whether the force was met; where it was not, nothing moves.
+    """
+    keep_rows(chain, kept, laws.n)
+    b, off_b = now.drive, wanted_N - feel(chain, before, now, laws, scale)
+    if abs(off_b) <= EXACT_N:
+        return now, True
+    step, bracketed = off_b / laws.load_stiffness_N_per_mm, False
+    a, off_a = b, off_b
+    for _ in range(MOST_TRIALS):
+        x = a - off_a * (b - a) / (off_b - off_a) if bracketed else b + step
+        keep_rows(kept, chain, laws.n)
+        now = driven(now, x)
+        off = wanted_N - feel(chain, before, now, laws, scale)
+        if abs(off) <= EXACT_N:
+            return now, True
+        if off * off_b < 0.0:
+            a, off_a, bracketed = b, off_b, True
+        elif bracketed:
+            off_a *= 0.5  # the end that stays counts half (Illinois)
+        else:
+            nearer = off_b - off  # in a dead band no more than rounding
+            part = off / nearer if abs(nearer) > EXACT_N else 2.0
+            step *= min(part, 2.0) if part > 0.0 else 2.0
+        b, off_b = x, off
+    keep_rows(kept, chain, laws.n)
+    return before, False
+
+
+@kernel
+def driven(now: Moment, x: float) -> Moment:
+    """Return the same moment with the tendon's end at another place."""
+    return Moment(x, now.load, now.pulled, now.released, now.viscous_N, now.lost_N, now.step_s)
+
+
+@kernel
+def keep_rows(source: Floats, target: Floats, n: int) -> None:
+    """Copy the state of the nodes."""
+    for row in range(ROWS):
+        for j in range(n + 2):
+            target[PITCH * row + j] = source[PITCH * row + j]
+
+
+@kernel
+def feel(chain: Floats, before: Moment, now: Moment, laws: Laws, scale: float) -> float:
+    """Return what the load's sensor feels after the tendon's end has moved; infinite if lost."""
+    boundary = Boundary(DISPLACEMENT, SPRING)
+    if not advance(chain, before, now, boundary, laws, scale):
+        return np.inf
+    return tension_at_sensor(chain, now, boundary, laws)
