@@ -9,7 +9,7 @@ from tests.physics.references import GROUP_A
 from tsas_cli.controllers.closed_loop import followed_from
 from tsas_cli.physics.plant.turntable import Actuator
 from tsas_cli.physics.rig import with_values
-from tsas_cli.physics.slip.state import X
+from tsas_cli.physics.slip.state import POSITION
 
 DRIVE = Actuator(0.0236, 52.0, 1.8e-4, 0.007, 0.002, 3000.0)
 PROGRAM = """
@@ -37,7 +37,7 @@ def test_it_begins_at_rest_in_balance():
         per_N = ratio / 1.579 + mean * L / EA
         expected = (drive_mm + 25.0 / 1.579 + 25.0 * L / EA) / per_N
         assert table.f_in == pytest.approx(expected, rel=1e-4)
-        assert table.x == table.x_before == chain[X] == drive_mm
+        assert table.x == table.x_before == chain[POSITION] == drive_mm
         assert (table.v, table.motor_rpm, table.speed) == (0.0, 0.0, 0.0)
         wound = (table.f_in - 25.0) / 52.0
         assert table.motor_mm == pytest.approx(drive_mm + wound)

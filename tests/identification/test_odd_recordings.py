@@ -15,9 +15,9 @@ from tsas_cli.errors import InputError
 from tsas_cli.identification.calibration import calibrate
 from tsas_cli.identification.comparison import compare
 from tsas_cli.identification.prepared import prepare
+from tsas_cli.physics.phases import SLACK
 from tsas_cli.physics.response import Drive, simulate
 from tsas_cli.physics.rig import Rig as ModelRig
-from tsas_cli.physics.slip.state import SLACK
 from tsas_cli.recordings.manifest import Manifest, Run
 from tsas_cli.recordings.recording import Recording
 

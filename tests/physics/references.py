@@ -6,9 +6,9 @@ from itertools import pairwise
 import numpy as np
 
 from tsas_cli.effects import Effects, FreeTendon, StribeckFriction, ViscousFriction
+from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, SPRING, Boundary
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.slip.chain import slip_chain
-from tsas_cli.physics.slip.state import DISPLACEMENT, FORCE, SPRING, Boundary
 
 GROUP_A = Rig(
     friction_coefficient=0.125,

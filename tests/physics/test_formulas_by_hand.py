@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from tests.physics.references import GROUP_A, LOADED_BY_SPRING, wrap_of
+from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, SPRING
 from tsas_cli.physics.bristles import Bristles, bristle_damping, tendon_mass
 from tsas_cli.physics.closed_form.branches import from_rest
 from tsas_cli.physics.closed_form.capstan import speed_per_stiffness
@@ -16,28 +17,18 @@ from tsas_cli.physics.compliances import (
     sheath_compliance,
 )
 from tsas_cli.physics.ends import Drive, ends_of
-from tsas_cli.physics.lugre.ends import Ends
-from tsas_cli.physics.lugre.pace import Allowed, allowed, change_of, fitted
-from tsas_cli.physics.lugre.start import law_of, lay_out
+from tsas_cli.physics.lugre.ends import StepEnds
+from tsas_cli.physics.lugre.start import clear_state, lugre_laws
 from tsas_cli.physics.lugre.state import PITCH as LUGRE_PITCH
 from tsas_cli.physics.lugre.state import ROWS as LUGRE_ROWS
-from tsas_cli.physics.lugre.state import T_PAST, Formula, Step
+from tsas_cli.physics.lugre.state import TENSION_HISTORY, Formula, Step
 from tsas_cli.physics.lugre.step import newton
+from tsas_cli.physics.lugre.step_size import Tolerances, fit_to_reversal, step_factor, tolerances_of
+from tsas_cli.physics.mesh import PITCH
 from tsas_cli.physics.rig import with_values
-from tsas_cli.physics.slip.mesh import laws_of
-from tsas_cli.physics.slip.state import (
-    DISPLACEMENT,
-    FORCE,
-    PITCH,
-    PULLED,
-    RELEASED,
-    ROWS,
-    SLIP,
-    SPRING,
-    Moment,
-    T,
-)
-from tsas_cli.physics.slip.step import revise
+from tsas_cli.physics.slip.start import slip_laws
+from tsas_cli.physics.slip.state import RATIO_PULLED, RATIO_RELEASED, ROWS, SLIP, TENSION, Moment
+from tsas_cli.physics.slip.step import update_active_set
 
 N = 3
 EA, F0 = GROUP_A.tendon_stiffness_N, GROUP_A.preload_N
@@ -49,21 +40,25 @@ A = wrap_of(GROUP_A)
 def test_nodes_are_freed_one_after_the_other_from_the_drive_on(tensions, way, most):
     """Each leaves at least 0.8 and at most 1/0.8 of the tension: all three are too weak."""
     chain = np.zeros(ROWS * PITCH)
-    chain[T : T + N + 1] = tensions
-    chain[PULLED + 1 : PULLED + N + 1] = chain[RELEASED + 1 : RELEASED + N + 1] = 0.8
+    chain[TENSION : TENSION + N + 1] = tensions
+    chain[RATIO_PULLED + 1 : RATIO_PULLED + N + 1] = chain[
+        RATIO_RELEASED + 1 : RATIO_RELEASED + N + 1
+    ] = 0.8
     now = Moment(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
-    assert revise(chain, now, laws_of(GROUP_A, N), 1.0, most) == most
+    assert update_active_set(chain, now, slip_laws(GROUP_A, N), 1.0, most) == most
     freed = chain[SLIP : SLIP + N + 2].tolist()
     assert freed == [0.0, *[way] * most, *[0.0] * (N - most), 0.0]
     strong = chain.copy()
     strong[SLIP : SLIP + N + 2] = 0.0
-    strong[PULLED + 1 : PULLED + N + 1] = strong[RELEASED + 1 : RELEASED + N + 1] = 0.4
-    assert revise(strong, now, laws_of(GROUP_A, N), 1.0, most) == 0
+    strong[RATIO_PULLED + 1 : RATIO_PULLED + N + 1] = strong[
+        RATIO_RELEASED + 1 : RATIO_RELEASED + N + 1
+    ] = 0.4
+    assert update_active_set(strong, now, slip_laws(GROUP_A, N), 1.0, most) == 0
     assert not strong[SLIP : SLIP + N + 2].any()
 
 
 def ends_at(f_in, f_out):
-    return Ends(*[0.0] * 13)._replace(f_in=f_in, f_out=f_out)
+    return StepEnds(*[0.0] * 13)._replace(f_in=f_in, f_out=f_out)
 
 
 @pytest.mark.parametrize(
@@ -71,13 +66,15 @@ def ends_at(f_in, f_out):
     [(-80.0, 60.0, 80.0), (50.0, -90.0, 90.0), (1.0, 1.0, 0.1 * F0)],
 )
 def test_what_a_step_may_be_off_by_is_a_share_of_the_largest_tension(f_in, f_out, tension):
-    law = law_of(GROUP_A, N)
-    found = allowed(ends_at(f_in, f_out), law, 1e-3, 1.0)
+    law = lugre_laws(GROUP_A, N)
+    found = tolerances_of(ends_at(f_in, f_out), law, 1e-3, 1.0)
     assert found == pytest.approx((1e-3 * tension, 0.3e-3 * tension))
-    assert allowed(ends_at(f_in, f_out), law, 1e-3, 1e-5).leaves_N == pytest.approx(1e-5 * tension)
+    assert tolerances_of(ends_at(f_in, f_out), law, 1e-3, 1e-5).leaves_N == pytest.approx(
+        1e-5 * tension
+    )
     heavy = law._replace(load_mass_kg=1.0)
-    assert allowed(ends_at(f_in, f_out), heavy, 1e-3, 1.0)[0] < found[0]
-    assert allowed(ends_at(f_in, f_out), law, math.inf, 1e-5).error_N == math.inf
+    assert tolerances_of(ends_at(f_in, f_out), heavy, 1e-3, 1.0)[0] < found[0]
+    assert tolerances_of(ends_at(f_in, f_out), law, math.inf, 1e-5).error_N == math.inf
 
 
 FIRST = Formula(1.0, math.inf, math.inf, 1.0, 1.0, 0.0)
@@ -97,7 +94,7 @@ THIRD = FIRST._replace(h1=1.0, h2=1.0)
     ],
 )
 def test_the_next_step_follows_from_the_error_of_this_one(off, formula, change):
-    assert change_of(off, Allowed(1.0, 1.0), formula) == pytest.approx(change)
+    assert step_factor(off, Tolerances(1.0, 1.0), formula) == pytest.approx(change)
 
 
 @pytest.mark.parametrize(
@@ -108,13 +105,13 @@ def test_the_next_step_follows_from_the_error_of_this_one(off, formula, change):
     ],
 )
 def test_a_step_lands_on_a_turn_and_leaves_no_short_rest(h, step, lands):
-    assert fitted(h, 1.0) == (step, lands)
+    assert fit_to_reversal(h, 1.0) == (step, lands)
 
 
 def test_newtons_method_gives_up_at_once_where_forces_outgrow_a_float():
-    s, law = np.zeros(LUGRE_ROWS * LUGRE_PITCH), law_of(GROUP_A, N)
-    lay_out(s, GROUP_A, N)
-    s[T_PAST : T_PAST + 2] = 1.5e308, -1.5e308
+    s, law = np.zeros(LUGRE_ROWS * LUGRE_PITCH), lugre_laws(GROUP_A, N)
+    clear_state(s, GROUP_A, N)
+    s[TENSION_HISTORY : TENSION_HISTORY + 2] = 1.5e308, -1.5e308
     given = {"gh": 1e-3, "pulled": 0.1, "released": 0.1}
     step = Step(**dict.fromkeys(Step._fields, 0.0) | given)
     with np.errstate(all="ignore"):

@@ -19,39 +19,51 @@ from tsas_cli.effects.load_spring_nonlinearity import LoadSpringNonlinearity
 from tsas_cli.physics.ends import friction_at, friction_without_speed, last_direction
 from tsas_cli.physics.frames import empty_frames, is_next, slips_up_to
 from tsas_cli.physics.lugre.balance import set_limits
-from tsas_cli.physics.lugre.ends import Ends, unseen
-from tsas_cli.physics.lugre.start import law_of
-from tsas_cli.physics.lugre.state import LIMIT, LIMIT_BY_T, LIMIT_BY_V, Z_PAST, Step, W
+from tsas_cli.physics.lugre.ends import StepEnds, input_error
+from tsas_cli.physics.lugre.start import lugre_laws
+from tsas_cli.physics.lugre.state import (
+    DEFLECTION_HISTORY,
+    LIMIT,
+    LIMIT_BY_T,
+    LIMIT_BY_V,
+    RATE,
+    Step,
+)
 from tsas_cli.physics.lugre.state import PITCH as LUGRE_PITCH
 from tsas_cli.physics.lugre.state import ROWS as LUGRE_ROWS
-from tsas_cli.physics.lugre.state import T as TENSION
+from tsas_cli.physics.lugre.state import TENSION as LUMP_TENSION
+from tsas_cli.physics.mesh import PITCH
 from tsas_cli.physics.parameters import BRISTLES, NOMINAL
 from tsas_cli.physics.plant.harmonic_drive import DriveValues, has_gear, lag_coefficients
-from tsas_cli.physics.plant.turntable import Turntable, across_play, moved, rubbing
-from tsas_cli.physics.response import at_drive, with_spring
+from tsas_cli.physics.plant.turntable import (
+    Turntable,
+    across_play,
+    advance_turntable,
+    play_friction,
+)
+from tsas_cli.physics.response import force_beside_tendon, with_spring_load
 from tsas_cli.physics.rig import with_values
 from tsas_cli.physics.sensors import reading, true_value
 from tsas_cli.physics.slip.chain import (
     between,
+    initial_state,
     phase_of,
     rest_after,
-    resting,
     slip_chain,
     tension_at_sensor,
 )
-from tsas_cli.physics.slip.mesh import laws_of
-from tsas_cli.physics.slip.nodes import is_straight, ratio_passed, set_friction
+from tsas_cli.physics.slip.nodes import capstan_ratio, is_linear, set_friction
+from tsas_cli.physics.slip.start import slip_laws
 from tsas_cli.physics.slip.state import (
-    PITCH,
-    PULLED,
-    PULLED_BY,
-    RELEASED,
-    RELEASED_BY,
+    POSITION,
+    RATIO_PULLED,
+    RATIO_RELEASED,
     ROWS,
     SLIP,
+    TENSION,
+    WRAP_PULLED,
+    WRAP_RELEASED,
     Moment,
-    T,
-    X,
 )
 
 RISING = "load_dependent_friction.exponent"
@@ -62,12 +74,18 @@ def test_a_drive_feels_its_friction_and_its_spring():
     ends = SimpleNamespace(direction=np.array([1.0, -1.0, 0.0]), drive=np.array([2.0, 3.0, -4.0]))
     both = {"drive_friction.friction_N": 5.0, "proximal_spring.stiffness_N_per_mm": 0.5}
     rubs, springs = ({k: v} for k, v in both.items())
-    np.testing.assert_allclose(at_drive(with_values(GROUP_A, both), ends), [6.0, -3.5, -2.0])
-    np.testing.assert_allclose(at_drive(with_values(GROUP_A, rubs), ends), [5.0, -5.0, 0.0])
-    np.testing.assert_allclose(at_drive(with_values(GROUP_A, springs), ends), [1.0, 1.5, -2.0])
-    assert at_drive(GROUP_A, ends) == 0.0
+    np.testing.assert_allclose(
+        force_beside_tendon(with_values(GROUP_A, both), ends), [6.0, -3.5, -2.0]
+    )
+    np.testing.assert_allclose(
+        force_beside_tendon(with_values(GROUP_A, rubs), ends), [5.0, -5.0, 0.0]
+    )
+    np.testing.assert_allclose(
+        force_beside_tendon(with_values(GROUP_A, springs), ends), [1.0, 1.5, -2.0]
+    )
+    assert force_beside_tendon(GROUP_A, ends) == 0.0
     f_out = np.array([25.0, 30.0, 20.0])
-    x_in, x_out, f_in, told, _ = with_spring(
+    x_in, x_out, f_in, told, _ = with_spring_load(
         with_values(GROUP_A, both), ends, f_out + 1.0, f_out, np.zeros(3)
     )
     np.testing.assert_allclose(x_out * GROUP_A.load_stiffness_N_per_mm, [0.0, 5.0, -5.0])
@@ -106,12 +124,12 @@ def test_friction_in_the_play_holds_the_drive(x, at, found):
 def test_what_rubs_is_the_part_of_the_tension_that_full_slip_takes():
     a = wrap_of(GROUP_A)
     up, down = math.exp(a), math.exp(-a)
-    assert rubbing(10.0, GROUP_A) == pytest.approx(10.0 * (up - down) / (up + down))
+    assert play_friction(10.0, GROUP_A) == pytest.approx(10.0 * (up - down) / (up + down))
 
 
 def test_a_turntable_moves_on_by_the_backward_formula():
     before = table_at(4.0, x_before=1.0, v=7.0, motor_rpm=11.0, motor_mm=12.0)
-    now = moved(before, 9.0, 30.0, 2.5, 0.5)
+    now = advance_turntable(before, 9.0, 30.0, 2.5, 0.5)
     assert now.v == pytest.approx((1.5 * 9.0 - 2.0 * 4.0 + 0.5 * 1.0) / 0.5)
     assert now._replace(v=0.0) == table_at(
         9.0, x_before=4.0, v_before=7.0, motor_rpm=11.0, motor_mm=12.0, f_in=30.0, speed=2.5
@@ -161,7 +179,7 @@ def test_the_last_direction_holds_on_at_rest():
 
 def chain_of(*tensions):
     chain = np.zeros(ROWS * PITCH)
-    chain[T : T + len(tensions)] = tensions
+    chain[TENSION : TENSION + len(tensions)] = tensions
     return chain
 
 
@@ -170,15 +188,15 @@ def test_what_a_node_leaves_depends_on_the_mean_tension_beside_it(exponent):
     """e^(−a (T/F0)^n / 3), at twice the preload on the drive's side of the first node."""
     F0 = GROUP_A.preload_N
     chain = chain_of(2.0 * F0, 2.0 * F0, F0, 0.5 * F0, 77.0)
-    laws = laws_of(with_values(GROUP_A, {RISING: exponent}), N)
+    laws = slip_laws(with_values(GROUP_A, {RISING: exponent}), N)
     set_friction(chain, Moment(0.0, 0.0, 0.6, 0.3, 0.0, 0.0, 1.0), laws)
     factors = np.array([2.0, 1.5, 0.75]) ** exponent
     nodes = slice(1, N + 1)
-    np.testing.assert_allclose(chain[PULLED_BY:][nodes], 0.2 * factors)
-    np.testing.assert_allclose(chain[RELEASED_BY:][nodes], 0.1 * factors)
-    np.testing.assert_allclose(chain[PULLED:][nodes], np.exp(-0.2 * factors))
-    np.testing.assert_allclose(chain[RELEASED:][nodes], np.exp(-0.1 * factors))
-    for row in (PULLED_BY, RELEASED_BY, PULLED, RELEASED):
+    np.testing.assert_allclose(chain[WRAP_PULLED:][nodes], 0.2 * factors)
+    np.testing.assert_allclose(chain[WRAP_RELEASED:][nodes], 0.1 * factors)
+    np.testing.assert_allclose(chain[RATIO_PULLED:][nodes], np.exp(-0.2 * factors))
+    np.testing.assert_allclose(chain[RATIO_RELEASED:][nodes], np.exp(-0.1 * factors))
+    for row in (WRAP_PULLED, WRAP_RELEASED, RATIO_PULLED, RATIO_RELEASED):
         assert not chain[row]
         assert not chain[row + N + 1]
 
@@ -195,8 +213,8 @@ def test_what_a_node_leaves_depends_on_the_mean_tension_beside_it(exponent):
     ],
 )
 def test_what_makes_a_chain_more_than_a_set_of_slipping_nodes(bent):
-    assert is_straight(laws_of(GROUP_A, N))
-    assert not is_straight(laws_of(with_values(GROUP_A, bent), N))
+    assert is_linear(slip_laws(GROUP_A, N))
+    assert not is_linear(slip_laws(with_values(GROUP_A, bent), N))
 
 
 @pytest.mark.parametrize(
@@ -211,8 +229,8 @@ def test_what_makes_a_chain_more_than_a_set_of_slipping_nodes(bent):
 )
 def test_a_node_passes_on_its_ratio_or_the_inverse(direction, tensions, passed):
     chain = chain_of(*tensions)
-    chain[PULLED + 1], chain[RELEASED + 1] = 0.5, 0.2
-    assert ratio_passed(direction, 1, chain) == pytest.approx(passed)
+    chain[RATIO_PULLED + 1], chain[RATIO_RELEASED + 1] = 0.5, 0.2
+    assert capstan_ratio(direction, 1, chain) == pytest.approx(passed)
 
 
 def test_all_nodes_of_the_sheath_make_a_phase_and_the_ends_do_not():
@@ -225,17 +243,17 @@ def test_all_nodes_of_the_sheath_make_a_phase_and_the_ends_do_not():
 
 def test_a_sensor_at_the_load_feels_the_tension_less_what_rubs_before_it():
     now = Moment(0.0, 40.0, 0.4, 0.4, 0.0, 0.0, math.inf)
-    plain = laws_of(GROUP_A, N)
+    plain = slip_laws(GROUP_A, N)
     chain = chain_of(9.0, 9.0, 9.0, 30.0, 9.0)
     chain[SLIP + N + 1] = -1.0
     assert tension_at_sensor(chain, now, LOADED_BY_FORCE, plain) == 40.0
     assert tension_at_sensor(chain, now, LOADED_BY_SPRING, plain) == 30.0
     before = {"load_friction.before_sensor_N": 3.0}
-    rubs = laws_of(with_values(GROUP_A, before), N)
+    rubs = slip_laws(with_values(GROUP_A, before), N)
     assert tension_at_sensor(chain, now, LOADED_BY_DISPLACEMENT, rubs) == 33.0
     # The spring pulls with the preload and k x; of 30 N less that, 3 of 4 N rub before.
-    after = laws_of(with_values(GROUP_A, before | {"load_friction.after_sensor_N": 1.0}), N)
-    chain[X + N + 1] = 2.0
+    after = slip_laws(with_values(GROUP_A, before | {"load_friction.after_sensor_N": 1.0}), N)
+    chain[POSITION + N + 1] = 2.0
     back = GROUP_A.preload_N + 2.0 * GROUP_A.load_stiffness_N_per_mm
     felt = tension_at_sensor(chain, now, LOADED_BY_SPRING, after)
     assert felt == pytest.approx(30.0 - 0.75 * (30.0 - back))
@@ -250,11 +268,11 @@ def test_a_sensor_at_the_load_feels_the_tension_less_what_rubs_before_it():
     ],
 )
 def test_before_a_course_everything_is_at_the_preload(boundary, given):
-    state = resting(course_of(np.array([1.0, 2.0]), GROUP_A), GROUP_A, boundary, N)
+    state = initial_state(course_of(np.array([1.0, 2.0]), GROUP_A), GROUP_A, boundary, N)
     a = wrap_of(GROUP_A)
     assert state.before == pytest.approx([*given, a, a, 0.0, 0.0, math.inf])
-    np.testing.assert_array_equal(state.chain[T : T + N + 1], GROUP_A.preload_N)
-    np.testing.assert_array_equal(state.chain[X : X + N + 2], 0.0)
+    np.testing.assert_array_equal(state.chain[TENSION : TENSION + N + 1], GROUP_A.preload_N)
+    np.testing.assert_array_equal(state.chain[POSITION : POSITION + N + 2], 0.0)
     assert not state.last.any()
 
 
@@ -283,11 +301,11 @@ def test_the_front_is_where_slip_changes_first():
 def limits(rig, *, bristles=(1.0, -1.0, 1.0), speeds=(0.0, 0.0, 0.0), **other):
     s = np.zeros(LUGRE_ROWS * LUGRE_PITCH)
     F0 = rig.preload_N
-    s[TENSION : TENSION + N + 1] = [2.0 * F0, 2.0 * F0, F0, -4.0 * F0]
-    s[Z_PAST + 1 : Z_PAST + N + 1] = bristles
-    s[W + 1 : W + N + 1] = speeds
+    s[LUMP_TENSION : LUMP_TENSION + N + 1] = [2.0 * F0, 2.0 * F0, F0, -4.0 * F0]
+    s[DEFLECTION_HISTORY + 1 : DEFLECTION_HISTORY + N + 1] = bristles
+    s[RATE + 1 : RATE + N + 1] = speeds
     fields = dict.fromkeys(Step._fields, 0.0) | {"gh": 0.1, "pulled": 0.2, "released": 0.1} | other
-    set_limits(s, Step(**fields), law_of(rig, N))
+    set_limits(s, Step(**fields), lugre_laws(rig, N))
     rows = (LIMIT, LIMIT_BY_T, LIMIT_BY_V)
     assert not any(s[row] or s[row + N + 1] for row in rows)  # an end has a limit of its own
     return [s[row + 1 : row + N + 1] for row in rows]
@@ -333,9 +351,9 @@ TIMES = np.arange(9.0)
 def unseen_of(drive, load, boundary):
     course = np.zeros((7, 9))
     course[0], course[1] = drive, load
-    still = Ends(*[0.0] * 13)
+    still = StepEnds(*[0.0] * 13)
     step = Step(**dict.fromkeys(Step._fields, 0.0))
-    return unseen(TIMES, course, 0, 8, 0.0, 8.0, still, step, (3.0, 5.0), boundary)
+    return input_error(TIMES, course, 0, 8, 0.0, 8.0, still, step, (3.0, 5.0), boundary)
 
 
 def test_a_step_does_not_see_what_happens_within_it():
@@ -399,4 +417,4 @@ def test_a_bent_spring_is_bent_by_its_names():
             "load_spring_nonlinearity.cubic_per_mm2": 0.2,
         },
     )
-    assert laws_of(bent, N).load_spring == LoadSpringNonlinearity(0.3, 0.2)
+    assert slip_laws(bent, N).load_spring == LoadSpringNonlinearity(0.3, 0.2)

@@ -11,7 +11,7 @@ import numpy as np
 from tests.physics.references import GROUP_A, course_of
 from tsas_cli.effects import Effects, FreeTendon, StribeckFriction
 from tsas_cli.physics.closed_form.branches import branches
-from tsas_cli.physics.slip.state import DISPLACEMENT, FORCE, SPRING, Boundary
+from tsas_cli.physics.boundary import (DISPLACEMENT, FORCE, SPRING, Boundary)
 from tsas_cli.physics.frames import empty_frames
 from tsas_cli.physics.lugre.chain import lugre_chain
 from tsas_cli.physics.slip.chain import slip_chain

@@ -8,6 +8,7 @@ import pytest
 from tests.physics.references import GROUP_A, wrap_of
 from tsas_cli.effects import EFFECTS
 from tsas_cli.physics import response
+from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, SPRING, Boundary
 from tsas_cli.physics.ends import (
     Drive,
     ends_of,
@@ -17,7 +18,6 @@ from tsas_cli.physics.ends import (
 )
 from tsas_cli.physics.response import forgotten, is_closed, simulate
 from tsas_cli.physics.rig import with_values
-from tsas_cli.physics.slip.state import DISPLACEMENT, FORCE, SPRING, Boundary
 
 RIG = GROUP_A._replace(x_in_zero_mm=3.0, x_out_zero_mm=-7.0)
 A = wrap_of(GROUP_A)

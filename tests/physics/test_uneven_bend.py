@@ -7,8 +7,8 @@ from tests.physics.references import GROUP_A
 from tsas_cli.challenge.rig.motions import sine
 from tsas_cli.challenge.rig.tendon import Rig as VirtualRig
 from tsas_cli.challenge.rig.tendon import simulate as run_rig
+from tsas_cli.physics.mesh import segment_compliances
 from tsas_cli.physics.response import Drive, simulate
-from tsas_cli.physics.slip.mesh import segment_compliances
 
 MOTION = sine(omega_rad_s=1.0)
 SHARE = 0.3

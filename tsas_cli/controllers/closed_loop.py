@@ -19,19 +19,21 @@ from tsas_cli.controllers.signals import Floats, Signals, filtered
 from tsas_cli.controllers.sliding_mode import SlidingMode, distance, sliding_mode
 from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.numerics.compiled import kernel
+from tsas_cli.physics.boundary import FORCE, SPRING, Boundary
 from tsas_cli.physics.ends import Drive, ends_of
-from tsas_cli.physics.lugre.start import law_of
+from tsas_cli.physics.lugre.start import lugre_laws
+from tsas_cli.physics.mesh import segment_compliances
 from tsas_cli.physics.plant.lugre_plant import (
-    lay_lumps,
+    lumps_at_rest,
     step_lumped_plant,
     tension_at_load,
     with_rig,
 )
-from tsas_cli.physics.plant.turntable import Actuator, Turntable, step_plant, turned
+from tsas_cli.physics.plant.turntable import Actuator, Turntable, advance_motor, step_plant
 from tsas_cli.physics.rig import Rig
-from tsas_cli.physics.slip.chain import follow, resting, tension_at_sensor
-from tsas_cli.physics.slip.mesh import laws_of, segment_compliances
-from tsas_cli.physics.slip.state import FORCE, GIVE, SPRING, Boundary, Moment, X
+from tsas_cli.physics.slip.chain import follow, initial_state, tension_at_sensor
+from tsas_cli.physics.slip.start import slip_laws
+from tsas_cli.physics.slip.state import COMPLIANCE, POSITION, Moment
 
 PID, SLIDING, ADAPTIVE, OBSERVER = range(4)
 MEMORY = 3
@@ -52,7 +54,7 @@ RUNAWAY_MM = 1e3  # from the wanted place, at which a run has diverged
 GIVEN_UP = 0.01  # of the steps: where more do not settle, the tendon is not followed any further
 
 
-class Laws(NamedTuple):
+class ControlLaws(NamedTuple):
     """Every controller's settings, and which of them is at work."""
 
     kind: int
@@ -67,18 +69,18 @@ def followed_from(
 ) -> tuple[Turntable, Floats]:
     """Return turntable and chain at rest at a place of the drive, come to from x_in = 0."""
     ends = ends_of(rig, Drive(np.linspace(0.0, drive_mm, 1 + STEPS_TO_START) + rig.x_in_zero_mm))
-    state = resting(ends.course, rig, ends.boundary, n)
+    state = initial_state(ends.course, rig, ends.boundary, n)
     f_in = rig.preload_N
     if drive_mm != 0.0:
         f_in = float(follow(ends.course, state, rig, ends.boundary, n)[2][-1])
         stiffness = rig.effects.proximal_spring.stiffness_N_per_mm
-        f_in += proximal_spring_force(float(state.chain[X]), stiffness)
+        f_in += proximal_spring_force(float(state.chain[POSITION]), stiffness)
     motor_mm = drive_mm + (f_in - rig.preload_N) / actuator.stiffness_N_per_mm
     return Turntable(0.0, motor_mm, drive_mm, drive_mm, 0.0, 0.0, f_in, 0.0), state.chain
 
 
 @kernel
-def answer(seen: Signals, laws: Laws, memory: Floats, step_s: float) -> tuple[float, float]:
+def control(seen: Signals, laws: ControlLaws, memory: Floats, step_s: float) -> tuple[float, float]:
     """Return the motor speed beside the feedforward [rpm], and s where there is a surface."""
     if laws.kind == PID:
         return pid(seen, laws.pid, memory, step_s), 0.0
@@ -100,7 +102,7 @@ def close_loop(
     encoder_step_mm: float,
     A: Floats,
     b: Floats,
-    laws: Laws,
+    laws: ControlLaws,
     table: Turntable,
     chain: Floats,
     rigs: tuple[Rig, Rig],
@@ -123,23 +125,23 @@ def close_loop(
         start = laws.adaptive_sliding_mode.start
         memory[0], memory[1], memory[2] = start.phi1, start.phi2, start.phi3
     rig = rigs[0]
-    chain_laws = laws_of(rig, n)
+    chain_laws = slip_laws(rig, n)
     scale = rig.sheath_length_mm * rig.preload_N / rig.tendon_stiffness_N / n + 1e-9
     now = Moment(table.f_in, 0.0, 0.0, 0.0, 0.0, 0.0, np.inf)
     boundary = Boundary(FORCE, SPRING)
     if lumps is not None:
-        law, tendon = law_of(rig, n), lay_lumps(lumps, chain, table.f_in, rig, n)
+        law, tendon = lugre_laws(rig, n), lumps_at_rest(lumps, chain, table.f_in, rig, n)
     h = step_s / substeps
     applied, limited, unsettled = 0.0, False, 0
     for k in range(m):
         if k == change_at:
             rig = rigs[1]
-            chain_laws = laws_of(rig, n)
+            chain_laws = slip_laws(rig, n)
             gives = segment_compliances(rig, n)
             for j in range(n + 2):
-                chain[GIVE + j] = gives[min(j, n)]
+                chain[COMPLIANCE + j] = gives[min(j, n)]
             if lumps is not None:
-                law, tendon = law_of(rig, n), with_rig(lumps, tendon, rig, n)
+                law, tendon = lugre_laws(rig, n), with_rig(lumps, tendon, rig, n)
         x_seen = table.x + noise[k]
         if encoder_step_mm > 0.0:
             x_seen = encoder_step_mm * np.round(x_seen / encoder_step_mm)
@@ -158,12 +160,12 @@ def close_loop(
             applied,
             limited,
         )
-        u, s = answer(seen, laws, memory, step_s)
+        u, s = control(seen, laws, memory, step_s)
         wanted = feedforward[k] + u
         asked = min(max(wanted, -actuator.speed_limit_rpm), actuator.speed_limit_rpm)
         applied, limited = asked - feedforward[k], asked != wanted
         columns[X_IN, k], columns[X_SEEN, k] = table.x, x_seen
-        columns[X_OUT, k], columns[F_IN, k] = chain[X + n + 1], table.f_in
+        columns[X_OUT, k], columns[F_IN, k] = chain[POSITION + n + 1], table.f_in
         columns[F_OUT, k] = tension_at_sensor(chain, now, boundary, chain_laws)
         if lumps is not None:
             columns[X_OUT, k] = tendon.ends.x_out
@@ -172,7 +174,7 @@ def close_loop(
         for j in range(MEMORY):
             columns[MEMORY_AT + j, k] = memory[j]
         for sub in range(substeps):
-            table = turned(table, asked, actuator, h)
+            table = advance_motor(table, asked, actuator, h)
             time_s = (k + (sub + 1) / substeps) * step_s
             if lumps is not None:
                 table, tendon, settled = step_lumped_plant(

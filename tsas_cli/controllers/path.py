@@ -30,7 +30,7 @@ HALVINGS = 50  # of the ripple's height, in which the drive is sought
 
 
 @dataclass(frozen=True)
-class Path:
+class DrivePath:
     """Where the drive has to be, shape (4, m): place, speed, acceleration and jerk [mm, s].
 
     `motor` is the same of the motor, which winds up the gear by the force at the drive over its
@@ -44,7 +44,7 @@ class Path:
 
 def follow(
     wanted_N: Floats, step_s: float, rig: Rig, actuator: Actuator, *, crossing_s: float, nodes: int
-) -> Path:
+) -> DrivePath:
     """Return the path that gives the load a wanted force, shape (m,), by a model of the rig.
 
     Before and after it the force stays at its first and last value.
@@ -79,7 +79,7 @@ def follow(
     force += proximal_spring_force(1.0, rig.effects.proximal_spring.stiffness_N_per_mm) * end
     drive = drive_at(geared, rig.effects.drive_ripple, step_s)
     wound = smoothed(force / actuator.stiffness_N_per_mm, width, step_s)
-    return Path(drive, drive + wound, missed)
+    return DrivePath(drive, drive + wound, missed)
 
 
 def geared_at(end: Floats, effects: Effects) -> Floats:

@@ -25,8 +25,8 @@ from tsas_cli.identification.model import (
 )
 from tsas_cli.identification.phases import segment, segments_as_json
 from tsas_cli.identification.prepared import Prepared, prepare
+from tsas_cli.physics.mesh import MOST_NODES
 from tsas_cli.physics.response import Dynamics
-from tsas_cli.physics.slip.state import MOST_NODES
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.recording import Recording, recording_of
 from tsas_cli.recordings.writing import write_answer

@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from tsas_cli.physics.boundary import DISPLACEMENT
 from tsas_cli.physics.closed_form.branches import (
     BranchState,
     at_rest_before,
@@ -21,23 +22,22 @@ from tsas_cli.physics.closed_form.branches import (
     with_room,
 )
 from tsas_cli.physics.closed_form.static import follow_static
-from tsas_cli.physics.ends import Drive, Ends, ends_of
+from tsas_cli.physics.ends import Drive, EndInputs, ends_of
 from tsas_cli.physics.response import (
     CLOSED,
     NODES,
-    Answer,
     Dynamics,
+    Output,
     Response,
-    as_read,
-    at_drive,
+    force_beside_tendon,
     history,
     is_closed,
+    sensor_readings,
     solver_of,
-    with_spring,
+    with_spring_load,
 )
 from tsas_cli.physics.rig import Rig
-from tsas_cli.physics.slip.chain import ChainState, follow, resting
-from tsas_cli.physics.slip.state import DISPLACEMENT
+from tsas_cli.physics.slip.chain import ChainState, follow, initial_state
 
 Floats = npt.NDArray[np.float64]
 State = BranchState | ChainState | Floats
@@ -114,28 +114,28 @@ def simulate_pieces(
             further, _ = _follow(rig, _cut(ends, to, joined.until), mesh, state)
             answers = _one_after_the_other(answers, further)
         drive = _part(joined.drive, joined.begin, joined.until)
-        response = as_read(rig, drive, answers, 0, solver_of(mesh, dynamics))
+        response = sensor_readings(rig, drive, answers, 0, solver_of(mesh, dynamics))
         yield _only(response, joined.first - joined.begin, joined.end - joined.begin)
 
 
-def _resting(rig: Rig, ends: Ends, mesh: int) -> State:
+def _resting(rig: Rig, ends: EndInputs, mesh: int) -> State:
     if mesh == STATIC:
         return np.array([0.0, rig.preload_N, rig.preload_N])
     if mesh == CLOSED:
         return at_rest_before(ends.drive, rig.preload_N)
-    return resting(ends.course, rig, ends.boundary, mesh)
+    return initial_state(ends.course, rig, ends.boundary, mesh)
 
 
-def _follow(rig: Rig, ends: Ends, mesh: int, state: State) -> tuple[Answer, State]:
+def _follow(rig: Rig, ends: EndInputs, mesh: int, state: State) -> tuple[Output, State]:
     """Return the answer and the state where it ends, free of the sensors' errors."""
     if isinstance(state, BranchState):
         state = with_room(state, ends.drive)
-        return with_spring(rig, ends, *follow_branches(ends.drive, rig, state)), state
+        return with_spring_load(rig, ends, *follow_branches(ends.drive, rig, state)), state
     if not isinstance(state, ChainState):
-        return with_spring(rig, ends, *follow_static(ends.drive, rig, state)), state
+        return with_spring_load(rig, ends, *follow_static(ends.drive, rig, state)), state
     x_in, x_out, f_in, f_out, phase = follow(ends.course, state, rig, ends.boundary, mesh)
     if ends.boundary.drive == DISPLACEMENT:
-        f_in = f_in + at_drive(rig, ends)
+        f_in = f_in + force_beside_tendon(rig, ends)
     return (x_in, x_out, f_in, f_out, phase), state
 
 
@@ -197,11 +197,11 @@ def _join(parts: Sequence[Drive]) -> Drive:
     )
 
 
-def _cut(ends: Ends, first: int, end: int) -> Ends:
+def _cut(ends: EndInputs, first: int, end: int) -> EndInputs:
     return replace(ends, course=ends.course[:, first:end], direction=ends.direction[first:end])
 
 
-def _one_after_the_other(one: Answer, other: Answer) -> Answer:
+def _one_after_the_other(one: Output, other: Output) -> Output:
     columns = np.concatenate((one[:4], other[:4]), axis=1)
     return columns[0], columns[1], columns[2], columns[3], np.concatenate((one[4], other[4]))
 

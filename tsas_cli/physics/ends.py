@@ -17,9 +17,9 @@ from tsas_cli.effects.preload_loss import lost_preload
 from tsas_cli.effects.stribeck_friction import stribeck_factor
 from tsas_cli.effects.viscous_friction import viscous_loss
 from tsas_cli.numerics.compiled import kernel
+from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, SPRING, Boundary
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.sensors import true_value
-from tsas_cli.physics.slip.state import DISPLACEMENT, FORCE, SPRING, Boundary
 
 Floats = npt.NDArray[np.float64]
 
@@ -44,7 +44,7 @@ class Drive:
 
 
 @dataclass(frozen=True)
-class Ends:
+class EndInputs:
     """What acts on the tendon: the course of `Moment`, shape (7, n), and what it means."""
 
     course: Floats
@@ -57,7 +57,7 @@ class Ends:
         values: Floats = self.course[0]
         return values
 
-    def after(self, before: list[float]) -> "Ends":
+    def after(self, before: list[float]) -> "EndInputs":
         """Return the ends with positions of the drive put before the first one."""
         first = np.repeat(self.course[:, :1], len(before), axis=1)
         first[0] = before
@@ -66,12 +66,12 @@ class Ends:
         direction = np.concatenate((np.zeros(len(before)), self.direction))
         return replace(self, course=course, direction=direction)
 
-    def first(self) -> "Ends":
+    def first(self) -> "EndInputs":
         """Return the first sample alone."""
         return replace(self, course=self.course[:, :1], direction=self.direction[:1])
 
 
-def ends_of(rig: Rig, drive: Drive, start: tuple[float, float] | None = None) -> Ends:
+def ends_of(rig: Rig, drive: Drive, start: tuple[float, float] | None = None) -> EndInputs:
     """Return what acts on the tendon of a rig when the ends are driven as measured.
 
     `start` is where the tendon's end at the drive is at the first sample and in which direction it
@@ -100,7 +100,7 @@ def ends_of(rig: Rig, drive: Drive, start: tuple[float, float] | None = None) ->
         step_s[1:] = np.diff(time_s)
     friction = friction_course(time_s, speed, drive.session_s, rig)
     course = np.vstack((at_drive, at_load, friction, step_s))
-    return Ends(course, boundary, last_direction(at_drive, 0.0 if start is None else start[1]))
+    return EndInputs(course, boundary, last_direction(at_drive, 0.0 if start is None else start[1]))
 
 
 @kernel

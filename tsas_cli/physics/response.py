@@ -10,19 +10,21 @@ import numpy.typing as npt
 from tsas_cli.effects import Effects
 from tsas_cli.effects.drive_friction import drive_friction_force
 from tsas_cli.effects.proximal_spring import proximal_spring_force
+from tsas_cli.physics.boundary import DISPLACEMENT, FORCE
 from tsas_cli.physics.closed_form.branches import branches
 from tsas_cli.physics.closed_form.static import static_model
-from tsas_cli.physics.ends import Drive, Ends, ends_of
+from tsas_cli.physics.ends import Drive, EndInputs, ends_of
 from tsas_cli.physics.frames import Frames, Indices, empty_frames
 from tsas_cli.physics.lugre.chain import OWN_STEPS, lugre_chain
+from tsas_cli.physics.mesh import MOST_NODES
+from tsas_cli.physics.phases import SLACK
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.sensors import reading
 from tsas_cli.physics.slip.chain import rest_after, slip_chain
-from tsas_cli.physics.slip.state import DISPLACEMENT, FORCE, MOST_NODES, SLACK
 
 Floats = npt.NDArray[np.float64]
 Phases = npt.NDArray[np.int8]
-Answer = tuple[Floats, Floats, Floats, Floats, Phases]
+Output = tuple[Floats, Floats, Floats, Floats, Phases]
 Dynamics = Literal["static", "slip", "lugre"]
 
 NODES = 60  # of the slip chain, where the closed form does not hold
@@ -96,8 +98,8 @@ def simulate(
     ends = ends_of(rig, drive)
     if dynamics == "static":
         f_in, f_out, phase = static_model(ends.drive, rig)
-        answer = with_spring(rig, ends, f_in, f_out, phase)
-        return as_read(rig, drive, answer, 0, solver_of(nodes, dynamics))
+        answer = with_spring_load(rig, ends, f_in, f_out, phase)
+        return sensor_readings(rig, drive, answer, 0, solver_of(nodes, dynamics))
     if is_closed(rig, drive) and not on_mesh:
         nodes = CLOSED
     before = history(rig, ends, drive.start_f_in_N, nodes)
@@ -105,7 +107,7 @@ def simulate(
     if looked_at is not None:
         frames = empty_frames(looked_at + skip, nodes or ELEMENTS)
     answer = _solve(rig, ends.after(before), nodes, frames)
-    response = as_read(rig, drive, answer, skip, solver_of(nodes, dynamics))
+    response = sensor_readings(rig, drive, answer, skip, solver_of(nodes, dynamics))
     return replace(response, frames=frames and frames._replace(samples=frames.samples - skip))
 
 
@@ -134,9 +136,9 @@ def _dynamic(
     )
     x_in, x_out, f_in, f_out = columns
     if ends.boundary.drive == DISPLACEMENT:
-        f_in = f_in + at_drive(rig, ends)
+        f_in = f_in + force_beside_tendon(rig, ends)
     solver = f"LuGre chain, {lumps} lumps, {progress.step_ends_s.size} steps"
-    answer = as_read(rig, drive, (x_in, x_out, f_in, f_out, phase), 0, solver)
+    answer = sensor_readings(rig, drive, (x_in, x_out, f_in, f_out, phase), 0, solver)
     return replace(answer, step_ends_s=progress.step_ends_s, frames=frames)
 
 
@@ -158,7 +160,7 @@ def is_closed(rig: Rig, drive: Drive) -> bool:
     )
 
 
-def as_read(rig: Rig, drive: Drive, answer: Answer, skip: int, solver: str) -> Response:
+def sensor_readings(rig: Rig, drive: Drive, answer: Output, skip: int, solver: str) -> Response:
     """Drop the samples before the run and return what the sensors read of the others."""
     x_in, x_out, f_in, f_out = (column[skip:] for column in answer[:4])
     given = drive.values if drive.kind == "displacement" else x_in + rig.x_in_zero_mm
@@ -172,23 +174,25 @@ def as_read(rig: Rig, drive: Drive, answer: Answer, skip: int, solver: str) -> R
     )
 
 
-def _solve(rig: Rig, ends: Ends, nodes: int, frames: Frames | None = None) -> Answer:
+def _solve(rig: Rig, ends: EndInputs, nodes: int, frames: Frames | None = None) -> Output:
     """Return x_in, x_out, f_in, f_out and phase, free of the sensors' errors."""
     if nodes == CLOSED:
-        return with_spring(rig, ends, *branches(ends.drive, rig, frames))
+        return with_spring_load(rig, ends, *branches(ends.drive, rig, frames))
     x_in, x_out, f_in, f_out, phase = slip_chain(ends.course, rig, ends.boundary, nodes, frames)
     if ends.boundary.drive == DISPLACEMENT:
-        f_in = f_in + at_drive(rig, ends)
+        f_in = f_in + force_beside_tendon(rig, ends)
     return x_in, x_out, f_in, f_out, phase
 
 
-def with_spring(rig: Rig, ends: Ends, f_in: Floats, f_out: Floats, phase: Phases) -> Answer:
+def with_spring_load(
+    rig: Rig, ends: EndInputs, f_in: Floats, f_out: Floats, phase: Phases
+) -> Output:
     """Return the answer of a model that knows a spring load and a drive by displacement."""
     x_out = (f_out - rig.preload_N) / rig.load_stiffness_N_per_mm
-    return ends.drive, x_out, f_in + at_drive(rig, ends), f_out, phase
+    return ends.drive, x_out, f_in + force_beside_tendon(rig, ends), f_out, phase
 
 
-def at_drive(rig: Rig, ends: Ends) -> Floats | float:
+def force_beside_tendon(rig: Rig, ends: EndInputs) -> Floats | float:
     """Return what the drive's sensor feels beside the tendon [N]."""
     friction = rig.effects.drive_friction.friction_N
     stiffness = rig.effects.proximal_spring.stiffness_N_per_mm
@@ -211,7 +215,7 @@ def forgotten(rig: Rig, drive: Drive) -> int | None:
     return int(same[0]) if same.size else None
 
 
-def _far(rig: Rig, ends: Ends, side: float, nodes: int) -> float:
+def _far(rig: Rig, ends: EndInputs, side: float, nodes: int) -> float:
     """Return a drive from which the way back to the first sample makes the whole tendon slip."""
     first = float(ends.drive[0])
     stretch = rig.preload_N * rig.sheath_length_mm / rig.tendon_stiffness_N
@@ -225,7 +229,7 @@ def _far(rig: Rig, ends: Ends, side: float, nodes: int) -> float:
     return past
 
 
-def history(rig: Rig, ends: Ends, wanted_f_in: float | None, nodes: int) -> list[float]:
+def history(rig: Rig, ends: EndInputs, wanted_f_in: float | None, nodes: int) -> list[float]:
     """Return a drive position to pass before the first sample, if one is needed, so that f_in fits.
 
     From rest the drive goes past its first position and back; how far decides the tension there,

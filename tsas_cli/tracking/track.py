@@ -14,11 +14,11 @@ from tsas_cli.controllers.closed_loop import (
     close_loop,
     followed_from,
 )
-from tsas_cli.controllers.path import Path, follow
+from tsas_cli.controllers.path import DrivePath, follow
 from tsas_cli.controllers.signals import error_filter
 from tsas_cli.errors import InputError
 from tsas_cli.physics.ends import last_direction
-from tsas_cli.physics.plant.lugre_plant import no_lumps
+from tsas_cli.physics.plant.lugre_plant import empty_lumps
 from tsas_cli.physics.plant.turntable import Actuator
 from tsas_cli.physics.rig import Rig
 from tsas_cli.tracking.scores import Score, score
@@ -71,7 +71,7 @@ class Tracked:
     is_relay: bool
 
 
-def plan(wanted_N: Floats, known: Known, settings: Settings) -> Path:
+def plan(wanted_N: Floats, known: Known, settings: Settings) -> DrivePath:
     """Return the path of the drive by the controller's model; see `controllers.path.follow`."""
     return follow(
         wanted_N,
@@ -83,7 +83,7 @@ def plan(wanted_N: Floats, known: Known, settings: Settings) -> Path:
     )
 
 
-def feedforward(path: Path, actuator: Actuator) -> Floats:
+def feedforward(path: DrivePath, actuator: Actuator) -> Floats:
     """Return kV dx/dt + kA d²x/dt² of the motor's path, shape (m,) [rpm], Eq. (51)."""
     speed, acceleration = path.motor[1], path.motor[2]
     answer: Floats = (speed + actuator.motor_lag_s * acceleration) / actuator.gain_mm_per_s_rpm
@@ -92,7 +92,7 @@ def feedforward(path: Path, actuator: Actuator) -> Floats:
 
 def track(
     wanted_N: Floats,
-    path: Path,
+    path: DrivePath,
     known: Known,
     plant: Plant,
     controller: str,
@@ -142,7 +142,7 @@ def track(
         nodes,
         step_s,
         settings.loop.substeps,
-        no_lumps() if dynamics == "lugre" else None,
+        empty_lumps() if dynamics == "lugre" else None,
     )
     time_s: Floats = np.arange(m, dtype=np.float64) * step_s
     if unsettled > GIVEN_UP * m * settings.loop.substeps:

@@ -13,7 +13,7 @@ import pyarrow as pa
 
 from tsas_cli import __version__
 from tsas_cli.controllers import CONTROLLERS
-from tsas_cli.controllers.path import Path as DrivePath
+from tsas_cli.controllers.path import DrivePath
 from tsas_cli.errors import InputError, nearest
 from tsas_cli.files import folder_if, write_json
 from tsas_cli.identification.drive_file import FILE as DRIVE_FILE

@@ -17,17 +17,10 @@ from tests.physics.references import (
 )
 from tsas_cli.effects import Effects, StribeckFriction
 from tsas_cli.physics.lugre.chain import OWN_STEPS, lugre_chain
-from tsas_cli.physics.lugre.input import DRIVE, given_at, next_turn
-from tsas_cli.physics.lugre.state import (
-    CHANGE,
-    DIAGONAL,
-    LOWER,
-    REST,
-    ROWS,
-    UPPER,
-)
+from tsas_cli.physics.lugre.input import DRIVE, next_reversal, value_at
+from tsas_cli.physics.lugre.state import DIAGONAL, INCREMENT, LOWER, RESIDUAL, ROWS, UPPER
 from tsas_cli.physics.lugre.tridiagonal import solve
-from tsas_cli.physics.slip.state import MOST_NODES, PITCH
+from tsas_cli.physics.mesh import MOST_NODES, PITCH
 
 TIGHT = 1e-7
 TIME_S = np.arange(0.0, 4.8, 1e-3)
@@ -51,12 +44,12 @@ def test_newtons_equations_are_solved(n):
     diagonal = -lower - upper + rng.uniform(0.0, 0.1, n + 2) ** 2
     rest = rng.standard_normal(n + 2)
     s = np.empty(ROWS * PITCH)
-    for row, values in ((LOWER, lower), (UPPER, upper), (DIAGONAL, diagonal), (REST, rest)):
+    for row, values in ((LOWER, lower), (UPPER, upper), (DIAGONAL, diagonal), (RESIDUAL, rest)):
         s[row : row + n + 2] = values
     solve(s, n)
     matrix = np.diag(diagonal) + np.diag(lower[1:], -1) + np.diag(upper[:-1], 1)
     expected = np.linalg.solve(matrix, rest)
-    assert s[CHANGE : CHANGE + n + 2] == pytest.approx(expected, rel=1e-7, abs=1e-9)
+    assert s[INCREMENT : INCREMENT + n + 2] == pytest.approx(expected, rel=1e-7, abs=1e-9)
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -69,7 +62,7 @@ def test_between_samples_the_input_is_the_monotone_cubic(seed):
     curve = PchipInterpolator(times, values)
     for t in rng.uniform(times[0], times[-1], 200):
         k = int(np.searchsorted(times, t)) - 1
-        value, slope = given_at(times, course, DRIVE, k, t)
+        value, slope = value_at(times, course, DRIVE, k, t)
         assert value == pytest.approx(curve(t), abs=1e-10)
         assert slope == pytest.approx(curve.derivative()(t), abs=1e-7)
 
@@ -79,7 +72,7 @@ def test_a_step_ends_where_the_input_turns_stops_or_sets_off():
     course = course_of(values, GROUP_A)
     found, k = [], 0
     while k < values.size - 1:
-        k = next_turn(course[0], course, k, LOADED_BY_SPRING)
+        k = next_reversal(course[0], course, k, LOADED_BY_SPRING)
         found.append(k)
     assert found == [2, 4, 6, 8]
 

@@ -10,9 +10,10 @@ from tests.physics.references import GROUP_A
 from tsas_cli.effects import EFFECTS
 from tsas_cli.physics.bristles import Bristles
 from tsas_cli.physics.ends import Drive
+from tsas_cli.physics.mesh import MOST_NODES
+from tsas_cli.physics.phases import SLACK, UNCONVERGED
 from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import with_values
-from tsas_cli.physics.slip.state import MOST_NODES, SLACK, UNSETTLED
 
 TIME_S = np.arange(0.0, 2.0 * math.pi, 2e-3)
 NESTED = 10.0 - 10.0 * np.cos(TIME_S) + 1.5 * np.sin(5.0 * TIME_S)
@@ -25,7 +26,7 @@ def apart(rig, drive, *, lumps=50):
     """Return the largest difference of each channel of the two models, over its range."""
     slip = simulate(rig, drive, on_mesh=True, nodes=lumps)
     lugre = simulate(rig, drive, "lugre", nodes=lumps)
-    assert not np.any(lugre.phase == UNSETTLED)
+    assert not np.any(lugre.phase == UNCONVERGED)
     return {
         name: np.sqrt(np.mean((getattr(slip, name) - getattr(lugre, name)) ** 2))
         / max(np.ptp(getattr(slip, name)), 1e-9)

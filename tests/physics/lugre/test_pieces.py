@@ -13,44 +13,45 @@ from tests.physics.references import (
     LOADED_BY_SPRING,
     course_of,
 )
-from tsas_cli.physics.lugre.balance import balance, set_limits, sum_of_sizes
-from tsas_cli.physics.lugre.chain import OWN_STEPS, hangs, lugre_chain, phase_of
+from tsas_cli.physics.boundary import FORCE
+from tsas_cli.physics.lugre.balance import balance, residual_sum, set_limits
+from tsas_cli.physics.lugre.chain import OWN_STEPS, has_gone_slack, lugre_chain, phase_of
 from tsas_cli.physics.lugre.ends import (
     F_IN,
     F_OUT,
     X_IN,
     X_OUT,
-    Ends,
-    answer,
-    felt,
+    StepEnds,
+    end_stiffnesses,
+    input_error,
+    secant_stiffness,
     sensor_share,
-    unseen,
     write_samples,
 )
-from tsas_cli.physics.lugre.slack import load_without_pull, shortening
-from tsas_cli.physics.lugre.start import law_of, lay_down, lay_out
+from tsas_cli.physics.lugre.slack import shortening, unloaded_load
+from tsas_cli.physics.lugre.start import clear_state, lugre_laws, rest_at
 from tsas_cli.physics.lugre.state import (
+    DEFLECTION,
+    DEFLECTION_HISTORY,
+    DEFLECTION_NEW,
     FRICTION,
     LIMIT,
     LIMIT_BY_T,
     LIMIT_BY_V,
     PITCH,
-    REST,
+    RATE,
+    RATE_PREDICTED,
+    RESIDUAL,
     ROWS,
     STIFFNESS,
-    T_BY_W,
-    T_PAST,
-    W_GUESS,
-    Z_NEW,
-    Z_PAST,
+    TENSION,
+    TENSION_HISTORY,
+    TENSION_SLOPE,
     Step,
-    T,
-    W,
-    Z,
 )
-from tsas_cli.physics.lugre.step import error, formula_of, newton
+from tsas_cli.physics.lugre.step import bdf2, newton, step_error
+from tsas_cli.physics.phases import SLACK, UNCONVERGED
 from tsas_cli.physics.rig import with_values
-from tsas_cli.physics.slip.state import FORCE, SLACK, UNSETTLED
 
 N, LAST = 3, 4
 F0, KL, GH = 25.0, 1.579, 2e-3
@@ -60,10 +61,10 @@ STEP = Step(GH, 30.0, 0.0, 27.0, 0.0, 0.0, 1.5, 0.14, 0.11, 1.2)
 def lumps(rig, *, speeds=(0.0,) * 5, tensions=(40.0, 31.0, 22.0, 13.0)):
     """Return lumps with these speeds and tensions, their segments rigid in this step."""
     s = np.zeros(ROWS * PITCH)
-    lay_out(s, rig, N)
-    s[W : W + N + 2] = speeds
-    s[T_PAST : T_PAST + N + 1] = s[T : T + N + 1] = tensions
-    return s, law_of(rig, N)
+    clear_state(s, rig, N)
+    s[RATE : RATE + N + 2] = speeds
+    s[TENSION_HISTORY : TENSION_HISTORY + N + 1] = s[TENSION : TENSION + N + 1] = tensions
+    return s, lugre_laws(rig, N)
 
 
 @pytest.mark.parametrize("exponent", [0.0, 1.0, -1.0, -0.4, 0.3])
@@ -78,7 +79,7 @@ def test_limits_of_friction_follow_tension_way_and_speed(exponent, sign):
     speeds = np.array([0.0, 1.0, -4.0, 0.5, 0.0])
     tensions = sign * np.array([40.0, 31.0, 22.0, 13.0])
     s, law = lumps(with_values(GROUP_A, values), speeds=speeds, tensions=tensions)
-    s[Z_PAST + 3] = -0.01
+    s[DEFLECTION_HISTORY + 3] = -0.01
     set_limits(s, STEP, law)
     for i, wrap in ((1, 0.14), (2, 0.11), (3, 0.11)):
 
@@ -120,24 +121,24 @@ def test_an_end_that_is_moved_keeps_the_bristle_that_it_had():
     """It rubs only where a force pulls at it: its deflection waits for that."""
     rig = with_values(GROUP_A, {"drive_friction.friction_N": 2.0})
     s, law = lumps(rig, speeds=(0.0, 1.0, -1.0, 0.5, 0.3))
-    s[Z_NEW] = 0.125
+    s[DEFLECTION_NEW] = 0.125
     balance(s, STEP, LOADED_BY_SPRING, law)
-    assert s[Z_NEW] == 0.125
+    assert s[DEFLECTION_NEW] == 0.125
     balance(s, STEP, DRIVEN_BY_FORCE, law)
-    assert s[Z_NEW] == 0.0
+    assert s[DEFLECTION_NEW] == 0.0
 
 
 @pytest.mark.parametrize("count", [1, 3, 4, 5, 8, 9, 11])
 def test_a_sum_of_sizes_counts_every_one_once(count):
     s = np.zeros(ROWS * PITCH)
-    s[REST : REST + 20] = [(-2.0) ** k for k in range(20)]
-    assert sum_of_sizes(s, count) == 2.0**count - 1.0
+    s[RESIDUAL : RESIDUAL + 20] = [(-2.0) ** k for k in range(20)]
+    assert residual_sum(s, count) == 2.0**count - 1.0
 
 
 @pytest.mark.parametrize("boundary", [LOADED_BY_SPRING, DRIVEN_BY_FORCE])
 def test_newtons_method_gives_up_at_once_where_forces_are_infinite(boundary):
     s, law = lumps(GROUP_A, tensions=(F0,) * 4)
-    s[T_BY_W : T_BY_W + N + 1] = s[STIFFNESS : STIFFNESS + N + 1] * GH
+    s[TENSION_SLOPE : TENSION_SLOPE + N + 1] = s[STIFFNESS : STIFFNESS + N + 1] * GH
     step = STEP._replace(speed=0.0)
     if boundary.drive == FORCE:
         step = step._replace(drive=math.inf)
@@ -149,13 +150,13 @@ def test_newtons_method_gives_up_at_once_where_forces_are_infinite(boundary):
 def test_the_error_of_a_first_step_is_half_of_what_its_guess_was_off_by():
     """Backward Euler leaves out h²/2 of the acceleration, which the guess has not seen."""
     s, law = lumps(GROUP_A, speeds=(0.0, 0.1, 0.3, -0.2, 0.0))
-    s[W_GUESS : W_GUESS + N + 2] = 0.0, 0.1, 0.1, 0.1, 0.0
+    s[RATE_PREDICTED : RATE_PREDICTED + N + 2] = 0.0, 0.1, 0.1, 0.1, 0.0
     stretched = s[STIFFNESS : STIFFNESS + N + 1] * np.abs(np.diff([0.0, 0.0, 0.2, -0.3, 0.0]))
-    first = formula_of(0.2, math.inf, math.inf)
-    assert error(s, law, first) == pytest.approx(0.5 * 0.2 * stretched.max())
+    first = bdf2(0.2, math.inf, math.inf)
+    assert step_error(s, law, first) == pytest.approx(0.5 * 0.2 * stretched.max())
 
 
-ENDS = Ends(1.0, 2.0, 10.0, 3.0, 0.0, 0.0, 0.0, 0.0, 30.0, 0.0, 20.0, 0.0, 0.5)
+ENDS = StepEnds(1.0, 2.0, 10.0, 3.0, 0.0, 0.0, 0.0, 0.0, 30.0, 0.0, 20.0, 0.0, 0.5)
 
 
 def test_what_a_step_does_not_see_is_told_by_how_each_end_answers():
@@ -167,7 +168,7 @@ def test_what_a_step_does_not_see_is_told_by_how_each_end_answers():
     answers = (2.0, 50.0)
 
     def not_seen(boundary):
-        return unseen(times, course, 0, 9, 0.0, 1.0, ENDS, end, answers, boundary)
+        return input_error(times, course, 0, 9, 0.0, 1.0, ENDS, end, answers, boundary)
 
     for boundary in (LOADED_BY_SPRING, LOADED_BY_FORCE, LOADED_BY_DISPLACEMENT):
         assert not_seen(boundary) == pytest.approx(0.0, abs=1e-12)
@@ -180,20 +181,20 @@ def test_what_a_step_does_not_see_is_told_by_how_each_end_answers():
 
 def test_how_tensions_answered_what_was_given():
     later = ENDS._replace(drive=1.5, f_in=27.0, load=9.0, f_out=23.0)
-    assert felt(ENDS, later, 1.0) == (6.0, 3.0)
-    assert felt(ENDS, later, 5.0) == (6.0, 5.0)
-    assert felt(ENDS, ENDS._replace(f_in=99.0), 1.0) == (1.0, 1.0)
-    assert answer(-4.0, 0.5, 2.0) == 8.0
+    assert end_stiffnesses(ENDS, later, 1.0) == (6.0, 3.0)
+    assert end_stiffnesses(ENDS, later, 5.0) == (6.0, 5.0)
+    assert end_stiffnesses(ENDS, ENDS._replace(f_in=99.0), 1.0) == (1.0, 1.0)
+    assert secant_stiffness(-4.0, 0.5, 2.0) == 8.0
 
 
 GUIDED = {"load_friction.before_sensor_N": 1.5, "load_friction.after_sensor_N": 3.0}
 
 
 def test_the_share_of_the_guide_that_the_sensor_does_not_feel():
-    law = law_of(with_values(GROUP_A, GUIDED), N)
+    law = lugre_laws(with_values(GROUP_A, GUIDED), N)
     assert sensor_share(LOADED_BY_SPRING, law) == pytest.approx(1.0 / 3.0)
     assert sensor_share(LOADED_BY_DISPLACEMENT, law) == 1.0
-    bare = law_of(with_values(GROUP_A, {"load_friction.after_sensor_N": 3.0}), N)
+    bare = lugre_laws(with_values(GROUP_A, {"load_friction.after_sensor_N": 3.0}), N)
     assert sensor_share(LOADED_BY_SPRING, bare) == 0.0
     assert sensor_share(LOADED_BY_DISPLACEMENT, bare) == 0.0
 
@@ -203,10 +204,10 @@ def test_the_share_of_the_guide_that_the_sensor_does_not_feel():
 )
 def test_samples_within_a_step_read_what_was_given_and_what_answered(boundary):
     """Everything goes straight here; the guide's share is taken off what the sensor reads."""
-    times, law = np.linspace(0.0, 1.0, 11), law_of(with_values(GROUP_A, GUIDED), N)
+    times, law = np.linspace(0.0, 1.0, 11), lugre_laws(with_values(GROUP_A, GUIDED), N)
     course = np.vstack([np.full(11, 100.0 + k) + times for k in range(7)])
-    a = Ends(0.0, 0.0, 0.0, 0.0, 1.0, 10.0, 2.0, 20.0, 30.0, 40.0, 50.0, 60.0, 0.0)
-    b = Ends(0.0, 0.0, 0.0, 0.0, 6.0, 10.0, 12.0, 20.0, 50.0, 40.0, 80.0, 60.0, 3.0)
+    a = StepEnds(0.0, 0.0, 0.0, 0.0, 1.0, 10.0, 2.0, 20.0, 30.0, 40.0, 50.0, 60.0, 0.0)
+    b = StepEnds(0.0, 0.0, 0.0, 0.0, 6.0, 10.0, 12.0, 20.0, 50.0, 40.0, 80.0, 60.0, 3.0)
     columns = np.full((4, 11), -1.0)
     write_samples(columns, 3, 7, times, course, 0.25, 0.5, a, b, boundary, law)
     since = times[3:7] - 0.25
@@ -246,16 +247,18 @@ def test_lumps_that_are_laid_down_stay_where_they_are(length, exponent):
     start[1, : N + 1] = tensions
     start[0] = 0.7, 0.5, 0.3, 0.2, 0.1
     step = Step(1e-13, 21.5, 0.0, 0.0, 0.0, 0.0, 0.0, 0.14, 0.06, 2.0)
-    ends = lay_down(s, start, step, DRIVEN_BY_FORCE, law)
+    ends = rest_at(s, start, step, DRIVEN_BY_FORCE, law)
     assert (ends.f_in, ends.f_out, ends.x_in, ends.x_out) == (21.0, 22.3, 0.7, 0.1)
     left = [0.5, *-np.diff(tensions), 22.3 - (23.0 + KL * 0.1)]
-    s[Z_PAST : Z_PAST + N + 2] = s[Z : Z + N + 2]
+    s[DEFLECTION_HISTORY : DEFLECTION_HISTORY + N + 2] = s[DEFLECTION : DEFLECTION + N + 2]
     assert balance(s, step, DRIVEN_BY_FORCE, law) == pytest.approx(
-        abs(s[REST]) + abs(s[REST + LAST]), abs=1e-6
+        abs(s[RESIDUAL]) + abs(s[RESIDUAL + LAST]), abs=1e-6
     )
     np.testing.assert_allclose(s[FRICTION + 1 : FRICTION + LAST], left[1:LAST], rtol=1e-5)
     stiffness = law.end_bristle.stiffness
-    assert [s[Z], s[Z + LAST]] == pytest.approx([left[0] / stiffness, left[LAST] / stiffness])
+    assert [s[DEFLECTION], s[DEFLECTION + LAST]] == pytest.approx(
+        [left[0] / stiffness, left[LAST] / stiffness]
+    )
 
 
 @pytest.mark.parametrize(
@@ -268,7 +271,9 @@ def test_the_phase_is_that_in_which_all_lumps_are(leans, phase):
     s, law = lumps(rig)
     s[LIMIT + 1 : LIMIT + 4] = 2.0, 3.0, 4.0
     longest = np.array([2.0, 3.0, 4.0]) / law.bristle.stiffness + 0.05
-    s[Z_NEW + 1 : Z_NEW + 4] = np.where(leans, 0.991, 0.989) * longest * np.sign(np.add(leans, 0.1))
+    s[DEFLECTION_NEW + 1 : DEFLECTION_NEW + 4] = (
+        np.where(leans, 0.991, 0.989) * longest * np.sign(np.add(leans, 0.1))
+    )
     assert phase_of(s, law) == phase
 
 
@@ -276,13 +281,13 @@ def test_a_tendon_hangs_where_nothing_pulls_and_the_drive_is_too_near():
     s, law = lumps(GROUP_A)
     lost = 2.0
     straight = -(F0 - lost) / KL - F0 * GROUP_A.sheath_length_mm / GROUP_A.tendon_stiffness_N
-    assert load_without_pull(lost, law) == pytest.approx(-(F0 - lost) / KL)
+    assert unloaded_load(lost, law) == pytest.approx(-(F0 - lost) / KL)
     assert shortening(s, law) == pytest.approx(-straight - (F0 - lost) / KL)
     times, pushed = np.array([0.0, 1.0]), ENDS._replace(f_in=-1e-6)
 
     def slack(off, ends=pushed, boundary=LOADED_BY_SPRING):
         course = course_of([straight + off] * 2, GROUP_A, lost=lost)
-        return hangs(s, times, course, 1, 1.0, ends, boundary, law)
+        return has_gone_slack(s, times, course, 1, 1.0, ends, boundary, law)
 
     assert slack(-1e-6)
     assert not slack(1e-6)
@@ -332,7 +337,7 @@ def test_a_run_that_cannot_be_followed_is_given_up_there(steps):
     times, drive = np.linspace(0.0, 1.0, 11), np.zeros(11)
     drive[7:] = math.nan
     columns, phase, progress = run(drive, times, steps=steps)
-    assert phase.tolist() == [0] * 5 + [UNSETTLED] * 6
+    assert phase.tolist() == [0] * 5 + [UNCONVERGED] * 6
     np.testing.assert_allclose(columns, np.tile([[0.0], [0.0], [F0], [F0]], 11), atol=1e-9)
     assert 0.5 - 1e-9 < progress.reached_s < 0.5 + 1e-12
     assert progress.tries > progress.step_ends_s.size

@@ -24,41 +24,41 @@ from tests.physics.references import (
 )
 from tsas_cli.physics.bristles import Bristle, Bristles, friction, friction_now
 from tsas_cli.physics.frames import empty_frames
-from tsas_cli.physics.lugre.balance import balance, sum_of_sizes
+from tsas_cli.physics.lugre.balance import balance, residual_sum
 from tsas_cli.physics.lugre.chain import OWN_STEPS, lugre_chain, sample_after, sample_before
-from tsas_cli.physics.lugre.ends import departs, ends_after, read
+from tsas_cli.physics.lugre.ends import ends_after, interpolation_error, write_cubic
 from tsas_cli.physics.lugre.input import DRIVE, hermite, hermite_slope, slope_at
-from tsas_cli.physics.lugre.pace import Allowed, change_of, fitted
-from tsas_cli.physics.lugre.start import law_of, lay_out
+from tsas_cli.physics.lugre.start import clear_state, lugre_laws
 from tsas_cli.physics.lugre.state import (
-    CHANGE,
     DAMPING,
+    DEFLECTION_HISTORY,
+    DEFLECTION_NEW,
     DIAGONAL,
     FRICTION,
+    INCREMENT,
     LOWER,
     PITCH,
-    REST,
+    POSITION,
+    POSITION_1,
+    POSITION_2,
+    POSITION_HISTORY,
+    POSITION_NEW,
+    RATE,
+    RATE_PREDICTED,
+    RESIDUAL,
     ROWS,
+    SPEED,
+    SPEED_1,
+    SPEED_HISTORY,
     STIFFNESS,
-    T_BY_W,
-    T_PAST,
+    TENSION,
+    TENSION_HISTORY,
+    TENSION_SLOPE,
     UPPER,
-    V1,
-    V_PAST,
-    W_GUESS,
-    Y1,
-    Y2,
-    Y_NEW,
-    Y_PAST,
-    Z_NEW,
-    Z_PAST,
     Step,
-    T,
-    V,
-    W,
-    Y,
 )
-from tsas_cli.physics.lugre.step import error, formula_of, keep, largest_of, look_back
+from tsas_cli.physics.lugre.step import accept_step, bdf2, largest_increment, predict, step_error
+from tsas_cli.physics.lugre.step_size import Tolerances, fit_to_reversal, step_factor
 from tsas_cli.physics.rig import with_values
 
 N = 3
@@ -86,13 +86,18 @@ STEP = Step(GH, 30.0, 0.0, 27.0, 0.0, 0.0, 1.5, 0.14, 0.11, 1.2)
 def state():
     """Lumps that move at random, in the middle of a step."""
     rng, s = np.random.default_rng(5), np.zeros(ROWS * PITCH)
-    law = law_of(LIVELY, N)
-    lay_out(s, LIVELY, N)
+    law = lugre_laws(LIVELY, N)
+    clear_state(s, LIVELY, N)
     nodes = slice(0, N + 2)
-    for row, size in ((Y_PAST, 0.02), (V_PAST, 1.0), (Z_PAST, 3e-3), (W, 2.0)):
+    for row, size in (
+        (POSITION_HISTORY, 0.02),
+        (SPEED_HISTORY, 1.0),
+        (DEFLECTION_HISTORY, 3e-3),
+        (RATE, 2.0),
+    ):
         s[row:][nodes] = size * rng.standard_normal(N + 2)
-    s[T_PAST:][nodes] = 25.0 + 3.0 * rng.standard_normal(N + 2)
-    s[T_BY_W:][nodes] = s[STIFFNESS:][nodes] * GH + s[DAMPING:][nodes]
+    s[TENSION_HISTORY:][nodes] = 25.0 + 3.0 * rng.standard_normal(N + 2)
+    s[TENSION_SLOPE:][nodes] = s[STIFFNESS:][nodes] * GH + s[DAMPING:][nodes]
     return s, law
 
 
@@ -102,13 +107,13 @@ def state():
 @pytest.mark.parametrize("tension", [25.0, -25.0])
 def test_newtons_matrix_is_the_slope_of_what_the_forces_leave(state, boundary, tension):
     s, law = state
-    s[T_PAST : T_PAST + N + 2] += tension - 25.0
-    speeds = s[W : W + N + 2].copy()
+    s[TENSION_HISTORY : TENSION_HISTORY + N + 2] += tension - 25.0
+    speeds = s[RATE : RATE + N + 2].copy()
 
     def left(at):
-        s[W : W + N + 2] = at
+        s[RATE : RATE + N + 2] = at
         balance(s, STEP, boundary, law)
-        return s[REST : REST + N + 2].copy()
+        return s[RESIDUAL : RESIDUAL + N + 2].copy()
 
     slopes = np.zeros((N + 2, N + 2))
     for i in range(N + 2):
@@ -119,7 +124,9 @@ def test_newtons_matrix_is_the_slope_of_what_the_forces_leave(state, boundary, t
     matrix = np.diag(s[DIAGONAL : DIAGONAL + N + 2])
     matrix += np.diag(s[LOWER + 1 : LOWER + N + 2], -1) + np.diag(s[UPPER : UPPER + N + 1], 1)
     if boundary.load == LOADED_BY_DISPLACEMENT.load:  # its row is in speeds, with the slope −1
-        assert rest[LAST] == pytest.approx((STEP.load - s[Y_PAST + LAST]) / GH - speeds[LAST])
+        assert rest[LAST] == pytest.approx(
+            (STEP.load - s[POSITION_HISTORY + LAST]) / GH - speeds[LAST]
+        )
     largest = np.abs(matrix).max(axis=1, keepdims=True)
     assert np.all(np.abs(slopes + matrix) < 1e-5 * largest)
 
@@ -136,35 +143,37 @@ def bristle_by_hand(before, speed, limit, bristle):
 def test_what_the_forces_leave_is_newtons_law_of_each_node(state, boundary):
     s, law = state
     total = balance(s, STEP, boundary, law)
-    w = s[W : W + N + 2]
+    w = s[RATE : RATE + N + 2]
     v = w + STEP.speed
-    T_now = s[T_PAST : T_PAST + N + 1] - s[T_BY_W : T_BY_W + N + 1] * np.diff(w)
-    np.testing.assert_allclose(s[T : T + N + 1], T_now, rtol=1e-12)
+    T_now = s[TENSION_HISTORY : TENSION_HISTORY + N + 1] - s[
+        TENSION_SLOPE : TENSION_SLOPE + N + 1
+    ] * np.diff(w)
+    np.testing.assert_allclose(s[TENSION : TENSION + N + 1], T_now, rtol=1e-12)
     left = np.zeros(N + 2)
     for i in range(1, N + 1):
         mean = 0.5 * (T_now[i - 1] + T_now[i])
-        pulled = s[Z_PAST + i] + GH * v[i] >= 0.0
+        pulled = s[DEFLECTION_HISTORY + i] + GH * v[i] >= 0.0
         limit = (STEP.pulled if pulled else STEP.released) * mean * (mean / 25.0) ** 0.3
         limit *= 1.0 + 0.4 * math.exp(-((v[i] / 2.0) ** 2))
-        f, z = bristle_by_hand(s[Z_PAST + i], v[i], limit, law.bristle)
-        inertia = 0.0025e-6 * LIVELY.sheath_length_mm / N * (v[i] - s[V_PAST + i]) / GH
+        f, z = bristle_by_hand(s[DEFLECTION_HISTORY + i], v[i], limit, law.bristle)
+        inertia = 0.0025e-6 * LIVELY.sheath_length_mm / N * (v[i] - s[SPEED_HISTORY + i]) / GH
         left[i] = T_now[i - 1] - T_now[i] - f - inertia
         assert s[FRICTION + i] == pytest.approx(f, rel=1e-7)
-        assert s[Z_NEW + i] == pytest.approx(z, rel=1e-7)
+        assert s[DEFLECTION_NEW + i] == pytest.approx(z, rel=1e-7)
     if boundary is DRIVEN_BY_FORCE:
-        rubs, _ = bristle_by_hand(s[Z_PAST], w[0], 1.5, law.end_bristle)
-        left[0] = 30.0 - T_now[0] - 3.0 * (s[Y_PAST] + GH * w[0]) - rubs
+        rubs, _ = bristle_by_hand(s[DEFLECTION_HISTORY], w[0], 1.5, law.end_bristle)
+        left[0] = 30.0 - T_now[0] - 3.0 * (s[POSITION_HISTORY] + GH * w[0]) - rubs
     else:
         left[0] = -w[0]
-    x = s[Y_PAST + LAST] + GH * w[LAST]
+    x = s[POSITION_HISTORY + LAST] + GH * w[LAST]
     if boundary is LOADED_BY_FORCE:  # the guide's part behind the sensor is not in what it reads
-        rubs, _ = bristle_by_hand(s[Z_PAST + LAST], v[LAST], 1.0, law.end_bristle)
+        rubs, _ = bristle_by_hand(s[DEFLECTION_HISTORY + LAST], v[LAST], 1.0, law.end_bristle)
         left[LAST] = T_now[N] - 27.0 - rubs
     else:
-        rubs, _ = bristle_by_hand(s[Z_PAST + LAST], v[LAST], 3.0, law.end_bristle)
+        rubs, _ = bristle_by_hand(s[DEFLECTION_HISTORY + LAST], v[LAST], 3.0, law.end_bristle)
         pull = 25.0 - 1.2 + 1.579 * x * (1.0 + 0.1 * x + 0.02 * x * x)
-        left[LAST] = T_now[N] - pull - rubs - 0.3e-3 * (v[LAST] - s[V_PAST + LAST]) / GH
-    np.testing.assert_allclose(s[REST : REST + N + 2], left, rtol=1e-6, atol=1e-9)
+        left[LAST] = T_now[N] - pull - rubs - 0.3e-3 * (v[LAST] - s[SPEED_HISTORY + LAST]) / GH
+    np.testing.assert_allclose(s[RESIDUAL : RESIDUAL + N + 2], left, rtol=1e-6, atol=1e-9)
     assert total == pytest.approx(np.abs(left).sum(), rel=1e-6)
 
 
@@ -172,11 +181,11 @@ def test_what_the_forces_leave_is_newtons_law_of_each_node(state, boundary):
 def test_sums_and_largest_ones_miss_no_node(count):
     for place in range(count):
         s = np.zeros(ROWS * PITCH)
-        s[REST + place], s[CHANGE + place] = -3.0, 3.0
-        s[REST + count], s[CHANGE + count] = 7.0, 7.0  # one more is not theirs
-        assert sum_of_sizes(s, count) == 3.0
+        s[RESIDUAL + place], s[INCREMENT + place] = -3.0, 3.0
+        s[RESIDUAL + count], s[INCREMENT + count] = 7.0, 7.0  # one more is not theirs
+        assert residual_sum(s, count) == 3.0
         if count > 1:
-            assert largest_of(s, count) == 3.0
+            assert largest_increment(s, count) == 3.0
 
 
 def test_usual_constants_are_those_of_table_1_for_the_whole_sheath():
@@ -201,18 +210,22 @@ def test_friction_now_is_that_of_a_step_of_no_time(speed):
 
 def after_polynomial(powers, times):
     """Return lumps that have followed a polynomial of time through three unequal steps."""
-    s, law = np.zeros(ROWS * PITCH), law_of(GROUP_A, N)
-    lay_out(s, GROUP_A, N)
+    s, law = np.zeros(ROWS * PITCH), lugre_laws(GROUP_A, N)
+    clear_state(s, GROUP_A, N)
     curve = np.polynomial.Polynomial(powers)
     speed = curve.deriv()
     scale = np.arange(1.0, N + 3.0)  # another one for each node
-    for rows, t in ((Y2,), times[0]), ((Y1, V1), times[1]), ((Y, V), times[2]):
+    for rows, t in (
+        ((POSITION_2,), times[0]),
+        ((POSITION_1, SPEED_1), times[1]),
+        ((POSITION, SPEED), times[2]),
+    ):
         s[rows[0] : rows[0] + N + 2] = scale * curve(t)
         if len(rows) > 1:
             s[rows[1] : rows[1] + N + 2] = scale * speed(t)
     h2, h1, h = np.diff(times)
-    formula = formula_of(h, h1, h2)
-    look_back(s, law, formula)
+    formula = bdf2(h, h1, h2)
+    predict(s, law, formula)
     return s, law, formula, scale, curve
 
 
@@ -220,68 +233,83 @@ def after_polynomial(powers, times):
 def test_a_step_follows_a_parabola_exactly(times):
     """BDF2 has no error there, and the guess through three places none either."""
     s, law, formula, scale, curve = after_polynomial([0.4, -1.0, 3.0], times)
-    w = s[W : W + N + 2]
+    w = s[RATE : RATE + N + 2]
     np.testing.assert_allclose(w, scale * curve.deriv()(times[-1]), rtol=1e-10)
     np.testing.assert_allclose(
-        s[Y_PAST : Y_PAST + N + 2] + formula.gh * w, scale * curve(times[-1]), rtol=1e-10
+        s[POSITION_HISTORY : POSITION_HISTORY + N + 2] + formula.gh * w,
+        scale * curve(times[-1]),
+        rtol=1e-10,
     )
     np.testing.assert_allclose(
-        s[V_PAST : V_PAST + N + 2] + formula.gh * scale * curve.deriv(2)(0.0),
+        s[SPEED_HISTORY : SPEED_HISTORY + N + 2] + formula.gh * scale * curve.deriv(2)(0.0),
         scale * curve.deriv()(times[-1]),
         rtol=1e-10,
     )
-    stretched = 25.0 - s[STIFFNESS : STIFFNESS + N + 1] * np.diff(s[Y_PAST : Y_PAST + N + 2])
-    np.testing.assert_allclose(s[T_PAST : T_PAST + N + 1], stretched, rtol=1e-10)
+    stretched = 25.0 - s[STIFFNESS : STIFFNESS + N + 1] * np.diff(
+        s[POSITION_HISTORY : POSITION_HISTORY + N + 2]
+    )
+    np.testing.assert_allclose(s[TENSION_HISTORY : TENSION_HISTORY + N + 1], stretched, rtol=1e-10)
     by_speed = s[STIFFNESS : STIFFNESS + N + 1] * formula.gh + s[DAMPING : DAMPING + N + 1]
-    np.testing.assert_allclose(s[T_BY_W : T_BY_W + N + 1], by_speed, rtol=1e-12)
-    s[W_GUESS : W_GUESS + N + 2] = w
-    assert error(s, law, formula) == 0.0
+    np.testing.assert_allclose(s[TENSION_SLOPE : TENSION_SLOPE + N + 1], by_speed, rtol=1e-12)
+    s[RATE_PREDICTED : RATE_PREDICTED + N + 2] = w
+    assert step_error(s, law, formula) == 0.0
 
 
 @pytest.mark.parametrize("times", [(0.0, 0.3, 0.7, 0.8), (0.0, 0.1, 0.2, 0.5)])
 def test_the_error_of_a_step_is_that_of_a_cubic(times):
     """The step solves for the speed; its place is off by what the formula leaves out."""
     s, law, formula, scale, curve = after_polynomial([0.0, 0.0, 0.0, 1.0], times)
-    nodes = slice(W, W + N + 2)
-    s[W_GUESS : W_GUESS + N + 2] = s[nodes]
+    nodes = slice(RATE, RATE + N + 2)
+    s[RATE_PREDICTED : RATE_PREDICTED + N + 2] = s[nodes]
     s[nodes] = scale * curve.deriv()(times[-1])
-    off = s[Y_PAST : Y_PAST + N + 2] + formula.gh * s[nodes] - scale * curve(times[-1])
+    off = (
+        s[POSITION_HISTORY : POSITION_HISTORY + N + 2]
+        + formula.gh * s[nodes]
+        - scale * curve(times[-1])
+    )
     expected = np.abs(s[STIFFNESS : STIFFNESS + N + 1] * np.diff(off)).max()
-    s[CHANGE + LAST] = 1e9  # what Newton's method has left there is no segment's
-    assert error(s, law, formula) == pytest.approx(expected, rel=1e-9)
+    s[INCREMENT + LAST] = 1e9  # what Newton's method has left there is no segment's
+    assert step_error(s, law, formula) == pytest.approx(expected, rel=1e-9)
 
 
 def test_the_first_step_is_backward_eulers():
-    formula = formula_of(0.2, math.inf, math.inf)
+    formula = bdf2(0.2, math.inf, math.inf)
     assert (formula.gh, formula.near, formula.far) == (0.2, 1.0, 0.0)
 
 
 def test_what_is_kept_moves_one_step_back(state):
     s, law = state
-    for k, row in enumerate((Y, Y1, Y2, V, V1, Y_NEW, Z_NEW)):
+    for k, row in enumerate(
+        (POSITION, POSITION_1, POSITION_2, SPEED, SPEED_1, POSITION_NEW, DEFLECTION_NEW)
+    ):
         s[row : row + N + 2] = 10.0 * k + np.arange(N + 2)
     before = s.copy()
-    keep(s, STEP, law)
+    accept_step(s, STEP, law)
 
     def row_of(values, row):
         return values[row : row + N + 2]
 
-    for now, then in ((Y2, Y1), (Y1, Y), (Y, Y_NEW), (V1, V)):
+    for now, then in (
+        (POSITION_2, POSITION_1),
+        (POSITION_1, POSITION),
+        (POSITION, POSITION_NEW),
+        (SPEED_1, SPEED),
+    ):
         np.testing.assert_array_equal(row_of(s, now), row_of(before, then))
-    np.testing.assert_array_equal(row_of(s, V), row_of(before, W) + STEP.speed)
+    np.testing.assert_array_equal(row_of(s, SPEED), row_of(before, RATE) + STEP.speed)
 
 
 def test_the_ends_after_a_step_have_the_rates_of_their_tensions(state):
     s, law = state
     balance(s, STEP, LOADED_BY_SPRING, law)
     ends = ends_after(s, STEP._replace(position=4.0), law)
-    w = s[W : W + N + 2]
+    w = s[RATE : RATE + N + 2]
     assert ends.f_in_rate == pytest.approx(s[STIFFNESS] * (w[0] - w[1]))
     assert ends.f_out_rate == pytest.approx(s[STIFFNESS + N] * (w[N] - w[LAST]))
-    assert ends.x_in == pytest.approx(s[Y_PAST] + GH * w[0])
-    assert ends.x_out == pytest.approx(s[Y_PAST + LAST] + GH * w[LAST] + 4.0)
+    assert ends.x_in == pytest.approx(s[POSITION_HISTORY] + GH * w[0])
+    assert ends.x_out == pytest.approx(s[POSITION_HISTORY + LAST] + GH * w[LAST] + 4.0)
     assert (ends.w_in, ends.v_out) == (w[0], w[LAST] + STEP.speed)
-    assert (ends.f_in, ends.f_out, ends.guide) == (s[T], s[T + N], s[FRICTION + LAST])
+    assert (ends.f_in, ends.f_out, ends.guide) == (s[TENSION], s[TENSION + N], s[FRICTION + LAST])
 
 
 CUBIC = np.polynomial.Polynomial([1.0, -2.0, 0.5, 3.0])
@@ -292,7 +320,7 @@ def test_samples_within_a_step_are_read_off_the_cubic_with_its_values_and_rates(
     times, columns = np.linspace(0.0, 1.0, 21), np.zeros((4, 21))
     a, b = t, t + h
     ends = (CUBIC(a), CUBIC.deriv()(a), CUBIC(b), CUBIC.deriv()(b))
-    read(columns, 2, 9, 13, times, t, h, ends)
+    write_cubic(columns, 2, 9, 13, times, t, h, ends)
     np.testing.assert_allclose(columns[2, 9:13], CUBIC(times[9:13]), rtol=1e-12)
     assert not np.any(columns[2, [8, 13]])
     for part in (0.0, 0.2, 0.9, 1.0):
@@ -307,12 +335,12 @@ def test_what_leaves_the_cubic_within_a_step_is_seen(bumped):
     t, h = 0.5 * (times[1] + times[2]), times[10] - 0.5 * (times[1] + times[2])
     ends = (CUBIC(t), CUBIC.deriv()(t), CUBIC(t + h), CUBIC.deriv()(t + h))
     course = np.tile(CUBIC(times), (2, 1))
-    assert departs(times, course, 1, 1, 9, t, h, ends) == pytest.approx(0.0, abs=1e-12)
+    assert interpolation_error(times, course, 1, 1, 9, t, h, ends) == pytest.approx(0.0, abs=1e-12)
     looked_at = 1 + 1 + np.arange(1, 4) * (9 - 1 - 1) // 4
     course[1, bumped] += 0.25
-    off = departs(times, course, 1, 1, 9, t, h, ends)
+    off = interpolation_error(times, course, 1, 1, 9, t, h, ends)
     assert off == pytest.approx(0.25 if bumped in looked_at else 0.0, abs=1e-12)
-    assert departs(times, course, 1, bumped - 1, bumped, t, h, ends) == 0.0
+    assert interpolation_error(times, course, 1, bumped - 1, bumped, t, h, ends) == 0.0
 
 
 def test_an_input_of_one_sample_stands_still():
@@ -328,21 +356,21 @@ def test_samples_before_and_after_a_time():
 
 def test_steps_grow_and_shrink_by_their_order():
     """An error of a BDF2 step goes by the cube of its length, of a first step by the square."""
-    allowed = Allowed(8.0, 1.0)
-    second, first = formula_of(1.0, 1.0, 1.0), formula_of(1.0, math.inf, math.inf)
-    assert change_of(8.0, allowed, second) == pytest.approx(0.85)
-    assert change_of(8.0 * 1.5**3, allowed, second) == pytest.approx(0.85 / 1.5)
-    assert change_of(8.0 * 1.5**2, allowed, first) == pytest.approx(0.85 / 1.5)
-    assert change_of(0.0, allowed, second) == 2.0
-    assert change_of(1e9, allowed, second) == change_of(math.inf, allowed, second) == 0.25
+    allowed = Tolerances(8.0, 1.0)
+    second, first = bdf2(1.0, 1.0, 1.0), bdf2(1.0, math.inf, math.inf)
+    assert step_factor(8.0, allowed, second) == pytest.approx(0.85)
+    assert step_factor(8.0 * 1.5**3, allowed, second) == pytest.approx(0.85 / 1.5)
+    assert step_factor(8.0 * 1.5**2, allowed, first) == pytest.approx(0.85 / 1.5)
+    assert step_factor(0.0, allowed, second) == 2.0
+    assert step_factor(1e9, allowed, second) == step_factor(math.inf, allowed, second) == 0.25
 
 
 def test_a_step_lands_on_a_turn_and_leaves_no_short_rest():
-    assert fitted(1.0, 5.0) == (1.0, False)
-    assert fitted(1.0, 1.5) == (0.75, False)
-    assert fitted(1.0, 2.0) == (1.0, False)
-    assert fitted(2.0, 1.5) == (1.5, True)
-    assert fitted(1.0, 1.0) == (1.0, True)
+    assert fit_to_reversal(1.0, 5.0) == (1.0, False)
+    assert fit_to_reversal(1.0, 1.5) == (0.75, False)
+    assert fit_to_reversal(1.0, 2.0) == (1.0, False)
+    assert fit_to_reversal(2.0, 1.5) == (1.5, True)
+    assert fit_to_reversal(1.0, 1.0) == (1.0, True)
 
 
 MODEL = Model(lumps=N, stribeck_excess=0.05, stribeck_speed_mm_s=3.0)

@@ -6,7 +6,7 @@ from tsas_cli.controllers.closed_loop import F_IN, F_OUT, MOTOR, X_IN, X_OUT, cl
 from tsas_cli.controllers.closed_loop import followed_from as rest_at
 from tsas_cli.controllers.pid import Pid
 from tsas_cli.controllers.signals import error_filter
-from tsas_cli.physics.plant.lugre_plant import no_lumps
+from tsas_cli.physics.plant.lugre_plant import empty_lumps
 from tsas_cli.tracking.settings import Settings
 
 ACTUATOR = Settings().drive.actuator()
@@ -38,7 +38,7 @@ def run(rig, motor_mm, step_s, *, lumped, n=50, substeps=4, actuator=ACTUATOR, l
         n,
         step_s,
         substeps,
-        no_lumps() if lumped else None,
+        empty_lumps() if lumped else None,
     )
     assert done == m
     channels = {name: columns[row] for name, row in CHANNELS.items()}

@@ -11,7 +11,7 @@ from tests.physics.plant.open_loop import ACTUATOR, run
 from tests.physics.references import GROUP_A, TABLE_1
 from tsas_cli.effects import EFFECTS
 from tsas_cli.physics.bristles import TONNES_PER_KG, Bristles
-from tsas_cli.physics.lugre.start import law_of, segments
+from tsas_cli.physics.lugre.start import lugre_laws, segments
 from tsas_cli.physics.rig import with_values
 
 STEP_S = 2e-3
@@ -110,7 +110,7 @@ def test_the_bristles_of_the_paper_are_within_a_percent_of_the_slip_chain(dampin
 def linear(rig, actuator, n, speed_mm_s, step_s, samples):
     """Return x_in, x_out, f_in, f_out of a rig without friction whose motor sets off, exactly."""
     k, c = segments(rig, n)
-    law, nodes = law_of(rig, n), n + 2
+    law, nodes = lugre_laws(rig, n), n + 2
     load_mass = TONNES_PER_KG * rig.effects.load_inertia.mass_kg
     mass = np.array([actuator.inertia_N_s2_per_mm, *[law.lump_mass] * n, load_mass])
     spring, damper = np.zeros((nodes, nodes)), np.zeros((nodes, nodes))

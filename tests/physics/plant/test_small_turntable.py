@@ -7,23 +7,24 @@ import pytest
 
 from tests.physics.references import GROUP_A
 from tsas_cli.effects.drive_ripple import DriveRipple
+from tsas_cli.physics.mesh import segment_compliances
 from tsas_cli.physics.plant.turntable import (
     Actuator,
     Turntable,
     across_play,
-    held_by,
-    moved,
-    pulled_to,
-    reach_of,
+    advance_motor,
+    advance_turntable,
+    play_friction,
     ripple_at,
-    rubbing,
+    spring_of,
     step_plant,
-    turned,
+    turntable_at,
+    with_drive_spring,
 )
 from tsas_cli.physics.rig import with_values
 from tsas_cli.physics.slip.chain import moment
-from tsas_cli.physics.slip.mesh import at_rest, laws_of, segment_compliances
-from tsas_cli.physics.slip.state import SLIP, T, X
+from tsas_cli.physics.slip.start import chain_at_rest, slip_laws
+from tsas_cli.physics.slip.state import POSITION, SLIP, TENSION
 
 F0, H = 25.0, 0.01
 ACTUATOR = Actuator(0.024, 150.0, 6e-3, 0.4, 0.02, 3000.0)
@@ -59,12 +60,12 @@ def tangent(x):
 def test_a_turntable_that_touches_is_a_spring_at_the_tendons_end(values, p):
     """Wherever that end goes, the turntable's equation holds with the force that it takes."""
     rig = with_values(GROUP_A, values)
-    reach = reach_of(TABLE, p, rig, ACTUATOR, H)
+    reach = spring_of(TABLE, p, rig, ACTUATOR, H)
     assert reach.touches
     value, slope = tangent(2.1) if values.keys() & RIPPLE.keys() else (0.0, 1.0)
     half = 0.2 if values.keys() & PLAY.keys() else 0.0
     for end in (1.7, 2.2):
-        x, force = pulled_to(end, reach)
+        x, force = turntable_at(end, reach)
         assert left_over(x, slope * (force - F0)) == pytest.approx(0.0, abs=1e-7)
         at_flank = value + slope * x - math.copysign(half, 2.1 - p)
         assert at_flank == pytest.approx(end, abs=1e-9)
@@ -75,7 +76,7 @@ def test_a_turntable_that_touches_is_a_spring_at_the_tendons_end(values, p):
 def test_a_turntable_within_its_play_moves_with_the_tension_as_it_is(values, friction):
     """Friction of the play holds it back."""
     rig = with_values(GROUP_A._replace(friction_coefficient=friction), values)
-    reach = reach_of(TABLE, 2.05, rig, ACTUATOR, H)
+    reach = spring_of(TABLE, 2.05, rig, ACTUATOR, H)
     _, slope = tangent(2.1) if values.keys() & RIPPLE.keys() else (0.0, 1.0)
     assert not reach.touches
     rubs = 31.0 * math.tanh(friction * math.pi)
@@ -84,7 +85,7 @@ def test_a_turntable_within_its_play_moves_with_the_tension_as_it_is(values, fri
 
 
 def test_friction_of_the_play_is_that_of_full_slip():
-    assert rubbing(40.0, GROUP_A) == pytest.approx(40.0 * math.tanh(0.125 * math.pi))
+    assert play_friction(40.0, GROUP_A) == pytest.approx(40.0 * math.tanh(0.125 * math.pi))
 
 
 CROSSING = Turntable(0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 0.0, 0.0)
@@ -115,13 +116,13 @@ def test_the_way_across_the_play(x, p, held, expected):
 
 
 def test_a_step_moves_all_that_is_remembered_back():
-    after = moved(TABLE, 2.2, 33.0, 5.0, H)
+    after = advance_turntable(TABLE, 2.2, 33.0, 5.0, H)
     v = (3.0 * 2.2 - 4.0 * 2.0 + 1.9) / (2.0 * H)
     assert after == pytest.approx(Turntable(100.0, 2.3, 2.2, 2.0, v, 9.0, 33.0, 5.0))
 
 
 def test_a_motor_comes_nearer_to_the_speed_asked_for():
-    after = turned(TABLE, 400.0, ACTUATOR, 0.02)
+    after = advance_motor(TABLE, 400.0, ACTUATOR, 0.02)
     left = math.exp(-1.0)
     way = 0.024 * (400.0 * 0.02 - 300.0 * 0.02 * (1.0 - left))
     assert after == pytest.approx(
@@ -142,8 +143,8 @@ def test_a_spring_more_at_the_tendons_end_changes_nothing_else():
             "load_spring_nonlinearity.cubic_per_mm2": 0.1,
         },
     )
-    laws = laws_of(rig, 3)
-    assert held_by(laws, 100.0) == laws._replace(proximal_spring_N_per_mm=104.0)
+    laws = slip_laws(rig, 3)
+    assert with_drive_spring(laws, 100.0) == laws._replace(proximal_spring_N_per_mm=104.0)
 
 
 @pytest.mark.parametrize(
@@ -165,7 +166,7 @@ AT_DRIVE = {"drive_friction.friction_N": 2.0, "proximal_spring.stiffness_N_per_m
 def first_step(rig, motor_mm):
     """Move a plant at rest by one step, its motor being elsewhere; return where all is then."""
     table = Turntable(0.0, motor_mm, 0.0, 0.0, 0.0, 0.0, F0, 0.0)
-    chain, laws = at_rest(rig, 3), laws_of(rig, 3)
+    chain, laws = chain_at_rest(rig, 3), slip_laws(rig, 3)
     before = moment(np.array([[F0, 0.0, 0.4, 0.4, 0.0, 0.0, H]]).T, 0)
     after, now, settled = step_plant(table, chain, before, 3.0, rig, laws, ACTUATOR, H, 0.01)
     assert settled
@@ -177,12 +178,12 @@ def test_after_a_step_the_turntable_balances_what_pulls_at_it(motor_mm):
     rig = with_values(GROUP_A, AT_DRIVE)
     table, after, _, chain = first_step(rig, motor_mm)
     assert left_over(after.x, after.f_in - F0, table=table) == pytest.approx(0.0, abs=1e-7)
-    assert after.x == pytest.approx(chain[X])
-    assert after.speed == pytest.approx(chain[X] / H)
+    assert after.x == pytest.approx(chain[POSITION])
+    assert after.speed == pytest.approx(chain[POSITION] / H)
     rubs = math.copysign(2.0, motor_mm)
-    assert after.f_in == pytest.approx(chain[T] + 4.0 * chain[X] + rubs)
-    stretched = segment_compliances(rig, 3)[0] * (chain[T] - F0)
-    assert chain[X] - chain[X + 1] == pytest.approx(stretched)
+    assert after.f_in == pytest.approx(chain[TENSION] + 4.0 * chain[POSITION] + rubs)
+    stretched = segment_compliances(rig, 3)[0] * (chain[TENSION] - F0)
+    assert chain[POSITION] - chain[POSITION + 1] == pytest.approx(stretched)
 
 
 def test_a_motor_that_unwinds_at_once_leaves_the_tendon_without_tension():
@@ -190,11 +191,11 @@ def test_a_motor_that_unwinds_at_once_leaves_the_tendon_without_tension():
     rig = with_values(GROUP_A, AT_DRIVE)
     table, after, _, chain = first_step(rig, -900.0)
     assert left_over(after.x, after.f_in - F0, table=table) == pytest.approx(0.0, abs=1e-6)
-    assert not chain[T : T + 4].any()
+    assert not chain[TENSION : TENSION + 4].any()
     assert chain[SLIP] == -1.0
-    assert after.f_in == pytest.approx(4.0 * chain[X] - 2.0)
-    assert after.x == pytest.approx(chain[X])
-    assert chain[X + 4] == pytest.approx(-F0 / 1.579)
+    assert after.f_in == pytest.approx(4.0 * chain[POSITION] - 2.0)
+    assert after.x == pytest.approx(chain[POSITION])
+    assert chain[POSITION + 4] == pytest.approx(-F0 / 1.579)
 
 
 def test_friction_in_a_step_is_that_of_its_end_and_of_the_speed_before():
@@ -207,7 +208,7 @@ def test_friction_in_a_step_is_that_of_its_end_and_of_the_speed_before():
             "preload_loss.rate_N_per_s": 0.5,
         },
     )
-    chain, laws = at_rest(rig, 3), laws_of(rig, 3)
+    chain, laws = chain_at_rest(rig, 3), slip_laws(rig, 3)
     before = moment(np.array([[F0, 0.0, 0.4, 0.4, 0.0, 0.0, H]]).T, 0)
     _, now, settled = step_plant(TABLE, chain, before, 3.0, rig, laws, ACTUATOR, H, 0.01)
     wrap = 0.125 * math.pi * 1.3
@@ -219,7 +220,7 @@ def test_a_tendon_rests_while_its_drive_is_within_the_play():
     rig = with_values(GROUP_A, PLAY)
     table, after, now, chain = first_step(rig, 0.1)
     assert now.drive == F0  # the moment of before
-    assert not chain[X : X + 5].any()
+    assert not chain[POSITION : POSITION + 5].any()
     assert (after.f_in, after.speed) == (F0, 0.0)
     assert 0.0 <= after.x < 0.1
     assert after.x_before == table.x

@@ -8,13 +8,14 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from tests.physics.references import GROUP_A
+from tsas_cli.physics.boundary import SPRING, Boundary
 from tsas_cli.physics.ends import Drive
-from tsas_cli.physics.plant.turntable import Actuator, Turntable, step_plant, turned
+from tsas_cli.physics.plant.turntable import Actuator, Turntable, advance_motor, step_plant
 from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import with_values
 from tsas_cli.physics.slip.chain import tension_at_sensor
-from tsas_cli.physics.slip.mesh import at_rest, laws_of
-from tsas_cli.physics.slip.state import GIVE, SPRING, Boundary, Moment, T, X
+from tsas_cli.physics.slip.start import chain_at_rest, slip_laws
+from tsas_cli.physics.slip.state import COMPLIANCE, POSITION, TENSION, Moment
 
 K = 2.0 * math.pi * 27.1 / (60.0 * 120.0)
 DRIVE = Actuator(K, 52.0, 0.1296 / 27.1**2, 0.007, 0.002, 3000.0)
@@ -29,18 +30,24 @@ class Run:
     """Columns of a run from rest, shape (m,): one motor speed asked for per step."""
 
     def __init__(self, asked_rpm, rig=GROUP_A, *, drive=DRIVE, h=1e-3, n=N):
-        table, chain = Turntable(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, rig.preload_N, 0.0), at_rest(rig, n)
-        now, laws = Moment(rig.preload_N, 0.0, 0.0, 0.0, 0.0, 0.0, math.inf), laws_of(rig, n)
+        table, chain = (
+            Turntable(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, rig.preload_N, 0.0),
+            chain_at_rest(rig, n),
+        )
+        now, laws = Moment(rig.preload_N, 0.0, 0.0, 0.0, 0.0, 0.0, math.inf), slip_laws(rig, n)
         rows = []
         for k, asked in enumerate(asked_rpm):
-            table = turned(table, float(asked), drive, h)
+            table = advance_motor(table, float(asked), drive, h)
             table, now, settled = step_plant(
                 table, chain, now, (k + 1) * h, rig, laws, drive, h, 1e-5
             )
             assert settled
-            stretch = 0.5 * np.sum(chain[GIVE : GIVE + n + 1] * (chain[T : T + n + 1] - F0) ** 2)
+            stretch = 0.5 * np.sum(
+                chain[COMPLIANCE : COMPLIANCE + n + 1]
+                * (chain[TENSION : TENSION + n + 1] - F0) ** 2
+            )
             f_out = tension_at_sensor(chain, now, Boundary(FREE_DRIVE, SPRING), laws)
-            rows.append((*table, chain[X], chain[X + n + 1], f_out, stretch))
+            rows.append((*table, chain[POSITION], chain[POSITION + n + 1], f_out, stretch))
         columns = np.array(rows).T
         self.time_s = h * np.arange(1, 1 + columns.shape[1])
         self.motor_rpm, self.motor, self.x, _, self.v = columns[:5]
@@ -57,7 +64,7 @@ def there_and_back(*rpm, hold=0.0, each_s=0.2, h=1e-3):
 def test_the_motor_is_exact_for_a_speed_that_is_held(lag):
     start = Turntable(*np.arange(1.0, 9.0))
     h, asked = 0.03, -700.0
-    now = turned(start, asked, DRIVE._replace(motor_lag_s=lag), h)
+    now = advance_motor(start, asked, DRIVE._replace(motor_lag_s=lag), h)
     exact = solve_ivp(
         lambda _, y: [(asked - y[0]) / lag, K * y[0]], (0, h), start[:2], rtol=1e-11, atol=1e-11
     )
@@ -66,7 +73,9 @@ def test_the_motor_is_exact_for_a_speed_that_is_held(lag):
 
 
 def test_a_motor_without_lag_has_its_speed_at_once():
-    now = turned(Turntable(5.0, 1.0, *np.zeros(6)), 300.0, DRIVE._replace(motor_lag_s=0.0), 0.01)
+    now = advance_motor(
+        Turntable(5.0, 1.0, *np.zeros(6)), 300.0, DRIVE._replace(motor_lag_s=0.0), 0.01
+    )
     assert now[:2] == pytest.approx((300.0, 1.0 + 300.0 * K * 0.01))
 
 

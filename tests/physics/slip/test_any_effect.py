@@ -8,9 +8,9 @@ import pytest
 from tests.physics.test_any_rig import any_motion, any_rig
 from tsas_cli.physics.closed_form.branches import branches
 from tsas_cli.physics.ends import Drive, ends_of
+from tsas_cli.physics.phases import UNCONVERGED
 from tsas_cli.physics.rig import with_values
 from tsas_cli.physics.slip.chain import slip_chain
-from tsas_cli.physics.slip.state import UNSETTLED
 
 SEEDS = range(300)
 MOST_UNSETTLED = 1e-4  # of the samples; with friction alone it is none (test_any_rig)
@@ -88,5 +88,5 @@ def test_samples_settle(first, samples):
             where = f"seed {seed}, {load}, {rig}"
             assert np.isfinite(answer[:4]).all(), where
             count += answer[4].size
-            unsettled += np.count_nonzero(answer[4] == UNSETTLED)
+            unsettled += np.count_nonzero(answer[4] == UNCONVERGED)
     assert unsettled <= MOST_UNSETTLED * count

@@ -6,7 +6,7 @@ import pytest
 from tests.physics.references import FREE, GROUP_A, follow, relaxed_chain, through, wrap_of
 from tsas_cli.challenge.rig import tendon
 from tsas_cli.challenge.rig.motions import Motion
-from tsas_cli.physics.slip.state import DISPLACEMENT, FORCE, SPRING, Boundary
+from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, SPRING, Boundary
 
 A = wrap_of(GROUP_A)
 BRUTE_NODES = 6

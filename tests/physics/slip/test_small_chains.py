@@ -20,9 +20,9 @@ from tests.physics.references import (
     wrap_of,
 )
 from tsas_cli.effects import Effects
+from tsas_cli.physics.boundary import DISPLACEMENT, SPRING
 from tsas_cli.physics.rig import with_values
 from tsas_cli.physics.slip.chain import rest_after, slip_chain
-from tsas_cli.physics.slip.state import DISPLACEMENT, SPRING
 
 N = 3
 A = wrap_of(GROUP_A)

@@ -18,40 +18,44 @@ from tests.physics.references import (
     course_of,
     follow,
 )
+from tsas_cli.physics.boundary import FORCE, SPRING, Boundary
 from tsas_cli.physics.frames import empty_frames
+from tsas_cli.physics.mesh import segment_compliances
+from tsas_cli.physics.phases import UNCONVERGED
 from tsas_cli.physics.rig import with_values
 from tsas_cli.physics.slip.chain import (
     between,
-    hang_slack,
+    go_slack,
+    initial_state,
     phase_of,
     rest_after,
-    resting,
     slip_chain,
     tension_at_sensor,
 )
 from tsas_cli.physics.slip.chain import follow as go_on
-from tsas_cli.physics.slip.mesh import at_rest, laws_of, segment_compliances
 from tsas_cli.physics.slip.nodes import set_friction
+from tsas_cli.physics.slip.start import chain_at_rest, slip_laws
 from tsas_cli.physics.slip.state import (
-    BRISTLE,
-    FORCE,
-    GIVE,
-    PASSES,
+    COMPLIANCE,
+    DROP,
+    DROP_SLOPE,
+    FACTOR,
+    LOAD_SPEED,
+    POSITION,
+    POSITION_BEFORE,
+    SHARE_BEFORE,
     SLIP,
-    SPEED,
-    SPRING,
-    T_OLD,
-    T_ROSE,
-    TAKES,
-    TURNED,
-    UNSETTLED,
-    X_OLD,
-    Boundary,
+    TENSION,
+    TENSION_BEFORE,
+    TENSION_RISE,
     Moment,
-    T,
-    X,
 )
-from tsas_cli.physics.slip.step import revise, settle, sweep_to_drive, sweep_to_load
+from tsas_cli.physics.slip.step import (
+    solve_sample,
+    sweep_to_drive,
+    sweep_to_load,
+    update_active_set,
+)
 
 F0, KL = 25.0, 1.579
 NOW = Moment(0.9, 0.4, 0.6, 0.45, 1.2, 2.0, math.inf)
@@ -73,12 +77,12 @@ BOUNDARIES = [
 
 def sliding(rig, n, slips, *, seed=4):
     """Return a chain at arbitrary places that slides by arbitrary lines."""
-    chain, rng = at_rest(rig, n), np.random.default_rng(seed)
+    chain, rng = chain_at_rest(rig, n), np.random.default_rng(seed)
     nodes = slice(1, n + 1)
     chain[SLIP:][: n + 2] = slips
-    chain[X_OLD:][: n + 2] = rng.uniform(-0.2, 0.2, n + 2)
-    chain[PASSES:][nodes] = rng.uniform(0.8, 1.2, n)
-    chain[TAKES:][nodes] = rng.uniform(-1.0, 1.0, n)
+    chain[POSITION_BEFORE:][: n + 2] = rng.uniform(-0.2, 0.2, n + 2)
+    chain[FACTOR:][nodes] = rng.uniform(0.8, 1.2, n)
+    chain[DROP:][nodes] = rng.uniform(-1.0, 1.0, n)
     return chain
 
 
@@ -89,11 +93,11 @@ def given(boundary):
 
 def hold_ends(chain, n, boundary, now):
     """Hold both ends against what is given there, friction with the sign of their slip."""
-    x, tension = chain[X:], chain[T:]
+    x, tension = chain[POSITION:], chain[TENSION:]
     if boundary.drive != FORCE:
         assert x[0] == now.drive
     elif chain[SLIP] == 0.0:
-        assert x[0] == chain[X_OLD]
+        assert x[0] == chain[POSITION_BEFORE]
     else:
         assert tension[0] + 4.0 * x[0] + 2.0 * chain[SLIP] == pytest.approx(now.drive)
     last = n + 1
@@ -101,7 +105,7 @@ def hold_ends(chain, n, boundary, now):
     if boundary == LOADED_BY_DISPLACEMENT:
         assert x[last] == now.load
     elif slip == 0.0:
-        assert x[last] == chain[X_OLD + last]
+        assert x[last] == chain[POSITION_BEFORE + last]
     elif boundary.load == SPRING:
         assert tension[n] == pytest.approx(F0 - now.lost_N + KL * x[last] + 4.5 * slip)
     else:
@@ -121,18 +125,18 @@ SLIPS = [
 @pytest.mark.parametrize("boundary", BOUNDARIES)
 def test_both_sweeps_solve_the_row_of_relations(boundary, slips):
     rig, n, now = with_values(GROUP_A, AT_ENDS), 3, given(boundary)
-    laws, chain = laws_of(rig, n), sliding(rig, n, slips)
+    laws, chain = slip_laws(rig, n), sliding(rig, n, slips)
     sweep_to_drive(chain, now, boundary, laws)
     sweep_to_load(chain, now, boundary, laws)
-    x, tension = chain[X : X + n + 2], chain[T : T + n + 1]
+    x, tension = chain[POSITION : POSITION + n + 2], chain[TENSION : TENSION + n + 1]
     gives = segment_compliances(rig, n)
     np.testing.assert_allclose(x[:-1] - x[1:], gives * (tension - F0), atol=1e-12)
     for i in range(1, n + 1):
         if slips[i]:
-            passed = chain[PASSES + i] * tension[i - 1] - chain[TAKES + i]
+            passed = chain[FACTOR + i] * tension[i - 1] - chain[DROP + i]
             assert tension[i] == pytest.approx(passed)
         else:
-            assert x[i] == chain[X_OLD + i]
+            assert x[i] == chain[POSITION_BEFORE + i]
     hold_ends(chain, n, boundary, now)
 
 
@@ -140,30 +144,34 @@ def test_both_sweeps_solve_the_row_of_relations(boundary, slips):
 @pytest.mark.parametrize("boundary", BOUNDARIES)
 def test_both_sweeps_solve_the_row_of_bristles(boundary, n):
     rig = with_values(GROUP_A, AT_ENDS | {"presliding.length_mm": 0.05})
-    now, laws, chain = given(boundary), laws_of(rig, n), sliding(rig, n, np.ones(n + 2))
-    chain[BRISTLE:][1 : n + 1] = np.random.default_rng(8).uniform(0.0, 30.0, n)
+    now, laws, chain = given(boundary), slip_laws(rig, n), sliding(rig, n, np.ones(n + 2))
+    chain[DROP_SLOPE:][1 : n + 1] = np.random.default_rng(8).uniform(0.0, 30.0, n)
     sweep_to_drive(chain, now, boundary, laws)
     sweep_to_load(chain, now, boundary, laws)
-    x, tension = chain[X : X + n + 2], chain[T : T + n + 1]
+    x, tension = chain[POSITION : POSITION + n + 2], chain[TENSION : TENSION + n + 1]
     gives = segment_compliances(rig, n)
     np.testing.assert_allclose(x[:-1] - x[1:], gives * (tension - F0), atol=1e-10)
     nodes = slice(1, n + 1)
-    passed = chain[PASSES:][nodes] * tension[:-1] - chain[TAKES:][nodes]
-    np.testing.assert_allclose(tension[1:], passed - chain[BRISTLE:][nodes] * x[nodes], rtol=1e-9)
+    passed = chain[FACTOR:][nodes] * tension[:-1] - chain[DROP:][nodes]
+    np.testing.assert_allclose(
+        tension[1:], passed - chain[DROP_SLOPE:][nodes] * x[nodes], rtol=1e-9
+    )
     hold_ends(chain, n, boundary, now)
 
 
 @pytest.mark.parametrize("most", [1, 2, 5])
 def test_as_many_nodes_are_revised_as_are_asked_for_from_the_drive_on(most):
     """The first, second and fourth are pulled loose, the third holds, the fifth slides back."""
-    n, straight = 5, laws_of(GROUP_A, 5)
-    chain = at_rest(GROUP_A, n)
+    n, straight = 5, slip_laws(GROUP_A, 5)
+    chain = chain_at_rest(GROUP_A, n)
     set_friction(chain, NOW, straight)
     kept, more = math.exp(-0.6 / n), math.exp(0.45 / n)
-    chain[T : T + n + 1] = np.cumprod([40.0, 0.9 * kept, 1.1 * more, 1.0, 0.9 * kept, 1.0])
-    chain[SLIP + 5], chain[X + 5] = 1.0, -0.1
+    chain[TENSION : TENSION + n + 1] = np.cumprod(
+        [40.0, 0.9 * kept, 1.1 * more, 1.0, 0.9 * kept, 1.0]
+    )
+    chain[SLIP + 5], chain[POSITION + 5] = 1.0, -0.1
     now = NOW._replace(viscous_N=0.0)
-    found = revise(chain, now, straight, 0.01, most)
+    found = update_active_set(chain, now, straight, 0.01, most)
     assert found == min(most, 4)
     expected = [1.0, -1.0, 0.0, 1.0, 0.0]
     before = [0.0, 0.0, 0.0, 0.0, 1.0]
@@ -173,13 +181,13 @@ def test_as_many_nodes_are_revised_as_are_asked_for_from_the_drive_on(most):
 
 def test_a_node_loses_its_share_of_the_viscous_loss_before_it_is_pulled_loose():
     """0.4 N at each of three: half before the bend and half behind it."""
-    n, straight = 3, laws_of(GROUP_A, 3)
+    n, straight = 3, slip_laws(GROUP_A, 3)
     now = NOW._replace(pulled=0.0, released=0.0, viscous_N=1.2)
     for drop, slips in ((0.39, 0.0), (0.41, 1.0), (-0.39, 0.0), (-0.41, -1.0)):
-        chain = at_rest(GROUP_A, n)
+        chain = chain_at_rest(GROUP_A, n)
         set_friction(chain, now, straight)
-        chain[T : T + n + 1] = 40.0 - drop * np.array([0.0, 1.0, 1.0, 1.0])
-        assert revise(chain, now, straight, 0.01, n) == abs(slips)
+        chain[TENSION : TENSION + n + 1] = 40.0 - drop * np.array([0.0, 1.0, 1.0, 1.0])
+        assert update_active_set(chain, now, straight, 0.01, n) == abs(slips)
         assert chain[SLIP + 1 : SLIP + 4].tolist() == [slips, 0.0, 0.0]
 
 
@@ -197,10 +205,10 @@ def test_a_load_that_its_guide_holds_does_not_move_at_all():
 @pytest.mark.parametrize("values", [{}, {"load_friction.after_sensor_N": 3.0}])
 def test_a_problem_settles_at_rest_and_far_from_it(values):
     rig = with_values(GROUP_A, values)
-    chain, laws = at_rest(rig, 3), laws_of(rig, 3)
-    assert settle(chain, NOW._replace(drive=0.0, lost_N=0.0), LOADED_BY_SPRING, laws, 0.01)
-    np.testing.assert_allclose(chain[X : X + 5], 0.0, atol=1e-12)
-    assert settle(chain, NOW._replace(drive=20.0), LOADED_BY_SPRING, laws, 0.01)
+    chain, laws = chain_at_rest(rig, 3), slip_laws(rig, 3)
+    assert solve_sample(chain, NOW._replace(drive=0.0, lost_N=0.0), LOADED_BY_SPRING, laws, 0.01)
+    np.testing.assert_allclose(chain[POSITION : POSITION + 5], 0.0, atol=1e-12)
+    assert solve_sample(chain, NOW._replace(drive=20.0), LOADED_BY_SPRING, laws, 0.01)
     assert chain[SLIP + 1 : SLIP + 4].tolist() == [1.0] * 3
 
 
@@ -227,7 +235,7 @@ def test_the_way_between_two_samples_is_straight():
 )
 def test_the_phase_is_that_in_which_all_nodes_are(slips, phase):
     """What the ends do does not count."""
-    chain = at_rest(GROUP_A, 3)
+    chain = chain_at_rest(GROUP_A, 3)
     chain[SLIP : SLIP + 5] = [5.0, *slips, 7.0]
     assert phase_of(chain, 3) == phase
 
@@ -235,31 +243,31 @@ def test_the_phase_is_that_in_which_all_nodes_are(slips, phase):
 def test_what_a_sensor_at_the_load_feels():
     """The guide's friction before it is taken off, by its share of the guide where that sticks."""
     rig = with_values(GROUP_A, AT_ENDS)
-    laws, chain = laws_of(rig, 3), at_rest(rig, 3)
-    chain[T + 3], chain[X + 4], chain[SLIP + 4] = 40.0, 2.0, -1.0
+    laws, chain = slip_laws(rig, 3), chain_at_rest(rig, 3)
+    chain[TENSION + 3], chain[POSITION + 4], chain[SLIP + 4] = 40.0, 2.0, -1.0
     assert tension_at_sensor(chain, NOW, LOADED_BY_FORCE, laws) == NOW.load
     assert tension_at_sensor(chain, NOW, LOADED_BY_DISPLACEMENT, laws) == 41.5
     held = 40.0 - (F0 - 2.0 + 2.0 * KL)
     felt = tension_at_sensor(chain, NOW, LOADED_BY_SPRING, laws)
     assert felt == pytest.approx(40.0 - held / 3.0)
-    bare = laws_of(with_values(rig, {"load_friction.before_sensor_N": 0.0}), 3)
+    bare = slip_laws(with_values(rig, {"load_friction.before_sensor_N": 0.0}), 3)
     assert tension_at_sensor(chain, NOW, LOADED_BY_SPRING, bare) == 40.0
     assert tension_at_sensor(chain, NOW, LOADED_BY_DISPLACEMENT, bare) == 40.0
 
 
 @pytest.mark.parametrize("boundary", [LOADED_BY_SPRING, LOADED_BY_DISPLACEMENT])
 def test_a_slack_tendon_is_straight_up_to_its_load(boundary):
-    laws, chain = laws_of(GROUP_A, 3), at_rest(GROUP_A, 3)
-    chain[X : X + 5] = -40.0, 1.0, 2.0, 3.0, 0.4
-    for row in (SLIP, SPEED, TURNED, T_ROSE):
+    laws, chain = slip_laws(GROUP_A, 3), chain_at_rest(GROUP_A, 3)
+    chain[POSITION : POSITION + 5] = -40.0, 1.0, 2.0, 3.0, 0.4
+    for row in (SLIP, LOAD_SPEED, SHARE_BEFORE, TENSION_RISE):
         chain[row : row + 5] = -3.0
-    hang_slack(chain, NOW, boundary, laws)
+    go_slack(chain, NOW, boundary, laws)
     load = 0.4 if boundary is LOADED_BY_DISPLACEMENT else -(F0 - NOW.lost_N) / KL
     gives = segment_compliances(GROUP_A, 3)
     places = load - F0 * np.append(np.cumsum(gives[:0:-1])[::-1], 0.0)
-    np.testing.assert_allclose(chain[X + 1 : X + 5], places)
-    assert chain[X] == -40.0  # where the drive is
-    assert not chain[T : T + 4].any()
+    np.testing.assert_allclose(chain[POSITION + 1 : POSITION + 5], places)
+    assert chain[POSITION] == -40.0  # where the drive is
+    assert not chain[TENSION : TENSION + 4].any()
     assert chain[SLIP : SLIP + 5].tolist() == [
         -3.0,
         1.0,
@@ -267,11 +275,15 @@ def test_a_slack_tendon_is_straight_up_to_its_load(boundary):
         1.0,
         1.0,
     ]  # as the next pull finds it
-    assert chain[SPEED + 4] == 0.0
-    assert chain[TURNED : TURNED + 5].tolist() == [1.0] * 5
-    assert not chain[T_ROSE : T_ROSE + 5].any()
-    np.testing.assert_array_equal(chain[X_OLD : X_OLD + 5], chain[X : X + 5])
-    np.testing.assert_array_equal(chain[T_OLD : T_OLD + 5], chain[T : T + 5])
+    assert chain[LOAD_SPEED + 4] == 0.0
+    assert chain[SHARE_BEFORE : SHARE_BEFORE + 5].tolist() == [1.0] * 5
+    assert not chain[TENSION_RISE : TENSION_RISE + 5].any()
+    np.testing.assert_array_equal(
+        chain[POSITION_BEFORE : POSITION_BEFORE + 5], chain[POSITION : POSITION + 5]
+    )
+    np.testing.assert_array_equal(
+        chain[TENSION_BEFORE : TENSION_BEFORE + 5], chain[TENSION : TENSION + 5]
+    )
 
 
 def test_segments_share_the_compliance_of_the_sheath_by_their_bend():
@@ -292,7 +304,9 @@ def test_segments_share_the_compliance_of_the_sheath_by_their_bend():
     expected[0] += 40.0 / EA + 0.004
     expected[-1] += 15.0 / EA
     np.testing.assert_allclose(segment_compliances(rig, 4), expected)
-    np.testing.assert_allclose(at_rest(rig, 4)[GIVE : GIVE + 6], [*expected, expected[-1]])
+    np.testing.assert_allclose(
+        chain_at_rest(rig, 4)[COMPLIANCE : COMPLIANCE + 6], [*expected, expected[-1]]
+    )
 
 
 UP_AND_DOWN = np.array([0.4, 0.9, 1.6, 1.58, 1.45, 1.5, 0.3, -0.5, -25.0, -24.0, 2.0, 1.9])
@@ -317,7 +331,7 @@ def test_a_run_may_be_followed_in_two_parts():
     ):
         course = course_of(drive, rig, load=load, **varying)
         whole = slip_chain(course, rig, boundary, 3)
-        state = resting(course, rig, boundary, 3)
+        state = initial_state(course, rig, boundary, 3)
         parts = [go_on(course[:, a:b], state, rig, boundary, 3) for a, b in ((0, 5), (5, m))]
         for k, column in enumerate(whole):
             np.testing.assert_array_equal(np.concatenate([part[k] for part in parts]), column)
@@ -334,24 +348,24 @@ def test_a_run_starts_from_rest_at_the_preload():
         (DRIVEN_BY_FORCE, (F0, 0.0)),
         (LOADED_BY_DISPLACEMENT, (0.0, 0.0)),
     ):
-        state = resting(course, GROUP_A, boundary, 3)
+        state = initial_state(course, GROUP_A, boundary, 3)
         np.testing.assert_array_equal(state.before, [*ends, 0.6, 0.4, 0.0, 0.0, math.inf])
-        assert state.chain[T : T + 5].tolist() == [F0] * 5
+        assert state.chain[TENSION : TENSION + 5].tolist() == [F0] * 5
         assert not state.last.any()
 
 
 @pytest.mark.parametrize(("unsettled", "given_up"), [(10, False), (11, True)])
 def test_a_run_with_many_samples_that_did_not_settle_is_given_up(unsettled, given_up):
     course = course_of([0.4, 0.9], GROUP_A)
-    state = resting(course, GROUP_A, LOADED_BY_SPRING, 3)
+    state = initial_state(course, GROUP_A, LOADED_BY_SPRING, 3)
     state.last[:] = 1.0, 2.0, 3.0, 4.0, unsettled
     frames = empty_frames(np.array([1]), 3)
     answer = go_on(course, state, GROUP_A, LOADED_BY_SPRING, 3, frames)
     assert state.last[4] == unsettled
     if given_up:
-        for column, value in zip(answer, (1.0, 2.0, 3.0, 4.0, UNSETTLED), strict=True):
+        for column, value in zip(answer, (1.0, 2.0, 3.0, 4.0, UNCONVERGED), strict=True):
             assert column.tolist() == [value, value]
-        assert frames.slip.tolist() == [[UNSETTLED] * 3]
+        assert frames.slip.tolist() == [[UNCONVERGED] * 3]
     else:
         assert answer[0].tolist() == [0.4, 0.9]
         assert answer[4].tolist() == [1, 1]

@@ -25,8 +25,8 @@ from tsas_cli.physics.compliances import (
     sheath_compliance,
 )
 from tsas_cli.physics.frames import Frames, is_next
+from tsas_cli.physics.phases import SLACK
 from tsas_cli.physics.rig import Rig
-from tsas_cli.physics.slip.state import SLACK
 
 Floats = npt.NDArray[np.float64]
 Phases = npt.NDArray[np.int8]

@@ -13,72 +13,74 @@ from tsas_cli.effects.load_spring_nonlinearity import spring_force, spring_tange
 from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.effects.stribeck_friction import stribeck
 from tsas_cli.numerics.compiled import kernel
+from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, SPRING, Boundary
 from tsas_cli.physics.bristles import friction
 from tsas_cli.physics.lugre.state import (
+    DEFLECTION_HISTORY,
+    DEFLECTION_NEW,
     DIAGONAL,
     FRICTION,
     LIMIT,
     LIMIT_BY_T,
     LIMIT_BY_V,
     LOWER,
-    REST,
-    T_BY_W,
-    T_PAST,
+    POSITION_HISTORY,
+    RATE,
+    RESIDUAL,
+    SPEED_HISTORY,
+    TENSION,
+    TENSION_HISTORY,
+    TENSION_SLOPE,
     UPPER,
-    V_PAST,
-    Y_PAST,
-    Z_NEW,
-    Z_PAST,
     Floats,
-    Law,
+    LugreLaws,
     Step,
-    T,
-    W,
 )
-from tsas_cli.physics.slip.state import DISPLACEMENT, FORCE, SPRING, Boundary
 
 LEAST_LIMIT_N = 1e-9  # where no tension presses, so that a bristle has a limit at all
 
 
 @kernel
-def balance(s: Floats, step: Step, boundary: Boundary, law: Law) -> float:
+def balance(s: Floats, step: Step, boundary: Boundary, law: LugreLaws) -> float:
     """Set up Newton's equations at the speeds W; return the sum of what the forces leave [N]."""
     set_tensions(s, law)
     set_limits(s, step, law)
     balance_lumps(s, step, law)
     balance_drive(s, step, boundary, law)
     balance_load(s, step, boundary, law)
-    return sum_of_sizes(s, law.n + 2)
+    return residual_sum(s, law.n + 2)
 
 
 @kernel
-def sum_of_sizes(s: Floats, count: int) -> float:
+def residual_sum(s: Floats, count: int) -> float:
     """Return the sum of |REST|, by four sums side by side: one alone waits for each addition."""
     a, b, c, d = 0.0, 0.0, 0.0, 0.0
     whole = count - count % 4
     for i in range(0, whole, 4):
-        a += abs(s[REST + i])
-        b += abs(s[REST + i + 1])
-        c += abs(s[REST + i + 2])
-        d += abs(s[REST + i + 3])
+        a += abs(s[RESIDUAL + i])
+        b += abs(s[RESIDUAL + i + 1])
+        c += abs(s[RESIDUAL + i + 2])
+        d += abs(s[RESIDUAL + i + 3])
     for i in range(whole, count):
-        a += abs(s[REST + i])
+        a += abs(s[RESIDUAL + i])
     return a + b + c + d
 
 
 @kernel
-def set_tensions(s: Floats, law: Law) -> None:
+def set_tensions(s: Floats, law: LugreLaws) -> None:
     """Find the segments' tensions, Yang 2025, Eq. (11)."""
     for j in range(law.n + 1):
-        s[T + j] = s[T_PAST + j] + s[T_BY_W + j] * (s[W + j] - s[W + j + 1])
+        s[TENSION + j] = s[TENSION_HISTORY + j] + s[TENSION_SLOPE + j] * (
+            s[RATE + j] - s[RATE + j + 1]
+        )
 
 
 @kernel
-def set_limits(s: Floats, step: Step, law: Law) -> None:
+def set_limits(s: Floats, step: Step, law: LugreLaws) -> None:
     """Find the limits of the lumps' friction and their slopes, Yang 2025, Eqs. (16) to (19)."""
     for i in range(1, law.n + 1):
-        mean = 0.5 * (s[T + i - 1] + s[T + i])
-        deflected = s[Z_PAST + i] + step.gh * (s[W + i] + step.speed)
+        mean = 0.5 * (s[TENSION + i - 1] + s[TENSION + i])
+        deflected = s[DEFLECTION_HISTORY + i] + step.gh * (s[RATE + i] + step.speed)
         factor = step.pulled if deflected >= 0.0 else step.released
         factor = factor if mean >= 0.0 else -factor
         s[LIMIT + i] = factor * mean + LEAST_LIMIT_N
@@ -86,7 +88,7 @@ def set_limits(s: Floats, step: Step, law: Law) -> None:
         s[LIMIT_BY_V + i] = 0.0
     if law.friction_exponent != 0.0:
         for i in range(1, law.n + 1):
-            mean = 0.5 * (s[T + i - 1] + s[T + i])
+            mean = 0.5 * (s[TENSION + i - 1] + s[TENSION + i])
             factor = load_factor(mean / law.preload_N, law.friction_exponent)
             s[LIMIT + i] *= factor
             s[LIMIT_BY_T + i] *= factor * (1.0 + law.friction_exponent)
@@ -95,84 +97,90 @@ def set_limits(s: Floats, step: Step, law: Law) -> None:
 
 
 @kernel
-def set_stribeck(s: Floats, step: Step, law: Law) -> None:
+def set_stribeck(s: Floats, step: Step, law: LugreLaws) -> None:
     """Raise the limits of the lumps' friction by their speeds."""
     for i in range(1, law.n + 1):
-        factor, slope = stribeck(s[W + i] + step.speed, law.stribeck)
+        factor, slope = stribeck(s[RATE + i] + step.speed, law.stribeck)
         s[LIMIT_BY_V + i] = s[LIMIT + i] * slope
         s[LIMIT + i] *= factor
         s[LIMIT_BY_T + i] *= factor
 
 
 @kernel
-def balance_lumps(s: Floats, step: Step, law: Law) -> None:
+def balance_lumps(s: Floats, step: Step, law: LugreLaws) -> None:
     """Set up the rows of the lumps."""
     inertia = law.lump_mass / step.gh
     for i in range(1, law.n + 1):
-        speed = s[W + i] + step.speed
+        speed = s[RATE + i] + step.speed
         rubbing, by_speed, by_limit, deflection = friction(
-            s[Z_PAST + i], speed, step.gh, s[LIMIT + i], law.bristle
+            s[DEFLECTION_HISTORY + i], speed, step.gh, s[LIMIT + i], law.bristle
         )
         half = 0.5 * by_limit * s[LIMIT_BY_T + i]
-        before = (half - 1.0) * s[T_BY_W + i - 1]
-        behind = (half + 1.0) * s[T_BY_W + i]
+        before = (half - 1.0) * s[TENSION_SLOPE + i - 1]
+        behind = (half + 1.0) * s[TENSION_SLOPE + i]
         s[LOWER + i] = before
         s[UPPER + i] = -behind
         s[DIAGONAL + i] = inertia + by_speed + by_limit * s[LIMIT_BY_V + i] - before + behind
-        s[REST + i] = s[T + i - 1] - s[T + i] - rubbing - inertia * (speed - s[V_PAST + i])
+        s[RESIDUAL + i] = (
+            s[TENSION + i - 1] - s[TENSION + i] - rubbing - inertia * (speed - s[SPEED_HISTORY + i])
+        )
         s[FRICTION + i] = rubbing
-        s[Z_NEW + i] = deflection
+        s[DEFLECTION_NEW + i] = deflection
 
 
 @kernel
-def balance_drive(s: Floats, step: Step, boundary: Boundary, law: Law) -> None:
+def balance_drive(s: Floats, step: Step, boundary: Boundary, law: LugreLaws) -> None:
     """Set up the row of the drive's end: at its place, or pulled by a force against friction."""
     s[LOWER] = 0.0
     if boundary.drive == DISPLACEMENT:
-        s[UPPER], s[DIAGONAL], s[REST] = 0.0, 1.0, -s[W]
+        s[UPPER], s[DIAGONAL], s[RESIDUAL] = 0.0, 1.0, -s[RATE]
         return
-    rubbing, by_speed, deflection = rub(s[Z_PAST], s[W], step, law.drive_friction_N, law)
+    rubbing, by_speed, deflection = end_friction(
+        s[DEFLECTION_HISTORY], s[RATE], step, law.drive_friction_N, law
+    )
     stiffness = proximal_spring_force(1.0, law.proximal_spring_N_per_mm)
-    place = s[Y_PAST] + step.gh * s[W]
-    s[UPPER] = -s[T_BY_W]
-    s[DIAGONAL] = s[T_BY_W] + stiffness * step.gh + by_speed
-    s[REST] = step.drive - s[T] - proximal_spring_force(place, stiffness) - rubbing
-    s[FRICTION], s[Z_NEW] = rubbing, deflection
+    place = s[POSITION_HISTORY] + step.gh * s[RATE]
+    s[UPPER] = -s[TENSION_SLOPE]
+    s[DIAGONAL] = s[TENSION_SLOPE] + stiffness * step.gh + by_speed
+    s[RESIDUAL] = step.drive - s[TENSION] - proximal_spring_force(place, stiffness) - rubbing
+    s[FRICTION], s[DEFLECTION_NEW] = rubbing, deflection
 
 
 @kernel
-def balance_load(s: Floats, step: Step, boundary: Boundary, law: Law) -> None:
+def balance_load(s: Floats, step: Step, boundary: Boundary, law: LugreLaws) -> None:
     """Set up the row of the load's end: spring, mass and guide, a given force, or its place."""
     last = law.n + 1
     s[UPPER + last] = 0.0
     if boundary.load == DISPLACEMENT:
-        place = s[Y_PAST + last] + step.gh * s[W + last]
+        place = s[POSITION_HISTORY + last] + step.gh * s[RATE + last]
         s[LOWER + last], s[DIAGONAL + last] = 0.0, 1.0
-        s[REST + last] = (step.load - step.position - place) / step.gh
+        s[RESIDUAL + last] = (step.load - step.position - place) / step.gh
         return
-    behind = s[T_BY_W + law.n]
-    speed = s[W + last] + step.speed
+    behind = s[TENSION_SLOPE + law.n]
+    speed = s[RATE + last] + step.speed
     guide = guide_friction(law.load_friction)
     if boundary.load == FORCE:
         guide = law.load_friction.before_sensor_N
-    rubbing, by_speed, deflection = rub(s[Z_PAST + last], speed, step, guide, law)
+    rubbing, by_speed, deflection = end_friction(
+        s[DEFLECTION_HISTORY + last], speed, step, guide, law
+    )
     pull, by_place, inertia = step.load, 0.0, 0.0
     if boundary.load == SPRING:
-        place = s[Y_PAST + last] + step.gh * s[W + last] + step.position
+        place = s[POSITION_HISTORY + last] + step.gh * s[RATE + last] + step.position
         stiffness = law.load_stiffness_N_per_mm
         pull = law.preload_N - step.lost_N + spring_force(place, stiffness, law.load_spring)
         inertia = inertia_force(1.0, law.load_mass_kg) / step.gh
-        pull += inertia * (speed - s[V_PAST + last])
+        pull += inertia * (speed - s[SPEED_HISTORY + last])
         by_place = spring_tangent(place, stiffness, law.load_spring)
     s[LOWER + last] = -behind
     s[DIAGONAL + last] = behind + by_place * step.gh + inertia + by_speed
-    s[REST + last] = s[T + law.n] - pull - rubbing
-    s[FRICTION + last], s[Z_NEW + last] = rubbing, deflection
+    s[RESIDUAL + last] = s[TENSION + law.n] - pull - rubbing
+    s[FRICTION + last], s[DEFLECTION_NEW + last] = rubbing, deflection
 
 
 @kernel
-def rub(
-    before: float, speed: float, step: Step, limit: float, law: Law
+def end_friction(
+    before: float, speed: float, step: Step, limit: float, law: LugreLaws
 ) -> tuple[float, float, float]:
     """Return friction of an end, its slope over speed, and its bristle's deflection."""
     if limit == 0.0:

@@ -12,22 +12,30 @@ from typing import NamedTuple
 import numpy as np
 
 from tsas_cli.numerics.compiled import kernel
+from tsas_cli.physics.boundary import FORCE, Boundary
 from tsas_cli.physics.frames import Frames
-from tsas_cli.physics.lugre.ends import Ends, ends_after, felt, unseen, write_samples
-from tsas_cli.physics.lugre.frames import note, slides, write_along, write_limp
-from tsas_cli.physics.lugre.input import next_turn, step_at
-from tsas_cli.physics.lugre.pace import allowed, attempt, change_of, fitted
-from tsas_cli.physics.lugre.slack import is_slack, pulled_again, without_tension, write_slack
-from tsas_cli.physics.lugre.start import law_of, lay_out, set_off
-from tsas_cli.physics.lugre.state import (
-    ROWS,
-    Floats,
-    Law,
-    Phases,
+from tsas_cli.physics.lugre.ends import (
+    StepEnds,
+    end_stiffnesses,
+    ends_after,
+    input_error,
+    write_samples,
 )
-from tsas_cli.physics.lugre.step import formula_of, keep
+from tsas_cli.physics.lugre.frames import (
+    sliding_direction,
+    store_tensions,
+    write_along,
+    write_slack_frames,
+)
+from tsas_cli.physics.lugre.input import next_reversal, step_at
+from tsas_cli.physics.lugre.slack import end_of_slack, is_slack, without_tension, write_slack
+from tsas_cli.physics.lugre.start import clear_state, lugre_laws, start_at_rest
+from tsas_cli.physics.lugre.state import ROWS, Floats, LugreLaws
+from tsas_cli.physics.lugre.step import accept_step, bdf2
+from tsas_cli.physics.lugre.step_size import fit_to_reversal, step_factor, tolerances_of, try_step
+from tsas_cli.physics.mesh import PITCH
+from tsas_cli.physics.phases import UNCONVERGED, Phases
 from tsas_cli.physics.rig import Rig
-from tsas_cli.physics.slip.state import FORCE, PITCH, UNSETTLED, Boundary
 
 SHORTEST_S = 1e-13
 MOST_TRIES, MOST_PER_SAMPLE = 20_000, 40  # steps of a run, together
@@ -94,13 +102,13 @@ def lugre_chain(
         How it went.
     """
     m = times.size
-    columns, phase = np.empty((4, m)), np.full(m, UNSETTLED, dtype=np.int8)
-    s, law = np.empty(ROWS * PITCH), law_of(rig, n)
-    lay_out(s, rig, n)
-    ends = earlier = set_off(s, start, times, course, 0, times[0], boundary, law)
+    columns, phase = np.empty((4, m)), np.full(m, UNCONVERGED, dtype=np.int8)
+    s, law = np.empty(ROWS * PITCH), lugre_laws(rig, n)
+    clear_state(s, rig, n)
+    ends = earlier = start_at_rest(s, start, times, course, 0, times[0], boundary, law)
     write_samples(columns, 0, 1, times, course, times[0] - 1.0, 1.0, ends, ends, boundary, law)
     phase[0] = 0
-    k, t, turn = 0, times[0], next_turn(times, course, 0, boundary)
+    k, t, turn = 0, times[0], next_reversal(times, course, 0, boundary)
     first = h = 0.1 * (times[min(1, m - 1)] - t)
     h1 = h2 = math.inf  # the two steps before; none yet
     least = law.load_stiffness_N_per_mm  # tension for what is given at an end
@@ -110,27 +118,27 @@ def lugre_chain(
     controlled, stop = step_ends_s.size == 0, 0
     taken, along = 0, np.empty((4, n + 1))
     if frames is not None:  # here and below compiled away where none are asked for
-        note(s, along, law)
-        note(s, along, law)
+        store_tensions(s, along, law)
+        store_tensions(s, along, law)
         taken = write_along(frames, taken, times, 0, t, 1.0, s, along, law)
     while k < m - 1 and h > SHORTEST_S and tries < ends_s.size:
         tries += 1
-        most = allowed(ends, law, tolerance, LEAVES_AT_MOST)
+        most = tolerances_of(ends, law, tolerance, LEAVES_AT_MOST)
         if not controlled:
-            most = allowed(ends, law, math.inf, LEAVES_GIVEN)
+            most = tolerances_of(ends, law, math.inf, LEAVES_GIVEN)
             stop = sample_after(step_ends_s, stop, t + SHORTEST_S)
             h = min(h, step_ends_s[stop] - t) if stop < step_ends_s.size else h
-        h, lands = fitted(h, times[turn] - t)
+        h, lands = fit_to_reversal(h, times[turn] - t)
         t1 = times[turn] if lands else t + h
         k1 = sample_before(times, k, t1)
-        formula = formula_of(h, h1, h2)
+        formula = bdf2(h, h1, h2)
         drives = ends.drive, earlier.drive
         step = step_at(times, course, k1, t1, formula, drives, n, boundary)
         off, done = math.inf, 0
-        if unseen(times, course, k, k1, t, h, ends, step, answers, boundary) <= most.error_N:
-            off, done = attempt(s, step, formula, boundary, law, most)
+        if input_error(times, course, k, k1, t, h, ends, step, answers, boundary) <= most.error_N:
+            off, done = try_step(s, step, formula, boundary, law, most)
         iterations += done
-        change = change_of(off, most, formula)
+        change = step_factor(off, most, formula)
         if not off < most.error_N:
             h *= change
             continue
@@ -143,25 +151,25 @@ def lugre_chain(
         now = phase_of(s, law)
         phase[since : k + 1] = now
         if frames is not None:
-            note(s, along, law)
+            store_tensions(s, along, law)
             taken = write_along(frames, taken, times, k, t, h, s, along, law)
-        keep(s, step, law)
-        answers = felt(earlier, ends, least)
+        accept_step(s, step, law)
+        answers = end_stiffnesses(earlier, ends, least)
         first = h if h1 == math.inf else first
         t, h, h1, h2 = t1, h * change if controlled else math.inf, h, h1
-        if hangs(s, times, course, k, t, ends, boundary, law):
+        if has_gone_slack(s, times, course, k, t, ends, boundary, law):
             since = k + 1
-            k, t = pulled_again(s, times, course, k, t, boundary, law)
+            k, t = end_of_slack(s, times, course, k, t, boundary, law)
             write_slack(columns, phase, s, times, course, (since, k + 1), boundary, law)
             lands = True
             if k < m - 1:
                 start = without_tension(s, times, course, k, t, boundary, law)
-                ends = set_off(s, start, times, course, k, t, boundary, law)
+                ends = start_at_rest(s, start, times, course, k, t, boundary, law)
             if frames is not None:
-                taken = write_limp(frames, taken, k)
-                note(s, along, law)
+                taken = write_slack_frames(frames, taken, k)
+                store_tensions(s, along, law)
         if lands and k < m - 1:
-            turn = next_turn(times, course, k, boundary)
+            turn = next_reversal(times, course, k, boundary)
             h, h1, h2 = first if controlled else math.inf, math.inf, math.inf
     for i in range(k + 1, m):
         columns[:, i] = columns[:, k]
@@ -185,15 +193,15 @@ def sample_before(times: Floats, k: int, t: float) -> int:
 
 
 @kernel
-def hangs(
+def has_gone_slack(
     s: Floats,
     times: Floats,
     course: Floats,
     k: int,
     t: float,
-    ends: Ends,
+    ends: StepEnds,
     boundary: Boundary,
-    law: Law,
+    law: LugreLaws,
 ) -> bool:
     """Say whether the tendon has gone slack; with a given force at the load it cannot."""
     if boundary.load == FORCE or ends.f_in >= 0.0:
@@ -202,11 +210,11 @@ def hangs(
 
 
 @kernel
-def phase_of(s: Floats, law: Law) -> int:
+def phase_of(s: Floats, law: LugreLaws) -> int:
     """Return +1 or −1 where all lumps slip alike, 0 otherwise."""
     pulled = released = 0
     for i in range(1, law.n + 1):
-        way = slides(s, i, law)
+        way = sliding_direction(s, i, law)
         pulled += way > 0
         released += way < 0
     return int(pulled == law.n) - int(released == law.n)

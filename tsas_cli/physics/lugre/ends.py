@@ -4,14 +4,24 @@ from typing import NamedTuple
 
 from tsas_cli.effects.load_friction import guide_friction
 from tsas_cli.numerics.compiled import kernel
+from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, SPRING, Boundary
 from tsas_cli.physics.lugre.input import DRIVE, LOAD, hermite
-from tsas_cli.physics.lugre.state import FRICTION, STIFFNESS, Y_NEW, Y_PAST, Floats, Law, Step, T, W
-from tsas_cli.physics.slip.state import DISPLACEMENT, FORCE, SPRING, Boundary
+from tsas_cli.physics.lugre.state import (
+    FRICTION,
+    POSITION_HISTORY,
+    POSITION_NEW,
+    RATE,
+    STIFFNESS,
+    TENSION,
+    Floats,
+    LugreLaws,
+    Step,
+)
 
 X_IN, X_OUT, F_IN, F_OUT = 0, 1, 2, 3  # rows of the columns
 
 
-class Ends(NamedTuple):
+class StepEnds(NamedTuple):
     """Both ends of the tendon at the end of a step, with rates for what is read in between."""
 
     drive: float  # what is given there [mm or N]
@@ -30,30 +40,30 @@ class Ends(NamedTuple):
 
 
 @kernel
-def ends_after(s: Floats, step: Step, law: Law) -> Ends:
+def ends_after(s: Floats, step: Step, law: LugreLaws) -> StepEnds:
     """Return what the ends are after a step; positions go to Y_NEW."""
     n, last = law.n, law.n + 1
     for i in range(n + 2):
-        s[Y_NEW + i] = s[Y_PAST + i] + step.gh * s[W + i]
-    return Ends(
+        s[POSITION_NEW + i] = s[POSITION_HISTORY + i] + step.gh * s[RATE + i]
+    return StepEnds(
         step.drive,
         step.drive_rate,
         step.load,
         step.load_rate,
-        s[Y_NEW],
-        s[W],
-        s[Y_NEW + last] + step.position,
-        s[W + last] + step.speed,
-        s[T],
-        s[STIFFNESS] * (s[W] - s[W + 1]),
-        s[T + n],
-        s[STIFFNESS + n] * (s[W + n] - s[W + last]),
+        s[POSITION_NEW],
+        s[RATE],
+        s[POSITION_NEW + last] + step.position,
+        s[RATE + last] + step.speed,
+        s[TENSION],
+        s[STIFFNESS] * (s[RATE] - s[RATE + 1]),
+        s[TENSION + n],
+        s[STIFFNESS + n] * (s[RATE + n] - s[RATE + last]),
         s[FRICTION + last],
     )
 
 
 @kernel
-def departs(
+def interpolation_error(
     times: Floats,
     course: Floats,
     row: int,
@@ -78,38 +88,38 @@ def departs(
 
 
 @kernel
-def unseen(
+def input_error(
     times: Floats,
     course: Floats,
     k: int,
     k1: int,
     t: float,
     h: float,
-    ends: Ends,
+    ends: StepEnds,
     step: Step,
     answers: tuple[float, float],
     boundary: Boundary,
 ) -> float:
     """Return what a step does not see of drive and load, as tensions by how they answer [N]."""
     given = (ends.drive, ends.drive_rate, step.drive, step.drive_rate)
-    off = answers[0] * departs(times, course, DRIVE, k, k1, t, h, given)
+    off = answers[0] * interpolation_error(times, course, DRIVE, k, k1, t, h, given)
     if boundary.load != SPRING:
         given = (ends.load, ends.load_rate, step.load, step.load_rate)
-        off += answers[1] * departs(times, course, LOAD, k, k1, t, h, given)
+        off += answers[1] * interpolation_error(times, course, LOAD, k, k1, t, h, given)
     return off
 
 
 @kernel
-def felt(earlier: Ends, ends: Ends, least: float) -> tuple[float, float]:
+def end_stiffnesses(earlier: StepEnds, ends: StepEnds, least: float) -> tuple[float, float]:
     """Return how much both tensions changed for what is given at their ends, at least so much."""
     return (
-        answer(ends.f_in - earlier.f_in, ends.drive - earlier.drive, least),
-        answer(ends.f_out - earlier.f_out, ends.load - earlier.load, least),
+        secant_stiffness(ends.f_in - earlier.f_in, ends.drive - earlier.drive, least),
+        secant_stiffness(ends.f_out - earlier.f_out, ends.load - earlier.load, least),
     )
 
 
 @kernel
-def answer(tension: float, given: float, least: float) -> float:
+def secant_stiffness(tension: float, given: float, least: float) -> float:
     """Return how much a tension changed for what is given at its end, at least so much."""
     return max(abs(tension / given), least) if given != 0.0 else least
 
@@ -123,22 +133,24 @@ def write_samples(
     course: Floats,
     t: float,
     h: float,
-    a: Ends,
-    b: Ends,
+    a: StepEnds,
+    b: StepEnds,
     boundary: Boundary,
-    law: Law,
+    law: LugreLaws,
 ) -> None:
     """Write what the ends are at the samples from the first to before the end.
 
     They lie in the step h from a to b that begins at t.
     """
-    read(columns, X_OUT, first, end, times, t, h, (a.x_out, a.v_out, b.x_out, b.v_out))
+    write_cubic(columns, X_OUT, first, end, times, t, h, (a.x_out, a.v_out, b.x_out, b.v_out))
     if boundary.drive == FORCE:
-        read(columns, X_IN, first, end, times, t, h, (a.x_in, a.w_in, b.x_in, b.w_in))
+        write_cubic(columns, X_IN, first, end, times, t, h, (a.x_in, a.w_in, b.x_in, b.w_in))
     else:
-        read(columns, F_IN, first, end, times, t, h, (a.f_in, a.f_in_rate, b.f_in, b.f_in_rate))
+        write_cubic(
+            columns, F_IN, first, end, times, t, h, (a.f_in, a.f_in_rate, b.f_in, b.f_in_rate)
+        )
     if boundary.load != FORCE:
-        read(
+        write_cubic(
             columns, F_OUT, first, end, times, t, h, (a.f_out, a.f_out_rate, b.f_out, b.f_out_rate)
         )
     share = sensor_share(boundary, law)
@@ -152,7 +164,7 @@ def write_samples(
 
 
 @kernel
-def read(
+def write_cubic(
     columns: Floats,
     row: int,
     first: int,
@@ -172,7 +184,7 @@ def read(
 
 
 @kernel
-def sensor_share(boundary: Boundary, law: Law) -> float:
+def sensor_share(boundary: Boundary, law: LugreLaws) -> float:
     """Return the share of the guide's friction that the load's force sensor does not feel."""
     before = law.load_friction.before_sensor_N
     if before == 0.0:

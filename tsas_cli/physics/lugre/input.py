@@ -8,8 +8,8 @@ preload go straight from sample to sample.
 import numpy as np
 
 from tsas_cli.numerics.compiled import kernel
+from tsas_cli.physics.boundary import DISPLACEMENT, SPRING, Boundary
 from tsas_cli.physics.lugre.state import Floats, Formula, Step
-from tsas_cli.physics.slip.state import DISPLACEMENT, SPRING, Boundary
 
 DRIVE, LOAD, PULLED, RELEASED, LOST = 0, 1, 2, 3, 5  # rows of the course
 
@@ -69,7 +69,7 @@ def hermite_slope(part: float, h: float, x0: float, v0: float, x1: float, v1: fl
 
 
 @kernel
-def given_at(times: Floats, course: Floats, row: int, k: int, t: float) -> tuple[float, float]:
+def value_at(times: Floats, course: Floats, row: int, k: int, t: float) -> tuple[float, float]:
     """Return value and slope of drive or load at a time from sample k to the next."""
     for at in (k, k + 1):
         if t == times[at]:
@@ -96,10 +96,10 @@ def step_at(
 
     `drives` is what was given there at the ends of the last two steps.
     """
-    drive, rate = given_at(times, course, DRIVE, k, t)
+    drive, rate = value_at(times, course, DRIVE, k, t)
     load, load_rate = 0.0, 0.0
     if boundary.load != SPRING:
-        load, load_rate = given_at(times, course, LOAD, k, t)
+        load, load_rate = value_at(times, course, LOAD, k, t)
     part = (t - times[k]) / (times[k + 1] - times[k])
     pulled = course[PULLED, k] + part * (course[PULLED, k + 1] - course[PULLED, k])
     released = course[RELEASED, k] + part * (course[RELEASED, k + 1] - course[RELEASED, k])
@@ -128,17 +128,17 @@ def lump_share(wrap: float, n: int) -> float:
 
 
 @kernel
-def next_turn(times: Floats, course: Floats, k: int, boundary: Boundary) -> int:
+def next_reversal(times: Floats, course: Floats, k: int, boundary: Boundary) -> int:
     """Return the first sample after k at which drive or load turns, stops or sets off."""
     last = times.size - 1
     for i in range(k + 1, last):
-        if turns(course, DRIVE, i) or (boundary.load != SPRING and turns(course, LOAD, i)):
+        if reverses(course, DRIVE, i) or (boundary.load != SPRING and reverses(course, LOAD, i)):
             return i
     return last
 
 
 @kernel
-def turns(course: Floats, row: int, i: int) -> bool:
+def reverses(course: Floats, row: int, i: int) -> bool:
     """Say whether a row turns, stops or sets off at a sample between others."""
     before, after = course[row, i] - course[row, i - 1], course[row, i + 1] - course[row, i]
     return bool(before * after <= 0.0 and before != after)

@@ -3,34 +3,34 @@
 import numpy as np
 
 from tsas_cli.numerics.compiled import kernel
+from tsas_cli.physics.boundary import FORCE, SPRING, Boundary, unloaded_position
 from tsas_cli.physics.lugre.ends import F_IN, F_OUT, X_IN, X_OUT
-from tsas_cli.physics.lugre.input import DRIVE, LOAD, LOST, given_at
-from tsas_cli.physics.lugre.state import STIFFNESS, Floats, Law
-from tsas_cli.physics.slip.ends import without_pull
-from tsas_cli.physics.slip.state import FORCE, SLACK, SPRING, Boundary, Phases
+from tsas_cli.physics.lugre.input import DRIVE, LOAD, LOST, value_at
+from tsas_cli.physics.lugre.state import STIFFNESS, Floats, LugreLaws
+from tsas_cli.physics.phases import SLACK, Phases
 
 HALVINGS = 40  # of the time between two samples
 
 
 @kernel
-def load_place(
-    times: Floats, course: Floats, k: int, t: float, boundary: Boundary, law: Law
+def load_position(
+    times: Floats, course: Floats, k: int, t: float, boundary: Boundary, law: LugreLaws
 ) -> float:
     """Return where the load is while the tendon is slack [mm]."""
     if boundary.load == SPRING:
-        return load_without_pull(course[LOST, k], law)
-    return given_at(times, course, LOAD, k, t)[0]
+        return unloaded_load(course[LOST, k], law)
+    return value_at(times, course, LOAD, k, t)[0]
 
 
 @kernel
-def load_without_pull(lost_N: float, law: Law) -> float:
+def unloaded_load(lost_N: float, law: LugreLaws) -> float:
     """Return where the load's spring is at rest without a pull [mm]."""
     preload_N = law.preload_N - lost_N
-    return without_pull(0.0, preload_N, law.load_stiffness_N_per_mm, law.load_spring)
+    return unloaded_position(0.0, preload_N, law.load_stiffness_N_per_mm, law.load_spring)
 
 
 @kernel
-def shortening(s: Floats, law: Law) -> float:
+def shortening(s: Floats, law: LugreLaws) -> float:
     """Return by how much the tendon without tension is shorter than at the preload [mm]."""
     total = 0.0
     for j in range(law.n + 1):
@@ -40,18 +40,18 @@ def shortening(s: Floats, law: Law) -> float:
 
 @kernel
 def is_slack(
-    s: Floats, times: Floats, course: Floats, k: int, t: float, boundary: Boundary, law: Law
+    s: Floats, times: Floats, course: Floats, k: int, t: float, boundary: Boundary, law: LugreLaws
 ) -> bool:
     """Say whether nothing pulls at a time from sample k to the next."""
-    drive = given_at(times, course, DRIVE, k, t)[0]
+    drive = value_at(times, course, DRIVE, k, t)[0]
     if boundary.drive == FORCE:
         return drive <= 0.0
-    return drive <= load_place(times, course, k, t, boundary, law) - shortening(s, law)
+    return drive <= load_position(times, course, k, t, boundary, law) - shortening(s, law)
 
 
 @kernel
-def pulled_again(
-    s: Floats, times: Floats, course: Floats, k: int, t: float, boundary: Boundary, law: Law
+def end_of_slack(
+    s: Floats, times: Floats, course: Floats, k: int, t: float, boundary: Boundary, law: LugreLaws
 ) -> tuple[int, float]:
     """Return the sample before the time at which the tendon is pulled again, and that time.
 
@@ -81,11 +81,11 @@ def write_slack(
     course: Floats,
     samples: tuple[int, int],
     boundary: Boundary,
-    law: Law,
+    law: LugreLaws,
 ) -> None:
     """Write the samples of a slack tendon, from one to before another."""
     for i in range(samples[0], samples[1]):
-        x_out = load_place(times, course, i, times[i], boundary, law)
+        x_out = load_position(times, course, i, times[i], boundary, law)
         columns[X_IN, i], columns[X_OUT, i] = course[DRIVE, i], x_out
         columns[F_IN, i] = columns[F_OUT, i] = 0.0
         if boundary.drive == FORCE:
@@ -95,14 +95,14 @@ def write_slack(
 
 @kernel
 def without_tension(
-    s: Floats, times: Floats, course: Floats, k: int, t: float, boundary: Boundary, law: Law
+    s: Floats, times: Floats, course: Floats, k: int, t: float, boundary: Boundary, law: LugreLaws
 ) -> Floats:
     """Return the state of rest of a tendon without tension; see `limp`."""
-    return limp(s, load_place(times, course, k, t, boundary, law), law)
+    return slack_state(s, load_position(times, course, k, t, boundary, law), law)
 
 
 @kernel
-def limp(s: Floats, load: float, law: Law) -> Floats:
+def slack_state(s: Floats, load: float, law: LugreLaws) -> Floats:
     """Return a tendon straight but without tension up to the load's place, shape (2, n + 2)."""
     start = np.zeros((2, law.n + 2))
     start[0, law.n + 1] = load

@@ -18,8 +18,9 @@ from tsas_cli.effects.load_spring_nonlinearity import spring_tangent
 from tsas_cli.effects.stribeck_friction import stribeck_factor
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.bristles import TONNES_PER_KG, friction_now
-from tsas_cli.physics.lugre.start import law_of, segments
-from tsas_cli.physics.lugre.state import Law, Phases
+from tsas_cli.physics.lugre.start import lugre_laws, segments
+from tsas_cli.physics.lugre.state import LugreLaws
+from tsas_cli.physics.phases import Phases
 from tsas_cli.physics.rig import Rig
 
 Floats = npt.NDArray[np.float64]
@@ -64,7 +65,7 @@ class _Lumps:
     """
 
     def __init__(self, rig: Rig, moment: Sliding) -> None:
-        self.law = law_of(rig, LUMPS)
+        self.law = lugre_laws(rig, LUMPS)
         count = LUMPS if moment.whole else LUMPS // 2
         stiffness, damping = segments(rig, LUMPS)
         self.stiffness, self.damping = stiffness[: count + 1], damping[: count + 1]
@@ -80,7 +81,9 @@ class _Lumps:
         self.tension = moment.f_in_N * decay
         slower = 0.0 if moment.whole else 1.0 / (count + 0.5)  # a lump that sticks comes next
         self.speed = moment.speed_mm_s * (1.0 - slower * place)
-        limit, _, _ = rub(np.zeros(count), self.speed, self.tension, self.friction, self.law)
+        limit, _, _ = sliding_friction(
+            np.zeros(count), self.speed, self.tension, self.friction, self.law
+        )
         longest = limit / self.law.bristle.stiffness
         lag = longest * moment.f_in_rate / moment.f_in_N / np.abs(self.speed)
         deflection = direction * (longest + self.law.bristle.travel) * (1.0 - lag)
@@ -95,7 +98,9 @@ class _Lumps:
         pull -= self.damping * np.diff(speed, prepend=0.0, append=v)
         sliding = self.speed + speed
         tension = self.tension + 0.5 * (pull[:-1] + pull[1:])
-        _, rubbing, turning = rub(deflection, sliding, tension, self.friction, self.law)
+        _, rubbing, turning = sliding_friction(
+            deflection, sliding, tension, self.friction, self.law
+        )
         faster = (-np.diff(pull) - rubbing) / self.law.lump_mass
         rates = np.concatenate((speed, faster, turning))
         if self.load_mass == 0.0:
@@ -104,8 +109,8 @@ class _Lumps:
 
 
 @kernel
-def rub(
-    deflection: Floats, speed: Floats, tension: Floats, wrap: float, law: Law
+def sliding_friction(
+    deflection: Floats, speed: Floats, tension: Floats, wrap: float, law: LugreLaws
 ) -> tuple[Floats, Floats, Floats]:
     """Return each lump's limit of friction, its friction, and the rate of its deflection."""
     limit, force, rate = np.empty(speed.size), np.empty(speed.size), np.empty(speed.size)

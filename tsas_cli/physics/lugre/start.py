@@ -3,39 +3,39 @@
 import math
 
 from tsas_cli.numerics.compiled import kernel
+from tsas_cli.physics.boundary import Boundary
 from tsas_cli.physics.bristles import Bristle, bristle_damping, tendon_mass
 from tsas_cli.physics.lugre.balance import balance, set_limits
-from tsas_cli.physics.lugre.ends import Ends, ends_after
-from tsas_cli.physics.lugre.input import DRIVE, given_at, step_at
+from tsas_cli.physics.lugre.ends import StepEnds, ends_after
+from tsas_cli.physics.lugre.input import DRIVE, step_at, value_at
 from tsas_cli.physics.lugre.state import (
     DAMPING,
+    DEFLECTION,
+    DEFLECTION_HISTORY,
     LIMIT,
-    REST,
+    POSITION,
+    POSITION_HISTORY,
+    RATE,
+    RESIDUAL,
     ROWS,
+    SPEED,
+    SPEED_HISTORY,
     STIFFNESS,
-    T_BY_W,
-    T_PAST,
-    V_PAST,
-    Y_PAST,
-    Z_PAST,
+    TENSION_HISTORY,
+    TENSION_SLOPE,
     Floats,
-    Law,
+    LugreLaws,
     Step,
-    V,
-    W,
-    Y,
-    Z,
 )
-from tsas_cli.physics.lugre.step import formula_of
+from tsas_cli.physics.lugre.step import bdf2
+from tsas_cli.physics.mesh import PITCH, segment_compliances
 from tsas_cli.physics.rig import Rig
-from tsas_cli.physics.slip.mesh import segment_compliances
-from tsas_cli.physics.slip.state import PITCH, Boundary
 
 NO_TIME_S = 1e-13  # step of the balance at rest
 
 
 @kernel
-def law_of(rig: Rig, n: int) -> Law:
+def lugre_laws(rig: Rig, n: int) -> LugreLaws:
     """Return what of the rig holds at every step."""
     effects, bristles = rig.effects, rig.bristles
     stiffness = bristles.stiffness_N_per_mm
@@ -43,7 +43,7 @@ def law_of(rig: Rig, n: int) -> Law:
     limit = rig.preload_N * rig.friction_coefficient * rig.total_bend_rad
     damping = bristle_damping(bristles, rig.sheath_length_mm, limit, travel)
     viscous = effects.viscous_friction.coefficient_N_s_per_mm / n
-    return Law(
+    return LugreLaws(
         n,
         rig.preload_N,
         tendon_mass(bristles, rig.sheath_length_mm) / n,
@@ -69,7 +69,7 @@ def segments(rig: Rig, n: int) -> tuple[Floats, Floats]:
 
 
 @kernel
-def lay_out(s: Floats, rig: Rig, n: int) -> None:
+def clear_state(s: Floats, rig: Rig, n: int) -> None:
     """Set the tendon's segments, and everything else to zero."""
     for row in range(ROWS):
         for i in range(n + 2):
@@ -86,7 +86,7 @@ def set_segments(s: Floats, rig: Rig, n: int) -> None:
 
 
 @kernel
-def set_off(
+def start_at_rest(
     s: Floats,
     start: Floats,
     times: Floats,
@@ -94,17 +94,17 @@ def set_off(
     k: int,
     t: float,
     boundary: Boundary,
-    law: Law,
-) -> Ends:
+    law: LugreLaws,
+) -> StepEnds:
     """Lay the nodes down at rest at a time from sample k to the next; see `lay_down`."""
-    drive = given_at(times, course, DRIVE, k, t)[0]
-    formula = formula_of(NO_TIME_S, math.inf, math.inf)
+    drive = value_at(times, course, DRIVE, k, t)[0]
+    formula = bdf2(NO_TIME_S, math.inf, math.inf)
     step = step_at(times, course, k, t, formula, (drive, drive), law.n, boundary)
-    return lay_down(s, start, step, boundary, law)
+    return rest_at(s, start, step, boundary, law)
 
 
 @kernel
-def lay_down(s: Floats, start: Floats, step: Step, boundary: Boundary, law: Law) -> Ends:
+def rest_at(s: Floats, start: Floats, step: Step, boundary: Boundary, law: LugreLaws) -> StepEnds:
     """Lay the nodes down at rest, their bristles holding what the tensions leave over.
 
     `start` holds positions and tensions, shape (2, n + 2) [mm, N], and `step`, of no time, what is
@@ -112,16 +112,18 @@ def lay_down(s: Floats, start: Floats, step: Step, boundary: Boundary, law: Law)
     """
     last = law.n + 1
     for i in range(law.n + 2):
-        s[Y + i] = s[Y_PAST + i] = start[0, i] - step.position
-        s[T_PAST + i], s[T_BY_W + i] = start[1, i], 0.0
-        s[V + i] = s[V_PAST + i] = s[W + i] = s[Z_PAST + i] = 0.0
+        s[POSITION + i] = s[POSITION_HISTORY + i] = start[0, i] - step.position
+        s[TENSION_HISTORY + i], s[TENSION_SLOPE + i] = start[1, i], 0.0
+        s[SPEED + i] = s[SPEED_HISTORY + i] = s[RATE + i] = s[DEFLECTION_HISTORY + i] = 0.0
     balance(s, step, boundary, law)
     for i in range(1, law.n + 1):
-        s[Z_PAST + i] = s[REST + i]  # the side to which it leans: each has a limit of its own
+        s[DEFLECTION_HISTORY + i] = s[
+            RESIDUAL + i
+        ]  # the side to which it leans: each has a limit of its own
     set_limits(s, step, law)
     for i in range(1, law.n + 1):
-        share = min(max(s[REST + i] / s[LIMIT + i], -1.0), 1.0)
-        s[Z + i] = s[REST + i] / law.bristle.stiffness + share * law.bristle.travel
-    s[Z] = s[REST] / law.end_bristle.stiffness
-    s[Z + last] = s[REST + last] / law.end_bristle.stiffness
+        share = min(max(s[RESIDUAL + i] / s[LIMIT + i], -1.0), 1.0)
+        s[DEFLECTION + i] = s[RESIDUAL + i] / law.bristle.stiffness + share * law.bristle.travel
+    s[DEFLECTION] = s[RESIDUAL] / law.end_bristle.stiffness
+    s[DEFLECTION + last] = s[RESIDUAL + last] / law.end_bristle.stiffness
     return ends_after(s, step, law)

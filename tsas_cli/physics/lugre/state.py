@@ -9,29 +9,30 @@ from tsas_cli.effects.load_friction import LoadFriction
 from tsas_cli.effects.load_spring_nonlinearity import LoadSpringNonlinearity
 from tsas_cli.effects.stribeck_friction import StribeckFriction
 from tsas_cli.physics.bristles import Bristle
-from tsas_cli.physics.slip.state import PITCH
+from tsas_cli.physics.mesh import PITCH
 
 Floats = npt.NDArray[np.float64]
-Phases = npt.NDArray[np.int8]
 
-# Rows of the state, over the nodes from 0 at the drive to n + 1 at the load: s[Y + i]. Positions
-# are relative to the drive, where that is given: 4 times fewer steps.
-Y, Y1, Y2 = (PITCH * row for row in range(3))  # position after the last three steps [mm]
-V, V1 = (PITCH * row for row in range(3, 5))  # speed, absolute, after the last two [mm/s]
-Z, Z1 = (PITCH * row for row in range(5, 7))  # deflection of the bristles, likewise [mm]
-W, W_GUESS = PITCH * 7, PITCH * 8  # relative speed, as sought and as guessed [mm/s]
+# Rows of the state, over the nodes from 0 at the drive to n + 1 at the load: s[POSITION + i].
+# Positions are relative to the drive, where that is given: 4 times fewer steps.
+POSITION, POSITION_1, POSITION_2 = (PITCH * row for row in range(3))  # after the last three [mm]
+SPEED, SPEED_1 = (PITCH * row for row in range(3, 5))  # absolute, after the last two steps [mm/s]
+DEFLECTION, DEFLECTION_1 = (PITCH * row for row in range(5, 7))  # of the bristles, likewise [mm]
+RATE, RATE_PREDICTED = PITCH * 7, PITCH * 8  # of POSITION, as sought and as predicted [mm/s]
 FRICTION = PITCH * 9  # [N]
-Z_NEW, Y_NEW = PITCH * 10, PITCH * 11  # at the speeds sought
-Y_PAST, V_PAST, Z_PAST = (PITCH * row for row in range(12, 15))  # history in y = Y_PAST + gh w
+DEFLECTION_NEW, POSITION_NEW = PITCH * 10, PITCH * 11  # at the rates sought
+POSITION_HISTORY = PITCH * 12  # in y = POSITION_HISTORY + gh RATE; the next two likewise
+SPEED_HISTORY, DEFLECTION_HISTORY = PITCH * 13, PITCH * 14
 STIFFNESS, DAMPING = PITCH * 15, PITCH * 16  # of the segment behind the node [N/mm, N s/mm]
-T, T_PAST, T_BY_W = (PITCH * row for row in range(17, 20))  # T = T_PAST + T_BY_W (w − w behind) [N]
-LIMIT, LIMIT_BY_T, LIMIT_BY_V = (PITCH * row for row in range(20, 23))  # of friction
-LOWER, DIAGONAL, UPPER, REST = (PITCH * row for row in range(23, 27))  # Newton's equations
-MINOR, SCALED, CHANGE = (PITCH * row for row in range(27, 30))  # their elimination and solution
+TENSION = PITCH * 17  # = TENSION_HISTORY + TENSION_SLOPE (RATE − RATE behind) [N]
+TENSION_HISTORY, TENSION_SLOPE = PITCH * 18, PITCH * 19
+LIMIT, LIMIT_BY_T, LIMIT_BY_V = (PITCH * row for row in range(20, 23))  # of friction, its slopes
+LOWER, DIAGONAL, UPPER, RESIDUAL = (PITCH * row for row in range(23, 27))  # Newton's equations
+MINOR, SCALED, INCREMENT = (PITCH * row for row in range(27, 30))  # elimination and solution
 ROWS = 30
 
 
-class Law(NamedTuple):
+class LugreLaws(NamedTuple):
     """What of the rig holds at every step."""
 
     n: int

@@ -8,11 +8,11 @@ leave the floats.
 
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.lugre.state import (
-    CHANGE,
     DIAGONAL,
+    INCREMENT,
     LOWER,
     MINOR,
-    REST,
+    RESIDUAL,
     SCALED,
     UPPER,
     Floats,
@@ -27,41 +27,41 @@ def solve(s: Floats, n: int) -> None:
         inverse = 1.0 / s[DIAGONAL + i]
         s[LOWER + i] *= inverse
         s[UPPER + i] *= inverse
-        s[REST + i] *= inverse
+        s[RESIDUAL + i] *= inverse
     middle = (n + 2) // 2  # the first node that is eliminated from the load's end
-    p, p_before, q = 1.0, 1.0, s[REST]
-    r, r_before, t = 1.0, 1.0, s[REST + last]
+    p, p_before, q = 1.0, 1.0, s[RESIDUAL]
+    r, r_before, t = 1.0, 1.0, s[RESIDUAL + last]
     s[MINOR], s[SCALED] = 1.0, q
     s[MINOR + last], s[SCALED + last] = 1.0, t
     for i in range(1, middle):
         j = last - i
-        q = s[REST + i] * p - s[LOWER + i] * q
-        t = s[REST + j] * r - s[UPPER + j] * t
+        q = s[RESIDUAL + i] * p - s[LOWER + i] * q
+        t = s[RESIDUAL + j] * r - s[UPPER + j] * t
         p, p_before = p - s[LOWER + i] * s[UPPER + i - 1] * p_before, p
         r, r_before = r - s[UPPER + j] * s[LOWER + j + 1] * r_before, r
         s[MINOR + i], s[SCALED + i] = p, q
         s[MINOR + j], s[SCALED + j] = r, t
     if 2 * middle < n + 2:
         j = middle
-        t = s[REST + j] * r - s[UPPER + j] * t
+        t = s[RESIDUAL + j] * r - s[UPPER + j] * t
         r, r_before = r - s[UPPER + j] * s[LOWER + j + 1] * r_before, r
         s[MINOR + j], s[SCALED + j] = r, t
-    meet(s, middle, p_before, r_before)
-    spread(s, n, middle)
+    solve_middle(s, middle, p_before, r_before)
+    substitute(s, n, middle)
 
 
 @kernel
-def meet(s: Floats, middle: int, p_before: float, r_before: float) -> None:
+def solve_middle(s: Floats, middle: int, p_before: float, r_before: float) -> None:
     """Solve the two rows at which both eliminations meet."""
     a, b = s[MINOR + middle - 1], s[UPPER + middle - 1] * p_before
     c, d = s[LOWER + middle] * r_before, s[MINOR + middle]
     inverse = 1.0 / (a * d - b * c)
-    s[CHANGE + middle - 1] = (d * s[SCALED + middle - 1] - b * s[SCALED + middle]) * inverse
-    s[CHANGE + middle] = (a * s[SCALED + middle] - c * s[SCALED + middle - 1]) * inverse
+    s[INCREMENT + middle - 1] = (d * s[SCALED + middle - 1] - b * s[SCALED + middle]) * inverse
+    s[INCREMENT + middle] = (a * s[SCALED + middle] - c * s[SCALED + middle - 1]) * inverse
 
 
 @kernel
-def spread(s: Floats, n: int, middle: int) -> None:
+def substitute(s: Floats, n: int, middle: int) -> None:
     """Substitute from the middle to both ends."""
     for i in range(1, middle):  # towards x[i−1] = q/p − (u p before/p) x[i]
         s[DIAGONAL + i] = s[UPPER + i] * s[MINOR + i - 1]
@@ -73,10 +73,10 @@ def spread(s: Floats, n: int, middle: int) -> None:
         inverse = 1.0 / s[MINOR + i]
         s[DIAGONAL + i] *= inverse
         s[SCALED + i] *= inverse
-    above, below = s[CHANGE + middle - 1], s[CHANGE + middle]
+    above, below = s[INCREMENT + middle - 1], s[INCREMENT + middle]
     for i in range(middle - 2, -1, -1):
         above = s[SCALED + i] - s[DIAGONAL + i] * above
-        s[CHANGE + i] = above
+        s[INCREMENT + i] = above
     for j in range(middle + 1, n + 2):
         below = s[SCALED + j] - s[DIAGONAL + j] * below
-        s[CHANGE + j] = below
+        s[INCREMENT + j] = below

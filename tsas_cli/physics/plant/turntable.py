@@ -19,20 +19,11 @@ from typing import NamedTuple
 
 from tsas_cli.effects.drive_ripple import DriveRipple, rippled
 from tsas_cli.numerics.compiled import kernel
+from tsas_cli.physics.boundary import FORCE, SPRING, Boundary
 from tsas_cli.physics.ends import friction_at
 from tsas_cli.physics.rig import Rig
-from tsas_cli.physics.slip.chain import advance, hang_slack
-from tsas_cli.physics.slip.state import (
-    FORCE,
-    SLIP,
-    SPRING,
-    Boundary,
-    Floats,
-    Laws,
-    Moment,
-    T,
-    X,
-)
+from tsas_cli.physics.slip.chain import advance, go_slack
+from tsas_cli.physics.slip.state import POSITION, SLIP, TENSION, Floats, Moment, SlipLaws
 
 FLANK = 1.0 - 1e-9  # of half the play, from which the drive is at its flank
 RIPPLE_STEP_MM = 1e-4  # over which the slope of the ripple is taken
@@ -62,7 +53,7 @@ class Turntable(NamedTuple):
     speed: float  # of the tendon's end [mm/s]
 
 
-class Reach(NamedTuple):
+class TurntableSpring(NamedTuple):
     """What the turntable is for the tendon's end p at the end of a step: a spring.
 
     It pulls with drive − share p where it touches the tendon, p = ahead + slope x there.
@@ -77,7 +68,7 @@ class Reach(NamedTuple):
 
 
 @kernel
-def turned(table: Turntable, asked_rpm: float, actuator: Actuator, h: float) -> Turntable:
+def advance_motor(table: Turntable, asked_rpm: float, actuator: Actuator, h: float) -> Turntable:
     """Return motor speed and travel after h with a speed asked for, exactly."""
     lag = actuator.motor_lag_s
     left = math.exp(-h / lag) if lag > 0.0 else 0.0
@@ -102,7 +93,7 @@ def step_plant(
     before: Moment,
     time_s: float,
     rig: Rig,
-    laws: Laws,
+    laws: SlipLaws,
     actuator: Actuator,
     h: float,
     scale: float,
@@ -111,24 +102,26 @@ def step_plant(
 
     Returns the turntable, the moment that the chain has come to, and whether it settled.
     """
-    p = chain[X]
-    reach = reach_of(table, p, rig, actuator, h)
+    p = chain[POSITION]
+    reach = spring_of(table, p, rig, actuator, h)
     settled, now, x, f_in = True, before, reach.x, table.f_in
     if reach.touches:
         pulled, released, viscous_N, lost_N = friction_at(time_s, table.speed, 0.0, rig)
         now = Moment(reach.drive, 0.0, pulled, released, viscous_N, lost_N, h)
         boundary = Boundary(FORCE, SPRING)
-        settled = advance(chain, before, now, boundary, held_by(laws, reach.share), scale)
-        if chain[T] < 0.0:
-            hang_slack(chain, now, boundary, laws)
+        settled = advance(chain, before, now, boundary, with_drive_spring(laws, reach.share), scale)
+        if chain[TENSION] < 0.0:
+            go_slack(chain, now, boundary, laws)
             rubs = chain[SLIP] * laws.drive_friction_N
-            chain[X] = (reach.drive - rubs) / (reach.share + laws.proximal_spring_N_per_mm)
-        x, f_in = pulled_to(chain[X], reach)
-    return moved(table, x, f_in, (chain[X] - p) / h, h), now, settled
+            chain[POSITION] = (reach.drive - rubs) / (reach.share + laws.proximal_spring_N_per_mm)
+        x, f_in = turntable_at(chain[POSITION], reach)
+    return advance_turntable(table, x, f_in, (chain[POSITION] - p) / h, h), now, settled
 
 
 @kernel
-def reach_of(table: Turntable, p: float, rig: Rig, actuator: Actuator, h: float) -> Reach:
+def spring_of(
+    table: Turntable, p: float, rig: Rig, actuator: Actuator, h: float
+) -> TurntableSpring:
     """Return what a turntable is for the tendon, whose end is at p, at the end of a step."""
     c, m = 1.5 / h, actuator.inertia_N_s2_per_mm
     v_rest = (-4.0 * table.x + table.x_before) / (2.0 * h)
@@ -140,29 +133,29 @@ def reach_of(table: Turntable, p: float, rig: Rig, actuator: Actuator, h: float)
     half = 0.5 * rig.effects.backlash.play_mm
     x = (pull - slope * (table.f_in - rig.preload_N)) / stiffness  # with the end where it is
     if half > 0.0:
-        x = across_play(x, table, p, ahead, slope, half, rubbing(table.f_in, rig) / stiffness)
+        x = across_play(x, table, p, ahead, slope, half, play_friction(table.f_in, rig) / stiffness)
     gap = ahead + slope * x - p
     ahead -= math.copysign(half, gap)
     share = stiffness / (slope * slope)
     drive = pull / slope + rig.preload_N + share * ahead
-    return Reach(abs(gap) * FLANK > half or half == 0.0, x, ahead, slope, share, drive)
+    return TurntableSpring(abs(gap) * FLANK > half or half == 0.0, x, ahead, slope, share, drive)
 
 
 @kernel
-def pulled_to(p: float, reach: Reach) -> tuple[float, float]:
+def turntable_at(p: float, reach: TurntableSpring) -> tuple[float, float]:
     """Return where a turntable is that holds the tendon's end at p, and its force there."""
     return (p - reach.ahead) / reach.slope, reach.drive - reach.share * p
 
 
 @kernel
-def moved(table: Turntable, x: float, f_in: float, speed: float, h: float) -> Turntable:
+def advance_turntable(table: Turntable, x: float, f_in: float, speed: float, h: float) -> Turntable:
     """Return the turntable after a step of BDF2 to x."""
     v = (3.0 * x - 4.0 * table.x + table.x_before) / (2.0 * h)
     return Turntable(table.motor_rpm, table.motor_mm, x, table.x, v, table.v, f_in, speed)
 
 
 @kernel
-def rubbing(tension: float, rig: Rig) -> float:
+def play_friction(tension: float, rig: Rig) -> float:
     """Return what holds the drive while it crosses its play [N].
 
     Up and down it is crossed at different tensions T1 and T2: each time that would give energy but
@@ -187,9 +180,9 @@ def across_play(
 
 
 @kernel
-def held_by(laws: Laws, stiffness: float) -> Laws:
+def with_drive_spring(laws: SlipLaws, stiffness: float) -> SlipLaws:
     """Return the laws with a spring more between the tendon's end and the ground [N/mm]."""
-    return Laws(
+    return SlipLaws(
         laws.n,
         laws.preload_N,
         laws.load_stiffness_N_per_mm,

@@ -14,36 +14,32 @@ from typing import NamedTuple
 import numpy as np
 
 from tsas_cli.numerics.compiled import kernel
+from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, Boundary, unloaded_position
 from tsas_cli.physics.frames import Frames
+from tsas_cli.physics.phases import SLACK, UNCONVERGED, Phases
 from tsas_cli.physics.rig import Rig
-from tsas_cli.physics.slip.ends import friction_at_load, keep_speed, pulls_back, without_pull
+from tsas_cli.physics.slip.ends import load_force, moving_friction, update_load_speed
 from tsas_cli.physics.slip.frames import write_frame
-from tsas_cli.physics.slip.mesh import at_rest, laws_of
-from tsas_cli.physics.slip.nodes import keep
+from tsas_cli.physics.slip.nodes import accept
+from tsas_cli.physics.slip.start import chain_at_rest, slip_laws
 from tsas_cli.physics.slip.state import (
-    DISPLACEMENT,
-    FORCE,
-    GIVE,
-    MOVED,
-    SLACK,
+    COMPLIANCE,
+    LOAD_SPEED,
+    POSITION,
+    POSITION_BEFORE,
+    SHARE_BEFORE,
     SLIP,
-    SPEED,
-    T_OLD,
-    T_ROSE,
-    TURNED,
-    UNSETTLED,
-    X_OLD,
-    Boundary,
+    TENSION,
+    TENSION_BEFORE,
+    TENSION_RISE,
+    TRAVEL,
     Floats,
-    Laws,
     Moment,
-    Phases,
-    T,
-    X,
+    SlipLaws,
 )
-from tsas_cli.physics.slip.step import settle
+from tsas_cli.physics.slip.step import solve_sample
 
-MOST_UNSETTLED = 10  # samples, after which a run is given up
+MOST_UNCONVERGED = 10  # samples, after which a run is given up
 MOST_STEPS = 60  # between two samples, those included that did not settle
 SHORTEST_STEP = 1e-3  # of the way between two samples; where that does not settle, nothing does
 
@@ -76,18 +72,18 @@ def slip_chain(
         sample is not to be trusted. Many such samples, and the rest of the run is given up: it
         keeps the last values.
     """
-    return follow(course, resting(course, rig, boundary, n), rig, boundary, n, frames)
+    return follow(course, initial_state(course, rig, boundary, n), rig, boundary, n, frames)
 
 
 @kernel
 def rest_after(course: Floats, rig: Rig, boundary: Boundary, n: int) -> Floats:
     """Return where a course leaves the nodes and the tensions behind them, shape (2, n + 2)."""
-    state = resting(course, rig, boundary, n)
+    state = initial_state(course, rig, boundary, n)
     follow(course, state, rig, boundary, n)
     chain = state.chain
     out = np.empty((2, n + 2))
     for j in range(n + 2):
-        out[0, j], out[1, j] = chain[X + j], chain[T + j]
+        out[0, j], out[1, j] = chain[POSITION + j], chain[TENSION + j]
     return out
 
 
@@ -100,12 +96,12 @@ class ChainState(NamedTuple):
 
 
 @kernel
-def resting(course: Floats, rig: Rig, boundary: Boundary, n: int) -> ChainState:
+def initial_state(course: Floats, rig: Rig, boundary: Boundary, n: int) -> ChainState:
     """Return the state of rest at the preload, before a course."""
     drive = rig.preload_N if boundary.drive == FORCE else 0.0
     load = rig.preload_N if boundary.load == FORCE else 0.0
     before = np.array([drive, load, course[2, 0], course[3, 0], 0.0, 0.0, math.inf])
-    return ChainState(at_rest(rig, n), before, np.zeros(5))
+    return ChainState(chain_at_rest(rig, n), before, np.zeros(5))
 
 
 @kernel
@@ -122,16 +118,16 @@ def follow(
     chain, b, last = state.chain, state.before, state.last
     x_in, x_out, f_in, f_out = np.empty(m), np.empty(m), np.empty(m), np.empty(m)
     phase = np.zeros(m, dtype=np.int8)
-    laws = laws_of(rig, n)
+    laws = slip_laws(rig, n)
     scale = rig.sheath_length_mm * rig.preload_N / rig.tendon_stiffness_N / n + 1e-9
     before = Moment(b[0], b[1], b[2], b[3], b[4], b[5], b[6])
     unsettled, taken = int(last[4]), 0
     for i in range(m):
-        if unsettled > MOST_UNSETTLED:
+        if unsettled > MOST_UNCONVERGED:
             x_in[i], x_out[i], f_in[i], f_out[i] = last[0], last[1], last[2], last[3]
-            phase[i] = UNSETTLED
+            phase[i] = UNCONVERGED
             if frames is not None:
-                taken = write_frame(frames, taken, i, chain, n, UNSETTLED)
+                taken = write_frame(frames, taken, i, chain, n, UNCONVERGED)
             continue
         now = moment(course, i)
         if boundary.load == DISPLACEMENT and now.load != before.load:
@@ -139,12 +135,12 @@ def follow(
         found = advance(chain, before, now, boundary, laws, scale)
         before = now
         unsettled += not found
-        phase[i] = phase_of(chain, n) if found else UNSETTLED
-        if boundary.load != FORCE and chain[T + 0] < 0.0:
+        phase[i] = phase_of(chain, n) if found else UNCONVERGED
+        if boundary.load != FORCE and chain[TENSION] < 0.0:
             phase[i] = SLACK
-            hang_slack(chain, now, boundary, laws)
-        x_in[i], x_out[i] = chain[X + 0], chain[X + n + 1]
-        f_in[i] = now.drive if boundary.drive == FORCE else chain[T + 0]
+            go_slack(chain, now, boundary, laws)
+        x_in[i], x_out[i] = chain[POSITION], chain[POSITION + n + 1]
+        f_in[i] = now.drive if boundary.drive == FORCE else chain[TENSION]
         f_out[i] = tension_at_sensor(chain, now, boundary, laws)
         last[0], last[1], last[2], last[3] = x_in[i], x_out[i], f_in[i], f_out[i]
         if frames is not None:  # compiled away where none are asked for
@@ -171,7 +167,7 @@ def moment(course: Floats, i: int) -> Moment:
 
 @kernel
 def advance(
-    chain: Floats, start: Moment, end: Moment, boundary: Boundary, laws: Laws, scale: float
+    chain: Floats, start: Moment, end: Moment, boundary: Boundary, laws: SlipLaws, scale: float
 ) -> bool:
     """Go from one sample to the next, in smaller steps where one is too large.
 
@@ -183,21 +179,21 @@ def advance(
             return False
         to = min(done + step, 1.0)
         now = between(start, end, to, end.step_s * (to - done))
-        if settle(chain, now, boundary, laws, scale):
-            keep_speed(chain, now.step_s, laws.n)
-            keep(chain, laws)
+        if solve_sample(chain, now, boundary, laws, scale):
+            update_load_speed(chain, now.step_s, laws.n)
+            accept(chain, laws)
             if to == 1.0:
                 return True
             done = to
             step *= 2.0
         else:
             for j in range(laws.n + 2):
-                chain[X + j], chain[T + j], chain[SLIP + j] = (
-                    chain[X_OLD + j],
-                    chain[T_OLD + j],
+                chain[POSITION + j], chain[TENSION + j], chain[SLIP + j] = (
+                    chain[POSITION_BEFORE + j],
+                    chain[TENSION_BEFORE + j],
                     0.0,
                 )
-                chain[MOVED + j] = 0.0
+                chain[TRAVEL + j] = 0.0
             step *= 0.5
     return False
 
@@ -230,10 +226,10 @@ def phase_of(chain: Floats, n: int) -> int:
 
 
 @kernel
-def tension_at_sensor(chain: Floats, now: Moment, boundary: Boundary, laws: Laws) -> float:
+def tension_at_sensor(chain: Floats, now: Moment, boundary: Boundary, laws: SlipLaws) -> float:
     """Return what a force sensor at the load feels [N], friction before it taken off."""
     n = laws.n
-    tension: float = chain[T + n]
+    tension: float = chain[TENSION + n]
     if boundary.load == FORCE:
         return now.load
     before = laws.load_friction.before_sensor_N
@@ -241,24 +237,26 @@ def tension_at_sensor(chain: Floats, now: Moment, boundary: Boundary, laws: Laws
         return tension
     if boundary.load == DISPLACEMENT:
         return float(tension - chain[SLIP + n + 1] * before)
-    share = before / friction_at_load(boundary, laws)
-    return tension - share * (tension - pulls_back(chain, now, boundary, laws))
+    share = before / moving_friction(boundary, laws)
+    return tension - share * (tension - load_force(chain, now, boundary, laws))
 
 
 @kernel
-def hang_slack(chain: Floats, now: Moment, boundary: Boundary, laws: Laws) -> None:
+def go_slack(chain: Floats, now: Moment, boundary: Boundary, laws: SlipLaws) -> None:
     """Lay the tendon without tension against the load; the next pull finds all nodes slipping."""
     last = laws.n + 1
     if boundary.load != DISPLACEMENT:
         preload_N, stiffness = laws.preload_N - now.lost_N, laws.load_stiffness_N_per_mm
-        chain[X + last] = without_pull(chain[X + last], preload_N, stiffness, laws.load_spring)
+        chain[POSITION + last] = unloaded_position(
+            chain[POSITION + last], preload_N, stiffness, laws.load_spring
+        )
     for j in range(last - 1, -1, -1):
-        chain[T + j] = 0.0
+        chain[TENSION + j] = 0.0
         if j > 0:
-            chain[X + j] = chain[X + j + 1] - chain[GIVE + j] * laws.preload_N
+            chain[POSITION + j] = chain[POSITION + j + 1] - chain[COMPLIANCE + j] * laws.preload_N
             chain[SLIP + j] = 1.0
     chain[SLIP + last] = 1.0
-    chain[SPEED + last] = 0.0
-    keep(chain, laws)
+    chain[LOAD_SPEED + last] = 0.0
+    accept(chain, laws)
     for j in range(laws.n + 2):
-        chain[TURNED + j], chain[MOVED + j], chain[T_ROSE + j] = 1.0, 0.0, 0.0
+        chain[SHARE_BEFORE + j], chain[TRAVEL + j], chain[TENSION_RISE + j] = 1.0, 0.0, 0.0

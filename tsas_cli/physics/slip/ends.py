@@ -5,41 +5,37 @@ import math
 from tsas_cli.effects.load_friction import guide_friction
 from tsas_cli.effects.load_inertia import inertia_force
 from tsas_cli.effects.load_spring_nonlinearity import (
-    LoadSpringNonlinearity,
     spring_force,
     spring_tangent,
 )
 from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.physics.slip.nodes import slid_back
+from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, SPRING, Boundary
+from tsas_cli.physics.slip.nodes import slips_backwards
 from tsas_cli.physics.slip.state import (
     BALANCED,
-    DISPLACEMENT,
-    FORCE,
+    LOAD_SPEED,
+    POSITION,
+    POSITION_BEFORE,
     SLIP,
-    SPEED,
-    SPRING,
+    SWEEP_P,
+    SWEEP_Q,
+    SWEEP_R,
+    TENSION,
     TOLERANCE,
-    X_OLD,
-    Boundary,
     Floats,
-    Laws,
     Moment,
-    P,
-    Q,
-    R,
-    T,
-    X,
+    SlipLaws,
 )
 
 SLIPS_ALONG_S = 0.01  # in which the mass of the load takes up its speed; a rigid one would swing on
 
 
 @kernel
-def load_law(chain: Floats, now: Moment, laws: Laws) -> tuple[float, float]:
+def load_tangent(chain: Floats, now: Moment, laws: SlipLaws) -> tuple[float, float]:
     """Return slope and value at x = 0 of what the load pulls back with, as a tangent [N/mm, N]."""
     n = laws.n
-    x = chain[X + n + 1]
+    x = chain[POSITION + n + 1]
     shape = laws.load_spring
     slope = spring_tangent(x, laws.load_stiffness_N_per_mm, shape)
     value = spring_force(x, laws.load_stiffness_N_per_mm, shape) - slope * x
@@ -48,22 +44,22 @@ def load_law(chain: Floats, now: Moment, laws: Laws) -> tuple[float, float]:
     if mass > 0.0 and now.step_s < math.inf:  # implicit Euler, first order in the step
         per_speed = 1.0 / (SLIPS_ALONG_S + now.step_s)
         slope += inertia_force(per_speed / now.step_s, mass)
-        gone = chain[X_OLD + n + 1] / now.step_s + chain[SPEED + n + 1]
+        gone = chain[POSITION_BEFORE + n + 1] / now.step_s + chain[LOAD_SPEED + n + 1]
         value -= inertia_force(per_speed * gone, mass)
     return slope, value
 
 
 @kernel
-def keep_speed(chain: Floats, step_s: float, n: int) -> None:
+def update_load_speed(chain: Floats, step_s: float, n: int) -> None:
     """Renew the speed of the load's mass after a step."""
     last = n + 1
-    speed = (chain[X + last] - chain[X_OLD + last]) / step_s
+    speed = (chain[POSITION + last] - chain[POSITION_BEFORE + last]) / step_s
     share = 1.0 / (1.0 + SLIPS_ALONG_S / step_s)
-    chain[SPEED + last] += share * (speed - chain[SPEED + last])
+    chain[LOAD_SPEED + last] += share * (speed - chain[LOAD_SPEED + last])
 
 
 @kernel
-def friction_at_load(boundary: Boundary, laws: Laws) -> float:
+def moving_friction(boundary: Boundary, laws: SlipLaws) -> float:
     """Return the friction of the load's guide that a moving load end feels [N]."""
     if boundary.load == SPRING:
         return guide_friction(laws.load_friction)
@@ -71,23 +67,23 @@ def friction_at_load(boundary: Boundary, laws: Laws) -> float:
 
 
 @kernel
-def start_of_drive(chain: Floats, now: Moment, boundary: Boundary, laws: Laws) -> float:
+def drive_position(chain: Floats, now: Moment, boundary: Boundary, laws: SlipLaws) -> float:
     """Return where the drive's end is [mm]."""
     if boundary.drive == DISPLACEMENT:
         return now.drive
     friction = laws.drive_friction_N
-    if chain[SLIP + 0] == 0 and friction > 0.0:
-        return float(chain[X_OLD + 0])
-    p, q, r = chain[P + 0], chain[Q + 0], chain[R + 0]
+    if chain[SLIP] == 0 and friction > 0.0:
+        return float(chain[POSITION_BEFORE])
+    p, q, r = chain[SWEEP_P], chain[SWEEP_Q], chain[SWEEP_R]
     stiffness = proximal_spring_force(1.0, laws.proximal_spring_N_per_mm)
-    return float(((now.drive - chain[SLIP + 0] * friction) * r - q) / (p + stiffness * r))
+    return float(((now.drive - chain[SLIP] * friction) * r - q) / (p + stiffness * r))
 
 
 @kernel
-def revise_end(i: int, pull: float, friction: float, chain: Floats, scale: float) -> bool:
+def update_end(i: int, pull: float, friction: float, chain: Floats, scale: float) -> bool:
     """Do the same for an end with friction that does not depend on tension."""
     if chain[SLIP + i] != 0:
-        if slid_back(i, chain, scale):
+        if slips_backwards(i, chain, scale):
             chain[SLIP + i] = 0
             return True
     elif abs(pull) > friction * (1.0 + TOLERANCE):
@@ -97,41 +93,32 @@ def revise_end(i: int, pull: float, friction: float, chain: Floats, scale: float
 
 
 @kernel
-def revise_ends(chain: Floats, now: Moment, boundary: Boundary, laws: Laws, scale: float) -> bool:
+def update_ends(
+    chain: Floats, now: Moment, boundary: Boundary, laws: SlipLaws, scale: float
+) -> bool:
     """Revise the two ends, and the tangent of a load spring that is not straight."""
     n = laws.n
     wrong = False
     if boundary.drive == FORCE:
         stiffness = laws.proximal_spring_N_per_mm
-        pull = now.drive - chain[T + 0] - proximal_spring_force(chain[X + 0], stiffness)
+        pull = now.drive - chain[TENSION] - proximal_spring_force(chain[POSITION], stiffness)
         if laws.drive_friction_N > 0.0:
-            wrong = revise_end(0, pull, laws.drive_friction_N, chain, scale)
+            wrong = update_end(0, pull, laws.drive_friction_N, chain, scale)
     if boundary.load != DISPLACEMENT:
-        pull = chain[T + n] - pulls_back(chain, now, boundary, laws)
-        friction = friction_at_load(boundary, laws)
+        pull = chain[TENSION + n] - load_force(chain, now, boundary, laws)
+        friction = moving_friction(boundary, laws)
         if friction > 0.0:
-            wrong = revise_end(n + 1, pull, friction, chain, scale) or wrong
+            wrong = update_end(n + 1, pull, friction, chain, scale) or wrong
         if friction == 0.0 or chain[SLIP + n + 1] != 0:
             off = abs(pull - chain[SLIP + n + 1] * friction)
-            wrong = off > BALANCED * (abs(chain[T + n]) + laws.preload_N) or wrong
+            wrong = off > BALANCED * (abs(chain[TENSION + n]) + laws.preload_N) or wrong
     return wrong
 
 
 @kernel
-def pulls_back(chain: Floats, now: Moment, boundary: Boundary, laws: Laws) -> float:
+def load_force(chain: Floats, now: Moment, boundary: Boundary, laws: SlipLaws) -> float:
     """Return what the load pulls back with at its present place, friction aside [N]."""
     if boundary.load == FORCE:
         return now.load
-    slope, value = load_law(chain, now, laws)
-    return float(slope * chain[X + laws.n + 1] + value)
-
-
-@kernel
-def without_pull(
-    x: float, preload_N: float, stiffness: float, shape: LoadSpringNonlinearity
-) -> float:
-    """Return where a spring of a preload leaves the load without tension [mm], sought from x."""
-    for _ in range(5):  # Newton's method, exact at once for a straight spring
-        force = preload_N + spring_force(x, stiffness, shape)
-        x -= force / spring_tangent(x, stiffness, shape)
-    return x
+    slope, value = load_tangent(chain, now, laws)
+    return float(slope * chain[POSITION + laws.n + 1] + value)

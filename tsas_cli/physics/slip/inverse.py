@@ -13,21 +13,12 @@ the speeds of the one before.
 import numpy as np
 
 from tsas_cli.numerics.compiled import kernel
+from tsas_cli.physics.boundary import DISPLACEMENT, SPRING, Boundary
+from tsas_cli.physics.mesh import PITCH
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.slip.chain import advance, tension_at_sensor
-from tsas_cli.physics.slip.mesh import at_rest, laws_of
-from tsas_cli.physics.slip.state import (
-    DISPLACEMENT,
-    PITCH,
-    ROWS,
-    SPRING,
-    Boundary,
-    Floats,
-    Laws,
-    Moment,
-    T,
-    X,
-)
+from tsas_cli.physics.slip.start import chain_at_rest, slip_laws
+from tsas_cli.physics.slip.state import POSITION, ROWS, TENSION, Floats, Moment, SlipLaws
 
 EXACT_N = 1e-7  # of the wanted force
 MOST_TRIALS = 200  # of places of the tendon's end for one sample
@@ -60,8 +51,8 @@ def inverse_chain(
     """
     m = wanted_N.size
     path, tension = np.empty(m), np.empty(m)
-    chain, kept = at_rest(rig, n), np.empty(ROWS * PITCH)
-    laws = laws_of(rig, n)
+    chain, kept = chain_at_rest(rig, n), np.empty(ROWS * PITCH)
+    laws = slip_laws(rig, n)
     scale = rig.sheath_length_mm * rig.preload_N / rig.tendon_stiffness_N / n + 1e-9
     before = Moment(0.0, 0.0, friction[0, 0], friction[1, 0], 0.0, 0.0, np.inf)
     missed = 0
@@ -76,37 +67,37 @@ def inverse_chain(
             friction[3, i],
             step,
         )
-        before, found = meet(chain, kept, before, now, wanted_N[i], laws, scale)
+        before, found = reach_force(chain, kept, before, now, wanted_N[i], laws, scale)
         missed += not found
-        path[i], tension[i] = chain[X], chain[T]
+        path[i], tension[i] = chain[POSITION], chain[TENSION]
     return path, tension, missed
 
 
 @kernel
-def meet(
+def reach_force(
     chain: Floats,
     kept: Floats,
     before: Moment,
     now: Moment,
     wanted_N: float,
-    laws: Laws,
+    laws: SlipLaws,
     scale: float,
 ) -> tuple[Moment, bool]:
     """Move the tendon's end until the load's sensor feels a force; the chain stays there.
 
     Returns the moment there and whether the force was met; where it was not, nothing moves.
     """
-    keep_rows(chain, kept, laws.n)
-    b, off_b = now.drive, wanted_N - feel(chain, before, now, laws, scale)
+    copy_rows(chain, kept, laws.n)
+    b, off_b = now.drive, wanted_N - force_at_sensor(chain, before, now, laws, scale)
     if abs(off_b) <= EXACT_N:
         return now, True
     step, bracketed = off_b / laws.load_stiffness_N_per_mm, False
     a, off_a = b, off_b
     for _ in range(MOST_TRIALS):
         x = a - off_a * (b - a) / (off_b - off_a) if bracketed else b + step
-        keep_rows(kept, chain, laws.n)
-        now = driven(now, x)
-        off = wanted_N - feel(chain, before, now, laws, scale)
+        copy_rows(kept, chain, laws.n)
+        now = with_drive(now, x)
+        off = wanted_N - force_at_sensor(chain, before, now, laws, scale)
         if abs(off) <= EXACT_N:
             return now, True
         if off * off_b < 0.0:
@@ -118,18 +109,18 @@ def meet(
             part = off / nearer if abs(nearer) > EXACT_N else 2.0
             step *= min(part, 2.0) if part > 0.0 else 2.0
         b, off_b = x, off
-    keep_rows(kept, chain, laws.n)
+    copy_rows(kept, chain, laws.n)
     return before, False
 
 
 @kernel
-def driven(now: Moment, x: float) -> Moment:
+def with_drive(now: Moment, x: float) -> Moment:
     """Return the same moment with the tendon's end at another place."""
     return Moment(x, now.load, now.pulled, now.released, now.viscous_N, now.lost_N, now.step_s)
 
 
 @kernel
-def keep_rows(source: Floats, target: Floats, n: int) -> None:
+def copy_rows(source: Floats, target: Floats, n: int) -> None:
     """Copy the state of the nodes."""
     for row in range(ROWS):
         for j in range(n + 2):
@@ -137,7 +128,9 @@ def keep_rows(source: Floats, target: Floats, n: int) -> None:
 
 
 @kernel
-def feel(chain: Floats, before: Moment, now: Moment, laws: Laws, scale: float) -> float:
+def force_at_sensor(
+    chain: Floats, before: Moment, now: Moment, laws: SlipLaws, scale: float
+) -> float:
     """Return what the load's sensor feels after the tendon's end has moved; infinite if lost."""
     boundary = Boundary(DISPLACEMENT, SPRING)
     if not advance(chain, before, now, boundary, laws, scale):

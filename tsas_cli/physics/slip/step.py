@@ -14,169 +14,170 @@ friction follows its magnitude.
 """
 
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.physics.slip.ends import (
-    friction_at_load,
-    load_law,
-    revise_ends,
-    start_of_drive,
-)
+from tsas_cli.physics.boundary import DISPLACEMENT, SPRING, Boundary
+from tsas_cli.physics.slip.ends import drive_position, load_tangent, moving_friction, update_ends
 from tsas_cli.physics.slip.nodes import (
-    expect,
-    is_straight,
-    pulled_loose,
+    breakaway,
+    extrapolate,
+    is_linear,
     set_friction,
-    set_slides,
-    slid_back,
+    slips_backwards,
+    update_relations,
 )
 from tsas_cli.physics.slip.state import (
-    BRISTLE,
-    DISPLACEMENT,
-    GIVE,
-    PASSES,
+    COMPLIANCE,
+    DROP,
+    DROP_SLOPE,
+    FACTOR,
+    POSITION,
+    POSITION_BEFORE,
     SLIP,
-    SPRING,
-    TAKES,
-    X_OLD,
-    Boundary,
+    SWEEP_P,
+    SWEEP_Q,
+    SWEEP_R,
+    TENSION,
     Floats,
-    Laws,
     Moment,
-    P,
-    Q,
-    R,
-    T,
-    X,
+    SlipLaws,
 )
 
 TOGETHER = 16  # nodes that share a division
-MOST_AT_ONCE = 20  # revisions of the slipping set
-MOST_ONE_BY_ONE = 5  # more, for each node
+MOST_ITERATIONS = 20  # revisions of the slipping set
+MOST_SINGLE_CHANGES = 5  # more, for each node
 
 
 @kernel
-def settle(chain: Floats, now: Moment, boundary: Boundary, laws: Laws, scale: float) -> bool:
+def solve_sample(
+    chain: Floats, now: Moment, boundary: Boundary, laws: SlipLaws, scale: float
+) -> bool:
     """Find the slipping nodes at a moment; return whether the set was found."""
     n = laws.n
-    if not is_straight(laws):
-        expect(chain, laws)
+    if not is_linear(laws):
+        extrapolate(chain, laws)
     set_friction(chain, now, laws)
-    set_slides(chain, now, laws)
-    for revision in range(MOST_AT_ONCE + MOST_ONE_BY_ONE * n):
+    update_relations(chain, now, laws)
+    for revision in range(MOST_ITERATIONS + MOST_SINGLE_CHANGES * n):
         sweep_to_drive(chain, now, boundary, laws)
         sweep_to_load(chain, now, boundary, laws)
         if laws.friction_exponent != 0.0:
             set_friction(chain, now, laws)
-        most = n if revision < MOST_AT_ONCE else 1  # one by one ends where all at once cycle
-        wrong = laws.presliding_mm == 0.0 and revise(chain, now, laws, scale, most) > 0
-        wrong = set_slides(chain, now, laws) or wrong
+        most = n if revision < MOST_ITERATIONS else 1  # one by one ends where all at once cycle
+        wrong = laws.presliding_mm == 0.0 and update_active_set(chain, now, laws, scale, most) > 0
+        wrong = update_relations(chain, now, laws) or wrong
         if not wrong or most == n:
-            wrong = revise_ends(chain, now, boundary, laws, scale) or wrong
+            wrong = update_ends(chain, now, boundary, laws, scale) or wrong
         if not wrong:
             return True
     return False
 
 
 @kernel
-def sweep_to_drive(chain: Floats, now: Moment, boundary: Boundary, laws: Laws) -> None:
+def sweep_to_drive(chain: Floats, now: Moment, boundary: Boundary, laws: SlipLaws) -> None:
     """Write each segment's tension as (p x + q)/r of the node before it, from the load on."""
     last = laws.n + 1
-    guide = friction_at_load(boundary, laws)
-    give, F0 = chain[GIVE + laws.n], laws.preload_N
+    guide = moving_friction(boundary, laws)
+    give, F0 = chain[COMPLIANCE + laws.n], laws.preload_N
     if boundary.load == DISPLACEMENT:
         p, q, r = 1.0, give * F0 - now.load, give
     elif chain[SLIP + last] == 0.0 and guide > 0.0:
-        p, q, r = 1.0, give * F0 - chain[X_OLD + last], give
+        p, q, r = 1.0, give * F0 - chain[POSITION_BEFORE + last], give
     else:
-        p, q = load_law(chain, now, laws) if boundary.load == SPRING else (0.0, now.load)
+        p, q = load_tangent(chain, now, laws) if boundary.load == SPRING else (0.0, now.load)
         q += chain[SLIP + last] * guide + p * give * F0
         r = 1.0 + p * give
-    chain[P + laws.n], chain[Q + laws.n], chain[R + laws.n] = p, q, r
+    chain[SWEEP_P + laws.n], chain[SWEEP_Q + laws.n], chain[SWEEP_R + laws.n] = p, q, r
     if laws.presliding_mm > 0.0:
-        pass_leaning(chain, p, q, r, laws)
+        eliminate_presliding(chain, p, q, r, laws)
     else:
-        pass_sliding(chain, p, q, r, laws)
+        eliminate_sliding(chain, p, q, r, laws)
 
 
 @kernel
-def pass_sliding(chain: Floats, p: float, q: float, r: float, laws: Laws) -> None:
+def eliminate_sliding(chain: Floats, p: float, q: float, r: float, laws: SlipLaws) -> None:
     """Go on to the drive over nodes that slip or stick."""
     F0 = laws.preload_N
     for k in range(laws.n):
         i = laws.n - k  # node i, then the segment before it
-        give = chain[GIVE + i - 1]
+        give = chain[COMPLIANCE + i - 1]
         if chain[SLIP + i] == 0.0:
-            p, q, r = 1.0, give * F0 - chain[X_OLD + i], give
+            p, q, r = 1.0, give * F0 - chain[POSITION_BEFORE + i], give
         else:
             pull = p * give
-            q += chain[TAKES + i] * r + pull * F0
-            r = chain[PASSES + i] * r + pull
-        chain[P + i - 1], chain[Q + i - 1], chain[R + i - 1] = p, q, r
+            q += chain[DROP + i] * r + pull * F0
+            r = chain[FACTOR + i] * r + pull
+        chain[SWEEP_P + i - 1], chain[SWEEP_Q + i - 1], chain[SWEEP_R + i - 1] = p, q, r
 
 
 @kernel
-def pass_leaning(chain: Floats, p: float, q: float, r: float, laws: Laws) -> None:
+def eliminate_presliding(chain: Floats, p: float, q: float, r: float, laws: SlipLaws) -> None:
     """Go on to the drive over nodes on bristles, which all slide."""
     F0 = laws.preload_N
     for k in range(laws.n):
         i = laws.n - k
         if k % TOGETHER == 0:  # without any division they would outgrow a float
             p, q, r = p / r, q / r, 1.0
-        p += chain[BRISTLE + i] * r
-        pull = p * chain[GIVE + i - 1]
-        q += chain[TAKES + i] * r + pull * F0
-        r = chain[PASSES + i] * r + pull
-        chain[P + i - 1], chain[Q + i - 1], chain[R + i - 1] = p, q, r
+        p += chain[DROP_SLOPE + i] * r
+        pull = p * chain[COMPLIANCE + i - 1]
+        q += chain[DROP + i] * r + pull * F0
+        r = chain[FACTOR + i] * r + pull
+        chain[SWEEP_P + i - 1], chain[SWEEP_Q + i - 1], chain[SWEEP_R + i - 1] = p, q, r
 
 
 @kernel
-def sweep_to_load(chain: Floats, now: Moment, boundary: Boundary, laws: Laws) -> None:
+def sweep_to_load(chain: Floats, now: Moment, boundary: Boundary, laws: SlipLaws) -> None:
     """Find positions and tensions, from the drive on."""
     n, last = laws.n, laws.n + 1
-    chain[X] = start_of_drive(chain, now, boundary, laws)
+    chain[POSITION] = drive_position(chain, now, boundary, laws)
     if laws.presliding_mm > 0.0:
-        place_leaning(chain, laws)
+        substitute_presliding(chain, laws)
     else:
-        place_sliding(chain, laws)
-    chain[X + last] = chain[X + n] - chain[GIVE + n] * (chain[T + n] - laws.preload_N)
+        substitute_sliding(chain, laws)
+    chain[POSITION + last] = chain[POSITION + n] - chain[COMPLIANCE + n] * (
+        chain[TENSION + n] - laws.preload_N
+    )
     if boundary.load == DISPLACEMENT:
-        chain[X + last] = now.load
-    elif chain[SLIP + last] == 0.0 and friction_at_load(boundary, laws) > 0.0:
-        chain[X + last] = chain[X_OLD + last]
+        chain[POSITION + last] = now.load
+    elif chain[SLIP + last] == 0.0 and moving_friction(boundary, laws) > 0.0:
+        chain[POSITION + last] = chain[POSITION_BEFORE + last]
 
 
 @kernel
-def place_sliding(chain: Floats, laws: Laws) -> None:
+def substitute_sliding(chain: Floats, laws: SlipLaws) -> None:
     """Find places and tensions of nodes that slip or stick."""
-    chain[T] = (chain[P] * chain[X] + chain[Q]) / chain[R]
+    chain[TENSION] = (chain[SWEEP_P] * chain[POSITION] + chain[SWEEP_Q]) / chain[SWEEP_R]
     for i in range(1, laws.n + 1):
         if chain[SLIP + i] != 0.0:
-            drawn = chain[GIVE + i - 1] * (chain[T + i - 1] - laws.preload_N)
-            chain[X + i] = chain[X + i - 1] - drawn
-            chain[T + i] = chain[PASSES + i] * chain[T + i - 1] - chain[TAKES + i]
+            drawn = chain[COMPLIANCE + i - 1] * (chain[TENSION + i - 1] - laws.preload_N)
+            chain[POSITION + i] = chain[POSITION + i - 1] - drawn
+            chain[TENSION + i] = chain[FACTOR + i] * chain[TENSION + i - 1] - chain[DROP + i]
         else:
-            chain[X + i] = chain[X_OLD + i]
-            chain[T + i] = (chain[P + i] * chain[X + i] + chain[Q + i]) / chain[R + i]
+            chain[POSITION + i] = chain[POSITION_BEFORE + i]
+            chain[TENSION + i] = (
+                chain[SWEEP_P + i] * chain[POSITION + i] + chain[SWEEP_Q + i]
+            ) / chain[SWEEP_R + i]
 
 
 @kernel
-def place_leaning(chain: Floats, laws: Laws) -> None:
+def substitute_presliding(chain: Floats, laws: SlipLaws) -> None:
     """Find places and tensions of nodes on bristles; only the places follow from each other."""
     for j in range(laws.n + 1):
-        inverse = 1.0 / chain[R + j]
-        chain[P + j] *= inverse
-        chain[Q + j] *= inverse
-        chain[R + j] = 1.0
-    place = chain[X]
+        inverse = 1.0 / chain[SWEEP_R + j]
+        chain[SWEEP_P + j] *= inverse
+        chain[SWEEP_Q + j] *= inverse
+        chain[SWEEP_R + j] = 1.0
+    place = chain[POSITION]
     for i in range(1, laws.n + 1):
-        give = chain[GIVE + i - 1]
-        place = (1.0 - give * chain[P + i - 1]) * place + give * (laws.preload_N - chain[Q + i - 1])
-        chain[X + i] = place
+        give = chain[COMPLIANCE + i - 1]
+        place = (1.0 - give * chain[SWEEP_P + i - 1]) * place + give * (
+            laws.preload_N - chain[SWEEP_Q + i - 1]
+        )
+        chain[POSITION + i] = place
     for j in range(laws.n + 1):
-        chain[T + j] = chain[P + j] * chain[X + j] + chain[Q + j]
+        chain[TENSION + j] = chain[SWEEP_P + j] * chain[POSITION + j] + chain[SWEEP_Q + j]
 
 
 @kernel
-def revise(chain: Floats, now: Moment, laws: Laws, scale: float, most: int) -> int:
+def update_active_set(chain: Floats, now: Moment, laws: SlipLaws, scale: float, most: int) -> int:
     """Free the nodes whose tensions exceed their friction, hold those that slip backwards.
 
     Returns how many nodes it revised, at most so many, from the drive on.
@@ -187,8 +188,8 @@ def revise(chain: Floats, now: Moment, laws: Laws, scale: float, most: int) -> i
     for i in range(1, n + 1):
         before = chain[SLIP + i]
         if before == 0.0:
-            chain[SLIP + i] = pulled_loose(i, loss, chain)
-        elif slid_back(i, chain, scale):
+            chain[SLIP + i] = breakaway(i, loss, chain)
+        elif slips_backwards(i, chain, scale):
             chain[SLIP + i] = 0.0
         if chain[SLIP + i] != before:
             revised += 1

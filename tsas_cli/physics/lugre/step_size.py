@@ -6,17 +6,17 @@ from typing import NamedTuple
 import numpy as np
 
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.physics.lugre.ends import Ends
-from tsas_cli.physics.lugre.state import Floats, Formula, Law, Step
-from tsas_cli.physics.lugre.step import error, look_back, newton
-from tsas_cli.physics.slip.state import Boundary
+from tsas_cli.physics.boundary import Boundary
+from tsas_cli.physics.lugre.ends import StepEnds
+from tsas_cli.physics.lugre.state import Floats, Formula, LugreLaws, Step
+from tsas_cli.physics.lugre.step import newton, predict, step_error
 
 LEAVES = 0.3  # of the error of a step: what Newton's method may leave
 SWINGS = 0.04  # of the tolerance, with a mass that swings on: its errors add up
 LONGER, SHORTER, CAREFUL = 2.0, 0.25, 0.85  # how the step may change, and how much of it is taken
 
 
-class Allowed(NamedTuple):
+class Tolerances(NamedTuple):
     """What a step may be off by."""
 
     error_N: float  # of a tension, infinite where steps are given
@@ -24,34 +24,34 @@ class Allowed(NamedTuple):
 
 
 @kernel
-def allowed(ends: Ends, law: Law, tolerance: float, leaves: float) -> Allowed:
+def tolerances_of(ends: StepEnds, law: LugreLaws, tolerance: float, leaves: float) -> Tolerances:
     """Return what a step from these ends may be off by, and leave at most, as shares of a tension.
 
     An infinite tolerance is for steps that are given.
     """
     tension = max(abs(ends.f_in), abs(ends.f_out), 0.1 * law.preload_N)
     most = tolerance * tension * (SWINGS if law.load_mass_kg > 0.0 else 1.0)
-    return Allowed(most, min(LEAVES * most, leaves * tension))
+    return Tolerances(most, min(LEAVES * most, leaves * tension))
 
 
 @kernel
-def attempt(
-    s: Floats, step: Step, formula: Formula, boundary: Boundary, law: Law, most: Allowed
+def try_step(
+    s: Floats, step: Step, formula: Formula, boundary: Boundary, law: LugreLaws, most: Tolerances
 ) -> tuple[float, int]:
     """Find the end of a step, which is not kept yet.
 
     Returns its error [N], infinite where Newton's method fails, zero where none is asked for, and
     the iterations.
     """
-    look_back(s, law, formula)
+    predict(s, law, formula)
     iterations, solved = newton(s, step, boundary, law, most.leaves_N)
     if not solved:
         return math.inf, iterations
-    return (error(s, law, formula) if most.error_N < math.inf else 0.0), iterations
+    return (step_error(s, law, formula) if most.error_N < math.inf else 0.0), iterations
 
 
 @kernel
-def change_of(off: float, most: Allowed, formula: Formula) -> float:
+def step_factor(off: float, most: Tolerances, formula: Formula) -> float:
     """Return by what the next step, or this one once more, may be longer or has to be shorter."""
     if off == math.inf:
         return SHORTER
@@ -61,7 +61,7 @@ def change_of(off: float, most: Allowed, formula: Formula) -> float:
 
 
 @kernel
-def fitted(h: float, left: float) -> tuple[float, bool]:
+def fit_to_reversal(h: float, left: float) -> tuple[float, bool]:
     """Return a step that does not pass what is left to the next turn, and whether it lands there.
 
     Before a short rest it takes half of both.
