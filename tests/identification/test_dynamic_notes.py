@@ -9,7 +9,7 @@ from tests.physics.references import TABLE_1
 from tsas_cli.identification import dynamic_notes as d
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model
-from tsas_cli.physics.lugre.start import lugre_laws
+from tsas_cli.physics.lugre.start import bristles_of
 from tsas_cli.physics.phases import UNCONVERGED
 from tsas_cli.recordings.manifest import Run
 
@@ -74,7 +74,7 @@ def test_unstable_sliding_is_said_where_it_is_found(monkeypatch, found, count):
 
 def unstable(damping_times, *, whole=True):
     critical = TABLE_1._replace(bristles=TABLE_1.bristles._replace(damping_N_s_per_mm=float("nan")))
-    damping = damping_times * lugre_laws(critical, 1).bristle.damping
+    damping = damping_times * bristles_of(critical).damping
     rig = TABLE_1._replace(bristles=TABLE_1.bristles._replace(damping_N_s_per_mm=damping))
     moment = SimpleNamespace(whole=whole, speed_mm_s=1.234, f_in_N=56.78)
     return d._unstable(SimpleNamespace(moment=moment, growth_per_s=40.0), rig)

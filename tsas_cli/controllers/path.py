@@ -18,7 +18,7 @@ from tsas_cli.effects.drive_ripple import DriveRipple, rippled
 from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.errors import InputError
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.physics.ends import friction_course, last_direction
+from tsas_cli.physics.ends import last_direction, losses_over
 from tsas_cli.physics.plant.turntable import Actuator
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.slip.inverse import inverse_chain
@@ -68,8 +68,8 @@ def follow(
     time_s = (np.arange(held.size) - ahead) * step_s
     speed = np.zeros(held.size)
     for _ in range(PASSES if _depends_on_speed(rig.effects) else 1):
-        friction = friction_course(np.maximum(time_s, 0.0), speed, 0.0, rig)
-        end, tension, missed = inverse_chain(held, friction, step_s, rig, nodes)
+        losses = losses_over(np.maximum(time_s, 0.0), speed, 0.0, rig)
+        end, tension, missed = inverse_chain(held, losses, step_s, rig, nodes)
         smooth = smoothed(end, width, step_s)[1]
         speed = np.concatenate((np.zeros(ahead), smooth, np.zeros(held.size - ahead - smooth.size)))
     geared = smoothed(geared_at(end, rig.effects), width, step_s)

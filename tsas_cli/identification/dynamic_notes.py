@@ -11,7 +11,7 @@ from tsas_cli.identification.prepared import Prepared
 from tsas_cli.physics.ends import Drive
 from tsas_cli.physics.lugre.chain import MOST_PER_SAMPLE, MOST_TRIES
 from tsas_cli.physics.lugre.stability import Stability, stability
-from tsas_cli.physics.lugre.start import lugre_laws
+from tsas_cli.physics.lugre.start import bristles_of
 from tsas_cli.physics.phases import UNCONVERGED
 from tsas_cli.physics.response import Response, simulate
 from tsas_cli.physics.rig import Rig
@@ -60,7 +60,7 @@ def _unstable(found: Stability, rig: Rig) -> str:
         f"{moment.f_in_N:.3g} N: a disturbance grows e-fold in {1e3 / found.growth_per_s:.2g} ms"
     )
     critical = rig._replace(bristles=rig.bristles._replace(damping_N_s_per_mm=math.nan))
-    times = lugre_laws(rig, 1).bristle.damping / lugre_laws(critical, 1).bristle.damping
+    times = bristles_of(rig).damping / bristles_of(critical).damping
     if times > HIGH_DAMPING:
         return (
             f"{sentence}; the bristles' damping is {times:.3g} times critical, and critical where "

@@ -11,6 +11,9 @@ from tsas_cli.controllers.closed_loop import (
     F_OUT,
     GIVEN_UP,
     X_IN,
+    DriveSensor,
+    LoopPlant,
+    Wanted,
     close_loop,
     followed_from,
 )
@@ -125,23 +128,18 @@ def track(
     A, b = error_filter(settings.loop.filter_Hz, step_s)
     limit_rpm = plant.actuator.speed_limit_rpm
     nodes = settings.loop.nodes
-    table, chain = followed_from(float(path.drive[0, 0]), plant.rig, plant.actuator, nodes)
     columns, unsettled, done = close_loop(
-        np.ascontiguousarray(path.drive[:, :m]),
-        feedforward(path, known.actuator)[:m],
-        noise,
-        settings.sensor.step_mm,
-        A,
-        b,
+        Wanted(np.ascontiguousarray(path.drive[:, :m]), feedforward(path, known.actuator)[:m]),
+        DriveSensor(step_s, noise, settings.sensor.step_mm, A, b),
         settings.laws(controller, known.actuator.gain_mm_per_s_rpm),
-        table,
-        chain,
-        (plant.rig, plant.later or plant.rig),
-        change_at,
-        plant.actuator,
-        nodes,
-        step_s,
-        settings.loop.substeps,
+        LoopPlant(
+            actuator=plant.actuator,
+            rigs=(plant.rig, plant.later or plant.rig),
+            change_at=change_at,
+            substeps=settings.loop.substeps,
+            nodes=nodes,
+            start=followed_from(float(path.drive[0, 0]), plant.rig, plant.actuator, nodes),
+        ),
         empty_lumps() if dynamics == "lugre" else None,
     )
     time_s: Floats = np.arange(m, dtype=np.float64) * step_s

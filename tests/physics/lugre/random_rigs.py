@@ -16,7 +16,7 @@ from tsas_cli.effects import (
 )
 from tsas_cli.physics.bristles import Bristles
 from tsas_cli.physics.ends import Drive
-from tsas_cli.physics.lugre.chain import OWN_STEPS, Progress, lugre_chain
+from tsas_cli.physics.lugre.chain import OWN_STEPS, Progress, StepControl, lugre_chain
 from tsas_cli.physics.lugre.stability import stability
 from tsas_cli.physics.response import TOLERANCE, simulate
 from tsas_cli.physics.rig import Rig
@@ -80,17 +80,16 @@ def random_case(seed):
 def followed(case, tolerance):
     start = np.zeros((2, case.lumps + 2))
     start[1] = case.rig.preload_N
-    columns, _, progress = lugre_chain(
-        case.time_s,
-        course_of(case.x_in_mm, case.rig),
+    output, progress = lugre_chain(
+        course_of(case.x_in_mm, case.rig, time_s=case.time_s),
         start,
         case.rig,
         LOADED_BY_SPRING,
         case.lumps,
-        tolerance,
-        OWN_STEPS,
+        StepControl(tolerance, OWN_STEPS),
     )
-    return Followed(columns, progress, progress.reached_s >= case.time_s[-1] * (1.0 - 1e-12))
+    finished = progress.reached_s >= case.time_s[-1] * (1.0 - 1e-12)
+    return Followed(np.array(output[:4]), progress, finished)
 
 
 def is_unstable(case):

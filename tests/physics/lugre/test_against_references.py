@@ -6,7 +6,7 @@ import pytest
 
 from benchmarks.lugre_rivals.references import FOLDER, problems
 from tests.physics.references import LOADED_BY_SPRING, TABLE_1, course_of
-from tsas_cli.physics.lugre.chain import OWN_STEPS, lugre_chain
+from tsas_cli.physics.lugre.chain import OWN_STEPS, StepControl, lugre_chain
 from tsas_cli.physics.response import TOLERANCE
 from tsas_cli.physics.rig import with_values
 
@@ -35,21 +35,13 @@ def apart(name, tolerance):
     x_in = problem.drive.position(times)
     start = np.zeros((2, lumps + 2))
     start[1] = rig.preload_N
-    columns, phase, _ = lugre_chain(
-        times,
-        course_of(x_in, rig),
-        start,
-        rig,
-        LOADED_BY_SPRING,
-        lumps,
-        tolerance,
-        OWN_STEPS,
-    )
-    assert not np.any(phase == 3)
+    course, control = course_of(x_in, rig, time_s=times), StepControl(tolerance, OWN_STEPS)
+    output, _ = lugre_chain(course, start, rig, LOADED_BY_SPRING, lumps, control)
+    assert not np.any(output.phase == 3)
     off = {}
     for channel, row in (("x_out_mm", 1), ("f_in_N", 2), ("f_out_N", 3)):
         # Noise sets the drive off with a jump of its speed, which the reference feels at once.
-        expected, found = table[channel].to_numpy()[1:], columns[row, finer::finer]
+        expected, found = table[channel].to_numpy()[1:], output[row][finer::finer]
         off[channel] = np.max(np.abs(found - expected)) / np.ptp(expected)
     return off
 

@@ -16,8 +16,10 @@ from tests.physics.references import (
     course_of,
 )
 from tsas_cli.effects import Effects, StribeckFriction
-from tsas_cli.physics.lugre.chain import OWN_STEPS, lugre_chain
+from tsas_cli.physics.course import LOAD
+from tsas_cli.physics.lugre.chain import OWN_STEPS, StepControl, lugre_chain
 from tsas_cli.physics.lugre.input import DRIVE, next_reversal, value_at
+from tsas_cli.physics.lugre.start import lugre_laws
 from tsas_cli.physics.lugre.state import DIAGONAL, INCREMENT, LOWER, RESIDUAL, ROWS, UPPER
 from tsas_cli.physics.lugre.tridiagonal import solve
 from tsas_cli.physics.mesh import MOST_NODES, PITCH
@@ -30,10 +32,10 @@ SINE = 10.0 - 10.0 * np.cos(TIME_S)
 def follow(x, times=TIME_S, *, rig=TABLE_1, n=50, tolerance=5e-5, step_ends_s=OWN_STEPS):
     start = np.zeros((2, n + 2))
     start[0], start[1] = x[0], rig.preload_N
-    columns, phase, progress = lugre_chain(
-        times, course_of(x, rig), start, rig, LOADED_BY_SPRING, n, tolerance, step_ends_s
-    )
-    return columns, phase, progress
+    course = course_of(x, rig, time_s=times)
+    control = StepControl(tolerance, step_ends_s)
+    output, progress = lugre_chain(course, start, rig, LOADED_BY_SPRING, n, control)
+    return np.array(output[:4]), output.phase, progress
 
 
 @pytest.mark.parametrize("n", [2, 3, 50, 51, 400, MOST_NODES])
@@ -58,11 +60,11 @@ def test_between_samples_the_input_is_the_monotone_cubic(seed):
     times = np.cumsum(rng.uniform(0.001, 0.02, 30))
     values = np.round(np.cumsum(rng.standard_normal(30)), 1)
     values[10:13] = values[10]
-    course = course_of(values, GROUP_A)
+    course = course_of(values, GROUP_A, time_s=times)
     curve = PchipInterpolator(times, values)
     for t in rng.uniform(times[0], times[-1], 200):
         k = int(np.searchsorted(times, t)) - 1
-        value, slope = value_at(times, course, DRIVE, k, t)
+        value, slope = value_at(course, DRIVE, k, t)
         assert value == pytest.approx(curve(t), abs=1e-10)
         assert slope == pytest.approx(curve.derivative()(t), abs=1e-7)
 
@@ -72,7 +74,7 @@ def test_a_step_ends_where_the_input_turns_stops_or_sets_off():
     course = course_of(values, GROUP_A)
     found, k = [], 0
     while k < values.size - 1:
-        k = next_reversal(course[0], course, k, LOADED_BY_SPRING)
+        k = next_reversal(course, k, lugre_laws(GROUP_A, 3, LOADED_BY_SPRING))
         found.append(k)
     assert found == [2, 4, 6, 8]
 
@@ -174,27 +176,27 @@ def test_a_tendon_at_rest_stays_at_rest(boundary):
     x = np.full(200, 25.0 if boundary is DRIVEN_BY_FORCE else 0.0)
     start = np.zeros((2, 52))
     start[1] = 25.0
-    columns, _, _ = lugre_chain(
-        TIME_S[:200], course_of(x, TABLE_1), start, TABLE_1, boundary, 50, 5e-5, OWN_STEPS
-    )
+    course = course_of(x, TABLE_1, time_s=TIME_S[:200])
+    output, _ = lugre_chain(course, start, TABLE_1, boundary, 50, StepControl(5e-5, OWN_STEPS))
+    columns = np.array(output[:4])
     assert columns[:2] == pytest.approx(np.zeros((2, 200)), abs=1e-9)
     assert columns[2:] == pytest.approx(np.full((2, 200), 25.0), abs=1e-6)
 
 
-@pytest.mark.parametrize(("boundary", "row"), [(LOADED_BY_SPRING, 0), (LOADED_BY_FORCE, 1)])
+@pytest.mark.parametrize(("boundary", "row"), [(LOADED_BY_SPRING, DRIVE), (LOADED_BY_FORCE, LOAD)])
 def test_a_bump_of_what_is_given_is_not_stepped_over(boundary, row):
     """At either end, in full slip and without a turn: it runs ahead and is back after 40 ms."""
     times = np.arange(0.0, 3.0, 1e-3)
     smooth = 5.0 - 5.0 * np.cos(times)
-    course = course_of(smooth, TABLE_1, load=25.0 + 1.5 * smooth)
+    course = course_of(smooth, TABLE_1, load=25.0 + 1.5 * smooth, time_s=times)
     course[row] += 0.04 * np.exp(-(((times - 1.503) / 0.014) ** 2))
     assert np.all(np.diff(course[row]) > 0.0)
     start = np.zeros((2, 52))
     start[1] = TABLE_1.preload_N
 
     def f_in(step_ends_s):
-        call = (times, course, start, TABLE_1, boundary, 50, 2e-5, step_ends_s)
-        return lugre_chain(*call)[0][2]
+        control = StepControl(2e-5, step_ends_s)
+        return lugre_chain(course, start, TABLE_1, boundary, 50, control)[0].f_in
 
     fine = f_in(np.arange(2e-4, 3.0, 2e-4))
     assert np.max(np.abs(fine - f_in(OWN_STEPS))[1000:2000]) < 2e-4 * np.max(fine)

@@ -11,21 +11,31 @@ from tests.physics.references import (
     LOADED_BY_DISPLACEMENT,
     LOADED_BY_FORCE,
     LOADED_BY_SPRING,
+    at,
     course_of,
 )
-from tsas_cli.physics.boundary import FORCE
+from tsas_cli.physics.boundary import FORCE, share_before_sensor
+from tsas_cli.physics.course import DRIVE, LOAD
 from tsas_cli.physics.lugre.balance import balance, residual_sum, set_limits
-from tsas_cli.physics.lugre.chain import OWN_STEPS, has_gone_slack, lugre_chain, phase_of
+from tsas_cli.physics.lugre.chain import (
+    OWN_STEPS,
+    StepControl,
+    has_gone_slack,
+    lugre_chain,
+    phase_of,
+)
 from tsas_cli.physics.lugre.ends import (
     F_IN,
     F_OUT,
     X_IN,
     X_OUT,
+    EndState,
+    Samples,
+    Span,
     StepEnds,
     end_stiffnesses,
     input_error,
     secant_stiffness,
-    sensor_share,
     write_samples,
 )
 from tsas_cli.physics.lugre.slack import shortening, unloaded_load
@@ -47,6 +57,7 @@ from tsas_cli.physics.lugre.state import (
     TENSION,
     TENSION_HISTORY,
     TENSION_SLOPE,
+    Given,
     Step,
 )
 from tsas_cli.physics.lugre.step import bdf2, newton, step_error
@@ -55,7 +66,7 @@ from tsas_cli.physics.rig import with_values
 
 N, LAST = 3, 4
 F0, KL, GH = 25.0, 1.579, 2e-3
-STEP = Step(GH, 30.0, 0.0, 27.0, 0.0, 0.0, 1.5, 0.14, 0.11, 1.2)
+STEP = Step(GH, Given(30.0, 0.0), Given(27.0, 0.0), Given(0.0, 1.5), 0.14, 0.11, 1.2)
 
 
 def lumps(rig, *, speeds=(0.0,) * 5, tensions=(40.0, 31.0, 22.0, 13.0)):
@@ -64,7 +75,7 @@ def lumps(rig, *, speeds=(0.0,) * 5, tensions=(40.0, 31.0, 22.0, 13.0)):
     clear_state(s, rig, N)
     s[RATE : RATE + N + 2] = speeds
     s[TENSION_HISTORY : TENSION_HISTORY + N + 1] = s[TENSION : TENSION + N + 1] = tensions
-    return s, lugre_laws(rig, N)
+    return s, lugre_laws(rig, N, LOADED_BY_SPRING)
 
 
 @pytest.mark.parametrize("exponent", [0.0, 1.0, -1.0, -0.4, 0.3])
@@ -122,9 +133,9 @@ def test_an_end_that_is_moved_keeps_the_bristle_that_it_had():
     rig = with_values(GROUP_A, {"drive_friction.friction_N": 2.0})
     s, law = lumps(rig, speeds=(0.0, 1.0, -1.0, 0.5, 0.3))
     s[DEFLECTION_NEW] = 0.125
-    balance(s, STEP, LOADED_BY_SPRING, law)
+    balance(s, STEP, at(law, LOADED_BY_SPRING))
     assert s[DEFLECTION_NEW] == 0.125
-    balance(s, STEP, DRIVEN_BY_FORCE, law)
+    balance(s, STEP, at(law, DRIVEN_BY_FORCE))
     assert s[DEFLECTION_NEW] == 0.0
 
 
@@ -139,12 +150,12 @@ def test_a_sum_of_sizes_counts_every_one_once(count):
 def test_newtons_method_gives_up_at_once_where_forces_are_infinite(boundary):
     s, law = lumps(GROUP_A, tensions=(F0,) * 4)
     s[TENSION_SLOPE : TENSION_SLOPE + N + 1] = s[STIFFNESS : STIFFNESS + N + 1] * GH
-    step = STEP._replace(speed=0.0)
+    step = STEP._replace(frame=Given(0.0, 0.0))
     if boundary.drive == FORCE:
-        step = step._replace(drive=math.inf)
+        step = step._replace(drive=Given(math.inf, 0.0))
     else:
         step = step._replace(lost_N=math.inf)
-    assert newton(s, step, boundary, law, 1e-6) == (0, False)
+    assert newton(s, step, at(law, boundary), 1e-6) == (0, False)
 
 
 def test_the_error_of_a_first_step_is_half_of_what_its_guess_was_off_by():
@@ -156,47 +167,59 @@ def test_the_error_of_a_first_step_is_half_of_what_its_guess_was_off_by():
     assert step_error(s, law, first) == pytest.approx(0.5 * 0.2 * stretched.max())
 
 
-ENDS = StepEnds(1.0, 2.0, 10.0, 3.0, 0.0, 0.0, 0.0, 0.0, 30.0, 0.0, 20.0, 0.0, 0.5)
+ENDS = StepEnds(
+    EndState(Given(1.0, 2.0), 0.0, 0.0, 30.0, 0.0),
+    EndState(Given(10.0, 3.0), 0.0, 0.0, 20.0, 0.0),
+    0.5,
+)
 
 
 def test_what_a_step_does_not_see_is_told_by_how_each_end_answers():
     """Drive and load leave the straight lines that the step sees by 0.1 and 0.02."""
     times = np.linspace(0.0, 1.0, 11)
-    course = np.zeros((7, 11))
-    course[0], course[1] = 1.0 + 2.0 * times, 10.0 + 3.0 * times
-    end = STEP._replace(drive=3.0, drive_rate=2.0, load=13.0, load_rate=3.0)
+    course = course_of(1.0 + 2.0 * times, GROUP_A, load=10.0 + 3.0 * times, time_s=times)
+    end = STEP._replace(drive=Given(3.0, 2.0), load=Given(13.0, 3.0))
+    law = lugre_laws(GROUP_A, N, LOADED_BY_SPRING)
     answers = (2.0, 50.0)
 
     def not_seen(boundary):
-        return input_error(times, course, 0, 9, 0.0, 1.0, ENDS, end, answers, boundary)
+        return input_error(
+            course, Samples(1, 9), Span(0.0, 1.0), ENDS, end, answers, at(law, boundary)
+        )
 
     for boundary in (LOADED_BY_SPRING, LOADED_BY_FORCE, LOADED_BY_DISPLACEMENT):
         assert not_seen(boundary) == pytest.approx(0.0, abs=1e-12)
-    course[0, 5] += 0.1
-    course[1, 3] -= 0.02
+    course[DRIVE, 5] += 0.1
+    course[LOAD, 3] -= 0.02
     assert not_seen(LOADED_BY_SPRING) == pytest.approx(0.2)
     for boundary in (LOADED_BY_FORCE, LOADED_BY_DISPLACEMENT):
         assert not_seen(boundary) == pytest.approx(0.2 + 1.0)
 
 
 def test_how_tensions_answered_what_was_given():
-    later = ENDS._replace(drive=1.5, f_in=27.0, load=9.0, f_out=23.0)
+    drive = ENDS.drive._replace(given=Given(1.5, 2.0), tension=27.0)
+    load = ENDS.load._replace(given=Given(9.0, 3.0), tension=23.0)
+    later = ENDS._replace(drive=drive, load=load)
     assert end_stiffnesses(ENDS, later, 1.0) == (6.0, 3.0)
     assert end_stiffnesses(ENDS, later, 5.0) == (6.0, 5.0)
-    assert end_stiffnesses(ENDS, ENDS._replace(f_in=99.0), 1.0) == (1.0, 1.0)
-    assert secant_stiffness(-4.0, 0.5, 2.0) == 8.0
+    unmoved = ENDS._replace(drive=ENDS.drive._replace(tension=99.0))
+    assert end_stiffnesses(ENDS, unmoved, 1.0) == (1.0, 1.0)
+    fell = ENDS.drive._replace(given=Given(1.5, 2.0), tension=26.0)
+    assert secant_stiffness(ENDS.drive, fell, 2.0) == 8.0
 
 
 GUIDED = {"load_friction.before_sensor_N": 1.5, "load_friction.after_sensor_N": 3.0}
 
 
 def test_the_share_of_the_guide_that_the_sensor_does_not_feel():
-    law = lugre_laws(with_values(GROUP_A, GUIDED), N)
-    assert sensor_share(LOADED_BY_SPRING, law) == pytest.approx(1.0 / 3.0)
-    assert sensor_share(LOADED_BY_DISPLACEMENT, law) == 1.0
-    bare = lugre_laws(with_values(GROUP_A, {"load_friction.after_sensor_N": 3.0}), N)
-    assert sensor_share(LOADED_BY_SPRING, bare) == 0.0
-    assert sensor_share(LOADED_BY_DISPLACEMENT, bare) == 0.0
+    law = lugre_laws(with_values(GROUP_A, GUIDED), N, LOADED_BY_SPRING)
+    assert share_before_sensor(at(law, LOADED_BY_SPRING).load) == pytest.approx(1.0 / 3.0)
+    assert share_before_sensor(at(law, LOADED_BY_DISPLACEMENT).load) == 1.0
+    bare = lugre_laws(
+        with_values(GROUP_A, {"load_friction.after_sensor_N": 3.0}), N, LOADED_BY_SPRING
+    )
+    assert share_before_sensor(at(bare, LOADED_BY_SPRING).load) == 0.0
+    assert share_before_sensor(at(bare, LOADED_BY_DISPLACEMENT).load) == 0.0
 
 
 @pytest.mark.parametrize(
@@ -204,12 +227,16 @@ def test_the_share_of_the_guide_that_the_sensor_does_not_feel():
 )
 def test_samples_within_a_step_read_what_was_given_and_what_answered(boundary):
     """Everything goes straight here; the guide's share is taken off what the sensor reads."""
-    times, law = np.linspace(0.0, 1.0, 11), lugre_laws(with_values(GROUP_A, GUIDED), N)
-    course = np.vstack([np.full(11, 100.0 + k) + times for k in range(7)])
-    a = StepEnds(0.0, 0.0, 0.0, 0.0, 1.0, 10.0, 2.0, 20.0, 30.0, 40.0, 50.0, 60.0, 0.0)
-    b = StepEnds(0.0, 0.0, 0.0, 0.0, 6.0, 10.0, 12.0, 20.0, 50.0, 40.0, 80.0, 60.0, 3.0)
+    times, law = (
+        np.linspace(0.0, 1.0, 11),
+        lugre_laws(with_values(GROUP_A, GUIDED), N, LOADED_BY_SPRING),
+    )
+    course = course_of(100.0 + times, GROUP_A, load=101.0 + times, time_s=times)
+    none = Given(0.0, 0.0)
+    a = StepEnds(EndState(none, 1.0, 10.0, 30.0, 40.0), EndState(none, 2.0, 20.0, 50.0, 60.0), 0.0)
+    b = StepEnds(EndState(none, 6.0, 10.0, 50.0, 40.0), EndState(none, 12.0, 20.0, 80.0, 60.0), 3.0)
     columns = np.full((4, 11), -1.0)
-    write_samples(columns, 3, 7, times, course, 0.25, 0.5, a, b, boundary, law)
+    write_samples(columns, Samples(3, 7), course, Span(0.25, 0.5), a, b, at(law, boundary))
     since = times[3:7] - 0.25
     expected = {
         X_IN: 1.0 + 10.0 * since,
@@ -220,11 +247,11 @@ def test_samples_within_a_step_read_what_was_given_and_what_answered(boundary):
     if boundary.load != FORCE:
         share = 1.0 if boundary == LOADED_BY_DISPLACEMENT else 1.0 / 3.0
         expected[F_OUT] = expected[F_OUT] - share * 3.0 * since / 0.5
-    expected[F_IN if boundary.drive == FORCE else X_IN] = course[0, 3:7]
+    expected[F_IN if boundary.drive == FORCE else X_IN] = course[DRIVE, 3:7]
     if boundary == LOADED_BY_FORCE:
-        expected[F_OUT] = course[1, 3:7]
+        expected[F_OUT] = course[LOAD, 3:7]
     if boundary == LOADED_BY_DISPLACEMENT:
-        expected[X_OUT] = course[1, 3:7]
+        expected[X_OUT] = course[LOAD, 3:7]
     for row, values in expected.items():
         np.testing.assert_allclose(columns[row, 3:7], values)
     assert np.all(columns[:, [0, 1, 2, 7, 8, 9, 10]] == -1.0)
@@ -246,12 +273,13 @@ def test_lumps_that_are_laid_down_stay_where_they_are(length, exponent):
     start = np.zeros((2, N + 2))
     start[1, : N + 1] = tensions
     start[0] = 0.7, 0.5, 0.3, 0.2, 0.1
-    step = Step(1e-13, 21.5, 0.0, 0.0, 0.0, 0.0, 0.0, 0.14, 0.06, 2.0)
-    ends = rest_at(s, start, step, DRIVEN_BY_FORCE, law)
-    assert (ends.f_in, ends.f_out, ends.x_in, ends.x_out) == (21.0, 22.3, 0.7, 0.1)
+    step = Step(1e-13, Given(21.5, 0.0), Given(0.0, 0.0), Given(0.0, 0.0), 0.14, 0.06, 2.0)
+    ends = rest_at(s, start, step, at(law, DRIVEN_BY_FORCE))
+    assert (ends.drive.tension, ends.drive.x) == (21.0, 0.7)
+    assert (ends.load.tension, ends.load.x) == (22.3, 0.1)
     left = [0.5, *-np.diff(tensions), 22.3 - (23.0 + KL * 0.1)]
     s[DEFLECTION_HISTORY : DEFLECTION_HISTORY + N + 2] = s[DEFLECTION : DEFLECTION + N + 2]
-    assert balance(s, step, DRIVEN_BY_FORCE, law) == pytest.approx(
+    assert balance(s, step, at(law, DRIVEN_BY_FORCE)) == pytest.approx(
         abs(s[RESIDUAL]) + abs(s[RESIDUAL + LAST]), abs=1e-6
     )
     np.testing.assert_allclose(s[FRICTION + 1 : FRICTION + LAST], left[1:LAST], rtol=1e-5)
@@ -270,7 +298,7 @@ def test_the_phase_is_that_in_which_all_lumps_are(leans, phase):
     rig = with_values(GROUP_A, {"presliding.length_mm": 0.05})
     s, law = lumps(rig)
     s[LIMIT + 1 : LIMIT + 4] = 2.0, 3.0, 4.0
-    longest = np.array([2.0, 3.0, 4.0]) / law.bristle.stiffness + 0.05
+    longest = np.array([2.0, 3.0, 4.0]) / law.lump.bristle.stiffness + 0.05
     s[DEFLECTION_NEW + 1 : DEFLECTION_NEW + 4] = (
         np.where(leans, 0.991, 0.989) * longest * np.sign(np.add(leans, 0.1))
     )
@@ -283,31 +311,31 @@ def test_a_tendon_hangs_where_nothing_pulls_and_the_drive_is_too_near():
     straight = -(F0 - lost) / KL - F0 * GROUP_A.sheath_length_mm / GROUP_A.tendon_stiffness_N
     assert unloaded_load(lost, law) == pytest.approx(-(F0 - lost) / KL)
     assert shortening(s, law) == pytest.approx(-straight - (F0 - lost) / KL)
-    times, pushed = np.array([0.0, 1.0]), ENDS._replace(f_in=-1e-6)
+    pushed, pulled = (ENDS._replace(drive=ENDS.drive._replace(tension=f)) for f in (-1e-6, 0.0))
 
     def slack(off, ends=pushed, boundary=LOADED_BY_SPRING):
-        course = course_of([straight + off] * 2, GROUP_A, lost=lost)
-        return has_gone_slack(s, times, course, 1, 1.0, ends, boundary, law)
+        course = course_of([straight + off] * 2, GROUP_A, lost=lost, time_s=[0.0, 1.0])
+        return has_gone_slack(s, course, 1, 1.0, ends, at(law, boundary))
 
     assert slack(-1e-6)
     assert not slack(1e-6)
-    assert not slack(-1e-6, ends=ENDS._replace(f_in=0.0))
+    assert not slack(-1e-6, ends=pulled)
     assert not slack(-1e-6, boundary=LOADED_BY_FORCE)
 
 
 def run(drive, times, *, steps=OWN_STEPS, rig=GROUP_A, tolerance=1e-3):
     start = np.zeros((2, N + 2))
     start[1] = F0
-    course = course_of(drive, rig)
-    return lugre_chain(times, course, start, rig, LOADED_BY_SPRING, N, tolerance, steps)
+    course = course_of(drive, rig, time_s=times)
+    return lugre_chain(course, start, rig, LOADED_BY_SPRING, N, StepControl(tolerance, steps))
 
 
 def test_a_tendon_that_nothing_moves_asks_nothing_of_newtons_method():
     """Steps grow, at most to the double, from within the first sample to the last one."""
     times = np.array([0.0, 1e-3, 0.2, 0.3])
-    columns, phase, progress = run(np.zeros(4), times)
-    assert phase.tolist() == [0, 0, 0, 0]
-    np.testing.assert_allclose(columns, np.tile([[0.0], [0.0], [F0], [F0]], 4), atol=1e-9)
+    output, progress = run(np.zeros(4), times)
+    assert output.phase.tolist() == [0, 0, 0, 0]
+    np.testing.assert_allclose(output[:4], np.tile([[0.0], [0.0], [F0], [F0]], 4), atol=1e-9)
     assert (progress.iterations, progress.reached_s) == (0, 0.3)
     assert progress.tries == progress.step_ends_s.size
     lengths = np.diff(progress.step_ends_s, prepend=0.0)
@@ -322,7 +350,7 @@ def test_steps_that_are_given_end_there_and_at_turns():
     times = np.linspace(0.0, 0.4, 9)
     steps = np.array([0.02, 0.11, 0.29, 0.31])
     drive = np.array([0.0, 0.01, 0.02, 0.03, 0.02, 0.01, 0.0, -0.01, -0.02])
-    _, _, progress = run(drive, times, steps=steps, tolerance=math.inf)
+    _, progress = run(drive, times, steps=steps, tolerance=math.inf)
     ends = progress.step_ends_s
     assert np.all(np.diff(ends) > 0.0)
     for end in (*steps, 0.15, 0.4):  # the drive turns at 0.15
@@ -336,9 +364,9 @@ def test_a_run_that_cannot_be_followed_is_given_up_there(steps):
     """The curve through the samples has a slope up to two before the first that is unknown."""
     times, drive = np.linspace(0.0, 1.0, 11), np.zeros(11)
     drive[7:] = math.nan
-    columns, phase, progress = run(drive, times, steps=steps)
-    assert phase.tolist() == [0] * 5 + [UNCONVERGED] * 6
-    np.testing.assert_allclose(columns, np.tile([[0.0], [0.0], [F0], [F0]], 11), atol=1e-9)
+    output, progress = run(drive, times, steps=steps)
+    assert output.phase.tolist() == [0] * 5 + [UNCONVERGED] * 6
+    np.testing.assert_allclose(output[:4], np.tile([[0.0], [0.0], [F0], [F0]], 11), atol=1e-9)
     assert 0.5 - 1e-9 < progress.reached_s < 0.5 + 1e-12
     assert progress.tries > progress.step_ends_s.size
     assert progress.step_ends_s[-1] == progress.reached_s
@@ -346,9 +374,9 @@ def test_a_run_that_cannot_be_followed_is_given_up_there(steps):
 
 def test_a_run_that_ends_slack_says_so():
     times = np.linspace(0.0, 1.0, 6)
-    columns, phase, progress = run(np.linspace(0.0, -30.0, 6), times, tolerance=1e-2)
-    assert phase[-1] == SLACK
-    assert columns[2:, -1].tolist() == [0.0, 0.0]
-    assert columns[1, -1] == pytest.approx(-F0 / KL)
-    assert columns[0].tolist() == np.linspace(0.0, -30.0, 6).tolist()
+    output, progress = run(np.linspace(0.0, -30.0, 6), times, tolerance=1e-2)
+    assert output.phase[-1] == SLACK
+    assert (output.f_in[-1], output.f_out[-1]) == (0.0, 0.0)
+    assert output.x_out[-1] == pytest.approx(-F0 / KL)
+    assert output.x_in.tolist() == np.linspace(0.0, -30.0, 6).tolist()
     assert progress.reached_s == 1.0

@@ -20,14 +20,22 @@ from tests.physics.references import (
     LOADED_BY_FORCE,
     LOADED_BY_SPRING,
     TABLE_1,
+    at,
     course_of,
 )
 from tsas_cli.physics.bristles import Bristle, Bristles, friction, friction_now
+from tsas_cli.physics.course import LOAD
 from tsas_cli.physics.frames import empty_frames
 from tsas_cli.physics.lugre.balance import balance, residual_sum
-from tsas_cli.physics.lugre.chain import OWN_STEPS, lugre_chain, sample_after, sample_before
-from tsas_cli.physics.lugre.ends import ends_after, interpolation_error, write_cubic
-from tsas_cli.physics.lugre.input import DRIVE, hermite, hermite_slope, slope_at
+from tsas_cli.physics.lugre.chain import (
+    OWN_STEPS,
+    StepControl,
+    lugre_chain,
+    sample_after,
+    sample_before,
+)
+from tsas_cli.physics.lugre.ends import Samples, Span, ends_after, interpolation_error, write_cubic
+from tsas_cli.physics.lugre.input import DRIVE, Cubic, hermite, hermite_slope, slope_at
 from tsas_cli.physics.lugre.start import clear_state, lugre_laws
 from tsas_cli.physics.lugre.state import (
     DAMPING,
@@ -55,6 +63,7 @@ from tsas_cli.physics.lugre.state import (
     TENSION_HISTORY,
     TENSION_SLOPE,
     UPPER,
+    Given,
     Step,
 )
 from tsas_cli.physics.lugre.step import accept_step, bdf2, largest_increment, predict, step_error
@@ -79,14 +88,14 @@ EVERYTHING = {
 }
 LIVELY = with_values(GROUP_A, EVERYTHING)
 GH = 2e-3
-STEP = Step(GH, 30.0, 0.0, 27.0, 0.0, 0.0, 1.5, 0.14, 0.11, 1.2)
+STEP = Step(GH, Given(30.0, 0.0), Given(27.0, 0.0), Given(0.0, 1.5), 0.14, 0.11, 1.2)
 
 
 @pytest.fixture
 def state():
     """Lumps that move at random, in the middle of a step."""
     rng, s = np.random.default_rng(5), np.zeros(ROWS * PITCH)
-    law = lugre_laws(LIVELY, N)
+    law = lugre_laws(LIVELY, N, LOADED_BY_SPRING)
     clear_state(s, LIVELY, N)
     nodes = slice(0, N + 2)
     for row, size in (
@@ -110,9 +119,9 @@ def test_newtons_matrix_is_the_slope_of_what_the_forces_leave(state, boundary, t
     s[TENSION_HISTORY : TENSION_HISTORY + N + 2] += tension - 25.0
     speeds = s[RATE : RATE + N + 2].copy()
 
-    def left(at):
-        s[RATE : RATE + N + 2] = at
-        balance(s, STEP, boundary, law)
+    def left(rates):
+        s[RATE : RATE + N + 2] = rates
+        balance(s, STEP, at(law, boundary))
         return s[RESIDUAL : RESIDUAL + N + 2].copy()
 
     slopes = np.zeros((N + 2, N + 2))
@@ -125,7 +134,7 @@ def test_newtons_matrix_is_the_slope_of_what_the_forces_leave(state, boundary, t
     matrix += np.diag(s[LOWER + 1 : LOWER + N + 2], -1) + np.diag(s[UPPER : UPPER + N + 1], 1)
     if boundary.load == LOADED_BY_DISPLACEMENT.load:  # its row is in speeds, with the slope −1
         assert rest[LAST] == pytest.approx(
-            (STEP.load - s[POSITION_HISTORY + LAST]) / GH - speeds[LAST]
+            (STEP.load.value - s[POSITION_HISTORY + LAST]) / GH - speeds[LAST]
         )
     largest = np.abs(matrix).max(axis=1, keepdims=True)
     assert np.all(np.abs(slopes + matrix) < 1e-5 * largest)
@@ -142,9 +151,9 @@ def bristle_by_hand(before, speed, limit, bristle):
 @pytest.mark.parametrize("boundary", [LOADED_BY_SPRING, LOADED_BY_FORCE, DRIVEN_BY_FORCE])
 def test_what_the_forces_leave_is_newtons_law_of_each_node(state, boundary):
     s, law = state
-    total = balance(s, STEP, boundary, law)
+    total = balance(s, STEP, at(law, boundary))
     w = s[RATE : RATE + N + 2]
-    v = w + STEP.speed
+    v = w + STEP.frame.rate
     T_now = s[TENSION_HISTORY : TENSION_HISTORY + N + 1] - s[
         TENSION_SLOPE : TENSION_SLOPE + N + 1
     ] * np.diff(w)
@@ -155,7 +164,7 @@ def test_what_the_forces_leave_is_newtons_law_of_each_node(state, boundary):
         pulled = s[DEFLECTION_HISTORY + i] + GH * v[i] >= 0.0
         limit = (STEP.pulled if pulled else STEP.released) * mean * (mean / 25.0) ** 0.3
         limit *= 1.0 + 0.4 * math.exp(-((v[i] / 2.0) ** 2))
-        f, z = bristle_by_hand(s[DEFLECTION_HISTORY + i], v[i], limit, law.bristle)
+        f, z = bristle_by_hand(s[DEFLECTION_HISTORY + i], v[i], limit, law.lump.bristle)
         inertia = 0.0025e-6 * LIVELY.sheath_length_mm / N * (v[i] - s[SPEED_HISTORY + i]) / GH
         left[i] = T_now[i - 1] - T_now[i] - f - inertia
         assert s[FRICTION + i] == pytest.approx(f, rel=1e-7)
@@ -210,7 +219,7 @@ def test_friction_now_is_that_of_a_step_of_no_time(speed):
 
 def after_polynomial(powers, times):
     """Return lumps that have followed a polynomial of time through three unequal steps."""
-    s, law = np.zeros(ROWS * PITCH), lugre_laws(GROUP_A, N)
+    s, law = np.zeros(ROWS * PITCH), lugre_laws(GROUP_A, N, LOADED_BY_SPRING)
     clear_state(s, GROUP_A, N)
     curve = np.polynomial.Polynomial(powers)
     speed = curve.deriv()
@@ -296,20 +305,21 @@ def test_what_is_kept_moves_one_step_back(state):
         (SPEED_1, SPEED),
     ):
         np.testing.assert_array_equal(row_of(s, now), row_of(before, then))
-    np.testing.assert_array_equal(row_of(s, SPEED), row_of(before, RATE) + STEP.speed)
+    np.testing.assert_array_equal(row_of(s, SPEED), row_of(before, RATE) + STEP.frame.rate)
 
 
 def test_the_ends_after_a_step_have_the_rates_of_their_tensions(state):
     s, law = state
-    balance(s, STEP, LOADED_BY_SPRING, law)
-    ends = ends_after(s, STEP._replace(position=4.0), law)
+    balance(s, STEP, at(law, LOADED_BY_SPRING))
+    ends = ends_after(s, STEP._replace(frame=Given(4.0, 1.5)), law)
     w = s[RATE : RATE + N + 2]
-    assert ends.f_in_rate == pytest.approx(s[STIFFNESS] * (w[0] - w[1]))
-    assert ends.f_out_rate == pytest.approx(s[STIFFNESS + N] * (w[N] - w[LAST]))
-    assert ends.x_in == pytest.approx(s[POSITION_HISTORY] + GH * w[0])
-    assert ends.x_out == pytest.approx(s[POSITION_HISTORY + LAST] + GH * w[LAST] + 4.0)
-    assert (ends.w_in, ends.v_out) == (w[0], w[LAST] + STEP.speed)
-    assert (ends.f_in, ends.f_out, ends.guide) == (s[TENSION], s[TENSION + N], s[FRICTION + LAST])
+    assert ends.drive.tension_rate == pytest.approx(s[STIFFNESS] * (w[0] - w[1]))
+    assert ends.load.tension_rate == pytest.approx(s[STIFFNESS + N] * (w[N] - w[LAST]))
+    assert ends.drive.x == pytest.approx(s[POSITION_HISTORY] + GH * w[0])
+    assert ends.load.x == pytest.approx(s[POSITION_HISTORY + LAST] + GH * w[LAST] + 4.0)
+    assert (ends.drive.v, ends.load.v) == (w[0], w[LAST] + STEP.frame.rate)
+    assert (ends.drive.tension, ends.load.tension) == (s[TENSION], s[TENSION + N])
+    assert ends.guide == s[FRICTION + LAST]
 
 
 CUBIC = np.polynomial.Polynomial([1.0, -2.0, 0.5, 3.0])
@@ -319,13 +329,14 @@ def test_samples_within_a_step_are_read_off_the_cubic_with_its_values_and_rates(
     t, h = 0.4, 0.3
     times, columns = np.linspace(0.0, 1.0, 21), np.zeros((4, 21))
     a, b = t, t + h
-    ends = (CUBIC(a), CUBIC.deriv()(a), CUBIC(b), CUBIC.deriv()(b))
-    write_cubic(columns, 2, 9, 13, times, t, h, ends)
+    ends = Cubic(CUBIC(a), CUBIC.deriv()(a), CUBIC(b), CUBIC.deriv()(b))
+    course = course_of(times, GROUP_A, time_s=times)
+    write_cubic(columns, 2, Samples(9, 13), course, Span(t, h), ends)
     np.testing.assert_allclose(columns[2, 9:13], CUBIC(times[9:13]), rtol=1e-12)
     assert not np.any(columns[2, [8, 13]])
     for part in (0.0, 0.2, 0.9, 1.0):
-        assert hermite(part, h, *ends) == pytest.approx(CUBIC(t + part * h))
-        assert hermite_slope(part, h, *ends) == pytest.approx(CUBIC.deriv()(t + part * h))
+        assert hermite(part, h, ends) == pytest.approx(CUBIC(t + part * h))
+        assert hermite_slope(part, h, ends) == pytest.approx(CUBIC.deriv()(t + part * h))
 
 
 @pytest.mark.parametrize("bumped", [4, 7, 9])
@@ -333,24 +344,27 @@ def test_what_leaves_the_cubic_within_a_step_is_seen(bumped):
     """Three of the samples in between are looked at, of eight."""
     times = np.linspace(0.0, 1.0, 12)
     t, h = 0.5 * (times[1] + times[2]), times[10] - 0.5 * (times[1] + times[2])
-    ends = (CUBIC(t), CUBIC.deriv()(t), CUBIC(t + h), CUBIC.deriv()(t + h))
-    course = np.tile(CUBIC(times), (2, 1))
-    assert interpolation_error(times, course, 1, 1, 9, t, h, ends) == pytest.approx(0.0, abs=1e-12)
+    ends = Cubic(CUBIC(t), CUBIC.deriv()(t), CUBIC(t + h), CUBIC.deriv()(t + h))
+    course = course_of(CUBIC(times), GROUP_A, load=CUBIC(times), time_s=times)
+    off = interpolation_error(course, LOAD, Samples(2, 9), Span(t, h), ends)
+    assert off == pytest.approx(0.0, abs=1e-12)
     looked_at = 1 + 1 + np.arange(1, 4) * (9 - 1 - 1) // 4
-    course[1, bumped] += 0.25
-    off = interpolation_error(times, course, 1, 1, 9, t, h, ends)
+    course[LOAD, bumped] += 0.25
+    off = interpolation_error(course, LOAD, Samples(2, 9), Span(t, h), ends)
     assert off == pytest.approx(0.25 if bumped in looked_at else 0.0, abs=1e-12)
-    assert interpolation_error(times, course, 1, bumped - 1, bumped, t, h, ends) == 0.0
+    none = Samples(bumped, bumped)
+    assert interpolation_error(course, LOAD, none, Span(t, h), ends) == 0.0
 
 
 def test_an_input_of_one_sample_stands_still():
-    assert slope_at(np.zeros(1), course_of([3.0], GROUP_A), DRIVE, 0) == 0.0
+    assert slope_at(course_of([3.0], GROUP_A), DRIVE, 0) == 0.0
 
 
 def test_samples_before_and_after_a_time():
     times = np.array([0.0, 1.0, 2.0, 3.0, 4.0])
-    assert [sample_before(times, 0, t) for t in (0.5, 1.0, 1.5, 4.0)] == [0, 0, 1, 3]
-    assert sample_before(times, 2, 2.5) == 2
+    course = course_of(times, GROUP_A, time_s=times)
+    assert [sample_before(course, 0, t) for t in (0.5, 1.0, 1.5, 4.0)] == [0, 0, 1, 3]
+    assert sample_before(course, 2, 2.5) == 2
     assert [sample_after(times, 0, t) for t in (-1.0, 0.0, 1.5, 4.0)] == [0, 1, 2, 5]
 
 
@@ -402,15 +416,16 @@ def small_run(problem, steps=OWN_STEPS, frames=None):
     times = np.linspace(0.0, 0.25, 51)
     start = np.zeros((2, N + 2))
     start[1] = SMALL.preload_N
-    course = course_of(problem.drive.position(times), SMALL)
-    call = (times, course, start, SMALL, LOADED_BY_SPRING, N, 2e-5, steps)
+    course = course_of(problem.drive.position(times), SMALL, time_s=times)
+    call = (course, start, SMALL, LOADED_BY_SPRING, N, StepControl(2e-5, steps))
     return times, lugre_chain(*call) if frames is None else lugre_chain(*call, frames)
 
 
 @pytest.mark.parametrize("steps", [OWN_STEPS, np.arange(5e-4, 0.25, 5e-4)], ids=["own", "given"])
 def test_a_run_is_that_of_a_general_solver(solved, steps):
     problem, expected = solved
-    _, (columns, phase, progress) = small_run(problem, steps)
+    _, (run, progress) = small_run(problem, steps)
+    columns, phase = np.array(run[:4]), run.phase
     assert not np.any(phase == 3)
     assert progress.reached_s == pytest.approx(0.25)
     every = columns[:, ::2]
@@ -421,7 +436,8 @@ def test_a_run_is_that_of_a_general_solver(solved, steps):
 def test_along_the_tendon_are_the_tensions_of_its_ends(solved):
     samples = np.array([0, 7, 20, 31, 50])
     frames = empty_frames(samples, N)
-    _, (columns, phase, _) = small_run(solved[0], frames=frames)
+    _, (run, _) = small_run(solved[0], frames=frames)
+    columns, phase = np.array(run[:4]), run.phase
     np.testing.assert_allclose(frames.tension_N[:, 0], columns[2, samples], rtol=1e-9)
     np.testing.assert_allclose(frames.tension_N[:, -1], columns[3, samples], rtol=1e-9)
     alike = np.all(frames.slip == frames.slip[:, :1], axis=1)

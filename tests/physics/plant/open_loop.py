@@ -2,8 +2,18 @@
 
 import numpy as np
 
-from tsas_cli.controllers.closed_loop import F_IN, F_OUT, MOTOR, X_IN, X_OUT, close_loop
-from tsas_cli.controllers.closed_loop import followed_from as rest_at
+from tsas_cli.controllers.closed_loop import (
+    F_IN,
+    F_OUT,
+    MOTOR,
+    X_IN,
+    X_OUT,
+    DriveSensor,
+    LoopPlant,
+    Wanted,
+    close_loop,
+    followed_from,
+)
 from tsas_cli.controllers.pid import Pid
 from tsas_cli.controllers.signals import error_filter
 from tsas_cli.physics.plant.lugre_plant import empty_lumps
@@ -25,19 +35,17 @@ def run(rig, motor_mm, step_s, *, lumped, n=50, substeps=4, actuator=ACTUATOR, l
     path = np.zeros((4, m))
     path[0] = motor_mm
     columns, unsettled, done = close_loop(
-        path,
-        rpm,
-        np.zeros(m),
-        0.0,
-        *error_filter(10.0, step_s),
+        Wanted(path, rpm),
+        DriveSensor(step_s, np.zeros(m), 0.0, *error_filter(10.0, step_s)),
         laws,
-        *rest_at(float(motor_mm[0]), rig, actuator, n),
-        (rig, later or rig),
-        at,
-        actuator,
-        n,
-        step_s,
-        substeps,
+        LoopPlant(
+            actuator=actuator,
+            rigs=(rig, later or rig),
+            change_at=at,
+            substeps=substeps,
+            nodes=n,
+            start=followed_from(float(motor_mm[0]), rig, actuator, n),
+        ),
         empty_lumps() if lumped else None,
     )
     assert done == m

@@ -8,7 +8,7 @@ from scipy.linalg import expm
 
 from tests.both_ways import answers
 from tests.physics.plant.open_loop import ACTUATOR, run
-from tests.physics.references import GROUP_A, TABLE_1
+from tests.physics.references import GROUP_A, LOADED_BY_SPRING, TABLE_1
 from tsas_cli.effects import EFFECTS
 from tsas_cli.physics.bristles import TONNES_PER_KG, Bristles
 from tsas_cli.physics.lugre.start import lugre_laws, segments
@@ -110,9 +110,9 @@ def test_the_bristles_of_the_paper_are_within_a_percent_of_the_slip_chain(dampin
 def linear(rig, actuator, n, speed_mm_s, step_s, samples):
     """Return x_in, x_out, f_in, f_out of a rig without friction whose motor sets off, exactly."""
     k, c = segments(rig, n)
-    law, nodes = lugre_laws(rig, n), n + 2
+    law, nodes = lugre_laws(rig, n, LOADED_BY_SPRING), n + 2
     load_mass = TONNES_PER_KG * rig.effects.load_inertia.mass_kg
-    mass = np.array([actuator.inertia_N_s2_per_mm, *[law.lump_mass] * n, load_mass])
+    mass = np.array([actuator.inertia_N_s2_per_mm, *[law.lump.mass] * n, load_mass])
     spring, damper = np.zeros((nodes, nodes)), np.zeros((nodes, nodes))
     for matrix, values in ((spring, k), (damper, c)):
         for j, value in enumerate(values):

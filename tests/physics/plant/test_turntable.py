@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from tests.physics.references import GROUP_A
-from tsas_cli.physics.boundary import SPRING, Boundary
+from tests.physics.references import DRIVEN_BY_FORCE, GROUP_A
+from tsas_cli.physics.course import Losses
 from tsas_cli.physics.ends import Drive
-from tsas_cli.physics.plant.turntable import Actuator, Turntable, advance_motor, step_plant
+from tsas_cli.physics.plant.slip_plant import step_plant
+from tsas_cli.physics.plant.turntable import Actuator, DriveStep, Motor, Turntable, advance_motor
 from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import with_values
 from tsas_cli.physics.slip.chain import tension_at_sensor
@@ -30,24 +31,21 @@ class Run:
     """Columns of a run from rest, shape (m,): one motor speed asked for per step."""
 
     def __init__(self, asked_rpm, rig=GROUP_A, *, drive=DRIVE, h=1e-3, n=N):
-        table, chain = (
-            Turntable(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, rig.preload_N, 0.0),
-            chain_at_rest(rig, n),
-        )
-        now, laws = Moment(rig.preload_N, 0.0, 0.0, 0.0, 0.0, 0.0, math.inf), slip_laws(rig, n)
+        motor, table = Motor(0.0, 0.0), Turntable(0.0, 0.0, 0.0, 0.0, rig.preload_N, 0.0)
+        chain, laws = chain_at_rest(rig, n), slip_laws(rig, n, DRIVEN_BY_FORCE)
+        now = Moment(rig.preload_N, 0.0, Losses(0.0, 0.0, 0.0, 0.0), math.inf)
         rows = []
         for k, asked in enumerate(asked_rpm):
-            table = advance_motor(table, float(asked), drive, h)
-            table, now, settled = step_plant(
-                table, chain, now, (k + 1) * h, rig, laws, drive, h, 1e-5
-            )
+            motor = advance_motor(motor, float(asked), drive, h)
+            step = DriveStep(drive, motor.mm, (k + 1) * h, h)
+            table, now, settled = step_plant(table, chain, now, rig, laws, step)
             assert settled
             stretch = 0.5 * np.sum(
                 chain[COMPLIANCE : COMPLIANCE + n + 1]
                 * (chain[TENSION : TENSION + n + 1] - F0) ** 2
             )
-            f_out = tension_at_sensor(chain, now, Boundary(FREE_DRIVE, SPRING), laws)
-            rows.append((*table, chain[POSITION], chain[POSITION + n + 1], f_out, stretch))
+            f_out = tension_at_sensor(chain, now, laws)
+            rows.append((*motor, *table, chain[POSITION], chain[POSITION + n + 1], f_out, stretch))
         columns = np.array(rows).T
         self.time_s = h * np.arange(1, 1 + columns.shape[1])
         self.motor_rpm, self.motor, self.x, _, self.v = columns[:5]
@@ -62,7 +60,7 @@ def there_and_back(*rpm, hold=0.0, each_s=0.2, h=1e-3):
 
 @pytest.mark.parametrize("lag", [0.002, 0.05])
 def test_the_motor_is_exact_for_a_speed_that_is_held(lag):
-    start = Turntable(*np.arange(1.0, 9.0))
+    start = Motor(1.0, 2.0)
     h, asked = 0.03, -700.0
     now = advance_motor(start, asked, DRIVE._replace(motor_lag_s=lag), h)
     exact = solve_ivp(
@@ -73,9 +71,7 @@ def test_the_motor_is_exact_for_a_speed_that_is_held(lag):
 
 
 def test_a_motor_without_lag_has_its_speed_at_once():
-    now = advance_motor(
-        Turntable(5.0, 1.0, *np.zeros(6)), 300.0, DRIVE._replace(motor_lag_s=0.0), 0.01
-    )
+    now = advance_motor(Motor(5.0, 1.0), 300.0, DRIVE._replace(motor_lag_s=0.0), 0.01)
     assert now[:2] == pytest.approx((300.0, 1.0 + 300.0 * K * 0.01))
 
 

@@ -5,7 +5,7 @@ import pytest
 
 from tests.physics.references import GROUP_A, wrap_of
 from tsas_cli.physics.closed_form.capstan import dead_band_width
-from tsas_cli.physics.ends import Drive, friction_course
+from tsas_cli.physics.ends import Drive, losses_over
 from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import with_values
 from tsas_cli.physics.slip.inverse import inverse_chain
@@ -28,7 +28,7 @@ rigs = pytest.mark.parametrize("rig", [GROUP_A, OTHER], ids=["group a", "other"]
 def path_to(wanted_N, rig=GROUP_A, *, n=50, speed=0.0):
     """Return the inverse model's path; none of its samples may be missed."""
     time_s = STEP_S * np.arange(wanted_N.size)
-    friction = friction_course(time_s, np.broadcast_to(speed, time_s.shape), 0.0, rig)
+    friction = losses_over(time_s, np.broadcast_to(speed, time_s.shape), 0.0, rig)
     path, tension, missed = inverse_chain(wanted_N, friction, STEP_S, rig, n)
     assert missed == 0
     return path, tension
@@ -143,7 +143,7 @@ def test_a_force_that_no_place_gives_is_told_as_missed():
     rig = with_values(GROUP_A, {"load_spring_nonlinearity.quadratic_per_mm": -0.05})
     most = 25.0 + 1.579 / (4.0 * 0.05)
     wanted = np.concatenate((np.linspace(25.0, most - 0.1, 50), np.full(3, most + 5.0)))
-    friction = friction_course(np.zeros(wanted.size), np.zeros(wanted.size), 0.0, rig)
+    friction = losses_over(np.zeros(wanted.size), np.zeros(wanted.size), 0.0, rig)
     path, _, missed = inverse_chain(wanted, friction, STEP_S, rig, 10)
     assert missed == 3
     assert (path[-3:] == path[-4]).all()

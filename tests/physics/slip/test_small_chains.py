@@ -22,7 +22,7 @@ from tests.physics.references import (
 from tsas_cli.effects import Effects
 from tsas_cli.physics.boundary import DISPLACEMENT, SPRING
 from tsas_cli.physics.rig import with_values
-from tsas_cli.physics.slip.chain import rest_after, slip_chain
+from tsas_cli.physics.slip.chain import moment, rest_after, slip_chain
 
 N = 3
 A = wrap_of(GROUP_A)
@@ -69,6 +69,11 @@ def states(course, rig, boundary):
     return [(x, T[:-1]) for x, T in found]
 
 
+def moments(course):
+    """Return the moment at each sample."""
+    return [moment(course, i) for i in range(course.shape[1])]
+
+
 def gives(rig):
     """Return what each segment gives [mm/N]: halves at both ends, all else in series with them."""
     effects, EA = rig.effects, rig.tendon_stiffness_N
@@ -94,7 +99,7 @@ class Nodes:
         self.rig, self.share = rig, np.zeros(N + 1)
 
     def hold(self, i, way, before, behind, now):
-        _, _, pulled, released, viscous_N, _, _ = now
+        pulled, released, viscous_N, _ = now.losses
         mean = 0.5 * (before + behind)
         exponent = self.rig.effects.load_dependent_friction.exponent
         factor = (abs(mean) / self.rig.preload_N) ** exponent
@@ -123,8 +128,9 @@ def hold_everywhere(course, rig, boundary):
     F0, effects, give = rig.preload_N, rig.effects, gives(rig)
     nodes, x_before, speed = Nodes(rig), np.zeros(N + 2), 0.0
     ways = []
-    for now, (x, T) in zip(course.T, states(course, rig, boundary), strict=True):
-        drive, load, _, _, _, lost_N, step_s = now
+    for now, (x, T) in zip(moments(course), states(course, rig, boundary), strict=True):
+        drive, load, losses, step_s = now
+        lost_N = losses.preload_N
         way = x - x_before
         np.testing.assert_allclose(x[:-1] - x[1:], give * (T - F0), atol=ROUNDING)
         for i in range(1, N + 1):

@@ -13,15 +13,17 @@ from tests.physics.references import (
     LOADED_BY_DISPLACEMENT,
     LOADED_BY_FORCE,
     LOADED_BY_SPRING,
+    at,
+    moment,
 )
 from tsas_cli.effects.load_spring_nonlinearity import LoadSpringNonlinearity
-from tsas_cli.physics.boundary import unloaded_position
+from tsas_cli.physics.boundary import moving_friction, unloaded_position
+from tsas_cli.physics.course import Losses
 from tsas_cli.physics.rig import with_values
 from tsas_cli.physics.slip.ends import (
     drive_position,
     load_force,
     load_tangent,
-    moving_friction,
     update_end,
     update_ends,
     update_load_speed,
@@ -68,7 +70,7 @@ N = 3
 LAST = N + 1
 NODES = slice(1, N + 1)
 F0, KL = 25.0, 1.579
-NOW = Moment(30.0, 27.0, 0.6, 0.45, 1.2, 2.0, 0.05)
+NOW = Moment(30.0, 27.0, Losses(0.6, 0.45, 1.2, 2.0), 0.05)
 TENSIONS = np.array([40.0, 31.0, 22.0, 13.0])
 EXPONENTS = [-1.0, -0.4, 0.3, 1.0]
 
@@ -76,7 +78,7 @@ EXPONENTS = [-1.0, -0.4, 0.3, 1.0]
 def laws(**values):
     """Return the laws of a rig with these effects, named with two underscores for a dot."""
     rig = with_values(GROUP_A, {name.replace("__", "."): v for name, v in values.items()})
-    return slip_laws(rig, N)
+    return slip_laws(rig, N, LOADED_BY_SPRING)
 
 
 @pytest.fixture
@@ -160,11 +162,9 @@ def test_sliding_nodes_lose_half_of_the_viscous_loss_on_either_side(chain):
         passed = row(chain, FACTOR)[i] * before - row(chain, DROP)[i]
         assert passed == pytest.approx(behind)
         assert row(chain, FACTOR)[i] == pytest.approx(math.exp(-slip * wrap / N))
-    assert not update_relations(
-        chain, NOW._replace(pulled=0.7), straight
-    )  # by `set_friction` alone
-    set_friction(chain, NOW._replace(pulled=0.7), straight)
-    assert update_relations(chain, NOW._replace(pulled=0.7), straight)
+    assert not update_relations(chain, moment(NOW, pulled=0.7), straight)  # by `set_friction` alone
+    set_friction(chain, moment(NOW, pulled=0.7), straight)
+    assert update_relations(chain, moment(NOW, pulled=0.7), straight)
 
 
 def behind_of(before, share, exponent):
@@ -303,9 +303,9 @@ def test_a_node_that_goes_against_its_slip_is_held(chain, slip):
     row(chain, POSITION_BEFORE)[2] = 0.3
     for way, back in ((1e-3, False), (0.0, False), (-1e-3, True), (-0.5e-12, False)):
         row(chain, POSITION)[2] = 0.3 + slip * way
-        assert slips_backwards(2, chain, 0.01) == back
+        assert slips_backwards(2, chain, at(laws(), scale=0.01)) == back
     row(chain, POSITION)[2] = 0.3 - slip * 2e-12
-    assert slips_backwards(2, chain, 0.01)
+    assert slips_backwards(2, chain, at(laws(), scale=0.01))
 
 
 def test_a_node_is_pulled_loose_outside_of_the_capstan_ratio(chain):
@@ -346,12 +346,12 @@ def test_what_the_load_pulls_back_with_is_a_tangent(chain, mass, step_s):
 
     heavy = laws(load_inertia__mass_kg=mass, **SPRING)
     row(chain, POSITION)[LAST] = x = 1.4
-    now = NOW._replace(step_s=step_s)
+    now = moment(NOW, step_s=step_s)
     slope, value = load_tangent(chain, now, heavy)
     assert slope == pytest.approx((pull(x + 1e-5) - pull(x - 1e-5)) / 2e-5, rel=1e-7)
     assert value + slope * x == pytest.approx(pull(x))
-    assert load_force(chain, now, LOADED_BY_SPRING, heavy) == pytest.approx(pull(x))
-    assert load_force(chain, now, LOADED_BY_FORCE, heavy) == 27.0
+    assert load_force(chain, now, at(heavy, LOADED_BY_SPRING)) == pytest.approx(pull(x))
+    assert load_force(chain, now, at(heavy, LOADED_BY_FORCE)) == 27.0
 
 
 def test_a_mass_takes_up_its_speed_in_a_hundredth_of_a_second(chain):
@@ -371,9 +371,9 @@ GUIDE = {"load_friction__before_sensor_N": 1.5, "load_friction__after_sensor_N":
 
 def test_the_guide_that_is_felt_at_the_load():
     guided = laws(**GUIDE)
-    assert moving_friction(LOADED_BY_SPRING, guided) == 4.5
-    assert moving_friction(LOADED_BY_FORCE, guided) == 1.5
-    assert moving_friction(LOADED_BY_DISPLACEMENT, guided) == 0.0
+    assert moving_friction(at(guided, LOADED_BY_SPRING).load) == 4.5
+    assert moving_friction(at(guided, LOADED_BY_FORCE).load) == 1.5
+    assert moving_friction(at(guided, LOADED_BY_DISPLACEMENT).load) == 0.0
 
 
 AT_DRIVE = {"drive_friction__friction_N": 2.0, "proximal_spring__stiffness_N_per_mm": 4.0}
@@ -385,9 +385,9 @@ def test_where_the_drives_end_is(chain, slip):
     rubs, free = laws(**AT_DRIVE), laws(proximal_spring__stiffness_N_per_mm=4.0)
     chain[SWEEP_P], chain[SWEEP_Q], chain[SWEEP_R], chain[POSITION_BEFORE] = 3.0, 50.0, 2.0, 0.7
     chain[SLIP] = slip
-    assert drive_position(chain, NOW, LOADED_BY_SPRING, rubs) == 30.0
+    assert drive_position(chain, NOW, at(rubs, LOADED_BY_SPRING)) == 30.0
     for law, friction in ((rubs, 2.0), (free, 0.0)):
-        x = drive_position(chain, NOW, DRIVEN_BY_FORCE, law)
+        x = drive_position(chain, NOW, at(law, DRIVEN_BY_FORCE))
         if slip == 0.0 and friction:
             assert x == 0.7
         else:
@@ -398,19 +398,19 @@ def test_where_the_drives_end_is(chain, slip):
 def test_an_end_slips_where_it_is_pulled_by_more_than_its_friction(chain):
     for pull, expected in ((2.0, 0), (-2.0, 0), (2.0001, 1), (-2.0001, -1)):
         chain[SLIP] = 0
-        assert update_end(0, pull, 2.0, chain, 0.01) == (expected != 0)
+        assert update_end(0, pull, 2.0, chain, at(laws(), scale=0.01)) == (expected != 0)
         assert chain[SLIP] == expected
     chain[SLIP], chain[POSITION_BEFORE], chain[POSITION] = 1, 0.5, 0.6
-    assert not update_end(0, 0.0, 2.0, chain, 0.01)
+    assert not update_end(0, 0.0, 2.0, chain, at(laws(), scale=0.01))
     chain[POSITION] = 0.4
-    assert update_end(0, 0.0, 2.0, chain, 0.01)
+    assert update_end(0, 0.0, 2.0, chain, at(laws(), scale=0.01))
     assert chain[SLIP] == 0
 
 
 def ends_wrong(chain, boundary, law, *, slip=(0.0, 0.0)):
     """Say whether an end was revised; and return how both slip then."""
     chain[SLIP], row(chain, SLIP)[LAST] = slip
-    wrong = update_ends(chain, NOW, boundary, law, 0.01)
+    wrong = update_ends(chain, NOW, at(law, boundary, 0.01))
     return SimpleNamespace(wrong=wrong, slip=(chain[SLIP], row(chain, SLIP)[LAST]))
 
 
@@ -461,6 +461,8 @@ def test_a_load_without_a_guide_is_asked_to_balance(chain):
 
 
 def test_a_spring_without_pull_is_where_its_force_is_zero():
-    assert unloaded_position(3.0, F0, KL, LoadSpringNonlinearity()) == pytest.approx(-F0 / KL)
-    x = unloaded_position(0.0, 10.0, 30.0, LoadSpringNonlinearity(0.1, 0.2))
+    straight = laws().load
+    assert unloaded_position(3.0, F0, straight) == pytest.approx(-F0 / KL)
+    bent = straight._replace(stiffness_N_per_mm=30.0, nonlinearity=LoadSpringNonlinearity(0.1, 0.2))
+    x = unloaded_position(0.0, 10.0, bent)
     assert 30.0 * x * (1.0 + 0.1 * x + 0.2 * x * x) == pytest.approx(-10.0, abs=1e-9)

@@ -15,15 +15,19 @@ from tests.physics.references import (
     LOADED_BY_DISPLACEMENT,
     LOADED_BY_FORCE,
     LOADED_BY_SPRING,
+    at,
     course_of,
     follow,
+    moment,
 )
 from tsas_cli.physics.boundary import FORCE, SPRING, Boundary
+from tsas_cli.physics.course import Losses
 from tsas_cli.physics.frames import empty_frames
 from tsas_cli.physics.mesh import segment_compliances
 from tsas_cli.physics.phases import UNCONVERGED
 from tsas_cli.physics.rig import with_values
 from tsas_cli.physics.slip.chain import (
+    ChainEnds,
     between,
     go_slack,
     initial_state,
@@ -33,6 +37,7 @@ from tsas_cli.physics.slip.chain import (
     tension_at_sensor,
 )
 from tsas_cli.physics.slip.chain import follow as go_on
+from tsas_cli.physics.slip.chain import moment as moment_of
 from tsas_cli.physics.slip.nodes import set_friction
 from tsas_cli.physics.slip.start import chain_at_rest, slip_laws
 from tsas_cli.physics.slip.state import (
@@ -58,7 +63,7 @@ from tsas_cli.physics.slip.step import (
 )
 
 F0, KL = 25.0, 1.579
-NOW = Moment(0.9, 0.4, 0.6, 0.45, 1.2, 2.0, math.inf)
+NOW = Moment(0.9, 0.4, Losses(0.6, 0.45, 1.2, 2.0), math.inf)
 AT_ENDS = {
     "drive_friction.friction_N": 2.0,
     "proximal_spring.stiffness_N_per_mm": 4.0,
@@ -88,7 +93,7 @@ def sliding(rig, n, slips, *, seed=4):
 
 def given(boundary):
     drive = 30.0 if boundary.drive == FORCE else 0.9
-    return NOW._replace(drive=drive, load=27.0 if boundary.load == FORCE else 0.4)
+    return moment(NOW, drive=drive, load=27.0 if boundary.load == FORCE else 0.4)
 
 
 def hold_ends(chain, n, boundary, now):
@@ -107,7 +112,7 @@ def hold_ends(chain, n, boundary, now):
     elif slip == 0.0:
         assert x[last] == chain[POSITION_BEFORE + last]
     elif boundary.load == SPRING:
-        assert tension[n] == pytest.approx(F0 - now.lost_N + KL * x[last] + 4.5 * slip)
+        assert tension[n] == pytest.approx(F0 - now.losses.preload_N + KL * x[last] + 4.5 * slip)
     else:
         assert tension[n] == pytest.approx(now.load + 1.5 * slip)
 
@@ -125,9 +130,9 @@ SLIPS = [
 @pytest.mark.parametrize("boundary", BOUNDARIES)
 def test_both_sweeps_solve_the_row_of_relations(boundary, slips):
     rig, n, now = with_values(GROUP_A, AT_ENDS), 3, given(boundary)
-    laws, chain = slip_laws(rig, n), sliding(rig, n, slips)
-    sweep_to_drive(chain, now, boundary, laws)
-    sweep_to_load(chain, now, boundary, laws)
+    laws, chain = slip_laws(rig, n, LOADED_BY_SPRING), sliding(rig, n, slips)
+    sweep_to_drive(chain, now, at(laws, boundary))
+    sweep_to_load(chain, now, at(laws, boundary))
     x, tension = chain[POSITION : POSITION + n + 2], chain[TENSION : TENSION + n + 1]
     gives = segment_compliances(rig, n)
     np.testing.assert_allclose(x[:-1] - x[1:], gives * (tension - F0), atol=1e-12)
@@ -144,10 +149,14 @@ def test_both_sweeps_solve_the_row_of_relations(boundary, slips):
 @pytest.mark.parametrize("boundary", BOUNDARIES)
 def test_both_sweeps_solve_the_row_of_bristles(boundary, n):
     rig = with_values(GROUP_A, AT_ENDS | {"presliding.length_mm": 0.05})
-    now, laws, chain = given(boundary), slip_laws(rig, n), sliding(rig, n, np.ones(n + 2))
+    now, laws, chain = (
+        given(boundary),
+        slip_laws(rig, n, LOADED_BY_SPRING),
+        sliding(rig, n, np.ones(n + 2)),
+    )
     chain[DROP_SLOPE:][1 : n + 1] = np.random.default_rng(8).uniform(0.0, 30.0, n)
-    sweep_to_drive(chain, now, boundary, laws)
-    sweep_to_load(chain, now, boundary, laws)
+    sweep_to_drive(chain, now, at(laws, boundary))
+    sweep_to_load(chain, now, at(laws, boundary))
     x, tension = chain[POSITION : POSITION + n + 2], chain[TENSION : TENSION + n + 1]
     gives = segment_compliances(rig, n)
     np.testing.assert_allclose(x[:-1] - x[1:], gives * (tension - F0), atol=1e-10)
@@ -162,7 +171,7 @@ def test_both_sweeps_solve_the_row_of_bristles(boundary, n):
 @pytest.mark.parametrize("most", [1, 2, 5])
 def test_as_many_nodes_are_revised_as_are_asked_for_from_the_drive_on(most):
     """The first, second and fourth are pulled loose, the third holds, the fifth slides back."""
-    n, straight = 5, slip_laws(GROUP_A, 5)
+    n, straight = 5, slip_laws(GROUP_A, 5, LOADED_BY_SPRING)
     chain = chain_at_rest(GROUP_A, n)
     set_friction(chain, NOW, straight)
     kept, more = math.exp(-0.6 / n), math.exp(0.45 / n)
@@ -170,8 +179,8 @@ def test_as_many_nodes_are_revised_as_are_asked_for_from_the_drive_on(most):
         [40.0, 0.9 * kept, 1.1 * more, 1.0, 0.9 * kept, 1.0]
     )
     chain[SLIP + 5], chain[POSITION + 5] = 1.0, -0.1
-    now = NOW._replace(viscous_N=0.0)
-    found = update_active_set(chain, now, straight, 0.01, most)
+    now = moment(NOW, viscous_N=0.0)
+    found = update_active_set(chain, now, at(straight, scale=0.01), most)
     assert found == min(most, 4)
     expected = [1.0, -1.0, 0.0, 1.0, 0.0]
     before = [0.0, 0.0, 0.0, 0.0, 1.0]
@@ -181,13 +190,13 @@ def test_as_many_nodes_are_revised_as_are_asked_for_from_the_drive_on(most):
 
 def test_a_node_loses_its_share_of_the_viscous_loss_before_it_is_pulled_loose():
     """0.4 N at each of three: half before the bend and half behind it."""
-    n, straight = 3, slip_laws(GROUP_A, 3)
-    now = NOW._replace(pulled=0.0, released=0.0, viscous_N=1.2)
+    n, straight = 3, slip_laws(GROUP_A, 3, LOADED_BY_SPRING)
+    now = moment(NOW, pulled=0.0, released=0.0, viscous_N=1.2)
     for drop, slips in ((0.39, 0.0), (0.41, 1.0), (-0.39, 0.0), (-0.41, -1.0)):
         chain = chain_at_rest(GROUP_A, n)
         set_friction(chain, now, straight)
         chain[TENSION : TENSION + n + 1] = 40.0 - drop * np.array([0.0, 1.0, 1.0, 1.0])
-        assert update_active_set(chain, now, straight, 0.01, n) == abs(slips)
+        assert update_active_set(chain, now, at(straight, scale=0.01), n) == abs(slips)
         assert chain[SLIP + 1 : SLIP + 4].tolist() == [slips, 0.0, 0.0]
 
 
@@ -205,20 +214,24 @@ def test_a_load_that_its_guide_holds_does_not_move_at_all():
 @pytest.mark.parametrize("values", [{}, {"load_friction.after_sensor_N": 3.0}])
 def test_a_problem_settles_at_rest_and_far_from_it(values):
     rig = with_values(GROUP_A, values)
-    chain, laws = chain_at_rest(rig, 3), slip_laws(rig, 3)
-    assert solve_sample(chain, NOW._replace(drive=0.0, lost_N=0.0), LOADED_BY_SPRING, laws, 0.01)
+    chain, laws = chain_at_rest(rig, 3), slip_laws(rig, 3, LOADED_BY_SPRING)
+    assert solve_sample(
+        chain, moment(NOW, drive=0.0, preload_N=0.0), at(laws, LOADED_BY_SPRING, 0.01)
+    )
     np.testing.assert_allclose(chain[POSITION : POSITION + 5], 0.0, atol=1e-12)
-    assert solve_sample(chain, NOW._replace(drive=20.0), LOADED_BY_SPRING, laws, 0.01)
+    assert solve_sample(chain, moment(NOW, drive=20.0), at(laws, LOADED_BY_SPRING, 0.01))
     assert chain[SLIP + 1 : SLIP + 4].tolist() == [1.0] * 3
 
 
-START = Moment(1.0, 2.0, 0.3, 0.4, 5.0, 6.0, 0.1)
-END = Moment(3.0, 6.0, 0.5, 0.8, 9.0, 14.0, 0.2)
+START = Moment(1.0, 2.0, Losses(0.3, 0.4, 5.0, 6.0), 0.1)
+END = Moment(3.0, 6.0, Losses(0.5, 0.8, 9.0, 14.0), 0.2)
 
 
 def test_the_way_between_two_samples_is_straight():
-    quarter = Moment(1.5, 3.0, 0.35, 0.5, 6.0, 8.0, 0.05)
-    np.testing.assert_allclose(between(START, END, 0.25, 0.05), quarter)
+    quarter = Moment(1.5, 3.0, Losses(0.35, 0.5, 6.0, 8.0), 0.05)
+    between_them = between(START, END, 0.25, 0.05)
+    np.testing.assert_allclose(between_them.losses, quarter.losses)
+    assert (between_them.drive, between_them.load, between_them.step_s) == (1.5, 3.0, 0.05)
     assert between(START, END, 1.0, 0.15) == END._replace(step_s=0.15)
 
 
@@ -243,26 +256,26 @@ def test_the_phase_is_that_in_which_all_nodes_are(slips, phase):
 def test_what_a_sensor_at_the_load_feels():
     """The guide's friction before it is taken off, by its share of the guide where that sticks."""
     rig = with_values(GROUP_A, AT_ENDS)
-    laws, chain = slip_laws(rig, 3), chain_at_rest(rig, 3)
+    laws, chain = slip_laws(rig, 3, LOADED_BY_SPRING), chain_at_rest(rig, 3)
     chain[TENSION + 3], chain[POSITION + 4], chain[SLIP + 4] = 40.0, 2.0, -1.0
-    assert tension_at_sensor(chain, NOW, LOADED_BY_FORCE, laws) == NOW.load
-    assert tension_at_sensor(chain, NOW, LOADED_BY_DISPLACEMENT, laws) == 41.5
+    assert tension_at_sensor(chain, NOW, at(laws, LOADED_BY_FORCE)) == NOW.load
+    assert tension_at_sensor(chain, NOW, at(laws, LOADED_BY_DISPLACEMENT)) == 41.5
     held = 40.0 - (F0 - 2.0 + 2.0 * KL)
-    felt = tension_at_sensor(chain, NOW, LOADED_BY_SPRING, laws)
+    felt = tension_at_sensor(chain, NOW, at(laws, LOADED_BY_SPRING))
     assert felt == pytest.approx(40.0 - held / 3.0)
-    bare = slip_laws(with_values(rig, {"load_friction.before_sensor_N": 0.0}), 3)
-    assert tension_at_sensor(chain, NOW, LOADED_BY_SPRING, bare) == 40.0
-    assert tension_at_sensor(chain, NOW, LOADED_BY_DISPLACEMENT, bare) == 40.0
+    bare = slip_laws(with_values(rig, {"load_friction.before_sensor_N": 0.0}), 3, LOADED_BY_SPRING)
+    assert tension_at_sensor(chain, NOW, at(bare, LOADED_BY_SPRING)) == 40.0
+    assert tension_at_sensor(chain, NOW, at(bare, LOADED_BY_DISPLACEMENT)) == 40.0
 
 
 @pytest.mark.parametrize("boundary", [LOADED_BY_SPRING, LOADED_BY_DISPLACEMENT])
 def test_a_slack_tendon_is_straight_up_to_its_load(boundary):
-    laws, chain = slip_laws(GROUP_A, 3), chain_at_rest(GROUP_A, 3)
+    laws, chain = slip_laws(GROUP_A, 3, LOADED_BY_SPRING), chain_at_rest(GROUP_A, 3)
     chain[POSITION : POSITION + 5] = -40.0, 1.0, 2.0, 3.0, 0.4
     for row in (SLIP, LOAD_SPEED, SHARE_BEFORE, TENSION_RISE):
         chain[row : row + 5] = -3.0
-    go_slack(chain, NOW, boundary, laws)
-    load = 0.4 if boundary is LOADED_BY_DISPLACEMENT else -(F0 - NOW.lost_N) / KL
+    go_slack(chain, NOW, at(laws, boundary))
+    load = 0.4 if boundary is LOADED_BY_DISPLACEMENT else -(F0 - NOW.losses.preload_N) / KL
     gives = segment_compliances(GROUP_A, 3)
     places = load - F0 * np.append(np.cumsum(gives[:0:-1])[::-1], 0.0)
     np.testing.assert_allclose(chain[POSITION + 1 : POSITION + 5], places)
@@ -331,12 +344,14 @@ def test_a_run_may_be_followed_in_two_parts():
     ):
         course = course_of(drive, rig, load=load, **varying)
         whole = slip_chain(course, rig, boundary, 3)
-        state = initial_state(course, rig, boundary, 3)
-        parts = [go_on(course[:, a:b], state, rig, boundary, 3) for a, b in ((0, 5), (5, m))]
+        state, parts = initial_state(course, rig, boundary, 3), []
+        for part in (course[:, :5].copy(), course[:, 5:].copy()):
+            output, state = go_on(part, state, rig, boundary, 3)
+            parts.append(output)
         for k, column in enumerate(whole):
             np.testing.assert_array_equal(np.concatenate([part[k] for part in parts]), column)
-        np.testing.assert_array_equal(state.before, course[:, -1])
-        np.testing.assert_array_equal(state.last, [*(column[-1] for column in whole[:4]), 0.0])
+        assert state.before == moment_of(course, m - 1)
+        assert (*state.ends, state.unconverged) == (*(column[-1] for column in whole[:4]), 0)
 
 
 def test_a_run_starts_from_rest_at_the_preload():
@@ -349,19 +364,19 @@ def test_a_run_starts_from_rest_at_the_preload():
         (LOADED_BY_DISPLACEMENT, (0.0, 0.0)),
     ):
         state = initial_state(course, GROUP_A, boundary, 3)
-        np.testing.assert_array_equal(state.before, [*ends, 0.6, 0.4, 0.0, 0.0, math.inf])
+        assert state.before == (*ends, (0.6, 0.4, 0.0, 0.0), math.inf)
         assert state.chain[TENSION : TENSION + 5].tolist() == [F0] * 5
-        assert not state.last.any()
+        assert (*state.ends, state.unconverged) == (0.0, 0.0, 0.0, 0.0, 0)
 
 
 @pytest.mark.parametrize(("unsettled", "given_up"), [(10, False), (11, True)])
 def test_a_run_with_many_samples_that_did_not_settle_is_given_up(unsettled, given_up):
     course = course_of([0.4, 0.9], GROUP_A)
     state = initial_state(course, GROUP_A, LOADED_BY_SPRING, 3)
-    state.last[:] = 1.0, 2.0, 3.0, 4.0, unsettled
+    state = state._replace(ends=ChainEnds(1.0, 2.0, 3.0, 4.0), unconverged=unsettled)
     frames = empty_frames(np.array([1]), 3)
-    answer = go_on(course, state, GROUP_A, LOADED_BY_SPRING, 3, frames)
-    assert state.last[4] == unsettled
+    answer, state = go_on(course, state, GROUP_A, LOADED_BY_SPRING, 3, frames)
+    assert state.unconverged == unsettled
     if given_up:
         for column, value in zip(answer, (1.0, 2.0, 3.0, 4.0, UNCONVERGED), strict=True):
             assert column.tolist() == [value, value]

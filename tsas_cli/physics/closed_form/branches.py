@@ -24,12 +24,12 @@ from tsas_cli.physics.compliances import (
     compliance_at_load,
     sheath_compliance,
 )
+from tsas_cli.physics.course import Tensions
 from tsas_cli.physics.frames import Frames, is_next
 from tsas_cli.physics.phases import SLACK
 from tsas_cli.physics.rig import Rig
 
 Floats = npt.NDArray[np.float64]
-Phases = npt.NDArray[np.int8]
 
 REST, SLIP = 0, 1  # what lies under the stack of turning points
 SMALLEST_WRAP = 1e-9  # a straight sheath: C stays finite, and the dead band has no width
@@ -95,7 +95,7 @@ def strokes(x_in: Floats) -> int:
     return count
 
 
-def branches(x_in: Floats, rig: Rig, frames: Frames | None = None) -> tuple[Floats, Floats, Phases]:
+def branches(x_in: Floats, rig: Rig, frames: Frames | None = None) -> Tensions:
     """Follow a motion of the drive that starts at rest at x = 0 [mm].
 
     Parameters
@@ -113,42 +113,52 @@ def branches(x_in: Floats, rig: Rig, frames: Frames | None = None) -> tuple[Floa
         Tensions at both ends, shape (n,) [N]; +1 where the whole tendon slips in contraction, −1
         in loosening, 0 in a dead band, 2 where it hangs slack.
     """
-    return follow_branches(x_in, rig, at_rest_before(x_in, rig.preload_N), frames)
+    return follow_branches(x_in, rig, at_rest_before(x_in, rig.preload_N), frames)[0]
+
+
+class BranchPoint(NamedTuple):
+    """Where the closed form is on its branches at a sample."""
+
+    x_in: float  # [mm]
+    f_in: float  # [N]
+    f_out: float
+    direction: int  # of the last motion, 0 where there was none
+    depth: int  # turning points on the stack
+    base: int  # what lies under it, REST or SLIP
+    phase: int
 
 
 class BranchState(NamedTuple):
-    """What the closed form remembers from one sample to the next; written over as it goes on.
+    """What the closed form remembers from one sample to the next.
 
-    `now` holds the drive's place [mm], both tensions [N], the direction, how many turning points
-    are on the stack, what lies under it, and the phase.
+    The stack of turning points has room for all that may nest; it is written over.
     """
 
-    now: Floats  # (7,)
-    turn_x: Floats  # turning points, room for all that may nest
+    now: BranchPoint
+    turn_x: Floats
     turn_T: Floats
 
 
 @kernel
 def at_rest_before(x_in: Floats, preload: float) -> BranchState:
     """Return the state of uniform preload, with room for the turning points of a motion."""
-    now = np.array([0.0, preload, preload, 0.0, 0.0, float(REST), 0.0])
     room = strokes(x_in)  # growing it in the loop would cost 20 ns a sample
+    now = BranchPoint(0.0, preload, preload, 0, 0, REST, 0)
     return BranchState(now, np.empty(room), np.empty(room))
 
 
 def with_room(state: BranchState, x_in: Floats) -> BranchState:
     """Return a copy of a state that has room for the turning points of more motion."""
-    more = np.empty(strokes(x_in))
-    depth = int(state.now[4])
-    turns = (np.concatenate((turn[:depth], more)) for turn in (state.turn_x, state.turn_T))
-    return BranchState(state.now.copy(), *turns)
+    more, depth = np.empty(strokes(x_in)), state.now.depth
+    turn_x, turn_T = (np.concatenate((t[:depth], more)) for t in (state.turn_x, state.turn_T))
+    return BranchState(state.now, turn_x, turn_T)
 
 
 @kernel
 def follow_branches(
     x_in: Floats, rig: Rig, state: BranchState, frames: Frames | None = None
-) -> tuple[Floats, Floats, Phases]:
-    """Follow a motion from a state, which is written over; see `branches`."""
+) -> tuple[Tensions, BranchState]:
+    """Follow a motion from a state; return the tensions and the state then; see `branches`."""
     wrap = max(rig.friction_coefficient * rig.total_bend_rad, SMALLEST_WRAP)
     C = sheath_compliance(rig) / wrap
     c = compliance_at_drive(rig)
@@ -162,17 +172,15 @@ def follow_branches(
     f_out = np.empty(n)
     phase = np.zeros(n, dtype=np.int8)
     turn_x, turn_T = state.turn_x, state.turn_T
-    x, T, out = state.now[0], state.now[1], state.now[2]
-    direction, depth, base = int(state.now[3]), int(state.now[4]), int(state.now[5])
-    before = int(state.now[6])
-    taken = 0
+    x, T, out, direction, depth, base, before = state.now
+    written = 0
     for i in range(n):
         if x_in[i] != x:
-            now = 1 if x_in[i] > x else -1
-            if now != direction and direction != 0 and T > 0.0:
+            way = 1 if x_in[i] > x else -1
+            if way != direction and direction != 0 and T > 0.0:
                 turn_x[depth], turn_T[depth] = x, T
                 depth += 1
-            direction, x = now, x_in[i]
+            direction, x = way, x_in[i]
             # Climb down the stack: each branch holds until it meets the turn that encloses it.
             while depth > 0:
                 A = turn_T[depth - 1]
@@ -196,53 +204,59 @@ def follow_branches(
                 phase[i] = direction if T > 0.0 else SLACK
         elif before == SLACK:
             phase[i] = SLACK
-        before = phase[i]
+        before = int(phase[i])
         f_in[i] = T
         f_out[i] = out
-        if frames is not None and is_next(frames, taken, i):  # compiled away where there are none
-            write_profile(frames, taken, T, direction, turn_T[:depth], base, rig.preload_N, wrap)
-            taken += 1
-    state.now[:] = np.array([x, T, out, direction, depth, base, before])
-    return f_in, f_out, phase
+        if frames is not None and is_next(frames, written, i):  # compiled away where there are none
+            strokes_so_far = Strokes(turn_T[:depth], T, direction, base)
+            write_profile(frames, written, strokes_so_far, rig.preload_N, wrap)
+            written += 1
+    now = BranchPoint(x, T, out, direction, depth, base, before)
+    return Tensions(f_in, f_out, phase), BranchState(now, turn_x, turn_T)
+
+
+class Strokes(NamedTuple):
+    """The strokes that have shaped the profile of tension, the last one up to its front."""
+
+    turns: Floats  # tension at the drive where each one before ended, (depth,) [N]
+    f_in: float  # at the drive now
+    direction: int
+    base: int  # what lies under them, REST or SLIP
 
 
 @kernel
-def write_profile(
-    frames: Frames,
-    k: int,
-    T0: float,
-    direction: int,
-    turns: Floats,
-    base: int,
-    preload: float,
-    wrap: float,
-) -> None:
-    """Write down the profile that the strokes have left, the last one up to its front.
+def write_profile(frames: Frames, k: int, past: Strokes, preload: float, wrap: float) -> None:
+    """Write the profile of tension that the strokes have left into frame k.
 
-    Each stroke lays T0 e^(∓a s/L) over what the ones before have left, as far as that is above
+    Each stroke puts T0 e^(∓a s/L) over what the ones before have left, as far as that is above
     (contraction) or below (loosening); a stroke that has slid the whole tendon leaves nothing of
     what was before.
     """
-    m = frames.slip.shape[1]
-    depth = turns.size
+    m, depth = frames.slip.shape[1], past.turns.size
     for half in range(2 * m + 1):  # places at the even ones, the middles of elements between
         s = 0.5 * half / m
-        tension, laid = preload, False
+        tension, slid = preload, False
         for stroke in range(depth + 1):
-            way = direction if (depth - stroke) % 2 == 0 else -direction
-            at_drive = turns[stroke] if stroke < depth else T0
+            way = past.direction if (depth - stroke) % 2 == 0 else -past.direction
+            at_drive = past.turns[stroke] if stroke < depth else past.f_in
             new = at_drive * math.exp(-way * wrap * s)
-            laid = (base == SLIP and stroke == 0) or (new - tension) * way > 0.0
-            tension = new if laid else tension
+            slid = (past.base == SLIP and stroke == 0) or (new - tension) * way > 0.0
+            tension = new if slid else tension
         if half % 2 == 0:
             frames.tension_N[k, half // 2] = tension
-        elif T0 == 0.0:
+        elif past.f_in == 0.0:
             frames.slip[k, half // 2] = SLACK
         else:
-            frames.slip[k, half // 2] = direction if laid else 0
-    if T0 == 0.0 or direction == 0:
-        frames.front[k] = 0.0
-    elif depth > 0:
-        frames.front[k] = min(abs(math.log(T0 / turns[depth - 1])) / (2.0 * wrap), 1.0)
-    else:
-        frames.front[k] = 1.0 if base == SLIP else min(abs(math.log(T0 / preload)) / wrap, 1.0)
+            frames.slip[k, half // 2] = past.direction if slid else 0
+    frames.front[k] = front_of(past, preload, wrap)
+
+
+@kernel
+def front_of(past: Strokes, preload: float, wrap: float) -> float:
+    """Return the share of the sheath up to which the last stroke has slid the tendon."""
+    depth = past.turns.size
+    if past.f_in == 0.0 or past.direction == 0:
+        return 0.0
+    if depth > 0:
+        return min(abs(math.log(past.f_in / past.turns[depth - 1])) / (2.0 * wrap), 1.0)
+    return 1.0 if past.base == SLIP else min(abs(math.log(past.f_in / preload)) / wrap, 1.0)

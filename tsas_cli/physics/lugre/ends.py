@@ -2,10 +2,10 @@
 
 from typing import NamedTuple
 
-from tsas_cli.effects.load_friction import guide_friction
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, SPRING, Boundary
-from tsas_cli.physics.lugre.input import DRIVE, LOAD, hermite
+from tsas_cli.physics.boundary import FORCE, SPRING, share_before_sensor
+from tsas_cli.physics.course import DRIVE, LOAD, TIME
+from tsas_cli.physics.lugre.input import Cubic, hermite
 from tsas_cli.physics.lugre.state import (
     FRICTION,
     POSITION_HISTORY,
@@ -14,181 +14,183 @@ from tsas_cli.physics.lugre.state import (
     STIFFNESS,
     TENSION,
     Floats,
+    Given,
     LugreLaws,
     Step,
 )
 
-X_IN, X_OUT, F_IN, F_OUT = 0, 1, 2, 3  # rows of the columns
+X_IN, X_OUT, F_IN, F_OUT = range(4)  # rows of the columns
+
+
+class EndState(NamedTuple):
+    """One end of the tendon at the end of a step, with rates for what is read in between."""
+
+    given: Given
+    x: float  # at the drive relative to it [mm]
+    v: float
+    tension: float  # [N]
+    tension_rate: float
 
 
 class StepEnds(NamedTuple):
-    """Both ends of the tendon at the end of a step, with rates for what is read in between."""
+    """Both ends of the tendon at the end of a step."""
 
-    drive: float  # what is given there [mm or N]
-    drive_rate: float
-    load: float  # likewise
-    load_rate: float
-    x_in: float  # relative to the drive [mm]
-    w_in: float
-    x_out: float  # [mm]
-    v_out: float
-    f_in: float  # tension [N]
-    f_in_rate: float
-    f_out: float
-    f_out_rate: float
+    drive: EndState
+    load: EndState
     guide: float  # friction of the load's guide [N]
 
 
+class Span(NamedTuple):
+    """A step in time: from t, h long [s]."""
+
+    t: float
+    h: float
+
+
+class Samples(NamedTuple):
+    """The samples first … end−1."""
+
+    first: int
+    end: int
+
+
 @kernel
-def ends_after(s: Floats, step: Step, law: LugreLaws) -> StepEnds:
-    """Return what the ends are after a step; positions go to Y_NEW."""
-    n, last = law.n, law.n + 1
+def ends_after(s: Floats, step: Step, laws: LugreLaws) -> StepEnds:
+    """Return what the ends are after a step; positions go to POSITION_NEW."""
+    n, last = laws.n, laws.n + 1
     for i in range(n + 2):
         s[POSITION_NEW + i] = s[POSITION_HISTORY + i] + step.gh * s[RATE + i]
-    return StepEnds(
+    drive = EndState(
         step.drive,
-        step.drive_rate,
-        step.load,
-        step.load_rate,
         s[POSITION_NEW],
         s[RATE],
-        s[POSITION_NEW + last] + step.position,
-        s[RATE + last] + step.speed,
         s[TENSION],
         s[STIFFNESS] * (s[RATE] - s[RATE + 1]),
+    )
+    load = EndState(
+        step.load,
+        s[POSITION_NEW + last] + step.frame.value,
+        s[RATE + last] + step.frame.rate,
         s[TENSION + n],
         s[STIFFNESS + n] * (s[RATE + n] - s[RATE + last]),
-        s[FRICTION + last],
     )
+    return StepEnds(drive, load, s[FRICTION + last])
 
 
 @kernel
 def interpolation_error(
-    times: Floats,
-    course: Floats,
-    row: int,
-    k: int,
-    k1: int,
-    t: float,
-    h: float,
-    ends: tuple[float, float, float, float],
+    course: Floats, row: int, within: Samples, span: Span, given: Cubic
 ) -> float:
-    """Return by how much samples of a row leave the cubic that a step sees.
+    """Return by how much samples of an input leave the cubic that a step sees.
 
-    The cubic has these values and rates at the ends of the step, k and k1 are the samples at or
-    before them; three samples in between are looked at.
+    Three samples within the step are looked at.
     """
-    largest = 0.0
-    if k1 - k > 1:
+    largest, more = 0.0, within.end - within.first
+    if more > 0:
         for quarter in range(1, 4):
-            i = k + 1 + quarter * (k1 - k - 1) // 4
-            seen = hermite((times[i] - t) / h, h, ends[0], ends[1], ends[2], ends[3])
+            i = within.first + quarter * more // 4
+            seen = hermite((course[TIME, i] - span.t) / span.h, span.h, given)
             largest = max(largest, abs(course[row, i] - seen))
     return largest
 
 
 @kernel
 def input_error(
-    times: Floats,
     course: Floats,
-    k: int,
-    k1: int,
-    t: float,
-    h: float,
+    within: Samples,
+    span: Span,
     ends: StepEnds,
     step: Step,
-    answers: tuple[float, float],
-    boundary: Boundary,
+    stiffness: tuple[float, float],
+    laws: LugreLaws,
 ) -> float:
-    """Return what a step does not see of drive and load, as tensions by how they answer [N]."""
-    given = (ends.drive, ends.drive_rate, step.drive, step.drive_rate)
-    off = answers[0] * interpolation_error(times, course, DRIVE, k, k1, t, h, given)
-    if boundary.load != SPRING:
-        given = (ends.load, ends.load_rate, step.load, step.load_rate)
-        off += answers[1] * interpolation_error(times, course, LOAD, k, k1, t, h, given)
+    """Return what a step does not see of drive and load, as tensions by the ends' stiffness [N]."""
+    drive = between(ends.drive.given, step.drive)
+    off = stiffness[0] * interpolation_error(course, DRIVE, within, span, drive)
+    if laws.load.given != SPRING:
+        load = between(ends.load.given, step.load)
+        off += stiffness[1] * interpolation_error(course, LOAD, within, span, load)
     return off
+
+
+@kernel
+def between(a: Given, b: Given) -> Cubic:
+    """Return the cubic from what is given at one end of a step to what is at the other."""
+    return Cubic(a.value, a.rate, b.value, b.rate)
 
 
 @kernel
 def end_stiffnesses(earlier: StepEnds, ends: StepEnds, least: float) -> tuple[float, float]:
     """Return how much both tensions changed for what is given at their ends, at least so much."""
     return (
-        secant_stiffness(ends.f_in - earlier.f_in, ends.drive - earlier.drive, least),
-        secant_stiffness(ends.f_out - earlier.f_out, ends.load - earlier.load, least),
+        secant_stiffness(earlier.drive, ends.drive, least),
+        secant_stiffness(earlier.load, ends.load, least),
     )
 
 
 @kernel
-def secant_stiffness(tension: float, given: float, least: float) -> float:
+def secant_stiffness(earlier: EndState, end: EndState, least: float) -> float:
     """Return how much a tension changed for what is given at its end, at least so much."""
-    return max(abs(tension / given), least) if given != 0.0 else least
+    given = end.given.value - earlier.given.value
+    return max(abs((end.tension - earlier.tension) / given), least) if given != 0.0 else least
 
 
 @kernel
 def write_samples(
     columns: Floats,
-    first: int,
-    end: int,
-    times: Floats,
+    within: Samples,
     course: Floats,
-    t: float,
-    h: float,
+    span: Span,
     a: StepEnds,
     b: StepEnds,
-    boundary: Boundary,
-    law: LugreLaws,
+    laws: LugreLaws,
 ) -> None:
-    """Write what the ends are at the samples from the first to before the end.
-
-    They lie in the step h from a to b that begins at t.
-    """
-    write_cubic(columns, X_OUT, first, end, times, t, h, (a.x_out, a.v_out, b.x_out, b.v_out))
-    if boundary.drive == FORCE:
-        write_cubic(columns, X_IN, first, end, times, t, h, (a.x_in, a.w_in, b.x_in, b.w_in))
+    """Write what the ends are at the samples within the step from a to b."""
+    x_out = Cubic(a.load.x, a.load.v, b.load.x, b.load.v)
+    write_cubic(columns, X_OUT, within, course, span, x_out)
+    if laws.drive.given == FORCE:
+        x_in = Cubic(a.drive.x, a.drive.v, b.drive.x, b.drive.v)
+        write_cubic(columns, X_IN, within, course, span, x_in)
     else:
-        write_cubic(
-            columns, F_IN, first, end, times, t, h, (a.f_in, a.f_in_rate, b.f_in, b.f_in_rate)
-        )
-    if boundary.load != FORCE:
-        write_cubic(
-            columns, F_OUT, first, end, times, t, h, (a.f_out, a.f_out_rate, b.f_out, b.f_out_rate)
-        )
-    share = sensor_share(boundary, law)
-    for i in range(first, end):
-        columns[F_IN if boundary.drive == FORCE else X_IN, i] = course[DRIVE, i]
-        if boundary.load != SPRING:
-            columns[F_OUT if boundary.load == FORCE else X_OUT, i] = course[LOAD, i]
-        if boundary.load != FORCE and share > 0.0:
-            guide = a.guide + (times[i] - t) / h * (b.guide - a.guide)
+        write_cubic(columns, F_IN, within, course, span, tension_between(a.drive, b.drive))
+    if laws.load.given != FORCE:
+        write_cubic(columns, F_OUT, within, course, span, tension_between(a.load, b.load))
+    write_given(columns, within, course, laws)
+    share = share_before_sensor(laws.load)
+    if laws.load.given != FORCE and share > 0.0:
+        for i in range(within.first, within.end):
+            guide = a.guide + (course[TIME, i] - span.t) / span.h * (b.guide - a.guide)
             columns[F_OUT, i] -= share * guide
 
 
 @kernel
-def write_cubic(
-    columns: Floats,
-    row: int,
-    first: int,
-    end: int,
-    times: Floats,
-    t: float,
-    h: float,
-    ends: tuple[float, float, float, float],
-) -> None:
-    """Write the cubic through value and slope at both ends of a step at the samples within it."""
-    x0, v0, x1, v1 = ends
-    rise, inverse = (x1 - x0) / h, 1.0 / h
-    square, cube = (3.0 * rise - 2.0 * v0 - v1) * inverse, (v0 + v1 - 2.0 * rise) * inverse**2
-    for i in range(first, end):
-        since = times[i] - t
-        columns[row, i] = x0 + since * (v0 + since * (square + since * cube))
+def write_given(columns: Floats, within: Samples, course: Floats, laws: LugreLaws) -> None:
+    """Write what is given at the ends."""
+    for i in range(within.first, within.end):
+        if laws.drive.given == FORCE:
+            columns[F_IN, i] = course[DRIVE, i]
+        else:
+            columns[X_IN, i] = course[DRIVE, i]
+        if laws.load.given == FORCE:
+            columns[F_OUT, i] = course[LOAD, i]
+        elif laws.load.given != SPRING:
+            columns[X_OUT, i] = course[LOAD, i]
 
 
 @kernel
-def sensor_share(boundary: Boundary, law: LugreLaws) -> float:
-    """Return the share of the guide's friction that the load's force sensor does not feel."""
-    before = law.load_friction.before_sensor_N
-    if before == 0.0:
-        return 0.0
-    if boundary.load == DISPLACEMENT:
-        return 1.0
-    return before / guide_friction(law.load_friction)
+def tension_between(a: EndState, b: EndState) -> Cubic:
+    """Return the cubic of the tension at an end over a step."""
+    return Cubic(a.tension, a.tension_rate, b.tension, b.tension_rate)
+
+
+@kernel
+def write_cubic(
+    columns: Floats, row: int, within: Samples, course: Floats, span: Span, ends: Cubic
+) -> None:
+    """Write a cubic over a step at the samples within it."""
+    x0, v0, x1, v1 = ends
+    rise, inverse = (x1 - x0) / span.h, 1.0 / span.h
+    square, cube = (3.0 * rise - 2.0 * v0 - v1) * inverse, (v0 + v1 - 2.0 * rise) * inverse**2
+    for i in range(within.first, within.end):
+        since = course[TIME, i] - span.t
+        columns[row, i] = x0 + since * (v0 + since * (square + since * cube))

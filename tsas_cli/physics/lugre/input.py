@@ -5,24 +5,34 @@ Scientific and Statistical Computing 5, 1984), which has a speed at every time; 
 preload go straight from sample to sample.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.physics.boundary import DISPLACEMENT, SPRING, Boundary
-from tsas_cli.physics.lugre.state import Floats, Formula, Step
+from tsas_cli.physics.boundary import DISPLACEMENT, SPRING
+from tsas_cli.physics.course import DRIVE, LOAD, TIME, losses_between, losses_of
+from tsas_cli.physics.lugre.state import Floats, Formula, Given, LugreLaws, Step
 
-DRIVE, LOAD, PULLED, RELEASED, LOST = 0, 1, 2, 3, 5  # rows of the course
+
+class Cubic(NamedTuple):
+    """A cubic over a step, by its values and slopes at both ends."""
+
+    x0: float
+    v0: float
+    x1: float
+    v1: float
 
 
 @kernel
-def slope_at(times: Floats, course: Floats, row: int, k: int) -> float:
-    """Return the curve's slope at a sample; 0 where the samples turn or stand still."""
-    last = times.size - 1
+def slope_at(course: Floats, row: int, k: int) -> float:
+    """Return the curve's slope at a sample; 0 where the samples reverse or stand still."""
+    last = course.shape[1] - 1
     if last == 0:
         return 0.0
     if k in (0, last):
-        return slope_at_end(times, course, row, k)
-    before, after = times[k] - times[k - 1], times[k + 1] - times[k]
+        return slope_at_end(course, row, k)
+    before, after = course[TIME, k] - course[TIME, k - 1], course[TIME, k + 1] - course[TIME, k]
     a = (course[row, k] - course[row, k - 1]) / before
     b = (course[row, k + 1] - course[row, k]) / after
     if a * b <= 0.0:
@@ -32,14 +42,14 @@ def slope_at(times: Floats, course: Floats, row: int, k: int) -> float:
 
 
 @kernel
-def slope_at_end(times: Floats, course: Floats, row: int, k: int) -> float:
+def slope_at_end(course: Floats, row: int, k: int) -> float:
     """Return the slope at the first or last sample: a parabola's, made to keep the shape."""
     towards = 1 if k == 0 else -1
-    h = times[k + towards] - times[k]
+    h = course[TIME, k + towards] - course[TIME, k]
     a = (course[row, k + towards] - course[row, k]) / h
-    if times.size == 2:
+    if course.shape[1] == 2:
         return float(a)
-    h_next = times[k + 2 * towards] - times[k + towards]
+    h_next = course[TIME, k + 2 * towards] - course[TIME, k + towards]
     b = (course[row, k + 2 * towards] - course[row, k + towards]) / h_next
     slope = ((2.0 * h + h_next) * a - h * b) / (h + h_next)
     if slope * a <= 0.0:
@@ -50,75 +60,57 @@ def slope_at_end(times: Floats, course: Floats, row: int, k: int) -> float:
 
 
 @kernel
-def hermite(part: float, h: float, x0: float, v0: float, x1: float, v1: float) -> float:
-    """Return the cubic with these values and slopes at both ends, at a part of the way."""
+def hermite(part: float, h: float, ends: Cubic) -> float:
+    """Return a cubic at a part of a step h."""
     left = 1.0 - part
-    ends = x0 * (1.0 + 2.0 * part) * left * left + x1 * part * part * (3.0 - 2.0 * part)
-    return ends + h * part * left * (v0 * left - v1 * part)
+    x = ends.x0 * (1.0 + 2.0 * part) * left * left + ends.x1 * part * part * (3.0 - 2.0 * part)
+    return x + h * part * left * (ends.v0 * left - ends.v1 * part)
 
 
 @kernel
-def hermite_slope(part: float, h: float, x0: float, v0: float, x1: float, v1: float) -> float:
+def hermite_slope(part: float, h: float, ends: Cubic) -> float:
     """Return the slope of `hermite`."""
     left = 1.0 - part
     return (
-        6.0 * part * left * (x1 - x0) / h
-        + v0 * left * (1.0 - 3.0 * part)
-        - v1 * part * (2.0 - 3.0 * part)
+        6.0 * part * left * (ends.x1 - ends.x0) / h
+        + ends.v0 * left * (1.0 - 3.0 * part)
+        - ends.v1 * part * (2.0 - 3.0 * part)
     )
 
 
 @kernel
-def value_at(times: Floats, course: Floats, row: int, k: int, t: float) -> tuple[float, float]:
+def value_at(course: Floats, row: int, k: int, t: float) -> Given:
     """Return value and slope of drive or load at a time from sample k to the next."""
     for at in (k, k + 1):
-        if t == times[at]:
-            return course[row, at], slope_at(times, course, row, at)
-    h = times[k + 1] - times[k]
-    part = (t - times[k]) / h
-    x0, x1 = course[row, k], course[row, k + 1]
-    v0, v1 = slope_at(times, course, row, k), slope_at(times, course, row, k + 1)
-    return hermite(part, h, x0, v0, x1, v1), hermite_slope(part, h, x0, v0, x1, v1)
+        if t == course[TIME, at]:
+            return Given(course[row, at], slope_at(course, row, at))
+    h = course[TIME, k + 1] - course[TIME, k]
+    part = (t - course[TIME, k]) / h
+    v0, v1 = slope_at(course, row, k), slope_at(course, row, k + 1)
+    ends = Cubic(course[row, k], v0, course[row, k + 1], v1)
+    return Given(hermite(part, h, ends), hermite_slope(part, h, ends))
 
 
 @kernel
 def step_at(
-    times: Floats,
-    course: Floats,
-    k: int,
-    t: float,
-    formula: Formula,
-    drives: tuple[float, float],
-    n: int,
-    boundary: Boundary,
+    course: Floats, k: int, t: float, formula: Formula, drives: tuple[float, float], laws: LugreLaws
 ) -> Step:
     """Return what is given at the end of a step, at a time from sample k to the next.
 
     `drives` is what was given there at the ends of the last two steps.
     """
-    drive, rate = value_at(times, course, DRIVE, k, t)
-    load, load_rate = 0.0, 0.0
-    if boundary.load != SPRING:
-        load, load_rate = value_at(times, course, LOAD, k, t)
-    part = (t - times[k]) / (times[k + 1] - times[k])
-    pulled = course[PULLED, k] + part * (course[PULLED, k + 1] - course[PULLED, k])
-    released = course[RELEASED, k] + part * (course[RELEASED, k + 1] - course[RELEASED, k])
-    lost = course[LOST, k] + part * (course[LOST, k + 1] - course[LOST, k])
-    framed = 1.0 if boundary.drive == DISPLACEMENT else 0.0
-    moved = drive - formula.near * drives[0] + formula.far * drives[1]
-    limits = lump_share(pulled, n)
-    return Step(
-        formula.gh,
-        drive,
-        rate,
-        load,
-        load_rate,
-        framed * drive,
-        framed * moved / formula.gh,
-        limits,
-        limits if released == pulled else lump_share(released, n),
-        lost,
-    )
+    drive = value_at(course, DRIVE, k, t)
+    load = Given(0.0, 0.0)
+    if laws.load.given != SPRING:
+        load = value_at(course, LOAD, k, t)
+    part = (t - course[TIME, k]) / (course[TIME, k + 1] - course[TIME, k])
+    now = losses_between(losses_of(course, k), losses_of(course, k + 1), part)
+    framed = 1.0 if laws.drive.given == DISPLACEMENT else 0.0
+    moved = drive.value - formula.near * drives[0] + formula.far * drives[1]
+    frame = Given(framed * drive.value, framed * moved / formula.gh)
+    pulled = lump_share(now.pulled, laws.n)
+    released = pulled if now.released == now.pulled else lump_share(now.released, laws.n)
+    return Step(formula.gh, drive, load, frame, pulled, released, now.preload_N)
 
 
 @kernel
@@ -128,17 +120,18 @@ def lump_share(wrap: float, n: int) -> float:
 
 
 @kernel
-def next_reversal(times: Floats, course: Floats, k: int, boundary: Boundary) -> int:
-    """Return the first sample after k at which drive or load turns, stops or sets off."""
-    last = times.size - 1
+def next_reversal(course: Floats, k: int, laws: LugreLaws) -> int:
+    """Return the first sample after k at which drive or load reverses, stops or starts."""
+    last: int = course.shape[1] - 1
+    by_spring = laws.load.given == SPRING
     for i in range(k + 1, last):
-        if reverses(course, DRIVE, i) or (boundary.load != SPRING and reverses(course, LOAD, i)):
+        if reverses(course, DRIVE, i) or (not by_spring and reverses(course, LOAD, i)):
             return i
     return last
 
 
 @kernel
 def reverses(course: Floats, row: int, i: int) -> bool:
-    """Say whether a row turns, stops or sets off at a sample between others."""
+    """Say whether an input reverses, stops or starts at a sample between others."""
     before, after = course[row, i] - course[row, i - 1], course[row, i + 1] - course[row, i]
     return bool(before * after <= 0.0 and before != after)

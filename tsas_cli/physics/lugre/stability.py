@@ -17,6 +17,7 @@ from tsas_cli.effects.load_dependent_friction import load_factor
 from tsas_cli.effects.load_spring_nonlinearity import spring_tangent
 from tsas_cli.effects.stribeck_friction import stribeck_factor
 from tsas_cli.numerics.compiled import kernel
+from tsas_cli.physics.boundary import DISPLACEMENT, SPRING, Boundary
 from tsas_cli.physics.bristles import TONNES_PER_KG, friction_now
 from tsas_cli.physics.lugre.start import lugre_laws, segments
 from tsas_cli.physics.lugre.state import LugreLaws
@@ -65,12 +66,12 @@ class _Lumps:
     """
 
     def __init__(self, rig: Rig, moment: Sliding) -> None:
-        self.law = lugre_laws(rig, LUMPS)
+        self.laws = lugre_laws(rig, LUMPS, Boundary(DISPLACEMENT, SPRING))
         count = LUMPS if moment.whole else LUMPS // 2
         stiffness, damping = segments(rig, LUMPS)
         self.stiffness, self.damping = stiffness[: count + 1], damping[: count + 1]
-        self.spring = spring_tangent(0.0, rig.load_stiffness_N_per_mm, self.law.load_spring)
-        self.load_mass = TONNES_PER_KG * self.law.load_mass_kg if moment.whole else 0.0
+        self.spring = spring_tangent(0.0, rig.load_stiffness_N_per_mm, self.laws.load.nonlinearity)
+        self.load_mass = TONNES_PER_KG * self.laws.load.mass_kg if moment.whole else 0.0
         if moment.whole and self.load_mass == 0.0:  # in series; its damping is slower than a lump
             self.stiffness[-1] = 1.0 / (1.0 / self.stiffness[-1] + 1.0 / self.spring)
             self.damping[-1] = 0.0
@@ -82,11 +83,11 @@ class _Lumps:
         slower = 0.0 if moment.whole else 1.0 / (count + 0.5)  # a lump that sticks comes next
         self.speed = moment.speed_mm_s * (1.0 - slower * place)
         limit, _, _ = sliding_friction(
-            np.zeros(count), self.speed, self.tension, self.friction, self.law
+            np.zeros(count), self.speed, self.tension, self.friction, self.laws
         )
-        longest = limit / self.law.bristle.stiffness
+        longest = limit / self.laws.lump.bristle.stiffness
         lag = longest * moment.f_in_rate / moment.f_in_N / np.abs(self.speed)
-        deflection = direction * (longest + self.law.bristle.travel) * (1.0 - lag)
+        deflection = direction * (longest + self.laws.lump.bristle.travel) * (1.0 - lag)
         load = np.zeros(2 if self.load_mass > 0.0 else 0)
         self.state = np.concatenate((np.zeros(2 * count), deflection, load))
 
@@ -99,9 +100,9 @@ class _Lumps:
         sliding = self.speed + speed
         tension = self.tension + 0.5 * (pull[:-1] + pull[1:])
         _, rubbing, turning = sliding_friction(
-            deflection, sliding, tension, self.friction, self.law
+            deflection, sliding, tension, self.friction, self.laws
         )
-        faster = (-np.diff(pull) - rubbing) / self.law.lump_mass
+        faster = (-np.diff(pull) - rubbing) / self.laws.lump.mass
         rates = np.concatenate((speed, faster, turning))
         if self.load_mass == 0.0:
             return rates
@@ -110,15 +111,15 @@ class _Lumps:
 
 @kernel
 def sliding_friction(
-    deflection: Floats, speed: Floats, tension: Floats, wrap: float, law: LugreLaws
+    deflection: Floats, speed: Floats, tension: Floats, wrap: float, laws: LugreLaws
 ) -> tuple[Floats, Floats, Floats]:
     """Return each lump's limit of friction, its friction, and the rate of its deflection."""
     limit, force, rate = np.empty(speed.size), np.empty(speed.size), np.empty(speed.size)
     for i in range(speed.size):
-        factor = stribeck_factor(speed[i], law.stribeck)
-        factor *= load_factor(tension[i] / law.preload_N, law.friction_exponent)
+        factor = stribeck_factor(speed[i], laws.lump.stribeck)
+        factor *= load_factor(tension[i] / laws.preload_N, laws.lump.friction_exponent)
         limit[i] = wrap * factor * abs(tension[i])
-        force[i], rate[i] = friction_now(deflection[i], speed[i], limit[i], law.bristle)
+        force[i], rate[i] = friction_now(deflection[i], speed[i], limit[i], laws.lump.bristle)
     return limit, force, rate
 
 

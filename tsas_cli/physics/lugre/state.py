@@ -5,9 +5,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.effects.load_friction import LoadFriction
-from tsas_cli.effects.load_spring_nonlinearity import LoadSpringNonlinearity
 from tsas_cli.effects.stribeck_friction import StribeckFriction
+from tsas_cli.physics.boundary import DriveEnd, LoadEnd
 from tsas_cli.physics.bristles import Bristle
 from tsas_cli.physics.mesh import PITCH
 
@@ -32,22 +31,24 @@ MINOR, SCALED, INCREMENT = (PITCH * row for row in range(27, 30))  # elimination
 ROWS = 30
 
 
+class Lump(NamedTuple):
+    """The laws of one lump."""
+
+    mass: float  # [t]
+    bristle: Bristle
+    friction_exponent: float
+    stribeck: StribeckFriction
+
+
 class LugreLaws(NamedTuple):
     """What of the rig holds at every step."""
 
     n: int
     preload_N: float
-    lump_mass: float  # [t]
-    bristle: Bristle  # of one lump
+    lump: Lump
     end_bristle: Bristle  # of the drive's and of the load's friction
-    friction_exponent: float
-    stribeck: StribeckFriction
-    load_stiffness_N_per_mm: float
-    load_spring: LoadSpringNonlinearity
-    load_friction: LoadFriction
-    load_mass_kg: float
-    drive_friction_N: float
-    proximal_spring_N_per_mm: float
+    drive: DriveEnd
+    load: LoadEnd
 
 
 class Formula(NamedTuple):
@@ -61,16 +62,20 @@ class Formula(NamedTuple):
     far: float
 
 
+class Given(NamedTuple):
+    """What is given at an end of the tendon, and how fast it changes [mm or N, per s]."""
+
+    value: float
+    rate: float
+
+
 class Step(NamedTuple):
-    """One step: its length in the formula y = Y_PAST + gh w, and what is given at its end."""
+    """One step: its length in the formula y = POSITION_HISTORY + gh RATE, and its end."""
 
     gh: float  # [s]
-    drive: float  # displacement [mm] or tension [N]
-    drive_rate: float
-    load: float  # likewise; unused with a spring
-    load_rate: float
-    position: float  # of the frame that positions are relative to [mm]
-    speed: float  # of that frame, by the same formula [mm/s]
+    drive: Given
+    load: Given  # unused with a spring
+    frame: Given  # that positions are relative to [mm], its speed by the same formula [mm/s]
     pulled: float  # friction over the mean tension of a lump's two sides in contraction [1]
     released: float  # and in loosening [1]
     lost_N: float  # preload that the load spring's anchor has lost

@@ -7,7 +7,7 @@ y = (1+ω)²/(1+2ω) y1 − ω²/(1+2ω) y2 + gh dy/dt with gh = h(1+ω)/(1+2ω)
 import math
 
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.physics.boundary import DISPLACEMENT, Boundary
+from tsas_cli.physics.boundary import DISPLACEMENT
 from tsas_cli.physics.lugre.balance import balance
 from tsas_cli.physics.lugre.state import (
     DAMPING,
@@ -49,7 +49,7 @@ def bdf2(h: float, h1: float, h2: float) -> Formula:
 
 
 @kernel
-def predict(s: Floats, law: LugreLaws, formula: Formula) -> None:
+def predict(s: Floats, laws: LugreLaws, formula: Formula) -> None:
     """Set the history terms of a step, and guess its speeds by extrapolation."""
     h, h1, h2, gh, near, far = formula
     ratio = h / h1
@@ -61,7 +61,7 @@ def predict(s: Floats, law: LugreLaws, formula: Formula) -> None:
         g0 = (h + h1) * both / (h1 * (h1 + h2))
         g1 = -h * both / (h1 * h2)
         g2 = h * (h + h1) / ((h1 + h2) * h2)
-    for i in range(law.n + 2):
+    for i in range(laws.n + 2):
         s[POSITION_HISTORY + i] = near * s[POSITION + i] - far * s[POSITION_1 + i]
         s[SPEED_HISTORY + i] = near * s[SPEED + i] - far * s[SPEED_1 + i]
         s[DEFLECTION_HISTORY + i] = near * s[DEFLECTION + i] - far * s[DEFLECTION_1 + i]
@@ -72,47 +72,45 @@ def predict(s: Floats, law: LugreLaws, formula: Formula) -> None:
             - s[POSITION_HISTORY + i]
         ) / gh
         s[TENSION_SLOPE + i] = s[STIFFNESS + i] * gh + s[DAMPING + i]
-    for j in range(law.n + 1):
-        s[TENSION_HISTORY + j] = law.preload_N + s[STIFFNESS + j] * (
+    for j in range(laws.n + 1):
+        s[TENSION_HISTORY + j] = laws.preload_N + s[STIFFNESS + j] * (
             s[POSITION_HISTORY + j] - s[POSITION_HISTORY + j + 1]
         )
 
 
 @kernel
-def newton(
-    s: Floats, step: Step, boundary: Boundary, law: LugreLaws, leaves_N: float
-) -> tuple[int, bool]:
+def newton(s: Floats, step: Step, laws: LugreLaws, leaves_N: float) -> tuple[int, bool]:
     """Find the speeds at the end of a step from their guess; return the iterations, and success.
 
     It ends when what the forces leave, summed over the nodes, is at most `leaves_N`.
     """
-    last = law.n + 1
-    if boundary.drive == DISPLACEMENT:
+    last = laws.n + 1
+    if laws.drive.given == DISPLACEMENT:
         s[RATE] = 0.0
-    if boundary.load == DISPLACEMENT:
-        s[RATE + last] = (step.load - step.position - s[POSITION_HISTORY + last]) / step.gh
-    for i in range(law.n + 2):
+    if laws.load.given == DISPLACEMENT:
+        s[RATE + last] = (step.load.value - step.frame.value - s[POSITION_HISTORY + last]) / step.gh
+    for i in range(laws.n + 2):
         s[RATE_PREDICTED + i] = s[RATE + i]
     for iteration in range(MOST_ITERATIONS + 1):
-        left = balance(s, step, boundary, law)
+        left = balance(s, step, laws)
         if left <= leaves_N:
             return iteration, True
         if not left < math.inf or iteration == MOST_ITERATIONS:
             return iteration, False
-        solve(s, law.n)
-        for i in range(law.n + 2):
+        solve(s, laws.n)
+        for i in range(laws.n + 2):
             s[RATE + i] += s[INCREMENT + i]
     return MOST_ITERATIONS, False
 
 
 @kernel
-def step_error(s: Floats, law: LugreLaws, formula: Formula) -> float:
+def step_error(s: Floats, laws: LugreLaws, formula: Formula) -> float:
     """Return the error of a step as a tension, from how far its guess was off [N]."""
     h, h1, h2, gh, _, _ = formula
-    for j in range(law.n + 1):
+    for j in range(laws.n + 1):
         off = (s[RATE + j] - s[RATE_PREDICTED + j]) - (s[RATE + j + 1] - s[RATE_PREDICTED + j + 1])
         s[INCREMENT + j] = abs(s[STIFFNESS + j] * off)
-    largest = largest_increment(s, law.n + 1)
+    largest = largest_increment(s, laws.n + 1)
     if h2 == math.inf:
         return 0.5 * gh * largest
     ratio = h / h1
@@ -132,13 +130,13 @@ def largest_increment(s: Floats, count: int) -> float:
 
 
 @kernel
-def accept_step(s: Floats, step: Step, law: LugreLaws) -> None:
+def accept_step(s: Floats, step: Step, laws: LugreLaws) -> None:
     """Take the step's end as the present."""
-    for i in range(law.n + 2):
+    for i in range(laws.n + 2):
         s[POSITION_2 + i] = s[POSITION_1 + i]
         s[POSITION_1 + i] = s[POSITION + i]
         s[POSITION + i] = s[POSITION_NEW + i]
         s[SPEED_1 + i] = s[SPEED + i]
-        s[SPEED + i] = s[RATE + i] + step.speed
+        s[SPEED + i] = s[RATE + i] + step.frame.rate
         s[DEFLECTION_1 + i] = s[DEFLECTION + i]
         s[DEFLECTION + i] = s[DEFLECTION_NEW + i]

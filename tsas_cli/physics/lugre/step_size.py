@@ -6,7 +6,6 @@ from typing import NamedTuple
 import numpy as np
 
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.physics.boundary import Boundary
 from tsas_cli.physics.lugre.ends import StepEnds
 from tsas_cli.physics.lugre.state import Floats, Formula, LugreLaws, Step
 from tsas_cli.physics.lugre.step import newton, predict, step_error
@@ -24,30 +23,30 @@ class Tolerances(NamedTuple):
 
 
 @kernel
-def tolerances_of(ends: StepEnds, law: LugreLaws, tolerance: float, leaves: float) -> Tolerances:
+def tolerances_of(ends: StepEnds, laws: LugreLaws, tolerance: float, leaves: float) -> Tolerances:
     """Return what a step from these ends may be off by, and leave at most, as shares of a tension.
 
     An infinite tolerance is for steps that are given.
     """
-    tension = max(abs(ends.f_in), abs(ends.f_out), 0.1 * law.preload_N)
-    most = tolerance * tension * (SWINGS if law.load_mass_kg > 0.0 else 1.0)
+    tension = max(abs(ends.drive.tension), abs(ends.load.tension), 0.1 * laws.preload_N)
+    most = tolerance * tension * (SWINGS if laws.load.mass_kg > 0.0 else 1.0)
     return Tolerances(most, min(LEAVES * most, leaves * tension))
 
 
 @kernel
 def try_step(
-    s: Floats, step: Step, formula: Formula, boundary: Boundary, law: LugreLaws, most: Tolerances
+    s: Floats, step: Step, formula: Formula, laws: LugreLaws, most: Tolerances
 ) -> tuple[float, int]:
     """Find the end of a step, which is not kept yet.
 
     Returns its error [N], infinite where Newton's method fails, zero where none is asked for, and
     the iterations.
     """
-    predict(s, law, formula)
-    iterations, solved = newton(s, step, boundary, law, most.leaves_N)
+    predict(s, laws, formula)
+    iterations, solved = newton(s, step, laws, most.leaves_N)
     if not solved:
         return math.inf, iterations
-    return (step_error(s, law, formula) if most.error_N < math.inf else 0.0), iterations
+    return (step_error(s, laws, formula) if most.error_N < math.inf else 0.0), iterations
 
 
 @kernel

@@ -12,13 +12,27 @@ from typing import NamedTuple
 import numpy as np
 
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, SPRING, Boundary
-from tsas_cli.physics.ends import friction_without_speed
+from tsas_cli.physics.boundary import (
+    DISPLACEMENT,
+    FORCE,
+    SPRING,
+    Boundary,
+    DriveEnd,
+    share_before_sensor,
+)
+from tsas_cli.physics.ends import losses_without_speed
 from tsas_cli.physics.lugre.balance import balance_drive
-from tsas_cli.physics.lugre.ends import StepEnds, ends_after, sensor_share
+from tsas_cli.physics.lugre.ends import EndState, StepEnds, ends_after
 from tsas_cli.physics.lugre.input import lump_share
 from tsas_cli.physics.lugre.slack import shortening, slack_state, unloaded_load
-from tsas_cli.physics.lugre.start import NO_TIME_S, clear_state, lugre_laws, rest_at, set_segments
+from tsas_cli.physics.lugre.start import (
+    NO_TIME_S,
+    clear_state,
+    lugre_laws,
+    rest_at,
+    set_segments,
+    with_drive,
+)
 from tsas_cli.physics.lugre.state import (
     DEFLECTION,
     DEFLECTION_HISTORY,
@@ -34,6 +48,7 @@ from tsas_cli.physics.lugre.state import (
     TENSION,
     TENSION_SLOPE,
     Floats,
+    Given,
     LugreLaws,
     Step,
 )
@@ -41,7 +56,7 @@ from tsas_cli.physics.lugre.step import MOST_ITERATIONS, accept_step, bdf2
 from tsas_cli.physics.lugre.step_size import fit_to_reversal, step_factor, tolerances_of, try_step
 from tsas_cli.physics.mesh import PITCH
 from tsas_cli.physics.plant.turntable import (
-    Actuator,
+    DriveStep,
     Turntable,
     advance_turntable,
     spring_of,
@@ -50,6 +65,7 @@ from tsas_cli.physics.plant.turntable import (
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.slip import state as slip
 
+DRIVEN = Boundary(FORCE, SPRING)
 TOLERANCE = 1e-4  # of a tension: what a step of the lumps may add to its error
 LEAVES = 1e-7  # what Newton's method may leave: more shakes a turntable that is at rest
 ROUGH = 1.0  # the same where that is not to be had
@@ -74,18 +90,16 @@ def empty_lumps() -> Floats:
 
 @kernel
 def lumps_at_rest(s: Floats, chain: Floats, f_in: float, rig: Rig, n: int) -> LumpedTendon:
-    """Lay lumps down at rest where a slip chain is, with a force at the drive [N]."""
-    law, start = lugre_laws(rig, n), np.empty((2, n + 2))
+    """Put lumps at rest where a slip chain is, with a force at the drive [N]."""
+    laws, start = lugre_laws(rig, n, DRIVEN), np.empty((2, n + 2))
     clear_state(s, rig, n)
     for j in range(n + 2):
         start[0, j], start[1, j] = chain[slip.POSITION + j], chain[slip.TENSION + j]
     step = step_of_rest(f_in, 0.0, rig, n)
-    ends = rest_at(s, start, step, Boundary(FORCE, SPRING), law)
-    return (
-        slack_tendon(step, law)
-        if s[POSITION] < taut_position(s, step, law)
-        else restarted(ends, True)
-    )
+    ends = rest_at(s, start, step, laws)
+    if s[POSITION] < taut_position(s, step, laws):
+        return slack_tendon(step, laws)
+    return restarted(ends, True)
 
 
 @kernel
@@ -103,62 +117,52 @@ def restarted(ends: StepEnds, touched: bool) -> LumpedTendon:
 
 @kernel
 def step_lumped_plant(
-    table: Turntable,
-    s: Floats,
-    tendon: LumpedTendon,
-    time_s: float,
-    rig: Rig,
-    law: LugreLaws,
-    actuator: Actuator,
-    h: float,
+    table: Turntable, s: Floats, tendon: LumpedTendon, rig: Rig, laws: LugreLaws, step: DriveStep
 ) -> tuple[Turntable, LumpedTendon, bool]:
-    """Move turntable, tendon and load by h to a time, the motor being there already.
+    """Move turntable, tendon and load by a step; `laws` are those of a drive by force.
 
     Returns the turntable, the tendon, and whether its steps were solved and within their error.
     Where Newton's method fails the tendon is left behind, for the next step to catch up with.
     """
-    p = s[POSITION]
-    reach = spring_of(table, p, rig, actuator, h)
-    step = step_of_rest(reach.drive, time_s, rig, law.n)
-    if tendon.touched != reach.touches and not tendon.slack:
-        tendon = restarted(tendon.ends, reach.touches)
-    settled, arrived, x, f_in = True, True, reach.x, table.f_in
-    boundary, held = Boundary(DISPLACEMENT, SPRING), law
-    if reach.touches:
-        boundary, held = Boundary(FORCE, SPRING), with_drive_spring(law, reach.share)
+    p, h = s[POSITION], step.h
+    spring = spring_of(table, p, rig, step)
+    given = step_of_rest(spring.force, step.time_s, rig, laws.n)
+    if tendon.touched != spring.touches and not tendon.slack:
+        tendon = restarted(tendon.ends, spring.touches)
+    solved, arrived, x, f_in = True, True, spring.x, table.f_in
+    drive = laws.drive
+    if spring.touches:
+        beside = drive.spring_N_per_mm + spring.stiffness
+        held = with_drive(laws, DriveEnd(FORCE, drive.friction_N, beside))
         if tendon.slack:
-            tendon, settled = pull_slack(s, step, held, h)
-    tension = tendon.ends.f_in
-    if not tendon.slack:
-        before = table.f_in + reach.share * p
-        tendon, arrived, settled = advance_lumps(s, tendon, before, step, boundary, held, h)
-    if not reach.touches:
-        f_in += tendon.ends.f_in - tension
+            tendon, solved = pull_slack(s, given, held, h)
     else:
-        if tendon.ends.f_in < 0.0 and s[POSITION] <= taut_position(s, step, law):
-            s[POSITION] = (step.drive - s[FRICTION]) / held.proximal_spring_N_per_mm
-            tendon = slack_tendon(step, law)
+        held = with_drive(laws, DriveEnd(DISPLACEMENT, drive.friction_N, drive.spring_N_per_mm))
+    tension = tendon.ends.drive.tension
+    if not tendon.slack:
+        before = table.f_in + spring.stiffness * p
+        tendon, arrived, solved = advance_lumps(s, tendon, before, given, held, h)
+    if not spring.touches:
+        f_in += tendon.ends.drive.tension - tension
+    else:
+        if tendon.ends.drive.tension < 0.0 and s[POSITION] <= taut_position(s, given, laws):
+            s[POSITION] = (given.drive.value - s[FRICTION]) / held.drive.spring_N_per_mm
+            tendon = slack_tendon(given, laws)
         if arrived:
-            x, f_in = turntable_at(s[POSITION], reach)
-    return advance_turntable(table, x, f_in, (s[POSITION] - p) / h, h), tendon, settled
+            x, f_in = turntable_at(s[POSITION], spring)
+    return advance_turntable(table, x, f_in, (s[POSITION] - p) / h, h), tendon, solved
 
 
 @kernel
 def advance_lumps(
-    s: Floats,
-    tendon: LumpedTendon,
-    before: float,
-    step: Step,
-    boundary: Boundary,
-    law: LugreLaws,
-    h: float,
+    s: Floats, tendon: LumpedTendon, before: float, step: Step, laws: LugreLaws, h: float
 ) -> tuple[LumpedTendon, bool, bool]:
     """Move the lumps by h, the force at the drive going straight from before to the step's.
 
     Returns the tendon, whether it has arrived, and whether every step was within its error, which
     does not count any more after many tries.
     """
-    ends, length, h1, h2, _, _ = tendon
+    ends, length, h1, h2, touched, _ = tendon
     length, done, tolerance = min(length, h), 0.0, TOLERANCE
     for tries in range(MOST_TRIES):
         if tries == CAREFUL_TRIES:
@@ -166,100 +170,79 @@ def advance_lumps(
         length, lands = fit_to_reversal(length, h - done)
         part = 1.0 if lands else (done + length) / h
         formula = bdf2(length, h1, h2)
-        to = with_drive_force(step, before + part * (step.drive - before), formula.gh)
-        most = tolerances_of(ends, law, tolerance, LEAVES)
-        off, _ = try_step(s, to, formula, boundary, law, most)
+        to = with_drive_force(step, before + part * (step.drive.value - before), formula.gh)
+        most = tolerances_of(ends, laws, tolerance, LEAVES)
+        off, _ = try_step(s, to, formula, laws, most)
         change = step_factor(off, most, formula)
         if off < most.error_N:
-            ends = ends_after(s, to, law)
-            accept_step(s, to, law)
+            ends = ends_after(s, to, laws)
+            accept_step(s, to, laws)
             done, length, h1, h2 = done + length, length * change, length, h1
             if lands:
-                return (
-                    LumpedTendon(ends, length, h1, h2, tendon.touched, False),
-                    True,
-                    tolerance == TOLERANCE,
-                )
+                tendon = LumpedTendon(ends, length, h1, h2, touched, False)
+                return tendon, True, tolerance == TOLERANCE
         else:
             length *= change
-    return restarted(ends, tendon.touched), False, False
+    return restarted(ends, touched), False, False
 
 
 @kernel
-def pull_slack(s: Floats, step: Step, law: LugreLaws, h: float) -> tuple[LumpedTendon, bool]:
-    """Move the end of a slack tendon; where that would stretch it, lay it down taut instead.
+def pull_slack(s: Floats, step: Step, laws: LugreLaws, h: float) -> tuple[LumpedTendon, bool]:
+    """Move the end of a slack tendon; where that would stretch it, put it at rest taut instead.
 
-    Returns the tendon and whether the end's place was found.
+    Returns the tendon and whether the end's position was found.
     """
     place, deflection = s[POSITION], s[DEFLECTION]
     s[POSITION_HISTORY], s[DEFLECTION_HISTORY], s[RATE] = place, deflection, 0.0
     s[TENSION] = s[TENSION_SLOPE] = 0.0
-    step, settled = with_drive_force(step, step.drive, h), False
+    step, solved = with_drive_force(step, step.drive.value, h), False
     for _ in range(MOST_ITERATIONS):
-        balance_drive(s, step, Boundary(FORCE, SPRING), law)
-        settled = abs(s[RESIDUAL]) <= 1e-9 * law.preload_N
-        if settled:
+        balance_drive(s, step, laws)
+        solved = abs(s[RESIDUAL]) <= 1e-9 * laws.preload_N
+        if solved:
             break
         s[RATE] += s[RESIDUAL] / s[DIAGONAL]
     s[POSITION], s[SPEED], s[DEFLECTION] = place + h * s[RATE], s[RATE], s[DEFLECTION_NEW]
-    if s[POSITION] <= taut_position(s, step, law):
-        return slack_tendon(step, law), settled
-    start = slack_state(s, unloaded_load(step.lost_N, law), law)
-    ends = rest_at(s, start, with_drive_force(step, 0.0, NO_TIME_S), Boundary(FORCE, SPRING), law)
+    if s[POSITION] <= taut_position(s, step, laws):
+        return slack_tendon(step, laws), solved
+    start = slack_state(s, unloaded_load(step.lost_N, laws), laws)
+    ends = rest_at(s, start, with_drive_force(step, 0.0, NO_TIME_S), laws)
     s[DEFLECTION] = deflection
     return restarted(ends, True), True
 
 
 @kernel
-def taut_position(s: Floats, step: Step, law: LugreLaws) -> float:
+def taut_position(s: Floats, step: Step, laws: LugreLaws) -> float:
     """Return where the drive's end of the tendon is when it is straight without tension [mm]."""
-    return unloaded_load(step.lost_N, law) - shortening(s, law)
+    return unloaded_load(step.lost_N, laws) - shortening(s, laws)
 
 
 @kernel
-def slack_tendon(step: Step, law: LugreLaws) -> LumpedTendon:
+def slack_tendon(step: Step, laws: LugreLaws) -> LumpedTendon:
     """Return a tendon that hangs slack."""
-    load = unloaded_load(step.lost_N, law)
-    ends = StepEnds(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, load, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    drive = EndState(Given(0.0, 0.0), 0.0, 0.0, 0.0, 0.0)
+    load = EndState(Given(0.0, 0.0), unloaded_load(step.lost_N, laws), 0.0, 0.0, 0.0)
+    ends = StepEnds(drive, load, 0.0)
     return LumpedTendon(ends, math.inf, math.inf, math.inf, True, True)
 
 
 @kernel
-def step_of_rest(drive: float, time_s: float, rig: Rig, n: int) -> Step:
+def step_of_rest(force: float, time_s: float, rig: Rig, n: int) -> Step:
     """Return a step of no time, at whose end a force pulls at the drive [N]."""
-    pulled, released, lost_N = friction_without_speed(time_s, 0.0, rig)
-    limits = lump_share(pulled, n), lump_share(released, n)
-    return Step(NO_TIME_S, drive, 0.0, 0.0, 0.0, 0.0, 0.0, limits[0], limits[1], lost_N)
+    losses = losses_without_speed(time_s, 0.0, rig)
+    pulled, released = lump_share(losses.pulled, n), lump_share(losses.released, n)
+    none = Given(0.0, 0.0)
+    return Step(NO_TIME_S, Given(force, 0.0), none, none, pulled, released, losses.preload_N)
 
 
 @kernel
-def with_drive_force(step: Step, drive: float, gh: float) -> Step:
+def with_drive_force(step: Step, force: float, gh: float) -> Step:
     """Return a step with another force at the drive and another length."""
-    return Step(gh, drive, 0.0, 0.0, 0.0, 0.0, 0.0, step.pulled, step.released, step.lost_N)
+    drive = Given(force, 0.0)
+    return Step(gh, drive, step.load, step.frame, step.pulled, step.released, step.lost_N)
 
 
 @kernel
-def tension_at_load(tendon: LumpedTendon, law: LugreLaws) -> float:
-    """Return what a force sensor at the load feels [N]."""
-    share = sensor_share(Boundary(FORCE, SPRING), law)
-    return tendon.ends.f_out - share * tendon.ends.guide
-
-
-@kernel
-def with_drive_spring(law: LugreLaws, stiffness: float) -> LugreLaws:
-    """Return the law with a spring more between the tendon's end and the ground [N/mm]."""
-    return LugreLaws(
-        law.n,
-        law.preload_N,
-        law.lump_mass,
-        law.bristle,
-        law.end_bristle,
-        law.friction_exponent,
-        law.stribeck,
-        law.load_stiffness_N_per_mm,
-        law.load_spring,
-        law.load_friction,
-        law.load_mass_kg,
-        law.drive_friction_N,
-        law.proximal_spring_N_per_mm + stiffness,
-    )
+def tension_at_load(tendon: LumpedTendon, laws: LugreLaws) -> float:
+    """Return the tension at the load's force sensor [N]."""
+    return tendon.ends.load.tension - share_before_sensor(laws.load) * tendon.ends.guide

@@ -2,7 +2,6 @@
 
 import math
 
-from tsas_cli.effects.load_friction import guide_friction
 from tsas_cli.effects.load_inertia import inertia_force
 from tsas_cli.effects.load_spring_nonlinearity import (
     spring_force,
@@ -10,7 +9,7 @@ from tsas_cli.effects.load_spring_nonlinearity import (
 )
 from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, SPRING, Boundary
+from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, moving_friction
 from tsas_cli.physics.slip.nodes import slips_backwards
 from tsas_cli.physics.slip.state import (
     BALANCED,
@@ -36,11 +35,11 @@ def load_tangent(chain: Floats, now: Moment, laws: SlipLaws) -> tuple[float, flo
     """Return slope and value at x = 0 of what the load pulls back with, as a tangent [N/mm, N]."""
     n = laws.n
     x = chain[POSITION + n + 1]
-    shape = laws.load_spring
-    slope = spring_tangent(x, laws.load_stiffness_N_per_mm, shape)
-    value = spring_force(x, laws.load_stiffness_N_per_mm, shape) - slope * x
-    value += laws.preload_N - now.lost_N
-    mass = laws.load_mass_kg
+    shape = laws.load.nonlinearity
+    slope = spring_tangent(x, laws.load.stiffness_N_per_mm, shape)
+    value = spring_force(x, laws.load.stiffness_N_per_mm, shape) - slope * x
+    value += laws.preload_N - now.losses.preload_N
+    mass = laws.load.mass_kg
     if mass > 0.0 and now.step_s < math.inf:  # implicit Euler, first order in the step
         per_speed = 1.0 / (SLIPS_ALONG_S + now.step_s)
         slope += inertia_force(per_speed / now.step_s, mass)
@@ -59,31 +58,23 @@ def update_load_speed(chain: Floats, step_s: float, n: int) -> None:
 
 
 @kernel
-def moving_friction(boundary: Boundary, laws: SlipLaws) -> float:
-    """Return the friction of the load's guide that a moving load end feels [N]."""
-    if boundary.load == SPRING:
-        return guide_friction(laws.load_friction)
-    return laws.load_friction.before_sensor_N if boundary.load == FORCE else 0.0
-
-
-@kernel
-def drive_position(chain: Floats, now: Moment, boundary: Boundary, laws: SlipLaws) -> float:
+def drive_position(chain: Floats, now: Moment, laws: SlipLaws) -> float:
     """Return where the drive's end is [mm]."""
-    if boundary.drive == DISPLACEMENT:
+    if laws.drive.given == DISPLACEMENT:
         return now.drive
-    friction = laws.drive_friction_N
+    friction = laws.drive.friction_N
     if chain[SLIP] == 0 and friction > 0.0:
         return float(chain[POSITION_BEFORE])
     p, q, r = chain[SWEEP_P], chain[SWEEP_Q], chain[SWEEP_R]
-    stiffness = proximal_spring_force(1.0, laws.proximal_spring_N_per_mm)
+    stiffness = proximal_spring_force(1.0, laws.drive.spring_N_per_mm)
     return float(((now.drive - chain[SLIP] * friction) * r - q) / (p + stiffness * r))
 
 
 @kernel
-def update_end(i: int, pull: float, friction: float, chain: Floats, scale: float) -> bool:
+def update_end(i: int, pull: float, friction: float, chain: Floats, laws: SlipLaws) -> bool:
     """Do the same for an end with friction that does not depend on tension."""
     if chain[SLIP + i] != 0:
-        if slips_backwards(i, chain, scale):
+        if slips_backwards(i, chain, laws):
             chain[SLIP + i] = 0
             return True
     elif abs(pull) > friction * (1.0 + TOLERANCE):
@@ -93,22 +84,20 @@ def update_end(i: int, pull: float, friction: float, chain: Floats, scale: float
 
 
 @kernel
-def update_ends(
-    chain: Floats, now: Moment, boundary: Boundary, laws: SlipLaws, scale: float
-) -> bool:
+def update_ends(chain: Floats, now: Moment, laws: SlipLaws) -> bool:
     """Revise the two ends, and the tangent of a load spring that is not straight."""
     n = laws.n
     wrong = False
-    if boundary.drive == FORCE:
-        stiffness = laws.proximal_spring_N_per_mm
+    if laws.drive.given == FORCE:
+        stiffness = laws.drive.spring_N_per_mm
         pull = now.drive - chain[TENSION] - proximal_spring_force(chain[POSITION], stiffness)
-        if laws.drive_friction_N > 0.0:
-            wrong = update_end(0, pull, laws.drive_friction_N, chain, scale)
-    if boundary.load != DISPLACEMENT:
-        pull = chain[TENSION + n] - load_force(chain, now, boundary, laws)
-        friction = moving_friction(boundary, laws)
+        if laws.drive.friction_N > 0.0:
+            wrong = update_end(0, pull, laws.drive.friction_N, chain, laws)
+    if laws.load.given != DISPLACEMENT:
+        pull = chain[TENSION + n] - load_force(chain, now, laws)
+        friction = moving_friction(laws.load)
         if friction > 0.0:
-            wrong = update_end(n + 1, pull, friction, chain, scale) or wrong
+            wrong = update_end(n + 1, pull, friction, chain, laws) or wrong
         if friction == 0.0 or chain[SLIP + n + 1] != 0:
             off = abs(pull - chain[SLIP + n + 1] * friction)
             wrong = off > BALANCED * (abs(chain[TENSION + n]) + laws.preload_N) or wrong
@@ -116,9 +105,9 @@ def update_ends(
 
 
 @kernel
-def load_force(chain: Floats, now: Moment, boundary: Boundary, laws: SlipLaws) -> float:
+def load_force(chain: Floats, now: Moment, laws: SlipLaws) -> float:
     """Return what the load pulls back with at its present place, friction aside [N]."""
-    if boundary.load == FORCE:
+    if laws.load.given == FORCE:
         return now.load
     slope, value = load_tangent(chain, now, laws)
     return float(slope * chain[POSITION + laws.n + 1] + value)

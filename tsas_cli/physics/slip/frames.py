@@ -7,13 +7,13 @@ from tsas_cli.physics.slip.state import SLIP, TENSION, Floats
 
 
 @kernel
-def write_frame(frames: Frames, taken: int, i: int, chain: Floats, n: int, phase: int) -> int:
+def write_frame(frames: Frames, written: int, i: int, chain: Floats, n: int, phase: int) -> int:
     """Write down the chain at sample i, if it is to be; return how many frames are written."""
-    if not is_next(frames, taken, i):
-        return taken
+    if not is_next(frames, written, i):
+        return written
     for j in range(n + 1):
-        frames.tension_N[taken, j] = chain[TENSION + j]
+        frames.tension_N[written, j] = chain[TENSION + j]
     for j in range(n):
-        frames.slip[taken, j] = phase if phase in (SLACK, UNCONVERGED) else chain[SLIP + j + 1]
-    frames.front[taken] = slips_up_to(frames, taken)
-    return taken + 1
+        frames.slip[written, j] = phase if phase in (SLACK, UNCONVERGED) else chain[SLIP + j + 1]
+    frames.front[written] = slips_up_to(frames, written)
+    return written + 1

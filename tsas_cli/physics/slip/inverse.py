@@ -14,6 +14,7 @@ import numpy as np
 
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.boundary import DISPLACEMENT, SPRING, Boundary
+from tsas_cli.physics.course import PULLED, RELEASED, Losses, losses_of
 from tsas_cli.physics.mesh import PITCH
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.slip.chain import advance, tension_at_sensor
@@ -26,7 +27,7 @@ MOST_TRIALS = 200  # of places of the tendon's end for one sample
 
 @kernel
 def inverse_chain(
-    wanted_N: Floats, friction: Floats, step_s: float, rig: Rig, n: int
+    wanted_N: Floats, losses: Floats, step_s: float, rig: Rig, n: int
 ) -> tuple[Floats, Floats, int]:
     """Find the path of the tendon's end at the drive that gives the load a wanted force.
 
@@ -34,8 +35,8 @@ def inverse_chain(
     ----------
     wanted_N
         Force at the load's sensor, shape (m,), positive.
-    friction
-        What `ends.friction_at` returns at each sample, shape (4, m).
+    losses
+        Those of the tendon at each sample, as `ends.losses_over` returns them, shape (4, m).
     step_s
         Time between samples.
     rig
@@ -52,22 +53,13 @@ def inverse_chain(
     m = wanted_N.size
     path, tension = np.empty(m), np.empty(m)
     chain, kept = chain_at_rest(rig, n), np.empty(ROWS * PITCH)
-    laws = slip_laws(rig, n)
-    scale = rig.sheath_length_mm * rig.preload_N / rig.tendon_stiffness_N / n + 1e-9
-    before = Moment(0.0, 0.0, friction[0, 0], friction[1, 0], 0.0, 0.0, np.inf)
+    laws = slip_laws(rig, n, Boundary(DISPLACEMENT, SPRING))
+    before = Moment(0.0, 0.0, Losses(losses[PULLED, 0], losses[RELEASED, 0], 0.0, 0.0), np.inf)
     missed = 0
     for i in range(m):
         step = np.inf if i == 0 else step_s
-        now = Moment(
-            before.drive,
-            0.0,
-            friction[0, i],
-            friction[1, i],
-            friction[2, i],
-            friction[3, i],
-            step,
-        )
-        before, found = reach_force(chain, kept, before, now, wanted_N[i], laws, scale)
+        now = Moment(before.drive, 0.0, losses_of(losses, i), step)
+        before, found = reach_force(chain, kept, before, now, wanted_N[i], laws)
         missed += not found
         path[i], tension[i] = chain[POSITION], chain[TENSION]
     return path, tension, missed
@@ -81,23 +73,22 @@ def reach_force(
     now: Moment,
     wanted_N: float,
     laws: SlipLaws,
-    scale: float,
 ) -> tuple[Moment, bool]:
     """Move the tendon's end until the load's sensor feels a force; the chain stays there.
 
     Returns the moment there and whether the force was met; where it was not, nothing moves.
     """
     copy_rows(chain, kept, laws.n)
-    b, off_b = now.drive, wanted_N - force_at_sensor(chain, before, now, laws, scale)
+    b, off_b = now.drive, wanted_N - force_at_sensor(chain, before, now, laws)
     if abs(off_b) <= EXACT_N:
         return now, True
-    step, bracketed = off_b / laws.load_stiffness_N_per_mm, False
+    step, bracketed = off_b / laws.load.stiffness_N_per_mm, False
     a, off_a = b, off_b
     for _ in range(MOST_TRIALS):
         x = a - off_a * (b - a) / (off_b - off_a) if bracketed else b + step
         copy_rows(kept, chain, laws.n)
-        now = with_drive(now, x)
-        off = wanted_N - force_at_sensor(chain, before, now, laws, scale)
+        now = driven_to(now, x)
+        off = wanted_N - force_at_sensor(chain, before, now, laws)
         if abs(off) <= EXACT_N:
             return now, True
         if off * off_b < 0.0:
@@ -114,9 +105,9 @@ def reach_force(
 
 
 @kernel
-def with_drive(now: Moment, x: float) -> Moment:
+def driven_to(now: Moment, x: float) -> Moment:
     """Return the same moment with the tendon's end at another place."""
-    return Moment(x, now.load, now.pulled, now.released, now.viscous_N, now.lost_N, now.step_s)
+    return Moment(x, now.load, now.losses, now.step_s)
 
 
 @kernel
@@ -128,11 +119,8 @@ def copy_rows(source: Floats, target: Floats, n: int) -> None:
 
 
 @kernel
-def force_at_sensor(
-    chain: Floats, before: Moment, now: Moment, laws: SlipLaws, scale: float
-) -> float:
+def force_at_sensor(chain: Floats, before: Moment, now: Moment, laws: SlipLaws) -> float:
     """Return what the load's sensor feels after the tendon's end has moved; infinite if lost."""
-    boundary = Boundary(DISPLACEMENT, SPRING)
-    if not advance(chain, before, now, boundary, laws, scale):
+    if not advance(chain, before, now, laws):
         return np.inf
-    return tension_at_sensor(chain, now, boundary, laws)
+    return tension_at_sensor(chain, now, laws)

@@ -49,7 +49,7 @@ SLIDING_SHARE = 0.99  # share of its limit from which a node on a bristle is sai
 def set_friction(chain: Floats, now: Moment, laws: SlipLaws) -> None:
     """Renew what each node's friction leaves of the tension, Eq. (7) of Yang 2025 for its bend."""
     n = laws.n
-    pulled, released = now.pulled / n, now.released / n
+    pulled, released = now.losses.pulled / n, now.losses.released / n
     if laws.friction_exponent == 0.0:
         passed, kept = math.exp(-pulled), math.exp(-released)
         for i in range(1, n + 1):
@@ -77,9 +77,9 @@ def is_linear(laws: SlipLaws) -> bool:
     return (
         laws.friction_exponent == 0.0
         and laws.presliding_mm == 0.0
-        and laws.load_mass_kg == 0.0
-        and laws.load_spring.quadratic_per_mm == 0.0
-        and laws.load_spring.cubic_per_mm2 == 0.0
+        and laws.load.mass_kg == 0.0
+        and laws.load.nonlinearity.quadratic_per_mm == 0.0
+        and laws.load.nonlinearity.cubic_per_mm2 == 0.0
     )
 
 
@@ -113,7 +113,7 @@ def set_capstan_relations(chain: Floats, now: Moment, laws: SlipLaws) -> bool:
         slip = chain[SLIP + i]
         if slip != 0.0:
             ratio = capstan_ratio(slip, i, chain)
-            half = 0.5 * slip * now.viscous_N / n
+            half = 0.5 * slip * now.losses.viscous_N / n
             changed = changed or ratio != chain[FACTOR + i]
             chain[FACTOR + i], chain[DROP + i] = ratio, half + ratio * half
     return changed
@@ -129,7 +129,7 @@ def set_tangent_relations(chain: Floats, now: Moment, laws: SlipLaws) -> bool:
     bristle by dz/dx of the node's way.
     """
     n = laws.n
-    loss = now.viscous_N / n
+    loss = now.losses.viscous_N / n
     wrong = 0
     for i in range(1, n + 1):
         share, mean = chain[SHARE + i], chain[TENSION + i - 1] + chain[TENSION + i]
@@ -213,10 +213,10 @@ def accept(chain: Floats, laws: SlipLaws) -> None:
 
 
 @kernel
-def slips_backwards(i: int, chain: Floats, scale: float) -> bool:
+def slips_backwards(i: int, chain: Floats, laws: SlipLaws) -> bool:
     """Say whether a slipping node has slid against its own direction."""
     slid = chain[POSITION + i] - chain[POSITION_BEFORE + i]
-    return bool(chain[SLIP + i] * slid < -TOLERANCE * scale)
+    return bool(chain[SLIP + i] * slid < -TOLERANCE * laws.scale_mm)
 
 
 @kernel

@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.effects.load_friction import LoadFriction
-from tsas_cli.effects.load_spring_nonlinearity import LoadSpringNonlinearity
+from tsas_cli.physics.boundary import DriveEnd, LoadEnd
+from tsas_cli.physics.course import Losses
 from tsas_cli.physics.mesh import PITCH
 
 Floats = npt.NDArray[np.float64]
@@ -20,25 +20,19 @@ class SlipLaws(NamedTuple):
 
     n: int  # nodes of the sheath
     preload_N: float
-    load_stiffness_N_per_mm: float
-    load_spring: LoadSpringNonlinearity
-    load_friction: LoadFriction
-    load_mass_kg: float
-    drive_friction_N: float
-    proximal_spring_N_per_mm: float
+    scale_mm: float  # elongation of a node's segment at the preload
     friction_exponent: float
     presliding_mm: float
+    drive: DriveEnd
+    load: LoadEnd
 
 
 class Moment(NamedTuple):
     """All that changes from outside, at one moment."""
 
     drive: float  # displacement [mm] or tension at the sensor [N]
-    load: float  # displacement [mm] or tension at the sensor [N]; unused with a spring
-    pulled: float  # friction times bend in contraction [1]
-    released: float  # friction times bend in loosening [1]
-    viscous_N: float  # tension lost over the whole sheath to viscous friction
-    lost_N: float  # preload that the load spring's anchor has lost
+    load: float  # likewise; unused with a spring
+    losses: Losses
     step_s: float  # time since the moment before, infinite where it plays no part
 
 

@@ -14,8 +14,8 @@ friction follows its magnitude.
 """
 
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.physics.boundary import DISPLACEMENT, SPRING, Boundary
-from tsas_cli.physics.slip.ends import drive_position, load_tangent, moving_friction, update_ends
+from tsas_cli.physics.boundary import DISPLACEMENT, SPRING, moving_friction
+from tsas_cli.physics.slip.ends import drive_position, load_tangent, update_ends
 from tsas_cli.physics.slip.nodes import (
     breakaway,
     extrapolate,
@@ -47,9 +47,7 @@ MOST_SINGLE_CHANGES = 5  # more, for each node
 
 
 @kernel
-def solve_sample(
-    chain: Floats, now: Moment, boundary: Boundary, laws: SlipLaws, scale: float
-) -> bool:
+def solve_sample(chain: Floats, now: Moment, laws: SlipLaws) -> bool:
     """Find the slipping nodes at a moment; return whether the set was found."""
     n = laws.n
     if not is_linear(laws):
@@ -57,32 +55,32 @@ def solve_sample(
     set_friction(chain, now, laws)
     update_relations(chain, now, laws)
     for revision in range(MOST_ITERATIONS + MOST_SINGLE_CHANGES * n):
-        sweep_to_drive(chain, now, boundary, laws)
-        sweep_to_load(chain, now, boundary, laws)
+        sweep_to_drive(chain, now, laws)
+        sweep_to_load(chain, now, laws)
         if laws.friction_exponent != 0.0:
             set_friction(chain, now, laws)
         most = n if revision < MOST_ITERATIONS else 1  # one by one ends where all at once cycle
-        wrong = laws.presliding_mm == 0.0 and update_active_set(chain, now, laws, scale, most) > 0
+        wrong = laws.presliding_mm == 0.0 and update_active_set(chain, now, laws, most) > 0
         wrong = update_relations(chain, now, laws) or wrong
         if not wrong or most == n:
-            wrong = update_ends(chain, now, boundary, laws, scale) or wrong
+            wrong = update_ends(chain, now, laws) or wrong
         if not wrong:
             return True
     return False
 
 
 @kernel
-def sweep_to_drive(chain: Floats, now: Moment, boundary: Boundary, laws: SlipLaws) -> None:
+def sweep_to_drive(chain: Floats, now: Moment, laws: SlipLaws) -> None:
     """Write each segment's tension as (p x + q)/r of the node before it, from the load on."""
     last = laws.n + 1
-    guide = moving_friction(boundary, laws)
+    guide = moving_friction(laws.load)
     give, F0 = chain[COMPLIANCE + laws.n], laws.preload_N
-    if boundary.load == DISPLACEMENT:
+    if laws.load.given == DISPLACEMENT:
         p, q, r = 1.0, give * F0 - now.load, give
     elif chain[SLIP + last] == 0.0 and guide > 0.0:
         p, q, r = 1.0, give * F0 - chain[POSITION_BEFORE + last], give
     else:
-        p, q = load_tangent(chain, now, laws) if boundary.load == SPRING else (0.0, now.load)
+        p, q = load_tangent(chain, now, laws) if laws.load.given == SPRING else (0.0, now.load)
         q += chain[SLIP + last] * guide + p * give * F0
         r = 1.0 + p * give
     chain[SWEEP_P + laws.n], chain[SWEEP_Q + laws.n], chain[SWEEP_R + laws.n] = p, q, r
@@ -124,10 +122,10 @@ def eliminate_presliding(chain: Floats, p: float, q: float, r: float, laws: Slip
 
 
 @kernel
-def sweep_to_load(chain: Floats, now: Moment, boundary: Boundary, laws: SlipLaws) -> None:
+def sweep_to_load(chain: Floats, now: Moment, laws: SlipLaws) -> None:
     """Find positions and tensions, from the drive on."""
     n, last = laws.n, laws.n + 1
-    chain[POSITION] = drive_position(chain, now, boundary, laws)
+    chain[POSITION] = drive_position(chain, now, laws)
     if laws.presliding_mm > 0.0:
         substitute_presliding(chain, laws)
     else:
@@ -135,9 +133,9 @@ def sweep_to_load(chain: Floats, now: Moment, boundary: Boundary, laws: SlipLaws
     chain[POSITION + last] = chain[POSITION + n] - chain[COMPLIANCE + n] * (
         chain[TENSION + n] - laws.preload_N
     )
-    if boundary.load == DISPLACEMENT:
+    if laws.load.given == DISPLACEMENT:
         chain[POSITION + last] = now.load
-    elif chain[SLIP + last] == 0.0 and moving_friction(boundary, laws) > 0.0:
+    elif chain[SLIP + last] == 0.0 and moving_friction(laws.load) > 0.0:
         chain[POSITION + last] = chain[POSITION_BEFORE + last]
 
 
@@ -177,19 +175,19 @@ def substitute_presliding(chain: Floats, laws: SlipLaws) -> None:
 
 
 @kernel
-def update_active_set(chain: Floats, now: Moment, laws: SlipLaws, scale: float, most: int) -> int:
+def update_active_set(chain: Floats, now: Moment, laws: SlipLaws, most: int) -> int:
     """Free the nodes whose tensions exceed their friction, hold those that slip backwards.
 
     Returns how many nodes it revised, at most so many, from the drive on.
     """
     n = laws.n
-    loss = now.viscous_N / n
+    loss = now.losses.viscous_N / n
     revised = 0
     for i in range(1, n + 1):
         before = chain[SLIP + i]
         if before == 0.0:
             chain[SLIP + i] = breakaway(i, loss, chain)
-        elif slips_backwards(i, chain, scale):
+        elif slips_backwards(i, chain, laws):
             chain[SLIP + i] = 0.0
         if chain[SLIP + i] != before:
             revised += 1
