@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.effects import Effects
+from tsas_cli.effects import EFFECTS, Effects
 from tsas_cli.effects.drive_friction import drive_friction_force
 from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.physics.boundary import FORCE
@@ -33,19 +33,7 @@ TOLERANCE = 2.5e-6  # of a tension: what a step of the dynamic chain may add to 
 CLOSED = 0  # nodes of the closed form
 ELEMENTS = 60  # on which the closed form says what is along the tendon
 MOST_DOUBLINGS = 30  # of the way that the drive goes before a run
-CHAIN_ONLY = (
-    "direction_dependent_friction",
-    "stribeck_friction",
-    "viscous_friction",
-    "load_dependent_friction",
-    "presliding",
-    "bend_drift",
-    "friction_drift",
-    "preload_loss",
-    "load_spring_nonlinearity",
-    "load_friction",
-    "load_inertia",
-)  # effects that the closed form does not hold for
+ON_CHAIN = tuple(effect.name for effect in EFFECTS if not effect.closed_form)
 
 
 @dataclass(frozen=True)
@@ -150,7 +138,7 @@ def is_closed(rig: Rig, drive: Drive) -> bool:
         drive.kind == "displacement"
         and drive.load == "spring"
         and rig.bend_slope == rig.bend_bow == 0.0
-        and all(getattr(rig.effects, name) == getattr(neutral, name) for name in CHAIN_ONLY)
+        and all(getattr(rig.effects, name) == getattr(neutral, name) for name in ON_CHAIN)
     )
 
 
