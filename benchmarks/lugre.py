@@ -15,14 +15,16 @@ from benchmarks.row import Row
 from benchmarks.timing import best, times
 from tests.physics.references import LOADED_BY_SPRING, TABLE_1, course_of
 from tsas_cli.numerics.side_by_side import each
-from tsas_cli.physics.lugre_chain import OWN_STEPS, Progress, lugre_chain
+from tsas_cli.physics.course import PULLED, RELEASED
+from tsas_cli.physics.course import Output as ChainOutput
+from tsas_cli.physics.lugre.chain import OWN_STEPS, Progress, StepControl, lugre_chain
 from tsas_cli.physics.response import TOLERANCE
 from tsas_cli.physics.rig import Rig
 
 LUMPS = 50
 TIME_S = np.arange(12566) / 1000.0  # two periods of group a
 DRIVE = Sines((Sine(10.0, 1.0),))
-COURSE = course_of(DRIVE.position(TIME_S), TABLE_1)
+COURSE = course_of(DRIVE.position(TIME_S), TABLE_1, time_s=TIME_S)
 AT_LEAST = {"CVODE in C": 30.0, "LSODA": 100.0, "CVODE, scikit-sundae": 150.0}  # times slower
 EQUAL = 4e-5  # tolerance for an error of less than 0.05 % of f_in, as the rivals have it
 REPEATS, RIVALS_REPEATS = 60, 5
@@ -33,12 +35,12 @@ def measure() -> Iterator[Row]:
     """Time the chain, the rivals after each other, a fixed step, and many rigs at once."""
     problem = Problem(Model(LUMPS), DRIVE, TIME_S)
     exact = tight(problem)
-    columns, progress = own()
+    found, progress = own()
     took = times(own, REPEATS)
     seconds = took.least
     yield Row.timed("two periods", took, "ms", per_s=1e3)
     yield Row("times faster than real", TIME_S[-1] / seconds, "", kind="rate")
-    yield from errors("own", Output(columns[2], columns[3], columns[1]), exact, limit=0.05)
+    yield from errors("own", Output(found.f_in, found.f_out, found.x_out), exact, limit=0.05)
     per = seconds / (LUMPS * (progress.iterations + progress.tries))
     yield Row("per lump and evaluation", 1e9 * per, "ns", at_most=10.0)
     for rival in RIVALS:
@@ -67,23 +69,15 @@ def measure() -> Iterator[Row]:
 
 def own(
     rig: Rig = TABLE_1, *, tolerance: float = EQUAL, step_ends_s: np.ndarray = OWN_STEPS
-) -> tuple[np.ndarray, Progress]:
+) -> tuple[ChainOutput, Progress]:
     """Follow the run from rest."""
     course = COURSE.copy()
-    course[2:4] = rig.friction_coefficient * rig.total_bend_rad
+    course[[PULLED, RELEASED]] = rig.friction_coefficient * rig.total_bend_rad
     start = np.zeros((2, LUMPS + 2))
     start[1] = rig.preload_N
-    columns, _, progress = lugre_chain(
-        TIME_S,
-        course,
-        start,
-        rig,
-        LOADED_BY_SPRING,
-        LUMPS,
-        tolerance,
-        step_ends_s,
-    )
-    return columns, progress
+    control = StepControl(tolerance, step_ends_s)
+    output, progress = lugre_chain(course, start, rig, LOADED_BY_SPRING, LUMPS, control)
+    return output, progress
 
 
 def errors(name: str, found: Output, exact: Output, limit: float | None = None) -> Iterator[Row]:

@@ -1,4 +1,4 @@
-"""How the dynamic chain fares on 2,000 rigs at random (tests/physics/random_rigs.py)."""
+"""How the dynamic chain fares on 2,000 rigs at random (tests/physics/lugre/random_rigs.py)."""
 
 from collections.abc import Iterator
 from multiprocessing import Pool
@@ -6,7 +6,7 @@ from multiprocessing import Pool
 import numpy as np
 
 from benchmarks.row import Row
-from tests.physics.random_rigs import (
+from tests.physics.lugre.random_rigs import (
     TIGHT,
     USUAL,
     followed,

@@ -17,10 +17,10 @@ from tests.physics.references import (
 )
 from tsas_cli.effects import EFFECTS
 from tsas_cli.numerics.conditioning import condition
-from tsas_cli.physics.branches import branches
+from tsas_cli.physics.closed_form.branches import branches
 from tsas_cli.physics.ends import Drive, ends_of
 from tsas_cli.physics.rig import Rig, with_values
-from tsas_cli.physics.slip_chain import slip_chain
+from tsas_cli.physics.slip.chain import slip_chain
 
 TIME_S = np.arange(12566) / 1000.0  # two periods
 REPEATS = 30

@@ -8,7 +8,7 @@ import numpy as np
 
 from tests.physics.references import TABLE_1, wrap_of
 from tsas_cli.physics.bristles import Bristles
-from tsas_cli.physics.lugre_stability import Sliding, growth_rate
+from tsas_cli.physics.lugre.stability import Sliding, growth_rate
 
 mpl.use("svg")
 import matplotlib.pyplot as plt

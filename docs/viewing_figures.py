@@ -6,7 +6,7 @@ import matplotlib as mpl
 import numpy as np
 
 from tests.physics.references import GROUP_A
-from tsas_cli.physics.branches import branches
+from tsas_cli.physics.closed_form.branches import branches
 from tsas_cli.physics.frames import empty_frames
 
 mpl.use("svg")

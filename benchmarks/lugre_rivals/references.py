@@ -1,4 +1,4 @@
-"""Make the tight reference solutions in tests/physics/lugre_references again.
+"""Make the tight reference solutions in tests/physics/lugre/references again.
 
 python -m benchmarks.lugre_rivals.references [NAME …] [--out DIR]
 
@@ -25,7 +25,7 @@ from benchmarks.lugre_rivals.solution import Tolerance
 from benchmarks.lugre_rivals.solvers import radau_in_numpy, sundae
 from tsas_cli.support.files import own_file
 
-FOLDER = Path(__file__).parents[2] / "tests" / "physics" / "lugre_references"
+FOLDER = Path(__file__).parents[2] / "tests" / "physics" / "lugre" / "references"
 KEY = b"lugre"
 INTERVALS = 400
 CVODE_TOLERANCE = Tolerance(y_mm=1e-10, w_mm_s=1e-7, z_mm=1e-11, relative=1e-10)

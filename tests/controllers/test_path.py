@@ -10,7 +10,7 @@ from tests.physics.references import GROUP_A
 from tsas_cli.controllers.path import drive_at, follow, geared_at, smoothed
 from tsas_cli.effects.drive_ripple import DriveRipple
 from tsas_cli.physics.ends import Drive, ends_of
-from tsas_cli.physics.plant import Actuator
+from tsas_cli.physics.plant.turntable import Actuator
 from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import with_values
 from tsas_cli.support.errors import InputError

@@ -33,7 +33,7 @@ def shape(name, *starts, start=7.0):
 
 
 def effect(name, *parameters):
-    return Effect(name, name, "drive", "", "", parameters or (amplitude(),), "")
+    return Effect(name, name, "drive", True, "", "", parameters or (amplitude(),), "")
 
 
 def cause(parameter, name="play"):

@@ -26,7 +26,7 @@ from tsas_cli.drive.words import (
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.fit import Unknown
 from tsas_cli.numerics.linear_response import sampled
-from tsas_cli.physics.drive import DriveValues, linear_response
+from tsas_cli.physics.plant.harmonic_drive import DriveValues, linear_response
 
 BLOCKS = 20
 

@@ -17,7 +17,7 @@ from tsas_cli.drive.search import NOTHING
 from tsas_cli.drive.tables import tables
 from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.physics.drive import DriveValues
+from tsas_cli.physics.plant.harmonic_drive import DriveValues
 
 TITLE = {e.name: e.title for e in EFFECTS}
 STATED = frozenset({"stated"})

@@ -42,6 +42,7 @@ BENT_SCALE = Effect(
     name="bent_scale",
     title="Bent scale of a force sensor",
     acts_on="sensor",
+    closed_form=True,
     equation="reading of f_out = T + curvature · T²",
     doc=__doc__,
     parameters=(

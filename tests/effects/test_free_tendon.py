@@ -6,7 +6,7 @@ import pytest
 from tests.physics.references import GROUP_A
 from tsas_cli.effects import Effects, FreeTendon
 from tsas_cli.effects.free_tendon import free_compliance
-from tsas_cli.physics.branches import branches
+from tsas_cli.physics.closed_form.branches import branches
 from tsas_cli.physics.response import Drive, simulate
 
 EA = GROUP_A.tendon_stiffness_N

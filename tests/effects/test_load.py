@@ -7,7 +7,7 @@ import pytest
 
 from tests.effects.runs import A, run
 from tests.physics.references import GROUP_A
-from tsas_cli.physics.chain_ends import SLIPS_ALONG_S
+from tsas_cli.physics.slip.ends import SLIPS_ALONG_S
 
 KL = GROUP_A.load_stiffness_N_per_mm
 MOVING_UP = slice(400, 700)

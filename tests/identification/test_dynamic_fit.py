@@ -12,7 +12,7 @@ from tests.identification.test_odd_recordings import recorded as by_the_rig
 from tests.physics.references import LOADED_BY_SPRING, TABLE_1, course_of
 from tsas_cli.identification.calibration import calibrate_runs
 from tsas_cli.identification.prepared import prepare
-from tsas_cli.physics.lugre_chain import OWN_STEPS, lugre_chain
+from tsas_cli.physics.lugre.chain import OWN_STEPS, StepControl, lugre_chain
 from tsas_cli.physics.rig import with_values
 from tsas_cli.recordings.manifest import Manifest, Run
 from tsas_cli.recordings.recording import Recording
@@ -135,10 +135,10 @@ def f_in(rig, tolerance=3e-6, step_ends_s=OWN_STEPS):
     x_in = 10.0 - 10.0 * np.cos(time_s) + 2.0 * (1.0 - np.cos(3.3 * time_s))
     start = np.zeros((2, 52))
     start[1] = rig.preload_N
-    columns, _, progress = lugre_chain(
-        time_s, course_of(x_in, rig), start, rig, LOADED_BY_SPRING, 50, tolerance, step_ends_s
-    )
-    return columns[2], progress.step_ends_s
+    course = course_of(x_in, rig, time_s=time_s)
+    control = StepControl(tolerance, step_ends_s)
+    output, progress = lugre_chain(course, start, rig, LOADED_BY_SPRING, 50, control)
+    return output.f_in, progress.step_ends_s
 
 
 @pytest.mark.parametrize(

@@ -9,8 +9,8 @@ from tests.physics.references import TABLE_1
 from tsas_cli.identification import dynamic_notes as d
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model
-from tsas_cli.physics.chain_state import UNSETTLED
-from tsas_cli.physics.lugre_start import law_of
+from tsas_cli.physics.lugre.start import bristles_of
+from tsas_cli.physics.phases import UNCONVERGED
 from tsas_cli.recordings.manifest import Run
 
 KNOWN = Model((Estimate("bristles.stiffness_N_per_mm", 4e3, "N/mm", "fitted"),))
@@ -22,7 +22,7 @@ RUN = SimpleNamespace(
 def notes(monkeypatch, *, model=KNOWN, steps=80, unsettled=(), unstable=()):
     monkeypatch.setattr(d, "unstable_sliding", lambda rig, time_s, drive: iter(unstable))
     phase = np.zeros(8)
-    phase[list(unsettled)] = UNSETTLED
+    phase[list(unsettled)] = UNCONVERGED
     response = SimpleNamespace(step_ends_s=np.zeros(steps), phase=phase)
     return list(d.dynamic_notes(RUN, model, response))
 
@@ -74,7 +74,7 @@ def test_unstable_sliding_is_said_where_it_is_found(monkeypatch, found, count):
 
 def unstable(damping_times, *, whole=True):
     critical = TABLE_1._replace(bristles=TABLE_1.bristles._replace(damping_N_s_per_mm=float("nan")))
-    damping = damping_times * law_of(critical, 1).bristle.damping
+    damping = damping_times * bristles_of(critical).damping
     rig = TABLE_1._replace(bristles=TABLE_1.bristles._replace(damping_N_s_per_mm=damping))
     moment = SimpleNamespace(whole=whole, speed_mm_s=1.234, f_in_N=56.78)
     return d._unstable(SimpleNamespace(moment=moment, growth_per_s=40.0), rig)

@@ -10,7 +10,7 @@ from tests.identification.recorded import clean
 from tsas_cli.identification.calibration import calibrate_runs
 from tsas_cli.identification.comparison import compare
 from tsas_cli.identification.prepared import prepare
-from tsas_cli.physics.chain_state import SLACK
+from tsas_cli.physics.phases import SLACK
 from tsas_cli.physics.response import Drive, simulate
 from tsas_cli.physics.rig import Rig as ModelRig
 from tsas_cli.recordings.manifest import Manifest, Run

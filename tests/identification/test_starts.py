@@ -11,7 +11,7 @@ from tests.physics.references import GROUP_A, through, wrap_of
 from tsas_cli.identification.phases import Segment
 from tsas_cli.identification.samples import mean_edges, points
 from tsas_cli.identification.starts import read_off
-from tsas_cli.physics.static import static_model
+from tsas_cli.physics.closed_form.static import static_model
 
 X = through(20.0, 0.0, 20.0)
 F_IN, F_OUT, PHASE = static_model(X, GROUP_A)

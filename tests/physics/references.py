@@ -6,9 +6,22 @@ from itertools import pairwise
 import numpy as np
 
 from tsas_cli.effects import Effects, FreeTendon, StribeckFriction, ViscousFriction
-from tsas_cli.physics.chain_state import DISPLACEMENT, FORCE, SPRING, Boundary
+from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, SPRING, Boundary
+from tsas_cli.physics.course import (
+    DRIVE,
+    LOAD,
+    LOST,
+    PULLED,
+    RELEASED,
+    STEP,
+    TIME,
+    VISCOUS,
+    Losses,
+)
+from tsas_cli.physics.lugre.ends import EndState, StepEnds
+from tsas_cli.physics.lugre.state import Given, Step
 from tsas_cli.physics.rig import Rig
-from tsas_cli.physics.slip_chain import slip_chain
+from tsas_cli.physics.slip.chain import slip_chain
 
 GROUP_A = Rig(
     friction_coefficient=0.125,
@@ -47,20 +60,59 @@ def follow(drive, *, rig=GROUP_A, boundary=LOADED_BY_SPRING, n=30, **given):
 
 
 def course_of(
-    drive, rig, *, load=0.0, pulled=None, released=None, viscous=0.0, lost=0.0, step=math.inf
+    drive,
+    rig,
+    *,
+    load=0.0,
+    pulled=None,
+    released=None,
+    viscous=0.0,
+    lost=0.0,
+    step=math.inf,
+    time_s=0.0,
 ):
-    """Return the course of `Moment`; friction is that of the rig unless it is given."""
+    """Return what acts on a tendon; friction is that of the rig unless it is given."""
     wrap = wrap_of(rig)
-    rows = (
-        drive,
-        load,
-        wrap if pulled is None else pulled,
-        wrap if released is None else released,
-        viscous,
-        lost,
-        step,
-    )
-    return np.array([np.broadcast_to(np.asarray(row, dtype=float), len(drive)) for row in rows])
+    rows = {
+        DRIVE: drive,
+        LOAD: load,
+        PULLED: wrap if pulled is None else pulled,
+        RELEASED: wrap if released is None else released,
+        VISCOUS: viscous,
+        LOST: lost,
+        STEP: step,
+        TIME: time_s,
+    }
+    course = np.empty((len(rows), len(drive)))
+    for row, values in rows.items():
+        course[row] = values
+    return course
+
+
+def at(laws, boundary=LOADED_BY_SPRING, scale=None):
+    """Return the laws of a chain with this given at its ends, and a slip chain's scale."""
+    drive = laws.drive._replace(given=boundary.drive)
+    laws = laws._replace(drive=drive, load=laws.load._replace(given=boundary.load))
+    return laws if scale is None else laws._replace(scale_mm=scale)
+
+
+def step_ends(f_in=0.0, f_out=0.0):
+    """Return ends of a step at which all but the tensions is zero."""
+    none = Given(0.0, 0.0)
+    drive, load = (EndState(none, 0.0, 0.0, tension, 0.0) for tension in (f_in, f_out))
+    return StepEnds(drive, load, 0.0)
+
+
+def bare_step(*, gh=0.0, pulled=0.0, released=0.0, speed=0.0):
+    """Return a step with nothing given at its end, in a frame that has a speed."""
+    none = Given(0.0, 0.0)
+    return Step(gh, none, none, Given(0.0, speed), pulled, released, 0.0)
+
+
+def moment(now, **values):
+    """Return a moment with some values replaced, those of its losses too."""
+    losses = {name: values.pop(name) for name in Losses._fields if name in values}
+    return now._replace(losses=now.losses._replace(**losses), **values)
 
 
 class Profile:

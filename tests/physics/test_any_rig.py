@@ -7,11 +7,12 @@ import pytest
 
 from tests.physics.references import Profile, course_of, wrap_of
 from tsas_cli.effects import Effects, FreeTendon
-from tsas_cli.physics.branches import branches
-from tsas_cli.physics.chain_state import DISPLACEMENT, FORCE, SPRING, UNSETTLED, Boundary
+from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, SPRING, Boundary
+from tsas_cli.physics.closed_form.branches import branches
+from tsas_cli.physics.closed_form.static import static_model
+from tsas_cli.physics.phases import UNCONVERGED
 from tsas_cli.physics.rig import Rig
-from tsas_cli.physics.slip_chain import slip_chain
-from tsas_cli.physics.static import static_model
+from tsas_cli.physics.slip.chain import slip_chain
 
 SEEDS = range(1000)
 
@@ -78,7 +79,7 @@ def test_the_ends_never_leave_the_capstan_cone(first, samples):
             where = f"seed {seed}, {name}, {rig}"
             assert np.isfinite(f_in).all(), where
             assert np.isfinite(f_out).all(), where
-            assert UNSETTLED not in phase, where
+            assert UNCONVERGED not in phase, where
             if name != "force":
                 assert min(f_in.min(), f_out.min()) >= 0.0, where
                 forwards = np.diff(f_in) * np.diff(motion) >= -1e-9 * f_in.max()

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from tests.physics.references import GROUP_A
-from tests.physics.test_any_effect import any_effects
+from tests.physics.slip.test_any_effect import any_effects
 from tests.physics.test_any_rig import any_motion, any_rig
-from tsas_cli.physics.branches import branches
 from tsas_cli.physics.by_pieces import simulate_pieces
-from tsas_cli.physics.chain_state import UNSETTLED
+from tsas_cli.physics.closed_form.branches import branches
 from tsas_cli.physics.ends import Drive
+from tsas_cli.physics.phases import UNCONVERGED
 from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import with_values
 
@@ -100,7 +100,7 @@ def test_any_effects_on_any_rig(seed):
     drive = replace(drive, time_s=drive.time_s - drive.time_s[0])
     whole = simulate(rig, drive, nodes=8)
     found = in_pieces(rig, drive, max(x.size // 7, 8), nodes=8)
-    if UNSETTLED in whole.phase:  # where a step may go either way, rounding decides
+    if UNCONVERGED in whole.phase:  # where a step may go either way, rounding decides
         return
     assert_same(found, whole, rtol=1e-7)
 

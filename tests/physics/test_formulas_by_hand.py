@@ -5,39 +5,30 @@ import math
 import numpy as np
 import pytest
 
-from tests.physics.references import GROUP_A, LOADED_BY_SPRING, wrap_of
-from tsas_cli.physics.branches import from_rest
+from tests.physics.references import GROUP_A, LOADED_BY_SPRING, at, bare_step, step_ends, wrap_of
+from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, SPRING
 from tsas_cli.physics.bristles import Bristles, bristle_damping, tendon_mass
-from tsas_cli.physics.capstan import speed_per_stiffness
-from tsas_cli.physics.chain_mesh import laws_of
-from tsas_cli.physics.chain_state import (
-    DISPLACEMENT,
-    FORCE,
-    PITCH,
-    PULLED,
-    RELEASED,
-    ROWS,
-    SLIP,
-    SPRING,
-    Moment,
-    T,
-)
-from tsas_cli.physics.chain_step import revise
+from tsas_cli.physics.closed_form.branches import from_rest
+from tsas_cli.physics.closed_form.capstan import speed_per_stiffness
 from tsas_cli.physics.compliances import (
     compliance_at_drive,
     compliance_at_load,
     length_per_angle,
     sheath_compliance,
 )
+from tsas_cli.physics.course import DRIVE, LOAD, PULLED, RELEASED, STEP, VISCOUS, Losses
 from tsas_cli.physics.ends import Drive, ends_of
-from tsas_cli.physics.lugre_ends import Ends
-from tsas_cli.physics.lugre_pace import Allowed, allowed, change_of, fitted
-from tsas_cli.physics.lugre_start import law_of, lay_out
-from tsas_cli.physics.lugre_state import PITCH as LUGRE_PITCH
-from tsas_cli.physics.lugre_state import ROWS as LUGRE_ROWS
-from tsas_cli.physics.lugre_state import T_PAST, Formula, Step
-from tsas_cli.physics.lugre_step import newton
+from tsas_cli.physics.lugre.start import clear_state, lugre_laws
+from tsas_cli.physics.lugre.state import PITCH as LUGRE_PITCH
+from tsas_cli.physics.lugre.state import ROWS as LUGRE_ROWS
+from tsas_cli.physics.lugre.state import TENSION_HISTORY, Formula
+from tsas_cli.physics.lugre.step import newton
+from tsas_cli.physics.lugre.step_size import Tolerances, fit_to_reversal, step_factor, tolerances_of
+from tsas_cli.physics.mesh import PITCH
 from tsas_cli.physics.rig import with_values
+from tsas_cli.physics.slip.start import slip_laws
+from tsas_cli.physics.slip.state import RATIO_PULLED, RATIO_RELEASED, ROWS, SLIP, TENSION, Moment
+from tsas_cli.physics.slip.step import update_active_set
 
 N = 3
 EA, F0 = GROUP_A.tendon_stiffness_N, GROUP_A.preload_N
@@ -49,21 +40,27 @@ A = wrap_of(GROUP_A)
 def test_nodes_are_freed_one_after_the_other_from_the_drive_on(tensions, way, most):
     """Each leaves at least 0.8 and at most 1/0.8 of the tension: all three are too weak."""
     chain = np.zeros(ROWS * PITCH)
-    chain[T : T + N + 1] = tensions
-    chain[PULLED + 1 : PULLED + N + 1] = chain[RELEASED + 1 : RELEASED + N + 1] = 0.8
-    now = Moment(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
-    assert revise(chain, now, laws_of(GROUP_A, N), 1.0, most) == most
+    chain[TENSION : TENSION + N + 1] = tensions
+    chain[RATIO_PULLED + 1 : RATIO_PULLED + N + 1] = chain[
+        RATIO_RELEASED + 1 : RATIO_RELEASED + N + 1
+    ] = 0.8
+    now = Moment(0.0, 0.0, Losses(0.0, 0.0, 0.0, 0.0), 1.0)
+    assert (
+        update_active_set(chain, now, at(slip_laws(GROUP_A, N, LOADED_BY_SPRING), scale=1.0), most)
+        == most
+    )
     freed = chain[SLIP : SLIP + N + 2].tolist()
     assert freed == [0.0, *[way] * most, *[0.0] * (N - most), 0.0]
     strong = chain.copy()
     strong[SLIP : SLIP + N + 2] = 0.0
-    strong[PULLED + 1 : PULLED + N + 1] = strong[RELEASED + 1 : RELEASED + N + 1] = 0.4
-    assert revise(strong, now, laws_of(GROUP_A, N), 1.0, most) == 0
+    strong[RATIO_PULLED + 1 : RATIO_PULLED + N + 1] = strong[
+        RATIO_RELEASED + 1 : RATIO_RELEASED + N + 1
+    ] = 0.4
+    assert (
+        update_active_set(strong, now, at(slip_laws(GROUP_A, N, LOADED_BY_SPRING), scale=1.0), most)
+        == 0
+    )
     assert not strong[SLIP : SLIP + N + 2].any()
-
-
-def ends_at(f_in, f_out):
-    return Ends(*[0.0] * 13)._replace(f_in=f_in, f_out=f_out)
 
 
 @pytest.mark.parametrize(
@@ -71,13 +68,15 @@ def ends_at(f_in, f_out):
     [(-80.0, 60.0, 80.0), (50.0, -90.0, 90.0), (1.0, 1.0, 0.1 * F0)],
 )
 def test_what_a_step_may_be_off_by_is_a_share_of_the_largest_tension(f_in, f_out, tension):
-    law = law_of(GROUP_A, N)
-    found = allowed(ends_at(f_in, f_out), law, 1e-3, 1.0)
+    law = lugre_laws(GROUP_A, N, LOADED_BY_SPRING)
+    found = tolerances_of(step_ends(f_in, f_out), law, 1e-3, 1.0)
     assert found == pytest.approx((1e-3 * tension, 0.3e-3 * tension))
-    assert allowed(ends_at(f_in, f_out), law, 1e-3, 1e-5).leaves_N == pytest.approx(1e-5 * tension)
-    heavy = law._replace(load_mass_kg=1.0)
-    assert allowed(ends_at(f_in, f_out), heavy, 1e-3, 1.0)[0] < found[0]
-    assert allowed(ends_at(f_in, f_out), law, math.inf, 1e-5).error_N == math.inf
+    assert tolerances_of(step_ends(f_in, f_out), law, 1e-3, 1e-5).leaves_N == pytest.approx(
+        1e-5 * tension
+    )
+    heavy = law._replace(load=law.load._replace(mass_kg=1.0))
+    assert tolerances_of(step_ends(f_in, f_out), heavy, 1e-3, 1.0)[0] < found[0]
+    assert tolerances_of(step_ends(f_in, f_out), law, math.inf, 1e-5).error_N == math.inf
 
 
 FIRST = Formula(1.0, math.inf, math.inf, 1.0, 1.0, 0.0)
@@ -97,7 +96,7 @@ THIRD = FIRST._replace(h1=1.0, h2=1.0)
     ],
 )
 def test_the_next_step_follows_from_the_error_of_this_one(off, formula, change):
-    assert change_of(off, Allowed(1.0, 1.0), formula) == pytest.approx(change)
+    assert step_factor(off, Tolerances(1.0, 1.0), formula) == pytest.approx(change)
 
 
 @pytest.mark.parametrize(
@@ -108,17 +107,16 @@ def test_the_next_step_follows_from_the_error_of_this_one(off, formula, change):
     ],
 )
 def test_a_step_lands_on_a_turn_and_leaves_no_short_rest(h, step, lands):
-    assert fitted(h, 1.0) == (step, lands)
+    assert fit_to_reversal(h, 1.0) == (step, lands)
 
 
 def test_newtons_method_gives_up_at_once_where_forces_outgrow_a_float():
-    s, law = np.zeros(LUGRE_ROWS * LUGRE_PITCH), law_of(GROUP_A, N)
-    lay_out(s, GROUP_A, N)
-    s[T_PAST : T_PAST + 2] = 1.5e308, -1.5e308
-    given = {"gh": 1e-3, "pulled": 0.1, "released": 0.1}
-    step = Step(**dict.fromkeys(Step._fields, 0.0) | given)
+    s, law = np.zeros(LUGRE_ROWS * LUGRE_PITCH), lugre_laws(GROUP_A, N, LOADED_BY_SPRING)
+    clear_state(s, GROUP_A, N)
+    s[TENSION_HISTORY : TENSION_HISTORY + 2] = 1.5e308, -1.5e308
+    step = bare_step(gh=1e-3, pulled=0.1, released=0.1)
     with np.errstate(all="ignore"):
-        assert newton(s, step, LOADED_BY_SPRING, law, 1e-6) == (0, False)
+        assert newton(s, step, at(law, LOADED_BY_SPRING), 1e-6) == (0, False)
 
 
 def test_compliances_in_series():
@@ -184,16 +182,16 @@ def test_a_course_by_displacement_has_speeds_steps_and_the_last_directions():
     found = ends_of(rig, Drive(LEVELS, time_s=TIME_S))
     assert found.boundary == (DISPLACEMENT, SPRING)
     np.testing.assert_allclose(found.drive, [3.0, 5.0, 2.0])
-    np.testing.assert_allclose(found.course[1], 0.0)
-    np.testing.assert_allclose(found.course[2:4], A)
+    np.testing.assert_allclose(found.course[LOAD], 0.0)
+    np.testing.assert_allclose(found.course[[PULLED, RELEASED]], A)
     # Speeds of 2 mm/s up, then 2 mm/s down; in between weighed by the other side's time.
-    np.testing.assert_allclose(np.abs(found.course[4]), 0.5 * np.array([4.0, 2.5, 2.0]))
-    np.testing.assert_allclose(found.course[6], [math.inf, 0.5, 1.5])
+    np.testing.assert_allclose(np.abs(found.course[VISCOUS]), 0.5 * np.array([4.0, 2.5, 2.0]))
+    np.testing.assert_allclose(found.course[STEP], [math.inf, 0.5, 1.5])
     np.testing.assert_array_equal(found.direction, [0.0, 1.0, -1.0])
     still = ends_of(rig, Drive(LEVELS))
-    assert not still.course[4].any()
-    assert np.isinf(still.course[6]).all()
-    assert found.first().course.shape == (7, 1)
+    assert not still.course[VISCOUS].any()
+    assert np.isinf(still.course[STEP]).all()
+    assert found.first().course.shape == (8, 1)
     assert found.first().direction.shape == (1,)
 
 
@@ -204,10 +202,10 @@ def test_a_course_by_force_is_free_of_the_sensors_errors():
     )
     pulled = ends_of(rig, Drive(LEVELS, kind="force", load="force", load_values=2.0 * LEVELS))
     assert pulled.boundary == (FORCE, FORCE)
-    np.testing.assert_allclose(pulled.course[:2], [LEVELS - 2.0, 2.0 * LEVELS + 1.0])
+    np.testing.assert_allclose(pulled.course[[DRIVE, LOAD]], [LEVELS - 2.0, 2.0 * LEVELS + 1.0])
     placed = ends_of(rig, Drive(LEVELS, load="displacement", load_values=LEVELS))
     assert placed.boundary == (DISPLACEMENT, DISPLACEMENT)
-    np.testing.assert_allclose(placed.course[1], LEVELS - 0.5)
+    np.testing.assert_allclose(placed.course[LOAD], LEVELS - 0.5)
 
 
 def test_a_run_goes_on_with_the_play_and_the_direction_that_it_had():

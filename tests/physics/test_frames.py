@@ -18,12 +18,12 @@ from tests.physics.references import (
     wrap_of,
 )
 from tsas_cli.effects import Effects, Presliding
-from tsas_cli.physics.branches import branches
-from tsas_cli.physics.chain_state import SLACK, UNSETTLED
+from tsas_cli.physics.closed_form.branches import branches
 from tsas_cli.physics.ends import Drive
 from tsas_cli.physics.frames import empty_frames
+from tsas_cli.physics.phases import SLACK, UNCONVERGED
 from tsas_cli.physics.response import simulate
-from tsas_cli.physics.slip_chain import slip_chain
+from tsas_cli.physics.slip.chain import slip_chain
 
 N = 60
 WRAP = wrap_of(GROUP_A)
@@ -176,7 +176,7 @@ def test_presliding_slips_where_its_bristles_are_at_their_limit():
 def test_what_no_solver_has_reached_is_unknown():
     frames = empty_frames(np.array([3, 5]), 4)
     assert np.isnan(frames.tension_N).all()
-    assert (frames.slip == UNSETTLED).all()
+    assert (frames.slip == UNCONVERGED).all()
     np.testing.assert_allclose(frames.places, [0.0, 0.25, 0.5, 0.75, 1.0])
 
 

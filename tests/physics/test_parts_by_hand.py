@@ -12,46 +12,63 @@ from tests.physics.references import (
     LOADED_BY_DISPLACEMENT,
     LOADED_BY_FORCE,
     LOADED_BY_SPRING,
+    at,
+    bare_step,
     course_of,
+    step_ends,
     wrap_of,
 )
 from tsas_cli.effects.load_spring_nonlinearity import LoadSpringNonlinearity
-from tsas_cli.physics.chain_mesh import laws_of
-from tsas_cli.physics.chain_nodes import is_straight, ratio_passed, set_friction
-from tsas_cli.physics.chain_state import (
-    PITCH,
-    PULLED,
-    PULLED_BY,
-    RELEASED,
-    RELEASED_BY,
-    ROWS,
-    SLIP,
-    Moment,
-    T,
-    X,
-)
-from tsas_cli.physics.drive import DriveValues, has_gear, lag_coefficients
-from tsas_cli.physics.ends import friction_at, friction_without_speed, last_direction
+from tsas_cli.physics.course import Losses, Tensions
+from tsas_cli.physics.ends import last_direction, losses_at, losses_without_speed
 from tsas_cli.physics.frames import empty_frames, is_next, slips_up_to
-from tsas_cli.physics.lugre_balance import set_limits
-from tsas_cli.physics.lugre_ends import Ends, unseen
-from tsas_cli.physics.lugre_start import law_of
-from tsas_cli.physics.lugre_state import LIMIT, LIMIT_BY_T, LIMIT_BY_V, Z_PAST, Step, W
-from tsas_cli.physics.lugre_state import PITCH as LUGRE_PITCH
-from tsas_cli.physics.lugre_state import ROWS as LUGRE_ROWS
-from tsas_cli.physics.lugre_state import T as TENSION
+from tsas_cli.physics.lugre.balance import set_limits
+from tsas_cli.physics.lugre.ends import Samples, Span, input_error
+from tsas_cli.physics.lugre.start import lugre_laws
+from tsas_cli.physics.lugre.state import (
+    DEFLECTION_HISTORY,
+    LIMIT,
+    LIMIT_BY_T,
+    LIMIT_BY_V,
+    RATE,
+)
+from tsas_cli.physics.lugre.state import PITCH as LUGRE_PITCH
+from tsas_cli.physics.lugre.state import ROWS as LUGRE_ROWS
+from tsas_cli.physics.lugre.state import TENSION as LUMP_TENSION
+from tsas_cli.physics.mesh import PITCH
 from tsas_cli.physics.parameters import BRISTLES, NOMINAL
-from tsas_cli.physics.plant import Turntable, across_play, moved, rubbing
-from tsas_cli.physics.response import at_drive, with_spring
+from tsas_cli.physics.plant.harmonic_drive import DriveValues, has_gear, lag_coefficients
+from tsas_cli.physics.plant.turntable import (
+    Play,
+    Tangent,
+    Turntable,
+    across_play,
+    advance_turntable,
+    play_friction,
+)
+from tsas_cli.physics.response import force_beside_tendon, with_spring_load
 from tsas_cli.physics.rig import with_values
 from tsas_cli.physics.sensors import reading, true_value
-from tsas_cli.physics.slip_chain import (
+from tsas_cli.physics.slip.chain import (
     between,
+    initial_state,
     phase_of,
     rest_after,
-    resting,
     slip_chain,
     tension_at_sensor,
+)
+from tsas_cli.physics.slip.nodes import capstan_ratio, is_linear, set_friction
+from tsas_cli.physics.slip.start import slip_laws
+from tsas_cli.physics.slip.state import (
+    POSITION,
+    RATIO_PULLED,
+    RATIO_RELEASED,
+    ROWS,
+    SLIP,
+    TENSION,
+    WRAP_PULLED,
+    WRAP_RELEASED,
+    Moment,
 )
 
 RISING = "load_dependent_friction.exponent"
@@ -62,13 +79,19 @@ def test_a_drive_feels_its_friction_and_its_spring():
     ends = SimpleNamespace(direction=np.array([1.0, -1.0, 0.0]), drive=np.array([2.0, 3.0, -4.0]))
     both = {"drive_friction.friction_N": 5.0, "proximal_spring.stiffness_N_per_mm": 0.5}
     rubs, springs = ({k: v} for k, v in both.items())
-    np.testing.assert_allclose(at_drive(with_values(GROUP_A, both), ends), [6.0, -3.5, -2.0])
-    np.testing.assert_allclose(at_drive(with_values(GROUP_A, rubs), ends), [5.0, -5.0, 0.0])
-    np.testing.assert_allclose(at_drive(with_values(GROUP_A, springs), ends), [1.0, 1.5, -2.0])
-    assert at_drive(GROUP_A, ends) == 0.0
+    np.testing.assert_allclose(
+        force_beside_tendon(with_values(GROUP_A, both), ends), [6.0, -3.5, -2.0]
+    )
+    np.testing.assert_allclose(
+        force_beside_tendon(with_values(GROUP_A, rubs), ends), [5.0, -5.0, 0.0]
+    )
+    np.testing.assert_allclose(
+        force_beside_tendon(with_values(GROUP_A, springs), ends), [1.0, 1.5, -2.0]
+    )
+    assert force_beside_tendon(GROUP_A, ends) == 0.0
     f_out = np.array([25.0, 30.0, 20.0])
-    x_in, x_out, f_in, told, _ = with_spring(
-        with_values(GROUP_A, both), ends, f_out + 1.0, f_out, np.zeros(3)
+    x_in, x_out, f_in, told, _ = with_spring_load(
+        with_values(GROUP_A, both), ends, Tensions(f_out + 1.0, f_out, np.zeros(3))
     )
     np.testing.assert_allclose(x_out * GROUP_A.load_stiffness_N_per_mm, [0.0, 5.0, -5.0])
     np.testing.assert_allclose(f_in, f_out + 1.0 + [6.0, -3.5, -2.0])
@@ -76,9 +99,8 @@ def test_a_drive_feels_its_friction_and_its_spring():
     assert x_in is ends.drive
 
 
-def table_at(x, **other):
-    fields = {"motor_rpm": 0.0, "motor_mm": 0.0, "x": x, "x_before": 0.0, "v": 0.0}
-    return Turntable(**fields | {"v_before": 0.0, "f_in": 0.0, "speed": 0.0} | other)
+def table_at(x, *, x_before=0.0, v=0.0, v_before=0.0, f_in=0.0, speed=0.0):
+    return Turntable(x, x_before, v, v_before, f_in, speed)
 
 
 @pytest.mark.parametrize(
@@ -97,32 +119,31 @@ def table_at(x, **other):
     ],
 )
 def test_friction_in_the_play_holds_the_drive(x, at, found):
-    assert across_play(x, table_at(at), 0.0, 0.0, 1.0, 1.0, 0.3) == pytest.approx(found)
+    assert across_play(x, at, 0.0, Tangent(0.0, 1.0), Play(1.0, 0.3)) == pytest.approx(found)
     # Elsewhere, with a slope of 2: twice as near, behind an end at 7 + 3 mm.
-    near = across_play(x / 2.0, table_at(at / 2.0), 10.0, 10.0, 2.0, 1.0, 0.15)
+    near = across_play(x / 2.0, at / 2.0, 10.0, Tangent(10.0, 2.0), Play(1.0, 0.15))
     assert near == pytest.approx(found / 2.0)
 
 
 def test_what_rubs_is_the_part_of_the_tension_that_full_slip_takes():
     a = wrap_of(GROUP_A)
     up, down = math.exp(a), math.exp(-a)
-    assert rubbing(10.0, GROUP_A) == pytest.approx(10.0 * (up - down) / (up + down))
+    assert play_friction(10.0, GROUP_A) == pytest.approx(10.0 * (up - down) / (up + down))
 
 
 def test_a_turntable_moves_on_by_the_backward_formula():
-    before = table_at(4.0, x_before=1.0, v=7.0, motor_rpm=11.0, motor_mm=12.0)
-    now = moved(before, 9.0, 30.0, 2.5, 0.5)
+    before = table_at(4.0, x_before=1.0, v=7.0)
+    now = advance_turntable(before, 9.0, 30.0, 2.5, 0.5)
     assert now.v == pytest.approx((1.5 * 9.0 - 2.0 * 4.0 + 0.5 * 1.0) / 0.5)
-    assert now._replace(v=0.0) == table_at(
-        9.0, x_before=4.0, v_before=7.0, motor_rpm=11.0, motor_mm=12.0, f_in=30.0, speed=2.5
-    )
+    assert now._replace(v=0.0) == table_at(9.0, x_before=4.0, v_before=7.0, f_in=30.0, speed=2.5)
 
 
 def test_a_part_of_the_way_is_a_straight_line_and_the_end_exact():
-    start = Moment(1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0)
-    end = Moment(2.0, 4.0, 6.0, 8.0, 10.0, 12.0, 14.0)
+    start = Moment(1.0, 2.0, Losses(3.0, 4.0, 5.0, 6.0), 7.0)
+    end = Moment(2.0, 4.0, Losses(6.0, 8.0, 10.0, 12.0), 14.0)
     quarter = between(start, end, 0.25, 0.5)
-    assert quarter == pytest.approx((1.25, 2.5, 3.75, 5.0, 6.25, 7.5, 0.5))
+    assert (quarter.drive, quarter.load, quarter.step_s) == pytest.approx((1.25, 2.5, 0.5))
+    assert quarter.losses == pytest.approx((3.75, 5.0, 6.25, 7.5))
     assert between(start, end, 1.0, 0.5) == (*end[:-1], 0.5)
 
 
@@ -145,12 +166,11 @@ def test_friction_of_both_directions_by_the_formula():
     """μ θ (1 ± α), raised by Stribeck at rest; viscous loss and lost preload beside it."""
     a = wrap_of(GROUP_A)
     rig = with_values(GROUP_A, {"direction_dependent_friction.asymmetry": 0.2})
-    pulled, released, lost_N = friction_without_speed(0.0, 0.0, rig)
-    assert (pulled, released, lost_N) == pytest.approx((1.2 * a, 0.8 * a, 0.0))
-    at_speed = friction_at(0.0, 3.0, 0.0, rig)
+    assert losses_without_speed(0.0, 0.0, rig) == pytest.approx((1.2 * a, 0.8 * a, 0.0, 0.0))
+    at_speed = losses_at(0.0, 3.0, 0.0, rig)
     assert at_speed == pytest.approx((1.2 * a, 0.8 * a, 0.0, 0.0))
     viscous = with_values(rig, {"viscous_friction.coefficient_N_s_per_mm": 0.5})
-    assert friction_at(0.0, 3.0, 0.0, viscous)[2] == pytest.approx(1.5)
+    assert losses_at(0.0, 3.0, 0.0, viscous)[2] == pytest.approx(1.5)
 
 
 def test_the_last_direction_holds_on_at_rest():
@@ -161,7 +181,7 @@ def test_the_last_direction_holds_on_at_rest():
 
 def chain_of(*tensions):
     chain = np.zeros(ROWS * PITCH)
-    chain[T : T + len(tensions)] = tensions
+    chain[TENSION : TENSION + len(tensions)] = tensions
     return chain
 
 
@@ -170,15 +190,15 @@ def test_what_a_node_leaves_depends_on_the_mean_tension_beside_it(exponent):
     """e^(−a (T/F0)^n / 3), at twice the preload on the drive's side of the first node."""
     F0 = GROUP_A.preload_N
     chain = chain_of(2.0 * F0, 2.0 * F0, F0, 0.5 * F0, 77.0)
-    laws = laws_of(with_values(GROUP_A, {RISING: exponent}), N)
-    set_friction(chain, Moment(0.0, 0.0, 0.6, 0.3, 0.0, 0.0, 1.0), laws)
+    laws = slip_laws(with_values(GROUP_A, {RISING: exponent}), N, LOADED_BY_SPRING)
+    set_friction(chain, Moment(0.0, 0.0, Losses(0.6, 0.3, 0.0, 0.0), 1.0), laws)
     factors = np.array([2.0, 1.5, 0.75]) ** exponent
     nodes = slice(1, N + 1)
-    np.testing.assert_allclose(chain[PULLED_BY:][nodes], 0.2 * factors)
-    np.testing.assert_allclose(chain[RELEASED_BY:][nodes], 0.1 * factors)
-    np.testing.assert_allclose(chain[PULLED:][nodes], np.exp(-0.2 * factors))
-    np.testing.assert_allclose(chain[RELEASED:][nodes], np.exp(-0.1 * factors))
-    for row in (PULLED_BY, RELEASED_BY, PULLED, RELEASED):
+    np.testing.assert_allclose(chain[WRAP_PULLED:][nodes], 0.2 * factors)
+    np.testing.assert_allclose(chain[WRAP_RELEASED:][nodes], 0.1 * factors)
+    np.testing.assert_allclose(chain[RATIO_PULLED:][nodes], np.exp(-0.2 * factors))
+    np.testing.assert_allclose(chain[RATIO_RELEASED:][nodes], np.exp(-0.1 * factors))
+    for row in (WRAP_PULLED, WRAP_RELEASED, RATIO_PULLED, RATIO_RELEASED):
         assert not chain[row]
         assert not chain[row + N + 1]
 
@@ -195,8 +215,8 @@ def test_what_a_node_leaves_depends_on_the_mean_tension_beside_it(exponent):
     ],
 )
 def test_what_makes_a_chain_more_than_a_set_of_slipping_nodes(bent):
-    assert is_straight(laws_of(GROUP_A, N))
-    assert not is_straight(laws_of(with_values(GROUP_A, bent), N))
+    assert is_linear(slip_laws(GROUP_A, N, LOADED_BY_SPRING))
+    assert not is_linear(slip_laws(with_values(GROUP_A, bent), N, LOADED_BY_SPRING))
 
 
 @pytest.mark.parametrize(
@@ -211,8 +231,8 @@ def test_what_makes_a_chain_more_than_a_set_of_slipping_nodes(bent):
 )
 def test_a_node_passes_on_its_ratio_or_the_inverse(direction, tensions, passed):
     chain = chain_of(*tensions)
-    chain[PULLED + 1], chain[RELEASED + 1] = 0.5, 0.2
-    assert ratio_passed(direction, 1, chain) == pytest.approx(passed)
+    chain[RATIO_PULLED + 1], chain[RATIO_RELEASED + 1] = 0.5, 0.2
+    assert capstan_ratio(direction, 1, chain) == pytest.approx(passed)
 
 
 def test_all_nodes_of_the_sheath_make_a_phase_and_the_ends_do_not():
@@ -224,20 +244,22 @@ def test_all_nodes_of_the_sheath_make_a_phase_and_the_ends_do_not():
 
 
 def test_a_sensor_at_the_load_feels_the_tension_less_what_rubs_before_it():
-    now = Moment(0.0, 40.0, 0.4, 0.4, 0.0, 0.0, math.inf)
-    plain = laws_of(GROUP_A, N)
+    now = Moment(0.0, 40.0, Losses(0.4, 0.4, 0.0, 0.0), math.inf)
+    plain = slip_laws(GROUP_A, N, LOADED_BY_SPRING)
     chain = chain_of(9.0, 9.0, 9.0, 30.0, 9.0)
     chain[SLIP + N + 1] = -1.0
-    assert tension_at_sensor(chain, now, LOADED_BY_FORCE, plain) == 40.0
-    assert tension_at_sensor(chain, now, LOADED_BY_SPRING, plain) == 30.0
+    assert tension_at_sensor(chain, now, at(plain, LOADED_BY_FORCE)) == 40.0
+    assert tension_at_sensor(chain, now, at(plain, LOADED_BY_SPRING)) == 30.0
     before = {"load_friction.before_sensor_N": 3.0}
-    rubs = laws_of(with_values(GROUP_A, before), N)
-    assert tension_at_sensor(chain, now, LOADED_BY_DISPLACEMENT, rubs) == 33.0
+    rubs = slip_laws(with_values(GROUP_A, before), N, LOADED_BY_SPRING)
+    assert tension_at_sensor(chain, now, at(rubs, LOADED_BY_DISPLACEMENT)) == 33.0
     # The spring pulls with the preload and k x; of 30 N less that, 3 of 4 N rub before.
-    after = laws_of(with_values(GROUP_A, before | {"load_friction.after_sensor_N": 1.0}), N)
-    chain[X + N + 1] = 2.0
+    after = slip_laws(
+        with_values(GROUP_A, before | {"load_friction.after_sensor_N": 1.0}), N, LOADED_BY_SPRING
+    )
+    chain[POSITION + N + 1] = 2.0
     back = GROUP_A.preload_N + 2.0 * GROUP_A.load_stiffness_N_per_mm
-    felt = tension_at_sensor(chain, now, LOADED_BY_SPRING, after)
+    felt = tension_at_sensor(chain, now, at(after, LOADED_BY_SPRING))
     assert felt == pytest.approx(30.0 - 0.75 * (30.0 - back))
 
 
@@ -250,12 +272,13 @@ def test_a_sensor_at_the_load_feels_the_tension_less_what_rubs_before_it():
     ],
 )
 def test_before_a_course_everything_is_at_the_preload(boundary, given):
-    state = resting(course_of(np.array([1.0, 2.0]), GROUP_A), GROUP_A, boundary, N)
+    state = initial_state(course_of(np.array([1.0, 2.0]), GROUP_A), GROUP_A, boundary, N)
     a = wrap_of(GROUP_A)
-    assert state.before == pytest.approx([*given, a, a, 0.0, 0.0, math.inf])
-    np.testing.assert_array_equal(state.chain[T : T + N + 1], GROUP_A.preload_N)
-    np.testing.assert_array_equal(state.chain[X : X + N + 2], 0.0)
-    assert not state.last.any()
+    assert state.before.losses == pytest.approx((a, a, 0.0, 0.0))
+    assert (state.before.drive, state.before.load, state.before.step_s) == (*given, math.inf)
+    np.testing.assert_array_equal(state.chain[TENSION : TENSION + N + 1], GROUP_A.preload_N)
+    np.testing.assert_array_equal(state.chain[POSITION : POSITION + N + 2], 0.0)
+    assert (*state.ends, state.unconverged) == (0.0, 0.0, 0.0, 0.0, 0)
 
 
 def test_frames_hold_the_samples_that_are_asked_for():
@@ -283,11 +306,11 @@ def test_the_front_is_where_slip_changes_first():
 def limits(rig, *, bristles=(1.0, -1.0, 1.0), speeds=(0.0, 0.0, 0.0), **other):
     s = np.zeros(LUGRE_ROWS * LUGRE_PITCH)
     F0 = rig.preload_N
-    s[TENSION : TENSION + N + 1] = [2.0 * F0, 2.0 * F0, F0, -4.0 * F0]
-    s[Z_PAST + 1 : Z_PAST + N + 1] = bristles
-    s[W + 1 : W + N + 1] = speeds
-    fields = dict.fromkeys(Step._fields, 0.0) | {"gh": 0.1, "pulled": 0.2, "released": 0.1} | other
-    set_limits(s, Step(**fields), law_of(rig, N))
+    s[LUMP_TENSION : LUMP_TENSION + N + 1] = [2.0 * F0, 2.0 * F0, F0, -4.0 * F0]
+    s[DEFLECTION_HISTORY + 1 : DEFLECTION_HISTORY + N + 1] = bristles
+    s[RATE + 1 : RATE + N + 1] = speeds
+    step = bare_step(gh=0.1, pulled=0.2, released=0.1, **other)
+    set_limits(s, step, lugre_laws(rig, N, LOADED_BY_SPRING))
     rows = (LIMIT, LIMIT_BY_T, LIMIT_BY_V)
     assert not any(s[row] or s[row + N + 1] for row in rows)  # an end has a limit of its own
     return [s[row + 1 : row + N + 1] for row in rows]
@@ -331,11 +354,9 @@ TIMES = np.arange(9.0)
 
 
 def unseen_of(drive, load, boundary):
-    course = np.zeros((7, 9))
-    course[0], course[1] = drive, load
-    still = Ends(*[0.0] * 13)
-    step = Step(**dict.fromkeys(Step._fields, 0.0))
-    return unseen(TIMES, course, 0, 8, 0.0, 8.0, still, step, (3.0, 5.0), boundary)
+    course = course_of(drive, GROUP_A, load=load, time_s=TIMES)
+    law, within = lugre_laws(GROUP_A, N, boundary), Samples(1, 8)
+    return input_error(course, within, Span(0.0, 8.0), step_ends(), bare_step(), (3.0, 5.0), law)
 
 
 def test_a_step_does_not_see_what_happens_within_it():
@@ -399,4 +420,6 @@ def test_a_bent_spring_is_bent_by_its_names():
             "load_spring_nonlinearity.cubic_per_mm2": 0.2,
         },
     )
-    assert laws_of(bent, N).load_spring == LoadSpringNonlinearity(0.3, 0.2)
+    assert slip_laws(bent, N, LOADED_BY_SPRING).load.nonlinearity == LoadSpringNonlinearity(
+        0.3, 0.2
+    )

@@ -3,7 +3,7 @@
 import numpy as np
 
 from tests.physics.references import GROUP_A, through
-from tsas_cli.physics.branches import branches
+from tsas_cli.physics.closed_form.branches import branches
 from tsas_cli.physics.passages import Passage, passages, turns
 
 

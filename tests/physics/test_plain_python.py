@@ -10,12 +10,13 @@ import sys
 import numpy as np
 from tests.physics.references import GROUP_A, course_of
 from tsas_cli.effects import Effects, FreeTendon, StribeckFriction
-from tsas_cli.physics.branches import branches
-from tsas_cli.physics.chain_state import DISPLACEMENT, FORCE, SPRING, Boundary
+from tsas_cli.physics.closed_form.branches import branches
+from tsas_cli.physics.boundary import (DISPLACEMENT, FORCE, SPRING, Boundary)
 from tsas_cli.physics.frames import empty_frames
-from tsas_cli.physics.lugre_chain import lugre_chain
-from tsas_cli.physics.slip_chain import slip_chain
-from tsas_cli.physics.static import static_model
+from tsas_cli.physics.course import DRIVE, LOAD, TIME
+from tsas_cli.physics.lugre.chain import StepControl, lugre_chain
+from tsas_cli.physics.slip.chain import slip_chain
+from tsas_cli.physics.closed_form.static import static_model
 
 rig = GROUP_A._replace(effects=Effects(free_tendon=FreeTendon(152.0, 61.0)))
 x = np.interp(np.linspace(0, 7, 300), np.arange(8), [0, 14, 13.9, 13.95, 13.2, -60, 13, 12])
@@ -32,31 +33,26 @@ for drive, load, boundary in (
     course = course_of(drive, rig, load=load, **varying)
     answers.append(slip_chain(course, rig, boundary, 10))
     few, start = course[:, 40:80].copy(), np.zeros((2, 7))
-    few[0] -= few[0, 0] * (boundary.drive == DISPLACEMENT)
-    few[1] -= few[1, 0] * (boundary.load == DISPLACEMENT)
+    few[DRIVE] -= few[DRIVE, 0] * (boundary.drive == DISPLACEMENT)
+    few[LOAD] -= few[LOAD, 0] * (boundary.load == DISPLACEMENT)
+    few[TIME] = np.arange(40) / 100
     start[1] = rig.preload_N
     lively = rig._replace(effects=Effects(stribeck_friction=StribeckFriction(0.1, 8.0)))
     # Equal steps: their control would magnify rounding.
-    columns, phase, progress = lugre_chain(
-        np.arange(40) / 100, few, start, lively, boundary, 5, 1e3, equal_steps
-    )
-    answers.append([*columns, phase, np.hstack(progress)])
-few[0], start = np.linspace(0, -20, 40), np.zeros((2, 7))  # it ends slack
+    output, progress = lugre_chain(few, start, lively, boundary, 5, StepControl(1e3, equal_steps))
+    answers.append([*output, np.hstack(progress)])
+few[DRIVE], start = np.linspace(0, -20, 40), np.zeros((2, 7))  # it ends slack
 start[1] = rig.preload_N
-columns, phase, progress = lugre_chain(
-    np.arange(40) / 100, few, start, rig, Boundary(DISPLACEMENT, SPRING), 5, 1e3, equal_steps
-)
-assert phase[-1] == 2
+call = few, start, rig, Boundary(DISPLACEMENT, SPRING), 5, StepControl(1e3, equal_steps)
+output, progress = lugre_chain(*call)
+assert output.phase[-1] == 2
 along = [empty_frames(np.arange(0, 300, 7), 10) for _ in range(2)]
 branches(x, rig, along[0])
 slip_chain(course_of(x, rig), rig, Boundary(DISPLACEMENT, SPRING), 10, along[1])
 along.append(empty_frames(np.arange(0, 40, 3), 5))
-lugre_chain(
-    np.arange(40) / 100, few, start, rig, Boundary(DISPLACEMENT, SPRING), 5, 1e3, equal_steps,
-    along[2],
-)
+lugre_chain(*call, along[2])
 answers += [[one.tension_N.ravel(), one.slip.ravel(), one.front] for one in along]
-answers.append([*columns, phase, np.hstack(progress)])
+answers.append([*output, np.hstack(progress)])
 columns = [column.tolist() for answer in answers for column in answer]
 print(json.dumps(["numba" in sys.modules, columns]))
 """

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from tests.physics.references import GROUP_A, wrap_of
-from tsas_cli.physics.branches import branches
-from tsas_cli.physics.chain_state import UNSETTLED
+from tsas_cli.physics.closed_form.branches import branches
 from tsas_cli.physics.ends import Drive
+from tsas_cli.physics.phases import UNCONVERGED
 from tsas_cli.physics.response import forgotten, simulate
 
 RIG = GROUP_A._replace(x_in_zero_mm=3.0, x_out_zero_mm=-7.0)
@@ -36,7 +36,7 @@ def test_a_spring_is_solved_in_closed_form_and_read_with_the_zeros(spring):
 def test_a_measured_load_repeats_the_spring(spring, load, channel):
     again = simulate(RIG, Drive(MOTION + 3.0, load=load, load_values=getattr(spring, channel)))
     assert "slip chain" in again.solver
-    assert UNSETTLED not in again.phase
+    assert UNCONVERGED not in again.phase
     np.testing.assert_array_equal(getattr(again, channel), getattr(spring, channel))
     for name in CHANNELS:
         np.testing.assert_allclose(getattr(again, name), getattr(spring, name), atol=0.5)

@@ -8,13 +8,14 @@ import pytest
 from tests.physics.references import GROUP_A, wrap_of
 from tsas_cli.effects import EFFECTS
 from tsas_cli.physics import response
-from tsas_cli.physics.chain_state import DISPLACEMENT, FORCE, SPRING, Boundary
+from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, SPRING, Boundary
+from tsas_cli.physics.course import DRIVE, LOAD, LOST, PULLED, RELEASED, STEP, TIME, VISCOUS
 from tsas_cli.physics.ends import (
     Drive,
     ends_of,
-    friction_at,
-    friction_without_speed,
     last_direction,
+    losses_at,
+    losses_without_speed,
 )
 from tsas_cli.physics.response import forgotten, is_closed, simulate
 from tsas_cli.physics.rig import with_values
@@ -47,9 +48,9 @@ def friction_by_hand(time_s, speed, session_s):
 @pytest.mark.parametrize("speed", [0.0, 3.0, -1.0])
 def test_friction_at_a_moment_is_all_that_changes_it(speed):
     expected = friction_by_hand(4.0, speed, 30.0)
-    assert friction_at(4.0, speed, 30.0, VARYING) == pytest.approx(expected)
+    assert losses_at(4.0, speed, 30.0, VARYING) == pytest.approx(expected)
     still = friction_by_hand(4.0, math.inf, 30.0)
-    assert friction_without_speed(4.0, 30.0, VARYING) == pytest.approx((*still[:2], still[3]))
+    assert losses_without_speed(4.0, 30.0, VARYING) == pytest.approx((*still[:2], 0.0, still[3]))
 
 
 def test_the_course_of_a_run_is_what_acts_at_each_sample():
@@ -57,19 +58,19 @@ def test_the_course_of_a_run_is_what_acts_at_each_sample():
     ends = ends_of(VARYING, Drive(x, time_s=TIME_S, session_s=30.0))
     assert ends.boundary == Boundary(DISPLACEMENT, SPRING)
     np.testing.assert_array_equal(ends.drive, x)
-    np.testing.assert_array_equal(ends.course[1], 0.0)
+    np.testing.assert_array_equal(ends.course[LOAD], 0.0)
     moments = zip(TIME_S, np.gradient(x, TIME_S), strict=True)
     expected = [friction_by_hand(t, v, 30.0) for t, v in moments]
-    np.testing.assert_allclose(ends.course[2:6].T, expected)
-    np.testing.assert_allclose(ends.course[6], [math.inf, 0.1, 0.2, 0.1])
+    np.testing.assert_allclose(ends.course[:4].T, expected)
+    np.testing.assert_allclose(ends.course[STEP], [math.inf, 0.1, 0.2, 0.1])
     assert ends.direction.tolist() == [0.0, 1.0, 1.0, -1.0]
     by_force = ends_of(VARYING, Drive(x + 25.0, "force", time_s=TIME_S))  # its speed is not known
-    np.testing.assert_allclose(by_force.course[2:6, 2], friction_by_hand(0.3, 0.0, 0.0))
+    np.testing.assert_allclose(by_force.course[:4, 2], friction_by_hand(0.3, 0.0, 0.0))
     slowly = ends_of(VARYING, Drive(x))
-    np.testing.assert_allclose(slowly.course[2:6].T, [friction_by_hand(0.0, 0.0, 0.0)] * 4)
-    assert slowly.course[6].tolist() == [math.inf] * 4
+    np.testing.assert_allclose(slowly.course[:4].T, [friction_by_hand(0.0, 0.0, 0.0)] * 4)
+    assert slowly.course[STEP].tolist() == [math.inf] * 4
     alone = ends_of(VARYING, Drive(x[:1], time_s=TIME_S[:1]))
-    assert alone.course[6].tolist() == [math.inf]
+    assert alone.course[STEP].tolist() == [math.inf]
 
 
 @pytest.mark.parametrize(
@@ -88,7 +89,7 @@ def test_what_is_given_at_the_ends_is_read_with_the_zeros(kind, drive, load, exp
     given = Drive(np.array([10.0, 11.0]), kind, load, np.array([26.0, 27.0]))
     ends = ends_of(RIG, given)
     assert ends.boundary == Boundary(drive[0], expected[0])
-    assert ends.course[:2].tolist() == [drive[1], expected[1]]
+    assert [ends.course[DRIVE].tolist(), ends.course[LOAD].tolist()] == [drive[1], expected[1]]
 
 
 def test_the_drives_end_goes_through_the_play_from_where_it_was():
@@ -113,10 +114,12 @@ def test_positions_before_a_run_are_passed_at_no_known_speed():
     ends = ends_of(VARYING, Drive(np.array([0.5, 0.7, 0.4, 0.6]), time_s=TIME_S))
     later = ends.after([9.0, 8.0])
     assert later.drive.tolist() == [9.0, 8.0, 0.5, 0.7, 0.4, 0.6]
-    np.testing.assert_array_equal(later.course[1:, 2:], ends.course[1:])
+    given = [PULLED, RELEASED, VISCOUS, LOST, LOAD, TIME]
+    np.testing.assert_array_equal(later.course[given, 2:], ends.course[given])
+    np.testing.assert_array_equal(later.course[STEP, 3:], ends.course[STEP, 1:])
     for k in range(2):
-        np.testing.assert_array_equal(later.course[1:6, k], ends.course[1:6, 0])
-    assert later.course[6, :3].tolist() == [math.inf] * 3
+        np.testing.assert_array_equal(later.course[given, k], ends.course[given, 0])
+    assert later.course[STEP, :3].tolist() == [math.inf] * 3
     assert later.direction.tolist() == [0.0, 0.0, 0.0, 1.0, -1.0, 1.0]
     assert later.boundary == ends.boundary
     first = ends.first()

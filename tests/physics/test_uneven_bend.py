@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tests.physics.references import GROUP_A
-from tsas_cli.physics.chain_mesh import segment_compliances
+from tsas_cli.physics.mesh import segment_compliances
 from tsas_cli.physics.response import Drive, simulate
 from tsas_studies.challenge.rig.motions import sine
 from tsas_studies.challenge.rig.tendon import Rig as VirtualRig

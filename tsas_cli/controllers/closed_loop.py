@@ -19,20 +19,30 @@ from tsas_cli.controllers.signals import Floats, Signals, filtered
 from tsas_cli.controllers.sliding_mode import SlidingMode, distance, sliding_mode
 from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.physics.chain_mesh import laws_of, segment_compliances
-from tsas_cli.physics.chain_state import FORCE, GIVE, SPRING, Boundary, Moment, X
+from tsas_cli.physics.boundary import FORCE, SPRING, Boundary
+from tsas_cli.physics.course import Losses
 from tsas_cli.physics.ends import Drive, ends_of
-from tsas_cli.physics.lugre_plant import (
-    lay_lumps,
+from tsas_cli.physics.lugre.start import lugre_laws
+from tsas_cli.physics.plant.lugre_plant import (
+    lumps_at_rest,
     step_lumped_plant,
     tension_at_load,
     with_rig,
 )
-from tsas_cli.physics.lugre_start import law_of
-from tsas_cli.physics.plant import Actuator, Turntable, step_plant, turned
+from tsas_cli.physics.plant.slip_plant import step_plant
+from tsas_cli.physics.plant.turntable import (
+    Actuator,
+    DriveStep,
+    Motor,
+    Turntable,
+    advance_motor,
+)
 from tsas_cli.physics.rig import Rig
-from tsas_cli.physics.slip_chain import follow, resting, tension_at_sensor
+from tsas_cli.physics.slip.chain import follow, initial_state, tension_at_sensor
+from tsas_cli.physics.slip.start import set_compliances, slip_laws
+from tsas_cli.physics.slip.state import POSITION, Moment
 
+DRIVEN = Boundary(FORCE, SPRING)  # the tendon in the plant
 PID, SLIDING, ADAPTIVE, OBSERVER = range(4)
 MEMORY = 3
 STEPS_TO_START = 200
@@ -52,7 +62,7 @@ RUNAWAY_MM = 1e3  # from the wanted place, at which a run has diverged
 GIVEN_UP = 0.01  # of the steps: where more do not settle, the tendon is not followed any further
 
 
-class Laws(NamedTuple):
+class ControlLaws(NamedTuple):
     """Every controller's settings, and which of them is at work."""
 
     kind: int
@@ -62,23 +72,59 @@ class Laws(NamedTuple):
     disturbance_observer: DisturbanceObserver
 
 
-def followed_from(
-    drive_mm: float, rig: Rig, actuator: Actuator, n: int
-) -> tuple[Turntable, Floats]:
-    """Return turntable and chain at rest at a place of the drive, come to from x_in = 0."""
+class Wanted(NamedTuple):
+    """What the loop is to follow at m samples."""
+
+    path: Floats  # of the drive: position and its three rates, shape (4, m) [mm, s]
+    feedforward: Floats  # shape (m,) [rpm]
+
+
+class DriveSensor(NamedTuple):
+    """How x_in is measured, and how the error's rates are estimated (`signals.error_filter`)."""
+
+    step_s: float  # between samples
+    noise: Floats  # of each, shape (m,) [mm]
+    encoder_step_mm: float
+    A: Floats
+    b: Floats
+
+
+class PlantStart(NamedTuple):
+    """A plant at rest."""
+
+    motor: Motor
+    table: Turntable
+    chain: Floats  # the tendon, written over
+
+
+class LoopPlant(NamedTuple):
+    """What is controlled; from sample `change_at` on the rig is the second one."""
+
+    actuator: Actuator
+    rigs: tuple[Rig, Rig]
+    change_at: int
+    substeps: int  # of the plant in one sample
+    nodes: int
+    start: PlantStart
+
+
+def followed_from(drive_mm: float, rig: Rig, actuator: Actuator, n: int) -> PlantStart:
+    """Return motor, turntable and tendon at rest at a place of the drive, come to from x_in = 0."""
     ends = ends_of(rig, Drive(np.linspace(0.0, drive_mm, 1 + STEPS_TO_START) + rig.x_in_zero_mm))
-    state = resting(ends.course, rig, ends.boundary, n)
+    state = initial_state(ends.course, rig, ends.boundary, n)
     f_in = rig.preload_N
     if drive_mm != 0.0:
-        f_in = float(follow(ends.course, state, rig, ends.boundary, n)[2][-1])
+        output, state = follow(ends.course, state, rig, ends.boundary, n)
         stiffness = rig.effects.proximal_spring.stiffness_N_per_mm
-        f_in += proximal_spring_force(float(state.chain[X]), stiffness)
+        f_in = float(output.f_in[-1])
+        f_in += proximal_spring_force(float(state.chain[POSITION]), stiffness)
     motor_mm = drive_mm + (f_in - rig.preload_N) / actuator.stiffness_N_per_mm
-    return Turntable(0.0, motor_mm, drive_mm, drive_mm, 0.0, 0.0, f_in, 0.0), state.chain
+    table = Turntable(drive_mm, drive_mm, 0.0, 0.0, f_in, 0.0)
+    return PlantStart(Motor(0.0, motor_mm), table, state.chain)
 
 
 @kernel
-def answer(seen: Signals, laws: Laws, memory: Floats, step_s: float) -> tuple[float, float]:
+def control(seen: Signals, laws: ControlLaws, memory: Floats, step_s: float) -> tuple[float, float]:
     """Return the motor speed beside the feedforward [rpm], and s where there is a surface."""
     if laws.kind == PID:
         return pid(seen, laws.pid, memory, step_s), 0.0
@@ -94,93 +140,95 @@ def answer(seen: Signals, laws: Laws, memory: Floats, step_s: float) -> tuple[fl
 
 @kernel
 def close_loop(
-    path: Floats,
-    feedforward: Floats,
-    noise: Floats,
-    encoder_step_mm: float,
-    A: Floats,
-    b: Floats,
-    laws: Laws,
-    table: Turntable,
-    chain: Floats,
-    rigs: tuple[Rig, Rig],
-    change_at: int,
-    actuator: Actuator,
-    n: int,
-    step_s: float,
-    substeps: int,
+    wanted: Wanted,
+    sensor: DriveSensor,
+    laws: ControlLaws,
+    plant: LoopPlant,
     lumps: Floats | None = None,
 ) -> tuple[Floats, int, int]:
-    """Run the loop; return its columns, shape (COLUMNS, m), unsettled steps, samples followed.
+    """Run the loop; return its columns, shape (COLUMNS, m), unconverged steps, samples followed.
 
-    `chain` is the tendon at rest. With room for lumps (`lugre_plant.no_lumps`) they follow it from
-    there, else the slip chain itself does; only what does so is compiled.
+    With room for lumps (`lugre_plant.empty_lumps`) they follow the plant's tendon from where it is,
+    else the slip chain itself does; only what does so is compiled.
     """
+    path, n, actuator, substeps = wanted.path, plant.nodes, plant.actuator, plant.substeps
+    motor, table, chain = plant.start
     m = path.shape[1]
     columns = np.zeros((COLUMNS, m))
     memory, state = np.zeros(MEMORY), np.zeros(3)
     if laws.kind == ADAPTIVE:
         start = laws.adaptive_sliding_mode.start
         memory[0], memory[1], memory[2] = start.phi1, start.phi2, start.phi3
-    rig = rigs[0]
-    chain_laws = laws_of(rig, n)
-    scale = rig.sheath_length_mm * rig.preload_N / rig.tendon_stiffness_N / n + 1e-9
-    now = Moment(table.f_in, 0.0, 0.0, 0.0, 0.0, 0.0, np.inf)
-    boundary = Boundary(FORCE, SPRING)
+    rig = plant.rigs[0]
+    chain_laws = slip_laws(rig, n, DRIVEN)
+    now = Moment(table.f_in, 0.0, Losses(0.0, 0.0, 0.0, 0.0), np.inf)
     if lumps is not None:
-        law, tendon = law_of(rig, n), lay_lumps(lumps, chain, table.f_in, rig, n)
-    h = step_s / substeps
-    applied, limited, unsettled = 0.0, False, 0
+        lump_laws = lugre_laws(rig, n, DRIVEN)
+        tendon = lumps_at_rest(lumps, chain, table.f_in, rig, n)
+    h = sensor.step_s / substeps
+    applied, limited, unconverged = 0.0, False, 0
     for k in range(m):
-        if k == change_at:
-            rig = rigs[1]
-            chain_laws = laws_of(rig, n)
-            gives = segment_compliances(rig, n)
-            for j in range(n + 2):
-                chain[GIVE + j] = gives[min(j, n)]
+        if k == plant.change_at:
+            rig = plant.rigs[1]
+            chain_laws = slip_laws(rig, n, DRIVEN)
+            set_compliances(chain, rig, n)
             if lumps is not None:
-                law, tendon = law_of(rig, n), with_rig(lumps, tendon, rig, n)
-        x_seen = table.x + noise[k]
-        if encoder_step_mm > 0.0:
-            x_seen = encoder_step_mm * np.round(x_seen / encoder_step_mm)
+                lump_laws = lugre_laws(rig, n, DRIVEN)
+                tendon = with_rig(lumps, tendon, rig, n)
+        x_seen = measured(table.x, sensor, k)
         e = path[0, k] - x_seen
-        if not abs(e) < RUNAWAY_MM or unsettled > GIVEN_UP * m * substeps:
-            return columns, unsettled, k
-        filtered(state, e, A, b)
-        seen = Signals(
-            e,
-            state[0],
-            state[1],
-            state[2],
-            path[1, k],
-            path[2, k],
-            path[3, k],
-            applied,
-            limited,
-        )
-        u, s = answer(seen, laws, memory, step_s)
-        wanted = feedforward[k] + u
-        asked = min(max(wanted, -actuator.speed_limit_rpm), actuator.speed_limit_rpm)
-        applied, limited = asked - feedforward[k], asked != wanted
+        if not abs(e) < RUNAWAY_MM or unconverged > GIVEN_UP * m * substeps:
+            return columns, unconverged, k
+        filtered(state, e, sensor.A, sensor.b)
+        seen = signals_at(path, k, e, state, applied, limited)
+        u, s = control(seen, laws, memory, sensor.step_s)
+        speed = wanted.feedforward[k] + u
+        asked = min(max(speed, -actuator.speed_limit_rpm), actuator.speed_limit_rpm)
+        applied, limited = asked - wanted.feedforward[k], asked != speed
         columns[X_IN, k], columns[X_SEEN, k] = table.x, x_seen
-        columns[X_OUT, k], columns[F_IN, k] = chain[X + n + 1], table.f_in
-        columns[F_OUT, k] = tension_at_sensor(chain, now, boundary, chain_laws)
+        columns[X_OUT, k], columns[F_IN, k] = chain[POSITION + n + 1], table.f_in
+        columns[F_OUT, k] = tension_at_sensor(chain, now, chain_laws)
         if lumps is not None:
-            columns[X_OUT, k] = tendon.ends.x_out
-            columns[F_OUT, k] = tension_at_load(tendon, law)
-        columns[ASKED, k], columns[MOTOR, k], columns[DISTANCE, k] = asked, table.motor_rpm, s
+            columns[X_OUT, k] = tendon.ends.load.x
+            columns[F_OUT, k] = tension_at_load(tendon, lump_laws)
+        columns[ASKED, k], columns[MOTOR, k], columns[DISTANCE, k] = asked, motor.rpm, s
         for j in range(MEMORY):
             columns[MEMORY_AT + j, k] = memory[j]
         for sub in range(substeps):
-            table = turned(table, asked, actuator, h)
-            time_s = (k + (sub + 1) / substeps) * step_s
+            motor = advance_motor(motor, asked, actuator, h)
+            step = DriveStep(actuator, motor.mm, (k + (sub + 1) / substeps) * sensor.step_s, h)
             if lumps is not None:
-                table, tendon, settled = step_lumped_plant(
-                    table, lumps, tendon, time_s, rig, law, actuator, h
+                table, tendon, converged = step_lumped_plant(
+                    table, lumps, tendon, rig, lump_laws, step
                 )
             else:
-                table, now, settled = step_plant(
-                    table, chain, now, time_s, rig, chain_laws, actuator, h, scale
-                )
-            unsettled += not settled
-    return columns, unsettled, m
+                table, now, converged = step_plant(table, chain, now, rig, chain_laws, step)
+            unconverged += not converged
+    return columns, unconverged, m
+
+
+@kernel
+def measured(x_in: float, sensor: DriveSensor, k: int) -> float:
+    """Return what the encoder reads at a sample [mm]."""
+    x_seen: float = x_in + sensor.noise[k]
+    if sensor.encoder_step_mm > 0.0:
+        x_seen = sensor.encoder_step_mm * np.round(x_seen / sensor.encoder_step_mm)
+    return x_seen
+
+
+@kernel
+def signals_at(
+    path: Floats, k: int, e: float, filtered_error: Floats, applied: float, limited: bool
+) -> Signals:
+    """Return what the controller sees at a sample."""
+    return Signals(
+        e=e,
+        e_filtered=filtered_error[0],
+        de=filtered_error[1],
+        dde=filtered_error[2],
+        v=path[1, k],
+        a=path[2, k],
+        jerk=path[3, k],
+        applied=applied,
+        limited=limited,
+    )

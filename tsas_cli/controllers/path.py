@@ -17,10 +17,10 @@ from tsas_cli.effects.drive_friction import drive_friction_force
 from tsas_cli.effects.drive_ripple import DriveRipple, rippled
 from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.physics.ends import friction_course, last_direction
-from tsas_cli.physics.inverse import inverse_chain
-from tsas_cli.physics.plant import Actuator
+from tsas_cli.physics.ends import last_direction, losses_over
+from tsas_cli.physics.plant.turntable import Actuator
 from tsas_cli.physics.rig import Rig
+from tsas_cli.physics.slip.inverse import inverse_chain
 from tsas_cli.support.errors import InputError
 
 Floats = npt.NDArray[np.float64]
@@ -30,7 +30,7 @@ HALVINGS = 50  # of the ripple's height, in which the drive is sought
 
 
 @dataclass(frozen=True)
-class Path:
+class DrivePath:
     """Where the drive has to be, shape (4, m): place, speed, acceleration and jerk [mm, s].
 
     `motor` is the same of the motor, which winds up the gear by the force at the drive over its
@@ -44,7 +44,7 @@ class Path:
 
 def follow(
     wanted_N: Floats, step_s: float, rig: Rig, actuator: Actuator, *, crossing_s: float, nodes: int
-) -> Path:
+) -> DrivePath:
     """Return the path that gives the load a wanted force, shape (m,), by a model of the rig.
 
     Before and after it the force stays at its first and last value.
@@ -68,8 +68,8 @@ def follow(
     time_s = (np.arange(held.size) - ahead) * step_s
     speed = np.zeros(held.size)
     for _ in range(PASSES if _depends_on_speed(rig.effects) else 1):
-        friction = friction_course(np.maximum(time_s, 0.0), speed, 0.0, rig)
-        end, tension, missed = inverse_chain(held, friction, step_s, rig, nodes)
+        losses = losses_over(np.maximum(time_s, 0.0), speed, 0.0, rig)
+        end, tension, missed = inverse_chain(held, losses, step_s, rig, nodes)
         smooth = smoothed(end, width, step_s)[1]
         speed = np.concatenate((np.zeros(ahead), smooth, np.zeros(held.size - ahead - smooth.size)))
     geared = smoothed(geared_at(end, rig.effects), width, step_s)
@@ -79,7 +79,7 @@ def follow(
     force += proximal_spring_force(1.0, rig.effects.proximal_spring.stiffness_N_per_mm) * end
     drive = drive_at(geared, rig.effects.drive_ripple, step_s)
     wound = smoothed(force / actuator.stiffness_N_per_mm, width, step_s)
-    return Path(drive, drive + wound, missed)
+    return DrivePath(drive, drive + wound, missed)
 
 
 def geared_at(end: Floats, effects: Effects) -> Floats:

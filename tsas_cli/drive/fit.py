@@ -18,7 +18,7 @@ from tsas_cli.effects.drive_ripple import DRIVE_RIPPLE
 from tsas_cli.identification.extension import ROUGHER
 from tsas_cli.identification.fit import Solution, Unknown, solve
 from tsas_cli.identification.quantities import Quantity
-from tsas_cli.physics.drive import (
+from tsas_cli.physics.plant.harmonic_drive import (
     DriveValues,
     free_motion,
     gear_response,

@@ -18,7 +18,7 @@ from tsas_cli.drive.words import (
 )
 from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.physics.drive import DriveValues
+from tsas_cli.physics.plant.harmonic_drive import DriveValues
 
 Floats = npt.NDArray[np.float64]
 

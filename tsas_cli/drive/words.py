@@ -6,7 +6,7 @@ from tsas_cli.drive.diagnosis import DriveDiagnosis
 from tsas_cli.drive.estimates import DataSheet, total_lag_s
 from tsas_cli.drive.fit import Terms
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.physics.drive import DriveValues
+from tsas_cli.physics.plant.harmonic_drive import DriveValues
 
 _FACTORS = {
     "lag": "(τs + 1)",

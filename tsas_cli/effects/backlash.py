@@ -34,6 +34,7 @@ BACKLASH = Effect(
     name="backlash",
     title="Backlash of the drive",
     acts_on="drive",
+    closed_form=True,
     equation="p = min(max(p, x_in − play/2), x_in + play/2)",
     doc=__doc__,
     parameters=(

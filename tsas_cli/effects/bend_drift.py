@@ -38,6 +38,7 @@ BEND_DRIFT = Effect(
     name="bend_drift",
     title="Bend that drifts",
     acts_on="tendon",
+    closed_form=False,
     equation="θ(t) = θ + rate·(1 − exp(−ν t))/ν",
     doc=__doc__,
     parameters=(

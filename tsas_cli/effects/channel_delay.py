@@ -28,6 +28,7 @@ CHANNEL_DELAY = Effect(
     name="channel_delay",
     title="Delay of a channel",
     acts_on="sensor",
+    closed_form=True,
     equation="channel(t) = signal(t − delay)",
     doc=__doc__,
     parameters=(

@@ -33,6 +33,7 @@ DIRECTION_DEPENDENT_FRICTION = Effect(
     name="direction_dependent_friction",
     title="Friction that depends on the direction",
     acts_on="tendon",
+    closed_form=False,
     equation="μ → μ·(1 + α λ),  λ = +1 contraction, −1 loosening",
     doc=__doc__,
     parameters=(Parameter("asymmetry", "1", neutral=0.0, start=0.1, lower=-0.9, upper=0.9),),

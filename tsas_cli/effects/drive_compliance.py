@@ -33,6 +33,7 @@ DRIVE_COMPLIANCE = Effect(
     name="drive_compliance",
     title="Compliance of the drive",
     acts_on="drive",
+    closed_form=True,
     equation="x_in − x_tendon = c · (f_in − F0)",
     doc=__doc__,
     parameters=(

@@ -33,6 +33,7 @@ DRIVE_FRICTION = Effect(
     name="drive_friction",
     title="Friction at the drive",
     acts_on="drive",
+    closed_form=True,
     equation="f_in = T0 + Fc · sgn(v)",
     doc=__doc__,
     parameters=(Parameter("friction_N", "N", neutral=0.0, start=1.0, lower=0.0, upper=1000.0),),

@@ -46,6 +46,7 @@ DRIVE_RIPPLE = Effect(
     name="drive_ripple",
     title="Ripple of the drive's gear",
     acts_on="drive",
+    closed_form=True,
     equation="p = x_in + s·sin(2π x_in/period) + c·(cos(2π x_in/period) − 1)",
     doc=__doc__,
     parameters=(

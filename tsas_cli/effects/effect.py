@@ -26,13 +26,15 @@ class Parameter:
 class Effect:
     """One cause that makes a real rig differ from the nominal one.
 
-    `equation` is the law as reports print it. `doc` is the docstring of the effect's file: what a
-    person reads about it. `experiment` is the measurement that isolates it.
+    `closed_form` says whether the closed form of the distributed model holds with it, or the slip
+    chain alone. `equation` is the law as reports print it. `doc` is the docstring of the effect's
+    file: what a person reads about it. `experiment` is the measurement that isolates it.
     """
 
     name: str
     title: str
     acts_on: Literal["drive", "tendon", "load", "sensor"]
+    closed_form: bool
     equation: str
     doc: str
     parameters: tuple[Parameter, ...]

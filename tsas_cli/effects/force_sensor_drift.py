@@ -35,6 +35,7 @@ FORCE_SENSOR_DRIFT = Effect(
     name="force_sensor_drift",
     title="Drift of a force sensor",
     acts_on="sensor",
+    closed_form=True,
     equation="reading = T + rate·(1 − exp(−ν t))/ν",
     doc=__doc__,
     parameters=(

@@ -33,6 +33,7 @@ FORCE_SENSOR_GAIN = Effect(
     name="force_sensor_gain",
     title="Wrong gain of a force sensor",
     acts_on="sensor",
+    closed_form=True,
     equation="reading of f_out = gain · T",
     doc=__doc__,
     parameters=(Parameter("f_out_gain", "1", neutral=1.0, start=1.05, lower=0.01, upper=100.0),),

@@ -32,6 +32,7 @@ FORCE_SENSOR_OFFSET = Effect(
     name="force_sensor_offset",
     title="Offset of a force sensor",
     acts_on="sensor",
+    closed_form=True,
     equation="reading = T + offset",
     doc=__doc__,
     parameters=(

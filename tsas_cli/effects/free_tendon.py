@@ -34,6 +34,7 @@ FREE_TENDON = Effect(
     name="free_tendon",
     title="Tendon outside the sheath",
     acts_on="tendon",
+    closed_form=True,
     equation="x_in − x_sheath = (T0 − F0)·l_proximal/EA,  x_sheath − x_out = (TL − F0)·l_distal/EA",
     doc=__doc__,
     parameters=(

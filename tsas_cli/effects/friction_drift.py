@@ -44,6 +44,7 @@ FRICTION_DRIFT = Effect(
     name="friction_drift",
     title="Friction that drifts",
     acts_on="tendon",
+    closed_form=False,
     equation="μ(t) = μ·(1 + rate·(1 − exp(−ν t))/ν + session_rate·t_start)",
     doc=__doc__,
     parameters=(

@@ -42,6 +42,7 @@ LOAD_DEPENDENT_FRICTION = Effect(
     name="load_dependent_friction",
     title="Friction coefficient that depends on the tension",
     acts_on="tendon",
+    closed_form=False,
     equation="μ → μ·(T/F0)^n",
     doc=__doc__,
     parameters=(Parameter("exponent", "1", neutral=0.0, start=0.2, lower=-1.5, upper=1.5),),

@@ -36,6 +36,7 @@ LOAD_FRICTION = Effect(
     name="load_friction",
     title="Friction at the load",
     acts_on="load",
+    closed_form=False,
     equation="f_out = spring force + Fc_after·sgn(v_out),  TL = f_out + Fc_before·sgn(v_out)",
     doc=__doc__,
     parameters=(

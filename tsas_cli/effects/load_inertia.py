@@ -34,6 +34,7 @@ LOAD_INERTIA = Effect(
     name="load_inertia",
     title="Mass of the load",
     acts_on="load",
+    closed_form=False,
     equation="f_out = spring force + m·a_out",
     doc=__doc__,
     parameters=(Parameter("mass_kg", "kg", neutral=0.0, start=1.0, lower=0.0, upper=1000.0),),

@@ -42,6 +42,7 @@ LOAD_SPRING_NONLINEARITY = Effect(
     name="load_spring_nonlinearity",
     title="Nonlinear load spring",
     acts_on="load",
+    closed_form=False,
     equation="spring force = F0 + kL·x·(1 + q x + c x²)",
     doc=__doc__,
     parameters=(

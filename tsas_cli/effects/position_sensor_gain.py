@@ -32,6 +32,7 @@ POSITION_SENSOR_GAIN = Effect(
     name="position_sensor_gain",
     title="Wrong gain of a position sensor",
     acts_on="sensor",
+    closed_form=True,
     equation="reading of x_out = gain · x",
     doc=__doc__,
     parameters=(Parameter("x_out_gain", "1", neutral=1.0, start=1.02, lower=0.01, upper=100.0),),

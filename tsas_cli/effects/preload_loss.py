@@ -35,6 +35,7 @@ PRELOAD_LOSS = Effect(
     name="preload_loss",
     title="Loss of preload",
     acts_on="load",
+    closed_form=False,
     equation="spring force = F0 − rate·(1 − exp(−ν t))/ν + kL·x",
     doc=__doc__,
     parameters=(

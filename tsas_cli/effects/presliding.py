@@ -46,6 +46,7 @@ PRESLIDING = Effect(
     name="presliding",
     title="Elastic travel before sliding",
     acts_on="tendon",
+    closed_form=False,
     equation="dz/dx = (1 − z·sgn(dx))/length, friction = z·limit",
     doc=__doc__,
     parameters=(

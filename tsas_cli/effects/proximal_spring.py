@@ -32,6 +32,7 @@ PROXIMAL_SPRING = Effect(
     name="proximal_spring",
     title="Spring at the drive's end",
     acts_on="drive",
+    closed_form=True,
     equation="f_in = T0 + k · p",
     doc=__doc__,
     parameters=(

@@ -32,6 +32,7 @@ SHEATH_COMPRESSION = Effect(
     name="sheath_compression",
     title="Compression of the sheath",
     acts_on="tendon",
+    closed_form=True,
     equation="dx/ds = (1 + ratio)·(T − F0)/EA in the sheath",
     doc=__doc__,
     parameters=(Parameter("compliance_ratio", "1", neutral=0.0, start=0.3, lower=0.0, upper=20.0),),

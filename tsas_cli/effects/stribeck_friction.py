@@ -45,6 +45,7 @@ STRIBECK_FRICTION = Effect(
     name="stribeck_friction",
     title="Higher friction at low speed",
     acts_on="tendon",
+    closed_form=False,
     equation="μ → μ·(1 + e·exp(−(v/vs)²))",
     doc=__doc__,
     parameters=(

@@ -37,6 +37,7 @@ VISCOUS_FRICTION = Effect(
     name="viscous_friction",
     title="Friction that grows with speed",
     acts_on="tendon",
+    closed_form=False,
     equation="dT/ds = −λ·(μκT + c|v|/L)",
     doc=__doc__,
     parameters=(

@@ -9,7 +9,7 @@ import numpy.typing as npt
 from tsas_cli.identification.dynamic_notes import dynamic_notes
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.prepared import Prepared
-from tsas_cli.physics.chain_state import SLACK, UNSETTLED
+from tsas_cli.physics.phases import SLACK, UNCONVERGED
 from tsas_cli.physics.response import Dynamics, Response, simulate
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.manifest import Run
@@ -36,7 +36,7 @@ class Compared:
             self.response.solver,
             int(phase.size),
             int(np.count_nonzero(phase == SLACK)),
-            int(np.count_nonzero(phase == UNSETTLED)),
+            int(np.count_nonzero(phase == UNCONVERGED)),
             self.rmse,
             self.samples,
             self.notes,

@@ -18,7 +18,7 @@ from tsas_cli.identification.joint_fit import JointFit, estimates_of
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.quantities import QUANTITIES
-from tsas_cli.physics.lugre_start import law_of
+from tsas_cli.physics.lugre.start import bristles_of
 from tsas_cli.physics.response import LUMPS
 from tsas_cli.support.steps import SILENT, Steps
 
@@ -154,7 +154,7 @@ def _sizes(fit: JointFit, name: str, step: Steps) -> list[Look]:
     rigs = fit.solved_rigs()
     usual = {
         STIFFNESS: rigs[0].bristles.stiffness_N_per_mm,
-        DAMPING: max(law_of(rig, 1).bristle.damping for rig in rigs),
+        DAMPING: max(bristles_of(rig).damping for rig in rigs),
         VISCOUS: QUANTITIES[VISCOUS].size,
     }[name]
     times = (*TIMES, *(1.0 / t for t in TIMES)) if name == STIFFNESS else TIMES

@@ -8,11 +8,11 @@ import numpy.typing as npt
 
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.prepared import Prepared
-from tsas_cli.physics.chain_state import UNSETTLED
 from tsas_cli.physics.ends import Drive
-from tsas_cli.physics.lugre_chain import MOST_PER_SAMPLE, MOST_TRIES
-from tsas_cli.physics.lugre_stability import Stability, stability
-from tsas_cli.physics.lugre_start import law_of
+from tsas_cli.physics.lugre.chain import MOST_PER_SAMPLE, MOST_TRIES
+from tsas_cli.physics.lugre.stability import Stability, stability
+from tsas_cli.physics.lugre.start import bristles_of
+from tsas_cli.physics.phases import UNCONVERGED
 from tsas_cli.physics.response import Response, simulate
 from tsas_cli.physics.rig import Rig
 
@@ -36,7 +36,7 @@ def dynamic_notes(run: Prepared, model: Model, response: Response) -> Iterator[s
             f"{steps} steps for {samples} samples: the tendon sticks and slips, or its load rings, "
             "much faster than the samples show"
         )
-    given_up = response.phase == UNSETTLED
+    given_up = response.phase == UNCONVERGED
     if np.any(given_up):
         yield (
             f"given up at {run.time_s[np.argmax(given_up)]:.4g} s, after {MOST_TRIES} steps and "
@@ -60,7 +60,7 @@ def _unstable(found: Stability, rig: Rig) -> str:
         f"{moment.f_in_N:.3g} N: a disturbance grows e-fold in {1e3 / found.growth_per_s:.2g} ms"
     )
     critical = rig._replace(bristles=rig.bristles._replace(damping_N_s_per_mm=math.nan))
-    times = law_of(rig, 1).bristle.damping / law_of(critical, 1).bristle.damping
+    times = bristles_of(rig).damping / bristles_of(critical).damping
     if times > HIGH_DAMPING:
         return (
             f"{sentence}; the bristles' damping is {times:.3g} times critical, and critical where "

@@ -12,7 +12,7 @@ from tsas_cli.identification.joint_fit import JointFit, rig_at
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.identification.run_errors import RunErrors
 from tsas_cli.identification.unknowns import unknown_of
-from tsas_cli.physics.response import CHAIN_ONLY, is_closed
+from tsas_cli.physics.response import ON_CHAIN, is_closed
 from tsas_cli.physics.rig import Rig, with_values
 
 Floats = npt.NDArray[np.float64]
@@ -93,7 +93,7 @@ class Bench:
 
     def on_mesh(self, effects: Iterable[str]) -> bool:
         """Say whether a hypothesis needs the slip chain."""
-        return self.never_closed or any(name in CHAIN_ONLY for name in effects)
+        return self.never_closed or any(name in ON_CHAIN for name in effects)
 
     def fit(
         self,

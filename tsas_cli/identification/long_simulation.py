@@ -15,8 +15,8 @@ from tsas_cli.identification.long_runs import LongRun, Rows
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.prepared import CHANNELS, LOAD_COLUMNS, Prepared, drive_of
 from tsas_cli.physics.by_pieces import simulate_pieces
-from tsas_cli.physics.chain_state import SLACK, UNSETTLED
 from tsas_cli.physics.ends import Drive
+from tsas_cli.physics.phases import SLACK, UNCONVERGED
 from tsas_cli.physics.response import Dynamics, Response
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.writing import parquet_writer, table_of
@@ -39,7 +39,7 @@ class _Sums:
         """Count some rows."""
         self.rows += rows.time_s.size
         self.slack += int(np.count_nonzero(response.phase == SLACK))
-        self.unsettled += int(np.count_nonzero(response.phase == UNSETTLED))
+        self.unsettled += int(np.count_nonzero(response.phase == UNCONVERGED))
         for name, measured in rows.measured.items():
             error = measured - channels[name]
             error = error[np.isfinite(error)]

@@ -1,1 +1,1 @@
-"""The nominal rig: parameters, static capstan model, slip chain."""
+"""The nominal rig and what it does: four models, over shared ends, sensors and parameters."""

@@ -14,28 +14,32 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.physics.branches import BranchState, at_rest_before, follow_branches, with_room
-from tsas_cli.physics.chain_state import DISPLACEMENT
-from tsas_cli.physics.ends import Drive, Ends, ends_of
+from tsas_cli.physics.closed_form.branches import (
+    BranchState,
+    at_rest_before,
+    follow_branches,
+    with_room,
+)
+from tsas_cli.physics.closed_form.static import StaticState, follow_static
+from tsas_cli.physics.course import Output
+from tsas_cli.physics.ends import Drive, EndInputs, ends_of
 from tsas_cli.physics.response import (
     CLOSED,
     NODES,
-    Answer,
     Dynamics,
     Response,
-    as_read,
-    at_drive,
+    at_drive_sensor,
     history,
     is_closed,
+    sensor_readings,
     solver_of,
-    with_spring,
+    with_spring_load,
 )
 from tsas_cli.physics.rig import Rig
-from tsas_cli.physics.slip_chain import ChainState, follow, resting
-from tsas_cli.physics.static import follow_static
+from tsas_cli.physics.slip.chain import ChainState, follow, initial_state
 
 Floats = npt.NDArray[np.float64]
-State = BranchState | ChainState | Floats
+State = BranchState | ChainState | StaticState
 
 BESIDE = 2  # samples of a neighbour that a speed needs, and one more
 STATIC = -1  # nodes of the lumped model
@@ -98,40 +102,39 @@ def simulate_pieces(
             passed = ends.first().after(before)
             state = _resting(rig, passed, mesh)
             if before:
-                _, state = _follow(rig, _cut(passed, 0, len(before)), mesh, state)
+                _, state = _follow(rig, passed.part(0, len(before)), mesh, state)
         else:
             state = start.state
         to = joined.until if joined.next_begin is None else joined.next_begin
-        answers, state = _follow(rig, _cut(ends, joined.begin, to), mesh, state)
+        outputs, state = _follow(rig, ends.part(joined.begin, to), mesh, state)
         if joined.handover is not None:
             at = joined.handover
             start = Start(deepcopy(state), float(ends.drive[at]), float(ends.direction[at]))
-            further, _ = _follow(rig, _cut(ends, to, joined.until), mesh, state)
-            answers = _one_after_the_other(answers, further)
+            further, _ = _follow(rig, ends.part(to, joined.until), mesh, state)
+            outputs = _one_after_the_other(outputs, further)
         drive = _part(joined.drive, joined.begin, joined.until)
-        response = as_read(rig, drive, answers, 0, solver_of(mesh, dynamics))
+        response = sensor_readings(rig, drive, outputs, 0, solver_of(mesh, dynamics))
         yield _only(response, joined.first - joined.begin, joined.end - joined.begin)
 
 
-def _resting(rig: Rig, ends: Ends, mesh: int) -> State:
+def _resting(rig: Rig, ends: EndInputs, mesh: int) -> State:
     if mesh == STATIC:
-        return np.array([0.0, rig.preload_N, rig.preload_N])
+        return StaticState(0.0, rig.preload_N, rig.preload_N)
     if mesh == CLOSED:
         return at_rest_before(ends.drive, rig.preload_N)
-    return resting(ends.course, rig, ends.boundary, mesh)
+    return initial_state(ends.course, rig, ends.boundary, mesh)
 
 
-def _follow(rig: Rig, ends: Ends, mesh: int, state: State) -> tuple[Answer, State]:
-    """Return the answer and the state where it ends, free of the sensors' errors."""
+def _follow(rig: Rig, ends: EndInputs, mesh: int, state: State) -> tuple[Output, State]:
+    """Return the output and the state where it ends."""
     if isinstance(state, BranchState):
-        state = with_room(state, ends.drive)
-        return with_spring(rig, ends, *follow_branches(ends.drive, rig, state)), state
-    if not isinstance(state, ChainState):
-        return with_spring(rig, ends, *follow_static(ends.drive, rig, state)), state
-    x_in, x_out, f_in, f_out, phase = follow(ends.course, state, rig, ends.boundary, mesh)
-    if ends.boundary.drive == DISPLACEMENT:
-        f_in = f_in + at_drive(rig, ends)
-    return (x_in, x_out, f_in, f_out, phase), state
+        tensions, state = follow_branches(ends.drive, rig, with_room(state, ends.drive))
+        return with_spring_load(rig, ends, tensions), state
+    if isinstance(state, StaticState):
+        tensions, state = follow_static(ends.drive, rig, state)
+        return with_spring_load(rig, ends, tensions), state
+    output, state = follow(ends.course, state, rig, ends.boundary, mesh)
+    return at_drive_sensor(rig, ends, output), state
 
 
 def _longest_delay(rig: Rig) -> float:
@@ -192,13 +195,11 @@ def _join(parts: Sequence[Drive]) -> Drive:
     )
 
 
-def _cut(ends: Ends, first: int, end: int) -> Ends:
-    return replace(ends, course=ends.course[:, first:end], direction=ends.direction[first:end])
-
-
-def _one_after_the_other(one: Answer, other: Answer) -> Answer:
-    columns = np.concatenate((one[:4], other[:4]), axis=1)
-    return columns[0], columns[1], columns[2], columns[3], np.concatenate((one[4], other[4]))
+def _one_after_the_other(one: Output, other: Output) -> Output:
+    x_in, x_out, f_in, f_out = (
+        np.concatenate(pair) for pair in zip(one[:4], other[:4], strict=True)
+    )
+    return Output(x_in, x_out, f_in, f_out, np.concatenate((one.phase, other.phase)))
 
 
 def _only(response: Response, first: int, end: int) -> Response:

@@ -17,7 +17,8 @@ from tsas_cli.effects.preload_loss import lost_preload
 from tsas_cli.effects.stribeck_friction import stribeck_factor
 from tsas_cli.effects.viscous_friction import viscous_loss
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.physics.chain_state import DISPLACEMENT, FORCE, SPRING, Boundary
+from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, SPRING, Boundary
+from tsas_cli.physics.course import DRIVE, STEP, Losses
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.sensors import true_value
 
@@ -44,34 +45,39 @@ class Drive:
 
 
 @dataclass(frozen=True)
-class Ends:
-    """What acts on the tendon: the course of `Moment`, shape (7, n), and what it means."""
+class EndInputs:
+    """What acts on the tendon over a run, and what of it is given at the ends."""
 
-    course: Floats
+    course: Floats  # with the rows of `course`
     boundary: Boundary
     direction: Floats  # in which the tendon's end at the drive moved last, shape (n,)
 
     @property
     def drive(self) -> Floats:
         """The drive's end of the tendon [mm], or the tension given there [N]."""
-        values: Floats = self.course[0]
+        values: Floats = self.course[DRIVE]
         return values
 
-    def after(self, before: list[float]) -> "Ends":
+    def part(self, first: int, end: int) -> "EndInputs":
+        """Return the samples first … end−1."""
+        course = np.ascontiguousarray(self.course[:, first:end])
+        return replace(self, course=course, direction=self.direction[first:end])
+
+    def after(self, before: list[float]) -> "EndInputs":
         """Return the ends with positions of the drive put before the first one."""
-        first = np.repeat(self.course[:, :1], len(before), axis=1)
-        first[0] = before
-        course = np.concatenate((first, self.course), axis=1)
-        course[6, : len(before) + 1] = math.inf  # how fast they were passed is not known
-        direction = np.concatenate((np.zeros(len(before)), self.direction))
+        more = len(before)
+        course = np.concatenate((np.repeat(self.course[:, :1], more, axis=1), self.course), axis=1)
+        course[DRIVE, :more] = before
+        course[STEP, : more + 1] = math.inf  # how fast they were passed is not known
+        direction = np.concatenate((np.zeros(more), self.direction))
         return replace(self, course=course, direction=direction)
 
-    def first(self) -> "Ends":
+    def first(self) -> "EndInputs":
         """Return the first sample alone."""
-        return replace(self, course=self.course[:, :1], direction=self.direction[:1])
+        return self.part(0, 1)
 
 
-def ends_of(rig: Rig, drive: Drive, start: tuple[float, float] | None = None) -> Ends:
+def ends_of(rig: Rig, drive: Drive, start: tuple[float, float] | None = None) -> EndInputs:
     """Return what acts on the tendon of a rig when the ends are driven as measured.
 
     `start` is where the tendon's end at the drive is at the first sample and in which direction it
@@ -98,9 +104,9 @@ def ends_of(rig: Rig, drive: Drive, start: tuple[float, float] | None = None) ->
     step_s = np.full(n, math.inf)
     if drive.time_s is not None:
         step_s[1:] = np.diff(time_s)
-    friction = friction_course(time_s, speed, drive.session_s, rig)
-    course = np.vstack((at_drive, at_load, friction, step_s))
-    return Ends(course, boundary, last_direction(at_drive, 0.0 if start is None else start[1]))
+    losses = losses_over(time_s, speed, drive.session_s, rig)
+    course = np.vstack((losses, at_drive, at_load, step_s, time_s))
+    return EndInputs(course, boundary, last_direction(at_drive, 0.0 if start is None else start[1]))
 
 
 @kernel
@@ -126,37 +132,34 @@ def last_direction(x: Floats, before: float = 0.0) -> Floats:
 
 
 @kernel
-def friction_course(time_s: Floats, speed: Floats, session_s: float, rig: Rig) -> Floats:
-    """Return `friction_at` at each time, shape (4, n)."""
+def losses_over(time_s: Floats, speed: Floats, session_s: float, rig: Rig) -> Floats:
+    """Return `losses_at` each time, shape (4, n)."""
     out = np.empty((4, time_s.size))
     for i in range(time_s.size):
-        out[0, i], out[1, i], out[2, i], out[3, i] = friction_at(
-            time_s[i], speed[i], session_s, rig
-        )
+        out[0, i], out[1, i], out[2, i], out[3, i] = losses_at(time_s[i], speed[i], session_s, rig)
     return out
 
 
 @kernel
-def friction_at(
-    time_s: float, speed: float, session_s: float, rig: Rig
-) -> tuple[float, float, float, float]:
-    """Return a pulled, a released [1], viscous loss [N] and lost preload [N] at one moment."""
+def losses_at(time_s: float, speed: float, session_s: float, rig: Rig) -> Losses:
+    """Return the losses at one moment, by the speed of the tendon's end at the drive [mm/s]."""
     effects = rig.effects
-    pulled, released, lost_N = friction_without_speed(time_s, session_s, rig)
+    now = losses_without_speed(time_s, session_s, rig)
     factor = stribeck_factor(speed, effects.stribeck_friction)
     viscous_N = viscous_loss(speed, effects.viscous_friction.coefficient_N_s_per_mm)
-    return factor * pulled, factor * released, viscous_N, lost_N
+    return Losses(factor * now.pulled, factor * now.released, viscous_N, now.preload_N)
 
 
 @kernel
-def friction_without_speed(time_s: float, session_s: float, rig: Rig) -> tuple[float, float, float]:
-    """Return a pulled, a released [1] and lost preload [N], where speed acts place by place."""
+def losses_without_speed(time_s: float, session_s: float, rig: Rig) -> Losses:
+    """Return the losses at one moment for a tendon each of whose places has its own speed."""
     effects = rig.effects
     asymmetry = effects.direction_dependent_friction.asymmetry
     wrap = rig.friction_coefficient * friction_factor(effects.friction_drift, time_s, session_s)
     wrap *= drifted_bend(rig.total_bend_rad, effects.bend_drift, time_s)
-    return (
+    return Losses(
         wrap * direction_factor(asymmetry, 1.0),
         wrap * direction_factor(asymmetry, -1.0),
+        0.0,
         lost_preload(effects.preload_loss, time_s),
     )

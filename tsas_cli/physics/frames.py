@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.physics.chain_state import UNSETTLED
+from tsas_cli.physics.phases import UNCONVERGED
 
 Floats = npt.NDArray[np.float64]
 Phases = npt.NDArray[np.int8]
@@ -43,7 +43,7 @@ def empty_frames(samples: Indices, elements: int) -> Frames:
     return Frames(
         samples.astype(np.int64),
         np.full((k, elements + 1), np.nan),
-        np.full((k, elements), UNSETTLED, dtype=np.int8),
+        np.full((k, elements), UNCONVERGED, dtype=np.int8),
         np.zeros(k),
     )
 

@@ -7,22 +7,24 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.effects import Effects
+from tsas_cli.effects import EFFECTS, Effects
 from tsas_cli.effects.drive_friction import drive_friction_force
 from tsas_cli.effects.proximal_spring import proximal_spring_force
-from tsas_cli.physics.branches import branches
-from tsas_cli.physics.chain_state import DISPLACEMENT, FORCE, MOST_NODES, SLACK
-from tsas_cli.physics.ends import Drive, Ends, ends_of
+from tsas_cli.physics.boundary import FORCE
+from tsas_cli.physics.closed_form.branches import branches
+from tsas_cli.physics.closed_form.static import static_model
+from tsas_cli.physics.course import Output, Tensions
+from tsas_cli.physics.ends import Drive, EndInputs, ends_of
 from tsas_cli.physics.frames import Frames, Indices, empty_frames
-from tsas_cli.physics.lugre_chain import OWN_STEPS, lugre_chain
+from tsas_cli.physics.lugre.chain import OWN_STEPS, StepControl, lugre_chain
+from tsas_cli.physics.mesh import MOST_NODES
+from tsas_cli.physics.phases import SLACK
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.sensors import reading
-from tsas_cli.physics.slip_chain import rest_after, slip_chain
-from tsas_cli.physics.static import static_model
+from tsas_cli.physics.slip.chain import rest_after, slip_chain
 
 Floats = npt.NDArray[np.float64]
 Phases = npt.NDArray[np.int8]
-Answer = tuple[Floats, Floats, Floats, Floats, Phases]
 Dynamics = Literal["static", "slip", "lugre"]
 
 NODES = 60  # of the slip chain, where the closed form does not hold
@@ -31,19 +33,7 @@ TOLERANCE = 2.5e-6  # of a tension: what a step of the dynamic chain may add to 
 CLOSED = 0  # nodes of the closed form
 ELEMENTS = 60  # on which the closed form says what is along the tendon
 MOST_DOUBLINGS = 30  # of the way that the drive goes before a run
-CHAIN_ONLY = (
-    "direction_dependent_friction",
-    "stribeck_friction",
-    "viscous_friction",
-    "load_dependent_friction",
-    "presliding",
-    "bend_drift",
-    "friction_drift",
-    "preload_loss",
-    "load_spring_nonlinearity",
-    "load_friction",
-    "load_inertia",
-)  # effects that the closed form does not hold for
+ON_CHAIN = tuple(effect.name for effect in EFFECTS if not effect.closed_form)
 
 
 @dataclass(frozen=True)
@@ -91,21 +81,20 @@ def simulate(
     if nodes is not None and not 2 <= nodes <= MOST_NODES:
         raise ValueError(f"{nodes} nodes; expected 2 to {MOST_NODES}")
     if dynamics == "lugre":
-        return _dynamic(rig, drive, nodes or LUMPS, tolerance, step_ends_s, looked_at)
+        return _dynamic(rig, drive, nodes or LUMPS, StepControl(tolerance, step_ends_s), looked_at)
     nodes = nodes or NODES
     ends = ends_of(rig, drive)
     if dynamics == "static":
-        f_in, f_out, phase = static_model(ends.drive, rig)
-        answer = with_spring(rig, ends, f_in, f_out, phase)
-        return as_read(rig, drive, answer, 0, solver_of(nodes, dynamics))
+        output = with_spring_load(rig, ends, static_model(ends.drive, rig))
+        return sensor_readings(rig, drive, output, 0, solver_of(nodes, dynamics))
     if is_closed(rig, drive) and not on_mesh:
         nodes = CLOSED
     before = history(rig, ends, drive.start_f_in_N, nodes)
     skip, frames = len(before), None
     if looked_at is not None:
         frames = empty_frames(looked_at + skip, nodes or ELEMENTS)
-    answer = _solve(rig, ends.after(before), nodes, frames)
-    response = as_read(rig, drive, answer, skip, solver_of(nodes, dynamics))
+    output = _solve(rig, ends.after(before), nodes, frames)
+    response = sensor_readings(rig, drive, output, skip, solver_of(nodes, dynamics))
     return replace(response, frames=frames and frames._replace(samples=frames.samples - skip))
 
 
@@ -113,8 +102,7 @@ def _dynamic(
     rig: Rig,
     drive: Drive,
     lumps: int,
-    tolerance: float,
-    step_ends_s: Floats,
+    control: StepControl,
     looked_at: Indices | None,
 ) -> Response:
     """Follow a run with the dynamic chain, from a state of rest that the slip chain gives it."""
@@ -129,15 +117,11 @@ def _dynamic(
     )  # each lump has its own speed
     course = ends_of(rig._replace(effects=by_place), drive).course
     frames = None if looked_at is None else empty_frames(looked_at, lumps)
-    columns, phase, progress = lugre_chain(
-        drive.time_s, course, start, rig, ends.boundary, lumps, tolerance, step_ends_s, frames
-    )
-    x_in, x_out, f_in, f_out = columns
-    if ends.boundary.drive == DISPLACEMENT:
-        f_in = f_in + at_drive(rig, ends)
+    output, progress = lugre_chain(course, start, rig, ends.boundary, lumps, control, frames)
+    output = at_drive_sensor(rig, ends, output)
     solver = f"LuGre chain, {lumps} lumps, {progress.step_ends_s.size} steps"
-    answer = as_read(rig, drive, (x_in, x_out, f_in, f_out, phase), 0, solver)
-    return replace(answer, step_ends_s=progress.step_ends_s, frames=frames)
+    response = sensor_readings(rig, drive, output, 0, solver)
+    return replace(response, step_ends_s=progress.step_ends_s, frames=frames)
 
 
 def solver_of(nodes: int, dynamics: Dynamics) -> str:
@@ -154,41 +138,46 @@ def is_closed(rig: Rig, drive: Drive) -> bool:
         drive.kind == "displacement"
         and drive.load == "spring"
         and rig.bend_slope == rig.bend_bow == 0.0
-        and all(getattr(rig.effects, name) == getattr(neutral, name) for name in CHAIN_ONLY)
+        and all(getattr(rig.effects, name) == getattr(neutral, name) for name in ON_CHAIN)
     )
 
 
-def as_read(rig: Rig, drive: Drive, answer: Answer, skip: int, solver: str) -> Response:
+def sensor_readings(rig: Rig, drive: Drive, output: Output, skip: int, solver: str) -> Response:
     """Drop the samples before the run and return what the sensors read of the others."""
-    x_in, x_out, f_in, f_out = (column[skip:] for column in answer[:4])
-    given = drive.values if drive.kind == "displacement" else x_in + rig.x_in_zero_mm
+    x_in = output.x_in[skip:]
     return Response(
-        given,
-        reading("x_out_mm", x_out, drive.time_s, rig),
-        reading("f_in_N", f_in, drive.time_s, rig),
-        reading("f_out_N", f_out, drive.time_s, rig),
-        answer[4][skip:],
+        drive.values if drive.kind == "displacement" else x_in + rig.x_in_zero_mm,
+        reading("x_out_mm", output.x_out[skip:], drive.time_s, rig),
+        reading("f_in_N", output.f_in[skip:], drive.time_s, rig),
+        reading("f_out_N", output.f_out[skip:], drive.time_s, rig),
+        output.phase[skip:],
         solver,
     )
 
 
-def _solve(rig: Rig, ends: Ends, nodes: int, frames: Frames | None = None) -> Answer:
-    """Return x_in, x_out, f_in, f_out and phase, free of the sensors' errors."""
+def _solve(rig: Rig, ends: EndInputs, nodes: int, frames: Frames | None = None) -> Output:
+    """Return the output of the closed form, or of the slip chain."""
     if nodes == CLOSED:
-        return with_spring(rig, ends, *branches(ends.drive, rig, frames))
-    x_in, x_out, f_in, f_out, phase = slip_chain(ends.course, rig, ends.boundary, nodes, frames)
-    if ends.boundary.drive == DISPLACEMENT:
-        f_in = f_in + at_drive(rig, ends)
-    return x_in, x_out, f_in, f_out, phase
+        return with_spring_load(rig, ends, branches(ends.drive, rig, frames))
+    output = slip_chain(ends.course, rig, ends.boundary, nodes, frames)
+    return at_drive_sensor(rig, ends, output)
 
 
-def with_spring(rig: Rig, ends: Ends, f_in: Floats, f_out: Floats, phase: Phases) -> Answer:
-    """Return the answer of a model that knows a spring load and a drive by displacement."""
-    x_out = (f_out - rig.preload_N) / rig.load_stiffness_N_per_mm
-    return ends.drive, x_out, f_in + at_drive(rig, ends), f_out, phase
+def with_spring_load(rig: Rig, ends: EndInputs, tensions: Tensions) -> Output:
+    """Return the output of a model that knows a spring load and a drive by displacement."""
+    x_out = (tensions.f_out - rig.preload_N) / rig.load_stiffness_N_per_mm
+    f_in = tensions.f_in + force_beside_tendon(rig, ends)
+    return Output(ends.drive, x_out, f_in, tensions.f_out, tensions.phase)
 
 
-def at_drive(rig: Rig, ends: Ends) -> Floats | float:
+def at_drive_sensor(rig: Rig, ends: EndInputs, output: Output) -> Output:
+    """Return an output with the force beside the tendon in f_in, where the drive is not a force."""
+    if ends.boundary.drive == FORCE:
+        return output
+    return output._replace(f_in=output.f_in + force_beside_tendon(rig, ends))
+
+
+def force_beside_tendon(rig: Rig, ends: EndInputs) -> Floats | float:
     """Return what the drive's sensor feels beside the tendon [N]."""
     friction = rig.effects.drive_friction.friction_N
     stiffness = rig.effects.proximal_spring.stiffness_N_per_mm
@@ -206,12 +195,12 @@ def forgotten(rig: Rig, drive: Drive) -> int | None:
     """
     ends, nodes = ends_of(rig, drive), CLOSED if is_closed(rig, drive) else NODES
     far = [_far(rig, ends, side, nodes) for side in (1.0, -1.0)]
-    phases = [_solve(rig, ends.after([x]), nodes)[4][1:] for x in far]
+    phases = [_solve(rig, ends.after([x]), nodes).phase[1:] for x in far]
     same = np.flatnonzero((phases[0] == phases[1]) & np.isin(phases[0], (1, -1, SLACK)))
     return int(same[0]) if same.size else None
 
 
-def _far(rig: Rig, ends: Ends, side: float, nodes: int) -> float:
+def _far(rig: Rig, ends: EndInputs, side: float, nodes: int) -> float:
     """Return a drive from which the way back to the first sample makes the whole tendon slip."""
     first = float(ends.drive[0])
     stretch = rig.preload_N * rig.sheath_length_mm / rig.tendon_stiffness_N
@@ -219,13 +208,13 @@ def _far(rig: Rig, ends: Ends, side: float, nodes: int) -> float:
     for _ in range(MOST_DOUBLINGS):
         by_force = ends.boundary.drive == FORCE
         past = first * (1.0 + step) ** side if by_force else first + side * step * stretch
-        if _solve(rig, ends.first().after([past]), nodes)[4][-1] in (1, -1, SLACK):
+        if _solve(rig, ends.first().after([past]), nodes).phase[-1] in (1, -1, SLACK):
             break
         step *= 2.0
     return past
 
 
-def history(rig: Rig, ends: Ends, wanted_f_in: float | None, nodes: int) -> list[float]:
+def history(rig: Rig, ends: EndInputs, wanted_f_in: float | None, nodes: int) -> list[float]:
     """Return a drive position to pass before the first sample, if one is needed, so that f_in fits.
 
     From rest the drive goes past its first position and back; how far decides the tension there,
@@ -235,8 +224,8 @@ def history(rig: Rig, ends: Ends, wanted_f_in: float | None, nodes: int) -> list
         return []
 
     def f_in(before: list[float]) -> float:
-        answer = _solve(rig, first.after(before), nodes)[2][-1:]
-        return float(reading("f_in_N", answer, None, rig)[0])
+        last = _solve(rig, first.after(before), nodes).f_in[-1:]
+        return float(reading("f_in_N", last, None, rig)[0])
 
     x = float(ends.drive[0])
     first = ends.first()

@@ -17,7 +17,11 @@ from tsas_cli.identification.model import (
 from tsas_cli.identification.phases import segment_records
 from tsas_cli.identification.prepared import Prepared, prepare
 from tsas_cli.identification.stiffness import Slope
-from tsas_cli.physics.capstan import dead_band_stiffness, slip_stiffness, speed_per_stiffness
+from tsas_cli.physics.closed_form.capstan import (
+    dead_band_stiffness,
+    slip_stiffness,
+    speed_per_stiffness,
+)
 from tsas_cli.physics.rig import Rig
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Manifest, Run

@@ -13,11 +13,18 @@ import numpy as np
 import numpy.typing as npt
 import pyarrow as pa
 
-from tsas_cli.controllers.closed_loop import X_SEEN, close_loop, followed_from
+from tsas_cli.controllers.closed_loop import (
+    X_SEEN,
+    DriveSensor,
+    LoopPlant,
+    Wanted,
+    close_loop,
+    followed_from,
+)
 from tsas_cli.controllers.pid import Pid
 from tsas_cli.controllers.signals import error_filter
 from tsas_cli.drive.file import read_drive
-from tsas_cli.physics.plant import Actuator
+from tsas_cli.physics.plant.turntable import Actuator
 from tsas_cli.physics.rig import Rig
 from tsas_cli.recordings.writing import write_dataset
 from tsas_cli.tracking.drives import actuator_of
@@ -67,21 +74,20 @@ def driven(rpm: Floats, bench: Settings, seed: int) -> Floats:
         total_bend_rad=0.0,
         preload_N=PRELOAD_N,
     )
+    noise = bench.sensor.noise_mm * np.random.default_rng(seed).standard_normal(m)
+    A, b = error_filter(bench.loop.filter_Hz, bench.step_s)
     columns, _, _ = close_loop(
-        np.zeros((4, m)),
-        rpm,
-        bench.sensor.noise_mm * np.random.default_rng(seed).standard_normal(m),
-        bench.sensor.step_mm,
-        *error_filter(bench.loop.filter_Hz, bench.step_s),
+        Wanted(np.zeros((4, m)), rpm),
+        DriveSensor(bench.step_s, noise, bench.sensor.step_mm, A, b),
         bench.laws("pid", drive.gain_mm_per_s_rpm)._replace(pid=Pid(0.0, 0.0, 0.0)),
-        *followed_from(0.0, rig, drive, NODES),
-        (rig, rig),
-        -1,
-        drive,
-        NODES,
-        bench.step_s,
-        SUBSTEPS,
-        None,
+        LoopPlant(
+            actuator=drive,
+            rigs=(rig, rig),
+            change_at=-1,
+            substeps=SUBSTEPS,
+            nodes=NODES,
+            start=followed_from(0.0, rig, drive, NODES),
+        ),
     )
     seen: Floats = columns[X_SEEN]
     return seen

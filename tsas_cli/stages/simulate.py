@@ -21,7 +21,7 @@ from tsas_cli.identification.model import (
 )
 from tsas_cli.identification.phases import segment, segment_records
 from tsas_cli.identification.prepared import Prepared, prepare
-from tsas_cli.physics.chain_state import MOST_NODES
+from tsas_cli.physics.mesh import MOST_NODES
 from tsas_cli.physics.response import Dynamics
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.recording import Recording, recording_of

@@ -12,7 +12,7 @@ import numpy as np
 import pyarrow as pa
 
 from tsas_cli.controllers import CONTROLLERS
-from tsas_cli.controllers.path import Path as DrivePath
+from tsas_cli.controllers.path import DrivePath
 from tsas_cli.drive.file import FILE as DRIVE_FILE
 from tsas_cli.drive.file import IdentifiedDrive
 from tsas_cli.identification.model import Model, model_of, source_of

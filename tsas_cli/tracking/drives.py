@@ -4,8 +4,8 @@ import math
 from pathlib import Path
 
 from tsas_cli.drive.file import IdentifiedDrive, read_drive
-from tsas_cli.physics.capstan import speed_per_stiffness
-from tsas_cli.physics.plant import Actuator
+from tsas_cli.physics.closed_form.capstan import speed_per_stiffness
+from tsas_cli.physics.plant.turntable import Actuator
 from tsas_cli.tracking.settings import DriveSettings
 
 

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from tsas_cli.controllers.path import Path
+from tsas_cli.controllers.path import DrivePath
 from tsas_cli.identification.dynamic_notes import unstable_sliding
 from tsas_cli.physics.bristles import Bristles
 from tsas_cli.physics.ends import Drive
@@ -13,7 +13,7 @@ from tsas_cli.tracking.track import Plant
 
 
 def dynamic_notes(
-    path: Path, plant: Plant, conditions: Sequence[Condition], step_s: float
+    path: DrivePath, plant: Plant, conditions: Sequence[Condition], step_s: float
 ) -> Iterator[str]:
     """Say what of the plant's dynamic tendon is not its own, and where it would stick and slip.
 

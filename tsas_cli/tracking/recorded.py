@@ -15,7 +15,7 @@ from tsas_cli.controllers.closed_loop import (
     X_OUT,
     X_SEEN,
 )
-from tsas_cli.controllers.path import Path
+from tsas_cli.controllers.path import DrivePath
 from tsas_cli.identification.model import Model, data_sheet
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.sensors import reading
@@ -36,7 +36,7 @@ SURFACES = ("sliding-mode", "adaptive-sliding-mode")
 
 
 def table_of(
-    run: Tracked, path: Path, rig: Rig, controller: str, seed: int, settings: Settings
+    run: Tracked, path: DrivePath, rig: Rig, controller: str, seed: int, settings: Settings
 ) -> pa.Table:
     """Return the recording of a run, with what the controller wanted and remembered."""
     rng = np.random.default_rng((seed, NOISE))

@@ -14,13 +14,13 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from tsas_cli.controllers import CONTROLLERS
 from tsas_cli.controllers.adaptive_sliding_mode import AdaptiveSlidingMode
-from tsas_cli.controllers.closed_loop import Laws
+from tsas_cli.controllers.closed_loop import ControlLaws
 from tsas_cli.controllers.disturbance_observer import DisturbanceObserver
 from tsas_cli.controllers.pid import Pid
 from tsas_cli.controllers.sliding_mode import Phi, SlidingMode, Surface
 from tsas_cli.paper import yang2025
-from tsas_cli.physics.capstan import speed_per_stiffness
-from tsas_cli.physics.plant import Actuator
+from tsas_cli.physics.closed_form.capstan import speed_per_stiffness
+from tsas_cli.physics.plant.turntable import Actuator
 from tsas_cli.recordings.manifest import parse, read_toml
 
 MM_PER_M = 1e3
@@ -204,12 +204,12 @@ class Settings(_Table):
         }
         return self.model_copy(update={"controllers": gains.model_copy(update=changed)})
 
-    def laws(self, controller: str, gain_mm_per_s_rpm: float) -> Laws:
+    def laws(self, controller: str, gain_mm_per_s_rpm: float) -> ControlLaws:
         """Return every controller's gains as the kernel takes them, one of them at work."""
         gains = self.controllers
         sliding, adaptive = gains.sliding_mode, gains.adaptive_sliding_mode
         observer = gains.disturbance_observer
-        return Laws(
+        return ControlLaws(
             CONTROLLERS.index(controller),
             Pid(**gains.pid.model_dump()),
             SlidingMode(_surface(sliding), Phi(*sliding.phi)),

@@ -11,14 +11,17 @@ from tsas_cli.controllers.closed_loop import (
     F_OUT,
     GIVEN_UP,
     X_IN,
+    DriveSensor,
+    LoopPlant,
+    Wanted,
     close_loop,
     followed_from,
 )
-from tsas_cli.controllers.path import Path, follow
+from tsas_cli.controllers.path import DrivePath, follow
 from tsas_cli.controllers.signals import error_filter
 from tsas_cli.physics.ends import last_direction
-from tsas_cli.physics.lugre_plant import no_lumps
-from tsas_cli.physics.plant import Actuator
+from tsas_cli.physics.plant.lugre_plant import empty_lumps
+from tsas_cli.physics.plant.turntable import Actuator
 from tsas_cli.physics.rig import Rig
 from tsas_cli.support.errors import InputError
 from tsas_cli.tracking.scores import Score, score
@@ -71,7 +74,7 @@ class Tracked:
     is_relay: bool
 
 
-def plan(wanted_N: Floats, known: Known, settings: Settings) -> Path:
+def plan(wanted_N: Floats, known: Known, settings: Settings) -> DrivePath:
     """Return the path of the drive by the controller's model; see `controllers.path.follow`."""
     return follow(
         wanted_N,
@@ -83,7 +86,7 @@ def plan(wanted_N: Floats, known: Known, settings: Settings) -> Path:
     )
 
 
-def feedforward(path: Path, actuator: Actuator) -> Floats:
+def feedforward(path: DrivePath, actuator: Actuator) -> Floats:
     """Return kV dx/dt + kA d²x/dt² of the motor's path, shape (m,) [rpm], Eq. (51)."""
     speed, acceleration = path.motor[1], path.motor[2]
     answer: Floats = (speed + actuator.motor_lag_s * acceleration) / actuator.gain_mm_per_s_rpm
@@ -92,7 +95,7 @@ def feedforward(path: Path, actuator: Actuator) -> Floats:
 
 def run_loop(
     wanted_N: Floats,
-    path: Path,
+    path: DrivePath,
     known: Known,
     plant: Plant,
     controller: str,
@@ -125,24 +128,19 @@ def run_loop(
     A, b = error_filter(settings.loop.filter_Hz, step_s)
     limit_rpm = plant.actuator.speed_limit_rpm
     nodes = settings.loop.nodes
-    table, chain = followed_from(float(path.drive[0, 0]), plant.rig, plant.actuator, nodes)
     columns, unsettled, done = close_loop(
-        np.ascontiguousarray(path.drive[:, :m]),
-        feedforward(path, known.actuator)[:m],
-        noise,
-        settings.sensor.step_mm,
-        A,
-        b,
+        Wanted(np.ascontiguousarray(path.drive[:, :m]), feedforward(path, known.actuator)[:m]),
+        DriveSensor(step_s, noise, settings.sensor.step_mm, A, b),
         settings.laws(controller, known.actuator.gain_mm_per_s_rpm),
-        table,
-        chain,
-        (plant.rig, plant.later or plant.rig),
-        change_at,
-        plant.actuator,
-        nodes,
-        step_s,
-        settings.loop.substeps,
-        no_lumps() if dynamics == "lugre" else None,
+        LoopPlant(
+            actuator=plant.actuator,
+            rigs=(plant.rig, plant.later or plant.rig),
+            change_at=change_at,
+            substeps=settings.loop.substeps,
+            nodes=nodes,
+            start=followed_from(float(path.drive[0, 0]), plant.rig, plant.actuator, nodes),
+        ),
+        empty_lumps() if dynamics == "lugre" else None,
     )
     time_s: Floats = np.arange(m, dtype=np.float64) * step_s
     if unsettled > GIVEN_UP * m * settings.loop.substeps:

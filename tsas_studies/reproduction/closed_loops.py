@@ -12,7 +12,7 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.controllers.path import Path
+from tsas_cli.controllers.path import DrivePath
 from tsas_cli.numerics.side_by_side import each
 from tsas_cli.tracking.conditions import Condition, proximal_spring
 from tsas_cli.tracking.recorded import stated_rig
@@ -43,7 +43,7 @@ def paper_plant(settings: Settings, condition: str) -> tuple[Known, Plant]:
 
 
 @cache
-def planned(shape: str) -> tuple[Floats, Path]:
+def planned(shape: str) -> tuple[Floats, DrivePath]:
     """Return the wanted force and the path of a reference by the paper's model."""
     settings = Settings()
     wanted = reference(shape, settings.reference, settings.step_s)

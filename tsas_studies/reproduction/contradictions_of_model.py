@@ -7,8 +7,8 @@ from scipy.optimize import brentq
 
 from tsas_cli.effects import Effects, FreeTendon
 from tsas_cli.paper import Paper
-from tsas_cli.physics.capstan import slip_stiffness
-from tsas_cli.physics.lugre_stability import Sliding, growth_rate
+from tsas_cli.physics.closed_form.capstan import slip_stiffness
+from tsas_cli.physics.lugre.stability import Sliding, growth_rate
 from tsas_cli.physics.response import simulate
 from tsas_studies.reproduction.fig_7 import bands_of
 from tsas_studies.reproduction.group import Row

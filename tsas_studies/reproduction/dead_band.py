@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.physics.capstan import dead_band_width
+from tsas_cli.physics.closed_form.capstan import dead_band_width
 from tsas_cli.physics.compliances import compliance_at_drive
 from tsas_cli.physics.ends import Drive
 from tsas_cli.physics.response import simulate

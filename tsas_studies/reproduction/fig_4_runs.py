@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 from tsas_cli.paper import Paper
 from tsas_cli.physics.bristles import bristle_damping
-from tsas_cli.physics.lugre_stability import FOLDS, SLOW, Stability, growth_rate, moments
+from tsas_cli.physics.lugre.stability import FOLDS, SLOW, Stability, growth_rate, moments
 from tsas_cli.physics.response import Response, simulate
 from tsas_cli.physics.rig import Rig
 from tsas_studies.reproduction.rig import dynamic_rig, motion, quasi_static_rig, wrap_of

@@ -8,7 +8,7 @@ import numpy as np
 
 from tsas_cli.effects import Effects, FreeTendon
 from tsas_cli.paper import Paper, Printed
-from tsas_cli.physics.capstan import slip_stiffness
+from tsas_cli.physics.closed_form.capstan import slip_stiffness
 from tsas_cli.physics.rig import Rig
 from tsas_studies.reproduction.dead_band import DeadBand, dead_band
 from tsas_studies.reproduction.group import Figure, Floats, Group, Line, Row

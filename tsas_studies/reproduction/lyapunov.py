@@ -12,7 +12,7 @@ from tsas_cli.controllers.closed_loop import DISTANCE, MEMORY_AT
 from tsas_cli.controllers.signals import Signals
 from tsas_cli.controllers.sliding_mode import Phi, Surface, distance, sliding_mode
 from tsas_cli.paper import Paper
-from tsas_cli.physics.capstan import tension_ratio
+from tsas_cli.physics.closed_form.capstan import tension_ratio
 from tsas_studies.reproduction.closed_loops import (
     CONDITIONS,
     READINGS,

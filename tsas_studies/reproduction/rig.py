@@ -9,7 +9,7 @@ import numpy.typing as npt
 from tsas_cli.effects import Effects, StribeckFriction, ViscousFriction
 from tsas_cli.paper import Paper
 from tsas_cli.physics.bristles import Bristles
-from tsas_cli.physics.capstan import speed_per_stiffness
+from tsas_cli.physics.closed_form.capstan import speed_per_stiffness
 from tsas_cli.physics.ends import Drive
 from tsas_cli.physics.rig import Rig
 

@@ -3,7 +3,7 @@
 import math
 
 from tsas_cli.paper import Paper
-from tsas_cli.physics.capstan import dead_band_stiffness, slip_stiffness
+from tsas_cli.physics.closed_form.capstan import dead_band_stiffness, slip_stiffness
 from tsas_studies.reproduction.group import Group, Row
 from tsas_studies.reproduction.rig import bench_rig, kr_per_km, wrap_of
 from tsas_studies.reproduction.verdicts import holds, signed, to_the_digit

@@ -3,7 +3,7 @@
 import math
 
 from tsas_cli.paper import Paper
-from tsas_cli.physics.capstan import dead_band_width
+from tsas_cli.physics.closed_form.capstan import dead_band_width
 from tsas_studies.reproduction.group import Group, Row
 from tsas_studies.reproduction.rig import bench_rig, kr_per_km, sheath_length_mm, wrap_of
 from tsas_studies.reproduction.verdicts import holds, to_the_digit, untold, within

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.physics.chain_state import SLACK, UNSETTLED
+from tsas_cli.physics.phases import SLACK, UNCONVERGED
 from tsas_cli.physics.response import ELEMENTS
 from tsas_cli.physics.rig import Rig
 from tsas_cli.reporting.stream.palette import colour
@@ -159,7 +159,7 @@ def _said(one: Followed) -> list[str]:
     for slip, front in zip(one.frames.slip, one.frames.front, strict=True):
         first = slip[0]
         drive = {1: "the drive pulls", -1: "the drive lets go"}.get(int(first), "")
-        if first in (SLACK, UNSETTLED):
+        if first in (SLACK, UNCONVERGED):
             texts.append("slack" if first == SLACK else "not settled")
         elif not drive:
             texts.append("sticks at the drive")

@@ -1,0 +1,202 @@
+"""The dynamic chain: its input, its equations, its order, its energy."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.interpolate import PchipInterpolator
+
+from tests.physics.references import (
+    DRIVEN_BY_FORCE,
+    GROUP_A,
+    LOADED_BY_DISPLACEMENT,
+    LOADED_BY_FORCE,
+    LOADED_BY_SPRING,
+    TABLE_1,
+    course_of,
+)
+from tsas_cli.effects import Effects, StribeckFriction
+from tsas_cli.physics.course import LOAD
+from tsas_cli.physics.lugre.chain import OWN_STEPS, StepControl, lugre_chain
+from tsas_cli.physics.lugre.input import DRIVE, next_reversal, value_at
+from tsas_cli.physics.lugre.start import lugre_laws
+from tsas_cli.physics.lugre.state import DIAGONAL, INCREMENT, LOWER, RESIDUAL, ROWS, UPPER
+from tsas_cli.physics.lugre.tridiagonal import solve
+from tsas_cli.physics.mesh import MOST_NODES, PITCH
+
+TIGHT = 1e-7
+TIME_S = np.arange(0.0, 4.8, 1e-3)
+SINE = 10.0 - 10.0 * np.cos(TIME_S)
+
+
+def follow(x, times=TIME_S, *, rig=TABLE_1, n=50, tolerance=5e-5, step_ends_s=OWN_STEPS):
+    start = np.zeros((2, n + 2))
+    start[0], start[1] = x[0], rig.preload_N
+    course = course_of(x, rig, time_s=times)
+    control = StepControl(tolerance, step_ends_s)
+    output, progress = lugre_chain(course, start, rig, LOADED_BY_SPRING, n, control)
+    return np.array(output[:4]), output.phase, progress
+
+
+@pytest.mark.parametrize("n", [2, 3, 50, 51, 400, MOST_NODES])
+def test_newtons_equations_are_solved(n):
+    rng = np.random.default_rng(n)
+    lower, upper = -rng.uniform(0.5, 1.5, (2, n + 2))
+    lower[0] = upper[-1] = 0.0
+    diagonal = -lower - upper + rng.uniform(0.0, 0.1, n + 2) ** 2
+    rest = rng.standard_normal(n + 2)
+    s = np.empty(ROWS * PITCH)
+    for row, values in ((LOWER, lower), (UPPER, upper), (DIAGONAL, diagonal), (RESIDUAL, rest)):
+        s[row : row + n + 2] = values
+    solve(s, n)
+    matrix = np.diag(diagonal) + np.diag(lower[1:], -1) + np.diag(upper[:-1], 1)
+    expected = np.linalg.solve(matrix, rest)
+    assert s[INCREMENT : INCREMENT + n + 2] == pytest.approx(expected, rel=1e-7, abs=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_between_samples_the_input_is_the_monotone_cubic(seed):
+    rng = np.random.default_rng(seed)
+    times = np.cumsum(rng.uniform(0.001, 0.02, 30))
+    values = np.round(np.cumsum(rng.standard_normal(30)), 1)
+    values[10:13] = values[10]
+    course = course_of(values, GROUP_A, time_s=times)
+    curve = PchipInterpolator(times, values)
+    for t in rng.uniform(times[0], times[-1], 200):
+        k = int(np.searchsorted(times, t)) - 1
+        value, slope = value_at(course, DRIVE, k, t)
+        assert value == pytest.approx(curve(t), abs=1e-10)
+        assert slope == pytest.approx(curve.derivative()(t), abs=1e-7)
+
+
+def test_a_step_ends_where_the_input_turns_stops_or_sets_off():
+    values = np.array([0.0, 1.0, 2.0, 2.0, 2.0, 1.0, 0.0, 3.0, 4.0])
+    course = course_of(values, GROUP_A)
+    found, k = [], 0
+    while k < values.size - 1:
+        k = next_reversal(course, k, lugre_laws(GROUP_A, 3, LOADED_BY_SPRING))
+        found.append(k)
+    assert found == [2, 4, 6, 8]
+
+
+def test_the_integrator_is_of_second_order():
+    """In the dead band after a turn, where everything moves; with steps of equal length."""
+    dead_band = (math.pi + 0.02 < TIME_S) & (math.pi + 0.2 > TIME_S)
+    exact = follow(SINE, tolerance=TIGHT)[0][2, dead_band]
+
+    def off(h):
+        found = follow(SINE, step_ends_s=np.arange(h, TIME_S[-1], h))[0][2, dead_band]
+        return np.sqrt(np.mean((found - exact) ** 2))
+
+    assert off(8e-3) < 0.05
+    assert 3.2 < off(8e-3) / off(4e-3) < 5.0
+    assert 3.2 < off(6e-3) / off(3e-3) < 5.0
+
+
+def test_the_mesh_is_of_second_order():
+    exact = follow(SINE, n=320, tolerance=TIGHT)[0][2]
+    off = [
+        np.sqrt(np.mean((follow(SINE, n=n, tolerance=TIGHT)[0][2] - exact) ** 2))
+        for n in (10, 20, 40)
+    ]
+    assert off[0] < 0.05 * np.ptp(exact)
+    assert 3.3 < off[0] / off[1] < 4.7
+    assert 3.3 < off[1] / off[2] < 4.7
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-4, 1e-5])
+def test_the_error_follows_the_tolerance(tolerance):
+    exact, found = follow(SINE, tolerance=TIGHT)[0], follow(SINE, tolerance=tolerance)[0]
+    off = np.max(np.abs(exact - found), axis=1) / np.max(exact, axis=1)
+    assert off[2] < 30.0 * tolerance
+    assert off[3] < 3.0 * tolerance
+
+
+def test_a_run_is_followed_from_where_its_samples_are():
+    """Whether it is sampled at 1 kHz, at 125 Hz, or unevenly."""
+    exact = follow(SINE)[0]
+    few = np.arange(0, TIME_S.size, 8)
+    assert np.abs(follow(SINE[few], TIME_S[few])[0] - exact[:, few]).max() < 0.06
+    uneven = np.sort(np.random.default_rng(1).choice(TIME_S.size, 2000, replace=False))
+    uneven[0] = 0
+    assert np.abs(follow(SINE[uneven], TIME_S[uneven])[0] - exact[:, uneven]).max() < 0.06
+
+
+def test_noise_on_the_input_is_followed_and_not_smoothed():
+    rng = np.random.default_rng(3)
+    x = SINE[:100] + np.concatenate(([0.0], 0.01 * rng.standard_normal(99)))
+    exact, found = follow(x, TIME_S[:100], tolerance=2e-6)[0], follow(x, TIME_S[:100])[0]
+    assert np.ptp(np.diff(exact[2])) > 10.0
+    assert np.abs(found - exact).max() < 0.1
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_friction_takes_energy_from_every_closed_cycle(seed):
+    rng = np.random.default_rng(seed)
+    times = np.linspace(0.0, 4.0 * math.pi, 6001)
+    phases = rng.uniform(0.0, 2.0 * math.pi, 3)
+    amplitudes = rng.uniform(0.01, 3.0, 3)
+    x = sum(
+        a * np.sin(k * times + p) for k, a, p in zip((1, 2, 5), amplitudes, phases, strict=True)
+    )
+    columns = follow(x - x[0], times)[0]
+    cycle = slice(times.size // 2, None)  # the second time the same way
+    f_in, f_out = columns[2, cycle], columns[3, cycle]
+    drawn = np.trapezoid(f_in, x[cycle])
+    given = np.trapezoid(f_out, columns[1, cycle])
+    scale = np.max(f_in) * np.ptp(x)
+    assert abs(given) < 1e-4 * scale  # a spring gives back what it takes
+    assert drawn > 1e-3 * scale
+
+
+def test_full_slip_is_the_capstan_with_the_lubricants_loss():
+    columns, phase, _ = follow(SINE)
+    pulled = (phase == 1) & (np.gradient(SINE, TIME_S) > 5.0)
+    wrap = TABLE_1.friction_coefficient * TABLE_1.total_bend_rad
+    speed = np.gradient(SINE, TIME_S)
+    lost = 0.02 * np.abs(speed) * (math.exp(wrap) - 1.0) / wrap  # its share of e^(a s) on the way
+    off = columns[2] - columns[3] * math.exp(wrap) - lost
+    assert np.count_nonzero(pulled) > 1500
+    assert np.max(np.abs(off[pulled])) < 0.03
+    assert np.min(lost[pulled & (speed > 9.0)]) > 0.2
+
+
+def test_a_sliding_tendon_that_friction_pushes_on_is_given_up_with_a_reason():
+    """Friction that falls steeply with speed: the tendon sticks and slips at its own frequency."""
+    rig = GROUP_A._replace(effects=Effects(stribeck_friction=StribeckFriction(0.5, 5.0)))
+    columns, phase, progress = follow(SINE[::20], TIME_S[::20], rig=rig)
+    assert progress.reached_s < 4.7
+    given_up = progress.reached_s < TIME_S[::20]
+    assert np.array_equal(phase == 3, given_up)
+    assert np.all(np.isfinite(columns))
+
+
+@pytest.mark.parametrize("boundary", [LOADED_BY_DISPLACEMENT, DRIVEN_BY_FORCE])
+def test_a_tendon_at_rest_stays_at_rest(boundary):
+    x = np.full(200, 25.0 if boundary is DRIVEN_BY_FORCE else 0.0)
+    start = np.zeros((2, 52))
+    start[1] = 25.0
+    course = course_of(x, TABLE_1, time_s=TIME_S[:200])
+    output, _ = lugre_chain(course, start, TABLE_1, boundary, 50, StepControl(5e-5, OWN_STEPS))
+    columns = np.array(output[:4])
+    assert columns[:2] == pytest.approx(np.zeros((2, 200)), abs=1e-9)
+    assert columns[2:] == pytest.approx(np.full((2, 200), 25.0), abs=1e-6)
+
+
+@pytest.mark.parametrize(("boundary", "row"), [(LOADED_BY_SPRING, DRIVE), (LOADED_BY_FORCE, LOAD)])
+def test_a_bump_of_what_is_given_is_not_stepped_over(boundary, row):
+    """At either end, in full slip and without a turn: it runs ahead and is back after 40 ms."""
+    times = np.arange(0.0, 3.0, 1e-3)
+    smooth = 5.0 - 5.0 * np.cos(times)
+    course = course_of(smooth, TABLE_1, load=25.0 + 1.5 * smooth, time_s=times)
+    course[row] += 0.04 * np.exp(-(((times - 1.503) / 0.014) ** 2))
+    assert np.all(np.diff(course[row]) > 0.0)
+    start = np.zeros((2, 52))
+    start[1] = TABLE_1.preload_N
+
+    def f_in(step_ends_s):
+        control = StepControl(2e-5, step_ends_s)
+        return lugre_chain(course, start, TABLE_1, boundary, 50, control)[0].f_in
+
+    fine = f_in(np.arange(2e-4, 3.0, 2e-4))
+    assert np.max(np.abs(fine - f_in(OWN_STEPS))[1000:2000]) < 2e-4 * np.max(fine)

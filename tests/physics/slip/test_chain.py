@@ -1,0 +1,170 @@
+"""The slip chain against the closed form and against a profile on a fine grid."""
+
+import math
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from tests.physics.references import (
+    DRIVEN_BY_FORCE,
+    FREE,
+    GROUP_A,
+    LOADED_BY_DISPLACEMENT,
+    LOADED_BY_FORCE,
+    Profile,
+    follow,
+    through,
+    wrap_of,
+)
+from tsas_cli.physics.closed_form.branches import branches
+
+UP = math.exp(wrap_of(GROUP_A))
+NESTED = through(20.0, 5.0, 15.0, 8.0, 11.0, 8.0, 15.0, 5.0, 20.0, 19.9, 19.95, 19.8, 0.0)
+
+
+@pytest.mark.parametrize(("direction", "slope"), [(1, 2.287), (-1, 1.050)])
+def test_slopes_of_full_slip(direction, slope):
+    x_in, _, f_in, f_out, phase = follow(through(20.0, 0.0))
+    slipping = phase == direction
+    assert slipping.sum() > 300
+    fit = np.polyfit(x_in[slipping], f_in[slipping], 1)[0]
+    assert fit == pytest.approx(slope, abs=5e-4)
+    np.testing.assert_allclose(f_in[slipping] / f_out[slipping], UP**direction, rtol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("motion", "rms_order"),
+    [
+        pytest.param(np.linspace(20.0, 19.75, 200001), 1.8, id="constant speed"),
+        pytest.param(10.0 + 10.0 * np.cos(np.linspace(0.0, 2.0 * np.pi, 40001)), 1.45, id="sine"),
+    ],
+)
+def test_order_of_the_mesh(motion, rms_order):
+    """At reversals, where the exact slope is infinite, it is first; a sine lingers there."""
+    exact = branches(motion, GROUP_A)[0]
+    errors = [follow(motion, n=n)[2] - exact for n in (10, 20, 40, 80, 160)]
+    rms = [math.sqrt(np.mean(e**2)) for e in errors]
+    largest = [np.abs(e).max() for e in errors]
+    assert math.log2(rms[0] / rms[-1]) / 4.0 > rms_order
+    assert 0.95 < math.log2(largest[0] / largest[-1]) / 4.0 < 1.1
+
+
+def test_full_slip_is_second_order():
+    exact = branches(np.array([20.0]), GROUP_A)[0][0]
+    errors = [abs(follow([20.0], n=n)[2][0] - exact) for n in (10, 20, 40, 80, 160)]
+    assert errors[0] < 1e-3
+    for coarse, fine in pairwise(errors):
+        assert math.log2(coarse / fine) == pytest.approx(2.0, abs=0.05)
+
+
+@pytest.mark.parametrize("rig", [GROUP_A, FREE])
+def test_nested_partial_reversals_are_those_of_the_closed_form(rig):
+    exact_in, exact_out, _ = branches(NESTED, rig)
+    _, x_out, f_in, f_out, phase = follow(NESTED, rig=rig, n=100)
+    assert np.sqrt(np.mean((f_in - exact_in) ** 2)) < 0.02
+    assert np.abs(f_out - exact_out).max() < 0.02
+    np.testing.assert_allclose(f_out, 25.0 + 1.579 * x_out, rtol=1e-12)
+    assert set(phase) == {-1, 0, 1}
+
+
+@pytest.mark.parametrize("turns", [(20.0, 20.0 - 0.4), (0.0, 0.4)])
+def test_end_tangents_and_secant_of_the_dead_band(turns):
+    """The band ends with 70.6 N/mm (unloading) or 104.5 N/mm (reloading); 175.10 over all."""
+    pulling = turns[1] > turns[0]
+    before = through(20.0, turns[0]) if pulling else through(turns[0])
+    motion = np.concatenate((before, np.linspace(*turns, 20001)))
+    x, _, f_in, f_out, _ = (column[before.size :] for column in follow(motion, n=200))
+    last = int(np.argmax(np.abs(f_out - f_out[0]) > 1e-6)) - 1
+    secant = (f_in[last] - f_in[0]) / (x[last] - x[0])
+    assert secant == pytest.approx(175.10, rel=5e-3)
+    late = slice(int(0.97 * last), last)
+    tangent = np.polyfit(x[late], f_in[late], 1)[0]
+    assert tangent == pytest.approx(104.5 if pulling else 70.6, rel=0.02)
+
+
+def test_return_point_memory():
+    plain = follow([20.0, 19.95, 19.8])[2]
+    looped = follow([20.0, 19.95, 19.98, 19.96, 19.97, 19.95, 19.8])[2]
+    assert looped[[0, 1, 5, 6]] == pytest.approx(plain[[0, 1, 1, 2]], rel=1e-8)
+    assert looped[2] > looped[1] + 1.0
+
+
+@pytest.mark.parametrize("rig", [GROUP_A, FREE])
+@pytest.mark.parametrize("boundary", [LOADED_BY_FORCE, LOADED_BY_DISPLACEMENT])
+def test_the_spring_run_fed_back_as_a_load_repeats_itself(rig, boundary):
+    spring = follow(NESTED, rig=rig)
+    load = spring[3] if boundary == LOADED_BY_FORCE else spring[1]
+    again = follow(NESTED, load=load, rig=rig, boundary=boundary)
+    for before, after in zip(spring[:4], again[:4], strict=True):
+        np.testing.assert_allclose(after, before, atol=1e-6)
+    assert not (again[4] == 3).any()
+
+
+def test_the_tension_at_the_drive_fed_back_repeats_the_motion():
+    spring = follow(NESTED, rig=FREE)
+    again = follow(spring[2], rig=FREE, boundary=DRIVEN_BY_FORCE)
+    for before, after in zip(spring[:4], again[:4], strict=True):
+        np.testing.assert_allclose(after, before, atol=1e-6)
+
+
+def test_a_drive_by_force_moves_as_the_profile_says():
+    turns = 25.0 * np.array([2.0, 0.9, 1.7, 1.1, 0.4, 3.0])
+    profile, exact = Profile(FREE), []
+    for f_in in turns:
+        profile.pull_drive_to(f_in)
+        exact.append((profile.x_in, profile.x_out))
+    x_in, x_out, f_in, _, _ = follow(turns, rig=FREE, boundary=DRIVEN_BY_FORCE, n=200)
+    np.testing.assert_array_equal(f_in, turns)
+    np.testing.assert_allclose(np.transpose(exact), [x_in, x_out], atol=1e-3)
+
+
+PUSHED = [("drive", 1.3), ("load", 1.15), ("drive", 1.05), ("load", 0.9), ("drive", 1.2)]
+
+
+@pytest.mark.parametrize("boundary", [LOADED_BY_FORCE, LOADED_BY_DISPLACEMENT])
+def test_fronts_from_both_ends_are_those_of_the_profile(boundary):
+    profile, drive, load, exact = Profile(FREE), [], [], []
+    for end, factor in PUSHED:
+        pull = {
+            "drive": profile.pull_drive_with_held_load,
+            "load": profile.pull_load_with_held_drive,
+        }
+        pull[end](25.0 * factor)
+        drive.append(profile.x_in)
+        load.append(profile.tension[-1] if boundary == LOADED_BY_FORCE else profile.x_out)
+        exact.append((profile.x_in, profile.x_out, profile.tension[0], profile.tension[-1]))
+    answer = follow(drive, load=load, rig=FREE, boundary=boundary, n=400)
+    np.testing.assert_allclose(np.transpose(exact)[:2], answer[:2], atol=1e-4)
+    np.testing.assert_allclose(np.transpose(exact)[2:], answer[2:4], atol=0.03)
+
+
+@pytest.mark.parametrize("n", [1, 2, 30])
+def test_a_slack_tendon_carries_nothing_until_it_is_taut_again(n):
+    motion = through(5.0, -40.0, 10.0, -5.0, -40.0, -41.0, 20.0)
+    exact_in, exact_out, exact_phase = branches(motion, FREE)
+    _, _, f_in, f_out, phase = follow(motion, rig=FREE, n=n)
+    assert f_in.min() == f_out.min() == 0.0
+    np.testing.assert_array_equal(phase == 2, exact_phase == 2)
+    loose = phase == 2
+    assert not f_in[loose].any()
+    assert not f_out[loose].any()
+    if n == 30:
+        np.testing.assert_allclose(f_out, exact_out, atol=0.02)
+        assert np.sqrt(np.mean((f_in - exact_in) ** 2)) < 0.02
+
+
+def test_one_large_step_is_many_small_ones():
+    turns = np.array([14.0, 13.93, 13.96, 13.2, 13.3, -5.0, 13.0])
+    fine = follow(through(*turns, samples=1000), rig=FREE)
+    for coarse, small in zip(follow(turns, rig=FREE), fine, strict=True):
+        np.testing.assert_allclose(coarse, small[999::1000], rtol=1e-7)
+
+
+@pytest.mark.parametrize("n", [1, 2, 7])
+def test_few_nodes_obey_the_capstan_ratio_too(n):
+    _, _, f_in, f_out, phase = follow(through(20.0, 0.0), n=n)
+    for direction in (1, -1):
+        slipping = phase == direction
+        assert slipping.any()
+        np.testing.assert_allclose(f_in[slipping] / f_out[slipping], UP**direction, rtol=1e-9)

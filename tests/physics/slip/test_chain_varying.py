@@ -1,0 +1,122 @@
+"""The slip chain while friction, bend, the spring's anchor and both ends change at once."""
+
+import numpy as np
+import pytest
+
+from tests.physics.references import FREE, GROUP_A, follow, relaxed_chain, through, wrap_of
+from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, SPRING, Boundary
+from tsas_studies.challenge.rig import tendon
+from tsas_studies.challenge.rig.motions import Motion
+
+A = wrap_of(GROUP_A)
+BRUTE_NODES = 6
+SPRINGY = FREE._replace(
+    tendon_stiffness_N=5e3, load_stiffness_N_per_mm=30.0, sheath_length_mm=300.0
+)
+
+
+def compliances(rig, spring_compliance):
+    """Half segments at both ends, with free tendon and spring in series."""
+    whole = rig.sheath_length_mm / rig.tendon_stiffness_N / BRUTE_NODES
+    free = rig.effects.free_tendon
+    first = 0.5 * whole + free.proximal_length_mm / rig.tendon_stiffness_N
+    last = 0.5 * whole + free.distal_length_mm / rig.tendon_stiffness_N + spring_compliance
+    return np.array([first, *[whole] * (BRUTE_NODES - 1), last])
+
+
+def wandering(rng, scale, samples=80):
+    """A motion about zero with reversals of many sizes."""
+    knots = scale * rng.uniform(-1.0, 1.0, samples // 4)
+    return np.interp(np.linspace(0.0, knots.size - 1.0, samples), np.arange(knots.size), knots)
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize(
+    ("drive", "load"),
+    [
+        ("displacement", "spring"),
+        ("displacement", "force"),
+        ("displacement", "displacement"),
+        ("force", "spring"),
+        ("force", "displacement"),
+        ("displacement", "push-pull"),
+    ],
+)
+def test_everything_that_varies_at_once_is_that_of_the_relaxed_chain(drive, load, seed):
+    """Friction of both directions and the anchor change with what is given at both ends.
+
+    To the reference an anchor that has lost a force is the far end of the spring, moved.
+    """
+    rng = np.random.default_rng(seed)
+    compliance = 1.0 / 30.0 if load == "spring" else 0.0
+    kinds = {"spring": SPRING, "force": FORCE, "push-pull": FORCE, "displacement": DISPLACEMENT}
+    boundary = Boundary(FORCE if drive == "force" else DISPLACEMENT, kinds[load])
+    pulled, released = A + wandering(rng, 0.3 * A), A + wandering(rng, 0.3 * A)
+    lost = wandering(rng, 4.0)
+    at_drive = 25.0 + wandering(rng, 20.0) if drive == "force" else wandering(rng, 1.5)
+    at_load = {
+        "spring": lost * compliance,
+        "force": 25.0 + wandering(rng, 10.0),
+        "displacement": wandering(rng, 0.5),
+        "push-pull": wandering(rng, 30.0),
+    }[load]
+    x_in, x_out, f_in, f_out, phase = follow(
+        at_drive,
+        load=at_load,
+        rig=SPRINGY,
+        boundary=boundary,
+        n=BRUTE_NODES,
+        pulled=pulled,
+        released=released,
+        lost=lost,
+    )
+    history = relaxed_chain(
+        at_drive,
+        at_load,
+        pulled,
+        released,
+        SPRINGY.preload_N,
+        compliances(SPRINGY, compliance),
+        drive_by_force=drive == "force",
+        load_by_force=boundary.load == FORCE,
+    )
+    assert set(phase) == {0, 1, -1}
+    assert (f_in.min() < -10.0) == (load == "push-pull")
+    stretched = (f_out - SPRINGY.preload_N) * compliance
+    for answer, reference, tolerance in (
+        (f_in, [T[0] for _, T in history], 1e-6),
+        (f_out, [T[-1] for _, T in history], 1e-6),
+        (x_in, [x[0] for x, _ in history], 1e-7),
+        (x_out - stretched, [x[-1] for x, _ in history], 1e-7),
+    ):
+        # The chain goes in smaller steps where one is too large, the reference never does.
+        apart = np.abs(answer - reference) > tolerance
+        assert np.mean(apart) < 0.05
+        np.testing.assert_allclose(answer, reference, atol=1e5 * tolerance)
+
+
+def test_constant_arrays_are_scalars_to_the_last_bit():
+    motion = through(20.0, 5.0, 15.0, 14.9, 14.95, 14.8, -30.0)
+    constant = follow(motion, pulled=np.full(motion.size, A), released=np.full(motion.size, A))
+    for array, scalar in zip(constant, follow(motion), strict=True):
+        np.testing.assert_array_equal(array, scalar)
+
+
+def test_friction_that_fades_while_nothing_moves_is_that_of_the_rig():
+    """An independent solver with another friction law; the tendon creeps while the drive rests."""
+    t = np.arange(301.0)
+    motion = Motion(t, np.interp(t, [0, 100, 200, 300], [0, 10, 10, 8]))
+    fading = ((0.0, 1.0), (100.0, 1.2), (200.0, 0.7), (300.0, 0.9))
+    made = tendon.Rig(
+        friction_course=fading, proximal_length_mm=152.0, distal_length_mm=61.0, cells=60
+    )
+    expected = tendon.simulate(made, motion).columns
+    wrap = A * np.interp(t, *np.transpose(fading))
+    _, x_out, f_in, f_out, phase = follow(
+        motion.x_in_mm, rig=FREE, pulled=wrap, released=wrap, n=60
+    )
+    assert np.ptp(f_in[100:200]) > 10.0
+    np.testing.assert_allclose(f_in, expected["f_in_N"], atol=0.05)
+    np.testing.assert_allclose(f_out, expected["f_out_N"], atol=0.05)
+    np.testing.assert_allclose(x_out, expected["x_out_mm"], atol=0.05)
+    assert (phase[110:200] == 1).all()

@@ -1,0 +1,149 @@
+"""The inverse model against the closed form of Eq. (22), and against the model that it inverts."""
+
+import numpy as np
+import pytest
+
+from tests.physics.references import GROUP_A, wrap_of
+from tsas_cli.physics.closed_form.capstan import dead_band_width
+from tsas_cli.physics.ends import Drive, losses_over
+from tsas_cli.physics.response import simulate
+from tsas_cli.physics.rig import with_values
+from tsas_cli.physics.slip.inverse import inverse_chain
+
+STEP_S = 0.005
+T = np.arange(0.0, 4.0 * np.pi, STEP_S)
+SINE = 43.0 - 18.0 * np.cos(T)
+NESTED = np.interp(np.arange(0.0, 8.0, STEP_S), np.arange(9), [25, 61, 30, 45, 40, 44, 22, 50, 50])
+OTHER = GROUP_A._replace(
+    friction_coefficient=0.3,
+    tendon_stiffness_N=3.1e4,
+    load_stiffness_N_per_mm=4.7,
+    sheath_length_mm=411.0,
+    total_bend_rad=1.9,
+    preload_N=17.0,
+)
+rigs = pytest.mark.parametrize("rig", [GROUP_A, OTHER], ids=["group a", "other"])
+
+
+def path_to(wanted_N, rig=GROUP_A, *, n=50, speed=0.0):
+    """Return the inverse model's path; none of its samples may be missed."""
+    time_s = STEP_S * np.arange(wanted_N.size)
+    friction = losses_over(time_s, np.broadcast_to(speed, time_s.shape), 0.0, rig)
+    path, tension, missed = inverse_chain(wanted_N, friction, STEP_S, rig, n)
+    assert missed == 0
+    return path, tension
+
+
+def closed_form(wanted_N, rig, direction):
+    """Return Eq. (22) with Δs of full slip in contraction (+1) or loosening (−1)."""
+    a, L, EA = direction * wrap_of(rig), rig.sheath_length_mm, rig.tendon_stiffness_N
+    load = (wanted_N - rig.preload_N) / rig.load_stiffness_N_per_mm
+    return load + wanted_N * L * np.expm1(a) / (a * EA) - rig.preload_N * L / EA
+
+
+@rigs
+def test_both_phases_are_equation_22(rig):
+    path, tension = path_to(SINE, rig, n=100)
+    rise = np.diff(SINE, prepend=SINE[0])
+    for direction in (1.0, -1.0):
+        slips = rise * direction > 1e-4
+        assert slips.sum() > 1000
+        expected = closed_form(SINE[slips], rig, direction)
+        np.testing.assert_allclose(path[slips], expected, atol=2e-5)
+        capstan = SINE[slips] * np.exp(direction * wrap_of(rig))
+        np.testing.assert_allclose(tension[slips], capstan, rtol=1e-7)
+
+
+@rigs
+def test_a_turn_is_a_jump_over_the_dead_band(rig):
+    peak, step_N = 61.0, 1e-3
+    wanted = np.array([rig.preload_N, 40.0, peak, peak - step_N, 30.0, 30.0 + step_N])
+    path, _ = path_to(wanted, rig, n=200)
+    a, L, EA = wrap_of(rig), rig.sheath_length_mm, rig.tendon_stiffness_N
+    for before, after, force in ((2, 3, peak), (4, 5, 30.0)):
+        jump = abs(path[after] - path[before])
+        beside = step_N * (1.0 / rig.load_stiffness_N_per_mm + 2.0 * L / EA)
+        assert jump == pytest.approx(dead_band_width(force, a, L, EA), rel=1e-4, abs=beside)
+    assert path[3] < path[2]
+    assert path[5] > path[4]
+
+
+def test_a_force_that_is_held_keeps_the_drive_where_it_is():
+    wanted = np.repeat([25.0, 40.0, 33.0], 50)
+    path, _ = path_to(wanted)
+    assert path[0] == 0.0
+    np.testing.assert_array_equal(path[1:][np.diff(wanted) == 0.0], path[:-1][np.diff(wanted) == 0])
+
+
+def test_a_force_below_the_preload_lets_the_tendon_out():
+    path, _ = path_to(np.linspace(25.0, 5.0, 100))
+    assert (np.diff(path) < 0.0).all()
+    assert path[-1] == pytest.approx(closed_form(5.0, GROUP_A, -1.0), abs=1e-3)
+
+
+EFFECTS = {
+    "none": {},
+    "free tendon": {"free_tendon.proximal_length_mm": 152.0, "free_tendon.distal_length_mm": 61.0},
+    "compression": {"sheath_compression.compliance_ratio": 0.4},
+    "drive compliance": {"drive_compliance.compliance_mm_per_N": 0.01},
+    "direction": {"direction_dependent_friction.asymmetry": 0.2},
+    "presliding": {"presliding.length_mm": 0.05},
+    "load-dependent friction": {"load_dependent_friction.exponent": -0.2},
+    "load spring": {
+        "load_spring_nonlinearity.quadratic_per_mm": 0.03,
+        "load_spring_nonlinearity.cubic_per_mm2": 0.002,
+    },
+    "friction before the sensor": {"load_friction.before_sensor_N": 2.0},
+    "friction behind the sensor": {"load_friction.after_sensor_N": 2.0},
+    "bend drift": {"bend_drift.rate_rad_per_s": 0.1},
+    "friction drift": {"friction_drift.rate_per_s": 0.05},
+    "preload loss": {"preload_loss.rate_N_per_s": 0.5},
+    "mass": {"load_inertia.mass_kg": 2.0},
+}
+
+
+@pytest.mark.parametrize("wanted", [SINE, NESTED], ids=["sine", "nested"])
+@pytest.mark.parametrize("values", EFFECTS.values(), ids=EFFECTS.keys())
+def test_the_model_driven_along_the_path_gives_the_force(values, wanted):
+    rig = with_values(GROUP_A, values)
+    path, tension = path_to(wanted, rig)
+    time_s = STEP_S * np.arange(path.size)
+    there = simulate(rig, Drive(path, time_s=time_s), on_mesh=True, nodes=50)
+    np.testing.assert_allclose(there.f_out_N, wanted, atol=1e-5)
+    np.testing.assert_allclose(there.f_in_N, tension, atol=1e-4)
+
+
+@pytest.mark.parametrize("n", [5, 10, 20, 30, 50])
+@pytest.mark.parametrize("speed", [1.0, 2.0])
+def test_a_dead_band_in_which_the_answer_trembles_is_crossed(n, speed):
+    """A curved spring's answer is right to rounding only; the path stays on its rising branch."""
+    rig = with_values(GROUP_A, {"load_spring_nonlinearity.quadratic_per_mm": 0.03})
+    path, _ = path_to(43.0 - 18.0 * np.cos(speed * T), rig, n=n)
+    assert path.min() > -0.2
+
+
+@pytest.mark.parametrize("values", [v for v in EFFECTS.values() if v], ids=list(EFFECTS)[1:])
+def test_every_one_of_these_effects_moves_the_path(values):
+    assert np.abs(path_to(SINE, with_values(GROUP_A, values))[0] - path_to(SINE)[0]).max() > 0.01
+
+
+def test_friction_over_speed_is_that_of_the_given_speed():
+    """A loss of viscosity·v over the sheath is made up for by more tension at the drive."""
+    rig = with_values(GROUP_A, {"viscous_friction.coefficient_N_s_per_mm": 0.3})
+    wanted = np.linspace(25.0, 61.0, 200)
+    tension = {v: path_to(wanted, rig, speed=v)[1][-1] for v in (0.0, 5.0, 10.0)}
+    assert tension[0.0] == pytest.approx(61.0 * np.exp(wrap_of(rig)))
+    more = np.diff(list(tension.values()))
+    assert more[0] == pytest.approx(more[1])
+    assert 0.3 * 5.0 < more[0] < 0.3 * 5.0 * np.exp(wrap_of(rig))
+
+
+def test_a_force_that_no_place_gives_is_told_as_missed():
+    """A spring that softens gives no more than its peak; the drive stays where it was."""
+    rig = with_values(GROUP_A, {"load_spring_nonlinearity.quadratic_per_mm": -0.05})
+    most = 25.0 + 1.579 / (4.0 * 0.05)
+    wanted = np.concatenate((np.linspace(25.0, most - 0.1, 50), np.full(3, most + 5.0)))
+    friction = losses_over(np.zeros(wanted.size), np.zeros(wanted.size), 0.0, rig)
+    path, _, missed = inverse_chain(wanted, friction, STEP_S, rig, 10)
+    assert missed == 3
+    assert (path[-3:] == path[-4]).all()

@@ -1,0 +1,261 @@
+"""A slip chain of three nodes: after every sample each law holds, written down once more by hand.
+
+Segments stretch by their compliance; a node that has moved towards the drive leaves e^(−a/n) of the
+tension, one that has moved away takes as much, one that has not is in between; and both ends are in
+balance with what is there.
+"""
+
+import math
+
+import numpy as np
+import pytest
+
+from tests.physics.references import (
+    DRIVEN_BY_FORCE,
+    GROUP_A,
+    LOADED_BY_DISPLACEMENT,
+    LOADED_BY_FORCE,
+    LOADED_BY_SPRING,
+    course_of,
+    wrap_of,
+)
+from tsas_cli.effects import Effects
+from tsas_cli.physics.boundary import DISPLACEMENT, SPRING
+from tsas_cli.physics.rig import with_values
+from tsas_cli.physics.slip.chain import moment, rest_after, slip_chain
+
+N = 3
+A = wrap_of(GROUP_A)
+SPRINGY = GROUP_A._replace(
+    tendon_stiffness_N=5e3, load_stiffness_N_per_mm=30.0, sheath_length_mm=300.0
+)
+UP_AND_DOWN = np.array([0.4, 0.9, 1.6, 1.58, 1.45, 1.5, 1.47, 1.1, 0.5, -0.1, -0.7, -0.6])
+STEP_S = 0.05
+MASS_TAKES_UP_S = 0.01  # documented in `slip.ends`
+ROUNDING = 1e-6  # [N, mm]
+FREE = {"free_tendon.proximal_length_mm": 40.0, "free_tendon.distal_length_mm": 15.0}
+EFFECTS = {
+    "friction alone": {},
+    "free tendon": FREE,
+    "compliances in series": FREE
+    | {"drive_compliance.compliance_mm_per_N": 0.004, "sheath_compression.compliance_ratio": 0.3},
+    "friction rises with tension": {"load_dependent_friction.exponent": 0.25},
+    "friction falls with tension": {"load_dependent_friction.exponent": -0.25},
+    "friction is the same at any tension": {"load_dependent_friction.exponent": -1.0},
+    "presliding": {"presliding.length_mm": 0.02},
+    "presliding and tension": {
+        "presliding.length_mm": 0.05,
+        "load_dependent_friction.exponent": 0.2,
+    },
+    "a bent spring": {
+        "load_spring_nonlinearity.quadratic_per_mm": 0.3,
+        "load_spring_nonlinearity.cubic_per_mm2": 0.2,
+    },
+    "a guide at the load": {
+        "load_friction.after_sensor_N": 3.0,
+        "load_friction.before_sensor_N": 1.5,
+    },
+    "a mass": {"load_inertia.mass_kg": 40.0},
+    "a mass on a bent spring": {
+        "load_inertia.mass_kg": 25.0,
+        "load_spring_nonlinearity.cubic_per_mm2": 0.2,
+    },
+}
+
+
+def states(course, rig, boundary):
+    """Return places and tensions of the nodes after every sample."""
+    found = [rest_after(course[:, : i + 1], rig, boundary, N) for i in range(course.shape[1])]
+    return [(x, T[:-1]) for x, T in found]
+
+
+def moments(course):
+    """Return the moment at each sample."""
+    return [moment(course, i) for i in range(course.shape[1])]
+
+
+def gives(rig):
+    """Return what each segment gives [mm/N]: halves at both ends, all else in series with them."""
+    effects, EA = rig.effects, rig.tendon_stiffness_N
+    sheathed = rig.sheath_length_mm / EA * (1.0 + effects.sheath_compression.compliance_ratio) / N
+    give = sheathed * np.array([0.5, *[1.0] * (N - 1), 0.5])
+    give[0] += effects.free_tendon.proximal_length_mm / EA
+    give[0] += effects.drive_compliance.compliance_mm_per_N
+    give[-1] += effects.free_tendon.distal_length_mm / EA
+    return give
+
+
+def rubs(force, way, limit):
+    """Say whether a friction force is that of an end that has moved by a way."""
+    if abs(way) > ROUNDING:
+        return force == pytest.approx(math.copysign(limit, way), abs=10 * ROUNDING)
+    return abs(force) < limit + 10 * ROUNDING
+
+
+class Nodes:
+    """What a node passes on, by its way since the sample before."""
+
+    def __init__(self, rig):
+        self.rig, self.share = rig, np.zeros(N + 1)
+
+    def hold(self, i, way, before, behind, now):
+        pulled, released, viscous_N, _ = now.losses
+        mean = 0.5 * (before + behind)
+        exponent = self.rig.effects.load_dependent_friction.exponent
+        factor = (abs(mean) / self.rig.preload_N) ** exponent
+        loss, sign = 0.5 * viscous_N / N, math.copysign(1.0, mean)
+        length = self.rig.effects.presliding.length_mm
+        if length > 0.0:
+            limit = 1.0 if way > 0.0 else -1.0
+            share = limit + (self.share[i] - limit) * math.exp(-abs(way) / length)
+            self.share[i] = share
+            wrap = factor * share * (pulled if share > 0.0 else released) / N
+            assert behind + share * loss == pytest.approx(
+                math.exp(-sign * wrap) * (before - share * loss), abs=ROUNDING
+            )
+            return
+        least = math.exp(-sign * factor * pulled / N) * (before - loss) - loss
+        most = math.exp(sign * factor * released / N) * (before + loss) + loss
+        assert least - ROUNDING < behind < most + ROUNDING
+        if way > ROUNDING:
+            assert behind == pytest.approx(least, abs=ROUNDING)
+        elif way < -ROUNDING:
+            assert behind == pytest.approx(most, abs=ROUNDING)
+
+
+def hold_everywhere(course, rig, boundary):
+    """Hold every state of a run against all laws; return how the nodes went, shape (m, n + 2)."""
+    F0, effects, give = rig.preload_N, rig.effects, gives(rig)
+    nodes, x_before, speed = Nodes(rig), np.zeros(N + 2), 0.0
+    ways = []
+    for now, (x, T) in zip(moments(course), states(course, rig, boundary), strict=True):
+        drive, load, losses, step_s = now
+        lost_N = losses.preload_N
+        way = x - x_before
+        np.testing.assert_allclose(x[:-1] - x[1:], give * (T - F0), atol=ROUNDING)
+        for i in range(1, N + 1):
+            nodes.hold(i, way[i], T[i - 1], T[i], now)
+        if boundary.drive == DISPLACEMENT:
+            assert x[0] == drive
+        else:
+            held = effects.proximal_spring.stiffness_N_per_mm * x[0]
+            assert rubs(drive - held - T[0], way[0], effects.drive_friction.friction_N)
+        if boundary.load == DISPLACEMENT:
+            assert x[-1] == load
+        else:
+            before, after = (
+                effects.load_friction.before_sensor_N,
+                effects.load_friction.after_sensor_N,
+            )
+            pull, guide = load, before
+            if boundary.load == SPRING:
+                shape = effects.load_spring_nonlinearity
+                bent = 1.0 + shape.quadratic_per_mm * x[-1] + shape.cubic_per_mm2 * x[-1] ** 2
+                pull, guide = F0 - lost_N, before + after
+                pull += rig.load_stiffness_N_per_mm * x[-1] * bent
+                if effects.load_inertia.mass_kg > 0.0:
+                    faster = way[-1] / step_s - speed
+                    faster *= step_s / (step_s + MASS_TAKES_UP_S)
+                    pull += effects.load_inertia.mass_kg * 1e-3 * faster / step_s
+                    speed += faster
+            assert rubs(T[-1] - pull, way[-1], guide)
+        x_before = x
+        ways.append(way)
+    return np.array(ways)
+
+
+@pytest.mark.parametrize("name", EFFECTS)
+def test_every_effect_at_a_spring(name):
+    rig = with_values(SPRINGY, EFFECTS[name])
+    course = course_of(
+        UP_AND_DOWN,
+        rig,
+        pulled=np.linspace(0.9, 1.3, UP_AND_DOWN.size) * A,
+        released=np.linspace(0.8, 0.6, UP_AND_DOWN.size) * A,
+        viscous=np.linspace(0.5, 1.5, UP_AND_DOWN.size),
+        lost=np.linspace(0.0, 2.0, UP_AND_DOWN.size),
+        step=STEP_S,
+    )
+    ways = hold_everywhere(course, rig, LOADED_BY_SPRING)
+    assert ways[1:3, 1:].min() > 0.05  # all nodes, and the load, are pulled, and later let go
+    assert ways[10, 1:].max() < -0.05
+
+
+@pytest.mark.parametrize("name", ["friction alone", "free tendon", "presliding"])
+@pytest.mark.parametrize("pushes", [False, True])
+def test_a_force_at_the_load(name, pushes):
+    """Where it pushes, the net tension of a pair of tendons is negative all along."""
+    rig = with_values(SPRINGY, EFFECTS[name] | {"load_friction.before_sensor_N": 1.5})
+    load = 25.0 + 3.0 * np.sin(np.arange(12.0))
+    if pushes:
+        load -= 60.0
+    drive = 0.9 * UP_AND_DOWN - (1.6 if pushes else 0.0)
+    course = course_of(drive, rig, load=load, released=0.8 * A)
+    ways = hold_everywhere(course, rig, LOADED_BY_FORCE)
+    assert ways.min() < -0.1
+    assert ways[1:].max() > 0.1
+    f_in, f_out = slip_chain(course, rig, LOADED_BY_FORCE, N)[2:4]
+    np.testing.assert_array_equal(f_out, load)
+    assert (f_in[2:].max() < 0.0) == pushes
+
+
+@pytest.mark.parametrize("name", ["friction alone", "presliding"])
+def test_a_place_at_the_load(name):
+    """The sensor at the load does not feel the friction that is before it."""
+    rig = with_values(SPRINGY, EFFECTS[name] | {"load_friction.before_sensor_N": 1.5})
+    load = 0.3 * np.array([0.0, 0.5, 1.0, 1.0, 1.2, 0.9, 0.9, 1.0, 0.2, 0.2, 0.1, 0.3])
+    course = course_of(UP_AND_DOWN, rig, load=load, pulled=1.2 * A)
+    hold_everywhere(course, rig, LOADED_BY_DISPLACEMENT)
+    f_out = slip_chain(course, rig, LOADED_BY_DISPLACEMENT, N)[3]
+    way, felt = 0.0, []
+    for moved in np.diff(load, prepend=0.0):
+        way = math.copysign(1.0, moved) if moved else way
+        felt.append(1.5 * way)
+    tensions = [T[-1] for _, T in states(course, rig, LOADED_BY_DISPLACEMENT)]
+    np.testing.assert_allclose(tensions - f_out, felt, atol=ROUNDING)
+
+
+@pytest.mark.parametrize("name", ["friction alone", "presliding"])
+def test_a_force_at_the_drive(name):
+    """Its friction and a spring beside the tendon take their part of the force."""
+    beside = {"drive_friction.friction_N": 2.0, "proximal_spring.stiffness_N_per_mm": 4.0}
+    rig = with_values(SPRINGY, EFFECTS[name] | beside)
+    drive = 25.0 + np.append(25.0 * UP_AND_DOWN[:-1], -20.0)
+    ways = hold_everywhere(course_of(drive, rig, pulled=1.2 * A), rig, DRIVEN_BY_FORCE)
+    assert ways[1:3].min() > 0.02
+    assert ways[-1].max() < -0.05
+
+
+def test_what_the_sensor_at_the_load_feels_of_its_guide():
+    """What is before it lowers what it feels: its share of the whole friction of the guide."""
+    rig = with_values(SPRINGY, EFFECTS["a guide at the load"])
+    course = course_of(UP_AND_DOWN, rig)
+    _, x_out, _, f_out, _ = slip_chain(course, rig, LOADED_BY_SPRING, N)
+    pull = rig.preload_N + rig.load_stiffness_N_per_mm * x_out
+    tensions = np.array([T[-1] for _, T in states(course, rig, LOADED_BY_SPRING)])
+    np.testing.assert_allclose(tensions - f_out, (tensions - pull) / 3.0, atol=ROUNDING)
+    assert np.ptp(tensions - f_out) > 2.9
+
+
+def test_a_slack_tendon_waits_where_its_spring_leaves_it():
+    """The load rests where the spring has let the preload go; the next pull is that of a new run.
+
+    A straight spring rests at −F0/kL; the tendon is shorter by what the preload had stretched.
+    """
+    rig = SPRINGY._replace(effects=Effects())
+    slack_below = -rig.preload_N * (1.0 / 30.0 + 300.0 / 5e3)
+    drive = np.array([0.5, slack_below - 0.3, slack_below - 0.01, slack_below + 0.2])
+    x_in, x_out, f_in, f_out, phase = slip_chain(course_of(drive, rig), rig, LOADED_BY_SPRING, N)
+    np.testing.assert_array_equal(x_in[[0, 3]], drive[[0, 3]])
+    assert phase.tolist() == [1, 2, 2, 1]
+    assert f_in[1:3].tolist() == f_out[1:3].tolist() == [0.0, 0.0]
+    np.testing.assert_allclose(x_out[1:3], -rig.preload_N / 30.0)
+    places, tensions = rest_after(course_of(drive[:2], rig), rig, LOADED_BY_SPRING, N)
+    np.testing.assert_allclose(np.diff(places[1:]), gives(rig)[1:] * rig.preload_N)  # straight
+    assert not tensions[:-1].any()
+    # From no tension, all of it slips: F_out over the spring, F_in's mean over the sheath.
+    share = A / N
+    passed = math.exp(-share) ** np.arange(N + 1.0)
+    stiffness = 1.0 / (passed[-1] / 30.0 + np.sum(gives(rig) * passed))
+    assert f_in[3] == pytest.approx(stiffness * 0.2, rel=1e-9)
+    assert f_out[3] == pytest.approx(f_in[3] * math.exp(-A), rel=1e-9)

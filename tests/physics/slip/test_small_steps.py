@@ -1,0 +1,400 @@
+"""One static problem of the slip chain, and how samples follow: against the relations themselves.
+
+Whatever the nodes do, each segment stretches by its compliance, a node that slides passes on by
+its line, one that sticks stays, and both ends balance.
+"""
+
+import math
+
+import numpy as np
+import pytest
+
+from tests.physics.references import (
+    DRIVEN_BY_FORCE,
+    GROUP_A,
+    LOADED_BY_DISPLACEMENT,
+    LOADED_BY_FORCE,
+    LOADED_BY_SPRING,
+    at,
+    course_of,
+    follow,
+    moment,
+)
+from tsas_cli.physics.boundary import FORCE, SPRING, Boundary
+from tsas_cli.physics.course import Losses
+from tsas_cli.physics.frames import empty_frames
+from tsas_cli.physics.mesh import segment_compliances
+from tsas_cli.physics.phases import UNCONVERGED
+from tsas_cli.physics.rig import with_values
+from tsas_cli.physics.slip.chain import (
+    ChainEnds,
+    between,
+    go_slack,
+    initial_state,
+    phase_of,
+    rest_after,
+    slip_chain,
+    tension_at_sensor,
+)
+from tsas_cli.physics.slip.chain import follow as go_on
+from tsas_cli.physics.slip.chain import moment as moment_of
+from tsas_cli.physics.slip.nodes import set_friction
+from tsas_cli.physics.slip.start import chain_at_rest, slip_laws
+from tsas_cli.physics.slip.state import (
+    COMPLIANCE,
+    DROP,
+    DROP_SLOPE,
+    FACTOR,
+    LOAD_SPEED,
+    POSITION,
+    POSITION_BEFORE,
+    SHARE_BEFORE,
+    SLIP,
+    TENSION,
+    TENSION_BEFORE,
+    TENSION_RISE,
+    Moment,
+)
+from tsas_cli.physics.slip.step import (
+    solve_sample,
+    sweep_to_drive,
+    sweep_to_load,
+    update_active_set,
+)
+
+F0, KL = 25.0, 1.579
+NOW = Moment(0.9, 0.4, Losses(0.6, 0.45, 1.2, 2.0), math.inf)
+AT_ENDS = {
+    "drive_friction.friction_N": 2.0,
+    "proximal_spring.stiffness_N_per_mm": 4.0,
+    "load_friction.before_sensor_N": 1.5,
+    "load_friction.after_sensor_N": 3.0,
+}
+BOTH_FORCES = Boundary(FORCE, FORCE)
+BOUNDARIES = [
+    LOADED_BY_SPRING,
+    LOADED_BY_FORCE,
+    LOADED_BY_DISPLACEMENT,
+    DRIVEN_BY_FORCE,
+    BOTH_FORCES,
+]
+
+
+def sliding(rig, n, slips, *, seed=4):
+    """Return a chain at arbitrary places that slides by arbitrary lines."""
+    chain, rng = chain_at_rest(rig, n), np.random.default_rng(seed)
+    nodes = slice(1, n + 1)
+    chain[SLIP:][: n + 2] = slips
+    chain[POSITION_BEFORE:][: n + 2] = rng.uniform(-0.2, 0.2, n + 2)
+    chain[FACTOR:][nodes] = rng.uniform(0.8, 1.2, n)
+    chain[DROP:][nodes] = rng.uniform(-1.0, 1.0, n)
+    return chain
+
+
+def given(boundary):
+    drive = 30.0 if boundary.drive == FORCE else 0.9
+    return moment(NOW, drive=drive, load=27.0 if boundary.load == FORCE else 0.4)
+
+
+def hold_ends(chain, n, boundary, now):
+    """Hold both ends against what is given there, friction with the sign of their slip."""
+    x, tension = chain[POSITION:], chain[TENSION:]
+    if boundary.drive != FORCE:
+        assert x[0] == now.drive
+    elif chain[SLIP] == 0.0:
+        assert x[0] == chain[POSITION_BEFORE]
+    else:
+        assert tension[0] + 4.0 * x[0] + 2.0 * chain[SLIP] == pytest.approx(now.drive)
+    last = n + 1
+    slip = chain[SLIP + last]
+    if boundary == LOADED_BY_DISPLACEMENT:
+        assert x[last] == now.load
+    elif slip == 0.0:
+        assert x[last] == chain[POSITION_BEFORE + last]
+    elif boundary.load == SPRING:
+        assert tension[n] == pytest.approx(F0 - now.losses.preload_N + KL * x[last] + 4.5 * slip)
+    else:
+        assert tension[n] == pytest.approx(now.load + 1.5 * slip)
+
+
+SLIPS = [
+    (1, 1, 1, 1, 1),
+    (-1, -1, -1, -1, -1),
+    (1, 1, 0, -1, -1),
+    (0, 1, -1, 1, 0),
+    (-1, 0, 0, 0, 1),
+]
+
+
+@pytest.mark.parametrize("slips", SLIPS)
+@pytest.mark.parametrize("boundary", BOUNDARIES)
+def test_both_sweeps_solve_the_row_of_relations(boundary, slips):
+    rig, n, now = with_values(GROUP_A, AT_ENDS), 3, given(boundary)
+    laws, chain = slip_laws(rig, n, LOADED_BY_SPRING), sliding(rig, n, slips)
+    sweep_to_drive(chain, now, at(laws, boundary))
+    sweep_to_load(chain, now, at(laws, boundary))
+    x, tension = chain[POSITION : POSITION + n + 2], chain[TENSION : TENSION + n + 1]
+    gives = segment_compliances(rig, n)
+    np.testing.assert_allclose(x[:-1] - x[1:], gives * (tension - F0), atol=1e-12)
+    for i in range(1, n + 1):
+        if slips[i]:
+            passed = chain[FACTOR + i] * tension[i - 1] - chain[DROP + i]
+            assert tension[i] == pytest.approx(passed)
+        else:
+            assert x[i] == chain[POSITION_BEFORE + i]
+    hold_ends(chain, n, boundary, now)
+
+
+@pytest.mark.parametrize("n", [3, 40])
+@pytest.mark.parametrize("boundary", BOUNDARIES)
+def test_both_sweeps_solve_the_row_of_bristles(boundary, n):
+    rig = with_values(GROUP_A, AT_ENDS | {"presliding.length_mm": 0.05})
+    now, laws, chain = (
+        given(boundary),
+        slip_laws(rig, n, LOADED_BY_SPRING),
+        sliding(rig, n, np.ones(n + 2)),
+    )
+    chain[DROP_SLOPE:][1 : n + 1] = np.random.default_rng(8).uniform(0.0, 30.0, n)
+    sweep_to_drive(chain, now, at(laws, boundary))
+    sweep_to_load(chain, now, at(laws, boundary))
+    x, tension = chain[POSITION : POSITION + n + 2], chain[TENSION : TENSION + n + 1]
+    gives = segment_compliances(rig, n)
+    np.testing.assert_allclose(x[:-1] - x[1:], gives * (tension - F0), atol=1e-10)
+    nodes = slice(1, n + 1)
+    passed = chain[FACTOR:][nodes] * tension[:-1] - chain[DROP:][nodes]
+    np.testing.assert_allclose(
+        tension[1:], passed - chain[DROP_SLOPE:][nodes] * x[nodes], rtol=1e-9
+    )
+    hold_ends(chain, n, boundary, now)
+
+
+@pytest.mark.parametrize("most", [1, 2, 5])
+def test_as_many_nodes_are_revised_as_are_asked_for_from_the_drive_on(most):
+    """The first, second and fourth are pulled loose, the third holds, the fifth slides back."""
+    n, straight = 5, slip_laws(GROUP_A, 5, LOADED_BY_SPRING)
+    chain = chain_at_rest(GROUP_A, n)
+    set_friction(chain, NOW, straight)
+    kept, more = math.exp(-0.6 / n), math.exp(0.45 / n)
+    chain[TENSION : TENSION + n + 1] = np.cumprod(
+        [40.0, 0.9 * kept, 1.1 * more, 1.0, 0.9 * kept, 1.0]
+    )
+    chain[SLIP + 5], chain[POSITION + 5] = 1.0, -0.1
+    now = moment(NOW, viscous_N=0.0)
+    found = update_active_set(chain, now, at(straight, scale=0.01), most)
+    assert found == min(most, 4)
+    expected = [1.0, -1.0, 0.0, 1.0, 0.0]
+    before = [0.0, 0.0, 0.0, 0.0, 1.0]
+    revised = {1: 1, 2: 2, 5: 5}[most]
+    assert chain[SLIP + 1 : SLIP + 6].tolist() == expected[:revised] + before[revised:]
+
+
+def test_a_node_loses_its_share_of_the_viscous_loss_before_it_is_pulled_loose():
+    """0.4 N at each of three: half before the bend and half behind it."""
+    n, straight = 3, slip_laws(GROUP_A, 3, LOADED_BY_SPRING)
+    now = moment(NOW, pulled=0.0, released=0.0, viscous_N=1.2)
+    for drop, slips in ((0.39, 0.0), (0.41, 1.0), (-0.39, 0.0), (-0.41, -1.0)):
+        chain = chain_at_rest(GROUP_A, n)
+        set_friction(chain, now, straight)
+        chain[TENSION : TENSION + n + 1] = 40.0 - drop * np.array([0.0, 1.0, 1.0, 1.0])
+        assert update_active_set(chain, now, at(straight, scale=0.01), n) == abs(slips)
+        assert chain[SLIP + 1 : SLIP + 4].tolist() == [slips, 0.0, 0.0]
+
+
+def test_a_load_that_its_guide_holds_does_not_move_at_all():
+    """Not by rounding either: what it reads stands still."""
+    rig = with_values(GROUP_A, {"load_friction.after_sensor_N": 3.0})
+    slowly, far = np.linspace(2.99, 2.95, 5), np.linspace(2.9, -4.0, 40)
+    motion = np.concatenate((np.linspace(0.0, 3.0, 31), slowly, far))
+    x_out = follow(motion, rig=rig, n=3)[1]
+    assert x_out[30] > 0.5
+    assert set(x_out[31:36].tolist()) == {x_out[30]}
+    assert x_out[-1] < x_out[30] - 0.1
+
+
+@pytest.mark.parametrize("values", [{}, {"load_friction.after_sensor_N": 3.0}])
+def test_a_problem_settles_at_rest_and_far_from_it(values):
+    rig = with_values(GROUP_A, values)
+    chain, laws = chain_at_rest(rig, 3), slip_laws(rig, 3, LOADED_BY_SPRING)
+    assert solve_sample(
+        chain, moment(NOW, drive=0.0, preload_N=0.0), at(laws, LOADED_BY_SPRING, 0.01)
+    )
+    np.testing.assert_allclose(chain[POSITION : POSITION + 5], 0.0, atol=1e-12)
+    assert solve_sample(chain, moment(NOW, drive=20.0), at(laws, LOADED_BY_SPRING, 0.01))
+    assert chain[SLIP + 1 : SLIP + 4].tolist() == [1.0] * 3
+
+
+START = Moment(1.0, 2.0, Losses(0.3, 0.4, 5.0, 6.0), 0.1)
+END = Moment(3.0, 6.0, Losses(0.5, 0.8, 9.0, 14.0), 0.2)
+
+
+def test_the_way_between_two_samples_is_straight():
+    quarter = Moment(1.5, 3.0, Losses(0.35, 0.5, 6.0, 8.0), 0.05)
+    between_them = between(START, END, 0.25, 0.05)
+    np.testing.assert_allclose(between_them.losses, quarter.losses)
+    assert (between_them.drive, between_them.load, between_them.step_s) == (1.5, 3.0, 0.05)
+    assert between(START, END, 1.0, 0.15) == END._replace(step_s=0.15)
+
+
+@pytest.mark.parametrize(
+    ("slips", "phase"),
+    [
+        ((1, 1, 1), 1),
+        ((-1, -1, -1), -1),
+        ((0, 0, 0), 0),
+        ((1, 1, 0), 0),
+        ((0, 1, 1), 0),
+        ((1, -1, 1), 0),
+    ],
+)
+def test_the_phase_is_that_in_which_all_nodes_are(slips, phase):
+    """What the ends do does not count."""
+    chain = chain_at_rest(GROUP_A, 3)
+    chain[SLIP : SLIP + 5] = [5.0, *slips, 7.0]
+    assert phase_of(chain, 3) == phase
+
+
+def test_what_a_sensor_at_the_load_feels():
+    """The guide's friction before it is taken off, by its share of the guide where that sticks."""
+    rig = with_values(GROUP_A, AT_ENDS)
+    laws, chain = slip_laws(rig, 3, LOADED_BY_SPRING), chain_at_rest(rig, 3)
+    chain[TENSION + 3], chain[POSITION + 4], chain[SLIP + 4] = 40.0, 2.0, -1.0
+    assert tension_at_sensor(chain, NOW, at(laws, LOADED_BY_FORCE)) == NOW.load
+    assert tension_at_sensor(chain, NOW, at(laws, LOADED_BY_DISPLACEMENT)) == 41.5
+    held = 40.0 - (F0 - 2.0 + 2.0 * KL)
+    felt = tension_at_sensor(chain, NOW, at(laws, LOADED_BY_SPRING))
+    assert felt == pytest.approx(40.0 - held / 3.0)
+    bare = slip_laws(with_values(rig, {"load_friction.before_sensor_N": 0.0}), 3, LOADED_BY_SPRING)
+    assert tension_at_sensor(chain, NOW, at(bare, LOADED_BY_SPRING)) == 40.0
+    assert tension_at_sensor(chain, NOW, at(bare, LOADED_BY_DISPLACEMENT)) == 40.0
+
+
+@pytest.mark.parametrize("boundary", [LOADED_BY_SPRING, LOADED_BY_DISPLACEMENT])
+def test_a_slack_tendon_is_straight_up_to_its_load(boundary):
+    laws, chain = slip_laws(GROUP_A, 3, LOADED_BY_SPRING), chain_at_rest(GROUP_A, 3)
+    chain[POSITION : POSITION + 5] = -40.0, 1.0, 2.0, 3.0, 0.4
+    for row in (SLIP, LOAD_SPEED, SHARE_BEFORE, TENSION_RISE):
+        chain[row : row + 5] = -3.0
+    go_slack(chain, NOW, at(laws, boundary))
+    load = 0.4 if boundary is LOADED_BY_DISPLACEMENT else -(F0 - NOW.losses.preload_N) / KL
+    gives = segment_compliances(GROUP_A, 3)
+    places = load - F0 * np.append(np.cumsum(gives[:0:-1])[::-1], 0.0)
+    np.testing.assert_allclose(chain[POSITION + 1 : POSITION + 5], places)
+    assert chain[POSITION] == -40.0  # where the drive is
+    assert not chain[TENSION : TENSION + 4].any()
+    assert chain[SLIP : SLIP + 5].tolist() == [
+        -3.0,
+        1.0,
+        1.0,
+        1.0,
+        1.0,
+    ]  # as the next pull finds it
+    assert chain[LOAD_SPEED + 4] == 0.0
+    assert chain[SHARE_BEFORE : SHARE_BEFORE + 5].tolist() == [1.0] * 5
+    assert not chain[TENSION_RISE : TENSION_RISE + 5].any()
+    np.testing.assert_array_equal(
+        chain[POSITION_BEFORE : POSITION_BEFORE + 5], chain[POSITION : POSITION + 5]
+    )
+    np.testing.assert_array_equal(
+        chain[TENSION_BEFORE : TENSION_BEFORE + 5], chain[TENSION : TENSION + 5]
+    )
+
+
+def test_segments_share_the_compliance_of_the_sheath_by_their_bend():
+    """Half ones at both ends; length per angle 1 + s p + b (3p² − 1)/2 in their middles."""
+    rig = with_values(
+        GROUP_A._replace(bend_slope=0.3, bend_bow=-0.2),
+        {
+            "free_tendon.proximal_length_mm": 40.0,
+            "free_tendon.distal_length_mm": 15.0,
+            "drive_compliance.compliance_mm_per_N": 0.004,
+        },
+    )
+    EA, L = GROUP_A.tendon_stiffness_N, GROUP_A.sheath_length_mm
+    middles = np.array([-0.875, -0.5, 0.0, 0.5, 0.875])  # from −1 at the drive to 1 at the load
+    shares = np.array([1, 2, 2, 2, 1]) / 8
+    per_angle = 1.0 + 0.3 * middles - 0.2 * (1.5 * middles**2 - 0.5)
+    expected = L / EA * shares * per_angle
+    expected[0] += 40.0 / EA + 0.004
+    expected[-1] += 15.0 / EA
+    np.testing.assert_allclose(segment_compliances(rig, 4), expected)
+    np.testing.assert_allclose(
+        chain_at_rest(rig, 4)[COMPLIANCE : COMPLIANCE + 6], [*expected, expected[-1]]
+    )
+
+
+UP_AND_DOWN = np.array([0.4, 0.9, 1.6, 1.58, 1.45, 1.5, 0.3, -0.5, -25.0, -24.0, 2.0, 1.9])
+
+
+def test_a_run_may_be_followed_in_two_parts():
+    """All that changes from outside is remembered, and both answers are one."""
+    m = UP_AND_DOWN.size
+    varying = {
+        "pulled": np.linspace(0.3, 0.6, m),
+        "released": np.linspace(0.5, 0.2, m),
+        "viscous": np.linspace(0.5, 1.5, m),
+        "lost": np.linspace(0.0, 2.0, m),
+        "step": 0.05,
+    }
+    rig = with_values(GROUP_A, AT_ENDS)
+    for boundary, drive, load in (
+        (LOADED_BY_SPRING, UP_AND_DOWN, 0.0),
+        (LOADED_BY_FORCE, UP_AND_DOWN, 27.0 + np.sin(np.arange(m))),
+        (LOADED_BY_DISPLACEMENT, UP_AND_DOWN, 0.3 * np.sin(np.arange(m))),
+        (DRIVEN_BY_FORCE, 25.0 + 0.8 * UP_AND_DOWN, 0.0),
+    ):
+        course = course_of(drive, rig, load=load, **varying)
+        whole = slip_chain(course, rig, boundary, 3)
+        state, parts = initial_state(course, rig, boundary, 3), []
+        for part in (course[:, :5].copy(), course[:, 5:].copy()):
+            output, state = go_on(part, state, rig, boundary, 3)
+            parts.append(output)
+        for k, column in enumerate(whole):
+            np.testing.assert_array_equal(np.concatenate([part[k] for part in parts]), column)
+        assert state.before == moment_of(course, m - 1)
+        assert (*state.ends, state.unconverged) == (*(column[-1] for column in whole[:4]), 0)
+
+
+def test_a_run_starts_from_rest_at_the_preload():
+    """What is given by force is the preload there, and what is given by place is zero."""
+    course = course_of([30.0], GROUP_A, load=20.0, pulled=0.6, released=0.4)
+    for boundary, ends in (
+        (LOADED_BY_SPRING, (0.0, 0.0)),
+        (LOADED_BY_FORCE, (0.0, F0)),
+        (DRIVEN_BY_FORCE, (F0, 0.0)),
+        (LOADED_BY_DISPLACEMENT, (0.0, 0.0)),
+    ):
+        state = initial_state(course, GROUP_A, boundary, 3)
+        assert state.before == (*ends, (0.6, 0.4, 0.0, 0.0), math.inf)
+        assert state.chain[TENSION : TENSION + 5].tolist() == [F0] * 5
+        assert (*state.ends, state.unconverged) == (0.0, 0.0, 0.0, 0.0, 0)
+
+
+@pytest.mark.parametrize(("unsettled", "given_up"), [(10, False), (11, True)])
+def test_a_run_with_many_samples_that_did_not_settle_is_given_up(unsettled, given_up):
+    course = course_of([0.4, 0.9], GROUP_A)
+    state = initial_state(course, GROUP_A, LOADED_BY_SPRING, 3)
+    state = state._replace(ends=ChainEnds(1.0, 2.0, 3.0, 4.0), unconverged=unsettled)
+    frames = empty_frames(np.array([1]), 3)
+    answer, state = go_on(course, state, GROUP_A, LOADED_BY_SPRING, 3, frames)
+    assert state.unconverged == unsettled
+    if given_up:
+        for column, value in zip(answer, (1.0, 2.0, 3.0, 4.0, UNCONVERGED), strict=True):
+            assert column.tolist() == [value, value]
+        assert frames.slip.tolist() == [[UNCONVERGED] * 3]
+    else:
+        assert answer[0].tolist() == [0.4, 0.9]
+        assert answer[4].tolist() == [1, 1]
+        assert frames.slip.tolist() == [[1, 1, 1]]
+
+
+def test_what_is_along_the_tendon_is_the_chains_state_at_that_sample():
+    at = np.array([1, 3, 11])
+    frames = empty_frames(at, 3)
+    course = course_of(UP_AND_DOWN, GROUP_A)
+    answer = slip_chain(course, GROUP_A, LOADED_BY_SPRING, 3, frames)
+    for k, sample in enumerate(at):
+        tensions = rest_after(course[:, : sample + 1], GROUP_A, LOADED_BY_SPRING, 3)[1]
+        np.testing.assert_array_equal(frames.tension_N[k], tensions[:-1])
+        assert frames.tension_N[k, 0] == answer[2][sample]
+    assert frames.slip[:2].tolist() == [[1, 1, 1], [-1, 0, 0]]
+    assert frames.front[:2].tolist() == [1.0, 1.0 / 3.0]

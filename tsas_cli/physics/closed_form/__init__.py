@@ -1,0 +1,1 @@
+"""The static and the distributed model in closed form: a spring load, constant friction."""

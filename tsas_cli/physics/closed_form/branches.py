@@ -1,0 +1,262 @@
+"""The distributed quasi-static model in closed form: spring load, friction that stays the same.
+
+A reversal starts a slip front at the drive; behind it the tension is T0 e^(±a s/L), ahead of it
+the old profile stands. From a turning point with tension A at the drive the travel D is
+
+    D = c |T0 − A| + C (√T0 − √A)²,    C = L/(a EA),
+
+with c the compliance of free tendon at the drive: a quadratic in √(T0/A). Nested reversals are a
+stack of turning points with return-point memory; when the front reaches the load the tendon
+slips as a whole (Yang 2025, Eqs. 7-9) and the stack is forgotten. No mesh, no iteration, except on
+the first loading from rest, where T0 solves D = c (T0−F0) + C (T0 − F0 − F0 ln(T0/F0)).
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from tsas_cli.numerics.compiled import kernel
+from tsas_cli.physics.closed_form.capstan import mean_tension_ratio, tension_ratio
+from tsas_cli.physics.compliances import (
+    compliance_at_drive,
+    compliance_at_load,
+    sheath_compliance,
+)
+from tsas_cli.physics.course import Tensions
+from tsas_cli.physics.frames import Frames, is_next
+from tsas_cli.physics.phases import SLACK
+from tsas_cli.physics.rig import Rig
+
+Floats = npt.NDArray[np.float64]
+
+REST, SLIP = 0, 1  # what lies under the stack of turning points
+SMALLEST_WRAP = 1e-9  # a straight sheath: C stays finite, and the dead band has no width
+
+
+@kernel
+def from_turning_point(travel: float, tension: float, direction: int, C: float, c: float) -> float:
+    """Return T0 after a travel D ≥ 0 from a turning point with tension A [N]."""
+    D = travel / tension
+    if direction > 0:
+        root = (C + math.sqrt(c * c + (C + c) * D)) / (C + c)
+    else:
+        inside = c * c + (C - c) * D
+        root = (C + c - D) / (C + math.sqrt(inside)) if inside > 0.0 and C + c > D else 0.0
+    return tension * root * root
+
+
+@kernel
+def from_rest(travel: float, preload: float, C: float, c: float, highest: float) -> float:
+    """Return T0 after a signed travel from uniform tension F0, by Newton's method on ln(T0/F0).
+
+    Beyond `highest` = a the front has reached the load; the root is not sought there.
+    """
+    target = travel / preload
+    y = math.copysign(min(highest, math.sqrt(2.0 * abs(target) / C)), target)
+    for _ in range(60):
+        grown = math.expm1(y)
+        value = c * grown + math.copysign(C * (grown - y), y) - target
+        slope = c * (grown + 1.0) + C * abs(grown)
+        if slope == 0.0:
+            return preload
+        step = value / slope
+        y = min(max(y - step, -highest - 1.0), highest + 1.0)
+        if abs(step) < 1e-14:
+            break
+    return preload * math.exp(y)
+
+
+@kernel
+def full_slip(direction: float, rig: Rig, wrap: float, c: float) -> tuple[float, float]:
+    """Return slope k and zero x* of T0 = k (x − x*) while the whole tendon slips, Eqs. (7)-(9).
+
+    Below x*, where no tension is left, it hangs slack.
+    """
+    spring = 1.0 / rig.load_stiffness_N_per_mm + compliance_at_load(rig)
+    sheath = sheath_compliance(rig)
+    compliance = (
+        tension_ratio(wrap, direction) * spring + mean_tension_ratio(wrap, direction) * sheath + c
+    )
+    return 1.0 / compliance, -rig.preload_N * (spring + sheath + c)
+
+
+@kernel
+def strokes(x_in: Floats) -> int:
+    """Return how many strokes a motion may have: changes of direction, and of standing still.
+
+    No more reversals can nest. Without a branch, it costs a tenth of the motion itself.
+    """
+    count = 2  # the way from rest at x = 0 to the first sample, and the first stroke
+    for i in range(2, x_in.size):
+        before, after = x_in[i - 1] - x_in[i - 2], x_in[i] - x_in[i - 1]
+        count += ((before > 0.0) != (after > 0.0)) | ((before < 0.0) != (after < 0.0))
+    return count
+
+
+def branches(x_in: Floats, rig: Rig, frames: Frames | None = None) -> Tensions:
+    """Follow a motion of the drive that starts at rest at x = 0 [mm].
+
+    Parameters
+    ----------
+    x_in
+        Displacement of the drive from the state of uniform preload, shape (n,) [mm].
+    rig
+        The rig; its zeros are not looked at.
+    frames
+        Where to write down what is along the tendon, on any number of elements.
+
+    Returns
+    -------
+    f_in, f_out, phase
+        Tensions at both ends, shape (n,) [N]; +1 where the whole tendon slips in contraction, −1
+        in loosening, 0 in a dead band, 2 where it hangs slack.
+    """
+    return follow_branches(x_in, rig, at_rest_before(x_in, rig.preload_N), frames)[0]
+
+
+class BranchPoint(NamedTuple):
+    """Where the closed form is on its branches at a sample."""
+
+    x_in: float  # [mm]
+    f_in: float  # [N]
+    f_out: float
+    direction: int  # of the last motion, 0 where there was none
+    depth: int  # turning points on the stack
+    base: int  # what lies under it, REST or SLIP
+    phase: int
+
+
+class BranchState(NamedTuple):
+    """What the closed form remembers from one sample to the next.
+
+    The stack of turning points has room for all that may nest; it is written over.
+    """
+
+    now: BranchPoint
+    turn_x: Floats
+    turn_T: Floats
+
+
+@kernel
+def at_rest_before(x_in: Floats, preload: float) -> BranchState:
+    """Return the state of uniform preload, with room for the turning points of a motion."""
+    room = strokes(x_in)  # growing it in the loop would cost 20 ns a sample
+    now = BranchPoint(0.0, preload, preload, 0, 0, REST, 0)
+    return BranchState(now, np.empty(room), np.empty(room))
+
+
+def with_room(state: BranchState, x_in: Floats) -> BranchState:
+    """Return a copy of a state that has room for the turning points of more motion."""
+    more, depth = np.empty(strokes(x_in)), state.now.depth
+    turn_x, turn_T = (np.concatenate((t[:depth], more)) for t in (state.turn_x, state.turn_T))
+    return BranchState(state.now, turn_x, turn_T)
+
+
+@kernel
+def follow_branches(
+    x_in: Floats, rig: Rig, state: BranchState, frames: Frames | None = None
+) -> tuple[Tensions, BranchState]:
+    """Follow a motion from a state; return the tensions and the state then; see `branches`."""
+    wrap = max(rig.friction_coefficient * rig.total_bend_rad, SMALLEST_WRAP)
+    C = sheath_compliance(rig) / wrap
+    c = compliance_at_drive(rig)
+    swing = math.exp(2.0 * wrap)
+    rest_high, rest_low = rig.preload_N * math.exp(wrap), rig.preload_N * math.exp(-wrap)
+    pulled, slack = full_slip(1.0, rig, wrap, c)
+    released, slack = full_slip(-1.0, rig, wrap, c)
+    out_pulled, out_released = tension_ratio(wrap, 1.0), tension_ratio(wrap, -1.0)
+    n = x_in.size
+    f_in = np.empty(n)
+    f_out = np.empty(n)
+    phase = np.zeros(n, dtype=np.int8)
+    turn_x, turn_T = state.turn_x, state.turn_T
+    x, T, out, direction, depth, base, before = state.now
+    written = 0
+    for i in range(n):
+        if x_in[i] != x:
+            way = 1 if x_in[i] > x else -1
+            if way != direction and direction != 0 and T > 0.0:
+                turn_x[depth], turn_T[depth] = x, T
+                depth += 1
+            direction, x = way, x_in[i]
+            # Climb down the stack: each branch holds until it meets the turn that encloses it.
+            while depth > 0:
+                A = turn_T[depth - 1]
+                T = from_turning_point(abs(x - turn_x[depth - 1]), A, direction, C, c)
+                if depth > 1:
+                    end = turn_T[depth - 2]
+                elif base == REST:
+                    end = rig.preload_N * rig.preload_N / A
+                else:
+                    end = A * swing if direction > 0 else A / swing
+                if (T - end) * direction <= 0.0:
+                    break
+                depth = max(depth - 2, 0)
+            if depth == 0 and base == REST:
+                T = from_rest(x, rig.preload_N, C, c, wrap)
+                if not rest_low < T < rest_high:
+                    base = SLIP
+            if depth == 0 and base == SLIP:
+                T = max((pulled if direction > 0 else released) * (x - slack), 0.0)
+                out = T * (out_pulled if direction > 0 else out_released)
+                phase[i] = direction if T > 0.0 else SLACK
+        elif before == SLACK:
+            phase[i] = SLACK
+        before = int(phase[i])
+        f_in[i] = T
+        f_out[i] = out
+        if frames is not None and is_next(frames, written, i):  # compiled away where there are none
+            strokes_so_far = Strokes(turn_T[:depth], T, direction, base)
+            write_profile(frames, written, strokes_so_far, rig.preload_N, wrap)
+            written += 1
+    now = BranchPoint(x, T, out, direction, depth, base, before)
+    return Tensions(f_in, f_out, phase), BranchState(now, turn_x, turn_T)
+
+
+class Strokes(NamedTuple):
+    """The strokes that have shaped the profile of tension, the last one up to its front."""
+
+    turns: Floats  # tension at the drive where each one before ended, (depth,) [N]
+    f_in: float  # at the drive now
+    direction: int
+    base: int  # what lies under them, REST or SLIP
+
+
+@kernel
+def write_profile(frames: Frames, k: int, past: Strokes, preload: float, wrap: float) -> None:
+    """Write the profile of tension that the strokes have left into frame k.
+
+    Each stroke puts T0 e^(∓a s/L) over what the ones before have left, as far as that is above
+    (contraction) or below (loosening); a stroke that has slid the whole tendon leaves nothing of
+    what was before.
+    """
+    m, depth = frames.slip.shape[1], past.turns.size
+    for half in range(2 * m + 1):  # places at the even ones, the middles of elements between
+        s = 0.5 * half / m
+        tension, slid = preload, False
+        for stroke in range(depth + 1):
+            way = past.direction if (depth - stroke) % 2 == 0 else -past.direction
+            at_drive = past.turns[stroke] if stroke < depth else past.f_in
+            new = at_drive * math.exp(-way * wrap * s)
+            slid = (past.base == SLIP and stroke == 0) or (new - tension) * way > 0.0
+            tension = new if slid else tension
+        if half % 2 == 0:
+            frames.tension_N[k, half // 2] = tension
+        elif past.f_in == 0.0:
+            frames.slip[k, half // 2] = SLACK
+        else:
+            frames.slip[k, half // 2] = past.direction if slid else 0
+    frames.front[k] = front_of(past, preload, wrap)
+
+
+@kernel
+def front_of(past: Strokes, preload: float, wrap: float) -> float:
+    """Return the share of the sheath up to which the last stroke has slid the tendon."""
+    depth = past.turns.size
+    if past.f_in == 0.0 or past.direction == 0:
+        return 0.0
+    if depth > 0:
+        return min(abs(math.log(past.f_in / past.turns[depth - 1])) / (2.0 * wrap), 1.0)
+    return 1.0 if past.base == SLIP else min(abs(math.log(past.f_in / preload)) / wrap, 1.0)

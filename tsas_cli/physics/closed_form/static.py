@@ -1,0 +1,63 @@
+"""The paper's static model: four phases with straight lines between them.
+
+Yang 2025, Eqs. (4)-(9) and (26)-(32). The dead band is one straight line with the secant stiffness
+(29); the distributed model (`branches`, `slip_chain`) agrees with it at the ends of a whole dead
+band only, because a slip front needs a curve.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from tsas_cli.numerics.compiled import kernel
+from tsas_cli.physics.closed_form.branches import SMALLEST_WRAP, full_slip
+from tsas_cli.physics.closed_form.capstan import dead_band_stiffness, tension_ratio
+from tsas_cli.physics.compliances import compliance_at_drive, sheath_compliance
+from tsas_cli.physics.course import Tensions
+from tsas_cli.physics.phases import SLACK
+from tsas_cli.physics.rig import Rig
+
+Floats = npt.NDArray[np.float64]
+
+
+class StaticState(NamedTuple):
+    """What the lumped model remembers: the drive's position [mm] and both tensions [N]."""
+
+    x_in: float
+    f_in: float
+    f_out: float
+
+
+def static_model(x_in: Floats, rig: Rig) -> Tensions:
+    """Follow a motion of the drive that starts at rest at x = 0 [mm], with a spring load.
+
+    Parameters and results are those of `branches`.
+    """
+    return follow_static(x_in, rig, StaticState(0.0, rig.preload_N, rig.preload_N))[0]
+
+
+@kernel
+def follow_static(x_in: Floats, rig: Rig, state: StaticState) -> tuple[Tensions, StaticState]:
+    """Follow a motion from a state; return the tensions and the state then."""
+    wrap = max(rig.friction_coefficient * rig.total_bend_rad, SMALLEST_WRAP)
+    free = compliance_at_drive(rig)
+    stiffness = dead_band_stiffness(wrap, 1.0, 1.0 / sheath_compliance(rig))
+    stiffness = stiffness / (1.0 + stiffness * free)
+    pulled, slack = full_slip(1.0, rig, wrap, free)
+    released, slack = full_slip(-1.0, rig, wrap, free)
+    f_in, f_out = np.empty(x_in.size), np.empty(x_in.size)
+    phase = np.zeros(x_in.size, dtype=np.int8)
+    x, T, out = state
+    for i in range(x_in.size):
+        T += stiffness * (x_in[i] - x)
+        x = x_in[i]
+        upper, lower = max(pulled * (x - slack), 0.0), max(released * (x - slack), 0.0)
+        if upper <= T:
+            T, out, phase[i] = upper, upper * tension_ratio(wrap, 1.0), 1
+        elif lower >= T:
+            T, out, phase[i] = lower, lower * tension_ratio(wrap, -1.0), -1
+        if T == 0.0:
+            phase[i] = SLACK
+        f_in[i], f_out[i] = T, out
+    return Tensions(f_in, f_out, phase), StaticState(x, T, out)

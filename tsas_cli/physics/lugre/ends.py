@@ -1,0 +1,196 @@
+"""Both ends of the tendon after a step of the dynamic chain, and what samples within it read."""
+
+from typing import NamedTuple
+
+from tsas_cli.numerics.compiled import kernel
+from tsas_cli.physics.boundary import FORCE, SPRING, share_before_sensor
+from tsas_cli.physics.course import DRIVE, LOAD, TIME
+from tsas_cli.physics.lugre.input import Cubic, hermite
+from tsas_cli.physics.lugre.state import (
+    FRICTION,
+    POSITION_HISTORY,
+    POSITION_NEW,
+    RATE,
+    STIFFNESS,
+    TENSION,
+    Floats,
+    Given,
+    LugreLaws,
+    Step,
+)
+
+X_IN, X_OUT, F_IN, F_OUT = range(4)  # rows of the columns
+
+
+class EndState(NamedTuple):
+    """One end of the tendon at the end of a step, with rates for what is read in between."""
+
+    given: Given
+    x: float  # at the drive relative to it [mm]
+    v: float
+    tension: float  # [N]
+    tension_rate: float
+
+
+class StepEnds(NamedTuple):
+    """Both ends of the tendon at the end of a step."""
+
+    drive: EndState
+    load: EndState
+    guide: float  # friction of the load's guide [N]
+
+
+class Span(NamedTuple):
+    """A step in time: from t, h long [s]."""
+
+    t: float
+    h: float
+
+
+class Samples(NamedTuple):
+    """The samples first … end−1."""
+
+    first: int
+    end: int
+
+
+@kernel
+def ends_after(s: Floats, step: Step, laws: LugreLaws) -> StepEnds:
+    """Return what the ends are after a step; positions go to POSITION_NEW."""
+    n, last = laws.n, laws.n + 1
+    for i in range(n + 2):
+        s[POSITION_NEW + i] = s[POSITION_HISTORY + i] + step.gh * s[RATE + i]
+    drive = EndState(
+        step.drive,
+        s[POSITION_NEW],
+        s[RATE],
+        s[TENSION],
+        s[STIFFNESS] * (s[RATE] - s[RATE + 1]),
+    )
+    load = EndState(
+        step.load,
+        s[POSITION_NEW + last] + step.frame.value,
+        s[RATE + last] + step.frame.rate,
+        s[TENSION + n],
+        s[STIFFNESS + n] * (s[RATE + n] - s[RATE + last]),
+    )
+    return StepEnds(drive, load, s[FRICTION + last])
+
+
+@kernel
+def interpolation_error(
+    course: Floats, row: int, within: Samples, span: Span, given: Cubic
+) -> float:
+    """Return by how much samples of an input leave the cubic that a step sees.
+
+    Three samples within the step are looked at.
+    """
+    largest, more = 0.0, within.end - within.first
+    if more > 0:
+        for quarter in range(1, 4):
+            i = within.first + quarter * more // 4
+            seen = hermite((course[TIME, i] - span.t) / span.h, span.h, given)
+            largest = max(largest, abs(course[row, i] - seen))
+    return largest
+
+
+@kernel
+def input_error(
+    course: Floats,
+    within: Samples,
+    span: Span,
+    ends: StepEnds,
+    step: Step,
+    stiffness: tuple[float, float],
+    laws: LugreLaws,
+) -> float:
+    """Return what a step does not see of drive and load, as tensions by the ends' stiffness [N]."""
+    drive = between(ends.drive.given, step.drive)
+    off = stiffness[0] * interpolation_error(course, DRIVE, within, span, drive)
+    if laws.load.given != SPRING:
+        load = between(ends.load.given, step.load)
+        off += stiffness[1] * interpolation_error(course, LOAD, within, span, load)
+    return off
+
+
+@kernel
+def between(a: Given, b: Given) -> Cubic:
+    """Return the cubic from what is given at one end of a step to what is at the other."""
+    return Cubic(a.value, a.rate, b.value, b.rate)
+
+
+@kernel
+def end_stiffnesses(earlier: StepEnds, ends: StepEnds, least: float) -> tuple[float, float]:
+    """Return how much both tensions changed for what is given at their ends, at least so much."""
+    return (
+        secant_stiffness(earlier.drive, ends.drive, least),
+        secant_stiffness(earlier.load, ends.load, least),
+    )
+
+
+@kernel
+def secant_stiffness(earlier: EndState, end: EndState, least: float) -> float:
+    """Return how much a tension changed for what is given at its end, at least so much."""
+    given = end.given.value - earlier.given.value
+    return max(abs((end.tension - earlier.tension) / given), least) if given != 0.0 else least
+
+
+@kernel
+def write_samples(
+    columns: Floats,
+    within: Samples,
+    course: Floats,
+    span: Span,
+    a: StepEnds,
+    b: StepEnds,
+    laws: LugreLaws,
+) -> None:
+    """Write what the ends are at the samples within the step from a to b."""
+    x_out = Cubic(a.load.x, a.load.v, b.load.x, b.load.v)
+    write_cubic(columns, X_OUT, within, course, span, x_out)
+    if laws.drive.given == FORCE:
+        x_in = Cubic(a.drive.x, a.drive.v, b.drive.x, b.drive.v)
+        write_cubic(columns, X_IN, within, course, span, x_in)
+    else:
+        write_cubic(columns, F_IN, within, course, span, tension_between(a.drive, b.drive))
+    if laws.load.given != FORCE:
+        write_cubic(columns, F_OUT, within, course, span, tension_between(a.load, b.load))
+    write_given(columns, within, course, laws)
+    share = share_before_sensor(laws.load)
+    if laws.load.given != FORCE and share > 0.0:
+        for i in range(within.first, within.end):
+            guide = a.guide + (course[TIME, i] - span.t) / span.h * (b.guide - a.guide)
+            columns[F_OUT, i] -= share * guide
+
+
+@kernel
+def write_given(columns: Floats, within: Samples, course: Floats, laws: LugreLaws) -> None:
+    """Write what is given at the ends."""
+    for i in range(within.first, within.end):
+        if laws.drive.given == FORCE:
+            columns[F_IN, i] = course[DRIVE, i]
+        else:
+            columns[X_IN, i] = course[DRIVE, i]
+        if laws.load.given == FORCE:
+            columns[F_OUT, i] = course[LOAD, i]
+        elif laws.load.given != SPRING:
+            columns[X_OUT, i] = course[LOAD, i]
+
+
+@kernel
+def tension_between(a: EndState, b: EndState) -> Cubic:
+    """Return the cubic of the tension at an end over a step."""
+    return Cubic(a.tension, a.tension_rate, b.tension, b.tension_rate)
+
+
+@kernel
+def write_cubic(
+    columns: Floats, row: int, within: Samples, course: Floats, span: Span, ends: Cubic
+) -> None:
+    """Write a cubic over a step at the samples within it."""
+    x0, v0, x1, v1 = ends
+    rise, inverse = (x1 - x0) / span.h, 1.0 / span.h
+    square, cube = (3.0 * rise - 2.0 * v0 - v1) * inverse, (v0 + v1 - 2.0 * rise) * inverse**2
+    for i in range(within.first, within.end):
+        since = course[TIME, i] - span.t
+        columns[row, i] = x0 + since * (v0 + since * (square + since * cube))

@@ -1,0 +1,130 @@
+"""The dynamic chain before its first step: the laws of a rig, its segments, nodes at rest."""
+
+import math
+
+from tsas_cli.numerics.compiled import kernel
+from tsas_cli.physics.boundary import Boundary, DriveEnd, drive_end, load_end
+from tsas_cli.physics.bristles import Bristle, bristle_damping, tendon_mass
+from tsas_cli.physics.course import DRIVE
+from tsas_cli.physics.lugre.balance import balance, set_limits
+from tsas_cli.physics.lugre.ends import StepEnds, ends_after
+from tsas_cli.physics.lugre.input import step_at, value_at
+from tsas_cli.physics.lugre.state import (
+    DAMPING,
+    DEFLECTION,
+    DEFLECTION_HISTORY,
+    LIMIT,
+    POSITION,
+    POSITION_HISTORY,
+    RATE,
+    RESIDUAL,
+    ROWS,
+    SPEED,
+    SPEED_HISTORY,
+    STIFFNESS,
+    TENSION_HISTORY,
+    TENSION_SLOPE,
+    Floats,
+    LugreLaws,
+    Lump,
+    Step,
+)
+from tsas_cli.physics.lugre.step import bdf2
+from tsas_cli.physics.mesh import PITCH, segment_compliances
+from tsas_cli.physics.rig import Rig
+
+NO_TIME_S = 1e-13  # step of the balance at rest
+
+
+@kernel
+def bristles_of(rig: Rig) -> Bristle:
+    """Return the bristles of the whole sheath."""
+    stiffness = rig.bristles.stiffness_N_per_mm
+    travel = rig.effects.presliding.length_mm
+    limit = rig.preload_N * rig.friction_coefficient * rig.total_bend_rad
+    damping = bristle_damping(rig.bristles, rig.sheath_length_mm, limit, travel)
+    viscous = rig.effects.viscous_friction.coefficient_N_s_per_mm
+    return Bristle(stiffness, damping, viscous, travel)
+
+
+@kernel
+def lugre_laws(rig: Rig, n: int, boundary: Boundary) -> LugreLaws:
+    """Return what of the rig holds at every step, with what is given at the ends."""
+    effects, whole = rig.effects, bristles_of(rig)
+    lump = Lump(
+        tendon_mass(rig.bristles, rig.sheath_length_mm) / n,
+        Bristle(whole.stiffness / n, whole.damping / n, whole.viscous / n, whole.travel),
+        effects.load_dependent_friction.exponent,
+        effects.stribeck_friction,
+    )
+    end_bristle = Bristle(whole.stiffness, whole.damping, 0.0, 0.0)
+    drive, load = drive_end(rig, boundary.drive), load_end(rig, boundary.load)
+    return LugreLaws(n, rig.preload_N, lump, end_bristle, drive, load)
+
+
+@kernel
+def with_drive(laws: LugreLaws, drive: DriveEnd) -> LugreLaws:
+    """Return the laws with another end at the drive."""
+    return LugreLaws(laws.n, laws.preload_N, laws.lump, laws.end_bristle, drive, laws.load)
+
+
+@kernel
+def segments(rig: Rig, n: int) -> tuple[Floats, Floats]:
+    """Return stiffness and damping of the n + 1 segments [N/mm, N s/mm]."""
+    stiffness = 1.0 / segment_compliances(rig, n)
+    relaxation_s = rig.bristles.tendon_damping_N_s_per_mm * rig.sheath_length_mm
+    return stiffness, relaxation_s / rig.tendon_stiffness_N * stiffness
+
+
+@kernel
+def clear_state(s: Floats, rig: Rig, n: int) -> None:
+    """Set the tendon's segments, and everything else to zero."""
+    for row in range(ROWS):
+        for i in range(n + 2):
+            s[PITCH * row + i] = 0.0
+    set_segments(s, rig, n)
+
+
+@kernel
+def set_segments(s: Floats, rig: Rig, n: int) -> None:
+    """Set stiffness and damping of the tendon's segments."""
+    stiffness, damping = segments(rig, n)
+    for j in range(n + 1):
+        s[STIFFNESS + j], s[DAMPING + j] = stiffness[j], damping[j]
+
+
+@kernel
+def start_at_rest(
+    s: Floats, start: Floats, course: Floats, k: int, t: float, laws: LugreLaws
+) -> StepEnds:
+    """Put the nodes at rest at a time from sample k to the next; see `rest_at`."""
+    drive = value_at(course, DRIVE, k, t).value
+    formula = bdf2(NO_TIME_S, math.inf, math.inf)
+    step = step_at(course, k, t, formula, (drive, drive), laws)
+    return rest_at(s, start, step, laws)
+
+
+@kernel
+def rest_at(s: Floats, start: Floats, step: Step, laws: LugreLaws) -> StepEnds:
+    """Put the nodes at rest, with bristles that hold what the tensions leave over.
+
+    `start` holds positions and tensions, shape (2, n + 2) [mm, N], and `step`, of no time, what is
+    given; returns the ends.
+    """
+    last = laws.n + 1
+    for i in range(laws.n + 2):
+        s[POSITION + i] = s[POSITION_HISTORY + i] = start[0, i] - step.frame.value
+        s[TENSION_HISTORY + i], s[TENSION_SLOPE + i] = start[1, i], 0.0
+        s[SPEED + i] = s[SPEED_HISTORY + i] = s[RATE + i] = s[DEFLECTION_HISTORY + i] = 0.0
+    balance(s, step, laws)
+    for i in range(1, laws.n + 1):
+        s[DEFLECTION_HISTORY + i] = s[RESIDUAL + i]  # its sign decides between the limits
+    set_limits(s, step, laws)
+    for i in range(1, laws.n + 1):
+        share = min(max(s[RESIDUAL + i] / s[LIMIT + i], -1.0), 1.0)
+        s[DEFLECTION + i] = (
+            s[RESIDUAL + i] / laws.lump.bristle.stiffness + share * laws.lump.bristle.travel
+        )
+    s[DEFLECTION] = s[RESIDUAL] / laws.end_bristle.stiffness
+    s[DEFLECTION + last] = s[RESIDUAL + last] / laws.end_bristle.stiffness
+    return ends_after(s, step, laws)

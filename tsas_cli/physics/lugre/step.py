@@ -1,0 +1,142 @@
+"""One step of the dynamic chain: variable-step BDF2, solved by Newton's method.
+
+Second order (the first step after a turning point is a backward Euler step, first order):
+y = (1+ω)²/(1+2ω) y1 − ω²/(1+2ω) y2 + gh dy/dt with gh = h(1+ω)/(1+2ω), ω = h over the step before.
+"""
+
+import math
+
+from tsas_cli.numerics.compiled import kernel
+from tsas_cli.physics.boundary import DISPLACEMENT
+from tsas_cli.physics.lugre.balance import balance
+from tsas_cli.physics.lugre.state import (
+    DAMPING,
+    DEFLECTION,
+    DEFLECTION_1,
+    DEFLECTION_HISTORY,
+    DEFLECTION_NEW,
+    INCREMENT,
+    POSITION,
+    POSITION_1,
+    POSITION_2,
+    POSITION_HISTORY,
+    POSITION_NEW,
+    RATE,
+    RATE_PREDICTED,
+    SPEED,
+    SPEED_1,
+    SPEED_HISTORY,
+    STIFFNESS,
+    TENSION_HISTORY,
+    TENSION_SLOPE,
+    Floats,
+    Formula,
+    LugreLaws,
+    Step,
+)
+from tsas_cli.physics.lugre.tridiagonal import solve
+
+MOST_ITERATIONS = 8
+
+
+@kernel
+def bdf2(h: float, h1: float, h2: float) -> Formula:
+    """Return the formula of a step after two others; without one before, backward Euler's."""
+    ratio = h / h1
+    below = 1.0 + 2.0 * ratio
+    gh = h * (1.0 + ratio) / below
+    return Formula(h, h1, h2, gh, (1.0 + ratio) ** 2 / below, ratio * ratio / below)
+
+
+@kernel
+def predict(s: Floats, laws: LugreLaws, formula: Formula) -> None:
+    """Set the history terms of a step, and guess its speeds by extrapolation."""
+    h, h1, h2, gh, near, far = formula
+    ratio = h / h1
+    g0, g1, g2 = 1.0, 0.0, 0.0
+    if h1 < math.inf:
+        g0, g1 = 1.0 + ratio, -ratio
+    if h2 < math.inf:
+        both = h + h1 + h2
+        g0 = (h + h1) * both / (h1 * (h1 + h2))
+        g1 = -h * both / (h1 * h2)
+        g2 = h * (h + h1) / ((h1 + h2) * h2)
+    for i in range(laws.n + 2):
+        s[POSITION_HISTORY + i] = near * s[POSITION + i] - far * s[POSITION_1 + i]
+        s[SPEED_HISTORY + i] = near * s[SPEED + i] - far * s[SPEED_1 + i]
+        s[DEFLECTION_HISTORY + i] = near * s[DEFLECTION + i] - far * s[DEFLECTION_1 + i]
+        s[RATE + i] = (
+            g0 * s[POSITION + i]
+            + g1 * s[POSITION_1 + i]
+            + g2 * s[POSITION_2 + i]
+            - s[POSITION_HISTORY + i]
+        ) / gh
+        s[TENSION_SLOPE + i] = s[STIFFNESS + i] * gh + s[DAMPING + i]
+    for j in range(laws.n + 1):
+        s[TENSION_HISTORY + j] = laws.preload_N + s[STIFFNESS + j] * (
+            s[POSITION_HISTORY + j] - s[POSITION_HISTORY + j + 1]
+        )
+
+
+@kernel
+def newton(s: Floats, step: Step, laws: LugreLaws, leaves_N: float) -> tuple[int, bool]:
+    """Find the speeds at the end of a step from their guess; return the iterations, and success.
+
+    It ends when what the forces leave, summed over the nodes, is at most `leaves_N`.
+    """
+    last = laws.n + 1
+    if laws.drive.given == DISPLACEMENT:
+        s[RATE] = 0.0
+    if laws.load.given == DISPLACEMENT:
+        s[RATE + last] = (step.load.value - step.frame.value - s[POSITION_HISTORY + last]) / step.gh
+    for i in range(laws.n + 2):
+        s[RATE_PREDICTED + i] = s[RATE + i]
+    for iteration in range(MOST_ITERATIONS + 1):
+        left = balance(s, step, laws)
+        if left <= leaves_N:
+            return iteration, True
+        if not left < math.inf or iteration == MOST_ITERATIONS:
+            return iteration, False
+        solve(s, laws.n)
+        for i in range(laws.n + 2):
+            s[RATE + i] += s[INCREMENT + i]
+    return MOST_ITERATIONS, False
+
+
+@kernel
+def step_error(s: Floats, laws: LugreLaws, formula: Formula) -> float:
+    """Return the error of a step as a tension, from how far its guess was off [N]."""
+    h, h1, h2, gh, _, _ = formula
+    for j in range(laws.n + 1):
+        off = (s[RATE + j] - s[RATE_PREDICTED + j]) - (s[RATE + j + 1] - s[RATE_PREDICTED + j + 1])
+        s[INCREMENT + j] = abs(s[STIFFNESS + j] * off)
+    largest = largest_increment(s, laws.n + 1)
+    if h2 == math.inf:
+        return 0.5 * gh * largest
+    ratio = h / h1
+    corrected = h * h * h * (1.0 + ratio) ** 2 / (ratio * (1.0 + 2.0 * ratio))
+    guessed = h * (h + h1) * (h + h1 + h2)
+    return gh * largest * corrected / (corrected + guessed)
+
+
+@kernel
+def largest_increment(s: Floats, count: int) -> float:
+    """Return the largest of CHANGE, by two searches side by side."""
+    a, b = s[INCREMENT], 0.0
+    for i in range(1, count - 1, 2):
+        a, b = max(a, s[INCREMENT + i]), max(b, s[INCREMENT + i + 1])
+    largest: float = max(a, b, s[INCREMENT + count - 1])
+    return largest
+
+
+@kernel
+def accept_step(s: Floats, step: Step, laws: LugreLaws) -> None:
+    """Take the step's end as the present."""
+    for i in range(laws.n + 2):
+        s[POSITION_2 + i] = s[POSITION_1 + i]
+        s[POSITION_1 + i] = s[POSITION + i]
+        s[POSITION + i] = s[POSITION_NEW + i]
+        s[SPEED_1 + i] = s[SPEED + i]
+        s[SPEED + i] = s[RATE + i] + step.frame.rate
+        s[DEFLECTION_1 + i] = s[DEFLECTION + i]
+        s[DEFLECTION + i] = s[DEFLECTION_NEW + i]

@@ -1,0 +1,42 @@
+"""The plant of a closed loop with the slip chain as its tendon; see `turntable`."""
+
+from tsas_cli.numerics.compiled import kernel
+from tsas_cli.physics.boundary import DriveEnd
+from tsas_cli.physics.ends import losses_at
+from tsas_cli.physics.plant.turntable import (
+    DriveStep,
+    Turntable,
+    advance_turntable,
+    spring_of,
+    turntable_at,
+)
+from tsas_cli.physics.rig import Rig
+from tsas_cli.physics.slip.chain import advance, go_slack
+from tsas_cli.physics.slip.start import with_drive
+from tsas_cli.physics.slip.state import POSITION, SLIP, TENSION, Floats, Moment, SlipLaws
+
+
+@kernel
+def step_plant(
+    table: Turntable, chain: Floats, before: Moment, rig: Rig, laws: SlipLaws, step: DriveStep
+) -> tuple[Turntable, Moment, bool]:
+    """Move turntable, tendon and load by a step; `laws` are those of a drive by force.
+
+    Returns the turntable, the moment that the chain has come to, and whether it converged.
+    """
+    p = chain[POSITION]
+    spring = spring_of(table, p, rig, step)
+    converged, now, x, f_in = True, before, spring.x, table.f_in
+    if spring.touches:
+        now = Moment(spring.force, 0.0, losses_at(step.time_s, table.speed, 0.0, rig), step.h)
+        drive = laws.drive
+        beside = drive.spring_N_per_mm + spring.stiffness
+        held = with_drive(laws, DriveEnd(drive.given, drive.friction_N, beside))
+        converged = advance(chain, before, now, held)
+        if chain[TENSION] < 0.0:
+            go_slack(chain, now, laws)
+            rubs = chain[SLIP] * drive.friction_N
+            chain[POSITION] = (spring.force - rubs) / (spring.stiffness + drive.spring_N_per_mm)
+        x, f_in = turntable_at(chain[POSITION], spring)
+    speed = (chain[POSITION] - p) / step.h
+    return advance_turntable(table, x, f_in, speed, step.h), now, converged

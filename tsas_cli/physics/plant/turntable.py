@@ -1,0 +1,171 @@
+"""The drive of a closed loop's plant: motor, gear with finite stiffness, turntable.
+
+    lag · dw/dt + w = u,  dx_m/dt = K w                              motor speed w, asked for u
+    m d²x/dt² + B dx/dt + k_d (x − x_m) + dp/dx (F(p) − F0) = 0       turntable, m = J/r1²
+    p = play(x + ripple(x))                                          the tendon's end
+
+Yang 2025, Eqs. (23) to (25), with the reaction k_d (x − x_m) of the drive's stiffness that Eq. (25)
+lacks. F is what the slip chain, the drive's friction and a spring beside the tendon pull with.
+
+Discretisation: the motor exactly for a speed that is held, the turntable by BDF2 with a constant
+step (second order), in which F is implicit: a turntable after a step is a linear spring of
+stiffness m c² + B c + k_d, c = 3/(2h), at whose end the slip chain hangs. The speed in what
+depends on speed (viscous, Stribeck friction) is that of the step before: first order there. While
+the drive crosses its play the tendon's end rests and pulls on; the play rubs (`rubbing`).
+"""
+
+import math
+from typing import NamedTuple
+
+from tsas_cli.effects.drive_ripple import DriveRipple, rippled
+from tsas_cli.numerics.compiled import kernel
+from tsas_cli.physics.rig import Rig
+
+FLANK = 1.0 - 1e-9  # of half the play, from which the drive is at its flank
+RIPPLE_STEP_MM = 1e-4  # over which the slope of the ripple is taken
+
+
+class Actuator(NamedTuple):
+    """Motor and gear (the paper's symbols in brackets)."""
+
+    gain_mm_per_s_rpm: float  # [2π r1/(60 im)]
+    stiffness_N_per_mm: float  # [km as chosen for kr, Eq. (34)]
+    inertia_N_s2_per_mm: float  # [J/r1²]
+    damping_N_s_per_mm: float  # [B]
+    motor_lag_s: float
+    speed_limit_rpm: float
+
+
+class Tangent(NamedTuple):
+    """A straight line: its value at x = 0 and its slope."""
+
+    ahead: float
+    slope: float
+
+
+class Play(NamedTuple):
+    """Half of the gear's play, and how far friction in it holds the drive back [mm]."""
+
+    half: float
+    held: float
+
+
+class Motor(NamedTuple):
+    """The motor's speed, and how far it has come by the gear's kinematics."""
+
+    rpm: float
+    mm: float
+
+
+class Turntable(NamedTuple):
+    """Motion of the turntable after a step; `before` is a step earlier."""
+
+    x: float
+    x_before: float
+    v: float
+    v_before: float
+    f_in: float  # what a sensor at the drive reads [N]
+    speed: float  # of the tendon's end [mm/s]
+
+
+class DriveStep(NamedTuple):
+    """One step of the plant, at whose end the motor is already."""
+
+    actuator: Actuator
+    motor_mm: float
+    time_s: float  # at its end
+    h: float  # its length [s]
+
+
+class TurntableSpring(NamedTuple):
+    """What the turntable is for the tendon's end p at the end of a step: a spring.
+
+    It pulls with force − stiffness p where it touches the tendon, p = ahead + slope x there.
+    """
+
+    touches: bool  # False while it crosses its play
+    x: float  # where the tendon's end rests [mm]
+    tangent: Tangent
+    stiffness: float  # [N/mm]
+    force: float  # [N]
+
+
+@kernel
+def advance_motor(motor: Motor, asked_rpm: float, actuator: Actuator, h: float) -> Motor:
+    """Return the motor after h with a speed asked for, exactly."""
+    lag = actuator.motor_lag_s
+    left = math.exp(-h / lag) if lag > 0.0 else 0.0
+    rest = motor.rpm - asked_rpm
+    way = actuator.gain_mm_per_s_rpm * (asked_rpm * h + rest * lag * (1.0 - left))
+    return Motor(asked_rpm + rest * left, motor.mm + way)
+
+
+@kernel
+def spring_of(table: Turntable, p: float, rig: Rig, step: DriveStep) -> TurntableSpring:
+    """Return what a turntable is for the tendon, whose end is at p, at the end of a step."""
+    actuator, h = step.actuator, step.h
+    c, m = 1.5 / h, actuator.inertia_N_s2_per_mm
+    v_rest = (-4.0 * table.x + table.x_before) / (2.0 * h)
+    a_rest = c * v_rest + (-4.0 * table.v + table.v_before) / (2.0 * h)
+    stiffness = m * c * c + actuator.damping_N_s_per_mm * c + actuator.stiffness_N_per_mm
+    pull = actuator.stiffness_N_per_mm * step.motor_mm - m * a_rest
+    pull -= actuator.damping_N_s_per_mm * v_rest
+    gear = ripple_tangent(2.0 * table.x - table.x_before, rig.effects.drive_ripple)
+    half = 0.5 * rig.effects.backlash.play_mm
+    x = (pull - gear.slope * (table.f_in - rig.preload_N)) / stiffness  # with the end where it is
+    if half > 0.0:
+        play = Play(half, play_friction(table.f_in, rig) / stiffness)
+        x = across_play(x, table.x, p, gear, play)
+    gap = gear.ahead + gear.slope * x - p
+    ahead = gear.ahead - math.copysign(half, gap)
+    share = stiffness / (gear.slope * gear.slope)
+    force = pull / gear.slope + rig.preload_N + share * ahead
+    touches = abs(gap) * FLANK > half or half == 0.0
+    return TurntableSpring(touches, x, Tangent(ahead, gear.slope), share, force)
+
+
+@kernel
+def turntable_at(p: float, spring: TurntableSpring) -> tuple[float, float]:
+    """Return where a turntable is that holds the tendon's end at p, and its force there."""
+    tangent = spring.tangent
+    return (p - tangent.ahead) / tangent.slope, spring.force - spring.stiffness * p
+
+
+@kernel
+def advance_turntable(table: Turntable, x: float, f_in: float, speed: float, h: float) -> Turntable:
+    """Return the turntable after a step of BDF2 to x."""
+    v = (3.0 * x - 4.0 * table.x + table.x_before) / (2.0 * h)
+    return Turntable(x, table.x, v, table.v, f_in, speed)
+
+
+@kernel
+def play_friction(tension: float, rig: Rig) -> float:
+    """Return what holds the drive while it crosses its play [N].
+
+    Up and down it is crossed at different tensions T1 and T2: each time that would give energy but
+    for a friction of at least (T1 − T2)/(T1 + T2), which is tanh(μθ) in full slip.
+    """
+    return tension * math.tanh(rig.friction_coefficient * rig.total_bend_rad)
+
+
+@kernel
+def across_play(x: float, x_now: float, p: float, gear: Tangent, play: Play) -> float:
+    """Return where the drive is with the tendon's end at rest, friction in the play counted.
+
+    `x` is where it would be without. At a flank and pushing against it nothing rubs.
+    """
+    at = gear.ahead + gear.slope * x_now - p
+    gap = gear.ahead + gear.slope * x - p
+    if abs(at) >= play.half * FLANK and abs(gap) > play.half and at * gap > 0.0:
+        return x
+    return min(max(x_now, x - play.held), x + play.held)
+
+
+@kernel
+def ripple_tangent(x: float, ripple: DriveRipple) -> Tangent:
+    """Return the tangent of the gear's output over its input."""
+    if ripple.sine_mm == ripple.cosine_mm == 0.0:
+        return Tangent(0.0, 1.0)
+    here, there = rippled(x, ripple), rippled(x + RIPPLE_STEP_MM, ripple)
+    slope = (there - here) / RIPPLE_STEP_MM
+    return Tangent(here - slope * x, slope)

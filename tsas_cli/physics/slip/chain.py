@@ -1,0 +1,271 @@
+"""The slip chain: the distributed quasi-static model for any load and every effect.
+
+The tendon is n nodes in a row, each with its share a/n of the wrap angle times friction, joined
+by springs; half springs at both ends make the mesh second order in 1/n (first order close to a
+reversal, where the exact slope is infinite). A node sticks while the tensions on its two sides
+keep within the capstan ratio e^(±a/n), exactly Eq. (7) of Yang 2025 for its bend; it slips in the
+direction that the larger one pulls. Each sample is one static problem (`step`), started from
+the last sample's set of slipping nodes.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from tsas_cli.numerics.compiled import kernel
+from tsas_cli.physics.boundary import (
+    DISPLACEMENT,
+    FORCE,
+    Boundary,
+    moving_friction,
+    unloaded_position,
+)
+from tsas_cli.physics.course import (
+    DRIVE,
+    LOAD,
+    PULLED,
+    RELEASED,
+    STEP,
+    Losses,
+    Output,
+    losses_between,
+    losses_of,
+)
+from tsas_cli.physics.frames import Frames
+from tsas_cli.physics.phases import SLACK, UNCONVERGED
+from tsas_cli.physics.rig import Rig
+from tsas_cli.physics.slip.ends import load_force, update_load_speed
+from tsas_cli.physics.slip.frames import write_frame
+from tsas_cli.physics.slip.nodes import accept
+from tsas_cli.physics.slip.start import chain_at_rest, slip_laws
+from tsas_cli.physics.slip.state import (
+    COMPLIANCE,
+    LOAD_SPEED,
+    POSITION,
+    POSITION_BEFORE,
+    SHARE_BEFORE,
+    SLIP,
+    TENSION,
+    TENSION_BEFORE,
+    TENSION_RISE,
+    TRAVEL,
+    Floats,
+    Moment,
+    SlipLaws,
+)
+from tsas_cli.physics.slip.step import solve_sample
+
+MOST_UNCONVERGED = 10  # samples, after which a run is given up
+MOST_STEPS = 60  # between two samples, those included that did not converge
+SHORTEST_STEP = 1e-3  # of the way between two samples; where that does not converge, nothing does
+
+
+def slip_chain(
+    course: Floats, rig: Rig, boundary: Boundary, n: int, frames: Frames | None = None
+) -> Output:
+    """Follow the motion of both ends, starting from rest at the preload.
+
+    Parameters
+    ----------
+    course
+        What acts on the tendon, with the rows of `course`, shape (8, m).
+    rig
+        The rig; its friction and bend are taken from the course.
+    boundary
+        What is given at the ends.
+    n
+        Number of nodes.
+    frames
+        Where to write down what is along the tendon, n elements with a node in each.
+
+    Returns
+    -------
+        Positions and tensions at both ends: the tension at the drive is that behind the drive's
+        friction (as given, where that is given), the one at the load is its sensor's. A sample of
+        phase 3 is not to be trusted; after many such samples the rest of the run is given up: it
+        keeps the last values.
+    """
+    return follow(course, initial_state(course, rig, boundary, n), rig, boundary, n, frames)[0]
+
+
+@kernel
+def rest_after(course: Floats, rig: Rig, boundary: Boundary, n: int) -> Floats:
+    """Return where a course leaves the nodes and the tensions behind them, shape (2, n + 2)."""
+    chain = follow(course, initial_state(course, rig, boundary, n), rig, boundary, n)[1].chain
+    out = np.empty((2, n + 2))
+    for j in range(n + 2):
+        out[0, j], out[1, j] = chain[POSITION + j], chain[TENSION + j]
+    return out
+
+
+class ChainEnds(NamedTuple):
+    """Positions and tensions at both ends at one sample [mm, N]."""
+
+    x_in: float
+    x_out: float
+    f_in: float
+    f_out: float
+
+
+class ChainState(NamedTuple):
+    """Where a course has left a chain; the rows are written over as it goes on."""
+
+    chain: Floats
+    before: Moment  # the last one
+    ends: ChainEnds  # then
+    unconverged: int  # samples so far
+
+
+@kernel
+def initial_state(course: Floats, rig: Rig, boundary: Boundary, n: int) -> ChainState:
+    """Return the state of rest at the preload, before a course."""
+    drive = rig.preload_N if boundary.drive == FORCE else 0.0
+    load = rig.preload_N if boundary.load == FORCE else 0.0
+    losses = Losses(course[PULLED, 0], course[RELEASED, 0], 0.0, 0.0)
+    before = Moment(drive, load, losses, math.inf)
+    return ChainState(chain_at_rest(rig, n), before, ChainEnds(0.0, 0.0, 0.0, 0.0), 0)
+
+
+@kernel
+def follow(
+    course: Floats,
+    state: ChainState,
+    rig: Rig,
+    boundary: Boundary,
+    n: int,
+    frames: Frames | None = None,
+) -> tuple[Output, ChainState]:
+    """Let a chain follow a course from a state; return the output and the state then."""
+    m = course.shape[1]
+    x_in, x_out, f_in, f_out = np.empty(m), np.empty(m), np.empty(m), np.empty(m)
+    phases = np.zeros(m, dtype=np.int8)
+    laws = slip_laws(rig, n, boundary)
+    chain, before, ends, unconverged = state
+    written = 0
+    for i in range(m):
+        phase = UNCONVERGED
+        if unconverged <= MOST_UNCONVERGED:
+            now = moment(course, i)
+            phase, ends = follow_sample(chain, before, now, laws)
+            before = now
+            unconverged += phase == UNCONVERGED
+        x_in[i], x_out[i], f_in[i], f_out[i] = ends
+        phases[i] = phase
+        if frames is not None:  # compiled away where none are asked for
+            written = write_frame(frames, written, i, chain, n, phase)
+    output = Output(x_in, x_out, f_in, f_out, phases)
+    return output, ChainState(chain, before, ends, unconverged)
+
+
+@kernel
+def follow_sample(
+    chain: Floats, before: Moment, now: Moment, laws: SlipLaws
+) -> tuple[int, ChainEnds]:
+    """Go on to one sample; return the phase and the ends there."""
+    last = laws.n + 1
+    if laws.load.given == DISPLACEMENT and now.load != before.load:
+        chain[SLIP + last] = 1 if now.load > before.load else -1
+    converged = advance(chain, before, now, laws)
+    phase = phase_of(chain, laws.n) if converged else UNCONVERGED
+    if laws.load.given != FORCE and chain[TENSION] < 0.0:
+        phase = SLACK
+        go_slack(chain, now, laws)
+    f_in = now.drive if laws.drive.given == FORCE else chain[TENSION]
+    f_out = tension_at_sensor(chain, now, laws)
+    return phase, ChainEnds(chain[POSITION], chain[POSITION + last], f_in, f_out)
+
+
+@kernel
+def moment(course: Floats, i: int) -> Moment:
+    """Return one sample of the course."""
+    return Moment(course[DRIVE, i], course[LOAD, i], losses_of(course, i), course[STEP, i])
+
+
+@kernel
+def advance(chain: Floats, start: Moment, end: Moment, laws: SlipLaws) -> bool:
+    """Go from one sample to the next, in smaller steps where one does not converge.
+
+    The way between two samples is a straight line. Returns whether every step converged.
+    """
+    done, step = 0.0, 1.0
+    for _ in range(MOST_STEPS):
+        if step < SHORTEST_STEP:
+            return False
+        to = min(done + step, 1.0)
+        now = between(start, end, to, end.step_s * (to - done))
+        if solve_sample(chain, now, laws):
+            update_load_speed(chain, now.step_s, laws.n)
+            accept(chain, laws)
+            if to == 1.0:
+                return True
+            done = to
+            step *= 2.0
+        else:
+            for j in range(laws.n + 2):
+                chain[POSITION + j], chain[TENSION + j], chain[SLIP + j] = (
+                    chain[POSITION_BEFORE + j],
+                    chain[TENSION_BEFORE + j],
+                    0.0,
+                )
+                chain[TRAVEL + j] = 0.0
+            step *= 0.5
+    return False
+
+
+@kernel
+def between(start: Moment, end: Moment, part: float, step_s: float) -> Moment:
+    """Return the moment at a part of the way, after a step of its own; the last one exactly."""
+    if part == 1.0:
+        return Moment(end.drive, end.load, end.losses, step_s)
+    return Moment(
+        start.drive + part * (end.drive - start.drive),
+        start.load + part * (end.load - start.load),
+        losses_between(start.losses, end.losses, part),
+        step_s,
+    )
+
+
+@kernel
+def phase_of(chain: Floats, n: int) -> int:
+    """Return +1 or −1 where all nodes of the sheath slip alike, 0 otherwise."""
+    first = chain[SLIP + 1]
+    for i in range(2, n + 1):
+        if chain[SLIP + i] != first:
+            return 0
+    return int(first)
+
+
+@kernel
+def tension_at_sensor(chain: Floats, now: Moment, laws: SlipLaws) -> float:
+    """Return the tension at the load's force sensor [N], behind the friction before it."""
+    n = laws.n
+    tension: float = chain[TENSION + n]
+    if laws.load.given == FORCE:
+        return now.load
+    before = laws.load.friction.before_sensor_N
+    if before == 0.0:
+        return tension
+    if laws.load.given == DISPLACEMENT:
+        return float(tension - chain[SLIP + n + 1] * before)
+    share = before / moving_friction(laws.load)
+    return tension - share * (tension - load_force(chain, now, laws))
+
+
+@kernel
+def go_slack(chain: Floats, now: Moment, laws: SlipLaws) -> None:
+    """Put the tendon without tension against the load; the next pull finds all nodes slipping."""
+    last = laws.n + 1
+    if laws.load.given != DISPLACEMENT:
+        preload_N = laws.preload_N - now.losses.preload_N
+        chain[POSITION + last] = unloaded_position(chain[POSITION + last], preload_N, laws.load)
+    for j in range(last - 1, -1, -1):
+        chain[TENSION + j] = 0.0
+        if j > 0:
+            chain[POSITION + j] = chain[POSITION + j + 1] - chain[COMPLIANCE + j] * laws.preload_N
+            chain[SLIP + j] = 1.0
+    chain[SLIP + last] = 1.0
+    chain[LOAD_SPEED + last] = 0.0
+    accept(chain, laws)
+    for j in range(laws.n + 2):
+        chain[SHARE_BEFORE + j], chain[TRAVEL + j], chain[TENSION_RISE + j] = 1.0, 0.0, 0.0

@@ -1,0 +1,113 @@
+"""The two ends of the slip chain: the load's spring, mass and guide, the drive's friction."""
+
+import math
+
+from tsas_cli.effects.load_inertia import inertia_force
+from tsas_cli.effects.load_spring_nonlinearity import (
+    spring_force,
+    spring_tangent,
+)
+from tsas_cli.effects.proximal_spring import proximal_spring_force
+from tsas_cli.numerics.compiled import kernel
+from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, moving_friction
+from tsas_cli.physics.slip.nodes import slips_backwards
+from tsas_cli.physics.slip.state import (
+    BALANCED,
+    LOAD_SPEED,
+    POSITION,
+    POSITION_BEFORE,
+    SLIP,
+    SWEEP_P,
+    SWEEP_Q,
+    SWEEP_R,
+    TENSION,
+    TOLERANCE,
+    Floats,
+    Moment,
+    SlipLaws,
+)
+
+SLIPS_ALONG_S = 0.01  # in which the mass of the load takes up its speed; a rigid one would swing on
+
+
+@kernel
+def load_tangent(chain: Floats, now: Moment, laws: SlipLaws) -> tuple[float, float]:
+    """Return slope and value at x = 0 of what the load pulls back with, as a tangent [N/mm, N]."""
+    n = laws.n
+    x = chain[POSITION + n + 1]
+    shape = laws.load.nonlinearity
+    slope = spring_tangent(x, laws.load.stiffness_N_per_mm, shape)
+    value = spring_force(x, laws.load.stiffness_N_per_mm, shape) - slope * x
+    value += laws.preload_N - now.losses.preload_N
+    mass = laws.load.mass_kg
+    if mass > 0.0 and now.step_s < math.inf:  # implicit Euler, first order in the step
+        per_speed = 1.0 / (SLIPS_ALONG_S + now.step_s)
+        slope += inertia_force(per_speed / now.step_s, mass)
+        gone = chain[POSITION_BEFORE + n + 1] / now.step_s + chain[LOAD_SPEED + n + 1]
+        value -= inertia_force(per_speed * gone, mass)
+    return slope, value
+
+
+@kernel
+def update_load_speed(chain: Floats, step_s: float, n: int) -> None:
+    """Renew the speed of the load's mass after a step."""
+    last = n + 1
+    speed = (chain[POSITION + last] - chain[POSITION_BEFORE + last]) / step_s
+    share = 1.0 / (1.0 + SLIPS_ALONG_S / step_s)
+    chain[LOAD_SPEED + last] += share * (speed - chain[LOAD_SPEED + last])
+
+
+@kernel
+def drive_position(chain: Floats, now: Moment, laws: SlipLaws) -> float:
+    """Return where the drive's end is [mm]."""
+    if laws.drive.given == DISPLACEMENT:
+        return now.drive
+    friction = laws.drive.friction_N
+    if chain[SLIP] == 0 and friction > 0.0:
+        return float(chain[POSITION_BEFORE])
+    p, q, r = chain[SWEEP_P], chain[SWEEP_Q], chain[SWEEP_R]
+    stiffness = proximal_spring_force(1.0, laws.drive.spring_N_per_mm)
+    return float(((now.drive - chain[SLIP] * friction) * r - q) / (p + stiffness * r))
+
+
+@kernel
+def update_end(i: int, pull: float, friction: float, chain: Floats, laws: SlipLaws) -> bool:
+    """Do the same for an end with friction that does not depend on tension."""
+    if chain[SLIP + i] != 0:
+        if slips_backwards(i, chain, laws):
+            chain[SLIP + i] = 0
+            return True
+    elif abs(pull) > friction * (1.0 + TOLERANCE):
+        chain[SLIP + i] = 1 if pull > 0.0 else -1
+        return True
+    return False
+
+
+@kernel
+def update_ends(chain: Floats, now: Moment, laws: SlipLaws) -> bool:
+    """Revise the two ends, and the tangent of a load spring that is not straight."""
+    n = laws.n
+    wrong = False
+    if laws.drive.given == FORCE:
+        stiffness = laws.drive.spring_N_per_mm
+        pull = now.drive - chain[TENSION] - proximal_spring_force(chain[POSITION], stiffness)
+        if laws.drive.friction_N > 0.0:
+            wrong = update_end(0, pull, laws.drive.friction_N, chain, laws)
+    if laws.load.given != DISPLACEMENT:
+        pull = chain[TENSION + n] - load_force(chain, now, laws)
+        friction = moving_friction(laws.load)
+        if friction > 0.0:
+            wrong = update_end(n + 1, pull, friction, chain, laws) or wrong
+        if friction == 0.0 or chain[SLIP + n + 1] != 0:
+            off = abs(pull - chain[SLIP + n + 1] * friction)
+            wrong = off > BALANCED * (abs(chain[TENSION + n]) + laws.preload_N) or wrong
+    return wrong
+
+
+@kernel
+def load_force(chain: Floats, now: Moment, laws: SlipLaws) -> float:
+    """Return what the load pulls back with at its present place, friction aside [N]."""
+    if laws.load.given == FORCE:
+        return now.load
+    slope, value = load_tangent(chain, now, laws)
+    return float(slope * chain[POSITION + laws.n + 1] + value)

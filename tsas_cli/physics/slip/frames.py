@@ -1,0 +1,19 @@
+"""What the slip chain says along the tendon at chosen samples: its state, written down."""
+
+from tsas_cli.numerics.compiled import kernel
+from tsas_cli.physics.frames import Frames, is_next, slips_up_to
+from tsas_cli.physics.phases import SLACK, UNCONVERGED
+from tsas_cli.physics.slip.state import SLIP, TENSION, Floats
+
+
+@kernel
+def write_frame(frames: Frames, written: int, i: int, chain: Floats, n: int, phase: int) -> int:
+    """Write down the chain at sample i, if it is to be; return how many frames are written."""
+    if not is_next(frames, written, i):
+        return written
+    for j in range(n + 1):
+        frames.tension_N[written, j] = chain[TENSION + j]
+    for j in range(n):
+        frames.slip[written, j] = phase if phase in (SLACK, UNCONVERGED) else chain[SLIP + j + 1]
+    frames.front[written] = slips_up_to(frames, written)
+    return written + 1

@@ -1,0 +1,57 @@
+"""What the slip chain is at one moment: its nodes, the laws that hold there, what is given."""
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from tsas_cli.physics.boundary import DriveEnd, LoadEnd
+from tsas_cli.physics.course import Losses
+from tsas_cli.physics.mesh import PITCH
+
+Floats = npt.NDArray[np.float64]
+
+TOLERANCE = 1e-10  # of the tension and of a segment's elongation, for rounding
+BALANCED = 1e-9  # of the tension, where a law is not straight
+
+
+class SlipLaws(NamedTuple):
+    """What of the rig a static problem needs; the whole rig would be copied at every call."""
+
+    n: int  # nodes of the sheath
+    preload_N: float
+    scale_mm: float  # elongation of a node's segment at the preload
+    friction_exponent: float
+    presliding_mm: float
+    drive: DriveEnd
+    load: LoadEnd
+
+
+class Moment(NamedTuple):
+    """All that changes from outside, at one moment."""
+
+    drive: float  # displacement [mm] or tension at the sensor [N]
+    load: float  # likewise; unused with a spring
+    losses: Losses
+    step_s: float  # time since the moment before, infinite where it plays no part
+
+
+# Rows of the state, over the nodes from 0 at the drive to n + 1 at the load: chain[TENSION + i].
+# A "segment" is the one behind the node; "before" is when the last step had been solved.
+POSITION, POSITION_BEFORE = 0, PITCH  # [mm]
+TENSION, TENSION_BEFORE = PITCH * 2, PITCH * 3  # of the segment [N]
+SLIP = PITCH * 4  # direction in which the node slips, 0 where it sticks
+FACTOR = PITCH * 5  # where it slips, T[i] = FACTOR T[i−1] − DROP − DROP_SLOPE x
+DROP, DROP_SLOPE = PITCH * 6, PITCH * 7
+COMPLIANCE = PITCH * 8  # of the segment [mm/N]
+SWEEP_P, SWEEP_Q, SWEEP_R = (PITCH * row for row in range(9, 12))  # segment's T = (P x + Q)/R
+LOAD_SPEED = PITCH * 12  # of the load's mass, before [mm/s]
+RATIO_PULLED, RATIO_RELEASED = PITCH * 13, PITCH * 14  # of both tensions in full slip, e^(−a/n)
+SHARE_BEFORE = PITCH * 15  # with presliding, the share of its limit that friction had reached
+TRAVEL = PITCH * 16  # since the last step, at which FACTOR to DROP_SLOPE hold [mm]
+WRAP_PULLED, WRAP_RELEASED = PITCH * 17, PITCH * 18  # the node's share of friction times bend, a/n
+SHARE = PITCH * 19  # of its limit that friction reaches, with its sign
+TENSION_RISE = PITCH * 20  # in the last step [N]
+WRAP_LIMIT = PITCH * 21  # a/n at the node's tension, in the direction of SHARE
+WRAP_SIGNED, RATIO = PITCH * 22, PITCH * 23  # friction times bend with its sign, and e to it
+ROWS = 24

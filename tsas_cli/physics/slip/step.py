@@ -1,0 +1,196 @@
+"""One static problem of the slip chain: which nodes slip, and where everything then is.
+
+Given how the nodes slide, the chain is a row of affine relations. From the load backwards each
+segment's tension is T = (p x + q)/r with the position x of the node before it: a sliding node
+multiplies (and adds its bristle), a node that sticks starts anew, a segment adds its compliance.
+From the drive forwards the positions follow. No sweep waits for a division at every node, and none
+can blow up: p and r are positive. Then every node is held against its own law (`nodes`), and
+those that break it are revised: an active set of those that slip, tangents of what is not straight
+(a semi-smooth Newton method).
+
+Signs: x grows towards the drive; a node that slips towards the drive (+1) has less tension on the
+load's side. Where the net tension is negative (a pair of antagonistic tendons seen as one),
+friction follows its magnitude.
+"""
+
+from tsas_cli.numerics.compiled import kernel
+from tsas_cli.physics.boundary import DISPLACEMENT, SPRING, moving_friction
+from tsas_cli.physics.slip.ends import drive_position, load_tangent, update_ends
+from tsas_cli.physics.slip.nodes import (
+    breakaway,
+    extrapolate,
+    is_linear,
+    set_friction,
+    slips_backwards,
+    update_relations,
+)
+from tsas_cli.physics.slip.state import (
+    COMPLIANCE,
+    DROP,
+    DROP_SLOPE,
+    FACTOR,
+    POSITION,
+    POSITION_BEFORE,
+    SLIP,
+    SWEEP_P,
+    SWEEP_Q,
+    SWEEP_R,
+    TENSION,
+    Floats,
+    Moment,
+    SlipLaws,
+)
+
+TOGETHER = 16  # nodes that share a division
+MOST_ITERATIONS = 20  # revisions of the slipping set
+MOST_SINGLE_CHANGES = 5  # more, for each node
+
+
+@kernel
+def solve_sample(chain: Floats, now: Moment, laws: SlipLaws) -> bool:
+    """Find the slipping nodes at a moment; return whether the set was found."""
+    n = laws.n
+    if not is_linear(laws):
+        extrapolate(chain, laws)
+    set_friction(chain, now, laws)
+    update_relations(chain, now, laws)
+    for revision in range(MOST_ITERATIONS + MOST_SINGLE_CHANGES * n):
+        sweep_to_drive(chain, now, laws)
+        sweep_to_load(chain, now, laws)
+        if laws.friction_exponent != 0.0:
+            set_friction(chain, now, laws)
+        most = n if revision < MOST_ITERATIONS else 1  # one by one ends where all at once cycle
+        wrong = laws.presliding_mm == 0.0 and update_active_set(chain, now, laws, most) > 0
+        wrong = update_relations(chain, now, laws) or wrong
+        if not wrong or most == n:
+            wrong = update_ends(chain, now, laws) or wrong
+        if not wrong:
+            return True
+    return False
+
+
+@kernel
+def sweep_to_drive(chain: Floats, now: Moment, laws: SlipLaws) -> None:
+    """Write each segment's tension as (p x + q)/r of the node before it, from the load on."""
+    last = laws.n + 1
+    guide = moving_friction(laws.load)
+    give, F0 = chain[COMPLIANCE + laws.n], laws.preload_N
+    if laws.load.given == DISPLACEMENT:
+        p, q, r = 1.0, give * F0 - now.load, give
+    elif chain[SLIP + last] == 0.0 and guide > 0.0:
+        p, q, r = 1.0, give * F0 - chain[POSITION_BEFORE + last], give
+    else:
+        p, q = load_tangent(chain, now, laws) if laws.load.given == SPRING else (0.0, now.load)
+        q += chain[SLIP + last] * guide + p * give * F0
+        r = 1.0 + p * give
+    chain[SWEEP_P + laws.n], chain[SWEEP_Q + laws.n], chain[SWEEP_R + laws.n] = p, q, r
+    if laws.presliding_mm > 0.0:
+        eliminate_presliding(chain, p, q, r, laws)
+    else:
+        eliminate_sliding(chain, p, q, r, laws)
+
+
+@kernel
+def eliminate_sliding(chain: Floats, p: float, q: float, r: float, laws: SlipLaws) -> None:
+    """Go on to the drive over nodes that slip or stick."""
+    F0 = laws.preload_N
+    for k in range(laws.n):
+        i = laws.n - k  # node i, then the segment before it
+        give = chain[COMPLIANCE + i - 1]
+        if chain[SLIP + i] == 0.0:
+            p, q, r = 1.0, give * F0 - chain[POSITION_BEFORE + i], give
+        else:
+            pull = p * give
+            q += chain[DROP + i] * r + pull * F0
+            r = chain[FACTOR + i] * r + pull
+        chain[SWEEP_P + i - 1], chain[SWEEP_Q + i - 1], chain[SWEEP_R + i - 1] = p, q, r
+
+
+@kernel
+def eliminate_presliding(chain: Floats, p: float, q: float, r: float, laws: SlipLaws) -> None:
+    """Go on to the drive over nodes on bristles, which all slide."""
+    F0 = laws.preload_N
+    for k in range(laws.n):
+        i = laws.n - k
+        if k % TOGETHER == 0:  # without any division they would outgrow a float
+            p, q, r = p / r, q / r, 1.0
+        p += chain[DROP_SLOPE + i] * r
+        pull = p * chain[COMPLIANCE + i - 1]
+        q += chain[DROP + i] * r + pull * F0
+        r = chain[FACTOR + i] * r + pull
+        chain[SWEEP_P + i - 1], chain[SWEEP_Q + i - 1], chain[SWEEP_R + i - 1] = p, q, r
+
+
+@kernel
+def sweep_to_load(chain: Floats, now: Moment, laws: SlipLaws) -> None:
+    """Find positions and tensions, from the drive on."""
+    n, last = laws.n, laws.n + 1
+    chain[POSITION] = drive_position(chain, now, laws)
+    if laws.presliding_mm > 0.0:
+        substitute_presliding(chain, laws)
+    else:
+        substitute_sliding(chain, laws)
+    chain[POSITION + last] = chain[POSITION + n] - chain[COMPLIANCE + n] * (
+        chain[TENSION + n] - laws.preload_N
+    )
+    if laws.load.given == DISPLACEMENT:
+        chain[POSITION + last] = now.load
+    elif chain[SLIP + last] == 0.0 and moving_friction(laws.load) > 0.0:
+        chain[POSITION + last] = chain[POSITION_BEFORE + last]
+
+
+@kernel
+def substitute_sliding(chain: Floats, laws: SlipLaws) -> None:
+    """Find places and tensions of nodes that slip or stick."""
+    chain[TENSION] = (chain[SWEEP_P] * chain[POSITION] + chain[SWEEP_Q]) / chain[SWEEP_R]
+    for i in range(1, laws.n + 1):
+        if chain[SLIP + i] != 0.0:
+            drawn = chain[COMPLIANCE + i - 1] * (chain[TENSION + i - 1] - laws.preload_N)
+            chain[POSITION + i] = chain[POSITION + i - 1] - drawn
+            chain[TENSION + i] = chain[FACTOR + i] * chain[TENSION + i - 1] - chain[DROP + i]
+        else:
+            chain[POSITION + i] = chain[POSITION_BEFORE + i]
+            chain[TENSION + i] = (
+                chain[SWEEP_P + i] * chain[POSITION + i] + chain[SWEEP_Q + i]
+            ) / chain[SWEEP_R + i]
+
+
+@kernel
+def substitute_presliding(chain: Floats, laws: SlipLaws) -> None:
+    """Find places and tensions of nodes on bristles; only the places follow from each other."""
+    for j in range(laws.n + 1):
+        inverse = 1.0 / chain[SWEEP_R + j]
+        chain[SWEEP_P + j] *= inverse
+        chain[SWEEP_Q + j] *= inverse
+        chain[SWEEP_R + j] = 1.0
+    place = chain[POSITION]
+    for i in range(1, laws.n + 1):
+        give = chain[COMPLIANCE + i - 1]
+        place = (1.0 - give * chain[SWEEP_P + i - 1]) * place + give * (
+            laws.preload_N - chain[SWEEP_Q + i - 1]
+        )
+        chain[POSITION + i] = place
+    for j in range(laws.n + 1):
+        chain[TENSION + j] = chain[SWEEP_P + j] * chain[POSITION + j] + chain[SWEEP_Q + j]
+
+
+@kernel
+def update_active_set(chain: Floats, now: Moment, laws: SlipLaws, most: int) -> int:
+    """Free the nodes whose tensions exceed their friction, hold those that slip backwards.
+
+    Returns how many nodes it revised, at most so many, from the drive on.
+    """
+    n = laws.n
+    loss = now.losses.viscous_N / n
+    revised = 0
+    for i in range(1, n + 1):
+        before = chain[SLIP + i]
+        if before == 0.0:
+            chain[SLIP + i] = breakaway(i, loss, chain)
+        elif slips_backwards(i, chain, laws):
+            chain[SLIP + i] = 0.0
+        if chain[SLIP + i] != before:
+            revised += 1
+            if revised == most:
+                break
+    return revised
