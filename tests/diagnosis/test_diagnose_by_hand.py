@@ -94,13 +94,17 @@ def test_a_rest_is_said_by_how_much_of_it_there_is():
 
 
 def test_why_nothing_can_be_diagnosed():
-    some, none = SimpleNamespace(runs=[1]), SimpleNamespace(runs=[])
     good = SimpleNamespace(converged=True, message="")
     bad = SimpleNamespace(converged=False, message="steps")
-    assert d._not_possible(some, good) is None
-    assert d._not_possible(none, good).startswith("no run lasts")
-    assert d._not_possible(some, None).startswith("these recordings identify no")
-    assert d._not_possible(some, bad).endswith("did not converge (steps).")
+
+    def reason(runs, fitted):
+        problem = SimpleNamespace(runs=runs)
+        return d._not_possible(SimpleNamespace(problem=problem, fitted=fitted))
+
+    assert reason([1], good) is None
+    assert reason([], good).startswith("no run lasts")
+    assert reason([1], None).startswith("these recordings identify no")
+    assert reason([1], bad).endswith("did not converge (steps).")
 
 
 def test_a_tendon_stays_near_its_data_sheet(monkeypatch):
@@ -120,9 +124,16 @@ def test_a_tendon_stays_near_its_data_sheet(monkeypatch):
 
 def nominal(monkeypatch, converged=True, blocks=9):
     fitted = SimpleNamespace(converged=converged, message="m")
-    base = SimpleNamespace(runs=[1], solve=lambda: (Model(()), fitted, ["solved"]), untold=["u"])
-    monkeypatch.setattr(d, "nominal_fit", lambda *_: base)
-    monkeypatch.setattr(d, "Bench", lambda base: SimpleNamespace(base=base))
+    base = SimpleNamespace(
+        problem=SimpleNamespace(runs=[1]),
+        model=Model(()),
+        fitted=fitted,
+        cannot_tell=["solved"],
+        not_identifiable=("u",),
+    )
+    monkeypatch.setattr(d, "nominal_fit", lambda *_: "problem")
+    monkeypatch.setattr(d, "solve_fit", {"problem": base}.__getitem__)
+    monkeypatch.setattr(d, "bench_of", lambda base: SimpleNamespace(base=base))
     monkeypatch.setattr(d, "bench_folds", lambda bench: SimpleNamespace(blocks=blocks))
     monkeypatch.setattr(d.Search, "run", lambda self: frozenset())
     concluded = diagnosis("sufficient")
@@ -132,16 +143,16 @@ def nominal(monkeypatch, converged=True, blocks=9):
 
 def test_what_cannot_be_decided_is_not(monkeypatch):
     nominal(monkeypatch, converged=False)
-    found = d.diagnose(None, None, [])
+    found = d.diagnose_runs(None, None, [])
     assert (found.verdict, found.cannot_tell) == ("undecided", ("solved",))
     assert "converge" in found.reason
     nominal(monkeypatch, blocks=5)
-    few = d.diagnose(None, None, [])
+    few = d.diagnose_runs(None, None, [])
     assert few.verdict == "undecided"
     assert few.reason == "only 5 stretches are independent of each other: too few."
     nominal(monkeypatch, blocks=6)
     counted = Counted()
-    assert d.diagnose(None, None, [], counted).verdict == "sufficient"
+    assert d.diagnose_runs(None, None, [], counted).verdict == "sufficient"
     assert counted.total == counted.done == 1  # the search is made up
 
 
@@ -262,7 +273,7 @@ def test_an_uneven_bend_and_the_noise_add_up_in_squares(monkeypatch):
         d, "estimates_of", lambda unknowns, fit, ids: [Estimate("a", fit.stderr[0], "1", "fitted")]
     )
     folds = Folds(np.zeros(6, int), np.array([0, 0, 1, 2, 2, 4]), np.repeat([0, 1], 3), True)
-    bench = SimpleNamespace(rigs=[0, 1], base=SimpleNamespace(ids=dict))
+    bench = SimpleNamespace(rigs=[0, 1], base=SimpleNamespace(problem=SimpleNamespace(ids=[])))
     trial = SimpleNamespace(unknowns=[], solution=None)
     (told,) = d._estimates(SimpleNamespace(folds=folds, bench=bench), trial)
     assert told.value == 5.0

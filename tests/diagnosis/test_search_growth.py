@@ -41,14 +41,16 @@ class Bench:
         found.weighed = self.weighed
         return found
 
-    def weighed_by(self, trial):
-        assert trial.weighed == self.weighed
-        return Bench(self.mean_squares, self.mesh, self.weighed + 1)
+
+def reweighed(bench, trial):
+    assert trial.weighed == bench.weighed
+    return Bench(bench.mean_squares, bench.mesh, bench.weighed + 1)
 
 
 @pytest.fixture
 def made(monkeypatch):
     """A search over given mean squares, 8 where none is given, held out evenly."""
+    monkeypatch.setattr(s, "reweighed_bench", reweighed)
     monkeypatch.setattr(
         s, "held_out_squares", lambda trial, _: np.full(BLOCKS, trial.mean_square * SIZE / BLOCKS)
     )

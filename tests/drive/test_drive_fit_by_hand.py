@@ -44,11 +44,11 @@ def test_every_number_is_sought_where_it_is_plausible():
 def test_a_number_is_scaled_by_its_size_or_its_logarithm():
     lag, spring = d.TERMS["lag"][0], d.TERMS["spring"][0]
     u = d._unknown(lag, 0.02)
-    assert (u.name, u.run, u.start, u.lower, u.upper, u.scale) == (
+    assert (u.name, u.run, u.initial, u.lower, u.upper, u.scale) == (
         "motor_lag_s", None, pytest.approx(2.0), 0.0, pytest.approx(500.0), 1.0,
     )  # fmt: skip
     u = d._unknown(spring, 8.0)
-    assert (u.start, u.scale) == (pytest.approx(math.log(8.0)), 0.5)
+    assert (u.initial, u.scale) == (pytest.approx(math.log(8.0)), 0.5)
 
 
 def bench_with(mean_square, answers=lambda start: (1.0, True), fresh=None):

@@ -9,7 +9,7 @@ from tsas_cli.diagnosis.held_out import held_out_values
 from tsas_cli.diagnosis.remainder import Remainder
 from tsas_cli.diagnosis.search import Search
 from tsas_cli.identification.extension import Trial
-from tsas_cli.identification.joint_fit import rig_at
+from tsas_cli.identification.fit_problem import rig_at
 
 
 @dataclass(frozen=True)

@@ -18,9 +18,10 @@ from tsas_cli.diagnosis.uneven_bend import stderr_of_unevenness
 from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.base_fit import base_fit, slopes_of
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.extension import Bench, Trial
-from tsas_cli.identification.fit import Fitted, with_errors
-from tsas_cli.identification.joint_fit import JointFit, estimates_of
+from tsas_cli.identification.extension import Bench, Trial, bench_of
+from tsas_cli.identification.fit import with_errors
+from tsas_cli.identification.fit_problem import FitProblem
+from tsas_cli.identification.joint_fit import FittedModel, estimates_of, solve_fit
 from tsas_cli.identification.model import Model, data_sheet
 from tsas_cli.identification.phases import segment
 from tsas_cli.identification.preload_correction import with_preload_correction
@@ -118,36 +119,38 @@ def diagnose_runs(
         The runs, prepared.
     """
     step.ahead(1)
-    base = nominal_fit(manifest, stated, runs)
-    model, fitted, sentences = base.solve()
+    base = solve_fit(nominal_fit(manifest, stated, runs))
     step()
-    reason = _not_possible(base, fitted)
+    model, cannot_tell = base.model, tuple(base.cannot_tell)
+    reason = _not_possible(base)
     if reason is not None:
-        return Diagnosis("undecided", reason, model, model, cannot_tell=tuple(sentences))
-    bench = Bench(base)
+        return Diagnosis("undecided", reason, model, model, cannot_tell=cannot_tell)
+    bench = bench_of(base)
     search = Search(bench, bench_folds(bench), step)
     if search.folds.blocks < FEW_BLOCKS:
         reason = f"only {search.folds.blocks} stretches are independent of each other: too few."
-        return Diagnosis("undecided", reason, model, model, cannot_tell=tuple(sentences))
-    found = _concluded(search, search.run(), model, tuple(base.untold))
+        return Diagnosis("undecided", reason, model, model, cannot_tell=cannot_tell)
+    found = _concluded(search, search.run(), model, base.not_identifiable)
     extended, nominal = (with_preload_correction(m, runs) for m in (found.model, found.nominal))
     return replace(found, model=extended, nominal=nominal)
 
 
-def nominal_fit(manifest: Manifest, stated: Model, runs: Sequence[Prepared]) -> JointFit:
-    """Return the fit of the nominal parameters, not yet solved; the tendon stays near its sheet."""
+def nominal_fit(manifest: Manifest, stated: Model, runs: Sequence[Prepared]) -> FitProblem:
+    """Return the fit of the nominal parameters as a problem; the tendon stays near its sheet."""
     segments = [segment(run) for run in runs]
     measured = [slopes_of(run, parts) for run, parts in zip(runs, segments, strict=True)]
     plausible = {}
-    told = data_sheet(manifest).value("tendon_stiffness_N")
-    if told is not None:
-        plausible["tendon_stiffness_N"] = (told * (1.0 - PLAUSIBLE), told / (1.0 - PLAUSIBLE))
+    stiffness = data_sheet(manifest).value("tendon_stiffness_N")
+    if stiffness is not None:
+        bounds = stiffness * (1.0 - PLAUSIBLE), stiffness / (1.0 - PLAUSIBLE)
+        plausible["tendon_stiffness_N"] = bounds
     return base_fit(stated, runs, segments, measured, plausible)
 
 
-def _not_possible(base: JointFit, fitted: Fitted | None) -> str | None:
+def _not_possible(base: FittedModel) -> str | None:
     """Say why nothing can be diagnosed, or None."""
-    if not base.runs:
+    fitted = base.fitted
+    if not base.problem.runs:
         return "no run lasts beyond the time in which the tendon forgets how it began."
     if fitted is None:
         return "these recordings identify no parameter of the nominal model."
@@ -224,8 +227,8 @@ def _estimates(search: Search, trial: Trial) -> list[Estimate]:
     fitted = with_errors(trial.unknowns, solution, counted, by_run=True)
     uneven = stderr_of_unevenness(search.bench, trial, counted)
     fitted = replace(fitted, stderr=np.hypot(fitted.stderr, uneven))
-    told = estimates_of(trial.unknowns, fitted, search.bench.base.ids())
-    return [_as_sure_as_the_data_sheet(e, trial) if e.name == SHEATH else e for e in told]
+    estimates = estimates_of(trial.unknowns, fitted, search.bench.base.problem.ids)
+    return [_as_sure_as_the_data_sheet(e, trial) if e.name == SHEATH else e for e in estimates]
 
 
 def _as_sure_as_the_data_sheet(ratio: Estimate, trial: Trial) -> Estimate:

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from tsas_cli.diagnosis.evidence import APART, RICHER, TELLING, Gain, gain
 from tsas_cli.diagnosis.held_out import Folds, held_out_squares
 from tsas_cli.effects import EFFECTS, Effect
-from tsas_cli.identification.extension import TOLERANCE, Bench, Trial
+from tsas_cli.identification.extension import TOLERANCE, Bench, Trial, reweighed_bench
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.identification.screening import Screened, projector, screen
 from tsas_cli.support.steps import SILENT, Steps
@@ -76,7 +76,7 @@ class Search:
         sets = {frozenset[str](), named, *(named - {name} for name in named)}
         self.step.ahead(WEIGHED + len(sets))
         for _ in range(WEIGHED):
-            bench = bench.weighed_by(trial)
+            bench = reweighed_bench(bench, trial)
             trial = bench.fit(sorted(named), near=trial, on_mesh=mesh)
             self.step()
         other = Search(bench, self.folds, self.step, self.effects)

@@ -14,8 +14,9 @@ import numpy as np
 from tsas_cli.diagnosis.diagnose import bench_folds, nominal_fit
 from tsas_cli.diagnosis.search import MOST_EFFECTS, Names, Search
 from tsas_cli.effects import EFFECTS
-from tsas_cli.identification.extension import Bench, Trial
+from tsas_cli.identification.extension import Trial, bench_of
 from tsas_cli.identification.fit import UNDETERMINED
+from tsas_cli.identification.joint_fit import solve_fit
 from tsas_cli.identification.model import data_sheet
 from tsas_cli.identification.prepared import prepare
 from tsas_cli.identification.quantities import QUANTITIES
@@ -80,8 +81,7 @@ def search_of(dataset: Path) -> Search:
     read = read_dataset(dataset)
     runs = [prepare(recording, read.manifest.session_start) for recording in read]
     base = nominal_fit(read.manifest, data_sheet(read.manifest), runs)
-    base.solve()
-    bench = Bench(base)
+    bench = bench_of(solve_fit(base))
     return Search(bench, bench_folds(bench))
 
 
