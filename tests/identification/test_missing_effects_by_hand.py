@@ -114,7 +114,7 @@ def tried(monkeypatch):
         def screen(bench, t, effect, basis):
             log.screened.append((effect.name, t.effects[0], basis))
             return SimpleNamespace(
-                effect=effect, part=parts[effect.name], start=f"at {effect.name}"
+                effect=effect, part=parts[effect.name], initial=f"at {effect.name}"
             )
 
         def fit(names=(), start=None, *, near=None, on_mesh=False):

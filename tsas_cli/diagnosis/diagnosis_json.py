@@ -8,7 +8,7 @@ import numpy.typing as npt
 from tsas_cli.diagnosis.diagnose import Cause, Diagnosis
 from tsas_cli.diagnosis.next_experiment import next_experiment
 from tsas_cli.diagnosis.residual_map import residual_map
-from tsas_cli.diagnosis.search import Search
+from tsas_cli.diagnosis.search import Hypotheses
 from tsas_cli.effects import EFFECTS
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.support.steps import SILENT, Steps
@@ -73,13 +73,12 @@ def _candidates(result: Diagnosis) -> list[dict[str, Any]]:
     if search is None:
         return []
     rows = []
-    nothing: frozenset[str] = frozenset()
     named = frozenset(cause.effect for cause in result.causes)
     for names, mesh in search.trials:
         instead = len(names) == len(named) and len(names - named) <= 1
         if mesh != search.bench.on_mesh(names) or not (len(names) == 1 or (names and instead)):
             continue
-        trial, found = search.trial(names), search.gain(nothing, names)
+        trial, found = search.trial(names), search.gain(names)
         rows.append(
             {
                 "effects": sorted(names),
@@ -94,9 +93,9 @@ def _candidates(result: Diagnosis) -> list[dict[str, Any]]:
     return sorted(rows, key=lambda row: -row["gain_percent"])
 
 
-def _signatures(search: Search) -> dict[str, Any]:
+def _signatures(search: Hypotheses) -> dict[str, Any]:
     """Return how visible each effect is on these inputs, and how alike each two are."""
-    seen = sorted(search.screen(frozenset()), key=lambda s: s.effect.name)
+    seen = sorted(search.screened, key=lambda s: s.effect.name)
     sizes = [float(np.linalg.norm(s.signatures.sum(axis=1))) for s in seen]
     spaces = [_orthonormal(s.signatures) for s in seen]
     likeness = [[_likeness(a, b) for b in spaces] for a in spaces]
@@ -125,7 +124,7 @@ def _maps(result: Diagnosis) -> dict[str, Any]:
     }
 
 
-def _evidence(search: Search) -> dict[str, Any]:
+def _evidence(search: Hypotheses) -> dict[str, Any]:
     folds, runs = search.folds, len(search.bench.rigs)
     if folds.by_run:
         how = f"each of {runs} runs is predicted by a fit to the others"

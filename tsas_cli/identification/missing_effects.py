@@ -74,7 +74,7 @@ def _best_trials(bench: Bench, step: Steps) -> list[Trial]:
     step.ahead(len(worth))
     out = []
     for s, base in worth:
-        trial = bench.fit([s.effect.name], s.start, near=base)
+        trial = bench.fit([s.effect.name], s.initial, near=base)
         if trial.solution.converged and trial.mean_square < base.mean_square:
             out.append(trial)
         step()

@@ -71,8 +71,8 @@ def sparse(dataset: Path, out: Path) -> None:
         return
     nominal = search.trial(NOTHING, on_mesh=bench.on_mesh([name]))
     effect = next(e for e in EFFECTS if e.name == name)
-    start = screen(bench, nominal, effect, projector(nominal)).start
-    fitted = bench.fit([name], start, near=nominal)
+    initial = screen(bench, nominal, effect, projector(nominal)).initial
+    fitted = bench.fit([name], initial, near=nominal)
     write_diagnosis(out, fitted, {name: []} if _drop(nominal, fitted) > DROP else {})
 
 
