@@ -34,7 +34,7 @@ LONGEST_S, LARGEST_MB = 30.0, 2048.0
 # Parts of a diagnosis by file and function; what a planned experiment calls of them is the plan's.
 PARTS = {
     "reading and conditioning": ("prepared.py", "prepare"),
-    "fit of the nominal model": ("joint_fit.py", "solve"),
+    "fit of the nominal model": ("joint_fit.py", "solve_fit"),
     "screening": ("screening.py", "screen"),
     "fits": ("extension.py", "fit"),
     "held-out squares": ("held_out.py", "held_out_squares"),

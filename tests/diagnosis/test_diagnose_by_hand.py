@@ -11,6 +11,7 @@ from tsas_cli.diagnosis import diagnose as d
 from tsas_cli.diagnosis.diagnose import Cause, Diagnosis
 from tsas_cli.diagnosis.held_out import Folds
 from tsas_cli.diagnosis.remainder import Remainder
+from tsas_cli.diagnosis.search import Hypotheses
 from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.extension import Trial
@@ -94,13 +95,17 @@ def test_a_rest_is_said_by_how_much_of_it_there_is():
 
 
 def test_why_nothing_can_be_diagnosed():
-    some, none = SimpleNamespace(runs=[1]), SimpleNamespace(runs=[])
     good = SimpleNamespace(converged=True, message="")
     bad = SimpleNamespace(converged=False, message="steps")
-    assert d._not_possible(some, good) is None
-    assert d._not_possible(none, good).startswith("no run lasts")
-    assert d._not_possible(some, None).startswith("these recordings identify no")
-    assert d._not_possible(some, bad).endswith("did not converge (steps).")
+
+    def reason(runs, fitted):
+        problem = SimpleNamespace(runs=runs)
+        return d._not_possible(SimpleNamespace(problem=problem, fitted=fitted))
+
+    assert reason([1], good) is None
+    assert reason([], good).startswith("no run lasts")
+    assert reason([1], None).startswith("these recordings identify no")
+    assert reason([1], bad).endswith("did not converge (steps).")
 
 
 def test_a_tendon_stays_near_its_data_sheet(monkeypatch):
@@ -120,11 +125,19 @@ def test_a_tendon_stays_near_its_data_sheet(monkeypatch):
 
 def nominal(monkeypatch, converged=True, blocks=9):
     fitted = SimpleNamespace(converged=converged, message="m")
-    base = SimpleNamespace(runs=[1], solve=lambda: (Model(()), fitted, ["solved"]), untold=["u"])
-    monkeypatch.setattr(d, "nominal_fit", lambda *_: base)
-    monkeypatch.setattr(d, "Bench", lambda base: SimpleNamespace(base=base))
+    base = SimpleNamespace(
+        problem=SimpleNamespace(runs=[1]),
+        model=Model(()),
+        fitted=fitted,
+        cannot_tell=["solved"],
+        not_identifiable=("u",),
+    )
+    monkeypatch.setattr(d, "nominal_fit", lambda *_: "problem")
+    monkeypatch.setattr(d, "solve_fit", {"problem": base}.__getitem__)
+    monkeypatch.setattr(d, "bench_of", lambda base: SimpleNamespace(base=base))
     monkeypatch.setattr(d, "bench_folds", lambda bench: SimpleNamespace(blocks=blocks))
-    monkeypatch.setattr(d.Search, "run", lambda self: frozenset())
+    search = SimpleNamespace(named=frozenset())
+    monkeypatch.setattr(d, "find_effects", lambda *_: search)
     concluded = diagnosis("sufficient")
     monkeypatch.setattr(d, "_concluded", lambda *_: concluded)
     monkeypatch.setattr(d, "with_preload_correction", lambda model, runs: model)
@@ -132,43 +145,32 @@ def nominal(monkeypatch, converged=True, blocks=9):
 
 def test_what_cannot_be_decided_is_not(monkeypatch):
     nominal(monkeypatch, converged=False)
-    found = d.diagnose(None, None, [])
+    found = d.diagnose_runs(None, None, [])
     assert (found.verdict, found.cannot_tell) == ("undecided", ("solved",))
     assert "converge" in found.reason
     nominal(monkeypatch, blocks=5)
-    few = d.diagnose(None, None, [])
+    few = d.diagnose_runs(None, None, [])
     assert few.verdict == "undecided"
     assert few.reason == "only 5 stretches are independent of each other: too few."
     nominal(monkeypatch, blocks=6)
     counted = Counted()
-    assert d.diagnose(None, None, [], counted).verdict == "sufficient"
+    assert d.diagnose_runs(None, None, [], counted).verdict == "sufficient"
     assert counted.total == counted.done == 1  # the search is made up
 
 
-class Judged:
-    """A search with given trials: a mean square by effects, held-out squares of ten blocks."""
-
-    def __init__(self, squares, rivals=()):
-        self.squares, self.told = squares, dict(rivals)
-        self.bench = SimpleNamespace(on_mesh=bool)
-        self.folds, self.asked, self.screened = None, [], []
-
-    def trial(self, named, *, on_mesh=None):
-        self.asked.append((named, on_mesh))
-        return SimpleNamespace(named=named)
-
-    def held_out(self, named, *, on_mesh=None):
-        self.asked.append((named, on_mesh))
-        return np.full(10, self.squares[named])
-
-    def rivals(self, named, name):
-        return self.told.get(name, ())
-
-    def screen(self, names):
-        self.screened.append(names)
-
-    def weighed_again(self, named):
-        return self
+def judged(squares, named, rivals=()):
+    """Return hypotheses with held-out squares of ten blocks; all that is named needs a mesh."""
+    rivals = {e.name: dict(rivals).get(e.name, ()) for e in d.EFFECTS if e.name in named}
+    mesh = bool(named)
+    return Hypotheses(
+        SimpleNamespace(on_mesh=bool),
+        None,
+        frozenset(named),
+        rivals,
+        (),
+        {(frozenset(k), mesh): SimpleNamespace(named=frozenset(k)) for k in squares},
+        {(frozenset(k), mesh): np.ones(10) * v for k, v in squares.items()},
+    )
 
 
 @pytest.fixture
@@ -176,11 +178,11 @@ def concluded(monkeypatch):
     """Conclude from mean squares by set of effects; a square below 1 is noise alone."""
 
     def conclude(squares, *named, rivals=()):
-        search = Judged({frozenset(k): v for k, v in squares.items()}, rivals)
+        left = {frozenset(k): v for k, v in squares.items()}
         monkeypatch.setattr(
             d,
             "remainder",
-            lambda bench, trial, folds: Remainder(search.squares[trial.named], {}, ("time_s",)),
+            lambda bench, trial, folds: Remainder(left[trial.named], {}, ("time_s",)),
         )
         monkeypatch.setattr(d, "channel_errors", lambda *_: {})
         monkeypatch.setattr(
@@ -190,34 +192,34 @@ def concluded(monkeypatch):
                 Estimate(f"{name}.size", 1.0, "mm", "fitted") for name in sorted(trial.named)
             ],
         )
-        return d._concluded(search, frozenset(named), Model(()), ("untold",)), search
+        base = SimpleNamespace(model=Model(()), not_identifiable=("a is fixed",))
+        found = judged(squares, named, rivals)
+        return d._concluded(found, found, base)
 
     return conclude
 
 
 def test_the_share_left_is_of_what_was_beyond_the_noise(concluded):
     """Of 9 − 1 there is left 2.15 − 1 − 0.15: an eighth."""
-    found, search = concluded({(): 9.0, (PLAY,): 2.15}, PLAY)
+    found = concluded({(): 9.0, (PLAY,): 2.15}, PLAY)
     assert found.share_left == pytest.approx(1.0 / 8.0)
-    assert (found.verdict, found.cannot_tell) == ("named", ("untold",))
+    assert (found.verdict, found.cannot_tell) == ("named", ("a is fixed",))
     assert [c.effect for c in found.causes] == [PLAY]
     assert [e.name for e in found.causes[0].parameters] == [f"{PLAY}.size"]
     assert [e.name for e in found.model.estimates] == [f"{PLAY}.size"]
     assert found.nominal.estimates == ()
     assert found.causes[0].gain_percent == pytest.approx(100.0 * (1.0 - math.sqrt(2.15 / 9.0)))
-    assert search.screened == [frozenset()]
-    assert (frozenset(), True) in search.asked  # nothing, on the mesh that play needs
     assert "from 3.0 to 1.5 times" in found.reason
 
 
 def test_what_is_below_the_noise_leaves_nothing(concluded):
-    assert concluded({(): 0.9, (PLAY,): 0.5}, PLAY)[0].share_left == 0.0
-    assert concluded({(): 9.0, (PLAY,): 1.1}, PLAY)[0].share_left == 0.0
-    assert concluded({(): 1.5, (PLAY,): 1.65}, PLAY)[0].share_left == pytest.approx(1.0)
+    assert concluded({(): 0.9, (PLAY,): 0.5}, PLAY).share_left == 0.0
+    assert concluded({(): 9.0, (PLAY,): 1.1}, PLAY).share_left == 0.0
+    assert concluded({(): 1.5, (PLAY,): 1.65}, PLAY).share_left == pytest.approx(1.0)
 
 
 def test_where_nothing_is_named_all_is_left(concluded):
-    found, _ = concluded({(): 9.0})
+    found = concluded({(): 9.0})
     assert (found.share_left, found.verdict, found.causes) == (1.0, "unexplained", ())
     assert found.nominal == found.model
     assert found.before.named == found.final.named == frozenset()
@@ -225,7 +227,7 @@ def test_where_nothing_is_named_all_is_left(concluded):
 
 def test_causes_stand_in_the_order_of_the_catalogue_with_their_own_parameters(concluded):
     squares = {(): 9.0, (PLAY,): 4.0, (MASS,): 2.0, (PLAY, MASS): 1.0}
-    found, _ = concluded(squares, MASS, PLAY, rivals={MASS: ("presliding",)})
+    found = concluded(squares, MASS, PLAY, rivals={MASS: ("presliding",)})
     assert [c.effect for c in found.causes] == [PLAY, MASS]
     assert [c.rivals for c in found.causes] == [(), ("presliding",)]
     assert [c.gain_percent for c in found.causes] == pytest.approx(
@@ -236,13 +238,11 @@ def test_causes_stand_in_the_order_of_the_catalogue_with_their_own_parameters(co
 
 
 def test_the_gain_has_the_interval_of_its_blocks():
-    search = Judged({frozenset(): 4.0, frozenset({PLAY}): 1.0})
-    found = d._cause(search, frozenset({PLAY}), PLAY, (), [])
+    found = d._cause(judged({(): 4.0, (PLAY,): 1.0}, [PLAY]), PLAY, [])
     assert found.gain_percent == pytest.approx(50.0)
     assert found.gain_interval_percent == pytest.approx((50.0, 50.0))
-    spread = {frozenset(): np.full(10, 4.0), frozenset({PLAY}): np.linspace(0.5, 1.5, 10)}
-    search.held_out = lambda named, on_mesh=None: spread[named]
-    uneven = d._cause(search, frozenset({PLAY}), PLAY, (), [])
+    spread = {(): 4.0, (PLAY,): np.linspace(0.5, 1.5, 10)}
+    uneven = d._cause(judged(spread, [PLAY]), PLAY, [])
     low, high = uneven.gain_interval_percent
     assert 40.0 < low < 49.0 < uneven.gain_percent < 51.0 < high < 60.0
 
@@ -262,7 +262,7 @@ def test_an_uneven_bend_and_the_noise_add_up_in_squares(monkeypatch):
         d, "estimates_of", lambda unknowns, fit, ids: [Estimate("a", fit.stderr[0], "1", "fitted")]
     )
     folds = Folds(np.zeros(6, int), np.array([0, 0, 1, 2, 2, 4]), np.repeat([0, 1], 3), True)
-    bench = SimpleNamespace(rigs=[0, 1], base=SimpleNamespace(ids=dict))
+    bench = SimpleNamespace(rigs=[0, 1], base=SimpleNamespace(problem=SimpleNamespace(ids=[])))
     trial = SimpleNamespace(unknowns=[], solution=None)
     (told,) = d._estimates(SimpleNamespace(folds=folds, bench=bench), trial)
     assert told.value == 5.0

@@ -13,8 +13,9 @@ from tsas_cli.diagnosis.held_out import Folds
 from tsas_cli.diagnosis.plan import Better, Plan, Proposal
 from tsas_cli.diagnosis.remainder import Remainder
 from tsas_cli.diagnosis.rig_file import Limits
+from tsas_cli.diagnosis.search import Hypotheses
 from tsas_cli.diagnosis.visibility import Cause as Seeable
-from tsas_cli.diagnosis.visibility import Imitation, Part, Seen
+from tsas_cli.diagnosis.visibility import Imitation, Look, Part, Seen
 from tsas_cli.drive.diagnosis import DriveCause, DriveDiagnosis
 from tsas_cli.stages.diagnose import DiagnosisResult
 from tsas_cli.stages.identify_harmonic_drive import DriveResult
@@ -23,7 +24,7 @@ from tsas_cli.stages.plan import PlanResult
 RESULTS = (DiagnosisResult, DriveResult, PlanResult)
 FOUND = (
     *(Candidate, Channel, Cause, Diagnosis, DriveCause, DriveDiagnosis, Gain, FurtherRuns, Folds),
-    *(Better, Plan, Proposal, Remainder, Seeable, Imitation, Part, Seen),
+    *(Better, Plan, Proposal, Remainder, Seeable, Imitation, Hypotheses, Look, Part, Seen),
 )
 
 

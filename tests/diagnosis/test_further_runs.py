@@ -74,29 +74,24 @@ def test_each_is_recorded_right_after_the_last_run_with_noise_of_its_own(monkeyp
 @pytest.fixture
 def looked(monkeypatch):
     """What a fit of some runs is asked for; the fit leaves out what `out` names."""
-    seen = SimpleNamespace(left_out=[], out=(), fits=[], solved=0)
+    seen = SimpleNamespace(out=(), fits=[])
 
-    class Fit:
-        def __init__(self, start, kept, runs):
-            seen.start, seen.kept = start, kept
-            self.runs = [run for run in runs if run.run.id not in seen.out]
-            self.left_out = [f"run {i} is short" for i in seen.out]
+    def prepare_fit(initial, fixed, runs):
+        seen.initial, seen.fixed = initial, fixed
+        return SimpleNamespace(
+            runs=[run for run in runs if run.run.id not in seen.out],
+            left_out=[f"run {i} is short" for i in seen.out],
+        )
 
-        def solve(self):
-            seen.solved += 1
-
-    class Bench:
-        def __init__(self, fit):
-            assert seen.solved
-
-        def fit(self, named, start, *, on_mesh):
-            seen.fits.append((named, start, on_mesh))
-            return "trial"
+    def fit(named, initial, *, on_mesh):
+        seen.fits.append((named, initial, on_mesh))
+        return "trial"
 
     parts = SimpleNamespace(part=list)
-    monkeypatch.setattr(f, "JointFit", Fit)
-    monkeypatch.setattr(f, "Bench", Bench)
-    monkeypatch.setattr(f, "Look", lambda bench, trial: parts)
+    monkeypatch.setattr(f, "prepare_fit", prepare_fit)
+    monkeypatch.setattr(f, "solve_fit", lambda problem: "solved")
+    monkeypatch.setattr(f, "bench_of", {"solved": SimpleNamespace(fit=fit)}.__getitem__)
+    monkeypatch.setattr(f, "look_at", lambda bench, trial: parts)
     return seen
 
 
@@ -109,26 +104,26 @@ def further(*ids):
 def test_what_is_there_and_what_is_added_is_told_apart_by_the_runs_names(looked):
     looked.out = ("b", "two")
     runs = [recorded(i) for i in ("a", "b", "c")]
-    found = f.beside(runs, further("one", "two", "three"), "start", "kept")
+    found = f.beside(runs, further("one", "two", "three"), "initial", "fixed")
     assert found.there == (0, 1)
     assert found.added == {2: CANDIDATES[0], 3: CANDIDATES[2]}
     assert found.left_out == ("run b is short",)
     assert found.part() == [0, 1]
     assert found.part(3) == [0, 1, 3]
-    assert (looked.start, looked.kept, looked.solved) == ("start", "kept", 1)
+    assert (looked.initial, looked.fixed) == ("initial", "fixed")
     assert looked.fits == [([], {}, True)]
 
 
 def test_effects_that_stay_free_are_fitted_by_their_names(looked):
     free = {"presliding.stiffness": 2.0, "backlash.play_mm": 0.1, "presliding.damping": 3.0}
-    f.beside([recorded()], [], "start", "kept", free)
+    f.beside([recorded()], [], "initial", "fixed", free)
     assert looked.fits == [(["backlash", "presliding"], free, True)]
 
 
 def test_runs_that_show_nothing_are_refused(looked):
     looked.out = ("a",)
     with pytest.raises(InputError, match="no run makes the whole tendon slip"):
-        f.beside([recorded()], further("one"), "start", "kept")
+        f.beside([recorded()], further("one"), "initial", "fixed")
 
 
 def test_further_runs_are_recorded_as_the_first_plain_one_was(monkeypatch):
@@ -147,13 +142,13 @@ def test_further_runs_are_recorded_as_the_first_plain_one_was(monkeypatch):
     weighted = recorded("w", run=SimpleNamespace(load="force"))
     plain = recorded(time_s=(0.0, 0.02, 0.04, 5.0))
     runs = [by_force, weighted, plain, recorded("later")]
-    base = SimpleNamespace(runs=runs, start="start", kept="kept")
-    bench = SimpleNamespace(base=base, rigs=["r0", "r1", "r2", "r3"])
+    problem = SimpleNamespace(runs=runs, initial="initial", fixed="fixed")
+    bench = SimpleNamespace(base=SimpleNamespace(problem=problem), rigs=["r0", "r1", "r2", "r3"])
     found = f.beside_recorded(bench, {"a.b": 1.0})
-    assert found == (runs, "further", "start", "kept", {"a.b": 1.0})
+    assert found == (runs, "further", "initial", "fixed", {"a.b": 1.0})
     assert (given["proposed"], given["rig"], given["runs"]) == (("limits", "r2"), "r2", runs)
     assert given["sensors"].rate_Hz == pytest.approx(50.0)
     assert given["sensors"].outputs == {"f_in_N": 0.2}  # x_out has no noise: it never changes
     assert given["sensors"].x_in_mm == 0.04
-    bench.base.runs = [by_force, weighted]
+    problem.runs = [by_force, weighted]
     assert f.beside_recorded(bench)[1] == []

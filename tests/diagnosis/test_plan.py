@@ -10,7 +10,8 @@ from tests.diagnosis.planned import prepared, rig_file, run, seen
 from tsas_cli.diagnosis.plan import plan_rig, propose
 from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.base_fit import base_fit, slopes_of
-from tsas_cli.identification.extension import Bench
+from tsas_cli.identification.extension import bench_of
+from tsas_cli.identification.joint_fit import solve_fit
 from tsas_cli.identification.model import data_sheet
 from tsas_cli.identification.phases import segment
 from tsas_cli.support.errors import InputError
@@ -114,9 +115,7 @@ def test_the_run_that_tells_viscosity_from_friction_has_another_speed():
     manifest, runs = prepared(rig_file(run(10.0, motion="ramps")))
     segments = [segment(r) for r in runs]
     measured = [slopes_of(r, s) for r, s in zip(runs, segments, strict=True)]
-    base = base_fit(data_sheet(manifest), runs, segments, measured)
-    base.solve()
-    bench = Bench(base)
+    bench = bench_of(solve_fit(base_fit(data_sheet(manifest), runs, segments, measured)))
     said = propose(bench, bench.fit(), ("drive_friction", "viscous_friction"))
     assert said.startswith("Record ")
     assert VISCOUS in said or "drive_friction.friction_N" in said

@@ -27,7 +27,7 @@ class Run:
     def errors(self, rig):
         return self._errors
 
-    def answers(self, rig):
+    def predict(self, rig):
         return {"f_in_N": self._f_in}
 
 

@@ -45,7 +45,7 @@ class Errors:
         self.samples = {name: np.array(at) for name, at in samples.items()}
         self.given = {name: np.array(e, dtype=float) for name, e in errors.items()}
 
-    def answers(self, rig):
+    def predict(self, rig):
         return {"f_in_N": 10.0 * rig + np.arange(7.0)}
 
     def errors(self, rig):
@@ -110,7 +110,7 @@ class Run:
     def errors(self, rig):
         return self.given
 
-    def answers(self, rig):
+    def predict(self, rig):
         return {"f_in_N": 7.0 * np.arange(float(self.run.time_s.size))}
 
 

@@ -9,7 +9,7 @@ import pytest
 from tests.counted import Counted
 from tsas_cli.diagnosis import search as s
 from tsas_cli.diagnosis.evidence import Gain
-from tsas_cli.diagnosis.search import Search
+from tsas_cli.diagnosis.search import Hypotheses, Search
 from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.screening import Screened
 
@@ -41,14 +41,16 @@ class Bench:
         found.weighed = self.weighed
         return found
 
-    def weighed_by(self, trial):
-        assert trial.weighed == self.weighed
-        return Bench(self.mean_squares, self.mesh, self.weighed + 1)
+
+def reweighed(bench, trial):
+    assert trial.weighed == bench.weighed
+    return Bench(bench.mean_squares, bench.mesh, bench.weighed + 1)
 
 
 @pytest.fixture
 def made(monkeypatch):
     """A search over given mean squares, 8 where none is given, held out evenly."""
+    monkeypatch.setattr(s, "reweighed_bench", reweighed)
     monkeypatch.setattr(
         s, "held_out_squares", lambda trial, _: np.full(BLOCKS, trial.mean_square * SIZE / BLOCKS)
     )
@@ -156,7 +158,7 @@ def test_a_mesh_is_used_for_both_where_one_needs_it(made):
     ]
     search.gain(names(), names(B))
     assert search.bench.fits[-2][2] is False
-    # The fit on the mesh is a start for the other one.
+    # The fit on the mesh gives the other one its initial values.
     assert search.bench.fits[-2][1] is search.trials[names(), True]
     assert search.held_out(names(), on_mesh=True) is search.squares[names(), True]
     search.matters(names(), {A})
@@ -198,15 +200,17 @@ def test_all_further_effects_are_screened_once(made, monkeypatch):
 
 def test_errors_are_weighed_three_times_by_what_was_found(made):
     counted = Counted()
-    search = made({}, step=counted, mesh=(B,))
-    other = search.weighed_again(names(A, B))
-    assert other.bench.weighed == 3
+    search = made({}, mesh=(B,))
     sets = {names(), names(A), names(B), names(A, B)}
+    trials = {(n, True): search.trial(n, on_mesh=True) for n in sets}
+    found = Hypotheses(search.bench, search.folds, names(A, B), {A: (C,)}, (), trials, {})
+    other = s.weighed_again(found, counted)
+    assert (other.bench.weighed, found.bench.weighed) == (3, 0)
+    assert (other.named, other.rivals) == (found.named, found.rivals)
     assert set(other.trials) == {(n, True) for n in sets}
     assert {trial.weighed for trial in other.trials.values()} == {3}
     assert set(other.squares) == set(other.trials)
     assert counted.total == counted.done == 3 + 4
-    assert other.effects == KNOWN
     near = {fitted: near for fitted, near, _ in other.bench.fits}
     assert all(near[n] is search.trial(n, on_mesh=True) for n in sets - {names(A, B)})
 

@@ -10,7 +10,6 @@ from tsas_cli.diagnosis import visibility as v
 from tsas_cli.diagnosis.visibility import (
     Cause,
     Imitation,
-    Look,
     Part,
     Seen,
     amplitudes_of,
@@ -270,7 +269,7 @@ def test_a_look_at_some_runs_has_their_rows_alone(monkeypatch):
         return np.arange(12.0) * (1.0 + sum(at.values()) ** 2)
 
     bench = SimpleNamespace(closed=[], rigs=[], errors_at=errors_at)
-    look = Look(bench, trial)
+    look = v.look_at(bench, trial)
     found = look.part([0, 2])
     assert found.rows.tolist() == [True] * 4 + [False] * 4 + [True] * 4
     assert found.block.tolist() == [0, 0, 1, 1, 2, 2, 3, 3]
@@ -279,7 +278,7 @@ def test_a_look_at_some_runs_has_their_rows_alone(monkeypatch):
     one = Cause(effect("e"), amplitude(neutral=1.0), {"e.shape": 2.0})
     # (1 + (2 + 1 + 3)²) − 1, for each unit of a size of 3.
     np.testing.assert_allclose(look.signature(one, 3.0), 12.0 * np.arange(12.0))
-    assert asked == [{"e.shape": 2.0, "e.size": 4.0}, {}]
+    assert asked == [{}, {"e.shape": 2.0, "e.size": 4.0}]
     look.signature(one, 3.0)
     assert len(asked) == 2
     other = Cause(one.effect, one.parameter, {"e.shape": 0.0})

@@ -12,10 +12,12 @@ from tsas_cli.diagnosis.diagnose import (
     leaves_much,
     verdict_of,
 )
+from tsas_cli.diagnosis.evidence import gain
 from tsas_cli.drive import diagnosis as dd
+from tsas_cli.drive import search as ds
 from tsas_cli.drive.estimates import DataSheet
 from tsas_cli.drive.runs import DriveRun
-from tsas_cli.drive.search import NOTHING, DriveSearch, drive_folds
+from tsas_cli.drive.search import NOTHING, drive_folds
 from tsas_cli.drive.words import (
     cannot_tell,
     equation_of,
@@ -35,12 +37,12 @@ def terms(*names):
     return frozenset(names)
 
 
-class MadeUp(DriveSearch):
-    """A search whose held-out squares per block are given for each set of terms."""
+class MadeUp:
+    """A search whose held-out squares per block are given by set of terms; it is its own fits."""
 
     def __init__(self, squares, default=10.0):
-        super().__init__(SimpleNamespace(stated_Hz=None))
         self.given, self.default, self.fitted = squares, default, []
+        self.fits = self
 
     def held_out(self, names):
         return np.full(BLOCKS, float(self.given.get(names, self.default)))
@@ -52,8 +54,11 @@ class MadeUp(DriveSearch):
         self.fitted.append(names)
         return SimpleNamespace(solution=SimpleNamespace(converged=True), mean_square=0.0)
 
-    def _folds_by(self, best):
-        return None
+    def trials_of(self, sets):
+        return [self.trial(names) for names in sets]
+
+    def gain(self, before, after):
+        return gain(self.held_out(before), self.held_out(after))
 
 
 ALL = [terms(), terms("lag"), terms("delay"), terms("spring"), terms("lag", "spring")]
@@ -61,35 +66,35 @@ ALL = [terms(), terms("lag"), terms("delay"), terms("spring"), terms("lag", "spr
 
 def test_rivals_of_a_lag_are_what_explains_as_much_in_its_place():
     search = MadeUp({NOTHING: 5.0, terms("lag"): 1.0, terms("delay"): 1.005, terms("play"): 1.02})
-    assert search.rivals(terms("lag"), "lag") == ("delay",)
+    assert ds.rivals(search, terms("lag"), "lag") == ("delay",)
     closer = MadeUp({NOTHING: 5.0, terms("lag"): 1.0, terms("play"): 1.005})
-    assert closer.rivals(terms("lag"), "lag") == ("play",)
+    assert ds.rivals(closer, terms("lag"), "lag") == ("play",)
     alone = MadeUp({NOTHING: 1.01, terms("lag"): 1.0, terms("delay"): 1.0})
-    assert alone.rivals(terms("lag"), "lag") == ()  # no better than nothing
+    assert ds.rivals(alone, terms("lag"), "lag") == ()  # no better than nothing
 
 
 def test_the_gear_is_looked_at_where_something_is_left():
     quiet = MadeUp({NOTHING: 1.14}, default=0.5)
-    assert quiet._more(NOTHING) == NOTHING
+    assert ds._with_gear(quiet, NOTHING) == NOTHING
     assert quiet.fitted == []
     play = MadeUp({NOTHING: 4.0, terms("play"): 1.0, terms("ripple", "play"): 1.0}, default=4.0)
-    assert play._more(NOTHING) == terms("play")
+    assert ds._with_gear(play, NOTHING) == terms("play")
     ripple = MadeUp({NOTHING: 4.0, terms("ripple"): 1.0, terms("ripple", "play"): 0.98}, 4.0)
-    assert ripple._more(NOTHING) == terms("ripple")  # both are not surely better
+    assert ds._with_gear(ripple, NOTHING) == terms("ripple")  # both are not surely better
     both = MadeUp({NOTHING: 4.0, terms("ripple"): 2.0, terms("ripple", "play"): 1.0}, 4.0)
-    assert both._more(NOTHING) == terms("ripple", "play")
+    assert ds._with_gear(both, NOTHING) == terms("ripple", "play")
     neither = MadeUp({NOTHING: 4.0}, default=3.99)
-    assert neither._more(NOTHING) == NOTHING
+    assert ds._with_gear(neither, NOTHING) == NOTHING
     found = MadeUp({terms("ripple", "play"): 4.0}, default=1.0)
-    assert found._more(terms("ripple", "play")) == terms("ripple", "play")
+    assert ds._with_gear(found, terms("ripple", "play")) == terms("ripple", "play")
 
 
-def test_a_gear_that_lags_explain_as_well_is_left_out():
+def test_a_gear_that_lags_explain_as_well_is_left_out(monkeypatch):
     search = MadeUp({terms("lag", "play"): 1.0, terms("lag"): 1.01})
-    search.chosen = lambda gear: terms("lag") | gear
-    assert search._without_idle_gear(terms("lag", "play")) == terms("lag")
+    monkeypatch.setattr(ds, "chosen", lambda search, gear: terms("lag") | gear)
+    assert ds._without_idle_gear(search, terms("lag", "play")) == terms("lag")
     needed = MadeUp({terms("lag", "play"): 1.0, terms("lag"): 3.0})
-    assert needed._without_idle_gear(terms("lag", "play")) == terms("lag", "play")
+    assert ds._without_idle_gear(needed, terms("lag", "play")) == terms("lag", "play")
 
 
 def run_of(kind, size=1000, highest_Hz=20.0):

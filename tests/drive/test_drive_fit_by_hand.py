@@ -48,19 +48,23 @@ def test_every_number_is_sought_where_it_is_plausible():
 def test_a_number_is_scaled_by_its_size_or_its_logarithm():
     lag, spring = d.TERMS["lag"][0], d.TERMS["spring"][0]
     u = d._unknown(lag, 0.02)
-    assert (u.name, u.run, u.start, u.lower, u.upper, u.scale) == (
+    assert (u.name, u.run, u.initial, u.lower, u.upper, u.scale) == (
         "motor_lag_s", None, pytest.approx(2.0), 0.0, pytest.approx(500.0), 1.0,
     )  # fmt: skip
     u = d._unknown(spring, 8.0)
-    assert (u.start, u.scale) == (pytest.approx(math.log(8.0)), 0.5)
+    assert (u.initial, u.scale) == (pytest.approx(math.log(8.0)), 0.5)
+
+
+def bench_of(runs=(), **parts):
+    """Return a bench, some of whose parts are made up."""
+    bench = d.DriveBench(runs, parts.get("seen"), parts.get("stated_Hz"))
+    bench.__dict__.update(parts)
+    return bench
 
 
 def bench_with(mean_square, answers=lambda start: (1.0, True), fresh=None):
     """A bench whose fits are made up; it remembers from where it was asked to fit."""
-    bench = object.__new__(d.DriveBench)
     asked = []
-    bench._from_response = lambda terms: fresh or DriveValues(0.02)
-    bench._mean_square = mean_square
 
     def solved(quantities, start, terms, tolerance):
         asked.append((start, tolerance))
@@ -68,8 +72,8 @@ def bench_with(mean_square, answers=lambda start: (1.0, True), fresh=None):
         solution = SimpleNamespace(converged=converged)
         return SimpleNamespace(start=start, mean_square=square, solution=solution, terms=terms)
 
-    bench._solved = solved
-    return bench, asked
+    parts = {"_from_response": lambda terms: fresh or DriveValues(0.02)}
+    return bench_of(_mean_square=mean_square, _solved=solved, **parts), asked
 
 
 def simpler(**values):
@@ -129,10 +133,8 @@ def test_the_best_fit_that_has_converged_is_taken():
 
 
 def test_all_samples_of_all_runs_count_alike():
-    bench = object.__new__(d.DriveBench)
-    bench.runs = ["a", "b"]
     errors = [np.array([1.0, 2.0]), np.array([3.0, 4.0, 5.0])]
-    bench._error = lambda r, values: errors[r]
+    bench = bench_of(["a", "b"], _error=lambda r, values: errors[r])
     assert bench._mean_square(DriveValues(0.02)) == (1 + 4 + 9 + 16 + 25) / 5
 
 
@@ -148,9 +150,7 @@ def run_of(values, speed, at=1.7, *, noise_mm=NOISE_MM):
 
 
 def error_of(run, values):
-    bench = object.__new__(d.DriveBench)
-    bench.runs = [run]
-    return bench._error(0, values)
+    return bench_of([run])._error(0, values)
 
 
 def test_errors_count_in_units_of_noise_but_for_where_a_run_begins():
@@ -235,30 +235,25 @@ def test_two_points_say_nothing():
 @pytest.mark.parametrize(("points", "fitted"), [(4, False), (5, True)])
 def test_more_points_than_twice_the_numbers_are_fitted(points, fitted):
     """Read off is the delay alone; a fit finds the gain too, twice that of the runs' travel."""
-    bench = object.__new__(d.DriveBench)
-    bench.gain, bench.stated_Hz = GAIN, None
     w = np.linspace(1.0, 8.0, points + 1)
     told = np.arange(points + 1) < points  # the last one says nothing, and is wrong
     response = 2.0 * GAIN * late_by(0.03, w) / (1j * w)
     response[-1] *= 9.0
-    bench.seen = SimpleNamespace(frequency_Hz=w / (2.0 * math.pi), excited=told, response=response)
-    found = bench._from_response(frozenset(["delay", "ripple", "play"]))
+    seen = SimpleNamespace(frequency_Hz=w / (2.0 * math.pi), excited=told, response=response)
+    found = bench_of(gain=GAIN, seen=seen)._from_response(frozenset(["delay", "ripple", "play"]))
     assert found.delay_s == pytest.approx(0.03, rel=1e-3)
     assert found.gain_mm_per_s_rpm == pytest.approx(2.0 * GAIN if fitted else GAIN, rel=1e-3)
 
 
 def test_numbers_are_put_together_with_the_stated_frequency():
-    bench = object.__new__(d.DriveBench)
-    bench.stated_Hz = 7.0
+    bench = bench_of(stated_Hz=7.0)
     terms = frozenset(["stated", "lag"])
     quantities = d.quantities_of(terms)
     values = bench._values(quantities, np.array([math.log(0.03), 2.0, math.log(0.4)]), terms)
     assert values == pytest.approx(
         DriveValues(0.03, 0.02, natural_frequency_Hz=7.0, damping_ratio=0.4)
     )
-    bench.stated_Hz = None
-    assert bench._values(quantities, np.zeros(3), terms).natural_frequency_Hz == 0.0
-    bench.stated_Hz = 7.0
+    assert bench_of()._values(quantities, np.zeros(3), terms).natural_frequency_Hz == 0.0
     plain = bench._values(d.quantities_of([]), np.zeros(1), frozenset())
     assert plain.natural_frequency_Hz == 0.0
 
@@ -272,7 +267,7 @@ def test_the_gain_is_the_slope_of_travel_over_turns():
 
     runs = [run([4.0, 5.0, 6.0], [1.0, 2.0, 5.0], 0.1), run([0.0, 0.0, 6.0], [0.0, 0.0, 3.0], 1.0)]
     # 4·100 + (4·1 + 4·2)·1 over 2·100 + (4 + 4 + 16)·1
-    assert d._start_gain(runs) == pytest.approx(412.0 / 224.0)
+    assert d._initial_gain(runs) == pytest.approx(412.0 / 224.0)
 
 
 def test_how_far_a_fit_is_off_is_its_mean_square():
@@ -297,9 +292,9 @@ def test_a_run_that_begins_in_motion_may_have_moved_already():
     basis = np.column_stack((np.ones(TIME_S.size), np.exp(-0.8 * TIME_S)))
     left = off - basis @ np.linalg.lstsq(basis, off, rcond=None)[0]
     np.testing.assert_allclose(error_of(run, values), left, atol=1e-8)
-    bench = object.__new__(d.DriveBench)
-    bench.runs = [run]
-    np.testing.assert_allclose(bench.simulated(0, values), x + NOISE_MM * left, atol=1e-10)
+    np.testing.assert_allclose(
+        bench_of([run]).simulated(0, values), x + NOISE_MM * left, atol=1e-10
+    )
 
 
 def test_the_response_of_an_integrator_with_lags():

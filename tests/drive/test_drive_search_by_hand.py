@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 
 from tests.counted import Counted
+from tsas_cli.diagnosis.evidence import gain
 from tsas_cli.drive import search as ds
 from tsas_cli.drive.fit import LINEAR
-from tsas_cli.drive.search import NOTHING, DriveSearch, drive_folds
+from tsas_cli.drive.search import NOTHING, DriveFits, drive_folds
 
 BLOCKS = 20
 
@@ -18,13 +19,12 @@ def terms(*names):
     return frozenset(names)
 
 
-class MadeUp(DriveSearch):
-    """A search whose mean squares are given by set of terms; with `after` once folds are new."""
+class MadeUp:
+    """A search whose mean squares are given by set of terms; it is its own fits."""
 
-    def __init__(self, squares, default=10.0, *, after=None, failed=()):
-        super().__init__(SimpleNamespace(stated_Hz=None))
-        self.given, self.default, self.after = squares, default, after or {}
-        self.failed, self.fitted, self.folded = failed, [], []
+    def __init__(self, squares, default=10.0, *, failed=()):
+        self.given, self.default, self.failed = squares, default, failed
+        self.fits, self.fitted, self.bench = self, [], SimpleNamespace(runs="runs")
 
     def held_out(self, names):
         return np.full(BLOCKS, float(self.given.get(names, self.default)))
@@ -39,13 +39,15 @@ class MadeUp(DriveSearch):
             terms=names, solution=SimpleNamespace(converged=good), mean_square=len(self.fitted)
         )
 
-    def _folds_by(self, best):
-        self.folded.append(best.terms)
-        self.given = self.given | self.after
+    def trials_of(self, sets):
+        return [self.trial(names) for names in sets]
+
+    def gain(self, before, after):
+        return gain(self.held_out(before), self.held_out(after))
 
 
 def test_all_sixteen_structures_are_there_the_simplest_first():
-    found = MadeUp({}).structures(terms("play"))
+    found = ds.structures(terms("play"))
     every = {terms(*c, "play") for n in range(5) for c in combinations(LINEAR, n)}
     assert set(found) == every
     assert len(found) == 16
@@ -56,58 +58,67 @@ def test_all_sixteen_structures_are_there_the_simplest_first():
 
 def test_the_simplest_structure_that_is_not_surely_beaten_is_taken():
     """By three hundredths."""
-    assert MadeUp({terms("lag"): 1.02, terms("lag", "spring"): 1.0}).chosen(NOTHING) == terms("lag")
+    near = MadeUp({terms("lag"): 1.02, terms("lag", "spring"): 1.0})
+    assert ds.chosen(near, NOTHING) == terms("lag")
     far = MadeUp({terms("lag"): 1.04, terms("lag", "spring"): 1.0})
-    assert far.chosen(NOTHING) == terms("lag", "spring")
+    assert ds.chosen(far, NOTHING) == terms("lag", "spring")
 
 
 def test_a_fit_that_did_not_converge_is_not_taken_where_another_did():
     search = MadeUp({terms("lag"): 1.0, terms("delay"): 2.0}, failed=(terms("lag"),))
-    assert search.chosen(NOTHING) == terms("delay")
-    none = MadeUp({terms("lag"): 1.0}, failed=MadeUp({}).structures())
-    assert none.chosen(NOTHING) == terms("lag")
+    assert ds.chosen(search, NOTHING) == terms("delay")
+    none = MadeUp({terms("lag"): 1.0}, failed=ds.structures())
+    assert ds.chosen(none, NOTHING) == terms("lag")
 
 
-def test_with_the_gear_the_structure_is_chosen_again():
+@pytest.fixture
+def folded(monkeypatch):
+    """Let searches compare by the squares of made-up fits; note what gave the folds."""
+    by = []
+    monkeypatch.setattr(ds, "folds_by", lambda best, runs: by.append(best.terms))
+    monkeypatch.setattr(ds, "DriveSearch", lambda fits, folds: fits)
+    return by
+
+
+def test_with_the_gear_the_structure_is_chosen_again(folded):
     """A lag imitates play: with play it is not needed, and the blocks are made anew."""
     squares = {terms("lag"): 4.0, terms("lag", "play"): 1.0, terms("play"): 1.001}
-    search = MadeUp(squares)
-    search.squares = {NOTHING: "old"}
-    assert search.run() == terms("play")
-    assert search.folded == [terms("lag", "play")]
-    assert search.squares == {}
+    named, _ = ds.find_terms(MadeUp(squares))
+    assert named == terms("play")
+    assert folded == [NOTHING, terms("lag", "play")]
 
 
-def test_it_ends_after_three_rounds_at_the_latest():
-    search = MadeUp({})
+def test_it_ends_after_three_rounds_at_the_latest(monkeypatch, folded):
     asked = []
-    search.chosen = lambda gear: terms("lag") | gear
-    search._more = lambda named: asked.append(named) or named | {f"t{len(asked)}"}
-    search._without_idle_gear = lambda named: named
-    assert search.run() == terms("lag")
+    monkeypatch.setattr(ds, "chosen", lambda search, gear: terms("lag") | gear)
+    monkeypatch.setattr(
+        ds, "_with_gear", lambda search, named: asked.append(named) or named | {f"t{len(asked)}"}
+    )
+    monkeypatch.setattr(ds, "_without_idle_gear", lambda search, named: named)
+    assert ds.find_terms(MadeUp({}))[0] == terms("lag")
     assert len(asked) == 3
 
 
-def test_gear_that_is_idle_is_left_out_and_the_rest_stays():
+def test_gear_that_is_idle_is_left_out_and_the_rest_stays(monkeypatch):
     search = MadeUp({terms("lag", "play", "ripple"): 1.0, terms("lag", "ripple"): 1.01}, 9.0)
-    search.chosen = lambda gear: terms("chosen") | gear
+    monkeypatch.setattr(ds, "chosen", lambda search, gear: terms("chosen") | gear)
     named = terms("lag", "play", "ripple")
-    assert search._without_idle_gear(named) == terms("chosen", "ripple")
+    assert ds._without_idle_gear(search, named) == terms("chosen", "ripple")
 
 
 def test_rivals_help_and_are_not_worse_by_a_hundredth():
     squares = {NOTHING: 5.0, terms("lag"): 1.0, terms("delay"): 1.009, terms("spring"): 1.011}
-    assert MadeUp(squares).rivals(terms("lag"), "lag") == ("delay",)
+    assert ds.rivals(MadeUp(squares), terms("lag"), "lag") == ("delay",)
 
 
 def test_the_gear_is_tried_from_the_blur_on():
-    assert MadeUp({NOTHING: 1.149}, 0.5)._more(NOTHING) == NOTHING
-    assert MadeUp({NOTHING: 1.15}, 0.5)._more(NOTHING) != NOTHING
+    assert ds._with_gear(MadeUp({NOTHING: 1.149}, 0.5), NOTHING) == NOTHING
+    assert ds._with_gear(MadeUp({NOTHING: 1.15}, 0.5), NOTHING) != NOTHING
 
 
 def test_what_is_left_of_the_gear_is_tried_alone():
     search = MadeUp({terms("play"): 4.0, terms("play", "ripple"): 1.0})
-    assert search._more(terms("play")) == terms("play", "ripple")
+    assert ds._with_gear(search, terms("play")) == terms("play", "ripple")
     assert search.fitted == [terms("play", "ripple")]
 
 
@@ -115,7 +126,7 @@ def test_the_best_of_single_gears_is_not_beaten_by_the_first_one():
     """Both convince; play is better by far, both together are no better than play."""
     squares = {NOTHING: 4.0, terms("ripple"): 3.0, terms("play"): 1.0}
     search = MadeUp(squares | {terms("ripple", "play"): 1.0})
-    assert search._more(NOTHING) == terms("play")
+    assert ds._with_gear(search, NOTHING) == terms("play")
 
 
 class Bench:
@@ -133,23 +144,23 @@ class Bench:
 
 def test_a_fit_begins_from_the_simpler_ones_that_are_known():
     counted = Counted()
-    search = DriveSearch(Bench(), counted)
+    fits = DriveFits(Bench(), counted)
     for one in (NOTHING, terms("lag"), terms("lag", "delay")):
-        search.trial(one)
-    assert search.bench.began == {
+        fits.trial(one)
+    assert fits.bench.began == {
         NOTHING: [],
         terms("lag"): [NOTHING],
         terms("lag", "delay"): [terms("lag")],
     }
-    assert search.trial(NOTHING) is search.trials[NOTHING]
+    assert fits.trial(NOTHING) is fits.trials[NOTHING]
     assert counted.total == counted.done == 3
 
 
 def test_each_fit_lies_ahead_once():
     counted = Counted()
-    search = DriveSearch(Bench(), counted)
-    search.trials_of([NOTHING, terms("lag")])
-    search.trials_of([terms("lag"), terms("delay")])
+    fits = DriveFits(Bench(), counted)
+    fits.trials_of([NOTHING, terms("lag")])
+    fits.trials_of([terms("lag"), terms("delay")])
     assert counted.total == counted.done == 3
 
 
@@ -163,23 +174,26 @@ def test_blocks_outlast_the_memory_of_the_best_structure(monkeypatch):
         return SimpleNamespace(block=np.arange(6) // 2)
 
     monkeypatch.setattr(ds, "drive_folds", folds)
-    chosen = []
-    search = DriveSearch(Bench(runs))
-    fit = search.bench.fit
+    squares = []
+    bench = Bench(runs)
+    fit = bench.fit
 
     def noted(names, simpler):
         found = fit(names, simpler)
         found.solution.residual = found.solution.residual + len(names)
         return found
 
-    search.bench.fit = noted
+    bench.fit = noted
     monkeypatch.setattr(
-        ds, "held_out_squares", lambda trial, folds: chosen.append(trial) or np.ones(3)
+        ds, "held_out_squares", lambda trial, folds: squares.append(trial) or np.ones(3)
     )
-    assert search.mean_square(NOTHING) == 0.5  # three squares of 1 over six residuals
+    monkeypatch.setattr(ds, "chosen", lambda search, gear: NOTHING)
+    monkeypatch.setattr(ds, "_with_gear", lambda search, named: named)
+    _, search = ds.find_terms(DriveFits(bench))
     assert given == [[[4.0], [5.0, 6.0], [7.0, 8.0, 9.0]]]  # of all four terms
+    assert search.mean_square(NOTHING) == 0.5  # three squares of 1 over six residuals
     search.mean_square(NOTHING)
-    assert len(chosen) == 1
+    assert len(squares) == 1
 
 
 def run_of(band, size=40):

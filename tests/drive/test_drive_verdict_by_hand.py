@@ -35,7 +35,7 @@ class Searched:
     """Held-out mean squares by set of terms, even over twenty blocks of ten residuals."""
 
     def __init__(self, squares, *, stated=None, blocks=20, rivals=()):
-        self.given, self.told = squares, dict(rivals)
+        self.given, self.rivals = squares, dict(rivals)
         self.bench = SimpleNamespace(stated_Hz=stated, runs=[SimpleNamespace(noise_mm=0.1)])
         block = np.arange(10 * blocks) // 10
         self.folds = SimpleNamespace(
@@ -51,13 +51,11 @@ class Searched:
     def gain(self, before, after):
         return gain(self.held_out(before), self.held_out(after))
 
-    def rivals(self, final, term):
-        return self.told.get(term, ())
-
 
 @pytest.fixture
 def diagnosed(monkeypatch):
     monkeypatch.setattr(dd, "_left", lambda search, terms: (("time_s",), 0.36))
+    monkeypatch.setattr(dd, "rivals", lambda search, final, term: search.rivals.get(term, ()))
     return lambda search, final: dd.diagnose_drive(search, final, TOLD)
 
 
@@ -296,7 +294,7 @@ def test_the_turn_is_told_by_the_first_frequency_that_is_excited(monkeypatch):
     np.testing.assert_allclose(far, -450.0)  # beside −540°
 
 
-def test_structures_are_listed_with_the_chosen_one():
+def test_structures_are_listed_with_the_chosen_one(monkeypatch):
     chosen = terms("lag", "play")
     asked = []
 
@@ -304,11 +302,13 @@ def test_structures_are_listed_with_the_chosen_one():
         asked.append(gear)
         return [terms("play"), chosen]
 
+    monkeypatch.setattr(dj, "structures", structures)
+
     def trial(names):
         return SimpleNamespace(mean_square=4.0, solution=SimpleNamespace(converged=True))
 
-    search = SimpleNamespace(structures=structures, trial=trial, mean_square=lambda names: 9.0)
-    simple, lag = dj.structures(search, chosen)
+    search = SimpleNamespace(trial=trial, mean_square=lambda names: 9.0)
+    simple, lag = dj.structure_rows(search, chosen)
     assert asked == [terms("play")]
     assert (simple["name"], lag["name"]) == ("integrator", "integrator with lag")
     assert (simple["chosen"], lag["chosen"]) == (False, True)

@@ -76,7 +76,8 @@ from tsas_cli.diagnosis.held_out import folds_of
 from tsas_cli.diagnosis.search import Search
 from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.base_fit import base_fit, slopes_of
-from tsas_cli.identification.extension import Bench
+from tsas_cli.identification.extension import bench_of
+from tsas_cli.identification.joint_fit import solve_fit
 from tsas_cli.identification.model import data_sheet
 from tsas_cli.identification.phases import segment
 from tsas_cli.identification.prepared import prepare
@@ -103,11 +104,10 @@ for k, bend in enumerate((3.0, 2.0, 1.0)):
 manifest = Manifest(format=1, name="toy", kind="simulated", run=tuple(r.run for r in runs))
 parts = [segment(run) for run in runs]
 slopes = [slopes_of(run, p) for run, p in zip(runs, parts)]
-fit = base_fit(data_sheet(manifest), runs, parts, slopes)
-fit.solve()
+fit = solve_fit(base_fit(data_sheet(manifest), runs, parts, slopes))
 folds = folds_of([e.blocks(rig, 200) for e, rig in zip(fit.errors, fit.rigs)])
 among = ("bent_scale", "force_sensor_gain", "force_sensor_offset", "free_tendon")
-search = Search(Bench(fit), folds, effects=tuple(e for e in EFFECTS if e.name in among))
+search = Search(bench_of(fit), folds, effects=tuple(e for e in EFFECTS if e.name in among))
 named = search.run()
 print(sorted(named), *search.trial(named).values().values())
 """

@@ -33,14 +33,15 @@ def calibrated(monkeypatch):
             dynamic_misfit=(), stated=None):  # fmt: skip
         log = {}
         fit = SimpleNamespace(
-            solve=lambda: (model_of(1.0), fitted, ["untold"]),
-            misfit=lambda: list(missed),
-            runs="fitted runs",
+            model=model_of(1.0),
+            fitted=fitted,
+            cannot_tell=["untold"],
+            problem=SimpleNamespace(runs="fitted runs"),
         )
 
         def base_fit(stated, runs, segments, measured):
             log["base"] = stated, runs, segments, measured
-            return fit
+            return "problem"
 
         def dynamic_fit(model, runs, step):
             log["dynamic"] = model.value("friction_coefficient"), runs
@@ -49,8 +50,8 @@ def calibrated(monkeypatch):
                 model=model_of(2.0), fitted="dynamic", cannot_tell=told[0], misfit=told[1]
             )
 
-        def widened(fit, estimates, step):
-            log["widened"] = [e.value for e in estimates]
+        def widened(fit, step):
+            log["widened"] = [e.value for e in fit.model.estimates]
             return Widened(model_of(3.0).estimates, tuple(effects))
 
         def compare(run, model, dynamics):
@@ -60,6 +61,8 @@ def calibrated(monkeypatch):
         monkeypatch.setattr(c, "segment", lambda run: f"segments {run.run.id}")
         monkeypatch.setattr(c, "slopes_of", lambda run, segments: f"slopes of {segments}")
         monkeypatch.setattr(c, "base_fit", base_fit)
+        monkeypatch.setattr(c, "solve_fit", {"problem": fit}.__getitem__)
+        monkeypatch.setattr(c, "misfit", lambda fit: list(missed))
         monkeypatch.setattr(c, "dynamic_fit", dynamic_fit)
         monkeypatch.setattr(c, "widened", widened)
         monkeypatch.setattr(c, "compare", compare)
@@ -68,7 +71,7 @@ def calibrated(monkeypatch):
         monkeypatch.setattr(c, "with_preload_correction", lambda model, runs: model)
         monkeypatch.setattr(c, "thinned_notes", lambda runs: ["thinned"])
         step = Counted()
-        found = c.calibrate(MANIFEST, RUNS, step, dynamics=dynamics, stated=stated)
+        found = c.calibrate_runs(MANIFEST, RUNS, step, dynamics=dynamics, stated=stated)
         return found, log, step
 
     return run

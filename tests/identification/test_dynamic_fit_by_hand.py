@@ -1,5 +1,6 @@
-"""The decisions of the dynamic fit on fits that are made up: what is freed, looked at, told."""
+"""The decisions of the dynamic fit on fits that are made up: what is freed, looked at, said."""
 
+from dataclasses import dataclass, field
 from types import SimpleNamespace
 
 import numpy as np
@@ -18,14 +19,37 @@ OWN = np.random.default_rng(2).standard_normal(50)
 OWN = 10.0 * (OWN - SLOPES @ (SLOPES.T @ OWN)) / np.linalg.norm(OWN - SLOPES @ (SLOPES.T @ OWN))
 
 
+NOTHING = Model(())
+
+
+@dataclass(frozen=True)
 class Fit:
     """A fit whose residual is linear in the logarithm of one value."""
 
-    def __init__(self, left, per_e=OWN, told=()):
-        self.left, self.per_e, self._told = left, per_e, told
-        self.kept, self.runs = Model(()), ()
+    left: np.ndarray
+    per_e: np.ndarray = field(default_factory=OWN.copy)
+    names: tuple[str, ...] = ()  # of the free parameters
+    further: tuple[str, ...] = ()
+    model: Model = NOTHING
+    rigs: tuple = (TABLE_1,)
 
-    def residuals_with(self, values):
+    @property
+    def free(self):
+        return [SimpleNamespace(name=name) for name in self.names]
+
+    @property
+    def chosen(self):
+        return range(len(self.names))
+
+    @property
+    def problem(self):
+        unknowns = [SimpleNamespace(name=name) for name in ("preload_N", *self.further)]
+        return SimpleNamespace(fixed=Model(()), runs=(), unknowns=unknowns)
+
+
+@pytest.fixture(autouse=True)
+def linear(monkeypatch):
+    def residuals_with(fit, values):
         moved = 0.0
         for name, value in values.items():
             usual = TABLE_1.bristles.stiffness_N_per_mm if name == d.STIFFNESS else 1.0
@@ -33,19 +57,11 @@ class Fit:
                 moved += value
             elif name == d.STIFFNESS:
                 moved += np.log(value / usual)
-        return self.left + moved * self.per_e
+        return fit.left + moved * fit.per_e
 
-    def slopes(self):
-        return SLOPES
-
-    def solved_rigs(self):
-        return [TABLE_1]
-
-    def told(self):
-        return [SimpleNamespace(name=name) for name in self._told]
-
-    def moved(self, moves):
-        return Model(())
+    monkeypatch.setattr(d, "residuals_with", residuals_with)
+    monkeypatch.setattr(d, "slopes_of_free", lambda fit: SLOPES)
+    monkeypatch.setattr(d, "moved_model", lambda fit, moves: Model(()))
 
 
 def test_a_value_that_fits_better_saves_what_the_others_leave():
@@ -93,8 +109,8 @@ def look(saves, stiffness=1e4, moves=(0.0, 0.0)):
     return d.Look({d.STIFFNESS: stiffness}, np.array(moves), saves)
 
 
-def solved(told=(), estimates=(), further=(d.STIFFNESS, d.VISCOUS)):
-    return d.Solved(Fit(OWN, told=told), further, Model(tuple(estimates)), None, [])
+def solved(estimates=(), further=(d.STIFFNESS, d.VISCOUS)):
+    return d.Solved(Fit(OWN, further=further, model=Model(tuple(estimates))), None)
 
 
 @pytest.fixture
@@ -102,8 +118,8 @@ def again(monkeypatch):
     """Fits that would follow: what each was asked for, and what it answers."""
     asked, answers = [], []
 
-    def fit(start, kept, runs, further, step):
-        asked.append((start, kept, further))
+    def fit(initial, fixed, runs, further, step):
+        asked.append((initial, fixed, further))
         return answers.pop() if answers else "fitted"
 
     monkeypatch.setattr(d, "_solved", fit)
@@ -115,17 +131,17 @@ def estimate(name, value, low, high, *, stderr=1.0, at_bound=False):
 
 
 def test_the_stiffness_is_sought_again_from_where_it_fits_best(again):
-    better = d.Solved(Fit(-np.log(5.0) * OWN), (d.STIFFNESS,), Model(()), None, [])
+    better = d.Solved(Fit(-np.log(5.0) * OWN, further=(d.STIFFNESS,)), None)
     assert d._from_better_stiffness(better, SILENT) == "fitted"
-    ((start, kept, further),) = again[0]
-    assert start.value(d.STIFFNESS) == kept.value(d.STIFFNESS) == pytest.approx(25e3)
-    assert further == (d.STIFFNESS,)
+    ((initial, fixed, further),) = again[0]
+    assert initial.value(d.STIFFNESS) == fixed.value(d.STIFFNESS) == pytest.approx(25e3)
+    assert further == [d.STIFFNESS]
 
 
-def test_a_stiffness_that_is_told_or_gains_little_stays(again):
-    told = d.Solved(Fit(-np.log(5.0) * OWN, told=[d.STIFFNESS]), (), Model(()), None, [])
-    assert d._from_better_stiffness(told, SILENT) is None
-    little = d.Solved(Fit(-0.4 * OWN), (), Model(()), None, [])  # saves 16 of 25 at the most
+def test_a_stiffness_that_is_free_or_gains_little_stays(again):
+    free = d.Solved(Fit(-np.log(5.0) * OWN, names=(d.STIFFNESS,)), None)
+    assert d._from_better_stiffness(free, SILENT) is None
+    little = d.Solved(Fit(-0.4 * OWN), None)  # saves 16 of 25 at the most
     assert d._from_better_stiffness(little, SILENT) is None
     assert again[0] == []
 
@@ -136,7 +152,7 @@ FINEST = TABLE_1.tendon_stiffness_N * LUMPS**2 / TABLE_1.sheath_length_mm
 @pytest.mark.parametrize(
     ("value", "low", "high", "at"),
     [
-        (5e3, 4e3, 6e3, None),  # told
+        (5e3, 4e3, 6e3, None),  # identifiable
         (5e3, 100.0, 9.9e3, None),  # just so
         (5e3, 100.0, 10.1e3, 5e3),  # by its name alone
         (2.0 * FINEST, FINEST, 3.0 * FINEST, FINEST),  # finer than the mesh
@@ -150,9 +166,9 @@ def test_a_stiffness_that_is_vague_or_too_fine_is_fixed(again, value, low, high,
         assert again[0] == []
     else:
         assert found == "fitted"
-        ((start, kept, further),) = again[0]
-        assert start.value(d.STIFFNESS) == kept.value(d.STIFFNESS) == pytest.approx(at)
-        assert further == (d.VISCOUS,)
+        ((initial, fixed, further),) = again[0]
+        assert initial.value(d.STIFFNESS) == fixed.value(d.STIFFNESS) == pytest.approx(at)
+        assert further == [d.VISCOUS]
 
 
 def test_a_stiffness_without_interval_is_left_alone(again):
@@ -181,7 +197,7 @@ def test_what_is_freed_stays_free_where_it_is_told(again, more, kept):
     found = d._freed(solved(), [look(10.0), look(30.0, 1e4)], SILENT)
     assert (found is more) == kept or more is None
     assert (found is None) != kept
-    assert again[0][0][2] == (d.STIFFNESS, d.VISCOUS, d.STIFFNESS)
+    assert again[0][0][2] == [d.STIFFNESS, d.VISCOUS, d.STIFFNESS]
 
 
 def test_what_saves_too_little_is_not_freed(again):

@@ -8,6 +8,9 @@ import pytest
 from tests.physics.references import GROUP_A
 from tsas_cli.identification import extension as e
 from tsas_cli.identification.fit import Solution, Unknown
+from tsas_cli.identification.fit_problem import FitProblem
+from tsas_cli.identification.joint_fit import FittedModel
+from tsas_cli.identification.model import Model
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.identification.unknowns import unknown_of
 
@@ -16,18 +19,16 @@ PROXIMAL, DISTAL = "free_tendon.proximal_length_mm", "free_tendon.distal_length_
 SIZE = QUANTITIES[PROXIMAL].size
 
 
-def zero_of(run, start=0.0):
-    return Unknown(ZERO, run, start, -50.0, 50.0, 1.0)
+def zero_of(run, initial=0.0):
+    return Unknown(ZERO, run, initial, -50.0, 50.0, 1.0)
 
 
 class Run:
     """A run whose residuals say what rig it was asked for."""
 
     def __init__(self, name, drive="drive"):
-        self.name, self.drive, self.samples = name, drive, {f"{name}_N": 1, "f_in_N": 2}
-
-    def meshed(self, nodes):
-        return Run(f"{self.name} {nodes}")
+        self.name, self.samples = name, {f"{name}_N": 1, "f_in_N": 2}
+        self.simulation = SimpleNamespace(drive=drive)
 
     def residuals(self, rig):
         self.asked = rig
@@ -70,26 +71,26 @@ def test_values_are_those_of_effects_in_their_units():
 
 @pytest.fixture
 def bench(monkeypatch):
-    """Two runs; the zero of each is free, and was found at 1 and 2 mm; another is not told."""
+    """Two runs; the zero of each is free, and was found at 1 and 2 mm; another is fixed."""
 
     def make(closed=(True, True)):
         drives = dict(zip(("drive a", "drive b"), closed, strict=True))
         monkeypatch.setattr(e, "is_closed", lambda rig, drive: drives[drive])
-        base = SimpleNamespace(
-            rigs=[GROUP_A, GROUP_A],
-            unknowns=[zero_of(0), Unknown("preload_N", 0, 9.0, 0.0, 99.0, 1.0), zero_of(1)],
-            values=np.array([1.0, np.log(30.0), 2.0]),
-            chosen=[0, 2],
-            errors=[Run("a", "drive a"), Run("b", "drive b")],
+        monkeypatch.setattr(e, "meshed", lambda run, nodes: Run(f"{run.name} {nodes}"))
+        sought = (zero_of(0), Unknown("preload_N", 0, 9.0, 0.0, 99.0, 1.0), zero_of(1))
+        errors = (Run("a", "drive a"), Run("b", "drive b"))
+        problem = FitProblem(
+            Model(()), Model(()), ("a", "b"), (GROUP_A, GROUP_A), sought, errors, ()
         )
-        return e.Bench(base)
+        values = np.array([1.0, np.log(30.0), 2.0])
+        return e.bench_of(FittedModel(problem, values, (0, 2), errors, Model(()), None, ()))
 
     return make
 
 
 def test_a_bench_begins_where_the_fit_ended(bench):
     made = bench()
-    assert [(u.name, u.run, u.start) for u in made.own] == [(ZERO, 0, 1.0), (ZERO, 1, 2.0)]
+    assert [(u.name, u.run, u.initial) for u in made.free] == [(ZERO, 0, 1.0), (ZERO, 1, 2.0)]
     assert [rig.x_in_zero_mm for rig in made.rigs] == [1.0, 2.0]
     assert [rig.preload_N for rig in made.rigs] == [pytest.approx(30.0), GROUP_A.preload_N]
     assert [run.name for run in made.meshed] == ["a 40", "b 40"]
@@ -127,7 +128,7 @@ def test_an_effect_is_freed_beside_the_base(monkeypatch, bench):
     made = bench()
     trial = made.fit(["free_tendon"], {DISTAL: 3.0 * SIZE})
     assert [u.name for u in trial.unknowns] == [ZERO, ZERO, PROXIMAL, DISTAL]
-    starts = [u.start for u in trial.unknowns]
+    starts = [u.initial for u in trial.unknowns]
     other = QUANTITIES[DISTAL].size
     assert starts == pytest.approx([1.0, 2.0, 0.0, 3.0 * SIZE / other])
     assert asked["tolerance"] == pytest.approx(1e-5)
@@ -154,10 +155,10 @@ def test_near_a_trial_it_begins_there_and_is_as_rough_as_that_missed(
         np.full(3, np.sqrt(mean_square)),
     )
     trial = bench().fit(["free_tendon"], near=near)
-    assert [u.start for u in trial.unknowns] == [7.0, 8.0, 9.0, 0.0]
+    assert [u.initial for u in trial.unknowns] == [7.0, 8.0, 9.0, 0.0]
     assert asked["tolerance"] == pytest.approx(tolerance)
     told = bench().fit(["free_tendon"], {PROXIMAL: 0.5 * SIZE}, near=near)
-    assert told.unknowns[2].start == pytest.approx(0.5)
+    assert told.unknowns[2].initial == pytest.approx(0.5)
 
 
 def test_a_mesh_is_used_where_it_is_asked_for_or_needed(monkeypatch, bench):
@@ -192,13 +193,3 @@ def test_an_uneven_sheath_is_bent_by_a_twentieth_more_here_than_there(bench):
     expected = np.zeros((10, 2))
     expected[[3, 8], 0] = expected[[4, 9], 1] = 0.05
     np.testing.assert_allclose(found, expected, atol=1e-12)
-
-
-def test_errors_are_weighed_again_at_a_trial_s_rigs(bench):
-    made, weighed = bench(), []
-    for run in made.closed:
-        run.weigh = lambda rig, name=run.name: weighed.append((name, rig.x_in_zero_mm))
-    other = made.weighed_by(trial_of([zero_of(0), zero_of(1)], [5.0, 6.0]))
-    assert weighed == [("a", 5.0), ("b", 6.0)]
-    assert other is not made
-    assert other.base is made.base

@@ -194,16 +194,16 @@ def test_every_quantity_starts_within_its_bounds():
         assert not q.positive or q.lower > 0.0, name
 
 
-def test_an_unknown_starts_at_its_neutral_value_or_where_it_is_told():
+def test_an_unknown_begins_at_its_neutral_value_or_at_a_given_one():
     name = "free_tendon.proximal_length_mm"
     quantity = QUANTITIES[name]
     found = unknown_of(name)
-    assert (found.start, found.run, found.scale) == (0.0, None, 1.0)
+    assert (found.initial, found.run, found.scale) == (0.0, None, 1.0)
     assert found.upper == quantity.upper / quantity.size
-    assert (unknown_of(name, 2.5, 7.0).start, unknown_of(name, 2.5, 7.0).scale) == (2.5, 7.0)
+    assert (unknown_of(name, 2.5, 7.0).initial, unknown_of(name, 2.5, 7.0).scale) == (2.5, 7.0)
 
     class Told:
         def value(self, _):
             return 3.0 * quantity.size
 
-    assert further_unknown(name, Told()).start == pytest.approx(3.0)
+    assert further_unknown(name, Told()).initial == pytest.approx(3.0)

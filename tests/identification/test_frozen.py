@@ -13,14 +13,18 @@ from tsas_cli.identification.calibration import Calibration
 from tsas_cli.identification.comparison import Compared, Told
 from tsas_cli.identification.dynamic_fit import DynamicFit, Look, Solved
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.extension import Trial
+from tsas_cli.identification.extension import Bench, Trial
 from tsas_cli.identification.fit import Fitted, Solution, Unknown
+from tsas_cli.identification.fit_problem import FitProblem
+from tsas_cli.identification.joint_fit import FittedModel
 from tsas_cli.identification.long_runs import LongRun, Rows
 from tsas_cli.identification.missing_effects import Widened
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.phases import Segment, _Stroke
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.quantities import Quantity
+from tsas_cli.identification.run_errors import RunErrors
+from tsas_cli.identification.run_simulation import RunSimulation
 from tsas_cli.identification.screening import Screened
 from tsas_cli.identification.stiffness import Slope
 from tsas_cli.identification.stored_value import StoredValue
@@ -43,6 +47,7 @@ FROZEN = (
         Rows,
     ),
     *(Screened, Segment, SimulationResult, Slope, Solution, Solved, Told, Trial, Unknown),
+    *(Bench, FitProblem, FittedModel, RunErrors, RunSimulation),
     *(Widened, _Line, _Stroke),
 )
 

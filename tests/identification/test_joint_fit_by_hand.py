@@ -1,4 +1,4 @@
-"""What a joint fit says and hands on, on results that are made up."""
+"""What a joint fit says and passes on, on results that are made up."""
 
 import math
 from types import SimpleNamespace
@@ -7,9 +7,11 @@ import numpy as np
 import pytest
 
 from tests.physics.references import GROUP_A
+from tsas_cli.identification import fit_words as w
 from tsas_cli.identification import joint_fit as j
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.fit import Fitted, Unknown
+from tsas_cli.identification.fit_problem import FitProblem, rig_at
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.quantities import QUANTITIES
 
@@ -28,7 +30,7 @@ def unknown(name, run=None, lower=None, upper=None):
     return Unknown(name, run, 0.0, low, q.scaled(q.upper) if upper is None else upper, 1.0)
 
 
-def test_what_is_fitted_is_told_in_its_own_unit():
+def test_an_estimate_is_in_its_own_unit():
     """A positive number has its interval in proportion, others a symmetric one."""
     sought = [unknown(FRICTION), unknown(ZERO, 1, -9.0, 9.0)]
     found = fitted([math.log(0.2), 1.5], [0.1, 0.25], t=2.0, at_bound=[1])
@@ -57,69 +59,76 @@ def test_an_effect_s_number_is_in_units_of_its_size():
     assert (found.value, found.stderr) == pytest.approx((3.0 * size, 0.5 * size))
 
 
-def told(name=FRICTION, run=None, *, at_bound=False, stderr=0.1, low=1.0, high=2.0, value=1.5):
+def estimate(name=FRICTION, run=None, *, at_bound=False, stderr=0.1, low=1.0, high=2.0, value=1.5):
     return Estimate(name, value, QUANTITIES[name].unit, "fitted", run, stderr, low, high, at_bound)
 
 
 def doubts(*estimates, **how):
-    return j._doubts(estimates, fitted([0.0], [1.0], **how))
+    return w.doubts_of(estimates, fitted([0.0], [1.0], **how))
 
 
 def test_a_good_fit_leaves_no_doubt():
-    assert doubts(told(), told(ZERO, "a")) == []
+    assert doubts(estimate(), estimate(ZERO, "a")) == []
 
 
 def test_what_ended_at_a_bound_is_said():
-    (said,) = doubts(told(ZERO, "a", at_bound=True))
+    (said,) = doubts(estimate(ZERO, "a", at_bound=True))
     assert said == (
         "x_in_zero_mm of run a ended at the bound of what is plausible, 1.5: "
         "it is not to be relied on."
     )
-    assert doubts(told(at_bound=True))[0].startswith("friction_coefficient ended at the bound")
+    assert doubts(estimate(at_bound=True))[0].startswith("friction_coefficient ended at the bound")
 
 
 def test_what_ended_where_it_does_nothing_is_no_bound():
     name = "free_tendon.proximal_length_mm"
-    (said,) = doubts(told(name, at_bound=True, value=0.0, low=0.0, high=3.14159))
+    (said,) = doubts(estimate(name, at_bound=True, value=0.0, low=0.0, high=3.14159))
     assert said == f"{name} ended where it does nothing: at most 3.1 mm would go unseen."
-    assert doubts(told(name, value=0.0, low=0.0)) == []  # near it, not at the bound
+    assert doubts(estimate(name, value=0.0, low=0.0)) == []  # near it, not at the bound
 
 
 def test_what_has_no_error_or_no_end_is_said():
-    (said,) = doubts(told(stderr=None))
+    (said,) = doubts(estimate(stderr=None))
     assert said.startswith("friction_coefficient does not show where the fit ended")
-    (said,) = doubts(told(), converged=False, message="too many evaluations.")
+    (said,) = doubts(estimate(), converged=False, message="too many evaluations.")
     assert said.startswith("The fit did not converge (too many evaluations): its values")
 
 
-def fit_of(**parts):
-    made = object.__new__(j.JointFit)
-    made.__dict__.update(parts)
-    return made
+NOTHING = Model(())
 
 
-def run_with(run_id, errors):
-    return SimpleNamespace(run=SimpleNamespace(id=run_id), errors=lambda rig: errors[rig])
+def problem_of(unknowns=(), runs="ab", initial=NOTHING, fixed=NOTHING):
+    """Return the problem of runs with these names, whose rigs differ by the zero of x_out."""
+    named = tuple(SimpleNamespace(run=SimpleNamespace(id=name)) for name in runs)
+    rigs = tuple(GROUP_A._replace(x_out_zero_mm=float(k)) for k in range(len(runs)))
+    return FitProblem(initial, fixed, named, rigs, tuple(unknowns), (), ())
+
+
+def fit_of(problem, values=(), chosen=(), errors=()):
+    return j.FittedModel(problem, np.array(values), tuple(chosen), errors, NOTHING, None, ())
+
+
+def run_with(*errors_at):
+    """Return a run's errors, told by the zero of x_out."""
+    return SimpleNamespace(errors=lambda rig: errors_at[round(rig.x_out_zero_mm)])
 
 
 def test_a_channel_is_missed_by_its_worst_run():
     """Mean squares of 1.69 and 1.7, and of 25: an error of 1.3 is the limit."""
-    one = run_with("a", {"r0": {"f_in_N": np.full(4, 1.3), "f_out_N": np.array([5.0, -5.0])}})
-    two = run_with("b", {"r1": {"f_in_N": np.full(4, 1.0), "f_out_N": np.array([1.0, 1.0])}})
-    made = fit_of(runs=["a", "b"], errors=[one, two], values="v", _rig=lambda k, v: f"r{k}")
-    (said,) = made.misfit()
+    one = run_with({"f_in_N": np.full(4, 1.3), "f_out_N": np.array([5.0, -5.0])})
+    two = run_with(None, {"f_in_N": np.full(4, 1.0), "f_out_N": np.array([1.0, 1.0])})
+    (said,) = j.misfit(fit_of(problem_of(), errors=(one, two)))
     assert said.startswith("f_out_N is missed by up to 5 times what noise explains:")
-    two.errors = lambda rig: {"f_in_N": np.array([0.0, 1.31 * math.sqrt(2.0)])}
-    assert [s.split()[0] for s in made.misfit()] == ["f_in_N", "f_out_N"]
-    assert "up to 1.31 times" in made.misfit()[0]
+    two = run_with(None, {"f_in_N": np.array([0.0, 1.31 * math.sqrt(2.0)])})
+    first, second = j.misfit(fit_of(problem_of(), errors=(one, two)))
+    assert first.startswith("f_in_N is missed by up to 1.31 times")
+    assert second.startswith("f_out_N")
 
 
-def test_what_is_kept_is_said_once_for_each_reason():
-    runs = [SimpleNamespace(run=SimpleNamespace(id=name)) for name in "ab"]
+def test_what_is_fixed_is_said_once_for_each_reason():
     unknowns = [unknown(FRICTION), unknown(ZERO, 0), unknown(ZERO, 1), unknown("preload_N", 1)]
-    kept = Model((Estimate(ZERO, 0.25, "mm", "given", "a"),))
-    made = fit_of(runs=runs, unknowns=unknowns, kept=kept)
-    assert made._sentences({1: [3, 0], 2: [0, 3], 0: [], 3: []}) == [
+    problem = problem_of(unknowns, fixed=Model((Estimate(ZERO, 0.25, "mm", "given", "a"),)))
+    assert w.fixed_sentences(problem, {1: [3, 0], 2: [0, 3], 0: [], 3: []}) == [
         (
             "x_in_zero_mm cannot be told apart from friction_coefficient and preload_N in these "
             "recordings (runs a, b); it is kept at 0.25 mm."
@@ -127,63 +136,49 @@ def test_what_is_kept_is_said_once_for_each_reason():
         "friction_coefficient does not show in these recordings; it is kept at 0.1.",
         "preload_N does not show in these recordings (runs b); it is kept at 10 N.",
     ]
-    assert made.ids() == ["a", "b"]
+    assert problem.ids == ["a", "b"]
 
 
 def test_damping_that_nobody_knows_is_critical():
     name = "bristles.damping_N_s_per_mm"
-    assert j._kept_value(Model(()), name, "") == "its critical value"
+    assert w._fixed_value(Model(()), name, "") == "its critical value"
     known = Model((Estimate(name, 0.5, "N s/mm", "given"),))
-    assert j._kept_value(known, name, "") == "0.5 N s/mm"
+    assert w._fixed_value(known, name, "") == "0.5 N s/mm"
 
 
 def test_a_rig_takes_its_own_values_and_the_shared_ones():
     sought = [unknown(FRICTION), unknown(ZERO, 0), unknown(ZERO, 1)]
     values = np.array([math.log(0.3), 1.0, 2.0])
     for k, zero in ((0, 1.0), (1, 2.0), (2, GROUP_A.x_in_zero_mm)):
-        rig = j.rig_at(GROUP_A, k, sought, values)
+        rig = rig_at(GROUP_A, k, sought, values)
         assert rig.friction_coefficient == pytest.approx(0.3)
         assert rig.x_in_zero_mm == zero
 
 
 def test_values_that_are_moved_stay_within_their_bounds():
-    runs = [SimpleNamespace(run=SimpleNamespace(id="a"))]
     sought = [
         unknown(FRICTION), unknown(ZERO, 0, -1.0, 1.0), unknown("bristles.damping_N_s_per_mm"),
     ]  # fmt: skip
-    made = fit_of(
-        runs=runs,
-        unknowns=sought,
-        values=np.array([math.log(0.2), 0.5, math.nan]),
-        chosen=[1],
-        start=Model((Estimate("preload_N", 7.0, "N", "given"),)),
-    )
-    model = made.moved(np.array([0.25]))
+    problem = problem_of(sought, "a", initial=Model((Estimate("preload_N", 7.0, "N", "given"),)))
+    made = fit_of(problem, [math.log(0.2), 0.5, math.nan], chosen=[1])
+    model = j.moved_model(made, np.array([0.25]))
     assert model.value(FRICTION) == pytest.approx(0.2)
     assert model.value(ZERO, "a") == 0.75
     assert model.value("preload_N") == 7.0
     assert model.value("bristles.damping_N_s_per_mm") is None  # critical
-    assert made.moved(np.array([9.0])).value(ZERO, "a") == 1.0
-    assert made.moved(np.array([-9.0])).value(ZERO, "a") == -1.0
+    assert j.moved_model(made, np.array([9.0])).value(ZERO, "a") == 1.0
+    assert j.moved_model(made, np.array([-9.0])).value(ZERO, "a") == -1.0
     assert made.values.tolist()[:2] == [math.log(0.2), 0.5]
     assert {e.origin for e in model.estimates if e.name == ZERO} == {"default"}
 
 
-def test_what_is_critical_starts_where_it_would_start():
+def test_what_is_fixed_at_its_critical_value_begins_at_the_initial_one():
     sought = [unknown(FRICTION), unknown("bristles.damping_N_s_per_mm")]
-    made = fit_of(unknowns=sought, values=np.array([0.5, math.nan]))
-    assert made._numbers().tolist() == [0.5, 0.0]
-
-
-def test_runs_alone_stay_free():
-    made = fit_of(unknowns=[unknown(FRICTION), unknown(ZERO, 0)], values=None)
-    made.keep_shared()
-    assert [u.name for u in made.unknowns] == [ZERO]
-    assert made.values.tolist() == [0.0]
+    assert j._finite(np.array([0.5, math.nan]), sought).tolist() == [0.5, 0.0]
 
 
 def test_each_unknown_has_its_value():
     with pytest.raises(ValueError, match="longer"):
-        j.rig_at(GROUP_A, 0, [unknown(FRICTION)], np.zeros(2))
+        rig_at(GROUP_A, 0, [unknown(FRICTION)], np.zeros(2))
     with pytest.raises(ValueError, match="longer"):
         j.estimates_of([unknown(FRICTION)], fitted([0.0, 0.0], [1.0, 1.0]), [])

@@ -7,6 +7,7 @@ import pytest
 
 from tsas_cli.identification import missing_effects as m
 from tsas_cli.identification.estimate import Estimate
+from tsas_cli.identification.model import Model
 
 
 def estimate(value, low, high, *, name="friction_coefficient", run=None, stderr=0.1):
@@ -49,15 +50,15 @@ TOLD = [OWN, estimate(5.0, 4.0, 6.0, name="preload_N", run="a")]
 
 @pytest.fixture
 def widened(monkeypatch):
-    """Widen what is told by trials whose estimates are one wide about a value."""
+    """Widen estimates by trials whose estimates are one wide about a value."""
 
     def with_trials(*trials):
-        monkeypatch.setattr(m, "Bench", lambda fit: fit)
+        monkeypatch.setattr(m, "bench_of", lambda fit: fit)
         monkeypatch.setattr(m, "_best_trials", lambda bench, step: list(trials))
         monkeypatch.setattr(
             m, "_estimates", lambda bench, t: [estimate(t.value, t.value - 1.0, t.value + 1.0)]
         )
-        return m.widened(None, TOLD)
+        return m.widened(SimpleNamespace(model=Model(tuple(TOLD))))
 
     return with_trials
 
@@ -113,7 +114,7 @@ def tried(monkeypatch):
         def screen(bench, t, effect, basis):
             log.screened.append((effect.name, t.effects[0], basis))
             return SimpleNamespace(
-                effect=effect, part=parts[effect.name], start=f"at {effect.name}"
+                effect=effect, part=parts[effect.name], initial=f"at {effect.name}"
             )
 
         def fit(names=(), start=None, *, near=None, on_mesh=False):
@@ -184,7 +185,7 @@ def test_an_effect_is_fitted_beside_all_that_was_free(monkeypatch):
         rigs=["r", "s"],
         rig=lambda t, k: f"{t.name} {k}",
         closed="runs",
-        base=SimpleNamespace(ids=lambda: ["a", "b"]),
+        base=SimpleNamespace(problem=SimpleNamespace(ids=["a", "b"])),
     )
     made = SimpleNamespace(name="t", unknowns="u", solution=np.pi)
     assert m._estimates(bench, made) == ("u", "fitted", ["a", "b"])

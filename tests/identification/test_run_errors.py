@@ -8,7 +8,7 @@ import pytest
 
 from tests.identification.recorded import manifest, prepared
 from tsas_cli.identification.model import data_sheet
-from tsas_cli.identification.run_errors import RunErrors
+from tsas_cli.identification.run_errors import run_errors
 from tsas_cli.identification.samples import kept_samples
 from tsas_studies.challenge.rig.motions import Motion, nested, sine, triangle, two_sines
 from tsas_studies.challenge.rig.sensors import Sensor, Sensors
@@ -17,7 +17,7 @@ from tsas_studies.challenge.rig.tendon import Rig
 
 def errors_of(run):
     rig = data_sheet(manifest(run)).rig(run.run)
-    return RunErrors(run, kept_samples(run, rig), rig), rig
+    return run_errors(run, kept_samples(run, rig), rig), rig
 
 
 @pytest.mark.parametrize("motion", [sine(), triangle()], ids=["sine", "triangle"])

@@ -6,7 +6,14 @@ import numpy as np
 import pytest
 from scipy.linalg import fractional_matrix_power
 
-from tsas_cli.identification.run_errors import TURN, RunErrors, _before_turns, _moved_on
+from tsas_cli.identification.run_errors import (
+    TURN,
+    RunErrors,
+    Turns,
+    _before_turns,
+    _moved_on,
+    _turns,
+)
 
 X = np.array([0.0, 1.0, 2.0, 2.9, 3.0, 2.95, 2.0, 1.0, 0.5, 1.5])
 REVERSALS = np.array([0, 4, 8, 9])
@@ -16,23 +23,25 @@ def conditioned(sd=0.01):
     return SimpleNamespace(values=X, reversals=REVERSALS, sd=np.full(X.size, sd))
 
 
-def errors_of(samples):
-    run = SimpleNamespace(
-        drive_column="x_in_mm",
-        conditioned={"x_in_mm": conditioned()},
-        time_s=0.1 * np.arange(X.size),
-        measured={name: np.arange(X.size) ** 2.0 for name in samples},
+def errors_of(samples, measured=None, predicted=3.0):
+    """Return errors of weight one, without the shape of a wrong turn."""
+    size = max(at.max() for at in samples.values()) + 1
+    run = SimpleNamespace(measured=measured or dict.fromkeys(samples, np.arange(size) ** 2.0))
+    return RunErrors(
+        run,
+        samples,
+        None,
+        lambda rig: dict.fromkeys(samples, np.full(size, predicted)),
+        dict.fromkeys(samples, np.ones(size)),
+        {n: Turns(np.zeros(at.size), np.array([0]), at.size) for n, at in samples.items()},
     )
-    made = object.__new__(RunErrors)
-    made.run, made.samples = run, samples
-    return made
 
 
 def test_errors_in_the_shape_of_a_wrong_turn_are_taken_down_to_their_variance():
     """Stroke by stroke (I + 3² c cᵀ)^(−1/2), here by the matrix's eigenvalues."""
     at = np.array([1, 2, 3, 5, 6, 7, 9])  # the strokes begin after samples 0, 4 and 8
     change = np.random.default_rng(1).standard_normal(X.size)
-    turns = errors_of({"f_in_N": at})._turns(change, at)
+    turns = _turns(change, at, REVERSALS)
     np.testing.assert_array_equal(turns.starts, [0, 3, 6])
     np.testing.assert_array_equal(turns.counts, [3, 3, 1])
     e = np.random.default_rng(2).standard_normal(at.size)
@@ -46,14 +55,14 @@ def test_errors_in_the_shape_of_a_wrong_turn_are_taken_down_to_their_variance():
 def test_a_stroke_that_a_wrong_turn_does_not_change_keeps_its_errors():
     at = np.arange(X.size)
     change = np.where(at < 5, 0.0, 1.0)
-    turns = errors_of({"f_in_N": at})._turns(change, at)
+    turns = _turns(change, at, REVERSALS)
     assert not turns.shape[:5].any()
     assert turns.shape[5:].all()
 
 
 def test_strokes_without_samples_have_no_start():
     at = np.array([5, 6, 7])
-    turns = errors_of({"f_in_N": at})._turns(np.ones(X.size), at)
+    turns = _turns(np.ones(X.size), at, REVERSALS)
     assert turns.starts.tolist() == [0]
     assert turns.counts.tolist() == [3]
 
@@ -89,9 +98,8 @@ def test_chosen_residuals_are_spread_over_the_samples_behind_them():
 
 
 def test_means_of_neighbours_keep_a_variance_of_one():
-    made = errors_of({"f_in_N": np.arange(2500)})
     white = np.random.default_rng(3).standard_normal(2500)
-    made.errors = lambda _: {"f_in_N": white}
+    made = errors_of({"f_in_N": np.arange(2500)}, {"f_in_N": -white}, predicted=0.0)
     found = made.residuals(None)
     assert found.size == 834
     assert found[0] == pytest.approx(white[:3].sum() / np.sqrt(3.0))
@@ -100,5 +108,4 @@ def test_means_of_neighbours_keep_a_variance_of_one():
 
 def test_raw_errors_are_measured_less_simulated():
     made = errors_of({"f_in_N": np.array([2, 5])})
-    made._answer = lambda _: {"f_in_N": np.full(X.size, 3.0)}
     assert made.raw(None)["f_in_N"].tolist() == [1.0, 22.0]

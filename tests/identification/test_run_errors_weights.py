@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from tsas_cli.identification import run_errors as r
+from tsas_cli.identification import run_simulation as rs
 from tsas_cli.physics.ends import Drive
 
 X = np.array([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 4.0, 3.0, 2.0, 1.0, 0.0])
@@ -74,15 +75,15 @@ def run_of(*, sd=0.1, unseen=0.0, load_sd=None):
 @pytest.fixture
 def model(monkeypatch):
     made = Model()
-    monkeypatch.setattr(r, "simulate", made)
-    monkeypatch.setattr(r, "is_closed", lambda rig, drive: False)
-    monkeypatch.setattr(r, "points", lambda run: EVERY)
+    monkeypatch.setattr(rs, "simulate", made)
+    monkeypatch.setattr(rs, "is_closed", lambda rig, drive: False)
+    monkeypatch.setattr(rs, "points", lambda run: EVERY)
     monkeypatch.setattr(r, "_before_turns", lambda square, change, conditioned: None)
     return made
 
 
 def errors_of(run, rig=3.0, dynamics="slip", samples=EVERY):
-    return r.RunErrors(run, dict.fromkeys(run.measured, samples), rig, dynamics)
+    return r.run_errors(run, dict.fromkeys(run.measured, samples), rig, dynamics)
 
 
 def test_noise_and_what_moves_the_drive_count_by_their_squares(model):
@@ -153,10 +154,10 @@ def test_errors_are_simulated_less_measured_without_the_shape_of_a_wrong_turn(mo
         expected[part] -= shape[part] * (shape[part] @ expected[part])
     np.testing.assert_allclose(found.errors(3.0)["f_in_N"], expected)
     np.testing.assert_allclose(found.raw(3.0)["f_in_N"], 1.0)
-    np.testing.assert_allclose(found.answers(2.0)["f_in_N"], 2.0 * X)
+    np.testing.assert_allclose(found.predict(2.0)["f_in_N"], 2.0 * X)
 
 
-def test_the_answers_of_the_last_two_rigs_are_kept(model):
+def test_the_predictions_of_the_last_two_rigs_are_cached(model):
     found = errors_of(run_of())
     model.asked.clear()
 
@@ -181,37 +182,38 @@ def test_a_run_is_answered_as_it_is_asked_for(model):
     assert drive.start_f_in_N is None
     assert dynamics == "slip"
     assert (how["on_mesh"], how["nodes"], how["tolerance"]) == (False, None, 1e-5)
-    assert how["step_ends_s"] is r.OWN_STEPS
+    assert how["step_ends_s"] is rs.OWN_STEPS
     model.asked.clear()
-    meshed = found.meshed(12)
+    meshed = r.meshed(found, 12)
     assert meshed.weights is found.weights
     meshed.errors(3.0)
     ((_, _, _, how),) = model.asked
     assert (how["on_mesh"], how["nodes"]) == (True, 12)
-    assert found.nodes is None
+    assert found.simulation.nodes is None
 
 
 def test_the_dynamic_model_takes_the_steps_of_the_rig_that_gave_the_weights(model):
     found = errors_of(run_of(), dynamics="lugre")
     steps = [how["step_ends_s"] for *_, how in model.asked]
-    own = [s is r.OWN_STEPS for s in steps]
+    own = [s is rs.OWN_STEPS for s in steps]
     assert own == [True, False, True, True]  # its steps, its answer, both errors of the drive
     assert steps[1].tolist() == [0.25, 0.5]
     model.asked.clear()
     found.errors(9.0)
     assert [how["step_ends_s"].tolist() for *_, how in model.asked] == [[0.25, 0.5]]
     model.asked.clear()
-    found.weigh(9.0)
-    assert len(model.asked) == 4  # its old answer had other steps
+    other = r.reweighed(found, 9.0)
+    assert len(model.asked) == 4  # its old predictions had other steps
+    assert other.simulation is not found.simulation
 
 
 def test_between_samples_that_are_simulated_answers_are_straight(monkeypatch, model):
     """Simulated are 0, 4 and 10: at 2 half way from 0 to 4, at 7 half way from 4 to 0."""
-    monkeypatch.setattr(r, "points", lambda run: np.array([0, 4, 10]))
+    monkeypatch.setattr(rs, "points", lambda run: np.array([0, 4, 10]))
     run = run_of(load_sd=0.1)
     run.drive = Drive(values=X, load="force", load_values=2.0 * X, time_s=0.1 * EVERY)
     found = errors_of(run)
-    answers = found.answers(3.0)
+    answers = found.predict(3.0)
     np.testing.assert_allclose(answers["f_in_N"][[0, 2, 4, 7, 10]], [0.0, 6.0, 12.0, 6.0, 0.0])
     np.testing.assert_allclose(answers["f_out_N"][[2, 7]], [12.0, 12.0])
     np.testing.assert_allclose(answers["x_out_mm"][[2, 7]], [2.0, 2.0])
@@ -223,16 +225,16 @@ def test_between_samples_that_are_simulated_answers_are_straight(monkeypatch, mo
 
 def test_the_closed_form_answers_at_every_sample(monkeypatch, model):
     """It costs next to nothing; a chain, which somebody asks for, follows some."""
-    monkeypatch.setattr(r, "points", lambda run: np.array([0, 4, 10]))
-    monkeypatch.setattr(r, "is_closed", lambda rig, drive: rig == 3.0)
+    monkeypatch.setattr(rs, "points", lambda run: np.array([0, 4, 10]))
+    monkeypatch.setattr(rs, "is_closed", lambda rig, drive: rig == 3.0)
     found = errors_of(run_of())
     assert sizes(model) == {N}
-    assert found.answers(3.0)["f_in_N"].tolist() == (3.0 * X).tolist()
-    assert found.answers(2.0)["f_in_N"][:5].tolist() == [0.0, 2.0, 4.0, 6.0, 8.0]
+    assert found.predict(3.0)["f_in_N"].tolist() == (3.0 * X).tolist()
+    assert found.predict(2.0)["f_in_N"][:5].tolist() == [0.0, 2.0, 4.0, 6.0, 8.0]
     assert sizes(model) == {3}
-    found.meshed(12).answers(3.0)
+    r.meshed(found, 12).predict(3.0)
     assert sizes(model) == {3}
-    errors_of(run_of(), dynamics="lugre").answers(3.0)
+    errors_of(run_of(), dynamics="lugre").predict(3.0)
     assert sizes(model) == {3}
 
 
@@ -255,9 +257,8 @@ def sizes(model):
 def test_a_block_is_longer_than_the_memory_of_errors(
     monkeypatch, model, memory, window_s, longest, length
 ):
-    found = errors_of(run_of(), samples=EVERY)
-    found.samples = {"f_in_N": EVERY, "f_out_N": np.array([0, 9])}
-    found.errors = lambda rig: {"f_in_N": "errors"}
+    samples = {"f_in_N": EVERY, "f_out_N": np.array([0, 9])}
+    found = r.run_errors(run_of(), samples, 3.0)
     monkeypatch.setattr(r, "block_length", lambda residuals: memory)
     found.run.conditioned["x_in_mm"].window_s = window_s
     found.run.conditioned["other"] = SimpleNamespace(window_s=0.001)

@@ -42,7 +42,7 @@ OWN = 8.0 * np.linalg.qr(RNG.standard_normal((N, 2)))[0]
 
 
 class Bench:
-    """Effects whose errors are linear in their amplitudes, in units of their starts."""
+    """Effects whose errors are linear in their amplitudes, in units of their usual sizes."""
 
     def __init__(self, effect, shape=None):
         self.effect, self.shape = effect, shape
@@ -66,7 +66,7 @@ def test_the_amounts_are_those_that_take_the_residual_away():
     found = screen(Bench(FREE_TENDON), trial, FREE_TENDON, basis)
     assert found.part == pytest.approx(1.0, abs=1e-6)
     proximal, distal = FREE_TENDON.parameters
-    assert found.start == pytest.approx(
+    assert found.initial == pytest.approx(
         {
             f"free_tendon.{proximal.name}": 2.0 * proximal.start,
             f"free_tendon.{distal.name}": 0.5 * distal.start,
@@ -81,7 +81,7 @@ def test_a_length_cannot_be_negative_nor_ten_times_the_plausible_one():
     trial = trial_of(OWN[:, 0] - 25.0 * OWN[:, 1])
     found = screen(Bench(FREE_TENDON), trial, FREE_TENDON, np.zeros((N, 0)))
     proximal, distal = (p.start for p in FREE_TENDON.parameters)
-    values = list(found.start.values())
+    values = list(found.initial.values())
     assert values[0] == pytest.approx(0.0, abs=1e-5 * proximal)
     assert values[1] == pytest.approx(10.0 * distal, rel=1e-5)
     assert 0.0 < found.part < 1.0
@@ -93,7 +93,7 @@ def test_the_best_shape_is_taken():
     right = shape.starts[-2]
     trial = trial_of(-0.3 * OWN[:, 0])
     found = screen(Bench(STRIBECK_FRICTION, right), trial, STRIBECK_FRICTION, np.zeros((N, 0)))
-    assert found.start[f"stribeck_friction.{shape.name}"] == right
+    assert found.initial[f"stribeck_friction.{shape.name}"] == right
     assert found.part == pytest.approx(1.0, abs=1e-6)
 
 

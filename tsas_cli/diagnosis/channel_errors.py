@@ -7,9 +7,9 @@ import numpy as np
 
 from tsas_cli.diagnosis.held_out import held_out_values
 from tsas_cli.diagnosis.remainder import Remainder
-from tsas_cli.diagnosis.search import Search
+from tsas_cli.diagnosis.search import Hypotheses
 from tsas_cli.identification.extension import Trial
-from tsas_cli.identification.joint_fit import rig_at
+from tsas_cli.identification.fit_problem import rig_at
 
 
 @dataclass(frozen=True)
@@ -23,7 +23,7 @@ class Channel:
 
 
 def channel_errors(
-    search: Search, before: Trial, final: Trial, start: Remainder, left: Remainder
+    search: Hypotheses, before: Trial, final: Trial, start: Remainder, left: Remainder
 ) -> dict[str, Channel]:
     """Return the errors of each channel on held-out data, simulated anew."""
     rmse = {id(t): _held_out_rmse(search, t) for t in (before, final)}
@@ -45,7 +45,7 @@ def channel_errors(
     return out
 
 
-def _held_out_rmse(search: Search, trial: Trial) -> dict[str, float]:
+def _held_out_rmse(search: Hypotheses, trial: Trial) -> dict[str, float]:
     """Return each channel's error, every run simulated with what the others say."""
     bench, folds = search.bench, search.folds
     squares: dict[str, float] = {}

@@ -12,15 +12,16 @@ from tsas_cli.diagnosis.channel_errors import Channel, channel_errors
 from tsas_cli.diagnosis.evidence import gain_percent
 from tsas_cli.diagnosis.held_out import Folds, folds_of
 from tsas_cli.diagnosis.remainder import Remainder, remainder
-from tsas_cli.diagnosis.search import BLURRED, Names, Search
+from tsas_cli.diagnosis.search import BLURRED, Hypotheses, find_effects, weighed_again
 from tsas_cli.diagnosis.signals import spoken
 from tsas_cli.diagnosis.uneven_bend import stderr_of_unevenness
 from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.base_fit import base_fit, slopes_of
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.extension import Bench, Trial
-from tsas_cli.identification.fit import Fitted, with_errors
-from tsas_cli.identification.joint_fit import JointFit, estimates_of
+from tsas_cli.identification.extension import Bench, Trial, bench_of
+from tsas_cli.identification.fit import with_errors
+from tsas_cli.identification.fit_problem import FitProblem
+from tsas_cli.identification.joint_fit import FittedModel, estimates_of, solve_fit
 from tsas_cli.identification.model import Model, data_sheet
 from tsas_cli.identification.phases import segment
 from tsas_cli.identification.preload_correction import with_preload_correction
@@ -70,8 +71,8 @@ class Diagnosis:
     channels: dict[str, Channel] = field(default_factory=dict)
     remainder: Remainder | None = None
     share_left: float = 0.0
-    search: Search | None = None
-    judged: Search | None = None
+    search: Hypotheses | None = None
+    judged: Hypotheses | None = None
     before: Trial | None = None
     final: Trial | None = None
     cannot_tell: tuple[str, ...] = ()
@@ -118,36 +119,40 @@ def diagnose_runs(
         The runs, prepared.
     """
     step.ahead(1)
-    base = nominal_fit(manifest, stated, runs)
-    model, fitted, sentences = base.solve()
+    base = solve_fit(nominal_fit(manifest, stated, runs))
     step()
-    reason = _not_possible(base, fitted)
+    model, cannot_tell = base.model, tuple(base.cannot_tell)
+    reason = _not_possible(base)
     if reason is not None:
-        return Diagnosis("undecided", reason, model, model, cannot_tell=tuple(sentences))
-    bench = Bench(base)
-    search = Search(bench, bench_folds(bench), step)
-    if search.folds.blocks < FEW_BLOCKS:
-        reason = f"only {search.folds.blocks} stretches are independent of each other: too few."
-        return Diagnosis("undecided", reason, model, model, cannot_tell=tuple(sentences))
-    found = _concluded(search, search.run(), model, tuple(base.untold))
+        return Diagnosis("undecided", reason, model, model, cannot_tell=cannot_tell)
+    bench = bench_of(base)
+    folds = bench_folds(bench)
+    if folds.blocks < FEW_BLOCKS:
+        reason = f"only {folds.blocks} stretches are independent of each other: too few."
+        return Diagnosis("undecided", reason, model, model, cannot_tell=cannot_tell)
+    search = find_effects(bench, folds, step)
+    judged = weighed_again(search, step) if search.named else search
+    found = _concluded(search, judged, base)
     extended, nominal = (with_preload_correction(m, runs) for m in (found.model, found.nominal))
     return replace(found, model=extended, nominal=nominal)
 
 
-def nominal_fit(manifest: Manifest, stated: Model, runs: Sequence[Prepared]) -> JointFit:
-    """Return the fit of the nominal parameters, not yet solved; the tendon stays near its sheet."""
+def nominal_fit(manifest: Manifest, stated: Model, runs: Sequence[Prepared]) -> FitProblem:
+    """Return the fit of the nominal parameters as a problem; the tendon stays near its sheet."""
     segments = [segment(run) for run in runs]
     measured = [slopes_of(run, parts) for run, parts in zip(runs, segments, strict=True)]
     plausible = {}
-    told = data_sheet(manifest).value("tendon_stiffness_N")
-    if told is not None:
-        plausible["tendon_stiffness_N"] = (told * (1.0 - PLAUSIBLE), told / (1.0 - PLAUSIBLE))
+    stiffness = data_sheet(manifest).value("tendon_stiffness_N")
+    if stiffness is not None:
+        bounds = stiffness * (1.0 - PLAUSIBLE), stiffness / (1.0 - PLAUSIBLE)
+        plausible["tendon_stiffness_N"] = bounds
     return base_fit(stated, runs, segments, measured, plausible)
 
 
-def _not_possible(base: JointFit, fitted: Fitted | None) -> str | None:
+def _not_possible(base: FittedModel) -> str | None:
     """Say why nothing can be diagnosed, or None."""
-    if not base.runs:
+    fitted = base.fitted
+    if not base.problem.runs:
         return "no run lasts beyond the time in which the tendon forgets how it began."
     if fitted is None:
         return "these recordings identify no parameter of the nominal model."
@@ -161,14 +166,13 @@ def bench_folds(bench: Bench) -> Folds:
     return folds_of(blocks_of(bench.closed, bench.rigs))
 
 
-def _concluded(search: Search, named: Names, model: Model, sentences: tuple[str, ...]) -> Diagnosis:
-    rivals = {name: search.rivals(named, name) for name in _in_order(named)}
-    search.screen(frozenset())  # before the weights change
-    judged = search.weighed_again(named) if named else search
+def _concluded(search: Hypotheses, judged: Hypotheses, base: FittedModel) -> Diagnosis:
+    """Return the diagnosis from what was found, and from the fits that were weighed by it."""
+    named, model = search.named, base.model
     before = judged.trial(frozenset(), on_mesh=judged.bench.on_mesh(named))
     final = judged.trial(named)
     estimates = _estimates(judged, final)
-    causes = tuple(_cause(judged, named, name, rivals[name], estimates) for name in rivals)
+    causes = tuple(_cause(judged, name, estimates) for name in search.rivals)
     left = remainder(judged.bench, final, judged.folds)
     start = remainder(judged.bench, before, judged.folds) if named else left
     excess = [max(r.mean_square - 1.0, 0.0) for r in (start, left)]
@@ -189,43 +193,32 @@ def _concluded(search: Search, named: Names, model: Model, sentences: tuple[str,
         judged,
         before,
         final,
-        sentences,
+        base.not_identifiable,
     )
     return replace(found, reason=_reason(found, start, left))
 
 
-def _in_order(named: Names) -> list[str]:
-    return [effect.name for effect in EFFECTS if effect.name in named]
-
-
-def _cause(
-    search: Search,
-    named: Names,
-    name: str,
-    rivals: tuple[str, ...],
-    estimates: Sequence[Estimate],
-) -> Cause:
-    fewer = named - {name}
-    mesh = search.bench.on_mesh(named)
+def _cause(judged: Hypotheses, name: str, estimates: Sequence[Estimate]) -> Cause:
+    named = judged.named
     gains = gain_percent(
-        search.held_out(fewer, on_mesh=mesh),
-        search.held_out(named),
+        judged.held_out(named - {name}, on_mesh=judged.bench.on_mesh(named)),
+        judged.held_out(named),
         np.random.default_rng(SEED),
     )
     own = tuple(e for e in estimates if e.name.startswith(f"{name}."))
-    return Cause(name, rivals, own, gains[0], (gains[1], gains[2]))
+    return Cause(name, judged.rivals[name], own, gains[0], (gains[1], gains[2]))
 
 
-def _estimates(search: Search, trial: Trial) -> list[Estimate]:
-    """Return what a trial says of its unknowns, as far as an uneven bend leaves them sure."""
+def _estimates(search: Hypotheses, trial: Trial) -> list[Estimate]:
+    """Return the estimates of a trial, as far as an uneven bend leaves them sure."""
     solution = trial.solution
     blocks = [search.folds.block[search.folds.run == k] for k in range(len(search.bench.rigs))]
     counted = [np.unique(block, return_inverse=True)[1] for block in blocks]
     fitted = with_errors(trial.unknowns, solution, counted, by_run=True)
     uneven = stderr_of_unevenness(search.bench, trial, counted)
     fitted = replace(fitted, stderr=np.hypot(fitted.stderr, uneven))
-    told = estimates_of(trial.unknowns, fitted, search.bench.base.ids())
-    return [_as_sure_as_the_data_sheet(e, trial) if e.name == SHEATH else e for e in told]
+    estimates = estimates_of(trial.unknowns, fitted, search.bench.base.problem.ids)
+    return [_as_sure_as_the_data_sheet(e, trial) if e.name == SHEATH else e for e in estimates]
 
 
 def _as_sure_as_the_data_sheet(ratio: Estimate, trial: Trial) -> Estimate:

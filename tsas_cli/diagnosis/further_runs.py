@@ -9,9 +9,10 @@ import numpy as np
 from tsas_cli.diagnosis.candidates import Candidate, candidates, recorded_limits
 from tsas_cli.diagnosis.made_runs import APART, made
 from tsas_cli.diagnosis.rig_file import Sensors
-from tsas_cli.diagnosis.visibility import Look, Part
-from tsas_cli.identification.extension import Bench
-from tsas_cli.identification.joint_fit import JointFit
+from tsas_cli.diagnosis.visibility import Look, Part, look_at
+from tsas_cli.identification.extension import Bench, bench_of
+from tsas_cli.identification.fit_problem import prepare_fit
+from tsas_cli.identification.joint_fit import solve_fit
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.prepared import Prepared, prepare
 from tsas_cli.physics.rig import Rig
@@ -38,8 +39,8 @@ class FurtherRuns:
 def beside(
     runs: Sequence[Prepared],
     further: Sequence[tuple[Candidate, Prepared]],
-    start: Model,
-    kept: Model,
+    initial: Model,
+    fixed: Model,
     free: Mapping[str, float] | None = None,
 ) -> FurtherRuns:
     """Look at runs and further ones in one fit of the nominal parameters.
@@ -48,37 +49,36 @@ def beside(
     ----------
     runs, further
         The runs that are there, and those that might be added.
-    start, kept
-        The values that the fit begins with, and those of what the runs do not tell.
+    initial, fixed
+        The values that the fit begins with, and those of parameters that are not identifiable.
     free
-        Parameters of effects that are free in the fit, with the values to start from.
+        Parameters of effects that are free in the fit, with their initial values.
 
     Raises
     ------
     InputError
         Not one of the runs that are there makes the whole tendon slip.
     """
-    fit = JointFit(start, kept, [*runs, *(run for _, run in further)])
+    problem = prepare_fit(initial, fixed, [*runs, *(run for _, run in further)])
     by_id = {run.run.id: candidate for candidate, run in further}
-    there = tuple(k for k, run in enumerate(fit.runs) if run.run.id not in by_id)
+    there = tuple(k for k, run in enumerate(problem.runs) if run.run.id not in by_id)
     if not there:
         raise InputError(
             "no run makes the whole tendon slip, so that nothing can be seen",
             expected="strokes that stretch the tendon and move the load",
             remedy="plan a larger amplitude_mm",
         )
-    fit.solve()
-    bench = Bench(fit)
+    bench = bench_of(solve_fit(problem))
     named = sorted({name.split(".")[0] for name in free or {}})
-    look = Look(bench, bench.fit(named, dict(free or {}), on_mesh=True))
-    added = {k: by_id[r.run.id] for k, r in enumerate(fit.runs) if r.run.id in by_id}
-    left_out = tuple(s for s in fit.left_out if not any(i in s for i in by_id))
+    look = look_at(bench, bench.fit(named, free or {}, on_mesh=True))
+    added = {k: by_id[r.run.id] for k, r in enumerate(problem.runs) if r.run.id in by_id}
+    left_out = tuple(s for s in problem.left_out if not any(i in s for i in by_id))
     return FurtherRuns(look, there, added, left_out)
 
 
 def beside_recorded(bench: Bench, free: Mapping[str, float] | None = None) -> FurtherRuns:
     """Look at the runs of a bench and at what might be recorded beside them on the same rig."""
-    base = bench.base
+    base = bench.base.problem
     plain = [(r.drive_column, r.run.load) == ("x_in_mm", "spring") for r in base.runs]
     further: list[tuple[Candidate, Prepared]] = []
     if any(plain):
@@ -92,7 +92,7 @@ def beside_recorded(bench: Bench, free: Mapping[str, float] | None = None) -> Fu
         )
         proposed = candidates(recorded_limits(base.runs), bench.rigs[k])
         further = recorded_in_thought(proposed, sensors, bench.rigs[k], base.runs)
-    return beside(base.runs, further, base.start, base.kept, free)
+    return beside(base.runs, further, base.initial, base.fixed, free)
 
 
 def recorded_in_thought(

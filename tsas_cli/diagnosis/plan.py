@@ -19,7 +19,8 @@ from tsas_cli.diagnosis.rig_file import RigFile
 from tsas_cli.diagnosis.visibility import Cause, Seen
 from tsas_cli.effects import EFFECTS, Effect
 from tsas_cli.identification.base_fit import base_fit, slopes_of
-from tsas_cli.identification.extension import Bench, Trial
+from tsas_cli.identification.extension import Bench, Trial, bench_of
+from tsas_cli.identification.joint_fit import solve_fit
 from tsas_cli.identification.model import data_sheet
 from tsas_cli.identification.phases import segment
 from tsas_cli.identification.prepared import prepare
@@ -114,9 +115,8 @@ def plan_dataset(dataset: Dataset, step: Steps = SILENT) -> Plan:
     runs = [prepare(recording, manifest.session_start) for recording in dataset]
     segments = [segment(run) for run in runs]
     measured = [slopes_of(run, parts) for run, parts in zip(runs, segments, strict=True)]
-    base = base_fit(data_sheet(manifest), runs, segments, measured)
-    base.solve()
-    return _plan(beside_recorded(Bench(base)), step)
+    base = solve_fit(base_fit(data_sheet(manifest), runs, segments, measured))
+    return _plan(beside_recorded(bench_of(base)), step)
 
 
 def propose(bench: Bench, trial: Trial, effects: Sequence[str], step: Steps = SILENT) -> str:

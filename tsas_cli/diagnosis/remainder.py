@@ -88,8 +88,8 @@ def _signals(bench: Bench, trial: Trial) -> tuple[dict[str, Floats], Floats]:
     out: dict[str, list[Floats]] = {}
     channel = []
     for k, run in enumerate(bench.errors_for(trial)):
-        answer = run.answers(bench.rig(trial, k))
-        signals = signals_of(run.run, answer["f_in_N"])
+        predicted = run.predict(bench.rig(trial, k))
+        signals = signals_of(run.run, predicted["f_in_N"])
         for name, at in run.samples.items():
             edges = mean_edges(at.size)
             middle = at[np.minimum(edges + (edges[1] - edges[0]) // 2, at.size - 1)]
@@ -110,7 +110,7 @@ def hats(signal: Floats, direction: Floats) -> Floats:
 
 
 def regressed(columns: Floats, residual: Floats, fold: npt.NDArray[np.int64]) -> Floats:
-    """Return the ridge regression's answer in each fold, fitted to all others, shape (n,)."""
+    """Return the ridge regression's prediction in each fold, fitted to all others, shape (n,)."""
     out = np.zeros(residual.size)
     gram, score = columns.T @ columns, columns.T @ residual
     ridge = RIDGE * np.eye(columns.shape[1])

@@ -25,7 +25,7 @@ def residual_map(bench: Bench, trial: Trial) -> Maps:
     seen: dict[str, dict[str, list[Floats]]] = {}
     for k, run_errors in enumerate(bench.errors_for(trial)):
         run, rig = run_errors.run, bench.rig(trial, k)
-        signals = signals_of(run, run_errors.answers(rig)["f_in_N"])
+        signals = signals_of(run, run_errors.predict(rig)["f_in_N"])
         signals[RUN] = np.full(run.time_s.size, float(k))
         for channel, values in run_errors.errors(rig).items():
             errors.setdefault(channel, []).append(-values)

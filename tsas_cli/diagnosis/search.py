@@ -3,10 +3,13 @@
 One effect after the other is added while the best one convinces; after each, every earlier one
 has to prove itself again without the others' help. Where single effects leave something, pairs
 are looked at together, because effects of opposite sign hide each other.
+
+`find_effects` gives what a search has found. While it is at work, a `Search` holds the fits made so
+far: a set of effects is fitted once, from the initial values of the way that reaches it first.
 """
 
-from collections.abc import Iterable
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
 from itertools import combinations
 
 import numpy as np
@@ -15,7 +18,7 @@ import numpy.typing as npt
 from tsas_cli.diagnosis.evidence import APART, RICHER, TELLING, Gain, gain
 from tsas_cli.diagnosis.held_out import Folds, held_out_squares
 from tsas_cli.effects import EFFECTS, Effect
-from tsas_cli.identification.extension import TOLERANCE, Bench, Trial
+from tsas_cli.identification.extension import TOLERANCE, Bench, Trial, reweighed_bench
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.identification.screening import Screened, projector, screen
 from tsas_cli.support.steps import SILENT, Steps
@@ -29,14 +32,82 @@ LEAST = 0.003  # of what the nominal model was beyond it, that a further cause h
 BLURRED = 0.15  # mean square by which a model that lacks nothing may miss the noise it is held to
 WORTH = 0.0005  # part of the squares that a signature has to explain to be fitted
 BESIDE_BEST = 0.02  # of what the best signature explains
-FRESH_STARTS, CLOSER = 4, 0.2
+ATTEMPTS, CLOSER = 4, 0.2
 WEIGHED = 3  # times that the errors are weighed by what was found, and it is fitted again
 PAIRS = 4  # that are fitted, of those that explain most together
 
 
+@dataclass(frozen=True, eq=False)
+class Hypotheses:
+    """What a search has found: the effects named, their rivals, and every fit behind them.
+
+    `trials` and `squares` hold each set of effects that was fitted, off and on the mesh, with its
+    held-out squares by block, `screened` all effects as seen with nothing named.
+    """
+
+    bench: Bench
+    folds: Folds
+    named: Names
+    rivals: Mapping[str, tuple[str, ...]]
+    screened: tuple[Screened, ...]
+    trials: Mapping[tuple[Names, bool], Trial]
+    squares: Mapping[tuple[Names, bool], Floats]
+
+    def trial(self, names: Names, *, on_mesh: bool = False) -> Trial:
+        """Return the fit of a set of effects, that on the mesh if any of it needs one."""
+        return self.trials[names, on_mesh or self.bench.on_mesh(names)]
+
+    def held_out(self, names: Names, *, on_mesh: bool = False) -> Floats:
+        """Return the held-out squares of a set of effects, block by block."""
+        return self.squares[names, on_mesh or self.bench.on_mesh(names)]
+
+    def gain(self, names: Names) -> Gain:
+        """Compare a set of effects with nothing named, both on the mesh if it needs one."""
+        mesh = self.bench.on_mesh(names)
+        return gain(self.held_out(frozenset(), on_mesh=mesh), self.held_out(names))
+
+
+def find_effects(bench: Bench, folds: Folds, step: Steps = SILENT) -> Hypotheses:
+    """Return the effects that are convincing together, and what else was tried."""
+    search = Search(bench, folds, step)
+    named = search.run()
+    rivals = {e.name: search.rivals(named, e.name) for e in EFFECTS if e.name in named}
+    screened = tuple(search.screen(frozenset()))
+    for names in _judged_sets(named):
+        search.trial(names, on_mesh=bench.on_mesh(named))
+    return Hypotheses(bench, folds, named, rivals, screened, search.trials, search.squares)
+
+
+def weighed_again(found: Hypotheses, step: Steps = SILENT) -> Hypotheses:
+    """Return the fits of what is named, of nothing, and of all but one, weighed by what is named.
+
+    Rivals and signatures stay those that were found.
+    """
+    named, bench = found.named, found.bench
+    mesh, trial = bench.on_mesh(named), found.trial(named)
+    sets = _judged_sets(named)
+    step.ahead(WEIGHED + len(sets))
+    for _ in range(WEIGHED):
+        bench = reweighed_bench(bench, trial)
+        trial = bench.fit(sorted(named), near=trial, on_mesh=mesh)
+        step()
+    trials = {}
+    for names in sets:
+        near = found.trial(names, on_mesh=mesh)
+        trials[names, mesh] = bench.fit(sorted(names), near=near, on_mesh=mesh)
+        step()
+    squares = {key: held_out_squares(trial, found.folds) for key, trial in trials.items()}
+    return replace(found, bench=bench, trials=trials, squares=squares)
+
+
+def _judged_sets(named: Names) -> set[Names]:
+    """Return what is named, nothing, and all but one."""
+    return {frozenset[str](), named, *(named - {name} for name in named)}
+
+
 @dataclass
 class Search:
-    """The hypotheses that were fitted to one dataset, with their held-out squares."""
+    """A search at work: the hypotheses fitted to one dataset so far, with held-out squares."""
 
     bench: Bench
     folds: Folds
@@ -66,25 +137,6 @@ class Search:
             return named
         simple, best = ends[0], ends[-1]
         return best if self.gain(simple, best).beyond(RICHER) else simple
-
-    def weighed_again(self, named: Names) -> "Search":
-        """Return a search whose errors are weighed by what is named, and that knows little more.
-
-        It holds the fits of what is named, of nothing, and of all but one.
-        """
-        mesh, bench, trial = self.bench.on_mesh(named), self.bench, self.trial(named)
-        sets = {frozenset[str](), named, *(named - {name} for name in named)}
-        self.step.ahead(WEIGHED + len(sets))
-        for _ in range(WEIGHED):
-            bench = bench.weighed_by(trial)
-            trial = bench.fit(sorted(named), near=trial, on_mesh=mesh)
-            self.step()
-        other = Search(bench, self.folds, self.step, self.effects)
-        for names in sets:
-            near = self.trial(names, on_mesh=mesh)
-            other._keep(names, bench.fit(sorted(names), near=near, on_mesh=mesh))
-            self.step()
-        return other
 
     def rivals(self, named: Names, name: str) -> tuple[str, ...]:
         """Return the effects that would do as well in place of a named one."""
@@ -144,7 +196,7 @@ class Search:
         found = []
         for s in worth:
             together = names | {s.effect.name}
-            self._fit(names, together, s.start)
+            self._fit(names, together, s.initial)
             found.append((s.effect.name, self.gain(names, together)))
         return sorted(found, key=lambda f: -f[1].part)
 
@@ -202,7 +254,7 @@ class Search:
                 break
             pair = frozenset({a.effect.name, b.effect.name})
             self.step.ahead(self._is_new(names | pair))
-            self._fit(names, names | pair, a.start | b.start)
+            self._fit(names, names | pair, a.initial | b.initial)
             if self.gain(names, names | pair).convincing and self.matters(names, pair):
                 return pair
         return None
@@ -219,17 +271,17 @@ class Search:
         """Say whether a set of effects has not been fitted yet."""
         return (names, self.bench.on_mesh(names)) not in self.trials
 
-    def _fit(self, near: Names, names: Names, start: dict[str, float]) -> None:
+    def _fit(self, near: Names, names: Names, initial: Mapping[str, float]) -> None:
         if not self._is_new(names):
             return
         mesh = self.bench.on_mesh(names)
         known = self.trial(near, on_mesh=mesh)
-        for _ in range(FRESH_STARTS):
-            trial = self.bench.fit(sorted(names), start, near=known, on_mesh=mesh)
+        for _ in range(ATTEMPTS):
+            trial = self.bench.fit(sorted(names), initial, near=known, on_mesh=mesh)
             if trial.mean_square <= known.mean_square * (1.0 + TOLERANCE):
                 break
-            # More freedom cannot fit worse: the start was too far off.
-            start = {n: QUANTITIES[n].closer(v, CLOSER) for n, v in start.items()}
+            # More freedom cannot fit worse: the initial values were too far off.
+            initial = {n: QUANTITIES[n].closer(v, CLOSER) for n, v in initial.items()}
         self._keep(names, trial)
         self.step()
 

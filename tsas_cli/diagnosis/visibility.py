@@ -10,7 +10,6 @@ gain log(1 + s² E_b / n_b) there, and noise scatters that by 2 s √E_b / (n_b 
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from itertools import product
 
 import numpy as np
@@ -21,7 +20,7 @@ from tsas_cli.diagnosis.held_out import folds_of
 from tsas_cli.effects import Effect, Parameter
 from tsas_cli.identification.extension import Bench, Trial
 from tsas_cli.identification.fit import jacobian
-from tsas_cli.identification.joint_fit import rig_at
+from tsas_cli.identification.fit_problem import rig_at
 from tsas_cli.identification.run_errors import blocks_of
 from tsas_cli.identification.screening import projector
 
@@ -114,17 +113,20 @@ def amplitudes_of(effect: Effect) -> list[Cause]:
     return [cause for cause in causes if cause.shape == causes[0].shape]
 
 
+@dataclass(frozen=True, eq=False)
 class Look:
-    """The runs of a bench, some of which are planned, and what each effect would do in them."""
+    """The runs of a bench, some of which are planned, and what each effect would do in them.
 
-    def __init__(self, bench: Bench, trial: Trial) -> None:
-        """Take a trial on the mesh, at whose values everything is linear."""
-        self.bench = bench
-        slopes = _slopes(bench, trial)
-        self.trial = replace(trial, solution=replace(trial.solution, jacobian=slopes))
-        self.run: Indices = np.repeat(np.arange(len(trial.sizes)), trial.sizes)
-        self.block = folds_of(blocks_of(bench.closed, bench.rigs)).block
-        self._signatures: dict[tuple[str, float, tuple[float, ...]], Floats] = {}
+    Everything is linear at the values of `trial`. `run` and `block` number all residuals, (n,),
+    `without` are these with no effect added. `signatures` caches what was looked at.
+    """
+
+    bench: Bench
+    trial: Trial
+    run: Indices
+    block: Indices
+    without: Floats
+    signatures: dict[tuple[str, float, tuple[float, ...]], Floats] = field(default_factory=dict)
 
     def part(self, runs: Sequence[int]) -> "Part":
         """Return the look at some of the runs alone."""
@@ -142,16 +144,25 @@ class Look:
         Nothing, where the model does not get through the runs with it: then it is not found.
         """
         key = (cause.name, size, tuple(cause.shape.values()))
-        if key not in self._signatures:
+        if key not in self.signatures:
             at = cause.shape | {cause.name: cause.parameter.neutral + size}
-            change = (self.bench.errors_at(self.trial, at) - self._without) / size
+            change = (self.bench.errors_at(self.trial, at) - self.without) / size
             gone_through = bool(np.isfinite(change).all())
-            self._signatures[key] = change if gone_through else np.zeros_like(change)
-        return self._signatures[key]
+            self.signatures[key] = change if gone_through else np.zeros_like(change)
+        return self.signatures[key]
 
-    @cached_property
-    def _without(self) -> Floats:
-        return self.bench.errors_at(self.trial, {})
+
+def look_at(bench: Bench, trial: Trial) -> Look:
+    """Return the look at the runs of a bench from a trial on the mesh."""
+    slopes = _slopes(bench, trial)
+    linear = replace(trial, solution=replace(trial.solution, jacobian=slopes))
+    return Look(
+        bench,
+        linear,
+        np.repeat(np.arange(len(trial.sizes)), trial.sizes),
+        folds_of(blocks_of(bench.closed, bench.rigs)).block,
+        bench.errors_at(linear, {}),
+    )
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ from tsas_cli.diagnosis.evidence import gain, gain_percent
 from tsas_cli.diagnosis.remainder import DEPENDS, hats, regressed
 from tsas_cli.diagnosis.search import BLURRED
 from tsas_cli.drive.fit import Terms
-from tsas_cli.drive.search import EFFECT_OF, NOTHING, DriveSearch
+from tsas_cli.drive.search import EFFECT_OF, NOTHING, DriveSearch, rivals
 from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.estimate import Estimate
 
@@ -115,16 +115,16 @@ def _cause(
         fewer = fewer | nominal  # the equation has a spring of its own, only no reaction
     if fewer == final or not search.gain(fewer, final).convincing:
         return None
-    rivals = dict.fromkeys(
+    instead = dict.fromkeys(
         f"channel_delay ({KIND[other]})" if EFFECT_OF[other] == effect else EFFECT_OF[other]
         for term in sorted(own)
         if len(own) == 1
-        for other in search.rivals(final, term)
+        for other in rivals(search, final, term)
     )
     whole = _gain_percent(search, fewer, final)
     kind = " and ".join(KIND[term] for term in sorted(own) if term in KIND)
     told = tuple(estimates[name] for name in PARAMETERS[effect] if name in estimates)
-    return DriveCause(effect, kind, tuple(rivals), told, whole[0], (whole[1], whole[2]))
+    return DriveCause(effect, kind, tuple(instead), told, whole[0], (whole[1], whole[2]))
 
 
 def _gain_percent(search: DriveSearch, before: Terms, after: Terms) -> tuple[float, float, float]:

@@ -7,6 +7,7 @@ and its free motion where it does not begin at rest, enter linearly and are take
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -76,15 +77,21 @@ class DriveTrial:
         return float(np.mean(self.solution.residual**2))
 
 
+@dataclass(frozen=True, eq=False)
 class DriveBench:
-    """Runs of a drive on which sets of terms are tried."""
+    """Runs of a drive on which sets of terms are tried, and their measured frequency response.
 
-    def __init__(
-        self, runs: Sequence[DriveRun], seen: FrequencyResponse, stated_Hz: float | None = None
-    ) -> None:
-        """Take the runs, their measured frequency response, and Eq. (25)'s natural frequency."""
-        self.runs, self.seen, self.stated_Hz = runs, seen, stated_Hz
-        self.gain = _start_gain(runs)
+    `stated_Hz` is Eq. (25)'s natural frequency, where the data sheet gives it.
+    """
+
+    runs: Sequence[DriveRun]
+    seen: FrequencyResponse
+    stated_Hz: float | None = None
+
+    @cached_property
+    def gain(self) -> float:
+        """The initial value of the gain [mm/(s rpm)]."""
+        return _initial_gain(self.runs)
 
     def fit(self, terms: Iterable[str], simpler: Iterable[DriveTrial] = ()) -> DriveTrial:
         """Fit a set of terms from several starts and return the best fit.
@@ -199,7 +206,7 @@ def _unknown(q: Quantity, value: float) -> Unknown:
     return Unknown(q.name, None, q.scaled(value), q.scaled(q.lower), q.scaled(q.upper), scale)
 
 
-def _start_gain(runs: Sequence[DriveRun]) -> float:
+def _initial_gain(runs: Sequence[DriveRun]) -> float:
     """Return the travel per turn of all runs, whatever the lags."""
     both = squares = 0.0
     for run in runs:

@@ -10,7 +10,7 @@ from tsas_cli.drive.diagnosis import DriveCause, DriveDiagnosis
 from tsas_cli.drive.estimates import DataSheet
 from tsas_cli.drive.fit import LINEAR, Terms, quantities_of
 from tsas_cli.drive.frequency_response import FrequencyResponse
-from tsas_cli.drive.search import DriveSearch
+from tsas_cli.drive.search import DriveSearch, structures
 from tsas_cli.drive.transfer_function import bode_curve, poles
 from tsas_cli.drive.words import (
     name_of,
@@ -26,11 +26,11 @@ CURVE_POINTS = 200
 BESIDE_BAND = 1.05  # of its edge, up to which a pole counts as inside
 
 
-def structures(search: DriveSearch, final: Terms) -> list[dict[str, Any]]:
+def structure_rows(search: DriveSearch, final: Terms) -> list[dict[str, Any]]:
     """Return every structure that was fitted with what is in the gear, the simplest first."""
     gear = final - frozenset(LINEAR)
     rows = []
-    for terms in search.structures(gear):
+    for terms in structures(gear):
         trial = search.trial(terms)
         rows.append(
             {

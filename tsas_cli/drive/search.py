@@ -7,7 +7,6 @@ the structure is chosen again, since lags imitate play and the other way round.
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
 from itertools import combinations
 
 import numpy as np
@@ -39,25 +38,16 @@ NOTHING: Terms = frozenset()
 
 
 @dataclass
-class DriveSearch:
-    """The sets of terms that were fitted to one dataset, with their held-out squares."""
+class DriveFits:
+    """The sets of terms that were fitted to one dataset so far, each once.
+
+    A fit begins with those of the simpler sets that are there when it is first asked for.
+    """
 
     bench: DriveBench
     step: Steps = SILENT
     trials: dict[Terms, DriveTrial] = field(default_factory=dict)
-    squares: dict[Terms, Floats] = field(default_factory=dict)
     ahead: set[Terms] = field(default_factory=set)  # sets of terms that are known to be fitted
-
-    @cached_property
-    def folds(self) -> Folds:
-        """What is held out together; the blocks outlast the memory of what the best one leaves."""
-        best = min(self.trials_of(self.structures()), key=lambda t: t.mean_square)
-        return self._folds_by(best)
-
-    def _folds_by(self, best: DriveTrial) -> Folds:
-        sizes = [run.x_in.size for run in self.bench.runs]
-        residuals = np.split(best.solution.residual, np.cumsum(sizes)[:-1])
-        return drive_folds(self.bench.runs, residuals)
 
     def trial(self, terms: Terms) -> DriveTrial:
         """Return the fit of a set of terms, no worse than that of any simpler one known."""
@@ -80,6 +70,24 @@ class DriveSearch:
         self.step.ahead(len(new))
         self.ahead |= new
 
+
+@dataclass(frozen=True, eq=False)
+class DriveSearch:
+    """Sets of terms compared on held-out data; `squares` caches theirs, block by block."""
+
+    fits: DriveFits
+    folds: Folds
+    squares: dict[Terms, Floats] = field(default_factory=dict)
+
+    @property
+    def bench(self) -> DriveBench:
+        """The runs that the terms are fitted to."""
+        return self.fits.bench
+
+    def trial(self, terms: Terms) -> DriveTrial:
+        """Return the fit of a set of terms."""
+        return self.fits.trial(terms)
+
     def held_out(self, terms: Terms) -> Floats:
         """Return the held-out squares of a set of terms, block by block."""
         if terms not in self.squares:
@@ -94,66 +102,80 @@ class DriveSearch:
         """Return the held-out mean square, 1 where nothing but noise is left."""
         return float(self.held_out(terms).sum()) / self.folds.block.size
 
-    def structures(self, gear: Terms = NOTHING) -> list[Terms]:
-        """Return all structures of G(s), the simplest first, with what is in the gear."""
-        chosen = [frozenset(c) for n in range(len(LINEAR) + 1) for c in combinations(LINEAR, n)]
-        return sorted((c | gear for c in chosen), key=lambda c: len(quantities_of(c)))
 
-    def chosen(self, gear: Terms) -> Terms:
-        """Return the simplest structure that the best one does not surely beat."""
-        structures = self.structures(gear)
-        self.trials_of(structures)
-        told = [t for t in structures if self.trial(t).solution.converged] or structures
-        best = min(told, key=lambda t: float(self.held_out(t).sum()))
-        return next(t for t in told if t == best or not self.gain(t, best).beyond(RICHER))
+def find_terms(fits: DriveFits) -> tuple[Terms, DriveSearch]:
+    """Return the terms that the recordings show, and the comparison that they were chosen in."""
+    best = min(fits.trials_of(structures()), key=lambda t: t.mean_square)
+    search = DriveSearch(fits, folds_by(best, fits.bench.runs))
+    named = chosen(search, NOTHING)
+    for _ in range(ROUNDS):
+        more = _with_gear(search, named)
+        if more == named:
+            break
+        # What is left now has a shorter memory: more blocks speak.
+        search = DriveSearch(fits, folds_by(fits.trial(more), fits.bench.runs))
+        named = _without_idle_gear(search, chosen(search, more & frozenset(GEAR)))
+    return named, search
 
-    def run(self) -> Terms:
-        """Return the terms that the recordings show."""
-        named = self.chosen(NOTHING)
-        for _ in range(ROUNDS):
-            more = self._more(named)
-            if more == named:
-                return named
-            # What is left now has a shorter memory: more blocks speak.
-            self.folds, self.squares = self._folds_by(self.trial(more)), {}
-            named = self._without_idle_gear(self.chosen(more & frozenset(GEAR)))
+
+def structures(gear: Terms = NOTHING) -> list[Terms]:
+    """Return all structures of G(s), the simplest first, with what is in the gear."""
+    linear = [frozenset(c) for n in range(len(LINEAR) + 1) for c in combinations(LINEAR, n)]
+    return sorted((c | gear for c in linear), key=lambda c: len(quantities_of(c)))
+
+
+def chosen(search: DriveSearch, gear: Terms) -> Terms:
+    """Return the simplest structure that the best one does not surely beat."""
+    every = structures(gear)
+    search.fits.trials_of(every)
+    ended = [t for t in every if search.trial(t).solution.converged] or every
+    best = min(ended, key=lambda t: float(search.held_out(t).sum()))
+    return next(t for t in ended if t == best or not search.gain(t, best).beyond(RICHER))
+
+
+def rivals(search: DriveSearch, named: Terms, term: str) -> tuple[str, ...]:
+    """Return the terms that would do as well in place of a named one."""
+    fewer = named - {term}
+    out = []
+    for other in EFFECT_OF:
+        if other in named:
+            continue
+        instead = fewer | {other}
+        helps = search.gain(fewer, instead).convincing
+        if helps and not search.gain(instead, named).beyond(APART):
+            out.append(other)
+    return tuple(out)
+
+
+def _with_gear(search: DriveSearch, named: Terms) -> Terms:
+    """Add what convinces in the gear, alone or together, where there is something left."""
+    left = [g for g in GEAR if g not in named]
+    if not left or search.mean_square(named) < 1.0 + BLURRED:
         return named
-
-    def rivals(self, named: Terms, term: str) -> tuple[str, ...]:
-        """Return the terms that would do as well in place of a named one."""
-        fewer = named - {term}
-        out = []
-        for other in EFFECT_OF:
-            if other in named:
-                continue
-            instead = fewer | {other}
-            helps = self.gain(fewer, instead).convincing
-            if helps and not self.gain(instead, named).beyond(APART):
-                out.append(other)
-        return tuple(out)
-
-    def _more(self, named: Terms) -> Terms:
-        """Add what convinces in the gear, alone or together, where there is something left."""
-        left = [g for g in GEAR if g not in named]
-        if not left or self.mean_square(named) < 1.0 + BLURRED:
-            return named
-        sets = [frozenset({g}) for g in left] + ([frozenset(left)] if len(left) > 1 else [])
-        self.trials_of([named | s for s in sets])
-        found = [(s, self.gain(named, named | s)) for s in sets]
-        good = [(s, g) for s, g in found if g.convincing]
-        if not good:
-            return named
-        best = max(good, key=lambda f: f[1].part)[0]
-        for s, _ in good:  # a single one that both together do not surely beat
-            if not self.gain(named | s, named | best).beyond(RICHER):
-                return named | s
-        return named | best
-
-    def _without_idle_gear(self, named: Terms) -> Terms:
-        for g in sorted(named & frozenset(GEAR)):
-            if not self.gain(named - {g}, named).convincing:
-                return self.chosen(named & frozenset(GEAR) - {g})
+    sets = [frozenset({g}) for g in left] + ([frozenset(left)] if len(left) > 1 else [])
+    search.fits.trials_of([named | s for s in sets])
+    found = [(s, search.gain(named, named | s)) for s in sets]
+    good = [(s, g) for s, g in found if g.convincing]
+    if not good:
         return named
+    best = max(good, key=lambda f: f[1].part)[0]
+    for s, _ in good:  # a single one that both together do not surely beat
+        if not search.gain(named | s, named | best).beyond(RICHER):
+            return named | s
+    return named | best
+
+
+def _without_idle_gear(search: DriveSearch, named: Terms) -> Terms:
+    for g in sorted(named & frozenset(GEAR)):
+        if not search.gain(named - {g}, named).convincing:
+            return chosen(search, named & frozenset(GEAR) - {g})
+    return named
+
+
+def folds_by(best: DriveTrial, runs: Sequence[DriveRun]) -> Folds:
+    """Return what is held out together; the blocks outlast the memory of what a fit leaves."""
+    sizes = [run.x_in.size for run in runs]
+    return drive_folds(runs, np.split(best.solution.residual, np.cumsum(sizes)[:-1]))
 
 
 def drive_folds(runs: Sequence[DriveRun], residuals: Sequence[Floats]) -> Folds:

@@ -1,11 +1,12 @@
-"""The fit of the nominal parameters, started from the data sheet and from what the phases show."""
+"""The fit of the nominal parameters, from the data sheet and from what the phases show."""
 
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.joint_fit import JointFit
+from tsas_cli.identification.fit_problem import FitProblem, prepare_fit
+from tsas_cli.identification.joint_fit import solve_fit
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.phases import Segment, segment
 from tsas_cli.identification.prepared import Prepared
@@ -20,20 +21,20 @@ def base_fit(
     segments: Sequence[list[Segment]],
     measured: Sequence[list[Slope]],
     plausible: Mapping[str, tuple[float, float]] | None = None,
-) -> JointFit:
-    """Return the joint fit of all runs, not yet solved.
+) -> FitProblem:
+    """Return the joint fit of all runs as a problem to solve.
 
     Parameters
     ----------
     stated
-        What the data sheet, or a model, says; kept where the recordings do not tell better.
+        What the data sheet, or a model, says: values of what is not identifiable.
     runs, segments, measured
         The runs, their phases and the stiffness in each.
     plausible
         Narrower bounds of some parameters.
     """
     read = _read_off(stated, runs, segments, measured)
-    return JointFit(read.over(stated), stated.over(read), runs, plausible)
+    return prepare_fit(read.over(stated), stated.over(read), runs, plausible=plausible)
 
 
 def with_own_values(model: Model, run: Prepared) -> Model:
@@ -41,9 +42,7 @@ def with_own_values(model: Model, run: Prepared) -> Model:
     parts = segment(run)
     read = _read_off(model, [run], [parts], [slopes_of(run, parts)])
     own = Model(tuple(e for e in read.estimates if e.run is not None))
-    fit = JointFit(own.over(model), model.over(own), [run])
-    fit.keep_shared()
-    return fit.solve()[0]
+    return solve_fit(prepare_fit(own.over(model), model.over(own), [run], shared=False)).model
 
 
 def slopes_of(run: Prepared, segments: list[Segment]) -> list[Slope]:
@@ -60,7 +59,7 @@ def _read_off(
     segments: Sequence[list[Segment]],
     measured: Sequence[list[Slope]],
 ) -> Model:
-    """Return what the phases of the runs show, to start from; the median where runs share it."""
+    """Return initial values that the phases of the runs show; the median where runs share one."""
     found: dict[tuple[str, str | None], list[float]] = {}
     for run, parts, km in zip(runs, segments, measured, strict=True):
         values = read_off(run, parts, km, stated.rig(run.run))

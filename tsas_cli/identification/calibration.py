@@ -8,6 +8,7 @@ from tsas_cli.identification.comparison import Compared, compare
 from tsas_cli.identification.dynamic_fit import dynamic_fit
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.fit import Fitted
+from tsas_cli.identification.joint_fit import misfit, solve_fit
 from tsas_cli.identification.long_runs import thinned_notes
 from tsas_cli.identification.missing_effects import widened
 from tsas_cli.identification.model import Model, data_sheet
@@ -63,12 +64,12 @@ def calibrate_runs(
         segments.append(segment(run))
         measured.append(slopes_of(run, segments[-1]))
         step()
-    fit = base_fit(stated, runs, segments, measured)
-    model, fitted, sentences = fit.solve()
+    fit = solve_fit(base_fit(stated, runs, segments, measured))
+    model, fitted, sentences = fit.model, fit.fitted, fit.cannot_tell
     step()
     dynamic = None
     if dynamics == "lugre" and fitted is not None:
-        dynamic = dynamic_fit(model, fit.runs, step)
+        dynamic = dynamic_fit(model, fit.problem.runs, step)
         model, fitted = dynamic.model, dynamic.fitted
     answers = [compare(run, model, dynamics) for run in runs]
     expected = [_answered(*each) for each in zip(runs, answers, segments, strict=True)]
@@ -77,9 +78,9 @@ def calibrate_runs(
         if missed:
             missed.append(LACKING)
     else:
-        missed = fit.misfit()
+        missed = misfit(fit)
         if missed and fitted is not None:
-            wider = widened(fit, model.estimates, step)
+            wider = widened(fit, step)
             model = Model(wider.estimates)
             missed += _widened_by(wider.effects)
     cannot = [*thinned_notes(runs), *missed, *_unknown_conditions(runs), *sentences]

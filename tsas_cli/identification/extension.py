@@ -1,6 +1,6 @@
 """The calibrated runs with effects freed: every hypothesis is fitted and held out alike."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -8,9 +8,10 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.identification.fit import Solution, Unknown, solve
-from tsas_cli.identification.joint_fit import JointFit, rig_at
+from tsas_cli.identification.fit_problem import rig_at
+from tsas_cli.identification.joint_fit import FittedModel
 from tsas_cli.identification.quantities import QUANTITIES
-from tsas_cli.identification.run_errors import RunErrors
+from tsas_cli.identification.run_errors import RunErrors, meshed, reweighed
 from tsas_cli.identification.unknowns import unknown_of
 from tsas_cli.physics.response import ON_CHAIN, is_closed
 from tsas_cli.physics.rig import Rig, with_values
@@ -25,10 +26,7 @@ UNEVEN = 0.05  # by which a sheath's curvature may be larger here than there, a 
 
 @dataclass(frozen=True)
 class Trial:
-    """One hypothesis fitted: the effects freed, and the least squares with them.
-
-    `start` holds the values of the effects' parameters from which the fit began.
-    """
+    """One hypothesis fitted: the effects freed, and the least squares with them."""
 
     effects: tuple[str, ...]
     unknowns: tuple[Unknown, ...]
@@ -70,26 +68,22 @@ class Trial:
         }
 
 
+@dataclass(frozen=True, eq=False)
 class Bench:
-    """A calibrated dataset on which hypotheses are tried."""
+    """A calibrated dataset on which hypotheses are tried.
 
-    def __init__(self, base: JointFit) -> None:
-        """Take the base fit: its unknowns stay free, its weights and samples stay as they are."""
-        self.base = base
-        self.rigs = [rig_at(rig, k, base.unknowns, base.values) for k, rig in enumerate(base.rigs)]
-        self.own = [replace(base.unknowns[j], start=float(base.values[j])) for j in base.chosen]
-        self.closed: list[RunErrors] = base.errors
-        self.meshed = [errors.meshed(NODES) for errors in base.errors]
-        self.coarse = [errors.meshed(COARSE_NODES) for errors in base.errors]
-        self.never_closed = not all(
-            is_closed(rig, errors.drive) for rig, errors in zip(self.rigs, base.errors, strict=True)
-        )
+    `free` are the free parameters of the base fit, which begin where it ended, `rigs` those of its
+    runs. The errors of the runs, with the weights and samples of the base fit, are `closed` with
+    the solver that each rig asks for, `meshed` and `coarse` on the slip chain.
+    """
 
-    def weighed_by(self, trial: Trial) -> "Bench":
-        """Return the same bench with the errors weighed as a trial's model asks for."""
-        for k, errors in enumerate(self.closed):
-            errors.weigh(self.rig(trial, k))
-        return Bench(self.base)
+    base: FittedModel
+    rigs: tuple[Rig, ...]
+    free: tuple[Unknown, ...]
+    closed: tuple[RunErrors, ...]
+    meshed: tuple[RunErrors, ...]
+    coarse: tuple[RunErrors, ...]
+    never_closed: bool
 
     def on_mesh(self, effects: Iterable[str]) -> bool:
         """Say whether a hypothesis needs the slip chain."""
@@ -98,42 +92,46 @@ class Bench:
     def fit(
         self,
         effects: Sequence[str] = (),
-        start: dict[str, float] | None = None,
+        initial: Mapping[str, float] | None = None,
         *,
         near: Trial | None = None,
         on_mesh: bool = False,
     ) -> Trial:
-        """Fit the base unknowns and the effects' parameters.
+        """Fit the free parameters of the base fit and those of the effects.
 
         Parameters
         ----------
         effects
             The effects that are freed.
-        start
-            Values of their parameters to start from, in their units; else those of `near`, else
-            each parameter's own.
+        initial
+            Initial values of their parameters, in their units; else those of `near`, else each
+            parameter's own.
         near
-            A trial whose base values to start from.
+            A trial whose values the others begin with.
         on_mesh
             Whether to use the slip chain although the closed form would do.
         """
         known = {} if near is None else {(u.name, u.run): float(v) for u, v in _pairs(near)}
-        base = [replace(u, start=known.get((u.name, u.run), u.start)) for u in self.own]
+        base = [replace(u, initial=known.get((u.name, u.run), u.initial)) for u in self.free]
         freed = []
         for name in _parameters(effects):
             quantity = QUANTITIES[name]
             value = known.get((name, None))
-            if start is not None and name in start:
-                value = quantity.scaled(start[name])
+            if initial is not None and name in initial:
+                value = quantity.scaled(initial[name])
             freed.append(unknown_of(name, value))
         unknowns = (*base, *freed)
         mesh = on_mesh or self.on_mesh(effects)
         runs = len(self.rigs)
         missed = 1.0 if near is None else near.mean_square
         tolerance = TOLERANCE * min(max(missed, 1.0), ROUGHER)
-        residuals = self._residuals(unknowns, on_mesh=mesh)
+        errors = self.meshed if mesh else self.closed
+
+        def residuals(k: int, values: Floats) -> Floats:
+            return errors[k].residuals(rig_at(self.rigs[k], k, unknowns, values))
+
         solution = solve(unknowns, runs, residuals, tolerance=tolerance)
-        sizes = tuple(self._residual(k, unknowns, solution.values, mesh).size for k in range(runs))
+        sizes = tuple(residuals(k, solution.values).size for k in range(runs))
         return Trial(tuple(effects), unknowns, solution, sizes, mesh)
 
     def errors_at(self, trial: Trial, changes: Mapping[str, float]) -> Floats:
@@ -168,7 +166,7 @@ class Bench:
         """The channels that are compared, in a fixed order."""
         return sorted({name for run in self.closed for name in run.samples})
 
-    def errors_for(self, trial: Trial) -> list[RunErrors]:
+    def errors_for(self, trial: Trial) -> tuple[RunErrors, ...]:
         """Return the runs as a trial sees them."""
         return self.meshed if trial.on_mesh else self.closed
 
@@ -176,16 +174,32 @@ class Bench:
         """Return the rig of run k with a trial's values."""
         return rig_at(self.rigs[k], k, trial.unknowns, trial.solution.values)
 
-    def _residuals(
-        self, unknowns: Sequence[Unknown], *, on_mesh: bool
-    ) -> Callable[[int, Floats], Floats]:
-        return lambda k, values: self._residual(k, unknowns, values, on_mesh)
 
-    def _residual(
-        self, k: int, unknowns: Sequence[Unknown], values: Floats, on_mesh: bool
-    ) -> Floats:
-        errors = self.meshed[k] if on_mesh else self.closed[k]
-        return errors.residuals(rig_at(self.rigs[k], k, unknowns, values))
+def bench_of(base: FittedModel) -> Bench:
+    """Return the bench of a base fit."""
+    errors, unknowns = base.errors, base.problem.unknowns
+    rigs = tuple(base.rigs)
+    closed = (is_closed(rig, e.simulation.drive) for rig, e in zip(rigs, errors, strict=True))
+    return Bench(
+        base,
+        rigs,
+        tuple(replace(unknowns[j], initial=float(base.values[j])) for j in base.chosen),
+        errors,
+        tuple(meshed(e, NODES) for e in errors),
+        tuple(meshed(e, COARSE_NODES) for e in errors),
+        not all(closed),
+    )
+
+
+def reweighed_bench(bench: Bench, trial: Trial) -> Bench:
+    """Return the same bench with the errors weighed as a trial's model asks for."""
+    errors = tuple(reweighed(e, bench.rig(trial, k)) for k, e in enumerate(bench.closed))
+    return replace(
+        bench,
+        closed=errors,
+        meshed=tuple(meshed(e, NODES) for e in errors),
+        coarse=tuple(meshed(e, COARSE_NODES) for e in errors),
+    )
 
 
 def _pairs(trial: Trial) -> list[tuple[Unknown, float]]:

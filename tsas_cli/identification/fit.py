@@ -32,11 +32,11 @@ COLOUR = 10.0  # how much larger the error of coloured noise may be than that of
 
 @dataclass(frozen=True)
 class Unknown:
-    """One number to be found: scaled start and bounds, plausible change, the run it belongs to."""
+    """One number to be found: scaled initial value, bounds and plausible change; its own run."""
 
     name: str
     run: int | None
-    start: float
+    initial: float
     lower: float
     upper: float
     scale: float
@@ -144,7 +144,7 @@ def solve(
 
     lower = np.array([u.lower for u in unknowns])
     upper = np.array([u.upper for u in unknowns])
-    start = np.array([u.start for u in unknowns])
+    start = np.array([u.initial for u in unknowns])
     found = least_squares(
         errors, slopes, start, (lower, upper), tolerance=tolerance, most=MOST_EVALUATIONS
     )

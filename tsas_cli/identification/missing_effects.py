@@ -12,9 +12,9 @@ from dataclasses import dataclass, replace
 
 from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.extension import Bench, Trial
+from tsas_cli.identification.extension import Bench, Trial, bench_of
 from tsas_cli.identification.fit import with_errors
-from tsas_cli.identification.joint_fit import JointFit, estimates_of
+from tsas_cli.identification.joint_fit import FittedModel, estimates_of
 from tsas_cli.identification.run_errors import blocks_of
 from tsas_cli.identification.screening import projector, screen
 from tsas_cli.support.steps import SILENT, Steps
@@ -33,24 +33,26 @@ class Widened:
     effects: tuple[str, ...]
 
 
-def widened(fit: JointFit, told: Sequence[Estimate], step: Steps = SILENT) -> Widened:
+def widened(fit: FittedModel, step: Steps = SILENT) -> Widened:
     """Widen the intervals of a solved fit by the effects that explain most of what it misses.
 
     `step` is told of each effect that is looked at, and of each that is fitted.
     """
-    bench = Bench(fit)
+    bench, nominal = bench_of(fit), fit.model.estimates
     trials = _best_trials(bench, step)
     if not trials:
-        return Widened(tuple(told), ())
+        return Widened(nominal, ())
     least = min(t.mean_square for t in trials)
     near = [t for t in trials if t.mean_square - 1.0 <= NEAR * max(least - 1.0, 0.0)] or [
         min(trials, key=lambda t: t.mean_square)
     ]
     others = [{(e.name, e.run): e for e in _estimates(bench, trial)} for trial in near]
     if least > EXPLAINED:  # none of them is the rig either: what the nominal model says counts too
-        others.append({(e.name, e.run): e for e in told})
+        others.append({(e.name, e.run): e for e in nominal})
     return Widened(
-        tuple(_hull(e, [o[e.name, e.run] for o in others if (e.name, e.run) in o]) for e in told),
+        tuple(
+            _hull(e, [o[e.name, e.run] for o in others if (e.name, e.run) in o]) for e in nominal
+        ),
         tuple(trial.effects[0] for trial in near),
     )
 
@@ -72,7 +74,7 @@ def _best_trials(bench: Bench, step: Steps) -> list[Trial]:
     step.ahead(len(worth))
     out = []
     for s, base in worth:
-        trial = bench.fit([s.effect.name], s.start, near=base)
+        trial = bench.fit([s.effect.name], s.initial, near=base)
         if trial.solution.converged and trial.mean_square < base.mean_square:
             out.append(trial)
         step()
@@ -82,7 +84,7 @@ def _best_trials(bench: Bench, step: Steps) -> list[Trial]:
 def _estimates(bench: Bench, trial: Trial) -> list[Estimate]:
     rigs = [bench.rig(trial, k) for k in range(len(bench.rigs))]
     fitted = with_errors(trial.unknowns, trial.solution, blocks_of(bench.closed, rigs))
-    return estimates_of(trial.unknowns, fitted, bench.base.ids())
+    return estimates_of(trial.unknowns, fitted, bench.base.problem.ids)
 
 
 def _hull(own: Estimate, others: Sequence[Estimate]) -> Estimate:

@@ -2,7 +2,7 @@
 
 A signature is what the effect at a plausible size does to the residual. What of it the free
 parameters cannot imitate says how visible the effect is; how well the residual is made of it says
-what it could explain. Linear, so that large effects are only told by the full fit that follows.
+what it could explain. Linear, so that large effects show only in the full fit that follows.
 """
 
 from dataclasses import dataclass
@@ -16,20 +16,20 @@ from tsas_cli.identification.extension import Bench, Trial
 
 Floats = npt.NDArray[np.float64]
 
-MOST_SIZES = 10.0  # of the plausible ones, for the start of a fit
+MOST_SIZES = 10.0  # of the plausible ones, for the initial values of a fit
 HIDDEN = 1e-6  # part of a signature that has to be its own
 
 
 @dataclass(frozen=True)
 class Screened:
-    """One effect seen linearly: the part of the squares it could explain, and a start for a fit.
+    """One effect seen linearly: the part of the squares it could explain, and its initial values.
 
     `signatures` are its own, one column for each amplitude, shape (n, p), in units of noise.
     """
 
     effect: Effect
     part: float
-    start: dict[str, float]
+    initial: dict[str, float]
     signatures: Floats
 
 
@@ -64,11 +64,11 @@ def screen(bench: Bench, trial: Trial, effect: Effect, basis: Floats) -> Screene
         left = residual + own @ amounts
         part = 1.0 - float(left @ left) / float(residual @ residual)
         if part > best.part:
-            start = shape | {
+            initial = shape | {
                 _name(effect, p): p.neutral + a * size
                 for p, a, size in zip(amplitudes, amounts, sizes, strict=True)
             }
-            best = Screened(effect, part, start, own)
+            best = Screened(effect, part, initial, own)
     return best
 
 

@@ -15,7 +15,7 @@ ZERO_SCALE = 0.02  # plausible zero of a displacement sensor, of its range
 
 
 def nominal_unknowns(
-    start: Model, runs: Sequence[Prepared], plausible: Mapping[str, tuple[float, float]]
+    initial: Model, runs: Sequence[Prepared], plausible: Mapping[str, tuple[float, float]]
 ) -> list[Unknown]:
     """Return all candidates, in the order in which they are asked for.
 
@@ -31,7 +31,7 @@ def nominal_unknowns(
         if p.name == "load_stiffness_N_per_mm" and not springs:
             continue
         for k in owners:
-            value = start.value(p.name, None if k is None else runs[k].run.id)
+            value = initial.value(p.name, None if k is None else runs[k].run.id)
             quantity = QUANTITIES[p.name]
             low, high = plausible.get(p.name, (p.lower, p.upper))
             scaled = quantity.scaled(quantity.default if value is None else value)
@@ -44,14 +44,14 @@ def nominal_unknowns(
 def unknown_of(name: str, value: float | None = None, scale: float = 1.0) -> Unknown:
     """Return the unknown of a shared parameter, from a scaled value or its neutral one."""
     quantity = QUANTITIES[name]
-    start = quantity.scaled(quantity.default) if value is None else value
+    initial = quantity.scaled(quantity.default) if value is None else value
     return Unknown(
-        name, None, start, quantity.scaled(quantity.lower), quantity.scaled(quantity.upper), scale
+        name, None, initial, quantity.scaled(quantity.lower), quantity.scaled(quantity.upper), scale
     )
 
 
-def further_unknown(name: str, start: Model) -> Unknown:
-    """Return the unknown of a number of bristles or effects that a model may give a start."""
-    value = start.value(name)
+def further_unknown(name: str, initial: Model) -> Unknown:
+    """Return the unknown of a number of bristles or effects, from a model's value if it has one."""
+    value = initial.value(name)
     scaled = None if value is None else QUANTITIES[name].scaled(value)
     return unknown_of(name, scaled, FURTHER_SCALE)

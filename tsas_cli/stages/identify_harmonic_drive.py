@@ -19,7 +19,7 @@ from tsas_cli.drive.file import FILE, UNITS, IdentifiedDrive, drive_of, write_dr
 from tsas_cli.drive.fit import DriveBench, Terms
 from tsas_cli.drive.frequency_response import frequency_response
 from tsas_cli.drive.runs import drive_runs
-from tsas_cli.drive.search import DriveSearch
+from tsas_cli.drive.search import DriveFits, DriveSearch, find_terms
 from tsas_cli.drive.tables import tables
 from tsas_cli.drive.words import (
     cannot_tell,
@@ -135,8 +135,8 @@ def identify_harmonic_drive(
         prepared = drive_runs(data, hold)
         step()
         seen, sheet = frequency_response(prepared), drive_sheet(data.manifest)
-        search = DriveSearch(DriveBench(prepared, seen, sheet.stated_frequency), step)
-        final = search.run()
+        bench = DriveBench(prepared, seen, sheet.stated_frequency)
+        final, search = find_terms(DriveFits(bench, step))
         trial, folds = search.trial(final), search.folds
         blocks = [folds.block[folds.run == k] for k in range(len(prepared))]
         counted = [np.unique(block, return_inverse=True)[1] for block in blocks]
@@ -147,7 +147,7 @@ def identify_harmonic_drive(
         summary = data.header(STAGE, path) | {
             "hold": hold,
             "structure": {"name": name_of(final), "equation": equation_of(final)},
-            "structures": drive_json.structures(search, final),
+            "structures": drive_json.structure_rows(search, final),
             "parameters": [e.as_json() for e in known.values()],
             "kinematics": drive_json.kinematics(sheet, fitted),
             "inverse": inverse_of(trial.values),

@@ -14,8 +14,9 @@ import numpy as np
 from tsas_cli.diagnosis.diagnose import bench_folds, nominal_fit
 from tsas_cli.diagnosis.search import MOST_EFFECTS, Names, Search
 from tsas_cli.effects import EFFECTS
-from tsas_cli.identification.extension import Bench, Trial
+from tsas_cli.identification.extension import Trial, bench_of
 from tsas_cli.identification.fit import UNDETERMINED
+from tsas_cli.identification.joint_fit import solve_fit
 from tsas_cli.identification.model import data_sheet
 from tsas_cli.identification.prepared import prepare
 from tsas_cli.identification.quantities import QUANTITIES
@@ -70,8 +71,8 @@ def sparse(dataset: Path, out: Path) -> None:
         return
     nominal = search.trial(NOTHING, on_mesh=bench.on_mesh([name]))
     effect = next(e for e in EFFECTS if e.name == name)
-    start = screen(bench, nominal, effect, projector(nominal)).start
-    fitted = bench.fit([name], start, near=nominal)
+    initial = screen(bench, nominal, effect, projector(nominal)).initial
+    fitted = bench.fit([name], initial, near=nominal)
     write_diagnosis(out, fitted, {name: []} if _drop(nominal, fitted) > DROP else {})
 
 
@@ -80,8 +81,7 @@ def search_of(dataset: Path) -> Search:
     read = read_dataset(dataset)
     runs = [prepare(recording, read.manifest.session_start) for recording in read]
     base = nominal_fit(read.manifest, data_sheet(read.manifest), runs)
-    base.solve()
-    bench = Bench(base)
+    bench = bench_of(solve_fit(base))
     return Search(bench, bench_folds(bench))
 
 

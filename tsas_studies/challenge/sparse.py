@@ -6,7 +6,6 @@ least (Hastie, Tibshirani and Friedman 2009, section 7.10).
 """
 
 import warnings
-from copy import copy
 from dataclasses import replace
 
 import numpy as np
@@ -62,9 +61,8 @@ def _columns(bench: Bench, trial: Trial) -> tuple[list[str], Floats]:
 
 def _seen(run: RunErrors, rig: Rig, term: Term) -> Floats:
     """Return what the residual of a run changes by when a term is added to what was measured."""
-    changed = copy(run)
     added = {c: values + term.channels.get(c, 0.0) for c, values in run.run.measured.items()}
-    changed.run = replace(run.run, measured=added)
+    changed = replace(run, run=replace(run.run, measured=added))
     return changed.residuals(rig) - run.residuals(rig)
 
 

@@ -1,0 +1,216 @@
+"""What a diagnosis writes of its search, on trials that are made up."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from tsas_cli.diagnosis import diagnosis_json as j
+from tsas_cli.diagnosis.channel_errors import Channel
+from tsas_cli.diagnosis.diagnose import Cause, Diagnosis
+from tsas_cli.diagnosis.diagnosis_tables import tables
+from tsas_cli.diagnosis.evidence import Gain
+from tsas_cli.diagnosis.remainder import Remainder
+from tsas_cli.effects import BACKLASH
+from tsas_cli.identification.estimate import Estimate
+from tsas_cli.identification.model import Model
+
+PARTS = {"a": 0.75, "b": 0.36, "ab": 0.84, "ac": 0.19, "bc": 0.5, "abc": 0.9}
+
+
+def names(text):
+    return frozenset(text)
+
+
+class MadeUp:
+    bench = SimpleNamespace(on_mesh=lambda found: "c" in found)
+
+    def __init__(self, *sets):
+        self.trials = dict.fromkeys(sets)
+
+    def trial(self, found):
+        solution = SimpleNamespace(converged=True)
+        return SimpleNamespace(mean_square=1.5, solution=solution, values=lambda: {"p": 2.0})
+
+    def gain(self, found):
+        return Gain(PARTS["".join(sorted(found))], 4.0)
+
+
+def rows(named, *sets):
+    search = MadeUp(*sets)
+    causes = [SimpleNamespace(effect=name) for name in named]
+    found = j._candidates(SimpleNamespace(search=search, causes=causes))
+    return [("".join(row["effects"]), round(row["gain_percent"], 9)) for row in found]
+
+
+def test_single_effects_and_what_stands_in_place_of_the_named_ones():
+    """The root falls by 1 − √(1 − part); the best is first, each on the mesh that it needs."""
+    sets = [(names(s), "c" in s) for s in ("b", "a", "ab", "ac", "abc")]
+    assert rows("ab", *sets) == [("ab", 60.0), ("a", 50.0), ("b", 20.0), ("ac", 10.0)]
+    assert rows("", *sets) == [("a", 50.0), ("b", 20.0)]
+    assert rows("a", (names("a"), True), (names(""), False)) == []
+
+
+def test_a_candidate_says_how_it_was_fitted():
+    (row,) = j._candidates(SimpleNamespace(search=MadeUp((names("a"), False)), causes=[]))
+    assert row["convincing"]
+    assert (row["sureness"], row["mean_square"], row["converged"]) == (4.0, 1.5, True)
+    assert row["parameters"] == {"p": 2.0}
+    assert j._candidates(SimpleNamespace(search=None, causes=[])) == []
+
+
+@pytest.mark.parametrize("angle", [0.0, 30.0, 90.0])
+def test_likeness_is_the_cosine_between_two_directions(angle):
+    first = np.array([[1.0], [0.0], [0.0]])
+    turn = np.radians(angle)
+    second = np.array([[np.cos(turn)], [np.sin(turn)], [0.0]])
+    assert j._likeness(first, second) == pytest.approx(np.cos(turn), abs=1e-12)
+    assert j._likeness(first, np.hstack((second, first[::-1]))) == pytest.approx(np.cos(turn))
+    assert j._likeness(first, np.zeros((3, 0))) == 0.0
+
+
+def test_directions_that_are_the_same_count_once():
+    one = np.array([3.0, 4.0, 0.0])
+    basis = j._orthonormal(np.column_stack((one, 2.0 * one)))
+    assert basis.shape == (3, 1)
+    assert np.abs(basis[:, 0] @ one) == pytest.approx(5.0)
+    assert j._orthonormal(np.zeros((3, 2))).shape == (3, 0)
+
+
+def test_how_was_held_out_is_said():
+    folds = SimpleNamespace(by_run=True, blocks=40)
+    search = SimpleNamespace(folds=folds, bench=SimpleNamespace(rigs=[1, 2, 3]))
+    found = j._evidence(search)
+    assert (found["held_out"], found["blocks"], found["runs"]) == ("runs", 40, 3)
+    assert found["sentence"].startswith("each of 3 runs is predicted by a fit to the others; 40")
+    folds.by_run = False
+    assert j._evidence(search)["held_out"] == "stretches"
+    assert j._evidence(search)["sentence"].startswith("with 3 runs, stretches")
+
+
+def test_a_cosine_is_never_more_than_one():
+    """Rounding makes some singular values of orthonormal bases larger than that."""
+    rng = np.random.default_rng(1)
+    bases = [np.linalg.qr(rng.standard_normal((30, 4)))[0] for _ in range(60)]
+    assert max(np.linalg.svd(b.T @ b, compute_uv=False).max() for b in bases) > 1.0
+    assert max(j._likeness(b, b) for b in bases) == 1.0
+    assert min(j._likeness(b, b) for b in bases) == pytest.approx(1.0)
+    assert j._likeness(np.zeros((3, 0)), np.eye(3)) == 0.0
+
+
+def test_directions_a_millionth_of_the_largest_do_not_count():
+    for small, columns in ((2e-6, 2), (0.5e-6, 1)):
+        assert j._orthonormal(np.diag([1.0, small, 0.0])).shape == (3, columns)
+    assert j._orthonormal(np.diag([1e-20, 0.0, 0.0])).shape == (3, 0)
+
+
+def test_signatures_are_told_in_the_order_of_names():
+    """How visible: the length of what all amplitudes do together."""
+
+    def seen(name, signatures):
+        return SimpleNamespace(effect=SimpleNamespace(name=name), signatures=np.array(signatures))
+
+    two = [seen("b", [[3.0, 0.0], [0.0, 4.0], [0.0, 0.0]]), seen("a", [[1.0], [0.0], [1.0]])]
+    found = j._signatures(SimpleNamespace(screened=two))
+    assert found["effects"] == ["a", "b"]
+    assert found["visible"] == pytest.approx([np.sqrt(2.0), 5.0])
+    half = np.sqrt(0.5)
+    np.testing.assert_allclose(found["likeness"], [[1.0, half], [half, 1.0]])
+
+
+def test_a_cause_as_json():
+    parameter = Estimate("backlash.play_mm", 0.2, "mm", "fitted", None, 0.1, 0.05, 0.35, True)
+    cause = Cause("backlash", ("load_friction",), (parameter,), 40.0, (30.0, 50.0))
+    found = j._cause(cause)
+    assert (found["effect"], found["title"]) == ("backlash", BACKLASH.title)
+    assert found["parameters"]["play_mm"] == {
+        "value": 0.2,
+        "stderr": 0.1,
+        "unit": "mm",
+        "at_bound": True,
+        "interval_low": 0.05,
+        "interval_high": 0.35,
+    }
+    assert (found["gain_percent"], found["gain_interval_percent"]) == (40.0, [30.0, 50.0])
+
+
+def test_a_diagnosis_without_a_search_is_told_as_far_as_it_goes():
+    found = j.as_json(Diagnosis("undecided", "why", Model(()), Model(()), cannot_tell=("x",)))
+    assert (found["verdict"], found["reason"], found["cannot_tell"]) == ("undecided", "why", ["x"])
+    for empty in ("named", "channels", "candidates", "signatures", "residual_map", "evidence"):
+        assert not found[empty], empty
+    assert found["solver"] == ""
+    assert found["remainder"] == {
+        "unexplained": False,
+        "depends_on": [],
+        "share_percent": 0.0,
+        "mean_square": None,
+    }
+
+
+def test_a_diagnosis_with_all_that_it_rests_on(monkeypatch):
+    monkeypatch.setattr(j, "_candidates", lambda result: "candidates")
+    monkeypatch.setattr(j, "_signatures", lambda search: "signatures")
+    monkeypatch.setattr(j, "_evidence", lambda search: "evidence")
+    monkeypatch.setattr(j, "residual_map", lambda bench, trial: (bench, trial.solver))
+    left = Remainder(1.5, {}, ("time_s",))
+    whole = Diagnosis(
+        "sufficient", "why", Model(()), Model(()), (), {"f_in_N": Channel(4.0, 3.0, 1.0, 2.0)},
+        left, 0.25, "search", SimpleNamespace(bench="bench"),
+        SimpleNamespace(solver="before"), SimpleNamespace(solver="closed form"),
+    )  # fmt: skip
+    found = j.as_json(whole)
+    assert found["channels"]["f_in_N"] == {
+        "unit": "N",
+        "rmse_before": 4.0,
+        "rmse_after": 3.0,
+        "noise_floor": 1.0,
+        "best_obtainable": 2.0,
+    }
+    assert found["remainder"]["share_percent"] == 25.0
+    assert (found["remainder"]["mean_square"], found["remainder"]["depends_on"]) == (
+        1.5,
+        ["time_s"],
+    )
+    assert [found[k] for k in ("candidates", "signatures", "evidence")] == [
+        "candidates",
+        "signatures",
+        "evidence",
+    ]
+    assert found["residual_map"] == {
+        "before": ("bench", "before"),
+        "after": ("bench", "closed form"),
+    }
+    assert found["solver"] == "closed form"
+    for missing in ("judged", "before", "final"):
+        fields = vars(whole) | {missing: None}
+        assert j._maps(Diagnosis(**fields)) == {}
+
+
+def test_the_tables_of_a_diagnosis():
+    rows = [
+        {"effects": ["a", "b"], "gain_percent": 12.34, "sureness": 3.21, "converged": k != 1}
+        for k in range(9)
+    ]
+    named = j._cause(
+        Cause(
+            "backlash",
+            ("a", "b"),
+            (Estimate("backlash.play_mm", 0.2, "mm", "fitted", None, 0.1, 0.05, 0.35, True),),
+            40.0,
+            (30.0, 50.0),
+        )
+    )
+    channel = {"unit": "N"} | vars(Channel(4.0, 3.0, 1.0, 2.0))
+    summary = {"named": [named], "channels": {"f_in_N": channel}, "candidates": rows}
+    causes, errors, ranking = tables(summary, "title")
+    assert causes[2] == [
+        ("backlash", "play_mm", "0.2 [0.05, 0.35]  AT BOUND", "mm", "a, b"),
+    ]
+    assert errors[2] == [("f_in_N", "4", "3", "1", "2", "N")]
+    assert len(ranking[2]) == 8
+    assert ranking[2][:2] == [
+        ("a + b", "12.3", "3.2", ""),
+        ("a + b", "12.3", "3.2", "not converged"),
+    ]
+    assert len(tables(summary | {"named": []}, "title")) == 2

@@ -1,0 +1,104 @@
+"""One dataset before the joint fit: which runs enter it, and what is unknown."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from tsas_cli.identification.fit import Unknown
+from tsas_cli.identification.model import Model
+from tsas_cli.identification.prepared import Prepared
+from tsas_cli.identification.quantities import QUANTITIES
+from tsas_cli.identification.run_errors import RunErrors, run_errors
+from tsas_cli.identification.samples import kept_samples, lost
+from tsas_cli.identification.unknowns import further_unknown, nominal_unknowns
+from tsas_cli.physics.response import Dynamics
+from tsas_cli.physics.rig import Rig, with_values
+
+Floats = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class FitProblem:
+    """One dataset before the joint fit: its unknowns and its runs, all at the initial values.
+
+    `rigs` and `errors` are those of `runs`, the errors weighed at these rigs; `initial` and `fixed`
+    hold the values to begin with, and those of parameters that are not identifiable; `left_out`
+    says what of the recordings does not enter the fit.
+    """
+
+    initial: Model
+    fixed: Model
+    runs: tuple[Prepared, ...]
+    rigs: tuple[Rig, ...]
+    unknowns: tuple[Unknown, ...]
+    errors: tuple[RunErrors, ...]
+    left_out: tuple[str, ...]
+
+    @property
+    def ids(self) -> list[str]:
+        """The ids of the runs that are fitted."""
+        return [run.run.id for run in self.runs]
+
+    def rig(self, k: int, values: Floats) -> Rig:
+        """Return the rig of run k at scaled values of all unknowns."""
+        return rig_at(self.rigs[k], k, self.unknowns, values)
+
+    def owner(self, unknown: Unknown) -> str | None:
+        """Return the id of the run that an unknown belongs to alone, None where it is shared."""
+        return None if unknown.run is None else self.runs[unknown.run].run.id
+
+
+def prepare_fit(
+    initial: Model,
+    fixed: Model,
+    runs: Sequence[Prepared],
+    *,
+    plausible: Mapping[str, tuple[float, float]] | None = None,
+    dynamics: Dynamics = "slip",
+    further: Sequence[str] = (),
+    shared: bool = True,
+) -> FitProblem:
+    """Return the joint fit of some runs as a problem to solve.
+
+    Parameters
+    ----------
+    initial, fixed
+        The values to begin with, and those of parameters that are not identifiable.
+    runs
+        The runs; those with too few samples are left out.
+    plausible
+        Narrower bounds of parameters, by name.
+    dynamics
+        The model that is fitted.
+    further
+        Parameters to free beside the nominal ones.
+    shared
+        Whether parameters that runs share are free; else only those of a run alone.
+    """
+    samples = [kept_samples(run, initial.rig(run.run)) for run in runs]
+    used = [(run, at) for run, at in zip(runs, samples, strict=True) if at]
+    rigs = tuple(initial.rig(run.run) for run, _ in used)
+    taken = tuple(run for run, _ in used)
+    unknowns = nominal_unknowns(initial, taken, plausible or {})
+    unknowns += [further_unknown(name, initial) for name in further]
+    return FitProblem(
+        initial,
+        fixed,
+        taken,
+        rigs,
+        tuple(u for u in unknowns if shared or u.run is not None),
+        tuple(run_errors(*each, rig, dynamics) for each, rig in zip(used, rigs, strict=True)),
+        tuple(s for run, at in zip(runs, samples, strict=True) for s in lost(run, at)),
+    )
+
+
+def rig_at(rig: Rig, k: int, unknowns: Sequence[Unknown], values: Floats) -> Rig:
+    """Return the rig of run k with the scaled values of the unknowns that are its own or shared."""
+    own = {
+        u.name: QUANTITIES[u.name].unscaled(v)
+        for u, v in zip(unknowns, values, strict=True)
+        if u.run in (None, k)
+    }
+    return with_values(rig, own)
