@@ -74,25 +74,6 @@ def test_columns_are_counted_and_their_names_measured(tmp_path):
         assert "the name of column 2" in refusal(limits.columns, ["a", bad], tmp_path)
 
 
-def test_what_a_file_expands_to_counts_against_its_size(tmp_path):
-    path = tmp_path / "a.mat"
-    path.write_bytes(bytes(2_000_000))
-    expanded = memory.Expanded.of(path)
-    expanded.add(limits.EXPANSION * 2_000_000)
-    line = refusal(lambda: expanded.add(1, what="x of (9, 9)"))
-    assert "x of (9, 9), 1 GB or more from a file of 2 MB; expected at most 500 times" in line
-    small = memory.Expanded(path, 10)
-    small.add(limits.HARMLESS)
-    assert "268 MB or more from a file of 10 bytes" in refusal(small.add, 1)
-
-
-def test_items_are_counted(tmp_path):
-    expanded = memory.Expanded(tmp_path, 80_000)
-    for _ in range(10_000):
-        expanded.add(0)
-    assert "holds more than 10000 variables" in refusal(expanded.add, 0)
-
-
 def test_what_is_loaded_whole_has_to_fit_into_the_memory(tmp_path, monkeypatch):
     monkeypatch.setattr(memory, "available", lambda: 1_000_000_000)
     memory.fits(tmp_path / "a.mat", 1_000_000_000)
@@ -101,11 +82,6 @@ def test_what_is_loaded_whole_has_to_fit_into_the_memory(tmp_path, monkeypatch):
         "takes 2 GB of memory, and 1 GB are there; use a larger machine, or export it as CSV or "
         "Parquet"
     )
-    expanded = memory.Expanded(tmp_path / "a.mat", 1)
-    expanded.bytes = 1_000_000_000 // limits.COPIES
-    expanded.fits()
-    expanded.bytes += 1
-    assert "takes 1 GB of memory" in refusal(expanded.fits)
 
 
 def test_the_memory_that_is_there_is_some(tmp_path):

@@ -42,9 +42,6 @@ Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but er
 Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON instead of a table.")]
 
 
-NARROWEST = 16  # columns of a terminal that are made use of
-
-
 def names(listed: str | None) -> list[str] | None:
     """Return what stands between the commas of an option, or None where it was not given."""
     return None if listed is None else [name.strip() for name in listed.split(",")]
@@ -106,9 +103,7 @@ def show(
 
 
 def _terminal_width() -> int | None:
-    if not sys.stdout.isatty():
-        return None
-    return max(shutil.get_terminal_size().columns, NARROWEST)
+    return shutil.get_terminal_size().columns if sys.stdout.isatty() else None
 
 
 def hint(text: str, *, quiet: bool, as_json: bool) -> None:

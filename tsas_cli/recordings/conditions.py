@@ -5,11 +5,11 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from tsas_cli.recordings.guards.patience import at_most
 from tsas_cli.recordings.ingest_map import Converted, FromText, RunMap
 from tsas_cli.recordings.readers.layout import may_be_thousands
 from tsas_cli.recordings.units import conversion
 from tsas_cli.support.errors import InputError, nearest
-from tsas_cli.support.patience import at_most
 
 PATIENCE_S = 10.0  # with a pattern, which may look for ever
 _UNITS = {"preload_N": "N", "sheath_length_mm": "mm", "total_bend_rad": "rad"}

@@ -11,10 +11,10 @@ import pyarrow.parquet as pq
 
 from tsas_cli.recordings.blocks import CheckedFile
 from tsas_cli.recordings.checked import Source
+from tsas_cli.recordings.guards.expansion import Expanded
 from tsas_cli.recordings.storage import Place
 from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError
-from tsas_cli.support.memory import Expanded
 
 BUFFER = 1 << 20  # bytes that are read at a time: a row group need not fit into memory
 _END = 1 << 16  # bytes of its end that pyarrow begins with

@@ -15,9 +15,9 @@ import pyarrow.parquet as pq
 from tsas_cli.recordings.blocks import NotTheSameError
 from tsas_cli.recordings.checked import changed
 from tsas_cli.recordings.columns import BY_NAME, TIME
+from tsas_cli.recordings.guards.damaged import damaged
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.parquet_files import check_size
-from tsas_cli.recordings.readers.table import damaged
 from tsas_cli.recordings.recording import Floats
 from tsas_cli.recordings.run_files import (
     RunColumns,

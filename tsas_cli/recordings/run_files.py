@@ -19,9 +19,9 @@ from tsas_cli.recordings.columns import (
     has_input_and_output,
     largest,
 )
+from tsas_cli.recordings.guards.damaged import damaged
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.parquet_files import check_size, is_number, open_parquet, size_of
-from tsas_cli.recordings.readers.table import damaged
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.recordings.storage import Place
 from tsas_cli.recordings.units import conversion

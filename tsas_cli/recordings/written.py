@@ -9,9 +9,9 @@ import numpy.typing as npt
 import pyarrow as pa
 
 from tsas_cli.recordings.arrow_columns import floats_from
+from tsas_cli.recordings.guards.damaged import damaged
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.parquet_files import check_size, open_parquet
-from tsas_cli.recordings.readers.table import damaged
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.recordings.run_files import read_columns
 from tsas_cli.recordings.run_names import check_run_name

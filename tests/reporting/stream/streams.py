@@ -11,6 +11,7 @@ from rerun.chunk import RrdReader
 from tests.reporting.made_folders import make_diagnosis, play
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.writing import write_parquet
+from tsas_cli.reporting.stream.recorder.views import View
 
 MODEL = """format = 1
 [parameters.friction_coefficient]
@@ -41,6 +42,17 @@ class Read:
     def scalars(self) -> np.ndarray:
         """Return the samples of a series, NaN where there is a gap, shape (n,)."""
         return np.array([row[0] if row else np.nan for row in self.rows["Scalars:scalars"]])
+
+
+def views(part) -> list[View]:
+    """Return all views of a part of a layout."""
+    return [part] if isinstance(part, View) else [v for one in part.contents for v in views(one)]
+
+
+def shown(view: View) -> list[str]:
+    """Return the paths of the entities that a view names."""
+    named = [expression.removeprefix("+ ").removesuffix("/**") for expression in view.contents]
+    return [*named, *view.visualizer_overrides]
 
 
 def read(path: Path) -> dict[str, Read]:

@@ -13,6 +13,7 @@ from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.reporting.stream.live import LiveStream
 from tsas_cli.reporting.stream.recorder import Recorder, to_file
+from tsas_cli.reporting.stream.recorder.views import outline
 
 
 @pytest.fixture
@@ -85,7 +86,8 @@ def test_tracked_runs_too(seen, tmp_path):
 
 def test_layouts_follow_the_runs_and_do_not_crowd_them_out(tmp_path, monkeypatch):
     laid_out = []
-    monkeypatch.setattr(Recorder, "lay_out", lambda self, layout: laid_out.append(repr(layout)))
+    outlined = lambda self, layout: laid_out.append(str(outline(layout.root_container)))  # noqa: E731
+    monkeypatch.setattr(Recorder, "lay_out", outlined)
     dataset = make_dataset(tmp_path / "dataset", ("a", "b"), samples=300)
     simulated = make_simulation(dataset, tmp_path / "simulated")
     summary = json.loads((simulated / "simulation.json").read_text())

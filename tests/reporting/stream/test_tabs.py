@@ -9,22 +9,22 @@ from tests.reporting.made_folders import (
     make_simulation,
     make_tracking,
 )
-from tests.reporting.stream.streams import make_diagnosed, read
+from tests.reporting.stream.streams import make_diagnosed, read, shown, views
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.stream import stream_of, write_stream
-from tsas_cli.reporting.stream.recorder.layout import Log, Plane, Series, States, Text
-from tsas_cli.reporting.stream.recorder.paths import path_of
 
 
-def views(part):
-    """Return all views of a part."""
-    inner = getattr(part, "parts", None)
-    return [part] if inner is None else [view for one in inner for view in views(one)]
+def root_of(inputs):
+    return stream_of(inputs).layout.root_container
 
 
 def tabs(folder):
-    root = stream_of(read_inputs([folder])).layout.root
-    return {part.name: part for part in root.parts}, root.parts[root.on_top].name
+    root = root_of(read_inputs([folder]))
+    return {part.name: part for part in root.contents}, root.contents[root.active_tab].name
+
+
+def of_kind(part, *kinds):
+    return [view for view in views(part) if view.class_identifier in kinds]
 
 
 @pytest.fixture(scope="module")
@@ -57,40 +57,40 @@ def test_every_view_shows_something_that_was_recorded(dataset, tmp_path):
         inputs, path = read_inputs(given), tmp_path / f"{number}.rrd"
         write_stream(inputs, path)
         recorded = set(read(path))
-        shown = views(stream_of(inputs).layout.root)
-        assert {type(view) for view in shown} >= {Series, Plane, Text}
-        for view in shown:
-            wanted = [view.entity] if isinstance(view, Text) else view.entities
-            if isinstance(view, Plane):
-                wanted = [*wanted, *view.trails]
-            for entity in map(path_of, wanted):
+        made = views(root_of(inputs))
+        assert {view.class_identifier for view in made} >= {"TimeSeries", "2D", "TextDocument"}
+        for view in made:
+            for entity in shown(view):
                 assert any(one == entity or one.startswith(f"{entity}/") for one in recorded)
 
 
 def test_phases_and_events_stand_with_the_run_that_they_are_of(dataset, tmp_path):
     found, _ = tabs(make_calibration(dataset, tmp_path / "calibrate"))
-    runs = found["Overview"].parts[0].parts[1].parts
+    runs = found["Overview"].contents[0].contents[1].contents
     assert [run.name for run in runs] == ["run a", "run b", "all runs"]
     for name, run in zip("ab", runs, strict=False):
-        beside = [view for view in views(run) if isinstance(view, States | Log)]
+        beside = of_kind(run, "StateTimeline", "TextLog")
         assert len(beside) == 2
-        assert all(entity[1] == name for view in beside for entity in view.entities)
+        assert all(path.split("/")[2] == name for view in beside for path in shown(view))
 
 
 def test_faults_stand_beside_the_run_that_has_them(dataset, tmp_path):
     fault = {"code": "stuck", "severity": "error", "run": "b", "sentence": "f_in_N is stuck"}
     found, _ = tabs(make_check(dataset, tmp_path / "check", [fault]))
-    runs = found["Overview"].parts[0].parts[1].parts
-    logs = [[view for view in views(run) if isinstance(view, Log)] for run in runs[:2]]
+    runs = found["Overview"].contents[0].contents[1].contents
+    logs = [of_kind(run, "TextLog") for run in runs[:2]]
     assert [len(views) for views in logs] == [0, 1]
 
 
 def test_a_legend_stands_where_something_new_is_drawn(dataset, tmp_path):
     found, _ = tabs(make_diagnosed(dataset, tmp_path / "diagnose"))
-    first = found["Overview"].parts[0].parts[1].parts[0]
-    shown = {view.name: view.legend for view in views(first) if isinstance(view, Series)}
-    assert shown == {
-        "tension at the drive [N]": True,
-        "tension at the load [N]": False,
-        "displacement of the tendon at the drive [mm]": True,
+    first = found["Overview"].contents[0].contents[1].contents[0]
+    legends = {
+        view.name: view.properties["PlotLegend"].visible.as_arrow_array().to_pylist()
+        for view in of_kind(first, "TimeSeries")
+    }
+    assert legends == {
+        "tension at the drive [N]": [True],
+        "tension at the load [N]": [False],
+        "displacement of the tendon at the drive [mm]": [True],
     }

@@ -16,7 +16,7 @@ from tests.reporting.made_folders import (
     make_simulation,
     source,
 )
-from tests.reporting.stream.streams import read
+from tests.reporting.stream.streams import read, shown, views
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model, write_model
 from tsas_cli.physics.ends import Drive
@@ -27,8 +27,7 @@ from tsas_cli.recordings.manifest import Manifest, Run
 from tsas_cli.recordings.writing import write_dataset, write_parquet
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.stream import write_stream
-from tsas_cli.reporting.stream.recorder.layout import Plane, Space, Tabs
-from tsas_cli.reporting.stream.recorder.paths import path_of
+from tsas_cli.reporting.stream.recorder.views import Tabs
 from tsas_cli.reporting.stream.seen import seen_runs
 from tsas_cli.reporting.stream.stream import stream_of
 from tsas_cli.reporting.stream.tendon.content import view_of_tendon
@@ -174,21 +173,16 @@ def test_the_dead_band_shows_measured_and_both_models(found):
         assert counts == {0, 1}
 
 
-def parts_of(part):
-    inner = getattr(part, "parts", None)
-    return [part] if inner is None else [view for one in inner for view in parts_of(one)]
-
-
 def test_every_view_of_the_tab_shows_what_is_recorded(made, found):
     inputs = read_inputs([made / "diagnose"])
-    root = stream_of(inputs).layout.root
+    root = stream_of(inputs).layout.root_container
     assert isinstance(root, Tabs)
-    tab = next(part for part in root.parts if part.name == "Tendon")
-    views = parts_of(tab)
-    assert [type(view) for view in views] == [Space, Plane, Plane, Plane]
-    for view in views:
-        for entity in map(path_of, view.entities):
-            assert any(path.startswith(f"{entity}/") for path in found)
+    tab = next(part for part in root.contents if part.name == "Tendon")
+    drawn = views(tab)
+    assert [view.class_identifier for view in drawn] == ["3D", "2D", "2D", "2D"]
+    for view in drawn:
+        for entity in shown(view):
+            assert any(f"{path}/".startswith(f"{entity}/") for path in found)
 
 
 def test_it_costs_little(made, found):

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from tsas_cli.reporting.stream.recorder import Clock, to_file
-from tsas_cli.reporting.stream.recorder.layout import Layout, Series, Tabs
+from tsas_cli.reporting.stream.recorder.views import Tabs, laid_out, series
 
 
 def make_stream(path: Path, samples: int = 2000) -> Path:
@@ -15,5 +15,5 @@ def make_stream(path: Path, samples: int = 2000) -> Path:
         for name, wave in (("sine", np.sin), ("cosine", np.cos)):
             recorder.line((name,), name, 0x3366CCFF)
             recorder.scalars((name,), Clock().times(time_s), wave(7 * time_s))
-        recorder.lay_out(Layout(Tabs([Series(name, [(name,)]) for name in ("sine", "cosine")])))
+        recorder.lay_out(laid_out(Tabs(*(series(name, [(name,)]) for name in ("sine", "cosine")))))
     return path

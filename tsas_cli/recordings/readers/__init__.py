@@ -6,7 +6,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from tsas_cli.recordings.readers.apart import in_another_process
+from tsas_cli.recordings.guards.process import in_another_process
 from tsas_cli.recordings.readers.options import ReadOptions
 from tsas_cli.recordings.readers.table import Source, Table, whole
 from tsas_cli.support import limits

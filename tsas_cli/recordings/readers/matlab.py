@@ -9,15 +9,16 @@ import numpy as np
 from scipy.io import loadmat
 from scipy.io.matlab import MatReadWarning
 
+from tsas_cli.recordings.guards.damaged import damaged
+from tsas_cli.recordings.guards.matlab_packed import check_unpacked
 from tsas_cli.recordings.readers.controldesk import (
     captures,
     channel_names,
     find_capture,
     read_capture,
 )
-from tsas_cli.recordings.readers.matlab_packed import check_unpacked
 from tsas_cli.recordings.readers.options import ReadOptions
-from tsas_cli.recordings.readers.table import Floats, Source, Table, damaged, floats, resolve
+from tsas_cli.recordings.readers.table import Floats, Source, Table, floats, resolve
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.memory import out_of_memory
 

@@ -11,10 +11,11 @@ from typing import Any
 
 import numpy as np
 
-from tsas_cli.recordings.readers.mdf_blocks import check_blocks, check_claims
+from tsas_cli.recordings.guards.damaged import damaged
+from tsas_cli.recordings.guards.mdf_blocks import check_blocks, check_claims
 from tsas_cli.recordings.readers.optional import optional
 from tsas_cli.recordings.readers.options import ReadOptions
-from tsas_cli.recordings.readers.table import Floats, Source, Table, damaged, floats, resolve
+from tsas_cli.recordings.readers.table import Floats, Source, Table, floats, resolve
 from tsas_cli.recordings.readers.timebase import TIME, on_one_clock
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.memory import out_of_memory

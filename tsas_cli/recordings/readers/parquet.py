@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import pyarrow as pa
 
+from tsas_cli.recordings.guards.damaged import damaged
 from tsas_cli.recordings.parquet_files import check_size, open_parquet
 from tsas_cli.recordings.readers.options import ReadOptions
 from tsas_cli.recordings.readers.table import (
@@ -15,7 +16,6 @@ from tsas_cli.recordings.readers.table import (
     Floats,
     Source,
     Table,
-    damaged,
     floats,
     in_batches,
     resolve,

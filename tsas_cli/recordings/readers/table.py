@@ -120,16 +120,6 @@ def not_a_number(found: object, source: Source, path: Path, row: int) -> InputEr
     )
 
 
-def damaged(path: object, kind: str, error: Exception) -> InputError:
-    """Return the error for a file that the library for its format refuses."""
-    reason = str(error).splitlines()[0] if str(error) else type(error).__name__
-    return InputError(
-        f"cannot be read as {kind} ({reason})",
-        where=path,
-        remedy="is the file whole? copy or export it again",
-    )
-
-
 def _has_text(values: Any) -> bool:
     if isinstance(values, np.ndarray) and values.dtype.kind in "fiub":
         return False

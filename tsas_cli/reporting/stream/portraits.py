@@ -19,8 +19,8 @@ from tsas_cli.reporting.stream.events import reversals
 from tsas_cli.reporting.stream.palette import colour
 from tsas_cli.reporting.stream.plane import ACROSS, DOWN, Frame, frame_of, record_frame
 from tsas_cli.reporting.stream.recorder import Recorder
-from tsas_cli.reporting.stream.recorder.layout import Plane
 from tsas_cli.reporting.stream.recorder.paths import Entity
+from tsas_cli.reporting.stream.recorder.views import View, plane
 from tsas_cli.reporting.stream.seen import MEASURED, X_IN, Channel, SeenRun
 from tsas_cli.reporting.stream.sources import Source
 
@@ -120,18 +120,18 @@ class Portrait:
         return self.run.entity(self.channel.column, LOOP, *parts)
 
 
-def view_of(run: SeenRun, channel: Channel, titled: str = "") -> Plane:
+def view_of(run: SeenRun, channel: Channel, titled: str = "") -> View:
     """Return the view of a loop; `titled` names it where it does not stand with its run."""
     base = run.entity(channel.column, LOOP)
     keys = (MEASURED, *(source.key for source in channel.sources))
     stretch = stretch_s(run)
     name = f"{in_words(channel.column)} over displacement"
-    return Plane(
+    return plane(
         f"{titled}: {name}" if titled else name,
         [base],
-        ACROSS,
-        DOWN,
-        {(*base, TRAIL, key): stretch for key in keys},
+        x_range=ACROSS,
+        y_range=DOWN,
+        trails={(*base, TRAIL, key): stretch for key in keys},
     )
 
 

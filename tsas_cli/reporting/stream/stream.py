@@ -10,7 +10,7 @@ from tsas_cli.reporting.stream.channels import record_channels
 from tsas_cli.reporting.stream.events import record_own_events
 from tsas_cli.reporting.stream.phases import record_phases
 from tsas_cli.reporting.stream.recorder import Recorder, to_file
-from tsas_cli.reporting.stream.recorder.layout import Layout
+from tsas_cli.reporting.stream.recorder.views import Layout
 from tsas_cli.reporting.stream.seen import SeenRun, seen_runs
 from tsas_cli.reporting.stream.tabs import DIAGNOSIS, OVERVIEW, layout_of
 from tsas_cli.reporting.stream.tendon.content import record_tendon

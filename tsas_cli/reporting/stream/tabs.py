@@ -7,19 +7,20 @@ from tsas_cli.reporting.stream.channels import residuals_of, series_of
 from tsas_cli.reporting.stream.events import REVERSALS, events_of, happens
 from tsas_cli.reporting.stream.phases import phases_of
 from tsas_cli.reporting.stream.portraits import view_of
-from tsas_cli.reporting.stream.recorder.layout import (
-    Columns,
-    Grid,
-    Layout,
-    Log,
-    Part,
-    Rows,
-    Series,
-    States,
-    Tabs,
-    Text,
-)
 from tsas_cli.reporting.stream.recorder.paths import Entity
+from tsas_cli.reporting.stream.recorder.views import (
+    Grid,
+    Horizontal,
+    Layout,
+    Part,
+    Tabs,
+    Vertical,
+    laid_out,
+    log,
+    series,
+    states,
+    text,
+)
 from tsas_cli.reporting.stream.seen import X_IN, SeenRun
 from tsas_cli.reporting.stream.tendon.content import view_of_tendon
 from tsas_cli.reporting.stream.tracking import FORCE, tracking_tab, true_of
@@ -43,19 +44,19 @@ def layout_of(runs: Sequence[SeenRun], *, diagnosed: bool) -> Layout:
         "Residuals": _by_run(runs, _residuals),
         "Tendon": _by_run(runs, view_of_tendon),
         "Tracking": tracking_tab(runs),
-        "Diagnosis": Text("Diagnosis", DIAGNOSIS) if diagnosed else None,
+        "Diagnosis": text("Diagnosis", DIAGNOSIS) if diagnosed else None,
     }
-    parts = [Rows([part], name=name) for name in TABS if (part := made[name]) is not None]
+    parts = [Vertical(part, name=name) for name in TABS if (part := made[name]) is not None]
     names = [part.name for part in parts]
     on_top = names.index("Tracking") if "Tracking" in names else 0
     moves = made["Tendon"] is not None or any(run.loops for run in runs)
-    return Layout(Tabs(parts, on_top=on_top), plays=moves)
+    return laid_out(Tabs(*parts, active_tab=on_top), plays=moves)
 
 
 def _overview(runs: Sequence[SeenRun]) -> Part:
-    text = Text("Overview", OVERVIEW)
+    words = text("Overview", OVERVIEW)
     beside = _by_run(runs, _run, last=_all_runs(runs))
-    return text if beside is None else Columns([text, beside], shares=(1.0, 3.0))
+    return words if beside is None else Horizontal(words, beside, column_shares=(1.0, 3.0))
 
 
 def _by_run(
@@ -65,28 +66,30 @@ def _by_run(
 ) -> Part | None:
     """Return a tab for each run that has something to show."""
     made = ((run.id, make(run)) for run in runs)
-    parts: list[Part] = [Rows([part], name=f"run {name}") for name, part in made if part]
+    parts: list[Part] = [Vertical(part, name=f"run {name}") for name, part in made if part]
     parts += [] if last is None else [last]
     if len(parts) == 1:
         return parts[0]
-    return Tabs(parts) if parts else None
+    return Tabs(*parts, active_tab=0) if parts else None
 
 
 def _run(run: SeenRun) -> Part | None:
-    series = series_of(run)
-    if X_IN in series and run.segments:
-        series[X_IN].append(run.entity(X_IN, REVERSALS))
+    shown = series_of(run)
+    if X_IN in shown and run.segments:
+        shown[X_IN].append(run.entity(X_IN, REVERSALS))
     if run.tracked is not None:
-        series[FORCE].append(true_of(run))
-    rows = _over_phases(run, series)
+        shown[FORCE].append(true_of(run))
+    rows = _over_phases(run, shown)
     if rows is None:
         return None
     beside: list[Part] = [view_of(run, channel) for channel in run.loops]
     shares = [1.0] * len(beside)
     if happens(run):
-        beside.append(Log("events", [events_of(run)]))
+        beside.append(log("events", [events_of(run)]))
         shares.append(_LOG)
-    return Columns([rows, Rows(beside, shares)], shares=(3.0, 2.0)) if beside else rows
+    if not beside:
+        return rows
+    return Horizontal(rows, Vertical(*beside, row_shares=shares), column_shares=(3.0, 2.0))
 
 
 def _residuals(run: SeenRun) -> Part | None:
@@ -94,7 +97,7 @@ def _residuals(run: SeenRun) -> Part | None:
 
 
 def _over_phases(
-    run: SeenRun, series: Mapping[str, Sequence[Entity]], what: str = ""
+    run: SeenRun, shown: Mapping[str, Sequence[Entity]], what: str = ""
 ) -> Part | None:
     """Return series under each other, and the phases below, where they are told.
 
@@ -102,17 +105,17 @@ def _over_phases(
     """
     parts: list[Part] = []
     named: set[str] = set()
-    for column in sorted(series, key=_rank):
-        keys = {entity[-1] for entity in series[column]}
-        parts.append(Series(what + at_axis(column), series[column], legend=not keys <= named))
+    for column in sorted(shown, key=_rank):
+        keys = {entity[-1] for entity in shown[column]}
+        parts.append(series(what + at_axis(column), shown[column], legend=not keys <= named))
         named |= keys
     if not parts:
         return None
     shares = [_TALL] + [1.0] * (len(parts) - 1)
     if run.segments:
-        parts.append(States("phases", [phases_of(run)]))
+        parts.append(states("phases", [phases_of(run)]))
         shares.append(_LANE)
-    return Rows(parts, shares=shares)
+    return Vertical(*parts, row_shares=shares)
 
 
 def _rank(column: str) -> int:
@@ -125,7 +128,7 @@ def _all_runs(runs: Sequence[SeenRun]) -> Part | None:
     if not 2 <= len(loops) <= ALL_RUNS:
         return None
     return Grid(
-        [view_of(run, channel, titled=run.id) for run, channel in loops],
-        columns=min(_ACROSS, -(-len(loops) // 2)),
+        *(view_of(run, channel, titled=run.id) for run, channel in loops),
+        grid_columns=min(_ACROSS, -(-len(loops) // 2)),
         name="all runs",
     )

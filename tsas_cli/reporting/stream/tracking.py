@@ -3,15 +3,22 @@
 Entities belong to the run; what several runs have in common lies over each other by condition.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from tsas_cli.reporting.colours import CONTROLLERS
 from tsas_cli.reporting.stream import seen
 from tsas_cli.reporting.stream.palette import colour
 from tsas_cli.reporting.stream.recorder import Recorder
-from tsas_cli.reporting.stream.recorder.layout import Columns, Part, Rows, Series, Tabs
 from tsas_cli.reporting.stream.recorder.paths import Entity
+from tsas_cli.reporting.stream.recorder.views import (
+    Horizontal,
+    Part,
+    Tabs,
+    Vertical,
+    View,
+    series,
+)
 from tsas_cli.reporting.stream.seen import SeenRun
 from tsas_cli.reporting.tracking.runs import TRUE, WANTED
 
@@ -87,22 +94,23 @@ def tracking_tab(runs: Sequence[SeenRun]) -> Part | None:
     if not conditions:
         return None
     parts = [_condition(name, found) for name, found in conditions.items()]
-    return parts[0] if len(parts) == 1 else Tabs(parts)
+    return parts[0] if len(parts) == 1 else Tabs(*parts, active_tab=0)
 
 
 def _condition(name: str, runs: Sequence[SeenRun]) -> Part:
-    followed, told = Rows(tuple(_followed(runs))), tuple(_told(runs))
-    return Columns([followed, Rows(told)] if told else [followed], name=name)
+    columns = [Vertical(*views) for views in (_followed(runs), _told(runs)) if views]
+    return Horizontal(*columns, name=name)
 
 
-def _followed(runs: Sequence[SeenRun]) -> Iterator[Series]:
-    yield Series("force at the load [N]", [wanted_of(runs[0]), *map(true_of, runs)])
+def _followed(runs: Sequence[SeenRun]) -> list[View]:
     errors, speeds = [run.entity(ERROR) for run in runs], list(map(speed_of, runs))
-    yield Series("error: wanted less true force [N]", errors, legend=False)
-    yield Series("motor speed, as asked for [rpm]", speeds, legend=False)
+    return [
+        series("force at the load [N]", [wanted_of(runs[0]), *map(true_of, runs)]),
+        series("error: wanted less true force [N]", errors, legend=False),
+        series("motor speed, as asked for [rpm]", speeds, legend=False),
+    ]
 
 
-def _told(runs: Sequence[SeenRun]) -> Iterator[Series]:
-    for told in TOLD:
-        if entities := [run.entity(told.column) for run in runs if told in told_by(run)]:
-            yield Series(told.title, entities)
+def _told(runs: Sequence[SeenRun]) -> list[View]:
+    shown = ((one, [run.entity(one.column) for run in runs if one in told_by(run)]) for one in TOLD)
+    return [series(told.title, entities) for told, entities in shown if entities]

@@ -10,9 +10,9 @@ from threading import Thread
 
 import rerun as rr
 
-from tsas_cli.reporting.stream.recorder.layout import Layout
 from tsas_cli.reporting.stream.recorder.reading import is_finished
 from tsas_cli.reporting.stream.recorder.recorder import Recorder
+from tsas_cli.reporting.stream.recorder.views import Layout, outline
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import new_file
 
@@ -100,7 +100,8 @@ def _opened(name: str, layout: Layout | None) -> rr.RecordingStream:
     The application's name may hold plain letters, digits and hyphens.
     """
     plain = re.sub(r"[^A-Za-z0-9]+", "-", f"tsas {name}").strip("-")
-    own = sha256(repr(layout).encode()).hexdigest()[:8]
+    shown = outline(layout and layout.root_container)
+    own = sha256(repr(shown).encode()).hexdigest()[:8]
     stream = rr.RecordingStream(f"{plain}-{own}")
     if not rr.is_enabled(stream):
         raise InputError("Rerun is switched off", where="RERUN", remedy="unset this variable")

@@ -11,10 +11,9 @@ import numpy as np
 import numpy.typing as npt
 import rerun as rr
 
-from tsas_cli.reporting.stream.recorder.blueprint import blueprint_of
 from tsas_cli.reporting.stream.recorder.clock import Times
-from tsas_cli.reporting.stream.recorder.layout import Layout
 from tsas_cli.reporting.stream.recorder.paths import Entity, path_of
+from tsas_cli.reporting.stream.recorder.views import Layout
 from tsas_cli.support.errors import InputError
 
 Floats = npt.NDArray[np.float64]
@@ -35,7 +34,7 @@ class Recorder:
 
     def lay_out(self, layout: Layout) -> None:
         """Say what the viewer opens with; the last one counts."""
-        self.stream.send_blueprint(blueprint_of(layout))
+        self.stream.send_blueprint(layout)
 
     def line(self, entity: Entity, name: str, colour: Colour, *, width: float = 1.5) -> None:
         """Say how the series of an entity is drawn, and what the legend calls it."""

@@ -8,9 +8,9 @@ import numpy.typing as npt
 from tsas_cli.reporting.stream.palette import colour
 from tsas_cli.reporting.stream.plane import ACROSS, DOWN, frame_of, record_frame
 from tsas_cli.reporting.stream.recorder import Clock, Recorder
-from tsas_cli.reporting.stream.recorder.layout import Plane
 from tsas_cli.reporting.stream.recorder.moving import points_2d
 from tsas_cli.reporting.stream.recorder.paths import Entity
+from tsas_cli.reporting.stream.recorder.views import View, plane
 from tsas_cli.reporting.stream.tendon.key import record_key
 from tsas_cli.reporting.tendon.followed import Followed
 from tsas_cli.reporting.which import Which
@@ -20,9 +20,9 @@ FAINT = 0x60
 X_LABEL, Y_LABEL = "place along the sheath [mm], drive to load", "tension [N]"
 
 
-def view_of_along(entity: Entity) -> Plane:
+def view_of_along(entity: Entity) -> View:
     """Return the view that shows it."""
-    return Plane("Tension along the sheath", [entity], ACROSS, DOWN)
+    return plane("Tension along the sheath", [entity], x_range=ACROSS, y_range=DOWN)
 
 
 def record_along(

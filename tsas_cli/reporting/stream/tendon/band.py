@@ -9,9 +9,9 @@ from tsas_cli.physics.passages import ends_of
 from tsas_cli.reporting.stream.palette import colour
 from tsas_cli.reporting.stream.plane import ACROSS, DOWN, Frame, frame_of, record_frame
 from tsas_cli.reporting.stream.recorder import Clock, Recorder
-from tsas_cli.reporting.stream.recorder.layout import Plane
 from tsas_cli.reporting.stream.recorder.moving import points_2d
 from tsas_cli.reporting.stream.recorder.paths import Entity
+from tsas_cli.reporting.stream.recorder.views import View, plane
 from tsas_cli.reporting.stream.tendon.key import record_key
 from tsas_cli.reporting.tendon.followed import Followed
 from tsas_cli.reporting.which import Which
@@ -23,9 +23,9 @@ POINTS, LEAST, MOST = 80, 12, 60_000  # of a stroke, usually and at least, and o
 X_LABEL, Y_LABEL = "travel of the drive since it turned [mm]", "tension at the drive [N]"
 
 
-def view_of_band(entity: Entity) -> Plane:
+def view_of_band(entity: Entity) -> View:
     """Return the view that shows it."""
-    return Plane("The dead band from near", [entity], ACROSS, DOWN)
+    return plane("The dead band from near", [entity], x_range=ACROSS, y_range=DOWN)
 
 
 def record_band(

@@ -2,7 +2,7 @@
 
 from tsas_cli.reporting.stream.portraits import view_of
 from tsas_cli.reporting.stream.recorder import Recorder
-from tsas_cli.reporting.stream.recorder.layout import Columns, Part, Rows, Tabs
+from tsas_cli.reporting.stream.recorder.views import Horizontal, Part, Tabs, Vertical
 from tsas_cli.reporting.stream.seen import SeenRun
 from tsas_cli.reporting.stream.tendon.along import record_along, view_of_along
 from tsas_cli.reporting.stream.tendon.band import record_band, view_of_band
@@ -27,8 +27,8 @@ def view_of_tendon(run: SeenRun) -> Part | None:
     space = view_of_scene(run.entity(*SPACE), told.rigs(run.file.run))
     along, band = view_of_along(run.entity(*ALONG)), view_of_band(run.entity(*BAND))
     loops = [view_of(run, channel) for channel in run.loops if channel.column == F_IN]
-    near = Tabs([band, *loops]) if loops else band
-    return Columns([space, Rows([along, near])], shares=[3.0, 2.0])
+    near = Tabs(band, *loops, active_tab=0) if loops else band
+    return Horizontal(space, Vertical(along, near), column_shares=[3.0, 2.0])
 
 
 def record_tendon(recorder: Recorder, run: SeenRun) -> None:

@@ -10,9 +10,9 @@ from tsas_cli.physics.response import ELEMENTS
 from tsas_cli.physics.rig import Rig
 from tsas_cli.reporting.stream.palette import colour
 from tsas_cli.reporting.stream.recorder import Clock, Recorder, Times
-from tsas_cli.reporting.stream.recorder.layout import Space
 from tsas_cli.reporting.stream.recorder.moving import captions, coloured_pieces, curves, surface
 from tsas_cli.reporting.stream.recorder.paths import Entity
+from tsas_cli.reporting.stream.recorder.views import View, space
 from tsas_cli.reporting.tendon.followed import Followed
 from tsas_cli.reporting.tendon.shades import Scale, dimmed, packed, scale_of
 from tsas_cli.reporting.tendon.stage import LEFT, TALL, Stand, stage_of
@@ -29,10 +29,10 @@ MARKS = 24  # on the tendon, to see it move
 STEPS = 48  # of the legend
 
 
-def view_of_scene(entity: Entity, rigs: Sequence[Rig]) -> Space:
+def view_of_scene(entity: Entity, rigs: Sequence[Rig]) -> View:
     """Return the view of tendons, one for each rig."""
     stage = stage_of(rigs, ELEMENTS)
-    return Space("Tendon", [entity], stage.eye, stage.target, GROUND)
+    return space("Tendon", [entity], eye=stage.eye, target=stage.target, ground=GROUND)
 
 
 def record_scene(

@@ -10,8 +10,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import BinaryIO, NamedTuple
 
+from tsas_cli.recordings.guards.expansion import Expanded
 from tsas_cli.support.errors import InputError
-from tsas_cli.support.memory import Expanded
 
 _FIRST = 64  # where the header block is
 _VERSION_4 = 400

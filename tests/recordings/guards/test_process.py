@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 from tests.recordings.readers.matlab_files import save_5
-from tsas_cli.recordings.readers import apart as module
+from tsas_cli.recordings.guards import process as module
+from tsas_cli.recordings.guards.process import in_another_process
 from tsas_cli.recordings.readers import read
-from tsas_cli.recordings.readers.apart import in_another_process
 from tsas_cli.recordings.readers.options import ReadOptions
 from tsas_cli.recordings.readers.table import Table
 from tsas_cli.support.errors import InputError
@@ -126,7 +126,7 @@ def test_errors_name_the_file_as_it_was_called(path, monkeypatch):
 def test_the_process_ends_with_the_one_that_started_it(path):
     script = path.with_name("script.py")
     script.write_text(
-        "from tests.recordings.readers.test_apart import ask, prints\n"
+        "from tests.recordings.guards.test_process import ask, prints\n"
         "from pathlib import Path\n"
         f"print(ask(Path({str(path)!r}), prints))\n"
     )

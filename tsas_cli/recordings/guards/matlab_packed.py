@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import BinaryIO
 
+from tsas_cli.recordings.guards.expansion import Expanded
 from tsas_cli.support import limits
-from tsas_cli.support.memory import Expanded
 
 _HEADER, _TAG = 128, 8
 _ORDERS = {b"IM": "<", b"MI": ">"}

@@ -17,7 +17,7 @@ from pathlib import Path
 from threading import Lock, Timer
 from typing import Any
 
-from tsas_cli.recordings.readers.table import damaged
+from tsas_cli.recordings.guards.damaged import damaged
 from tsas_cli.support.errors import InputError
 
 LEAST_S, BYTES_PER_S = 60.0, 1e6  # that a file of any size may take, and more for large ones
