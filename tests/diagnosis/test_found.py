@@ -32,9 +32,8 @@ class MadeUp:
         solution = SimpleNamespace(converged=True)
         return SimpleNamespace(mean_square=1.5, solution=solution, values=lambda: {"p": 2.0})
 
-    def gain(self, before, after):
-        assert before == frozenset()
-        return Gain(PARTS["".join(sorted(after))], 4.0)
+    def gain(self, found):
+        return Gain(PARTS["".join(sorted(found))], 4.0)
 
 
 def rows(named, *sets):
@@ -112,7 +111,7 @@ def test_signatures_are_told_in_the_order_of_names():
         return SimpleNamespace(effect=SimpleNamespace(name=name), signatures=np.array(signatures))
 
     two = [seen("b", [[3.0, 0.0], [0.0, 4.0], [0.0, 0.0]]), seen("a", [[1.0], [0.0], [1.0]])]
-    found = f.signatures_of(SimpleNamespace(screen=lambda names: two))
+    found = f.signatures_of(SimpleNamespace(screened=two))
     assert found.effects == ("a", "b")
     assert found.visible == pytest.approx([np.sqrt(2.0), 5.0])
     half = np.sqrt(0.5)

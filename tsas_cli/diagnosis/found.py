@@ -5,7 +5,7 @@ import numpy.typing as npt
 
 from tsas_cli.diagnosis.diagnose import Cause, Diagnosis
 from tsas_cli.diagnosis.residual_map import residual_map
-from tsas_cli.diagnosis.search import Search
+from tsas_cli.diagnosis.search import Hypotheses
 from tsas_cli.effects import EFFECTS
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.records import diagnosis as records
@@ -57,13 +57,12 @@ def candidates_of(result: Diagnosis) -> list[records.Candidate]:
     if search is None:
         return []
     rows = []
-    nothing: frozenset[str] = frozenset()
     named = frozenset(cause.effect for cause in result.causes)
     for names, mesh in search.trials:
         instead = len(names) == len(named) and len(names - named) <= 1
         if mesh != search.bench.on_mesh(names) or not (len(names) == 1 or (names and instead)):
             continue
-        trial, found = search.trial(names), search.gain(nothing, names)
+        trial, found = search.trial(names), search.gain(names)
         rows.append(
             records.Candidate(
                 effects=tuple(sorted(names)),
@@ -78,11 +77,11 @@ def candidates_of(result: Diagnosis) -> list[records.Candidate]:
     return sorted(rows, key=lambda row: -np.inf if row.gain_percent is None else -row.gain_percent)
 
 
-def signatures_of(search: Search | None) -> records.Signatures:
+def signatures_of(search: Hypotheses | None) -> records.Signatures:
     """Return how visible each effect is on these inputs, and how similar each two are."""
     if search is None:
         return records.Signatures()
-    seen = sorted(search.screen(frozenset()), key=lambda s: s.effect.name)
+    seen = sorted(search.screened, key=lambda s: s.effect.name)
     sizes = [float(np.linalg.norm(s.signatures.sum(axis=1))) for s in seen]
     spaces = [_orthonormal(s.signatures) for s in seen]
     likeness = [[_likeness(a, b) for b in spaces] for a in spaces]
@@ -112,7 +111,7 @@ def residual_maps_of(result: Diagnosis) -> records.ResidualMaps:
     )
 
 
-def evidence_of(search: Search | None) -> Evidence:
+def evidence_of(search: Hypotheses | None) -> Evidence:
     """Return what was held out, and how much of it counts."""
     if search is None:
         return Evidence()

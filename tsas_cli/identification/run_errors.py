@@ -28,9 +28,6 @@ from tsas_cli.numerics.conditioning import Conditioned
 from tsas_cli.numerics.covariance import FEWEST_BLOCKS, block_length
 from tsas_cli.numerics.turning_points import last_beyond
 from tsas_cli.physics.response import Dynamics
-from tsas_cli.physics.ends import Drive
-from tsas_cli.physics.lugre.chain import OWN_STEPS
-from tsas_cli.physics.response import Dynamics, Response, is_closed, simulate
 from tsas_cli.physics.rig import Rig
 
 Floats = npt.NDArray[np.float64]

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.samples import points
 from tsas_cli.physics.ends import Drive
-from tsas_cli.physics.lugre_chain import OWN_STEPS
+from tsas_cli.physics.lugre.chain import OWN_STEPS
 from tsas_cli.physics.response import Dynamics, Response, is_closed, simulate
 from tsas_cli.physics.rig import Rig
 
