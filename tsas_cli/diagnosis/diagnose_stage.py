@@ -1,6 +1,6 @@
 """The diagnose stage: `diagnosis.json`, both models, and what each answers to the runs."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +15,7 @@ from tsas_cli.identification.phases import segment, segments_as_json
 from tsas_cli.identification.prepared import Prepared, prepare
 from tsas_cli.recordings.columns import nominal_name
 from tsas_cli.recordings.dataset import Dataset
+from tsas_cli.recordings.quality.copies.counted import counted_once
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.recordings.writing import write_answer
 from tsas_cli.result import Result, Table, notes
@@ -88,14 +89,17 @@ def diagnose_dataset(
         A recording or the model is wrong, or `out` exists and `force` is not set.
     """
     stated = stated_model(dataset.manifest, model)
-    summary = dataset.header("diagnose", out) | {"model": source_of(model, out)}
     with folder_if(out, force=force) as folder:
-        step.ahead(len(dataset.runs) + 1)
+        counted = counted_once(dataset)
+        summary = counted.dataset.header("diagnose", out) | {"model": source_of(model, out)}
+        step.ahead(len(counted.dataset.runs) + 1)
         runs = []
-        for recording in dataset:
-            runs.append(prepare(recording, dataset.manifest.session_start))
+        for recording in counted.dataset:
+            copied = counted.copied_of(recording.run.id)
+            runs.append(prepare(recording, dataset.manifest.session_start, copied))
             step()
         result = diagnose(dataset.manifest, stated, runs, step)
+        result = replace(result, cannot_tell=(*counted.notes, *result.cannot_tell))
         summary |= as_json(result, step)
         step()
         summary["segments"] = {run.run.id: segments_as_json(run, segment(run)) for run in runs}

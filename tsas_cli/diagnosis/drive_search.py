@@ -55,7 +55,7 @@ class DriveSearch:
         return self._folds_by(best)
 
     def _folds_by(self, best: DriveTrial) -> Folds:
-        sizes = [run.x_in.size for run in self.bench.runs]
+        sizes = [int(run.counts.sum()) for run in self.bench.runs]
         residuals = np.split(best.solution.residual, np.cumsum(sizes)[:-1])
         return drive_folds(self.bench.runs, residuals)
 

@@ -33,6 +33,7 @@ from tsas_cli.identification.frequency_response import frequency_response
 from tsas_cli.numerics.linear_response import Hold
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Run
+from tsas_cli.recordings.quality.copies.counted import counted_once
 from tsas_cli.recordings.recording import Recording, recording_of
 from tsas_cli.recordings.writing import write_runs
 from tsas_cli.result import Result, Table, notes
@@ -104,7 +105,8 @@ def identify_drive(
     """
     with folder_if(out, force=force) as folder:
         step.ahead(2)
-        runs = drive_runs(dataset, hold)
+        once = counted_once(dataset)
+        runs = drive_runs(once.dataset, hold, once.copied)
         step()
         seen, sheet = frequency_response(runs), drive_sheet(dataset.manifest)
         search = DriveSearch(DriveBench(runs, seen, sheet.stated_frequency), step)
@@ -116,7 +118,7 @@ def identify_drive(
         found = diagnose_drive(search, final, fitted)
         by_fit, by_nominal = _simulated(search, final), _simulated(search, found.nominal)
         known = fitted | _given(sheet)
-        summary = dataset.header("identify-harmonic-drive", out) | {
+        summary = once.dataset.header("identify-harmonic-drive", out) | {
             "hold": hold,
             "structure": {"name": name_of(final), "equation": equation_of(final)},
             "structures": drive_json.structures(search, final),
@@ -133,9 +135,9 @@ def identify_drive(
             },
             "diagnosis": drive_json.diagnosis(search, found),
         }
-        summary["cannot_tell"] = cannot_tell(summary, sheet, final, known)
+        summary["cannot_tell"] = [*once.notes, *cannot_tell(summary, sheet, final, known)]
         step()
-        simulated = _recordings(dataset.runs, search, by_fit, by_nominal)
+        simulated = _recordings(once.dataset.runs, search, by_fit, by_nominal)
         if folder is not None:
             write_json(folder / "drive.json", summary)
             structure, of = {"name": name_of(final), "hold": hold}, summary["dataset"]

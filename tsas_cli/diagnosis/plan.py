@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import datetime
 from itertools import combinations
 
@@ -23,8 +23,8 @@ from tsas_cli.identification.extension import Bench, Trial
 from tsas_cli.identification.model import data_sheet
 from tsas_cli.identification.phases import segment
 from tsas_cli.identification.prepared import prepare
-from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Manifest, Run
+from tsas_cli.recordings.quality.copies.counted import Counted
 from tsas_cli.steps import SILENT, Steps
 
 PROPOSED = 3
@@ -101,8 +101,8 @@ def plan_rig(file: RigFile, step: Steps = SILENT) -> Plan:
     return _plan(beside(runs, further, model, model), step)
 
 
-def plan_dataset(dataset: Dataset, step: Steps = SILENT) -> Plan:
-    """Return what the runs of a dataset can show.
+def plan_dataset(counted: Counted, step: Steps = SILENT) -> Plan:
+    """Return what the runs of a dataset can show, each sample of which counts once.
 
     Raises
     ------
@@ -110,13 +110,17 @@ def plan_dataset(dataset: Dataset, step: Steps = SILENT) -> Plan:
         A recording is wrong, or none makes the whole tendon slip.
     """
     step.ahead(1)
-    manifest = dataset.manifest
-    runs = [prepare(recording, manifest.session_start) for recording in dataset]
+    manifest = counted.dataset.manifest
+    runs = [
+        prepare(recording, manifest.session_start, counted.copied_of(recording.run.id))
+        for recording in counted.dataset
+    ]
     segments = [segment(run) for run in runs]
     measured = [slopes_of(run, parts) for run, parts in zip(runs, segments, strict=True)]
     base = base_fit(data_sheet(manifest), runs, segments, measured)
     base.solve()
-    return _plan(beside_recorded(Bench(base)), step)
+    plan = _plan(beside_recorded(Bench(base)), step)
+    return replace(plan, cannot_tell=(*counted.notes, *plan.cannot_tell))
 
 
 def propose(bench: Bench, trial: Trial, effects: Sequence[str], step: Steps = SILENT) -> str:

@@ -12,6 +12,7 @@ from tsas_cli.diagnosis.rig_file import read_rig_file
 from tsas_cli.diagnosis.visibility import Seen
 from tsas_cli.files import folder_if, sha256_of, write_json
 from tsas_cli.recordings.dataset import Dataset
+from tsas_cli.recordings.quality.copies.counted import counted_once
 from tsas_cli.result import Result, Table, notes
 from tsas_cli.steps import SILENT, Steps
 
@@ -52,8 +53,9 @@ def plan_runs(
     """
     with folder_if(out, force=force) as folder:
         if isinstance(runs, Dataset):
-            summary = runs.header("plan", out)
-            plan = plan_dataset(runs, step)
+            counted = counted_once(runs)
+            summary = counted.dataset.header("plan", out)
+            plan = plan_dataset(counted, step)
         else:
             file = read_rig_file(runs)
             where = Path(os.path.relpath(runs.resolve(), (out or Path()).resolve())).as_posix()

@@ -1,7 +1,7 @@
 """The calibrate stage: `model.toml` and `calibration.json` of a dataset."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -26,9 +26,11 @@ from tsas_cli.identification.stiffness import Slope
 from tsas_cli.physics.capstan import dead_band_stiffness, slip_stiffness, speed_per_stiffness
 from tsas_cli.physics.response import Dynamics
 from tsas_cli.physics.rig import Rig
+from tsas_cli.recordings.copied import CopiedRows
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Manifest, Run
 from tsas_cli.recordings.quality.checks import sign
+from tsas_cli.recordings.quality.copies.counted import counted_once
 from tsas_cli.recordings.quality.finding import CannotTell, Remark
 from tsas_cli.recordings.quality.stretches import look_by_stretches
 from tsas_cli.recordings.quality.trial import Trial
@@ -83,13 +85,15 @@ def calibrate_dataset(
     """
     stated = stated_model(dataset.manifest, model)
     with folder_if(out, force=force) as folder:
-        step.ahead(len(dataset.runs))
+        counted = counted_once(dataset)
+        step.ahead(len(counted.dataset.runs))
         runs = []
-        for run in dataset.runs:
-            runs.append(_prepared(dataset, run))
+        for run in counted.dataset.runs:
+            runs.append(_prepared(dataset, run, counted.copied_of(run.id)))
             step()
         result = calibrate(dataset.manifest, runs, step, dynamics=dynamics, stated=stated)
-        summary = dataset.header("calibrate", out) | {"model": source_of(model, out)}
+        result = replace(result, cannot_tell=[*counted.notes, *result.cannot_tell])
+        summary = counted.dataset.header("calibrate", out) | {"model": source_of(model, out)}
         summary["dynamics"] = dynamics
         summary |= _summary(result, dataset.manifest)
         if folder is not None:
@@ -100,15 +104,15 @@ def calibrate_dataset(
     return CalibrationResult(summary, out, result)
 
 
-def _prepared(dataset: Dataset, run: Run) -> Prepared:
+def _prepared(dataset: Dataset, run: Run, copied: CopiedRows) -> Prepared:
     """Return a run that is ready for the fit; of a long one the samples that the fit takes."""
-    long, rig = open_long(dataset, run), dataset.manifest.rig
+    long, rig = open_long(dataset, run, copied), dataset.manifest.rig
     if long is not None:
         _refuse_wrong_sign(look_by_stretches((sign.CHECK,), long.columns, rig)["sign"], run)
         return long.prepared()
     recording = dataset[run.id]
     _refuse_wrong_sign(sign.find(Trial(recording, rig)), run)
-    return prepare(recording, dataset.manifest.session_start)
+    return prepare(recording, dataset.manifest.session_start, copied)
 
 
 def _refuse_wrong_sign(said: Iterable[Remark | CannotTell], run: Run) -> None:
