@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import datetime
 from itertools import combinations
 
@@ -24,8 +24,8 @@ from tsas_cli.identification.joint_fit import solve_fit
 from tsas_cli.identification.model import data_sheet
 from tsas_cli.identification.phases import segment
 from tsas_cli.identification.prepared import prepare
-from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Manifest, Run
+from tsas_cli.recordings.quality.copies.counted import Counted
 from tsas_cli.support.steps import SILENT, Steps
 
 PROPOSED = 3
@@ -102,8 +102,8 @@ def plan_rig(file: RigFile, step: Steps = SILENT) -> Plan:
     return _plan(beside(runs, further, model, model), step)
 
 
-def plan_dataset(dataset: Dataset, step: Steps = SILENT) -> Plan:
-    """Return what the runs of a dataset can show.
+def plan_dataset(counted: Counted, step: Steps = SILENT) -> Plan:
+    """Return what the runs of a dataset can show, each sample of which counts once.
 
     Raises
     ------
@@ -111,12 +111,16 @@ def plan_dataset(dataset: Dataset, step: Steps = SILENT) -> Plan:
         A recording is wrong, or none makes the whole tendon slip.
     """
     step.ahead(1)
-    manifest = dataset.manifest
-    runs = [prepare(recording, manifest.session_start) for recording in dataset]
+    manifest = counted.dataset.manifest
+    runs = [
+        prepare(recording, manifest.session_start, counted.copied_of(recording.run.id))
+        for recording in counted.dataset
+    ]
     segments = [segment(run) for run in runs]
     measured = [slopes_of(run, parts) for run, parts in zip(runs, segments, strict=True)]
     base = solve_fit(base_fit(data_sheet(manifest), runs, segments, measured))
-    return _plan(beside_recorded(bench_of(base)), step)
+    plan = _plan(beside_recorded(bench_of(base)), step)
+    return replace(plan, cannot_tell=(*counted.notes, *plan.cannot_tell))
 
 
 def propose(bench: Bench, trial: Trial, effects: Sequence[str], step: Steps = SILENT) -> str:

@@ -155,11 +155,13 @@ def _left(search: DriveSearch, terms: Terms) -> tuple[tuple[str, ...], float]:
     chosen = np.arange(0, residual.size, max(1, residual.size // LOOKED_AT))
     runs = search.bench.runs
     signals = {
-        "x_in_mm": np.concatenate([run.x_in for run in runs]),
-        "motor_speed_rpm": np.concatenate([run.u.values for run in runs]),
-        "motor_angle_rad": np.concatenate([run.u.integral * math.pi / 30.0 for run in runs])
+        "x_in_mm": np.concatenate([run.x_in[run.counts] for run in runs]),
+        "motor_speed_rpm": np.concatenate([run.u.values[run.counts] for run in runs]),
+        "motor_angle_rad": np.concatenate(
+            [run.u.integral[run.counts] * math.pi / 30.0 for run in runs]
+        )
         % (2.0 * math.pi),
-        "time_s": np.concatenate([run.time_s for run in runs]),
+        "time_s": np.concatenate([run.time_s[run.counts] for run in runs]),
     }
     direction = np.sign(signals["motor_speed_rpm"])[chosen]
     here, block, fold = residual[chosen], folds.block[chosen], folds.fold[chosen]

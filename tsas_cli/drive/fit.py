@@ -122,10 +122,14 @@ class DriveBench:
         return float(sum(e @ e for e in errors)) / sum(e.size for e in errors)
 
     def simulated(self, r: int, values: DriveValues) -> Floats:
-        """Return x_in of a run [mm] as a drive moves it, begun where it fits best, shape (n,)."""
+        """Return x_in of a run [mm] as a drive moves it, begun where it fits best, shape (n,).
+
+        NaN where the run's samples are copies of another run's.
+        """
         run = self.runs[r]
-        error = self._error(r, values)
-        return run.x_in + run.noise_mm * error
+        x_in = np.where(run.counts, run.x_in, np.nan)
+        x_in[run.counts] += run.noise_mm * self._error(r, values)
+        return x_in
 
     def _solved(
         self, quantities: Sequence[Quantity], start: DriveValues, terms: Terms, tolerance: float
@@ -146,18 +150,19 @@ class DriveBench:
         return DriveValues(**known)
 
     def _error(self, r: int, values: DriveValues) -> Floats:
+        """Return simulated less measured over noise, at the samples that count."""
         run = self.runs[r]
         error = linear_response(run.u, values) - run.x_in
         if has_gear(values):
-            linear, start = error, -float(error.mean())
+            linear, start = error, -float(error[run.counts].mean())
             for _ in range(SETTLED if values.sine_mm or values.cosine_mm else 1):
                 error = linear + gear_response(run.u, values, start)
-                start = -float(error.mean())
-        error = error / run.noise_mm
+                start = -float(error[run.counts].mean())
+        error = error[run.counts] / run.noise_mm
         if run.at_rest:
             return np.asarray(error - error.mean())
-        basis = np.column_stack((np.ones(error.size), free_motion(run.u, values)))
-        basis = np.linalg.qr(basis)[0]
+        basis = np.column_stack((np.ones(run.x_in.size), free_motion(run.u, values)))
+        basis = np.linalg.qr(basis[run.counts])[0]
         return np.asarray(error - basis @ (basis.T @ error))
 
     def _from_response(self, terms: Terms) -> DriveValues:

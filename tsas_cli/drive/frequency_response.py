@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.drive.runs import DriveRun
+from tsas_cli.drive.runs import FEWEST_SAMPLES, DriveRun
 
 Floats = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
@@ -36,23 +36,27 @@ class FrequencyResponse:
 def frequency_response(runs: Sequence[DriveRun]) -> FrequencyResponse:
     """Return the response that all runs show together, in segments that overlap by half.
 
-    x_in drifts while the motor turns one way: each segment loses its straight line.
+    x_in drifts while the motor turns one way: each segment loses its straight line. Of a run that
+    shares samples with another one the longest stretch that counts is taken, if that is long enough
+    for a run.
     """
     from scipy.signal import csd, welch
 
-    longest = max(run.time_s[-1] for run in runs)
-    segment_s = min(LONGEST_S, longest / SEGMENTS, *(run.time_s[-1] / 2.0 for run in runs))
+    whole = [
+        (run, stretch)
+        for run, stretch in ((run, run.longest) for run in runs)
+        if run.counts.all() or stretch.stop - stretch.start >= FEWEST_SAMPLES
+    ]
+    lasts_s = [run.u.step_s * (s.stop - s.start - 1) for run, s in whole]
+    segment_s = min(LONGEST_S, max(lasts_s) / SEGMENTS, *(lasts / 2.0 for lasts in lasts_s))
     sums: list[npt.NDArray[np.complex128]] = []
-    bins = min(round(segment_s / run.u.step_s) for run in runs) // 2
-    for run in runs:
+    bins = min(round(segment_s / run.u.step_s) for run, _ in whole) // 2
+    for (run, stretch), lasts in zip(whole, lasts_s, strict=True):
         n = round(segment_s / run.u.step_s)
         how = {"fs": 1.0 / run.u.step_s, "nperseg": n, "detrend": "linear"}
-        spectra = (
-            welch(run.u.values, **how)[1],
-            csd(run.u.values, run.x_in, **how)[1],
-            welch(run.x_in, **how)[1],
-        )
-        sums.append(run.time_s[-1] * np.array([s[1:bins] for s in spectra]))
+        u, x_in = run.u.values[stretch], run.x_in[stretch]
+        spectra = (welch(u, **how)[1], csd(u, x_in, **how)[1], welch(x_in, **how)[1])
+        sums.append(lasts * np.array([s[1:bins] for s in spectra]))
     uu, ux, xx = np.sum(sums, axis=0)
     frequency = np.arange(1, bins) / segment_s
     coherence = np.abs(ux) ** 2 / np.maximum(np.abs(uu * xx), 1e-300)

@@ -111,11 +111,11 @@ def run_rows(search: DriveSearch, fitted: list[Floats], nominal: list[Floats]) -
     for run, by_fit, by_nominal in zip(search.bench.runs, fitted, nominal, strict=True):
         errors = {"rmse": by_fit - run.x_in, "rmse_nominal": by_nominal - run.x_in}
         out[run.id] = {
-            "samples": int(run.x_in.size),
+            "samples": int(run.counts.sum()),
             "rate_Hz": 1.0 / run.u.step_s,
             "noise": run.noise_mm,
             "unit": "mm",
-            **{key: float(np.sqrt(np.mean(e**2))) for key, e in errors.items()},
+            **{key: float(np.sqrt(np.nanmean(e**2))) for key, e in errors.items()},
             "begins_at_rest": run.at_rest,
         }
     return out

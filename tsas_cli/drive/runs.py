@@ -1,7 +1,8 @@
 """Recordings of a drive, checked: motor speed in, position of the tendon's end out."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -10,10 +11,12 @@ from tsas_cli.numerics.interpolated import interpolated
 from tsas_cli.numerics.linear_response import Hold, Sampled, sampled
 from tsas_cli.numerics.noise import FEWEST_SAMPLES as FEWEST_OF_NOISE
 from tsas_cli.numerics.noise import noise_sd
+from tsas_cli.recordings.copied import NONE_COPIED, CopiedRows
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.support.errors import InputError
 
 Floats = npt.NDArray[np.float64]
+Mask = npt.NDArray[np.bool_]
 
 FEWEST_SAMPLES = 500
 UNEVEN = 0.02  # of a sampling step, by which another one may differ
@@ -32,6 +35,19 @@ class DriveRun:
     x_in: Floats
     noise_mm: float
     at_rest: bool  # when it begins
+    copied: CopiedRows = NONE_COPIED  # from another run
+
+    @cached_property
+    def counts(self) -> Mask:
+        """Which samples are no copies, shape (n,)."""
+        return ~self.copied.mask(0, self.x_in.size)
+
+    @property
+    def longest(self) -> slice:
+        """The longest stretch of samples that count."""
+        edges = np.flatnonzero(np.diff(self.counts, prepend=False, append=False)).reshape(-1, 2)
+        first, end = edges[np.argmax(np.diff(edges, axis=1))]
+        return slice(int(first), int(end))
 
     @property
     def time_s(self) -> Floats:
@@ -39,8 +55,10 @@ class DriveRun:
         return np.asarray(self.u.step_s * np.arange(self.x_in.size), dtype=np.float64)
 
 
-def drive_runs(recordings: Iterable[Recording], hold: Hold) -> list[DriveRun]:
-    """Return the runs of a dataset.
+def drive_runs(
+    recordings: Iterable[Recording], hold: Hold, copied: Mapping[str, CopiedRows] | None = None
+) -> list[DriveRun]:
+    """Return the runs of a dataset, some of whose rows may be `copied` from other runs.
 
     Raises
     ------
@@ -48,10 +66,11 @@ def drive_runs(recordings: Iterable[Recording], hold: Hold) -> list[DriveRun]:
         A channel is missing, has a gap, does not move or keeps one speed; the clock is uneven; a
         run is too short; or x_in does not follow the motor.
     """
-    return [_checked(recording, hold) for recording in recordings]
+    known = copied or {}
+    return [_checked(one, hold, known.get(one.run.id, NONE_COPIED)) for one in recordings]
 
 
-def _checked(recording: Recording, hold: Hold) -> DriveRun:
+def _checked(recording: Recording, hold: Hold, copied: CopiedRows) -> DriveRun:
     where = recording.run.file
     u, x = (_channel(recording, name) for name in ("motor_speed_rpm", "x_in_mm"))
     time_s = recording.time_s
@@ -94,6 +113,7 @@ def _checked(recording: Recording, hold: Hold) -> DriveRun:
         x,
         noise if noise > 0.0 else 1e-6 * float(np.ptp(x)),
         bool(abs(u[0]) <= AT_REST * np.abs(u).max()),
+        copied,
     )
     _refuse_unrelated(run, where)
     return run

@@ -174,7 +174,7 @@ def _without_idle_gear(search: DriveSearch, named: Terms) -> Terms:
 
 def folds_by(best: DriveTrial, runs: Sequence[DriveRun]) -> Folds:
     """Return what is held out together; the blocks outlast the memory of what a fit leaves."""
-    sizes = [run.x_in.size for run in runs]
+    sizes = [int(run.counts.sum()) for run in runs]
     return drive_folds(runs, np.split(best.solution.residual, np.cumsum(sizes)[:-1]))
 
 

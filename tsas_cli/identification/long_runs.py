@@ -27,6 +27,7 @@ from tsas_cli.numerics.conditioning import Conditioned
 from tsas_cli.numerics.conditioning_pieces import Cleaned, Plan, Samples, cleaned, plan
 from tsas_cli.recordings import pieces as reading
 from tsas_cli.recordings.columns import TIME
+from tsas_cli.recordings.copied import NONE_COPIED, CopiedRows
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.pieces import known_columns, long_run, pieces
@@ -61,6 +62,7 @@ class LongRun:
     plans: Mapping[str, Plan]
     noise: Mapping[str, float]
     session_s: float
+    copied: CopiedRows = NONE_COPIED  # from another run
 
     @property
     def every(self) -> int:
@@ -77,7 +79,8 @@ class LongRun:
         for piece in pieces(self.columns, [TIME, *self.noise]):
             parts = {name: stream.take(piece.rows) for name, stream in streams.items()}
             in_gap = [part.apart_s > GAP * self.plans[n].interval_s for n, part in parts.items()]
-            measured = {name: piece.columns[name] for name in self.noise}
+            elsewhere = self.copied.mask(piece.start, piece.stop)
+            measured = {n: np.where(elsewhere, math.nan, piece.columns[n]) for n in self.noise}
             yield Rows(piece.start, piece.columns[TIME], parts, measured, np.any(in_gap, axis=0))
 
     def prepared(self) -> Prepared:
@@ -134,8 +137,8 @@ class LongRun:
         return Rows(rows.start, rows.time_s[here], parts, measured, rows.in_gap[here])
 
 
-def open_long(dataset: Dataset, run: Run) -> LongRun | None:
-    """Open a run that is too long for memory; None where it is not.
+def open_long(dataset: Dataset, run: Run, copied: CopiedRows = NONE_COPIED) -> LongRun | None:
+    """Open a run that is too long for memory, its rows that are `copied` left out; else None.
 
     Raises
     ------
@@ -156,7 +159,7 @@ def open_long(dataset: Dataset, run: Run) -> LongRun | None:
     if not noise:
         raise nothing_to_compare(run, names)
     session_s = seconds_into(dataset.manifest.session_start, run.started)
-    return LongRun(run, columns, driving[0], plans, noise, session_s)
+    return LongRun(run, columns, driving[0], plans, noise, session_s, copied)
 
 
 def thinned_notes(runs: Sequence[Prepared]) -> list[str]:

@@ -15,6 +15,7 @@ from tsas_cli.numerics.noise import noise_sd, quantisation_step
 from tsas_cli.physics.ends import Drive
 from tsas_cli.physics.response import TOLERANCE
 from tsas_cli.recordings.columns import BY_NAME
+from tsas_cli.recordings.copied import NONE_COPIED, CopiedRows
 from tsas_cli.recordings.manifest import Load, Run
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.support.errors import InputError
@@ -134,10 +135,15 @@ def seconds_into(session_start: datetime | None, started: datetime | None) -> fl
     return (started - session_start).total_seconds()
 
 
-def prepare(recording: Recording, session_start: datetime | None = None) -> Prepared:
+def prepare(
+    recording: Recording,
+    session_start: datetime | None = None,
+    copied: CopiedRows = NONE_COPIED,
+) -> Prepared:
     """Condition what drives the model and collect what it is compared with.
 
-    `session_start` is when the first run of the dataset began, where the manifest says it.
+    `session_start` is when the first run of the dataset began, where the manifest says it. What was
+    measured in rows that are `copied` from another run is left out.
 
     Raises
     ------
@@ -152,6 +158,8 @@ def prepare(recording: Recording, session_start: datetime | None = None) -> Prep
         if np.isfinite(columns[name]).sum() < 2:
             raise is_empty(run, name)
     columns = {n: _recorded(values) for n, values in columns.items() if n in (*driving, *CHANNELS)}
+    elsewhere = copied.mask(0, time_s.size)
+    columns |= {n: np.where(elsewhere, math.nan, v) for n, v in columns.items() if n not in driving}
     gap = np.any([_in_gap(time_s, columns[name]) for name in driving], axis=0)
     measured = {
         n: columns[n]

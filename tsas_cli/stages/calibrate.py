@@ -23,9 +23,11 @@ from tsas_cli.physics.closed_form.capstan import (
     speed_per_stiffness,
 )
 from tsas_cli.physics.rig import Rig
+from tsas_cli.recordings.copied import CopiedRows
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Manifest, Run
 from tsas_cli.recordings.quality.checks import sign
+from tsas_cli.recordings.quality.copies.counted import counted_once
 from tsas_cli.recordings.quality.finding import CannotTell, Remark
 from tsas_cli.recordings.quality.stretches import look_by_stretches
 from tsas_cli.recordings.quality.trial import Trial
@@ -115,14 +117,15 @@ def calibrate(
     data, given, path = dataset_of(dataset, runs), path_of(model), path_of(out)
     stated = stated_model(data.manifest, given)
     with folder_if(path, stage="calibrate", inputs=[data.folder, given], force=force) as folder:
-        step.ahead(len(data.runs))
+        counted = counted_once(data)
+        step.ahead(len(counted.dataset.runs))
         prepared = []
-        for run in data.runs:
-            prepared.append(_prepared(data, run))
+        for run in counted.dataset.runs:
+            prepared.append(_prepared(data, run, counted.copied_of(run.id)))
             step()
         result = calibrate_runs(data.manifest, prepared, step, dynamics=taken, stated=stated)
         record = records.Calibration(
-            **data.header("calibrate", path),
+            **counted.dataset.header("calibrate", path),
             model=source_of(given, path),
             dynamics=taken,
             segments={
@@ -132,7 +135,7 @@ def calibrate(
             stiffness=tuple(_stiffness_rows(result, data.manifest)),
             transfer=parameters_of(result.transfer),
             parameters=parameters_of(result.model.estimates),
-            cannot_tell=result.cannot_tell,
+            cannot_tell=(*counted.notes, *result.cannot_tell),
             fit=_fit(result),
             channels=_errors(result),
         )
@@ -143,15 +146,15 @@ def calibrate(
     return CalibrationResult(record.content(), path, record, result)
 
 
-def _prepared(dataset: Dataset, run: Run) -> Prepared:
+def _prepared(dataset: Dataset, run: Run, copied: CopiedRows) -> Prepared:
     """Return a run that is ready for the fit; of a long one the samples that the fit takes."""
-    long, rig = open_long(dataset, run), dataset.manifest.rig
+    long, rig = open_long(dataset, run, copied), dataset.manifest.rig
     if long is not None:
         _refuse_wrong_sign(look_by_stretches((sign.CHECK,), long.columns, rig)["sign"], run)
         return long.prepared()
     recording = dataset[run.id]
     _refuse_wrong_sign(sign.find(Trial(recording, rig)), run)
-    return prepare(recording, dataset.manifest.session_start)
+    return prepare(recording, dataset.manifest.session_start, copied)
 
 
 def _refuse_wrong_sign(said: Iterable[Remark | CannotTell], run: Run) -> None:

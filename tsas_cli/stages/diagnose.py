@@ -13,6 +13,7 @@ from tsas_cli.identification.phases import segment, segment_records
 from tsas_cli.identification.prepared import Prepared, prepare
 from tsas_cli.recordings.columns import nominal_name
 from tsas_cli.recordings.dataset import Dataset
+from tsas_cli.recordings.quality.copies.counted import counted_once
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.recordings.writing import write_answer
 from tsas_cli.records import diagnosis as records
@@ -116,14 +117,16 @@ def diagnose(
     data, known, path = dataset_of(dataset, runs), path_of(model), path_of(out)
     stated = stated_model(data.manifest, known)
     with folder_if(path, stage="diagnose", inputs=[data.folder, known], force=force) as folder:
-        step.ahead(len(data.runs) + 1)
+        counted = counted_once(data)
+        step.ahead(len(counted.dataset.runs) + 1)
         prepared = []
-        for recording in data:
-            prepared.append(prepare(recording, data.manifest.session_start))
+        for recording in counted.dataset:
+            copied = counted.copied_of(recording.run.id)
+            prepared.append(prepare(recording, data.manifest.session_start, copied))
             step()
         result = diagnose_runs(data.manifest, stated, prepared, step)
         record = records.Diagnosis(
-            **data.header("diagnose", path),
+            **counted.dataset.header("diagnose", path),
             model=source_of(known, path),
             verdict=result.verdict,
             reason=result.reason,
@@ -135,7 +138,7 @@ def diagnose(
             signatures=found.signatures_of(result.search),
             residual_map=found.residual_maps_of(result),
             evidence=found.evidence_of(result.search),
-            cannot_tell=result.cannot_tell,
+            cannot_tell=(*counted.notes, *result.cannot_tell),
             solver="" if result.final is None else result.final.solver,
             segments={run.run.id: segment_records(run, segment(run)) for run in prepared},
         )

@@ -31,6 +31,7 @@ from tsas_cli.identification.estimate import Estimate
 from tsas_cli.numerics.linear_response import Hold
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Run
+from tsas_cli.recordings.quality.copies.counted import counted_once
 from tsas_cli.recordings.recording import Recording, recording_of
 from tsas_cli.recordings.writing import write_runs
 from tsas_cli.records.result import Result, Table, notes
@@ -132,19 +133,20 @@ def identify_harmonic_drive(
     data, path = dataset_of(dataset, runs), path_of(out)
     with folder_if(path, stage=STAGE, inputs=[data.folder], force=force) as folder:
         step.ahead(2)
-        prepared = drive_runs(data, hold)
+        counted = counted_once(data)
+        prepared = drive_runs(counted.dataset, hold, counted.copied)
         step()
         seen, sheet = frequency_response(prepared), drive_sheet(data.manifest)
         bench = DriveBench(prepared, seen, sheet.stated_frequency)
         final, search = find_terms(DriveFits(bench, step))
         trial, folds = search.trial(final), search.folds
         blocks = [folds.block[folds.run == k] for k in range(len(prepared))]
-        counted = [np.unique(block, return_inverse=True)[1] for block in blocks]
-        fitted = estimates_of(trial, counted, sheet, by_run=folds.by_run)
+        numbered = [np.unique(block, return_inverse=True)[1] for block in blocks]
+        fitted = estimates_of(trial, numbered, sheet, by_run=folds.by_run)
         found = diagnose_drive(search, final, fitted)
         by_fit, by_nominal = _simulated(search, final), _simulated(search, found.nominal)
         known = fitted | _given(sheet)
-        summary = data.header(STAGE, path) | {
+        summary = counted.dataset.header(STAGE, path) | {
             "hold": hold,
             "structure": {"name": name_of(final), "equation": equation_of(final)},
             "structures": drive_json.structure_rows(search, final),
@@ -161,9 +163,9 @@ def identify_harmonic_drive(
             },
             "diagnosis": drive_json.diagnosis(search, found),
         }
-        summary["cannot_tell"] = cannot_tell(summary, sheet, final, known)
+        summary["cannot_tell"] = [*counted.notes, *cannot_tell(summary, sheet, final, known)]
         step()
-        simulated = _recordings(data.runs, search, by_fit, by_nominal)
+        simulated = _recordings(counted.dataset.runs, search, by_fit, by_nominal)
         if folder is not None:
             write_json(folder / "drive.json", summary)
             structure, of = {"name": name_of(final), "hold": hold}, summary["dataset"]

@@ -10,6 +10,7 @@ from tsas_cli.diagnosis.plan import Plan, Proposal, plan_dataset, plan_rig
 from tsas_cli.diagnosis.rig_file import read_rig_file
 from tsas_cli.diagnosis.visibility import Seen
 from tsas_cli.recordings.dataset import Dataset, read_dataset
+from tsas_cli.recordings.quality.copies.counted import counted_once
 from tsas_cli.recordings.storage import place_of
 from tsas_cli.records.result import Result, Table, notes
 from tsas_cli.stages.given import Named, path_of
@@ -81,8 +82,9 @@ def plan(
     read = runs.folder if isinstance(runs, Dataset) else runs
     with folder_if(path, stage="plan", inputs=[read], force=force) as folder:
         if isinstance(runs, Dataset):
-            summary = runs.header("plan", path)
-            planned = plan_dataset(runs, step)
+            counted = counted_once(runs)
+            summary = counted.dataset.header("plan", path)
+            planned = plan_dataset(counted, step)
         else:
             file = read_rig_file(runs)
             where = Path(os.path.relpath(runs.resolve(), (path or Path()).resolve())).as_posix()

@@ -7,6 +7,7 @@ from tsas_cli.recordings.manifest import Manifest, Run
 from tsas_cli.recordings.pieces import long_run
 from tsas_cli.recordings.quality.checks import (
     clipped,
+    copies,
     delay,
     exchanged,
     few_reversals,
@@ -57,7 +58,8 @@ RUN_CHECKS: tuple[Check[Trial], ...] = (
     few_reversals.CHECK,
     no_steady_motion.CHECK,
 )
-CHECKS = (*MANIFEST_CHECKS, *RUN_CHECKS)
+DATASET_CHECKS: tuple[Check[Dataset], ...] = (copies.CHECK,)
+CHECKS = (*MANIFEST_CHECKS, *RUN_CHECKS, *DATASET_CHECKS)
 
 
 @dataclass(frozen=True)
@@ -69,7 +71,7 @@ class Report:
 
 
 def check_dataset(dataset: Dataset, step: Steps = SILENT) -> Report:
-    """Run every check on the manifest and on the runs of a dataset; `step` follows each run.
+    """Run every check on the manifest, the runs and all of a dataset; `step` follows each run.
 
     A run that cannot be read is a finding (`unreadable`), as long as another one can.
 
@@ -94,6 +96,11 @@ def check_dataset(dataset: Dataset, step: Steps = SILENT) -> Report:
         step()
     if len(failures) == len(dataset.runs):
         raise failures[0]
+    results += [
+        _attributed(said, check.code, said.run)
+        for check in DATASET_CHECKS
+        for said in check.find(dataset)
+    ]
     return Report(
         tuple(r for r in results if isinstance(r, Finding)),
         tuple(r for r in results if isinstance(r, NotChecked)),

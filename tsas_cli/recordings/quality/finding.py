@@ -14,7 +14,7 @@ class Remark:
     """Something that is wrong, as one check sees it.
 
     `error`: results from this run are wrong. `warning`: they may be wrong, or a stage cannot use
-    the run. `note`: worth knowing.
+    the run. `note`: worth knowing. A check of a whole dataset says which `run` it means.
     """
 
     severity: Severity
@@ -22,6 +22,7 @@ class Remark:
     remedy: str
     column: str | None = None
     first_s: float | None = None
+    run: str | None = None
 
 
 @dataclass(frozen=True)
@@ -29,6 +30,7 @@ class CannotTell:
     """Why a check does not apply; this is not the same as passed."""
 
     reason: str
+    run: str | None = None
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,198 @@
+"""Every kind of copy is found, with the stretch that it holds; true repeats are left in peace."""
+
+import numpy as np
+import pytest
+
+import tsas_cli as tsas
+from tests.recordings.quality.copies.made import (
+    dataset,
+    later,
+    on_spline,
+    recorded,
+    resampled,
+    rounded,
+    rows,
+)
+from tsas_cli.recordings import pieces
+
+A, OTHER = recorded(1), recorded(2)
+N, T = A["time_s"].size, A["time_s"][-1]
+HALF, PART = rows(A, 0, 1000), rows(A, 700, N)
+
+
+def said(data):
+    """Return severity, run and sentence of each finding of the check."""
+    found = [f for f in tsas.check(data).findings if f.code == "copies"]
+    return [(f.severity, f.run, f.sentence) for f in found]
+
+
+ALL = "holds the samples of run a"
+SAME = {
+    "another file": (A, ALL),
+    "one more column": (A | {"temperature_C": np.linspace(20.0, 22.0, N)}, ALL),
+    "single precision": ({n: v.astype(np.float32).astype(float) for n, v in A.items()}, ALL),
+    "rounded": (rounded(A, 3), ALL),
+    "later": (later(A, 12.5), f"{ALL}, its time shifted by 12.5 s"),
+}
+LESS = {
+    "fewer columns": ({n: A[n] for n in ("time_s", "x_in_mm", "f_out_N")}, ALL),
+    "cut out": (rows(A, 300, 500), f"{ALL} from 3 s to 4.99 s"),
+    "every second": (rows(A, None, None, 2), "holds every 2nd sample of run a"),
+    "every seventh of a piece": (
+        later(rows(A, 103, 1200, 7), -1.0),
+        "holds every 7th sample of run a from 1.03 s to 11.95 s",
+    ),
+    "slower clock": (resampled(A, 73.1), f"{ALL}, resampled at 73.1 Hz"),
+    "faster clock": (resampled(A, 131.0), f"{ALL}, resampled at 131 Hz"),
+    "twice as fast": (resampled(A, 200.0, begin_s=0.0), f"{ALL}, resampled at 200 Hz"),
+    "on a spline": (resampled(A, 73.1, curve=on_spline), f"{ALL}, resampled at 73.1 Hz"),
+    "slower clock, rounded": (rounded(resampled(A, 90.0), 3), f"{ALL}, resampled at 90 Hz"),
+}
+
+
+@pytest.mark.parametrize("kind", [*SAME, *LESS])
+def test_a_copy_is_found(tmp_path, kind):
+    copy, sentence = (SAME | LESS)[kind]
+    assert said(dataset(tmp_path, a=A, b=copy, c=OTHER)) == [("warning", "b", sentence)]
+
+
+@pytest.mark.parametrize("kind", LESS)
+def test_what_tells_less_is_the_copy_though_it_comes_first(tmp_path, kind):
+    copy, sentence = LESS[kind]
+    assert said(dataset(tmp_path, b=copy, c=OTHER, a=A)) == [("warning", "b", sentence)]
+
+
+def test_the_end_of_one_run_is_the_beginning_of_another(tmp_path):
+    found = said(dataset(tmp_path, a=HALF, b=later(PART, -7.0), c=OTHER))
+    sentence = "holds, from 0 s to 2.99 s, the samples of run a from 7 s to 9.99 s"
+    assert found == [("warning", "b", sentence)]
+
+
+def test_two_runs_share_a_stretch_on_different_clocks(tmp_path):
+    slower = resampled(PART, 61.7, begin_s=7.01)
+    for runs in ({"a": HALF, "b": slower}, {"b": slower, "a": HALF}):
+        ((_, run, sentence),) = said(dataset(tmp_path, **runs))
+        assert run == "b"
+        times = "from 7.01 s to 9.97596 s"
+        assert sentence == f"holds, {times}, the samples of run a, resampled at 61.7 Hz {times}"
+
+
+def test_the_same_samples_under_other_conditions_are_an_error(tmp_path):
+    data = dataset(tmp_path, {"b": {"total_bend_rad": 1.0}}, a=A, b=later(A, 1.0))
+    ((severity, run, sentence),) = said(data)
+    assert (severity, run) == ("error", "b")
+    assert sentence.endswith(", but the manifest says total_bend_rad = 1 here and 3.1416 there")
+
+
+def test_a_slow_channel_is_compared_where_it_was_recorded(tmp_path):
+    """The drive is commanded, the same in every repeat; only the slow force tells them apart."""
+
+    def slow(seed):
+        run = recorded(seed, noise_mm=0.0)
+        force = np.where(np.arange(N) % 10, np.nan, run["f_in_N"])
+        return {"time_s": run["time_s"], "x_in_mm": run["x_in_mm"], "f_in_N": force}
+
+    assert said(dataset(tmp_path, a=slow(1), b=rows(slow(1), 200, None)))
+    assert not said(dataset(tmp_path / "repeats", a=slow(1), b=rows(slow(2), 200, None)))
+
+
+def test_what_only_one_run_records_is_evidence(tmp_path):
+    """One recording in two files, each with a sensor of its own beside the drive."""
+    drive = {n: A[n] for n in ("time_s", "x_in_mm")}
+    assert not said(
+        dataset(tmp_path, a=drive | {"f_in_N": A["f_in_N"]}, b=drive | {"f_out_N": A["f_out_N"]})
+    )
+
+
+def test_a_long_recording_is_searched_in_pieces(tmp_path, monkeypatch):
+    monkeypatch.setattr(pieces, "MOST_ROWS", 300)
+    found = said(dataset(tmp_path, a=A, b=later(rows(A, 250, 1400), 3.0), c=OTHER))
+    assert found == [("warning", "b", "holds the samples of run a from 2.5 s to 13.99 s")]
+
+
+def test_each_run_is_held_against_one_original(tmp_path):
+    found = said(dataset(tmp_path, a=A, b=A, c=later(A, 1.0), d=rows(A, 100, 800), e=OTHER))
+    assert [run for _, run, _ in found] == ["b", "c", "d"]
+    assert all("of run a" in sentence for *_, sentence in found)
+
+
+def test_runs_that_nothing_can_be_told_of_are_said_to_be(tmp_path):
+    backwards = OTHER | {
+        "time_s": np.where(np.arange(N) > 500, OTHER["time_s"] - 1.0, OTHER["time_s"])
+    }
+    report = tsas.check(dataset(tmp_path, a=A, b=rows(OTHER, 0, 10), c=backwards)).not_checked
+    told = {(one.run, one.reason) for one in report if one.code == "copies"}
+    assert told == {("b", "too few rows change"), ("c", "time does not increase")}
+
+
+def test_a_run_that_cannot_be_read_hides_no_copy(tmp_path):
+    data = dataset(tmp_path, a=A, b=OTHER, c=later(A, 1.0))
+    (tmp_path / "runs" / "runs" / "b.parquet").write_bytes(b"nothing")
+    assert [run for _, run, _ in said(data)] == ["c"]
+
+
+SENSORS = {
+    "fine": {},
+    "stepped": {"step_mm": 0.01, "step_N": 0.1},
+    "coarse": {"step_mm": 0.1, "step_N": 1.0},
+    "noise hidden by the steps": {
+        "noise_mm": 1e-3,
+        "step_mm": 0.05,
+        "noise_N": 0.01,
+        "step_N": 0.5,
+    },
+    "commanded": {"noise_mm": 0.0, "step_N": 0.2},
+}
+
+
+@pytest.mark.parametrize("sensors", SENSORS)
+@pytest.mark.parametrize("shape", ["sine", "dwells", "nested", "triangle"])
+def test_true_repeats_are_never_accused(tmp_path, shape, sensors):
+    """Five runs of one command, begun at the same moment of the clock."""
+    runs = {f"r{k}": recorded(10 + k, shape=shape, **SENSORS[sensors]) for k in range(5)}
+    assert not said(dataset(tmp_path, **runs))
+    two = {name: {n: c[n] for n in ("time_s", "x_in_mm", "f_in_N")} for name, c in runs.items()}
+    assert not said(dataset(tmp_path / "two", **two))
+
+
+def test_ripple_that_every_repeat_shows_is_no_copy(tmp_path):
+    phase = np.arange(N) * 0.37 * 2.0 * np.pi
+    ripple = {"x_in_mm": 0.1, "x_out_mm": 0.1, "f_in_N": 1.0, "f_out_N": 1.0}
+    runs = {
+        f"r{k}": {n: v + ripple.get(n, 0.0) * np.sin(phase) for n, v in recorded(k).items()}
+        for k in range(4)
+    }
+    assert not said(dataset(tmp_path, **runs))
+
+
+def test_a_rest_is_no_evidence_of_a_copy(tmp_path):
+    """Before and after another motion each, both stand still where the encoder reads zero."""
+    still = {n: np.full(2000, 25.0 if n.endswith("N") else 0.0) for n in A}
+
+    def rested(run):
+        both = {n: np.concatenate((still[n], np.round(v, 1), still[n])) for n, v in run.items()}
+        return both | {"time_s": np.arange(both["time_s"].size) / 100.0}
+
+    assert not said(dataset(tmp_path, a=rested(A), b=rested(recorded(3, shape="triangle"))))
+
+
+def test_the_coarse_copy_is_found_all_the_same(tmp_path):
+    coarse = recorded(1, shape="dwells", **SENSORS["coarse"])
+    assert said(dataset(tmp_path, a=coarse, b=later(rows(coarse, 100, None), 0.5)))
+
+
+def test_runs_computed_without_noise_are_copies_where_they_agree(tmp_path):
+    quiet = {"noise_mm": 0.0, "noise_N": 0.0}
+    same = {"a": recorded(1, **quiet), "b": later(recorded(2, **quiet), 1.0)}
+    assert [run for _, run, _ in said(dataset(tmp_path, **same))] == ["b"]
+    # Under other conditions a model may compute the same: that contradicts nothing.
+    data = dataset(tmp_path / "other", {"b": {"total_bend_rad": 1.0}}, **same)
+    assert [severity for severity, *_ in said(data)] == ["warning"]
+    assert not said(
+        dataset(tmp_path / "two", a=same["a"], b=recorded(1, shape="triangle", **quiet))
+    )
+
+
+@pytest.mark.parametrize("name", ["paper-groups", "drive-chirp"])
+def test_the_shipped_datasets_hold_no_copies(name):
+    assert not said(f"datasets/{name}")

@@ -1,0 +1,109 @@
+"""A copy: which run holds which stretch of which other run, in what form."""
+
+from dataclasses import dataclass
+
+from tsas_cli.recordings.dataset import CONDITIONS
+from tsas_cli.recordings.manifest import Run
+
+WHOLE = 0.98  # of a run's samples: what is left of it is its edges
+ORDINALS = {1: "st", 2: "nd", 3: "rd"}
+
+
+@dataclass(frozen=True)
+class Span:
+    """Consecutive rows of a run, the last one excluded, and its times from first to last [s]."""
+
+    first: int
+    end: int
+    begin_s: float
+    end_s: float
+
+    @property
+    def rows(self) -> int:
+        """How many rows there are."""
+        return self.end - self.first
+
+    @property
+    def lasts_s(self) -> float:
+        """How long it lasts [s]."""
+        return self.end_s - self.begin_s
+
+
+@dataclass(frozen=True)
+class Copy:
+    """A stretch of a run whose samples are those of another run.
+
+    Parameters
+    ----------
+    run, other
+        The run that holds the copy, and the one that it is a copy of.
+    span, all_of_run, all_of_other
+        The stretch, and the whole of both runs.
+    shift_s
+        How much later the samples are on the other run's clock.
+    every
+        1 where it holds each of the other's samples in turn, k where every k-th, 0 where they were
+        laid between them.
+    contradicts
+        The conditions that the manifest says differently of the two runs.
+    """
+
+    run: Run
+    other: Run
+    span: Span
+    all_of_run: Span
+    all_of_other: Span
+    shift_s: float = 0.0
+    every: int = 1
+    contradicts: tuple[str, ...] = ()
+
+    @property
+    def whole(self) -> bool:
+        """Whether all of the run is the copy."""
+        return self.span.rows >= WHOLE * self.all_of_run.rows
+
+    @property
+    def sentence(self) -> str:
+        """What the run holds, in words that follow its name."""
+        here = f"from {self.span.begin_s:.6g} s to {self.span.end_s:.6g} s"
+        there = (self.span.begin_s + self.shift_s, self.span.end_s + self.shift_s)
+        there_s = f"from {there[0]:.6g} s to {there[1]:.6g} s"
+        if not self.whole:
+            return f"holds, {here}, {self._samples} {there_s}"
+        if self.span.lasts_s < WHOLE * self.all_of_other.lasts_s:
+            return f"holds {self._samples} {there_s}"
+        shifted = abs(self.shift_s) * self.all_of_run.rows > self.all_of_run.lasts_s
+        by = f", its time shifted by {-self.shift_s:.6g} s" if shifted else ""
+        return f"holds {self._samples}{by}"
+
+    @property
+    def contradiction(self) -> str:
+        """What the manifest says differently, as the end of a sentence; empty where nothing."""
+        said = [
+            f"{name} = {_text(getattr(self.run, name))} here and "
+            f"{_text(getattr(self.other, name))} there"
+            for name in self.contradicts
+        ]
+        return f", but the manifest says {', '.join(said)}" if said else ""
+
+    @property
+    def _samples(self) -> str:
+        other = f"run {self.other.id}"
+        if self.every == 1:
+            return f"the samples of {other}"
+        if self.every > 1:
+            tens = self.every % 100 in (11, 12, 13)
+            ordinal = "th" if tens else ORDINALS.get(self.every % 10, "th")
+            return f"every {self.every}{ordinal} sample of {other}"
+        rate_Hz = (self.all_of_run.rows - 1) / self.all_of_run.lasts_s
+        return f"the samples of {other}, resampled at {rate_Hz:.5g} Hz"
+
+
+def _text(value: float | str) -> str:
+    return value if isinstance(value, str) else f"{value:.6g}"
+
+
+def contradictions(run: Run, other: Run) -> tuple[str, ...]:
+    """Return the conditions that two runs state differently."""
+    stated = [(name, getattr(run, name), getattr(other, name)) for name in (*CONDITIONS, "load")]
+    return tuple(name for name, a, b in stated if a is not None and b is not None and a != b)

@@ -1,0 +1,177 @@
+"""Where a short stretch of one run may lie in another, by the values of its samples alone.
+
+The straight pieces between a source's samples are sorted into bins by one channel. A sample that
+was copied, or laid between two samples, lies on one of the few pieces in its bin; that piece gives
+the shift of the clocks, at which the rest of the stretch has to lie on the source too.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from tsas_cli.recordings.quality.copies.agreement import (
+    BESIDE,
+    Floats,
+    Indices,
+    Mask,
+    Samples,
+    agreement,
+    aligned,
+)
+
+BINS = 4096
+BLOCK = 1 << 16  # pieces that are sorted at once
+ENTRIES = 3.0  # of a piece in the bins, on average at most
+TRIED = 2  # samples of a stretch that are looked up
+MOST_AT_ONCE = 1 << 18
+CROWDED = 256, 1 / 128  # pieces in a bin, and of all, beyond which nothing is looked up there
+CLOSEST = 4  # places of one stretch that are looked at
+NEARLY = 0.1  # of a sample, by which two places may differ to be one
+PARTS = (0.0, 0.1, 0.3)  # of what is loose, by which closeness is told
+LOOSE = 0.5  # of the noise: splines lie off straight lines by about a fifth of it
+MOST_LOOSE = 0.7  # of a stretch, that lies on the source loosely
+MOST_TIGHT = 0.85  # and tightly
+
+
+@dataclass(frozen=True)
+class Shift:
+    """How much later a stretch lies on a source's clock [s], and on which line through it."""
+
+    seconds: float
+    spline: bool
+
+
+class Lookup:
+    """A source's samples, ready for stretches of others to be looked up."""
+
+    def __init__(self, source: Samples, tolerance: Floats, noise: Floats, spans: Floats) -> None:
+        """Take the source, at least two samples, and tolerance, noise and span of each channel."""
+        self.source, self.tolerance = source, tolerance
+        self.loose = tolerance + LOOSE * noise
+        self.nearly_s = NEARLY * float(np.median(np.diff(source.time_s)))
+        self.channel = int(np.argmax(spans / self.loose))  # the one that tells samples apart best
+        whole: Mask = np.all(np.isfinite(source.values), axis=1)
+        pieces = np.flatnonzero(whole[1:] & whole[:-1])
+        values = source.values[:, self.channel]
+        ends = values[pieces], values[pieces + 1]
+        wide = self.loose[self.channel]
+        lower, upper = np.minimum(*ends) - wide, np.maximum(*ends) + wide
+        self.bins = [
+            _Bins(lower[block], upper[block], pieces[block])
+            for k in range(0, pieces.size, BLOCK)
+            for block in [slice(k, k + BLOCK)]
+        ]
+
+    def shifts(self, time_s: Floats, values: Floats) -> Iterator[tuple[int, Shift]]:
+        """Yield the number of each stretch that lies on the source, and where.
+
+        The times of the stretches have the shape (h, k), the values (h, k, d).
+        """
+        for number, seconds in self._places(time_s, values):
+            shift = self._tight(Samples(time_s[number], values[number]), seconds)
+            if shift is not None:
+                yield number, shift
+
+    def _places(self, time_s: Floats, values: Floats) -> list[tuple[int, float]]:
+        """Return the shifts at which most of a stretch lies loosely on the source, a few of each.
+
+        They are those at which it lies closest.
+        """
+        found: list[tuple[float, int, float]] = []
+        for bins in self.bins:
+            for stretch, row, piece in bins.looked_up(values[:, :, self.channel]):
+                met, at_s = self._on_piece(values[stretch, row], piece)
+                shift_s = at_s[met] - time_s[stretch[met], row[met]]
+                found += self._followed(time_s, values, stretch[met], shift_s)
+        chosen: dict[int, list[float]] = {}
+        for _, number, seconds in sorted(found, reverse=True):
+            known = chosen.setdefault(number, [])
+            if len(known) < CLOSEST and all(abs(seconds - s) > self.nearly_s for s in known):
+                known.append(seconds)
+        return [(number, seconds) for number, known in chosen.items() for seconds in known]
+
+    def _on_piece(self, values: Floats, piece: Indices) -> tuple[Mask, Floats]:
+        """Return which samples lie loosely on their pieces, and when on the source's clock."""
+        source = self.source
+        before = source.values[piece]
+        step = (source.values[piece + 1] - before) / self.loose
+        off = (values - before) / self.loose
+        length = np.sum(step**2, axis=1)
+        share = np.divide(
+            np.sum(step * off, axis=1), length, out=np.zeros(piece.size), where=length > 0.0
+        )
+        share = np.clip(share, 0.0, 1.0)
+        met = (np.abs(off - share[:, None] * step) <= 1.0).all(axis=1)
+        start_s = source.time_s[piece]
+        return met, start_s + share * (source.time_s[piece + 1] - start_s)
+
+    def _followed(
+        self, time_s: Floats, values: Floats, stretch: Indices, shift_s: Floats
+    ) -> list[tuple[float, int, float]]:
+        """Return closeness, number and shift of each stretch that lies loosely on the source."""
+        for step in (4, 1):
+            at_s = time_s[stretch, ::step] + shift_s[:, None]
+            lie = self._share(at_s, values[stretch, ::step], self.loose)
+            stretch, shift_s = stretch[lie >= MOST_LOOSE], shift_s[lie >= MOST_LOOSE]
+        at_s, there = time_s[stretch] + shift_s[:, None], values[stretch]
+        tolerances = [self.tolerance + part * self.loose for part in PARTS]
+        close = np.sum([self._share(at_s, there, each) for each in tolerances], axis=0)
+        return list(zip(close.tolist(), stretch.tolist(), shift_s.tolist(), strict=True))
+
+    def _share(self, at_s: Floats, values: Floats, tolerance: Floats) -> Floats:
+        """Return how much of stretches, (m, k, d) at (m, k), lies on the source, shape (m,)."""
+        samples = Samples(at_s.ravel(), values.reshape(-1, values.shape[2]))
+        agrees = agreement(self.source, samples, tolerance).agrees.reshape(at_s.shape)
+        return np.asarray(agrees.mean(axis=1))
+
+    def _tight(self, stretch: Samples, seconds: float) -> Shift | None:
+        """Return the shift at which a stretch lies on the source tightly, on either line."""
+        moved = stretch.moved(seconds)
+        first, last = np.searchsorted(self.source.time_s, moved.time_s[[0, -1]]).tolist()
+        near = self.source.part(slice(max(first - BESIDE, 0), last + BESIDE))
+        for spline in (False, True):
+            by_s = aligned(near, moved, self.tolerance, spline=spline)
+            found = agreement(near, moved.moved(by_s), self.tolerance, spline=spline)
+            if found.agrees.mean() >= MOST_TIGHT:
+                return Shift(seconds + by_s, spline)
+        return None
+
+
+class _Bins:
+    """Pieces of a line sorted by the values of one channel that each one covers."""
+
+    def __init__(self, lower: Floats, upper: Floats, pieces: Indices) -> None:
+        self.origin = float(lower.min())
+        span = float(upper.max()) - self.origin
+        self.width = max(span / BINS, float(np.sum(upper - lower)) / (ENTRIES * pieces.size))
+        first = ((lower - self.origin) / self.width).astype(np.int64)
+        counts = ((upper - self.origin) / self.width).astype(np.int64) - first + 1
+        starts = np.cumsum(counts) - counts
+        bins = np.arange(int(counts.sum())) + np.repeat(first - starts, counts)
+        order = np.argsort(bins, kind="stable")
+        self.pieces = np.repeat(pieces, counts)[order]
+        self.edges = np.searchsorted(bins[order], np.arange(BINS + 3))
+
+    def looked_up(self, values: Floats) -> Iterator[tuple[Indices, Indices, Indices]]:
+        """Yield number of stretch, number of sample in it, and piece on which that may lie.
+
+        The values of stretches, (h, k), are looked up where the fewest pieces are.
+        """
+        number = (values - self.origin) / self.width
+        inside = (number >= 0.0) & (number < BINS + 1)
+        bins = np.where(inside, number, BINS + 1).astype(np.int64)  # the last one is empty
+        crowd = self.edges[bins + 1] - self.edges[bins]
+        row = np.argsort(crowd, axis=1, kind="stable")[:, :TRIED].ravel()
+        stretch = np.repeat(np.arange(len(values)), TRIED)
+        counts, first = crowd[stretch, row], self.edges[bins[stretch, row]]
+        counts = np.where(counts <= max(CROWDED[0], CROWDED[1] * self.pieces.size), counts, 0)
+        batch = np.cumsum(counts) // MOST_AT_ONCE
+        for k in np.unique(batch[counts > 0]).tolist():
+            here = np.flatnonzero((batch == k) & (counts > 0))
+            each = counts[here]
+            inner = np.arange(int(each.sum())) + np.repeat(
+                first[here] - np.cumsum(each) + each, each
+            )
+            chosen = np.repeat(here, each)
+            yield stretch[chosen], row[chosen], self.pieces[inner]

@@ -1,0 +1,249 @@
+"""Which runs of a dataset hold samples of others.
+
+Short stretches of every run are looked up in every other run, piece by piece; where one is found
+the two runs are held against each other, sample by sample. A run that lies in another as a whole
+is looked at no further, so that many copies of one run cost little.
+"""
+
+import math
+from collections import Counter
+from collections.abc import Iterator, Sequence, Set
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tsas_cli.recordings.columns import TIME
+from tsas_cli.recordings.dataset import Dataset
+from tsas_cli.recordings.manifest import Run
+from tsas_cli.recordings.quality.copies.agreement import Floats, Indices, Samples, agreement
+from tsas_cli.recordings.quality.copies.aligned import side_by_side
+from tsas_cli.recordings.quality.copies.copy import Copy, Span, contradictions
+from tsas_cli.recordings.quality.copies.fingerprint import Fineness, Fingerprint
+from tsas_cli.recordings.quality.copies.lookup import Lookup, Shift
+from tsas_cli.recordings.quality.copies.reader import Reader
+from tsas_cli.recordings.quality.copies.stretches import joined, stretches
+
+TOGETHER = 0.1  # of a sample, by which shifts may differ to be one
+PLACES = 8  # of a run on another that are looked at
+
+
+@dataclass(frozen=True)
+class Found:
+    """The copies in a dataset, in the order of its runs, and the runs of which nothing is known.
+
+    Time does not increase in those that are `unordered`; in those that are `short` hardly anything
+    changes.
+    """
+
+    copies: tuple[Copy, ...] = ()
+    unordered: tuple[str, ...] = ()
+    short: tuple[str, ...] = ()
+
+
+def find_copies(dataset: Dataset, *, strict: bool = True) -> Found:
+    """Look for runs that hold samples of others.
+
+    With `strict=False` runs that cannot be read are left out, and time may run backwards.
+
+    Raises
+    ------
+    InputError
+        A run cannot be read.
+    """
+    if len(dataset.runs) < 2:
+        return Found()
+    with np.errstate(all="ignore"):  # a stray 1e300 is judged like any other number
+        return _found(dataset, strict=strict)
+
+
+def _found(dataset: Dataset, *, strict: bool) -> Found:
+    reader = Reader(dataset, strict=strict)
+    first: dict[str, Fingerprint] = {}
+    copies: list[Copy] = []
+    for run in dataset.runs:
+        digest = run.sha256.lower()
+        if digest in first:
+            copies.append(_same_file(run, first[digest]))
+            continue
+        told = reader.fingerprint(run)
+        if told is not None:
+            first[digest] = told
+    known = list(first.values())
+    order = {run.id: k for k, run in enumerate(dataset.runs)}
+    copies += _search(reader, [f for f in known if f.increases], order)
+    if dataset.manifest.kind == "simulated":  # without noise, one sample may belong to many rigs
+        noisy = {f.run.id for f in known if any(c.noisy for c in f.channels.values())}
+        copies = [c if c.other.id in noisy else replace(c, contradicts=()) for c in copies]
+    return Found(
+        tuple(sorted(copies, key=lambda c: (order[c.run.id], c.span.first))),
+        tuple(f.run.id for f in known if not f.increases),
+        tuple(f.run.id for f in known if f.increases and not f.stretches.size),
+    )
+
+
+def _same_file(run: Run, other: Fingerprint) -> Copy:
+    return Copy(
+        run, other.run, other.all, other.all, other.all, 0.0, 1, contradictions(run, other.run)
+    )
+
+
+def _search(reader: Reader, known: Sequence[Fingerprint], order: dict[str, int]) -> list[Copy]:
+    """Return the copies among runs that differ in their files."""
+    groups = _groups(known)
+    whole: dict[str, Copy] = {}
+    parts: list[Copy] = []
+    # What lies in another run is the copy, whichever comes first.
+    for source in sorted(known, key=lambda f: (f.laid_between, -f.all.rows)):
+        if source.run.id in whole:
+            continue
+        for copy in _in_source(reader, source, groups, whole.keys() | {source.run.id}):
+            if copy.whole:
+                whole[copy.run.id] = copy
+            else:
+                parts.append(copy)
+    kept = [c for c in parts if not {c.run.id, c.other.id} & whole.keys()]
+    return [*whole.values(), *_once(kept, order)]
+
+
+def _once(parts: Sequence[Copy], order: dict[str, int]) -> list[Copy]:
+    """Return each of two runs' common stretches once: as the later run's, if it is both's."""
+
+    def earlier(copy: Copy) -> bool:
+        return order[copy.run.id] < order[copy.other.id]
+
+    later = [copy for copy in parts if not earlier(copy)]
+    pairs = {(copy.run.id, copy.other.id) for copy in later}
+    return later + [c for c in parts if earlier(c) and (c.other.id, c.run.id) not in pairs]
+
+
+def _in_source(
+    reader: Reader, source: Fingerprint, groups: Sequence["_Group"], but: Set[str]
+) -> Iterator[Copy]:
+    """Yield the copies of a source that runs hold, but for some of them."""
+    places: dict[str, Counter[Shift]] = {}
+    others: dict[str, Fingerprint] = {}
+    for other, shift in _places(reader, source, groups, but):
+        others[other.run.id] = other
+        seen = places.setdefault(other.run.id, Counter())
+        seen[_as_before(seen, shift, TOGETHER * source.interval_s)] += 1
+    for run, seen in places.items():
+        taken: list[Span] = []
+        for shift, _ in seen.most_common(PLACES):
+            for copy in _held_against(reader, source, others[run], shift):
+                if not any(_overlap(copy.span, span) for span in taken):
+                    taken.append(copy.span)
+                    yield copy
+            if sum(span.rows for span in taken) == others[run].all.rows:
+                break
+
+
+def _overlap(a: Span, b: Span) -> bool:
+    return a.first < b.end and b.first < a.end
+
+
+def _as_before(seen: Counter[Shift], shift: Shift, nearly_s: float) -> Shift:
+    for other in seen:
+        if abs(other.seconds - shift.seconds) < nearly_s and other.spline == shift.spline:
+            return other
+    return shift
+
+
+@dataclass(frozen=True, eq=False)
+class _Group:
+    """Runs with the same channels in about the same steps, and all their stretches."""
+
+    members: Sequence[Fingerprint]
+    steps: dict[str, float]  # the coarsest ones
+    owner: Indices  # of each stretch, the number of its run
+    stretches_s: Floats
+    stretches: Floats
+
+
+def _groups(known: Sequence[Fingerprint]) -> list[_Group]:
+    """Return the runs in groups; those that nothing is looked up of are in none."""
+    alike: dict[tuple[object, ...], list[Fingerprint]] = {}
+    for one in known:
+        if one.stretches.size:
+            key = [(name, math.frexp(c.step)[1]) for name, c in one.channels.items()]
+            alike.setdefault((*key, one.dense), []).append(one)
+    return [
+        _Group(
+            members,
+            {n: max(m.channels[n].step for m in members) for n in members[0].channels},
+            np.repeat(np.arange(len(members)), [len(m.stretches) for m in members]),
+            np.concatenate([m.stretches_s for m in members]),
+            np.concatenate([m.stretches for m in members]),
+        )
+        for members in alike.values()
+    ]
+
+
+def _places(
+    reader: Reader, source: Fingerprint, groups: Sequence[_Group], but: Set[str]
+) -> Iterator[tuple[Fingerprint, Shift]]:
+    """Yield where stretches of runs lie in a source."""
+    comparable = []
+    for group in groups:
+        one = group.members[0]
+        names = [n for n in one.dense if n in source.dense and n in source.channels]
+        if names and one.evidence <= source.channels.keys():
+            comparable.append((group, one, names))
+    for piece in reader.parts(source.run) if comparable else ():
+        for group, one, names in comparable:
+            asked = np.array([m.run.id not in but for m in group.members])[group.owner]
+            if not asked.any():
+                continue
+            values = np.column_stack([piece.columns[name] for name in names])
+            fine = [source.channels[name] for name in names]
+            lookup = Lookup(
+                Samples(piece.columns[TIME], values),
+                np.array([source.channels[n].tolerance(group.steps[n]) for n in names]),
+                np.array([channel.noise for channel in fine]),
+                np.array([channel.span for channel in fine]),
+            )
+            columns = [one.dense.index(name) for name in names]
+            owner = group.owner[asked]
+            for number, shift in lookup.shifts(
+                group.stretches_s[asked], group.stretches[asked][:, :, columns]
+            ):
+                yield group.members[owner[number]], shift
+
+
+def _held_against(
+    reader: Reader, source: Fingerprint, other: Fingerprint, shift: Shift
+) -> Iterator[Copy]:
+    """Yield the stretches of another run that are a source's samples, so much later."""
+    names = [name for name in other.channels if name in source.channels]
+    fine = [source.channels[name] for name in names]
+    tolerance = np.array(
+        [one.tolerance(other.channels[n].step) for n, one in zip(names, fine, strict=True)]
+    )
+    news = _news(fine, tolerance)
+    both = side_by_side(reader.parts(other.run), reader.parts(source.run), names, shift.seconds)
+    found = (
+        stretches(
+            part.row,
+            part.samples.moved(-shift.seconds),
+            agreement(part.source, part.samples, tolerance, spline=shift.spline),
+            news,
+        )
+        for part in both
+    )
+    against = contradictions(other.run, source.run)
+    for span, every in joined(stretch for part in found for stretch in part):
+        yield Copy(
+            other.run, source.run, span, other.all, source.all, shift.seconds, every, against
+        )
+
+
+def _news(channels: Sequence[Fineness], tolerance: Floats) -> Floats:
+    """Return how unlikely it is that a repeat meets a sample of each channel [nats].
+
+    Where some channels have noise the others tell nothing: they may be commanded, and the same in
+    every repeat. So do computed channels beside coarse ones.
+    """
+    noisy = np.array([channel.noisy for channel in channels])
+    coarse = np.array([channel.step > 0.0 for channel in channels])
+    telling = noisy if noisy.any() else coarse if coarse.any() else ~noisy
+    told = [channel.news(off) for channel, off in zip(channels, tolerance.tolist(), strict=True)]
+    return np.where(telling, told, 0.0)
