@@ -34,7 +34,7 @@ def _none_if_not_finite(value: Any) -> Any:
 
 
 Number = Annotated[float | None, BeforeValidator(_none_if_not_finite)]
-NotNegative = Annotated[Number, Field(ge=0)]
+NotNegative = Annotated[Annotated[float, Field(ge=0)] | None, BeforeValidator(_none_if_not_finite)]
 
 
 class Record(BaseModel):

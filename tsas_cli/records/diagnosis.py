@@ -147,6 +147,8 @@ class Diagnosis(OfDataset, Findings):
     stage: Literal["diagnose"] = "diagnose"
     model: ModelFile = ModelFile(file="data sheet")
     reason: str
+    named: tuple[Cause, ...] = ()
+    remainder: Remainder = Remainder(unexplained=False)
     candidates: tuple[Candidate, ...] = ()
     signatures: Signatures = Signatures()
     residual_map: ResidualMaps = ResidualMaps()
