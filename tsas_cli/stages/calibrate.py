@@ -165,13 +165,13 @@ def _summary(result: Calibration, manifest: Manifest) -> dict[str, Any]:
             "converged": result.fitted is not None and result.fitted.converged,
             "message": "nothing to fit" if result.fitted is None else result.fitted.message,
             "evaluations": 0 if result.fitted is None else result.fitted.evaluations,
-            "solver": sorted({a.response.solver for a in result.answers}),
+            "solver": sorted({a.response.solver for a in result.predictions}),
         },
         "channels": {
             run.run.id: {
                 name: {"rmse": rmse, "noise": run.noise[name]} for name, rmse in a.rmse.items()
             }
-            for run, a in zip(result.runs, result.answers, strict=True)
+            for run, a in zip(result.runs, result.predictions, strict=True)
         },
     }
 

@@ -147,7 +147,7 @@ def simulate(
                 run = prepare(data[entry.id], data.manifest.session_start)
                 own = with_own_values(taken, run) if fit_own else taken
                 answer = compare(run, own, dynamics, nodes)
-                told = answer.told()
+                told = answer.summary()
             used = _of_run(own, entry.id).over(used)
             summary["runs"][entry.id] = told.as_json(run)
             summary["segments"][entry.id] = segments_as_json(run, segment(run))
