@@ -66,7 +66,9 @@ def calibrated(monkeypatch):
         monkeypatch.setattr(c, "dynamic_fit", dynamic_fit)
         monkeypatch.setattr(c, "widened", widened)
         monkeypatch.setattr(c, "compare", compare)
-        monkeypatch.setattr(c, "_answered", lambda run, a, segments: (run.run.id, a.run, segments))
+        monkeypatch.setattr(
+            c, "_predicted_slopes", lambda run, a, segments: (run.run.id, a.run, segments)
+        )
         monkeypatch.setattr(c, "tension_transfer", lambda runs, segments: (runs, segments))
         monkeypatch.setattr(c, "with_preload_correction", lambda model, runs: model)
         monkeypatch.setattr(c, "thinned_notes", lambda runs: ["thinned"])
@@ -88,7 +90,7 @@ def test_a_model_that_is_right_is_told_as_it_was_fitted(calibrated):
     assert found.segments == SEGMENTS
     assert found.expected == [("a", "a", "segments a"), ("b", "b", "segments b")]
     assert found.transfer == (RUNS, SEGMENTS)
-    assert [(a.used, a.dynamics) for a in found.answers] == [(1.0, "slip")] * 2
+    assert [(a.used, a.dynamics) for a in found.predictions] == [(1.0, "slip")] * 2
     assert (found.model, found.fitted) == (model_of(1.0), "fitted")
     assert list(found.cannot_tell) == ["thinned", "untold"]
     assert set(log) == {"base"}
@@ -104,7 +106,7 @@ def test_a_model_that_is_wrong_is_widened(calibrated):
     found, log, _ = calibrated(missed=["missed"], effects=["backlash", "creep"])
     assert log["widened"] == [1.0]
     assert found.model == model_of(3.0)
-    assert [a.used for a in found.answers] == [1.0, 1.0]  # the answers are those of the fit
+    assert [a.used for a in found.predictions] == [1.0, 1.0]  # the answers are those of the fit
     assert found.cannot_tell[:2] == ["thinned", "missed"]
     assert found.cannot_tell[2].startswith("The intervals hold what backlash or creep would do")
     assert found.cannot_tell[3:] == ["untold"]
@@ -123,7 +125,7 @@ def test_the_dynamic_model_is_fitted_after_the_nominal_one(calibrated):
     found, log, _ = calibrated(dynamics="lugre", missed=["missed"], notes=("once", "other"))
     assert log["dynamic"] == (1.0, "fitted runs")
     assert (found.model, found.fitted) == (model_of(2.0), "dynamic")
-    assert [(a.used, a.dynamics) for a in found.answers] == [(2.0, "lugre")] * 2
+    assert [(a.used, a.dynamics) for a in found.predictions] == [(2.0, "lugre")] * 2
     assert found.cannot_tell == ["thinned", "dynamic untold", "once", "other"]
     assert "widened" not in log
     found, _, _ = calibrated(dynamics="lugre", dynamic_misfit=["misses"])
@@ -148,7 +150,7 @@ def test_expected_slopes_are_fitted_to_the_answer(monkeypatch):
     def answered(measured, conditioned):
         ends = {name: SimpleNamespace(values="x") for name in conditioned}
         run = SimpleNamespace(measured=measured, conditioned=ends)
-        return c._answered(run, answer, "segments")
+        return c._predicted_slopes(run, answer, "segments")
 
     assert answered(["f_in_N"], ["x_in_mm"]) == ("x", "simulated", "segments")
     assert answered(["f_out_N"], ["x_in_mm"]) == []

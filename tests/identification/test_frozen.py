@@ -10,7 +10,7 @@ from tsas_cli.drive.fit import DriveTrial
 from tsas_cli.drive.frequency_response import FrequencyResponse
 from tsas_cli.drive.runs import DriveRun
 from tsas_cli.identification.calibration import Calibration
-from tsas_cli.identification.comparison import Compared, Told
+from tsas_cli.identification.comparison import Compared, RunSummary
 from tsas_cli.identification.dynamic_fit import DynamicFit, Look, Solved
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.extension import Bench, Trial
@@ -46,7 +46,7 @@ FROZEN = (
         Quantity,
         Rows,
     ),
-    *(Screened, Segment, SimulationResult, Slope, Solution, Solved, Told, Trial, Unknown),
+    *(Screened, Segment, SimulationResult, Slope, Solution, Solved, RunSummary, Trial, Unknown),
     *(Bench, FitProblem, FittedModel, RunErrors, RunSimulation),
     *(Widened, _Line, _Stroke),
 )

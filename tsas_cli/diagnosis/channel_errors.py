@@ -56,7 +56,7 @@ def _held_out_rmse(search: Hypotheses, trial: Trial) -> dict[str, float]:
             rig = rig_at(bench.rigs[k], k, trial.unknowns, values)
             here = folds.fold[folds.run == k] == fold
             for name, errors in run.raw(rig).items():
-                kept = errors[run.spread(name, here)]
-                squares[name] = squares.get(name, 0.0) + float(kept @ kept)
-                counts[name] = counts.get(name, 0) + kept.size
+                held_out = errors[run.spread(name, here)]
+                squares[name] = squares.get(name, 0.0) + float(held_out @ held_out)
+                counts[name] = counts.get(name, 0) + held_out.size
     return {name: float(np.sqrt(squares[name] / counts[name])) for name in squares}

@@ -114,7 +114,7 @@ def diagnose_runs(
     manifest
         What the data sheet says.
     stated
-        The data sheet as a model, or a model to start from.
+        The data sheet as a model, or a model to begin with.
     runs
         The runs, prepared.
     """

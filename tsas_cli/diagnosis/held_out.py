@@ -73,7 +73,7 @@ def held_out_values(trial: Hypothesis, folds: Folds, fold: int) -> Floats:
     own = np.array([u.run is not None and u.run in runs for u in trial.unknowns])
     own &= folds.by_run
     shared = ~own
-    weak = np.array([u.scale for u in trial.unknowns]) ** -2.0  # what nobody tells stays
+    weak = np.array([u.scale for u in trial.unknowns]) ** -2.0  # what is not identifiable stays
     others = J[~left][:, shared]
     free = ~trial.solution.at_bound[shared]
     gram = others.T @ others + np.diag(weak[shared])

@@ -1,4 +1,4 @@
-"""Recordings of runs that nobody has made: what the nominal rig would answer, with noise."""
+"""Recordings of runs that nobody has made: what the nominal rig predicts, with noise."""
 
 from collections.abc import Callable, Sequence
 from datetime import datetime, timedelta
@@ -51,10 +51,10 @@ def made(
         conditions = planned.model_dump(include={"sheath_length_mm", "total_bend_rad", "preload_N"})
         file = f"runs/{planned.id}.parquet"
         run = Run(id=planned.id, file=file, sha256="0" * 64, started=started, **conditions)
-        answer = simulate(rig_of(run), Drive(x, time_s=t))
+        predicted = simulate(rig_of(run), Drive(x, time_s=t))
         columns = {"time_s": t, "x_in_mm": x + sensors.x_in_mm * rng.standard_normal(t.size)}
         for name, sd in sensors.outputs.items():
-            columns[name] = getattr(answer, name) + sd * rng.standard_normal(t.size)
+            columns[name] = getattr(predicted, name) + sd * rng.standard_normal(t.size)
         out.append(Recording(run, columns))
         started += timedelta(seconds=float(t[-1])) + APART
     return out

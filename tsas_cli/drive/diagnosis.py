@@ -123,8 +123,8 @@ def _cause(
     )
     whole = _gain_percent(search, fewer, final)
     kind = " and ".join(KIND[term] for term in sorted(own) if term in KIND)
-    told = tuple(estimates[name] for name in PARAMETERS[effect] if name in estimates)
-    return DriveCause(effect, kind, tuple(instead), told, whole[0], (whole[1], whole[2]))
+    parameters = tuple(estimates[name] for name in PARAMETERS[effect] if name in estimates)
+    return DriveCause(effect, kind, tuple(instead), parameters, whole[0], (whole[1], whole[2]))
 
 
 def _gain_percent(search: DriveSearch, before: Terms, after: Terms) -> tuple[float, float, float]:

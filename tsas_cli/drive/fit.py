@@ -34,13 +34,13 @@ Terms = frozenset[str]
 TOLERANCE = 1e-6  # of the squares, for the last step
 LOG_SCALE = 0.5  # plausible relative change of a positive number
 SMALL_MM = 0.01
-SETTLED = 3  # times that where a run began is told anew from the ripple that it tells
-FOLLOWED = 3  # of the starts, the best ones
-WEIGHT = 0.05  # relative error of one point of the measured response, for start values
+SETTLED = 3  # times that the position where a run began is found again, with its ripple
+FOLLOWED = 3  # of the initial values, the best ones
+WEIGHT = 0.05  # relative error of one point of the measured response, for initial values
 
 
-def _positive(name: str, unit: str, start: float, lower: float, upper: float) -> Quantity:
-    return Quantity(name, unit, lower, upper, start, positive=True)
+def _positive(name: str, unit: str, initial: float, lower: float, upper: float) -> Quantity:
+    return Quantity(name, unit, lower, upper, initial, positive=True)
 
 
 RIPPLE, PLAY = DRIVE_RIPPLE.parameters, BACKLASH.parameters[0]
@@ -94,9 +94,9 @@ class DriveBench:
         return _initial_gain(self.runs)
 
     def fit(self, terms: Iterable[str], simpler: Iterable[DriveTrial] = ()) -> DriveTrial:
-        """Fit a set of terms from several starts and return the best fit.
+        """Fit a set of terms from several initial values and return the best fit.
 
-        It starts from the measured response, and from what was found for simpler sets with what
+        It begins with the measured response, and with what was found for simpler sets with what
         they lack at nothing and at a little, so that it cannot fit worse than they do.
         """
         terms = frozenset(terms)
@@ -112,7 +112,7 @@ class DriveBench:
                     for size in (0.0, 0.1, 1.0)
                 ]
         ranked = sorted(((self._mean_square(s), k) for k, s in enumerate(starts)))[:FOLLOWED]
-        # Far from the noise a rougher fit tells as much.
+        # Far from the noise a rougher fit shows as much.
         tolerance = TOLERANCE * min(max(ranked[0][0], 1.0), ROUGHER)
         found = [self._solved(quantities, starts[k], terms, tolerance) for _, k in ranked]
         return min(found, key=lambda trial: (not trial.solution.converged, trial.mean_square))
@@ -166,19 +166,19 @@ class DriveBench:
         return np.asarray(error - basis @ (basis.T @ error))
 
     def _from_response(self, terms: Terms) -> DriveValues:
-        """Return start values: the terms fitted to the measured frequency response."""
+        """Return initial values: the terms fitted to the measured frequency response."""
         linear = [t for t in TERMS if t in terms and t not in ("ripple", "play")]
         quantities = quantities_of(linear)
         seen = self.seen
         jw = (2j * math.pi * seen.frequency_Hz[seen.excited]).astype(np.complex128)
-        told = seen.response[seen.excited]
-        guesses = [_guess(linear, jw, told, self.gain, part) for part in (1.0, 0.3)]
+        measured = seen.response[seen.excited]
+        guesses = [_guess(linear, jw, measured, self.gain, part) for part in (1.0, 0.3)]
         if jw.size <= 2 * len(quantities):
             return guesses[0]
 
         def residuals(_: int, scaled: Floats) -> Floats:
             values = self._values(quantities, scaled, frozenset(linear))
-            off = (response_at(values, jw) / told - 1.0) / WEIGHT
+            off = (response_at(values, jw) / measured - 1.0) / WEIGHT
             off /= 1.0 + 0.1 * np.abs(off)  # a few wrong points must not decide
             return np.concatenate((off.real, off.imag))
 
@@ -224,7 +224,7 @@ def _initial_gain(runs: Sequence[DriveRun]) -> float:
 def _guess(
     terms: Sequence[str],
     jw: npt.NDArray[np.complex128],
-    told: npt.NDArray[np.complex128],
+    measured: npt.NDArray[np.complex128],
     gain: float,
     part: float,
 ) -> DriveValues:
@@ -232,7 +232,7 @@ def _guess(
     out = replace_defaults(terms, gain)
     if jw.size < 3:
         return out
-    normal = told * jw / gain
+    normal = measured * jw / gain
     w = jw.imag
     late = max(float(-np.median(np.angle(normal) / w)), 1e-4)
     share = part * late / max(len({"lag", "delay"} & set(terms)), 1)
@@ -252,6 +252,6 @@ def _guess(
 
 
 def replace_defaults(terms: Sequence[str], gain: float) -> DriveValues:
-    """Return the usual start of each term."""
+    """Return the usual initial value of each term."""
     known = {q.name: q.default for q in quantities_of(terms)}
     return DriveValues(**known)._replace(gain_mm_per_s_rpm=gain)

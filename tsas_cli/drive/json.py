@@ -59,10 +59,10 @@ def kinematics(sheet: DataSheet, fitted: dict[str, Estimate]) -> dict[str, Any]:
 def response(seen: FrequencyResponse, values: DriveValues) -> dict[str, Any]:
     """Return the frequency response, measured and fitted, on the same turn of the phase."""
     at = seen.frequency_Hz
-    told = seen.response
+    measured_response = seen.response
     curve = np.geomspace(at[0], at[-1], CURVE_POINTS)
     magnitude, phase = bode_curve(values, curve)
-    measured = np.degrees(np.unwrap(np.angle(told)))
+    measured = np.degrees(np.unwrap(np.angle(measured_response)))
     excited = np.flatnonzero(seen.excited)
     if excited.size:  # the same turn as the fitted curve
         k = int(excited[0])
@@ -72,7 +72,7 @@ def response(seen: FrequencyResponse, values: DriveValues) -> dict[str, Any]:
         "band_Hz": None if seen.band is None else list(seen.band),
         "measured": {
             "frequency_Hz": at,
-            "magnitude": np.abs(told),
+            "magnitude": np.abs(measured_response),
             "phase_deg": measured,
             "coherence": seen.coherence,
             "excited": seen.excited.tolist(),

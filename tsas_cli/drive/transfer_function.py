@@ -26,9 +26,9 @@ def transfer_function(values: DriveValues) -> Any:
 def bode_curve(values: DriveValues, frequency_Hz: Floats) -> tuple[Floats, Floats]:
     """Return magnitude [mm per rpm s] and phase [°] of G e^{−Ts}, shapes (m,)."""
     w = 2.0 * math.pi * frequency_Hz
-    answer = transfer_function(values).frequency_response(w)
-    phase = np.unwrap(np.atleast_1d(answer.phase.squeeze())) - w * values.delay_s
-    return np.atleast_1d(answer.magnitude.squeeze()), np.degrees(phase)
+    response = transfer_function(values).frequency_response(w)
+    phase = np.unwrap(np.atleast_1d(response.phase.squeeze())) - w * values.delay_s
+    return np.atleast_1d(response.magnitude.squeeze()), np.degrees(phase)
 
 
 def poles(values: DriveValues) -> Complex:

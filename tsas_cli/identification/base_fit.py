@@ -6,11 +6,11 @@ import numpy as np
 
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.fit_problem import FitProblem, prepare_fit
+from tsas_cli.identification.initial_values import read_off
 from tsas_cli.identification.joint_fit import solve_fit
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.phases import Segment, segment
 from tsas_cli.identification.prepared import Prepared
-from tsas_cli.identification.starts import read_off
 from tsas_cli.identification.stiffness import Slope, slopes
 from tsas_cli.physics.parameters import NOMINAL_BY_NAME
 

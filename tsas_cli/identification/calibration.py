@@ -35,7 +35,7 @@ class Calibration:
     runs: Sequence[Prepared]
     segments: Sequence[list[Segment]]
     slopes: Sequence[list[Slope]]
-    answers: Sequence[Compared]
+    predictions: Sequence[Compared]
     expected: Sequence[list[Slope]]
     transfer: Sequence[Estimate]
     cannot_tell: Sequence[str]
@@ -50,12 +50,12 @@ def calibrate_runs(
     dynamics: Dynamics = "slip",
     stated: Model | None = None,
 ) -> Calibration:
-    """Calibrate the nominal model; `step` follows each run's phases, each fit and each answer.
+    """Calibrate the nominal model; `step` follows each run's phases and each fit.
 
-    Where a run holds no f_in_N there are no slopes for it; where nothing can be told, the model is
-    that of the data sheet and `cannot_tell` says why. With the dynamic model (`lugre`) its bristles
-    and what friction does over speed are calibrated too. `stated` is the model to start from, whose
-    effects stay; the data sheet's without it.
+    Where a run holds no f_in_N there are no slopes for it; where nothing is identifiable, the
+    model is that of the data sheet and `cannot_tell` says why. With the dynamic model (`lugre`)
+    its bristles and what friction does over speed are calibrated too. `stated` is the model to
+    begin with, whose effects stay; the data sheet's without it.
     """
     stated = stated or data_sheet(manifest)
     step.ahead(len(runs) + 1)
@@ -71,12 +71,11 @@ def calibrate_runs(
     if dynamics == "lugre" and fitted is not None:
         dynamic = dynamic_fit(model, fit.problem.runs, step)
         model, fitted = dynamic.model, dynamic.fitted
-    answers = [compare(run, model, dynamics) for run in runs]
-    expected = [_answered(*each) for each in zip(runs, answers, segments, strict=True)]
+    predictions = [compare(run, model, dynamics) for run in runs]
+    expected = [_predicted_slopes(*each) for each in zip(runs, predictions, segments, strict=True)]
     if dynamic is not None:
-        missed, sentences = dynamic.misfit, [*dynamic.cannot_tell, *_notes(answers)]
-        if missed:
-            missed.append(LACKING)
+        missed = [*dynamic.misfit, LACKING] if dynamic.misfit else []
+        sentences = [*dynamic.cannot_tell, *_notes(predictions)]
     else:
         missed = misfit(fit)
         if missed and fitted is not None:
@@ -89,7 +88,7 @@ def calibrate_runs(
         runs,
         segments,
         measured,
-        answers,
+        predictions,
         expected,
         tension_transfer(runs, segments),
         cannot,
@@ -97,9 +96,9 @@ def calibrate_runs(
     )
 
 
-def _notes(answers: Sequence[Compared]) -> list[str]:
-    """Return what the dynamic model says of its answers, each once."""
-    return list(dict.fromkeys(note for answer in answers for note in answer.notes))
+def _notes(predictions: Sequence[Compared]) -> list[str]:
+    """Return what the dynamic model says of its predictions, each once."""
+    return list(dict.fromkeys(note for predicted in predictions for note in predicted.notes))
 
 
 def _widened_by(effects: Sequence[str]) -> list[str]:
@@ -114,11 +113,11 @@ def _widened_by(effects: Sequence[str]) -> list[str]:
     ]
 
 
-def _answered(run: Prepared, answer: Compared, segments: list[Segment]) -> list[Slope]:
-    """Return the stiffness that the same linear fit gives on the model's answer."""
+def _predicted_slopes(run: Prepared, predicted: Compared, segments: list[Segment]) -> list[Slope]:
+    """Return the stiffness that the same linear fit gives on the model's prediction."""
     if "f_in_N" not in run.measured or "x_in_mm" not in run.conditioned:
         return []
-    return slopes(run.conditioned["x_in_mm"].values, answer.response.f_in_N, segments)
+    return slopes(run.conditioned["x_in_mm"].values, predicted.response.f_in_N, segments)
 
 
 def _unknown_conditions(runs: Sequence[Prepared]) -> list[str]:

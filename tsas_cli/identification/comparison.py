@@ -1,4 +1,4 @@
-"""A model's answer to one run, and how far it is from what was measured."""
+"""A model's prediction of one run, and how far it is from what was measured."""
 
 from collections.abc import Mapping, Set
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ Floats = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Compared:
-    """One run simulated; `channels` holds the answers, shape (n,), NaN in gaps of the drive."""
+    """One run simulated; `channels` holds the predictions, shape (n,), NaN in gaps of the drive."""
 
     response: Response
     channels: dict[str, Floats]
@@ -29,10 +29,10 @@ class Compared:
     samples: dict[str, int]
     notes: tuple[str, ...] = ()
 
-    def told(self) -> "Told":
-        """Return what is told of the answer."""
+    def summary(self) -> "RunSummary":
+        """Return what is written of the prediction."""
         phase = self.response.phase
-        return Told(
+        return RunSummary(
             self.response.solver,
             int(phase.size),
             int(np.count_nonzero(phase == SLACK)),
@@ -44,8 +44,8 @@ class Compared:
 
 
 @dataclass(frozen=True)
-class Told:
-    """What is told of an answer: the solver, how many samples, and how far it is from what was."""
+class RunSummary:
+    """One run simulated, in numbers: the solver, how many samples, and how far it is off."""
 
     solver: str
     rows: int
@@ -81,7 +81,7 @@ class Told:
 def compare(
     run: Prepared, model: Model, dynamics: Dynamics = "slip", nodes: int | None = None
 ) -> Compared:
-    """Simulate a run with a model and hold the answer against the measurement.
+    """Simulate a run with a model and compare it with the measurement.
 
     `nodes` asks for a chain with as many of them.
 
@@ -131,14 +131,14 @@ def refuse_static(run: Run, drive_column: str, dynamics: Dynamics) -> None:
 def channels_of(
     response: Response, driven: Set[str], in_gap: npt.NDArray[np.bool_]
 ) -> dict[str, Floats]:
-    """Return the channels that a model answers, NaN in gaps of the drive."""
-    answers = {
+    """Return the channels that a model predicts, NaN in gaps of the drive."""
+    predicted = {
         "f_in_N": response.f_in_N,
         "f_out_N": response.f_out_N,
         "x_out_mm": response.x_out_mm,
     }
     return {
         name: np.where(in_gap, np.nan, values)
-        for name, values in answers.items()
+        for name, values in predicted.items()
         if name not in driven
     }

@@ -52,8 +52,8 @@ class DynamicFit:
 
     model: Model
     fitted: Fitted | None
-    cannot_tell: list[str]
-    misfit: list[str]
+    cannot_tell: tuple[str, ...] = ()
+    misfit: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -84,7 +84,7 @@ def dynamic_fit(nominal: Model, runs: Sequence[Prepared], step: Steps = SILENT) 
     first = {STIFFNESS: stiffness, VISCOUS: QUANTITIES[VISCOUS].size}
     solved = _solved(_model_of(first).over(nominal), nominal, runs, list(first), step)
     if solved is None:
-        return DynamicFit(nominal, None, [], [])
+        return DynamicFit(nominal, None)
     solved = _from_better_stiffness(solved, step) or _at_stiffness(solved, step) or solved
     at_rest = _friction_at_rest(solved.fit, step)
     with_rest = _freed(solved, at_rest, step)
@@ -108,7 +108,8 @@ def dynamic_fit(nominal: Model, runs: Sequence[Prepared], step: Steps = SILENT) 
             said.append(_alike(name, like))
     fit = solved.fit
     estimates = estimates_of(fit.free, fitted, fit.problem.ids)
-    return DynamicFit(Model(tuple(estimates)).over(fit.model), fitted, said, misfit(fit))
+    model = Model(tuple(estimates)).over(fit.model)
+    return DynamicFit(model, fitted, tuple(said), tuple(misfit(fit)))
 
 
 def _solved(

@@ -22,7 +22,7 @@ HIGH_DAMPING = 3.0  # times critical, from which on the bristles are what makes 
 
 
 def dynamic_notes(run: Prepared, model: Model, response: Response) -> Iterator[str]:
-    """Say what of the dynamic model's answer to a run is not to be trusted, and why."""
+    """Say what of the dynamic model's prediction of a run is not to be trusted, and why."""
     rig = model.rig(run.run)
     if model.value("bristles.stiffness_N_per_mm") is None:
         yield (

@@ -1,4 +1,4 @@
-"""Bounded least squares over several runs, with a look at what can be told before the fit.
+"""Bounded least squares over several runs, with a look at what is identifiable before the fit.
 
 The unknowns are scaled (logarithms of positive parameters); each run gives a vector of residuals
 in units of its noise. A parameter of one run touches that run's residuals only, and its column of
@@ -95,13 +95,13 @@ def jacobian(
 
 
 def identifiable(unknowns: Sequence[Unknown], J: Floats) -> tuple[list[int], dict[int, list[int]]]:
-    """Choose, in the given order, the unknowns that the data can tell from those before.
+    """Choose, in the given order, the unknowns that the data can separate from those before.
 
     Returns
     -------
     chosen, confounded
         Indices of the identifiable unknowns; for each other one the indices of those that it
-        cannot be told from, strongest first, empty where the data do not show it at all.
+        is not identifiable beside, strongest first, empty where the data do not show it at all.
     """
     scaled: Floats = np.asarray(np.linalg.qr(J * np.array([u.scale for u in unknowns]), mode="r"))
     chosen: list[int] = []
@@ -115,10 +115,10 @@ def identifiable(unknowns: Sequence[Unknown], J: Floats) -> tuple[list[int], dic
         if new * KNOWN > COLOUR and new > INDEPENDENT * float(np.linalg.norm(column)):
             chosen.append(j)
         else:
-            told = np.linalg.norm(scaled[:, chosen] * weights, axis=0)
+            imitated = np.linalg.norm(scaled[:, chosen] * weights, axis=0)
             visible = float(np.linalg.norm(column)) * KNOWN > COLOUR
-            order = np.argsort(-told) if visible else np.zeros(0, dtype=np.int64)
-            confounded[j] = [chosen[k] for k in order if told[k] > 0.1 * told.max()]
+            order = np.argsort(-imitated) if visible else np.zeros(0, dtype=np.int64)
+            confounded[j] = [chosen[k] for k in order if imitated[k] > 0.1 * imitated.max()]
     return chosen, confounded
 
 
@@ -144,9 +144,9 @@ def solve(
 
     lower = np.array([u.lower for u in unknowns])
     upper = np.array([u.upper for u in unknowns])
-    start = np.array([u.initial for u in unknowns])
+    initial = np.array([u.initial for u in unknowns])
     found = least_squares(
-        errors, slopes, start, (lower, upper), tolerance=tolerance, most=MOST_EVALUATIONS
+        errors, slopes, initial, (lower, upper), tolerance=tolerance, most=MOST_EVALUATIONS
     )
     near = NEARLY_BOUND * (upper - lower)
     at_bound = (found.values - lower < near) | (upper - found.values < near)

@@ -2,7 +2,7 @@
 
 A model of friction depends on the path alone. So a fit loses no physics when it sees every 64th
 sample and those where the drive turns back: the drive is cleaned with all its samples before, and
-noise is told from all of them.
+the noise level is that of all of them.
 """
 
 import math
@@ -43,7 +43,7 @@ BESIDE = 1 / 16  # of a piece, the rows at its ends that only help to clean the 
 
 @dataclass(frozen=True)
 class Rows:
-    """Consecutive rows of a run, ready to drive a model and to be compared with its answers."""
+    """Consecutive rows of a run, ready to drive a model and to be compared with its predictions."""
 
     start: int
     time_s: Floats

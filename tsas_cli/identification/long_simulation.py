@@ -1,16 +1,16 @@
-"""Simulate a run that is too long for memory, and write the answer row group by row group."""
+"""Simulate a run that is too long for memory, and write the prediction row group by row group."""
 
 import math
 from collections import deque
-from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 import pyarrow as pa
 
-from tsas_cli.identification.comparison import Told, channels_of, refuse_static
+from tsas_cli.identification.comparison import RunSummary, channels_of, refuse_static
 from tsas_cli.identification.long_runs import LongRun, Rows
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.prepared import CHANNELS, LOAD_COLUMNS, Prepared, drive_of
@@ -25,42 +25,24 @@ from tsas_cli.support.errors import InputError
 Floats = npt.NDArray[np.float64]
 
 
-@dataclass
-class _Sums:
-    """What is counted of the answers, row by row."""
+@dataclass(frozen=True)
+class _Counted:
+    """What is counted of the prediction of some rows."""
 
-    rows: int = 0
-    slack: int = 0
-    unsettled: int = 0
-    squares: dict[str, float] = field(default_factory=dict)
-    samples: dict[str, int] = field(default_factory=dict)
-
-    def add(self, response: Response, channels: dict[str, Floats], rows: Rows) -> None:
-        """Count some rows."""
-        self.rows += rows.time_s.size
-        self.slack += int(np.count_nonzero(response.phase == SLACK))
-        self.unsettled += int(np.count_nonzero(response.phase == UNCONVERGED))
-        for name, measured in rows.measured.items():
-            error = measured - channels[name]
-            error = error[np.isfinite(error)]
-            self.squares[name] = self.squares.get(name, 0.0) + float(np.sum(error**2))
-            self.samples[name] = self.samples.get(name, 0) + error.size
-
-    def told(self, solver: str) -> Told:
-        """Return what is told of the whole answer."""
-        rmse = {
-            name: math.sqrt(square / self.samples[name]) if self.samples[name] else math.nan
-            for name, square in self.squares.items()
-        }
-        return Told(solver, self.rows, self.slack, self.unsettled, rmse, self.samples)
+    solver: str
+    rows: int
+    slack: int
+    unsettled: int
+    squares: dict[str, float]
+    samples: dict[str, int]
 
 
 def simulate_long(
     long: LongRun, model: Model, dynamics: Dynamics, nodes: int | None, folder: Path | None
-) -> tuple[Told, Prepared]:
-    """Simulate a run, a piece at a time, and write the answer into a folder.
+) -> tuple[RunSummary, Prepared]:
+    """Simulate a run, a piece at a time, and write the prediction into a folder.
 
-    Returns what is told of the answer, and the run as a fit would see it.
+    Returns its summary, and the run as a fit would see it.
 
     Raises
     ------
@@ -76,11 +58,11 @@ def simulate_long(
             remedy="give a folder with --out" if folder is None else "use --dynamics slip",
         )
     waiting: deque[Rows] = deque()
-    kept: list[Rows] = []
-    sums, solver = _Sums(), ""
+    thinned: list[Rows] = []
+    parts: list[_Counted] = []
     driven = long.plans.keys()
     names = [TIME, "x_in_mm", *(name for name in CHANNELS if name not in driven)]
-    answers = simulate_pieces(
+    pieces = simulate_pieces(
         model.rig(long.run),
         _drives(long, waiting),
         dynamics,
@@ -89,18 +71,47 @@ def simulate_long(
     )
     schema = pa.schema([(name, pa.float64()) for name in names])
     with parquet_writer(folder / f"{long.run.id}.parquet", schema) as write:
-        for response in answers:
-            rows, solver = waiting.popleft(), response.solver
+        for response in pieces:
+            rows = waiting.popleft()
             channels = channels_of(response, driven, rows.in_gap)
             columns = {TIME: rows.time_s, "x_in_mm": response.x_in_mm, **channels}
             write(table_of({name: columns[name] for name in names}))
-            sums.add(response, channels, rows)
-            kept.append(long.thin(rows))
-    return sums.told(solver), long.thinned(kept)
+            parts.append(_counted(response, channels, rows))
+            thinned.append(long.thin(rows))
+    return _summary(parts), long.thinned(thinned)
+
+
+def _counted(response: Response, channels: dict[str, Floats], rows: Rows) -> _Counted:
+    """Count some rows."""
+    errors = {name: measured - channels[name] for name, measured in rows.measured.items()}
+    errors = {name: error[np.isfinite(error)] for name, error in errors.items()}
+    return _Counted(
+        response.solver,
+        rows.time_s.size,
+        int(np.count_nonzero(response.phase == SLACK)),
+        int(np.count_nonzero(response.phase == UNCONVERGED)),
+        {name: float(np.sum(error**2)) for name, error in errors.items()},
+        {name: error.size for name, error in errors.items()},
+    )
+
+
+def _summary(parts: Sequence[_Counted]) -> RunSummary:
+    """Return the summary of all rows."""
+    samples = {name: sum(part.samples[name] for part in parts) for name in parts[0].samples}
+    squares = {name: sum(part.squares[name] for part in parts) for name in samples}
+    rmse = {n: math.sqrt(squares[n] / samples[n]) if samples[n] else math.nan for n in samples}
+    return RunSummary(
+        parts[-1].solver,
+        sum(part.rows for part in parts),
+        sum(part.slack for part in parts),
+        sum(part.unsettled for part in parts),
+        rmse,
+        samples,
+    )
 
 
 def _drives(long: LongRun, waiting: deque[Rows]) -> Iterator[Drive]:
-    """Yield what drives each piece of a run; its rows wait for the answer."""
+    """Yield what drives each piece of a run; its rows wait for the prediction."""
     load = LOAD_COLUMNS.get(long.run.load)
     begin_s = 0.0
     for rows in long.rows():

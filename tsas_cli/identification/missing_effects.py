@@ -36,7 +36,7 @@ class Widened:
 def widened(fit: FittedModel, step: Steps = SILENT) -> Widened:
     """Widen the intervals of a solved fit by the effects that explain most of what it misses.
 
-    `step` is told of each effect that is looked at, and of each that is fitted.
+    `step` counts each effect that is looked at, and of each that is fitted.
     """
     bench, nominal = bench_of(fit), fit.model.estimates
     trials = _best_trials(bench, step)

@@ -75,7 +75,7 @@ class Model:
         )
 
     def rig(self, run: Run) -> Rig:
-        """Return the rig of a run, calibrated or not; what nobody told is a default.
+        """Return the rig of a run, calibrated or not; what is not known is a default.
 
         Raises
         ------
@@ -102,8 +102,8 @@ class Model:
             bristles=Bristles(),
             **known,
         )
-        told = {name: self.value(name) for name in QUANTITIES if "." in name}
-        return with_values(nominal, {n: v for n, v in told.items() if v is not None})
+        further = {name: self.value(name) for name in QUANTITIES if "." in name}
+        return with_values(nominal, {n: v for n, v in further.items() if v is not None})
 
 
 def model_of(given: Model | Path) -> Model:

@@ -1,4 +1,4 @@
-"""A recording made ready for a model: its drive conditioned, its noise told, its gaps marked."""
+"""A recording made ready for a model: its drive conditioned, its noise level, its gaps marked."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -23,7 +23,7 @@ from tsas_cli.support.errors import InputError
 Floats = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
-CHANNELS = ("f_in_N", "f_out_N", "x_out_mm")  # what the models answer, where it drives nothing
+CHANNELS = ("f_in_N", "f_out_N", "x_out_mm")  # what the models predict, where it drives nothing
 LOAD_COLUMNS: Mapping[Load, str] = {"force": "f_out_N", "displacement": "x_out_mm"}
 GAP = 1.5  # times the usual time between a column's samples
 HIDDEN = 0.03  # of its noise: what a step may add to f_in, for all of them to stay below a third
@@ -33,10 +33,10 @@ START_SAMPLES = 20  # whose mean is the tension at the start
 
 @dataclass(frozen=True)
 class Prepared:
-    """One run, ready to drive a model and to be compared with its answers.
+    """One run, ready to drive a model and to be compared with its predictions.
 
     Of a run that is too long for memory it holds one in `every` of `all_rows` samples, those where
-    the drive turns back, and `all_noise`, which all samples have told.
+    the drive turns back, and `all_noise`, the noise level of all samples.
     """
 
     run: Run
@@ -68,7 +68,7 @@ class Prepared:
     def noise(self) -> dict[str, float]:
         """Noise of each measured channel, quantisation counted in [the channel's unit].
 
-        Zero where a channel never changes, NaN where too few samples are there to tell.
+        Zero where a channel never changes, NaN where there are too few samples.
         """
         if self.all_noise is not None:
             return {name: self.all_noise[name] for name in self.measured}
@@ -114,7 +114,7 @@ def drive_of(
 ) -> Drive:
     """Return what drives a run: conditioned values at the drive and, where given, at the load.
 
-    The measured tension at the drive, where that is not given, tells how the run begins.
+    The measured tension at the drive, where that is not given, is how the run begins.
     """
     start = None if f_in_N is None or by_force else _start_value(time_s, f_in_N)
     return Drive(
@@ -211,7 +211,7 @@ def is_empty(run: Run, column: str) -> InputError:
 
 
 def nothing_to_compare(run: Run, columns: Sequence[str]) -> InputError:
-    """Return the error for a run without a channel that a model could answer."""
+    """Return the error for a run without a channel that a model could predict."""
     return InputError(
         "nothing to compare a model with",
         where=run.file,
@@ -238,7 +238,7 @@ def _in_gap(time_s: Floats, values: Floats) -> Mask:
 
 
 def noise_of(values: Floats) -> float:
-    """Return the noise of a channel, quantisation counted in; NaN where it cannot be told."""
+    """Return the noise of a channel, quantisation counted in; NaN of too few samples."""
     noise = noise_sd(values)
     return noise if math.isnan(noise) else max(noise, quantisation_step(values) / math.sqrt(12.0))
 

@@ -27,7 +27,7 @@ def points(run: Prepared) -> Indices:
 
     They are four times as many as means, or more where it takes more to see each stroke bend.
 
-    The model depends on the path alone, and where the drive turns back its answer bends sharply.
+    The model depends on the path alone, and at a reversal its prediction bends sharply.
     """
     n = run.time_s.size
     reversals = run.conditioned[run.drive_column].reversals

@@ -39,8 +39,8 @@ def projector(trial: Trial) -> Floats:
     basis, r = np.linalg.qr(
         free * np.array([u.scale for u in trial.unknowns])[~trial.solution.at_bound]
     )
-    kept = np.abs(np.diag(r)) > HIDDEN * np.abs(np.diag(r)).max()
-    return np.asarray(basis[:, kept])
+    own = np.abs(np.diag(r)) > HIDDEN * np.abs(np.diag(r)).max()
+    return np.asarray(basis[:, own])
 
 
 def screen(bench: Bench, trial: Trial, effect: Effect, basis: Floats) -> Screened:

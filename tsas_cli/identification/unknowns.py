@@ -19,7 +19,7 @@ def nominal_unknowns(
 ) -> list[Unknown]:
     """Return all candidates, in the order in which they are asked for.
 
-    With a load that is no spring the preload is only a name for the zeros: it keeps its value.
+    With a load that is no spring the preload is only a name for the zeros: it is fixed.
     """
     out = []
     travel = max((float(np.ptp(r.drive.values)) for r in runs), default=0.0)

@@ -178,7 +178,7 @@ def _fit(result: Calibration) -> records.NominalFit:
         converged=fitted is not None and bool(fitted.converged),
         message="nothing to fit" if fitted is None else fitted.message,
         evaluations=0 if fitted is None else fitted.evaluations,
-        solver=tuple(sorted({a.response.solver for a in result.answers})),
+        solver=tuple(sorted({a.response.solver for a in result.predictions})),
     )
 
 
@@ -188,7 +188,7 @@ def _errors(result: Calibration) -> dict[str, dict[str, records.ChannelError]]:
             name: records.ChannelError(rmse=rmse, noise=run.noise[name])
             for name, rmse in a.rmse.items()
         }
-        for run, a in zip(result.runs, result.answers, strict=True)
+        for run, a in zip(result.runs, result.predictions, strict=True)
     }
 
 

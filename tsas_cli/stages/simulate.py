@@ -163,7 +163,7 @@ def simulate(
                 run = prepare(data[entry.id], data.manifest.session_start)
                 own = with_own_values(taken, run) if fit_own else taken
                 answer = compare(run, own, dynamics, nodes)
-                told = answer.told()
+                told = answer.summary()
             used = _of_run(own, entry.id).over(used)
             record = record.with_run(entry.id, told.record(run), segment_records(run, segment(run)))
             if long is None:

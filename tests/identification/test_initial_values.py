@@ -1,4 +1,4 @@
-"""Start values read off runs that the formulas of the static model describe exactly."""
+"""Initial values read off runs that the formulas of the static model describe exactly."""
 
 import math
 from itertools import pairwise
@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from tests.physics.references import GROUP_A, through, wrap_of
+from tsas_cli.identification.initial_values import read_off
 from tsas_cli.identification.phases import Segment
 from tsas_cli.identification.samples import mean_edges, points
-from tsas_cli.identification.starts import read_off
 from tsas_cli.physics.closed_form.static import static_model
 
 X = through(20.0, 0.0, 20.0)

@@ -1,4 +1,4 @@
-"""Start values read off the phases of a run, for what the data sheet does not tell."""
+"""Initial values read off the phases of a run, for what the data sheet does not state."""
 
 import math
 from collections.abc import Sequence
@@ -16,7 +16,7 @@ Floats = npt.NDArray[np.float64]
 
 FAR = 5.0  # times the travel: where a fit that begins at 0 mm does not find a zero any more
 SMALLEST_BEND = 1e-3  # rad
-SMALLEST_WRAP = 0.01  # to start from: with less friction than that, a change of it does not show
+SMALLEST_WRAP = 0.01  # with less friction than that, a change of it does not show
 
 
 def read_off(
