@@ -112,16 +112,6 @@ class Address:
         """
         self._asked(lambda files: files.pipe_file(self.path, content))
 
-    def remove(self) -> None:
-        """Take the object away.
-
-        Raises
-        ------
-        InputError
-            The storage cannot be asked, or refuses.
-        """
-        self._asked(lambda files: files.rm_file(self.path))
-
     def copy_from(self, file: Path) -> None:
         """Put a local file there, whole or not at all.
 
