@@ -4,7 +4,6 @@ An address has the few methods of a path that reading a dataset needs. fsspec do
 imported only where there is an address.
 """
 
-import io
 import logging
 import os
 import re
@@ -93,14 +92,6 @@ class Address:
             The storage cannot be asked.
         """
         return bytes(self._asked(lambda files: files.cat_file(self.path, start=start, end=end)))
-
-    def read_text(self, encoding: str) -> str:
-        """Return it as text."""
-        return self.read_bytes().decode(encoding)
-
-    def open(self, mode: str = "rb") -> io.BytesIO:  # noqa: ARG002 # as that of a path
-        """Return its bytes as a file."""
-        return io.BytesIO(self.read_bytes())
 
     def write_bytes(self, content: bytes) -> None:
         """Put an object there, whole or not at all.
