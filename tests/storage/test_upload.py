@@ -6,17 +6,14 @@ from tsas_cli.recordings.storage import place_of
 from tsas_cli.support.errors import InputError
 
 
-def test_the_manifest_comes_last_and_an_older_one_goes_first(dataset, bucket, wire):
-    tsas.upload(dataset, f"{bucket}/bench")
-    wire.reset()
-    tsas.upload(dataset, f"{bucket}/bench", force=True)
-    changes = [(verb, path.split("/bench/")[1]) for verb, path in wire.requests if verb in WRITE]
-    assert changes == [
-        ("DELETE", "dataset.toml"),
-        ("PUT", "runs/a.parquet"),
-        ("PUT", "runs/a.parquet.blocks.json"),
-        ("PUT", "dataset.toml"),
-    ]
+def test_the_manifest_comes_last(dataset, bucket, wire):
+    for force in (False, True):
+        wire.reset()
+        tsas.upload(dataset, f"{bucket}/bench", force=force)
+        changes = [
+            (verb, path.split("/bench/")[1]) for verb, path in wire.requests if verb in WRITE
+        ]
+        assert changes == [("PUT", "runs/a.parquet"), ("PUT", "dataset.toml")]
 
 
 WRITE = {"PUT", "DELETE", "POST"}
@@ -28,26 +25,33 @@ def test_nothing_is_replaced_unasked(dataset, bucket):
         tsas.upload(dataset, f"{bucket}/bench")
 
 
-@pytest.mark.parametrize("whole", [True, False])
-def test_what_no_upload_has_put_there_is_not_replaced(dataset, bucket, whole):
-    tsas.upload(dataset, f"{bucket}/bench")
+def delete(address):
+    storage.files_of("s3").rm_file(address)
+
+
+def test_what_belongs_to_no_dataset_is_not_replaced(dataset, bucket):
     there = place_of(f"{bucket}/bench")
-    (there / "runs/a.parquet.blocks.json").remove()
     (there / "runs/a.parquet").write_bytes(b"of somebody else")
-    if not whole:
-        (there / "dataset.toml").remove()
     with pytest.raises(InputError, match="was not put there by `tsas upload`"):
-        tsas.upload(dataset, f"{bucket}/bench", force=whole)
+        tsas.upload(dataset, f"{bucket}/bench", force=True)
     assert (there / "runs/a.parquet").read_bytes() == b"of somebody else"
+    assert not (there / "dataset.toml").is_file()
 
 
 def test_an_upload_that_was_cut_off_goes_on(dataset, bucket):
     tsas.upload(dataset, f"{bucket}/bench")
-    there = place_of(f"{bucket}/bench")
-    for name in ("dataset.toml", "runs/a.parquet.blocks.json"):
-        (there / name).remove()
+    delete(f"{bucket}/bench/dataset.toml")
     tsas.upload(dataset, f"{bucket}/bench")
     assert tsas.read(f"{bucket}/bench").runs[0].id == "a"
+
+
+def test_a_replacement_that_was_cut_off_goes_on(dataset, bucket):
+    tsas.upload(dataset, f"{bucket}/bench")
+    place_of(f"{bucket}/bench/runs/a.parquet").write_bytes(b"of another version")
+    with pytest.raises(InputError, match="the checksum differs"):
+        tsas.read(f"{bucket}/bench")["a"]
+    tsas.upload(dataset, f"{bucket}/bench", force=True)
+    assert tsas.read(f"{bucket}/bench")["a"].time_s.size == 500
 
 
 def test_a_recording_that_has_changed_is_not_uploaded(dataset, bucket):

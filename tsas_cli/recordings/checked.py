@@ -5,35 +5,32 @@ from typing import TypeAlias
 
 import pyarrow as pa
 
-from tsas_cli.recordings.blocks import CheckedFile, NotTheSameError, opened
+from tsas_cli.recordings.fetched import fetched
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.storage import Address, Place, check_inside
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import sha256_of
 
-Source: TypeAlias = Path | CheckedFile | pa.NativeFile
+Source: TypeAlias = Path | pa.NativeFile
 
 
 def checked_file(folder: Place, run: Run) -> Source:
-    """Return what Parquet is read from: the file itself once its checksum is that of the manifest.
-
-    What comes from an address is checked while it is read.
+    """Return what Parquet is read from, once its checksum is that of the manifest.
 
     Raises
     ------
     InputError
-        The file is missing, leaves its folder or has another checksum.
-    NotTheSameError
-        Later, while it is read: it is not what its checksum says.
+        The file is missing, leaves its folder or has another checksum, or cannot be fetched.
     """
     if isinstance(folder, Address):
         path = folder / run.file
         try:
-            return opened(path, run.sha256.lower())
+            content = fetched(path, run.sha256.lower())
         except FileNotFoundError as error:
             raise _missing(path, run) from error
-        except NotTheSameError as error:
-            raise changed(path, run) from error
+        if content is None:
+            raise changed(path, run)
+        return pa.BufferReader(content)
     file = local_file(folder, run)
     try:
         digest = sha256_of(file)

@@ -9,7 +9,6 @@ from typing import IO, cast
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from tsas_cli.recordings.blocks import CheckedFile
 from tsas_cli.recordings.checked import Source
 from tsas_cli.recordings.guards.expansion import Expanded
 from tsas_cli.recordings.storage import Place
@@ -17,7 +16,6 @@ from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError
 
 BUFFER = 1 << 20  # bytes that are read at a time: a row group need not fit into memory
-_END = 1 << 16  # bytes of its end that pyarrow begins with
 _TEXT_BEHIND = 8  # bytes at the end: the footer's length and PAR1
 
 
@@ -48,18 +46,14 @@ def open_parquet(source: Source, where: Place | None = None) -> pq.ParquetFile:
 
 def size_of(source: Source) -> int:
     """Return how many bytes a file has."""
-    if isinstance(source, Path):
-        return source.stat().st_size
-    size = int(source.seek(0, io.SEEK_END))
-    source.seek(0)
-    return size
+    return source.stat().st_size if isinstance(source, Path) else int(source.size())
 
 
-def _check_footer(stream: IO[bytes] | CheckedFile | pa.NativeFile, path: object) -> None:
+def _check_footer(stream: IO[bytes] | pa.NativeFile, path: object) -> None:
     """Refuse a footer that is longer than that of a recording."""
     size = int(stream.seek(0, io.SEEK_END))
-    stream.seek(max(0, size - _END))  # as much as is read next, so that it is fetched once
-    length, mark = struct.unpack("<I4s", stream.read()[-_TEXT_BEHIND:].rjust(_TEXT_BEHIND, b"\0"))
+    stream.seek(max(0, size - _TEXT_BEHIND))
+    length, mark = struct.unpack("<I4s", stream.read().rjust(_TEXT_BEHIND, b"\0"))
     stream.seek(0)
     if mark == b"PAR1" and length > limits.FOOTER:
         raise InputError(

@@ -12,8 +12,6 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from tsas_cli.recordings.blocks import NotTheSameError
-from tsas_cli.recordings.checked import changed
 from tsas_cli.recordings.columns import BY_NAME, TIME
 from tsas_cli.recordings.guards.damaged import damaged
 from tsas_cli.recordings.manifest import Run
@@ -117,8 +115,6 @@ def pieces(
                 yield Piece(start, {name: v[:MOST_ROWS] for name, v in joined.items()})
                 held = {name: [v[MOST_ROWS - overlap :].copy()] for name, v in joined.items()}
                 start, count = start + MOST_ROWS - overlap, count - MOST_ROWS + overlap
-    except NotTheSameError as error:
-        raise changed(run.path, run.run) from error
     except (pa.ArrowException, OSError) as error:
         raise damaged(run.path, "Parquet", error) from error
     if count > overlap or start == 0:

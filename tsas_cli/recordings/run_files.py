@@ -9,8 +9,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from tsas_cli.recordings.arrow_columns import floats_from
-from tsas_cli.recordings.blocks import NotTheSameError
-from tsas_cli.recordings.checked import Source, changed, checked_file
+from tsas_cli.recordings.checked import Source, checked_file
 from tsas_cli.recordings.columns import (
     BY_NAME,
     INPUTS,
@@ -48,10 +47,7 @@ def read_recording(folder: Place, run: Run, *, strict: bool = True) -> Recording
     """
     path = folder / run.file
     state = state_of(path) if isinstance(path, Path) and path.is_file() else None
-    try:
-        table, names = _table_of(checked_file(folder, run), path)
-    except NotTheSameError as error:
-        raise changed(path, run) from error
+    table, names = _table_of(checked_file(folder, run), path)
     if isinstance(path, Path) and state is not None:
         check_unchanged(path, state)
     columns = {name: floats_of(table, name, path) for name in table.column_names}
@@ -103,8 +99,6 @@ class RunColumns:
         check_size(self.file, self.path, (name,), size=self.size, whole=True)
         try:
             table = self.file.read(columns=[name])
-        except NotTheSameError as error:
-            raise changed(self.path, self.run) from error
         except (pa.ArrowException, OSError) as error:
             raise damaged(self.path, "Parquet", error) from error
         values = floats_of(table, name, self.path)
@@ -128,8 +122,6 @@ def open_run(folder: Place, run: Run) -> RunColumns:
     try:
         file = open_parquet(source, path)
         _check_names_and_units(file.schema_arrow, path)
-    except NotTheSameError as error:
-        raise changed(path, run) from error
     except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
         raise damaged(path, "Parquet", error) from error
     if TIME not in file.schema_arrow.names or file.metadata.num_rows < 2:

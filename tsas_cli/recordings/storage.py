@@ -4,7 +4,6 @@ An address has the few methods of a path that reading a dataset needs. fsspec do
 imported only where there is an address.
 """
 
-import io
 import logging
 import os
 import re
@@ -94,14 +93,6 @@ class Address:
         """
         return bytes(self._asked(lambda files: files.cat_file(self.path, start=start, end=end)))
 
-    def read_text(self, encoding: str) -> str:
-        """Return it as text."""
-        return self.read_bytes().decode(encoding)
-
-    def open(self, mode: str = "rb") -> io.BytesIO:  # noqa: ARG002 # as that of a path
-        """Return its bytes as a file."""
-        return io.BytesIO(self.read_bytes())
-
     def write_bytes(self, content: bytes) -> None:
         """Put an object there, whole or not at all.
 
@@ -111,16 +102,6 @@ class Address:
             The storage cannot be asked, or refuses.
         """
         self._asked(lambda files: files.pipe_file(self.path, content))
-
-    def remove(self) -> None:
-        """Take the object away.
-
-        Raises
-        ------
-        InputError
-            The storage cannot be asked, or refuses.
-        """
-        self._asked(lambda files: files.rm_file(self.path))
 
     def copy_from(self, file: Path) -> None:
         """Put a local file there, whole or not at all.

@@ -25,7 +25,7 @@ class UploadResult(Result):
 def upload(
     folder: Named, address: str, *, force: bool = False, step: Steps = SILENT
 ) -> UploadResult:
-    """Put a dataset on object storage, with what lets others read parts of it and check them.
+    """Put a dataset on object storage.
 
     Parameters
     ----------

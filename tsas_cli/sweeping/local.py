@@ -2,15 +2,15 @@
 
 import json
 import os
-import queue
 import signal
 import subprocess
 import sys
 import tempfile
-from collections import deque
+import time
 from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from contextlib import suppress
-from threading import Thread
+from threading import local
 from typing import IO
 
 from tsas_cli.support.errors import InputError
@@ -41,72 +41,51 @@ def in_processes(work: str, texts: Sequence[str], workers: int) -> Iterator[tupl
     InputError
         The machine starts no more of them.
     """
-    waiting = deque(enumerate(texts))
-    answers: queue.Queue[tuple[int, Answer] | BaseException] = queue.Queue()
-    lanes = [_Lane(work, waiting, answers) for _ in range(min(workers, len(texts)))]
+    crew = _Crew(work)
+    pool = ThreadPoolExecutor(max(1, min(workers, len(texts))))
+    numbers = {pool.submit(crew.answer, text): number for number, text in enumerate(texts)}
     try:
-        for lane in lanes:
-            lane.start()
-        for _ in texts:
-            answer = answers.get()
-            if isinstance(answer, BaseException):
-                raise answer
-            yield answer
+        for future in as_completed(numbers):
+            yield numbers[future], future.result()
     finally:
-        waiting.clear()
-        for lane in lanes:
-            lane.stop()
+        crew.stopped = True
+        pool.shutdown(wait=False, cancel_futures=True)
+        while any(future.running() for future in numbers):  # one may be about to begin a worker
+            crew.kill()
+            time.sleep(0.05)
+        pool.shutdown()
+        crew.kill()
 
 
-class _Lane(Thread):
-    """Hands tasks to one worker at a time, and begins another one when that dies."""
+class _Crew:
+    """The worker of each thread, and another one when that dies."""
 
-    def __init__(
-        self,
-        work: str,
-        waiting: deque[tuple[int, str]],
-        answers: queue.Queue[tuple[int, Answer] | BaseException],
-    ) -> None:
-        super().__init__(daemon=True)
-        self.work, self.waiting, self.answers = work, waiting, answers
-        self.worker: _Worker | None = None
-        self.stopped = False
+    def __init__(self, work: str) -> None:
+        self.work, self.stopped = work, False
+        self.own, self.begun = local(), list[_Worker]()
 
-    def run(self) -> None:
-        """Take tasks until none is left; what goes wrong is told to who waits for answers."""
-        try:
-            while not self.stopped:
-                number, text = self.waiting.popleft()
-                self.answers.put((number, self._answer(text)))
-        except IndexError:
-            pass  # nothing is left
-        except BaseException as error:  # noqa: BLE001 # raised where the answers are read
-            self.answers.put(error)
-
-    def stop(self) -> None:
-        """Kill the worker, if there is one, and wait until both have ended."""
-        self.stopped = True
-        while self.is_alive():  # it may be about to begin another worker
-            self._kill()
-            self.join(0.05)
-        self._kill()
-
-    def _kill(self) -> None:
-        if self.worker is not None:
-            self.worker.kill()
-
-    def _answer(self, text: str) -> Answer:
+    def answer(self, text: str) -> Answer:
+        """Return the answer of this thread's worker to a task."""
         said = ""
         for _ in range(TRIES):
             if self.stopped:
                 break
-            if self.worker is None:
-                self.worker = _begun(self.work)
-            answer = self.worker.ask(text)
+            worker = getattr(self.own, "worker", None) or self._begin()
+            answer = worker.ask(text)
             if answer is not None:
                 return answer
-            said, self.worker = self.worker.ending(), None
+            said, self.own.worker = worker.ending(), None
         return death(TRIES, said)
+
+    def kill(self) -> None:
+        """Kill every worker."""
+        for worker in self.begun:
+            worker.kill()
+
+    def _begin(self) -> "_Worker":
+        self.own.worker = worker = _begun(self.work)
+        self.begun.append(worker)
+        return worker
 
 
 def _begun(work: str) -> "_Worker":
