@@ -98,7 +98,7 @@ def test_under_noise_the_bristles_damping_is_not_told_and_the_others_allow_for_i
 
 
 def test_the_model_that_was_fitted_is_the_one_that_is_compared(noisy):
-    (answer,) = noisy.answers
+    (answer,) = noisy.predictions
     assert answer.response.solver.startswith("LuGre chain")
     assert answer.rmse["f_out_N"] == pytest.approx(0.03, rel=0.05)
     assert not any("missed by" in sentence for sentence in noisy.cannot_tell)
@@ -127,7 +127,7 @@ def test_a_rig_without_bristles_is_told_to_have_stiff_ones():
     lowest, highest = (float(part.split(" ")[0]) for part in said.split("told: ")[1].split(" to "))
     assert lowest > 8e3
     assert highest > 1e6
-    assert result.answers[0].rmse["f_in_N"] < 0.12  # 0.34 with the bristles of Table 1
+    assert result.predictions[0].rmse["f_in_N"] < 0.12  # 0.34 with the bristles of Table 1
 
 
 def f_in(rig, tolerance=3e-6, step_ends_s=OWN_STEPS):

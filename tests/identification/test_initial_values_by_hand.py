@@ -1,4 +1,4 @@
-"""Start values, formula by formula, on a few numbers."""
+"""Initial values, formula by formula, on a few numbers."""
 
 import math
 from types import SimpleNamespace
