@@ -1,7 +1,7 @@
 """What a run is recognised by: how fine each channel is, and a few short stretches of it."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,7 +21,7 @@ ROUNDED = 2e-7  # of the largest value, what single precision leaves
 CANDIDATES = 3  # the samples on either side, and the line between them
 CERTAIN = 0.95  # chance that a channel without noise repeats a change in a repeat of the motion
 STRETCHES, LONG = 16, 4096  # of a piece, by which its noise is told
-SHORT = 16  # rows of a stretch by which a run is recognised
+SHORT = 16, 128  # rows of a stretch by which a run is recognised, with noise and without
 LEVELS = 1024  # of a channel
 SPARSE = 1 / 128  # of a piece's samples, of which fewer are in a level while it moves
 PLACES = (0.0, 0.5)  # of them in a piece; one more is at its end
@@ -63,9 +63,9 @@ class Fineness:
 class Fingerprint:
     """A run: all of it, its channels, and short stretches of it.
 
-    `channels` holds those that vary. Each of the stretches has `SHORT` samples, between which
-    something changes, of the channels `dense`: their times have the shape (h, SHORT), the values
-    (h, SHORT, d). Of a run whose time does not increase nothing is known.
+    `channels` holds those that vary. Each of the stretches has k samples, between which something
+    changes, of the channels `dense`: their times have the shape (h, k), the values (h, k, d). Of a
+    run whose time does not increase nothing is known.
     """
 
     run: Run
@@ -83,6 +83,11 @@ class Fingerprint:
         return self.channels.keys() - set(BESIDE_MOTION)
 
     @property
+    def noisy(self) -> bool:
+        """Whether the noise of a channel is seen."""
+        return any(one.noisy for one in self.channels.values())
+
+    @property
     def interval_s(self) -> float:
         """Time from sample to sample, on average [s]."""
         return self.all.lasts_s / (self.all.rows - 1)
@@ -98,7 +103,7 @@ def fingerprint(run: Run, parts: Iterable[Piece]) -> Fingerprint:
     """
     seen: dict[str, _Channel] = {}
     dense: tuple[str, ...] = ()
-    stretches: list[Samples] = []
+    stretches: dict[int, list[Samples]] = {length: [] for length in SHORT}
     rows, begin_s, end_s, increases = 0, 0.0, 0.0, True
     for part in parts:
         time_s = part.columns[TIME]
@@ -112,16 +117,18 @@ def fingerprint(run: Run, parts: Iterable[Piece]) -> Fingerprint:
             dense = tuple(name for name in seen if _is_dense(part.columns[name]))
         for name, channel in seen.items():
             channel.add(part.columns[name])
-        stretches += _stretches(part, dense)
+        for length, samples in _stretches(part, dense):
+            stretches[length].append(samples)
         rows, end_s = part.stop, float(time_s[-1])
     told = {name: channel.fineness() for name, channel in seen.items()}
+    chosen = stretches[SHORT[0] if any(one.noisy for one in told.values()) else SHORT[1]]
     return Fingerprint(
         run,
         Span(0, rows, begin_s, end_s),
         {name: one for name, one in told.items() if one.span > 0.0},
         dense,
-        np.array([s.time_s for s in stretches]).reshape(-1, SHORT),
-        np.array([s.values for s in stretches]).reshape(-1, SHORT, len(dense)),
+        np.array([s.time_s for s in chosen]),
+        np.array([s.values for s in chosen]),
         increases,
         any(channel.laid_between for channel in seen.values()),
     )
@@ -169,23 +176,25 @@ def _is_dense(values: Floats) -> bool:
     return bool(2 * there.sum() > values.size and np.ptp(values[there]) > 0.0)
 
 
-def _stretches(part: Piece, names: Sequence[str]) -> list[Samples]:
-    """Return stretches of rows in which something changes, from all over a piece."""
+def _stretches(part: Piece, names: Sequence[str]) -> Iterator[tuple[int, Samples]]:
+    """Yield lengths and stretches of rows in which something changes, from all over a piece."""
     if not names:
-        return []
+        return
     values = np.column_stack([part.columns[name] for name in names])
     changing: Mask = np.all(np.isfinite(values), axis=1)
     changing[1:] &= np.any(values[1:] != values[:-1], axis=1)
     at = np.flatnonzero(changing)
-    if at.size < SHORT:
-        return []
+    if at.size == 0:
+        return
     crowd = np.min([_crowd(each[at]) for each in values.T], axis=0)
     calm = at[crowd <= SPARSE * at.size]  # at rest samples are alike
-    at = calm if calm.size >= SHORT else at
-    first = np.searchsorted(at, [place * part.rows for place in PLACES])
-    starts = np.unique(np.minimum([*first, at.size], at.size - SHORT))
-    rows = [at[start : start + SHORT] for start in starts.tolist()]
-    return [Samples(part.columns[TIME][r], values[r]) for r in rows]
+    for length in SHORT:
+        rows = calm if calm.size >= length else at
+        if rows.size >= length:
+            first = np.searchsorted(rows, [place * part.rows for place in PLACES])
+            for start in np.unique(np.minimum([*first, rows.size], rows.size - length)).tolist():
+                chosen = rows[start : start + length]
+                yield length, Samples(part.columns[TIME][chosen], values[chosen])
 
 
 def _crowd(values: Floats) -> Indices:

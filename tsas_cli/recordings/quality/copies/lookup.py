@@ -32,6 +32,7 @@ PARTS = (0.0, 0.1, 0.3)  # of what is loose, by which closeness is told
 LOOSE = 0.5  # of the noise: splines lie off straight lines by about a fifth of it
 MOST_LOOSE = 0.7  # of a stretch, that lies on the source loosely
 MOST_TIGHT = 0.85  # and tightly
+NEARLY_ALL = 0.97  # without noise: coarse samples lie on those of any repeat mostly
 
 
 @dataclass(frozen=True)
@@ -46,8 +47,12 @@ class Lookup:
     """A source's samples, ready for stretches of others to be looked up."""
 
     def __init__(self, source: Samples, tolerance: Floats, noise: Floats, spans: Floats) -> None:
-        """Take the source, at least two samples, and tolerance, noise and span of each channel."""
+        """Take the source, at least two samples, and tolerance, noise and span of each channel.
+
+        The noise is 0 where none of the channels shows it.
+        """
         self.source, self.tolerance = source, tolerance
+        self.enough = MOST_LOOSE if noise.any() else NEARLY_ALL
         self.loose = tolerance + LOOSE * noise
         self.nearly_s = NEARLY * float(np.median(np.diff(source.time_s)))
         self.channel = int(np.argmax(spans / self.loose))  # the one that tells samples apart best
@@ -110,10 +115,10 @@ class Lookup:
         self, time_s: Floats, values: Floats, stretch: Indices, shift_s: Floats
     ) -> list[tuple[float, int, float]]:
         """Return closeness, number and shift of each stretch that lies loosely on the source."""
-        for step in (4, 1):
+        for step in (values.shape[1] // 4, 1):
             at_s = time_s[stretch, ::step] + shift_s[:, None]
             lie = self._share(at_s, values[stretch, ::step], self.loose)
-            stretch, shift_s = stretch[lie >= MOST_LOOSE], shift_s[lie >= MOST_LOOSE]
+            stretch, shift_s = stretch[lie >= self.enough], shift_s[lie >= self.enough]
         at_s, there = time_s[stretch] + shift_s[:, None], values[stretch]
         tolerances = [self.tolerance + part * self.loose for part in PARTS]
         close = np.sum([self._share(at_s, there, each) for each in tolerances], axis=0)

@@ -72,8 +72,8 @@ def _found(dataset: Dataset, *, strict: bool) -> Found:
     order = {run.id: k for k, run in enumerate(dataset.runs)}
     copies += _search(reader, [f for f in known if f.increases], order)
     if dataset.manifest.kind == "simulated":  # without noise, one sample may belong to many rigs
-        noisy = {f.run.id for f in known if any(c.noisy for c in f.channels.values())}
-        copies = [c if c.other.id in noisy else replace(c, contradicts=()) for c in copies]
+        quiet = {f.run.id for f in known if not f.noisy}
+        copies = [replace(c, contradicts=()) if c.other.id in quiet else c for c in copies]
     return Found(
         tuple(sorted(copies, key=lambda c: (order[c.run.id], c.span.first))),
         tuple(f.run.id for f in known if not f.increases),
@@ -165,7 +165,7 @@ def _groups(known: Sequence[Fingerprint]) -> list[_Group]:
     for one in known:
         if one.stretches.size:
             key = [(name, math.frexp(c.step)[1]) for name, c in one.channels.items()]
-            alike.setdefault((*key, one.dense), []).append(one)
+            alike.setdefault((*key, one.dense, one.stretches_s.shape[1]), []).append(one)
     return [
         _Group(
             members,
@@ -198,7 +198,8 @@ def _places(
             lookup = Lookup(
                 Samples(piece.columns[TIME], values),
                 np.array([source.channels[n].tolerance(group.steps[n]) for n in names]),
-                np.array([channel.noise for channel in fine]),
+                # Coarse samples lie loosely on those of any repeat.
+                np.array([channel.noise if source.noisy else 0.0 for channel in fine]),
                 np.array([channel.span for channel in fine]),
             )
             columns = [one.dense.index(name) for name in names]
