@@ -128,8 +128,8 @@ def _resting(rig: Rig, ends: EndInputs, mesh: int) -> State:
 def _follow(rig: Rig, ends: EndInputs, mesh: int, state: State) -> tuple[Output, State]:
     """Return the output and the state where it ends."""
     if isinstance(state, BranchState):
-        tensions, state = follow_branches(ends.drive, rig, with_room(state, ends.drive))
-        return with_spring_load(rig, ends, tensions), state
+        state = with_room(state, ends.drive)
+        return with_spring_load(rig, ends, follow_branches(ends.drive, rig, state)), state
     if isinstance(state, StaticState):
         tensions, state = follow_static(ends.drive, rig, state)
         return with_spring_load(rig, ends, tensions), state

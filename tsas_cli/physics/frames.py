@@ -23,7 +23,7 @@ class Frames(NamedTuple):
 
     `slip` is +1 or −1 where an element's friction is at its limit in contraction or loosening (it
     slips, or stands as it slipped last), 0 where it sticks, 2 where it hangs slack, 3 where the
-    solver did not settle.
+    solver did not converge.
     """
 
     samples: Indices  # rising, shape (k,)

@@ -51,7 +51,7 @@ def ends_of(found: Sequence[Passage], last: int) -> list[int]:
 
 
 def turns(x_in: Floats) -> Indices:
-    """Return the samples from which the drive moves another way, where it sets off first too.
+    """Return the samples from which the drive moves another way, where it starts too.
 
     A drive that rests in between turns at the end of the rest.
     """

@@ -38,10 +38,10 @@ ON_CHAIN = tuple(effect.name for effect in EFFECTS if not effect.closed_form)
 
 @dataclass(frozen=True)
 class Response:
-    """What the model answers, as the sensors would read it, shape (n,) [mm, N].
+    """What the model predicts, as the sensors would read it, shape (n,) [mm, N].
 
     `phase` is +1 in contraction and −1 in loosening with the whole tendon slipping, 0 in a dead
-    band, 2 slack, 3 not settled. `solver` says what computed it; `step_ends_s` is where the steps
+    band, 2 slack, 3 not converged. `solver` says what computed it; `step_ends_s` is where the steps
     of the dynamic chain ended, none with any other solver. `frames` is what is along the tendon
     at the samples that were asked for, free of the sensors' errors; None where none were, and with
     the lumped model, which does not say it.

@@ -7,7 +7,13 @@ import pytest
 
 from tests.physics.references import FREE, GROUP_A, Profile, pulled_through, wrap_of
 from tsas_cli.effects import Effects, FreeTendon
-from tsas_cli.physics.closed_form.branches import REST, at_rest_before, branches, strokes, with_room
+from tsas_cli.physics.closed_form.branches import (
+    DEPTH,
+    at_rest_before,
+    branches,
+    strokes,
+    with_room,
+)
 from tsas_cli.physics.frames import empty_frames
 
 A = wrap_of(GROUP_A)
@@ -195,9 +201,10 @@ def test_room_for_strokes_is_that_of_turns_and_rests(motion, count):
     x = np.array(motion)
     assert strokes(x) == count
     state = at_rest_before(x, 25.0)
-    assert state.now == (0.0, 25.0, 25.0, 0, 0, REST, 0)
+    assert state.now.tolist() == [0.0, 25.0, 25.0, 0.0, 0.0, 0.0, 0.0]
     assert state.turn_x.size == state.turn_T.size == count
-    roomy = with_room(state._replace(now=state.now._replace(depth=2)), np.array([1.0, 0.0, 1.0]))
+    state.now[DEPTH] = 2.0
+    roomy = with_room(state, np.array([1.0, 0.0, 1.0]))
     assert roomy.turn_x.size == roomy.turn_T.size == 2 + 3
 
 

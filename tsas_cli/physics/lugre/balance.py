@@ -1,9 +1,9 @@
-"""What the lumps' forces leave over, and how that changes with their speeds: Newton's equations.
+"""Residual forces of the lumps, and how they change with the speeds: Newton's equations.
 
 Each lump: m dv/dt = T before − T behind − f (Yang 2025, Eqs. 10 to 14), f by `bristles` with the
 limit g = μ N, N by the mean of both tensions (Eq. 17; 2 tanh(μθ/2n) for its sine, so that a lump
-that slides passes on e^(−μθ/n), Eq. 7). The ends have no mass: their forces balance. What is left
-depends on the speeds of a node and its two neighbours: a tridiagonal matrix, exactly.
+that slides leaves e^(−μθ/n) of the tension, Eq. 7). The ends have no mass: their forces balance.
+What is left depends on the speeds of a node and its two neighbours: a tridiagonal matrix, exactly.
 """
 
 from tsas_cli.effects.load_dependent_friction import load_factor
@@ -41,7 +41,7 @@ LEAST_LIMIT_N = 1e-9  # where no tension presses, so that a bristle has a limit 
 
 @kernel
 def balance(s: Floats, step: Step, laws: LugreLaws) -> float:
-    """Set up Newton's equations at the speeds W; return the sum of what the forces leave [N]."""
+    """Set up Newton's equations at the rates sought; return the sum of the residual forces [N]."""
     set_tensions(s, laws)
     set_limits(s, step, laws)
     balance_lumps(s, step, laws)
@@ -52,7 +52,7 @@ def balance(s: Floats, step: Step, laws: LugreLaws) -> float:
 
 @kernel
 def residual_sum(s: Floats, count: int) -> float:
-    """Return the sum of |REST|, by four sums side by side: one alone waits for each addition."""
+    """Return the sum of |RESIDUAL|, by four sums side by side: one alone waits for each add."""
     a, b, c, d = 0.0, 0.0, 0.0, 0.0
     whole = count - count % 4
     for i in range(0, whole, 4):

@@ -50,7 +50,7 @@ def bdf2(h: float, h1: float, h2: float) -> Formula:
 
 @kernel
 def predict(s: Floats, laws: LugreLaws, formula: Formula) -> None:
-    """Set the history terms of a step, and guess its speeds by extrapolation."""
+    """Set the history terms of a step, and predict its rates by extrapolation."""
     h, h1, h2, gh, near, far = formula
     ratio = h / h1
     g0, g1, g2 = 1.0, 0.0, 0.0
@@ -80,7 +80,9 @@ def predict(s: Floats, laws: LugreLaws, formula: Formula) -> None:
 
 @kernel
 def newton(s: Floats, step: Step, laws: LugreLaws, leaves_N: float) -> tuple[int, bool]:
-    """Find the speeds at the end of a step from their guess; return the iterations, and success.
+    """Find the rates at the end of a step from the predicted ones.
+
+    Returns the iterations, and success.
 
     It ends when what the forces leave, summed over the nodes, is at most `leaves_N`.
     """
@@ -105,7 +107,7 @@ def newton(s: Floats, step: Step, laws: LugreLaws, leaves_N: float) -> tuple[int
 
 @kernel
 def step_error(s: Floats, laws: LugreLaws, formula: Formula) -> float:
-    """Return the error of a step as a tension, from how far its guess was off [N]."""
+    """Return the error of a step as a tension, from how far the prediction was off [N]."""
     h, h1, h2, gh, _, _ = formula
     for j in range(laws.n + 1):
         off = (s[RATE + j] - s[RATE_PREDICTED + j]) - (s[RATE + j + 1] - s[RATE_PREDICTED + j + 1])
@@ -121,7 +123,7 @@ def step_error(s: Floats, laws: LugreLaws, formula: Formula) -> float:
 
 @kernel
 def largest_increment(s: Floats, count: int) -> float:
-    """Return the largest of CHANGE, by two searches side by side."""
+    """Return the largest of INCREMENT, by two searches side by side."""
     a, b = s[INCREMENT], 0.0
     for i in range(1, count - 1, 2):
         a, b = max(a, s[INCREMENT + i]), max(b, s[INCREMENT + i + 1])

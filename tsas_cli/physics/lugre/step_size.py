@@ -61,7 +61,7 @@ def step_factor(off: float, most: Tolerances, formula: Formula) -> float:
 
 @kernel
 def fit_to_reversal(h: float, left: float) -> tuple[float, bool]:
-    """Return a step that does not pass what is left to the next turn, and whether it lands there.
+    """Return a step that does not pass the next reversal, and whether it lands there.
 
     Before a short rest it takes half of both.
     """

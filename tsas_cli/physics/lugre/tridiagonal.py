@@ -21,7 +21,7 @@ from tsas_cli.physics.lugre.state import (
 
 @kernel
 def solve(s: Floats, n: int) -> None:
-    """Write the solution for the nodes 0 to n + 1 to CHANGE."""
+    """Write the solution for the nodes 0 to n + 1 to INCREMENT."""
     last = n + 1
     for i in range(n + 2):
         inverse = 1.0 / s[DIAGONAL + i]

@@ -84,7 +84,7 @@ class LumpedTendon(NamedTuple):
 
 
 def empty_lumps() -> Floats:
-    """Return room for lumps, for `lay_lumps` to lay them down."""
+    """Return room for lumps, for `lumps_at_rest` to fill."""
     return np.empty(ROWS * PITCH)
 
 

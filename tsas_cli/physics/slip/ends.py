@@ -27,7 +27,7 @@ from tsas_cli.physics.slip.state import (
     SlipLaws,
 )
 
-SLIPS_ALONG_S = 0.01  # in which the mass of the load takes up its speed; a rigid one would swing on
+SLIPS_ALONG_S = 0.01  # in which the mass of the load gains its speed; a rigid one would swing on
 
 
 @kernel
@@ -50,7 +50,7 @@ def load_tangent(chain: Floats, now: Moment, laws: SlipLaws) -> tuple[float, flo
 
 @kernel
 def update_load_speed(chain: Floats, step_s: float, n: int) -> None:
-    """Renew the speed of the load's mass after a step."""
+    """Update the speed of the load's mass after a step."""
     last = n + 1
     speed = (chain[POSITION + last] - chain[POSITION_BEFORE + last]) / step_s
     share = 1.0 / (1.0 + SLIPS_ALONG_S / step_s)
@@ -72,7 +72,7 @@ def drive_position(chain: Floats, now: Moment, laws: SlipLaws) -> float:
 
 @kernel
 def update_end(i: int, pull: float, friction: float, chain: Floats, laws: SlipLaws) -> bool:
-    """Do the same for an end with friction that does not depend on tension."""
+    """Let an end with a constant friction slip or stick; return whether that changed."""
     if chain[SLIP + i] != 0:
         if slips_backwards(i, chain, laws):
             chain[SLIP + i] = 0
@@ -85,7 +85,7 @@ def update_end(i: int, pull: float, friction: float, chain: Floats, laws: SlipLa
 
 @kernel
 def update_ends(chain: Floats, now: Moment, laws: SlipLaws) -> bool:
-    """Revise the two ends, and the tangent of a load spring that is not straight."""
+    """Let the ends slip or stick; return whether that changed, or a tangent was too far off."""
     n = laws.n
     wrong = False
     if laws.drive.given == FORCE:

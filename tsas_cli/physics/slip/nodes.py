@@ -1,10 +1,10 @@
-"""Friction of the nodes of the slip chain: what each passes on, where it sticks, what bristles do.
+"""Friction of the nodes of the slip chain: relation of tensions, stick or slip, pre-sliding.
 
-Without presliding a node sticks or slips, and the set of those that slip is searched for. With
-presliding every node slides, by a share of its limit that follows its way (Dahl's law); its
-tangent is renewed until the law holds (Newton's method). On either side of no way at all the share
-is concave towards its limit, so that from no way on the iteration does not overshoot; a step that
-would leave its side stops there first.
+Without presliding a node sticks or slips, and the active set is those that slip. With presliding
+every node slides, by a share of its limit that follows its travel (Dahl's law), and its relation is
+a tangent (Newton's method). On either side of zero travel the share is concave towards its limit,
+so that from zero on the iteration does not overshoot; a step that would change the sign of a
+travel stops at zero first.
 """
 
 import math
@@ -40,14 +40,14 @@ from tsas_cli.physics.slip.state import (
     SlipLaws,
 )
 
-MOST_WRAP = 30.0  # friction of a node times its bend, so that it passes on more than nothing
-MOST_RATIO_CHANGE = 0.5  # of the ratio that a node passes on: how far a tangent may turn it
+MOST_WRAP = 30.0  # friction of a node times its bend, so that some tension is left behind it
+MOST_RATIO_CHANGE = 0.5  # of a node's ratio of tensions: by how much a tangent may change it
 SLIDING_SHARE = 0.99  # share of its limit from which a node on a bristle is said to slip
 
 
 @kernel
 def set_friction(chain: Floats, now: Moment, laws: SlipLaws) -> None:
-    """Renew what each node's friction leaves of the tension, Eq. (7) of Yang 2025 for its bend."""
+    """Set each node's friction and its capstan ratios, Eq. (7) of Yang 2025 for its bend."""
     n = laws.n
     pulled, released = now.losses.pulled / n, now.losses.released / n
     if laws.friction_exponent == 0.0:
@@ -73,7 +73,7 @@ def set_friction(chain: Floats, now: Moment, laws: SlipLaws) -> None:
 
 @kernel
 def is_linear(laws: SlipLaws) -> bool:
-    """Say whether all that is not straight is the set of nodes that slip."""
+    """Say whether the problem is linear but for the active set."""
     return (
         laws.friction_exponent == 0.0
         and laws.presliding_mm == 0.0
@@ -93,7 +93,7 @@ def capstan_ratio(direction: float, i: int, chain: Floats) -> float:
 
 @kernel
 def update_relations(chain: Floats, now: Moment, laws: SlipLaws) -> bool:
-    """Renew what all sliding nodes pass on; return whether it differs from what was used."""
+    """Set the relations of all sliding nodes; return whether they differ from the last ones."""
     if laws.presliding_mm > 0.0:
         turned = update_travel(chain, laws)
         return set_tangent_relations(chain, now, laws) or turned
@@ -106,7 +106,7 @@ def update_relations(chain: Floats, now: Moment, laws: SlipLaws) -> bool:
 
 @kernel
 def set_capstan_relations(chain: Floats, now: Moment, laws: SlipLaws) -> bool:
-    """Set what sliding nodes pass on where that is the same of any tension."""
+    """Set the relations of sliding nodes where friction does not depend on the tension."""
     n = laws.n
     changed = False
     for i in range(1, n + 1):
@@ -121,7 +121,7 @@ def set_capstan_relations(chain: Floats, now: Moment, laws: SlipLaws) -> bool:
 
 @kernel
 def set_tangent_relations(chain: Floats, now: Moment, laws: SlipLaws) -> bool:
-    """Set what sliding nodes pass on by a tangent, all at once; a node that sticks gets one too.
+    """Set the relations of sliding nodes by tangents; a node that sticks gets one too.
 
     The tangent of (T[i] + w z/2) = E (T[i−1] − w z/2), half of the viscous loss w on either side
     of the bend, E = e^(∓a f z/n), z the share of its limit that friction has reached. Friction that
@@ -147,10 +147,10 @@ def set_tangent_relations(chain: Floats, now: Moment, laws: SlipLaws) -> bool:
         bent = wrap * ratio * laws.friction_exponent * carried / (mean if mean != 0.0 else math.inf)
         bent = min(max(bent, -MOST_RATIO_CHANGE), MOST_RATIO_CHANGE)
         inverse = 1.0 / (1.0 - bent)
-        passes = (ratio + bent) * inverse
-        chain[FACTOR + i] = passes
-        chain[DROP + i] = passes * before - behind + off * inverse
-        # How what is passed on falls with the share: what a bristle turns into a slope.
+        factor = (ratio + bent) * inverse
+        chain[FACTOR + i] = factor
+        chain[DROP + i] = factor * before - behind + off * inverse
+        # How the tension behind falls with the share; pre-sliding makes a slope over x of it.
         chain[DROP_SLOPE + i] = (
             0.5 * (1.0 + ratio) * loss + ratio * abs(carried) * limit
         ) * inverse
@@ -162,7 +162,7 @@ def set_tangent_relations(chain: Floats, now: Moment, laws: SlipLaws) -> bool:
 
 @kernel
 def add_presliding_slope(chain: Floats, laws: SlipLaws) -> None:
-    """Let what each node takes rise with its way, from where its tangent was taken."""
+    """Add how the drop of tension rises with a node's travel, from where the tangent was taken."""
     for i in range(1, laws.n + 1):
         moved = chain[TRAVEL + i]
         rate = turning_rate(chain[SHARE + i], moved, laws.presliding_mm)
@@ -172,7 +172,7 @@ def add_presliding_slope(chain: Floats, laws: SlipLaws) -> None:
 
 @kernel
 def update_travel(chain: Floats, laws: SlipLaws) -> bool:
-    """Take the nodes' ways so far, none further than to its turning; return whether one turned."""
+    """Set the nodes' travel, none past a change of its sign; return whether one was stopped so."""
     turned = 0
     for i in range(1, laws.n + 1):
         moved = chain[POSITION + i] - chain[POSITION_BEFORE + i]
@@ -186,7 +186,7 @@ def update_travel(chain: Floats, laws: SlipLaws) -> bool:
 
 @kernel
 def extrapolate(chain: Floats, laws: SlipLaws) -> None:
-    """Go on as in the last step: laws that are not straight are bent about what comes out."""
+    """Extrapolate the last step: tangents of nonlinear laws are taken there."""
     for j in range(laws.n + 2):
         chain[POSITION + j] = chain[POSITION_BEFORE + j] + chain[TRAVEL + j]
         chain[TENSION + j] = chain[TENSION_BEFORE + j] + chain[TENSION_RISE + j]
@@ -194,7 +194,7 @@ def extrapolate(chain: Floats, laws: SlipLaws) -> None:
 
 @kernel
 def accept(chain: Floats, laws: SlipLaws) -> None:
-    """Take the present state as the settled one."""
+    """Accept the present state as the solution of the step."""
     if laws.presliding_mm > 0.0:
         for i in range(1, laws.n + 1):
             share = chain[SHARE + i]
@@ -221,7 +221,7 @@ def slips_backwards(i: int, chain: Floats, laws: SlipLaws) -> bool:
 
 @kernel
 def breakaway(i: int, loss: float, chain: Floats) -> float:
-    """Return the direction in which the tensions pull a node that sticks, 0 where it holds."""
+    """Return the direction in which the tensions exceed a sticking node's friction, or 0."""
     before, behind, half = chain[TENSION + i - 1], chain[TENSION + i], 0.5 * loss
     margin = TOLERANCE * abs(before)
     if behind + half < capstan_ratio(1.0, i, chain) * (before - half) - margin:

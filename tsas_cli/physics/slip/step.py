@@ -2,10 +2,11 @@
 
 Given how the nodes slide, the chain is a row of affine relations. From the load backwards each
 segment's tension is T = (p x + q)/r with the position x of the node before it: a sliding node
-multiplies (and adds its bristle), a node that sticks starts anew, a segment adds its compliance.
+multiplies (and adds its pre-sliding), a node that sticks starts anew, a segment adds its
+compliance.
 From the drive forwards the positions follow. No sweep waits for a division at every node, and none
-can blow up: p and r are positive. Then every node is held against its own law (`nodes`), and
-those that break it are revised: an active set of those that slip, tangents of what is not straight
+can blow up: p and r are positive. Then every node is checked against its own law (`nodes`): those
+that break it enter or leave the active set of those that slip, and nonlinear laws get a new tangent
 (a semi-smooth Newton method).
 
 Signs: x grows towards the drive; a node that slips towards the drive (+1) has less tension on the
@@ -42,24 +43,24 @@ from tsas_cli.physics.slip.state import (
 )
 
 TOGETHER = 16  # nodes that share a division
-MOST_ITERATIONS = 20  # revisions of the slipping set
+MOST_ITERATIONS = 20  # changes of the active set
 MOST_SINGLE_CHANGES = 5  # more, for each node
 
 
 @kernel
 def solve_sample(chain: Floats, now: Moment, laws: SlipLaws) -> bool:
-    """Find the slipping nodes at a moment; return whether the set was found."""
+    """Solve the static problem at a moment; return whether it converged."""
     n = laws.n
     if not is_linear(laws):
         extrapolate(chain, laws)
     set_friction(chain, now, laws)
     update_relations(chain, now, laws)
-    for revision in range(MOST_ITERATIONS + MOST_SINGLE_CHANGES * n):
+    for iteration in range(MOST_ITERATIONS + MOST_SINGLE_CHANGES * n):
         sweep_to_drive(chain, now, laws)
         sweep_to_load(chain, now, laws)
         if laws.friction_exponent != 0.0:
             set_friction(chain, now, laws)
-        most = n if revision < MOST_ITERATIONS else 1  # one by one ends where all at once cycle
+        most = n if iteration < MOST_ITERATIONS else 1  # one by one ends where all at once cycle
         wrong = laws.presliding_mm == 0.0 and update_active_set(chain, now, laws, most) > 0
         wrong = update_relations(chain, now, laws) or wrong
         if not wrong or most == n:
@@ -92,7 +93,7 @@ def sweep_to_drive(chain: Floats, now: Moment, laws: SlipLaws) -> None:
 
 @kernel
 def eliminate_sliding(chain: Floats, p: float, q: float, r: float, laws: SlipLaws) -> None:
-    """Go on to the drive over nodes that slip or stick."""
+    """Sweep to the drive over nodes that slip or stick."""
     F0 = laws.preload_N
     for k in range(laws.n):
         i = laws.n - k  # node i, then the segment before it
@@ -108,7 +109,7 @@ def eliminate_sliding(chain: Floats, p: float, q: float, r: float, laws: SlipLaw
 
 @kernel
 def eliminate_presliding(chain: Floats, p: float, q: float, r: float, laws: SlipLaws) -> None:
-    """Go on to the drive over nodes on bristles, which all slide."""
+    """Sweep to the drive over nodes with presliding, which all slide."""
     F0 = laws.preload_N
     for k in range(laws.n):
         i = laws.n - k
@@ -141,7 +142,7 @@ def sweep_to_load(chain: Floats, now: Moment, laws: SlipLaws) -> None:
 
 @kernel
 def substitute_sliding(chain: Floats, laws: SlipLaws) -> None:
-    """Find places and tensions of nodes that slip or stick."""
+    """Find positions and tensions of nodes that slip or stick."""
     chain[TENSION] = (chain[SWEEP_P] * chain[POSITION] + chain[SWEEP_Q]) / chain[SWEEP_R]
     for i in range(1, laws.n + 1):
         if chain[SLIP + i] != 0.0:
@@ -157,7 +158,7 @@ def substitute_sliding(chain: Floats, laws: SlipLaws) -> None:
 
 @kernel
 def substitute_presliding(chain: Floats, laws: SlipLaws) -> None:
-    """Find places and tensions of nodes on bristles; only the places follow from each other."""
+    """Find positions and tensions of nodes with presliding; positions alone are a recursion."""
     for j in range(laws.n + 1):
         inverse = 1.0 / chain[SWEEP_R + j]
         chain[SWEEP_P + j] *= inverse
@@ -176,13 +177,13 @@ def substitute_presliding(chain: Floats, laws: SlipLaws) -> None:
 
 @kernel
 def update_active_set(chain: Floats, now: Moment, laws: SlipLaws, most: int) -> int:
-    """Free the nodes whose tensions exceed their friction, hold those that slip backwards.
+    """Let nodes slip whose tensions exceed their friction, and stick that slip backwards.
 
-    Returns how many nodes it revised, at most so many, from the drive on.
+    Returns how many nodes it changed, at most so many, from the drive on.
     """
     n = laws.n
     loss = now.losses.viscous_N / n
-    revised = 0
+    changed = 0
     for i in range(1, n + 1):
         before = chain[SLIP + i]
         if before == 0.0:
@@ -190,7 +191,7 @@ def update_active_set(chain: Floats, now: Moment, laws: SlipLaws, most: int) -> 
         elif slips_backwards(i, chain, laws):
             chain[SLIP + i] = 0.0
         if chain[SLIP + i] != before:
-            revised += 1
-            if revised == most:
+            changed += 1
+            if changed == most:
                 break
-    return revised
+    return changed
