@@ -7,14 +7,14 @@ import pytest
 
 import tsas_cli as tsas
 from tests.drives import drive_dataset
-from tsas_cli.challenge.rig.motions import nested, sine
-from tsas_cli.challenge.rig.recordings import Run, conditions, write_dataset
-from tsas_cli.challenge.rig.sensors import Sensors, measure
-from tsas_cli.challenge.rig.tendon import Rig, simulate
 from tsas_cli.diagnosis import further_runs, plan
-from tsas_cli.errors import InputError
 from tsas_cli.recordings import pieces
 from tsas_cli.recordings.dataset import read_dataset
+from tsas_cli.support.errors import InputError
+from tsas_studies.challenge.rig.motions import nested, sine
+from tsas_studies.challenge.rig.recordings import Run, conditions, write_dataset
+from tsas_studies.challenge.rig.sensors import Sensors, measure
+from tsas_studies.challenge.rig.tendon import Rig, simulate
 
 RIG = Rig(proximal_length_mm=150.0)
 SAID = "so that no sample counts twice."
