@@ -11,6 +11,7 @@ import typer
 
 import tsas_cli
 import tsas_cli.app
+import tsas_studies
 import tsas_studies.commands
 from tsas_cli.support.errors import InputError
 
@@ -67,7 +68,8 @@ def test_help_loads_no_library_that_it_does_not_need() -> None:
 
 
 def test_every_command_file_is_a_command() -> None:
-    files = {path.stem for path in (Path(tsas_cli.__file__).parent / "commands").glob("*.py")}
+    homes = (Path(package.__file__).parent for package in (tsas_cli, tsas_studies))
+    files = {path.stem for home in homes for path in (home / "commands").glob("*.py")}
     assert {name.replace("-", "_") for name in COMMANDS} == files - HELPERS
 
 

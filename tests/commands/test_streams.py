@@ -12,6 +12,7 @@ import pytest
 
 import tsas_cli
 import tsas_cli.app
+import tsas_studies
 from tests.test_app import CALLS
 from tsas_cli.records.result import Result
 
@@ -190,9 +191,10 @@ def test_the_catalogue_says_at_a_terminal_what_tells_more():
 
 
 def test_every_command_is_a_call_of_the_api():
-    commands = Path(tsas_cli.app.__file__).parent / "commands"
+    homes = [Path(package.__file__).parent / "commands" for package in (tsas_cli, tsas_studies)]
     for name in STAGES:
-        path = commands / f"{name.split()[0].replace('-', '_')}.py"
+        file = f"{name.split()[0].replace('-', '_')}.py"
+        (path,) = (home / file for home in homes if (home / file).is_file())
         text = path.read_text(encoding="utf-8")
         verb = VERBS.get(name, f"tsas_cli.{name.replace('-', '_')}").rpartition(".")[2]
         assert re.search(rf"\b{verb}\(", text)

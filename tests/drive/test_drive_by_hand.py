@@ -130,7 +130,13 @@ def searched(residual, *, noises=(1.0, 2.0)):
     size = residual.size // 2
     u = sampled(0.01, 300.0 * np.sin(0.05 * np.arange(size)), "first")
     runs = [
-        SimpleNamespace(noise_mm=noise, x_in=0.02 * u.integral, u=u, time_s=0.01 * np.arange(size))
+        SimpleNamespace(
+            noise_mm=noise,
+            x_in=0.02 * u.integral,
+            u=u,
+            time_s=0.01 * np.arange(size),
+            counts=np.ones(size, dtype=bool),
+        )
         for noise in noises
     ]
     block = np.arange(residual.size) // 10

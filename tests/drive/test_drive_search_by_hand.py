@@ -167,7 +167,7 @@ def test_each_fit_lies_ahead_once():
 def test_blocks_outlast_the_memory_of_the_best_structure(monkeypatch):
     """Residuals are split by the runs; the best one leaves least."""
     given = []
-    runs = [SimpleNamespace(x_in=np.zeros(n)) for n in (1, 2, 3)]
+    runs = [SimpleNamespace(x_in=np.zeros(n), counts=np.ones(n, dtype=bool)) for n in (1, 2, 3)]
 
     def folds(runs, residuals):
         given.append([r.tolist() for r in residuals])
@@ -197,7 +197,7 @@ def test_blocks_outlast_the_memory_of_the_best_structure(monkeypatch):
 
 
 def run_of(band, size=40):
-    return SimpleNamespace(x_in=np.zeros(size), band=band)
+    return SimpleNamespace(x_in=np.zeros(size), band=band, counts=np.ones(size, dtype=bool))
 
 
 @pytest.fixture

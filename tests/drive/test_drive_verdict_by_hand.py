@@ -322,6 +322,7 @@ def test_each_run_has_the_errors_of_both():
         x_in=np.array([1.0, 2.0]),
         u=SimpleNamespace(step_s=0.004),
         noise_mm=0.1,
+        counts=np.ones(2, dtype=bool),
         at_rest=True,
     )
     search = SimpleNamespace(bench=SimpleNamespace(runs=[run]))

@@ -180,7 +180,7 @@ def test_long_strokes_are_thinned_by_means():
 def test_segments_in_a_file_end_where_the_next_one_begins():
     segments = [p.Segment(0, 50, "dead_band_up"), p.Segment(50, 140, "contraction")]
     told = p.segment_records(resting(), segments)
-    assert [(s["start_s"], round(s["end_s"], 9), s["phase"]) for s in told] == [
+    assert [(s.start_s, round(s.end_s, 9), s.phase) for s in told] == [
         (0.0, 5.0, "dead_band_up"),
         (5.0, 13.9, "contraction"),
     ]

@@ -200,7 +200,7 @@ def parse(model: type[T], content: dict[str, Any], path: object) -> T:
         Something is missing, unknown or not allowed.
     """
     try:
-        read = model.model_validate(content)
+        read = model.model_validate(content, context={"file": path})
     except ValidationError as error:
         found = [e for e in error.errors(include_url=False) if not _follows(e)]
         said = [_sentence(e, model) for e in found[:_SAID]]

@@ -14,6 +14,7 @@ from pydantic import (
     BeforeValidator,
     ConfigDict,
     Field,
+    ValidationInfo,
     model_serializer,
     model_validator,
 )
@@ -29,8 +30,10 @@ def number_text(value: float | None, form: str = ".3g") -> str:
     return "" if value is None else f"{value:{form}}"
 
 
-def _none_if_not_finite(value: Any) -> Any:
-    return None if isinstance(value, float) and not math.isfinite(value) else value
+def _none_if_not_finite(value: Any, info: ValidationInfo) -> Any:
+    """Take a number that is not finite for none; in a file there is none, and it is refused."""
+    made = isinstance(value, float) and not (info.context or {}).get("file")
+    return None if made and not math.isfinite(value) else value
 
 
 Number = Annotated[float | None, BeforeValidator(_none_if_not_finite)]

@@ -33,7 +33,7 @@ class NominalFit(Fit):
     """How the joint fit of the nominal parameters ended, and what simulated the runs."""
 
     evaluations: int = 0
-    solver: tuple[str, ...] = ()
+    solver: tuple[str, ...] | str = ()
 
 
 class ChannelError(Record):
