@@ -205,7 +205,7 @@ def test_the_closed_loop_takes_model_plant_and_settings(tmp_path):
 def test_a_folder_of_something_else_is_not_touched(base, tmp_path):
     plan = {"stage": "check", "datasets": str(base / "rigs/a")}
     before = written(base / "rigs/a")
-    with pytest.raises(tsas.InputError, match="holds something else than an earlier sweep"):
+    with pytest.raises(tsas.InputError, match="is read, and would be replaced"):
         tsas.sweep(plan, out=base / "rigs/a", force=True)
     assert written(base / "rigs/a") == before
     (tmp_path / "file").touch()
@@ -216,7 +216,7 @@ def test_a_folder_of_something_else_is_not_touched(base, tmp_path):
 def test_two_sweeps_do_not_write_into_one_folder(base, tmp_path):
     plan = {"stage": "check", "datasets": str(base / "rigs/a")}
     with (
-        sweep_folder(tmp_path / "out"),
+        sweep_folder(tmp_path / "out", []),
         pytest.raises(tsas.InputError, match="another sweep is writing here"),
     ):
         tsas.sweep(plan, out=tmp_path / "out", workers=1)

@@ -235,7 +235,7 @@ def test_what_ends_workers_or_the_scheduler_is_told(tmp_path, shared):
 def other_version(folder):
     """Return a folder with a tsas of another version."""
     shutil.copytree(ROOT / "tsas_cli", folder / "tsas_cli", ignore=shutil.ignore_patterns("*.pyc"))
-    init = folder / "tsas_cli" / "__init__.py"
+    init = folder / "tsas_cli" / "support" / "__init__.py"
     told = init.read_text().replace(f'"{tsas.__version__}"', '"9.9.9"')
     init.write_text(told)
     return folder
