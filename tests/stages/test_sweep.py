@@ -209,7 +209,7 @@ def test_a_folder_of_something_else_is_not_touched(base, tmp_path):
         tsas.sweep(plan, out=base / "rigs/a", force=True)
     assert written(base / "rigs/a") == before
     (tmp_path / "file").touch()
-    with pytest.raises(tsas.InputError, match="file: cannot be written"):
+    with pytest.raises(tsas.InputError, match="file: is a file"):
         tsas.sweep(plan, out=tmp_path / "file")
 
 
