@@ -1,6 +1,5 @@
 # Everything that is done with this project starts here; `make` alone lists it.
 .DEFAULT_GOAL := help
-.SUFFIXES:
 MAKEFLAGS += --no-print-directory
 
 # What the others build on comes first.

@@ -25,7 +25,7 @@ challenge-ci: CHALLENGE_PART = --small --rate 100
 challenge-ci: challenge-table  ## the same on a small fixed set
 
 challenge-table: setup
-	$(TSAS) challenge make --seed $(SEED) --seeds $(SEEDS) $(CHALLENGE_PART) --out '$(CHALLENGE_OUT)/set' --force
+	$(TSAS) challenge make --seed $(SEED) --seeds $(SEEDS) $(CHALLENGE_PART) --out '$(call name,CHALLENGE_OUT)/set' --force
 	@for tool in $(CHALLENGE_TOOLS); do \
 		$(TSAS) challenge run '$(CHALLENGE_OUT)/set' --tool $$tool --out '$(CHALLENGE_OUT)'/$$tool --force || exit; \
 	done

@@ -3,12 +3,13 @@
 #
 # make close-loop                            three minutes
 CLOSE_LOOP_OUT ?= reports/close-loop
+close_loop_out := $(call target,CLOSE_LOOP_OUT)
 
 .PHONY: close-loop
-close-loop: $(CLOSE_LOOP_OUT)/report.html  ## hide effects in a rig, diagnose them, track with the better model, and report
+close-loop: $(close_loop_out)/report.html  ## hide effects in a rig, diagnose them, track with the better model, and report
 
-$(CLOSE_LOOP_OUT)/loop/closing.json: $(PROGRAM)
+$(close_loop_out)/loop/closing.json: $(PROGRAM)
 	$(TSAS) close-loop --out '$(CLOSE_LOOP_OUT)/loop' $(STAGE)
 
-$(CLOSE_LOOP_OUT)/report.html: $(CLOSE_LOOP_OUT)/loop/closing.json $(PROGRAM)
-	$(TSAS) report '$(CLOSE_LOOP_OUT)/loop' --out $@ --force
+$(close_loop_out)/report.html: $(close_loop_out)/loop/closing.json $(PROGRAM)
+	$(TSAS) report '$(CLOSE_LOOP_OUT)/loop' --out '$@' --force

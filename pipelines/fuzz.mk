@@ -4,7 +4,6 @@
 # make fuzz FUZZ_RUNS=100000 FUZZ='units'    fewer, of what is named alone
 FUZZ ?=
 FUZZ_RUNS ?= 2000000
-PROPERTIES = $(shell grep -rl --include='test_*.py' '^from hypothesis import' tests)
 
 .PHONY: fuzz properties
 fuzz: setup  ## search for input that breaks a reader, two million times; then many random tables
@@ -12,4 +11,4 @@ fuzz: setup  ## search for input that breaks a reader, two million times; then m
 	@$(MAKE) properties
 
 properties: setup  ## every property test with thousands of random examples, new ones each time
-	@TSAS_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/pytest -n 2 --hypothesis-profile=many $(PROPERTIES)
+	@TSAS_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/pytest -n 2 --hypothesis-profile=many $$(grep -rl --include='test_*.py' '^from hypothesis import' tests)

@@ -2,6 +2,9 @@
 #
 # A stamp is written last and named after what it depends on, so that a half-made, moved or
 # outdated environment is made again and a current one is left alone.
+STEPS := tsas_cli/project/make
+include $(STEPS)/names.mk
+
 PYTHON ?= python3
 BIN := .venv/bin
 TSAS := $(BIN)/tsas

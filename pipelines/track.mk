@@ -3,12 +3,13 @@
 #
 # make track                                 half a minute
 TRACK_OUT ?= reports/track
+track_out := $(call target,TRACK_OUT)
 
 .PHONY: track
-track: $(TRACK_OUT)/report.html  ## let every controller follow a wanted force on a simulated rig, and report
+track: $(track_out)/report.html  ## let every controller follow a wanted force on a simulated rig, and report
 
-$(TRACK_OUT)/compare/tracking.json: $(PROGRAM)
+$(track_out)/compare/tracking.json: $(PROGRAM)
 	$(TSAS) track --compare --out '$(TRACK_OUT)/compare' $(STAGE)
 
-$(TRACK_OUT)/report.html: $(TRACK_OUT)/compare/tracking.json $(PROGRAM)
-	$(TSAS) report '$(TRACK_OUT)/compare' --out $@ --force
+$(track_out)/report.html: $(track_out)/compare/tracking.json $(PROGRAM)
+	$(TSAS) report '$(TRACK_OUT)/compare' --out '$@' --force

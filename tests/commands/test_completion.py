@@ -53,6 +53,27 @@ def test_runs_are_those_of_the_dataset_that_was_named(monkeypatch, dataset):
     assert completed(monkeypatch, "calibrate", dataset.parent, "--runs", "a")[0] == []
 
 
+def test_a_run_that_a_shell_would_read_as_more_than_a_word_is_not_offered(tmp_path):
+    ids = [
+        "bend-90_1.5",
+        "Ü",
+        r"\$(touch ran)",
+        "`touch ran`",
+        "a;b",
+        "a b",
+        "a'",
+        "a|b",
+        "$x",
+        "*",
+    ]
+    runs = "\n".join(f"[[run]]\nid = {json.dumps(name)}" for name in ids)
+    (tmp_path / "dataset.toml").write_text(runs)
+    context = typer.Context(typer.main.get_command(typer.Typer(callback=lambda: None)))
+    context.args = [str(tmp_path)]
+    assert completion.run_ids(context, "") == ["bend-90_1.5", "Ü"]
+    assert completion.run_ids(context, r"\$") == []
+
+
 def test_what_is_named_already_is_not_offered_again():
     assert completion.controllers("pid,") == [f"pid,{name}" for name in ("all", *CONTROLLERS[1:])]
 

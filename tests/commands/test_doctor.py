@@ -62,6 +62,12 @@ def test_what_is_needed_and_missing_is_one_line_with_the_command(doctor):
     assert err.count("\n") == 1
 
 
+def test_the_command_can_be_pasted_where_python_lies_in_an_odd_folder(doctor, monkeypatch):
+    monkeypatch.setattr("sys.executable", "/opt/my $(touch ran)/python")
+    err = doctor(core=[OLD])[2]
+    assert err.endswith("; '/opt/my $(touch ran)/python' -m pip install 'scipy>=1.15'\n")
+
+
 def test_quiet_says_only_what_is_wrong(doctor):
     assert doctor("--quiet", core=[THERE], extras=[MAT]) == (0, "", "")
     code, out, err = doctor("--quiet", core=[GONE])

@@ -55,6 +55,12 @@ def test_a_file_becomes_a_dataset_that_knows_what_it_was_made_from(bench, ingest
     assert source["sha256"] == hashlib.sha256(CSV.encode()).hexdigest()
 
 
+def test_the_command_that_proposes_a_map_can_be_pasted(bench, tsas):
+    done = tsas("ingest", "$(touch ran) it's.csv", cwd=bench)
+    command = """`tsas ingest '$(touch ran) it'"'"'s.csv' --guess --out MAP.toml`"""
+    refused(done, bench, "--map is missing; ", f"; {command} proposes a map")
+
+
 def test_a_folder_is_searched_and_other_files_are_left_alone(bench, ingest):
     (bench / "runs" / "deep").mkdir(parents=True)
     (bench / "runs" / "b.CSV").write_text(CSV)

@@ -1,72 +1,15 @@
 """Which stages run again: the pipelines with a program that only notes what it is asked for."""
 
-import os
 import shutil
 import subprocess
-import time
-from pathlib import Path
 
 import pytest
 
+from tests.pipelines.bench import CHAIN, MAKE, REPOSITORY, Bench
 from tsas_cli.project.start import makefile
 
-REPOSITORY = Path(__file__).parents[2]
 STEPS = REPOSITORY / "tsas_cli" / "project" / "make"
-MAKE = shutil.which("make")
 pytestmark = pytest.mark.skipif(MAKE is None, reason="no make here: apt install make")
-
-# Writes every file that a pipeline waits for into --out, whole or, when told to fail, not at all.
-PROGRAM = """#!/bin/sh
-echo "$1" >> '{log}'
-[ "$1" = "$(cat '{fail}' 2>/dev/null)" ] && exit 2
-stage=$1
-while [ "$1" != --out ]; do shift; done
-case $stage in
-report) echo page > "$2" ;;
-*) mkdir -p "$2"
-   for name in dataset.toml check.json model.toml model-extended.toml simulation.json \\
-               diagnosis.json drive.toml tracking.json closing.json index.html; do
-       case $stage-$name in
-       ingest-dataset.toml|check-check.json|calibrate-model.toml|simulate-simulation.json|\\
-       diagnose-diagnosis.json|diagnose-model-extended.toml|identify-harmonic-drive-drive.toml|\\
-       track-tracking.json|close-loop-closing.json|reproduce-index.html) echo x > "$2/$name" ;;
-       esac
-   done ;;
-esac
-"""
-CHAIN = ["check", "calibrate", "simulate", "diagnose", "report"]
-
-
-class Bench:
-    """A folder with a program, a stamp of its sources, and calls of make that say what ran."""
-
-    def __init__(self, folder: Path) -> None:
-        self.folder, self.log, self.fail = folder, folder / "log", folder / "fail"
-        program = folder / "tsas"
-        program.write_text(PROGRAM.format(log=self.log, fail=self.fail))
-        program.chmod(0o755)
-        for i, name in enumerate(("locked", "installed", "stamp")):
-            (folder / name).touch()
-            os.utime(folder / name, (i, i))
-        self.settings = [f"TSAS={program}", f"PROGRAM={folder / 'stamp'}"]
-        self.settings += [f"INSTALLED={folder / 'installed'}", f"LOCKED={folder / 'locked'}"]
-
-    def make(self, *words: str, cwd: Path = REPOSITORY, code: int = 0) -> list[str]:
-        self.log.write_text("")
-        call = [MAKE, *words, *self.settings]
-        done = subprocess.run(call, cwd=cwd, capture_output=True, text=True, check=False)
-        assert done.returncode == code, done.stdout + done.stderr
-        return self.log.read_text().split()
-
-    def touch(self, path: str | Path) -> None:
-        (self.folder / path).touch()
-
-    def age(self, *folders: str) -> None:
-        """Make everything that was made an hour older."""
-        then = time.time() - 3600
-        for folder in folders:
-            for path in [self.folder / folder, *(self.folder / folder).rglob("*")]:
-                os.utime(path, (then, then))
 
 
 @pytest.fixture
@@ -78,7 +21,8 @@ def bench(tmp_path):
 def chain(bench):
     (bench.folder / "my data").mkdir()
     (bench.folder / "my data" / "dataset.toml").touch()
-    words = ["-f", f"{STEPS / 'chain.mk'}", "DATASET=my data", "OUT=my result", "STAGE=--force"]
+    words = [word for name in ("names.mk", "chain.mk") for word in ("-f", str(STEPS / name))]
+    words += ["DATASET=my data", "OUT=my result", "STAGE=--force"]
 
     def call(*more, code=0):
         return bench.make(*words, *more, cwd=bench.folder, code=code)
@@ -164,6 +108,26 @@ def test_a_project_looks_at_every_raw_file_and_at_those_that_go(bench, name):
     (raw / name).unlink()
     assert made() == ["ingest", *CHAIN]
     assert made() == []
+
+
+def test_a_project_follows_links_and_overlooks_what_is_no_recording(bench):
+    raw = bench.folder / "project" / "raw"
+    (raw / "deep").mkdir(parents=True)
+    for name in ("README.md", ".DS_Store"):
+        (raw / "deep" / name).touch()
+    (bench.folder / "elsewhere").mkdir()
+    (bench.folder / "elsewhere" / "a.csv").touch()
+    (raw / "a.csv").symlink_to(bench.folder / "elsewhere" / "a.csv")
+    (bench.folder / "project" / "bench.toml").touch()
+    (bench.folder / "project" / "Makefile").write_text(makefile())
+    bench.age("elsewhere")
+    assert bench.make(cwd=raw.parent) == ["ingest", *CHAIN]
+    bench.age("project")
+    for name in ("README.md", ".DS_Store"):
+        bench.touch(raw / "deep" / name)
+    assert bench.make(cwd=raw.parent) == []
+    bench.touch("elsewhere/a.csv")
+    assert bench.make(cwd=raw.parent) == ["ingest", *CHAIN]
 
 
 def test_the_settings_of_a_project_reach_its_stages(bench):

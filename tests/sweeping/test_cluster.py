@@ -11,12 +11,13 @@ import time
 from contextlib import closing
 from importlib.util import find_spec
 from threading import Thread
+from types import SimpleNamespace
 
 import pytest
 
 import tsas_cli as tsas
 from tests.sweeping.clusters import HERE, ROOT, cluster, wait_for
-from tsas_cli.sweeping.cluster import _refuse, on_cluster
+from tsas_cli.sweeping.cluster import _refuse, _refuse_workers, on_cluster
 from tsas_cli.sweeping.versions import versions
 
 pytestmark = [
@@ -203,6 +204,12 @@ def test_a_worker_whose_algebra_takes_more_threads_is_named(shared):
     with pytest.raises(tsas.InputError, match="worker w: OPENBLAS_NUM_THREADS is 4; expected 1"):
         _refuse(found, "worker w", shared, "dask worker")
     _refuse(found | {"threads": "1"}, "worker w", shared, "dask worker")
+
+
+def test_the_command_that_starts_workers_can_be_pasted(shared):
+    empty = SimpleNamespace(scheduler_info=lambda n_workers: {"workers": {}})
+    with pytest.raises(tsas.InputError, match=r"dask worker 'tcp://a:1;touch ran' --nthreads 1"):
+        _refuse_workers(empty, "tcp://a:1;touch ran", shared)
 
 
 def test_what_ends_workers_or_the_scheduler_is_told(tmp_path, shared):

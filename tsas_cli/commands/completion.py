@@ -1,5 +1,6 @@
 """What a shell completes beside options and files; nothing here loads a heavy library."""
 
+import re
 import tomllib
 from collections.abc import Sequence
 from pathlib import Path
@@ -14,6 +15,7 @@ from tsas_cli.support.errors import InputError
 from tsas_cli.tracking import SHAPE_NAMES
 
 ABOUT_EFFECTS = {"__init__", "effect"}  # files beside those of the effects
+_PLAIN = re.compile(r"[\w@%+:./-]+")  # no shell reads more in it than a word
 
 
 def effect_names(incomplete: str) -> list[str]:
@@ -34,7 +36,11 @@ def references(incomplete: str) -> list[str]:
 
 
 def run_ids(context: typer.Context, incomplete: str) -> list[str]:
-    """Return the lists of runs that continue what is there, of the dataset that was named."""
+    """Return the lists of runs that continue what is there, of the dataset that was named.
+
+    A shell puts them into a command as they are, and some evaluate them before: an id that a shell
+    would read as more than a word is left out.
+    """
     manifests = (Path(word) / "dataset.toml" for word in context.args)
     manifest = next((path for path in manifests if path.is_file()), None)
     if manifest is None:
@@ -46,7 +52,7 @@ def run_ids(context: typer.Context, incomplete: str) -> list[str]:
         ids = [str(run["id"]) for run in runs]
     except (KeyError, TypeError, OSError, ValueError, RecursionError, InputError):
         return []  # what is wrong with it, the command will say
-    return _continued(ids, incomplete)
+    return _continued([name for name in ids if _PLAIN.fullmatch(name)], incomplete)
 
 
 def run_columns(incomplete: str) -> list[str]:

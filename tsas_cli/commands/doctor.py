@@ -1,5 +1,6 @@
 """`tsas doctor`: what is installed, what is missing, and what to do about it."""
 
+import shlex
 import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict
@@ -69,5 +70,4 @@ def _install(extra: "Extra") -> str:
 
 
 def _pip(requirements: Sequence[str]) -> str:
-    wanted = " ".join(f"'{requirement}'" for requirement in requirements)
-    return f"{sys.executable} -m pip install {wanted}"
+    return shlex.join([sys.executable, "-m", "pip", "install", *requirements])

@@ -1,5 +1,6 @@
 """`tsas ingest`: from a person's files to a dataset."""
 
+import shlex
 from pathlib import Path
 from typing import Annotated
 
@@ -39,10 +40,11 @@ def ingest(
             )
         result = tsas.guess(sources, out=out, force=force)
     elif map_path is None or out is None:
+        source = shlex.quote(str(sources[0]))
         raise InputError(
             f"--{'out' if map_path else 'map'} is missing",
             expected="--map MAP.toml --out DATASET",
-            remedy=f"`tsas ingest {sources[0]} --guess --out MAP.toml` proposes a map",
+            remedy=f"`tsas ingest {source} --guess --out MAP.toml` proposes a map",
         )
     else:
         with progress("ingest", quiet=quiet) as step:

@@ -1,5 +1,6 @@
 """`tsas init`: a project of a person's own, from recordings to a page by `make`."""
 
+import shlex
 from pathlib import Path
 from typing import Annotated
 
@@ -7,6 +8,7 @@ import typer
 
 from tsas_cli.commands.common import Json, Quiet, show
 from tsas_cli.support import __version__
+from tsas_cli.support.errors import printable
 
 
 def init(
@@ -36,5 +38,5 @@ def init(
     tables = [(f"project {folder}", ("file",), [(name,) for name in files])]
     show(summary, tables, quiet=quiet, as_json=as_json)
     if not quiet and not as_json:
-        answer = f"answer the questions in {folder / MAP}, then "
-        print(f"Next: {answer if asked or not proposal else ''}`make -C {folder}`")
+        answer = f"answer the questions in {folder / MAP}, then " if asked or not proposal else ""
+        print(printable(f"Next: {answer}`make -C {shlex.quote(str(folder))}`"))

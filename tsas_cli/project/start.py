@@ -5,15 +5,17 @@ import shutil
 from collections.abc import Sequence
 from pathlib import Path
 
+import tomlkit
+
 from tsas_cli.recordings.guess.proposal import Proposal, propose
 from tsas_cli.recordings.guess.text import map_text
 from tsas_cli.recordings.ingest import find_files
-from tsas_cli.support.errors import InputError
+from tsas_cli.support.errors import InputError, printable
 from tsas_cli.support.files import new_file, new_folder
 from tsas_cli.support.temporaries import sweep
 
 HERE = Path(__file__).parent
-MAKE = ("settings.mk", "chain.mk", "ingest.mk")
+MAKE = ("settings.mk", "names.mk", "chain.mk", "ingest.mk")
 MAP, RAW = "bench.toml", "raw"
 
 
@@ -34,7 +36,8 @@ def start(folder: Path, sources: Sequence[Path]) -> tuple[list[str], Proposal | 
         A file of that name is there with something else in it, a source cannot be read, or two
         have the same name.
     """
-    name = folder.resolve().name or "bench"
+    name = printable(folder.resolve().name) or "bench"
+    quoted = tomlkit.item(name).as_string()
     texts = {
         "Makefile": makefile(),
         "README.md": _file("README.md", name),
@@ -43,7 +46,7 @@ def start(folder: Path, sources: Sequence[Path]) -> tuple[list[str], Proposal | 
     }
     copies = _copies(sources, folder)
     proposal = propose(find_files(sources, "*")) if sources else None
-    texts[MAP] = map_text(proposal) if proposal else _file("bench.toml", name)
+    texts[MAP] = map_text(proposal) if proposal else _file("bench.toml", quoted)
     there = _there(folder, texts, copies)
     if folder.exists():
         for home in {folder.parent, *((folder / place).parent for place in (*texts, *copies))}:

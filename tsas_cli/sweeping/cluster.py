@@ -7,6 +7,7 @@ that all have to see them under the same paths.
 import json
 import logging
 import re
+import shlex
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -105,7 +106,7 @@ def _refuse_workers(client: "Client", address: str, shared: Path) -> None:
     """Stop before anything is done where somebody would do it otherwise, or not at all."""
     told = client.scheduler_info(n_workers=-1)["workers"]
     environment = " ".join(f"{name}={value}" for name, value in ONE_THREAD.items())
-    start = START.format(environment=environment, address=address)
+    start = START.format(environment=environment, address=shlex.quote(address))
     if not told:
         raise InputError(
             "the scheduler has no workers", where=address, remedy=f"start some with `{start}`"

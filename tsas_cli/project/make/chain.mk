@@ -1,14 +1,14 @@
 # From a dataset to a page: check, calibrate, simulate, diagnose, report. A step writes its folder
 # whole or not at all, so that one file stands for all of it.
-data := $(subst $() ,\ ,$(DATASET))
-made := $(subst $() ,\ ,$(OUT))
+data := $(call target,DATASET)
+made := $(call target,OUT)
 
 .DEFAULT_GOAL = all
 .PHONY: all
 all: $(made)/report.html
 
 # What a step was told, kept as a file's name, so that another dataset or option is seen.
-told = $(made)/.$(1)-$(shell printf %s '$(2)' | cksum | cut -d ' ' -f 1)
+told = $(made)/.$(1)-$(shell printf %s $(call quoted,$(2)) | cksum | cut -d ' ' -f 1)
 $(made)/.%:
 	@mkdir -p '$(OUT)' && rm -f '$(OUT)'/.$(firstword $(subst -, ,$*))-* && touch '$@'
 

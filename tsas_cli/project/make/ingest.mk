@@ -1,6 +1,7 @@
-# From files and a map to a dataset. Folders are asked for their time too, which changes when a file
-# comes or goes.
-raw := $(shell find '$(RAW)' ! -name '.*' ! -name 'README*' | sed 's/[] :*?[]/\\&/g')
+# From files and a map to a dataset. No name of a file in RAW comes here: `find` says whether one is
+# newer than the dataset, or a folder, whose time changes when a file comes or goes.
+newer := $(shell test ! -e '$(DATASET)/dataset.toml' || test -z "$$(find -L '$(call name,RAW)' ! -name '.*' ! -name 'README*' -newer '$(DATASET)/dataset.toml' | head -n 1)" || echo newer-files)
+.PHONY: newer-files
 
-$(data)/dataset.toml: $(subst $() ,\ ,$(MAP)) $(raw) $(call told,ingest,$(RAW) $(MAP) $(DATASET)) $(PROGRAM)
+$(data)/dataset.toml: $(call target,MAP) $(newer) $(call told,ingest,$(RAW) $(MAP) $(DATASET)) $(PROGRAM)
 	$(TSAS) ingest '$(RAW)' --map '$(MAP)' --out '$(DATASET)' --force

@@ -19,5 +19,3 @@ STAGE = --rrd --force
 CALIBRATE =
 SIMULATE =
 DIAGNOSE =
-
-.SUFFIXES:
