@@ -67,7 +67,7 @@ class Finding:
     column: str | None
     sentence: str
     remedy: str
-    first_s: float | None
+    first_s: float | None = None
 
 
 @dataclass(frozen=True)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import tsas_cli as tsas
+from tests.drives import STIFF, columns, speeds
 from tests.recordings.quality.copies.made import (
     dataset,
     later,
@@ -14,9 +15,11 @@ from tests.recordings.quality.copies.made import (
     rows,
 )
 from tsas_cli.recordings import pieces
+from tsas_studies.challenge.rig.drive import Gear
 
 A, OTHER = recorded(1), recorded(2)
 N, T = A["time_s"].size, A["time_s"][-1]
+DRIVEN = ("time_s", "x_in_mm", "f_in_N")
 HALF, PART = rows(A, 0, 1000), rows(A, 700, N)
 
 
@@ -74,14 +77,18 @@ def test_two_runs_share_a_stretch_on_different_clocks(tmp_path):
         ((_, run, sentence),) = said(dataset(tmp_path, **runs))
         assert run == "b"
         times = "from 7.01 s to 9.97596 s"
-        assert sentence == f"holds, {times}, the samples of run a, resampled at 61.7 Hz {times}"
+        assert sentence == f"holds, {times}, the samples of run a {times}, resampled at 61.7 Hz"
 
 
-def test_the_same_samples_under_other_conditions_are_an_error(tmp_path):
+def test_the_copies_under_other_conditions_are_an_error(tmp_path):
     data = dataset(tmp_path, {"b": {"total_bend_rad": 1.0}}, a=A, b=later(A, 1.0))
     ((severity, run, sentence),) = said(data)
     assert (severity, run) == ("error", "b")
     assert sentence.endswith(", but the manifest says total_bend_rad = 1 here and 3.1416 there")
+    rounded_bend = dataset(
+        tmp_path / "rounded", {"b": {"total_bend_rad": 3.14}}, a=A, b=later(A, 1.0)
+    )
+    assert [severity for severity, *_ in said(rounded_bend)] == ["warning"]
 
 
 def test_a_slow_channel_is_compared_where_it_was_recorded(tmp_path):
@@ -196,3 +203,25 @@ def test_runs_computed_without_noise_are_copies_where_they_agree(tmp_path):
 @pytest.mark.parametrize("name", ["paper-groups", "drive-chirp"])
 def test_the_shipped_datasets_hold_no_copies(name):
     assert not said(f"datasets/{name}")
+
+
+def test_a_command_beside_a_coarse_force_is_repeated_by_every_repeat(tmp_path):
+    """The force takes a dozen levels: in repeats single samples differ, but for those it is one."""
+
+    def repeat(k):
+        run = recorded(k, noise_mm=0.0, noise_N=1e-3, step_N=5.0)
+        run["f_in_N"][100 + k] += 5.0
+        return {name: run[name] for name in DRIVEN}
+
+    assert not said(dataset(tmp_path, **{f"r{k}": repeat(k) for k in range(3)}))
+
+
+def test_a_piece_of_a_drive_that_is_commanded_in_steps_is_found(tmp_path):
+    """The command takes few levels, by which no sample is told from others."""
+    time_s, speed = speeds(1)["steps"]
+
+    def drive(seed):
+        return columns(STIFF, Gear(), time_s, speed, seed)
+
+    found = said(dataset(tmp_path, a=drive(1), b=rows(drive(1), 1000, 4000), c=drive(2)))
+    assert found == [("warning", "b", "holds the samples of run a from 2 s to 7.998 s")]

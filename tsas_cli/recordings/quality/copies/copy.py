@@ -1,11 +1,13 @@
 """A copy: which run holds which stretch of which other run, in what form."""
 
+import math
 from dataclasses import dataclass
 
 from tsas_cli.recordings.dataset import CONDITIONS
 from tsas_cli.recordings.manifest import Run
 
 WHOLE = 0.98  # of a run's samples: what is left of it is its edges
+ROUNDED = 1e-3  # of a condition: 3.14 rad is π
 ORDINALS = {1: "st", 2: "nd", 3: "rd"}
 
 
@@ -69,12 +71,12 @@ class Copy:
         there = (self.span.begin_s + self.shift_s, self.span.end_s + self.shift_s)
         there_s = f"from {there[0]:.6g} s to {there[1]:.6g} s"
         if not self.whole:
-            return f"holds, {here}, {self._samples} {there_s}"
+            return f"holds, {here}, {self._samples} {there_s}{self._resampled}"
         if self.span.lasts_s < WHOLE * self.all_of_other.lasts_s:
-            return f"holds {self._samples} {there_s}"
+            return f"holds {self._samples} {there_s}{self._resampled}"
         shifted = abs(self.shift_s) * self.all_of_run.rows > self.all_of_run.lasts_s
         by = f", its time shifted by {-self.shift_s:.6g} s" if shifted else ""
-        return f"holds {self._samples}{by}"
+        return f"holds {self._samples}{self._resampled}{by}"
 
     @property
     def contradiction(self) -> str:
@@ -89,14 +91,17 @@ class Copy:
     @property
     def _samples(self) -> str:
         other = f"run {self.other.id}"
-        if self.every == 1:
+        if self.every < 2:
             return f"the samples of {other}"
-        if self.every > 1:
-            tens = self.every % 100 in (11, 12, 13)
-            ordinal = "th" if tens else ORDINALS.get(self.every % 10, "th")
-            return f"every {self.every}{ordinal} sample of {other}"
-        rate_Hz = (self.all_of_run.rows - 1) / self.all_of_run.lasts_s
-        return f"the samples of {other}, resampled at {rate_Hz:.5g} Hz"
+        tens = self.every % 100 in (11, 12, 13)
+        ordinal = "th" if tens else ORDINALS.get(self.every % 10, "th")
+        return f"every {self.every}{ordinal} sample of {other}"
+
+    @property
+    def _resampled(self) -> str:
+        if self.every > 0:
+            return ""
+        return f", resampled at {(self.all_of_run.rows - 1) / self.all_of_run.lasts_s:.5g} Hz"
 
 
 def _text(value: float | str) -> str:
@@ -104,6 +109,11 @@ def _text(value: float | str) -> str:
 
 
 def contradictions(run: Run, other: Run) -> tuple[str, ...]:
-    """Return the conditions that two runs state differently."""
-    stated = [(name, getattr(run, name), getattr(other, name)) for name in (*CONDITIONS, "load")]
-    return tuple(name for name, a, b in stated if a is not None and b is not None and a != b)
+    """Return the conditions that two runs state differently, more than by rounding."""
+    stated = [(name, getattr(run, name), getattr(other, name)) for name in CONDITIONS]
+    different = [
+        name
+        for name, a, b in stated
+        if not (a is None or b is None or math.isclose(a, b, rel_tol=ROUNDED))
+    ]
+    return (*different, "load") if run.load != other.load else tuple(different)

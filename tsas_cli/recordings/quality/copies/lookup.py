@@ -46,8 +46,8 @@ class Shift:
 class Lookup:
     """A source's samples, ready for stretches of others to be looked up."""
 
-    def __init__(self, source: Samples, tolerance: Floats, noise: Floats, spans: Floats) -> None:
-        """Take the source, at least two samples, and tolerance, noise and span of each channel.
+    def __init__(self, source: Samples, tolerance: Floats, noise: Floats) -> None:
+        """Take the source, at least two samples, and tolerance and noise of each channel.
 
         The noise is 0 where none of the channels shows it.
         """
@@ -55,9 +55,13 @@ class Lookup:
         self.enough = MOST_LOOSE if noise.any() else NEARLY_ALL
         self.loose = tolerance + LOOSE * noise
         self.nearly_s = NEARLY * float(np.median(np.diff(source.time_s)))
-        self.channel = int(np.argmax(spans / self.loose))  # the one that tells samples apart best
         whole: Mask = np.all(np.isfinite(source.values), axis=1)
         pieces = np.flatnonzero(whole[1:] & whole[:-1])
+        some = source.values[pieces[:: 1 + pieces.size // BLOCK]]
+        # The one that tells samples apart best.
+        self.channel = int(
+            np.argmin([_crowd(*each) for each in zip(some.T, self.loose, strict=True)])
+        )
         values = source.values[:, self.channel]
         ends = values[pieces], values[pieces + 1]
         wide = self.loose[self.channel]
@@ -141,6 +145,14 @@ class Lookup:
             if found.agrees.mean() >= MOST_TIGHT:
                 return Shift(seconds + by_s, spline)
         return None
+
+
+def _crowd(values: Floats, apart: float) -> float:
+    """Return the mean number of samples beside a sample, as close as can be told apart."""
+    if values.size == 0:
+        return 0.0
+    width = max(float(np.ptp(values)) / BINS, apart)
+    return float(np.sum(np.bincount(((values - values.min()) / width).astype(np.int64)) ** 2.0))
 
 
 class _Bins:

@@ -101,8 +101,12 @@ def _search(reader: Reader, known: Sequence[Fingerprint], order: dict[str, int])
                 whole[copy.run.id] = copy
             else:
                 parts.append(copy)
-    kept = [c for c in parts if not {c.run.id, c.other.id} & whole.keys()]
-    return [*whole.values(), *_once(kept, order)]
+    kept = {
+        (c.run.id, c.other.id, c.span): c
+        for c in parts
+        if not {c.run.id, c.other.id} & whole.keys()
+    }
+    return [*whole.values(), *_once(list(kept.values()), order)]
 
 
 def _once(parts: Sequence[Copy], order: dict[str, int]) -> list[Copy]:
@@ -133,6 +137,9 @@ def _in_source(
                 if not any(_overlap(copy.span, span) for span in taken):
                     taken.append(copy.span)
                     yield copy
+                    if not copy.whole:  # the source may be a piece of it
+                        back = Shift(-shift.seconds, shift.spline)
+                        yield from _held_against(reader, others[run], source, back)
             if sum(span.rows for span in taken) == others[run].all.rows:
                 break
 
@@ -200,7 +207,6 @@ def _places(
                 np.array([source.channels[n].tolerance(group.steps[n]) for n in names]),
                 # Coarse samples lie loosely on those of any repeat.
                 np.array([channel.noise if source.noisy else 0.0 for channel in fine]),
-                np.array([channel.span for channel in fine]),
             )
             columns = [one.dense.index(name) for name in names]
             owner = group.owner[asked]
