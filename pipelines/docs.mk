@@ -9,3 +9,4 @@ docs-examples: setup  ## run every example of the documentation, the long ones t
 docs-refill: setup  ## write what the examples print now into the pages, and draw the pictures again
 	@$(BIN)/python -m docs.examples --long --refill
 	@$(BIN)/python -m docs.before_after
+	@$(BIN)/python -m docs.house
