@@ -40,7 +40,8 @@ def summary(room: str) -> str:
     path = ROOT.joinpath(*room.split("."))
     source = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
     text = ast.get_docstring(ast.parse(source.read_text(encoding="utf-8")))
-    assert text, source
+    if not text:
+        raise SystemExit(f"{source} has no docstring")
     return text.splitlines()[0].replace("`", "").removesuffix(".")
 
 
@@ -53,12 +54,11 @@ def svg() -> str:
         height = LINE * (1 + max(map(len, texts))) + 12
         for i, (room, lines) in enumerate(zip(floor, texts, strict=True)):
             left = MARGIN + i * (width + GAP)
-            name = room.removeprefix("tsas_cli.")
-            is_package = ROOT.joinpath(*room.split(".")).is_dir()
+            suffix = "/" if ROOT.joinpath(*room.split(".")).is_dir() else ".py"
+            name = room.removeprefix("tsas_cli.") + suffix
             parts += [
                 f'<rect x="{left:.1f}" y="{top}" width="{width:.1f}" height="{height}" rx="4"/>',
-                f'<text class="name" x="{left + 8:.1f}" y="{top + 18}">'
-                f"{name}{'/' if is_package else '.py'}</text>",
+                f'<text class="name" x="{left + 8:.1f}" y="{top + 18}">{name}</text>',
             ]
             parts += [
                 f'<text x="{left + 8:.1f}" y="{top + 18 + LINE * (k + 1)}">{escape(line)}</text>'
