@@ -5,7 +5,7 @@ import math
 import pytest
 
 from tsas_cli.controllers import CONTROLLERS
-from tsas_cli.controllers.closed_loop import ADAPTIVE, OBSERVER, PID, SLIDING
+from tsas_cli.controllers.laws import ADAPTIVE, OBSERVER, PID, SLIDING
 from tsas_cli.support.errors import InputError
 from tsas_cli.tracking.settings import Settings, printed_gains, read_settings
 

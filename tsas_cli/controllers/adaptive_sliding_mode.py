@@ -8,17 +8,22 @@ When it fails: noise in s drives the estimates though nothing is to be learned; 
 not excite a parameter lets it wander between its bounds.
 """
 
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple, Self
+
+from pydantic import model_validator
 
 from tsas_cli.controllers.signals import Floats, Signals
 from tsas_cli.controllers.sliding_mode import (
+    MM_PER_M,
     Phi,
+    SlidingSettings,
     Surface,
     distance,
     sliding_mode,
     wanted_jerk,
 )
 from tsas_cli.numerics.compiled import kernel
+from tsas_cli.paper.settings import printed, printed_three
 
 PHI = 0  # of the memory: the three estimates
 
@@ -31,6 +36,31 @@ class AdaptiveSlidingMode(NamedTuple):
     lowest: Phi
     highest: Phi
     psi: Phi
+
+
+class AdaptiveSettings(SlidingSettings):
+    """Gains of the paper, ks read per metre; bounds are those of Table 4."""
+
+    COLUMNS: ClassVar = ("phi1_rpm_s3_per_mm", "phi2_rpm_s_per_mm", "phi3_rpm_s2_per_mm")
+    c1: float = printed("controllers.adaptive_sliding_mode.c1", gt=0)
+    c2: float = printed("controllers.adaptive_sliding_mode.c2", gt=0)
+    epsilon_rpm: float = printed("controllers.adaptive_sliding_mode.epsilon", ge=0)
+    ks: float = printed("controllers.adaptive_sliding_mode.ks", 1.0 / MM_PER_M, ge=0)
+    lowest: tuple[float, float, float] = printed_three("adaptation.phi{}.lower")
+    highest: tuple[float, float, float] = printed_three("adaptation.phi{}.upper")
+    psi: tuple[float, float, float] = printed_three("controllers.adaptive_sliding_mode.psi{}")
+
+    @model_validator(mode="after")
+    def _start_within_bounds(self) -> Self:
+        ordered = zip(self.lowest, self.phi, self.highest, strict=True)
+        if not all(low <= start <= high for low, start, high in ordered):
+            raise ValueError("phi must lie between lowest and highest")
+        return self
+
+    def law(self) -> AdaptiveSlidingMode:  # type: ignore[override] # another record of gains
+        """Return the gains as the kernel takes them."""
+        start, low, high = Phi(*self.phi), Phi(*self.lowest), Phi(*self.highest)
+        return AdaptiveSlidingMode(self.surface(), start, low, high, Phi(*self.psi))
 
 
 @kernel

@@ -9,14 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tsas_cli.controllers.adaptive_sliding_mode import (
-    AdaptiveSlidingMode,
-    adaptive_sliding_mode,
-)
-from tsas_cli.controllers.disturbance_observer import DisturbanceObserver, disturbance_observer
-from tsas_cli.controllers.pid import Pid, pid
+from tsas_cli.controllers.laws import MEMORY, ControlLaws, control, initial_memory
 from tsas_cli.controllers.signals import Floats, Signals, filtered
-from tsas_cli.controllers.sliding_mode import SlidingMode, distance, sliding_mode
 from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.boundary import FORCE, SPRING, Boundary
@@ -43,8 +37,6 @@ from tsas_cli.physics.slip.start import set_compliances, slip_laws
 from tsas_cli.physics.slip.state import POSITION, Moment
 
 DRIVEN = Boundary(FORCE, SPRING)  # the tendon in the plant
-PID, SLIDING, ADAPTIVE, OBSERVER = range(4)
-MEMORY = 3
 STEPS_TO_START = 200
 (
     X_IN,
@@ -60,16 +52,6 @@ MEMORY_AT = 8
 COLUMNS = MEMORY_AT + MEMORY
 RUNAWAY_MM = 1e3  # from the wanted place, at which a run has diverged
 GIVEN_UP = 0.01  # of the steps: where more do not settle, the tendon is not followed any further
-
-
-class ControlLaws(NamedTuple):
-    """Every controller's settings, and which of them is at work."""
-
-    kind: int
-    pid: Pid
-    sliding_mode: SlidingMode
-    adaptive_sliding_mode: AdaptiveSlidingMode
-    disturbance_observer: DisturbanceObserver
 
 
 class Wanted(NamedTuple):
@@ -124,21 +106,6 @@ def followed_from(drive_mm: float, rig: Rig, actuator: Actuator, n: int) -> Plan
 
 
 @kernel
-def control(seen: Signals, laws: ControlLaws, memory: Floats, step_s: float) -> tuple[float, float]:
-    """Return the motor speed beside the feedforward [rpm], and s where there is a surface."""
-    if laws.kind == PID:
-        return pid(seen, laws.pid, memory, step_s), 0.0
-    if laws.kind == SLIDING:
-        sliding = laws.sliding_mode
-        return sliding_mode(seen, sliding.surface, sliding.phi), distance(seen, sliding.surface)
-    if laws.kind == ADAPTIVE:
-        adaptive = laws.adaptive_sliding_mode
-        u = adaptive_sliding_mode(seen, adaptive, memory, step_s)
-        return u, distance(seen, adaptive.surface)
-    return disturbance_observer(seen, laws.disturbance_observer, memory, step_s), 0.0
-
-
-@kernel
 def close_loop(
     wanted: Wanted,
     sensor: DriveSensor,
@@ -156,9 +123,7 @@ def close_loop(
     m = path.shape[1]
     columns = np.zeros((COLUMNS, m))
     memory, state = np.zeros(MEMORY), np.zeros(3)
-    if laws.kind == ADAPTIVE:
-        start = laws.adaptive_sliding_mode.start
-        memory[0], memory[1], memory[2] = start.phi1, start.phi2, start.phi3
+    initial_memory(laws, memory)
     rig = plant.rigs[0]
     chain_laws = slip_laws(rig, n, DRIVEN)
     now = Moment(table.f_in, 0.0, Losses(0.0, 0.0, 0.0, 0.0), np.inf)

@@ -9,10 +9,13 @@ When it fails: ω_o near the resonance of gear and turntable (88 Hz for the driv
 above a third of the sampling rate.
 """
 
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
+
+from pydantic import Field
 
 from tsas_cli.controllers.signals import Floats, Signals
 from tsas_cli.numerics.compiled import kernel
+from tsas_cli.paper.settings import SettingsTable
 
 ERROR, DISTURBANCE = 0, 1  # of the memory
 
@@ -23,6 +26,18 @@ class DisturbanceObserver(NamedTuple):
     loop_rad_per_s: float
     observer_rad_per_s: float
     gain_mm_per_s_rpm: float
+
+
+class ObserverSettings(SettingsTable):
+    """Bandwidths of loop and observer."""
+
+    COLUMNS: ClassVar = ("error_estimate_mm", "disturbance_rpm")
+    loop_rad_per_s: float = Field(default=10.0, gt=0)
+    observer_rad_per_s: float = Field(default=40.0, gt=0)
+
+    def law(self, gain_mm_per_s_rpm: float) -> DisturbanceObserver:
+        """Return the gains as the kernel takes them; the drive's gain is that of its model."""
+        return DisturbanceObserver(self.loop_rad_per_s, self.observer_rad_per_s, gain_mm_per_s_rpm)
 
 
 @kernel

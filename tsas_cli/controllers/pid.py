@@ -7,10 +7,11 @@ seconds to go.
 When it fails: disturbances faster than the loop; a rate taken from a noisy x_in.
 """
 
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 from tsas_cli.controllers.signals import Floats, Signals
 from tsas_cli.numerics.compiled import kernel
+from tsas_cli.paper.settings import SettingsTable, printed
 
 SUM = 0  # of the memory: ∫e dt [mm s]
 
@@ -21,6 +22,19 @@ class Pid(NamedTuple):
     proportional_rpm_per_mm: float = 25.0
     integral_rpm_per_mm_s: float = 65.0
     derivative_rpm_s_per_mm: float = 1.0
+
+
+class PidSettings(SettingsTable):
+    """Gains of the paper; e in mm, u in rpm."""
+
+    COLUMNS: ClassVar = ("error_sum_mm_s",)  # of the recording: what the memory holds
+    proportional_rpm_per_mm: float = printed("controllers.pid.proportional")
+    integral_rpm_per_mm_s: float = printed("controllers.pid.integral")
+    derivative_rpm_s_per_mm: float = printed("controllers.pid.derivative")
+
+    def law(self) -> Pid:
+        """Return the gains as the kernel takes them."""
+        return Pid(**self.model_dump())
 
 
 @kernel

@@ -9,10 +9,15 @@ When it fails: where the filtered loop is too fast for the drive's resonance or 
 is a relay that the motor's limit alone tames; where c2² < 4 c1 the error rings on the surface.
 """
 
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
+
+from pydantic import Field
 
 from tsas_cli.controllers.signals import Signals
 from tsas_cli.numerics.compiled import kernel
+from tsas_cli.paper.settings import SettingsTable, printed, printed_three
+
+MM_PER_M = 1e3
 
 
 class Surface(NamedTuple):
@@ -38,6 +43,26 @@ class SlidingMode(NamedTuple):
 
     surface: Surface
     phi: Phi
+
+
+class SlidingSettings(SettingsTable):
+    """Gains of the paper, ks read per metre; the parameters are where Table 4 starts."""
+
+    COLUMNS: ClassVar[tuple[str, ...]] = ()
+    c1: float = printed("controllers.sliding_mode.c1", gt=0)
+    c2: float = printed("controllers.sliding_mode.c2", gt=0)
+    epsilon_rpm: float = printed("controllers.sliding_mode.epsilon", ge=0)
+    ks: float = printed("controllers.sliding_mode.ks", 1.0 / MM_PER_M, ge=0)
+    boundary_mm_per_s2: float = Field(default=80.0, gt=0)
+    phi: tuple[float, float, float] = printed_three("adaptation.phi{}.initial")
+
+    def surface(self) -> Surface:
+        """Return the sliding surface as the kernel takes it."""
+        return Surface(self.c1, self.c2, self.epsilon_rpm, self.ks, self.boundary_mm_per_s2)
+
+    def law(self) -> SlidingMode:
+        """Return the gains as the kernel takes them."""
+        return SlidingMode(self.surface(), Phi(*self.phi))
 
 
 @kernel

@@ -16,6 +16,7 @@ from tsas_cli.controllers.closed_loop import (
     X_SEEN,
 )
 from tsas_cli.controllers.path import DrivePath
+from tsas_cli.controllers.sliding_mode import SlidingSettings
 from tsas_cli.identification.model import Model, data_sheet
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.sensors import reading
@@ -27,12 +28,6 @@ from tsas_cli.tracking.track import Tracked
 Floats = npt.NDArray[np.float64]
 NO_CHECKSUM = "0" * 64  # until the run's file is written
 NOISE = 1  # of the streams of a seed; the loop's own is another
-MEMORIES = {
-    "pid": ("error_sum_mm_s",),
-    "adaptive-sliding-mode": ("phi1_rpm_s3_per_mm", "phi2_rpm_s_per_mm", "phi3_rpm_s2_per_mm"),
-    "disturbance-observer": ("error_estimate_mm", "disturbance_rpm"),
-}
-SURFACES = ("sliding-mode", "adaptive-sliding-mode")
 
 
 def table_of(
@@ -57,9 +52,10 @@ def table_of(
         "f_out_true_N": columns[F_OUT],
         "x_inv_mm": path.drive[0, : time_s.size],
     }
-    if controller in SURFACES:
+    gains = settings.controllers.of(controller)
+    if isinstance(gains, SlidingSettings):
         table["sliding_distance_mm_per_s2"] = columns[DISTANCE]
-    for i, name in enumerate(MEMORIES.get(controller, ())):
+    for i, name in enumerate(gains.COLUMNS):
         table[name] = columns[MEMORY_AT + i]
     return pa.table({name: pa.array(values) for name, values in table.items()})
 

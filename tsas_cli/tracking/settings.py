@@ -10,42 +10,19 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import Field
 
-from tsas_cli.controllers import CONTROLLERS
-from tsas_cli.controllers.adaptive_sliding_mode import AdaptiveSlidingMode
-from tsas_cli.controllers.closed_loop import ControlLaws
-from tsas_cli.controllers.disturbance_observer import DisturbanceObserver
-from tsas_cli.controllers.pid import Pid
-from tsas_cli.controllers.sliding_mode import Phi, SlidingMode, Surface
-from tsas_cli.paper import yang2025
+from tsas_cli.controllers.laws import ControlLaws, ControllerSettings
+from tsas_cli.controllers.sliding_mode import MM_PER_M
+from tsas_cli.paper.settings import SettingsTable, printed
 from tsas_cli.physics.closed_form.capstan import speed_per_stiffness
 from tsas_cli.physics.plant.turntable import Actuator
 from tsas_cli.recordings.manifest import parse, read_toml
 
-MM_PER_M = 1e3
 LONGEST_S = 3600.0  # of a wanted force
 
 
-def printed(name: str, factor: float = 1.0, **limits: Any) -> Any:
-    """Return a field whose default is a number that the paper prints."""
-    return Field(default_factory=lambda: factor * yang2025().value(name), **limits)
-
-
-def _three(name: str) -> tuple[float, float, float]:
-    one, two, three = (yang2025().value(name.format(i)) for i in (1, 2, 3))
-    return one, two, three
-
-
-def _of_phi(key: str) -> tuple[float, float, float]:
-    return _three(f"adaptation.phi{{}}.{key}")
-
-
-class _Table(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
-
-
-class RigSettings(_Table):
+class RigSettings(SettingsTable):
     """The rig: its conditions, and what a model would say where none is given."""
 
     tendon_diameter_mm: float = printed("rig.tendon_diameter", gt=0)
@@ -57,7 +34,7 @@ class RigSettings(_Table):
     preload_N: float = printed("rig.preload", gt=0)
 
 
-class DriveSettings(_Table):
+class DriveSettings(SettingsTable):
     """The plant's drive: the stiffness is km as chosen for kr, Eq. (34); the lag is ours."""
 
     turntable_radius_mm: float = printed("rig.turntable_radius", gt=0)
@@ -85,7 +62,7 @@ class DriveSettings(_Table):
         return self.actuator()._replace(stiffness_N_per_mm=math.inf, motor_lag_s=0.0)
 
 
-class ReferenceSettings(_Table):
+class ReferenceSettings(SettingsTable):
     """The wanted force mean − amplitude · cos(ω t), or what other shapes make of it."""
 
     mean_N: float = printed("reference.mean")
@@ -94,7 +71,7 @@ class ReferenceSettings(_Table):
     duration_s: float = Field(default=8.0 * math.pi, gt=0, le=LONGEST_S)
 
 
-class SensorSettings(_Table):
+class SensorSettings(SettingsTable):
     """The encoder of x_in and its rate; noise and steps of the other channels are recorded only."""
 
     rate_Hz: float = Field(default=1000.0, ge=50, le=20000)
@@ -103,7 +80,7 @@ class SensorSettings(_Table):
     force_noise_N: float = Field(default=0.05, ge=0)
 
 
-class LoopSettings(_Table):
+class LoopSettings(SettingsTable):
     """How the drive's path is made and its rates are estimated."""
 
     crossing_s: float = Field(default=0.1, gt=0, le=10)
@@ -112,74 +89,7 @@ class LoopSettings(_Table):
     substeps: int = Field(default=4, ge=1, le=100)
 
 
-class PidSettings(_Table):
-    """Gains of the paper; e in mm, u in rpm."""
-
-    proportional_rpm_per_mm: float = printed("controllers.pid.proportional")
-    integral_rpm_per_mm_s: float = printed("controllers.pid.integral")
-    derivative_rpm_s_per_mm: float = printed("controllers.pid.derivative")
-
-
-class SlidingSettings(_Table):
-    """Gains of the paper, ks read per metre; the parameters are where Table 4 starts."""
-
-    c1: float = printed("controllers.sliding_mode.c1", gt=0)
-    c2: float = printed("controllers.sliding_mode.c2", gt=0)
-    epsilon_rpm: float = printed("controllers.sliding_mode.epsilon", ge=0)
-    ks: float = printed("controllers.sliding_mode.ks", 1.0 / MM_PER_M, ge=0)
-    boundary_mm_per_s2: float = Field(default=80.0, gt=0)
-    phi: tuple[float, float, float] = Field(default_factory=lambda: _of_phi("initial"))
-
-
-class AdaptiveSettings(SlidingSettings):
-    """Gains of the paper, ks read per metre; bounds are those of Table 4."""
-
-    c1: float = printed("controllers.adaptive_sliding_mode.c1", gt=0)
-    c2: float = printed("controllers.adaptive_sliding_mode.c2", gt=0)
-    epsilon_rpm: float = printed("controllers.adaptive_sliding_mode.epsilon", ge=0)
-    ks: float = printed("controllers.adaptive_sliding_mode.ks", 1.0 / MM_PER_M, ge=0)
-    lowest: tuple[float, float, float] = Field(default_factory=lambda: _of_phi("lower"))
-    highest: tuple[float, float, float] = Field(default_factory=lambda: _of_phi("upper"))
-    psi: tuple[float, float, float] = Field(
-        default_factory=lambda: _three("controllers.adaptive_sliding_mode.psi{}")
-    )
-
-    @model_validator(mode="after")
-    def _start_within_bounds(self) -> "AdaptiveSettings":
-        ordered = zip(self.lowest, self.phi, self.highest, strict=True)
-        if not all(low <= start <= high for low, start, high in ordered):
-            raise ValueError("phi must lie between lowest and highest")
-        return self
-
-
-class ObserverSettings(_Table):
-    """Bandwidths of loop and observer."""
-
-    loop_rad_per_s: float = Field(default=10.0, gt=0)
-    observer_rad_per_s: float = Field(default=40.0, gt=0)
-
-
-class ControllerSettings(_Table):
-    """Every controller's gains."""
-
-    pid: PidSettings = Field(default_factory=PidSettings)
-    sliding_mode: SlidingSettings = Field(default_factory=SlidingSettings, alias="sliding-mode")
-    adaptive_sliding_mode: AdaptiveSettings = Field(
-        default_factory=AdaptiveSettings, alias="adaptive-sliding-mode"
-    )
-    disturbance_observer: ObserverSettings = Field(
-        default_factory=ObserverSettings, alias="disturbance-observer"
-    )
-
-    def sliding_modes(self) -> dict[str, SlidingSettings]:
-        """Return the two sliding modes by the names of their fields."""
-        return {
-            "sliding_mode": self.sliding_mode,
-            "adaptive_sliding_mode": self.adaptive_sliding_mode,
-        }
-
-
-class Settings(_Table):
+class Settings(SettingsTable):
     """The whole file; every key optional."""
 
     format: int = Field(default=1, ge=1, le=1)
@@ -206,28 +116,7 @@ class Settings(_Table):
 
     def laws(self, controller: str, gain_mm_per_s_rpm: float) -> ControlLaws:
         """Return every controller's gains as the kernel takes them, one of them at work."""
-        gains = self.controllers
-        sliding, adaptive = gains.sliding_mode, gains.adaptive_sliding_mode
-        observer = gains.disturbance_observer
-        return ControlLaws(
-            CONTROLLERS.index(controller),
-            Pid(**gains.pid.model_dump()),
-            SlidingMode(_surface(sliding), Phi(*sliding.phi)),
-            AdaptiveSlidingMode(
-                _surface(adaptive),
-                Phi(*adaptive.phi),
-                Phi(*adaptive.lowest),
-                Phi(*adaptive.highest),
-                Phi(*adaptive.psi),
-            ),
-            DisturbanceObserver(
-                observer.loop_rad_per_s, observer.observer_rad_per_s, gain_mm_per_s_rpm
-            ),
-        )
-
-
-def _surface(gains: SlidingSettings) -> Surface:
-    return Surface(gains.c1, gains.c2, gains.epsilon_rpm, gains.ks, gains.boundary_mm_per_s2)
+        return self.controllers.laws(controller, gain_mm_per_s_rpm)
 
 
 def read_settings(given: Path | Mapping[str, Any] | None) -> Settings:

@@ -1,0 +1,99 @@
+"""All controllers: their settings, their gains, and the kernel that calls the one at work."""
+
+from typing import NamedTuple
+
+from pydantic import Field
+
+from tsas_cli.controllers import CONTROLLERS
+from tsas_cli.controllers.adaptive_sliding_mode import (
+    AdaptiveSettings,
+    AdaptiveSlidingMode,
+    adaptive_sliding_mode,
+)
+from tsas_cli.controllers.disturbance_observer import (
+    DisturbanceObserver,
+    ObserverSettings,
+    disturbance_observer,
+)
+from tsas_cli.controllers.pid import Pid, PidSettings, pid
+from tsas_cli.controllers.signals import Floats, Signals
+from tsas_cli.controllers.sliding_mode import (
+    SlidingMode,
+    SlidingSettings,
+    distance,
+    sliding_mode,
+)
+from tsas_cli.numerics.compiled import kernel
+from tsas_cli.paper.settings import SettingsTable
+
+PID, SLIDING, ADAPTIVE, OBSERVER = range(len(CONTROLLERS))
+MEMORY = 3  # numbers that a controller keeps from sample to sample
+
+
+class ControlLaws(NamedTuple):
+    """Every controller's gains, and which of them is at work."""
+
+    kind: int
+    pid: Pid
+    sliding_mode: SlidingMode
+    adaptive_sliding_mode: AdaptiveSlidingMode
+    disturbance_observer: DisturbanceObserver
+
+
+class ControllerSettings(SettingsTable):
+    """Every controller's table in a settings file."""
+
+    pid: PidSettings = Field(default_factory=PidSettings)
+    sliding_mode: SlidingSettings = Field(default_factory=SlidingSettings, alias="sliding-mode")
+    adaptive_sliding_mode: AdaptiveSettings = Field(
+        default_factory=AdaptiveSettings, alias="adaptive-sliding-mode"
+    )
+    disturbance_observer: ObserverSettings = Field(
+        default_factory=ObserverSettings, alias="disturbance-observer"
+    )
+
+    def laws(self, controller: str, gain_mm_per_s_rpm: float) -> ControlLaws:
+        """Return the gains as the kernel takes them, one controller at work."""
+        return ControlLaws(
+            CONTROLLERS.index(controller),
+            self.pid.law(),
+            self.sliding_mode.law(),
+            self.adaptive_sliding_mode.law(),
+            self.disturbance_observer.law(gain_mm_per_s_rpm),
+        )
+
+    def of(self, controller: str) -> PidSettings | SlidingSettings | ObserverSettings:
+        """Return the table of one controller."""
+        table: PidSettings | SlidingSettings | ObserverSettings
+        table = getattr(self, controller.replace("-", "_"))
+        return table
+
+    def sliding_modes(self) -> dict[str, SlidingSettings]:
+        """Return the two sliding modes by the names of their fields."""
+        return {
+            "sliding_mode": self.sliding_mode,
+            "adaptive_sliding_mode": self.adaptive_sliding_mode,
+        }
+
+
+@kernel
+def initial_memory(laws: ControlLaws, memory: Floats) -> None:
+    """Write what the controller at work begins with; the others begin with zeros."""
+    if laws.kind == ADAPTIVE:
+        start = laws.adaptive_sliding_mode.start
+        memory[0], memory[1], memory[2] = start.phi1, start.phi2, start.phi3
+
+
+@kernel
+def control(seen: Signals, laws: ControlLaws, memory: Floats, step_s: float) -> tuple[float, float]:
+    """Return the motor speed beside the feedforward [rpm], and s where there is a surface."""
+    if laws.kind == PID:
+        return pid(seen, laws.pid, memory, step_s), 0.0
+    if laws.kind == SLIDING:
+        sliding = laws.sliding_mode
+        return sliding_mode(seen, sliding.surface, sliding.phi), distance(seen, sliding.surface)
+    if laws.kind == ADAPTIVE:
+        adaptive = laws.adaptive_sliding_mode
+        u = adaptive_sliding_mode(seen, adaptive, memory, step_s)
+        return u, distance(seen, adaptive.surface)
+    return disturbance_observer(seen, laws.disturbance_observer, memory, step_s), 0.0
