@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
-from tsas_studies.challenge.answers import CATALOGUE, Answers, Case
 from tsas_studies.challenge.entry import Answer, Entry
+from tsas_studies.challenge.truth import CATALOGUE, Case, Truth
 
 NO_ANSWER = "no answer"
 _WORTH_MENDING = 1.1  # times the best obtainable error; a channel below it has nothing to gain
@@ -92,6 +92,6 @@ class Judged:
         return sum(shares) / len(shares) if shares else None
 
 
-def judge(answers: Answers, entry: Entry) -> dict[str, Judged]:
+def judge(answers: Truth, entry: Entry) -> dict[str, Judged]:
     """Put each case beside its diagnosis."""
     return {name: Judged(c, entry.diagnoses.get(name)) for name, c in answers.cases.items()}

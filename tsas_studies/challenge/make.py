@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from tsas_studies.challenge.answers import FILE
 from tsas_studies.challenge.bench import RUNS, SENSORS, Bench, data_sheet, drawn_bench, recorded
 from tsas_studies.challenge.cases import Case
 from tsas_studies.challenge.rig.recordings import DATA_SHEET, Run, write_dataset
+from tsas_studies.challenge.truth import FILE
 
 IDS, RECORDINGS = 0, 1  # streams of chance
 CHANNELS = ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N")
@@ -79,14 +79,14 @@ def _write(
     for run, (_, _, radius, bend) in RUNS.items():
         seed = int(rng.integers(2**32))
         columns = recorded(bench, case.hidden, run, rate_Hz=rate_Hz, seed=seed)
-        told = {
+        conditions = {
             "started": bench.started[run],
             "sheath_length_mm": radius * bend,
             "total_bend_rad": bend,
             "preload_N": data_sheet()["preload_N"],
             "load": "spring",
         }
-        runs.append(Run(run, columns, told))
+        runs.append(Run(run, columns, conditions))
     write_dataset(
         folder, runs, name="case", description=DESCRIPTION, data_sheet=DATA_SHEET, license="CC0-1.0"
     )

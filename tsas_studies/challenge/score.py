@@ -9,10 +9,10 @@ from typing import Any, get_args
 from tsas_cli.support import __version__
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import sha256_of
-from tsas_studies.challenge.answers import CATALOGUE, FILE, Answers, Kind, read_answers
 from tsas_studies.challenge.entry import Entry, read_entry
 from tsas_studies.challenge.figures import Figure, by_effect, figures, of_size, sizes
 from tsas_studies.challenge.judge import NO_ANSWER, Judged, judge
+from tsas_studies.challenge.truth import CATALOGUE, FILE, Kind, Truth, read_truth
 
 CLASSES = ("exact", "rivals", "false", "none", NO_ANSWER)
 
@@ -25,7 +25,7 @@ def score_entries(sealed: Path, folders: Iterable[Path]) -> dict[str, Any]:
     InputError
         The answers or a diagnosis are malformed, or an entry is given twice.
     """
-    answers = read_answers(sealed)
+    answers = read_truth(sealed)
     entries: dict[str, Any] = {}
     for folder in folders:
         label = str(folder)
@@ -48,7 +48,7 @@ def score_entries(sealed: Path, folders: Iterable[Path]) -> dict[str, Any]:
     }
 
 
-def score(answers: Answers, entry: Entry) -> dict[str, Any]:
+def score(answers: Truth, entry: Entry) -> dict[str, Any]:
     """Return the score of one entry, as docs/challenge.md describes it."""
     judged = judge(answers, entry)
     cases = list(judged.values())

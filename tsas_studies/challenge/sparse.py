@@ -38,9 +38,9 @@ def strongest_effect(bench: Bench, trial: Trial, folds: Folds) -> str | None:
     basis = projector(trial)
     own = columns - basis @ (basis.T @ columns)
     left = np.linalg.norm(own, axis=0)
-    told = left > np.maximum(OWN * size, 1e-9)
-    names = [name for name, kept in zip(effects, told, strict=True) if kept]
-    unit = own[:, told] / left[told]
+    identifiable = left > np.maximum(OWN * size, 1e-9)
+    names = [name for name, keep in zip(effects, identifiable, strict=True) if keep]
+    unit = own[:, identifiable] / left[identifiable]
     coefficients = regression(unit, trial.solution.residual, folds)
     best = int(np.argmax(np.abs(coefficients)))
     return names[best] if coefficients[best] != 0.0 else None

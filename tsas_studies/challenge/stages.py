@@ -82,7 +82,7 @@ def make_set(
     force
         Replace the folder if it is there.
     step
-        Told of a piece of work per case.
+        Called once for each case.
 
     Returns
     -------
@@ -143,7 +143,7 @@ def run_set(
     force
         Replace the folder if it is there.
     step
-        Told of a piece of work per case.
+        Called once for each case.
 
     Returns
     -------

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
-from tsas_studies.challenge.answers import CATALOGUE
+from tsas_studies.challenge.truth import CATALOGUE
 
 Table = tuple[str, Sequence[str], Sequence[Sequence[str]]]
 _CLASSES = ("exact", "rivals", "false", "none", "cases")

@@ -20,10 +20,10 @@ from tsas_studies.reproduction.rig import (
     tendon_stiffness,
     wrap_of,
 )
-from tsas_studies.reproduction.verdicts import holds, signed, untold, within
+from tsas_studies.reproduction.verdicts import holds, signed, undetermined, within
 
 PERCENT = 5.0
-F_OUT_N = 40.0  # at which the limit of stable sliding is told
+F_OUT_N = 40.0  # at which the limit of stable sliding is stated
 FASTEST_MM_S = 1000.0
 
 
@@ -83,7 +83,7 @@ def free_tendon(paper: Paper) -> list[Row]:
             evidence=f"{length:.0f} mm in series with {theory:g} N/mm give {both:.2f} N/mm, in "
             f"both bands; measured are {up.value:g} (f-b) and {down.value:g} N/mm (c-e).",
         ),
-        untold(
+        undetermined(
             "Tendon outside of the sheath makes the measured x_out smaller than calculated",
             "text, Model validation",
             unit="mm",

@@ -18,7 +18,7 @@ from tsas_studies.reproduction.fig_4_runs import (
 )
 from tsas_studies.reproduction.group import Figure, Group, Line, Role, Row
 from tsas_studies.reproduction.rig import GROUPS
-from tsas_studies.reproduction.verdicts import holds, untold
+from tsas_studies.reproduction.verdicts import holds, undetermined
 
 SIMILAR_PERCENT = 5.0  # of a channel's range
 LITTLE_PERCENT = 1.0
@@ -90,7 +90,7 @@ def _rows(runs: Runs) -> list[Row]:
             f"which has no dynamics either, {slip.largest:.2g} % and {slip.rms:.2g} %.",
         ),
         _literal(runs),
-        untold(
+        undetermined(
             f"{name}: f_in at P",
             "Fig. 4",
             unit="N",
@@ -168,7 +168,7 @@ def _statements(paper: Paper, groups: list[Runs]) -> list[Row]:
             )
             for cause, size in causes
         ),
-        untold(
+        undetermined(
             "The improved dynamic model is more accurate than the existing one, at P above all",
             "text, Model validation",
             because="neither the existing model's constants nor the measured curves are printed",

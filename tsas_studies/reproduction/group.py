@@ -18,7 +18,7 @@ class Row:
     """One number or statement of the paper beside ours; made by the functions of `verdicts`.
 
     `paper` and `ours` have the unit `unit`; either is None where there is no number. `criterion`
-    is what "agrees" means here, `because` why it does not agree or cannot be told, and `evidence`
+    is what "agrees" means here, `because` why it does not agree or cannot be determined, and `evidence`
     the numbers behind that.
     """
 
@@ -44,7 +44,7 @@ class Row:
             return f"agrees {self.criterion}"
         if self.verdict == "differs":
             return f"differs (not {self.criterion}), because {self.because}"
-        return f"cannot be told, because {self.because}"
+        return f"cannot be determined, because {self.because}"
 
     def as_json(self) -> dict[str, Any]:
         """Return the row as it is written."""

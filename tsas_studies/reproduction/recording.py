@@ -45,7 +45,7 @@ def fitted_stiffness(paper: Paper, noise: Noise, *, seeds: int) -> dict[str, Fit
 def _slopes(paper: Paper, noise: Noise, seed: int) -> dict[str, float]:
     rig = bench_rig(paper)
     time_s, drive = motion(paper, "a", periods=PERIODS)
-    answer = simulate(rig, drive)
+    prediction = simulate(rig, drive)
     steady = slice(int(time_s.size / PERIODS), None)
     random = np.random.default_rng(seed)
     columns = {"time_s": time_s[steady]}
@@ -55,7 +55,7 @@ def _slopes(paper: Paper, noise: Noise, seed: int) -> dict[str, float]:
         ("f_in_N", noise.tension_N),
         ("f_out_N", noise.tension_N),
     ):
-        clean = getattr(answer, name)[steady]
+        clean = getattr(prediction, name)[steady]
         columns[name] = clean + size * random.standard_normal(clean.size)
     run = Run(
         id="a",

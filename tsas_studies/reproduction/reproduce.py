@@ -48,7 +48,7 @@ def reproduce(
     force
         Replace the folder if it is there.
     step
-        Told of a piece of work per table or figure.
+        Called once for each table or figure.
 
     Returns
     -------

@@ -31,7 +31,7 @@ def sentence(groups: Sequence[Group]) -> str:
     total = counted(groups)
     return (
         f"Of {sum(total.values())} numbers and statements of the paper {total['agrees']} agree "
-        f"with ours, {total['differs']} differ, and {total['cannot tell']} cannot be told."
+        f"with ours, {total['differs']} differ, and {total['cannot tell']} cannot be determined."
     )
 
 

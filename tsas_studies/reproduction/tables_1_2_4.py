@@ -6,7 +6,7 @@ from tsas_cli.paper import Paper
 from tsas_cli.physics.closed_form.capstan import dead_band_width
 from tsas_studies.reproduction.group import Group, Row
 from tsas_studies.reproduction.rig import bench_rig, kr_per_km, sheath_length_mm, wrap_of
-from tsas_studies.reproduction.verdicts import holds, to_the_digit, untold, within
+from tsas_studies.reproduction.verdicts import holds, to_the_digit, undetermined, within
 
 STEEL_KG_PER_M3 = 7850.0
 STEEL_GPA = 200.0
@@ -188,7 +188,7 @@ def _widths(paper: Paper) -> list[Row]:
         width = dead_band_width(tension, wrap_of(rig), rig.sheath_length_mm, rig.tendon_stiffness_N)
         share = 100.0 * width / (2.0 * paper.value("rig.input_amplitude"))
         rows.append(
-            untold(
+            undetermined(
                 f"Width of the dead band at f_out = {tension:g} N",
                 "Eqs. (22), (27) to (29)",
                 unit="mm",

@@ -51,7 +51,7 @@ def holds(
     return Row(what, source, unit, paper, ours, verdict, criterion, cause, evidence)
 
 
-def untold(
+def undetermined(
     what: str,
     source: str,
     *,

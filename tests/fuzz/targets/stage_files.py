@@ -32,7 +32,7 @@ def one(data: bytes) -> None:
     which = data[0] % len(FILES) if data else 0
     path = _scratches[which].file(FILES[which], data[1:])
     if which == len(STAGES):
-        answer(answers.read_answers, path.parent)
+        answer(answers.read_truth, path.parent)
     elif which > len(STAGES):
         answer(entry._read_diagnosis, path)
     else:

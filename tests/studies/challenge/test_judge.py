@@ -3,9 +3,9 @@
 import pytest
 
 from tests.studies.challenge.made import case, diagnosis, estimate, named
-from tsas_studies.challenge.answers import Case
 from tsas_studies.challenge.entry import Answer
 from tsas_studies.challenge.judge import Judged
+from tsas_studies.challenge.truth import Case
 
 
 def judged(truth, said):

@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 
 from tsas_cli.recordings.dataset import read_dataset
-from tsas_studies.challenge.answers import read_answers
 from tsas_studies.challenge.bench import RUNS, clean_run, drawn_bench, motion
 from tsas_studies.challenge.cases import Hidden, cases
 from tsas_studies.challenge.make import make
+from tsas_studies.challenge.truth import read_truth
 
 NAMES = {
     "backlash, size 1",
@@ -33,7 +33,7 @@ def files(folder):
 
 
 def test_the_answers_are_what_was_hidden(sealed):
-    answers = read_answers(sealed)
+    answers = read_truth(sealed)
     assert answers.seed == 5
     assert set(answers.cases) == {p.name for p in (sealed / "cases").iterdir()}
     kinds = {case.kind: case for case in answers.cases.values()}
@@ -124,7 +124,7 @@ def test_wear_over_the_session_is_counted_from_the_first_run():
 def test_several_seeds_make_one_set_of_the_same_cases(sealed, tmp_path):
     other = tuple(case for case in cases(6) if case.name == "nothing 1")
     make(tmp_path, (*other, *CASES), rate_Hz=50.0)
-    assert read_answers(tmp_path).seed == (5, 6)
+    assert read_truth(tmp_path).seed == (5, 6)
     content = json.loads((tmp_path / "answers.json").read_text(encoding="utf-8"))
     assert sorted(case["seed"] for case in content["cases"].values()) == [5, 5, 5, 5, 6]
     both, one = files(tmp_path / "cases"), files(sealed / "cases")

@@ -6,8 +6,8 @@ import pytest
 
 from tests.studies.challenge.made import case, diagnosis, estimate, named, write_entry, write_set
 from tsas_cli.support.errors import InputError
-from tsas_studies.challenge.answers import read_answers
 from tsas_studies.challenge.entry import read_entry
+from tsas_studies.challenge.truth import read_truth
 
 
 def line(read, *arguments):
@@ -41,7 +41,7 @@ def line(read, *arguments):
 )
 def test_wrong_answers(tmp_path, change, told):
     folder = write_set(tmp_path / "set", {"a": case("backlash") | change})
-    said = line(read_answers, folder)
+    said = line(read_truth, folder)
     assert said.startswith(f"{folder / 'answers.json'}: ")
     assert told in said
 
@@ -57,17 +57,17 @@ def test_wrong_answers(tmp_path, change, told):
 )
 def test_answers_that_are_something_else(tmp_path, content, told):
     (tmp_path / "answers.json").write_text(content, encoding="utf-8")
-    assert told in line(read_answers, tmp_path)
+    assert told in line(read_truth, tmp_path)
 
 
 def test_a_case_cannot_lead_out_of_the_folder(tmp_path):
     content = {"format": 1, "kind": "challenge-answers", "seed": 1, "cases": {"../b": case()}}
     (tmp_path / "answers.json").write_text(json.dumps(content), encoding="utf-8")
-    assert "cases.../b" in line(read_answers, tmp_path)
+    assert "cases.../b" in line(read_truth, tmp_path)
 
 
 def test_a_folder_without_answers(tmp_path):
-    assert "no answers.json here" in line(read_answers, tmp_path)
+    assert "no answers.json here" in line(read_truth, tmp_path)
 
 
 PLAY = estimate(0.1, "mm", 0.01)

@@ -10,10 +10,10 @@ from tests.studies.challenge.made import case, diagnosis, write_entry, write_set
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.support.errors import InputError
 from tsas_studies.challenge import cases
-from tsas_studies.challenge.answers import read_answers
 from tsas_studies.challenge.entry import read_entry
 from tsas_studies.challenge.run import TOOLS
 from tsas_studies.challenge.targets import TARGETS
+from tsas_studies.challenge.truth import read_truth
 from tsas_studies.commands.challenge import KindOption, ToolOption, make, score
 
 DOCS = (Path(__file__).parents[3] / "docs" / "challenge.md").read_text(encoding="utf-8")
@@ -66,7 +66,7 @@ def test_the_documented_files_are_read(tmp_path):
     answers, said = map(json.loads, blocks)
     (tmp_path / "answers.json").write_text(json.dumps(answers), encoding="utf-8")
     (name,) = answers["cases"]
-    assert read_answers(tmp_path).cases[name].effects == {"backlash"}
+    assert read_truth(tmp_path).cases[name].effects == {"backlash"}
     entry = read_entry(write_entry(tmp_path / "entry", {name: said}), [name])
     (named,) = entry.diagnoses[name].named
     assert named.parameters["play_mm"].interval == pytest.approx((0.11408, 0.12192))
@@ -90,7 +90,7 @@ def test_a_set_is_made_scored_and_not_overwritten_unasked(monkeypatch, capsys, t
     make(tmp_path / "set", seed=17, rate=50.0, as_json=True)
     summary = json.loads(capsys.readouterr().out)
     assert (summary["seed"], summary["cases"]) == (17, {"one": 2})
-    answers = read_answers(tmp_path / "set")
+    answers = read_truth(tmp_path / "set")
     assert answers.seed == 17
     for name in answers.cases:
         assert len(list(read_dataset(tmp_path / "set" / "cases" / name / "dataset"))) == 4
@@ -107,8 +107,8 @@ def test_several_seeds_are_one_set(monkeypatch, capsys, tmp_path):
     monkeypatch.setattr(cases, "cases", few.__getitem__)
     make(tmp_path / "set", seed=17, seeds=2, rate=50.0)
     assert "2 cases of seeds 17 to 18" in capsys.readouterr().out
-    assert read_answers(tmp_path / "set").seed == (17, 18)
-    right = {name: diagnosis(unexplained=True) for name in read_answers(tmp_path / "set").cases}
+    assert read_truth(tmp_path / "set").seed == (17, 18)
+    right = {name: diagnosis(unexplained=True) for name in read_truth(tmp_path / "set").cases}
     score(tmp_path / "set", [write_entry(tmp_path / "entry", right)])
     assert "set of seeds 17, 18: 2 unknown" in capsys.readouterr().out
 

@@ -10,7 +10,7 @@ from tests.reporting.test_page import Outline, headings
 from tsas_cli.paper import yang2025
 from tsas_studies.reproduction.group import Figure, Group, Line
 from tsas_studies.reproduction.page import reproduction_page
-from tsas_studies.reproduction.verdicts import holds, to_the_digit, untold
+from tsas_studies.reproduction.verdicts import holds, to_the_digit, undetermined
 
 PAPER = yang2025()
 X = np.linspace(0.0, 1.0, 50)
@@ -31,7 +31,9 @@ GROUPS = [
     Group(
         "second",
         "Second",
-        rows=(untold("P", "Fig. 4", because="none is printed", unit="rpm s^3/mm", ours=57.396),),
+        rows=(
+            undetermined("P", "Fig. 4", because="none is printed", unit="rpm s^3/mm", ours=57.396),
+        ),
         figures=(
             Figure("two", "Folded.", ("x [mm]", "f [N]"), (*CURVE.lines, DOT), part="Group a"),
         ),

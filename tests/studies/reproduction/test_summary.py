@@ -9,12 +9,16 @@ from tsas_cli.paper import yang2025
 from tsas_studies.reproduction import GROUPS
 from tsas_studies.reproduction.group import VERDICTS, Group
 from tsas_studies.reproduction.summary import counted, sentence, summary_of, verdict_table
-from tsas_studies.reproduction.verdicts import untold, within
+from tsas_studies.reproduction.verdicts import undetermined, within
 
 PAPER = yang2025()
 KM = PAPER["stiffness.theory.km_dead_band"]
 MADE = [
-    Group("x", "X", rows=(within("one", KM, 175.0, percent=1.0), untold("p", "Fig.", because="b"))),
+    Group(
+        "x",
+        "X",
+        rows=(within("one", KM, 175.0, percent=1.0), undetermined("p", "Fig.", because="b")),
+    ),
     Group("y", "Y", rows=(within("two", KM, 100.0, percent=1.0),)),
 ]
 

@@ -3,7 +3,7 @@
 import pytest
 
 from tsas_cli.paper import Printed
-from tsas_studies.reproduction.verdicts import NOT_KNOWN, holds, to_the_digit, untold, within
+from tsas_studies.reproduction.verdicts import NOT_KNOWN, holds, to_the_digit, undetermined, within
 
 KM = Printed(2.338, "N/mm", "Table 3")
 
@@ -43,7 +43,7 @@ def test_a_statement_holds_or_not():
 
 
 def test_what_cannot_be_told_keeps_its_reason():
-    row = untold("P", "Fig. 4", because="nothing is printed", unit="N", ours=57.4)
+    row = undetermined("P", "Fig. 4", because="nothing is printed", unit="N", ours=57.4)
     assert row.verdict == "cannot tell"
-    assert row.words == "cannot be told, because nothing is printed"
+    assert row.words == "cannot be determined, because nothing is printed"
     assert row.as_json()["ours"] == 57.4

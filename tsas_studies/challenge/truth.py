@@ -68,7 +68,7 @@ class Case(_Record):
         return self
 
 
-class Answers(_Record):
+class Truth(_Record):
     """The whole file."""
 
     format: Literal[1]
@@ -77,7 +77,7 @@ class Answers(_Record):
     cases: dict[CaseId, Case] = Field(min_length=1)
 
 
-def read_answers(folder: Path) -> Answers:
+def read_truth(folder: Path) -> Truth:
     """Read and check `answers.json` in the folder of a sealed set.
 
     Raises
@@ -93,4 +93,4 @@ def read_answers(folder: Path) -> Answers:
             expected="the folder of a sealed set",
             remedy="make one with `tsas challenge make`",
         )
-    return parse(Answers, read_json(path), path)
+    return parse(Truth, read_json(path), path)
