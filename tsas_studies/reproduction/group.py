@@ -18,8 +18,8 @@ class Row:
     """One number or statement of the paper beside ours; made by the functions of `verdicts`.
 
     `paper` and `ours` have the unit `unit`; either is None where there is no number. `criterion`
-    is what "agrees" means here, `because` why it does not agree or cannot be determined, and `evidence`
-    the numbers behind that.
+    is what "agrees" means here, `because` why it does not agree or cannot be determined, and
+    `evidence` the numbers behind that.
     """
 
     what: str
