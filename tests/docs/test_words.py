@@ -1,0 +1,48 @@
+"""The vocabulary of docs/words.md holds in code and text."""
+
+import io
+import re
+import tokenize
+
+import pytest
+
+from docs.house import ROOT
+
+NAMES = re.compile(
+    r"(^|_)(un)?told(_|$)|(^|_)answer(s|ed)?(_|$)|sureness|likeness|obtainable", re.IGNORECASE
+)
+PHRASES = re.compile(
+    r"\b(un)?told\b|sureness|likeness|obtainable|noise explains|turn(s|ed|ing) (back|round)"
+    r"|leaning|bristle travel|no (rig|clock) has|there twice|what comes out",
+    re.IGNORECASE,
+)
+SOURCES = sorted(p for folder in ("tsas_cli", "tsas_studies") for p in (ROOT / folder).rglob("*.py"))
+PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
+EXEMPT = {"words.md"}  # which lists them
+
+
+def offences(path):
+    """Yield the lines of a source whose names or texts use another word."""
+    source = path.read_text(encoding="utf-8")
+    for token in tokenize.generate_tokens(io.StringIO(source).readline):
+        pattern = NAMES if token.type == tokenize.NAME else PHRASES
+        if token.type in {tokenize.NAME, tokenize.STRING, tokenize.COMMENT} and (
+            found := pattern.search(token.string)
+        ):
+            yield f"{path.relative_to(ROOT)}:{token.start[0]}: {found[0]}"
+
+
+@pytest.mark.parametrize("folder", ["tsas_cli", "tsas_studies"])
+def test_code_uses_the_words_of_the_field(folder):
+    assert not [one for p in SOURCES if p.is_relative_to(ROOT / folder) for one in offences(p)]
+
+
+@pytest.mark.parametrize("page", [p for p in PAGES if p.name not in EXEMPT], ids=lambda p: p.name)
+def test_pages_use_the_words_of_the_field(page):
+    lines = page.read_text(encoding="utf-8").splitlines()
+    assert not [f"{n}: {found[0]}" for n, line in enumerate(lines, 1) if (found := PHRASES.search(line))]
+
+
+def test_what_a_source_says_is_seen(tmp_path):
+    source = ROOT / "tests" / "docs" / "test_words.py"
+    assert any("told" in one for one in offences(source))
