@@ -3,11 +3,12 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from tsas_cli.comparing.answers import Answers, Both, ErrorRow, error_rows, matched
+from tsas_cli.comparing.answers import Answers, Both, error_rows, matched
 from tsas_cli.comparing.maps import residual_maps
 from tsas_cli.comparing.sides import Side, read_side
 from tsas_cli.comparing.values import Overlap, Pair, overlap, pairs
 from tsas_cli.recordings.dataset import Dataset
+from tsas_cli.records.comparison import ErrorRow
 from tsas_cli.records.diagnosis import Maps
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.steps import SILENT, Steps

@@ -1,7 +1,7 @@
 """A number with what is known about it: interval, unit, bound flag, origin."""
 
-from dataclasses import asdict, dataclass
-from typing import Any, Literal
+from dataclasses import dataclass
+from typing import Literal
 
 Origin = Literal["fitted", "data sheet", "default", "given"]
 
@@ -19,10 +19,6 @@ class Estimate:
     interval_low: float | None = None
     interval_high: float | None = None
     at_bound: bool = False
-
-    def as_json(self) -> dict[str, Any]:
-        """Return the estimate as the stages write it."""
-        return asdict(self)
 
     def text(self) -> str:
         """Return value and interval for a printed table."""

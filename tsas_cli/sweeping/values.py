@@ -8,11 +8,11 @@ from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
 
-from tsas_cli.drive.file import FILE as DRIVE_FILE
-from tsas_cli.identification.model import FILE as MODEL_FILE
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.recordings.dataset import CONDITIONS
 from tsas_cli.recordings.manifest import Run, parse, read_toml
+from tsas_cli.records.calibration import MODEL_FILE
+from tsas_cli.records.drive import DRIVE_FILE
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import sha256_of
 from tsas_cli.tracking.settings import RigSettings, read_settings
