@@ -3,10 +3,9 @@
 from tsas_cli.comparing.compare import Comparison
 from tsas_cli.comparing.sentences import findings, notes
 from tsas_cli.comparing.sides import Side
-from tsas_cli.comparing.values import Pair, shared_name
-from tsas_cli.identification.estimate import Estimate
+from tsas_cli.comparing.values import rounded
 from tsas_cli.recordings.dataset import Dataset
-from tsas_cli.records.base import Parameter, number_text
+from tsas_cli.records.base import number_text
 from tsas_cli.records.comparison import (
     ComparedOn,
     EffectPlaces,
@@ -16,6 +15,7 @@ from tsas_cli.records.comparison import (
     ParameterPair,
     RecordingsRead,
     ValueDifference,
+    shared_name,
 )
 from tsas_cli.records.result import Table
 
@@ -28,7 +28,7 @@ def record_of(it: Comparison) -> ModelComparison:
         on=None if it.on is None else _on(it.on),
         own_values_fitted=it.own_fitted,
         same_recordings=it.overlap,
-        parameters=[_pair(pair) for pair in it.pairs],
+        parameters=it.pairs,
         effects=effects(it),
         errors=it.errors,
         held_out=held_out(it),
@@ -54,24 +54,6 @@ def _side(side: Side) -> ModelSide:
 def _on(dataset: Dataset) -> ComparedOn:
     chosen = None if dataset.chosen is None else [run.id for run in dataset.runs]
     return ComparedOn(name=dataset.manifest.name, hashes=dataset.hashes(), chosen=chosen)
-
-
-def _pair(pair: Pair) -> ParameterPair:
-    d = pair.difference
-    return ParameterPair(
-        name=pair.name,
-        unit=pair.unit,
-        a=pair.a and Parameter.model_validate(pair.a, from_attributes=True),
-        b=pair.b and Parameter.model_validate(pair.b, from_attributes=True),
-        difference=d
-        and ValueDifference(
-            value=d.value,
-            interval_low=d.low,
-            interval_high=d.high,
-            excludes_zero=d.excludes_zero,
-            why_no_interval=d.why_none or None,
-        ),
-    )
 
 
 def effects(it: Comparison) -> list[EffectPlaces]:
@@ -154,27 +136,30 @@ def recordings_of(side: Side) -> str:
     return f"{len(side.recordings)} of {side.source.name}"
 
 
-def _row(pair: Pair) -> tuple[str, ...]:
+def _row(pair: ParameterPair) -> tuple[str, ...]:
     d = pair.difference
     return (
         pair.name,
         pair.run,
-        _text(pair.a),
-        _text(pair.b),
-        "" if d is None else d.text(),
+        "" if pair.a is None else pair.a.text(),
+        "" if pair.b is None else pair.b.text(),
+        "" if d is None else _difference(d),
         differs(pair),
         pair.unit,
     )
 
 
-def differs(pair: Pair) -> str:
+def _difference(d: ValueDifference) -> str:
+    if d.value is None or d.low is None or d.high is None:
+        return number_text(d.value, ".4g")
+    value, low, high = rounded(d.value, d.low, d.high)
+    return f"{value} [{low}, {high}]"
+
+
+def differs(pair: ParameterPair) -> str:
     """Say whether two values differ by more than their uncertainty; nothing where it is open."""
     claim = None if pair.difference is None else pair.difference.excludes_zero
     return "" if claim is None else "yes" if claim else "no"
-
-
-def _text(estimate: Estimate | None) -> str:
-    return "" if estimate is None else estimate.text()
 
 
 def _errors(it: Comparison) -> list[tuple[str, ...]]:

@@ -19,10 +19,3 @@ class Estimate:
     interval_low: float | None = None
     interval_high: float | None = None
     at_bound: bool = False
-
-    def text(self) -> str:
-        """Return value and interval for a printed table."""
-        if self.interval_low is None or self.interval_high is None:
-            return f"{self.value:.5g} ({self.origin})"
-        flag = "  AT BOUND" if self.at_bound else ""
-        return f"{self.value:.5g} [{self.interval_low:.5g}, {self.interval_high:.5g}]{flag}"

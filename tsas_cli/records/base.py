@@ -31,6 +31,14 @@ def number_text(value: float | None, form: str = ".3g") -> str:
     return "" if value is None else f"{value:{form}}"
 
 
+def check_interval(low: float | None, high: float | None) -> None:
+    """Raise ValueError where an interval has one end alone, or ends that are swapped."""
+    if (low is None) != (high is None):
+        raise ValueError("interval_low and interval_high go together")
+    if low is not None and high is not None and low > high:
+        raise ValueError(f"interval_low {low:g} is above interval_high {high:g}")
+
+
 def _none_if_not_finite(value: Any, info: ValidationInfo) -> Any:
     """Take a number that is not finite for none; in a file there is none, and it is refused."""
     made = isinstance(value, float) and not (info.context or {}).get("file")
@@ -129,11 +137,7 @@ class Value(Record):
 
     @model_validator(mode="after")
     def _interval_has_two_ends(self) -> Self:
-        low, high = self.interval_low, self.interval_high
-        if (low is None) != (high is None):
-            raise ValueError("interval_low and interval_high go together")
-        if low is not None and high is not None and low > high:
-            raise ValueError(f"interval_low {low:g} is above interval_high {high:g}")
+        check_interval(self.interval_low, self.interval_high)
         return self
 
     origin: str = Field(default="fitted", exclude=True)

@@ -2,9 +2,22 @@
 
 from typing import Any, ClassVar, Literal
 
+from pydantic import Field
+
 from tsas_cli.records.base import Number, Parameter, Record, StageFile
 from tsas_cli.records.diagnosis import Maps
 from tsas_cli.records.tracking import Spread
+
+
+def shared_name(a: str | None, b: str | None) -> str:
+    """Return a run's id; both where the same recording has two.
+
+    Examples
+    --------
+    >>> shared_name("a", "a"), shared_name("a", "first"), shared_name(None, "b")
+    ('a', 'a = first', 'b')
+    """
+    return " = ".join(dict.fromkeys(name for name in (a, b) if name))
 
 
 class RecordingsRead(Record):
@@ -41,23 +54,35 @@ class ComparedOn(Record):
 
 
 class ValueDifference(Record):
-    """B less A; without an interval where there is none, and why."""
+    """B less A in the parameter's unit; without an interval where there is none, and why.
+
+    `excludes_zero` says whether it is more than its uncertainty, None where that is not known.
+    """
 
     value: Number
-    interval_low: Number = None
-    interval_high: Number = None
+    low: Number = Field(default=None, alias="interval_low")
+    high: Number = Field(default=None, alias="interval_high")
     excludes_zero: bool | None = None
-    why_no_interval: str | None = None
+    why_none: str | None = Field(default=None, alias="why_no_interval")
 
 
 class ParameterPair(Record):
-    """One parameter in both models, or in one of them."""
+    """One parameter in both models, or in one of them; its runs are the ids that they have there.
+
+    Where both have it the difference is there too.
+    """
 
     name: str
     unit: str
     a: Parameter | None = None
     b: Parameter | None = None
     difference: ValueDifference | None = None
+
+    @property
+    def run(self) -> str:
+        """The run that the value belongs to, under both names where they differ."""
+        a, b = (None if side is None else side.run for side in (self.a, self.b))
+        return shared_name(a, b) or "all"
 
 
 class EffectPlaces(Record):

@@ -2,7 +2,7 @@
 
 from tsas_cli.comparing.compare import Comparison
 from tsas_cli.comparing.stage import fitted_to, held_out
-from tsas_cli.comparing.values import shared_name
+from tsas_cli.records.comparison import shared_name
 from tsas_cli.reporting.content import Section, Table
 from tsas_cli.reporting.numbers import ABSENT, plain
 
