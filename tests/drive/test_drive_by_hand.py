@@ -16,6 +16,7 @@ from tsas_cli.diagnosis.evidence import gain
 from tsas_cli.drive import diagnosis as dd
 from tsas_cli.drive import search as ds
 from tsas_cli.drive.estimates import DataSheet
+from tsas_cli.drive.harmonic_drive import DriveValues, linear_response
 from tsas_cli.drive.runs import DriveRun
 from tsas_cli.drive.search import NOTHING, drive_folds
 from tsas_cli.drive.words import (
@@ -28,7 +29,6 @@ from tsas_cli.drive.words import (
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.fit import Unknown
 from tsas_cli.numerics.linear_response import sampled
-from tsas_cli.physics.plant.harmonic_drive import DriveValues, linear_response
 from tsas_cli.records.base import Fit
 from tsas_cli.records.drive import Drive, Pole, Response
 

@@ -5,8 +5,8 @@ from collections.abc import Iterable
 from tsas_cli.drive.diagnosis import DriveDiagnosis
 from tsas_cli.drive.estimates import DataSheet, total_lag_s
 from tsas_cli.drive.fit import Terms
+from tsas_cli.drive.harmonic_drive import DriveValues
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.physics.plant.harmonic_drive import DriveValues
 from tsas_cli.records.drive import Drive
 
 _FACTORS = {
