@@ -8,7 +8,7 @@ import pytest
 from tests.comparing.made import NOMINAL, ROUGH, calibrated
 from tsas_cli.comparing.compare import compare
 from tsas_cli.comparing.sentences import findings, notes
-from tsas_cli.comparing.stage import as_json, tables
+from tsas_cli.comparing.stage import record_of, tables
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.stages.calibrate import calibrate
 from tsas_cli.stages.simulate import simulate
@@ -135,7 +135,7 @@ def test_own_values_can_be_fitted_to_each_recording_first(root, on_second):
     it = compare(*models, on=data, fit_own=True)
     assert len(it.errors) == len(CHANNELS)
     assert it.errors[0].rmse_a < on_second.errors[0].rmse_a
-    assert as_json(it)["own_values_fitted"] is True
+    assert record_of(it).own_values_fitted is True
 
 
 def test_two_model_files_alone_give_their_values_and_say_what_gives_more(root):
@@ -172,16 +172,16 @@ def test_simulations_are_held_to_their_own_series(root, tmp_path):
 
 def test_everything_that_is_printed_is_in_the_json(changed, on_second):
     for it in (changed, on_second):
-        content = as_json(it)
-        assert content["format"] == 1
-        assert content["stage"] == "compare"
+        content = record_of(it)
+        assert content.format == 1
+        assert content.stage == "compare"
         printed = {title: rows for title, _, rows in tables(it)}
-        assert len(printed["parameters"]) == len(content["parameters"])
-        assert len(printed["errors"]) == len(content["errors"])
-        friction = next(p for p in content["parameters"] if p["name"] == "friction_coefficient")
-        assert friction["difference"]["excludes_zero"] is True
-        assert friction["a"]["value"] == pytest.approx(0.125, abs=1e-3)
-        assert friction["b"]["value"] == pytest.approx(0.150, abs=1e-3)
+        assert len(printed["parameters"]) == len(content.parameters)
+        assert len(printed["errors"]) == len(content.errors)
+        friction = next(p for p in content.parameters if p.name == "friction_coefficient")
+        assert friction.difference.excludes_zero is True
+        assert friction.a.value == pytest.approx(0.125, abs=1e-3)
+        assert friction.b.value == pytest.approx(0.150, abs=1e-3)
 
 
 def test_a_dataset_that_is_gone_or_has_changed_leaves_the_values(root, tmp_path):

@@ -8,7 +8,7 @@ from tests.commands.documented import documented
 from tests.reporting.test_page import Outline
 from tsas_cli.comparing import tracked
 from tsas_cli.comparing.tracked import are_tracked, compare_tracked
-from tsas_cli.comparing.tracked_stage import as_json, tables
+from tsas_cli.comparing.tracked_stage import record_of, tables
 from tsas_cli.reporting.comparing.tracked import tracked_page
 from tsas_cli.stages.track import track
 from tsas_cli.support.errors import InputError
@@ -63,7 +63,7 @@ def test_the_same_folder_differs_in_nothing(root):
     it = compare_tracked(root / "usual", root / "usual")
     assert it.settings == []
     assert it.followed[0].ratio("rmse_N") == 1.0
-    assert "Both were asked for the same." in as_json(it)["notes"]
+    assert "Both were asked for the same." in record_of(it).notes
 
 
 def test_a_condition_of_the_same_name_that_is_another_one_is_not_matched(root, tmp_path):
@@ -77,7 +77,7 @@ def test_a_condition_of_the_same_name_that_is_another_one_is_not_matched(root, t
     it = compare_tracked(tmp_path / "one", tmp_path / "two")
     assert it.followed == []
     assert [len(runs) for runs in it.alone.values()] == [1, 1]
-    assert any("In A alone" in note for note in as_json(it)["notes"])
+    assert any("In A alone" in note for note in record_of(it).notes)
 
 
 def test_another_plant_is_another_task(root, tmp_path):
@@ -88,20 +88,20 @@ def test_another_plant_is_another_task(root, tmp_path):
     path.write_text(json.dumps(content))
     it = compare_tracked(root / "usual", tmp_path / "usual")
     assert it.other_task == ["plant.file", "plant.sha256"]
-    assert "another one" in as_json(it)["notes"][0]
+    assert "another one" in record_of(it).notes[0]
     page = tracked_page(it)
     assert "&lt;b&gt;.toml" in page
     assert "<b>" not in page
 
 
 def test_everything_that_is_printed_is_in_the_json_whose_keys_are_documented(it):
-    content = as_json(it)
-    assert set(content) <= documented("compare.json")
+    content = record_of(it)
+    assert set(content.content()) <= documented("compare.json")
     printed = {title: rows for title, _, rows in tables(it)}
-    assert len(printed["scores"]) == len(content["scores"]) == 4
-    assert len(printed["what differs in the call"]) == len(content["settings"])
-    assert content["scores"][0]["score"] == "rmse_N"
-    assert content["scores"][0]["a"]["sd"] is not None
+    assert len(printed["scores"]) == len(content.scores) == 4
+    assert len(printed["what differs in the call"]) == len(content.settings)
+    assert content.scores[0].score == "rmse_N"
+    assert content.scores[0].a.sd is not None
 
 
 def test_the_page_is_well_formed_and_shows_both_errors(it):

@@ -12,6 +12,7 @@ from tsas_cli.identification.model import Model
 
 A = Estimate("friction_coefficient", 0.125, "1", "fitted", None, 0.002, 0.121, 0.130)
 B = Estimate("friction_coefficient", 0.150, "1", "fitted", None, 0.002, 0.142, 0.153)
+NO_INTERVAL = {"interval_low": None, "interval_high": None}
 PRELOAD = Estimate("preload_N", 25.0, "N", "fitted", "a", 0.1, 24.8, 25.2)
 
 
@@ -92,7 +93,7 @@ def test_recordings_are_the_same_by_checksum(first, second, how):
         (A, B, {"a": "1"}, "the same recordings"),
         (A, B, None, "not known to be independent"),
         (A, replace(B, at_bound=True), {"a": "2"}, "at its bound"),
-        (replace(A, interval_low=None), B, {"a": "2"}, "not estimated on both sides"),
+        (replace(A, **NO_INTERVAL), B, {"a": "2"}, "not estimated on both sides"),
     ],
 )
 def test_no_interval_where_none_may_be_claimed(a, b, second, why):

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from tsas_cli.drive import fit as d
-from tsas_cli.drive.runs import DriveRun
-from tsas_cli.numerics.linear_response import sampled
-from tsas_cli.physics.plant.harmonic_drive import (
+from tsas_cli.drive.harmonic_drive import (
     DriveValues,
     gear_response,
     linear_response,
 )
+from tsas_cli.drive.runs import DriveRun
+from tsas_cli.numerics.linear_response import sampled
 
 # What a drive may plausibly be: lower and upper bound, the usual value, and how its change is told.
 PLAUSIBLE = {

@@ -13,16 +13,18 @@ from tsas_cli.drive import json as dj
 from tsas_cli.drive.diagnosis import DriveCause, DriveDiagnosis
 from tsas_cli.drive.estimates import DataSheet
 from tsas_cli.drive.frequency_response import FrequencyResponse
+from tsas_cli.drive.harmonic_drive import DriveValues
 from tsas_cli.drive.search import NOTHING
 from tsas_cli.drive.tables import tables
 from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.physics.plant.harmonic_drive import DriveValues
+from tsas_cli.records.base import parameters_of
+from tsas_cli.records.drive import Drive, DriveRun, Kinematics, TriedStructure
 
 TITLE = {e.name: e.title for e in EFFECTS}
 STATED = frozenset({"stated"})
 TOLD = {
-    name: Estimate(name, 0.5, "s", "fitted", None, 0.1, 0.3, 0.7)
+    name: Estimate(name, 0.5, name.rpartition("_")[2], "fitted", None, 0.1, 0.3, 0.7)
     for name in ("delay_s", "motor_lag_s", "play_mm", "damping_ratio", "gain_mm_per_s_rpm")
 }
 
@@ -201,12 +203,12 @@ def test_the_lead_is_held_against_kinematics():
     lead = 60.0 * 120.0 / (2.0 * math.pi * 27.1)
     fitted = {"kV_rpm_s_per_mm": Estimate("kV_rpm_s_per_mm", 1.25 * lead, "", "fitted")}
     found = dj.kinematics(SHEET, fitted)
-    assert found["kinematic_lead_rpm_s_per_mm"] == pytest.approx(lead)
-    assert found["kinematic_gain_mm_per_s_rpm"] == pytest.approx(1.0 / lead)
-    assert found["fitted_above_kinematic_percent"] == pytest.approx(25.0)
-    assert found["fitted_lead_rpm_s_per_mm"] == pytest.approx(1.25 * lead)
+    assert found.kinematic_lead_rpm_s_per_mm == pytest.approx(lead)
+    assert found.kinematic_gain_mm_per_s_rpm == pytest.approx(1.0 / lead)
+    assert found.fitted_above_kinematic_percent == pytest.approx(25.0)
+    assert found.fitted_lead_rpm_s_per_mm == pytest.approx(1.25 * lead)
     none = dj.kinematics(DataSheet(None, None, None, None), fitted)
-    assert none["kinematic_lead_rpm_s_per_mm"] is none["fitted_above_kinematic_percent"] is None
+    assert none.kinematic_lead_rpm_s_per_mm is none.fitted_above_kinematic_percent is None
 
 
 def seen(frequency, response=None, excited=None):
@@ -220,21 +222,21 @@ def test_poles_of_a_lag_a_delay_and_a_spring():
     """1/(2π τ), 1/(2π T), and the natural frequency; the integrator is none."""
     values = DriveValues(0.02, motor_lag_s=0.1, delay_s=0.05)
     lag, delay = dj.pole_rows(values, seen([0.5, 3.0]))
-    assert (lag["kind"], lag["real_per_s"], lag["imaginary_per_s"]) == (
+    assert (lag.kind, lag.real_per_s, lag.imaginary_per_s) == (
         "pole",
         pytest.approx(-10.0),
         0.0,
     )
-    assert lag["frequency_Hz"] == pytest.approx(10.0 / (2.0 * math.pi))
-    assert (delay["kind"], delay["real_per_s"]) == ("1/delay", -20.0)
-    assert delay["frequency_Hz"] == pytest.approx(20.0 / (2.0 * math.pi))
-    assert lag["in_band"]
-    assert not delay["in_band"]  # 3.18 Hz, a little more than 1.05 · 3
+    assert lag.frequency_Hz == pytest.approx(10.0 / (2.0 * math.pi))
+    assert (delay.kind, delay.real_per_s) == ("1/delay", -20.0)
+    assert delay.frequency_Hz == pytest.approx(20.0 / (2.0 * math.pi))
+    assert lag.in_band
+    assert not delay.in_band  # 3.18 Hz, a little more than 1.05 · 3
     springy = DriveValues(0.02, natural_frequency_Hz=4.0, damping_ratio=0.6)
     (one,) = dj.pole_rows(springy, seen([0.5, 9.0]))
-    assert one["frequency_Hz"] == pytest.approx(4.0)
-    assert one["real_per_s"] == pytest.approx(-0.6 * 8.0 * math.pi)
-    assert one["imaginary_per_s"] == pytest.approx(0.8 * 8.0 * math.pi)
+    assert one.frequency_Hz == pytest.approx(4.0)
+    assert one.real_per_s == pytest.approx(-0.6 * 8.0 * math.pi)
+    assert one.imaginary_per_s == pytest.approx(0.8 * 8.0 * math.pi)
     assert dj.pole_rows(DriveValues(0.02), seen([0.5, 9.0])) == []
 
 
@@ -254,7 +256,7 @@ def test_a_pole_is_in_the_band_or_a_twentieth_beside_it(band, inside):
     (row,) = dj.pole_rows(
         DriveValues(0.02, motor_lag_s=1.0 / (4.0 * math.pi)), dark if band is None else seen(band)
     )
-    assert row["in_band"] == inside
+    assert row.in_band == inside
 
 
 @pytest.mark.parametrize("turn", [0, 1, -2])
@@ -269,15 +271,15 @@ def test_measured_phases_are_on_the_turn_of_the_fitted_ones(monkeypatch, turn):
     )
     values = DriveValues(0.02)
     found = dj.response(seen(frequency, response, [False, False, True, True, False]), values)
-    assert found["band_Hz"] == [3.0, 4.0]
-    np.testing.assert_allclose(found["measured"]["phase_deg"], -90.0 + 360.0 * turn)
-    np.testing.assert_allclose(found["measured"]["magnitude"], np.abs(response))
-    curve = found["fitted"]["frequency_Hz"]
-    assert (curve[0], curve[-1], curve.size) == (pytest.approx(1.0), pytest.approx(5.0), 200)
+    assert found.band_Hz == (3.0, 4.0)
+    np.testing.assert_allclose(found.measured.phase_deg, -90.0 + 360.0 * turn)
+    np.testing.assert_allclose(found.measured.magnitude, np.abs(response))
+    curve = found.fitted.frequency_Hz
+    assert (curve[0], curve[-1], len(curve)) == (pytest.approx(1.0), pytest.approx(5.0), 200)
     np.testing.assert_allclose(np.diff(np.log(curve)), math.log(5.0) / 199)
     dark = dj.response(seen(frequency, response, [False] * 5), values)
-    assert dark["band_Hz"] is None
-    np.testing.assert_allclose(dark["measured"]["phase_deg"], -90.0)
+    assert dark.band_Hz is None
+    np.testing.assert_allclose(dark.measured.phase_deg, -90.0)
 
 
 def test_the_turn_is_told_by_the_first_frequency_that_is_excited(monkeypatch):
@@ -287,10 +289,10 @@ def test_the_turn_is_told_by_the_first_frequency_that_is_excited(monkeypatch):
         dj, "bode_curve", lambda values, at: (at, np.interp(at, [1.0, 5.0], [0.0, -720.0]))
     )
     told = seen(frequency, np.full(5, -1j), [False, True, True, True, True])
-    near = dj.response(told, DriveValues(0.02))["measured"]["phase_deg"]
+    near = dj.response(told, DriveValues(0.02)).measured.phase_deg
     np.testing.assert_allclose(near, -90.0)
     late = seen(frequency, np.full(5, -1j), [False, False, False, True, True])
-    far = dj.response(late, DriveValues(0.02))["measured"]["phase_deg"]
+    far = dj.response(late, DriveValues(0.02)).measured.phase_deg
     np.testing.assert_allclose(far, -450.0)  # beside −540°
 
 
@@ -310,10 +312,10 @@ def test_structures_are_listed_with_the_chosen_one(monkeypatch):
     search = SimpleNamespace(trial=trial, mean_square=lambda names: 9.0)
     simple, lag = dj.structure_rows(search, chosen)
     assert asked == [terms("play")]
-    assert (simple["name"], lag["name"]) == ("integrator", "integrator with lag")
-    assert (simple["chosen"], lag["chosen"]) == (False, True)
-    assert lag["parameters"] - simple["parameters"] == 1
-    assert (lag["held_out_times_noise"], lag["times_noise"]) == (3.0, 2.0)
+    assert (simple.name, lag.name) == ("integrator", "integrator with lag")
+    assert (simple.chosen, lag.chosen) == (False, True)
+    assert lag.parameters - simple.parameters == 1
+    assert (lag.held_out_times_noise, lag.times_noise) == (3.0, 2.0)
 
 
 def test_each_run_has_the_errors_of_both():
@@ -327,9 +329,9 @@ def test_each_run_has_the_errors_of_both():
     )
     search = SimpleNamespace(bench=SimpleNamespace(runs=[run]))
     found = dj.run_rows(search, [np.array([4.0, -2.0])], [np.array([2.0, 9.0])])["a"]
-    assert found["rmse"] == pytest.approx(math.sqrt((9.0 + 16.0) / 2.0))
-    assert found["rmse_nominal"] == pytest.approx(5.0)
-    assert (found["samples"], found["rate_Hz"], found["noise"]) == (2, 250.0, 0.1)
+    assert found.rmse == pytest.approx(math.sqrt((9.0 + 16.0) / 2.0))
+    assert found.rmse_nominal == pytest.approx(5.0)
+    assert (found.samples, found.rate_Hz, found.noise) == (2, 250.0, 0.1)
     with pytest.raises(ValueError, match="zip"):
         dj.run_rows(search, [np.zeros(2)] * 2, [np.zeros(2)])
 
@@ -338,45 +340,43 @@ def test_a_diagnosis_of_a_drive_as_json_and_as_tables():
     search = SimpleNamespace(folds=SimpleNamespace(by_run=True, blocks=40))
     named = verdict("ambiguous", cause("backlash", rivals=("channel_delay",)), nominal=STATED)
     found = dj.diagnosis(search, named)
-    (row,) = found["named"]
-    assert (row["effect"], row["title"]) == ("backlash", TITLE["backlash"])
-    assert row["parameters"]["play_mm"]["interval_high"] == 0.7
-    assert set(row["parameters"]["play_mm"]).isdisjoint({"name", "run", "origin"})
-    assert (found["gain_percent"], found["gain_interval_percent"]) == (40.0, [30.0, 50.0])
-    assert found["nominal"].startswith("Eq. (25)")
-    assert found["remainder"]["share_percent"] == pytest.approx(5.0)
-    assert found["evidence"]["held_out"] == "runs"
-    assert found["evidence"]["sentence"].startswith(
-        "Each run is predicted by a fit to the others; 40"
-    )
+    (row,) = found.named
+    assert (row.effect, row.title) == ("backlash", TITLE["backlash"])
+    assert row.parameters["play_mm"].interval_high == 0.7
+    written = row.content()["parameters"]["play_mm"]
+    assert set(written).isdisjoint({"name", "run", "origin"})
+    assert (found.gain_percent, found.gain_interval_percent) == (40.0, (30.0, 50.0))
+    assert found.nominal.startswith("Eq. (25)")
+    assert found.remainder.share_percent == pytest.approx(5.0)
+    assert found.evidence.held_out == "runs"
+    assert found.evidence.sentence.startswith("Each run is predicted by a fit to the others; 40")
     search.folds.by_run = False
     stretches = dj.diagnosis(search, verdict("sufficient"))
-    assert stretches["nominal"] == "x_in = g ∫u dt"
-    assert stretches["evidence"]["sentence"].startswith("Stretches are predicted by a fit to the")
+    assert stretches.nominal == "x_in = g ∫u dt"
+    assert stretches.evidence.sentence.startswith("Stretches are predicted by a fit to the")
 
-    errors = {"rmse": 0.12344, "rmse_nominal": 0.5, "noise": 0.0123}
-    structure = {"name": "lag", "parameters": 2, "held_out_times_noise": 1.2345, "converged": True}
-    summary = {
-        "parameters": [TOLD["play_mm"].as_json()],
-        "kinematics": {"kinematic_lead_rpm_s_per_mm": 42.2841},
-        "diagnosis": found,
-        "structures": [
-            structure | {"chosen": True},
-            structure | {"chosen": False},
-            structure | {"chosen": False, "converged": False},
-        ],
-        "runs": {"a": errors},
-    }
-    structures, parameters, runs, causes, error = (rows for *_, rows in tables(summary, "title"))
+    tried = TriedStructure(name="lag", parameters=2, held_out_times_noise=1.2345)
+    lead = Kinematics(kinematic_lead_rpm_s_per_mm=42.2841, fitted_lead_rpm_s_per_mm=40.0)
+    drive = Drive.model_construct(
+        parameters=parameters_of([TOLD["play_mm"]]),
+        kinematics=lead,
+        diagnosis=found,
+        structures=(
+            tried.model_copy(update={"chosen": True}),
+            tried,
+            tried.model_copy(update={"converged": False}),
+        ),
+        runs={"a": DriveRun(rmse=0.12344, rmse_nominal=0.5, noise=0.0123)},
+    )
+    structures, parameters, runs, causes, error = (rows for *_, rows in tables(drive, "title"))
     assert [row[3] for row in structures] == ["chosen", "", "not converged"]
     assert structures[0][:3] == ("lag", "2", "1.23")
-    assert parameters[0] == ("play_mm", "0.5 [0.3, 0.7]", "s")
+    assert parameters[0] == ("play_mm", "0.5 [0.3, 0.7]", "mm")
     assert parameters[1][1] == "42.284"
     assert list(runs) == [("a", "0.1234", "0.5", "0.012")]
-    assert causes == [("backlash", "play_mm", "0.5 [0.3, 0.7]", "s", "40.0", "channel_delay")]
+    assert causes == [("backlash", "play_mm", "0.5 [0.3, 0.7]", "mm", "40.0", "channel_delay")]
     assert error == [("x_in_mm", "0.4", "0.2", "0.1", "0.15", "mm")]
-    summary["kinematics"]["kinematic_lead_rpm_s_per_mm"] = None
-    summary["diagnosis"] = stretches
-    fewer = tables(summary, "title")
+    less = {"kinematics": Kinematics(fitted_lead_rpm_s_per_mm=40.0), "diagnosis": stretches}
+    fewer = list(tables(drive.model_copy(update=less), "title"))
     assert len(fewer) == 4
     assert len(fewer[1][2]) == 1

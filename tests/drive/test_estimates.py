@@ -12,9 +12,9 @@ from tsas_cli.drive.estimates import (
     total_lag_s,
 )
 from tsas_cli.drive.fit import DriveTrial, quantities_of
+from tsas_cli.drive.harmonic_drive import DriveValues, linear_response
 from tsas_cli.identification.fit import Solution, Unknown
 from tsas_cli.numerics.linear_response import sampled
-from tsas_cli.physics.plant.harmonic_drive import DriveValues, linear_response
 from tsas_cli.recordings.manifest import Manifest
 
 VALUES = DriveValues(

@@ -1,4 +1,4 @@
-"""Drives fitted to what equations of `physics/plant/harmonic_drive.py` give, without noise."""
+"""Drives fitted to what equations of `drive/harmonic_drive.py` give, without noise."""
 
 import math
 
@@ -14,14 +14,14 @@ from tsas_cli.drive.fit import (
     response_at,
 )
 from tsas_cli.drive.frequency_response import FrequencyResponse, frequency_response
-from tsas_cli.drive.runs import DriveRun
-from tsas_cli.drive.transfer_function import bode_curve, poles
-from tsas_cli.numerics.linear_response import sampled
-from tsas_cli.physics.plant.harmonic_drive import (
+from tsas_cli.drive.harmonic_drive import (
     DriveValues,
     gear_response,
     linear_response,
 )
+from tsas_cli.drive.runs import DriveRun
+from tsas_cli.drive.transfer_function import bode_curve, poles
+from tsas_cli.numerics.linear_response import sampled
 
 STEP_S = 5e-3
 TIME_S = STEP_S * np.arange(2001)

@@ -34,6 +34,24 @@ def test_what_is_written_is_read_back(tmp_path):
         assert set(read_model(told).estimates) == set(MODEL.estimates)
 
 
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [
+        ("interval_low = 0.09", "interval_low and interval_high go together"),
+        (
+            "interval_low = 0.2\ninterval_high = 0.1",
+            r"interval_low 0\.2 is above",
+        ),
+        ("stderr = -0.1", r"stderr -0\.1 is below 0"),
+    ],
+)
+def test_an_uncertainty_that_cannot_be_is_refused(tmp_path, more, said):
+    path = tmp_path / "model.toml"
+    path.write_text(f"format = 1\n{VALUE}{more}\n", encoding="utf-8")
+    with pytest.raises(InputError, match=f"parameters.friction_coefficient: {said}"):
+        read_model(path)
+
+
 def test_a_rig_takes_its_run_s_values_and_the_effects():
     rig = MODEL.rig(run('a "b" <c>.d', preload_N=20.0, total_bend_rad=2.0, sheath_length_mm=500.0))
     assert (rig.preload_N, rig.x_in_zero_mm, rig.friction_coefficient) == (25.0, -0.3, 0.13)

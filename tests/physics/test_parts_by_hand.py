@@ -18,6 +18,7 @@ from tests.physics.references import (
     step_ends,
     wrap_of,
 )
+from tsas_cli.drive.harmonic_drive import DriveValues, has_gear, lag_coefficients
 from tsas_cli.effects.load_spring_nonlinearity import LoadSpringNonlinearity
 from tsas_cli.physics.course import Losses, Tensions
 from tsas_cli.physics.ends import last_direction, losses_at, losses_without_speed
@@ -37,7 +38,6 @@ from tsas_cli.physics.lugre.state import ROWS as LUGRE_ROWS
 from tsas_cli.physics.lugre.state import TENSION as LUMP_TENSION
 from tsas_cli.physics.mesh import PITCH
 from tsas_cli.physics.parameters import BRISTLES, NOMINAL
-from tsas_cli.physics.plant.harmonic_drive import DriveValues, has_gear, lag_coefficients
 from tsas_cli.physics.plant.turntable import (
     Play,
     Tangent,

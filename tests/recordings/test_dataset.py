@@ -291,7 +291,7 @@ def test_chosen_runs_come_in_the_order_of_the_manifest(tmp_path: Path, columns: 
     whole = read_dataset(tmp_path)
     chosen = whole.only(["c", "a"])
     assert [recording.run.id for recording in chosen] == ["a", "c"]
-    assert chosen.header("x", tmp_path)["dataset"] == whole.header("x", tmp_path)["dataset"]
+    assert chosen.header(tmp_path)["dataset"] == whole.header(tmp_path)["dataset"]
     with pytest.raises(InputError, match="there is no run 'd'"):
         whole.only(["d"])
 
@@ -303,7 +303,7 @@ def test_other_conditions_are_said_of_every_run_and_stay_on_record(dataset: Path
     assert (recording.run.total_bend_rad, recording.run.preload_N) == (1.5, 20.0)
     assert recording.run.sheath_length_mm is None
     assert told.under(preload_N=10.0).conditions == {"total_bend_rad": 1.5, "preload_N": 10.0}
-    assert told.header("x", None) == whole.header("x", None) | {
+    assert told.header(None) == whole.header(None) | {
         "conditions": {"total_bend_rad": 1.5, "preload_N": 20.0}
     }
     with pytest.raises(InputError, match="unknown condition bend; known are sheath_length_mm"):

@@ -393,21 +393,25 @@ def make_tracking(folder: Path, controllers=("pid", "adaptive-sliding-mode"), **
 
 
 def _result(controller, condition, run_id, rmse):
-    scores = {
-        "rmse_N": {"mean": rmse, "sd": 0.0031},
+    at_limit = {"mean": 12.5 if condition == "disturbed" else 0.0, "sd": 0.5}
+    return {
+        "controller": controller,
+        "condition": condition,
+        "run": run_id,
+        "scores": _scores(rmse, 0.0031) | {"at_limit_percent": at_limit},
+        "unsettled_steps": 0,
+    }
+
+
+def _scores(rmse, spread):
+    return {
+        "rmse_N": {"mean": rmse, "sd": spread},
         "lowest_error_N": {"mean": -2.5, "sd": 0.02},
         "highest_error_N": {"mean": 1.5, "sd": 0.02},
         "outside_percent": {"mean": 0.0, "sd": 0.0},
         "effort_rpm": {"mean": 353.6, "sd": 0.1},
         "chatter_rpm_per_s": {"mean": 1234.0, "sd": None},
-        "at_limit_percent": {"mean": 12.5 if condition == "disturbed" else 0.0, "sd": 0.5},
-    }
-    return {
-        "controller": controller,
-        "condition": condition,
-        "run": run_id,
-        "scores": scores,
-        "unsettled_steps": 0,
+        "at_limit_percent": {"mean": 0.0, "sd": 0.5},
     }
 
 
@@ -464,10 +468,7 @@ def _closed(controller, rmse):
     models = ("data sheet", "calibrated", "extended", "true")
     return {
         "controller": controller,
-        "models": {
-            model: {"rmse_N": {"mean": mean, "sd": 0.002}}
-            for model, mean in zip(models, rmse, strict=True)
-        },
+        "models": {model: _scores(mean, 0.002) for model, mean in zip(models, rmse, strict=True)},
         "over_limit": rmse[2] / rmse[3],
     }
 

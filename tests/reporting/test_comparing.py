@@ -6,7 +6,7 @@ import pytest
 from tests.reporting.made_folders import make_dataset, make_diagnosis, make_simulation, source
 from tests.reporting.test_page import Outline
 from tsas_cli.comparing.compare import compare
-from tsas_cli.comparing.stage import as_json
+from tsas_cli.comparing.stage import record_of
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model, write_model
 from tsas_cli.recordings.dataset import read_dataset
@@ -101,7 +101,8 @@ def test_the_same_recordings_make_no_claim(extended):
 
 
 def test_effects_and_their_rivals_stand_beside_each_other(extended, folders):
-    assert as_json(compare(folders[0], folders[1]))["effects"] == [
+    effects = record_of(compare(folders[0], folders[1])).effects
+    assert [one.content() for one in effects] == [
         {"effect": "free_tendon", "a": "", "b": "named"},
         {"effect": "drive_compliance", "a": "", "b": "rival of free_tendon"},
     ]
@@ -109,9 +110,9 @@ def test_effects_and_their_rivals_stand_beside_each_other(extended, folders):
 
 
 def test_errors_on_held_out_data_stand_beside_each_other(folders):
-    (f_in, *_) = as_json(compare(folders[0], folders[2]))["held_out"]
-    assert f_in["channel"] == "f_in_N"
-    assert (f_in["rmse_a"], f_in["rmse_b"]) == pytest.approx((0.1, 0.62))
+    (f_in, *_) = record_of(compare(folders[0], folders[2])).held_out
+    assert f_in.channel == "f_in_N"
+    assert (f_in.rmse_a, f_in.rmse_b) == pytest.approx((0.1, 0.62))
 
 
 def test_the_page_does_not_change_when_nothing_changed(folders, changed):

@@ -6,6 +6,8 @@ import pyarrow.parquet as pq
 
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model
+from tsas_cli.records.calibration import Calibration, ChannelError, NominalFit
+from tsas_cli.records.diagnosis import Cause, Diagnosis, HeldOut
 from tsas_cli.sweeping.found import estimates, figures
 from tsas_cli.sweeping.tables import printed, write_rows
 
@@ -16,14 +18,21 @@ MODEL = Model((FRICTION, GIVEN, OF_A_RUN))
 
 
 def diagnosis(named):
-    channels = {"f_in_N": {"rmse_before": 0.9, "rmse_after": 0.1}}
-    summary = {"verdict": "ambiguous", "named": named, "channels": channels}
-    return SimpleNamespace(summary=summary, model=MODEL)
+    record = Diagnosis.model_construct(
+        verdict="ambiguous",
+        named=named,
+        channels={"f_in_N": HeldOut(rmse_before=0.9, rmse_after=0.1)},
+    )
+    return SimpleNamespace(record=record, model=MODEL)
 
 
 def test_a_diagnosis_gives_verdict_causes_gains_errors_and_what_was_fitted():
-    cause = {"effect": "backlash", "rivals": ["drive_ripple"], "gain_percent": 40.0}
-    cause["gain_interval_percent"] = [30.0, 50.0]
+    cause = Cause(
+        effect="backlash",
+        rivals=("drive_ripple",),
+        gain_percent=40.0,
+        gain_interval_percent=(30.0, 50.0),
+    )
     assert figures("diagnose", diagnosis([cause])) == {
         "verdict": "ambiguous",
         "causes": "backlash",
@@ -43,9 +52,12 @@ def test_a_diagnosis_gives_verdict_causes_gains_errors_and_what_was_fitted():
 
 
 def test_errors_of_runs_are_pooled_by_their_squares():
-    channels = {"a": {"f_in_N": {"rmse": 3.0}}, "b": {"f_in_N": {"rmse": 4.0}}}
-    summary = {"fit": {"converged": False}, "channels": channels}
-    found = figures("calibrate", SimpleNamespace(summary=summary, model=Model(())))
+    channels = {
+        run: {"f_in_N": ChannelError(rmse=rmse, noise=0.1)}
+        for run, rmse in (("a", 3.0), ("b", 4.0))
+    }
+    record = Calibration.model_construct(fit=NominalFit(converged=False), channels=channels)
+    found = figures("calibrate", SimpleNamespace(record=record, model=Model(())))
     assert found == {"converged": False, "rmse_f_in_N": 12.5**0.5}
 
 

@@ -29,11 +29,11 @@ def test_a_perfect_run_is_all_zeros():
 
 def test_over_seeds_are_mean_and_sample_deviation():
     runs = [score(WANTED, WANTED + off, ASKED, 0.5, 100.0) for off in (1.0, 2.0, 4.5)]
-    rmse = over_seeds(runs)["rmse_N"]
-    assert rmse["mean"] == pytest.approx(2.5)
-    assert rmse["sd"] == pytest.approx(math.sqrt((1.5**2 + 0.5**2 + 2.0**2) / 2.0))
-    assert over_seeds(runs)["effort_rpm"]["sd"] == 0.0
+    rmse = over_seeds(runs).rmse_N
+    assert rmse.mean == pytest.approx(2.5)
+    assert rmse.sd == pytest.approx(math.sqrt((1.5**2 + 0.5**2 + 2.0**2) / 2.0))
+    assert over_seeds(runs).effort_rpm.sd == 0.0
 
 
 def test_one_seed_has_no_spread():
-    assert over_seeds([score(WANTED, ACTUAL, ASKED, 0.5, 100.0)])["rmse_N"]["sd"] is None
+    assert over_seeds([score(WANTED, ACTUAL, ASKED, 0.5, 100.0)]).rmse_N.sd is None

@@ -4,7 +4,6 @@ from collections.abc import Callable, Mapping, Sequence
 from datetime import UTC, datetime
 from glob import escape
 from pathlib import Path
-from typing import Any
 
 import duckdb
 import pyarrow as pa
@@ -19,6 +18,7 @@ from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import read_json, sha256_of
 
+Entry = dict[str, object]  # by the names of `SCHEMA`, which checks it
 RIG = tuple(Rig.model_fields)
 TEXTS = pa.list_(pa.string())
 RUN = pa.struct(
@@ -72,7 +72,7 @@ FROM parquet_metadata($files) GROUP BY file_name
 """
 
 
-def entry_of(connection: DuckDBPyConnection, folder: Path, file: str) -> dict[str, Any]:
+def entry_of(connection: DuckDBPyConnection, folder: Path, file: str) -> Entry:
     """Return what a file says, by the names of the index; what is wrong stands in `problems`."""
     try:
         return _KINDS[file](connection, folder)
@@ -84,7 +84,7 @@ def entry_of(connection: DuckDBPyConnection, folder: Path, file: str) -> dict[st
         return {"problems": [f"holds a value that cannot be told ({limits.reason(error)})"]}
 
 
-def _manifest(connection: DuckDBPyConnection, folder: Path) -> dict[str, Any]:
+def _manifest(connection: DuckDBPyConnection, folder: Path) -> Entry:
     manifest = read_manifest(folder)
     problems: list[str] = []
     paths = [folder / run.file for run in manifest.run]
@@ -102,8 +102,8 @@ def _manifest(connection: DuckDBPyConnection, folder: Path) -> dict[str, Any]:
 
 def _run(
     folder: Path, run: Run, durations: Mapping[Path, float | None], problems: list[str]
-) -> dict[str, Any]:
-    said = {
+) -> Entry:
+    said: Entry = {
         "run": run.id,
         "started": None if run.started is None else _utc(run.started),
         "load": run.load,
@@ -119,7 +119,7 @@ def _run(
         return said
 
 
-def _footer(folder: Path, run: Run, durations: Mapping[Path, float | None]) -> dict[str, Any]:
+def _footer(folder: Path, run: Run, durations: Mapping[Path, float | None]) -> Entry:
     """Return what the end of a run's Parquet file says of it; no sample is read."""
     path = folder / run.file
     refusal = _refusal(folder, path)
@@ -169,7 +169,7 @@ def _durations_s(connection: DuckDBPyConnection, paths: Sequence[Path]) -> dict[
     }
 
 
-def _diagnosis(_: DuckDBPyConnection, folder: Path) -> dict[str, Any]:
+def _diagnosis(_: DuckDBPyConnection, folder: Path) -> Entry:
     path = folder / DIAGNOSIS
     content = read_json(path)
     said = parse(Diagnosis, content, path)
@@ -183,7 +183,7 @@ def _diagnosis(_: DuckDBPyConnection, folder: Path) -> dict[str, Any]:
     }
 
 
-_KINDS: Mapping[str, Callable[[DuckDBPyConnection, Path], dict[str, Any]]] = {
+_KINDS: Mapping[str, Callable[[DuckDBPyConnection, Path], Entry]] = {
     MANIFEST: _manifest,
     DIAGNOSIS: _diagnosis,
 }

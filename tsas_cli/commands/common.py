@@ -5,7 +5,7 @@ import sys
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import AbstractContextManager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -81,7 +81,7 @@ def with_stream(
 
 
 def show(
-    summary: dict[str, Any],
+    summary: object,
     tables: Iterable[tuple[str, Sequence[str], Sequence[Sequence[str]]]],
     sentences: Iterable[str] = (),
     *,

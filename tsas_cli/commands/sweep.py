@@ -67,7 +67,7 @@ def sweep(
 
 def _plan(
     what: str, datasets: list[str], options: list[str], *, each_run: bool
-) -> Path | dict[str, Any]:
+) -> Path | dict[str, object]:
     """Return the plan's file, or the content of one that the call stands for."""
     if what.endswith(".toml"):
         if datasets or options or each_run:
@@ -76,7 +76,7 @@ def _plan(
             )
         return Path(what)
     told = dict(_option(option) for option in options)
-    plan: dict[str, Any] = {"stage": what, "each_run": each_run, "options": told}
+    plan: dict[str, object] = {"stage": what, "each_run": each_run, "options": told}
     return plan | ({"datasets": datasets} if datasets else {})
 
 

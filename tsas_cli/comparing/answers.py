@@ -16,6 +16,7 @@ from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.storage import Place
 from tsas_cli.recordings.written import answers_of, check_rows, columns_of, names_of
+from tsas_cli.records.comparison import ErrorRow
 from tsas_cli.support.steps import SILENT, Steps
 
 Floats = npt.NDArray[np.float64]
@@ -60,29 +61,6 @@ class Both:
         """The recording's checksum."""
         answer = self.a or self.b
         return "" if answer is None else answer.run.run.sha256.lower()
-
-
-@dataclass(frozen=True)
-class ErrorRow:
-    """One channel of one run: the root mean squares of both sides' errors, in its unit.
-
-    `fitted_a` says whether A's fit has seen the recording, None where that is not known.
-    """
-
-    run_a: str | None
-    run_b: str | None
-    channel: str
-    unit: str
-    rmse_a: float | None
-    rmse_b: float | None
-    noise: float | None
-    fitted_a: bool | None
-    fitted_b: bool | None
-
-    @property
-    def ratio(self) -> float | None:
-        """B over A."""
-        return self.rmse_b / self.rmse_a if self.rmse_a and self.rmse_b is not None else None
 
 
 class Answers:
@@ -136,31 +114,30 @@ def matched(a: list[Answer], b: list[Answer]) -> list[Both]:
 
 def error_rows(a: Side, b: Side, recordings: list[Both]) -> list[ErrorRow]:
     """Return the errors of every channel of every recording, in the order of the recordings."""
-    return [
-        ErrorRow(
-            *both.ids,
-            channel,
-            BY_NAME[channel].unit,
-            None if both.a is None else both.a.rmse(channel),
-            None if both.b is None else both.b.rmse(channel),
-            _noise(both, channel),
-            _fitted(a, both),
-            _fitted(b, both),
-        )
-        for both in recordings
-        for channel in channels(both)
-    ]
+    return [_error_row(a, b, both, name) for both in recordings for name in channels(both)]
+
+
+def _error_row(a: Side, b: Side, both: Both, channel: str) -> ErrorRow:
+    (run_a, run_b), answer = both.ids, both.a or both.b
+    rmse_a, rmse_b = (None if one is None else one.rmse(channel) for one in (both.a, both.b))
+    return ErrorRow(
+        run_a=run_a,
+        run_b=run_b,
+        channel=channel,
+        unit=BY_NAME[channel].unit,
+        rmse_a=rmse_a,
+        rmse_b=rmse_b,
+        noise=None if answer is None else answer.noise(channel),
+        fitted_a=_fitted(a, both),
+        fitted_b=_fitted(b, both),
+        ratio=rmse_b / rmse_a if rmse_a and rmse_b is not None else None,
+    )
 
 
 def channels(both: Both) -> list[str]:
     """Return the channels of a recording that a side answers, in their usual order."""
     there = {name for answer in (both.a, both.b) if answer is not None for name in answer.errors}
     return [name for name in CHANNELS if name in there]
-
-
-def _noise(both: Both, channel: str) -> float | None:
-    answer = both.a or both.b
-    return None if answer is None else answer.noise(channel)
 
 
 def _fitted(side: Side, both: Both) -> bool | None:

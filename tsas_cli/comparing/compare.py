@@ -3,11 +3,12 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from tsas_cli.comparing.answers import Answers, Both, ErrorRow, error_rows, matched
+from tsas_cli.comparing.answers import Answers, Both, error_rows, matched
 from tsas_cli.comparing.maps import residual_maps
 from tsas_cli.comparing.sides import Side, read_side
-from tsas_cli.comparing.values import Overlap, Pair, overlap, pairs
+from tsas_cli.comparing.values import Overlap, overlap, pairs
 from tsas_cli.recordings.dataset import Dataset
+from tsas_cli.records.comparison import ErrorRow, ParameterPair
 from tsas_cli.records.diagnosis import Maps
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.steps import SILENT, Steps
@@ -24,7 +25,7 @@ class Comparison:
     a: Side
     b: Side
     overlap: Overlap
-    pairs: list[Pair]
+    pairs: list[ParameterPair]
     recordings: list[Both]
     errors: list[ErrorRow]
     maps: dict[str, Maps]
@@ -37,12 +38,12 @@ class Comparison:
         return {"A": self.a, "B": self.b}
 
     @property
-    def tested(self) -> list[Pair]:
+    def tested(self) -> list[ParameterPair]:
         """The parameters whose difference has an interval."""
         return [p for p in self.pairs if p.difference and p.difference.excludes_zero is not None]
 
     @property
-    def differing(self) -> list[Pair]:
+    def differing(self) -> list[ParameterPair]:
         """The parameters that differ by more than their uncertainty."""
         return [p for p in self.tested if p.difference and p.difference.excludes_zero]
 

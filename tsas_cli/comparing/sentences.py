@@ -3,8 +3,9 @@
 from collections.abc import Iterator
 
 from tsas_cli.comparing.compare import Comparison
-from tsas_cli.comparing.values import FALSE_CLAIMS, Pair, rounded
+from tsas_cli.comparing.values import FALSE_CLAIMS, rounded
 from tsas_cli.identification.prepared import CHANNELS
+from tsas_cli.records.comparison import ParameterPair
 from tsas_cli.support.wording import count_of
 
 SHOWN = 4  # names that are listed
@@ -39,9 +40,9 @@ def _values(it: Comparison) -> Iterator[str]:
         )
 
 
-def _differs(pair: Pair) -> str:
+def _differs(pair: ParameterPair) -> str:
     a, b, d = pair.a, pair.b, pair.difference
-    if a is None or b is None or d is None or d.low is None or d.high is None:
+    if not (a and b and d) or d.value is None or d.low is None or d.high is None:
         return ""
     unit = "" if pair.unit == "1" else f" {pair.unit}"
     of = "" if pair.run == "all" else f" of run {pair.run}"

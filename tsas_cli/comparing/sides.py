@@ -4,14 +4,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
-from tsas_cli.identification.model import FILE, Model, read_model
+from tsas_cli.identification.model import Model, read_model
 from tsas_cli.physics.response import Dynamics
 from tsas_cli.recordings.dataset import Dataset, read_dataset
 from tsas_cli.recordings.manifest import FILE as MANIFEST
 from tsas_cli.recordings.manifest import parse, read_toml
 from tsas_cli.recordings.storage import place_from
 from tsas_cli.records.base import OfDataset, Source
-from tsas_cli.records.calibration import Calibration
+from tsas_cli.records.calibration import MODEL_FILE, Calibration
 from tsas_cli.records.diagnosis import EXTENDED_MODEL, Cause, Diagnosis, HeldOut
 from tsas_cli.records.simulation import Simulation
 from tsas_cli.support.errors import InputError
@@ -63,8 +63,8 @@ def read_side(path: Path) -> Side:
     if path.is_file():
         return _of_model(path)
     there = [kind for kind in STAGES if (path / kind.FILE).is_file()]
-    if not there and (path / FILE).is_file():
-        return _of_model(path / FILE)
+    if not there and (path / MODEL_FILE).is_file():
+        return _of_model(path / MODEL_FILE)
     if len(there) != 1:
         files = " and ".join(kind.FILE for kind in there)
         raise InputError(
@@ -106,7 +106,7 @@ def _of_stage(path: Path, kind: type[OfDataset]) -> Side:
         return Side(
             path, "simulation", files, None, stage.dynamics, stage.dataset, dataset, gone, read
         )
-    name = EXTENDED_MODEL if isinstance(stage, Diagnosis) else FILE
+    name = EXTENDED_MODEL if isinstance(stage, Diagnosis) else MODEL_FILE
     model = read_model(path / name)
     files[name] = sha256_of(path / name)
     if isinstance(stage, Diagnosis):

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from tsas_cli.recordings.manifest import parse
+from tsas_cli.records.comparison import Setting
 from tsas_cli.records.tracking import Result, Tracking
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import read_json, sha256_of
@@ -19,15 +20,6 @@ SCORES = {  # those that are better the smaller they are, with their units
 }
 ASKED = ("model", "plant", "drive", "dynamics", "gains", "reference", "settings", "seeds")
 TASK = ("plant", "dynamics", "reference", "settings.reference")  # with others the task is another
-
-
-@dataclass(frozen=True)
-class Setting:
-    """Something that was asked for in another way; None where a side does not have it."""
-
-    name: str
-    a: Any
-    b: Any
 
 
 @dataclass(frozen=True)
@@ -110,7 +102,7 @@ def compare_tracked(a: Path, b: Path) -> Tracks:
 def _settings(a: Mapping[str, Any], b: Mapping[str, Any]) -> list[Setting]:
     flat = [dict(_flat({name: side.get(name) for name in ASKED})) for side in (a, b)]
     names = dict.fromkeys([*flat[0], *flat[1]])
-    found = (Setting(name, flat[0].get(name), flat[1].get(name)) for name in names)
+    found = (Setting(name=n, a=flat[0].get(n), b=flat[1].get(n)) for n in names)
     return [s for s in found if s.a != s.b]
 
 

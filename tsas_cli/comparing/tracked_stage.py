@@ -1,45 +1,38 @@
 """What `tsas compare` writes and prints of two folders of tracked runs."""
 
 from collections.abc import Iterator
-from typing import Any
 
 from tsas_cli.comparing.tracked import FILE, SCORES, Tracks
+from tsas_cli.records.base import number_text
+from tsas_cli.records.comparison import ComparedSide, ScorePair, TrackedComparison
 from tsas_cli.records.result import Table
-from tsas_cli.records.tracking import Spread
-from tsas_cli.support import __version__
 
 
-def as_json(it: Tracks) -> dict[str, Any]:
-    """Return the content of `compare.json`."""
-    return {
-        "format": 1,
-        "stage": "compare",
-        "version": __version__,
-        **{
-            name.lower(): {
-                "path": path.as_posix(),
-                "kind": "tracking",
-                "files": {FILE: it.checksums[name]},
-            }
-            for name, path in it.paths.items()
-        },
-        "settings": [vars(setting) for setting in it.settings],
-        "scores": [
-            {
-                "controller": both.a.controller,
-                "condition": both.a.condition,
-                "score": score,
-                "unit": unit,
-                "a": both.a.scores[score].model_dump(),
-                "b": both.b.scores[score].model_dump(),
-                "ratio": both.ratio(score),
-            }
-            for both in it.followed
-            for score, unit in SCORES.items()
-        ],
-        "findings": findings(it),
-        "notes": list(_notes(it)),
-    }
+def record_of(it: Tracks) -> TrackedComparison:
+    """Return what `compare.json` says."""
+    a, b = (
+        ComparedSide(path=path.as_posix(), kind="tracking", files={FILE: it.checksums[name]})
+        for name, path in it.paths.items()
+    )
+    return TrackedComparison(
+        a=a, b=b, settings=it.settings, scores=_scores(it), findings=findings(it), notes=notes(it)
+    )
+
+
+def _scores(it: Tracks) -> list[ScorePair]:
+    return [
+        ScorePair(
+            controller=both.a.controller,
+            condition=both.a.condition,
+            score=score,
+            unit=unit,
+            a=both.a.scores[score],
+            b=both.b.scores[score],
+            ratio=both.ratio(score),
+        )
+        for both in it.followed
+        for score, unit in SCORES.items()
+    ]
 
 
 def findings(it: Tracks) -> list[str]:
@@ -55,6 +48,11 @@ def findings(it: Tracks) -> list[str]:
         if said:
             out.append(f"RMSE of the force, {condition}, B over A: {said}.")
     return out
+
+
+def notes(it: Tracks) -> list[str]:
+    """Return what to keep in mind, what could not be matched, and what would give more."""
+    return list(_notes(it))
 
 
 def _notes(it: Tracks) -> Iterator[str]:
@@ -78,16 +76,15 @@ def tables(it: Tracks) -> list[Table]:
     asked = [(s.name, shown(s.a), shown(s.b)) for s in it.settings]
     scores = [
         (
-            both.a.controller,
-            both.a.condition,
-            score,
-            _spread(both.a.scores[score]),
-            _spread(both.b.scores[score]),
-            "" if (ratio := both.ratio(score)) is None else f"{ratio:.3g}",
-            unit,
+            one.controller,
+            one.condition,
+            one.score,
+            one.a.text(),
+            one.b.text(),
+            number_text(one.ratio),
+            one.unit,
         )
-        for both in it.followed
-        for score, unit in SCORES.items()
+        for one in _scores(it)
     ]
     every: list[Table] = [
         ("what differs in the call", ("setting", "A", "B"), asked),
@@ -100,9 +97,3 @@ def shown(value: object) -> str:
     """Return a setting as text, a checksum in short."""
     text = "" if value is None else str(value)
     return f"{text[:12]}…" if len(text) == 64 else text
-
-
-def _spread(number: Spread) -> str:
-    if number.mean is None:
-        return ""
-    return f"{number.mean:.4g}" + ("" if number.sd is None else f" ± {number.sd:.2g}")

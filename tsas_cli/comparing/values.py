@@ -2,56 +2,17 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Literal
 
 from tsas_cli.comparing.sides import Side
 from tsas_cli.identification.estimate import Estimate
+from tsas_cli.records.base import Parameter, parameters_of
+from tsas_cli.records.comparison import ParameterPair, ValueDifference
 
+AnyEstimate = Estimate | Parameter
 Overlap = Literal["none", "some", "all", "unknown"]
 MOST_DECIMALS = 10
 FALSE_CLAIMS = 0.05  # of intervals of 95 % that exclude a difference of zero by chance
-
-
-@dataclass(frozen=True)
-class Difference:
-    """B less A in the parameter's unit; without an interval where there is none, and why."""
-
-    value: float
-    low: float | None = None
-    high: float | None = None
-    why_none: str = ""
-
-    @property
-    def excludes_zero(self) -> bool | None:
-        """Whether the difference is more than its uncertainty, None where that is not known."""
-        if self.low is None or self.high is None:
-            return None
-        return self.low > 0.0 or self.high < 0.0
-
-    def text(self) -> str:
-        """Return value and interval for a printed table."""
-        if self.low is None or self.high is None:
-            return f"{self.value:.4g}"
-        value, low, high = rounded(self.value, self.low, self.high)
-        return f"{value} [{low}, {high}]"
-
-
-@dataclass(frozen=True)
-class Pair:
-    """One parameter in both models, or in one of them; `run_a` and `run_b` are run ids there."""
-
-    name: str
-    unit: str
-    a: Estimate | None
-    b: Estimate | None
-    difference: Difference | None = None
-
-    @property
-    def run(self) -> str:
-        """The run that the value belongs to, under both names where they differ."""
-        ids = (None if side is None else side.run for side in (self.a, self.b))
-        return shared_name(*ids) or "all"
 
 
 def rounded(value: float, low: float, high: float) -> tuple[str, str, str]:
@@ -67,17 +28,6 @@ def rounded(value: float, low: float, high: float) -> tuple[str, str, str]:
     if decimals >= MOST_DECIMALS:
         return f"{value:.4g}", f"{low:.4g}", f"{high:.4g}"
     return f"{value:.{decimals}f}", f"{low:.{decimals}f}", f"{high:.{decimals}f}"
-
-
-def shared_name(a: str | None, b: str | None) -> str:
-    """Return a run's id; both where the same recording has two.
-
-    Examples
-    --------
-    >>> shared_name("a", "a"), shared_name("a", "first"), shared_name(None, "b")
-    ('a', 'a = first', 'b')
-    """
-    return " = ".join(dict.fromkeys(name for name in (a, b) if name))
 
 
 def overlap(a: Side, b: Side) -> Overlap:
@@ -104,7 +54,7 @@ def same_runs(a: Mapping[str, str], b: Mapping[str, str]) -> dict[str, str]:
     return out
 
 
-def pairs(a: Side, b: Side) -> list[Pair]:
+def pairs(a: Side, b: Side) -> list[ParameterPair]:
     """Return the parameters of two models in the order of A's, then those in B alone.
 
     What belongs to a run alone is paired where both were fitted to that recording.
@@ -113,17 +63,18 @@ def pairs(a: Side, b: Side) -> list[Pair]:
         return []
     runs = same_runs(a.recordings or {}, b.recordings or {})
     how = overlap(a, b)
-    second = {(e.name, e.run): e for e in b.model.estimates}
+    first, others = (parameters_of(side.estimates) for side in (a.model, b.model))
+    second = {(e.name, e.run): e for e in others}
     out = []
-    for one in a.model.estimates:
+    for one in first:
         there = one.run is None or one.run in runs
         other = second.pop((one.name, runs.get(one.run or "")), None) if there else None
         found = None if other is None else _difference(one, other, how)
-        out.append(Pair(one.name, one.unit, one, other, found))
-    return out + [Pair(e.name, e.unit, None, e) for e in second.values()]
+        out.append(ParameterPair(name=one.name, unit=one.unit, a=one, b=other, difference=found))
+    return out + [ParameterPair(name=e.name, unit=e.unit, b=e) for e in second.values()]
 
 
-def difference(a: Estimate, b: Estimate) -> Difference:
+def difference(a: AnyEstimate, b: AnyEstimate) -> ValueDifference:
     """Return B less A with its 95 % interval, for estimates whose errors are independent.
 
     The interval goes as far below as A above and B below in quadrature, and the other way round:
@@ -136,19 +87,19 @@ def difference(a: Estimate, b: Estimate) -> Difference:
     ValueError
         One of them has no interval.
     """
-    a_ends, b_ends = (a.interval_low, a.interval_high), (b.interval_low, b.interval_high)
-    if None in a_ends or None in b_ends:
+    ends = a.value, a.interval_low, a.interval_high, b.value, b.interval_low, b.interval_high
+    known = [end for end in ends if end is not None]
+    if len(known) < len(ends):
         raise ValueError(f"{a.name} has no interval")
-    (a_low, a_high), (b_low, b_high) = a_ends, b_ends
-    value = b.value - a.value
-    return Difference(
-        value,
-        value - math.hypot(b.value - b_low, a_high - a.value),  # type: ignore[operator]
-        value + math.hypot(b_high - b.value, a.value - a_low),  # type: ignore[operator]
-    )
+    at_a, a_low, a_high, at_b, b_low, b_high = known
+    value = at_b - at_a
+    low = value - math.hypot(at_b - b_low, a_high - at_a)
+    high = value + math.hypot(b_high - at_b, at_a - a_low)
+    apart = low > 0.0 or high < 0.0
+    return ValueDifference(value=value, low=low, high=high, excludes_zero=apart)
 
 
-def _difference(a: Estimate, b: Estimate, how: Overlap) -> Difference:
+def _difference(a: Parameter, b: Parameter, how: Overlap) -> ValueDifference | None:
     """Return the difference, with an interval where one may be claimed."""
     why = ""
     if any(e.interval_low is None or e.interval_high is None for e in (a, b)):
@@ -157,4 +108,6 @@ def _difference(a: Estimate, b: Estimate, how: Overlap) -> Difference:
         why = "at its bound"
     elif how != "none":
         why = "not known to be independent" if how == "unknown" else "the same recordings"
-    return Difference(b.value - a.value, why_none=why) if why else difference(a, b)
+    if a.value is None or b.value is None:
+        return None
+    return ValueDifference(value=b.value - a.value, why_none=why) if why else difference(a, b)

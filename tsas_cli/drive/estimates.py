@@ -13,10 +13,10 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.drive.fit import QUANTITIES, DriveTrial
+from tsas_cli.drive.harmonic_drive import DriveValues
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.fit import Fitted, with_errors
 from tsas_cli.physics.closed_form.capstan import speed_per_stiffness
-from tsas_cli.physics.plant.harmonic_drive import DriveValues
 from tsas_cli.recordings.manifest import Manifest, Rig
 
 Floats = npt.NDArray[np.float64]

@@ -2,9 +2,9 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
 import tomlkit
 from pydantic import BaseModel, ConfigDict
@@ -12,9 +12,9 @@ from pydantic import BaseModel, ConfigDict
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.stored_value import StoredValue
 from tsas_cli.recordings.manifest import parse, read_toml
+from tsas_cli.records.drive import DRIVE_FILE
 from tsas_cli.support.errors import InputError, nearest
 
-FILE = "drive.toml"
 UNITS = {
     "gain_mm_per_s_rpm": "mm/(s rpm)",
     "motor_lag_s": "s",
@@ -83,7 +83,7 @@ class _File(BaseModel):
     format: Literal[1]
     kind: Literal["drive"]
     version: str = ""
-    dataset: dict[str, Any] = {}
+    dataset: dict[str, object] = {}
     structure: _Structure
     parameters: dict[str, StoredValue]
 
@@ -94,7 +94,7 @@ def write_drive(
     structure: Mapping[str, str],
     *,
     version: str,
-    dataset: Mapping[str, Any],
+    dataset: Mapping[str, object],
 ) -> None:
     """Write `drive.toml`."""
     content = {
@@ -104,9 +104,7 @@ def write_drive(
         "dataset": dict(dataset),
         "structure": dict(structure),
         "parameters": {
-            name: {
-                k: v for k, v in e.as_json().items() if k not in ("name", "run") and _writable(v)
-            }
+            name: {k: v for k, v in asdict(e).items() if k not in ("name", "run") and _writable(v)}
             for name, e in estimates.items()
         },
     }
@@ -126,7 +124,7 @@ def read_drive(path: Path) -> IdentifiedDrive:
         The file is missing, not TOML, of another format or kind, names an unknown parameter, lacks
         the gain, or a value or its unit is not what it has to be.
     """
-    path = path / FILE if path.is_dir() else path
+    path = path / DRIVE_FILE if path.is_dir() else path
     file = parse(_File, read_toml(path), path)
     for name, value in file.parameters.items():
         _check(name, value, path)

@@ -13,13 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.drive.frequency_response import FrequencyResponse
-from tsas_cli.drive.runs import DriveRun
-from tsas_cli.effects.backlash import BACKLASH
-from tsas_cli.effects.drive_ripple import DRIVE_RIPPLE
-from tsas_cli.identification.extension import ROUGHER
-from tsas_cli.identification.fit import Solution, Unknown, solve
-from tsas_cli.identification.quantities import Quantity
-from tsas_cli.physics.plant.harmonic_drive import (
+from tsas_cli.drive.harmonic_drive import (
     DriveValues,
     free_motion,
     gear_response,
@@ -27,6 +21,12 @@ from tsas_cli.physics.plant.harmonic_drive import (
     lag_coefficients,
     linear_response,
 )
+from tsas_cli.drive.runs import DriveRun
+from tsas_cli.effects.backlash import BACKLASH
+from tsas_cli.effects.drive_ripple import DRIVE_RIPPLE
+from tsas_cli.identification.extension import ROUGHER
+from tsas_cli.identification.fit import Solution, Unknown, solve
+from tsas_cli.identification.quantities import Quantity
 
 Floats = npt.NDArray[np.float64]
 Terms = frozenset[str]

@@ -1,75 +1,61 @@
 """What `tsas identify-harmonic-drive` prints."""
 
-from typing import Any
+from collections.abc import Iterator
 
-from tsas_cli.identification.estimate import Estimate
+from tsas_cli.records.base import number_text
+from tsas_cli.records.drive import Drive
 from tsas_cli.records.result import Table
 
 
-def tables(summary: dict[str, Any], title: str) -> list[Table]:
-    """Return the tables of the content of `drive.json`; the title is that of the parameters."""
-    estimates = [Estimate(**p) for p in summary["parameters"]]
-    kinematic = summary["kinematics"]
-    lead = kinematic["kinematic_lead_rpm_s_per_mm"]
-    rows = [(e.name, e.text(), e.unit) for e in estimates]
+def tables(drive: Drive, title: str) -> Iterator[Table]:
+    """Yield the tables of an identified drive; the title is that of the parameters."""
+    structures = [
+        (
+            s.name,
+            str(s.parameters),
+            number_text(s.held_out_times_noise),
+            "chosen" if s.chosen else "" if s.converged else "not converged",
+        )
+        for s in drive.structures
+    ]
+    header = ("structure", "parameters", "error", "")
+    yield "structures of G(s), error on held-out data in times the noise", header, structures
+    lead = drive.kinematics.kinematic_lead_rpm_s_per_mm
+    rows = [(p.name, p.text(), p.unit) for p in drive.parameters]
     if lead is not None:
         rows.append(("60 im/(2π r1), kinematic", f"{lead:.5g}", "rpm s/mm"))
-    found = summary["diagnosis"]
+    yield title, ("name", "value [95 %]", "unit"), rows
+    runs = [
+        (
+            name,
+            number_text(run.rmse, ".4g"),
+            number_text(run.rmse_nominal, ".4g"),
+            number_text(run.noise, ".2g"),
+        )
+        for name, run in drive.runs.items()
+    ]
+    yield "x_in against measurement [mm]", ("run", "RMSE", "nominal", "noise"), runs
     named = [
         (
-            cause["effect"],
+            cause.effect,
             name,
-            Estimate(name=name, origin="fitted", **p).text(),
-            p["unit"],
-            f"{cause['gain_percent']:.1f}",
-            ", ".join(cause["rivals"]),
+            value.text(),
+            value.unit,
+            number_text(cause.gain_percent, ".1f"),
+            ", ".join(cause.rivals),
         )
-        for cause in found["named"]
-        for name, p in cause["parameters"].items()
+        for cause in drive.diagnosis.named
+        for name, value in cause.parameters.items()
     ]
-    error = found["channels"]["x_in_mm"]
-    keys = ("rmse_before", "rmse_after", "noise_floor", "best_obtainable")
-    return [
+    if named:
+        yield "causes", ("effect", "parameter", "value [95 %]", "unit", "gain [%]", "rivals"), named
+    errors = [
         (
-            "structures of G(s), error on held-out data in times the noise",
-            ("structure", "parameters", "error", ""),
-            [
-                (
-                    s["name"],
-                    str(s["parameters"]),
-                    f"{s['held_out_times_noise']:.3g}",
-                    "chosen" if s["chosen"] else "" if s["converged"] else "not converged",
-                )
-                for s in summary["structures"]
-            ],
-        ),
-        (
-            title,
-            ("name", "value [95 %]", "unit"),
-            rows,
-        ),
-        (
-            "x_in against measurement [mm]",
-            ("run", "RMSE", "nominal", "noise"),
-            [
-                (run, f"{r['rmse']:.4g}", f"{r['rmse_nominal']:.4g}", f"{r['noise']:.2g}")
-                for run, r in summary["runs"].items()
-            ],
-        ),
-        *(
-            [
-                (
-                    "causes",
-                    ("effect", "parameter", "value [95 %]", "unit", "gain [%]", "rivals"),
-                    named,
-                )
-            ]
-            if named
-            else []
-        ),
-        (
-            "error on held-out data",
-            ("channel", "before", "after", "noise", "obtainable", "unit"),
-            [("x_in_mm", *(f"{error[k]:.3g}" for k in keys), "mm")],
-        ),
+            name,
+            *map(number_text, (c.rmse_before, c.rmse_after, c.noise_floor, c.best_obtainable)),
+            c.unit,
+        )
+        for name, c in drive.diagnosis.channels.items()
     ]
+    columns = ("channel", "before", "after", "noise", "obtainable", "unit")
+    yield "error on held-out data", columns, errors

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.physics.plant.harmonic_drive import DriveValues, lag_coefficients
+from tsas_cli.drive.harmonic_drive import DriveValues, lag_coefficients
 
 Floats = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]

@@ -1,12 +1,13 @@
 """An identified drive in words: the structure of G(s), its inverse, what to do next."""
 
-from typing import Any
+from collections.abc import Iterable
 
 from tsas_cli.drive.diagnosis import DriveDiagnosis
 from tsas_cli.drive.estimates import DataSheet, total_lag_s
 from tsas_cli.drive.fit import Terms
+from tsas_cli.drive.harmonic_drive import DriveValues
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.physics.plant.harmonic_drive import DriveValues
+from tsas_cli.records.drive import Drive
 
 _FACTORS = {
     "lag": "(τs + 1)",
@@ -52,10 +53,10 @@ def next_run(found: DriveDiagnosis) -> str:
 
 
 def cannot_tell(
-    summary: dict[str, Any], sheet: DataSheet, final: Terms, known: dict[str, Estimate]
+    drive: Drive, sheet: DataSheet, final: Terms, known: Iterable[Estimate]
 ) -> list[str]:
     """Return what the recordings do not say, and why."""
-    band = summary["frequency_response"]["band_Hz"]
+    band = drive.frequency_response.band_Hz
     said = []
     if band is None:
         said.append(
@@ -63,11 +64,11 @@ def cannot_tell(
             "explains linearly, and start values came from the travel alone."
         )
     said += [
-        f"A {pole['kind']} lies at {pole['frequency_Hz']:.3g} Hz, outside of the band that the "
+        f"A {pole.kind} lies at {pole.frequency_Hz:.3g} Hz, outside of the band that the "
         f"input shows ({band[0]:.3g} to {band[1]:.3g} Hz): it is only seen by its tail, and "
         "another lag may look the same. Record a chirp beyond it."
-        for pole in summary["poles"]
-        if band is not None and not pole["in_band"]
+        for pole in drive.poles
+        if band is not None and not pole.in_band
     ]
     if "spring" not in final:
         said.append(
@@ -85,7 +86,7 @@ def cannot_tell(
             "Without J, r1 and k_p = kL e^(μθ) of the data sheet a pull-back k_p that is as large "
             "as k_d + k_p would look like the reaction of the drive's stiffness in Eq. (25)."
         )
-    said += [f"{e.name} ended at its bound." for e in known.values() if e.at_bound]
-    if not summary["fit"]["converged"]:
-        said.append(f"The fit did not converge: {summary['fit']['message']}.")
+    said += [f"{e.name} ended at its bound." for e in known if e.at_bound]
+    if not drive.fit.converged:
+        said.append(f"The fit did not converge: {drive.fit.message}.")
     return said

@@ -1,7 +1,7 @@
 """A number with what is known about it: interval, unit, bound flag, origin."""
 
-from dataclasses import asdict, dataclass
-from typing import Any, Literal
+from dataclasses import dataclass
+from typing import Literal
 
 Origin = Literal["fitted", "data sheet", "default", "given"]
 
@@ -19,14 +19,3 @@ class Estimate:
     interval_low: float | None = None
     interval_high: float | None = None
     at_bound: bool = False
-
-    def as_json(self) -> dict[str, Any]:
-        """Return the estimate as the stages write it."""
-        return asdict(self)
-
-    def text(self) -> str:
-        """Return value and interval for a printed table."""
-        if self.interval_low is None or self.interval_high is None:
-            return f"{self.value:.5g} ({self.origin})"
-        flag = "  AT BOUND" if self.at_bound else ""
-        return f"{self.value:.5g} [{self.interval_low:.5g}, {self.interval_high:.5g}]{flag}"

@@ -2,9 +2,9 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import tomlkit
 from pydantic import BaseModel, ConfigDict
@@ -18,12 +18,12 @@ from tsas_cli.physics.parameters import NOMINAL, NOMINAL_BY_NAME
 from tsas_cli.physics.rig import Rig, with_values
 from tsas_cli.recordings.dataset import read_from
 from tsas_cli.recordings.manifest import Manifest, Run, parse, read_toml
+from tsas_cli.records.calibration import MODEL_FILE
 from tsas_cli.support.errors import InputError, nearest
 
 if TYPE_CHECKING:
     import pandas as pd
 
-FILE = "model.toml"
 IN_MEMORY = "in memory"  # in place of a file, for a model that was handed over in Python
 CORRECTION = "preload_correction_N"  # mean of fitted less stated preload, for runs not calibrated
 MOST_WRAP = 20.0  # friction times bend; e^20 is the ratio of the tensions at the two ends
@@ -65,7 +65,7 @@ class Model:
         """Return the estimates as a pandas table, one row each."""
         import pandas as pd
 
-        return pd.DataFrame([estimate.as_json() for estimate in self.estimates])
+        return pd.DataFrame([asdict(estimate) for estimate in self.estimates])
 
     def over(self, other: "Model") -> "Model":
         """Return these estimates, and of another model those that are missing here."""
@@ -130,7 +130,7 @@ def stated_model(manifest: Manifest, given: Model | Path | None) -> Model:
 
 
 def source_of(
-    given: object | None, out: Path | None, name: str = FILE, *, without: str = "data sheet"
+    given: object | None, out: Path | None, name: str = MODEL_FILE, *, without: str = "data sheet"
 ) -> dict[str, str]:
     """Return what a stage writes into `out` of the model that it was given: its file and checksum.
 
@@ -177,50 +177,35 @@ def _axial_stiffness(diameter_mm: float | None, modulus_GPa: float | None) -> fl
     return 1e3 * modulus_GPa * math.pi / 4.0 * diameter_mm**2
 
 
-def fitted_to(summary: Mapping[str, Any]) -> dict[str, Any]:
-    """Return what a model file says of the recordings behind it, from its stage's summary."""
-    said = {key: summary[key] for key in ("chosen", "conditions") if key in summary}
-    return {**summary["dataset"], **said}
-
-
 class _File(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     format: Literal[1]
     kind: Literal["model"] = "model"
     version: str = ""
-    dataset: dict[str, Any] = {}
+    dataset: dict[str, object] = {}
     parameters: dict[str, StoredValue] = {}
     runs: dict[str, dict[str, StoredValue]] = {}
     bristles: dict[str, StoredValue] = {}
     effects: dict[str, dict[str, StoredValue]] = {}
 
 
-def write_model(path: Path, model: Model, *, version: str, dataset: Mapping[str, Any]) -> None:
+def write_model(path: Path, model: Model, *, version: str, dataset: Mapping[str, object]) -> None:
     """Write `model.toml`."""
-    content: dict[str, Any] = {
-        "format": 1,
-        "kind": "model",
-        "version": version,
-        "dataset": dict(dataset),
-        "parameters": {},
-        "runs": {},
-        "bristles": {},
-        "effects": {},
-    }
+    file = _File(format=1, version=version, dataset=dict(dataset))
     for e in model.estimates:
-        entry = {k: v for k, v in e.as_json().items() if v is not None and k not in ("name", "run")}
+        entry = StoredValue.model_validate(e, from_attributes=True)
         group, _, name = e.name.rpartition(".")
         if group == "bristles":
-            content["bristles"][name] = entry
+            file.bristles[name] = entry
         elif group:
-            content["effects"].setdefault(group, {})[name] = entry
+            file.effects.setdefault(group, {})[name] = entry
         elif e.run is None:
-            content["parameters"][e.name] = entry
+            file.parameters[e.name] = entry
         else:
-            content["runs"].setdefault(e.run, {})[e.name] = entry
-    if not content["bristles"]:
-        del content["bristles"]
+            file.runs.setdefault(e.run, {})[e.name] = entry
+    without = None if file.bristles else {"bristles"}
+    content = file.model_dump(exclude_none=True, exclude=without)
     path.write_text(tomlkit.dumps(content), encoding="utf-8")
 
 
@@ -233,7 +218,7 @@ def read_model(path: Path) -> Model:
         The file is missing, not TOML, of another format, or names what this version does not know.
     """
     if path.is_dir():
-        path = path / FILE
+        path = path / MODEL_FILE
     file = parse(_File, read_toml(path), path)
     units = {name: q.unit for name, q in QUANTITIES.items()} | {CORRECTION: "N"}
     values: list[tuple[str, str | None, StoredValue]] = []

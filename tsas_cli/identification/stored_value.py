@@ -1,8 +1,11 @@
 """One number in `model.toml` or `drive.toml`."""
 
-from pydantic import BaseModel, ConfigDict
+from typing import Self
+
+from pydantic import BaseModel, ConfigDict, model_validator
 
 from tsas_cli.identification.estimate import Origin
+from tsas_cli.records.base import check_interval
 
 
 class StoredValue(BaseModel):
@@ -17,3 +20,10 @@ class StoredValue(BaseModel):
     interval_low: float | None = None
     interval_high: float | None = None
     at_bound: bool = False
+
+    @model_validator(mode="after")
+    def _can_be_an_estimate(self) -> Self:
+        check_interval(self.interval_low, self.interval_high)
+        if self.stderr is not None and self.stderr < 0.0:
+            raise ValueError(f"stderr {self.stderr:g} is below 0")
+        return self

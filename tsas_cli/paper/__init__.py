@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 from functools import cache
 from importlib.resources import files
 from types import MappingProxyType
-from typing import Any
+
+from tsas_cli.support.files import Raw
 
 
 @dataclass(frozen=True)
@@ -57,7 +58,7 @@ def yang2025() -> Paper:
     return Paper(citation, MappingProxyType(dict(_leaves(content, ""))))
 
 
-def _leaves(content: dict[str, Any], path: str) -> list[tuple[str, Printed]]:
+def _leaves(content: Raw, path: str) -> list[tuple[str, Printed]]:
     found = []
     for key, entry in content.items():
         if "value" in entry:

@@ -3,13 +3,13 @@
 import re
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 from tsas_cli.recordings.guards.patience import at_most
 from tsas_cli.recordings.ingest_map import Converted, FromText, RunMap
 from tsas_cli.recordings.readers.layout import may_be_thousands
 from tsas_cli.recordings.units import conversion
 from tsas_cli.support.errors import InputError, nearest
+from tsas_cli.support.files import Raw
 
 PATIENCE_S = 10.0  # with a pattern, which may look for ever
 _UNITS = {"preload_N": "N", "sheath_length_mm": "mm", "total_bend_rad": "rad"}
@@ -17,7 +17,7 @@ _UNITS = {"preload_N": "N", "sheath_length_mm": "mm", "total_bend_rad": "rad"}
 
 def run_conditions(
     path: Path, header: Sequence[str], run_map: RunMap, decimal: str | None = None
-) -> dict[str, Any]:
+) -> Raw:
     """Return a run's id and conditions, and whatever else the names and headers say about it.
 
     Later sources win: `[run]`, the file's name (with its folder), the header, the converted

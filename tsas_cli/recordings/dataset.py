@@ -10,7 +10,6 @@ from tsas_cli.recordings.manifest import FILE, Manifest, Run, parse, read_manife
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.recordings.run_files import read_recording
 from tsas_cli.recordings.storage import Place, told_from
-from tsas_cli.support import __version__
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import sha256_of
 
@@ -104,19 +103,16 @@ class Dataset:
         """Read one recording after the other, in the order of the manifest."""
         return (read_recording(self.folder, run) for run in self.runs)
 
-    def header(self, stage: str, folder: Path | None) -> dict[str, Any]:
-        """Return the first keys of the JSON that a stage writes into `folder`.
+    def header(self, folder: Path | None) -> dict[str, Any]:
+        """Return what the JSON that a stage writes into `folder` says of the dataset, by key.
 
         Without a folder the dataset's place is said from the current one; an address as it is.
         """
         path = told_from(folder or Path(), self.folder)
         return {
-            "format": 1,
-            "stage": stage,
-            "version": __version__,
             "dataset": {"name": self.manifest.name, "folder": path, "hashes": self.hashes()},
-            **({} if self.chosen is None else {"chosen": [run.id for run in self.runs]}),
-            **({"conditions": dict(self.conditions)} if self.conditions else {}),
+            "chosen": None if self.chosen is None else [run.id for run in self.runs],
+            "conditions": dict(self.conditions),
         }
 
     def hashes(self) -> dict[str, str]:

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from fnmatch import fnmatch
 from itertools import chain
 from pathlib import Path
-from typing import Any
 
 from tsas_cli.recordings.canonical import canonical_columns
 from tsas_cli.recordings.columns import TIME
@@ -139,7 +138,7 @@ def _run(path: Path, table: Table, mapping: IngestMap) -> Run:
     return parse(Run, conditions | written, path)
 
 
-def _origin(ingested: Sequence[Ingested], map_path: Path, folder: Path) -> dict[str, Any]:
+def _origin(ingested: Sequence[Ingested], map_path: Path, folder: Path) -> dict[str, object]:
     """Return what was read, with checksums."""
     return {
         "version": __version__,

@@ -12,6 +12,7 @@ from tsas_cli.recordings.manifest import Load, Rig, parse, read_toml
 from tsas_cli.recordings.readers.options import ReadOptions
 from tsas_cli.recordings.readers.table import Source
 from tsas_cli.support.errors import InputError, nearest
+from tsas_cli.support.files import Raw
 
 QUESTION = "?"  # in place of a value: what a guessed map leaves to a person
 Condition = Literal["preload_N", "sheath_length_mm", "total_bend_rad"]
@@ -82,7 +83,7 @@ class RunMap(_Strict):
     from_file_name: FromText | None = None
     from_header: FromText | None = None
     conditions: dict[Condition, Converted] = {}
-    table: dict[str, dict[str, Any]] = {}
+    table: dict[str, Raw] = {}
 
 
 class IngestMap(_Strict):

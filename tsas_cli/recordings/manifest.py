@@ -23,6 +23,7 @@ from tsas_cli.recordings.run_names import beside, check_run_name
 from tsas_cli.recordings.storage import Address, Place, check_inside
 from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError, nearest
+from tsas_cli.support.files import Raw
 
 FILE = "dataset.toml"
 Load = Literal["spring", "force", "displacement"]
@@ -118,7 +119,7 @@ class Manifest(_Table):
     source: str | None = None
     rig: Rig = Rig()
     run: tuple[Run, ...] = Field(min_length=1)
-    ingest: dict[str, Any] | None = None  # the files and the map that `tsas ingest` has read
+    ingest: dict[str, object] | None = None  # the files and the map that `tsas ingest` has read
 
     @property
     def session_start(self) -> datetime | None:
@@ -165,7 +166,7 @@ def read_manifest(folder: Place) -> Manifest:
     return parse(Manifest, read_toml(path), path)
 
 
-def read_toml(path: Place) -> dict[str, Any]:
+def read_toml(path: Place) -> Raw:
     """Read a TOML file.
 
     Raises
@@ -191,7 +192,7 @@ def read_toml(path: Place) -> dict[str, Any]:
     return content
 
 
-def parse(model: type[T], content: dict[str, Any], path: object) -> T:
+def parse(model: type[T], content: Raw, path: object) -> T:
     """Validate the content of a file; all that is wrong with it becomes one line.
 
     Raises

@@ -5,7 +5,7 @@ is left alone (docs/formats.md).
 """
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, Self
 
@@ -14,6 +14,7 @@ from pydantic import (
     BeforeValidator,
     ConfigDict,
     Field,
+    SerializerFunctionWrapHandler,
     ValidationInfo,
     model_serializer,
     model_validator,
@@ -30,6 +31,14 @@ def number_text(value: float | None, form: str = ".3g") -> str:
     return "" if value is None else f"{value:{form}}"
 
 
+def check_interval(low: float | None, high: float | None) -> None:
+    """Raise ValueError where an interval has one end alone, or ends that are swapped."""
+    if (low is None) != (high is None):
+        raise ValueError("interval_low and interval_high go together")
+    if low is not None and high is not None and low > high:
+        raise ValueError(f"interval_low {low:g} is above interval_high {high:g}")
+
+
 def _none_if_not_finite(value: Any, info: ValidationInfo) -> Any:
     """Take a number that is not finite for none; in a file there is none, and it is refused."""
     made = isinstance(value, float) and not (info.context or {}).get("file")
@@ -41,15 +50,20 @@ NotNegative = Annotated[Annotated[float, Field(ge=0)] | None, BeforeValidator(_n
 
 
 class Record(BaseModel):
-    """A part of what a stage has found."""
+    """A part of what a stage has found; the keys in `SPARSE` are left out where they are empty."""
 
     model_config = ConfigDict(
         frozen=True, extra="ignore", allow_inf_nan=False, populate_by_name=True
     )
+    SPARSE: ClassVar[frozenset[str]] = frozenset()
 
     def content(self) -> dict[str, Any]:
         """Return what JSON holds of it."""
         return self.model_dump(mode="json", by_alias=True)
+
+    @model_serializer(mode="wrap")
+    def _without_what_is_empty(self, dump: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        return {key: v for key, v in dump(self).items() if v or key not in self.SPARSE}
 
 
 class Source(Record):
@@ -59,15 +73,12 @@ class Source(Record):
     `conditions` what was said of them in place of the manifest's.
     """
 
+    SPARSE = frozenset({"chosen", "conditions"})
     name: str
     folder: str = ""
     hashes: dict[str, str]
     chosen: tuple[str, ...] | None = None
     conditions: dict[str, float] = {}
-
-    @model_serializer(mode="wrap")
-    def _without_what_is_usual(self, dump: Callable[[Any], dict[str, Any]]) -> dict[str, Any]:
-        return _but(dump(self), chosen=self.chosen, conditions=self.conditions)
 
 
 class StageFile(Record):
@@ -75,6 +86,7 @@ class StageFile(Record):
 
     FILE: ClassVar[str]
     format: Literal[1] = 1
+    stage: str
     version: str = __version__
 
     def write(self, folder: Path) -> None:
@@ -85,13 +97,10 @@ class StageFile(Record):
 class OfDataset(StageFile):
     """What a stage says that has read a dataset; `chosen` and `conditions` as of `Source`."""
 
+    SPARSE = Source.SPARSE
     dataset: Source
     chosen: tuple[str, ...] | None = None
     conditions: dict[str, float] = {}
-
-    @model_serializer(mode="wrap")
-    def _without_what_is_usual(self, dump: Callable[[Any], dict[str, Any]]) -> dict[str, Any]:
-        return _but(dump(self), chosen=self.chosen, conditions=self.conditions)
 
     def source(self) -> Source:
         """Return the recordings as a model file names them."""
@@ -99,21 +108,13 @@ class OfDataset(StageFile):
         return self.dataset.model_copy(update=said)
 
 
-def _but(content: dict[str, Any], **usual: object) -> dict[str, Any]:
-    """Return content without the keys whose value says nothing."""
-    return {key: value for key, value in content.items() if key not in usual or usual[key]}
-
-
 class ModelFile(Record):
     """The model that a stage has read: its file and checksum, None for that of the data sheet."""
 
+    SPARSE = frozenset({"folder", "sha256"})
     file: str
     folder: str | None = None
     sha256: str | None = None
-
-    @model_serializer(mode="wrap")
-    def _without_what_is_not_there(self, dump: Callable[[Any], dict[str, Any]]) -> dict[str, Any]:
-        return _but(dump(self), folder=self.folder, sha256=self.sha256)
 
 
 class Segment(Record):
@@ -136,11 +137,7 @@ class Value(Record):
 
     @model_validator(mode="after")
     def _interval_has_two_ends(self) -> Self:
-        low, high = self.interval_low, self.interval_high
-        if (low is None) != (high is None):
-            raise ValueError("interval_low and interval_high go together")
-        if low is not None and high is not None and low > high:
-            raise ValueError(f"interval_low {low:g} is above interval_high {high:g}")
+        check_interval(self.interval_low, self.interval_high)
         return self
 
     origin: str = Field(default="fitted", exclude=True)
@@ -181,6 +178,7 @@ class Fit(Record):
 
     converged: bool
     message: str = ""
+    evaluations: int = 0
 
 
 class Evidence(Record):

@@ -13,6 +13,8 @@ from tsas_cli.records.base import (
     Segment,
 )
 
+MODEL_FILE = "model.toml"  # beside it, and beside a simulation: the model that was used
+
 
 class Stiffness(Record):
     """One phase of one run: its stiffness as fitted, by theory, and as a fit should find it."""
@@ -32,7 +34,6 @@ class Stiffness(Record):
 class NominalFit(Fit):
     """How the joint fit of the nominal parameters ended, and what simulated the runs."""
 
-    evaluations: int = 0
     solver: tuple[str, ...] | str = ()
 
 

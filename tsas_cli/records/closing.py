@@ -1,20 +1,20 @@
-"""What `closing.json` holds, as far as it is read (docs/formats.md)."""
+"""What `closing.json` holds (docs/formats.md)."""
 
-from typing import Any, ClassVar, Literal
+from typing import ClassVar, Literal
 
 from pydantic import Field
 
 from tsas_cli.records.base import Record, StageFile
+from tsas_cli.records.tracking import Scores, Settings, Spread
 
 
-class Rmse(Record):
+class Rmse(Spread):
     """Mean and standard deviation over the seeds [N]; of one seed no spread."""
 
     mean: float = Field(gt=0)
-    sd: float | None = None
 
 
-class Scores(Record):
+class ClosedScores(Scores):
     """How well the wanted force is followed with one model."""
 
     rmse_N: Rmse
@@ -23,10 +23,10 @@ class Scores(Record):
 class Models(Record):
     """The scores of one controller with each model in its inverse and feedforward."""
 
-    data_sheet: Scores = Field(alias="data sheet")
-    calibrated: Scores
-    extended: Scores
-    true: Scores
+    data_sheet: ClosedScores = Field(alias="data sheet")
+    calibrated: ClosedScores
+    extended: ClosedScores
+    true: ClosedScores
 
 
 class Row(Record):
@@ -60,26 +60,33 @@ class Named(Record):
     rivals: tuple[str, ...] = ()
 
 
-class Case(Record):
+class ClosedCase(Record):
     """What was hidden in the plant, what was named, and how each controller tracks then."""
 
     case: str
     title: str
     hidden: dict[str, float]
     verdict: str
+    reason: str = ""
     named: tuple[Named, ...]
     controllers: tuple[Row, ...] = Field(min_length=1)
+
+
+class ClosedSettings(Settings):
+    """The settings of all runs, whole: they stand for the file that they were read from."""
+
+    file: str | None = Field(default=None, exclude=True)
+    sha256: str | None = Field(default=None, exclude=True)
 
 
 class Closing(StageFile):
     """The content of `closing.json`; each case's dataset and diagnosis lie in a folder below."""
 
     FILE: ClassVar[str] = "closing.json"
-    stage: Literal["close-loop"]
-    version: str
-    settings: dict[str, Any]
+    stage: Literal["close-loop"] = "close-loop"
+    settings: ClosedSettings
     seeds: tuple[int, int]
-    cases: tuple[Case, ...] = Field(min_length=1)
+    cases: tuple[ClosedCase, ...] = Field(min_length=1)
 
     def of_controllers(self) -> dict[str, dict[str, Row]]:
         """Return the rows by controller, and of each by case."""

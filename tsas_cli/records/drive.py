@@ -1,11 +1,13 @@
-"""What `drive.json` holds, as far as it is read (docs/formats.md)."""
+"""What `drive.json` holds (docs/formats.md)."""
 
 from typing import ClassVar, Literal
 
 from pydantic import Field
 
-from tsas_cli.records.base import Evidence, Fit, OfDataset, Parameter, Record
-from tsas_cli.records.diagnosis import Cause, HeldOut
+from tsas_cli.records.base import Evidence, Fit, Number, OfDataset, Parameter, Record
+from tsas_cli.records.diagnosis import Cause, HeldOut, Remainder, Verdict
+
+DRIVE_FILE = "drive.toml"  # beside it: the drive, as a feedforward reads it
 
 
 class Curve(Record):
@@ -49,11 +51,12 @@ class Structure(Record):
 
 
 class TriedStructure(Record):
-    """One candidate structure, with its error on held-out data in times the noise."""
+    """One candidate structure, with its error in times the noise, on held-out data and fitted."""
 
     name: str
     parameters: int
-    held_out_times_noise: float | None
+    held_out_times_noise: Number
+    times_noise: Number = None
     converged: bool = True
     chosen: bool = False
 
@@ -61,26 +64,49 @@ class TriedStructure(Record):
 class Kinematics(Record):
     """By how much the motor's speed leads x_in: fitted, and by the gear alone."""
 
+    kinematic_gain_mm_per_s_rpm: Number = None
+    kinematic_lead_rpm_s_per_mm: Number = None
     fitted_lead_rpm_s_per_mm: float
-    kinematic_lead_rpm_s_per_mm: float | None = None
+    fitted_above_kinematic_percent: Number = None
 
 
 class DriveRun(Record):
     """One run of a drive: its errors and noise in mm."""
 
-    rmse: float | None
-    rmse_nominal: float | None
-    noise: float | None
+    samples: int | None = None
+    rate_Hz: Number = None
+    noise: Number
+    unit: str = "mm"
+    rmse: Number
+    rmse_nominal: Number
+    begins_at_rest: bool | None = None
+
+
+class DriveCause(Cause):
+    """An effect that the nominal drive equation lacks; `kind` is that of a lag or a delay."""
+
+    equation: str = Field(default="", exclude=True)
+    kind: str = ""
+
+
+class DriveEvidence(Evidence):
+    """How the diagnosis of a drive judged; its runs are those of the file."""
+
+    runs: int = Field(default=0, exclude=True)
 
 
 class DriveDiagnosis(Record):
     """What the nominal drive equation lacks."""
 
-    verdict: Literal["named", "ambiguous", "sufficient", "unexplained", "undecided"]
+    verdict: Verdict
     reason: str
-    named: tuple[Cause, ...] = ()
-    channels: dict[str, HeldOut] = Field(default_factory=dict)
-    evidence: Evidence = Evidence()
+    nominal: str = ""
+    named: tuple[DriveCause, ...] = ()
+    gain_percent: Number = None
+    gain_interval_percent: tuple[Number, Number] | None = None
+    channels: dict[str, HeldOut] = {}
+    remainder: Remainder = Remainder(unexplained=False)
+    evidence: DriveEvidence = DriveEvidence()
     next_experiment: str = ""
 
 
@@ -88,8 +114,7 @@ class Drive(OfDataset):
     """The content of `drive.json`; its series are in `runs/ID.parquet`."""
 
     FILE: ClassVar[str] = "drive.json"
-    stage: Literal["identify-harmonic-drive"]
-    version: str
+    stage: Literal["identify-harmonic-drive"] = "identify-harmonic-drive"
     hold: Literal["zero", "first"] = "first"
     structure: Structure
     structures: tuple[TriedStructure, ...] = ()
@@ -98,7 +123,7 @@ class Drive(OfDataset):
     inverse: str = ""
     frequency_response: Response
     poles: tuple[Pole, ...] = ()
-    runs: dict[str, DriveRun] = Field(default_factory=dict)
+    runs: dict[str, DriveRun] = {}
     fit: Fit
     diagnosis: DriveDiagnosis
     cannot_tell: tuple[str, ...] = ()

@@ -1,10 +1,10 @@
-"""What `tracking.json` holds, as far as it is read (docs/formats.md)."""
+"""What `tracking.json` holds (docs/formats.md)."""
 
 from typing import ClassVar, Literal
 
-from pydantic import Field
+from pydantic import ConfigDict, Field
 
-from tsas_cli.records.base import ModelFile, Record, StageFile
+from tsas_cli.records.base import ModelFile, Number, Record, StageFile
 
 ADAPTIVE = "adaptive-sliding-mode"
 Three = tuple[float, float, float]
@@ -13,8 +13,14 @@ Three = tuple[float, float, float]
 class Spread(Record):
     """Mean and standard deviation over the seeds; of one seed no spread."""
 
-    mean: float | None
-    sd: float | None = None
+    mean: Number
+    sd: Number = None
+
+    def text(self) -> str:
+        """Return mean and spread for a printed table."""
+        if self.mean is None:
+            return ""
+        return f"{self.mean:.4g}" + ("" if self.sd is None else f" ± {self.sd:.2g}")
 
 
 class Scores(Record):
@@ -23,9 +29,9 @@ class Scores(Record):
     rmse_N: Spread
     lowest_error_N: Spread
     highest_error_N: Spread
-    outside_percent: Spread
     effort_rpm: Spread
     chatter_rpm_per_s: Spread
+    outside_percent: Spread
     at_limit_percent: Spread
 
     def __getitem__(self, score: str) -> Spread:
@@ -41,6 +47,9 @@ class Result(Record):
     condition: str
     run: str
     scores: Scores
+    printed_rmse_N: Number = None
+    relay: bool = False
+    unsettled_steps: int = 0
 
 
 class Change(Record):
@@ -51,20 +60,28 @@ class Change(Record):
     from_s: float
 
 
-class Adaptive(Record):
+class Stated(Record):
+    """A table of the settings, whole: what pages read has a field, the rest is kept as it is."""
+
+    model_config = ConfigDict(extra="allow")
+
+
+class Adaptive(Stated):
     """Between which values the estimates are kept."""
 
     lowest: Three
     highest: Three
 
 
-class Controllers(Record):
-    """The gains, as far as the page shows them."""
+class Controllers(Stated):
+    """The gains."""
 
+    pid: dict[str, float] = {}
+    sliding: dict[str, float | Three] = Field(default={}, alias="sliding-mode")
     adaptive: Adaptive = Field(alias=ADAPTIVE)
 
 
-class Sensor(Record):
+class Sensor(Stated):
     """The encoder of x_in."""
 
     rate_Hz: float = Field(gt=0)
@@ -72,17 +89,21 @@ class Sensor(Record):
     step_mm: float
 
 
-class Loop(Record):
+class Loop(Stated):
     """How rates are estimated."""
 
     filter_Hz: float = Field(gt=0)
 
 
-class Settings(Record):
-    """The settings of all runs, and the file that they are from."""
+class Settings(Stated):
+    """The settings of all runs (docs/tracking.md), and the file that they are from."""
 
     file: str | None = None
     sha256: str | None = None
+    format: Literal[1] = 1
+    rig: dict[str, float] = {}
+    drive: dict[str, float] = {}
+    reference: dict[str, float] = {}
     sensor: Sensor
     loop: Loop
     controllers: Controllers
@@ -91,8 +112,10 @@ class Settings(Record):
 class Reference(Record):
     """The wanted force: a shape, or a file and its checksum."""
 
+    SPARSE = frozenset({"shape", "file", "folder", "sha256"})
     shape: str | None = None
     file: str = ""
+    folder: str | None = None
     sha256: str | None = None
 
 
@@ -100,14 +123,13 @@ class Tracking(StageFile):
     """The content of `tracking.json`; the runs are the dataset in the same folder."""
 
     FILE: ClassVar[str] = "tracking.json"
-    stage: Literal["track"]
-    version: str
+    stage: Literal["track"] = "track"
     model: ModelFile
     plant: ModelFile
     drive: ModelFile
-    dynamics: Literal["slip", "lugre"]
     settings: Settings
     reference: Reference
+    dynamics: Literal["slip", "lugre"]
     gains: str
     seeds: tuple[int, int]
     conditions: dict[str, tuple[Change, ...]]

@@ -210,7 +210,7 @@ def _dataset_of(stage: StageFile, path: Path) -> Place:
 def _own_check(dataset: Dataset) -> Check:
     report = check_dataset(dataset)
     return Check(
-        **dataset.header("check", Path()),
+        **dataset.header(Path()),
         findings=report.findings,
         not_checked=report.not_checked,
     )

@@ -7,7 +7,6 @@ from typing import Literal
 from tsas_cli.identification.calibration import Calibration, calibrate_runs
 from tsas_cli.identification.long_runs import open_long
 from tsas_cli.identification.model import (
-    FILE,
     Model,
     data_sheet,
     source_of,
@@ -64,7 +63,7 @@ class CalibrationResult(Result):
 
     def tables(self) -> list[Table]:
         """Return the slopes, the parameters and the errors."""
-        return list(_tables(self.record, self.titled("parameters", FILE)))
+        return list(_tables(self.record, self.titled("parameters", records.MODEL_FILE)))
 
     def sentences(self) -> list[str]:
         """Return what these recordings do not say, and why."""
@@ -125,7 +124,7 @@ def calibrate(
             step()
         result = calibrate_runs(data.manifest, prepared, step, dynamics=taken, stated=stated)
         record = records.Calibration(
-            **counted.dataset.header("calibrate", path),
+            **counted.dataset.header(path),
             model=source_of(given, path),
             dynamics=taken,
             segments={
@@ -141,7 +140,9 @@ def calibrate(
         )
         if folder is not None:
             fitted = record.source().content()
-            write_model(folder / FILE, result.model, version=record.version, dataset=fitted)
+            write_model(
+                folder / records.MODEL_FILE, result.model, version=record.version, dataset=fitted
+            )
             record.write(folder)
     return CalibrationResult(record.content(), path, record, result)
 

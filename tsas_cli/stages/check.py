@@ -77,7 +77,7 @@ def check(
     with folder_if(folder, stage="check", inputs=[data.folder], force=force) as written:
         report = check_dataset(data, step)
         record = Check(
-            **data.header("check", folder),
+            **data.header(folder),
             findings=report.findings,
             not_checked=report.not_checked,
         )

@@ -6,18 +6,21 @@ tracks a reference with four models in inverse and feedforward: the data sheet's
 one, the extended one, and the plant's own, which is the limit.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 import pyarrow as pa
 
 from tsas_cli.controllers import CONTROLLERS
-from tsas_cli.identification.model import FILE, read_model
+from tsas_cli.identification.model import read_model
 from tsas_cli.physics.rig import Rig, with_values
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.writing import write_dataset
-from tsas_cli.records.diagnosis import EXTENDED_MODEL
+from tsas_cli.records.calibration import MODEL_FILE
+from tsas_cli.records.closing import ClosedCase, Models, Named, Row
+from tsas_cli.records.diagnosis import EXTENDED_MODEL, Diagnosis
+from tsas_cli.records.drive import DriveDiagnosis
+from tsas_cli.records.tracking import Scores
 from tsas_cli.stages.calibrate import calibrate
 from tsas_cli.stages.close_drive import known_drives, record_drive
 from tsas_cli.stages.diagnose import diagnose
@@ -46,7 +49,7 @@ def close(
     folder: Path,
     seeds: Sequence[int],
     step: Callable[[], None] = lambda: None,
-) -> dict[str, Any]:
+) -> ClosedCase:
     """Record, diagnose and track one case; what the stages write goes into a folder.
 
     The controllers know the drive, so that what the tendon's model lacks stands alone. `step` is
@@ -62,30 +65,33 @@ def close(
     find = _find_drive if case.name == "drive" else _find_tendon
     found, models = find(plant, sheet, settings, folder, step)
     wanted = reference("sine", settings.reference, settings.step_s)
-    scores: dict[str, dict[str, Any]] = {name: {} for name in CONTROLLERS}
+    scores: dict[str, dict[str, Scores]] = {name: {} for name in CONTROLLERS}
     for model, known in zip(MODELS, models, strict=True):
         path = plan(wanted, known, settings)
         for name in CONTROLLERS:
             runs = [run_loop(wanted, path, known, plant, name, settings, seed) for seed in seeds]
             scores[name][model] = over_seeds([one.score for one in runs])
         step()
-    return {
-        "case": case.name,
-        "title": case.title,
-        "hidden": case.hidden or _of_drive(settings),
-        "verdict": found["verdict"],
-        "reason": found["reason"],
-        "named": [{"effect": c["effect"], "rivals": c["rivals"]} for c in found["named"]],
-        "controllers": [
-            {"controller": name, "models": by_model, "over_limit": over_limit(by_model)}
-            for name, by_model in scores.items()
-        ],
-    }
+    return ClosedCase(
+        case=case.name,
+        title=case.title,
+        hidden=case.hidden or _of_drive(settings),
+        verdict=found.verdict,
+        reason=found.reason,
+        named=[Named(effect=cause.effect, rivals=cause.rivals) for cause in found.named],
+        controllers=[_row(name, by_model) for name, by_model in scores.items()],
+    )
+
+
+def _row(controller: str, by_model: Mapping[str, Scores]) -> Row:
+    models = Models.model_validate({name: scores.content() for name, scores in by_model.items()})
+    over = models.extended.rmse_N.mean / models.true.rmse_N.mean
+    return Row(controller=controller, models=models, over_limit=over)
 
 
 def _find_tendon(
     plant: Plant, sheet: Rig, settings: Settings, folder: Path, step: Callable[[], None]
-) -> tuple[dict[str, Any], tuple[Known, ...]]:
+) -> tuple[Diagnosis, tuple[Known, ...]]:
     """Record, calibrate and diagnose; return the diagnosis and what is known by each model."""
     drive, run = plant.actuator, conditions("track", settings)
     record(plant, Known(sheet, drive), settings, folder / "dataset")
@@ -93,27 +99,26 @@ def _find_tendon(
     dataset = read_dataset(folder / "dataset")
     calibrate(dataset, out=folder / "calibrate")
     step()
-    found = diagnose(dataset, model=folder / "calibrate", out=folder / "diagnose").summary
+    found = diagnose(dataset, model=folder / "calibrate", out=folder / "diagnose").record
     step()
-    calibrated = read_model(folder / "calibrate" / FILE).rig(run)
+    calibrated = read_model(folder / "calibrate" / MODEL_FILE).rig(run)
     extended = read_model(folder / "diagnose" / EXTENDED_MODEL).rig(run)
     return found, tuple(Known(rig, drive) for rig in (sheet, calibrated, extended, plant.rig))
 
 
 def _find_drive(
     plant: Plant, sheet: Rig, settings: Settings, folder: Path, step: Callable[[], None]
-) -> tuple[dict[str, Any], tuple[Known, ...]]:
+) -> tuple[DriveDiagnosis, tuple[Known, ...]]:
     """Record and identify the drive; return its diagnosis and what is known by each model."""
     del plant  # its drive is the settings'
     record_drive(settings, folder / "dataset")
     step()
-    found = identify_harmonic_drive(
-        folder / "dataset", out=folder / "identify", speed="commanded"
-    ).summary
+    identified = folder / "identify"
+    found = identify_harmonic_drive(folder / "dataset", out=identified, speed="commanded").record
     step()
-    drives = known_drives(folder / "identify", settings)
+    drives = known_drives(identified, settings)
     step()
-    return found["diagnosis"], tuple(Known(sheet, drive) for drive in drives)
+    return found.diagnosis, tuple(Known(sheet, drive) for drive in drives)
 
 
 def _of_drive(settings: Settings) -> dict[str, float]:
@@ -123,12 +128,6 @@ def _of_drive(settings: Settings) -> dict[str, float]:
         "drive_stiffness_N_per_mm": drive.drive_stiffness_N_per_mm,
         "motor_lag_s": drive.motor_lag_s,
     }
-
-
-def over_limit(by_model: dict[str, Any]) -> float:
-    """Return by which factor the RMSE with the extended model is above that with the true one."""
-    extended, true = (by_model[model]["rmse_N"]["mean"] for model in MODELS[2:])
-    return float(extended / true)
 
 
 def record(plant: Plant, known: Known, settings: Settings, folder: Path) -> None:

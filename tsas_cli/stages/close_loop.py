@@ -3,14 +3,13 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
+from tsas_cli.records.closing import Closing
 from tsas_cli.records.result import Result, Table
 from tsas_cli.stages.close_cases import MODELS, STEPS, close
 from tsas_cli.stages.given import Named, at_least, listed, number_of_seeds, path_of
-from tsas_cli.support import __version__
 from tsas_cli.support.errors import InputError, nearest
-from tsas_cli.support.files import stage_folder, write_json
+from tsas_cli.support.files import stage_folder
 from tsas_cli.support.steps import SILENT, Steps
 from tsas_cli.tracking.cases import CASES, Case
 from tsas_cli.tracking.conditions import disturbed
@@ -19,11 +18,19 @@ from tsas_cli.tracking.settings import read_settings
 
 @dataclass(frozen=True, repr=False, eq=False)
 class ClosingResult(Result):
-    """What a better model is worth in tracking, case by case."""
+    """What a better model is worth in tracking, case by case.
+
+    Parameters
+    ----------
+    record
+        What `closing.json` holds.
+    """
+
+    record: Closing
 
     def tables(self) -> list[Table]:
         """Return what was hidden and named, and the RMSE by model."""
-        return _tables(self.summary, self.titled("what was hidden, and named"))
+        return _tables(self.record, self.titled("what was hidden, and named"))
 
 
 def chosen(names: Sequence[str] | None, hide: Sequence[str]) -> tuple[Case, ...]:
@@ -83,7 +90,7 @@ def close_loop(
     Returns
     -------
     ClosingResult
-        `.summary["cases"]` holds by case what was hidden, what was named, and the scores by
+        `.record.cases` holds by case what was hidden, what was named, and the scores by
         controller and model (RMSE in N).
 
     Raises
@@ -98,37 +105,34 @@ def close_loop(
     with stage_folder(path, stage="close-loop", inputs=[given], force=force) as folder:
         step.ahead(STEPS * len(wanted))
         found = [close(case, read, folder / case.name, taken, step) for case in wanted]
-        summary = {
-            "format": 1,
-            "stage": "close-loop",
-            "version": __version__,
-            "settings": read.model_dump(mode="json", by_alias=True),
-            "seeds": [taken[0], taken[-1]],
-            "cases": found,
-        }
-        write_json(folder / "closing.json", summary)
-    return ClosingResult(summary, path)
+        record = Closing(
+            settings=read.model_dump(mode="json", by_alias=True),
+            seeds=(taken[0], taken[-1]),
+            cases=found,
+        )
+        record.write(folder)
+    return ClosingResult(record.content(), path, record)
 
 
-def _tables(summary: dict[str, Any], title: str) -> list[Table]:
+def _tables(record: Closing, title: str) -> list[Table]:
     """Return what was hidden and named, under its title, and the RMSE by model."""
     named = [
         (
-            case["title"],
-            case["verdict"],
-            ", ".join(" or ".join([c["effect"], *c["rivals"]]) for c in case["named"]) or "nothing",
+            case.title,
+            case.verdict,
+            ", ".join(" or ".join([c.effect, *c.rivals]) for c in case.named) or "nothing",
         )
-        for case in summary["cases"]
+        for case in record.cases
     ]
     rows = [
         (
-            case["case"],
-            row["controller"],
-            *(f"{row['models'][model]['rmse_N']['mean']:.4f}" for model in MODELS),
-            f"{row['over_limit']:.2f}",
+            case.case,
+            row.controller,
+            *(f"{rmse.mean:.4f}" for rmse in row.by_model.values()),
+            f"{row.over_limit:.2f}",
         )
-        for case in summary["cases"]
-        for row in case["controllers"]
+        for case in record.cases
+        for row in case.controllers
     ]
     header = ("hidden", "controller", *MODELS, "extended/true")
     return [

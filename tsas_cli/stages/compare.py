@@ -9,10 +9,11 @@ from tsas_cli.comparing.compare import Comparison
 from tsas_cli.comparing.compare import compare as compare_sides
 from tsas_cli.comparing.tracked import Tracks, are_tracked, compare_tracked
 from tsas_cli.recordings.dataset import Dataset
+from tsas_cli.records.comparison import ComparisonFile
 from tsas_cli.records.result import Result, Table, notes
 from tsas_cli.stages.given import Named, dataset_of
 from tsas_cli.support.errors import InputError
-from tsas_cli.support.files import folder_if, write_json
+from tsas_cli.support.files import folder_if
 from tsas_cli.support.steps import SILENT, Steps
 
 
@@ -22,10 +23,13 @@ class CompareResult(Result):
 
     Parameters
     ----------
+    record
+        What `compare.json` holds.
     both
         The two sides: models and their answers, or two folders of tracked runs.
     """
 
+    record: ComparisonFile
     both: Comparison | Tracks
 
     def tables(self) -> list[Table]:
@@ -36,7 +40,7 @@ class CompareResult(Result):
 
     def sentences(self) -> list[str]:
         """Return what was found, and what limits it."""
-        return [*self.summary["findings"], *notes(self.summary["notes"])]
+        return [*self.record.findings, *notes(self.record.notes)]
 
 
 def compare(
@@ -95,11 +99,13 @@ def compare(
             if tracks
             else compare_sides(*paths, on=data, fit_own=fit_own, step=step)
         )
-        summary = tracked_stage.as_json(both) if isinstance(both, Tracks) else stage.as_json(both)
+        record: ComparisonFile = (
+            tracked_stage.record_of(both) if isinstance(both, Tracks) else stage.record_of(both)
+        )
         if folder is not None:
-            write_json(folder / stage.FILE, summary)
+            record.write(folder)
             (folder / "report.html").write_text(_page(both, step), encoding="utf-8")
-    return CompareResult(summary, path, both)
+    return CompareResult(record.content(), path, record, both)
 
 
 def _page(both: Comparison | Tracks, step: Steps) -> str:

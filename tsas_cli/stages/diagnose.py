@@ -126,7 +126,7 @@ def diagnose(
             step()
         result = diagnose_runs(data.manifest, stated, prepared, step)
         record = records.Diagnosis(
-            **counted.dataset.header("diagnose", path),
+            **counted.dataset.header(path),
             model=source_of(known, path),
             verdict=result.verdict,
             reason=result.reason,

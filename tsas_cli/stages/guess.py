@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from tsas_cli.recordings.guess.proposal import Proposal, propose
 from tsas_cli.recordings.guess.summary import content, tables
-from tsas_cli.recordings.guess.text import MARK
+from tsas_cli.recordings.guess.text import MARK, map_text
 from tsas_cli.recordings.ingest import find_files
 from tsas_cli.records.result import Result, Table
 from tsas_cli.stages.given import Named, path_of, paths_of
@@ -27,7 +27,7 @@ class GuessResult(Result):
     @property
     def map(self) -> str:
         """The map as commented TOML, to be edited."""
-        return str(self.summary["map"])
+        return map_text(self.proposal)
 
     def intro(self) -> list[str]:
         """Return the map where it was not written."""
@@ -67,5 +67,5 @@ def guess(
     summary = content(proposal)
     if path is not None:
         with new_file(path, mark=MARK, inputs=files, force=force) as written:
-            written.write_text(summary["map"], encoding="utf-8")
+            written.write_text(map_text(proposal), encoding="utf-8")
     return GuessResult(summary, path, proposal)

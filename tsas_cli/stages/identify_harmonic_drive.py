@@ -10,23 +10,14 @@ import numpy.typing as npt
 
 from tsas_cli.drive import json as drive_json
 from tsas_cli.drive.diagnosis import DriveDiagnosis, diagnose_drive
-from tsas_cli.drive.estimates import (
-    DataSheet,
-    drive_sheet,
-    estimates_of,
-)
-from tsas_cli.drive.file import FILE, UNITS, IdentifiedDrive, drive_of, write_drive
+from tsas_cli.drive.estimates import DataSheet, drive_sheet, estimates_of
+from tsas_cli.drive.file import UNITS, IdentifiedDrive, drive_of, write_drive
 from tsas_cli.drive.fit import DriveBench, Terms
 from tsas_cli.drive.frequency_response import frequency_response
 from tsas_cli.drive.runs import drive_runs
 from tsas_cli.drive.search import DriveFits, DriveSearch, find_terms
 from tsas_cli.drive.tables import tables
-from tsas_cli.drive.words import (
-    cannot_tell,
-    equation_of,
-    inverse_of,
-    name_of,
-)
+from tsas_cli.drive.words import cannot_tell, equation_of, inverse_of, name_of
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.numerics.linear_response import Hold
 from tsas_cli.recordings.dataset import Dataset
@@ -34,10 +25,11 @@ from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.quality.copies.counted import counted_once
 from tsas_cli.recordings.recording import Recording, recording_of
 from tsas_cli.recordings.writing import write_runs
+from tsas_cli.records.base import Fit, parameters_of
+from tsas_cli.records.drive import DRIVE_FILE, Drive, Structure
 from tsas_cli.records.result import Result, Table, notes
 from tsas_cli.stages.given import Named, dataset_of, one_of, path_of
-from tsas_cli.support import __version__
-from tsas_cli.support.files import folder_if, write_json
+from tsas_cli.support.files import folder_if
 from tsas_cli.support.steps import SILENT, Steps
 
 SPEEDS: tuple[Literal["measured", "commanded"], ...] = ("measured", "commanded")
@@ -53,6 +45,8 @@ class DriveResult(Result):
 
     Parameters
     ----------
+    record
+        What `drive.json` holds.
     estimates
         Every parameter by name: fitted, derived, or given by the data sheet.
     diagnosis
@@ -62,6 +56,7 @@ class DriveResult(Result):
         the nominal drive, `x_in_nominal_mm` [mm].
     """
 
+    record: Drive
     estimates: Mapping[str, Estimate]
     diagnosis: DriveDiagnosis
     runs: Mapping[str, Recording]
@@ -78,16 +73,17 @@ class DriveResult(Result):
 
     def tables(self) -> list[Table]:
         """Return structures, parameters, errors and causes."""
-        return tables(self.summary, self.titled(self.summary["structure"]["equation"], FILE))
+        title = self.titled(self.record.structure.equation, DRIVE_FILE)
+        return list(tables(self.record, title))
 
     def sentences(self) -> list[str]:
         """Return the verdict, the inverse, what to measure next, and what cannot be told."""
-        found = self.summary["diagnosis"]
+        found = self.record.diagnosis
         return [
-            found["reason"],
-            self.summary["inverse"],
-            f"Next: {found['next_experiment']}",
-            *notes(self.summary["cannot_tell"]),
+            found.reason,
+            self.record.inverse,
+            f"Next: {found.next_experiment}",
+            *notes(self.record.cannot_tell),
         ]
 
 
@@ -146,32 +142,30 @@ def identify_harmonic_drive(
         found = diagnose_drive(search, final, fitted)
         by_fit, by_nominal = _simulated(search, final), _simulated(search, found.nominal)
         known = fitted | _given(sheet)
-        summary = counted.dataset.header(STAGE, path) | {
-            "hold": hold,
-            "structure": {"name": name_of(final), "equation": equation_of(final)},
-            "structures": drive_json.structure_rows(search, final),
-            "parameters": [e.as_json() for e in known.values()],
-            "kinematics": drive_json.kinematics(sheet, fitted),
-            "inverse": inverse_of(trial.values),
-            "frequency_response": drive_json.response(seen, trial.values),
-            "poles": drive_json.pole_rows(trial.values, seen),
-            "runs": drive_json.run_rows(search, by_fit, by_nominal),
-            "fit": {
-                "converged": trial.solution.converged,
-                "message": trial.solution.message,
-                "evaluations": trial.solution.evaluations,
-            },
-            "diagnosis": drive_json.diagnosis(search, found),
-        }
-        summary["cannot_tell"] = [*counted.notes, *cannot_tell(summary, sheet, final, known)]
+        record = Drive(
+            **counted.dataset.header(path),
+            hold=hold,
+            structure=Structure(name=name_of(final), equation=equation_of(final)),
+            structures=drive_json.structure_rows(search, final),
+            parameters=parameters_of(known.values()),
+            kinematics=drive_json.kinematics(sheet, fitted),
+            inverse=inverse_of(trial.values),
+            frequency_response=drive_json.response(seen, trial.values),
+            poles=drive_json.pole_rows(trial.values, seen),
+            runs=drive_json.run_rows(search, by_fit, by_nominal),
+            fit=Fit.model_validate(trial.solution, from_attributes=True),
+            diagnosis=drive_json.diagnosis(search, found),
+        )
+        not_told = (*counted.notes, *cannot_tell(record, sheet, final, known.values()))
+        record = record.model_copy(update={"cannot_tell": not_told})
         step()
         simulated = _recordings(counted.dataset.runs, search, by_fit, by_nominal)
         if folder is not None:
-            write_json(folder / "drive.json", summary)
-            structure, of = {"name": name_of(final), "hold": hold}, summary["dataset"]
-            write_drive(folder / FILE, known, structure, version=__version__, dataset=of)
+            record.write(folder)
+            structure, of = {"name": name_of(final), "hold": hold}, record.dataset.content()
+            write_drive(folder / DRIVE_FILE, known, structure, version=record.version, dataset=of)
             write_runs(folder / "runs", simulated)
-    return DriveResult(summary, path, known, found, simulated)
+    return DriveResult(record.content(), path, record, known, found, simulated)
 
 
 def _given(sheet: DataSheet) -> dict[str, Estimate]:

@@ -2,9 +2,9 @@
 
 import math
 import os
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from tsas_cli.diagnosis.plan import Plan, Proposal, plan_dataset, plan_rig
 from tsas_cli.diagnosis.rig_file import read_rig_file
@@ -12,13 +12,12 @@ from tsas_cli.diagnosis.visibility import Seen
 from tsas_cli.recordings.dataset import Dataset, read_dataset
 from tsas_cli.recordings.quality.copies.counted import counted_once
 from tsas_cli.recordings.storage import place_of
+from tsas_cli.records.plan import EffectSize, ProposedRun, RunPlan, RunProposal, SmallerSize
 from tsas_cli.records.result import Result, Table, notes
 from tsas_cli.stages.given import Named, path_of
-from tsas_cli.support import __version__
-from tsas_cli.support.files import folder_if, sha256_of, write_json
+from tsas_cli.support.files import folder_if, sha256_of
 from tsas_cli.support.steps import SILENT, Steps
 
-FILE = "plan.json"
 SAID = 4  # improvements of a proposal that are printed
 
 
@@ -28,19 +27,22 @@ class PlanResult(Result):
 
     Parameters
     ----------
+    record
+        What `plan.json` holds.
     plan
         From which size on each effect is seen and named, what hides in what, and the proposals.
     """
 
+    record: RunPlan
     plan: Plan
 
     def tables(self) -> list[Table]:
         """Return each effect, the pairs, the proposals."""
-        return _tables(self.summary)
+        return list(_tables(self.record))
 
     def sentences(self) -> list[str]:
         """Return what the runs do not show, and why."""
-        return notes(self.summary["cannot_tell"])
+        return notes(self.record.cannot_tell)
 
 
 def plan(
@@ -83,98 +85,92 @@ def plan(
     with folder_if(path, stage="plan", inputs=[read], force=force) as folder:
         if isinstance(runs, Dataset):
             counted = counted_once(runs)
-            summary = counted.dataset.header("plan", path)
-            planned = plan_dataset(counted, step)
+            of, planned = counted.dataset.header(path), plan_dataset(counted, step)
         else:
             file = read_rig_file(runs)
             where = Path(os.path.relpath(runs.resolve(), (path or Path()).resolve())).as_posix()
             rig = {"name": file.name, "file": where, "sha256": sha256_of(runs)}
-            summary = {"format": 1, "stage": "plan", "version": __version__, "rig": rig}
-            planned = plan_rig(file, step)
-        summary |= as_json(planned)
+            of, planned = {"rig": rig}, plan_rig(file, step)
+        record = record_of(planned, **of)
         if folder is not None:
-            write_json(folder / FILE, summary)
-    return PlanResult(summary, path, planned)
+            record.write(folder)
+    return PlanResult(record.content(), path, record, planned)
 
 
-def as_json(plan: Plan) -> dict[str, Any]:
-    """Return what `plan.json` says of a plan."""
-    return {
-        "effects": [_seen(seen) for seen in plan.seen],
-        "groups": [list(group) for group in plan.groups],
-        "proposals": [_proposal(proposal) for proposal in plan.proposals],
-        "cannot_tell": list(plan.cannot_tell),
-    }
+def record_of(plan: Plan, **of: object) -> RunPlan:
+    """Return what `plan.json` says of a plan, and what it is `of`: a dataset or a rig file."""
+    return RunPlan(
+        **of,
+        effects=[_size_of(seen) for seen in plan.seen],
+        groups=plan.groups,
+        proposals=[_proposal(proposal) for proposal in plan.proposals],
+        cannot_tell=plan.cannot_tell,
+    )
 
 
-def _seen(seen: Seen) -> dict[str, Any]:
-    return {
-        "effect": seen.cause.effect.name,
-        "parameter": seen.cause.parameter.name,
-        "unit": seen.cause.parameter.unit,
-        "shape": {name.split(".")[1]: value for name, value in seen.cause.shape.items()},
-        "found_from": _finite(seen.found),
-        "named_from": _finite(seen.named),
-        "nearest": seen.nearest,
-        "hidden_in": seen.hidden_in,
-    }
+def _size_of(seen: Seen) -> EffectSize:
+    return EffectSize(
+        effect=seen.cause.effect.name,
+        parameter=seen.cause.parameter.name,
+        unit=seen.cause.parameter.unit,
+        shape={name.split(".")[1]: value for name, value in seen.cause.shape.items()},
+        found_from=seen.found,
+        named_from=seen.named,
+        nearest=seen.nearest,
+        hidden_in=seen.hidden_in,
+    )
 
 
-def _proposal(proposal: Proposal) -> dict[str, Any]:
-    return {
-        "run": proposal.candidate.run.model_dump(exclude={"id"}, exclude_none=True),
-        "sentence": proposal.candidate.sentence,
-        "falls_percent": 100.0 * (1.0 - math.exp(-proposal.score)),
-        "better": [
-            {
-                "effect": better.cause.effect.name,
-                "parameter": better.cause.parameter.name,
-                "unit": better.cause.parameter.unit,
-                "named_from": _finite(better.before),
-                "named_from_with_it": _finite(better.after),
-            }
+def _proposal(proposal: Proposal) -> RunProposal:
+    return RunProposal(
+        run=ProposedRun.model_validate(proposal.candidate.run, from_attributes=True),
+        sentence=proposal.candidate.sentence,
+        falls_percent=100.0 * (1.0 - math.exp(-proposal.score)),
+        better=[
+            SmallerSize(
+                effect=better.cause.effect.name,
+                parameter=better.cause.parameter.name,
+                unit=better.cause.parameter.unit,
+                named_from=better.before,
+                named_from_with_it=better.after,
+            )
             for better in proposal.better
         ],
-    }
+    )
 
 
-def _finite(value: float) -> float | None:
-    return value if math.isfinite(value) else None
-
-
-def _tables(summary: dict[str, Any]) -> list[Table]:
-    """Return each effect, the pairs, the proposals."""
+def _tables(record: RunPlan) -> Iterator[Table]:
+    """Yield each effect, the pairs, the proposals."""
     rows = [
         (
-            row["effect"],
-            row["parameter"],
-            row["unit"],
-            _size(row["found_from"], "not shown"),
-            _size(row["named_from"], "" if row["found_from"] is None else "never"),
-            ", ".join(row["hidden_in"]) or row["nearest"] or "",
+            row.effect,
+            row.parameter,
+            row.unit,
+            _size(row.found_from, "not shown"),
+            _size(row.named_from, "" if row.found_from is None else "never"),
+            ", ".join(row.hidden_in) or row.nearest or "",
         )
-        for row in summary["effects"]
+        for row in record.effects
     ]
     header = ("effect", "parameter", "unit", "found from", "named from", "nearest")
-    out: list[Table] = [("smallest size of each effect, less its neutral value", header, rows)]
-    if summary["groups"]:
-        out.append(("cannot be told apart", ("effect", "and"), summary["groups"]))
-    return [*out, *(_proposal_table(proposal) for proposal in summary["proposals"])]
+    yield "smallest size of each effect, less its neutral value", header, rows
+    if record.groups:
+        yield "cannot be told apart", ("effect", "and"), record.groups
+    yield from map(_proposal_table, record.proposals)
 
 
-def _proposal_table(proposal: dict[str, Any]) -> Table:
+def _proposal_table(proposal: RunProposal) -> Table:
     rows = [
         (
-            row["effect"],
-            row["parameter"],
-            row["unit"],
-            _size(row["named_from"], "never"),
-            _size(row["named_from_with_it"], "never"),
+            row.effect,
+            row.parameter,
+            row.unit,
+            _size(row.named_from, "never"),
+            _size(row.named_from_with_it, "never"),
         )
-        for row in proposal["better"][:SAID]
+        for row in proposal.better[:SAID]
     ]
-    much = f"{proposal['falls_percent']:.0f} %"
-    title = f"add {proposal['sentence']}: sizes fall by {much} on average"
+    title = f"add {proposal.sentence}: sizes fall by {proposal.falls_percent:.0f} % on average"
     return title, ("effect", "parameter", "unit", "named from", "with it"), rows
 
 

@@ -12,7 +12,6 @@ from tsas_cli.identification.comparison import Compared, compare
 from tsas_cli.identification.long_runs import open_long
 from tsas_cli.identification.long_simulation import simulate_long
 from tsas_cli.identification.model import (
-    FILE,
     Model,
     data_sheet,
     model_of,
@@ -29,6 +28,7 @@ from tsas_cli.recordings.writing import write_answer
 from tsas_cli.recordings.written import WrittenRuns
 from tsas_cli.records import simulation as records
 from tsas_cli.records.base import number_text
+from tsas_cli.records.calibration import MODEL_FILE
 from tsas_cli.records.result import Result, Table, notes
 from tsas_cli.stages.given import Named, dataset_of, one_of, path_of
 from tsas_cli.support.errors import InputError
@@ -142,7 +142,7 @@ def simulate(
     _refuse_nodes(nodes, one_of(DYNAMICS, dynamics, "dynamics"))
     taken = data_sheet(data.manifest) if known is None else model_of(known)
     record = records.Simulation(
-        **data.header("simulate", path),
+        **data.header(path),
         model=source_of(known, path),
         dynamics=dynamics,
         nodes=nodes,
@@ -178,7 +178,7 @@ def simulate(
         if folder is not None:
             record.write(folder)
             # What the model was fitted to, its own file says; these recordings are only followed.
-            write_model(folder / FILE, used, version=record.version, dataset={})
+            write_model(folder / MODEL_FILE, used, version=record.version, dataset={})
     written = path and WrittenRuns(path / "runs", {run.id: run for run in data.runs})
     return SimulationResult(record.content(), path, record, taken, written or kept)
 

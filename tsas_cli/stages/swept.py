@@ -17,7 +17,7 @@ from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import FILE as MANIFEST
 from tsas_cli.stages.read import read, read_model
 from tsas_cli.support.errors import InputError
-from tsas_cli.support.files import new_folder, read_json, sha256_of, write_json, write_sums
+from tsas_cli.support.files import Raw, new_folder, read_json, sha256_of, write_json, write_sums
 from tsas_cli.support.temporaries import remove
 from tsas_cli.sweeping.answer import Answer, failure, success
 from tsas_cli.sweeping.folder import JOURNAL, what_is_done
@@ -29,7 +29,6 @@ from tsas_cli.sweeping.versions import ONE_THREAD, refuse_others, versions
 WORK = "tsas_cli.stages.swept:work"
 OF_A_SWEEP = {"dataset", "out", "force", "step", "each"}  # not for a plan to say
 TRACKED = "track"  # the run of the closed loop's data sheet
-Told = dict[str, Any]
 
 
 def options_of(stage: str) -> Options:
@@ -42,7 +41,7 @@ def options_of(stage: str) -> Options:
     }
 
 
-def work(task: Told) -> Answer:
+def work(task: Raw) -> Answer:
     """Do a task; what goes wrong is its answer."""
     os.environ.update(ONE_THREAD)  # this process does one task at a time
     start, before = time.perf_counter(), time.process_time()
@@ -60,7 +59,7 @@ def work(task: Told) -> Answer:
     }
 
 
-def _as_named(line: str, task: Told) -> str:
+def _as_named(line: str, task: Raw) -> str:
     """Return a line with files as the plan names them, so that it is the same in every place."""
     named = {name: source["file"] for name, source in task["inputs"]["files"].items()}
     if "dataset" in task["inputs"]:
@@ -70,7 +69,7 @@ def _as_named(line: str, task: Told) -> str:
     return line
 
 
-def _done(task: Told) -> Answer:
+def _done(task: Raw) -> Answer:
     """Call the stage, and write its folder with what it was told and what came out."""
     inputs, places, key = task["inputs"], task["places"], task["key"]
     out = Path(places["out"])
@@ -89,13 +88,13 @@ def _done(task: Told) -> Answer:
         content |= {"results": figures(stage, result), "parameters": estimates(stage, result)}
         write_json(folder / FILE, content)
         write_sums(folder)  # of the stage, now with this file
-        written: Told = read_json(folder / FILE)  # as a later call will find it
+        written: Raw = read_json(folder / FILE)  # as a later call will find it
     return success(written["results"], written["parameters"])
 
 
-def _arguments(inputs: Told, places: Told) -> Told:
+def _arguments(inputs: Raw, places: Raw) -> Raw:
     """Return the keywords of the call."""
-    given: Told = inputs["options"] | {name: Path(places[name]) for name in inputs["files"]}
+    given: Raw = inputs["options"] | {name: Path(places[name]) for name in inputs["files"]}
     for name, source in inputs["files"].items():
         _refuse_changed(Path(places[name]), source["sha256"])
     if "dataset" in inputs:
@@ -115,13 +114,13 @@ def _arguments(inputs: Told, places: Told) -> Told:
     return given
 
 
-def _dataset(inputs: Told, places: Told) -> Dataset:
+def _dataset(inputs: Raw, places: Raw) -> Dataset:
     folder = Path(places["dataset"])
     _refuse_changed(folder / MANIFEST, inputs["dataset"]["sha256"])
     return read(folder).under(**inputs["conditions"])
 
 
-def _told(values: Told, runs: list[str], base: Model | Path | None) -> Model:
+def _told(values: Raw, runs: list[str], base: Model | Path | None) -> Model:
     """Return a model with some values told; what has a value for each run has it for all."""
     told: list[Estimate] = []
     for name, value in values.items():

@@ -5,6 +5,7 @@ The folder is a dataset too: what was recorded can be calibrated and diagnosed.
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any, Literal
 
@@ -13,17 +14,19 @@ import pyarrow as pa
 
 from tsas_cli.controllers import CONTROLLERS
 from tsas_cli.controllers.path import DrivePath
-from tsas_cli.drive.file import FILE as DRIVE_FILE
 from tsas_cli.drive.file import IdentifiedDrive
 from tsas_cli.identification.model import Model, model_of, source_of
 from tsas_cli.recordings.dataset import read_from
 from tsas_cli.recordings.recording import Recording, recording_of
 from tsas_cli.recordings.writing import write_dataset
+from tsas_cli.records import tracking as records
+from tsas_cli.records.base import number_text
+from tsas_cli.records.drive import DRIVE_FILE
 from tsas_cli.records.result import Result, Table, notes
+from tsas_cli.records.tracking import Tracking
 from tsas_cli.stages.given import Named, at_least, listed, number_of_seeds, one_of, path_of
-from tsas_cli.support import __version__
 from tsas_cli.support.errors import InputError, nearest
-from tsas_cli.support.files import folder_if, write_json
+from tsas_cli.support.files import folder_if
 from tsas_cli.support.steps import SILENT, Steps
 from tsas_cli.tracking.conditions import Condition, disturbed, proximal_spring
 from tsas_cli.tracking.drives import known_drive
@@ -84,12 +87,15 @@ class TrackingResult(Result):
 
     Parameters
     ----------
+    record
+        What `tracking.json` holds.
     runs
         By `controller-condition` the recording of the first seed: columns of shape (m,), among
         them `f_out_ref_N` (wanted), `f_out_true_N`, `f_out_N` (with noise), `x_in_mm` and
         `motor_speed_rpm` (docs/tracking.md).
     """
 
+    record: Tracking
     runs: Mapping[str, Recording]
 
     def __getitem__(self, run: str) -> Recording:
@@ -98,11 +104,11 @@ class TrackingResult(Result):
 
     def tables(self) -> list[Table]:
         """Return the scores, one row for each controller and condition."""
-        return [_table(self.summary["results"], self.titled("tracking"))]
+        return [_table(self.record.results, self.titled("tracking"))]
 
     def sentences(self) -> list[str]:
         """Return what of the runs is not to be trusted or not to be reached, and why."""
-        return notes(self.summary["notes"])
+        return notes(self.record.notes)
 
 
 def track(
@@ -122,7 +128,7 @@ def track(
     first_seed: int = 1,
     force: bool = False,
     step: Steps = SILENT,
-    each: Callable[[dict[str, Any], str, pa.Table], None] = lambda *_: None,
+    each: Callable[[Tracking, str, pa.Table], None] = lambda *_: None,
 ) -> TrackingResult:
     """Follow a wanted force with a controller that sees x_in alone.
 
@@ -160,14 +166,14 @@ def track(
     step
         Told of a piece of work per run.
     each
-        Called for each recording with the summary so far, its name and its table.
+        Called for each recording with the record so far, its name and its table.
 
     Returns
     -------
     TrackingResult
         `result["pid-undisturbed"].columns` holds the run of the first seed, arrays of shape (m,):
         `time_s`, `f_out_ref_N` (wanted), `f_out_true_N`, `x_in_mm`, `motor_speed_rpm`, …;
-        `.summary["results"]` holds the scores, in N and rpm.
+        `.record.results` holds the scores, in N and rpm.
 
     Raises
     ------
@@ -204,8 +210,8 @@ def track(
     known, real = what_is_known(call, read)
     wanted = reference_of(call.reference, read.reference, read.step_s)
     path = plan(wanted, known, read)
-    results, tables = [], dict[str, pa.Table]()
-    header = _header(call, read, folder_path)
+    results, tables = list[records.Result](), dict[str, pa.Table]()
+    record_with = _record_with(call, read, folder_path)
     with folder_if(folder_path, stage="track", inputs=call.inputs(), force=force) as folder:
         step.ahead(len(call.controllers) * len(call.conditions) * call.seeds)
         for condition in call.conditions:
@@ -233,15 +239,15 @@ def track(
                 if call.model is None and call.plant is None and call.drive is None:
                     printed = printed_rmse(name, condition, call.reference, read)
                 results.append(_result(run_id, name, condition, runs, printed))
-                each(header | {"results": results}, run_id, tables[run_id])
-        summary = header | {"results": results}
-        summary["notes"] = _notes(path, known, real, results)
+                each(record_with(results=results), run_id, tables[run_id])
+        said = _notes(path, known, real, results)
         if call.dynamics == "lugre":
-            summary["notes"] += dynamic_notes(path, real, call.conditions, read.step_s)
+            said += dynamic_notes(path, real, call.conditions, read.step_s)
+        record = record_with(results=results, notes=said)
         if folder is not None:
             write_dataset(folder, manifest(tables, read), tables)
-            write_json(folder / "tracking.json", summary)
-    return TrackingResult(summary, folder_path, _recordings(tables, read))
+            record.write(folder)
+    return TrackingResult(record.content(), folder_path, record, _recordings(tables, read))
 
 
 def _recordings(tables: Mapping[str, pa.Table], settings: Settings) -> dict[str, Recording]:
@@ -273,53 +279,48 @@ def what_is_known(call: Call, settings: Settings) -> tuple[Known, Plant]:
 
 def _result(
     run_id: str, name: str, condition: Condition, runs: list[Tracked], printed: float | None
-) -> dict[str, Any]:
-    return {
-        "controller": name,
-        "condition": condition.name,
-        "run": run_id,
-        "scores": over_seeds([run.score for run in runs]),
-        "printed_rmse_N": printed,
-        "relay": any(run.is_relay for run in runs),
-        "unsettled_steps": sum(run.unsettled for run in runs),
-    }
+) -> records.Result:
+    return records.Result(
+        controller=name,
+        condition=condition.name,
+        run=run_id,
+        scores=over_seeds([run.score for run in runs]),
+        printed_rmse_N=printed,
+        relay=any(run.is_relay for run in runs),
+        unsettled_steps=sum(run.unsettled for run in runs),
+    )
 
 
-def _header(call: Call, settings: Settings, out: Path | None) -> dict[str, Any]:
-    source: dict[str, str | None] = {"file": None, "sha256": None}
+def _record_with(call: Call, settings: Settings, out: Path | None) -> "partial[Tracking]":
+    """Return what makes the record of a call, once there are results."""
+    stated = settings.model_dump(mode="json", by_alias=True)
     if call.settings is not None:
-        source |= source_of(call.settings, out)
-    return {
-        "format": 1,
-        "stage": "track",
-        "version": __version__,
-        "model": source_of(call.model, out),
-        "plant": source_of(call.plant or call.model, out),
-        "drive": source_of(call.drive, out, DRIVE_FILE, without="kinematics"),
-        "settings": {
-            **source,
-            **settings.model_dump(mode="json", by_alias=True),
-        },
-        "reference": _reference(call.reference, out),
-        "dynamics": call.dynamics,
-        "gains": "as printed" if call.as_printed else "default",
-        "seeds": [call.first_seed, call.first_seed + call.seeds - 1],
-        "conditions": {
+        stated |= source_of(call.settings, out)
+    wanted = Path(call.reference)
+    shape = {"shape": call.reference}
+    return partial(
+        Tracking,
+        model=source_of(call.model, out),
+        plant=source_of(call.plant or call.model, out),
+        drive=source_of(call.drive, out, DRIVE_FILE, without="kinematics"),
+        settings=stated,
+        reference=read_from(wanted, out or Path()) if wanted.is_file() else shape,
+        dynamics=call.dynamics,
+        gains="as printed" if call.as_printed else "default",
+        seeds=(call.first_seed, call.first_seed + call.seeds - 1),
+        conditions={
             condition.name: [
-                {"quantity": c.name, "value": c.value, "from_s": c.from_s}
+                records.Change(quantity=c.name, value=c.value, from_s=c.from_s)
                 for c in condition.changes
             ]
             for condition in call.conditions
         },
-    }
+    )
 
 
-def _reference(name: str, out: Path | None) -> dict[str, str]:
-    path = Path(name)
-    return read_from(path, out or Path()) if path.is_file() else {"shape": name}
-
-
-def _notes(path: DrivePath, known: Known, plant: Plant, results: list[dict[str, Any]]) -> list[str]:
+def _notes(
+    path: DrivePath, known: Known, plant: Plant, results: Sequence[records.Result]
+) -> list[str]:
     """Return what of the runs is not to be trusted or not to be reached, and why."""
     notes = []
     if path.missed:
@@ -332,34 +333,29 @@ def _notes(path: DrivePath, known: Known, plant: Plant, results: list[dict[str, 
             f" up to {np.abs(feedforward(path, known.actuator)).max():.0f} rpm"
         )
     for result in results:
-        at_limit = result["scores"]["at_limit_percent"]["mean"]
+        at_limit = result.scores.at_limit_percent.mean or 0.0
         if at_limit > OFTEN_PERCENT:
             notes.append(
-                f"{result['run']}: the motor is at its limit for {at_limit:.0f} % of the time"
-                + ("; the loop is a relay" if result["relay"] else "")
+                f"{result.run}: the motor is at its limit for {at_limit:.0f} % of the time"
+                + ("; the loop is a relay" if result.relay else "")
             )
-        if result["unsettled_steps"]:
+        if result.unsettled_steps:
             notes.append(
-                f"{result['run']}: {result['unsettled_steps']} steps of the tendon did not settle"
+                f"{result.run}: {result.unsettled_steps} steps of the tendon did not settle"
             )
     return notes
 
 
-def _table(results: list[dict[str, Any]], title: str) -> Table:
+def _table(results: Sequence[records.Result], title: str) -> Table:
     """Return the scores; what Table 5 of the paper prints stands beside them where it applies."""
     header = ["controller", "condition", *(name for name, _ in COLUMNS)]
     rows = [
-        [row["controller"], row["condition"], *(_cell(row["scores"][key]) for _, key in COLUMNS)]
+        [row.controller, row.condition, *(row.scores[key].text() for _, key in COLUMNS)]
         for row in results
     ]
-    printed = [row["printed_rmse_N"] for row in results]
+    printed = [row.printed_rmse_N for row in results]
     if any(value is not None for value in printed):
         header.insert(3, "Table 5 [N]")
         for row, value in zip(rows, printed, strict=True):
-            row.insert(3, "" if value is None else f"{value:g}")
+            row.insert(3, number_text(value, "g"))
     return title, header, rows
-
-
-def _cell(number: dict[str, Any]) -> str:
-    spread = number["sd"]
-    return f"{number['mean']:.4g}" + ("" if spread is None else f" ± {spread:.2g}")

@@ -24,6 +24,7 @@ from tsas_cli.support.replacing import (
 )
 from tsas_cli.support.temporaries import place_file, place_folder, temporary_for
 
+Raw = dict[str, Any]  # a table of TOML, JSON or MATLAB, before a schema has read it
 _FULL = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG})
 _NO_ROOM = _FULL | {errno.EROFS}
 _ADDED: ContextVar[Callable[[Path], None] | None] = ContextVar("added", default=None)
@@ -221,7 +222,7 @@ def read_json(path: Path) -> Any:
     return content
 
 
-def _without_twins(members: list[tuple[str, Any]]) -> dict[str, Any]:
+def _without_twins(members: list[tuple[str, Any]]) -> Raw:
     content = dict(members)
     if len(content) < len(members):
         names = [name for name, _ in members]

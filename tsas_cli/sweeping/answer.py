@@ -3,7 +3,8 @@
 import json
 from typing import Any
 
-Answer = dict[str, Any]
+Row = dict[str, Any]  # of a table whose columns the plan and its stage choose
+Answer = Row
 
 
 def failure(error: str, *, defect: bool = True) -> Answer:
@@ -17,7 +18,7 @@ def death(times: int, said: str = "") -> Answer:
     return failure(": ".join([often, *([said] if said else [])]))
 
 
-def success(results: dict[str, Any], parameters: list[dict[str, Any]]) -> Answer:
+def success(results: Row, parameters: list[Row]) -> Answer:
     """Return the answer of a task that is done: its key figures, and the parameters it found."""
     return {"state": "done", "results": results, "parameters": parameters}
 

@@ -2,30 +2,35 @@
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from typing import Any
+from dataclasses import asdict
+from typing import Any, cast
 
 import numpy as np
 
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.recordings.recording import Recording
+from tsas_cli.records.calibration import Calibration, ChannelError
+from tsas_cli.records.diagnosis import Diagnosis
 from tsas_cli.records.result import Result
+from tsas_cli.records.simulation import Channel, Simulation
+from tsas_cli.records.tracking import Tracking
+from tsas_cli.sweeping.answer import Row
 
-Figures = dict[str, Any]
 FITTING = ("calibrate", "diagnose")
 OF_RUNS = ("f_in_N", "f_out_N", "x_out_mm")
 
 
-def figures(stage: str, result: Result) -> Figures:
+def figures(stage: str, result: Result) -> Row:
     """Return by name, with the unit in it, the figures of a result of a stage."""
     return _OF[stage](result)
 
 
-def estimates(stage: str, result: Any) -> list[dict[str, Any]]:
+def estimates(stage: str, result: Any) -> list[Row]:
     """Return every parameter that a stage has found, with interval, unit and bound flag."""
-    return [e.as_json() for e in result.model.estimates] if stage in FITTING else []
+    return [asdict(e) for e in result.model.estimates] if stage in FITTING else []
 
 
-def _of_check(result: Any) -> Figures:
+def _of_check(result: Any) -> Row:
     severities = [str(finding.severity) for finding in result.findings]
     return {
         "errors": severities.count("error"),
@@ -35,56 +40,54 @@ def _of_check(result: Any) -> Figures:
     }
 
 
-def _of_calibrate(result: Any) -> Figures:
-    summary = result.summary
+def _of_calibrate(result: Any) -> Row:
+    record: Calibration = result.record
     return {
-        "converged": summary["fit"]["converged"],
+        "converged": record.fit.converged,
         **_fitted(result.model.estimates),
-        **_pooled(summary["channels"]),
+        **_pooled(record.channels.values()),
     }
 
 
-def _of_simulate(result: Any) -> Figures:
-    runs = result.summary["runs"]
-    unsettled = sum(answer["unconverged_samples"] or 0 for answer in runs.values())
+def _of_simulate(result: Any) -> Row:
+    runs = cast("Simulation", result.record).runs.values()
     return {
-        **_pooled({run: answer["channels"] for run, answer in runs.items()}),
+        **_pooled(run.channels for run in runs),
         **dict(_reach(result.runs.values())),
-        "unconverged_samples": unsettled,
+        "unconverged_samples": sum(run.unconverged_samples for run in runs),
     }
 
 
-def _of_diagnose(result: Any) -> Figures:
-    summary = result.summary
-    rivals = {rival for cause in summary["named"] for rival in cause["rivals"]}
-    found: Figures = {
-        "verdict": summary["verdict"],
-        "causes": ", ".join(cause["effect"] for cause in summary["named"]),
-        "rivals": ", ".join(sorted(rivals)),
+def _of_diagnose(result: Any) -> Row:
+    record: Diagnosis = result.record
+    found: Row = {
+        "verdict": record.verdict,
+        "causes": ", ".join(cause.effect for cause in record.named),
+        "rivals": ", ".join(sorted({rival for cause in record.named for rival in cause.rivals})),
     }
-    for cause in summary["named"]:
-        name = f"gain_percent_{cause['effect']}"
-        low, high = cause["gain_interval_percent"] or (None, None)
-        found |= {name: cause["gain_percent"], f"{name}_low": low, f"{name}_high": high}
-    for channel, error in summary["channels"].items():
-        for key in ("before", "after"):
-            found[f"rmse_{key}_{channel}"] = error[f"rmse_{key}"]
+    for cause in record.named:
+        name = f"gain_percent_{cause.effect}"
+        low, high = cause.gain_interval_percent or (None, None)
+        found |= {name: cause.gain_percent, f"{name}_low": low, f"{name}_high": high}
+    for channel, error in record.channels.items():
+        found[f"rmse_before_{channel}"] = error.rmse_before
+        found[f"rmse_after_{channel}"] = error.rmse_after
     return found | _fitted(result.model.estimates)
 
 
-def _of_track(result: Any) -> Figures:
-    rows, found = result.summary["results"], Figures()
+def _of_track(result: Any) -> Row:
+    rows, found = cast("Tracking", result.record).results, Row()
     for row in rows:
-        prefix = "" if len(rows) == 1 else f"{row['run']}."
-        for score, spread in row["scores"].items():
-            found[f"{prefix}{score}"] = spread["mean"]
-            if spread["sd"] is not None:
-                found[f"{prefix}{score}_sd"] = spread["sd"]
-        found[f"{prefix}unsettled_steps"] = row["unsettled_steps"]
+        prefix = "" if len(rows) == 1 else f"{row.run}."
+        for score, spread in row.scores:
+            found[f"{prefix}{score}"] = spread.mean
+            if spread.sd is not None:
+                found[f"{prefix}{score}_sd"] = spread.sd
+        found[f"{prefix}unsettled_steps"] = row.unsettled_steps
     return found
 
 
-_OF: dict[str, Callable[[Any], Figures]] = {
+_OF: dict[str, Callable[[Any], Row]] = {
     "check": _of_check,
     "calibrate": _of_calibrate,
     "simulate": _of_simulate,
@@ -93,9 +96,9 @@ _OF: dict[str, Callable[[Any], Figures]] = {
 }
 
 
-def _fitted(found: Iterable[Estimate]) -> Figures:
+def _fitted(found: Iterable[Estimate]) -> Row:
     """Return what was fitted to all runs together; what belongs to one run has its own table."""
-    figures: Figures = {}
+    figures: Row = {}
     for e in found:
         if e.origin == "fitted" and e.run is None:
             name = f"fitted_{e.name}"
@@ -104,13 +107,13 @@ def _fitted(found: Iterable[Estimate]) -> Figures:
     return figures
 
 
-def _pooled(runs: Mapping[str, Mapping[str, Any]]) -> Figures:
+def _pooled(runs: Iterable[Mapping[str, Channel | ChannelError]]) -> Row:
     """Return the root mean square of each channel's error over all runs, each run as one."""
     squares: dict[str, list[float]] = {}
-    for channels in runs.values():
+    for channels in runs:
         for name, channel in channels.items():
-            if channel["rmse"] is not None:
-                squares.setdefault(f"rmse_{name}", []).append(channel["rmse"] ** 2)
+            if channel.rmse is not None:
+                squares.setdefault(f"rmse_{name}", []).append(channel.rmse**2)
     return {name: math.sqrt(sum(each) / len(each)) for name, each in squares.items()}
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 
 from tsas_cli.recordings.manifest import parse, read_toml
+from tsas_cli.support.files import Raw
 
 StageName = Literal["check", "calibrate", "simulate", "diagnose", "track"]
 STAGES: tuple[StageName, ...] = get_args(StageName)
@@ -53,7 +54,7 @@ class Plan(_Table):
     stage: StageName
     datasets: Annotated[tuple[str, ...], BeforeValidator(_listed)] = ()
     each_run: bool = False
-    options: dict[str, Any] = {}
+    options: Raw = {}
     vary: dict[str, Axis] = {}
     combine: Literal["grid", "zip"] = "grid"
     sets: str | None = None

@@ -3,21 +3,19 @@
 import itertools
 import math
 from pathlib import Path
-from typing import Any
 
 import pyarrow as pa
 import pyarrow.csv
 import pyarrow.parquet
 
 from tsas_cli.support.errors import InputError
+from tsas_cli.sweeping.answer import Row
 from tsas_cli.sweeping.plan import Plan
 
 MOST_TASKS = 1_000_000
 
-Point = dict[str, Any]
 
-
-def points_of(plan: Plan, base: Path) -> list[Point]:
+def points_of(plan: Plan, base: Path) -> list[Row]:
     """Return the values of every task by name; one without values where nothing is varied.
 
     The last axis moves fastest. A table of sets is taken row by row, each with every point.
@@ -28,7 +26,7 @@ def points_of(plan: Plan, base: Path) -> list[Point]:
         The table cannot be read, has a name that is an axis too, or there are too many points.
     """
     axes = plan.axes()
-    sets = [Point()] if plan.sets is None else _sets(base / plan.sets)
+    sets = [Row()] if plan.sets is None else _sets(base / plan.sets)
     for name in {name for row in sets for name in row}:
         if name in axes or name in plan.options:
             raise InputError(f"{name} is in the plan and in {plan.sets}", where="the plan")
@@ -41,7 +39,7 @@ def points_of(plan: Plan, base: Path) -> list[Point]:
     return [row | dict(zip(axes, values, strict=True)) for row in sets for values in rows]
 
 
-def _sets(path: Path) -> list[Point]:
+def _sets(path: Path) -> list[Row]:
     """Read a table of parameter sets, one a row; what is empty is left as it is."""
     try:
         if path.suffix.lower() == ".csv":

@@ -5,13 +5,13 @@ from contextlib import closing
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from tsas_cli.records.result import Result, Table
 from tsas_cli.support import __version__
 from tsas_cli.support.files import own_file, write_json
 from tsas_cli.support.steps import Steps
-from tsas_cli.sweeping.answer import Answer
+from tsas_cli.sweeping.answer import Answer, Row
 from tsas_cli.sweeping.folder import (
     PARAMETERS,
     SUMMARY,
@@ -129,9 +129,7 @@ def sweep_tasks(
         )
 
 
-def _written(
-    out: Path, plan: Plan, tasks: Sequence[Task], answers: Sequence[Answer]
-) -> dict[str, Any]:
+def _written(out: Path, plan: Plan, tasks: Sequence[Task], answers: Sequence[Answer]) -> Row:
     """Write the tables, and the summary last; return the summary."""
     rows = rows_of(tasks, answers)
     summary = {

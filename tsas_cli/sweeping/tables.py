@@ -10,10 +10,9 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from tsas_cli.records.result import Table
-from tsas_cli.sweeping.answer import Answer
+from tsas_cli.sweeping.answer import Answer, Row
 from tsas_cli.sweeping.tasks import Task
 
-Row = dict[str, Any]
 MOST_SHOWN = 20  # failed tasks that are printed; the table holds all
 COUNTED = ("verdict", "causes", "codes")  # words of which it is told how often each is there
 

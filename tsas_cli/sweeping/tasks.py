@@ -10,8 +10,9 @@ from pathlib import Path
 from typing import Any
 
 from tsas_cli.support.errors import InputError
+from tsas_cli.sweeping.answer import Row
 from tsas_cli.sweeping.plan import Plan
-from tsas_cli.sweeping.points import Point, points_of
+from tsas_cli.sweeping.points import points_of
 from tsas_cli.sweeping.sources import Source, sources_of
 from tsas_cli.sweeping.values import Options, Values, sorted_values
 from tsas_cli.sweeping.versions import versions
@@ -40,7 +41,7 @@ class Task:
 
     key: str
     source: Source | None
-    point: Point
+    point: Row
     inputs: Mapping[str, Any]
     places: Mapping[str, str]
 
@@ -82,9 +83,9 @@ def tasks_of(plan: Plan, base: Path, options: Options) -> list[Task]:
     return tasks
 
 
-def _task(stage: str, source: Source | None, point: Point, values: Values, *, named: bool) -> Task:
+def _task(stage: str, source: Source | None, point: Row, values: Values, *, named: bool) -> Task:
     options = dict(values.options)
-    inputs: dict[str, Any] = {"stage": stage, "versions": versions()}
+    inputs: Row = {"stage": stage, "versions": versions()}
     places = {name: str(path.resolve()) for name, path in values.files.items()}
     if source is not None:
         inputs["dataset"] = {"name": source.name, "sha256": source.sha256}
@@ -99,7 +100,7 @@ def _task(stage: str, source: Source | None, point: Point, values: Values, *, na
     return Task(f"{words[:LONGEST]}-{digest}", source, point, inputs, places)
 
 
-def _words(source: Source | None, point: Point, *, named: bool) -> Iterator[str]:
+def _words(source: Source | None, point: Row, *, named: bool) -> Iterator[str]:
     """Yield what tells a task from others, fit for a file's name."""
     if source is not None and (named or not (point or source.run)):
         yield _plain(source.name)

@@ -8,13 +8,13 @@ from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
 
-from tsas_cli.drive.file import FILE as DRIVE_FILE
-from tsas_cli.identification.model import FILE as MODEL_FILE
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.recordings.dataset import CONDITIONS
 from tsas_cli.recordings.manifest import Run, parse, read_toml
+from tsas_cli.records.calibration import MODEL_FILE
+from tsas_cli.records.drive import DRIVE_FILE
 from tsas_cli.support.errors import InputError, nearest
-from tsas_cli.support.files import sha256_of
+from tsas_cli.support.files import Raw, sha256_of
 from tsas_cli.tracking.settings import RigSettings, read_settings
 
 PLANT, SETTINGS = "plant.", "settings."
@@ -45,13 +45,13 @@ class Values:
         Settings of the closed loop by their dotted keys.
     """
 
-    options: dict[str, Any] = field(default_factory=dict)
+    options: Raw = field(default_factory=dict)
     files: dict[str, Path] = field(default_factory=dict)
     sums: dict[str, dict[str, str]] = field(default_factory=dict)
     model: dict[str, float] = field(default_factory=dict)
     plant: dict[str, float] = field(default_factory=dict)
     conditions: dict[str, float] = field(default_factory=dict)
-    settings: dict[str, Any] = field(default_factory=dict)
+    settings: Raw = field(default_factory=dict)
 
 
 def sorted_values(given: Mapping[str, Any], options: Options, base: Path) -> Values:
@@ -167,7 +167,7 @@ def _number(name: str, value: Any) -> float:
     return float(value)
 
 
-def with_settings(path: Path | None, told: Mapping[str, Any]) -> dict[str, Any]:
+def with_settings(path: Path | None, told: Mapping[str, Any]) -> Raw:
     """Return the content of a settings file, or of none, with some dotted keys told otherwise.
 
     Raises

@@ -6,6 +6,8 @@ from dataclasses import dataclass, fields
 import numpy as np
 import numpy.typing as npt
 
+from tsas_cli.records.tracking import Scores, Spread
+
 Floats = npt.NDArray[np.float64]
 OUTSIDE = 0.02  # of the wanted force's range
 
@@ -40,11 +42,11 @@ def score(
     )
 
 
-def over_seeds(scores: Sequence[Score]) -> dict[str, dict[str, float | None]]:
+def over_seeds(scores: Sequence[Score]) -> Scores:
     """Return mean and standard deviation of each number over the seeds; of one seed no spread."""
-    answer: dict[str, dict[str, float | None]] = {}
+    answer = {}
     for field in fields(Score):
         values = np.array([getattr(one, field.name) for one in scores])
         spread = float(values.std(ddof=1)) if values.size > 1 else None
-        answer[field.name] = {"mean": float(values.mean()), "sd": spread}
-    return answer
+        answer[field.name] = Spread(mean=float(values.mean()), sd=spread)
+    return Scores(**answer)

@@ -135,7 +135,7 @@ def read_settings(given: Path | Mapping[str, Any] | None) -> Settings:
 
 def printed_gains(settings: Settings) -> Settings:
     """Return the settings with the sliding modes' ks as the paper prints it, per millimetre."""
-    changed: dict[str, Any] = {
+    changed = {
         name: law.model_copy(update={"ks": law.ks * MM_PER_M})
         for name, law in settings.controllers.sliding_modes().items()
     }

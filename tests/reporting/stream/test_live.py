@@ -1,7 +1,5 @@
 """What goes to the viewer while runs are computed; a file stands for the viewer here."""
 
-import json
-
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
@@ -11,6 +9,8 @@ from tests.reporting.made_folders import make_dataset, make_simulation, make_tra
 from tsas_cli.identification.model import data_sheet
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.recording import Recording
+from tsas_cli.records.simulation import Simulation
+from tsas_cli.records.tracking import Tracking
 from tsas_cli.reporting.stream.live import LiveStream
 from tsas_cli.reporting.stream.recorder import Recorder, to_file
 from tsas_cli.reporting.stream.recorder.views import outline
@@ -54,12 +54,12 @@ def answer(dataset, run):
 def test_each_simulated_run_is_there_before_the_next_is_computed(seen, tmp_path):
     dataset = make_dataset(tmp_path / "dataset", ("a", "b"), samples=300)
     simulated = make_simulation(dataset, tmp_path / "simulated")
-    summary = json.loads((simulated / "simulation.json").read_text())
+    stage = Simulation.model_validate_json((simulated / "simulation.json").read_text())
     opened = read_dataset(dataset)
     model = data_sheet(opened.manifest)
 
     def step(run):
-        so_far = summary | {"runs": {run: summary["runs"][run]}}
+        so_far = stage.model_copy(update={"runs": {run: stage.runs[run]}})
         return lambda live: live.simulated(opened, so_far, answer(opened, run), model)
 
     first, both = seen([step("a"), step("b")])
@@ -72,12 +72,12 @@ def test_each_simulated_run_is_there_before_the_next_is_computed(seen, tmp_path)
 
 def test_tracked_runs_too(seen, tmp_path):
     folder = make_tracking(tmp_path / "tracked")
-    summary = json.loads((folder / "tracking.json").read_text())
-    runs = [result["run"] for result in summary["results"]][:2]
+    stage = Tracking.model_validate_json((folder / "tracking.json").read_text())
+    runs = [result.run for result in stage.results][:2]
 
     def step(run):
         table = pq.read_table(folder / "runs" / f"{run}.parquet")
-        return lambda live: live.tracked(summary, run, table)
+        return lambda live: live.tracked(stage, run, table)
 
     first, both = seen([step(run) for run in runs])
     assert len({path for path in first if "tracking_error" in path}) == 1
@@ -90,12 +90,12 @@ def test_layouts_follow_the_runs_and_do_not_crowd_them_out(tmp_path, monkeypatch
     monkeypatch.setattr(Recorder, "lay_out", outlined)
     dataset = make_dataset(tmp_path / "dataset", ("a", "b"), samples=300)
     simulated = make_simulation(dataset, tmp_path / "simulated")
-    summary = json.loads((simulated / "simulation.json").read_text())
+    stage = Simulation.model_validate_json((simulated / "simulation.json").read_text())
     opened = read_dataset(dataset)
     with to_file(tmp_path / "live.rrd", "live") as recorder:
         live = LiveStream(recorder, tmp_path)
         for run in "ab":
-            live.simulated(opened, summary, answer(opened, run), data_sheet(opened.manifest))
+            live.simulated(opened, stage, answer(opened, run), data_sheet(opened.manifest))
         assert len(laid_out) == 1
         live.lay_out()
         live.lay_out()

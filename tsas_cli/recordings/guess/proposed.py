@@ -1,12 +1,13 @@
 """One table `[columns.NAME]` of a proposed map, with why, how sure, and what has to be asked."""
 
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Literal
 
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.guess.columns import Column
 from tsas_cli.recordings.ingest_map import QUESTION
 from tsas_cli.recordings.readers.table import Source
+from tsas_cli.support.files import Raw
 
 Sureness = Literal["sure", "likely", "open"]
 
@@ -35,7 +36,7 @@ class Proposed:
     """
 
     name: str
-    entry: dict[str, Any]
+    entry: Raw
     sure: Sureness
     why: tuple[str, ...] = ()
     questions: dict[str, str] = field(default_factory=dict)
@@ -43,10 +44,10 @@ class Proposed:
     candidates: tuple[Source, ...] = ()
 
 
-def with_unit(column: Column, name: str) -> tuple[dict[str, Any], dict[str, str]]:
+def with_unit(column: Column, name: str) -> tuple[Raw, dict[str, str]]:
     """Return the keys that take a column to a channel's unit, and the questions among them."""
     to = BY_NAME[name].unit
-    entry: dict[str, Any] = {"source": column.source}
+    entry: Raw = {"source": column.source}
     asked: dict[str, str] = {}
     if column.unit and not column.own_unit:
         entry["unit"] = column.unit

@@ -8,7 +8,7 @@ from tsas_cli.recordings.guess.text import map_text
 from tsas_cli.support import __version__
 
 
-def content(proposal: Proposal) -> dict[str, Any]:
+def content(proposal: Proposal) -> dict[str, object]:
     """Return the proposal with the text of its map (docs/ingest.md, format 1)."""
     return {
         "format": 1,

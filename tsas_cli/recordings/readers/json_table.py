@@ -7,7 +7,7 @@ from typing import Any
 from tsas_cli.recordings.readers.options import ReadOptions
 from tsas_cli.recordings.readers.table import Source, Table, floats, resolve
 from tsas_cli.support.errors import InputError, nearest
-from tsas_cli.support.files import read_json
+from tsas_cli.support.files import Raw, read_json
 
 
 def read(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Table:
@@ -56,9 +56,9 @@ def _tables(content: Any, key: str) -> Iterator[str]:
         yield key
 
 
-def _descend(content: Any, keys: str | None, path: Path) -> tuple[dict[str, Any], Any]:
+def _descend(content: Any, keys: str | None, path: Path) -> tuple[Raw, Any]:
     """Return the object that holds the table, and the table."""
-    above: dict[str, Any] = {}
+    above: Raw = {}
     for key in keys.split(".") if keys else ():
         if not isinstance(content, dict) or key not in content:
             there = list(content) if isinstance(content, dict) else []

@@ -20,6 +20,7 @@ from tsas_cli.recordings.readers.controldesk import (
 from tsas_cli.recordings.readers.options import ReadOptions
 from tsas_cli.recordings.readers.table import Floats, Source, Table, floats, resolve
 from tsas_cli.support.errors import InputError, nearest
+from tsas_cli.support.files import Raw
 from tsas_cli.support.memory import out_of_memory
 
 _HDF5 = b"\x89HDF\r\n\x1a\n"
@@ -62,7 +63,7 @@ def tables(path: Path) -> list[str]:
     return list(found) if len(found) > 1 else []
 
 
-def _content(path: Path) -> dict[str, Any]:
+def _content(path: Path) -> Raw:
     try:
         return _variables(path)
     except InputError:
@@ -73,7 +74,7 @@ def _content(path: Path) -> dict[str, Any]:
         raise damaged(path, "a MATLAB file", error) from error
 
 
-def _variables(path: Path) -> dict[str, Any]:
+def _variables(path: Path) -> Raw:
     """Return the variables as plain dictionaries, lists, text and arrays."""
     with path.open("rb") as stream:
         head = stream.read(520)
@@ -88,7 +89,7 @@ def _variables(path: Path) -> dict[str, Any]:
     return {name: value for name, value in content.items() if not name.startswith("__")}
 
 
-def _inside(content: dict[str, Any], table: str | None, path: Path) -> dict[str, Any]:
+def _inside(content: Raw, table: str | None, path: Path) -> Raw:
     for name in table.split(".") if table else ():
         structs = [key for key, value in content.items() if isinstance(value, dict)]
         if name not in structs:
@@ -97,7 +98,7 @@ def _inside(content: dict[str, Any], table: str | None, path: Path) -> dict[str,
     return content
 
 
-def _vectors(content: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, Floats]]:
+def _vectors(content: Raw, prefix: str = "") -> Iterator[tuple[str, Floats]]:
     """Yield every numeric vector under the name that a map gives it."""
     for name, value in content.items():
         if isinstance(value, dict):

@@ -9,9 +9,10 @@ from tsas_cli.recordings.guards.expansion import Expanded
 from tsas_cli.recordings.readers.optional import optional
 from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError
+from tsas_cli.support.files import Raw
 
 
-def variables(path: Path) -> dict[str, Any]:
+def variables(path: Path) -> Raw:
     """Return the variables of a file: structs as dictionaries, struct arrays and cells as lists.
 
     Raises
@@ -34,7 +35,7 @@ class _Reader:
         self.expanded = Expanded.of(path)
         self.seen: set[int] = set()  # structs and cells, by their place in the file
 
-    def members(self, group: Any, *, deep: int, but: str = "\0") -> dict[str, Any]:
+    def members(self, group: Any, *, deep: int, but: str = "\0") -> Raw:
         """Return what is in a group, but for names that begin so."""
         self._enter(group, deep)
         names = [name for name in group if not name.startswith(but)]
@@ -98,6 +99,6 @@ def _is_struct_array(group: Any) -> bool:
     )
 
 
-def _records(members: dict[str, list[Any]]) -> list[dict[str, Any]]:
+def _records(members: dict[str, list[Any]]) -> list[Raw]:
     names = list(members)
     return [dict(zip(names, values, strict=True)) for values in zip(*members.values(), strict=True)]

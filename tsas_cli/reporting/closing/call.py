@@ -28,4 +28,4 @@ def own_settings(closing: Closing) -> bool:
     """Return whether the settings are others than the defaults."""
     from tsas_cli.tracking.settings import Settings
 
-    return closing.settings != Settings().model_dump(mode="json", by_alias=True)
+    return closing.settings.content() != Settings().model_dump(mode="json", by_alias=True)

@@ -1,6 +1,6 @@
 """What was hidden in the plant, and what the diagnosis named."""
 
-from tsas_cli.records.closing import Case, Closing, Named
+from tsas_cli.records.closing import ClosedCase, Closing, Named
 from tsas_cli.reporting.content import Table
 from tsas_cli.reporting.numbers import as_printed
 
@@ -23,7 +23,7 @@ def summary(closing: Closing) -> str:
     return f"Of {total} differences that are hidden in the plant, a cause is named for {named}."
 
 
-def _hidden(case: Case) -> str:
+def _hidden(case: ClosedCase) -> str:
     return ", ".join(f"`{name}` = {as_printed(value)}" for name, value in case.hidden.items())
 
 

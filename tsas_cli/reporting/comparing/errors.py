@@ -2,7 +2,7 @@
 
 from tsas_cli.comparing.compare import Comparison
 from tsas_cli.comparing.stage import fitted_to, held_out
-from tsas_cli.comparing.values import shared_name
+from tsas_cli.records.comparison import shared_name
 from tsas_cli.reporting.content import Section, Table
 from tsas_cli.reporting.numbers import ABSENT, plain
 
@@ -46,9 +46,9 @@ def _table(it: Comparison) -> Table:
 def _held_out(it: Comparison) -> tuple[Table, ...]:
     rows = tuple(
         (
-            row["channel"],
-            *(plain(row[key], 3) for key in ("rmse_a", "noise_a", "rmse_b", "noise_b")),
-            row["unit"],
+            row.channel,
+            *(plain(v, 3) for v in (row.rmse_a, row.noise_a, row.rmse_b, row.noise_b)),
+            row.unit,
         )
         for row in held_out(it)
     )

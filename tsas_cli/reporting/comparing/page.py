@@ -32,7 +32,7 @@ def _sections(it: Comparison) -> Iterator[Section]:
     if it.pairs:
         yield values.section(it)
     if found := effects(it):
-        rows = tuple((f"{row['effect']}", row["a"] or "–", row["b"] or "–") for row in found)
+        rows = tuple((row.effect, row.a or "–", row.b or "–") for row in found)
         yield Section(
             "effects",
             "Effects",

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator
 from functools import partial
 
 from tsas_cli.comparing.tracked import FILE, SCORES, Followed, Tracks
-from tsas_cli.comparing.tracked_stage import as_json, shown
+from tsas_cli.comparing.tracked_stage import findings, notes, shown
 from tsas_cli.recordings.written import answers_of, columns_of
 from tsas_cli.reporting.content import Picture, Section, Table
 from tsas_cli.reporting.drawing import picture
@@ -27,11 +27,10 @@ def tracked_page(it: Tracks, advance: Callable[[], None] = lambda: None) -> str:
     for section in _sections(it):
         sections.append(section)
         advance()
-    said = as_json(it)["findings"]
     return rendered(
         name="A and B, side by side",
         about=" and ".join(str(path) for path in it.paths.values()),
-        summary=" ".join(said) or "There is no controller and condition that both have.",
+        summary=" ".join(findings(it)) or "There is no controller and condition that both have.",
         sections=sections,
     )
 
@@ -43,7 +42,7 @@ def _sections(it: Tracks) -> Iterator[Section]:
     yield Section(
         "sides",
         "What is compared",
-        points=tuple(as_json(it)["notes"]),
+        points=tuple(notes(it)),
         tables=(sides, settings) if asked else (sides,),
     )
     if it.followed:

@@ -5,8 +5,8 @@ from functools import partial
 
 from tsas_cli.comparing.compare import Comparison
 from tsas_cli.comparing.stage import differs
-from tsas_cli.comparing.values import Pair
-from tsas_cli.identification.estimate import Estimate
+from tsas_cli.records.base import Parameter
+from tsas_cli.records.comparison import ParameterPair
 from tsas_cli.reporting.content import Picture, Section, Table
 from tsas_cli.reporting.drawing import picture
 from tsas_cli.reporting.figures.values import Strip, Value, draw_values, height_in
@@ -43,7 +43,7 @@ def _differences(it: Comparison) -> Table:
             *with_interval(pair.difference.value, pair.difference.low, pair.difference.high),
             pair.unit,
             differs(pair),
-            pair.difference.why_none,
+            pair.difference.why_none or "",
         )
         for pair in it.pairs
         if pair.difference is not None
@@ -69,7 +69,7 @@ def _values(it: Comparison) -> Table:
     return Table("Values of A and B", header, rows, numeric=frozenset(range(2, 6))).without_empty()
 
 
-def _row(pair: Pair) -> tuple[str, ...]:
+def _row(pair: ParameterPair) -> tuple[str, ...]:
     both = [(name, e) for name, e in (("A", pair.a), ("B", pair.b)) if e is not None]
     bound = [name for name, e in both if e.at_bound]
     given = [f"{name} ({e.origin})" for name, e in both if e.origin != "fitted"]
@@ -84,7 +84,7 @@ def _row(pair: Pair) -> tuple[str, ...]:
     )
 
 
-def _estimate(e: Estimate | None) -> tuple[str, str]:
+def _estimate(e: Parameter | None) -> tuple[str, str]:
     if e is None:
         return ABSENT, ABSENT
     return with_interval(e.value, e.interval_low, e.interval_high)
@@ -112,9 +112,11 @@ def _pictures(it: Comparison) -> Iterator[Picture]:
     )
 
 
-def _strip(pair: Pair) -> Strip:
+def _strip(pair: ParameterPair) -> Strip:
     a, b = (
-        Value(e.value, e.interval_low, e.interval_high) for e in (pair.a, pair.b) if e is not None
+        Value(e.value, e.interval_low, e.interval_high)
+        for e in (pair.a, pair.b)
+        if e is not None and e.value is not None
     )
     run = "" if pair.run == "all" else f"\nrun {pair.run}"
     return Strip(f"{pair.name.rpartition('.')[2]}{run}", a, b, differs(pair) == "yes")

@@ -1,6 +1,5 @@
 """Runs on their way into a viewer while they are computed, each as soon as it is there."""
 
-import json
 import math
 import time
 from collections.abc import Iterator
@@ -8,15 +7,15 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
 
 import pyarrow as pa
 
-from tsas_cli.identification.model import FILE as MODEL
 from tsas_cli.identification.model import Model, write_model
 from tsas_cli.recordings.dataset import Dataset, read_dataset
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.recordings.writing import write_answer, write_dataset
+from tsas_cli.records.base import ModelFile
+from tsas_cli.records.calibration import MODEL_FILE
 from tsas_cli.records.simulation import Simulation
 from tsas_cli.records.tracking import Tracking
 from tsas_cli.reporting.inputs import Inputs
@@ -24,7 +23,6 @@ from tsas_cli.reporting.stream.recorder import Recorder, to_viewer
 from tsas_cli.reporting.stream.seen import SeenRun
 from tsas_cli.reporting.stream.stream import Stream, stream_of
 from tsas_cli.support.errors import InputError
-from tsas_cli.support.files import json_text
 from tsas_cli.tracking.recorded import manifest
 from tsas_cli.tracking.settings import Settings
 
@@ -52,20 +50,17 @@ class LiveStream:
         (self.folder / "runs").mkdir(exist_ok=True)
         write_answer(self.folder / "runs", answer)
         fitted = stage.dataset.content()
-        write_model(self.folder / MODEL, model, version=stage.version, dataset=fitted)
+        write_model(self.folder / MODEL_FILE, model, version=stage.version, dataset=fitted)
         self._show(
             Inputs(dataset.only([answer.run.id]), {Simulation: stage}, {Simulation: self.folder})
         )
 
-    def tracked(self, summary: dict[str, Any], run: str, table: pa.Table) -> None:
-        """Show a run of the closed loop; `summary` is that of the runs so far."""
-        stated = {
-            k: v for k, v in summary["settings"].items() if k not in {"file", "folder", "sha256"}
-        }
+    def tracked(self, stage: Tracking, run: str, table: pa.Table) -> None:
+        """Show a run of the closed loop; `stage` says of the runs so far."""
+        stated = stage.settings.model_dump(by_alias=True, exclude=set(ModelFile.model_fields))
         folder = self.folder / run
         folder.mkdir()
         write_dataset(folder, manifest((run,), Settings.model_validate(stated)), {run: table})
-        stage = Tracking.model_validate(_plain(summary))
         self._show(Inputs(read_dataset(folder), {Tracking: stage}, {Tracking: folder}))
 
     def lay_out(self) -> None:
@@ -103,8 +98,3 @@ def live_stream(address: str, name: str) -> Iterator[LiveStream]:
         stream = LiveStream(recorder, Path(folder))
         yield stream
         stream.lay_out()
-
-
-def _plain(summary: dict[str, Any]) -> Any:
-    """Return what the stage's file would hold."""
-    return json.loads(json_text(summary))

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import cast
 
-from tsas_cli.identification.model import FILE, Model, read_model
+from tsas_cli.identification.model import Model, read_model
 from tsas_cli.identification.prepared import drive_of, prepare, seconds_into
 from tsas_cli.physics.ends import Drive
 from tsas_cli.physics.response import Dynamics
@@ -14,6 +14,7 @@ from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.run_files import read_recording
 from tsas_cli.records.base import StageFile
+from tsas_cli.records.calibration import MODEL_FILE
 from tsas_cli.records.diagnosis import EXTENDED_MODEL, NOMINAL_MODEL, Diagnosis
 from tsas_cli.records.simulation import Simulation
 from tsas_cli.reporting.stream.seen import X_IN, SeenRun
@@ -91,7 +92,7 @@ def tendons_of(run: SeenRun) -> dict[Which, Followed]:
 
 
 def _file(which: Which) -> str:
-    return {NOMINAL: NOMINAL_MODEL, EXTENDED: EXTENDED_MODEL, SIMULATED: FILE}[which]
+    return {NOMINAL: NOMINAL_MODEL, EXTENDED: EXTENDED_MODEL, SIMULATED: MODEL_FILE}[which]
 
 
 def _drive(run: SeenRun, stage: type[StageFile]) -> Drive:

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from tsas_cli.numerics.linear_response import sampled
-from tsas_cli.physics.plant.harmonic_drive import (
+from tsas_cli.drive.harmonic_drive import (
     DriveValues,
     free_motion,
     gear_response,
@@ -15,6 +14,7 @@ from tsas_cli.physics.plant.harmonic_drive import (
     lag_coefficients,
     linear_response,
 )
+from tsas_cli.numerics.linear_response import sampled
 
 STEP_S = 2e-3
 TIME_S = STEP_S * np.arange(201)
