@@ -17,8 +17,8 @@ from tsas_cli.recordings.manifest import Run
 from tsas_cli.reporting.stream.recorder import Clock, to_file
 from tsas_cli.reporting.stream.tendon.along import record_along
 from tsas_cli.reporting.stream.tendon.band import record_band
+from tsas_cli.reporting.stream.tendon.followed import follow
 from tsas_cli.reporting.stream.tendon.scene import record_scene
-from tsas_cli.reporting.tendon.followed import follow
 from tsas_cli.reporting.which import EXTENDED, NOMINAL
 
 REPEATS = 5

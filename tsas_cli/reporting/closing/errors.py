@@ -5,10 +5,10 @@ from functools import partial
 from statistics import median
 
 from tsas_cli.records.closing import Closing, Row
+from tsas_cli.reporting.closing.dots import MODELS, draw_dots, height_in
 from tsas_cli.reporting.content import Picture, Table
 from tsas_cli.reporting.diagnosis.words import listed
 from tsas_cli.reporting.drawing import picture
-from tsas_cli.reporting.figures.closing import MODELS, draw_dots, height_in
 from tsas_cli.reporting.numbers import plain, with_spread
 
 NEAR = 1.1  # a ratio that is no more than this, up or down, makes no difference

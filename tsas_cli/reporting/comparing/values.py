@@ -7,9 +7,9 @@ from tsas_cli.comparing.compare import Comparison
 from tsas_cli.comparing.stage import differs
 from tsas_cli.comparing.values import Pair
 from tsas_cli.identification.estimate import Estimate
+from tsas_cli.reporting.comparing.strips import Strip, Value, draw_values, height_in
 from tsas_cli.reporting.content import Picture, Section, Table
 from tsas_cli.reporting.drawing import picture
-from tsas_cli.reporting.figures.values import Strip, Value, draw_values, height_in
 from tsas_cli.reporting.numbers import ABSENT, plain, with_interval
 
 _MOST = 8  # strips of a picture

@@ -12,9 +12,9 @@ from tsas_cli.records.simulation import Simulation
 from tsas_cli.records.tracking import Tracking
 from tsas_cli.reporting.content import Section, Table
 from tsas_cli.reporting.diagnosis import candidates, causes, gains, remainder
+from tsas_cli.reporting.drive.section import told_of
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import plain, with_interval
-from tsas_cli.reporting.sections.drive import told_of
 from tsas_cli.reporting.stream.markdown import section_text
 from tsas_cli.reporting.tracking.scores import best_and_worst
 

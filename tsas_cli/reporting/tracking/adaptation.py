@@ -8,8 +8,8 @@ import numpy as np
 from tsas_cli.records.tracking import ADAPTIVE, Adaptive
 from tsas_cli.reporting.content import Picture, Section, Table
 from tsas_cli.reporting.drawing import picture
-from tsas_cli.reporting.figures.adaptation import Estimate, draw_estimates
 from tsas_cli.reporting.numbers import plain
+from tsas_cli.reporting.tracking.estimates import Estimate, draw_estimates
 from tsas_cli.reporting.tracking.runs import ESTIMATES, Condition, Followed
 
 _WHAT = (

@@ -9,8 +9,8 @@ from tsas_cli.controllers.signals import ORDER, error_filter, filtered
 from tsas_cli.records.tracking import Settings
 from tsas_cli.reporting.content import Picture, Section
 from tsas_cli.reporting.drawing import picture
-from tsas_cli.reporting.figures.portraits import Orbit, draw_portraits, portraits_in
 from tsas_cli.reporting.numbers import plain
+from tsas_cli.reporting.tracking.orbits import Orbit, draw_portraits, portraits_in
 from tsas_cli.reporting.tracking.runs import X_IN, X_INV, Condition, Followed
 
 Floats = npt.NDArray[np.float64]

@@ -12,8 +12,8 @@ from tsas_cli.reporting.stream.recorder import Clock, Recorder
 from tsas_cli.reporting.stream.recorder.moving import points_2d
 from tsas_cli.reporting.stream.recorder.paths import Entity
 from tsas_cli.reporting.stream.recorder.views import View, plane
+from tsas_cli.reporting.stream.tendon.followed import Followed
 from tsas_cli.reporting.stream.tendon.key import record_key
-from tsas_cli.reporting.tendon.followed import Followed
 from tsas_cli.reporting.which import Which
 
 Floats = npt.NDArray[np.float64]

@@ -13,9 +13,9 @@ from tsas_cli.reporting.stream.recorder import Clock, Recorder, Times
 from tsas_cli.reporting.stream.recorder.moving import captions, coloured_pieces, curves, surface
 from tsas_cli.reporting.stream.recorder.paths import Entity
 from tsas_cli.reporting.stream.recorder.views import View, space
-from tsas_cli.reporting.tendon.followed import Followed
-from tsas_cli.reporting.tendon.shades import Scale, dimmed, packed, scale_of
-from tsas_cli.reporting.tendon.stage import LEFT, TALL, Stand, stage_of
+from tsas_cli.reporting.stream.tendon.followed import Followed
+from tsas_cli.reporting.stream.tendon.shades import Scale, dimmed, packed, scale_of
+from tsas_cli.reporting.stream.tendon.stage import LEFT, TALL, Stand, stage_of
 from tsas_cli.reporting.which import Which
 
 Floats = npt.NDArray[np.float64]

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from tsas_cli.reporting.tendon.shades import dimmed, packed, scale_of
+from tsas_cli.reporting.stream.tendon.shades import dimmed, packed, scale_of
 
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 

@@ -10,7 +10,7 @@ from tsas_cli.identification.model import Model
 from tsas_cli.physics.ends import Drive
 from tsas_cli.physics.response import simulate
 from tsas_cli.recordings.manifest import Run
-from tsas_cli.reporting.tendon.followed import follow
+from tsas_cli.reporting.stream.tendon.followed import follow
 from tsas_cli.reporting.which import EXTENDED, NOMINAL
 
 TIME_S = 5.0 + np.arange(0.0, 6.6, 1e-3)  # a recording's clock need not begin at zero

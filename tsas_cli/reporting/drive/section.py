@@ -8,7 +8,7 @@ import numpy as np
 from tsas_cli.records.drive import Drive, Pole, Response
 from tsas_cli.reporting.content import Picture, Section, Table
 from tsas_cli.reporting.drawing import picture
-from tsas_cli.reporting.figures.drive import draw_bode, draw_poles, draw_residuals
+from tsas_cli.reporting.drive.figures import draw_bode, draw_poles, draw_residuals
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import plain, spanned, with_interval
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from functools import partial
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -10,9 +11,10 @@ from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.records.simulation import Channel, Simulation
 from tsas_cli.reporting.channels import in_words
+from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Group, Picture, Section, Table, missing
 from tsas_cli.reporting.drawing import picture
-from tsas_cli.reporting.figures.comparison import draw_comparison
+from tsas_cli.reporting.figures.over_time import dashed, line
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import ABSENT, plain, spanned
 
@@ -160,3 +162,38 @@ def _pictures(
             caption=f"{what.capitalize()}: {distance}",
             height_in=4.0,
         )
+
+
+def draw_comparison(
+    figure: Any,
+    *,
+    time_s: Floats,
+    measured: Floats,
+    simulated: Floats,
+    noise: float | None,
+    labels: tuple[str, str],
+) -> None:
+    """Draw one channel of one run.
+
+    Parameters
+    ----------
+    figure
+        The matplotlib figure to draw on.
+    time_s, measured, simulated
+        Time [s], and the channel in its unit, shape (n,), NaN where there is none.
+    noise
+        Standard deviation of the channel's noise in its unit, None where it is not known.
+    labels
+        What stands at the axis of the channel, and at that of the residual.
+    """
+    upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
+    line(upper, time_s, measured, color=STAND_IN["measured"], linewidth=2.6, label="measured")
+    line(upper, time_s, simulated, color=STAND_IN["simulated"], linewidth=1.1, label="simulated")
+    upper.set_ylabel(labels[0])
+    line(lower, time_s, measured - simulated, color=STAND_IN["muted"], linewidth=0.7)
+    if noise is not None:
+        lower.axhline(2 * noise, **dashed(), label="± 2 × noise")
+        lower.axhline(-2 * noise, **dashed())
+    lower.set(xlabel="time [s]", ylabel=labels[1])
+    figure.align_ylabels()
+    figure.legend(loc="outside upper left", ncols=3, handlelength=1.6, columnspacing=1.2)

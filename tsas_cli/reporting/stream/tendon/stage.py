@@ -12,8 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.physics.rig import Rig
-from tsas_cli.reporting.tendon.ends import Ends, ends_of
-from tsas_cli.reporting.tendon.shape import Shape, shape_of
+from tsas_cli.reporting.stream.tendon.ends import Ends, ends_of
+from tsas_cli.reporting.stream.tendon.shape import Shape, shape_of
 
 Floats = npt.NDArray[np.float64]
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.physics.references import FREE, GROUP_A
-from tsas_cli.reporting.tendon.stage import TALL, stage_of
+from tsas_cli.reporting.stream.tendon.stage import TALL, stage_of
 
 BENDS = [0.0, math.pi / 2, math.pi, 2 * math.pi, 5 * math.pi]
 

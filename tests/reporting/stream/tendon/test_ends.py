@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from tsas_cli.reporting.tendon.ends import RADIUS, ends_of
-from tsas_cli.reporting.tendon.shape import shape_of
+from tsas_cli.reporting.stream.tendon.ends import RADIUS, ends_of
+from tsas_cli.reporting.stream.tendon.shape import shape_of
 
 SIZE = 500.0
 SHAPE = shape_of(250.0 * math.pi, math.pi, 60)

@@ -14,7 +14,7 @@ from tsas_cli.physics.passages import Passage, passages, turns
 from tsas_cli.physics.response import Dynamics, Response, simulate
 from tsas_cli.physics.rig import Rig
 from tsas_cli.recordings.manifest import Run
-from tsas_cli.reporting.tendon.moments import moments
+from tsas_cli.reporting.stream.tendon.moments import moments
 from tsas_cli.reporting.which import Which
 
 Floats = npt.NDArray[np.float64]

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from tsas_cli.reporting.tendon.shape import FLAT_UP_TO_RAD, shape_of
+from tsas_cli.reporting.stream.tendon.shape import FLAT_UP_TO_RAD, shape_of
 
 BENDS = [0.0, 0.3, math.pi / 2, math.pi, FLAT_UP_TO_RAD, 1.5 * math.pi, 2 * math.pi, 7 * math.pi]
 

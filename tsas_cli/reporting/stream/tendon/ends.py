@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.reporting.tendon.shape import Shape
+from tsas_cli.reporting.stream.tendon.shape import Shape
 
 Floats = npt.NDArray[np.float64]
 
