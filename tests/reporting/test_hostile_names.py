@@ -116,7 +116,7 @@ def hostile(tmp_path_factory):
         [
             {
                 "code": EVIL,
-                "severity": EVIL,
+                "severity": "error",
                 "run": EVIL,
                 "column": EVIL,
                 "sentence": EVIL,

@@ -11,6 +11,8 @@ from tests.reporting.made_folders import make_dataset, make_simulation, make_tra
 from tsas_cli.identification.model import data_sheet
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.recording import Recording
+from tsas_cli.records.simulation import Simulation
+from tsas_cli.reporting.inputs import read_stage
 from tsas_cli.reporting.stream.live import LiveStream
 from tsas_cli.reporting.stream.recorder import Recorder, to_file
 from tsas_cli.reporting.stream.recorder.views import outline
@@ -54,12 +56,12 @@ def answer(dataset, run):
 def test_each_simulated_run_is_there_before_the_next_is_computed(seen, tmp_path):
     dataset = make_dataset(tmp_path / "dataset", ("a", "b"), samples=300)
     simulated = make_simulation(dataset, tmp_path / "simulated")
-    summary = json.loads((simulated / "simulation.json").read_text())
+    summary = read_stage(Simulation, simulated)
     opened = read_dataset(dataset)
     model = data_sheet(opened.manifest)
 
     def step(run):
-        so_far = summary | {"runs": {run: summary["runs"][run]}}
+        so_far = summary.model_copy(update={"runs": {run: summary.runs[run]}})
         return lambda live: live.simulated(opened, so_far, answer(opened, run), model)
 
     first, both = seen([step("a"), step("b")])
@@ -90,7 +92,7 @@ def test_layouts_follow_the_runs_and_do_not_crowd_them_out(tmp_path, monkeypatch
     monkeypatch.setattr(Recorder, "lay_out", outlined)
     dataset = make_dataset(tmp_path / "dataset", ("a", "b"), samples=300)
     simulated = make_simulation(dataset, tmp_path / "simulated")
-    summary = json.loads((simulated / "simulation.json").read_text())
+    summary = read_stage(Simulation, simulated)
     opened = read_dataset(dataset)
     with to_file(tmp_path / "live.rrd", "live") as recorder:
         live = LiveStream(recorder, tmp_path)

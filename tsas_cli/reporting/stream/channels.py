@@ -6,7 +6,7 @@ A column of a file is read once, recorded, and forgotten.
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.reporting.stream.palette import colour
+from tsas_cli.reporting.colours import dark
 from tsas_cli.reporting.stream.portraits import Portrait
 from tsas_cli.reporting.stream.recorder import Recorder
 from tsas_cli.reporting.stream.recorder.paths import Entity
@@ -22,7 +22,7 @@ def series_of(run: SeenRun) -> dict[str, list[Entity]]:
     """Return the entities of all series, by the column that they are shown with."""
     found: dict[str, list[Entity]] = {}
     for channel in run.channels:
-        keys = (channel.key, *(source.key for source in channel.sources))
+        keys = (channel.key, *(source.which.key for source in channel.sources))
         found.setdefault(channel.quantity, []).extend(
             run.entity(channel.quantity, key) for key in keys
         )
@@ -33,7 +33,7 @@ def residuals_of(run: SeenRun) -> dict[str, list[Entity]]:
     """Return the entities of the residuals by column."""
     found = {
         channel.column: [
-            run.entity(channel.column, RESIDUAL, source.key)
+            run.entity(channel.column, RESIDUAL, source.which.key)
             for source in channel.sources
             if not source.cleaned
         ]
@@ -53,7 +53,7 @@ def record_channels(recorder: Recorder, run: SeenRun) -> None:
     for channel in run.channels:
         measured = run.measured(channel.column)
         entity = run.entity(channel.quantity, channel.key)
-        recorder.line(entity, channel.key, colour(_ROLES[channel.key]), width=_WIDTHS[channel.key])
+        recorder.line(entity, channel.key, dark(_ROLES[channel.key]), width=_WIDTHS[channel.key])
         recorder.scalars(entity, run.times, measured)
         portrait = None
         if channel in run.loops:
@@ -76,9 +76,9 @@ def _record_told(
     measured: Floats,
 ) -> None:
     """Record what a stage says of a channel, and measured less simulated."""
-    series = {run.entity(channel.column, source.key): told}
+    series = {run.entity(channel.column, source.which.key): told}
     if not source.cleaned:
-        series[run.entity(channel.column, RESIDUAL, source.key)] = measured - told
+        series[run.entity(channel.column, RESIDUAL, source.which.key)] = measured - told
     for entity, values in series.items():
-        recorder.line(entity, source.label, colour(source.role))
+        recorder.line(entity, source.which.label, dark(source.which.role))
         recorder.scalars(entity, run.times, values)

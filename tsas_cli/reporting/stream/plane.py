@@ -3,15 +3,21 @@
 Both axes are scaled to a frame of fixed size, and ticks at round numbers say what they were.
 """
 
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+import rerun as rr
+import rerun.blueprint as rrb
 
+from tsas_cli.reporting.colours import dark
 from tsas_cli.reporting.numbers import as_printed, round_ticks
-from tsas_cli.reporting.stream.palette import colour
 from tsas_cli.reporting.stream.recorder import Recorder
-from tsas_cli.reporting.stream.recorder.paths import Entity
+from tsas_cli.reporting.stream.recorder.paths import Entity, path_of
+from tsas_cli.reporting.stream.recorder.times import SESSION, T
+from tsas_cli.reporting.stream.recorder.views import View, shown
+from tsas_cli.reporting.stream.sources import Which
 
 Floats = npt.NDArray[np.float64]
 
@@ -19,8 +25,9 @@ WIDTH, HEIGHT = 1.7, 1.0  # of the frame
 MARGIN = 0.04  # of the range, beside the curve
 TICKS = 5  # about as many to an axis
 STEPS = (1.0, 2.0, 5.0, 10.0)
-ACROSS, DOWN = (-0.2, WIDTH + 0.08), (-HEIGHT - 0.08, 0.28)  # what a view shows of the plane
+_SEEN = rrb.VisualBounds2D(x_range=(-0.2, WIDTH + 0.08), y_range=(-HEIGHT - 0.08, 0.28))
 _TICK = 0.015
+_KEY_LINE = 0.09  # of the frame's height
 
 
 @dataclass(frozen=True)
@@ -74,13 +81,45 @@ class Frame:
         return np.array([(x, y) for x, y, _ in texts]), [text for *_, text in texts]
 
 
+def plane_view(
+    name: str, entity: Entity, trails: Mapping[tuple[str, ...], float] | None = None
+) -> View:
+    """Return the view of a plane; of each of `trails` only its last seconds are shown."""
+    return rrb.Spatial2DView(
+        **shown(name, [entity]),
+        visual_bounds=_SEEN,
+        overrides={path_of(trail): _last(seconds) for trail, seconds in (trails or {}).items()},
+    )
+
+
+def _last(seconds: float) -> rrb.VisibleTimeRanges:
+    cursor = rrb.TimeRangeBoundary.cursor_relative
+    return rrb.VisibleTimeRanges(
+        [
+            rrb.VisibleTimeRange(timeline, start=cursor(seconds=-seconds), end=cursor())
+            for timeline in (T, SESSION)
+        ]
+    )
+
+
 def record_frame(
     recorder: Recorder, entity: Entity, frame: Frame, names: tuple[str, str], role: str
 ) -> None:
     """Draw a frame's axes below what is in it; `names` are those of x and y, in a role's colour."""
-    recorder.curves_2d((*entity, "axes"), frame.lines(), colour("muted"), radius=-0.6, order=-1.0)
+    axes = rr.LineStrips2D(frame.lines(), colors=dark("muted"), radii=-0.6, draw_order=-1.0)
+    recorder.static((*entity, "axes"), axes)
     places, texts = frame.texts(*names)
-    recorder.labels_2d((*entity, "names"), places, texts, colour(role))
+    recorder.labels((*entity, "names"), places, texts, dark(role))
+
+
+def record_key(
+    recorder: Recorder, entity: Entity, models: Iterable[Which], *, measured: bool = False
+) -> None:
+    """Write the names of the models, and of what was measured, each in its colour."""
+    named = [*models, Which("measured", "measured", "measured")] if measured else models
+    for line, which in enumerate(named):
+        place = np.array([[0.86 * WIDTH, -HEIGHT + _KEY_LINE * line]])
+        recorder.labels((*entity, "key", which.key), place, [which.label], dark(which.role))
 
 
 def frame_of(x: Floats, y: Floats) -> Frame:

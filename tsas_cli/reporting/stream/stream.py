@@ -7,8 +7,7 @@ from pathlib import Path
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.stream import texts
 from tsas_cli.reporting.stream.channels import record_channels
-from tsas_cli.reporting.stream.events import record_own_events
-from tsas_cli.reporting.stream.phases import record_phases
+from tsas_cli.reporting.stream.events import record_own_events, record_phases
 from tsas_cli.reporting.stream.recorder import Recorder, to_file
 from tsas_cli.reporting.stream.recorder.views import Layout
 from tsas_cli.reporting.stream.seen import SeenRun, seen_runs

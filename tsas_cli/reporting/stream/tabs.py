@@ -4,8 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from tsas_cli.reporting.channels import at_axis
 from tsas_cli.reporting.stream.channels import residuals_of, series_of
-from tsas_cli.reporting.stream.events import REVERSALS, events_of, happens
-from tsas_cli.reporting.stream.phases import phases_of
+from tsas_cli.reporting.stream.events import REVERSALS, events_of, happens, phases_of
 from tsas_cli.reporting.stream.portraits import view_of
 from tsas_cli.reporting.stream.recorder.paths import Entity
 from tsas_cli.reporting.stream.recorder.views import (

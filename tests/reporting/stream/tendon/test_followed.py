@@ -10,8 +10,8 @@ from tsas_cli.identification.model import Model
 from tsas_cli.physics.ends import Drive
 from tsas_cli.physics.response import simulate
 from tsas_cli.recordings.manifest import Run
+from tsas_cli.reporting.stream.sources import EXTENDED, NOMINAL
 from tsas_cli.reporting.stream.tendon.followed import follow
-from tsas_cli.reporting.which import EXTENDED, NOMINAL
 
 TIME_S = 5.0 + np.arange(0.0, 6.6, 1e-3)  # a recording's clock need not begin at zero
 X_IN = 10.0 - 10.0 * np.cos(TIME_S - 5.0)

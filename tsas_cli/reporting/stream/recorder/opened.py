@@ -2,6 +2,7 @@
 
 import atexit
 import re
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from hashlib import sha256
@@ -9,8 +10,8 @@ from pathlib import Path
 from threading import Thread
 
 import rerun as rr
+from rerun.chunk import RrdReader
 
-from tsas_cli.reporting.stream.recorder.reading import is_finished
 from tsas_cli.reporting.stream.recorder.recorder import Recorder
 from tsas_cli.reporting.stream.recorder.views import Layout, outline
 from tsas_cli.support.errors import InputError
@@ -43,8 +44,10 @@ def to_file(path: Path, name: str, layout: Layout | None = None) -> Iterator[Rec
             stream.save(temporary)
         except RuntimeError as error:
             raise _unfinished(path) from error
+        recorder = Recorder(stream, path)
         try:
-            recorder = _laid_out(Recorder(stream, path), layout)
+            if layout is not None:
+                recorder.lay_out(layout)
             yield recorder
             recorder.settle()
         finally:
@@ -54,7 +57,7 @@ def to_file(path: Path, name: str, layout: Layout | None = None) -> Iterator[Rec
 
 
 @contextmanager
-def to_viewer(address: str, name: str, layout: Layout | None = None) -> Iterator[Recorder]:
+def to_viewer(address: str, name: str) -> Iterator[Recorder]:
     """Record into a viewer that listens at `rerun+http://HOST:PORT/proxy`.
 
     Raises
@@ -63,14 +66,46 @@ def to_viewer(address: str, name: str, layout: Layout | None = None) -> Iterator
         It does not take what it is sent; Rerun is switched off.
     """
     with _strict():
-        stream = _opened(name, layout)
+        stream = _opened(name, None)
         stream.connect_grpc(address)
+        recorder = Recorder(stream, address)
         try:
-            recorder = _laid_out(Recorder(stream, address), layout)
             yield recorder
             recorder.settle()
         finally:
             stream.disconnect()
+
+
+def is_finished(path: Path) -> bool:
+    """Return whether a stream was written to its end; what it holds can be shown without, too.
+
+    Only the heads of its parts are read, however large it is. Rerun's own `rerun rrd verify` lets
+    empty files pass.
+
+    Raises
+    ------
+    InputError
+        It is no stream, holds none, or is cut off within a part.
+    """
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # says that a stream has no end, which is returned here
+            reader = RrdReader(path)
+            found = reader.recordings()
+    except (RuntimeError, ValueError, OSError) as error:
+        reason = str(error).splitlines()[0].removeprefix(f"Failed to read RRD file at {path}: ")
+        raise InputError(
+            f"cannot be shown ({reason.removeprefix('Failed to decode frame: ')})",
+            where=path,
+            expected="a whole .rrd file, or the folder of a stage",
+        ) from error
+    if not found:
+        raise InputError("holds no recording", where=path, expected="a stream that tsas wrote")
+    try:
+        reader.store(store=found[0])
+    except RuntimeError:
+        return False
+    return True
 
 
 def _end(stream: rr.RecordingStream, path: Path) -> None:
@@ -107,12 +142,6 @@ def _opened(name: str, layout: Layout | None) -> rr.RecordingStream:
         raise InputError("Rerun is switched off", where="RERUN", remedy="unset this variable")
     stream.send_recording_name(name)
     return stream
-
-
-def _laid_out(recorder: Recorder, layout: Layout | None) -> Recorder:
-    if layout is not None:
-        recorder.lay_out(layout)
-    return recorder
 
 
 @contextmanager

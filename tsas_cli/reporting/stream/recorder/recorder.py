@@ -1,18 +1,20 @@
-"""What is recorded: series, states, events, curves in two and three dimensions, and texts.
+"""What is recorded: components of entities that hold at all times, or that are others at each.
 
 An entity is named by its parts, `("run", "a", "f_in_N")`; names from files need no escaping. Rerun
 is strict here: columns of different lengths raise `ValueError`, else they would only be dropped.
+A negative radius is in points of the screen; in a plane y points downwards, and what has a higher
+`order` lies on top.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 import rerun as rr
 
-from tsas_cli.reporting.stream.recorder.clock import Times
 from tsas_cli.reporting.stream.recorder.paths import Entity, path_of
+from tsas_cli.reporting.stream.recorder.times import Times
 from tsas_cli.reporting.stream.recorder.views import Layout
 from tsas_cli.support.errors import InputError
 
@@ -36,24 +38,6 @@ class Recorder:
         """Say what the viewer opens with; the last one counts."""
         self.stream.send_blueprint(layout)
 
-    def line(self, entity: Entity, name: str, colour: Colour, *, width: float = 1.5) -> None:
-        """Say how the series of an entity is drawn, and what the legend calls it."""
-        style = rr.SeriesLines(
-            names=name, colors=colour, widths=width, aggregation_policy=_EXTREMES
-        )
-        self.static(entity, style)
-
-    def scalars(self, entity: Entity, times: Times, values: Floats) -> None:
-        """Add samples of a series, shape (n,); NaN is a gap, which stays one."""
-        if values.shape != (len(times),):
-            raise ValueError(f"{values.shape} values at {len(times)} times")
-        for at, piece in times.pieces(ROWS):
-            there = ~np.isnan(values[at])
-            columns = rr.Scalars.columns(scalars=values[at][there])
-            if not there.all():
-                columns = columns.partition(there.astype(np.int64))
-            self.columns(entity, piece, columns)
-
     def settle(self) -> None:
         """Wait until what was recorded is written: what waits for it is kept in memory.
 
@@ -71,64 +55,41 @@ class Recorder:
                 remedy="is the disk full, or the viewer gone?",
             ) from error
 
-    def marks(self, entity: Entity, name: str, colour: Colour, *, size: float = 4.0) -> None:
-        """Say that the series of an entity is drawn as marks that are not joined."""
-        style = rr.SeriesPoints(names=name, colors=colour, marker_sizes=size)
-        self.static(entity, style)
+    def static(self, entity: Entity, look: rr.AsComponents) -> None:
+        """Set components that hold at all times."""
+        self.stream.log(path_of(entity), look, static=True, strict=True)
 
-    def states(
-        self,
-        entity: Entity,
-        times: Times,
-        states: Sequence[str],
-        *,
-        colours: Mapping[str, Colour],
-        labels: Mapping[str, str] | None = None,
-    ) -> None:
-        """Add the states that begin at these times; an empty one ends the last.
-
-        `colours` and `labels` are of all states that there may be.
-        """
-        names = list(colours)
-        shown = [(labels or {}).get(name, name) for name in names]
-        look = rr.StateConfiguration(values=names, labels=shown, colors=list(colours.values()))
-        self.static(entity, look)
-        self.columns(entity, times, rr.StateChange.columns(state=list(states)))
-
-    def events(
-        self, entity: Entity, times: Times, texts: Sequence[str], levels: Sequence[str]
-    ) -> None:
-        """Add lines of text, one at each time; a level is INFO, WARN or ERROR."""
-        self.columns(entity, times, rr.TextLog.columns(text=list(texts), level=list(levels)))
+    def columns(self, entity: Entity, times: Times, columns: rr.ComponentColumnList) -> None:
+        """Add components that are others at each time."""
+        self.stream.send_columns(path_of(entity), times.columns, columns, strict=True)
 
     def markdown(self, entity: Entity, text: str) -> None:
-        """Set a text that holds at all times, as Markdown."""
+        """Set a text, as Markdown."""
         self.static(entity, rr.TextDocument(text, media_type=rr.MediaType.MARKDOWN))
 
-    def curves_2d(
-        self,
-        entity: Entity,
-        curves: Sequence[Floats],
-        colour: Colour,
-        *,
-        radius: float = -1.0,
-        labels: Sequence[str] | None = None,
-        order: float = 0.0,
-    ) -> None:
-        """Set curves in a plane, shape (n, 2) each, y downwards; they hold at all times.
-
-        A negative radius is in points of the screen, here and below; higher `order` lies on top.
-        """
-        look = rr.LineStrips2D(
-            list(curves), colors=colour, radii=radius, labels=labels, draw_order=order
+    def line(self, entity: Entity, name: str, colour: Colour, *, width: float = 1.5) -> None:
+        """Say how the series of an entity is drawn, and what the legend calls it."""
+        style = rr.SeriesLines(
+            names=name, colors=colour, widths=width, aggregation_policy=_EXTREMES
         )
-        self.static(entity, look)
+        self.static(entity, style)
 
-    def labels_2d(
-        self, entity: Entity, places: Floats, labels: Sequence[str], colour: Colour
-    ) -> None:
-        """Set texts in a plane at places of shape (n, 2), y downwards; they hold at all times."""
-        look = rr.Points2D(places, labels=list(labels), colors=colour, radii=0.0, show_labels=True)
+    def scalars(self, entity: Entity, times: Times, values: Floats) -> None:
+        """Add samples of a series, shape (n,); NaN is a gap, which stays one."""
+        if values.shape != (len(times),):
+            raise ValueError(f"{values.shape} values at {len(times)} times")
+        for first in range(0, len(times), ROWS):
+            at = slice(first, first + ROWS)
+            there = ~np.isnan(values[at])
+            columns = rr.Scalars.columns(scalars=values[at][there])
+            if not there.all():
+                columns = columns.partition(there.astype(np.int64))
+            self.columns(entity, times.at(at), columns)
+
+    def labels(self, entity: Entity, places: Floats, labels: Sequence[str], colour: Colour) -> None:
+        """Set texts at places of shape (n, 2) in a plane, or (n, 3) in space."""
+        points = rr.Points2D if places.shape[1] == 2 else rr.Points3D
+        look = points(places, labels=list(labels), colors=colour, radii=0.0, show_labels=True)
         self.static(entity, look)
 
     def segments_2d(
@@ -138,16 +99,15 @@ class Recorder:
         segments: Floats,
         colour: Colour,
         *,
-        radius: float = -1.5,
+        radius: float,
         order: float = 1.0,
     ) -> None:
-        """Add a piece of a curve at each time, shape (n, 2, 2): ends, then x and y (downwards).
+        """Add a piece of a curve at each time, shape (n, 2, 2): ends, then x and y.
 
         A view with a range of time around the cursor shows the last stretch of the curve.
         """
-        self.static(
-            entity, rr.LineStrips2D.from_fields(colors=colour, radii=radius, draw_order=order)
-        )
+        look = rr.LineStrips2D.from_fields(colors=colour, radii=radius, draw_order=order)
+        self.static(entity, look)
         self.columns(entity, times, rr.LineStrips2D.columns(strips=segments.astype(np.float32)))
 
     def points_2d(
@@ -157,26 +117,16 @@ class Recorder:
         places: Floats,
         colour: Colour,
         *,
+        shown: npt.NDArray[np.bool_] | None = None,
         radius: float = -5.0,
-        order: float = 2.0,
+        order: float = 3.0,
     ) -> None:
-        """Add one point at each time, shape (n, 2), y downwards."""
-        self.static(entity, rr.Points2D.from_fields(colors=colour, radii=radius, draw_order=order))
-        self.columns(entity, times, rr.Points2D.columns(positions=places.astype(np.float32)))
-
-    def curves_3d(
-        self,
-        entity: Entity,
-        curves: Sequence[Floats],
-        colours: Colour | Sequence[Colour],
-        *,
-        radii: float | Sequence[float] = -1.5,
-        labels: Sequence[str] | None = None,
-    ) -> None:
-        """Set curves in space, shape (n, 3) each; they hold at all times."""
-        self.static(
-            entity, rr.LineStrips3D(list(curves), colors=colours, radii=radii, labels=labels)
-        )
+        """Add one point at each time, shape (n, 2), or none where it is not `shown`, shape (n,)."""
+        look = rr.Points2D.from_fields(colors=colour, radii=radius, draw_order=order)
+        self.static(entity, look)
+        there = np.full(len(places), True) if shown is None else shown
+        columns = rr.Points2D.columns(positions=places[there].astype(np.float32))
+        self.columns(entity, times, columns.partition(there.astype(np.int64)))
 
     def points_3d(
         self,
@@ -185,26 +135,31 @@ class Recorder:
         places: Sequence[Floats],
         colour: Colour,
         *,
-        radii: float = -6.0,
+        radius: float,
     ) -> None:
         """Add any number of points at each time, shape (k, 3), k may be 0."""
-        counts = np.array([len(at) for at in places])
-        flat = np.concatenate([np.reshape(at, (-1, 3)) for at in places]).astype(np.float32)
-        columns = rr.Points3D.columns(positions=flat).partition(counts)
-        self.static(entity, rr.Points3D.from_fields(colors=colour, radii=radii))
-        self.columns(entity, times, columns)
+        self.static(entity, rr.Points3D.from_fields(colors=colour, radii=radius))
+        columns = rr.Points3D.columns(positions=np.concatenate(places).astype(np.float32))
+        self.columns(entity, times, columns.partition([len(at) for at in places]))
 
-    def labels_3d(
-        self, entity: Entity, places: Floats, labels: Sequence[str], colour: Colour
+    def curves_3d(
+        self,
+        entity: Entity,
+        times: Times,
+        strips: Sequence[Sequence[Floats]],
+        colour: Colour | Colours,
+        *,
+        radius: float,
     ) -> None:
-        """Set texts in space at places of shape (n, 3); they hold at all times."""
-        look = rr.Points3D(places, labels=list(labels), colors=colour, radii=0.0, show_labels=True)
-        self.static(entity, look)
+        """Add any number of curves at each time, shape (p, 3) each.
 
-    def static(self, entity: Entity, look: rr.AsComponents) -> None:
-        """Set components that hold at all times; for the modules of this package."""
-        self.stream.log(path_of(entity), look, static=True, strict=True)
-
-    def columns(self, entity: Entity, times: Times, columns: rr.ComponentColumnList) -> None:
-        """Add components that are others at each time; for the modules of this package."""
-        self.stream.send_columns(path_of(entity), times.columns, columns, strict=True)
+        They have one colour, or one at each time, shape (n,).
+        """
+        self.static(entity, rr.LineStrips3D.from_fields(radii=radius))
+        if isinstance(colour, int):
+            self.static(entity, rr.LineStrips3D.from_fields(colors=colour))
+        else:
+            self.columns(entity, times, rr.LineStrips3D.columns(colors=colour))
+        flat = [np.asarray(strip, dtype=np.float32) for at in strips for strip in at]
+        columns = rr.LineStrips3D.columns(strips=flat)
+        self.columns(entity, times, columns.partition([len(at) for at in strips]))

@@ -1,11 +1,12 @@
 """The tendon's part of the stream: in space, along the sheath, and the dead band from near."""
 
+from tsas_cli.reporting.stream.plane import plane_view
 from tsas_cli.reporting.stream.portraits import view_of
 from tsas_cli.reporting.stream.recorder import Recorder
 from tsas_cli.reporting.stream.recorder.views import Horizontal, Part, Tabs, Vertical
 from tsas_cli.reporting.stream.seen import SeenRun
-from tsas_cli.reporting.stream.tendon.along import record_along, view_of_along
-from tsas_cli.reporting.stream.tendon.band import record_band, view_of_band
+from tsas_cli.reporting.stream.tendon.along import record_along
+from tsas_cli.reporting.stream.tendon.band import record_band
 from tsas_cli.reporting.stream.tendon.fronts import record_passages
 from tsas_cli.reporting.stream.tendon.scene import record_scene, view_of_scene
 from tsas_cli.reporting.stream.tendon.told import F_IN, tendons_of, told_of
@@ -25,7 +26,10 @@ def view_of_tendon(run: SeenRun) -> Part | None:
     if told is None:
         return None
     space = view_of_scene(run.entity(*SPACE), told.rigs(run.file.run))
-    along, band = view_of_along(run.entity(*ALONG)), view_of_band(run.entity(*BAND))
+    along, band = (
+        plane_view("Tension along the sheath", run.entity(*ALONG)),
+        plane_view("The dead band from near", run.entity(*BAND)),
+    )
     loops = [view_of(run, channel) for channel in run.loops if channel.column == F_IN]
     near = Tabs(band, *loops, active_tab=0) if loops else band
     return Horizontal(space, Vertical(along, near), column_shares=[3.0, 2.0])
@@ -44,6 +48,6 @@ def record_tendon(recorder: Recorder, run: SeenRun) -> None:
         return
     measured = run.measured(F_IN) if F_IN in run.file.names else None
     record_passages(recorder, run, tendons)
-    record_scene(recorder, run.entity(*SPACE), run.clock, tendons)
-    record_along(recorder, run.entity(*ALONG), run.clock, tendons)
-    record_band(recorder, run.entity(*BAND), run.clock, tendons, measured)
+    record_scene(recorder, run.entity(*SPACE), tendons)
+    record_along(recorder, run.entity(*ALONG), tendons)
+    record_band(recorder, run.entity(*BAND), tendons, measured)

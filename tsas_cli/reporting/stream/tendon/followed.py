@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from datetime import datetime
 
 import numpy as np
 import numpy.typing as npt
@@ -14,8 +15,9 @@ from tsas_cli.physics.passages import Passage, passages, turns
 from tsas_cli.physics.response import Dynamics, Response, simulate
 from tsas_cli.physics.rig import Rig
 from tsas_cli.recordings.manifest import Run
+from tsas_cli.reporting.stream.recorder import Times, times_of
+from tsas_cli.reporting.stream.sources import Which
 from tsas_cli.reporting.stream.tendon.moments import moments
-from tsas_cli.reporting.which import Which
 
 Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
@@ -25,10 +27,12 @@ Indices = npt.NDArray[np.int64]
 class Followed:
     """What one model says along the tendon of a run, at k moments of its n samples.
 
-    `sample_time_s`, shape (n,), is the recording's own time; `passages` are of all samples.
+    `started` is when the run began, None where that is not known. `sample_time_s`, shape (n,), is
+    the recording's own time; `passages` are of all samples.
     """
 
     rig: Rig
+    started: datetime | None
     sample_time_s: Floats
     response: Response
     frames: Frames
@@ -39,6 +43,15 @@ class Followed:
         """Time of the moments, shape (k,)."""
         times: Floats = self.sample_time_s[self.frames.samples]
         return times
+
+    @property
+    def times(self) -> Times:
+        """The moments on the viewer's timelines."""
+        return self.at(self.time_s)
+
+    def at(self, time_s: Floats) -> Times:
+        """Return other moments of the run [s] on the viewer's timelines."""
+        return times_of(time_s, self.started)
 
     @property
     def x_in_mm(self) -> Floats:
@@ -118,6 +131,11 @@ def follow(
         )
         if answer.frames is not None:
             found[which] = Followed(
-                rig, time_s, answer, answer.frames, passages(answer.x_in_mm, answer.phase)
+                rig,
+                run.started,
+                time_s,
+                answer,
+                answer.frames,
+                passages(answer.x_in_mm, answer.phase),
             )
     return found

@@ -6,8 +6,8 @@ from tsas_cli.physics.passages import ends_of
 from tsas_cli.reporting.stream.events import Event, record_events
 from tsas_cli.reporting.stream.recorder import Recorder
 from tsas_cli.reporting.stream.seen import SeenRun
+from tsas_cli.reporting.stream.sources import Which
 from tsas_cli.reporting.stream.tendon.followed import Followed
-from tsas_cli.reporting.which import Which
 
 FRONTS = "fronts"
 _WORDS = {1: "pulled", -1: "let go"}

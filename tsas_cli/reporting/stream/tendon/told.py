@@ -17,8 +17,8 @@ from tsas_cli.records.base import StageFile
 from tsas_cli.records.diagnosis import EXTENDED_MODEL, NOMINAL_MODEL, Diagnosis
 from tsas_cli.records.simulation import Simulation
 from tsas_cli.reporting.stream.seen import X_IN, SeenRun
+from tsas_cli.reporting.stream.sources import EXTENDED, NOMINAL, SIMULATED, Which
 from tsas_cli.reporting.stream.tendon.followed import Followed, follow
-from tsas_cli.reporting.which import EXTENDED, NOMINAL, SIMULATED, Which
 
 F_IN, F_OUT = "f_in_N", "f_out_N"
 

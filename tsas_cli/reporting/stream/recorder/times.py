@@ -1,6 +1,5 @@
 """When something was: on `t`, the time within its run, and on `session`, the time of day."""
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from datetime import UTC, datetime
 
@@ -37,31 +36,16 @@ class Times:
         of_day = None if self.of_day is None else self.of_day[indices]
         return Times(self.within[indices], of_day)
 
-    def pieces(self, most: int) -> Iterator[tuple[slice, "Times"]]:
-        """Yield stretches of at most so many moments, and where they are."""
-        for first in range(0, len(self), most):
-            at = slice(first, first + most)
-            yield at, self.at(at)
 
-
-@dataclass(frozen=True)
-class Clock:
-    """The clock of one run: when it began, None where that is not known.
+def times_of(time_s: Floats, started: datetime | None = None) -> Times:
+    """Return moments by their time in the run [s], shape (n,), rounded to the nanosecond.
 
     A start without a time zone is taken as it stands, so that the viewer shows what the manifest
-    says.
+    says; None where it is not known.
     """
-
-    started: datetime | None = None
-
-    def times(self, time_s: Floats) -> Times:
-        """Return moments by their time in the run [s], shape (n,), rounded to the nanosecond."""
-        within = np.round(np.asarray(time_s, dtype=np.float64) * 1e9).astype("timedelta64[ns]")
-        of_day = None if self.started is None else _nanoseconds(self.started) + within
-        return Times(within, of_day)
-
-
-def _nanoseconds(at: datetime) -> np.datetime64:
-    if at.tzinfo is not None:
-        at = at.astimezone(UTC).replace(tzinfo=None)
-    return np.datetime64(at, "ns")
+    within = np.round(np.asarray(time_s, dtype=np.float64) * 1e9).astype("timedelta64[ns]")
+    if started is None:
+        return Times(within)
+    if started.tzinfo is not None:
+        started = started.astimezone(UTC).replace(tzinfo=None)
+    return Times(within, np.datetime64(started, "ns") + within)
