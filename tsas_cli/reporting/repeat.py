@@ -22,6 +22,14 @@ from tsas_cli.reporting.tracking import call
 from tsas_cli.support import __version__
 from tsas_cli.support.files import sha256_of
 
+_WROTE: dict[type[StageFile], str] = {
+    Calibration: "calibration",
+    Simulation: "simulation",
+    Diagnosis: "diagnosis",
+    Tracking: "tracking",
+    Drive: "drive",
+    Closing: "close-loop",
+}
 _LIBRARIES = ("numpy", "scipy", "numba", "matplotlib")
 
 
@@ -118,17 +126,8 @@ def _model(model: ModelFile, inputs: Inputs) -> list[str]:
 
 def _versions(inputs: Inputs) -> Iterator[tuple[str, str]]:
     yield "tsas, this page", __version__
-    if calibration := inputs.get(Calibration):
-        yield "tsas, calibration", calibration.version
-    if simulation := inputs.get(Simulation):
-        yield "tsas, simulation", simulation.version
-    if diagnosis := inputs.get(Diagnosis):
-        yield "tsas, diagnosis", diagnosis.version
-    if tracking := inputs.get(Tracking):
-        yield "tsas, tracking", tracking.version
-    if drive := inputs.get(Drive):
-        yield "tsas, drive", drive.version
-    if closing := inputs.get(Closing):
-        yield "tsas, close-loop", closing.version
+    for kind, name in _WROTE.items():
+        if stage := inputs.get(kind):
+            yield f"tsas, {name}", stage.version
     yield "Python", platform.python_version()
     yield from ((name, version(name)) for name in _LIBRARIES)

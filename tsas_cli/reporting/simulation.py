@@ -14,7 +14,7 @@ from tsas_cli.reporting.channels import in_words
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Group, Picture, Section, Table, missing
 from tsas_cli.reporting.drawing import picture
-from tsas_cli.reporting.figures.over_time import dashed, line
+from tsas_cli.reporting.figures import legend, line, noise_bounds
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import ABSENT, plain, spanned
 
@@ -191,9 +191,7 @@ def draw_comparison(
     line(upper, time_s, simulated, color=STAND_IN["simulated"], linewidth=1.1, label="simulated")
     upper.set_ylabel(labels[0])
     line(lower, time_s, measured - simulated, color=STAND_IN["muted"], linewidth=0.7)
-    if noise is not None:
-        lower.axhline(2 * noise, **dashed(), label="± 2 × noise")
-        lower.axhline(-2 * noise, **dashed())
+    noise_bounds(lower, noise)
     lower.set(xlabel="time [s]", ylabel=labels[1])
     figure.align_ylabels()
-    figure.legend(loc="outside upper left", ncols=3, handlelength=1.6, columnspacing=1.2)
+    legend(figure, ncols=3)

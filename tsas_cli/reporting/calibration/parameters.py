@@ -1,5 +1,7 @@
 """The model's parameters with their intervals, and what the recordings do not say."""
 
+from collections.abc import Sequence
+
 from tsas_cli.records.base import Parameter
 from tsas_cli.records.calibration import Calibration
 from tsas_cli.reporting.content import Section, Table, missing
@@ -19,24 +21,24 @@ def section(inputs: Inputs) -> Section:
         intro.append(f"The fit did not converge: {calibration.fit.message}")
     if calibration.cannot_tell:
         intro.append("Keep in mind:")
-    header = ("parameter", "run", "value", "95 % interval", "unit", "origin", "at its bound")
-    table = Table(
-        "The model's parameters",
-        header,
-        tuple(_row(parameter) for parameter in calibration.parameters),
-        numeric=frozenset({2, 3}),
-    )
+    tables = (table("The model's parameters", calibration.parameters),)
     return Section(
-        "parameters", _TITLE, tuple(intro), tables=(table,), points=calibration.cannot_tell
+        "parameters", _TITLE, tuple(intro), tables=tables, points=calibration.cannot_tell
     )
 
 
-def _row(parameter: Parameter) -> tuple[str, ...]:
-    return (
-        parameter.name,
-        parameter.run or "all",
-        *with_interval(parameter.value, parameter.interval_low, parameter.interval_high),
-        parameter.unit,
-        parameter.origin,
-        "yes" if parameter.at_bound else "no",
+def table(caption: str, parameters: Sequence[Parameter]) -> Table:
+    """Return a model's parameters with their intervals."""
+    rows = tuple(
+        (
+            p.name,
+            p.run or "all",
+            *with_interval(p.value, p.interval_low, p.interval_high),
+            p.unit,
+            p.origin,
+            "yes" if p.at_bound else "no",
+        )
+        for p in parameters
     )
+    header = ("parameter", "run", "value", "95 % interval", "unit", "origin", "at its bound")
+    return Table(caption, header, rows, numeric=frozenset({2, 3}))

@@ -8,6 +8,7 @@ from tsas_cli.records.calibration import Calibration, Stiffness
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Picture, Section, Table, missing
 from tsas_cli.reporting.drawing import picture, shortened
+from tsas_cli.reporting.figures import legend
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import ABSENT, plain, with_interval
 from tsas_cli.reporting.phases import BY_KEY, PHASES, label_of
@@ -124,7 +125,7 @@ def draw_stiffness(figure: Any, rows: Sequence[Stiffness]) -> None:
     axes.set_ylim(len(rows) - 0.4, -0.6)
     axes.margins(x=0.12)
     axes.set_xlabel(f"km in {phase.label} [N/mm]")
-    figure.legend(loc="outside upper left", ncols=3, handlelength=1.4, columnspacing=1.2)
+    legend(figure, ncols=3, handlelength=1.4)
 
 
 def _draw_measured(axes: Any, rows: Sequence[Stiffness], *, colour: str) -> None:

@@ -6,6 +6,7 @@ from typing import Any
 
 from tsas_cli.records.closing import Row
 from tsas_cli.reporting.colours import STAND_IN
+from tsas_cli.reporting.figures import legend
 
 
 @dataclass(frozen=True)
@@ -57,15 +58,7 @@ def draw_dots(figure: Any, *, controllers: Mapping[str, Mapping[str, Row]]) -> N
     last.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     last.xaxis.set_minor_formatter(NullFormatter())
     last.set_xlabel("RMSE of the force [N]")
-    handles, labels = last.get_legend_handles_labels()
-    figure.legend(
-        handles,
-        labels,
-        loc="outside upper left",
-        ncols=len(MODELS),
-        handlelength=1.0,
-        columnspacing=1.2,
-    )
+    legend(figure, last, ncols=len(MODELS), handlelength=1.0)
 
 
 def _draw_panel(axes: Any, rows: Mapping[str, Row]) -> None:

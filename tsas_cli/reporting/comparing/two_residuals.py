@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.reporting.colours import STAND_IN
-from tsas_cli.reporting.figures.over_time import dashed, line
+from tsas_cli.reporting.figures import line, noise_bounds
 
 Floats = npt.NDArray[np.float64]
 
@@ -35,9 +35,7 @@ def draw_two_residuals(figure: Any, *, time_s: Floats, panels: Sequence[Residual
         sides = (("A", panel.a, "before"), ("B", panel.b, "after"))
         for name, values, role in sorted(sides, key=lambda side: -float(np.nanstd(side[1]))):
             line(axes, time_s, values, color=STAND_IN[role], linewidth=0.7, label=name)
-        if panel.noise is not None:
-            axes.axhline(2.0 * panel.noise, **dashed(), label="± 2 × noise")
-            axes.axhline(-2.0 * panel.noise, **dashed())
+        noise_bounds(axes, panel.noise)
         axes.set_ylabel(panel.label)
     rows[-1].set_xlabel("time [s]")
     figure.align_ylabels()

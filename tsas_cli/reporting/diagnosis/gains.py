@@ -9,6 +9,7 @@ from tsas_cli.reporting.channels import called
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Section, Table
 from tsas_cli.reporting.drawing import picture
+from tsas_cli.reporting.figures import legend
 from tsas_cli.reporting.numbers import ABSENT, plain
 
 _BOUNDS = (
@@ -104,10 +105,7 @@ def draw_gains(figure: Any, channels: Mapping[str, HeldOut], *, named: bool) -> 
             f"{name.rsplit('_', 1)[0]} [{channel.unit}]", rotation=0, ha="right", va="center"
         )
         axes.spines["left"].set_visible(False)
-    handles, labels = rows[0].get_legend_handles_labels()
-    figure.legend(
-        handles, labels, loc="outside upper left", ncols=2, handlelength=1.6, columnspacing=1.2
-    )
+    legend(figure, rows[0])
 
 
 def _bar(axes: Any, value: float | None, *, at: float, role: str, label: str) -> None:

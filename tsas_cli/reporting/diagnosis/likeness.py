@@ -12,6 +12,7 @@ from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Section
 from tsas_cli.reporting.diagnosis.words import listed
 from tsas_cli.reporting.drawing import WIDTH_IN, picture
+from tsas_cli.reporting.figures import legend
 from tsas_cli.reporting.numbers import plain
 
 Floats = npt.NDArray[np.float64]
@@ -132,7 +133,7 @@ def draw_likeness(figure: Any, effects: Sequence[str], likeness: Floats, *, alik
     cell_in = min(_ROW_IN, (WIDTH_IN - _NAMES_IN) / n)
     axes.set(xlim=(-0.6, WIDTH_IN / cell_in), ylim=(n - 0.4, -0.6))
     axes.set_axis_off()
-    figure.legend(loc="outside upper left", ncols=2, handlelength=1.0, columnspacing=1.2)
+    legend(figure, handlelength=1.0)
 
 
 def _squares(

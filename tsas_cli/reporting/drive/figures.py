@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from tsas_cli.records.drive import Curve, MeasuredResponse, Pole
 from tsas_cli.reporting.colours import STAND_IN
-from tsas_cli.reporting.decimation import kept_samples
+from tsas_cli.reporting.figures import legend, line, noise_bounds
 from tsas_cli.reporting.numbers import RAISED
 
 Floats = npt.NDArray[np.float64]
@@ -24,7 +24,7 @@ def draw_bode(
     """Draw magnitude, phase and coherence below each other; dots where the input does not tell."""
     rows = figure.subplots(3, 1, sharex=True, height_ratios=(3, 3, 1.5))
     at, told = np.array(measured.frequency_Hz), np.array(measured.excited, dtype=bool)
-    for axes, seen, line in (
+    for axes, seen, curve in (
         (rows[0], measured.magnitude, fitted.magnitude),
         (rows[1], measured.phase_deg, fitted.phase_deg),
     ):
@@ -34,7 +34,7 @@ def draw_bode(
             at[told], values[told], markersize=3.2, color=STAND_IN["measured"], label="measured",
             **dots,
         )  # fmt: skip
-        axes.plot(fitted.frequency_Hz, line, color=STAND_IN["simulated"], label="fitted")
+        axes.plot(fitted.frequency_Hz, curve, color=STAND_IN["simulated"], label="fitted")
     rows[0].set(xscale="log", yscale="log", ylabel="|G| [mm/(rpm s)]")
     rows[1].set_ylabel("phase [°]")
     rows[2].plot(at, measured.coherence, color=STAND_IN["muted"], linewidth=0.9)
@@ -101,18 +101,9 @@ def draw_residuals(figure: Any, runs: Mapping[str, tuple[Floats, Floats, Floats,
             (nominal, "before", "nominal"),
             (fitted, "after", "identified"),
         ):
-            kept = kept_samples(values)
-            axes.plot(
-                time_s[kept], values[kept], color=STAND_IN[role], linewidth=0.7,
-                label=label,
-            )  # fmt: skip
-        edge = {"color": STAND_IN["ink"], "linewidth": 1.0, "linestyle": (0, (4, 3)), "zorder": 3}
-        axes.axhline(2 * noise, **edge, label="± 2 × noise")
-        axes.axhline(-2 * noise, **edge)
+            line(axes, time_s, values, color=STAND_IN[role], linewidth=0.7, label=label)
+        noise_bounds(axes, noise)
         axes.set_ylabel(f"{name} [mm]")
     rows[-1].set_xlabel("time [s]")
     figure.align_ylabels()
-    handles, labels = rows[0].get_legend_handles_labels()
-    figure.legend(
-        handles, labels, loc="outside upper left", ncols=3, handlelength=1.6, columnspacing=1.2
-    )
+    legend(figure, rows[0], ncols=3)

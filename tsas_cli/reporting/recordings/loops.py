@@ -15,6 +15,7 @@ from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Group, Picture, Section
 from tsas_cli.reporting.decimation import kept_samples
 from tsas_cli.reporting.drawing import picture
+from tsas_cli.reporting.figures import legend
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import spanned
 from tsas_cli.reporting.phases import PHASES, Phase, phase_of_samples
@@ -91,7 +92,7 @@ def draw_loop(figure: Any, *, x: Floats, y: Floats, phase: Keys, labels: tuple[s
             _number(axes, x, y, phase == one.key, one)
     axes.set(xlabel=labels[0], ylabel=labels[1])
     if (phase != "unknown").any():
-        figure.legend(loc="outside upper left", ncols=2, handlelength=1.6, columnspacing=1.2)
+        legend(figure)
 
 
 def _draw_phase(axes: Any, x: Floats, y: Floats, inside: npt.NDArray[np.bool_], one: Phase) -> None:

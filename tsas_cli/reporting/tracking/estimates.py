@@ -8,7 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.reporting.colours import of_controller
-from tsas_cli.reporting.figures.over_time import dashed, line, mark_change
+from tsas_cli.reporting.figures import dashed, line
+from tsas_cli.reporting.tracking.over_time import mark_change
 
 Floats = npt.NDArray[np.float64]
 

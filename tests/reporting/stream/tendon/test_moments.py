@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from tsas_cli.reporting.stream.tendon.moments import MOST, PER_SECOND, PER_SPAN, moments
+from tsas_cli.reporting.stream.tendon.followed import MOST, PER_SECOND, PER_SPAN, moments
 
 TIME_S = np.arange(0.0, 10.0, 1e-3)
 NONE = np.array([], dtype=np.int64)

@@ -49,27 +49,20 @@ def told_of(run: SeenRun) -> Told | None:
         A model's file cannot be read.
     """
     diagnosis, simulation = run.inputs.get(Diagnosis), run.inputs.get(Simulation)
+    stage: type[StageFile] = Diagnosis
+    dynamics, nodes = "slip", None
     if diagnosis is not None:
-        which = (NOMINAL, EXTENDED) if diagnosis.named else (NOMINAL,)
-        return _told(run, Diagnosis, which, "slip", None)
-    if simulation is not None and simulation.dynamics != "static":
-        dynamics = cast("Dynamics", simulation.dynamics)
-        return _told(run, Simulation, (SIMULATED,), dynamics, simulation.nodes)
-    return None
-
-
-def _told(
-    run: SeenRun,
-    stage: type[StageFile],
-    shown: tuple[Which, ...],
-    dynamics: Dynamics,
-    nodes: int | None,
-) -> Told | None:
-    files = {which: run.inputs.folders[stage] / _file(which) for which in shown}
-    if not run.inputs.answered(run.id, stage) or not all(p.is_file() for p in files.values()):
+        files = {NOMINAL: NOMINAL_MODEL} | ({EXTENDED: EXTENDED_MODEL} if diagnosis.named else {})
+    elif simulation is not None and simulation.dynamics != "static":
+        stage, files = Simulation, {SIMULATED: FILE}
+        dynamics, nodes = simulation.dynamics, simulation.nodes
+    else:
         return None
-    models = {which: read_model(path) for which, path in files.items()}
-    return Told(stage, models, dynamics, nodes)
+    paths = {which: run.inputs.folders[stage] / file for which, file in files.items()}
+    if not run.inputs.answered(run.id, stage) or not all(p.is_file() for p in paths.values()):
+        return None
+    models = {which: read_model(path) for which, path in paths.items()}
+    return Told(stage, models, cast("Dynamics", dynamics), nodes)
 
 
 def tendons_of(run: SeenRun) -> dict[Which, Followed]:
@@ -88,10 +81,6 @@ def tendons_of(run: SeenRun) -> dict[Which, Followed]:
     answers = [run.inputs.answer(run.id, rows, name, told.stage) for name in columns]
     drive = _drive(run, told.stage)
     return follow(run.file.run, run.time_s, drive, told.models, answers, told.dynamics, told.nodes)
-
-
-def _file(which: Which) -> str:
-    return {NOMINAL: NOMINAL_MODEL, EXTENDED: EXTENDED_MODEL, SIMULATED: FILE}[which]
 
 
 def _drive(run: SeenRun, stage: type[StageFile]) -> Drive:

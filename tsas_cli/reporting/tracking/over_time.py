@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.reporting.colours import STAND_IN, of_controller
-from tsas_cli.reporting.decimation import kept_samples
+from tsas_cli.reporting.figures import dashed, legend, line
 
 Floats = npt.NDArray[np.float64]
 
@@ -44,7 +44,7 @@ def draw_together(
         line(axes, time_s, curve.values, color=colour, linewidth=1.1, label=curve.label)
     mark_change(axes, change_s)
     axes.set(xlabel="time [s]", ylabel=label)
-    figure.legend(loc="outside upper left", ncols=2, handlelength=1.6, columnspacing=1.2)
+    legend(figure)
 
 
 def draw_panels(
@@ -73,18 +73,7 @@ def draw_panels(
     figure.align_ylabels()
 
 
-def line(axes: Any, time_s: Floats, values: Floats, **style: Any) -> None:
-    """Draw values over time, with as many points as the plot can show."""
-    kept = kept_samples(values)
-    axes.plot(time_s[kept], values[kept], **style)
-
-
 def mark_change(axes: Any, change_s: float | None) -> None:
     """Draw where the plant changes."""
     if change_s is not None:
         axes.axvline(change_s, color=STAND_IN["ink"], linewidth=1.0, linestyle=(0, (1, 2)))
-
-
-def dashed() -> dict[str, Any]:
-    """Return the look of a bound."""
-    return {"color": STAND_IN["ink"], "linewidth": 1.0, "linestyle": (0, (4, 3)), "zorder": 3}
