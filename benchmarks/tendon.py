@@ -14,7 +14,7 @@ from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model
 from tsas_cli.physics.ends import Drive
 from tsas_cli.recordings.manifest import Run
-from tsas_cli.reporting.stream.recorder import to_file
+from tsas_cli.reporting.stream.opened import to_file
 from tsas_cli.reporting.stream.sources import EXTENDED, NOMINAL
 from tsas_cli.reporting.stream.tendon.along import record_along
 from tsas_cli.reporting.stream.tendon.band import record_band

@@ -5,13 +5,14 @@ from datetime import UTC, datetime, timedelta, timezone
 import numpy as np
 import pytest
 import rerun as rr
+from rerun.blueprint import Tabs, Vertical
 from rerun.chunk import RrdReader
 
 from tests.reporting.stream.streams import read
+from tsas_cli.reporting.stream.opened import to_file
 from tsas_cli.reporting.stream.plane import plane_view
-from tsas_cli.reporting.stream.recorder import times_of, to_file
-from tsas_cli.reporting.stream.recorder.recorder import ROWS
-from tsas_cli.reporting.stream.recorder.views import Tabs, Vertical, laid_out, series, text
+from tsas_cli.reporting.stream.recorder import ROWS, times_of
+from tsas_cli.reporting.stream.views import laid_out, series, text
 from tsas_cli.support.errors import InputError
 
 TIME_S = np.array([0.0, 0.001, 0.3, 1234.5678912345])

@@ -24,7 +24,7 @@ from tsas_cli.reporting.colours import dark
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.phases import BY_KEY
 from tsas_cli.reporting.stream import write_stream
-from tsas_cli.reporting.stream.recorder.recorder import ROWS
+from tsas_cli.reporting.stream.recorder import ROWS
 from tsas_cli.support.errors import InputError
 
 SAMPLES = 2 * ROWS + 100

@@ -3,9 +3,11 @@
 from pathlib import Path
 
 import numpy as np
+from rerun.blueprint import Tabs
 
-from tsas_cli.reporting.stream.recorder import times_of, to_file
-from tsas_cli.reporting.stream.recorder.views import Tabs, laid_out, series
+from tsas_cli.reporting.stream.opened import to_file
+from tsas_cli.reporting.stream.recorder import times_of
+from tsas_cli.reporting.stream.views import laid_out, series
 
 
 def make_stream(path: Path, samples: int = 2000) -> Path:

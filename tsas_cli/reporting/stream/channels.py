@@ -8,8 +8,7 @@ import numpy.typing as npt
 
 from tsas_cli.reporting.colours import dark
 from tsas_cli.reporting.stream.portraits import Portrait
-from tsas_cli.reporting.stream.recorder import Recorder
-from tsas_cli.reporting.stream.recorder.paths import Entity
+from tsas_cli.reporting.stream.recorder import Entity, Recorder
 from tsas_cli.reporting.stream.seen import MEASURED, RESIDUAL, WANTED, Channel, SeenRun
 from tsas_cli.reporting.stream.sources import Source
 

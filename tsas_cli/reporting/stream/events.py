@@ -12,8 +12,7 @@ from tsas_cli.records.base import Segment
 from tsas_cli.records.check import Check
 from tsas_cli.reporting.colours import dark
 from tsas_cli.reporting.phases import BY_KEY, PHASES
-from tsas_cli.reporting.stream.recorder import Recorder
-from tsas_cli.reporting.stream.recorder.paths import Entity
+from tsas_cli.reporting.stream.recorder import Entity, Recorder
 from tsas_cli.reporting.stream.seen import X_IN, SeenRun
 
 EVENTS, REVERSALS, FAULTS = "events", "reversals", "faults"

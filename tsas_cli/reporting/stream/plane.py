@@ -10,14 +10,13 @@ import numpy as np
 import numpy.typing as npt
 import rerun as rr
 import rerun.blueprint as rrb
+from rerun.blueprint import View
 
 from tsas_cli.reporting.colours import dark
 from tsas_cli.reporting.numbers import as_printed, round_ticks
-from tsas_cli.reporting.stream.recorder import Recorder
-from tsas_cli.reporting.stream.recorder.paths import Entity, path_of
-from tsas_cli.reporting.stream.recorder.times import SESSION, T
-from tsas_cli.reporting.stream.recorder.views import View, shown
+from tsas_cli.reporting.stream.recorder import SESSION, Entity, Recorder, T, path_of
 from tsas_cli.reporting.stream.sources import Which
+from tsas_cli.reporting.stream.views import all_below
 
 Floats = npt.NDArray[np.float64]
 
@@ -86,7 +85,8 @@ def plane_view(
 ) -> View:
     """Return the view of a plane; of each of `trails` only its last seconds are shown."""
     return rrb.Spatial2DView(
-        **shown(name, [entity]),
+        name=name,
+        contents=all_below([entity]),
         visual_bounds=_SEEN,
         overrides={path_of(trail): _last(seconds) for trail, seconds in (trails or {}).items()},
     )

@@ -12,6 +12,7 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 import rerun as rr
+from rerun.blueprint import View
 
 from tsas_cli.reporting.channels import at_axis, in_words
 from tsas_cli.reporting.colours import dark
@@ -19,9 +20,7 @@ from tsas_cli.reporting.decimation import Indices, kept_samples
 from tsas_cli.reporting.phases import PHASES, Phase, phase_of_samples
 from tsas_cli.reporting.stream.events import reversals
 from tsas_cli.reporting.stream.plane import Frame, frame_of, plane_view, record_frame
-from tsas_cli.reporting.stream.recorder import Recorder
-from tsas_cli.reporting.stream.recorder.paths import Entity
-from tsas_cli.reporting.stream.recorder.views import View
+from tsas_cli.reporting.stream.recorder import Entity, Recorder
 from tsas_cli.reporting.stream.seen import MEASURED, X_IN, Channel, SeenRun
 from tsas_cli.reporting.stream.sources import Source
 

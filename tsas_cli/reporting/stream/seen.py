@@ -18,8 +18,7 @@ from tsas_cli.records.diagnosis import Diagnosis
 from tsas_cli.records.simulation import Simulation
 from tsas_cli.records.tracking import Result, Tracking
 from tsas_cli.reporting.inputs import Inputs
-from tsas_cli.reporting.stream.recorder import Times, times_of
-from tsas_cli.reporting.stream.recorder.paths import Entity
+from tsas_cli.reporting.stream.recorder import Entity, Times, times_of
 from tsas_cli.reporting.stream.sources import Source, sources
 
 Floats = npt.NDArray[np.float64]

@@ -2,27 +2,17 @@
 
 from collections.abc import Callable, Mapping, Sequence
 
+from rerun.blueprint import Blueprint, Grid, Horizontal, Tabs, Vertical
+
 from tsas_cli.reporting.channels import at_axis
 from tsas_cli.reporting.stream.channels import residuals_of, series_of
 from tsas_cli.reporting.stream.events import REVERSALS, events_of, happens, phases_of
 from tsas_cli.reporting.stream.portraits import view_of
-from tsas_cli.reporting.stream.recorder.paths import Entity
-from tsas_cli.reporting.stream.recorder.views import (
-    Grid,
-    Horizontal,
-    Layout,
-    Part,
-    Tabs,
-    Vertical,
-    laid_out,
-    log,
-    series,
-    states,
-    text,
-)
+from tsas_cli.reporting.stream.recorder import Entity
 from tsas_cli.reporting.stream.seen import X_IN, SeenRun
 from tsas_cli.reporting.stream.tendon.content import view_of_tendon
 from tsas_cli.reporting.stream.tracking import FORCE, tracking_tab, true_of
+from tsas_cli.reporting.stream.views import Part, laid_out, log, series, states, text
 
 OVERVIEW, DIAGNOSIS = ("about", "overview"), ("about", "diagnosis")
 TABS = ("Overview", "Residuals", "Tendon", "Tracking", "Diagnosis")
@@ -33,7 +23,7 @@ _TALL, _LANE = 1.6, 0.8  # height of the first plot, and of the phases, over tha
 _LOG = 0.6  # height of the events over that of a loop
 
 
-def layout_of(runs: Sequence[SeenRun], *, diagnosed: bool) -> Layout:
+def layout_of(runs: Sequence[SeenRun], *, diagnosed: bool) -> Blueprint:
     """Return the tabs; what was tracked opens on it, all else on the overview.
 
     `diagnosed` says whether there is a text on it.

@@ -5,19 +5,13 @@ Entities belong to the run; what several runs have in common lies over each othe
 
 from collections.abc import Sequence
 
+from rerun.blueprint import Horizontal, Tabs, Vertical, View
+
 from tsas_cli.reporting.colours import CONTROLLERS, dark
 from tsas_cli.reporting.stream import seen
-from tsas_cli.reporting.stream.recorder import Recorder
-from tsas_cli.reporting.stream.recorder.paths import Entity
-from tsas_cli.reporting.stream.recorder.views import (
-    Horizontal,
-    Part,
-    Tabs,
-    Vertical,
-    View,
-    series,
-)
+from tsas_cli.reporting.stream.recorder import Entity, Recorder
 from tsas_cli.reporting.stream.seen import MEASURED, SeenRun
+from tsas_cli.reporting.stream.views import Part, series
 from tsas_cli.reporting.tracking.runs import TRUE, WANTED
 
 FORCE, ERROR, SPEED = "f_out_N", "tracking_error_N", "motor_speed_rpm"

@@ -8,7 +8,7 @@ from pathlib import Path
 from tsas_cli.recordings.storage import Place
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.stream import FILE, write_stream
-from tsas_cli.reporting.stream.recorder.opened import is_finished
+from tsas_cli.reporting.stream.opened import is_finished
 from tsas_cli.support.errors import InputError
 
 

@@ -7,8 +7,7 @@ import numpy.typing as npt
 
 from tsas_cli.reporting.colours import dark
 from tsas_cli.reporting.stream.plane import frame_of, record_frame, record_key
-from tsas_cli.reporting.stream.recorder import Recorder
-from tsas_cli.reporting.stream.recorder.paths import Entity
+from tsas_cli.reporting.stream.recorder import Entity, Recorder
 from tsas_cli.reporting.stream.sources import Which
 from tsas_cli.reporting.stream.tendon.followed import Followed
 

@@ -8,8 +8,7 @@ import numpy.typing as npt
 from tsas_cli.physics.passages import ends_of
 from tsas_cli.reporting.colours import dark
 from tsas_cli.reporting.stream.plane import Frame, frame_of, record_frame, record_key
-from tsas_cli.reporting.stream.recorder import Recorder, Times
-from tsas_cli.reporting.stream.recorder.paths import Entity
+from tsas_cli.reporting.stream.recorder import Entity, Recorder, Times
 from tsas_cli.reporting.stream.sources import Which
 from tsas_cli.reporting.stream.tendon.followed import Followed
 

@@ -2,12 +2,13 @@
 
 from collections.abc import Mapping
 
+from rerun.blueprint import Horizontal, Tabs, Vertical
+
 from tsas_cli.physics.passages import ends_of
 from tsas_cli.reporting.stream.events import Event, record_events
 from tsas_cli.reporting.stream.plane import plane_view
 from tsas_cli.reporting.stream.portraits import view_of
 from tsas_cli.reporting.stream.recorder import Recorder
-from tsas_cli.reporting.stream.recorder.views import Horizontal, Part, Tabs, Vertical
 from tsas_cli.reporting.stream.seen import SeenRun
 from tsas_cli.reporting.stream.sources import Which
 from tsas_cli.reporting.stream.tendon.along import record_along
@@ -15,6 +16,7 @@ from tsas_cli.reporting.stream.tendon.band import record_band
 from tsas_cli.reporting.stream.tendon.followed import Followed
 from tsas_cli.reporting.stream.tendon.scene import record_scene, view_of_scene
 from tsas_cli.reporting.stream.tendon.told import F_IN, tendons_of, told_of
+from tsas_cli.reporting.stream.views import Part
 
 SPACE, ALONG, BAND = ("tendon", "space"), ("tendon", "along"), ("tendon", "dead-band")
 _WORDS = {1: "pulled", -1: "let go"}

@@ -6,18 +6,18 @@ import numpy as np
 import numpy.typing as npt
 import rerun as rr
 import rerun.blueprint as rrb
+from rerun.blueprint import View
 
 from tsas_cli.physics.phases import SLACK, UNCONVERGED
 from tsas_cli.physics.response import ELEMENTS
 from tsas_cli.physics.rig import Rig
 from tsas_cli.reporting.colours import dark
-from tsas_cli.reporting.stream.recorder import Recorder, Times
-from tsas_cli.reporting.stream.recorder.paths import Entity
-from tsas_cli.reporting.stream.recorder.views import View, shown
+from tsas_cli.reporting.stream.recorder import Entity, Recorder, Times
 from tsas_cli.reporting.stream.sources import Which
 from tsas_cli.reporting.stream.tendon.followed import Followed
 from tsas_cli.reporting.stream.tendon.shades import Scale, dimmed, packed, scale_of
 from tsas_cli.reporting.stream.tendon.stage import LEFT, TALL, Stand, stage_of
+from tsas_cli.reporting.stream.views import all_below
 
 Floats = npt.NDArray[np.float64]
 Bools = npt.NDArray[np.bool_]
@@ -35,7 +35,8 @@ def view_of_scene(entity: Entity, rigs: Sequence[Rig]) -> View:
     stage = stage_of(rigs, ELEMENTS)
     up = (0.0, 0.0, 1.0)
     return rrb.Spatial3DView(
-        **shown("Tendon", [entity]),
+        name="Tendon",
+        contents=all_below([entity]),
         background=rrb.Background(color=GROUND, kind="SolidColor"),
         eye_controls=rrb.EyeControls3D(position=stage.eye, look_target=stage.target, eye_up=up),
         line_grid=False,

@@ -8,33 +8,78 @@ A negative radius is in points of the screen; in a plane y points downwards, and
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from datetime import UTC, datetime
 
 import numpy as np
 import numpy.typing as npt
 import rerun as rr
+from rerun.blueprint import Blueprint
 
-from tsas_cli.reporting.stream.recorder.paths import Entity, path_of
-from tsas_cli.reporting.stream.recorder.times import Times
-from tsas_cli.reporting.stream.recorder.views import Layout
 from tsas_cli.support.errors import InputError
 
 Floats = npt.NDArray[np.float64]
+Entity = Sequence[str]
 Colour = int  # 0xRRGGBBAA
 Colours = npt.NDArray[np.uint32]
 
+T, SESSION = "t", "session"  # time within the run, and time of day
 SLOWEST_S = 10.0  # that a viewer or a disk may take for what it was sent
 ROWS = 8192  # of a series that are sent at a time
 _EXTREMES = rr.components.AggregationPolicy.MinMax  # the usual average flattens what is fast
 
 
 @dataclass(frozen=True)
+class Times:
+    """Moments of one run on the fixed timelines, to the nanosecond, shape (n,) each."""
+
+    within: npt.NDArray[np.timedelta64]
+    of_day: npt.NDArray[np.datetime64] | None = None
+
+    def __len__(self) -> int:
+        """How many moments there are."""
+        return self.within.size
+
+    @property
+    def columns(self) -> list[rr.TimeColumn]:
+        """The moments as Rerun takes them."""
+        columns = [rr.TimeColumn(T, duration=self.within)]
+        if self.of_day is not None:
+            columns.append(rr.TimeColumn(SESSION, timestamp=self.of_day))
+        return columns
+
+    def at(self, indices: npt.NDArray[np.int64] | slice) -> "Times":
+        """Return some of the moments."""
+        of_day = None if self.of_day is None else self.of_day[indices]
+        return Times(self.within[indices], of_day)
+
+
+def times_of(time_s: Floats, started: datetime | None = None) -> Times:
+    """Return moments by their time in the run [s], shape (n,), rounded to the nanosecond.
+
+    A start without a time zone is taken as it stands, so that the viewer shows what the manifest
+    says; None where it is not known.
+    """
+    within = np.round(np.asarray(time_s, dtype=np.float64) * 1e9).astype("timedelta64[ns]")
+    if started is None:
+        return Times(within)
+    if started.tzinfo is not None:
+        started = started.astimezone(UTC).replace(tzinfo=None)
+    return Times(within, np.datetime64(started, "ns") + within)
+
+
+def path_of(entity: Entity) -> str:
+    """Return the path of an entity; what a part holds that is no plain letter is escaped."""
+    return rr.new_entity_path(list(entity))
+
+
+@dataclass(frozen=True)
 class Recorder:
-    """Writes entities to one stream; `opened.to_file` and `opened.to_viewer` open it."""
+    """Writes entities to one stream; `to_file` and `to_viewer` of `opened` open it."""
 
     stream: rr.RecordingStream
     where: object = ""
 
-    def lay_out(self, layout: Layout) -> None:
+    def lay_out(self, layout: Blueprint) -> None:
         """Say what the viewer opens with; the last one counts."""
         self.stream.send_blueprint(layout)
 

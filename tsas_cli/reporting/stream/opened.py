@@ -10,10 +10,11 @@ from pathlib import Path
 from threading import Thread
 
 import rerun as rr
+from rerun.blueprint import Blueprint
 from rerun.chunk import RrdReader
 
-from tsas_cli.reporting.stream.recorder.recorder import Recorder
-from tsas_cli.reporting.stream.recorder.views import Layout, outline
+from tsas_cli.reporting.stream.recorder import Recorder
+from tsas_cli.reporting.stream.views import outline
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import new_file
 
@@ -21,7 +22,7 @@ PATIENCE_S = 10.0  # in which a file grows, or is whole
 
 
 @contextmanager
-def to_file(path: Path, name: str, layout: Layout | None = None) -> Iterator[Recorder]:
+def to_file(path: Path, name: str, layout: Blueprint | None = None) -> Iterator[Recorder]:
     """Record into a file that is there, whole, when the block ends without an error.
 
     Parameters
@@ -129,7 +130,7 @@ def _unfinished(path: Path) -> InputError:
     return InputError("cannot be written to its end", where=path, remedy="is the disk full?")
 
 
-def _opened(name: str, layout: Layout | None) -> rr.RecordingStream:
+def _opened(name: str, layout: Blueprint | None) -> rr.RecordingStream:
     """Open a recording; a viewer keeps the first layout of an application, hence its own for each.
 
     The application's name may hold plain letters, digits and hyphens.

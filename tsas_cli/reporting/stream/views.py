@@ -4,25 +4,20 @@ A view shows the entities that it names, with everything below them.
 """
 
 from collections.abc import Sequence
-from typing import Any
 
 import rerun.blueprint as rrb
-from rerun.blueprint import Blueprint as Layout
-from rerun.blueprint import Container, Grid, Horizontal, Tabs, Vertical, View, encodings
+from rerun.blueprint import Blueprint, Container, View, encodings
 
-from tsas_cli.reporting.stream.recorder.paths import Entity, path_of
-from tsas_cli.reporting.stream.recorder.times import T
-
-__all__ = ["Container", "Grid", "Horizontal", "Layout", "Part", "Tabs", "Vertical", "View"]
+from tsas_cli.reporting.stream.recorder import Entity, T, path_of
 
 Part = Container | View
 
 _LINKED = rrb.TimeAxis(link=rrb.components.LinkAxis.LinkToGlobal)  # all show the same stretch
 
 
-def laid_out(root: Part, *, plays: bool = False) -> Layout:
+def laid_out(root: Part, *, plays: bool = False) -> Blueprint:
     """Return the whole window: panels folded away, timeline `t`; `plays` where time runs."""
-    return Layout(
+    return Blueprint(
         root,
         rrb.TimePanel(
             state="collapsed",
@@ -46,7 +41,8 @@ def outline(part: object) -> object:
 def series(name: str, entities: Sequence[Entity], *, legend: bool = True) -> View:
     """Return series over time."""
     return rrb.TimeSeriesView(
-        **shown(name, entities),
+        name=name,
+        contents=all_below(entities),
         axis_x=_LINKED,
         plot_legend=rrb.PlotLegend(rrb.Corner2D.LeftTop, visible=legend),
     )
@@ -54,23 +50,22 @@ def series(name: str, entities: Sequence[Entity], *, legend: bool = True) -> Vie
 
 def states(name: str, entities: Sequence[Entity]) -> View:
     """Return states over time, as coloured spans."""
-    return rrb.StateTimelineView(**shown(name, entities), time_view=_LINKED)
+    return rrb.StateTimelineView(name=name, contents=all_below(entities), time_view=_LINKED)
 
 
 def text(name: str, entity: Entity) -> View:
     """Return a text."""
-    return rrb.TextDocumentView(**shown(name, [entity]))
+    return rrb.TextDocumentView(name=name, contents=all_below([entity]))
 
 
 def log(name: str, entities: Sequence[Entity]) -> View:
     """Return events, line by line."""
     said = [encodings.TextLogColumn(kind) for kind in ("LogLevel", "Body")]
     return rrb.TextLogView(
-        **shown(name, entities), columns=rrb.TextLogColumns(text_log_columns=said)
+        name=name, contents=all_below(entities), columns=rrb.TextLogColumns(text_log_columns=said)
     )
 
 
-def shown(name: str, entities: Sequence[Entity]) -> dict[str, Any]:
-    """Return a view's name and what it shows."""
-    expressions = [f"+ {path_of(entity)}/**" for entity in entities]
-    return {"name": name, "origin": "/", "contents": expressions}
+def all_below(entities: Sequence[Entity]) -> list[str]:
+    """Return the expressions that find entities and everything below them."""
+    return [f"+ {path_of(entity)}/**" for entity in entities]
