@@ -12,7 +12,7 @@ from tsas_cli.records.tracking import Tracking
 from tsas_cli.reporting.channels import in_words
 from tsas_cli.reporting.closing import cases, errors
 from tsas_cli.reporting.inputs import Inputs
-from tsas_cli.reporting.numbers import plain
+from tsas_cli.reporting.numbers import ranged
 from tsas_cli.reporting.tracking.scores import best_and_worst
 from tsas_cli.support.wording import count_of
 
@@ -65,10 +65,5 @@ def _distances(simulation: Simulation) -> list[str]:
         found = [run.channels[name] for run in simulation.runs.values() if name in run.channels]
         ratios = [c.rmse / c.noise for c in found if c.rmse is not None and c.noise]
         if ratios:
-            said.append(f"{_range(ratios)} times the noise in {in_words(name)}")
+            said.append(f"{ranged(ratios)} times the noise in {in_words(name)}")
     return said
-
-
-def _range(values: list[float]) -> str:
-    low, high = plain(min(values), 2), plain(max(values), 2)
-    return low if low == high else f"{low} to {high}"

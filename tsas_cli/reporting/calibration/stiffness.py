@@ -103,13 +103,8 @@ def _picture(key: str, rows: list[Stiffness]) -> Picture:
         key=f"stiffness-{key}",
         alt=f"Stiffness km in {label}, in newton per millimetre: {values}.",
         caption=f"{label.capitalize()}.",
-        height_in=height_in(len(rows)),
+        height_in=1.5 + 0.28 * len(rows),
     )
-
-
-def height_in(runs: int) -> float:
-    """Return the height in inches that a plot of so many runs needs."""
-    return 1.5 + 0.28 * runs
 
 
 def draw_stiffness(figure: Any, rows: Sequence[Stiffness]) -> None:

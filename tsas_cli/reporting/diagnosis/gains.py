@@ -29,7 +29,7 @@ def part(diagnosis: Diagnosis) -> Section | None:
         key="diagnosis-gains",
         alt=f"Root mean square error on held-out data. {alt}.",
         caption="Root mean square error on held-out data, by channel.",
-        height_in=height_in(len(diagnosis.channels)),
+        height_in=0.6 + 0.75 * len(diagnosis.channels),
     )
     return Section(
         "diagnosis-gains",
@@ -73,11 +73,6 @@ def _in_words(name: str, channel: HeldOut, *, named: bool) -> str:
         f"{after}, best obtainable {plain(channel.best_obtainable, 3)}, noise floor "
         f"{plain(channel.noise_floor, 3)} {channel.unit}"
     )
-
-
-def height_in(channels: int) -> float:
-    """Return the height in inches that a plot of so many channels needs."""
-    return 0.6 + 0.75 * channels
 
 
 def draw_gains(figure: Any, channels: Mapping[str, HeldOut], *, named: bool) -> None:

@@ -61,7 +61,7 @@ def part(diagnosis: Diagnosis) -> Section | None:
         + (" ".join(points) or "No two are alike."),
         caption="Likeness of each two signatures, as the size of the block. Effects that "
         f"resemble no other by {_RESEMBLES} are left out.",
-        height_in=height_in(int(shown.sum())),
+        height_in=0.5 + _ROW_IN * int(shown.sum()),
     )
     return Section("diagnosis-likeness", title, (_WHAT,), points=points, pictures=(matrix,))
 
@@ -97,11 +97,6 @@ def _hidden(names: npt.NDArray[np.object_], visible: Floats) -> Iterator[str]:
     hidden = [f"`{name}`" for name in names[visible < _VISIBLE]]
     if hidden:
         yield f"These inputs hardly show {listed(hidden)} at a size that is plausible."
-
-
-def height_in(effects: int) -> float:
-    """Return the height in inches that a plot of so many effects needs."""
-    return 0.5 + _ROW_IN * effects
 
 
 def draw_likeness(figure: Any, effects: Sequence[str], likeness: Floats, *, alike: float) -> None:

@@ -98,7 +98,7 @@ def _picture(panels: Sequence[Panel], signal: str, key: str, names: tuple[str, s
         key=f"{key}-{signal}",
         alt=f"Mean error over the {words}, in units of noise. {said}.",
         caption=f"{listed([p.channel for p in seen])} over the {words}.",
-        height_in=height_in(seen),
+        height_in=0.9 + 1.25 * len(seen),
     )
 
 
@@ -113,11 +113,6 @@ def _range(bins: tuple[Bin, ...]) -> str:
     means = [b.mean for b in bins]
     scatter = plain(max(b.sd for b in bins), 2)
     return f"{plain(min(means), 2)} to {plain(max(means), 2)} with scatter up to {scatter}"
-
-
-def height_in(panels: Sequence[Panel]) -> float:
-    """Return the height in inches that these panels need below each other."""
-    return 0.9 + 1.25 * len(panels)
 
 
 def draw_residual_map(

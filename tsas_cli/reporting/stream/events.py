@@ -15,7 +15,7 @@ from tsas_cli.reporting.phases import BY_KEY, PHASES
 from tsas_cli.reporting.stream.recorder import Entity, Recorder
 from tsas_cli.reporting.stream.seen import X_IN, SeenRun
 
-EVENTS, REVERSALS, FAULTS = "events", "reversals", "faults"
+REVERSALS = "reversals"
 ENDS = ""  # a state that ends the last one
 _UP = {"contraction": True, "dead_band_up": True, "loosening": False, "dead_band_down": False}
 _LEVELS = {"error": "ERROR", "warning": "WARN"}
@@ -32,7 +32,7 @@ class Event:
 
 def events_of(run: SeenRun) -> Entity:
     """Return the entity under which a run's events are."""
-    return run.entity(EVENTS)
+    return run.entity("events")
 
 
 def happens(run: SeenRun) -> bool:
@@ -75,7 +75,7 @@ def record_own_events(recorder: Recorder, run: SeenRun) -> None:
         )
         for f in faults_of(run)
     ]
-    record_events(recorder, run, FAULTS, faults)
+    record_events(recorder, run, "faults", faults)
 
 
 def reversals(segments: Sequence[Segment]) -> list[tuple[float, bool]]:

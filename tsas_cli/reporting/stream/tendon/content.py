@@ -33,7 +33,8 @@ def view_of_tendon(run: SeenRun) -> Part | None:
     told = told_of(run)
     if told is None:
         return None
-    space = view_of_scene(run.entity(*SPACE), told.rigs(run.file.run))
+    rigs = [model.rig(run.file.run) for model in told.models.values()]
+    space = view_of_scene(run.entity(*SPACE), rigs)
     along = plane_view("Tension along the sheath", run.entity(*ALONG))
     band = plane_view("The dead band from near", run.entity(*BAND))
     loops = [view_of(run, channel) for channel in run.loops if channel.column == F_IN]

@@ -39,10 +39,10 @@ def scale_of(low: float, high: float) -> Scale:
     return Scale(low, high, tuple(round_ticks(low, high, (high - low) / TICKS, STEPS)))
 
 
-def packed(colours: Bytes, alpha: int = 255) -> npt.NDArray[np.uint32]:
-    """Return 0xRRGGBBAA of red, green, blue, shape (..., 3)."""
+def packed(colours: Bytes) -> npt.NDArray[np.uint32]:
+    """Return 0xRRGGBBAA, opaque, of red, green, blue, shape (..., 3)."""
     red, green, blue = (colours[..., k].astype(np.uint32) for k in range(3))
-    return ((red << 24) | (green << 16) | (blue << 8) | alpha).astype(np.uint32)
+    return ((red << 24) | (green << 16) | (blue << 8) | 0xFF).astype(np.uint32)
 
 
 def dimmed(colours: Bytes, share: float, ground: int) -> Bytes:

@@ -8,10 +8,8 @@ from tsas_cli.identification.model import FILE, Model, read_model
 from tsas_cli.identification.prepared import drive_of, prepare, seconds_into
 from tsas_cli.physics.ends import Drive
 from tsas_cli.physics.response import Dynamics
-from tsas_cli.physics.rig import Rig
 from tsas_cli.recordings.columns import nominal_name
 from tsas_cli.recordings.dataset import Dataset
-from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.run_files import read_recording
 from tsas_cli.records.base import StageFile
 from tsas_cli.records.diagnosis import EXTENDED_MODEL, NOMINAL_MODEL, Diagnosis
@@ -31,10 +29,6 @@ class Told:
     models: Mapping[Which, Model]
     dynamics: Dynamics
     nodes: int | None
-
-    def rigs(self, run: Run) -> list[Rig]:
-        """Return the rig of a run by each model."""
-        return [model.rig(run) for model in self.models.values()]
 
 
 def told_of(run: SeenRun) -> Told | None:
