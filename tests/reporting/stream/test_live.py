@@ -12,7 +12,6 @@ from tsas_cli.identification.model import data_sheet
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.records.simulation import Simulation
-from tsas_cli.reporting.inputs import read_stage
 from tsas_cli.reporting.stream.live import LiveStream
 from tsas_cli.reporting.stream.opened import to_file
 from tsas_cli.reporting.stream.recorder import Recorder
@@ -57,12 +56,12 @@ def answer(dataset, run):
 def test_each_simulated_run_is_there_before_the_next_is_computed(seen, tmp_path):
     dataset = make_dataset(tmp_path / "dataset", ("a", "b"), samples=300)
     simulated = make_simulation(dataset, tmp_path / "simulated")
-    summary = read_stage(Simulation, simulated)
+    stage = Simulation.model_validate_json((simulated / "simulation.json").read_text())
     opened = read_dataset(dataset)
     model = data_sheet(opened.manifest)
 
     def step(run):
-        so_far = summary.model_copy(update={"runs": {run: summary.runs[run]}})
+        so_far = stage.model_copy(update={"runs": {run: stage.runs[run]}})
         return lambda live: live.simulated(opened, so_far, answer(opened, run), model)
 
     first, both = seen([step("a"), step("b")])
@@ -93,12 +92,12 @@ def test_layouts_follow_the_runs_and_do_not_crowd_them_out(tmp_path, monkeypatch
     monkeypatch.setattr(Recorder, "lay_out", outlined)
     dataset = make_dataset(tmp_path / "dataset", ("a", "b"), samples=300)
     simulated = make_simulation(dataset, tmp_path / "simulated")
-    summary = read_stage(Simulation, simulated)
+    stage = Simulation.model_validate_json((simulated / "simulation.json").read_text())
     opened = read_dataset(dataset)
     with to_file(tmp_path / "live.rrd", "live") as recorder:
         live = LiveStream(recorder, tmp_path)
         for run in "ab":
-            live.simulated(opened, summary, answer(opened, run), data_sheet(opened.manifest))
+            live.simulated(opened, stage, answer(opened, run), data_sheet(opened.manifest))
         assert len(laid_out) == 1
         live.lay_out()
         live.lay_out()
