@@ -139,7 +139,7 @@ def _pictures(
         measured = recording.get(name)
         if measured is None:
             continue
-        simulated = inputs.simulated(recording, name)
+        simulated = inputs.answer(recording.run.id, recording.time_s.size, name, Simulation)
         if not np.isfinite(measured - simulated).any():
             continue
         unit, what = _unit(name, channel), in_words(name)

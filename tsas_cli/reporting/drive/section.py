@@ -191,7 +191,7 @@ def _residuals(inputs: Inputs, drive: Drive) -> tuple[Picture, ...]:
         if run is None or x_in is None or run.noise is None:
             continue
         nominal, fitted = (
-            x_in - inputs.simulated(recording, column, Drive)
+            x_in - inputs.answer(recording.run.id, x_in.size, column, Drive)
             for column in ("x_in_nominal_mm", "x_in_mm")
         )
         runs[recording.run.id] = (recording.time_s, nominal, fitted, run.noise)

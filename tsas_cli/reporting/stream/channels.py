@@ -9,8 +9,7 @@ import numpy.typing as npt
 from tsas_cli.reporting.colours import dark
 from tsas_cli.reporting.stream.portraits import Portrait
 from tsas_cli.reporting.stream.recorder import Entity, Recorder
-from tsas_cli.reporting.stream.seen import MEASURED, RESIDUAL, WANTED, Channel, SeenRun
-from tsas_cli.reporting.stream.sources import Source
+from tsas_cli.reporting.stream.seen import MEASURED, RESIDUAL, WANTED, SeenRun
 
 Floats = npt.NDArray[np.float64]
 _ROLES = {MEASURED: "measured", WANTED: "ink"}
@@ -59,25 +58,13 @@ def record_channels(recorder: Recorder, run: SeenRun) -> None:
             portrait = Portrait(run, channel, run.x_in_mm, measured)
             portrait.record(recorder)
         for source in channel.sources:
-            told = run.told(channel.column, source)
-            _record_told(recorder, run, channel, source, told, measured)
+            told, which = run.told(channel.column, source), source.which
+            series = {run.entity(channel.column, which.key): told}
+            if not source.cleaned:
+                series[run.entity(channel.column, RESIDUAL, which.key)] = measured - told
+            for entity, values in series.items():
+                recorder.line(entity, which.label, dark(which.role))
+                recorder.scalars(entity, run.times, values)
             if portrait is not None:
                 portrait.record_answer(recorder, source, told)
         recorder.settle()
-
-
-def _record_told(
-    recorder: Recorder,
-    run: SeenRun,
-    channel: Channel,
-    source: Source,
-    told: Floats,
-    measured: Floats,
-) -> None:
-    """Record what a stage says of a channel, and measured less simulated."""
-    series = {run.entity(channel.column, source.which.key): told}
-    if not source.cleaned:
-        series[run.entity(channel.column, RESIDUAL, source.which.key)] = measured - told
-    for entity, values in series.items():
-        recorder.line(entity, source.which.label, dark(source.which.role))
-        recorder.scalars(entity, run.times, values)

@@ -5,6 +5,7 @@ Both axes are scaled to a frame of fixed size, and ticks at round numbers say wh
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -19,6 +20,7 @@ from tsas_cli.reporting.stream.sources import Which
 from tsas_cli.reporting.stream.views import all_below
 
 Floats = npt.NDArray[np.float64]
+Value = TypeVar("Value", float, Floats)
 
 WIDTH, HEIGHT = 1.7, 1.0  # of the frame
 MARGIN = 0.04  # of the range, beside the curve
@@ -37,7 +39,7 @@ class Axis:
     high: float
     length: float
 
-    def place(self, values: Floats) -> Floats:
+    def place(self, values: Value) -> Value:
         """Return where values stand."""
         return (values - self.low) / (self.high - self.low) * self.length
 
@@ -61,20 +63,17 @@ class Frame:
     def lines(self) -> list[Floats]:
         """Return the axes and their ticks as curves."""
         box = np.array([[0.0, -HEIGHT], [0.0, 0.0], [WIDTH, 0.0]])
-        at_x = [float(self.x.place(np.array(v))) for v in self.x.ticks()]
-        at_y = [-float(self.y.place(np.array(v))) for v in self.y.ticks()]
+        at_x, at_y = map(self.x.place, self.x.ticks()), map(self.y.place, self.y.ticks())
         return [
             box,
             *(np.array([[x, 0.0], [x, _TICK]]) for x in at_x),
-            *(np.array([[0.0, y], [-_TICK, y]]) for y in at_y),
+            *(np.array([[0.0, -y], [-_TICK, -y]]) for y in at_y),
         ]
 
     def texts(self, x_label: str, y_label: str) -> tuple[Floats, list[str]]:
         """Return where ticks and axes are named, shape (k, 2), and how."""
-        across = [(float(self.x.place(np.array(v))), 0.02, as_printed(v)) for v in self.x.ticks()]
-        up = [
-            (-0.1, -float(self.y.place(np.array(v))) - 0.04, as_printed(v)) for v in self.y.ticks()
-        ]
+        across = [(self.x.place(v), 0.02, as_printed(v)) for v in self.x.ticks()]
+        up = [(-0.1, -self.y.place(v) - 0.04, as_printed(v)) for v in self.y.ticks()]
         named = [(WIDTH / 2.0, 0.14, x_label), (0.4 * WIDTH, -HEIGHT - 0.06, y_label)]
         texts = [*across, *up, *named]
         return np.array([(x, y) for x, y, _ in texts]), [text for *_, text in texts]

@@ -15,7 +15,6 @@ from tsas_cli.reporting.stream.tracking import FORCE, tracking_tab, true_of
 from tsas_cli.reporting.stream.views import Part, laid_out, log, series, states, text
 
 OVERVIEW, DIAGNOSIS = ("about", "overview"), ("about", "diagnosis")
-TABS = ("Overview", "Residuals", "Tendon", "Tracking", "Diagnosis")
 ALL_RUNS = 12  # beyond which their loops are too small to be seen beside each other
 _ACROSS = 4
 _ORDER = ("f_in_N", "f_out_N", "x_in_mm", "x_out_mm")  # what is looked at first
@@ -35,7 +34,7 @@ def layout_of(runs: Sequence[SeenRun], *, diagnosed: bool) -> Blueprint:
         "Tracking": tracking_tab(runs),
         "Diagnosis": text("Diagnosis", DIAGNOSIS) if diagnosed else None,
     }
-    parts = [Vertical(part, name=name) for name in TABS if (part := made[name]) is not None]
+    parts = [Vertical(part, name=name) for name, part in made.items() if part is not None]
     names = [part.name for part in parts]
     on_top = names.index("Tracking") if "Tracking" in names else 0
     moves = made["Tendon"] is not None or any(run.loops for run in runs)

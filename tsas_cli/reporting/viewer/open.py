@@ -1,7 +1,7 @@
 """The viewer opened: on a file or for what is live, in a window or in the browser."""
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import urlencode
@@ -25,18 +25,15 @@ class Viewer:
     proxy: str = ""
 
 
-@contextmanager
 def opened(
     file: Path | None = None, *, in_browser: bool, port: int | None = None
-) -> Iterator[Viewer]:
+) -> AbstractContextManager[Viewer]:
     """Show a file, or without one what is sent, in a window or on a page that is served.
 
     `port` is the window's or the page's own, any that is free without it; what is live goes to
     the page's next one.
     """
-    page = _page if in_browser else _window
-    with page(file, port) as viewer:
-        yield viewer
+    return _page(file, port) if in_browser else _window(file, port)
 
 
 @contextmanager

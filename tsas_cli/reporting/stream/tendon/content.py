@@ -1,4 +1,4 @@
-"""The tendon's part of the stream: in space, along the sheath, and the dead band from near."""
+"""The tendon's part of the stream: in space, along the sheath, the dead band, slip fronts."""
 
 from collections.abc import Mapping
 

@@ -53,8 +53,8 @@ class Stage:
     """The stands, and the eye with what it looks at."""
 
     stands: list[Stand]
-    eye: tuple[float, float, float]
-    target: tuple[float, float, float]
+    eye: Floats
+    target: Floats
 
 
 def stage_of(rigs: Sequence[Rig], elements: int) -> Stage:
@@ -71,8 +71,7 @@ def stage_of(rigs: Sequence[Rig], elements: int) -> Stage:
     places = [step * (0.5 * (len(shapes) - 1) - k) * _UP for k in range(len(shapes))]
     stands = [Stand(*parts, size) for parts in zip(shapes, ends, places, strict=True)]
     everything = [points + at for points, at in zip(shown, places, strict=True)]
-    eye, target = _eye(np.concatenate(everything), 2.0 * size)
-    return Stage(stands, _place(eye), _place(target))
+    return Stage(stands, *_eye(np.concatenate(everything), 2.0 * size))
 
 
 def _eye(points: Floats, away: float) -> tuple[Floats, Floats]:
@@ -105,8 +104,3 @@ def _shown(shape: Shape, ends: Ends, size: float) -> Floats:
     beside = shape.sheath.min(axis=0) * [1.0, 0.0, 0.0] - [LEFT * size, 0.0, 0.0]
     named = ends.names
     return np.concatenate((shape.sheath, above, ends.rim, ends.anchor, named, below, beside[None]))
-
-
-def _place(point: Floats) -> tuple[float, float, float]:
-    x, y, z = (float(part) for part in point)
-    return x, y, z
