@@ -17,16 +17,17 @@ def line(axes: Any, time_s: Floats, values: Floats, **style: Any) -> None:
     axes.plot(time_s[kept], values[kept], **style)
 
 
-def dashed() -> dict[str, Any]:
-    """Return the look of a bound."""
-    return {"color": STAND_IN["ink"], "linewidth": 1.0, "linestyle": (0, (4, 3)), "zorder": 3}
+def bound(axes: Any, value: float, **style: Any) -> None:
+    """Draw a bound, dashed."""
+    look = {"color": STAND_IN["ink"], "linewidth": 1.0, "linestyle": (0, (4, 3)), "zorder": 3}
+    axes.axhline(value, **look, **style)
 
 
 def noise_bounds(axes: Any, noise: float | None) -> None:
     """Draw twice the noise to both sides of zero, where it is known."""
     if noise is not None:
-        axes.axhline(2.0 * noise, **dashed(), label="± 2 × noise")
-        axes.axhline(-2.0 * noise, **dashed())
+        bound(axes, 2.0 * noise, label="± 2 × noise")
+        bound(axes, -2.0 * noise)
 
 
 def legend(figure: Any, axes: Any = None, *, ncols: int = 2, handlelength: float = 1.6) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.reporting.colours import STAND_IN, of_controller
-from tsas_cli.reporting.figures import dashed, legend, line
+from tsas_cli.reporting.figures import bound, legend, line
 
 Floats = npt.NDArray[np.float64]
 
@@ -64,7 +64,7 @@ def draw_panels(
         line(axes, time_s, curve.values, color=of_controller(curve.controller), linewidth=0.9)
         limits = axes.get_ylim()
         for side in (-1.0, 1.0) if band is not None else ():
-            axes.axhline(side * (band or 0.0), **dashed())
+            bound(axes, side * (band or 0.0))
         axes.set_ylim(limits)
         mark_change(axes, change_s)
         axes.set_ylabel(label)
