@@ -95,7 +95,6 @@ def _picture(condition: Condition, run: Followed, law: Adaptive) -> Picture:
             draw_estimates,
             time_s=run.time_s,
             estimates=estimates,
-            role=ADAPTIVE,
             change_s=condition.change_s,
         ),
         key=f"tracking-adaptation-{condition.number}",
@@ -110,13 +109,12 @@ def draw_estimates(
     *,
     time_s: Floats,
     estimates: Sequence[Estimate],
-    role: str,
-    change_s: float | None = None,
+    change_s: float | None,
 ) -> None:
     """Draw one panel for each estimate, its axis in powers of ten where all is positive."""
     rows = figure.subplots(len(estimates), 1, sharex=True, squeeze=False)[:, 0]
     for axes, it in zip(rows, estimates, strict=True):
-        line(axes, time_s, it.values, color=of_controller(role), linewidth=1.3)
+        line(axes, time_s, it.values, color=of_controller(ADAPTIVE), linewidth=1.3)
         for value in (it.lowest, it.highest):
             bound(axes, value)
         if min(it.lowest, float(it.values.min())) > 0.0:

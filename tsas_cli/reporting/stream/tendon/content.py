@@ -14,8 +14,8 @@ from tsas_cli.reporting.stream.sources import Which
 from tsas_cli.reporting.stream.tendon.along import record_along
 from tsas_cli.reporting.stream.tendon.band import record_band
 from tsas_cli.reporting.stream.tendon.followed import Followed
+from tsas_cli.reporting.stream.tendon.models import F_IN, models_of, tendons_of
 from tsas_cli.reporting.stream.tendon.scene import record_scene, view_of_scene
-from tsas_cli.reporting.stream.tendon.told import F_IN, tendons_of, told_of
 from tsas_cli.reporting.stream.views import Part
 
 SPACE, ALONG, BAND = ("tendon", "space"), ("tendon", "along"), ("tendon", "dead-band")
@@ -30,10 +30,10 @@ def view_of_tendon(run: SeenRun) -> Part | None:
     InputError
         A model's file cannot be read.
     """
-    told = told_of(run)
-    if told is None:
+    given = models_of(run)
+    if given is None:
         return None
-    rigs = [model.rig(run.file.run) for model in told.models.values()]
+    rigs = [model.rig(run.file.run) for model in given.models.values()]
     space = view_of_scene(run.entity(*SPACE), rigs)
     along = plane_view("Tension along the sheath", run.entity(*ALONG))
     band = plane_view("The dead band from near", run.entity(*BAND))

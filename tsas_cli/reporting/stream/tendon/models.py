@@ -22,7 +22,7 @@ F_IN, F_OUT = "f_in_N", "f_out_N"
 
 
 @dataclass(frozen=True)
-class Told:
+class TendonModels:
     """The models that a stage followed a run with, and how."""
 
     stage: type[StageFile]
@@ -31,7 +31,7 @@ class Told:
     nodes: int | None
 
 
-def told_of(run: SeenRun) -> Told | None:
+def models_of(run: SeenRun) -> TendonModels | None:
     """Return both models of a diagnosis, else the simulated one.
 
     None where neither stage took the run or wrote its models, and for the lumped model, which
@@ -56,25 +56,27 @@ def told_of(run: SeenRun) -> Told | None:
     if not run.inputs.answered(run.id, stage) or not all(p.is_file() for p in paths.values()):
         return None
     models = {which: read_model(path) for which, path in paths.items()}
-    return Told(stage, models, cast("Dynamics", dynamics), nodes)
+    return TendonModels(stage, models, cast("Dynamics", dynamics), nodes)
 
 
 def tendons_of(run: SeenRun) -> dict[Which, Followed]:
-    """Return the run followed with the models that are told of it; none where none are.
+    """Return the run followed with the models that a stage wrote; none where it wrote none.
 
     Raises
     ------
     InputError
         A file cannot be read, or is not what it was.
     """
-    told = told_of(run)
-    if told is None:
+    given = models_of(run)
+    if given is None:
         return {}
-    there, rows = run.inputs.answered(run.id, told.stage), run.file.rows
+    there, rows = run.inputs.answered(run.id, given.stage), run.file.rows
     columns = [c for name in (F_IN, F_OUT) for c in (name, nominal_name(name)) if c in there]
-    answers = [run.inputs.answer(run.id, rows, name, told.stage) for name in columns]
-    drive = _drive(run, told.stage)
-    return follow(run.file.run, run.time_s, drive, told.models, answers, told.dynamics, told.nodes)
+    answers = [run.inputs.answer(run.id, rows, name, given.stage) for name in columns]
+    drive = _drive(run, given.stage)
+    return follow(
+        run.file.run, run.time_s, drive, given.models, answers, given.dynamics, given.nodes
+    )
 
 
 def _drive(run: SeenRun, stage: type[StageFile]) -> Drive:
