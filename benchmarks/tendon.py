@@ -14,12 +14,12 @@ from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model
 from tsas_cli.physics.ends import Drive
 from tsas_cli.recordings.manifest import Run
-from tsas_cli.reporting.stream.recorder import Clock, to_file
+from tsas_cli.reporting.stream.opened import to_file
+from tsas_cli.reporting.stream.sources import EXTENDED, NOMINAL
 from tsas_cli.reporting.stream.tendon.along import record_along
 from tsas_cli.reporting.stream.tendon.band import record_band
+from tsas_cli.reporting.stream.tendon.followed import follow
 from tsas_cli.reporting.stream.tendon.scene import record_scene
-from tsas_cli.reporting.tendon.followed import follow
-from tsas_cli.reporting.which import EXTENDED, NOMINAL
 
 REPEATS = 5
 TIME_S = np.arange(0.0, 4.0 * math.pi, 1e-3)
@@ -56,10 +56,11 @@ def recorded(path: Path) -> float:
     models = {NOMINAL: model(NOMINAL_VALUES), EXTENDED: model(NOMINAL_VALUES | FREE)}
     start = time.perf_counter()
     tendons = follow(RUN, TIME_S, drive, models, [25.0 + 2.9 * x_in])
-    with to_file(path, "tendon", force=True) as recorder:
-        record_scene(recorder, ("space",), Clock(), tendons)
-        record_along(recorder, ("along",), Clock(), tendons)
-        record_band(recorder, ("dead-band",), Clock(), tendons, None)
+    path.unlink(missing_ok=True)
+    with to_file(path, "tendon") as recorder:
+        record_scene(recorder, ("space",), tendons)
+        record_along(recorder, ("along",), tendons)
+        record_band(recorder, ("dead-band",), tendons, None)
     return time.perf_counter() - start
 
 

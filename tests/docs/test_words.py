@@ -16,7 +16,9 @@ PHRASES = re.compile(
     r"|leaning|bristle travel|no (rig|clock) has|there twice|what comes out",
     re.IGNORECASE,
 )
-SOURCES = sorted(p for folder in ("tsas_cli", "tsas_studies") for p in (ROOT / folder).rglob("*.py"))
+SOURCES = sorted(
+    p for folder in ("tsas_cli", "tsas_studies") for p in (ROOT / folder).rglob("*.py")
+)
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
 EXEMPT = {"words.md"}  # which lists them
 
@@ -39,8 +41,8 @@ def test_code_uses_the_words_of_the_field(folder):
 
 @pytest.mark.parametrize("page", [p for p in PAGES if p.name not in EXEMPT], ids=lambda p: p.name)
 def test_pages_use_the_words_of_the_field(page):
-    lines = page.read_text(encoding="utf-8").splitlines()
-    assert not [f"{n}: {found[0]}" for n, line in enumerate(lines, 1) if (found := PHRASES.search(line))]
+    lines = enumerate(page.read_text(encoding="utf-8").splitlines(), 1)
+    assert not [f"{n}: {found[0]}" for n, line in lines if (found := PHRASES.search(line))]
 
 
 def test_what_a_source_says_is_seen(tmp_path):

@@ -101,7 +101,8 @@ def parameter(name, value, half_width=None, unit="", **more):
 
 
 def make_check(dataset: Path, folder: Path, findings=()) -> Path:
-    content = {"format": 1, "stage": "check", "findings": list(findings)}
+    usual = {"column": None, "remedy": "", "first_s": None}
+    content = {"format": 1, "stage": "check", "findings": [usual | one for one in findings]}
     return _write(folder, "check.json", content | {"dataset": source(dataset, folder)})
 
 

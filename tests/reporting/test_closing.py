@@ -20,8 +20,8 @@ from tests.reporting.test_tracking import cells
 from tsas_cli.records.closing import Closing
 from tsas_cli.reporting import colours
 from tsas_cli.reporting.closing import call
+from tsas_cli.reporting.closing.errors import MODELS, draw_dots
 from tsas_cli.reporting.colours import STAND_IN
-from tsas_cli.reporting.figures.closing import MODELS, draw_dots
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.page import page
 from tsas_cli.stages import close_cases as closing

@@ -13,9 +13,9 @@ from tests.reporting.test_page import Outline, headings
 from tsas_cli.effects import EFFECTS
 from tsas_cli.records.diagnosis import Bin, HeldOut
 from tsas_cli.reporting.colours import STAND_IN
-from tsas_cli.reporting.figures.gains import draw_gains
-from tsas_cli.reporting.figures.likeness import draw_likeness
-from tsas_cli.reporting.figures.residual_map import Panel, draw_residual_map
+from tsas_cli.reporting.diagnosis.gains import draw_gains
+from tsas_cli.reporting.diagnosis.likeness import draw_likeness
+from tsas_cli.reporting.diagnosis.maps import Panel, draw_residual_map
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.page import page
 

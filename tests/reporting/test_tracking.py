@@ -13,9 +13,9 @@ from tests.reporting.made_folders import make_tracking
 from tests.reporting.test_page import Outline, headings
 from tsas_cli.__main__ import main
 from tsas_cli.reporting.colours import CONTROLLERS, STAND_IN, of_controller
-from tsas_cli.reporting.figures.over_time import Curve, draw_panels
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.page import page
+from tsas_cli.reporting.tracking.over_time import Curve, draw_panels
 from tsas_cli.support.errors import InputError
 from tsas_cli.tracking import settings
 

@@ -33,12 +33,11 @@ def watched(live: bool, name: str, *, quiet: bool) -> Iterator["LiveStream | Non
         return
     from tsas_cli.reporting.stream.live import live_stream
     from tsas_cli.reporting.viewer.analytics import note_once
-    from tsas_cli.reporting.viewer.open import page_for_live, window_for_live
+    from tsas_cli.reporting.viewer.open import opened
     from tsas_cli.reporting.viewer.screen import has_screen
     from tsas_cli.support.stopping import cleaned_up_when_stopped, until_stopped
 
-    opened = window_for_live if has_screen() else page_for_live
-    with cleaned_up_when_stopped(), opened() as viewer:
+    with cleaned_up_when_stopped(), opened(in_browser=not has_screen()) as viewer:
         _say(note_once(), f"live at {viewer.page}" if viewer.page else "", quiet=quiet)
         computed, failure = False, None
         try:
@@ -57,7 +56,7 @@ def watched(live: bool, name: str, *, quiet: bool) -> Iterator["LiveStream | Non
         end = "Ctrl-C" if viewer.page else "close the window or press Ctrl-C"
         _say(f"all runs are there and written; {end} to end the viewer", quiet=quiet)
         with until_stopped():
-            viewer.wait()
+            viewer.child.wait()
 
 
 def _say(*sentences: str, quiet: bool) -> None:

@@ -32,17 +32,16 @@ def view(
     """
     from tsas_cli.recordings.storage import place_of
     from tsas_cli.reporting.viewer.analytics import note_once
-    from tsas_cli.reporting.viewer.open import page_of, window_of
+    from tsas_cli.reporting.viewer.open import opened
     from tsas_cli.reporting.viewer.screen import has_screen
     from tsas_cli.reporting.viewer.stream_of import stream_of
     from tsas_cli.support.stopping import until_stopped
 
     in_browser = web or not has_screen()
-    opened = page_of if in_browser else window_of
     with until_stopped(), ExitStack() as held:
         with progress("stream", quiet=quiet) as step:
             stream, notes = held.enter_context(stream_of([place_of(path) for path in paths], step))
-        viewer = held.enter_context(opened(stream, port=port))
+        viewer = held.enter_context(opened(stream, in_browser=in_browser, port=port))
         talk = () if quiet else (*notes, note_once(), ENDS[in_browser])
         for sentence in filter(None, talk):
             print(f"- {sentence}", file=sys.stderr)
@@ -51,4 +50,4 @@ def view(
         if viewer.page and not quiet and not as_json:
             print(viewer.page)
         sys.stdout.flush()
-        viewer.wait()
+        viewer.child.wait()

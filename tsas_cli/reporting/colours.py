@@ -37,6 +37,12 @@ def schemes() -> tuple[dict[str, str], dict[str, str]]:
     return light, dark
 
 
+def dark(role: str, opacity: int = 0xFF) -> int:
+    """Return a role's colour on a dark ground, as the viewer has it, as 0xRRGGBBAA."""
+    _, scheme = schemes()
+    return int(scheme[role].removeprefix("#"), 16) << 8 | opacity
+
+
 def of_controller(name: str) -> str:
     """Return the stand-in of a controller's colour, the same in every plot."""
     return STAND_IN[name if name in CONTROLLERS else "unknown"]

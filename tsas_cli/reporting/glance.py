@@ -12,7 +12,7 @@ from tsas_cli.reporting.channels import called
 from tsas_cli.reporting.content import Fact, Glance
 from tsas_cli.reporting.diagnosis.words import heading_of, listed, title_of, within
 from tsas_cli.reporting.inputs import Inputs
-from tsas_cli.reporting.numbers import ABSENT, plain, with_interval
+from tsas_cli.reporting.numbers import ABSENT, plain, ranged, with_interval
 
 _KINDS = {
     "named": "Cause found",
@@ -130,15 +130,10 @@ def _of_simulation(simulation: Simulation) -> Glance | None:
     if not ratios:
         return None
     worst = max(map(max, ratios.values()))
-    facts = (Fact(called(name), _range(found), "") for name, found in ratios.items())
+    facts = (Fact(called(name), ranged(found), "") for name, found in ratios.items())
     return Glance(
         "Simulation against measurement",
         f"Within {plain(worst, 2)} times the noise",
         "Root mean square error in times the noise, over the runs",
         tuple(facts),
     )
-
-
-def _range(values: list[float]) -> str:
-    low, high = plain(min(values), 2), plain(max(values), 2)
-    return low if low == high else f"{low} to {high}"

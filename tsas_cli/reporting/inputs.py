@@ -65,18 +65,6 @@ class Inputs:
         """Return what a stage wrote, or None where it was not given."""
         return cast("Stage | None", self.stages.get(kind))
 
-    def simulated(
-        self, recording: Recording, column: str, stage: type[StageFile] = Simulation
-    ) -> Floats:
-        """Return a simulated channel of a run, shape (n,) as the recording, NaN for gaps.
-
-        Raises
-        ------
-        InputError
-            The file cannot be read, or does not belong to this recording.
-        """
-        return self.answer(recording.run.id, recording.time_s.size, column, stage)
-
     def answer(self, run: str, rows: int, column: str, stage: type[StageFile]) -> Floats:
         """Return a column that a stage wrote about a run of so many samples, NaN for gaps.
 
@@ -100,16 +88,6 @@ class Inputs:
         """
         path = answers_of(self.folders[stage], run)
         return frozenset(names_of(path) if path.is_file() else ())
-
-    def tracked(self, run: str, names: Sequence[str]) -> dict[str, Floats]:
-        """Return columns of a run of the closed loop by name, shape (n,) each.
-
-        Raises
-        ------
-        InputError
-            The file cannot be read or lacks a column.
-        """
-        return columns_of(answers_of(self.folders[Tracking], run), names)
 
 
 def read_inputs(folders: Sequence[Place]) -> Inputs:

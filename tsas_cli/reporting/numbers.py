@@ -90,7 +90,7 @@ def with_spread(value: float | None, spread: float | None) -> str:
     return f"{_fixed(value, decimals)} ± {plain(spread, 1)}"
 
 
-def spanned(values: npt.NDArray[np.float64], digits: int = 3) -> str:
+def spanned(values: npt.NDArray[np.float64]) -> str:
     """Return the lowest and the highest of some numbers, gaps left out.
 
     Examples
@@ -102,7 +102,19 @@ def spanned(values: npt.NDArray[np.float64], digits: int = 3) -> str:
     there = values[np.isfinite(values)]
     if not there.size:
         return ABSENT
-    return f"{plain(float(there.min()), digits)} to {plain(float(there.max()), digits)}"
+    return f"{plain(float(there.min()), 3)} to {plain(float(there.max()), 3)}"
+
+
+def ranged(values: Sequence[float]) -> str:
+    """Return the lowest and the highest of some numbers, or the one that both are.
+
+    Examples
+    --------
+    >>> ranged([1.234, 0.5]), ranged([0.5])
+    ('0.50 to 1.2', '0.50')
+    """
+    low, high = plain(min(values), 2), plain(max(values), 2)
+    return low if low == high else f"{low} to {high}"
 
 
 def fixed(value: float | None, decimals: int) -> str:

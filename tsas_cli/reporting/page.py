@@ -5,24 +5,18 @@ from collections.abc import Callable
 from tsas_cli.records.closing import Closing
 from tsas_cli.records.drive import Drive
 from tsas_cli.records.tracking import Tracking
+from tsas_cli.reporting import repeat, simulation, summary
+from tsas_cli.reporting.calibration import parameters, stiffness, transfer
+from tsas_cli.reporting.closing import section as closing
 from tsas_cli.reporting.content import Section
+from tsas_cli.reporting.diagnosis import section as diagnosis
+from tsas_cli.reporting.drive import section as drive
 from tsas_cli.reporting.glance import glance
 from tsas_cli.reporting.inputs import Inputs
+from tsas_cli.reporting.recordings import loops
+from tsas_cli.reporting.recordings import section as recordings
 from tsas_cli.reporting.rendered import rendered
-from tsas_cli.reporting.sections import (
-    closing,
-    diagnosis,
-    drive,
-    loops,
-    parameters,
-    recordings,
-    repeat,
-    simulation,
-    stiffness,
-    summary,
-    tracking,
-    transfer,
-)
+from tsas_cli.reporting.tracking import section as tracking
 
 SECTIONS: tuple[Callable[[Inputs], Section | None], ...] = (
     closing.section,

@@ -6,12 +6,12 @@ from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
+from rerun.blueprint import View
 from rerun.chunk import RrdReader
 
 from tests.reporting.made_folders import make_diagnosis, play
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.writing import write_parquet
-from tsas_cli.reporting.stream.recorder.views import View
 
 MODEL = """format = 1
 [parameters.friction_coefficient]

@@ -12,8 +12,9 @@ from tsas_cli.recordings.recording import Recording
 from tsas_cli.records.simulation import Simulation
 from tsas_cli.records.tracking import Tracking
 from tsas_cli.reporting.stream.live import LiveStream
-from tsas_cli.reporting.stream.recorder import Recorder, to_file
-from tsas_cli.reporting.stream.recorder.views import outline
+from tsas_cli.reporting.stream.opened import to_file
+from tsas_cli.reporting.stream.recorder import Recorder
+from tsas_cli.reporting.stream.views import outline
 
 
 @pytest.fixture

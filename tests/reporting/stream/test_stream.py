@@ -20,11 +20,11 @@ from tests.reporting.stream.streams import make_diagnosed, read
 from tsas_cli.recordings.manifest import Manifest, Run
 from tsas_cli.recordings.run_files import RunColumns
 from tsas_cli.recordings.writing import write_dataset
+from tsas_cli.reporting.colours import dark
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.phases import BY_KEY
 from tsas_cli.reporting.stream import write_stream
-from tsas_cli.reporting.stream.palette import colour
-from tsas_cli.reporting.stream.recorder.recorder import ROWS
+from tsas_cli.reporting.stream.recorder import ROWS
 from tsas_cli.support.errors import InputError
 
 SAMPLES = 2 * ROWS + 100
@@ -99,7 +99,7 @@ def test_series_are_named_and_coloured_as_in_the_report(found):
     for key, (label, role) in named.items():
         static = found[f"/run/a/f_in_N/{key}"].static
         assert static["SeriesLines:names"] == [label]
-        assert static["SeriesLines:colors"] == [colour(role)]
+        assert static["SeriesLines:colors"] == [dark(role)]
 
 
 def test_phases_begin_when_the_file_says_in_the_colours_of_the_report(made, found):
@@ -114,7 +114,7 @@ def test_phases_begin_when_the_file_says_in_the_colours_of_the_report(made, foun
     assert shown[-1] == ends[-1]
     values, colours = (phase.static[f"StateConfiguration:{what}"] for what in ("values", "colors"))
     assert dict(zip(values, colours, strict=True)) == {
-        key: colour(one.colour) for key, one in BY_KEY.items()
+        key: dark(one.colour) for key, one in BY_KEY.items()
     }
 
 

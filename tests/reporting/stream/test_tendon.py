@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pyarrow as pa
 import pytest
+from rerun.blueprint import Tabs
 
 import tsas_cli as tsas
 from tests.reporting.made_folders import (
@@ -27,7 +28,6 @@ from tsas_cli.recordings.manifest import Manifest, Run
 from tsas_cli.recordings.writing import write_dataset, write_parquet
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.stream import write_stream
-from tsas_cli.reporting.stream.recorder.views import Tabs
 from tsas_cli.reporting.stream.seen import seen_runs
 from tsas_cli.reporting.stream.stream import stream_of
 from tsas_cli.reporting.stream.tendon.content import view_of_tendon

@@ -3,9 +3,11 @@
 from pathlib import Path
 
 import numpy as np
+from rerun.blueprint import Tabs
 
-from tsas_cli.reporting.stream.recorder import Clock, to_file
-from tsas_cli.reporting.stream.recorder.views import Tabs, laid_out, series
+from tsas_cli.reporting.stream.opened import to_file
+from tsas_cli.reporting.stream.recorder import times_of
+from tsas_cli.reporting.stream.views import laid_out, series
 
 
 def make_stream(path: Path, samples: int = 2000) -> Path:
@@ -14,6 +16,6 @@ def make_stream(path: Path, samples: int = 2000) -> Path:
     with to_file(path, "waves") as recorder:
         for name, wave in (("sine", np.sin), ("cosine", np.cos)):
             recorder.line((name,), name, 0x3366CCFF)
-            recorder.scalars((name,), Clock().times(time_s), wave(7 * time_s))
+            recorder.scalars((name,), times_of(time_s), wave(7 * time_s))
         recorder.lay_out(laid_out(Tabs(*(series(name, [(name,)]) for name in ("sine", "cosine")))))
     return path

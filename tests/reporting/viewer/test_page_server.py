@@ -85,7 +85,7 @@ def test_without_a_file_there_is_none(inside):
 
 
 def test_the_browser_lets_the_page_reach_this_machine_alone(inside):
-    with served(inside, data=4711) as port:
+    with served(inside, data=[4711]) as port:
         policy = get(port, "/")[1]["Content-Security-Policy"]
     reached = {source for source in policy.split() if "//" in source or "*" in source}
     own = {f"http://{host}:{p}" for host in (LOOPBACK, "localhost") for p in (port, 4711)}

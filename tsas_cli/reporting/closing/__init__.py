@@ -1,1 +1,1 @@
-"""The parts of the page's section on what a better model is worth in tracking."""
+"""What a better model is worth in tracking: the section, its parts and figure."""

@@ -1,18 +1,40 @@
 """The RMSE of every controller in every case, by the model in its inverse and feedforward."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from functools import partial
 from statistics import median
+from typing import Any
 
 from tsas_cli.records.closing import Closing, Row
+from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Picture, Table
 from tsas_cli.reporting.diagnosis.words import listed
 from tsas_cli.reporting.drawing import picture
-from tsas_cli.reporting.figures.closing import MODELS, draw_dots, height_in
+from tsas_cli.reporting.figures import legend
 from tsas_cli.reporting.numbers import plain, with_spread
 
 NEAR = 1.1  # a ratio that is no more than this, up or down, makes no difference
 _PERCENT = f"{100.0 * (NEAR - 1.0):.0f} %"
+
+
+@dataclass(frozen=True)
+class Look:
+    """How a model is called, and the form of its mark, so that colour alone tells nothing."""
+
+    label: str
+    marker: str
+    size: float = 6.0
+
+
+MODELS = {  # by role
+    "data-sheet": Look("data sheet", "s"),
+    "calibrated": Look("calibrated", "D", 5.5),
+    "extended": Look("extended", "o"),
+    "true": Look("true", "|", 13.0),
+}
+_ROW_IN = 0.21
+_PANEL_IN = 0.34  # its title
 
 
 def table(closing: Closing) -> Table:
@@ -48,7 +70,7 @@ def dots(closing: Closing) -> Picture:
         f"calibrated, extended and true, by controller and case. {said}.",
         caption="RMSE of the force by controller, case and model, on a logarithmic axis: further "
         "left is better, and the true model is the limit.",
-        height_in=height_in([len(rows) for rows in controllers.values()]),
+        height_in=1.0 + sum(_PANEL_IN + _ROW_IN * len(rows) for rows in controllers.values()),
     )
 
 
@@ -110,3 +132,55 @@ def _limit(rows: dict[str, Row]) -> str:
         return f"The extended model is more than {_PERCENT} above the limit in {listed(off)}."
     where = "in every case " if len(rows) > 1 else ""
     return f"The extended model is {where}within {_PERCENT} of the limit, or better."
+
+
+def draw_dots(figure: Any, *, controllers: Mapping[str, Mapping[str, Row]]) -> None:
+    """Draw the panels below each other, over one logarithmic axis.
+
+    Parameters
+    ----------
+    figure
+        The matplotlib figure to draw on.
+    controllers
+        By controller and case, the RMSE with each model.
+    """
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+    heights = [len(rows) + 0.2 for rows in controllers.values()]
+    panels = figure.subplots(
+        len(controllers), 1, sharex=True, squeeze=False, height_ratios=heights
+    )[:, 0]
+    for axes, (name, rows) in zip(panels, controllers.items(), strict=True):
+        _draw_panel(axes, rows)
+        axes.set_title(name, loc="left", fontsize=9.0, pad=3.0)
+    last = panels[-1]
+    last.set_xscale("log")
+    last.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    last.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    last.xaxis.set_minor_formatter(NullFormatter())
+    last.set_xlabel("RMSE of the force [N]")
+    legend(figure, last, ncols=len(MODELS), handlelength=1.0)
+
+
+def _draw_panel(axes: Any, rows: Mapping[str, Row]) -> None:
+    places = range(len(rows))
+    for place, row in zip(places, rows.values(), strict=True):
+        means = [rmse.mean for rmse in row.by_model.values()]
+        ends = [min(means), max(means)]
+        axes.plot(ends, [place, place], color=STAND_IN["line"], linewidth=3.0, zorder=1)
+    for role, look in MODELS.items():
+        axes.plot(
+            [row.by_model[role].mean for row in rows.values()],
+            places,
+            linestyle="none",
+            marker=look.marker,
+            markersize=look.size,
+            markeredgewidth=1.6,
+            markerfacecolor=STAND_IN[role] if role == "extended" else "none",
+            color=STAND_IN[role],
+            label=look.label,
+            zorder=2 if role == "true" else 3,
+        )
+    axes.set_yticks(places, list(rows))
+    axes.set_ylim(len(rows) - 0.4, -0.6)
+    axes.tick_params(axis="y", length=0)

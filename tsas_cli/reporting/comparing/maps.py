@@ -2,8 +2,7 @@
 
 from tsas_cli.comparing.compare import Comparison
 from tsas_cli.reporting.content import Section
-from tsas_cli.reporting.diagnosis.maps import pictures
-from tsas_cli.reporting.figures.residual_map import Panel
+from tsas_cli.reporting.diagnosis.maps import Panel, pictures
 
 _WHAT = (
     "Measured minus simulated in units of the channel's noise, in the same bins for both: the mean "

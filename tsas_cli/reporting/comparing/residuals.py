@@ -8,9 +8,9 @@ from tsas_cli.comparing.answers import Both, channels
 from tsas_cli.comparing.compare import Comparison
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.records.comparison import shared_name
+from tsas_cli.reporting.comparing.two_residuals import Residuals, draw_two_residuals, height_in
 from tsas_cli.reporting.content import Group, Picture, Section
 from tsas_cli.reporting.drawing import picture
-from tsas_cli.reporting.figures.two_residuals import Residuals, draw_two_residuals, height_in
 from tsas_cli.reporting.numbers import plain
 
 _MOST_RUNS = 10

@@ -7,9 +7,9 @@ from functools import partial
 from tsas_cli.comparing.tracked import FILE, SCORES, Followed, Tracks
 from tsas_cli.comparing.tracked_stage import findings, notes, shown
 from tsas_cli.recordings.written import answers_of, columns_of
+from tsas_cli.reporting.comparing.two_residuals import Residuals, draw_two_residuals, height_in
 from tsas_cli.reporting.content import Picture, Section, Table
 from tsas_cli.reporting.drawing import picture
-from tsas_cli.reporting.figures.two_residuals import Residuals, draw_two_residuals, height_in
 from tsas_cli.reporting.numbers import ABSENT, fixed, with_spread
 from tsas_cli.reporting.rendered import rendered
 from tsas_cli.reporting.tracking.runs import TRUE, WANTED

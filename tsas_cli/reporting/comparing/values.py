@@ -1,15 +1,17 @@
 """The values of both models with their intervals, and what differs by more than these."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from functools import partial
+from typing import Any
 
 from tsas_cli.comparing.compare import Comparison
 from tsas_cli.comparing.stage import differs
 from tsas_cli.records.base import Parameter
 from tsas_cli.records.comparison import ParameterPair
+from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Picture, Section, Table
 from tsas_cli.reporting.drawing import picture
-from tsas_cli.reporting.figures.values import Strip, Value, draw_values, height_in
 from tsas_cli.reporting.numbers import ABSENT, plain, with_interval
 
 _MOST = 8  # strips of a picture
@@ -18,6 +20,25 @@ _HOW = (
     "far as the two intervals in quadrature, each side on its own. Where it does not hold 0, the "
     "difference is more than the uncertainty of both."
 )
+
+
+@dataclass(frozen=True)
+class Value:
+    """A value and its 95 % interval in the parameter's unit, None where it has none."""
+
+    value: float
+    low: float | None
+    high: float | None
+
+
+@dataclass(frozen=True)
+class Strip:
+    """One parameter: its name, what both say of it, and whether that differs."""
+
+    label: str
+    a: Value
+    b: Value
+    differs: bool
 
 
 def section(it: Comparison) -> Section:
@@ -108,7 +129,7 @@ def _pictures(it: Comparison) -> Iterator[Picture]:
         key="values",
         alt=f"Values of A and B with 95 % intervals, each on its own axis. {said}.",
         caption=f"Values of A and B with their 95 % intervals, each on its own axis.{star}",
-        height_in=height_in(len(strips)),
+        height_in=0.5 + 0.72 * len(strips),
     )
 
 
@@ -120,3 +141,32 @@ def _strip(pair: ParameterPair) -> Strip:
     )
     run = "" if pair.run == "all" else f"\nrun {pair.run}"
     return Strip(f"{pair.name.rpartition('.')[2]}{run}", a, b, differs(pair) == "yes")
+
+
+def draw_values(figure: Any, strips: Sequence[Strip]) -> None:
+    """Draw the strips below each other, A above B in each; a star marks those that differ."""
+    rows = figure.subplots(len(strips), 1, squeeze=False)[:, 0]
+    for axes, strip in zip(rows, strips, strict=True):
+        for name, value, role, y in (("A", strip.a, "before", 1.0), ("B", strip.b, "after", 0.0)):
+            low, high = (value.value if end is None else end for end in (value.low, value.high))
+            axes.errorbar(
+                value.value,
+                y,
+                xerr=[[value.value - low], [high - value.value]],
+                marker="o",
+                markersize=5,
+                capsize=3,
+                elinewidth=1.6,
+                linestyle="none",
+                color=STAND_IN[role],
+                label=name,
+            )
+        axes.set(ylim=(-0.6, 1.6), yticks=[])
+        axes.margins(x=0.08)
+        axes.locator_params(axis="x", nbins=4)
+        axes.ticklabel_format(axis="x", useOffset=False)
+        star = " *" if strip.differs else ""
+        axes.set_ylabel(strip.label + star, rotation=0, ha="right", va="center")
+        axes.spines["left"].set_visible(False)
+    handles, labels = rows[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside upper left", ncols=2, handlelength=1.6)

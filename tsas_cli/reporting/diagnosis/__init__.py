@@ -1,1 +1,1 @@
-"""The parts of the section on the diagnosis, one file each."""
+"""The diagnosis: the section and its parts, one file each."""

@@ -1,12 +1,15 @@
 """The error on held-out data before and after, beside what noise and the best model leave."""
 
+from collections.abc import Mapping
 from functools import partial
+from typing import Any
 
 from tsas_cli.records.diagnosis import Diagnosis, HeldOut
 from tsas_cli.reporting.channels import called
+from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Section, Table
 from tsas_cli.reporting.drawing import picture
-from tsas_cli.reporting.figures.gains import draw_gains, height_in
+from tsas_cli.reporting.figures import legend
 from tsas_cli.reporting.numbers import ABSENT, plain
 
 _BOUNDS = (
@@ -26,7 +29,7 @@ def part(diagnosis: Diagnosis) -> Section | None:
         key="diagnosis-gains",
         alt=f"Root mean square error on held-out data. {alt}.",
         caption="Root mean square error on held-out data, by channel.",
-        height_in=height_in(len(diagnosis.channels)),
+        height_in=0.6 + 0.75 * len(diagnosis.channels),
     )
     return Section(
         "diagnosis-gains",
@@ -70,3 +73,41 @@ def _in_words(name: str, channel: HeldOut, *, named: bool) -> str:
         f"{after}, best obtainable {plain(channel.best_obtainable, 3)}, noise floor "
         f"{plain(channel.noise_floor, 3)} {channel.unit}"
     )
+
+
+def draw_gains(figure: Any, channels: Mapping[str, HeldOut], *, named: bool) -> None:
+    """Draw the channels below each other, each with an axis of its own from zero.
+
+    Parameters
+    ----------
+    figure
+        The matplotlib figure to draw on.
+    channels
+        By name, the error and its bounds in the channel's unit.
+    named
+        Whether a cause is named, so that there is an error after to show.
+    """
+    rows = figure.subplots(len(channels), 1, squeeze=False)[:, 0]
+    first = "before" if named else "nominal model"
+    for axes, (name, channel) in zip(rows, channels.items(), strict=True):
+        _bar(axes, channel.rmse_before, at=0.2 * named, role="before", label=first)
+        if named:
+            _bar(axes, channel.rmse_after, at=-0.2, role="after", label="with what is named")
+        _mark(axes, channel.noise_floor, linestyle="-", label="noise floor")
+        _mark(axes, channel.best_obtainable, linestyle=(0, (2, 1.5)), label="best obtainable")
+        axes.set(ylim=(-0.5, 0.5), yticks=[], xlim=(0, None))
+        axes.set_ylabel(
+            f"{name.rsplit('_', 1)[0]} [{channel.unit}]", rotation=0, ha="right", va="center"
+        )
+        axes.spines["left"].set_visible(False)
+    legend(figure, rows[0])
+
+
+def _bar(axes: Any, value: float | None, *, at: float, role: str, label: str) -> None:
+    if value is not None:
+        axes.barh(at, value, 0.36, color=STAND_IN[role], label=label)
+
+
+def _mark(axes: Any, value: float | None, **style: Any) -> None:
+    if value is not None:
+        axes.plot([value, value], [-0.5, 0.5], color=STAND_IN["ink"], linewidth=1.6, **style)

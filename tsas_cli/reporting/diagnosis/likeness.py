@@ -1,16 +1,18 @@
 """Which effects these inputs can and cannot tell apart, before any is fitted."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import partial
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.records.diagnosis import Diagnosis
+from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Section
 from tsas_cli.reporting.diagnosis.words import listed
-from tsas_cli.reporting.drawing import picture
-from tsas_cli.reporting.figures.likeness import draw_likeness, height_in
+from tsas_cli.reporting.drawing import WIDTH_IN, picture
+from tsas_cli.reporting.figures import legend
 from tsas_cli.reporting.numbers import plain
 
 Floats = npt.NDArray[np.float64]
@@ -23,6 +25,10 @@ _WHAT = (
     f"signature. Two signatures are alike by 0 to 1; at {_ALIKE} and above less than a third of "
     "one is left that the other cannot imitate, and the effects are hard to tell apart."
 )
+_FAINT = 0.2  # below it a square is too small to see
+_ROW_IN = 0.21
+_NAMES_IN = 2.0  # of the longest name
+_CORNERS = np.array([(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5), (-0.5, -0.5)])
 
 
 def part(diagnosis: Diagnosis) -> Section | None:
@@ -55,7 +61,7 @@ def part(diagnosis: Diagnosis) -> Section | None:
         + (" ".join(points) or "No two are alike."),
         caption="Likeness of each two signatures, as the size of the block. Effects that "
         f"resemble no other by {_RESEMBLES} are left out.",
-        height_in=height_in(int(shown.sum())),
+        height_in=0.5 + _ROW_IN * int(shown.sum()),
     )
     return Section("diagnosis-likeness", title, (_WHAT,), points=points, pictures=(matrix,))
 
@@ -91,3 +97,53 @@ def _hidden(names: npt.NDArray[np.object_], visible: Floats) -> Iterator[str]:
     hidden = [f"`{name}`" for name in names[visible < _VISIBLE]]
     if hidden:
         yield f"These inputs hardly show {listed(hidden)} at a size that is plausible."
+
+
+def draw_likeness(figure: Any, effects: Sequence[str], likeness: Floats, *, alike: float) -> None:
+    """Draw a square for each two effects, its side the likeness.
+
+    Parameters
+    ----------
+    figure
+        The matplotlib figure to draw on.
+    effects
+        Their names, shape (n,), the first on top.
+    likeness
+        From 0 to 1, shape (n, n); only what is below the diagonal is read.
+    alike
+        From which likeness on the square is in the loud colour.
+    """
+    axes = figure.add_subplot()
+    n = len(effects)
+    for role, low, high, label in (
+        ("alike", alike, np.inf, f"alike, {alike} or more"),
+        ("muted", _FAINT, alike, f"less than {alike}"),
+    ):
+        pairs = [(i, j) for i in range(n) for j in range(i) if low <= likeness[i, j] < high]
+        _squares(axes, pairs, [float(likeness[pair]) for pair in pairs], role=role, label=label)
+    for place, name in enumerate(effects):
+        axes.text(place - 0.4, place, name, va="center", fontsize=9)
+        axes.plot([-0.5, place - 0.5], [place + 0.5] * 2, color=STAND_IN["line"], linewidth=0.6)
+        axes.plot([place - 0.5] * 2, [place + 0.5, n - 0.5], color=STAND_IN["line"], linewidth=0.6)
+    cell_in = min(_ROW_IN, (WIDTH_IN - _NAMES_IN) / n)
+    axes.set(xlim=(-0.6, WIDTH_IN / cell_in), ylim=(n - 0.4, -0.6))
+    axes.set_axis_off()
+    legend(figure, handlelength=1.0)
+
+
+def _squares(
+    axes: Any, pairs: Sequence[tuple[int, int]], sides: Sequence[float], *, role: str, label: str
+) -> None:
+    """Draw all squares of one colour as one path."""
+    from matplotlib.patches import PathPatch
+    from matplotlib.path import Path
+
+    if not pairs:
+        return
+    squares = [
+        Path(_CORNERS * 0.94 * side + (column, row), closed=True)
+        for (row, column), side in zip(pairs, sides, strict=True)
+    ]
+    patch = PathPatch(Path.make_compound_path(*squares), linewidth=0, label=label)
+    patch.set_facecolor(STAND_IN[role])
+    axes.add_patch(patch)

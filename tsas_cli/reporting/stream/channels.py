@@ -6,12 +6,10 @@ A column of a file is read once, recorded, and forgotten.
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.reporting.stream.palette import colour
+from tsas_cli.reporting.colours import dark
 from tsas_cli.reporting.stream.portraits import Portrait
-from tsas_cli.reporting.stream.recorder import Recorder
-from tsas_cli.reporting.stream.recorder.paths import Entity
-from tsas_cli.reporting.stream.seen import MEASURED, RESIDUAL, WANTED, Channel, SeenRun
-from tsas_cli.reporting.stream.sources import Source
+from tsas_cli.reporting.stream.recorder import Entity, Recorder
+from tsas_cli.reporting.stream.seen import MEASURED, RESIDUAL, WANTED, SeenRun
 
 Floats = npt.NDArray[np.float64]
 _ROLES = {MEASURED: "measured", WANTED: "ink"}
@@ -22,7 +20,7 @@ def series_of(run: SeenRun) -> dict[str, list[Entity]]:
     """Return the entities of all series, by the column that they are shown with."""
     found: dict[str, list[Entity]] = {}
     for channel in run.channels:
-        keys = (channel.key, *(source.key for source in channel.sources))
+        keys = (channel.key, *(source.which.key for source in channel.sources))
         found.setdefault(channel.quantity, []).extend(
             run.entity(channel.quantity, key) for key in keys
         )
@@ -33,7 +31,7 @@ def residuals_of(run: SeenRun) -> dict[str, list[Entity]]:
     """Return the entities of the residuals by column."""
     found = {
         channel.column: [
-            run.entity(channel.column, RESIDUAL, source.key)
+            run.entity(channel.column, RESIDUAL, source.which.key)
             for source in channel.sources
             if not source.cleaned
         ]
@@ -53,32 +51,20 @@ def record_channels(recorder: Recorder, run: SeenRun) -> None:
     for channel in run.channels:
         measured = run.measured(channel.column)
         entity = run.entity(channel.quantity, channel.key)
-        recorder.line(entity, channel.key, colour(_ROLES[channel.key]), width=_WIDTHS[channel.key])
+        recorder.line(entity, channel.key, dark(_ROLES[channel.key]), width=_WIDTHS[channel.key])
         recorder.scalars(entity, run.times, measured)
         portrait = None
         if channel in run.loops:
             portrait = Portrait(run, channel, run.x_in_mm, measured)
             portrait.record(recorder)
         for source in channel.sources:
-            told = run.told(channel.column, source)
-            _record_told(recorder, run, channel, source, told, measured)
+            told, which = run.told(channel.column, source), source.which
+            series = {run.entity(channel.column, which.key): told}
+            if not source.cleaned:
+                series[run.entity(channel.column, RESIDUAL, which.key)] = measured - told
+            for entity, values in series.items():
+                recorder.line(entity, which.label, dark(which.role))
+                recorder.scalars(entity, run.times, values)
             if portrait is not None:
                 portrait.record_answer(recorder, source, told)
         recorder.settle()
-
-
-def _record_told(
-    recorder: Recorder,
-    run: SeenRun,
-    channel: Channel,
-    source: Source,
-    told: Floats,
-    measured: Floats,
-) -> None:
-    """Record what a stage says of a channel, and measured less simulated."""
-    series = {run.entity(channel.column, source.key): told}
-    if not source.cleaned:
-        series[run.entity(channel.column, RESIDUAL, source.key)] = measured - told
-    for entity, values in series.items():
-        recorder.line(entity, source.label, colour(source.role))
-        recorder.scalars(entity, run.times, values)

@@ -1,20 +1,22 @@
-"""What happens in a run: the drive turns, a check finds a fault, a slip front comes through."""
+"""What happens in a run: phases, the drive turns, a check finds a fault, a front comes through."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+import rerun as rr
 
 from tsas_cli.recordings.quality.finding import Finding
 from tsas_cli.records.base import Segment
 from tsas_cli.records.check import Check
-from tsas_cli.reporting.stream.palette import colour
-from tsas_cli.reporting.stream.recorder import Recorder
-from tsas_cli.reporting.stream.recorder.paths import Entity
+from tsas_cli.reporting.colours import dark
+from tsas_cli.reporting.phases import BY_KEY, PHASES
+from tsas_cli.reporting.stream.recorder import Entity, Recorder
 from tsas_cli.reporting.stream.seen import X_IN, SeenRun
 
-EVENTS, REVERSALS, FAULTS = "events", "reversals", "faults"
+REVERSALS = "reversals"
+ENDS = ""  # a state that ends the last one
 _UP = {"contraction": True, "dead_band_up": True, "loosening": False, "dead_band_down": False}
 _LEVELS = {"error": "ERROR", "warning": "WARN"}
 
@@ -30,7 +32,7 @@ class Event:
 
 def events_of(run: SeenRun) -> Entity:
     """Return the entity under which a run's events are."""
-    return run.entity(EVENTS)
+    return run.entity("events")
 
 
 def happens(run: SeenRun) -> bool:
@@ -41,12 +43,12 @@ def happens(run: SeenRun) -> bool:
 def record_events(recorder: Recorder, run: SeenRun, kind: str, events: Sequence[Event]) -> None:
     """Record events of one kind, such as `reversals`."""
     if events:
-        recorder.events(
-            (*events_of(run), kind),
-            run.clock.times(np.array([event.at_s for event in events])),
-            [f"{event.at_s:.3f} s: {event.text}" for event in events],
-            [event.level for event in events],
+        columns = rr.TextLog.columns(
+            text=[f"{event.at_s:.3f} s: {event.text}" for event in events],
+            level=[event.level for event in events],
         )
+        times = run.at(np.array([event.at_s for event in events]))
+        recorder.columns((*events_of(run), kind), times, columns)
 
 
 def record_own_events(recorder: Recorder, run: SeenRun) -> None:
@@ -61,7 +63,8 @@ def record_own_events(recorder: Recorder, run: SeenRun) -> None:
     if at_s and X_IN in run.file.names:
         entity = run.entity(X_IN, REVERSALS)
         at = np.searchsorted(run.time_s, [s for s, _ in at_s])
-        recorder.marks(entity, "the drive turns", colour("ink"))
+        look = rr.SeriesPoints(names="the drive turns", colors=dark("ink"), marker_sizes=4.0)
+        recorder.static(entity, look)
         recorder.scalars(entity, run.times.at(at), run.x_in_mm[at])
     start_s = float(run.time_s[0])
     faults = [
@@ -72,7 +75,7 @@ def record_own_events(recorder: Recorder, run: SeenRun) -> None:
         )
         for f in faults_of(run)
     ]
-    record_events(recorder, run, FAULTS, faults)
+    record_events(recorder, run, "faults", faults)
 
 
 def reversals(segments: Sequence[Segment]) -> list[tuple[float, bool]]:
@@ -85,3 +88,35 @@ def faults_of(run: SeenRun) -> list[Finding]:
     """Return what a check found in a run."""
     check = run.inputs.get(Check)
     return [] if check is None else [f for f in check.findings if f.run == run.id]
+
+
+def phases_of(run: SeenRun) -> Entity:
+    """Return the entity of a run's phases."""
+    return run.entity("phase")
+
+
+def record_phases(recorder: Recorder, run: SeenRun) -> None:
+    """Record when each phase begins, and where the last one ends; nothing without segments."""
+    if not run.segments:
+        return
+    starts, keys = changes(run.segments)
+    look = rr.StateConfiguration(
+        values=[phase.key for phase in PHASES],
+        labels=[phase.label for phase in PHASES],
+        colors=[dark(phase.colour) for phase in PHASES],
+    )
+    recorder.static(phases_of(run), look)
+    recorder.columns(phases_of(run), run.at(np.array(starts)), rr.StateChange.columns(state=keys))
+
+
+def changes(segments: Sequence[Segment]) -> tuple[list[float], list[str]]:
+    """Return when which phase begins [s]; a stretch in none begins with an empty name."""
+    starts: list[float] = []
+    keys: list[str] = []
+    for segment, after in zip(segments, (*segments[1:], None), strict=True):
+        starts.append(segment.start_s)
+        keys.append(segment.phase if segment.phase in BY_KEY else "unknown")
+        if after is None or after.start_s > segment.end_s:
+            starts.append(segment.end_s)
+            keys.append(ENDS)
+    return starts, keys

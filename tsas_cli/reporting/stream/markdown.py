@@ -20,9 +20,9 @@ def plain_text(text: str) -> str:
     )
 
 
-def section_text(section: Section, level: int = 1) -> str:
+def section_text(section: Section) -> str:
     """Return a section with its parts, without its pictures."""
-    return "\n\n".join(_blocks(section, level))
+    return "\n\n".join(_blocks(section, 1))
 
 
 def table_text(table: Table) -> str:
@@ -35,11 +35,6 @@ def table_text(table: Table) -> str:
     return "\n".join([f"**{plain_text(table.caption)}**", "", header, f"|{rule}|", *rows])
 
 
-def points_text(points: Sequence[str]) -> str:
-    """Return sentences as a list."""
-    return "\n".join(f"- {plain_text(point)}" for point in points)
-
-
 def _escaped(text: str) -> str:
     return _SPECIAL.sub(r"\\\1", text)
 
@@ -49,7 +44,7 @@ def _blocks(section: Section, level: int) -> Iterator[str]:
     yield from map(plain_text, section.intro)
     yield from (f"> {plain_text(equation)}" for equation in section.equations)
     if section.points:
-        yield points_text(section.points)
+        yield "\n".join(f"- {plain_text(point)}" for point in section.points)
     yield from map(table_text, section.tables)
     yield from map(plain_text, section.closing)
     for part in section.parts:

@@ -11,16 +11,16 @@ from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
+import rerun as rr
+from rerun.blueprint import View
 
 from tsas_cli.reporting.channels import at_axis, in_words
+from tsas_cli.reporting.colours import dark
 from tsas_cli.reporting.decimation import Indices, kept_samples
 from tsas_cli.reporting.phases import PHASES, Phase, phase_of_samples
 from tsas_cli.reporting.stream.events import reversals
-from tsas_cli.reporting.stream.palette import colour
-from tsas_cli.reporting.stream.plane import ACROSS, DOWN, Frame, frame_of, record_frame
-from tsas_cli.reporting.stream.recorder import Recorder
-from tsas_cli.reporting.stream.recorder.paths import Entity
-from tsas_cli.reporting.stream.recorder.views import View, plane
+from tsas_cli.reporting.stream.plane import Frame, frame_of, plane_view, record_frame
+from tsas_cli.reporting.stream.recorder import Entity, Recorder
 from tsas_cli.reporting.stream.seen import MEASURED, X_IN, Channel, SeenRun
 from tsas_cli.reporting.stream.sources import Source
 
@@ -64,23 +64,23 @@ class Portrait:
         names = at_axis(X_IN), at_axis(self.channel.column)
         record_frame(recorder, self._entity(), self.frame, names, "ink")
         for phase, curves in self._by_phase():
-            recorder.curves_2d(
-                self._entity("phase", phase.key), curves, colour(phase.colour, FAINT), radius=-1.0
-            )
-        self._record_stretch(recorder, MEASURED, self.y, colour("ink"), place=0)
+            shade = dark(phase.colour, FAINT)
+            look = rr.LineStrips2D(curves, colors=shade, radii=-1.0, draw_order=0.0)
+            recorder.static(self._entity("phase", phase.key), look)
+        self._record_stretch(recorder, MEASURED, self.y, dark("ink"), place=0)
 
     def record_answer(self, recorder: Recorder, source: Source, values: Floats) -> None:
         """Record the stretch that a model answers, shape (n,), over the measured displacement."""
         if self.there.any():
-            place = 1 + self.channel.sources.index(source)
-            self._record_stretch(recorder, source.key, values, colour(source.role), place)
+            place, which = 1 + self.channel.sources.index(source), source.which
+            self._record_stretch(recorder, which.key, values, dark(which.role), place)
 
     def _record_stretch(
         self, recorder: Recorder, key: str, values: Floats, shown: int, place: int
     ) -> None:
         """Record a stretch that runs along; those with a later place are thinner and on top."""
         at, size, order = self.moments, 1.0 / (1.0 + 0.5 * place), 1.0 + 2.0 * place
-        times = self.run.clock.times(self.run.time_s[at])
+        times = self.run.at(self.run.time_s[at])
         places = self.frame.place(self.x[at], values[at])
         pieces = np.stack((places[:-1], places[1:]), axis=1)
         joined = np.isfinite(pieces).all(axis=(1, 2))
@@ -123,16 +123,11 @@ class Portrait:
 def view_of(run: SeenRun, channel: Channel, titled: str = "") -> View:
     """Return the view of a loop; `titled` names it where it does not stand with its run."""
     base = run.entity(channel.column, LOOP)
-    keys = (MEASURED, *(source.key for source in channel.sources))
+    keys = (MEASURED, *(source.which.key for source in channel.sources))
     stretch = stretch_s(run)
     name = f"{in_words(channel.column)} over displacement"
-    return plane(
-        f"{titled}: {name}" if titled else name,
-        [base],
-        x_range=ACROSS,
-        y_range=DOWN,
-        trails={(*base, TRAIL, key): stretch for key in keys},
-    )
+    trails = {(*base, TRAIL, key): stretch for key in keys}
+    return plane_view(f"{titled}: {name}" if titled else name, base, trails)
 
 
 def stretch_s(run: SeenRun) -> float:

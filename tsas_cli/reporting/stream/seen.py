@@ -18,8 +18,7 @@ from tsas_cli.records.diagnosis import Diagnosis
 from tsas_cli.records.simulation import Simulation
 from tsas_cli.records.tracking import Result, Tracking
 from tsas_cli.reporting.inputs import Inputs
-from tsas_cli.reporting.stream.recorder import Clock, Times
-from tsas_cli.reporting.stream.recorder.paths import Entity
+from tsas_cli.reporting.stream.recorder import Entity, Times, times_of
 from tsas_cli.reporting.stream.sources import Source, sources
 
 Floats = npt.NDArray[np.float64]
@@ -67,11 +66,6 @@ class SeenRun:
         return self.file.run.id
 
     @property
-    def clock(self) -> Clock:
-        """When the run began."""
-        return Clock(self.file.run.started)
-
-    @property
     def loops(self) -> tuple[Channel, ...]:
         """The tensions that can be shown over the displacement of the drive."""
         there = any(channel.column == X_IN for channel in self.channels)
@@ -85,12 +79,16 @@ class SeenRun:
     @cached_property
     def times(self) -> Times:
         """The samples on the timelines."""
-        return self.clock.times(self.time_s)
+        return self.at(self.time_s)
 
     @cached_property
     def x_in_mm(self) -> Floats:
         """Displacement of the drive [mm], shape (n,), NaN for gaps."""
         return self.file.read(X_IN)
+
+    def at(self, time_s: Floats) -> Times:
+        """Return moments of the run [s] on the timelines."""
+        return times_of(time_s, self.file.run.started)
 
     def entity(self, *parts: str) -> Entity:
         """Return the name of something that belongs to the run."""

@@ -1,4 +1,4 @@
-"""Where a simulated channel comes from: which stage wrote it, its column, and how it is shown."""
+"""Where a simulated channel comes from: which model and stage, its column, how it is shown."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -9,10 +9,23 @@ from tsas_cli.records.diagnosis import Diagnosis
 from tsas_cli.records.drive import Drive
 from tsas_cli.records.simulation import Simulation
 from tsas_cli.reporting.inputs import Inputs
-from tsas_cli.reporting.which import EXTENDED, NOMINAL, SIMULATED, Which
 
 TENDON = frozenset({"f_in_N", "f_out_N", "x_out_mm"})
 DRIVE = frozenset({"x_in_mm"})
+
+
+@dataclass(frozen=True)
+class Which:
+    """Which model a picture is of: its name in paths, its name in words, its colour's role."""
+
+    key: str
+    label: str
+    role: str
+
+
+SIMULATED = Which("simulated", "simulated", "simulated")
+NOMINAL = Which("model", "nominal model", "before")
+EXTENDED = Which("model_extended", "extended model", "after")
 CONDITIONED = Which("model_input", "conditioned", "simulated")
 NOMINAL_DRIVE = Which("model", "nominal drive", "before")
 IDENTIFIED_DRIVE = Which("model_identified", "identified drive", "after")
@@ -20,7 +33,7 @@ IDENTIFIED_DRIVE = Which("model_identified", "identified drive", "after")
 
 @dataclass(frozen=True)
 class Source:
-    """What a stage says of some columns, by `which` model; its key ends the entities.
+    """What a stage says of some columns, by `which` model, whose key ends the entities.
 
     What comes later in the alphabet is drawn over what comes before. `cleaned` where it is the
     measurement itself, cleaned before it drove a model, and no answer.
@@ -31,21 +44,6 @@ class Source:
     columns: frozenset[str]
     named: Callable[[str], str] = str
     cleaned: bool = False
-
-    @property
-    def key(self) -> str:
-        """What its entities end with."""
-        return self.which.key
-
-    @property
-    def label(self) -> str:
-        """What a legend calls it."""
-        return self.which.label
-
-    @property
-    def role(self) -> str:
-        """The role of its colour."""
-        return self.which.role
 
 
 def sources(inputs: Inputs) -> Iterator[Source]:

@@ -4,13 +4,14 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from rerun.blueprint import Blueprint
+
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.stream import texts
 from tsas_cli.reporting.stream.channels import record_channels
-from tsas_cli.reporting.stream.events import record_own_events
-from tsas_cli.reporting.stream.phases import record_phases
-from tsas_cli.reporting.stream.recorder import Recorder, to_file
-from tsas_cli.reporting.stream.recorder.views import Layout
+from tsas_cli.reporting.stream.events import record_own_events, record_phases
+from tsas_cli.reporting.stream.opened import to_file
+from tsas_cli.reporting.stream.recorder import Recorder
 from tsas_cli.reporting.stream.seen import SeenRun, seen_runs
 from tsas_cli.reporting.stream.tabs import DIAGNOSIS, OVERVIEW, layout_of
 from tsas_cli.reporting.stream.tendon.content import record_tendon
@@ -36,7 +37,7 @@ class Stream:
     runs: tuple[SeenRun, ...]
 
     @property
-    def layout(self) -> Layout:
+    def layout(self) -> Blueprint:
         """What the viewer opens with."""
         return layout_of(self.runs, diagnosed=self.diagnosis is not None)
 

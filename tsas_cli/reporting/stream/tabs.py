@@ -2,31 +2,19 @@
 
 from collections.abc import Callable, Mapping, Sequence
 
+from rerun.blueprint import Blueprint, Grid, Horizontal, Tabs, Vertical
+
 from tsas_cli.reporting.channels import at_axis
 from tsas_cli.reporting.stream.channels import residuals_of, series_of
-from tsas_cli.reporting.stream.events import REVERSALS, events_of, happens
-from tsas_cli.reporting.stream.phases import phases_of
+from tsas_cli.reporting.stream.events import REVERSALS, events_of, happens, phases_of
 from tsas_cli.reporting.stream.portraits import view_of
-from tsas_cli.reporting.stream.recorder.paths import Entity
-from tsas_cli.reporting.stream.recorder.views import (
-    Grid,
-    Horizontal,
-    Layout,
-    Part,
-    Tabs,
-    Vertical,
-    laid_out,
-    log,
-    series,
-    states,
-    text,
-)
+from tsas_cli.reporting.stream.recorder import Entity
 from tsas_cli.reporting.stream.seen import X_IN, SeenRun
 from tsas_cli.reporting.stream.tendon.content import view_of_tendon
 from tsas_cli.reporting.stream.tracking import FORCE, tracking_tab, true_of
+from tsas_cli.reporting.stream.views import Part, laid_out, log, series, states, text
 
 OVERVIEW, DIAGNOSIS = ("about", "overview"), ("about", "diagnosis")
-TABS = ("Overview", "Residuals", "Tendon", "Tracking", "Diagnosis")
 ALL_RUNS = 12  # beyond which their loops are too small to be seen beside each other
 _ACROSS = 4
 _ORDER = ("f_in_N", "f_out_N", "x_in_mm", "x_out_mm")  # what is looked at first
@@ -34,7 +22,7 @@ _TALL, _LANE = 1.6, 0.8  # height of the first plot, and of the phases, over tha
 _LOG = 0.6  # height of the events over that of a loop
 
 
-def layout_of(runs: Sequence[SeenRun], *, diagnosed: bool) -> Layout:
+def layout_of(runs: Sequence[SeenRun], *, diagnosed: bool) -> Blueprint:
     """Return the tabs; what was tracked opens on it, all else on the overview.
 
     `diagnosed` says whether there is a text on it.
@@ -46,7 +34,7 @@ def layout_of(runs: Sequence[SeenRun], *, diagnosed: bool) -> Layout:
         "Tracking": tracking_tab(runs),
         "Diagnosis": text("Diagnosis", DIAGNOSIS) if diagnosed else None,
     }
-    parts = [Vertical(part, name=name) for name in TABS if (part := made[name]) is not None]
+    parts = [Vertical(part, name=name) for name, part in made.items() if part is not None]
     names = [part.name for part in parts]
     on_top = names.index("Tracking") if "Tracking" in names else 0
     moves = made["Tendon"] is not None or any(run.loops for run in runs)

@@ -4,21 +4,24 @@ from collections.abc import Iterator
 
 from tsas_cli.identification.model import read_model
 from tsas_cli.recordings.quality.finding import Finding
+from tsas_cli.records.base import Value, parameters_of
 from tsas_cli.records.calibration import Calibration
 from tsas_cli.records.check import Check
-from tsas_cli.records.diagnosis import Cause, Diagnosis
+from tsas_cli.records.diagnosis import EXTENDED_MODEL, Diagnosis
 from tsas_cli.records.drive import Drive
 from tsas_cli.records.simulation import Simulation
 from tsas_cli.records.tracking import Tracking
+from tsas_cli.reporting.calibration import parameters
 from tsas_cli.reporting.content import Section, Table
-from tsas_cli.reporting.diagnosis import candidates, causes, gains, remainder
+from tsas_cli.reporting.diagnosis import candidates, causes, gains
+from tsas_cli.reporting.diagnosis.section import remainder
+from tsas_cli.reporting.drive.section import told_of
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import plain, with_interval
-from tsas_cli.reporting.sections.drive import told_of
 from tsas_cli.reporting.stream.markdown import section_text
 from tsas_cli.reporting.tracking.scores import best_and_worst
 
-EXTENDED = "model-extended.toml"
+_NARROW = ("parameter", "value", "95 % interval", "unit")
 
 
 def overview(inputs: Inputs) -> str:
@@ -43,7 +46,7 @@ def diagnosis(inputs: Inputs) -> str | None:
             *causes.parts(found),
             Section("gains", "What it is worth", tables=(gains.table(found),)),
             candidates.part(found),
-            *remainder.parts(found),
+            *remainder(found),
             _extended(inputs),
         )
         told = tuple(part for part in parts if part is not None)
@@ -54,11 +57,11 @@ def diagnosis(inputs: Inputs) -> str | None:
 def _short(inputs: Inputs) -> Iterator[Section]:
     """Yield what each stage says in few words and narrow tables."""
     if found := inputs.get(Diagnosis):
-        tables = (_causes(found.named), _held_out(found))
+        named = tuple(_narrow(p, n) for cause in found.named for n, p in cause.parameters.items())
+        both = Table("What is named", _NARROW, named, numeric=frozenset({1, 2})), _held_out(found)
+        tables = tuple(table for table in both if table.rows)
         after = (f"Next: {found.next_experiment}",) if found.next_experiment else ()
-        yield Section(
-            "diagnosis", "Diagnosis", (found.reason,), tables=_filled(tables), closing=after
-        )
+        yield Section("diagnosis", "Diagnosis", (found.reason,), tables=tables, closing=after)
     if tracking := inputs.get(Tracking):
         said = tuple(best_and_worst(tracking))
         table = _scores(tracking)
@@ -70,7 +73,11 @@ def _short(inputs: Inputs) -> Iterator[Section]:
         table = _errors(simulation)
         yield Section("simulation", "Simulation", points=simulation.notes, tables=(table,))
     if calibration := inputs.get(Calibration):
-        table, said = _parameters(calibration), calibration.cannot_tell
+        rows = tuple(
+            _narrow(p, p.name if p.run is None else f"{p.name}, run {p.run}")
+            for p in calibration.parameters
+        )
+        table, said = Table("Parameters", _NARROW, rows), calibration.cannot_tell
         yield Section("calibration", "Calibration", points=said, tables=(table,))
     if check := inputs.get(Check):
         found_out = tuple(_finding(finding) for finding in check.findings)
@@ -83,22 +90,9 @@ def _finding(finding: Finding) -> str:
     return f"{finding.severity}, {where}{finding.code}: {finding.sentence}"
 
 
-def _causes(named: tuple[Cause, ...]) -> Table:
-    rows = tuple(
-        (
-            name,
-            *with_interval(p.value, p.interval_low, p.interval_high),
-            p.unit + (", at its bound" if p.at_bound else ""),
-        )
-        for cause in named
-        for name, p in cause.parameters.items()
-    )
-    return Table(
-        "What is named",
-        ("parameter", "value", "95 % interval", "unit"),
-        rows,
-        numeric=frozenset({1, 2}),
-    )
+def _narrow(p: Value, name: str) -> tuple[str, ...]:
+    unit = p.unit + (", at its bound" if p.at_bound else "")
+    return (name, *with_interval(p.value, p.interval_low, p.interval_high), unit)
 
 
 def _held_out(found: Diagnosis) -> Table:
@@ -118,18 +112,6 @@ def _scores(tracking: Tracking) -> Table:
     return Table("How well it is followed", ("controller", "condition", "RMSE [N]"), rows)
 
 
-def _parameters(calibration: Calibration) -> Table:
-    rows = tuple(
-        (
-            p.name if p.run is None else f"{p.name}, run {p.run}",
-            *with_interval(p.value, p.interval_low, p.interval_high),
-            p.unit + (", at its bound" if p.at_bound else ""),
-        )
-        for p in calibration.parameters
-    )
-    return Table("Parameters", ("parameter", "value", "95 % interval", "unit"), rows)
-
-
 def _errors(simulation: Simulation) -> Table:
     rows = tuple(
         (run_id, name, plain(channel.rmse, 3), plain(channel.noise, 3))
@@ -141,22 +123,6 @@ def _errors(simulation: Simulation) -> Table:
 
 
 def _extended(inputs: Inputs) -> Section:
-    model = read_model(inputs.folders[Diagnosis] / EXTENDED)
-    rows = tuple(
-        (
-            e.name,
-            e.run or "all",
-            *with_interval(e.value, e.interval_low, e.interval_high),
-            e.unit,
-            e.origin,
-            "yes" if e.at_bound else "no",
-        )
-        for e in model.estimates
-    )
-    header = ("parameter", "run", "value", "95 % interval", "unit", "origin", "at its bound")
-    table = Table(f"Parameters of {EXTENDED}", header, rows, numeric=frozenset({2, 3}))
+    model = read_model(inputs.folders[Diagnosis] / EXTENDED_MODEL)
+    table = parameters.table(f"Parameters of {EXTENDED_MODEL}", parameters_of(model.estimates))
     return Section("model", "The model with what is named", tables=(table,))
-
-
-def _filled(tables: tuple[Table, ...]) -> tuple[Table, ...]:
-    return tuple(table for table in tables if table.rows)

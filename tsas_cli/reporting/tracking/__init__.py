@@ -1,1 +1,1 @@
-"""The parts of the page's section on tracking, one file each."""
+"""Tracking: the section, its parts and figures."""

@@ -1,15 +1,20 @@
 """What the adaptive sliding mode has learned: its estimates over time, between their bounds."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from functools import partial
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from tsas_cli.records.tracking import ADAPTIVE, Adaptive
+from tsas_cli.reporting.colours import of_controller
 from tsas_cli.reporting.content import Picture, Section, Table
 from tsas_cli.reporting.drawing import picture
-from tsas_cli.reporting.figures.adaptation import Estimate, draw_estimates
+from tsas_cli.reporting.figures import bound, line
 from tsas_cli.reporting.numbers import plain
+from tsas_cli.reporting.tracking.over_time import mark_change
 from tsas_cli.reporting.tracking.runs import ESTIMATES, Condition, Followed
 
 _WHAT = (
@@ -17,6 +22,18 @@ _WHAT = (
     "bounds. They serve the sliding surface; they need not come to the drive's true values."
 )
 _SYMBOLS = (("φ̂1", "rpm s³/mm"), ("φ̂2", "rpm s/mm"), ("φ̂3", "rpm s²/mm"))
+Floats = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """One parameter: symbol, unit, values over time, shape (n,), and bounds."""
+
+    symbol: str
+    unit: str
+    values: Floats
+    lowest: float
+    highest: float
 
 
 def part(conditions: tuple[Condition, ...], law: Adaptive) -> Section | None:
@@ -78,7 +95,6 @@ def _picture(condition: Condition, run: Followed, law: Adaptive) -> Picture:
             draw_estimates,
             time_s=run.time_s,
             estimates=estimates,
-            role=ADAPTIVE,
             change_s=condition.change_s,
         ),
         key=f"tracking-adaptation-{condition.number}",
@@ -86,3 +102,25 @@ def _picture(condition: Condition, run: Followed, law: Adaptive) -> Picture:
         caption=f"{condition.name.capitalize()}: estimates over time, bounds dashed.",
         height_in=4.2,
     )
+
+
+def draw_estimates(
+    figure: Any,
+    *,
+    time_s: Floats,
+    estimates: Sequence[Estimate],
+    change_s: float | None,
+) -> None:
+    """Draw one panel for each estimate, its axis in powers of ten where all is positive."""
+    rows = figure.subplots(len(estimates), 1, sharex=True, squeeze=False)[:, 0]
+    for axes, it in zip(rows, estimates, strict=True):
+        line(axes, time_s, it.values, color=of_controller(ADAPTIVE), linewidth=1.3)
+        for value in (it.lowest, it.highest):
+            bound(axes, value)
+        if min(it.lowest, float(it.values.min())) > 0.0:
+            axes.set_yscale("log")
+            axes.yaxis.set_major_formatter("{x:g}")
+            axes.yaxis.set_minor_formatter("")
+        mark_change(axes, change_s)
+        axes.set_title(f"{it.symbol} [{it.unit}]", loc="left", fontsize=9.0, pad=3.0)
+    rows[-1].set_xlabel("time [s]")

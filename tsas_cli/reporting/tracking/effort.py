@@ -4,8 +4,8 @@ from functools import partial
 
 from tsas_cli.reporting.content import Picture, Section
 from tsas_cli.reporting.drawing import picture
-from tsas_cli.reporting.figures.over_time import Curve, draw_panels, panels_in
 from tsas_cli.reporting.numbers import plain
+from tsas_cli.reporting.tracking.over_time import Curve, draw_panels, panels_in
 from tsas_cli.reporting.tracking.runs import ASKED, Condition, Followed
 
 _WHAT = (

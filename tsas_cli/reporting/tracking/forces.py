@@ -7,8 +7,8 @@ import numpy.typing as npt
 
 from tsas_cli.reporting.content import Picture, Section
 from tsas_cli.reporting.drawing import picture
-from tsas_cli.reporting.figures.over_time import Curve, draw_panels, draw_together, panels_in
 from tsas_cli.reporting.numbers import plain, spanned
+from tsas_cli.reporting.tracking.over_time import Curve, draw_panels, draw_together, panels_in
 from tsas_cli.reporting.tracking.runs import TRUE, WANTED, Condition, Followed
 
 Floats = npt.NDArray[np.float64]

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from tsas_cli.recordings.written import answers_of, columns_of
 from tsas_cli.records.tracking import ADAPTIVE, Change, Result, Tracking
 from tsas_cli.reporting.inputs import Inputs
 
@@ -62,10 +63,11 @@ def read_conditions(inputs: Inputs, tracking: Tracking) -> tuple[Condition, ...]
     InputError
         A run cannot be read, or lacks a column.
     """
+    folder = inputs.folders[Tracking]
     found: dict[str, list[Followed]] = {}
     for result in tracking.results:
         more = ESTIMATES if result.controller == ADAPTIVE else ()
-        followed = Followed(result, inputs.tracked(result.run, (*_COLUMNS, *more)))
+        followed = Followed(result, columns_of(answers_of(folder, result.run), (*_COLUMNS, *more)))
         found.setdefault(result.condition, []).append(followed)
     return tuple(
         Condition(name, number, tracking.conditions.get(name, ()), tuple(runs))

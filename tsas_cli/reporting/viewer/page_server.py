@@ -6,7 +6,7 @@ page reads the file from the disk through this server, so that only the browser 
 """
 
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from http import HTTPStatus
 from http.client import HTTPConnection
@@ -18,30 +18,25 @@ from tsas_cli.reporting.viewer.ports import LOOPBACK
 
 FILE = "/stream.rrd"
 KEPT = ("Content-Type", "Content-Length", "rerun-final-length")  # what the page reads of headers
+HOSTS = (LOOPBACK, "localhost")
+POLICY = (
+    "default-src 'self' data: blob:; "
+    "script-src 'self' 'unsafe-inline' 'wasm-unsafe-eval' blob:; style-src 'self' 'unsafe-inline'"
+)
 AT_ONCE = 1 << 20  # bytes
 
 
 @contextmanager
 def served_page(
-    port: int, *, inside: int, file: Path | None = None, data: int | None = None
+    port: int, *, inside: int, file: Path | None = None, data: Sequence[int] = ()
 ) -> Iterator[None]:
     """Serve the page that Rerun serves at the port `inside`, and a file at `FILE`.
 
-    Of other addresses the page may only reach the port `data`, which sends what is live.
+    Of other addresses the page may only reach the ports `data`, which send what is live.
     """
-    own = [f"{host}:{port}" for host in (LOOPBACK, "localhost")]
-    reached = ["'self'", *(f"http://{host}" for host in own)]
-    if data is not None:
-        reached += [f"http://{host}:{data}" for host in (LOOPBACK, "localhost")]
-    inline = "'self' 'unsafe-inline'"
-    policy = "; ".join(
-        (
-            "default-src 'self' data: blob:",
-            f"script-src {inline} 'wasm-unsafe-eval' blob:",
-            f"style-src {inline}",
-            f"connect-src {' '.join(reached)} data: blob:",
-        )
-    )
+    own = [f"{host}:{port}" for host in HOSTS]
+    reached = " ".join(f"http://{host}:{one}" for one in (port, *data) for host in HOSTS)
+    policy = f"{POLICY}; connect-src 'self' {reached} data: blob:"
 
     class Handler(BaseHTTPRequestHandler):
         def do_GET(self) -> None:

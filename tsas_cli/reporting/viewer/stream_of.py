@@ -6,8 +6,9 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from tsas_cli.recordings.storage import Place
-from tsas_cli.reporting.stream import FILE
-from tsas_cli.reporting.stream.recorder.reading import is_finished
+from tsas_cli.reporting.inputs import read_inputs
+from tsas_cli.reporting.stream import FILE, write_stream
+from tsas_cli.reporting.stream.opened import is_finished
 from tsas_cli.support.errors import InputError
 
 
@@ -42,13 +43,9 @@ def stream_of(
                 where=path,
                 expected="folders of stages, or one .rrd file alone",
             )
-    from tsas_cli.reporting.inputs import read_inputs
-    from tsas_cli.reporting.stream.stream import write_stream
-
-    inputs = read_inputs(paths)
     with tempfile.TemporaryDirectory(prefix="tsas-view-") as folder:
         stream = Path(folder) / FILE
-        write_stream(inputs, stream, step=step)
+        write_stream(read_inputs(paths), stream, step=step)
         yield stream, []
 
 

@@ -6,15 +6,11 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.physics.passages import ends_of
-from tsas_cli.reporting.stream.palette import colour
-from tsas_cli.reporting.stream.plane import ACROSS, DOWN, Frame, frame_of, record_frame
-from tsas_cli.reporting.stream.recorder import Clock, Recorder
-from tsas_cli.reporting.stream.recorder.moving import points_2d
-from tsas_cli.reporting.stream.recorder.paths import Entity
-from tsas_cli.reporting.stream.recorder.views import View, plane
-from tsas_cli.reporting.stream.tendon.key import record_key
-from tsas_cli.reporting.tendon.followed import Followed
-from tsas_cli.reporting.which import Which
+from tsas_cli.reporting.colours import dark
+from tsas_cli.reporting.stream.plane import Frame, frame_of, record_frame, record_key
+from tsas_cli.reporting.stream.recorder import Entity, Recorder, Times
+from tsas_cli.reporting.stream.sources import Which
+from tsas_cli.reporting.stream.tendon.followed import Followed
 
 Floats = npt.NDArray[np.float64]
 
@@ -23,28 +19,15 @@ POINTS, LEAST, MOST = 80, 12, 60_000  # of a stroke, usually and at least, and o
 X_LABEL, Y_LABEL = "travel of the drive since it turned [mm]", "tension at the drive [N]"
 
 
-def view_of_band(entity: Entity) -> View:
-    """Return the view that shows it."""
-    return plane("The dead band from near", [entity], x_range=ACROSS, y_range=DOWN)
-
-
 def record_band(
     recorder: Recorder,
     entity: Entity,
-    clock: Clock,
     tendons: Mapping[Which, Followed],
     f_in_N: Floats | None,
 ) -> None:
     """Record the strokes of one run, one after the other.
 
-    Parameters
-    ----------
-    recorder, entity, clock
-        Where to, under which name, and when the run began.
-    tendons
-        The models' answers.
-    f_in_N
-        Measured, shape (n,), NaN for gaps; None where it was not.
+    `f_in_N` is measured, shape (n,), NaN for gaps; None where it was not.
     """
     widest = max((_width(one) for one in tendons.values()), default=0.0)
     if widest == 0.0:
@@ -55,20 +38,19 @@ def record_band(
     record_frame(recorder, entity, frame, (X_LABEL, Y_LABEL), "muted")
     record_key(recorder, entity, tendons, measured=f_in_N is not None)
     if f_in_N is not None:
-        at, strokes = _strokes(next(iter(tendons.values())), f_in_N, widest)
-        under, shade = [*entity, "measured"], colour("measured")
-        placed = _placed(frame, strokes)
-        recorder.segments_2d(under, clock.times(at), placed, shade, radius=-3.5, order=0.0)
+        first = next(iter(tendons.values()))
+        at, strokes = _strokes(first, f_in_N, widest)
+        under, placed = [*entity, "measured"], _placed(frame, strokes)
+        recorder.segments_2d(under, at, placed, dark("measured"), radius=-3.5, order=0.0)
     for which, one in tendons.items():
-        mine, shade = [*entity, which.key], colour(which.role)
+        mine, shade = [*entity, which.key], dark(which.role)
         at, strokes = curves[which]
         placed = _placed(frame, strokes)
-        recorder.segments_2d([*mine, "stroke"], clock.times(at), placed, shade, radius=-1.2)
+        recorder.segments_2d([*mine, "stroke"], at, placed, shade, radius=-1.2)
         x, f_in = one.response.x_in_mm, one.response.f_in_N[one.frames.samples]
         travel = np.abs(x[one.frames.samples] - x[one.turned()])
         now = frame.place(travel, f_in)
-        there = [now[k : k + seen] for k, seen in enumerate(travel <= widest)]
-        points_2d(recorder, [*mine, "now"], clock.times(one.time_s), there, shade)
+        recorder.points_2d([*mine, "now"], one.times, now, shade, shown=travel <= widest)
 
 
 def _width(one: Followed) -> float:
@@ -80,8 +62,8 @@ def _width(one: Followed) -> float:
     return BEYOND * float(max(through, default=np.ptp(x) if x.size else 0.0))
 
 
-def _strokes(one: Followed, f_in: Floats, widest: float) -> tuple[Floats, Floats]:
-    """Return when strokes began [s], shape (k,), and their tension over travel, shape (k, p, 2).
+def _strokes(one: Followed, f_in: Floats, widest: float) -> tuple[Times, Floats]:
+    """Return when strokes began, shape (k,), and their tension over travel, shape (k, p, 2).
 
     Those of which nothing is known, since the tension is NaN, are left out.
     """
@@ -96,7 +78,7 @@ def _strokes(one: Followed, f_in: Floats, widest: float) -> tuple[Floats, Floats
             kept = shown[np.linspace(0, shown.size - 1, points).astype(int)]
             at.append(one.sample_time_s[run.start])
             strokes.append(np.column_stack((travel[kept], f_in[run.start + kept])))
-    return np.array(at), np.array(strokes).reshape(-1, points, 2)
+    return one.at(np.array(at)), np.array(strokes).reshape(-1, points, 2)
 
 
 def _placed(frame: Frame, strokes: Floats) -> Floats:

@@ -4,19 +4,20 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 import numpy.typing as npt
+import rerun as rr
+import rerun.blueprint as rrb
+from rerun.blueprint import View
 
 from tsas_cli.physics.phases import SLACK, UNCONVERGED
 from tsas_cli.physics.response import ELEMENTS
 from tsas_cli.physics.rig import Rig
-from tsas_cli.reporting.stream.palette import colour
-from tsas_cli.reporting.stream.recorder import Clock, Recorder, Times
-from tsas_cli.reporting.stream.recorder.moving import captions, coloured_pieces, curves, surface
-from tsas_cli.reporting.stream.recorder.paths import Entity
-from tsas_cli.reporting.stream.recorder.views import View, space
-from tsas_cli.reporting.tendon.followed import Followed
-from tsas_cli.reporting.tendon.shades import Scale, dimmed, packed, scale_of
-from tsas_cli.reporting.tendon.stage import LEFT, TALL, Stand, stage_of
-from tsas_cli.reporting.which import Which
+from tsas_cli.reporting.colours import dark
+from tsas_cli.reporting.stream.recorder import Entity, Recorder, Times
+from tsas_cli.reporting.stream.sources import Which
+from tsas_cli.reporting.stream.tendon.followed import Followed
+from tsas_cli.reporting.stream.tendon.shades import Scale, dimmed, packed, scale_of
+from tsas_cli.reporting.stream.tendon.stage import LEFT, TALL, Stand, stage_of
+from tsas_cli.reporting.stream.views import all_below
 
 Floats = npt.NDArray[np.float64]
 Bools = npt.NDArray[np.bool_]
@@ -32,19 +33,24 @@ STEPS = 48  # of the legend
 def view_of_scene(entity: Entity, rigs: Sequence[Rig]) -> View:
     """Return the view of tendons, one for each rig."""
     stage = stage_of(rigs, ELEMENTS)
-    return space("Tendon", [entity], eye=stage.eye, target=stage.target, ground=GROUND)
+    up = (0.0, 0.0, 1.0)
+    return rrb.Spatial3DView(
+        name="Tendon",
+        contents=all_below([entity]),
+        background=rrb.Background(color=GROUND, kind="SolidColor"),
+        eye_controls=rrb.EyeControls3D(position=stage.eye, look_target=stage.target, eye_up=up),
+        line_grid=False,
+    )
 
 
-def record_scene(
-    recorder: Recorder, entity: Entity, clock: Clock, tendons: Mapping[Which, Followed]
-) -> None:
+def record_scene(recorder: Recorder, entity: Entity, tendons: Mapping[Which, Followed]) -> None:
     """Record the tendons of one run above each other."""
     every = np.concatenate([one.frames.tension_N.ravel() for one in tendons.values()])
     scale = scale_of(float(np.nanmin(every)), float(np.nanmax(every)))
     followed = list(tendons.values())
     stage = stage_of([one.rig for one in followed], followed[0].frames.slip.shape[1])
     for (which, one), stand in zip(tendons.items(), stage.stands, strict=True):
-        mine, times = [*entity, which.key], clock.times(one.time_s)
+        mine, times = [*entity, which.key], one.times
         _sheath(recorder, mine, times, one, stand, scale)
         _curtain(recorder, mine, times, one, stand, scale)
         _front(recorder, mine, times, one, stand, scale)
@@ -59,18 +65,22 @@ def _sheath(
     """Draw the tendon between the sheath's walls, with marks that move with it."""
     for side in (1.0, -1.0):
         wall = stand.at + stand.shape.beside(side * RAIL * stand.size)
-        recorder.curves_3d([*entity, "sheath", f"{side:+.0f}"], [wall], SHEATH, radii=-1.5)
+        look = rr.LineStrips3D([wall], colors=SHEATH, radii=-1.5)
+        recorder.static([*entity, "sheath", f"{side:+.0f}"], look)
     tension, line = one.frames.tension_N, stand.sheath
     shades = packed(scale.colours(0.5 * (tension[:, 1:] + tension[:, :-1])))
     radii = stand.size * np.where(one.slips, THICK, THIN)
     pieces = np.stack((line[:-1], line[1:]), axis=1)
-    coloured_pieces(recorder, [*entity, "tendon"], times, pieces, shades, radii)
+    recorder.static([*entity, "tendon"], rr.LineStrips3D(pieces.astype(np.float32)))
+    columns = rr.LineStrips3D.columns(colors=shades.ravel(), radii=radii.ravel())
+    each = np.full(len(times), len(pieces))
+    recorder.columns([*entity, "tendon"], times, columns.partition(each))
     painted = (np.arange(2 * MARKS) - 0.5 * MARKS) / MARKS
-    shown = []
+    marks = []
     for by in one.moved_mm() / one.rig.sheath_length_mm:
         at = painted - np.interp(painted, one.frames.places, by)
-        shown.append(stand.at + stand.shape.at(at[(at >= 0.0) & (at <= 1.0)]))
-    recorder.points_3d([*entity, "marks"], times, shown, MARK, radii=-2.5)
+        marks.append(stand.at + stand.shape.at(at[(at >= 0.0) & (at <= 1.0)]))
+    recorder.points_3d([*entity, "marks"], times, marks, MARK, radius=-2.5)
 
 
 def _curtain(
@@ -89,7 +99,12 @@ def _curtain(
     low = np.arange(count - 1, dtype=np.uint32)
     halves = (low, low + 1, low + count), (low + 1, low + count + 1, low + count)
     triangles = np.concatenate([np.stack(half, axis=1) for half in halves]).astype(np.uint32)
-    surface(recorder, [*entity, "curtain"], times, corners, triangles, both)
+    recorder.static([*entity, "curtain"], rr.Mesh3D.from_fields(triangle_indices=triangles))
+    columns = rr.Mesh3D.columns(
+        vertex_positions=corners.reshape(-1, 3).astype(np.float32), vertex_colors=both.ravel()
+    )
+    each = np.full(len(times), 2 * count)
+    recorder.columns([*entity, "curtain"], times, columns.partition(each))
     for name, where, shade, radius in (
         ("sticks", ~one.slips, STICKS, -1.0),
         ("slips", one.slips, SLIDES, -2.2),
@@ -98,7 +113,7 @@ def _curtain(
             [points[first : end + 1] for first, end in _stretches(here)]
             for points, here in zip(top, where, strict=True)
         ]
-        curves(recorder, [*entity, name], times, edge, shade, radius=radius)
+        recorder.curves_3d([*entity, name], times, edge, shade, radius=radius)
 
 
 def _raised(stand: Stand, scale: Scale, tension_N: Floats) -> Floats:
@@ -117,30 +132,32 @@ def _front(
     runs = one.front_runs_now
     points = [post[: 2 * here] for post, here in zip(posts, runs, strict=True)]
     lines = [[post] * bool(here) for post, here in zip(posts, runs, strict=True)]
-    recorder.points_3d([*entity, "front", "ends"], times, points, SLIDES, radii=-6.0)
-    curves(recorder, [*entity, "front", "line"], times, lines, SLIDES, radius=-1.2)
+    recorder.points_3d([*entity, "front", "ends"], times, points, SLIDES, radius=-6.0)
+    recorder.curves_3d([*entity, "front", "line"], times, lines, SLIDES, radius=-1.2)
 
 
 def _ends(
     recorder: Recorder, entity: Entity, times: Times, one: Followed, stand: Stand, scale: Scale
 ) -> None:
     """Draw free tendon, the drive's pulley and the load's spring."""
-    ends, at, muted = stand.ends, stand.at, colour("muted")
+    ends, at, muted = stand.ends, stand.at, dark("muted")
     tension, thick = one.frames.tension_N, THICK * stand.size
-    recorder.curves_3d([*entity, "drive", "rim"], [ends.rim + at], muted, radii=-2.0)
+    rim = rr.LineStrips3D([ends.rim + at], colors=muted, radii=-2.0)
+    recorder.static([*entity, "drive", "rim"], rim)
     spokes = [list(now) for now in ends.spokes(one.x_in_mm) + at]
-    curves(recorder, [*entity, "drive", "spokes"], times, spokes, muted, radius=-1.2)
+    recorder.curves_3d([*entity, "drive", "spokes"], times, spokes, muted, radius=-1.2)
     moving = ends.distal(one.x_out_mm)
     for name, lines, felt in (
         ("drive", np.broadcast_to(ends.proximal, moving.shape), tension[:, 0]),
         ("load", moving, tension[:, -1]),
     ):
         shades, strips = packed(scale.colours(felt)), [[line] for line in lines + at]
-        curves(recorder, [*entity, name, "tendon"], times, strips, shades, radius=thick)
+        recorder.curves_3d([*entity, name, "tendon"], times, strips, shades, radius=thick)
     springs = [[line] for line in ends.spring(one.x_out_mm) + at]
-    curves(recorder, [*entity, "load", "spring"], times, springs, muted, radius=-1.5)
-    recorder.curves_3d([*entity, "load", "anchor"], [ends.anchor + at], muted, radii=-2.5)
-    recorder.labels_3d([*entity, "names"], ends.names + at, ["drive", "load"], muted)
+    recorder.curves_3d([*entity, "load", "spring"], times, springs, muted, radius=-1.5)
+    anchor = rr.LineStrips3D([ends.anchor + at], colors=muted, radii=-2.5)
+    recorder.static([*entity, "load", "anchor"], anchor)
+    recorder.labels([*entity, "names"], ends.names + at, ["drive", "load"], muted)
 
 
 def _captions(
@@ -148,9 +165,12 @@ def _captions(
 ) -> None:
     """Write the model's name, and under it what the tendon does at each time."""
     title, state = stand.captions
-    recorder.labels_3d([*entity, "title"], title[None], [which.label], colour(which.role))
+    recorder.labels([*entity, "title"], title[None], [which.label], dark(which.role))
     places = np.tile(state, (len(one.time_s), 1))
-    captions(recorder, [*entity, "state"], times, places, _said(one), colour("ink"))
+    look = rr.Points3D.from_fields(colors=dark("ink"), radii=0.0, show_labels=True)
+    recorder.static([*entity, "state"], look)
+    columns = rr.Points3D.columns(positions=places.astype(np.float32), labels=_said(one))
+    recorder.columns([*entity, "state"], times, columns)
 
 
 def _said(one: Followed) -> list[str]:
@@ -178,11 +198,12 @@ def _legend(recorder: Recorder, entity: Entity, stand: Stand, scale: Scale) -> N
     bar = foot + _raised(stand, scale, levels)
     shades = packed(scale.colours(0.5 * (levels[1:] + levels[:-1]))).tolist()
     pieces = list(np.stack((bar[:-1], bar[1:]), axis=1))
-    recorder.curves_3d([*entity, "bar"], pieces, shades, radii=0.012 * stand.size)
+    look = rr.LineStrips3D(pieces, colors=shades, radii=0.012 * stand.size)
+    recorder.static([*entity, "bar"], look)
     beside = foot + _raised(stand, scale, np.array(scale.ticks))
     beside[:, 0] -= 0.07 * stand.size
     names = [f"{tick:g} N" for tick in scale.ticks]
-    recorder.labels_3d([*entity, "ticks"], beside, names, colour("muted"))
+    recorder.labels([*entity, "ticks"], beside, names, dark("muted"))
 
 
 def _stretches(where: Bools) -> Sequence[Sequence[int]]:

@@ -1,0 +1,1 @@
+"""What a calibration says: its sections on stiffness, transfer and parameters."""

@@ -1,0 +1,62 @@
+"""What the diagnosis says: the verdict, its causes, the evidence, and what to measure next."""
+
+from collections.abc import Iterator
+
+from tsas_cli.records.diagnosis import Diagnosis
+from tsas_cli.reporting.content import Section, missing
+from tsas_cli.reporting.diagnosis import candidates, causes, gains, likeness, maps
+from tsas_cli.reporting.diagnosis.words import listed, signal_in_words
+from tsas_cli.reporting.inputs import Inputs
+from tsas_cli.reporting.numbers import fixed, plain
+
+_TITLE = "Diagnosis"
+
+
+def section(inputs: Inputs) -> Section:
+    """Return the section of the diagnosis; its first sentence is the verdict."""
+    diagnosis = inputs.get(Diagnosis)
+    if diagnosis is None:
+        return missing("diagnosis", _TITLE, what="diagnosis", stage="diagnose")
+    evidence = (part.part(diagnosis) for part in (gains, maps, candidates, likeness))
+    return Section(
+        "diagnosis",
+        _TITLE,
+        (_verdict(diagnosis),),
+        parts=(
+            *causes.parts(diagnosis),
+            *(part for part in evidence if part is not None),
+            *remainder(diagnosis),
+        ),
+    )
+
+
+def _verdict(diagnosis: Diagnosis) -> str:
+    undecided = diagnosis.verdict == "undecided"
+    return f"Undecided: {diagnosis.reason}" if undecided else diagnosis.reason
+
+
+def remainder(diagnosis: Diagnosis) -> Iterator[Section]:
+    """Yield the parts that close the diagnosis."""
+    if left := tuple(_left(diagnosis)):
+        yield Section("diagnosis-remainder", "What is left", left)
+    if diagnosis.next_experiment:
+        yield Section("diagnosis-next", "Next experiment", (diagnosis.next_experiment,))
+    if diagnosis.cannot_tell:
+        yield Section("diagnosis-unknown", "Cannot tell", points=diagnosis.cannot_tell)
+
+
+def _left(diagnosis: Diagnosis) -> Iterator[str]:
+    left = diagnosis.remainder
+    if left.mean_square is not None:
+        yield (
+            f"The errors that are left have {plain(left.mean_square, 3)} times the mean square "
+            "that noise explains; 1 is nothing but noise."
+        )
+    if diagnosis.named and left.share_percent is not None:
+        share = fixed(left.share_percent, 0)
+        yield f"Of what was beyond the noise, {share} % is left after what is named."
+    if left.unexplained:
+        yield "There is structure in them that no effect of the catalogue accounts for."
+    if left.depends_on:
+        signals = listed([signal_in_words(name) for name in left.depends_on])
+        yield f"What is left depends on {signals}."

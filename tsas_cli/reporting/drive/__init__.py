@@ -1,0 +1,1 @@
+"""The drive's section and its figures."""

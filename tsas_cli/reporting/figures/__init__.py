@@ -1,1 +1,0 @@
-"""What is drawn, one kind of plot per file."""

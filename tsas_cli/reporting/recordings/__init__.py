@@ -1,0 +1,1 @@
+"""The recordings, what the checks say of them, and their loops."""

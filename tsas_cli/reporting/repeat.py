@@ -1,0 +1,133 @@
+"""How to repeat what the page shows: the commands, the versions, the inputs' hashes."""
+
+import platform
+import shlex
+from collections.abc import Iterator, Mapping
+from importlib.metadata import version
+from pathlib import Path
+
+from tsas_cli.identification.model import IN_MEMORY
+from tsas_cli.records.base import ModelFile, OfDataset, StageFile
+from tsas_cli.records.calibration import Calibration
+from tsas_cli.records.check import Check
+from tsas_cli.records.closing import Closing
+from tsas_cli.records.diagnosis import Diagnosis
+from tsas_cli.records.drive import Drive
+from tsas_cli.records.simulation import Simulation
+from tsas_cli.records.tracking import Tracking
+from tsas_cli.reporting.closing import call as closing_call
+from tsas_cli.reporting.content import Section, Table
+from tsas_cli.reporting.inputs import Inputs
+from tsas_cli.reporting.tracking import call
+from tsas_cli.support import __version__
+from tsas_cli.support.files import sha256_of
+
+_WROTE: dict[type[StageFile], str] = {
+    Calibration: "calibration",
+    Simulation: "simulation",
+    Diagnosis: "diagnosis",
+    Tracking: "tracking",
+    Drive: "drive",
+    Closing: "close-loop",
+}
+_LIBRARIES = ("numpy", "scipy", "numba", "matplotlib")
+
+
+def section(inputs: Inputs) -> Section:
+    """Return the section on how to repeat the page."""
+    hashes = {} if inputs.dataset is None else inputs.dataset.hashes()
+    for stage in (inputs.get(Simulation), inputs.get(Diagnosis)):
+        if stage and stage.model.sha256:
+            hashes[stage.model.file] = stage.model.sha256
+    if tracking := inputs.get(Tracking):
+        hashes |= call.files_read(tracking)
+    tables = [Table("Versions", ("program", "version"), tuple(_versions(inputs)))]
+    if hashes:
+        tables.append(Table("Files read", ("file", "SHA-256"), tuple(hashes.items())))
+    return Section(
+        "repeat",
+        "How to repeat it",
+        tuple(_intro(inputs)),
+        tables=tuple(tables),
+        commands=tuple(shlex.join(command) for command in _commands(inputs)),
+    )
+
+
+def _intro(inputs: Inputs) -> Iterator[str]:
+    yield "These commands make the same page from the same files."
+    if _in_memory(inputs):
+        yield "They lack what was handed over without a file: a model, settings, or conditions."
+    closing = inputs.get(Closing)
+    if closing and closing_call.own_settings(closing):
+        yield (
+            f"`{closing_call.SETTINGS}` stands for a file with the settings that `{Closing.FILE}` "
+            "holds; they are not the defaults."
+        )
+
+
+def _in_memory(inputs: Inputs) -> bool:
+    """Say whether a stage was given what no file holds."""
+    stages = inputs.stages.values()
+    if any(isinstance(stage, OfDataset) and stage.conditions for stage in stages):
+        return True
+    told = [getattr(s, name, None) for s in stages for name in ("model", "plant", "drive")]
+    told += [s.settings for s in stages if isinstance(s, Tracking)]
+    return any(getattr(one, "file", None) == IN_MEMORY for one in told)
+
+
+def _commands(inputs: Inputs) -> Iterator[list[str]]:
+    folder = {kind: str(path) for kind, path in inputs.folders.items()}
+    if closing := inputs.get(Closing):
+        yield ["tsas", "close-loop", *closing_call.options(closing), "--out", folder[Closing]]
+    read = list(folder.values())
+    if inputs.dataset is not None:
+        read.insert(0, str(inputs.dataset.folder))
+        yield from _of_dataset(inputs, read[0], folder)
+    read = list(dict.fromkeys(read))  # one folder may hold more than one kind
+    yield ["tsas", "report", *read, "--out", "report.html"]
+
+
+def _of_dataset(
+    inputs: Inputs, dataset: str, folder: Mapping[type[StageFile], str]
+) -> Iterator[list[str]]:
+    if tracking := inputs.get(Tracking):
+        yield ["tsas", "track", *call.options(tracking), "--out", folder[Tracking]]
+    if Check in folder:
+        yield ["tsas", "check", dataset, "--out", folder[Check]]
+    if calibration := inputs.get(Calibration):
+        options = ["--dynamics", calibration.dynamics, "--out", folder[Calibration]]
+        if calibration.model.sha256 is not None:
+            options += ["--model", calibration.model.file]
+        yield ["tsas", "calibrate", dataset, *options]
+    if diagnosis := inputs.get(Diagnosis):
+        options = ["--out", folder[Diagnosis]]
+        yield ["tsas", "diagnose", dataset, *_model(diagnosis.model, inputs), *options]
+    if simulation := inputs.get(Simulation):
+        options = ["--dynamics", simulation.dynamics, "--out", folder[Simulation]]
+        if simulation.nodes is not None:
+            options += ["--nodes", str(simulation.nodes)]
+        if simulation.own_values_fitted:
+            options += ["--fit-own"]
+        yield ["tsas", "simulate", dataset, *_model(simulation.model, inputs), *options]
+    if drive := inputs.get(Drive):
+        options = ["--speed", "measured" if drive.hold == "first" else "commanded"]
+        yield ["tsas", "identify-harmonic-drive", dataset, *options, "--out", folder[Drive]]
+
+
+def _model(model: ModelFile, inputs: Inputs) -> list[str]:
+    """Return the option that names the model: the calibration's where it is the one read."""
+    if model.sha256 is None:
+        return []
+    folder = inputs.folders.get(Calibration)
+    calibrated = folder / model.file if folder else Path(model.file)
+    same = calibrated.is_file() and sha256_of(calibrated) == model.sha256
+    return ["--model", str(calibrated) if same else model.file]
+
+
+def _versions(inputs: Inputs) -> Iterator[tuple[str, str]]:
+    yield "tsas, this page", __version__
+    for kind, name in _WROTE.items():
+        if stage := inputs.get(kind):
+            yield f"tsas, {name}", stage.version
+    yield "Python", platform.python_version()
+    yield from ((name, version(name)) for name in _LIBRARIES)
