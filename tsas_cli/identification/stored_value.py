@@ -6,7 +6,7 @@ from tsas_cli.identification.estimate import Origin
 
 
 class StoredValue(BaseModel):
-    """A value as a file holds it, with its unit, what is known of it, and where it is from."""
+    """A value in a file, with its unit, its interval and its origin."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
