@@ -73,7 +73,7 @@ def test_it_prints_tables_and_says_what_cannot_be_told(strict, folder, tmp_path)
     done = strict("calibrate", folder, "--out", tmp_path / "out")
     assert (done.returncode, done.stderr) == (0, "")
     assert "stiffness km" in done.stdout
-    assert "- x_out_zero_mm cannot be told apart from preload_N" in done.stdout
+    assert "- x_out_zero_mm is not identifiable together with preload_N" in done.stdout
     quiet = strict("calibrate", folder, "--out", tmp_path / "out", "--force", "--quiet")
     assert (quiet.returncode, quiet.stdout, quiet.stderr) == (0, "", "")
 
@@ -208,7 +208,7 @@ def test_effects_of_a_model_stay(strict, tmp_path):
     assert values["free_tendon.proximal_length_mm"] == 152.0
     assert values["friction_coefficient"] == pytest.approx(0.125, rel=2e-3)
     assert values["tendon_stiffness_N"] == pytest.approx(67858.4, rel=6e-3)
-    (said,) = [s for s in summary["cannot_tell"] if "fit alike" in s and "stiffness" in s]
+    (said,) = [s for s in summary["cannot_tell"] if "fit equally well" in s and "stiffness" in s]
     assert float(said.split("told: ")[1].split(" ")[0]) > 2e4
     assert not any("missed by" in s for s in summary["cannot_tell"])
 

@@ -117,8 +117,8 @@ def test_the_static_model_knows_springs_only(strict, recorded, tmp_path, load):
     done = strict("simulate", folder, "--dynamics", "static", "--out", tmp_path / "out")
     assert done.returncode == 2
     assert done.stderr == (
-        "tsas: run a: the static model knows a spring load and a drive by displacement only; "
-        "use --dynamics slip\n"
+        "tsas: run a: the static model is valid for a spring load and a drive by displacement "
+        "only; use --dynamics slip\n"
     )
     assert not (tmp_path / "out").exists()
 
@@ -293,4 +293,4 @@ def test_a_tendon_that_sticks_and_slips_is_said_to(strict, folder, model, tmp_pa
     done = strict(*call)
     assert done.returncode == 0
     assert "sticks and slips" in done.stdout
-    assert "friction falls with speed by more than anything damps" in done.stdout
+    assert "friction falls with speed by more than the damping" in done.stdout

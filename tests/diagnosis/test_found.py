@@ -64,9 +64,9 @@ def test_likeness_is_the_cosine_between_two_directions(angle):
     first = np.array([[1.0], [0.0], [0.0]])
     turn = np.radians(angle)
     second = np.array([[np.cos(turn)], [np.sin(turn)], [0.0]])
-    assert f._likeness(first, second) == pytest.approx(np.cos(turn), abs=1e-12)
-    assert f._likeness(first, np.hstack((second, first[::-1]))) == pytest.approx(np.cos(turn))
-    assert f._likeness(first, np.zeros((3, 0))) == 0.0
+    assert f._similarity(first, second) == pytest.approx(np.cos(turn), abs=1e-12)
+    assert f._similarity(first, np.hstack((second, first[::-1]))) == pytest.approx(np.cos(turn))
+    assert f._similarity(first, np.zeros((3, 0))) == 0.0
 
 
 def test_directions_that_are_the_same_count_once():
@@ -93,9 +93,9 @@ def test_a_cosine_is_never_more_than_one():
     rng = np.random.default_rng(1)
     bases = [np.linalg.qr(rng.standard_normal((30, 4)))[0] for _ in range(60)]
     assert max(np.linalg.svd(b.T @ b, compute_uv=False).max() for b in bases) > 1.0
-    assert max(f._likeness(b, b) for b in bases) == 1.0
-    assert min(f._likeness(b, b) for b in bases) == pytest.approx(1.0)
-    assert f._likeness(np.zeros((3, 0)), np.eye(3)) == 0.0
+    assert max(f._similarity(b, b) for b in bases) == 1.0
+    assert min(f._similarity(b, b) for b in bases) == pytest.approx(1.0)
+    assert f._similarity(np.zeros((3, 0)), np.eye(3)) == 0.0
 
 
 def test_directions_a_millionth_of_the_largest_do_not_count():

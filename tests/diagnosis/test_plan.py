@@ -120,7 +120,9 @@ def test_the_run_that_tells_viscosity_from_friction_has_another_speed():
     assert said.startswith("Record ")
     assert VISCOUS in said or "drive_friction.friction_N" in said
     pair = propose(bench, bench.fit(), ("drive_compliance", "free_tendon"))
-    assert "does not tell drive_compliance from free_tendon" in pair or pair.startswith("No ")
+    assert "does not distinguish drive_compliance from free_tendon" in pair or pair.startswith(
+        "No "
+    )
 
 
 @pytest.mark.slow

@@ -55,7 +55,7 @@ def test_fewer_blocks_than_seven_are_too_few(blocks):
     """√7 is more than the 2.6 that are asked for, √6 is not."""
     (said,) = p._few(blocks)
     assert said == (
-        f"These runs have {blocks} independent stretches; no diagnosis is sure with fewer than 7."
+        f"These runs have {blocks} independent stretches; a diagnosis needs at least 7."
     )
     assert p._few(7) == []
 
@@ -174,7 +174,7 @@ def test_what_it_still_does_not_tell_is_said_too(monkeypatch):
     alike = [seen(MASS, 0.1, free_tendon=2.0), seen(LENGTH, 0.1, load_inertia=2.0)]
     runs = Further({None: [seen(PLAY, 1.0), *alike], 3: [seen(PLAY, 0.1), *alike]})
     said, _ = proposed(monkeypatch, runs, PLAY, MASS, LENGTH)
-    assert said.endswith(f" It does not tell {LENGTH} from {MASS}.")
+    assert said.endswith(f" It does not distinguish {LENGTH} from {MASS}.")
 
 
 def test_one_effect_is_told_from_all_and_none_means_all(monkeypatch):
@@ -191,7 +191,7 @@ def test_where_no_run_helps_that_is_said(monkeypatch, after):
     runs = Further({None: [seen(PLAY, 1.0)], 3: [seen(PLAY, after)]})
     said, _ = proposed(monkeypatch, runs, PLAY, MASS)
     titles = f"{OF[PLAY].title.lower()} and {OF[MASS].title.lower()}"
-    assert said == f"No further run within the range of these tells {titles} apart."
+    assert said == f"No further run within the range of these distinguishes {titles}."
 
 
 def test_a_rig_file_is_planned_by_its_own_rig_and_limits(monkeypatch):

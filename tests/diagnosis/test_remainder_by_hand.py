@@ -75,6 +75,6 @@ def test_an_error_that_swings_by_itself_is_periodic_at_its_frequency():
     """1.7 Hz: no signal of the run swings so fast."""
     swing = 4.0 * np.sin(2.0 * np.pi * 1.7 * TIME_S)
     found = left_of({"f_in_N": swing + noise(1)}, {"f_in_N": swing + noise(2)})
-    assert found.depends_on[0] == "time_s (f_in_N swings at 1.7 Hz)"
+    assert found.depends_on[0] == "time_s (f_in_N oscillates at 1.7 Hz)"
     once = left_of({"f_in_N": swing + noise(1)}, {"f_in_N": noise(2)}, {"f_in_N": noise(3)})
     assert not any("swings" in signal for signal in once.depends_on)

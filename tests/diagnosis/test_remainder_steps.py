@@ -162,7 +162,9 @@ def test_the_frequency_is_the_median_and_the_channels_are_named():
         Run({"f_in_N": NOISE[0]}),
     ]
     # 400 samples of 20 ms: a bin is 1/7.98 Hz wide.
-    assert r._periodic(bench_of(*made), None) == "time_s (f_in_N and x_out_mm swings at 5.01 Hz)"
+    assert (
+        r._periodic(bench_of(*made), None) == "time_s (f_in_N and x_out_mm oscillates at 5.01 Hz)"
+    )
 
 
 @pytest.mark.parametrize(("share", "said"), [(0.29, False), (0.31, True)])

@@ -49,8 +49,8 @@ def test_only_named_sensors_record(tmp_path):
     [
         ("frequency_Hz = 0.25", "", "one of speed_mm_per_s and frequency_Hz"),
         ("0.25", "0.25\nspeed_mm_per_s = 3.0", "one of speed_mm_per_s and frequency_Hz"),
-        ('"sine"', '"nested"', "nested takes speed_mm_per_s"),
-        ('"sine"', '"chirp"\ndwell_s = 1.0', "chirp takes no dwell_s"),
+        ('"sine"', '"nested"', "nested needs speed_mm_per_s"),
+        ('"sine"', '"chirp"\ndwell_s = 1.0', "chirp has no dwell_s"),
         ('"sine"', '"sinus"', "run.0.motion"),
         ("f_in_N = 0.1", "", "one of f_in_N, f_out_N, x_out_mm is needed"),
         ("friction_coefficient", "friction_coeficient", "did you mean friction_coefficient?"),
@@ -65,7 +65,7 @@ def test_what_is_wrong_is_said(tmp_path, old, new, said):
 
 
 def test_two_runs_of_one_name(tmp_path):
-    with pytest.raises(InputError, match="run id 'a' is there twice"):
+    with pytest.raises(InputError, match="duplicate run id 'a'"):
         read(tmp_path, TEXT + TEXT[TEXT.index("[[run]]") :])
 
 

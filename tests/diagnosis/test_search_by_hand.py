@@ -164,9 +164,9 @@ def test_what_the_others_do_not_need_is_left_out_but_never_the_last(made):
     """One after the other, in the order of their names."""
     squares = {names(A, B, C): 1.0, names(B, C): 1.01, names(C): 1.02, names(B): 2.0}
     squares |= {names(A, C): 1.5, names(A, B): 3.0, names(): 1.02}
-    assert made(squares)._without_idle(names(A, B, C)) == names(C)
+    assert made(squares)._without_redundant(names(A, B, C)) == names(C)
     needed = {k: (1.0 if k == names(A, B, C) else 9.0) for k in squares}
-    assert made(needed)._without_idle(names(A, B, C)) == names(A, B, C)
+    assert made(needed)._without_redundant(names(A, B, C)) == names(A, B, C)
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])

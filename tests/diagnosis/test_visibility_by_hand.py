@@ -158,18 +158,18 @@ def test_the_size_looked_at_is_a_power_of_two_below_the_one_found():
     found = part().smallest(given)
     look = MadeUpLook(e=given)
     one = cause(amplitude(start=0.01, upper=1e9), "e")
-    settled = part(look=look)._settled(one)
+    settled = part(look=look)._converged_size(one)
     assert settled <= found < 2.0 * settled
     free = cause(amplitude(start=found / 5.0, upper=1e9), "e")
-    assert part(look=look)._settled(free) == pytest.approx(found * 4.0 / 5.0)
+    assert part(look=look)._converged_size(free) == pytest.approx(found * 4.0 / 5.0)
     down = cause(amplitude(start=-found * 3.0, lower=-1e9, upper=1e9), "e")
-    assert part(look=look)._settled(down) == pytest.approx(-found * 3.0 / 4.0)
+    assert part(look=look)._converged_size(down) == pytest.approx(-found * 3.0 / 4.0)
 
 
 def test_where_nothing_is_found_the_start_is_the_size():
     look = MadeUpLook(e=np.zeros(SIZE))
     one = cause(amplitude(start=0.3), "e")
-    assert part(look=look)._settled(one) == 0.3
+    assert part(look=look)._converged_size(one) == 0.3
     assert [size for _, size in look.asked] == [0.3]
 
 

@@ -18,8 +18,6 @@ PHRASES = re.compile(
 )
 PACKAGES = ("tsas_cli", "tsas_studies")
 SOURCES = sorted(p for package in PACKAGES for p in (ROOT / package).rglob("*.py"))
-    p for folder in ("tsas_cli", "tsas_studies") for p in (ROOT / folder).rglob("*.py")
-)
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
 EXEMPT = {"words.md"}  # which lists them
 

@@ -17,7 +17,7 @@ from tsas_cli.effects import (
 from tsas_cli.effects.backlash import follow_play
 from tsas_cli.effects.bend_drift import drifted_bend
 from tsas_cli.effects.direction_dependent_friction import direction_factor
-from tsas_cli.effects.drive_compliance import drive_give
+from tsas_cli.effects.drive_compliance import drive_deflection
 from tsas_cli.effects.drive_friction import drive_friction_force
 from tsas_cli.effects.drive_ripple import rippled
 from tsas_cli.effects.force_sensor_drift import drift_reading
@@ -30,7 +30,7 @@ from tsas_cli.effects.load_inertia import inertia_force
 from tsas_cli.effects.load_spring_nonlinearity import spring_force, spring_tangent
 from tsas_cli.effects.position_sensor_gain import read_position
 from tsas_cli.effects.preload_loss import lost_preload
-from tsas_cli.effects.presliding import share_turned, turning_rate
+from tsas_cli.effects.presliding import friction_share, friction_share_rate
 from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.effects.sheath_compression import softened
 from tsas_cli.effects.stribeck_friction import stribeck_factor
@@ -58,14 +58,14 @@ ODD = 12.345678901234567  # a value whose last bit shows any arithmetic that is 
         (ODD * friction_factor(FrictionDrift(), 7.0, 900.0), ODD),
         (ODD + drive_friction_force(0.0, -1.0), ODD),
         (ODD + proximal_spring_force(3.0, 0.0), ODD),
-        (ODD - drive_give(3.0, 0.0), ODD),
+        (ODD - drive_deflection(3.0, 0.0), ODD),
         (ODD + viscous_loss(3.0, 0.0), ODD),
         (ODD + inertia_force(3.0, 0.0), ODD),
         (ODD + guide_friction(LoadFriction()), ODD),
         (ODD - lost_preload(PreloadLoss(), 7.0), ODD),
         (spring_force(ODD, 1.579, LoadSpringNonlinearity()), 1.579 * ODD),
         (spring_tangent(ODD, 1.579, LoadSpringNonlinearity()), 1.579),
-        (ODD * share_turned(0.3, 1e-9, 0.0), ODD),
+        (ODD * friction_share(0.3, 1e-9, 0.0), ODD),
     ],
 )
 def test_neutral_gives_back_what_went_in_to_the_last_bit(left, expected):
@@ -95,8 +95,8 @@ def test_a_ripple_is_a_wave_over_its_period_that_is_nothing_at_rest(turns, expec
 
 
 def test_a_drive_gives_way_in_the_direction_of_the_pull():
-    assert drive_give(40.0, 0.002) == pytest.approx(0.08)
-    assert drive_give(-40.0, 0.002) == pytest.approx(-0.08)
+    assert drive_deflection(40.0, 0.002) == pytest.approx(0.08)
+    assert drive_deflection(-40.0, 0.002) == pytest.approx(-0.08)
 
 
 def test_the_spring_of_the_paper_pulls_back():
@@ -143,16 +143,18 @@ def test_friction_turns_round_by_dahls_law(before, way):
     length, z = 0.02, before
     for step in np.full(20_000, way / 20_000):
         z += step * (1.0 - z * np.sign(step)) / length
-    assert share_turned(before, way, length) == pytest.approx(z, abs=1e-3)
-    slope = (share_turned(before, way + 1e-7, length) - share_turned(before, way, length)) / 1e-7
-    share = share_turned(before, way, length)
-    assert turning_rate(share, way, length) == pytest.approx(slope, rel=1e-4, abs=1e-6)
+    assert friction_share(before, way, length) == pytest.approx(z, abs=1e-3)
+    slope = (
+        friction_share(before, way + 1e-7, length) - friction_share(before, way, length)
+    ) / 1e-7
+    share = friction_share(before, way, length)
+    assert friction_share_rate(share, way, length) == pytest.approx(slope, rel=1e-4, abs=1e-6)
 
 
 @pytest.mark.parametrize("before", [-1.0, -0.2, 0.7])
 def test_before_any_way_the_steeper_side_counts(before):
-    sides = [turning_rate(before, way, 0.02) for way in (1e-12, -1e-12)]
-    assert turning_rate(before, 0.0, 0.02) == pytest.approx(max(sides))
+    sides = [friction_share_rate(before, way, 0.02) for way in (1e-12, -1e-12)]
+    assert friction_share_rate(before, 0.0, 0.02) == pytest.approx(max(sides))
 
 
 def test_a_bend_drifts_at_its_rate_settles_and_never_turns_the_other_way():

@@ -108,10 +108,12 @@ def test_a_model_that_is_wrong_is_widened(calibrated):
     assert found.model == model_of(3.0)
     assert [a.used for a in found.predictions] == [1.0, 1.0]  # the answers are those of the fit
     assert found.cannot_tell[:2] == ["thinned", "missed"]
-    assert found.cannot_tell[2].startswith("The intervals hold what backlash or creep would do")
+    assert found.cannot_tell[2].startswith(
+        "The intervals are widened by the influence of backlash or creep"
+    )
     assert found.cannot_tell[3:] == ["untold"]
     found, _, _ = calibrated(missed=["missed"], effects=[])
-    assert found.cannot_tell[2].startswith("No known effect explains it")
+    assert found.cannot_tell[2].startswith("No catalogued effect explains the residual")
 
 
 def test_where_nothing_is_fitted_nothing_is_widened(calibrated):

@@ -36,7 +36,7 @@ def test_the_finest_stiffness_reaches_as_far_as_a_lump_is_long():
 
 def test_moves_that_are_asked_for_take_errors_away():
     slopes = np.array([[1.0, 0.0], [0.0, 2.0], [0.0, 0.0]])
-    assert d._asked(slopes, np.array([3.0, -4.0, 7.0])) == pytest.approx([-3.0, 2.0])
+    assert d._least_squares_step(slopes, np.array([3.0, -4.0, 7.0])) == pytest.approx([-3.0, 2.0])
 
 
 def test_values_to_start_from_have_their_units():
@@ -140,12 +140,12 @@ def steps(monkeypatch):
         monkeypatch.setattr(d, "_friction_at_rest", lambda fit, step: "at rest")
         monkeypatch.setattr(d, "_freed", freed)
         monkeypatch.setattr(d, "_sizes", looked)
-        monkeypatch.setattr(d, "_unseen_rest", lambda looks: f"unseen {looks}")
+        monkeypatch.setattr(d, "_static_friction_note", lambda looks: f"unseen {looks}")
         monkeypatch.setattr(d, "_finest_stiffness", lambda fit: finest)
         monkeypatch.setattr(d, "misfit", lambda fit: [f"{fit.label} misses"])
         monkeypatch.setattr(
             d,
-            "_alike",
+            "_indistinguishable_note",
             lambda name, like: f"{name}: {[v for one in like for v in one.values.values()]}",
         )
         monkeypatch.setattr(

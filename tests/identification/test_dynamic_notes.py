@@ -43,9 +43,9 @@ def test_more_than_ten_steps_for_each_sample_are_said(monkeypatch):
 
 def test_where_it_gave_up_is_said(monkeypatch):
     (said,) = notes(monkeypatch, unsettled=[3, 4, 5, 6, 7])
-    assert said.startswith("given up at 1.5 s, after ")
+    assert said.startswith("aborted at 1.5 s, after ")
     (said,) = notes(monkeypatch, unsettled=[7])
-    assert said.startswith("given up at 3.5 s, after ")
+    assert said.startswith("aborted at 3.5 s, after ")
 
 
 def test_notes_come_in_order(monkeypatch):

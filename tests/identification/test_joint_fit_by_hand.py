@@ -74,16 +74,17 @@ def test_a_good_fit_leaves_no_doubt():
 def test_what_ended_at_a_bound_is_said():
     (said,) = doubts(estimate(ZERO, "a", at_bound=True))
     assert said == (
-        "x_in_zero_mm of run a ended at the bound of what is plausible, 1.5: "
-        "it is not to be relied on."
+        "x_in_zero_mm of run a converged to its plausible bound, 1.5: the estimate is unreliable."
     )
-    assert doubts(estimate(at_bound=True))[0].startswith("friction_coefficient ended at the bound")
+    assert doubts(estimate(at_bound=True))[0].startswith(
+        "friction_coefficient converged to its plausible bound"
+    )
 
 
 def test_what_ended_where_it_does_nothing_is_no_bound():
     name = "free_tendon.proximal_length_mm"
     (said,) = doubts(estimate(name, at_bound=True, value=0.0, low=0.0, high=3.14159))
-    assert said == f"{name} ended where it does nothing: at most 3.1 mm would go unseen."
+    assert said == f"{name} converged to zero: values up to 3.1 mm are not excluded."
     assert doubts(estimate(name, value=0.0, low=0.0)) == []  # near it, not at the bound
 
 
@@ -118,10 +119,10 @@ def test_a_channel_is_missed_by_its_worst_run():
     one = run_with({"f_in_N": np.full(4, 1.3), "f_out_N": np.array([5.0, -5.0])})
     two = run_with(None, {"f_in_N": np.full(4, 1.0), "f_out_N": np.array([1.0, 1.0])})
     (said,) = j.misfit(fit_of(problem_of(), errors=(one, two)))
-    assert said.startswith("f_out_N is missed by up to 5 times what noise explains:")
+    assert said.startswith("f_out_N: residual RMS up to 5 × the noise level:")
     two = run_with(None, {"f_in_N": np.array([0.0, 1.31 * math.sqrt(2.0)])})
     first, second = j.misfit(fit_of(problem_of(), errors=(one, two)))
-    assert first.startswith("f_in_N is missed by up to 1.31 times")
+    assert first.startswith("f_in_N: residual RMS up to 1.31 ×")
     assert second.startswith("f_out_N")
 
 
@@ -130,11 +131,11 @@ def test_what_is_fixed_is_said_once_for_each_reason():
     problem = problem_of(unknowns, fixed=Model((Estimate(ZERO, 0.25, "mm", "given", "a"),)))
     assert w.fixed_sentences(problem, {1: [3, 0], 2: [0, 3], 0: [], 3: []}) == [
         (
-            "x_in_zero_mm cannot be told apart from friction_coefficient and preload_N in these "
-            "recordings (runs a, b); it is kept at 0.25 mm."
+            "x_in_zero_mm is not identifiable together with friction_coefficient and preload_N "
+            "from these recordings (runs a, b); it is fixed at 0.25 mm."
         ),
-        "friction_coefficient does not show in these recordings; it is kept at 0.1.",
-        "preload_N does not show in these recordings (runs b); it is kept at 10 N.",
+        "friction_coefficient is not identifiable from these recordings; it is fixed at 0.1.",
+        "preload_N is not identifiable from these recordings (runs b); it is fixed at 10 N.",
     ]
     assert problem.ids == ["a", "b"]
 

@@ -180,8 +180,11 @@ def test_what_belongs_to_the_run_can_be_fitted_first(tmp_path, long):
 @pytest.mark.parametrize(
     ("how", "said"),
     [
-        ({"dynamics": "lugre"}, "12000 samples are too many to be followed with the dynamic model"),
-        ({"out": None}, "12000 samples are too many to be answered in memory; give a folder"),
+        (
+            {"dynamics": "lugre"},
+            "12000 samples are too many to be simulated with the dynamic model",
+        ),
+        ({"out": None}, "12000 samples are too many to be returned in memory; give a folder"),
     ],
 )
 def test_what_a_long_run_cannot_have_is_said(tmp_path, long, how, said):

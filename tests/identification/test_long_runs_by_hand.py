@@ -121,7 +121,7 @@ def test_what_a_fit_has_seen_is_said():
         "back."
     )
     (said,) = long.thinned_notes([thinned(2, 155, 10)])
-    assert said.endswith("A stroke keeps 16 of its samples, too few to see its phases.")
+    assert said.endswith("A stroke keeps 16 of its samples, too few to detect its phases.")
     (said,) = long.thinned_notes([thinned(3, 25, 10)])
     assert "A stroke keeps 2.5 of its samples" in said
 

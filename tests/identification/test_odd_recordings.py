@@ -120,7 +120,7 @@ def test_a_dead_channel_does_not_spoil_the_others(name):
         columns = recorded()
         result = calibrated(ran(columns | {name: np.full_like(columns[name], value)}))
         is_right(result, "friction_coefficient", "load_stiffness_N_per_mm")
-        assert f"{name} of run a does not enter the fit: it never changes." in result.cannot_tell
+        assert f"{name} of run a does not enter the fit: it is constant." in result.cannot_tell
 
 
 @pytest.mark.parametrize("name", CHANNELS)
@@ -271,8 +271,9 @@ def test_what_does_not_show_is_kept_as_the_data_sheet_says():
     result = calibrated(ran(columns))
     kept = {e.name: (e.value, e.origin) for e in result.model.estimates if e.stderr is None}
     assert kept["friction_coefficient"] == (0.125, "data sheet")
-    assert "friction_coefficient does not show in these recordings; it is kept at 0.125." in (
-        result.cannot_tell
+    assert (
+        "friction_coefficient is not identifiable from these recordings; it is fixed at 0.125."
+        in (result.cannot_tell)
     )
 
 

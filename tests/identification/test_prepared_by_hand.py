@@ -132,7 +132,7 @@ def test_how_columns_were_conditioned_is_told():
         "method": p.METHOD, "window_s": 0.25, "noise": 0.1, "unit": "mm", "reversals": 1,
     }  # fmt: skip
     assert told["f_out_N"] == {
-        "method": "none: the column holds no noise",
+        "method": "none: the column has no noise",
         "window_s": 0.0, "noise": 0.0, "unit": "N", "reversals": 0,
     }  # fmt: skip
 

@@ -78,7 +78,7 @@ def model(monkeypatch):
     monkeypatch.setattr(rs, "simulate", made)
     monkeypatch.setattr(rs, "is_closed", lambda rig, drive: False)
     monkeypatch.setattr(rs, "points", lambda run: EVERY)
-    monkeypatch.setattr(r, "_before_turns", lambda square, change, conditioned: None)
+    monkeypatch.setattr(r, "_before_reversals", lambda square, change, conditioned: None)
     return made
 
 
@@ -122,7 +122,7 @@ def test_what_is_before_a_turn_is_added_for_each_end(monkeypatch, model):
         added.append((change.copy(), conditioned))
         square += 100.0
 
-    monkeypatch.setattr(r, "_before_turns", before)
+    monkeypatch.setattr(r, "_before_reversals", before)
     run = run_of()
     found = errors_of(run)
     np.testing.assert_allclose(found.weights["f_in_N"], np.sqrt(4.0 + 0.09 + 100.0))

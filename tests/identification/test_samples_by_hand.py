@@ -94,14 +94,14 @@ def test_what_is_left_out_is_said():
     run = run_of(UP, f_out_N=UP, x_out_mm=UP)
     everything = dict.fromkeys(run.measured, UP)
     assert s.lost(run, everything) == []
-    few = "of run a does not enter the fit: it holds too few samples."
+    few = "of run a does not enter the fit: it has too few samples."
     assert s.lost(run, {"f_in_N": UP}) == [f"f_out_N {few}", f"x_out_mm {few}"]
     run.noise["f_in_N"] = 0.0
-    flat = "f_in_N of run a does not enter the fit: it never changes."
+    flat = "f_in_N of run a does not enter the fit: it is constant."
     assert s.lost(run, {"f_out_N": UP}) == [flat, f"x_out_mm {few}"]
     whole = s.lost(run, {})
     assert whole[0] == flat
-    assert whole[1].startswith("Run a does not enter the fit: too few samples are left")
+    assert whole[1].startswith("Run a does not enter the fit: too few samples after")
     assert len(whole) == 2
     run.noise = dict.fromkeys(run.measured, 0.0)
     assert len(s.lost(run, {})) == 3

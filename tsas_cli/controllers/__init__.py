@@ -1,3 +1,3 @@
-"""Controllers of the drive that see x_in alone, and the closed loop with plant and sensors."""
+"""Controllers of the drive with feedback of x_in alone, and the closed loop with the plant."""
 
 CONTROLLERS = ("pid", "sliding-mode", "adaptive-sliding-mode", "disturbance-observer")

@@ -1,11 +1,11 @@
-"""Adaptive sliding mode: a sliding mode that learns the drive's parameters as it goes.
+"""Adaptive sliding mode: a sliding mode that estimates the drive's parameters online.
 
 Law (Yang 2025, Eqs. 44 and 45): that of `sliding_mode` with estimates φ̂, which follow
 dφ̂1/dt = ψ1 s (c1 de/dt + c2 d²e/dt² + x⃛_inv), dφ̂2/dt = ψ2 s dx_in/dt, dφ̂3/dt = ψ3 s d²x_in/dt²,
-each kept between its bounds (projection). V = ½ φ1 s² + Σ (φ − φ̂)²/(2ψ) then never grows (53–55),
+each clipped to its bounds (projection). V = ½ φ1 s² + Σ (φ − φ̂)²/(2ψ) then never grows (53–55),
 where rates are exact and ε exceeds the disturbance; explicit Euler, first order, once a sample.
-When it fails: noise in s drives the estimates though nothing is to be learned; a motion that does
-not excite a parameter lets it wander between its bounds.
+When it fails: noise in s drives the estimates without any excitation; a parameter that the motion
+does not excite drifts between its bounds.
 """
 
 from typing import ClassVar, NamedTuple, Self
@@ -29,7 +29,7 @@ PHI = 0  # of the memory: the three estimates
 
 
 class AdaptiveSlidingMode(NamedTuple):
-    """Surface, start and bounds of the estimates, and how fast they follow."""
+    """Surface, initial values and bounds of the estimates, and their adaptation gains ψ."""
 
     surface: Surface
     start: Phi
@@ -65,12 +65,12 @@ class AdaptiveSettings(SlidingSettings):
 
 @kernel
 def adaptive_sliding_mode(
-    seen: Signals, law: AdaptiveSlidingMode, memory: Floats, step_s: float
+    signals: Signals, law: AdaptiveSlidingMode, memory: Floats, step_s: float
 ) -> float:
-    """Return the motor speed [rpm] on top of the feedforward, and renew the estimates."""
+    """Return the motor speed [rpm] on top of the feedforward; update the estimates."""
     estimates = Phi(memory[PHI], memory[PHI + 1], memory[PHI + 2])
-    u = sliding_mode(seen, law.surface, estimates)
-    rates = adaptation(seen, law.surface, law.psi)
+    u = sliding_mode(signals, law.surface, estimates)
+    rates = adaptation(signals, law.surface, law.psi)
     low, high = law.lowest, law.highest
     memory[PHI] = within(estimates.phi1 + step_s * rates.phi1, low.phi1, high.phi1)
     memory[PHI + 1] = within(estimates.phi2 + step_s * rates.phi2, low.phi2, high.phi2)
@@ -79,17 +79,17 @@ def adaptive_sliding_mode(
 
 
 @kernel
-def adaptation(seen: Signals, surface: Surface, psi: Phi) -> Phi:
+def adaptation(signals: Signals, surface: Surface, psi: Phi) -> Phi:
     """Return the rates of the estimates, Eq. (44)."""
-    s = distance(seen, surface)
+    s = distance(signals, surface)
     return Phi(
-        psi.phi1 * s * wanted_jerk(seen, surface),
-        psi.phi2 * s * (seen.v - seen.de),
-        psi.phi3 * s * (seen.a - seen.dde),
+        psi.phi1 * s * wanted_jerk(signals, surface),
+        psi.phi2 * s * (signals.v - signals.de),
+        psi.phi3 * s * (signals.a - signals.dde),
     )
 
 
 @kernel
 def within(value: float, lowest: float, highest: float) -> float:
-    """Return a value kept between its bounds."""
+    """Return a value clipped to its bounds."""
     return min(max(value, lowest), highest)

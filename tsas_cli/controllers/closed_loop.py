@@ -1,8 +1,8 @@
 """The closed loop: plant, sensor and controller in one kernel, sample by sample.
 
-At each sample x_in is measured (noise, steps of the encoder), the controller answers at once, and
-the motor is asked for that speed until the next sample, within its limit. Between two samples the
-plant moves in `substeps` equal steps. From sample `change_at` on the rig is another one.
+At each sample x_in is measured (noise, encoder resolution), the controller computes a speed without
+delay, and the motor gets it as its command until the next sample, within its limit. Between two
+samples the plant takes `substeps` equal steps. From sample `change_at` on the second rig applies.
 """
 
 from typing import NamedTuple
@@ -50,14 +50,14 @@ STEPS_TO_START = 200
 ) = range(8)
 MEMORY_AT = 8
 COLUMNS = MEMORY_AT + MEMORY
-RUNAWAY_MM = 1e3  # from the wanted place, at which a run has diverged
-GIVEN_UP = 0.01  # of the steps: where more do not settle, the tendon is not followed any further
+RUNAWAY_MM = 1e3  # error of x_in at which a run has diverged
+GIVEN_UP = 0.01  # of the steps: beyond this share the run ends
 
 
 class Wanted(NamedTuple):
-    """What the loop is to follow at m samples."""
+    """Reference of the loop at m samples."""
 
-    path: Floats  # of the drive: position and its three rates, shape (4, m) [mm, s]
+    path: Floats  # of the drive: position and its first three derivatives, shape (4, m) [mm, s]
     feedforward: Floats  # shape (m,) [rpm]
 
 
@@ -72,15 +72,15 @@ class DriveSensor(NamedTuple):
 
 
 class PlantStart(NamedTuple):
-    """A plant at rest."""
+    """State of a plant at rest."""
 
     motor: Motor
     table: Turntable
-    chain: Floats  # the tendon, written over
+    chain: Floats  # the tendon, overwritten
 
 
 class LoopPlant(NamedTuple):
-    """What is controlled; from sample `change_at` on the rig is the second one."""
+    """The controlled plant; from sample `change_at` on the second rig applies."""
 
     actuator: Actuator
     rigs: tuple[Rig, Rig]
@@ -91,7 +91,7 @@ class LoopPlant(NamedTuple):
 
 
 def followed_from(drive_mm: float, rig: Rig, actuator: Actuator, n: int) -> PlantStart:
-    """Return motor, turntable and tendon at rest at a place of the drive, come to from x_in = 0."""
+    """Return motor, turntable and tendon at rest at x_in = `drive_mm`, reached from x_in = 0."""
     ends = ends_of(rig, Drive(np.linspace(0.0, drive_mm, 1 + STEPS_TO_START) + rig.x_in_zero_mm))
     state = initial_state(ends.course, rig, ends.boundary, n)
     f_in = rig.preload_N
@@ -113,10 +113,10 @@ def close_loop(
     plant: LoopPlant,
     lumps: Floats | None = None,
 ) -> tuple[Floats, int, int]:
-    """Run the loop; return its columns, shape (COLUMNS, m), unconverged steps, samples followed.
+    """Return the loop's columns, shape (COLUMNS, m), unconverged steps and completed samples.
 
-    With room for lumps (`lugre_plant.empty_lumps`) they follow the plant's tendon from where it is,
-    else the slip chain itself does; only what does so is compiled.
+    With arrays for lumps (`lugre_plant.empty_lumps`) the tendon is the LuGre chain, from the state
+    of the slip chain at the start, else the slip chain; only the one in use is compiled.
     """
     path, n, actuator, substeps = wanted.path, plant.nodes, plant.actuator, plant.substeps
     motor, table, chain = plant.start
@@ -140,17 +140,17 @@ def close_loop(
             if lumps is not None:
                 lump_laws = lugre_laws(rig, n, DRIVEN)
                 tendon = with_rig(lumps, tendon, rig, n)
-        x_seen = measured(table.x, sensor, k)
-        e = path[0, k] - x_seen
+        x_measured = measured(table.x, sensor, k)
+        e = path[0, k] - x_measured
         if not abs(e) < RUNAWAY_MM or unconverged > GIVEN_UP * m * substeps:
             return columns, unconverged, k
         filtered(state, e, sensor.A, sensor.b)
-        seen = signals_at(path, k, e, state, applied, limited)
-        u, s = control(seen, laws, memory, sensor.step_s)
+        signals = signals_at(path, k, e, state, applied, limited)
+        u, s = control(signals, laws, memory, sensor.step_s)
         speed = wanted.feedforward[k] + u
         asked = min(max(speed, -actuator.speed_limit_rpm), actuator.speed_limit_rpm)
         applied, limited = asked - wanted.feedforward[k], asked != speed
-        columns[X_IN, k], columns[X_SEEN, k] = table.x, x_seen
+        columns[X_IN, k], columns[X_SEEN, k] = table.x, x_measured
         columns[X_OUT, k], columns[F_IN, k] = chain[POSITION + n + 1], table.f_in
         columns[F_OUT, k] = tension_at_sensor(chain, now, chain_laws)
         if lumps is not None:
@@ -174,18 +174,18 @@ def close_loop(
 
 @kernel
 def measured(x_in: float, sensor: DriveSensor, k: int) -> float:
-    """Return what the encoder reads at a sample [mm]."""
-    x_seen: float = x_in + sensor.noise[k]
+    """Return the reading of the encoder at a sample [mm]."""
+    x_measured: float = x_in + sensor.noise[k]
     if sensor.encoder_step_mm > 0.0:
-        x_seen = sensor.encoder_step_mm * np.round(x_seen / sensor.encoder_step_mm)
-    return x_seen
+        x_measured = sensor.encoder_step_mm * np.round(x_measured / sensor.encoder_step_mm)
+    return x_measured
 
 
 @kernel
 def signals_at(
     path: Floats, k: int, e: float, filtered_error: Floats, applied: float, limited: bool
 ) -> Signals:
-    """Return what the controller sees at a sample."""
+    """Return the controller's inputs at a sample."""
     return Signals(
         e=e,
         e_filtered=filtered_error[0],

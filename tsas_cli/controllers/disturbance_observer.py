@@ -1,10 +1,10 @@
-"""Disturbance observer: learns by which speed x_in misses what the motor should give, and adds it.
+"""Disturbance observer: estimates the drive's speed error as a disturbance and compensates it.
 
-The drive is taken as dx/dt = K (u + d): an integrator, and all else a disturbance d in rpm. A
-Luenberger observer with both poles at ω_o estimates error and disturbance from what was asked for
+The drive is modelled as dx/dt = K (u + d): an integrator, and all else a disturbance d in rpm. A
+Luenberger observer with both poles at ω_o estimates error and disturbance from the commanded speed
 and the measured x_in; then u = ω_c ê/K − d̂. It is the linear active disturbance rejection of Gao
 2003 (Proc. American Control Conference, 4989–4996) for a plant of first order, ω_o = 4 ω_c by
-default. The wanted speed comes by the feedforward.
+default. The reference speed is the feedforward.
 When it fails: ω_o near the resonance of gear and turntable (88 Hz for the drive of Yang 2025), or
 above a third of the sampling rate.
 """
@@ -42,17 +42,17 @@ class ObserverSettings(SettingsTable):
 
 @kernel
 def disturbance_observer(
-    seen: Signals, law: DisturbanceObserver, memory: Floats, step_s: float
+    signals: Signals, law: DisturbanceObserver, memory: Floats, step_s: float
 ) -> float:
     """Return the motor speed [rpm] on top of the feedforward.
 
-    The observer follows the error, to which the disturbance and what was asked for beyond the
-    feedforward are the only inputs; explicit Euler, first order, once a sample.
+    The inputs of the observer's error are the disturbance and the speed applied on top of the
+    feedforward; explicit Euler, first order, once a sample.
     """
     w, K = law.observer_rad_per_s, law.gain_mm_per_s_rpm
-    off = seen.e - memory[ERROR]
-    rate = -K * (seen.applied + memory[DISTURBANCE])
-    memory[ERROR] += step_s * (rate + 2.0 * w * off)
-    memory[DISTURBANCE] -= step_s * w * w * off / K
+    innovation = signals.e - memory[ERROR]
+    rate = -K * (signals.applied + memory[DISTURBANCE])
+    memory[ERROR] += step_s * (rate + 2.0 * w * innovation)
+    memory[DISTURBANCE] -= step_s * w * w * innovation / K
     u: float = law.loop_rad_per_s * memory[ERROR] / K - memory[DISTURBANCE]
     return u

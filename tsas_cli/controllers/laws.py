@@ -1,4 +1,4 @@
-"""All controllers: their settings, their gains, and the kernel that calls the one at work."""
+"""All controllers: their settings, their gains, and the kernel that calls the active one."""
 
 from typing import NamedTuple
 
@@ -31,7 +31,7 @@ MEMORY = 3  # numbers that a controller keeps from sample to sample
 
 
 class ControlLaws(NamedTuple):
-    """Every controller's gains, and which of them is at work."""
+    """Every controller's gains, and which of them is active (`kind`)."""
 
     kind: int
     pid: Pid
@@ -53,7 +53,7 @@ class ControllerSettings(SettingsTable):
     )
 
     def laws(self, controller: str, gain_mm_per_s_rpm: float) -> ControlLaws:
-        """Return the gains as the kernel takes them, one controller at work."""
+        """Return the gains as the kernel takes them, one controller active."""
         return ControlLaws(
             CONTROLLERS.index(controller),
             self.pid.law(),
@@ -78,22 +78,25 @@ class ControllerSettings(SettingsTable):
 
 @kernel
 def initial_memory(laws: ControlLaws, memory: Floats) -> None:
-    """Write what the controller at work begins with; the others begin with zeros."""
+    """Write what the active controller begins with; the others begin with zeros."""
     if laws.kind == ADAPTIVE:
         start = laws.adaptive_sliding_mode.start
         memory[0], memory[1], memory[2] = start.phi1, start.phi2, start.phi3
 
 
 @kernel
-def control(seen: Signals, laws: ControlLaws, memory: Floats, step_s: float) -> tuple[float, float]:
-    """Return the motor speed beside the feedforward [rpm], and s where there is a surface."""
+def control(
+    signals: Signals, laws: ControlLaws, memory: Floats, step_s: float
+) -> tuple[float, float]:
+    """Return the motor speed on top of the feedforward [rpm], and s of a surface, else 0."""
     if laws.kind == PID:
-        return pid(seen, laws.pid, memory, step_s), 0.0
+        return pid(signals, laws.pid, memory, step_s), 0.0
     if laws.kind == SLIDING:
         sliding = laws.sliding_mode
-        return sliding_mode(seen, sliding.surface, sliding.phi), distance(seen, sliding.surface)
+        u = sliding_mode(signals, sliding.surface, sliding.phi)
+        return u, distance(signals, sliding.surface)
     if laws.kind == ADAPTIVE:
         adaptive = laws.adaptive_sliding_mode
-        u = adaptive_sliding_mode(seen, adaptive, memory, step_s)
-        return u, distance(seen, adaptive.surface)
-    return disturbance_observer(seen, laws.disturbance_observer, memory, step_s), 0.0
+        u = adaptive_sliding_mode(signals, adaptive, memory, step_s)
+        return u, distance(signals, adaptive.surface)
+    return disturbance_observer(signals, laws.disturbance_observer, memory, step_s), 0.0

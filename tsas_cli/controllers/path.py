@@ -1,10 +1,10 @@
-"""From a wanted force to the path of the drive: the inverse model, and how its jumps are crossed.
+"""From a reference force to the path of the drive: the inverse model and the crossing of its jumps.
 
-The inverse model jumps over the dead band where the wanted force turns. The path is smoothed by a
-B-spline of fourth order (four moving means in a row, each a quarter of `crossing_s` long, centred,
-so that the path is known ahead and nothing comes late): a jump is crossed in `crossing_s` with
-continuous speed and acceleration, and rates are exact differences of the means. Where the path is
-smooth already, that adds x″ crossing_s²/96. The ripple of the gear is taken back last, unsmoothed.
+The inverse model jumps over the dead band where the reference force reverses. The path is smoothed
+by a B-spline of fourth order (four moving means in a row, each a quarter of `crossing_s` long,
+centred, hence without delay): a jump is crossed in `crossing_s` with continuous speed and
+acceleration, and rates are exact differences of the means. Where the path is smooth already, that
+adds x″ crossing_s²/96. The ripple of the gear is inverted last, unsmoothed.
 """
 
 from dataclasses import dataclass
@@ -25,16 +25,16 @@ from tsas_cli.support.errors import InputError
 
 Floats = npt.NDArray[np.float64]
 MEANS = 4
-PASSES = 4  # of the path, where friction depends on its speed
-HALVINGS = 50  # of the ripple's height, in which the drive is sought
+ITERATIONS = 4  # of the path, where friction depends on its speed
+HALVINGS = 50  # bisections of the interval of the ripple's height
 
 
 @dataclass(frozen=True)
 class DrivePath:
-    """Where the drive has to be, shape (4, m): place, speed, acceleration and jerk [mm, s].
+    """Path of the drive, shape (4, m): position, speed, acceleration and jerk [mm, s].
 
-    `motor` is the same of the motor, which winds up the gear by the force at the drive over its
-    stiffness. `missed` counts the samples whose force no place gives.
+    `motor` is the same of the motor, which leads by the force at the drive over the gear's
+    stiffness. `missed` counts the samples whose force is unreachable.
     """
 
     drive: Floats
@@ -45,9 +45,9 @@ class DrivePath:
 def follow(
     wanted_N: Floats, step_s: float, rig: Rig, actuator: Actuator, *, crossing_s: float, nodes: int
 ) -> DrivePath:
-    """Return the path that gives the load a wanted force, shape (m,), by a model of the rig.
+    """Return the drive's path for a reference force at the load, shape (m,), by a model of the rig.
 
-    Before and after it the force stays at its first and last value.
+    Before and after the reference the force is constant at its first and last value.
 
     Raises
     ------
@@ -62,16 +62,18 @@ def follow(
             remedy="use a longer reference or a shorter crossing",
         )
     ahead = MEANS * width // 2
-    held = np.concatenate(
+    padded = np.concatenate(
         (np.full(ahead, wanted_N[0]), wanted_N, np.full(MEANS * width - ahead, wanted_N[-1]))
     )
-    time_s = (np.arange(held.size) - ahead) * step_s
-    speed = np.zeros(held.size)
-    for _ in range(PASSES if _depends_on_speed(rig.effects) else 1):
+    time_s = (np.arange(padded.size) - ahead) * step_s
+    speed = np.zeros(padded.size)
+    for _ in range(ITERATIONS if _depends_on_speed(rig.effects) else 1):
         losses = losses_over(np.maximum(time_s, 0.0), speed, 0.0, rig)
-        end, tension, missed = inverse_chain(held, losses, step_s, rig, nodes)
+        end, tension, missed = inverse_chain(padded, losses, step_s, rig, nodes)
         smooth = smoothed(end, width, step_s)[1]
-        speed = np.concatenate((np.zeros(ahead), smooth, np.zeros(held.size - ahead - smooth.size)))
+        speed = np.concatenate(
+            (np.zeros(ahead), smooth, np.zeros(padded.size - ahead - smooth.size))
+        )
     geared = smoothed(geared_at(end, rig.effects), width, step_s)
     direction = last_direction(end)
     force = tension - rig.preload_N
@@ -83,14 +85,14 @@ def follow(
 
 
 def geared_at(end: Floats, effects: Effects) -> Floats:
-    """Return where the gear's output is for places of the tendon's end, come to from 0: play."""
+    """Return the gear's output for positions of the tendon's end, with play, from x_in = 0."""
     direction = last_direction(np.concatenate(([0.0], end)))[1:]
     geared: Floats = end + 0.5 * effects.backlash.play_mm * direction
     return geared
 
 
 def drive_at(geared: Floats, ripple: DriveRipple, step_s: float) -> Floats:
-    """Return place and three rates of the drive for those of the gear's output, shape (4, m)."""
+    """Return position and three rates of the drive for those of the gear's output, shape (4, m)."""
     if ripple.sine_mm == ripple.cosine_mm == 0.0:
         return geared
     rows = [unrippled(geared[0], ripple)]
@@ -101,7 +103,7 @@ def drive_at(geared: Floats, ripple: DriveRipple, step_s: float) -> Floats:
 
 @kernel
 def unrippled(geared: Floats, ripple: DriveRipple) -> Floats:
-    """Return where the drive is for places of the gear's output, by bisection."""
+    """Return the drive's positions for those of the gear's output, by bisection."""
     drive = np.empty(geared.size)
     reach = abs(ripple.sine_mm) + 2.0 * abs(ripple.cosine_mm)
     for i in range(geared.size):
@@ -117,7 +119,7 @@ def unrippled(geared: Floats, ripple: DriveRipple) -> Floats:
 
 
 def smoothed(x: Floats, width: int, step_s: float) -> Floats:
-    """Return the smoothed x and its first three derivatives, shape (4, m − 4 width)."""
+    """Return smoothed x and its first three derivatives, shape (4, m − 4 width)."""
     levels = [x]
     for _ in range(MEANS):
         levels.append(_mean(levels[-1], width))

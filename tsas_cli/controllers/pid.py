@@ -1,9 +1,9 @@
-"""PID: pulls x_in back in proportion to its error, the error's sum and its rate.
+"""PID: feedback of the error of x_in, its integral and its rate.
 
-Law: u = KP e + KI ∫e dt + KD de/dt, e = x_inv − x_in. The sum is held while the motor is at its
-limit. With the gains of Yang 2025 ("Comparative verification", e in mm, u in rpm) the loop closes
-at KP K = 0.6 rad/s: the error that a reversal leaves, while the motor winds up the gear, takes
-seconds to go.
+Law: u = KP e + KI ∫e dt + KD de/dt, e = x_inv − x_in. The integral is frozen while the motor is at
+its limit (anti-windup). With the gains of Yang 2025 ("Comparative verification", e in mm, u in rpm)
+the bandwidth is KP K = 0.6 rad/s: the error after a reversal, while the motor winds up the gear,
+decays over seconds.
 When it fails: disturbances faster than the loop; a rate taken from a noisy x_in.
 """
 
@@ -38,13 +38,13 @@ class PidSettings(SettingsTable):
 
 
 @kernel
-def pid(seen: Signals, gains: Pid, memory: Floats, step_s: float) -> float:
+def pid(signals: Signals, gains: Pid, memory: Floats, step_s: float) -> float:
     """Return the motor speed [rpm] on top of the feedforward."""
-    if not seen.limited:
-        memory[SUM] += seen.e * step_s
+    if not signals.limited:
+        memory[SUM] += signals.e * step_s
     u: float = (
-        gains.proportional_rpm_per_mm * seen.e
+        gains.proportional_rpm_per_mm * signals.e
         + gains.integral_rpm_per_mm_s * memory[SUM]
-        + gains.derivative_rpm_s_per_mm * seen.de
+        + gains.derivative_rpm_s_per_mm * signals.de
     )
     return u

@@ -1,9 +1,10 @@
-"""What a controller sees at one sample: the error of x_in, its estimated rates, the wanted motion.
+"""Inputs of a controller at one sample: the error of x_in, its estimated rates, the reference.
 
 The rates of a sampled, noisy, quantised x_in are not measured. They are estimated from the error
-e = x_inv − x_in by a Butterworth filter of third order, whose states are e, de/dt and d²e/dt², late
-by 2/(2π f) alike; the wanted motion is known and needs no filter, so that rates of x_in itself are
-those wanted less those of the error. The filter is exact for an error that is held between samples.
+e = x_inv − x_in by a Butterworth filter of third order, whose states are e, de/dt and d²e/dt², all
+delayed by 2/(2π f); the reference is known and needs no filter, so that rates of x_in itself are
+those of the reference minus those of the error. The filter is exact for an error that is constant
+between samples.
 """
 
 import math
@@ -19,7 +20,7 @@ ORDER = 3
 
 
 class Signals(NamedTuple):
-    """The error x_inv − x_in as measured, filtered with its rates, and the wanted motion."""
+    """The error x_inv − x_in as measured, filtered with its rates, and the reference."""
 
     e: float  # [mm], as measured
     e_filtered: float  # [mm]
@@ -28,8 +29,8 @@ class Signals(NamedTuple):
     v: float  # of x_inv [mm/s]
     a: float  # [mm/s²]
     jerk: float  # [mm/s³]
-    applied: float  # what the controller got at the last sample beside the feedforward [rpm]
-    limited: bool  # which was less than it had asked for
+    applied: float  # speed applied at the last sample on top of the feedforward [rpm]
+    limited: bool  # whether the motor's limit had reduced it
 
 
 def error_filter(cutoff_Hz: float, step_s: float) -> tuple[Floats, Floats]:
@@ -46,7 +47,7 @@ def error_filter(cutoff_Hz: float, step_s: float) -> tuple[Floats, Floats]:
 
 @kernel
 def filtered(state: Floats, e: float, A: Floats, b: Floats) -> None:
-    """Take one more sample of the error into the filter's state."""
+    """Update the filter's state, in place, by one sample of the error."""
     e0, e1, e2 = state[0], state[1], state[2]
     for i in range(3):
         state[i] = A[i, 0] * e0 + A[i, 1] * e1 + A[i, 2] * e2 + b[i] * e

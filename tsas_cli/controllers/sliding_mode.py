@@ -1,12 +1,12 @@
-"""Sliding mode: drives a mix of the error and its rates to zero and holds it there.
+"""Sliding mode: drives a combination of the error and its rates to zero and keeps it there.
 
 Law (Yang 2025, Eqs. 41 to 43 with fixed φ): s = c1 e + c2 de/dt + d²e/dt²,
 u = φ1 (c1 de/dt + c2 d²e/dt² + x⃛_inv) + φ2 dx_in/dt + φ3 d²x_in/dt² + ε sat(s/width) + ks s.
 φ are those of the drive equation φ1 x⃛ + φ3 ẍ + φ2 ẋ + d1 = u (Eq. 37). The sign function is
-replaced by a straight line within the boundary layer. In whose units the paper's ks is, it does
-not say: per mm the sampled loop is a relay, per m (the default here) it is not.
+linear within the boundary layer. The paper does not state the unit of its ks: per mm the sampled
+loop is a relay, per m (the default here) it is not.
 When it fails: where the filtered loop is too fast for the drive's resonance or for the sampling, it
-is a relay that the motor's limit alone tames; where c2² < 4 c1 the error rings on the surface.
+is a relay bounded by the motor's limit alone; where c2² < 4 c1 the error rings on the surface.
 """
 
 from typing import ClassVar, NamedTuple
@@ -21,7 +21,7 @@ MM_PER_M = 1e3
 
 
 class Surface(NamedTuple):
-    """The sliding surface and how it is reached."""
+    """The sliding surface and its reaching law."""
 
     c1: float
     c2: float
@@ -66,15 +66,15 @@ class SlidingSettings(SettingsTable):
 
 
 @kernel
-def distance(seen: Signals, surface: Surface) -> float:
+def distance(signals: Signals, surface: Surface) -> float:
     """Return s, Eq. (41)."""
-    return surface.c1 * seen.e_filtered + surface.c2 * seen.de + seen.dde
+    return surface.c1 * signals.e_filtered + surface.c2 * signals.de + signals.dde
 
 
 @kernel
-def wanted_jerk(seen: Signals, surface: Surface) -> float:
-    """Return c1 de/dt + c2 d²e/dt² + x⃛_inv, which keeps s where it is."""
-    return surface.c1 * seen.de + surface.c2 * seen.dde + seen.jerk
+def wanted_jerk(signals: Signals, surface: Surface) -> float:
+    """Return c1 de/dt + c2 d²e/dt² + x⃛_inv, which keeps s constant."""
+    return surface.c1 * signals.de + surface.c2 * signals.dde + signals.jerk
 
 
 @kernel
@@ -84,9 +84,9 @@ def reaching(s: float, surface: Surface) -> float:
 
 
 @kernel
-def sliding_mode(seen: Signals, surface: Surface, phi: Phi) -> float:
+def sliding_mode(signals: Signals, surface: Surface, phi: Phi) -> float:
     """Return the motor speed [rpm] on top of the feedforward, Eq. (45)."""
-    s = distance(seen, surface)
-    along = phi.phi1 * wanted_jerk(seen, surface)
-    along += phi.phi2 * (seen.v - seen.de) + phi.phi3 * (seen.a - seen.dde)
+    s = distance(signals, surface)
+    along = phi.phi1 * wanted_jerk(signals, surface)
+    along += phi.phi2 * (signals.v - signals.de) + phi.phi3 * (signals.a - signals.dde)
     return along + reaching(s, surface)

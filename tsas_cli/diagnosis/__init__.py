@@ -1,1 +1,1 @@
-"""What a calibrated model gets wrong: where, why, what names it, and what it would gain."""
+"""Diagnosis of a calibrated model: residual maps, missing effects, evidence, reductions."""

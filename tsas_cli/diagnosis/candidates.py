@@ -1,4 +1,4 @@
-"""The runs that a plan may propose: a fixed list, within what the rig can do."""
+"""The runs that a plan may propose: a fixed list, within the limits of the rig."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ from tsas_cli.physics.rig import Rig
 FASTER = 2.0  # than the planned runs, where no limit is stated
 TIGHTER = 1.5  # the preload, where no limit is stated
 MIDDLE, SLOW = 1.0 / 3.0, 0.1  # of the highest speed
-LONG = 12  # periods of a run in which drifts show
+LONG = 12  # periods of a run in which drifts are visible
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,7 @@ class Candidate:
 
     @property
     def sentence(self) -> str:
-        """What to do."""
+        """The instruction to record it."""
         r = self.run
         dwell = f", {r.dwell_s:g} s of rest after each stroke" if r.dwell_s else ""
         return (
@@ -36,7 +36,7 @@ class Candidate:
 
 
 def planned_limits(runs: Sequence[PlannedRun]) -> Limits:
-    """Return what planned runs make plausible of the rig, for limits that nobody states."""
+    """Return plausible limits of the rig by planned runs, for limits that are not stated."""
     return _limits(
         [r.amplitude_mm for r in runs],
         [r.speed for r in runs],
@@ -46,7 +46,7 @@ def planned_limits(runs: Sequence[PlannedRun]) -> Limits:
 
 
 def recorded_limits(runs: Sequence[Prepared]) -> Limits:
-    """Return what recorded runs make plausible of the rig."""
+    """Return plausible limits of the rig by recorded runs."""
     driven = [r for r in runs if r.drive_column == "x_in_mm"]
     return _limits(
         [0.5 * float(np.ptp(r.drive.values)) for r in driven],
@@ -82,11 +82,11 @@ def candidates(limits: Limits, usual: Rig, repeated: PlannedRun | None = None) -
     Parameters
     ----------
     limits
-        What the rig can do, amplitude and speed stated.
+        The limits of the rig, with amplitude and speed stated.
     usual
-        The rig whose conditions hold where a candidate does not vary them.
+        The rig with the conditions that a candidate does not vary.
     repeated
-        A planned run that may be done a second time.
+        A planned run that may be repeated.
     """
     A, v = limits.amplitude_mm or 1.0, limits.speed_mm_per_s or 1.0
 

@@ -1,4 +1,4 @@
-"""The errors of each channel on held-out data, before and after, in the channel's own unit."""
+"""Residual RMS of each channel on held-out data, before and after, in the channel's unit."""
 
 import math
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ from tsas_cli.identification.fit_problem import rig_at
 
 @dataclass(frozen=True)
 class Channel:
-    """Root mean squares of one channel's error on held-out data, in its unit."""
+    """Residual RMS of one channel on held-out data, its noise level and the attainable RMS."""
 
     rmse_before: float
     rmse_after: float
@@ -23,30 +23,30 @@ class Channel:
 
 
 def channel_errors(
-    search: Hypotheses, before: Trial, final: Trial, start: Remainder, left: Remainder
+    search: Hypotheses, before: Trial, final: Trial, start: Remainder, remaining: Remainder
 ) -> dict[str, Channel]:
-    """Return the errors of each channel on held-out data, simulated anew."""
+    """Return the residual RMS of each channel on held-out data, newly simulated."""
     rmse = {id(t): _held_out_rmse(search, t) for t in (before, final)}
     out = {}
     for name in search.bench.channels:
-        floor = [
+        weights = [
             run.weights[name][run.samples[name]]
             for run in search.bench.closed
             if name in run.samples
         ]
         first, after = rmse[id(before)][name], rmse[id(final)][name]
-        noise = float(np.sqrt(np.mean(np.concatenate(floor) ** 2)))
-        could = [
+        noise = float(np.sqrt(np.mean(np.concatenate(weights) ** 2)))
+        attainable = [
             math.sqrt(max(first**2 - start.explained[name] * noise**2, 0.0)),
-            math.sqrt(max(after**2 - left.explained[name] * noise**2, 0.0)),
+            math.sqrt(max(after**2 - remaining.explained[name] * noise**2, 0.0)),
         ]
-        reached = min(noise, after)  # what was reached cannot be below it
-        out[name] = Channel(first, after, reached, max(min(could), reached))
+        floor_rms = min(noise, after)  # what was reached cannot be below it
+        out[name] = Channel(first, after, floor_rms, max(min(attainable), floor_rms))
     return out
 
 
 def _held_out_rmse(search: Hypotheses, trial: Trial) -> dict[str, float]:
-    """Return each channel's error, every run simulated with what the others say."""
+    """Return each channel's RMS, every run simulated with estimates from the others."""
     bench, folds = search.bench, search.folds
     squares: dict[str, float] = {}
     counts: dict[str, int] = {}

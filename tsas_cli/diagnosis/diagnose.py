@@ -1,4 +1,4 @@
-"""Name what a calibrated model lacks: the whole way from runs to a verdict."""
+"""Diagnose the effects that a calibrated model lacks, from runs to a verdict."""
 
 import math
 from collections.abc import Sequence
@@ -33,19 +33,19 @@ from tsas_cli.support.steps import SILENT, Steps
 Floats = npt.NDArray[np.float64]
 Verdict = Literal["named", "ambiguous", "sufficient", "unexplained", "undecided"]
 
-PLAUSIBLE = 0.15  # by which a tendon's axial stiffness may differ from its data sheet
-LEFT = 0.02  # of what was beyond the noise, that the named causes may leave unexplained
-MUCH = 4.0  # mean square, twice the noise, that nobody calls explained whatever is named
-MOSTLY_LEFT = 0.5  # of it, beyond which the verdict is that it is unexplained
-SPOKEN = 2.0 * BLURRED  # mean square beyond the noise that needs an explanation
-FEW_BLOCKS = 6  # too few to tell anything from chance
+PLAUSIBLE = 0.15  # relative deviation of a tendon's axial stiffness from its data sheet
+MOST_SHARE_LEFT = 0.02  # of the initial excess over the noise, that named causes may leave
+MOST_LEFT = 4.0  # mean square of the residual, twice the noise level, that causes may leave
+UNEXPLAINED_SHARE = 0.5  # of the excess, beyond which the verdict is `unexplained`
+NEEDS_CAUSE = 2.0 * BLURRED  # excess of the mean square that needs an explanation
+FEW_BLOCKS = 6  # fewer are too few for a test
 SEED = 1  # of the resampling of blocks
 SHEATH = "sheath_compression.compliance_ratio"
 
 
 @dataclass(frozen=True)
 class Cause:
-    """An effect that is named, with its parameters and what it gains on held-out data [%]."""
+    """A named effect, with its parameters and its reduction of the RMS on held-out data [%]."""
 
     effect: str
     rivals: tuple[str, ...]
@@ -56,11 +56,11 @@ class Cause:
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """The verdict and all that it rests on; nothing of that where it is undecided.
+    """The verdict with its evidence, which is None where it is undecided.
 
-    `model` is the extended one, `nominal` the one without what is named. `search` holds all
-    hypotheses, `judged` those that count with the final weights, among them the nominal model
-    `before` and the `final` one.
+    `model` is the extended one, `nominal` the one without the named effects. `search` has all
+    hypotheses, `judged` those fitted with the final weights, among them the nominal model `before`
+    and the `final` one.
     """
 
     verdict: Verdict
@@ -79,7 +79,7 @@ class Diagnosis:
 
     @property
     def unexplained(self) -> bool:
-        """Whether structure is left that no effect accounts for."""
+        """Whether a residual remains that no effect explains."""
         if self.remainder is None:
             return False
         if not self.causes:
@@ -88,17 +88,17 @@ class Diagnosis:
 
 
 def verdict_of(rivals: Sequence[tuple[str, ...]], mean_square: float, share: float) -> Verdict:
-    """Return the verdict on what is left with the causes, by the rivals of each."""
+    """Return the verdict by the residual with the causes, and the rivals of each."""
     if not rivals:
-        return "unexplained" if mean_square > 1.0 + SPOKEN else "sufficient"
-    if share > MOSTLY_LEFT:
+        return "unexplained" if mean_square > 1.0 + NEEDS_CAUSE else "sufficient"
+    if share > UNEXPLAINED_SHARE:
         return "unexplained"
     return "ambiguous" if any(rivals) else "named"
 
 
 def leaves_much(mean_square: float, share: float) -> bool:
-    """Say whether named causes leave what no effect accounts for."""
-    return mean_square > MUCH or (mean_square > 1.0 + BLURRED and share > LEFT)
+    """Return whether named causes leave a residual that needs a further explanation."""
+    return mean_square > MOST_LEFT or (mean_square > 1.0 + BLURRED and share > MOST_SHARE_LEFT)
 
 
 def diagnose_runs(
@@ -107,14 +107,14 @@ def diagnose_runs(
     runs: Sequence[Prepared],
     step: Steps = SILENT,
 ) -> Diagnosis:
-    """Find the effects that a model of these runs lacks; `step` is called after each piece of work.
+    """Return the effects that a model of these runs lacks; `step` reports progress.
 
     Parameters
     ----------
     manifest
-        What the data sheet says.
+        The data sheet.
     stated
-        The data sheet as a model, or a model to begin with.
+        The data sheet as a model, or another initial model.
     runs
         The runs, prepared.
     """
@@ -128,7 +128,7 @@ def diagnose_runs(
     bench = bench_of(base)
     folds = bench_folds(bench)
     if folds.blocks < FEW_BLOCKS:
-        reason = f"only {folds.blocks} stretches are independent of each other: too few."
+        reason = f"only {folds.blocks} independent stretches: too few for a diagnosis."
         return Diagnosis("undecided", reason, model, model, cannot_tell=cannot_tell)
     search = find_effects(bench, folds, step)
     judged = weighed_again(search, step) if search.named else search
@@ -138,7 +138,7 @@ def diagnose_runs(
 
 
 def nominal_fit(manifest: Manifest, stated: Model, runs: Sequence[Prepared]) -> FitProblem:
-    """Return the fit of the nominal parameters as a problem; the tendon stays near its sheet."""
+    """Return the fit of the nominal parameters; the tendon is bounded by its data sheet."""
     segments = [segment(run) for run in runs]
     measured = [slopes_of(run, parts) for run, parts in zip(runs, segments, strict=True)]
     plausible = {}
@@ -150,34 +150,34 @@ def nominal_fit(manifest: Manifest, stated: Model, runs: Sequence[Prepared]) -> 
 
 
 def _not_possible(base: FittedModel) -> str | None:
-    """Say why nothing can be diagnosed, or None."""
+    """Return the reason why no diagnosis is possible, or None."""
     fitted = base.fitted
     if not base.problem.runs:
-        return "no run lasts beyond the time in which the tendon forgets how it began."
+        return "no run lasts beyond its first full slip, before which its history matters."
     if fitted is None:
-        return "these recordings identify no parameter of the nominal model."
+        return "no parameter of the nominal model is identifiable from these recordings."
     if not fitted.converged:
         return f"the fit of the nominal model did not converge ({fitted.message})."
     return None
 
 
 def bench_folds(bench: Bench) -> Folds:
-    """Return what of a bench's runs is held out together, in blocks longer than its memory."""
+    """Return the folds of a bench's runs, in blocks longer than the autocorrelation."""
     return folds_of(blocks_of(bench.closed, bench.rigs))
 
 
 def _concluded(search: Hypotheses, judged: Hypotheses, base: FittedModel) -> Diagnosis:
-    """Return the diagnosis from what was found, and from the fits that were weighed by it."""
+    """Return the diagnosis from a search, and from its fits with the final weights."""
     named, model = search.named, base.model
     before = judged.trial(frozenset(), on_mesh=judged.bench.on_mesh(named))
     final = judged.trial(named)
     estimates = _estimates(judged, final)
     causes = tuple(_cause(judged, name, estimates) for name in search.rivals)
-    left = remainder(judged.bench, final, judged.folds)
-    start = remainder(judged.bench, before, judged.folds) if named else left
-    excess = [max(r.mean_square - 1.0, 0.0) for r in (start, left)]
+    after = remainder(judged.bench, final, judged.folds)
+    start = remainder(judged.bench, before, judged.folds) if named else after
+    excess = [max(r.mean_square - 1.0, 0.0) for r in (start, after)]
     share = max(excess[1] - BLURRED, 0.0) / excess[0] if excess[0] > 0.0 else 0.0
-    verdict = verdict_of([cause.rivals for cause in causes], left.mean_square, share)
+    verdict = verdict_of([cause.rivals for cause in causes], after.mean_square, share)
     extended = Model(tuple(estimates)).over(model)
     nominal = Model(tuple(_estimates(judged, before))).over(model) if named else extended
     found = Diagnosis(
@@ -186,8 +186,8 @@ def _concluded(search: Hypotheses, judged: Hypotheses, base: FittedModel) -> Dia
         extended,
         nominal,
         causes,
-        channel_errors(judged, before, final, start, left),
-        left,
+        channel_errors(judged, before, final, start, after),
+        after,
         share if named else 1.0,
         search,
         judged,
@@ -195,7 +195,7 @@ def _concluded(search: Hypotheses, judged: Hypotheses, base: FittedModel) -> Dia
         final,
         base.not_identifiable,
     )
-    return replace(found, reason=_reason(found, start, left))
+    return replace(found, reason=_reason(found, start, after))
 
 
 def _cause(judged: Hypotheses, name: str, estimates: Sequence[Estimate]) -> Cause:
@@ -210,7 +210,7 @@ def _cause(judged: Hypotheses, name: str, estimates: Sequence[Estimate]) -> Caus
 
 
 def _estimates(search: Hypotheses, trial: Trial) -> list[Estimate]:
-    """Return the estimates of a trial, as far as an uneven bend leaves them sure."""
+    """Return the estimates of a trial, with intervals that include an uneven bend."""
     solution = trial.solution
     blocks = [search.folds.block[search.folds.run == k] for k in range(len(search.bench.rigs))]
     counted = [np.unique(block, return_inverse=True)[1] for block in blocks]
@@ -218,13 +218,13 @@ def _estimates(search: Hypotheses, trial: Trial) -> list[Estimate]:
     uneven = stderr_of_unevenness(search.bench, trial, counted)
     fitted = replace(fitted, stderr=np.hypot(fitted.stderr, uneven))
     estimates = estimates_of(trial.unknowns, fitted, search.bench.base.problem.ids)
-    return [_as_sure_as_the_data_sheet(e, trial) if e.name == SHEATH else e for e in estimates]
+    return [_with_data_sheet_interval(e, trial) if e.name == SHEATH else e for e in estimates]
 
 
-def _as_sure_as_the_data_sheet(ratio: Estimate, trial: Trial) -> Estimate:
-    """Return the sheath's compliance with the interval that the tendon's data sheet leaves it.
+def _with_data_sheet_interval(ratio: Estimate, trial: Trial) -> Estimate:
+    """Return the sheath's compliance with the interval that follows from the tendon's data sheet.
 
-    The recordings tell (1 + ratio)/EA only, so the ratio is as uncertain as EA is.
+    The recordings determine (1 + ratio)/EA only, so the ratio is as uncertain as EA is.
     """
     EA = next((j for j, u in enumerate(trial.unknowns) if u.name == "tendon_stiffness_N"), None)
     if EA is None:
@@ -237,30 +237,30 @@ def _as_sure_as_the_data_sheet(ratio: Estimate, trial: Trial) -> Estimate:
     return replace(ratio, stderr=stderr, interval_low=low, interval_high=high)
 
 
-def _reason(found: Diagnosis, start: Remainder, left: Remainder) -> str:
+def _reason(found: Diagnosis, start: Remainder, after: Remainder) -> str:
     """Return the verdict in a few plain sentences."""
     titles = {effect.name: effect.title.lower() for effect in EFFECTS}
     names = " and ".join(titles[c.effect] for c in found.causes)
-    before, after = (_two_digits(math.sqrt(r.mean_square)) for r in (start, left))
-    depends = ", ".join(spoken(signal) for signal in left.depends_on)
+    rms = [_two_digits(math.sqrt(r.mean_square)) for r in (start, after)]
+    depends = ", ".join(spoken(signal) for signal in after.depends_on)
     depends = f" It depends on {depends}." if depends else ""
     if found.verdict == "sufficient":
-        return "The nominal model is at the noise floor: nothing is missing that these runs show."
+        return "The nominal model is at the noise level: these runs show no missing effect."
     if not found.causes:
         return (
-            f"The model misses the runs by {before} times what noise explains, and no known "
-            f"effect accounts for it.{depends}"
+            f"The residual RMS is {rms[0]} × the noise level, and no catalogued effect explains "
+            f"it.{depends}"
         )
-    said = f"What the nominal model lacks is: {names}. "
-    said += f"It takes the error from {before} to {after} times what noise explains."
+    sentences = f"The nominal model lacks: {names}. "
+    sentences += f"With it the residual RMS falls from {rms[0]} to {rms[1]} × the noise level."
     rivals = sorted({titles[r] for c in found.causes for r in c.rivals})
     if rivals:
-        said += f" These recordings cannot tell it from: {', '.join(rivals)}."
+        sentences += f" Indistinguishable from it in these recordings: {', '.join(rivals)}."
     if found.verdict == "unexplained":
-        return f"{said} Most of the rest is explained by no known effect.{depends}"
+        return f"{sentences} No catalogued effect explains most of the remaining residual.{depends}"
     if found.unexplained:
-        return f"{said} What is left no known effect explains.{depends}"
-    return said
+        return f"{sentences} No catalogued effect explains the remaining residual.{depends}"
+    return sentences
 
 
 def _two_digits(value: float) -> str:

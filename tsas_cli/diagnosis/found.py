@@ -1,4 +1,4 @@
-"""What a diagnosis has found, as the records that are written down (docs/formats.md)."""
+"""Records of a diagnosis for its files (docs/formats.md)."""
 
 import numpy as np
 import numpy.typing as npt
@@ -16,7 +16,7 @@ Floats = npt.NDArray[np.float64]
 
 
 def cause_of(cause: Cause) -> records.Cause:
-    """Return a named effect with its title, equation and values."""
+    """Return the record of a named effect with its title, equation and values."""
     effect = next(e for e in EFFECTS if e.name == cause.effect)
     return records.Cause(
         effect=cause.effect,
@@ -33,7 +33,7 @@ def cause_of(cause: Cause) -> records.Cause:
 
 
 def held_out_of(result: Diagnosis) -> dict[str, records.HeldOut]:
-    """Return each channel's errors on held-out data, with its unit."""
+    """Return each channel's residual RMS on held-out data, with its unit."""
     return {
         name: records.HeldOut(unit=BY_NAME[name].unit, **vars(channel))
         for name, channel in result.channels.items()
@@ -41,18 +41,18 @@ def held_out_of(result: Diagnosis) -> dict[str, records.HeldOut]:
 
 
 def remainder_of(result: Diagnosis) -> records.Remainder:
-    """Return what is left, and on what it depends."""
-    left = result.remainder
+    """Return the record of the remaining residual, and the signals that it depends on."""
+    remainder = result.remainder
     return records.Remainder(
         unexplained=result.unexplained,
-        depends_on=() if left is None else left.depends_on,
+        depends_on=() if remainder is None else remainder.depends_on,
         share_percent=100.0 * result.share_left,
-        mean_square=None if left is None else left.mean_square,
+        mean_square=None if remainder is None else remainder.mean_square,
     )
 
 
 def candidates_of(result: Diagnosis) -> list[records.Candidate]:
-    """Return single effects, and what stands in place of the named ones, the best first."""
+    """Return single effects, and sets with one named effect replaced, the best first."""
     search = result.search
     if search is None:
         return []
@@ -78,15 +78,15 @@ def candidates_of(result: Diagnosis) -> list[records.Candidate]:
 
 
 def signatures_of(search: Hypotheses | None) -> records.Signatures:
-    """Return how visible each effect is on these inputs, and how similar each two are."""
+    """Return the visibility of each effect on these inputs, and the similarity of each pair."""
     if search is None:
         return records.Signatures()
-    seen = sorted(search.screened, key=lambda s: s.effect.name)
-    sizes = [float(np.linalg.norm(s.signatures.sum(axis=1))) for s in seen]
-    spaces = [_orthonormal(s.signatures) for s in seen]
-    likeness = [[_likeness(a, b) for b in spaces] for a in spaces]
-    names = tuple(s.effect.name for s in seen)
-    return records.Signatures(effects=names, visible=sizes, likeness=likeness)
+    screened = sorted(search.screened, key=lambda s: s.effect.name)
+    sizes = [float(np.linalg.norm(s.signatures.sum(axis=1))) for s in screened]
+    spaces = [_orthonormal(s.signatures) for s in screened]
+    similarity = [[_similarity(a, b) for b in spaces] for a in spaces]
+    names = tuple(s.effect.name for s in screened)
+    return records.Signatures(effects=names, visible=sizes, likeness=similarity)
 
 
 def _orthonormal(signatures: Floats) -> Floats:
@@ -94,15 +94,15 @@ def _orthonormal(signatures: Floats) -> Floats:
     return np.asarray(u[:, sizes > 1e-6 * max(float(sizes.max()), 1e-12)])
 
 
-def _likeness(a: Floats, b: Floats) -> float:
-    """Return the cosine of the smallest angle between what two effects can do, 1 if they share."""
+def _similarity(a: Floats, b: Floats) -> float:
+    """Return the cosine of the smallest angle between the spans of two effects' signatures."""
     if a.shape[1] == 0 or b.shape[1] == 0:
         return 0.0
     return float(min(np.linalg.svd(a.T @ b, compute_uv=False).max(), 1.0))
 
 
 def residual_maps_of(result: Diagnosis) -> records.ResidualMaps:
-    """Return where each channel is wrong, before and after."""
+    """Return the residual maps, before and after."""
     if result.judged is None or result.before is None or result.final is None:
         return records.ResidualMaps()
     bench = result.judged.bench
@@ -112,7 +112,7 @@ def residual_maps_of(result: Diagnosis) -> records.ResidualMaps:
 
 
 def evidence_of(search: Hypotheses | None) -> Evidence:
-    """Return what was held out, and how much of it counts."""
+    """Return the record of the held-out data, with the number of blocks."""
     if search is None:
         return Evidence()
     folds, runs = search.folds, len(search.bench.rigs)
@@ -124,6 +124,6 @@ def evidence_of(search: Hypotheses | None) -> Evidence:
         held_out="runs" if folds.by_run else "stretches",
         blocks=folds.blocks,
         runs=runs,
-        sentence=f"{how}; {folds.blocks} blocks longer than the error's memory count as "
-        "evidence. Noise is told from the high-frequency part of each channel.",
+        sentence=f"{how}; the evidence are {folds.blocks} blocks longer than the residual's "
+        "autocorrelation. The noise level is that of each channel's high-frequency part.",
     )

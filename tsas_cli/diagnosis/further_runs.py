@@ -1,4 +1,4 @@
-"""Runs that are there, and runs that might be added to them, seen in one look."""
+"""Recorded or planned runs together with runs that might be added, in one linearised fit."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -24,7 +24,10 @@ SEED = 2  # of the noise of runs that might be added
 
 @dataclass(frozen=True)
 class FurtherRuns:
-    """A look at runs, and which of them are there already; `left_out` says what shows nothing."""
+    """A linearised fit of runs, those present (`there`), those proposed (`added`).
+
+    `left_out` has notes on recordings that do not enter the fit.
+    """
 
     look: Look
     there: tuple[int, ...]
@@ -32,7 +35,7 @@ class FurtherRuns:
     left_out: tuple[str, ...]
 
     def part(self, *added: int) -> Part:
-        """Return the runs that are there, and some of those that might be added."""
+        """Return the present runs with some of the proposed ones."""
         return self.look.part([*self.there, *added])
 
 
@@ -43,28 +46,28 @@ def beside(
     fixed: Model,
     free: Mapping[str, float] | None = None,
 ) -> FurtherRuns:
-    """Look at runs and further ones in one fit of the nominal parameters.
+    """Return present and proposed runs in one fit of the nominal parameters.
 
     Parameters
     ----------
     runs, further
-        The runs that are there, and those that might be added.
+        The present runs, and those that might be added.
     initial, fixed
-        The values that the fit begins with, and those of parameters that are not identifiable.
+        The initial values, and those of parameters that are not identifiable.
     free
         Parameters of effects that are free in the fit, with their initial values.
 
     Raises
     ------
     InputError
-        Not one of the runs that are there makes the whole tendon slip.
+        None of the present runs reaches full slip.
     """
     problem = prepare_fit(initial, fixed, [*runs, *(run for _, run in further)])
     by_id = {run.run.id: candidate for candidate, run in further}
     there = tuple(k for k, run in enumerate(problem.runs) if run.run.id not in by_id)
     if not there:
         raise InputError(
-            "no run makes the whole tendon slip, so that nothing can be seen",
+            "no run reaches full slip, so that no effect is visible",
             expected="strokes that stretch the tendon and move the load",
             remedy="plan a larger amplitude_mm",
         )
@@ -77,7 +80,7 @@ def beside(
 
 
 def beside_recorded(bench: Bench, free: Mapping[str, float] | None = None) -> FurtherRuns:
-    """Look at the runs of a bench and at what might be recorded beside them on the same rig."""
+    """Return the runs of a bench with those that might be recorded next on the same rig."""
     base = bench.base.problem
     plain = [(r.drive_column, r.run.load) == ("x_in_mm", "spring") for r in base.runs]
     further: list[tuple[Candidate, Prepared]] = []
@@ -98,7 +101,7 @@ def beside_recorded(bench: Bench, free: Mapping[str, float] | None = None) -> Fu
 def recorded_in_thought(
     proposed: Sequence[Candidate], sensors: Sensors, rig: Rig, runs: Sequence[Prepared]
 ) -> list[tuple[Candidate, Prepared]]:
-    """Return candidates with what they would record, each right after the last run."""
+    """Return candidates with simulated recordings, each right after the last run."""
 
     def rig_of(run: Run) -> Rig:
         return rig._replace(
@@ -115,7 +118,7 @@ def recorded_in_thought(
 
 
 def _clock(runs: Sequence[Prepared]) -> tuple[datetime | None, datetime]:
-    """Return when the session began, None where the runs do not say, and when it may go on."""
+    """Return the start of the session, None where it is unknown, and that of a further run."""
     last = max(runs, key=lambda run: run.session_s)
     if last.run.started is None or last.session_s == 0.0:
         return None, datetime(2000, 1, 1)  # noqa: DTZ001 # the clock of a rig has no zone

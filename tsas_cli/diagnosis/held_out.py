@@ -1,8 +1,8 @@
-"""How well a hypothesis does on runs that its fit did not see, block by block.
+"""Residuals of a hypothesis on held-out runs, block by block.
 
-A run is left out by one Gauss-Newton step from the fit to all runs: exact for a linear model, and
-the steps are small. What belongs to one run alone (its preload, its zeros) is fitted to that run
-for every hypothesis alike. With fewer than three runs, stretches of the runs are left out.
+A run is held out by one Gauss-Newton step from the fit to all runs: exact for a linear model, and
+the steps are small. Parameters of a single run (its preload, its zeros) are fitted to that run for
+every hypothesis. With fewer than three runs, stretches of the runs are held out.
 """
 
 from collections.abc import Sequence
@@ -17,27 +17,27 @@ from tsas_cli.identification.fit import Solution, Unknown
 Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
 
-FEWEST_RUNS = 3  # of which one can be left out
+FEWEST_RUNS = 3  # of which one can be held out
 STRETCHES = 4  # of each run, where runs are too few
 
 
 class Hypothesis(Protocol):
-    """What was fitted: the unknowns, and the least squares with them."""
+    """A fit: the unknowns, and their least squares."""
 
     @property
     def unknowns(self) -> Sequence[Unknown]:
-        """What was sought."""
+        """The unknowns of the fit."""
 
     @property
     def solution(self) -> Solution:
-        """What was found."""
+        """The least squares."""
 
 
 @dataclass(frozen=True)
 class Folds:
-    """What is left out together, and what counts as one piece of evidence.
+    """Folds that are held out together, and blocks that are units of evidence.
 
-    `fold` and `block` number every residual of every run, shape (n,), `run` says whose it is;
+    `fold`, `block` and `run` are the numbers of each residual's fold, block and run, shape (n,);
     `by_run` whether the folds are runs.
     """
 
@@ -66,25 +66,27 @@ def folds_of(blocks: Sequence[Indices]) -> Folds:
 
 
 def held_out_values(trial: Hypothesis, folds: Folds, fold: int) -> Floats:
-    """Return the scaled values of a trial without one fold, that run's own ones fitted to it."""
-    left = folds.fold == fold
+    """Return the scaled values of a trial without one fold, its run's own ones fitted to it."""
+    held_out = folds.fold == fold
     J, r = trial.solution.jacobian, trial.solution.residual
-    runs = np.unique(folds.run[left])
+    runs = np.unique(folds.run[held_out])
     own = np.array([u.run is not None and u.run in runs for u in trial.unknowns])
     own &= folds.by_run
     shared = ~own
-    weak = np.array([u.scale for u in trial.unknowns]) ** -2.0  # what is not identifiable stays
-    others = J[~left][:, shared]
+    weak = (
+        np.array([u.scale for u in trial.unknowns]) ** -2.0
+    )  # regularises directions that are not identifiable
+    others = J[~held_out][:, shared]
     free = ~trial.solution.at_bound[shared]
     gram = others.T @ others + np.diag(weak[shared])
     step = np.zeros(len(trial.unknowns))
-    gradient = -(others.T @ r[~left])
+    gradient = -(others.T @ r[~held_out])
     moved = np.zeros(int(shared.sum()))
     moved[free] = np.linalg.solve(gram[np.ix_(free, free)], gradient[free])
     step[shared] = moved
     if own.any():
-        after = r[left] + J[left] @ step
-        step[own] = -np.linalg.lstsq(J[left][:, own], after, rcond=None)[0]
+        after = r[held_out] + J[held_out] @ step
+        step[own] = -np.linalg.lstsq(J[held_out][:, own], after, rcond=None)[0]
     lower = np.array([u.lower for u in trial.unknowns])
     upper = np.array([u.upper for u in trial.unknowns])
     return np.clip(trial.solution.values + step, lower, upper)
@@ -95,7 +97,7 @@ def held_out_squares(trial: Hypothesis, folds: Folds) -> Floats:
     J, r = trial.solution.jacobian, trial.solution.residual
     out = np.empty(r.size)
     for fold in range(int(folds.fold.max()) + 1):
-        left = folds.fold == fold
+        held_out = folds.fold == fold
         step = held_out_values(trial, folds, fold) - trial.solution.values
-        out[left] = r[left] + J[left] @ step
+        out[held_out] = r[held_out] + J[held_out] @ step
     return np.bincount(folds.block, out**2, minlength=folds.blocks).astype(np.float64)

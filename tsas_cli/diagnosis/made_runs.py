@@ -1,4 +1,4 @@
-"""Recordings of runs that nobody has made: what the nominal rig predicts, with noise."""
+"""Simulated recordings of planned runs: predictions of the nominal rig, with noise."""
 
 from collections.abc import Callable, Sequence
 from datetime import datetime, timedelta
@@ -26,16 +26,16 @@ def made(
     *,
     seed: int = SEED,
 ) -> list[Recording]:
-    """Return the recordings of planned runs, one after the other from `started` on.
+    """Return simulated recordings of planned runs, one after the other from `started` on.
 
     Parameters
     ----------
     runs, sensors
-        What is done, and how it is measured.
+        The planned runs, and the sensors.
     rig_of
         The rig in a run's conditions.
     started
-        When the first run begins.
+        Start of the first run.
     seed
         Of the noise.
 

@@ -1,4 +1,4 @@
-"""What to measure next, so that the verdict becomes surer."""
+"""The next experiment, for a stronger verdict."""
 
 from tsas_cli.diagnosis.diagnose import Diagnosis
 from tsas_cli.diagnosis.plan import propose
@@ -7,7 +7,7 @@ from tsas_cli.support.steps import SILENT, Steps
 
 
 def next_experiment(result: Diagnosis, step: Steps = SILENT) -> str:
-    """Return a sentence for a person with the rig."""
+    """Return the instruction for the next experiment."""
     experiments = {effect.name: effect.experiment for effect in EFFECTS}
     if result.verdict == "undecided":
         return (
@@ -24,7 +24,7 @@ def next_experiment(result: Diagnosis, step: Steps = SILENT) -> str:
         return experiments[first.effect]
     if result.unexplained:
         return (
-            "Repeat one run without any change: what comes back is the rig's, what does not is "
-            "chance; then change speed, load and bend one at a time."
+            "Repeat one run without any change: a residual that recurs is systematic, one that "
+            "does not is random; then vary speed, load and bend one at a time."
         )
-    return "Nothing is missing here; other loads, speeds and bends would show more."
+    return "No effect is missing here; runs at other loads, speeds and bends would test more."

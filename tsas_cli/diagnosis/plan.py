@@ -1,4 +1,4 @@
-"""What a set of runs could show before anyone measures, and which further run shows most."""
+"""Visibility of effects in a set of planned runs, and the most informative further run."""
 
 import math
 from collections.abc import Sequence
@@ -29,13 +29,13 @@ from tsas_cli.recordings.quality.copies.counted import Counted
 from tsas_cli.support.steps import SILENT, Steps
 
 PROPOSED = 3
-WORTH_SAYING = 1.2  # factor by which a size has to fall
-FIRST = datetime(2000, 1, 1)  # noqa: DTZ001 # of runs that nobody has made; a rig has no zone
+LEAST_FACTOR = 1.2  # by which a size has to fall
+FIRST = datetime(2000, 1, 1)  # noqa: DTZ001 # start of simulated runs; a rig has no time zone
 
 
 @dataclass(frozen=True)
 class Better:
-    """The size from which on a cause is named, before a run is added and with it."""
+    """The smallest size at which a cause is named, without and with a further run."""
 
     cause: Cause
     before: float
@@ -43,7 +43,7 @@ class Better:
 
     @property
     def sentence(self) -> str:
-        """What is better."""
+        """The improvement in a sentence."""
         unit = "" if self.cause.parameter.unit == "1" else f" {self.cause.parameter.unit}"
         named_before = math.isfinite(self.before)
         instead = f"instead of {self.before:.2g}" if named_before else "not without it"
@@ -52,10 +52,10 @@ class Better:
 
 @dataclass(frozen=True)
 class Proposal:
-    """A further run, and what it improves, the most first.
+    """A further run, and its improvements, the largest first.
 
-    `score` is the mean logarithm by which the sizes fall from which on causes are named, `groups`
-    are pairs of effects that hide in each other all the same.
+    `score` is the mean decrease of the logarithm of the smallest named sizes, `groups` are the
+    pairs of effects that remain indistinguishable.
     """
 
     candidate: Candidate
@@ -64,16 +64,16 @@ class Proposal:
     groups: tuple[tuple[str, str], ...]
 
     def best_of(self, count: int) -> str:
-        """Say what is improved most."""
+        """Return the largest improvements in a sentence."""
         return "; ".join(b.sentence for b in self.better[:count])
 
 
 @dataclass(frozen=True)
 class Plan:
-    """What the planned runs could show.
+    """Visibility of effects in planned runs.
 
-    `groups` are pairs of effects that hide in each other, `cannot_tell` says what the runs do not
-    show, and why.
+    `groups` are pairs of indistinguishable effects, `cannot_tell` has sentences on what the runs do
+    not determine, and why.
     """
 
     seen: tuple[Seen, ...]
@@ -83,15 +83,15 @@ class Plan:
 
 
 def plan_rig(file: RigFile, step: Steps = SILENT) -> Plan:
-    """Return what the runs of a rig file could show.
+    """Return the plan for the runs of a rig file.
 
     Raises
     ------
     InputError
-        None of the runs makes the whole tendon slip, or one is too long.
+        None of the runs reaches full slip, or one is too long.
     """
     step.ahead(1)
-    # A manifest has a run; of this one only the rig is read.
+    # A manifest needs a run; only its rig is used here.
     nobody = Run(id="none", file="none", sha256="0" * 64)
     sheet = Manifest(format=1, name=file.name, kind="simulated", rig=file.rig, run=(nobody,))
     model = data_sheet(sheet)
@@ -103,12 +103,12 @@ def plan_rig(file: RigFile, step: Steps = SILENT) -> Plan:
 
 
 def plan_dataset(counted: Counted, step: Steps = SILENT) -> Plan:
-    """Return what the runs of a dataset can show, each sample of which counts once.
+    """Return the plan for the runs of a dataset, without duplicate samples.
 
     Raises
     ------
     InputError
-        A recording is wrong, or none makes the whole tendon slip.
+        A recording is invalid, or none reaches full slip.
     """
     step.ahead(1)
     manifest = counted.dataset.manifest
@@ -124,18 +124,18 @@ def plan_dataset(counted: Counted, step: Steps = SILENT) -> Plan:
 
 
 def propose(bench: Bench, trial: Trial, effects: Sequence[str], step: Steps = SILENT) -> str:
-    """Return as a sentence the run that tells effects apart best.
+    """Return as a sentence the further run that distinguishes effects best.
 
     Parameters
     ----------
     bench
-        The runs that are there.
+        The present runs.
     trial
         A fit of them; its other effects stay free.
     effects
-        The effects that are to be told apart: a single one from all others, none: all.
+        The effects to distinguish: a single one from all others; none means all.
     step
-        Told of a piece of work for each run that might be added.
+        Reports progress for each run that might be added.
     """
     step.ahead(1)
     chosen = [e for e in EFFECTS if e.name in effects] or list(EFFECTS)
@@ -146,10 +146,10 @@ def propose(bench: Bench, trial: Trial, effects: Sequence[str], step: Steps = SI
     step.ahead(len(runs.added))
     found = _proposals(runs, runs.part().seen(chosen, rivals), rivals, step)
     if not found or not found[0].better:
-        apart = " and ".join(e.title.lower() for e in chosen)
-        return f"No further run within the range of these tells {apart} apart."
-    still = "".join(f" It does not tell {a} from {b}." for a, b in found[0].groups)
-    return f"Record {found[0].candidate.sentence}. With it {found[0].best_of(2)}.{still}"
+        titles = " and ".join(e.title.lower() for e in chosen)
+        return f"No further run within the range of these distinguishes {titles}."
+    remaining = "".join(f" It does not distinguish {a} from {b}." for a, b in found[0].groups)
+    return f"Record {found[0].candidate.sentence}. With it {found[0].best_of(2)}.{remaining}"
 
 
 def _plan(runs: FurtherRuns, step: Steps) -> Plan:
@@ -163,16 +163,16 @@ def _plan(runs: FurtherRuns, step: Steps) -> Plan:
 
 
 def _few(blocks: int) -> list[str]:
-    """Say where the blocks are too few: if all of them gain, that is √blocks of chance."""
+    """Return a note if the blocks are too few: the test statistic is at most √blocks."""
     least = math.floor(SURE**2) + 1
-    sentence = f"These runs have {blocks} independent stretches; no diagnosis is sure with fewer"
-    return [f"{sentence} than {least}."] if blocks < least else []
+    sentence = f"These runs have {blocks} independent stretches; a diagnosis needs at least {least}"
+    return [f"{sentence}."] if blocks < least else []
 
 
 def _proposals(
     runs: FurtherRuns, seen: Sequence[Seen], rivals: Sequence[Effect], step: Steps
 ) -> list[Proposal]:
-    """Return the runs that might be added and improve something, the best first."""
+    """Return the further runs with an improvement, the best first."""
     effects = list({s.cause.effect.name: s.cause.effect for s in seen}.values())
     out = []
     for k, candidate in runs.added.items():
@@ -190,12 +190,12 @@ def _proposal(candidate: Candidate, before: Sequence[Seen], after: Sequence[Seen
         (Better(b.cause, b.counted, a.counted) for b, a in zip(before, after, strict=True)),
         key=lambda pair: -falls[pair.cause.name],
     )
-    worth = [p for p in better if p.before > WORTH_SAYING * p.after]
-    return Proposal(candidate, sum(falls.values()) / len(falls), tuple(worth), _groups(after))
+    improved = [p for p in better if p.before > LEAST_FACTOR * p.after]
+    return Proposal(candidate, sum(falls.values()) / len(falls), tuple(improved), _groups(after))
 
 
 def _groups(seen: Sequence[Seen]) -> tuple[tuple[str, str], ...]:
-    """Return the pairs of effects that hide in each other."""
+    """Return the pairs of indistinguishable effects."""
     hidden = {(s.cause.effect.name, rival) for s in seen for rival in s.hidden_in}
     pairs = combinations([e.name for e in EFFECTS], 2)
     return tuple(pair for pair in pairs if pair in hidden and pair[::-1] in hidden)

@@ -1,8 +1,8 @@
-"""What is left when the best causes are named: how much, on what it depends, what could be had.
+"""The remaining residual with the named causes: its size, its dependence, the attainable residual.
 
-A regression on the recorded signals, each by a row of hats and both directions apart, tells how
-far any model of these signals could get on runs that it was not fitted to. It is no cause: it
-says what a model lacks, not why.
+A regression on the recorded signals, each by hat functions and with separate weights for both
+directions, estimates the residual that any model of these signals could attain on held-out runs. It
+shows that a model lacks something, not the cause.
 """
 
 from dataclasses import dataclass
@@ -18,19 +18,18 @@ from tsas_cli.identification.samples import mean_edges
 
 Floats = npt.NDArray[np.float64]
 
-HATS = 10  # of each signal and direction
-RIDGE = 1.0  # weight of the regression's own size, in units of noise
-DEPENDS = 0.02  # part of the squares that a signal has to explain on its own
-PEAK = 0.3  # part of a run's squares in one narrow band that makes the error periodic
+HATS = 10  # hat functions of each signal and direction
+RIDGE = 1.0  # regularisation, in units of noise
+DEPENDS = 0.02  # least share of the squares that a signal alone explains
+PEAK = 0.3  # share of a run's squares in one narrow band from which the residual is periodic
 
 
 @dataclass(frozen=True)
 class Remainder:
-    """What is left of a trial.
+    """The remaining residual of a trial.
 
-    `mean_square` is that of the errors in units of what noise explains; `explained` what of each
-    channel's a regression would still take away on held-out data; `depends_on` the signals that
-    explain most of it.
+    `mean_square` is that of the weighted residuals; `explained` the reduction of each channel's
+    mean square by a regression on held-out data; `depends_on` the signals that explain most of it.
     """
 
     mean_square: float
@@ -39,7 +38,7 @@ class Remainder:
 
 
 def remainder(bench: Bench, trial: Trial, folds: Folds) -> Remainder:
-    """Look at what a trial leaves."""
+    """Return the remaining residual of a trial."""
     errors = np.concatenate(
         [
             np.concatenate(list(e.errors(bench.rig(trial, k)).values()))
@@ -60,10 +59,10 @@ def remainder(bench: Bench, trial: Trial, folds: Folds) -> Remainder:
         before = _by_block(residual[here], folds, here)
         used = before > 0.0
         whole = [hats(signals[s][here], signals[DIRECTION][here]) for s in names]
-        left = residual[here] - regressed(np.hstack(whole), residual[here], folds.fold[here])
-        after = _by_block(left, folds, here)
+        remaining = residual[here] - regressed(np.hstack(whole), residual[here], folds.fold[here])
+        after = _by_block(remaining, folds, here)
         best = gain(before[used], after[used])
-        # A residual is the mean of some samples, scaled to the noise of one.
+        # Each residual is a mean of samples, scaled to unit variance.
         of_mean = float(np.mean(residual[here] ** 2)) * here.sum() / samples[name]
         explained[name] = max(best.part, 0.0) * of_mean if best.convincing else 0.0
         for signal, columns in zip(names, whole, strict=True):
@@ -100,7 +99,7 @@ def _signals(bench: Bench, trial: Trial) -> tuple[dict[str, Floats], Floats]:
 
 
 def hats(signal: Floats, direction: Floats) -> Floats:
-    """Return straight-line interpolation weights of a signal, for both directions, shape (n, p)."""
+    """Return linear interpolation weights of a signal, for both directions, shape (n, p)."""
     knots = np.unique(np.quantile(signal, np.linspace(0.0, 1.0, HATS)))
     if knots.size < 2:
         return np.zeros((signal.size, 0))
@@ -123,7 +122,7 @@ def regressed(columns: Floats, residual: Floats, fold: npt.NDArray[np.int64]) ->
 
 
 def _periodic(bench: Bench, trial: Trial) -> str | None:
-    """Return a sentence on a frequency that stands out of the errors of most runs, or None."""
+    """Return a phrase on a dominant frequency of the residuals of most runs, or None."""
     found = []
     for k, run in enumerate(bench.errors_for(trial)):
         for name, errors in run.errors(bench.rig(trial, k)).items():
@@ -138,4 +137,4 @@ def _periodic(bench: Bench, trial: Trial) -> str | None:
         return None
     frequency = float(np.median([f for _, f in found]))
     names = " and ".join(sorted({name for name, _ in found}))
-    return f"time_s ({names} swings at {frequency:.3g} Hz)"
+    return f"time_s ({names} oscillates at {frequency:.3g} Hz)"

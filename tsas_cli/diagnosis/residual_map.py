@@ -1,4 +1,4 @@
-"""Where the simulation is wrong: the error of each channel over each signal, bin by bin."""
+"""Residual maps: the residual of each channel over each signal, in bins."""
 
 from collections.abc import Sequence
 
@@ -17,12 +17,12 @@ LABELS = (RUN, DIRECTION)
 
 
 def residual_map(bench: Bench, trial: Trial) -> Maps:
-    """Return, per channel and signal, the bins with mean and scatter of the error.
+    """Return, per channel and signal, the bins with mean and standard deviation of the residual.
 
-    The error is measured less simulated, in units of what noise explains.
+    The residual is measured minus simulated, in units of its standard deviation.
     """
     errors: dict[str, list[Floats]] = {}
-    seen: dict[str, dict[str, list[Floats]]] = {}
+    signals_by_channel: dict[str, dict[str, list[Floats]]] = {}
     for k, run_errors in enumerate(bench.errors_for(trial)):
         run, rig = run_errors.run, bench.rig(trial, k)
         signals = signals_of(run, run_errors.predict(rig)["f_in_N"])
@@ -31,19 +31,19 @@ def residual_map(bench: Bench, trial: Trial) -> Maps:
             errors.setdefault(channel, []).append(-values)
             at = run_errors.samples[channel]
             for name, signal in signals.items():
-                seen.setdefault(channel, {}).setdefault(name, []).append(signal[at])
+                signals_by_channel.setdefault(channel, {}).setdefault(name, []).append(signal[at])
     ids = [e.run.run.id for e in bench.closed]
     return {
         channel: {
             name: _bins(np.concatenate(parts), np.concatenate(errors[channel]), name, ids)
             for name, parts in signals.items()
         }
-        for channel, signals in seen.items()
+        for channel, signals in signals_by_channel.items()
     }
 
 
 def edges_of(signal: Floats, name: str) -> Floats:
-    """Return the edges of bins with equal counts; of a signal that is a label its values."""
+    """Return the edges of bins with equal counts; for labels their values."""
     if name in LABELS:
         return np.unique(signal)
     return np.unique(np.quantile(signal, np.linspace(0.0, 1.0, BINS + 1)))
@@ -52,14 +52,14 @@ def edges_of(signal: Floats, name: str) -> Floats:
 def binned(
     signal: Floats, error: Floats, edges: Floats, name: str, ids: Sequence[str] = ()
 ) -> tuple[Bin, ...]:
-    """Return the bins between the edges, or one for each value that is a label.
+    """Return the bins between the edges, or one for each label.
 
     Parameters
     ----------
     signal, error
         At the same samples, shape (n,) each.
     edges
-        What `edges_of` gives for this signal, or for more of its samples.
+        Edges from `edges_of` for this signal, or for more of its samples.
     name
         Of the signal.
     ids

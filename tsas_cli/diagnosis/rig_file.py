@@ -1,4 +1,4 @@
-"""The file that describes a rig and the runs that somebody means to record, before any is there."""
+"""The file that describes a rig and its planned runs, before any recording."""
 
 from pathlib import Path
 from typing import Literal
@@ -18,7 +18,7 @@ class _Table(BaseModel):
 
 
 class Sensors(_Table):
-    """The sample rate, and the standard deviation of each channel's noise; none: not recorded."""
+    """The sample rate, and the noise level of each channel; None: not recorded."""
 
     rate_Hz: float = Field(gt=0)
     x_in_mm: float = Field(ge=0)
@@ -29,12 +29,12 @@ class Sensors(_Table):
     @model_validator(mode="after")
     def _measures(self) -> "Sensors":
         if not self.outputs:
-            raise ValueError(f"one of {', '.join(OUTPUTS)} is needed beside x_in_mm")
+            raise ValueError(f"one of {', '.join(OUTPUTS)} is needed besides x_in_mm")
         return self
 
     @property
     def outputs(self) -> dict[str, float]:
-        """The noise of each channel that is recorded, beside the drive."""
+        """The noise level of each recorded channel except the drive."""
         noise = {name: getattr(self, name) for name in OUTPUTS}
         return {name: sd for name, sd in noise.items() if sd is not None}
 
@@ -58,9 +58,9 @@ class PlannedRun(_Table):
         if (self.speed_mm_per_s is None) == (self.frequency_Hz is None):
             raise ValueError("one of speed_mm_per_s and frequency_Hz is needed")
         if self.frequency_Hz is not None and self.motion not in PEAK:
-            raise ValueError(f"{self.motion} takes speed_mm_per_s, not frequency_Hz")
+            raise ValueError(f"{self.motion} needs speed_mm_per_s, not frequency_Hz")
         if self.dwell_s > 0.0 and self.motion == "chirp":
-            raise ValueError("a chirp takes no dwell_s")
+            raise ValueError("a chirp has no dwell_s")
         return self
 
     @property
@@ -72,7 +72,7 @@ class PlannedRun(_Table):
 
 
 class Limits(_Table):
-    """What the rig can do; what is not said is what the planned runs do."""
+    """Limits of the rig; by default those of the planned runs."""
 
     amplitude_mm: float | None = Field(default=None, gt=0)
     speed_mm_per_s: float | None = Field(default=None, gt=0)
@@ -93,18 +93,18 @@ class RigFile(_Table):
 
 
 def read_rig_file(path: Path) -> RigFile:
-    """Read and check a file of planned runs.
+    """Return the content of a file of planned runs, checked.
 
     Raises
     ------
     InputError
-        It is missing, not TOML, or says something that the format does not allow.
+        It is missing, not TOML, or violates the format.
     """
     file = parse(RigFile, read_toml(path), path)
     for key, hint in file.rig.unknown_keys().items():
         raise InputError(f"unknown key rig.{key}", where=path, remedy=hint)
     ids = [run.id for run in file.run]
-    twice = [i for i in ids if ids.count(i) > 1]
-    if twice:
-        raise InputError(f"run id {twice[0]!r} is there twice", where=path)
+    duplicates = [i for i in ids if ids.count(i) > 1]
+    if duplicates:
+        raise InputError(f"duplicate run id {duplicates[0]!r}", where=path)
     return file

@@ -1,11 +1,11 @@
-"""Find the smallest set of effects that no other set beats on held-out runs.
+"""Find the smallest set of effects that no other set improves on held-out runs.
 
-One effect after the other is added while the best one convinces; after each, every earlier one
-has to prove itself again without the others' help. Where single effects leave something, pairs
-are looked at together, because effects of opposite sign hide each other.
+Stepwise selection: one effect after the other is added while the best one is significant; after
+each, earlier ones that have become redundant are removed. Where no single effect is significant,
+pairs are screened together, because effects of opposite sign mask each other.
 
-`find_effects` gives what a search has found. While it is at work, a `Search` holds the fits made so
-far: a set of effects is fitted once, from the initial values of the way that reaches it first.
+`find_effects` returns the result of a search. A running `Search` caches its fits: a set of effects
+is fitted once, from the initial values of the path that reaches it first.
 """
 
 from collections.abc import Iterable, Mapping
@@ -27,22 +27,22 @@ Floats = npt.NDArray[np.float64]
 Names = frozenset[str]
 
 MOST_EFFECTS = 4
-SHARE = 0.4  # of what is beyond the noise, that a cause has to take away
-LEAST = 0.003  # of what the nominal model was beyond it, that a further cause has to take away
-BLURRED = 0.15  # mean square by which a model that lacks nothing may miss the noise it is held to
-WORTH = 0.0005  # part of the squares that a signature has to explain to be fitted
-BESIDE_BEST = 0.02  # of what the best signature explains
-ATTEMPTS, CLOSER = 4, 0.2
-WEIGHED = 3  # times that the errors are weighed by what was found, and it is fitted again
-PAIRS = 4  # that are fitted, of those that explain most together
+SHARE = 0.4  # least reduction of the excess over the noise by a cause
+LEAST = 0.003  # least reduction of the nominal model's excess by a further cause
+BLURRED = 0.15  # excess of the mean square that a complete model may have
+LEAST_SIGNATURE = 0.0005  # share of the squares that a signature has to explain to be fitted
+SHARE_OF_BEST = 0.02  # the same, of the share of the best signature
+ATTEMPTS, CLOSER = 4, 0.2  # fits from initial values closer to neutral each time, by that factor
+REWEIGHTINGS = 3  # iterations of new weights and a new fit of the named effects
+PAIRS = 4  # of effects that are fitted, of those that explain most together
 
 
 @dataclass(frozen=True, eq=False)
 class Hypotheses:
-    """What a search has found: the effects named, their rivals, and every fit behind them.
+    """Result of a search: the named effects, their rivals, and all fits.
 
-    `trials` and `squares` hold each set of effects that was fitted, off and on the mesh, with its
-    held-out squares by block, `screened` all effects as seen with nothing named.
+    `trials` and `squares` have each fitted set of effects, off and on the mesh, with its held-out
+    squares by block, `screened` all effects screened with none named.
     """
 
     bench: Bench
@@ -62,13 +62,13 @@ class Hypotheses:
         return self.squares[names, on_mesh or self.bench.on_mesh(names)]
 
     def gain(self, names: Names) -> Gain:
-        """Compare a set of effects with nothing named, both on the mesh if it needs one."""
+        """Return the reduction by a set of effects, both fits on the mesh if it needs one."""
         mesh = self.bench.on_mesh(names)
         return gain(self.held_out(frozenset(), on_mesh=mesh), self.held_out(names))
 
 
 def find_effects(bench: Bench, folds: Folds, step: Steps = SILENT) -> Hypotheses:
-    """Return the effects that are convincing together, and what else was tried."""
+    """Return the effects that are significant together, and all other fits."""
     search = Search(bench, folds, step)
     named = search.run()
     rivals = {e.name: search.rivals(named, e.name) for e in EFFECTS if e.name in named}
@@ -79,15 +79,15 @@ def find_effects(bench: Bench, folds: Folds, step: Steps = SILENT) -> Hypotheses
 
 
 def weighed_again(found: Hypotheses, step: Steps = SILENT) -> Hypotheses:
-    """Return the fits of what is named, of nothing, and of all but one, weighed by what is named.
+    """Return the fits of the named effects, of none, and of all but one, with new weights.
 
-    Rivals and signatures stay those that were found.
+    The weights are those at the named effects' fit. Rivals and signatures are unchanged.
     """
     named, bench = found.named, found.bench
     mesh, trial = bench.on_mesh(named), found.trial(named)
     sets = _judged_sets(named)
-    step.ahead(WEIGHED + len(sets))
-    for _ in range(WEIGHED):
+    step.ahead(REWEIGHTINGS + len(sets))
+    for _ in range(REWEIGHTINGS):
         bench = reweighed_bench(bench, trial)
         trial = bench.fit(sorted(named), near=trial, on_mesh=mesh)
         step()
@@ -101,13 +101,13 @@ def weighed_again(found: Hypotheses, step: Steps = SILENT) -> Hypotheses:
 
 
 def _judged_sets(named: Names) -> set[Names]:
-    """Return what is named, nothing, and all but one."""
+    """Return the named set, the empty one, and those with one effect removed."""
     return {frozenset[str](), named, *(named - {name} for name in named)}
 
 
 @dataclass
 class Search:
-    """A search at work: the hypotheses fitted to one dataset so far, with held-out squares."""
+    """A running search: the hypotheses fitted to one dataset so far, with held-out squares."""
 
     bench: Bench
     folds: Folds
@@ -118,19 +118,20 @@ class Search:
     screened: dict[Names, list[Screened]] = field(default_factory=dict)
 
     def run(self) -> Names:
-        """Return the effects that are convincing together."""
+        """Return the effects that are significant together."""
         return self._grown(frozenset(), frozenset())
 
     def _grown(self, named: Names, before: frozenset[Names]) -> Names:
-        """Add to the named effects while something convinces; `before` holds the sets passed.
+        """Return the named effects, extended while an effect is significant.
 
-        Where a simpler effect is not worse than the best one by enough, both ways are gone to
-        their ends: what a simpler effect leaves may be what nothing else explains.
+        `before` are the sets on the path. Where a simpler effect is not significantly worse than
+        the best one, both branches are searched to their ends: the residual of the simpler effect
+        may be one that no further effect explains.
         """
         if len(named) >= MOST_EFFECTS or (named and self.is_quiet(named)) or named in before:
             return named
         ends = [
-            self._grown(self._without_idle(better), before | {named})
+            self._grown(self._without_redundant(better), before | {named})
             for better in self._better(named)
         ]
         if not ends:
@@ -139,7 +140,7 @@ class Search:
         return best if self.gain(simple, best).beyond(RICHER) else simple
 
     def rivals(self, named: Names, name: str) -> tuple[str, ...]:
-        """Return the effects that would do as well in place of a named one."""
+        """Return the effects that are indistinguishable from a named one."""
         fewer = named - {name}
         out = []
         for other, found in self.add(fewer):
@@ -157,7 +158,7 @@ class Search:
         mesh = on_mesh or self.bench.on_mesh(names)
         if (names, mesh) not in self.trials:
             near = self.trials.get((names, not mesh))
-            self._keep(names, self.bench.fit(sorted(names), near=near, on_mesh=mesh))
+            self._store(names, self.bench.fit(sorted(names), near=near, on_mesh=mesh))
         return self.trials[names, mesh]
 
     def held_out(self, names: Names, *, on_mesh: bool = False) -> Floats:
@@ -166,42 +167,42 @@ class Search:
         return self.squares[names, trial.on_mesh]
 
     def gain(self, before: Names, after: Names) -> Gain:
-        """Compare two sets of effects, both on the mesh if one needs it."""
+        """Return the reduction between two sets of effects, both on the mesh if one needs it."""
         mesh = self.bench.on_mesh(before | after)
         return gain(self.held_out(before, on_mesh=mesh), self.held_out(after, on_mesh=mesh))
 
     def is_quiet(self, names: Names) -> bool:
-        """Say whether so little is left that a further cause could not be told from blur."""
+        """Return whether the excess is too small for a further cause."""
         return bool(self.held_out(names).sum() / self.folds.block.size < 1.0 + BLURRED)
 
     def matters(self, before: Names, added: Iterable[str]) -> bool:
-        """Say whether effects take away a good share of what was beyond the noise before."""
+        """Return whether added effects reduce the excess over the noise by a sufficient share."""
         mesh = self.bench.on_mesh(before | set(added))
         excess = [
             self.held_out(names, on_mesh=mesh).sum() / self.folds.block.size - 1.0
             for names in (before, before | set(added))
         ]
-        saved = excess[0] - excess[1]
+        reduction = excess[0] - excess[1]
         if not before:
-            return bool(saved > SHARE * (excess[0] - BLURRED))
+            return bool(reduction > SHARE * (excess[0] - BLURRED))
         first = self.held_out(frozenset(), on_mesh=mesh).sum() / self.folds.block.size - 1.0
-        return bool(saved > max(SHARE * excess[0], LEAST * first))
+        return bool(reduction > max(SHARE * excess[0], LEAST * first))
 
     def add(self, names: Names) -> list[tuple[str, Gain]]:
-        """Fit each further effect that is worth it; return them with their gains, best first."""
-        seen = self.screen(names)
-        best = max((s.part for s in seen), default=0.0)
-        worth = [s for s in seen if s.part >= max(WORTH, BESIDE_BEST * best)]
-        self.step.ahead(sum(self._is_new(names | {s.effect.name}) for s in worth))
+        """Return each further effect that passes screening, fitted, with its gain, best first."""
+        screened = self.screen(names)
+        best = max((s.part for s in screened), default=0.0)
+        candidates = [s for s in screened if s.part >= max(LEAST_SIGNATURE, SHARE_OF_BEST * best)]
+        self.step.ahead(sum(self._is_new(names | {s.effect.name}) for s in candidates))
         found = []
-        for s in worth:
+        for s in candidates:
             together = names | {s.effect.name}
             self._fit(names, together, s.initial)
             found.append((s.effect.name, self.gain(names, together)))
         return sorted(found, key=lambda f: -f[1].part)
 
     def screen(self, names: Names) -> list[Screened]:
-        """Look at all further effects linearly, the one that explains most first."""
+        """Return all further effects screened linearly, the one that explains most first."""
         if names not in self.screened:
             bases = {}
             out = []
@@ -218,16 +219,16 @@ class Search:
         return self.screened[names]
 
     def _better(self, names: Names) -> list[Names]:
-        """Return the sets to go on with: with a simple effect, with the best one if it differs."""
+        """Return the extended sets: with the simplest effect, and with the best if it differs."""
         singles = [(n, g) for n, g in self.add(names) if g.convincing and self.matters(names, {n})]
         if singles:
-            ways = dict.fromkeys((self._simplest(names, singles), singles[0][0]))
-            return [names | {name} for name in ways]
+            branches = dict.fromkeys((self._simplest(names, singles), singles[0][0]))
+            return [names | {name} for name in branches]
         pair = self._best_pair(names) if len(names) + 2 <= MOST_EFFECTS else None
         return [] if pair is None else [names | pair]
 
     def _simplest(self, names: Names, singles: list[tuple[str, Gain]]) -> str:
-        """Return the best effect, or one with fewer parameters that it does not beat."""
+        """Return the best effect, or one with fewer parameters that is not significantly worse."""
         best = singles[0][0]
         count = {e.name: len(e.parameters) for e in self.effects}
         for name, _ in sorted(singles, key=lambda s: count[s[0]]):
@@ -238,10 +239,10 @@ class Search:
         return best
 
     def _best_pair(self, names: Names) -> Names | None:
-        """Return two effects that are convincing only together."""
-        seen = self.screen(names)
+        """Return two effects that are significant only together."""
+        screened = self.screen(names)
         parts = []
-        for a, b in combinations(seen, 2):
+        for a, b in combinations(screened, 2):
             mesh = self.bench.on_mesh([*names, a.effect.name, b.effect.name])
             both = np.hstack((a.signatures, b.signatures))
             residual = self.trial(names, on_mesh=mesh).solution.residual
@@ -259,16 +260,16 @@ class Search:
                 return pair
         return None
 
-    def _without_idle(self, names: Names) -> Names:
-        """Leave out, one by one, what the others do not need."""
+    def _without_redundant(self, names: Names) -> Names:
+        """Return the set without effects that are redundant, removed one by one."""
         for name in sorted(names):
             fewer = names - {name}
             if fewer and not self.gain(fewer, names).convincing:
-                return self._without_idle(fewer)
+                return self._without_redundant(fewer)
         return names
 
     def _is_new(self, names: Names) -> bool:
-        """Say whether a set of effects has not been fitted yet."""
+        """Return whether a set of effects has not been fitted yet."""
         return (names, self.bench.on_mesh(names)) not in self.trials
 
     def _fit(self, near: Names, names: Names, initial: Mapping[str, float]) -> None:
@@ -280,11 +281,11 @@ class Search:
             trial = self.bench.fit(sorted(names), initial, near=known, on_mesh=mesh)
             if trial.mean_square <= known.mean_square * (1.0 + TOLERANCE):
                 break
-            # More freedom cannot fit worse: the initial values were too far off.
+            # More free parameters cannot fit worse: the initial values were too far off.
             initial = {n: QUANTITIES[n].closer(v, CLOSER) for n, v in initial.items()}
-        self._keep(names, trial)
+        self._store(names, trial)
         self.step()
 
-    def _keep(self, names: Names, trial: Trial) -> None:
+    def _store(self, names: Names, trial: Trial) -> None:
         self.trials[names, trial.on_mesh] = trial
         self.squares[names, trial.on_mesh] = held_out_squares(trial, self.folds)

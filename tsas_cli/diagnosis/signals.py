@@ -1,4 +1,4 @@
-"""The signals of a run that an error may depend on, as a person would name them."""
+"""The signals of a run that a residual may depend on, and their names in words."""
 
 import numpy as np
 import numpy.typing as npt
@@ -16,7 +16,7 @@ def signals_of(run: Prepared, f_in_N: Floats) -> dict[str, Floats]:
     Parameters
     ----------
     run
-        The run; where the drive is a force there is no x_in, and what follows from it is left out.
+        The run; with a drive by force the signals derived from x_in are left out.
     f_in_N
         The model's tension at the drive, shape (n,).
     """
@@ -35,9 +35,9 @@ def spoken(signal: str) -> str:
     words = {
         "f_in_N": "the tension at the drive",
         "time_s": "the time in the run",
-        "x_in_mm": "the place of the drive",
+        "x_in_mm": "the displacement of the drive",
         "speed_mm_per_s": "the speed",
-        "travel_since_reversal_mm": "the travel since the drive turned back",
+        "travel_since_reversal_mm": "the travel since the last reversal",
         DIRECTION: "the direction",
     }
     name, _, rest = signal.partition(" ")
@@ -51,7 +51,7 @@ def _since_reversal(values: Floats, reversals: npt.NDArray[np.int64]) -> Floats:
 
 
 def _direction(values: Floats, reversals: npt.NDArray[np.int64]) -> Floats:
-    """Return +1 while the drive pulls, −1 while it lets go."""
+    """Return +1 while the drive pulls, −1 while it releases."""
     stroke = np.searchsorted(reversals, np.arange(values.size), side="left")
     end = np.clip(stroke, 1, reversals.size - 1)
     return np.where(values[reversals[end]] >= values[reversals[end - 1]], 1.0, -1.0)

@@ -1,10 +1,10 @@
-"""From which size on an effect would be found, and told from the others: linearly, in advance.
+"""Smallest size at which an effect would be detected and distinguished: linearised, in advance.
 
-What the free parameters can imitate of a signature is taken out of it. What is left, times the
-size, has to pass what a diagnosis asks of a gain (`evidence`): to take away the part TELLING of
-the squares, noise among them, and to be SURE over the blocks. With E_b the squares that a
-signature of size 1 leaves in block b, which holds n_b residuals of noise, a size s is expected to
-gain log(1 + s² E_b / n_b) there, and noise scatters that by 2 s √E_b / (n_b + s² E_b).
+The free parameters are projected out of a signature. The remainder, times the size, has to pass the
+criteria of a diagnosis (`evidence`): a reduction of the squares, with noise, by the share TELLING,
+and the critical value SURE of the test statistic over the blocks. With E_b the squares of the
+signature of size 1 in block b, which has n_b residuals of noise, the expected relative reduction by
+a size s is log(1 + s² E_b / n_b) there, with a scatter of 2 s √E_b / (n_b + s² E_b) by noise.
 """
 
 import math
@@ -27,11 +27,11 @@ from tsas_cli.identification.screening import projector
 Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
 
-RANGE = 100.0  # times a parameter's start: a larger size is not looked for
-FEW_SHAPES = 4  # of an effect, that are all looked at; of more, the start alone
-NEVER = 10.0  # times the size found, from which on causes should be told apart
-SAME = 1e-3  # part of a signature's squares that others must leave of it; kinks leave a little
-TINY = 1e-6  # of the start: so small that everything is linear, and hardly a kink in between
+RANGE = 100.0  # times a parameter's start, the largest size considered
+FEW_SHAPES = 4  # of an effect, up to which all are considered; of more, the start alone
+NEVER = 10.0  # times the detected size, beyond which effects count as indistinguishable
+SAME = 1e-3  # share of a signature's squares below which it is imitated; kinks leave a little
+TINY = 1e-6  # of the start, so small that the model is linear, with hardly a kink in between
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class Cause:
 
     @property
     def start(self) -> float:
-        """The start of a fit, less the neutral value."""
+        """The start of a fit minus the neutral value."""
         return self.parameter.start - self.parameter.neutral
 
     @property
@@ -59,7 +59,7 @@ class Cause:
 
     @property
     def largest(self) -> float:
-        """The largest size that is looked for."""
+        """The largest size considered."""
         ends = (self.parameter.lower, self.parameter.upper)
         bound = max(abs(end - self.parameter.neutral) for end in ends)
         return min(RANGE * abs(self.start), bound)
@@ -67,7 +67,10 @@ class Cause:
 
 @dataclass(frozen=True)
 class Seen:
-    """From which size on a cause is found, infinite where it is not; and told from each effect."""
+    """Smallest detected size of a cause, and smallest ones distinguished from each effect.
+
+    `found` and `told`, infinite where there is no such size.
+    """
 
     cause: Cause
     found: float
@@ -75,28 +78,28 @@ class Seen:
 
     @property
     def named(self) -> float:
-        """From which size on it is found and told from every other effect."""
+        """The smallest size at which it is detected and distinguished from every other effect."""
         return max([self.found, *self.told.values()])
 
     @property
     def counted(self) -> float:
-        """The size named, infinite where another effect hides it far beyond the size found."""
+        """The size `named`, infinite where it is indistinguishable from another effect."""
         return math.inf if self.hidden_in else self.named
 
     @property
     def hidden_in(self) -> list[str]:
-        """The effects that imitate it although it is many times as large as it has to be."""
+        """The effects that imitate it even at many times the detected size."""
         return [name for name, size in self.told.items() if size > NEVER * self.found]
 
     @property
     def nearest(self) -> str | None:
-        """The effect that it is hardest to tell from, if any keeps it from being named."""
+        """The effect that is hardest to distinguish from it, if any prevents its naming."""
         worst = max(self.told, key=lambda name: self.told[name], default=None)
         return worst if worst is not None and self.told[worst] > self.found else None
 
 
 def causes_of(effect: Effect) -> list[Cause]:
-    """Return each amplitude of an effect at each of its shapes that are looked at."""
+    """Return each amplitude of an effect at each of its considered shapes."""
     shapes = [p for p in effect.parameters if p.shape]
     options = [p.starts if 0 < len(p.starts) <= FEW_SHAPES else (p.start,) for p in shapes]
     return [
@@ -115,10 +118,10 @@ def amplitudes_of(effect: Effect) -> list[Cause]:
 
 @dataclass(frozen=True, eq=False)
 class Look:
-    """The runs of a bench, some of which are planned, and what each effect would do in them.
+    """The runs of a bench, some of which are planned, and the signatures of effects in them.
 
-    Everything is linear at the values of `trial`. `run` and `block` number all residuals, (n,),
-    `without` are these with no effect added. `signatures` caches what was looked at.
+    Linearised at the values of `trial`. `run` and `block` are the numbers of each residual's run
+    and block, (n,), `without` the residuals with no effect added. `signatures` is a cache.
     """
 
     bench: Bench
@@ -129,7 +132,7 @@ class Look:
     signatures: dict[tuple[str, float, tuple[float, ...]], Floats] = field(default_factory=dict)
 
     def part(self, runs: Sequence[int]) -> "Part":
-        """Return the look at some of the runs alone."""
+        """Return some of the runs alone."""
         rows = np.isin(self.run, runs)
         jacobian = self.trial.solution.jacobian[rows]
         solution = replace(
@@ -139,21 +142,21 @@ class Look:
         return Part(self, rows, block, projector(replace(self.trial, solution=solution)))
 
     def signature(self, cause: Cause, size: float) -> Floats:
-        """Return what a cause of a size does to all residuals, for each unit of it, shape (n,).
+        """Return the change of all residuals by a cause, over its size, shape (n,).
 
-        Nothing, where the model does not get through the runs with it: then it is not found.
+        Zero where the model does not converge with it: then it is not detected.
         """
         key = (cause.name, size, tuple(cause.shape.values()))
         if key not in self.signatures:
             at = cause.shape | {cause.name: cause.parameter.neutral + size}
             change = (self.bench.errors_at(self.trial, at) - self.without) / size
-            gone_through = bool(np.isfinite(change).all())
-            self.signatures[key] = change if gone_through else np.zeros_like(change)
+            finite = bool(np.isfinite(change).all())
+            self.signatures[key] = change if finite else np.zeros_like(change)
         return self.signatures[key]
 
 
 def look_at(bench: Bench, trial: Trial) -> Look:
-    """Return the look at the runs of a bench from a trial on the mesh."""
+    """Return the runs of a bench linearised at a trial on the mesh."""
     slopes = _slopes(bench, trial)
     linear = replace(trial, solution=replace(trial.solution, jacobian=slopes))
     return Look(
@@ -167,13 +170,13 @@ def look_at(bench: Bench, trial: Trial) -> Look:
 
 @dataclass(frozen=True)
 class Imitation:
-    """What some signatures can do together, none of them negative: a basis, and them in it."""
+    """Non-negative combinations of signatures: a basis, and the signatures in it."""
 
     basis: Floats
     columns: Floats
 
     def left(self, signature: Floats) -> Floats:
-        """Return what of a signature they cannot do."""
+        """Return the residual of a signature after its best imitation."""
         from scipy.optimize import nnls
 
         sizes = np.linalg.norm(self.columns, axis=0)
@@ -184,7 +187,7 @@ class Imitation:
 
 @dataclass(frozen=True)
 class Part:
-    """Some runs of a look: their rows, blocks, and what the free parameters can do in them."""
+    """Some runs of a look: their rows, blocks, and a basis of the free parameters' Jacobian."""
 
     look: Look
     rows: npt.NDArray[np.bool_]
@@ -198,28 +201,28 @@ class Part:
         return int(self.block.max()) + 1
 
     def own(self, cause: Cause) -> Floats:
-        """Return a cause's signature for each unit of it, less what free parameters imitate.
+        """Return a cause's signature per unit, with the free parameters projected out.
 
-        Not every effect is linear: the signature is that of about the size that is found.
+        Not every effect is linear: the signature is that of about the detected size.
         """
         if cause.name not in self.sizes:
-            self.sizes[cause.name] = self._settled(cause)
+            self.sizes[cause.name] = self._converged_size(cause)
         return self._own(self.look.signature(cause, self.sizes[cause.name]))
 
     def tiny(self, cause: Cause) -> Floats:
-        """Return the same for a size so small that it is linear."""
+        """Return the same for a size small enough to be linear."""
         return self._own(self.look.signature(cause, TINY * cause.start))
 
     def shows(self, cause: Cause) -> bool:
-        """Say whether the free parameters leave anything of a tiny size of a cause."""
+        """Return whether the free parameters cannot imitate a tiny size of a cause."""
         whole, own = self.look.signature(cause, TINY * cause.start)[self.rows], self.tiny(cause)
         return bool(own @ own > SAME * (whole @ whole))
 
-    def _settled(self, cause: Cause) -> float:
-        """Return a size between the one that is found and its half: the start times a power of 2.
+    def _converged_size(self, cause: Cause) -> float:
+        """Return a size between the detected one and its half: the start times a power of 2.
 
-        Parts thus share signatures. Where nothing is found it is the last one tried. What is found
-        however small it is, as where the model jumps with it, is looked at at about the size TINY.
+        Parts thus share signatures. Where none is detected it is the last one tried. Where any size
+        is detected, as where the model is discontinuous in it, it is about the size TINY.
         """
         least = math.floor(math.log2(TINY))
         power, tried = 0, set[int]()
@@ -232,7 +235,7 @@ class Part:
         return size
 
     def smallest(self, signature: Floats) -> float:
-        """Return from which factor on a signature would be found, infinite where it never is."""
+        """Return the smallest factor at which a signature is detected, infinite where none is."""
         squares = np.bincount(self.block, signature**2)
         counts = np.bincount(self.block).astype(float)
         total = float(squares.sum())
@@ -247,29 +250,31 @@ class Part:
         return float(factors[np.argmax(sure)]) if sure.any() else math.inf
 
     def seen(self, effects: Sequence[Effect], rivals: Sequence[Effect]) -> list[Seen]:
-        """Return how each amplitude of some effects is seen, and told from the rivals."""
+        """Return the visibility of each amplitude of some effects, and against the rivals."""
         imitations = {e.name: (_imitations(e, self.own), _imitations(e, self.tiny)) for e in rivals}
         out = []
         for cause in (c for effect in effects for c in amplitudes_of(effect)):
             found = self._limited(cause, self.smallest(self.own(cause)))
             told = {
-                name: self._limited(cause, self._told(cause, *of_rival))
+                name: self._limited(cause, self._distinct_from(cause, *of_rival))
                 for name, of_rival in imitations.items()
                 if name != cause.effect.name
             }
             out.append(Seen(cause, found if self.shows(cause) else math.inf, told))
         return out
 
-    def _told(self, cause: Cause, usual: list[Imitation], tiny: list[Imitation]) -> float:
-        """Return from which size on no imitation passes for a cause, in either direction."""
+    def _distinct_from(self, cause: Cause, usual: list[Imitation], tiny: list[Imitation]) -> float:
+        """Return the smallest size at which no imitation equals a cause, in either direction."""
         own, exact = self.own(cause), self.tiny(cause)
-        ways = (1.0,) if cause.one_sided else (1.0, -1.0)
+        signs = (1.0,) if cause.one_sided else (1.0, -1.0)
         for signature, imitations in ((own, usual), (exact, tiny)):
-            for way, imitation in product(ways, imitations):
-                left = imitation.left(way * signature)
+            for sign, imitation in product(signs, imitations):
+                left = imitation.left(sign * signature)
                 if left @ left <= SAME * (signature @ signature):
                     return math.inf
-        return max(self.smallest(imitation.left(way * own)) for way in ways for imitation in usual)
+        return max(
+            self.smallest(imitation.left(sign * own)) for sign in signs for imitation in usual
+        )
 
     def _own(self, signature: Floats) -> Floats:
         here = signature[self.rows]
@@ -281,7 +286,7 @@ class Part:
 
 
 def _slopes(bench: Bench, trial: Trial) -> Floats:
-    """Return the Jacobian of a trial on the mesh that signatures are made on."""
+    """Return the Jacobian of a trial on the mesh of the signatures."""
     return jacobian(
         trial.unknowns,
         len(bench.rigs),
@@ -291,13 +296,13 @@ def _slopes(bench: Bench, trial: Trial) -> Floats:
 
 
 def _imitations(effect: Effect, own: Callable[[Cause], Floats]) -> list[Imitation]:
-    """Return what the amplitudes of an effect can do together, for each of its shapes.
+    """Return the imitations by the amplitudes of an effect, for each of its shapes.
 
-    One that can act in both directions has a column for each.
+    An amplitude of either sign has a column for each.
     """
     columns: dict[tuple[float, ...], list[Floats]] = {}
     for cause in causes_of(effect):
         column = own(cause) * np.sign(cause.start)
-        ways = [column] if cause.one_sided else [column, -column]
-        columns.setdefault(tuple(cause.shape.values()), []).extend(ways)
+        signs = [column] if cause.one_sided else [column, -column]
+        columns.setdefault(tuple(cause.shape.values()), []).extend(signs)
     return [Imitation(*np.linalg.qr(np.array(each).T)) for each in columns.values()]

@@ -1,17 +1,17 @@
-"""The harmonic drive from motor speed u to the tendon's end x_in, with whatever hides in it.
+"""The harmonic drive from motor speed u to the tendon's end x_in, with its imperfections.
 
 Yang 2025, Eqs. (23)-(25), with F_in − F0 = k_p x (24), and Eqs. (46)-(51):
 
-    τ dw/dt + w = u(t − T)                              the motor follows the asked speed
-    dx_m/dt = K w − a x_m,  K = 2π r1/(60 im)           where a stiff drive would be
-    p = play(x_m + ripple)                              the gear turns unevenly and has play
-    (J/r1²) d²x/dt² + B dx/dt + k_p x = k_d (p − x)     the drive's stiffness, which reacts
+    τ dw/dt + w = u(t − T)                              the motor follows the commanded speed
+    dx_m/dt = K w − a x_m,  K = 2π r1/(60 im)           position of a stiff drive
+    p = play(x_m + ripple)                              the gear's ripple and play
+    (J/r1²) d²x/dt² + B dx/dt + k_p x = k_d (p − x)     the drive's stiffness, with reaction
 
 Eq. (25) has k_d p on the right-hand side: no reaction on the position. From u and x alone one
-reads G(s) = g e^{−Ts} / ((s + a)(τs + 1)(s²/ω² + 2ζs/ω + 1)); with the reaction
+identifies G(s) = g e^{−Ts} / ((s + a)(τs + 1)(s²/ω² + 2ζs/ω + 1)); with the reaction
 g = K k_d/(k_d + k_p) and ω² = (k_d + k_p) r1²/J, without it g = K k_d/k_p and ω² = k_p r1²/J. Only
-ratios of J, B, k_d and k_p are in it: the data sheet's J gives the rest.
-Not validated: play with a spring behind it is taken as the play operator, as if nothing pulled.
+ratios of J, B, k_d and k_p are identifiable: the others follow from the data sheet's J.
+Not validated: play with a spring behind it is modelled by the play operator, as if without load.
 """
 
 import math
@@ -34,12 +34,12 @@ from tsas_cli.numerics.linear_response import (
 
 Floats = npt.NDArray[np.float64]
 
-WAVES = 2.0  # of the ripple, per turn of the wave generator, which is the motor's
+WAVES = 2.0  # of the ripple, per revolution of the wave generator, which is the motor's
 SECONDS_PER_MINUTE = 60.0
 
 
 class DriveValues(NamedTuple):
-    """The numbers of a drive; what is zero is not there, a frequency of zero is a stiff drive."""
+    """The parameters of a drive; zero means absent, a frequency of zero a stiff drive."""
 
     gain_mm_per_s_rpm: float
     motor_lag_s: float = 0.0
@@ -53,7 +53,7 @@ class DriveValues(NamedTuple):
 
 
 def lag_coefficients(values: DriveValues) -> Floats:
-    """Return p0 = 1, p1 … of (τs + 1)(s²/ω² + 2ζs/ω + 1), without what is not there."""
+    """Return p0 = 1, p1 … of (τs + 1)(s²/ω² + 2ζs/ω + 1), without absent factors."""
     lags = np.ones(1)
     if values.motor_lag_s > 0.0:
         lags = np.array([1.0, values.motor_lag_s])
@@ -69,41 +69,41 @@ def _spring(values: DriveValues) -> Floats:
 
 def linear_response(u: Sampled, values: DriveValues) -> Floats:
     """Return x_in − x_in(0) [mm] of a perfect gear from rest, at each sample of u [rpm], (n,)."""
-    later = delayed(u, values.delay_s)
-    answer = integrator_with_lags(later, values.leak_per_s, lag_coefficients(values))
-    return np.asarray(values.gain_mm_per_s_rpm * answer)
+    input_delayed = delayed(u, values.delay_s)
+    response = integrator_with_lags(input_delayed, values.leak_per_s, lag_coefficients(values))
+    return np.asarray(values.gain_mm_per_s_rpm * response)
 
 
 def gear_response(u: Sampled, values: DriveValues, start_mm: float) -> Floats:
-    """Return what ripple and play of the gear add to that [mm], shape (n,).
+    """Return the contribution of the gear's ripple and play to x_in [mm], shape (n,).
 
-    `start_mm` is where x_in begins: it says at which angle the wave generator stands, whose waves
-    are zero at x_in = 0.
+    `start_mm` is the initial x_in: it determines the angle of the wave generator, whose waves are
+    zero at x_in = 0.
     """
-    later = delayed(u, values.delay_s)
+    input_delayed = delayed(u, values.delay_s)
     motor = np.array([1.0, values.motor_lag_s]) if values.motor_lag_s > 0.0 else np.ones(1)
     g = values.gain_mm_per_s_rpm
-    stiff = g * integrator_with_lags(later, values.leak_per_s, motor)
+    stiff = g * integrator_with_lags(input_delayed, values.leak_per_s, motor)
     period = g * SECONDS_PER_MINUTE / WAVES
     ripple = DriveRipple(float(values.sine_mm), float(values.cosine_mm), period)
-    off = _through_gear(stiff, float(start_mm), ripple, float(values.play_mm)) - stiff
-    return _behind_the_spring(off, u.step_s, values)
+    error = _through_gear(stiff, float(start_mm), ripple, float(values.play_mm)) - stiff
+    return _through_spring(error, u.step_s, values)
 
 
 def has_gear(values: DriveValues) -> bool:
-    """Say whether the gear is not perfect."""
+    """Return whether the gear has ripple or play."""
     return values.sine_mm != 0.0 or values.cosine_mm != 0.0 or values.play_mm != 0.0
 
 
 def free_motion(u: Sampled, values: DriveValues) -> Floats:
-    """Return how a drive that does not begin at rest goes on by itself, shape (n, order)."""
+    """Return the free responses of a drive from initial states not at rest, shape (n, order)."""
     lags = lag_coefficients(values)
     return transients(u.step_s, u.values.size, values.leak_per_s, lags)
 
 
 @kernel
 def _through_gear(stiff: Floats, start: float, ripple: DriveRipple, play: float) -> Floats:
-    """Return where the gear's output is, in the middle of its play at first, shape (n,)."""
+    """Return the positions of the gear's output, from the middle of its play, shape (n,)."""
     out = np.empty(stiff.size)
     unmoved = rippled(start, ripple) - start
     position = 0.0
@@ -114,8 +114,8 @@ def _through_gear(stiff: Floats, start: float, ripple: DriveRipple, play: float)
     return out
 
 
-def _behind_the_spring(positions: Floats, step_s: float, values: DriveValues) -> Floats:
-    """Return what of a motion of the gear's output arrives, linear between samples."""
+def _through_spring(positions: Floats, step_s: float, values: DriveValues) -> Floats:
+    """Return the response of x_in to the gear's output, linear between samples."""
     if values.natural_frequency_Hz == 0.0:
         return positions
     return lagged(sampled(step_s, positions, "first"), _spring(values))

@@ -61,7 +61,7 @@ EFFECTS: tuple[Effect, ...] = (  # from the drive to the load, then the sensors
 
 
 class Effects(NamedTuple):
-    """The values of every effect's parameters, neutral unless said otherwise."""
+    """The values of every effect's parameters, neutral by default."""
 
     backlash: Backlash = Backlash()
     drive_friction: DriveFriction = DriveFriction()

@@ -1,13 +1,13 @@
 """During a run the sheath is bent more, or less.
 
-What one sees: at the same x_in the loop of f_in over f_out opens (or closes) as the run goes on:
-f_in drifts up on pulls and down on releases, in proportion to the tension. Every run begins anew.
+What one sees: at the same x_in the loop of f_in over f_out opens (or closes) during the run: f_in
+drifts up on pulls and down on releases, in proportion to the tension. Every run starts without it.
 Equation: Yang 2025, Eq. (7), with the total bend θ(t) of Eq. (6), which starts at a rate and
-settles. The paper's curvature κ(s, t) may change with time, its θ does not.
-Mistaken for: friction_drift (only μθ shows: told apart only by runs with different bends, where a
-bend drifts by the same angle and friction by the same share); force_sensor_drift, preload_loss
-(the same sign on pull and release).
-Not validated: what bending does to the length of the tendon's path.
+converges exponentially. The paper's curvature κ(s, t) may change with time, its θ does not.
+Mistaken for: friction_drift (only μθ is observable: distinguishable only in runs with different
+bends, where a bend drifts by the same angle and friction by the same share); force_sensor_drift,
+preload_loss (the same sign on pull and release).
+Not validated: the change of the tendon's path length with the bend.
 """
 
 from typing import NamedTuple
@@ -20,7 +20,7 @@ from tsas_cli.numerics.settling import settling
 
 
 class BendDrift(NamedTuple):
-    """First rate of the drift [rad/s] and how fast it settles [1/s]."""
+    """Initial rate of the drift [rad/s] and its inverse time constant [1/s]."""
 
     rate_rad_per_s: float = 0.0
     settling_per_s: float = 0.0
@@ -28,7 +28,7 @@ class BendDrift(NamedTuple):
 
 @kernel
 def drifted_bend(bend: float, drift: BendDrift, time_s: float) -> float:
-    """Return the total bend [rad] at a time since the run began, not below 0."""
+    """Return the total bend [rad] at a time since the start of the run, not below 0."""
     drifted = bend + settling(drift.rate_rad_per_s, drift.settling_per_s, time_s)
     angle: float = np.maximum(drifted, 0.0)
     return angle
@@ -45,6 +45,6 @@ BEND_DRIFT = Effect(
         Parameter("rate_rad_per_s", "rad/s", neutral=0.0, start=0.005, lower=-10.0, upper=10.0),
         SETTLING,
     ),
-    experiment="The same long run with the sheath laid free and tied to a board: tied down, the "
-    "drift is gone.",
+    experiment="The same long run with the sheath free and fixed to a board: fixed, the drift "
+    "vanishes.",
 )

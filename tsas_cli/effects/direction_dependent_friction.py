@@ -6,7 +6,7 @@ tension and to the bend. x_out hardly changes.
 Equation: the capstan law of Yang 2025, Eqs. (2) and (7), with a friction coefficient for each
 direction λ of sliding; the paper has one.
 Mistaken for: force_sensor_gain (in full slip exactly the same within one bend, where only
-f_in/f_out shows; at another bend the asymmetry goes with the bend, a gain does not);
+f_in/f_out is observable; the asymmetry grows with the bend, a gain does not);
 force_sensor_offset (the same force at every tension).
 Not validated: an asymmetry that changes along the sheath.
 """
@@ -18,14 +18,14 @@ from tsas_cli.numerics.compiled import kernel
 
 
 class DirectionDependentFriction(NamedTuple):
-    """How much more friction there is on a pull, and less on a release [1]."""
+    """Relative excess of friction on a pull, and its deficit on a release [1]."""
 
     asymmetry: float = 0.0
 
 
 @kernel
 def direction_factor(asymmetry: float, direction: float) -> float:
-    """Return what multiplies the friction coefficient; direction +1 contraction, −1 loosening."""
+    """Return the factor of the friction coefficient; direction +1 contraction, −1 loosening."""
     return 1.0 + asymmetry * direction
 
 
@@ -38,5 +38,5 @@ DIRECTION_DEPENDENT_FRICTION = Effect(
     doc=__doc__,
     parameters=(Parameter("asymmetry", "1", neutral=0.0, start=0.1, lower=-0.9, upper=0.9),),
     experiment="The same strokes at two bends: the product of the two slopes of f_in over f_out "
-    "moves away from 1 with the bend; that of a wrong gain stays.",
+    "departs from 1 with the bend; with a wrong gain it does not.",
 )

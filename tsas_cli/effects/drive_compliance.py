@@ -1,12 +1,12 @@
-"""Between its encoder and the tendon the drive gives way in proportion to the force.
+"""Between its encoder and the tendon the drive deflects in proportion to the force.
 
 What one sees: dead bands are softer in f_in over x_in, by the same compliance at every reversal;
-x_out moves less than the model says, by an amount that follows f_in. f_in over f_out in full slip
-is untouched.
-Equation: a spring in series, Hooke's law. The paper takes the drive as stiff (before Eq. 24).
-Mistaken for: free_tendon (its proximal length is exactly the same, c = l/EA: only the rig's
-drawing tells); sheath_compression, a lower tendon modulus (they grow with the sheath's length);
-backlash (a flat piece, and not more at more tension).
+x_out moves less than predicted, by an amount in proportion to f_in. f_in over f_out in full slip
+does not change.
+Equation: a spring in series, Hooke's law. The paper assumes a stiff drive (before Eq. 24).
+Mistaken for: free_tendon (its proximal length has exactly the same signature, c = l/EA: only the
+rig's drawing separates them); sheath_compression, a lower tendon modulus (they grow with the
+sheath's length); backlash (a flat piece, not wider at higher tension).
 Not validated: gears that stiffen with torque, as harmonic drives do, or lose energy as they wind
 up.
 """
@@ -18,14 +18,14 @@ from tsas_cli.numerics.compiled import kernel
 
 
 class DriveCompliance(NamedTuple):
-    """Travel per force between encoder and tendon [mm/N]."""
+    """Compliance between encoder and tendon [mm/N]."""
 
     compliance_mm_per_N: float = 0.0
 
 
 @kernel
-def drive_give(tension_change: float, compliance: float) -> float:
-    """Return the travel that the drive gives way by [mm] under a change of tension [N]."""
+def drive_deflection(tension_change: float, compliance: float) -> float:
+    """Return the deflection of the drive [mm] under a change of tension [N]."""
     return compliance * tension_change
 
 

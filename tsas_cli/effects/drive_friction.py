@@ -1,14 +1,14 @@
-"""Friction between the drive's force sensor and the tendon takes the same force at any tension.
+"""Friction between the drive's force sensor and the tendon has the same force at any tension.
 
 What one sees: f_in jumps by twice the friction at every reversal of x_in, up when a pull begins
-and down when a release begins, as high at low tension as at high; f_out and x_out know nothing of
-it. f_in over f_out is wider by a constant, its two slopes are the usual ones.
-Equation: Coulomb friction that does not depend on the tension T0 behind it; a line with intercept
-beside the capstan law of Yang 2025, Eq. (7). Not in the paper.
+and down when a release begins, as high at low tension as at high; f_out and x_out are unaffected.
+f_in over f_out is wider by a constant, its two slopes are unchanged.
+Equation: Coulomb friction independent of the tension T0 behind it: an intercept added to the
+capstan law of Yang 2025, Eq. (7). Not in the paper.
 Mistaken for: a larger friction coefficient (its share grows with tension); load_friction (the
 sheath enlarges it on a pull and reduces it on a release); viscous_friction (grows with speed);
 force_sensor_offset (the same sign in both directions).
-Not validated: a drive at rest: the friction keeps the side of the last motion.
+Not validated: a drive at rest: the friction keeps the sign of the last motion.
 """
 
 from typing import NamedTuple
@@ -25,7 +25,7 @@ class DriveFriction(NamedTuple):
 
 @kernel
 def drive_friction_force(friction: float, direction: float) -> float:
-    """Return what the drive pulls with on top of the tension [N]; direction +1, −1, or 0."""
+    """Return the friction added to the tension at the drive [N]; direction +1, −1, or 0."""
     return friction * direction
 
 

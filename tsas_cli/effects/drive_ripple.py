@@ -1,4 +1,4 @@
-"""The gear moves the tendon's end a little ahead and behind, again and again at the same places.
+"""The gear moves the tendon's end a little ahead and behind, periodically in the drive's travel.
 
 What one sees: a wave on f_in, f_out and x_out with a fixed period in x_in; twice the speed gives
 twice its frequency in time. On f_in it is much higher in dead bands than in full slip, because
@@ -10,7 +10,7 @@ im = 120.
 Mistaken for: mains hum on a sensor (its period is one of time); load_spring_nonlinearity (where
 the period is longer than the stroke).
 Not validated: higher harmonics; a ripple that changes with torque; one so steep that
-2π·amplitude/period exceeds 1, which turns the tendon's end back.
+2π·amplitude/period exceeds 1, which reverses the tendon's end.
 """
 
 import math
@@ -35,7 +35,7 @@ class DriveRipple(NamedTuple):
 
 @kernel
 def rippled(drive: float, ripple: DriveRipple) -> float:
-    """Return where the drive's output is [mm] when its input is at `drive`; both are 0 at rest."""
+    """Return the position of the drive's output [mm] for its input; both are 0 at rest."""
     angle = 2.0 * math.pi * drive / ripple.period_mm
     sine: float = np.sin(angle)
     cosine: float = np.cos(angle)
@@ -58,7 +58,7 @@ DRIVE_RIPPLE = Effect(
             neutral=PERIOD_MM,
             start=PERIOD_MM,
             lower=0.05,
-            upper=LONGEST_MM,  # beyond it a ripple is a gain to the strokes of most rigs
+            upper=LONGEST_MM,  # a longer ripple is like a gain within the strokes of most rigs
             shape=True,
             starts=(
                 PERIOD_MM,

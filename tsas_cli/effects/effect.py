@@ -1,4 +1,4 @@
-"""What an effect says about itself: its parameters, and the record that the catalogue lists."""
+"""The record of an effect in the catalogue, and of its parameters."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -6,10 +6,10 @@ from typing import Literal
 
 @dataclass(frozen=True)
 class Parameter:
-    """One parameter of an effect: unit, exact neutral value, start of a fit, plausible bounds.
+    """One parameter of an effect: unit, exact neutral value, initial value, plausible bounds.
 
     A `shape` parameter matters only where another one of the effect is not neutral. `starts` are
-    the values from which a fit begins in turn; empty means `start` alone.
+    the initial values that a fit tries one after the other; empty means `start` alone.
     """
 
     name: str
@@ -26,9 +26,9 @@ class Parameter:
 class Effect:
     """One cause that makes a real rig differ from the nominal one.
 
-    `closed_form` says whether the closed form of the distributed model holds with it, or the slip
-    chain alone. `equation` is the law as reports print it. `doc` is the docstring of the effect's
-    file: what a person reads about it. `experiment` is the measurement that isolates it.
+    `closed_form` is True where the closed form of the distributed model is valid with it, else the
+    slip chain alone is. `equation` is the law as reports print it. `doc` is the docstring of the
+    effect's file, printed by `tsas explain`. `experiment` is the measurement that isolates it.
     """
 
     name: str
@@ -52,7 +52,7 @@ SETTLING = Parameter(
     neutral=0.0,
     start=0.05,
     lower=0.0,
-    upper=0.5,  # what settles faster is a step to most recordings
+    upper=0.5,  # in most recordings a faster drift is a step
     shape=True,
     starts=(0.0, 0.1, 0.3),
 )

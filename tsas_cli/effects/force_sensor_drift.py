@@ -1,13 +1,14 @@
-"""The reading of a force sensor creeps away during a run.
+"""The reading of a force sensor drifts during a run.
 
-What one sees: one force channel leaves the model steadily as the run goes on, by the same amount on
-pull and release and at every tension; the other channels fit to the end. Every run begins anew.
-Equation: the reading is the tension plus a drift that starts at a rate and settles, as with
-a sensor that warms up; both sensors settle at one rate. Not in the paper.
-Mistaken for: preload_loss (f_in and f_out fall together, tied by the sheath's friction);
-friction_drift, bend_drift (opposite on pull and release); force_sensor_offset (there from the
+What one sees: the residual of one force channel grows steadily during the run, by the same amount
+on pull and release and at every tension; the other channels fit to the end. Every run starts
+without it.
+Equation: the reading is the tension plus a drift that starts at a rate and converges exponentially,
+as with a sensor that warms up; both sensors have one time constant. Not in the paper.
+Mistaken for: preload_loss (f_in and f_out fall together, coupled by the sheath's friction);
+friction_drift, bend_drift (opposite on pull and release); force_sensor_offset (present from the
 start, and constant).
-Not validated: drift that goes on from one run to the next; creep that follows the force.
+Not validated: drift that continues from one run to the next; creep that follows the force.
 """
 
 from typing import NamedTuple
@@ -18,7 +19,7 @@ from tsas_cli.numerics.settling import settling
 
 
 class ForceSensorDrift(NamedTuple):
-    """First rate of each force sensor's drift [N/s] and how fast both settle [1/s]."""
+    """Initial rate of each force sensor's drift [N/s] and their inverse time constant [1/s]."""
 
     f_in_rate_N_per_s: float = 0.0
     f_out_rate_N_per_s: float = 0.0
@@ -27,7 +28,7 @@ class ForceSensorDrift(NamedTuple):
 
 @kernel
 def drift_reading(force: float, rate: float, settling_per_s: float, time_s: float) -> float:
-    """Return what a drifting sensor reads [N] at a time since the run began."""
+    """Return the reading of a drifting sensor [N] at a time since the start of the run."""
     return force + settling(rate, settling_per_s, time_s)
 
 

@@ -2,12 +2,12 @@
 
 What one sees: in f_in over f_out the slopes of pull and release are wrong by the same factor, at
 every bend; f_out over x_out has a wrong slope too. f_in and x_out fit.
-Equation: f_out reads gain times the tension. A wrong gain of f_in is the same to the model but for
-the load stiffness, the tendon stiffness and the preload, which it scales; so only the ratio of
-both gains shows, and it is written to f_out. Not in the paper.
+Equation: f_out reads gain times the tension. A wrong gain of f_in is equivalent, except that it
+scales the load stiffness, the tendon stiffness and the preload; so only the ratio of both gains is
+identifiable, and it is assigned to f_out. Not in the paper.
 Mistaken for: direction_dependent_friction (in full slip exactly the same within one bend, but it
 grows with the bend); force_sensor_offset (the same force at every tension); a wrong load
-stiffness or preload, where f_in is missing.
+stiffness or preload, where f_in is not recorded.
 Not validated: a gain that changes with temperature or along the sensor's range.
 """
 
@@ -25,7 +25,7 @@ class ForceSensorGain(NamedTuple):
 
 @kernel
 def read_gain(force: float, gain: float) -> float:
-    """Return what a sensor with a gain reads [N]."""
+    """Return the reading of a sensor with a gain [N]."""
     return gain * force
 
 

@@ -1,9 +1,9 @@
 """A force sensor does not read zero without force.
 
 What one sees: one force channel is off by the same amount at every tension and speed, on pull and
-release, in all runs. In f_in over f_out both lines move the same way; x_out does not move.
+release, in all runs. In f_in over f_out both lines shift by the same amount; x_out does not change.
 Equation: the reading is the tension plus a constant; not in the paper.
-Mistaken for: a wrong preload (moves f_in by e^(±μθ) times what it moves f_out); drive_friction,
+Mistaken for: a wrong preload (shifts f_in by e^(±μθ) times the shift of f_out); drive_friction,
 load_friction (opposite on pull and release); force_sensor_gain, direction_dependent_friction (grow
 with the tension); force_sensor_drift (changes during a run).
 Not validated: offsets that differ from run to run, as after each taring.
@@ -16,7 +16,7 @@ from tsas_cli.numerics.compiled import kernel
 
 
 class ForceSensorOffset(NamedTuple):
-    """What each force sensor reads without force [N]."""
+    """Reading of each force sensor without force [N]."""
 
     f_in_offset_N: float = 0.0
     f_out_offset_N: float = 0.0
@@ -24,7 +24,7 @@ class ForceSensorOffset(NamedTuple):
 
 @kernel
 def offset_reading(force: float, offset: float) -> float:
-    """Return what a sensor with an offset reads [N]."""
+    """Return the reading of a sensor with an offset [N]."""
     return force + offset
 
 

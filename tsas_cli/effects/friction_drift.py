@@ -1,14 +1,15 @@
 """Friction grows or falls with time, within a run and from run to run.
 
-What one sees: at the same x_in the loop of f_in over f_out opens (or closes) as the run goes on:
-f_in drifts up on pulls and down on releases, in proportion to the tension. With a rate of the
-session, later runs start with a wider (or narrower) loop; this needs `started` in the manifest.
-Equation: Yang 2025, Eq. (7), with μ(t): a drift that starts at a rate and settles, as in running
-in and warming up, and a steady one over the session, as in wear. The paper's μ is constant.
-Mistaken for: bend_drift (only μθ shows: told apart only by runs with different bends, where
-friction drifts by the same share); force_sensor_drift, preload_loss (the same sign on pull and
-release).
-Not validated: friction that recovers in a pause, or goes with the travel and not with the time.
+What one sees: at the same x_in the loop of f_in over f_out opens (or closes) during the run: f_in
+drifts up on pulls and down on releases, in proportion to the tension. With a rate of the session,
+later runs start with a wider (or narrower) loop; this needs `started` in the manifest.
+Equation: Yang 2025, Eq. (7), with μ(t): a drift that starts at a rate and converges exponentially,
+as in running in and warming up, and a steady one over the session, as in wear. The paper's μ is
+constant.
+Mistaken for: bend_drift (only μθ is observable: distinguishable only in runs with different bends,
+where friction drifts by the same share); force_sensor_drift, preload_loss (the same sign on pull
+and release).
+Not validated: friction that recovers in a pause, or changes with the travel instead of the time.
 """
 
 from typing import NamedTuple
@@ -21,7 +22,7 @@ from tsas_cli.numerics.settling import settling
 
 
 class FrictionDrift(NamedTuple):
-    """First rate in a run, how fast it settles, and steady rate over the session [all 1/s]."""
+    """Initial rate in a run, inverse time constant, steady rate over the session [all 1/s]."""
 
     rate_per_s: float = 0.0
     settling_per_s: float = 0.0
@@ -30,7 +31,7 @@ class FrictionDrift(NamedTuple):
 
 @kernel
 def friction_factor(drift: FrictionDrift, time_s: float, session_s: float) -> float:
-    """Return what multiplies the friction coefficient, not below 0.
+    """Return the factor of the friction coefficient, not below 0.
 
     `time_s` counts from the start of the run, `session_s` is the start of the run since that of
     the first run.
@@ -52,6 +53,6 @@ FRICTION_DRIFT = Effect(
         SETTLING,
         Parameter("session_rate_per_s", "1/s", neutral=0.0, start=0.0005, lower=-1.0, upper=1.0),
     ),
-    experiment="The same long run at two bends with the sheath tied to a board: ln(f_in/f_out) "
+    experiment="The same long run at two bends with the sheath fixed to a board: ln(f_in/f_out) "
     "drifts by the same share at both.",
 )

@@ -3,12 +3,12 @@
 What one sees: in f_in over f_out the lines of pull and release are curves. With a positive
 exponent the loop opens more than in proportion to the tension, with a negative one less; f_out
 over x_out stays straight.
-Equation: Yang 2025, Eq. (2), with μ (T/F0)^exponent at each place. An elastic contact, whose area
-grows as N^(2/3), gives −1/3 (Bowden and Tabor); the paper has 0.
+Equation: Yang 2025, Eq. (2), with μ (T/F0)^exponent at each point of the sheath. An elastic
+contact, whose area grows as N^(2/3), has −1/3 (Bowden and Tabor); the paper has 0.
 Mistaken for: drive_friction, load_friction (straight lines with an intercept: with few tensions
-much like a negative exponent); load_spring_nonlinearity (bends f_out over x_out); a wrong
+similar to a negative exponent); load_spring_nonlinearity (bends f_out over x_out); a wrong
 friction coefficient (in recordings near one tension).
-Not validated: tensions below a hundredth of the preload, where the law is cut.
+Not validated: tensions below a hundredth of the preload, where the law is clipped.
 """
 
 from typing import NamedTuple
@@ -28,7 +28,7 @@ class LoadDependentFriction(NamedTuple):
 
 @kernel
 def load_factor(tension_ratio: float, exponent: float) -> float:
-    """Return what multiplies the friction coefficient where the tension is `tension_ratio` F0."""
+    """Return the factor of the friction coefficient where the tension is `tension_ratio` F0."""
     return exponential(load_exponent(tension_ratio, exponent))
 
 

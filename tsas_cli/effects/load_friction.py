@@ -1,16 +1,17 @@
-"""The guide of the load rubs with the same force at any tension.
+"""The guide of the load has friction of the same force at any tension.
 
 What one sees: after a reversal x_out stands still for longer. With friction behind the f_out
-sensor, f_out over x_out is a loop of constant height, and f_out moves while x_out stands. With
-friction before it, f_out over x_out stays a line, and f_in over f_out is wider by a constant that
-is larger on a pull than on a release.
-Equation: Coulomb friction Fc that does not depend on the tension. It passes the sheath like the
-load: Fc e^(μθ) of it reaches f_in on a pull, Fc e^(−μθ) on a release (Yang 2025, Eq. 7). The paper
-has no friction at its load.
-Mistaken for: drive_friction (the same in f_in on pull and release, and x_out does not feel it);
+sensor, f_out over x_out is a loop of constant height, and f_out changes while x_out stands still.
+With friction before it, f_out over x_out stays a line, and f_in over f_out is wider by a constant
+that is larger on a pull than on a release.
+Equation: Coulomb friction Fc independent of the tension. The sheath transmits it like the load:
+f_in has Fc e^(μθ) of it on a pull, Fc e^(−μθ) on a release (Yang 2025, Eq. 7). The paper has no
+friction at its load.
+Mistaken for: drive_friction (the same in f_in on pull and release, without effect on x_out);
 load_spring_nonlinearity (a curve, not a loop); load_dependent_friction (curves in f_in over f_out);
-backlash (f_in stands still too).
-Not validated: guides that stick harder than they slide, or tilt under the load.
+backlash (f_in is constant too).
+Not validated: guides with a breakaway force above the sliding friction, or that tilt under the
+load.
 """
 
 from typing import NamedTuple
@@ -43,6 +44,6 @@ LOAD_FRICTION = Effect(
         Parameter("after_sensor_N", "N", neutral=0.0, start=0.5, lower=0.0, upper=1000.0),
         Parameter("before_sensor_N", "N", neutral=0.0, start=0.5, lower=0.0, upper=1000.0),
     ),
-    experiment="Take the tendon off and push the load to and fro by its f_out sensor: half the "
+    experiment="Remove the tendon and push the load back and forth by its f_out sensor: half the "
     "height of the loop is the friction.",
 )

@@ -1,12 +1,12 @@
-"""The mass of the load needs a force where it speeds up or slows down.
+"""The mass of the load needs a force where it accelerates.
 
-What one sees: f_out over x_out leaves the spring's line with the acceleration: short peaks in
-f_out and f_in where the load sets off at the end of a dead band, and in fast sines a spring that
-looks softer by m ω². Slow runs fit.
-Equation: Newton's second law; 1 kg times 1 mm/s² is 1e-3 N. Yang 2025, Eqs. (11) and (12), leave
-the load without mass.
-Mistaken for: a softer load spring (in runs of one frequency); viscous_friction, channel_delay (go
-with the speed); noise of x_out, whose second derivative is large.
+What one sees: f_out over x_out departs from the spring's line with the acceleration: short peaks in
+f_out and f_in where the load starts to move at the end of a dead band, and in fast sines a spring
+that looks softer by m ω². Slow runs fit.
+Equation: Newton's second law; 1 kg times 1 mm/s² is 1e-3 N. Yang 2025, Eqs. (11) and (12), neglect
+the mass of the load.
+Mistaken for: a softer load spring (in runs of one frequency); viscous_friction, channel_delay
+(proportional to the speed); noise of x_out, whose second derivative is large.
 Not validated: loads that swing or bounce; the mass of the tendon itself.
 """
 

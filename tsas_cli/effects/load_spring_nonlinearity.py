@@ -1,9 +1,9 @@
 """The load spring gets stiffer or softer along its travel.
 
 What one sees: f_out over x_out is a curve, the same one on pull and release; f_in follows it in
-proportion. A straight line leaves a bow (quadratic) or an S (cubic) over the stroke.
+proportion. The residual of a straight line is a bow (quadratic) or an S (cubic) over the stroke.
 Equation: a polynomial in place of the straight spring of Yang 2025, Eq. (9).
-Mistaken for: load_dependent_friction (bends f_in over f_out and leaves f_out over x_out straight);
+Mistaken for: load_dependent_friction (bends f_in over f_out; f_out over x_out stays straight);
 load_friction (a loop, not one curve); position_sensor_gain, a wrong spring stiffness (a slope, not
 a curve).
 Not validated: travel outside the recorded range, where a polynomial may even fall.

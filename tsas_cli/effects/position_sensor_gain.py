@@ -3,11 +3,11 @@
 What one sees: x_out is wrong in proportion to its travel, on pull and release and in every run;
 f_in and f_out fit. f_out over x_out has a wrong slope.
 Equation: x_out reads gain times the displacement. A wrong gain of x_in, such as a wrong radius of
-the turntable, is the same to the model but for the load stiffness and the tendon stiffness, which
-it scales; so only the ratio of both gains shows, and it is written to x_out. Not in the paper.
+the turntable, is equivalent, except that it scales the load stiffness and the tendon stiffness; so
+only the ratio of both gains is identifiable, and it is assigned to x_out. Not in the paper.
 Mistaken for: a wrong load stiffness (changes f_in and f_out over x_in too); free_tendon,
 drive_compliance, sheath_compression (x_out moves less, but f_out over x_out keeps its slope).
-Not validated: a gain that changes along the travel, as with a laser that looks at an angle.
+Not validated: a gain that changes along the travel, as with a laser at an angle.
 """
 
 from typing import NamedTuple
@@ -24,7 +24,7 @@ class PositionSensorGain(NamedTuple):
 
 @kernel
 def read_position(position: float, gain: float) -> float:
-    """Return what a position sensor with a gain reads [mm]."""
+    """Return the reading of a position sensor with a gain [mm]."""
     return gain * position
 
 

@@ -1,12 +1,12 @@
-"""Where the tendon sticks, friction turns round over a small travel and not at once.
+"""Where the tendon sticks, friction reverses over a small travel and not at once.
 
-What one sees: after a reversal f_in leaves with a finite slope instead of a sharp corner; f_out and
-x_out set off gently, and the whole tendon slides later by about twice the travel, at low tension as
-at high. Strokes far below that travel are lines without a loop.
-Equation: the bristles of Yang 2025, Eq. (15), without their time: the share z of its limit that
-friction has reached follows dz/dx = (1 − z sgn(dx))/length (P. R. Dahl, AIAA Journal 14, 1976).
+What one sees: after a reversal f_in changes with a finite slope instead of a sharp corner; f_out
+and x_out start smoothly, and the whole tendon slides later by about twice the travel, at low
+tension as at high. Strokes far below that travel are lines without a loop.
+Equation: the quasi-static bristles of Yang 2025, Eq. (15): the ratio z of friction to its limit
+follows dz/dx = (1 − z sgn(dx))/length (P. R. Dahl, AIAA Journal 14, 1976).
 Mistaken for: backlash (a flat piece first); drive_compliance, free_tendon (longer at higher
-tension); stribeck_friction (goes with speed); x_in smoothed too much before the fit, which rounds
+tension); stribeck_friction (depends on speed); x_in smoothed too much before the fit, which rounds
 the same corners.
 Not validated: bristles that yield all at once at their limit; a length that depends on the tension.
 """
@@ -25,18 +25,18 @@ class Presliding(NamedTuple):
 
 
 @kernel
-def share_turned(before: float, moved: float, length: float) -> float:
-    """Return the share of its limit that friction has reached after a way of one sign [1]."""
+def friction_share(before: float, moved: float, length: float) -> float:
+    """Return the ratio of friction to its limit after a travel of one sign [1]."""
     limit = 1.0 if moved > 0.0 else -1.0
     if length == 0.0:
         return limit
-    per_mm = 1.0 / length  # found once by a loop over nodes
+    per_mm = 1.0 / length  # hoisted out of loops over nodes
     return limit + (before - limit) * exponential(-abs(moved) * per_mm)
 
 
 @kernel
-def turning_rate(share: float, moved: float, length: float) -> float:
-    """Return d share/d way after a way [1/mm]; of both sides the steeper one before any way."""
+def friction_share_rate(share: float, moved: float, length: float) -> float:
+    """Return d share/d travel after a travel [1/mm]; at zero travel the steeper of both sides."""
     if moved == 0.0:
         return (1.0 + abs(share)) / length
     return (1.0 - share if moved > 0.0 else 1.0 + share) / length

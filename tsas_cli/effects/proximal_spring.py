@@ -1,11 +1,11 @@
-"""A spring between the drive's end of the tendon and the ground pulls beside the tendon.
+"""A spring between the drive's end of the tendon and the ground pulls in parallel to the tendon.
 
 What one sees: f_in is steeper over x_in by the same stiffness in every phase, in pull, release and
-dead bands alike; the whole loop is sheared. f_out and x_out know nothing of it.
+dead bands; the whole loop is sheared. f_out and x_out are unaffected.
 Equation: Hooke's law parallel to the tendon. It is the disturbance of Yang 2025, Fig. 11, with
 12.5 N/mm.
 Mistaken for: a stiffer load spring (f_out rises too, and f_in more on a pull than on a release);
-force_sensor_gain (goes with the tension, not with the travel).
+force_sensor_gain (proportional to the tension, not to the travel).
 Not validated: a spring that hangs slack in a part of the travel, or is preloaded at x_in = 0;
 cables of the drive that pull like one but have friction of their own.
 """
@@ -24,7 +24,7 @@ class ProximalSpring(NamedTuple):
 
 @kernel
 def proximal_spring_force(position: float, stiffness: float) -> float:
-    """Return what the drive pulls with on top of the tension [N], at a position of its end [mm]."""
+    """Return the spring force added to the tension at the drive [N], at a position [mm]."""
     return stiffness * position
 
 
@@ -38,5 +38,6 @@ PROXIMAL_SPRING = Effect(
     parameters=(
         Parameter("stiffness_N_per_mm", "N/mm", neutral=0.0, start=0.5, lower=0.0, upper=1000.0),
     ),
-    experiment="Take the tendon off the drive and move it: f_in over x_in is the spring alone.",
+    experiment="Disconnect the tendon from the drive and move it: f_in over x_in is the spring "
+    "alone.",
 )

@@ -1,12 +1,13 @@
 """The sheath gets shorter under the tension that it guides.
 
-What one sees: dead bands are wider and softer, and x_out falls further behind x_in as the tension
+What one sees: dead bands are wider and softer, and x_out lags further behind x_in as the tension
 rises, exactly as with a softer tendon and in proportion to the sheath's length.
-Equation: the sheath is pressed with the force that the tendon pulls with, so both give in series:
+Equation: the sheath is compressed by the force of the tendon, so both are compliant in series:
 (1 + ratio)/EA per length of sheathed tendon, ratio = EA of the tendon / EA of the sheath. Hooke's
-law as in Yang 2025, Eq. (3), which takes the sheath as rigid.
-Mistaken for: a lower tendon modulus (exactly the same; only a data sheet's modulus that bounds the
-tendon's tells); free_tendon, drive_compliance (they do not grow with the sheath's length).
+law as in Yang 2025, Eq. (3), which assumes a rigid sheath.
+Mistaken for: a lower tendon modulus (indistinguishable; only bounds on the tendon's modulus, from a
+data sheet, separate them); free_tendon, drive_compliance (they do not grow with the sheath's
+length).
 Not validated: a sheath that slides in its clamps, straightens, or keeps a part of its shortening.
 """
 
@@ -36,6 +37,6 @@ SHEATH_COMPRESSION = Effect(
     equation="dx/ds = (1 + ratio)·(T − F0)/EA in the sheath",
     doc=__doc__,
     parameters=(Parameter("compliance_ratio", "1", neutral=0.0, start=0.3, lower=0.0, upper=20.0),),
-    experiment="Measure the stiffness of the tendon alone, outside the sheath: what the dead bands "
-    "give way beyond it is the sheath's.",
+    experiment="Measure the stiffness of the tendon alone, outside the sheath: the compliance of "
+    "the dead bands beyond it is the sheath's.",
 )

@@ -1,14 +1,14 @@
 """Slow sliding has more friction than fast sliding.
 
 What one sees: f_in over f_out is widest near reversals, where the drive is slow, and narrows
-towards the middle of a stroke; a whole run at a lower speed has a wider loop. The error of f_in
-goes with the tension and changes sign with the direction.
+towards the middle of a stroke; a whole run at a lower speed has a wider loop. The residual of f_in
+is proportional to the tension and changes sign with the direction.
 Equation: the exponential Stribeck curve of Yang 2025, Eq. (15), on the friction coefficient of
 Eq. (2); v is the sliding speed of the drive's end. The paper's 0.01 mm/s is far below the speed of
-its strokes, where nothing of it is left.
-Mistaken for: viscous_friction (more at high speed, at any tension the same); presliding (goes by
-travel since the reversal, not by speed); load_dependent_friction (goes with the tension).
-Not validated: stick-slip; the lag of friction behind the speed; places of the tendon that slide
+its strokes, at which the excess has vanished.
+Mistaken for: viscous_friction (more at high speed, at any tension the same); presliding (depends on
+travel since the reversal, not on speed); load_dependent_friction (depends on the tension).
+Not validated: stick-slip; the lag of friction behind the speed; points of the tendon that slide
 slower than the drive's end.
 """
 
@@ -28,8 +28,8 @@ class StribeckFriction(NamedTuple):
 
 @kernel
 def stribeck(speed: float, law: StribeckFriction) -> tuple[float, float]:
-    """Return what multiplies friction at a sliding speed [mm/s], and its slope [s/mm]."""
-    per_mm_s = 1.0 / law.velocity_mm_per_s  # found once by a loop over places
+    """Return the factor of friction at a sliding speed [mm/s], and its slope [s/mm]."""
+    per_mm_s = 1.0 / law.velocity_mm_per_s  # hoisted out of loops over nodes
     relative = speed * per_mm_s
     left = law.excess * exponential(-relative * relative)
     return 1.0 + left, -2.0 * relative * per_mm_s * left
@@ -37,7 +37,7 @@ def stribeck(speed: float, law: StribeckFriction) -> tuple[float, float]:
 
 @kernel
 def stribeck_factor(speed: float, law: StribeckFriction) -> float:
-    """Return what multiplies the friction coefficient at a sliding speed [mm/s]."""
+    """Return the factor of the friction coefficient at a sliding speed [mm/s]."""
     return stribeck(speed, law)[0]
 
 
@@ -61,6 +61,6 @@ STRIBECK_FRICTION = Effect(
             starts=(1.0, 4.0, 15.0),
         ),
     ),
-    experiment="The same stroke at constant speeds over two decades: f_in/f_out at one place of "
+    experiment="The same stroke at constant speeds over two decades: f_in/f_out at one position of "
     "the stroke, over the speed.",
 )

@@ -1,15 +1,15 @@
-"""A lubricant takes a force from the tendon that grows with its speed.
+"""A lubricant opposes the tendon with a force that grows with its speed.
 
 What one sees: f_in is too high on a pull and too low on a release, in proportion to the speed and
-at any tension alike; with a sine as input the loop of f_in over x_in is too wide in the middle of
-the stroke and fits at its ends. Fast runs miss, slow ones fit.
+independent of the tension; with a sine as input the loop of f_in over x_in is too wide in the
+middle of the stroke and fits at its ends. Slow runs fit, fast ones do not.
 Equation: the σ2 v term of Yang 2025, Eq. (15), summed over the sheath: Table 1's 4e-4 N s/mm for
 each of 50 lumps make c = 0.02 N s/mm. v is the sliding speed of the drive's end.
-Mistaken for: drive_friction, a larger friction coefficient (one speed cannot tell them; they do
+Mistaken for: drive_friction, a larger friction coefficient (indistinguishable at one speed; they do
 not grow with it); stribeck_friction (less friction when fast); channel_delay (also in dead bands,
-where f_in is steep); load_inertia (goes with the acceleration).
-Not validated: lubricants that thin with speed or warmth; places of the tendon that slide slower
-than the drive's end.
+where f_in is steep); load_inertia (proportional to the acceleration).
+Not validated: lubricants that thin with speed or temperature; points of the tendon that slide
+slower than the drive's end.
 """
 
 from typing import NamedTuple
@@ -45,6 +45,6 @@ VISCOUS_FRICTION = Effect(
             "coefficient_N_s_per_mm", "N s/mm", neutral=0.0, start=0.02, lower=0.0, upper=100.0
         ),
     ),
-    experiment="The same stroke at constant speeds, each twice the last: f_in at one place of the "
-    "stroke rises in proportion to the speed.",
+    experiment="The same stroke at constant speeds, each twice the last: f_in at one position of "
+    "the stroke rises in proportion to the speed.",
 )

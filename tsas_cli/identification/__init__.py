@@ -1,1 +1,1 @@
-"""From recordings to parameters with honest intervals."""
+"""From recordings to parameters with confidence intervals."""

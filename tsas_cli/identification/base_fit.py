@@ -1,4 +1,4 @@
-"""The fit of the nominal parameters, from the data sheet and from what the phases show."""
+"""The fit of the nominal parameters, with initial values from the phases and the data sheet."""
 
 from collections.abc import Mapping, Sequence
 
@@ -27,21 +27,21 @@ def base_fit(
     Parameters
     ----------
     stated
-        What the data sheet, or a model, says: values of what is not identifiable.
+        The model, of the data sheet for example, with values of parameters that are fixed.
     runs, segments, measured
         The runs, their phases and the stiffness in each.
     plausible
         Narrower bounds of some parameters.
     """
-    read = _read_off(stated, runs, segments, measured)
-    return prepare_fit(read.over(stated), stated.over(read), runs, plausible=plausible)
+    initial = _read_off(stated, runs, segments, measured)
+    return prepare_fit(initial.over(stated), stated.over(initial), runs, plausible=plausible)
 
 
 def with_own_values(model: Model, run: Prepared) -> Model:
-    """Return a model with what belongs to a run alone fitted to it; all else stays as it is."""
+    """Return a model with the parameters of one run fitted to it; all others are fixed."""
     parts = segment(run)
-    read = _read_off(model, [run], [parts], [slopes_of(run, parts)])
-    own = Model(tuple(e for e in read.estimates if e.run is not None))
+    initial = _read_off(model, [run], [parts], [slopes_of(run, parts)])
+    own = Model(tuple(e for e in initial.estimates if e.run is not None))
     return solve_fit(prepare_fit(own.over(model), model.over(own), [run], shared=False)).model
 
 
@@ -59,7 +59,7 @@ def _read_off(
     segments: Sequence[list[Segment]],
     measured: Sequence[list[Slope]],
 ) -> Model:
-    """Return initial values that the phases of the runs show; the median where runs share one."""
+    """Return initial values from the phases of the runs; the median where runs share one."""
     found: dict[tuple[str, str | None], list[float]] = {}
     for run, parts, km in zip(runs, segments, measured, strict=True):
         values = read_off(run, parts, km, stated.rig(run.run))
@@ -68,7 +68,7 @@ def _read_off(
             found.setdefault((name, owner), []).append(value)
     return Model(
         tuple(
-            Estimate(name, float(np.median(seen)), NOMINAL_BY_NAME[name].unit, "default", owner)
-            for (name, owner), seen in found.items()
+            Estimate(name, float(np.median(values)), NOMINAL_BY_NAME[name].unit, "default", owner)
+            for (name, owner), values in found.items()
         )
     )

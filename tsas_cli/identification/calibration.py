@@ -22,14 +22,14 @@ from tsas_cli.recordings.manifest import Manifest
 from tsas_cli.support.steps import SILENT, Steps
 
 LACKING = (
-    "The intervals allow for no effect that the model lacks: `tsas diagnose` names it, and --model "
-    "begins with the model that it extends."
+    "The intervals do not include effects that the model lacks: find them with `tsas diagnose` and "
+    "start from its extended model with --model."
 )
 
 
 @dataclass(frozen=True)
 class Calibration:
-    """The calibrated model and everything that was found on the way, per run where it is a list."""
+    """The calibrated model with phases, slopes, predictions and notes; lists are per run."""
 
     model: Model
     runs: Sequence[Prepared]
@@ -50,12 +50,12 @@ def calibrate_runs(
     dynamics: Dynamics = "slip",
     stated: Model | None = None,
 ) -> Calibration:
-    """Calibrate the nominal model; `step` follows each run's phases and each fit.
+    """Return the calibrated nominal model; `step` reports each run's phases and each fit.
 
-    Where a run holds no f_in_N there are no slopes for it; where nothing is identifiable, the
-    model is that of the data sheet and `cannot_tell` says why. With the dynamic model (`lugre`)
-    its bristles and what friction does over speed are calibrated too. `stated` is the model to
-    begin with, whose effects stay; the data sheet's without it.
+    A run without f_in_N has no slopes; where no parameter is identifiable, the model is that of the
+    data sheet and `cannot_tell` has the reasons. With the dynamic model (`lugre`) its bristles and
+    friction over speed are calibrated too. `stated` is the initial model, whose effects are fixed;
+    by default the data sheet's.
     """
     stated = stated or data_sheet(manifest)
     step.ahead(len(runs) + 1)
@@ -74,15 +74,15 @@ def calibrate_runs(
     predictions = [compare(run, model, dynamics) for run in runs]
     expected = [_predicted_slopes(*each) for each in zip(runs, predictions, segments, strict=True)]
     if dynamic is not None:
-        missed = [*dynamic.misfit, LACKING] if dynamic.misfit else []
+        residual_notes = [*dynamic.misfit, LACKING] if dynamic.misfit else []
         sentences = [*dynamic.cannot_tell, *_notes(predictions)]
     else:
-        missed = misfit(fit)
-        if missed and fitted is not None:
+        residual_notes = misfit(fit)
+        if residual_notes and fitted is not None:
             wider = widened(fit, step)
             model = Model(wider.estimates)
-            missed += _widened_by(wider.effects)
-    cannot = [*thinned_notes(runs), *missed, *_unknown_conditions(runs), *sentences]
+            residual_notes += _widened_by(wider.effects)
+    notes = [*thinned_notes(runs), *residual_notes, *_unknown_conditions(runs), *sentences]
     return Calibration(
         with_preload_correction(model, runs),
         runs,
@@ -91,30 +91,35 @@ def calibrate_runs(
         predictions,
         expected,
         tension_transfer(runs, segments),
-        cannot,
+        notes,
         fitted,
     )
 
 
 def _notes(predictions: Sequence[Compared]) -> list[str]:
-    """Return what the dynamic model says of its predictions, each once."""
+    """Return the dynamic model's notes on its predictions, without duplicates."""
     return list(dict.fromkeys(note for predicted in predictions for note in predicted.notes))
 
 
 def _widened_by(effects: Sequence[str]) -> list[str]:
     if not effects:
-        return ["No known effect explains it: the intervals may miss the rig's own values."]
+        return [
+            (
+                "No catalogued effect explains the residual: the intervals may not contain the "
+                "true values."
+            )
+        ]
     names = " or ".join(effects)
     return [
         (
-            f"The intervals hold what {names} would do to each value, which explains most of what "
-            "is missed; `tsas diagnose` looks for the cause."
+            f"The intervals are widened by the influence of {names}, which would explain most of "
+            "the residual; `tsas diagnose` searches for the cause."
         )
     ]
 
 
 def _predicted_slopes(run: Prepared, predicted: Compared, segments: list[Segment]) -> list[Slope]:
-    """Return the stiffness that the same linear fit gives on the model's prediction."""
+    """Return the stiffness by the same linear fit of the model's prediction."""
     if "f_in_N" not in run.measured or "x_in_mm" not in run.conditioned:
         return []
     return slopes(run.conditioned["x_in_mm"].values, predicted.response.f_in_N, segments)
@@ -124,12 +129,12 @@ def _unknown_conditions(runs: Sequence[Prepared]) -> list[str]:
     out = []
     if any(r.run.total_bend_rad is None for r in runs):
         out.append(
-            "total_bend_rad is not in the manifest: 1 rad is taken, so that friction_coefficient "
-            "stands for the product of friction and bend."
+            "total_bend_rad is not in the manifest: with an assumed 1 rad friction_coefficient is "
+            "the product of friction and bend."
         )
     if any(r.run.sheath_length_mm is None for r in runs):
         out.append(
-            "sheath_length_mm is not in the manifest: 1000 mm is taken, so that "
-            "tendon_stiffness_N stands for the stiffness of one metre."
+            "sheath_length_mm is not in the manifest: with an assumed 1000 mm tendon_stiffness_N "
+            "is the stiffness of one metre."
         )
     return out

@@ -1,4 +1,4 @@
-"""A model's prediction of one run, and how far it is from what was measured."""
+"""A model's prediction of one run, and its residual."""
 
 from collections.abc import Mapping, Set
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ Floats = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Compared:
-    """One run simulated; `channels` holds the predictions, shape (n,), NaN in gaps of the drive."""
+    """One run simulated; `channels` are the predictions, shape (n,), NaN in gaps of the drive."""
 
     response: Response
     channels: dict[str, Floats]
@@ -30,7 +30,7 @@ class Compared:
     notes: tuple[str, ...] = ()
 
     def summary(self) -> "RunSummary":
-        """Return what is written of the prediction."""
+        """Return the figures of the prediction that are written."""
         phase = self.response.phase
         return RunSummary(
             self.response.solver,
@@ -45,18 +45,18 @@ class Compared:
 
 @dataclass(frozen=True)
 class RunSummary:
-    """One run simulated, in numbers: the solver, how many samples, and how far it is off."""
+    """Figures of one simulated run: the solver, the samples, the RMS of each residual."""
 
     solver: str
     rows: int
     slack: int
-    unsettled: int
+    unconverged: int
     rmse: Mapping[str, float]
     samples: Mapping[str, int]
     notes: tuple[str, ...] = ()
 
     def record(self, run: Prepared) -> SimulatedRun:
-        """Return what `simulation.json` says of the run."""
+        """Return the run's record in `simulation.json`."""
         start = run.drive.start_f_in_N
         return SimulatedRun(
             solver=self.solver,
@@ -64,7 +64,7 @@ class RunSummary:
             start="at rest" if start is None else f"f_in_N = {start:.4g} N as measured",
             samples=self.rows,
             slack_samples=self.slack,
-            unconverged_samples=self.unsettled,
+            unconverged_samples=self.unconverged,
             notes=self.notes,
             channels={
                 name: Channel(
@@ -81,14 +81,14 @@ class RunSummary:
 def compare(
     run: Prepared, model: Model, dynamics: Dynamics = "slip", nodes: int | None = None
 ) -> Compared:
-    """Simulate a run with a model and compare it with the measurement.
+    """Return a model's prediction of a run and its residual.
 
-    `nodes` asks for a chain with as many of them.
+    With `nodes` a chain of that many is used in place of the closed form.
 
     Raises
     ------
     InputError
-        The static model is asked for a load that is not a spring, or for a drive by force.
+        The static model with a load that is not a spring, or with a drive by force.
     """
     refuse_static(run.run, run.drive_column, dynamics)
     response = simulate(
@@ -100,29 +100,29 @@ def compare(
         tolerance=run.step_tolerance,
     )
     channels = channels_of(response, set(run.conditioned), run.in_gap)
-    error = {name: run.measured[name] - channels[name] for name in run.measured}
-    error = {name: e[np.isfinite(e)] for name, e in error.items()}
+    residual = {name: run.measured[name] - channels[name] for name in run.measured}
+    residual = {name: r[np.isfinite(r)] for name, r in residual.items()}
     return Compared(
         response,
         channels,
-        {name: float(np.sqrt(np.mean(e**2))) for name, e in error.items()},
-        {name: int(e.size) for name, e in error.items()},
+        {name: float(np.sqrt(np.mean(r**2))) for name, r in residual.items()},
+        {name: int(r.size) for name, r in residual.items()},
         tuple(dynamic_notes(run, model, response)) if dynamics == "lugre" else (),
     )
 
 
 def refuse_static(run: Run, drive_column: str, dynamics: Dynamics) -> None:
-    """Refuse the static model where it does not hold.
+    """Refuse the static model where it is not valid.
 
     Raises
     ------
     InputError
-        It is asked for a load that is not a spring, or for a drive by force.
+        The load is not a spring, or the drive is by force.
     """
-    plain = run.load == "spring" and drive_column == "x_in_mm"
-    if dynamics == "static" and not plain:
+    valid = run.load == "spring" and drive_column == "x_in_mm"
+    if dynamics == "static" and not valid:
         raise InputError(
-            "the static model knows a spring load and a drive by displacement only",
+            "the static model is valid for a spring load and a drive by displacement only",
             where=f"run {run.id}",
             remedy="use --dynamics slip",
         )

@@ -1,9 +1,10 @@
-"""The fit of the dynamic model: its bristles, and friction over speed, beside the nominal values.
+"""The fit of the dynamic model: nominal parameters, bristles, and friction over speed.
 
-First the stiffness of the bristles and viscous friction are freed. Friction at rest, then the
-bristles' damping, are looked at from there, at many velocities and sizes, since a fit that begins
-where it shows nothing, or where sliding is unstable, ends there. What saves most is freed too, and
-stays free where it is identifiable; where not, it is said what the recordings would have shown.
+First the stiffness of the bristles and viscous friction are freed. Then friction at rest, and after
+it the bristles' damping, are screened over many values, since a fit that starts where the residual
+is insensitive, or where sliding is unstable, does not move. The value with the largest reduction of
+the residual is freed too, if it is identifiable; if not, a note gives the range that the recordings
+do not exclude.
 """
 
 from collections.abc import Mapping, Sequence
@@ -36,19 +37,19 @@ Floats = npt.NDArray[np.float64]
 STIFFNESS, DAMPING = "bristles.stiffness_N_per_mm", "bristles.damping_N_s_per_mm"
 VISCOUS = "viscous_friction.coefficient_N_s_per_mm"
 EXCESS, VELOCITY = "stribeck_friction.excess", "stribeck_friction.velocity_mm_per_s"
-VELOCITIES = np.geomspace(0.01, 100.0, 17)  # Stribeck velocities that may show [mm/s]
-TIMES = 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0  # by which what is not identifiable may be larger
-VAGUE = 100.0  # ratio of the ends of an interval that says nothing
-SMALL = 1e-3  # excess of friction at rest by which its effect is found
+VELOCITIES = np.geomspace(0.01, 100.0, 17)  # screened Stribeck velocities [mm/s]
+TIMES = 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0  # screened values over the usual one
+VAGUE_RATIO = 100.0  # of the ends of an interval that is not informative
+SMALL = 1e-3  # excess of friction at rest for its sensitivity
 FIRST_EXCESS = 0.01, 1.0  # range of its initial value
-WORTH = 25.0  # squares in units of noise that what is freed must save
-SEEN = 0.1  # excess of friction at rest that would show
-CLEARLY = 10.0  # times noise
+LEAST_REDUCTION = 25.0  # of the sum of squares over noise by a freed parameter
+VISIBLE_EXCESS = 0.1  # excess of friction at rest whose visibility is reported
+VISIBLE_TIMES_NOISE = 10.0  # norm over noise from which it is visible
 
 
 @dataclass(frozen=True)
 class DynamicFit:
-    """The model, the least squares behind it, None without any, and what these do not explain."""
+    """The model, its least squares (None without a fit), and notes on the remaining residual."""
 
     model: Model
     fitted: Fitted | None
@@ -58,12 +59,12 @@ class DynamicFit:
 
 @dataclass(frozen=True)
 class Look:
-    """Values of what is not free yet, seen from where a fit ended."""
+    """Screened values of parameters that are not free yet, linearised where a fit ended."""
 
     values: Mapping[str, float]
-    moves: Floats  # of the free parameters, with them, scaled, (p,)
-    saves: float  # squares, in units of noise
-    shows: bool = False
+    moves: Floats  # least-squares step of the free parameters with these values, scaled, (p,)
+    saves: float  # reduction of the sum of squares, in units of noise
+    shows: bool = False  # whether an excess of VISIBLE_EXCESS would be visible
 
 
 @dataclass(frozen=True)
@@ -75,10 +76,10 @@ class Solved:
 
 
 def dynamic_fit(nominal: Model, runs: Sequence[Prepared], step: Steps = SILENT) -> DynamicFit:
-    """Fit nominal values, bristles and friction over speed with the dynamic chain.
+    """Return the fit of nominal values, bristles and friction over speed with the dynamic chain.
 
-    `nominal` is what the fit of the slip model found, where this one begins. `step` is told of
-    each fit, and of each value that is looked at.
+    `nominal` is the model fitted with the slip chain, the initial one here. `step` reports each fit
+    and each screened value.
     """
     stiffness = nominal.rig(runs[0].run).bristles.stiffness_N_per_mm
     first = {STIFFNESS: stiffness, VISCOUS: QUANTITIES[VISCOUS].size}
@@ -91,33 +92,33 @@ def dynamic_fit(nominal: Model, runs: Sequence[Prepared], step: Steps = SILENT) 
     solved = with_rest or solved
     dampings = _sizes(solved.fit, DAMPING, step)
     solved = _freed(solved, dampings, step) or solved
-    said, fitted = solved.fit.cannot_tell, solved.fitted
+    notes, fitted = solved.fit.cannot_tell, solved.fitted
     if with_rest is None:
-        said.append(_unseen_rest(at_rest))
+        notes.append(_static_friction_note(at_rest))
     for name in (STIFFNESS, DAMPING, VISCOUS):
         if not _is_free(solved.fit, name):
             looks = dampings if name == DAMPING else _sizes(solved.fit, name, step)
             best = max(look.saves for look in looks)
             finest = _finest_stiffness(solved.fit)
-            like = [
+            equivalent = [
                 look
                 for look in looks
-                if look.saves > best - WORTH or look.values.get(STIFFNESS, 0.0) >= finest
+                if look.saves > best - LEAST_REDUCTION or look.values.get(STIFFNESS, 0.0) >= finest
             ]
-            fitted = _widened(fitted, like)
-            said.append(_alike(name, like))
+            fitted = _widened(fitted, equivalent)
+            notes.append(_indistinguishable_note(name, equivalent))
     fit = solved.fit
     estimates = estimates_of(fit.free, fitted, fit.problem.ids)
     model = Model(tuple(estimates)).over(fit.model)
-    return DynamicFit(model, fitted, tuple(said), tuple(misfit(fit)))
+    return DynamicFit(model, fitted, tuple(notes), tuple(misfit(fit)))
 
 
 def _solved(
     initial: Model, fixed: Model, runs: Sequence[Prepared], further: Sequence[str], step: Steps
 ) -> Solved | None:
-    """Return a fit with parameters freed beside the nominal ones; None where none is identifiable.
+    """Return a fit with the nominal and further free parameters; None if none is identifiable.
 
-    The fit begins with the values of `initial`; what is not identifiable has those of `fixed`.
+    `initial` has the initial values, `fixed` those of parameters that are not identifiable.
     """
     step.ahead(1)
     fit = solve_fit(prepare_fit(initial, fixed, runs, dynamics="lugre", further=further))
@@ -126,7 +127,7 @@ def _solved(
 
 
 def _further(fit: FittedModel) -> list[str]:
-    """Return what was to be freed beside the nominal parameters."""
+    """Return the names of the unknowns besides the nominal parameters."""
     return [u.name for u in fit.problem.unknowns if "." in u.name]
 
 
@@ -138,25 +139,29 @@ def _model_of(values: Mapping[str, float]) -> Model:
 
 
 def _friction_at_rest(fit: FittedModel, step: Steps) -> list[Look]:
-    """Look at friction at rest with many Stribeck velocities, its size as the errors ask for."""
+    """Return friction at rest screened over Stribeck velocities, with its least-squares size."""
     step.ahead(len(VELOCITIES))
-    left, slopes = residuals_with(fit, {}), slopes_of_free(fit)
+    residual, slopes = residuals_with(fit, {}), slopes_of_free(fit)
     looks = []
     for velocity in map(float, VELOCITIES):
-        small, seen = (
-            (residuals_with(fit, {EXCESS: excess, VELOCITY: velocity}) - left) / excess
-            for excess in (SMALL, SEEN)
+        small, visible = (
+            (residuals_with(fit, {EXCESS: excess, VELOCITY: velocity}) - residual) / excess
+            for excess in (SMALL, VISIBLE_EXCESS)
         )
-        *moves, asked = _asked(np.column_stack((slopes, small)), left)
-        saved = np.sum(left**2) - np.sum((left + slopes @ moves + small * asked) ** 2)
-        # A low velocity does less than it promises, and a high one is a change of friction.
-        own = min(np.linalg.norm(e + slopes @ _asked(slopes, e)) for e in (small, seen))
+        *moves, excess_step = _least_squares_step(np.column_stack((slopes, small)), residual)
+        reduction = np.sum(residual**2) - np.sum(
+            (residual + slopes @ moves + small * excess_step) ** 2
+        )
+        # At a low velocity the linearisation overestimates; at a high one it is plain friction.
+        own = min(
+            np.linalg.norm(e + slopes @ _least_squares_step(slopes, e)) for e in (small, visible)
+        )
         looks.append(
             Look(
-                {EXCESS: float(np.clip(asked, *FIRST_EXCESS)), VELOCITY: velocity},
+                {EXCESS: float(np.clip(excess_step, *FIRST_EXCESS)), VELOCITY: velocity},
                 np.array(moves),
-                float(saved) if asked > 0.0 else 0.0,
-                bool(SEEN * own > CLEARLY),
+                float(reduction) if excess_step > 0.0 else 0.0,
+                bool(VISIBLE_EXCESS * own > VISIBLE_TIMES_NOISE),
             )
         )
         step()
@@ -164,8 +169,8 @@ def _friction_at_rest(fit: FittedModel, step: Steps) -> list[Look]:
 
 
 def _sizes(fit: FittedModel, name: str, step: Steps) -> list[Look]:
-    """Look at values of one that is fixed, from the usual one up; of the stiffness down too."""
-    left, slopes = residuals_with(fit, {}), slopes_of_free(fit)
+    """Return a fixed parameter screened from its usual value up; the stiffness down too."""
+    residual, slopes = residuals_with(fit, {}), slopes_of_free(fit)
     rigs = fit.rigs
     usual = {
         STIFFNESS: rigs[0].bristles.stiffness_N_per_mm,
@@ -176,10 +181,10 @@ def _sizes(fit: FittedModel, name: str, step: Steps) -> list[Look]:
     step.ahead(len(times))
     looks = []
     for value in (usual * t for t in times):
-        there = residuals_with(fit, {name: value})
-        moves = _asked(slopes, there)
-        saved = float(np.sum(left**2) - np.sum((there + slopes @ moves) ** 2))
-        looks.append(Look({name: value}, moves, saved))
+        with_value = residuals_with(fit, {name: value})
+        moves = _least_squares_step(slopes, with_value)
+        reduction = float(np.sum(residual**2) - np.sum((with_value + slopes @ moves) ** 2))
+        looks.append(Look({name: value}, moves, reduction))
         step()
     return looks
 
@@ -189,11 +194,11 @@ def _is_free(fit: FittedModel, name: str) -> bool:
 
 
 def _from_better_stiffness(solved: Solved, step: Steps) -> Solved | None:
-    """Fit again from the stiffness that fits best, where it is fixed but another fits better."""
+    """Return a fit from the best screened stiffness, where it is fixed and another fits better."""
     if _is_free(solved.fit, STIFFNESS):
         return None
     best = max(_sizes(solved.fit, STIFFNESS, step), key=lambda look: look.saves)
-    if best.saves < WORTH:
+    if best.saves < LEAST_REDUCTION:
         return None
     stiffness, fit = _model_of(best.values), solved.fit
     initial = stiffness.over(moved_model(fit, best.moves))
@@ -202,38 +207,38 @@ def _from_better_stiffness(solved: Solved, step: Steps) -> Solved | None:
 
 
 def _at_stiffness(solved: Solved, step: Steps) -> Solved | None:
-    """Fit again at the stiffness where the fit ended, where it is identifiable by its name alone.
+    """Return a fit with the stiffness fixed, where its estimate is not informative.
 
-    Its interval may hold anything, or the mesh be too coarse to show it.
+    Its interval may be too wide, or the mesh too coarse for it.
     """
     finest = _finest_stiffness(solved.fit)
     for e in solved.fit.model.estimates:
         if e.name == STIFFNESS and e.interval_low is not None and e.interval_high is not None:
-            if e.interval_high < VAGUE * e.interval_low and e.value < finest:
+            if e.interval_high < VAGUE_RATIO * e.interval_low and e.value < finest:
                 return None
-            there, fit = _model_of({STIFFNESS: min(e.value, finest)}), solved.fit
+            with_value, fit = _model_of({STIFFNESS: min(e.value, finest)}), solved.fit
             further = [name for name in _further(fit) if name != STIFFNESS]
-            initial = there.over(moved_model(fit, np.zeros(len(fit.chosen))))
-            fixed = there.over(fit.problem.fixed)
+            initial = with_value.over(moved_model(fit, np.zeros(len(fit.chosen))))
+            fixed = with_value.over(fit.problem.fixed)
             return _solved(initial, fixed, fit.problem.runs, further, step)
     return None
 
 
 def _finest_stiffness(fit: FittedModel) -> float:
-    """Return the stiffness whose way into the sheath, √(EA L/σ0), is as short as a lump [N/mm]."""
+    """Return the stiffness whose decay length √(EA L/σ0) is that of a lump [N/mm]."""
     rig = fit.rigs[0]
     return rig.tendon_stiffness_N * LUMPS**2 / rig.sheath_length_mm
 
 
-def _asked(slopes: Floats, left: Floats) -> Floats:
-    """Return the moves that take down most of some errors."""
-    return np.asarray(np.linalg.lstsq(slopes, -left, rcond=None)[0])
+def _least_squares_step(slopes: Floats, residual: Floats) -> Floats:
+    """Return the step of the parameters that minimises the linearised residual."""
+    return np.asarray(np.linalg.lstsq(slopes, -residual, rcond=None)[0])
 
 
 def _freed(solved: Solved, looks: Sequence[Look], step: Steps) -> Solved | None:
-    """Fit with the values of the best look free too; None where they are not identifiable."""
+    """Return a fit with the best screened values free too; None if they are not identifiable."""
     best = max(looks, key=lambda look: look.saves)
-    if best.saves < WORTH:
+    if best.saves < LEAST_REDUCTION:
         return None
     problem = solved.fit.problem
     initial = _model_of(best.values).over(moved_model(solved.fit, best.moves))
@@ -250,29 +255,29 @@ def _freed(solved: Solved, looks: Sequence[Look], step: Steps) -> Solved | None:
     return more
 
 
-def _unseen_rest(looks: Sequence[Look]) -> str:
-    """Say with which Stribeck velocity friction at rest would have shown."""
-    shown = [look.values[VELOCITY] for look in looks if look.shows]
-    what = f"{EXCESS} and {VELOCITY} do not show in these recordings"
-    if not shown:
-        return f"{what}, whatever they are."
+def _static_friction_note(looks: Sequence[Look]) -> str:
+    """Return the note on the Stribeck velocities at which friction at rest would be visible."""
+    visible = [look.values[VELOCITY] for look in looks if look.shows]
+    names = f"{EXCESS} and {VELOCITY} are not identifiable from these recordings"
+    if not visible:
+        return f"{names}, whatever their values."
     return (
-        f"{what}: {SEEN:.0%} more friction at rest would, if its velocity were "
-        f"{min(shown):.2g} to {max(shown):.3g} mm/s; of others nothing is known."
+        f"{names}: {VISIBLE_EXCESS:.0%} more friction at rest would be visible for velocities of "
+        f"{min(visible):.2g} to {max(visible):.3g} mm/s; others are not excluded."
     )
 
 
-def _alike(name: str, like: Sequence[Look]) -> str:
-    """Say which values of one that is fixed fit as well."""
-    values = [look.values[name] for look in like]
+def _indistinguishable_note(name: str, equivalent: Sequence[Look]) -> str:
+    """Return the note on the values of a fixed parameter that the recordings do not exclude."""
+    values = [look.values[name] for look in equivalent]
     lowest = f"{min(values):.2g}" if name == STIFFNESS else "0"
     return (
-        f"{name} is not told: {lowest} to {max(values):.2g} {QUANTITIES[name].unit} fit alike, and "
-        "the other intervals allow for it."
+        f"{name} is not identifiable: {lowest} to {max(values):.2g} {QUANTITIES[name].unit} fit "
+        "equally well, and the other intervals include that range."
     )
 
 
-def _widened(fitted: Fitted, like: Sequence[Look]) -> Fitted:
-    """Widen the errors by what values that fit alike do to the others."""
-    most = np.max([np.abs(look.moves) for look in like], axis=0, initial=0.0)
+def _widened(fitted: Fitted, equivalent: Sequence[Look]) -> Fitted:
+    """Return standard errors widened by the steps of values that fit equally well."""
+    most = np.max([np.abs(look.moves) for look in equivalent], axis=0, initial=0.0)
     return replace(fitted, stderr=np.hypot(fitted.stderr, most / fitted.t))

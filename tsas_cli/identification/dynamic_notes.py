@@ -1,4 +1,4 @@
-"""What a run with the dynamic model says of itself: unstable sliding, borrowed bristles, an end."""
+"""Notes on a prediction of the dynamic model: unstable sliding, default bristles, an abort."""
 
 import math
 from collections.abc import Iterator
@@ -17,12 +17,12 @@ from tsas_cli.physics.response import Response, simulate
 from tsas_cli.physics.rig import Rig
 
 Floats = npt.NDArray[np.float64]
-MANY = 10  # steps for each sample
-HIGH_DAMPING = 3.0  # times critical, from which on the bristles are what makes sliding unstable
+MANY_STEPS = 10  # steps for each sample
+HIGH_DAMPING = 3.0  # times critical, from which the bristles are the cause of unstable sliding
 
 
 def dynamic_notes(run: Prepared, model: Model, response: Response) -> Iterator[str]:
-    """Say what of the dynamic model's prediction of a run is not to be trusted, and why."""
+    """Yield notes on what makes the dynamic model's prediction of a run unreliable."""
     rig = model.rig(run.run)
     if model.value("bristles.stiffness_N_per_mm") is None:
         yield (
@@ -31,21 +31,21 @@ def dynamic_notes(run: Prepared, model: Model, response: Response) -> Iterator[s
         )
     yield from unstable_sliding(rig, run.time_s, run.drive)
     steps, samples = response.step_ends_s.size, run.time_s.size
-    if steps > MANY * samples:
+    if steps > MANY_STEPS * samples:
         yield (
             f"{steps} steps for {samples} samples: the tendon sticks and slips, or its load rings, "
-            "much faster than the samples show"
+            "much faster than the sampling resolves"
         )
-    given_up = response.phase == UNCONVERGED
-    if np.any(given_up):
+    aborted = response.phase == UNCONVERGED
+    if np.any(aborted):
         yield (
-            f"given up at {run.time_s[np.argmax(given_up)]:.4g} s, after {MOST_TRIES} steps and "
-            f"{MOST_PER_SAMPLE} more for each sample: what comes later is not simulated"
+            f"aborted at {run.time_s[np.argmax(aborted)]:.4g} s, after {MOST_TRIES} steps and "
+            f"{MOST_PER_SAMPLE} more for each sample: later samples are not simulated"
         )
 
 
 def unstable_sliding(rig: Rig, time_s: Floats, drive: Drive) -> Iterator[str]:
-    """Say where sliding is unstable during a run, if it is anywhere that is looked at."""
+    """Yield a note on the most unstable moment of sliding in a run, if there is one."""
     slow = simulate(rig, drive)
     found = stability(rig, time_s, slow.x_in_mm, slow.f_in_N, slow.phase)
     if found is not None and found.unstable:
@@ -60,10 +60,10 @@ def _unstable(found: Stability, rig: Rig) -> str:
         f"{moment.f_in_N:.3g} N: a disturbance grows e-fold in {1e3 / found.growth_per_s:.2g} ms"
     )
     critical = rig._replace(bristles=rig.bristles._replace(damping_N_s_per_mm=math.nan))
-    times = bristles_of(rig).damping / bristles_of(critical).damping
-    if times > HIGH_DAMPING:
+    ratio = bristles_of(rig).damping / bristles_of(critical).damping
+    if ratio > HIGH_DAMPING:
         return (
-            f"{sentence}; the bristles' damping is {times:.3g} times critical, and critical where "
-            "[bristles.damping_N_s_per_mm] is left out"
+            f"{sentence}; the bristles' damping is {ratio:.3g} times critical; without "
+            "[bristles.damping_N_s_per_mm] it is critical"
         )
-    return f"{sentence}; friction falls with speed by more than anything damps"
+    return f"{sentence}; friction falls with speed by more than the damping"

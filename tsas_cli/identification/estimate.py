@@ -1,4 +1,4 @@
-"""A number with what is known about it: interval, unit, bound flag, origin."""
+"""An estimate: value, interval, unit, bound flag, origin."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -8,7 +8,7 @@ Origin = Literal["fitted", "data sheet", "default", "given"]
 
 @dataclass(frozen=True)
 class Estimate:
-    """One parameter; the interval is the 95 % one, None where nothing was estimated."""
+    """One parameter; the interval is of 95 % confidence, None where none was estimated."""
 
     name: str
     value: float

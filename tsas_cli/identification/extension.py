@@ -1,4 +1,4 @@
-"""The calibrated runs with effects freed: every hypothesis is fitted and held out alike."""
+"""The calibrated runs with effects freed: every hypothesis is fitted in the same way."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -19,9 +19,9 @@ from tsas_cli.physics.rig import Rig, with_values
 Floats = npt.NDArray[np.float64]
 
 TOLERANCE = 1e-5  # of the squares, for the last step of a fit that is one of many
-ROUGHER = 100.0  # times that, at most, for a model that is as many times further off than noise
-NODES, COARSE_NODES = 40, 12  # of the slip chain in fits, and for a first look
-UNEVEN = 0.05  # by which a sheath's curvature may be larger here than there, a standard deviation
+ROUGHER = 100.0  # of TOLERANCE, in proportion to the mean square of the residuals
+NODES, COARSE_NODES = 40, 12  # of the slip chain, in fits and in screening
+UNEVEN = 0.05  # standard deviation of a sheath's relative variation of curvature
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class Trial:
 
     @property
     def mean_square(self) -> float:
-        """Mean square of the residuals, 1 where nothing but noise is left."""
+        """Mean square of the residuals (reduced chi-square), 1 at noise level."""
         return float(np.mean(self.solution.residual**2))
 
     @cached_property
@@ -47,7 +47,7 @@ class Trial:
         return list(zip(residuals, np.split(self.solution.jacobian, edges), strict=True))
 
     def moved_by(self, changes: Floats) -> Floats:
-        """Return by how much the values move where the residuals change, (n, m), shape (p, m)."""
+        """Return the shifts of the estimates, (p, m), for changes of the residuals, (n, m)."""
         free = ~self.solution.at_bound
         J = self.solution.jacobian[:, free]
         moves = np.zeros((free.size, changes.shape[1]))
@@ -56,7 +56,7 @@ class Trial:
 
     @property
     def solver(self) -> str:
-        """What computed it."""
+        """The name of the solver."""
         return f"slip chain, {NODES} nodes" if self.on_mesh else "closed form"
 
     def values(self) -> dict[str, float]:
@@ -70,11 +70,11 @@ class Trial:
 
 @dataclass(frozen=True, eq=False)
 class Bench:
-    """A calibrated dataset on which hypotheses are tried.
+    """A calibrated dataset on which hypotheses are fitted.
 
-    `free` are the free parameters of the base fit, which begin where it ended, `rigs` those of its
-    runs. The errors of the runs, with the weights and samples of the base fit, are `closed` with
-    the solver that each rig asks for, `meshed` and `coarse` on the slip chain.
+    `free` are the free parameters of the base fit, with its estimates as initial values, `rigs`
+    those of its runs. The residuals of the runs, with the weights and samples of the base fit, are
+    `closed` by the solver that each rig needs, `meshed` and `coarse` by the slip chain.
     """
 
     base: FittedModel
@@ -86,7 +86,7 @@ class Bench:
     never_closed: bool
 
     def on_mesh(self, effects: Iterable[str]) -> bool:
-        """Say whether a hypothesis needs the slip chain."""
+        """Return whether a hypothesis needs the slip chain."""
         return self.never_closed or any(name in ON_CHAIN for name in effects)
 
     def fit(
@@ -97,7 +97,7 @@ class Bench:
         near: Trial | None = None,
         on_mesh: bool = False,
     ) -> Trial:
-        """Fit the free parameters of the base fit and those of the effects.
+        """Return a fit of the free parameters of the base fit and those of the effects.
 
         Parameters
         ----------
@@ -107,9 +107,9 @@ class Bench:
             Initial values of their parameters, in their units; else those of `near`, else each
             parameter's own.
         near
-            A trial whose values the others begin with.
+            A trial with the initial values of the others.
         on_mesh
-            Whether to use the slip chain although the closed form would do.
+            Whether to use the slip chain even where the closed form is valid.
         """
         known = {} if near is None else {(u.name, u.run): float(v) for u, v in _pairs(near)}
         base = [replace(u, initial=known.get((u.name, u.run), u.initial)) for u in self.free]
@@ -123,8 +123,8 @@ class Bench:
         unknowns = (*base, *freed)
         mesh = on_mesh or self.on_mesh(effects)
         runs = len(self.rigs)
-        missed = 1.0 if near is None else near.mean_square
-        tolerance = TOLERANCE * min(max(missed, 1.0), ROUGHER)
+        mean_square = 1.0 if near is None else near.mean_square
+        tolerance = TOLERANCE * min(max(mean_square, 1.0), ROUGHER)
         errors = self.meshed if mesh else self.closed
 
         def residuals(k: int, values: Floats) -> Floats:
@@ -137,8 +137,8 @@ class Bench:
     def errors_at(self, trial: Trial, changes: Mapping[str, float]) -> Floats:
         """Return all residuals at a trial's values with some effects' parameters set.
 
-        A first look: where it needs a mesh the mesh is coarse, and what differs between two
-        such looks is what counts.
+        For screening: on a coarse mesh, where one is needed, so that only differences between two
+        such results are meaningful.
         """
         unknowns = [*trial.unknowns, *(unknown_of(name) for name in changes)]
         scaled = [QUANTITIES[name].scaled(value) for name, value in changes.items()]
@@ -149,25 +149,25 @@ class Bench:
         )
 
     def unevenness(self, trial: Trial) -> Floats:
-        """Return how the residuals of a trial would change if the sheath were bent unevenly.
+        """Return the sensitivity of a trial's residuals to an unevenly bent sheath.
 
-        Shape (n, 2), one standard deviation of each of the first two ways.
+        Shape (n, 2), one standard deviation of each of the first two modes.
         """
         parts = []
         for k, run in enumerate(self.meshed):
             rig = self.rig(trial, k)
             even = run.residuals(rig)
-            ways = [with_values(rig, {way: UNEVEN}) for way in ("bend_slope", "bend_bow")]
-            parts.append(np.array([run.residuals(uneven) - even for uneven in ways]).T)
+            modes = [with_values(rig, {mode: UNEVEN}) for mode in ("bend_slope", "bend_bow")]
+            parts.append(np.array([run.residuals(uneven) - even for uneven in modes]).T)
         return np.concatenate(parts)
 
     @property
     def channels(self) -> list[str]:
-        """The channels that are compared, in a fixed order."""
+        """The compared channels, in a fixed order."""
         return sorted({name for run in self.closed for name in run.samples})
 
     def errors_for(self, trial: Trial) -> tuple[RunErrors, ...]:
-        """Return the runs as a trial sees them."""
+        """Return the residual functions of the runs for a trial's solver."""
         return self.meshed if trial.on_mesh else self.closed
 
     def rig(self, trial: Trial, k: int) -> Rig:
@@ -192,7 +192,7 @@ def bench_of(base: FittedModel) -> Bench:
 
 
 def reweighed_bench(bench: Bench, trial: Trial) -> Bench:
-    """Return the same bench with the errors weighed as a trial's model asks for."""
+    """Return a bench with the residuals weighted at a trial's model."""
     errors = tuple(reweighed(e, bench.rig(trial, k)) for k, e in enumerate(bench.closed))
     return replace(
         bench,

@@ -1,8 +1,8 @@
-"""Bounded least squares over several runs, with a look at what is identifiable before the fit.
+"""Bounded least squares over several runs, with an identifiability check before the fit.
 
-The unknowns are scaled (logarithms of positive parameters); each run gives a vector of residuals
-in units of its noise. A parameter of one run touches that run's residuals only, and its column of
-the Jacobian costs one simulation of that run.
+The unknowns are scaled (logarithms of positive parameters); each run has a vector of residuals in
+units of its noise. A parameter of one run affects that run's residuals only, and its column of the
+Jacobian costs one simulation of that run.
 """
 
 from collections.abc import Callable, Sequence
@@ -21,18 +21,18 @@ Residuals = Callable[[int, Floats], Floats]  # of one run, at given unknowns
 
 STEP = 1e-5  # of the finite differences, in scaled unknowns
 MOST_EVALUATIONS = 60
-WRONG = 2.0  # mean square of the residuals beyond which the model is taken to be wrong
-FEWEST_RUNS = 3  # that can stand for the errors of a wrong model
-UNDETERMINED = 1e-3  # of a parameter that may leak into others
+WRONG = 2.0  # mean square of the residuals beyond which the model is wrong
+FEWEST_RUNS = 3  # for standard errors of a wrong model
+UNDETERMINED = 1e-3  # tolerance of the resolution of a determined parameter
 NEARLY_BOUND = 1e-4  # of the width between the bounds
-KNOWN = 0.1  # of its scale: an unknown whose error, by its own light, is larger is not identified
-INDEPENDENT = 1e-3  # part of an unknown's effect that the others must not be able to imitate
-COLOUR = 10.0  # how much larger the error of coloured noise may be than that of white noise
+KNOWN = 0.1  # of its scale: with a larger standard error, alone, an unknown is not identifiable
+INDEPENDENT = 1e-3  # share of an unknown's column that has to be independent of the others
+COLOUR = 10.0  # ratio of the standard errors for coloured and for white noise, at most
 
 
 @dataclass(frozen=True)
 class Unknown:
-    """One number to be found: scaled initial value, bounds and plausible change; its own run."""
+    """One unknown: scaled initial value, bounds and plausible change; its run, None if shared."""
 
     name: str
     run: int | None
@@ -44,7 +44,7 @@ class Unknown:
 
 @dataclass(frozen=True)
 class Solution:
-    """The least squares: scaled values, bound flags, residual (n,) and Jacobian (n, p) there."""
+    """A minimum: scaled values, bound flags, residual (n,) and Jacobian (n, p) there."""
 
     values: Floats
     at_bound: npt.NDArray[np.bool_]
@@ -57,7 +57,7 @@ class Solution:
 
 @dataclass(frozen=True)
 class Fitted:
-    """The result: scaled values, their errors, Student's t, bound flags, and how it ended."""
+    """A fit: scaled values, standard errors, Student's t, bound flags, convergence."""
 
     values: Floats
     stderr: Floats
@@ -95,13 +95,13 @@ def jacobian(
 
 
 def identifiable(unknowns: Sequence[Unknown], J: Floats) -> tuple[list[int], dict[int, list[int]]]:
-    """Choose, in the given order, the unknowns that the data can separate from those before.
+    """Return the unknowns that are identifiable together, chosen in the given order.
 
     Returns
     -------
     chosen, confounded
-        Indices of the identifiable unknowns; for each other one the indices of those that it
-        is not identifiable beside, strongest first, empty where the data do not show it at all.
+        Indices of the identifiable unknowns; for each other one the indices of those that it is
+        not identifiable together with, strongest first, empty where it is not identifiable alone.
     """
     scaled: Floats = np.asarray(np.linalg.qr(J * np.array([u.scale for u in unknowns]), mode="r"))
     chosen: list[int] = []
@@ -130,10 +130,10 @@ def solve(
     tolerance: float,
     at_once: bool = True,
 ) -> Solution:
-    """Minimise the squares of all runs' residuals within the bounds.
+    """Return the minimum of the squares of all runs' residuals within the bounds.
 
-    `tolerance` is the part of the squares that a last step may still have saved; `at_once` whether
-    simulations are long enough to be worth a thread each.
+    `tolerance` is the share of the squares below which a reduction ends the search; `at_once`
+    whether simulations are long enough to run on threads.
     """
 
     def errors(values: Floats) -> Floats:
@@ -168,18 +168,18 @@ def fit(
     *,
     tolerance: float,
 ) -> Fitted:
-    """Minimise the squares of all runs' residuals within the bounds, and say how sure it is.
+    """Return the minimum of the squares of all runs' residuals, with standard errors.
 
     Parameters
     ----------
     unknowns
-        What is sought, p of them.
+        The unknowns, p of them.
     blocks
         For each run the block of each residual, counted from 0 in each run, for the intervals.
     residuals
         The residuals of a run at scaled values of all unknowns.
     tolerance
-        The part of the squares that a last step may still have saved.
+        The share of the squares below which a reduction ends the search.
     """
     solution = solve(unknowns, len(blocks), residuals, tolerance=tolerance)
     return with_errors(unknowns, solution, blocks)
@@ -194,8 +194,8 @@ def with_errors(
 ) -> Fitted:
     """Return a solution with standard errors and Student's t of its unknowns, from blocks of runs.
 
-    Where the model is wrong, or `by_run` does not take it for right, its error repeats from block
-    to block, and only runs are independent: shared unknowns take the wider one of both.
+    Where the model is wrong, or with `by_run`, its error repeats from block to block, and only runs
+    are independent: shared unknowns get the wider interval of both.
     """
     J, residual, runs = solution.jacobian, solution.residual, len(blocks)
     offsets = np.concatenate(([0], np.cumsum([b.max() + 1 for b in blocks])))[:-1]

@@ -1,4 +1,4 @@
-"""One dataset before the joint fit: which runs enter it, and what is unknown."""
+"""One dataset before the joint fit: its runs and its unknowns."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -23,9 +23,9 @@ Floats = npt.NDArray[np.float64]
 class FitProblem:
     """One dataset before the joint fit: its unknowns and its runs, all at the initial values.
 
-    `rigs` and `errors` are those of `runs`, the errors weighed at these rigs; `initial` and `fixed`
-    hold the values to begin with, and those of parameters that are not identifiable; `left_out`
-    says what of the recordings does not enter the fit.
+    `rigs` and `errors` are those of `runs`, the residuals weighted at these rigs; `initial` has the
+    initial values, `fixed` those of parameters that are not identifiable; `left_out` has notes on
+    the recordings that do not enter the fit.
     """
 
     initial: Model
@@ -65,7 +65,7 @@ def prepare_fit(
     Parameters
     ----------
     initial, fixed
-        The values to begin with, and those of parameters that are not identifiable.
+        The initial values, and those of parameters that are not identifiable.
     runs
         The runs; those with too few samples are left out.
     plausible
@@ -73,20 +73,20 @@ def prepare_fit(
     dynamics
         The model that is fitted.
     further
-        Parameters to free beside the nominal ones.
+        Free parameters besides the nominal ones.
     shared
-        Whether parameters that runs share are free; else only those of a run alone.
+        Whether shared parameters are free; else only those of single runs.
     """
     samples = [kept_samples(run, initial.rig(run.run)) for run in runs]
     used = [(run, at) for run, at in zip(runs, samples, strict=True) if at]
     rigs = tuple(initial.rig(run.run) for run, _ in used)
-    taken = tuple(run for run, _ in used)
-    unknowns = nominal_unknowns(initial, taken, plausible or {})
+    used_runs = tuple(run for run, _ in used)
+    unknowns = nominal_unknowns(initial, used_runs, plausible or {})
     unknowns += [further_unknown(name, initial) for name in further]
     return FitProblem(
         initial,
         fixed,
-        taken,
+        used_runs,
         rigs,
         tuple(u for u in unknowns if shared or u.run is not None),
         tuple(run_errors(*each, rig, dynamics) for each, rig in zip(used, rigs, strict=True)),

@@ -1,4 +1,4 @@
-"""What is said of a joint fit: which parameters are fixed and why, and what makes it unreliable."""
+"""Notes on a joint fit: fixed parameters with the reason, and unreliable estimates."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -11,47 +11,46 @@ from tsas_cli.identification.quantities import QUANTITIES
 
 
 def fixed_sentences(problem: FitProblem, confounded: Mapping[int, list[int]]) -> list[str]:
-    """Say what is fixed and why, one sentence for each parameter and reason."""
+    """Return a sentence for each fixed parameter and reason."""
     reasons: dict[tuple[str, str], list[str]] = {}
     for j, partners in confounded.items():
         unknown = problem.unknowns[j]
         names = sorted({problem.unknowns[p].name for p in partners})
-        why = f"cannot be told apart from {' and '.join(names)}" if names else "does not show"
-        reasons.setdefault((unknown.name, why), []).append(problem.owner(unknown) or "")
+        together = f" together with {' and '.join(names)}" if names else ""
+        reasons.setdefault((unknown.name, together), []).append(problem.owner(unknown) or "")
     return [
-        f"{name} {why} in these recordings"
+        f"{name} is not identifiable{together} from these recordings"
         f"{' (runs ' + ', '.join(owners) + ')' if any(owners) else ''}; "
-        f"it is kept at {_fixed_value(problem.fixed, name, owners[0])}."
-        for (name, why), owners in reasons.items()
+        f"it is fixed at {_fixed_value(problem.fixed, name, owners[0])}."
+        for (name, together), owners in reasons.items()
     ]
 
 
 def doubts_of(estimates: Sequence[Estimate], result: Fitted) -> list[str]:
-    """Say what makes the fitted values unreliable."""
+    """Return a sentence for each reason why estimates are unreliable."""
     names = {e: f"{e.name} of run {e.run}" if e.run else e.name for e in estimates}
-    nothing = [e for e in estimates if e.at_bound and e.interval_low == QUANTITIES[e.name].default]
-    out = [
-        f"{names[e]} ended where it does nothing: at most {e.interval_high:.2g} {e.unit} would go "
-        "unseen."
-        for e in nothing
+    neutral = [e for e in estimates if e.at_bound and e.interval_low == QUANTITIES[e.name].default]
+    notes = [
+        f"{names[e]} converged to zero: values up to {e.interval_high:.2g} {e.unit} are not "
+        "excluded."
+        for e in neutral
     ]
-    out += [
-        f"{names[e]} ended at the bound of what is plausible, {e.value:.5g}: it is not to be "
-        "relied on."
+    notes += [
+        f"{names[e]} converged to its plausible bound, {e.value:.5g}: the estimate is unreliable."
         for e in estimates
-        if e.at_bound and e not in nothing
+        if e.at_bound and e not in neutral
     ]
-    out += [
-        f"{names[e]} does not show where the fit ended: its interval is all that is plausible."
+    notes += [
+        f"{names[e]} is not identifiable at the minimum: its interval is the plausible range."
         for e in estimates
         if e.stderr is None
     ]
     if not result.converged:
-        out.append(
-            f"The fit did not converge ({result.message.rstrip('.')}): its values are not to be "
-            "relied on."
+        notes.append(
+            f"The fit did not converge ({result.message.rstrip('.')}): its estimates are "
+            "unreliable."
         )
-    return out
+    return notes
 
 
 def _fixed_value(fixed: Model, name: str, owner: str) -> str:

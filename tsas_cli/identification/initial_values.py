@@ -1,4 +1,4 @@
-"""Initial values read off the phases of a run, for what the data sheet does not state."""
+"""Initial values from the phases of a run, for parameters that the data sheet does not state."""
 
 import math
 from collections.abc import Sequence
@@ -14,19 +14,20 @@ from tsas_cli.physics.rig import Rig
 
 Floats = npt.NDArray[np.float64]
 
-FAR = 5.0  # times the travel: where a fit that begins at 0 mm does not find a zero any more
+FAR = 5.0  # times the travel: a zero that a fit from 0 mm does not find
 SMALLEST_BEND = 1e-3  # rad
-SMALLEST_WRAP = 0.01  # with less friction than that, a change of it does not show
+SMALLEST_WRAP = 0.01  # below it the residual is insensitive to friction
 
 
 def read_off(
     run: Prepared, segments: Sequence[Segment], slopes: Sequence[Slope], rig: Rig
 ) -> dict[str, float]:
-    """Return the parameters that the formulas of the static model give from one run.
+    """Return the parameters of one run by the formulas of the static model.
 
     Friction from the ratio of the tensions in both directions, or of the slopes (Yang 2025, Eqs.
     7, 31, 32); the load spring from f_out over x_out, or from the slopes; the tendon from the
-    dead band (29). What the channels do not show is left out. `rig` is the run's own, as stated.
+    dead band (29). Parameters that the channels do not determine are left out. `rig` is the run's
+    own, as stated.
     """
     length, bend = rig.sheath_length_mm, max(rig.total_bend_rad, SMALLEST_BEND)
     km: dict[str, float] = {s.phase: abs(s.value) for s in slopes if s.value != 0.0}
@@ -101,15 +102,15 @@ def _spring(run: Prepared, segments: Sequence[Segment], km: dict[str, float]) ->
 def _far_zeros(
     run: Prepared, f_out: Floats, first_mm: float, slope: float, intercept: float
 ) -> dict[str, float]:
-    """Return zeros of displacements that are counted from afar, and the preload with them.
+    """Return zeros of displacements with a distant origin, and the preload with them.
 
     With zeros at 0 mm the spring would be slack where x_out reads 0 (the tension there is the
-    `intercept` of its line), or the tendon within the run; no fit finds a way out of that. The
-    tendon's own stretch is not counted here.
+    `intercept` of its line), or the tendon within the run, from where a fit does not converge. The
+    tendon's own stretch is neglected.
     """
     found = {}
     preload = intercept
-    if intercept <= 0.0:  # the preload is then stated, or what the run begins with
+    if intercept <= 0.0:  # the preload is then the stated one, or the run's initial tension
         stated = run.run.preload_N
         preload = intercept + slope * first_mm if stated is None else stated
         found = {"x_out_zero_mm": (preload - intercept) / slope, "preload_N": preload}
@@ -125,14 +126,14 @@ def _far_zeros(
 def _zero_between(run: Prepared, rig: Rig) -> dict[str, float]:
     """Return the zero of x_in where both ends are driven and the tendon would be slack with 0 mm.
 
-    Two sensors that do not know of each other are often off by more than the tendon stretches.
+    Two independent sensors are often offset by more than the tendon stretches.
     """
     tension = run.measured.get("f_in_N", run.measured.get("f_out_N"))
     if run.drive_column != "x_in_mm" or tension is None:
         return {}
-    apart = run.conditioned["x_in_mm"].values - run.conditioned["x_out_mm"].values
-    give = rig.sheath_length_mm / rig.tendon_stiffness_N
-    if float(np.min(apart)) >= -rig.preload_N * give:
+    difference = run.conditioned["x_in_mm"].values - run.conditioned["x_out_mm"].values
+    compliance = rig.sheath_length_mm / rig.tendon_stiffness_N
+    if float(np.min(difference)) >= -rig.preload_N * compliance:
         return {}
-    stretch = (tension - rig.preload_N) * give
-    return {"x_in_zero_mm": float(np.nanmedian(apart - stretch))}
+    stretch = (tension - rig.preload_N) * compliance
+    return {"x_in_zero_mm": float(np.nanmedian(difference - stretch))}

@@ -1,7 +1,7 @@
 """The joint fit of the nominal parameters to all runs and all their measured channels.
 
-`solve_fit` takes the problem of `fit_problem` and changes nothing of it. The Jacobian says which
-parameters are identifiable; the others are fixed. The errors and their weights are those of
+`solve_fit` solves the problem of `fit_problem` without changing it. The Jacobian determines which
+parameters are identifiable; the others are fixed. The residuals and their weights are those of
 `run_errors`.
 """
 
@@ -24,8 +24,8 @@ from tsas_cli.physics.rig import Rig, with_values
 Floats = npt.NDArray[np.float64]
 
 MOST_ROUNDS = 4
-MISSED = 1.3  # times what noise explains: the model is wrong
-ROUGH, FINE = 1e-3, 1e-6  # tolerance of the first fit, with weights at the initial values; after
+WRONG_RATIO = 1.3  # normalised residual beyond which the model is wrong
+ROUGH, FINE = 1e-3, 1e-6  # tolerance of the first fit, with initial weights, and of later ones
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,9 +33,9 @@ class FittedModel:
     """A solved joint fit.
 
     `values` are the scaled values of all unknowns, (p,), `chosen` the indices of those that were
-    fitted, `errors` those of the runs, weighed at these values. `fitted` is None where no parameter
-    is identifiable; `model` is then the fixed one. `not_identifiable` says what is fixed and why,
-    `doubts` what makes the estimates unreliable.
+    fitted, `errors` the residuals of the runs, weighted at these values. `fitted` is None where no
+    parameter is identifiable; `model` is then the fixed one. `not_identifiable` has the fixed
+    parameters with the reason, `doubts` the unreliable estimates, in sentences.
     """
 
     problem: FitProblem
@@ -59,28 +59,28 @@ class FittedModel:
 
     @property
     def cannot_tell(self) -> list[str]:
-        """What these recordings do not say, and why."""
+        """Sentences on what these recordings do not determine, and why."""
         return [*self.not_identifiable, *self.doubts]
 
 
 def solve_fit(problem: FitProblem) -> FittedModel:
-    """Fit what is identifiable; again with the weights of the result, until the choice stays."""
+    """Return the fit of the identifiable parameters, iterated with new weights until they stay."""
     unknowns, errors = problem.unknowns, problem.errors
     values = np.array([u.initial for u in unknowns])
     if not problem.runs:
         return FittedModel(problem, values, (), errors, problem.fixed, None, problem.left_out)
     before: list[int] = []
     for _ in range(MOST_ROUNDS):
-        begin = _finite(values, unknowns)
-        J = jacobian(unknowns, len(problem.runs), begin, _residuals(problem, errors))
+        start = _finite(values, unknowns)
+        J = jacobian(unknowns, len(problem.runs), start, _residuals(problem, errors))
         chosen, confounded = identifiable(unknowns, J)
-        # One that was fitted to a value too small to show is identifiable: it is that small.
+        # A fitted parameter whose value is too small to be sensitive is identifiable as small.
         small = [j for j in before if confounded.get(j) == []]
         chosen = sorted({*chosen, *small})
         fixed = fixed_sentences(problem, {j: p for j, p in confounded.items() if j not in small})
-        said = (*problem.left_out, *fixed)
+        notes = (*problem.left_out, *fixed)
         if not chosen:
-            return FittedModel(problem, values, (), errors, problem.fixed, None, said)
+            return FittedModel(problem, values, (), errors, problem.fixed, None, notes)
         fitted = _fit(problem, errors, values, chosen, tolerance=FINE if before else ROUGH)
         values = _fixed_values(problem)
         values[chosen] = fitted.values
@@ -91,21 +91,20 @@ def solve_fit(problem: FitProblem) -> FittedModel:
     estimates = estimates_of([unknowns[j] for j in chosen], fitted, problem.ids)
     model = Model(tuple(estimates)).over(problem.fixed)
     doubts = tuple(doubts_of(estimates, fitted))
-    return FittedModel(problem, values, tuple(chosen), errors, model, fitted, said, doubts)
+    return FittedModel(problem, values, tuple(chosen), errors, model, fitted, notes, doubts)
 
 
 def misfit(fit: FittedModel) -> list[str]:
-    """Say which channels are further from the model than what is known to be uncertain."""
+    """Return a sentence for each channel whose residual exceeds its known uncertainty."""
     worst: dict[str, float] = {}
     for run, rig in zip(fit.errors, fit.rigs, strict=True):
         for name, errors in run.errors(rig).items():
             worst[name] = max(worst.get(name, 0.0), float(np.sqrt(np.mean(errors**2))))
     return [
-        f"{name} is missed by up to {ratio:.3g} times what noise explains: the nominal model "
-        "is wrong somewhere, and its values are those of the nearest nominal model, not of "
-        "the rig."
+        f"{name}: residual RMS up to {ratio:.3g} × the noise level: the nominal model is wrong "
+        "somewhere, and its estimates are those of the nearest nominal model, not of the rig."
         for name, ratio in worst.items()
-        if ratio > MISSED
+        if ratio > WRONG_RATIO
     ]
 
 
@@ -124,10 +123,10 @@ def slopes_of_free(fit: FittedModel) -> Floats:
 
 
 def moved_model(fit: FittedModel, moves: Floats) -> Model:
-    """Return initial values for another fit: those fitted, with the free ones moved, scaled."""
+    """Return initial values for another fit: the fitted ones, the free ones moved by a step."""
     at = fit.values.copy()
     at[list(fit.chosen)] += moves
-    there = [
+    moved = [
         Estimate(
             u.name,
             QUANTITIES[u.name].unscaled(float(np.clip(v, u.lower, u.upper))),
@@ -138,11 +137,11 @@ def moved_model(fit: FittedModel, moves: Floats) -> Model:
         for u, v in zip(fit.problem.unknowns, at, strict=True)
         if np.isfinite(v)
     ]
-    return Model(tuple(there)).over(fit.problem.initial)
+    return Model(tuple(moved)).over(fit.problem.initial)
 
 
 def _finite(values: Floats, unknowns: Sequence[Unknown]) -> Floats:
-    """Return the values, of one that is fixed at its critical value the initial one."""
+    """Return the values, with the initial one in place of NaN (critical damping)."""
     return np.where(np.isnan(values), [u.initial for u in unknowns], values)
 
 
@@ -170,16 +169,16 @@ def _fit(
     *,
     tolerance: float,
 ) -> Fitted:
-    """Fit the chosen unknowns from their values on, the others fixed."""
-    begin = _finite(values, problem.unknowns)
-    free = [replace(problem.unknowns[j], initial=float(begin[j])) for j in chosen]
+    """Return the fit of the chosen unknowns from their values, the others fixed."""
+    start = _finite(values, problem.unknowns)
+    free = [replace(problem.unknowns[j], initial=float(start[j])) for j in chosen]
     blocks = blocks_of(errors, [problem.rig(k, values) for k in range(len(errors))])
     residuals = _of_free(_residuals(problem, errors), _fixed_values(problem), chosen)
     return fit(free, blocks, residuals, tolerance=tolerance)
 
 
 def _fixed_values(problem: FitProblem) -> Floats:
-    """Return the scaled values that the unknowns have where they are fixed, shape (p,)."""
+    """Return the scaled fixed values of the unknowns, shape (p,)."""
     out = []
     for unknown in problem.unknowns:
         value = problem.fixed.value(unknown.name, problem.owner(unknown))

@@ -1,8 +1,8 @@
-"""A run that is too long for memory, ready for a model: row by row, or thinned for a fit.
+"""A run that is too long for memory, prepared for a model: row by row, or thinned for a fit.
 
-A model of friction depends on the path alone. So a fit loses no physics when it sees every 64th
-sample and those where the drive turns back: the drive is cleaned with all its samples before, and
-the noise level is that of all of them.
+A model of friction depends on the path alone. So a fit loses no physics when it uses every 64th
+sample and those at reversals: the drive is cleaned with all its samples before, and the noise level
+is that of all of them.
 """
 
 import math
@@ -37,13 +37,13 @@ Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
 Mask = npt.NDArray[np.bool_]
 
-FEW = 16  # samples of a stroke, in which no transition is looked for (`phases`)
-BESIDE = 1 / 16  # of a piece, the rows at its ends that only help to clean the others
+FEW = 16  # samples of a stroke, below which no transition is detected (`phases`)
+OVERLAP_SHARE = 1 / 16  # of a piece: rows at its ends that only support the cleaning of others
 
 
 @dataclass(frozen=True)
 class Rows:
-    """Consecutive rows of a run, ready to drive a model and to be compared with its predictions."""
+    """Consecutive rows of a run: cleaned inputs of a model, and measured channels to compare."""
 
     start: int
     time_s: Floats
@@ -54,7 +54,7 @@ class Rows:
 
 @dataclass(frozen=True)
 class LongRun:
-    """A run that is read in pieces: what drives it, what is compared, and what holds throughout."""
+    """A run that is read in pieces: inputs, compared channels, and estimates for the whole run."""
 
     run: Run
     columns: RunColumns
@@ -66,36 +66,38 @@ class LongRun:
 
     @property
     def every(self) -> int:
-        """Of how many samples the thinned run keeps one."""
+        """The thinning: one in so many samples."""
         return -(-self.columns.rows // reading.MOST_ROWS)
 
     def rows(self) -> Iterator[Rows]:
-        """Read and clean the run; yield its rows in order, a piece at a time."""
-        beside = int(BESIDE * reading.MOST_ROWS)
+        """Yield the cleaned rows of the run in order, a piece at a time."""
+        overlap = int(OVERLAP_SHARE * reading.MOST_ROWS)
         streams = {
-            name: _Aligned(cleaned(_samples(self.columns, name, 2 * beside), beside, known))
+            name: _Aligned(cleaned(_samples(self.columns, name, 2 * overlap), overlap, known))
             for name, known in self.plans.items()
         }
         for piece in pieces(self.columns, [TIME, *self.noise]):
             parts = {name: stream.take(piece.rows) for name, stream in streams.items()}
             in_gap = [part.apart_s > GAP * self.plans[n].interval_s for n, part in parts.items()]
-            elsewhere = self.copied.mask(piece.start, piece.stop)
-            measured = {n: np.where(elsewhere, math.nan, piece.columns[n]) for n in self.noise}
+            copied_mask = self.copied.mask(piece.start, piece.stop)
+            measured = {n: np.where(copied_mask, math.nan, piece.columns[n]) for n in self.noise}
             yield Rows(piece.start, piece.columns[TIME], parts, measured, np.any(in_gap, axis=0))
 
     def prepared(self) -> Prepared:
-        """Read and clean the run, and return it as a fit sees it."""
+        """Return the run, cleaned and thinned for a fit."""
         return self.thinned([self.thin(rows) for rows in self.rows()])
 
-    def thinned(self, kept: Sequence[Rows]) -> Prepared:
-        """Return the run as a fit sees it, from the rows that `thin` has kept of it."""
-        time_s = np.concatenate([rows.time_s for rows in kept])
+    def thinned(self, thinned_rows: Sequence[Rows]) -> Prepared:
+        """Return the run for a fit, from the rows returned by `thin`."""
+        time_s = np.concatenate([rows.time_s for rows in thinned_rows])
         conditioned = {
-            name: _conditioned([rows.cleaned[name] for rows in kept], known, time_s.size)
+            name: _conditioned([rows.cleaned[name] for rows in thinned_rows], known, time_s.size)
             for name, known in self.plans.items()
         }
-        measured = {n: np.concatenate([rows.measured[n] for rows in kept]) for n in self.noise}
-        in_gap = np.concatenate([rows.in_gap for rows in kept])
+        measured = {
+            n: np.concatenate([rows.measured[n] for rows in thinned_rows]) for n in self.noise
+        }
+        in_gap = np.concatenate([rows.in_gap for rows in thinned_rows])
         return Prepared(
             self.run,
             time_s,
@@ -110,35 +112,35 @@ class LongRun:
         )
 
     def seen(self, rows: Rows) -> Mask:
-        """Return which of some rows a fit sees."""
+        """Return which of some rows a fit uses."""
         numbers = np.arange(rows.start, rows.start + rows.time_s.size)
-        here: Mask = (numbers % self.every == 0) | (numbers < START_SAMPLES)
-        here |= numbers == self.columns.rows - 1
+        mask: Mask = (numbers % self.every == 0) | (numbers < START_SAMPLES)
+        mask |= numbers == self.columns.rows - 1
         for part in rows.cleaned.values():
-            here[part.reversals - rows.start] = True
-        return here
+            mask[part.reversals - rows.start] = True
+        return mask
 
     def thin(self, rows: Rows) -> Rows:
-        """Return what a fit sees of rows; their reversals become places among those kept."""
-        here = self.seen(rows)
-        kept = rows.start + np.flatnonzero(here)
+        """Return rows thinned for a fit; reversals become indices into the thinned rows."""
+        mask = self.seen(rows)
+        thinned_rows = rows.start + np.flatnonzero(mask)
         parts = {
             name: Cleaned(
                 rows.start,
-                part.values[here],
-                part.sd[here],
-                part.unseen[here],
-                part.apart_s[here],
-                np.searchsorted(kept, part.reversals),
+                part.values[mask],
+                part.sd[mask],
+                part.unseen[mask],
+                part.apart_s[mask],
+                np.searchsorted(thinned_rows, part.reversals),
             )
             for name, part in rows.cleaned.items()
         }
-        measured = {name: values[here] for name, values in rows.measured.items()}
-        return Rows(rows.start, rows.time_s[here], parts, measured, rows.in_gap[here])
+        measured = {name: values[mask] for name, values in rows.measured.items()}
+        return Rows(rows.start, rows.time_s[mask], parts, measured, rows.in_gap[mask])
 
 
 def open_long(dataset: Dataset, run: Run, copied: CopiedRows = NONE_COPIED) -> LongRun | None:
-    """Open a run that is too long for memory, its rows that are `copied` left out; else None.
+    """Return a run that is too long for memory, without its `copied` rows; else None.
 
     Raises
     ------
@@ -163,34 +165,34 @@ def open_long(dataset: Dataset, run: Run, copied: CopiedRows = NONE_COPIED) -> L
 
 
 def thinned_notes(runs: Sequence[Prepared]) -> list[str]:
-    """Say which runs a fit has seen a part of, and where that is little."""
+    """Return a sentence for each run that a fit uses in part only."""
     out = []
     for run in (run for run in runs if run.every > 1):
         strokes = run.conditioned[run.drive_column].reversals.size - 1
-        said = (
-            f"Run {run.run.id} has {run.all_rows} samples: the fit takes one in {run.every} of "
-            "them, and those where the drive turns back."
+        note = (
+            f"Run {run.run.id} has {run.all_rows} samples: the fit uses one in {run.every} of "
+            "them, and those at reversals of the drive."
         )
         if run.time_s.size < FEW * strokes:
-            said += (
-                f" A stroke keeps {run.time_s.size / strokes:.2g} of its samples, too few to see "
-                "its phases."
+            note += (
+                f" A stroke keeps {run.time_s.size / strokes:.2g} of its samples, too few to "
+                "detect its phases."
             )
-        out.append(said)
+        out.append(note)
     return out
 
 
 def _noise(run: RunColumns, names: Sequence[str]) -> dict[str, float]:
-    """Return the noise of each channel that holds anything: the median over the pieces."""
+    """Return the noise of each channel with any finite value: the median over the pieces."""
     found: dict[str, list[float]] = {name: [] for name in names}
-    there = dict.fromkeys(names, False)
+    has_values = dict.fromkeys(names, False)
     for piece in pieces(run, names) if names else ():
         for name in names:
-            there[name] = there[name] or bool(np.isfinite(piece.columns[name]).any())
+            has_values[name] = has_values[name] or bool(np.isfinite(piece.columns[name]).any())
             noise = noise_of(piece.columns[name])
             if not math.isnan(noise):
                 found[name].append(noise)
-    return {n: float(np.median(found[n])) if found[n] else math.nan for n in names if there[n]}
+    return {n: float(np.median(found[n])) if found[n] else math.nan for n in names if has_values[n]}
 
 
 def _samples(run: RunColumns, name: str, overlap: int) -> Iterator[Samples]:
@@ -199,22 +201,22 @@ def _samples(run: RunColumns, name: str, overlap: int) -> Iterator[Samples]:
 
 
 class _Aligned:
-    """A cleaned signal, handed out in as many rows as are asked for."""
+    """A cleaned signal, returned in pieces of any number of rows."""
 
     def __init__(self, stream: Iterator[Cleaned]) -> None:
         self.stream = stream
-        self.held = next(stream)
+        self.pending = next(stream)
 
     def take(self, rows: int) -> Cleaned:
-        """Return the next rows; their reversals are those that lie in them."""
-        waiting, count = [self.held], self.held.values.size
+        """Return the next rows, with the reversals within them."""
+        waiting, count = [self.pending], self.pending.values.size
         while count < rows:
             waiting.append(next(self.stream))
             count += waiting[-1].values.size
-        whole = _one_after_the_other(waiting)
-        # The reversal that ends what is known comes with it, but belongs to the next rows.
+        whole = _concatenated(waiting)
+        # The reversal that ends the final samples comes with them, but belongs to the next rows.
         border = int(np.searchsorted(whole.reversals, whole.start + rows))
-        self.held = _part(whole, slice(rows, None), whole.reversals[border:])
+        self.pending = _part(whole, slice(rows, None), whole.reversals[border:])
         return _part(whole, slice(0, rows), whole.reversals[:border])
 
 
@@ -229,7 +231,7 @@ def _part(whole: Cleaned, rows: slice, reversals: Indices) -> Cleaned:
     )
 
 
-def _one_after_the_other(parts: Sequence[Cleaned]) -> Cleaned:
+def _concatenated(parts: Sequence[Cleaned]) -> Cleaned:
     return Cleaned(
         parts[0].start,
         np.concatenate([part.values for part in parts]),
@@ -242,14 +244,14 @@ def _one_after_the_other(parts: Sequence[Cleaned]) -> Cleaned:
 
 def _conditioned(parts: Sequence[Cleaned], known: Plan, size: int) -> Conditioned:
     starts = np.cumsum([0, *(part.values.size for part in parts)])
-    turns = [part.reversals + start for part, start in zip(parts, starts[:-1], strict=True)]
-    whole = _one_after_the_other(parts)
+    reversals = [part.reversals + start for part, start in zip(parts, starts[:-1], strict=True)]
+    whole = _concatenated(parts)
     return Conditioned(
         whole.values,
         whole.sd,
         whole.unseen,
         known.window_s,
         known.noise,
-        np.unique(np.concatenate(([0], *turns, [size - 1]))),
+        np.unique(np.concatenate(([0], *reversals, [size - 1]))),
         known.smallest_reversal,
     )

@@ -1,4 +1,4 @@
-"""Simulate a run that is too long for memory, and write the prediction row group by row group."""
+"""Simulate a run that is too long for memory; the prediction is written by row groups."""
 
 import math
 from collections import deque
@@ -27,12 +27,12 @@ Floats = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class _Counted:
-    """What is counted of the prediction of some rows."""
+    """Counts and sums of squares of the prediction of some rows."""
 
     solver: str
     rows: int
     slack: int
-    unsettled: int
+    unconverged: int
     squares: dict[str, float]
     samples: dict[str, int]
 
@@ -40,18 +40,18 @@ class _Counted:
 def simulate_long(
     long: LongRun, model: Model, dynamics: Dynamics, nodes: int | None, folder: Path | None
 ) -> tuple[RunSummary, Prepared]:
-    """Simulate a run, a piece at a time, and write the prediction into a folder.
+    """Return the summary of a run simulated piece by piece, and the run thinned as for a fit.
 
-    Returns its summary, and the run as a fit would see it.
+    The prediction is written into a folder.
 
     Raises
     ------
     InputError
-        There is no folder, or the model is asked for what it cannot do.
+        There is no folder, or the model is not valid for the run or for pieces.
     """
     refuse_static(long.run, long.drive_column, dynamics)
     if folder is None or dynamics == "lugre":
-        cannot = "answered in memory" if folder is None else "followed with the dynamic model"
+        cannot = "returned in memory" if folder is None else "simulated with the dynamic model"
         raise InputError(
             f"{long.columns.rows} samples are too many to be {cannot}",
             where=f"run {long.run.id}",
@@ -82,7 +82,7 @@ def simulate_long(
 
 
 def _counted(response: Response, channels: dict[str, Floats], rows: Rows) -> _Counted:
-    """Count some rows."""
+    """Return the counts of some rows."""
     errors = {name: measured - channels[name] for name, measured in rows.measured.items()}
     errors = {name: error[np.isfinite(error)] for name, error in errors.items()}
     return _Counted(
@@ -104,14 +104,14 @@ def _summary(parts: Sequence[_Counted]) -> RunSummary:
         parts[-1].solver,
         sum(part.rows for part in parts),
         sum(part.slack for part in parts),
-        sum(part.unsettled for part in parts),
+        sum(part.unconverged for part in parts),
         rmse,
         samples,
     )
 
 
 def _drives(long: LongRun, waiting: deque[Rows]) -> Iterator[Drive]:
-    """Yield what drives each piece of a run; its rows wait for the prediction."""
+    """Yield the drive of each piece of a run; append its rows to `waiting`."""
     load = LOAD_COLUMNS.get(long.run.load)
     begin_s = 0.0
     for rows in long.rows():

@@ -1,10 +1,9 @@
-"""What an effect that the nominal model lacks would do to the calibrated values.
+"""Influence of effects that the nominal model lacks on the calibrated values.
 
-Where the nominal model is proven wrong, the interval of its parameters is that of the nearest
-nominal model, and the rig's own value may lie far outside. So the effects of the catalogue that
-explain most of what is wrong are freed, one at a time, and each interval reaches from the nominal
-value over what the parameter would then be. Which of them it is, and whether it is one of them,
-is for `diagnose` to say.
+Where the nominal model is wrong, the interval of its parameters is that of the nearest nominal
+model, and the rig's own value may lie far outside. So the effects of the catalogue that explain
+most of the residual are freed, one at a time, and each interval is extended to the parameter's
+intervals in those fits. Which of them is the cause, if any, is determined by `diagnose`.
 """
 
 from collections.abc import Sequence
@@ -19,24 +18,24 @@ from tsas_cli.identification.run_errors import blocks_of
 from tsas_cli.identification.screening import projector, screen
 from tsas_cli.support.steps import SILENT, Steps
 
-WORTH = 0.5  # of what the best effect explains linearly, for an effect to be fitted
-NEAR = 2.0  # times the best effect's excess over the noise, for an effect to count
+LEAST_SHARE = 0.5  # of the best effect's linear reduction, for an effect to be fitted
+NEAR = 2.0  # times the best effect's excess over the noise, for an effect to be included
 EXPLAINED = 2.0  # mean square of the residuals, beyond which a model is still wrong
 NORMAL = 1.96
 
 
 @dataclass(frozen=True)
 class Widened:
-    """Estimates whose intervals hold what some effects would do, and the names of these."""
+    """Estimates with intervals widened by the influence of some effects, and their names."""
 
     estimates: tuple[Estimate, ...]
     effects: tuple[str, ...]
 
 
 def widened(fit: FittedModel, step: Steps = SILENT) -> Widened:
-    """Widen the intervals of a solved fit by the effects that explain most of what it misses.
+    """Return the estimates of a fit, widened by the effects that explain most of its residual.
 
-    `step` counts each effect that is looked at, and of each that is fitted.
+    `step` counts each effect that is screened, and each that is fitted.
     """
     bench, nominal = bench_of(fit), fit.model.estimates
     trials = _best_trials(bench, step)
@@ -47,7 +46,7 @@ def widened(fit: FittedModel, step: Steps = SILENT) -> Widened:
         min(trials, key=lambda t: t.mean_square)
     ]
     others = [{(e.name, e.run): e for e in _estimates(bench, trial)} for trial in near]
-    if least > EXPLAINED:  # none of them is the rig either: what the nominal model says counts too
+    if least > EXPLAINED:  # none of them explains the residual: include the nominal intervals
         others.append({(e.name, e.run): e for e in nominal})
     return Widened(
         tuple(
@@ -58,8 +57,8 @@ def widened(fit: FittedModel, step: Steps = SILENT) -> Widened:
 
 
 def _best_trials(bench: Bench, step: Steps) -> list[Trial]:
-    """Return the converged fits with one effect each that are better than without."""
-    seen = []
+    """Return the converged fits with one effect each that reduce the residual."""
+    screened = []
     bases = {}
     step.ahead(len(EFFECTS))
     for effect in EFFECTS:
@@ -67,13 +66,13 @@ def _best_trials(bench: Bench, step: Steps) -> list[Trial]:
         if mesh not in bases:
             trial = bench.fit(on_mesh=mesh)
             bases[mesh] = trial, projector(trial)
-        seen.append((screen(bench, bases[mesh][0], effect, bases[mesh][1]), bases[mesh][0]))
+        screened.append((screen(bench, bases[mesh][0], effect, bases[mesh][1]), bases[mesh][0]))
         step()
-    best = max(s.part for s, _ in seen)
-    worth = [(s, base) for s, base in seen if s.part >= WORTH * best]
-    step.ahead(len(worth))
+    best = max(s.part for s, _ in screened)
+    candidates = [(s, base) for s, base in screened if s.part >= LEAST_SHARE * best]
+    step.ahead(len(candidates))
     out = []
-    for s, base in worth:
+    for s, base in candidates:
         trial = bench.fit([s.effect.name], s.initial, near=base)
         if trial.solution.converged and trial.mean_square < base.mean_square:
             out.append(trial)
@@ -88,7 +87,7 @@ def _estimates(bench: Bench, trial: Trial) -> list[Estimate]:
 
 
 def _hull(own: Estimate, others: Sequence[Estimate]) -> Estimate:
-    """Return an estimate whose interval reaches from its value over all intervals of the others."""
+    """Return an estimate whose interval spans its value and the intervals of the others."""
     if own.interval_low is None or own.interval_high is None:
         return own
     low = min([own.value, *(o.interval_low for o in others if o.interval_low is not None)])

@@ -1,4 +1,4 @@
-"""The model: the nominal rig's parameters and the effects' values, with what is known of each."""
+"""The model: estimates of the nominal rig's parameters and of the effects' parameters."""
 
 import math
 from collections.abc import Mapping
@@ -24,8 +24,8 @@ from tsas_cli.support.errors import InputError, nearest
 if TYPE_CHECKING:
     import pandas as pd
 
-IN_MEMORY = "in memory"  # in place of a file, for a model that was handed over in Python
-CORRECTION = "preload_correction_N"  # mean of fitted less stated preload, for runs not calibrated
+IN_MEMORY = "in memory"  # in place of a file, for a model passed in Python
+CORRECTION = "preload_correction_N"  # mean of fitted minus stated preload, for other runs
 MOST_WRAP = 20.0  # friction times bend; e^20 is the ratio of the tensions at the two ends
 MAY_BE_ZERO = ("friction_coefficient", "preload_N")  # among the positive parameters
 UNKNOWN_BEND_RAD = 1.0
@@ -34,7 +34,7 @@ UNKNOWN_LENGTH_MM = 1000.0
 
 @dataclass(frozen=True)
 class Model:
-    """All estimates; one with a run belongs to it alone, an effect's is named effect.parameter."""
+    """All estimates, shared or of a single run; an effect's is named effect.parameter."""
 
     estimates: tuple[Estimate, ...]
 
@@ -44,19 +44,19 @@ class Model:
         return known.get((name, run), known.get((name, None)))
 
     def estimate(self, name: str, run: str | None = None) -> Estimate:
-        """Return what is known of a value: for a run, else the shared one.
+        """Return an estimate for a run, else the shared one.
 
         Raises
         ------
         InputError
-            The model does not hold it.
+            The model does not have it.
         """
         known = {(e.name, e.run): e for e in self.estimates}
         found = known.get((name, run), known.get((name, None)))
         if found is None:
             of = "" if run is None else f" of run {run}"
             raise InputError(
-                f"the model holds no {name}{of}",
+                f"the model has no {name}{of}",
                 remedy=nearest(name, [e.name for e in self.estimates]),
             )
         return found
@@ -68,19 +68,19 @@ class Model:
         return pd.DataFrame([asdict(estimate) for estimate in self.estimates])
 
     def over(self, other: "Model") -> "Model":
-        """Return these estimates, and of another model those that are missing here."""
+        """Return these estimates, and those of another model that are missing here."""
         known = {(e.name, e.run) for e in self.estimates}
         return Model(
             (*self.estimates, *(e for e in other.estimates if (e.name, e.run) not in known))
         )
 
     def rig(self, run: Run) -> Rig:
-        """Return the rig of a run, calibrated or not; what is not known is a default.
+        """Return the rig of a run, calibrated or not; unknown parameters have defaults.
 
         Raises
         ------
         InputError
-            Friction times bend is more than any tendon gets through.
+            Friction times bend is implausibly large: no tension would be transmitted.
         """
         values = {p.name: self.value(p.name, run.id) for p in NOMINAL}
         if values["preload_N"] is None and run.preload_N is not None:
@@ -90,7 +90,7 @@ class Model:
         if known["friction_coefficient"] * bend > MOST_WRAP:
             raise InputError(
                 f"a friction_coefficient of {known['friction_coefficient']:.4g} over a "
-                f"total_bend_rad of {bend:.4g} lets no tension through",
+                f"total_bend_rad of {bend:.4g} transmits no tension",
                 where=f"run {run.id}",
                 expected=f"at most {MOST_WRAP:.4g} for their product",
                 remedy="is the bend in radians?",
@@ -112,18 +112,18 @@ def model_of(given: Model | Path) -> Model:
     Raises
     ------
     InputError
-        As `read_model` raises it.
+        As from `read_model`.
     """
     return given if isinstance(given, Model) else read_model(given)
 
 
 def stated_model(manifest: Manifest, given: Model | Path | None) -> Model:
-    """Return a model, or that of a file, and of the manifest's data sheet what is missing there.
+    """Return a model, or that of a file, completed by the manifest's data sheet.
 
     Raises
     ------
     InputError
-        As `read_model` raises it.
+        As from `read_model`.
     """
     stated = data_sheet(manifest)
     return stated if given is None else model_of(given).over(stated)
@@ -132,10 +132,10 @@ def stated_model(manifest: Manifest, given: Model | Path | None) -> Model:
 def source_of(
     given: object | None, out: Path | None, name: str = MODEL_FILE, *, without: str = "data sheet"
 ) -> dict[str, str]:
-    """Return what a stage writes into `out` of the model that it was given: its file and checksum.
+    """Return the record of a stage's given model in `out`: its file and checksum.
 
-    `name` is that of the file in a folder, `without` what was taken where none was given. What is
-    no path was handed over in Python.
+    `name` is that of the file in a folder, `without` the entry where none is given. Anything but a
+    path is a model in memory.
     """
     if given is None:
         return {"file": without}
@@ -146,7 +146,7 @@ def source_of(
 
 
 def data_sheet(manifest: Manifest) -> Model:
-    """Return the model that the manifest states, before anything is fitted."""
+    """Return the model stated by the manifest, before any fit."""
     rig = manifest.rig
     stated: dict[str, float | None] = {
         "friction_coefficient": rig.friction_coefficient,
@@ -210,12 +210,12 @@ def write_model(path: Path, model: Model, *, version: str, dataset: Mapping[str,
 
 
 def read_model(path: Path) -> Model:
-    """Read `model.toml` or `model-extended.toml`.
+    """Return the model of a `model.toml` or `model-extended.toml`.
 
     Raises
     ------
     InputError
-        The file is missing, not TOML, of another format, or names what this version does not know.
+        The file is missing, not TOML, of another format, or has an unknown parameter.
     """
     if path.is_dir():
         path = path / MODEL_FILE

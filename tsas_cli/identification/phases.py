@@ -1,15 +1,15 @@
 """Cut a run into its phases: contraction, loosening and the two dead bands.
 
-Between two reversals the drive moves one way: first through a dead band, where the slip front
-runs along the sheath and the load stands still, then with the whole tendon slipping. The
-transition is where two laws fitted left and right of it fit best together, over all channels:
+Between two reversals the drive moves in one direction: first through a dead band, where the slip
+front runs along the sheath and the load rests, then with the whole tendon slipping. The transition
+minimises the squares of two laws fitted before and after it, over all channels:
 
 - in the dead band f_in = p0 + p1 √D + p2 D with D the travel since the reversal (the exact form
-  of the distributed model), and f_out and x_out stand still;
+  of the distributed model), and f_out and x_out are constant;
 - in slip every channel is a straight line over D.
 
-A stroke has at most one transition, so that noise cannot make it chatter. A stroke that only one
-of the laws is needed for belongs to a phase as a whole; which one, its slope tells.
+A stroke has at most one transition, so that noise cannot make it chatter. A stroke that one of the
+laws suffices for belongs to a phase as a whole, determined by its slope.
 """
 
 import math
@@ -27,11 +27,11 @@ from tsas_cli.records import base as records
 Floats = npt.NDArray[np.float64]
 Phase = Literal["contraction", "loosening", "dead_band_up", "dead_band_down", "unknown"]
 
-POINTS = 400  # at which a transition is looked for in a stroke, before it is refined
-STILL = 4.0  # standard deviations by which a drive at rest may seem to move
-UNLOADS = 5.0  # standard deviations of its means by which f_in turns back at rest
-FEWEST = 8  # samples that a law is fitted to
-CLEAR = 30.0  # squares that a second law must save, in mean squares of what is left
+POINTS = 400  # of the search for a transition in a stroke
+STILL = 4.0  # standard deviations within which a drive is at rest
+UNLOADS = 5.0  # standard deviations of its means by which f_in reverses at rest
+FEWEST = 8  # samples for the fit of a law
+CLEAR = 30.0  # reduction of the squares by a second law, in mean squares of the residual
 GENTLE = 1.0 / 3.0  # the slip's slope over the dead band's, at most
 
 
@@ -59,7 +59,7 @@ class _Stroke:
 def segment(run: Prepared) -> list[Segment]:
     """Return the phases of a run in order; together they cover all samples.
 
-    The drive must be a displacement; a run that a force drives is one unknown segment.
+    The drive must be a displacement; a run driven by force is one unknown segment.
     """
     n = run.time_s.size
     if run.drive_column != "x_in_mm":
@@ -83,7 +83,7 @@ def segment(run: Prepared) -> list[Segment]:
 
 
 def segment_records(run: Prepared, segments: Sequence[Segment]) -> tuple[records.Segment, ...]:
-    """Return what the stages' files say of a run's phases."""
+    """Return the records of a run's phases in the stages' files."""
     last = run.time_s.size - 1
     return tuple(
         records.Segment(
@@ -98,14 +98,14 @@ def segment_records(run: Prepared, segments: Sequence[Segment]) -> tuple[records
 def _strokes(run: Prepared) -> list[_Stroke]:
     conditioned = run.conditioned["x_in_mm"]
     x = conditioned.values
-    turns = [_start_of_unloading(run, int(turn)) for turn in conditioned.reversals]
+    reversals = [_start_of_unloading(run, int(reversal)) for reversal in conditioned.reversals]
     channels = {
         name: np.interp(run.time_s, run.time_s[ok], values[ok]) / max(run.noise[name], 1e-12)
         for name, values in run.measured.items()
         if (ok := np.isfinite(values)).sum() > 1
     }
     out = []
-    for first, end in zip(turns[:-1], [*turns[1:-1], turns[-1] + 1], strict=True):
+    for first, end in zip(reversals[:-1], [*reversals[1:-1], reversals[-1] + 1], strict=True):
         step = max(1, (end - first) // POINTS)
         at = np.arange(first, end, step)
         out.append(
@@ -121,24 +121,24 @@ def _strokes(run: Prepared) -> list[_Stroke]:
     return out
 
 
-def _start_of_unloading(run: Prepared, turn: int) -> int:
-    """Return where the tension turns back, if that is while the drive rests before its reversal.
+def _start_of_unloading(run: Prepared, reversal: int) -> int:
+    """Return the sample at which the tension reverses, if the drive rests before its reversal.
 
-    A drive that stands still for a while has begun to unload before its encoder says so.
+    A drive at rest starts to unload before its encoder shows it.
     """
     conditioned, f_in = run.conditioned["x_in_mm"], run.measured.get("f_in_N")
     x = conditioned.values
-    rest = last_beyond(x, turn, STILL * conditioned.sd[turn]) + 1
-    if f_in is None or rest == 0 or turn == x.size - 1:
-        return turn
-    around = f_in[rest : turn + FEWEST]
+    rest = last_beyond(x, reversal, STILL * conditioned.sd[reversal]) + 1
+    if f_in is None or rest == 0 or reversal == x.size - 1:
+        return reversal
+    around = f_in[rest : reversal + FEWEST]
     if around.size < FEWEST:  # the run ends here
-        return turn
+        return reversal
     means = np.convolve(around, np.full(FEWEST, 1.0 / FEWEST), mode="valid")
-    pulled = means if x[turn] > x[rest - 1] else -means
+    pulled = means if x[reversal] > x[rest - 1] else -means
     margin = UNLOADS * run.noise["f_in_N"] / math.sqrt(FEWEST)
-    kept = np.flatnonzero(pulled >= pulled.max() - margin)
-    return rest + int(kept[-1]) if kept.size else turn
+    near_peak = np.flatnonzero(pulled >= pulled.max() - margin)
+    return rest + int(near_peak[-1]) if near_peak.size else reversal
 
 
 def _block_means(values: Floats, step: int) -> Floats:
@@ -159,7 +159,7 @@ def _bases(name: str, travel: Floats) -> tuple[Floats, Floats]:
 
 
 def _transition(stroke: _Stroke) -> int | None:
-    """Return where slip begins in a stroke, as an index into its thinned samples, or None."""
+    """Return the index of the first slipping one of a stroke's thinned samples, or None."""
     n = stroke.travel.size
     if n <= 2 * FEWEST or not stroke.channels:
         return None
@@ -167,8 +167,8 @@ def _transition(stroke: _Stroke) -> int | None:
     alone = np.zeros(2)
     for name, values in stroke.channels.items():
         dead, slip = _bases(name, stroke.travel)
-        left = _squares_left(dead, values)
-        right = _squares_left(slip[::-1], values[::-1])[::-1]
+        left = _residual_squares(dead, values)
+        right = _residual_squares(slip[::-1], values[::-1])[::-1]
         total += left + right
         alone += left[-1], right[0]
     inner = total[FEWEST : n - FEWEST]
@@ -180,27 +180,27 @@ def _transition(stroke: _Stroke) -> int | None:
     return best if after < GENTLE * before else None
 
 
-def _squares_left(basis: Floats, values: Floats) -> Floats:
-    """Return the squares left by a fit to the first k samples, for k = 0 … n, shape (n + 1,)."""
+def _residual_squares(basis: Floats, values: Floats) -> Floats:
+    """Return the squared residual of a fit to the first k samples, k = 0 … n, shape (n + 1,)."""
     columns = basis.shape[1]
     gram = np.cumsum(basis[:, :, None] * basis[:, None, :], axis=0)
     shifted = values - values[0]
     moment = np.cumsum(basis * shifted[:, None], axis=0)
     ridge = 1e-12 * np.trace(gram, axis1=1, axis2=2)[:, None, None] * np.eye(columns)
     fit = np.linalg.solve(gram + ridge, moment[:, :, None])[:, :, 0]
-    left = np.cumsum(shifted**2) - np.sum(fit * moment, axis=1)
-    return np.concatenate(([0.0], np.maximum(left, 0.0)))
+    residual = np.cumsum(shifted**2) - np.sum(fit * moment, axis=1)
+    return np.concatenate(([0.0], np.maximum(residual, 0.0)))
 
 
 def _slopes(stroke: _Stroke, cut: int | None) -> tuple[float, float]:
-    """Return how steep f_in (or how lazy the load) is before and after a cut."""
+    """Return the slope of f_in (or the inverse slope of the load) before and after a cut."""
     name = "f_in_N" if "f_in_N" in stroke.channels else next(iter(stroke.channels), None)
     n = stroke.travel.size
     if name is None or n < FEWEST:
         return np.nan, np.nan
     parts = (slice(0, cut), slice(cut or n, n))
     before, after = (_steepness(stroke.travel[p], stroke.channels[name][p]) for p in parts)
-    if name != "f_in_N":  # the load stands still in the dead band: turn the order round
+    if name != "f_in_N":  # the load rests in the dead band: the inverse has the order of f_in
         before, after = 1.0 / max(before, 1e-12), 1.0 / max(after, 1e-12)
     return before, after
 
@@ -212,7 +212,7 @@ def _steepness(travel: Floats, values: Floats) -> float:
 
 
 def _border(slopes: Sequence[tuple[float, float]]) -> float | None:
-    """Return the slope between dead band and slip, from the strokes that show both."""
+    """Return the slope between dead band and slip, from the strokes with both."""
     both = [(b, a) for b, a in slopes if np.isfinite(b) and np.isfinite(a) and a > 0.0]
     if not both:
         return None

@@ -1,4 +1,4 @@
-"""A recording made ready for a model: its drive conditioned, its noise level, its gaps marked."""
+"""A recording prepared for a model: conditioned drive, noise levels, gaps."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -23,20 +23,20 @@ from tsas_cli.support.errors import InputError
 Floats = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
-CHANNELS = ("f_in_N", "f_out_N", "x_out_mm")  # what the models predict, where it drives nothing
+CHANNELS = ("f_in_N", "f_out_N", "x_out_mm")  # predicted by the models, unless they drive them
 LOAD_COLUMNS: Mapping[Load, str] = {"force": "f_out_N", "displacement": "x_out_mm"}
-GAP = 1.5  # times the usual time between a column's samples
-HIDDEN = 0.03  # of its noise: what a step may add to f_in, for all of them to stay below a third
+GAP = 1.5  # times the median time between a column's samples
+HIDDEN = 0.03  # error of f_in by a step, over its noise; all steps together stay below a third
 FINEST_TOLERANCE = 1e-7  # of a step of the dynamic chain
-START_SAMPLES = 20  # whose mean is the tension at the start
+START_SAMPLES = 20  # for the tension at the start
 
 
 @dataclass(frozen=True)
 class Prepared:
-    """One run, ready to drive a model and to be compared with its predictions.
+    """One run: conditioned inputs of a model, and measured channels to compare.
 
-    Of a run that is too long for memory it holds one in `every` of `all_rows` samples, those where
-    the drive turns back, and `all_noise`, the noise level of all samples.
+    Of a run that is too long for memory it has one in `every` of `all_rows` samples, those at
+    reversals of the drive, and `all_noise`, the noise level of all samples.
     """
 
     run: Run
@@ -52,7 +52,7 @@ class Prepared:
 
     @cached_property
     def drive(self) -> Drive:
-        """What is given at the ends, conditioned."""
+        """The given quantities at the ends, conditioned."""
         load = LOAD_COLUMNS.get(self.run.load)
         return drive_of(
             self.run,
@@ -66,7 +66,7 @@ class Prepared:
 
     @cached_property
     def noise(self) -> dict[str, float]:
-        """Noise of each measured channel, quantisation counted in [the channel's unit].
+        """Noise level of each measured channel, with quantisation [the channel's unit].
 
         Zero where a channel never changes, NaN where there are too few samples.
         """
@@ -76,7 +76,7 @@ class Prepared:
 
     @cached_property
     def step_tolerance(self) -> float:
-        """Error of a step of the dynamic chain, over the tension, that the noise of f_in hides."""
+        """Tolerance of a step of the dynamic chain, over the tension, below the noise of f_in."""
         noise, f_in = self.noise.get("f_in_N", math.nan), self.measured.get("f_in_N")
         if f_in is None or not noise > 0.0:
             return TOLERANCE
@@ -84,15 +84,15 @@ class Prepared:
         return min(max(hidden, FINEST_TOLERANCE), TOLERANCE)
 
     def channel(self, name: str) -> Floats | None:
-        """Return a column, as measured or as conditioned where it drives the model, or None."""
+        """Return a column, conditioned if it drives the model, else as measured, or None."""
         conditioned = self.conditioned.get(name)
         return self.measured.get(name) if conditioned is None else conditioned.values
 
     def conditioning(self) -> dict[str, dict[str, object]]:
-        """Say how each driving column was conditioned."""
+        """Return the record of each driving column's conditioning."""
         return {
             name: {
-                "method": METHOD if c.noise > 0.0 else "none: the column holds no noise",
+                "method": METHOD if c.noise > 0.0 else "none: the column has no noise",
                 "window_s": c.window_s,
                 "noise": c.noise,
                 "unit": BY_NAME[name].unit,
@@ -112,9 +112,9 @@ def drive_of(
     f_in_N: Floats | None,
     session_s: float,
 ) -> Drive:
-    """Return what drives a run: conditioned values at the drive and, where given, at the load.
+    """Return the drive of a run: conditioned values at the drive and, where given, at the load.
 
-    The measured tension at the drive, where that is not given, is how the run begins.
+    The measured tension at the drive, unless it is given, is the initial condition.
     """
     start = None if f_in_N is None or by_force else _start_value(time_s, f_in_N)
     return Drive(
@@ -129,7 +129,7 @@ def drive_of(
 
 
 def seconds_into(session_start: datetime | None, started: datetime | None) -> float:
-    """Return when a run began since its dataset's first, zero where that is not known [s]."""
+    """Return the start of a run since that of its dataset's first, 0 where it is unknown [s]."""
     if session_start is None or started is None:
         return 0.0
     return (started - session_start).total_seconds()
@@ -140,16 +140,16 @@ def prepare(
     session_start: datetime | None = None,
     copied: CopiedRows = NONE_COPIED,
 ) -> Prepared:
-    """Condition what drives the model and collect what it is compared with.
+    """Return a run with conditioned driving columns and the measured channels to compare.
 
-    `session_start` is when the first run of the dataset began, where the manifest says it. What was
-    measured in rows that are `copied` from another run is left out.
+    `session_start` is the start of the dataset's first run, where the manifest has it. Measurements
+    in rows that are `copied` from another run are left out.
 
     Raises
     ------
     InputError
-        The run has no column that can drive the tendon, or lacks the one that drives its load, or
-        holds nothing to compare a model with.
+        The run has no column that can drive the tendon, lacks the one that drives its load, or has
+        no channel to compare a model with.
     """
     run, columns = recording.run, recording.columns
     driving = driving_columns(run, list(columns))
@@ -158,8 +158,10 @@ def prepare(
         if np.isfinite(columns[name]).sum() < 2:
             raise is_empty(run, name)
     columns = {n: _recorded(values) for n, values in columns.items() if n in (*driving, *CHANNELS)}
-    elsewhere = copied.mask(0, time_s.size)
-    columns |= {n: np.where(elsewhere, math.nan, v) for n, v in columns.items() if n not in driving}
+    copied_rows = copied.mask(0, time_s.size)
+    columns |= {
+        n: np.where(copied_rows, math.nan, v) for n, v in columns.items() if n not in driving
+    }
     gap = np.any([_in_gap(time_s, columns[name]) for name in driving], axis=0)
     measured = {
         n: columns[n]
@@ -179,7 +181,7 @@ def driving_columns(run: Run, columns: Sequence[str]) -> list[str]:
     Raises
     ------
     InputError
-        There is none that can.
+        A driving column is missing, or both ends have a given force.
     """
     drive = next((name for name in ("x_in_mm", "f_in_N") if name in columns), None)
     if drive is None:
@@ -194,11 +196,11 @@ def driving_columns(run: Run, columns: Sequence[str]) -> list[str]:
         raise InputError(
             f"load = {run.load!r} needs the column {load}",
             where=run.file,
-            remedy="record it, or say load = 'spring' in dataset.toml",
+            remedy="record it, or set load = 'spring' in dataset.toml",
         )
     if drive == "f_in_N" and run.load == "force":
         raise InputError(
-            "forces at both ends do not say how the tendon moves",
+            "forces at both ends do not determine the motion of the tendon",
             where=run.file,
             expected="x_in_mm",
         )
@@ -206,7 +208,7 @@ def driving_columns(run: Run, columns: Sequence[str]) -> list[str]:
 
 
 def is_empty(run: Run, column: str) -> InputError:
-    """Return the error for a column that drives and holds no numbers."""
+    """Return the error for a driving column without numbers."""
     return InputError(f"column {column} is empty", where=run.file, expected="numbers")
 
 
@@ -215,38 +217,40 @@ def nothing_to_compare(run: Run, columns: Sequence[str]) -> InputError:
     return InputError(
         "nothing to compare a model with",
         where=run.file,
-        expected=f"one of {', '.join(CHANNELS)} beside what drives the tendon",
+        expected=f"one of {', '.join(CHANNELS)} besides the driving columns",
         remedy=f"there are: {', '.join(columns)}",
     )
 
 
 def _recorded(values: Floats) -> Floats:
-    """Return a channel without what was laid between its samples, which says nothing new."""
+    """Return a channel with NaN in place of interpolated samples, which carry no information."""
     between = interpolated(values)
     return np.where(between, math.nan, values) if between.any() else values
 
 
 def _in_gap(time_s: Floats, values: Floats) -> Mask:
-    """Return where a column holds no number for longer than its samples are apart."""
-    there = np.flatnonzero(np.isfinite(values))
+    """Return which rows of a column lie in a gap longer than its sampling interval."""
+    finite = np.flatnonzero(np.isfinite(values))
     rows = np.arange(values.size)
-    before = np.searchsorted(there, rows, side="right") - 1
-    after = np.searchsorted(there, rows)
-    inside = (before >= 0) & (after < there.size)
-    apart = time_s[there[np.minimum(after, there.size - 1)]] - time_s[there[np.maximum(before, 0)]]
-    return ~inside | (apart > GAP * np.median(np.diff(time_s[there])))
+    before = np.searchsorted(finite, rows, side="right") - 1
+    after = np.searchsorted(finite, rows)
+    inside = (before >= 0) & (after < finite.size)
+    gap_s = (
+        time_s[finite[np.minimum(after, finite.size - 1)]] - time_s[finite[np.maximum(before, 0)]]
+    )
+    return ~inside | (gap_s > GAP * np.median(np.diff(time_s[finite])))
 
 
 def noise_of(values: Floats) -> float:
-    """Return the noise of a channel, quantisation counted in; NaN of too few samples."""
+    """Return the noise level of a channel, with quantisation; NaN for too few samples."""
     noise = noise_sd(values)
     return noise if math.isnan(noise) else max(noise, quantisation_step(values) / math.sqrt(12.0))
 
 
 def _start_value(time_s: Floats, values: Floats) -> float | None:
     """Return the value at the first sample, from a line through the first few."""
-    there = np.flatnonzero(np.isfinite(values[:START_SAMPLES]))
-    if there.size < 2:
+    finite = np.flatnonzero(np.isfinite(values[:START_SAMPLES]))
+    if finite.size < 2:
         return None
-    slope_and_value = np.polyfit(time_s[there] - time_s[0], values[there], 1)
+    slope_and_value = np.polyfit(time_s[finite] - time_s[0], values[finite], 1)
     return float(slope_and_value[1])

@@ -1,4 +1,4 @@
-"""Every number that a fit can free: of the rig, of its bristles, of the effects."""
+"""All parameters that a fit can free: of the rig, of its bristles, of the effects."""
 
 import math
 from dataclasses import dataclass
@@ -20,7 +20,7 @@ DEFAULTS = {
 
 @dataclass(frozen=True)
 class Quantity:
-    """One number: its unit and bounds, its value where nobody knows it, and how it is scaled.
+    """One parameter: its unit and bounds, its default, and its scaling.
 
     A positive one is fitted by its logarithm, any other in units of `size`. An effect's is named
     effect.parameter. One that is not shared has a value for each run; a shape matters only where
@@ -38,16 +38,16 @@ class Quantity:
     shape: bool = False
 
     def scaled(self, value: float) -> float:
-        """Return a value, inside its bounds, as it is fitted."""
+        """Return the scaled value of a parameter, clipped to its bounds."""
         inside = min(max(value, self.lower), self.upper)
         return math.log(inside) if self.positive else inside / self.size
 
     def closer(self, value: float, part: float) -> float:
-        """Return a value that is only a part as far from the neutral one; a shape stays."""
+        """Return a value moved to a part of its distance from the neutral one; not a shape."""
         return value if self.shape else self.default + part * (value - self.default)
 
     def unscaled(self, value: float) -> float:
-        """Return the value behind a fitted number."""
+        """Return the value of a scaled one."""
         return math.exp(value) if self.positive else float(value) * self.size
 
 

@@ -1,9 +1,9 @@
-"""The errors of one run in the joint fit, in units of what is uncertain.
+"""The weighted residuals of one run in the joint fit.
 
-Each error counts in units of its standard deviation: the channel's noise, and what the remaining
-noise of the driven ends does to it (large where the tangent stiffness is large). An error of the
-place where the drive turned back lasts for a whole dead band: what has its shape is known to be
-uncertain by more, and is taken down accordingly.
+Each residual is in units of its standard deviation: the channel's noise, and the propagated noise
+of the driven ends (large where the tangent stiffness is large). An error of the position of a
+reversal persists over a whole dead band: the component of the residual with its shape is more
+uncertain, and is reduced accordingly.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -34,24 +34,24 @@ Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
 Bits = npt.NDArray[np.bool_]
 
-TURN = 3.0  # standard deviations by which the place of a reversal may be wrong
-WINDOWS_PER_BLOCK = 2.0  # of the conditioning: the error of a cleaned drive lasts that long
+REVERSAL_SD = 3.0  # error of the position of a reversal, in standard deviations
+WINDOWS_PER_BLOCK = 2.0  # of the conditioning: the correlation length of a cleaned drive's error
 
 
-class Turns(NamedTuple):
-    """What a wrong place of each reversal would do to a channel's errors, stroke by stroke."""
+class ReversalShapes(NamedTuple):
+    """Sensitivity of a channel's residuals to the position of each reversal, stroke by stroke."""
 
-    shape: Floats  # (n,), in units of the errors' standard deviations
+    shape: Floats  # (n,), in units of the residuals' standard deviations
     starts: Indices  # of the strokes, (m,)
     counts: Indices  # of their samples, (m,)
 
 
 @dataclass(frozen=True, eq=False)
 class RunErrors:
-    """The errors of one run for any rig, with the weights that hold at one of them.
+    """The residuals of one run for any rig, with weights computed at one of them.
 
-    Of each channel `samples` are those that count, `weights` the standard deviation of its error at
-    all samples, shape (n,). `predict` gives the predictions of the simulation.
+    Of each channel `samples` are those that enter the fit, `weights` the standard deviation of its
+    residual at all samples, shape (n,). `predict` returns the predictions of a rig.
     """
 
     run: Prepared
@@ -59,15 +59,15 @@ class RunErrors:
     simulation: RunSimulation
     predict: Callable[[Rig], Predictions]
     weights: Mapping[str, Floats]
-    turns: Mapping[str, Turns]
+    turns: Mapping[str, ReversalShapes]
 
     @property
     def length(self) -> int:
-        """The number of samples of the channel that has most; channels run side by side."""
+        """The number of samples of the channel that has most."""
         return max(at.size for at in self.samples.values())
 
     def raw(self, rig: Rig) -> dict[str, Floats]:
-        """Return measured less simulated of each channel, at the samples that count."""
+        """Return measured minus simulated of each channel, at the samples that enter the fit."""
         predicted = self.predict(rig)
         return {
             name: self.run.measured[name][at] - predicted[name][at]
@@ -75,18 +75,18 @@ class RunErrors:
         }
 
     def errors(self, rig: Rig) -> dict[str, Floats]:
-        """Return the weighted errors of each channel, at the samples that count."""
+        """Return the weighted residuals of each channel, at the samples that enter the fit."""
         predicted = self.predict(rig)
         out = {}
         for name, at in self.samples.items():
             errors = ((predicted[name] - self.run.measured[name]) / self.weights[name])[at]
             turns = self.turns[name]
-            alike = np.add.reduceat(turns.shape * errors, turns.starts)
-            out[name] = errors - turns.shape * np.repeat(alike, turns.counts)
+            projection = np.add.reduceat(turns.shape * errors, turns.starts)
+            out[name] = errors - turns.shape * np.repeat(projection, turns.counts)
         return out
 
     def residuals(self, rig: Rig) -> Floats:
-        """Return means of neighbouring errors that keep a variance of one, channel by channel."""
+        """Return means of neighbouring residuals, scaled to unit variance, channel by channel."""
         parts = []
         for errors in self.errors(rig).values():
             edges = mean_edges(errors.size)
@@ -107,9 +107,9 @@ class RunErrors:
         raise KeyError(name)
 
     def blocks(self, rig: Rig, longest: int) -> Indices:
-        """Return the block of each residual: longer than its memory, but at least two in the run.
+        """Return the block of each residual: longer than its correlation, at least two a run.
 
-        `longest` limits a block [samples]: the memory of a wrong model is as long as its run.
+        `longest` limits a block [samples]: that of a wrong model is correlated over the run.
         """
         window = max(c.window_s for c in self.run.conditioned.values())
         step = float(np.median(np.diff(self.run.time_s)))
@@ -124,34 +124,34 @@ class RunErrors:
 def run_errors(
     run: Prepared, samples: Mapping[str, Indices], rig: Rig, dynamics: Dynamics = "slip"
 ) -> RunErrors:
-    """Return the errors of a run at the samples that count, weighed at a rig."""
+    """Return the residuals of a run at the samples that enter the fit, weighted at a rig."""
     simulation = run_simulation(run, dynamics)
-    return _weighed(run, samples, simulation, predictor(simulation), rig)
+    return _weighted(run, samples, simulation, predictor(simulation), rig)
 
 
 def reweighed(errors: RunErrors, rig: Rig) -> RunErrors:
-    """Return the errors of the same run, weighed at another rig."""
-    return _weighed(errors.run, errors.samples, errors.simulation, errors.predict, rig)
+    """Return the residuals of the same run, weighted at another rig."""
+    return _weighted(errors.run, errors.samples, errors.simulation, errors.predict, rig)
 
 
 def meshed(errors: RunErrors, nodes: int) -> RunErrors:
-    """Return the errors of the same run with the same weights, predicted by a slip chain always."""
+    """Return the residuals of the same run with the same weights, always predicted by a chain."""
     simulation = replace(errors.simulation, nodes=nodes)
     return replace(errors, simulation=simulation, predict=predictor(simulation))
 
 
-def _weighed(
+def _weighted(
     run: Prepared,
     samples: Mapping[str, Indices],
     simulation: RunSimulation,
     predict: Callable[[Rig], Predictions],
     rig: Rig,
 ) -> RunErrors:
-    """Find each channel's standard deviation per sample: its noise, and those of the ends.
+    """Return residuals with each channel's standard deviation per sample: its noise and the ends'.
 
-    What the error of an end does is found by a simulation with each of its strokes moved on
-    by one standard deviation, so that turning points move too; what a reversal does that was
-    taken for noise, by one with it left in. The steps of the dynamic model are chosen with them.
+    The error of an end is propagated by a simulation with each of its strokes advanced by one
+    standard deviation, so that reversals move too; that of a small reversal removed as noise, by a
+    simulation with it. The steps of the dynamic model are chosen at the same rig.
     """
     if simulation.dynamics == "lugre":
         simulation = with_steps_at(simulation, rig)
@@ -165,60 +165,63 @@ def _weighed(
     for column in drive_last:
         conditioned = run.conditioned[column]
         end = "values" if column == run.drive_column else "load_values"
-        moved = predict_driven(simulation, rig, **{end: _moved_on(conditioned)})
-        unseen = conditioned.values + conditioned.unseen
-        turned = predict_driven(simulation, rig, **{end: unseen})
+        moved = predict_driven(simulation, rig, **{end: _advanced(conditioned)})
+        with_small_reversals = conditioned.values + conditioned.unseen
+        disturbed = predict_driven(simulation, rig, **{end: with_small_reversals})
         for name, values in square.items():
             change[name] = moved[name] - plain[name]
-            values += change[name] ** 2 + (turned[name] - plain[name]) ** 2
-            _before_turns(values, change[name], conditioned)
+            values += change[name] ** 2 + (disturbed[name] - plain[name]) ** 2
+            _before_reversals(values, change[name], conditioned)
     weights = {name: np.sqrt(values) for name, values in square.items()}
     reversals = run.conditioned[run.drive_column].reversals
     turns = {
-        name: _turns(change[name] / weights[name], at, reversals) for name, at in samples.items()
+        name: _reversal_shapes(change[name] / weights[name], at, reversals)
+        for name, at in samples.items()
     }
     return RunErrors(run, samples, simulation, predict, weights, turns)
 
 
-def _turns(change: Floats, at: Indices, reversals: Indices) -> Turns:
-    """Return the shape that a wrong start of each stroke gives the errors of its samples.
+def _reversal_shapes(change: Floats, at: Indices, reversals: Indices) -> ReversalShapes:
+    """Return the sensitivity of the residuals of each stroke to an error of its start.
 
-    A shape s is scaled so that errors e − s (s·e) have unit variance where those of the place
-    of the reversal are `TURN` standard deviations: (I + TURN² c cᵀ)^(−1/2) = I − s sᵀ.
+    A shape s is scaled so that residuals e − s (s·e) have unit variance where the position of the
+    reversal has a standard deviation of R = `REVERSAL_SD`: (I + R² c cᵀ)^(−1/2) = I − s sᵀ.
     """
     starts = np.unique(np.searchsorted(at, reversals[:-1] + 1))
     starts = np.unique([0, *starts[starts < at.size]])
     counts = np.diff([*starts, at.size])
     shape = change[at]
     size = np.add.reduceat(shape**2, starts)
-    share = 1.0 - 1.0 / np.sqrt(1.0 + TURN**2 * size)
+    share = 1.0 - 1.0 / np.sqrt(1.0 + REVERSAL_SD**2 * size)
     scale = np.sqrt(np.divide(share, size, out=np.zeros(size.size), where=size > 0.0))
-    return Turns(shape * np.repeat(scale, counts), starts, counts)
+    return ReversalShapes(shape * np.repeat(scale, counts), starts, counts)
 
 
 def blocks_of(runs: Sequence[RunErrors], rigs: Sequence[Rig]) -> list[Indices]:
-    """Return the blocks of each run's residuals at its rig, a fair number of them over all."""
+    """Return the blocks of each run's residuals at its rig, enough of them in total."""
     longest = sum(run.length for run in runs) // FEWEST_BLOCKS
     return [run.blocks(rig, longest) for run, rig in zip(runs, rigs, strict=True)]
 
 
-def _before_turns(square: Floats, change: Floats, conditioned: Conditioned) -> None:
-    """Add the uncertainty behind each reversal to the samples just before it, in place.
+def _before_reversals(square: Floats, change: Floats, conditioned: Conditioned) -> None:
+    """Add the uncertainty after each reversal to the samples just before it, in place.
 
-    So close to the extremum that its noise hides it, the drive may have turned back already.
+    There the distance to the extremum is within its noise: the drive may have reversed already.
     """
     x, sd = conditioned.values, conditioned.sd
-    for turn in conditioned.reversals[1:-1]:
-        first = last_beyond(x, turn, TURN * sd[turn]) + 1
-        behind = change[turn : 2 * turn - first + 2]
-        square[first : turn + 1] += np.max(behind**2)
+    for reversal in conditioned.reversals[1:-1]:
+        first = last_beyond(x, reversal, REVERSAL_SD * sd[reversal]) + 1
+        behind = change[reversal : 2 * reversal - first + 2]
+        square[first : reversal + 1] += np.max(behind**2)
 
 
-def _moved_on(conditioned: Conditioned) -> Floats:
-    """Return the values with each stroke moved on by one standard deviation."""
+def _advanced(conditioned: Conditioned) -> Floats:
+    """Return the values with each stroke advanced by one standard deviation."""
     moved = conditioned.values.copy()
     for first, end in pairwise(conditioned.reversals):
         up = conditioned.values[end] >= conditioned.values[first]
-        part = slice(first + 1 if first else 0, end + 1)  # a reversal belongs to what it ends
+        part = slice(
+            first + 1 if first else 0, end + 1
+        )  # a reversal belongs to the stroke that it ends
         moved[part] = conditioned.values[part] + conditioned.sd[part] * (1.0 if up else -1.0)
     return moved

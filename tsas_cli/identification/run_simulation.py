@@ -1,4 +1,4 @@
-"""One run as a model follows it: its drive, its mesh, and the predictions at any rig."""
+"""Simulation of one run: its drive, its mesh, and the predictions at any rig."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -18,16 +18,16 @@ Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
 Predictions = dict[str, Floats]  # of each channel at all samples, shape (n,)
 
-LAST = 2  # rigs whose predictions are cached: those of the last step, and of the one before
+CACHED_RIGS = 2  # whose predictions are cached: that of the last step, and of the one before
 
 
 @dataclass(frozen=True, eq=False)
 class RunSimulation:
-    """How a model follows a run.
+    """Settings of the simulation of a run.
 
-    A chain follows the samples `points`. `nodes` asks for a slip chain with as many of them;
-    `step_ends_s` are the steps of the dynamic model at any rig: with steps of its own each would
-    have its own small errors, in which finite differences drown.
+    A chain simulates the samples `points`. With `nodes` it is a slip chain of that many;
+    `step_ends_s` are the steps of the dynamic model at any rig: with its own steps each rig would
+    have its own small errors, which would dominate finite differences.
     """
 
     drive: Drive
@@ -39,7 +39,7 @@ class RunSimulation:
 
 
 def run_simulation(run: Prepared, dynamics: Dynamics = "slip") -> RunSimulation:
-    """Return the simulation of a run, begun at rest: a fit leaves out what the start shows in."""
+    """Return the simulation of a run from rest: a fit excludes samples that depend on the start."""
     drive = replace(run.drive, start_f_in_N=None)
     return RunSimulation(drive, points(run), run.step_tolerance, dynamics, OWN_STEPS)
 
@@ -53,10 +53,10 @@ def with_steps_at(simulation: RunSimulation, rig: Rig) -> RunSimulation:
 def predictor(simulation: RunSimulation) -> Callable[[Rig], Predictions]:
     """Return the predictions of the run's own drive as a function of the rig, the last ones cached.
 
-    The cache hangs on this function and not on the record, which would hold itself in a cycle:
-    thousands of calibrations in one process would then grow by megabytes each.
+    The cache belongs to the function and not to the record, which would form a reference cycle:
+    each of thousands of calibrations in one process would then retain megabytes.
     """
-    return lru_cache(maxsize=LAST)(partial(_predictions, simulation))
+    return lru_cache(maxsize=CACHED_RIGS)(partial(_predictions, simulation))
 
 
 def _predictions(simulation: RunSimulation, rig: Rig) -> Predictions:
@@ -71,7 +71,7 @@ def predict_driven(
     values: Floats | None = None,
     load_values: Floats | None = None,
 ) -> Predictions:
-    """Return the predictions where an end is driven otherwise, with steps of their own."""
+    """Return the predictions with another drive of an end, with their own steps."""
     drive = simulation.drive
     if values is not None:
         drive = replace(drive, values=values)
@@ -81,7 +81,7 @@ def predict_driven(
 
 
 def _response(simulation: RunSimulation, rig: Rig, drive: Drive, step_ends_s: Floats) -> Response:
-    """Simulate all samples by the closed form, those in `points` by a chain."""
+    """Return the response at all samples by the closed form, or at `points` by a chain."""
     slip = simulation.nodes is None and simulation.dynamics == "slip"
     at = slice(None) if slip and is_closed(rig, drive) else simulation.points
     load = None if drive.load_values is None else drive.load_values[at]
@@ -98,14 +98,14 @@ def _response(simulation: RunSimulation, rig: Rig, drive: Drive, step_ends_s: Fl
 
 
 def _at_samples(simulation: RunSimulation, response: Response) -> Predictions:
-    """Return the predictions at all samples, straight between those simulated."""
-    there = {
+    """Return the predictions at all samples, interpolated linearly between simulated ones."""
+    channels = {
         "f_in_N": response.f_in_N,
         "f_out_N": response.f_out_N,
         "x_out_mm": response.x_out_mm,
     }
     n = simulation.drive.values.size
     if response.f_in_N.size == n:
-        return there
+        return channels
     at = np.arange(n)
-    return {name: np.interp(at, simulation.points, each) for name, each in there.items()}
+    return {name: np.interp(at, simulation.points, each) for name, each in channels.items()}

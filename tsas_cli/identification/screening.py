@@ -1,8 +1,9 @@
-"""Each effect's signature on the recorded inputs, with everything that is already free taken out.
+"""Each effect's signature on the recorded inputs, with the free parameters projected out.
 
-A signature is what the effect at a plausible size does to the residual. What of it the free
-parameters cannot imitate says how visible the effect is; how well the residual is made of it says
-what it could explain. Linear, so that large effects show only in the full fit that follows.
+A signature is the change of the residual by the effect at a plausible size. Its component
+orthogonal to the Jacobian of the free parameters measures how visible the effect is; the projection
+of the residual on that, how much it could explain. Linear: the full fit that follows covers large
+effects.
 """
 
 from dataclasses import dataclass
@@ -16,15 +17,16 @@ from tsas_cli.identification.extension import Bench, Trial
 
 Floats = npt.NDArray[np.float64]
 
-MOST_SIZES = 10.0  # of the plausible ones, for the initial values of a fit
-HIDDEN = 1e-6  # part of a signature that has to be its own
+MOST_SIZES = 10.0  # plausible sizes, the bound of the initial values of a fit
+HIDDEN = 1e-6  # relative norm below which a column is linearly dependent
 
 
 @dataclass(frozen=True)
 class Screened:
-    """One effect seen linearly: the part of the squares it could explain, and its initial values.
+    """One effect screened linearly: the share of the squares it could explain, initial values.
 
-    `signatures` are its own, one column for each amplitude, shape (n, p), in units of noise.
+    `signatures` have the free parameters projected out, one column for each amplitude, shape
+    (n, p), in units of noise.
     """
 
     effect: Effect
@@ -34,7 +36,7 @@ class Screened:
 
 
 def projector(trial: Trial) -> Floats:
-    """Return an orthonormal basis of what the free parameters of a trial can do."""
+    """Return an orthonormal basis of the Jacobian of a trial's free parameters."""
     free = trial.solution.jacobian[:, ~trial.solution.at_bound]
     basis, r = np.linalg.qr(
         free * np.array([u.scale for u in trial.unknowns])[~trial.solution.at_bound]
@@ -44,7 +46,7 @@ def projector(trial: Trial) -> Floats:
 
 
 def screen(bench: Bench, trial: Trial, effect: Effect, basis: Floats) -> Screened:
-    """Look at an effect from a fitted trial, at the best of its shapes."""
+    """Return an effect screened at a fitted trial, with the best of its shapes."""
     residual = trial.solution.residual
     without = bench.errors_at(trial, {})
     amplitudes = [p for p in effect.parameters if not p.shape]
@@ -61,8 +63,8 @@ def screen(bench: Bench, trial: Trial, effect: Effect, basis: Floats) -> Screene
         signatures = np.array(columns).T
         own = signatures - basis @ (basis.T @ signatures)
         amounts = _amounts(own, residual, amplitudes, sizes)
-        left = residual + own @ amounts
-        part = 1.0 - float(left @ left) / float(residual @ residual)
+        remaining = residual + own @ amounts
+        part = 1.0 - float(remaining @ remaining) / float(residual @ residual)
         if part > best.part:
             initial = shape | {
                 _name(effect, p): p.neutral + a * size
@@ -75,7 +77,7 @@ def screen(bench: Bench, trial: Trial, effect: Effect, basis: Floats) -> Screene
 def _amounts(
     own: Floats, residual: Floats, amplitudes: list[Parameter], sizes: list[float]
 ) -> Floats:
-    """Return how much of each signature the residual asks for, within the parameters' bounds."""
+    """Return the least-squares amplitude of each signature, within the parameters' bounds."""
     from scipy.optimize import lsq_linear
 
     ends = np.array(
@@ -90,8 +92,8 @@ def _amounts(
     scale = np.sqrt(np.maximum(np.diag(gram), 1e-12))
     regular = gram / np.outer(scale, scale) + 1e-9 * np.eye(scale.size)
     root = np.linalg.cholesky(regular).T
-    wanted = np.linalg.solve(root.T, -(own.T @ residual) / scale)
-    found = lsq_linear(root, wanted, (lower * scale, upper * scale))
+    unbounded = np.linalg.solve(root.T, -(own.T @ residual) / scale)
+    found = lsq_linear(root, unbounded, (lower * scale, upper * scale))
     return np.asarray(found.x / scale)
 
 

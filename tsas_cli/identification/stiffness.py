@@ -28,7 +28,7 @@ class Slope:
 
 
 def slopes(x_in: Floats, f_in: Floats, segments: Sequence[Segment]) -> list[Slope]:
-    """Fit one slope to each phase, with an intercept of its own for each occurrence.
+    """Return the slope of each phase, fitted with an intercept for each occurrence.
 
     Parameters
     ----------

@@ -9,7 +9,7 @@ from tsas_cli.records.base import check_interval
 
 
 class StoredValue(BaseModel):
-    """A value as a file holds it, with its unit, what is known of it, and where it is from."""
+    """A value in a file, with its unit, its interval and its origin."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 

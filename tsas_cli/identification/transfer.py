@@ -1,8 +1,8 @@
-"""How tension passes through the sheath: f_in = r f_out + c while the whole tendon slips.
+"""Transfer of tension through the sheath: f_in = r f_out + c while the whole tendon slips.
 
-The capstan alone gives r = e^(±a) and c = 0 (Yang 2025, Eq. 7), so that a = μθ is half the
-logarithm of the two ratios' quotient. An intercept of opposite sign in the two directions is
-friction that does not depend on the tendon's tension; one of the same sign is an offset.
+The capstan law has r = e^(±a) and c = 0 (Yang 2025, Eq. 7), so that a = μθ is half the logarithm of
+the quotient of both ratios. An intercept of opposite sign in the two directions is friction
+independent of the tendon's tension; one of the same sign is an offset.
 """
 
 import math
@@ -36,14 +36,14 @@ class _Line:
 def tension_transfer(
     runs: Sequence[Prepared], segments: Sequence[Sequence[Segment]]
 ) -> list[Estimate]:
-    """Fit both directions, over all runs with the same bend together.
+    """Return the transfer in both directions, over all runs with the same bend together.
 
     Returns
     -------
     list of Estimate
         For each bend the ratio and intercept of both directions, the wrap angle times friction,
-        the friction that does not depend on the load, and the offset; `run` lists the runs.
-        Nothing where f_in or f_out is not measured in both directions, or f_out hardly changes.
+        the friction independent of the load, and the offset; `run` lists the runs. Empty where f_in
+        or f_out is not measured in both directions, or f_out hardly changes.
     """
     bends = list(dict.fromkeys(run.run.total_bend_rad for run in runs))
     out = []

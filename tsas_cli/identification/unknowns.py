@@ -1,4 +1,4 @@
-"""What a fit may seek: the nominal values of runs, and numbers of bristles and effects."""
+"""Unknowns of a fit: nominal parameters of runs, and parameters of bristles and effects."""
 
 from collections.abc import Mapping, Sequence
 
@@ -10,16 +10,16 @@ from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.quantities import LOG_SCALE, QUANTITIES
 from tsas_cli.physics.parameters import NOMINAL
 
-FURTHER_SCALE = 7.0  # plausible change of what nobody knows: in logarithms, or of an effect's size
+FURTHER_SCALE = 7.0  # plausible change without prior knowledge: logarithm, or effect's sizes
 ZERO_SCALE = 0.02  # plausible zero of a displacement sensor, of its range
 
 
 def nominal_unknowns(
     initial: Model, runs: Sequence[Prepared], plausible: Mapping[str, tuple[float, float]]
 ) -> list[Unknown]:
-    """Return all candidates, in the order in which they are asked for.
+    """Return all candidates, in the order of the identifiability check.
 
-    With a load that is no spring the preload is only a name for the zeros: it is fixed.
+    With a load other than a spring the preload is equivalent to the zeros: it is fixed.
     """
     out = []
     travel = max((float(np.ptp(r.drive.values)) for r in runs), default=0.0)
@@ -51,7 +51,7 @@ def unknown_of(name: str, value: float | None = None, scale: float = 1.0) -> Unk
 
 
 def further_unknown(name: str, initial: Model) -> Unknown:
-    """Return the unknown of a number of bristles or effects, from a model's value if it has one."""
+    """Return the unknown of a parameter of bristles or effects, from a model's value if any."""
     value = initial.value(name)
     scaled = None if value is None else QUANTITIES[name].scaled(value)
     return unknown_of(name, scaled, FURTHER_SCALE)

@@ -16,9 +16,9 @@ PLAIN = os.environ.get("TSAS_PLAIN_PYTHON") == "1"
 def kernel(function: Function) -> Function:
     """Compile a numeric function with numba, once per version of the package's sources.
 
-    It becomes part of every compiled caller: calls count references, which costs up to a fifth.
+    It is inlined into every compiled caller: a call counts references, which costs up to a fifth.
     With `TSAS_PLAIN_PYTHON=1` in the environment the function stays as it is, for debugging and
-    for the tests that hold the compiled code against the plain one.
+    for the tests that compare compiled with plain code.
     """
     if PLAIN:
         return function
@@ -34,9 +34,9 @@ def kernel(function: Function) -> Function:
 
 @cache
 def cache_folder() -> str | None:
-    """Return a folder named after the sources, or None where none can be written.
+    """Return a folder named after a hash of the sources, or None where none can be written.
 
-    Numba by itself does not see edits in the kernels that a kernel calls.
+    Numba by itself does not notice edits of the kernels that a kernel calls.
     """
     import platformdirs
 

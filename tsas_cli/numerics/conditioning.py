@@ -1,7 +1,7 @@
-"""Clean a measured input before it drives a hysteretic model, and say how.
+"""Clean a measured input before it drives a hysteretic model.
 
-Raw noise would turn into reversals, each of which meets the infinite stiffness of a turning
-point. Three steps, none of which delays the signal:
+Raw noise would become reversals, each of which meets the infinite stiffness of a turning point.
+Three steps, none of which delays the signal:
 
 1. Corners: where the slopes of quadratic fits to the past and to the future differ by far more
    than their noise, the signal is cut, so that sharp reversals and the ends of dwells stay sharp.
@@ -31,18 +31,18 @@ METHOD = (
     "monotone between reversals"
 )
 MOVES = 4.0  # standard deviations by which a piece that moves departs from its mean
-STANDS_OUT = 8.0  # standard deviations of the cleaned signal by which a reversal turns back
-VISIBLE = 2.0  # and of the raw noise: a jump of the acceleration makes the fits swing a little
+REVERSAL_SD = 8.0  # smallest reversal, in standard deviations of the cleaned signal
+REVERSAL_NOISE = 2.0  # and of the raw noise: fits overshoot where the acceleration jumps
 
 
 @dataclass(frozen=True)
 class Conditioned:
     """A cleaned signal, shape (n,), in the unit of the raw one.
 
-    `sd` is the standard deviation of its error per sample, `unseen` what was taken off so that it
-    turns at the reversals only, `window_s` the median window, `noise` the raw noise, `reversals`
-    the indices of the extrema that were kept, with both ends, `smallest_reversal` the smallest
-    move back that was told from noise.
+    `sd` is the standard deviation of its error per sample, `unseen` the correction that makes it
+    monotone between reversals, `window_s` the median window, `noise` the raw noise, `reversals`
+    the indices of the extrema, with both ends, `smallest_reversal` the amplitude below which a
+    reversal counts as noise.
     """
 
     values: Floats
@@ -55,18 +55,18 @@ class Conditioned:
 
 
 def condition(time_s: Floats, values: Floats) -> Conditioned:
-    """Clean a signal sampled at any increasing times.
+    """Return the cleaned signal; its times increase, evenly or not.
 
     Parameters
     ----------
     time_s, values
         Times and the signal, shape (n,); NaN in the signal is a gap, filled by a straight line.
     """
-    there = np.flatnonzero(np.isfinite(values))
-    if there.size < values.size:
-        return _with_gaps(condition(time_s[there], values[there]), time_s, there)
+    finite = np.flatnonzero(np.isfinite(values))
+    if finite.size < values.size:
+        return _with_gaps(condition(time_s[finite], values[finite]), time_s, finite)
     noise, memory = noise_and_memory(values)
-    if not noise > 0.0:  # noise-free, or too short to tell
+    if not noise > 0.0:  # noise-free, or too short for an estimate
         nothing = np.zeros(values.size)
         return Conditioned(values, nothing, nothing, 0.0, 0.0, turning_points(values, 0.0))
     smooth, sd, window_s = smooth_out(time_s, values, noise, memory)
@@ -77,7 +77,7 @@ def condition(time_s: Floats, values: Floats) -> Conditioned:
 
 
 def noise_and_memory(values: Floats) -> tuple[float, float]:
-    """Return the noise of a signal, quantisation counted in, and for how many samples it lasts."""
+    """Return the noise level with quantisation, and for how many samples its error persists."""
     step = quantisation_step(values)
     noise = max(noise_sd(values), step / math.sqrt(12.0))
     return noise, _plateau(values) if step > 0.0 else 1.0
@@ -86,32 +86,32 @@ def noise_and_memory(values: Floats) -> tuple[float, float]:
 def smooth_out(
     time_s: Floats, values: Floats, noise: float, memory: float
 ) -> tuple[Floats, Floats, float]:
-    """Fit the signal between its corners; return it, its standard deviation, the window [s]."""
+    """Return the signal fitted between its corners, its standard deviation and the window [s]."""
     whole = np.array([0, values.size], dtype=np.int64)
-    # Corners spoil the blocks that they lie in; the smooth blocks tell the window to seek them by.
+    # Corners spoil the blocks that they lie in; the smooth blocks give the window of the search.
     alone = best_half_windows(time_s, values, whole, noise, memory, degree=2, pooled=1)
     cuts = corners(time_s, values, int(np.percentile(alone, 75)), noise * math.sqrt(memory))
     half = best_half_windows(time_s, values, cuts, noise, memory, degree=4, pooled=5)
     smooth, sd = smoothed(time_s, values, cuts, half, noise * math.sqrt(memory))
-    blunt(smooth, cuts)
-    lay_flat(time_s, values, smooth, sd, cuts, int(np.median(half)), noise * math.sqrt(memory))
+    remove_overshoot(smooth, cuts)
+    flatten_rests(time_s, values, smooth, sd, cuts, int(np.median(half)), noise * math.sqrt(memory))
     return smooth, sd, float(np.median(2 * half + 1) * np.median(np.diff(time_s)))
 
 
 def smallest_reversal(sd: Floats, noise: float) -> float:
-    """Return the smallest move back that stands out of a cleaned signal's noise."""
-    return max(STANDS_OUT * float(np.median(sd)), VISIBLE * noise)
+    """Return the amplitude below which a reversal of a cleaned signal counts as noise."""
+    return max(REVERSAL_SD * float(np.median(sd)), REVERSAL_NOISE * noise)
 
 
-def _with_gaps(cleaned: Conditioned, time_s: Floats, there: Indices) -> Conditioned:
-    """Lay a signal that was cleaned at some samples over all of them, straight in between."""
-    reversals = there[cleaned.reversals]
+def _with_gaps(cleaned: Conditioned, time_s: Floats, finite: Indices) -> Conditioned:
+    """Return a signal that was cleaned at finite samples at all of them, interpolated linearly."""
+    reversals = finite[cleaned.reversals]
     reversals[0], reversals[-1] = 0, time_s.size - 1
     return replace(
         cleaned,
-        values=np.interp(time_s, time_s[there], cleaned.values),
-        sd=np.interp(time_s, time_s[there], cleaned.sd),
-        unseen=np.interp(time_s, time_s[there], cleaned.unseen),
+        values=np.interp(time_s, time_s[finite], cleaned.values),
+        sd=np.interp(time_s, time_s[finite], cleaned.sd),
+        unseen=np.interp(time_s, time_s[finite], cleaned.unseen),
         reversals=reversals,
     )
 
@@ -121,8 +121,8 @@ def _plateau(values: Floats) -> float:
     return values.size / (1.0 + np.count_nonzero(np.diff(values)))
 
 
-def blunt(smooth: Floats, cuts: Indices) -> None:
-    """Take off, in place, what a fit overshoots where its piece begins a sample off the corner.
+def remove_overshoot(smooth: Floats, cuts: Indices) -> None:
+    """Remove, in place, the overshoot of a fit whose piece begins a sample off the corner.
 
     At a peak the sample of the corner lies below the lines of both sides, in a valley above.
     """
@@ -135,7 +135,7 @@ def blunt(smooth: Floats, cuts: Indices) -> None:
             smooth[cut] = min(smooth[cut], before) if rise > 0.0 else max(smooth[cut], before)
 
 
-def lay_flat(
+def flatten_rests(
     time_s: Floats,
     values: Floats,
     smooth: Floats,
@@ -144,9 +144,9 @@ def lay_flat(
     reach: int,
     noise: float,
 ) -> None:
-    """Set pieces at rest to their mean, in place; what runs into them does not overshoot.
+    """Set pieces at rest to their mean, in place, and clip the overshoot of their neighbours.
 
-    A drift by a thousandth of a millimetre at rest would be a reversal to a hysteretic model.
+    To a hysteretic model a drift of a thousandth of a millimetre at rest would be a reversal.
     """
     for k, (first, end) in enumerate(pairwise(cuts)):
         if not at_rest(time_s[first:end], values[first:end], noise):
@@ -156,14 +156,14 @@ def lay_flat(
         sd[first:end] = noise / math.sqrt(end - first)
         before = smooth[max(cuts[max(k - 1, 0)], first - reach) : first]
         after = smooth[end : min(cuts[min(k + 2, cuts.size - 1)], end + reach)][::-1]
-        for beside in (before, after):  # both begin at their far ends
-            if beside.size:
-                limit = np.minimum if beside[0] < level else np.maximum
-                beside[:] = limit(beside, level)
+        for neighbours in (before, after):  # both begin at their far ends
+            if neighbours.size:
+                limit = np.minimum if neighbours[0] < level else np.maximum
+                neighbours[:] = limit(neighbours, level)
 
 
 def at_rest(time_s: Floats, values: Floats, noise: float) -> bool:
-    """Say whether a piece shows no trend, no bow and no more spread than its noise."""
+    """Return whether a piece shows no trend, no curvature and no more variance than its noise."""
     count = values.size
     if count < 2 * HALF_WINDOWS[0]:
         return False
@@ -174,12 +174,12 @@ def at_rest(time_s: Floats, values: Floats, noise: float) -> bool:
     return max(shapes) < MOVES * noise and excess < 2.0 * MOVES
 
 
-def monotone_between(values: Floats, turns: Indices) -> Floats:
-    """Return the nearest signal that is monotone between the given indices (least squares)."""
+def monotone_between(values: Floats, reversals: Indices) -> Floats:
+    """Return the nearest signal (least squares) that is monotone between the given indices."""
     from scipy.optimize import isotonic_regression
 
     out = values.copy()
-    for first, last in pairwise(turns):
+    for first, last in pairwise(reversals):
         rising = bool(values[last] >= values[first])
         stroke = isotonic_regression(out[first : last + 1], increasing=rising)
         out[first : last + 1] = stroke.x

@@ -1,10 +1,10 @@
-"""Clean a driving signal that is too long for memory: what `conditioning` does, piece by piece.
+"""Clean a driving signal that is too long for memory: `conditioning`, piece by piece.
 
-Noise and the smallest reversal are those of the whole signal. Windows and corners are sought in
-each piece, with some of its neighbours' samples beside it. Between reversals the nearest monotone
-signal is found exactly: where all samples so far lie below all that can still come in the stroke,
-the regression falls apart into two. Only a rest or a creep that lasts for more than two pieces is
-cut: what follows then keeps above (or below) what is already told.
+Noise and the smallest reversal are those of the whole signal. Windows and corners are found in
+each piece, with overlap into its neighbours. Between reversals the nearest monotone signal is
+exact: where all samples so far lie below all that can still come in the stroke, the regression
+separates into two. Only a rest or a creep longer than two pieces is cut: later samples are then
+bounded by the last value already returned.
 """
 
 from collections.abc import Iterable, Iterator
@@ -21,14 +21,14 @@ Indices = npt.NDArray[np.int64]
 Mask = npt.NDArray[np.bool_]
 Samples = tuple[int, Floats, Floats]  # number of the first row, times, values (NaN in gaps)
 
-FEWEST = 16  # samples of a piece, below which nothing is smoothed
-LOOKED_AT = 8  # pieces at most, whose windows tell the smallest reversal,
-SAMPLES = 1 << 17  # and so many samples of each
+FEWEST = 16  # samples of a piece, below which it is not smoothed
+PLANNED_PIECES = 8  # at most, from whose windows the smallest reversal is estimated
+PLANNED_SAMPLES = 1 << 17  # of each of them, at most
 
 
 @dataclass(frozen=True)
 class Plan:
-    """What holds for the whole signal; `interval_s` is the usual time between its samples."""
+    """Estimates for the whole signal; `interval_s` is the median time between its samples."""
 
     noise: float
     memory: float
@@ -41,8 +41,8 @@ class Plan:
 class Cleaned:
     """Rows of a cleaned signal; the fields are those of `Conditioned`, `reversals` are rows.
 
-    `apart_s` is the time between the samples on both sides of a row that holds none, 0 where it
-    holds one, infinite before the first and after the last.
+    `apart_s` is the length of the gap that a row lies in, 0 for a finite sample, infinite before
+    the first and after the last.
     """
 
     start: int
@@ -54,8 +54,8 @@ class Cleaned:
 
 
 @dataclass(frozen=True)
-class _Part:
-    """Samples that are there, with their rows, and the times of all rows that came with them."""
+class _Smoothed:
+    """Finite samples with their rows, and the times `all_s` of all rows read with them."""
 
     all_s: Floats
     rows: Indices
@@ -66,7 +66,7 @@ class _Part:
 
 @dataclass(frozen=True)
 class _Final:
-    """Samples whose cleaned value is known."""
+    """Samples whose cleaned value is final."""
 
     all_s: Floats
     rows: Indices
@@ -74,23 +74,25 @@ class _Final:
     clean: Floats
     sd: Floats
     unseen: Floats
-    turns: Indices
+    reversals: Indices
 
 
 def plan(pieces: Iterable[Samples], count: int) -> Plan:
-    """Return what holds for a signal of `count` pieces: medians over them."""
+    """Return the estimates for a signal of `count` pieces: medians over them."""
     noise, memory, ratio, window, interval = [], [], [], [], []
     for number, (_, time_s, values) in enumerate(pieces):
-        there = np.isfinite(values)
-        if there.sum() < FEWEST:
+        finite = np.isfinite(values)
+        if finite.sum() < FEWEST:
             continue
-        time_s, values = time_s[there], values[there]
+        time_s, values = time_s[finite], values[finite]
         here, lasts = noise_and_memory(values)
         noise.append(here)
         memory.append(lasts)
         interval.append(float(np.median(np.diff(time_s))))
-        if here > 0.0 and number % -(-count // LOOKED_AT) == 0:
-            _, sd, window_s = smooth_out(time_s[:SAMPLES], values[:SAMPLES], here, lasts)
+        if here > 0.0 and number % -(-count // PLANNED_PIECES) == 0:
+            _, sd, window_s = smooth_out(
+                time_s[:PLANNED_SAMPLES], values[:PLANNED_SAMPLES], here, lasts
+            )
             ratio.append(smallest_reversal(sd, here) / here)
             window.append(window_s)
     usual = float(np.median(noise)) if noise else 0.0
@@ -104,16 +106,16 @@ def plan(pieces: Iterable[Samples], count: int) -> Plan:
 
 
 def cleaned(pieces: Iterable[Samples], beside: int, plan: Plan) -> Iterator[Cleaned]:
-    """Clean a signal; yields rows in order, as many as are known at a time.
+    """Yield the rows of the cleaned signal in order, as they become final.
 
     Parameters
     ----------
     pieces
         The signal in pieces, each of which begins with the last 2 `beside` rows of the one before.
     beside
-        Rows at both ends of a piece that only help to smooth the others.
+        Rows at both ends of a piece that only support the fits of the others.
     plan
-        What holds for the whole signal.
+        The estimates for the whole signal.
     """
     last: _Final | None = None
     start, waiting = 0, np.empty(0)
@@ -125,64 +127,64 @@ def cleaned(pieces: Iterable[Samples], beside: int, plan: Plan) -> Iterator[Clea
         yield _over_all_rows(start, waiting[:size], last, final)
         start, waiting, last = start + size, waiting[size:], _last_of(final)
     if waiting.size and last is not None:
-        yield _over_all_rows(start, waiting, last, _nothing())
+        yield _over_all_rows(start, waiting, last, _no_samples())
 
 
-def _smooth(pieces: Iterable[Samples], beside: int, plan: Plan) -> Iterator[_Part]:
-    """Smooth each piece; yield the rows that the next one does not know better."""
-    coming = iter(pieces)
-    now: Samples | None = next(coming)
+def _smooth(pieces: Iterable[Samples], beside: int, plan: Plan) -> Iterator[_Smoothed]:
+    """Yield each piece smoothed, without the overlap that the next one covers better."""
+    upcoming = iter(pieces)
+    now: Samples | None = next(upcoming)
     while now is not None:
-        after = next(coming, None)
+        after = next(upcoming, None)
         start, time_s, values = now
         low = beside if start else 0
         high = values.size - (beside if after else 0)
-        there = np.flatnonzero(np.isfinite(values))
-        smooth, sd = values[there], np.full(there.size, plan.noise)
-        if plan.noise > 0.0 and there.size >= FEWEST:
-            smooth, sd, _ = smooth_out(time_s[there], smooth, plan.noise, plan.memory)
-        own = slice(*np.searchsorted(there, (low, high)))
-        rows = there[own]
-        yield _Part(time_s[low:high], rows + start, time_s[rows], smooth[own], sd[own])
+        finite = np.flatnonzero(np.isfinite(values))
+        smooth, sd = values[finite], np.full(finite.size, plan.noise)
+        if plan.noise > 0.0 and finite.size >= FEWEST:
+            smooth, sd, _ = smooth_out(time_s[finite], smooth, plan.noise, plan.memory)
+        own = slice(*np.searchsorted(finite, (low, high)))
+        rows = finite[own]
+        yield _Smoothed(time_s[low:high], rows + start, time_s[rows], smooth[own], sd[own])
         now = after
 
 
-def _monotone(parts: Iterable[_Part], plan: Plan) -> Iterator[_Final]:
-    """Make the signal monotone between reversals; yield what is known for sure."""
-    held: _Part | None = None
-    begun: Floats = np.empty(0)  # the held samples as the stroke before has left the first of them
+def _monotone(parts: Iterable[_Smoothed], plan: Plan) -> Iterator[_Final]:
+    """Yield the signal, monotone between reversals, as far as it is final."""
+    pending: _Smoothed | None = None
+    partly_regressed: Floats = np.empty(0)  # pending samples; the stroke before ends at the first
     direction, bound = 0, -np.inf
     most = 0
     for part in parts:
         most = max(most, part.all_s.size)
-        held = part if held is None else _joined(held, part)
-        begun = np.concatenate((begun, part.smooth))
-        turns = turning_points(held.smooth, plan.smallest_reversal, direction)[1:-1]
-        out, done = begun.copy(), 0
-        for turn in turns:
-            direction = direction or _sign(held.smooth[turn] - held.smooth[done])
-            out[done : turn + 1] = _rising(out[done : turn + 1], direction, bound, plan)
-            done, direction, bound = int(turn), -direction, -np.inf
-        direction = direction or _first_direction(held.smooth, plan.smallest_reversal)
+        pending = part if pending is None else _concatenated(pending, part)
+        partly_regressed = np.concatenate((partly_regressed, part.smooth))
+        reversals = turning_points(pending.smooth, plan.smallest_reversal, direction)[1:-1]
+        out, done = partly_regressed.copy(), 0
+        for reversal in reversals:
+            direction = direction or _sign(pending.smooth[reversal] - pending.smooth[done])
+            out[done : reversal + 1] = _rising(out[done : reversal + 1], direction, bound, plan)
+            done, direction, bound = int(reversal), -direction, -np.inf
+        direction = direction or _first_direction(pending.smooth, plan.smallest_reversal)
         known = done
         if direction:
-            known += _known(direction * out[done:], plan.smallest_reversal)
-        if known == done and held.rows.size - done > 2 * most:
+            known += _count_final(direction * out[done:], plan.smallest_reversal)
+        if known == done and pending.rows.size - done > 2 * most:
             direction = direction or _sign(out[-1] - out[done])
-            known = held.rows.size - most
+            known = pending.rows.size - most
         if known > done:
             out[done:known] = _rising(out[done:known], direction, bound, plan)
             bound = direction * out[known - 1]
-        yield _final(held, out, known, turns)
-        held, begun = _rest(held, known), out[known:]
-    if held is not None and held.rows.size:
-        direction = direction or _sign(begun[-1] - begun[0])
-        out = _rising(begun, direction, bound, plan)
-        yield _final(held, out, held.rows.size, np.empty(0, dtype=np.int64))
+        yield _final(pending, out, known, reversals)
+        pending, partly_regressed = _after(pending, known), out[known:]
+    if pending is not None and pending.rows.size:
+        direction = direction or _sign(partly_regressed[-1] - partly_regressed[0])
+        out = _rising(partly_regressed, direction, bound, plan)
+        yield _final(pending, out, pending.rows.size, np.empty(0, dtype=np.int64))
 
 
 def _rising(values: Floats, direction: int, bound: float, plan: Plan) -> Floats:
-    """Return the nearest monotone signal that keeps beyond what the stroke has reached before."""
+    """Return the nearest monotone signal beyond the value that the stroke has reached before."""
     from scipy.optimize import isotonic_regression
 
     if plan.noise == 0.0:
@@ -191,8 +193,8 @@ def _rising(values: Floats, direction: int, bound: float, plan: Plan) -> Floats:
     return direction * np.maximum(direction * out, bound)
 
 
-def _known(rising: Floats, threshold: float) -> int:
-    """Return how many samples of a stroke lie below all others, and all that can still come."""
+def _count_final(rising: Floats, threshold: float) -> int:
+    """Return how many samples of a stroke lie below all later ones, present and still to come."""
     highest = np.maximum.accumulate(rising)
     lowest_after = np.minimum.accumulate(rising[::-1])[::-1]
     apart = highest[:-1] <= np.minimum(lowest_after[1:], highest[-1] - threshold)
@@ -201,7 +203,7 @@ def _known(rising: Floats, threshold: float) -> int:
 
 
 def _first_direction(values: Floats, threshold: float) -> int:
-    """Return in which direction a signal moves first by more than a threshold, 0 if it does not."""
+    """Return the direction of the first move beyond a threshold, 0 where there is none."""
     up = values - np.minimum.accumulate(values) > threshold
     down = np.maximum.accumulate(values) - values > threshold
     if not (up.any() or down.any()):
@@ -215,9 +217,9 @@ def _sign(change: float) -> int:
     return 1 if change >= 0.0 else -1
 
 
-def _joined(one: _Part, other: _Part) -> _Part:
-    return _Part(
-        other.all_s,  # those of the first part are told already
+def _concatenated(one: _Smoothed, other: _Smoothed) -> _Smoothed:
+    return _Smoothed(
+        other.all_s,  # those of the first part are returned already
         np.concatenate((one.rows, other.rows)),
         np.concatenate((one.time_s, other.time_s)),
         np.concatenate((one.smooth, other.smooth)),
@@ -225,22 +227,22 @@ def _joined(one: _Part, other: _Part) -> _Part:
     )
 
 
-def _rest(part: _Part, first: int) -> _Part:
-    return _Part(
+def _after(part: _Smoothed, first: int) -> _Smoothed:
+    return _Smoothed(
         np.empty(0), part.rows[first:], part.time_s[first:], part.smooth[first:], part.sd[first:]
     )
 
 
-def _final(held: _Part, out: Floats, known: int, turns: Indices) -> _Final:
+def _final(pending: _Smoothed, out: Floats, known: int, reversals: Indices) -> _Final:
     clean = out[:known]
     return _Final(
-        held.all_s,
-        held.rows[:known],
-        held.time_s[:known],
+        pending.all_s,
+        pending.rows[:known],
+        pending.time_s[:known],
         clean,
-        held.sd[:known],
-        held.smooth[:known] - clean,
-        held.rows[turns],
+        pending.sd[:known],
+        pending.smooth[:known] - clean,
+        pending.rows[reversals],
     )
 
 
@@ -256,17 +258,17 @@ def _last_of(final: _Final) -> _Final:
     )
 
 
-def _nothing() -> _Final:
+def _no_samples() -> _Final:
     none = np.empty(0)
     rows = np.empty(0, dtype=np.int64)
     return _Final(none, rows, none, none, none, none, rows)
 
 
 def _over_all_rows(start: int, time_s: Floats, last: _Final | None, final: _Final) -> Cleaned:
-    """Lay samples over all rows from `start` on, straight between them."""
+    """Return the values of all rows from `start` on, interpolated linearly between samples."""
     if final.rows.size == time_s.size:  # no gap
         none_s = np.zeros(time_s.size)
-        return Cleaned(start, final.clean, final.sd, final.unseen, none_s, final.turns)
+        return Cleaned(start, final.clean, final.sd, final.unseen, none_s, final.reversals)
     parts = [final] if last is None else [last, final]
     known_s = np.concatenate([part.time_s for part in parts])
     rows = np.arange(start, start + time_s.size)
@@ -278,4 +280,4 @@ def _over_all_rows(start: int, time_s: Floats, last: _Final | None, final: _Fina
         np.interp(time_s, known_s, np.concatenate([getattr(part, name) for part in parts]))
         for name in ("clean", "sd", "unseen")
     )
-    return Cleaned(start, values, sd, unseen, apart_s, final.turns)
+    return Cleaned(start, values, sd, unseen, apart_s, final.reversals)

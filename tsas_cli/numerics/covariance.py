@@ -1,9 +1,10 @@
-"""Intervals that hold although the residual is coloured.
+"""Confidence intervals for coloured residuals.
 
-A residual of a physical model has memory; the plain formula counts each sample as news and is
-far too sure. Here the unit of evidence is a block longer than that memory: the jackknife that
-leaves out one block at a time (CR3 of Bell and McCaffrey 2002), which also holds where few blocks
-carry most of the information, and Student's t with the freedom that they leave.
+A residual of a physical model is autocorrelated; the plain formula counts each sample as
+independent, and its intervals are far too narrow. Here the unit of evidence is a block longer than
+the autocorrelation time: the jackknife that leaves out one block at a time (CR3 of Bell and
+McCaffrey 2002), valid also where few blocks carry most of the information, and Student's t with
+the degrees of freedom of the blocks.
 """
 
 import math
@@ -21,7 +22,7 @@ MEMORIES_PER_BLOCK = 4.0
 def memory(residual: Floats) -> float:
     """Return the integrated autocorrelation time of a residual in samples, at least 1.
 
-    The sum of the autocorrelation is cut where it first gets lost in its own scatter (Geyer's
+    The sum of the autocorrelation is truncated where it is first lost in its own scatter (Geyer's
     initial positive sequence).
     """
     n = residual.size
@@ -39,7 +40,7 @@ def memory(residual: Floats) -> float:
 def block_length(residuals: list[Floats]) -> int:
     """Return a block length in samples for residuals that share one clock.
 
-    It is some memories long, but leaves a minimum number of blocks.
+    It is some autocorrelation times long, but leaves a minimum number of blocks.
     """
     longest = max(memory(r) for r in residuals)
     samples = sum(r.size for r in residuals)
@@ -47,7 +48,7 @@ def block_length(residuals: list[Floats]) -> int:
 
 
 def block_numbers(sizes: list[int], length: int) -> Indices:
-    """Return block numbers that go on from piece to piece; a block lies within one piece."""
+    """Return block numbers, counted on from piece to piece; a block lies within one piece."""
     out: list[Indices] = []
     start = 0
     for size in sizes:
@@ -60,7 +61,7 @@ def block_numbers(sizes: list[int], length: int) -> Indices:
 def jackknife(jacobian: Floats, residual: Floats, block: Indices) -> tuple[Floats, Floats]:
     """Return the covariance of least-squares parameters and Student's t for 95 % intervals.
 
-    Each parameter has a t of its own, shape (p,): the fewer blocks carry it, the larger.
+    Each parameter has its own t, shape (p,): the fewer blocks determine it, the larger.
 
     Parameters
     ----------
@@ -77,15 +78,15 @@ def jackknife(jacobian: Floats, residual: Floats, block: Indices) -> tuple[Float
     starts = np.flatnonzero(np.diff(block[order], prepend=-1))
     scores = np.add.reduceat((jacobian * residual[:, None])[order], starts)
     grams = np.array([part.T @ part for part in np.split(jacobian[order], starts[1:])])
-    # What leaving the block out would move: its score, magnified by its own leverage.
+    # Shift of the estimates when the block is left out: its score, magnified by its leverage.
     own = np.eye(p) - grams @ bread
     magnified = (np.linalg.pinv(own, rcond=1e-9) @ scores[:, :, None])[:, :, 0]
     moves = magnified @ bread
     moves -= moves.mean(axis=0)
     blocks = starts.size
     covariance: Floats = (blocks - 1) / blocks * moves.T @ moves
-    # Satterthwaite's freedom with the blocks' own moves; a normal one has a fourth moment of 3.
-    # It is less than the number of blocks that move the parameter at all.
+    # Satterthwaite's degrees of freedom from the blocks' shifts; a normal shift has a fourth moment
+    # of 3. They are fewer than the blocks that shift the parameter at all.
     squares = np.maximum(moves**2, 1e-150)
     freedom = 3.0 * squares.sum(axis=0) ** 2 / np.sum(squares**2, axis=0)
     moving = np.sum(squares > 1e-6 * squares.max(axis=0), axis=0)

@@ -1,7 +1,7 @@
-"""Exponential and logarithm, so that loops over places of a tendon can take several at once.
+"""Exponential and logarithm that the compiler can vectorise in loops over nodes of a tendon.
 
-Those of the library are called for one place after another, 5 to 20 ns each; these are additions
-and products without a branch, which the compiler lays side by side.
+Those of the library are called node by node, 5 to 20 ns each; these are additions and products
+without a branch.
 """
 
 import math
@@ -10,15 +10,15 @@ import numpy as np
 
 from tsas_cli.numerics.compiled import kernel
 
-LARGEST = 42.0  # e^−42 is less than rounding of what is not decayed
-EXPONENT_BITS, EXPONENT_BIAS = 52, 1023  # of a float: where its exponent begins, and what 2⁰ is
+LARGEST = 42.0  # 1 − e^−42 rounds to 1
+EXPONENT_BITS, EXPONENT_BIAS = 52, 1023  # of a float: first bit of its exponent, exponent of 2⁰
 FRACTION, ONE = (1 << 52) - 1, 1023 << 52  # the bits of its fraction, and those of 1
 ROOT, HALF_LOG = math.sqrt(2.0), 0.5 * math.log(2.0)
 
 
 @kernel
 def exponential(x: float) -> float:
-    """Return e^x within 1e-12 of itself, for x from −42 to 42, beyond which it stays.
+    """Return e^x within 1e-12 of itself, for x from −42 to 42, saturated beyond.
 
     e^x = (e^z)^512 with z = x/512, no larger than 0.082, and e^z by its series to z⁸.
     """
@@ -45,7 +45,7 @@ def exponential(x: float) -> float:
 
 @kernel
 def logarithm(x: float) -> float:
-    """Return ln x within 1e-13, for x > 0 with all its bits.
+    """Return ln x within 1e-13, for normal floats x > 0.
 
     x = 2^e m with m from 1 to 2, and ln m = ln √2 + 2 artanh u, u = (m − √2)/(m + √2) to u¹⁵.
     """

@@ -2,8 +2,8 @@
 
 Each step solves the normal equations of a few unknowns, which for tens of thousands of residuals
 is a hundred times cheaper than the decompositions of the whole Jacobian in scipy's
-`least_squares`, and the simulations are what counts. An unknown that a step drives against its
-bound stays there until the gradient leads it back (projected steps).
+`least_squares`; simulations dominate the cost. An unknown that reaches its bound stays there while
+the gradient points outwards (active set, projected steps).
 """
 
 from collections.abc import Callable
@@ -21,7 +21,7 @@ STEP = 1e-7  # change of all unknowns below which a step is the last
 
 @dataclass(frozen=True)
 class Minimum:
-    """Where the squares are least: unknowns (p,), residual (n,) and Jacobian (n, p) there."""
+    """The minimum: unknowns (p,), with the residual (n,) and the Jacobian (n, p) there."""
 
     values: Floats
     residual: Floats
@@ -40,7 +40,7 @@ def least_squares(
     tolerance: float,
     most: int,
 ) -> Minimum:
-    """Minimise half the sum of squares of the residual within bounds.
+    """Return the minimum of half the sum of squares of the residual within bounds.
 
     Parameters
     ----------
@@ -51,9 +51,9 @@ def least_squares(
     bounds
         Lower and upper bounds, each of shape (p,).
     tolerance
-        The part of the squares that a last step may still have saved, or promise to save.
+        The share of the squares below which the actual or predicted reduction ends the search.
     most
-        The number of evaluations of the residual after which the search is given up.
+        The number of evaluations of the residual after which the search ends.
     """
     lower, upper = bounds
     x = np.clip(start, lower, upper)
@@ -61,34 +61,38 @@ def least_squares(
     damping, evaluations = FIRST_DAMPING, 1
     while evaluations < most:
         gradient, gram = J.T @ r, J.T @ J
-        held = ((x <= lower) & (gradient > 0.0)) | ((x >= upper) & (gradient < 0.0))
-        step = _step(gradient, gram, held, damping)
+        at_bound = ((x <= lower) & (gradient > 0.0)) | ((x >= upper) & (gradient < 0.0))
+        step = _step(gradient, gram, at_bound, damping)
         step = np.clip(x + step, lower, upper) - x
-        promised = -float(gradient @ step + 0.5 * step @ gram @ step)
+        predicted = -float(gradient @ step + 0.5 * step @ gram @ step)
         squares = float(r @ r)
-        if promised <= 0.5 * tolerance * squares:
-            return Minimum(x, r, J, True, "no step saves more", evaluations)
-        tried = residual(x + step)
+        if predicted <= 0.5 * tolerance * squares:
+            return Minimum(x, r, J, True, "no step reduces the squares further", evaluations)
+        trial = residual(x + step)
         evaluations += 1
-        saved = squares - float(tried @ tried)
-        if saved > 0.0:
-            x, r, J = x + step, tried, jacobian(x + step)
+        reduction = squares - float(trial @ trial)
+        if reduction > 0.0:
+            x, r, J = x + step, trial, jacobian(x + step)
             damping = max(damping / 10.0, 1e-12)
-            if saved < tolerance * squares or np.abs(step).max() < STEP:
-                return Minimum(x, r, J, True, "the last step saved little", evaluations)
+            if reduction < tolerance * squares or np.abs(step).max() < STEP:
+                return Minimum(x, r, J, True, "the last step is within the tolerance", evaluations)
         else:
             damping *= 10.0
             if np.abs(step).max() < STEP or damping > MOST_DAMPING:
-                return Minimum(x, r, J, True, "no step saves anything", evaluations)
-    return Minimum(x, r, J, False, f"still falling after {most} evaluations", evaluations)
+                return Minimum(x, r, J, True, "no step reduces the squares", evaluations)
+    return Minimum(
+        x, r, J, False, f"squares still decreasing after {most} evaluations", evaluations
+    )
 
 
-def _step(gradient: Floats, gram: Floats, held: npt.NDArray[np.bool_], damping: float) -> Floats:
-    """Return the damped Gauss-Newton step of the unknowns that are not held at a bound."""
+def _step(
+    gradient: Floats, gram: Floats, at_bound: npt.NDArray[np.bool_], damping: float
+) -> Floats:
+    """Return the damped Gauss-Newton step of the unknowns that are not at an active bound."""
     step = np.zeros(gradient.size)
-    free = np.flatnonzero(~held & (np.diag(gram) > 0.0))
+    free = np.flatnonzero(~at_bound & (np.diag(gram) > 0.0))
     if free.size:
-        scale = np.sqrt(np.diag(gram)[free])  # makes the equations free of units
+        scale = np.sqrt(np.diag(gram)[free])  # makes the equations dimensionless
         matrix = gram[np.ix_(free, free)] / np.outer(scale, scale)
         matrix[np.diag_indices(free.size)] += damping
         step[free] = -np.linalg.lstsq(matrix, gradient[free] / scale, rcond=1e-14)[0] / scale

@@ -1,11 +1,11 @@
-"""The exact answer of an integrator with lags to a sampled input, from rest.
+"""The exact response of an integrator with lags to a sampled input, from rest.
 
     y = 1 / ((s + a) P(s)) · u,   P(s) = p0 + p1 s + … with P(0) = 1 and roots to the left
 
 The integrator is split off, 1/((s + a) P) = R/(s + a) + D(s) with R = 1/P(−a): a discrete filter
-that holds it with the lags has a root at z = 1 beside others and loses all its digits. What is left
-is a stable filter, which the matrix exponential gives for an input that is constant or linear
-between samples.
+of both together has a root at z = 1 near others and loses all its digits. The remainder D is a
+stable filter, discretised by the matrix exponential for an input that is constant or linear between
+samples.
 """
 
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ from tsas_cli.numerics.compiled import kernel
 Floats = npt.NDArray[np.float64]
 Hold = Literal["zero", "first"]
 
-SLOW = 1e-4  # a leak per sample below which its weights are taken from their series
+SLOW = 1e-4  # leak per sample below which its weights are computed by their series
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ def sampled(step_s: float, values: Floats, hold: Hold) -> Sampled:
 
 
 def delayed(u: Sampled, delay_s: float) -> Sampled:
-    """Return an input that comes later; before its first sample there is nothing.
+    """Return an input delayed, zero before its first sample.
 
     A linear one that does not begin at zero rises over one sample.
     """
@@ -88,7 +88,7 @@ def integrator_with_lags(u: Sampled, leak_per_s: float, lags: Floats) -> Floats:
 
 
 def transients(step_s: float, size: int, leak_per_s: float, lags: Floats) -> Floats:
-    """Return how y goes on by itself when it does not begin at rest, shape (n, order)."""
+    """Return the free responses of y from initial states not at rest, shape (n, order)."""
     from scipy.signal import lfilter
 
     columns = []
@@ -105,18 +105,18 @@ def transients(step_s: float, size: int, leak_per_s: float, lags: Floats) -> Flo
 
 
 def _leaky(u: Sampled, a: float) -> Floats:
-    """Return the integral that leaks by a in each sample."""
+    """Return the leaky integral of the input, a the leak per sample."""
     if a == 0.0:
         return u.integral.copy()
     from scipy.signal import lfilter
 
-    stays = -np.expm1(-a) / a
-    share = (1.0 - stays) / a if a > SLOW else 0.5 - a / 6.0 + a * a / 24.0
+    weight = -np.expm1(-a) / a
+    share = (1.0 - weight) / a if a > SLOW else 0.5 - a / 6.0 + a * a / 24.0
     if u.hold == "first":
-        pushes = (stays - share) * u.values[:-1] + share * u.values[1:]
+        inputs = (weight - share) * u.values[:-1] + share * u.values[1:]
     else:
-        pushes = stays * u.values[:-1]
-    return np.concatenate(([0.0], u.step_s * lfilter([1.0], [1.0, -np.exp(-a)], pushes)))
+        inputs = weight * u.values[:-1]
+    return np.concatenate(([0.0], u.step_s * lfilter([1.0], [1.0, -np.exp(-a)], inputs)))
 
 
 def lagged(u: Sampled, lags: Floats) -> Floats:
@@ -129,7 +129,7 @@ def lagged(u: Sampled, lags: Floats) -> Floats:
 
 
 def _filtered(u: Sampled, numerator: Floats, denominator: Floats) -> Floats:
-    """Return a strictly proper filter's answer, shape (n,), in time counted in samples.
+    """Return the response of a strictly proper filter, shape (n,), with time in samples.
 
     With x(k+1) = Φ x(k) + Γ0 u(k) + Γ1 u(k+1) and y = C x.
     """
@@ -148,8 +148,8 @@ def _filtered(u: Sampled, numerator: Floats, denominator: Floats) -> Floats:
     else:
         constant -= ramp
     state = np.ascontiguousarray(step[:order, :order])
-    answer: Floats = _stepped(state, constant, ramp, numerator, np.ascontiguousarray(u.values))
-    return answer
+    response: Floats = _stepped(state, constant, ramp, numerator, np.ascontiguousarray(u.values))
+    return response
 
 
 @kernel

@@ -1,9 +1,9 @@
 """Local polynomial fits to a sampled signal: the window of least risk, and where slopes jump.
 
 The signal is cut at its corners into pieces, given by their bounds 0, …, n; a window never
-crosses a cut. Inside a piece a polynomial of fourth degree is fitted, which bends with a turning
-point and so allows a wide window; where a cut shortens the window, a parabola, which is steadier
-at the edge. Times need not be even.
+crosses a cut. Inside a piece a polynomial of fourth degree is fitted, which follows a turning
+point and so allows a wide window; where a cut shortens the window, a parabola, which has less
+variance at the edge. Times need not be even.
 """
 
 import math
@@ -17,9 +17,9 @@ Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
 
 HALF_WINDOWS = np.array([3, 5, 8, 12, 18, 27, 40, 60, 90, 135, 200, 300, 450, 700, 1000])  # samples
-RISK_POINTS = 2000  # where the risk is looked at, evenly spread
+RISK_POINTS = 2000  # samples at which the risk is estimated, evenly spread
 RISK_BLOCKS = 40  # pieces of the signal that may have windows of their own
-UNDERSMOOTH = 0.75  # of the window of least risk: what follows minds bias more than noise
+UNDERSMOOTH = 0.75  # of the window of least risk: a hysteretic model tolerates noise, not bias
 CORNER = 6.0  # standard deviations of the difference of two slopes
 
 
@@ -56,10 +56,9 @@ def best_half_windows(
 def quadratic_fit(
     time_s: Floats, values: Floats, i: int, first: int, last: int
 ) -> tuple[float, float, float, float]:
-    """Fit a parabola to the samples first … last; return its value and slope at sample i.
+    """Return value and slope at sample i of the parabola through the samples first … last.
 
-    With them their variances for noise of variance one. Fewer than four samples give a line or
-    the mean.
+    With their variances for noise of variance one. Few samples give a line or the mean.
     """
     t1 = t2 = t3 = t4 = y0 = y1 = y2 = 0.0
     unit = (time_s[last] - time_s[first]) / max(last - first, 1)
@@ -95,9 +94,9 @@ def quadratic_fit(
 def quartic_fit(
     time_s: Floats, values: Floats, i: int, first: int, last: int
 ) -> tuple[float, float]:
-    """Fit a polynomial of fourth degree to the samples first … last; at least nine of them.
+    """Return the value at sample i of the quartic fitted to first … last, and its variance.
 
-    Returns its value at sample i and the variance of that for noise of variance one.
+    At least nine samples; the variance is for noise of variance one.
     """
     unit = 0.5 * (time_s[last] - time_s[first])
     moments = np.zeros(9)
@@ -139,7 +138,7 @@ def first_row_of_inverse(moments: Floats) -> Floats:
 def local_fit(
     time_s: Floats, values: Floats, i: int, half: int, start: int, end: int, degree: int
 ) -> tuple[float, float]:
-    """Fit the window around sample i inside the piece start … end−1; return value and variance.
+    """Return value and variance of the fit around sample i inside the piece start … end−1.
 
     The fourth degree is for windows of nine samples or more that no corner shortens.
     """
@@ -164,8 +163,8 @@ def risk(
 ) -> Floats:
     """Return Stein's estimate of the squared error of the fit, at the given samples.
 
-    It is (y − fit)² − σ² + 2 cov(y, fit); noise that keeps its value for `memory` samples has
-    that many times the covariance.
+    It is (y − fit)² − σ² + 2 cov(y, fit); noise that is constant over `memory` samples has that
+    many times the covariance.
     """
     out = np.empty(points.size)
     piece = 0
@@ -181,10 +180,10 @@ def risk(
 
 @kernel
 def corners(time_s: Floats, values: Floats, half: int, noise: float) -> Indices:
-    """Return where the slope jumps, as the bounds of the pieces between: 0, …, n.
+    """Return the samples at which the slope jumps, as bounds of the pieces between: 0, …, n.
 
-    Past and future slopes are compared over one window each; of the samples nearer to each
-    other than a window, the one with the largest jump is the corner.
+    Past and future slopes are compared over one window each; of samples closer together than a
+    window, the one with the largest jump is the corner.
     """
     n = values.size
     stride = max(1, half // 10)

@@ -1,4 +1,4 @@
-"""How noisy and how coarse a sampled channel is, told from the samples alone."""
+"""Noise level and quantisation step of a sampled channel, estimated from its samples alone."""
 
 import math
 
@@ -7,24 +7,24 @@ import numpy.typing as npt
 
 Floats = npt.NDArray[np.float64]
 
-FEWEST_SAMPLES = 16  # that tell it
-_DIFFERENCE = np.array([1.0, -3.0, 3.0, -1.0])  # blind to anything up to a parabola
+FEWEST_SAMPLES = 16  # for an estimate
+_DIFFERENCE = np.array([1.0, -3.0, 3.0, -1.0])  # zero for a parabola
 _GAIN = math.sqrt(float(np.sum(_DIFFERENCE**2)))
 
 
 def noise_sd(values: Floats) -> float:
     """Return the standard deviation of the sample-to-sample noise of a channel.
 
-    Third differences remove the motion; a robust mean square of what is left (the largest 5 % of
-    the differences, jumps and reversals among them, are cut off and made up for) is the noise.
-    Slow disturbances are not counted. NaN where fewer than 16 samples are there.
+    Third differences remove the motion; the noise is their trimmed mean square, without the largest
+    5 % (jumps and reversals among them) and corrected for that. Slow disturbances are not counted.
+    NaN for fewer than 16 samples.
     """
     clean = values[np.isfinite(values)]
     if clean.size < FEWEST_SAMPLES:
         return math.nan
     third = np.abs(np.convolve(clean, _DIFFERENCE, mode="valid"))
-    kept = np.sort(third)[: int(0.95 * third.size)]
-    return float(np.sqrt(np.mean(kept**2) / _TRIMMED) / _GAIN)
+    trimmed = np.sort(third)[: int(0.95 * third.size)]
+    return float(np.sqrt(np.mean(trimmed**2) / _TRIMMED) / _GAIN)
 
 
 # Mean square of a standard normal variable whose largest 5 % in magnitude are cut off:
@@ -33,7 +33,7 @@ _TRIMMED = 1.0 - 2.0 * 1.959964 * 0.05844507 / 0.95
 
 
 def quantisation_step(values: Floats) -> float:
-    """Return the step between the levels that a channel takes, 0 where it takes too many levels.
+    """Return the step between the levels of a channel, 0 where it is not quantised.
 
     A channel is quantised when all differences between neighbouring levels are multiples of the
     smallest one, within a twentieth of it, and levels repeat.

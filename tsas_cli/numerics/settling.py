@@ -1,4 +1,4 @@
-"""A drift that starts at a rate and settles."""
+"""A drift that starts at a rate and decays exponentially to a steady state."""
 
 import numpy as np
 
@@ -12,11 +12,11 @@ def settling(rate: float, settling_per_s: float, time_s: float) -> float:
     Parameters
     ----------
     rate
-        How fast it starts, in any unit per second.
+        Initial rate, in any unit per second.
     settling_per_s
         The inverse ν of the time constant [1/s]; at zero the drift goes on for ever.
     time_s
-        Time t since it began [s].
+        Time t since the start [s].
     """
     if settling_per_s == 0.0:
         return rate * time_s

@@ -1,4 +1,4 @@
-"""Independent calls at once, on threads: compiled kernels let go of the interpreter's lock."""
+"""Independent calls on threads: compiled kernels release the interpreter's lock."""
 
 import os
 from collections import deque
@@ -12,16 +12,16 @@ from tsas_cli.support.errors import InputError
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 
-THREADS = "TSAS_THREADS"  # in the environment: how many, one for each core without it
+THREADS = "TSAS_THREADS"  # environment variable: how many threads, by default one for each core
 
 
 def each(
     function: Callable[[Item], Result], items: Sequence[Item], *, at_once: bool = True
 ) -> list[Result]:
-    """Return the function of each item, in their order; it must not change what others read.
+    """Return the function of each item, in their order; it must not change shared data.
 
-    What is short, or mostly Python, loses more to the interpreter's lock than threads save:
-    it is called without `at_once`.
+    Call short or mostly Python functions without `at_once`: they lose more to the interpreter's
+    lock than threads save.
     """
     if not at_once:
         return [function(item) for item in items]
@@ -29,7 +29,7 @@ def each(
     if pool < 2 or len(items) < 2:
         return [function(item) for item in items]
     found: dict[int, Result] = {}
-    waiting = iter(range(len(items)))  # all threads take from it: items of their own cost more
+    waiting = iter(range(len(items)))  # shared by all threads: a fixed split is slower
 
     def work(_: int) -> None:
         try:
@@ -51,7 +51,7 @@ def threads() -> int:
     Raises
     ------
     InputError
-        The environment asks for what is no number.
+        The environment variable is not a whole number.
     """
     asked = os.environ.get(THREADS) or str(os.cpu_count() or 1)
     if not asked.isdecimal():

@@ -1,4 +1,4 @@
-"""Where a sampled motion turns back, told apart from noise by a threshold."""
+"""Reversals of a sampled motion, separated from noise by a threshold."""
 
 import numpy as np
 import numpy.typing as npt
@@ -13,17 +13,17 @@ Indices = npt.NDArray[np.int64]
 def turning_points(values: Floats, threshold: float, direction: int = 0) -> Indices:
     """Return the indices of the extrema between which the signal moves by more than a threshold.
 
-    The first and the last sample are always there, so that neighbouring indices bound the
-    strokes. Extrema alternate; of a flat extremum the first sample is taken.
+    The first and the last sample are always included, so that neighbouring indices bound the
+    strokes. Extrema alternate; a flat extremum counts at its first sample.
 
     Parameters
     ----------
     values
         The signal, shape (n,), finite.
     threshold
-        The smallest move back that counts as a turn, in the signal's unit.
+        The amplitude beyond which a move back is a reversal, in the signal's unit.
     direction
-        Of the stroke that the signal begins in, 1 or −1, where it is the rest of a longer one.
+        Of the first stroke, 1 or −1, where the signal continues a longer one; else 0.
     """
     n = values.size
     found = np.zeros(n, dtype=np.int64)
@@ -59,7 +59,7 @@ def turning_points(values: Floats, threshold: float, direction: int = 0) -> Indi
 
 @kernel
 def last_beyond(values: Floats, i: int, reach: float) -> int:
-    """Return the last sample before i that is further from it than `reach`, −1 where none is."""
+    """Return the last sample before i whose value differs by more than `reach`, else −1."""
     for j in range(i - 1, -1, -1):
         if abs(values[j] - values[i]) > reach:
             return j

@@ -1,4 +1,4 @@
-"""What Yang et al. 2025 print: the numbers of `values.toml`, each with its unit and its source."""
+"""Numbers printed by Yang et al. 2025, from `values.toml`, each with its unit and its source."""
 
 import math
 import tomllib
@@ -21,7 +21,7 @@ class Printed:
 
     @property
     def half_a_digit(self) -> float:
-        """Half a unit of the last digit printed; trailing zeros are not known to be printed."""
+        """Half a unit of the last printed digit, trailing zeros not counted."""
         mantissa, _, exponent = repr(self.value).partition("e")
         decimals = len(mantissa.partition(".")[2].rstrip("0"))
         return 0.5 * 10.0 ** (int(exponent or 0) - decimals)
@@ -44,14 +44,14 @@ class Paper:
         return printed.value * (math.pi if printed.unit == "pi rad" else 1.0)
 
     def with_value(self, name: str, value: float) -> "Paper":
-        """Return the same paper with another number in one place."""
+        """Return a copy of the paper with one number replaced."""
         changed = dict(self.values) | {name: replace(self.values[name], value=value)}
         return replace(self, values=MappingProxyType(changed))
 
 
 @cache
 def yang2025() -> Paper:
-    """Read the numbers that come with the program."""
+    """Return the numbers that are shipped with the package."""
     text = files(__package__).joinpath("values.toml").read_text(encoding="utf-8")
     content = tomllib.loads(text)
     citation = MappingProxyType(content.pop("citation"))

@@ -1,1 +1,1 @@
-"""The nominal rig and what it does: four models, over shared ends, sensors and parameters."""
+"""The nominal rig and its models: four solvers with shared ends, sensors and parameters."""

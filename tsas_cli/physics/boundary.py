@@ -1,4 +1,4 @@
-"""The two ends of the tendon: what is given there, and the laws of what hangs there."""
+"""Boundary conditions of the tendon: the given quantity at each end, and the laws of the load."""
 
 from typing import NamedTuple
 
@@ -11,18 +11,18 @@ from tsas_cli.effects.load_spring_nonlinearity import (
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.rig import Rig
 
-DISPLACEMENT, FORCE, SPRING = 0, 1, 2  # what is given at an end
+DISPLACEMENT, FORCE, SPRING = 0, 1, 2  # the given quantity at an end
 
 
 class Boundary(NamedTuple):
-    """What is given at the two ends: the kind of each."""
+    """The given quantity at each end."""
 
     drive: int
     load: int
 
 
 class DriveEnd(NamedTuple):
-    """The proximal end: what is given there, and friction and a spring beside the tendon."""
+    """The proximal end: the given quantity, friction and a spring in parallel to the tendon."""
 
     given: int
     friction_N: float
@@ -30,7 +30,7 @@ class DriveEnd(NamedTuple):
 
 
 class LoadEnd(NamedTuple):
-    """The distal end: what is given there, and spring, guide and mass of the load."""
+    """The distal end: the given quantity; spring, guide and mass of the load."""
 
     given: int
     stiffness_N_per_mm: float
@@ -62,7 +62,7 @@ def load_end(rig: Rig, given: int) -> LoadEnd:
 
 @kernel
 def moving_friction(load: LoadEnd) -> float:
-    """Return the friction of the load's guide that a moving load end feels [N]."""
+    """Return the friction of the load's guide that acts on a moving load end [N]."""
     if load.given == SPRING:
         return guide_friction(load.friction)
     return load.friction.before_sensor_N if load.given == FORCE else 0.0
@@ -70,9 +70,9 @@ def moving_friction(load: LoadEnd) -> float:
 
 @kernel
 def share_before_sensor(load: LoadEnd) -> float:
-    """Return the share of the guide's friction that the load's force sensor does not feel.
+    """Return the share of the guide's friction that acts before the load's force sensor.
 
-    Where the load's displacement is given that is all there is: the friction before the sensor.
+    It is 1 where the load's displacement is given: the friction behind the sensor plays no part.
     """
     before = load.friction.before_sensor_N
     if before == 0.0:
@@ -82,8 +82,8 @@ def share_before_sensor(load: LoadEnd) -> float:
 
 @kernel
 def unloaded_position(x: float, preload_N: float, load: LoadEnd) -> float:
-    """Return where a spring of a preload leaves the load without tension [mm], sought from x."""
-    for _ in range(5):  # Newton's method, exact at once for a straight spring
+    """Return the position of the load without tension [mm], iterated from x."""
+    for _ in range(5):  # Newton's method, exact after one iteration for a linear spring
         force = preload_N + spring_force(x, load.stiffness_N_per_mm, load.nonlinearity)
         x -= force / spring_tangent(x, load.stiffness_N_per_mm, load.nonlinearity)
     return x

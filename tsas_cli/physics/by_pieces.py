@@ -1,7 +1,7 @@
-"""Follow a run that is too long for memory: piece after piece, with the solver's state carried on.
+"""Simulate a run that is too long for memory piece by piece; the solver's state is carried over.
 
-The answer is that of `simulate` for the whole run: each piece goes on where the last one ended.
-Speeds and delays look at samples before and after; so a piece is computed with some of its
+The result is that of `simulate` for the whole run: each piece starts from the final state of the
+one before. Speeds and delays need samples before and after; so a piece is computed with some of its
 neighbours' samples, which each neighbour computes again.
 """
 
@@ -41,25 +41,25 @@ from tsas_cli.physics.slip.chain import ChainState, follow, initial_state
 Floats = npt.NDArray[np.float64]
 State = BranchState | ChainState | StaticState
 
-BESIDE = 2  # samples of a neighbour that a speed needs, and one more
+OVERLAP = 2  # samples of a neighbour: one for a speed, and one more
 STATIC = -1  # nodes of the lumped model
 
 
 class Start(NamedTuple):
-    """Where a piece goes on: the solver's state, place [mm] and direction of the drive's end."""
+    """Start of a piece: the solver's state, position [mm] and direction of the drive's end."""
 
     state: State
-    place: float
+    position: float
     direction: float
 
 
 @dataclass(frozen=True)
-class _Joined:
-    """A piece with samples of its neighbours beside it, all counted from the first sample here.
+class _OverlappingPiece:
+    """A piece with samples of its neighbours, indexed from the first of them.
 
-    The piece is `first` … `end`−1. The model is followed from `begin` to `until`−1, where delays
-    and speeds have what they look at. The next piece's samples begin at `handover` and its model at
-    `next_begin`; both are None in the last piece.
+    The piece is `first` … `end`−1. The model runs from `begin` to `until`−1, the range that delays
+    and speeds need. The next piece's samples begin at `handover` and its model at `next_begin`;
+    both are None in the last piece.
     """
 
     drive: Drive
@@ -79,45 +79,45 @@ def simulate_pieces(
     on_mesh: bool = False,
     nodes: int | None = None,
 ) -> Iterator[Response]:
-    """Follow a run given in pieces; yield the answer to each, as `simulate` gives it.
+    """Yield the response of each piece of a run, equal to that of `simulate` for the whole run.
 
-    `drives` are one run's samples in order, with times since the run began; what they say beside
-    their samples is that of the first one. The dynamic model is not followed so.
+    `drives` are one run's samples in order, with times since the start of the run; the fields
+    besides the samples are those of the first one.
 
     Raises
     ------
     ValueError
-        The dynamic model is asked for, or a channel's delay is longer than a piece.
+        The dynamic model, which cannot be split, or a channel's delay longer than a piece.
     """
     if dynamics == "lugre":
-        raise ValueError("the dynamic model is not followed in pieces")
+        raise ValueError("the dynamic model cannot be simulated in pieces")
     start: Start | None = None
     mesh = 0
-    for joined in _joined(drives, _longest_delay(rig)):
-        ends = ends_of(rig, joined.drive, start and (start.place, start.direction))
+    for piece in _overlapping(drives, _longest_delay(rig)):
+        ends = ends_of(rig, piece.drive, start and (start.position, start.direction))
         if start is None:
-            closed = is_closed(rig, joined.drive) and not on_mesh
+            closed = is_closed(rig, piece.drive) and not on_mesh
             mesh = STATIC if dynamics == "static" else CLOSED if closed else nodes or NODES
-            before = [] if mesh == STATIC else history(rig, ends, joined.drive.start_f_in_N, mesh)
-            passed = ends.first().after(before)
-            state = _resting(rig, passed, mesh)
+            before = [] if mesh == STATIC else history(rig, ends, piece.drive.start_f_in_N, mesh)
+            past_inputs = ends.first().after(before)
+            state = _at_rest(rig, past_inputs, mesh)
             if before:
-                _, state = _follow(rig, passed.part(0, len(before)), mesh, state)
+                _, state = _follow(rig, past_inputs.part(0, len(before)), mesh, state)
         else:
             state = start.state
-        to = joined.until if joined.next_begin is None else joined.next_begin
-        outputs, state = _follow(rig, ends.part(joined.begin, to), mesh, state)
-        if joined.handover is not None:
-            at = joined.handover
+        to = piece.until if piece.next_begin is None else piece.next_begin
+        outputs, state = _follow(rig, ends.part(piece.begin, to), mesh, state)
+        if piece.handover is not None:
+            at = piece.handover
             start = Start(deepcopy(state), float(ends.drive[at]), float(ends.direction[at]))
-            further, _ = _follow(rig, ends.part(to, joined.until), mesh, state)
-            outputs = _one_after_the_other(outputs, further)
-        drive = _part(joined.drive, joined.begin, joined.until)
+            further, _ = _follow(rig, ends.part(to, piece.until), mesh, state)
+            outputs = _concatenated(outputs, further)
+        drive = _part(piece.drive, piece.begin, piece.until)
         response = sensor_readings(rig, drive, outputs, 0, solver_of(mesh, dynamics))
-        yield _only(response, joined.first - joined.begin, joined.end - joined.begin)
+        yield _own_samples(response, piece.first - piece.begin, piece.end - piece.begin)
 
 
-def _resting(rig: Rig, ends: EndInputs, mesh: int) -> State:
+def _at_rest(rig: Rig, ends: EndInputs, mesh: int) -> State:
     if mesh == STATIC:
         return StaticState(0.0, rig.preload_N, rig.preload_N)
     if mesh == CLOSED:
@@ -126,7 +126,7 @@ def _resting(rig: Rig, ends: EndInputs, mesh: int) -> State:
 
 
 def _follow(rig: Rig, ends: EndInputs, mesh: int, state: State) -> tuple[Output, State]:
-    """Return the output and the state where it ends."""
+    """Return the output and the final state."""
     if isinstance(state, BranchState):
         state = with_room(state, ends.drive)
         return with_spring_load(rig, ends, follow_branches(ends.drive, rig, state)), state
@@ -141,35 +141,35 @@ def _longest_delay(rig: Rig) -> float:
     return max(abs(delay) for delay in rig.effects.channel_delay)
 
 
-def _joined(drives: Iterable[Drive], delay_s: float) -> Iterator[_Joined]:
-    """Join each piece with what it needs of its neighbours: twice the longest delay, and more."""
+def _overlapping(drives: Iterable[Drive], delay_s: float) -> Iterator[_OverlappingPiece]:
+    """Yield each piece with samples of its neighbours, over more than twice the longest delay."""
     tail: Drive | None = None
     begin = 0
-    coming = iter(drives)
-    now = next(coming)
-    for after in chain(coming, (None,)):
+    upcoming = iter(drives)
+    now = next(upcoming)
+    for after in chain(upcoming, (None,)):
         first = 0 if tail is None else tail.values.size
         end = first + now.values.size
         head = None if after is None else _head(now, after, delay_s)
-        drive = _join([part for part in (tail, now, head) if part is not None])
+        drive = _concatenated_drives([part for part in (tail, now, head) if part is not None])
         size = drive.values.size
         if after is None:
-            yield _Joined(drive, first, end, begin, size, None, None)
+            yield _OverlappingPiece(drive, first, end, begin, size, None, None)
             return
         time_s = _times(drive)
         next_s = float(_times(after)[0])
-        handover = int(np.searchsorted(time_s, next_s - 2.0 * delay_s)) - BESIDE
+        handover = int(np.searchsorted(time_s, next_s - 2.0 * delay_s)) - OVERLAP
         if handover < begin:
-            raise ValueError("a piece is shorter than what a delay looks back on")
+            raise ValueError("a piece is shorter than a channel's delay")
         far_enough = int(np.searchsorted(time_s, time_s[handover] + delay_s))
         next_begin = max(handover + 1, far_enough)
-        yield _Joined(drive, first, end, begin, size - 1, handover, next_begin)
+        yield _OverlappingPiece(drive, first, end, begin, size - 1, handover, next_begin)
         tail, begin, now = _part(drive, handover, end), next_begin - handover, after
 
 
 def _head(now: Drive, after: Drive, delay_s: float) -> Drive:
     until = float(_times(now)[-1]) + 2.0 * delay_s
-    return _part(after, 0, int(np.searchsorted(_times(after), until, side="right")) + BESIDE)
+    return _part(after, 0, int(np.searchsorted(_times(after), until, side="right")) + OVERLAP)
 
 
 def _times(drive: Drive) -> Floats:
@@ -185,7 +185,7 @@ def _part(drive: Drive, first: int, end: int) -> Drive:
     return replace(drive, values=drive.values[first:end], load_values=load, time_s=time_s)
 
 
-def _join(parts: Sequence[Drive]) -> Drive:
+def _concatenated_drives(parts: Sequence[Drive]) -> Drive:
     loads = [part.load_values for part in parts if part.load_values is not None]
     return replace(
         parts[0],
@@ -195,15 +195,15 @@ def _join(parts: Sequence[Drive]) -> Drive:
     )
 
 
-def _one_after_the_other(one: Output, other: Output) -> Output:
+def _concatenated(one: Output, other: Output) -> Output:
     x_in, x_out, f_in, f_out = (
         np.concatenate(pair) for pair in zip(one[:4], other[:4], strict=True)
     )
     return Output(x_in, x_out, f_in, f_out, np.concatenate((one.phase, other.phase)))
 
 
-def _only(response: Response, first: int, end: int) -> Response:
-    """Return an answer without the samples of the neighbours."""
+def _own_samples(response: Response, first: int, end: int) -> Response:
+    """Return a response without the samples of the neighbours."""
     rows = slice(first, end)
     return replace(
         response,

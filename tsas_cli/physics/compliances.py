@@ -1,6 +1,6 @@
-"""What gives in series along the tendon, before any friction."""
+"""Compliances in series along the tendon, without friction."""
 
-from tsas_cli.effects.drive_compliance import drive_give
+from tsas_cli.effects.drive_compliance import drive_deflection
 from tsas_cli.effects.free_tendon import free_compliance
 from tsas_cli.effects.sheath_compression import softened
 from tsas_cli.numerics.compiled import kernel
@@ -9,7 +9,7 @@ from tsas_cli.physics.rig import Rig
 
 @kernel
 def sheath_compliance(rig: Rig) -> float:
-    """Return L/(EA) of the sheathed tendon, the sheath's own give included [mm/N]."""
+    """Return L/(EA) of the sheathed tendon, the sheath's compression included [mm/N]."""
     ratio = rig.effects.sheath_compression.compliance_ratio
     return softened(rig.sheath_length_mm / rig.tendon_stiffness_N, ratio)
 
@@ -24,7 +24,7 @@ def length_per_angle(place: float, rig: Rig) -> float:
 def compliance_at_drive(rig: Rig) -> float:
     """Return the compliance between the drive's sensors and the sheath [mm/N]."""
     free = free_compliance(rig.effects.free_tendon.proximal_length_mm, rig.tendon_stiffness_N)
-    return free + drive_give(1.0, rig.effects.drive_compliance.compliance_mm_per_N)
+    return free + drive_deflection(1.0, rig.effects.drive_compliance.compliance_mm_per_N)
 
 
 @kernel

@@ -1,7 +1,7 @@
-"""What acts on a tendon over a run, sample by sample, and what a model gives for it.
+"""Inputs of the tendon over a run, sample by sample, and outputs of a model.
 
 A course is one array, shape (8, m), because a compiled call counts the references of each array
-that it gets: with a record of rows the dynamic chain takes a quarter longer.
+argument: with a record of rows the dynamic chain takes a quarter longer.
 """
 
 from typing import NamedTuple
@@ -16,22 +16,22 @@ Floats = npt.NDArray[np.float64]
 
 # Rows of a course; the first four alone are a course of `Losses`.
 PULLED, RELEASED, VISCOUS, LOST = range(4)
-DRIVE, LOAD = 4, 5  # displacement [mm] or tension at the sensor [N]; a spring gives no load
-STEP = 6  # time since the sample before, infinite where it plays no part [s]
-TIME = 7  # since the run began [s]
+DRIVE, LOAD = 4, 5  # displacement [mm] or tension at the sensor [N]; LOAD unused with a spring
+STEP = 6  # time since the sample before, infinite for a quasi-static step [s]
+TIME = 7  # since the start of the run [s]
 
 
 class Losses(NamedTuple):
-    """What the tendon loses along the sheath and at the load's anchor, at one moment."""
+    """Losses of tension along the sheath and of preload at the load's anchor, at one moment."""
 
     pulled: float  # friction times bend in contraction [1]
     released: float  # friction times bend in loosening [1]
     viscous_N: float  # tension lost over the whole sheath to viscous friction
-    preload_N: float  # that the load spring's anchor has lost
+    preload_N: float  # lost at the load spring's anchor
 
 
 class Tensions(NamedTuple):
-    """What a model in closed form gives: with a spring load the rest follows. See `Output`."""
+    """Output of a closed-form model; with a spring load the positions follow. See `Output`."""
 
     f_in: Floats
     f_out: Floats
@@ -39,10 +39,10 @@ class Tensions(NamedTuple):
 
 
 class Output(NamedTuple):
-    """What a model gives at each sample, free of the sensors' errors, shape (m,) [mm, N].
+    """Output of a model at each sample, without the sensors' errors, shape (m,) [mm, N].
 
     `phase` is +1 where the whole tendon slips in contraction, −1 in loosening, 0 where a part of
-    it sticks, 2 where it hangs slack, 3 where the solver did not converge.
+    it sticks, 2 where it is slack, 3 where the solver did not converge.
     """
 
     x_in: Floats
@@ -60,7 +60,7 @@ def losses_of(course: Floats, i: int) -> Losses:
 
 @kernel
 def losses_between(start: Losses, end: Losses, part: float) -> Losses:
-    """Return the losses at a part of the straight way from one moment to another."""
+    """Return the losses interpolated linearly between two moments, `part` from 0 to 1."""
     return Losses(
         start.pulled + part * (end.pulled - start.pulled),
         start.released + part * (end.released - start.released),

@@ -1,4 +1,4 @@
-"""From what the sensors read at the driven ends to what acts on the tendon, sample by sample."""
+"""From sensor readings at the driven ends to the inputs of the tendon, sample by sample."""
 
 import math
 from dataclasses import dataclass, replace
@@ -27,12 +27,12 @@ Floats = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Drive:
-    """What is given at the two ends during a run, as the sensors read it, shape (n,).
+    """Sensor readings of the given quantities at both ends during a run, shape (n,).
 
-    `time_s` is the time since the run began, shape (n,); without it the run is taken as so slow
-    that no rate and no time plays a part. `session_s` is when the run began, since the first of
-    its dataset. `start_f_in_N` is the tension at the drive when the run begins, where it was
-    measured: the tendon's history before that is chosen so that it fits.
+    `time_s` is the time since the start of the run, shape (n,); without it the run is quasi-static:
+    no rate and no time plays a part. `session_s` is the start of the run since that of the first
+    run of its dataset. `start_f_in_N` is the tension at the drive at the start of the run, where it
+    was measured: the tendon's history before that is chosen so that it fits.
     """
 
     values: Floats
@@ -46,11 +46,11 @@ class Drive:
 
 @dataclass(frozen=True)
 class EndInputs:
-    """What acts on the tendon over a run, and what of it is given at the ends."""
+    """Inputs of the tendon over a run, and the kind of the given quantity at each end."""
 
     course: Floats  # with the rows of `course`
     boundary: Boundary
-    direction: Floats  # in which the tendon's end at the drive moved last, shape (n,)
+    direction: Floats  # of the last motion of the tendon's end at the drive, shape (n,)
 
     @property
     def drive(self) -> Floats:
@@ -64,11 +64,11 @@ class EndInputs:
         return replace(self, course=course, direction=self.direction[first:end])
 
     def after(self, before: list[float]) -> "EndInputs":
-        """Return the ends with positions of the drive put before the first one."""
+        """Return the inputs with positions of the drive prepended."""
         more = len(before)
         course = np.concatenate((np.repeat(self.course[:, :1], more, axis=1), self.course), axis=1)
         course[DRIVE, :more] = before
-        course[STEP, : more + 1] = math.inf  # how fast they were passed is not known
+        course[STEP, : more + 1] = math.inf  # their speed is not known
         direction = np.concatenate((np.zeros(more), self.direction))
         return replace(self, course=course, direction=direction)
 
@@ -78,10 +78,10 @@ class EndInputs:
 
 
 def ends_of(rig: Rig, drive: Drive, start: tuple[float, float] | None = None) -> EndInputs:
-    """Return what acts on the tendon of a rig when the ends are driven as measured.
+    """Return the inputs of a rig's tendon for ends driven as measured.
 
-    `start` is where the tendon's end at the drive is at the first sample and in which direction it
-    moved last, where the drive is the rest of a run; None at the beginning of one.
+    `start` is the position of the tendon's end at the drive at the first sample and the direction
+    of its last motion, where the drive continues a run; None at the start of one.
     """
     n = drive.values.size
     boundary = Boundary(
@@ -110,15 +110,17 @@ def ends_of(rig: Rig, drive: Drive, start: tuple[float, float] | None = None) ->
 
 
 @kernel
-def tendon_end(x: Floats, effects: Effects, place: float) -> Floats:
-    """Return where the tendon's end at the drive is, for displacements of the drive [mm].
+def tendon_end(x: Floats, effects: Effects, position: float) -> Floats:
+    """Return the positions of the tendon's end at the drive for displacements of the drive [mm].
 
-    `place` is where it was before.
+    `position` is the one before the first sample.
     """
     out = np.empty(x.size)
     for i in range(x.size):
-        place = follow_play(place, rippled(x[i], effects.drive_ripple), effects.backlash.play_mm)
-        out[i] = place
+        position = follow_play(
+            position, rippled(x[i], effects.drive_ripple), effects.backlash.play_mm
+        )
+        out[i] = position
     return out
 
 
@@ -133,7 +135,7 @@ def last_direction(x: Floats, before: float = 0.0) -> Floats:
 
 @kernel
 def losses_over(time_s: Floats, speed: Floats, session_s: float, rig: Rig) -> Floats:
-    """Return `losses_at` each time, shape (4, n)."""
+    """Return `losses_at` for each time, shape (4, n)."""
     out = np.empty((4, time_s.size))
     for i in range(time_s.size):
         out[0, i], out[1, i], out[2, i], out[3, i] = losses_at(time_s[i], speed[i], session_s, rig)
@@ -152,7 +154,7 @@ def losses_at(time_s: float, speed: float, session_s: float, rig: Rig) -> Losses
 
 @kernel
 def losses_without_speed(time_s: float, session_s: float, rig: Rig) -> Losses:
-    """Return the losses at one moment for a tendon each of whose places has its own speed."""
+    """Return the losses at one moment without those that depend on the local sliding speed."""
     effects = rig.effects
     asymmetry = effects.direction_dependent_friction.asymmetry
     wrap = rig.friction_coefficient * friction_factor(effects.friction_drift, time_s, session_s)

@@ -1,8 +1,8 @@
-"""What a model says along the tendon at chosen samples of a run: tensions, and where it slips.
+"""Profiles along the tendon at chosen samples of a run: tensions and slip states.
 
-The solvers write their own state into a `Frames`; nothing is computed again. Places are shares of
-the total bend from 0 at the drive to 1 at the load, which are shares of the sheath's length where
-it is evenly bent; between two neighbouring places is an element.
+The solvers write their own state into a `Frames`; nothing is computed again. Positions (`places`)
+are shares of the total bend from 0 at the drive to 1 at the load, which are shares of the sheath's
+length where it is evenly bent; between two neighbours is an element.
 """
 
 from typing import NamedTuple
@@ -19,26 +19,26 @@ Indices = npt.NDArray[np.int64]
 
 
 class Frames(NamedTuple):
-    """Where a run is looked at, k samples, and what is found there at m elements.
+    """Profiles along m elements at k samples of a run.
 
     `slip` is +1 or −1 where an element's friction is at its limit in contraction or loosening (it
-    slips, or stands as it slipped last), 0 where it sticks, 2 where it hangs slack, 3 where the
-    solver did not converge.
+    slips, or rests as it slipped last), 0 where it sticks, 2 where it is slack, 3 where the solver
+    did not converge.
     """
 
-    samples: Indices  # rising, shape (k,)
-    tension_N: Floats  # at the places, shape (k, m + 1)
+    samples: Indices  # increasing, shape (k,)
+    tension_N: Floats  # at the nodes, shape (k, m + 1)
     slip: Phases  # of the elements, shape (k, m)
-    front: Floats  # share of the sheath up to which it slips from the drive on, shape (k,)
+    front: Floats  # share of the sheath that slips, from the drive on, shape (k,)
 
     @property
     def places(self) -> Floats:
-        """The places that the tensions belong to, shape (m + 1,) [1]."""
+        """The positions of the tensions, shape (m + 1,) [1]."""
         return np.linspace(0.0, 1.0, self.tension_N.shape[1])
 
 
 def empty_frames(samples: Indices, elements: int) -> Frames:
-    """Return frames at samples, shape (k,), for a solver to fill: nothing is known yet."""
+    """Return unfilled frames at samples, shape (k,), for a solver to write."""
     k = samples.size
     return Frames(
         samples.astype(np.int64),
@@ -50,13 +50,13 @@ def empty_frames(samples: Indices, elements: int) -> Frames:
 
 @kernel
 def is_next(frames: Frames, taken: int, sample: int) -> bool:
-    """Say whether a sample is the next one to be looked at."""
+    """Return whether a sample is the next one of the frames."""
     return taken < frames.samples.size and frames.samples[taken] == sample
 
 
 @kernel
 def slips_up_to(frames: Frames, k: int) -> float:
-    """Return the share of the elements that slip alike from the drive on."""
+    """Return the share of elements, from the drive on, that slip in the same direction."""
     m = frames.slip.shape[1]
     first = frames.slip[k, 0]
     if first not in (1, -1):

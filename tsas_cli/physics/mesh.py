@@ -14,7 +14,7 @@ from tsas_cli.physics.rig import Rig
 
 Floats = npt.NDArray[np.float64]
 
-PITCH = 1088  # of a row of a chain's state, known when compiled, so that loops over rows vectorise
+PITCH = 1088  # of a row of a chain's state, a compile-time constant, so that row loops vectorise
 MOST_NODES = 1000
 
 

@@ -24,7 +24,7 @@ NOMINAL = (
         "friction_coefficient",
         "1",
         1e-4,
-        10.0,  # μθ where the bend is not known
+        10.0,  # of μθ, where the bend is unknown
         shared=True,
         positive=True,
         meaning="friction between tendon and sheath, μ",
@@ -63,7 +63,7 @@ NOMINAL = (
         1e5,
         shared=False,
         positive=False,
-        meaning="what x_in_mm reads at the preload",
+        meaning="reading of x_in_mm at the preload",
     ),
     NominalParameter(
         "x_out_zero_mm",
@@ -72,7 +72,7 @@ NOMINAL = (
         1e5,
         shared=False,
         positive=False,
-        meaning="what x_out_mm reads at the preload",
+        meaning="reading of x_out_mm at the preload",
     ),
 )
 BRISTLES = (  # the fields of `bristles.Bristles`

@@ -1,4 +1,4 @@
-"""How the slip front ran: from the drive at each reversal, to the load or not."""
+"""Passages of the slip front: from the drive at each reversal, to the load or part of the way."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,10 +13,10 @@ Phases = npt.NDArray[np.int8]
 
 @dataclass(frozen=True)
 class Passage:
-    """One run of a slip front, by samples.
+    """One passage of a slip front, by samples.
 
-    `direction` is +1 where the drive pulls, −1 where it lets go. `arrived` is the first sample at
-    which the whole tendon slips that way, None where the drive turned before.
+    `direction` is +1 where the drive pulls, −1 where it releases. `arrived` is the first sample at
+    which the whole tendon slips in that direction, None where the drive reverses before.
     """
 
     direction: int
@@ -25,36 +25,36 @@ class Passage:
 
 
 def passages(x_in: Floats, phase: Phases) -> list[Passage]:
-    """Return the runs of the front, one for each stroke of the drive.
+    """Return the passages of the front, one for each stroke of the drive.
 
     Parameters
     ----------
     x_in
         Displacement of the drive without noise, shape (n,) [mm].
     phase
-        As `Response.phase` has it, shape (n,).
+        As `Response.phase`, shape (n,).
     """
     starts = turns(x_in)
     ends = [*starts[1:], x_in.size - 1][: starts.size]
     found = []
     for start, end in zip(starts, ends, strict=True):
         direction = 1 if x_in[end] > x_in[start] else -1
-        there = np.flatnonzero(phase[start + 1 : end + 1] == direction)
-        arrived = int(start + 1 + there[0]) if there.size else None
+        arrivals = np.flatnonzero(phase[start + 1 : end + 1] == direction)
+        arrived = int(start + 1 + arrivals[0]) if arrivals.size else None
         found.append(Passage(direction, int(start), arrived))
     return found
 
 
 def ends_of(found: Sequence[Passage], last: int) -> list[int]:
-    """Return the sample with which each run ends: the start of the next one, or the last of all."""
+    """Return the last sample of each passage: the start of the next one, or the last of all."""
     return [*(passage.start for passage in found[1:]), last][: len(found)]
 
 
 def turns(x_in: Floats) -> Indices:
-    """Return the samples from which the drive moves another way, where it starts too.
+    """Return the samples at which the drive starts or reverses.
 
-    A drive that rests in between turns at the end of the rest.
+    A drive that rests in between reverses at the end of the rest.
     """
     moved = np.flatnonzero(np.diff(x_in))
-    way = x_in[moved + 1] > x_in[moved]
-    return moved[np.flatnonzero(np.diff(way, prepend=~way[:1]))]
+    direction = x_in[moved + 1] > x_in[moved]
+    return moved[np.flatnonzero(np.diff(direction, prepend=~direction[:1]))]

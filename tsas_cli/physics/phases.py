@@ -1,4 +1,4 @@
-"""What is said of an element of the tendon, or of the whole of it, at a moment.
+"""Slip state of an element of the tendon, or phase of the whole tendon, at a moment.
 
 +1 where it slips in contraction, −1 in loosening, 0 where it sticks, and the two below.
 """
@@ -9,4 +9,4 @@ import numpy.typing as npt
 Phases = npt.NDArray[np.int8]
 
 SLACK, UNCONVERGED = 2, 3
-SLIDING_SHARE = 0.99  # of its limit, from which an element with presliding is said to slip
+SLIDING_SHARE = 0.99  # of its friction limit, from which an element with presliding slips

@@ -1,4 +1,4 @@
-"""Simulate one run: which solver, how it starts, what the sensors would read."""
+"""Simulate one run: choice of the solver, initial state, sensor readings."""
 
 import math
 from dataclasses import dataclass, field, replace
@@ -27,24 +27,24 @@ Floats = npt.NDArray[np.float64]
 Phases = npt.NDArray[np.int8]
 Dynamics = Literal["static", "slip", "lugre"]
 
-NODES = 60  # of the slip chain, where the closed form does not hold
+NODES = 60  # of the slip chain, where the closed form is not valid
 LUMPS = 50  # of the dynamic chain
-TOLERANCE = 2.5e-6  # of a tension: what a step of the dynamic chain may add to its error
+TOLERANCE = 2.5e-6  # error that a step of the dynamic chain may add, over a tension
 CLOSED = 0  # nodes of the closed form
-ELEMENTS = 60  # on which the closed form says what is along the tendon
-MOST_DOUBLINGS = 30  # of the way that the drive goes before a run
+ELEMENTS = 60  # of the closed form's profiles along the tendon
+MOST_DOUBLINGS = 30  # of the drive's travel before a run
 ON_CHAIN = tuple(effect.name for effect in EFFECTS if not effect.closed_form)
 
 
 @dataclass(frozen=True)
 class Response:
-    """What the model predicts, as the sensors would read it, shape (n,) [mm, N].
+    """A prediction: simulated sensor readings, shape (n,) [mm, N].
 
     `phase` is +1 in contraction and −1 in loosening with the whole tendon slipping, 0 in a dead
-    band, 2 slack, 3 not converged. `solver` says what computed it; `step_ends_s` is where the steps
-    of the dynamic chain ended, none with any other solver. `frames` is what is along the tendon
-    at the samples that were asked for, free of the sensors' errors; None where none were, and with
-    the lumped model, which does not say it.
+    band, 2 slack, 3 not converged. `solver` names the solver; `step_ends_s` are the ends of the
+    steps of the dynamic chain, empty with any other solver. `frames` are the profiles along the
+    tendon at the requested samples, without the sensors' errors; None without a request, and with
+    the static model, which has none.
     """
 
     x_in_mm: Floats
@@ -68,15 +68,14 @@ def simulate(
     step_ends_s: Floats = OWN_STEPS,
     looked_at: Indices | None = None,
 ) -> Response:
-    """Follow a run with the distributed model (`slip`), the paper's lumped or its dynamic one.
+    """Return the prediction of the distributed model (`slip`), the static or the dynamic one.
 
-    The distributed model takes the closed form where that holds (`is_closed`), and the slip chain
-    everywhere else, or where `on_mesh` asks for it: models that are compared must share a mesh.
-    The lumped one (`static`) knows what the closed form knows; the dynamic one (`lugre`) needs the
-    times of the samples. `nodes` is the mesh of a chain; `tolerance` is what a step of the dynamic
-    one may add to a tension's error, over the larger one at the ends; `step_ends_s` has it take the
-    steps of another run. `looked_at` are samples, rising, shape (k,), at which the answer says what
-    is along the tendon.
+    The distributed model uses the closed form where that is valid (`is_closed`), and the slip chain
+    elsewhere, or with `on_mesh`: models that are compared must share a mesh. The static one
+    (`static`) has the limits of the closed form; the dynamic one (`lugre`) needs the times of the
+    samples. `nodes` is the mesh of a chain; `tolerance` is the error of a tension that a step of
+    the dynamic one may add, over the larger tension of the ends; `step_ends_s` are given steps, of
+    another run. `looked_at` are samples, increasing, shape (k,), for profiles along the tendon.
     """
     if nodes is not None and not 2 <= nodes <= MOST_NODES:
         raise ValueError(f"{nodes} nodes; expected 2 to {MOST_NODES}")
@@ -105,17 +104,17 @@ def _dynamic(
     control: StepControl,
     looked_at: Indices | None,
 ) -> Response:
-    """Follow a run with the dynamic chain, from a state of rest that the slip chain gives it."""
+    """Return the prediction of the dynamic chain, from the slip chain's state of rest."""
     if drive.time_s is None:
         raise ValueError("the dynamic model needs the times of its samples")
     ends = ends_of(rig, drive)
     before = history(rig, ends, drive.start_f_in_N, lumps)
     start = rest_after(ends.first().after(before).course, rig, ends.boundary, lumps)
     neutral = Effects()
-    by_place = rig.effects._replace(
+    without_speed = rig.effects._replace(
         stribeck_friction=neutral.stribeck_friction, viscous_friction=neutral.viscous_friction
     )  # each lump has its own speed
-    course = ends_of(rig._replace(effects=by_place), drive).course
+    course = ends_of(rig._replace(effects=without_speed), drive).course
     frames = None if looked_at is None else empty_frames(looked_at, lumps)
     output, progress = lugre_chain(course, start, rig, ends.boundary, lumps, control, frames)
     output = at_drive_sensor(rig, ends, output)
@@ -125,14 +124,14 @@ def _dynamic(
 
 
 def solver_of(nodes: int, dynamics: Dynamics) -> str:
-    """Return what is said of how a run was followed, with the lumped or the distributed model."""
+    """Return the description of the solver of the static or the distributed model."""
     if dynamics == "static":
         return "lumped dead bands"
     return "closed form" if nodes == CLOSED else f"slip chain, {nodes} nodes"
 
 
 def is_closed(rig: Rig, drive: Drive) -> bool:
-    """Say whether the closed form holds: drive by displacement, a spring, constant friction."""
+    """Return whether the closed form is valid: displacement drive, spring, constant friction."""
     neutral = Effects()
     return (
         drive.kind == "displacement"
@@ -143,7 +142,7 @@ def is_closed(rig: Rig, drive: Drive) -> bool:
 
 
 def sensor_readings(rig: Rig, drive: Drive, output: Output, skip: int, solver: str) -> Response:
-    """Drop the samples before the run and return what the sensors read of the others."""
+    """Return the sensor readings of an output without its first `skip` samples."""
     x_in = output.x_in[skip:]
     return Response(
         drive.values if drive.kind == "displacement" else x_in + rig.x_in_zero_mm,
@@ -164,34 +163,34 @@ def _solve(rig: Rig, ends: EndInputs, nodes: int, frames: Frames | None = None) 
 
 
 def with_spring_load(rig: Rig, ends: EndInputs, tensions: Tensions) -> Output:
-    """Return the output of a model that knows a spring load and a drive by displacement."""
+    """Return the output of a closed-form model, with a spring load and a drive by displacement."""
     x_out = (tensions.f_out - rig.preload_N) / rig.load_stiffness_N_per_mm
     f_in = tensions.f_in + force_beside_tendon(rig, ends)
     return Output(ends.drive, x_out, f_in, tensions.f_out, tensions.phase)
 
 
 def at_drive_sensor(rig: Rig, ends: EndInputs, output: Output) -> Output:
-    """Return an output with the force beside the tendon in f_in, where the drive is not a force."""
+    """Return an output with the force beside the tendon added to f_in, unless f_in is given."""
     if ends.boundary.drive == FORCE:
         return output
     return output._replace(f_in=output.f_in + force_beside_tendon(rig, ends))
 
 
 def force_beside_tendon(rig: Rig, ends: EndInputs) -> Floats | float:
-    """Return what the drive's sensor feels beside the tendon [N]."""
+    """Return the forces at the drive's sensor parallel to the tendon [N]."""
     friction = rig.effects.drive_friction.friction_N
     stiffness = rig.effects.proximal_spring.stiffness_N_per_mm
     if friction == 0.0 and stiffness == 0.0:
         return 0.0
-    rubbing = drive_friction_force(friction, 1.0) * ends.direction
-    return rubbing + proximal_spring_force(1.0, stiffness) * ends.drive
+    friction_N = drive_friction_force(friction, 1.0) * ends.direction
+    return friction_N + proximal_spring_force(1.0, stiffness) * ends.drive
 
 
 def forgotten(rig: Rig, drive: Drive) -> int | None:
-    """Return the first sample whose answer does not depend on what came before the run, or None.
+    """Return the first sample whose prediction is independent of the history before the run.
 
-    The tendon has forgotten that when it slips as a whole in the same direction (or hangs slack),
-    whether the drive came from far above or from far below.
+    None where there is none. The history is forgotten once the tendon slips as a whole in the same
+    direction (or is slack), whether the drive came from far above or from far below.
     """
     ends, nodes = ends_of(rig, drive), CLOSED if is_closed(rig, drive) else NODES
     far = [_far(rig, ends, side, nodes) for side in (1.0, -1.0)]
@@ -201,7 +200,7 @@ def forgotten(rig: Rig, drive: Drive) -> int | None:
 
 
 def _far(rig: Rig, ends: EndInputs, side: float, nodes: int) -> float:
-    """Return a drive from which the way back to the first sample makes the whole tendon slip."""
+    """Return a drive position from which the return to the first sample ends in full slip."""
     first = float(ends.drive[0])
     stretch = rig.preload_N * rig.sheath_length_mm / rig.tendon_stiffness_N
     step = 1e-3
@@ -214,13 +213,13 @@ def _far(rig: Rig, ends: EndInputs, side: float, nodes: int) -> float:
     return past
 
 
-def history(rig: Rig, ends: EndInputs, wanted_f_in: float | None, nodes: int) -> list[float]:
-    """Return a drive position to pass before the first sample, if one is needed, so that f_in fits.
+def history(rig: Rig, ends: EndInputs, target_f_in_N: float | None, nodes: int) -> list[float]:
+    """Return the drive position before the first sample for which f_in fits there, if needed.
 
-    From rest the drive goes past its first position and back; how far decides the tension there,
-    between those of contraction and loosening. It is found by bisection.
+    From rest the drive moves beyond its first position and back; the distance determines the
+    tension there, between those of contraction and loosening. It is found by bisection.
     """
-    if wanted_f_in is None or ends.boundary.drive == FORCE:
+    if target_f_in_N is None or ends.boundary.drive == FORCE:
         return []
 
     def f_in(before: list[float]) -> float:
@@ -229,11 +228,11 @@ def history(rig: Rig, ends: EndInputs, wanted_f_in: float | None, nodes: int) ->
 
     x = float(ends.drive[0])
     first = ends.first()
-    side = math.copysign(1.0, f_in([]) - wanted_f_in)  # pulling past and back lowers the tension
+    side = math.copysign(1.0, f_in([]) - target_f_in_N)  # pulling beyond and back lowers f_in
     near, far = x, _far(rig, ends, side, nodes)
     for _ in range(40):
         middle = 0.5 * (near + far)
-        if (f_in([middle]) - wanted_f_in) * side > 0.0:
+        if (f_in([middle]) - target_f_in_N) * side > 0.0:
             near = middle
         else:
             far = middle

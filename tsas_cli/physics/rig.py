@@ -1,4 +1,4 @@
-"""The parameters of one rig during one run, as the kernels take them."""
+"""The parameters of one rig during one run, as arguments of the kernels."""
 
 from collections.abc import Mapping
 from typing import Any, NamedTuple
@@ -11,7 +11,7 @@ class Rig(NamedTuple):
     """One tendon in its sheath with its load (the paper's symbols in brackets).
 
     Displacements are zero where the tension is the preload everywhere (Yang 2025, point a of
-    Fig. 6); the two zeros say what the sensors read there.
+    Fig. 6); the two zeros are the readings of the sensors there.
     """
 
     friction_coefficient: float  # [μ, 1]
@@ -31,7 +31,7 @@ class Rig(NamedTuple):
 def with_values(rig: Rig, values: Mapping[str, float]) -> Rig:
     """Return the rig with some values replaced.
 
-    An effect's are named effect.parameter, those of the dynamic model bristles.parameter.
+    Names are effect.parameter for effects and bristles.parameter for the dynamic model.
     """
     own: dict[str, Any] = {name: value for name, value in values.items() if "." not in name}
     effects, bristles = rig.effects, rig.bristles

@@ -1,4 +1,4 @@
-"""What the sensors read of true forces and displacements, and back."""
+"""Sensor readings of true forces and displacements, and the inverse."""
 
 from typing import Literal
 
@@ -17,22 +17,22 @@ Channel = Literal["f_in_N", "f_out_N", "x_out_mm"]
 
 
 def reading(channel: Channel, values: Floats, time_s: Floats | None, rig: Rig) -> Floats:
-    """Return what a channel shows of true values, shape (n,): late, scaled, shifted.
+    """Return a channel's readings of true values, shape (n,): delayed, scaled, shifted.
 
-    Without times nothing is late and nothing has drifted.
+    Without times there is no delay and no drift.
     """
-    seen = _later(values, time_s, _delay(channel, rig))
-    return seen * _gain(channel, rig) + _shift(channel, time_s, rig)
+    delayed = _delayed_by(values, time_s, _delay(channel, rig))
+    return delayed * _gain(channel, rig) + _shift(channel, time_s, rig)
 
 
 def true_value(channel: Channel, readings: Floats, time_s: Floats | None, rig: Rig) -> Floats:
-    """Return the true values behind what a channel shows, the inverse of `reading`."""
-    seen = (readings - _shift(channel, time_s, rig)) / _gain(channel, rig)
-    return _later(seen, time_s, -_delay(channel, rig))
+    """Return the true values of a channel's readings, the inverse of `reading`."""
+    delayed = (readings - _shift(channel, time_s, rig)) / _gain(channel, rig)
+    return _delayed_by(delayed, time_s, -_delay(channel, rig))
 
 
-def _later(values: Floats, time_s: Floats | None, delay_s: float) -> Floats:
-    """Return values that come later by a delay; the first and the last one hold on."""
+def _delayed_by(values: Floats, time_s: Floats | None, delay_s: float) -> Floats:
+    """Return delayed values; the first and the last one are extrapolated as constants."""
     if time_s is None or delay_s == 0.0:
         return values
     return np.interp(time_s - delay_s, time_s, values)
@@ -56,7 +56,7 @@ def _gain(channel: Channel, rig: Rig) -> float:
 
 
 def _shift(channel: Channel, time_s: Floats | None, rig: Rig) -> Floats | float:
-    """Return what is added: the zero of a displacement, offset and drift of a force."""
+    """Return the additive error: the zero of a displacement, offset and drift of a force."""
     offset, drift = rig.effects.force_sensor_offset, rig.effects.force_sensor_drift
     if channel == "x_out_mm":
         return rig.x_out_zero_mm

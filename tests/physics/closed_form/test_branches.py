@@ -202,10 +202,10 @@ def test_room_for_strokes_is_that_of_turns_and_rests(motion, count):
     assert strokes(x) == count
     state = at_rest_before(x, 25.0)
     assert state.now.tolist() == [0.0, 25.0, 25.0, 0.0, 0.0, 0.0, 0.0]
-    assert state.turn_x.size == state.turn_T.size == count
+    assert state.reversal_x.size == state.reversal_T.size == count
     state.now[DEPTH] = 2.0
     roomy = with_room(state, np.array([1.0, 0.0, 1.0]))
-    assert roomy.turn_x.size == roomy.turn_T.size == 2 + 3
+    assert roomy.reversal_x.size == roomy.reversal_T.size == 2 + 3
 
 
 def test_what_is_along_the_tendon_after_a_few_strokes():

@@ -1,14 +1,14 @@
-"""The distributed quasi-static model in closed form: spring load, friction that stays the same.
+"""The distributed quasi-static model in closed form: spring load, constant friction.
 
 A reversal starts a slip front at the drive; behind it the tension is T0 e^(±a s/L), ahead of it
-the old profile stands. From a turning point with tension A at the drive the travel D is
+the old profile persists. From a reversal with tension A at the drive the travel D is
 
     D = c |T0 − A| + C (√T0 − √A)²,    C = L/(a EA),
 
 with c the compliance of free tendon at the drive: a quadratic in √(T0/A). Nested reversals are a
-stack of turning points with return-point memory; when the front reaches the load the tendon
-slips as a whole (Yang 2025, Eqs. 7-9) and the stack is forgotten. No mesh, no iteration, except on
-the first loading from rest, where T0 solves D = c (T0−F0) + C (T0 − F0 − F0 ln(T0/F0)).
+stack with return-point memory; when the front reaches the load the tendon slips as a whole (Yang
+2025, Eqs. 7-9) and the stack is cleared. No mesh, no iteration, except on the first loading from
+rest, where T0 solves D = c (T0−F0) + C (T0 − F0 − F0 ln(T0/F0)).
 """
 
 import math
@@ -31,13 +31,13 @@ from tsas_cli.physics.rig import Rig
 
 Floats = npt.NDArray[np.float64]
 
-REST, SLIP = 0, 1  # what lies under the stack of turning points
+REST, SLIP = 0, 1  # base of the stack of reversals: uniform preload, full slip
 SMALLEST_WRAP = 1e-9  # a straight sheath: C stays finite, and the dead band has no width
 
 
 @kernel
 def from_turning_point(travel: float, tension: float, direction: int, C: float, c: float) -> float:
-    """Return T0 after a travel D ≥ 0 from a turning point with tension A [N]."""
+    """Return T0 after a travel D ≥ 0 from a reversal with tension A [N]."""
     D = travel / tension
     if direction > 0:
         root = (C + math.sqrt(c * c + (C + c) * D)) / (C + c)
@@ -51,7 +51,7 @@ def from_turning_point(travel: float, tension: float, direction: int, C: float, 
 def from_rest(travel: float, preload: float, C: float, c: float, highest: float) -> float:
     """Return T0 after a signed travel from uniform tension F0, by Newton's method on ln(T0/F0).
 
-    Beyond `highest` = a the front has reached the load; the root is not sought there.
+    Beyond `highest` = a the front has reached the load; the iteration is bounded there.
     """
     target = travel / preload
     y = math.copysign(min(highest, math.sqrt(2.0 * abs(target) / C)), target)
@@ -72,7 +72,7 @@ def from_rest(travel: float, preload: float, C: float, c: float, highest: float)
 def full_slip(direction: float, rig: Rig, wrap: float, c: float) -> tuple[float, float]:
     """Return slope k and zero x* of T0 = k (x − x*) while the whole tendon slips, Eqs. (7)-(9).
 
-    Below x*, where no tension is left, it hangs slack.
+    Below x* the tension is zero and the tendon slack.
     """
     spring = 1.0 / rig.load_stiffness_N_per_mm + compliance_at_load(rig)
     sheath = sheath_compliance(rig)
@@ -84,11 +84,11 @@ def full_slip(direction: float, rig: Rig, wrap: float, c: float) -> tuple[float,
 
 @kernel
 def strokes(x_in: Floats) -> int:
-    """Return how many strokes a motion may have: changes of direction, and of standing still.
+    """Return an upper bound of the strokes of a motion: changes between rise, fall and rest.
 
-    No more reversals can nest. Without a branch, it costs a tenth of the motion itself.
+    No more reversals can nest. Branch-free, it costs a tenth of the simulation.
     """
-    count = 2  # the way from rest at x = 0 to the first sample, and the first stroke
+    count = 2  # the travel from rest at x = 0 to the first sample, and the first stroke
     for i in range(2, x_in.size):
         before, after = x_in[i - 1] - x_in[i - 2], x_in[i] - x_in[i - 1]
         count += ((before > 0.0) != (after > 0.0)) | ((before < 0.0) != (after < 0.0))
@@ -96,16 +96,16 @@ def strokes(x_in: Floats) -> int:
 
 
 def branches(x_in: Floats, rig: Rig, frames: Frames | None = None) -> Tensions:
-    """Follow a motion of the drive that starts at rest at x = 0 [mm].
+    """Return the tensions for a motion of the drive that starts at rest at x = 0 [mm].
 
     Parameters
     ----------
     x_in
         Displacement of the drive from the state of uniform preload, shape (n,) [mm].
     rig
-        The rig; its zeros are not looked at.
+        The rig; its sensor zeros are not used.
     frames
-        Where to write down what is along the tendon, on any number of elements.
+        Written over with the profile along the tendon, on any number of elements.
 
     Returns
     -------
@@ -116,22 +116,22 @@ def branches(x_in: Floats, rig: Rig, frames: Frames | None = None) -> Tensions:
     return follow_branches(x_in, rig, at_rest_before(x_in, rig.preload_N), frames)
 
 
-# What is remembered of the last sample: position [mm] and both tensions [N], direction of the last
-# motion, turning points on the stack, what lies under it, and the phase.
+# State at the last sample: position [mm] and both tensions [N], direction of the last motion,
+# depth of the stack of reversals, its base, and the phase.
 LAST_X, LAST_F_IN, LAST_F_OUT, DIRECTION, DEPTH, BASE, PHASE = range(7)
 
 
 class BranchState(NamedTuple):
-    """What the closed form remembers from one sample to the next; written over as it goes on."""
+    """State of the closed form from one sample to the next, updated in place."""
 
-    now: Floats  # of the last sample, as named above, (7,)
-    turn_x: Floats  # turning points, room for all that may nest
-    turn_T: Floats
+    now: Floats  # at the last sample, as named above, (7,)
+    reversal_x: Floats  # stack of reversals, with room for all that may nest
+    reversal_T: Floats
 
 
 @kernel
 def at_rest_before(x_in: Floats, preload: float) -> BranchState:
-    """Return the state of uniform preload, with room for the turning points of a motion."""
+    """Return the state of uniform preload, with room for the reversals of a motion."""
     now = np.zeros(7)
     now[LAST_F_IN] = now[LAST_F_OUT] = preload
     now[BASE] = REST
@@ -140,51 +140,53 @@ def at_rest_before(x_in: Floats, preload: float) -> BranchState:
 
 
 def with_room(state: BranchState, x_in: Floats) -> BranchState:
-    """Return a copy of a state that has room for the turning points of more motion."""
+    """Return a copy of a state with room for the reversals of more motion."""
     more, depth = np.empty(strokes(x_in)), int(state.now[DEPTH])
-    turn_x, turn_T = (np.concatenate((t[:depth], more)) for t in (state.turn_x, state.turn_T))
-    return BranchState(state.now.copy(), turn_x, turn_T)
+    reversal_x, reversal_T = (
+        np.concatenate((t[:depth], more)) for t in (state.reversal_x, state.reversal_T)
+    )
+    return BranchState(state.now.copy(), reversal_x, reversal_T)
 
 
 @kernel
 def follow_branches(
     x_in: Floats, rig: Rig, state: BranchState, frames: Frames | None = None
 ) -> Tensions:
-    """Follow a motion from a state, which is written over; see `branches`."""
+    """Return the tensions for a motion from a state, which is updated in place; see `branches`."""
     wrap = max(rig.friction_coefficient * rig.total_bend_rad, SMALLEST_WRAP)
     C = sheath_compliance(rig) / wrap
     c = compliance_at_drive(rig)
-    swing = math.exp(2.0 * wrap)
+    ratio = math.exp(2.0 * wrap)
     rest_high, rest_low = rig.preload_N * math.exp(wrap), rig.preload_N * math.exp(-wrap)
-    pulled, slack = full_slip(1.0, rig, wrap, c)
-    released, slack = full_slip(-1.0, rig, wrap, c)
+    pull_slope, slack_x = full_slip(1.0, rig, wrap, c)
+    release_slope, slack_x = full_slip(-1.0, rig, wrap, c)
     out_pulled, out_released = tension_ratio(wrap, 1.0), tension_ratio(wrap, -1.0)
     n = x_in.size
     f_in = np.empty(n)
     f_out = np.empty(n)
     phase = np.zeros(n, dtype=np.int8)
-    last, turn_x, turn_T = state
+    last, reversal_x, reversal_T = state
     x, T, out = last[LAST_X], last[LAST_F_IN], last[LAST_F_OUT]
     direction, depth, base = int(last[DIRECTION]), int(last[DEPTH]), int(last[BASE])
     before = int(last[PHASE])
     written = 0
     for i in range(n):
         if x_in[i] != x:
-            way = 1 if x_in[i] > x else -1
-            if way != direction and direction != 0 and T > 0.0:
-                turn_x[depth], turn_T[depth] = x, T
+            sign = 1 if x_in[i] > x else -1
+            if sign != direction and direction != 0 and T > 0.0:
+                reversal_x[depth], reversal_T[depth] = x, T
                 depth += 1
-            direction, x = way, x_in[i]
-            # Climb down the stack: each branch holds until it meets the turn that encloses it.
+            direction, x = sign, x_in[i]
+            # Each branch is valid until it meets the enclosing reversal: pop both there.
             while depth > 0:
-                A = turn_T[depth - 1]
-                T = from_turning_point(abs(x - turn_x[depth - 1]), A, direction, C, c)
+                A = reversal_T[depth - 1]
+                T = from_turning_point(abs(x - reversal_x[depth - 1]), A, direction, C, c)
                 if depth > 1:
-                    end = turn_T[depth - 2]
+                    end = reversal_T[depth - 2]
                 elif base == REST:
                     end = rig.preload_N * rig.preload_N / A
                 else:
-                    end = A * swing if direction > 0 else A / swing
+                    end = A * ratio if direction > 0 else A / ratio
                 if (T - end) * direction <= 0.0:
                     break
                 depth = max(depth - 2, 0)
@@ -193,7 +195,7 @@ def follow_branches(
                 if not rest_low < T < rest_high:
                     base = SLIP
             if depth == 0 and base == SLIP:
-                T = max((pulled if direction > 0 else released) * (x - slack), 0.0)
+                T = max((pull_slope if direction > 0 else release_slope) * (x - slack_x), 0.0)
                 out = T * (out_pulled if direction > 0 else out_released)
                 phase[i] = direction if T > 0.0 else SLACK
         elif before == SLACK:
@@ -201,41 +203,40 @@ def follow_branches(
         before = phase[i]
         f_in[i] = T
         f_out[i] = out
-        if frames is not None and is_next(frames, written, i):  # compiled away where there are none
-            strokes_so_far = Strokes(turn_T[:depth], T, direction, base)
-            write_profile(frames, written, strokes_so_far, rig.preload_N, wrap)
+        if frames is not None and is_next(frames, written, i):  # compiled away without frames
+            past = Strokes(reversal_T[:depth], T, direction, base)
+            write_profile(frames, written, past, rig.preload_N, wrap)
             written += 1
-    # In the order of the names: stored one by one, or in a record, the loop takes a fifth longer.
+    # In the order of the indices: stored one by one, or in a record, the loop takes a fifth longer.
     last[:] = np.array([x, T, out, direction, depth, base, before])
     return Tensions(f_in, f_out, phase)
 
 
 class Strokes(NamedTuple):
-    """The strokes that have shaped the profile of tension, the last one up to its front."""
+    """The strokes that shape the profile of tension, the last one up to its front."""
 
-    turns: Floats  # tension at the drive where each one before ended, (depth,) [N]
+    reversal_tensions: Floats  # at the drive at the end of each earlier stroke, (depth,) [N]
     f_in: float  # at the drive now
     direction: int
-    base: int  # what lies under them, REST or SLIP
+    base: int  # of the stack, REST or SLIP
 
 
 @kernel
 def write_profile(frames: Frames, k: int, past: Strokes, preload: float, wrap: float) -> None:
-    """Write the profile of tension that the strokes have left into frame k.
+    """Write the profile of tension after the strokes into frame k.
 
-    Each stroke puts T0 e^(∓a s/L) over what the ones before have left, as far as that is above
-    (contraction) or below (loosening); a stroke that has slid the whole tendon leaves nothing of
-    what was before.
+    Each stroke replaces the earlier profile by T0 e^(∓a s/L), as far as that is above (contraction)
+    or below (loosening) it; a stroke with full slip replaces all of it.
     """
-    m, depth = frames.slip.shape[1], past.turns.size
-    for half in range(2 * m + 1):  # places at the even ones, the middles of elements between
+    m, depth = frames.slip.shape[1], past.reversal_tensions.size
+    for half in range(2 * m + 1):  # nodes at the even ones, the middles of elements between
         s = 0.5 * half / m
         tension, slid = preload, False
         for stroke in range(depth + 1):
-            way = past.direction if (depth - stroke) % 2 == 0 else -past.direction
-            at_drive = past.turns[stroke] if stroke < depth else past.f_in
-            new = at_drive * math.exp(-way * wrap * s)
-            slid = (past.base == SLIP and stroke == 0) or (new - tension) * way > 0.0
+            sign = past.direction if (depth - stroke) % 2 == 0 else -past.direction
+            at_drive = past.reversal_tensions[stroke] if stroke < depth else past.f_in
+            new = at_drive * math.exp(-sign * wrap * s)
+            slid = (past.base == SLIP and stroke == 0) or (new - tension) * sign > 0.0
             tension = new if slid else tension
         if half % 2 == 0:
             frames.tension_N[k, half // 2] = tension
@@ -249,9 +250,9 @@ def write_profile(frames: Frames, k: int, past: Strokes, preload: float, wrap: f
 @kernel
 def front_of(past: Strokes, preload: float, wrap: float) -> float:
     """Return the share of the sheath up to which the last stroke has slid the tendon."""
-    depth = past.turns.size
+    depth = past.reversal_tensions.size
     if past.f_in == 0.0 or past.direction == 0:
         return 0.0
     if depth > 0:
-        return min(abs(math.log(past.f_in / past.turns[depth - 1])) / (2.0 * wrap), 1.0)
+        return min(abs(math.log(past.f_in / past.reversal_tensions[depth - 1])) / (2.0 * wrap), 1.0)
     return 1.0 if past.base == SLIP else min(abs(math.log(past.f_in / preload)) / wrap, 1.0)

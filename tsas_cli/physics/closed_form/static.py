@@ -1,8 +1,8 @@
-"""The paper's static model: four phases with straight lines between them.
+"""The paper's static model: four phases, piecewise linear.
 
 Yang 2025, Eqs. (4)-(9) and (26)-(32). The dead band is one straight line with the secant stiffness
-(29); the distributed model (`branches`, `slip_chain`) agrees with it at the ends of a whole dead
-band only, because a slip front needs a curve.
+(29); the distributed model (`branches`, `slip.chain`) agrees with it at the ends of a whole dead
+band only, because a moving slip front makes a curve.
 """
 
 from typing import NamedTuple
@@ -22,7 +22,7 @@ Floats = npt.NDArray[np.float64]
 
 
 class StaticState(NamedTuple):
-    """What the lumped model remembers: the drive's position [mm] and both tensions [N]."""
+    """State of the static model: the drive's position [mm] and both tensions [N]."""
 
     x_in: float
     f_in: float
@@ -30,7 +30,7 @@ class StaticState(NamedTuple):
 
 
 def static_model(x_in: Floats, rig: Rig) -> Tensions:
-    """Follow a motion of the drive that starts at rest at x = 0 [mm], with a spring load.
+    """Return the tensions for a motion of the drive from rest at x = 0 [mm], with a spring load.
 
     Parameters and results are those of `branches`.
     """
@@ -39,20 +39,20 @@ def static_model(x_in: Floats, rig: Rig) -> Tensions:
 
 @kernel
 def follow_static(x_in: Floats, rig: Rig, state: StaticState) -> tuple[Tensions, StaticState]:
-    """Follow a motion from a state; return the tensions and the state then."""
+    """Return the tensions for a motion from a state, and the final state."""
     wrap = max(rig.friction_coefficient * rig.total_bend_rad, SMALLEST_WRAP)
     free = compliance_at_drive(rig)
     stiffness = dead_band_stiffness(wrap, 1.0, 1.0 / sheath_compliance(rig))
     stiffness = stiffness / (1.0 + stiffness * free)
-    pulled, slack = full_slip(1.0, rig, wrap, free)
-    released, slack = full_slip(-1.0, rig, wrap, free)
+    pull_slope, slack_x = full_slip(1.0, rig, wrap, free)
+    release_slope, slack_x = full_slip(-1.0, rig, wrap, free)
     f_in, f_out = np.empty(x_in.size), np.empty(x_in.size)
     phase = np.zeros(x_in.size, dtype=np.int8)
     x, T, out = state
     for i in range(x_in.size):
         T += stiffness * (x_in[i] - x)
         x = x_in[i]
-        upper, lower = max(pulled * (x - slack), 0.0), max(released * (x - slack), 0.0)
+        upper, lower = max(pull_slope * (x - slack_x), 0.0), max(release_slope * (x - slack_x), 0.0)
         if upper <= T:
             T, out, phase[i] = upper, upper * tension_ratio(wrap, 1.0), 1
         elif lower >= T:

@@ -1,9 +1,9 @@
-"""Residual forces of the lumps, and how they change with the speeds: Newton's equations.
+"""Residual forces of the lumps and their derivatives by the speeds: Newton's equations.
 
 Each lump: m dv/dt = T before − T behind − f (Yang 2025, Eqs. 10 to 14), f by `bristles` with the
-limit g = μ N, N by the mean of both tensions (Eq. 17; 2 tanh(μθ/2n) for its sine, so that a lump
-that slides leaves e^(−μθ/n) of the tension, Eq. 7). The ends have no mass: their forces balance.
-What is left depends on the speeds of a node and its two neighbours: a tridiagonal matrix, exactly.
+limit g = μ N, N by the mean of both tensions (Eq. 17; 2 tanh(μθ/2n) for its sine, so that the
+tension ratio over a sliding lump is e^(−μθ/n), Eq. 7). The ends have no mass: their forces balance.
+The residual depends on the speeds of a node and its two neighbours: the Jacobian is tridiagonal.
 """
 
 from tsas_cli.effects.load_dependent_friction import load_factor
@@ -36,12 +36,12 @@ from tsas_cli.physics.lugre.state import (
     Step,
 )
 
-LEAST_LIMIT_N = 1e-9  # where no tension presses, so that a bristle has a limit at all
+LEAST_LIMIT_N = 1e-9  # at zero tension, so that a bristle has a limit at all
 
 
 @kernel
 def balance(s: Floats, step: Step, laws: LugreLaws) -> float:
-    """Set up Newton's equations at the rates sought; return the sum of the residual forces [N]."""
+    """Set up Newton's equations at the present rates; return the sum of the residual forces [N]."""
     set_tensions(s, laws)
     set_limits(s, step, laws)
     balance_lumps(s, step, laws)
@@ -52,7 +52,7 @@ def balance(s: Floats, step: Step, laws: LugreLaws) -> float:
 
 @kernel
 def residual_sum(s: Floats, count: int) -> float:
-    """Return the sum of |RESIDUAL|, by four sums side by side: one alone waits for each add."""
+    """Return the sum of |RESIDUAL|, by four independent sums: one alone waits for each addition."""
     a, b, c, d = 0.0, 0.0, 0.0, 0.0
     whole = count - count % 4
     for i in range(0, whole, 4):
@@ -67,7 +67,7 @@ def residual_sum(s: Floats, count: int) -> float:
 
 @kernel
 def set_tensions(s: Floats, laws: LugreLaws) -> None:
-    """Find the segments' tensions, Yang 2025, Eq. (11)."""
+    """Set the segments' tensions, Yang 2025, Eq. (11)."""
     for j in range(laws.n + 1):
         s[TENSION + j] = s[TENSION_HISTORY + j] + s[TENSION_SLOPE + j] * (
             s[RATE + j] - s[RATE + j + 1]
@@ -76,7 +76,7 @@ def set_tensions(s: Floats, laws: LugreLaws) -> None:
 
 @kernel
 def set_limits(s: Floats, step: Step, laws: LugreLaws) -> None:
-    """Find the limits of the lumps' friction and their slopes, Yang 2025, Eqs. (16) to (19)."""
+    """Set the limits of the lumps' friction and their derivatives, Yang 2025, Eqs. (16) to (19)."""
     for i in range(1, laws.n + 1):
         mean = 0.5 * (s[TENSION + i - 1] + s[TENSION + i])
         deflected = s[DEFLECTION_HISTORY + i] + step.gh * (s[RATE + i] + step.frame.rate)
@@ -97,7 +97,7 @@ def set_limits(s: Floats, step: Step, laws: LugreLaws) -> None:
 
 @kernel
 def set_stribeck(s: Floats, step: Step, laws: LugreLaws) -> None:
-    """Raise the limits of the lumps' friction by their speeds."""
+    """Multiply the limits of the lumps' friction by the Stribeck factor."""
     for i in range(1, laws.n + 1):
         factor, slope = stribeck(s[RATE + i] + step.frame.rate, laws.lump.stribeck)
         s[LIMIT_BY_V + i] = s[LIMIT + i] * slope
@@ -111,7 +111,7 @@ def balance_lumps(s: Floats, step: Step, laws: LugreLaws) -> None:
     inertia = laws.lump.mass / step.gh
     for i in range(1, laws.n + 1):
         speed = s[RATE + i] + step.frame.rate
-        rubbing, by_speed, by_limit, deflection = friction(
+        friction_force, by_speed, by_limit, deflection = friction(
             s[DEFLECTION_HISTORY + i], speed, step.gh, s[LIMIT + i], laws.lump.bristle
         )
         half = 0.5 * by_limit * s[LIMIT_BY_T + i]
@@ -121,64 +121,71 @@ def balance_lumps(s: Floats, step: Step, laws: LugreLaws) -> None:
         s[UPPER + i] = -behind
         s[DIAGONAL + i] = inertia + by_speed + by_limit * s[LIMIT_BY_V + i] - before + behind
         s[RESIDUAL + i] = (
-            s[TENSION + i - 1] - s[TENSION + i] - rubbing - inertia * (speed - s[SPEED_HISTORY + i])
+            s[TENSION + i - 1]
+            - s[TENSION + i]
+            - friction_force
+            - inertia * (speed - s[SPEED_HISTORY + i])
         )
-        s[FRICTION + i] = rubbing
+        s[FRICTION + i] = friction_force
         s[DEFLECTION_NEW + i] = deflection
 
 
 @kernel
 def balance_drive(s: Floats, step: Step, laws: LugreLaws) -> None:
-    """Set up the row of the drive's end: at its place, or pulled by a force against friction."""
+    """Set up the row of the drive's end: at a given position, or with a given force."""
     s[LOWER] = 0.0
     if laws.drive.given == DISPLACEMENT:
         s[UPPER], s[DIAGONAL], s[RESIDUAL] = 0.0, 1.0, -s[RATE]
         return
-    rubbing, by_speed, deflection = end_friction(
+    friction_force, by_speed, deflection = end_friction(
         s[DEFLECTION_HISTORY], s[RATE], step, laws.drive.friction_N, laws
     )
     stiffness = proximal_spring_force(1.0, laws.drive.spring_N_per_mm)
-    place = s[POSITION_HISTORY] + step.gh * s[RATE]
+    position = s[POSITION_HISTORY] + step.gh * s[RATE]
     s[UPPER] = -s[TENSION_SLOPE]
     s[DIAGONAL] = s[TENSION_SLOPE] + stiffness * step.gh + by_speed
-    s[RESIDUAL] = step.drive.value - s[TENSION] - proximal_spring_force(place, stiffness) - rubbing
-    s[FRICTION], s[DEFLECTION_NEW] = rubbing, deflection
+    s[RESIDUAL] = (
+        step.drive.value - s[TENSION] - proximal_spring_force(position, stiffness) - friction_force
+    )
+    s[FRICTION], s[DEFLECTION_NEW] = friction_force, deflection
 
 
 @kernel
 def balance_load(s: Floats, step: Step, laws: LugreLaws) -> None:
-    """Set up the row of the load's end: spring, mass and guide, a given force, or its place."""
+    """Set up the row of the load's end: spring, mass and guide; a given force, or position."""
     last = laws.n + 1
     s[UPPER + last] = 0.0
     if laws.load.given == DISPLACEMENT:
-        place = s[POSITION_HISTORY + last] + step.gh * s[RATE + last]
+        position = s[POSITION_HISTORY + last] + step.gh * s[RATE + last]
         s[LOWER + last], s[DIAGONAL + last] = 0.0, 1.0
-        s[RESIDUAL + last] = (step.load.value - step.frame.value - place) / step.gh
+        s[RESIDUAL + last] = (step.load.value - step.frame.value - position) / step.gh
         return
     behind = s[TENSION_SLOPE + laws.n]
     speed = s[RATE + last] + step.frame.rate
-    rubbing, by_speed, deflection = end_friction(
+    friction_force, by_speed, deflection = end_friction(
         s[DEFLECTION_HISTORY + last], speed, step, moving_friction(laws.load), laws
     )
-    pull, by_place, inertia = step.load.value, 0.0, 0.0
+    pull, by_position, inertia = step.load.value, 0.0, 0.0
     if laws.load.given == SPRING:
-        place = s[POSITION_HISTORY + last] + step.gh * s[RATE + last] + step.frame.value
+        position = s[POSITION_HISTORY + last] + step.gh * s[RATE + last] + step.frame.value
         stiffness = laws.load.stiffness_N_per_mm
-        pull = laws.preload_N - step.lost_N + spring_force(place, stiffness, laws.load.nonlinearity)
+        pull = (
+            laws.preload_N - step.lost_N + spring_force(position, stiffness, laws.load.nonlinearity)
+        )
         inertia = inertia_force(1.0, laws.load.mass_kg) / step.gh
         pull += inertia * (speed - s[SPEED_HISTORY + last])
-        by_place = spring_tangent(place, stiffness, laws.load.nonlinearity)
+        by_position = spring_tangent(position, stiffness, laws.load.nonlinearity)
     s[LOWER + last] = -behind
-    s[DIAGONAL + last] = behind + by_place * step.gh + inertia + by_speed
-    s[RESIDUAL + last] = s[TENSION + laws.n] - pull - rubbing
-    s[FRICTION + last], s[DEFLECTION_NEW + last] = rubbing, deflection
+    s[DIAGONAL + last] = behind + by_position * step.gh + inertia + by_speed
+    s[RESIDUAL + last] = s[TENSION + laws.n] - pull - friction_force
+    s[FRICTION + last], s[DEFLECTION_NEW + last] = friction_force, deflection
 
 
 @kernel
 def end_friction(
     before: float, speed: float, step: Step, limit: float, laws: LugreLaws
 ) -> tuple[float, float, float]:
-    """Return friction of an end, its slope over speed, and its bristle's deflection."""
+    """Return friction of an end, its derivative by speed, and its bristle's deflection."""
     if limit == 0.0:
         return 0.0, 0.0, 0.0
     force, by_speed, _, deflection = friction(before, speed, step.gh, limit, laws.end_bristle)

@@ -1,9 +1,9 @@
-"""The dynamic chain: lumps with mass, damping and bristles, followed in time.
+"""The dynamic chain: lumps with mass, damping and bristles, integrated in time.
 
-Yang 2025, Eqs. (10) to (21), with half springs at both ends (second order in 1/n) and constants
-that belong to the whole sheath, so that n does not change the physics. Steps are as long as the
-error of a tension allows, and end where drive or load turn; samples in between are read off cubics.
-With the steps of another run in place of its own control, what differs between two rigs is smooth.
+Yang 2025, Eqs. (10) to (21), with half springs at both ends (second order in 1/n) and constants of
+the whole sheath, so that n does not change the physics. Steps are as long as the error of a tension
+allows, and end at reversals of drive or load; samples in between are interpolated by cubics. With
+the steps of another run in place of step control, outputs are smooth functions of the rig.
 """
 
 import math
@@ -46,18 +46,18 @@ from tsas_cli.physics.phases import UNCONVERGED
 from tsas_cli.physics.rig import Rig
 
 SHORTEST_S = 1e-13
-MOST_TRIES, MOST_PER_SAMPLE = 20_000, 40  # steps of a run, together
-LEAVES_AT_MOST = 1e-5  # of a tension by Newton's method, since more looks right and is not
-LEAVES_GIVEN = 1e-9  # where steps are given
-OWN_STEPS = np.empty(0)  # as long as the error allows
+MOST_TRIES, MOST_PER_SAMPLE = 20_000, 40  # their sum limits the steps of a run
+MOST_RESIDUAL = 1e-5  # of Newton's method, over a tension: a larger one gives wrong solutions
+RESIDUAL_GIVEN_STEPS = 1e-9  # the same where steps are given
+OWN_STEPS = np.empty(0)  # for steps by error control
 
 
 class StepControl(NamedTuple):
-    """What steps may be off by, or where they end.
+    """Error control of steps, or given steps.
 
     `tolerance` is the error of a tension that a step may add, over the larger of the tensions at
-    both ends. `ends_s` is where steps end, beside reversals, rising [s], shape (p,): nothing limits
-    their error then. Empty: as far as the error allows.
+    both ends. `ends_s` are the given ends of steps, besides reversals, increasing [s], shape (p,):
+    their error is not limited then. Empty: steps by error control.
     """
 
     tolerance: float
@@ -65,12 +65,12 @@ class StepControl(NamedTuple):
 
 
 class Progress(NamedTuple):
-    """How a run went."""
+    """Statistics of a simulated run."""
 
-    step_ends_s: Floats  # where steps ended
-    tries: int  # the steps, and those that were too long
+    step_ends_s: Floats  # of the accepted steps
+    tries: int  # accepted and rejected steps
     iterations: int  # of Newton's method
-    reached_s: float  # time to which the run was followed
+    reached_s: float  # end of the last accepted step
 
 
 @kernel
@@ -83,34 +83,33 @@ def lugre_chain(
     control: StepControl,
     frames: Frames | None = None,
 ) -> tuple[Output, Progress]:
-    """Follow the motion of both ends from a state of rest.
+    """Return the output for the motion of both ends from a state of rest.
 
     Parameters
     ----------
     course
-        What acts on the tendon, with the rows of `course`, shape (8, m), and rising times; friction
-        without its dependence on speed, which each lump has by itself.
+        Inputs of the tendon, with the rows of `course`, shape (8, m), and increasing times;
+        friction without its dependence on speed, which each lump has by itself.
     start
         Positions of the nodes and tensions of the segments behind them at the first sample, shape
         (2, n + 2) [mm, N].
     rig
-        The rig; its friction and bend are taken from the course.
+        The rig; its friction and bend are those of the course.
     boundary
-        What is given at the ends.
+        The given quantity at each end.
     n
         Number of lumps, 2 to `MOST_NODES`.
     control
-        How long steps are.
+        Error control of steps, or given steps.
     frames
-        Where to write down what is along the tendon, n elements with a lump in each.
+        Written over with the profile along the tendon, n elements with a lump in each.
 
     Returns
     -------
     output
-        As that of `slip_chain`, with phase 3 from where the run was given up: the rest keeps its
-        last values there.
+        As that of `slip_chain`; where the run is aborted, the rest has phase 3 and the last values.
     progress
-        How it went.
+        Statistics of the run.
     """
     m = course.shape[1]
     columns, phase = np.empty((4, m)), np.full(m, UNCONVERGED, dtype=np.int8)
@@ -124,21 +123,21 @@ def lugre_chain(
     k, t, reversal = 0, course[TIME, 0], next_reversal(course, 0, laws)
     first = h = 0.1 * (course[TIME, min(1, m - 1)] - t)
     h1 = h2 = math.inf  # the two steps before; none yet
-    least = laws.load.stiffness_N_per_mm  # tension for what is given at an end
+    least = laws.load.stiffness_N_per_mm  # change of tension over that of the given quantity
     stiffness = least, least
     steps = tries = iterations = 0
     ends_s = np.empty(MOST_TRIES + MOST_PER_SAMPLE * m)  # as many as may be tried
     controlled, stop = control.ends_s.size == 0, 0
     written, along = 0, empty_tensions(n)
-    if frames is not None:  # here and below compiled away where none are asked for
+    if frames is not None:  # here and below compiled away without frames
         store_tensions(s, along, laws)
         store_tensions(s, along, laws)
         written = write_along(frames, written, 0, course, Span(t, 1.0), along, s, laws)
     while k < m - 1 and h > SHORTEST_S and tries < ends_s.size:
         tries += 1
-        most = tolerances_of(ends, laws, control.tolerance, LEAVES_AT_MOST)
+        most = tolerances_of(ends, laws, control.tolerance, MOST_RESIDUAL)
         if not controlled:
-            most = tolerances_of(ends, laws, math.inf, LEAVES_GIVEN)
+            most = tolerances_of(ends, laws, math.inf, RESIDUAL_GIVEN_STEPS)
             stop = sample_after(control.ends_s, stop, t + SHORTEST_S)
             h = min(h, control.ends_s[stop] - t) if stop < control.ends_s.size else h
         h, lands = fit_to_reversal(h, course[TIME, reversal] - t)
@@ -147,13 +146,13 @@ def lugre_chain(
         formula = bdf2(h, h1, h2)
         drives = ends.drive.given.value, earlier.drive.given.value
         step = step_at(course, k1, t1, formula, drives, laws)
-        off, done = math.inf, 0
-        unseen = input_error(course, Samples(k + 1, k1), span, ends, step, stiffness, laws)
-        if unseen <= most.error_N:
-            off, done = try_step(s, step, formula, laws, most)
-        iterations += done
-        change = step_factor(off, most, formula)
-        if not off < most.error_N:
+        error_N, used = math.inf, 0
+        input_N = input_error(course, Samples(k + 1, k1), span, ends, step, stiffness, laws)
+        if input_N <= most.error_N:
+            error_N, used = try_step(s, step, formula, laws, most)
+        iterations += used
+        change = step_factor(error_N, most, formula)
+        if not error_N < most.error_N:
             h *= change
             continue
         ends_s[steps] = t1
@@ -193,7 +192,7 @@ def lugre_chain(
 
 @kernel
 def sample_after(times: Floats, k: int, t: float) -> int:
-    """Return the first of some times from k on that is after a time, or their number."""
+    """Return the first index from k on of a later time, or the number of times."""
     while k < times.size and times[k] <= t:
         k += 1
     return k
@@ -211,7 +210,7 @@ def sample_before(course: Floats, k: int, t: float) -> int:
 def has_gone_slack(
     s: Floats, course: Floats, k: int, t: float, ends: StepEnds, laws: LugreLaws
 ) -> bool:
-    """Say whether the tendon has gone slack; with a given force at the load it cannot."""
+    """Return whether the tendon has gone slack; with a given force at the load it cannot."""
     if laws.load.given == FORCE or ends.drive.tension >= 0.0:
         return False
     return is_slack(s, course, min(k, course.shape[1] - 2), t, laws)
@@ -219,10 +218,10 @@ def has_gone_slack(
 
 @kernel
 def phase_of(s: Floats, laws: LugreLaws) -> int:
-    """Return +1 or −1 where all lumps slip alike, 0 otherwise."""
+    """Return +1 or −1 where all lumps slip in that direction, else 0."""
     pulled = released = 0
     for i in range(1, laws.n + 1):
-        way = sliding_direction(s, i, laws)
-        pulled += way > 0
-        released += way < 0
+        direction = sliding_direction(s, i, laws)
+        pulled += direction > 0
+        released += direction < 0
     return int(pulled == laws.n) - int(released == laws.n)

@@ -1,4 +1,4 @@
-"""Both ends of the tendon after a step of the dynamic chain, and what samples within it read."""
+"""Both ends of the tendon after a step of the dynamic chain, and the samples within it."""
 
 from typing import NamedTuple
 
@@ -23,7 +23,7 @@ X_IN, X_OUT, F_IN, F_OUT = range(4)  # rows of the columns
 
 
 class EndState(NamedTuple):
-    """One end of the tendon at the end of a step, with rates for what is read in between."""
+    """One end of the tendon at the end of a step, with rates for interpolation."""
 
     given: Given
     x: float  # at the drive relative to it [mm]
@@ -56,7 +56,7 @@ class Samples(NamedTuple):
 
 @kernel
 def ends_after(s: Floats, step: Step, laws: LugreLaws) -> StepEnds:
-    """Return what the ends are after a step; positions go to POSITION_NEW."""
+    """Return the ends after a step; write the nodes' positions to POSITION_NEW."""
     n, last = laws.n, laws.n + 1
     for i in range(n + 2):
         s[POSITION_NEW + i] = s[POSITION_HISTORY + i] + step.gh * s[RATE + i]
@@ -81,16 +81,13 @@ def ends_after(s: Floats, step: Step, laws: LugreLaws) -> StepEnds:
 def interpolation_error(
     course: Floats, row: int, within: Samples, span: Span, given: Cubic
 ) -> float:
-    """Return by how much samples of an input leave the cubic that a step sees.
-
-    Three samples within the step are looked at.
-    """
-    largest, more = 0.0, within.end - within.first
-    if more > 0:
+    """Return the largest deviation of an input from the cubic of a step, at three samples."""
+    largest, count = 0.0, within.end - within.first
+    if count > 0:
         for quarter in range(1, 4):
-            i = within.first + quarter * more // 4
-            seen = hermite((course[TIME, i] - span.t) / span.h, span.h, given)
-            largest = max(largest, abs(course[row, i] - seen))
+            i = within.first + quarter * count // 4
+            interpolated = hermite((course[TIME, i] - span.t) / span.h, span.h, given)
+            largest = max(largest, abs(course[row, i] - interpolated))
     return largest
 
 
@@ -104,24 +101,24 @@ def input_error(
     stiffness: tuple[float, float],
     laws: LugreLaws,
 ) -> float:
-    """Return what a step does not see of drive and load, as tensions by the ends' stiffness [N]."""
+    """Return the interpolation error of drive and load, as a tension by the ends' stiffness [N]."""
     drive = between(ends.drive.given, step.drive)
-    off = stiffness[0] * interpolation_error(course, DRIVE, within, span, drive)
+    error_N = stiffness[0] * interpolation_error(course, DRIVE, within, span, drive)
     if laws.load.given != SPRING:
         load = between(ends.load.given, step.load)
-        off += stiffness[1] * interpolation_error(course, LOAD, within, span, load)
-    return off
+        error_N += stiffness[1] * interpolation_error(course, LOAD, within, span, load)
+    return error_N
 
 
 @kernel
 def between(a: Given, b: Given) -> Cubic:
-    """Return the cubic from what is given at one end of a step to what is at the other."""
+    """Return the cubic of a given quantity over a step."""
     return Cubic(a.value, a.rate, b.value, b.rate)
 
 
 @kernel
 def end_stiffnesses(earlier: StepEnds, ends: StepEnds, least: float) -> tuple[float, float]:
-    """Return how much both tensions changed for what is given at their ends, at least so much."""
+    """Return the change of both tensions over that of the given quantities, at least `least`."""
     return (
         secant_stiffness(earlier.drive, ends.drive, least),
         secant_stiffness(earlier.load, ends.load, least),
@@ -130,7 +127,7 @@ def end_stiffnesses(earlier: StepEnds, ends: StepEnds, least: float) -> tuple[fl
 
 @kernel
 def secant_stiffness(earlier: EndState, end: EndState, least: float) -> float:
-    """Return how much a tension changed for what is given at its end, at least so much."""
+    """Return the change of a tension over that of the given quantity, at least `least`."""
     given = end.given.value - earlier.given.value
     return max(abs((end.tension - earlier.tension) / given), least) if given != 0.0 else least
 
@@ -145,7 +142,7 @@ def write_samples(
     b: StepEnds,
     laws: LugreLaws,
 ) -> None:
-    """Write what the ends are at the samples within the step from a to b."""
+    """Write the columns at the samples within the step from a to b."""
     x_out = Cubic(a.load.x, a.load.v, b.load.x, b.load.v)
     write_cubic(columns, X_OUT, within, course, span, x_out)
     if laws.drive.given == FORCE:
@@ -165,7 +162,7 @@ def write_samples(
 
 @kernel
 def write_given(columns: Floats, within: Samples, course: Floats, laws: LugreLaws) -> None:
-    """Write what is given at the ends."""
+    """Write the columns that are given at the ends."""
     for i in range(within.first, within.end):
         if laws.drive.given == FORCE:
             columns[F_IN, i] = course[DRIVE, i]

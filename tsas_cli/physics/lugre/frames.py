@@ -1,4 +1,4 @@
-"""What the dynamic chain says along the tendon at chosen samples: read off a step's cubics."""
+"""Profiles along the dynamic chain at chosen samples, interpolated by a step's cubics."""
 
 from typing import NamedTuple
 
@@ -24,9 +24,9 @@ from tsas_cli.physics.phases import SLACK, SLIDING_SHARE
 @kernel
 def sliding_direction(s: Floats, i: int, laws: LugreLaws) -> int:
     """Return +1 or −1 where a lump's bristles are at their limit, 0 where they are not."""
-    longest = s[LIMIT + i] / laws.lump.bristle.stiffness + laws.lump.bristle.travel
-    return int(s[DEFLECTION_NEW + i] > SLIDING_SHARE * longest) - int(
-        s[DEFLECTION_NEW + i] < -SLIDING_SHARE * longest
+    steady = s[LIMIT + i] / laws.lump.bristle.stiffness + laws.lump.bristle.travel
+    return int(s[DEFLECTION_NEW + i] > SLIDING_SHARE * steady) - int(
+        s[DEFLECTION_NEW + i] < -SLIDING_SHARE * steady
     )
 
 
@@ -47,7 +47,7 @@ def empty_tensions(n: int) -> SegmentTensions:
 
 @kernel
 def store_tensions(s: Floats, along: SegmentTensions, laws: LugreLaws) -> None:
-    """Store tensions and their rates after a step; those stored before become its beginning."""
+    """Store tensions and their rates after a step; the stored ones become those before it."""
     for j in range(laws.n + 1):
         along.before[j], along.rate_before[j] = along.now[j], along.rate[j]
         along.now[j] = s[TENSION + j]
@@ -67,7 +67,7 @@ def write_along(
 ) -> int:
     """Write the frames up to a sample within a step; return how many are written.
 
-    Whether a lump slides is that of the step's end.
+    The slip state of a lump is that at the end of the step.
     """
     while written < frames.samples.size and frames.samples[written] <= last:
         part = (course[TIME, frames.samples[written]] - span.t) / span.h

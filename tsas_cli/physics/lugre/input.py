@@ -1,8 +1,8 @@
-"""What drives the dynamic chain between samples: a curve through them that turns only at them.
+"""Input of the dynamic chain between samples: a curve that reverses at samples only.
 
 Drive and load follow the monotone piecewise cubic of Fritsch and Butland (SIAM Journal on
-Scientific and Statistical Computing 5, 1984), which has a speed at every time; friction and
-preload go straight from sample to sample.
+Scientific and Statistical Computing 5, 1984), which is differentiable; friction and preload are
+interpolated linearly.
 """
 
 from typing import NamedTuple
@@ -26,7 +26,7 @@ class Cubic(NamedTuple):
 
 @kernel
 def slope_at(course: Floats, row: int, k: int) -> float:
-    """Return the curve's slope at a sample; 0 where the samples reverse or stand still."""
+    """Return the curve's slope at a sample; 0 where the samples reverse or rest."""
     last = course.shape[1] - 1
     if last == 0:
         return 0.0
@@ -43,7 +43,7 @@ def slope_at(course: Floats, row: int, k: int) -> float:
 
 @kernel
 def slope_at_end(course: Floats, row: int, k: int) -> float:
-    """Return the slope at the first or last sample: a parabola's, made to keep the shape."""
+    """Return the slope at the first or last sample: a parabola's, limited to preserve the shape."""
     towards = 1 if k == 0 else -1
     h = course[TIME, k + towards] - course[TIME, k]
     a = (course[row, k + towards] - course[row, k]) / h
@@ -95,9 +95,9 @@ def value_at(course: Floats, row: int, k: int, t: float) -> Given:
 def step_at(
     course: Floats, k: int, t: float, formula: Formula, drives: tuple[float, float], laws: LugreLaws
 ) -> Step:
-    """Return what is given at the end of a step, at a time from sample k to the next.
+    """Return the inputs at the end of a step, at a time from sample k to the next.
 
-    `drives` is what was given there at the ends of the last two steps.
+    `drives` are the given quantity of the drive at the ends of the last two steps.
     """
     drive = value_at(course, DRIVE, k, t)
     load = Given(0.0, 0.0)
@@ -115,7 +115,7 @@ def step_at(
 
 @kernel
 def lump_share(wrap: float, n: int) -> float:
-    """Return the limit of a lump's friction over its mean tension, of n that share a wrap."""
+    """Return the limit of a lump's friction over its mean tension, for n lumps of a wrap."""
     return float(2.0 * np.tanh(0.5 * wrap / n))
 
 
@@ -132,6 +132,6 @@ def next_reversal(course: Floats, k: int, laws: LugreLaws) -> int:
 
 @kernel
 def reverses(course: Floats, row: int, i: int) -> bool:
-    """Say whether an input reverses, stops or starts at a sample between others."""
+    """Return whether an input reverses, stops or starts at an inner sample."""
     before, after = course[row, i] - course[row, i - 1], course[row, i + 1] - course[row, i]
     return bool(before * after <= 0.0 and before != after)

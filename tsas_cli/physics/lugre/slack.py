@@ -1,4 +1,4 @@
-"""The tendon hangs slack: where it does, until when, and from what state it is pulled again."""
+"""The slack tendon: when it is slack, until when, and the state from which it tightens."""
 
 import numpy as np
 
@@ -15,7 +15,7 @@ HALVINGS = 40  # of the time between two samples
 
 @kernel
 def load_position(course: Floats, k: int, t: float, laws: LugreLaws) -> float:
-    """Return where the load is while the tendon is slack [mm]."""
+    """Return the position of the load while the tendon is slack [mm]."""
     if laws.load.given == SPRING:
         return unloaded_load(course[LOST, k], laws)
     return value_at(course, LOAD, k, t).value
@@ -23,13 +23,13 @@ def load_position(course: Floats, k: int, t: float, laws: LugreLaws) -> float:
 
 @kernel
 def unloaded_load(lost_N: float, laws: LugreLaws) -> float:
-    """Return where the load's spring is at rest without a pull [mm]."""
+    """Return the position of the load with its spring at rest without tension [mm]."""
     return unloaded_position(0.0, laws.preload_N - lost_N, laws.load)
 
 
 @kernel
 def shortening(s: Floats, laws: LugreLaws) -> float:
-    """Return by how much the tendon without tension is shorter than at the preload [mm]."""
+    """Return the elongation of the tendon at the preload [mm]."""
     total = 0.0
     for j in range(laws.n + 1):
         total += laws.preload_N / s[STIFFNESS + j]
@@ -38,7 +38,7 @@ def shortening(s: Floats, laws: LugreLaws) -> float:
 
 @kernel
 def is_slack(s: Floats, course: Floats, k: int, t: float, laws: LugreLaws) -> bool:
-    """Say whether nothing pulls at a time from sample k to the next."""
+    """Return whether the tendon is slack at a time from sample k to the next."""
     drive = value_at(course, DRIVE, k, t).value
     if laws.drive.given == FORCE:
         return drive <= 0.0
@@ -47,9 +47,9 @@ def is_slack(s: Floats, course: Floats, k: int, t: float, laws: LugreLaws) -> bo
 
 @kernel
 def end_of_slack(s: Floats, course: Floats, k: int, t: float, laws: LugreLaws) -> tuple[int, float]:
-    """Return the sample before the time at which the tendon is pulled again, and that time.
+    """Return the last sample before the tendon tightens, and the time when it does.
 
-    Without such a time the last sample and its time are returned.
+    Where it does not, the last sample and its time are returned.
     """
     last = course.shape[1] - 1
     while k < last and is_slack(s, course, k, course[TIME, k + 1], laws):
@@ -88,7 +88,7 @@ def without_tension(s: Floats, course: Floats, k: int, t: float, laws: LugreLaws
 
 @kernel
 def slack_state(s: Floats, load: float, laws: LugreLaws) -> Floats:
-    """Return a tendon straight but without tension up to the load's place, shape (2, n + 2)."""
+    """Return a taut tendon without tension up to the load's position, shape (2, n + 2)."""
     start = np.zeros((2, laws.n + 2))
     start[0, laws.n + 1] = load
     for j in range(laws.n, -1, -1):

@@ -1,10 +1,10 @@
-"""Whether sliding is stable in the dynamic chain, before anything is simulated.
+"""Stability of sliding in the dynamic chain, without a simulation.
 
-Bristles that are damped far above critical push on a tendon that slides: their friction answers
-a change of tension σ1 v/g times as strongly as at rest, and where the tension falls the damping
-σ1 (1 − z/z∞) turns negative. Friction that falls with speed does it too. Small disturbances of
-lumps that slide are followed by the eigenvalues of their equations, frozen at a moment: with all of
-them sliding between drive and load, and, in a dead band, with the half next to the drive.
+Bristles damped far above critical can drive a sliding tendon: their friction responds to a change
+of tension σ1 v/g times as strongly as at rest; where the tension falls the damping σ1 (1 − z/z∞)
+becomes negative. Friction that falls with speed is destabilising too. The growth of small
+disturbances of sliding lumps follows from the eigenvalues of their linearised equations, frozen at
+a moment: with all lumps sliding, and, in a dead band, with the half next to the drive.
 """
 
 import math
@@ -27,17 +27,17 @@ from tsas_cli.physics.rig import Rig
 Floats = npt.NDArray[np.float64]
 
 LUMPS = 24  # the growth is the same for 24 to 200
-FOLDS = 3.0  # e-folds by which a disturbance may grow while its moment lasts
+FOLDS = 3.0  # e-folds by which a disturbance may grow during its moment
 STEEPEST = 0.7  # of the Stribeck velocity, where friction falls fastest with speed
-SLOW = 0.02  # of the highest speed: below it the drive turns
-NUDGE = 1e-6  # of a state, for its slope by central differences
+SLOW = 0.02  # of the highest speed: below it the drive reverses
+NUDGE = 1e-6  # of a state, for its derivative by central differences
 
 
 @dataclass(frozen=True)
 class Sliding:
-    """One moment: the tension at the drive, its rate, the drive's speed, and how long that lasts.
+    """One moment: the tension at the drive, its rate, the drive's speed, and its duration.
 
-    `whole` says whether the whole tendon slides, or only the half next to the drive.
+    `whole` is True where the whole tendon slides, False where only the half next to the drive does.
     """
 
     f_in_N: float
@@ -48,7 +48,7 @@ class Sliding:
 
 
 def growth_rate(rig: Rig, moment: Sliding) -> float:
-    """Return how fast the fastest disturbance of sliding lumps grows [1/s]; negative: it dies."""
+    """Return the growth rate of the fastest disturbance of sliding lumps [1/s]; stable below 0."""
     lumps = _Lumps(rig, moment)
     slopes = np.empty((lumps.state.size, lumps.state.size))
     for i in range(lumps.state.size):
@@ -59,7 +59,7 @@ def growth_rate(rig: Rig, moment: Sliding) -> float:
 
 
 class _Lumps:
-    """The lumps that slide at a moment, next to the drive, and the equations of what disturbs them.
+    """The lumps that slide at a moment, next to the drive, and the equations of disturbances.
 
     The state is the disturbance of positions and of speeds, the deflection of the bristles, and
     with a load that has a mass, the disturbance of its position and speed.
@@ -72,38 +72,38 @@ class _Lumps:
         self.stiffness, self.damping = stiffness[: count + 1], damping[: count + 1]
         self.spring = spring_tangent(0.0, rig.load_stiffness_N_per_mm, self.laws.load.nonlinearity)
         self.load_mass = TONNES_PER_KG * self.laws.load.mass_kg if moment.whole else 0.0
-        if moment.whole and self.load_mass == 0.0:  # in series; its damping is slower than a lump
+        if moment.whole and self.load_mass == 0.0:  # in series with the last segment, undamped
             self.stiffness[-1] = 1.0 / (1.0 / self.stiffness[-1] + 1.0 / self.spring)
             self.damping[-1] = 0.0
-        place: Floats = np.linspace(0.5, count - 0.5, count)
+        position: Floats = np.linspace(0.5, count - 0.5, count)
         direction = math.copysign(1.0, moment.speed_mm_s)
         self.friction = rig.friction_coefficient * rig.total_bend_rad / LUMPS
-        decay: Floats = np.exp(-direction * self.friction * place)
+        decay: Floats = np.exp(-direction * self.friction * position)
         self.tension = moment.f_in_N * decay
-        slower = 0.0 if moment.whole else 1.0 / (count + 0.5)  # a lump that sticks comes next
-        self.speed = moment.speed_mm_s * (1.0 - slower * place)
+        slower = 0.0 if moment.whole else 1.0 / (count + 0.5)  # the next lump sticks
+        self.speed = moment.speed_mm_s * (1.0 - slower * position)
         limit, _, _ = sliding_friction(
             np.zeros(count), self.speed, self.tension, self.friction, self.laws
         )
-        longest = limit / self.laws.lump.bristle.stiffness
-        lag = longest * moment.f_in_rate / moment.f_in_N / np.abs(self.speed)
-        deflection = direction * (longest + self.laws.lump.bristle.travel) * (1.0 - lag)
+        steady = limit / self.laws.lump.bristle.stiffness
+        lag = steady * moment.f_in_rate / moment.f_in_N / np.abs(self.speed)
+        deflection = direction * (steady + self.laws.lump.bristle.travel) * (1.0 - lag)
         load = np.zeros(2 if self.load_mass > 0.0 else 0)
         self.state = np.concatenate((np.zeros(2 * count), deflection, load))
 
     def rates(self, state: Floats) -> Floats:
-        """Return how fast a state changes, but for what does not depend on it."""
-        place, speed, deflection = state[: 3 * self.speed.size].reshape(3, -1)
+        """Return the rates of a state, without the terms that do not depend on it."""
+        position, speed, deflection = state[: 3 * self.speed.size].reshape(3, -1)
         x, v = state[3 * self.speed.size :] if self.load_mass > 0.0 else (0.0, 0.0)
-        pull = -self.stiffness * np.diff(place, prepend=0.0, append=x)
+        pull = -self.stiffness * np.diff(position, prepend=0.0, append=x)
         pull -= self.damping * np.diff(speed, prepend=0.0, append=v)
         sliding = self.speed + speed
         tension = self.tension + 0.5 * (pull[:-1] + pull[1:])
-        _, rubbing, turning = sliding_friction(
+        _, rubbing, bristle_rate = sliding_friction(
             deflection, sliding, tension, self.friction, self.laws
         )
         faster = (-np.diff(pull) - rubbing) / self.laws.lump.mass
-        rates = np.concatenate((speed, faster, turning))
+        rates = np.concatenate((speed, faster, bristle_rate))
         if self.load_mass == 0.0:
             return rates
         return np.append(rates, (v, (pull[-1] - self.spring * x) / self.load_mass))
@@ -125,30 +125,30 @@ def sliding_friction(
 
 @dataclass(frozen=True)
 class Stability:
-    """The fastest disturbance of all moments of a run that were looked at."""
+    """The fastest disturbance of all evaluated moments of a run."""
 
     growth_per_s: float
     moment: Sliding
 
     @property
     def unstable(self) -> bool:
-        """Whether it grows much while the moment lasts."""
+        """Whether it grows by more than `FOLDS` e-folds during the moment."""
         return self.folds > FOLDS
 
     @property
     def folds(self) -> float:
-        """By how many e-folds it grows."""
+        """E-folds of its growth during the moment."""
         return self.growth_per_s * self.moment.lasts_s
 
 
 def moments(
     rig: Rig, time_s: Floats, x_in_mm: Floats, f_in_N: Floats, phase: Phases
 ) -> list[Sliding]:
-    """Return the moments of a run at which sliding is looked at.
+    """Return the moments of a run at which the stability of sliding is evaluated.
 
     In full slip, in either direction, where the drive is fastest, where speed over tension is
-    largest, and where friction falls fastest with speed; in dead bands where the tension changes as
-    it does half way. Parameters are those of `stability`.
+    largest, and where friction falls fastest with speed; in dead bands where the slope of the
+    tension is its median. Parameters are those of `stability`.
     """
     speed, rate = np.gradient(x_in_mm, time_s), np.gradient(f_in_N, time_s)
     lasts = np.abs(speed) / (np.abs(np.gradient(speed, time_s)) + 1e-300)
@@ -181,19 +181,19 @@ def moments(
 def stability(
     rig: Rig, time_s: Floats, x_in_mm: Floats, f_in_N: Floats, phase: Phases
 ) -> Stability | None:
-    """Return how stable sliding is over the speeds and tensions of a run.
+    """Return the stability of sliding over the speeds and tensions of a run.
 
     Parameters
     ----------
     rig
         The rig.
     time_s, x_in_mm, f_in_N, phase
-        The run as the quasi-static model follows it, shape (n,).
+        The run as simulated by the quasi-static model, shape (n,).
 
     Returns
     -------
         The least stable of its `moments`; None where the drive never moves under tension.
     """
-    looked_at = moments(rig, time_s, x_in_mm, f_in_N, phase)
-    found = [Stability(growth_rate(rig, moment), moment) for moment in looked_at]
+    chosen = moments(rig, time_s, x_in_mm, f_in_N, phase)
+    found = [Stability(growth_rate(rig, moment), moment) for moment in chosen]
     return max(found, key=lambda s: s.folds, default=None)

@@ -49,7 +49,7 @@ def bristles_of(rig: Rig) -> Bristle:
 
 @kernel
 def lugre_laws(rig: Rig, n: int, boundary: Boundary) -> LugreLaws:
-    """Return what of the rig holds at every step, with what is given at the ends."""
+    """Return the constants of the rig for every step, with the given quantities at the ends."""
     effects, whole = rig.effects, bristles_of(rig)
     lump = Lump(
         tendon_mass(rig.bristles, rig.sheath_length_mm) / n,
@@ -78,7 +78,7 @@ def segments(rig: Rig, n: int) -> tuple[Floats, Floats]:
 
 @kernel
 def clear_state(s: Floats, rig: Rig, n: int) -> None:
-    """Set the tendon's segments, and everything else to zero."""
+    """Set the tendon's segments, and all other rows to zero."""
     for row in range(ROWS):
         for i in range(n + 2):
             s[PITCH * row + i] = 0.0
@@ -97,7 +97,7 @@ def set_segments(s: Floats, rig: Rig, n: int) -> None:
 def start_at_rest(
     s: Floats, start: Floats, course: Floats, k: int, t: float, laws: LugreLaws
 ) -> StepEnds:
-    """Put the nodes at rest at a time from sample k to the next; see `rest_at`."""
+    """Set the nodes at rest at a time from sample k to the next; see `rest_at`."""
     drive = value_at(course, DRIVE, k, t).value
     formula = bdf2(NO_TIME_S, math.inf, math.inf)
     step = step_at(course, k, t, formula, (drive, drive), laws)
@@ -106,10 +106,10 @@ def start_at_rest(
 
 @kernel
 def rest_at(s: Floats, start: Floats, step: Step, laws: LugreLaws) -> StepEnds:
-    """Put the nodes at rest, with bristles that hold what the tensions leave over.
+    """Set the nodes at rest, with bristles that balance the tensions; return the ends.
 
-    `start` holds positions and tensions, shape (2, n + 2) [mm, N], and `step`, of no time, what is
-    given; returns the ends.
+    `start` has positions and tensions, shape (2, n + 2) [mm, N], and `step`, of zero length, the
+    given quantities.
     """
     last = laws.n + 1
     for i in range(laws.n + 2):

@@ -1,4 +1,4 @@
-"""The dynamic chain's state: its rows, the laws that hold there, what one step is given."""
+"""The dynamic chain's state: its rows, the rig's constants, the inputs of one step."""
 
 from typing import NamedTuple
 
@@ -13,19 +13,19 @@ from tsas_cli.physics.mesh import PITCH
 Floats = npt.NDArray[np.float64]
 
 # Rows of the state, over the nodes from 0 at the drive to n + 1 at the load: s[POSITION + i].
-# Positions are relative to the drive, where that is given: 4 times fewer steps.
+# Positions are relative to the drive, where its position is given: 4 times fewer steps.
 POSITION, POSITION_1, POSITION_2 = (PITCH * row for row in range(3))  # after the last three [mm]
 SPEED, SPEED_1 = (PITCH * row for row in range(3, 5))  # absolute, after the last two steps [mm/s]
 DEFLECTION, DEFLECTION_1 = (PITCH * row for row in range(5, 7))  # of the bristles, likewise [mm]
-RATE, RATE_PREDICTED = PITCH * 7, PITCH * 8  # of POSITION, as sought and as predicted [mm/s]
+RATE, RATE_PREDICTED = PITCH * 7, PITCH * 8  # of POSITION, iterate and prediction [mm/s]
 FRICTION = PITCH * 9  # [N]
-DEFLECTION_NEW, POSITION_NEW = PITCH * 10, PITCH * 11  # at the rates sought
+DEFLECTION_NEW, POSITION_NEW = PITCH * 10, PITCH * 11  # at the present RATE
 POSITION_HISTORY = PITCH * 12  # in y = POSITION_HISTORY + gh RATE; the next two likewise
 SPEED_HISTORY, DEFLECTION_HISTORY = PITCH * 13, PITCH * 14
 STIFFNESS, DAMPING = PITCH * 15, PITCH * 16  # of the segment behind the node [N/mm, N s/mm]
 TENSION = PITCH * 17  # = TENSION_HISTORY + TENSION_SLOPE (RATE − RATE behind) [N]
 TENSION_HISTORY, TENSION_SLOPE = PITCH * 18, PITCH * 19
-LIMIT, LIMIT_BY_T, LIMIT_BY_V = (PITCH * row for row in range(20, 23))  # of friction, its slopes
+LIMIT, LIMIT_BY_T, LIMIT_BY_V = (PITCH * row for row in range(20, 23))  # of friction, derivatives
 LOWER, DIAGONAL, UPPER, RESIDUAL = (PITCH * row for row in range(23, 27))  # Newton's equations
 MINOR, SCALED, INCREMENT = (PITCH * row for row in range(27, 30))  # elimination and solution
 ROWS = 30
@@ -41,7 +41,7 @@ class Lump(NamedTuple):
 
 
 class LugreLaws(NamedTuple):
-    """What of the rig holds at every step."""
+    """The constants of the rig for every step."""
 
     n: int
     preload_N: float
@@ -63,7 +63,7 @@ class Formula(NamedTuple):
 
 
 class Given(NamedTuple):
-    """What is given at an end of the tendon, and how fast it changes [mm or N, per s]."""
+    """The given quantity at an end of the tendon and its rate [mm or N, per s]."""
 
     value: float
     rate: float
@@ -75,7 +75,7 @@ class Step(NamedTuple):
     gh: float  # [s]
     drive: Given
     load: Given  # unused with a spring
-    frame: Given  # that positions are relative to [mm], its speed by the same formula [mm/s]
+    frame: Given  # origin of the positions [mm], its speed by the same formula [mm/s]
     pulled: float  # friction over the mean tension of a lump's two sides in contraction [1]
     released: float  # and in loosening [1]
-    lost_N: float  # preload that the load spring's anchor has lost
+    lost_N: float  # preload lost at the load spring's anchor

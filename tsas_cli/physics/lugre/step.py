@@ -1,6 +1,6 @@
 """One step of the dynamic chain: variable-step BDF2, solved by Newton's method.
 
-Second order (the first step after a turning point is a backward Euler step, first order):
+Second order (the first step after a reversal is a backward Euler step, first order):
 y = (1+ω)²/(1+2ω) y1 − ω²/(1+2ω) y2 + gh dy/dt with gh = h(1+ω)/(1+2ω), ω = h over the step before.
 """
 
@@ -41,7 +41,7 @@ MOST_ITERATIONS = 8
 
 @kernel
 def bdf2(h: float, h1: float, h2: float) -> Formula:
-    """Return the formula of a step after two others; without one before, backward Euler's."""
+    """Return the formula of a step after two others; for the first step, backward Euler's."""
     ratio = h / h1
     below = 1.0 + 2.0 * ratio
     gh = h * (1.0 + ratio) / below
@@ -79,12 +79,11 @@ def predict(s: Floats, laws: LugreLaws, formula: Formula) -> None:
 
 
 @kernel
-def newton(s: Floats, step: Step, laws: LugreLaws, leaves_N: float) -> tuple[int, bool]:
-    """Find the rates at the end of a step from the predicted ones.
+def newton(s: Floats, step: Step, laws: LugreLaws, residual_N: float) -> tuple[int, bool]:
+    """Solve for the rates at the end of a step from the predicted ones.
 
-    Returns the iterations, and success.
-
-    It ends when what the forces leave, summed over the nodes, is at most `leaves_N`.
+    Returns the iterations, and success: the residual forces, summed over the nodes, are at most
+    `residual_N`.
     """
     last = laws.n + 1
     if laws.drive.given == DISPLACEMENT:
@@ -94,10 +93,10 @@ def newton(s: Floats, step: Step, laws: LugreLaws, leaves_N: float) -> tuple[int
     for i in range(laws.n + 2):
         s[RATE_PREDICTED + i] = s[RATE + i]
     for iteration in range(MOST_ITERATIONS + 1):
-        left = balance(s, step, laws)
-        if left <= leaves_N:
+        residual = balance(s, step, laws)
+        if residual <= residual_N:
             return iteration, True
-        if not left < math.inf or iteration == MOST_ITERATIONS:
+        if not residual < math.inf or iteration == MOST_ITERATIONS:
             return iteration, False
         solve(s, laws.n)
         for i in range(laws.n + 2):
@@ -107,23 +106,25 @@ def newton(s: Floats, step: Step, laws: LugreLaws, leaves_N: float) -> tuple[int
 
 @kernel
 def step_error(s: Floats, laws: LugreLaws, formula: Formula) -> float:
-    """Return the error of a step as a tension, from how far the prediction was off [N]."""
+    """Return the error of a step as a tension, from the error of the prediction [N]."""
     h, h1, h2, gh, _, _ = formula
     for j in range(laws.n + 1):
-        off = (s[RATE + j] - s[RATE_PREDICTED + j]) - (s[RATE + j + 1] - s[RATE_PREDICTED + j + 1])
-        s[INCREMENT + j] = abs(s[STIFFNESS + j] * off)
+        difference = (s[RATE + j] - s[RATE_PREDICTED + j]) - (
+            s[RATE + j + 1] - s[RATE_PREDICTED + j + 1]
+        )
+        s[INCREMENT + j] = abs(s[STIFFNESS + j] * difference)
     largest = largest_increment(s, laws.n + 1)
     if h2 == math.inf:
         return 0.5 * gh * largest
     ratio = h / h1
     corrected = h * h * h * (1.0 + ratio) ** 2 / (ratio * (1.0 + 2.0 * ratio))
-    guessed = h * (h + h1) * (h + h1 + h2)
-    return gh * largest * corrected / (corrected + guessed)
+    predicted = h * (h + h1) * (h + h1 + h2)
+    return gh * largest * corrected / (corrected + predicted)
 
 
 @kernel
 def largest_increment(s: Floats, count: int) -> float:
-    """Return the largest of INCREMENT, by two searches side by side."""
+    """Return the largest of INCREMENT, by two independent searches."""
     a, b = s[INCREMENT], 0.0
     for i in range(1, count - 1, 2):
         a, b = max(a, s[INCREMENT + i]), max(b, s[INCREMENT + i + 1])
@@ -133,7 +134,7 @@ def largest_increment(s: Floats, count: int) -> float:
 
 @kernel
 def accept_step(s: Floats, step: Step, laws: LugreLaws) -> None:
-    """Take the step's end as the present."""
+    """Accept a step: shift the state to its end."""
     for i in range(laws.n + 2):
         s[POSITION_2 + i] = s[POSITION_1 + i]
         s[POSITION_1 + i] = s[POSITION + i]

@@ -3,7 +3,7 @@
 With every row divided by its diagonal, the leading minors are p[i] = p[i−1] − l[i] u[i−1] p[i−2],
 and the right side scaled by them is q[i] = r[i] p[i−1] − l[i] q[i−1]: no division waits for the
 one before it. A minor is no less than about half of the one before it, so that 1000 rows do not
-leave the floats.
+underflow.
 """
 
 from tsas_cli.numerics.compiled import kernel
@@ -52,7 +52,7 @@ def solve(s: Floats, n: int) -> None:
 
 @kernel
 def solve_middle(s: Floats, middle: int, p_before: float, r_before: float) -> None:
-    """Solve the two rows at which both eliminations meet."""
+    """Solve the two rows where both eliminations meet."""
     a, b = s[MINOR + middle - 1], s[UPPER + middle - 1] * p_before
     c, d = s[LOWER + middle] * r_before, s[MINOR + middle]
     inverse = 1.0 / (a * d - b * c)

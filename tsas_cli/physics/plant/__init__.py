@@ -1,1 +1,1 @@
-"""What a controller acts on: motor, gear and turntable, with a tendon of either chain."""
+"""The plant of a closed loop: motor, gear and turntable, with a tendon of either chain."""

@@ -1,9 +1,9 @@
-"""The plant of a closed loop with the dynamic chain as its tendon; see `plant`.
+"""The plant of a closed loop with the dynamic chain as its tendon; see `turntable`.
 
-The lumps take the same step of BDF2 as the turntable, which is a spring at the tendon's end then.
-Where Newton's method fails or a tension is off by too much they take shorter ones, over which the
-force moves straight. Where something jumps (the play catches the tendon's end or lets
-go of it, a slack tendon is pulled, the rig changes) they begin with backward Euler.
+The lumps use the same BDF2 step as the turntable, which acts as a spring at the tendon's end. Where
+Newton's method fails or the error of a tension is too large they use shorter steps, over which the
+force changes linearly. After a discontinuity (contact in the play begins or ends, a slack tendon
+tightens, the rig changes) they restart with backward Euler.
 """
 
 import math
@@ -66,31 +66,31 @@ from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.slip import state as slip
 
 DRIVEN = Boundary(FORCE, SPRING)
-TOLERANCE = 1e-4  # of a tension: what a step of the lumps may add to its error
-LEAVES = 1e-7  # what Newton's method may leave: more shakes a turntable that is at rest
-ROUGH = 1.0  # the same where that is not to be had
+TOLERANCE = 1e-4  # error that a step of the lumps may add, over a tension
+RESIDUAL_SHARE = 1e-7  # of Newton's method, over a tension: more excites a turntable at rest
+LOOSE_TOLERANCE = 1.0  # in place of TOLERANCE, after CAREFUL_TRIES
 CAREFUL_TRIES, MOST_TRIES = 200, 300  # of steps of the lumps in one of the plant
 
 
 class LumpedTendon(NamedTuple):
-    """The tendon beside its lumps: both ends, and how steps go on."""
+    """The tendon without its lumps: both ends, and the state of step control."""
 
     ends: StepEnds
-    h: float  # the step to take next, and the two before it, infinite where there was none [s]
+    h: float  # the next step, and the two before it, infinite where there are none [s]
     h1: float
     h2: float
-    touched: bool  # by the drive, which is not within its play
+    touched: bool  # in contact with the drive, which is not within its play
     slack: bool
 
 
 def empty_lumps() -> Floats:
-    """Return room for lumps, for `lumps_at_rest` to fill."""
+    """Return unfilled arrays for lumps, for `lumps_at_rest` to fill."""
     return np.empty(ROWS * PITCH)
 
 
 @kernel
 def lumps_at_rest(s: Floats, chain: Floats, f_in: float, rig: Rig, n: int) -> LumpedTendon:
-    """Put lumps at rest where a slip chain is, with a force at the drive [N]."""
+    """Set lumps at rest in the state of a slip chain, with a force at the drive [N]."""
     laws, start = lugre_laws(rig, n, DRIVEN), np.empty((2, n + 2))
     clear_state(s, rig, n)
     for j in range(n + 2):
@@ -104,14 +104,14 @@ def lumps_at_rest(s: Floats, chain: Floats, f_in: float, rig: Rig, n: int) -> Lu
 
 @kernel
 def with_rig(s: Floats, tendon: LumpedTendon, rig: Rig, n: int) -> LumpedTendon:
-    """Go on with another rig."""
+    """Set another rig; the next step is a first one."""
     set_segments(s, rig, n)
     return LumpedTendon(tendon.ends, math.inf, math.inf, math.inf, tendon.touched, tendon.slack)
 
 
 @kernel
 def restarted(ends: StepEnds, touched: bool) -> LumpedTendon:
-    """Return a tendon from whose ends the next step is a first one."""
+    """Return a tendon whose next step is a first one."""
     return LumpedTendon(ends, math.inf, math.inf, math.inf, touched, False)
 
 
@@ -119,10 +119,10 @@ def restarted(ends: StepEnds, touched: bool) -> LumpedTendon:
 def step_lumped_plant(
     table: Turntable, s: Floats, tendon: LumpedTendon, rig: Rig, laws: LugreLaws, step: DriveStep
 ) -> tuple[Turntable, LumpedTendon, bool]:
-    """Move turntable, tendon and load by a step; `laws` are those of a drive by force.
+    """Advance turntable, tendon and load by a step; `laws` are those of a drive by force.
 
-    Returns the turntable, the tendon, and whether its steps were solved and within their error.
-    Where Newton's method fails the tendon is left behind, for the next step to catch up with.
+    Returns the turntable, the tendon, and whether its steps converged within their error. Where
+    Newton's method fails the tendon lags until the next step.
     """
     p, h = s[POSITION], step.h
     spring = spring_of(table, p, rig, step)
@@ -132,21 +132,21 @@ def step_lumped_plant(
     solved, arrived, x, f_in = True, True, spring.x, table.f_in
     drive = laws.drive
     if spring.touches:
-        beside = drive.spring_N_per_mm + spring.stiffness
-        held = with_drive(laws, DriveEnd(FORCE, drive.friction_N, beside))
+        stiffness = drive.spring_N_per_mm + spring.stiffness
+        driven = with_drive(laws, DriveEnd(FORCE, drive.friction_N, stiffness))
         if tendon.slack:
-            tendon, solved = pull_slack(s, given, held, h)
+            tendon, solved = pull_slack(s, given, driven, h)
     else:
-        held = with_drive(laws, DriveEnd(DISPLACEMENT, drive.friction_N, drive.spring_N_per_mm))
+        driven = with_drive(laws, DriveEnd(DISPLACEMENT, drive.friction_N, drive.spring_N_per_mm))
     tension = tendon.ends.drive.tension
     if not tendon.slack:
         before = table.f_in + spring.stiffness * p
-        tendon, arrived, solved = advance_lumps(s, tendon, before, given, held, h)
+        tendon, arrived, solved = advance_lumps(s, tendon, before, given, driven, h)
     if not spring.touches:
         f_in += tendon.ends.drive.tension - tension
     else:
         if tendon.ends.drive.tension < 0.0 and s[POSITION] <= taut_position(s, given, laws):
-            s[POSITION] = (given.drive.value - s[FRICTION]) / held.drive.spring_N_per_mm
+            s[POSITION] = (given.drive.value - s[FRICTION]) / driven.drive.spring_N_per_mm
             tendon = slack_tendon(given, laws)
         if arrived:
             x, f_in = turntable_at(s[POSITION], spring)
@@ -157,24 +157,24 @@ def step_lumped_plant(
 def advance_lumps(
     s: Floats, tendon: LumpedTendon, before: float, step: Step, laws: LugreLaws, h: float
 ) -> tuple[LumpedTendon, bool, bool]:
-    """Move the lumps by h, the force at the drive going straight from before to the step's.
+    """Advance the lumps by h, with a force at the drive linear from `before` to the step's.
 
-    Returns the tendon, whether it has arrived, and whether every step was within its error, which
-    does not count any more after many tries.
+    Returns the tendon, whether it has reached the end of h, and whether every step was within
+    `TOLERANCE`, which is loosened after many tries.
     """
     ends, length, h1, h2, touched, _ = tendon
     length, done, tolerance = min(length, h), 0.0, TOLERANCE
     for tries in range(MOST_TRIES):
         if tries == CAREFUL_TRIES:
-            length, h1, h2, tolerance = h - done, math.inf, math.inf, ROUGH
+            length, h1, h2, tolerance = h - done, math.inf, math.inf, LOOSE_TOLERANCE
         length, lands = fit_to_reversal(length, h - done)
         part = 1.0 if lands else (done + length) / h
         formula = bdf2(length, h1, h2)
         to = with_drive_force(step, before + part * (step.drive.value - before), formula.gh)
-        most = tolerances_of(ends, laws, tolerance, LEAVES)
-        off, _ = try_step(s, to, formula, laws, most)
-        change = step_factor(off, most, formula)
-        if off < most.error_N:
+        most = tolerances_of(ends, laws, tolerance, RESIDUAL_SHARE)
+        error_N, _ = try_step(s, to, formula, laws, most)
+        change = step_factor(error_N, most, formula)
+        if error_N < most.error_N:
             ends = ends_after(s, to, laws)
             accept_step(s, to, laws)
             done, length, h1, h2 = done + length, length * change, length, h1
@@ -188,12 +188,12 @@ def advance_lumps(
 
 @kernel
 def pull_slack(s: Floats, step: Step, laws: LugreLaws, h: float) -> tuple[LumpedTendon, bool]:
-    """Move the end of a slack tendon; where that would stretch it, put it at rest taut instead.
+    """Move the end of a slack tendon; where it tightens, set it at rest, taut without tension.
 
-    Returns the tendon and whether the end's position was found.
+    Returns the tendon and whether the end's position converged.
     """
-    place, deflection = s[POSITION], s[DEFLECTION]
-    s[POSITION_HISTORY], s[DEFLECTION_HISTORY], s[RATE] = place, deflection, 0.0
+    position, deflection = s[POSITION], s[DEFLECTION]
+    s[POSITION_HISTORY], s[DEFLECTION_HISTORY], s[RATE] = position, deflection, 0.0
     s[TENSION] = s[TENSION_SLOPE] = 0.0
     step, solved = with_drive_force(step, step.drive.value, h), False
     for _ in range(MOST_ITERATIONS):
@@ -202,7 +202,7 @@ def pull_slack(s: Floats, step: Step, laws: LugreLaws, h: float) -> tuple[Lumped
         if solved:
             break
         s[RATE] += s[RESIDUAL] / s[DIAGONAL]
-    s[POSITION], s[SPEED], s[DEFLECTION] = place + h * s[RATE], s[RATE], s[DEFLECTION_NEW]
+    s[POSITION], s[SPEED], s[DEFLECTION] = position + h * s[RATE], s[RATE], s[DEFLECTION_NEW]
     if s[POSITION] <= taut_position(s, step, laws):
         return slack_tendon(step, laws), solved
     start = slack_state(s, unloaded_load(step.lost_N, laws), laws)
@@ -213,13 +213,13 @@ def pull_slack(s: Floats, step: Step, laws: LugreLaws, h: float) -> tuple[Lumped
 
 @kernel
 def taut_position(s: Floats, step: Step, laws: LugreLaws) -> float:
-    """Return where the drive's end of the tendon is when it is straight without tension [mm]."""
+    """Return the position of the drive's end of a tendon taut without tension [mm]."""
     return unloaded_load(step.lost_N, laws) - shortening(s, laws)
 
 
 @kernel
 def slack_tendon(step: Step, laws: LugreLaws) -> LumpedTendon:
-    """Return a tendon that hangs slack."""
+    """Return a slack tendon."""
     drive = EndState(Given(0.0, 0.0), 0.0, 0.0, 0.0, 0.0)
     load = EndState(Given(0.0, 0.0), unloaded_load(step.lost_N, laws), 0.0, 0.0, 0.0)
     ends = StepEnds(drive, load, 0.0)
@@ -228,7 +228,7 @@ def slack_tendon(step: Step, laws: LugreLaws) -> LumpedTendon:
 
 @kernel
 def step_of_rest(force: float, time_s: float, rig: Rig, n: int) -> Step:
-    """Return a step of no time, at whose end a force pulls at the drive [N]."""
+    """Return a step of zero length with a force at the drive [N]."""
     losses = losses_without_speed(time_s, 0.0, rig)
     pulled, released = lump_share(losses.pulled, n), lump_share(losses.released, n)
     none = Given(0.0, 0.0)

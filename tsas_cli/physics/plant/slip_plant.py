@@ -20,9 +20,9 @@ from tsas_cli.physics.slip.state import POSITION, SLIP, TENSION, Floats, Moment,
 def step_plant(
     table: Turntable, chain: Floats, before: Moment, rig: Rig, laws: SlipLaws, step: DriveStep
 ) -> tuple[Turntable, Moment, bool]:
-    """Move turntable, tendon and load by a step; `laws` are those of a drive by force.
+    """Advance turntable, tendon and load by a step; `laws` are those of a drive by force.
 
-    Returns the turntable, the moment that the chain has come to, and whether it converged.
+    Returns the turntable, the moment of the chain after the step, and whether it converged.
     """
     p = chain[POSITION]
     spring = spring_of(table, p, rig, step)
@@ -30,13 +30,15 @@ def step_plant(
     if spring.touches:
         now = Moment(spring.force, 0.0, losses_at(step.time_s, table.speed, 0.0, rig), step.h)
         drive = laws.drive
-        beside = drive.spring_N_per_mm + spring.stiffness
-        held = with_drive(laws, DriveEnd(drive.given, drive.friction_N, beside))
-        converged = advance(chain, before, now, held)
+        stiffness = drive.spring_N_per_mm + spring.stiffness
+        driven = with_drive(laws, DriveEnd(drive.given, drive.friction_N, stiffness))
+        converged = advance(chain, before, now, driven)
         if chain[TENSION] < 0.0:
             go_slack(chain, now, laws)
-            rubs = chain[SLIP] * drive.friction_N
-            chain[POSITION] = (spring.force - rubs) / (spring.stiffness + drive.spring_N_per_mm)
+            friction_N = chain[SLIP] * drive.friction_N
+            chain[POSITION] = (spring.force - friction_N) / (
+                spring.stiffness + drive.spring_N_per_mm
+            )
         x, f_in = turntable_at(chain[POSITION], spring)
     speed = (chain[POSITION] - p) / step.h
     return advance_turntable(table, x, f_in, speed, step.h), now, converged

@@ -1,17 +1,17 @@
 """The drive of a closed loop's plant: motor, gear with finite stiffness, turntable.
 
-    lag · dw/dt + w = u,  dx_m/dt = K w                              motor speed w, asked for u
+    lag · dw/dt + w = u,  dx_m/dt = K w                              motor speed w, command u
     m d²x/dt² + B dx/dt + k_d (x − x_m) + dp/dx (F(p) − F0) = 0       turntable, m = J/r1²
     p = play(x + ripple(x))                                          the tendon's end
 
 Yang 2025, Eqs. (23) to (25), with the reaction k_d (x − x_m) of the drive's stiffness that Eq. (25)
-lacks. F is what the slip chain, the drive's friction and a spring beside the tendon pull with.
+lacks. F is the force of the slip chain, the drive's friction and a spring parallel to the tendon.
 
-Discretisation: the motor exactly for a speed that is held, the turntable by BDF2 with a constant
-step (second order), in which F is implicit: a turntable after a step is a linear spring of
-stiffness m c² + B c + k_d, c = 3/(2h), at whose end the slip chain hangs. The speed in what
-depends on speed (viscous, Stribeck friction) is that of the step before: first order there. While
-the drive crosses its play the tendon's end rests and pulls on; the play rubs (`rubbing`).
+Discretisation: the motor exactly for a constant command, the turntable by BDF2 with a constant step
+(second order), in which F is implicit: a turntable after a step is a linear spring of stiffness
+m c² + B c + k_d, c = 3/(2h), in series with the slip chain. Viscous and Stribeck friction use the
+speed of the step before: first order there. While the drive crosses its play the tendon's end
+rests under tension, and the play has friction (`play_friction`).
 """
 
 import math
@@ -21,8 +21,8 @@ from tsas_cli.effects.drive_ripple import DriveRipple, rippled
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.rig import Rig
 
-FLANK = 1.0 - 1e-9  # of half the play, from which the drive is at its flank
-RIPPLE_STEP_MM = 1e-4  # over which the slope of the ripple is taken
+FLANK = 1.0 - 1e-9  # of half the play, from which the drive is in contact with its flank
+RIPPLE_STEP_MM = 1e-4  # of the finite difference of the ripple
 
 
 class Actuator(NamedTuple):
@@ -44,14 +44,14 @@ class Tangent(NamedTuple):
 
 
 class Play(NamedTuple):
-    """Half of the gear's play, and how far friction in it holds the drive back [mm]."""
+    """Half of the gear's play, and its friction over the turntable's stiffness [mm]."""
 
     half: float
-    held: float
+    friction_mm: float
 
 
 class Motor(NamedTuple):
-    """The motor's speed, and how far it has come by the gear's kinematics."""
+    """The motor's speed, and its position by the gear's kinematics."""
 
     rpm: float
     mm: float
@@ -64,12 +64,12 @@ class Turntable(NamedTuple):
     x_before: float
     v: float
     v_before: float
-    f_in: float  # what a sensor at the drive reads [N]
+    f_in: float  # reading of a sensor at the drive [N]
     speed: float  # of the tendon's end [mm/s]
 
 
 class DriveStep(NamedTuple):
-    """One step of the plant, at whose end the motor is already."""
+    """One step of the plant, with the motor already at its end."""
 
     actuator: Actuator
     motor_mm: float
@@ -78,31 +78,31 @@ class DriveStep(NamedTuple):
 
 
 class TurntableSpring(NamedTuple):
-    """What the turntable is for the tendon's end p at the end of a step: a spring.
+    """The turntable after a step as a spring at the tendon's end p.
 
-    It pulls with force − stiffness p where it touches the tendon, p = ahead + slope x there.
+    In contact its force is force − stiffness p, with p = ahead + slope x.
     """
 
-    touches: bool  # False while it crosses its play
-    x: float  # where the tendon's end rests [mm]
+    touches: bool  # in contact; False while it crosses its play
+    x: float  # with the tendon's end at rest [mm]
     tangent: Tangent
     stiffness: float  # [N/mm]
     force: float  # [N]
 
 
 @kernel
-def advance_motor(motor: Motor, asked_rpm: float, actuator: Actuator, h: float) -> Motor:
-    """Return the motor after h with a speed asked for, exactly."""
+def advance_motor(motor: Motor, command_rpm: float, actuator: Actuator, h: float) -> Motor:
+    """Return the motor after h with a constant speed command, exactly."""
     lag = actuator.motor_lag_s
-    left = math.exp(-h / lag) if lag > 0.0 else 0.0
-    rest = motor.rpm - asked_rpm
-    way = actuator.gain_mm_per_s_rpm * (asked_rpm * h + rest * lag * (1.0 - left))
-    return Motor(asked_rpm + rest * left, motor.mm + way)
+    decay = math.exp(-h / lag) if lag > 0.0 else 0.0
+    rest = motor.rpm - command_rpm
+    travel = actuator.gain_mm_per_s_rpm * (command_rpm * h + rest * lag * (1.0 - decay))
+    return Motor(command_rpm + rest * decay, motor.mm + travel)
 
 
 @kernel
 def spring_of(table: Turntable, p: float, rig: Rig, step: DriveStep) -> TurntableSpring:
-    """Return what a turntable is for the tendon, whose end is at p, at the end of a step."""
+    """Return the turntable after a step as a spring for the tendon's end at p."""
     actuator, h = step.actuator, step.h
     c, m = 1.5 / h, actuator.inertia_N_s2_per_mm
     v_rest = (-4.0 * table.x + table.x_before) / (2.0 * h)
@@ -112,7 +112,7 @@ def spring_of(table: Turntable, p: float, rig: Rig, step: DriveStep) -> Turntabl
     pull -= actuator.damping_N_s_per_mm * v_rest
     gear = ripple_tangent(2.0 * table.x - table.x_before, rig.effects.drive_ripple)
     half = 0.5 * rig.effects.backlash.play_mm
-    x = (pull - gear.slope * (table.f_in - rig.preload_N)) / stiffness  # with the end where it is
+    x = (pull - gear.slope * (table.f_in - rig.preload_N)) / stiffness  # with the end at rest
     if half > 0.0:
         play = Play(half, play_friction(table.f_in, rig) / stiffness)
         x = across_play(x, table.x, p, gear, play)
@@ -126,7 +126,7 @@ def spring_of(table: Turntable, p: float, rig: Rig, step: DriveStep) -> Turntabl
 
 @kernel
 def turntable_at(p: float, spring: TurntableSpring) -> tuple[float, float]:
-    """Return where a turntable is that holds the tendon's end at p, and its force there."""
+    """Return position and force of a turntable in contact with the tendon's end at p."""
     tangent = spring.tangent
     return (p - tangent.ahead) / tangent.slope, spring.force - spring.stiffness * p
 
@@ -140,25 +140,25 @@ def advance_turntable(table: Turntable, x: float, f_in: float, speed: float, h: 
 
 @kernel
 def play_friction(tension: float, rig: Rig) -> float:
-    """Return what holds the drive while it crosses its play [N].
+    """Return the friction of the drive while it crosses its play [N].
 
-    Up and down it is crossed at different tensions T1 and T2: each time that would give energy but
-    for a friction of at least (T1 − T2)/(T1 + T2), which is tanh(μθ) in full slip.
+    The play is crossed up and down at different tensions T1 and T2; without a friction of at least
+    (T1 − T2)/(T1 + T2), which is tanh(μθ) in full slip, a cycle would create energy.
     """
     return tension * math.tanh(rig.friction_coefficient * rig.total_bend_rad)
 
 
 @kernel
 def across_play(x: float, x_now: float, p: float, gear: Tangent, play: Play) -> float:
-    """Return where the drive is with the tendon's end at rest, friction in the play counted.
+    """Return the drive's position with the tendon's end at rest, with friction in the play.
 
-    `x` is where it would be without. At a flank and pushing against it nothing rubs.
+    `x` is that without friction. At a flank and pushing against it there is none.
     """
     at = gear.ahead + gear.slope * x_now - p
     gap = gear.ahead + gear.slope * x - p
     if abs(at) >= play.half * FLANK and abs(gap) > play.half and at * gap > 0.0:
         return x
-    return min(max(x_now, x - play.held), x + play.held)
+    return min(max(x_now, x - play.friction_mm), x + play.friction_mm)
 
 
 @kernel
@@ -166,6 +166,6 @@ def ripple_tangent(x: float, ripple: DriveRipple) -> Tangent:
     """Return the tangent of the gear's output over its input."""
     if ripple.sine_mm == ripple.cosine_mm == 0.0:
         return Tangent(0.0, 1.0)
-    here, there = rippled(x, ripple), rippled(x + RIPPLE_STEP_MM, ripple)
-    slope = (there - here) / RIPPLE_STEP_MM
+    here, next_value = rippled(x, ripple), rippled(x + RIPPLE_STEP_MM, ripple)
+    slope = (next_value - here) / RIPPLE_STEP_MM
     return Tangent(here - slope * x, slope)

@@ -2,10 +2,10 @@
 
 The tendon is n nodes in a row, each with its share a/n of the wrap angle times friction, joined
 by springs; half springs at both ends make the mesh second order in 1/n (first order close to a
-reversal, where the exact slope is infinite). A node sticks while the tensions on its two sides
-keep within the capstan ratio e^(±a/n), exactly Eq. (7) of Yang 2025 for its bend; it slips in the
-direction that the larger one pulls. Each sample is one static problem (`step`), started from
-the last sample's set of slipping nodes.
+reversal, where the exact slope is infinite). A node sticks while the ratio of the tensions on its
+two sides is within the capstan ratio e^(±a/n), exactly Eq. (7) of Yang 2025 for its bend; it slips
+in the direction of the larger one. Each sample is one static problem (`step`), started from the
+last sample's active set of slipping nodes.
 """
 
 import math
@@ -56,42 +56,41 @@ from tsas_cli.physics.slip.state import (
 )
 from tsas_cli.physics.slip.step import solve_sample
 
-MOST_UNCONVERGED = 10  # samples, after which a run is given up
-MOST_STEPS = 60  # between two samples, those included that did not converge
-SHORTEST_STEP = 1e-3  # of the way between two samples; where that does not converge, nothing does
+MOST_UNCONVERGED = 10  # samples, after which a run is aborted
+MOST_STEPS = 60  # between two samples, unconverged ones included
+SHORTEST_STEP = 1e-3  # of the interval between two samples; shorter steps do not converge either
 
 
 def slip_chain(
     course: Floats, rig: Rig, boundary: Boundary, n: int, frames: Frames | None = None
 ) -> Output:
-    """Follow the motion of both ends, starting from rest at the preload.
+    """Return the output for the motion of both ends from rest at the preload.
 
     Parameters
     ----------
     course
-        What acts on the tendon, with the rows of `course`, shape (8, m).
+        Inputs of the tendon, with the rows of `course`, shape (8, m).
     rig
-        The rig; its friction and bend are taken from the course.
+        The rig; its friction and bend are those of the course.
     boundary
-        What is given at the ends.
+        The given quantity at each end.
     n
         Number of nodes.
     frames
-        Where to write down what is along the tendon, n elements with a node in each.
+        Written over with the profile along the tendon, n elements with a node in each.
 
     Returns
     -------
         Positions and tensions at both ends: the tension at the drive is that behind the drive's
-        friction (as given, where that is given), the one at the load is its sensor's. A sample of
-        phase 3 is not to be trusted; after many such samples the rest of the run is given up: it
-        keeps the last values.
+        friction (or the given one), the one at the load is its sensor's. A sample of phase 3 is not
+        converged; after many such samples the run is aborted: the rest has the last values.
     """
     return follow(course, initial_state(course, rig, boundary, n), rig, boundary, n, frames)[0]
 
 
 @kernel
 def rest_after(course: Floats, rig: Rig, boundary: Boundary, n: int) -> Floats:
-    """Return where a course leaves the nodes and the tensions behind them, shape (2, n + 2)."""
+    """Return positions of the nodes and tensions behind them after a course, shape (2, n + 2)."""
     chain = follow(course, initial_state(course, rig, boundary, n), rig, boundary, n)[1].chain
     out = np.empty((2, n + 2))
     for j in range(n + 2):
@@ -109,11 +108,11 @@ class ChainEnds(NamedTuple):
 
 
 class ChainState(NamedTuple):
-    """Where a course has left a chain; the rows are written over as it goes on."""
+    """State of a chain after a course; `chain` is updated in place."""
 
     chain: Floats
     before: Moment  # the last one
-    ends: ChainEnds  # then
+    ends: ChainEnds  # at that moment
     unconverged: int  # samples so far
 
 
@@ -136,7 +135,7 @@ def follow(
     n: int,
     frames: Frames | None = None,
 ) -> tuple[Output, ChainState]:
-    """Let a chain follow a course from a state; return the output and the state then."""
+    """Return the output of a chain for a course from a state, and the final state."""
     m = course.shape[1]
     x_in, x_out, f_in, f_out = np.empty(m), np.empty(m), np.empty(m), np.empty(m)
     phases = np.zeros(m, dtype=np.int8)
@@ -152,7 +151,7 @@ def follow(
             unconverged += phase == UNCONVERGED
         x_in[i], x_out[i], f_in[i], f_out[i] = ends
         phases[i] = phase
-        if frames is not None:  # compiled away where none are asked for
+        if frames is not None:  # compiled away without frames
             written = write_frame(frames, written, i, chain, n, phase)
     output = Output(x_in, x_out, f_in, f_out, phases)
     return output, ChainState(chain, before, ends, unconverged)
@@ -162,7 +161,7 @@ def follow(
 def follow_sample(
     chain: Floats, before: Moment, now: Moment, laws: SlipLaws
 ) -> tuple[int, ChainEnds]:
-    """Go on to one sample; return the phase and the ends there."""
+    """Advance to one sample; return the phase and the ends there."""
     last = laws.n + 1
     if laws.load.given == DISPLACEMENT and now.load != before.load:
         chain[SLIP + last] = 1 if now.load > before.load else -1
@@ -184,22 +183,22 @@ def moment(course: Floats, i: int) -> Moment:
 
 @kernel
 def advance(chain: Floats, start: Moment, end: Moment, laws: SlipLaws) -> bool:
-    """Go from one sample to the next, in smaller steps where one does not converge.
+    """Advance from one sample to the next, in smaller steps where one does not converge.
 
-    The way between two samples is a straight line. Returns whether every step converged.
+    Inputs are linear between samples. Returns whether every step converged.
     """
-    done, step = 0.0, 1.0
+    reached, step = 0.0, 1.0
     for _ in range(MOST_STEPS):
         if step < SHORTEST_STEP:
             return False
-        to = min(done + step, 1.0)
-        now = between(start, end, to, end.step_s * (to - done))
+        target = min(reached + step, 1.0)
+        now = between(start, end, target, end.step_s * (target - reached))
         if solve_sample(chain, now, laws):
             update_load_speed(chain, now.step_s, laws.n)
             accept(chain, laws)
-            if to == 1.0:
+            if target == 1.0:
                 return True
-            done = to
+            reached = target
             step *= 2.0
         else:
             for j in range(laws.n + 2):
@@ -215,7 +214,7 @@ def advance(chain: Floats, start: Moment, end: Moment, laws: SlipLaws) -> bool:
 
 @kernel
 def between(start: Moment, end: Moment, part: float, step_s: float) -> Moment:
-    """Return the moment at a part of the way, after a step of its own; the last one exactly."""
+    """Return the moment interpolated linearly, with its own step; the last one exactly."""
     if part == 1.0:
         return Moment(end.drive, end.load, end.losses, step_s)
     return Moment(
@@ -228,7 +227,7 @@ def between(start: Moment, end: Moment, part: float, step_s: float) -> Moment:
 
 @kernel
 def phase_of(chain: Floats, n: int) -> int:
-    """Return +1 or −1 where all nodes of the sheath slip alike, 0 otherwise."""
+    """Return +1 or −1 where all nodes of the sheath slip in that direction, else 0."""
     first = chain[SLIP + 1]
     for i in range(2, n + 1):
         if chain[SLIP + i] != first:
@@ -238,7 +237,7 @@ def phase_of(chain: Floats, n: int) -> int:
 
 @kernel
 def tension_at_sensor(chain: Floats, now: Moment, laws: SlipLaws) -> float:
-    """Return the tension at the load's force sensor [N], behind the friction before it."""
+    """Return the tension at the load's force sensor [N], friction before it subtracted."""
     n = laws.n
     tension: float = chain[TENSION + n]
     if laws.load.given == FORCE:
@@ -254,7 +253,7 @@ def tension_at_sensor(chain: Floats, now: Moment, laws: SlipLaws) -> float:
 
 @kernel
 def go_slack(chain: Floats, now: Moment, laws: SlipLaws) -> None:
-    """Put the tendon without tension against the load; the next pull finds all nodes slipping."""
+    """Set the tendon taut without tension at the load; all nodes slip on the next pull."""
     last = laws.n + 1
     if laws.load.given != DISPLACEMENT:
         preload_N = laws.preload_N - now.losses.preload_N

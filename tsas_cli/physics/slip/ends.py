@@ -27,12 +27,12 @@ from tsas_cli.physics.slip.state import (
     SlipLaws,
 )
 
-SLIPS_ALONG_S = 0.01  # in which the mass of the load gains its speed; a rigid one would swing on
+SLIPS_ALONG_S = 0.01  # time constant of the load mass's speed; without it the mass would oscillate
 
 
 @kernel
 def load_tangent(chain: Floats, now: Moment, laws: SlipLaws) -> tuple[float, float]:
-    """Return slope and value at x = 0 of what the load pulls back with, as a tangent [N/mm, N]."""
+    """Return slope and value at x = 0 of the tangent of the load's force [N/mm, N]."""
     n = laws.n
     x = chain[POSITION + n + 1]
     shape = laws.load.nonlinearity
@@ -43,8 +43,8 @@ def load_tangent(chain: Floats, now: Moment, laws: SlipLaws) -> tuple[float, flo
     if mass > 0.0 and now.step_s < math.inf:  # implicit Euler, first order in the step
         per_speed = 1.0 / (SLIPS_ALONG_S + now.step_s)
         slope += inertia_force(per_speed / now.step_s, mass)
-        gone = chain[POSITION_BEFORE + n + 1] / now.step_s + chain[LOAD_SPEED + n + 1]
-        value -= inertia_force(per_speed * gone, mass)
+        extrapolated_speed = chain[POSITION_BEFORE + n + 1] / now.step_s + chain[LOAD_SPEED + n + 1]
+        value -= inertia_force(per_speed * extrapolated_speed, mass)
     return slope, value
 
 
@@ -59,7 +59,7 @@ def update_load_speed(chain: Floats, step_s: float, n: int) -> None:
 
 @kernel
 def drive_position(chain: Floats, now: Moment, laws: SlipLaws) -> float:
-    """Return where the drive's end is [mm]."""
+    """Return the position of the drive's end [mm]."""
     if laws.drive.given == DISPLACEMENT:
         return now.drive
     friction = laws.drive.friction_N
@@ -72,7 +72,7 @@ def drive_position(chain: Floats, now: Moment, laws: SlipLaws) -> float:
 
 @kernel
 def update_end(i: int, pull: float, friction: float, chain: Floats, laws: SlipLaws) -> bool:
-    """Let an end with a constant friction slip or stick; return whether that changed."""
+    """Update slip or stick of an end with constant friction; return whether it changed."""
     if chain[SLIP + i] != 0:
         if slips_backwards(i, chain, laws):
             chain[SLIP + i] = 0
@@ -85,28 +85,28 @@ def update_end(i: int, pull: float, friction: float, chain: Floats, laws: SlipLa
 
 @kernel
 def update_ends(chain: Floats, now: Moment, laws: SlipLaws) -> bool:
-    """Let the ends slip or stick; return whether that changed, or a tangent was too far off."""
+    """Update slip or stick of the ends; return whether one changed, or a tangent is inexact."""
     n = laws.n
-    wrong = False
+    unsolved = False
     if laws.drive.given == FORCE:
         stiffness = laws.drive.spring_N_per_mm
         pull = now.drive - chain[TENSION] - proximal_spring_force(chain[POSITION], stiffness)
         if laws.drive.friction_N > 0.0:
-            wrong = update_end(0, pull, laws.drive.friction_N, chain, laws)
+            unsolved = update_end(0, pull, laws.drive.friction_N, chain, laws)
     if laws.load.given != DISPLACEMENT:
         pull = chain[TENSION + n] - load_force(chain, now, laws)
         friction = moving_friction(laws.load)
         if friction > 0.0:
-            wrong = update_end(n + 1, pull, friction, chain, laws) or wrong
+            unsolved = update_end(n + 1, pull, friction, chain, laws) or unsolved
         if friction == 0.0 or chain[SLIP + n + 1] != 0:
-            off = abs(pull - chain[SLIP + n + 1] * friction)
-            wrong = off > BALANCED * (abs(chain[TENSION + n]) + laws.preload_N) or wrong
-    return wrong
+            imbalance = abs(pull - chain[SLIP + n + 1] * friction)
+            unsolved = imbalance > BALANCED * (abs(chain[TENSION + n]) + laws.preload_N) or unsolved
+    return unsolved
 
 
 @kernel
 def load_force(chain: Floats, now: Moment, laws: SlipLaws) -> float:
-    """Return what the load pulls back with at its present place, friction aside [N]."""
+    """Return the load's force at its present position, without friction [N]."""
     if laws.load.given == FORCE:
         return now.load
     slope, value = load_tangent(chain, now, laws)

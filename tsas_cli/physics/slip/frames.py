@@ -1,4 +1,4 @@
-"""What the slip chain says along the tendon at chosen samples: its state, written down."""
+"""Profiles along the slip chain at chosen samples."""
 
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.frames import Frames, is_next, slips_up_to
@@ -8,7 +8,7 @@ from tsas_cli.physics.slip.state import SLIP, TENSION, Floats
 
 @kernel
 def write_frame(frames: Frames, written: int, i: int, chain: Floats, n: int, phase: int) -> int:
-    """Write down the chain at sample i, if it is to be; return how many frames are written."""
+    """Write the chain at sample i, if it is a frame's; return how many frames are written."""
     if not is_next(frames, written, i):
         return written
     for j in range(n + 1):

@@ -1,16 +1,16 @@
 """Friction of the nodes of the slip chain: relation of tensions, stick or slip, pre-sliding.
 
-Without presliding a node sticks or slips, and the active set is those that slip. With presliding
-every node slides, by a share of its limit that follows its travel (Dahl's law), and its relation is
-a tangent (Newton's method). On either side of zero travel the share is concave towards its limit,
-so that from zero on the iteration does not overshoot; a step that would change the sign of a
-travel stops at zero first.
+Without presliding a node sticks or slips, and the active set are those that slip. With presliding
+every node slides, with a share of its friction limit that follows its travel (Dahl's law), and its
+relation is a tangent (Newton's method). On either side of zero travel the share is concave towards
+its limit, so that from zero on the iteration does not overshoot; a step that would change the sign
+of a travel stops at zero first.
 """
 
 import math
 
 from tsas_cli.effects.load_dependent_friction import load_exponent
-from tsas_cli.effects.presliding import share_turned, turning_rate
+from tsas_cli.effects.presliding import friction_share, friction_share_rate
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.numerics.elementary import exponential
 from tsas_cli.physics.slip.state import (
@@ -40,9 +40,9 @@ from tsas_cli.physics.slip.state import (
     SlipLaws,
 )
 
-MOST_WRAP = 30.0  # friction of a node times its bend, so that some tension is left behind it
-MOST_RATIO_CHANGE = 0.5  # of a node's ratio of tensions: by how much a tangent may change it
-SLIDING_SHARE = 0.99  # share of its limit from which a node on a bristle is said to slip
+MOST_WRAP = 30.0  # friction of a node times its bend, so that the tension behind it is not zero
+MOST_RATIO_CHANGE = 0.5  # of a node's ratio of tensions by a tangent
+SLIDING_SHARE = 0.99  # of its friction limit, from which a node with presliding slips
 
 
 @kernel
@@ -51,10 +51,10 @@ def set_friction(chain: Floats, now: Moment, laws: SlipLaws) -> None:
     n = laws.n
     pulled, released = now.losses.pulled / n, now.losses.released / n
     if laws.friction_exponent == 0.0:
-        passed, kept = math.exp(-pulled), math.exp(-released)
+        ratio_pulled, ratio_released = math.exp(-pulled), math.exp(-released)
         for i in range(1, n + 1):
             chain[WRAP_PULLED + i], chain[WRAP_RELEASED + i] = pulled, released
-            chain[RATIO_PULLED + i], chain[RATIO_RELEASED + i] = passed, kept
+            chain[RATIO_PULLED + i], chain[RATIO_RELEASED + i] = ratio_pulled, ratio_released
         return
     per_N = 0.5 / laws.preload_N
     for i in range(1, n + 1):  # short loops: in one, the compiler runs out of registers
@@ -73,7 +73,7 @@ def set_friction(chain: Floats, now: Moment, laws: SlipLaws) -> None:
 
 @kernel
 def is_linear(laws: SlipLaws) -> bool:
-    """Say whether the problem is linear but for the active set."""
+    """Return whether the problem is linear for a given active set."""
     return (
         laws.friction_exponent == 0.0
         and laws.presliding_mm == 0.0
@@ -93,10 +93,10 @@ def capstan_ratio(direction: float, i: int, chain: Floats) -> float:
 
 @kernel
 def update_relations(chain: Floats, now: Moment, laws: SlipLaws) -> bool:
-    """Set the relations of all sliding nodes; return whether they differ from the last ones."""
+    """Set the relations of all sliding nodes; return whether they changed."""
     if laws.presliding_mm > 0.0:
-        turned = update_travel(chain, laws)
-        return set_tangent_relations(chain, now, laws) or turned
+        stopped = update_travel(chain, laws)
+        return set_tangent_relations(chain, now, laws) or stopped
     if laws.friction_exponent == 0.0:
         return set_capstan_relations(chain, now, laws)
     for i in range(1, laws.n + 1):
@@ -121,16 +121,16 @@ def set_capstan_relations(chain: Floats, now: Moment, laws: SlipLaws) -> bool:
 
 @kernel
 def set_tangent_relations(chain: Floats, now: Moment, laws: SlipLaws) -> bool:
-    """Set the relations of sliding nodes by tangents; a node that sticks gets one too.
+    """Set the relations of sliding nodes by tangents; those of sticking nodes too.
 
     The tangent of (T[i] + w z/2) = E (T[i−1] − w z/2), half of the viscous loss w on either side
-    of the bend, E = e^(∓a f z/n), z the share of its limit that friction has reached. Friction that
-    depends on the tension turns it by dE/dm = ∓(a/n) E f β/m, m the mean tension of both sides; a
-    bristle by dz/dx of the node's way.
+    of the bend, E = e^(∓a f z/n), z the ratio of friction to its limit. Friction that depends on
+    the tension adds dE/dm = ∓(a/n) E f β/m, m the mean tension of both sides; a bristle adds dz/dx
+    of the node's travel.
     """
     n = laws.n
     loss = now.losses.viscous_N / n
-    wrong = 0
+    unbalanced = 0
     for i in range(1, n + 1):
         share, mean = chain[SHARE + i], chain[TENSION + i - 1] + chain[TENSION + i]
         pulled, released = chain[WRAP_PULLED + i], chain[WRAP_RELEASED + i]
@@ -143,50 +143,52 @@ def set_tangent_relations(chain: Floats, now: Moment, laws: SlipLaws) -> bool:
         half, mean = 0.5 * share * loss, before + behind
         carried = before - half
         limit, wrap, ratio = chain[WRAP_LIMIT + i], chain[WRAP_SIGNED + i], chain[RATIO + i]
-        off = behind + half - ratio * carried
-        bent = wrap * ratio * laws.friction_exponent * carried / (mean if mean != 0.0 else math.inf)
-        bent = min(max(bent, -MOST_RATIO_CHANGE), MOST_RATIO_CHANGE)
-        inverse = 1.0 / (1.0 - bent)
-        factor = (ratio + bent) * inverse
+        residual = behind + half - ratio * carried
+        ratio_change = (
+            wrap * ratio * laws.friction_exponent * carried / (mean if mean != 0.0 else math.inf)
+        )
+        ratio_change = min(max(ratio_change, -MOST_RATIO_CHANGE), MOST_RATIO_CHANGE)
+        inverse = 1.0 / (1.0 - ratio_change)
+        factor = (ratio + ratio_change) * inverse
         chain[FACTOR + i] = factor
-        chain[DROP + i] = factor * before - behind + off * inverse
-        # How the tension behind falls with the share; pre-sliding makes a slope over x of it.
+        chain[DROP + i] = factor * before - behind + residual * inverse
+        # Derivative of the drop by the share; pre-sliding multiplies it by that of the share by x.
         chain[DROP_SLOPE + i] = (
             0.5 * (1.0 + ratio) * loss + ratio * abs(carried) * limit
         ) * inverse
-        wrong += abs(share * off) > BALANCED * abs(share) * (abs(before) + laws.preload_N)
+        unbalanced += abs(share * residual) > BALANCED * abs(share) * (abs(before) + laws.preload_N)
     if laws.presliding_mm > 0.0:
         add_presliding_slope(chain, laws)
-    return wrong > 0
+    return unbalanced > 0
 
 
 @kernel
 def add_presliding_slope(chain: Floats, laws: SlipLaws) -> None:
-    """Add how the drop of tension rises with a node's travel, from where the tangent was taken."""
+    """Add the derivative of the drop of tension by a node's travel, at the tangent's point."""
     for i in range(1, laws.n + 1):
         moved = chain[TRAVEL + i]
-        rate = turning_rate(chain[SHARE + i], moved, laws.presliding_mm)
+        rate = friction_share_rate(chain[SHARE + i], moved, laws.presliding_mm)
         chain[DROP_SLOPE + i] *= rate
         chain[DROP + i] -= chain[DROP_SLOPE + i] * (chain[POSITION_BEFORE + i] + moved)
 
 
 @kernel
 def update_travel(chain: Floats, laws: SlipLaws) -> bool:
-    """Set the nodes' travel, none past a change of its sign; return whether one was stopped so."""
-    turned = 0
+    """Set the nodes' travel, zero on a change of sign; return whether one was set so."""
+    stopped = 0
     for i in range(1, laws.n + 1):
         moved = chain[POSITION + i] - chain[POSITION_BEFORE + i]
-        back = moved * chain[TRAVEL + i] < 0.0
-        turned += back
-        moved = 0.0 if back else moved
+        reversed_sign = moved * chain[TRAVEL + i] < 0.0
+        stopped += reversed_sign
+        moved = 0.0 if reversed_sign else moved
         chain[TRAVEL + i] = moved
-        chain[SHARE + i] = share_turned(chain[SHARE_BEFORE + i], moved, laws.presliding_mm)
-    return turned > 0
+        chain[SHARE + i] = friction_share(chain[SHARE_BEFORE + i], moved, laws.presliding_mm)
+    return stopped > 0
 
 
 @kernel
 def extrapolate(chain: Floats, laws: SlipLaws) -> None:
-    """Extrapolate the last step: tangents of nonlinear laws are taken there."""
+    """Extrapolate the last step, the point of the tangents of nonlinear laws."""
     for j in range(laws.n + 2):
         chain[POSITION + j] = chain[POSITION_BEFORE + j] + chain[TRAVEL + j]
         chain[TENSION + j] = chain[TENSION_BEFORE + j] + chain[TENSION_RISE + j]
@@ -214,14 +216,14 @@ def accept(chain: Floats, laws: SlipLaws) -> None:
 
 @kernel
 def slips_backwards(i: int, chain: Floats, laws: SlipLaws) -> bool:
-    """Say whether a slipping node has slid against its own direction."""
+    """Return whether a slipping node has slid against its own direction."""
     slid = chain[POSITION + i] - chain[POSITION_BEFORE + i]
     return bool(chain[SLIP + i] * slid < -TOLERANCE * laws.scale_mm)
 
 
 @kernel
 def breakaway(i: int, loss: float, chain: Floats) -> float:
-    """Return the direction in which the tensions exceed a sticking node's friction, or 0."""
+    """Return the direction in which the tensions exceed a sticking node's friction, else 0."""
     before, behind, half = chain[TENSION + i - 1], chain[TENSION + i], 0.5 * loss
     margin = TOLERANCE * abs(before)
     if behind + half < capstan_ratio(1.0, i, chain) * (before - half) - margin:

@@ -32,7 +32,7 @@ def set_compliances(chain: Floats, rig: Rig, n: int) -> None:
 
 @kernel
 def slip_laws(rig: Rig, n: int, boundary: Boundary) -> SlipLaws:
-    """Return what of the rig a static problem needs, with what is given at the ends."""
+    """Return the constants of the rig for a static problem, with the given ends."""
     return SlipLaws(
         n,
         rig.preload_N,

@@ -1,4 +1,4 @@
-"""What the slip chain is at one moment: its nodes, the laws that hold there, what is given."""
+"""The slip chain's state at one moment: its rows, the rig's constants, the inputs."""
 
 from typing import NamedTuple
 
@@ -12,11 +12,11 @@ from tsas_cli.physics.mesh import PITCH
 Floats = npt.NDArray[np.float64]
 
 TOLERANCE = 1e-10  # of the tension and of a segment's elongation, for rounding
-BALANCED = 1e-9  # of the tension, where a law is not straight
+BALANCED = 1e-9  # of the tension, where a law is not linear
 
 
 class SlipLaws(NamedTuple):
-    """What of the rig a static problem needs; the whole rig would be copied at every call."""
+    """The constants of the rig for a static problem; the whole rig would be copied at each call."""
 
     n: int  # nodes of the sheath
     preload_N: float
@@ -28,16 +28,16 @@ class SlipLaws(NamedTuple):
 
 
 class Moment(NamedTuple):
-    """All that changes from outside, at one moment."""
+    """The inputs at one moment."""
 
     drive: float  # displacement [mm] or tension at the sensor [N]
     load: float  # likewise; unused with a spring
     losses: Losses
-    step_s: float  # time since the moment before, infinite where it plays no part
+    step_s: float  # time since the moment before, infinite for a quasi-static step
 
 
 # Rows of the state, over the nodes from 0 at the drive to n + 1 at the load: chain[TENSION + i].
-# A "segment" is the one behind the node; "before" is when the last step had been solved.
+# A "segment" is the one behind the node; "before" is the end of the last step.
 POSITION, POSITION_BEFORE = 0, PITCH  # [mm]
 TENSION, TENSION_BEFORE = PITCH * 2, PITCH * 3  # of the segment [N]
 SLIP = PITCH * 4  # direction in which the node slips, 0 where it sticks
@@ -47,11 +47,11 @@ COMPLIANCE = PITCH * 8  # of the segment [mm/N]
 SWEEP_P, SWEEP_Q, SWEEP_R = (PITCH * row for row in range(9, 12))  # segment's T = (P x + Q)/R
 LOAD_SPEED = PITCH * 12  # of the load's mass, before [mm/s]
 RATIO_PULLED, RATIO_RELEASED = PITCH * 13, PITCH * 14  # of both tensions in full slip, e^(−a/n)
-SHARE_BEFORE = PITCH * 15  # with presliding, the share of its limit that friction had reached
-TRAVEL = PITCH * 16  # since the last step, at which FACTOR to DROP_SLOPE hold [mm]
+SHARE_BEFORE = PITCH * 15  # with presliding, SHARE at the end of the last step
+TRAVEL = PITCH * 16  # since the last step, the point of the tangents FACTOR to DROP_SLOPE [mm]
 WRAP_PULLED, WRAP_RELEASED = PITCH * 17, PITCH * 18  # the node's share of friction times bend, a/n
-SHARE = PITCH * 19  # of its limit that friction reaches, with its sign
+SHARE = PITCH * 19  # ratio of friction to its limit, with its sign
 TENSION_RISE = PITCH * 20  # in the last step [N]
 WRAP_LIMIT = PITCH * 21  # a/n at the node's tension, in the direction of SHARE
-WRAP_SIGNED, RATIO = PITCH * 22, PITCH * 23  # friction times bend with its sign, and e to it
+WRAP_SIGNED, RATIO = PITCH * 22, PITCH * 23  # friction times bend with its sign, its exponential
 ROWS = 24

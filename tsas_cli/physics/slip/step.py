@@ -1,16 +1,15 @@
-"""One static problem of the slip chain: which nodes slip, and where everything then is.
+"""One static problem of the slip chain: active set, positions and tensions.
 
-Given how the nodes slide, the chain is a row of affine relations. From the load backwards each
+For a given active set the chain is a sequence of affine relations. From the load backwards each
 segment's tension is T = (p x + q)/r with the position x of the node before it: a sliding node
-multiplies (and adds its pre-sliding), a node that sticks starts anew, a segment adds its
-compliance.
-From the drive forwards the positions follow. No sweep waits for a division at every node, and none
-can blow up: p and r are positive. Then every node is checked against its own law (`nodes`): those
-that break it enter or leave the active set of those that slip, and nonlinear laws get a new tangent
-(a semi-smooth Newton method).
+multiplies (and adds its pre-sliding), a sticking node restarts the recursion, a segment adds its
+compliance. From the drive forwards the positions follow. No sweep waits for a division at every
+node, and none is unstable: p and r are positive. Then every node is checked against its own law
+(`nodes`): those that violate it enter or leave the active set of those that slip, and nonlinear
+laws get a new tangent (a semi-smooth Newton method).
 
 Signs: x grows towards the drive; a node that slips towards the drive (+1) has less tension on the
-load's side. Where the net tension is negative (a pair of antagonistic tendons seen as one),
+load's side. Where the net tension is negative (a pair of antagonistic tendons modelled as one),
 friction follows its magnitude.
 """
 
@@ -42,9 +41,9 @@ from tsas_cli.physics.slip.state import (
     SlipLaws,
 )
 
-TOGETHER = 16  # nodes that share a division
+NODES_PER_DIVISION = 16  # in the elimination with presliding
 MOST_ITERATIONS = 20  # changes of the active set
-MOST_SINGLE_CHANGES = 5  # more, for each node
+MOST_SINGLE_CHANGES = 5  # further ones, for each node
 
 
 @kernel
@@ -60,12 +59,12 @@ def solve_sample(chain: Floats, now: Moment, laws: SlipLaws) -> bool:
         sweep_to_load(chain, now, laws)
         if laws.friction_exponent != 0.0:
             set_friction(chain, now, laws)
-        most = n if iteration < MOST_ITERATIONS else 1  # one by one ends where all at once cycle
-        wrong = laws.presliding_mm == 0.0 and update_active_set(chain, now, laws, most) > 0
-        wrong = update_relations(chain, now, laws) or wrong
-        if not wrong or most == n:
-            wrong = update_ends(chain, now, laws) or wrong
-        if not wrong:
+        limit = n if iteration < MOST_ITERATIONS else 1  # one by one ends where all at once cycle
+        unsolved = laws.presliding_mm == 0.0 and update_active_set(chain, now, laws, limit) > 0
+        unsolved = update_relations(chain, now, laws) or unsolved
+        if not unsolved or limit == n:
+            unsolved = update_ends(chain, now, laws) or unsolved
+        if not unsolved:
             return True
     return False
 
@@ -75,15 +74,15 @@ def sweep_to_drive(chain: Floats, now: Moment, laws: SlipLaws) -> None:
     """Write each segment's tension as (p x + q)/r of the node before it, from the load on."""
     last = laws.n + 1
     guide = moving_friction(laws.load)
-    give, F0 = chain[COMPLIANCE + laws.n], laws.preload_N
+    compliance, F0 = chain[COMPLIANCE + laws.n], laws.preload_N
     if laws.load.given == DISPLACEMENT:
-        p, q, r = 1.0, give * F0 - now.load, give
+        p, q, r = 1.0, compliance * F0 - now.load, compliance
     elif chain[SLIP + last] == 0.0 and guide > 0.0:
-        p, q, r = 1.0, give * F0 - chain[POSITION_BEFORE + last], give
+        p, q, r = 1.0, compliance * F0 - chain[POSITION_BEFORE + last], compliance
     else:
         p, q = load_tangent(chain, now, laws) if laws.load.given == SPRING else (0.0, now.load)
-        q += chain[SLIP + last] * guide + p * give * F0
-        r = 1.0 + p * give
+        q += chain[SLIP + last] * guide + p * compliance * F0
+        r = 1.0 + p * compliance
     chain[SWEEP_P + laws.n], chain[SWEEP_Q + laws.n], chain[SWEEP_R + laws.n] = p, q, r
     if laws.presliding_mm > 0.0:
         eliminate_presliding(chain, p, q, r, laws)
@@ -97,11 +96,11 @@ def eliminate_sliding(chain: Floats, p: float, q: float, r: float, laws: SlipLaw
     F0 = laws.preload_N
     for k in range(laws.n):
         i = laws.n - k  # node i, then the segment before it
-        give = chain[COMPLIANCE + i - 1]
+        compliance = chain[COMPLIANCE + i - 1]
         if chain[SLIP + i] == 0.0:
-            p, q, r = 1.0, give * F0 - chain[POSITION_BEFORE + i], give
+            p, q, r = 1.0, compliance * F0 - chain[POSITION_BEFORE + i], compliance
         else:
-            pull = p * give
+            pull = p * compliance
             q += chain[DROP + i] * r + pull * F0
             r = chain[FACTOR + i] * r + pull
         chain[SWEEP_P + i - 1], chain[SWEEP_Q + i - 1], chain[SWEEP_R + i - 1] = p, q, r
@@ -113,7 +112,7 @@ def eliminate_presliding(chain: Floats, p: float, q: float, r: float, laws: Slip
     F0 = laws.preload_N
     for k in range(laws.n):
         i = laws.n - k
-        if k % TOGETHER == 0:  # without any division they would outgrow a float
+        if k % NODES_PER_DIVISION == 0:  # without any division they would outgrow a float
             p, q, r = p / r, q / r, 1.0
         p += chain[DROP_SLOPE + i] * r
         pull = p * chain[COMPLIANCE + i - 1]
@@ -124,7 +123,7 @@ def eliminate_presliding(chain: Floats, p: float, q: float, r: float, laws: Slip
 
 @kernel
 def sweep_to_load(chain: Floats, now: Moment, laws: SlipLaws) -> None:
-    """Find positions and tensions, from the drive on."""
+    """Set positions and tensions, from the drive on."""
     n, last = laws.n, laws.n + 1
     chain[POSITION] = drive_position(chain, now, laws)
     if laws.presliding_mm > 0.0:
@@ -142,12 +141,12 @@ def sweep_to_load(chain: Floats, now: Moment, laws: SlipLaws) -> None:
 
 @kernel
 def substitute_sliding(chain: Floats, laws: SlipLaws) -> None:
-    """Find positions and tensions of nodes that slip or stick."""
+    """Set positions and tensions of nodes that slip or stick."""
     chain[TENSION] = (chain[SWEEP_P] * chain[POSITION] + chain[SWEEP_Q]) / chain[SWEEP_R]
     for i in range(1, laws.n + 1):
         if chain[SLIP + i] != 0.0:
-            drawn = chain[COMPLIANCE + i - 1] * (chain[TENSION + i - 1] - laws.preload_N)
-            chain[POSITION + i] = chain[POSITION + i - 1] - drawn
+            elongation = chain[COMPLIANCE + i - 1] * (chain[TENSION + i - 1] - laws.preload_N)
+            chain[POSITION + i] = chain[POSITION + i - 1] - elongation
             chain[TENSION + i] = chain[FACTOR + i] * chain[TENSION + i - 1] - chain[DROP + i]
         else:
             chain[POSITION + i] = chain[POSITION_BEFORE + i]
@@ -158,28 +157,28 @@ def substitute_sliding(chain: Floats, laws: SlipLaws) -> None:
 
 @kernel
 def substitute_presliding(chain: Floats, laws: SlipLaws) -> None:
-    """Find positions and tensions of nodes with presliding; positions alone are a recursion."""
+    """Set positions and tensions of nodes with presliding; positions alone are a recursion."""
     for j in range(laws.n + 1):
         inverse = 1.0 / chain[SWEEP_R + j]
         chain[SWEEP_P + j] *= inverse
         chain[SWEEP_Q + j] *= inverse
         chain[SWEEP_R + j] = 1.0
-    place = chain[POSITION]
+    position = chain[POSITION]
     for i in range(1, laws.n + 1):
-        give = chain[COMPLIANCE + i - 1]
-        place = (1.0 - give * chain[SWEEP_P + i - 1]) * place + give * (
+        compliance = chain[COMPLIANCE + i - 1]
+        position = (1.0 - compliance * chain[SWEEP_P + i - 1]) * position + compliance * (
             laws.preload_N - chain[SWEEP_Q + i - 1]
         )
-        chain[POSITION + i] = place
+        chain[POSITION + i] = position
     for j in range(laws.n + 1):
         chain[TENSION + j] = chain[SWEEP_P + j] * chain[POSITION + j] + chain[SWEEP_Q + j]
 
 
 @kernel
-def update_active_set(chain: Floats, now: Moment, laws: SlipLaws, most: int) -> int:
-    """Let nodes slip whose tensions exceed their friction, and stick that slip backwards.
+def update_active_set(chain: Floats, now: Moment, laws: SlipLaws, limit: int) -> int:
+    """Update the active set: nodes beyond their friction slip, nodes that slip backwards stick.
 
-    Returns how many nodes it changed, at most so many, from the drive on.
+    Returns the number of changed nodes, at most `limit`, from the drive on.
     """
     n = laws.n
     loss = now.losses.viscous_N / n
@@ -192,6 +191,6 @@ def update_active_set(chain: Floats, now: Moment, laws: SlipLaws, most: int) -> 
             chain[SLIP + i] = 0.0
         if chain[SLIP + i] != before:
             changed += 1
-            if changed == most:
+            if changed == limit:
                 break
     return changed
