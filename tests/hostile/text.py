@@ -183,7 +183,7 @@ CASES = (
     Case(
         "JSON with a key twice",
         json('{"t": 1, "t": [1, 2, 3], "x": [1, 2, 3], "f": [1, 2, 3]}'),
-        "the key 't' is there twice",
+        "duplicate key 't'",
     ),
     Case("JSON behind a mark", json(b"\xef\xbb\xbf" + column("1, 2, 3").encode())),
     Case("JSON in UTF-16", json(column("1, 2, 3").encode("utf-16")), "is not JSON"),

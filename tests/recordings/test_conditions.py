@@ -72,11 +72,11 @@ def test_the_header_wins_over_the_name_and_the_table_over_both():
 
 
 @pytest.mark.parametrize(
-    ("content", "said"),
+    ("content", "message"),
     [
         (
             {"from_file_name": {"pattern": "curl(?P<a>.)"}},
-            "finds nothing in 'L_4/bend180_0,5Hz.csv'",
+            "does not match 'L_4/bend180_0,5Hz.csv'",
         ),
         ({"from_header": {"pattern": "x"}}, "finds nothing"),
         ({"id": "{steam}"}, "did you mean stem?"),
@@ -97,14 +97,14 @@ def test_the_header_wins_over_the_name_and_the_table_over_both():
         ),
     ],
 )
-def test_what_is_wrong_is_said(content, said):
+def test_what_is_wrong_is_reported(content, message):
     with pytest.raises(InputError) as error:
         conditions(**content)
-    assert said in error.value.line()
+    assert message in error.value.line()
 
 
 def test_a_pattern_that_would_look_for_ever_is_given_up(monkeypatch):
-    monkeypatch.setattr("tsas_cli.recordings.conditions.PATIENCE_S", 0.2)
+    monkeypatch.setattr("tsas_cli.recordings.conditions.SEARCH_TIMEOUT_S", 0.2)
     with pytest.raises(InputError, match=r"still looking in 'rig/a+' after 0.2 s; repetitions"):
         conditions(
             path=Path(f"/rig/{'a' * 40}"), from_file_name={"pattern": r"(?P<no>(a|aa|a)+)\d$"}

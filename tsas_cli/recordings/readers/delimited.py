@@ -1,4 +1,4 @@
-"""Text tables: CSV, TSV and their relatives."""
+"""Text tables: CSV, TSV and similar formats."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import islice
@@ -26,15 +26,14 @@ _NULLS = frozenset(csv.ConvertOptions().null_values)
 
 
 def batches(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Iterator[Table]:
-    """Read the wanted columns of a text table in parts.
+    """Yield the requested columns of a text table in parts.
 
-    Where pyarrow stops at a row, or at a delimiter outside of ASCII, what follows is read line by
-    line.
+    From a row that pyarrow refuses, or with a delimiter outside ASCII, it is read line by line.
 
     Raises
     ------
     InputError
-        A column is missing, a row has another number of fields, or a cell holds text.
+        A column is missing, a row differs in its number of fields, or a cell holds text.
     """
     layout = detect(path, options)
     at = resolve(wanted, layout.names, path)
@@ -62,7 +61,7 @@ def _fast(
     path: Path, options: ReadOptions, layout: Layout, at: Mapping[Source, int]
 ) -> csv.CSVStreamingReader:
     if not layout.delimiter.isascii():
-        raise pa.ArrowInvalid(layout.delimiter)  # where pyarrow raises a bare ValueError
+        raise pa.ArrowInvalid(layout.delimiter)  # pyarrow would raise a bare ValueError
     names = [str(i) for i in range(len(layout.names))]
     return csv.open_csv(
         path,
@@ -84,7 +83,7 @@ def _fast(
 def _line_by_line(
     path: Path, options: ReadOptions, layout: Layout, at: Mapping[Source, int]
 ) -> Iterator[list[float]]:
-    """Yield the rows that pyarrow refuses (aligned columns, comments), or say what is wrong."""
+    """Yield the rows that pyarrow refuses (aligned columns, comments), or raise `InputError`."""
     with path.open(encoding=options.encoding) as stream:
         for row, line in enumerate(limits.lines(stream, path), start=1):
             no_row = _is_blank(line, layout) or comment_text(line, options) is not None
@@ -101,7 +100,7 @@ def _line_by_line(
 
 
 def _is_blank(line: str, layout: Layout) -> bool:
-    """Say whether a line is no row; tabs alone are a row of gaps where they separate columns."""
+    """Return whether a line is blank; delimiters alone are a row of gaps."""
     if line.strip():
         return False
     spaces = layout.delimiter == " " or (layout.delimiter not in line and len(layout.names) > 1)
