@@ -42,15 +42,15 @@ def test_the_first_sample_that_is_there_can_be_the_zero():
 def test_the_files_own_unit_counts_where_the_map_says_none():
     assert ask(units={"f": "kN"}, force={"source": "f"})["f_in_N"][0] == 4000
     assert ask(units={"f": "kN"}, force=FORCE)["f_in_N"][0] == 4
-    with pytest.raises(InputError, match=r"map.toml, columns.f_in_N: .* the unit of f; say it"):
+    with pytest.raises(InputError, match=r"map.toml, columns.f_in_N: .* no unit for f; set it"):
         ask(force={"source": "f"})
 
 
 def test_a_map_cannot_say_another_unit_than_the_type_of_a_column():
     table = Table({s: np.arange(3.0) for s in "txf"}, {"t": "s"}, typed=frozenset("t"))
 
-    def time_s(**message):
-        columns = {"time_s": {"source": "t"} | message, "x_in_mm": PLACE, "f_in_N": FORCE}
+    def time_s(**unit):
+        columns = {"time_s": {"source": "t"} | unit, "x_in_mm": PLACE, "f_in_N": FORCE}
         mapping = IngestMap.model_validate({"dataset": {"name": "m"}, "columns": columns})
         taken, _ = canonical_columns(table, mapping, Path("a.parquet"), Path("map.toml"))
         return taken["time_s"].tolist()

@@ -91,8 +91,8 @@ def test_a_factor_says_what_counts_and_volts_are():
     [
         ("mm", "N", "is not convertible to N; expected a force"),
         ("N", "mm", "is not convertible to mm; expected a length"),
-        ("Nm", "N", "a torque needs pulley_radius_mm"),
-        ("deg", "mm", "an angle needs pulley_radius_mm"),
+        ("Nm", "N", "set pulley_radius_mm to convert a torque"),
+        ("deg", "mm", "set pulley_radius_mm to convert an angle"),
         ("counts", "mm", "factor and factor_unit"),
         ("V", "N", "factor and factor_unit"),
         ("lb", "mm", "is not convertible to mm"),

@@ -94,7 +94,7 @@ def test_one_wrong_byte_is_told_as_for_a_folder(large, bucket):
 def test_where_there_is_no_room_it_is_said(large, monkeypatch):
     _, address = large
     monkeypatch.setattr(fetched.tempfile, "TemporaryFile", Full)
-    with pytest.raises(InputError, match="cannot be kept while it is read"):
+    with pytest.raises(InputError, match="cannot be stored while it is read"):
         read_dataset(address)["a"]
 
 

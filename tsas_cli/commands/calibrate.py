@@ -34,13 +34,11 @@ def calibrate(
     out: OutFolder,
     model: Annotated[
         Path | None,
-        typer.Option(metavar="M.toml", help="A model to begin with, whose effects stay."),
+        typer.Option(metavar="M.toml", help="The initial model, whose effects are kept."),
     ] = None,
     dynamics: Annotated[
         DynamicsOption,
-        typer.Option(
-            "--dynamics", help="slip: distributed; lugre: dynamic, with bristles and speed."
-        ),
+        typer.Option("--dynamics", help="slip: distributed friction; lugre: dynamic friction."),
     ] = DynamicsOption.slip,
     runs: ChosenRuns = None,
     rrd: Rrd = False,
@@ -48,7 +46,7 @@ def calibrate(
     quiet: Quiet = False,
     as_json: Json = False,
 ) -> None:
-    """Fit the nominal model to a dataset, and the stiffness km of each phase."""
+    """Fit the nominal model and the stiffness km of each phase to a dataset."""
     with progress("calibrate", quiet=quiet) as step, with_stream(rrd, step):
         result = tsas.calibrate(
             dataset,

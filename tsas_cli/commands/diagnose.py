@@ -1,4 +1,4 @@
-"""`tsas diagnose`: what the model gets wrong, its cause, the extended model, the gain."""
+"""`tsas diagnose`: the residuals, their cause, the extended model, the reduction."""
 
 import tsas_cli as tsas
 from tsas_cli.commands.common import (
@@ -27,7 +27,7 @@ def diagnose(
     quiet: Quiet = False,
     as_json: Json = False,
 ) -> None:
-    """Show what the simulation gets wrong, name the cause, extend the model, measure the gain."""
+    """Locate the residuals of the simulation, name their cause, and fit the extended model."""
     with progress("diagnose", quiet=quiet) as step, with_stream(rrd, step):
         result = tsas.diagnose(
             dataset, out=out, model=model, runs=names(runs), force=force, step=step

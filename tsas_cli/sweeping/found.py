@@ -1,4 +1,4 @@
-"""The key figures of a stage's result: what a table over many tasks has room for."""
+"""The key figures of a stage's result, for a table over many tasks."""
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -16,12 +16,12 @@ OF_RUNS = ("f_in_N", "f_out_N", "x_out_mm")
 
 
 def figures(stage: str, result: Result) -> Figures:
-    """Return by name, with the unit in it, the figures of a result of a stage."""
+    """Return the key figures of a stage's result by name, with the unit in the name."""
     return _OF[stage](result)
 
 
 def estimates(stage: str, result: Any) -> list[dict[str, Any]]:
-    """Return every parameter that a stage has found, with interval, unit and bound flag."""
+    """Return every estimate of a stage, with interval, unit and bound flag."""
     return [e.as_json() for e in result.model.estimates] if stage in FITTING else []
 
 
@@ -46,11 +46,11 @@ def _of_calibrate(result: Any) -> Figures:
 
 def _of_simulate(result: Any) -> Figures:
     runs = result.summary["runs"]
-    unsettled = sum(answer["unconverged_samples"] or 0 for answer in runs.values())
+    unconverged = sum(run["unconverged_samples"] or 0 for run in runs.values())
     return {
-        **_pooled({run: answer["channels"] for run, answer in runs.items()}),
+        **_pooled({name: run["channels"] for name, run in runs.items()}),
         **dict(_reach(result.runs.values())),
-        "unconverged_samples": unsettled,
+        "unconverged_samples": unconverged,
     }
 
 
@@ -94,7 +94,7 @@ _OF: dict[str, Callable[[Any], Figures]] = {
 
 
 def _fitted(found: Iterable[Estimate]) -> Figures:
-    """Return what was fitted to all runs together; what belongs to one run has its own table."""
+    """Return the estimates of common parameters; those of single runs have their own table."""
     figures: Figures = {}
     for e in found:
         if e.origin == "fitted" and e.run is None:
@@ -105,7 +105,7 @@ def _fitted(found: Iterable[Estimate]) -> Figures:
 
 
 def _pooled(runs: Mapping[str, Mapping[str, Any]]) -> Figures:
-    """Return the root mean square of each channel's error over all runs, each run as one."""
+    """Return the RMS of each channel's residual over all runs, with equal weights."""
     squares: dict[str, list[float]] = {}
     for channels in runs.values():
         for name, channel in channels.items():

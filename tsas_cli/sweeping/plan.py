@@ -1,4 +1,4 @@
-"""The plan of a sweep: which stage, over which datasets and values, and what is the same in all."""
+"""The plan of a sweep: its stage, datasets, varied values and common options."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -14,8 +14,8 @@ STAGES: tuple[StageName, ...] = get_args(StageName)
 MOST_STEPS = 100_000
 
 
-def _listed(given: object) -> object:
-    return [given] if isinstance(given, str) else given
+def _listed(value: object) -> object:
+    return [value] if isinstance(value, str) else value
 
 
 class _Table(BaseModel):
@@ -23,7 +23,7 @@ class _Table(BaseModel):
 
 
 class Range(_Table):
-    """Values at equal distances, or at equal ratios with `scale = "log"`, both ends among them."""
+    """Equally spaced values, or values of equal ratio with `scale = "log"`, including both ends."""
 
     first: float = Field(alias="from")
     last: float = Field(alias="to")
@@ -61,15 +61,15 @@ class Plan(_Table):
     @model_validator(mode="after")
     def _goes_together(self) -> "Plan":
         if self.stage == "track" and (self.datasets or self.each_run):
-            raise ValueError("track takes no datasets")
+            raise ValueError("track has no datasets")
         if self.stage != "track" and not self.datasets:
-            raise ValueError(f"datasets is missing: {self.stage} takes some")
+            raise ValueError(f"datasets is missing: {self.stage} needs at least one")
         lengths = {name: len(axis) for name, axis in self.axes().items()}
         if self.combine == "zip" and len(set(lengths.values())) > 1:
-            told = ", ".join(f"{name} {n}" for name, n in lengths.items())
-            raise ValueError(f"lists to be zipped differ in length: {told}")
+            listed = ", ".join(f"{name} {n}" for name, n in lengths.items())
+            raise ValueError(f"lists to be zipped differ in length: {listed}")
         if self.each_run and "runs" in {**self.options, **self.vary}:
-            raise ValueError("each_run takes every run by itself: leave out runs")
+            raise ValueError("each_run makes one task per run: leave out runs")
         for name in self.vary:
             if name in self.options:
                 raise ValueError(f"{name} is in options and in vary")
@@ -84,12 +84,12 @@ class Plan(_Table):
 
 
 def read_plan(given: Path | Mapping[str, Any]) -> tuple[Plan, Path]:
-    """Return a plan, from its file or its content, and the folder that its paths begin at.
+    """Return a plan, from its file or its content, and the folder of its relative paths.
 
     Raises
     ------
     InputError
-        It cannot be read, or says something that is unknown or not allowed.
+        The plan cannot be read, or a key is unknown or invalid.
     """
     if isinstance(given, Path):
         return parse(Plan, read_toml(given), given), given.parent

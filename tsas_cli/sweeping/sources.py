@@ -1,4 +1,4 @@
-"""The datasets that a plan names: their folders, and the checksum that stands for each."""
+"""The datasets of a plan: their folders, and the checksum of each manifest."""
 
 import glob
 from collections.abc import Iterator
@@ -14,7 +14,7 @@ WILD = "*?["
 
 @dataclass(frozen=True)
 class Source:
-    """A dataset as a plan names it, or one run of it; its manifest holds its files' checksums."""
+    """A dataset by its name in the plan, or one run of it; `sha256` is that of the manifest."""
 
     name: str
     folder: Path
@@ -23,14 +23,14 @@ class Source:
 
 
 def sources_of(names: tuple[str, ...], base: Path, *, each_run: bool) -> list[Source]:
-    """Return the datasets behind names and patterns, in order; with `each_run` their runs.
+    """Return the datasets of names and patterns, in order; with `each_run` their runs.
 
-    A pattern such as `rigs/*` takes the folders that hold a `dataset.toml` and passes over others.
+    A pattern such as `rigs/*` selects the folders that hold a `dataset.toml`.
 
     Raises
     ------
     InputError
-        A folder holds no dataset, or a pattern finds none.
+        A folder holds no dataset, or a pattern matches none.
     """
     found: dict[Path, Source] = {}
     for name in names:
@@ -41,20 +41,20 @@ def sources_of(names: tuple[str, ...], base: Path, *, each_run: bool) -> list[So
 
 
 def _matching(name: str, base: Path) -> Iterator[Source]:
-    """Yield the datasets behind a name, or a pattern."""
+    """Yield the datasets of a name or a pattern."""
     if not any(sign in name for sign in WILD) or (base / name).is_dir():
         yield _source(name, base)
         return
     folders = sorted(glob.glob(name, root_dir=base, recursive=True))  # noqa: PTH207 # absolute too
-    taken = [folder for folder in folders if (base / folder / FILE).is_file()]
-    if not taken:
+    datasets = [folder for folder in folders if (base / folder / FILE).is_file()]
+    if not datasets:
         raise InputError(
             "no dataset matches",
             where=base / name,
             expected=f"folders with {FILE}",
             remedy=f"{len(folders)} other files and folders match" if folders else "",
         )
-    yield from (_source(folder, base) for folder in taken)
+    yield from (_source(folder, base) for folder in datasets)
 
 
 def _source(name: str, base: Path) -> Source:
@@ -65,13 +65,13 @@ def _source(name: str, base: Path) -> Source:
             "no dataset.toml here",
             where=folder,
             expected="a dataset folder",
-            remedy=f"its folders are datasets: name them by '{name}/*'" if inside else "",
+            remedy=f"its subfolders are datasets: use '{name}/*'" if inside else "",
         )
     return Source(Path(name).as_posix(), folder, sha256_of(folder / FILE))
 
 
 def _runs(source: Source) -> Iterator[Source]:
-    """Yield each run; where the manifest tells none the dataset, whose task says what is wrong."""
+    """Yield each run; or the dataset if its manifest lists none, whose task reports the fault."""
     try:
         runs = [str(run["id"]) for run in read_toml(source.folder / FILE)["run"]]
     except (InputError, KeyError, TypeError):

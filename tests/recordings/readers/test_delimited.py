@@ -123,7 +123,7 @@ def test_encoding_and_lines_to_skip_are_taken_from_the_map(ask):
         ("t,g\n0,1\n1,2\n", ("column f is missing", "there are: t, g")),
         ("0,1\n1,2\n", ("2 columns without names",)),
         ("t;f\n0,5;1,5\n1,5;1.234,5\n", ("row 3", "'1.234,5'")),
-        ("f,f\n0,1\n1,2\n", ("2 times", "number")),
+        ("f,f\n0,1\n1,2\n", ("2 columns have the name f", "number")),
         ("t,f\n", ("no row",)),
         ("# nothing\n", ("holds no table",)),
         ("word" * 50_000, ("no row",)),

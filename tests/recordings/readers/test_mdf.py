@@ -67,10 +67,10 @@ def test_groups_of_other_rates_need_leave_to_interpolate(path):
 @pytest.mark.parametrize(
     ("wanted", "described"),
     [
-        ("force", "2 times; .* 1, 4"),
+        ("force", "2 columns have the name force; .* 1, 4"),
         ("torque", "there are: force, place, slow, force, patchy, words, time"),
         ("words", "row 1: column words"),
-        ("time", "no channel but the time"),
+        ("time", "no channel besides the time"),
     ],
 )
 def test_what_is_wrong_is_reported(path, wanted, described):
