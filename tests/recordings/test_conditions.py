@@ -105,7 +105,9 @@ def test_what_is_wrong_is_reported(content, message):
 
 def test_a_pattern_that_would_look_for_ever_is_given_up(monkeypatch):
     monkeypatch.setattr("tsas_cli.recordings.conditions.SEARCH_TIMEOUT_S", 0.2)
-    with pytest.raises(InputError, match=r"has not finished searching 'rig/a+' after 0.2 s; nested"):
+    with pytest.raises(
+        InputError, match=r"has not finished searching 'rig/a+' after 0.2 s; nested"
+    ):
         conditions(
             path=Path(f"/rig/{'a' * 40}"), from_file_name={"pattern": r"(?P<no>(a|aa|a)+)\d$"}
         )

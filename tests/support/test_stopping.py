@@ -51,7 +51,7 @@ def test_what_is_ignored_stays_ignored():
 
 
 def test_a_request_that_a_library_has_lost_can_be_made_again(monkeypatch):
-    monkeypatch.setattr("tsas_cli.support.stopping.CLEANING_S", 0.1)
+    monkeypatch.setattr("tsas_cli.support.stopping.CLEANUP_S", 0.1)
     events = []
     with until_stopped():
         try:

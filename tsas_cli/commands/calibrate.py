@@ -22,7 +22,7 @@ from tsas_cli.commands.common import (
 from tsas_cli.commands.progress import progress
 
 
-class DynamicsOption(StrEnum):
+class CalibrationDynamics(StrEnum):
     """The models of the tendon that can be calibrated."""
 
     slip = "slip"
@@ -37,9 +37,9 @@ def calibrate(
         typer.Option(metavar="M.toml", help="The initial model, whose effects are kept."),
     ] = None,
     dynamics: Annotated[
-        DynamicsOption,
+        CalibrationDynamics,
         typer.Option("--dynamics", help="slip: distributed friction; lugre: dynamic friction."),
-    ] = DynamicsOption.slip,
+    ] = CalibrationDynamics.slip,
     runs: ChosenRuns = None,
     rrd: Rrd = False,
     force: Force = False,

@@ -21,7 +21,7 @@ DatasetFolder = Annotated[
     str, typer.Argument(metavar="DATASET", help="A dataset's folder, or its address (s3://…).")
 ]
 OutFolder = Annotated[Path, typer.Option("--out", metavar="DIR", help="The folder to write.")]
-ModelFile = Annotated[
+ModelOption = Annotated[
     Path | None,
     typer.Option("--model", metavar="M.toml", help="The model; default: from the data sheet."),
 ]

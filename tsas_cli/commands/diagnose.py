@@ -6,7 +6,7 @@ from tsas_cli.commands.common import (
     DatasetFolder,
     Force,
     Json,
-    ModelFile,
+    ModelOption,
     OutFolder,
     Quiet,
     Rrd,
@@ -20,7 +20,7 @@ from tsas_cli.commands.progress import progress
 def diagnose(
     dataset: DatasetFolder,
     out: OutFolder,
-    model: ModelFile = None,
+    model: ModelOption = None,
     runs: ChosenRuns = None,
     rrd: Rrd = False,
     force: Force = False,

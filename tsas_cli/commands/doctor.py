@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from tsas_cli.installation.machine import Ability
     from tsas_cli.installation.packages import Extra, Package
 
-Rows = Sequence[tuple[str, ...]]
+_Rows = Sequence[tuple[str, ...]]
 
 
 def doctor(quiet: Quiet = False, as_json: Json = False) -> None:
@@ -58,7 +58,7 @@ def doctor(quiet: Quiet = False, as_json: Json = False) -> None:
 
 def _tables(
     title: str, core: Sequence["Package"], more: Sequence["Extra"], machine: Sequence["Ability"]
-) -> Iterator[tuple[str, tuple[str, ...], Rows]]:
+) -> Iterator[tuple[str, tuple[str, ...], _Rows]]:
     rows = [(p.name, p.asked, p.found or "", p.problem or "installed") for p in core]
     yield title, ("package", "required", "found", "state"), rows
     rows = [(e.name, e.purpose, ", ".join(e.missing) or "none", _install(e)) for e in more]

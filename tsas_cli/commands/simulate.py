@@ -12,7 +12,7 @@ from tsas_cli.commands.common import (
     DatasetFolder,
     Force,
     Json,
-    ModelFile,
+    ModelOption,
     OutFolder,
     Quiet,
     Rrd,
@@ -24,7 +24,7 @@ from tsas_cli.commands.live import Live, not_shown, watched
 from tsas_cli.commands.progress import progress
 
 
-class DynamicsOption(StrEnum):
+class SimulationDynamics(StrEnum):
     """The models of the tendon that can be simulated."""
 
     static = "static"
@@ -35,14 +35,14 @@ class DynamicsOption(StrEnum):
 def simulate(
     dataset: DatasetFolder,
     out: OutFolder,
-    model: ModelFile = None,
+    model: ModelOption = None,
     dynamics: Annotated[
-        DynamicsOption,
+        SimulationDynamics,
         typer.Option(
             "--dynamics",
             help="static: of the paper; slip: distributed friction; lugre: dynamic friction.",
         ),
-    ] = DynamicsOption.slip,
+    ] = SimulationDynamics.slip,
     fit_own: Annotated[
         bool,
         typer.Option(help="First fit the preload and zeros of each run."),

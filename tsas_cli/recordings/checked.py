@@ -11,10 +11,10 @@ from tsas_cli.recordings.storage import Address, Place, check_inside
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import sha256_of
 
-Source: TypeAlias = Path | pa.NativeFile
+ParquetSource: TypeAlias = Path | pa.NativeFile
 
 
-def checked_file(folder: Place, run: Run) -> Source:
+def checked_file(folder: Place, run: Run) -> ParquetSource:
     """Return the source that Parquet is read from, after its checksum matches the manifest.
 
     Raises

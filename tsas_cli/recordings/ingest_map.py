@@ -10,11 +10,11 @@ from pydantic import BaseModel, ConfigDict, Field, field_validator, model_valida
 from tsas_cli.recordings.columns import NAMES, TIME, has_input_and_output
 from tsas_cli.recordings.manifest import Load, Rig, parse, read_toml
 from tsas_cli.recordings.readers.options import ReadOptions
-from tsas_cli.recordings.readers.table import Source
+from tsas_cli.recordings.readers.table import ColumnSource
 from tsas_cli.support.errors import InputError, nearest
 
 QUESTION = "?"  # in place of a value that a guessed map leaves open
-Condition = Literal["preload_N", "sheath_length_mm", "total_bend_rad"]
+_Condition = Literal["preload_N", "sheath_length_mm", "total_bend_rad"]
 
 
 class _Strict(BaseModel):
@@ -40,7 +40,7 @@ class MapRig(Rig):
 class ColumnMap(_Strict):
     """`[columns.NAME]`: value = sign · (source in the canonical unit) − offset."""
 
-    source: Source = ""
+    source: ColumnSource = ""
     rate_Hz: float | None = Field(default=None, gt=0)  # time_s of files without a clock
     unit: str | None = None
     factor: float | None = None
@@ -81,7 +81,7 @@ class RunMap(_Strict):
     total_bend_rad: float | None = None
     from_file_name: FromText | None = None
     from_header: FromText | None = None
-    conditions: dict[Condition, Converted] = {}
+    conditions: dict[_Condition, Converted] = {}
     table: dict[str, dict[str, Any]] = {}
 
 
@@ -108,7 +108,7 @@ class IngestMap(_Strict):
             raise ValueError("an input and an output column are needed, such as x_in_mm and f_in_N")
         return columns
 
-    def sources(self) -> list[Source]:
+    def sources(self) -> list[ColumnSource]:
         """Return the distinct source columns of the map."""
         mapped = [column.source for column in self.columns.values() if column.rate_Hz is None]
         return list(dict.fromkeys([*mapped, *self.read.extra]))

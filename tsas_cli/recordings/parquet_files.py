@@ -9,7 +9,7 @@ from typing import IO, cast
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from tsas_cli.recordings.checked import Source
+from tsas_cli.recordings.checked import ParquetSource
 from tsas_cli.recordings.guards.expansion import Expanded
 from tsas_cli.recordings.storage import Place
 from tsas_cli.support import limits
@@ -19,7 +19,7 @@ BUFFER_BYTES = 1 << 20  # read at a time: a row group need not fit into memory
 _TRAILER_BYTES = 8  # at the end: the footer's length and PAR1
 
 
-def open_parquet(source: Source, where: Place | None = None) -> pq.ParquetFile:
+def open_parquet(source: ParquetSource, where: Place | None = None) -> pq.ParquetFile:
     """Return an open Parquet file; no row is read.
 
     `where` is the location in error messages; default: the source.
@@ -44,7 +44,7 @@ def open_parquet(source: Source, where: Place | None = None) -> pq.ParquetFile:
     return file
 
 
-def size_of(source: Source) -> int:
+def size_of(source: ParquetSource) -> int:
     """Return the size of a file [bytes]."""
     return source.stat().st_size if isinstance(source, Path) else int(source.size())
 

@@ -9,7 +9,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from tsas_cli.recordings.arrow_columns import floats_from
-from tsas_cli.recordings.checked import Source, checked_file
+from tsas_cli.recordings.checked import ParquetSource, checked_file
 from tsas_cli.recordings.columns import (
     BY_NAME,
     INPUTS,
@@ -150,7 +150,7 @@ def read_columns(path: Path) -> dict[str, Floats]:
     return columns
 
 
-def _table_of(source: Source, path: Place) -> tuple[pa.Table, list[str]]:
+def _table_of(source: ParquetSource, path: Place) -> tuple[pa.Table, list[str]]:
     """Return the canonical columns of a file, and the names of all columns."""
     try:
         with open_parquet(source, path) as file:

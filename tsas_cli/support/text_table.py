@@ -7,12 +7,12 @@ from textwrap import wrap
 
 from tsas_cli.support.errors import printable
 
-Row = Sequence[str]
+_Row = Sequence[str]
 INDENT = GAP = "  "
 
 
 def table_text(
-    title: str, header: Row, rows: Sequence[Row], width: int | None = None
+    title: str, header: _Row, rows: Sequence[_Row], width: int | None = None
 ) -> Iterator[str]:
     """Yield the lines of a table; control characters in names from files are escaped.
 
@@ -35,7 +35,7 @@ def table_text(
         yield from _lines(row, widths)
 
 
-def _widths(cells: Sequence[Row], room: float) -> list[int]:
+def _widths(cells: Sequence[_Row], room: float) -> list[int]:
     """Return the widths of the columns; the widest are reduced, none below its longest word."""
     columns = list(zip(*cells, strict=True))
     widths = [max(map(len, column)) for column in columns]
@@ -51,7 +51,7 @@ def _widths(cells: Sequence[Row], room: float) -> list[int]:
     return widths
 
 
-def _lines(row: Row, widths: Sequence[int]) -> Iterator[str]:
+def _lines(row: _Row, widths: Sequence[int]) -> Iterator[str]:
     """Yield the lines of one row."""
     wrapped = (
         [cell] if len(cell) <= width else wrap(cell, max(width, 1), break_on_hyphens=False)

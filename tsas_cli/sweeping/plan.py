@@ -22,7 +22,7 @@ class _Table(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
 
-class Range(_Table):
+class ValueRange(_Table):
     """Equally spaced values, or values of equal ratio with `scale = "log"`, including both ends."""
 
     first: float = Field(alias="from")
@@ -31,7 +31,7 @@ class Range(_Table):
     scale: Literal["linear", "log"] = "linear"
 
     @model_validator(mode="after")
-    def _has_logarithms(self) -> "Range":
+    def _has_logarithms(self) -> "ValueRange":
         if self.scale == "log" and min(self.first, self.last) <= 0.0:
             raise ValueError("a log scale needs positive ends")
         return self
@@ -42,10 +42,10 @@ class Range(_Table):
         return [float(value) for value in space(self.first, self.last, self.steps)]
 
 
-Axis = Annotated[tuple[Any, ...], Field(min_length=1)] | Range
+Axis = Annotated[tuple[Any, ...], Field(min_length=1)] | ValueRange
 
 
-class Plan(_Table):
+class SweepPlan(_Table):
     """The whole plan."""
 
     format: Literal[1] = 1
@@ -59,7 +59,7 @@ class Plan(_Table):
     sets: str | None = None
 
     @model_validator(mode="after")
-    def _goes_together(self) -> "Plan":
+    def _goes_together(self) -> "SweepPlan":
         if self.stage == "track" and (self.datasets or self.each_run):
             raise ValueError("track has no datasets")
         if self.stage != "track" and not self.datasets:
@@ -78,12 +78,12 @@ class Plan(_Table):
     def axes(self) -> dict[str, list[Any]]:
         """Return the values of each axis."""
         return {
-            name: axis.values() if isinstance(axis, Range) else list(axis)
+            name: axis.values() if isinstance(axis, ValueRange) else list(axis)
             for name, axis in self.vary.items()
         }
 
 
-def read_plan(given: Path | Mapping[str, Any]) -> tuple[Plan, Path]:
+def read_plan(given: Path | Mapping[str, Any]) -> tuple[SweepPlan, Path]:
     """Return a plan, from its file or its content, and the folder of its relative paths.
 
     Raises
@@ -92,5 +92,5 @@ def read_plan(given: Path | Mapping[str, Any]) -> tuple[Plan, Path]:
         The plan cannot be read, or a key is unknown or invalid.
     """
     if isinstance(given, Path):
-        return parse(Plan, read_toml(given), given), given.parent
-    return parse(Plan, dict(given), "the plan"), Path()
+        return parse(SweepPlan, read_toml(given), given), given.parent
+    return parse(SweepPlan, dict(given), "the plan"), Path()

@@ -10,14 +10,14 @@ import pyarrow.csv
 import pyarrow.parquet
 
 from tsas_cli.support.errors import InputError
-from tsas_cli.sweeping.plan import Plan
+from tsas_cli.sweeping.plan import SweepPlan
 
 MOST_TASKS = 1_000_000
 
 Point = dict[str, Any]
 
 
-def points_of(plan: Plan, base: Path) -> list[Point]:
+def points_of(plan: SweepPlan, base: Path) -> list[Point]:
     """Return the values of every task by name; one empty point without variation.
 
     The last axis varies fastest. Each row of the table is combined with every point of the axes.

@@ -13,7 +13,7 @@ WILD = "*?["
 
 
 @dataclass(frozen=True)
-class Source:
+class SweepSource:
     """A dataset by its name in the plan, or one run of it; `sha256` is that of the manifest."""
 
     name: str
@@ -22,7 +22,7 @@ class Source:
     run: str | None = None
 
 
-def sources_of(names: tuple[str, ...], base: Path, *, each_run: bool) -> list[Source]:
+def sources_of(names: tuple[str, ...], base: Path, *, each_run: bool) -> list[SweepSource]:
     """Return the datasets of names and patterns, in order; with `each_run` their runs.
 
     A pattern such as `rigs/*` selects the folders that hold a `dataset.toml`.
@@ -32,7 +32,7 @@ def sources_of(names: tuple[str, ...], base: Path, *, each_run: bool) -> list[So
     InputError
         A folder holds no dataset, or a pattern matches none.
     """
-    found: dict[Path, Source] = {}
+    found: dict[Path, SweepSource] = {}
     for name in names:
         for source in _matching(name, base):
             found.setdefault(source.folder.resolve(), source)  # patterns may overlap
@@ -40,7 +40,7 @@ def sources_of(names: tuple[str, ...], base: Path, *, each_run: bool) -> list[So
     return [run for source in sources for run in _runs(source)] if each_run else sources
 
 
-def _matching(name: str, base: Path) -> Iterator[Source]:
+def _matching(name: str, base: Path) -> Iterator[SweepSource]:
     """Yield the datasets of a name or a pattern."""
     if not any(sign in name for sign in WILD) or (base / name).is_dir():
         yield _source(name, base)
@@ -57,7 +57,7 @@ def _matching(name: str, base: Path) -> Iterator[Source]:
     yield from (_source(folder, base) for folder in datasets)
 
 
-def _source(name: str, base: Path) -> Source:
+def _source(name: str, base: Path) -> SweepSource:
     folder = base / name
     if not (folder / FILE).is_file():
         inside = next(folder.glob(f"*/{FILE}"), None) if folder.is_dir() else None
@@ -67,15 +67,15 @@ def _source(name: str, base: Path) -> Source:
             expected="a dataset folder",
             remedy=f"its subfolders are datasets: use '{name}/*'" if inside else "",
         )
-    return Source(Path(name).as_posix(), folder, sha256_of(folder / FILE))
+    return SweepSource(Path(name).as_posix(), folder, sha256_of(folder / FILE))
 
 
-def _runs(source: Source) -> Iterator[Source]:
+def _runs(source: SweepSource) -> Iterator[SweepSource]:
     """Yield each run; or the dataset if its manifest lists none, whose task reports the fault."""
     try:
         runs = [str(run["id"]) for run in read_toml(source.folder / FILE)["run"]]
     except (InputError, KeyError, TypeError):
         runs = []
-    yield from (Source(source.name, source.folder, source.sha256, run) for run in runs)
+    yield from (SweepSource(source.name, source.folder, source.sha256, run) for run in runs)
     if not runs:
         yield source

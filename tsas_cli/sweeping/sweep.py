@@ -20,7 +20,7 @@ from tsas_cli.sweeping.folder import (
     sweep_folder,
     what_is_done,
 )
-from tsas_cli.sweeping.plan import Plan
+from tsas_cli.sweeping.plan import SweepPlan
 from tsas_cli.sweeping.tables import counts, parameter_rows, printed, rows_of, write_rows
 from tsas_cli.sweeping.tasks import Task
 from tsas_cli.sweeping.versions import versions
@@ -74,7 +74,7 @@ class SweepResult(Result):
 
 
 def sweep_tasks(
-    plan: Plan,
+    plan: SweepPlan,
     tasks: Sequence[Task],
     out: Path,
     pool: Pool,
@@ -130,7 +130,7 @@ def sweep_tasks(
 
 
 def _written(
-    out: Path, plan: Plan, tasks: Sequence[Task], outcomes: Sequence[Answer]
+    out: Path, plan: SweepPlan, tasks: Sequence[Task], outcomes: Sequence[Answer]
 ) -> dict[str, Any]:
     """Return the summary, after writing the tables and the summary itself."""
     rows = rows_of(tasks, outcomes)

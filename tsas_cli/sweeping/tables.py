@@ -13,12 +13,12 @@ from tsas_cli.records.result import Table
 from tsas_cli.sweeping.answer import Answer
 from tsas_cli.sweeping.tasks import Task
 
-Row = dict[str, Any]
+_Row = dict[str, Any]
 MOST_SHOWN = 20  # failed tasks in the printed table; the file holds all
 COUNTED = ("verdict", "causes", "codes")  # results that are words, whose frequencies are printed
 
 
-def rows_of(tasks: Sequence[Task], outcomes: Sequence[Answer]) -> list[Row]:
+def rows_of(tasks: Sequence[Task], outcomes: Sequence[Answer]) -> list[_Row]:
     """Return one row per task: its name, input, state and results."""
     return [
         {
@@ -34,7 +34,7 @@ def rows_of(tasks: Sequence[Task], outcomes: Sequence[Answer]) -> list[Row]:
     ]
 
 
-def parameter_rows(tasks: Sequence[Task], outcomes: Sequence[Answer]) -> list[Row]:
+def parameter_rows(tasks: Sequence[Task], outcomes: Sequence[Answer]) -> list[_Row]:
     """Return one row for each parameter of each task, with interval, unit and bound flag."""
     return [
         {
@@ -48,7 +48,7 @@ def parameter_rows(tasks: Sequence[Task], outcomes: Sequence[Answer]) -> list[Ro
     ]
 
 
-def write_rows(path: Path, rows: Sequence[Row]) -> None:
+def write_rows(path: Path, rows: Sequence[_Row]) -> None:
     """Write rows as Parquet; a column of mixed types is text."""
     names = list(dict.fromkeys(name for row in rows for name in row))
     columns = {name: _column([row.get(name) for row in rows]) for name in names}
@@ -62,7 +62,7 @@ def _column(values: list[Any]) -> pa.Array:
         return pa.array([None if value is None else str(value) for value in values])
 
 
-def printed(rows: Sequence[Row], varied: Sequence[str], title: str) -> list[Table]:
+def printed(rows: Sequence[_Row], varied: Sequence[str], title: str) -> list[Table]:
     """Return the printed tables: ranges of figures, frequencies of words, and failed tasks."""
     named = {"task", "dataset", "run", "state", "error", *varied}
     done = [row for row in rows if row["state"] == "done"]
@@ -82,7 +82,7 @@ def printed(rows: Sequence[Row], varied: Sequence[str], title: str) -> list[Tabl
     return tables
 
 
-def _input(row: Row, varied: Iterable[str]) -> str:
+def _input(row: _Row, varied: Iterable[str]) -> str:
     """Return the dataset, run and values that identify a task."""
     source = [str(row[name]) for name in ("dataset", "run") if name in row]
     return ", ".join([*source, *(f"{name}={row[name]}" for name in varied if name in row)])

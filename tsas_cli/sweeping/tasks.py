@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import Any
 
 from tsas_cli.support.errors import InputError
-from tsas_cli.sweeping.plan import Plan
+from tsas_cli.sweeping.plan import SweepPlan
 from tsas_cli.sweeping.points import Point, points_of
-from tsas_cli.sweeping.sources import Source, sources_of
+from tsas_cli.sweeping.sources import SweepSource, sources_of
 from tsas_cli.sweeping.values import Options, Values, sorted_values
 from tsas_cli.sweeping.versions import versions
 
@@ -39,7 +39,7 @@ class Task:
     """
 
     key: str
-    source: Source | None
+    source: SweepSource | None
     point: Point
     inputs: Mapping[str, Any]
     places: Mapping[str, str]
@@ -50,7 +50,7 @@ class Task:
         return json.dumps({"key": self.key, "inputs": self.inputs, "places": places, **more})
 
 
-def tasks_of(plan: Plan, base: Path, options: Options) -> list[Task]:
+def tasks_of(plan: SweepPlan, base: Path, options: Options) -> list[Task]:
     """Return the tasks of a plan, dataset by dataset.
 
     Raises
@@ -59,7 +59,7 @@ def tasks_of(plan: Plan, base: Path, options: Options) -> list[Task]:
         A dataset or file does not exist, a name is unknown, a value is invalid, or tasks are
         duplicate.
     """
-    sources: list[Source | None] = [None]
+    sources: list[SweepSource | None] = [None]
     if plan.datasets:
         sources = [*sources_of(plan.datasets, base, each_run=plan.each_run)]
     points = points_of(plan, base)
@@ -82,7 +82,9 @@ def tasks_of(plan: Plan, base: Path, options: Options) -> list[Task]:
     return tasks
 
 
-def _task(stage: str, source: Source | None, point: Point, values: Values, *, named: bool) -> Task:
+def _task(
+    stage: str, source: SweepSource | None, point: Point, values: Values, *, named: bool
+) -> Task:
     options = dict(values.options)
     inputs: dict[str, Any] = {"stage": stage, "versions": versions()}
     places = {name: str(path.resolve()) for name, path in values.files.items()}
@@ -99,7 +101,7 @@ def _task(stage: str, source: Source | None, point: Point, values: Values, *, na
     return Task(f"{words[:LONGEST]}-{digest}", source, point, inputs, places)
 
 
-def _words(source: Source | None, point: Point, *, named: bool) -> Iterator[str]:
+def _words(source: SweepSource | None, point: Point, *, named: bool) -> Iterator[str]:
     """Yield the parts of a task's name that identify it, valid in a file name."""
     if source is not None and (named or not (point or source.run)):
         yield _plain(source.name)

@@ -15,7 +15,7 @@ from tsas_cli.support.files import read_json, sha256_of
 from tsas_cli.support.replacing import SUMS
 from tsas_cli.verifying.claims import Claim, claims_of
 
-State = Literal["fits", "changed", "missing", "cannot tell"]
+_State = Literal["fits", "changed", "missing", "cannot tell"]
 _OURS = {".json", ".toml", ".html"}
 
 
@@ -24,7 +24,7 @@ class Verified:
     """The state of one file; `by` recorded its checksum, empty if no file did."""
 
     file: str
-    state: State
+    state: _State
     by: str = ""
     why: str = ""
 
@@ -79,7 +79,7 @@ def verify_all(
                 if claim.path is not None and claim.path != path:
                     walk.waiting.extend(_related(claim.path))
         except InputError as error:
-            state: State = "changed" if limits.is_text(path) else "cannot tell"
+            state: _State = "changed" if limits.is_text(path) else "cannot tell"
             found.append(Verified(_shown(path), state, "", error.what))
     # Claims with a location come first: other claims may refer to the files found there.
     ordered = sorted(claims, key=lambda claim: claim.path is None)

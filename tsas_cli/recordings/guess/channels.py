@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from tsas_cli.recordings.columns import NAMES, has_input_and_output
-from tsas_cli.recordings.guess.columns import Column
+from tsas_cli.recordings.guess.columns import FileColumn
 from tsas_cli.recordings.guess.ends import FORCES, LENGTHS, Assignment, assign
 from tsas_cli.recordings.guess.proposed import Certainty, Proposed, with_unit
 from tsas_cli.recordings.guess.signs import Sign, signs
@@ -12,7 +12,7 @@ from tsas_cli.recordings.ingest_map import QUESTION
 _MECHANICAL = ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N")
 
 
-def channels(columns: Sequence[Column]) -> list[Proposed]:
+def channels(columns: Sequence[FileColumn]) -> list[Proposed]:
     """Return the proposed channels of the columns besides the clock, in the order of the format.
 
     Channels without evidence are left out.
@@ -32,12 +32,12 @@ def channels(columns: Sequence[Column]) -> list[Proposed]:
     return [found[name] for name in NAMES if name in found]
 
 
-def _others(columns: Sequence[Column]) -> dict[str, list[Column]]:
+def _others(columns: Sequence[FileColumn]) -> dict[str, list[FileColumn]]:
     """Return the columns of channels that are neither displacement nor tension of the tendon.
 
     A motor's position in mm is the proximal displacement, its angle is the motor angle.
     """
-    found: dict[str, list[Column]] = {}
+    found: dict[str, list[FileColumn]] = {}
     for column in columns:
         quantity, motor = column.quantity, column.end == "motor"
         turns = column.kind in ("angle", "label", None)
@@ -57,12 +57,12 @@ def _others(columns: Sequence[Column]) -> dict[str, list[Column]]:
     return found
 
 
-def _of_motor(column: Column) -> bool:
+def _of_motor(column: FileColumn) -> bool:
     """Return whether a torque is the motor's, before a gear of unknown friction."""
     return column.end == "motor" and column.quantity == "torque"
 
 
-def _one(name: str, columns: Sequence[Column]) -> Proposed:
+def _one(name: str, columns: Sequence[FileColumn]) -> Proposed:
     measured = [c for c in columns if not c.words.is_reference] or columns
     if len(measured) > 1:
         shown = ", ".join(c.shown for c in columns)
@@ -84,7 +84,7 @@ def _assigned(ends: Assignment) -> dict[str, Proposed]:
     }
 
 
-def _channel(name: str, column: Column, ends: Assignment, sign: Sign) -> Proposed:
+def _channel(name: str, column: FileColumn, ends: Assignment, sign: Sign) -> Proposed:
     entry, asked = with_unit(column, name)
     why = [*column.reasons, *_motion(column, ends)]
     if sign[0] == QUESTION:
@@ -98,7 +98,7 @@ def _channel(name: str, column: Column, ends: Assignment, sign: Sign) -> Propose
     return Proposed(name, entry, "open" if asked else certainty, tuple(why), asked)
 
 
-def _motion(column: Column, ends: Assignment) -> list[str]:
+def _motion(column: FileColumn, ends: Assignment) -> list[str]:
     """Return the evidence of the motion for a column's end, against the other assigned columns."""
     assigned = {id(c) for c in ends.assigned.values()}
     first = [b.shown for a, b in ends.ahead if a is column and id(b) in assigned]
@@ -128,7 +128,7 @@ def _open_channels(ends: Assignment) -> dict[str, Proposed]:
 
 
 def _unknown(
-    columns: Sequence[Column], names: Sequence[str], ends: Assignment
+    columns: Sequence[FileColumn], names: Sequence[str], ends: Assignment
 ) -> dict[str, Proposed]:
     """Return a question for each missing channel while columns are unassigned."""
     shown = ", ".join(c.shown for c in columns)
@@ -142,14 +142,14 @@ def _unknown(
 
 
 def _open(
-    name: str, columns: Sequence[Column], why: tuple[str, ...], asked: dict[str, str]
+    name: str, columns: Sequence[FileColumn], why: tuple[str, ...], asked: dict[str, str]
 ) -> Proposed:
     alternatives = tuple(_described(c) for c in columns)
     sources = tuple(c.source for c in columns)
     return Proposed(name, {"source": QUESTION}, "open", why, asked, alternatives, sources)
 
 
-def _orders(columns: Sequence[Column], ends: Assignment) -> list[str]:
+def _orders(columns: Sequence[FileColumn], ends: Assignment) -> list[str]:
     return [
         f"by the motion {column.shown} is nearer to the drive than {', '.join(behind)}"
         for column in columns
@@ -157,5 +157,5 @@ def _orders(columns: Sequence[Column], ends: Assignment) -> list[str]:
     ]
 
 
-def _described(column: Column) -> str:
+def _described(column: FileColumn) -> str:
     return f"{column.shown}: {'; '.join(column.reasons)}" if column.reasons else column.shown

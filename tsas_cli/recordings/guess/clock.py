@@ -6,7 +6,7 @@ import numpy as np
 
 from tsas_cli.numerics.turning_points import turning_points
 from tsas_cli.recordings.columns import TIME
-from tsas_cli.recordings.guess.columns import Column
+from tsas_cli.recordings.guess.columns import FileColumn
 from tsas_cli.recordings.guess.looks import increases, is_even
 from tsas_cli.recordings.guess.proposed import Certainty, Proposed, with_unit
 from tsas_cli.recordings.ingest_map import QUESTION
@@ -18,7 +18,7 @@ _STROKE_S = (0.02, 500.0)  # plausible strokes of a rig
 _UNITS = ("s", "ms", "us")
 
 
-def clock(columns: Sequence[Column]) -> Proposed:
+def clock(columns: Sequence[FileColumn]) -> Proposed:
     """Return the proposed time of a file, or an open question."""
     named = [c for c in columns if c.quantity == "time"]
     if len(named) > 1:
@@ -45,25 +45,25 @@ def clock(columns: Sequence[Column]) -> Proposed:
     return Proposed(TIME, {"rate_Hz": QUESTION}, "open", why, asked)
 
 
-def interval(column: Column) -> float:
+def interval(column: FileColumn) -> float:
     """Return the typical step of a clock that increases, in its own unit."""
     return float(np.median(np.diff(column.values)))
 
 
-def like_a_clock(column: Column) -> bool:
+def like_a_clock(column: FileColumn) -> bool:
     """Return whether a column increases evenly, and its unit does not exclude a time."""
     may_be = column.kind in (None, "label", "time") and column.quantity != "counter"
     return may_be and increases(column.values) and is_even(column.values)
 
 
-def _which(found: Sequence[Column], why: str) -> Proposed:
+def _which(found: Sequence[FileColumn], why: str) -> Proposed:
     asked = {"source": f"which one is the clock: {', '.join(c.shown for c in found)}?"}
     return Proposed(
         TIME, {"source": QUESTION}, "open", (why,), asked, (), tuple(c.source for c in found)
     )
 
 
-def _with_unit(column: Column, columns: Sequence[Column], *, named: bool) -> Proposed:
+def _with_unit(column: FileColumn, columns: Sequence[FileColumn], *, named: bool) -> Proposed:
     why = column.reasons
     if not increases(column.values):
         why.append("it stops or decreases somewhere; ingest will refuse it and name the row")
@@ -84,7 +84,7 @@ def _with_unit(column: Column, columns: Sequence[Column], *, named: bool) -> Pro
     return Proposed(TIME, entry, "open" if asked else certainty, tuple(why), asked, others)
 
 
-def _unit(column: Column, rows: float) -> tuple[str, str, tuple[str, ...]]:
+def _unit(column: FileColumn, rows: float) -> tuple[str, str, tuple[str, ...]]:
     """Return the unit for the map, the reason or the question, and alternative units.
 
     The unit is empty if ingest finds it in the file. A stated unit has to result in a plausible
@@ -129,7 +129,7 @@ def _rate(interval_s: float) -> str:
     return f"{1.0 / interval_s:.4g} Hz"
 
 
-def _rows_per_stroke(columns: Sequence[Column], clock: Column) -> float:
+def _rows_per_stroke(columns: Sequence[FileColumn], clock: FileColumn) -> float:
     """Return the rows per stroke, as the median over the channels that move."""
     rows = []
     for column in columns:

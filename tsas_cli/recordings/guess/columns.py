@@ -5,16 +5,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tsas_cli.recordings.guess.kinds import QUANTITY_OF, Kind, fits, kind_of, unit_behind
+from tsas_cli.recordings.guess.kinds import QUANTITY_OF, UnitKind, fits, kind_of, unit_behind
 from tsas_cli.recordings.guess.opening import Opened
-from tsas_cli.recordings.guess.words import WEAK, End, Quantity, Words, words_of
-from tsas_cli.recordings.readers.table import Floats, Source
+from tsas_cli.recordings.guess.words import WEAK, End, NamedQuantity, Words, words_of
+from tsas_cli.recordings.readers.table import ColumnSource, Floats
 
 _BRACKETS = re.compile(r"\s*[\[(]([^\[\]()]*)[\])]\s*$")
 
 
 @dataclass(frozen=True)
-class Column:
+class FileColumn:
     """A column of numbers.
 
     Attributes
@@ -33,12 +33,12 @@ class Column:
         Where the unit is stated ("in its name").
     """
 
-    source: Source
+    source: ColumnSource
     name: str
     values: Floats
     words: Words
     unit: str
-    kind: Kind | None
+    kind: UnitKind | None
     own_unit: bool
     where: str
 
@@ -48,7 +48,7 @@ class Column:
         return f'"{self.name}"' if self.name else f"column {self.source}"
 
     @property
-    def quantity(self) -> Quantity | None:
+    def quantity(self) -> NamedQuantity | None:
         """The measured quantity by the unit, else by the name; None if they disagree."""
         named = self.words.quantity
         if self.kind in (None, "label"):
@@ -94,7 +94,7 @@ class Column:
         return finite.size > 1 and float(np.ptp(finite)) > 0.0
 
 
-_AN: dict[Quantity | None, str] = {
+_AN: dict[NamedQuantity | None, str] = {
     "time": "a time",
     "counter": "a count of samples",
     "displacement": "a displacement",
@@ -108,7 +108,7 @@ _AN: dict[Quantity | None, str] = {
 _END: dict[End, str] = {"in": "the drive", "out": "the load", "motor": "the motor"}
 
 
-def columns_of(opened: Opened) -> list[Column]:
+def columns_of(opened: Opened) -> list[FileColumn]:
     """Return the columns of a file, in order."""
     return [
         _column(source, opened.names[source], _finite(values), opened.table.units.get(source, ""))
@@ -116,7 +116,7 @@ def columns_of(opened: Opened) -> list[Column]:
     ]
 
 
-def with_trusted_names(columns: list[Column]) -> tuple[list[Column], str]:
+def with_trusted_names(columns: list[FileColumn]) -> tuple[list[FileColumn], str]:
     """Return the columns, without the meaning of any name if one name and its unit disagree.
 
     The names may then be those of other columns: only units and motion are used, and the sentence
@@ -133,7 +133,7 @@ def _finite(values: Floats) -> Floats:
     return np.where(np.isfinite(values), values, np.nan)
 
 
-def _column(source: Source, name: str, values: Floats, declared: str) -> Column:
+def _column(source: ColumnSource, name: str, values: Floats, declared: str) -> FileColumn:
     """Return a column; `declared` is the unit that ingest finds in the file, if any."""
     bracket = _BRACKETS.search(name)
     inside = bracket[1].strip() if bracket else ""
@@ -147,5 +147,5 @@ def _column(source: Source, name: str, values: Floats, declared: str) -> Column:
     ):
         kind = kind_of(unit) if unit else None
         if kind is not None:
-            return Column(source, name, values, words_of(stem), unit, kind, own, position)
-    return Column(source, name, values, words_of(name), "", None, False, "")
+            return FileColumn(source, name, values, words_of(stem), unit, kind, own, position)
+    return FileColumn(source, name, values, words_of(name), "", None, False, "")

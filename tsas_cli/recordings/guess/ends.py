@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import permutations
 
-from tsas_cli.recordings.guess.columns import Column
+from tsas_cli.recordings.guess.columns import FileColumn
 from tsas_cli.recordings.guess.looks import leads
 
 _X, _F = ("x_in_mm", "x_out_mm"), ("f_in_N", "f_out_N")
@@ -22,7 +22,7 @@ _ORDER = (
 )
 LENGTHS, FORCES = ("displacement", "angle"), ("force", "torque")
 _MOST = 5  # columns of one kind whose motion is compared
-Candidate = Mapping[str, Column | None]
+_Candidate = Mapping[str, FileColumn | None]
 
 
 @dataclass(frozen=True)
@@ -33,13 +33,13 @@ class Assignment:
     first.
     """
 
-    assigned: dict[str, Column]
-    open: dict[str, tuple[Column, ...]]
+    assigned: dict[str, FileColumn]
+    open: dict[str, tuple[FileColumn, ...]]
     reason: str
-    ahead: tuple[tuple[Column, Column], ...]
+    ahead: tuple[tuple[FileColumn, FileColumn], ...]
 
 
-def assign(displacements: Sequence[Column], tensions: Sequence[Column]) -> Assignment:
+def assign(displacements: Sequence[FileColumn], tensions: Sequence[FileColumn]) -> Assignment:
     """Return displacements and tensions by end, as far as names and motion determine it."""
     if max(len(displacements), len(tensions)) > _MOST:
         displacements, tensions = _with_end(displacements), _with_end(tensions)
@@ -55,7 +55,7 @@ def assign(displacements: Sequence[Column], tensions: Sequence[Column]) -> Assig
         return _names_inconsistent(displacements, tensions, ahead)
     if not consistent:
         return _motion_inconsistent(displacements, tensions, ahead)
-    assigned: dict[str, Column] = {}
+    assigned: dict[str, FileColumn] = {}
     undecided = {}
     for name in (*_X, *_F):
         found = {id(one[name]): one[name] for one in consistent}
@@ -68,15 +68,15 @@ def assign(displacements: Sequence[Column], tensions: Sequence[Column]) -> Assig
     return Assignment(assigned, undecided, reason, ahead)
 
 
-def _with_end(columns: Sequence[Column]) -> list[Column]:
+def _with_end(columns: Sequence[FileColumn]) -> list[FileColumn]:
     """Return the columns whose names state an end; all if none does."""
     return [c for c in columns if c.end is not None] or list(columns)
 
 
 def _names_inconsistent(
-    displacements: Sequence[Column],
-    tensions: Sequence[Column],
-    ahead: tuple[tuple[Column, Column], ...],
+    displacements: Sequence[FileColumn],
+    tensions: Sequence[FileColumn],
+    ahead: tuple[tuple[FileColumn, FileColumn], ...],
 ) -> Assignment:
     """Return the assignment if no candidate fits the names; one kind may still be well named."""
     reason = "the names do not assign one column to each end"
@@ -89,9 +89,9 @@ def _names_inconsistent(
 
 
 def _motion_inconsistent(
-    displacements: Sequence[Column],
-    tensions: Sequence[Column],
-    ahead: tuple[tuple[Column, Column], ...],
+    displacements: Sequence[FileColumn],
+    tensions: Sequence[FileColumn],
+    ahead: tuple[tuple[FileColumn, FileColumn], ...],
 ) -> Assignment:
     """Return the assignment if names and motion disagree.
 
@@ -108,8 +108,8 @@ def _motion_inconsistent(
 
 
 def _every(
-    displacements: Sequence[Column], tensions: Sequence[Column]
-) -> dict[str, tuple[Column, ...]]:
+    displacements: Sequence[FileColumn], tensions: Sequence[FileColumn]
+) -> dict[str, tuple[FileColumn, ...]]:
     channels = dict.fromkeys(_X, tuple(displacements)) | dict.fromkeys(_F, tuple(tensions))
     return {name: columns for name, columns in channels.items() if columns}
 
@@ -120,23 +120,25 @@ class _Motion:
     def __init__(self) -> None:
         self._found: dict[tuple[int, int], int] = {}
 
-    def __call__(self, a: Column, b: Column) -> int:
+    def __call__(self, a: FileColumn, b: FileColumn) -> int:
         if (id(a), id(b)) not in self._found:
             order = leads(a.values, b.values)
             self._found |= {(id(a), id(b)): order, (id(b), id(a)): -order}
         return self._found[id(a), id(b)]
 
-    def pairs(self, columns: Sequence[Column]) -> tuple[tuple[Column, Column], ...]:
+    def pairs(self, columns: Sequence[FileColumn]) -> tuple[tuple[FileColumn, FileColumn], ...]:
         return tuple((a, b) for a, b in permutations(columns, 2) if self(a, b) == 1)
 
 
-def _candidates(displacements: Sequence[Column], tensions: Sequence[Column]) -> Iterator[Candidate]:
+def _candidates(
+    displacements: Sequence[FileColumn], tensions: Sequence[FileColumn]
+) -> Iterator[_Candidate]:
     for x_in, x_out in _pairs(displacements):
         for f_in, f_out in _pairs(tensions):
             yield dict(zip((*_X, *_F), (x_in, x_out, f_in, f_out), strict=True))
 
 
-def _pairs(columns: Sequence[Column]) -> list[tuple[Column | None, Column | None]]:
+def _pairs(columns: Sequence[FileColumn]) -> list[tuple[FileColumn | None, FileColumn | None]]:
     """Return every assignment of columns to two ends; a single column may be at either."""
     if not columns:
         return [(None, None)]
@@ -145,7 +147,7 @@ def _pairs(columns: Sequence[Column]) -> list[tuple[Column | None, Column | None
     return list(permutations(columns, 2))
 
 
-def _fits_names(candidate: Candidate, columns: Sequence[Column]) -> bool:
+def _fits_names(candidate: _Candidate, columns: Sequence[FileColumn]) -> bool:
     """Return whether each column is at the end in its name, and at no end of another's name."""
     for name, column in candidate.items():
         end = "in" if name.endswith(("in_mm", "in_N")) else "out"
@@ -160,7 +162,7 @@ def _fits_names(candidate: Candidate, columns: Sequence[Column]) -> bool:
     return True
 
 
-def _fits_motion(candidate: Candidate, motion: _Motion) -> bool:
+def _fits_motion(candidate: _Candidate, motion: _Motion) -> bool:
     """Return whether no channel moves before one that is nearer to the drive."""
 
     def order(near: str, far: str) -> int:

@@ -3,16 +3,16 @@
 import re
 from typing import Literal
 
-from tsas_cli.recordings.guess.words import Quantity, words_of
+from tsas_cli.recordings.guess.words import NamedQuantity, words_of
 from tsas_cli.recordings.units import conversion, is_label, is_unit
 from tsas_cli.support.errors import InputError
 
-Kind = Literal[
+UnitKind = Literal[
     "time", "length", "force", "angle", "torque", "rotation", "temperature", "label", "other"
 ]
 
 # Kind, canonical unit, and the radius that converts an angle or a torque to it.
-_TARGETS: tuple[tuple[Kind, str, float | None], ...] = (
+_TARGETS: tuple[tuple[UnitKind, str, float | None], ...] = (
     ("time", "s", None),
     ("length", "mm", None),
     ("force", "N", None),
@@ -21,7 +21,7 @@ _TARGETS: tuple[tuple[Kind, str, float | None], ...] = (
     ("rotation", "rpm", None),
     ("temperature", "°C", None),
 )
-QUANTITY_OF: dict[Kind, Quantity] = {
+QUANTITY_OF: dict[UnitKind, NamedQuantity] = {
     "time": "time",
     "length": "displacement",
     "force": "force",
@@ -31,7 +31,7 @@ QUANTITY_OF: dict[Kind, Quantity] = {
     "temperature": "temperature",
     "other": "other",
 }
-_FITTING: dict[Quantity, tuple[Kind, ...]] = {
+_FITTING: dict[NamedQuantity, tuple[UnitKind, ...]] = {
     "time": ("time",),
     "counter": ("label",),
     "displacement": ("length", "angle", "label"),
@@ -51,7 +51,7 @@ _SUFFIXES = (
 _SUFFIX = re.compile(r"^(.+?)[_\s.,/-]+([A-Za-zµ°]+)$")
 
 
-def kind_of(unit: str) -> Kind | None:
+def kind_of(unit: str) -> UnitKind | None:
     """Return the kind of a unit; "other" for one of no channel, None for text that is no unit."""
     if is_label(unit):
         return "label"
@@ -64,7 +64,7 @@ def kind_of(unit: str) -> Kind | None:
     return "other" if is_unit(unit) else None
 
 
-def fits(quantity: Quantity, kind: Kind) -> bool:
+def fits(quantity: NamedQuantity, kind: UnitKind) -> bool:
     """Return whether a quantity can have a unit of this kind."""
     return kind in _FITTING[quantity]
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from tsas_cli.recordings.readers import names, read, tables
 from tsas_cli.recordings.readers.options import ReadOptions
-from tsas_cli.recordings.readers.table import Source, Table
+from tsas_cli.recordings.readers.table import ColumnSource, Table
 from tsas_cli.support.errors import InputError
 
 _TEXT = (".csv", ".tsv", ".txt", ".dat", ".asc")
@@ -33,7 +33,7 @@ class Opened:
     path: Path
     read: dict[str, tuple[Any, str]]
     table: Table
-    names: dict[Source, str]
+    names: dict[ColumnSource, str]
     left_out: dict[str, str] = field(default_factory=dict)
 
 
@@ -69,7 +69,7 @@ def _options(required: dict[str, tuple[Any, str]]) -> ReadOptions:
     return ReadOptions.model_validate({key: value for key, (value, _) in required.items()})
 
 
-def _source(listed: tuple[str, ...], i: int) -> Source:
+def _source(listed: tuple[str, ...], i: int) -> ColumnSource:
     """Return the name of a column, or its number if the name is empty or not unique."""
     name = listed[i]
     return name if name.strip("? ") and listed.count(name) == 1 else i + 1
@@ -127,7 +127,7 @@ def _columns_in(path: Path, required: dict[str, tuple[Any, str]]) -> int:
 
 
 def _all_or_each(
-    path: Path, options: ReadOptions, sources: list[Source], *, each: bool = False
+    path: Path, options: ReadOptions, sources: list[ColumnSource], *, each: bool = False
 ) -> tuple[Table | None, dict[str, str]]:
     """Return all columns; or the readable ones, and the reason for each of the others.
 
@@ -136,7 +136,7 @@ def _all_or_each(
     try:
         return read(path, options, sources), {}
     except InputError:
-        tables: dict[Source, Table] = {}
+        tables: dict[ColumnSource, Table] = {}
         left_out: dict[str, str] = {}
         for source in sources:
             try:
@@ -153,7 +153,7 @@ def _all_or_each(
         return None, {}
 
 
-def _longest(table: Table) -> tuple[dict[Source, Any], dict[str, str]]:
+def _longest(table: Table) -> tuple[dict[ColumnSource, Any], dict[str, str]]:
     """Return the columns as long as the longest one, and the reason for each of the others."""
     rows = max(values.size for values in table.columns.values())
     short = {

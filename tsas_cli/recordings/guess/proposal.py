@@ -10,14 +10,14 @@ from typing import Any
 from tsas_cli.recordings.columns import has_input_and_output
 from tsas_cli.recordings.guess.channels import channels
 from tsas_cli.recordings.guess.clock import clock, like_a_clock
-from tsas_cli.recordings.guess.columns import Column, columns_of, with_trusted_names
+from tsas_cli.recordings.guess.columns import FileColumn, columns_of, with_trusted_names
 from tsas_cli.recordings.guess.looks import correlation
 from tsas_cli.recordings.guess.opening import Opened, open_file
 from tsas_cli.recordings.guess.proposed import Proposed
 from tsas_cli.recordings.ingest_map import QUESTION
 from tsas_cli.recordings.readers import names
 from tsas_cli.recordings.readers.options import ReadOptions
-from tsas_cli.recordings.readers.table import Source
+from tsas_cli.recordings.readers.table import ColumnSource
 from tsas_cli.support.errors import InputError
 
 _SPRING = 0.95  # least correlation of tension and displacement at the load of a spring
@@ -51,7 +51,7 @@ class Proposal:
     different: dict[Path, str]
     read: dict[str, tuple[Any, str]]
     channels: tuple[Proposed, ...]
-    not_taken: dict[Source, str]
+    not_taken: dict[ColumnSource, str]
     run: dict[str, tuple[Any, str]]
     doubt: str
 
@@ -149,7 +149,7 @@ def _id(paths: Sequence[Path]) -> dict[str, tuple[Any, str]]:
     return {"id": ("{folder}_{stem}", why)} if duplicates else {}
 
 
-def _load(columns: Sequence[Column], found: Sequence[Proposed]) -> dict[str, tuple[Any, str]]:
+def _load(columns: Sequence[FileColumn], found: Sequence[Proposed]) -> dict[str, tuple[Any, str]]:
     """Return the question for the load, if its tension and displacement are not correlated."""
     by_source = {column.source: column for column in columns}
     at = {p.name: by_source.get(p.entry.get("source", "")) for p in found}
@@ -167,13 +167,13 @@ def _load(columns: Sequence[Column], found: Sequence[Proposed]) -> dict[str, tup
     return {"load": (QUESTION, why)}
 
 
-def _not_taken(columns: Sequence[Column], found: Sequence[Proposed]) -> dict[Source, str]:
+def _not_taken(columns: Sequence[FileColumn], found: Sequence[Proposed]) -> dict[ColumnSource, str]:
     used = {channel.entry.get("source") for channel in found}
     used |= {source for channel in found for source in channel.candidates}
     return {c.source: _why_not(c) for c in columns if c.source not in used}
 
 
-def _why_not(column: Column) -> str:
+def _why_not(column: FileColumn) -> str:
     if not column.moves:
         return "it does not change"
     if column.words.is_reference:

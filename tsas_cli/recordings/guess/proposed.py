@@ -4,9 +4,9 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from tsas_cli.recordings.columns import BY_NAME
-from tsas_cli.recordings.guess.columns import Column
+from tsas_cli.recordings.guess.columns import FileColumn
 from tsas_cli.recordings.ingest_map import QUESTION
-from tsas_cli.recordings.readers.table import Source
+from tsas_cli.recordings.readers.table import ColumnSource
 
 Certainty = Literal["sure", "likely", "open"]
 
@@ -40,10 +40,10 @@ class Proposed:
     why: tuple[str, ...] = ()
     questions: dict[str, str] = field(default_factory=dict)
     alternatives: tuple[str, ...] = ()
-    candidates: tuple[Source, ...] = ()
+    candidates: tuple[ColumnSource, ...] = ()
 
 
-def with_unit(column: Column, name: str) -> tuple[dict[str, Any], dict[str, str]]:
+def with_unit(column: FileColumn, name: str) -> tuple[dict[str, Any], dict[str, str]]:
     """Return the keys that convert a column to a channel's unit, and the questions among them."""
     to = BY_NAME[name].unit
     entry: dict[str, Any] = {"source": column.source}

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from tsas_cli.recordings.guess.columns import Column
+from tsas_cli.recordings.guess.columns import FileColumn
 from tsas_cli.recordings.guess.looks import correlation, sign_of
 from tsas_cli.recordings.ingest_map import QUESTION
 
@@ -10,7 +10,7 @@ _CLEAR = 0.75  # least magnitude of the correlation of two channels
 Sign = tuple[int | str, str]  # 1, −1 or a question, and why
 
 
-def signs(assigned: Mapping[str, Column]) -> dict[str, Sign]:
+def signs(assigned: Mapping[str, FileColumn]) -> dict[str, Sign]:
     """Return the sign of each assigned displacement and tension, with the reason.
 
     Tensions are positive; the proximal displacement rises with a tension of known sign; the distal
@@ -27,14 +27,14 @@ def signs(assigned: Mapping[str, Column]) -> dict[str, Sign]:
     return found
 
 
-def _tension(column: Column) -> Sign:
+def _tension(column: FileColumn) -> Sign:
     side = sign_of(column.values)
     if side < 0:
         return -1, "its values are negative, and a tendon cannot push"
     return 1, "" if side else "its values are on both sides of zero: its sign is unknown"
 
 
-def _drive(assigned: Mapping[str, Column], found: Mapping[str, Sign]) -> Sign:
+def _drive(assigned: Mapping[str, FileColumn], found: Mapping[str, Sign]) -> Sign:
     x = assigned["x_in_mm"].values
     for name in ("f_out_N", "f_in_N"):
         if name not in assigned:
@@ -57,7 +57,7 @@ def _drive(assigned: Mapping[str, Column], found: Mapping[str, Sign]) -> Sign:
     return 1, "no tension shows its sign; it has to rise when the drive pulls"
 
 
-def _load(assigned: Mapping[str, Column], found: Mapping[str, Sign]) -> Sign:
+def _load(assigned: Mapping[str, FileColumn], found: Mapping[str, Sign]) -> Sign:
     if "x_in_mm" not in assigned:
         return 1, "no proximal displacement shows its sign; it has to rise when the drive pulls"
     drive = assigned["x_in_mm"]

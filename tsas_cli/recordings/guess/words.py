@@ -6,15 +6,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal, TypeVar
 
-Quantity = Literal[
+NamedQuantity = Literal[
     "time", "counter", "displacement", "angle", "force", "torque", "speed", "temperature", "other"
 ]
 End = Literal["in", "out", "motor"]
-Meaning = TypeVar("Meaning", Quantity, End)
+Meaning = TypeVar("Meaning", NamedQuantity, End)
 
 # Whole words. Words of five letters and more also count as the beginning or the end of a longer
 # one (Eingangskraft, displacement1).
-_QUANTITIES: dict[Quantity, str] = {
+_QUANTITIES: dict[NamedQuantity, str] = {
     "time": "time t zeit temps timestamp tijd tiempo elapsed clock sec seconds sekunden "
     "secondes 时间",
     "counter": "sample samples index idx count row nr no messpunkt 序号",
@@ -53,7 +53,7 @@ _LONG = 5
 class Words:
     """The meaning of a name; `matched` holds the word behind each part of it."""
 
-    quantity: Quantity | None
+    quantity: NamedQuantity | None
     end: End | None
     is_reference: bool
     matched: dict[str, str] = field(default_factory=dict)
@@ -82,7 +82,7 @@ def words_of(name: str) -> Words:
 
 
 # "motor current", "force error": the specific before the general.
-_PRIORITY: tuple[Quantity, ...] = (
+_PRIORITY: tuple[NamedQuantity, ...] = (
     "other", "temperature", "speed", "torque", "force", "angle", "displacement", "counter", "time",
 )  # fmt: skip
 

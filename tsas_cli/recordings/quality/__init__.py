@@ -28,9 +28,9 @@ from tsas_cli.recordings.quality.checks import (
 )
 from tsas_cli.recordings.quality.finding import (
     CannotTell,
-    Check,
     Finding,
     NotChecked,
+    QualityCheck,
     Remark,
 )
 from tsas_cli.recordings.quality.stretches import look, look_by_stretches
@@ -39,8 +39,8 @@ from tsas_cli.recordings.run_files import read_recording
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.steps import SILENT, Steps
 
-MANIFEST_CHECKS: tuple[Check[Manifest], ...] = (unknown_key.CHECK, manifest_unit.CHECK)
-RUN_CHECKS: tuple[Check[Trial], ...] = (
+MANIFEST_CHECKS: tuple[QualityCheck[Manifest], ...] = (unknown_key.CHECK, manifest_unit.CHECK)
+RUN_CHECKS: tuple[QualityCheck[Trial], ...] = (
     time_order.CHECK,
     time_jitter.CHECK,
     gap.CHECK,
@@ -58,7 +58,7 @@ RUN_CHECKS: tuple[Check[Trial], ...] = (
     few_reversals.CHECK,
     no_steady_motion.CHECK,
 )
-DATASET_CHECKS: tuple[Check[Dataset], ...] = (copies.CHECK,)
+DATASET_CHECKS: tuple[QualityCheck[Dataset], ...] = (copies.CHECK,)
 CHECKS = (*MANIFEST_CHECKS, *RUN_CHECKS, *DATASET_CHECKS)
 
 

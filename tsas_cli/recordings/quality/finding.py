@@ -34,7 +34,7 @@ class CannotTell:
 
 
 @dataclass(frozen=True)
-class Check(Generic[Subject]):
+class QualityCheck(Generic[Subject]):
     """One check: its code, its function and the columns it needs.
 
     Parameters

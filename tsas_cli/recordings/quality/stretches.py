@@ -27,7 +27,7 @@ from tsas_cli.recordings.quality.checks import (
     sign,
     unit,
 )
-from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
+from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
 from tsas_cli.recordings.quality.samples import span_of, step_of
 from tsas_cli.recordings.quality.trial import Overall, Trial
 from tsas_cli.recordings.recording import Floats, Recording
@@ -47,7 +47,7 @@ _MOTION = (
 )
 
 
-def look(check: Check[Trial], trial: Trial) -> Results:
+def look(check: QualityCheck[Trial], trial: Trial) -> Results:
     """Return the results of a check on a trial; a missing column is a reason not to apply."""
     missing = [name for name in check.needs if name not in trial.channels]
     if missing:
@@ -57,7 +57,7 @@ def look(check: Check[Trial], trial: Trial) -> Results:
 
 
 def look_by_stretches(
-    checks: Sequence[Check[Trial]], run: RunColumns, rig: Rig
+    checks: Sequence[QualityCheck[Trial]], run: RunColumns, rig: Rig
 ) -> dict[str, Results]:
     """Return the results of the checks on a long run, by code.
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from tsas_cli.recordings.readers.options import ReadOptions
-from tsas_cli.recordings.readers.table import Floats, Source, Table, floats, resolve
+from tsas_cli.recordings.readers.table import ColumnSource, Floats, Table, floats, resolve
 from tsas_cli.recordings.readers.timebase import TIME, on_one_clock
 from tsas_cli.support.errors import InputError
 
@@ -44,7 +44,7 @@ def channel_names(capture: Mapping[str, Any]) -> list[str]:
 
 
 def read_capture(
-    capture: Mapping[str, Any], options: ReadOptions, wanted: Sequence[Source], path: Path
+    capture: Mapping[str, Any], options: ReadOptions, wanted: Sequence[ColumnSource], path: Path
 ) -> Table:
     """Return the requested channels of a capture; its clock is `time`, in s.
 
@@ -87,7 +87,7 @@ def _records(value: Any) -> list[Any]:
 
 
 def _series(
-    channel: Mapping[str, Any], clocks: list[Floats], source: Source, path: Path
+    channel: Mapping[str, Any], clocks: list[Floats], source: ColumnSource, path: Path
 ) -> tuple[Floats, Floats]:
     values = floats(np.ravel(channel["Data"]), source, path)
     number = channel.get("XIndex", 1)  # number of the clock, from 1

@@ -13,7 +13,7 @@ from tsas_cli.recordings.readers.layout import Layout, comment_text, detect, fie
 from tsas_cli.recordings.readers.options import ReadOptions
 from tsas_cli.recordings.readers.table import (
     BATCH_ROWS,
-    Source,
+    ColumnSource,
     Table,
     in_batches,
     not_a_number,
@@ -25,7 +25,7 @@ from tsas_cli.support.errors import InputError
 _NULLS = frozenset(csv.ConvertOptions().null_values)
 
 
-def batches(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Iterator[Table]:
+def batches(path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]) -> Iterator[Table]:
     """Yield the requested columns of a text table in parts.
 
     From a row that pyarrow refuses, or with a delimiter outside ASCII, it is read line by line.
@@ -58,7 +58,7 @@ def names(path: Path, options: ReadOptions) -> Sequence[str]:
 
 
 def _fast(
-    path: Path, options: ReadOptions, layout: Layout, at: Mapping[Source, int]
+    path: Path, options: ReadOptions, layout: Layout, at: Mapping[ColumnSource, int]
 ) -> csv.CSVStreamingReader:
     if not layout.delimiter.isascii():
         raise pa.ArrowInvalid(layout.delimiter)  # pyarrow would raise a bare ValueError
@@ -81,7 +81,7 @@ def _fast(
 
 
 def _line_by_line(
-    path: Path, options: ReadOptions, layout: Layout, at: Mapping[Source, int]
+    path: Path, options: ReadOptions, layout: Layout, at: Mapping[ColumnSource, int]
 ) -> Iterator[list[float]]:
     """Yield the rows that pyarrow refuses (aligned columns, comments), or raise `InputError`."""
     with path.open(encoding=options.encoding) as stream:
@@ -107,7 +107,7 @@ def _is_blank(line: str, layout: Layout) -> bool:
     return spaces or not line.strip("\r\n")
 
 
-def _cell(text: str, decimal: str, source: Source, path: Path, row: int) -> float:
+def _cell(text: str, decimal: str, source: ColumnSource, path: Path, row: int) -> float:
     if text in _NULLS:
         return float("nan")
     try:

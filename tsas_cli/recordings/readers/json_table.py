@@ -5,12 +5,12 @@ from pathlib import Path
 from typing import Any
 
 from tsas_cli.recordings.readers.options import ReadOptions
-from tsas_cli.recordings.readers.table import Source, Table, floats, resolve
+from tsas_cli.recordings.readers.table import ColumnSource, Table, floats, resolve
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import read_json
 
 
-def read(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Table:
+def read(path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]) -> Table:
     """Return the requested columns of a JSON table.
 
     It is a list of rows, a list of records, or an object of columns, under the key `table` of the

@@ -18,14 +18,14 @@ from tsas_cli.recordings.readers.controldesk import (
     read_capture,
 )
 from tsas_cli.recordings.readers.options import ReadOptions
-from tsas_cli.recordings.readers.table import Floats, Source, Table, floats, resolve
+from tsas_cli.recordings.readers.table import ColumnSource, Floats, Table, floats, resolve
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.memory import out_of_memory
 
 _HDF5 = b"\x89HDF\r\n\x1a\n"
 
 
-def read(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Table:
+def read(path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]) -> Table:
     """Return the requested columns of a MATLAB file.
 
     A vector is a column with its name, column j of a matrix is `name(:,j)`, and a member of a

@@ -15,7 +15,7 @@ from tsas_cli.recordings.guards.damaged import damaged
 from tsas_cli.recordings.guards.mdf_blocks import check_blocks, check_claims
 from tsas_cli.recordings.readers.optional import optional
 from tsas_cli.recordings.readers.options import ReadOptions
-from tsas_cli.recordings.readers.table import Floats, Source, Table, floats, resolve
+from tsas_cli.recordings.readers.table import ColumnSource, Floats, Table, floats, resolve
 from tsas_cli.recordings.readers.timebase import TIME, on_one_clock
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.memory import out_of_memory
@@ -24,7 +24,7 @@ _KINDS = {1: "a time", 2: "an angle", 3: "a distance", 4: "a count"}  # a master
 _MASTER_ELSEWHERE = 8  # of `cg_flags`: the master is that of another group
 
 
-def read(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Table:
+def read(path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]) -> Table:
     """Return the requested channels of an MDF file; its master channel is `time`.
 
     Raises
@@ -70,7 +70,7 @@ def _discard_half_made(error: Exception) -> None:
     sys.unraisablehook = hook
 
 
-def _table(file: Any, options: ReadOptions, wanted: Sequence[Source], path: Path) -> Table:
+def _table(file: Any, options: ReadOptions, wanted: Sequence[ColumnSource], path: Path) -> Table:
     channels = _channels(file)
     at = resolve(wanted, [*(name for name, _, _ in channels), TIME], path)
     groups = [channels[i][1] for i in at.values() if i < len(channels)]
@@ -127,7 +127,7 @@ def _clock(file: Any, group: int) -> tuple[str, str]:
     return kind, str(file.get_channel_unit(group=group, index=index)).strip() or "s"
 
 
-def _values(signal: Any, source: Source, path: Path) -> Floats:
+def _values(signal: Any, source: ColumnSource, path: Path) -> Floats:
     """Return a channel's samples; those marked as invalid are NaN."""
     values = floats(signal.samples, source, path).copy()
     if signal.invalidation_bits is not None:

@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 
-from tsas_cli.recordings.readers.table import Source
+from tsas_cli.recordings.readers.table import ColumnSource
 
 
 def _as_list(value: object) -> object:
@@ -17,7 +17,7 @@ class ReadOptions(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     files: str = "*"  # of a folder, the files whose names match
-    extra: tuple[Source, ...] = ()  # source columns that are kept unchanged
+    extra: tuple[ColumnSource, ...] = ()  # source columns that are kept unchanged
     drop_repeated_rows: bool = False
     resample: bool = False  # interpolate channels with different times onto the fastest
     table: str | None = None  # the JSON key or the MATLAB variable that holds the table

@@ -13,8 +13,8 @@ from tsas_cli.recordings.parquet_files import check_size, open_parquet
 from tsas_cli.recordings.readers.options import ReadOptions
 from tsas_cli.recordings.readers.table import (
     BATCH_ROWS,
+    ColumnSource,
     Floats,
-    Source,
     Table,
     floats,
     in_batches,
@@ -23,7 +23,7 @@ from tsas_cli.recordings.readers.table import (
 from tsas_cli.support.memory import out_of_memory
 
 
-def batches(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Iterator[Table]:
+def batches(path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]) -> Iterator[Table]:
     """Yield the requested columns of a Parquet file in parts; units from field metadata `unit`.
 
     Dates become seconds since the first one in their column, durations become seconds.
@@ -50,7 +50,7 @@ def batches(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Itera
             order = {
                 s: schema.get_all_field_indices(schema.names[i]).index(i) for s, i in at.items()
             }
-            zeros: dict[Source, Any] = {}
+            zeros: dict[ColumnSource, Any] = {}
             first = 1
             for table in in_batches(file.iter_batches(BATCH_ROWS, columns=names)):
                 values = {
@@ -89,7 +89,9 @@ def _values(table: pa.Table, name: str, order: int) -> npt.NDArray[Any]:
     return values
 
 
-def _seconds(values: npt.NDArray[Any], zeros: dict[Source, Any], source: Source) -> Floats:
+def _seconds(
+    values: npt.NDArray[Any], zeros: dict[ColumnSource, Any], source: ColumnSource
+) -> Floats:
     """Return durations, or dates since the first one of the file, in seconds; null is NaN.
 
     `zeros` holds the first date of each source, for all parts of a file. Seconds since 1970 would

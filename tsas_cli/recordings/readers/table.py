@@ -13,7 +13,7 @@ from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError, nearest
 
 Floats = npt.NDArray[np.float64]
-Source = str | int  # a column's name, or its number counted from 1
+ColumnSource = str | int  # a column's name, or its number counted from 1
 
 BATCH_ROWS = 1 << 20  # of a file that is read in parts, and of a row group of its run
 
@@ -36,14 +36,16 @@ class Table:
         The columns whose unit follows from their data type, so that a map cannot set another.
     """
 
-    columns: Mapping[Source, Floats]
-    units: Mapping[Source, str] = field(default_factory=dict)
+    columns: Mapping[ColumnSource, Floats]
+    units: Mapping[ColumnSource, str] = field(default_factory=dict)
     header: tuple[str, ...] = ()
     first_row: int = 1
-    typed: frozenset[Source] = frozenset()
+    typed: frozenset[ColumnSource] = frozenset()
 
 
-def resolve(wanted: Sequence[Source], names: Sequence[str], path: Path) -> dict[Source, int]:
+def resolve(
+    wanted: Sequence[ColumnSource], names: Sequence[str], path: Path
+) -> dict[ColumnSource, int]:
     """Return the index of each requested column among a file's columns.
 
     Parameters
@@ -87,7 +89,7 @@ def in_batches(batches: Iterable[pa.RecordBatch]) -> Iterator[pa.Table]:
         yield pa.Table.from_batches(waiting)
 
 
-def floats(values: Any, source: Source, path: Path, *, first: int = 1) -> Floats:
+def floats(values: Any, source: ColumnSource, path: Path, *, first: int = 1) -> Floats:
     """Return values as float64; null becomes NaN. `first` is the number of the first row.
 
     Raises
@@ -112,7 +114,7 @@ def floats(values: Any, source: Source, path: Path, *, first: int = 1) -> Floats
     return numbers
 
 
-def not_a_number(found: object, source: Source, path: Path, row: int) -> InputError:
+def not_a_number(found: object, source: ColumnSource, path: Path, row: int) -> InputError:
     """Return the error for a cell that is no number."""
     return InputError(
         f"column {source} holds {str(found)[:40]!r}",
@@ -127,7 +129,7 @@ def _has_text(values: Any) -> bool:
     return any(isinstance(value, str | bytes) for value in values)
 
 
-def _number(value: Any, source: Source, path: Path, row: int) -> float:
+def _number(value: Any, source: ColumnSource, path: Path, row: int) -> float:
     if isinstance(value, str | bytes) and "_" in str(value):  # Python reads 1_2 as 12
         raise not_a_number(value, source, path, row)
     try:
@@ -136,7 +138,7 @@ def _number(value: Any, source: Source, path: Path, row: int) -> float:
         raise not_a_number(value, source, path, row) from None
 
 
-def _index(source: Source, names: Sequence[str], path: Path) -> int:
+def _index(source: ColumnSource, names: Sequence[str], path: Path) -> int:
     if isinstance(source, int):
         if 1 <= source <= len(names):
             return source - 1

@@ -5,19 +5,19 @@ from pathlib import Path
 
 import numpy as np
 
-from tsas_cli.recordings.readers.table import Floats, Source
+from tsas_cli.recordings.readers.table import ColumnSource, Floats
 from tsas_cli.support.errors import InputError
 
 TIME = "time"  # source of the common clock of a file's channels in a map
 
 
 def on_one_clock(
-    series: Mapping[Source, tuple[Floats, Floats]],
+    series: Mapping[ColumnSource, tuple[Floats, Floats]],
     path: Path,
     *,
-    clock_sources: Collection[Source],
+    clock_sources: Collection[ColumnSource],
     resample: bool,
-) -> dict[Source, Floats]:
+) -> dict[ColumnSource, Floats]:
     """Return the channels' values on a common clock, and that clock.
 
     Parameters
@@ -64,7 +64,7 @@ def on_one_clock(
     return dict.fromkeys(clock_sources, clock) | resampled
 
 
-def _check_increases(times: Floats, source: Source, path: Path) -> None:
+def _check_increases(times: Floats, source: ColumnSource, path: Path) -> None:
     """Refuse times that do not increase: NumPy would interpolate between them without an error."""
     steps = np.diff(times)
     invalid = ~((steps > 0) & np.isfinite(steps))

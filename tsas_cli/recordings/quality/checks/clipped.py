@@ -10,7 +10,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
+from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
 from tsas_cli.recordings.quality.samples import plateaus
 from tsas_cli.recordings.quality.trial import Trial
 from tsas_cli.support.wording import count_of
@@ -66,4 +66,4 @@ def _motion_continues(trial: Trial, name: str, rows: slice, sign: int) -> bool:
     return False
 
 
-CHECK = Check("clipped", find)
+CHECK = QualityCheck("clipped", find)

@@ -13,7 +13,7 @@ from collections.abc import Iterator
 
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.quality.copies.search import find_copies
-from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
+from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
 
 
 def find(dataset: Dataset) -> Iterator[Remark | CannotTell]:
@@ -35,4 +35,4 @@ def find(dataset: Dataset) -> Iterator[Remark | CannotTell]:
         yield CannotTell("too few rows change", run)
 
 
-CHECK = Check("copies", find)
+CHECK = QualityCheck("copies", find)

@@ -13,7 +13,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
+from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
 from tsas_cli.recordings.quality.trial import Trial
 from tsas_cli.recordings.recording import Floats
 
@@ -122,4 +122,4 @@ def _half_interval(delays: Floats) -> float:
     return quantile * float(delays.std(ddof=1)) / math.sqrt(delays.size)
 
 
-CHECK = Check("delay", find, needs=("x_out_mm", "f_out_N"))
+CHECK = QualityCheck("delay", find, needs=("x_out_mm", "f_out_N"))

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
+from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
 from tsas_cli.recordings.quality.trial import Trial
 
 _CLEAR = 0.03
@@ -52,4 +52,4 @@ def _excess_while_pulling(trial: Trial) -> float:
     return float(fit[0])
 
 
-CHECK = Check("exchanged", find, needs=("x_in_mm", "f_in_N", "f_out_N"))
+CHECK = QualityCheck("exchanged", find, needs=("x_in_mm", "f_in_N", "f_out_N"))

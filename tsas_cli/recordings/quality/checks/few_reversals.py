@@ -6,7 +6,7 @@ repeatability is unknown.
 
 from collections.abc import Iterator
 
-from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
+from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
 from tsas_cli.recordings.quality.trial import Trial
 from tsas_cli.support.wording import count_of
 
@@ -28,4 +28,4 @@ def find(trial: Trial) -> Iterator[Remark | CannotTell]:
     )
 
 
-CHECK = Check("few-reversals", find, needs=("x_in_mm",))
+CHECK = QualityCheck("few-reversals", find, needs=("x_in_mm",))

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from tsas_cli.recordings.columns import TIME
-from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
+from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
 from tsas_cli.recordings.quality.samples import Booleans
 from tsas_cli.recordings.quality.trial import Trial
 from tsas_cli.support.wording import count_of
@@ -65,4 +65,4 @@ def _empty_cells(trial: Trial, name: str, empty: Booleans) -> Remark:
     )
 
 
-CHECK = Check("gap", find)
+CHECK = QualityCheck("gap", find)

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 from tsas_cli.recordings.manifest import Manifest
-from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
+from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
 
 
 class _Suspicion(NamedTuple):
@@ -49,4 +49,4 @@ def find(manifest: Manifest) -> Iterator[Remark | CannotTell]:
                 )
 
 
-CHECK = Check("manifest-unit", find)
+CHECK = QualityCheck("manifest-unit", find)

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
+from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
 from tsas_cli.recordings.quality.trial import Trial
 
 _SPAN = 0.02  # of the range, below zero: a slack tendon on a sensor with a small offset
@@ -34,4 +34,4 @@ def find(trial: Trial) -> Iterator[Remark | CannotTell]:
             )
 
 
-CHECK = Check("negative-tension", find)
+CHECK = QualityCheck("negative-tension", find)

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
+from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
 from tsas_cli.recordings.quality.trial import Stroke, Trial
 
 _ENOUGH = 0.2
@@ -61,4 +61,4 @@ def _moving(trial: Trial, name: str, stroke: Stroke) -> float:
     return float(abs((x[-1] - x[begin]) / (x[-1] - x[0])))
 
 
-CHECK = Check("no-steady-motion", find, needs=("x_in_mm",))
+CHECK = QualityCheck("no-steady-motion", find, needs=("x_in_mm",))

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from tsas_cli.recordings.columns import largest
-from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
+from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
 from tsas_cli.recordings.quality.trial import Trial
 from tsas_cli.support.wording import count_of
 
@@ -39,4 +39,4 @@ def find(trial: Trial) -> Iterator[Remark | CannotTell]:
         )
 
 
-CHECK = Check("outlier", find)
+CHECK = QualityCheck("outlier", find)

@@ -6,7 +6,7 @@ than a 500th of the range; a warning from a 50th of the range on.
 
 from collections.abc import Iterator
 
-from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
+from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
 from tsas_cli.recordings.quality.trial import Trial
 
 _NOTE, _WARNING = 1 / 500, 1 / 50
@@ -29,4 +29,4 @@ def find(trial: Trial) -> Iterator[Remark | CannotTell]:
         )
 
 
-CHECK = Check("quantised", find)
+CHECK = QualityCheck("quantised", find)

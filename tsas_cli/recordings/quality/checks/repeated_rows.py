@@ -11,7 +11,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
+from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
 from tsas_cli.recordings.quality.samples import Booleans, smallest_change
 from tsas_cli.recordings.quality.trial import Trial
 from tsas_cli.recordings.recording import Floats
@@ -67,4 +67,4 @@ def _chances_of(values: Floats, blocks: int) -> Floats:
     return np.where(noise > smallest, smallest / (2.0 * math.sqrt(math.pi) * noise + 1e-300), 1.0)
 
 
-CHECK = Check("repeated-rows", find)
+CHECK = QualityCheck("repeated-rows", find)

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
+from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
 from tsas_cli.recordings.quality.trial import Trial
 
 _CLEAR = 0.8
@@ -55,4 +55,4 @@ def _remark(column: str, what: str) -> Remark:
     )
 
 
-CHECK = Check("sign", find, needs=("x_in_mm",))
+CHECK = QualityCheck("sign", find, needs=("x_in_mm",))

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
+from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
 from tsas_cli.recordings.quality.samples import rows_between_changes, smallest_change
 from tsas_cli.recordings.quality.trial import Trial
 from tsas_cli.recordings.recording import Floats
@@ -37,4 +37,4 @@ def _jumps(values: Floats) -> bool:
     return bool(np.nanmedian(change[change > 0.0]) > 1.5 * smallest_change(values))
 
 
-CHECK = Check("slow-channel", find)
+CHECK = QualityCheck("slow-channel", find)

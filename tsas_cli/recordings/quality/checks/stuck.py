@@ -11,7 +11,7 @@ import numpy as np
 
 from tsas_cli.numerics.noise import noise_sd
 from tsas_cli.numerics.turning_points import turning_points
-from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark, Severity
+from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark, Severity
 from tsas_cli.recordings.quality.samples import alternates, plateaus, rows_between_changes
 from tsas_cli.recordings.quality.trial import Trial
 from tsas_cli.recordings.recording import Floats
@@ -79,4 +79,4 @@ def _crosses_and_returns(motion: Floats, span: float) -> bool:
     return bool(np.ptp(motion) > 0.6 * span and strokes.sum() > 1.5 * span)
 
 
-CHECK = Check("stuck", find)
+CHECK = QualityCheck("stuck", find)

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
+from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
 from tsas_cli.recordings.quality.trial import Trial
 
 _TOLERATED = 0.05
@@ -33,4 +33,4 @@ def find(trial: Trial) -> Iterator[Remark | CannotTell]:
         )
 
 
-CHECK = Check("time-jitter", find)
+CHECK = QualityCheck("time-jitter", find)

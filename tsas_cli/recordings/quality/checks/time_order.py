@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
+from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
 from tsas_cli.recordings.quality.samples import Booleans
 from tsas_cli.recordings.quality.trial import Trial
 from tsas_cli.support.limits import LONGEST_STEP_S, SHORTEST_STEP_S
@@ -49,4 +49,4 @@ def _implausible_steps(trial: Trial, implausible: Booleans) -> Iterator[Remark]:
         )
 
 
-CHECK = Check("time-order", find)
+CHECK = QualityCheck("time-order", find)

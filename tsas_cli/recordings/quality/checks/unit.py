@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
+from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
 from tsas_cli.recordings.quality.trial import Trial
 
 # Each ratio, if a channel were in that unit.
@@ -144,4 +144,4 @@ def _time(trial: Trial) -> Iterator[Remark]:
         )
 
 
-CHECK = Check("unit", find)
+CHECK = QualityCheck("unit", find)

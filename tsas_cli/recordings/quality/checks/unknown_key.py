@@ -6,7 +6,7 @@ Such a key is kept but has no effect; a misspelt key loses its value.
 from collections.abc import Iterator
 
 from tsas_cli.recordings.manifest import Manifest
-from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
+from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
 from tsas_cli.support.errors import printable
 
 
@@ -31,4 +31,4 @@ def _listed(places: list[str]) -> str:
     return places[0] + more
 
 
-CHECK = Check("unknown-key", find)
+CHECK = QualityCheck("unknown-key", find)

@@ -16,19 +16,19 @@ ITERATIONS = 8  # of Gauss–Newton, from within a sample interval
 
 
 @dataclass(frozen=True, eq=False)
-class Samples:
+class RunSamples:
     """Times, shape (n,) and strictly increasing, and values of some channels, shape (n, d)."""
 
     time_s: Floats
     values: Floats
 
-    def part(self, rows: slice) -> "Samples":
+    def part(self, rows: slice) -> "RunSamples":
         """Return a part of the rows."""
-        return Samples(self.time_s[rows], self.values[rows])
+        return RunSamples(self.time_s[rows], self.values[rows])
 
-    def moved(self, shift_s: float) -> "Samples":
+    def moved(self, shift_s: float) -> "RunSamples":
         """Return the samples at times later by `shift_s`."""
-        return Samples(self.time_s + shift_s, self.values)
+        return RunSamples(self.time_s + shift_s, self.values)
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +47,7 @@ class Agreement:
 
 
 def agreement(
-    source: Samples, samples: Samples, tolerance: Floats, *, spline: bool = False
+    source: RunSamples, samples: RunSamples, tolerance: Floats, *, spline: bool = False
 ) -> Agreement:
     """Return the agreement of samples with a source on the same clock.
 
@@ -85,7 +85,7 @@ def agreement(
     return Agreement(agrees, differs, compared, row + (which == 1), agrees & (which < 2))
 
 
-def aligned(source: Samples, samples: Samples, tolerance: Floats, *, spline: bool) -> float:
+def aligned(source: RunSamples, samples: RunSamples, tolerance: Floats, *, spline: bool) -> float:
     """Return the time shift of samples that fits a source's interpolation best, from nearby [s].
 
     The interpolation is a cubic spline, or linear.
@@ -104,10 +104,10 @@ def aligned(source: Samples, samples: Samples, tolerance: Floats, *, spline: boo
     return shift_s
 
 
-Curve = Callable[[Floats], tuple[Floats, Floats]]  # values and slopes (m, d) at times (m,)
+_Curve = Callable[[Floats], tuple[Floats, Floats]]  # values and slopes (m, d) at times (m,)
 
 
-def _straight(source: Samples) -> Curve:
+def _straight(source: RunSamples) -> _Curve:
     time_s, values = source.time_s, source.values
 
     def at(moments: Floats) -> tuple[Floats, Floats]:
@@ -118,7 +118,7 @@ def _straight(source: Samples) -> Curve:
     return at
 
 
-def _spline(source: Samples) -> Curve:
+def _spline(source: RunSamples) -> _Curve:
     from scipy.interpolate import CubicSpline
 
     curves = []

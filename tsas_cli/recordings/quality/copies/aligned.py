@@ -7,7 +7,7 @@ import numpy as np
 
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.pieces import Piece
-from tsas_cli.recordings.quality.copies.agreement import MARGIN_ROWS, Samples
+from tsas_cli.recordings.quality.copies.agreement import MARGIN_ROWS, RunSamples
 
 MOST_SAMPLES = 1 << 16  # compared at once
 
@@ -20,8 +20,8 @@ class SideBySide:
     """
 
     row: int
-    samples: Samples
-    source: Samples
+    samples: RunSamples
+    source: RunSamples
 
 
 def side_by_side(
@@ -38,7 +38,7 @@ def side_by_side(
     shift_s
         Shift of the run's times to the source's clock.
     """
-    row, left = 0, Samples(np.empty(0), np.empty((0, len(names))))
+    row, left = 0, RunSamples(np.empty(0), np.empty((0, len(names))))
     around = _samples(next(source), names)
     ahead = next(source, None)
     while True:
@@ -60,12 +60,12 @@ def side_by_side(
         elif ahead is not None:
             overlap = around.part(slice(-2 * MARGIN_ROWS, None))
             more = _samples(ahead, names)
-            around = Samples(
+            around = RunSamples(
                 np.concatenate((overlap.time_s, more.time_s)),
                 np.concatenate((overlap.values, more.values)),
             )
             ahead = next(source, None)
 
 
-def _samples(piece: Piece, names: Sequence[str]) -> Samples:
-    return Samples(piece.columns[TIME], np.column_stack([piece.columns[n] for n in names]))
+def _samples(piece: Piece, names: Sequence[str]) -> RunSamples:
+    return RunSamples(piece.columns[TIME], np.column_stack([piece.columns[n] for n in names]))

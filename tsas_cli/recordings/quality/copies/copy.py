@@ -12,7 +12,7 @@ ORDINALS = {1: "st", 2: "nd", 3: "rd"}
 
 
 @dataclass(frozen=True)
-class Span:
+class RowSpan:
     """Consecutive rows of a run, `end` excluded, and the times of the first and last [s]."""
 
     first: int
@@ -51,9 +51,9 @@ class Copy:
 
     run: Run
     other: Run
-    span: Span
-    all_of_run: Span
-    all_of_other: Span
+    span: RowSpan
+    all_of_run: RowSpan
+    all_of_other: RowSpan
     shift_s: float = 0.0
     every: int = 1
     contradicts: tuple[str, ...] = ()

@@ -11,8 +11,8 @@ from tsas_cli.numerics.noise import noise_sd
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.pieces import Piece
-from tsas_cli.recordings.quality.copies.agreement import Floats, Indices, Mask, Samples
-from tsas_cli.recordings.quality.copies.copy import Span
+from tsas_cli.recordings.quality.copies.agreement import Floats, Indices, Mask, RunSamples
+from tsas_cli.recordings.quality.copies.copy import RowSpan
 from tsas_cli.recordings.quality.samples import alternates, step_of
 from tsas_cli.support import limits
 
@@ -67,7 +67,7 @@ class Fingerprint:
     """
 
     run: Run
-    all: Span
+    all: RowSpan
     channels: dict[str, Fineness]
     dense: tuple[str, ...]
     stretches_s: Floats
@@ -101,7 +101,7 @@ def fingerprint(run: Run, parts: Iterable[Piece]) -> Fingerprint:
     """
     channels: dict[str, _Channel] = {}
     dense: tuple[str, ...] = ()
-    stretches: dict[int, list[Samples]] = {length: [] for length in SHORT}
+    stretches: dict[int, list[RunSamples]] = {length: [] for length in SHORT}
     rows, begin_s, end_s, increases = 0, 0.0, 0.0, True
     for part in parts:
         time_s = part.columns[TIME]
@@ -122,7 +122,7 @@ def fingerprint(run: Run, parts: Iterable[Piece]) -> Fingerprint:
     chosen = stretches[SHORT[0] if any(one.noisy for one in resolution.values()) else SHORT[1]]
     return Fingerprint(
         run,
-        Span(0, rows, begin_s, end_s),
+        RowSpan(0, rows, begin_s, end_s),
         {name: one for name, one in resolution.items() if one.span > 0.0},
         dense,
         np.array([s.time_s for s in chosen]),
@@ -174,7 +174,7 @@ def _is_dense(values: Floats) -> bool:
     return bool(2 * valid.sum() > values.size and np.ptp(values[valid]) > 0.0)
 
 
-def _stretches(part: Piece, names: Sequence[str]) -> Iterator[tuple[int, Samples]]:
+def _stretches(part: Piece, names: Sequence[str]) -> Iterator[tuple[int, RunSamples]]:
     """Yield lengths and stretches of changing rows, spread over a piece."""
     if not names:
         return
@@ -192,7 +192,7 @@ def _stretches(part: Piece, names: Sequence[str]) -> Iterator[tuple[int, Samples
             first = np.searchsorted(rows, [place * part.rows for place in PLACES])
             for start in np.unique(np.minimum([*first, rows.size], rows.size - length)).tolist():
                 chosen = rows[start : start + length]
-                yield length, Samples(part.columns[TIME][chosen], values[chosen])
+                yield length, RunSamples(part.columns[TIME][chosen], values[chosen])
 
 
 def _crowd(values: Floats) -> Indices:

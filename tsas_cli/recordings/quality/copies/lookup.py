@@ -15,7 +15,7 @@ from tsas_cli.recordings.quality.copies.agreement import (
     Floats,
     Indices,
     Mask,
-    Samples,
+    RunSamples,
     agreement,
     aligned,
 )
@@ -46,7 +46,7 @@ class Shift:
 class Lookup:
     """Index of a source's samples, for the search of stretches."""
 
-    def __init__(self, source: Samples, tolerance: Floats, noise: Floats) -> None:
+    def __init__(self, source: RunSamples, tolerance: Floats, noise: Floats) -> None:
         """Index a source of at least two samples, with tolerance and noise of each channel.
 
         The noise is 0 if no channel shows it.
@@ -78,7 +78,7 @@ class Lookup:
         The times of the stretches have the shape (h, k), the values (h, k, d).
         """
         for number, seconds in self._places(time_s, values):
-            shift = self._tight(Samples(time_s[number], values[number]), seconds)
+            shift = self._tight(RunSamples(time_s[number], values[number]), seconds)
             if shift is not None:
                 yield number, shift
 
@@ -130,11 +130,11 @@ class Lookup:
 
     def _share(self, at_s: Floats, values: Floats, tolerance: Floats) -> Floats:
         """Return the share of each stretch, (m, k, d) at (m, k), that agrees, shape (m,)."""
-        samples = Samples(at_s.ravel(), values.reshape(-1, values.shape[2]))
+        samples = RunSamples(at_s.ravel(), values.reshape(-1, values.shape[2]))
         agrees = agreement(self.source, samples, tolerance).agrees.reshape(at_s.shape)
         return np.asarray(agrees.mean(axis=1))
 
-    def _tight(self, stretch: Samples, seconds: float) -> Shift | None:
+    def _tight(self, stretch: RunSamples, seconds: float) -> Shift | None:
         """Return the refined shift of a stretch, with either interpolation; or None."""
         moved = stretch.moved(seconds)
         first, last = np.searchsorted(self.source.time_s, moved.time_s[[0, -1]]).tolist()

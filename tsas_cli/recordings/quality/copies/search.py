@@ -15,9 +15,9 @@ import numpy as np
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Run
-from tsas_cli.recordings.quality.copies.agreement import Floats, Indices, Samples, agreement
+from tsas_cli.recordings.quality.copies.agreement import Floats, Indices, RunSamples, agreement
 from tsas_cli.recordings.quality.copies.aligned import side_by_side
-from tsas_cli.recordings.quality.copies.copy import Copy, Span, contradictions
+from tsas_cli.recordings.quality.copies.copy import Copy, RowSpan, contradictions
 from tsas_cli.recordings.quality.copies.fingerprint import Fineness, Fingerprint
 from tsas_cli.recordings.quality.copies.lookup import Lookup, Shift
 from tsas_cli.recordings.quality.copies.reader import Reader
@@ -130,7 +130,7 @@ def _in_source(
         seen = places.setdefault(other.run.id, Counter())
         seen[_known_shift(seen, shift, SHIFT_TOLERANCE * source.interval_s)] += 1
     for run, seen in places.items():
-        spans: list[Span] = []
+        spans: list[RowSpan] = []
         for shift, _ in seen.most_common(MOST_SHIFTS):
             for copy in _common_stretches(reader, source, others[run], shift):
                 if not any(_overlap(copy.span, span) for span in spans):
@@ -143,7 +143,7 @@ def _in_source(
                 break
 
 
-def _overlap(a: Span, b: Span) -> bool:
+def _overlap(a: RowSpan, b: RowSpan) -> bool:
     return a.first < b.end and b.first < a.end
 
 
@@ -202,7 +202,7 @@ def _places(
             values = np.column_stack([piece.columns[name] for name in names])
             fine = [source.channels[name] for name in names]
             lookup = Lookup(
-                Samples(piece.columns[TIME], values),
+                RunSamples(piece.columns[TIME], values),
                 np.array([source.channels[n].tolerance(group.steps[n]) for n in names]),
                 # Coarse samples agree loosely with those of any repeat.
                 np.array([channel.noise if source.noisy else 0.0 for channel in fine]),

@@ -4,8 +4,8 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from tsas_cli.recordings.quality.copies.agreement import Agreement, Floats, Samples
-from tsas_cli.recordings.quality.copies.copy import Span
+from tsas_cli.recordings.quality.copies.agreement import Agreement, Floats, RunSamples
+from tsas_cli.recordings.quality.copies.copy import RowSpan
 
 LEAST_INFORMATION = 40.0  # nats: by chance at one of 10¹⁷ shifts
 MOST_PER_SAMPLE = 2.5  # nats: noise may be correlated
@@ -14,8 +14,8 @@ EXACT_SHARE = 0.9  # of a stretch's samples that are the source's own, not inter
 
 
 def stretches(
-    row: int, samples: Samples, found: Agreement, information: Floats
-) -> list[tuple[Span, int]]:
+    row: int, samples: RunSamples, found: Agreement, information: Floats
+) -> list[tuple[RowSpan, int]]:
     """Return the stretches of agreeing consecutive samples, each with its `every` (see `Copy`).
 
     Parameters
@@ -36,7 +36,7 @@ def stretches(
     for k in np.flatnonzero(sums[edges[1:]] - sums[edges[:-1] + 1] >= LEAST_INFORMATION).tolist():
         first, end = int(edges[k]) + 1, int(edges[k + 1])
         times = samples.time_s[first], samples.time_s[end - 1]
-        span = Span(row + first, row + end, float(times[0]), float(times[1]))
+        span = RowSpan(row + first, row + end, float(times[0]), float(times[1]))
         out.append((span, _every(found, slice(first, end))))
     return out
 
@@ -49,13 +49,13 @@ def _every(found: Agreement, rows: slice) -> int:
     return max(int(np.median(np.diff(found.at[rows][exact]))), 1)
 
 
-def joined(parts: Iterable[tuple[Span, int]]) -> list[tuple[Span, int]]:
+def joined(parts: Iterable[tuple[RowSpan, int]]) -> list[tuple[RowSpan, int]]:
     """Return stretches in order, merged if only a few samples differ between them."""
-    out: list[tuple[Span, int]] = []
+    out: list[tuple[RowSpan, int]] = []
     for span, every in parts:
         before = out[-1][0] if out else None
         if before and span.first - before.end <= GAP_SHARE * (before.rows + span.rows):
-            out[-1] = Span(before.first, span.end, before.begin_s, span.end_s), out[-1][1]
+            out[-1] = RowSpan(before.first, span.end, before.begin_s, span.end_s), out[-1][1]
         else:
             out.append((span, every))
     return out
