@@ -165,7 +165,7 @@ def test_no_room_for_what_is_printed_is_one_line() -> None:
         done = subprocess.run(call, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
     assert done.returncode == 2
     assert done.stderr.count("\n") == 1
-    assert "the system refuses it (No space left on device)" in done.stderr
+    assert "the system refuses the call (No space left on device)" in done.stderr
 
 
 def test_no_more_open_files_is_no_defect(
@@ -175,7 +175,9 @@ def test_no_more_open_files_is_no_defect(
     with pytest.raises(SystemExit) as stopped:
         tsas_cli.app.run()
     assert stopped.value.code == 2
-    assert capsys.readouterr().err.startswith("tsas: a.parquet: the system refuses it (Too many")
+    assert capsys.readouterr().err.startswith(
+        "tsas: a.parquet: the system refuses the call (Too many"
+    )
 
 
 def test_a_stop_while_the_program_is_loaded_is_quiet() -> None:

@@ -1,9 +1,10 @@
-"""The command line: every subcommand, and the one place where an error becomes a line."""
+"""The command line: its subcommands, and the conversion of errors to a line and an exit code."""
 
 import errno
 import io
 import os
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import TypeGuard
 
@@ -34,7 +35,7 @@ from tsas_cli.support import __version__
 from tsas_cli.support.errors import InputError, printable
 from tsas_cli.support.stopping import EXIT_CODE, cleaned_up_when_stopped
 
-# What the machine refuses: no room, a disk that fails, no more open files.
+# Errors of the system: a full or failing disk, too many open files.
 REFUSALS = frozenset(
     {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO, errno.EMFILE, errno.ENFILE}
 )
@@ -43,7 +44,8 @@ app = typer.Typer(
     name="tsas",
     no_args_is_help=True,
     pretty_exceptions_enable=False,
-    help="From recordings of a tendon-sheath rig to a calibrated model and its errors.",
+    help="Calibrate and diagnose models of tendon-sheath mechanisms (Bowden cables, cable-conduit "
+    "mechanisms) from recordings.",
 )
 
 
@@ -62,50 +64,51 @@ def _options(
     del version
 
 
-app.command("init")(init)
-app.command("ingest")(ingest)
-app.command("check")(check)
-app.command("calibrate")(calibrate)
-app.command("identify-harmonic-drive")(identify_harmonic_drive)
-app.command("simulate")(simulate)
-app.command("diagnose")(diagnose)
-app.command("compare")(compare)
-app.command("plan")(plan)
-app.command("track")(track)
-app.command("close-loop")(close_loop)
-app.command("sweep")(sweep)
-app.command("report")(report)
-app.command("verify")(verify)
-app.command("view")(view)
-app.command("runs")(runs)
-app.command("upload")(upload)
-app.command("doctor")(doctor)
-app.command("effects")(effects)
-app.command("explain")(explain)
+# Panels of `tsas --help`, in this order; `tsas_studies` adds its commands to that of the studies.
+STUDIES = "Studies"
+PANELS: dict[str, tuple[Callable[..., None], ...]] = {
+    "Pipeline": (
+        ingest,
+        check,
+        calibrate,
+        identify_harmonic_drive,
+        simulate,
+        diagnose,
+        track,
+        report,
+    ),
+    "Understanding a recording or a model": (view, compare, plan, effects, explain, verify),
+    "Many datasets": (runs, sweep, upload),
+    STUDIES: (close_loop,),
+    "Setup": (init, doctor),
+}
+for panel, commands in PANELS.items():
+    for command in commands:
+        app.command(command.__name__.replace("_", "-"), rich_help_panel=panel)(command)
 
 
 def run() -> None:
-    """Run the command line; what goes wrong is one line on stderr and an exit code."""
-    # Many small matrices: threads inside of each product cost three times what they save.
+    """Run the command line; an error becomes one line on stderr and an exit code."""
+    # For many small matrices, threads inside each product cost three times what they save.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    _open_what_is_closed()
-    _speak_beyond_ascii()
+    _open_closed_streams()
+    _use_utf_8()
     try:
-        with cleaned_up_when_stopped():  # typer makes an exit code of it
+        with cleaned_up_when_stopped():  # typer converts it to an exit code
             code = app(prog_name="tsas", standalone_mode=False)
         sys.stdout.flush()
     except InputError as error:
         code = _stop(error.line(), 2)
     except TyperException as error:
-        code = _stop(_wrong_call(error), 2)
-    except KeyboardInterrupt:  # between typer's end and ours
+        code = _stop(_invalid_call(error), 2)
+    except KeyboardInterrupt:  # after typer has returned
         code = EXIT_CODE
-    except (BrokenPipeError, SystemExit):  # who read the output is gone; typer exits then
-        _forget_output()
+    except (BrokenPipeError, SystemExit):  # the reader of the output has ended
+        _discard_output()
         code = 0
     except MemoryError:
         remedy = "use a larger machine, fewer runs at a time (--runs), or shorter recordings"
-        code = _stop(f"this takes more memory than there is; {remedy}", 2)
+        code = _stop(f"this needs more memory than is free; {remedy}", 2)
     except Exception as error:
         if os.environ.get("TSAS_TRACEBACK") == "1":
             raise
@@ -120,24 +123,24 @@ def _is_refusal(error: Exception) -> TypeGuard[OSError]:
 
 
 def _refused(error: OSError) -> int:
-    """Say what the machine refuses; standard output may be what it refuses to write to."""
+    """Report an error of the system, which may concern standard output itself."""
     try:
         sys.stdout.flush()
     except OSError:
-        _forget_output()
+        _discard_output()
     where = f"{error.filename}: " if error.filename else ""
-    remedy = "make room, or allow more, and call again"
-    return _stop(printable(f"{where}the system refuses it ({error.strerror}); {remedy}"), 2)
+    remedy = "free disk space or raise the limit, and repeat the call"
+    return _stop(printable(f"{where}the system refuses the call ({error.strerror}); {remedy}"), 2)
 
 
 def _defect(error: Exception) -> int:
-    told = printable(f"{type(error).__name__}: {error}".strip())
+    description = printable(f"{type(error).__name__}: {error}".strip())
     remedy = "please report it with the output of the same call under TSAS_TRACEBACK=1"
-    return _stop(f"a defect of tsas itself: {told}; {remedy}", 1)
+    return _stop(f"a defect of tsas itself: {description}; {remedy}", 1)
 
 
-def _open_what_is_closed() -> None:
-    """Let what is printed to a closed stream be lost, and nothing else; 0 comes first."""
+def _open_closed_streams() -> None:
+    """Connect closed standard streams to the null device, stdin first."""
     for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
         if getattr(sys, name) is None:
             stream = Path(os.devnull).open(mode, encoding="utf-8")  # noqa: SIM115 # till the end
@@ -145,13 +148,13 @@ def _open_what_is_closed() -> None:
             setattr(sys, name, stream)
 
 
-def _forget_output() -> None:
-    """Let what is still to be written to standard output be lost."""
+def _discard_output() -> None:
+    """Discard what is still to be written to standard output."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
-def _speak_beyond_ascii() -> None:
-    """Let units and names be printed where the language of the shell has no letters for them."""
+def _use_utf_8() -> None:
+    """Print units and names in UTF-8 if the encoding of the shell is ASCII."""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             ascii_only = stream.encoding.lower() in {"ascii", "us-ascii", "ansi_x3.4-1968"}
@@ -159,14 +162,14 @@ def _speak_beyond_ascii() -> None:
 
 
 def _was_stopped(error: BaseException | None) -> bool:
-    """Say whether an error comes from a request to stop that compiled code has met."""
+    """Return whether an error is caused by a stop signal inside compiled code."""
     while error is not None and not isinstance(error, KeyboardInterrupt):
         error = error.__cause__
     return error is not None
 
 
-def _wrong_call(error: TyperException) -> str:
-    """Return one line about a call that typer refuses; empty after `tsas` alone, which is help."""
+def _invalid_call(error: TyperException) -> str:
+    """Return one line about a call that typer refuses; empty for `tsas` alone, which is help."""
     message = error.format_message().rstrip(".")
     context = getattr(error, "ctx", None)
     command = context.command_path if context else "tsas"

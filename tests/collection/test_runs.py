@@ -49,7 +49,7 @@ def test_a_query_is_a_condition_over_all_runs(rigs):
     assert found("tags['operator'] = 'bo'") == [("one/a", "r0")]
 
 
-def test_what_is_told_of_a_run(rigs):
+def test_what_is_reported_of_a_run(rigs):
     row, other, _ = tsas.runs().summary["runs"]
     assert tuple(row) == COLUMNS
     assert (row["dataset"], row["kind"], row["load"], row["gear_ratio"]) == (
@@ -104,7 +104,7 @@ def test_new_datasets_come_in_and_deleted_ones_go(rigs):
     assert found() == [("one/a", "r0"), ("one/a", "r1"), ("one/b", "r0")]
 
 
-def test_a_wrong_manifest_is_told_and_the_rest_is_answered(rigs):
+def test_a_wrong_manifest_is_reported_and_the_rest_is_answered(rigs):
     (rigs / "bad").mkdir()
     (rigs / "bad" / "dataset.toml").write_text("format = 2")
     (rigs / "two" / "runs" / "r0.parquet").write_bytes(b"no")
@@ -118,21 +118,21 @@ def test_a_wrong_manifest_is_told_and_the_rest_is_answered(rigs):
     assert result.summary["runs"][2]["rows"] is None
 
 
-def test_a_damaged_footer_is_told_or_taken_and_ends_nothing(tmp_path):
+def test_a_damaged_footer_is_reported_or_taken_and_ends_nothing(tmp_path):
     folder = write(tmp_path / "a[1] *", {}, {})
     path = folder / "runs" / "r0.parquet"
     whole = path.read_bytes()
     connection = connected()
     (run, other) = entry_of(connection, folder, "dataset.toml")["runs"]
     assert run["duration_s"] == other["duration_s"] == pytest.approx((ROWS - 1) / RATE_Hz)
-    told = 0
+    message = 0
     for place in range(len(whole) - 8 - int.from_bytes(whole[-8:-4], "little"), len(whole)):
         for bits in (1, 48):  # 48: some column has a lowest value and no highest one
             path.write_bytes(whole[:place] + bytes([whole[place] ^ bits]) + whole[place + 1 :])
             entry = entry_of(connection, folder, "dataset.toml")
-            told += len(entry["problems"])
+            message += len(entry["problems"])
             assert entry["runs"][1] == other
-    assert told > 100
+    assert message > 100
 
 
 def test_folders_are_named_as_they_were_given(rigs):
@@ -230,7 +230,7 @@ def test_an_index_that_is_damaged_is_made_again(rigs, cache):
     assert again.done == 0
 
 
-def test_an_odd_manifest_is_told_and_the_rest_is_answered(rigs):
+def test_an_odd_manifest_is_reported_and_the_rest_is_answered(rigs):
     manifest = rigs / "two" / "dataset.toml"
     whole = manifest.read_text()
     for line, why in (
@@ -241,7 +241,7 @@ def test_an_odd_manifest_is_told_and_the_rest_is_answered(rigs):
         result = tsas.runs()
         assert [row["folder"] for row in result.summary["runs"]] == ["one/a", "one/a"]
         assert result.summary["problems"] == [
-            f"two/dataset.toml: holds a value that cannot be told ({why})"
+            f"two/dataset.toml: holds a value that cannot be represented ({why})"
         ]
 
 
@@ -252,12 +252,12 @@ def test_a_file_of_another_century_is_answered(rigs, year):
     assert len(found()) == 3
 
 
-def test_a_folder_whose_name_is_no_text_is_told_and_the_rest_is_answered(rigs):
+def test_a_folder_whose_name_is_no_text_is_reported_and_the_rest_is_answered(rigs):
     latin = Path(os.fsdecode(b"caf\xe9"))
     shutil.copytree(rigs / "two", latin / "two")
     result = tsas.runs(folders=[latin, "one"])
     assert len(result.summary["runs"]) == 2
-    assert "its name is no text; rename it" in result.summary["problems"][0]
+    assert "its name is not UTF-8; rename it" in result.summary["problems"][0]
 
 
 def test_an_index_that_cannot_be_kept_is_held_in_memory(rigs, monkeypatch):
@@ -265,7 +265,7 @@ def test_an_index_that_cannot_be_kept_is_held_in_memory(rigs, monkeypatch):
     monkeypatch.setenv("TSAS_CACHE_DIR", str(rigs / "file"))
     result = tsas.runs("total_bend_rad > 3")
     assert len(result.summary["runs"]) == 2
-    assert "cannot be kept" in result.summary["problems"][0]
+    assert "cannot be stored" in result.summary["problems"][0]
 
 
 def test_a_folder_without_datasets_has_no_runs(tmp_path):

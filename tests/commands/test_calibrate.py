@@ -153,7 +153,7 @@ def test_a_wrong_sign_is_one_line(strict, recorded, tmp_path, names):
     done = strict("calibrate", folder, "--out", tmp_path / "c")
     assert done.returncode == 2
     assert done.stderr.count("\n") == 1
-    assert "turn the sign of" in done.stderr
+    assert "invert the sign of" in done.stderr
     assert not (tmp_path / "c").exists()
 
 
@@ -208,8 +208,10 @@ def test_effects_of_a_model_stay(strict, tmp_path):
     assert values["free_tendon.proximal_length_mm"] == 152.0
     assert values["friction_coefficient"] == pytest.approx(0.125, rel=2e-3)
     assert values["tendon_stiffness_N"] == pytest.approx(67858.4, rel=6e-3)
-    (said,) = [s for s in summary["cannot_tell"] if "fit equally well" in s and "stiffness" in s]
-    assert float(said.split("told: ")[1].split(" ")[0]) > 2e4
+    (sentence,) = [
+        s for s in summary["cannot_tell"] if "fit equally well" in s and "stiffness" in s
+    ]
+    assert float(sentence.split("told: ")[1].split(" ")[0]) > 2e4
     assert not any("missed by" in s for s in summary["cannot_tell"])
 
 

@@ -55,7 +55,7 @@ def test_findings_are_the_result_and_no_failure(make, tsas):
     done = tsas("check", make(a=good(), b=backwards()))
     assert (done.returncode, done.stderr) == (0, "")
     assert "time-order" in done.stdout
-    assert "mend the clock" in done.stdout
+    assert "correct the clock" in done.stdout
 
 
 def test_json_and_the_written_file_agree(make, tsas, tmp_path):

@@ -63,7 +63,7 @@ def test_where_nothing_is_hidden_nothing_is_named_and_nothing_changes(strict, tm
 
 
 @pytest.mark.parametrize(
-    ("option", "value", "told"),
+    ("option", "value", "message"),
     [
         ("--cases", "backlsh", "did you mean backlash?"),
         ("--hide", "friction_coeficient=3", "did you mean friction_coefficient?"),
@@ -72,10 +72,10 @@ def test_where_nothing_is_hidden_nothing_is_named_and_nothing_changes(strict, tm
         ("--hide", "backlash.play_mm", "expected NAME=VALUE"),
     ],
 )
-def test_a_wrong_call_writes_nothing(strict, tmp_path, option, value, told):
+def test_a_wrong_call_writes_nothing(strict, tmp_path, option, value, message):
     done = strict("close-loop", option, value, "--out", tmp_path / "out")
     assert done.returncode == 2
-    assert told in done.stderr
+    assert message in done.stderr
     assert option in done.stderr
     assert not (tmp_path / "out").exists()
 

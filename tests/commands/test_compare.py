@@ -40,7 +40,7 @@ def test_the_table_says_what_differs(run):
 def test_out_holds_the_page_and_all_that_json_prints(run, tmp_path):
     out = tmp_path / "compared"
     models = ("calibrated-1/model.toml", "calibrated-2/model.toml")
-    code, said, _ = run(*models, "--on", "data-2", "--runs", "slow", "--out", out, "--json")
+    code, message, _ = run(*models, "--on", "data-2", "--runs", "slow", "--out", out, "--json")
     assert code == 0
     assert sorted(path.name for path in out.iterdir()) == [
         "SHA256SUMS",
@@ -48,7 +48,7 @@ def test_out_holds_the_page_and_all_that_json_prints(run, tmp_path):
         "report.html",
     ]
     content = json.loads((out / "compare.json").read_text())
-    assert json.loads(said) == content
+    assert json.loads(message) == content
     assert {row["run_a"] for row in content["errors"]} == {"slow"}
     assert content["on"]["chosen"] == ["slow"]
     page = (out / "report.html").read_text()
@@ -84,7 +84,7 @@ def test_names_from_files_cannot_steer_the_terminal(run, root, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
+    ("words", "message"),
     [
         (("calibrated-1", "nowhere"), "nowhere: nothing that can be compared is here"),
         (("calibrated-1", "data-1"), "data-1: nothing that can be compared is here"),
@@ -93,8 +93,8 @@ def test_names_from_files_cannot_steer_the_terminal(run, root, tmp_path):
         (("calibrated-1", "calibrated-2", "--on", "data-1", "--runs", "sl"), "no run 'sl'"),
     ],
 )
-def test_a_wrong_call_is_one_line_and_writes_nothing(run, tmp_path, words, said):
+def test_a_wrong_call_is_one_line_and_writes_nothing(run, tmp_path, words, message):
     code, out, err = run(*words, "--out", tmp_path / "o")
     assert (code, out, err.count("\n")) == (2, "", 1)
-    assert said in err
+    assert message in err
     assert list(tmp_path.iterdir()) == []

@@ -91,7 +91,7 @@ def test_the_lists_are_those_of_the_program():
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
-def test_a_shell_is_told_how(tsas, shell):
+def test_a_shell_gets_instructions(tsas, shell):
     done = tsas(
         "--show-completion", shell, env={"_TYPER_COMPLETE_TEST_DISABLE_SHELL_DETECTION": "1"}
     )

@@ -27,7 +27,7 @@ def doctor(monkeypatch, capsys):
 
 THERE = Package("numpy", ">=2.2", "2.4.6")
 OLD = Package("scipy", ">=1.15", "1.9", "wrong version")
-GONE = Package("pint", ">=0.24", None, "missing")
+MISSING = Package("pint", ">=0.24", None, "missing")
 MAT = Extra("mat", "MATLAB v7.3 files", (Package("h5py", ">=3.12", None, "missing"),))
 
 
@@ -45,7 +45,7 @@ def test_here_all_is_there_that_tsas_needs(tsas):
     assert [a["name"] for a in summary["machine"]] == names
 
 
-def test_a_missing_extra_is_told_with_its_command_and_is_no_failure(doctor):
+def test_a_missing_extra_is_reported_with_its_command_and_is_no_failure(doctor):
     code, out, err = doctor(core=[THERE], extras=[MAT])
     assert (code, err) == (0, "")
     assert "-m pip install 'tsas[mat]'" in out
@@ -54,10 +54,12 @@ def test_a_missing_extra_is_told_with_its_command_and_is_no_failure(doctor):
 
 
 def test_what_is_needed_and_missing_is_one_line_with_the_command(doctor):
-    code, out, err = doctor(core=[THERE, OLD, GONE])
+    code, out, err = doctor(core=[THERE, OLD, MISSING])
     assert code == 2
     assert out.startswith(f"tsas {__version__} on Python")
-    assert err.startswith("tsas: tsas lacks what it needs: scipy 1.9 wrong version, pint missing; ")
+    assert err.startswith(
+        "tsas: required packages are missing or wrong: scipy 1.9 wrong version, pint missing; "
+    )
     assert err.endswith("-m pip install 'scipy>=1.15' 'pint>=0.24'\n")
     assert err.count("\n") == 1
 
@@ -70,7 +72,7 @@ def test_the_command_can_be_pasted_where_python_lies_in_an_odd_folder(doctor, mo
 
 def test_quiet_says_only_what_is_wrong(doctor):
     assert doctor("--quiet", core=[THERE], extras=[MAT]) == (0, "", "")
-    code, out, err = doctor("--quiet", core=[GONE])
+    code, out, err = doctor("--quiet", core=[MISSING])
     assert (code, out, err.count("\n")) == (2, "", 1)
 
 

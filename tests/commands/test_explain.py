@@ -47,7 +47,7 @@ def test_quiet_prints_nothing(tsas):
 @pytest.mark.parametrize(
     ("name", "hint"), [("drive_friktion", "did you mean drive_friction?"), ("?", "channel_delay")]
 )
-def test_an_unknown_name_is_told_the_nearest(tsas, name, hint):
+def test_an_unknown_name_is_refused_with_the_nearest(tsas, name, hint):
     done = tsas("explain", name)
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr.startswith(f"tsas: there is no effect '{name}'; ")

@@ -30,7 +30,7 @@ def test_the_worked_case(strict, tmp_path):
     assert json.loads(done.stdout) == summary
     assert set(summary) == documented("drive.json")
     truth = tomllib.loads((SHIPPED / "truth.toml").read_text(encoding="utf-8"))
-    told = {p["name"]: p for p in summary["parameters"]}
+    parameters = {p["name"]: p for p in summary["parameters"]}
     named = (
         "drive_stiffness_N_per_mm",
         "pull_back_N_per_mm",
@@ -39,8 +39,8 @@ def test_the_worked_case(strict, tmp_path):
     )
     for name in named:
         value = truth[name]
-        assert told[name]["interval_low"] < value < told[name]["interval_high"], name
-        assert told[name]["stderr"] < 0.01 * value
+        assert parameters[name]["interval_low"] < value < parameters[name]["interval_high"], name
+        assert parameters[name]["stderr"] < 0.01 * value
     found = summary["diagnosis"]
     assert found["verdict"] == "named"
     assert found["nominal"] == "Eq. (25) without reaction"
@@ -57,7 +57,7 @@ def test_the_worked_case(strict, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("changed", "said"),
+    ("changed", "message"),
     [
         ({"motor_speed_rpm": 0.0}, "the motor stands still"),
         ({"motor_speed_rpm": 300.0}, "keeps one speed, 300 rpm"),
@@ -72,7 +72,7 @@ def test_the_worked_case(strict, tmp_path):
         ("uneven", "an even clock"),
     ],
 )
-def test_what_does_not_serve_is_refused_in_one_line(strict, recorded, tmp_path, changed, said):
+def test_what_does_not_serve_is_refused_in_one_line(strict, recorded, tmp_path, changed, message):
     made = dict(recorded)
     if changed == "exchanged":
         made["x_in_mm"], made["motor_speed_rpm"] = recorded["motor_speed_rpm"], recorded["x_in_mm"]
@@ -89,7 +89,7 @@ def test_what_does_not_serve_is_refused_in_one_line(strict, recorded, tmp_path, 
     done = strict("identify-harmonic-drive", folder, "--out", tmp_path / "out")
     assert done.returncode == 2
     assert done.stderr.count("\n") == 1
-    assert said in done.stderr
+    assert message in done.stderr
     assert "runs/a.parquet" in done.stderr
     assert not (tmp_path / "out").exists()
 

@@ -36,10 +36,10 @@ def ingest(bench, tsas):
     return call
 
 
-def refused(done, folder, *said):
+def refused(done, folder, *message):
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr.count("\n") == 1
-    for words in said:
+    for words in message:
         assert words in done.stderr
     assert not list(folder.glob("*out*"))
 
@@ -100,11 +100,11 @@ def test_what_is_read_is_not_replaced_by_force(bench, ingest, tsas):
     source.write_bytes((bench / "a.csv").read_bytes())
     done = ingest(str(source), "--force")
     assert done.returncode == 2
-    assert "is read, and would be replaced" in done.stderr
+    assert "is an input, and would be replaced" in done.stderr
     before = (bench / "a.csv").read_bytes()
     done = tsas("ingest", bench / "a.csv", "--guess", "--out", bench / "a.csv", "--force")
     assert done.returncode == 2
-    assert "is read, and would be replaced" in done.stderr
+    assert "is an input, and would be replaced" in done.stderr
     assert (bench / "a.csv").read_bytes() == before == source.read_bytes()
 
 
@@ -119,31 +119,31 @@ def test_half_of_the_files_are_not_half_a_dataset(bench, ingest):
     refused(ingest("a.csv", "b.csv"), bench, "b.csv", "column f is missing; ", "there are: t, x")
 
 
-def test_a_wrong_unit_is_said_with_the_place_in_the_map(bench, ingest):
+def test_a_wrong_unit_is_reported_with_the_place_in_the_map(bench, ingest):
     text = (bench / "map.toml").read_text()
     (bench / "map.toml").write_text(text.replace('unit = "N"', 'unit = "mm"'))
     refused(ingest("a.csv"), bench, "map.toml, columns.f_in_N", "'mm' cannot become N", "a force")
 
 
 @pytest.mark.parametrize(
-    ("name", "content", "said"),
+    ("name", "content", "message"),
     [
         ("b.csv", b"", "is empty"),
         ("b.mat", b"", "is empty"),
         ("b.parquet", b"PAR1", "cannot be read as Parquet"),
-        ("b.xlsx", b"PK", "no reader knows .xlsx"),
+        ("b.xlsx", b"PK", "unknown file format .xlsx"),
         ("b\x1b[31m.csv", CSV.encode(), "usable as a file name"),
-        ("none.csv", None, "is not there"),
+        ("none.csv", None, "does not exist"),
         ("empty", "folder", "holds no file"),
     ],
 )
-def test_what_is_no_recording_is_one_line(bench, ingest, name, content, said):
+def test_what_is_no_recording_is_one_line(bench, ingest, name, content, message):
     if content == "folder":
         (bench / name).mkdir()
     elif content is not None:
         (bench / name).write_bytes(content)
     done = ingest(name)
-    refused(done, bench, said)
+    refused(done, bench, message)
     assert done.stderr.rstrip("\n").isprintable()
 
 
@@ -186,8 +186,8 @@ def test_the_surgical_instrument_pulls_when_it_moves_in(tsas, tmp_path):
         x_in, x_out = recording.columns["x_in_mm"], recording.columns["x_out_mm"]
         assert np.corrcoef(x_in, x_out)[0, 1] > 0.99
         assert np.ptp(x_in) == pytest.approx(5 * np.pi / 3, rel=0.02)  # ±30° on 5 mm
-    said = recordings["L_4_49"].run.model_extra
-    assert (said["frequency_Hz"], said["load_percent"]) == (0.5, 100)
+    message = recordings["L_4_49"].run.model_extra
+    assert (message["frequency_Hz"], message["load_percent"]) == (0.5, 100)
     assert recordings["pitch_pitch_5"].run.model_extra["wrist_pitch_deg"] == -60
 
 

@@ -27,7 +27,7 @@ from tsas_cli.reporting.viewer.ports import LOOPBACK, free_ports
 from tsas_cli.reporting.viewer.program import program
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
-DONE = "all runs are there and written"
+DONE = "all runs are shown and written"
 
 
 @pytest.fixture
@@ -127,8 +127,8 @@ def test_a_viewer_that_goes_away_costs_no_result(dataset, tmp_path):
         line_with_address(process.stderr)
         (viewer,) = family(process.pid) - {process.pid}
         subprocess.run(["kill", "-KILL", str(viewer)], check=True)  # noqa: S607 # whichever is there
-        printed, said = process.communicate(timeout=SOON_S)
-    assert (out / "simulation.json").is_file(), said
+        printed, stderr = process.communicate(timeout=SOON_S)
+    assert (out / "simulation.json").is_file(), stderr
     assert "RMSE" in printed
     assert process.returncode == 0
-    assert "- not all was shown" in said
+    assert "- some runs were not shown" in stderr

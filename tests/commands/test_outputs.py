@@ -142,8 +142,10 @@ def places(call: str, home: Path) -> set[Path]:
     return found
 
 
-REFUSED = "is read, and would be replaced|lies inside .*, which is read|^[^:]*: is a f(ile|older)"
-REFUSED += "|holds something else than an earlier sweep"
+REFUSED = (
+    "is an input, and would be replaced|lies inside .*, which is an input|^[^:]*: is a f(ile|older)"
+)
+REFUSED += "|is no folder of an earlier sweep"
 CASES = [call for call, given in CALLS.items() if any(HERE in text for text in given)]
 
 

@@ -106,19 +106,19 @@ def test_two_folders_of_one_kind_are_refused(folder, run):
 
 
 @pytest.mark.parametrize(
-    ("spoil", "said"),
+    ("spoil", "message"),
     [
         (lambda content: content.pop("parameters"), "parameters is missing"),
         (lambda content: content.update(format=2), "format"),
         (lambda content: content["stiffness"][0].update(run=None), "stiffness.0.run"),
     ],
 )
-def test_a_stage_file_that_is_not_whole_is_refused(folder, run, spoil, said):
+def test_a_stage_file_that_is_not_whole_is_refused(folder, run, spoil, message):
     path = folder / "calibrated" / "calibration.json"
     content = json.loads(path.read_text())
     spoil(content)
     path.write_text(json.dumps(content))
-    refused(run("report", folder / "calibrated", "--out", folder / "r.html"), str(path), said)
+    refused(run("report", folder / "calibrated", "--out", folder / "r.html"), str(path), message)
 
 
 def test_a_simulated_run_of_another_length_is_refused(folder, run, tmp_path):

@@ -47,15 +47,15 @@ def test_a_second_stream_replaces_the_first(strict, dataset, tmp_path):
 def test_without_a_folder_there_is_nowhere_to_write(strict, dataset):
     done = strict("check", dataset, "--rrd")
     assert (done.returncode, done.stdout) == (2, "")
-    assert "--rrd has no folder to write to; give one with --out" in done.stderr
+    assert "--rrd has no folder to write to; set --out" in done.stderr
 
 
 def test_pipelines_write_a_stream_of_every_stage_that_can():
     files = [path for folder in PIPELINES for path in folder.glob("*.mk")]
     text = "".join(path.read_text(encoding="utf-8") for path in files)
-    told = re.findall(r"^STAGE = (.*)$", text, flags=re.MULTILINE)
-    assert told
-    assert all("--rrd" in options for options in told)
+    stages = re.findall(r"^STAGE = (.*)$", text, flags=re.MULTILINE)
+    assert stages
+    assert all("--rrd" in options for options in stages)
     calls = re.findall(r"tsas\)? ([\w-]+) (.*--out.*)", text, flags=re.IGNORECASE)
     assert {stage for stage, _ in calls} >= set(WITH_STREAM)
     for stage, options in calls:

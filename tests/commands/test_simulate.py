@@ -47,9 +47,9 @@ def test_the_true_model_is_at_the_noise_and_the_data_sheet_is_not(strict, folder
         assert summary == json.loads((out / "simulation.json").read_text(encoding="utf-8"))
         measured = pq.read_table(folder / "runs" / "a.parquet").to_pandas()
         simulated = pq.read_table(out / "runs" / "a.parquet").to_pandas()
-        for channel, said in summary["runs"]["a"]["channels"].items():
+        for channel, result in summary["runs"]["a"]["channels"].items():
             error = measured[channel] - simulated[channel]
-            assert said["rmse"] == pytest.approx(float(np.sqrt(np.mean(error**2))))
+            assert result["rmse"] == pytest.approx(float(np.sqrt(np.mean(error**2))))
         rmse[name] = summary["runs"]["a"]["channels"]
     assert rmse["true"]["f_out_N"]["rmse"] < 1.1 * rmse["true"]["f_out_N"]["noise"]
     assert rmse["true"]["f_in_N"]["rmse"] < 3.0 * rmse["true"]["f_in_N"]["noise"]
@@ -95,8 +95,8 @@ def test_calibrate_and_simulate_agree(strict, folder, tmp_path):
         "--json",
     )
     simulated = json.loads(done.stdout)["runs"]["a"]["channels"]
-    for channel, said in calibrated.items():
-        assert simulated[channel]["rmse"] == pytest.approx(said["rmse"])
+    for channel, result in calibrated.items():
+        assert simulated[channel]["rmse"] == pytest.approx(result["rmse"])
 
 
 def test_the_static_model_is_another_one(strict, folder, model, tmp_path):
@@ -112,8 +112,8 @@ def test_the_static_model_is_another_one(strict, folder, model, tmp_path):
 
 @pytest.mark.parametrize("load", ["force", "displacement"])
 def test_the_static_model_knows_springs_only(strict, recorded, tmp_path, load):
-    told = conditions(TRUE) | {"load": load}
-    folder = write_dataset(tmp_path / "d", [Run("a", recorded, told)])
+    given = conditions(TRUE) | {"load": load}
+    folder = write_dataset(tmp_path / "d", [Run("a", recorded, given)])
     done = strict("simulate", folder, "--dynamics", "static", "--out", tmp_path / "out")
     assert done.returncode == 2
     assert done.stderr == (
@@ -175,7 +175,7 @@ def test_a_run_that_was_not_fitted_is_predicted_once_its_own_zeros_are_known(
     )
     wrong = model.read_text(encoding="utf-8").replace("value = 0.16", "value = 0.15")
     (tmp_path / "wrong.toml").write_text(wrong, encoding="utf-8")
-    answers = {}
+    residuals = {}
     for name, file, options in (
         ("as it is", model, ()),
         ("own", model, ("--fit-own",)),
@@ -186,13 +186,13 @@ def test_a_run_that_was_not_fitted_is_predicted_once_its_own_zeros_are_known(
         assert (done.returncode, done.stderr) == (0, "")
         summary = json.loads(done.stdout)
         assert list(summary["runs"]) == summary["chosen"] == ["b"]
-        answers[name] = summary["runs"]["b"]["channels"]["f_in_N"]
-    assert answers["own"]["rmse"] < 2.0 * answers["own"]["noise"]
-    assert answers["as it is"]["rmse"] > 5.0 * answers["own"]["rmse"]
-    assert answers["wrong"]["rmse"] > 3.0 * answers["own"]["rmse"]
+        residuals[name] = summary["runs"]["b"]["channels"]["f_in_N"]
+    assert residuals["own"]["rmse"] < 2.0 * residuals["own"]["noise"]
+    assert residuals["as it is"]["rmse"] > 5.0 * residuals["own"]["rmse"]
+    assert residuals["wrong"]["rmse"] > 3.0 * residuals["own"]["rmse"]
     again = ("--model", tmp_path / "own", "--runs", "b", "--out", tmp_path / "again", "--json")
     done = strict("simulate", folder, *again)  # with the model as it was used
-    assert json.loads(done.stdout)["runs"]["b"]["channels"]["f_in_N"] == answers["own"]
+    assert json.loads(done.stdout)["runs"]["b"]["channels"]["f_in_N"] == residuals["own"]
 
 
 @pytest.mark.parametrize("stage", ["calibrate", "diagnose", "simulate"])
@@ -282,7 +282,7 @@ def test_nodes_that_no_chain_can_have(strict, folder, tmp_path, nodes, dynamics,
     assert not (tmp_path / "s").exists()
 
 
-def test_a_tendon_that_sticks_and_slips_is_said_to(strict, folder, model, tmp_path):
+def test_a_tendon_that_sticks_and_slips_is_reported_to(strict, folder, model, tmp_path):
     text = model.read_text(encoding="utf-8")
     text += (
         "[effects.stribeck_friction.excess]\nvalue = 0.15\nunit = '1'\n"

@@ -92,9 +92,9 @@ def needed(command):
 
 @pytest.mark.parametrize("name", STAGES)
 def test_json_is_one_document_and_nothing_else(called, name):
-    said = called(name, "--json")
-    assert json.loads(said.out) == SUMMARY
-    assert said.err == ""
+    output = called(name, "--json")
+    assert json.loads(output.out) == SUMMARY
+    assert output.err == ""
 
 
 @pytest.mark.parametrize("name", STAGES)
@@ -104,12 +104,12 @@ def test_quiet_is_silent(called, name):
 
 @pytest.mark.parametrize("name", STAGES)
 def test_tables_and_sentences_are_the_result(called, name):
-    said = called(name)
+    output = called(name)
     words = ["before the tables", "a table", "name  value", "1.5", "- after the tables"]
-    places = [said.out.find(word) for word in words]
+    places = [output.out.find(word) for word in words]
     assert -1 not in places
     assert places == sorted(places)
-    assert said.err == ""
+    assert output.err == ""
 
 
 def on_terminal(call, **environment):
@@ -119,14 +119,14 @@ def on_terminal(call, **environment):
     environment.pop("TSAS_THREADS", None)
     process = subprocess.Popen(call, stdout=subprocess.PIPE, stderr=slave, env=environment)
     os.close(slave)
-    said = b""
+    output = b""
     while chunk := _read(master):
-        said += chunk
+        output += chunk
     printed = process.stdout.read()
     assert process.wait() == 0
     process.stdout.close()
     os.close(master)
-    return said.decode(), printed.decode()
+    return output.decode(), printed.decode()
 
 
 def _read(master):
@@ -141,13 +141,13 @@ def bar(quiet, **environment):
 
 
 def test_a_bar_says_how_far_it_is_and_how_long_the_rest_takes():
-    said, printed = bar(quiet=False)
+    output, printed = bar(quiet=False)
     assert printed == "the result\n"
-    counts = re.findall(r"(\d) of (\d)", said)
+    counts = re.findall(r"(\d) of (\d)", output)
     assert ("1", "2") in counts  # two pieces were known to come …
     assert ("4", "4") in counts  # … and then two more
-    assert "fit" in said
-    assert re.search(r"about 0:00:0\d left", said)
+    assert "fit" in output
+    assert re.search(r"about 0:00:0\d left", output)
 
 
 def test_quiet_draws_no_bar():
@@ -162,9 +162,9 @@ def test_no_colour_is_asked_for():
 
 def test_a_stage_shows_its_bar_on_a_terminal_and_prints_the_result(dataset):
     call = [sys.executable, "-m", "tsas_cli", "check", dataset]
-    said, printed = on_terminal(call)
-    assert "check" in said
-    assert "1 of 1" in said
+    output, printed = on_terminal(call)
+    assert "check" in output
+    assert "1 of 1" in output
     assert printed.startswith("the checks found")
     assert "\x1b" not in printed
 
@@ -175,18 +175,18 @@ def test_help_has_no_colour(environment, monkeypatch):
         monkeypatch.delenv(name, raising=False)
     call = [sys.executable, "-m", "tsas_cli", "check", "--help"]
     if environment:
-        said, _ = on_terminal(["sh", "-c", '"$@" >&2', "sh", *call], **environment)
-        assert not re.search(r"\x1b\[[0-9;]*3[0-9]m", said)
+        output, _ = on_terminal(["sh", "-c", '"$@" >&2', "sh", *call], **environment)
+        assert not re.search(r"\x1b\[[0-9;]*3[0-9]m", output)
     else:
         done = subprocess.run(call, capture_output=True, text=True, check=True)
-        said = done.stdout
-        assert "\x1b" not in said
-    assert "DATASET" in said
+        output = done.stdout
+        assert "\x1b" not in output
+    assert "DATASET" in output
 
 
 def test_the_catalogue_says_at_a_terminal_what_tells_more():
     assert on_terminal([sys.executable, "-m", "tsas_cli", "effects"])[0].strip() == (
-        "`tsas explain NAME` tells more"
+        "`tsas explain NAME` describes an effect"
     )
 
 

@@ -68,15 +68,15 @@ def test_ctrl_c_keeps_what_is_done_and_the_next_call_goes_on(rigs, tmp_path, tsa
         assert process.poll() is None
         time.sleep(0.01)
     process.send_signal(signal.SIGINT)
-    said = process.communicate(timeout=60.0)
-    assert (process.returncode, said) == (130, (b"", b""))
+    streams = process.communicate(timeout=60.0)
+    assert (process.returncode, streams) == (130, (b"", b""))
     before = len(journal.read_text().splitlines())
     kept = [path for path in (out / "tasks").iterdir() if not path.name.startswith(".")]
     assert 1 <= before <= len(kept) < 60
     assert not (out / "sweep.json").exists()
     done = tsas("sweep", plan, "--out", out, "--workers", "1")
     assert done.returncode == 0
-    assert f"{len(kept)} of them were done before." in done.stdout
+    assert f"{len(kept)} of them were completed before." in done.stdout
     assert len(journal.read_text().splitlines()) == before + 60 - len(kept)
     assert not [path for path in (out / "tasks").iterdir() if path.name.startswith(".")]
 
@@ -93,7 +93,7 @@ def test_options_are_written_as_in_a_plan_or_as_plain_words():
     }  # fmt: skip
     with pytest.raises(InputError, match="'nodes' is no option; expected NAME=VALUE"):
         _plan("simulate", ["a"], ["nodes"], each_run=False)
-    with pytest.raises(InputError, match="a plan says all itself"):
+    with pytest.raises(InputError, match="a plan has no further arguments"):
         _plan("plan.toml", ["a"], [], each_run=False)
 
 

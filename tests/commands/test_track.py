@@ -174,7 +174,7 @@ UNSTABLE = "[controllers.pid]\nproportional_rpm_per_mm = 1e6\n"
 
 
 @pytest.mark.parametrize(
-    ("more", "options", "told"),
+    ("more", "options", "message"),
     [
         ("", ("--controller", "pidd"), "unknown controller pidd; did you mean pid?"),
         ("", ("--controller", ""), "unknown controller ; known are pid, sliding-mode"),
@@ -185,10 +185,12 @@ UNSTABLE = "[controllers.pid]\nproportional_rpm_per_mm = 1e6\n"
         ("[controllers.pid]\nk = 1\n", (), "unknown key controllers.pid.k"),
     ],
 )
-def test_what_is_wrong_is_told_and_nothing_is_written(track, quick, tmp_path, more, options, told):
+def test_what_is_wrong_is_reported_and_nothing_is_written(
+    track, quick, tmp_path, more, options, message
+):
     with pytest.raises(InputError) as refused:
         track("--settings", quick(more), *options)
-    assert told in str(refused.value)
+    assert message in str(refused.value)
     assert sorted(p.name for p in tmp_path.iterdir()) == ["settings.toml"]
 
 

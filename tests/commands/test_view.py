@@ -68,8 +68,8 @@ def refused(result):
 
 
 def read(address):
-    with urlopen(address, timeout=10) as answer:  # noqa: S310 # an address of this machine
-        return answer.read()
+    with urlopen(address, timeout=10) as response:  # noqa: S310 # an address of this machine
+        return response.read()
 
 
 def shown_by(address):
@@ -106,7 +106,7 @@ def test_a_taken_port_is_refused(stream, run):
     assert re.match(rf"tsas: --port: port {port} cannot be had \(.*\); choose", line)
 
 
-def test_it_is_told_once_of_analytics_and_the_port_and_form_can_be_chosen(stream, tmp_path):
+def test_it_is_reported_once_of_analytics_and_the_port_and_form_can_be_chosen(stream, tmp_path):
     (port,) = free_ports(1)
     with started("view", stream, "--web", "--port", port, state=tmp_path) as process:
         assert int(line_with_address(process.stdout)[1]) == port
@@ -154,20 +154,20 @@ def spoilt(name, stream, folder):
 
 
 @pytest.mark.parametrize(
-    ("name", "told"),
+    ("name", "message"),
     [
-        ("missing", "is not there"),
+        ("missing", "does not exist"),
         ("junk", "Not an RRD file"),
         ("empty", "too small"),
         ("cut", "exceeds file size"),
         ("folder", "neither a dataset nor what a stage wrote"),
     ],
 )
-def test_what_cannot_be_shown_is_one_line(stream, tmp_path, run, name, told):
+def test_what_cannot_be_shown_is_one_line(stream, tmp_path, run, name, message):
     path = spoilt(name, stream, tmp_path)
     line = refused(run("view", path))
     assert line.startswith(f"tsas: {path}: ")
-    assert told in line
+    assert message in line
 
 
 def test_a_file_among_folders_is_refused(folders, stream, run):
@@ -206,7 +206,7 @@ def test_a_window_opens_where_there_is_a_screen(stream, tmp_path):
             screen.terminate()
 
 
-def test_without_the_viewer_it_is_said_what_to_install(stream, run, monkeypatch):
+def test_without_the_viewer_it_is_reported_what_to_install(stream, run, monkeypatch):
     monkeypatch.setattr("tsas_cli.reporting.viewer.program.find_spec", lambda name: None)
     line = refused(run("view", stream, "--web"))
     assert line.startswith("tsas: package rerun-sdk: the viewer's program is not installed")

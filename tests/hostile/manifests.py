@@ -222,7 +222,7 @@ CASES = (
     Case(
         "a pipe as reference",
         pipe("track", "--reference", "PIPE.PARQUET", "--out", "O"),
-        "is not there",
+        "does not exist",
     ),
     Case("a pipe as rig", pipe("plan", "PIPE.TOML"), "is a pipe or a device"),
     Case(
@@ -365,7 +365,7 @@ CASES = (
         named("\x1b[2Jx.csv"),
         "\\x1b[2Jx.csv: id: must be usable as a file name",
     ),
-    Case("a file whose name is no text", named(os.fsdecode(b"a\xff.csv")), "its name is no text"),
+    Case("a file whose name is no text", named(os.fsdecode(b"a\xff.csv")), "its name is not UTF-8"),
     Case(
         "an id that leads out",
         named("a.csv", RUN.replace("{}", "../../x")),

@@ -97,20 +97,20 @@ def outside(content: bytearray) -> None:
 
 
 CASES = (
-    Case("a ring of data groups", mdf(ring(b"##DG")), "its blocks go in a ring"),
-    Case("a ring of channel groups", mdf(ring(b"##CG")), "its blocks go in a ring"),
-    Case("a ring of channels", mdf(ring(b"##CN")), "its blocks go in a ring"),
-    Case("a channel made of itself", mdf(ring(b"##CN", 1)), "its blocks go in a ring"),
-    Case("a ring of channels, guessed", mdf(ring(b"##CN"), guess=True), "its blocks go in a ring"),
+    Case("a ring of data groups", mdf(ring(b"##DG")), "the blocks form a cycle"),
+    Case("a ring of channel groups", mdf(ring(b"##CG")), "the blocks form a cycle"),
+    Case("a ring of channels", mdf(ring(b"##CN")), "the blocks form a cycle"),
+    Case("a channel made of itself", mdf(ring(b"##CN", 1)), "the blocks form a cycle"),
+    Case("a ring of channels, guessed", mdf(ring(b"##CN"), guess=True), "the blocks form a cycle"),
     Case(
-        "a ring of data groups in version 3", mdf(ring_3(b"DG"), "3.30"), "its blocks go in a ring"
+        "a ring of data groups in version 3", mdf(ring_3(b"DG"), "3.30"), "the blocks form a cycle"
     ),
     Case(
         "a ring of channel groups in version 3",
         mdf(ring_3(b"CG"), "3.30"),
-        "its blocks go in a ring",
+        "the blocks form a cycle",
     ),
-    Case("a list that goes on with itself", mdf(deep_list), "its blocks go in a ring"),
+    Case("a list that goes on with itself", mdf(deep_list), "the blocks form a cycle"),
     Case("a claim of 10^12 cycles", mdf(cycles(10**12)), "at most 500 times its size"),
     Case("a claim of 2^63 cycles", mdf(cycles(2**63)), "at most 500 times its size"),
     Case("a packed block of 4 GB", mdf(packed(1 << 32, 1 << 28)), "at most 500 times its size"),

@@ -199,7 +199,7 @@ def test_a_channel_of_the_wrong_sign_is_refused(tmp_path, long):
     columns["x_out_mm"] = -columns["x_out_mm"]
     dataset = written(tmp_path / "d", columns, entry())
     long()
-    with pytest.raises(InputError, match="x_out_mm goes against x_in_mm"):
+    with pytest.raises(InputError, match="x_out_mm moves opposite to x_in_mm"):
         tsas.calibrate(dataset)
 
 

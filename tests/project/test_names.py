@@ -73,7 +73,7 @@ def test_a_new_project_is_made_and_run_under_any_name(folder, recording, name, s
         (home / "in" / source).write_bytes(recording)
     project = home / name
     if "\udcff" in name:  # which no file of text can hold
-        with pytest.raises(InputError, match="its name is no text"):
+        with pytest.raises(InputError, match="its name is not UTF-8"):
             start(project, sorted((home / "in").iterdir()))
         return
     start(project, sorted((home / "in").iterdir()))
@@ -171,7 +171,7 @@ def test_a_setting_that_is_odd_and_no_code_is_taken(tmp_path, setting, name):
 
 @needs_make
 @pytest.mark.parametrize(
-    ("setting", "name", "told"),
+    ("setting", "name", "message"),
     [
         ("RAW", "$(shell id)", "RAW is no plain name"),
         ("RAW", "o'brien", "RAW is no plain name"),
@@ -184,12 +184,12 @@ def test_a_setting_that_is_odd_and_no_code_is_taken(tmp_path, setting, name):
         *(("OUT", f"a{sign}b", "OUT is no plain name") for sign in "$'%:;|*?[\\"),
     ],
 )
-def test_a_setting_that_is_refused_is_named(tmp_path, setting, name, told):
+def test_a_setting_that_is_refused_is_named(tmp_path, setting, name, message):
     bench, project = Bench(tmp_path), project_in(tmp_path)
     done = bench.run(f"{setting}={name}", cwd=project)
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr.count("\n") == 1
-    assert told in done.stderr
+    assert message in done.stderr
 
 
 @needs_make

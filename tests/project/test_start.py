@@ -79,7 +79,7 @@ def test_what_cannot_be_read_leaves_no_project(tmp_path, tsas):
     (tmp_path / "b").mkdir()
     recording(tmp_path / "a.csv")
     recording(tmp_path / "b" / "a.csv")
-    with pytest.raises(InputError, match="two sources are called"):
+    with pytest.raises(InputError, match="two sources have the name"):
         start(tmp_path / "new", [tmp_path / "a.csv", tmp_path / "b" / "a.csv"])
 
 
@@ -89,8 +89,8 @@ def test_from_a_recording_to_a_page_and_back_to_one_that_is_broken(tmp_path):
     source = recording(tmp_path / "a [1].csv", step=50)
     start(tmp_path / "new", [source])
     bench = tmp_path / "new" / "bench.toml"
-    said = "sheath_length_mm = 785.4\ntotal_bend_rad = 3.1416\npreload_N = 25.0\n"
-    bench.write_text(bench.read_text().split("# sheath_length_mm")[0] + said)
+    conditions = "sheath_length_mm = 785.4\ntotal_bend_rad = 3.1416\npreload_N = 25.0\n"
+    bench.write_text(bench.read_text().split("# sheath_length_mm")[0] + conditions)
 
     def make(*words):
         environment = os.environ | {"PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"}

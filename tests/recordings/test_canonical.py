@@ -42,21 +42,23 @@ def test_the_first_sample_that_is_there_can_be_the_zero():
 def test_the_files_own_unit_counts_where_the_map_says_none():
     assert ask(units={"f": "kN"}, force={"source": "f"})["f_in_N"][0] == 4000
     assert ask(units={"f": "kN"}, force=FORCE)["f_in_N"][0] == 4
-    with pytest.raises(InputError, match=r"map.toml, columns.f_in_N: .* the unit of f; say it"):
+    with pytest.raises(InputError, match=r"map.toml, columns.f_in_N: .* no unit for f; set it"):
         ask(force={"source": "f"})
 
 
 def test_a_map_cannot_say_another_unit_than_the_type_of_a_column():
     table = Table({s: np.arange(3.0) for s in "txf"}, {"t": "s"}, typed=frozenset("t"))
 
-    def time_s(**said):
-        columns = {"time_s": {"source": "t"} | said, "x_in_mm": PLACE, "f_in_N": FORCE}
+    def time_s(**unit):
+        columns = {"time_s": {"source": "t"} | unit, "x_in_mm": PLACE, "f_in_N": FORCE}
         mapping = IngestMap.model_validate({"dataset": {"name": "m"}, "columns": columns})
         taken, _ = canonical_columns(table, mapping, Path("a.parquet"), Path("map.toml"))
         return taken["time_s"].tolist()
 
     assert time_s() == time_s(unit="s") == [0, 1, 2]
-    with pytest.raises(InputError, match=r"time_s: the map says ms of t, .*expected s, or no unit"):
+    with pytest.raises(
+        InputError, match=r"time_s: the map sets unit ms for t, .*expected s, or no unit"
+    ):
         time_s(unit="ms")
 
 
@@ -78,7 +80,7 @@ def test_rows_that_repeat_go_only_when_the_map_says_so():
 
 
 @pytest.mark.parametrize(
-    ("values", "said"),
+    ("values", "message"),
     [
         ({"t": [0, 2, 1]}, "a.csv, row 12: the time does not increase (0.002 s, then 0.001 s)"),
         ({"t": [0, 1, 1]}, "a.csv, row 12: the time does not increase"),
@@ -88,10 +90,10 @@ def test_rows_that_repeat_go_only_when_the_map_says_so():
         ({"t": [0], "x": [0], "f": [0]}, "1 rows; expected at least two"),
     ],
 )
-def test_what_cannot_be_a_recording_is_refused_with_its_row(values, said):
+def test_what_cannot_be_a_recording_is_refused_with_its_row(values, message):
     with pytest.raises(InputError) as error:
         ask(values)
-    assert said in error.value.line()
+    assert message in error.value.line()
 
 
 def test_repeated_times_with_other_values_are_not_dropped():
@@ -107,12 +109,12 @@ def test_an_extra_column_may_not_take_a_name_that_is_taken_or_breaks_the_termina
 
 
 @pytest.mark.parametrize(
-    ("said", "name"),
+    ("message", "name"),
     [
         ({"time": {"rate_Hz": 1e-320}}, "time_s"),
         ({"place": {"source": "x", "unit": "V", "factor": 1e305, "factor_unit": "m"}}, "x_in_mm"),
     ],
 )
-def test_what_grows_infinite_is_refused_without_another_word(said, name):
+def test_what_grows_infinite_is_refused_without_another_word(message, name):
     with pytest.raises(InputError, match=f"{name} is infinite"):  # warnings are errors in tests
-        ask({"x": [1, 2, 300]}, **said)
+        ask({"x": [1, 2, 300]}, **message)

@@ -78,6 +78,6 @@ def test_more_files_than_a_dataset_may_have_are_refused_before_any_is_read(tmp_p
     for name in "abcd":
         (tmp_path / f"{name}.csv").write_text("no table")
     monkeypatch.setattr(ingest.limits, "RUNS", 3)
-    with pytest.raises(InputError, match="4 files are found; expected at most 3"):
+    with pytest.raises(InputError, match="4 files found; expected at most 3"):
         find_files([tmp_path], "*")
     assert len(find_files([tmp_path], "[abc].csv")) == 3

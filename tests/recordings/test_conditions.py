@@ -39,7 +39,7 @@ def test_a_comma_before_three_digits_is_a_decimal_mark_where_the_map_says_so():
     rules = RunMap.model_validate({"from_header": {"pattern": r"(?P<preload_N>[\d,]+) N"}})
     assert run_conditions(PATH, ["0,250 N"], rules)["preload_N"] == 0.25
     assert run_conditions(PATH, ["1,250 N"], rules, ",")["preload_N"] == 1.25
-    with pytest.raises(InputError, match=r"preload_N is 1,250: .* say decimal = \",\""):
+    with pytest.raises(InputError, match=r"preload_N is 1,250: .* set decimal = \",\""):
         run_conditions(PATH, ["1,250 N"], rules)
 
 
@@ -72,13 +72,13 @@ def test_the_header_wins_over_the_name_and_the_table_over_both():
 
 
 @pytest.mark.parametrize(
-    ("content", "said"),
+    ("content", "message"),
     [
         (
             {"from_file_name": {"pattern": "curl(?P<a>.)"}},
-            "finds nothing in 'L_4/bend180_0,5Hz.csv'",
+            "does not match 'L_4/bend180_0,5Hz.csv'",
         ),
-        ({"from_header": {"pattern": "x"}}, "finds nothing"),
+        ({"from_header": {"pattern": "x"}}, "does not match"),
         ({"id": "{steam}"}, "did you mean stem?"),
         (
             {"from_file_name": NAME, "conditions": {"preload_N": {"from": "bond", "unit": "N"}}},
@@ -86,7 +86,7 @@ def test_the_header_wins_over_the_name_and_the_table_over_both():
         ),
         (
             {"from_file_name": NAME, "conditions": {"preload_N": {"from": "bend", "unit": "deg"}}},
-            "run.conditions.preload_N of the map: unit 'deg' cannot become N",
+            "run.conditions.preload_N of the map: unit 'deg' is not convertible to N",
         ),
         (
             {
@@ -97,15 +97,17 @@ def test_the_header_wins_over_the_name_and_the_table_over_both():
         ),
     ],
 )
-def test_what_is_wrong_is_said(content, said):
+def test_what_is_wrong_is_reported(content, message):
     with pytest.raises(InputError) as error:
         conditions(**content)
-    assert said in error.value.line()
+    assert message in error.value.line()
 
 
 def test_a_pattern_that_would_look_for_ever_is_given_up(monkeypatch):
-    monkeypatch.setattr("tsas_cli.recordings.conditions.PATIENCE_S", 0.2)
-    with pytest.raises(InputError, match=r"still looking in 'rig/a+' after 0.2 s; repetitions"):
+    monkeypatch.setattr("tsas_cli.recordings.conditions.SEARCH_TIMEOUT_S", 0.2)
+    with pytest.raises(
+        InputError, match=r"has not finished searching 'rig/a+' after 0.2 s; nested"
+    ):
         conditions(
             path=Path(f"/rig/{'a' * 40}"), from_file_name={"pattern": r"(?P<no>(a|aa|a)+)\d$"}
         )

@@ -199,8 +199,10 @@ def test_a_value_that_no_rig_has_is_named_with_its_row(
 ) -> None:
     columns[column][12] = value
     put(dataset, pa.table(columns))
-    said = refusal(dataset)
-    assert said.startswith(f", row 12: {column} is {value:g}; expected a size of at most {most}")
+    message = refusal(dataset)
+    assert message.startswith(
+        f", row 12: {column} is {value:g}; expected a magnitude of at most {most}"
+    )
     entry = read_dataset(dataset).runs[0]
     assert read_recording(dataset, entry, strict=False).columns[column][12] == value
 
@@ -210,13 +212,15 @@ def test_time_in_steps_that_no_clock_has_is_named_with_its_row(
     dataset: Path, columns: Columns, scale: float
 ) -> None:
     put(dataset, pa.table(columns | {"time_s": scale * columns["time_s"]}))
-    assert refusal(dataset).startswith(", row 1: time_s goes on by ")
+    assert refusal(dataset).startswith(", row 1: time_s increases by ")
 
 
 def test_one_step_that_no_clock_has_is_named_with_its_row(dataset: Path, columns: Columns) -> None:
     columns["time_s"][:2] = 0.0, 5e-324
     put(dataset, pa.table(columns))
-    assert refusal(dataset).startswith(", row 1: time_s goes on by 4.94066e-324 s; expected steps")
+    assert refusal(dataset).startswith(
+        ", row 1: time_s increases by 4.94066e-324 s; expected steps"
+    )
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf, None])
@@ -261,7 +265,7 @@ def test_a_column_whose_metadata_name_another_unit_is_refused(
     dataset: Path, columns: Columns, name: str, unit: str, expected: str
 ) -> None:
     say(dataset, columns, **{name: unit})
-    assert refusal(dataset) == f": column {name} says that its unit is {unit}; expected {expected}"
+    assert refusal(dataset) == f": column {name} has the unit {unit}; expected {expected}"
 
 
 def test_a_unit_may_be_spelled_in_other_ways(dataset: Path, columns: Columns) -> None:
@@ -274,7 +278,7 @@ def test_a_unit_may_be_spelled_in_other_ways(dataset: Path, columns: Columns) ->
 def test_a_column_that_is_there_twice_is_refused(dataset: Path, columns: Columns) -> None:
     force = pa.array(columns["f_in_N"])
     put(dataset, pa.table(columns).append_column("f_in_N", force))
-    assert refusal(dataset) == ": column f_in_N is there twice"
+    assert refusal(dataset) == ": duplicate column f_in_N"
 
 
 def test_chosen_runs_come_in_the_order_of_the_manifest(tmp_path: Path, columns: Columns) -> None:
@@ -298,12 +302,12 @@ def test_chosen_runs_come_in_the_order_of_the_manifest(tmp_path: Path, columns: 
 
 def test_other_conditions_are_said_of_every_run_and_stay_on_record(dataset: Path) -> None:
     whole = read_dataset(dataset)
-    told = whole.under(total_bend_rad=1.5, preload_N=20.0)
-    (recording,) = told
+    changed = whole.under(total_bend_rad=1.5, preload_N=20.0)
+    (recording,) = changed
     assert (recording.run.total_bend_rad, recording.run.preload_N) == (1.5, 20.0)
     assert recording.run.sheath_length_mm is None
-    assert told.under(preload_N=10.0).conditions == {"total_bend_rad": 1.5, "preload_N": 10.0}
-    assert told.header(None) == whole.header(None) | {
+    assert changed.under(preload_N=10.0).conditions == {"total_bend_rad": 1.5, "preload_N": 10.0}
+    assert changed.header(None) == whole.header(None) | {
         "conditions": {"total_bend_rad": 1.5, "preload_N": 20.0}
     }
     with pytest.raises(InputError, match="unknown condition bend; known are sheath_length_mm"):

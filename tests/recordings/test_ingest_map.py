@@ -38,7 +38,7 @@ def test_the_smallest_map_and_the_columns_it_takes(ask):
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "message"),
     [
         (WHOLE.replace("f_in_N", "f_in_n"), "unknown column f_in_n (did you mean f_in_N?)"),
         (WHOLE + "ofset = 1\n", "columns.f_in_N.ofset (did you mean offset?)"),
@@ -63,14 +63,14 @@ def test_the_smallest_map_and_the_columns_it_takes(ask):
         ("[dataset", "is not TOML"),
     ],
 )
-def test_what_is_wrong_is_said_with_the_nearest_known_word(ask, text, said):
+def test_what_is_wrong_is_reported_with_the_nearest_known_word(ask, text, message):
     with pytest.raises(InputError) as error:
         ask(text)
-    assert said in error.value.line()
+    assert message in error.value.line()
     assert "map.toml" in error.value.line()
 
 
-def test_a_missing_map_is_said(tmp_path):
+def test_a_missing_map_is_reported(tmp_path):
     with pytest.raises(InputError, match="cannot be read"):
         read_map(tmp_path / "none.toml")
 

@@ -92,17 +92,17 @@ def test_a_comment_far_down_is_left_out_as_one_at_the_top_is(tmp_path, parts):
 
 
 @pytest.mark.parametrize(
-    ("at", "line", "said"),
+    ("at", "line", "message"),
     [
         (600, "5,0,0,0\n", r"row 602: the time does not increase \(0.599 s, then 0.005 s\)"),
         (640, "x,0,0,0\n", r"row 642: column t holds 'x'; expected a number"),
         (500, ",0,0,0\n", r"row 502: the time is empty"),
     ],
 )
-def test_a_fault_far_down_is_said_with_its_row(tmp_path, parts, at, line, said):
+def test_a_fault_far_down_is_reported_with_its_row(tmp_path, parts, at, line, message):
     parts(100)
     text = lines(repeats=False)
-    with pytest.raises(InputError, match=said):
+    with pytest.raises(InputError, match=message):
         made(tmp_path, "parts", [*text[:at], line, *text[at:]], drop="false")
 
 
@@ -113,5 +113,5 @@ def test_time_that_stands_between_two_parts_is_seen(tmp_path, parts):
 
 
 def test_rows_that_are_all_the_same_are_no_recording(tmp_path):
-    with pytest.raises(InputError, match="all rows are the same"):
+    with pytest.raises(InputError, match="all rows are identical"):
         made(tmp_path, "a", ["1,2,3,4\n"] * 5)

@@ -61,9 +61,11 @@ def test_a_manifest_says_what_was_written_by_hand(tmp_path: Path) -> None:
     assert (a.load, b.load) == ("spring", "force")
 
 
-@pytest.mark.parametrize("said", ["2024-01-31", '"2024-01-31"', '"20240131"', '"20240131T00:00"'])
-def test_a_day_is_a_date_with_dashes_and_without(tmp_path: Path, said: str) -> None:
-    manifest = read(tmp_path, TEXT.replace(STARTED, f"started = {said}"))
+@pytest.mark.parametrize(
+    "message", ["2024-01-31", '"2024-01-31"', '"20240131"', '"20240131T00:00"']
+)
+def test_a_day_is_a_date_with_dashes_and_without(tmp_path: Path, message: str) -> None:
+    manifest = read(tmp_path, TEXT.replace(STARTED, f"started = {message}"))
     assert manifest.run[0].started == dt.datetime.fromisoformat("2024-01-31")
 
 
@@ -140,11 +142,11 @@ def test_an_id_that_cannot_name_a_file_is_refused(tmp_path: Path, name: str) -> 
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "told"),
+    ("old", "new", "message"),
     [
         ("format = 1", "format = 2", "format: .*1.*got 2"),
         ("format = 1\n", "", "format is missing"),
-        ('id = "b"', 'id = "a"', "run id 'a' is there twice"),
+        ('id = "b"', 'id = "a"', "duplicate run id 'a'"),
         (SHA, "abc", "run.0.sha256: "),
         (SHA, "g" * 64, "run.0.sha256: "),
         ('load = "force"', 'load = "weight"', "run.1.load: .*'spring', 'force' or 'displacement'"),
@@ -164,9 +166,9 @@ def test_an_id_that_cannot_name_a_file_is_refused(tmp_path: Path, name: str) -> 
     ],
 )
 def test_what_format_1_does_not_allow_is_refused(
-    tmp_path: Path, old: str, new: str, told: str
+    tmp_path: Path, old: str, new: str, message: str
 ) -> None:
-    with pytest.raises(InputError, match=told):
+    with pytest.raises(InputError, match=message):
         read(tmp_path, TEXT.replace(old, new))
 
 

@@ -21,12 +21,12 @@ def test_every_row_is_read_and_a_small_part_is_held(dataset, monkeypatch):
     pq.write_table(table, dataset / run.file, row_group_size=GROUP)
     run = run.model_copy(update={"sha256": sha256_of(dataset / run.file)})
     monkeypatch.setattr(reading, "MOST_ROWS", GROUP)
-    before, held, seen = pa.total_allocated_bytes(), [], []
+    before, allocated, seen = pa.total_allocated_bytes(), [], []
     for piece in reading.pieces(open_run(dataset, run), table.column_names):
-        held.append(pa.total_allocated_bytes() - before)
+        allocated.append(pa.total_allocated_bytes() - before)
         seen.append(piece.columns["f_in_N"])
     assert (np.concatenate(seen) == values["f_in_N"]).all()
-    assert max(held) < (dataset / run.file).stat().st_size / 10
+    assert max(allocated) < (dataset / run.file).stat().st_size / 10
 
 
 def test_a_value_that_no_rig_has_is_named_with_its_row_in_the_run(dataset, monkeypatch):

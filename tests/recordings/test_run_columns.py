@@ -48,21 +48,21 @@ def test_a_file_that_has_changed_is_refused(dataset, columns):
 
 
 @pytest.mark.parametrize(
-    ("table", "said"),
+    ("table", "message"),
     [
         ({"f_in_N": [1.0, 2.0]}, "time_s is missing"),
         ({"time_s": [0.0], "f_in_N": [1.0]}, "short"),
     ],
 )
-def test_a_file_without_time_is_refused(dataset, table, said):
-    with pytest.raises(InputError, match=said):
+def test_a_file_without_time_is_refused(dataset, table, message):
+    with pytest.raises(InputError, match=message):
         rewritten(dataset, pa.table(table))
 
 
 def test_another_unit_is_refused_before_anything_is_read(dataset):
     field = pa.field("f_in_N", pa.float64(), metadata={"unit": "mm"})
     schema = pa.schema([pa.field("time_s", pa.float64()), field])
-    with pytest.raises(InputError, match="says that its unit is mm"):
+    with pytest.raises(InputError, match="has the unit mm"):
         rewritten(dataset, pa.table({"time_s": [0.0, 1.0], "f_in_N": [1.0, 2.0]}, schema=schema))
 
 
@@ -72,7 +72,7 @@ def test_time_that_runs_backwards_is_refused_when_it_is_read(dataset):
         run.read("time_s")
 
 
-def test_what_is_no_parquet_is_said(dataset):
+def test_what_is_no_parquet_is_reported(dataset):
     run = read_dataset(dataset).runs[0]
     (dataset / run.file).write_text("no")
     with pytest.raises(InputError, match="cannot be read as Parquet"):

@@ -1,6 +1,6 @@
 import pytest
 
-from tsas_cli.recordings.run_names import beside, check_run_name
+from tsas_cli.recordings.run_names import check_run_name, colliding_names
 
 
 @pytest.mark.parametrize(
@@ -35,7 +35,7 @@ def test_marks_that_windows_does_not_allow(name):
 
 
 def test_names_that_are_one_file_elsewhere():
-    assert beside(["a", "b", "c"]) is None
-    assert beside(["a", "b", "A"]) == ("a", "A")
-    assert beside(["\u00e9", "e\u0301"]) == ("\u00e9", "e\u0301")
-    assert beside(["stra\u00dfe", "STRASSE"]) == ("stra\u00dfe", "STRASSE")
+    assert colliding_names(["a", "b", "c"]) is None
+    assert colliding_names(["a", "b", "A"]) == ("a", "A")
+    assert colliding_names(["\u00e9", "e\u0301"]) == ("\u00e9", "e\u0301")
+    assert colliding_names(["stra\u00dfe", "STRASSE"]) == ("stra\u00dfe", "STRASSE")

@@ -87,21 +87,21 @@ def test_a_factor_says_what_counts_and_volts_are():
 
 
 @pytest.mark.parametrize(
-    ("unit", "to", "said"),
+    ("unit", "to", "message"),
     [
-        ("mm", "N", "cannot become N; expected a force"),
-        ("N", "mm", "cannot become mm; expected a length"),
-        ("Nm", "N", "a torque needs pulley_radius_mm"),
-        ("deg", "mm", "an angle needs pulley_radius_mm"),
+        ("mm", "N", "is not convertible to N; expected a force"),
+        ("N", "mm", "is not convertible to mm; expected a length"),
+        ("Nm", "N", "set pulley_radius_mm to convert a torque"),
+        ("deg", "mm", "set pulley_radius_mm to convert an angle"),
         ("counts", "mm", "factor and factor_unit"),
         ("V", "N", "factor and factor_unit"),
-        ("lb", "mm", "cannot become mm"),
-        ("%", "rad", "cannot become rad"),
+        ("lb", "mm", "is not convertible to mm"),
+        ("%", "rad", "is not convertible to rad"),
         ("Hz", "rpm", "turn/s or rad/s"),
         ("1/s", "rpm", "turn/s or rad/s"),
         ("quux", "mm", "is unknown"),
-        ("", "mm", "cannot become mm"),
-        ("delta_degC", "°C", "cannot become °C"),
+        ("", "mm", "is not convertible to mm"),
+        ("delta_degC", "°C", "is not convertible to °C"),
         ("m,m", "mm", "is unknown"),
         ("m*" * 60 + "m", "mm", "is unknown"),
         # What would be worked out to more digits than any memory holds:
@@ -113,19 +113,19 @@ def test_a_factor_says_what_counts_and_volts_are():
         ("au", "mm", "is unknown"),  # of arbitrary units, not astronomical
         ("mil", "rad", "is unknown"),  # 0.001 inch in a workshop, an angle in an army
         # An angle is no number, though pint gives it no dimension:
-        ("mm/deg", "mm", "cannot become mm"),
-        ("mm rad", "mm", "cannot become mm"),
-        ("deg^2", "rad", "cannot become rad"),
-        ("1/deg", "rad", "cannot become rad"),
-        ("rad/deg", "rad", "cannot become rad"),
-        ("rad^2/s", "rpm", "cannot become rpm"),
+        ("mm/deg", "mm", "is not convertible to mm"),
+        ("mm rad", "mm", "is not convertible to mm"),
+        ("deg^2", "rad", "is not convertible to rad"),
+        ("1/deg", "rad", "is not convertible to rad"),
+        ("rad/deg", "rad", "is not convertible to rad"),
+        ("rad^2/s", "rpm", "is not convertible to rpm"),
         ("km^999", "mm", "is unknown"),  # more than a float holds
     ],
 )
-def test_what_does_not_fit_is_refused_with_what_to_add(unit, to, said):
+def test_what_does_not_fit_is_refused_with_what_to_add(unit, to, message):
     with pytest.raises(InputError) as error:
         conversion(unit, to, where="map.toml, columns.a")
-    assert said in error.value.line()
+    assert message in error.value.line()
     assert error.value.line().startswith("map.toml, columns.a: ")
 
 
@@ -143,9 +143,9 @@ def test_no_character_of_a_unit_is_passed_over(where, sign):
 
 def test_an_angle_in_a_factor_is_no_number():
     for per in ("mm/deg", "mm/turn"):
-        with pytest.raises(InputError, match="cannot become mm"):
+        with pytest.raises(InputError, match="is not convertible to mm"):
             conversion("deg", "mm", factor=0.2, factor_unit=per)
-    with pytest.raises(InputError, match="cannot become N"):
+    with pytest.raises(InputError, match="is not convertible to N"):
         conversion("N m/deg", "N", pulley_radius_mm=5)
 
 

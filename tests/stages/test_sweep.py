@@ -205,7 +205,7 @@ def test_the_closed_loop_takes_model_plant_and_settings(tmp_path):
 def test_a_folder_of_something_else_is_not_touched(base, tmp_path):
     plan = {"stage": "check", "datasets": str(base / "rigs/a")}
     before = written(base / "rigs/a")
-    with pytest.raises(tsas.InputError, match="is read, and would be replaced"):
+    with pytest.raises(tsas.InputError, match="is an input, and would be replaced"):
         tsas.sweep(plan, out=base / "rigs/a", force=True)
     assert written(base / "rigs/a") == before
     (tmp_path / "file").touch()

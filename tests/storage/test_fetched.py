@@ -56,7 +56,7 @@ def test_a_recording_is_fetched_once_and_whole(large, wire):
 
 def test_of_what_was_fetched_the_latest_is_kept(large, tmp_path, bucket, wire, monkeypatch):
     folder, address = large
-    monkeypatch.setattr(fetched, "HELD", 1.5 * (folder / "runs/a.parquet").stat().st_size)
+    monkeypatch.setattr(fetched, "CACHE_BYTES", 1.5 * (folder / "runs/a.parquet").stat().st_size)
     tsas.upload(folder, f"{bucket}/other")
     for _ in range(2):
         wire.reset()
@@ -68,7 +68,7 @@ def test_of_what_was_fetched_the_latest_is_kept(large, tmp_path, bucket, wire, m
 
 def test_a_recording_larger_than_one_request_is_whole(large, wire, monkeypatch):
     folder, address = large
-    monkeypatch.setattr(fetched, "PART", 1_000_000)
+    monkeypatch.setattr(fetched, "REQUEST_BYTES", 1_000_000)
     there, here = (read_dataset(place)["a"].columns for place in (address, folder))
     np.testing.assert_array_equal(there["f_out_N"], here["f_out_N"])
     size = (folder / "runs/a.parquet").stat().st_size
@@ -94,7 +94,7 @@ def test_one_wrong_byte_is_told_as_for_a_folder(large, bucket):
 def test_where_there_is_no_room_it_is_said(large, monkeypatch):
     _, address = large
     monkeypatch.setattr(fetched.tempfile, "TemporaryFile", Full)
-    with pytest.raises(InputError, match="cannot be kept while it is read"):
+    with pytest.raises(InputError, match="cannot be stored while it is read"):
         read_dataset(address)["a"]
 
 

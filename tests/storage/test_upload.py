@@ -32,7 +32,7 @@ def delete(address):
 def test_what_belongs_to_no_dataset_is_not_replaced(dataset, bucket):
     there = place_of(f"{bucket}/bench")
     (there / "runs/a.parquet").write_bytes(b"of somebody else")
-    with pytest.raises(InputError, match="was not put there by `tsas upload`"):
+    with pytest.raises(InputError, match="was not written by `tsas upload`"):
         tsas.upload(dataset, f"{bucket}/bench", force=True)
     assert (there / "runs/a.parquet").read_bytes() == b"of somebody else"
     assert not (there / "dataset.toml").is_file()

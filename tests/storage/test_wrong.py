@@ -32,7 +32,7 @@ def test_no_credentials(bucket, monkeypatch):
     monkeypatch.delenv("AWS_SECRET_ACCESS_KEY")
     forget()
     assert line_of(f"{bucket}/x").startswith(
-        f"{bucket}/x/dataset.toml: there are no credentials for it; set them"
+        f"{bucket}/x/dataset.toml: no credentials found; set them"
     )
 
 
@@ -77,12 +77,12 @@ def test_a_wire_that_breaks_while_a_recording_is_read(dataset, bucket, wire):
     [
         (f"s3://{KEY}:{SECRET}@bucket/x", "s3://bucket/x: an address with a key, a password"),
         (f"s3://bucket/x?X-Amz-Signature={SECRET}", "s3://bucket/x: an address with a key"),
-        ("http://host/x", "http://host/x: http:// is no storage that is known; expected a folder"),
+        ("http://host/x", "http://host/x: http:// is no known storage; expected a folder"),
         (f"s3://{KEY}:{SECRET}@[x/y", "s3://…: is no address; expected SCHEME://BUCKET/PATH"),
         ("s3://a\u2100b/x", "s3://…: is no address"),
         ("file://[x", "file://…: is no address"),
-        ("s3:///x", "s3:///x: is no place in a bucket"),
-        ("s3://bucket/a/../../other", "s3://bucket/a/../../other: is no place in a bucket"),
+        ("s3:///x", "s3:///x: names no object in a bucket"),
+        ("s3://bucket/a/../../other", "s3://bucket/a/../../other: names no object in a bucket"),
     ],
 )
 def test_addresses_that_are_none(address, line):

@@ -79,7 +79,7 @@ def test_what_is_loaded_whole_has_to_fit_into_the_memory(tmp_path, monkeypatch):
     memory.fits(tmp_path / "a.mat", 1_000_000_000)
     line = refusal(memory.fits, tmp_path / "a.mat", 2_000_000_000)
     assert line.endswith(
-        "takes 2 GB of memory, and 1 GB are there; use a larger machine, or export it as CSV or "
+        "needs 2 GB of memory, and 1 GB are free; use a larger machine, or export it as CSV or "
         "Parquet"
     )
 
@@ -104,18 +104,18 @@ def test_a_recording_of_an_even_clock_and_channels_at_rest_is_taken(tmp_path, pa
     with open_parquet(path) as file:
         check_size(file, path, tuple(table), whole=True)
         monkeypatch.setattr(limits, "PARQUET_EXPANSION", 10)
-        said = refusal(lambda: check_size(file, path, tuple(table), whole=False))
-    assert "1000000 rows" in said
+        numbers = refusal(lambda: check_size(file, path, tuple(table), whole=False))
+    assert "1000000 rows" in numbers
 
 
 def test_the_page_states_the_limits():
     text = (ROOT / "docs/untrusted.md").read_text(encoding="utf-8").replace(",", "")
-    said = {int(n) for n in re.findall(r"\d+", text)}
+    numbers = {int(n) for n in re.findall(r"\d+", text)}
     mib = {limits.TOML_BYTES, limits.LINE, limits.HEADER, limits.FOOTER, limits.HARMLESS}
     assert limits.JSON_BYTES == 1 << 30
-    assert {n // limits.MIB for n in mib} <= said
+    assert {n // limits.MIB for n in mib} <= numbers
     stated = (
         limits.TOML_KEYS, limits.JSON_EXPANDS, limits.DEPTH, limits.RUNS, limits.UNKNOWN_KEYS,
         limits.COLUMNS, limits.NAME, limits.EXPANSION, limits.PARQUET_EXPANSION, limits.ITEMS,
     )  # fmt: skip
-    assert set(stated) <= said
+    assert set(stated) <= numbers

@@ -180,14 +180,14 @@ def test_an_input_and_what_holds_it_is_not_replaced(tmp_path, read, given, out):
     fill(tmp_path / "home")
     write_sums(tmp_path / "home")
     block = folder_of(tmp_path / out, inputs=[tmp_path / given], force=True)
-    refused(block, "is read, and would be replaced")
+    refused(block, "is an input, and would be replaced")
 
 
 @pytest.mark.parametrize("given", ["home/read", "link"])
 @pytest.mark.parametrize("out", WITHIN)
 def test_what_lies_inside_an_input_is_not_replaced(tmp_path, read, given, out):
     block = folder_of(tmp_path / out, inputs=[tmp_path / given], force=True)
-    refused(block, "lies inside .*, which is read")
+    refused(block, "lies inside .*, which is an input")
 
 
 @pytest.mark.parametrize("out", ["home/read/page", "link/page", "file"])
@@ -195,7 +195,7 @@ def test_what_lies_inside_an_input_is_not_replaced(tmp_path, read, given, out):
 def test_a_file_that_is_read_is_not_replaced(tmp_path, read, given, out):
     refused(
         file_of(tmp_path / out, inputs=[tmp_path / given], force=True),
-        "is read, and would be replaced|which is read",
+        "is an input, and would be replaced|which is an input",
     )
 
 
@@ -203,7 +203,7 @@ def test_another_name_of_the_same_file_is_not_replaced(tmp_path, read):
     (tmp_path / "twin").hardlink_to(read / "page")
     refused(
         file_of(tmp_path / "twin", inputs=[read / "page"], force=True),
-        "is read, and would be replaced",
+        "is an input, and would be replaced",
     )
 
 

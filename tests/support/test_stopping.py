@@ -9,16 +9,16 @@ from tsas_cli.support.stopping import Stopped, cleaned_up_when_stopped, until_st
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_request_to_end_is_the_end_of_the_block(number):
-    said = []
+    events = []
     with until_stopped():
         try:
             os.kill(os.getpid(), number)
             time.sleep(5)
-            said.append("still there")
+            events.append("still there")
         finally:
             os.kill(os.getpid(), number)  # an impatient person
-            said.append("cleaned up")
-    assert said == ["cleaned up"]
+            events.append("cleaned up")
+    assert events == ["cleaned up"]
 
 
 def test_other_errors_are_no_end():
@@ -51,16 +51,16 @@ def test_what_is_ignored_stays_ignored():
 
 
 def test_a_request_that_a_library_has_lost_can_be_made_again(monkeypatch):
-    monkeypatch.setattr("tsas_cli.support.stopping.CLEANING_S", 0.1)
-    said = []
+    monkeypatch.setattr("tsas_cli.support.stopping.CLEANUP_S", 0.1)
+    events = []
     with until_stopped():
         try:
             os.kill(os.getpid(), signal.SIGINT)
         except Stopped:
-            said.append("lost")  # as a destructor does
+            events.append("lost")  # as a destructor does
         os.kill(os.getpid(), signal.SIGTERM)  # too soon
-        said.append("goes on")
+        events.append("goes on")
         time.sleep(0.2)
         os.kill(os.getpid(), signal.SIGTERM)
-        said.append("goes on for ever")
-    assert said == ["lost", "goes on"]
+        events.append("goes on for ever")
+    assert events == ["lost", "goes on"]

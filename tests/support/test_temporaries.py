@@ -171,17 +171,17 @@ def two_at_once(path: Path, force: str, kind: str) -> list[tuple[int, str]]:
         assert process.stdout.readline() == "there\n"
     ended = []
     for process in reversed(processes):
-        _, said = process.communicate("\n", timeout=30)
-        ended.append((process.returncode, said))
+        _, stderr = process.communicate("\n", timeout=30)
+        ended.append((process.returncode, stderr))
     return ended
 
 
 @pytest.mark.parametrize("kind", ["folder", "file"])
 def test_of_two_at_once_one_wins_and_the_other_says_so(tmp_path: Path, kind: str) -> None:
-    (won, _), (lost, said) = two_at_once(tmp_path / "out", "", kind)
+    (won, _), (lost, stderr) = two_at_once(tmp_path / "out", "", kind)
     assert (won, lost) == (0, 2)
-    assert "already exists" in said
-    assert said.count("\n") == 1
+    assert "already exists" in stderr
+    assert stderr.count("\n") == 1
     result = tmp_path / "out" / "result" if kind == "folder" else tmp_path / "out"
     assert result.read_text() == "mine, second"
     assert names(tmp_path) == ["out"]

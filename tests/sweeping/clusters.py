@@ -41,11 +41,11 @@ class Cluster:
             return len(client.scheduler_info(n_workers=-1)["workers"])
 
     def _start(self, call, environment):
-        told = os.environ | {"PYTHONPATH": str(ROOT)} | environment
+        variables = os.environ | {"PYTHONPATH": str(ROOT)} | environment
         with (self.folder / f"{len(self.processes)}.log").open("w") as log:
             process = subprocess.Popen(
                 [sys.executable, "-m", "dask", *map(str, call)],
-                env=told,
+                env=variables,
                 cwd=self.folder,
                 stdout=log,
                 stderr=log,

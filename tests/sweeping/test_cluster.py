@@ -67,8 +67,8 @@ def texts(numbers, **more):
     return [json.dumps({"number": number, **more}) for number in numbers]
 
 
-def answered(made, work, told, shared):
-    return dict(on_cluster(f"{WORKS}:{work}", told, made.address, shared))
+def outcomes_of(made, work, content, shared):
+    return dict(on_cluster(f"{WORKS}:{work}", content, made.address, shared))
 
 
 def files(folder):
@@ -78,9 +78,9 @@ def files(folder):
 def test_every_task_is_answered_and_both_workers_share(two, shared, tmp_path):
     marks = tmp_path / "marks"
     marks.mkdir()
-    answers = answered(two, "slow", texts(range(6), folder=str(marks), seconds=0.1), shared)
-    assert [answers[n]["results"]["square"] for n in range(6)] == [0, 1, 4, 9, 16, 25]
-    assert len({answer["where"] for answer in answers.values()}) == 2
+    outcomes = outcomes_of(two, "slow", texts(range(6), folder=str(marks), seconds=0.1), shared)
+    assert [outcomes[n]["results"]["square"] for n in range(6)] == [0, 1, 4, 9, 16, 25]
+    assert len({outcome["where"] for outcome in outcomes.values()}) == 2
 
 
 def test_files_are_the_same_as_by_local_processes_and_a_task_may_fail(two, recordings, tmp_path):
@@ -118,25 +118,25 @@ def test_a_worker_killed_in_the_middle_loses_nothing(two, shared, tmp_path):
 
     killer = Thread(target=kill_one)
     killer.start()
-    answers = answered(two, "slow", texts(range(8), folder=str(marks), seconds=0.4), shared)
+    outcomes = outcomes_of(two, "slow", texts(range(8), folder=str(marks), seconds=0.4), shared)
     killer.join()
-    assert [answers[n]["results"]["square"] for n in range(8)] == [n**2 for n in range(8)]
+    assert [outcomes[n]["results"]["square"] for n in range(8)] == [n**2 for n in range(8)]
     number = killed[0].split("-")[0]
     assert len(list(marks.glob(f"{number}-*"))) == 2  # it was begun, and begun again elsewhere
 
 
 def test_a_task_that_raises_is_reported_and_the_rest_completes(two, shared):
-    answers = answered(two, "one_raises", texts(range(4)), shared)
-    assert answers.pop(2)["error"] == "ValueError: two"
-    assert [answers[n]["state"] for n in sorted(answers)] == ["done"] * 3
+    outcomes = outcomes_of(two, "one_raises", texts(range(4)), shared)
+    assert outcomes.pop(2)["error"] == "ValueError: two"
+    assert [outcomes[n]["state"] for n in sorted(outcomes)] == ["done"] * 3
 
 
 def test_who_stops_reading_takes_back_what_nobody_has_begun(two, shared, tmp_path):
     marks = tmp_path / "marks"
     marks.mkdir()
-    told = texts(range(40), folder=str(marks), seconds=0.1)
-    with closing(on_cluster(f"{WORKS}:slow", told, two.address, shared)) as answers:
-        next(answers)
+    content = texts(range(40), folder=str(marks), seconds=0.1)
+    with closing(on_cluster(f"{WORKS}:slow", content, two.address, shared)) as outcomes:
+        next(outcomes)
     time.sleep(0.5)
     begun = len(list(marks.iterdir()))
     assert begun < 20
@@ -146,12 +146,12 @@ def test_who_stops_reading_takes_back_what_nobody_has_begun(two, shared, tmp_pat
 
 def test_a_worker_that_does_not_see_the_folder_is_named(two, tmp_path):
     with pytest.raises(tsas.InputError, match=r"worker tcp://\S+ does not see .*/nowhere;"):
-        answered(two, "squared", texts([1]), tmp_path / "nowhere" / "journal.jsonl")
+        outcomes_of(two, "squared", texts([1]), tmp_path / "nowhere" / "journal.jsonl")
 
 
 def test_no_scheduler_is_one_line(monkeypatch, shared):
-    monkeypatch.setattr("tsas_cli.sweeping.cluster.PATIENCE_S", 0.5)
-    with pytest.raises(tsas.InputError, match="no scheduler answers; expected a running"):
+    monkeypatch.setattr("tsas_cli.sweeping.cluster.CONNECT_TIMEOUT_S", 0.5)
+    with pytest.raises(tsas.InputError, match="no scheduler responds; expected a running"):
         dict(on_cluster(f"{WORKS}:squared", texts([1]), f"tcp://{HERE}:9", shared))
 
 
@@ -174,7 +174,7 @@ def test_what_is_no_address_is_refused_before_anybody_is_asked(address, shared):
 
 
 def test_without_certificates_tls_is_refused_before_anybody_is_asked(shared):
-    with pytest.raises(tsas.InputError, match="Dask knows no TLS certificates; name them"):
+    with pytest.raises(tsas.InputError, match="Dask has no TLS certificates; name them"):
         dict(on_cluster(f"{WORKS}:squared", texts([1]), "tls://x:1", shared))
 
 
@@ -187,16 +187,16 @@ def test_without_dask_the_line_says_what_to_install(monkeypatch, shared):
 def test_a_cluster_that_would_do_it_otherwise_is_refused(tmp_path, shared):
     with cluster(tmp_path / "cluster") as made:
         with pytest.raises(tsas.InputError, match="has no workers; start some with `OPENBLAS_NUM"):
-            answered(made, "squared", texts([1]), shared)
+            outcomes_of(made, "squared", texts([1]), shared)
         worker = made.add(threads=2)
         with pytest.raises(tsas.InputError, match="does 2 tasks at once in one process"):
-            answered(made, "squared", texts([1]), shared)
+            outcomes_of(made, "squared", texts([1]), shared)
         worker.terminate()
         worker.wait()
         other = other_version(tmp_path / "other")
         made.add(PYTHONPATH=f"{other}{os.pathsep}{ROOT}")
         with pytest.raises(tsas.InputError, match=r"worker tcp://\S+: tsas is 9.9.9; expected 0"):
-            answered(made, "squared", texts([1]), shared)
+            outcomes_of(made, "squared", texts([1]), shared)
 
 
 def test_a_worker_whose_algebra_takes_more_threads_is_named(shared):
@@ -218,13 +218,13 @@ def test_what_ends_workers_or_the_scheduler_is_told(tmp_path, shared):
     with cluster(tmp_path / "cluster", DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES="0") as made:
         made.add()
         made.add()
-        answers = answered(made, "one_always_kills", texts(range(4)), shared)
-        assert answers.pop(2)["error"] == "the process died"
+        outcomes = outcomes_of(made, "one_always_kills", texts(range(4)), shared)
+        assert outcomes.pop(2)["error"] == "the process died"
         # With no failure allowed, what waited on that worker may be given up with it.
-        others = [answer["error"] for answer in answers.values() if answer["state"] != "done"]
+        others = [outcome["error"] for outcome in outcomes.values() if outcome["state"] != "done"]
         assert len(others) < 3
         assert set(others) <= {"the process died"}
-        told = texts(range(3), folder=str(marks), seconds=0.5)
+        content = texts(range(3), folder=str(marks), seconds=0.5)
 
         def kill():
             wait_for(lambda: any(marks.iterdir()))
@@ -232,8 +232,10 @@ def test_what_ends_workers_or_the_scheduler_is_told(tmp_path, shared):
 
         killer = Thread(target=kill)
         killer.start()
-        with pytest.raises(tsas.InputError, match="the scheduler is gone; what is done stays"):
-            answered(made, "slow", told, shared)
+        with pytest.raises(
+            tsas.InputError, match="the scheduler has ended; completed tasks are kept"
+        ):
+            outcomes_of(made, "slow", content, shared)
         killer.join()
     for name in ("core", "client", "comm.tcp"):  # one line says it, and the library nothing
         assert not logging.getLogger(f"distributed.{name}").isEnabledFor(logging.ERROR)
@@ -243,6 +245,6 @@ def other_version(folder):
     """Return a folder with a tsas of another version."""
     shutil.copytree(ROOT / "tsas_cli", folder / "tsas_cli", ignore=shutil.ignore_patterns("*.pyc"))
     init = folder / "tsas_cli" / "support" / "__init__.py"
-    told = init.read_text().replace(f'"{tsas.__version__}"', '"9.9.9"')
-    init.write_text(told)
+    content = init.read_text().replace(f'"{tsas.__version__}"', '"9.9.9"')
+    init.write_text(content)
     return folder

@@ -33,7 +33,7 @@ def test_a_journal_of_another_program_makes_no_sweep(tmp_path):
     (tmp_path / "journal.jsonl").write_text("{}")
     (tmp_path / "parameters.csv").write_text("mine")
     with (
-        pytest.raises(InputError, match="holds something else than an earlier sweep"),
+        pytest.raises(InputError, match="is no folder of an earlier sweep"),
         sweep_folder(tmp_path, []),
     ):
         pass
@@ -47,7 +47,7 @@ def test_a_sweep_is_not_written_around_what_it_reads(tmp_path, place):
         (tmp_path / "out" / "link").symlink_to(folder / "a")
     read = tmp_path / "out" / place / ("model.toml" if place != "." else "tasks/a/model.toml")
     with (
-        pytest.raises(InputError, match="is read, and would be replaced"),
+        pytest.raises(InputError, match="is an input, and would be replaced"),
         sweep_folder(tmp_path / "out", [read]),
     ):
         pass
@@ -59,7 +59,7 @@ def test_a_folder_of_something_else_stays_as_it_is(tmp_path, other):
     path.parent.mkdir(exist_ok=True)
     path.touch()
     with (
-        pytest.raises(InputError, match="holds something else than an earlier sweep"),
+        pytest.raises(InputError, match="is no folder of an earlier sweep"),
         sweep_folder(tmp_path, []),
     ):
         pass
@@ -85,6 +85,6 @@ def test_a_full_disk_is_one_line(rigs):  # noqa: F811
 
 def test_a_folder_whose_name_is_no_text_is_refused(tmp_path):
     out = tmp_path / os.fsdecode(b"pp\xff")
-    with pytest.raises(InputError, match="its name is no text"), sweep_folder(out, []):
+    with pytest.raises(InputError, match="its name is not UTF-8"), sweep_folder(out, []):
         pytest.fail("the block must not run")
     assert list(tmp_path.iterdir()) == []

@@ -26,10 +26,10 @@ def texts(numbers, **more):
 
 
 def test_every_task_is_answered_by_its_number_on_as_many_processes_as_asked_for(tmp_path):
-    told = texts(range(6), folder=str(tmp_path), seconds=0.1)
-    answers = dict(in_processes(f"{WORKS}:slow", told, workers=2))
-    assert {n: answers[n]["results"]["square"] for n in answers} == {n: n**2 for n in range(6)}
-    assert len({answer["where"] for answer in answers.values()}) == 2
+    tasks = texts(range(6), folder=str(tmp_path), seconds=0.1)
+    outcomes = dict(in_processes(f"{WORKS}:slow", tasks, workers=2))
+    assert {n: outcomes[n]["results"]["square"] for n in outcomes} == {n: n**2 for n in range(6)}
+    assert len({outcome["where"] for outcome in outcomes.values()}) == 2
 
 
 def test_no_more_processes_begin_than_there_are_tasks(tmp_path):
@@ -37,23 +37,23 @@ def test_no_more_processes_begin_than_there_are_tasks(tmp_path):
 
 
 def test_what_a_worker_prints_is_no_answer():
-    answers = dict(in_processes(f"{WORKS}:said", texts([3, 4]), workers=1))
-    assert [answers[n]["results"]["square"] for n in (0, 1)] == [9, 16]
+    outcomes = dict(in_processes(f"{WORKS}:outcome_of", texts([3, 4]), workers=1))
+    assert [outcomes[n]["results"]["square"] for n in (0, 1)] == [9, 16]
 
 
 def test_a_worker_that_is_killed_loses_nothing(tmp_path):
-    told = texts(range(5), folder=str(tmp_path))
-    answers = dict(in_processes(f"{WORKS}:one_kills_once", told, workers=2))
+    tasks = texts(range(5), folder=str(tmp_path))
+    outcomes = dict(in_processes(f"{WORKS}:one_kills_once", tasks, workers=2))
     assert (tmp_path / "killed").exists()
-    assert [answers[n]["results"]["square"] for n in range(5)] == [0, 1, 4, 9, 16]
+    assert [outcomes[n]["results"]["square"] for n in range(5)] == [0, 1, 4, 9, 16]
 
 
 def test_a_task_that_kills_its_workers_is_reported_and_the_rest_completes():
-    answers = dict(in_processes(f"{WORKS}:one_always_kills", texts(range(5)), workers=2))
-    bad = answers.pop(2)
+    outcomes = dict(in_processes(f"{WORKS}:one_always_kills", texts(range(5)), workers=2))
+    bad = outcomes.pop(2)
     assert (bad["state"], bad["defect"]) == ("failed", True)
     assert bad["error"] == "the process died, 2 times: ended by SIGKILL"
-    assert [answers[n]["state"] for n in sorted(answers)] == ["done"] * 4
+    assert [outcomes[n]["state"] for n in sorted(outcomes)] == ["done"] * 4
 
 
 def test_a_machine_that_starts_no_more_processes_is_one_line(monkeypatch):
@@ -68,18 +68,18 @@ def test_a_machine_that_starts_no_more_processes_is_one_line(monkeypatch):
 
 
 def test_the_last_words_of_a_worker_say_why_it_ended():
-    answers = dict(in_processes(f"{WORKS}:one_raises", texts([1, 2]), workers=1))
-    assert answers[0]["state"] == "done"
-    assert answers[1]["error"] == "the process died, 2 times: ended with 1: ValueError: two"
+    outcomes = dict(in_processes(f"{WORKS}:one_raises", texts([1, 2]), workers=1))
+    assert outcomes[0]["state"] == "done"
+    assert outcomes[1]["error"] == "the process died, 2 times: ended with 1: ValueError: two"
 
 
 def test_who_stops_reading_answers_ends_the_workers_at_once(tmp_path):
-    told = texts(range(2), folder=str(tmp_path), seconds=0.0)
-    told += texts(range(2, 4), folder=str(tmp_path), seconds=600.0)
+    tasks = texts(range(2), folder=str(tmp_path), seconds=0.0)
+    tasks += texts(range(2, 4), folder=str(tmp_path), seconds=600.0)
     start = time.monotonic()
-    with closing(in_processes(f"{WORKS}:slow", told, workers=2)) as answers:
+    with closing(in_processes(f"{WORKS}:slow", tasks, workers=2)) as outcomes:
         for _ in range(2):
-            next(answers)
+            next(outcomes)
         while len(list(tmp_path.iterdir())) < 4:
             time.sleep(0.01)
     assert time.monotonic() - start < 60.0

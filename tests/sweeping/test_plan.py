@@ -67,11 +67,11 @@ def test_a_table_of_sets_is_taken_row_by_row(tmp_path, suffix):
 
 
 @pytest.mark.parametrize(
-    ("more", "said"),
+    ("more", "message"),
     [
         ({"stage": "report"}, "stage: input should be"),
-        ({"datasets": []}, "datasets is missing: simulate takes some"),
-        ({"stage": "track"}, "track takes no datasets"),
+        ({"datasets": []}, "datasets is missing: simulate needs at least one"),
+        ({"stage": "track"}, "track has no datasets"),
         ({"varied": {}}, "unknown key varied .did you mean vary"),
         ({"vary": {"nodes": []}}, "vary.nodes"),
         ({"vary": {"nodes": {"from": 0, "to": 1, "steps": 1}}}, "greater than or equal to 2"),
@@ -83,8 +83,8 @@ def test_a_table_of_sets_is_taken_row_by_row(tmp_path, suffix):
         ({"sets": "none.csv"}, r"none.csv: cannot be read"),
     ],
 )
-def test_what_is_wrong_with_a_plan_is_said(tmp_path, more, said):
-    with pytest.raises(InputError, match=said):
+def test_what_is_wrong_with_a_plan_is_reported(tmp_path, more, message):
+    with pytest.raises(InputError, match=message):
         points(tmp_path, **more)
 
 

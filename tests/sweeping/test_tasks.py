@@ -82,15 +82,15 @@ def test_a_model_counts_by_its_content(rigs):
 
 
 def test_values_are_sorted_by_what_they_are_of(rigs):
-    told = {"nodes": 30, "total_bend_rad": 2, "backlash.play_mm": 0.1, "preload_N": 20}
-    inputs = tasks(rigs, options=told)[0].inputs
+    values = {"nodes": 30, "total_bend_rad": 2, "backlash.play_mm": 0.1, "preload_N": 20}
+    inputs = tasks(rigs, options=values)[0].inputs
     assert inputs["options"] == {"nodes": 30}
     assert inputs["conditions"] == {"total_bend_rad": 2.0, "preload_N": 20.0}
     # A calibrated model holds the preload of each run, over which what is told has to win.
     assert inputs["model"] == {"backlash.play_mm": 0.1, "preload_N": 20.0}
-    told = {"friction_coefficient": 0.1, "plant.friction_coefficient": 0.2}
-    told |= {"settings.reference.mean_N": 40.0, "controllers": "pid"}
-    inputs = tasks(rigs, stage="track", datasets=None, options=told)[0].inputs
+    values = {"friction_coefficient": 0.1, "plant.friction_coefficient": 0.2}
+    values |= {"settings.reference.mean_N": 40.0, "controllers": "pid"}
+    inputs = tasks(rigs, stage="track", datasets=None, options=values)[0].inputs
     assert (inputs["model"], inputs["plant"]) == (
         {"friction_coefficient": 0.1},
         {"friction_coefficient": 0.2},
@@ -102,7 +102,7 @@ def test_values_are_sorted_by_what_they_are_of(rigs):
 
 
 @pytest.mark.parametrize(
-    ("more", "said"),
+    ("more", "message"),
     [
         ({"options": {"node": 30}}, "unknown name node; did you mean nodes?"),
         ({"options": {"out": "x"}}, "unknown name out"),
@@ -121,17 +121,17 @@ def test_values_are_sorted_by_what_they_are_of(rigs):
         ({"vary": {"friction_coefficient": [float("inf")]}}, "friction_coefficient is inf; .* fin"),
         ({"vary": {"total_bend_rad": [-1]}}, "the plan: total_bend_rad: .*equal to 0, got -1"),
         ({"options": {"sheath_length_mm": 0}}, "the plan: sheath_length_mm: .*than 0, got 0"),
-        ({"options": {"model": "m.toml"}}, "m.toml: is not there; expected the file of model"),
+        ({"options": {"model": "m.toml"}}, "m.toml: does not exist; expected the file of model"),
         ({"options": {"model": 3}}, "model is 3; expected a file's path"),
-        ({"vary": {"nodes": [10, 20, 10]}}, "is there twice; expected points that differ"),
+        ({"vary": {"nodes": [10, 20, 10]}}, "duplicate task .*; expected distinct points"),
         ({"datasets": "rigs/c"}, r"rigs/c: no dataset.toml here; expected a dataset folder$"),
-        ({"datasets": "rigs"}, r"its folders are datasets: name them by 'rigs/\*'"),
+        ({"datasets": "rigs"}, r"its subfolders are datasets: use 'rigs/\*'"),
         ({"datasets": "rigs/e*"}, r"rigs/e\*: no dataset matches; .*; 1 other files and folders"),
         ({"stage": "check", "options": {"preload_N": 2}}, "unknown name preload_N"),
     ],
 )
-def test_what_is_wrong_is_said_before_anything_is_done(rigs, more, said):
-    with pytest.raises(InputError, match=said):
+def test_what_is_wrong_is_reported_before_anything_is_done(rigs, more, message):
+    with pytest.raises(InputError, match=message):
         tasks(rigs, **more)
 
 
@@ -140,7 +140,9 @@ def test_names_of_the_closed_loop_are_not_those_of_recordings(rigs):
         assert name in CONDITIONS
         with pytest.raises(InputError, match=f"unknown name {name}; did you mean settings.rig"):
             tasks(rigs, stage="track", datasets=None, options={name: 2})
-    with pytest.raises(InputError, match=r"known are model, .*, and what a model holds: see `tsas"):
+    with pytest.raises(
+        InputError, match=r"known are model, .*, and the parameters of a model: see `tsas"
+    ):
         tasks(rigs, stage="track", datasets=None, options={"zzz": 2})
     with pytest.raises(InputError, match=r"settings: unknown key reference.mean .*mean_N"):
         tasks(rigs, stage="track", datasets=None, options={"settings.reference.mean": 2})
@@ -149,8 +151,8 @@ def test_names_of_the_closed_loop_are_not_those_of_recordings(rigs):
 def test_settings_are_told_over_those_of_a_file(tmp_path):
     path = tmp_path / "s.toml"
     path.write_text("[reference]\nmean_N = 40.0\namplitude_N = 5.0\n")
-    told = with_settings(path, {"reference.mean_N": 30.0, "rig.total_bend_rad": 2.0})
-    assert told == {
+    values = with_settings(path, {"reference.mean_N": 30.0, "rig.total_bend_rad": 2.0})
+    assert values == {
         "reference": {"mean_N": 30.0, "amplitude_N": 5.0},
         "rig": {"total_bend_rad": 2.0},
     }
@@ -160,7 +162,7 @@ def test_settings_are_told_over_those_of_a_file(tmp_path):
 
 def test_a_task_travels_as_plain_text(rigs):
     task = tasks(rigs)[0]
-    told = json.loads(task.text(rigs / "out", force=True))
-    assert told["key"] == task.key
-    assert told["force"] is True
-    assert told["places"] == {"dataset": str(rigs / "rigs/a"), "out": str(rigs / "out")}
+    values = json.loads(task.text(rigs / "out", force=True))
+    assert values["key"] == task.key
+    assert values["force"] is True
+    assert values["places"] == {"dataset": str(rigs / "rigs/a"), "out": str(rigs / "out")}

@@ -12,7 +12,7 @@ def squared(task):
     return success({"square": task["number"] ** 2}, []) | {"where": os.getpid()}
 
 
-def said(task):
+def outcome_of(task):
     print("talk of a library")
     return squared(task)
 

@@ -1,4 +1,4 @@
-"""Many datasets: what is found below folders, an index of it, and queries over all runs."""
+"""Many datasets: the search of folders, an index, and queries over all runs."""
 
 COLUMNS = (
     "folder",

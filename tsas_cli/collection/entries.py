@@ -1,4 +1,4 @@
-"""What one manifest or one diagnosis adds to the index."""
+"""The entry of one manifest or one diagnosis in the index."""
 
 from collections.abc import Callable, Mapping, Sequence
 from datetime import UTC, datetime
@@ -59,7 +59,7 @@ SCHEMA = pa.schema(
     }
 )
 
-# pyarrow knows these numbers too, but ends the process where the footer is damaged.
+# pyarrow provides these numbers too, but ends the process if the footer is damaged.
 TIMES = """
 SELECT file_name,
     min(TRY_CAST(stats_min_value AS DOUBLE)) FILTER (path_in_schema = $time),
@@ -73,15 +73,18 @@ FROM parquet_metadata($files) GROUP BY file_name
 
 
 def entry_of(connection: DuckDBPyConnection, folder: Path, file: str) -> Entry:
-    """Return what a file says, by the names of the index; what is wrong stands in `problems`."""
+    """Return the entry of a file by the columns of the index, with its faults in `problems`."""
     try:
         return _KINDS[file](connection, folder)
     except InputError as error:
-        return {"problems": [_without_place(error)]}
+        return {"problems": [_without_location(error)]}
     except OSError as error:
         return {"problems": [f"cannot be read ({error.strerror})"]}
-    except (ValueError, OverflowError) as error:  # a time or a number that is valid, but no text
-        return {"problems": [f"holds a value that cannot be told ({limits.reason(error)})"]}
+    except (
+        ValueError,
+        OverflowError,
+    ) as error:  # a valid time or number that cannot be represented
+        return {"problems": [f"holds a value that cannot be represented ({limits.reason(error)})"]}
 
 
 def _manifest(connection: DuckDBPyConnection, folder: Path) -> Entry:
@@ -103,7 +106,7 @@ def _manifest(connection: DuckDBPyConnection, folder: Path) -> Entry:
 def _run(
     folder: Path, run: Run, durations: Mapping[Path, float | None], problems: list[str]
 ) -> Entry:
-    said: Entry = {
+    entry: Entry = {
         "run": run.id,
         "started": None if run.started is None else _utc(run.started),
         "load": run.load,
@@ -113,14 +116,14 @@ def _run(
         "tags": {key: str(value) for key, value in (run.model_extra or {}).items()},
     }
     try:
-        return said | _footer(folder, run, durations)
+        return entry | _footer(folder, run, durations)
     except (pa.ArrowException, OSError) as error:
         problems.append(f"{run.file}: {str(error).splitlines()[0]}")
-        return said
+        return entry
 
 
 def _footer(folder: Path, run: Run, durations: Mapping[Path, float | None]) -> Entry:
-    """Return what the end of a run's Parquet file says of it; no sample is read."""
+    """Return the properties of a run in the footer of its Parquet file; no sample is read."""
     path = folder / run.file
     refusal = _refusal(folder, path)
     if refusal is not None:
@@ -140,45 +143,45 @@ def _footer(folder: Path, run: Run, durations: Mapping[Path, float | None]) -> E
 
 
 def _refusal(folder: Path, path: Path) -> str | None:
-    """Return why a run's file is not read, whether it exists or not; None where it may be."""
+    """Return the reason not to read a run's file; None if it may be read or does not exist."""
     if not path.resolve().is_relative_to(folder.resolve()):
         return "a link leads out of the dataset's folder"
     if path.exists() and not path.is_file():
-        return "is no file"  # a pipe would be waited for
+        return "is no regular file"  # reading a pipe would block
     return None
 
 
 def _durations_s(connection: DuckDBPyConnection, paths: Sequence[Path]) -> dict[Path, float | None]:
-    """Return the time from first to last sample [s] of files, None where one does not say it.
+    """Return the duration of files [s], None for a file without statistics of its time.
 
-    What is damaged is left out. To ask for many takes hardly longer than to ask for one.
+    Damaged files are left out. A query for many takes hardly longer than for one.
     """
     if not paths:
         return {}
     files = [escape(str(path)) for path in paths]
     try:
-        told = connection.execute(TIMES, {"files": files, "time": TIME}).fetchall()
+        rows = connection.execute(TIMES, {"files": files, "time": TIME}).fetchall()
     except duckdb.Error:
         if len(paths) == 1:
             return {}
         each = [_durations_s(connection, [path]) for path in paths]
         return {path: duration for one in each for path, duration in one.items()}
     return {
-        Path(name): None if first is None or silent else float(last) - float(first)
-        for name, first, last, silent in told
+        Path(name): None if first is None or incomplete else float(last) - float(first)
+        for name, first, last, incomplete in rows
     }
 
 
 def _diagnosis(_: DuckDBPyConnection, folder: Path) -> Entry:
     path = folder / DIAGNOSIS
     content = read_json(path)
-    said = parse(Diagnosis, content, path)
-    chosen = said.chosen if said.chosen is not None else said.dataset.chosen
+    diagnosis = parse(Diagnosis, content, path)
+    chosen = diagnosis.chosen if diagnosis.chosen is not None else diagnosis.dataset.chosen
     return {
-        "manifest_sha256": said.dataset.hashes.get(MANIFEST, "").lower(),
+        "manifest_sha256": diagnosis.dataset.hashes.get(MANIFEST, "").lower(),
         "chosen": None if chosen is None else list(chosen),
-        "verdict": said.verdict,
-        "causes": [cause.effect for cause in said.named],
+        "verdict": diagnosis.verdict,
+        "causes": [cause.effect for cause in diagnosis.named],
         "problems": [],
     }
 
@@ -190,9 +193,9 @@ _KINDS: Mapping[str, Callable[[DuckDBPyConnection, Path], Entry]] = {
 
 
 def _utc(at: datetime) -> datetime:
-    """Return a time without its zone: that of UTC where it has one, else as it was written."""
+    """Return a time without zone: converted to UTC if it has one, else unchanged."""
     return at if at.tzinfo is None else at.astimezone(UTC).replace(tzinfo=None)
 
 
-def _without_place(error: InputError) -> str:
+def _without_location(error: InputError) -> str:
     return InputError(error.what, expected=error.expected, remedy=error.remedy).line()

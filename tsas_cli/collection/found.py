@@ -1,4 +1,4 @@
-"""The files below folders that say something about runs: manifests and diagnoses."""
+"""The manifests and diagnoses below folders."""
 
 import os
 from collections.abc import Iterator, Sequence
@@ -10,49 +10,49 @@ from tsas_cli.support.limits import is_text
 MANIFEST, DIAGNOSIS = "dataset.toml", "diagnosis.json"
 
 
-class Place(NamedTuple):
-    """Where a file is: which of the folders it was found below, its own folder there, its name."""
+class FileKey(NamedTuple):
+    """Location of a file: number of the root folder, folder relative to it, and name."""
 
     root: int
     folder: str
     file: str
 
 
-_MOST = 2**63 - 1  # what the index keeps, a time in the year 2262
+_MOST = 2**63 - 1  # of an integer in the index; as a time, the year 2262
 
 
 class Stamp(NamedTuple):
-    """What tells whether a file has changed: time of its last change [ns] and size [bytes]."""
+    """Evidence of a change of a file: time of its last modification [ns] and size [bytes]."""
 
     mtime_ns: int
     size: int
 
 
-def files_below(roots: Sequence[Path]) -> tuple[dict[Place, Stamp], list[str]]:
-    """Return every manifest and diagnosis below some folders, and what could not be looked into.
+def files_below(roots: Sequence[Path]) -> tuple[dict[FileKey, Stamp], list[str]]:
+    """Return the manifests and diagnoses below folders, and the folders that cannot be read.
 
-    Hidden folders, links to folders and the recordings of a dataset are not looked into.
+    Hidden folders, links to folders and the `runs` of a dataset are skipped.
     """
-    found: dict[Place, Stamp] = {}
+    found: dict[FileKey, Stamp] = {}
     problems: list[str] = []
     for number, root in enumerate(roots):
         if not is_text(root):
-            problems.append(f"{root}: its name is no text; rename it")
+            problems.append(f"{root}: its name is not UTF-8; rename it")
             continue
-        ahead = [""]
-        while ahead:
-            folder = ahead.pop()
+        pending = [""]
+        while pending:
+            folder = pending.pop()
             try:
-                ahead += _looked_into(root, number, folder, found, problems)
+                pending += _scanned(root, number, folder, found, problems)
             except OSError as error:
-                problems.append(f"{root / folder}: cannot be looked into ({error.strerror})")
+                problems.append(f"{root / folder}: cannot be read ({error.strerror})")
     return found, problems
 
 
-def _looked_into(
-    root: Path, number: int, folder: str, found: dict[Place, Stamp], problems: list[str]
+def _scanned(
+    root: Path, number: int, folder: str, found: dict[FileKey, Stamp], problems: list[str]
 ) -> Iterator[str]:
-    """Take note of the files of one folder; yield the folders in it."""
+    """Add the files of one folder to `found`; return its subfolders."""
     here = f"{folder}/" if folder else ""
     inner = []
     with os.scandir(f"{root}/{folder}") as entries:
@@ -60,13 +60,13 @@ def _looked_into(
             name = entry.name
             if name in (MANIFEST, DIAGNOSIS):
                 if entry.is_file():
-                    seen = entry.stat()
-                    changed_ns = max(-_MOST, min(seen.st_mtime_ns, _MOST))
-                    found[Place(number, folder, name)] = Stamp(changed_ns, seen.st_size)
+                    state = entry.stat()
+                    changed_ns = max(-_MOST, min(state.st_mtime_ns, _MOST))
+                    found[FileKey(number, folder, name)] = Stamp(changed_ns, state.st_size)
             elif not name.startswith(".") and entry.is_dir(follow_symlinks=False):
                 if name.isprintable():
                     inner.append(name)
                 else:
                     problems.append(f"{root / folder / name}: a name with control characters")
-    dataset = Place(number, folder, MANIFEST) in found
+    dataset = FileKey(number, folder, MANIFEST) in found
     return (f"{here}{name}" for name in inner if not (dataset and name == "runs"))

@@ -1,8 +1,8 @@
-"""An index of all manifests and diagnoses below folders, kept and brought up to date.
+"""A persistent index of all manifests and diagnoses below folders.
 
-It is one Parquet file in the user's cache, with its checksum in a file beside it: what is damaged
-there is made again. A file is read again when its size or the time of its
-last change is another; what is gone from the folders goes from the index.
+It is one Parquet file in the user's cache, with its checksum in a second file; a damaged index is
+rebuilt. A file is read again if its size or modification time has changed; the entries of removed
+files are removed.
 """
 
 import hashlib
@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tsas_cli.collection.found import Place, Stamp, files_below
+from tsas_cli.collection.found import FileKey, Stamp, files_below
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import own_file, sha256_of
 from tsas_cli.support.steps import Steps
@@ -21,26 +21,26 @@ if TYPE_CHECKING:
     import pyarrow as pa
     from duckdb import DuckDBPyConnection
 
-FORMAT = 1  # another number where the columns of `entries.SCHEMA` change
+FORMAT = 1  # to be increased with a change of `entries.SCHEMA`
 
 
 @dataclass(frozen=True)
 class Index:
-    """Where the index is, or itself where it could not be kept, and what was wrong on the way."""
+    """The file of the index, or its table if it could not be stored, and problems on the way."""
 
     roots: Sequence[Path]
-    kept: Path | None
-    held: "pa.Table | None"
+    file: Path | None
+    table: "pa.Table | None"
     problems: Sequence[str]
 
 
 def index_of(folders: Sequence[Path], connection: "DuckDBPyConnection", step: Steps) -> Index:
-    """Look for what has changed below some folders, and read that alone.
+    """Return the index of folders; only changed files are read.
 
     Raises
     ------
     InputError
-        One of them is no folder.
+        A path is no folder.
     """
     for folder in folders:
         if not folder.is_dir():
@@ -50,14 +50,14 @@ def index_of(folders: Sequence[Path], connection: "DuckDBPyConnection", step: St
     roots = [folder.resolve() for folder in folders]
     found, problems = files_below(roots)
     file = _file_for(roots)
-    whole = _whole(file)
-    known = _known(connection, file) if whole else {}
-    changed = [place for place, stamp in found.items() if known.get(place) != stamp]
-    if whole and not changed and len(known) == len(found):
+    intact = _is_intact(file)
+    known = _known(connection, file) if intact else {}
+    changed = [key for key, stamp in found.items() if known.get(key) != stamp]
+    if intact and not changed and len(known) == len(found):
         return Index(folders, file, None, problems)
     step.ahead(len(changed))
     table = _renewed(connection, roots, found, changed, file if known else None, step)
-    if (problem := _kept(table, file)) is not None:
+    if (problem := _stored(table, file)) is not None:
         return Index(folders, None, table, [*problems, problem])
     return Index(folders, file, None, problems)
 
@@ -70,67 +70,69 @@ def _file_for(roots: Sequence[Path]) -> Path:
     return cache / "runs" / f"{named.hexdigest()[:16]}-{FORMAT}.parquet"
 
 
-def _sum_beside(file: Path) -> Path:
+def _checksum_file(file: Path) -> Path:
     return file.with_suffix(".sha256")
 
 
-def _whole(file: Path) -> bool:
-    """Say whether the index is there as it was written."""
+def _is_intact(file: Path) -> bool:
+    """Return whether the index exists and matches its checksum."""
     try:
-        return _sum_beside(file).read_bytes() == sha256_of(file).encode()
+        return _checksum_file(file).read_bytes() == sha256_of(file).encode()
     except OSError:
         return False
 
 
-def _known(connection: "DuckDBPyConnection", file: Path) -> dict[Place, Stamp]:
-    """Return what the index holds."""
+def _known(connection: "DuckDBPyConnection", file: Path) -> dict[FileKey, Stamp]:
+    """Return the files in the index with their stamps."""
     sql = "SELECT root, folder, file, mtime_ns, size FROM read_parquet(?)"
     rows = connection.execute(sql, [str(file)]).fetchall()
-    return {Place(*row[:3]): Stamp(*row[3:]) for row in rows}
+    return {FileKey(*row[:3]): Stamp(*row[3:]) for row in rows}
 
 
 def _renewed(
     connection: "DuckDBPyConnection",
     roots: Sequence[Path],
-    found: Mapping[Place, Stamp],
-    changed: Sequence[Place],
+    found: Mapping[FileKey, Stamp],
+    changed: Sequence[FileKey],
     old: Path | None,
     step: Steps,
 ) -> "pa.Table":
-    """Return the index with what has changed read again, in the order of the folders."""
+    """Return the index with the changed files read again, in the order of the folders."""
     import pyarrow as pa
     import pyarrow.parquet as pq
 
     from tsas_cli.collection.entries import SCHEMA, entry_of
 
     entries = []
-    for place in changed:
-        entry = entry_of(connection, roots[place.root] / place.folder, place.file)
-        entries.append(place._asdict() | found[place]._asdict() | entry)
+    for key in changed:
+        entry = entry_of(connection, roots[key.root] / key.folder, key.file)
+        entries.append(key._asdict() | found[key]._asdict() | entry)
         step()
     table = pa.Table.from_pylist(entries, schema=SCHEMA)
     if old is not None:
         before, read_again = pq.ParquetFile(old).read(), set(changed)
-        keys = zip(*(before[name].to_pylist() for name in Place._fields), strict=True)
-        stays = [
+        keys = zip(*(before[name].to_pylist() for name in FileKey._fields), strict=True)
+        unchanged = [
             row
-            for row, key in enumerate(map(Place._make, keys))
+            for row, key in enumerate(map(FileKey._make, keys))
             if key in found and key not in read_again
         ]
-        table = pa.concat_tables([before.take(stays).cast(SCHEMA), table])  # filter is far slower
-    return table.sort_by([(name, "ascending") for name in Place._fields])
+        table = pa.concat_tables(
+            [before.take(unchanged).cast(SCHEMA), table]
+        )  # filter is far slower
+    return table.sort_by([(name, "ascending") for name in FileKey._fields])
 
 
-def _kept(table: "pa.Table", file: Path) -> str | None:
-    """Write the index; return why that could not be, or None where it was."""
+def _stored(table: "pa.Table", file: Path) -> str | None:
+    """Write the index; return the reason if that fails, else None."""
     import pyarrow.parquet as pq
 
     try:
         with own_file(file) as path:
             pq.write_table(table, path, compression="zstd")
             digest = sha256_of(path)
-        with own_file(_sum_beside(file)) as path:
+        with own_file(_checksum_file(file)) as path:
             path.write_text(digest, encoding="utf-8")
     except (InputError, OSError) as error:
-        return f"the index is made again at every call, since it cannot be kept: {error}"
+        return f"the index is rebuilt at every call, since it cannot be stored: {error}"
     return None

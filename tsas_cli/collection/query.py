@@ -1,7 +1,7 @@
-"""A condition in SQL over all runs of an index, answered by DuckDB.
+"""SQL conditions over all runs of an index, evaluated by DuckDB.
 
-The query is one expression and sees one table. Nothing that it says can read another file, change
-anything or load an extension.
+A query is one expression over one table. It cannot read another file, change anything or load an
+extension.
 """
 
 import json
@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tsas_cli.collection.index import Index
-from tsas_cli.collection.words import Spelt, spelt_out
+from tsas_cli.collection.words import SqlQuery, to_sql
 from tsas_cli.support.errors import InputError, nearest, printable
 
 if TYPE_CHECKING:
@@ -39,24 +39,24 @@ QUALIFY 1 = row_number() OVER (
     PARTITION BY root, e.folder, r.run ORDER BY diagnosed DESC NULLS LAST
 )
 """
-BEFORE = "SELECT "  # what DuckDB puts before a condition that it parses
+PREFIX = "SELECT "  # with which DuckDB parses a condition
 EXAMPLE = "total_bend_rad > 3 and f_out in channels and started >= 2026-01"
 
 
 @dataclass(frozen=True)
 class Answer:
-    """The runs that a query names: their columns, a row of values each, and how many there are."""
+    """Result of a query: columns, one row per run, and the numbers of runs."""
 
     columns: tuple[str, ...]
     rows: list[tuple[Any, ...]]
     folders: tuple[str, ...]  # of their datasets, each once
-    fitting: int
+    fitting: int  # runs that match, beyond the limit too
     all_runs: int
     problems: list[str]
 
 
 def connected() -> "DuckDBPyConnection":
-    """Return a database in memory.
+    """Return a connection to a database in memory.
 
     Raises
     ------
@@ -83,14 +83,14 @@ def asked(
     sort: Sequence[str],
     limit: int | None,
 ) -> Answer:
-    """Return the runs that fit, with the columns that were asked for, or all where none were.
+    """Return the matching runs with the requested columns, or with all.
 
-    A name in `sort` with a minus before it sorts the other way round; what is missing comes last.
+    A minus before a name in `sort` reverses its order; missing values come last.
 
     Raises
     ------
     InputError
-        The query is no condition on these columns, or there is no such column.
+        The query is no condition on these columns, or a column does not exist.
     """
     import duckdb
 
@@ -99,34 +99,34 @@ def asked(
     chosen = tuple(_known(name, runs.columns) for name in columns) or tuple(runs.columns)
     order = ", ".join(_ordered(name, runs.columns) for name in (*sort, "folder", "run"))
     picked = ", ".join(f'"{name}"' for name in (*chosen, "folder"))
-    spelt = spelt_out(query, lambda: _channels(runs))
+    translated = to_sql(query, lambda: _channels(runs))
     try:
-        fitting = runs.filter(spelt.sql) if query.strip() else runs
+        fitting = runs.filter(translated.sql) if query.strip() else runs
         ordered = fitting.order(order)
         shown = ordered if limit is None else ordered.limit(limit)
         rows = shown.project(picked).fetchall()
         ((fit,),), ((every,),) = (r.aggregate("count(*)").fetchall() for r in (fitting, runs))
     except duckdb.Error as error:
-        raise _wrong(query, spelt, error, runs.columns) from error
+        raise _query_error(query, translated, error, runs.columns) from error
     folders = tuple(dict.fromkeys(str(row[-1]) for row in rows))
     return Answer(chosen, [row[:-1] for row in rows], folders, fit, every, problems)
 
 
 def _opened(connection: "DuckDBPyConnection", index: Index) -> list[str]:
-    """Make the table of all runs; return what was wrong with files.
+    """Create the table of all runs; return the problems of files.
 
-    From then on there is nothing else to read: no file, and not the index.
+    Afterwards the connection can read nothing else, neither files nor the index.
     """
     places = [(k, printable(root.as_posix())) for k, root in enumerate(index.roots)]
     connection.execute("CREATE TEMP TABLE places (root INTEGER, shown VARCHAR)")
     connection.executemany("INSERT INTO places VALUES (?, ?)", places)
-    if index.kept is None:
-        connection.register("held", index.held)
-        connection.execute("CREATE TEMP TABLE entries AS SELECT * FROM held")
-        connection.unregister("held")
+    if index.file is None:
+        connection.register("in_memory", index.table)
+        connection.execute("CREATE TEMP TABLE entries AS SELECT * FROM in_memory")
+        connection.unregister("in_memory")
     else:
         read = "CREATE TEMP TABLE entries AS SELECT * FROM read_parquet(?)"
-        connection.execute(read, [str(index.kept)])
+        connection.execute(read, [str(index.file)])
     connection.execute(RUNS)
     problems = connection.execute(
         "SELECT folder, file, unnest(problems) FROM entries ORDER BY ALL"
@@ -155,32 +155,36 @@ def _ordered(name: str, columns: Sequence[str]) -> str:
     return f'"{_known(name[down:], columns)}" {"DESC" if down else "ASC"} NULLS LAST'
 
 
-def _wrong(query: str, spelt: Spelt, error: Exception, columns: Sequence[str]) -> InputError:
-    """Return DuckDB's complaint in a line that points at the place in the query."""
+def _query_error(
+    query: str, translated: SqlQuery, error: Exception, columns: Sequence[str]
+) -> InputError:
+    """Return DuckDB's error with its position in the query."""
     if missing := re.search(r'Referenced column "(.+?)" not found', str(error)):
         return InputError(
             f"there is no column {missing[1]}",
-            where=_place(query, query.find(missing[1])),
+            where=_position(query, query.find(missing[1])),
             remedy="name folders with --in"
             if os.path.isdir(query)  # noqa: PTH112 - Path.is_dir raises on a name that is too long
             else nearest(missing[1], sorted(columns)),
         )
-    said, position = _said(str(error))
-    at = -1 if position is None else spelt.place(position - len(BEFORE))
-    return InputError(said, where=_place(query, at), expected=f"a condition such as: {EXAMPLE}")
+    message, position = _message(str(error))
+    at = -1 if position is None else translated.position_in_query(position - len(PREFIX))
+    return InputError(
+        message, where=_position(query, at), expected=f"a condition such as: {EXAMPLE}"
+    )
 
 
-def _place(query: str, at: int) -> str:
+def _position(query: str, at: int) -> str:
     if not 0 <= at < len(query):
         return "the query"
     return f"the query, character {at + 1}, at {query[at:][:20]!r}"
 
 
-def _said(text: str) -> tuple[str, int | None]:
-    """Return DuckDB's sentence without its kind, and the place that it names while it parses."""
+def _message(text: str) -> tuple[str, int | None]:
+    """Return DuckDB's message without its kind, and the position of a parser error."""
     kind, _, rest = text.partition(": ")
     if not rest.startswith("{"):
         return (rest or kind).splitlines()[0], None
-    told = json.loads(rest)
-    at = told.get("position") if kind == "Parser Error" else None
-    return str(told["exception_message"]), None if at is None else int(at)
+    content = json.loads(rest)
+    at = content.get("position") if kind == "Parser Error" else None
+    return str(content["exception_message"]), None if at is None else int(at)

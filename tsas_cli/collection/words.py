@@ -1,4 +1,4 @@
-"""What a query may say in fewer words than SQL asks for: dates, and channels."""
+"""Abbreviations in queries that SQL does not have: dates, and channels."""
 
 import re
 from collections.abc import Callable, Iterable
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from tsas_cli.support.errors import InputError, nearest
 
-# Texts, quoted names and comments stay as they are.
+# Strings, quoted names and comments are not translated.
 QUOTED = r"'(?:[^']|'')*'|\"(?:[^\"]|\"\")*\"|--[^\n]*|/\*.*?\*/"
 DATE = r"(?<![\w.-])(?P<date>\d{4}-\d\d(?:-\d\d(?:T\d\d:\d\d(?::\d\d)?)?)?)(?![\w.-])"
 CHANNEL = r"\b(?P<channel>[A-Za-z_]\w*)(?=\s+(?:not\s+)?in\s+channels\b)"
@@ -15,19 +15,19 @@ NO_CHANNELS = {"not", "null", "true", "false", "and", "or"}
 
 
 @dataclass(frozen=True)
-class Spelt:
-    """A query as SQL, and by how much what follows each place in it has moved."""
+class SqlQuery:
+    """A query as SQL, and the shift of the text after each translated token."""
 
     sql: str
-    moved: tuple[tuple[int, int], ...]
+    shifts: tuple[tuple[int, int], ...]
 
-    def place(self, position: int) -> int:
-        """Return where in the query that is which stands at a position of the SQL."""
-        return position - sum(by for at, by in self.moved if at <= position)
+    def position_in_query(self, position: int) -> int:
+        """Return the position in the query of a position in the SQL."""
+        return position - sum(by for at, by in self.shifts if at <= position)
 
 
-def spelt_out(query: str, channels: Callable[[], Iterable[str]]) -> Spelt:
-    """Return a query as SQL: `2026-01` as a time, `f_out in channels` with the channel's name.
+def to_sql(query: str, channels: Callable[[], Iterable[str]]) -> SqlQuery:
+    """Return a query as SQL, with `2026-01` as a time and `f_out in channels` with the full name.
 
     Raises
     ------
@@ -36,19 +36,19 @@ def spelt_out(query: str, channels: Callable[[], Iterable[str]]) -> Spelt:
 
     Examples
     --------
-    >>> spelt_out("started >= 2026-01 and f_out in channels", lambda: ["f_out_N"]).sql
+    >>> to_sql("started >= 2026-01 and f_out in channels", lambda: ["f_out_N"]).sql
     "started >= TIMESTAMP '2026-01-01' and 'f_out_N' in channels"
     """
-    sql, behind, moved = "", 0, []
+    sql, behind, shifts = "", 0, []
     for token in TOKEN.finditer(query):
         sql += query[behind : token.start()]
-        spelt = _spelt(token, channels)
-        sql, behind = sql + spelt, token.end()
-        moved.append((len(sql), len(spelt) - len(token[0])))
-    return Spelt(sql + query[behind:], tuple(moved))
+        translated = _translated(token, channels)
+        sql, behind = sql + translated, token.end()
+        shifts.append((len(sql), len(translated) - len(token[0])))
+    return SqlQuery(sql + query[behind:], tuple(shifts))
 
 
-def _spelt(token: re.Match[str], channels: Callable[[], Iterable[str]]) -> str:
+def _translated(token: re.Match[str], channels: Callable[[], Iterable[str]]) -> str:
     if (date := token["date"]) is not None:
         return f"TIMESTAMP '{date}-01'" if len(date) == len("2026-01") else f"TIMESTAMP '{date}'"
     name = token["channel"]
@@ -58,12 +58,12 @@ def _spelt(token: re.Match[str], channels: Callable[[], Iterable[str]]) -> str:
 
 
 def _channel(name: str, known: list[str]) -> str:
-    """Return the channel that is meant, whose unit may be left out."""
-    meant = [k for k in known if name in (k, k.rpartition("_")[0])]
-    if len(meant) != 1:
+    """Return the channel of a name, in which the unit may be omitted."""
+    matching = [k for k in known if name in (k, k.rpartition("_")[0])]
+    if len(matching) != 1:
         raise InputError(
-            f"no run has a channel {name}" if not meant else f"{name} is more than one channel",
+            f"no run has a channel {name}" if not matching else f"{name} is more than one channel",
             where="the query",
-            remedy=nearest(name, known) if not meant else f"there are {', '.join(meant)}",
+            remedy=nearest(name, known) if not matching else f"there are {', '.join(matching)}",
         )
-    return meant[0]
+    return matching[0]

@@ -1,1 +1,1 @@
-"""The subcommands: parse, read, one call, write, print."""
+"""The subcommands: parse the arguments, call a stage, print the result."""

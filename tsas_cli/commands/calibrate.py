@@ -22,7 +22,7 @@ from tsas_cli.commands.common import (
 from tsas_cli.commands.progress import progress
 
 
-class DynamicsOption(StrEnum):
+class CalibrationDynamics(StrEnum):
     """The models of the tendon that can be calibrated."""
 
     slip = "slip"
@@ -34,21 +34,19 @@ def calibrate(
     out: OutFolder,
     model: Annotated[
         Path | None,
-        typer.Option(metavar="M.toml", help="A model to begin with, whose effects stay."),
+        typer.Option(metavar="M.toml", help="The initial model, whose effects are kept."),
     ] = None,
     dynamics: Annotated[
-        DynamicsOption,
-        typer.Option(
-            "--dynamics", help="slip: distributed; lugre: dynamic, with bristles and speed."
-        ),
-    ] = DynamicsOption.slip,
+        CalibrationDynamics,
+        typer.Option("--dynamics", help="slip: distributed friction; lugre: dynamic friction."),
+    ] = CalibrationDynamics.slip,
     runs: ChosenRuns = None,
     rrd: Rrd = False,
     force: Force = False,
     quiet: Quiet = False,
     as_json: Json = False,
 ) -> None:
-    """Fit the nominal model to a dataset, and the stiffness km of each phase."""
+    """Fit the nominal model and the stiffness km of each phase to a dataset."""
     with progress("calibrate", quiet=quiet) as step, with_stream(rrd, step):
         result = tsas.calibrate(
             dataset,

@@ -1,4 +1,4 @@
-"""`tsas check`: say what is wrong with recordings before anyone fits anything."""
+"""`tsas check`: check recordings for faults."""
 
 from pathlib import Path
 from typing import Annotated
@@ -32,9 +32,9 @@ def check(
     quiet: Quiet = False,
     as_json: Json = False,
 ) -> None:
-    """Say what is wrong with recordings before anyone fits anything."""
+    """Check recordings for faults before a model is fitted."""
     if rrd and out is None:
-        raise InputError("--rrd has no folder to write to", remedy="give one with --out")
+        raise InputError("--rrd has no folder to write to", remedy="set --out")
     with progress("check", quiet=quiet) as step, with_stream(rrd, step):
         result = tsas.check(dataset, out=out, runs=names(runs), force=force, step=step)
     present(result, quiet=quiet, as_json=as_json)

@@ -1,4 +1,4 @@
-"""`tsas close-loop`: hide an effect in a rig, diagnose it, and track with the better model."""
+"""`tsas close-loop`: hide an effect in a rig, diagnose it, and track with the extended model."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -24,24 +24,24 @@ def close_loop(
     out: OutFolder,
     cases: Annotated[
         str | None,
-        typer.Option(metavar="NAMES", help="Only these cases, with commas between; else all."),
+        typer.Option(metavar="NAMES", help="Only these cases, comma-separated; default: all."),
     ] = None,
     hide: Annotated[
         list[str] | None,
-        typer.Option(metavar="NAME=VALUE", help="Hide this in place of the known cases."),
+        typer.Option(metavar="NAME=VALUE", help="Hide this effect instead of the built-in cases."),
     ] = None,
     settings: Annotated[
         Path | None,
         typer.Option(metavar="S.toml", help="Rig, drive, sensors, reference and gains."),
     ] = None,
-    seeds: Annotated[int, typer.Option(min=1, help="How many seeds of noise.")] = 5,
-    seed: Annotated[int, typer.Option(min=0, help="The first of them.")] = 1,
+    seeds: Annotated[int, typer.Option(min=1, help="Number of noise seeds.")] = 5,
+    seed: Annotated[int, typer.Option(min=0, help="The first noise seed.")] = 1,
     rrd: Rrd = False,
     force: Force = False,
     quiet: Quiet = False,
     as_json: Json = False,
 ) -> None:
-    """Say what a diagnosis is worth in tracking: nominal, extended and true model side by side."""
+    """Compare tracking with the nominal, the extended and the true model of a rig."""
     with progress("close-loop", quiet=quiet) as step, with_stream(rrd, step, _of_each_case):
         result = tsas.close_loop(
             out=out,
@@ -57,7 +57,7 @@ def close_loop(
 
 
 def _of_each_case(folder: Path) -> Iterator[tuple[Path, list[Path]]]:
-    """Return each case's folder, and what in it its stream shows."""
+    """Yield each case's folder, and the folders that its stream shows."""
     from tsas_cli.records.closing import Closing
     from tsas_cli.reporting.inputs import read_stage
 

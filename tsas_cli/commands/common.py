@@ -1,4 +1,4 @@
-"""What the subcommands share: their options, and how a result and hints are printed."""
+"""Common options of the subcommands, and the printing of results and hints."""
 
 import shutil
 import sys
@@ -21,29 +21,27 @@ DatasetFolder = Annotated[
     str, typer.Argument(metavar="DATASET", help="A dataset's folder, or its address (s3://…).")
 ]
 OutFolder = Annotated[Path, typer.Option("--out", metavar="DIR", help="The folder to write.")]
-ModelFile = Annotated[
+ModelOption = Annotated[
     Path | None,
-    typer.Option("--model", metavar="M.toml", help="The model; the data sheet's without it."),
+    typer.Option("--model", metavar="M.toml", help="The model; default: from the data sheet."),
 ]
 ChosenRuns = Annotated[
     str | None,
     typer.Option(
         "--runs",
         metavar="IDS",
-        help="Only these runs, with commas between; else all.",
+        help="Only these runs, comma-separated; default: all.",
         autocompletion=run_ids,
     ),
 ]
-Force = Annotated[bool, typer.Option("--force", help="Replace the output if it is there.")]
-Rrd = Annotated[
-    bool, typer.Option("--rrd", help="Also write DIR/stream.rrd, to be looked at with tsas view.")
-]
-Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
+Force = Annotated[bool, typer.Option("--force", help="Replace an existing output.")]
+Rrd = Annotated[bool, typer.Option("--rrd", help="Also write DIR/stream.rrd for tsas view.")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print errors only.")]
 Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON instead of a table.")]
 
 
 def names(listed: str | None) -> list[str] | None:
-    """Return what stands between the commas of an option, or None where it was not given."""
+    """Return the comma-separated names of an option, or None without it."""
     return None if listed is None else [name.strip() for name in listed.split(",")]
 
 
@@ -61,12 +59,12 @@ Streams = Callable[[Path], Iterable[tuple[Path, Sequence[Path]]]]
 def with_stream(
     wanted: bool, step: "Steps", of: Streams = lambda folder: [(folder, [folder])]
 ) -> AbstractContextManager[None]:
-    """Have the stage in the block write `stream.rrd` too, before its folder gets its name.
+    """Let the stage in the block also write `stream.rrd`, before its folder gets its name.
 
-    `of` says from the stage's folder where streams go, and which folders each shows. `step` is told
-    of a piece of work per run.
+    `of` maps the stage's folder to the folder of each stream and the folders that it shows. `step`
+    counts one step per run.
     """
-    from tsas_cli.support.files import added
+    from tsas_cli.support.files import extra_output
 
     def add(folder: Path) -> None:
         from tsas_cli.reporting.inputs import read_inputs
@@ -77,7 +75,7 @@ def with_stream(
             step.ahead(0 if inputs.dataset is None else len(inputs.dataset.runs))
             write_stream(inputs, home / FILE, step=step)
 
-    return added(add if wanted else None)
+    return extra_output(add if wanted else None)
 
 
 def show(
@@ -107,6 +105,6 @@ def _terminal_width() -> int | None:
 
 
 def hint(text: str, *, quiet: bool, as_json: bool) -> None:
-    """Say to a person at a terminal, on standard error, what else the program can do."""
+    """Print a hint on standard error, if it is a terminal."""
     if sys.stderr.isatty() and not (quiet or as_json):
         print(text, file=sys.stderr)

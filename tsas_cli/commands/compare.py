@@ -1,4 +1,4 @@
-"""`tsas compare`: two models, or what two stages wrote, side by side."""
+"""`tsas compare`: compare two models, or the outputs of two stages."""
 
 from pathlib import Path
 from typing import Annotated
@@ -12,14 +12,14 @@ from tsas_cli.commands.progress import progress
 
 def compare(
     a: Annotated[Path, typer.Argument(metavar="A", help="A model, or a stage's folder.")],
-    b: Annotated[Path, typer.Argument(metavar="B", help="What it is compared with, likewise.")],
+    b: Annotated[Path, typer.Argument(metavar="B", help="The other model or folder.")],
     on: Annotated[
         str | None,
         typer.Option(metavar="DATASET", help="Simulate both models on these recordings."),
     ] = None,
     fit_own: Annotated[
         bool,
-        typer.Option(help="With --on: fit each run's own preload and zeros first."),
+        typer.Option(help="With --on: first fit the preload and zeros of each run."),
     ] = False,
     runs: ChosenRuns = None,
     out: Annotated[
@@ -30,9 +30,9 @@ def compare(
     quiet: Quiet = False,
     as_json: Json = False,
 ) -> None:
-    """Say what differs between two models, and whether that is more than the uncertainty.
+    """Compare two models or results, and test whether they differ by more than the uncertainty.
 
-    A and B are model files, or what `tsas calibrate`, `diagnose`, `simulate` or `track` wrote.
+    A and B are model files, or outputs of `tsas calibrate`, `diagnose`, `simulate` or `track`.
     """
     with progress("compare", quiet=quiet) as step:
         result = tsas.compare(

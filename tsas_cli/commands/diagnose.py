@@ -1,4 +1,4 @@
-"""`tsas diagnose`: what the model gets wrong, its cause, the extended model, the gain."""
+"""`tsas diagnose`: the residuals, their cause, the extended model, the reduction."""
 
 import tsas_cli as tsas
 from tsas_cli.commands.common import (
@@ -6,7 +6,7 @@ from tsas_cli.commands.common import (
     DatasetFolder,
     Force,
     Json,
-    ModelFile,
+    ModelOption,
     OutFolder,
     Quiet,
     Rrd,
@@ -20,14 +20,14 @@ from tsas_cli.commands.progress import progress
 def diagnose(
     dataset: DatasetFolder,
     out: OutFolder,
-    model: ModelFile = None,
+    model: ModelOption = None,
     runs: ChosenRuns = None,
     rrd: Rrd = False,
     force: Force = False,
     quiet: Quiet = False,
     as_json: Json = False,
 ) -> None:
-    """Show what the simulation gets wrong, name the cause, extend the model, measure the gain."""
+    """Locate the residuals of the simulation, name their cause, and fit the extended model."""
     with progress("diagnose", quiet=quiet) as step, with_stream(rrd, step):
         result = tsas.diagnose(
             dataset, out=out, model=model, runs=names(runs), force=force, step=step

@@ -1,4 +1,4 @@
-"""`tsas doctor`: what is installed, what is missing, and what to do about it."""
+"""`tsas doctor`: check the installation."""
 
 import shlex
 import sys
@@ -13,13 +13,13 @@ if TYPE_CHECKING:
     from tsas_cli.installation.machine import Ability
     from tsas_cli.installation.packages import Extra, Package
 
-Rows = Sequence[tuple[str, ...]]
+_Rows = Sequence[tuple[str, ...]]
 
 
 def doctor(quiet: Quiet = False, as_json: Json = False) -> None:
-    """Say what is installed, what is missing and which command installs it.
+    """Check the installation, and print the command that installs what is missing.
 
-    It ends with exit code 2 where tsas lacks what it needs; the rest is only told.
+    The exit code is 2 if a required package is missing; anything else is only reported.
     """
     from tsas_cli.support import __version__
     from tsas_cli.support.errors import InputError
@@ -48,21 +48,23 @@ def doctor(quiet: Quiet = False, as_json: Json = False) -> None:
     show(summary, _tables(title, core, more, machine), quiet=quiet, as_json=as_json)
     sys.stdout.flush()
     if wrong := [package for package in core if package.problem]:
-        said = ", ".join(f"{p.name} {p.found or ''} {p.problem}".replace("  ", " ") for p in wrong)
-        asked = [f"{p.name}{p.asked}" for p in wrong if p.name != "Python"]
-        remedy = _pip(asked) if asked else f"use Python {wrong[0].asked}"
-        raise InputError(f"tsas lacks what it needs: {said}", remedy=remedy)
+        problems = ", ".join(
+            f"{p.name} {p.found or ''} {p.problem}".replace("  ", " ") for p in wrong
+        )
+        required = [f"{p.name}{p.asked}" for p in wrong if p.name != "Python"]
+        remedy = _pip(required) if required else f"use Python {wrong[0].asked}"
+        raise InputError(f"required packages are missing or wrong: {problems}", remedy=remedy)
 
 
 def _tables(
     title: str, core: Sequence["Package"], more: Sequence["Extra"], machine: Sequence["Ability"]
-) -> Iterator[tuple[str, tuple[str, ...], Rows]]:
-    rows = [(p.name, p.asked, p.found or "", p.problem or "there") for p in core]
-    yield title, ("package", "asked", "found", "state"), rows
-    rows = [(e.name, e.purpose, ", ".join(e.missing) or "there", _install(e)) for e in more]
+) -> Iterator[tuple[str, tuple[str, ...], _Rows]]:
+    rows = [(p.name, p.asked, p.found or "", p.problem or "installed") for p in core]
+    yield title, ("package", "required", "found", "state"), rows
+    rows = [(e.name, e.purpose, ", ".join(e.missing) or "none", _install(e)) for e in more]
     yield "extras", ("extra", "for", "missing", "install it with"), rows
     rows = [(a.name, "yes" if a.works else "no", a.found, a.remedy) for a in machine]
-    yield "this machine", ("what", "there", "found", "what to do"), rows
+    yield "this machine", ("capability", "available", "found", "remedy"), rows
 
 
 def _install(extra: "Extra") -> str:

@@ -1,4 +1,4 @@
-"""`tsas explain NAME`: what an effect is, what one sees of it, and how to isolate it."""
+"""`tsas explain NAME`: describe an effect."""
 
 from typing import Annotated
 
@@ -14,12 +14,12 @@ def explain(
         str,
         typer.Argument(
             metavar="NAME",
-            help="An effect; `tsas effects` lists.",
+            help="An effect of `tsas effects`.",
             autocompletion=effect_names,
         ),
     ],
     quiet: Quiet = False,
     as_json: Json = False,
 ) -> None:
-    """Explain an effect: what one sees of it, its equation, its parameters, its experiment."""
+    """Describe an effect: its signature, equation, parameters and isolating experiment."""
     present(tsas.explain(name), quiet=quiet, as_json=as_json)

@@ -1,4 +1,4 @@
-"""`tsas identify-harmonic-drive`: from motor speed to x_in: G(s), its inverse, what it lacks."""
+"""`tsas identify-harmonic-drive`: G(s) from motor speed to x_in, its inverse, its residuals."""
 
 from enum import StrEnum
 from typing import Annotated
@@ -35,9 +35,8 @@ def identify_harmonic_drive(
         SpeedOption,
         typer.Option(
             "--speed",
-            help="measured: linear between samples, as a turning motor's speed is; commanded: kept "
-            "until the next sample, as a controller holds it. Taken wrongly it is half a sample "
-            "of delay.",
+            help="measured: linear between samples; commanded: zero-order hold, as from a "
+            "controller. The wrong choice is a delay of half a sample.",
         ),
     ] = SpeedOption.measured,
     runs: ChosenRuns = None,
@@ -46,7 +45,7 @@ def identify_harmonic_drive(
     quiet: Quiet = False,
     as_json: Json = False,
 ) -> None:
-    """Fit the drive from motor speed to x_in, diagnose it, and give its feedforward."""
+    """Identify the drive from motor speed to x_in, diagnose it, and compute its feedforward."""
     with progress("identify", quiet=quiet) as step, with_stream(rrd, step):
         result = tsas.identify_harmonic_drive(
             dataset, out=out, speed=speed.value, runs=names(runs), force=force, step=step

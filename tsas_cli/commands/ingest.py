@@ -1,4 +1,4 @@
-"""`tsas ingest`: from a person's files to a dataset."""
+"""`tsas ingest`: convert raw files to a dataset."""
 
 import shlex
 from pathlib import Path
@@ -18,25 +18,27 @@ def ingest(
         list[Path], typer.Argument(metavar="SOURCE", help="Files, or folders to search.")
     ],
     map_path: Annotated[
-        Path | None, typer.Option("--map", metavar="MAP.toml", help="What they hold.")
+        Path | None, typer.Option("--map", metavar="MAP.toml", help="The map of their columns.")
     ] = None,
     out: Annotated[
         Path | None,
-        typer.Option("--out", metavar="DIR", help="The folder to write; with --guess, the map."),
+        typer.Option(
+            "--out", metavar="DIR", help="The folder to write; with --guess, the map to write."
+        ),
     ] = None,
     guess: Annotated[
-        bool, typer.Option("--guess", help="Propose a map, on standard output or into --out.")
+        bool, typer.Option("--guess", help="Propose a map, to standard output or --out.")
     ] = False,
     force: Force = False,
     quiet: Quiet = False,
     as_json: Json = False,
 ) -> None:
-    """Turn files of a rig into a dataset, as a map says; or propose the map (docs/ingest.md)."""
+    """Convert raw files to a dataset by a map, or propose the map (docs/ingest.md)."""
     result: Result
     if guess:
         if map_path is not None:
             raise InputError(
-                "--guess proposes a map, --map takes one", remedy="leave one of them out"
+                "--guess proposes a map, --map uses one", remedy="leave one of them out"
             )
         result = tsas.guess(sources, out=out, force=force)
     elif map_path is None or out is None:

@@ -1,4 +1,4 @@
-"""`tsas init`: a project of a person's own, from recordings to a page by `make`."""
+"""`tsas init`: create a project, from recordings to a report by `make`."""
 
 import shlex
 from pathlib import Path
@@ -17,12 +17,14 @@ def init(
     ],
     sources: Annotated[
         list[Path] | None,
-        typer.Option("--from", metavar="SOURCE", help="Recordings to copy and to guess a map for."),
+        typer.Option(
+            "--from", metavar="SOURCE", help="Recordings to copy and to propose a map for."
+        ),
     ] = None,
     quiet: Quiet = False,
     as_json: Json = False,
 ) -> None:
-    """Write a small project: a map, a place for recordings, and a Makefile from them to a page."""
+    """Create a project: a map, a folder for recordings, and a Makefile from them to a report."""
     from tsas_cli.project.start import MAP, start
 
     files, proposal = start(folder, sources or [])
@@ -38,5 +40,5 @@ def init(
     tables = [(f"project {folder}", ("file",), [(name,) for name in files])]
     show(summary, tables, quiet=quiet, as_json=as_json)
     if not quiet and not as_json:
-        answer = f"answer the questions in {folder / MAP}, then " if asked or not proposal else ""
-        print(printable(f"Next: {answer}`make -C {shlex.quote(str(folder))}`"))
+        first = f"answer the questions in {folder / MAP}, then " if asked or not proposal else ""
+        print(printable(f"Next: {first}`make -C {shlex.quote(str(folder))}`"))

@@ -1,4 +1,4 @@
-"""`--live`: the viewer beside a stage, which shows each run as soon as it is computed."""
+"""`--live`: the viewer shows each run of a stage as soon as it is computed."""
 
 import sys
 from collections.abc import Iterator
@@ -17,16 +17,16 @@ Live = Annotated[
 ]
 
 
-def unseen(*run: object) -> None:
-    """Show nothing of a run."""
+def not_shown(*run: object) -> None:
+    """Ignore a run."""
     del run
 
 
 @contextmanager
 def watched(live: bool, name: str, *, quiet: bool) -> Iterator["LiveStream | None"]:
-    """Open the viewer, yield its stream, and stay until a person closes it; None without `live`.
+    """Open the viewer, yield its stream, and wait until it is closed; yield None without `live`.
 
-    What is said is said on standard error: standard output holds the stage's result alone.
+    Messages go to standard error: standard output holds the stage's result only.
     """
     if not live:
         yield None
@@ -38,7 +38,7 @@ def watched(live: bool, name: str, *, quiet: bool) -> Iterator["LiveStream | Non
     from tsas_cli.support.stopping import cleaned_up_when_stopped, until_stopped
 
     with cleaned_up_when_stopped(), opened(in_browser=not has_screen()) as viewer:
-        _say(note_once(), f"live at {viewer.page}" if viewer.page else "", quiet=quiet)
+        _report(note_once(), f"live at {viewer.page}" if viewer.page else "", quiet=quiet)
         computed, failure = False, None
         try:
             with live_stream(viewer.proxy, name) as stream:
@@ -50,16 +50,16 @@ def watched(live: bool, name: str, *, quiet: bool) -> Iterator["LiveStream | Non
                 raise
             failure = error
         if failure is not None:
-            _say(f"not all was shown, but all is written: {failure.line()}", quiet=quiet)
+            _report(f"some runs were not shown, but all are written: {failure.line()}", quiet=quiet)
             return
         sys.stdout.flush()
         end = "Ctrl-C" if viewer.page else "close the window or press Ctrl-C"
-        _say(f"all runs are there and written; {end} to end the viewer", quiet=quiet)
+        _report(f"all runs are shown and written; {end} to end the viewer", quiet=quiet)
         with until_stopped():
             viewer.child.wait()
 
 
-def _say(*sentences: str, quiet: bool) -> None:
+def _report(*sentences: str, quiet: bool) -> None:
     for sentence in sentences:
         if sentence and not quiet:
             print(f"- {sentence}", file=sys.stderr, flush=True)

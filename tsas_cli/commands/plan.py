@@ -1,4 +1,4 @@
-"""`tsas plan`: what a set of runs could show, before anyone measures, and what to add to it."""
+"""`tsas plan`: the detectable effects of planned or recorded runs, and the best further run."""
 
 from pathlib import Path
 from typing import Annotated
@@ -21,7 +21,7 @@ def plan(
     quiet: Quiet = False,
     as_json: Json = False,
 ) -> None:
-    """Say from which size on runs would show each effect, and which further run helps most."""
+    """Compute the smallest detectable size of each effect, and the most useful further run."""
     with progress("plan", quiet=quiet) as step:
         result = tsas.plan(path, out=out, force=force, step=step)
     present(result, quiet=quiet, as_json=as_json)

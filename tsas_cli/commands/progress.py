@@ -1,4 +1,4 @@
-"""A bar on standard error, where that is a terminal, with the time that is left."""
+"""A progress bar on standard error, if it is a terminal, with the remaining time."""
 
 import sys
 from collections.abc import Iterator
@@ -13,24 +13,24 @@ if TYPE_CHECKING:
 
 
 class Bar(Steps):
-    """Moves a task of a bar; its total grows with what is known to lie ahead."""
+    """A progress bar, whose total grows with the announced steps."""
 
     def __init__(self, shown: "Progress", label: str, total: int) -> None:
         self.shown, self.total, self.done = shown, total, 0
         self.task = shown.add_task(label, total=total or None, left="")
 
     def ahead(self, pieces: int) -> None:
-        """Make the total grow."""
+        """Add steps to the total."""
         self.total += pieces
         self._show()
 
     def __call__(self) -> None:
-        """Move the bar by one."""
+        """Count one completed step."""
         self.done += 1
         self._show()
 
     def _show(self) -> None:
-        """Draw the bar, and say how long the rest takes at the pace so far."""
+        """Draw the bar, with the remaining time at the pace so far."""
         rest, left = self.total - self.done, ""
         if self.done and rest > 0:
             so_far_s = self.shown.tasks[0].elapsed or 0.0
@@ -40,14 +40,14 @@ class Bar(Steps):
 
 @contextmanager
 def progress(label: str, total: int = 0, *, quiet: bool) -> Iterator[Steps]:
-    """Show a bar while a stage is at work; yield what the stage tells of its steps.
+    """Show a bar while a stage runs; yield the receiver of its steps.
 
     Parameters
     ----------
     label
-        What is done.
+        The label of the bar.
     total
-        The pieces of work, as far as the stage does not say itself what lies ahead.
+        Number of steps besides those that the stage announces.
     quiet
         Show nothing.
     """

@@ -1,4 +1,4 @@
-"""`tsas report`: one HTML page of what the stages found."""
+"""`tsas report`: one HTML page of the results of stages."""
 
 from pathlib import Path
 from typing import Annotated
@@ -11,12 +11,10 @@ from tsas_cli.commands.progress import progress
 
 
 def report(
-    folders: Annotated[
-        list[str], typer.Argument(metavar="DIR", help="Folders that the stages have written.")
-    ],
+    folders: Annotated[list[str], typer.Argument(metavar="DIR", help="Output folders of stages.")],
     out: Annotated[Path, typer.Option("--out", metavar="FILE", help="The HTML page to write.")],
     pdf: Annotated[
-        bool, typer.Option("--pdf", help="Write it as PDF beside the page too; needs Chromium.")
+        bool, typer.Option("--pdf", help="Also print the page to PDF; requires Chromium.")
     ] = False,
     force: Force = False,
     quiet: Quiet = False,
@@ -24,10 +22,10 @@ def report(
 ) -> None:
     """Write one self-contained HTML page: diagnosis, recordings, model, simulation and residual.
 
-    Each DIR is a dataset or what `tsas check`, `calibrate`, `simulate` or `diagnose` wrote. What
-    `tsas track`, `close-loop` or `identify-harmonic-drive` wrote makes a page of its own.
+    Each DIR is a dataset or an output of `tsas check`, `calibrate`, `simulate` or `diagnose`. An
+    output of `tsas track`, `close-loop` or `identify-harmonic-drive` has a page of its own.
 
-    With `--pdf` report.html is printed to report.pdf beside it.
+    With `--pdf`, report.html is also printed to report.pdf.
     """
     with progress("report", quiet=quiet) as step:
         result = tsas.report(folders, out=out, pdf=pdf, force=force, step=step)

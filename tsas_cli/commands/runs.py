@@ -1,4 +1,4 @@
-"""`tsas runs QUERY`: find runs among those of many datasets."""
+"""`tsas runs QUERY`: find runs in many datasets."""
 
 from pathlib import Path
 from typing import Annotated
@@ -14,34 +14,34 @@ from tsas_cli.support.errors import InputError
 
 def runs(
     query: Annotated[
-        str, typer.Argument(metavar="QUERY", help="A condition in SQL; all runs without it.")
+        str, typer.Argument(metavar="QUERY", help="A condition in SQL; default: all runs.")
     ] = "",
     folders: Annotated[
         list[Path] | None,
-        typer.Option("--in", metavar="DIR", help="Where to look, once or more; else here."),
+        typer.Option("--in", metavar="DIR", help="A folder to search; repeatable; default: here."),
     ] = None,
     columns: Annotated[
         str | None,
         typer.Option(
-            metavar="NAMES", help="What is told, with commas.", autocompletion=run_columns
+            metavar="NAMES", help="Columns to print, comma-separated.", autocompletion=run_columns
         ),
     ] = None,
     sort: Annotated[
         str | None,
         typer.Option(
             metavar="NAMES",
-            help="Columns to sort by; -NAME the other way round.",
+            help="Columns to sort by; -NAME: descending.",
             autocompletion=sort_columns,
         ),
     ] = None,
-    limit: Annotated[int | None, typer.Option(min=0, help="How many runs at most.")] = None,
+    limit: Annotated[int | None, typer.Option(min=0, help="Largest number of runs.")] = None,
     paths: Annotated[
-        bool, typer.Option("--paths", help="Print the datasets' folders alone, one a line.")
+        bool, typer.Option("--paths", help="Print only the datasets' folders, one per line.")
     ] = False,
     quiet: Quiet = False,
     as_json: Json = False,
 ) -> None:
-    """Find runs among those of all datasets below a folder, by conditions, signals and verdicts.
+    """Find runs in all datasets below a folder, by conditions, channels and verdicts.
 
     For example: tsas runs 'total_bend_rad > 3 and f_out in channels and started >= 2026-01'
     """

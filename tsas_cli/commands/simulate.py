@@ -1,4 +1,4 @@
-"""`tsas simulate`: run a model on the recorded inputs and compare."""
+"""`tsas simulate`: simulate the recorded runs with a model."""
 
 from enum import StrEnum
 from functools import partial
@@ -12,7 +12,7 @@ from tsas_cli.commands.common import (
     DatasetFolder,
     Force,
     Json,
-    ModelFile,
+    ModelOption,
     OutFolder,
     Quiet,
     Rrd,
@@ -20,11 +20,11 @@ from tsas_cli.commands.common import (
     present,
     with_stream,
 )
-from tsas_cli.commands.live import Live, unseen, watched
+from tsas_cli.commands.live import Live, not_shown, watched
 from tsas_cli.commands.progress import progress
 
 
-class DynamicsOption(StrEnum):
+class SimulationDynamics(StrEnum):
     """The models of the tendon that can be simulated."""
 
     static = "static"
@@ -35,18 +35,21 @@ class DynamicsOption(StrEnum):
 def simulate(
     dataset: DatasetFolder,
     out: OutFolder,
-    model: ModelFile = None,
+    model: ModelOption = None,
     dynamics: Annotated[
-        DynamicsOption,
-        typer.Option("--dynamics", help="static: the paper's; slip: distributed; lugre: dynamic."),
-    ] = DynamicsOption.slip,
+        SimulationDynamics,
+        typer.Option(
+            "--dynamics",
+            help="static: of the paper; slip: distributed friction; lugre: dynamic friction.",
+        ),
+    ] = SimulationDynamics.slip,
     fit_own: Annotated[
         bool,
-        typer.Option(help="Fit what belongs to each run alone first: its preload and its zeros."),
+        typer.Option(help="First fit the preload and zeros of each run."),
     ] = False,
     nodes: Annotated[
         int | None,
-        typer.Option(help="Nodes of the chain, 2 to 1000, where not as usual."),
+        typer.Option(help="Nodes of the chain, 2 to 1000."),
     ] = None,
     runs: ChosenRuns = None,
     rrd: Rrd = False,
@@ -55,7 +58,7 @@ def simulate(
     quiet: Quiet = False,
     as_json: Json = False,
 ) -> None:
-    """Simulate every run with a model and say how far it is from the measurement."""
+    """Simulate every run with a model, and compute its residual."""
     data = tsas.read(dataset, runs=names(runs))
     with watched(live, f"{data.manifest.name} · simulation", quiet=quiet) as stream:
         with progress("simulate", quiet=quiet) as step, with_stream(rrd, step):
@@ -68,6 +71,6 @@ def simulate(
                 nodes=nodes,
                 force=force,
                 step=step,
-                each=partial(stream.simulated, data) if stream else unseen,
+                each=partial(stream.simulated, data) if stream else not_shown,
             )
         present(result, quiet=quiet, as_json=as_json)

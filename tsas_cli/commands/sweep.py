@@ -1,4 +1,4 @@
-"""`tsas sweep`: a stage over many datasets or values, on many processes or a cluster."""
+"""`tsas sweep`: run a stage for many datasets or values, in processes or on a cluster."""
 
 import tomllib
 from pathlib import Path
@@ -23,7 +23,7 @@ def sweep(
     ],
     datasets: Annotated[
         list[str] | None,
-        typer.Argument(metavar="[DATASET]...", help="Of a stage: folders, or patterns of them."),
+        typer.Argument(metavar="[DATASET]...", help="For a stage: folders, or patterns."),
     ] = None,
     *,
     out: OutFolder,
@@ -32,24 +32,22 @@ def sweep(
         typer.Option("--set", metavar="NAME=VALUE", help="An option of the stage, as in a plan."),
     ] = None,
     each_run: Annotated[
-        bool, typer.Option("--each-run", help="Every run by itself, not every dataset.")
+        bool, typer.Option("--each-run", help="One task per run instead of per dataset.")
     ] = False,
     workers: Annotated[
-        int | None, typer.Option(min=1, help="How many processes; else one for each core.")
+        int | None, typer.Option(min=1, help="Number of processes; default: one per core.")
     ] = None,
     cluster: Annotated[
         str | None,
-        typer.Option(metavar="ADDRESS", help="A Dask scheduler, whose workers are taken instead."),
+        typer.Option(metavar="ADDRESS", help="A Dask scheduler, to use its workers."),
     ] = None,
-    force: Annotated[
-        bool, typer.Option("--force", help="Do those tasks again that are done.")
-    ] = False,
+    force: Annotated[bool, typer.Option("--force", help="Repeat completed tasks.")] = False,
     quiet: Quiet = False,
     as_json: Json = False,
 ) -> None:
-    """Call a stage for many datasets or values, and gather what comes out in one table.
+    """Run a stage for many datasets or values, and collect the results in one table.
 
-    What is done stays: the same call again does only what is left, or has changed.
+    Completed tasks are kept: the same call again runs only pending or changed ones.
     """
     with progress("sweep", quiet=quiet) as step:
         result = tsas.sweep(
@@ -68,20 +66,20 @@ def sweep(
 def _plan(
     what: str, datasets: list[str], options: list[str], *, each_run: bool
 ) -> Path | dict[str, object]:
-    """Return the plan's file, or the content of one that the call stands for."""
+    """Return the plan's file, or the content of the plan that the call describes."""
     if what.endswith(".toml"):
         if datasets or options or each_run:
             raise InputError(
-                "a plan says all itself", where=what, remedy="write it there, or name a stage"
+                "a plan has no further arguments", where=what, remedy="set them in the plan"
             )
         return Path(what)
-    told = dict(_option(option) for option in options)
-    plan: dict[str, object] = {"stage": what, "each_run": each_run, "options": told}
+    named = dict(_option(option) for option in options)
+    plan: dict[str, object] = {"stage": what, "each_run": each_run, "options": named}
     return plan | ({"datasets": datasets} if datasets else {})
 
 
 def _option(text: str) -> tuple[str, Any]:
-    """Return name and value; a value is written as in TOML, text also without quotes."""
+    """Return name and value; a value is in TOML, or text without quotes."""
     name, sign, value = text.partition("=")
     if not sign:
         raise InputError(f"{text!r} is no option", where="--set", expected="NAME=VALUE")

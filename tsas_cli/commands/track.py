@@ -1,4 +1,4 @@
-"""`tsas track`: close the loop on a simulated rig and say how well a wanted force is followed."""
+"""`tsas track`: closed-loop force tracking on a simulated rig."""
 
 from enum import StrEnum
 from pathlib import Path
@@ -18,7 +18,7 @@ from tsas_cli.commands.common import (
     with_stream,
 )
 from tsas_cli.commands.completion import controllers, references
-from tsas_cli.commands.live import Live, unseen, watched
+from tsas_cli.commands.live import Live, not_shown, watched
 from tsas_cli.commands.progress import progress
 
 
@@ -33,21 +33,21 @@ def track(
     out: OutFolder,
     model: Annotated[
         Path | None,
-        typer.Option(metavar="M.toml", help="What the controller knows; else the paper's rig."),
+        typer.Option(metavar="M.toml", help="The controller's model; default: the paper's rig."),
     ] = None,
     plant: Annotated[
         Path | None,
-        typer.Option(metavar="P.toml", help="What it acts on; else the same as --model."),
+        typer.Option(metavar="P.toml", help="The simulated rig; default: as --model."),
     ] = None,
     drive: Annotated[
         Path | None,
-        typer.Option(metavar="D.toml", help="What the controller knows of the drive; else r1, im."),
+        typer.Option(metavar="D.toml", help="The controller's drive model; default: r1, im."),
     ] = None,
     controller: Annotated[
         str,
         typer.Option(
             metavar="NAMES",
-            help="One or several, with commas between, or all.",
+            help="Names, comma-separated, or all.",
             autocompletion=controllers,
         ),
     ] = "adaptive-sliding-mode",
@@ -68,25 +68,27 @@ def track(
     ] = None,
     as_printed: Annotated[
         bool,
-        typer.Option(help="ks of the sliding modes per mm as the paper prints it: a relay."),
+        typer.Option(help="Gain ks of the sliding modes per mm, as printed in the paper: a relay."),
     ] = False,
     dynamics: Annotated[
         TendonOption,
-        typer.Option("--dynamics", help="The plant's tendon; slip: quasi-static; lugre: dynamic."),
+        typer.Option(
+            "--dynamics", help="Friction of the plant: slip, quasi-static; lugre, dynamic."
+        ),
     ] = TendonOption.slip,
     settings: Annotated[
         Path | None,
         typer.Option(metavar="S.toml", help="Rig, drive, sensors, reference and gains."),
     ] = None,
-    seeds: Annotated[int | None, typer.Option(min=1, help="How many seeds of noise.")] = None,
-    seed: Annotated[int, typer.Option(min=0, help="The first of them.")] = 1,
+    seeds: Annotated[int | None, typer.Option(min=1, help="Number of noise seeds.")] = None,
+    seed: Annotated[int, typer.Option(min=0, help="The first noise seed.")] = 1,
     rrd: Rrd = False,
     live: Live = False,
     force: Force = False,
     quiet: Quiet = False,
     as_json: Json = False,
 ) -> None:
-    """Follow a wanted force with a controller that sees x_in alone."""
+    """Track a reference of the distal tension with controllers that measure x_in only."""
     with watched(live, "tracking", quiet=quiet) as stream:
         with progress("track", quiet=quiet) as step, with_stream(rrd, step):
             result = tsas.track(
@@ -105,6 +107,6 @@ def track(
                 first_seed=seed,
                 force=force,
                 step=step,
-                each=stream.tracked if stream else unseen,
+                each=stream.tracked if stream else not_shown,
             )
         present(result, quiet=quiet, as_json=as_json)

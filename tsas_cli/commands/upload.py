@@ -1,4 +1,4 @@
-"""`tsas upload DATASET ADDRESS`: put a dataset on object storage."""
+"""`tsas upload DATASET ADDRESS`: copy a dataset to object storage."""
 
 from pathlib import Path
 from typing import Annotated
@@ -13,13 +13,13 @@ from tsas_cli.commands.progress import progress
 def upload(
     folder: Annotated[Path, typer.Argument(metavar="DATASET", help="A dataset's local folder.")],
     address: Annotated[
-        str, typer.Argument(metavar="ADDRESS", help="Where to: s3://BUCKET/PATH or gs://….")
+        str, typer.Argument(metavar="ADDRESS", help="The target: s3://BUCKET/PATH or gs://….")
     ],
     force: Force = False,
     quiet: Quiet = False,
     as_json: Json = False,
 ) -> None:
-    """Put a dataset on object storage, whence every command reads it by its address."""
+    """Copy a dataset to object storage, where every command reads it by its address."""
     with progress("upload", quiet=quiet) as step:
         result = tsas.upload(folder, address, force=force, step=step)
     present(result, quiet=quiet, as_json=as_json)

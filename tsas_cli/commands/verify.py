@@ -1,4 +1,4 @@
-"""`tsas verify`: whether files are still what was recorded of them."""
+"""`tsas verify`: verify recorded checksums."""
 
 import sys
 from pathlib import Path
@@ -13,20 +13,18 @@ from tsas_cli.support.errors import InputError
 
 
 def verify(
-    path: Annotated[
-        Path, typer.Argument(metavar="PATH", help="A page, or a folder of what stages wrote.")
-    ],
+    path: Annotated[Path, typer.Argument(metavar="PATH", help="A report, or a folder of outputs.")],
     raw: Annotated[
         list[Path] | None,
-        typer.Option("--raw", metavar="DIR", help="Where raw recordings are that have moved."),
+        typer.Option("--raw", metavar="DIR", help="A folder of raw recordings that have moved."),
     ] = None,
     quiet: Quiet = False,
     as_json: Json = False,
 ) -> None:
-    """Check every checksum from the report back to the raw recordings, and name what does not fit.
+    """Verify every recorded checksum, from a report back to the raw recordings.
 
-    It ends with exit code 2 where a file has changed or is missing. What nobody has recorded is
-    told, but is no fault.
+    The exit code is 2 if a file has changed or is missing. A file without a recorded checksum is
+    listed, but is no fault.
     """
     with progress("verify", quiet=quiet) as step:
         result = tsas.verify(path, raw=raw or (), step=step)
@@ -36,7 +34,7 @@ def verify(
         some = ", ".join(dict.fromkeys(one.file for one in wrong[:3]))
         more = f" and {len(wrong) - 3} more" if len(wrong) > 3 else ""
         raise InputError(
-            f"not what was recorded: {some}{more}",
+            f"changed or missing: {some}{more}",
             where=path,
-            remedy="bring the files back, or run the stages that wrote or read them again",
+            remedy="restore the files, or run the stages that wrote or read them again",
         )

@@ -1,4 +1,4 @@
-"""`tsas view`: look at recordings, and at what the stages found, in the viewer."""
+"""`tsas view`: show recordings and results of stages in the viewer."""
 
 import sys
 from contextlib import ExitStack
@@ -9,26 +9,26 @@ import typer
 from tsas_cli.commands.common import Json, Quiet, show
 from tsas_cli.commands.progress import progress
 
-ENDS = {True: "Ctrl-C ends it", False: "close the window or press Ctrl-C to end it"}
+_HOW_TO_END = {True: "Ctrl-C ends it", False: "close the window or press Ctrl-C to end it"}
 
 
 def view(
     paths: Annotated[
-        list[str], typer.Argument(metavar="PATH", help="An .rrd file, or folders of stages.")
+        list[str], typer.Argument(metavar="PATH", help="An .rrd file, or output folders.")
     ],
     web: Annotated[
-        bool, typer.Option("--web", help="In the browser, even where a window can be opened.")
+        bool, typer.Option("--web", help="Use the browser even if a window can be opened.")
     ] = False,
     port: Annotated[
-        int | None, typer.Option(min=1, max=65535, help="The viewer's port; any without it.")
+        int | None, typer.Option(min=1, max=65535, help="The viewer's port; default: any.")
     ] = None,
     quiet: Quiet = False,
     as_json: Json = False,
 ) -> None:
-    """Show what was measured, simulated and found, over time, until you close it.
+    """Show measured and simulated signals and findings over time in a viewer.
 
-    Each PATH is a dataset or what a stage wrote, together one stream; or one .rrd file. A window
-    opens, and where there is no screen a page is served whose address is printed.
+    Each PATH is a dataset or an output of a stage, all in one stream; or one .rrd file. A window
+    opens; without a screen, a page is served and its address printed.
     """
     from tsas_cli.recordings.storage import place_of
     from tsas_cli.reporting.viewer.analytics import note_once
@@ -38,11 +38,11 @@ def view(
     from tsas_cli.support.stopping import until_stopped
 
     in_browser = web or not has_screen()
-    with until_stopped(), ExitStack() as held:
+    with until_stopped(), ExitStack() as stack:
         with progress("stream", quiet=quiet) as step:
-            stream, notes = held.enter_context(stream_of([place_of(path) for path in paths], step))
-        viewer = held.enter_context(opened(stream, in_browser=in_browser, port=port))
-        talk = () if quiet else (*notes, note_once(), ENDS[in_browser])
+            stream, notes = stack.enter_context(stream_of([place_of(path) for path in paths], step))
+        viewer = stack.enter_context(opened(stream, in_browser=in_browser, port=port))
+        talk = () if quiet else (*notes, note_once(), _HOW_TO_END[in_browser])
         for sentence in filter(None, talk):
             print(f"- {sentence}", file=sys.stderr)
         summary = {"stage": "view", "stream": str(stream), "address": viewer.page or None}

@@ -1,1 +1,1 @@
-"""What is installed here, and what that allows, told with as few imports as can be."""
+"""The installation and its capabilities, inspected with few imports."""

@@ -1,4 +1,4 @@
-"""What this machine allows: where compiled code is kept, threads, the viewer, a PDF."""
+"""Capabilities of this machine: cache of compiled code, threads, viewer, PDF."""
 
 import os
 import platform
@@ -20,7 +20,7 @@ BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stab
 
 @dataclass(frozen=True)
 class Ability:
-    """Something this machine can do or not, what was found, and what to do where it cannot."""
+    """A capability of this machine, the evidence, and the remedy if it is missing."""
 
     name: str
     works: bool
@@ -29,18 +29,18 @@ class Ability:
 
 
 def abilities() -> Iterator[Ability]:
-    """Yield what this machine can do; none of it is needed for a calibration or a diagnosis."""
+    """Yield the capabilities; none is required for a calibration or a diagnosis."""
     yield _compiled_code()
-    yield _asked("threads", lambda: f"{threads()} of {os.cpu_count()} cores, {THREADS} sets it")
-    yield _asked("viewer", lambda: str(program()))
-    yield _asked("drawing", drawn_with)
+    yield _queried("threads", lambda: f"{threads()} of {os.cpu_count()} cores, {THREADS} sets it")
+    yield _queried("viewer", lambda: str(program()))
+    yield _queried("drawing", drawn_with)
     yield _screen()
     yield _browser()
 
 
-def _asked(name: str, question: Callable[[], str]) -> Ability:
+def _queried(name: str, query: Callable[[], str]) -> Ability:
     try:
-        return Ability(name, True, question())
+        return Ability(name, True, query())
     except InputError as error:
         found = f"{error.where}: {error.what}" if error.where else error.what
         return Ability(name, False, found, error.remedy or error.expected)
@@ -52,12 +52,12 @@ def _compiled_code() -> Ability:
         return Ability(
             "compiled code",
             False,
-            "cannot be kept: every call compiles for seconds",
-            "name a folder that you may write to in TSAS_CACHE_DIR",
+            "cannot be cached: every call compiles for seconds",
+            "set TSAS_CACHE_DIR to a writable folder",
         )
     size = sum(path.stat().st_size for path in Path(folder).rglob("*") if path.is_file())
-    kept = f"{size / 1e6:.1f} MB" if size else "empty: the first calls compile for seconds"
-    return Ability("compiled code", True, f"{folder}, {kept}")
+    cached = f"{size / 1e6:.1f} MB" if size else "empty: the first calls compile for seconds"
+    return Ability("compiled code", True, f"{folder}, {cached}")
 
 
 def _screen() -> Ability:

@@ -1,4 +1,4 @@
-"""The packages that tsas asks for, in the versions that are there."""
+"""The packages that tsas requires, and the installed versions."""
 
 import platform
 from collections.abc import Iterator
@@ -10,7 +10,7 @@ from packaging.requirements import Requirement
 from packaging.specifiers import SpecifierSet
 
 PROJECT = "tsas"
-MODULES = {"rerun-sdk": "rerun"}  # where the module is called otherwise
+MODULES = {"rerun-sdk": "rerun"}  # modules that are named differently
 PURPOSES = {
     "mat": "MATLAB v7.3 files",
     "mdf": "MDF4 files",
@@ -26,7 +26,7 @@ PURPOSES = {
 
 @dataclass(frozen=True)
 class Package:
-    """A package: the versions asked for, the one found, and what is wrong with it, if anything."""
+    """A package: the required and the installed version, and its problem, if any."""
 
     name: str
     asked: str
@@ -36,7 +36,7 @@ class Package:
 
 @dataclass(frozen=True)
 class Extra:
-    """Packages that only some tasks need, and the command that installs what is missing of them."""
+    """An optional set of packages, and its purpose."""
 
     name: str
     purpose: str
@@ -44,12 +44,12 @@ class Extra:
 
     @property
     def missing(self) -> tuple[str, ...]:
-        """The packages that are not there as asked for."""
+        """The packages that are missing or have a wrong version."""
         return tuple(package.name for package in self.packages if package.problem)
 
 
 def core_packages() -> Iterator[Package]:
-    """Yield Python and every package that tsas cannot do without, each imported once."""
+    """Yield Python and every required package, each imported once."""
     asked, python = SpecifierSet(metadata(PROJECT)["Requires-Python"]), platform.python_version()
     fits = asked.contains(python, prereleases=True)
     yield Package("Python", str(asked), python, "" if fits else "wrong version")
@@ -92,10 +92,10 @@ def _package(requirement: Requirement) -> Package:
 
 
 def _imported(package: Package) -> Package:
-    """Return the package with what its import says; half an installation raises anything."""
+    """Return the package with the error of its import; a broken one may raise any type."""
     try:
         import_module(MODULES.get(package.name, package.name.replace("-", "_")))
-    except Exception as error:  # noqa: BLE001 # what it raises is what is told
+    except Exception as error:  # noqa: BLE001 # the error is the result
         reason = f"{type(error).__name__}: {error}".splitlines()[0]
         return Package(package.name, package.asked, package.found, f"cannot be loaded: {reason}")
     return package

@@ -1,1 +1,1 @@
-"""A project of a person's own: the Makefile pipelines and the files that `tsas init` writes."""
+"""A user's project: the Makefile pipelines and the files that `tsas init` writes."""

@@ -1,4 +1,4 @@
-"""A new project: a map, a place for recordings, and the pipeline that takes them to a page."""
+"""A new project: a map, a folder for recordings, and the pipeline to a report."""
 
 import filecmp
 import shutil
@@ -20,21 +20,20 @@ MAP, RAW = "bench.toml", "raw"
 
 
 def makefile() -> str:
-    """Return the Makefile of a project; the project's own pipelines run the same steps."""
+    """Return the Makefile of a project; the pipelines of this repository run the same steps."""
     return "\n".join((HERE / "make" / name).read_text(encoding="utf-8") for name in MAKE)
 
 
 def start(folder: Path, sources: Sequence[Path]) -> tuple[list[str], Proposal | None]:
-    """Write a project; return its files, and the proposal for its map where there are sources.
+    """Return the files of a new project, and the proposal for its map if there are sources.
 
-    The sources are copied into `raw/`, a folder with its name. A folder that is there gets the
-    files beside what it holds, one after the other: after a kill the same call writes the rest.
+    The sources are copied into `raw/`, a folder with its name. Files are added to an existing
+    folder one by one: after a kill, the same call writes the missing ones.
 
     Raises
     ------
     InputError
-        A file of that name is there with something else in it, a source cannot be read, or two
-        have the same name.
+        A file exists with other content, a source cannot be read, or two have the same name.
     """
     name = printable(folder.resolve().name) or "bench"
     quoted = tomlkit.item(name).as_string()
@@ -47,11 +46,11 @@ def start(folder: Path, sources: Sequence[Path]) -> tuple[list[str], Proposal | 
     copies = _copies(sources, folder)
     proposal = propose(find_files(sources, "*")) if sources else None
     texts[MAP] = map_text(proposal) if proposal else _file("bench.toml", quoted)
-    there = _there(folder, texts, copies)
+    present = _present(folder, texts, copies)
     if folder.exists():
         for home in {folder.parent, *((folder / place).parent for place in (*texts, *copies))}:
-            sweep(home)  # where all is there already, nothing is written that would do it
-        for place in [p for p in (*texts, *copies) if p not in there]:
+            sweep(home)  # also if all files exist and nothing is written
+        for place in [p for p in (*texts, *copies) if p not in present]:
             with new_file(folder / place, mark=b"", inputs=sources) as new:
                 _write(new, place, texts, copies)
     else:
@@ -67,7 +66,7 @@ def _file(name: str, project: str) -> str:
 
 
 def _copies(sources: Sequence[Path], folder: Path) -> dict[str, Path]:
-    """Return where in the project each file of the sources goes; what is in raw/ stays there."""
+    """Return the path in the project of each source file, except those already in raw/."""
     copies: dict[str, Path] = {}
     for source in sources:
         for path in find_files([source], "*"):
@@ -78,25 +77,25 @@ def _copies(sources: Sequence[Path], folder: Path) -> dict[str, Path]:
                 inside = path.relative_to(source)
             place = f"{RAW}/{inside.as_posix()}"
             if place in copies:
-                raise InputError(f"two sources are called {inside}", where=path)
+                raise InputError(f"two sources have the name {inside}", where=path)
             copies[place] = path
     return copies
 
 
-def _there(folder: Path, texts: dict[str, str], copies: dict[str, Path]) -> set[str]:
-    """Return which files are there already; with something else in them they are refused."""
+def _present(folder: Path, texts: dict[str, str], copies: dict[str, Path]) -> set[str]:
+    """Return the files that exist already; refuse those with other content."""
     if folder.is_file():
         raise InputError("is a file", where=folder, expected="a folder's name")
-    there = [place for place in (*texts, *copies) if (folder / place).exists()]
-    other = [place for place in there if not _is_same(folder / place, place, texts, copies)]
+    present = [place for place in (*texts, *copies) if (folder / place).exists()]
+    other = [place for place in present if not _is_same(folder / place, place, texts, copies)]
     if other:
         raise InputError(
-            f"{', '.join(other)} {'is' if len(other) == 1 else 'are'} there already",
+            f"{', '.join(other)} already {'exists' if len(other) == 1 else 'exist'}",
             where=folder,
             expected="a folder without them",
             remedy="nothing is overwritten: choose another folder, or move them away",
         )
-    return set(there)
+    return set(present)
 
 
 def _is_same(path: Path, place: str, texts: dict[str, str], copies: dict[str, Path]) -> bool:

@@ -1,1 +1,1 @@
-"""What a user brings: columns and units, the manifest, readers, quality checks."""
+"""Recordings: columns and units, the manifest, readers, quality checks."""

@@ -1,6 +1,6 @@
-"""Arrow's columns as NumPy's arrays and back.
+"""Conversion between Arrow columns and NumPy arrays.
 
-What pyarrow has for this loads pandas, a third of a second that few commands need.
+pyarrow's own conversion loads pandas, which takes a third of a second that few commands need.
 """
 
 import numpy as np
@@ -16,7 +16,7 @@ def floats_from(column: pa.ChunkedArray) -> Floats:
     Raises
     ------
     ArrowInvalid, ArrowNotImplementedError
-        It holds no numbers.
+        The column is not numeric.
     """
     whole = column.cast(pa.float64(), safe=False).combine_chunks()
     if not len(whole):
@@ -26,8 +26,8 @@ def floats_from(column: pa.ChunkedArray) -> Floats:
     if not whole.null_count:
         return values
     bits = np.unpackbits(np.frombuffer(validity, np.uint8), bitorder="little")
-    there = bits[whole.offset : whole.offset + len(whole)].astype(np.bool_)
-    return np.where(there, values, np.nan)
+    valid = bits[whole.offset : whole.offset + len(whole)].astype(np.bool_)
+    return np.where(valid, values, np.nan)
 
 
 def column_of(values: Floats) -> pa.Array:

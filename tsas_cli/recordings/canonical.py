@@ -1,4 +1,4 @@
-"""From the columns of a file to the canonical columns of a recording."""
+"""Canonical columns of a recording, converted from the columns of a file."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -15,12 +15,11 @@ from tsas_cli.support.errors import InputError
 
 
 @dataclass(frozen=True)
-class Before:
-    """What the parts of a file before one mean for it.
+class PrecedingRows:
+    """State that the preceding parts of a file hand to the next part.
 
-    `read` counts the rows before, `kept` those of them that stay; `offsets` are the zeros of
-    columns that begin at their first sample, `last` is the row before. Both stand empty before the
-    first part.
+    `read` counts the preceding rows, `kept` those that are written; `offsets` are the zeros of
+    columns with `offset = "first"`, `last` is the last row. Both are empty before the first part.
     """
 
     read: int = 0
@@ -30,34 +29,38 @@ class Before:
 
 
 def canonical_columns(
-    table: Table, mapping: IngestMap, path: Path, map_path: Path, before: Before | None = None
-) -> tuple[dict[str, Floats], Before]:
-    """Return the canonical columns in their units, and the extra columns as they are.
+    table: Table,
+    mapping: IngestMap,
+    path: Path,
+    map_path: Path,
+    before: PrecedingRows | None = None,
+) -> tuple[dict[str, Floats], PrecedingRows]:
+    """Return the canonical columns in their units, the extra columns unchanged, and the next state.
 
     Parameters
     ----------
     table
         A file, or a part of it.
     before
-        What came with the part before this one; None at the beginning of a file.
+        The state after the preceding part; None at the beginning of a file.
 
     Returns
     -------
     columns, before
-        The columns by name, shape (n,), and what the next part has to know.
+        The columns by name, shape (n,), and the state for the next part.
 
     Raises
     ------
     InputError
         A unit is missing or does not fit, columns differ in length, a value is infinite, the time
-        is not strictly increasing, or fewer than two samples are there.
+        is not strictly increasing, or there are fewer than two samples.
     """
     rows = _rows(table, path, fewest=1 if before else 2)
-    before = before or Before()
+    before = before or PrecedingRows()
     columns, offsets = dict[str, Floats](), dict(before.offsets)
     for name, column in mapping.columns.items():
         where = f"{map_path}, columns.{name}"
-        with np.errstate(over="ignore"):  # what is infinite is refused below, with its row
+        with np.errstate(over="ignore"):  # infinite values are refused below, with their row
             values = _converted(name, column, table, rows, where, first=before.read)
         if not isinstance(column.offset, str):
             offsets[name] = column.offset
@@ -76,7 +79,7 @@ def canonical_columns(
     first_row = table.first_row - before.read + before.kept
     _check_values(columns, before.last.get(TIME), first_row, path)
     kept_rows = before.kept + columns[TIME].size
-    return columns, Before(before.read + rows, kept_rows, offsets, last)
+    return columns, PrecedingRows(before.read + rows, kept_rows, offsets, last)
 
 
 def _rows(table: Table, path: Path, *, fewest: int) -> int:
@@ -97,13 +100,13 @@ def _converted(
     values, unit = _raw(column, table, rows, first)
     if not unit:
         raise InputError(
-            f"the file does not say the unit of {column.source}",
+            f"the file states no unit for {column.source}",
             where=where,
-            remedy='say it in the map: unit = "…"',
+            remedy='set it in the map: unit = "…"',
         )
     if column.source in table.typed and unit != table.units[column.source]:
         raise InputError(
-            f"the map says {unit} of {column.source}, whose type has a unit of its own",
+            f"the map sets unit {unit} for {column.source}, whose data type implies its unit",
             where=where,
             expected=f"{table.units[column.source]}, or no unit",
         )
@@ -119,7 +122,7 @@ def _converted(
 
 
 def _raw(column: ColumnMap, table: Table, rows: int, first: int) -> tuple[Floats, str | None]:
-    """Return the values as they are in the file, and their unit."""
+    """Return the values in the unit of the file, and that unit."""
     if column.rate_Hz is not None:
         return np.arange(first, first + rows) / column.rate_Hz, "s"
     return table.columns[column.source], column.unit or table.units.get(column.source)
@@ -128,7 +131,7 @@ def _raw(column: ColumnMap, table: Table, rows: int, first: int) -> tuple[Floats
 def _differs_from_row_before(
     columns: Mapping[str, Floats], last: Mapping[str, float]
 ) -> npt.NDArray[np.bool_]:
-    """Return which rows differ from the one before; `last` is that before the first one, if any."""
+    """Return which rows differ from the preceding one, shape (n,); `last` precedes the first."""
     differs = np.zeros(columns[TIME].size, dtype=np.bool_)
     differs[0] = not last
     for name, values in columns.items():
@@ -156,13 +159,13 @@ def _check_values(
         raise InputError("the time is empty", where=f"{path}, row {row}", expected="a time")
     if last_s is not None:
         time_s, first_row = np.concatenate(([last_s], time_s)), first_row - 1
-    stands = np.diff(time_s) <= 0
-    if stands.any():
-        i = int(stands.argmax())
+    not_increasing = np.diff(time_s) <= 0
+    if not_increasing.any():
+        i = int(not_increasing.argmax())
         raise InputError(
             f"the time does not increase ({time_s[i]:.9g} s, then {time_s[i + 1]:.9g} s)",
             where=f"{path}, row {first_row + i + 1}",
             expected="strictly increasing time",
-            remedy="mend the file; rows that only repeat go with drop_repeated_rows = true "
-            "under [read] of the map",
+            remedy="correct the file; drop_repeated_rows = true under [read] of the map removes "
+            "repeated rows",
         )

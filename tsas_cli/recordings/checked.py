@@ -1,4 +1,4 @@
-"""A run's file, from a folder or an address, once it is known to be the one that is meant."""
+"""The file of a run, from a folder or an address, after its checksum is verified."""
 
 from pathlib import Path
 from typing import TypeAlias
@@ -11,11 +11,11 @@ from tsas_cli.recordings.storage import Address, Place, check_inside
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import sha256_of
 
-Source: TypeAlias = Path | pa.NativeFile
+ParquetSource: TypeAlias = Path | pa.NativeFile
 
 
-def checked_file(folder: Place, run: Run) -> Source:
-    """Return what Parquet is read from, once its checksum is that of the manifest.
+def checked_file(folder: Place, run: Run) -> ParquetSource:
+    """Return the source that Parquet is read from, after its checksum matches the manifest.
 
     Raises
     ------
@@ -47,7 +47,7 @@ def local_file(folder: Path, run: Run) -> Path:
     Raises
     ------
     InputError
-        It is missing, or a link leads out of the folder.
+        The file is missing, or a link leads out of the folder.
     """
     path = folder / run.file
     if not path.is_file():
@@ -63,7 +63,7 @@ def _missing(path: Place, run: Run) -> InputError:
 
 
 def changed(path: Place, run: Run) -> InputError:
-    """Return what is said of a file that is not what the manifest says."""
+    """Return the error for a file whose checksum differs from the manifest."""
     return InputError(
         "the checksum differs from the manifest's",
         where=path,

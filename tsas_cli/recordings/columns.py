@@ -6,33 +6,33 @@ from typing import Literal
 
 from tsas_cli.support import limits
 
-Role = Literal["time", "input", "output", "other"]
+_Role = Literal["time", "input", "output", "other"]
 
 
 @dataclass(frozen=True)
-class Column:
+class ColumnSpec:
     """One canonical column: its name with the unit, the unit as text, its role and its meaning."""
 
     name: str
     unit: str
-    role: Role
+    role: _Role
     meaning: str
 
 
 COLUMNS = (
-    Column("time_s", "s", "time", "time since the run began"),
-    Column(
+    ColumnSpec("time_s", "s", "time", "time since the run began"),
+    ColumnSpec(
         "x_in_mm", "mm", "input", "displacement of the tendon at the drive, positive when pulled"
     ),
-    Column(
+    ColumnSpec(
         "x_out_mm", "mm", "output", "displacement of the tendon at the load, positive when pulled"
     ),
-    Column("f_in_N", "N", "output", "tension at the drive"),
-    Column("f_out_N", "N", "output", "tension at the load"),
-    Column("motor_speed_rpm", "rpm", "input", "motor speed, commanded or measured"),
-    Column("motor_angle_rad", "rad", "input", "motor angle"),
-    Column("f_out_ref_N", "N", "other", "wanted tension at the load"),
-    Column("temperature_C", "°C", "other", "temperature"),
+    ColumnSpec("f_in_N", "N", "output", "tension at the drive"),
+    ColumnSpec("f_out_N", "N", "output", "tension at the load"),
+    ColumnSpec("motor_speed_rpm", "rpm", "input", "motor speed, commanded or measured"),
+    ColumnSpec("motor_angle_rad", "rad", "input", "motor angle"),
+    ColumnSpec("f_out_ref_N", "N", "other", "reference tension at the load"),
+    ColumnSpec("temperature_C", "°C", "other", "temperature"),
 )
 BY_NAME = {column.name: column for column in COLUMNS}
 NAMES = tuple(BY_NAME)
@@ -44,21 +44,21 @@ OUTPUTS = ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N")
 
 
 def has_input_and_output(names: frozenset[str]) -> bool:
-    """Say whether the columns hold an input and another column that is an output."""
+    """Return whether the columns include an input and another column that is an output."""
     return any(i != o for i in names.intersection(INPUTS) for o in names.intersection(OUTPUTS))
 
 
 def largest(name: str) -> float:
-    """Return the largest size that a value of a column has on any rig, in the column's unit.
+    """Return the largest plausible magnitude of a column's values, in the column's unit.
 
-    Infinite for the time, of which the steps are limited, and for columns that are not canonical.
+    Infinite for the time, whose steps are limited instead, and for non-canonical columns.
     """
     column = BY_NAME.get(name)
     return limits.LARGEST.get(column.unit, math.inf) if column else math.inf
 
 
 def nominal_name(name: str) -> str:
-    """Return what a column is called that holds the nominal model's answer, beside the extended's.
+    """Return the name of the column with the nominal model's prediction, beside the extended one's.
 
     Examples
     --------

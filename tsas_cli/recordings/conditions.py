@@ -1,4 +1,4 @@
-"""The conditions of a run, from its file's name, its header and the map."""
+"""The conditions of a run, from its file name, its header and the map."""
 
 import re
 from collections.abc import Sequence
@@ -11,24 +11,24 @@ from tsas_cli.recordings.units import conversion
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import Raw
 
-PATIENCE_S = 10.0  # with a pattern, which may look for ever
+SEARCH_TIMEOUT_S = 10.0  # of a pattern, whose search may take exponential time
 _UNITS = {"preload_N": "N", "sheath_length_mm": "mm", "total_bend_rad": "rad"}
 
 
 def run_conditions(
     path: Path, header: Sequence[str], run_map: RunMap, decimal: str | None = None
 ) -> Raw:
-    """Return a run's id and conditions, and whatever else the names and headers say about it.
+    """Return a run's id, its conditions and the other named groups of its file name and header.
 
-    Later sources win: `[run]`, the file's name (with its folder), the header, the converted
-    groups, the table entry of the run's id. Groups that are no conditions travel along.
-    A decimal comma counts, in 1,250 only where `decimal` says so: these may be thousands.
+    Later sources take precedence: `[run]`, the file name (with its folder), the header, the
+    converted groups, the table entry of the run's id. A comma is a decimal mark; an ambiguous one
+    (1,250 may be thousands) needs `decimal`.
 
     Raises
     ------
     InputError
-        A pattern finds nothing, a group is missing, no number or possibly 1000 times as much, or a
-        unit does not fit.
+        A pattern does not match, a group is missing, no number or ambiguous by a factor of 1000, or
+        a unit does not fit.
     """
     folder = path.absolute().parent.name
     groups = _groups(run_map.from_file_name, f"{folder}/{path.name}", path)
@@ -36,9 +36,9 @@ def run_conditions(
     for key, text in groups.items():
         if decimal != "," and may_be_thousands(text):
             raise InputError(
-                f"group {key} is {text}: is the comma a decimal mark, or does it part thousands?",
+                f"group {key} is {text}: is the comma a decimal mark or a thousands separator?",
                 where=path,
-                remedy='say decimal = "," under [read] of the map, or the value in [run] instead',
+                remedy='set decimal = "," under [read] of the map, or the value itself under [run]',
             )
     name = _filled(run_map.id, {"stem": path.stem, "folder": folder} | groups)
     converted = {
@@ -46,13 +46,13 @@ def run_conditions(
         for condition, rule in run_map.conditions.items()
     }
     used = {rule.group for rule in run_map.conditions.values()}
-    said = {
+    direct = {
         key: text if key == "started" else _plain(text)  # 20260302 is a date, no number
         for key, text in groups.items()
         if key not in used
     }
     defaults = run_map.model_dump(include={"load", *_UNITS}, exclude_none=True)
-    return defaults | said | converted | run_map.table.get(name, {}) | {"id": name}
+    return defaults | direct | converted | run_map.table.get(name, {}) | {"id": name}
 
 
 def _converted(condition: str, rule: Converted, groups: dict[str, str], path: Path) -> float:
@@ -72,19 +72,18 @@ def _groups(rule: FromText | None, text: str, path: Path) -> dict[str, str]:
         return {}
     shown = text if len(text) <= 60 else f"{text[:60]}…"
     try:
-        with at_most(PATIENCE_S):
+        with at_most(SEARCH_TIMEOUT_S):
             found = rule.pattern.search(text)
     except TimeoutError as error:
         raise InputError(
-            f"the pattern {rule.pattern.pattern!r} is still looking in {shown!r} "
-            f"after {PATIENCE_S:g} s",
+            f"the pattern {rule.pattern.pattern!r} has not finished searching {shown!r} "
+            f"after {SEARCH_TIMEOUT_S:g} s",
             where=path,
-            remedy="repetitions inside of repetitions, such as (a+)+, take for ever: "
-            "write it simpler",
+            remedy="nested repetitions, such as (a+)+, take exponential time: simplify it",
         ) from error
     if found is None:
         raise InputError(
-            f"the pattern {rule.pattern.pattern!r} finds nothing in {shown!r}", where=path
+            f"the pattern {rule.pattern.pattern!r} does not match {shown!r}", where=path
         )
     return {key: value for key, value in found.groupdict().items() if value is not None}
 
@@ -100,8 +99,8 @@ def _filled(template: str, words: dict[str, str]) -> str:
 
 
 def _plain(text: str) -> float | int | str:
-    """Return a number where the text is one, else the text."""
-    for kind in (int, float) if "_" not in text else ():  # Python takes 1_2 for 12
+    """Return text as a number where it is one, else unchanged."""
+    for kind in (int, float) if "_" not in text else ():  # Python reads 1_2 as 12
         try:
             return kind(text.replace(",", "."))
         except ValueError:

@@ -1,4 +1,4 @@
-"""The rows of a run that are copies of another run's, and carry no weight."""
+"""The rows of a run that duplicate another run's, and have zero weight."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""A dataset on disk: one Parquet file per run, and the manifest beside them (format 1)."""
+"""A dataset on disk: one Parquet file per run, and a manifest (format 1)."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
@@ -9,7 +9,7 @@ from typing import Any
 from tsas_cli.recordings.manifest import FILE, Manifest, Run, parse, read_manifest
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.recordings.run_files import read_recording
-from tsas_cli.recordings.storage import Place, told_from
+from tsas_cli.recordings.storage import Place, location_text
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import sha256_of
 
@@ -18,20 +18,20 @@ CONDITIONS = ("sheath_length_mm", "total_bend_rad", "preload_N")
 
 @dataclass(frozen=True, repr=False)
 class Dataset:
-    """A dataset's folder and manifest; the recordings are read when they are asked for.
+    """A dataset's folder and manifest; recordings are read on access.
 
     `dataset["a"]` reads run a; a loop over the dataset reads one run after the other.
 
     Parameters
     ----------
     folder
-        Where it is: a local folder, or an address on object storage.
+        A local folder, or an address on object storage.
     manifest
-        What `dataset.toml` says.
+        The content of `dataset.toml`.
     chosen
-        The ids of the runs that count, all without it.
+        The ids of the selected runs; None for all.
     conditions
-        Conditions that are said of every run in place of the manifest's, by key.
+        Conditions of every run that replace the manifest's, by key.
     """
 
     folder: Place
@@ -41,11 +41,11 @@ class Dataset:
 
     @property
     def runs(self) -> list[Run]:
-        """The runs that count, in the order of the manifest."""
+        """The selected runs, in the order of the manifest."""
         return [r for r in self.manifest.run if self.chosen is None or r.id in self.chosen]
 
     def only(self, ids: Iterable[str]) -> "Dataset":
-        """Return the same dataset with these runs alone.
+        """Return the dataset restricted to these runs.
 
         Raises
         ------
@@ -64,7 +64,7 @@ class Dataset:
         return replace(self, chosen=chosen)
 
     def under(self, **conditions: float) -> "Dataset":
-        """Return the same recordings with other conditions said of every run.
+        """Return the dataset with these conditions set for every run.
 
         Raises
         ------
@@ -83,13 +83,13 @@ class Dataset:
         return replace(self, manifest=manifest, conditions={**self.conditions, **conditions})
 
     def __repr__(self) -> str:
-        """Return a line: where it is, and which runs it holds."""
+        """Return one line with the name, the folder and the selected runs."""
         return (
             f"dataset {self.manifest.name} in {self.folder}: {', '.join(r.id for r in self.runs)}"
         )
 
     def __getitem__(self, run: str) -> Recording:
-        """Read one of the runs.
+        """Return the recording of a run.
 
         Raises
         ------
@@ -100,15 +100,15 @@ class Dataset:
         return read_recording(self.folder, entry)
 
     def __iter__(self) -> Iterator[Recording]:
-        """Read one recording after the other, in the order of the manifest."""
+        """Iterate over the recordings, in the order of the manifest."""
         return (read_recording(self.folder, run) for run in self.runs)
 
     def header(self, folder: Path | None) -> dict[str, Any]:
         """Return what the JSON that a stage writes into `folder` says of the dataset, by key.
 
-        Without a folder the dataset's place is said from the current one; an address as it is.
+        The dataset's path is relative to `folder`, or to the current folder; an address is not.
         """
-        path = told_from(folder or Path(), self.folder)
+        path = location_text(folder or Path(), self.folder)
         return {
             "dataset": {"name": self.manifest.name, "folder": path, "hashes": self.hashes()},
             "chosen": None if self.chosen is None else [run.id for run in self.runs],
@@ -122,12 +122,16 @@ class Dataset:
 
 
 def read_from(path: Path, home: Path) -> dict[str, str]:
-    """Return what is written down in `home` of a file that was read."""
-    return {"file": path.name, "folder": told_from(home, path.parent), "sha256": sha256_of(path)}
+    """Return the record that `home` keeps of an input file: name, folder, checksum."""
+    return {
+        "file": path.name,
+        "folder": location_text(home, path.parent),
+        "sha256": sha256_of(path),
+    }
 
 
 def read_dataset(folder: Place) -> Dataset:
-    """Open a dataset in a local folder, or at an address.
+    """Return a dataset in a local folder, or at an address.
 
     Raises
     ------

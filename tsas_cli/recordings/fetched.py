@@ -1,4 +1,4 @@
-"""Recordings from object storage, fetched whole and held against their checksums before use."""
+"""Recordings from object storage, fetched whole and verified by checksum before use."""
 
 import hashlib
 import mmap
@@ -10,52 +10,52 @@ from typing import IO
 from tsas_cli.recordings.storage import Address
 from tsas_cli.support.errors import InputError
 
-PART = 64 * 1024 * 1024  # bytes of one request
-HELD = 1024 * 1024 * 1024  # bytes on disk that are kept for who reads a recording again
+REQUEST_BYTES = 64 * 1024 * 1024
+CACHE_BYTES = 1024 * 1024 * 1024  # on disk, for recordings that are read again
 
-_HELD: OrderedDict[tuple[Address, str], mmap.mmap] = OrderedDict()  # a report reads in each section
+_CACHE: OrderedDict[tuple[Address, str], mmap.mmap] = OrderedDict()  # each report section reads
 _LOCK = Lock()
 
 
 def fetched(address: Address, sha256: str) -> mmap.mmap | None:
-    """Return a recording's bytes, which lie on disk while they are used; None for another checksum.
+    """Return a recording's bytes, mapped from disk; None if the checksum differs.
 
     Raises
     ------
     FileNotFoundError
-        It is not there.
+        There is no such object.
     InputError
-        The storage cannot be asked, or there is no room for the recording.
+        The storage fails, or the disk has no room for the recording.
     """
     key = address, sha256
     with _LOCK:
-        content = _HELD.pop(key, None) or _fetch(address, sha256)
+        content = _CACHE.pop(key, None) or _fetch(address, sha256)
         if content is not None:
-            _HELD[key] = content
-        while len(_HELD) > 1 and sum(map(len, _HELD.values())) > HELD:
-            _HELD.popitem(last=False)
+            _CACHE[key] = content
+        while len(_CACHE) > 1 and sum(map(len, _CACHE.values())) > CACHE_BYTES:
+            _CACHE.popitem(last=False)
     return content
 
 
 def _fetch(address: Address, sha256: str) -> mmap.mmap | None:
     digest, size = hashlib.sha256(), address.size()
-    with tempfile.TemporaryFile() as file:  # which has no name, so that no kill leaves it
-        for start in range(0, size, PART):
-            part = address.read_bytes(start, min(start + PART, size))
+    with tempfile.TemporaryFile() as file:  # unnamed, so that a killed process leaves nothing
+        for start in range(0, size, REQUEST_BYTES):
+            part = address.read_bytes(start, min(start + REQUEST_BYTES, size))
             digest.update(part)
-            _keep(file, part)
+            _write(file, part)
         if digest.hexdigest() != sha256 or not size:
             return None
         file.flush()
         return mmap.mmap(file.fileno(), size, access=mmap.ACCESS_READ)
 
 
-def _keep(file: IO[bytes], part: bytes) -> None:
+def _write(file: IO[bytes], part: bytes) -> None:
     try:
         file.write(part)
     except OSError as error:
         raise InputError(
-            f"a recording cannot be kept while it is read ({error.strerror})",
+            f"a recording cannot be stored while it is read ({error.strerror})",
             where=tempfile.gettempdir(),
             remedy="make room there, or name another folder in TMPDIR",
         ) from error

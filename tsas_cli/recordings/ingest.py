@@ -1,4 +1,4 @@
-"""From a person's files to a dataset."""
+"""Ingest: raw files to a dataset."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -23,7 +23,7 @@ from tsas_cli.support.steps import SILENT, Steps
 
 @dataclass(frozen=True)
 class Ingested:
-    """What became of one file."""
+    """One ingested file: its run, size and columns."""
 
     run: str
     source: Path
@@ -34,34 +34,34 @@ class Ingested:
 
 
 def find_files(sources: Sequence[Path], pattern: str) -> list[Path]:
-    """Return the files among the sources, and those in the folders that a reader knows.
+    """Return the source files, and the readable files below the source folders.
 
     Parameters
     ----------
     pattern
-        What the names of a folder's files match ("*.csv").
+        A glob for the names of a folder's files ("*.csv").
 
     Raises
     ------
     InputError
-        A source is not there, or a folder holds no such file.
+        A source does not exist, or a folder holds no such file.
     """
     found: list[Path] = []
     for source in sources:
         files = _files_in(source, pattern) if source.is_dir() else [source]
         if not source.exists() or not files:
             raise InputError(
-                "holds no file to ingest" if source.is_dir() else "is not there",
+                "holds no file to ingest" if source.is_dir() else "does not exist",
                 where=source,
                 expected=f"a file, or a folder of files in {', '.join(SUFFIXES)}",
             )
         found += files
     if len(found) > limits.RUNS:
         raise InputError(
-            f"{len(found)} files are found",
+            f"{len(found)} files found",
             where=sources[0],
             expected=f"at most {limits.RUNS} for one dataset",
-            remedy="take fewer folders at a time, or say which: files under [read] of the map",
+            remedy="ingest fewer folders at a time, or set files under [read] of the map",
         )
     return found
 
@@ -76,13 +76,13 @@ def ingest_files(
 ) -> list[Ingested]:
     """Write the files as the runs of a dataset into an empty folder.
 
-    `step` follows each piece of work: a file is opened, and it is a run. A file is read, brought to
-    units and written a part at a time where its format allows that (text tables and Parquet).
+    `step` is called twice per file: when it is opened and when its run is written. Text tables and
+    Parquet are read, converted and written in parts.
 
     Raises
     ------
     InputError
-        A file does not hold what the map says, or two files give one run id.
+        A file does not match the map, or two files have the same run id.
     """
     runs: list[Run] = []
     ingested: dict[str, Ingested] = {}
@@ -95,10 +95,10 @@ def ingest_files(
         run = _run(path, first, mapping)
         if run.id in ingested:
             raise InputError(
-                f"run id {run.id!r} comes from {ingested[run.id].source} too",
+                f"run id {run.id!r} is also that of {ingested[run.id].source}",
                 where=path,
-                expected="an id for each file",
-                remedy='tell them apart in the map: id = "{folder}_{stem}" under [run]',
+                expected="a distinct id for each file",
+                remedy='set a distinct id in the map: id = "{folder}_{stem}" under [run]',
             )
         written = folder / run.file
         written.parent.mkdir(exist_ok=True)
@@ -139,7 +139,7 @@ def _run(path: Path, table: Table, mapping: IngestMap) -> Run:
 
 
 def _origin(ingested: Sequence[Ingested], map_path: Path, folder: Path) -> dict[str, object]:
-    """Return what was read, with checksums."""
+    """Return the record of the input files, with checksums."""
     return {
         "version": __version__,
         "map": read_from(map_path, folder),
@@ -150,7 +150,7 @@ def _origin(ingested: Sequence[Ingested], map_path: Path, folder: Path) -> dict[
 def _ingest(
     parts: Iterator[Table], run: str, path: Path, mapping: IngestMap, map_path: Path, written: Path
 ) -> Ingested:
-    """Write one file part by part; say what became of it."""
+    """Write one file part by part; return its summary."""
     columns, before = canonical_columns(next(parts), mapping, path, map_path)
     first_s = float(columns[TIME][0])
     table = table_of(columns)
@@ -162,5 +162,5 @@ def _ingest(
                 write(table_of(columns))
     rows, duration_s = before.kept, before.last[TIME] - first_s
     if rows < 2:
-        raise InputError("all rows are the same", where=path, expected="at least two samples")
+        raise InputError("all rows are identical", where=path, expected="at least two samples")
     return Ingested(run, path, rows, duration_s, (rows - 1) / duration_s, tuple(columns))

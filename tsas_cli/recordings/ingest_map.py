@@ -1,4 +1,4 @@
-"""The map of `tsas ingest`: what a person says about the files of a rig."""
+"""The map of `tsas ingest`: how the columns of raw files become those of a dataset."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -10,20 +10,20 @@ from pydantic import BaseModel, ConfigDict, Field, field_validator, model_valida
 from tsas_cli.recordings.columns import NAMES, TIME, has_input_and_output
 from tsas_cli.recordings.manifest import Load, Rig, parse, read_toml
 from tsas_cli.recordings.readers.options import ReadOptions
-from tsas_cli.recordings.readers.table import Source
+from tsas_cli.recordings.readers.table import ColumnSource
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import Raw
 
-QUESTION = "?"  # in place of a value: what a guessed map leaves to a person
-Condition = Literal["preload_N", "sheath_length_mm", "total_bend_rad"]
+QUESTION = "?"  # in place of a value that a guessed map leaves open
+_Condition = Literal["preload_N", "sheath_length_mm", "total_bend_rad"]
 
 
 class _Strict(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
 
-class DatasetWords(_Strict):
-    """`[dataset]`: what goes into the manifest as it is."""
+class DatasetEntry(_Strict):
+    """`[dataset]`: keys that are copied into the manifest."""
 
     name: str
     kind: Literal["measured", "simulated"] = "measured"
@@ -33,7 +33,7 @@ class DatasetWords(_Strict):
 
 
 class MapRig(Rig):
-    """`[rig]`: the keys of the manifest, and no others."""
+    """`[rig]`: the keys of the manifest's `[rig]`, and no others."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -41,7 +41,7 @@ class MapRig(Rig):
 class ColumnMap(_Strict):
     """`[columns.NAME]`: value = sign · (source in the canonical unit) − offset."""
 
-    source: Source = ""
+    source: ColumnSource = ""
     rate_Hz: float | None = Field(default=None, gt=0)  # time_s of files without a clock
     unit: str | None = None
     factor: float | None = None
@@ -66,14 +66,14 @@ class FromText(_Strict):
 
 
 class Converted(_Strict):
-    """`[run.conditions.NAME]`: a named group that is in another unit."""
+    """`[run.conditions.NAME]`: a named group in a unit of its own."""
 
     group: str = Field(alias="from")
     unit: str
 
 
 class RunMap(_Strict):
-    """`[run]`: the conditions of the runs, later ones over earlier ones."""
+    """`[run]`: the conditions of the runs; later sources take precedence."""
 
     id: str = "{stem}"
     load: Load = "spring"
@@ -82,14 +82,14 @@ class RunMap(_Strict):
     total_bend_rad: float | None = None
     from_file_name: FromText | None = None
     from_header: FromText | None = None
-    conditions: dict[Condition, Converted] = {}
+    conditions: dict[_Condition, Converted] = {}
     table: dict[str, Raw] = {}
 
 
 class IngestMap(_Strict):
     """The whole map."""
 
-    dataset: DatasetWords
+    dataset: DatasetEntry
     rig: MapRig = MapRig()
     read: ReadOptions = ReadOptions()
     columns: dict[str, ColumnMap]
@@ -104,39 +104,40 @@ class IngestMap(_Strict):
             if column.rate_Hz is not None and name != TIME:
                 raise ValueError(f"{name} cannot have rate_Hz, only {TIME} can")
         if TIME not in columns:
-            raise ValueError(f"{TIME} is missing: map the clock, or say its rate_Hz")
+            raise ValueError(f"{TIME} is missing: map the clock, or set its rate_Hz")
         if not has_input_and_output(frozenset(columns)):
             raise ValueError("an input and an output column are needed, such as x_in_mm and f_in_N")
         return columns
 
-    def sources(self) -> list[Source]:
-        """Return every source column that the map takes, each once."""
+    def sources(self) -> list[ColumnSource]:
+        """Return the distinct source columns of the map."""
         mapped = [column.source for column in self.columns.values() if column.rate_Hz is None]
         return list(dict.fromkeys([*mapped, *self.read.extra]))
 
 
 def read_map(path: Path) -> IngestMap:
-    """Read a map.
+    """Return a validated map.
 
     Raises
     ------
     InputError
-        It is missing, is not TOML, says something that a map cannot say, or still asks.
+        The file is missing, is not TOML, is no valid map, or has open questions.
     """
     content = read_toml(path)
-    asked = list(_questions(content))
-    if asked:
+    open_keys = list(_questions(content))
+    if open_keys:
         raise InputError(
-            f"{len(asked)} question{'s are' if len(asked) > 1 else ' is'} open: {', '.join(asked)}",
+            f"{len(open_keys)} question{'s are' if len(open_keys) > 1 else ' is'} open: "
+            f"{', '.join(open_keys)}",
             where=path,
-            expected=f'an answer in place of "{QUESTION}"',
-            remedy="the comment above each says what is known; a channel that is not there goes",
+            expected=f'a value in place of "{QUESTION}"',
+            remedy="see the comment above each; remove the table of a channel without a column",
         )
     return parse(IngestMap, content, path)
 
 
 def _questions(content: Any, key: str = "") -> Iterator[str]:
-    """Yield the keys whose values are questions."""
+    """Yield the keys whose value is `QUESTION`."""
     if content == QUESTION:
         yield key
     elif isinstance(content, dict):

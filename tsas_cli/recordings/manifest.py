@@ -1,4 +1,4 @@
-"""The manifest `dataset.toml` of a dataset, format 1: what it says and how it is checked."""
+"""The manifest `dataset.toml` of a dataset, format 1: its content and validation."""
 
 import re
 import tomllib
@@ -19,7 +19,7 @@ from pydantic import (
     model_validator,
 )
 
-from tsas_cli.recordings.run_names import beside, check_run_name
+from tsas_cli.recordings.run_names import check_run_name, colliding_names
 from tsas_cli.recordings.storage import Address, Place, check_inside
 from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError, nearest
@@ -28,13 +28,13 @@ from tsas_cli.support.files import Raw
 FILE = "dataset.toml"
 Load = Literal["spring", "force", "displacement"]
 T = TypeVar("T", bound=BaseModel)
-_SAID = 5  # of what is wrong with a file; the rest is counted
-_SHOWN = 80  # characters of a value that is wrong
-_PATH = 1000  # characters of a path in the dataset
+_MOST_ERRORS = 5  # listed of one file; further ones are counted
+_VALUE_LENGTH = 80  # characters of an invalid value in a message
+_PATH_LENGTH = 1000  # characters of a path in the dataset
 
 
 def _as_date(value: object) -> object:
-    """Return what is a date, or begins like one in ISO 8601; Pydantic takes numbers for seconds."""
+    """Return a date, or text that begins with an ISO 8601 date; refuse Pydantic's epoch seconds."""
     if isinstance(value, str):
         value = re.sub(r"^(\d{4})(\d\d)(\d\d)(?!\d)", r"\1-\2-\3", value)
         if re.match(r"\d{4}-\d\d-\d\d", value):
@@ -45,27 +45,25 @@ def _as_date(value: object) -> object:
 
 
 class _Table(BaseModel):
-    # A dataset made with any tool must work: keys that we do not know travel along, and
-    # `tsas check` names them with the nearest known one.
+    # A dataset made with any tool must work: unknown keys are kept, and `tsas check` names them
+    # with the nearest known one.
     model_config = ConfigDict(frozen=True, extra="allow", allow_inf_nan=False)
 
     @model_validator(mode="after")
-    def _is_no_flood(self) -> Self:
+    def _has_few_unknown_keys(self) -> Self:
         unknown = len(self.model_extra or {})
         if unknown > limits.UNKNOWN_KEYS:
-            raise ValueError(
-                f"{unknown} keys are unknown, at most {limits.UNKNOWN_KEYS} may travel along"
-            )
+            raise ValueError(f"{unknown} keys are unknown, at most {limits.UNKNOWN_KEYS} are kept")
         return self
 
     def unknown_keys(self) -> dict[str, str]:
-        """Return each key that format 1 does not know, with the hint that belongs to it."""
+        """Return each key that format 1 does not define, with a hint for it."""
         known = type(self).model_fields
         return {key: nearest(key, known) for key in self.model_extra or {}}
 
 
 class Rig(_Table):
-    """What the data sheet says; every key optional, the unit in the key."""
+    """Data sheet of the rig; every key is optional and carries its unit."""
 
     tendon_diameter_mm: float | None = Field(default=None, gt=0)
     tendon_modulus_GPa: float | None = Field(default=None, gt=0)
@@ -97,7 +95,7 @@ class Run(_Table):
         drive = any(":" in part for part in path.parts[:1])
         if path.is_absolute() or ".." in path.parts or drive:
             raise ValueError("must stay inside the dataset's folder (no '..', no absolute path)")
-        if len(file) > _PATH or any(len(part.encode()) > 255 for part in path.parts):
+        if len(file) > _PATH_LENGTH or any(len(part.encode()) > 255 for part in path.parts):
             raise ValueError("is too long for a file's name")
         return str(path)
 
@@ -119,11 +117,11 @@ class Manifest(_Table):
     source: str | None = None
     rig: Rig = Rig()
     run: tuple[Run, ...] = Field(min_length=1)
-    ingest: dict[str, object] | None = None  # the files and the map that `tsas ingest` has read
+    ingest: dict[str, object] | None = None  # the input files and the map of `tsas ingest`
 
     @property
     def session_start(self) -> datetime | None:
-        """When the first run began, or None where not all runs say when they did."""
+        """Start of the first run; None unless all runs state theirs."""
         started = [run.started for run in self.run if run.started is not None]
         zones = {at.tzinfo is None for at in started}
         return min(started) if len(started) == len(self.run) and len(zones) == 1 else None
@@ -132,27 +130,27 @@ class Manifest(_Table):
     def _ids_differ(self) -> "Manifest":
         if len(self.run) > limits.RUNS:
             raise ValueError(
-                f"{len(self.run)} runs, at most {limits.RUNS} in one dataset; make several of it"
+                f"{len(self.run)} runs, at most {limits.RUNS} in one dataset; split it"
             )
         names = Counter(run.id for run in self.run)
-        twice = [name for name, count in names.items() if count > 1]
-        if twice:
-            raise ValueError(f"run id {twice[0]!r} is there twice")
-        alike = beside(names)
-        if alike:
+        duplicates = [name for name, count in names.items() if count > 1]
+        if duplicates:
+            raise ValueError(f"duplicate run id {duplicates[0]!r}")
+        same_file = colliding_names(names)
+        if same_file:
             raise ValueError(
-                f"run ids {alike[0]!r} and {alike[1]!r} name one file on Windows and macOS"
+                f"run ids {same_file[0]!r} and {same_file[1]!r} name one file on Windows and macOS"
             )
         return self
 
 
 def read_manifest(folder: Place) -> Manifest:
-    """Read and check `dataset.toml` in a folder.
+    """Return the validated `dataset.toml` of a folder.
 
     Raises
     ------
     InputError
-        It is missing, is not TOML, or says something that format 1 does not allow.
+        The manifest is missing, is not TOML, or violates format 1.
     """
     path = folder / FILE
     if not path.is_file():
@@ -167,7 +165,7 @@ def read_manifest(folder: Place) -> Manifest:
 
 
 def read_toml(path: Place) -> Raw:
-    """Read a TOML file.
+    """Return the content of a TOML file.
 
     Raises
     ------
@@ -186,52 +184,52 @@ def read_toml(path: Place) -> Raw:
         raise InputError(f"cannot be read ({error.strerror})", where=path) from error
     except RecursionError as error:
         raise limits.too_deep(path) from error
-    except ValueError as error:  # of TOML, of text, or of an integer without end
+    except ValueError as error:  # of TOML, of text, or of an integer with too many digits
         raise InputError(f"is not TOML ({limits.reason(error)})", where=path) from error
     limits.depth(content, path)
     return content
 
 
 def parse(model: type[T], content: Raw, path: object) -> T:
-    """Validate the content of a file; all that is wrong with it becomes one line.
+    """Return the validated content of a file; all its errors become one line.
 
     Raises
     ------
     InputError
-        Something is missing, unknown or not allowed.
+        A key is missing, unknown or invalid.
     """
     try:
         read = model.model_validate(content, context={"file": path})
     except ValidationError as error:
         found = [e for e in error.errors(include_url=False) if not _follows(e)]
-        said = [_sentence(e, model) for e in found[:_SAID]]
-        more = [f"and {len(found) - _SAID} more"] if len(found) > _SAID else []
-        raise InputError("; ".join(said + more), where=path) from error
-    for place in _counted(content, read):
+        listed = [_sentence(e, model) for e in found[:_MOST_ERRORS]]
+        more = [f"and {len(found) - _MOST_ERRORS} more"] if len(found) > _MOST_ERRORS else []
+        raise InputError("; ".join(listed + more), where=path) from error
+    for place in _booleans_as_numbers(content, read):
         raise InputError(f"{place}: true and false are no numbers", where=path)
     return read
 
 
-def _counted(written: Any, read: Any) -> Iterator[str]:
-    """Yield the places where true or false is written and was read as 1 or 0.
+def _booleans_as_numbers(written: Any, read: Any) -> Iterator[str]:
+    """Yield the places where true or false was read as 1 or 0.
 
-    Pydantic's own strict mode would refuse 1 for 1.0 too, and lists for tuples.
+    Pydantic's strict mode would also refuse 1 for 1.0, and lists for tuples.
     """
     if isinstance(written, dict):
         for key, value in written.items():
             inner = read.get(key) if isinstance(read, dict) else getattr(read, key, None)
-            yield from _counted_inside(str(key), value, inner)
+            yield from _booleans_inside(str(key), value, inner)
     elif isinstance(written, list) and isinstance(read, list | tuple):
         for number, (value, inner) in enumerate(zip(written, read, strict=False)):
-            yield from _counted_inside(str(number), value, inner)
+            yield from _booleans_inside(str(number), value, inner)
 
 
-def _counted_inside(place: str, written: Any, read: Any) -> Iterator[str]:
+def _booleans_inside(place: str, written: Any, read: Any) -> Iterator[str]:
     if isinstance(written, bool):
         if isinstance(read, int | float) and not isinstance(read, bool):
             yield place
     elif isinstance(written, dict | list) and read is not None and read is not written:
-        yield from (f"{place}.{inner}" for inner in _counted(written, read))
+        yield from (f"{place}.{inner}" for inner in _booleans_as_numbers(written, read))
 
 
 def _sentence(error: Any, model: type[BaseModel]) -> str:
@@ -248,18 +246,18 @@ def _sentence(error: Any, model: type[BaseModel]) -> str:
     return f"{place}: {message}{got}" if place else message
 
 
-def _follows(one: Any) -> bool:
-    """Say whether a list is called too short only because what is in it is wrong."""
-    return one["type"] == "too_short" and any(one["input"])
+def _follows(error: Any) -> bool:
+    """Return whether a list is reported as too short only because its items are invalid."""
+    return error["type"] == "too_short" and any(error["input"])
 
 
 def _shown(value: Any) -> str:
     text = repr(value)
-    return text if len(text) <= _SHOWN else f"{text[:_SHOWN]}…"
+    return text if len(text) <= _VALUE_LENGTH else f"{text[:_VALUE_LENGTH]}…"
 
 
 def _known(model: Any, location: tuple[Any, ...]) -> list[str]:
-    """Return the keys that are known at the place of an error, as far as they can be told."""
+    """Return the keys that the model defines at the place of an error, as far as it is known."""
     for part in location[:-1]:
         field = getattr(model, "model_fields", {}).get(part)
         if field is None:
@@ -270,7 +268,7 @@ def _known(model: Any, location: tuple[Any, ...]) -> list[str]:
 
 
 def write_manifest(folder: Path, manifest: Manifest) -> None:
-    """Write `dataset.toml`; keys that are not set are left out."""
+    """Write `dataset.toml` without the keys that are not set."""
     content = manifest.model_dump(mode="python", exclude_none=True)
     content["run"] = list(content["run"])
     (folder / FILE).write_text(tomlkit.dumps(content), encoding="utf-8")

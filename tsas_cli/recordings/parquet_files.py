@@ -1,4 +1,4 @@
-"""Parquet files, opened only where what they say of themselves is within the limits."""
+"""Parquet files, opened only if their footers are within the limits."""
 
 import io
 import struct
@@ -9,27 +9,27 @@ from typing import IO, cast
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from tsas_cli.recordings.checked import Source
+from tsas_cli.recordings.checked import ParquetSource
 from tsas_cli.recordings.guards.expansion import Expanded
 from tsas_cli.recordings.storage import Place
 from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError
 
-BUFFER = 1 << 20  # bytes that are read at a time: a row group need not fit into memory
-_TEXT_BEHIND = 8  # bytes at the end: the footer's length and PAR1
+BUFFER_BYTES = 1 << 20  # read at a time: a row group need not fit into memory
+_TRAILER_BYTES = 8  # at the end: the footer's length and PAR1
 
 
-def open_parquet(source: Source, where: Place | None = None) -> pq.ParquetFile:
-    """Open a Parquet file; none of its rows is read.
+def open_parquet(source: ParquetSource, where: Place | None = None) -> pq.ParquetFile:
+    """Return an open Parquet file; no row is read.
 
-    `where` is what errors name, where the source is no path.
+    `where` is the location in error messages; default: the source.
 
     Raises
     ------
     InputError
-        It is no regular file, or holds more columns or a longer footer than a recording.
+        It is no regular file, or its columns or its footer exceed a limit.
     ArrowException, OSError, UnicodeDecodeError
-        It cannot be read.
+        The file cannot be read.
     """
     path = where or source
     if isinstance(source, Path):
@@ -38,22 +38,22 @@ def open_parquet(source: Source, where: Place | None = None) -> pq.ParquetFile:
             _check_footer(stream, path)
     else:
         _check_footer(source, path)
-    # What is read before it is asked for stays in memory until the file is closed.
-    file = pq.ParquetFile(source, buffer_size=BUFFER, pre_buffer=False)
+    # Pre-buffered data would stay in memory until the file is closed.
+    file = pq.ParquetFile(source, buffer_size=BUFFER_BYTES, pre_buffer=False)
     limits.columns(file.schema_arrow.names, path)
     return file
 
 
-def size_of(source: Source) -> int:
-    """Return how many bytes a file has."""
+def size_of(source: ParquetSource) -> int:
+    """Return the size of a file [bytes]."""
     return source.stat().st_size if isinstance(source, Path) else int(source.size())
 
 
 def _check_footer(stream: IO[bytes] | pa.NativeFile, path: object) -> None:
-    """Refuse a footer that is longer than that of a recording."""
+    """Refuse a footer that exceeds its limit."""
     size = int(stream.seek(0, io.SEEK_END))
-    stream.seek(max(0, size - _TEXT_BEHIND))
-    length, mark = struct.unpack("<I4s", stream.read().rjust(_TEXT_BEHIND, b"\0"))
+    stream.seek(max(0, size - _TRAILER_BYTES))
+    length, mark = struct.unpack("<I4s", stream.read().rjust(_TRAILER_BYTES, b"\0"))
     stream.seek(0)
     if mark == b"PAR1" and length > limits.FOOTER:
         raise InputError(
@@ -72,21 +72,21 @@ def check_size(
     whole: bool,
     size: int | None = None,
 ) -> None:
-    """Refuse a file that says it holds more than a file of its size can hold.
+    """Refuse a file whose footer claims more data than its size can hold.
 
     Parameters
     ----------
     names
-        The columns that will be read.
+        The columns to read.
     whole
-        Whether they will be in memory at once.
+        Whether they are read into memory at once.
     size
-        Bytes of the file; those of `path` without it.
+        Size of the file [bytes]; default: that of `path`.
 
     Raises
     ------
     InputError
-        It does, or, where they are loaded whole, they are larger than the memory.
+        It does; or the columns exceed the memory, if they are read whole.
     """
     of_file = cast("Path", path).stat().st_size if size is None else size
     expanded = Expanded(path, of_file, limits.PARQUET_EXPANSION)
@@ -96,7 +96,7 @@ def check_size(
     for leaf in leaves:
         if leaf.max_repetition_level > 0:
             raise InputError(f"column {leaf.path} holds lists", where=path, expected="numbers")
-    # Of the groups alone: asked for a damaged column, pyarrow ends the process.
+    # From the row groups alone: on a damaged column, pyarrow ends the process.
     for number in range(metadata.num_row_groups):
         group = metadata.row_group(number)
         for leaf in leaves:
@@ -107,5 +107,5 @@ def check_size(
 
 
 def is_number(kind: pa.DataType) -> bool:
-    """Say whether a column's type is one of numbers; of nothing but nulls counts too."""
+    """Return whether a column's type is numeric, or null throughout."""
     return bool(pa.types.is_floating(kind) or pa.types.is_integer(kind) or pa.types.is_null(kind))

@@ -1,6 +1,6 @@
-"""A recording that is too long for memory, read in pieces of so many rows.
+"""Recordings that are too long for memory, read in pieces of `MOST_ROWS` rows.
 
-A stage holds a piece and what it has found so far, never a column; so its memory does not grow
+A stage keeps one piece and its results so far, never a column, so that its memory does not grow
 with the recording.
 """
 
@@ -27,20 +27,20 @@ from tsas_cli.recordings.run_files import (
 )
 from tsas_cli.recordings.storage import Place
 
-MOST_ROWS = 1 << 20  # of a recording that is read whole; a piece of a longer one has as many
-_ROWS_AT_ONCE = 1 << 16
+MOST_ROWS = 1 << 20  # of a recording that is read whole, and of a piece of a longer one
+_BATCH_ROWS = 1 << 16
 
 
 @dataclass(frozen=True)
 class Piece:
-    """Columns by name, shape (n,), of the rows that begin at `start`; NaN where there is null."""
+    """Columns by name, shape (n,), of n rows from row `start` on; null is NaN."""
 
     start: int
     columns: dict[str, Floats]
 
     @property
     def rows(self) -> int:
-        """How many rows there are."""
+        """Number of rows."""
         return next(iter(self.columns.values())).size
 
     @property
@@ -50,12 +50,12 @@ class Piece:
 
 
 def long_run(folder: Place, run: Run) -> RunColumns | None:
-    """Open a run that has more than `MOST_ROWS` rows; None where it has fewer, or is no Parquet.
+    """Return an open run of more than `MOST_ROWS` rows; None if it has fewer, or is no Parquet.
 
     Raises
     ------
     InputError
-        Its file, its columns or a unit is not what the manifest and format 1 say.
+        Its file, columns or units violate the manifest or format 1.
     """
     if isinstance(folder, Path) and not _is_long(folder / run.file):
         return None
@@ -69,7 +69,7 @@ def long_run(folder: Place, run: Run) -> RunColumns | None:
 
 
 def _is_long(path: Path) -> bool:
-    """Say whether a file has too many rows to be read at once; its reader says what is wrong."""
+    """Return whether a file has too many rows to be read whole; its reader reports any fault."""
     try:
         return path.is_file() and int(pq.read_metadata(path).num_rows) > MOST_ROWS
     except (pa.ArrowException, OSError):
@@ -84,38 +84,38 @@ def known_columns(run: RunColumns) -> list[str]:
 def pieces(
     run: RunColumns, names: Sequence[str], *, overlap: int = 0, strict: bool = True
 ) -> Iterator[Piece]:
-    """Read columns in pieces of `MOST_ROWS` rows, the last `overlap` of each in the next one too.
+    """Yield columns in pieces of `MOST_ROWS` rows; consecutive pieces share `overlap` rows.
 
-    With `strict=False` time may stand or run backwards, and values be larger than any rig has.
+    With `strict=False`, time may stop or decrease, and values may be implausible.
 
     Raises
     ------
     InputError
-        The file cannot be read, a column holds no numbers or one that no rig has, or time does not
-        increase.
+        The file cannot be read, a column is not numeric or holds an implausible value, or time
+        does not increase.
     """
-    held: dict[str, list[Floats]] = {name: [] for name in names}
+    buffered: dict[str, list[Floats]] = {name: [] for name in names}
     start = count = read = 0
     last_s: Floats = np.empty(0)
     try:
-        for batch in run.file.iter_batches(min(_ROWS_AT_ONCE, MOST_ROWS), columns=list(names)):
+        for batch in run.file.iter_batches(min(_BATCH_ROWS, MOST_ROWS), columns=list(names)):
             table = pa.Table.from_batches([batch])
             for name in names:
-                held[name].append(floats_of(table, name, run.path, first_row=read))
+                buffered[name].append(floats_of(table, name, run.path, first_row=read))
                 if strict:
-                    check_magnitude(name, held[name][-1], run.path, first_row=read)
+                    check_magnitude(name, buffered[name][-1], run.path, first_row=read)
             if strict and TIME in names:
-                time_s = np.concatenate((last_s, held[TIME][-1]))
+                time_s = np.concatenate((last_s, buffered[TIME][-1]))
                 check_time(time_s, run.path, first_row=read - last_s.size)
                 last_s = time_s[-1:]
             read += batch.num_rows
             count += batch.num_rows
             while count >= MOST_ROWS:
-                joined = {name: np.concatenate(held[name]) for name in names}
+                joined = {name: np.concatenate(buffered[name]) for name in names}
                 yield Piece(start, {name: v[:MOST_ROWS] for name, v in joined.items()})
-                held = {name: [v[MOST_ROWS - overlap :].copy()] for name, v in joined.items()}
+                buffered = {name: [v[MOST_ROWS - overlap :].copy()] for name, v in joined.items()}
                 start, count = start + MOST_ROWS - overlap, count - MOST_ROWS + overlap
     except (pa.ArrowException, OSError) as error:
         raise damaged(run.path, "Parquet", error) from error
     if count > overlap or start == 0:
-        yield Piece(start, {name: np.concatenate(held[name]) for name in names})
+        yield Piece(start, {name: np.concatenate(buffered[name]) for name in names})

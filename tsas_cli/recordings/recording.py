@@ -24,16 +24,16 @@ class Recording:
     Parameters
     ----------
     run
-        What the manifest says of it: conditions, file, checksum.
+        Its manifest entry: conditions, file, checksum.
     columns
-        By name (with the unit in it) float64 arrays of shape (n,); NaN where the file has null.
+        float64 arrays of shape (n,) by name (with the unit); null is NaN.
     """
 
     run: Run
     columns: Mapping[str, Floats]
 
     def __repr__(self) -> str:
-        """Return a line: how many samples of which columns over which time."""
+        """Return one line with the number of samples, the duration and the columns."""
         time_s = self.time_s
         names = " ".join(self.columns)
         return f"run {self.run.id}: {time_s.size} rows, {time_s[-1] - time_s[0]:.6g} s: {names}"
@@ -50,7 +50,7 @@ class Recording:
         return self.columns[TIME]
 
     def get(self, name: str) -> Floats | None:
-        """Return a column, or None where it was not recorded."""
+        """Return a column, or None if it was not recorded."""
         return self.columns.get(name)
 
 
@@ -60,7 +60,7 @@ def recording_of(runs: Mapping[str, Recording], run: str) -> Recording:
     Raises
     ------
     InputError
-        There is none.
+        There is no such run.
     """
     if run not in runs:
         raise InputError(f"there is no run {run!r}", remedy=nearest(run, runs))

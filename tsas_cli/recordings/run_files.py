@@ -1,4 +1,4 @@
-"""A run's Parquet file, read whole or a column at a time, and checked against format 1."""
+"""A run's Parquet file, read whole or by column, and validated against format 1."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,7 +9,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from tsas_cli.recordings.arrow_columns import floats_from
-from tsas_cli.recordings.checked import Source, checked_file
+from tsas_cli.recordings.checked import ParquetSource, checked_file
 from tsas_cli.recordings.columns import (
     BY_NAME,
     INPUTS,
@@ -33,17 +33,17 @@ Floats = npt.NDArray[np.float64]
 
 
 def read_recording(folder: Place, run: Run, *, strict: bool = True) -> Recording:
-    """Read one run and check it against its checksum and the rules of format 1.
+    """Return one run, verified by its checksum and validated against format 1.
 
-    With `strict=False` the time may run backwards or repeat, and values may be larger than any
-    rig has, for `tsas check` to describe it.
+    With `strict=False`, time may decrease or repeat, and values may be implausible, so that
+    `tsas check` can describe them.
 
     Raises
     ------
     InputError
         The file is missing, leaves its folder, is not Parquet or has another checksum; a column
-        is missing, in another unit, not of numbers or holds one that no rig has; the time is not
-        strictly increasing, or in steps that no clock has.
+        is missing, in another unit, not numeric or holds an implausible value; time is not
+        strictly increasing, or in implausible steps.
     """
     path = folder / run.file
     state = state_of(path) if isinstance(path, Path) and path.is_file() else None
@@ -63,7 +63,7 @@ def read_recording(folder: Place, run: Run, *, strict: bool = True) -> Recording
 
 @dataclass(frozen=True)
 class RunColumns:
-    """One run, whose columns are read one at a time, when they are asked for."""
+    """One run, whose columns are read one at a time, on demand."""
 
     run: Run
     path: Place
@@ -72,23 +72,23 @@ class RunColumns:
 
     @property
     def names(self) -> list[str]:
-        """The columns of numbers, in the order of the file."""
+        """The numeric columns, in the order of the file."""
         schema = self.file.schema_arrow
         return [f.name for f in schema if f.name in BY_NAME or pa.types.is_floating(f.type)]
 
     @property
     def rows(self) -> int:
-        """How many samples there are."""
+        """Number of samples."""
         return int(self.file.metadata.num_rows)
 
     def read(self, name: str) -> Floats:
-        """Read a column as float64, shape (n,), null as NaN.
+        """Return a column as float64, shape (n,), null as NaN.
 
         Raises
         ------
         InputError
-            It is not there, not of numbers or holds one that no rig has, or cannot be read; the
-            time is not strictly increasing, or in steps that no clock has.
+            It is missing, not numeric, holds an implausible value or cannot be read; time is not
+            strictly increasing, or in implausible steps.
         """
         if name not in self.names:
             raise InputError(
@@ -109,12 +109,12 @@ class RunColumns:
 
 
 def open_run(folder: Place, run: Run) -> RunColumns:
-    """Open one run and check it as far as that is possible without its samples.
+    """Return one run, opened and validated as far as possible without reading samples.
 
     Raises
     ------
     InputError
-        The file is missing, leaves its folder, is not Parquet or has another checksum; the time is
+        The file is missing, leaves its folder, is not Parquet or has another checksum; time is
         missing, or a column is in another unit.
     """
     path = folder / run.file
@@ -130,16 +130,16 @@ def open_run(folder: Place, run: Run) -> RunColumns:
 
 
 def read_columns(path: Path) -> dict[str, Floats]:
-    """Read the canonical columns of a Parquet file that belongs to no dataset.
+    """Return the canonical columns of a Parquet file that belongs to no dataset.
 
     Raises
     ------
     InputError
-        It is not there or not Parquet; `time_s` is missing or does not increase; a column is in
-        another unit or not of numbers.
+        It does not exist or is no Parquet file; `time_s` is missing or does not increase; a
+        column is in another unit or not numeric.
     """
     if not path.is_file():
-        raise InputError("is not there", where=path, expected="a Parquet file")
+        raise InputError("does not exist", where=path, expected="a Parquet file")
     table, _ = _table_of(path, path)
     columns = {name: floats_of(table, name, path) for name in table.column_names}
     if TIME not in columns or len(columns[TIME]) < 2:
@@ -150,15 +150,15 @@ def read_columns(path: Path) -> dict[str, Floats]:
     return columns
 
 
-def _table_of(source: Source, path: Place) -> tuple[pa.Table, list[str]]:
-    """Return the canonical columns of a file, and the names of all that are there."""
+def _table_of(source: ParquetSource, path: Place) -> tuple[pa.Table, list[str]]:
+    """Return the canonical columns of a file, and the names of all columns."""
     try:
         with open_parquet(source, path) as file:
-            there = list(file.schema_arrow.names)
-            names = [name for name in there if name in BY_NAME]
+            present = list(file.schema_arrow.names)
+            names = [name for name in present if name in BY_NAME]
             _check_names_and_units(file.schema_arrow, path)
             check_size(file, path, names, size=size_of(source), whole=True)
-            return file.read(columns=names), there
+            return file.read(columns=names), present
     except MemoryError as error:
         raise out_of_memory(path) from error
     except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
@@ -166,12 +166,12 @@ def _table_of(source: Source, path: Place) -> tuple[pa.Table, list[str]]:
 
 
 def _check_names_and_units(schema: pa.Schema, path: Place) -> None:
-    """Refuse a known column that is there twice, of other than numbers, or in another unit."""
+    """Refuse a canonical column that is duplicate, not numeric, or in another unit."""
     for field in schema:
         if field.name not in BY_NAME:
             continue
         if schema.names.count(field.name) > 1:
-            raise InputError(f"column {field.name} is there twice", where=path)
+            raise InputError(f"duplicate column {field.name}", where=path)
         if not is_number(field.type):
             raise InputError(
                 f"column {field.name} holds {str(field.type)[:80]}", where=path, expected="float64"
@@ -180,14 +180,14 @@ def _check_names_and_units(schema: pa.Schema, path: Place) -> None:
         expected = BY_NAME[field.name].unit
         if unit.strip() and not _is_same(unit, expected):
             raise InputError(
-                f"column {field.name} says that its unit is {unit[:80]}",
+                f"column {field.name} has the unit {unit[:80]}",
                 where=path,
                 expected=expected,
             )
 
 
 def _is_same(unit: str, expected: str) -> bool:
-    """Say whether a unit is the expected one, in whatever spelling."""
+    """Return whether a unit is the expected one, in any spelling."""
     try:
         return conversion(unit, expected) == (1.0, 0.0)
     except InputError:
@@ -195,12 +195,12 @@ def _is_same(unit: str, expected: str) -> bool:
 
 
 def floats_of(table: pa.Table, name: str, path: Place, *, first_row: int = 0) -> Floats:
-    """Return a column as float64, null as NaN; `first_row` is the number of the table's first.
+    """Return a column as float64, null as NaN; `first_row` is the number of its first row.
 
     Raises
     ------
     InputError
-        It holds no numbers, an infinite one, or no time at some row.
+        It is not numeric, holds an infinite value, or lacks the time of a row.
     """
     values = floats_from(table.column(name))
     if name == TIME and not np.isfinite(values).all():
@@ -220,9 +220,9 @@ def floats_of(table: pa.Table, name: str, path: Place, *, first_row: int = 0) ->
     return values
 
 
-def check_columns(known: list[str], there: list[str], path: Place) -> None:
+def check_columns(known: list[str], present: list[str], path: Place) -> None:
     """Refuse a run without time, or without an input and another column that is an output."""
-    listed = ", ".join(there) or "none"
+    listed = ", ".join(present) or "none"
     if TIME not in known:
         raise InputError(
             "column time_s is missing",
@@ -240,16 +240,16 @@ def check_columns(known: list[str], there: list[str], path: Place) -> None:
 
 
 def check_time(time_s: Floats, path: Place, *, first_row: int = 0) -> None:
-    """Refuse time that does not increase, or by steps that no clock has.
+    """Refuse time that does not strictly increase, or increases by implausible steps.
 
     `first_row` is the number of the first sample.
 
     Raises
     ------
     InputError
-        It stands, runs backwards, or has such a step.
+        Time stops, decreases, or has an implausible step.
     """
-    with np.errstate(over="ignore"):  # the step is infinite then, and refused
+    with np.errstate(over="ignore"):  # an infinite step is refused below
         step = np.diff(time_s)
     if (step <= 0).any():
         row = int(np.flatnonzero(step <= 0)[0]) + 1
@@ -257,35 +257,35 @@ def check_time(time_s: Floats, path: Place, *, first_row: int = 0) -> None:
             f"time_s does not increase ({time_s[row - 1]:.6g} then {time_s[row]:.6g})",
             where=f"{path}, row {first_row + row}",
             expected="strictly increasing time",
-            remedy="`tsas check` describes it; mend it before ingest",
+            remedy="`tsas check` describes it; correct it before ingest",
         )
-    odd = (step < limits.SHORTEST_STEP_S) | (step > limits.LONGEST_STEP_S)
-    if odd.any():
-        row = int(odd.argmax()) + 1
+    implausible = (step < limits.SHORTEST_STEP_S) | (step > limits.LONGEST_STEP_S)
+    if implausible.any():
+        row = int(implausible.argmax()) + 1
         raise InputError(
-            f"time_s goes on by {step[row - 1]:.6g} s",
+            f"time_s increases by {step[row - 1]:.6g} s",
             where=f"{path}, row {first_row + row}",
             expected=f"steps from {limits.SHORTEST_STEP_S:g} s to {limits.LONGEST_STEP_S:g} s",
-            remedy="look up the unit of the time, and ingest again",
+            remedy="check the unit of the time, and ingest again",
         )
 
 
 def check_magnitude(name: str, values: Floats, path: Place, *, first_row: int = 0) -> None:
-    """Refuse values of a canonical column that no rig has; `first_row` is that of the first.
+    """Refuse implausible values of a canonical column; `first_row` is the number of the first row.
 
     Raises
     ------
     InputError
-        There is one.
+        There is an implausible value.
     """
     most = largest(name)
-    wild = np.abs(values) > most
-    if wild.any():
-        row = int(wild.argmax())
+    implausible = np.abs(values) > most
+    if implausible.any():
+        row = int(implausible.argmax())
         raise InputError(
             f"{name} is {values[row]:.6g}",
             where=f"{path}, row {first_row + row}",
-            expected=f"a size of at most {most:g} {BY_NAME[name].unit}",
-            remedy="leave the cell empty where nothing was measured, or look up the unit, "
+            expected=f"a magnitude of at most {most:g} {BY_NAME[name].unit}",
+            remedy="leave the cell empty where nothing was measured, or check the unit, "
             "and ingest again; `tsas check` lists such samples",
         )

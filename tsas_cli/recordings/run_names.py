@@ -1,22 +1,22 @@
-"""Which ids a run may have: they become file names, on any system."""
+"""Valid run ids: they become file names on any system."""
 
 import os
 import unicodedata
 from collections.abc import Iterable
 
 _SLASHES = "/\\"
-_ON_WINDOWS = '<>:"|?*'  # there a colon opens another stream of the same file
+_ON_WINDOWS = '<>:"|?*'  # where a colon opens another stream of the same file
 _DEVICES = {"con", "prn", "aux", "nul", *(f"{d}{n}" for d in ("com", "lpt") for n in range(10))}
 
 
 def check_run_name(name: str, *, on_windows: bool = os.name == "nt") -> None:
-    """Refuse an id that cannot name a file, or names something else.
+    """Refuse an id that is no valid file name.
 
     Raises
     ------
     ValueError
-        It is empty, no printable text, has a slash, begins or ends with a blank, is too long, or is
-        a device of Windows.
+        It is empty, not printable, too long, or a Windows device; it has a slash, or a blank at
+        either end.
     """
     bad = _SLASHES + (_ON_WINDOWS if on_windows else "")
     unusable = name in {"", ".", ".."} or any(c in name for c in bad) or not name.isprintable()
@@ -29,8 +29,8 @@ def check_run_name(name: str, *, on_windows: bool = os.name == "nt") -> None:
         raise ValueError("is a device on Windows, not a file name")
 
 
-def beside(names: Iterable[str]) -> tuple[str, str] | None:
-    """Return two ids that are one file where case or accents do not count, None without any."""
+def colliding_names(names: Iterable[str]) -> tuple[str, str] | None:
+    """Return two ids that name one file since only case or Unicode form differs; or None."""
     known: dict[str, str] = {}
     for name in names:
         other = known.setdefault(unicodedata.normalize("NFC", name).casefold(), name)

@@ -1,7 +1,7 @@
-"""Where a dataset is: a local folder, or an address on object storage (s3://…, gs://…).
+"""Location of a dataset: a local folder, or an address on object storage (s3://…, gs://…).
 
-An address has the few methods of a path that reading a dataset needs. fsspec does the work, and is
-imported only where there is an address.
+An address has the few methods of a path that reading a dataset needs. It uses fsspec, which is
+imported on first use.
 """
 
 import logging
@@ -18,7 +18,7 @@ from urllib.request import url2pathname
 from tsas_cli.support.errors import InputError
 
 PACKAGES = {"s3": "s3fs", "gs": "gcsfs"}  # by scheme; the extras have the schemes' names
-CONNECT_S, READ_S, TRIES, ANSWER_S = 5.0, 10.0, 2, 25.0
+CONNECT_S, READ_S, TRIES, RESPONSE_S = 5.0, 10.0, 2, 25.0
 _S3_WAITS = {"connect_timeout": CONNECT_S, "read_timeout": READ_S, "retries": {"max_attempts": 1}}
 _EXPECTED = "SCHEME://BUCKET/PATH"
 SCHEME = re.compile(r"(\w[\w+.-]*)://")
@@ -41,24 +41,24 @@ class Address:
     path: str
 
     def __str__(self) -> str:
-        """Return it as it was given; it never holds a key or a password."""
+        """Return the address as text; it never holds a key or a password."""
         return f"{self.scheme}://{self.path}"
 
     def __truediv__(self, name: str) -> "Address":
-        """Return what is in this folder."""
+        """Return the address of an object in this folder."""
         return Address(self.scheme, f"{self.path}/{name}")
 
     def resolve(self) -> "Address":
-        """Return itself: there are no links here."""
+        """Return itself: object storage has no links."""
         return self
 
     def is_file(self) -> bool:
-        """Say whether there is such an object.
+        """Return whether the object exists.
 
         Raises
         ------
         InputError
-            The storage cannot be asked.
+            The storage fails.
         """
         try:
             self.size()
@@ -67,54 +67,54 @@ class Address:
         return True
 
     def size(self) -> int:
-        """Return how many bytes it has.
+        """Return the size of the object [bytes].
 
         Raises
         ------
         FileNotFoundError
-            It is not there.
+            There is no such object.
         InputError
-            The storage cannot be asked.
+            The storage fails.
         """
-        told = self._asked(lambda files: _in_time(files, files._info, self.path))  # noqa: SLF001
-        if told["type"] != "file":
+        info = self._call(lambda files: _in_time(files, files._info, self.path))  # noqa: SLF001
+        if info["type"] != "file":
             raise FileNotFoundError(str(self))
-        return int(told["size"])
+        return int(info["size"])
 
     def read_bytes(self, start: int | None = None, end: int | None = None) -> bytes:
-        """Return its bytes, or those from `start` up to `end`, with one request.
+        """Return the bytes of the object, or those from `start` up to `end`, in one request.
 
         Raises
         ------
         FileNotFoundError
-            It is not there.
+            There is no such object.
         InputError
-            The storage cannot be asked.
+            The storage fails.
         """
-        return bytes(self._asked(lambda files: files.cat_file(self.path, start=start, end=end)))
+        return bytes(self._call(lambda files: files.cat_file(self.path, start=start, end=end)))
 
     def write_bytes(self, content: bytes) -> None:
-        """Put an object there, whole or not at all.
+        """Write the object, whole or not at all.
 
         Raises
         ------
         InputError
-            The storage cannot be asked, or refuses.
+            The storage fails or refuses access.
         """
-        self._asked(lambda files: files.pipe_file(self.path, content))
+        self._call(lambda files: files.pipe_file(self.path, content))
 
     def copy_from(self, file: Path) -> None:
-        """Put a local file there, whole or not at all.
+        """Write the object from a local file, whole or not at all.
 
         Raises
         ------
         InputError
-            The storage cannot be asked, or refuses.
+            The storage fails or refuses access.
         """
-        self._asked(lambda files: files.put_file(str(file), self.path))
+        self._call(lambda files: files.put_file(str(file), self.path))
 
-    def _asked(self, call: Callable[[Any], Returned]) -> Returned:
-        """Return what the storage answers; what goes wrong on the way is one line."""
+    def _call(self, call: Callable[[Any], Returned]) -> Returned:
+        """Return the result of a storage call; its errors become `InputError`."""
         try:
             return call(files_of(self.scheme))
         except FileNotFoundError as error:
@@ -123,15 +123,15 @@ class Address:
             raise InputError("there is no such bucket", where=self) from error
         except InputError:
             raise
-        except Exception as error:  # fsspec hands on what each storage's library raises
-            raise _said(self, error) from error
+        except Exception as error:  # fsspec passes on the errors of each storage's library
+            raise _storage_error(self, error) from error
 
 
 Place = Path | Address
 
 
 def is_address(given: str) -> bool:
-    """Say whether this names a place by scheme, as s3://bucket/path does."""
+    """Return whether text is an address with a scheme, such as s3://bucket/path."""
     return SCHEME.match(given) is not None
 
 
@@ -141,7 +141,7 @@ def place_of(given: "str | Place") -> Place:
     Raises
     ------
     InputError
-        The scheme is not known, no bucket is named, or the address holds more than a place.
+        The scheme is unknown, no bucket is named, or the address holds a key or a signature.
     """
     if not isinstance(given, str):
         return given
@@ -150,7 +150,7 @@ def place_of(given: "str | Place") -> Place:
     try:
         parts = urlsplit(given, allow_fragments=False)
     except ValueError as error:
-        shown = f"{given.partition('://')[0]}://…"  # what follows may hold a key
+        shown = f"{given.partition('://')[0]}://…"  # the rest may hold a key
         raise InputError("is no address", where=shown, expected=_EXPECTED) from error
     shown = f"{parts.scheme}://{parts.netloc.rpartition('@')[2]}{parts.path}"
     if "@" in parts.netloc or parts.query:
@@ -164,23 +164,23 @@ def place_of(given: "str | Place") -> Place:
         return Path(url2pathname(parts.path))
     if parts.scheme not in PACKAGES:
         raise InputError(
-            f"{parts.scheme}:// is no storage that is known",
+            f"{parts.scheme}:// is no known storage",
             where=shown,
             expected="a folder, or an address that begins with file://, s3:// or gs://",
         )
     inner = parts.path.strip("/")
     if not parts.netloc or ".." in inner.split("/"):
-        raise InputError("is no place in a bucket", where=shown, expected=_EXPECTED)
+        raise InputError("names no object in a bucket", where=shown, expected=_EXPECTED)
     return Address(parts.scheme, f"{parts.netloc}/{inner}".rstrip("/"))
 
 
 def check_inside(path: Place, folder: Place) -> None:
-    """Refuse a file that a link puts outside of its dataset's folder; an address has no links.
+    """Refuse a file that a link places outside its dataset's folder; an address has no links.
 
     Raises
     ------
     InputError
-        It is outside.
+        The file is outside.
     """
     if isinstance(path, Address) or isinstance(folder, Address):
         return
@@ -188,28 +188,28 @@ def check_inside(path: Place, folder: Place) -> None:
         raise InputError("a link leads out of the dataset's folder", where=path)
 
 
-def place_from(home: Path, told: str) -> Place:
-    """Return the place that a stage has written down in `home`: an address, or from there."""
-    return place_of(told) if is_address(told) else path_from(home, told)
+def place_from(home: Path, text: str) -> Place:
+    """Return the location that a stage recorded in `home`: an address, or a path relative to it."""
+    return place_of(text) if is_address(text) else path_from(home, text)
 
 
-def path_from(home: Path, told: str) -> Path:
-    """Return the path that is told from a folder, which may have been reached by a link."""
+def path_from(home: Path, relative: str) -> Path:
+    """Return the path that is relative to a folder, which may have been reached by a link."""
     linked = os.path.abspath(home) != str(real := home.resolve())  # noqa: PTH100
-    return Path(os.path.normpath((real if linked else home) / told))
+    return Path(os.path.normpath((real if linked else home) / relative))
 
 
-def told_from(home: Path, place: Place) -> str:
-    """Return how a stage writes a place down in `home`: an address, or the way from there."""
+def location_text(home: Path, place: Place) -> str:
+    """Return a location as a stage records it in `home`: an address, or a path relative to it."""
     if isinstance(place, Address):
         return str(place)
-    here = home.parent.resolve() / home.name  # which replaces a link of that name
+    here = home.parent.resolve() / home.name  # `home` will replace a link of that name
     return Path(os.path.relpath(place.resolve(), here)).as_posix()
 
 
 @cache
 def files_of(scheme: str) -> Any:
-    """Return fsspec's view of a storage, with the credentials that its own library finds."""
+    """Return the fsspec file system of a storage, with the credentials that its library finds."""
     try:
         import fsspec
 
@@ -222,31 +222,31 @@ def files_of(scheme: str) -> Any:
     waits = {"timeout": READ_S} if scheme == "gs" else {"config_kwargs": _S3_WAITS}
     files = made(use_listings_cache=False, skip_instance_cache=True, **waits)
     files.retries = TRIES
-    logging.getLogger(PACKAGES[scheme]).setLevel(logging.CRITICAL)  # what it logs, it raises too
+    logging.getLogger(PACKAGES[scheme]).setLevel(logging.CRITICAL)  # it raises what it logs
     return files
 
 
-if hasattr(os, "register_at_fork"):  # a storage's connections are those of one process
+if hasattr(os, "register_at_fork"):  # connections belong to one process
     os.register_at_fork(after_in_child=files_of.cache_clear)
 
 
 def _in_time(files: Any, ask: Callable[..., Any], path: str) -> Any:
-    """Return what a storage says of an object, if it does so in time.
+    """Return a storage's description of an object, within `RESPONSE_S`.
 
-    This comes before any other question. The libraries' own limits are per try, and gcsfs tries for
-    a minute.
+    This is the first request of each call. The libraries' own limits are per try, and gcsfs retries
+    for a minute.
     """
     from fsspec.asyn import sync
 
-    return sync(files.loop, ask, path, timeout=ANSWER_S)
+    return sync(files.loop, ask, path, timeout=RESPONSE_S)
 
 
-def _said(address: Address, error: Exception) -> InputError:
-    """Return what the storage's library raised as one line, without keys or signatures."""
+def _storage_error(address: Address, error: Exception) -> InputError:
+    """Return an error of the storage's library as one line, without keys or signatures."""
     kinds = {kind.__name__ for kind in type(error).__mro__}
     if kinds & {"NoCredentialsError", "PartialCredentialsError", "ProfileNotFound"}:
         return InputError(
-            "there are no credentials for it",
+            "no credentials found",
             where=address,
             remedy="set them as for the storage's own tools (docs/object-storage.md)",
         )
@@ -256,20 +256,20 @@ def _said(address: Address, error: Exception) -> InputError:
         return InputError(
             "the storage refuses access",
             where=address,
-            remedy="see that the credentials are right and may read the bucket",
+            remedy="check that the credentials are valid and may read the bucket",
         )
     if isinstance(error, TimeoutError | ConnectionError) or kinds & _UNREACHED:
         return InputError(
             f"the storage cannot be reached ({type(error).__name__})",
             where=address,
-            remedy="see that the network is up, and the endpoint right where one is set",
+            remedy="check the network, and the endpoint if one is set",
         )
     reason = (str(error).splitlines() or [""])[0]
     reason = re.sub(r"//[^/\s@]+@|\?\S+", "…", reason)
     return InputError(f"the storage fails ({type(error).__name__}: {reason})", where=address)
 
 
-# By name, since their libraries are there only where a storage is used.
+# By name, since the libraries are optional.
 _UNREACHED = {
     "ConnectionError",
     "HTTPClientError",

@@ -1,4 +1,4 @@
-"""From the units of a lab to the units of the canonical columns."""
+"""Conversion of units in lab notation to those of the canonical columns."""
 
 import math
 import re
@@ -7,8 +7,8 @@ from typing import Any
 
 from tsas_cli.support.errors import InputError
 
-# What people write in header lines and what pint would read otherwise or not at all: it takes
-# `Nm` for number-metre, `1/min` for radians per minute and `U` for an enzyme unit.
+# Spellings in header lines that pint rejects or misreads: it reads `Nm` as number-metre, `1/min`
+# as radians per minute and `U` as an enzyme unit.
 _SPELLINGS = {
     '"': "inch",
     "''": "inch",
@@ -25,7 +25,7 @@ _SPELLINGS = {
     "rps": "turn/s",
     "deg C": "degC",
     "deg F": "degF",
-    "Grad": "degree",  # German; pint takes it for gon
+    "Grad": "degree",  # German; pint reads it as gon
     "N-m": "N*m",
     "N-mm": "N*mm",
     "in-lb": "lbf*inch",
@@ -57,14 +57,14 @@ _LABELS = {
 }
 _TORQUE = re.compile(r"([mkM]?N)(mm|cm|m)")
 _CAPITALISED = re.compile(r"[A-Z][a-z]{3,}")
-_LONGEST = 100  # characters of a unit
-# What a unit is written with. pint drops every other character, which makes metres of `?m`.
-_SPELT = re.compile(r"%|(?:[A-Za-zÅ\u212båöµμΩ\u2126°0-9*/^·().+_ -]|⁻?[²³⁴]|⁻¹)*")
+_UNIT_LENGTH = 100  # characters of a unit
+# Valid characters of a unit. pint drops all others, which turns `?m` into metre.
+_VALID = re.compile(r"%|(?:[A-Za-zÅ\u212båöµμΩ\u2126°0-9*/^·().+_ -]|⁻?[²³⁴]|⁻¹)*")
 _TIMES = str.maketrans(dict.fromkeys("⋅×•∙", "*"))
 _NUMBER_AHEAD = re.compile(r"(?!1 ?/)[0-9.]")  # 1/min is a unit, 1m is not
-# On the web, in the sky and in an army: a pixel of a camera, an arbitrary unit, 0.001 inch here.
-_OF_NO_LAB = ("css_pixel", "astronomical_unit", "mil")
-_POWER_OF_A_NUMBER = re.compile(r"[\d)]\s*\*\*")  # 9**9**9**9 would be worked out digit by digit
+# pint's meanings of px, au and mil; in a lab: a camera's pixel, an arbitrary unit, 0.001 inch.
+_AMBIGUOUS = ("css_pixel", "astronomical_unit", "mil")
+_POWER_OF_A_NUMBER = re.compile(r"[\d)]\s*\*\*")  # 9**9**9**9 would be evaluated digit by digit
 _KINDS = {
     "s": "a time",
     "mm": "a length",
@@ -85,32 +85,31 @@ def conversion(
     pulley_radius_mm: float | None = None,
     where: str = "",
 ) -> tuple[float, float]:
-    """Return slope and intercept that take a number in a file to a canonical unit.
+    """Return slope and intercept of the conversion of a number in a file to a canonical unit.
 
     Parameters
     ----------
     unit
-        The unit as people write it.
+        The unit in any common spelling.
     to
         The canonical unit: s, mm, N, rpm, rad or °C.
     factor, factor_unit
-        What one `unit` is, needed for counts and volts: `factor` times `factor_unit`.
+        One `unit` is `factor` times `factor_unit`; required for counts and volts.
     pulley_radius_mm
-        The radius on which an angle becomes mm, or a torque N.
+        The radius that converts an angle to mm, or a torque to N.
     where
-        The place that errors name.
+        The location in error messages.
 
     Raises
     ------
     InputError
-        The unit is unknown, or cannot become the canonical one; says what to add. One of it is no
-        finite number of the canonical one, or none.
+        The unit is unknown or not convertible, or the factor is zero or not finite.
     """
     if factor is None and is_label(unit):
         raise InputError(
-            f"unit {unit!r} does not say how many {to} one is",
+            f"unit {unit!r} has no defined size in {to}",
             where=where,
-            remedy="say what one is with factor and factor_unit",
+            remedy="set factor and factor_unit",
         )
     scale = 1.0 if factor is None else factor
     text = factor_unit or unit
@@ -133,12 +132,12 @@ def conversion(
 
 
 def is_label(unit: str) -> bool:
-    """Say whether a unit is one of counts or volts, which need a factor."""
+    """Return whether a unit is one of counts or volts, which need a factor."""
     return unit.strip().lower() in _LABELS
 
 
 def is_unit(text: str) -> bool:
-    """Say whether text is a unit at all."""
+    """Return whether text is a unit with a dimension."""
     try:
         return not _parse(text, "", "").dimensionless
     except InputError:
@@ -146,13 +145,13 @@ def is_unit(text: str) -> bool:
 
 
 def _between(text: str, to: str, where: str) -> tuple[float, float]:
-    if text.strip() == to:  # without pint, which takes longer to load than to read a recording
+    if text.strip() == to:  # without pint, which takes longer to load than a recording
         return 1.0, 0.0
-    unit, wanted = _parse(text, to, where), _parse(to, to, where)
-    line = _line(unit, wanted) if _roots(unit) == _roots(wanted) else None
+    unit, target = _parse(text, to, where), _parse(to, to, where)
+    line = _line(unit, target) if _roots(unit) == _roots(target) else None
     if line is None:
         raise InputError(
-            f"unit {text!r} cannot become {to}",
+            f"unit {text!r} is not convertible to {to}",
             where=where,
             expected=_KINDS[to],
             remedy=_remedy(unit, to),
@@ -160,10 +159,10 @@ def _between(text: str, to: str, where: str) -> tuple[float, float]:
     return line
 
 
-def _line(unit: Any, wanted: Any) -> tuple[float, float] | None:
-    """Return slope and intercept, or None where there are none (differences of temperatures)."""
+def _line(unit: Any, target: Any) -> tuple[float, float] | None:
+    """Return slope and intercept, or None without a conversion (temperature differences)."""
     try:
-        zero, one = (float(_registry().Quantity(x, unit).to(wanted).magnitude) for x in (0.0, 1.0))
+        zero, one = (float(_registry().Quantity(x, unit).to(target).magnitude) for x in (0.0, 1.0))
     except (ArithmeticError, TypeError, ValueError):  # pint's DimensionalityError is a TypeError
         return None
     slope = one - zero
@@ -182,7 +181,7 @@ def _parse(text: str, to: str, where: str) -> Any:
         spelled = f"{torque[1]}*{torque[2]}"
     try:
         return _unit(spelled)
-    except Exception as error:  # pint's parser ends in any of a dozen types
+    except Exception as error:  # pint's parser raises any of a dozen types
         raise InputError(
             f"unit {text!r} is unknown", where=where, expected=_KINDS.get(to, "")
         ) from error
@@ -191,28 +190,28 @@ def _parse(text: str, to: str, where: str) -> Any:
 def _unit(text: str) -> Any:
     from pint.util import string_preprocessor
 
-    if not _SPELT.fullmatch(text) or _NUMBER_AHEAD.match(text) or len(text) > _LONGEST:
+    if not _VALID.fullmatch(text) or _NUMBER_AHEAD.match(text) or len(text) > _UNIT_LENGTH:
         raise ValueError(text)
     if _POWER_OF_A_NUMBER.search(string_preprocessor(text)):
         raise ValueError(text)
     unit = _registry().Unit(text)
-    _roots(unit)  # there are none of what pint has made a name for and does not know: Np%
-    if any(name.endswith(_OF_NO_LAB) for name, _ in _registry().Quantity(1, unit).unit_items()):
+    _roots(unit)  # raises for names that pint accepts but does not define: Np%
+    if any(name.endswith(_AMBIGUOUS) for name, _ in _registry().Quantity(1, unit).unit_items()):
         raise ValueError(text)
     return unit
 
 
 def _roots(unit: Any) -> Any:
-    """Return what a unit is made of; unlike dimensions, this tells mm/deg from mm, 1/s from rpm."""
+    """Return the base units; unlike dimensions, they distinguish mm/deg from mm, 1/s from rpm."""
     return _registry().get_root_units(unit)[1]
 
 
 def _remedy(unit: Any, to: str) -> str:
     if to == "mm" and _roots(unit) == _registry().Unit("rad"):
-        return "an angle needs pulley_radius_mm to become mm"
+        return "set pulley_radius_mm to convert an angle to mm"
     if to == "N" and _roots(unit) == _roots(_registry().Unit("N*mm")):
-        return "a torque needs pulley_radius_mm to become N"
-    return "is this the right source column, and its unit the one in the file?"
+        return "set pulley_radius_mm to convert a torque to N"
+    return "check the source column and its unit"
 
 
 @cache

@@ -1,4 +1,4 @@
-"""A local dataset on its way to object storage: recordings, and the manifest last."""
+"""Upload of a local dataset to object storage: recordings, and the manifest last."""
 
 from pathlib import Path
 
@@ -12,21 +12,21 @@ from tsas_cli.support.steps import Steps
 
 
 def upload_dataset(folder: Path, target: Address, *, force: bool, step: Steps) -> dict[str, int]:
-    """Put a dataset at an address; return the size of each object [bytes].
+    """Write a dataset to an address; return the size of each object [bytes] by name.
 
-    The manifest comes last. Until then an older one stands, whose checksums tell that its
+    The manifest comes last. Until then the checksums of an older manifest reveal that its
     recordings are being replaced.
 
     Raises
     ------
     InputError
-        The dataset is wrong, one is at the address and `force` is not set, a recording would
-        replace what belongs to no dataset, or the storage refuses.
+        The dataset is invalid, the address holds one and `force` is not set, a recording would
+        replace an object of no dataset, or the storage fails.
     """
     dataset = read_dataset(folder)
     manifest = target / FILE
-    there = manifest.is_file()
-    if there and not force:
+    exists = manifest.is_file()
+    if exists and not force:
         raise InputError(
             "already exists",
             where=manifest,
@@ -34,8 +34,8 @@ def upload_dataset(folder: Path, target: Address, *, force: bool, step: Steps) -
             remedy="choose another, or replace it with --force",
         )
     step.ahead(len(dataset.runs))
-    replaced = {run.file for run in read_dataset(target).runs} if there else set()
-    for run in dataset.runs:  # before the first byte leaves, and before anything is replaced
+    replaced = {run.file for run in read_dataset(target).runs} if exists else set()
+    for run in dataset.runs:  # before anything is sent or replaced
         if run.file not in replaced:
             _refuse_foreign(target / run.file, local_file(folder, run).stat().st_size)
     sizes: dict[str, int] = {}
@@ -47,12 +47,12 @@ def upload_dataset(folder: Path, target: Address, *, force: bool, step: Steps) -
     return sizes | {FILE: len(content)}
 
 
-def _refuse_foreign(there: Address, size: int) -> None:
-    """Refuse to replace an object of another size than an upload that was cut off has put there."""
-    if there.is_file() and there.size() != size:
+def _refuse_foreign(existing: Address, size: int) -> None:
+    """Refuse to replace an object, unless an interrupted upload of this size wrote it."""
+    if existing.is_file() and existing.size() != size:
         raise InputError(
-            "was not put there by `tsas upload`",
-            where=there,
+            "was not written by `tsas upload`",
+            where=existing,
             expected="an address that is free, or a dataset",
             remedy="choose another address, or remove the object with the storage's own tools",
         )

@@ -1,4 +1,4 @@
-"""Runs and datasets on their way to disk."""
+"""Writing of runs and datasets."""
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
@@ -35,9 +35,9 @@ def write_runs(folder: Path, runs: Mapping[str, Recording]) -> None:
         write_answer(folder, recording)
 
 
-def write_answer(folder: Path, answer: Recording) -> None:
-    """Write what a stage says about a run, NaN as null, into the folder of its runs."""
-    write_parquet(folder / f"{answer.run.id}.parquet", table_of(answer.columns))
+def write_answer(folder: Path, result: Recording) -> None:
+    """Write a stage's result for a run, NaN as null, into the folder of its runs."""
+    write_parquet(folder / f"{result.run.id}.parquet", table_of(result.columns))
 
 
 def table_of(columns: Mapping[str, Floats]) -> pa.Table:
@@ -46,14 +46,14 @@ def table_of(columns: Mapping[str, Floats]) -> pa.Table:
 
 
 def write_parquet(path: Path, table: pa.Table) -> None:
-    """Write a table of float64 columns; known columns get their unit as field metadata."""
+    """Write a table of float64 columns; canonical ones get their unit as field metadata."""
     with parquet_writer(path, table.schema) as write:
         write(table)
 
 
 @contextmanager
 def parquet_writer(path: Path, schema: pa.Schema) -> Iterator[Callable[[pa.Table], None]]:
-    """Yield what writes tables of one schema as the row groups of a file; see `write_parquet`."""
+    """Yield a function that writes tables of one schema as row groups; see `write_parquet`."""
     fields = [
         field.with_metadata({"unit": BY_NAME[field.name].unit}) if field.name in BY_NAME else field
         for field in schema

@@ -1,4 +1,4 @@
-"""What stages have written about runs, `runs/ID.parquet` in a folder of theirs, read again."""
+"""Results of stages for single runs, read from `runs/ID.parquet` in a stage's folder."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -23,38 +23,38 @@ Floats = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class WrittenRuns(Mapping[str, Recording]):
-    """Runs that a stage has written into a folder, each read when it is asked for."""
+    """Runs that a stage has written into a folder, each read on access."""
 
     folder: Path
     runs: Mapping[str, Run]
 
     def __getitem__(self, run: str) -> Recording:
-        """Read a run.
+        """Return a run.
 
         Raises
         ------
         KeyError
-            There is none.
+            There is no such run.
         InputError
-            Its file is no longer what the stage has written.
+            Its file is missing or damaged.
         """
         return Recording(self.runs[run], read_columns(self.folder / f"{run}.parquet"))
 
     def __contains__(self, run: object) -> bool:
-        """Say whether there is such a run, without reading it."""
+        """Return whether there is such a run, without reading it."""
         return run in self.runs
 
     def __iter__(self) -> Iterator[str]:
-        """Return the ids, in the order of the dataset."""
+        """Iterate over the ids, in the order of the dataset."""
         return iter(self.runs)
 
     def __len__(self) -> int:
-        """Return how many there are."""
+        """Return the number of runs."""
         return len(self.runs)
 
 
 def answers_of(folder: Path, run: str) -> Path:
-    """Return the file that a stage has written about a run into a folder.
+    """Return the file of a stage's result for a run.
 
     Raises
     ------
@@ -72,12 +72,12 @@ def answers_of(folder: Path, run: str) -> Path:
 
 
 def names_of(path: Path) -> list[str]:
-    """Return the columns of such a file.
+    """Return the names of the columns of such a file.
 
     Raises
     ------
     InputError
-        It cannot be read.
+        The file cannot be read.
     """
     try:
         with open_parquet(path) as file:
@@ -87,12 +87,12 @@ def names_of(path: Path) -> list[str]:
 
 
 def columns_of(path: Path, names: Sequence[str]) -> dict[str, Floats]:
-    """Read columns of such a file by name, shape (n,) each, null as NaN.
+    """Return columns of such a file by name, shape (n,) each, null as NaN.
 
     Raises
     ------
     InputError
-        It cannot be read or lacks a column.
+        The file cannot be read or lacks a column.
     """
     try:
         with open_parquet(path) as file:
@@ -106,12 +106,12 @@ def columns_of(path: Path, names: Sequence[str]) -> dict[str, Floats]:
 
 
 def check_rows(path: Path, found: int, rows: int, *, stage: str = "the stage") -> None:
-    """Refuse a file that was written about another recording, of other than so many samples.
+    """Refuse a result whose number of samples differs from the recording's.
 
     Raises
     ------
     InputError
-        It has another number of rows; running `stage` again mends that.
+        It does; the remedy is to run `stage` again.
     """
     if found != rows:
         raise InputError(

@@ -1,3 +1,3 @@
-"""What every floor leans on: files whole or absent, limits, errors, progress, stopping."""
+"""Common infrastructure: atomic outputs, limits, errors, progress, signals."""
 
 __version__ = "0.1.0"

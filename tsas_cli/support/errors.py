@@ -1,20 +1,20 @@
-"""What a person is told when the call or the input is wrong."""
+"""The error for an invalid call or invalid input."""
 
 from collections.abc import Iterable
 from difflib import get_close_matches
 
 
 class InputError(Exception):
-    """The call or the input is wrong: one line that says what, where, expected and what to do.
+    """An invalid call or invalid input: one line with fault, location, expectation and remedy.
 
     Parameters
     ----------
     what
-        What is wrong, with what was found ("column f_in_N holds text").
+        The fault, with the value found ("column f_in_N holds text").
     where
         File, and row or key where known ("runs/a.parquet, row 12").
     expected
-        What would have been right ("a number in newton").
+        The expected value ("a number in newton").
     remedy
         What to do ("run `tsas check DATASET`").
     """
@@ -26,7 +26,7 @@ class InputError(Exception):
         super().__init__(self.line())
 
     def line(self) -> str:
-        """Return the whole message on one line, control characters made visible."""
+        """Return the whole message on one line, with control characters escaped."""
         head = f"{self.where}: {self.what}" if self.where else self.what
         parts = [head]
         if self.expected:
@@ -37,14 +37,14 @@ class InputError(Exception):
 
 
 def printable(text: str) -> str:
-    """Return text with control characters made visible, for names that come from files."""
+    """Return text with control characters escaped, for names from files."""
     if text.isprintable():
         return text
     return "".join(c if c.isprintable() else repr(c)[1:-1] for c in text)
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
-    """Return a hint that names the nearest known word, or lists those that exist.
+    """Return a hint with the nearest known name, or a list of the known names.
 
     Examples
     --------

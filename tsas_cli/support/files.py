@@ -1,4 +1,4 @@
-"""Whole or absent: outputs appear under their name only when they are complete."""
+"""Atomic outputs: a file or folder appears under its name only when it is complete."""
 
 import errno
 import hashlib
@@ -27,7 +27,7 @@ from tsas_cli.support.temporaries import place_file, place_folder, temporary_for
 Raw = dict[str, Any]  # a table of TOML, JSON or MATLAB, before a schema has read it
 _FULL = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG})
 _NO_ROOM = _FULL | {errno.EROFS}
-_ADDED: ContextVar[Callable[[Path], None] | None] = ContextVar("added", default=None)
+_EXTRA_OUTPUT: ContextVar[Callable[[Path], None] | None] = ContextVar("extra_output", default=None)
 
 
 def sha256_of(path: Path) -> str:
@@ -49,15 +49,15 @@ def new_folder(
     stage
         The stage that writes it, as its JSON names it.
     inputs
-        What the call reads, which the folder may neither be, hold nor lie inside of.
+        The inputs of the call; the folder may not be, contain or lie inside one.
     force
         Replace an earlier output of the same stage.
 
     Raises
     ------
     InputError
-        `path` exists and is not an empty folder, and `force` is not set; with `force`, where it is
-        no earlier output of the same stage, an input, or the current folder; it cannot be written.
+        `path` exists and is not an empty folder, and `force` is not set; or, with `force`, it is no
+        earlier output of the same stage, an input, or the current folder; or it is not writable.
     """
     replaced = partial(refuse_folder, path, stage=stage, inputs=tuple(inputs), force=force)
     with ExitStack() as stack:
@@ -73,7 +73,7 @@ def new_folder(
             yield temporary
         with _written(path):
             temporary.chmod(0o755)
-            replaced()  # somebody may have put something there meanwhile
+            replaced()  # another process may have written it meanwhile
             place_folder(temporary, path, replace=force)
 
 
@@ -81,21 +81,21 @@ def new_folder(
 def stage_folder(
     path: Path, *, stage: str, inputs: Iterable[object], force: bool = False
 ) -> Iterator[Path]:
-    """Yield a new folder as `new_folder` does; at its end `SHA256SUMS` lists the files in it.
+    """Yield a new folder as `new_folder` does, and write `SHA256SUMS` of its files at the end.
 
     Raises
     ------
     InputError
-        As `new_folder` raises it.
+        As from `new_folder`.
     """
     with new_folder(path, stage=stage, inputs=inputs, force=force) as folder:
-        add, own = _ADDED.get(), _ADDED.set(None)  # not for what is written inside of it
+        write, own = _EXTRA_OUTPUT.get(), _EXTRA_OUTPUT.set(None)  # not for nested outputs
         try:
             yield folder
-            if add is not None:
-                add(folder)
+            if write is not None:
+                write(folder)
         finally:
-            _ADDED.reset(own)
+            _EXTRA_OUTPUT.reset(own)
         write_sums(folder)
 
 
@@ -103,12 +103,12 @@ def stage_folder(
 def folder_if(
     path: Path | None, *, stage: str, inputs: Iterable[object], force: bool = False
 ) -> Iterator[Path | None]:
-    """Yield a new folder as `stage_folder` does, or None where no path says where to write.
+    """Yield a new folder as `stage_folder` does, or None without a path.
 
     Raises
     ------
     InputError
-        As `new_folder` raises it.
+        As from `new_folder`.
     """
     if path is None:
         yield None
@@ -118,13 +118,13 @@ def folder_if(
 
 
 @contextmanager
-def added(add: Callable[[Path], None] | None) -> Iterator[None]:
-    """Have `add` write into the folder of the stage in the block, before it gets its name."""
-    before = _ADDED.set(add)
+def extra_output(write: Callable[[Path], None] | None) -> Iterator[None]:
+    """Let `write` add files to the folder of the stage in the block, before it gets its name."""
+    before = _EXTRA_OUTPUT.set(write)
     try:
         yield
     finally:
-        _ADDED.reset(before)
+        _EXTRA_OUTPUT.reset(before)
 
 
 @contextmanager
@@ -138,18 +138,18 @@ def new_file(
     path
         The file to write.
     mark
-        What an earlier output of the same command holds in its first 4 KiB; empty where any file
-        may be replaced, since its place is the program's own.
+        Bytes in the first 4 KiB of an earlier output of the same command; empty if any file may be
+        replaced, since the path belongs to the program.
     inputs
-        What the call reads, which the file may neither be nor lie inside of.
+        The inputs of the call; the file may not be one or lie inside one.
     force
         Replace an earlier output of the same command.
 
     Raises
     ------
     InputError
-        `path` exists and `force` is not set; with `force`, where it is no earlier output or an
-        input; it is a folder, or it cannot be written.
+        `path` exists and `force` is not set; or, with `force`, it is no earlier output or an input;
+        or it is a folder or not writable.
     """
     replaced = partial(refuse_file, path, mark=mark, inputs=tuple(inputs), force=force)
     with ExitStack() as stack:
@@ -171,19 +171,19 @@ def new_file(
 
 @contextmanager
 def own_file(path: Path) -> Iterator[Path]:
-    """Yield as `new_file` does, for a file whose place is the program's own: it is replaced.
+    """Yield as `new_file` does, for a file whose path belongs to the program: it is replaced.
 
     Raises
     ------
     InputError
-        It is a folder, or cannot be written.
+        It is a folder, or not writable.
     """
     with new_file(path, mark=b"", inputs=(), force=True) as temporary:
         yield temporary
 
 
 def write_sums(folder: Path) -> None:
-    """Write the checksum of each other file in a folder, as `sha256sum --check` reads it."""
+    """Write the checksums of the files in a folder, in the format of `sha256sum --check`."""
     sums = folder / SUMS
     files = sorted(path for path in folder.rglob("*") if path.is_file() and path != sums)
     lines = [f"{sha256_of(path)}  {path.relative_to(folder).as_posix()}\n" for path in files]
@@ -191,27 +191,27 @@ def write_sums(folder: Path) -> None:
 
 
 def write_json(path: Path, content: Any) -> None:
-    """Write JSON with stable layout; a number that is not finite becomes null."""
+    """Write JSON with a stable layout; numbers that are not finite become null."""
     path.write_text(json_text(content), encoding="utf-8")
 
 
 def json_text(content: Any) -> str:
-    """Return content as JSON text; numpy values become plain ones, not-finite ones null."""
+    """Return content as JSON text; NumPy values become plain ones, numbers not finite null."""
     return json.dumps(_finite(content), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
 
 def read_json(path: Path) -> Any:
-    """Read JSON.
+    """Return the content of a JSON file.
 
     Raises
     ------
     InputError
-        The file is missing, cannot be read, is not JSON, holds a key twice, or exceeds a limit.
+        The file is missing or unreadable, is not JSON, has a duplicate key, or exceeds a limit.
     """
     try:
         memory.fits(path, limits.JSON_EXPANDS * path.stat().st_size)
         text = limits.text_of(path, limits.JSON_BYTES)
-        content = json.loads(text, object_pairs_hook=_without_twins)
+        content = json.loads(text, object_pairs_hook=_without_duplicates)
     except OSError as error:
         raise InputError(f"cannot be read ({error.strerror})", where=path) from error
     except RecursionError as error:
@@ -222,17 +222,17 @@ def read_json(path: Path) -> Any:
     return content
 
 
-def _without_twins(members: list[tuple[str, Any]]) -> Raw:
+def _without_duplicates(members: list[tuple[str, Any]]) -> Raw:
     content = dict(members)
     if len(content) < len(members):
         names = [name for name, _ in members]
-        twice = next(name for name in names if names.count(name) > 1)
-        raise ValueError(f"the key {twice[:80]!r} is there twice")
+        duplicate = next(name for name in names if names.count(name) > 1)
+        raise ValueError(f"duplicate key {duplicate[:80]!r}")
     return content
 
 
 def state_of(path: Path) -> tuple[int, ...]:
-    """Return what changes when somebody writes to a file or puts another in its place."""
+    """Return inode, size and modification time of a file, to detect a change."""
     state = path.stat()
     return state.st_ino, state.st_size, state.st_mtime_ns
 
@@ -243,14 +243,14 @@ def check_unchanged(path: Path, before: tuple[int, ...]) -> None:
     Raises
     ------
     InputError
-        It has.
+        The file has changed.
     """
     if state_of(path) != before:
         raise InputError(
             "changed while it was read",
             where=path,
-            expected="a recording that is finished",
-            remedy="wait until nothing writes to it, or copy it first",
+            expected="a finished recording",
+            remedy="wait until no program writes to it, or copy it first",
         )
 
 
@@ -268,19 +268,19 @@ def _finite(content: Any) -> Any:
 
 @contextmanager
 def _written(path: Path, *, only: Collection[int] = ()) -> Iterator[None]:
-    """Say in one line why an output cannot be written; `only` for these numbers of errors."""
+    """Convert errors of writing an output to `InputError`; `only` those with these numbers."""
     try:
         yield
     except OSError as error:
         if only and error.errno not in only:
             raise
-        taken = isinstance(error, FileExistsError) and os.path.lexists(path)
-        raise (exists(path) if taken else unwritable(path, error)) from error
+        exists_now = isinstance(error, FileExistsError) and os.path.lexists(path)
+        raise (exists(path) if exists_now else unwritable(path, error)) from error
 
 
 @contextmanager
 def _named(temporary: Path, path: Path) -> Iterator[None]:
-    """Say of what is wrong in a temporary folder where it would have been."""
+    """Replace the temporary path in errors by the final path."""
     try:
         yield
     except InputError as error:
@@ -293,7 +293,7 @@ def _named(temporary: Path, path: Path) -> Iterator[None]:
 
 
 def unwritable(path: Path, error: OSError) -> InputError:
-    """Return what is said where the machine refuses an output."""
+    """Return the error for an output that the system refuses."""
     return InputError(
         f"cannot be written ({error.strerror})",
         where=path,

@@ -1,7 +1,7 @@
-"""How much a file may ask for, checked before the memory is taken; docs/untrusted.md states it.
+"""Limits on files, checked before memory is allocated; docs/untrusted.md lists them.
 
-What is read in parts (text tables, Parquet) has no limit of rows. What has to be loaded whole may
-take the memory that is there. Nothing may expand to more than a recording can.
+Formats that are read in parts (text tables, Parquet) have no limit of rows; those that are loaded
+whole are limited by the free memory. No file may expand to more than a recording can hold.
 """
 
 import os
@@ -25,14 +25,14 @@ COLUMNS = 10_000
 NAME = 1_000  # characters of a column's name
 LINE = MIB  # characters of a line of a text table
 HEADER = 16 * MIB  # characters of the comments above it
-FOOTER = 16 * MIB  # bytes of a Parquet file's description of itself
-EXPANSION = 500  # times the size of a packed file; zeros reach 1032, channels at rest 24
-PARQUET_EXPANSION = 5_000  # there an even clock and channels at rest reach 1700
-HARMLESS = 256 * MIB  # which any file may expand to
-COPIES = 3  # of what is loaded whole, until it is a recording
+FOOTER = 16 * MIB  # bytes of a Parquet file's footer
+EXPANSION = 500  # times the size of a compressed file; zeros reach 1032, constant channels 24
+PARQUET_EXPANSION = 5_000  # likewise; an even clock and constant channels reach 1700
+HARMLESS = 256 * MIB  # to which any file may expand
+COPIES = 3  # in memory of a file that is loaded whole
 SEEDS = 10_000  # of noise, in one call
 ITEMS = 1_000_000  # variables, cells, blocks of one file
-# What no rig has, in the units of the canonical columns: a sentinel, or a number of another thing.
+# Largest plausible magnitudes of the canonical columns by unit; beyond are sentinels and mix-ups.
 LARGEST = {"mm": 1e6, "N": 1e9, "rpm": 1e9, "rad": 1e9, "°C": 1e6}
 SHORTEST_STEP_S, LONGEST_STEP_S = 1e-10, 1e9  # from a sample to the next
 _DOTTED = re.compile(
@@ -41,16 +41,16 @@ _DOTTED = re.compile(
 
 
 def text_of(path: Path, most: int) -> str:
-    """Return the text of a file of at most `most` bytes in UTF-8, without its mark.
+    """Return the text of a UTF-8 file of at most `most` bytes, without its byte-order mark.
 
     Raises
     ------
     InputError
-        It is no regular file, or larger.
+        The file is not regular, or too large.
     OSError, UnicodeDecodeError
-        It cannot be read, or is other text.
+        The file cannot be read, or is not UTF-8.
     """
-    # Without O_NONBLOCK a pipe that nobody writes to would be waited for.
+    # Without O_NONBLOCK, opening a pipe without a writer would block.
     descriptor = os.open(
         path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
     )
@@ -60,7 +60,7 @@ def text_of(path: Path, most: int) -> str:
 
 
 def decoded(content: bytes, path: object, most: int) -> str:
-    """Return what was read of a file, as `text_of` does.
+    """Return the content of a file as text, as `text_of` does.
 
     Raises
     ------
@@ -69,20 +69,20 @@ def decoded(content: bytes, path: object, most: int) -> str:
     """
     if len(content) > most:
         raise InputError(
-            f"is larger than {size(most)}", where=path, expected="what tsas or a person has written"
+            f"is larger than {size(most)}", where=path, expected="a file written by tsas or by hand"
         )
     return content.decode("utf-8-sig")
 
 
 def regular(path: Path, state: os.stat_result | None = None) -> None:
-    """Refuse what is no file but a pipe or a device, which may never end, or has no text as name.
+    """Refuse a pipe or a device, which may never end, a folder, or a name that is not UTF-8.
 
     Raises
     ------
     InputError
-        It is one, or has none.
+        It is one of these.
     OSError
-        It is not there.
+        The file does not exist.
     """
     mode = (state or path.stat()).st_mode
     if not stat.S_ISREG(mode):
@@ -92,29 +92,29 @@ def regular(path: Path, state: os.stat_result | None = None) -> None:
 
 
 def text_name(path: Path) -> None:
-    """Refuse a place that no file can name, since its name holds bytes that are no UTF-8.
+    """Refuse a path that is not UTF-8, since no output can record it.
 
     Raises
     ------
     InputError
-        It has such a name.
+        It is not.
     """
     if not is_text(path):
-        raise InputError("its name is no text", where=path, remedy="rename it")
+        raise InputError("its name is not UTF-8", where=path, remedy="rename it")
 
 
 def is_text(path: Path) -> bool:
-    """Say whether the name of a place, or of a folder on the way that is given, is text."""
+    """Return whether a path is valid UTF-8."""
     return _encodable(str(path))
 
 
 def toml(text: str, path: object) -> None:
-    """Refuse TOML that would take its parser too long.
+    """Refuse TOML whose parsing would take too long.
 
     Raises
     ------
     InputError
-        It has too many runs or keys, or tables too deep in tables.
+        It has too many runs or keys, or is nested too deep.
     """
     runs = text.count("\n[[")
     if runs > RUNS:
@@ -122,7 +122,7 @@ def toml(text: str, path: object) -> None:
             f"holds {runs} runs",
             where=path,
             expected=f"at most {RUNS}",
-            remedy="make several datasets of it",
+            remedy="split it into several datasets",
         )
     keys = text.count("=")
     if keys > TOML_KEYS:
@@ -137,7 +137,7 @@ def depth(content: Any, path: object) -> None:
     Raises
     ------
     InputError
-        They are.
+        They are nested too deep.
     """
     level = [content]
     for _ in range(DEPTH):
@@ -152,13 +152,13 @@ def _members(value: Any) -> Iterable[Any]:
 
 
 def reason(error: Exception) -> str:
-    """Return why text cannot be parsed, for the line of an error."""
-    said = str(error)
-    return "an integer has thousands of digits" if "int_max_str" in said else said[:200]
+    """Return the reason of a parser error, for a message."""
+    text = str(error)
+    return "an integer has thousands of digits" if "int_max_str" in text else text[:200]
 
 
 def too_deep(path: object) -> InputError:
-    """Return the error for what is nested too deep."""
+    """Return the error for content that is nested too deep."""
     return InputError(
         "is nested too deep", where=path, expected=f"at most {DEPTH} tables or lists in each other"
     )
@@ -170,7 +170,7 @@ def lines(stream: TextIO, path: Path) -> Iterator[str]:
     Raises
     ------
     InputError
-        A line is longer than any row of a recording.
+        A line exceeds the limit.
     """
     row = 0
     while line := stream.readline(LINE + 1):
@@ -179,37 +179,37 @@ def lines(stream: TextIO, path: Path) -> Iterator[str]:
             raise InputError(
                 f"is longer than {LINE} characters",
                 where=f"{path}, row {row}",
-                expected="a row of numbers that ends with its line",
+                expected="a row of numbers per line",
                 remedy="is this a text table?",
             )
         yield line
 
 
 def columns(names: Sequence[str], path: object) -> None:
-    """Refuse more columns than a recording has, or names that are no names.
+    """Refuse too many columns, or invalid names.
 
     Raises
     ------
     InputError
-        There are too many, or one is too long or no text.
+        There are too many, or a name is too long or not UTF-8.
     """
     column_count(len(names), path)
     for number, name in enumerate(names, start=1):
         if len(name) > NAME or not _encodable(name):
             raise InputError(
-                f"the name of column {number} is no text of at most {NAME} characters",
+                f"the name of column {number} is not UTF-8 or longer than {NAME} characters",
                 where=path,
-                remedy="name it anew",
+                remedy="rename it",
             )
 
 
 def column_count(count: int, path: object) -> None:
-    """Refuse more columns than a recording has.
+    """Refuse too many columns.
 
     Raises
     ------
     InputError
-        There are more.
+        There are too many.
     """
     if count > COLUMNS:
         raise InputError(
@@ -221,7 +221,7 @@ def column_count(count: int, path: object) -> None:
 
 
 def size(bytes_: int) -> str:
-    """Return a number of bytes as people say it."""
+    """Return a number of bytes with a decimal unit."""
     for unit, one in (("TB", 10**12), ("GB", 10**9), ("MB", 10**6), ("kB", 10**3)):
         if bytes_ >= one:
             return f"{bytes_ / one:.3g} {unit}"

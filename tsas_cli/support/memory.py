@@ -1,4 +1,4 @@
-"""What a file takes when it is loaded, against the memory there is."""
+"""Limit of the free memory for files that are loaded whole."""
 
 import sys
 from collections.abc import Iterator
@@ -10,53 +10,53 @@ from tsas_cli.support.errors import InputError
 
 
 def fits(path: object, bytes_: int) -> None:
-    """Refuse what has to be loaded whole and is larger than the memory.
+    """Refuse a file that is loaded whole and exceeds the memory.
 
     Raises
     ------
     InputError
-        It is.
+        It does.
     """
-    there = available()
-    if bytes_ > there:
+    free = available()
+    if bytes_ > free:
         raise InputError(
-            f"takes {limits.size(bytes_)} of memory, and {limits.size(there)} are there",
+            f"needs {limits.size(bytes_)} of memory, and {limits.size(free)} are free",
             where=path,
-            remedy=_otherwise(path),
+            remedy=_remedy(path),
         )
 
 
 def out_of_memory(path: object) -> InputError:
-    """Return the error for a file that took more memory than there was."""
+    """Return the error for a file that exhausted the memory."""
     return InputError(
-        f"takes more memory than there is ({limits.size(available())} are left)",
+        f"needs more memory than is free ({limits.size(available())})",
         where=path,
-        remedy=_otherwise(path),
+        remedy=_remedy(path),
     )
 
 
-def _otherwise(path: object) -> str:
+def _remedy(path: object) -> str:
     in_parts = "" if str(path).endswith(".parquet") else ", or export it as CSV or Parquet"
     return f"use a larger machine{in_parts}"
 
 
 def available() -> int:
-    """Return the bytes of memory that this process may still take, as far as it can be told."""
+    """Return the memory that this process may still allocate, as far as it is known [bytes]."""
     import psutil
 
-    there = [psutil.virtual_memory().available, *_of_container()]
+    free = [psutil.virtual_memory().available, *_of_container()]
     if sys.platform != "win32":
         import resource
 
         most, _ = resource.getrlimit(resource.RLIMIT_AS)
-        taken = psutil.Process().memory_info().vms
-        there += [] if most == resource.RLIM_INFINITY else [most - taken]
-    return int(max(0, min(there)))
+        used = psutil.Process().memory_info().vms
+        free += [] if most == resource.RLIM_INFINITY else [most - used]
+    return int(max(0, min(free)))
 
 
 def _of_container() -> Iterator[int]:
-    """Yield what the container may still take, where this is in one that has a limit."""
+    """Yield the free memory of the container, if it has a limit [bytes]."""
     group = Path("/sys/fs/cgroup")
     with suppress(OSError, ValueError):  # no such group, or "max"
-        most, taken = (int((group / f).read_text()) for f in ("memory.max", "memory.current"))
-        yield most - taken
+        most, used = (int((group / f).read_text()) for f in ("memory.max", "memory.current"))
+        yield most - used

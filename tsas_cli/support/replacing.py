@@ -1,6 +1,6 @@
-"""What an output may replace: with `--force` an earlier output of the same stage, nothing else.
+"""Rules for replacing: with `--force`, an output replaces an earlier one of the same stage only.
 
-Never an input of the call, nor what holds or lies inside one.
+It never replaces an input of the call, or a path that contains or lies inside one.
 """
 
 import json
@@ -16,11 +16,11 @@ SUMS = "SHA256SUMS"
 _DATASET = "dataset.toml"
 LEFT_BY_DESKTOPS = frozenset({".DS_Store", "Thumbs.db", "desktop.ini"})
 _SWEEP = "sweep"
-_HEAD_BYTES = 4096  # of a file, in which its mark stands
+_HEAD_BYTES = 4096  # of a file, which contain its mark
 
 
 def refuse_address(path: Path) -> None:
-    """Keep `--out s3://…` from becoming a folder `s3:`."""
+    """Refuse an address as output, which would create a folder `s3:`."""
     if path.parts and path.parts[0] in {"s3:", "gs:", "file:"}:
         raise InputError(
             "is an address",
@@ -31,7 +31,7 @@ def refuse_address(path: Path) -> None:
 
 
 def refuse_kind(path: Path, *, folder: bool) -> None:
-    """Keep a folder from replacing a file, a file a folder, and both a device or a pipe."""
+    """Refuse to replace a file by a folder, a folder by a file, or a device or pipe by either."""
     if not path.exists() or (path.is_dir() if folder else path.is_file()):
         return
     kind = "a folder" if path.is_dir() else "a file" if path.is_file() else "a device or a pipe"
@@ -41,33 +41,33 @@ def refuse_kind(path: Path, *, folder: bool) -> None:
 
 
 def exists(path: Path) -> InputError:
-    """Return what is said of a name that is taken."""
+    """Return the error for an output that exists."""
     return InputError(
         "already exists",
         where=path,
-        expected="a name that is free",
+        expected="a new name",
         remedy="choose another --out, or replace it with --force",
     )
 
 
 def refuse_folder(path: Path, *, stage: str, inputs: Iterable[object], force: bool) -> None:
-    """Keep what is there, unless it is an earlier output of the same stage, and `force` is set.
+    """Refuse an existing path, unless it is an earlier output of the same stage and `force` is set.
 
     Parameters
     ----------
     path
-        Where a folder is to be written.
+        The folder to write.
     stage
         The stage as its JSON names it; "ingest" for datasets.
     inputs
-        What the call reads; what is no local path is left alone.
+        The inputs of the call; those that are no local path are ignored.
     force
         Whether an earlier output may be replaced.
 
     Raises
     ------
     InputError
-        It may not be written there.
+        The path may not be written.
     """
     refuse_inputs(path, inputs)
     if not os.path.lexists(path) or is_empty_folder(path):
@@ -78,31 +78,31 @@ def refuse_folder(path: Path, *, stage: str, inputs: Iterable[object], force: bo
         raise InputError(
             "is the current folder, or holds it",
             where=path,
-            remedy="choose an --out that is a folder of its own",
+            remedy="choose another folder with --out",
         )
     if path.exists():
         _refuse_foreign(path, stage)
 
 
 def refuse_file(path: Path, *, mark: bytes, inputs: Iterable[object], force: bool) -> None:
-    """Keep what is there, unless it is an earlier output of the same stage, and `force` is set.
+    """Refuse an existing path, unless it is an earlier output of the same stage and `force` is set.
 
     Parameters
     ----------
     path
-        Where a file is to be written.
+        The file to write.
     mark
-        What an earlier output holds in its first 4 KiB; empty where any file may be replaced,
-        since its place is the program's own.
+        Bytes in the first 4 KiB of an earlier output; empty if any file may be replaced, since the
+        path belongs to the program.
     inputs
-        What the call reads; what is no local path is left alone.
+        The inputs of the call; those that are no local path are ignored.
     force
         Whether an earlier output may be replaced.
 
     Raises
     ------
     InputError
-        It may not be written there.
+        The path may not be written.
     """
     refuse_inputs(path, inputs)
     if not os.path.lexists(path):
@@ -113,20 +113,20 @@ def refuse_file(path: Path, *, mark: bytes, inputs: Iterable[object], force: boo
         raise InputError(
             "is not an earlier output of this command",
             where=path,
-            expected="a name that is free, or a file that it has written",
+            expected="a new name, or a file that it has written",
             remedy="choose another --out",
         )
 
 
 def refuse_inputs(path: Path, inputs: Iterable[object]) -> None:
-    """Keep an output from replacing an input, what holds one, or what lies inside one.
+    """Refuse an output that is an input, contains one, or lies inside one.
 
     Links and other spellings of a path are followed.
 
     Raises
     ------
     InputError
-        It would.
+        It is such a path.
     """
     if not os.path.lexists(path):
         return
@@ -136,19 +136,19 @@ def refuse_inputs(path: Path, inputs: Iterable[object]) -> None:
     for source in read:
         if above & _ids(source):
             raise InputError(
-                f"lies inside {source}, which is read",
+                f"lies inside {source}, which is an input",
                 where=path,
-                expected="an --out beside what is read, or a name that is free",
+                expected="an --out beside the inputs, or a new name",
             )
 
 
 def refuse_holding(path: Path, inputs: Iterable[Path]) -> None:
-    """Refuse to write where an input is, or in a folder that holds one.
+    """Refuse an output that is an input or contains one.
 
     Raises
     ------
     InputError
-        `path` is an input or holds one, by whatever link or spelling.
+        `path` is an input or contains one, by any link or spelling.
     """
     if not os.path.lexists(path):
         return
@@ -156,12 +156,12 @@ def refuse_holding(path: Path, inputs: Iterable[Path]) -> None:
     for source in inputs:
         if ours & _above(source):
             raise InputError(
-                "is read, and would be replaced", where=source, remedy="choose another --out"
+                "is an input, and would be replaced", where=source, remedy="choose another --out"
             )
 
 
 def _ids(path: Path) -> set[tuple[int, int]]:
-    """Return what the system knows a file or folder by, and a link's own beside its target's."""
+    """Return device and inode of a path, for a link of itself and its target."""
     found = {path.lstat()}
     if path.exists():
         found.add(path.stat())
@@ -169,7 +169,7 @@ def _ids(path: Path) -> set[tuple[int, int]]:
 
 
 def _above(path: Path) -> set[tuple[int, int]]:
-    """Return the ids of a path and of all folders above it, by its name and where links lead."""
+    """Return the ids of a path and its parent folders, with and without resolving links."""
     ids: set[tuple[int, int]] = set()
     for start in {Path(os.path.abspath(path)), path.resolve()}:  # noqa: PTH100 # keeps links
         for each in (start, *start.parents):
@@ -179,34 +179,34 @@ def _above(path: Path) -> set[tuple[int, int]]:
 
 
 def _refuse_foreign(path: Path, stage: str) -> None:
-    """Refuse a folder that is no output of the stage, or holds what the stage did not write."""
+    """Refuse a folder that is no output of the stage, or holds files of other origin."""
     ours = _of_ingest(path) if stage == "ingest" else _of_stage(path, stage)
     if ours is None:
         raise InputError(
             f"is not an earlier output of `tsas {stage}`",
             where=path,
-            expected="a name that is free, or a folder that it has written",
+            expected="a new name, or a folder that it has written",
             remedy="choose another --out",
         )
     foreign = sorted(name for name in _files_in(path) if name not in ours)
     if foreign:
         raise InputError(
-            f"holds what `tsas {stage}` has not written ({', '.join(foreign[:5])})",
+            f"holds files that `tsas {stage}` has not written ({', '.join(foreign[:5])})",
             where=path,
-            expected="an earlier output alone",
-            remedy="move these elsewhere, or choose another --out",
+            expected="an earlier output only",
+            remedy="move them elsewhere, or choose another --out",
         )
 
 
 def _files_in(folder: Path) -> Iterator[str]:
-    """Yield the files in a folder, said from there; a link to a folder is one."""
+    """Yield the relative paths of the files in a folder; a link to a folder is a file."""
     for path in folder.rglob("*"):
         if (path.is_symlink() or not path.is_dir()) and path.name not in LEFT_BY_DESKTOPS:
             yield path.relative_to(folder).as_posix()
 
 
 def _of_stage(folder: Path, stage: str) -> set[str] | None:
-    """Return the files of an earlier output of a stage; None where the folder is none."""
+    """Return the files of an earlier output of a stage; None if the folder is none."""
     try:
         lines = (folder / SUMS).read_text(encoding="utf-8").splitlines()
     except (OSError, ValueError):
@@ -214,7 +214,9 @@ def _of_stage(folder: Path, stage: str) -> set[str] | None:
     listed = {line.partition("  ")[2] for line in lines}
     summaries = (folder / name for name in listed if "/" not in name and name.endswith(".json"))
     stages = {_stage_in(summary) for summary in summaries} - {None}
-    owner = {_SWEEP} if _SWEEP in stages else stages  # a task holds what its stage has written
+    owner = (
+        {_SWEEP} if _SWEEP in stages else stages
+    )  # a task's folder also holds the JSON of its stage
     return listed | {SUMS} if owner == {stage} else None
 
 
@@ -227,7 +229,7 @@ def _stage_in(summary: Path) -> object:
 
 
 def _of_ingest(folder: Path) -> set[str] | None:
-    """Return the files of a dataset that was ingested; None where it was not."""
+    """Return the files of an ingested dataset; None if the folder is none."""
     try:
         content = tomllib.loads((folder / _DATASET).read_text(encoding="utf-8"))
         ingested = set(content["ingest"]["sources"])

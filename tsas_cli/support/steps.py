@@ -1,12 +1,12 @@
-"""How far a stage has come: the pieces of work that are done, and those that are known to come."""
+"""Progress of a stage: completed steps, and the known total."""
 
 
 class Steps:
-    """What a stage tells of its progress; this one listens to nothing.
+    """Receiver of a stage's progress; this one ignores it.
 
-    A stage says what lies `ahead` as soon as it knows it, and calls the object after each piece of
-    work. What lies ahead may grow: how many hypotheses there are to fit is known after those
-    before them. A subclass shows it, for example with a bar.
+    A stage announces the steps `ahead` as soon as they are known, and calls the object after each
+    step. The total may grow: the number of hypotheses to fit depends on the fits before. A subclass
+    displays the progress, for example as a bar.
 
     Examples
     --------
@@ -24,10 +24,10 @@ class Steps:
     """
 
     def ahead(self, pieces: int) -> None:
-        """Take note of so many more pieces of work that are known to come."""
+        """Add steps to the known total."""
 
     def __call__(self) -> None:
-        """Take note that a piece of work is done."""
+        """Count one completed step."""
 
 
 SILENT = Steps()

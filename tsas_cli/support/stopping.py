@@ -1,4 +1,4 @@
-"""Ctrl-C and its kin as the usual end of a command that only shows something."""
+"""Ctrl-C and other stop signals: the normal end of a command that only displays something."""
 
 import math
 import signal
@@ -10,16 +10,16 @@ from types import FrameType
 NAMES = ("SIGINT", "SIGTERM", "SIGHUP")  # Ctrl-C, `kill`, a terminal that closes
 SIGNALS = [getattr(signal, name) for name in NAMES if hasattr(signal, name)]
 EXIT_CODE = 130  # of a command that was stopped, as typer has it
-CLEANING_S = 3.0  # for which more signals are not heard
+CLEANUP_S = 3.0  # in which further signals are ignored
 
 
 class Stopped(BaseException):
-    """Somebody asked this command to end."""
+    """A stop signal was received."""
 
 
 @contextmanager
 def until_stopped() -> Iterator[None]:
-    """Run the block until it ends, or until a person ends it; both are the same to the caller."""
+    """Run the block until it ends or a stop signal arrives; the caller sees no difference."""
     try:
         with _raising(Stopped):
             yield
@@ -29,29 +29,30 @@ def until_stopped() -> Iterator[None]:
 
 @contextmanager
 def cleaned_up_when_stopped() -> Iterator[None]:
-    """Let every such signal do in the block what Ctrl-C does: what it has opened is closed."""
+    """Handle every stop signal in the block like Ctrl-C, so that its resources are closed."""
     with _raising(KeyboardInterrupt):
         yield
 
 
 @contextmanager
 def _raising(kind: type[BaseException]) -> Iterator[None]:
-    """Raise `kind` at a signal; more of them, soon after, do not disturb the cleaning up.
+    """Raise `kind` at a signal; further signals within `CLEANUP_S` do not disturb the clean-up.
 
-    A library may lose what is raised, in a destructor for one: a later signal raises it again.
+    A library may swallow the exception, for example in a destructor: a later signal raises it
+    again.
     """
-    heard_s = -math.inf
+    received_s = -math.inf
 
     def stop(number: int, frame: FrameType | None) -> None:
-        nonlocal heard_s
+        nonlocal received_s
         del number, frame
         now_s = time.monotonic()
-        if now_s - heard_s > CLEANING_S:
-            heard_s = now_s
+        if now_s - received_s > CLEANUP_S:
+            received_s = now_s
             raise kind
 
-    heard = [number for number in SIGNALS if signal.getsignal(number) != signal.SIG_IGN]
-    before = {number: signal.signal(number, stop) for number in heard}
+    handled = [number for number in SIGNALS if signal.getsignal(number) != signal.SIG_IGN]
+    before = {number: signal.signal(number, stop) for number in handled}
     try:
         yield
     finally:

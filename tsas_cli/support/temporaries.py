@@ -1,13 +1,13 @@
-"""Where an output is made before it has its name, and what becomes of that after a kill.
+"""Temporary paths of outputs, and the removal of those that killed processes leave.
 
-Beside an output NAME there are, while it is made,
+While an output NAME is written, its folder also holds
 
-    .NAME.xxxxxxxx.tsas-lock   locked as long as its process lives; it says on which machine
-    .NAME.xxxxxxxx.tsas-new    the output on its way; after an exchange, what it has replaced
-    .NAME.xxxxxxxx.tsas-old    what it replaces, where two names cannot be exchanged
+    .NAME.xxxxxxxx.tsas-lock   locked while its process lives; it names the machine
+    .NAME.xxxxxxxx.tsas-new    the unfinished output; after an exchange, the replaced one
+    .NAME.xxxxxxxx.tsas-old    the replaced output, if two names cannot be exchanged
 
-What a killed process leaves goes with the next output in that folder. The lock comes first and goes
-last, so that nothing without one is ever touched.
+The next output in the folder removes those of killed processes. The lock is created first and
+removed last, so that nothing without a lock is ever touched.
 """
 
 import errno
@@ -23,21 +23,21 @@ from pathlib import Path
 
 LOCK, NEW, OLD = ".tsas-lock", ".tsas-new", ".tsas-old"
 _LOCK_NAME = re.compile(rf"\.(?P<name>.+)\.[a-z0-9_]{{8}}{LOCK}", re.DOTALL)
-TEMPORARY = re.compile(rf"\.[a-z0-9_]{{8}}({LOCK}|{NEW}|{OLD})$")  # how its name ends
+TEMPORARY = re.compile(rf"\.[a-z0-9_]{{8}}({LOCK}|{NEW}|{OLD})$")  # suffix of temporary names
 _BOOT_ID = Path("/proc/sys/kernel/random/boot_id")
-_AT_FDCWD, _RENAME_EXCHANGE = -100, 2  # of Linux
+_AT_FDCWD, _RENAME_EXCHANGE = -100, 2  # constants of Linux
 
 
 @contextmanager
 def temporary_for(path: Path) -> Iterator[Path]:
-    """Yield a free name beside `path`; whatever is under it when the block ends is removed.
+    """Yield an unused name beside `path`, which is removed when the block ends.
 
-    What killed processes have left in that folder goes first.
+    Temporary files of killed processes in that folder are removed first.
 
     Raises
     ------
     OSError
-        The folder cannot be written.
+        The folder is not writable.
     """
     sweep(path.parent)
     lock, descriptor = _own_lock(path)
@@ -50,22 +50,22 @@ def temporary_for(path: Path) -> Iterator[Path]:
 
 
 def place_file(new: Path, path: Path, *, replace: bool) -> None:
-    """Give a file its name.
+    """Rename a file to its final name.
 
     Raises
     ------
     FileExistsError
-        There is something of that name, and `replace` is not set.
+        The name exists, and `replace` is not set.
     """
     _to_disk(new)
     if replace:
         new.replace(path)
     else:
         try:
-            path.hardlink_to(new)  # which never replaces, unlike a rename
+            path.hardlink_to(new)  # never replaces, unlike a rename
         except FileExistsError:
             raise
-        except OSError as error:  # a file system without links
+        except OSError as error:  # a file system without hard links
             if os.path.lexists(path):
                 raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST)) from error
             new.rename(path)
@@ -73,12 +73,12 @@ def place_file(new: Path, path: Path, *, replace: bool) -> None:
 
 
 def place_folder(new: Path, path: Path, *, replace: bool) -> None:
-    """Give a folder its name; what it replaces goes when the new one is there.
+    """Rename a folder to its final name; the replaced one is removed afterwards.
 
     Raises
     ------
     FileExistsError
-        There is something of that name that is no empty folder, and `replace` is not set.
+        The name exists and is no empty folder, and `replace` is not set.
     """
     _to_disk(new)
     old = new.with_name(new.name.removesuffix(NEW) + OLD)
@@ -88,20 +88,20 @@ def place_folder(new: Path, path: Path, *, replace: bool) -> None:
         if _exchanged(new, path):
             break
         remove(old)
-        with suppress(FileNotFoundError):  # somebody else has just taken it away
+        with suppress(FileNotFoundError):  # another process has just removed it
             path.rename(old)
     _sync(path.parent)
 
 
 def is_empty_folder(path: Path) -> bool:
-    """Say whether there is a folder without anything in it."""
+    """Return whether a path is an empty folder."""
     return path.is_dir() and not any(path.iterdir())
 
 
 def sweep(folder: Path) -> None:
-    """Remove what killed processes have left in a folder, and give back what they took away.
+    """Remove temporary files of killed processes in a folder, and restore what they had renamed.
 
-    What belongs to a living process, to another machine, or to another person stays.
+    Those of living processes, other machines and other users are kept.
     """
     with suppress(OSError):
         for lock in folder.iterdir():
@@ -124,14 +124,14 @@ def _sweep(lock: Path, path: Path) -> None:
 
 
 def _own_lock(path: Path) -> tuple[Path, int]:
-    """Return a new lock file for an output, and what holds it: its descriptor."""
+    """Return a new, locked lock file for an output, and its descriptor."""
     while True:
         descriptor, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=LOCK, dir=path.parent)
         lock = Path(name)
         try:
             _locked(descriptor)
             os.write(descriptor, _here())
-            if lock.exists():  # else it was swept before it was locked
+            if lock.exists():  # else another process removed it before it was locked
                 return lock, descriptor
         except BaseException:
             lock.unlink(missing_ok=True)
@@ -141,7 +141,7 @@ def _own_lock(path: Path) -> tuple[Path, int]:
 
 
 def _locked(descriptor: int) -> bool:
-    """Lock a file; False where another process has it, or the file system knows no locks."""
+    """Lock a file; return False if another process holds it or the file system has no locks."""
     try:
         fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except OSError:
@@ -150,16 +150,16 @@ def _locked(descriptor: int) -> bool:
 
 
 def _here() -> bytes:
-    """Return what tells this machine: its name, and the id of its kernel's start."""
+    """Return the identity of this machine: its name and its boot id."""
     boot = _BOOT_ID.read_text(encoding="ascii").strip() if _BOOT_ID.exists() else ""
     return f"tsas\n{platform.node()}\n{boot}\n".encode()
 
 
 def _is_here(owner: bytes) -> bool:
-    """Say whether a lock is of this machine; an empty one was killed before it said so."""
-    said, here = (text.decode(errors="replace").split("\n") for text in (owner, _here()))
-    same = any(a == b != "" for a, b in zip(said[1:], here[1:], strict=False))
-    return not owner or (said[0] == here[0] and same)
+    """Return whether a lock is of this machine; an empty lock is of a killed process here."""
+    owner_lines, here = (text.decode(errors="replace").split("\n") for text in (owner, _here()))
+    same = any(a == b != "" for a, b in zip(owner_lines[1:], here[1:], strict=False))
+    return not owner or (owner_lines[0] == here[0] and same)
 
 
 def _beside(lock: Path, suffix: str) -> Path:
@@ -173,7 +173,7 @@ def _remove_all(lock: Path) -> None:
 
 
 def remove(path: Path) -> None:
-    """Remove a file, a link or a folder with all in it; nothing where there is none."""
+    """Remove a file, a link or a folder with its content, if it exists."""
     if path.is_dir() and not path.is_symlink():
         shutil.rmtree(path, ignore_errors=True)
     else:
@@ -181,7 +181,7 @@ def remove(path: Path) -> None:
 
 
 def _renamed(new: Path, path: Path) -> bool:
-    """Rename a folder where its name is free or an empty folder has it."""
+    """Rename a folder; return False if the name exists and is no empty folder."""
     try:
         new.rename(path)
     except OSError as error:
@@ -192,9 +192,9 @@ def _renamed(new: Path, path: Path) -> bool:
 
 
 def _exchanged(a: Path, b: Path) -> bool:
-    """Exchange two names in one step, so that a kill leaves one or the other; False where not.
+    """Exchange two names atomically; return False if that is not supported.
 
-    Not on macOS, nor on file systems that do not know it, such as NFS.
+    It is not on macOS, nor on some file systems, such as NFS.
     """
     import ctypes
 
@@ -207,7 +207,7 @@ def _exchanged(a: Path, b: Path) -> bool:
 
 
 def _to_disk(path: Path) -> None:
-    """Have a file, or all that a folder holds, on the disk before it gets its name."""
+    """Flush a file, or all files of a folder, to disk."""
     for folder, _, files in os.walk(path, topdown=False):
         for name in files:
             _sync(Path(folder, name))
@@ -221,7 +221,7 @@ def _sync(path: Path) -> None:
     try:
         os.fsync(descriptor)
     except OSError as error:
-        if error.errno not in {errno.EINVAL, errno.ENOTSUP}:  # a file system that cannot
+        if error.errno not in {errno.EINVAL, errno.ENOTSUP}:  # not supported by the file system
             raise
     finally:
         os.close(descriptor)

@@ -1,4 +1,4 @@
-"""A table as lines of text: as wide as it is, or folded between words to fit a terminal."""
+"""A table as lines of text, wrapped between words to fit a terminal."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -7,24 +7,24 @@ from textwrap import wrap
 
 from tsas_cli.support.errors import printable
 
-Row = Sequence[str]
+_Row = Sequence[str]
 INDENT = GAP = "  "
 
 
 def table_text(
-    title: str, header: Row, rows: Sequence[Row], width: int | None = None
+    title: str, header: _Row, rows: Sequence[_Row], width: int | None = None
 ) -> Iterator[str]:
-    """Yield the lines of a table; names from files cannot steer the terminal.
+    """Yield the lines of a table; control characters in names from files are escaped.
 
     Parameters
     ----------
     title
-        Stands above it, alone where there are no rows.
+        The line above the table, without rows the only line.
     header, rows
-        Cells, as many in each row.
+        Cells, the same number in each row.
     width
-        Columns of the terminal, None where the output is no terminal. Cells are folded as far as
-        their words allow; a terminal breaks the lines that are still too long.
+        Columns of the terminal, None for other outputs. Cells are wrapped between words; the
+        terminal breaks lines that are still too long.
     """
     yield printable(title)
     if not rows:
@@ -35,8 +35,8 @@ def table_text(
         yield from _lines(row, widths)
 
 
-def _widths(cells: Sequence[Row], room: float) -> list[int]:
-    """Return the widths of the columns; the widest give way, none below its longest word."""
+def _widths(cells: Sequence[_Row], room: float) -> list[int]:
+    """Return the widths of the columns; the widest are reduced, none below its longest word."""
     columns = list(zip(*cells, strict=True))
     widths = [max(map(len, column)) for column in columns]
     words = [
@@ -44,19 +44,19 @@ def _widths(cells: Sequence[Row], room: float) -> list[int]:
         for column in columns
     ]
     while sum(widths) + len(GAP) * len(widths) > room:
-        giving = [k for k, width in enumerate(widths) if width > words[k]]
-        if not giving:
+        reducible = [k for k, width in enumerate(widths) if width > words[k]]
+        if not reducible:
             break
-        widths[max(giving, key=lambda k: widths[k])] -= 1
+        widths[max(reducible, key=lambda k: widths[k])] -= 1
     return widths
 
 
-def _lines(row: Row, widths: Sequence[int]) -> Iterator[str]:
+def _lines(row: _Row, widths: Sequence[int]) -> Iterator[str]:
     """Yield the lines of one row."""
-    folded = (
+    wrapped = (
         [cell] if len(cell) <= width else wrap(cell, max(width, 1), break_on_hyphens=False)
         for cell, width in zip(row, widths, strict=True)
     )
-    for line in zip_longest(*folded, fillvalue=""):
+    for line in zip_longest(*wrapped, fillvalue=""):
         parts = (part.ljust(width) for part, width in zip(line, widths, strict=True))
         yield (INDENT + GAP.join(parts)).rstrip()

@@ -1,1 +1,1 @@
-"""Many calls of a stage: a plan, its tasks, who does them, and the table of what came out."""
+"""Many calls of a stage: a plan, its tasks, their execution, and the table of results."""

@@ -1,4 +1,4 @@
-"""What comes back of a task, as plain data."""
+"""Outcome of a task, as plain data."""
 
 import json
 from typing import Any
@@ -8,25 +8,25 @@ Answer = Row
 
 
 def failure(error: str, *, defect: bool = True) -> Answer:
-    """Return the answer of a task that has no result; a defect is ours, else its input is wrong."""
+    """Return the outcome of a failed task; the cause is a defect of the program, or its input."""
     return {"state": "failed", "error": error, "defect": defect}
 
 
-def death(times: int, said: str = "") -> Answer:
-    """Return the answer of a task whose worker died, as often as it was tried."""
+def death(times: int, message: str = "") -> Answer:
+    """Return the outcome of a task whose worker died in each of `times` attempts."""
     often = "the process died" if times == 1 else f"the process died, {times} times"
-    return failure(": ".join([often, *([said] if said else [])]))
+    return failure(": ".join([often, *([message] if message else [])]))
 
 
 def success(results: Row, parameters: list[Row]) -> Answer:
-    """Return the answer of a task that is done: its key figures, and the parameters it found."""
+    """Return the outcome of a completed task: its key figures and estimated parameters."""
     return {"state": "done", "results": results, "parameters": parameters}
 
 
 def called(work: str, text: str) -> str:
-    """Return the answer of a function, named `module:function`, to a task, both as JSON."""
+    """Return the outcome of a task, as JSON like the task; `work` is `module:function`."""
     from importlib import import_module
 
     module, _, name = work.partition(":")
-    answer: Answer = getattr(import_module(module), name)(json.loads(text))
-    return json.dumps(answer)
+    outcome: Answer = getattr(import_module(module), name)(json.loads(text))
+    return json.dumps(outcome)

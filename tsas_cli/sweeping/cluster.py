@@ -1,7 +1,7 @@
-"""The workers of a running Dask scheduler; nothing else knows Dask.
+"""Execution on the workers of a running Dask scheduler; only this module imports Dask.
 
-Tasks and answers are JSON texts. The workers read the datasets and write the results themselves, so
-that all have to see them under the same paths.
+Tasks and outcomes are JSON texts. The workers read the datasets and write the results themselves,
+so that they need the same file system under the same paths.
 """
 
 import json
@@ -19,52 +19,52 @@ from tsas_cli.sweeping.versions import ONE_THREAD, refuse_others, threads_of_alg
 if TYPE_CHECKING:
     from distributed import Client, Security
 
-PATIENCE_S = 10  # until a scheduler that does not answer is given up
+CONNECT_TIMEOUT_S = 10  # for a scheduler that does not respond
 LABEL = "[A-Za-z0-9_-]{1,63}"
 ADDRESS = re.compile(
     rf"(?:(?P<how>tcp|tls|ws)://)?(?:{LABEL}(?:\.{LABEL})*\.?|\[[0-9A-Za-z:.%]+\]):(?P<port>[0-9]{{1,5}})"
 )
-LOGGERS = ("distributed", "distributed.client")  # Dask's settings give both a level of their own
+LOGGERS = ("distributed", "distributed.client")  # Dask sets the level of both
 START = "{environment} dask worker {address} --nthreads 1 --nworkers auto"
 
 
 def on_cluster(
     work: str, texts: Sequence[str], address: str, shared: Path
 ) -> Iterator[tuple[int, Answer]]:
-    """Yield the number and the answer of each task as they come.
+    """Yield the number and the outcome of each task, in the order of completion.
 
-    The scheduler hands the tasks of a worker that dies to others; after its `allowed-failures` one
-    is given up. When the loop over the answers ends early, what no worker has begun is taken back.
+    The scheduler reassigns the tasks of a worker that dies; after its `allowed-failures` a task has
+    failed. If the loop over the outcomes ends early, pending tasks are cancelled.
 
     Parameters
     ----------
     work
-        The function that answers, `module:function`.
+        The function to call, `module:function`.
     texts
         The tasks.
     address
         The scheduler's, as `dask scheduler` prints it.
     shared
-        A file that every worker has to see.
+        A file that every worker has to see, to check the shared file system.
 
     Raises
     ------
     InputError
-        Dask is not installed, no scheduler answers at the address or it ends on the way, or a
-        worker is missing, has other versions, or does not see the file.
+        Dask is not installed, no scheduler responds at the address or it ends, or a worker is
+        missing, has other versions, or does not see the file.
     """
     with _connected(address) as client:
         _refuse_workers(client, address, shared)
         futures = client.map(called, [work] * len(texts), list(texts), pure=False)
         numbers = {future.key: number for number, future in enumerate(futures)}
         try:
-            yield from _answers(client, futures, numbers, address)
+            yield from _outcomes(client, futures, numbers, address)
         finally:
             client.cancel(futures, force=True)
 
 
 def _connected(address: str) -> "Client":
-    """Return a connection to a scheduler; its library's own talk is not for users."""
+    """Return a connection to a scheduler, with the log of Dask silenced."""
     try:
         from distributed import Client, Security
     except ModuleNotFoundError as error:
@@ -75,10 +75,10 @@ def _connected(address: str) -> "Client":
         logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
         _refuse_address(address, Security())
-        return Client(address, timeout=PATIENCE_S, set_as_default=False)
+        return Client(address, timeout=CONNECT_TIMEOUT_S, set_as_default=False)
     except (OSError, TimeoutError, ValueError) as error:
         raise InputError(
-            "no scheduler answers",
+            "no scheduler responds",
             where=address,
             expected="a running `dask scheduler`",
             remedy="start one, or leave out --cluster",
@@ -86,35 +86,35 @@ def _connected(address: str) -> "Client":
 
 
 def _refuse_address(address: str, security: "Security") -> None:
-    """Stop before a client is made of what it cannot connect to: half-made it would not close."""
-    said = ADDRESS.fullmatch(address)
-    if said is None or not 0 < int(said["port"]) < 65536:
+    """Refuse an invalid address, since a client that cannot be created would not close."""
+    match = ADDRESS.fullmatch(address)
+    if match is None or not 0 < int(match["port"]) < 65536:
         raise InputError(
-            f"{address!r} is no address of a scheduler",
+            f"{address!r} is no scheduler address",
             where="--cluster",
             expected="tcp://HOST:PORT, as `dask scheduler` prints it",
         )
-    if said["how"] == "tls" and security.get_connection_args("client")["ssl_context"] is None:
+    if match["how"] == "tls" and security.get_connection_args("client")["ssl_context"] is None:
         raise InputError(
-            "Dask knows no TLS certificates",
+            "Dask has no TLS certificates",
             where=address,
             remedy="name them in Dask's settings, under distributed.comm.tls",
         )
 
 
 def _refuse_workers(client: "Client", address: str, shared: Path) -> None:
-    """Stop before anything is done where somebody would do it otherwise, or not at all."""
-    told = client.scheduler_info(n_workers=-1)["workers"]
+    """Refuse workers whose versions, threads or file system differ, before the first task."""
+    workers = client.scheduler_info(n_workers=-1)["workers"]
     environment = " ".join(f"{name}={value}" for name, value in ONE_THREAD.items())
     start = START.format(environment=environment, address=shlex.quote(address))
-    if not told:
+    if not workers:
         raise InputError(
             "the scheduler has no workers", where=address, remedy=f"start some with `{start}`"
         )
-    for name, worker in told.items():
+    for name, worker in workers.items():
         if worker["nthreads"] != 1:
             raise InputError(
-                f"does {worker['nthreads']} tasks at once in one process",
+                f"runs {worker['nthreads']} tasks at once in one process",
                 where=f"worker {name}",
                 expected="one",
                 remedy=f"start it with `{start}`",
@@ -124,10 +124,10 @@ def _refuse_workers(client: "Client", address: str, shared: Path) -> None:
     except Exception as error:
         raise _no_tsas("the scheduler", error) from error
     refuse_others(versions(), found["versions"], "the scheduler")
-    for name, said in client.run(facts, str(shared), on_error="return").items():
-        if isinstance(said, Exception):
-            raise _no_tsas(f"worker {name}", said) from said
-        _refuse(json.loads(said), f"worker {name}", shared, start)
+    for name, reply in client.run(facts, str(shared), on_error="return").items():
+        if isinstance(reply, Exception):
+            raise _no_tsas(f"worker {name}", reply) from reply
+        _refuse(json.loads(reply), f"worker {name}", shared, start)
 
 
 def _refuse(found: Mapping[str, Any], where: str, shared: Path, start: str) -> None:
@@ -143,7 +143,7 @@ def _refuse(found: Mapping[str, Any], where: str, shared: Path, start: str) -> N
         raise InputError(
             f"OPENBLAS_NUM_THREADS is {found['threads'] or 'not set'}",
             where=where,
-            expected="1, so that results are the same to the last bit",
+            expected="1, for bitwise equal results",
             remedy=f"start it with `{start}`",
         )
 
@@ -158,12 +158,12 @@ def _no_tsas(where: str, error: Exception) -> InputError:
 
 
 def facts(shared: str) -> str:
-    """Return as JSON what has to be alike everywhere; called where the tasks are done."""
+    """Return as JSON the properties that must be equal on all workers; called on each."""
     sees = Path(shared).is_file()
     return json.dumps({"versions": versions(), "threads": threads_of_algebra(), "sees": sees})
 
 
-def _answers(
+def _outcomes(
     client: "Client", futures: Sequence[Any], numbers: Mapping[str, int], address: str
 ) -> Iterator[tuple[int, Answer]]:
     from distributed import CancelledError, KilledWorker, as_completed
@@ -176,9 +176,9 @@ def _answers(
             yield number, death(error.allowed_failures + 1)
         except CancelledError as error:
             raise InputError(
-                "the scheduler is gone",
+                "the scheduler has ended",
                 where=address,
-                remedy="what is done stays; the same call goes on from there",
+                remedy="completed tasks are kept; repeat the call to resume",
             ) from error
-        except Exception as error:  # noqa: BLE001 # the other tasks go on
+        except Exception as error:  # noqa: BLE001 # the other tasks continue
             yield number, failure(f"{type(error).__name__}: {error}")

@@ -1,4 +1,4 @@
-"""The folder of a sweep: one at a time writes to it, and what is done in it stays."""
+"""The folder of a sweep: one process writes to it at a time, and completed tasks are kept."""
 
 import fcntl
 import json
@@ -17,16 +17,16 @@ from tsas_cli.sweeping.tasks import FILE, Task
 from tsas_cli.verifying.claims import claims_of
 
 TASKS = "tasks"
-JOURNAL = "journal.jsonl"  # when what was done where; it also says that this is a sweep's folder
-NOTED = ("state", "seconds", "processor_seconds", "where", "error")
+JOURNAL = "journal.jsonl"  # log of tasks: when and where; it also marks the folder of a sweep
+LOGGED = ("state", "seconds", "processor_seconds", "where", "error")
 TABLE, PARAMETERS, SUMMARY = "sweep.parquet", "parameters.parquet", "sweep.json"
 
 
 @contextmanager
 def sweep_folder(out: Path, inputs: Iterable[Path]) -> Iterator[Path]:
-    """Yield the folder for the tasks of a sweep; nobody else writes to it meanwhile.
+    """Yield the folder for the tasks of a sweep, locked against other processes.
 
-    What a killed worker has left half-made is taken away, before and after.
+    Temporary files of killed workers are removed before and after.
 
     Raises
     ------
@@ -37,7 +37,7 @@ def sweep_folder(out: Path, inputs: Iterable[Path]) -> Iterator[Path]:
     refuse_kind(out, folder=True)
     refuse_holding(out, inputs)
     tasks = out / TASKS
-    with _taken(out):
+    with _locked_journal(out):
         with _writing(out):
             tasks.mkdir(exist_ok=True)
         _clear(tasks)
@@ -47,14 +47,14 @@ def sweep_folder(out: Path, inputs: Iterable[Path]) -> Iterator[Path]:
             _clear(tasks)
 
 
-def _taken(out: Path) -> TextIO:
-    """Return the journal of a sweep's folder, open and locked until it is closed."""
+def _locked_journal(out: Path) -> TextIO:
+    """Return the journal of a sweep's folder, open, and locked until it is closed."""
     with _writing(out):
         if out.is_dir() and not _is_of_a_sweep(out):
             raise InputError(
-                "holds something else than an earlier sweep",
+                "is no folder of an earlier sweep",
                 where=out,
-                expected="a name that is free, or a sweep to go on with",
+                expected="a new name, or a sweep to resume",
                 remedy="choose another --out",
             )
         out.mkdir(parents=True, exist_ok=True)
@@ -64,16 +64,16 @@ def _taken(out: Path) -> TextIO:
 
 
 def _is_of_a_sweep(out: Path) -> bool:
-    """Say whether a folder is an earlier sweep's, or holds nothing yet that anyone could miss."""
-    there = {path.name for path in out.iterdir() if not TEMPORARY.search(path.name)}
-    if JOURNAL not in there and not {TASKS, SUMMARY} <= there:
-        return all(name == TASKS and is_empty_folder(out / name) for name in there)
-    return there <= {TASKS, JOURNAL, TABLE, PARAMETERS, SUMMARY} | LEFT_BY_DESKTOPS
+    """Return whether a folder belongs to an earlier sweep, or holds nothing yet."""
+    present = {path.name for path in out.iterdir() if not TEMPORARY.search(path.name)}
+    if JOURNAL not in present and not {TASKS, SUMMARY} <= present:
+        return all(name == TASKS and is_empty_folder(out / name) for name in present)
+    return present <= {TASKS, JOURNAL, TABLE, PARAMETERS, SUMMARY} | LEFT_BY_DESKTOPS
 
 
 @contextmanager
 def _writing(out: Path) -> Iterator[None]:
-    """Say in one line why a sweep's folder cannot be written."""
+    """Convert errors of writing to a sweep's folder to `InputError`."""
     try:
         yield
     except OSError as error:
@@ -81,7 +81,7 @@ def _writing(out: Path) -> Iterator[None]:
 
 
 def _lock(journal: TextIO, out: Path) -> None:
-    """Take the folder; the lock ends with the process, however that ends."""
+    """Lock the folder; the lock ends with the process, however it ends."""
     try:
         fcntl.flock(journal.fileno(), fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError as error:
@@ -98,10 +98,10 @@ def _clear(tasks: Path) -> None:
 
 
 def what_is_done(tasks: Path, key: str) -> Answer | None:
-    """Return what a finished task has found, or None where it is still to be done.
+    """Return the outcome of a completed task, or None.
 
-    A task is done where its `task.json` says so, and each file is there that its checksums list,
-    and unchanged; else it is done again.
+    A task is completed if its `task.json` exists and every file in its checksums is unchanged; else
+    it is repeated.
     """
     folder = tasks / key
     try:
@@ -114,8 +114,8 @@ def what_is_done(tasks: Path, key: str) -> Answer | None:
         return None
 
 
-def note(out: Path, task: Task, answer: Answer) -> None:
-    """Add a line to the journal: which task ended how, after how many seconds, where."""
-    line = {"task": task.key, **{key: answer.get(key) for key in NOTED}}
+def note(out: Path, task: Task, outcome: Answer) -> None:
+    """Append a task's state, duration and machine to the journal."""
+    line = {"task": task.key, **{key: outcome.get(key) for key in LOGGED}}
     with _writing(out / JOURNAL), (out / JOURNAL).open("a", encoding="utf-8") as journal:
         journal.write(json.dumps(line, ensure_ascii=False) + "\n")

@@ -1,4 +1,4 @@
-"""The key figures of a stage's result: what a table over many tasks has room for."""
+"""The key figures of a stage's result, for a table over many tasks."""
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -21,12 +21,12 @@ OF_RUNS = ("f_in_N", "f_out_N", "x_out_mm")
 
 
 def figures(stage: str, result: Result) -> Row:
-    """Return by name, with the unit in it, the figures of a result of a stage."""
+    """Return the key figures of a stage's result by name, with the unit in the name."""
     return _OF[stage](result)
 
 
 def estimates(stage: str, result: Any) -> list[Row]:
-    """Return every parameter that a stage has found, with interval, unit and bound flag."""
+    """Return every estimate of a stage, with interval, unit and bound flag."""
     return [asdict(e) for e in result.model.estimates] if stage in FITTING else []
 
 
@@ -97,7 +97,7 @@ _OF: dict[str, Callable[[Any], Row]] = {
 
 
 def _fitted(found: Iterable[Estimate]) -> Row:
-    """Return what was fitted to all runs together; what belongs to one run has its own table."""
+    """Return the estimates of common parameters; those of single runs have their own table."""
     figures: Row = {}
     for e in found:
         if e.origin == "fitted" and e.run is None:
@@ -108,7 +108,7 @@ def _fitted(found: Iterable[Estimate]) -> Row:
 
 
 def _pooled(runs: Iterable[Mapping[str, Channel | ChannelError]]) -> Row:
-    """Return the root mean square of each channel's error over all runs, each run as one."""
+    """Return the RMS of each channel's residual over all runs, with equal weights."""
     squares: dict[str, list[float]] = {}
     for channels in runs:
         for name, channel in channels.items():

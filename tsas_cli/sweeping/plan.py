@@ -1,4 +1,4 @@
-"""The plan of a sweep: which stage, over which datasets and values, and what is the same in all."""
+"""The plan of a sweep: its stage, datasets, varied values and common options."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -15,16 +15,16 @@ STAGES: tuple[StageName, ...] = get_args(StageName)
 MOST_STEPS = 100_000
 
 
-def _listed(given: object) -> object:
-    return [given] if isinstance(given, str) else given
+def _listed(value: object) -> object:
+    return [value] if isinstance(value, str) else value
 
 
 class _Table(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
 
-class Range(_Table):
-    """Values at equal distances, or at equal ratios with `scale = "log"`, both ends among them."""
+class ValueRange(_Table):
+    """Equally spaced values, or values of equal ratio with `scale = "log"`, including both ends."""
 
     first: float = Field(alias="from")
     last: float = Field(alias="to")
@@ -32,7 +32,7 @@ class Range(_Table):
     scale: Literal["linear", "log"] = "linear"
 
     @model_validator(mode="after")
-    def _has_logarithms(self) -> "Range":
+    def _has_logarithms(self) -> "ValueRange":
         if self.scale == "log" and min(self.first, self.last) <= 0.0:
             raise ValueError("a log scale needs positive ends")
         return self
@@ -43,10 +43,10 @@ class Range(_Table):
         return [float(value) for value in space(self.first, self.last, self.steps)]
 
 
-Axis = Annotated[tuple[Any, ...], Field(min_length=1)] | Range
+Axis = Annotated[tuple[Any, ...], Field(min_length=1)] | ValueRange
 
 
-class Plan(_Table):
+class SweepPlan(_Table):
     """The whole plan."""
 
     format: Literal[1] = 1
@@ -60,17 +60,17 @@ class Plan(_Table):
     sets: str | None = None
 
     @model_validator(mode="after")
-    def _goes_together(self) -> "Plan":
+    def _goes_together(self) -> "SweepPlan":
         if self.stage == "track" and (self.datasets or self.each_run):
-            raise ValueError("track takes no datasets")
+            raise ValueError("track has no datasets")
         if self.stage != "track" and not self.datasets:
-            raise ValueError(f"datasets is missing: {self.stage} takes some")
+            raise ValueError(f"datasets is missing: {self.stage} needs at least one")
         lengths = {name: len(axis) for name, axis in self.axes().items()}
         if self.combine == "zip" and len(set(lengths.values())) > 1:
-            told = ", ".join(f"{name} {n}" for name, n in lengths.items())
-            raise ValueError(f"lists to be zipped differ in length: {told}")
+            listed = ", ".join(f"{name} {n}" for name, n in lengths.items())
+            raise ValueError(f"lists to be zipped differ in length: {listed}")
         if self.each_run and "runs" in {**self.options, **self.vary}:
-            raise ValueError("each_run takes every run by itself: leave out runs")
+            raise ValueError("each_run makes one task per run: leave out runs")
         for name in self.vary:
             if name in self.options:
                 raise ValueError(f"{name} is in options and in vary")
@@ -79,19 +79,19 @@ class Plan(_Table):
     def axes(self) -> dict[str, list[Any]]:
         """Return the values of each axis."""
         return {
-            name: axis.values() if isinstance(axis, Range) else list(axis)
+            name: axis.values() if isinstance(axis, ValueRange) else list(axis)
             for name, axis in self.vary.items()
         }
 
 
-def read_plan(given: Path | Mapping[str, Any]) -> tuple[Plan, Path]:
-    """Return a plan, from its file or its content, and the folder that its paths begin at.
+def read_plan(given: Path | Mapping[str, Any]) -> tuple[SweepPlan, Path]:
+    """Return a plan, from its file or its content, and the folder of its relative paths.
 
     Raises
     ------
     InputError
-        It cannot be read, or says something that is unknown or not allowed.
+        The plan cannot be read, or a key is unknown or invalid.
     """
     if isinstance(given, Path):
-        return parse(Plan, read_toml(given), given), given.parent
-    return parse(Plan, dict(given), "the plan"), Path()
+        return parse(SweepPlan, read_toml(given), given), given.parent
+    return parse(SweepPlan, dict(given), "the plan"), Path()

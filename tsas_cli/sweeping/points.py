@@ -1,4 +1,4 @@
-"""The points of a sweep: which values each task takes, from the axes and the table of a plan."""
+"""The points of a sweep: the values of each task, from the axes and the table of a plan."""
 
 import itertools
 import math
@@ -10,20 +10,20 @@ import pyarrow.parquet
 
 from tsas_cli.support.errors import InputError
 from tsas_cli.sweeping.answer import Row
-from tsas_cli.sweeping.plan import Plan
+from tsas_cli.sweeping.plan import SweepPlan
 
 MOST_TASKS = 1_000_000
 
 
-def points_of(plan: Plan, base: Path) -> list[Row]:
-    """Return the values of every task by name; one without values where nothing is varied.
+def points_of(plan: SweepPlan, base: Path) -> list[Row]:
+    """Return the values of every task by name; one empty point without variation.
 
-    The last axis moves fastest. A table of sets is taken row by row, each with every point.
+    The last axis varies fastest. Each row of the table is combined with every point of the axes.
 
     Raises
     ------
     InputError
-        The table cannot be read, has a name that is an axis too, or there are too many points.
+        The table cannot be read, shares a name with an axis or option, or the points are too many.
     """
     axes = plan.axes()
     sets = [Row()] if plan.sets is None else _sets(base / plan.sets)
@@ -31,16 +31,16 @@ def points_of(plan: Plan, base: Path) -> list[Row]:
         if name in axes or name in plan.options:
             raise InputError(f"{name} is in the plan and in {plan.sets}", where="the plan")
     lengths = [len(values) for values in axes.values()]
-    many = (min(lengths, default=1) if plan.combine == "zip" else math.prod(lengths)) * len(sets)
-    if many > MOST_TASKS:
-        raise InputError(f"{many} points", where="the plan", expected=f"at most {MOST_TASKS}")
+    count = (min(lengths, default=1) if plan.combine == "zip" else math.prod(lengths)) * len(sets)
+    if count > MOST_TASKS:
+        raise InputError(f"{count} points", where="the plan", expected=f"at most {MOST_TASKS}")
     together = zip(*axes.values(), strict=True) if axes and plan.combine == "zip" else None
     rows = list(together or itertools.product(*axes.values()))
     return [row | dict(zip(axes, values, strict=True)) for row in sets for values in rows]
 
 
 def _sets(path: Path) -> list[Row]:
-    """Read a table of parameter sets, one a row; what is empty is left as it is."""
+    """Return the rows of a table of parameter sets; empty cells are left out."""
     try:
         if path.suffix.lower() == ".csv":
             table = pa.csv.read_csv(path)
@@ -52,7 +52,7 @@ def _sets(path: Path) -> list[Row]:
             f"cannot be read ({reason})", where=path, expected="a table as CSV or Parquet"
         ) from error
     if len(set(table.column_names)) < len(table.column_names):
-        raise InputError("a column is there twice", where=path)
+        raise InputError("duplicate column", where=path)
     if not 0 < table.num_rows <= MOST_TASKS:
         raise InputError(f"{table.num_rows} rows", where=path, expected=f"1 to {MOST_TASKS}")
     return [{k: v for k, v in row.items() if v is not None} for row in table.to_pylist()]

@@ -1,4 +1,4 @@
-"""The datasets that a plan names: their folders, and the checksum that stands for each."""
+"""The datasets of a plan: their folders, and the checksum of each manifest."""
 
 import glob
 from collections.abc import Iterator
@@ -13,8 +13,8 @@ WILD = "*?["
 
 
 @dataclass(frozen=True)
-class Source:
-    """A dataset as a plan names it, or one run of it; its manifest holds its files' checksums."""
+class SweepSource:
+    """A dataset by its name in the plan, or one run of it; `sha256` is that of the manifest."""
 
     name: str
     folder: Path
@@ -22,17 +22,17 @@ class Source:
     run: str | None = None
 
 
-def sources_of(names: tuple[str, ...], base: Path, *, each_run: bool) -> list[Source]:
-    """Return the datasets behind names and patterns, in order; with `each_run` their runs.
+def sources_of(names: tuple[str, ...], base: Path, *, each_run: bool) -> list[SweepSource]:
+    """Return the datasets of names and patterns, in order; with `each_run` their runs.
 
-    A pattern such as `rigs/*` takes the folders that hold a `dataset.toml` and passes over others.
+    A pattern such as `rigs/*` selects the folders that hold a `dataset.toml`.
 
     Raises
     ------
     InputError
-        A folder holds no dataset, or a pattern finds none.
+        A folder holds no dataset, or a pattern matches none.
     """
-    found: dict[Path, Source] = {}
+    found: dict[Path, SweepSource] = {}
     for name in names:
         for source in _matching(name, base):
             found.setdefault(source.folder.resolve(), source)  # patterns may overlap
@@ -40,24 +40,24 @@ def sources_of(names: tuple[str, ...], base: Path, *, each_run: bool) -> list[So
     return [run for source in sources for run in _runs(source)] if each_run else sources
 
 
-def _matching(name: str, base: Path) -> Iterator[Source]:
-    """Yield the datasets behind a name, or a pattern."""
+def _matching(name: str, base: Path) -> Iterator[SweepSource]:
+    """Yield the datasets of a name or a pattern."""
     if not any(sign in name for sign in WILD) or (base / name).is_dir():
         yield _source(name, base)
         return
     folders = sorted(glob.glob(name, root_dir=base, recursive=True))  # noqa: PTH207 # absolute too
-    taken = [folder for folder in folders if (base / folder / FILE).is_file()]
-    if not taken:
+    datasets = [folder for folder in folders if (base / folder / FILE).is_file()]
+    if not datasets:
         raise InputError(
             "no dataset matches",
             where=base / name,
             expected=f"folders with {FILE}",
             remedy=f"{len(folders)} other files and folders match" if folders else "",
         )
-    yield from (_source(folder, base) for folder in taken)
+    yield from (_source(folder, base) for folder in datasets)
 
 
-def _source(name: str, base: Path) -> Source:
+def _source(name: str, base: Path) -> SweepSource:
     folder = base / name
     if not (folder / FILE).is_file():
         inside = next(folder.glob(f"*/{FILE}"), None) if folder.is_dir() else None
@@ -65,17 +65,17 @@ def _source(name: str, base: Path) -> Source:
             "no dataset.toml here",
             where=folder,
             expected="a dataset folder",
-            remedy=f"its folders are datasets: name them by '{name}/*'" if inside else "",
+            remedy=f"its subfolders are datasets: use '{name}/*'" if inside else "",
         )
-    return Source(Path(name).as_posix(), folder, sha256_of(folder / FILE))
+    return SweepSource(Path(name).as_posix(), folder, sha256_of(folder / FILE))
 
 
-def _runs(source: Source) -> Iterator[Source]:
-    """Yield each run; where the manifest tells none the dataset, whose task says what is wrong."""
+def _runs(source: SweepSource) -> Iterator[SweepSource]:
+    """Yield each run; or the dataset if its manifest lists none, whose task reports the fault."""
     try:
         runs = [str(run["id"]) for run in read_toml(source.folder / FILE)["run"]]
     except (InputError, KeyError, TypeError):
         runs = []
-    yield from (Source(source.name, source.folder, source.sha256, run) for run in runs)
+    yield from (SweepSource(source.name, source.folder, source.sha256, run) for run in runs)
     if not runs:
         yield source

@@ -1,4 +1,4 @@
-"""Do the tasks of a sweep that are not done yet, and write what came out of all."""
+"""Run the pending tasks of a sweep, and write the results of all."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import closing
@@ -20,7 +20,7 @@ from tsas_cli.sweeping.folder import (
     sweep_folder,
     what_is_done,
 )
-from tsas_cli.sweeping.plan import Plan
+from tsas_cli.sweeping.plan import SweepPlan
 from tsas_cli.sweeping.tables import counts, parameter_rows, printed, rows_of, write_rows
 from tsas_cli.sweeping.tasks import Task
 from tsas_cli.sweeping.versions import versions
@@ -33,48 +33,48 @@ Pool = Callable[[Sequence[str]], Iterator[tuple[int, Answer]]]
 
 @dataclass(frozen=True, repr=False, eq=False)
 class SweepResult(Result):
-    """What came out of all tasks.
+    """The results of all tasks.
 
     Parameters
     ----------
     before
-        How many tasks an earlier call had finished.
+        Number of tasks that an earlier call completed.
     defects
-        How many failed by a defect of the program, and not by their input.
+        Number of tasks that failed by a defect of the program, not by their input.
     """
 
     before: int
     defects: int
 
     def frame(self) -> "pd.DataFrame":
-        """Return the table as pandas has it: one row a task, its input, state and results."""
+        """Return the table as a pandas DataFrame: one row per task, with its state and results."""
         import pandas as pd
 
         return pd.DataFrame(self.summary["tasks"])
 
     @property
     def failed(self) -> dict[str, str]:
-        """The tasks that failed, by name, each with the reason."""
+        """The reasons of the failed tasks, by name."""
         rows = self.summary["tasks"]
         return {row["task"]: row["error"] for row in rows if row["state"] == "failed"}
 
     def tables(self) -> list[Table]:
-        """Return the range of each result over the tasks, and those that failed."""
+        """Return the range of each result over the tasks, and the failed tasks."""
         plan, done = self.summary["plan"], self.summary["counts"]
-        told = f"{plan['stage']}: {done['done']} of {sum(done.values())} tasks done"
+        title = f"{plan['stage']}: {done['done']} of {sum(done.values())} tasks done"
         varied = self.summary["varied"]
-        return printed(self.summary["tasks"], varied, f"{told} → {(self.out or Path()) / TABLE}")
+        return printed(self.summary["tasks"], varied, f"{title} → {(self.out or Path()) / TABLE}")
 
     def sentences(self) -> list[str]:
-        """Return what was there before, and what to do about failed tasks."""
-        said = [f"{self.before} of them were done before."] if self.before else []
+        """Return the number of earlier tasks, and the remedy for failed ones."""
+        sentences = [f"{self.before} of them were completed before."] if self.before else []
         if self.failed:
-            said.append("Failed tasks are tried again by the same call; the others are not.")
-        return said
+            sentences.append("Repeat the call to run the failed tasks again; the others are kept.")
+        return sentences
 
 
 def sweep_tasks(
-    plan: Plan,
+    plan: SweepPlan,
     tasks: Sequence[Task],
     out: Path,
     pool: Pool,
@@ -83,55 +83,55 @@ def sweep_tasks(
     force: bool,
     step: Steps,
 ) -> SweepResult:
-    """Do the tasks that are not done, and write the tables of all.
+    """Return the results of all tasks, after running the pending ones.
 
     Parameters
     ----------
     plan
-        What the tasks are from.
+        The plan of the tasks.
     tasks
         All of them.
     out
-        The folder, a new one or that of an earlier sweep.
+        A new folder, or that of an earlier sweep.
     pool
-        Who does tasks.
+        Runs tasks, and yields their number and outcome.
     inputs
-        What is read beside what the tasks name.
+        Input files besides those of the tasks.
     force
-        Do those again that are done.
+        Repeat completed tasks.
     step
-        Called after each.
+        Called after each task.
 
     Raises
     ------
     InputError
-        The folder cannot be used or holds an input, or the pool cannot work.
+        The folder cannot be used or holds an input, or the pool fails.
     """
-    inputs = [*inputs, *{Path(place) for task in tasks for place in task.places.values()}]
+    inputs = [*inputs, *{Path(path) for task in tasks for path in task.places.values()}]
     with sweep_folder(out, inputs) as folder:
         done = {} if force else {n: what_is_done(folder, task.key) for n, task in enumerate(tasks)}
-        answers = {number: answer for number, answer in done.items() if answer is not None}
-        before, left = len(answers), [n for n in range(len(tasks)) if n not in answers]
-        step.ahead(len(left))
-        if left:
-            texts = [tasks[number].text(folder, force=force) for number in left]
-            with closing(pool(texts)) as coming:  # type: ignore[type-var] # a generator
-                for place, answer in coming:
-                    answers[left[place]] = answer
-                    note(out, tasks[left[place]], answer)
+        outcomes = {number: outcome for number, outcome in done.items() if outcome is not None}
+        before, pending = len(outcomes), [n for n in range(len(tasks)) if n not in outcomes]
+        step.ahead(len(pending))
+        if pending:
+            texts = [tasks[number].text(folder, force=force) for number in pending]
+            with closing(pool(texts)) as completed:  # type: ignore[type-var] # a generator
+                for index, outcome in completed:
+                    outcomes[pending[index]] = outcome
+                    note(out, tasks[pending[index]], outcome)
                     step()
-        ordered = [answers[number] for number in range(len(tasks))]
+        ordered = [outcomes[number] for number in range(len(tasks))]
         return SweepResult(
             _written(out, plan, tasks, ordered),
             out,
             before,
-            sum(answer.get("defect", False) for answer in ordered),
+            sum(outcome.get("defect", False) for outcome in ordered),
         )
 
 
-def _written(out: Path, plan: Plan, tasks: Sequence[Task], answers: Sequence[Answer]) -> Row:
-    """Write the tables, and the summary last; return the summary."""
-    rows = rows_of(tasks, answers)
+def _written(out: Path, plan: SweepPlan, tasks: Sequence[Task], outcomes: Sequence[Answer]) -> Row:
+    """Return the summary, after writing the tables and the summary itself."""
+    rows = rows_of(tasks, outcomes)
     summary = {
         "format": 1,
         "stage": "sweep",
@@ -139,10 +139,10 @@ def _written(out: Path, plan: Plan, tasks: Sequence[Task], answers: Sequence[Ans
         "versions": versions(),
         "plan": plan.model_dump(mode="json", by_alias=True, exclude_defaults=True),
         "varied": list(dict.fromkeys(name for task in tasks for name in task.point)),
-        "counts": counts(answers),
+        "counts": counts(outcomes),
         "tasks": rows,
     }
-    found = parameter_rows(tasks, answers)
+    found = parameter_rows(tasks, outcomes)
     tables = {TABLE: partial(write_rows, rows=rows)}
     tables |= {PARAMETERS: partial(write_rows, rows=found)} if found else {}
     if not found:

@@ -1,4 +1,4 @@
-"""What came out of a sweep as tables: one row a task, one row a parameter, and what is printed."""
+"""Tables of a sweep: one row per task, one row per parameter, and the printed tables."""
 
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
@@ -13,27 +13,27 @@ from tsas_cli.records.result import Table
 from tsas_cli.sweeping.answer import Answer, Row
 from tsas_cli.sweeping.tasks import Task
 
-MOST_SHOWN = 20  # failed tasks that are printed; the table holds all
-COUNTED = ("verdict", "causes", "codes")  # words of which it is told how often each is there
+MOST_SHOWN = 20  # failed tasks in the printed table; the file holds all
+COUNTED = ("verdict", "causes", "codes")  # results that are words, whose frequencies are printed
 
 
-def rows_of(tasks: Sequence[Task], answers: Sequence[Answer]) -> list[Row]:
-    """Return one row a task: its name, its input, how it ended, what came out."""
+def rows_of(tasks: Sequence[Task], outcomes: Sequence[Answer]) -> list[Row]:
+    """Return one row per task: its name, input, state and results."""
     return [
         {
             "task": task.key,
             **({"dataset": task.source.name} if task.source else {}),
             **({"run": task.source.run} if task.source and task.source.run else {}),
             **task.point,
-            "state": answer["state"],
-            "error": answer.get("error"),
-            **answer.get("results", {}),
+            "state": outcome["state"],
+            "error": outcome.get("error"),
+            **outcome.get("results", {}),
         }
-        for task, answer in zip(tasks, answers, strict=True)
+        for task, outcome in zip(tasks, outcomes, strict=True)
     ]
 
 
-def parameter_rows(tasks: Sequence[Task], answers: Sequence[Answer]) -> list[Row]:
+def parameter_rows(tasks: Sequence[Task], outcomes: Sequence[Answer]) -> list[Row]:
     """Return one row for each parameter of each task, with interval, unit and bound flag."""
     return [
         {
@@ -42,13 +42,13 @@ def parameter_rows(tasks: Sequence[Task], answers: Sequence[Answer]) -> list[Row
             **task.point,
             **{key if key != "run" else "of_run": value for key, value in parameter.items()},
         }
-        for task, answer in zip(tasks, answers, strict=True)
-        for parameter in answer.get("parameters", [])
+        for task, outcome in zip(tasks, outcomes, strict=True)
+        for parameter in outcome.get("parameters", [])
     ]
 
 
 def write_rows(path: Path, rows: Sequence[Row]) -> None:
-    """Write rows as Parquet; a column that holds more than one kind of value is text."""
+    """Write rows as Parquet; a column of mixed types is text."""
     names = list(dict.fromkeys(name for row in rows for name in row))
     columns = {name: _column([row.get(name) for row in rows]) for name in names}
     pq.write_table(pa.table(columns), path, compression="zstd")
@@ -62,11 +62,11 @@ def _column(values: list[Any]) -> pa.Array:
 
 
 def printed(rows: Sequence[Row], varied: Sequence[str], title: str) -> list[Table]:
-    """Return what is printed: figures over all tasks, words and how often, and who failed."""
+    """Return the printed tables: ranges of figures, frequencies of words, and failed tasks."""
     named = {"task", "dataset", "run", "state", "error", *varied}
     done = [row for row in rows if row["state"] == "done"]
     names = [name for name in dict.fromkeys(n for row in done for n in row) if name not in named]
-    spans = [_span(name, [row.get(name) for row in done]) for name in names if _is_told(name)]
+    spans = [_span(name, [row.get(name) for row in done]) for name in names if _is_printed(name)]
     header = ("result", "tasks", "lowest", "median", "highest")
     tables: list[Table] = [(title, header, [span for span in spans if span is not None])]
     for name in COUNTED:
@@ -82,29 +82,29 @@ def printed(rows: Sequence[Row], varied: Sequence[str], title: str) -> list[Tabl
 
 
 def _input(row: Row, varied: Iterable[str]) -> str:
-    """Return what tells a task from the others."""
-    told = [str(row[name]) for name in ("dataset", "run") if name in row]
-    return ", ".join([*told, *(f"{name}={row[name]}" for name in varied if name in row)])
+    """Return the dataset, run and values that identify a task."""
+    source = [str(row[name]) for name in ("dataset", "run") if name in row]
+    return ", ".join([*source, *(f"{name}={row[name]}" for name in varied if name in row)])
 
 
-def _is_told(name: str) -> bool:
-    """Say whether a figure is printed: ends of intervals are in the table alone."""
+def _is_printed(name: str) -> bool:
+    """Return whether a figure is printed; ends of intervals are in the file only."""
     return not name.endswith(("_low", "_high", "_sd"))
 
 
 def _span(name: str, values: Sequence[Any]) -> tuple[str, ...] | None:
-    """Return lowest, median and highest of what is a number, how often of what is yes or no."""
-    told = [value for value in values if value is not None]
-    if told and all(isinstance(value, bool) for value in told):
-        return (name, str(len(told)), f"{sum(told)} yes", "", f"{len(told) - sum(told)} no")
-    numbers = [value for value in told if isinstance(value, int | float)]
+    """Return lowest, median and highest of numbers, or the counts of yes and no."""
+    known = [value for value in values if value is not None]
+    if known and all(isinstance(value, bool) for value in known):
+        return (name, str(len(known)), f"{sum(known)} yes", "", f"{len(known) - sum(known)} no")
+    numbers = [value for value in known if isinstance(value, int | float)]
     if not numbers:
         return None
     ends = (min(numbers), float(np.median(numbers)), max(numbers))
     return (name, str(len(numbers)), *(f"{value:.4g}" for value in ends))
 
 
-def counts(answers: Iterable[Answer]) -> Mapping[str, int]:
-    """Return how many tasks are done, and how many failed."""
-    states = Counter(answer["state"] for answer in answers)
+def counts(outcomes: Iterable[Answer]) -> Mapping[str, int]:
+    """Return the numbers of completed and failed tasks."""
+    states = Counter(outcome["state"] for outcome in outcomes)
     return {state: states[state] for state in ("done", "failed")}

@@ -1,4 +1,4 @@
-"""The tasks of a sweep: each with what it is told, and a name that changes when that does."""
+"""The tasks of a sweep: each with its inputs, and a name that depends on all of them."""
 
 import hashlib
 import json
@@ -11,14 +11,14 @@ from typing import Any
 
 from tsas_cli.support.errors import InputError
 from tsas_cli.sweeping.answer import Row
-from tsas_cli.sweeping.plan import Plan
+from tsas_cli.sweeping.plan import SweepPlan
 from tsas_cli.sweeping.points import points_of
-from tsas_cli.sweeping.sources import Source, sources_of
+from tsas_cli.sweeping.sources import SweepSource, sources_of
 from tsas_cli.sweeping.values import Options, Values, sorted_values
 from tsas_cli.sweeping.versions import versions
 
-FILE = "task.json"  # in each task's folder: what it was told and what came out
-LONGEST = 100  # characters of the part of a name that is for people
+FILE = "task.json"  # in each task's folder: its inputs and results
+LONGEST = 100  # characters of the readable part of a name
 
 
 @dataclass(frozen=True)
@@ -28,62 +28,64 @@ class Task:
     Attributes
     ----------
     key
-        Its name: what is special about it, and a digest of all that its result depends on.
+        Its name: the varied values, and a digest of `inputs`.
     source
-        The dataset or run, None where the stage takes none.
+        The dataset or run; None if the stage has none.
     point
-        The values that are varied.
+        The varied values.
     inputs
-        All that its result depends on, as plain data; files by their checksums.
+        Everything that its result depends on, as plain data; files by their checksums.
     places
-        Where the files are.
+        The paths of the files.
     """
 
     key: str
-    source: Source | None
+    source: SweepSource | None
     point: Row
     inputs: Mapping[str, Any]
     places: Mapping[str, str]
 
     def text(self, out: Path, **more: Any) -> str:
-        """Return the task as the text that a worker gets."""
+        """Return the task as JSON for a worker."""
         places = {**self.places, "out": str(out.resolve())}
         return json.dumps({"key": self.key, "inputs": self.inputs, "places": places, **more})
 
 
-def tasks_of(plan: Plan, base: Path, options: Options) -> list[Task]:
+def tasks_of(plan: SweepPlan, base: Path, options: Options) -> list[Task]:
     """Return the tasks of a plan, dataset by dataset.
 
     Raises
     ------
     InputError
-        A dataset or file is not there, a name is unknown, a value is not allowed, or two tasks are
-        the same.
+        A dataset or file does not exist, a name is unknown, a value is invalid, or tasks are
+        duplicate.
     """
-    sources: list[Source | None] = [None]
+    sources: list[SweepSource | None] = [None]
     if plan.datasets:
         sources = [*sources_of(plan.datasets, base, each_run=plan.each_run)]
     points = points_of(plan, base)
-    told = [sorted_values({**plan.options, **point}, options, base) for point in points]
+    values_of = [sorted_values({**plan.options, **point}, options, base) for point in points]
     many = len({source and source.name for source in sources}) > 1
     tasks = [
         _task(plan.stage, source, point, values, named=many)
         for source in sources
-        for point, values in zip(points, told, strict=True)
+        for point, values in zip(points, values_of, strict=True)
     ]
     keys = [task.key for task in tasks]
     if len(set(keys)) < len(keys):
-        twice = Counter(keys).most_common(1)[0][0]
+        duplicate = Counter(keys).most_common(1)[0][0]
         raise InputError(
-            f"{twice} is there twice",
+            f"duplicate task {duplicate}",
             where="the plan",
-            expected="points that differ",
-            remedy="take out the value that is repeated",
+            expected="distinct points",
+            remedy="remove the repeated value",
         )
     return tasks
 
 
-def _task(stage: str, source: Source | None, point: Row, values: Values, *, named: bool) -> Task:
+def _task(
+    stage: str, source: SweepSource | None, point: Row, values: Values, *, named: bool
+) -> Task:
     options = dict(values.options)
     inputs: Row = {"stage": stage, "versions": versions()}
     places = {name: str(path.resolve()) for name, path in values.files.items()}
@@ -100,8 +102,8 @@ def _task(stage: str, source: Source | None, point: Row, values: Values, *, name
     return Task(f"{words[:LONGEST]}-{digest}", source, point, inputs, places)
 
 
-def _words(source: Source | None, point: Row, *, named: bool) -> Iterator[str]:
-    """Yield what tells a task from others, fit for a file's name."""
+def _words(source: SweepSource | None, point: Row, *, named: bool) -> Iterator[str]:
+    """Yield the parts of a task's name that identify it, valid in a file name."""
     if source is not None and (named or not (point or source.run)):
         yield _plain(source.name)
     if source is not None and source.run is not None:

@@ -1,4 +1,4 @@
-"""The named values of a task, sorted by what they are of: an option, a model, a run, a setting."""
+"""The named values of a task, sorted by kind: option, model, plant, condition, setting."""
 
 import math
 from collections.abc import Mapping
@@ -19,28 +19,28 @@ from tsas_cli.tracking.settings import RigSettings, read_settings
 
 PLANT, SETTINGS = "plant.", "settings."
 FILES = {"model": MODEL_FILE, "plant": MODEL_FILE, "drive": DRIVE_FILE, "settings": ""}
-BITS = 64  # of an integer: no table nor JSON has more for sure
-_ANY_RUN = {"id": "x", "file": "x", "sha256": "0" * 64}  # what is said of it is to be judged
+BITS = 64  # of an integer, the limit of Parquet and TOML
+_ANY_RUN = {"id": "x", "file": "x", "sha256": "0" * 64}  # for the validation of conditions
 
 Options = Mapping[str, TypeAdapter[Any]]
 
 
 @dataclass(frozen=True)
 class Values:
-    """What one task is told.
+    """The values of one task, by kind.
 
     Attributes
     ----------
     options
         Keywords of the stage's call.
     files
-        Files among them, by keyword: where they are.
+        Paths of the files among them, by keyword.
     sums
         The files' checksums, by keyword.
     model, plant
-        Quantities of either, by name, in place of what its file or the data sheet says.
+        Quantities of either, by name, that replace those of its file or the data sheet.
     conditions
-        Conditions of every run, in place of what the manifest says.
+        Conditions of every run that replace those of the manifest.
     settings
         Settings of the closed loop by their dotted keys.
     """
@@ -55,21 +55,21 @@ class Values:
 
 
 def sorted_values(given: Mapping[str, Any], options: Options, base: Path) -> Values:
-    """Return named values by what they are of.
+    """Return named values by kind.
 
     Parameters
     ----------
     given
         The values by name.
     options
-        What each keyword of the stage's call may be.
+        The type of each keyword of the stage's call.
     base
-        The folder that paths begin at.
+        The folder of relative paths.
 
     Raises
     ------
     InputError
-        A name is unknown, a value is not allowed, or a file is not there.
+        A name is unknown, a value is invalid, or a file does not exist.
     """
     found, of_runs = Values(), "model" in options and "plant" not in options
     for name, value in given.items():
@@ -86,7 +86,7 @@ def sorted_values(given: Mapping[str, Any], options: Options, base: Path) -> Val
             found.options[name] = _option(name, value, options[name])
         elif name in CONDITIONS and of_runs:
             found.conditions[name] = _condition(name, value)
-            if name in QUANTITIES:  # a calibrated model holds the preload of each run
+            if name in QUANTITIES:  # a calibrated model has a preload of each run
                 found.model[name] = _quantity(name, value, name)
         elif name in QUANTITIES and "model" in options:
             found.model[name] = _quantity(name, value, name)
@@ -106,14 +106,14 @@ def sorted_values(given: Mapping[str, Any], options: Options, base: Path) -> Val
 
 
 def _hint(name: str, options: Options) -> str:
-    """Return what may have been meant, of the names that a stage with such options knows."""
+    """Return a hint with the nearest name that a stage with such options knows."""
     if "settings" in options and name in RigSettings.model_fields:
         return f"did you mean {SETTINGS}rig.{name}?"
     known = list(options)
     if "model" not in options:
         return nearest(name, known)
     known += [*QUANTITIES, *(() if "plant" in options else CONDITIONS)]
-    of_models = "and what a model holds: see `tsas effects`"
+    of_models = "and the parameters of a model: see `tsas effects`"
     hint = nearest(name, known)
     return hint if hint.startswith("did") else f"{nearest('', options)}, {of_models}"
 
@@ -130,22 +130,22 @@ def _option(name: str, value: Any, allowed: TypeAdapter[Any]) -> Any:
 
 
 def _file(name: str, value: Any, base: Path) -> tuple[Path, dict[str, str]]:
-    """Return a file that a value names, or what stands for it in a folder, and its checksum."""
+    """Return the path of a file, or of its default name in a folder, and its checksum record."""
     if not isinstance(value, str):
         raise InputError(f"{name} is {value!r}", where="the plan", expected="a file's path")
     path = base / value
     file = path / FILES[name] if path.is_dir() and FILES[name] else path
     if not file.is_file():
-        raise InputError("is not there", where=file, expected=f"the file of {name}")
+        raise InputError("does not exist", where=file, expected=f"the file of {name}")
     return file, {"file": value, "sha256": sha256_of(file)}
 
 
-def _quantity(said: str, value: Any, name: str) -> float:
-    """Return a quantity of a model that lies within its bounds."""
-    number, quantity = _number(said, value), QUANTITIES[name]
+def _quantity(label: str, value: Any, name: str) -> float:
+    """Return the value of a model's quantity, within its bounds."""
+    number, quantity = _number(label, value), QUANTITIES[name]
     if not quantity.lower <= number <= quantity.upper:
         raise InputError(
-            f"{said} is {number:g}",
+            f"{label} is {number:g}",
             where="the plan",
             expected=f"{quantity.lower:g} to {quantity.upper:g} {quantity.unit}",
         )
@@ -153,7 +153,7 @@ def _quantity(said: str, value: Any, name: str) -> float:
 
 
 def _condition(name: str, value: Any) -> float:
-    """Return a condition that the manifest of a run could say."""
+    """Return the value of a condition that is valid in a manifest."""
     number = _number(name, value)
     parse(Run, _ANY_RUN | {name: number}, "the plan")
     return number
@@ -167,16 +167,16 @@ def _number(name: str, value: Any) -> float:
     return float(value)
 
 
-def with_settings(path: Path | None, told: Mapping[str, Any]) -> Raw:
-    """Return the content of a settings file, or of none, with some dotted keys told otherwise.
+def with_settings(path: Path | None, changes: Mapping[str, Any]) -> Raw:
+    """Return the content of a settings file, or of none, with some dotted keys replaced.
 
     Raises
     ------
     InputError
-        The file cannot be read, or a key leads through what is no table.
+        The file cannot be read, or a part of a dotted key is no table.
     """
     content = {} if path is None else read_toml(path)
-    for key, value in told.items():
+    for key, value in changes.items():
         *tables, last = key.split(".")
         inner = content
         for table in tables:

@@ -1,4 +1,4 @@
-"""What the last bits of a result depend on, the same for all who share in a sweep."""
+"""Versions that determine the last bits of a result; all workers of a sweep must agree."""
 
 import hashlib
 import os
@@ -17,7 +17,7 @@ ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "TSAS_THREADS": "1"}  # a task is one
 
 @cache
 def versions() -> dict[str, str]:
-    """Return the versions of tsas, its sources, Python and the libraries that compute."""
+    """Return the versions of tsas, its sources, Python and the numerical libraries."""
     digest = hashlib.sha256()
     package = Path(__file__).parent.parent
     for source in sorted(package.rglob("*.py")):
@@ -28,24 +28,24 @@ def versions() -> dict[str, str]:
     return {"tsas": __version__, "digest of tsas": sources, "Python": python, **libraries}
 
 
-def refuse_others(asked: Mapping[str, str], found: Mapping[str, str], where: str) -> None:
-    """Stop where somebody has other versions than the one who asks.
+def refuse_others(expected: Mapping[str, str], found: Mapping[str, str], where: str) -> None:
+    """Refuse a worker whose versions differ from the expected ones.
 
     Raises
     ------
     InputError
         A version differs.
     """
-    for name, wanted in asked.items():
+    for name, wanted in expected.items():
         if found.get(name) != wanted:
             raise InputError(
                 f"{name} is {found.get(name, 'unknown')}",
                 where=where,
-                expected=f"{wanted}, as where the sweep was begun",
-                remedy="install the same there",
+                expected=f"{wanted}, as where the sweep was started",
+                remedy="install the same version there",
             )
 
 
 def threads_of_algebra() -> str:
-    """Return how many threads a product of matrices takes here, as the environment says."""
+    """Return the number of threads of linear algebra set by the environment, empty if unset."""
     return os.environ.get("OPENBLAS_NUM_THREADS", "")

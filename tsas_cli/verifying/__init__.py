@@ -1,1 +1,1 @@
-"""Whether files are still what was recorded of them, from a page back to the raw recordings."""
+"""Verification of recorded checksums, from a report back to the raw recordings."""

@@ -1,4 +1,4 @@
-"""What files say about other files: which checksum each had when it was written or read."""
+"""Checksums that files record of other files, at the time of writing or reading."""
 
 import os.path
 import re
@@ -16,15 +16,15 @@ from tsas_cli.support.replacing import SUMS
 from tsas_cli.verifying.seal import sealed
 
 _SUM = re.compile(r"([0-9a-f]{64})  (.+)")
-_READ = ("model", "plant", "drive", "settings", "reference")  # keys of a stage's JSON
+_INPUTS = ("model", "plant", "drive", "settings", "reference")  # keys of a stage's JSON
 
 
 @dataclass(frozen=True)
 class Claim:
-    """A file's checksum, and which file recorded it.
+    """A recorded checksum of a file, and the file that recorded it.
 
-    `path` is where it was, None where that is not recorded; `found` is the checksum where it is
-    known already, of a part of a file.
+    `path` is its recorded location, if any; `found` is the actual checksum if it is already known,
+    as for a part of a file.
     """
 
     by: Path
@@ -35,12 +35,12 @@ class Claim:
 
 
 def claims_of(path: Path) -> Iterator[Claim]:
-    """Yield what a file says about others; nothing where it is none of ours.
+    """Yield the checksums that a file records of others; none if tsas has not written it.
 
     Raises
     ------
     InputError
-        It cannot be read, or is not what its name says.
+        The file cannot be read, or is not in the format of its name.
     """
     if path.name == SUMS:
         yield from _of_sums(path)
@@ -64,7 +64,7 @@ def _of_sums(path: Path) -> Iterator[Claim]:
     for number, line in enumerate(lines, start=1):
         found = _SUM.fullmatch(line)
         if found is None:
-            raise InputError("is no checksum and a name", where=f"{path}, line {number}")
+            raise InputError("is no line of checksum and name", where=f"{path}, line {number}")
         yield Claim(path, found[2], found[1], path.parent / found[2])
 
 
@@ -86,9 +86,9 @@ def _of_manifest(path: Path) -> Iterator[Claim]:
 def _of_stage(path: Path, content: Mapping[str, Any]) -> Iterator[Claim]:
     yield from _of_dataset(path, content.get("dataset"))
     yield from _of_dataset(path, content.get("on"))
-    for key in _READ:
+    for key in _INPUTS:
         yield from _of_file(path, content.get(key))
-    rig = content.get("rig")  # of `tsas plan`, whose file is said from the plan's folder
+    rig = content.get("rig")  # of `tsas plan`, whose path is relative to the plan's folder
     yield from _of_file(path, rig | {"folder": ""} if isinstance(rig, dict) else None)
     for side in (content.get("a"), content.get("b")):  # of `tsas compare`
         files = side.get("files") if isinstance(side, dict) else None
@@ -97,17 +97,17 @@ def _of_stage(path: Path, content: Mapping[str, Any]) -> Iterator[Claim]:
 
 
 def _of_dataset(path: Path, dataset: object) -> Iterator[Claim]:
-    """Yield the files of a dataset that was read; its folder is said from that of the file."""
+    """Yield the files of an input dataset; its folder is relative to that of `path`."""
     if isinstance(dataset, dict) and isinstance(dataset.get("hashes"), dict):
         folder = dataset.get("folder")
         for file, digest in dataset["hashes"].items():
             yield _claim(path, folder, str(file), str(digest).lower())
 
 
-def _of_file(path: Path, said: object) -> Iterator[Claim]:
-    if isinstance(said, dict) and isinstance(said.get("sha256"), str):
-        file, folder = str(said.get("file")), said.get("folder")
-        yield _claim(path, folder, file, said["sha256"])
+def _of_file(path: Path, record: object) -> Iterator[Claim]:
+    if isinstance(record, dict) and isinstance(record.get("sha256"), str):
+        file, folder = str(record.get("file")), record.get("folder")
+        yield _claim(path, folder, file, record["sha256"])
 
 
 def _of_page(path: Path) -> Iterator[Claim]:
@@ -115,15 +115,15 @@ def _of_page(path: Path) -> Iterator[Claim]:
     if seal is None:
         return
     yield Claim(path, path.name, seal.sha256, path, seal.found)
-    for said in seal.read:
-        yield from _of_file(path, said)
+    for record in seal.read:
+        yield from _of_file(path, record)
 
 
 def _claim(path: Path, folder: object, file: str, digest: str) -> Claim:
-    """Return what a file says of one in a folder that is said from its own, or in an address."""
+    """Return the claim for a file in a folder that is relative to that of `path`, or an address."""
     if not isinstance(folder, str):
         return Claim(path, file, digest)
-    told = os.path.join(folder, file)  # noqa: PTH118 # may be an address
-    if is_address(told):
-        return Claim(path, told, digest)
-    return Claim(path, file, digest, path_from(path.resolve().parent, told))
+    location = os.path.join(folder, file)  # noqa: PTH118 # may be an address
+    if is_address(location):
+        return Claim(path, location, digest)
+    return Claim(path, file, digest, path_from(path.resolve().parent, location))

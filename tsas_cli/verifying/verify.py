@@ -1,4 +1,4 @@
-"""Every recorded checksum below a folder, and of what lies behind it, beside the files."""
+"""Verification of every recorded checksum below a folder, and of its inputs."""
 
 import os
 from collections import deque
@@ -15,23 +15,23 @@ from tsas_cli.support.files import read_json, sha256_of
 from tsas_cli.support.replacing import SUMS
 from tsas_cli.verifying.claims import Claim, claims_of
 
-State = Literal["fits", "changed", "missing", "cannot tell"]
+_State = Literal["fits", "changed", "missing", "cannot tell"]
 _OURS = {".json", ".toml", ".html"}
 
 
 @dataclass(frozen=True)
 class Verified:
-    """What became of one file: `by` recorded its checksum, empty where nobody did."""
+    """The state of one file; `by` recorded its checksum, empty if no file did."""
 
     file: str
-    state: State
+    state: _State
     by: str = ""
     why: str = ""
 
 
 @dataclass
 class _Walk:
-    """Folders that are looked at, and what was found of their files."""
+    """State of a verification: pending files, and those verified so far."""
 
     raw: Sequence[Path]
     waiting: deque[Path]
@@ -45,30 +45,30 @@ class _Walk:
 def verify_all(
     start: Path, raw: Sequence[Path] = (), step: Callable[[], None] = lambda: None
 ) -> list[Verified]:
-    """Check a page, or all that stages have written into a folder and below it, and what they read.
+    """Return the state of a page or of all outputs below a folder, and of their inputs.
 
-    `raw` are folders where raw recordings are looked for that are not where they were. `step` is
-    called after each file.
+    `raw` are folders to search for raw recordings that have moved. `step` is called after each
+    file.
 
     Raises
     ------
     InputError
-        There is nothing that tsas has written, or a file that tells no checksum.
+        There is no output of tsas, or a single file records no checksum.
     """
     if not start.exists():
-        raise InputError("is not there", where=start, expected="a folder, or a page")
+        raise InputError("does not exist", where=start, expected="a folder, or a page")
     files = [start] if start.is_file() else _ours_below(start)
     if not files:
         raise InputError(
-            "holds nothing that tsas has written",
+            "holds no output of tsas",
             where=start,
-            expected=f"the folder of a stage, of a dataset, or one that holds some, or {SUMS}",
+            expected=f"the folder of a stage or a dataset, a folder above, or {SUMS}",
         )
     walk = _Walk(raw, deque(files), step)
     claims, found = list[Claim](), list[Verified]()
     while walk.waiting:
         path = walk.waiting.popleft()
-        # A list that is a link, say to that of another folder, still speaks for its own folder.
+        # A list that is a link to that of another folder still applies to its own folder.
         itself = path.parent.resolve() / path.name
         if itself in walk.seen:
             continue
@@ -77,16 +77,16 @@ def verify_all(
             for claim in claims_of(path):
                 claims.append(claim)
                 if claim.path is not None and claim.path != path:
-                    walk.waiting.extend(_behind(claim.path))
+                    walk.waiting.extend(_related(claim.path))
         except InputError as error:
-            state: State = "changed" if limits.is_text(path) else "cannot tell"
+            state: _State = "changed" if limits.is_text(path) else "cannot tell"
             found.append(Verified(_shown(path), state, "", error.what))
-    # What has a place comes first: the files found there are those that others may mean.
+    # Claims with a location come first: other claims may refer to the files found there.
     ordered = sorted(claims, key=lambda claim: claim.path is None)
     found += [_judged(claim, walk) for claim in ordered]
     if not found and start.is_file():
         raise InputError(
-            "no checksum is recorded in it, or none is left",
+            "it records no checksum",
             where=start,
             expected="a page of tsas report, or the folder of a stage or of a dataset",
         )
@@ -94,34 +94,34 @@ def verify_all(
 
 
 def _ours_below(folder: Path) -> list[Path]:
-    """Return the files below a folder that speak of others; no hidden folder is entered."""
+    """Return the files below a folder that record checksums; hidden folders are skipped."""
     return [
         path
         for path in sorted(folder.rglob("*"))
         if (path.suffix in _OURS or path.name == SUMS)
         and path.is_file()
         and not any(part.startswith(".") for part in path.relative_to(folder).parts)
-        and _speaks(path)
+        and _records_checksums(path)
     ]
 
 
-def _speaks(path: Path) -> bool:
-    """Say whether a file is one that tells checksums, or would be if it could be read."""
+def _records_checksums(path: Path) -> bool:
+    """Return whether a file records checksums, or would if it were intact."""
     if path.name in {SUMS, MANIFEST} or (path.parent / SUMS).is_file():
         return True
     try:
         if path.suffix == ".json":
             content = read_json(path)
             return isinstance(content, dict) and {"format", "stage"} <= content.keys()
-        lost = path.suffix == ".html" and not path.stat().st_size  # a page has no words left
+        lost = path.suffix == ".html" and not path.stat().st_size  # a page of zero bytes is damaged
         return lost or any(True for _ in claims_of(path))
     except InputError:
-        return path.suffix == ".html"  # only of a page that is ours, or that nobody can read
+        return path.suffix == ".html"  # a damaged or unreadable page of tsas
 
 
-def _behind(path: Path) -> Iterator[Path]:
-    """Yield what tells more of a file that was read: its own words, and its folder's."""
-    if path.suffix in _OURS and os.path.isfile(path):  # noqa: PTH113 # false of an endless name too
+def _related(path: Path) -> Iterator[Path]:
+    """Yield the files that may record checksums of an input's own inputs."""
+    if path.suffix in _OURS and os.path.isfile(path):  # noqa: PTH113 # False for a name that is too long, too
         yield path
     if os.path.isfile(sums := path.parent / SUMS):  # noqa: PTH113
         yield sums
@@ -143,19 +143,19 @@ def _judged(claim: Claim, walk: _Walk) -> Verified:
         walk.claimed.add(known.resolve())
         return Verified(_shown(known), "fits", by)
     if path is None:
-        why = "is on object storage" if is_address(claim.file) else "where it was is not recorded"
+        why = "is on object storage" if is_address(claim.file) else "its location is not recorded"
         return Verified(claim.file, "cannot tell", by, why)
-    return Verified(_shown(path), "missing", by, "is not there")
+    return Verified(_shown(path), "missing", by, "does not exist")
 
 
 def _why(claim: Claim) -> str:
     if claim.by.name in {SUMS, MANIFEST} or claim.by == claim.path:
-        return "is not what was written"
+        return "has changed since it was written"
     return "has changed since it was read"
 
 
 def _in_raw(claim: Claim, walk: _Walk) -> Path | None:
-    """Return the file among the raw recordings that is what was read."""
+    """Return the raw recording with the name and the checksum of a claim, or None."""
     for folder in walk.raw:
         for path in sorted(folder.rglob("*")):
             same = path.name == Path(claim.file).name and path.is_file()
@@ -164,8 +164,8 @@ def _in_raw(claim: Claim, walk: _Walk) -> Path | None:
     return None
 
 
-def _unclaimed(walk: _Walk, told: set[str]) -> Iterator[Verified]:
-    """Yield the manifests, the pages and the files of the stages that nobody vouches for."""
+def _unclaimed(walk: _Walk, reported: set[str]) -> Iterator[Verified]:
+    """Yield the manifests, pages and files of stages without a recorded checksum."""
     files: dict[Path, str] = {}
     for path in sorted(walk.seen):
         if path.name == SUMS:
@@ -177,13 +177,13 @@ def _unclaimed(walk: _Walk, told: set[str]) -> Iterator[Verified]:
                 beside += [*path.parent.iterdir(), *path.parent.glob("runs/*")]
             files |= dict.fromkeys(beside, "no checksum of it is recorded")
     for path, why in sorted(files.items()):
-        known = path in walk.claimed or path.name == SUMS or _shown(path) in told
+        known = path in walk.claimed or path.name == SUMS or _shown(path) in reported
         if path.is_file() and not known:
             yield Verified(_shown(path), "cannot tell", "", why)
 
 
 def _sum(path: Path, walk: _Walk) -> str:
-    """Return the checksum of a file, which is computed once."""
+    """Return the checksum of a file, computed once."""
     key = path.resolve()
     if key not in walk.sums:
         try:

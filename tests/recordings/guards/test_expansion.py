@@ -39,4 +39,4 @@ def test_what_is_unpacked_has_to_fit_into_the_memory(tmp_path, monkeypatch):
     expanded.bytes = 1_000_000_000 // limits.COPIES
     expanded.fits()
     expanded.bytes += 1
-    assert "takes 1 GB of memory" in refusal(expanded.fits)
+    assert "needs 1 GB of memory" in refusal(expanded.fits)

@@ -234,7 +234,7 @@ def test_units_alone_and_the_motion_tell_the_ends(tmp_path):
     path = write_csv(tmp_path / "a.csv", list(zip(names, run().values(), strict=True)))
     truth = dict(zip(CHANNELS, names, strict=True))
     assert verdicts(path, truth) == dict.fromkeys(CHANNELS, "right")
-    assert {c.sure for c in propose([path]).channels} == {"sure", "likely"}
+    assert {c.certainty for c in propose([path]).channels} == {"sure", "likely"}
 
 
 def test_signs_that_are_turned_are_turned_back(tmp_path):
@@ -259,11 +259,11 @@ def test_half_a_loop_tells_no_ends(tmp_path):
     columns = [(n, v[:300]) for n, v in zip(names, run().values(), strict=True)]
     path = write_csv(tmp_path / "a.csv", columns)
     proposal = propose([path])
-    assert {c.name for c in proposal.channels if c.sure == "open"} == set(CHANNELS[1:])
+    assert {c.name for c in proposal.channels if c.certainty == "open"} == set(CHANNELS[1:])
 
 
 @pytest.mark.parametrize(
-    ("name", "factor", "answer"),
+    ("name", "factor", "expected"),
     [
         ("time", 1.0, {"unit": "s"}),
         ("t", 1e3, {"unit": "ms"}),
@@ -272,14 +272,14 @@ def test_half_a_loop_tells_no_ends(tmp_path):
         ("Sample", 100.0, None),
     ],
 )
-def test_the_unit_of_the_clock_has_to_make_sense(tmp_path, name, factor, answer):
+def test_the_unit_of_the_clock_has_to_make_sense(tmp_path, name, factor, expected):
     columns = [(name, run()["time_s"] * factor), ("x_in_mm", run()["x_in_mm"])]
     path = write_csv(tmp_path / "a.csv", [*columns, ("f_in_N", run()["f_in_N"])])
     (clock, *_) = propose([path]).channels
-    if answer is None:
+    if expected is None:
         assert clock.entry == {"rate_Hz": "?"}
     else:
-        assert {key: clock.entry[key] for key in answer} == answer
+        assert {key: clock.entry[key] for key in expected} == expected
 
 
 STEMS = {
@@ -367,19 +367,19 @@ def test_files_that_do_not_go_with_the_others_are_named(tmp_path):
     write_csv(tmp_path / "b.csv", columns_of("ours"))
     proposal = propose([tmp_path / "notes.txt", tmp_path / "a.csv", tmp_path / "b.csv"])
     assert proposal.looked_at.path.name == "a.csv"
-    assert [path.name for path in proposal.unlike] == ["notes.txt"]
+    assert [path.name for path in proposal.different] == ["notes.txt"]
     assert proposal.read["files"][0] == "*.csv"
 
 
 def test_a_wrong_call_is_one_line(tmp_path, tsas):
     write_csv(tmp_path / "a.csv", columns_of("ours"))
-    for words, said in [
+    for words, message in [
         (("--out", "d"), "--map is missing"),
         (("--guess", "--map", "m"), "leave one of them out"),
     ]:
         done = tsas("ingest", "a.csv", *words, cwd=tmp_path)
         assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
-        assert said in done.stderr
+        assert message in done.stderr
 
 
 def test_text_gaps_and_what_rests_are_left_out_with_the_reason(tmp_path):
@@ -391,7 +391,7 @@ def test_text_gaps_and_what_rests_are_left_out_with_the_reason(tmp_path):
     assert proposal.looked_at.left_out == {"Operator": "column Operator holds 'Jo'"}
     assert set(proposal.not_taken) == {"Nothing", "Idle [mm]"}
     text = map_text(proposal)
-    assert "Operator cannot be taken" in text
+    assert "Operator cannot be used" in text
     assert '# extra = ["Nothing", "Idle [mm]"]' in text
 
 

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from tests.recordings.guess.rig_files import run
-from tsas_cli.recordings.guess.looks import goes_ahead, increases, is_even, sign_of, together
+from tsas_cli.recordings.guess.looks import correlation, increases, is_even, leads, sign_of
 
 # Nearer to the drive first.
 PAIRS = [("f_in_N", "x_in_mm"), ("f_in_N", "f_out_N"), ("x_in_mm", "x_out_mm")]
@@ -15,8 +15,8 @@ def test_friction_says_which_is_nearer_to_the_drive_and_a_delay_does_not(pair, l
     columns = run()
     near, far = (columns[name] for name in pair)
     near = scale * np.interp(columns["time_s"] - late_s, columns["time_s"], near)
-    assert goes_ahead(near, far) == 1
-    assert goes_ahead(far, near) == -1
+    assert leads(near, far) == 1
+    assert leads(far, near) == -1
 
 
 @pytest.mark.parametrize("late", [1, 5, 20])
@@ -24,25 +24,25 @@ def test_a_delay_alone_tells_nothing(late):
     t = np.arange(4000) / 200
     x = 10.0 - 10.0 * np.cos(t)
     noise = np.random.default_rng(1).normal(0.0, 0.002, (2, t.size))
-    assert goes_ahead(x + noise[0], np.roll(x, late) + noise[1]) == 0
+    assert leads(x + noise[0], np.roll(x, late) + noise[1]) == 0
 
 
 def test_a_play_tells_the_order_of_strokes_at_even_speed_only_where_it_is_wide():
     t = np.arange(4000) / 200
     x = np.abs((t % 8.0) - 4.0)
-    for width, told in [(0.6, 1), (0.02, 0)]:
+    for width, order in [(0.6, 1), (0.02, 0)]:
         y = [0.0]
         for value in x:
             y.append(min(max(y[-1], value - width), value))
-        assert goes_ahead(x, np.array(y[1:])) == told
+        assert leads(x, np.array(y[1:])) == order
 
 
 def test_what_does_not_go_together_or_does_not_turn_tells_nothing():
     columns = run()
-    assert goes_ahead(columns["x_in_mm"], columns["time_s"]) == 0
-    assert goes_ahead(columns["x_in_mm"][:300], columns["f_in_N"][:300]) == 0
-    assert together(columns["x_in_mm"], np.ones_like(columns["x_in_mm"])) == 0.0
-    assert together(columns["x_in_mm"], np.full_like(columns["x_in_mm"], np.nan)) == 0.0
+    assert leads(columns["x_in_mm"], columns["time_s"]) == 0
+    assert leads(columns["x_in_mm"][:300], columns["f_in_N"][:300]) == 0
+    assert correlation(columns["x_in_mm"], np.ones_like(columns["x_in_mm"])) == 0.0
+    assert correlation(columns["x_in_mm"], np.full_like(columns["x_in_mm"], np.nan)) == 0.0
 
 
 def test_clocks_and_signs():

@@ -5,7 +5,7 @@ from tsas_cli.recordings.guess.words import words_of
 
 
 @pytest.mark.parametrize(
-    ("name", "quantity", "place", "wish"),
+    ("name", "quantity", "end", "is_reference"),
     [
         ("Fin", "force", "in", False),
         ("T_out", "force", "out", False),
@@ -28,9 +28,9 @@ from tsas_cli.recordings.guess.words import words_of
         ("A", None, None, False),
     ],
 )
-def test_words_say_quantity_end_and_wish(name, quantity, place, wish):
+def test_words_state_quantity_end_and_reference(name, quantity, end, is_reference):
     words = words_of(name)
-    assert (words.quantity, words.place, words.wish) == (quantity, place, wish)
+    assert (words.quantity, words.end, words.is_reference) == (quantity, end, is_reference)
 
 
 @pytest.mark.parametrize(

@@ -91,10 +91,10 @@ def _force(x_in: Floats, time: Floats) -> tuple[Floats, Floats, Floats]:
 
 def _displacement(x_in: Floats, time: Floats) -> tuple[Floats, Floats, Floats]:
     f_in = PRELOAD + 2.0 * x_in  # the distal end is held: a soft tendon takes up the motion
-    f_out, held = np.empty_like(f_in), PRELOAD
+    f_out, level = np.empty_like(f_in), PRELOAD
     for i, tension in enumerate(f_in):
-        held = min(max(held, tension * math.exp(-0.1)), tension * math.exp(0.1))
-        f_out[i] = held
+        level = min(max(level, tension * math.exp(-0.1)), tension * math.exp(0.1))
+        f_out[i] = level
     return np.zeros_like(x_in), f_in, f_out
 
 

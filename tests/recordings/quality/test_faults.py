@@ -15,28 +15,28 @@ N = TIME.size
 def findings(measured, load="spring"):
     subject = trial(measured, {"load_stiffness_N_per_mm": LOAD}, load)
     return [
-        (check.code, said)
+        (check.code, remark)
         for check in RUN_CHECKS
         if all(name in subject.channels for name in check.needs)
-        for said in check.find(subject)
-        if isinstance(said, Remark)
+        for remark in check.find(subject)
+        if isinstance(remark, Remark)
     ]
 
 
 def found(measured, code, column=None, load="spring"):
-    """Return the one remark; fail where another check speaks too."""
-    said = findings(measured, load)
-    assert {found_code for found_code, _ in said} == {code}
+    """Return the only remark; fail if another check reports one too."""
+    results = findings(measured, load)
+    assert {found_code for found_code, _ in results} == {code}
     if column is not None:
-        assert {remark.column for _, remark in said} == {column}
-    return said[0][1]
+        assert {remark.column for _, remark in results} == {column}
+    return results[0][1]
 
 
 def changed(**columns_by_name):
     return GOOD | columns_by_name
 
 
-def held(rows):
+def repeated(rows):
     """Return the recording with the channels of other rows, at its own time."""
     return {name: v if name == "time_s" else v[rows] for name, v in GOOD.items()}
 
@@ -51,15 +51,15 @@ def test_the_recording_without_a_fault_is_good():
 
 def test_a_clock_that_is_set_back():
     time = TIME - np.where(np.arange(N) > 1000, 0.05, 0.0)
-    said = found(changed(time_s=time), "time-order", "time_s")
-    assert said.severity == "error"
-    assert "1 of 3200 rows, first at row 1001 (5 s, then 4.955 s)" in said.sentence
+    remark = found(changed(time_s=time), "time-order", "time_s")
+    assert remark.severity == "error"
+    assert "1 of 3200 rows, first at row 1001 (5 s, then 4.955 s)" in remark.sentence
 
 
 def test_jitter_tells_its_size():
     noise = 0.1 * 0.005 * np.random.default_rng(1).standard_normal(N)
-    said = found(changed(time_s=TIME + noise), "time-jitter")
-    assert 13.0 < float(said.sentence.split("by ")[1].split(" %")[0]) < 15.5  # 10 % · √2
+    remark = found(changed(time_s=TIME + noise), "time-jitter")
+    assert 13.0 < float(remark.sentence.split("by ")[1].split(" %")[0]) < 15.5  # 10 % · √2
 
 
 def test_rounded_time_stamps_are_jitter_and_no_gaps():
@@ -68,17 +68,17 @@ def test_rounded_time_stamps_are_jitter_and_no_gaps():
 
 def test_missing_rows():
     rows = np.r_[0:900, 950:N]
-    said = found({name: values[rows] for name, values in GOOD.items()}, "gap", "time_s")
-    assert "1 place" in said.sentence
-    assert "0.255 s at 4.495 s" in said.sentence
-    assert said.first_s == pytest.approx(4.495)
+    remark = found({name: values[rows] for name, values in GOOD.items()}, "gap", "time_s")
+    assert "1 place" in remark.sentence
+    assert "0.255 s at 4.495 s" in remark.sentence
+    assert remark.first_s == pytest.approx(4.495)
 
 
 def test_empty_cells():
     values = GOOD["x_out_mm"].copy()
     values[1000:1013] = values[2000] = np.nan
-    said = found(changed(x_out_mm=values), "gap", "x_out_mm")
-    assert "14 of 3200 rows, at 2 places; the longest has 13 rows at 5 s" in said.sentence
+    remark = found(changed(x_out_mm=values), "gap", "x_out_mm")
+    assert "14 of 3200 rows, at 2 places; the longest has 13 rows at 5 s" in remark.sentence
 
 
 def test_an_empty_column():
@@ -88,22 +88,22 @@ def test_an_empty_column():
 def test_sample_and_hold():
     rows = np.arange(N)
     rows[500:1500] -= rows[500:1500] % 2
-    assert "500 of 3200 rows" in found(held(rows), "repeated-rows").sentence
+    assert "500 of 3200 rows" in found(repeated(rows), "repeated-rows").sentence
 
 
 def test_a_link_that_is_down_for_a_while():
     rows = np.arange(N)
     rows[700:760] = 700
-    said = found(held(rows), "repeated-rows")
-    assert "59 of 3200" in said.sentence
-    assert said.first_s == pytest.approx(701 * 0.005)
+    remark = found(repeated(rows), "repeated-rows")
+    assert "59 of 3200" in remark.sentence
+    assert remark.first_s == pytest.approx(701 * 0.005)
 
 
 def test_rows_of_a_quiet_coarse_recording_may_repeat():
     measured = columns(Bench(noise_mm=0.0, noise_N=0.0, step_mm=0.01, step_N=0.1, rate_Hz=2000.0))
     subject = trial(measured)
     (check,) = (check for check in RUN_CHECKS if check.code == "repeated-rows")
-    assert [type(said) for said in check.find(subject)] == [CannotTell]
+    assert [type(remark) for remark in check.find(subject)] == [CannotTell]
 
 
 @pytest.mark.parametrize("column", ["x_in_mm", "f_in_N"])
@@ -112,8 +112,8 @@ def test_rows_of_a_quiet_coarse_recording_may_repeat():
 def test_a_channel_that_is_updated_slowly(column, rows, step):
     measured = columns(Bench(rate_Hz=1000.0, step_mm=step, step_N=5.0 * step))
     slow = measured[column][np.arange(measured[column].size) // rows * rows]
-    said = found(measured | {column: slow}, "slow-channel", column)
-    assert f"every {rows} rows" in said.sentence
+    remark = found(measured | {column: slow}, "slow-channel", column)
+    assert f"every {rows} rows" in remark.sentence
 
 
 @pytest.mark.parametrize(
@@ -127,17 +127,17 @@ def test_a_channel_that_is_updated_slowly(column, rows, step):
     ],
 )
 def test_a_clipped_channel(column, low, high):
-    said = found(changed(**{column: np.clip(GOOD[column], low, high)}), "clipped", column)
-    assert f"{low or high:g}" in said.sentence
+    remark = found(changed(**{column: np.clip(GOOD[column], low, high)}), "clipped", column)
+    assert f"{low or high:g}" in remark.sentence
 
 
 @pytest.mark.parametrize("column", ["x_in_mm", "x_out_mm", "f_in_N", "f_out_N"])
 def test_a_channel_that_hangs(column):
-    said = found(changed(**{column: frozen_from(GOOD[column], 1700)}), "stuck", column)
-    assert said.first_s == pytest.approx(8.5)
+    remark = found(changed(**{column: frozen_from(GOOD[column], 1700)}), "stuck", column)
+    assert remark.first_s == pytest.approx(8.5)
 
 
-def test_an_encoder_that_hangs_is_told_from_one_that_rests_in_the_dead_band():
+def test_an_encoder_that_hangs_is_reported_from_one_that_rests_in_the_dead_band():
     encoder = columns(Bench(noise_mm=0.0, step_mm=0.02))
     assert findings(encoder) == []
     found(encoder | {"x_out_mm": frozen_from(encoder["x_out_mm"], 1700)}, "stuck", "x_out_mm")
@@ -154,9 +154,9 @@ def test_a_load_that_holds_the_distal_end_is_not_stuck():
 
 @pytest.mark.parametrize(("column", "step"), [("x_out_mm", 0.5), ("f_in_N", 2.0)])
 def test_coarse_steps(column, step):
-    said = found(changed(**{column: np.round(GOOD[column] / step) * step}), "quantised", column)
-    assert f"steps of {step:g} {column[-2:].strip('_')}" in said.sentence
-    assert said.severity == "warning"
+    remark = found(changed(**{column: np.round(GOOD[column] / step) * step}), "quantised", column)
+    assert f"steps of {step:g} {column[-2:].strip('_')}" in remark.sentence
+    assert remark.severity == "warning"
 
 
 @pytest.mark.parametrize("column", ["x_in_mm", "x_out_mm", "f_in_N", "f_out_N"])
@@ -199,8 +199,8 @@ def test_a_gain_and_an_offset_are_no_exchange(gain, offset):
     ],
 )
 def test_a_unit_off_by_a_round_factor_is_named(column, factor, unit):
-    said = found(changed(**{column: GOOD[column] / factor}), "unit", column)
-    assert said.sentence.endswith(unit) or f"{unit}, or " in said.sentence
+    remark = found(changed(**{column: GOOD[column] / factor}), "unit", column)
+    assert remark.sentence.endswith(unit) or f"{unit}, or " in remark.sentence
 
 
 def test_both_tensions_in_pounds_show_against_the_data_sheet():
@@ -209,7 +209,7 @@ def test_both_tensions_in_pounds_show_against_the_data_sheet():
 
 
 @pytest.mark.parametrize("shift_s", [-0.02, 0.005, 0.02])
-def test_a_delay_is_told_with_an_interval_that_holds_it(shift_s):
+def test_a_delay_is_reported_with_an_interval_that_holds_it(shift_s):
     late = np.interp(TIME - shift_s, TIME, GOOD["f_out_N"])
     sentence = found(changed(f_out_N=late), "delay", "f_out_N").sentence
     assert ("after" if shift_s > 0 else "before") in sentence

@@ -17,11 +17,11 @@ LOADS = ("spring", "force", "displacement")
 def complaints(measured, load):
     subject = trial(measured, {"load_stiffness_N_per_mm": LOAD}, load)
     return [
-        (check.code, said.sentence)
+        (check.code, remark.sentence)
         for check in RUN_CHECKS
         if all(name in subject.channels for name in check.needs)
-        for said in check.find(subject)
-        if isinstance(said, Remark) and said.severity != "note"
+        for remark in check.find(subject)
+        if isinstance(remark, Remark) and remark.severity != "note"
     ]
 
 
@@ -37,20 +37,20 @@ def complaints(measured, load):
     ],
     ids=["noisy", "dithered", "encoder", "noiseless", "fast"],
 )
-def test_nothing_is_said_about_an_ordinary_recording(shape, load, sensors):
+def test_nothing_is_reported_about_an_ordinary_recording(shape, load, sensors):
     bench = Bench(shape=shape, load=load, seed=7, **sensors)
     assert complaints(columns(bench), load) == []
 
 
 @pytest.mark.parametrize("shape", SHAPES)
-def test_nothing_is_said_where_only_the_drive_is_recorded(shape):
+def test_nothing_is_reported_where_only_the_drive_is_recorded(shape):
     for seed in range(3):
         measured = columns(Bench(shape=shape, seed=seed))
         drive = {name: measured[name] for name in ("time_s", "x_in_mm", "f_in_N")}
         assert complaints(drive, "spring") == []
 
 
-def test_nothing_is_said_in_twenty_repeats_of_one_experiment():
+def test_nothing_is_reported_in_twenty_repeats_of_one_experiment():
     bench = Bench(rate_Hz=500.0, noise_mm=0.02, noise_N=0.3, step_mm=0.01, step_N=0.05)
     for seed in range(20):
         assert complaints(columns(dataclasses.replace(bench, seed=seed)), "spring") == []
@@ -104,4 +104,4 @@ def test_a_spring_that_pulls_beside_the_tendon_is_no_other_unit_of_f_out():
     # Where no stiffness of the load is stated it cannot be told apart.
     subject = trial(measured, {}, "spring")
     unit = next(check for check in RUN_CHECKS if check.code == "unit")
-    assert any("pound-force" in said.sentence for said in unit.find(subject))
+    assert any("pound-force" in remark.sentence for remark in unit.find(subject))

@@ -8,7 +8,7 @@ def remarks(rig=None, run=None, **top):
     entry = {"id": "a", "file": "runs/a.parquet", "sha256": "0" * 64, **(run or {})}
     content = {"format": 1, "name": "n", "kind": "measured", "rig": rig or {}, "run": [entry]}
     manifest = Manifest.model_validate(content | top)
-    return [(check.code, said) for check in MANIFEST_CHECKS for said in check.find(manifest)]
+    return [(check.code, remark) for check in MANIFEST_CHECKS for remark in check.find(manifest)]
 
 
 def test_the_paper_rig_is_ordinary():
@@ -32,16 +32,16 @@ def test_the_paper_rig_is_ordinary():
     ],
 )
 def test_a_misspelt_key_is_named_with_the_nearest(rig, run, place, nearest):
-    ((code, said),) = remarks(rig, run)
-    assert (code, said.severity) == ("unknown-key", "warning")
-    assert place in said.sentence
-    assert nearest in said.remedy
+    ((code, remark),) = remarks(rig, run)
+    assert (code, remark.severity) == ("unknown-key", "warning")
+    assert place in remark.sentence
+    assert nearest in remark.remedy
 
 
 def test_a_key_of_ones_own_is_a_note_and_cannot_steer_the_terminal():
-    ((code, said),) = remarks(**{"weather\x1b[2J": "fine"})
-    assert (code, said.severity) == ("unknown-key", "note")
-    assert "weather\\x1b[2J" in said.sentence
+    ((code, remark),) = remarks(**{"weather\x1b[2J": "fine"})
+    assert (code, remark.severity) == ("unknown-key", "note")
+    assert "weather\\x1b[2J" in remark.sentence
 
 
 @pytest.mark.parametrize(
@@ -57,6 +57,6 @@ def test_a_key_of_ones_own_is_a_note_and_cannot_steer_the_terminal():
     ],
 )
 def test_a_value_in_another_unit_than_its_key(rig, run, likely):
-    ((code, said),) = remarks(rig, run)
+    ((code, remark),) = remarks(rig, run)
     assert code == "manifest-unit"
-    assert said.sentence.endswith(f"looks like {likely}")
+    assert remark.sentence.endswith(f"looks like {likely}")

@@ -34,11 +34,11 @@ def with_wild(name, rows, value):
     ),
 )
 def test_one_wild_sample_is_found_in_each_channel_and_by_no_other_check(name, value):
-    said = found(with_wild(name, 1234, value), "outlier", name)
-    assert said.severity == "error"
-    assert said.first_s == GOOD["time_s"][1234]
-    assert "1 sample far off what" in said.sentence
-    assert said.sentence.endswith("at 6.17 s, row 1234")
+    remark = found(with_wild(name, 1234, value), "outlier", name)
+    assert remark.severity == "error"
+    assert remark.first_s == GOOD["time_s"][1234]
+    assert "1 sample far from" in remark.sentence
+    assert remark.sentence.endswith("at 6.17 s, row 1234")
 
 
 def test_a_sample_beside_which_all_others_look_alike_is_found():
@@ -47,9 +47,9 @@ def test_a_sample_beside_which_all_others_look_alike_is_found():
 
 @pytest.mark.parametrize("rows", [[0], [N - 1], [7, 8, 9], [100, 101, 700, 1500]])
 def test_a_few_are_counted_wherever_they_are(rows):
-    said = found(with_wild("f_in_N", rows, 500.0), "outlier", "f_in_N")
-    assert f"{len(rows)} sample" in said.sentence
-    assert said.first_s == GOOD["time_s"][rows[0]]
+    remark = found(with_wild("f_in_N", rows, 500.0), "outlier", "f_in_N")
+    assert f"{len(rows)} sample" in remark.sentence
+    assert remark.first_s == GOOD["time_s"][rows[0]]
 
 
 @pytest.mark.parametrize("noise", [0.0, 0.01])

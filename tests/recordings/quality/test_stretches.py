@@ -38,7 +38,7 @@ def check(tmp_path, monkeypatch):
     return checked
 
 
-def told(report):
+def summary(report):
     return [(f.code, f.column, f.severity) for f in report.findings if f.severity != "note"]
 
 
@@ -47,8 +47,10 @@ def told(report):
     list(product(("sine", "triangle", "dwells", "nested"), ("spring", "force", "displacement"))),
 )
 @pytest.mark.parametrize("parts", [3, 10])
-def test_nothing_is_said_about_an_ordinary_recording(check, shape, load, parts):
-    assert told(check(columns(Bench(shape=shape, load=load, seed=3, **NOISY)), load, parts)) == []
+def test_nothing_is_reported_about_an_ordinary_recording(check, shape, load, parts):
+    assert (
+        summary(check(columns(Bench(shape=shape, load=load, seed=3, **NOISY)), load, parts)) == []
+    )
 
 
 @pytest.fixture(params=[(16.0, 200.0), (160.0, 20.0)], ids=["few strokes", "many strokes"])
@@ -102,8 +104,8 @@ def wild(measured):
 def test_what_is_found_in_the_whole_is_found_in_its_stretches(check, measured, harm):
     harm(measured)
     whole, parts = check(measured, parts=1), check(measured)
-    assert told(whole)
-    assert told(parts) == told(whole)
+    assert summary(whole)
+    assert summary(parts) == summary(whole)
 
 
 def test_rows_are_counted_from_the_beginning_of_the_run(check, measured):
@@ -112,7 +114,7 @@ def test_rows_are_counted_from_the_beginning_of_the_run(check, measured):
     assert "first at row 700 " in sentence
 
 
-def test_a_fault_in_one_stretch_is_told_with_its_rows(check, measured):
+def test_a_fault_in_one_stretch_is_reported_with_its_rows(check, measured):
     without_rows(measured)
     size = measured["time_s"].size // PARTS
     first = size - size // OVERLAP
@@ -127,7 +129,7 @@ def test_strokes_longer_than_a_stretch_are_strokes(check):
     stretched = {n: np.interp(rows, np.arange(v.size), v) for n, v in slow.items()}
     stretched = {n: v + 0.02 * rng.standard_normal(v.size) for n, v in stretched.items()}
     stretched["time_s"] = np.arange(rows.size) / 200.0
-    assert told(check(stretched, parts=30)) == []
+    assert summary(check(stretched, parts=30)) == []
 
 
 def test_a_drive_that_hardly_turns_back_is_told(check):
@@ -135,10 +137,10 @@ def test_a_drive_that_hardly_turns_back_is_told(check):
     rng = np.random.default_rng(2)
     x = 10.0 * time_s / time_s[-1] + 0.01 * rng.standard_normal(time_s.size)
     report = check({"time_s": time_s, "x_in_mm": x, "f_in_N": 20.0 + x})
-    assert ("few-reversals", "x_in_mm", "warning") in told(report)
+    assert ("few-reversals", "x_in_mm", "warning") in summary(report)
 
 
-def test_what_cannot_be_told_is_said_once(check, measured):
+def test_what_cannot_be_told_is_reported_once(check, measured):
     del measured["f_out_N"]
     report = check(measured)
     codes = [c.code for c in report.not_checked]

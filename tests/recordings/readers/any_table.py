@@ -103,10 +103,10 @@ def text_tables(draw: st.DrawFn) -> Known:
         options |= {"delimiter": delimiter, "decimal": "," if comma else "."}
     by_name = has_names and draw(st.booleans())
     sources: list[str | int] = list(titles) if by_name else list(range(1, count + 1))
-    told = dict(zip(sources, units, strict=True)) if where != "nowhere" else {}
+    declared = dict(zip(sources, units, strict=True)) if where != "nowhere" else {}
     data = dict(zip(sources, columns, strict=True))
     return Known(
-        draw(st.sampled_from([".csv", ".txt"])), content.encode(encoding), data, options, told
+        draw(st.sampled_from([".csv", ".txt"])), content.encode(encoding), data, options, declared
     )
 
 

@@ -114,7 +114,7 @@ def test_encoding_and_lines_to_skip_are_taken_from_the_map(ask):
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "message"),
     [
         ("t,f\n0,1\n1,fast\n", ("row 3", "column f", "'fast'")),
         ("t,f\n" + "0,1\n" * 200_000 + "1,fast\n", ("row 200002", "column f", "'fast'")),
@@ -123,7 +123,7 @@ def test_encoding_and_lines_to_skip_are_taken_from_the_map(ask):
         ("t,g\n0,1\n1,2\n", ("column f is missing", "there are: t, g")),
         ("0,1\n1,2\n", ("2 columns without names",)),
         ("t;f\n0,5;1,5\n1,5;1.234,5\n", ("row 3", "'1.234,5'")),
-        ("f,f\n0,1\n1,2\n", ("2 times", "number")),
+        ("f,f\n0,1\n1,2\n", ("2 columns have the name f", "number")),
         ("t,f\n", ("no row",)),
         ("# nothing\n", ("holds no table",)),
         ("word" * 50_000, ("no row",)),
@@ -132,15 +132,15 @@ def test_encoding_and_lines_to_skip_are_taken_from_the_map(ask):
         ("t,f\n0,1\n1,\x1b[31mred\n", ("row 3", "\\x1b[31mred")),
     ],
 )
-def test_what_is_wrong_is_said_with_its_place(ask, text, said):
+def test_what_is_wrong_is_reported_with_its_place(ask, text, message):
     with pytest.raises(InputError) as error:
         ask(text, "f", "t")
-    for words in said:
+    for words in message:
         assert words in error.value.line()
     assert error.value.line().isprintable()
 
 
-def test_the_wrong_encoding_is_said(ask):
+def test_the_wrong_encoding_is_reported(ask):
     with pytest.raises(InputError, match="cp1252"):
         ask("t;µ\n0;1\n1;2\n", "t", bytes_in="cp1252")
 

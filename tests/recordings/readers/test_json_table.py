@@ -49,7 +49,7 @@ def test_a_file_that_is_nested_deeply_is_one_line(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("content", "options", "said"),
+    ("content", "options", "message"),
     [
         ("", {}, "is empty"),
         ("{", {}, "is not JSON"),
@@ -63,7 +63,7 @@ def test_a_file_that_is_nested_deeply_is_one_line(tmp_path):
         ([[0, 1], [1, "1_2"]], {}, "row 2: column 2 holds '1_2'"),
     ],
 )
-def test_what_is_wrong_is_said(ask, content, options, said):
+def test_what_is_wrong_is_reported(ask, content, options, message):
     with pytest.raises(InputError) as error:
         ask(content, 1, 2, **options)
-    assert said in error.value.line()
+    assert message in error.value.line()

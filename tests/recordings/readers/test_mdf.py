@@ -65,44 +65,44 @@ def test_groups_of_other_rates_need_leave_to_interpolate(path):
 
 
 @pytest.mark.parametrize(
-    ("wanted", "said"),
+    ("wanted", "described"),
     [
-        ("force", "2 times; .* 1, 4"),
+        ("force", "2 columns have the name force; .* 1, 4"),
         ("torque", "there are: force, place, slow, force, patchy, words, time"),
         ("words", "row 1: column words"),
-        ("time", "no channel but the time"),
+        ("time", "no channel besides the time"),
     ],
 )
-def test_what_is_wrong_is_said(path, wanted, said):
-    with pytest.raises(InputError, match=said):
+def test_what_is_wrong_is_reported(path, wanted, described):
+    with pytest.raises(InputError, match=described):
         ask(path, wanted)
 
 
 @pytest.mark.parametrize(
-    ("master", "said"),
+    ("master", "described"),
     [(("a", 2), "an angle in deg"), (("d", 3), "a distance in m"), (("i", 4), "a count in index")],
 )
-def test_a_master_that_is_no_time_is_not_taken_for_one(tmp_path, master, said):
+def test_a_master_that_is_no_time_is_not_taken_for_one(tmp_path, master, described):
     path = tmp_path / "a.mf4"
     with MDF() as file:
         file.append([Signal(F, T, name="force", unit="N", master_metadata=master)])
         file.append([Signal(F, T, name="place", unit="mm")])
         file.save(path)
-    with pytest.raises(InputError, match=f"clock of the channels is {said}; .*rate_Hz"):
+    with pytest.raises(InputError, match=f"clock of the channels is {described}; .*rate_Hz"):
         ask(path, "time", "force")
-    with pytest.raises(InputError, match=f"clock of the channels is {said}, a time in s;"):
+    with pytest.raises(InputError, match=f"clock of the channels is {described}, a time in s;"):
         ask(path, "force", "place", resample=True)
     assert ask(path, "force")[0]["force"] == F.tolist()  # for a map with rate_Hz
 
 
 @pytest.mark.parametrize("version", ["3.30", "4.10"])
-@pytest.mark.parametrize(("said", "unit"), [("ms", "ms"), ("", "s")])
-def test_the_unit_of_the_master_counts(tmp_path, version, said, unit):
+@pytest.mark.parametrize(("described", "unit"), [("ms", "ms"), ("", "s")])
+def test_the_unit_of_the_master_counts(tmp_path, version, described, unit):
     path = tmp_path / ("a.mdf" if version < "4" else "a.mf4")
     with MDF(version=version) as file:
         file.append([Signal(F, T, name="force", unit="N")])
         master = file.groups[0].channels[0]
-        (master.conversion or master).unit = said
+        (master.conversion or master).unit = described
         file.save(path)
     assert ask(path, "time", "force")[1].units == {"time": unit, "force": "N"}
 

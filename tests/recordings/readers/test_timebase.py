@@ -16,4 +16,4 @@ def test_nothing_is_interpolated_on_a_clock_that_does_not_increase(which, wrong)
     times[which][3] = times[which][2] if wrong == 0.2 else wrong
     series = {source: (clock, clock) for source, clock in times.items()}
     with pytest.raises(InputError, match=rf"a.mf4, row 4: the time of {which} does not increase"):
-        on_one_clock(series, Path("a.mf4"), called=["time"], resample=True)
+        on_one_clock(series, Path("a.mf4"), clock_sources=["time"], resample=True)

@@ -1,20 +1,20 @@
-# From the files in raw/ to a page: `make`. A step runs again when what it reads, or what it is told
-# here, has changed; `make -n` shows which ones would. A step that fails leaves what it made before.
+# From the files in raw/ to a report: `make`. A step runs again if its inputs or its settings here
+# have changed; `make -n` shows these steps. A step that fails keeps its earlier output.
 
-# Your files, and the map that says what they hold.
+# The raw files, and the map of their columns.
 RAW = raw
 MAP = bench.toml
 
-# What is made of them.
+# The outputs.
 DATASET = dataset
 OUT = result
 
-# The program, and its own files, for those who develop it.
+# The program, and its source files for developers.
 TSAS = tsas
 PROGRAM =
 
-# What steps are told besides: DIAGNOSE = --runs bend90,bend180 leaves the other runs out; CALIBRATE
-# and SIMULATE take --dynamics lugre.
+# Further options of the steps: DIAGNOSE = --runs bend90,bend180 leaves the other runs out; CALIBRATE
+# and SIMULATE accept --dynamics lugre.
 STAGE = --rrd --force
 CALIBRATE =
 SIMULATE =

@@ -1,1 +1,1 @@
-"""What keeps a file from taking more memory or time than one of its size may."""
+"""Limits on the memory and time that reading a file may take."""

@@ -1,4 +1,4 @@
-"""What is said of a file that the library for its format refuses."""
+"""The error for a damaged file."""
 
 from tsas_cli.support.errors import InputError
 
@@ -9,5 +9,5 @@ def damaged(path: object, kind: str, error: Exception) -> InputError:
     return InputError(
         f"cannot be read as {kind} ({reason})",
         where=path,
-        remedy="is the file whole? copy or export it again",
+        remedy="the file may be incomplete: copy or export it again",
     )

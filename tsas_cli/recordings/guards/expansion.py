@@ -1,4 +1,4 @@
-"""What a file takes when it is unpacked, against its size."""
+"""Unpacked size of a file, limited by its size on disk."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,7 +9,7 @@ from tsas_cli.support.errors import InputError
 
 @dataclass
 class Expanded:
-    """What one file has asked for so far: bytes, and items (variables, cells, blocks)."""
+    """Unpacked bytes and items (variables, cells, blocks) of one file so far."""
 
     path: object
     of_file: int
@@ -19,7 +19,7 @@ class Expanded:
 
     @classmethod
     def of(cls, path: Path, most: int = limits.EXPANSION) -> "Expanded":
-        """Begin with a file that may expand to `most` times its size."""
+        """Return the empty count of a file that may expand to `most` times its size."""
         return cls(path, path.stat().st_size, most)
 
     def add(self, more: int, *, what: str = "") -> None:
@@ -28,12 +28,12 @@ class Expanded:
         Raises
         ------
         InputError
-            The file asks for more than a recording of its size can hold.
+            The file expands to more than a recording of its size can hold.
         """
         self.items += 1
         if self.items > min(limits.ITEMS, max(1000, self.of_file // 8)):
             raise InputError(
-                f"holds more than {self.items - 1} variables, or the same again and again",
+                f"holds more than {self.items - 1} variables, or refers to one repeatedly",
                 where=self.path,
                 expected="a recording",
                 remedy="export the channels that you need",
@@ -41,7 +41,7 @@ class Expanded:
         self.grow(more, what=what)
 
     def grow(self, more: int, *, what: str = "") -> None:
-        """Count so many bytes more of the same item.
+        """Count more bytes of the same item.
 
         Raises
         ------
@@ -50,20 +50,20 @@ class Expanded:
         """
         self.bytes += more
         if self.bytes > max(limits.HARMLESS, self.most * self.of_file):
-            asked = f"{what}, {limits.size(self.bytes)}" if what else limits.size(self.bytes)
+            claimed = f"{what}, {limits.size(self.bytes)}" if what else limits.size(self.bytes)
             raise InputError(
-                f"{asked} or more from a file of {limits.size(self.of_file)}",
+                f"{claimed} or more from a file of {limits.size(self.of_file)}",
                 where=self.path,
                 expected=f"at most {self.most} times its size",
-                remedy="is it damaged? if not, export it again without compression, or as CSV",
+                remedy="it may be damaged; else export it without compression, or as CSV",
             )
 
     def fits(self) -> None:
-        """Refuse what has to be loaded whole and is larger than the memory.
+        """Refuse a file that is loaded whole and exceeds the memory.
 
         Raises
         ------
         InputError
-            It is.
+            It does.
         """
         memory.fits(self.path, limits.COPIES * self.bytes)

@@ -1,4 +1,4 @@
-"""How large the packed variables of a MATLAB 5 file are, before they are unpacked."""
+"""Unpacked size of the compressed variables of a MATLAB 5 file, checked before they are loaded."""
 
 import struct
 import zlib
@@ -12,15 +12,15 @@ from tsas_cli.support import limits
 _HEADER, _TAG = 128, 8
 _ORDERS = {b"IM": "<", b"MI": ">"}
 _PACKED = 15
-_MOST_PACKED = 1032  # bytes that zlib makes of one, at most
+_MOST_PACKED = 1032  # bytes per compressed byte, at most
 _PART = 1 << 12
 
 
 def check_unpacked(path: Path) -> None:
-    """Refuse a file that unpacks to more than a recording can be, or than the memory holds.
+    """Refuse a file that unpacks to more than a recording can hold, or exceeds the memory.
 
-    What a variable says of its own size may be a lie, so what could be large is unpacked once for
-    its size alone, a part at a time.
+    The declared size of a variable may be false, so a file that could be large is first unpacked in
+    parts to count its bytes.
 
     Raises
     ------
@@ -33,8 +33,10 @@ def check_unpacked(path: Path) -> None:
     with path.open("rb") as stream:
         order = _ORDERS.get(stream.read(_HEADER)[-2:], "")
         for kind, size in _elements(stream, order):
-            said = _said(stream.read(min(size, _PART)), order) if kind == _PACKED else size
-            claimed.add(said, what="unpacked")
+            declared = (
+                _declared_size(stream.read(min(size, _PART)), order) if kind == _PACKED else size
+            )
+            claimed.add(declared, what="unpacked")
         claimed.fits()
         for kind, size in _elements(stream, order):
             for part in _parts(stream, size) if kind == _PACKED else (size,):
@@ -43,7 +45,7 @@ def check_unpacked(path: Path) -> None:
 
 
 def _elements(stream: BinaryIO, order: str) -> Iterator[tuple[int, int]]:
-    """Yield kind and size of each variable, the stream being where it begins."""
+    """Yield kind and size of each variable, with the stream at its beginning."""
     end = _HEADER
     stream.seek(end)
     while order and len(tag := stream.read(_TAG)) == _TAG:
@@ -53,8 +55,8 @@ def _elements(stream: BinaryIO, order: str) -> Iterator[tuple[int, int]]:
         stream.seek(end)
 
 
-def _said(packed: bytes, order: str) -> int:
-    """Return what a packed variable says of its size; nothing where it cannot be unpacked."""
+def _declared_size(packed: bytes, order: str) -> int:
+    """Return the declared size of a packed variable [bytes]; 0 if it cannot be unpacked."""
     try:
         tag = zlib.decompressobj().decompress(packed, _TAG)
     except zlib.error:
@@ -63,13 +65,13 @@ def _said(packed: bytes, order: str) -> int:
 
 
 def _parts(stream: BinaryIO, size: int) -> Iterator[int]:
-    """Yield the sizes of the parts of what is packed into the next `size` bytes."""
+    """Yield the unpacked sizes of the parts of the next `size` bytes."""
     packed = zlib.decompressobj()
     while size > 0 and (content := stream.read(min(size, _PART))):
         size -= len(content)
         while content:
             try:
                 yield len(packed.decompress(content, _MOST_PACKED * _PART))
-            except zlib.error:  # which the reader will say
+            except zlib.error:  # the reader reports it
                 return
             content = packed.unconsumed_tail

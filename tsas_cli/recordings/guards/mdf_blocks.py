@@ -1,8 +1,7 @@
-"""The blocks of an MDF file, looked at before asammdf follows their links.
+"""The blocks of an MDF file, checked before asammdf follows their links.
 
 A file is a tree: data groups hold channel groups, which hold channels; lists hold blocks of data.
-A link that leads back makes a ring that asammdf follows for ever. Packed blocks say how large they
-are.
+A link back makes a cycle that asammdf follows without end. Packed blocks declare their size.
 """
 
 import struct
@@ -15,7 +14,7 @@ from tsas_cli.support.errors import InputError
 
 _FIRST = 64  # where the header block is
 _VERSION_4 = 400
-# Which links of a block lead down the tree, or on to the next of its kind.
+# Links of a block that lead to its children or to the next block of its kind.
 _DOWN_4 = {
     b"##HD": (0,),
     b"##DG": (0, 1, 2),
@@ -36,7 +35,7 @@ class _Block(NamedTuple):
 
 
 def check_blocks(path: Path) -> None:
-    """Refuse a file whose blocks go in a ring, or unpack to more than a recording can be.
+    """Refuse a file whose blocks form a cycle, or unpack to more than a recording can hold.
 
     Raises
     ------
@@ -47,7 +46,7 @@ def check_blocks(path: Path) -> None:
     with path.open("rb") as stream:
         head = stream.read(_FIRST)
         if len(head) < _FIRST:
-            return  # which asammdf will say
+            return  # asammdf reports it
         version = struct.unpack("<H", head[28:30])[0]
         read = _block_4 if version >= _VERSION_4 else _block_3
         seen: set[int] = set()
@@ -55,12 +54,12 @@ def check_blocks(path: Path) -> None:
         while ahead:
             at = ahead.pop()
             if at >= expanded.of_file:
-                continue  # which asammdf will say
+                continue  # asammdf reports it
             if at in seen:
                 raise InputError(
-                    f"the block at byte {at} is linked to twice, so that its blocks go in a ring",
+                    f"the block at byte {at} has more than one link to it: the blocks form a cycle",
                     where=path,
-                    remedy="is it damaged? export it again",
+                    remedy="it may be damaged: export it again",
                 )
             seen.add(at)
             block = read(stream, at)
@@ -95,12 +94,12 @@ def _links(content: bytes, one: str) -> list[int]:
 
 
 def check_claims(path: Path, cycles: Iterator[int]) -> None:
-    """Refuse channels that say they have more samples than a file of this size can hold.
+    """Refuse channels that declare more samples than a file of this size can hold.
 
     Raises
     ------
     InputError
-        They do, or they take more than the memory.
+        They do, or their samples exceed the memory.
     """
     expanded = Expanded.of(path)
     for samples in cycles:

@@ -1,4 +1,4 @@
-"""A limit to how long Python may be busy with one thing."""
+"""A time limit for a block of Python code."""
 
 import signal
 import threading
@@ -9,12 +9,12 @@ from types import FrameType
 
 @contextmanager
 def at_most(seconds: float) -> Iterator[None]:
-    """Run the block, which may take so long; on Windows and beside the main thread it may for ever.
+    """Run the block with a time limit; without one on Windows and outside the main thread.
 
     Raises
     ------
     TimeoutError
-        It took longer.
+        The block took longer.
     """
 
     def late(number: int, frame: FrameType | None) -> None:

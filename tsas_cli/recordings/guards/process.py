@@ -1,8 +1,8 @@
-"""Foreign formats are read in a process of their own, since their libraries crash on damaged files.
+"""Foreign formats are read in a separate process, since their libraries crash on damaged files.
 
-The process is kept for the next file, but not after one that was refused; it ends with this one.
-A file that crashes it, or asks for more time or memory than a whole file of its size does, costs
-that process and is one line here.
+The process is reused for the next file, except after a refused one; it ends with this one. A file
+that crashes it, or exceeds the time or memory of a file of its size, ends that process and raises
+an error here.
 """
 
 import atexit
@@ -20,27 +20,27 @@ from typing import Any
 from tsas_cli.recordings.guards.damaged import damaged
 from tsas_cli.support.errors import InputError
 
-LEAST_S, BYTES_PER_S = 60.0, 1e6  # that a file of any size may take, and more for large ones
-LEAST_BYTES, BYTES_PER_BYTE = 2 << 30, 20  # of memory, likewise
+LEAST_S, BYTES_PER_S = 60.0, 1e6  # time limit: least, and per size of the file
+LEAST_BYTES, BYTES_PER_BYTE = 2 << 30, 20  # memory limit, likewise
 _START = "import sys; sys.path[:] = {path!r}; from {module} import serve; serve()"
 
 
 class _Process:
-    """The process, started when it is needed."""
+    """The reader process, started on first use."""
 
     def __init__(self) -> None:
         self.lock, self.owner = Lock(), 0
-        self.refused: Path | None = None  # what may have left the library's memory in disorder
+        self.refused: Path | None = None  # it may have corrupted the library's memory
         self.running: subprocess.Popen[bytes] | None = None
         atexit.register(self.end)
 
-    def ask(self, request: Any, seconds: float) -> Any:
-        """Return the answer to a request.
+    def call(self, request: Any, seconds: float) -> Any:
+        """Return the result of a request.
 
         Raises
         ------
         TimeoutError
-            There is none after so many seconds.
+            It is not done after so many seconds.
         EOFError
             The process has died.
         """
@@ -49,7 +49,7 @@ class _Process:
             late = Timer(seconds, process.kill)
             late.start()
             try:
-                return _asked(process, request)
+                return _exchange(process, request)
             except BaseException as error:
                 was_late = late.finished.is_set()
                 self.end()
@@ -60,20 +60,20 @@ class _Process:
                 late.cancel()
 
     def end(self) -> None:
-        """End the process, where this one has started it."""
+        """End the process, if this one has started it."""
         process, self.running, self.refused = self.running, None, None
         if process is not None and self.owner == os.getpid():
             process.kill()
             process.communicate()
 
     def _running(self) -> subprocess.Popen[bytes]:
-        if self.running is None or self.owner != os.getpid():  # a fork has its own
+        if self.running is None or self.owner != os.getpid():  # a fork starts its own
             start = _START.format(path=sys.path, module=__name__)
             self.running, self.owner = _started(start), os.getpid()
         return self.running
 
 
-def _asked(process: subprocess.Popen[bytes], request: Any) -> Any:
+def _exchange(process: subprocess.Popen[bytes], request: Any) -> Any:
     assert process.stdin is not None  # noqa: S101 # both are pipes
     assert process.stdout is not None  # noqa: S101
     pickle.dump(request, process.stdin)
@@ -94,12 +94,12 @@ _PROCESS = _Process()
 
 
 def in_another_process(module: str, function: str, path: Path, *rest: Any, kind: str) -> Any:
-    """Return what a module's function says about a file, called in the other process.
+    """Return the result of a module's function for a file, called in the other process.
 
     Raises
     ------
     InputError
-        The function raises it, or the process dies of the file or has to be ended.
+        The function raises it, or the file crashes the process or exceeds a limit.
     OSError
         The function raises it.
     """
@@ -110,22 +110,22 @@ def in_another_process(module: str, function: str, path: Path, *rest: Any, kind:
     memory = LEAST_BYTES + BYTES_PER_BYTE * size
     try:
         request = (module, function, (path, *rest), seconds, memory, Path.cwd())
-        answer = _PROCESS.ask(request, seconds)
+        result = _PROCESS.call(request, seconds)
     except TimeoutError as error:
         late = TimeoutError(f"not done after {seconds:.0f} s")
         raise damaged(path, kind, late) from error
     except EOFError as error:
         raise damaged(path, kind, EOFError("the library for this format crashed")) from error
-    if isinstance(answer, Exception):
+    if isinstance(result, Exception):
         _PROCESS.refused = path
-        raise answer
-    return answer
+        raise result
+    return result
 
 
 def serve() -> None:
-    """Answer requests on standard input, until there are no more."""
-    answers = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
-    os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # what libraries print is no answer
+    """Process requests on standard input until its end."""
+    results = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
+    os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # output of libraries is no result
     while True:
         try:
             request = pickle.load(sys.stdin.buffer)  # noqa: S301 # from the process that started this
@@ -134,19 +134,19 @@ def serve() -> None:
         module, function, arguments, seconds, memory, folder = request
         os.chdir(folder)
         called = getattr(import_module(module), function)
-        _end_after(seconds + 5.0)  # in case that nobody is left to do it
+        _end_after(seconds + 5.0)  # in case the parent process is dead
         _limit(memory)
-        pickle.dump(_answer(called, arguments), answers)
-        answers.flush()
-        _end_after(0.0)  # which means never
+        pickle.dump(_result(called, arguments), results)
+        results.flush()
+        _end_after(0.0)  # cancels the timer
 
 
-def _answer(called: Any, arguments: tuple[Any, ...]) -> Any:
+def _result(called: Any, arguments: tuple[Any, ...]) -> Any:
     try:
         return called(*arguments)
     except (InputError, OSError) as error:
         return error
-    except Exception:  # noqa: BLE001 # a defect, whose own type may not travel
+    except Exception:  # noqa: BLE001 # a defect, whose type may not be picklable
         return RuntimeError(traceback.format_exc())
 
 
@@ -156,7 +156,7 @@ def _end_after(seconds: float) -> None:
 
 
 def _limit(memory: int) -> None:
-    """Let this process take so much memory more, and leave no dump when it crashes."""
+    """Limit further memory of this process [bytes], and disable core dumps."""
     if sys.platform != "linux":
         return
     import resource

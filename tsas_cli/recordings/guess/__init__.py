@@ -1,1 +1,1 @@
-"""A map proposed from what files show: names, units and the look of the signals."""
+"""A map proposed from the names, the units and the signals of files."""

@@ -1,68 +1,73 @@
-"""From the columns of a file to the channels of a map."""
+"""The channels of a map, assigned from the columns of a file."""
 
 from collections.abc import Sequence
 
 from tsas_cli.recordings.columns import NAMES, has_input_and_output
-from tsas_cli.recordings.guess.columns import Column
-from tsas_cli.recordings.guess.ends import FORCES, LENGTHS, Ends, settle
-from tsas_cli.recordings.guess.proposed import Proposed, Sureness, with_unit
+from tsas_cli.recordings.guess.columns import FileColumn
+from tsas_cli.recordings.guess.ends import FORCES, LENGTHS, Assignment, assign
+from tsas_cli.recordings.guess.proposed import Certainty, Proposed, with_unit
 from tsas_cli.recordings.guess.signs import Sign, signs
 from tsas_cli.recordings.ingest_map import QUESTION
 
 _MECHANICAL = ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N")
 
 
-def channels(columns: Sequence[Column]) -> list[Proposed]:
-    """Return what the columns besides the clock can be, in the order of the format.
+def channels(columns: Sequence[FileColumn]) -> list[Proposed]:
+    """Return the proposed channels of the columns besides the clock, in the order of the format.
 
-    Channels that nothing speaks for are not there.
+    Channels without evidence are left out.
     """
     moving = [c for c in columns if c.moves]
     others = _others(columns)
-    taken = {id(c) for found in others.values() for c in found}
-    free = [c for c in moving if id(c) not in taken and not c.words.wish]
+    assigned = {id(c) for found in others.values() for c in found}
+    free = [c for c in moving if id(c) not in assigned and not c.words.is_reference]
     displacements = [c for c in free if c.quantity in LENGTHS]
     tensions = [c for c in free if c.quantity in FORCES and not _of_motor(c)]
-    ends = settle(displacements, tensions)
-    found = _settled(ends) | _asked(ends) | {n: _one(n, c) for n, c in others.items()}
-    if not has_input_and_output(frozenset(n for n, p in found.items() if p.sure != "open")):
+    ends = assign(displacements, tensions)
+    found = _assigned(ends) | _open_channels(ends) | {n: _one(n, c) for n, c in others.items()}
+    if not has_input_and_output(frozenset(n for n, p in found.items() if p.certainty != "open")):
         unknown = [c for c in free if c.quantity is None]
         missing = [n for n in _MECHANICAL if n not in found]
         found |= _unknown(unknown, missing, ends) if unknown else {}
     return [found[name] for name in NAMES if name in found]
 
 
-def _others(columns: Sequence[Column]) -> dict[str, list[Column]]:
-    """Return the columns of the channels that are neither displacement nor tension of the tendon.
+def _others(columns: Sequence[FileColumn]) -> dict[str, list[FileColumn]]:
+    """Return the columns of channels that are neither displacement nor tension of the tendon.
 
-    A motor's position in mm is the tendon's at the drive, its angle is the motor's own.
+    A motor's position in mm is the proximal displacement, its angle is the motor angle.
     """
-    found: dict[str, list[Column]] = {}
+    found: dict[str, list[FileColumn]] = {}
     for column in columns:
-        quantity, motor = column.quantity, column.place == "motor"
+        quantity, motor = column.quantity, column.end == "motor"
         turns = column.kind in ("angle", "label", None)
         if quantity == "temperature":
             found.setdefault("temperature_C", []).append(column)
         elif quantity == "speed" and (motor or column.kind == "rotation"):
             found.setdefault("motor_speed_rpm", []).append(column)
-        elif motor and quantity in ("angle", "displacement") and turns and not column.words.wish:
+        elif (
+            motor
+            and quantity in ("angle", "displacement")
+            and turns
+            and not column.words.is_reference
+        ):
             found.setdefault("motor_angle_rad", []).append(column)
-        elif quantity == "force" and column.words.wish and column.place != "in":
+        elif quantity == "force" and column.words.is_reference and column.end != "in":
             found.setdefault("f_out_ref_N", []).append(column)
     return found
 
 
-def _of_motor(column: Column) -> bool:
-    """Say whether a torque is the motor's, before a gear of unknown friction."""
-    return column.place == "motor" and column.quantity == "torque"
+def _of_motor(column: FileColumn) -> bool:
+    """Return whether a torque is the motor's, before a gear of unknown friction."""
+    return column.end == "motor" and column.quantity == "torque"
 
 
-def _one(name: str, columns: Sequence[Column]) -> Proposed:
-    measured = [c for c in columns if not c.words.wish] or columns
+def _one(name: str, columns: Sequence[FileColumn]) -> Proposed:
+    measured = [c for c in columns if not c.words.is_reference] or columns
     if len(measured) > 1:
         shown = ", ".join(c.shown for c in columns)
         asked = {"source": f"which one: {shown}?"}
-        return Proposed(name, {"source": QUESTION}, "open", ("several speak of it",), asked)
+        return Proposed(name, {"source": QUESTION}, "open", ("several columns match",), asked)
     column = measured[0]
     entry, asked = with_unit(column, name)
     others = tuple(c.shown for c in columns if c is not column)
@@ -71,15 +76,15 @@ def _one(name: str, columns: Sequence[Column]) -> Proposed:
     )
 
 
-def _settled(ends: Ends) -> dict[str, Proposed]:
-    turned = signs(ends.settled)
+def _assigned(ends: Assignment) -> dict[str, Proposed]:
+    by_name = signs(ends.assigned)
     return {
-        name: _channel(name, column, ends, turned.get(name, (1, "")))
-        for name, column in ends.settled.items()
+        name: _channel(name, column, ends, by_name.get(name, (1, "")))
+        for name, column in ends.assigned.items()
     }
 
 
-def _channel(name: str, column: Column, ends: Ends, sign: Sign) -> Proposed:
+def _channel(name: str, column: FileColumn, ends: Assignment, sign: Sign) -> Proposed:
     entry, asked = with_unit(column, name)
     why = [*column.reasons, *_motion(column, ends)]
     if sign[0] == QUESTION:
@@ -88,28 +93,28 @@ def _channel(name: str, column: Column, ends: Ends, sign: Sign) -> Proposed:
         why.append(sign[1])
     if sign[0] != 1:
         entry["sign"] = sign[0]
-    named = column.place is not None
-    sure: Sureness = "sure" if named and _motion(column, ends) else "likely"
-    return Proposed(name, entry, "open" if asked else sure, tuple(why), asked)
+    named = column.end is not None
+    certainty: Certainty = "sure" if named and _motion(column, ends) else "likely"
+    return Proposed(name, entry, "open" if asked else certainty, tuple(why), asked)
 
 
-def _motion(column: Column, ends: Ends) -> list[str]:
-    """Return what the motion says of a column's place, against the other settled ones."""
-    settled = {id(c) for c in ends.settled.values()}
-    first = [b.shown for a, b in ends.ahead if a is column and id(b) in settled]
-    behind = [a.shown for a, b in ends.ahead if b is column and id(a) in settled]
-    said = []
+def _motion(column: FileColumn, ends: Assignment) -> list[str]:
+    """Return the evidence of the motion for a column's end, against the other assigned columns."""
+    assigned = {id(c) for c in ends.assigned.values()}
+    first = [b.shown for a, b in ends.ahead if a is column and id(b) in assigned]
+    behind = [a.shown for a, b in ends.ahead if b is column and id(a) in assigned]
+    evidence = []
     if first:
-        said.append(f"after a turn it moves before {', '.join(first)}: it is nearer to the drive")
+        evidence.append(f"it moves before {', '.join(first)} after a reversal: nearer to the drive")
     if behind:
-        said.append(f"after a turn it comes behind {', '.join(behind)}, held back by friction")
-    return said
+        evidence.append(f"it moves after {', '.join(behind)} after a reversal, delayed by friction")
+    return evidence
 
 
-def _asked(ends: Ends) -> dict[str, Proposed]:
-    """Return the channels whose column is in question; for a column alone, one of the two."""
+def _open_channels(ends: Assignment) -> dict[str, Proposed]:
+    """Return the channels whose column is open; for a single column, one of the two ends."""
     found: dict[str, Proposed] = {}
-    for name, candidates in ends.asked.items():
+    for name, candidates in ends.open.items():
         other = {"x_out_mm": "x_in_mm", "f_out_N": "f_in_N"}.get(name)
         if other in found and len(candidates) == 1:
             continue
@@ -122,12 +127,14 @@ def _asked(ends: Ends) -> dict[str, Proposed]:
     return found
 
 
-def _unknown(columns: Sequence[Column], names: Sequence[str], ends: Ends) -> dict[str, Proposed]:
-    """Return a question for each channel that is missing while columns are left unexplained."""
+def _unknown(
+    columns: Sequence[FileColumn], names: Sequence[str], ends: Assignment
+) -> dict[str, Proposed]:
+    """Return a question for each missing channel while columns are unassigned."""
     shown = ", ".join(c.shown for c in columns)
-    free = settle((), columns) if len(columns) > 1 else ends
+    free = assign((), columns) if len(columns) > 1 else ends
     why = (
-        "neither names nor units say what these columns are",
+        "neither names nor units identify these columns",
         *_orders(columns, free),
     )
     asked = {"source": f"which column is this, if any: {shown}?"}
@@ -135,14 +142,14 @@ def _unknown(columns: Sequence[Column], names: Sequence[str], ends: Ends) -> dic
 
 
 def _open(
-    name: str, columns: Sequence[Column], why: tuple[str, ...], asked: dict[str, str]
+    name: str, columns: Sequence[FileColumn], why: tuple[str, ...], asked: dict[str, str]
 ) -> Proposed:
-    told = tuple(_told(c) for c in columns)
+    alternatives = tuple(_described(c) for c in columns)
     sources = tuple(c.source for c in columns)
-    return Proposed(name, {"source": QUESTION}, "open", why, asked, told, sources)
+    return Proposed(name, {"source": QUESTION}, "open", why, asked, alternatives, sources)
 
 
-def _orders(columns: Sequence[Column], ends: Ends) -> list[str]:
+def _orders(columns: Sequence[FileColumn], ends: Assignment) -> list[str]:
     return [
         f"by the motion {column.shown} is nearer to the drive than {', '.join(behind)}"
         for column in columns
@@ -150,5 +157,5 @@ def _orders(columns: Sequence[Column], ends: Ends) -> list[str]:
     ]
 
 
-def _told(column: Column) -> str:
+def _described(column: FileColumn) -> str:
     return f"{column.shown}: {'; '.join(column.reasons)}" if column.reasons else column.shown

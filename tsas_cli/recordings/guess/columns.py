@@ -1,103 +1,100 @@
-"""One column of a file with what its name and its unit say of it."""
+"""One column of a file, with the meaning of its name and its unit."""
 
 import re
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tsas_cli.recordings.guess.kinds import QUANTITY_OF, Kind, fits, kind_of, unit_behind
+from tsas_cli.recordings.guess.kinds import QUANTITY_OF, UnitKind, fits, kind_of, unit_behind
 from tsas_cli.recordings.guess.opening import Opened
-from tsas_cli.recordings.guess.words import WEAK, Place, Quantity, Words, words_of
-from tsas_cli.recordings.readers.table import Floats, Source
+from tsas_cli.recordings.guess.words import WEAK, End, NamedQuantity, Words, words_of
+from tsas_cli.recordings.readers.table import ColumnSource, Floats
 
 _BRACKETS = re.compile(r"\s*[\[(]([^\[\]()]*)[\])]\s*$")
 
 
 @dataclass(frozen=True)
-class Column:
+class FileColumn:
     """A column of numbers.
 
     Attributes
     ----------
     source
-        How a map names it: by name, or by number where it has none.
+        Its identifier in a map: the name, or the number of a column without a name.
     values
         Shape (n,), in the file's unit; a gap is NaN.
     words
-        What its name says.
+        The meaning of its name.
     unit, kind
-        The unit as the file says it, empty where it does not, and what it is of.
+        The unit stated by the file, empty without one, and its kind.
     own_unit
-        Whether ingest finds this unit by itself.
+        Whether ingest finds this unit in the file.
     where
-        Where the unit stands ("in its name").
+        Where the unit is stated ("in its name").
     """
 
-    source: Source
+    source: ColumnSource
     name: str
     values: Floats
     words: Words
     unit: str
-    kind: Kind | None
+    kind: UnitKind | None
     own_unit: bool
     where: str
 
     @property
     def shown(self) -> str:
-        """The column as a sentence names it."""
+        """The column's name in sentences."""
         return f'"{self.name}"' if self.name else f"column {self.source}"
 
     @property
-    def quantity(self) -> Quantity | None:
-        """What the column measures by its unit, else by its name; None where they disagree."""
-        said = self.words.quantity
+    def quantity(self) -> NamedQuantity | None:
+        """The measured quantity by the unit, else by the name; None if they disagree."""
+        named = self.words.quantity
         if self.kind in (None, "label"):
-            return said
+            return named
         if self.disagrees:
             return None
-        return "other" if said == "other" else QUANTITY_OF[self.kind]
+        return "other" if named == "other" else QUANTITY_OF[self.kind]
 
     @property
-    def place(self) -> Place | None:
-        """The end that its name speaks of; "Load [N]" speaks of a force and of no end."""
-        alone = self.words.quantity is None and self.words.told.get("place") in WEAK
+    def end(self) -> End | None:
+        """The end in its name; "Load [N]" names a force and no end."""
+        alone = self.words.quantity is None and self.words.matched.get("end") in WEAK
         force = self.kind in (None, "force", "torque", "label")
-        return None if alone and force else self.words.place
+        return None if alone and force else self.words.end
 
     @property
     def disagrees(self) -> bool:
-        """Whether the name speaks of something that the unit cannot measure."""
-        said, kind = self.words.quantity, self.kind
-        if said in (None, "other") or kind in (None, "label", "other"):
+        """Whether the name states a quantity that does not have this unit."""
+        named, kind = self.words.quantity, self.kind
+        if named in (None, "other") or kind in (None, "label", "other"):
             return False
-        return not fits(said, kind)
+        return not fits(named, kind)
 
     @property
     def reasons(self) -> list[str]:
-        """What the name and the unit say, one sentence each."""
-        told = self.words.told
-        said = []
-        speaks = {}
-        if "quantity" in told:
-            speaks[told["quantity"]] = _AN[self.words.quantity]
-        if "place" in told and self.place:
-            more = speaks.pop(told["place"], "")
-            speaks[told["place"]] = (
-                f"{more} at {_PLACE[self.place]}" if more else _PLACE[self.place]
-            )
-        said += [f'"{word}" in its name speaks of {meaning}' for word, meaning in speaks.items()]
+        """The evidence of the name and the unit, one sentence each."""
+        matched = self.words.matched
+        meanings = {}
+        if "quantity" in matched:
+            meanings[matched["quantity"]] = _AN[self.words.quantity]
+        if "end" in matched and self.end:
+            more = meanings.pop(matched["end"], "")
+            meanings[matched["end"]] = f"{more} at {_END[self.end]}" if more else _END[self.end]
+        reasons = [f'"{word}" in its name means {meaning}' for word, meaning in meanings.items()]
         if self.unit:
-            said.append(f"its unit, {self.unit}, stands {self.where}")
-        return said
+            reasons.append(f"its unit, {self.unit}, is stated {self.where}")
+        return reasons
 
     @property
     def moves(self) -> bool:
-        """Whether it takes more than one value."""
-        there = self.values[np.isfinite(self.values)]
-        return there.size > 1 and float(np.ptp(there)) > 0.0
+        """Whether it has more than one value."""
+        finite = self.values[np.isfinite(self.values)]
+        return finite.size > 1 and float(np.ptp(finite)) > 0.0
 
 
-_AN: dict[Quantity | None, str] = {
+_AN: dict[NamedQuantity | None, str] = {
     "time": "a time",
     "counter": "a count of samples",
     "displacement": "a displacement",
@@ -106,49 +103,49 @@ _AN: dict[Quantity | None, str] = {
     "torque": "a torque",
     "speed": "a speed",
     "temperature": "a temperature",
-    "other": "something that no channel holds",
+    "other": "no quantity of a channel",
 }
-_PLACE: dict[Place, str] = {"in": "the drive", "out": "the load", "motor": "the motor"}
+_END: dict[End, str] = {"in": "the drive", "out": "the load", "motor": "the motor"}
 
 
-def columns_of(opened: Opened) -> list[Column]:
-    """Return the columns of a file in their order."""
+def columns_of(opened: Opened) -> list[FileColumn]:
+    """Return the columns of a file, in order."""
     return [
         _column(source, opened.names[source], _finite(values), opened.table.units.get(source, ""))
         for source, values in opened.table.columns.items()
     ]
 
 
-def believed(columns: list[Column]) -> tuple[list[Column], str]:
-    """Return the columns, without what their names say where one name and its unit disagree.
+def with_trusted_names(columns: list[FileColumn]) -> tuple[list[FileColumn], str]:
+    """Return the columns, without the meaning of any name if one name and its unit disagree.
 
-    Then names may stand over the wrong columns: units and motion alone are believed, and the
-    sentence says so.
+    The names may then be those of other columns: only units and motion are used, and the sentence
+    states it.
     """
-    odd = [c.shown for c in columns if c.disagrees]
-    if not odd:
+    disagreeing = [c.shown for c in columns if c.disagrees]
+    if not disagreeing:
         return columns, ""
-    sentence = f"Name and unit of {', '.join(odd)} do not go together, so that no name is believed."
-    return [replace(c, words=Words(None, None, wish=False)) for c in columns], sentence
+    sentence = f"Name and unit of {', '.join(disagreeing)} disagree: no name is used."
+    return [replace(c, words=Words(None, None, is_reference=False)) for c in columns], sentence
 
 
 def _finite(values: Floats) -> Floats:
     return np.where(np.isfinite(values), values, np.nan)
 
 
-def _column(source: Source, name: str, values: Floats, told: str) -> Column:
-    """Return a column; `told` is the unit that ingest finds by itself, if any."""
+def _column(source: ColumnSource, name: str, values: Floats, declared: str) -> FileColumn:
+    """Return a column; `declared` is the unit that ingest finds in the file, if any."""
     bracket = _BRACKETS.search(name)
     inside = bracket[1].strip() if bracket else ""
     stem, behind = unit_behind(name[: bracket.start()] if bracket else name)
-    where = "in its name" if told == inside else "in the file"
-    for unit, own, place in (
-        (told, True, where),
-        (told.strip(" ?"), False, where),
+    where = "in its name" if declared == inside else "in the file"
+    for unit, own, position in (
+        (declared, True, where),
+        (declared.strip(" ?"), False, where),
         (inside.strip(" ?"), False, "in its name"),
         (behind, False, "at the end of its name"),
     ):
         kind = kind_of(unit) if unit else None
         if kind is not None:
-            return Column(source, name, values, words_of(stem), unit, kind, own, place)
-    return Column(source, name, values, words_of(name), "", None, False, "")
+            return FileColumn(source, name, values, words_of(stem), unit, kind, own, position)
+    return FileColumn(source, name, values, words_of(name), "", None, False, "")

@@ -1,19 +1,19 @@
-"""Which columns are at the drive and which at the load.
+"""Assignment of columns to the proximal and the distal end.
 
-Every way to give the displacements and the tensions to the four channels is held against what the
-names say and against which channel goes ahead of which. A channel is settled when all ways that
-are left give it the same column.
+Every assignment of the displacements and the tensions to the four channels is compared with the
+names and with the order in which the channels move. A channel is assigned if all consistent
+assignments agree on its column.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import permutations
 
-from tsas_cli.recordings.guess.columns import Column
-from tsas_cli.recordings.guess.looks import goes_ahead
+from tsas_cli.recordings.guess.columns import FileColumn
+from tsas_cli.recordings.guess.looks import leads
 
 _X, _F = ("x_in_mm", "x_out_mm"), ("f_in_N", "f_out_N")
-# Nearer to the drive first.
+# Pairs of channels, the one nearer to the drive first.
 _ORDER = (
     ("f_in_N", "x_in_mm"),
     ("f_in_N", "x_out_mm"),
@@ -22,122 +22,124 @@ _ORDER = (
 )
 LENGTHS, FORCES = ("displacement", "angle"), ("force", "torque")
 _MOST = 5  # columns of one kind whose motion is compared
-Way = Mapping[str, Column | None]
+_Candidate = Mapping[str, FileColumn | None]
 
 
 @dataclass(frozen=True)
-class Ends:
-    """The channels that are settled, and for the others the columns and the reason.
+class Assignment:
+    """The assigned channels; for the open ones, their candidate columns and the reason.
 
-    `ahead` holds the pairs of columns whose order the motion tells, the nearer to the drive first.
+    `ahead` holds the pairs of columns whose order the motion shows, the one nearer to the drive
+    first.
     """
 
-    settled: dict[str, Column]
-    asked: dict[str, tuple[Column, ...]]
+    assigned: dict[str, FileColumn]
+    open: dict[str, tuple[FileColumn, ...]]
     reason: str
-    ahead: tuple[tuple[Column, Column], ...]
+    ahead: tuple[tuple[FileColumn, FileColumn], ...]
 
 
-def settle(displacements: Sequence[Column], tensions: Sequence[Column]) -> Ends:
-    """Give displacements and tensions to their ends, as far as names and motion tell."""
+def assign(displacements: Sequence[FileColumn], tensions: Sequence[FileColumn]) -> Assignment:
+    """Return displacements and tensions by end, as far as names and motion determine it."""
     if max(len(displacements), len(tensions)) > _MOST:
-        displacements, tensions = _with_place(displacements), _with_place(tensions)
+        displacements, tensions = _with_end(displacements), _with_end(tensions)
     if max(len(displacements), len(tensions)) > _MOST:
-        reason = "there are too many columns of one kind to tell them by their motion"
-        return Ends({}, _every(displacements, tensions), reason, ())
+        reason = "there are too many columns of one kind to order them by their motion"
+        return Assignment({}, _every(displacements, tensions), reason, ())
     motion = _Motion()
-    ways = list(_ways(displacements, tensions))
-    by_name = [way for way in ways if _as_named(way, (*displacements, *tensions))]
-    left = [way for way in by_name if _as_moved(way, motion)]
-    ahead = motion.told((*displacements, *tensions))
+    candidates = list(_candidates(displacements, tensions))
+    by_name = [one for one in candidates if _fits_names(one, (*displacements, *tensions))]
+    consistent = [one for one in by_name if _fits_motion(one, motion)]
+    ahead = motion.pairs((*displacements, *tensions))
     if not by_name:
-        return _apart(displacements, tensions, ahead)
-    if not left:
-        return _against(displacements, tensions, ahead)
-    settled: dict[str, Column] = {}
-    asked = {}
+        return _names_inconsistent(displacements, tensions, ahead)
+    if not consistent:
+        return _motion_inconsistent(displacements, tensions, ahead)
+    assigned: dict[str, FileColumn] = {}
+    undecided = {}
     for name in (*_X, *_F):
-        found = {id(way[name]): way[name] for way in left}
+        found = {id(one[name]): one[name] for one in consistent}
         (first, *more) = found.values()
         if more:
-            asked[name] = tuple(c for c in found.values() if c is not None)
+            undecided[name] = tuple(c for c in found.values() if c is not None)
         elif first is not None:
-            settled[name] = first
-    reason = "neither the names nor the motion tell the ends apart"
-    return Ends(settled, asked, reason, ahead)
+            assigned[name] = first
+    reason = "neither the names nor the motion distinguish the ends"
+    return Assignment(assigned, undecided, reason, ahead)
 
 
-def _with_place(columns: Sequence[Column]) -> list[Column]:
-    """Return the columns whose names speak of an end, all where none does."""
-    return [c for c in columns if c.place is not None] or list(columns)
+def _with_end(columns: Sequence[FileColumn]) -> list[FileColumn]:
+    """Return the columns whose names state an end; all if none does."""
+    return [c for c in columns if c.end is not None] or list(columns)
 
 
-def _apart(
-    displacements: Sequence[Column],
-    tensions: Sequence[Column],
-    ahead: tuple[tuple[Column, Column], ...],
-) -> Ends:
-    """Return what is asked where names fit no way: one kind, if the other is named well."""
-    reason = "the names do not give one column to each end"
-    asked = _every(displacements, tensions)
+def _names_inconsistent(
+    displacements: Sequence[FileColumn],
+    tensions: Sequence[FileColumn],
+    ahead: tuple[tuple[FileColumn, FileColumn], ...],
+) -> Assignment:
+    """Return the assignment if no candidate fits the names; one kind may still be well named."""
+    reason = "the names do not assign one column to each end"
     if displacements and tensions:
-        x, f = settle(displacements, ()), settle((), tensions)
-        if bool(x.settled) != bool(f.settled):
-            good, bad = (x, f) if x.settled else (f, x)
-            return Ends(good.settled, {**good.asked, **bad.asked}, reason, ahead)
-    return Ends({}, asked, reason, ahead)
+        x, f = assign(displacements, ()), assign((), tensions)
+        if bool(x.assigned) != bool(f.assigned):
+            good, bad = (x, f) if x.assigned else (f, x)
+            return Assignment(good.assigned, {**good.open, **bad.open}, reason, ahead)
+    return Assignment({}, _every(displacements, tensions), reason, ahead)
 
 
-def _against(
-    displacements: Sequence[Column],
-    tensions: Sequence[Column],
-    ahead: tuple[tuple[Column, Column], ...],
-) -> Ends:
-    """Return what is asked where names and motion disagree.
+def _motion_inconsistent(
+    displacements: Sequence[FileColumn],
+    tensions: Sequence[FileColumn],
+    ahead: tuple[tuple[FileColumn, FileColumn], ...],
+) -> Assignment:
+    """Return the assignment if names and motion disagree.
 
-    One kind, where units tell the kinds apart and both agree on the other; else everything.
+    Open is one kind, if units distinguish the kinds and both agree on the other; else all.
     """
-    reason = "the names give the ends one way, the motion another"
-    told = all(c.kind not in (None, "label") for c in (*displacements, *tensions))
-    if displacements and tensions and told:
-        x, f = settle(displacements, ()), settle((), tensions)
+    reason = "names and motion disagree on the ends"
+    units_known = all(c.kind not in (None, "label") for c in (*displacements, *tensions))
+    if displacements and tensions and units_known:
+        x, f = assign(displacements, ()), assign((), tensions)
         for good, bad in ((x, f), (f, x)):
-            if not bad.settled and good.ahead and not good.asked:
-                return Ends(good.settled, bad.asked, reason, ahead)
-    return Ends({}, _every(displacements, tensions), reason, ahead)
+            if not bad.assigned and good.ahead and not good.open:
+                return Assignment(good.assigned, bad.open, reason, ahead)
+    return Assignment({}, _every(displacements, tensions), reason, ahead)
 
 
 def _every(
-    displacements: Sequence[Column], tensions: Sequence[Column]
-) -> dict[str, tuple[Column, ...]]:
-    asked = dict.fromkeys(_X, tuple(displacements)) | dict.fromkeys(_F, tuple(tensions))
-    return {name: columns for name, columns in asked.items() if columns}
+    displacements: Sequence[FileColumn], tensions: Sequence[FileColumn]
+) -> dict[str, tuple[FileColumn, ...]]:
+    channels = dict.fromkeys(_X, tuple(displacements)) | dict.fromkeys(_F, tuple(tensions))
+    return {name: columns for name, columns in channels.items() if columns}
 
 
 class _Motion:
-    """Which of two columns goes ahead, found once for each pair."""
+    """Which of two columns moves first after a reversal, computed once per pair."""
 
     def __init__(self) -> None:
         self._found: dict[tuple[int, int], int] = {}
 
-    def __call__(self, a: Column, b: Column) -> int:
+    def __call__(self, a: FileColumn, b: FileColumn) -> int:
         if (id(a), id(b)) not in self._found:
-            order = goes_ahead(a.values, b.values)
+            order = leads(a.values, b.values)
             self._found |= {(id(a), id(b)): order, (id(b), id(a)): -order}
         return self._found[id(a), id(b)]
 
-    def told(self, columns: Sequence[Column]) -> tuple[tuple[Column, Column], ...]:
+    def pairs(self, columns: Sequence[FileColumn]) -> tuple[tuple[FileColumn, FileColumn], ...]:
         return tuple((a, b) for a, b in permutations(columns, 2) if self(a, b) == 1)
 
 
-def _ways(displacements: Sequence[Column], tensions: Sequence[Column]) -> Iterator[Way]:
+def _candidates(
+    displacements: Sequence[FileColumn], tensions: Sequence[FileColumn]
+) -> Iterator[_Candidate]:
     for x_in, x_out in _pairs(displacements):
         for f_in, f_out in _pairs(tensions):
             yield dict(zip((*_X, *_F), (x_in, x_out, f_in, f_out), strict=True))
 
 
-def _pairs(columns: Sequence[Column]) -> list[tuple[Column | None, Column | None]]:
-    """Return every way to give columns to two ends; one that is alone may be at either."""
+def _pairs(columns: Sequence[FileColumn]) -> list[tuple[FileColumn | None, FileColumn | None]]:
+    """Return every assignment of columns to two ends; a single column may be at either."""
     if not columns:
         return [(None, None)]
     if len(columns) == 1:
@@ -145,27 +147,29 @@ def _pairs(columns: Sequence[Column]) -> list[tuple[Column | None, Column | None
     return list(permutations(columns, 2))
 
 
-def _as_named(way: Way, columns: Sequence[Column]) -> bool:
-    """Say whether each column is where it is named for, and none where another is named for."""
-    for name, column in way.items():
+def _fits_names(candidate: _Candidate, columns: Sequence[FileColumn]) -> bool:
+    """Return whether each column is at the end in its name, and at no end of another's name."""
+    for name, column in candidate.items():
         end = "in" if name.endswith(("in_mm", "in_N")) else "out"
         if column is None:
             continue
-        if column.place is None:
+        if column.end is None:
             kind = LENGTHS if name in _X else FORCES
-            if any(c.place == end and c.quantity in kind for c in columns):
+            if any(c.end == end and c.quantity in kind for c in columns):
                 return False
-        elif column.place != end and (column.place, end) != ("motor", "in"):
+        elif column.end != end and (column.end, end) != ("motor", "in"):
             return False
     return True
 
 
-def _as_moved(way: Way, motion: _Motion) -> bool:
+def _fits_motion(candidate: _Candidate, motion: _Motion) -> bool:
+    """Return whether no channel moves before one that is nearer to the drive."""
+
     def order(near: str, far: str) -> int:
-        a, b = way[near], way[far]
+        a, b = candidate[near], candidate[far]
         return 0 if a is None or b is None else motion(a, b)
 
     if any(order(*pair) == -1 for pair in _ORDER):
         return False
-    # A load with friction of its own may put f_out ahead of x_in, which x_out then shows.
+    # With friction at the load, f_out may lead x_in; x_out then shows the order.
     return order("x_in_mm", "x_out_mm") == 1 or order("x_in_mm", "f_out_N") != -1

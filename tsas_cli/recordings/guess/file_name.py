@@ -1,9 +1,9 @@
-"""The numbers in a file's name that look like conditions of a run."""
+"""Conditions of a run from the numbers in a file name."""
 
 import re
 from pathlib import Path
 
-# Words that stand before a number, and the units that such a number has.
+# Group, words before the number, and likely unit.
 _BEFORE = {
     "total_bend_rad": ("bend", r"bend|bending|theta|wrap|biegung|winkel|angle", "deg"),
     "sheath_length_mm": ("length", r"length|len|laenge|sheath|l", "mm"),
@@ -13,9 +13,9 @@ _NUMBER = r"\d+(?:\.\d+)?"
 
 
 def conditions_in(path: Path) -> tuple[str, dict[str, tuple[str, str]]]:
-    """Return a pattern for a file's name, and group and likely unit of each condition in it.
+    """Return a pattern for a file name, and group and likely unit of each condition in it.
 
-    Both are empty where no word of a condition stands before a number.
+    Both are empty without a word of a condition before a number.
     """
     found: list[tuple[int, str, str]] = []
     groups: dict[str, tuple[str, str]] = {}

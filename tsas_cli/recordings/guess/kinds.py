@@ -1,18 +1,18 @@
-"""What a unit is of: time, length, force, an angle, a torque, counts."""
+"""The kind of a unit: time, length, force, angle, torque, counts."""
 
 import re
 from typing import Literal
 
-from tsas_cli.recordings.guess.words import Quantity, words_of
+from tsas_cli.recordings.guess.words import NamedQuantity, words_of
 from tsas_cli.recordings.units import conversion, is_label, is_unit
 from tsas_cli.support.errors import InputError
 
-Kind = Literal[
+UnitKind = Literal[
     "time", "length", "force", "angle", "torque", "rotation", "temperature", "label", "other"
 ]
 
-# An angle and a torque are tried as what they become on a radius.
-_TRIED: tuple[tuple[Kind, str, float | None], ...] = (
+# Kind, canonical unit, and the radius that converts an angle or a torque to it.
+_TARGETS: tuple[tuple[UnitKind, str, float | None], ...] = (
     ("time", "s", None),
     ("length", "mm", None),
     ("force", "N", None),
@@ -21,7 +21,7 @@ _TRIED: tuple[tuple[Kind, str, float | None], ...] = (
     ("rotation", "rpm", None),
     ("temperature", "°C", None),
 )
-QUANTITY_OF: dict[Kind, Quantity] = {
+QUANTITY_OF: dict[UnitKind, NamedQuantity] = {
     "time": "time",
     "length": "displacement",
     "force": "force",
@@ -31,7 +31,7 @@ QUANTITY_OF: dict[Kind, Quantity] = {
     "temperature": "temperature",
     "other": "other",
 }
-_FITTING: dict[Quantity, tuple[Kind, ...]] = {
+_FITTING: dict[NamedQuantity, tuple[UnitKind, ...]] = {
     "time": ("time",),
     "counter": ("label",),
     "displacement": ("length", "angle", "label"),
@@ -42,8 +42,8 @@ _FITTING: dict[Quantity, tuple[Kind, ...]] = {
     "temperature": ("temperature", "label"),
     "other": (),
 }
-# Behind a name without brackets: time_ms, Force N. `in`, `m`, `g` and `A` are missing, because
-# they are ends, masters and sensors as often as units.
+# After a name without brackets: time_ms, Force N. `in`, `m`, `g` and `A` are left out, because they
+# denote ends, masters and sensors as often as units.
 _SUFFIXES = (
     "s ms us µs ns sec mm cm µm um inch N kN mN lbf kgf kg lbs Nm Nmm mNm deg ° rad rev rpm degC "
     "°C counts cts ticks V mV"
@@ -51,11 +51,11 @@ _SUFFIXES = (
 _SUFFIX = re.compile(r"^(.+?)[_\s.,/-]+([A-Za-zµ°]+)$")
 
 
-def kind_of(unit: str) -> Kind | None:
-    """Return what a unit is of; "other" for one of no channel, None for what is no unit."""
+def kind_of(unit: str) -> UnitKind | None:
+    """Return the kind of a unit; "other" for one of no channel, None for text that is no unit."""
     if is_label(unit):
         return "label"
-    for kind, to, radius in _TRIED:
+    for kind, to, radius in _TARGETS:
         try:
             conversion(unit, to, pulley_radius_mm=radius)
         except InputError:
@@ -64,13 +64,13 @@ def kind_of(unit: str) -> Kind | None:
     return "other" if is_unit(unit) else None
 
 
-def fits(quantity: Quantity, kind: Kind) -> bool:
-    """Say whether a quantity can be measured in a unit of this kind."""
+def fits(quantity: NamedQuantity, kind: UnitKind) -> bool:
+    """Return whether a quantity can have a unit of this kind."""
     return kind in _FITTING[quantity]
 
 
 def unit_behind(name: str) -> tuple[str, str]:
-    """Return a name without the unit at its end, and the unit; empty text where none is there."""
+    """Return a name without the unit at its end, and the unit; empty text without one."""
     found = _SUFFIX.match(name.strip())
     if found is None or found[2] not in _SUFFIXES.split():
         return name, ""

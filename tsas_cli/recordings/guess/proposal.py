@@ -1,4 +1,4 @@
-"""A whole map proposed for files that nobody has described yet."""
+"""A map proposed for raw files."""
 
 import re
 from collections import Counter
@@ -10,60 +10,60 @@ from typing import Any
 from tsas_cli.recordings.columns import has_input_and_output
 from tsas_cli.recordings.guess.channels import channels
 from tsas_cli.recordings.guess.clock import clock, like_a_clock
-from tsas_cli.recordings.guess.columns import Column, believed, columns_of
-from tsas_cli.recordings.guess.looks import together
+from tsas_cli.recordings.guess.columns import FileColumn, columns_of, with_trusted_names
+from tsas_cli.recordings.guess.looks import correlation
 from tsas_cli.recordings.guess.opening import Opened, open_file
 from tsas_cli.recordings.guess.proposed import Proposed
 from tsas_cli.recordings.ingest_map import QUESTION
 from tsas_cli.recordings.readers import names
 from tsas_cli.recordings.readers.options import ReadOptions
-from tsas_cli.recordings.readers.table import Source
+from tsas_cli.recordings.readers.table import ColumnSource
 from tsas_cli.support.errors import InputError
 
-_SPRING = 0.95  # the correlation of tension and displacement at the load, at least, of a spring
+_SPRING = 0.95  # least correlation of tension and displacement at the load of a spring
 
 
 @dataclass(frozen=True)
 class Proposal:
-    """What a proposed map says, and what it was told by.
+    """A proposed map with its evidence.
 
     Attributes
     ----------
     looked_at
-        The file whose columns and signals were looked at.
-    alike, unlike
-        The other files: those with the same columns, and why each of the rest is none.
+        The file that the proposal is based on.
+    matching, different
+        The other files: those with the same columns, and the reason for each other one.
     read
         The keys of `[read]`, with values and reasons.
     channels
         The tables of `[columns]`.
     not_taken
-        The columns that no channel takes, and what is known of them.
+        The columns without a channel, and their evidence.
     run
-        The keys of `[run]` that are not as usual, with values and reasons.
+        The keys of `[run]` that differ from their defaults, with values and reasons.
     doubt
-        Why no name is believed, empty where names are.
+        The reason why no column name is used; empty if names are used.
     """
 
     name: str
     looked_at: Opened
-    alike: tuple[Path, ...]
-    unlike: dict[Path, str]
+    matching: tuple[Path, ...]
+    different: dict[Path, str]
     read: dict[str, tuple[Any, str]]
     channels: tuple[Proposed, ...]
-    not_taken: dict[Source, str]
+    not_taken: dict[ColumnSource, str]
     run: dict[str, tuple[Any, str]]
     doubt: str
 
     @property
     def questions(self) -> dict[str, str]:
-        """What is open, by its key in the map."""
-        asked = {
+        """The open questions, by their key in the map."""
+        questions = {
             f"columns.{channel.name}.{key}": sentence
             for channel in self.channels
             for key, sentence in channel.questions.items()
         }
-        return asked | {
+        return questions | {
             f"run.{k}": why for k, (value, why) in self.run.items() if value == QUESTION
         }
 
@@ -74,21 +74,21 @@ class Proposal:
 
 
 def propose(files: Sequence[Path]) -> Proposal:
-    """Look at files and propose a map for them.
+    """Return the map proposed for files.
 
     Raises
     ------
     InputError
         None of them can be read.
     """
-    opened, unlike = _first_that_opens(files)
-    alike: list[Path] = []
+    opened, different = _first_that_opens(files)
+    matching: list[Path] = []
     for path in files:
-        if path != opened.path and path not in unlike:
-            reason = _unlike(path, opened)
-            unlike |= {path: reason} if reason else {}
-            alike += [] if reason else [path]
-    columns, doubt = believed(columns_of(opened))
+        if path != opened.path and path not in different:
+            reason = _difference(path, opened)
+            different |= {path: reason} if reason else {}
+            matching += [] if reason else [path]
+    columns, doubt = with_trusted_names(columns_of(opened))
     time = clock(columns)
     rest = [c for c in columns if c.source != time.entry.get("source")]
     if time.entry.get("source") == QUESTION:
@@ -97,12 +97,12 @@ def propose(files: Sequence[Path]) -> Proposal:
     return Proposal(
         _name(opened.path),
         opened,
-        tuple(alike),
-        unlike,
-        opened.read | _pattern([opened.path, *alike], unlike),
+        tuple(matching),
+        different,
+        opened.read | _pattern([opened.path, *matching], different),
         found,
         _not_taken(columns, found),
-        _load(columns, found) | _id([opened.path, *alike]),
+        _load(columns, found) | _id([opened.path, *matching]),
         doubt,
     )
 
@@ -117,21 +117,24 @@ def _first_that_opens(files: Sequence[Path]) -> tuple[Opened, dict[Path, str]]:
     raise next(iter(failed.values()))
 
 
-def _unlike(path: Path, opened: Opened) -> str:
-    """Return why a file does not go with the one that was looked at; empty where it does."""
+def _difference(path: Path, opened: Opened) -> str:
+    """Return how a file differs from the one that was opened; empty if its columns match."""
     options = ReadOptions.model_validate({key: value for key, (value, _) in opened.read.items()})
     try:
-        there = names(path, options)
+        found = names(path, options)
     except InputError as error:
         return error.what
-    mine = names(opened.path, options)
-    return "" if there == mine else "its columns have other names, or another order"
+    return (
+        ""
+        if found == names(opened.path, options)
+        else "its columns have other names, or another order"
+    )
 
 
-def _pattern(good: Sequence[Path], unlike: dict[Path, str]) -> dict[str, tuple[Any, str]]:
-    """Return which files of a folder to take, where their suffix tells them from the rest."""
+def _pattern(good: Sequence[Path], different: dict[Path, str]) -> dict[str, tuple[Any, str]]:
+    """Return the glob for the matching files of a folder, if their suffix distinguishes them."""
     suffixes = {path.suffix for path in good}
-    if not unlike or len(suffixes) > 1 or suffixes & {path.suffix for path in unlike}:
+    if not different or len(suffixes) > 1 or suffixes & {path.suffix for path in different}:
         return {}
     return {"files": (f"*{suffixes.pop()}", "the other files hold no such table")}
 
@@ -141,38 +144,38 @@ def _name(path: Path) -> str:
 
 
 def _id(paths: Sequence[Path]) -> dict[str, tuple[Any, str]]:
-    twice = [stem for stem, count in Counter(path.stem for path in paths).items() if count > 1]
-    why = f"two files are called {twice[0]}" if twice else ""
-    return {"id": ("{folder}_{stem}", why)} if twice else {}
+    duplicates = [stem for stem, count in Counter(path.stem for path in paths).items() if count > 1]
+    why = f"two files have the name {duplicates[0]}" if duplicates else ""
+    return {"id": ("{folder}_{stem}", why)} if duplicates else {}
 
 
-def _load(columns: Sequence[Column], found: Sequence[Proposed]) -> dict[str, tuple[Any, str]]:
-    """Return the question what the load is, where tension and motion do not go together there."""
+def _load(columns: Sequence[FileColumn], found: Sequence[Proposed]) -> dict[str, tuple[Any, str]]:
+    """Return the question for the load, if its tension and displacement are not correlated."""
     by_source = {column.source: column for column in columns}
     at = {p.name: by_source.get(p.entry.get("source", "")) for p in found}
-    force, place = at.get("f_out_N"), at.get("x_out_mm") or at.get("x_in_mm")
-    if force is None or place is None:
+    force, displacement = at.get("f_out_N"), at.get("x_out_mm") or at.get("x_in_mm")
+    if force is None or displacement is None:
         return {}
-    like = abs(together(force.values, place.values))
-    if like >= _SPRING:
+    r = abs(correlation(force.values, displacement.values))
+    if r >= _SPRING:
         return {}
     why = (
-        f"what is the distal end? {force.shown} does not go with {place.shown} as a spring's "
-        f'tension does (correlation {like:.2f}): "spring", or "force" where f_out_N is driven, or '
+        f"what is the distal end? {force.shown} does not follow {displacement.shown} as a spring's "
+        f'tension does (correlation {r:.2f}): "spring", or "force" where f_out_N is driven, or '
         '"displacement" where x_out_mm is'
     )
     return {"load": (QUESTION, why)}
 
 
-def _not_taken(columns: Sequence[Column], found: Sequence[Proposed]) -> dict[Source, str]:
-    taken = {channel.entry.get("source") for channel in found}
-    taken |= {source for channel in found for source in channel.candidates}
-    return {c.source: _why_not(c) for c in columns if c.source not in taken}
+def _not_taken(columns: Sequence[FileColumn], found: Sequence[Proposed]) -> dict[ColumnSource, str]:
+    used = {channel.entry.get("source") for channel in found}
+    used |= {source for channel in found for source in channel.candidates}
+    return {c.source: _why_not(c) for c in columns if c.source not in used}
 
 
-def _why_not(column: Column) -> str:
+def _why_not(column: FileColumn) -> str:
     if not column.moves:
         return "it does not change"
-    if column.words.wish:
-        return f'"{column.words.told["wish"]}" in its name: it was wanted, not measured'
-    return "; ".join(column.reasons) or "nothing says what it is"
+    if column.words.is_reference:
+        return f'"{column.words.matched["reference"]}" in its name: a reference, not a measurement'
+    return "; ".join(column.reasons) or "nothing identifies it"

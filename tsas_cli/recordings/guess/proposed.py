@@ -1,64 +1,66 @@
-"""One table `[columns.NAME]` of a proposed map, with why, how sure, and what has to be asked."""
+"""One table `[columns.NAME]` of a proposed map, with its evidence and open questions."""
 
 from dataclasses import dataclass, field
 from typing import Literal
 
 from tsas_cli.recordings.columns import BY_NAME
-from tsas_cli.recordings.guess.columns import Column
+from tsas_cli.recordings.guess.columns import FileColumn
 from tsas_cli.recordings.ingest_map import QUESTION
-from tsas_cli.recordings.readers.table import Source
+from tsas_cli.recordings.readers.table import ColumnSource
 from tsas_cli.support.files import Raw
 
-Sureness = Literal["sure", "likely", "open"]
+Certainty = Literal["sure", "likely", "open"]
 
 
 @dataclass(frozen=True)
 class Proposed:
-    """What a map says of one channel.
+    """The proposal for one channel of a map.
 
     Attributes
     ----------
     name
         The canonical column.
     entry
-        The keys of its table; `QUESTION` where a person has to answer.
-    sure
-        "sure" where name, unit and motion agree or leave nothing else, "likely" where only one of
-        them tells, "open" where none does or they contradict each other.
+        The keys of its table; `QUESTION` for an open value.
+    certainty
+        "sure" if name, unit and motion agree or exclude all else, "likely" if only one of them is
+        evidence, "open" if none is or they contradict each other.
     why
-        The reasons, one sentence each.
+        The evidence, one sentence each.
     questions
-        What to answer, by key of the entry.
+        The open questions, by key of the entry.
     alternatives
-        What else it could be.
+        Other possible values.
     candidates
-        The columns that it may be, where that is the question.
+        The columns in question, if the source is open.
     """
 
     name: str
     entry: Raw
-    sure: Sureness
+    certainty: Certainty
     why: tuple[str, ...] = ()
     questions: dict[str, str] = field(default_factory=dict)
     alternatives: tuple[str, ...] = ()
-    candidates: tuple[Source, ...] = ()
+    candidates: tuple[ColumnSource, ...] = ()
 
 
-def with_unit(column: Column, name: str) -> tuple[Raw, dict[str, str]]:
-    """Return the keys that take a column to a channel's unit, and the questions among them."""
+def with_unit(column: FileColumn, name: str) -> tuple[Raw, dict[str, str]]:
+    """Return the keys that convert a column to a channel's unit, and the questions among them."""
     to = BY_NAME[name].unit
     entry: Raw = {"source": column.source}
     asked: dict[str, str] = {}
     if column.unit and not column.own_unit:
         entry["unit"] = column.unit
     if column.kind is None:
-        asked["unit"] = f"which unit is {column.shown} in? Neither its name nor the file says it."
+        asked["unit"] = (
+            f"which unit does {column.shown} have? Neither its name nor the file states it."
+        )
     elif column.kind == "label":
         asked["factor"] = f"how many {to} (or what else) is one of {column.unit}?"
         asked["factor_unit"] = f"the unit of that factor, such as {_EXAMPLE.get(to, to)}"
     elif column.kind in ("angle", "torque") and to in ("mm", "N"):
-        what = "an angle becomes mm" if column.kind == "angle" else "a torque becomes N"
-        asked["pulley_radius_mm"] = f"{what} on a radius: which is the pulley's, in mm?"
+        what = "an angle to mm" if column.kind == "angle" else "a torque to N"
+        asked["pulley_radius_mm"] = f"which pulley radius, in mm, converts {what}?"
     return entry | dict.fromkeys(asked, QUESTION), asked
 
 

@@ -1,4 +1,4 @@
-"""A proposal as JSON, and as the table that the command prints."""
+"""A proposal as JSON, and as printed tables."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -15,11 +15,11 @@ def content(proposal: Proposal) -> dict[str, object]:
         "stage": "guess",
         "version": __version__,
         "looked_at": str(proposal.looked_at.path),
-        "unlike": {str(path): reason for path, reason in proposal.unlike.items()},
+        "unlike": {str(path): reason for path, reason in proposal.different.items()},
         "columns": {
             channel.name: {
                 "entry": channel.entry,
-                "sure": channel.sure,
+                "sure": channel.certainty,
                 "why": channel.why,
                 "alternatives": channel.alternatives,
             }
@@ -32,11 +32,11 @@ def content(proposal: Proposal) -> dict[str, object]:
 
 
 def tables(proposal: Proposal, out: object) -> Iterator[tuple[str, tuple[str, ...], list[Any]]]:
-    """Yield which column each channel takes, and what is open."""
+    """Yield the tables of the channels with their sources, and of the open questions."""
     rows = [
-        (channel.name, str(channel.entry.get("source", "")), channel.sure)
+        (channel.name, str(channel.entry.get("source", "")), channel.certainty)
         for channel in proposal.channels
     ]
-    yield f"map {out}", ("channel", "source", "how sure"), rows
+    yield f"map {out}", ("channel", "source", "certainty"), rows
     if proposal.questions:
-        yield "to be answered in it", ("key", "question"), list(proposal.questions.items())
+        yield "open questions", ("key", "question"), list(proposal.questions.items())

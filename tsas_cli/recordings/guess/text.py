@@ -21,12 +21,11 @@ _CONDITIONS = {
     "total_bend_rad": "its total bend, 3.1416 for half a turn",
     "preload_N": "the tension at rest",
 }
-MARK = b"# A map for `tsas ingest`"  # with which a proposed map begins
-_SURE = {"sure": "sure", "likely": "likely", "open": "open"}
+MARK = b"# A map for `tsas ingest`"  # beginning of a proposed map
 
 
 def map_text(proposal: Proposal) -> str:
-    """Return the map; every key has a comment that says why it is there."""
+    """Return the text of the map; a comment above each key states its evidence."""
     document = tomlkit.document()
     for line in _head(proposal):
         document.add(tomlkit.comment(line))
@@ -47,29 +46,29 @@ def _head(proposal: Proposal) -> Iterable[str]:
     rows = next(iter(opened.table.columns.values())).size
     yield from _wrapped(
         f"A map for `tsas ingest`, proposed after a look at {opened.path.name} ({rows} rows). "
-        "Read every line. Nothing here is known; the comments say what it was told by, and how "
-        "surely."
+        "Check every line: each is a guess, and the comment above it states its evidence and "
+        "certainty."
     )
-    if proposal.alike:
-        more = len(proposal.alike)
+    if proposal.matching:
+        more = len(proposal.matching)
         have = "more file has" if more == 1 else "more files have"
         yield from _wrapped(f"{more} {have} the same columns.")
     if proposal.doubt:
         yield from _wrapped(proposal.doubt)
-    for path, reason in proposal.unlike.items():
-        yield from _wrapped(f"{path.name} does not go with it: {reason}.")
+    for path, reason in proposal.different.items():
+        yield from _wrapped(f"{path.name} does not match: {reason}.")
     asked = len(proposal.questions)
     if asked:
         yield from _wrapped(
             f"{asked} question{'s are' if asked > 1 else ' is'} open: ingest stops until each "
-            f'"{QUESTION}" has an answer.'
+            f'"{QUESTION}" is replaced.'
         )
     elif proposal.is_a_recording:
-        yield "No question is open: ingest takes this map as it is."
+        yield "No question is open: the map is ready for ingest."
     if not proposal.is_a_recording:
         yield from _wrapped(
             f"Ingest needs one of {', '.join(INPUTS)}, and another of {', '.join(OUTPUTS)}: no "
-            "columns were found for them."
+            "such columns were found."
         )
 
 
@@ -83,7 +82,7 @@ def _dataset(proposal: Proposal) -> Table:
 
 def _rig() -> Table:
     table = tomlkit.table()
-    _say(table, "What the data sheet says; each line is optional:")
+    _comment(table, "The data sheet of the rig; each line is optional:")
     for key in list(Rig.model_fields)[:4]:
         table.add(tomlkit.comment(f"{key} ="))
     return table
@@ -94,26 +93,24 @@ def _read(proposal: Proposal) -> Table:
     for key, (value, why) in proposal.read.items():
         _add(table, key, value, why)
     if proposal.not_taken:
-        _say(
-            table, "No channel takes these columns; under extra they would travel along untouched:"
-        )
+        _comment(table, "These columns have no channel; extra would keep them unchanged:")
         for source, reason in proposal.not_taken.items():
-            _say(table, f"- {source}: {reason}.", indent="  ")
+            _comment(table, f"- {source}: {reason}.", indent="  ")
         listed = ", ".join(tomlkit.item(source).as_string() for source in proposal.not_taken)
         table.add(tomlkit.comment(f"extra = [{listed}]"))
     for name, reason in proposal.looked_at.left_out.items():
-        _say(table, f"{name} cannot be taken: {reason}.")
+        _comment(table, f"{name} cannot be used: {reason}.")
     return table
 
 
 def _channel(channel: Proposed) -> Table:
     table = tomlkit.table()
     meaning = BY_NAME[channel.name].meaning
-    _say(table, f"{meaning[0].upper()}{meaning[1:]}: {_SURE[channel.sure]}.")
+    _comment(table, f"{meaning[0].upper()}{meaning[1:]}: {channel.certainty}.")
     for sentence in channel.why:
-        _say(table, f"- {sentence}", indent="  ")
+        _comment(table, f"- {sentence}", indent="  ")
     for other in channel.alternatives:
-        _say(table, f"- it could be {other}", indent="  ")
+        _comment(table, f"- alternative: {other}", indent="  ")
     for key, value in channel.entry.items():
         _add(table, key, value, _asked(channel.questions.get(key, "")))
     return table
@@ -130,9 +127,11 @@ def _run(proposal: Proposal) -> Table:
     pattern, groups = conditions_in(proposal.looked_at.path)
     for condition, meaning in _CONDITIONS.items():
         if condition not in groups:
-            _say(table, f"{condition} =   # for all runs: {meaning}")
+            _comment(table, f"{condition} =   # for all runs: {meaning}")
     if groups:
-        _say(table, f"The file's name, {proposal.looked_at.path.name}, may say these; if so, take:")
+        _comment(
+            table, f"The file name {proposal.looked_at.path.name} may hold these; if so, uncomment:"
+        )
         lines = ["[run.from_file_name]", f"pattern = '(?i){pattern}'"]
         for condition, (group, unit) in groups.items():
             lines += [f"[run.conditions.{condition}]", f'from = "{group}"', f'unit = "{unit}"']
@@ -140,18 +139,18 @@ def _run(proposal: Proposal) -> Table:
             table.add(tomlkit.comment(line))
     missing = [c for c in COLUMNS[:5] if c.name not in {p.name for p in proposal.channels}]
     for column in missing:
-        _say(table, f"No column looks like {column.name} ({column.meaning}).")
+        _comment(table, f"No column looks like {column.name} ({column.meaning}).")
     return table
 
 
 def _add(table: Table, key: str, value: Any, why: str) -> None:
     if why:
-        said = why[0].upper() + why[1:]
-        _say(table, said if said.endswith(("?", ".")) else f"{said}.")
+        sentence = why[0].upper() + why[1:]
+        _comment(table, sentence if sentence.endswith(("?", ".")) else f"{sentence}.")
     table.add(key, value)
 
 
-def _say(table: Table, text: str, *, indent: str = "") -> None:
+def _comment(table: Table, text: str, *, indent: str = "") -> None:
     for line in _wrapped(text, indent):
         table.add(tomlkit.comment(line))
 

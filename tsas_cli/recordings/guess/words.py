@@ -1,4 +1,4 @@
-"""What the words in a column's name speak of: a quantity, an end of the tendon, a wish."""
+"""The meaning of the words in a column's name: quantity, end of the tendon, reference."""
 
 import re
 import unicodedata
@@ -6,15 +6,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal, TypeVar
 
-Quantity = Literal[
+NamedQuantity = Literal[
     "time", "counter", "displacement", "angle", "force", "torque", "speed", "temperature", "other"
 ]
-Place = Literal["in", "out", "motor"]
-M = TypeVar("M", Quantity, Place)
+End = Literal["in", "out", "motor"]
+Meaning = TypeVar("Meaning", NamedQuantity, End)
 
 # Whole words. Words of five letters and more also count as the beginning or the end of a longer
 # one (Eingangskraft, displacement1).
-_QUANTITIES: dict[Quantity, str] = {
+_QUANTITIES: dict[NamedQuantity, str] = {
     "time": "time t zeit temps timestamp tijd tiempo elapsed clock sec seconds sekunden "
     "secondes 时间",
     "counter": "sample samples index idx count row nr no messpunkt 序号",
@@ -30,70 +30,72 @@ _QUANTITIES: dict[Quantity, str] = {
     "other": "current strom courant amps power leistung pwm duty pressure "
     "strain friction error pulse flag status mode trigger 电流",
 }
-_PLACES: dict[Place, str] = {
+_END_WORDS: dict[End, str] = {
     "in": "in input inlet ein proximal prox drive driving driven actuator actuation master backend "
     "winch spool turntable eingang antrieb antriebsseite entree amont proximale 输入 近端 驱动",
     "out": "out output outlet aus distal distale tip slave effector endeffector frontend ausgang "
     "abtrieb abtriebsseite lastseite sortie aval 输出 远端 末端",
     "motor": "motor moteur servo 电机",
 }
-WEAK = frozenset({"load", "last", "charge", "dist", "end", "负载"})  # an end only beside a quantity
-_WISHES = (
+WEAK = frozenset(
+    {"load", "last", "charge", "dist", "end", "负载"}
+)  # mean an end only with a quantity
+_REFERENCES = (
     "ref reference desired target setpoint set soll sollwert wanted cmd command commanded "
     "demand trajectory goal consigne 期望 参考"
 )
-_BEFORE_END = "f x s t d q force pos disp tension kraft weg"  # fin, xout, posin: one word of two
+_BEFORE_END = "f x s t d q force pos disp tension kraft weg"  # fin, xout, posin: compounds
 _ENDS = {"in": "in", "out": "out", "prox": "in", "dist": "out", "ref": "ref", "des": "ref"}
 _LONG = 5
 
 
 @dataclass(frozen=True)
 class Words:
-    """What a name says; `told` holds the word that each of it comes from."""
+    """The meaning of a name; `matched` holds the word behind each part of it."""
 
-    quantity: Quantity | None
-    place: Place | None
-    wish: bool
-    told: dict[str, str] = field(default_factory=dict)
+    quantity: NamedQuantity | None
+    end: End | None
+    is_reference: bool
+    matched: dict[str, str] = field(default_factory=dict)
 
 
 def words_of(name: str) -> Words:
-    """Return what a column's name says, without its unit.
+    """Return the meaning of a column's name without its unit.
 
-    Where words speak of several quantities the first in the order of `_FIRST` counts; where they
-    speak of both ends, of none.
+    Of several quantities, the first in `_PRIORITY` counts; of two contradictory ends, neither.
     """
     parts = _parts(name)
-    quantities = _told(parts, _QUANTITIES)
-    places = _told(parts, _PLACES)
-    if "t" in parts and len(parts) > 1 and places:
+    quantities = _matches(parts, _QUANTITIES)
+    ends = _matches(parts, _END_WORDS)
+    if "t" in parts and len(parts) > 1 and ends:
         quantities = {k: v for k, v in quantities.items() if v != "t"} | {"force": "t"}
     weak = next((p for p in parts if p in WEAK), None)
-    if weak and not places and (quantities or weak not in ("end", "dist")):
-        places["out"] = weak
-    place = _place(places)
-    quantity = next((q for q in _FIRST if q in quantities), None)
-    wish = next((p for p in parts if p in _WISHES.split()), None)
-    told = {"quantity": quantities[quantity]} if quantity else {}
-    told |= {"place": places[place]} if place else {}
-    told |= {"wish": wish} if wish else {}
-    return Words(quantity, place, wish is not None, told)
+    if weak and not ends and (quantities or weak not in ("end", "dist")):
+        ends["out"] = weak
+    end = _end(ends)
+    quantity = next((q for q in _PRIORITY if q in quantities), None)
+    reference = next((p for p in parts if p in _REFERENCES.split()), None)
+    matched = {"quantity": quantities[quantity]} if quantity else {}
+    matched |= {"end": ends[end]} if end else {}
+    matched |= {"reference": reference} if reference else {}
+    return Words(quantity, end, reference is not None, matched)
 
 
-# "motor current", "force error": what is special comes before what is general.
-_FIRST: tuple[Quantity, ...] = (
+# "motor current", "force error": the specific before the general.
+_PRIORITY: tuple[NamedQuantity, ...] = (
     "other", "temperature", "speed", "torque", "force", "angle", "displacement", "counter", "time",
 )  # fmt: skip
 
 
-def _place(places: dict[Place, str]) -> Place | None:
-    if "motor" in places:
+def _end(ends: dict[End, str]) -> End | None:
+    if "motor" in ends:
         return "motor"
-    return next(iter(places)) if len(places) == 1 else None
+    return next(iter(ends)) if len(ends) == 1 else None
 
 
-def _told(parts: list[str], vocabulary: Mapping[M, str]) -> dict[M, str]:
-    found: dict[M, str] = {}
+def _matches(parts: list[str], vocabulary: Mapping[Meaning, str]) -> dict[Meaning, str]:
+    """Return the meanings of the parts of a name, each with its first matching part."""
+    found: dict[Meaning, str] = {}
     whole = {word for listed in vocabulary.values() for word in listed.split()}
     for meaning, listed in vocabulary.items():
         for part in parts:
@@ -103,7 +105,7 @@ def _told(parts: list[str], vocabulary: Mapping[M, str]) -> dict[M, str]:
 
 
 def _is(part: str, word: str, *, whole: bool) -> bool:
-    """Say whether a part of a name is a word, or, where it is none itself, holds a long one."""
+    """Return whether a part of a name is a word, or contains a long one if it is none itself."""
     if whole or part == word:
         return part == word
     if not word.isascii():
@@ -112,7 +114,7 @@ def _is(part: str, word: str, *, whole: bool) -> bool:
 
 
 def _parts(name: str) -> list[str]:
-    """Return the words of a name in small letters, split at signs, capitals and numbers."""
+    """Return the words of a name in lower case, split at signs, capitals and numbers."""
     plain = "".join(c for c in unicodedata.normalize("NFKD", name) if not unicodedata.combining(c))
     plain = re.sub(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", " ", plain)
     plain = re.sub(r"(?i)\b(load|back|front|end)[\s_-]?(cell|end|effector)", r"\1\2", plain)
@@ -121,7 +123,7 @@ def _parts(name: str) -> list[str]:
 
 
 def _split(part: str) -> list[str]:
-    """Split fin, xout, posref into their two words."""
+    """Return the two words of fin, xout, posref; else the part itself."""
     for end, meaning in _ENDS.items():
         head = part.removesuffix(end)
         if head != part and head in _BEFORE_END.split():

@@ -1,4 +1,4 @@
-"""What is wrong with recordings, found before anyone fits anything."""
+"""Checks of recordings for faults, before a model is fitted."""
 
 from dataclasses import dataclass
 
@@ -28,9 +28,9 @@ from tsas_cli.recordings.quality.checks import (
 )
 from tsas_cli.recordings.quality.finding import (
     CannotTell,
-    Check,
     Finding,
     NotChecked,
+    QualityCheck,
     Remark,
 )
 from tsas_cli.recordings.quality.stretches import look, look_by_stretches
@@ -39,8 +39,8 @@ from tsas_cli.recordings.run_files import read_recording
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.steps import SILENT, Steps
 
-MANIFEST_CHECKS: tuple[Check[Manifest], ...] = (unknown_key.CHECK, manifest_unit.CHECK)
-RUN_CHECKS: tuple[Check[Trial], ...] = (
+MANIFEST_CHECKS: tuple[QualityCheck[Manifest], ...] = (unknown_key.CHECK, manifest_unit.CHECK)
+RUN_CHECKS: tuple[QualityCheck[Trial], ...] = (
     time_order.CHECK,
     time_jitter.CHECK,
     gap.CHECK,
@@ -58,22 +58,22 @@ RUN_CHECKS: tuple[Check[Trial], ...] = (
     few_reversals.CHECK,
     no_steady_motion.CHECK,
 )
-DATASET_CHECKS: tuple[Check[Dataset], ...] = (copies.CHECK,)
+DATASET_CHECKS: tuple[QualityCheck[Dataset], ...] = (copies.CHECK,)
 CHECKS = (*MANIFEST_CHECKS, *RUN_CHECKS, *DATASET_CHECKS)
 
 
 @dataclass(frozen=True)
 class Report:
-    """What the checks found, and which of them could not tell."""
+    """The findings of the checks, and the checks that did not apply."""
 
     findings: tuple[Finding, ...]
     not_checked: tuple[NotChecked, ...]
 
 
 def check_dataset(dataset: Dataset, step: Steps = SILENT) -> Report:
-    """Run every check on the manifest, the runs and all of a dataset; `step` follows each run.
+    """Return the findings on the manifest, each run and the whole dataset; `step` counts runs.
 
-    A run that cannot be read is a finding (`unreadable`), as long as another one can.
+    An unreadable run is a finding (`unreadable`), as long as another run can be read.
 
     Raises
     ------
@@ -81,15 +81,15 @@ def check_dataset(dataset: Dataset, step: Steps = SILENT) -> Report:
         No run can be read.
     """
     results = [
-        _attributed(said, check.code, None)
+        _attributed(result, check.code, None)
         for check in MANIFEST_CHECKS
-        for said in check.find(dataset.manifest)
+        for result in check.find(dataset.manifest)
     ]
     failures = []
     step.ahead(len(dataset.runs))
     for run in dataset.runs:
         try:
-            results += _look_at_run(dataset, run)
+            results += _check_run(dataset, run)
         except InputError as error:
             failures.append(error)
             results.append(_unreadable(run, error))
@@ -97,9 +97,9 @@ def check_dataset(dataset: Dataset, step: Steps = SILENT) -> Report:
     if len(failures) == len(dataset.runs):
         raise failures[0]
     results += [
-        _attributed(said, check.code, said.run)
+        _attributed(result, check.code, result.run)
         for check in DATASET_CHECKS
-        for said in check.find(dataset)
+        for result in check.find(dataset)
     ]
     return Report(
         tuple(r for r in results if isinstance(r, Finding)),
@@ -107,20 +107,22 @@ def check_dataset(dataset: Dataset, step: Steps = SILENT) -> Report:
     )
 
 
-def _look_at_run(dataset: Dataset, run: Run) -> list[Finding | NotChecked]:
+def _check_run(dataset: Dataset, run: Run) -> list[Finding | NotChecked]:
     long = long_run(dataset.folder, run)
     if long is not None:
-        said = look_by_stretches(RUN_CHECKS, long, dataset.manifest.rig)
+        results = look_by_stretches(RUN_CHECKS, long, dataset.manifest.rig)
     else:
         trial = Trial(read_recording(dataset.folder, run, strict=False), dataset.manifest.rig)
-        said = {check.code: look(check, trial) for check in RUN_CHECKS}
-    return [_attributed(one, code, run.id) for code, every in said.items() for one in every]
+        results = {check.code: look(check, trial) for check in RUN_CHECKS}
+    return [_attributed(one, code, run.id) for code, each in results.items() for one in each]
 
 
-def _attributed(said: Remark | CannotTell, code: str, run: str | None) -> Finding | NotChecked:
-    if isinstance(said, CannotTell):
-        return NotChecked(code, run, said.reason)
-    return Finding(code, said.severity, run, said.column, said.sentence, said.remedy, said.first_s)
+def _attributed(result: Remark | CannotTell, code: str, run: str | None) -> Finding | NotChecked:
+    if isinstance(result, CannotTell):
+        return NotChecked(code, run, result.reason)
+    return Finding(
+        code, result.severity, run, result.column, result.sentence, result.remedy, result.first_s
+    )
 
 
 def _unreadable(run: Run, error: InputError) -> Finding:

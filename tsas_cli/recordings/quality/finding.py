@@ -1,4 +1,4 @@
-"""What a check says: a remark about a recording, or that it cannot tell."""
+"""Results of a check: a remark about a recording, or the reason why it does not apply."""
 
 import sys
 from collections.abc import Callable, Iterator
@@ -11,10 +11,10 @@ Subject = TypeVar("Subject")
 
 @dataclass(frozen=True)
 class Remark:
-    """Something that is wrong, as one check sees it.
+    """A fault that a check found.
 
     `error`: results from this run are wrong. `warning`: they may be wrong, or a stage cannot use
-    the run. `note`: worth knowing. A check of a whole dataset says which `run` it means.
+    the run. `note`: worth knowing. A check of a whole dataset sets `run`.
     """
 
     severity: Severity
@@ -27,22 +27,22 @@ class Remark:
 
 @dataclass(frozen=True)
 class CannotTell:
-    """Why a check does not apply; this is not the same as passed."""
+    """The reason why a check does not apply; it has not passed then."""
 
     reason: str
     run: str | None = None
 
 
 @dataclass(frozen=True)
-class Check(Generic[Subject]):
-    """One check: its code, what it needs, and the function that looks.
+class QualityCheck(Generic[Subject]):
+    """One check: its code, its function and the columns it needs.
 
     Parameters
     ----------
     code
         The name of the check's module, with hyphens.
     find
-        Yields a remark for each thing that is wrong, and a reason where it cannot tell.
+        Yields a remark for each fault, and a reason if the check does not apply.
     needs
         Columns without which the check does not apply.
     """
@@ -53,13 +53,13 @@ class Check(Generic[Subject]):
 
     @property
     def explanation(self) -> str:
-        """The text that a person reads: the docstring of the check's module."""
+        """The explanation for users: the docstring of the check's module."""
         return (sys.modules[self.find.__module__].__doc__ or "").strip()
 
 
 @dataclass(frozen=True)
 class Finding:
-    """A remark with the check and the run that it belongs to (`run` is None for the manifest)."""
+    """A remark with its check and its run (`run` is None for the manifest)."""
 
     code: str
     severity: Severity
@@ -72,7 +72,7 @@ class Finding:
 
 @dataclass(frozen=True)
 class NotChecked:
-    """A check that could not tell, with the reason."""
+    """A check that did not apply, with the reason."""
 
     code: str
     run: str | None

@@ -1,4 +1,4 @@
-"""Samples that stand far off both their neighbours, one or a few in a row."""
+"""Outliers: one or a few consecutive samples far from the samples before and after."""
 
 import numpy as np
 
@@ -6,51 +6,51 @@ from tsas_cli.recordings.quality.samples import Booleans
 from tsas_cli.recordings.recording import Floats
 
 _MOST_IN_A_ROW = 3
-_NOISE, _STEPS, _SPAN = 20.0, 10.0, 0.05  # how far off, in noise, in steps and in the span
-_BESIDE = 16  # samples on either side whose own steps are looked at
-_STEEPER = 10.0  # than those: motion that turns back within a few samples has steep neighbours
-_COMMON = 0.02  # of all samples: what is as frequent as this is the signal
+_NOISE, _STEPS, _SPAN = 20.0, 10.0, 0.05  # least deviation, in noise, in steps and in the span
+_NEIGHBOURS = 16  # samples on either side that the steepness is compared with
+_STEEPER = 10.0  # than those: a motion that reverses within a few samples has steep neighbours
+_COMMON = 0.02  # of all samples: more frequent deviations are the signal
 
 
 def outlying(
     time_s: Floats, values: Floats, *, most: float, noise: float, step: float, span: float
 ) -> Booleans:
-    """Return which samples stand out, shape (n,).
+    """Return which samples are outliers, shape (n,).
 
-    A sample does that no rig has, or that one, two or three of which lie off what is before and
-    after them, both on the same side, by far more than noise, steps of quantisation and the motion
-    beside them explain. A step that stays is none. The first and the last samples have one side
-    only, so they have to lie off by more than the span.
+    An outlier is an implausible value, or one of up to three consecutive samples that deviate from
+    the samples before and after them to the same side by far more than noise, quantisation and the
+    neighbouring motion explain. A lasting step is none. The first and the last samples have one
+    neighbour only, so they have to deviate by more than the span.
 
     Parameters
     ----------
     time_s, values
-        A channel, shape (n,) each; NaN where it is empty.
+        Time and values of a channel, shape (n,) each; gaps are NaN.
     most
-        The largest size that a rig has [unit of the channel].
+        The largest plausible magnitude [unit of the channel].
     noise, step, span
-        Those of the whole channel [its unit]; NaN where the noise cannot be told.
+        Those of the whole channel [its unit]; the noise is NaN if it is unknown.
     """
-    with np.errstate(all="ignore"):  # a stray 1e300 stands out like any other
+    with np.errstate(all="ignore"):  # a stray 1e300 may overflow
         found = np.abs(values) > most
-        if not span > 0.0:  # one other value in a constant channel may be its step
+        if not span > 0.0:  # a single other value in a constant channel may be its step
             return found
-        there = np.flatnonzero(np.isfinite(values) & ~found)
-        # Beside a value of 1e9 the levels of the others are one, and the step is that value.
+        valid = np.flatnonzero(np.isfinite(values) & ~found)
+        # With an outlier of 1e9, all other levels count as one and the step is the outlier.
         steps = _STEPS * step if step <= span else 0.0
         least = max(_SPAN * span, steps, _NOISE * np.nan_to_num(noise))
-        found[there[_standing_off(time_s[there], values[there], least, span)]] = True
+        found[valid[_deviating(time_s[valid], values[valid], least, span)]] = True
     return found
 
 
-def _standing_off(time_s: Floats, values: Floats, least: float, span: float) -> Booleans:
-    """Return which of the samples that are there do."""
+def _deviating(time_s: Floats, values: Floats, least: float, span: float) -> Booleans:
+    """Return which of the finite samples deviate from both neighbours, shape (n,)."""
     found = np.zeros(values.size, dtype=np.bool_)
     if values.size <= 2 * _MOST_IN_A_ROW:
         return found
     apart = 1.5 * float(np.median(np.diff(time_s)))
     change = np.abs(np.diff(values))
-    # What lies before the first sample and after the last is taken to be like the other side.
+    # The missing neighbour of the first and the last sample is taken as equal to the other one.
     before, after = np.r_[np.nan, values[:-1]], np.r_[values[1:], np.nan]
     lowest = highest = values  # of so many in a row
     for count in range(1, _MOST_IN_A_ROW + 1):
@@ -70,8 +70,8 @@ def _standing_off(time_s: Floats, values: Floats, least: float, span: float) -> 
             stop = start + count
             long = np.diff(time_s[max(start - 1, 0) : stop + 1]) > apart
             beside = np.r_[
-                change[max(start - 1 - _BESIDE, 0) : max(start - 1, 0)],
-                change[stop : stop + _BESIDE],
+                change[max(start - 1 - _NEIGHBOURS, 0) : max(start - 1, 0)],
+                change[stop : stop + _NEIGHBOURS],
             ]
             if not long.any() and off[start] > _STEEPER * beside.max(initial=0.0):
                 found[start:stop] = True

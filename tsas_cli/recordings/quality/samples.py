@@ -1,4 +1,4 @@
-"""What the samples of one channel show by themselves: steps, noise, rests."""
+"""Properties of the samples of one channel: quantisation, noise, plateaus."""
 
 import numpy as np
 import numpy.typing as npt
@@ -7,25 +7,25 @@ from tsas_cli.numerics.noise import quantisation_step
 from tsas_cli.recordings.recording import Floats
 
 Booleans = npt.NDArray[np.bool_]
-_FEWEST = 16  # samples below which noise cannot be told
+_FEWEST = 16  # samples for an estimate of the noise
 
 
 def step_of(values: Floats) -> float:
-    """Return the step of quantisation, 0 where there is none.
+    """Return the quantisation step, 0 without quantisation.
 
-    A channel that hardly takes a level twice shows its step in the increments.
+    A channel that seldom repeats a level shows its step in the increments.
     """
     increments = np.round(np.diff(values), 12)
     return quantisation_step(values) or quantisation_step(increments)
 
 
 def span_of(values: Floats) -> float:
-    """Return how far a channel moves: all but the outermost thousandth at either end."""
+    """Return the span of a channel, without the outermost thousandth at either end."""
     return float(np.ptp(np.nanpercentile(values, (0.1, 99.9))))
 
 
 def alternates(values: Floats) -> bool:
-    """Say whether a channel is noisy: third differences of noise alternate, of motion they do not.
+    """Return whether a channel is noisy: third differences alternate for noise, not for motion.
 
     Parameters
     ----------
@@ -39,19 +39,19 @@ def alternates(values: Floats) -> bool:
 
 
 def rows_between_changes(values: Floats) -> npt.NDArray[np.int64]:
-    """Return how many rows lie from each change of a channel to the next."""
+    """Return the number of rows from each change of a channel to the next."""
     return np.diff(np.flatnonzero(values[1:] != values[:-1]))
 
 
 def smallest_change(values: Floats) -> float:
-    """Return the smallest change from a row to the next, rounding apart; infinite where none is."""
+    """Return the smallest change from row to row beyond rounding; infinite without a change."""
     change = np.abs(np.diff(values))
     rounding = 1e-9 * np.nanmax(np.abs(values))
     return float(np.min(change, where=change > rounding, initial=np.inf))
 
 
 def plateaus(values: Floats, shortest: int) -> list[slice]:
-    """Return the stretches of at least `shortest` rows in which a channel does not change at all.
+    """Return the stretches of at least `shortest` rows in which a channel is constant.
 
     Parameters
     ----------

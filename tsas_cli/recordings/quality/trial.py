@@ -1,4 +1,4 @@
-"""One run as the checks see it: channels, their noise and span, and the strokes of the drive."""
+"""One run for the checks: its channels, their noise and span, and the strokes of the drive."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -16,8 +16,8 @@ from tsas_cli.recordings.recording import Floats, Recording
 
 MECHANICAL = ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N")
 _FOLLOWERS = {"spring": MECHANICAL[1:], "force": ("x_out_mm",), "displacement": ()}
-_FEWEST = 16  # samples below which neither noise nor motion can be told
-_STROKE = 0.2  # of the drive's span: the smallest move back that begins a new stroke
+_FEWEST = 16  # samples of a channel that is checked
+_STROKE = 0.2  # of the drive's span: the smallest reversal that begins a new stroke
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class Stroke:
 
 @dataclass(frozen=True)
 class Overall:
-    """What a whole run shows of each of its channels, by name."""
+    """Properties of each channel over a whole run, by name."""
 
     noise: dict[str, float]
     step: dict[str, float]
@@ -47,10 +47,10 @@ class Overall:
 
 @dataclass(frozen=True)
 class Trial:
-    """A recording, and what the data sheet says about the rig.
+    """A recording, and the data sheet of the rig.
 
-    Of a long one it is a part, whose first sample is row `first_row`; then `overall` says what the
-    whole run shows.
+    It may be a part of a long run from row `first_row` on; `overall` then holds the properties of
+    the whole run.
     """
 
     recording: Recording
@@ -60,7 +60,7 @@ class Trial:
 
     @cached_property
     def time_s(self) -> Floats:
-        """Time [s], shape (n,); it may run backwards."""
+        """Time [s], shape (n,); it may decrease."""
         return self.recording.time_s
 
     @cached_property
@@ -70,17 +70,14 @@ class Trial:
 
     @cached_property
     def channels(self) -> dict[str, Floats]:
-        """The columns besides time that hold enough numbers to say anything about them.
-
-        Samples that stand out are empty in them: they say nothing of the motion.
-        """
-        return _telling(
+        """The columns besides time that hold enough values, with outliers as NaN."""
+        return _with_enough_values(
             {n: np.where(self.outlying[n], np.nan, v) for n, v in self._recorded.items()}
         )
 
     @cached_property
     def outlying(self) -> dict[str, Booleans]:
-        """Which samples of each channel stand out (`outlying`), shape (n,) each."""
+        """Which samples of each channel are outliers (`outlying`), shape (n,) each."""
         return {
             name: outlying(
                 self.time_s,
@@ -95,7 +92,7 @@ class Trial:
 
     @cached_property
     def _recorded(self) -> dict[str, Floats]:
-        return _telling({n: v for n, v in self.recording.columns.items() if n != TIME})
+        return _with_enough_values({n: v for n, v in self.recording.columns.items() if n != TIME})
 
     @cached_property
     def mechanical(self) -> dict[str, Floats]:
@@ -111,14 +108,14 @@ class Trial:
 
     @cached_property
     def step(self) -> dict[str, float]:
-        """Step of quantisation of each channel, 0 where there is none."""
+        """Quantisation step of each channel, 0 without quantisation."""
         if self.overall is not None:
             return self.overall.step
         return {name: step_of(values) for name, values in self.channels.items()}
 
     @cached_property
     def span(self) -> dict[str, float]:
-        """How far each channel moves: all but the outermost thousandth at either end."""
+        """Span of each channel, without the outermost thousandth at either end."""
         if self.overall is not None:
             return self.overall.span
         return {name: span_of(values) for name, values in self.channels.items()}
@@ -138,7 +135,7 @@ class Trial:
         return {name: float(np.nanmax(values)) for name, values in self.channels.items()}
 
     def visible(self, name: str) -> float:
-        """Return the smallest change of a channel that neither noise nor steps explain."""
+        """Return the smallest change of a channel that neither noise nor quantisation explains."""
         return 6.0 * self.noise[name] + 2.0 * self.step[name]
 
     def moves(self, name: str) -> bool:
@@ -146,7 +143,7 @@ class Trial:
         return self.span[name] > 2.0 * self.visible(name)
 
     def references(self, name: str) -> tuple[str, ...]:
-        """Return the channels that show the motion beside this one: the drive, or what follows it.
+        """Return the other channels that show the motion: the drive, or its followers.
 
         Those that do not move visibly are left out.
         """
@@ -155,7 +152,7 @@ class Trial:
 
     @property
     def prescribed(self) -> str | None:
-        """The channel that a driven load decides, whatever the drive does."""
+        """The channel that a driven load prescribes, whatever the drive does."""
         return {"force": "f_out_N", "displacement": "x_out_mm"}.get(self.recording.run.load)
 
     @cached_property
@@ -172,18 +169,18 @@ class Trial:
         x = self.channels.get("x_in_mm")
         if x is None or not self.moves("x_in_mm"):
             return ()
-        there = np.flatnonzero(np.isfinite(x))
+        valid = np.flatnonzero(np.isfinite(x))
         threshold = max(_STROKE * self.span["x_in_mm"], self.visible("x_in_mm"))
-        turns = there[turning_points(x[there], threshold)]
+        reversals = valid[turning_points(x[valid], threshold)]
         return tuple(
             Stroke(int(a), int(b), int(np.sign(x[b] - x[a])))
-            for a, b in pairwise(turns)
+            for a, b in pairwise(reversals)
             if abs(x[b] - x[a]) > threshold
         )
 
     @cached_property
     def direction(self) -> Floats:
-        """1 or −1 where the drive is well under way in a stroke, 0 elsewhere; shape (n,)."""
+        """Sign of the stroke from 30 % to 95 % of its travel, 0 elsewhere; shape (n,)."""
         direction = np.zeros(self.time_s.size)
         for stroke in self.strokes:
             x = self.channels["x_in_mm"][stroke.rows]
@@ -192,9 +189,9 @@ class Trial:
         return direction
 
     def follows(self, name: str) -> float | None:
-        """Return how a channel goes with the drive's strokes: 1 always with, −1 always against.
+        """Return the agreement of a channel with the drive's strokes: 1 (same) to −1 (opposite).
 
-        None where it does not move visibly, or there are no strokes.
+        None if it does not move visibly, or there are no strokes.
         """
         values = self.channels[name]
         change = np.array([s.direction * (values[s.stop] - values[s.start]) for s in self.strokes])
@@ -204,6 +201,6 @@ class Trial:
         return float(np.nansum(change) / np.nansum(size))
 
 
-def _telling(channels: dict[str, Floats]) -> dict[str, Floats]:
-    """Return the channels that hold enough numbers to say anything about them."""
+def _with_enough_values(channels: dict[str, Floats]) -> dict[str, Floats]:
+    """Return the channels that hold at least `_FEWEST` values."""
     return {n: v for n, v in channels.items() if np.isfinite(v).sum() >= _FEWEST}

@@ -1,4 +1,4 @@
-"""One reader per file format, chosen by the suffix of a file's name."""
+"""One reader per file format, selected by the suffix of the file name."""
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -8,7 +8,7 @@ from typing import Any
 
 from tsas_cli.recordings.guards.process import in_another_process
 from tsas_cli.recordings.readers.options import ReadOptions
-from tsas_cli.recordings.readers.table import Source, Table, whole
+from tsas_cli.recordings.readers.table import ColumnSource, Table, whole
 from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError
 
@@ -24,31 +24,31 @@ _READERS = {
     ".json": "json_table",
     ".parquet": "parquet",
 }
-_APART = {"matlab": "a MATLAB file", "mdf": "MDF"}  # their libraries crash on damaged files
+_ISOLATED = {"matlab": "a MATLAB file", "mdf": "MDF"}  # their libraries crash on damaged files
 _IN_PARTS = ("delimited", "parquet")
 _WITH_TABLES = ("json_table", "matlab")
 SUFFIXES = tuple(_READERS)
 
 
-def read(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Table:
-    """Read the wanted columns of one file with the reader for its suffix.
+def read(path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]) -> Table:
+    """Return the requested columns of one file.
 
     Raises
     ------
     InputError
-        No reader knows the suffix, the file is empty or damaged, a wanted column is missing, or
-        it holds something else than numbers.
+        The suffix is unknown, the file is empty or damaged, or a requested column is missing or not
+        numeric.
     """
     return whole(batches(path, options, wanted))
 
 
-def batches(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Iterator[Table]:
-    """Read the wanted columns in parts of `BATCH_ROWS` rows, or whole where the format needs it.
+def batches(path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]) -> Iterator[Table]:
+    """Yield the requested columns in parts of `BATCH_ROWS` rows, or whole for some formats.
 
     Raises
     ------
     InputError
-        As from `read`; what is wrong further down, when that part is asked for.
+        As from `read`; a fault in a later part is raised with that part.
     """
     if _module(path) in _IN_PARTS:
         with _checked(path) as name:
@@ -58,7 +58,7 @@ def batches(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Itera
 
 
 def names(path: Path, options: ReadOptions) -> tuple[str, ...]:
-    """Return the names of a file's columns in the order of their numbers; empty where it has none.
+    """Return the names of a file's columns by number; empty text for a column without a name.
 
     Raises
     ------
@@ -71,7 +71,7 @@ def names(path: Path, options: ReadOptions) -> tuple[str, ...]:
 
 
 def tables(path: Path) -> list[str]:
-    """Return what `table` in a map may name: where tables stand deeper in a JSON or MATLAB file.
+    """Return the valid values of `table` in a map: the nested tables of a JSON or MATLAB file.
 
     Raises
     ------
@@ -86,7 +86,7 @@ def _module(path: Path) -> str:
     module = _READERS.get(path.suffix.lower())
     if module is None:
         raise InputError(
-            f"no reader knows {path.suffix or 'a name without a suffix'}",
+            f"unknown file format {path.suffix or '(no suffix)'}",
             where=path,
             expected=f"one of {', '.join(SUFFIXES)}",
         )
@@ -94,9 +94,9 @@ def _module(path: Path) -> str:
 
 
 def _call(function: str, path: Path, *rest: Any) -> Any:
-    """Call the module that reads the file, in another process where its library may crash."""
+    """Return the result of a reader's function, in another process if its library may crash."""
     with _checked(path) as name:
-        kind = _APART.get(_module(path))
+        kind = _ISOLATED.get(_module(path))
         if kind is not None:
             return in_another_process(name, function, path, *rest, kind=kind)
         return getattr(import_module(name), function)(path, *rest)
@@ -104,7 +104,7 @@ def _call(function: str, path: Path, *rest: Any) -> Any:
 
 @contextmanager
 def _checked(path: Path) -> Iterator[str]:
-    """Yield the name of what reads the file; what the system says of the file is one line."""
+    """Yield the name of the reader's module; errors of the system become `InputError`."""
     module = _module(path)
     try:
         limits.regular(path)

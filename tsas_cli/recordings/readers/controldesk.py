@@ -1,4 +1,4 @@
-"""dSPACE ControlDesk exports: a struct with the clocks under X and the channels under Y."""
+"""dSPACE ControlDesk exports: a struct with the clocks in X and the channels in Y."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -7,18 +7,18 @@ from typing import Any
 import numpy as np
 
 from tsas_cli.recordings.readers.options import ReadOptions
-from tsas_cli.recordings.readers.table import Floats, Source, Table, floats, resolve
+from tsas_cli.recordings.readers.table import ColumnSource, Floats, Table, floats, resolve
 from tsas_cli.recordings.readers.timebase import TIME, on_one_clock
 from tsas_cli.support.errors import InputError
 
 
 def find_capture(content: Mapping[str, Any], path: Path) -> Mapping[str, Any] | None:
-    """Return the struct that holds X and Y with data, or None where there is none.
+    """Return the struct that holds X and Y with data, or None.
 
     Raises
     ------
     InputError
-        There is more than one.
+        There are several.
     """
     if _is_capture(content):
         return content
@@ -34,7 +34,7 @@ def find_capture(content: Mapping[str, Any], path: Path) -> Mapping[str, Any] | 
 
 
 def captures(content: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:
-    """Return the structs among the variables that are captures, by name."""
+    """Return the captures among the variables, by name."""
     return {name: value for name, value in content.items() if _is_capture(value)}
 
 
@@ -44,27 +44,27 @@ def channel_names(capture: Mapping[str, Any]) -> list[str]:
 
 
 def read_capture(
-    capture: Mapping[str, Any], options: ReadOptions, wanted: Sequence[Source], path: Path
+    capture: Mapping[str, Any], options: ReadOptions, wanted: Sequence[ColumnSource], path: Path
 ) -> Table:
-    """Read the wanted channels of a capture; its clock is `time`, in s.
+    """Return the requested channels of a capture; its clock is `time`, in s.
 
     Raises
     ------
     InputError
-        A channel is missing, holds no numbers, or has another length than its clock; or the
-        channels' clocks differ and the map does not say `resample = true`.
+        A channel is missing, not numeric, or differs in length from its clock; or the channels'
+        clocks differ and the map does not set `resample = true`.
     """
     channels = _records(capture["Y"])
     at = resolve(wanted, [*_names(channels), TIME], path)
     clocks = [floats(np.ravel(clock["Data"]), TIME, path) for clock in _records(capture["X"])]
-    called = [source for source, i in at.items() if i == len(channels)]
-    taken = {source: channels[i] for source, i in at.items() if i < len(channels)}
-    series = {s: _series(channel, clocks, s, path) for s, channel in taken.items()}
-    units = dict.fromkeys(called, "s")
-    units |= {s: unit for s, channel in taken.items() if (unit := str(channel.get("Unit", "")))}
+    clock_sources = [source for source, i in at.items() if i == len(channels)]
+    selected = {source: channels[i] for source, i in at.items() if i < len(channels)}
+    series = {s: _series(channel, clocks, s, path) for s, channel in selected.items()}
+    units = dict.fromkeys(clock_sources, "s")
+    units |= {s: unit for s, channel in selected.items() if (unit := str(channel.get("Unit", "")))}
     description = str(capture.get("Description", ""))
     return Table(
-        on_one_clock(series, path, called=called, resample=options.resample),
+        on_one_clock(series, path, clock_sources=clock_sources, resample=options.resample),
         units,
         (description,) if description else (),
     )
@@ -82,15 +82,15 @@ def _is_capture(value: Any) -> bool:
 
 
 def _records(value: Any) -> list[Any]:
-    """Return a struct array as a list: one element is read as a struct, several as a list."""
+    """Return a struct array as a list; an array of one element is read as a struct."""
     return list(value) if isinstance(value, list | np.ndarray) else [value]
 
 
 def _series(
-    channel: Mapping[str, Any], clocks: list[Floats], source: Source, path: Path
+    channel: Mapping[str, Any], clocks: list[Floats], source: ColumnSource, path: Path
 ) -> tuple[Floats, Floats]:
     values = floats(np.ravel(channel["Data"]), source, path)
-    number = channel.get("XIndex", 1)  # which clock, counted from 1
+    number = channel.get("XIndex", 1)  # number of the clock, from 1
     clock = clocks[int(number) - 1] if np.ndim(number) == 0 and 1 <= number <= len(clocks) else None
     if clock is None or clock.size != values.size:
         raise InputError(

@@ -1,4 +1,4 @@
-"""Text tables: CSV, TSV and their relatives."""
+"""Text tables: CSV, TSV and similar formats."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import islice
@@ -13,7 +13,7 @@ from tsas_cli.recordings.readers.layout import Layout, comment_text, detect, fie
 from tsas_cli.recordings.readers.options import ReadOptions
 from tsas_cli.recordings.readers.table import (
     BATCH_ROWS,
-    Source,
+    ColumnSource,
     Table,
     in_batches,
     not_a_number,
@@ -25,16 +25,15 @@ from tsas_cli.support.errors import InputError
 _NULLS = frozenset(csv.ConvertOptions().null_values)
 
 
-def batches(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Iterator[Table]:
-    """Read the wanted columns of a text table in parts.
+def batches(path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]) -> Iterator[Table]:
+    """Yield the requested columns of a text table in parts.
 
-    Where pyarrow stops at a row, or at a delimiter outside of ASCII, what follows is read line by
-    line.
+    From a row that pyarrow refuses, or with a delimiter outside ASCII, it is read line by line.
 
     Raises
     ------
     InputError
-        A column is missing, a row has another number of fields, or a cell holds text.
+        A column is missing, a row differs in its number of fields, or a cell holds text.
     """
     layout = detect(path, options)
     at = resolve(wanted, layout.names, path)
@@ -59,10 +58,10 @@ def names(path: Path, options: ReadOptions) -> Sequence[str]:
 
 
 def _fast(
-    path: Path, options: ReadOptions, layout: Layout, at: Mapping[Source, int]
+    path: Path, options: ReadOptions, layout: Layout, at: Mapping[ColumnSource, int]
 ) -> csv.CSVStreamingReader:
     if not layout.delimiter.isascii():
-        raise pa.ArrowInvalid(layout.delimiter)  # where pyarrow raises a bare ValueError
+        raise pa.ArrowInvalid(layout.delimiter)  # pyarrow would raise a bare ValueError
     names = [str(i) for i in range(len(layout.names))]
     return csv.open_csv(
         path,
@@ -82,9 +81,9 @@ def _fast(
 
 
 def _line_by_line(
-    path: Path, options: ReadOptions, layout: Layout, at: Mapping[Source, int]
+    path: Path, options: ReadOptions, layout: Layout, at: Mapping[ColumnSource, int]
 ) -> Iterator[list[float]]:
-    """Yield the rows that pyarrow refuses (aligned columns, comments), or say what is wrong."""
+    """Yield the rows that pyarrow refuses (aligned columns, comments), or raise `InputError`."""
     with path.open(encoding=options.encoding) as stream:
         for row, line in enumerate(limits.lines(stream, path), start=1):
             no_row = _is_blank(line, layout) or comment_text(line, options) is not None
@@ -101,14 +100,14 @@ def _line_by_line(
 
 
 def _is_blank(line: str, layout: Layout) -> bool:
-    """Say whether a line is no row; tabs alone are a row of gaps where they separate columns."""
+    """Return whether a line is blank; delimiters alone are a row of gaps."""
     if line.strip():
         return False
     spaces = layout.delimiter == " " or (layout.delimiter not in line and len(layout.names) > 1)
     return spaces or not line.strip("\r\n")
 
 
-def _cell(text: str, decimal: str, source: Source, path: Path, row: int) -> float:
+def _cell(text: str, decimal: str, source: ColumnSource, path: Path, row: int) -> float:
     if text in _NULLS:
         return float("nan")
     try:

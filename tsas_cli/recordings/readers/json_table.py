@@ -1,26 +1,26 @@
-"""JSON tables: rows, records or columns, at the top or under a key."""
+"""JSON tables: rows, records or columns, at the top level or under a key."""
 
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 from tsas_cli.recordings.readers.options import ReadOptions
-from tsas_cli.recordings.readers.table import Source, Table, floats, resolve
+from tsas_cli.recordings.readers.table import ColumnSource, Table, floats, resolve
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import Raw, read_json
 
 
-def read(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Table:
-    """Read the wanted columns of a JSON table.
+def read(path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]) -> Table:
+    """Return the requested columns of a JSON table.
 
-    It is a list of rows, a list of records, or an object of columns; `table` in the map names the
-    key (dots lead deeper) where it stands. Rows have names where the key `columns` beside them
-    lists names, else numbers.
+    It is a list of rows, a list of records, or an object of columns, under the key `table` of the
+    map (nested with dots). A key `columns` beside the rows names their columns; else they are
+    numbered.
 
     Raises
     ------
     InputError
-        It is no such table, a column is missing, or a value is no number.
+        It is no such table, a column is missing, or a value is not numeric.
     """
     above, content = _descend(read_json(path), options.table, path)
     names, column = _columns(content, above.get("columns"), path)
@@ -36,7 +36,7 @@ def names(path: Path, options: ReadOptions) -> Sequence[str]:
 
 
 def tables(path: Path) -> list[str]:
-    """Return the keys under which rows, records or columns stand, with dots where deep.
+    """Return the keys of rows, records or columns, nested with dots.
 
     Raises
     ------
@@ -61,14 +61,14 @@ def _descend(content: Any, keys: str | None, path: Path) -> tuple[Raw, Any]:
     above: Raw = {}
     for key in keys.split(".") if keys else ():
         if not isinstance(content, dict) or key not in content:
-            there = list(content) if isinstance(content, dict) else []
-            raise InputError(f"key {key} is missing", where=path, remedy=nearest(key, there))
+            keys_here = list(content) if isinstance(content, dict) else []
+            raise InputError(f"key {key} is missing", where=path, remedy=nearest(key, keys_here))
         above, content = content, content[key]
     return above, content
 
 
 def _columns(content: Any, names: Any, path: Path) -> tuple[list[str], Callable[[int], list[Any]]]:
-    """Return the names of the columns, and what returns one by its index."""
+    """Return the names of the columns, and a function that returns a column by its index."""
     if isinstance(content, dict) and all(isinstance(c, list) for c in content.values()):
         return list(content), list(content.values()).__getitem__
     if isinstance(content, list) and content and all(isinstance(r, dict) for r in content):

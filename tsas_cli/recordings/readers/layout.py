@@ -1,4 +1,4 @@
-"""How a text table is laid out: its comment lines, names, units, delimiter and decimal mark."""
+"""Layout of a text table: comment lines, names, units, delimiter and decimal mark."""
 
 import csv
 import re
@@ -11,8 +11,8 @@ from tsas_cli.recordings.readers.options import ReadOptions
 from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError
 
-_SAMPLE = 200  # lines of the table that are looked at
-_LONG = 4 * limits.LINE  # characters of them, of which a few lines are enough
+_SAMPLE = 200  # lines of the table for the detection
+_LONG = 4 * limits.LINE  # characters of them, if lines are long
 _UNIT_IN_NAME = re.compile(r"[\[(]([^\[\]()]+)[\])]$")
 _DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+([eE][+-]?\d+)?")
 _THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")  # or three decimals
@@ -21,7 +21,7 @@ _BELOW_THOUSAND = re.compile(r"[+-]?\d{1,3}")
 
 @dataclass(frozen=True)
 class Layout:
-    """Where the numbers begin (line counted from 1), and what stands above them."""
+    """The first line of numbers (from 1), the format, and the lines above it."""
 
     delimiter: str
     decimal: str
@@ -32,17 +32,17 @@ class Layout:
 
 
 def detect(path: Path, options: ReadOptions) -> Layout:
-    """Find the layout of a text table from its head; what the map says is taken as said.
+    """Return the layout of a text table, detected from its head unless the map sets it.
 
-    Names stand in the first line that is no comment, or, where that line holds numbers, in the
-    last comment line if it has as many fields. A line without any number under the names holds
-    the units; else a unit in brackets at the end of a name counts.
+    Names are in the first line that is no comment, or, if that line holds numbers, in the last
+    comment line if it has as many fields. A line without numbers below the names holds the units;
+    else a unit in brackets at the end of a name counts.
 
     Raises
     ------
     InputError
-        The file is not text in its encoding, holds no row of numbers, names more or fewer
-        columns than its first row has, or its commas may be those of thousands.
+        The file is not text in its encoding, holds no row of numbers, has more or fewer names than
+        fields in its first row, or its commas are ambiguous.
     """
     comments, lines = _head(path, options)
     if not lines:
@@ -68,17 +68,17 @@ def detect(path: Path, options: ReadOptions) -> Layout:
 
 
 def fields(text: str, delimiter: str) -> list[str]:
-    """Split one line of a text table; with a space as delimiter, several count as one."""
+    """Return the fields of one line; repeated spaces are one delimiter."""
     if delimiter == " ":
         return text.split()
     try:
         return [cell.strip() for cell in next(csv.reader([text], delimiter=delimiter))]
-    except csv.Error:  # longer than any number or name: no table, which the caller will find
+    except csv.Error:  # a field that is too long: no table, as the caller will detect
         return [text]
 
 
 def comment_text(line: str, options: ReadOptions) -> str | None:
-    """Return what a comment line says, or None where the line is no comment."""
+    """Return the text of a comment line, or None for another line."""
     for prefix in options.comment:
         if line.lstrip().startswith(prefix):
             return line.strip().removeprefix(prefix).strip()
@@ -86,44 +86,44 @@ def comment_text(line: str, options: ReadOptions) -> str | None:
 
 
 def number(text: str, decimal: str) -> float:
-    """Return a cell as a number (ValueError where it is none: 1.234,5 may not be guessed at)."""
+    """Return a cell as a number; ValueError if it is none or ambiguous (1.234,5)."""
     plain = text.replace(".", "·").replace(",", ".") if decimal == "," else text
-    if "_" in plain:  # Python takes 1_2 for 12
+    if "_" in plain:  # Python reads 1_2 as 12
         raise ValueError(text)
     return float(plain)
 
 
 def may_be_thousands(text: str) -> bool:
-    """Say whether the comma of a number may stand before thousands as well as before decimals."""
+    """Return whether the comma of a number may be a thousands separator or a decimal mark."""
     return _THOUSANDS.fullmatch(text) is not None
 
 
 def _head(path: Path, options: ReadOptions) -> tuple[list[str], list[tuple[int, str]]]:
-    """Return the comments, and the first lines of the table with their numbers."""
+    """Return the comments, and the first lines of the table with their line numbers."""
     comments: list[str] = []
     lines: list[tuple[int, str]] = []
-    above = taken = 0
+    comment_length = table_length = 0
     for row, line in _lines(path, options):
         text = comment_text(line, options)
         if text is not None:
             comments.append(text)
-            above += len(text)
+            comment_length += len(text)
         elif line.strip():
             lines.append((row, line.rstrip("\r\n")))
-            taken += len(line)
-        if above > limits.HEADER:
+            table_length += len(line)
+        if comment_length > limits.HEADER:
             raise InputError(
                 f"more than {limits.size(limits.HEADER)} of comments above the table",
                 where=path,
-                remedy="is this a text table? what comments begin with is said in the map",
+                remedy="is this a text table? set comment under [read] of the map",
             )
-        if len(lines) == _SAMPLE or taken > _LONG:
+        if len(lines) == _SAMPLE or table_length > _LONG:
             break
     return comments, lines
 
 
 def _lines(path: Path, options: ReadOptions) -> Iterator[tuple[int, str]]:
-    """Yield the lines behind those to skip, with their numbers."""
+    """Yield the lines after those to skip, with their line numbers."""
     try:
         with path.open(encoding=options.encoding) as stream:
             numbered = enumerate(limits.lines(stream, path), start=1)
@@ -132,7 +132,7 @@ def _lines(path: Path, options: ReadOptions) -> Iterator[tuple[int, str]]:
         raise InputError(
             f"is not text in the encoding {options.encoding}",
             where=path,
-            remedy='say which it is in the map, such as encoding = "cp1252" under [read]',
+            remedy='set it in the map, such as encoding = "cp1252" under [read]',
         ) from error
 
 
@@ -149,7 +149,7 @@ def _decimal(
     if delimiter == "," or not any(_DECIMAL_COMMA.fullmatch(cell) for row in rows for cell in row):
         return "."
     with_comma, without = dict[int, str](), dict[int, str]()
-    for _, line in _lines(path, options):  # the first rows may all lie above a thousand
+    for _, line in _lines(path, options):  # the first rows may all exceed a thousand
         if comment_text(line, options) is not None:
             continue
         for i, cell in enumerate(fields(line, delimiter)):
@@ -162,9 +162,9 @@ def _decimal(
     for i in with_comma.keys() & without.keys():
         raise InputError(
             f"column {i + 1} holds {without[i]} and {with_comma[i]}: "
-            "is the comma a decimal mark, or does it part thousands?",
+            "is the comma a decimal mark or a thousands separator?",
             where=path,
-            remedy='say decimal = "," under [read] of the map, or take the commas out of the file',
+            remedy='set decimal = "," under [read] of the map, or remove the commas from the file',
         )
     return ","
 

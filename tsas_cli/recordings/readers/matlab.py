@@ -18,7 +18,7 @@ from tsas_cli.recordings.readers.controldesk import (
     read_capture,
 )
 from tsas_cli.recordings.readers.options import ReadOptions
-from tsas_cli.recordings.readers.table import Floats, Source, Table, floats, resolve
+from tsas_cli.recordings.readers.table import ColumnSource, Floats, Table, floats, resolve
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import Raw
 from tsas_cli.support.memory import out_of_memory
@@ -26,17 +26,17 @@ from tsas_cli.support.memory import out_of_memory
 _HDF5 = b"\x89HDF\r\n\x1a\n"
 
 
-def read(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Table:
-    """Read the wanted columns of a MATLAB file.
+def read(path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]) -> Table:
+    """Return the requested columns of a MATLAB file.
 
-    A vector is a column under its name, column j of a matrix is `name(:,j)`, and a member of a
+    A vector is a column with its name, column j of a matrix is `name(:,j)`, and a member of a
     struct is `name.member`. The X/Y struct of a dSPACE ControlDesk export is read as such. With
-    `table` in the map, names begin inside that variable.
+    `table` in the map, names are relative to that variable.
 
     Raises
     ------
     InputError
-        The file is damaged, or a column is missing or holds no numbers.
+        The file is damaged, or a column is missing or not numeric.
     """
     content = _inside(_content(path), options.table, path)
     capture = find_capture(content, path)
@@ -58,7 +58,7 @@ def names(path: Path, options: ReadOptions) -> Sequence[str]:
 
 
 def tables(path: Path) -> list[str]:
-    """Return the names of the captures, where there is more than one."""
+    """Return the names of the captures, if there are several."""
     found = captures(_content(path))
     return list(found) if len(found) > 1 else []
 
@@ -70,7 +70,7 @@ def _content(path: Path) -> Raw:
         raise
     except MemoryError as error:
         raise out_of_memory(path) from error
-    except Exception as error:  # a damaged file ends in any of a dozen types
+    except Exception as error:  # a damaged file raises any of a dozen types
         raise damaged(path, "a MATLAB file", error) from error
 
 
@@ -84,7 +84,7 @@ def _variables(path: Path) -> Raw:
         return variables(path)
     check_unpacked(path)
     with warnings.catch_warnings():
-        warnings.simplefilter("error", MatReadWarning)  # two variables of one name
+        warnings.simplefilter("error", MatReadWarning)  # duplicate variables
         content = loadmat(path, simplify_cells=True)
     return {name: value for name, value in content.items() if not name.startswith("__")}
 
@@ -99,7 +99,7 @@ def _inside(content: Raw, table: str | None, path: Path) -> Raw:
 
 
 def _vectors(content: Raw, prefix: str = "") -> Iterator[tuple[str, Floats]]:
-    """Yield every numeric vector under the name that a map gives it."""
+    """Yield every numeric vector with its name in a map."""
     for name, value in content.items():
         if isinstance(value, dict):
             yield from _vectors(value, f"{prefix}{name}.")

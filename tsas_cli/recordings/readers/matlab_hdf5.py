@@ -1,4 +1,4 @@
-"""MATLAB 7.3: HDF5 with MATLAB's classes as attributes, made into plain Python values."""
+"""MATLAB 7.3: HDF5 with MATLAB's classes as attributes, converted to plain Python values."""
 
 from pathlib import Path
 from typing import Any
@@ -18,7 +18,7 @@ def variables(path: Path) -> Raw:
     Raises
     ------
     InputError
-        h5py is not installed, or the file leads to another one or exceeds a limit.
+        h5py is not installed, or the file links to another one or exceeds a limit.
     OSError
         The file is damaged.
     """
@@ -28,15 +28,15 @@ def variables(path: Path) -> Raw:
 
 
 class _Reader:
-    """Reads one file, and keeps count of what it asks for."""
+    """Reader of one file, which counts its unpacked size."""
 
     def __init__(self, path: Path, file: Any, h5py: Any) -> None:
         self.path, self.file, self.h5py = path, file, h5py
         self.expanded = Expanded.of(path)
-        self.seen: set[int] = set()  # structs and cells, by their place in the file
+        self.seen: set[int] = set()  # structs and cells, by their address in the file
 
     def members(self, group: Any, *, deep: int, but: str = "\0") -> Raw:
-        """Return what is in a group, but for names that begin so."""
+        """Return the members of a group, except names that begin with `but`."""
         self._enter(group, deep)
         names = [name for name in group if not name.startswith(but)]
         limits.columns(names, self.path)
@@ -50,7 +50,7 @@ class _Reader:
             members = self.members(item, deep=deep)
             return _records(members) if _is_struct_array(item) else members
         if not isinstance(item, self.h5py.Dataset):
-            return None  # a type: no variable
+            return None  # a named type is no variable
         if item.is_virtual or item.external:
             raise self._elsewhere(item.name)
         if item.attrs.get("MATLAB_empty", 0) or item.shape is None:
@@ -60,21 +60,21 @@ class _Reader:
         if self.h5py.check_ref_dtype(item.dtype) is self.h5py.Reference:
             self._enter(item, deep)
             return [self._value(self.file[ref], deep + 1) for ref in item[()].T.ravel()]
-        values = np.asarray(item[()]).T  # MATLAB writes columns first
+        values = np.asarray(item[()]).T  # MATLAB stores columns first
         if _class(item) == "char":
             return "".join(chr(code) for code in values.ravel())
         return values.item() if values.size == 1 else values
 
     def _enter(self, item: Any, deep: int) -> None:
-        """Refuse what holds itself, and what is nested too deep or in many ways."""
-        place = self.h5py.h5o.get_info(item.id).addr
-        if place in self.seen:
+        """Refuse an item that is referred to more than once, or nested too deep."""
+        address = self.h5py.h5o.get_info(item.id).addr
+        if address in self.seen:
             raise InputError(
-                f"{str(item.name)[: limits.NAME]} is in it twice",
+                f"more than one reference to {str(item.name)[: limits.NAME]}",
                 where=self.path,
-                expected="structs and cells that are in one place each",
+                expected="one reference to each struct and cell",
             )
-        self.seen.add(place)
+        self.seen.add(address)
         if deep > limits.DEPTH:
             raise limits.too_deep(self.path)
 
@@ -92,7 +92,7 @@ def _class(item: Any) -> str:
 
 
 def _is_struct_array(group: Any) -> bool:
-    """Say whether a struct has more than one element: then its members are bare references."""
+    """Return whether a struct has more than one element: its members are then bare references."""
     members = [group[name] for name in group]
     return bool(members) and all(
         not hasattr(m, "keys") and m.dtype.kind == "O" and not _class(m) for m in members

@@ -1,10 +1,10 @@
-"""What a map says about how to read its files."""
+"""Options of a map for reading its files."""
 
 from typing import Annotated, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 
-from tsas_cli.recordings.readers.table import Source
+from tsas_cli.recordings.readers.table import ColumnSource
 
 
 def _as_list(value: object) -> object:
@@ -12,14 +12,14 @@ def _as_list(value: object) -> object:
 
 
 class ReadOptions(BaseModel):
-    """The table `[read]` of a map; all of it optional, what is not said is detected."""
+    """The table `[read]` of a map; every key is optional, and detected by default."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     files: str = "*"  # of a folder, the files whose names match
-    extra: tuple[Source, ...] = ()  # source columns that travel along untouched
+    extra: tuple[ColumnSource, ...] = ()  # source columns that are kept unchanged
     drop_repeated_rows: bool = False
-    resample: bool = False  # channels with other times: interpolate them onto the fastest
+    resample: bool = False  # interpolate channels with different times onto the fastest
     table: str | None = None  # the JSON key or the MATLAB variable that holds the table
     encoding: str = "utf-8-sig"
     skip_lines: int = Field(default=0, ge=0)

@@ -13,8 +13,8 @@ from tsas_cli.recordings.parquet_files import check_size, open_parquet
 from tsas_cli.recordings.readers.options import ReadOptions
 from tsas_cli.recordings.readers.table import (
     BATCH_ROWS,
+    ColumnSource,
     Floats,
-    Source,
     Table,
     floats,
     in_batches,
@@ -23,15 +23,15 @@ from tsas_cli.recordings.readers.table import (
 from tsas_cli.support.memory import out_of_memory
 
 
-def batches(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Iterator[Table]:
-    """Read the wanted columns of a Parquet file in parts; units from the fields' metadata `unit`.
+def batches(path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]) -> Iterator[Table]:
+    """Yield the requested columns of a Parquet file in parts; units from field metadata `unit`.
 
-    Dates become seconds since the first one of their column, durations become seconds.
+    Dates become seconds since the first one in their column, durations become seconds.
 
     Raises
     ------
     InputError
-        It is no whole Parquet file, a column is missing, or it holds something else than numbers.
+        The file is damaged, or a column is missing or not numeric.
     """
     del options
     try:
@@ -46,15 +46,15 @@ def batches(path: Path, options: ReadOptions, wanted: Sequence[Source]) -> Itera
             }
             names = [field.name for field in fields.values()]
             check_size(file, path, names, whole=False)
-            # A name that is there twice is read twice: which of them it is says its turn.
-            turns = {
+            # A duplicate name is read twice: `order` is the number among columns of that name.
+            order = {
                 s: schema.get_all_field_indices(schema.names[i]).index(i) for s, i in at.items()
             }
-            zeros: dict[Source, Any] = {}
+            zeros: dict[ColumnSource, Any] = {}
             first = 1
             for table in in_batches(file.iter_batches(BATCH_ROWS, columns=names)):
                 values = {
-                    source: _values(table, field.name, turns[source])
+                    source: _values(table, field.name, order[source])
                     for source, field in fields.items()
                 }
                 typed = frozenset(s for s, found in values.items() if found.dtype.kind in "mM")
@@ -80,20 +80,22 @@ def names(path: Path, options: ReadOptions) -> Sequence[str]:
         raise damaged(path, "Parquet", error) from error
 
 
-def _values(table: pa.Table, name: str, turn: int) -> npt.NDArray[Any]:
-    """Return a column, the one of this turn (from 0) among those of its name."""
-    column = table.column(table.schema.get_all_field_indices(name)[turn])
+def _values(table: pa.Table, name: str, order: int) -> npt.NDArray[Any]:
+    """Return column number `order` (from 0) among those of its name."""
+    column = table.column(table.schema.get_all_field_indices(name)[order])
     if pa.types.is_dictionary(column.type):  # else a null becomes a value of the dictionary
         column = column.cast(column.type.value_type)
     values: npt.NDArray[Any] = column.to_numpy()
     return values
 
 
-def _seconds(values: npt.NDArray[Any], zeros: dict[Source, Any], source: Source) -> Floats:
+def _seconds(
+    values: npt.NDArray[Any], zeros: dict[ColumnSource, Any], source: ColumnSource
+) -> Floats:
     """Return durations, or dates since the first one of the file, in seconds; null is NaN.
 
-    The first date of a source is kept in `zeros`: the parts of a file have one zero. Seconds since
-    1970 would be exact to a quarter of a microsecond only.
+    `zeros` holds the first date of each source, for all parts of a file. Seconds since 1970 would
+    be exact to a quarter of a microsecond only.
     """
     if values.dtype.kind == "M":
         dates = values[~np.isnat(values)]

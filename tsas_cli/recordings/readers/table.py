@@ -1,4 +1,4 @@
-"""What every reader returns, and how a map's source names a column of a file."""
+"""The table that every reader returns, and the columns of a file by their source in a map."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -13,58 +13,59 @@ from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError, nearest
 
 Floats = npt.NDArray[np.float64]
-Source = str | int  # a column's name, or its number counted from 1
+ColumnSource = str | int  # a column's name, or its number counted from 1
 
-BATCH_ROWS = 1 << 20  # of a file that is read in parts: a row group of the run that it becomes
+BATCH_ROWS = 1 << 20  # of a file that is read in parts, and of a row group of its run
 
 
 @dataclass(frozen=True)
 class Table:
-    """The wanted columns of one file, or of some of its rows.
+    """The requested columns of one file, or of a part of its rows.
 
     Attributes
     ----------
     columns
-        Values by source, shape (n,), a gap is NaN.
+        Values by source, shape (n,); gaps are NaN.
     units
-        The unit as the file's text, by source, where the file gives one.
+        The units stated by the file, by source.
     header
-        The lines above the table, or whatever else the file says in words.
+        The lines above the table, or other text of the file.
     first_row
-        The number of the first row as a person counts it in the file.
+        The number of the first row in the file, from 1.
     typed
-        The columns whose unit follows from their type, so that no map can say another.
+        The columns whose unit follows from their data type, so that a map cannot set another.
     """
 
-    columns: Mapping[Source, Floats]
-    units: Mapping[Source, str] = field(default_factory=dict)
+    columns: Mapping[ColumnSource, Floats]
+    units: Mapping[ColumnSource, str] = field(default_factory=dict)
     header: tuple[str, ...] = ()
     first_row: int = 1
-    typed: frozenset[Source] = frozenset()
+    typed: frozenset[ColumnSource] = frozenset()
 
 
-def resolve(wanted: Sequence[Source], names: Sequence[str], path: Path) -> dict[Source, int]:
-    """Return the index of each wanted column among a file's columns.
+def resolve(
+    wanted: Sequence[ColumnSource], names: Sequence[str], path: Path
+) -> dict[ColumnSource, int]:
+    """Return the index of each requested column among a file's columns.
 
     Parameters
     ----------
     wanted
         Names or numbers (from 1).
     names
-        The file's columns in order; empty text where a column has no name.
+        The file's columns in order; empty text for a column without a name.
 
     Raises
     ------
     InputError
-        A column is not there, or its name is there more than once; lists those that are there.
-        There are too many columns.
+        A column is missing, its name is not unique, or there are too many columns.
     """
     limits.columns(names, path)
     return {source: _index(source, names, path) for source in wanted}
 
 
 def whole(parts: Iterable[Table]) -> Table:
-    """Return the parts of one file as one."""
+    """Return the parts of one file as one table."""
     tables = list(parts)
     first = tables[0]
     if len(tables) == 1:
@@ -74,7 +75,7 @@ def whole(parts: Iterable[Table]) -> Table:
 
 
 def in_batches(batches: Iterable[pa.RecordBatch]) -> Iterator[pa.Table]:
-    """Yield tables of `BATCH_ROWS` rows from batches of any; the last one may be shorter."""
+    """Yield tables of `BATCH_ROWS` rows from batches of any size; the last one may be shorter."""
     waiting: list[pa.RecordBatch] = []
     count = 0
     for batch in batches:
@@ -88,15 +89,17 @@ def in_batches(batches: Iterable[pa.RecordBatch]) -> Iterator[pa.Table]:
         yield pa.Table.from_batches(waiting)
 
 
-def floats(values: Any, source: Source, path: Path, *, first: int = 1) -> Floats:
+def floats(values: Any, source: ColumnSource, path: Path, *, first: int = 1) -> Floats:
     """Return values as float64; null becomes NaN. `first` is the number of the first row.
 
     Raises
     ------
     InputError
-        A value is no number; names its row. They are complex, or dates or durations.
+        A value is not numeric, or the values are complex, dates or durations.
     """
-    if isinstance(values, np.ndarray) and values.dtype.kind in "cmM":  # NumPy would drop a part
+    if (
+        isinstance(values, np.ndarray) and values.dtype.kind in "cmM"
+    ):  # NumPy would drop the imaginary part or the unit
         raise InputError(
             f"column {source} holds {values.dtype}", where=path, expected="real numbers"
         )
@@ -111,8 +114,8 @@ def floats(values: Any, source: Source, path: Path, *, first: int = 1) -> Floats
     return numbers
 
 
-def not_a_number(found: object, source: Source, path: Path, row: int) -> InputError:
-    """Return the error for text where a number belongs."""
+def not_a_number(found: object, source: ColumnSource, path: Path, row: int) -> InputError:
+    """Return the error for a cell that is no number."""
     return InputError(
         f"column {source} holds {str(found)[:40]!r}",
         where=f"{path}, row {row}",
@@ -126,8 +129,8 @@ def _has_text(values: Any) -> bool:
     return any(isinstance(value, str | bytes) for value in values)
 
 
-def _number(value: Any, source: Source, path: Path, row: int) -> float:
-    if isinstance(value, str | bytes) and "_" in str(value):  # Python takes 1_2 for 12
+def _number(value: Any, source: ColumnSource, path: Path, row: int) -> float:
+    if isinstance(value, str | bytes) and "_" in str(value):  # Python reads 1_2 as 12
         raise not_a_number(value, source, path, row)
     try:
         return float("nan") if value is None else float(value)
@@ -135,7 +138,7 @@ def _number(value: Any, source: Source, path: Path, row: int) -> float:
         raise not_a_number(value, source, path, row) from None
 
 
-def _index(source: Source, names: Sequence[str], path: Path) -> int:
+def _index(source: ColumnSource, names: Sequence[str], path: Path) -> int:
     if isinstance(source, int):
         if 1 <= source <= len(names):
             return source - 1
@@ -146,9 +149,9 @@ def _index(source: Source, names: Sequence[str], path: Path) -> int:
     if found:
         numbers = ", ".join(str(i + 1) for i in found)
         raise InputError(
-            f"column {source} is there {len(found)} times",
+            f"{len(found)} columns have the name {source}",
             where=path,
-            remedy=f"take one of them by its number in the map: {numbers}",
+            remedy=f"map one of them by its number: {numbers}",
         )
     close = nearest(source, (n for n in names if n))
     hint = f"{close}; " if close.startswith("did") else ""
@@ -159,7 +162,7 @@ def _listed(names: Sequence[str]) -> str:
     if not names:
         return "there are no columns of numbers"
     if not any(names):
-        return f"there are {len(names)} columns without names: take them by number, from 1"
+        return f"there are {len(names)} columns without names: map them by number, from 1"
     shown = [name[:80] or f"(number {i + 1})" for i, name in enumerate(names)]
     more = f" and {len(shown) - 40} more" if len(shown) > 40 else ""
     return f"there are: {', '.join(shown[:40])}{more}"

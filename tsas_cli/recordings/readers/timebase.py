@@ -1,53 +1,55 @@
-"""Channels with times of their own, brought onto one clock."""
+"""Channels with different times, interpolated onto one clock."""
 
 from collections.abc import Collection, Mapping
 from pathlib import Path
 
 import numpy as np
 
-from tsas_cli.recordings.readers.table import Floats, Source
+from tsas_cli.recordings.readers.table import ColumnSource, Floats
 from tsas_cli.support.errors import InputError
 
-TIME = "time"  # how a map names the clock of a file whose channels share it
+TIME = "time"  # source of the common clock of a file's channels in a map
 
 
 def on_one_clock(
-    series: Mapping[Source, tuple[Floats, Floats]],
+    series: Mapping[ColumnSource, tuple[Floats, Floats]],
     path: Path,
     *,
-    called: Collection[Source],
+    clock_sources: Collection[ColumnSource],
     resample: bool,
-) -> dict[Source, Floats]:
-    """Return the channels' values and the times that they share.
+) -> dict[ColumnSource, Floats]:
+    """Return the channels' values on a common clock, and that clock.
 
     Parameters
     ----------
     series
         Times and values by source, each of shape (n,) with its own n.
-    called
-        What the map calls the shared times: `time`, its number, both or nothing.
+    clock_sources
+        The sources of the clock in the map: `time`, its number, both or none.
     resample
-        Where times differ, interpolate linearly onto the times of the channel with the most
-        samples, within the stretch that all channels cover.
+        Interpolate different times linearly onto those of the channel with the most samples,
+        within the interval that all channels cover.
 
     Raises
     ------
     InputError
-        No channel is taken; the times differ and `resample` is not set, they run backwards or
-        stand still, or they never overlap.
+        There is no channel; the times differ and `resample` is not set, do not increase, or never
+        overlap.
     """
     if not series:
-        raise InputError("the map takes no channel but the time", where=path)
+        raise InputError("the map has no channel besides the time", where=path)
     clock = max((times for times, _ in series.values()), key=len)
     if all(np.array_equal(times, clock) for times, _ in series.values()):
-        return dict.fromkeys(called, clock) | {s: values for s, (_, values) in series.items()}
+        return dict.fromkeys(clock_sources, clock) | {
+            s: values for s, (_, values) in series.items()
+        }
     described = "; ".join(f"{s}: {_described(times)}" for s, (times, _) in series.items())
     if not resample:
         raise InputError(
             f"the channels have different times ({described})",
             where=path,
             expected="one clock",
-            remedy="take channels of one raster, or interpolate: resample = true under [read]",
+            remedy="map channels of one raster, or interpolate: resample = true under [read]",
         )
     if any(times.size == 0 for times, _ in series.values()):
         raise InputError(f"a channel holds no samples ({described})", where=path)
@@ -59,20 +61,20 @@ def on_one_clock(
     if clock.size == 0:
         raise InputError(f"the channels never overlap in time ({described})", where=path)
     resampled = {s: np.interp(clock, *channel) for s, channel in series.items()}
-    return dict.fromkeys(called, clock) | resampled
+    return dict.fromkeys(clock_sources, clock) | resampled
 
 
-def _check_increases(times: Floats, source: Source, path: Path) -> None:
-    """Refuse times between which nothing can be interpolated: NumPy would answer all the same."""
+def _check_increases(times: Floats, source: ColumnSource, path: Path) -> None:
+    """Refuse times that do not increase: NumPy would interpolate between them without an error."""
     steps = np.diff(times)
-    odd = ~((steps > 0) & np.isfinite(steps))
-    if odd.any():
-        i = int(odd.argmax())
+    invalid = ~((steps > 0) & np.isfinite(steps))
+    if invalid.any():
+        i = int(invalid.argmax())
         raise InputError(
             f"the time of {source} does not increase ({times[i]:.9g}, then {times[i + 1]:.9g})",
             where=f"{path}, row {i + 2}",
             expected="strictly increasing time",
-            remedy="mend the file, or leave the channel out",
+            remedy="correct the file, or leave the channel out",
         )
 
 

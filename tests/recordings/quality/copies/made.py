@@ -12,8 +12,8 @@ CONDITIONS = {"sheath_length_mm": 785.4, "total_bend_rad": 3.1416, "preload_N": 
 
 def dataset(folder, conditions=None, **runs):
     """Write runs, all under the same conditions but for some, and open them."""
-    told = conditions or {}
-    made = [Run(name, c, CONDITIONS | told.get(name, {})) for name, c in runs.items()]
+    by_run = conditions or {}
+    made = [Run(name, c, CONDITIONS | by_run.get(name, {})) for name, c in runs.items()]
     return read_dataset(write_dataset(folder / "runs", made))
 
 

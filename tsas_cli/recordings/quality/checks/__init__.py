@@ -1,1 +1,1 @@
-"""The checks, one file each; `tsas_cli.recordings.quality.CHECKS` lists them in order."""
+"""The checks, one per file; `tsas_cli.recordings.quality.CHECKS` lists them in order."""

@@ -1,43 +1,45 @@
 """A channel sits at its highest or lowest value while the motion goes on.
 
-The sensor or its amplifier is at the end of its range, or the part is at a stop. Told when the
-channel does not change at all at its extreme while the drive moves on by more than a twentieth of
-its span. Not a clip: a dwell (everything rests), the dead band after a reversal (the drive moves
-back), a coarse step at the top of a sine, a rest at the very beginning.
+The sensor or its amplifier is at the end of its range, or the part is at a stop. Reported when the
+channel stays constant at its extreme while the drive moves on by more than a twentieth of its span.
+Not clipping: a dwell (everything rests), the dead band after a reversal (the drive moves back), a
+coarse step at the peak of a sine, a rest at the beginning.
 """
 
 from collections.abc import Iterator
 
 import numpy as np
 
-from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
+from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
 from tsas_cli.recordings.quality.samples import plateaus
 from tsas_cli.recordings.quality.trial import Trial
 from tsas_cli.support.wording import count_of
 
 _FEWEST_ROWS = 5
-_PASSED = 0.05
+_TRAVEL = 0.05  # of the drive's span
 
 
 def find(trial: Trial) -> Iterator[Remark | CannotTell]:
-    """Look at both extremes of each displacement and tension."""
+    """Yield the clipped extremes of each displacement and tension."""
     for name in trial.mechanical:
         if name == trial.prescribed:
-            yield CannotTell(f"{name} is what the load decides, and may stay at its extremes")
+            yield CannotTell(f"{name} is prescribed by the load, and may stay at its extremes")
             continue
         if trial.lowest[name] == trial.highest[name]:
             continue
         for end, sign in (("highest", 1), ("lowest", -1)):
-            yield from _look(trial, name, end, sign)
+            yield from _clipping(trial, name, end, sign)
 
 
-def _look(trial: Trial, name: str, end: str, sign: int) -> Iterator[Remark]:
+def _clipping(trial: Trial, name: str, end: str, sign: int) -> Iterator[Remark]:
     values = trial.channels[name]
     extreme = trial.highest[name] if sign > 0 else trial.lowest[name]
     flat = [
         rows
         for rows in plateaus(values, _FEWEST_ROWS)
-        if rows.start > 0 and values[rows.start] == extreme and _passes(trial, name, rows, sign)
+        if rows.start > 0
+        and values[rows.start] == extreme
+        and _motion_continues(trial, name, rows, sign)
     ]
     if flat:
         seconds = sum(trial.time_s[r.stop - 1] - trial.time_s[r.start] for r in flat)
@@ -51,17 +53,17 @@ def _look(trial: Trial, name: str, end: str, sign: int) -> Iterator[Remark]:
         )
 
 
-def _passes(trial: Trial, name: str, rows: slice, sign: int) -> bool:
-    """Say whether the motion goes beyond where it was when the plateau began."""
+def _motion_continues(trial: Trial, name: str, rows: slice, sign: int) -> bool:
+    """Return whether the motion continues beyond its position at the start of the plateau."""
     coarse = 4.0 * trial.step[name] / max(trial.span[name], 1e-300)
     for other in trial.references(name):
         moved = sign * (trial.channels[other][rows] - trial.channels[other][rows.start])
         further = float(np.nanmax(moved, initial=0.0))
-        needed = max(_PASSED, coarse) * trial.span[other] + trial.visible(other)
+        needed = max(_TRAVEL, coarse) * trial.span[other] + trial.visible(other)
         back = float(np.nanmin(moved, initial=0.0))
         if further > needed and -back < 0.6 * trial.span[other]:
             return True
     return False
 
 
-CHECK = Check("clipped", find)
+CHECK = QualityCheck("clipped", find)

@@ -1,29 +1,29 @@
 """A run holds samples of another run of the dataset, which are no further evidence.
 
-Two runs that repeat a motion have noise of their own; a copy shares it. So each run is looked for
-in every other one: the same samples, written again or at shifted times, a piece of them, every
-second or third of them, or what was laid between them on straight lines or on a cubic spline. Every
-channel that changes has to agree to within a twentieth of its noise, for so long that no repeat
-would; where nothing changes nothing is shown. Runs computed without noise agree wherever their
-motion does, and are called copies. A copy that was filtered (averaged, decimated through a filter)
-or scaled is not found. What is fitted counts each sample once, and says so.
+Two runs that repeat a motion have independent noise; a copy shares it. Each run is searched for in
+every other one: the same samples, written again or at shifted times, a part of them, every second
+or third of them, or samples interpolated linearly or by a cubic spline. Every channel that changes
+has to agree to within a twentieth of its noise, for longer than a repeat of the motion could;
+constant stretches are no evidence. Runs computed without noise agree wherever their motion does,
+and are reported as copies. A filtered (averaged, decimated through a filter) or scaled copy is not
+found. Fits count each sample once, and report it.
 """
 
 from collections.abc import Iterator
 
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.quality.copies.search import find_copies
-from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
+from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
 
 
 def find(dataset: Dataset) -> Iterator[Remark | CannotTell]:
-    """Say which runs hold samples of which others; an error where their conditions differ."""
+    """Yield the runs that hold samples of others; an error where their conditions differ."""
     found = find_copies(dataset, strict=False)
     for copy in found.copies:
         yield Remark(
             "error" if copy.contradicts else "warning",
             f"{copy.sentence}{copy.contradiction}",
-            "correct the conditions in dataset.toml, or leave out what is not so"
+            "correct the conditions in dataset.toml, or leave out the wrong run"
             if copy.contradicts
             else "remove the copy, or leave it as it is: fits count each sample once",
             first_s=copy.span.begin_s,
@@ -35,4 +35,4 @@ def find(dataset: Dataset) -> Iterator[Remark | CannotTell]:
         yield CannotTell("too few rows change", run)
 
 
-CHECK = Check("copies", find)
+CHECK = QualityCheck("copies", find)

@@ -1,11 +1,11 @@
 """The tension at the load comes before or after the displacement at the load.
 
-A spring's tension goes with its displacement, so a shift in time between the two is one of the
-recording: filters, another bus, another clock. It is fitted cycle by cycle, beside the spring's
-curvature and a friction at the load, and told when the cycles agree and it matters: above half a
-sample, and with an error of the tension above a quarter of the noise.
-Other pairs of channels lag each other by the physics of the sheath and are not judged. A damper or
-a mass at the load looks like a delay too.
+A spring's tension follows its displacement without lag, so a time shift between the two is an
+artefact of the recording: filters, another bus, another clock. It is fitted cycle by cycle,
+together with the spring's curvature and a friction at the load, and reported when the cycles agree
+and it matters: above half a sample, and with an error of the tension above a quarter of the noise.
+Other pairs of channels lag by the physics of the sheath and are not judged. A damper or a mass at
+the load looks like a delay too.
 """
 
 import math
@@ -13,20 +13,20 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
+from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
 from tsas_cli.recordings.quality.trial import Trial
 from tsas_cli.recordings.recording import Floats
 
-_MOST_CYCLES = 100  # evenly spread; more would tell no better
+_MOST_CYCLES = 100  # evenly spread; more would not improve the estimate
 _ROUNDS = 20
-_ROWS = 40  # rows of a cycle that the smoothing leaves apart, at least
-_SLOW = 0.3  # of the typical speed: below, noise decides its sign
-_SPRING = 0.002  # the share of the tension that a spring may leave unexplained
-_OWN = 0.02  # the share of the speed that the other terms must leave unexplained
+_ROWS = 40  # least number of independent rows of a smoothed cycle
+_SLOW = 0.3  # of the RMS speed: below, noise decides its sign
+_SPRING = 0.002  # largest share of the tension's variance that a spring leaves unexplained
+_OWN = 0.02  # least share of the speed that the other terms leave unexplained
 
 
 def find(trial: Trial) -> Iterator[Remark | CannotTell]:
-    """Fit the delay to each cycle, and hold the mean against the scatter."""
+    """Yield the mean delay of the cycles if it exceeds its confidence interval and the limit."""
     reason = _not_judged(trial)
     if reason:
         yield CannotTell(reason)
@@ -51,7 +51,7 @@ def find(trial: Trial) -> Iterator[Remark | CannotTell]:
 
 def _not_judged(trial: Trial) -> str:
     if trial.recording.run.load != "spring":
-        return "the load is no spring, so the tension at the load need not go with displacement"
+        return "the load is no spring, so the tension at the load need not follow the displacement"
     return "" if trial.increases else "time does not increase"
 
 
@@ -64,17 +64,17 @@ def _smallest(trial: Trial) -> float:
 
 
 def _delay(trial: Trial, rows: slice) -> float:
-    """Return the delay of f_out behind x_out in one cycle [s]; NaN where it cannot be told."""
+    """Return the delay of f_out behind x_out in one cycle [s]; NaN if it is not identifiable."""
     x, y, time = (
         trial.channels["x_out_mm"][rows],
         trial.channels["f_out_N"][rows],
         trial.time_s[rows],
     )
-    there = np.isfinite(x) & np.isfinite(y)
-    width = max(int(there.sum()) // _ROWS, 1)
-    if there.sum() < 2 * _ROWS or np.ptp(x[there]) < 2.0 * trial.visible("x_out_mm"):
+    valid = np.isfinite(x) & np.isfinite(y)
+    width = max(int(valid.sum()) // _ROWS, 1)
+    if valid.sum() < 2 * _ROWS or np.ptp(x[valid]) < 2.0 * trial.visible("x_out_mm"):
         return math.nan
-    x, y, time = (_smoothed(values[there], width) for values in (x, y, time))
+    x, y, time = (_smoothed(values[valid], width) for values in (x, y, time))
     longest = 0.25 * float(time[-1] - time[0])
     delay = 0.0
     for _ in range(_ROUNDS):
@@ -92,7 +92,7 @@ def _delay(trial: Trial, rows: slice) -> float:
 def _remaining_delay(time: Floats, x: Floats, y: Floats) -> float:
     """Return −c/b of y = a + b x + d x² + e sgn(v) + c v.
 
-    NaN where the speed is no term of its own, or the terms do not make up the tension.
+    NaN if the speed is a combination of the other terms, or the terms do not explain the tension.
     """
     speed = np.gradient(x, time)
     moving = np.abs(speed) > _SLOW * np.sqrt(np.mean(speed**2))
@@ -115,11 +115,11 @@ def _smoothed(values: Floats, width: int) -> Floats:
 
 
 def _half_interval(delays: Floats) -> float:
-    """Return half the 95 % interval of the mean, each cycle counted as one."""
+    """Return half the 95 % interval of the mean, each cycle one observation."""
     from scipy.stats import t
 
     quantile = float(t.ppf(0.975, delays.size - 1))
     return quantile * float(delays.std(ddof=1)) / math.sqrt(delays.size)
 
 
-CHECK = Check("delay", find, needs=("x_out_mm", "f_out_N"))
+CHECK = QualityCheck("delay", find, needs=("x_out_mm", "f_out_N"))

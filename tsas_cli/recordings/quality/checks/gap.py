@@ -1,7 +1,7 @@
 """Samples are missing: rows that were not recorded, or cells that are empty.
 
-An interval counts as a gap when it is more than 1.5 times the median and stands out of the
-scatter of the others. Gaps are never filled; each stage leaves them out.
+An interval is a gap if it exceeds 1.5 times the median and the scatter of the others. Gaps are
+never filled; each stage leaves them out.
 """
 
 from collections.abc import Iterator
@@ -9,17 +9,17 @@ from collections.abc import Iterator
 import numpy as np
 
 from tsas_cli.recordings.columns import TIME
-from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
+from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
 from tsas_cli.recordings.quality.samples import Booleans
 from tsas_cli.recordings.quality.trial import Trial
 from tsas_cli.support.wording import count_of
 
-_COMMON = 0.05  # long intervals that are as frequent as this are jitter
+_COMMON = 0.05  # share of long intervals from which on they are jitter
 _REMEDY = "look for lost samples at the source; the stages leave the gap out"
 
 
 def find(trial: Trial) -> Iterator[Remark | CannotTell]:
-    """Look for long intervals, then for empty cells column by column."""
+    """Yield the missing rows, then the empty cells of each column."""
     if trial.increases:
         yield from _missing_rows(trial)
     else:
@@ -65,4 +65,4 @@ def _empty_cells(trial: Trial, name: str, empty: Booleans) -> Remark:
     )
 
 
-CHECK = Check("gap", find)
+CHECK = QualityCheck("gap", find)

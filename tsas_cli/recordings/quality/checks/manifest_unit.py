@@ -1,19 +1,19 @@
 """A value in the manifest looks as if it were in another unit than its key says.
 
 A bend of 180 rad is most likely 180°, a sheath of 0.8 mm most likely 0.8 m. The limits are far
-outside what a tendon-sheath rig has; a value inside them may still be wrong.
+beyond plausible values; a value within them may still be wrong.
 """
 
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 from tsas_cli.recordings.manifest import Manifest
-from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
+from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
 
 
 class _Suspicion(NamedTuple):
     key: str
-    odd: Callable[[float], bool]
+    implausible: Callable[[float], bool]
     likely: str
 
 
@@ -35,13 +35,13 @@ _RIG: _Suspicions = (
 
 
 def find(manifest: Manifest) -> Iterator[Remark | CannotTell]:
-    """Hold each value against the limits of its key."""
+    """Yield the values that are implausible in the unit of their key."""
     tables = [("rig.", manifest.rig.model_dump(), _RIG)]
     tables += [(f"run {run.id}: ", run.model_dump(), _RUN) for run in manifest.run]
     for place, values, suspicions in tables:
-        for key, odd, likely in suspicions:
+        for key, implausible, likely in suspicions:
             value = values[key]
-            if value is not None and odd(value):
+            if value is not None and implausible(value):
                 yield Remark(
                     "warning",
                     f"dataset.toml says {place}{key} = {value:g}, which looks like {likely}",
@@ -49,4 +49,4 @@ def find(manifest: Manifest) -> Iterator[Remark | CannotTell]:
                 )
 
 
-CHECK = Check("manifest-unit", find)
+CHECK = QualityCheck("manifest-unit", find)

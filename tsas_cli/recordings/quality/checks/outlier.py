@@ -1,11 +1,10 @@
-"""Single samples stand far off what is before and after them.
+"""Single samples are far from the samples before and after them.
 
-A bit that was lost on a line, a sentinel that a logger writes where it has measured nothing, a plug
-that was touched. One of them decides a fit by least squares. Told of one to three samples in a row
-that are off both sides by more than 20 times the noise, ten steps of quantisation and a twentieth
-of the span, ten times steeper than the samples beside them; and of any value that no rig has, which
-every other stage refuses. Not told: a step that stays, a fast reversal, what comes more often
-than every fiftieth sample.
+A bit error on a line, a sentinel for a missing value, a loose plug. One outlier can dominate a fit
+by least squares. Reported are one to three consecutive samples that deviate from both neighbours by
+more than 20 times the noise, ten quantisation steps and a twentieth of the span, ten times steeper
+than the neighbouring samples; and any implausible value, which every other stage refuses. Not
+reported: a lasting step, a fast reversal, deviations of more than 2 % of the samples.
 """
 
 from collections.abc import Iterator
@@ -13,13 +12,13 @@ from collections.abc import Iterator
 import numpy as np
 
 from tsas_cli.recordings.columns import largest
-from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
+from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
 from tsas_cli.recordings.quality.trial import Trial
 from tsas_cli.support.wording import count_of
 
 
 def find(trial: Trial) -> Iterator[Remark | CannotTell]:
-    """Tell the samples of each channel that stand out, the farthest one with its value."""
+    """Yield the number of outliers of each channel, and the farthest one."""
     for name, outlying in trial.outlying.items():
         rows = np.flatnonzero(outlying)
         if rows.size == 0:
@@ -27,12 +26,12 @@ def find(trial: Trial) -> Iterator[Remark | CannotTell]:
         values = trial.recording.columns[name]
         usual = float(np.nanmedian(values))
         farthest = rows[np.argmax(np.abs(values[rows] / 2.0 - usual / 2.0))]
-        possible = abs(values[farthest]) <= largest(name)
+        plausible = abs(values[farthest]) <= largest(name)
         yield Remark(
             "error",
-            f"{name} holds {count_of(rows.size, 'sample')} far off "
-            f"{'what is before and after' if possible else 'what a rig can have'}; the farthest "
-            f"is {values[farthest]:.6g} at {trial.time_s[farthest]:.6g} s, "
+            f"{name} holds {count_of(rows.size, 'sample')} far from "
+            f"{'the samples before and after' if plausible else 'any plausible value'}; the "
+            f"farthest is {values[farthest]:.6g} at {trial.time_s[farthest]:.6g} s, "
             f"row {trial.first_row + farthest}",
             "leave these cells empty in the file and ingest again; the stages leave the gap out",
             name,
@@ -40,4 +39,4 @@ def find(trial: Trial) -> Iterator[Remark | CannotTell]:
         )
 
 
-CHECK = Check("outlier", find)
+CHECK = QualityCheck("outlier", find)

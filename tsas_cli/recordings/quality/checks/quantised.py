@@ -1,19 +1,19 @@
 """A channel moves in steps that are coarse for its noise and its range.
 
-A note when the step is more than twice the noise, so that averaging cannot recover what lies
-between, and more than a 500th of the range; a warning from a 50th of the range on.
+A note if the step is more than twice the noise, so that averaging does not resolve it, and more
+than a 500th of the range; a warning from a 50th of the range on.
 """
 
 from collections.abc import Iterator
 
-from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
+from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
 from tsas_cli.recordings.quality.trial import Trial
 
 _NOTE, _WARNING = 1 / 500, 1 / 50
 
 
 def find(trial: Trial) -> Iterator[Remark | CannotTell]:
-    """Compare each channel's step with its noise and its span."""
+    """Yield the channels whose step exceeds their noise and a share of their span."""
     for name in trial.mechanical:
         step, noise, span = trial.step[name], trial.noise[name], trial.span[name]
         if step <= max(2.0 * noise, _NOTE * span) or span == 0.0:
@@ -24,10 +24,9 @@ def find(trial: Trial) -> Iterator[Remark | CannotTell]:
             "warning" if coarse else "note",
             f"{name} moves in steps of {step:.4g} {unit}, {100 * step / span:.2g} % of its range "
             f"of {span:.4g} {unit}; its noise is {noise:.2g} {unit}",
-            "use a finer resolution or a smaller measuring range, if the model must be better "
-            "than a step",
+            "use a finer resolution or a smaller measuring range, if residuals below a step matter",
             name,
         )
 
 
-CHECK = Check("quantised", find)
+CHECK = QualityCheck("quantised", find)

@@ -1,15 +1,15 @@
 """A channel is updated less often than the rows are written.
 
-Its sensor answers at a lower rate and the logger holds the last value, so the channel comes half
-an update late on average. An encoder in slow motion also rests between its steps, but moves by one
-step at a time; a held channel jumps.
+Its sensor updates at a lower rate and the logger repeats the last value (zero-order hold), so the
+channel is late by half an update on average. An encoder in slow motion also rests between its
+steps, but moves by one step at a time; a channel under zero-order hold jumps.
 """
 
 from collections.abc import Iterator
 
 import numpy as np
 
-from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
+from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
 from tsas_cli.recordings.quality.samples import rows_between_changes, smallest_change
 from tsas_cli.recordings.quality.trial import Trial
 from tsas_cli.recordings.recording import Floats
@@ -18,23 +18,23 @@ _FEWEST_CHANGES = 20
 
 
 def find(trial: Trial) -> Iterator[Remark | CannotTell]:
-    """Look for displacements and tensions that hardly ever change in neighbouring rows."""
+    """Yield the displacements and tensions that seldom change from one row to the next."""
     fresh = ~trial.repeats
     for name, values in trial.mechanical.items():
         rows = rows_between_changes(values[fresh])
         if rows.size >= _FEWEST_CHANGES and np.quantile(rows, 0.05) >= 2.0 and _jumps(values):
             yield Remark(
                 "warning",
-                f"{name} changes only every {np.median(rows):.0f} rows; the value is held between",
+                f"{name} changes only every {np.median(rows):.0f} rows (zero-order hold)",
                 "record the channel at its own rate, or correct for half an update of delay",
                 name,
             )
 
 
 def _jumps(values: Floats) -> bool:
-    """Say whether most changes are larger than one step."""
+    """Return whether most changes exceed one step."""
     change = np.abs(np.diff(values))
     return bool(np.nanmedian(change[change > 0.0]) > 1.5 * smallest_change(values))
 
 
-CHECK = Check("slow-channel", find)
+CHECK = QualityCheck("slow-channel", find)

@@ -1,8 +1,8 @@
 """A channel does not change at all while the motion goes back and forth.
 
-The sensor, its cable or its software hangs. A channel with noise is stuck when it does not change
-for 20 updates during visible motion; one without noise only when the drive goes through most of its
-span and back, because in a dead band the distal end rests by itself.
+The sensor, its cable or its software hangs. A noisy channel is stuck if it does not change for 20
+updates during visible motion; a noiseless one only if the drive crosses most of its span and
+returns, because the distal end also rests in a dead band.
 """
 
 from collections.abc import Iterator
@@ -11,20 +11,20 @@ import numpy as np
 
 from tsas_cli.numerics.noise import noise_sd
 from tsas_cli.numerics.turning_points import turning_points
-from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark, Severity
+from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark, Severity
 from tsas_cli.recordings.quality.samples import alternates, plateaus, rows_between_changes
 from tsas_cli.recordings.quality.trial import Trial
 from tsas_cli.recordings.recording import Floats
 
 _FEWEST_UPDATES = 20
-_LEAST_NOISE = 1e-4  # of the span; less may be the interpolation of a computed channel
+_LEAST_NOISE = 1e-4  # of the span; less may be interpolation of a computed channel
 
 
 def find(trial: Trial) -> Iterator[Remark | CannotTell]:
-    """Look for constant stretches of each displacement and tension."""
+    """Yield the longest stuck stretch of each displacement and tension."""
     for name, values in trial.mechanical.items():
         if name == trial.prescribed:
-            yield CannotTell(f"{name} is what the load decides, and may rest")
+            yield CannotTell(f"{name} is prescribed by the load, and may rest")
             continue
         if trial.lowest[name] == trial.highest[name]:
             yield _remark("warning", trial, name, slice(0, values.size))
@@ -60,13 +60,13 @@ def _hangs(trial: Trial, name: str, rows: slice, *, noisy: bool) -> bool:
             continue
         if interior and noisy and np.ptp(motion) > 2.0 * trial.visible(other):
             return True
-        if _goes_there_and_back(motion, trial.span[other]):
+        if _crosses_and_returns(motion, trial.span[other]):
             return True
     return False
 
 
 def _noisy(trial: Trial, name: str, long: list[slice]) -> bool:
-    """Say whether the channel outside its long plateaus has more noise than steps."""
+    """Return whether the noise exceeds the quantisation outside the long plateaus."""
     values = trial.channels[name].copy()
     for rows in long:
         values[rows] = np.nan
@@ -74,9 +74,9 @@ def _noisy(trial: Trial, name: str, long: list[slice]) -> bool:
     return alternates(values) and noise_sd(values) > least
 
 
-def _goes_there_and_back(motion: Floats, span: float) -> bool:
+def _crosses_and_returns(motion: Floats, span: float) -> bool:
     strokes = np.abs(np.diff(motion[turning_points(motion, 0.2 * span)]))
     return bool(np.ptp(motion) > 0.6 * span and strokes.sum() > 1.5 * span)
 
 
-CHECK = Check("stuck", find)
+CHECK = QualityCheck("stuck", find)

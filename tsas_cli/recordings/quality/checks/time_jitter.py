@@ -1,21 +1,21 @@
-"""The interval from sample to sample scatters.
+"""The sample interval scatters.
 
-A logger on a busy computer, or time stamps that were rounded. The scatter is the root mean square
-about the median interval, without gaps; above 5 % it is told.
+A logger on a busy computer, or rounded time stamps. The scatter is the RMS about the median
+interval, without gaps; it is reported above 5 %.
 """
 
 from collections.abc import Iterator
 
 import numpy as np
 
-from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
+from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
 from tsas_cli.recordings.quality.trial import Trial
 
 _TOLERATED = 0.05
 
 
 def find(trial: Trial) -> Iterator[Remark | CannotTell]:
-    """Compare the intervals with their median."""
+    """Yield the scatter of the intervals about their median if it exceeds the limit."""
     if not trial.increases:
         yield CannotTell("time does not increase")
         return
@@ -33,4 +33,4 @@ def find(trial: Trial) -> Iterator[Remark | CannotTell]:
         )
 
 
-CHECK = Check("time-jitter", find)
+CHECK = QualityCheck("time-jitter", find)

@@ -1,10 +1,10 @@
-"""A channel is off by a round factor: most likely it is in another unit than its name says.
+"""A channel is off by the ratio of two units: most likely its unit is not that in its name.
 
-What must agree is compared: the travel of the tendon's two ends; the level of the two tensions
-(friction raises one way what it lowers the other, so the geometric mean of both ways is free of
-it); the slope of `f_out_N` over `x_out_mm` with the data sheet's load stiffness; and the sample
-interval with the duration of the strokes. A wide dead band also makes the load's end move less,
-but then its path is no scaled copy of the drive's.
+Pairs that must agree are compared: the travel of the tendon's two ends; the level of the two
+tensions (their ratio is averaged geometrically over both directions, which cancels friction); the
+slope of `f_out_N` over `x_out_mm` with the data sheet's load stiffness; the sample interval with
+the duration of the strokes. A wide dead band also reduces the distal travel, but then the distal
+path is no scaled copy of the proximal one.
 """
 
 import math
@@ -12,10 +12,10 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
+from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
 from tsas_cli.recordings.quality.trial import Trial
 
-# What each ratio would be, if a channel were in that unit.
+# Each ratio, if a channel were in that unit.
 _TRAVEL = {
     1 / 10: "x_out_mm looks like centimetre",
     1 / 25.4: "x_out_mm looks like inch",
@@ -41,22 +41,22 @@ _STIFFNESS = {
     25.4: "x_out_mm looks like inch",
     1000.0: "x_out_mm looks like metre",
 }
-_SAME = 1.25  # a factor within which a slope is the stated one
-_COPY = 0.98  # the correlation above which one path is a scaled copy of the other
+_SAME = 1.25  # factor within which a slope agrees with the stated one
+_COPY = 0.98  # correlation above which one path is a scaled copy of the other
 _SLOW_S, _LONG_S = 0.2, 500.0  # a sample interval and a stroke that are normal in milliseconds
 
 
 def find(trial: Trial) -> Iterator[Remark | CannotTell]:
-    """Compare whichever of the pairs are there."""
+    """Yield the channels that look as if they were in another unit."""
     yield from _time(trial)
     travel, tension, stiffness = _travel_ratio(trial), _tension_ratio(trial), _slope_ratio(trial)
     if travel is None and tension is None and stiffness is None:
-        yield CannotTell("no two channels whose sizes must agree are there and move")
-    yield from _odd(travel, "x_out_mm moves {:.4g} mm per mm of x_in_mm", _TRAVEL, 1.4)
-    for remark in _odd(tension, "f_out_N is {:.4g} times f_in_N", _TENSION, 1.15):
+        yield CannotTell("no two channels whose sizes must agree were recorded and move")
+    yield from _suspect_unit(travel, "x_out_mm moves {:.4g} mm per mm of x_in_mm", _TRAVEL, 1.4)
+    for remark in _suspect_unit(tension, "f_out_N is {:.4g} times f_in_N", _TENSION, 1.15):
         if remark.column != "f_out_N" or not _as_stated(stiffness):
             yield remark
-    yield from _odd(
+    yield from _suspect_unit(
         stiffness,
         "the slope of f_out_N over x_out_mm is {:.4g} times load_stiffness_N_per_mm",
         _STIFFNESS,
@@ -65,17 +65,17 @@ def find(trial: Trial) -> Iterator[Remark | CannotTell]:
 
 
 def _as_stated(stiffness: float | None) -> bool:
-    """Say whether f_out and x_out have the slope of the stated spring, so that f_out is right.
+    """Return whether f_out over x_out has the slope of the stated spring, so that f_out is right.
 
-    The drive may pull at something else too, as at a spring to the ground.
+    The drive may act on something else too, such as a spring to ground.
     """
     return stiffness is not None and abs(math.log(stiffness)) < math.log(_SAME)
 
 
-def _odd(
+def _suspect_unit(
     ratio: float | None, sentence: str, likely: Mapping[float, str], tolerance: float
 ) -> Iterator[Remark]:
-    """Yield a remark when a ratio is close to one of the round factors."""
+    """Yield a remark if a ratio is close to the ratio of two units."""
     if ratio is None or not 0.0 < ratio < math.inf:
         return
     nearest = min(likely, key=lambda factor: abs(math.log(ratio / factor)))
@@ -84,13 +84,13 @@ def _odd(
         yield Remark(
             "error",
             f"{sentence.format(ratio)}; {likely[nearest]}",
-            f"look up the unit of {column} and set it at ingest",
+            f"check the unit of {column} and set it at ingest",
             None if column.startswith("load") else column,
         )
 
 
 def _travel_ratio(trial: Trial) -> float | None:
-    """Return the travel of x_out over that of x_in, where one is a copy of the other."""
+    """Return the travel of x_out over that of x_in, if one is a scaled copy of the other."""
     driven = trial.recording.run.load == "displacement"
     if driven or not trial.strokes or "x_out_mm" not in trial.channels:
         return None
@@ -111,7 +111,7 @@ def _tension_ratio(trial: Trial) -> float | None:
 
 
 def _slope_ratio(trial: Trial) -> float | None:
-    """Return the slope of f_out over x_out against the data sheet's stiffness of the spring."""
+    """Return the slope of f_out over x_out divided by the data sheet's load stiffness."""
     nominal = trial.rig.load_stiffness_N_per_mm
     spring = trial.recording.run.load == "spring"
     if nominal is None or not spring or not {"x_out_mm", "f_out_N"} <= trial.channels.keys():
@@ -121,7 +121,7 @@ def _slope_ratio(trial: Trial) -> float | None:
 
 
 def _slope(trial: Trial, x: str, y: str) -> float | None:
-    """Return the size of the slope of y over x; None where they do not go together."""
+    """Return the magnitude of the slope of y over x; None if they are not correlated."""
     both = np.isfinite(trial.channels[x]) & np.isfinite(trial.channels[y])
     a, b = trial.channels[x][both], trial.channels[y][both]
     if a.size < 3 or np.ptp(a) == 0.0 or np.ptp(b) == 0.0:
@@ -139,9 +139,9 @@ def _time(trial: Trial) -> Iterator[Remark]:
             "error",
             f"one sample each {interval:.4g} s and {np.median(strokes):.4g} s per stroke; "
             f"time_s looks like {'microsecond' if interval >= 1000.0 * _SLOW_S else 'millisecond'}",
-            "look up the unit of time_s and set it at ingest",
+            "check the unit of time_s and set it at ingest",
             "time_s",
         )
 
 
-CHECK = Check("unit", find)
+CHECK = QualityCheck("unit", find)

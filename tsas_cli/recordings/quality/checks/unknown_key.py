@@ -1,17 +1,17 @@
-"""The manifest holds a key that format 1 does not know.
+"""The manifest holds a key that format 1 does not define.
 
-Such a key travels along unused. A misspelt one is a value that nobody reads.
+Such a key is kept but has no effect; a misspelt key loses its value.
 """
 
 from collections.abc import Iterator
 
 from tsas_cli.recordings.manifest import Manifest
-from tsas_cli.recordings.quality.finding import CannotTell, Check, Remark
+from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
 from tsas_cli.support.errors import printable
 
 
 def find(manifest: Manifest) -> Iterator[Remark | CannotTell]:
-    """Look at the manifest's three kinds of tables; a likely misspelling is a warning."""
+    """Yield the unknown keys of the manifest's tables; a likely misspelling is a warning."""
     places: dict[tuple[str, str], list[str]] = {}
     tables = [("the top", manifest), ("[rig]", manifest.rig)]
     for place, table in [*tables, *((f"run {run.id}", run) for run in manifest.run)]:
@@ -22,7 +22,7 @@ def find(manifest: Manifest) -> Iterator[Remark | CannotTell]:
         yield Remark(
             "warning" if misspelt else "note",
             f"dataset.toml holds the unknown key {printable(key)} in {_listed(where)}",
-            hint if misspelt else "nothing, if it is meant for the reader",
+            hint if misspelt else "none, if it is a note for readers",
         )
 
 
@@ -31,4 +31,4 @@ def _listed(places: list[str]) -> str:
     return places[0] + more
 
 
-CHECK = Check("unknown-key", find)
+CHECK = QualityCheck("unknown-key", find)

@@ -1,7 +1,7 @@
-"""Recordings that hold the same samples as others: found, said, and counted once.
+"""Recordings that hold samples of other recordings: found, reported, and counted once.
 
-Two runs that repeat a motion have noise of their own; copies share it. So a stretch of one run is a
-copy of another where every sample of every channel lies on the other's samples, or on the line
-(straight or a cubic spline) through them, to within a twentieth of the noise, for so long that no
-repeat would.
+Two runs that repeat a motion have independent noise; copies share it. A stretch of one run is a
+copy of another if every sample of every channel agrees with the other's samples, or with their
+linear or cubic-spline interpolation, to within a twentieth of the noise, for longer than a repeat
+could.
 """

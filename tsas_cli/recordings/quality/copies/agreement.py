@@ -1,4 +1,4 @@
-"""Which samples of a run lie on another run's samples, or on the line through them."""
+"""Agreement of the samples of a run with another run's samples or their interpolation."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -10,33 +10,33 @@ Floats = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 Indices = npt.NDArray[np.int64]
 
-BESIDE = 32  # rows on either side, after which a spline has forgotten its end
-HERE = 1e-6  # of a sample, which the times of a copy are rounded by
-STEPS = 8  # of Gauss and Newton, from within a sample
+MARGIN_ROWS = 32  # on either side, beyond which a spline does not depend on its end
+TIME_TOLERANCE = 1e-6  # of a sample interval, by which the times of a copy are rounded
+ITERATIONS = 8  # of Gauss–Newton, from within a sample interval
 
 
 @dataclass(frozen=True, eq=False)
-class Samples:
+class RunSamples:
     """Times, shape (n,) and strictly increasing, and values of some channels, shape (n, d)."""
 
     time_s: Floats
     values: Floats
 
-    def part(self, rows: slice) -> "Samples":
-        """Return some of the rows."""
-        return Samples(self.time_s[rows], self.values[rows])
+    def part(self, rows: slice) -> "RunSamples":
+        """Return a part of the rows."""
+        return RunSamples(self.time_s[rows], self.values[rows])
 
-    def moved(self, shift_s: float) -> "Samples":
-        """Return the same samples at later times."""
-        return Samples(self.time_s + shift_s, self.values)
+    def moved(self, shift_s: float) -> "RunSamples":
+        """Return the samples at times later by `shift_s`."""
+        return RunSamples(self.time_s + shift_s, self.values)
 
 
 @dataclass(frozen=True, eq=False)
 class Agreement:
-    """How samples lie on those of a source.
+    """Agreement of m samples with those of a source.
 
     `agrees` and `differs`, shape (m,), are both false where a gap leaves nothing to compare; `at`
-    is the source's row, and `exact` says that its sample itself is met, not the line to the next.
+    is the row of the source, and `exact` marks agreement with its sample, not the interpolation.
     """
 
     agrees: Mask
@@ -47,67 +47,67 @@ class Agreement:
 
 
 def agreement(
-    source: Samples, samples: Samples, tolerance: Floats, *, spline: bool = False
+    source: RunSamples, samples: RunSamples, tolerance: Floats, *, spline: bool = False
 ) -> Agreement:
-    """Hold samples against a source on the same clock.
+    """Return the agreement of samples with a source on the same clock.
 
     Parameters
     ----------
     source
         At least two samples.
     samples
-        Those that are judged; outside of the source's time they differ.
+        The samples to compare; beyond the source's times they differ.
     tolerance
-        By which a channel may be off, shape (d,).
+        Largest deviation of each channel, shape (d,).
     spline
-        Whether the line through the source's samples is a cubic spline instead of straight.
+        Whether the interpolation is a cubic spline instead of linear.
     """
     time_s, n = source.time_s, source.time_s.size
     row = np.clip(np.searchsorted(time_s, samples.time_s, side="right") - 1, 0, n - 2)
     share = (samples.time_s - time_s[row]) / (time_s[row + 1] - time_s[row])
     before, after = source.values[row], source.values[row + 1]
     between = (_spline(source) if spline else _straight(source))(samples.time_s)[0]
-    # Beside a gap the line has no value where it begins and ends.
-    between = np.where((share < HERE)[:, None], before, between)
-    between = np.where((share > 1.0 - HERE)[:, None], after, between)
+    # Next to a gap the interpolation is undefined at its end samples.
+    between = np.where((share < TIME_TOLERANCE)[:, None], before, between)
+    between = np.where((share > 1.0 - TIME_TOLERANCE)[:, None], after, between)
     inside = (share > -0.5) & (share < 1.5)
     met = np.zeros((3, row.size), dtype=np.bool_)
-    seen = np.zeros((3, *samples.values.shape), dtype=np.bool_)
-    for k, there in enumerate((before, after, between)):
-        off = np.abs(samples.values - there)
-        seen[k] = np.isfinite(off)
+    comparable = np.zeros((3, *samples.values.shape), dtype=np.bool_)
+    for k, expected in enumerate((before, after, between)):
+        off = np.abs(samples.values - expected)
+        comparable[k] = np.isfinite(off)
         met[k] = inside & ~(off > tolerance).any(axis=1)
-    agreeing = met & np.any(seen, axis=2)
+    agreeing = met & np.any(comparable, axis=2)
     which = np.argmax(agreeing, axis=0)
     agrees: Mask = np.any(agreeing, axis=0)
-    compared = seen[which, np.arange(row.size)] & agrees[:, None]
+    compared = comparable[which, np.arange(row.size)] & agrees[:, None]
     differs: Mask = ~np.any(met, axis=0)
     return Agreement(agrees, differs, compared, row + (which == 1), agrees & (which < 2))
 
 
-def aligned(source: Samples, samples: Samples, tolerance: Floats, *, spline: bool) -> float:
-    """Return by how much later samples lie best on the line through a source's, from nearby [s].
+def aligned(source: RunSamples, samples: RunSamples, tolerance: Floats, *, spline: bool) -> float:
+    """Return the time shift of samples that fits a source's interpolation best, from nearby [s].
 
-    The line is a cubic spline, or straight from sample to sample.
+    The interpolation is a cubic spline, or linear.
     """
     curve = _spline(source) if spline else _straight(source)
     longest_s = 0.5 * float(np.median(np.diff(source.time_s)))
     shift_s = 0.0
-    for _ in range(STEPS):
+    for _ in range(ITERATIONS):
         at, slope = curve(samples.time_s + shift_s)
         off, slope = (samples.values - at) / tolerance, slope / tolerance
-        there = np.isfinite(off) & np.isfinite(slope)
-        steep = float(np.sum(slope[there] ** 2))
+        valid = np.isfinite(off) & np.isfinite(slope)
+        steep = float(np.sum(slope[valid] ** 2))
         if steep == 0.0:
             break
-        shift_s += float(np.clip(np.sum((slope * off)[there]) / steep, -longest_s, longest_s))
+        shift_s += float(np.clip(np.sum((slope * off)[valid]) / steep, -longest_s, longest_s))
     return shift_s
 
 
-Curve = Callable[[Floats], tuple[Floats, Floats]]  # values and slopes (m, d) at times (m,)
+_Curve = Callable[[Floats], tuple[Floats, Floats]]  # values and slopes (m, d) at times (m,)
 
 
-def _straight(source: Samples) -> Curve:
+def _straight(source: RunSamples) -> _Curve:
     time_s, values = source.time_s, source.values
 
     def at(moments: Floats) -> tuple[Floats, Floats]:
@@ -118,14 +118,14 @@ def _straight(source: Samples) -> Curve:
     return at
 
 
-def _spline(source: Samples) -> Curve:
+def _spline(source: RunSamples) -> _Curve:
     from scipy.interpolate import CubicSpline
 
     curves = []
     for values in source.values.T:
-        there = np.isfinite(values)
-        enough = np.count_nonzero(there) > 1
-        curves.append(CubicSpline(source.time_s[there], values[there]) if enough else None)
+        valid = np.isfinite(values)
+        enough = np.count_nonzero(valid) > 1
+        curves.append(CubicSpline(source.time_s[valid], values[valid]) if enough else None)
 
     def at(moments: Floats) -> tuple[Floats, Floats]:
         nowhere = np.full(moments.size, np.nan)

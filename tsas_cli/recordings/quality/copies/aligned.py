@@ -1,4 +1,4 @@
-"""Two runs read side by side, a piece at a time, each with the other's samples around it."""
+"""Two runs read in parallel, in pieces: samples of one, and the surrounding ones of the other."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -7,9 +7,9 @@ import numpy as np
 
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.pieces import Piece
-from tsas_cli.recordings.quality.copies.agreement import BESIDE, Samples
+from tsas_cli.recordings.quality.copies.agreement import MARGIN_ROWS, RunSamples
 
-AT_ONCE = 1 << 16  # samples
+MOST_SAMPLES = 1 << 16  # compared at once
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,8 +20,8 @@ class SideBySide:
     """
 
     row: int
-    samples: Samples
-    source: Samples
+    samples: RunSamples
+    source: RunSamples
 
 
 def side_by_side(
@@ -32,13 +32,13 @@ def side_by_side(
     Parameters
     ----------
     run, source
-        The pieces of each, at least one.
+        The pieces of each run, at least one.
     names
-        The channels, which both have.
+        The common channels.
     shift_s
-        How much later the run's samples are on the source's clock.
+        Shift of the run's times to the source's clock.
     """
-    row, left = 0, Samples(np.empty(0), np.empty((0, len(names))))
+    row, left = 0, RunSamples(np.empty(0), np.empty((0, len(names))))
     around = _samples(next(source), names)
     ahead = next(source, None)
     while True:
@@ -47,25 +47,25 @@ def side_by_side(
             if part is None:
                 return
             row, left = part.start, _samples(part, names).moved(shift_s)
-        # The last samples of a piece are not yet surrounded by others.
-        until = np.inf if ahead is None else around.time_s[-BESIDE]
-        here = min(int(np.searchsorted(left.time_s, until)), AT_ONCE)
+        # The last samples of a piece lack their margin until the next piece is read.
+        until = np.inf if ahead is None else around.time_s[-MARGIN_ROWS]
+        here = min(int(np.searchsorted(left.time_s, until)), MOST_SAMPLES)
         if here:
             now = left.part(slice(0, here))
             first, last = np.searchsorted(around.time_s, now.time_s[[0, -1]]).tolist()
-            first = min(first, around.time_s.size - 2)  # a run may begin after the source's end
-            near = around.part(slice(max(first - BESIDE, 0), last + BESIDE))
+            first = min(first, around.time_s.size - 2)  # the run may begin after the source's end
+            near = around.part(slice(max(first - MARGIN_ROWS, 0), last + MARGIN_ROWS))
             yield SideBySide(row, now, near)
             row, left = row + here, left.part(slice(here, None))
         elif ahead is not None:
-            kept = around.part(slice(-2 * BESIDE, None))
+            overlap = around.part(slice(-2 * MARGIN_ROWS, None))
             more = _samples(ahead, names)
-            around = Samples(
-                np.concatenate((kept.time_s, more.time_s)),
-                np.concatenate((kept.values, more.values)),
+            around = RunSamples(
+                np.concatenate((overlap.time_s, more.time_s)),
+                np.concatenate((overlap.values, more.values)),
             )
             ahead = next(source, None)
 
 
-def _samples(piece: Piece, names: Sequence[str]) -> Samples:
-    return Samples(piece.columns[TIME], np.column_stack([piece.columns[n] for n in names]))
+def _samples(piece: Piece, names: Sequence[str]) -> RunSamples:
+    return RunSamples(piece.columns[TIME], np.column_stack([piece.columns[n] for n in names]))

@@ -1,4 +1,4 @@
-"""A copy: which run holds which stretch of which other run, in what form."""
+"""A copy: the stretch of a run whose samples are those of another run."""
 
 import math
 from dataclasses import dataclass
@@ -6,14 +6,14 @@ from dataclasses import dataclass
 from tsas_cli.recordings.dataset import CONDITIONS
 from tsas_cli.recordings.manifest import Run
 
-WHOLE = 0.98  # of a run's samples: what is left of it is its edges
-ROUNDED = 1e-3  # of a condition: 3.14 rad is π
+WHOLE_SHARE = 0.98  # of a run's samples; the rest is its edges
+CONDITION_TOLERANCE = 1e-3  # relative: 3.14 rad is π
 ORDINALS = {1: "st", 2: "nd", 3: "rd"}
 
 
 @dataclass(frozen=True)
-class Span:
-    """Consecutive rows of a run, the last one excluded, and its times from first to last [s]."""
+class RowSpan:
+    """Consecutive rows of a run, `end` excluded, and the times of the first and last [s]."""
 
     first: int
     end: int
@@ -22,12 +22,12 @@ class Span:
 
     @property
     def rows(self) -> int:
-        """How many rows there are."""
+        """Number of rows."""
         return self.end - self.first
 
     @property
-    def lasts_s(self) -> float:
-        """How long it lasts [s]."""
+    def duration_s(self) -> float:
+        """Duration [s]."""
         return self.end_s - self.begin_s
 
 
@@ -38,55 +38,54 @@ class Copy:
     Parameters
     ----------
     run, other
-        The run that holds the copy, and the one that it is a copy of.
+        The run that holds the copy, and the original.
     span, all_of_run, all_of_other
         The stretch, and the whole of both runs.
     shift_s
-        How much later the samples are on the other run's clock.
+        Shift of the samples to the other run's clock [s].
     every
-        1 where it holds each of the other's samples in turn, k where every k-th, 0 where they were
-        laid between them.
+        k if the copy holds every k-th sample of the original; 0 if it is interpolated.
     contradicts
-        The conditions that the manifest says differently of the two runs.
+        The conditions that differ between the two runs in the manifest.
     """
 
     run: Run
     other: Run
-    span: Span
-    all_of_run: Span
-    all_of_other: Span
+    span: RowSpan
+    all_of_run: RowSpan
+    all_of_other: RowSpan
     shift_s: float = 0.0
     every: int = 1
     contradicts: tuple[str, ...] = ()
 
     @property
     def whole(self) -> bool:
-        """Whether all of the run is the copy."""
-        return self.span.rows >= WHOLE * self.all_of_run.rows
+        """Whether the whole run is a copy."""
+        return self.span.rows >= WHOLE_SHARE * self.all_of_run.rows
 
     @property
     def sentence(self) -> str:
-        """What the run holds, in words that follow its name."""
+        """Description of the copy, a predicate for the name of the run."""
         here = f"from {self.span.begin_s:.6g} s to {self.span.end_s:.6g} s"
         there = (self.span.begin_s + self.shift_s, self.span.end_s + self.shift_s)
         there_s = f"from {there[0]:.6g} s to {there[1]:.6g} s"
         if not self.whole:
             return f"holds, {here}, {self._samples} {there_s}{self._resampled}"
-        if self.span.lasts_s < WHOLE * self.all_of_other.lasts_s:
+        if self.span.duration_s < WHOLE_SHARE * self.all_of_other.duration_s:
             return f"holds {self._samples} {there_s}{self._resampled}"
-        shifted = abs(self.shift_s) * self.all_of_run.rows > self.all_of_run.lasts_s
+        shifted = abs(self.shift_s) * self.all_of_run.rows > self.all_of_run.duration_s
         by = f", its time shifted by {-self.shift_s:.6g} s" if shifted else ""
         return f"holds {self._samples}{self._resampled}{by}"
 
     @property
     def contradiction(self) -> str:
-        """What the manifest says differently, as the end of a sentence; empty where nothing."""
-        said = [
+        """The differing conditions, as the end of a sentence; empty without any."""
+        differing = [
             f"{name} = {_text(getattr(self.run, name))} here and "
             f"{_text(getattr(self.other, name))} there"
             for name in self.contradicts
         ]
-        return f", but the manifest says {', '.join(said)}" if said else ""
+        return f", but the manifest says {', '.join(differing)}" if differing else ""
 
     @property
     def _samples(self) -> str:
@@ -101,7 +100,7 @@ class Copy:
     def _resampled(self) -> str:
         if self.every > 0:
             return ""
-        return f", resampled at {(self.all_of_run.rows - 1) / self.all_of_run.lasts_s:.5g} Hz"
+        return f", resampled at {(self.all_of_run.rows - 1) / self.all_of_run.duration_s:.5g} Hz"
 
 
 def _text(value: float | str) -> str:
@@ -109,11 +108,11 @@ def _text(value: float | str) -> str:
 
 
 def contradictions(run: Run, other: Run) -> tuple[str, ...]:
-    """Return the conditions that two runs state differently, more than by rounding."""
+    """Return the conditions that differ between two runs by more than rounding."""
     stated = [(name, getattr(run, name), getattr(other, name)) for name in CONDITIONS]
     different = [
         name
         for name, a, b in stated
-        if not (a is None or b is None or math.isclose(a, b, rel_tol=ROUNDED))
+        if not (a is None or b is None or math.isclose(a, b, rel_tol=CONDITION_TOLERANCE))
     ]
     return (*different, "load") if run.load != other.load else tuple(different)

@@ -1,7 +1,7 @@
-"""A dataset in which each sample counts once, as fits and the weighing of evidence take it.
+"""A dataset in which each sample counts once, for fits and for the evidence of a diagnosis.
 
-A run that is a copy as a whole is left out. Of one that shares a stretch with another the stretch
-has no weight, as a gap has none.
+A run that is a copy as a whole is left out. A stretch that two runs share has zero weight in one of
+them, as a gap has.
 """
 
 from collections.abc import Mapping, Sequence
@@ -10,26 +10,26 @@ from dataclasses import dataclass, field
 from tsas_cli.recordings.copied import NONE_COPIED, CopiedRows
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import FILE
-from tsas_cli.recordings.quality.copies.copy import WHOLE, Copy
+from tsas_cli.recordings.quality.copies.copy import WHOLE_SHARE, Copy
 from tsas_cli.recordings.quality.copies.search import find_copies
 from tsas_cli.support.errors import InputError
 
 
 @dataclass(frozen=True)
 class Counted:
-    """The runs that count, the rows of them that do not, and what is to be said of it."""
+    """The runs without whole copies, their duplicate rows, and notes for the user."""
 
     dataset: Dataset
     copied: Mapping[str, CopiedRows] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
 
     def copied_of(self, run: str) -> CopiedRows:
-        """Return the rows of a run that do not count."""
+        """Return the duplicate rows of a run."""
         return self.copied.get(run, NONE_COPIED)
 
 
 def counted_once(dataset: Dataset) -> Counted:
-    """Leave out what a dataset holds twice.
+    """Return a dataset without duplicate samples.
 
     Raises
     ------
@@ -46,15 +46,15 @@ def counted_once(dataset: Dataset) -> Counted:
             )
         by_run.setdefault(copy.run.id, []).append(copy)
     copied = {run: _rows(copies) for run, copies in by_run.items()}
-    gone = {run for run, copies in by_run.items() if _all_of_it(copied[run], copies[0])}
-    kept = dataset.only(r.id for r in dataset.runs if r.id not in gone) if gone else dataset
+    removed = {run for run, copies in by_run.items() if _all_of_it(copied[run], copies[0])}
+    kept = dataset.only(r.id for r in dataset.runs if r.id not in removed) if removed else dataset
     return Counted(
         kept,
-        {run: rows for run, rows in copied.items() if run not in gone},
+        {run: rows for run, rows in copied.items() if run not in removed},
         tuple(
             f"Run {run} {'; '.join(copy.sentence for copy in copies)}: "
-            f"{'it is left out' if run in gone else 'there it has no weight'}, so that no sample "
-            "counts twice."
+            f"{'it is left out' if run in removed else 'there it has no weight'}, so that no "
+            "sample counts twice."
             for run, copies in by_run.items()
         ),
     )
@@ -65,4 +65,4 @@ def _rows(copies: Sequence[Copy]) -> CopiedRows:
 
 
 def _all_of_it(copied: CopiedRows, copy: Copy) -> bool:
-    return bool(copied.mask(0, copy.all_of_run.rows).mean() >= WHOLE)
+    return bool(copied.mask(0, copy.all_of_run.rows).mean() >= WHOLE_SHARE)

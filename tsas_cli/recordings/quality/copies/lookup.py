@@ -1,8 +1,8 @@
-"""Where a short stretch of one run may lie in another, by the values of its samples alone.
+"""Search of a source for a short stretch of another run, by the values of its samples alone.
 
-The straight pieces between a source's samples are sorted into bins by one channel. A sample that
-was copied, or laid between two samples, lies on one of the few pieces in its bin; that piece gives
-the shift of the clocks, at which the rest of the stretch has to lie on the source too.
+The line segments between a source's samples are sorted into bins by one channel. A copied or
+interpolated sample lies on one of the few segments in its bin; that segment determines the shift of
+the clocks, at which the rest of the stretch has to agree with the source too.
 """
 
 from collections.abc import Iterator
@@ -11,54 +11,54 @@ from dataclasses import dataclass
 import numpy as np
 
 from tsas_cli.recordings.quality.copies.agreement import (
-    BESIDE,
+    MARGIN_ROWS,
     Floats,
     Indices,
     Mask,
-    Samples,
+    RunSamples,
     agreement,
     aligned,
 )
 
 BINS = 4096
-BLOCK = 1 << 16  # pieces that are sorted at once
-ENTRIES = 3.0  # of a piece in the bins, on average at most
+BLOCK = 1 << 16  # segments that are sorted at once
+ENTRIES = 3.0  # of a segment in the bins, on average at most
 TRIED = 2  # samples of a stretch that are looked up
 MOST_AT_ONCE = 1 << 18
-CROWDED = 256, 1 / 128  # pieces in a bin, and of all, beyond which nothing is looked up there
-CLOSEST = 4  # places of one stretch that are looked at
-NEARLY = 0.1  # of a sample, by which two places may differ to be one
-PARTS = (0.0, 0.1, 0.3)  # of what is loose, by which closeness is told
-LOOSE = 0.5  # of the noise: splines lie off straight lines by about a fifth of it
-MOST_LOOSE = 0.7  # of a stretch, that lies on the source loosely
-MOST_TIGHT = 0.85  # and tightly
-NEARLY_ALL = 0.97  # without noise: coarse samples lie on those of any repeat mostly
+CROWDED = 256, 1 / 128  # most segments in a bin that is searched: number, and share of all
+CLOSEST = 4  # candidate shifts of one stretch that are refined
+NEARLY = 0.1  # of a sample interval, within which two shifts are one
+PARTS = (0.0, 0.1, 0.3)  # of the loose tolerance, at which closeness is evaluated
+LOOSE = 0.5  # of the noise: splines deviate from linear interpolation by about a fifth of it
+LOOSE_SHARE = 0.7  # of a stretch that agrees within the loose tolerance
+TIGHT_SHARE = 0.85  # and within the tolerance
+NOISELESS_SHARE = 0.97  # without noise, where most coarse samples agree with any repeat
 
 
 @dataclass(frozen=True)
 class Shift:
-    """How much later a stretch lies on a source's clock [s], and on which line through it."""
+    """Shift of a stretch to a source's clock [s], and the kind of interpolation."""
 
     seconds: float
     spline: bool
 
 
 class Lookup:
-    """A source's samples, ready for stretches of others to be looked up."""
+    """Index of a source's samples, for the search of stretches."""
 
-    def __init__(self, source: Samples, tolerance: Floats, noise: Floats) -> None:
-        """Take the source, at least two samples, and tolerance and noise of each channel.
+    def __init__(self, source: RunSamples, tolerance: Floats, noise: Floats) -> None:
+        """Index a source of at least two samples, with tolerance and noise of each channel.
 
-        The noise is 0 where none of the channels shows it.
+        The noise is 0 if no channel shows it.
         """
         self.source, self.tolerance = source, tolerance
-        self.enough = MOST_LOOSE if noise.any() else NEARLY_ALL
+        self.enough = LOOSE_SHARE if noise.any() else NOISELESS_SHARE
         self.loose = tolerance + LOOSE * noise
         self.nearly_s = NEARLY * float(np.median(np.diff(source.time_s)))
         whole: Mask = np.all(np.isfinite(source.values), axis=1)
         pieces = np.flatnonzero(whole[1:] & whole[:-1])
         some = source.values[pieces[:: 1 + pieces.size // BLOCK]]
-        # The one that tells samples apart best.
+        # The channel that separates samples best.
         self.channel = int(
             np.argmin([_crowd(*each) for each in zip(some.T, self.loose, strict=True)])
         )
@@ -73,19 +73,19 @@ class Lookup:
         ]
 
     def shifts(self, time_s: Floats, values: Floats) -> Iterator[tuple[int, Shift]]:
-        """Yield the number of each stretch that lies on the source, and where.
+        """Yield the number and the shift of each stretch that agrees with the source.
 
         The times of the stretches have the shape (h, k), the values (h, k, d).
         """
         for number, seconds in self._places(time_s, values):
-            shift = self._tight(Samples(time_s[number], values[number]), seconds)
+            shift = self._tight(RunSamples(time_s[number], values[number]), seconds)
             if shift is not None:
                 yield number, shift
 
     def _places(self, time_s: Floats, values: Floats) -> list[tuple[int, float]]:
-        """Return the shifts at which most of a stretch lies loosely on the source, a few of each.
+        """Return number and shift of stretches that agree loosely, at most `CLOSEST` shifts each.
 
-        They are those at which it lies closest.
+        They are the shifts of the closest agreement.
         """
         found: list[tuple[float, int, float]] = []
         for bins in self.bins:
@@ -101,7 +101,7 @@ class Lookup:
         return [(number, seconds) for number, known in chosen.items() for seconds in known]
 
     def _on_piece(self, values: Floats, piece: Indices) -> tuple[Mask, Floats]:
-        """Return which samples lie loosely on their pieces, and when on the source's clock."""
+        """Return which samples agree loosely with their segments, and their times on its clock."""
         source = self.source
         before = source.values[piece]
         step = (source.values[piece + 1] - before) / self.loose
@@ -118,7 +118,7 @@ class Lookup:
     def _followed(
         self, time_s: Floats, values: Floats, stretch: Indices, shift_s: Floats
     ) -> list[tuple[float, int, float]]:
-        """Return closeness, number and shift of each stretch that lies loosely on the source."""
+        """Return closeness, number and shift of each stretch that agrees loosely."""
         for step in (values.shape[1] // 4, 1):
             at_s = time_s[stretch, ::step] + shift_s[:, None]
             lie = self._share(at_s, values[stretch, ::step], self.loose)
@@ -129,26 +129,26 @@ class Lookup:
         return list(zip(close.tolist(), stretch.tolist(), shift_s.tolist(), strict=True))
 
     def _share(self, at_s: Floats, values: Floats, tolerance: Floats) -> Floats:
-        """Return how much of stretches, (m, k, d) at (m, k), lies on the source, shape (m,)."""
-        samples = Samples(at_s.ravel(), values.reshape(-1, values.shape[2]))
+        """Return the share of each stretch, (m, k, d) at (m, k), that agrees, shape (m,)."""
+        samples = RunSamples(at_s.ravel(), values.reshape(-1, values.shape[2]))
         agrees = agreement(self.source, samples, tolerance).agrees.reshape(at_s.shape)
         return np.asarray(agrees.mean(axis=1))
 
-    def _tight(self, stretch: Samples, seconds: float) -> Shift | None:
-        """Return the shift at which a stretch lies on the source tightly, on either line."""
+    def _tight(self, stretch: RunSamples, seconds: float) -> Shift | None:
+        """Return the refined shift of a stretch, with either interpolation; or None."""
         moved = stretch.moved(seconds)
         first, last = np.searchsorted(self.source.time_s, moved.time_s[[0, -1]]).tolist()
-        near = self.source.part(slice(max(first - BESIDE, 0), last + BESIDE))
+        near = self.source.part(slice(max(first - MARGIN_ROWS, 0), last + MARGIN_ROWS))
         for spline in (False, True):
             by_s = aligned(near, moved, self.tolerance, spline=spline)
             found = agreement(near, moved.moved(by_s), self.tolerance, spline=spline)
-            if found.agrees.mean() >= MOST_TIGHT:
+            if found.agrees.mean() >= TIGHT_SHARE:
                 return Shift(seconds + by_s, spline)
         return None
 
 
 def _crowd(values: Floats, apart: float) -> float:
-    """Return the mean number of samples beside a sample, as close as can be told apart."""
+    """Return the summed squared number of samples per bin of the resolution `apart`."""
     if values.size == 0:
         return 0.0
     width = max(float(np.ptp(values)) / BINS, apart)
@@ -156,7 +156,7 @@ def _crowd(values: Floats, apart: float) -> float:
 
 
 class _Bins:
-    """Pieces of a line sorted by the values of one channel that each one covers."""
+    """Line segments sorted by the values of one channel that each one covers."""
 
     def __init__(self, lower: Floats, upper: Floats, pieces: Indices) -> None:
         self.origin = float(lower.min())
@@ -171,9 +171,9 @@ class _Bins:
         self.edges = np.searchsorted(bins[order], np.arange(BINS + 3))
 
     def looked_up(self, values: Floats) -> Iterator[tuple[Indices, Indices, Indices]]:
-        """Yield number of stretch, number of sample in it, and piece on which that may lie.
+        """Yield number of the stretch, number of its sample, and segment on which that may lie.
 
-        The values of stretches, (h, k), are looked up where the fewest pieces are.
+        Of each stretch, (h, k), the `TRIED` samples in the emptiest bins are looked up.
         """
         number = (values - self.origin) / self.width
         inside = (number >= 0.0) & (number < BINS + 1)

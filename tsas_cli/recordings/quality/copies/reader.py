@@ -1,4 +1,4 @@
-"""Every run in pieces, short ones from memory, as a search reads them several times."""
+"""Runs in pieces; short runs stay in memory, since the search reads them several times."""
 
 from collections.abc import Iterator
 
@@ -12,22 +12,22 @@ from tsas_cli.recordings.quality.copies.fingerprint import Fingerprint, fingerpr
 from tsas_cli.recordings.run_files import read_recording
 from tsas_cli.support.errors import InputError
 
-KEPT = 1 << 23  # values of short runs that stay in memory
+CACHE_VALUES = 1 << 23  # of short runs that stay in memory
 
 
 class Reader:
-    """The pieces of each run; those of short runs stay in memory, as long as they are not many."""
+    """The pieces of each run; short runs are cached up to `CACHE_VALUES`."""
 
     def __init__(self, dataset: Dataset, *, strict: bool) -> None:
-        """Take the runs; what no rig has is left out of them where that is not `strict`."""
+        """Open a dataset; without `strict`, implausible values become NaN."""
         self.dataset, self.strict = dataset, strict
-        self.kept: dict[str, Piece] = {}
-        self.room = KEPT
+        self.cache: dict[str, Piece] = {}
+        self.room = CACHE_VALUES
 
     def parts(self, run: Run) -> Iterator[Piece]:
-        """Read a run, piece by piece."""
-        if run.id in self.kept:
-            yield self.kept[run.id]
+        """Yield the pieces of a run."""
+        if run.id in self.cache:
+            yield self.cache[run.id]
             return
         folder = self.dataset.folder
         long = long_run(folder, run)
@@ -40,11 +40,11 @@ class Reader:
         size = piece.rows * len(piece.columns)
         if size <= self.room:
             self.room -= size
-            self.kept[run.id] = piece
+            self.cache[run.id] = piece
         yield piece
 
     def fingerprint(self, run: Run) -> Fingerprint | None:
-        """Return what a run is recognised by; None where it cannot be read and need not be."""
+        """Return the fingerprint of a run; without `strict`, None if it cannot be read."""
         try:
             return fingerprint(run, self.parts(run))
         except InputError:
@@ -54,7 +54,7 @@ class Reader:
 
 
 def _plausible(piece: Piece) -> Piece:
-    """Return a piece without the values that no rig has."""
+    """Return a piece with its implausible values as NaN."""
     return Piece(
         piece.start,
         {

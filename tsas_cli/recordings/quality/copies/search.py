@@ -1,8 +1,8 @@
-"""Which runs of a dataset hold samples of others.
+"""Search for the runs of a dataset that hold samples of others.
 
-Short stretches of every run are looked up in every other run, piece by piece; where one is found
-the two runs are held against each other, sample by sample. A run that lies in another as a whole
-is looked at no further, so that many copies of one run cost little.
+Short stretches of every run are searched for in every other run, piece by piece; if one is found,
+the two runs are compared sample by sample. A run that is a whole copy is not searched further, so
+that many copies of one run cost little.
 """
 
 import math
@@ -15,24 +15,23 @@ import numpy as np
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Run
-from tsas_cli.recordings.quality.copies.agreement import Floats, Indices, Samples, agreement
+from tsas_cli.recordings.quality.copies.agreement import Floats, Indices, RunSamples, agreement
 from tsas_cli.recordings.quality.copies.aligned import side_by_side
-from tsas_cli.recordings.quality.copies.copy import Copy, Span, contradictions
+from tsas_cli.recordings.quality.copies.copy import Copy, RowSpan, contradictions
 from tsas_cli.recordings.quality.copies.fingerprint import Fineness, Fingerprint
 from tsas_cli.recordings.quality.copies.lookup import Lookup, Shift
 from tsas_cli.recordings.quality.copies.reader import Reader
 from tsas_cli.recordings.quality.copies.stretches import joined, stretches
 
-TOGETHER = 0.1  # of a sample, by which shifts may differ to be one
-PLACES = 8  # of a run on another that are looked at
+SHIFT_TOLERANCE = 0.1  # of a sample interval, within which two shifts are one
+MOST_SHIFTS = 8  # of a run on another that are compared
 
 
 @dataclass(frozen=True)
 class Found:
-    """The copies in a dataset, in the order of its runs, and the runs of which nothing is known.
+    """The copies in a dataset, in the order of its runs, and the runs that were not searched.
 
-    Time does not increase in those that are `unordered`; in those that are `short` hardly anything
-    changes.
+    In `unordered` runs time does not increase; in `short` ones too few rows change.
     """
 
     copies: tuple[Copy, ...] = ()
@@ -41,9 +40,9 @@ class Found:
 
 
 def find_copies(dataset: Dataset, *, strict: bool = True) -> Found:
-    """Look for runs that hold samples of others.
+    """Return the runs that hold samples of others.
 
-    With `strict=False` runs that cannot be read are left out, and time may run backwards.
+    With `strict=False`, unreadable runs are left out, and time may decrease.
 
     Raises
     ------
@@ -52,7 +51,7 @@ def find_copies(dataset: Dataset, *, strict: bool = True) -> Found:
     """
     if len(dataset.runs) < 2:
         return Found()
-    with np.errstate(all="ignore"):  # a stray 1e300 is judged like any other number
+    with np.errstate(all="ignore"):  # a stray 1e300 may overflow
         return _found(dataset, strict=strict)
 
 
@@ -65,13 +64,13 @@ def _found(dataset: Dataset, *, strict: bool) -> Found:
         if digest in first:
             copies.append(_same_file(run, first[digest]))
             continue
-        told = reader.fingerprint(run)
-        if told is not None:
-            first[digest] = told
+        one = reader.fingerprint(run)
+        if one is not None:
+            first[digest] = one
     known = list(first.values())
     order = {run.id: k for k, run in enumerate(dataset.runs)}
     copies += _search(reader, [f for f in known if f.increases], order)
-    if dataset.manifest.kind == "simulated":  # without noise, one sample may belong to many rigs
+    if dataset.manifest.kind == "simulated":  # without noise, different rigs may have equal samples
         quiet = {f.run.id for f in known if not f.noisy}
         copies = [replace(c, contradicts=()) if c.other.id in quiet else c for c in copies]
     return Found(
@@ -88,12 +87,12 @@ def _same_file(run: Run, other: Fingerprint) -> Copy:
 
 
 def _search(reader: Reader, known: Sequence[Fingerprint], order: dict[str, int]) -> list[Copy]:
-    """Return the copies among runs that differ in their files."""
+    """Return the copies among runs with different files."""
     groups = _groups(known)
     whole: dict[str, Copy] = {}
     parts: list[Copy] = []
-    # What lies in another run is the copy, whichever comes first.
-    for source in sorted(known, key=lambda f: (f.laid_between, -f.all.rows)):
+    # The contained run is the copy, whichever comes first.
+    for source in sorted(known, key=lambda f: (f.interpolated, -f.all.rows)):
         if source.run.id in whole:
             continue
         for copy in _in_source(reader, source, groups, whole.keys() | {source.run.id}):
@@ -110,7 +109,7 @@ def _search(reader: Reader, known: Sequence[Fingerprint], order: dict[str, int])
 
 
 def _once(parts: Sequence[Copy], order: dict[str, int]) -> list[Copy]:
-    """Return each of two runs' common stretches once: as the later run's, if it is both's."""
+    """Return each common stretch of two runs once: as that of the later run, if found in both."""
 
     def earlier(copy: Copy) -> bool:
         return order[copy.run.id] < order[copy.other.id]
@@ -123,32 +122,32 @@ def _once(parts: Sequence[Copy], order: dict[str, int]) -> list[Copy]:
 def _in_source(
     reader: Reader, source: Fingerprint, groups: Sequence["_Group"], but: Set[str]
 ) -> Iterator[Copy]:
-    """Yield the copies of a source that runs hold, but for some of them."""
+    """Yield the copies of a source in other runs, except those in `but`."""
     places: dict[str, Counter[Shift]] = {}
     others: dict[str, Fingerprint] = {}
     for other, shift in _places(reader, source, groups, but):
         others[other.run.id] = other
         seen = places.setdefault(other.run.id, Counter())
-        seen[_as_before(seen, shift, TOGETHER * source.interval_s)] += 1
+        seen[_known_shift(seen, shift, SHIFT_TOLERANCE * source.interval_s)] += 1
     for run, seen in places.items():
-        taken: list[Span] = []
-        for shift, _ in seen.most_common(PLACES):
-            for copy in _held_against(reader, source, others[run], shift):
-                if not any(_overlap(copy.span, span) for span in taken):
-                    taken.append(copy.span)
+        spans: list[RowSpan] = []
+        for shift, _ in seen.most_common(MOST_SHIFTS):
+            for copy in _common_stretches(reader, source, others[run], shift):
+                if not any(_overlap(copy.span, span) for span in spans):
+                    spans.append(copy.span)
                     yield copy
-                    if not copy.whole:  # the source may be a piece of it
+                    if not copy.whole:  # the source may be a part of it
                         back = Shift(-shift.seconds, shift.spline)
-                        yield from _held_against(reader, others[run], source, back)
-            if sum(span.rows for span in taken) == others[run].all.rows:
+                        yield from _common_stretches(reader, others[run], source, back)
+            if sum(span.rows for span in spans) == others[run].all.rows:
                 break
 
 
-def _overlap(a: Span, b: Span) -> bool:
+def _overlap(a: RowSpan, b: RowSpan) -> bool:
     return a.first < b.end and b.first < a.end
 
 
-def _as_before(seen: Counter[Shift], shift: Shift, nearly_s: float) -> Shift:
+def _known_shift(seen: Counter[Shift], shift: Shift, nearly_s: float) -> Shift:
     for other in seen:
         if abs(other.seconds - shift.seconds) < nearly_s and other.spline == shift.spline:
             return other
@@ -157,22 +156,22 @@ def _as_before(seen: Counter[Shift], shift: Shift, nearly_s: float) -> Shift:
 
 @dataclass(frozen=True, eq=False)
 class _Group:
-    """Runs with the same channels in about the same steps, and all their stretches."""
+    """Runs with the same channels and similar quantisation steps, and all their stretches."""
 
     members: Sequence[Fingerprint]
     steps: dict[str, float]  # the coarsest ones
-    owner: Indices  # of each stretch, the number of its run
+    owner: Indices  # number of the run of each stretch
     stretches_s: Floats
     stretches: Floats
 
 
 def _groups(known: Sequence[Fingerprint]) -> list[_Group]:
-    """Return the runs in groups; those that nothing is looked up of are in none."""
-    alike: dict[tuple[object, ...], list[Fingerprint]] = {}
+    """Return the runs in groups; runs without stretches are in none."""
+    groups: dict[tuple[object, ...], list[Fingerprint]] = {}
     for one in known:
         if one.stretches.size:
             key = [(name, math.frexp(c.step)[1]) for name, c in one.channels.items()]
-            alike.setdefault((*key, one.dense, one.stretches_s.shape[1]), []).append(one)
+            groups.setdefault((*key, one.dense, one.stretches_s.shape[1]), []).append(one)
     return [
         _Group(
             members,
@@ -181,14 +180,14 @@ def _groups(known: Sequence[Fingerprint]) -> list[_Group]:
             np.concatenate([m.stretches_s for m in members]),
             np.concatenate([m.stretches for m in members]),
         )
-        for members in alike.values()
+        for members in groups.values()
     ]
 
 
 def _places(
     reader: Reader, source: Fingerprint, groups: Sequence[_Group], but: Set[str]
 ) -> Iterator[tuple[Fingerprint, Shift]]:
-    """Yield where stretches of runs lie in a source."""
+    """Yield the run and the shift of each stretch found in a source."""
     comparable = []
     for group in groups:
         one = group.members[0]
@@ -197,42 +196,42 @@ def _places(
             comparable.append((group, one, names))
     for piece in reader.parts(source.run) if comparable else ():
         for group, one, names in comparable:
-            asked = np.array([m.run.id not in but for m in group.members])[group.owner]
-            if not asked.any():
+            searched = np.array([m.run.id not in but for m in group.members])[group.owner]
+            if not searched.any():
                 continue
             values = np.column_stack([piece.columns[name] for name in names])
             fine = [source.channels[name] for name in names]
             lookup = Lookup(
-                Samples(piece.columns[TIME], values),
+                RunSamples(piece.columns[TIME], values),
                 np.array([source.channels[n].tolerance(group.steps[n]) for n in names]),
-                # Coarse samples lie loosely on those of any repeat.
+                # Coarse samples agree loosely with those of any repeat.
                 np.array([channel.noise if source.noisy else 0.0 for channel in fine]),
             )
             columns = [one.dense.index(name) for name in names]
-            owner = group.owner[asked]
+            owner = group.owner[searched]
             for number, shift in lookup.shifts(
-                group.stretches_s[asked], group.stretches[asked][:, :, columns]
+                group.stretches_s[searched], group.stretches[searched][:, :, columns]
             ):
                 yield group.members[owner[number]], shift
 
 
-def _held_against(
+def _common_stretches(
     reader: Reader, source: Fingerprint, other: Fingerprint, shift: Shift
 ) -> Iterator[Copy]:
-    """Yield the stretches of another run that are a source's samples, so much later."""
+    """Yield the stretches of another run that are a source's samples at this shift."""
     names = [name for name in other.channels if name in source.channels]
     fine = [source.channels[name] for name in names]
     tolerance = np.array(
         [one.tolerance(other.channels[n].step) for n, one in zip(names, fine, strict=True)]
     )
-    news = _news(fine, tolerance)
+    information = _information(fine, tolerance)
     both = side_by_side(reader.parts(other.run), reader.parts(source.run), names, shift.seconds)
     found = (
         stretches(
             part.row,
             part.samples.moved(-shift.seconds),
             agreement(part.source, part.samples, tolerance, spline=shift.spline),
-            news,
+            information,
         )
         for part in both
     )
@@ -243,14 +242,14 @@ def _held_against(
         )
 
 
-def _news(channels: Sequence[Fineness], tolerance: Floats) -> Floats:
-    """Return how unlikely it is that a repeat meets a sample of each channel [nats].
+def _information(channels: Sequence[Fineness], tolerance: Floats) -> Floats:
+    """Return −ln of the probability that a repeat agrees with a sample of each channel [nats].
 
-    Where some channels have noise the others tell nothing: they may be commanded, and the same in
-    every repeat. So do computed channels beside coarse ones.
+    If some channels have noise, the others carry no information: they may be commanded, and equal
+    in every repeat. The same holds for computed channels beside coarse ones.
     """
     noisy = np.array([channel.noisy for channel in channels])
     coarse = np.array([channel.step > 0.0 for channel in channels])
-    telling = noisy if noisy.any() else coarse if coarse.any() else ~noisy
-    told = [channel.news(off) for channel, off in zip(channels, tolerance.tolist(), strict=True)]
-    return np.where(telling, told, 0.0)
+    informative = noisy if noisy.any() else coarse if coarse.any() else ~noisy
+    pairs = zip(channels, tolerance.tolist(), strict=True)
+    return np.where(informative, [channel.information(off) for channel, off in pairs], 0.0)
