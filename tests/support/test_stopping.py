@@ -1,5 +1,7 @@
 import os
 import signal
+import subprocess
+import sys
 import time
 
 import pytest
@@ -30,6 +32,21 @@ def test_other_errors_are_no_end():
 def test_a_stage_that_is_stopped_has_not_done_its_work(number):
     with pytest.raises(KeyboardInterrupt), cleaned_up_when_stopped():
         signal.raise_signal(number)
+
+
+def test_a_stop_while_text_is_executed_ends_with_the_exit_code_and_not_by_a_signal(tmp_path):
+    """A library that makes a class from text is at it when the signal comes."""
+    (tmp_path / "stopped.py").write_text("""
+import signal, sys
+from tsas_cli.support.stopping import EXIT_CODE, cleaned_up_when_stopped
+try:
+    with cleaned_up_when_stopped():
+        exec("signal.raise_signal(signal.SIGTERM)")
+except KeyboardInterrupt:
+    sys.exit(EXIT_CODE)
+""")
+    done = subprocess.run([sys.executable, "-m", "stopped"], cwd=tmp_path, check=False)
+    assert done.returncode == 130
 
 
 def test_handlers_are_as_before():

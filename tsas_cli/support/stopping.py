@@ -17,6 +17,14 @@ class Stopped(BaseException):
     """Somebody asked this command to end."""
 
 
+class Interrupted(KeyboardInterrupt):
+    """Ctrl-C or its kin.
+
+    CPython remembers a plain `KeyboardInterrupt` that leaves text which a library executes, and
+    ends `python -m tsas_cli` by SIGINT then, even where it was caught; not so a subclass of it.
+    """
+
+
 @contextmanager
 def until_stopped() -> Iterator[None]:
     """Run the block until it ends, or until a person ends it; both are the same to the caller."""
@@ -30,7 +38,7 @@ def until_stopped() -> Iterator[None]:
 @contextmanager
 def cleaned_up_when_stopped() -> Iterator[None]:
     """Let every such signal do in the block what Ctrl-C does: what it has opened is closed."""
-    with _raising(KeyboardInterrupt):
+    with _raising(Interrupted):
         yield
 
 
