@@ -1,4 +1,4 @@
-"""The decisions of the dynamic fit on fits that are made up: what is freed, looked at, said."""
+"""Which constants the dynamic fit frees, fixes or seeks again, on fits that are linear."""
 
 from dataclasses import dataclass, field
 from types import SimpleNamespace
@@ -15,9 +15,10 @@ from tsas_cli.physics.response import LUMPS
 from tsas_cli.support.steps import SILENT
 
 SLOPES = np.linalg.qr(np.random.default_rng(1).standard_normal((50, 2)))[0]
-OWN = np.random.default_rng(2).standard_normal(50)
-OWN = 10.0 * (OWN - SLOPES @ (SLOPES.T @ OWN)) / np.linalg.norm(OWN - SLOPES @ (SLOPES.T @ OWN))
 
+OWN = np.random.default_rng(2).standard_normal(50)
+
+OWN = 10.0 * (OWN - SLOPES @ (SLOPES.T @ OWN)) / np.linalg.norm(OWN - SLOPES @ (SLOPES.T @ OWN))
 
 NOTHING = Model(())
 
@@ -62,47 +63,6 @@ def linear(monkeypatch):
     monkeypatch.setattr(d, "residuals_with", residuals_with)
     monkeypatch.setattr(d, "slopes_of_free", lambda fit: SLOPES)
     monkeypatch.setattr(d, "moved_model", lambda fit, moves: Model(()))
-
-
-def test_a_value_that_fits_better_saves_what_the_others_leave():
-    """Twice the stiffness takes ln 2 of its errors away; what the others can do is done by them."""
-    left = -np.log(2.0) * OWN + SLOPES @ [3.0, -4.0]
-    looks = d._sizes(Fit(left), d.STIFFNESS, SILENT)
-    by = {round(look.values[d.STIFFNESS] / 5000.0, 6): look for look in looks}
-    assert set(by) == {1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01}
-    assert by[2.0].saves == pytest.approx(left @ left)
-    np.testing.assert_allclose(by[2.0].moves, [-3.0, 4.0], atol=1e-9)
-    assert by[1.0].saves == pytest.approx(25.0)
-    assert max(looks, key=lambda look: look.saves) is by[2.0]
-
-
-def test_others_are_looked_at_from_the_usual_size_up():
-    looks = d._sizes(Fit(OWN), d.VISCOUS, SILENT)
-    usual = QUANTITIES[d.VISCOUS].size
-    assert [look.values[d.VISCOUS] / usual for look in looks] == pytest.approx(list(d.TIMES))
-
-
-@pytest.mark.parametrize(("asked", "started"), [(0.3, 0.3), (5.0, 1.0), (0.001, 0.01)])
-def test_friction_at_rest_is_looked_at_at_the_size_that_is_asked_for(asked, started):
-    looks = d._friction_at_rest(Fit(-asked * OWN), SILENT)
-    assert [look.values[d.VELOCITY] for look in looks] == pytest.approx(list(d.VELOCITIES))
-    for look in looks:
-        assert look.values[d.EXCESS] == pytest.approx(started)
-        assert look.saves == pytest.approx(100.0 * asked**2)
-
-
-def test_less_friction_at_rest_is_none():
-    looks = d._friction_at_rest(Fit(0.5 * OWN), SILENT)
-    assert {look.saves for look in looks} == {0.0}
-    assert {look.values[d.EXCESS] for look in looks} == {0.01}
-
-
-@pytest.mark.parametrize(("size", "shows"), [(99.0, False), (101.0, True)])
-def test_what_would_show_is_ten_times_noise_at_a_tenth_more_friction(size, shows):
-    looks = d._friction_at_rest(Fit(np.zeros(50), size / 10.0 * OWN), SILENT)
-    assert {look.shows for look in looks} == {shows}
-    imitated = Fit(np.zeros(50), 1e3 * SLOPES[:, 0])
-    assert not any(look.shows for look in d._friction_at_rest(imitated, SILENT))
 
 
 def look(saves, stiffness=1e4, moves=(0.0, 0.0)):
@@ -203,25 +163,6 @@ def test_what_is_freed_stays_free_where_it_is_told(again, more, kept):
 def test_what_saves_too_little_is_not_freed(again):
     assert d._freed(solved(), [look(24.9), look(3.0)], SILENT) is None
     assert again[0] == []
-
-
-def test_what_would_have_shown_is_said():
-    shown = [
-        d.Look({d.EXCESS: 0.1, d.VELOCITY: v}, np.zeros(2), 0.0, shows)
-        for v, shows in ((0.01, False), (0.5, True), (7.0, True), (100.0, False))
-    ]
-    assert "velocity were 0.5 to 7 mm/s" in d._unseen_rest(shown)
-    assert "10% more friction" in d._unseen_rest(shown)
-    assert d._unseen_rest(shown[:1]).endswith("whatever they are.")
-
-
-def test_values_that_fit_alike_are_said():
-    like = [look(1.0, 2e3), look(2.0, 5e4), look(1.5, 1e4)]
-    assert d._alike(d.STIFFNESS, like).startswith(
-        f"{d.STIFFNESS} is not told: 2e+03 to 5e+04 N/mm fit alike"
-    )
-    viscous = [d.Look({d.VISCOUS: v}, np.zeros(2), 0.0) for v in (0.01, 0.2)]
-    assert d._alike(d.VISCOUS, viscous).startswith(f"{d.VISCOUS} is not told: 0 to 0.2 N s/mm")
 
 
 def test_errors_are_widened_by_the_largest_move_in_units_of_student():
