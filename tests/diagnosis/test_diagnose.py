@@ -1,4 +1,4 @@
-"""A verdict and its reason, on searches and fits that are made up."""
+"""Verdict, reason and estimates of a diagnosis."""
 
 import math
 from types import SimpleNamespace
@@ -19,6 +19,7 @@ from tsas_cli.identification.fit import Fitted, Solution, Unknown
 from tsas_cli.identification.model import Model
 
 TITLE = {e.name: e.title.lower() for e in EFFECTS}
+
 PLAY, MASS = "backlash", "load_inertia"
 
 
@@ -267,12 +268,6 @@ def test_an_uneven_bend_and_the_noise_add_up_in_squares(monkeypatch):
     (told,) = d._estimates(SimpleNamespace(folds=folds, bench=bench), trial)
     assert told.value == 5.0
     assert given == {"blocks": [[0, 0, 1], [0, 0, 1]], "by_run": True}
-
-
-def test_the_blocks_of_a_bench_are_held_out(monkeypatch):
-    monkeypatch.setattr(d, "blocks_of", lambda closed, rigs: [np.array([0, 0, 1])] * 3)
-    folds = d.bench_folds(SimpleNamespace(closed=[], rigs=[]))
-    assert (folds.blocks, folds.by_run) == (6, True)
 
 
 def test_a_sheath_beside_an_unknown_tendon_is_found_by_its_name():

@@ -1,4 +1,4 @@
-"""The decisions of a search, one by one, on fits and squares that are made up."""
+"""Decisions of a search: what is fitted, what matters, what is left out, rivals and pairs."""
 
 from types import SimpleNamespace
 
@@ -12,9 +12,13 @@ from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.screening import Screened
 
 BLOCKS, SIZE = 20, 200
+
 A, B, C = "backlash", "free_tendon", "load_friction"
+
 KNOWN = tuple(e for e in EFFECTS if e.name in (A, B, C))
+
 OF = {e.name: e for e in KNOWN}
+
 CONVINCES, DOES_NOT = Gain(0.5, 4.0), Gain(0.5, 1.0)
 
 
