@@ -1,4 +1,4 @@
-"""The steps of a drive's fit, one by one, on numbers that are written down by hand."""
+"""Where the fit of a drive starts, how it scales its numbers, and what counts as an error."""
 
 import cmath
 import math
@@ -10,11 +10,7 @@ import pytest
 from tsas_cli.drive import fit as d
 from tsas_cli.drive.runs import DriveRun
 from tsas_cli.numerics.linear_response import sampled
-from tsas_cli.physics.plant.harmonic_drive import (
-    DriveValues,
-    gear_response,
-    linear_response,
-)
+from tsas_cli.physics.plant.harmonic_drive import DriveValues, gear_response, linear_response
 
 # What a drive may plausibly be: lower and upper bound, the usual value, and how its change is told.
 PLAUSIBLE = {
@@ -28,6 +24,7 @@ PLAUSIBLE = {
     "cosine_mm": (-5.0, 5.0, 0.0, 0.01),
     "play_mm": (0.0, 20.0, 0.0, 0.1),
 }
+
 ALL = ("lag", "delay", "spring", "leak", "ripple", "play")
 
 
@@ -139,7 +136,9 @@ def test_all_samples_of_all_runs_count_alike():
 
 
 STEP_S = 1e-2
+
 TIME_S = STEP_S * np.arange(201)
+
 NOISE_MM = 2e-3
 
 
@@ -183,6 +182,7 @@ def test_a_large_ripple_is_sought_from_where_the_run_is():
 
 
 GAIN = 0.02
+
 W = np.array([1.0, 2.0, 4.0, 5.0, 8.0])
 
 
