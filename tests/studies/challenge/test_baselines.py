@@ -44,7 +44,6 @@ def answer(tool, dataset, folder):
     return read_entry(folder, ["case"]).diagnoses["case"]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("tool", BASELINES)
 def test_a_plain_cause_is_named_first(tool, sealed, tmp_path):
     said = answer(tool, sealed["spring"], tmp_path / tool)
