@@ -11,7 +11,6 @@ from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.model import Model
 
 TITLE = {e.name: e.title.lower() for e in EFFECTS}
-
 PLAY, MASS = "backlash", "load_inertia"
 
 

@@ -13,7 +13,6 @@ from tsas_cli.diagnosis.rig_file import PlannedRun, Sensors
 from tsas_cli.support.errors import InputError
 
 BEGIN = datetime(2001, 2, 3, 4, 5)  # noqa: DTZ001 # a rig has no zone
-
 SENSORS = Sensors(rate_Hz=100.0, x_in_mm=0.02, f_in_N=0.1, x_out_mm=0.5)
 
 

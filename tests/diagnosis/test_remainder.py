@@ -8,11 +8,8 @@ import pytest
 from tsas_cli.diagnosis.remainder import remainder
 
 SIZE = 800
-
 TIME_S = 0.05 * np.arange(SIZE)
-
 X = 10.0 - 10.0 * np.cos(2.0 * np.pi * TIME_S / 10.0)
-
 REVERSALS = np.array([0, *range(100, SIZE, 100), SIZE - 1])
 
 

@@ -12,13 +12,9 @@ from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.screening import Screened
 
 BLOCKS, SIZE = 20, 200
-
 A, B, C = "backlash", "free_tendon", "load_friction"
-
 KNOWN = tuple(e for e in EFFECTS if e.name in (A, B, C))
-
 OF = {e.name: e for e in KNOWN}
-
 CONVINCES, DOES_NOT = Gain(0.5, 4.0), Gain(0.5, 1.0)
 
 

@@ -13,7 +13,6 @@ from tsas_cli.identification.extension import Trial
 from tsas_cli.identification.fit import Solution, Unknown
 
 BLOCKS, EACH = 20, 10
-
 SIZE = BLOCKS * EACH
 
 

@@ -6,27 +6,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from tsas_cli.diagnosis.channel_errors import Channel
+from tests.drive.verdicts import STATED, TITLE, TOLD, cause, terms, verdict
 from tsas_cli.diagnosis.evidence import gain
 from tsas_cli.drive import diagnosis as dd
-from tsas_cli.drive.diagnosis import DriveCause, DriveDiagnosis
 from tsas_cli.drive.search import NOTHING
-from tsas_cli.effects import EFFECTS
-from tsas_cli.identification.estimate import Estimate
 from tsas_cli.numerics.linear_response import sampled
-
-TITLE = {e.name: e.title for e in EFFECTS}
-
-STATED = frozenset({"stated"})
-
-TOLD = {
-    name: Estimate(name, 0.5, "s", "fitted", None, 0.1, 0.3, 0.7)
-    for name in ("delay_s", "motor_lag_s", "play_mm", "damping_ratio", "gain_mm_per_s_rpm")
-}
-
-
-def terms(*names):
-    return frozenset(names)
 
 
 class Searched:
@@ -145,17 +129,6 @@ def test_each_cause_is_held_against_all_the_others(diagnosed):
     assert list(gains) == ["channel_delay", "backlash"]
     idle = diagnosed(Searched(squares | {terms("delay"): 1.01}), both)
     assert [c.effect for c in idle.causes] == ["channel_delay"]
-
-
-def cause(effect, kind="", rivals=()):
-    return DriveCause(effect, kind, rivals, (TOLD["play_mm"],), 40.0, (30.0, 50.0))
-
-
-def verdict(name, *causes, nominal=NOTHING, unexplained=False, depends=(), left=1.44):
-    return DriveDiagnosis(
-        name, "why", nominal, terms("play"), causes, Channel(0.4, 0.2, 0.1, 0.15),
-        (40.0, 30.0, 50.0), left, 0.05, unexplained, depends,
-    )  # fmt: skip
 
 
 PLAIN = "A drive without lag and stiffness, x_in = g ∫u dt,"

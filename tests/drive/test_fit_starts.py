@@ -24,7 +24,6 @@ PLAUSIBLE = {
     "cosine_mm": (-5.0, 5.0, 0.0, 0.01),
     "play_mm": (0.0, 20.0, 0.0, 0.1),
 }
-
 ALL = ("lag", "delay", "spring", "leak", "ripple", "play")
 
 
@@ -136,9 +135,7 @@ def test_all_samples_of_all_runs_count_alike():
 
 
 STEP_S = 1e-2
-
 TIME_S = STEP_S * np.arange(201)
-
 NOISE_MM = 2e-3
 
 
@@ -182,7 +179,6 @@ def test_a_large_ripple_is_sought_from_where_the_run_is():
 
 
 GAIN = 0.02
-
 W = np.array([1.0, 2.0, 4.0, 5.0, 8.0])
 
 

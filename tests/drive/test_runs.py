@@ -13,11 +13,8 @@ from tsas_cli.recordings.recording import Recording
 from tsas_cli.support.errors import InputError
 
 N, STEP_S = 2000, 0.005
-
 TIME_S = STEP_S * np.arange(N)
-
 SPEED = 300.0 * np.sin(2.0 * TIME_S)
-
 PLACE = 0.02 * (150.0 - 150.0 * np.cos(2.0 * TIME_S))
 
 

@@ -48,7 +48,6 @@ def summary(band=(0.5, 12.0), poles=(), converged=True):
 
 
 NO_SHEET = DataSheet(None, None, None, None)
-
 SHEET = DataSheet(27.1, 120.0, 0.13, 2.3)
 
 

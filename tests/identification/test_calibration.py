@@ -15,7 +15,6 @@ from tsas_studies.challenge.rig.motions import sine, two_sines
 from tsas_studies.challenge.rig.tendon import Rig
 
 TRUE = Rig(friction_coefficient=0.135, load_stiffness_N_per_mm=1.45, preload_N=27.0)
-
 OTHER = Rig(
     friction_coefficient=0.135,
     load_stiffness_N_per_mm=1.45,
@@ -23,7 +22,6 @@ OTHER = Rig(
     total_bend_rad=math.pi / 2.0,
     sheath_length_mm=100.0 * math.pi,
 )
-
 VALUES = {
     "friction_coefficient": 0.135,
     "load_stiffness_N_per_mm": 1.45,

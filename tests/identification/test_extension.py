@@ -33,9 +33,7 @@ def test_what_the_closed_form_does_not_hold_for_needs_a_mesh():
 
 
 ZERO = "x_in_zero_mm"
-
 PROXIMAL, DISTAL = "free_tendon.proximal_length_mm", "free_tendon.distal_length_mm"
-
 SIZE = QUANTITIES[PROXIMAL].size
 
 

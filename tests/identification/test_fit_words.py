@@ -1,30 +1,10 @@
 """What is said of a fit: bounds, missing errors, what is fixed and why."""
 
-from types import SimpleNamespace
-
-import numpy as np
-
-from tests.physics.references import GROUP_A
+from tests.identification.fits import FRICTION, ZERO, fitted, problem_of, unknown
 from tsas_cli.identification import fit_words as w
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.fit import Fitted, Unknown
-from tsas_cli.identification.fit_problem import FitProblem
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.quantities import QUANTITIES
-
-FRICTION, ZERO = "friction_coefficient", "x_in_zero_mm"
-
-
-def fitted(values, stderr, t=2.0, at_bound=(), *, converged=True, message="done."):
-    n = len(values)
-    bound = np.array([k in at_bound for k in range(n)])
-    return Fitted(np.array(values), np.array(stderr), np.full(n, t), bound, converged, message, 1)
-
-
-def unknown(name, run=None, lower=None, upper=None):
-    q = QUANTITIES[name]
-    low = q.scaled(q.lower) if lower is None else lower
-    return Unknown(name, run, 0.0, low, q.scaled(q.upper) if upper is None else upper, 1.0)
 
 
 def estimate(name=FRICTION, run=None, *, at_bound=False, stderr=0.1, low=1.0, high=2.0, value=1.5):
@@ -60,16 +40,6 @@ def test_what_has_no_error_or_no_end_is_said():
     assert said.startswith("friction_coefficient does not show where the fit ended")
     (said,) = doubts(estimate(), converged=False, message="too many evaluations.")
     assert said.startswith("The fit did not converge (too many evaluations): its values")
-
-
-NOTHING = Model(())
-
-
-def problem_of(unknowns=(), runs="ab", initial=NOTHING, fixed=NOTHING):
-    """Return the problem of runs with these names, whose rigs differ by the zero of x_out."""
-    named = tuple(SimpleNamespace(run=SimpleNamespace(id=name)) for name in runs)
-    rigs = tuple(GROUP_A._replace(x_out_zero_mm=float(k)) for k in range(len(runs)))
-    return FitProblem(initial, fixed, named, rigs, tuple(unknowns), (), ())
 
 
 def test_what_is_fixed_is_said_once_for_each_reason():

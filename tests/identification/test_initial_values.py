@@ -13,9 +13,7 @@ from tsas_cli.identification.phases import Segment
 from tsas_cli.physics.closed_form.static import static_model
 
 X = through(20.0, 0.0, 20.0)
-
 F_IN, F_OUT, PHASE = static_model(X, GROUP_A)
-
 A, BEND = wrap_of(GROUP_A), GROUP_A.total_bend_rad
 
 # km without the elastic term (Eqs. 31, 32), and of the whole dead band (29).

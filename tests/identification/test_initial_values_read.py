@@ -90,7 +90,6 @@ def test_the_load_spring_is_the_line_of_f_out_over_x_out():
 
 
 KM = {"contraction": 4.0, "loosening": 1.0}
-
 X_IN = [0.0, 1.0, 2.0, 2.0, 1.0, 0.0]
 
 

@@ -6,27 +6,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from tests.identification.fits import FRICTION, NOTHING, ZERO, fitted, problem_of, unknown
 from tests.physics.references import GROUP_A
 from tsas_cli.identification import joint_fit as j
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.fit import Fitted, Unknown
-from tsas_cli.identification.fit_problem import FitProblem, rig_at
+from tsas_cli.identification.fit_problem import rig_at
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.quantities import QUANTITIES
-
-FRICTION, ZERO = "friction_coefficient", "x_in_zero_mm"
-
-
-def fitted(values, stderr, t=2.0, at_bound=(), *, converged=True, message="done."):
-    n = len(values)
-    bound = np.array([k in at_bound for k in range(n)])
-    return Fitted(np.array(values), np.array(stderr), np.full(n, t), bound, converged, message, 1)
-
-
-def unknown(name, run=None, lower=None, upper=None):
-    q = QUANTITIES[name]
-    low = q.scaled(q.lower) if lower is None else lower
-    return Unknown(name, run, 0.0, low, q.scaled(q.upper) if upper is None else upper, 1.0)
 
 
 def test_an_estimate_is_in_its_own_unit():
@@ -56,16 +42,6 @@ def test_an_effect_s_number_is_in_units_of_its_size():
     size = QUANTITIES[name].size
     (found,) = j.estimates_of([unknown(name)], fitted([3.0], [0.5]), [])
     assert (found.value, found.stderr) == pytest.approx((3.0 * size, 0.5 * size))
-
-
-NOTHING = Model(())
-
-
-def problem_of(unknowns=(), runs="ab", initial=NOTHING, fixed=NOTHING):
-    """Return the problem of runs with these names, whose rigs differ by the zero of x_out."""
-    named = tuple(SimpleNamespace(run=SimpleNamespace(id=name)) for name in runs)
-    rigs = tuple(GROUP_A._replace(x_out_zero_mm=float(k)) for k in range(len(runs)))
-    return FitProblem(initial, fixed, named, rigs, tuple(unknowns), (), ())
 
 
 def fit_of(problem, values=(), chosen=(), errors=()):

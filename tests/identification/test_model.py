@@ -33,7 +33,6 @@ MODEL = Model(
         Estimate("free_tendon.proximal_length_mm", 150.0, "mm", "fitted", None, 2.0, 146.0, 154.0),
     )
 )
-
 VALUE = "[parameters.friction_coefficient]\nvalue = 0.1\nunit = '1'\n"
 
 

@@ -8,7 +8,6 @@ import pytest
 from tsas_cli.identification import phases as p
 
 N, CUT = 120, 45
-
 TRAVEL = np.linspace(0.0, 12.0, N)
 
 

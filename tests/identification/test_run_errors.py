@@ -94,7 +94,6 @@ def test_a_run_that_is_done_with_leaves_memory_at_once():
 
 
 X = np.array([0.0, 1.0, 2.0, 2.9, 3.0, 2.95, 2.0, 1.0, 0.5, 1.5])
-
 REVERSALS = np.array([0, 4, 8, 9])
 
 

@@ -30,9 +30,7 @@ def test_the_last_direction_holds_on_at_rest():
 
 
 A = wrap_of(GROUP_A)
-
 TIME_S = np.array([1.0, 1.5, 3.0])
-
 LEVELS = np.array([4.0, 6.0, 3.0])
 
 

@@ -26,21 +26,13 @@ from tsas_cli.physics.response import simulate
 from tsas_cli.physics.slip.chain import rest_after, slip_chain
 
 N = 60
-
 WRAP = wrap_of(GROUP_A)
-
 GIVE = GROUP_A.sheath_length_mm / (WRAP * GROUP_A.tendon_stiffness_N)  # C = L/(a EA)
-
 NESTED = through(20.0, 5.0, 15.0, 8.0, 11.0, 8.0, 15.0, 5.0, 20.0, 19.9, 19.95, 19.8, 0.0)
-
 TIME_S = np.arange(0.0, 6.3, 1e-3)
-
 SINE = 10.0 - 10.0 * np.cos(TIME_S)
-
 BEHIND = through(20.0, samples=2000)  # a long pull, then a dead band
-
 LETTING_GO = np.concatenate((BEHIND, np.linspace(20.0, 19.75, 501)[1:]))
-
 PULLING = np.concatenate((through(20.0, 5.0), np.linspace(5.0, 5.12, 501)[1:]))
 
 

@@ -10,11 +10,8 @@ from tsas_cli.physics.parameters import BRISTLES, NOMINAL, NOMINAL_BY_NAME
 from tsas_cli.physics.rig import Rig
 
 EVERY = [*NOMINAL, *BRISTLES]
-
 ZEROS = ("x_in_zero_mm", "x_out_zero_mm")
-
 NO_UNIT_IN_ITS_NAME = {"friction_coefficient": "1"}
-
 BY_ENDING = {  # the longest that fits
     "_N_per_mm": "N/mm",
     "_N_s_per_mm": "N s/mm",

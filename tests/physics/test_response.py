@@ -16,11 +16,8 @@ from tsas_cli.physics.response import force_beside_tendon, forgotten, simulate, 
 from tsas_cli.physics.rig import with_values
 
 RIG = GROUP_A._replace(x_in_zero_mm=3.0, x_out_zero_mm=-7.0)
-
 UP = math.exp(wrap_of(GROUP_A))
-
 MOTION = np.concatenate((np.linspace(0, 20, 500), np.linspace(20, 5, 500), np.linspace(5, 9, 300)))
-
 CHANNELS = ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N")
 
 

@@ -8,7 +8,6 @@ from tsas_cli.physics.rig import with_values
 from tsas_cli.physics.sensors import reading, true_value
 
 TIMES = np.arange(9.0)
-
 SENSED = with_values(
     GROUP_A,
     {
@@ -21,7 +20,6 @@ SENSED = with_values(
         "force_sensor_drift.f_in_rate_N_per_s": 0.1,
     },
 )._replace(x_out_zero_mm=7.0)
-
 RAMP = 10.0 * TIMES
 
 

@@ -227,7 +227,6 @@ def test_tracked_runs_are_what_is_written(tmp_path):
 
 
 CSV = "t,x,f\n0,1,25\n0.5,2,\n1,3,27\n"
-
 MAP = """
 [dataset]
 name = "bench"

@@ -32,7 +32,6 @@ HIDDEN = {
         {"channel_delay": {"motor_lag_s": 0.004}, "backlash": {"play_mm": 0.05}},
     ),
 }
-
 SURE = 4.0  # standard errors, in which no seed of these may miss
 
 

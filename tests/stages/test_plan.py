@@ -5,13 +5,10 @@ import math
 
 import pytest
 
+from tests.diagnosis.sizes import CANDIDATES, LENGTH, MASS, OF, PLAY, better, seen
 from tests.diagnosis.test_rig_file import TEXT
-from tests.physics.references import GROUP_A
-from tsas_cli.diagnosis.candidates import candidates
-from tsas_cli.diagnosis.plan import Better, Plan, Proposal
-from tsas_cli.diagnosis.rig_file import Limits
+from tsas_cli.diagnosis.plan import Plan, Proposal
 from tsas_cli.diagnosis.visibility import Cause, Seen
-from tsas_cli.effects import EFFECTS
 from tsas_cli.stages import plan as plan_stage
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import sha256_of
@@ -53,26 +50,6 @@ def test_without_a_folder_nothing_is_written_and_with_one_nothing_is_overwritten
     with pytest.raises(InputError):
         plan_stage.plan(path, out=tmp_path / "out")
     plan_stage.plan(path, out=tmp_path / "out", force=True)
-
-
-OF = {e.name: e for e in EFFECTS}
-
-CANDIDATES = candidates(Limits(amplitude_mm=10.0, speed_mm_per_s=24.0), GROUP_A)
-
-PLAY, MASS, LENGTH = "backlash", "load_inertia", "free_tendon"
-
-
-def cause(name):
-    parameter = next(q for q in OF[name].parameters if not q.shape)
-    return Cause(OF[name], parameter, {})
-
-
-def seen(name, found, **told):
-    return Seen(cause(name), found, told)
-
-
-def better(name, before, after):
-    return Better(cause(name), before, after)
 
 
 HIDDEN = Plan(

@@ -18,11 +18,8 @@ from tsas_cli.physics.closed_form.branches import (
 from tsas_cli.physics.frames import empty_frames
 
 A = wrap_of(GROUP_A)
-
 C = GROUP_A.sheath_length_mm / (A * GROUP_A.tendon_stiffness_N)
-
 UP, DOWN = math.exp(A), math.exp(-A)
-
 SOFT = GROUP_A._replace(
     friction_coefficient=0.4,
     tendon_stiffness_N=2.2e3,
@@ -32,7 +29,6 @@ SOFT = GROUP_A._replace(
     preload_N=4.0,
     effects=Effects(free_tendon=FreeTendon(900.0, 0.0)),
 )
-
 NESTED = [2.0, 0.9, 1.7, 1.1, 1.5, 1.2, 1.4, 1.15, 1.6, 0.95, 1.9, 0.5, 3.0, 0.3, 2.9, 0.31, 3.5]
 
 

@@ -22,7 +22,6 @@ from tsas_cli.physics.lugre.state import TENSION as LUMP_TENSION
 from tsas_cli.physics.rig import with_values
 
 RISING = "load_dependent_friction.exponent"
-
 N = 3
 
 

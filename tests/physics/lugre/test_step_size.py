@@ -14,7 +14,6 @@ from tsas_cli.physics.lugre.step import newton
 from tsas_cli.physics.lugre.step_size import Tolerances, fit_to_reversal, step_factor, tolerances_of
 
 N = 3
-
 EA, F0 = GROUP_A.tendon_stiffness_N, GROUP_A.preload_N
 
 
@@ -35,7 +34,6 @@ def test_what_a_step_may_be_off_by_is_a_share_of_the_largest_tension(f_in, f_out
 
 
 FIRST = Formula(1.0, math.inf, math.inf, 1.0, 1.0, 0.0)
-
 THIRD = FIRST._replace(h1=1.0, h2=1.0)
 
 

@@ -17,11 +17,8 @@ from tsas_cli.physics.plant.harmonic_drive import (
 )
 
 STEP_S = 2e-3
-
 TIME_S = STEP_S * np.arange(201)
-
 SPEED = 400.0 * np.sin(9.0 * TIME_S) + 150.0 * np.sin(31.0 * TIME_S)
-
 WHOLE = DriveValues(
     gain_mm_per_s_rpm=0.02365,
     motor_lag_s=0.011,
@@ -30,7 +27,6 @@ WHOLE = DriveValues(
     natural_frequency_Hz=12.0,
     damping_ratio=0.3,
 )
-
 PARTS = {
     "a stiff drive without lag": WHOLE._replace(motor_lag_s=0.0, natural_frequency_Hz=0.0),
     "a stiff drive": WHOLE._replace(natural_frequency_Hz=0.0),

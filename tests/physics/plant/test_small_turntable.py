@@ -29,23 +29,16 @@ from tsas_cli.physics.slip.start import chain_at_rest, slip_laws, with_drive
 from tsas_cli.physics.slip.state import POSITION, SLIP, TENSION, Moment
 
 F0, H = 25.0, 0.01
-
 ACTUATOR = Actuator(0.024, 150.0, 6e-3, 0.4, 0.02, 3000.0)
-
 TABLE = Turntable(2.0, 1.9, 9.0, 8.0, 31.0, 7.0)
-
 MOTOR = Motor(100.0, 2.3)
-
 STEP = DriveStep(ACTUATOR, MOTOR.mm, 3.0, H)
-
 PRELOADED = Moment(F0, 0.0, Losses(0.4, 0.4, 0.0, 0.0), H)
-
 RIPPLE = {
     "drive_ripple.sine_mm": 0.06,
     "drive_ripple.cosine_mm": 0.02,
     "drive_ripple.period_mm": 0.9,
 }
-
 PLAY = {"backlash.play_mm": 0.4}
 
 
