@@ -121,6 +121,7 @@ def test_the_run_that_tells_viscosity_from_friction_has_another_speed():
     assert "does not tell drive_compliance from free_tendon" in pair or pair.startswith("No ")
 
 
+@pytest.mark.large
 def test_too_few_stretches_are_said():
     """One slow stroke and back: √7 standard deviations are the least that is more than 2.6."""
     short = plan_rig(rig_file(run(5.0, periods=1)))
