@@ -3,10 +3,11 @@ import signal
 import subprocess
 import sys
 import time
+from types import SimpleNamespace
 
 import pytest
 
-from tsas_cli.support.stopping import Stopped, cleaned_up_when_stopped, until_stopped
+from tsas_cli.support.stopping import CLEANING_S, Stopped, cleaned_up_when_stopped, until_stopped
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
@@ -68,8 +69,9 @@ def test_what_is_ignored_stays_ignored():
 
 
 def test_a_request_that_a_library_has_lost_can_be_made_again(monkeypatch):
-    monkeypatch.setattr("tsas_cli.support.stopping.CLEANING_S", 0.1)
-    said = []
+    clock = SimpleNamespace(monotonic=lambda: now_s[0])
+    monkeypatch.setattr("tsas_cli.support.stopping.time", clock)
+    now_s, said = [100.0], []
     with until_stopped():
         try:
             os.kill(os.getpid(), signal.SIGINT)
@@ -77,7 +79,7 @@ def test_a_request_that_a_library_has_lost_can_be_made_again(monkeypatch):
             said.append("lost")  # as a destructor does
         os.kill(os.getpid(), signal.SIGTERM)  # too soon
         said.append("goes on")
-        time.sleep(0.2)
+        now_s[0] += CLEANING_S + 0.1
         os.kill(os.getpid(), signal.SIGTERM)
         said.append("goes on for ever")
     assert said == ["lost", "goes on"]
