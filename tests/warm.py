@@ -1,4 +1,4 @@
-"""The command line in forks of a process that has its libraries loaded.
+"""The command line in forks of a process that has its libraries and its machine code loaded.
 
 Started as a program it reads calls from standard input, one JSON line each, runs each in a fork
 that ends as any process does, and answers with how it ended. A new process would spend most of
@@ -76,6 +76,7 @@ def serve() -> None:
     from tsas_cli.__main__ import main
     from tsas_cli.stages import calibrate, check, diagnose, ingest, report, simulate  # noqa: F401
 
+    calibrate.calibrate(ROOT / "datasets" / "paper-groups", runs=["a"])  # loads machine code
     gc.freeze()
     for line in sys.stdin:
         call = json.loads(line)
