@@ -8,3 +8,7 @@ test: setup  ## ruff, mypy, import-linter and pytest
 	@$(BIN)/mypy --no-error-summary
 	@$(BIN)/lint-imports > .venv/lint-imports.txt || { cat .venv/lint-imports.txt; exit 1; }
 	@TSAS_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/pytest -n 3 --dist loadscope
+
+.PHONY: test-large
+test-large: setup  ## the large versions of tests, which make test leaves out
+	@TSAS_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/pytest -n 2 --dist load -m large

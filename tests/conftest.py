@@ -1,9 +1,10 @@
 """What many tests need: the command line in a process of its own, and a small dataset."""
 
+import os
 import signal
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ import pyarrow as pa
 import pytest
 from hypothesis import HealthCheck, settings
 
+from tests.warm import Warm, environment
 from tsas_cli.recordings.manifest import Manifest
 from tsas_cli.recordings.writing import write_dataset
 
@@ -27,12 +29,28 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 
+@pytest.fixture(scope="session")
+def warm() -> Iterator[dict[str, Warm]]:
+    """Processes that fork for each call of the command line, by the warnings that they heed."""
+    started: dict[str, Warm] = {}
+    yield started
+    for one in started.values():
+        one.close()
+
+
 @pytest.fixture
-def tsas() -> Callable[..., subprocess.CompletedProcess[str]]:
-    """Run the command line in a new process; keywords are passed to `subprocess.run`."""
+def tsas(warm: dict[str, Warm]) -> Callable[..., subprocess.CompletedProcess[str]]:
+    """Run the command line in a process of its own; keywords are passed to `subprocess.run`."""
 
     def run(*arguments: object, **keywords: object) -> subprocess.CompletedProcess[str]:
-        call = [sys.executable, "-m", "tsas_cli", *map(str, arguments)]
+        words = [str(argument) for argument in arguments]
+        heeded = os.environ.get("PYTHONWARNINGS", "")
+        forks = warm.get(heeded)
+        if keywords.keys() <= {"cwd"} and heeded in ("", "error") and hasattr(os, "fork"):
+            forks = warm.setdefault(heeded, forks or Warm())
+            if forks.environment == environment():
+                return forks.run(words, Path(str(keywords.get("cwd", Path.cwd()))))
+        call = [sys.executable, "-m", "tsas_cli", *words]
         return subprocess.run(call, capture_output=True, text=True, check=False, **keywords)  # type: ignore[call-overload]
 
     return run
@@ -42,7 +60,7 @@ def tsas() -> Callable[..., subprocess.CompletedProcess[str]]:
 def strict(
     tsas: Callable[..., subprocess.CompletedProcess[str]], monkeypatch: pytest.MonkeyPatch
 ) -> Callable[..., subprocess.CompletedProcess[str]]:
-    """Run the command line in a new process with every warning an error."""
+    """Run the command line in a process of its own with every warning an error."""
     monkeypatch.setenv("PYTHONWARNINGS", "error")
     return tsas
 

@@ -10,12 +10,13 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
+from benchmarks.lugre_rivals.references import FOLDER
 from tests.commands.documented import documented
+from tsas_studies.challenge.rig.motions import sine
 from tsas_studies.challenge.rig.recordings import Run, conditions, record, write_dataset
-from tsas_studies.challenge.rig.sensors import Sensors
-from tsas_studies.challenge.rig.tendon import Rig
+from tsas_studies.challenge.rig.sensors import Sensors, measure
+from tsas_studies.challenge.rig.tendon import Rig, simulate
 
-LUGRE = Path(__file__).parents[1] / "physics" / "lugre_references"
 IDS = ["a", "ü → 'b'", "<script>", "..c", "n" * 200]
 
 
@@ -88,14 +89,19 @@ def test_an_output_is_not_overwritten_unasked(strict, folder, tmp_path):
     assert [p.name for p in (tmp_path / "out").iterdir()] == ["mine.txt"]
 
 
-def test_odd_names_of_runs(strict, recorded, tmp_path):
+def test_odd_names_of_runs(strict, tmp_path):
     """They name files, TOML keys and cells of a table, and break none of them."""
-    folder = write_dataset(tmp_path / "d", [Run("a", recorded, conditions(Rig()))])
+    clean = simulate(Rig(), sine())
+    runs = [
+        Run(f"r{k}", measure(clean, Sensors(rate_Hz=50.0), seed=k), conditions(Rig()))
+        for k in range(len(IDS))
+    ]
+    folder = write_dataset(tmp_path / "d", runs)
     manifest = folder / "dataset.toml"
     text = manifest.read_text(encoding="utf-8")
-    entry = text[text.index("[[run]]") :]
-    copies = [entry.replace('id = "a"', f"id = {json.dumps(i, ensure_ascii=False)}") for i in IDS]
-    manifest.write_text(text.replace(entry, "\n".join(copies)), encoding="utf-8")
+    for k, name in enumerate(IDS):
+        text = text.replace(f'id = "r{k}"', f"id = {json.dumps(name, ensure_ascii=False)}")
+    manifest.write_text(text, encoding="utf-8")
     done = strict("calibrate", folder, "--out", tmp_path / "c", "--json")
     assert (done.returncode, done.stderr) == (0, "")
     assert list(json.loads(done.stdout)["channels"]) == IDS
@@ -167,7 +173,7 @@ def test_drive_data_have_nothing_to_compare_with(strict, tmp_path):
 
 def test_what_the_dynamic_model_is_fitted_to_drives_it_again(strict, tmp_path):
     """Bristles and friction over speed go into the model, and `simulate` takes them from there."""
-    table = pq.read_table(LUGRE / "speeds-50.parquet")
+    table = pq.read_table(FOLDER / "speeds-50.parquet")
     rng = np.random.default_rng(5)
     columns = {name: table[name].to_numpy() for name in table.column_names}
     for name in set(columns) - {"time_s"}:

@@ -15,7 +15,6 @@ def rmse(row, model):
     return row["models"][model]["rmse_N"]["mean"]
 
 
-@pytest.mark.slow
 def test_wear_is_named_and_the_extended_model_tracks_as_the_true_one_does(strict, tmp_path):
     out = tmp_path / "out"
     done = strict("close-loop", "--cases", "friction_drift", "--seeds", "2", "--out", out, "--json")
@@ -50,7 +49,6 @@ def test_wear_is_named_and_the_extended_model_tracks_as_the_true_one_does(strict
     assert effects[0] - effects[1] == {cause["effect"] for cause in case["named"]}
 
 
-@pytest.mark.slow
 def test_where_nothing_is_hidden_nothing_is_named_and_nothing_changes(strict, tmp_path):
     call = ("close-loop", "--hide", "friction_coefficient=0.125", "--seeds", "1")
     done = strict(*call, "--out", tmp_path / "out", "--json")

@@ -30,7 +30,6 @@ def documented():
     return {key for row in rows for key in re.findall(r"`(\w+)`", row)}
 
 
-@pytest.mark.slow
 def test_it_writes_what_is_documented(strict, rig_file, tmp_path):
     done = strict("plan", rig_file, "--out", tmp_path / "out", "--json")
     assert (done.returncode, done.stderr) == (0, "")
@@ -51,7 +50,7 @@ def test_it_writes_what_is_documented(strict, rig_file, tmp_path):
         assert run["preload_N"] in (15.0, 25.0, 40.0)
 
 
-@pytest.mark.slow
+@pytest.mark.large
 def test_a_dataset_is_planned_from_too(strict, tmp_path):
     recorded = record(Rig(), motion=sine(omega_rad_s=1.0), sensors=Sensors(rate_Hz=100.0))
     folder = write_dataset(tmp_path / "d", [Run("a", recorded, conditions(Rig()))])

@@ -3,6 +3,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 from tsas_studies.challenge.rig.recordings import Run, conditions, record, write_dataset
 from tsas_studies.challenge.rig.tendon import Rig
 
@@ -19,10 +21,11 @@ print(len(compilations.buffer))
 """
 
 
-def test_the_second_calibrate_compiles_nothing(tmp_path: Path) -> None:
+@pytest.mark.parametrize("stage", ["check", pytest.param("calibrate", marks=pytest.mark.large)])
+def test_the_second_call_compiles_nothing(stage: str, tmp_path: Path) -> None:
     rig = Rig(proximal_length_mm=150.0, distal_length_mm=60.0)
     dataset = write_dataset(tmp_path / "dataset", [Run("a", record(rig), conditions(rig))])
-    call = [sys.executable, "-c", COUNT_COMPILATIONS, "calibrate", dataset, "--quiet", "--out"]
+    call = [sys.executable, "-c", COUNT_COMPILATIONS, stage, dataset, "--quiet", "--out"]
     counts = []
     for number in ("first", "second"):
         result = subprocess.run(

@@ -32,7 +32,7 @@ from tsas_cli.commands.progress import progress
 with progress("fit", quiet={quiet}) as step:
     step.ahead(2)
     for k in range(4):
-        time.sleep(0.15)
+        time.sleep(0.4)
         if k == 1:
             step.ahead(2)
         step()

@@ -14,6 +14,7 @@ import pytest
 
 from tests.commands.viewing import (
     ADDRESS,
+    SOON_S,
     alive,
     ended,
     family,
@@ -68,7 +69,7 @@ def refused(result):
 
 
 def read(address):
-    with urlopen(address, timeout=10) as response:  # noqa: S310 # an address of this machine
+    with urlopen(address, timeout=SOON_S) as response:  # noqa: S310 # an address of this machine
         return response.read()
 
 

@@ -42,7 +42,7 @@ def line_with_address(stream) -> re.Match:
 def ended(process: subprocess.Popen[str], number: int = signal.SIGINT) -> tuple[int, str, str]:
     """Ask a command to end; return its exit code and what it still said."""
     process.send_signal(number)
-    out, err = process.communicate(timeout=10)
+    out, err = process.communicate(timeout=SOON_S)
     return process.returncode, out, err
 
 
@@ -64,7 +64,7 @@ def family(pid: int) -> set[int]:
 
 def alive(pids: set[int]) -> set[int]:
     """Return which of these processes are alive, once they have had time to end."""
-    until = time.monotonic() + 5
+    until = time.monotonic() + SOON_S
     while (left := {p for p in pids if family(p)}) and time.monotonic() < until:
         time.sleep(0.05)
     return left

@@ -84,7 +84,6 @@ def test_a_play_is_found_from_a_part_of_the_noise_on(slow):
     assert 0.0005 < slow["backlash.play_mm"].found < 0.02
 
 
-@pytest.mark.slow
 def test_a_plan_has_every_effect_and_the_pair(plan):
     assert {s.cause.effect.name for s in plan.seen} == {e.name for e in EFFECTS}
     assert ("drive_compliance", "free_tendon") in plan.groups
@@ -110,7 +109,6 @@ def test_what_a_proposal_promises_holds_when_it_is_planned(plan):
     assert np.mean([0.5 < r < 2.0 for r in ratios]) > 0.8
 
 
-@pytest.mark.slow
 def test_the_run_that_tells_viscosity_from_friction_has_another_speed():
     manifest, runs = prepared(rig_file(run(10.0, motion="ramps")))
     segments = [segment(r) for r in runs]
@@ -125,7 +123,7 @@ def test_the_run_that_tells_viscosity_from_friction_has_another_speed():
     )
 
 
-@pytest.mark.slow
+@pytest.mark.large
 def test_too_few_stretches_are_said():
     """One slow stroke and back: √7 standard deviations are the least that is more than 2.6."""
     short = plan_rig(rig_file(run(5.0, periods=1)))

@@ -1,3 +1,5 @@
+""""""
+
 import pytest
 
 from tsas_cli.diagnosis.rig_file import Limits, PlannedRun, Sensors, read_rig_file
@@ -138,3 +140,10 @@ def test_frequencies_above_0_and_two_periods_unless_said():
 def test_no_run_is_no_plan(tmp_path):
     with pytest.raises(InputError, match="run"):
         read(tmp_path, "run = []\n" + TEXT[: TEXT.index("[[run]]")])
+
+
+def test_limits_are_finite_and_known():
+    with pytest.raises(ValueError, match="finite"):
+        Limits(preload_N=(float("inf"),))
+    with pytest.raises(ValueError, match="Extra inputs"):
+        Limits(preload=(1.0,))

@@ -1,9 +1,13 @@
 """Recordings of a drive: what is taken, what is refused, and whether they begin at rest."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
+from tsas_cli.drive import runs as d
 from tsas_cli.drive.runs import drive_runs
+from tsas_cli.numerics.noise import noise_sd
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.support.errors import InputError
@@ -87,3 +91,107 @@ def test_fewer_than_five_hundred_samples_are_too_few(size, fine):
     else:
         with pytest.raises(InputError, match="499 samples are too few"):
             checked(**cut)
+
+
+@pytest.mark.parametrize(
+    ("rows", "said", "row"), [([7], "1 gap,", 7), ([9, 30], "2 gaps", 9), ([4, 5, 6], "3 gaps", 4)]
+)
+def test_gaps_are_counted_and_the_first_is_named(rows, said, row):
+    x = PLACE.copy()
+    x[rows] = np.nan
+    with pytest.raises(InputError) as raised:
+        checked(x_in_mm=x)
+    line = raised.value.line()
+    assert f"x_in_mm has {said.rstrip(',')}" in line
+    assert ("gaps" in line) == ("gaps" in said)
+    assert f"row {row}" in line
+
+
+@pytest.mark.parametrize(("noise", "fine"), [(1.0, True), (1.25, False), (1.3, False)])
+def test_x_in_has_to_travel_five_times_its_noise(monkeypatch, noise, fine):
+    monkeypatch.setattr(d, "_noise", lambda values: noise)
+    x = 6.25 * (PLACE - PLACE.min()) / np.ptp(PLACE)
+    assert np.ptp(x) == 6.25
+    if fine:
+        assert checked(x_in_mm=x).noise_mm == noise
+    else:
+        with pytest.raises(InputError, match="x_in_mm does not move"):
+            checked(x_in_mm=x)
+
+
+def test_without_noise_a_millionth_of_the_travel_is_taken(monkeypatch):
+    monkeypatch.setattr(d, "_noise", lambda values: 0.0)
+    run = checked(x_in_mm=PLACE)
+    assert run.noise_mm == pytest.approx(1e-6 * np.ptp(PLACE))
+
+
+def test_an_uneven_clock_says_by_how_much():
+    time_s = TIME_S.copy()
+    time_s[901:] += STEP_S
+    with pytest.raises(InputError, match="row 901") as raised:
+        checked(time_s=time_s)
+    assert "time_s goes on by 0.01 s, by 0.005003 s on average" in raised.value.line()
+
+
+@pytest.mark.parametrize(("size", "stretches"), [(4000, 40), (320, 20), (33, 2), (31, 1), (16, 1)])
+def test_noise_is_the_median_over_forty_stretches_of_sixteen_samples_or_more(size, stretches):
+    rng = np.random.default_rng(1)
+    values = rng.standard_normal(size) * np.linspace(1.0, 3.0, size)
+    parts = np.array_split(values, stretches)
+    assert d._noise(values) == pytest.approx(np.median([noise_sd(part) for part in parts]))
+
+
+T = np.linspace(-1.0, 1.0, 201)
+
+
+def related(follows):
+    """Return a run whose travel has a given correlation with the motor's turns, beside lines."""
+    basis = np.linalg.qr(np.column_stack((np.ones(201), T, T**2, np.sin(9.0 * T))))[0]
+    turns, other = basis[:, 2], basis[:, 3]
+    travel = follows * turns + np.sqrt(1.0 - follows**2) * other
+    return SimpleNamespace(
+        time_s=3.0 + T,
+        u=SimpleNamespace(integral=40.0 * turns + 7.0 + 300.0 * T),
+        x_in=0.5 * travel - 3.0 - 20.0 * T,
+    )
+
+
+@pytest.mark.parametrize(
+    ("follows", "said"),
+    [
+        (0.52, None),
+        (1.0, None),
+        (0.48, "motor (correlation 0.48)"),
+        (-0.48, "motor (correlation -0.48)"),
+        (-0.52, "motor but its opposite (correlation -0.52)"),
+    ],
+)
+def test_travel_has_to_go_with_the_turns(follows, said):
+    if said is None:
+        d._refuse_unrelated(related(follows), "here")
+    else:
+        with pytest.raises(InputError) as raised:
+            d._refuse_unrelated(related(follows), "here")
+        assert f"x_in_mm does not follow the turns of the {said}" in raised.value.line()
+
+
+def test_nothing_that_turns_or_travels_is_followed():
+    for still in ("turns", "travel"):
+        run = related(1.0)
+        if still == "turns":
+            run.u.integral[:] = 0.0
+        else:
+            run.x_in[:] = 0.0
+        with pytest.raises(InputError, match=r"correlation 0\.00"):
+            d._refuse_unrelated(run, "here")
+
+
+def test_a_line_is_taken_out_as_a_fit_would():
+    values = np.exp(T)
+    line = np.polyval(np.polyfit(T, values, 1), T)
+    np.testing.assert_allclose(d._without_line(T, values), values - line, atol=1e-12)
+
+
+def test_time_begins_at_the_first_sample():
+    run = checked(time_s=TIME_S + 3.0, motor_speed_rpm=SPEED)
+    assert run.time_s[[0, 1, -1]] == pytest.approx([0.0, STEP_S, TIME_S[-1]])

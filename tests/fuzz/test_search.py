@@ -10,15 +10,16 @@ from tests.fuzz.rules import Broken, Scratch, Watch, answer
 from tests.fuzz.search import LOG, Budget, search
 from tsas_cli.support.errors import InputError
 
-RUNS = 300  # of a target with a share of one
+RUNS = [100, pytest.param(300, marks=pytest.mark.large)]  # of a target with a share of one
 
 
+@pytest.mark.parametrize("executions", RUNS)
 @pytest.mark.parametrize("name", NAMES)
-def test_a_short_search_finds_nothing(name, tmp_path):
+def test_a_short_search_finds_nothing(name, executions, tmp_path):
     """It is the same in every run: `make fuzz` looks for longer, and elsewhere."""
     pytest.importorskip("atheris")
     target = target_of(name)
-    runs = round(RUNS * target.SHARE)
+    runs = round(executions * target.SHARE)
     found = search(target, Budget(runs, 0, 1), CORPUS, tmp_path)
     assert found.faults == (), (tmp_path / "found" / name / LOG).read_text()
     assert found.executions >= runs

@@ -118,6 +118,9 @@ def serve() -> None:
     import pyarrow.parquet  # noqa: F401
     import scipy.io  # noqa: F401
 
+    import tsas_studies.commands  # noqa: F401
+    from tsas_cli.stages import calibrate, check, compare, guess, ingest, report  # noqa: F401
+
     pint.UnitRegistry()
     for line in sys.stdin:
         print(json.dumps(_answer(json.loads(line))), flush=True)

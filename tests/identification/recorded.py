@@ -2,10 +2,12 @@
 
 from functools import cache
 
+import numpy as np
+
 from tsas_cli.identification.prepared import Prepared, prepare
 from tsas_cli.recordings.manifest import Manifest, Run
 from tsas_cli.recordings.recording import Recording
-from tsas_studies.challenge.rig.motions import sine
+from tsas_studies.challenge.rig.motions import Motion, sine
 from tsas_studies.challenge.rig.recordings import DATA_SHEET, conditions
 from tsas_studies.challenge.rig.sensors import Sensors, measure
 from tsas_studies.challenge.rig.tendon import Rig, simulate
@@ -14,9 +16,14 @@ ALL = ("f_in_N", "f_out_N", "x_out_mm")
 
 
 @cache
+def _simulated(rig: Rig, time_s: bytes, x_in_mm: bytes):
+    return simulate(rig, Motion(np.frombuffer(time_s).copy(), np.frombuffer(x_in_mm).copy()))
+
+
 def clean(rig: Rig, motion=None):
-    """Return the rig's run without sensor errors."""
-    return simulate(rig, motion or sine())
+    """Return the rig's run without sensor errors; the same one for equal motions."""
+    moved = motion or sine()
+    return _simulated(rig, moved.time_s.tobytes(), moved.x_in_mm.tobytes())
 
 
 def prepared(rig: Rig, motion=None, *, seed=0, channels=ALL, run_id="a", sensors=None, **said):

@@ -21,7 +21,7 @@ SHEET = {
 CONDITIONS = {"total_bend_rad": math.pi, "sheath_length_mm": 785.0, "preload_N": 25.0}
 
 
-def row(phase="contraction", sheet=SHEET, conditions=CONDITIONS, expected=2.4):
+def stiffness(phase="contraction", sheet=SHEET, conditions=CONDITIONS, expected=2.4):
     run = {"id": "a", "file": "runs/a.parquet", "sha256": "0" * 64} | conditions
     manifest = Manifest.model_validate(
         {"format": 1, "name": "n", "kind": "measured", "rig": sheet, "run": [run]}
@@ -31,6 +31,10 @@ def row(phase="contraction", sheet=SHEET, conditions=CONDITIONS, expected=2.4):
     beside = None if expected is None else Slope(phase, expected, 0.0, 0.0, 3, 400)
     prepared = SimpleNamespace(run=manifest.run[0])
     return _stiffness(prepared, slope, beside, manifest, model)
+
+
+def row(*asked, **changed):
+    return stiffness(*asked, **changed).content()
 
 
 def test_measured_stiffness_is_told_per_millimetre_and_per_turn():
@@ -79,8 +83,10 @@ def test_no_theory_without_friction_or_spring():
 
 
 def test_the_table_leaves_out_what_is_not_known():
-    summary = {"stiffness": [row(expected=None)], "parameters": [], "transfer": [], "channels": {}}
-    (_, header, (line,)), *others = _tables(summary, "parameters")
+    record = SimpleNamespace(
+        stiffness=[stiffness(expected=None)], parameters=[], transfer=[], channels={}
+    )
+    (_, header, (line,)), *others = _tables(record, "parameters")
     assert header[:2] == ("run", "phase")
     assert line == ("a", "contraction", "2.35 [2.326, 2.374]", "2.338", "")
     assert [title for title, _, _ in others] == [

@@ -1,13 +1,16 @@
 """Calibration on the independent rig: the truth is found, and what cannot be told is said."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from tests.identification.recorded import manifest, prepared
+from tsas_cli.identification import calibration as c
 from tsas_cli.identification.calibration import calibrate_runs
 from tsas_cli.numerics.side_by_side import THREADS
+from tsas_cli.recordings.manifest import Run
 from tsas_studies.challenge.rig.motions import sine, two_sines
 from tsas_studies.challenge.rig.tendon import Rig
 
@@ -79,7 +82,10 @@ def test_a_right_model_is_not_accused_and_a_wrong_one_is():
         prepared(hidden),
         prepared(Rig(sheath_length_mm=300.0, proximal_length_mm=200.0), run_id="b"),
     ]
-    assert any("wrong somewhere" in s for s in calibrate_runs(manifest(*both), both).cannot_tell)
+    said = calibrate_runs(manifest(*both), both).cannot_tell
+    assert any("wrong somewhere" in s for s in said)
+    (widened,) = [s for s in said if s.startswith("The intervals hold what")]
+    assert "free_tendon" in widened
 
 
 def test_a_told_free_length_is_used():
@@ -163,3 +169,23 @@ def test_threads_change_no_bit(monkeypatch):
         monkeypatch.setenv(THREADS, threads)
         models.append(calibrate_runs(manifest(*runs), runs).model)
     assert models[0] == models[1]
+
+
+RUNS = [
+    SimpleNamespace(run=Run(id=name, file=f"{name}.parquet", sha256="0" * 64, **told), measured={})
+    for name, told in (
+        ("a", {"total_bend_rad": 3.0, "sheath_length_mm": 700.0}),
+        ("b", {"total_bend_rad": 3.0, "sheath_length_mm": 700.0}),
+    )
+]
+
+
+def test_what_the_manifest_does_not_say_is_said():
+    def said(**told):
+        run = SimpleNamespace(run=Run(id="c", file="c.parquet", sha256="0" * 64, **told))
+        return [s.split()[0] for s in c._unknown_conditions([RUNS[0], run])]
+
+    assert said(total_bend_rad=1.0, sheath_length_mm=1.0) == []
+    assert said(total_bend_rad=1.0) == ["sheath_length_mm"]
+    assert said(sheath_length_mm=1.0) == ["total_bend_rad"]
+    assert said() == ["total_bend_rad", "sheath_length_mm"]

@@ -2,8 +2,19 @@
 
 from types import SimpleNamespace
 
+import numpy as np
+import pytest
+
+from tests.physics.references import GROUP_A
 from tsas_cli.effects import EFFECTS
+from tsas_cli.identification import extension as e
 from tsas_cli.identification.extension import Bench, _parameters
+from tsas_cli.identification.fit import Solution, Unknown
+from tsas_cli.identification.fit_problem import FitProblem
+from tsas_cli.identification.joint_fit import FittedModel
+from tsas_cli.identification.model import Model
+from tsas_cli.identification.quantities import QUANTITIES
+from tsas_cli.identification.unknowns import unknown_of
 
 
 def test_an_effect_frees_its_own_parameters_and_nothing_else():
@@ -19,3 +30,184 @@ def test_what_the_closed_form_does_not_hold_for_needs_a_mesh():
     assert not Bench.on_mesh(bench, ["free_tendon", "backlash"])
     assert Bench.on_mesh(bench, ["free_tendon", "presliding"])
     assert Bench.on_mesh(SimpleNamespace(never_closed=True), [])
+
+
+ZERO = "x_in_zero_mm"
+PROXIMAL, DISTAL = "free_tendon.proximal_length_mm", "free_tendon.distal_length_mm"
+SIZE = QUANTITIES[PROXIMAL].size
+
+
+def zero_of(run, initial=0.0):
+    return Unknown(ZERO, run, initial, -50.0, 50.0, 1.0)
+
+
+class Run:
+    """A run whose residuals say what rig it was asked for."""
+
+    def __init__(self, name, drive="drive"):
+        self.name, self.samples = name, {f"{name}_N": 1, "f_in_N": 2}
+        self.simulation = SimpleNamespace(drive=drive)
+
+    def residuals(self, rig):
+        self.asked = rig
+        lengths = rig.effects.free_tendon
+        return np.array([rig.x_in_zero_mm, *lengths, rig.bend_slope, rig.bend_bow])
+
+
+def trial_of(unknowns=(), values=(), residual=None, *, J=None, at_bound=None, sizes=(), mesh=False):
+    values = np.array(values, dtype=float)
+    bound = np.zeros(values.size, bool) if at_bound is None else np.array(at_bound)
+    solution = Solution(values, bound, residual, J, True, "", 1)
+    return e.Trial(("free_tendon",), tuple(unknowns), solution, tuple(sizes), mesh)
+
+
+def test_residuals_and_slopes_are_told_run_by_run():
+    residual, J = np.arange(5.0), np.arange(10.0).reshape(5, 2)
+    trial = trial_of(residual=residual, J=J, sizes=(2, 3))
+    assert trial.mean_square == 6.0  # 0, 1, 4, 9, 16
+    (a, Ja), (b, Jb) = trial.parts
+    assert (a.tolist(), b.tolist()) == ([0.0, 1.0], [2.0, 3.0, 4.0])
+    assert (Ja.tolist(), Jb.tolist()) == (J[:2].tolist(), J[2:].tolist())
+
+
+def test_values_move_so_that_changes_are_taken_up():
+    """What is at its bound stays: of 3 and 4 along two columns only the first is taken up."""
+    J = np.array([[2.0, 0.0], [0.0, 1.0], [0.0, 0.0]])
+    changes = np.array([[6.0, 0.0], [4.0, 1.0], [5.0, 0.0]])
+    free = trial_of(values=(0.0, 0.0), J=J).moved_by(changes)
+    np.testing.assert_allclose(free, [[-3.0, 0.0], [-4.0, -1.0]], atol=1e-12)
+    bound = trial_of(values=(0.0, 0.0), J=J, at_bound=[False, True]).moved_by(changes)
+    np.testing.assert_allclose(bound, [[-3.0, 0.0], [0.0, 0.0]], atol=1e-12)
+
+
+def test_values_are_those_of_effects_in_their_units():
+    trial = trial_of([zero_of(0), unknown_of(PROXIMAL)], [0.5, 2.0])
+    assert trial.values() == {PROXIMAL: 2.0 * SIZE}
+    assert trial.solver == "closed form"
+    assert trial_of(mesh=True).solver == "slip chain, 40 nodes"
+
+
+@pytest.fixture
+def bench(monkeypatch):
+    """Two runs; the zero of each is free, and was found at 1 and 2 mm; another is fixed."""
+
+    def make(closed=(True, True)):
+        drives = dict(zip(("drive a", "drive b"), closed, strict=True))
+        monkeypatch.setattr(e, "is_closed", lambda rig, drive: drives[drive])
+        monkeypatch.setattr(e, "meshed", lambda run, nodes: Run(f"{run.name} {nodes}"))
+        sought = (zero_of(0), Unknown("preload_N", 0, 9.0, 0.0, 99.0, 1.0), zero_of(1))
+        errors = (Run("a", "drive a"), Run("b", "drive b"))
+        problem = FitProblem(
+            Model(()), Model(()), ("a", "b"), (GROUP_A, GROUP_A), sought, errors, ()
+        )
+        values = np.array([1.0, np.log(30.0), 2.0])
+        return e.bench_of(FittedModel(problem, values, (0, 2), errors, Model(()), None, ()))
+
+    return make
+
+
+def test_a_bench_begins_where_the_fit_ended(bench):
+    made = bench()
+    assert [(u.name, u.run, u.initial) for u in made.free] == [(ZERO, 0, 1.0), (ZERO, 1, 2.0)]
+    assert [rig.x_in_zero_mm for rig in made.rigs] == [1.0, 2.0]
+    assert [rig.preload_N for rig in made.rigs] == [pytest.approx(30.0), GROUP_A.preload_N]
+    assert [run.name for run in made.meshed] == ["a 40", "b 40"]
+    assert [run.name for run in made.coarse] == ["a 12", "b 12"]
+    assert made.channels == ["a_N", "b_N", "f_in_N"]
+    assert made.errors_for(trial_of()) is made.closed
+    assert made.errors_for(trial_of(mesh=True)) is made.meshed
+
+
+def test_one_run_without_a_closed_form_is_enough_for_a_mesh(bench):
+    assert not bench().never_closed
+    assert bench((True, False)).never_closed
+    assert bench((False, False)).never_closed
+
+
+def solved_at(values):
+    """Return a fit that ends where it is told, and remembers what it was asked."""
+    asked = {}
+
+    def solve(unknowns, runs, residuals, *, tolerance):
+        asked.update(unknowns=unknowns, runs=runs, tolerance=tolerance)
+        found = [residuals(k, np.array(values)) for k in range(runs)]
+        asked["found"] = found
+        size = sum(f.size for f in found)
+        return Solution(
+            np.array(values), np.zeros(len(values), bool), np.zeros(size), None, True, "", 1
+        )
+
+    return solve, asked
+
+
+def test_an_effect_is_freed_beside_the_base(monkeypatch, bench):
+    solve, asked = solved_at([3.0, 4.0, 2.0, 5.0])
+    monkeypatch.setattr(e, "solve", solve)
+    made = bench()
+    trial = made.fit(["free_tendon"], {DISTAL: 3.0 * SIZE})
+    assert [u.name for u in trial.unknowns] == [ZERO, ZERO, PROXIMAL, DISTAL]
+    starts = [u.initial for u in trial.unknowns]
+    other = QUANTITIES[DISTAL].size
+    assert starts == pytest.approx([1.0, 2.0, 0.0, 3.0 * SIZE / other])
+    assert asked["tolerance"] == pytest.approx(1e-5)
+    assert asked["runs"] == 2
+    first, second = asked["found"]
+    assert first[:3] == pytest.approx([3.0, 2.0 * SIZE, 5.0 * other])
+    assert second[:3] == pytest.approx([4.0, 2.0 * SIZE, 5.0 * other])
+    assert trial.sizes == (5, 5)
+    assert (trial.effects, trial.on_mesh) == (("free_tendon",), False)
+    assert made.rig(trial, 1).x_in_zero_mm == 4.0
+
+
+@pytest.mark.parametrize(
+    ("mean_square", "tolerance"), [(0.5, 1e-5), (4.0, 4e-5), (100.0, 1e-3), (1e4, 1e-3)]
+)
+def test_near_a_trial_it_begins_there_and_is_as_rough_as_that_missed(
+    monkeypatch, bench, mean_square, tolerance
+):
+    solve, asked = solved_at([3.0, 4.0, 2.0, 5.0])
+    monkeypatch.setattr(e, "solve", solve)
+    near = trial_of(
+        [zero_of(0), zero_of(1), unknown_of(PROXIMAL)],
+        [7.0, 8.0, 9.0],
+        np.full(3, np.sqrt(mean_square)),
+    )
+    trial = bench().fit(["free_tendon"], near=near)
+    assert [u.initial for u in trial.unknowns] == [7.0, 8.0, 9.0, 0.0]
+    assert asked["tolerance"] == pytest.approx(tolerance)
+    told = bench().fit(["free_tendon"], {PROXIMAL: 0.5 * SIZE}, near=near)
+    assert told.unknowns[2].initial == pytest.approx(0.5)
+
+
+def test_a_mesh_is_used_where_it_is_asked_for_or_needed(monkeypatch, bench):
+    solve, _ = solved_at([3.0, 4.0])
+    monkeypatch.setattr(e, "solve", solve)
+    for made, on_mesh, meshed in (
+        (bench(), False, False), (bench(), True, True), (bench((True, False)), False, True),
+    ):  # fmt: skip
+        trial = made.fit(on_mesh=on_mesh)
+        assert trial.on_mesh == meshed
+        used, other = (made.meshed, made.closed) if meshed else (made.closed, made.meshed)
+        assert [run.asked.x_in_zero_mm for run in used] == [3.0, 4.0]
+        assert not any(hasattr(run, "asked") for run in other)
+
+
+def test_a_first_look_changes_some_values_and_keeps_the_others(bench):
+    made = bench()
+    for mesh in (False, True):
+        trial = trial_of([zero_of(0), zero_of(1)], [5.0, 6.0], mesh=mesh)
+        found = made.errors_at(trial, {PROXIMAL: 123.0})
+        assert found[[0, 1, 2, 5, 6]] == pytest.approx([5.0, 123.0, 0.0, 6.0, 123.0])
+        assert made.errors_at(trial, {})[[0, 1]] == pytest.approx([5.0, 0.0])
+    assert hasattr(made.coarse[0], "asked")
+    assert not hasattr(made.meshed[0], "asked")
+
+
+def test_an_uneven_sheath_is_bent_by_a_twentieth_more_here_than_there(bench):
+    """The residuals that say slope and bow of the bend change by that, each in its own way."""
+    trial = trial_of([zero_of(0), zero_of(1)], [5.0, 6.0])
+    found = bench().unevenness(trial)
+    assert found.shape == (10, 2)
+    expected = np.zeros((10, 2))
+    expected[[3, 8], 0] = expected[[4, 9], 1] = 0.05
+    np.testing.assert_allclose(found, expected, atol=1e-12)

@@ -10,12 +10,12 @@ import pytest
 from tests.physics.references import GROUP_A, through, wrap_of
 from tsas_cli.identification.initial_values import read_off
 from tsas_cli.identification.phases import Segment
-from tsas_cli.identification.samples import mean_edges, points
 from tsas_cli.physics.closed_form.static import static_model
 
 X = through(20.0, 0.0, 20.0)
 F_IN, F_OUT, PHASE = static_model(X, GROUP_A)
 A, BEND = wrap_of(GROUP_A), GROUP_A.total_bend_rad
+
 # km without the elastic term (Eqs. 31, 32), and of the whole dead band (29).
 KM = {
     "contraction": 1.579 * math.exp(A),
@@ -88,30 +88,3 @@ def test_no_friction_starts_from_a_little():
 def test_what_is_beyond_all_bounds_is_left_out():
     found = read(["f_in_N"], KM | {"dead_band_up": 1e9, "dead_band_down": 1e9})
     assert "tendon_stiffness_N" not in found
-
-
-@pytest.mark.parametrize(("size", "stride"), [(1, 1), (1000, 1), (1001, 2), (2000, 2), (5500, 6)])
-def test_no_more_than_a_thousand_means_of_as_many_samples(size, stride):
-    edges = mean_edges(size)
-    assert edges[0] == 0
-    assert set(np.diff(edges)) <= {stride}
-    assert edges[-1] < size <= edges[-1] + stride
-    assert edges.size <= 1000
-
-
-def run_with(n, reversals):
-    conditioned = SimpleNamespace(reversals=np.array(reversals))
-    return SimpleNamespace(
-        time_s=np.arange(float(n)), drive_column="x_in_mm", conditioned={"x_in_mm": conditioned}
-    )
-
-
-def test_a_short_run_is_simulated_at_every_sample():
-    np.testing.assert_array_equal(points(run_with(7999, [0, 7998])), np.arange(7999))
-
-
-def test_a_long_run_is_thinned_but_after_its_reversals():
-    """30,000 samples: every seventh, four strides of seven after each reversal, and the last."""
-    found = points(run_with(30_000, [0, 10_001, 29_999]))
-    close = set(range(10_001, 10_001 + 28)) | set(range(28))
-    assert set(found) == set(range(0, 30_000, 7)) | close | {29_999}

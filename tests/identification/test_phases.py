@@ -1,11 +1,14 @@
 """Phases against the rig's own knowledge of when the load end moves."""
 
+import math
 from itertools import pairwise
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from tests.identification.recorded import ALL, clean, prepared
+from tsas_cli.identification import phases as p
 from tsas_cli.identification.phases import segment
 from tsas_cli.identification.prepared import prepare
 from tsas_cli.recordings.manifest import Run
@@ -121,3 +124,61 @@ def test_a_run_may_end_right_after_a_reversal(left):
     assert [part.end for part in parts] == [*(part.first for part in parts[1:]), x_in.size]
     assert all(part.first < part.end for part in parts)
     assert abs(parts[-1].first - 99) <= 1
+
+
+def test_the_border_is_the_geometric_mean_of_the_strokes_that_show_both():
+    slopes = [(100.0, 4.0), (400.0, 1.0), (100.0, 4.0), (math.nan, 3.0), (50.0, 0.0)]
+    assert p._border(slopes) == pytest.approx(20.0)
+    assert p._border([(math.nan, 1.0), (5.0, 0.0)]) is None
+
+
+@pytest.fixture
+def cut_as(monkeypatch):
+    """Cut strokes of ten samples, up and down in turns, as told; a run goes 0, 2, 4 … inside."""
+
+    def cut(*told):
+        n = len(told)
+        made = [
+            p._Stroke(10 * k, 10 * k + 10, k % 2 == 0, 10 * k + 2 * np.arange(5), np.zeros(5), {})
+            for k in range(n)
+        ]
+        by = {id(s): answer for s, answer in zip(made, told, strict=True)}
+        monkeypatch.setattr(p, "_strokes", lambda run: made)
+        monkeypatch.setattr(p, "_transition", lambda s: by[id(s)][0])
+        monkeypatch.setattr(p, "_slopes", lambda s, cut: by[id(s)][1])
+        run = SimpleNamespace(drive_column="x_in_mm", time_s=np.arange(10.0 * n))
+        return [(s.first, s.end, s.phase) for s in p.segment(run)]
+
+    return cut
+
+
+BOTH = (2, (100.0, 4.0))  # cut at its third sample; between them lies 20
+
+
+def test_a_stroke_that_is_cut_has_both_phases_of_its_way(cut_as):
+    assert cut_as(BOTH, BOTH) == [
+        (0, 4, "dead_band_up"),
+        (4, 10, "contraction"),
+        (10, 14, "dead_band_down"),
+        (14, 20, "loosening"),
+    ]
+
+
+def test_a_whole_stroke_is_what_its_slope_says(cut_as):
+    steep, gentle, just = ((None, (slope, math.nan)) for slope in (20.1, 19.9, 20.0))
+    found = cut_as(BOTH, steep, steep, gentle, gentle, just)
+    assert [phase for *_, phase in found[2:]] == [
+        "dead_band_down",
+        "dead_band_up",
+        "loosening",
+        "contraction",
+        "loosening",
+    ]
+    assert [(a, b) for a, b, _ in found[2:]] == [(k, k + 10) for k in (10, 20, 30, 40, 50)]
+
+
+def test_what_no_slope_tells_is_unknown(cut_as):
+    alone = (None, (math.nan, math.nan))
+    assert cut_as(BOTH, alone)[-1] == (10, 20, "unknown")
+    steep = (None, (200.0, math.nan))
+    assert cut_as(steep, steep) == [(0, 10, "unknown"), (10, 20, "unknown")]

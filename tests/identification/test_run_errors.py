@@ -2,13 +2,23 @@
 
 import gc
 import weakref
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy.linalg import fractional_matrix_power
 
 from tests.identification.recorded import manifest, prepared
 from tsas_cli.identification.model import data_sheet
-from tsas_cli.identification.run_errors import run_errors
+from tsas_cli.identification.run_errors import (
+    TURN,
+    RunErrors,
+    Turns,
+    _before_turns,
+    _moved_on,
+    _turns,
+    run_errors,
+)
 from tsas_cli.identification.samples import kept_samples
 from tsas_studies.challenge.rig.motions import Motion, nested, sine, triangle, two_sines
 from tsas_studies.challenge.rig.sensors import Sensor, Sensors
@@ -81,3 +91,99 @@ def test_a_run_that_is_done_with_leaves_memory_at_once():
         assert gone() is None
     finally:
         gc.enable()
+
+
+X = np.array([0.0, 1.0, 2.0, 2.9, 3.0, 2.95, 2.0, 1.0, 0.5, 1.5])
+REVERSALS = np.array([0, 4, 8, 9])
+
+
+def conditioned(sd=0.01):
+    return SimpleNamespace(values=X, reversals=REVERSALS, sd=np.full(X.size, sd))
+
+
+def errors_with(samples, measured=None, predicted=3.0):
+    """Return errors of weight one, without the shape of a wrong turn."""
+    size = max(at.max() for at in samples.values()) + 1
+    run = SimpleNamespace(measured=measured or dict.fromkeys(samples, np.arange(size) ** 2.0))
+    return RunErrors(
+        run,
+        samples,
+        None,
+        lambda rig: dict.fromkeys(samples, np.full(size, predicted)),
+        dict.fromkeys(samples, np.ones(size)),
+        {n: Turns(np.zeros(at.size), np.array([0]), at.size) for n, at in samples.items()},
+    )
+
+
+def test_errors_in_the_shape_of_a_wrong_turn_are_taken_down_to_their_variance():
+    """Stroke by stroke (I + 3² c cᵀ)^(−1/2), here by the matrix's eigenvalues."""
+    at = np.array([1, 2, 3, 5, 6, 7, 9])  # the strokes begin after samples 0, 4 and 8
+    change = np.random.default_rng(1).standard_normal(X.size)
+    turns = _turns(change, at, REVERSALS)
+    np.testing.assert_array_equal(turns.starts, [0, 3, 6])
+    np.testing.assert_array_equal(turns.counts, [3, 3, 1])
+    e = np.random.default_rng(2).standard_normal(at.size)
+    for first, count in zip(turns.starts, turns.counts, strict=True):
+        part = slice(first, first + count)
+        c, s = change[at][part], turns.shape[part]
+        root = fractional_matrix_power(np.eye(count) + TURN**2 * np.outer(c, c), -0.5)
+        np.testing.assert_allclose(e[part] - s * (s @ e[part]), root @ e[part], atol=1e-12)
+
+
+def test_a_stroke_that_a_wrong_turn_does_not_change_keeps_its_errors():
+    at = np.arange(X.size)
+    change = np.where(at < 5, 0.0, 1.0)
+    turns = _turns(change, at, REVERSALS)
+    assert not turns.shape[:5].any()
+    assert turns.shape[5:].all()
+
+
+def test_strokes_without_samples_have_no_start():
+    at = np.array([5, 6, 7])
+    turns = _turns(np.ones(X.size), at, REVERSALS)
+    assert turns.starts.tolist() == [0]
+    assert turns.counts.tolist() == [3]
+
+
+def test_every_stroke_is_moved_on_its_own_way():
+    moved = _moved_on(conditioned(0.25)) - X
+    assert moved.tolist() == [0.25] * 5 + [-0.25] * 4 + [0.25]
+
+
+def test_samples_just_before_a_reversal_may_be_behind_it():
+    """Within three standard deviations of the place of the turn at sample 4: samples 3 and 4.
+
+    They get the largest square that comes within as many samples behind it; the same at sample 8.
+    """
+    change = np.array([0.0, 1.0, 2.0, 3.0, 5.0, 4.0, 7.0, 9.0, 2.0, 6.0])
+    square = np.full(X.size, 100.0)
+    _before_turns(square, change, conditioned(0.05))  # 0.15 mm: 2.9 and 3.0 are alike
+    added = square - 100.0
+    assert added.tolist() == [0.0, 0.0, 0.0, 49.0, 49.0, 0.0, 0.0, 0.0, 36.0, 0.0]
+
+
+def test_chosen_residuals_are_spread_over_the_samples_behind_them():
+    """Of 2,500 samples three make a mean; channels follow each other."""
+    made = errors_with({"f_in_N": np.arange(10), "x_out_mm": np.arange(2500)})
+    chosen = np.zeros(10 + 834, dtype=bool)
+    chosen[[3, 10, 12, 843]] = True
+    assert np.flatnonzero(made.spread("f_in_N", chosen)).tolist() == [3]
+    found = np.flatnonzero(made.spread("x_out_mm", chosen))
+    assert found.tolist() == [0, 1, 2, 6, 7, 8, 2499]
+    assert made.length == 2500
+    with pytest.raises(KeyError):
+        made.spread("f_out_N", chosen)
+
+
+def test_means_of_neighbours_keep_a_variance_of_one():
+    white = np.random.default_rng(3).standard_normal(2500)
+    made = errors_with({"f_in_N": np.arange(2500)}, {"f_in_N": -white}, predicted=0.0)
+    found = made.residuals(None)
+    assert found.size == 834
+    assert found[0] == pytest.approx(white[:3].sum() / np.sqrt(3.0))
+    assert found[-1] == white[-1]
+
+
+def test_raw_errors_are_measured_less_simulated():
+    made = errors_with({"f_in_N": np.array([2, 5])})
+    assert made.raw(None)["f_in_N"].tolist() == [1.0, 22.0]

@@ -2,15 +2,18 @@
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from tests.physics.references import GROUP_A, wrap_of
 from tsas_cli.physics.closed_form.branches import branches
+from tsas_cli.physics.course import Tensions
 from tsas_cli.physics.ends import Drive
 from tsas_cli.physics.phases import UNCONVERGED
-from tsas_cli.physics.response import forgotten, simulate
+from tsas_cli.physics.response import force_beside_tendon, forgotten, simulate, with_spring_load
+from tsas_cli.physics.rig import with_values
 
 RIG = GROUP_A._replace(x_in_zero_mm=3.0, x_out_zero_mm=-7.0)
 UP = math.exp(wrap_of(GROUP_A))
@@ -106,3 +109,27 @@ def test_the_past_is_forgotten_once_the_whole_tendon_slips(spring, load):
 def test_inside_a_dead_band_nothing_is_forgotten(spring, load):
     drive = mid_cycle(spring, load, slice(1000, 1005))
     assert forgotten(RIG, drive) is None
+
+
+def test_a_drive_feels_its_friction_and_its_spring():
+    ends = SimpleNamespace(direction=np.array([1.0, -1.0, 0.0]), drive=np.array([2.0, 3.0, -4.0]))
+    both = {"drive_friction.friction_N": 5.0, "proximal_spring.stiffness_N_per_mm": 0.5}
+    rubs, springs = ({k: v} for k, v in both.items())
+    np.testing.assert_allclose(
+        force_beside_tendon(with_values(GROUP_A, both), ends), [6.0, -3.5, -2.0]
+    )
+    np.testing.assert_allclose(
+        force_beside_tendon(with_values(GROUP_A, rubs), ends), [5.0, -5.0, 0.0]
+    )
+    np.testing.assert_allclose(
+        force_beside_tendon(with_values(GROUP_A, springs), ends), [1.0, 1.5, -2.0]
+    )
+    assert force_beside_tendon(GROUP_A, ends) == 0.0
+    f_out = np.array([25.0, 30.0, 20.0])
+    x_in, x_out, f_in, told, _ = with_spring_load(
+        with_values(GROUP_A, both), ends, Tensions(f_out + 1.0, f_out, np.zeros(3))
+    )
+    np.testing.assert_allclose(x_out * GROUP_A.load_stiffness_N_per_mm, [0.0, 5.0, -5.0])
+    np.testing.assert_allclose(f_in, f_out + 1.0 + [6.0, -3.5, -2.0])
+    assert told is f_out
+    assert x_in is ends.drive

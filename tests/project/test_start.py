@@ -83,7 +83,6 @@ def test_what_cannot_be_read_leaves_no_project(tmp_path, tsas):
         start(tmp_path / "new", [tmp_path / "a.csv", tmp_path / "b" / "a.csv"])
 
 
-@pytest.mark.slow
 @pytest.mark.skipif(MAKE is None, reason="no make here: apt install make")
 def test_from_a_recording_to_a_page_and_back_to_one_that_is_broken(tmp_path):
     source = recording(tmp_path / "a [1].csv", step=50)

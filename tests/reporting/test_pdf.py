@@ -64,12 +64,12 @@ def is_running(state: Path) -> bool:
 
 
 def test_a_browser_that_hangs_is_ended_with_all_that_it_started(only, tmp_path, monkeypatch):
-    monkeypatch.setattr(pdf, "_LONGEST_S", 0.3)
+    monkeypatch.setattr(pdf, "_LONGEST_S", 2.0)
     only("chromium", f"sleep 60 & echo $! > {tmp_path}/child; wait")
-    with pytest.raises(InputError, match=r"not done after 0\.3 s"):
+    with pytest.raises(InputError, match=r"not done after 2 s"):
         pdf.print_page("<p>x", tmp_path / "page.pdf")
     state = Path(f"/proc/{(tmp_path / 'child').read_text().strip()}/stat")
-    end = time.monotonic() + 10.0
+    end = time.monotonic() + 40.0
     while is_running(state) and time.monotonic() < end:  # it was killed, which takes a moment
         time.sleep(0.05)
     assert not is_running(state)

@@ -4,6 +4,7 @@ import inspect
 import json
 import subprocess
 import sys
+from dataclasses import fields
 
 import numpy as np
 import pyarrow.parquet as pq
@@ -15,6 +16,9 @@ from tests.test_app import HEAVY
 from tsas_cli.identification.model import read_model
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.recording import Recording
+from tsas_cli.stages.diagnose import DiagnosisResult
+from tsas_cli.stages.identify_harmonic_drive import DriveResult
+from tsas_cli.stages.plan import PlanResult
 from tsas_studies.challenge.rig.recordings import Run, conditions, record, write_dataset
 from tsas_studies.challenge.rig.sensors import Sensors
 from tsas_studies.challenge.rig.tendon import Rig
@@ -314,3 +318,17 @@ def test_the_import_is_light():
     call = [sys.executable, "-c", program]
     loaded = json.loads(subprocess.run(call, capture_output=True, text=True, check=True).stdout)
     assert (HEAVY | {"typer", "rich"}) & {name.split(".")[0] for name in loaded} == set()
+
+
+RESULTS = (DiagnosisResult, DriveResult, PlanResult)
+
+
+@pytest.mark.parametrize("kind", RESULTS)
+def test_a_result_is_known_by_itself_and_prints_its_tables(kind):
+    first, second = object.__new__(kind), object.__new__(kind)
+    for result in (first, second):
+        for field in fields(kind):
+            object.__setattr__(result, field.name, {})  # equal in every field
+    assert first != second
+    assert len({first, second}) == 2
+    assert not kind.__repr__.__qualname__.startswith(kind.__name__)

@@ -1,11 +1,18 @@
 """What is hidden in drive recordings of the independent rig is found, and nothing else."""
 
+import math
 from dataclasses import replace
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from tests.counted import Counted
 from tests.drives import LAGGING, SPRUNG, STIFF, drive_dataset
+from tsas_cli.drive.estimates import DataSheet
+from tsas_cli.identification.estimate import Estimate
+from tsas_cli.recordings.manifest import Run
+from tsas_cli.stages import identify_harmonic_drive as drive_stage
 from tsas_cli.stages.identify_harmonic_drive import identify_harmonic_drive
 from tsas_studies.challenge.rig.drive import Gear
 
@@ -94,3 +101,44 @@ def test_with_the_inertia_the_resonance_becomes_a_stiffness(tmp_path):
         assert told[name]["stderr"] < 0.03 * true
     assert told["damping_N_s_per_mm"]["value"] == pytest.approx(0.007, rel=0.05)
     assert any("k_d + k_p would look like" in s for s in summary["cannot_tell"])
+
+
+def test_what_the_data_sheet_gives_is_given():
+    sheet = DataSheet(27.1, None, 0.13, 2.3)
+    found = drive_stage._given(sheet)
+    assert {n: (e.value, e.origin) for n, e in found.items()} == {
+        "turntable_radius_mm": (27.1, "data sheet"),
+        "inertia_N_mm_s2": (0.13, "data sheet"),
+    }
+
+
+def test_simulated_runs_stand_beside_each_other():
+    """Each run by the final and by the nominal terms, under its own name."""
+    values = {"final": 10.0, "nominal": 20.0}
+    runs = [SimpleNamespace(time_s=np.arange(2.0)), SimpleNamespace(time_s=np.arange(3.0))]
+    bench = SimpleNamespace(runs=runs, simulated=lambda r, value: np.full(r + 2, value + r))
+    search = SimpleNamespace(bench=bench, trial=lambda t: SimpleNamespace(values=values[t]))
+    fitted = drive_stage._simulated(search, "final")
+    nominal = drive_stage._simulated(search, "nominal")
+    entries = [Run(id=i, file=i, sha256="0" * 64) for i in ("a", "b")]
+    found = drive_stage._recordings(entries, search, fitted, nominal)
+    assert list(found) == ["a", "b"]
+    assert found["b"].run.id == "b"
+    columns = {name: values.tolist() for name, values in found["b"].columns.items()}
+    assert columns == {
+        "time_s": [0.0, 1.0, 2.0],
+        "x_in_mm": [11.0] * 3,
+        "x_in_nominal_mm": [21.0] * 3,
+    }
+    with pytest.raises(ValueError, match="zip"):
+        drive_stage._recordings(entries[:1], search, fitted, nominal)
+
+
+def test_a_drive_is_made_of_what_is_finite(monkeypatch):
+    monkeypatch.setattr(drive_stage, "drive_of", dict)
+    known = {
+        "gain": Estimate("gain", 0.02, "", "fitted"),
+        "frequency": Estimate("frequency", math.inf, "Hz", "fitted"),
+    }
+    result = drive_stage.DriveResult({}, None, known, None, {})
+    assert result.drive == {"gain": 0.02}

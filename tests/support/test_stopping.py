@@ -1,10 +1,13 @@
 import os
 import signal
+import subprocess
+import sys
 import time
+from types import SimpleNamespace
 
 import pytest
 
-from tsas_cli.support.stopping import Stopped, cleaned_up_when_stopped, until_stopped
+from tsas_cli.support.stopping import CLEANUP_S, Stopped, cleaned_up_when_stopped, until_stopped
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
@@ -32,6 +35,21 @@ def test_a_stage_that_is_stopped_has_not_done_its_work(number):
         signal.raise_signal(number)
 
 
+def test_a_stop_while_text_is_executed_ends_with_the_exit_code_and_not_by_a_signal(tmp_path):
+    """A library that makes a class from text is at it when the signal comes."""
+    (tmp_path / "stopped.py").write_text("""
+import signal, sys
+from tsas_cli.support.stopping import EXIT_CODE, cleaned_up_when_stopped
+try:
+    with cleaned_up_when_stopped():
+        exec("signal.raise_signal(signal.SIGTERM)")
+except KeyboardInterrupt:
+    sys.exit(EXIT_CODE)
+""")
+    done = subprocess.run([sys.executable, "-m", "stopped"], cwd=tmp_path, check=False)
+    assert done.returncode == 130
+
+
 def test_handlers_are_as_before():
     before = [signal.getsignal(n) for n in (signal.SIGINT, signal.SIGTERM)]
     with until_stopped():
@@ -51,8 +69,9 @@ def test_what_is_ignored_stays_ignored():
 
 
 def test_a_request_that_a_library_has_lost_can_be_made_again(monkeypatch):
-    monkeypatch.setattr("tsas_cli.support.stopping.CLEANUP_S", 0.1)
-    events = []
+    clock = SimpleNamespace(monotonic=lambda: now_s[0])
+    monkeypatch.setattr("tsas_cli.support.stopping.time", clock)
+    now_s, events = [100.0], []
     with until_stopped():
         try:
             os.kill(os.getpid(), signal.SIGINT)
@@ -60,7 +79,7 @@ def test_a_request_that_a_library_has_lost_can_be_made_again(monkeypatch):
             events.append("lost")  # as a destructor does
         os.kill(os.getpid(), signal.SIGTERM)  # too soon
         events.append("goes on")
-        time.sleep(0.2)
+        now_s[0] += CLEANUP_S + 0.1
         os.kill(os.getpid(), signal.SIGTERM)
         events.append("goes on for ever")
     assert events == ["lost", "goes on"]

@@ -134,13 +134,13 @@ def test_a_task_that_raises_is_reported_and_the_rest_completes(two, shared):
 def test_who_stops_reading_takes_back_what_nobody_has_begun(two, shared, tmp_path):
     marks = tmp_path / "marks"
     marks.mkdir()
-    content = texts(range(40), folder=str(marks), seconds=0.1)
+    content = texts(range(40), folder=str(marks), seconds=0.5)
     with closing(on_cluster(f"{WORKS}:slow", content, two.address, shared)) as outcomes:
         next(outcomes)
-    time.sleep(0.5)
+    time.sleep(1.0)
     begun = len(list(marks.iterdir()))
     assert begun < 20
-    time.sleep(0.5)
+    time.sleep(1.0)
     assert len(list(marks.iterdir())) == begun
 
 

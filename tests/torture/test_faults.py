@@ -12,6 +12,7 @@ import pytest
 
 from tests.torture.bench import tree
 
+EARLIER = '{"stage": "check"}'
 ROOT_ONLY = pytest.mark.skipif(os.geteuid() != 0, reason="only root may mount")
 
 
@@ -43,13 +44,14 @@ def is_one_line(done, told):
 def test_a_full_disk_is_one_line_and_leaves_the_earlier_output(dataset, tsas, mounted, size):
     inputs, place = tree(dataset), mounted(f"size={size}")
     (place / "out").mkdir()
-    (place / "out" / "check.json").write_text("earlier")
+    (place / "out" / "check.json").write_text(EARLIER)
+    (place / "out" / "SHA256SUMS").write_text(f"{'0' * 64}  check.json\n")
     done = tsas("check", dataset, "--rrd", "--out", place / "out", "--force")
     assert is_one_line(done, ""), done.stderr
     assert "disk full" in done.stderr or "No space left on device" in done.stderr
     assert str(place / "out") in done.stderr
     assert [p.name for p in place.iterdir()] == ["out"]
-    assert (place / "out" / "check.json").read_text() == "earlier"
+    assert (place / "out" / "check.json").read_text() == EARLIER
     assert tree(dataset) == inputs
     mounted("size=4m")
     assert tsas("check", dataset, "--rrd", "--out", place / "out", "--force").returncode == 0

@@ -17,6 +17,14 @@ class Stopped(BaseException):
     """A stop signal was received."""
 
 
+class Interrupted(KeyboardInterrupt):
+    """Ctrl-C or its kin.
+
+    CPython remembers a plain `KeyboardInterrupt` that leaves text which a library executes, and
+    ends `python -m tsas_cli` by SIGINT then, even where it was caught; not so a subclass of it.
+    """
+
+
 @contextmanager
 def until_stopped() -> Iterator[None]:
     """Run the block until it ends or a stop signal arrives; the caller sees no difference."""
@@ -30,7 +38,7 @@ def until_stopped() -> Iterator[None]:
 @contextmanager
 def cleaned_up_when_stopped() -> Iterator[None]:
     """Handle every stop signal in the block like Ctrl-C, so that its resources are closed."""
-    with _raising(KeyboardInterrupt):
+    with _raising(Interrupted):
         yield
 
 

@@ -11,6 +11,7 @@ from tsas_cli.physics.closed_form.branches import (
     DEPTH,
     at_rest_before,
     branches,
+    from_rest,
     strokes,
     with_room,
 )
@@ -244,3 +245,16 @@ def test_a_front_from_rest_goes_as_far_as_the_tension_has_changed(factor):
     fading = 25.0 * factor * np.exp(-way * A * np.linspace(0.0, 1.0, 5))
     expected = np.maximum(fading, 25.0) if way > 0 else np.minimum(fading, 25.0)
     np.testing.assert_allclose(frames.tension_N[0], expected, rtol=1e-6)
+
+
+EA, F0 = GROUP_A.tendon_stiffness_N, GROUP_A.preload_N
+
+
+@pytest.mark.parametrize("tension", [0.3, 0.8, 1.0, 1.1, 1.4])
+@pytest.mark.parametrize("c", [0.0, 0.02])
+def test_from_rest_a_pull_gives_back_the_travel_that_it_takes(tension, c):
+    """Travel/F0 = c (e^y − 1) ± C (e^y − 1 − y) of y = ln(T0/F0)."""
+    C, y = 0.05, math.log(tension)
+    bent = math.copysign(C * (tension - 1.0 - y), y) if y else 0.0
+    travel = F0 * (c * (tension - 1.0) + bent)
+    assert from_rest(travel, F0, C, c, 1.5) == pytest.approx(F0 * tension, rel=1e-7)

@@ -14,9 +14,9 @@ def test_what_is_late_is_ended_and_what_is_not_goes_on():
     before = signal.getsignal(signal.SIGALRM)
     with pytest.raises(TimeoutError), at_most(0.05):
         re.search("(a|aa)+b", 99 * "a")
-    with at_most(0.05):
+    with at_most(1.0):
         pass
-    time.sleep(0.1)
+    time.sleep(1.1)
     assert signal.getsignal(signal.SIGALRM) == before
 
 

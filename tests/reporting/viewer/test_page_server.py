@@ -50,7 +50,7 @@ def served(inside, **parts):
 
 
 def get(port, path, host=None):
-    connection = HTTPConnection(LOOPBACK, port, timeout=5)
+    connection = HTTPConnection(LOOPBACK, port, timeout=40)
     headers = {"Host": f"{LOOPBACK}:{port}" if host is None else host}
     connection.request("GET", path, headers=headers)
     answer = connection.getresponse()
@@ -119,7 +119,7 @@ def test_the_port_is_free_again_afterwards(inside):
 
 def test_a_reader_that_goes_away_stops_nobody_else(inside, file, capfd):
     with served(inside, file=file) as port:
-        connection = HTTPConnection(LOOPBACK, port, timeout=5)
+        connection = HTTPConnection(LOOPBACK, port, timeout=40)
         connection.request("GET", "/stream.rrd", headers={"Host": f"{LOOPBACK}:{port}"})
         connection.sock.close()
         connection.close()

@@ -44,8 +44,9 @@ def answer(tool, dataset, folder):
     return read_entry(folder, ["case"]).diagnoses["case"]
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("tool", BASELINES)
+@pytest.mark.parametrize(
+    "tool", [pytest.param(t, marks=pytest.mark.large if t == "bic" else ()) for t in BASELINES]
+)
 def test_a_plain_cause_is_named_first(tool, sealed, tmp_path):
     said = answer(tool, sealed["spring"], tmp_path / tool)
     assert said.verdict == "named"

@@ -1,7 +1,8 @@
 """A small fixed part of the blind benchmark: what is hidden has to be found, every time.
 
 Each effect once at full size, two recordings with nothing hidden, two causes that the catalogue
-does not hold; all made by the independent rig. `make challenge` runs the whole.
+does not hold; all made by the independent rig. One of each part of a rig and of each kind is tried
+with every change, all by `make test-large`; `make challenge` runs the whole.
 """
 
 import json
@@ -14,6 +15,10 @@ from tsas_studies.challenge.make import make
 
 SEED = 3  # for building, never for scoring
 CASES = part(cases(SEED))
+EACH_TIME = (
+    *("backlash, size 1", "free_tendon, size 1", "viscous_friction, size 1"),
+    *("load_friction, size 1", "force_sensor_gain, size 1", "nothing 1", "hum"),
+)
 
 
 def diagnosed(case, folder):
@@ -24,7 +29,11 @@ def diagnosed(case, folder):
 
 
 def of_kind(kind):
-    return [pytest.param(case, id=case.name) for case in CASES if case.kind == kind]
+    return [
+        pytest.param(case, id=case.name, marks=() if case.name in EACH_TIME else pytest.mark.large)
+        for case in CASES
+        if case.kind == kind
+    ]
 
 
 @pytest.mark.parametrize("case", of_kind("one"))

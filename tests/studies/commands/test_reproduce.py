@@ -1,4 +1,4 @@
-"""`tsas reproduce` in a process of its own, with every warning an error."""
+"""`tsas reproduce`: what it writes, of two quick groups and, as a large test, of all."""
 
 import json
 from pathlib import Path
@@ -6,38 +6,59 @@ from pathlib import Path
 import pytest
 
 from tests.commands.documented import documented
-from tsas_studies.reproduction import GROUPS
+from tsas_cli.__main__ import main
+from tsas_studies.reproduction import GROUPS, summary
+from tsas_studies.reproduction.contradictions import contradictions
 from tsas_studies.reproduction.group import VERDICTS
+from tsas_studies.reproduction.tables_1_2_4 import tables_1_2_4
 
 DOCS = Path(__file__).parents[3] / "docs" / "paper.md"
 
 
-@pytest.mark.slow
-def test_it_writes_what_is_documented_and_the_same_again(strict, tmp_path):
-    done = strict("reproduce", "--out", tmp_path / "one")
-    assert (done.returncode, done.stderr) == (0, "")
-    assert done.stdout.splitlines()[-1].startswith("Of ")
-    again = strict("reproduce", "--out", tmp_path / "two", "--json")
-    written = (tmp_path / "one" / "reproduction.json").read_text(encoding="utf-8")
-    summary = json.loads(written)
-    assert again.stdout == written
-    assert set(summary) == documented("reproduction.json")
-    assert summary["counts"] == {
-        verdict: sum(group["counts"][verdict] for group in summary["groups"])
-        for verdict in VERDICTS
+def groups_of(folders, printed):
+    """Return the groups that two calls have written alike; the second one has printed them."""
+    one, two = folders
+    written = (one / "reproduction.json").read_text(encoding="utf-8")
+    assert printed == written
+    found = json.loads(written)
+    assert set(found) == documented("reproduction.json")
+    assert found["counts"] == {
+        verdict: sum(group["counts"][verdict] for group in found["groups"]) for verdict in VERDICTS
     }
-    assert len(summary["groups"]) == len(GROUPS)
-    for group in summary["groups"]:
+    for group in found["groups"]:
         for row in group["rows"]:
             assert row["evidence"]
             assert bool(row["because"]) == (row["verdict"] != "agrees")
             assert bool(row["criterion"]) == (row["verdict"] != "cannot tell")
-    for group in summary["groups"]:
         counts = " | ".join(str(group["counts"][verdict]) for verdict in VERDICTS)
         assert f"| {group['title']} | {counts} |" in DOCS.read_text(encoding="utf-8")
-    pages = [(tmp_path / name / "index.html").read_bytes() for name in ("one", "two")]
+    pages = [(folder / "index.html").read_bytes() for folder in (one, two)]
     assert pages[0] == pages[1]
     assert pages[0].startswith(b"<!DOCTYPE html>")
+    return found["groups"]
+
+
+def test_it_writes_what_is_documented_and_the_same_again(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(summary, "GROUPS", (tables_1_2_4, contradictions))
+    folders = (tmp_path / "one", tmp_path / "two")
+    printed = []
+    for folder, more in zip(folders, ([], ["--json"]), strict=True):
+        monkeypatch.setattr("sys.argv", ["tsas", "reproduce", "--out", str(folder), *more])
+        with pytest.raises(SystemExit) as ended:
+            main()
+        assert not ended.value.code
+        printed.append(capsys.readouterr().out)
+    assert printed[0].splitlines()[-1].startswith("Of ")
+    assert len(groups_of(folders, printed[1])) == 2
+
+
+@pytest.mark.large
+def test_all_groups_are_written_as_documented_and_the_same_again(strict, tmp_path):
+    folders = (tmp_path / "one", tmp_path / "two")
+    done = strict("reproduce", "--out", folders[0])
+    assert (done.returncode, done.stderr) == (0, "")
+    again = strict("reproduce", "--out", folders[1], "--json")
+    assert len(groups_of(folders, again.stdout)) == len(GROUPS)
 
 
 def test_a_folder_that_is_there_stays_without_force(strict, tmp_path):

@@ -16,7 +16,6 @@ def row(paper, start):
     return next(r for r in table_5(paper).rows if r.what.startswith(start))
 
 
-@pytest.mark.slow
 def test_a_wrong_number_in_table_5_turns_the_verdict():
     said = row(PAPER, "RMSE of PID, undisturbed")
     assert (said.verdict, said.paper) == ("agrees", 1.4654)
@@ -66,7 +65,6 @@ def test_a_value_counts_each_estimate_by_its_own_rate():
     assert found == pytest.approx([expected])
 
 
-@pytest.mark.slow
 def test_the_ideal_loop_loses_v_and_with_an_adaptation_turned_round_gains_it():
     falls = ideal_value()
     assert np.max(np.diff(falls)) < ROUNDING * (falls[0] - falls[-1])

@@ -1,4 +1,4 @@
-"""A verdict and its reason, on searches and fits that are made up."""
+"""Verdict, reason and estimates of a diagnosis."""
 
 import math
 from types import SimpleNamespace
@@ -8,22 +8,22 @@ import pytest
 
 from tests.counted import Counted
 from tsas_cli.diagnosis import diagnose as d
-from tsas_cli.diagnosis.diagnose import Cause, Diagnosis
+from tsas_cli.diagnosis.diagnose import (
+    Diagnosis,
+    _as_sure_as_the_data_sheet,
+    _two_digits,
+    leaves_much,
+    verdict_of,
+)
 from tsas_cli.diagnosis.held_out import Folds
 from tsas_cli.diagnosis.remainder import Remainder
 from tsas_cli.diagnosis.search import Hypotheses
-from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.extension import Trial
 from tsas_cli.identification.fit import Fitted, Solution, Unknown
 from tsas_cli.identification.model import Model
 
-TITLE = {e.name: e.title.lower() for e in EFFECTS}
 PLAY, MASS = "backlash", "load_inertia"
-
-
-def cause(effect, rivals=(), gain=50.0):
-    return Cause(effect, rivals, (), gain, (gain - 1.0, gain + 1.0))
 
 
 def left_of(mean_square, *signals):
@@ -35,78 +35,8 @@ def diagnosis(verdict, *causes, mean_square=1.0, share=0.0, signals=()):
     return Diagnosis(verdict, "", Model(()), Model(()), causes, {}, left, share)
 
 
-@pytest.mark.parametrize(
-    ("found", "unexplained"),
-    [
-        (Diagnosis("undecided", "", Model(()), Model(())), False),
-        (diagnosis("unexplained"), True),
-        (diagnosis("sufficient", mean_square=9.0, share=1.0), False),
-        (diagnosis("named", cause(PLAY), mean_square=4.1), True),
-        (diagnosis("named", cause(PLAY), mean_square=2.0, share=0.03), True),
-        (diagnosis("named", cause(PLAY), mean_square=2.0, share=0.01), False),
-    ],
-)
-def test_what_is_unexplained(found, unexplained):
-    assert found.unexplained == unexplained
-
-
 def reason(found, start=16.0):
     return d._reason(found, left_of(start), found.remainder)
-
-
-def test_a_model_that_lacks_nothing_is_at_the_noise_floor():
-    said = "The nominal model is at the noise level: these runs show no missing effect."
-    assert reason(diagnosis("sufficient", signals=("time_s",))) == said
-
-
-def test_what_no_effect_explains_is_said_with_what_it_depends_on():
-    found = diagnosis("unexplained", mean_square=16.0, signals=("time_s", "x_in_mm"))
-    assert reason(found) == (
-        "The residual RMS is 4.0 × the noise level, and no catalogued effect explains it. "
-        "It depends on the time in the run, the displacement of the drive."
-    )
-    assert reason(diagnosis("unexplained", mean_square=16.0)).endswith("effect explains it.")
-
-
-def test_causes_are_named_with_what_they_take_away():
-    """From a mean square of 16 to one of 1.44: from 4 times the noise to 1.2 times."""
-    said = reason(diagnosis("named", cause(PLAY), cause(MASS), mean_square=1.44))
-    assert said == (
-        f"The nominal model lacks: {TITLE[PLAY]} and {TITLE[MASS]}. "
-        "With it the residual RMS falls from 4.0 to 1.2 × the noise level."
-    )
-
-
-def test_rivals_are_told_once_each_in_order():
-    found = diagnosis("ambiguous", cause(PLAY, (MASS, "free_tendon")), cause("presliding", (MASS,)))
-    told = ", ".join(sorted((TITLE[MASS], TITLE["free_tendon"])))
-    assert reason(found).endswith(f" Indistinguishable from it in these recordings: {told}.")
-
-
-def test_a_rest_is_said_by_how_much_of_it_there_is():
-    most = diagnosis("unexplained", cause(PLAY), mean_square=9.0, share=0.6, signals=("time_s",))
-    assert reason(most).endswith(
-        " No catalogued effect explains most of the remaining residual. It depends on the time in "
-        "the run."
-    )
-    some = diagnosis("named", cause(PLAY), mean_square=2.0, share=0.1, signals=("time_s",))
-    assert reason(some).endswith(
-        " No catalogued effect explains the remaining residual. It depends on the time in the run."
-    )
-
-
-def test_why_nothing_can_be_diagnosed():
-    good = SimpleNamespace(converged=True, message="")
-    bad = SimpleNamespace(converged=False, message="steps")
-
-    def reason(runs, fitted):
-        problem = SimpleNamespace(runs=runs)
-        return d._not_possible(SimpleNamespace(problem=problem, fitted=fitted))
-
-    assert reason([1], good) is None
-    assert reason([], good).startswith("no run lasts")
-    assert reason([1], None).startswith("these recordings identify no")
-    assert reason([1], bad).endswith("did not converge (steps).")
 
 
 def test_a_tendon_stays_near_its_data_sheet(monkeypatch):
@@ -270,12 +200,6 @@ def test_an_uneven_bend_and_the_noise_add_up_in_squares(monkeypatch):
     assert given == {"blocks": [[0, 0, 1], [0, 0, 1]], "by_run": True}
 
 
-def test_the_blocks_of_a_bench_are_held_out(monkeypatch):
-    monkeypatch.setattr(d, "blocks_of", lambda closed, rigs: [np.array([0, 0, 1])] * 3)
-    folds = d.bench_folds(SimpleNamespace(closed=[], rigs=[]))
-    assert (folds.blocks, folds.by_run) == (6, True)
-
-
 def test_a_sheath_beside_an_unknown_tendon_is_found_by_its_name():
     """The tendon need not be the first unknown."""
     unknowns = [
@@ -296,3 +220,58 @@ def test_a_sheath_beside_an_unknown_tendon_is_found_by_its_name():
     assert found.interval_low == 0.0  # 2 · 0.5/1.25 is less than 1
     assert found.interval_high == pytest.approx(2.0 * 2.0 / 1.25 - 1.0)
     assert found.stderr == pytest.approx((2.0 * 2.0 / 1.25 - 2.0) / 1.96)
+
+
+@pytest.mark.parametrize(
+    ("rivals", "left", "share", "verdict"),
+    [
+        ([], 1.29, 1.0, "sufficient"),  # 1 + 2 · 0.15
+        ([], 1.31, 1.0, "unexplained"),
+        ([()], 1.0, 0.51, "unexplained"),
+        ([()], 1.0, 0.5, "named"),
+        ([()], 9.0, 0.49, "named"),
+        ([(), ("play",)], 1.0, 0.0, "ambiguous"),
+    ],
+)
+def test_the_verdict_on_what_is_left(rivals, left, share, verdict):
+    assert verdict_of(rivals, left, share) == verdict
+
+
+@pytest.mark.parametrize(
+    ("left", "share", "much"),
+    [
+        (4.1, 0.0, True),
+        (4.0, 0.0, False),
+        (2.0, 0.02, False),
+        (3.9, 0.019, False),
+        (3.9, 0.021, True),
+        (1.16, 0.021, True),
+        (1.14, 0.9, False),
+    ],
+)
+def test_what_nobody_calls_explained(left, share, much):
+    assert leaves_much(left, share) == much
+
+
+def test_two_digits_and_no_more():
+    told = [_two_digits(v) for v in (1.0, 1.04, 9.94, 9.96, 10.4, 123.0)]
+    assert told == ["1.0", "1.0", "9.9", "10", "10", "120"]
+
+
+def test_a_sheath_is_as_unsure_as_the_tendons_data_sheet():
+    """(1 + ratio)/EA is what is told: with EA 20 % up or down the ratio follows."""
+    unknown = Unknown("tendon_stiffness_N", None, 0.0, math.log(0.8), math.log(1.2), 1.0)
+    trial = SimpleNamespace(unknowns=[unknown], solution=SimpleNamespace(values=np.zeros(1)))
+    ratio = Estimate("sheath_compression.compliance_ratio", 0.5, "1", "fitted", None, 0.0, 0.5, 0.5)
+    found = _as_sure_as_the_data_sheet(ratio, trial)
+    assert found.interval_low == pytest.approx(1.5 * 0.8 - 1.0)
+    assert found.interval_high == pytest.approx(1.5 * 1.2 - 1.0)
+    assert found.stderr == pytest.approx(0.3 / 1.96)
+    low = _as_sure_as_the_data_sheet(Estimate("r", 0.1, "1", "fitted"), trial)
+    assert low.interval_low == 0.0
+    without = SimpleNamespace(unknowns=[], solution=trial.solution)
+    assert _as_sure_as_the_data_sheet(ratio, without) is ratio
+
+
+def found(rivals=(), unexplained=False):
+    return SimpleNamespace(causes=[SimpleNamespace(rivals=rivals)], unexplained=unexplained)

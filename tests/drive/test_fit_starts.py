@@ -1,4 +1,4 @@
-"""The steps of a drive's fit, one by one, on numbers that are written down by hand."""
+"""Where the fit of a drive starts, how it scales its numbers, and what counts as an error."""
 
 import cmath
 import math

@@ -65,18 +65,6 @@ def test_the_tendon_s_stiffness_is_that_of_the_dead_band():
     assert s.read_off(run, [], slopes, GROUP_A)["tendon_stiffness_N"] == pytest.approx(exact)
 
 
-def test_what_lies_on_a_bound_is_plausible(monkeypatch):
-    class Bounds(dict):
-        def __missing__(self, name):
-            return SimpleNamespace(lower=1.0, upper=2.0)
-
-    monkeypatch.setattr(s, "NOMINAL_BY_NAME", Bounds())
-    monkeypatch.setattr(
-        s, "_spring", lambda *_: {"below": 0.999, "lower": 1.0, "upper": 2.0, "above": 2.001}
-    )
-    assert set(s.read_off(run_of(), [], [], GROUP_A)) == {"lower", "upper"}
-
-
 X_OUT = np.array([1.0, 2.0, 3.0, 4.0, 5.0, 6.0])
 
 
@@ -162,7 +150,6 @@ def test_a_spring_that_is_slack_at_zero_is_counted_from_afar(stated, preload):
     assert none == pytest.approx({"x_out_zero_mm": 7.0, "preload_N": 14.0})
 
 
-GIVE = 2.0  # mm of stretch by 1 N
 RIG = GROUP_A._replace(sheath_length_mm=1000.0, tendon_stiffness_N=500.0, preload_N=3.0)
 
 
@@ -183,20 +170,6 @@ def test_a_tendon_between_two_drives_is_slack_below_its_stretch():
     assert between([-20.0, 0.0], [1.0, 0.0], f_in_N=[4.0, 4.0], drive="f_in_N") == {}
     both = between([-20.0, -20.0], [1.0, 1.0], f_in_N=[4.0, 4.0], f_out_N=[9.0, 9.0])
     assert both == pytest.approx({"x_in_zero_mm": -23.0})
-
-
-def test_each_load_is_read_in_its_own_way(monkeypatch):
-    monkeypatch.setattr(s, "_spring", lambda *_: {"preload_N": 1.0})
-    monkeypatch.setattr(s, "_zero_between", lambda *_: {"x_in_zero_mm": 2.0})
-    read = {
-        load: s.read_off(run_of(load=load), [], [], GROUP_A)
-        for load in ("spring", "displacement", "force")
-    }
-    assert read == {
-        "spring": {"preload_N": 1.0},
-        "displacement": {"x_in_zero_mm": 2.0},
-        "force": {},
-    }
 
 
 def test_a_slope_of_nothing_tells_nothing():

@@ -1,4 +1,4 @@
-"""The decisions of a search, one by one, on fits and squares that are made up."""
+"""Decisions of a search: what is fitted, what matters, what is left out, rivals and pairs."""
 
 from types import SimpleNamespace
 

@@ -1,8 +1,7 @@
-"""How far intervals reach, and which effects are looked at, on fits that are made up."""
+"""How far intervals reach, and which effects are tried."""
 
 from types import SimpleNamespace
 
-import numpy as np
 import pytest
 
 from tsas_cli.identification import missing_effects as m
@@ -164,29 +163,3 @@ def test_fits_that_fail_or_are_no_better_are_left_out(tried):
     squares = {"a": 8.9, "b": 9.0, "c": 9.1, "d": 2.0}
     assert tried(dict.fromkeys("abcd", 0.5), squares)[0] == ["a", "d"]
     assert tried(dict.fromkeys("abcd", 0.5), squares, converged="d")[0] == ["d"]
-
-
-def test_an_effect_is_fitted_beside_all_that_was_free(monkeypatch):
-    """The estimates behind it come with errors from the blocks of each run at its rig."""
-    asked = {}
-
-    def blocks_of(runs, rigs):
-        asked["blocks"] = runs, rigs
-        return "blocks"
-
-    def with_errors(unknowns, solution, blocks):
-        asked["errors"] = unknowns, solution, blocks
-        return "fitted"
-
-    monkeypatch.setattr(m, "blocks_of", blocks_of)
-    monkeypatch.setattr(m, "with_errors", with_errors)
-    monkeypatch.setattr(m, "estimates_of", lambda *told: told)
-    bench = SimpleNamespace(
-        rigs=["r", "s"],
-        rig=lambda t, k: f"{t.name} {k}",
-        closed="runs",
-        base=SimpleNamespace(problem=SimpleNamespace(ids=["a", "b"])),
-    )
-    made = SimpleNamespace(name="t", unknowns="u", solution=np.pi)
-    assert m._estimates(bench, made) == ("u", "fitted", ["a", "b"])
-    assert asked == {"blocks": ("runs", ["t 0", "t 1"]), "errors": ("u", np.pi, "blocks")}

@@ -1,4 +1,4 @@
-"""What a joint fit says and passes on, on results that are made up."""
+"""What a joint fit finds, in units and intervals; what it misses; models beside it."""
 
 import math
 from types import SimpleNamespace
@@ -6,28 +6,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from tests.identification.fits import FRICTION, NOTHING, ZERO, fitted, problem_of, unknown
 from tests.physics.references import GROUP_A
-from tsas_cli.identification import fit_words as w
 from tsas_cli.identification import joint_fit as j
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.fit import Fitted, Unknown
-from tsas_cli.identification.fit_problem import FitProblem, rig_at
+from tsas_cli.identification.fit_problem import rig_at
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.quantities import QUANTITIES
-
-FRICTION, ZERO = "friction_coefficient", "x_in_zero_mm"
-
-
-def fitted(values, stderr, t=2.0, at_bound=(), *, converged=True, message="done."):
-    n = len(values)
-    bound = np.array([k in at_bound for k in range(n)])
-    return Fitted(np.array(values), np.array(stderr), np.full(n, t), bound, converged, message, 1)
-
-
-def unknown(name, run=None, lower=None, upper=None):
-    q = QUANTITIES[name]
-    low = q.scaled(q.lower) if lower is None else lower
-    return Unknown(name, run, 0.0, low, q.scaled(q.upper) if upper is None else upper, 1.0)
 
 
 def test_an_estimate_is_in_its_own_unit():
@@ -59,52 +44,6 @@ def test_an_effect_s_number_is_in_units_of_its_size():
     assert (found.value, found.stderr) == pytest.approx((3.0 * size, 0.5 * size))
 
 
-def estimate(name=FRICTION, run=None, *, at_bound=False, stderr=0.1, low=1.0, high=2.0, value=1.5):
-    return Estimate(name, value, QUANTITIES[name].unit, "fitted", run, stderr, low, high, at_bound)
-
-
-def doubts(*estimates, **how):
-    return w.doubts_of(estimates, fitted([0.0], [1.0], **how))
-
-
-def test_a_good_fit_leaves_no_doubt():
-    assert doubts(estimate(), estimate(ZERO, "a")) == []
-
-
-def test_what_ended_at_a_bound_is_said():
-    (said,) = doubts(estimate(ZERO, "a", at_bound=True))
-    assert said == (
-        "x_in_zero_mm of run a converged to its plausible bound, 1.5: the estimate is unreliable."
-    )
-    assert doubts(estimate(at_bound=True))[0].startswith(
-        "friction_coefficient converged to its plausible bound"
-    )
-
-
-def test_what_ended_where_it_does_nothing_is_no_bound():
-    name = "free_tendon.proximal_length_mm"
-    (said,) = doubts(estimate(name, at_bound=True, value=0.0, low=0.0, high=3.14159))
-    assert said == f"{name} converged to zero: values up to 3.1 mm are not excluded."
-    assert doubts(estimate(name, value=0.0, low=0.0)) == []  # near it, not at the bound
-
-
-def test_what_has_no_error_or_no_end_is_said():
-    (said,) = doubts(estimate(stderr=None))
-    assert said.startswith("friction_coefficient does not show where the fit ended")
-    (said,) = doubts(estimate(), converged=False, message="too many evaluations.")
-    assert said.startswith("The fit did not converge (too many evaluations): its values")
-
-
-NOTHING = Model(())
-
-
-def problem_of(unknowns=(), runs="ab", initial=NOTHING, fixed=NOTHING):
-    """Return the problem of runs with these names, whose rigs differ by the zero of x_out."""
-    named = tuple(SimpleNamespace(run=SimpleNamespace(id=name)) for name in runs)
-    rigs = tuple(GROUP_A._replace(x_out_zero_mm=float(k)) for k in range(len(runs)))
-    return FitProblem(initial, fixed, named, rigs, tuple(unknowns), (), ())
-
-
 def fit_of(problem, values=(), chosen=(), errors=()):
     return j.FittedModel(problem, np.array(values), tuple(chosen), errors, NOTHING, None, ())
 
@@ -124,27 +63,6 @@ def test_a_channel_is_missed_by_its_worst_run():
     first, second = j.misfit(fit_of(problem_of(), errors=(one, two)))
     assert first.startswith("f_in_N: residual RMS up to 1.31 ×")
     assert second.startswith("f_out_N")
-
-
-def test_what_is_fixed_is_said_once_for_each_reason():
-    unknowns = [unknown(FRICTION), unknown(ZERO, 0), unknown(ZERO, 1), unknown("preload_N", 1)]
-    problem = problem_of(unknowns, fixed=Model((Estimate(ZERO, 0.25, "mm", "given", "a"),)))
-    assert w.fixed_sentences(problem, {1: [3, 0], 2: [0, 3], 0: [], 3: []}) == [
-        (
-            "x_in_zero_mm is not identifiable together with friction_coefficient and preload_N "
-            "from these recordings (runs a, b); it is fixed at 0.25 mm."
-        ),
-        "friction_coefficient is not identifiable from these recordings; it is fixed at 0.1.",
-        "preload_N is not identifiable from these recordings (runs b); it is fixed at 10 N.",
-    ]
-    assert problem.ids == ["a", "b"]
-
-
-def test_damping_that_nobody_knows_is_critical():
-    name = "bristles.damping_N_s_per_mm"
-    assert w._fixed_value(Model(()), name, "") == "its critical value"
-    known = Model((Estimate(name, 0.5, "N s/mm", "given"),))
-    assert w._fixed_value(known, name, "") == "0.5 N s/mm"
 
 
 def test_a_rig_takes_its_own_values_and_the_shared_ones():

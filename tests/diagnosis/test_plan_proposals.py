@@ -7,31 +7,10 @@ import pytest
 
 from tests.counted import Counted
 from tests.diagnosis.planned import rig_file, run
-from tests.physics.references import GROUP_A
+from tests.diagnosis.sizes import CANDIDATES, LENGTH, MASS, OF, PLAY, better, cause, seen
 from tsas_cli.diagnosis import plan as p
-from tsas_cli.diagnosis.candidates import candidates
-from tsas_cli.diagnosis.plan import Better, Plan, Proposal, plan_rig, propose
-from tsas_cli.diagnosis.rig_file import Limits
-from tsas_cli.diagnosis.visibility import Cause, Seen
+from tsas_cli.diagnosis.plan import Proposal, plan_rig, propose
 from tsas_cli.effects import EFFECTS
-from tsas_cli.stages import plan as plan_stage
-
-OF = {e.name: e for e in EFFECTS}
-CANDIDATES = candidates(Limits(amplitude_mm=10.0, speed_mm_per_s=24.0), GROUP_A)
-PLAY, MASS, LENGTH = "backlash", "load_inertia", "free_tendon"
-
-
-def cause(name):
-    parameter = next(q for q in OF[name].parameters if not q.shape)
-    return Cause(OF[name], parameter, {})
-
-
-def seen(name, found, **told):
-    return Seen(cause(name), found, told)
-
-
-def better(name, before, after):
-    return Better(cause(name), before, after)
 
 
 def test_what_is_better_is_said_with_its_unit():
@@ -212,66 +191,3 @@ def test_a_rig_file_is_planned_by_its_own_rig_and_limits(monkeypatch):
     assert found["a fast sine"].speed == 14.0
     assert found["a fast sine"].preload_N == 25.0  # as in the first run
     assert found["another preload"].preload_N == 60.0
-
-
-HIDDEN = Plan(
-    (
-        seen(PLAY, 0.01234, load_inertia=0.05),
-        seen(MASS, 0.5, free_tendon=6.0, backlash=1.0),
-        seen(LENGTH, math.inf),
-    ),
-    ((LENGTH, MASS),),
-    (
-        Proposal(
-            CANDIDATES[0],
-            math.log(4.0),
-            (*(better(PLAY, 0.4, 0.1) for _ in range(5)), better(MASS, math.inf, 0.3)),
-            (),
-        ),
-    ),
-    ("nobody knows.",),
-)
-
-
-def test_a_plan_as_json():
-    found = plan_stage.record_of(HIDDEN)
-    first, second, third = found.effects
-    assert (first.effect, first.parameter, first.unit) == (PLAY, "play_mm", "mm")
-    assert (first.found_from, first.named_from) == (0.01234, 0.05)
-    assert (first.nearest, first.hidden_in) == (MASS, ())
-    assert second.hidden_in == (LENGTH,)
-    assert (third.found_from, third.named_from, third.nearest) == (None, None, None)
-    assert found.groups == ((LENGTH, MASS),)
-    (proposal,) = found.proposals
-    assert proposal.falls_percent == pytest.approx(75.0)
-    run = proposal.content()["run"]
-    assert "id" not in run
-    assert "frequency_Hz" not in run
-    assert proposal.better[0].named_from_with_it == 0.1
-    assert proposal.better[-1].named_from is None
-    assert found.cannot_tell == ("nobody knows.",)
-
-
-def test_shapes_are_named_within_their_effect():
-    shaped = Seen(Cause(OF[PLAY], OF[PLAY].parameters[0], {"backlash.kind": 2.0}), 1.0, {})
-    found = plan_stage.record_of(Plan((shaped,), (), (), ())).effects[0]
-    assert found.shape == {"kind": 2.0}
-
-
-def test_the_tables_of_a_plan():
-    sizes, groups, proposal = plan_stage._tables(plan_stage.record_of(HIDDEN))
-    assert [row[3:] for row in sizes[2]] == [
-        ("0.012", "0.05", MASS),
-        ("0.5", "6", LENGTH),
-        ("not shown", "", ""),
-    ]
-    assert groups[2] == ((LENGTH, MASS),)
-    title, header, rows = proposal
-    assert title.endswith(": sizes fall by 75 % on average")
-    assert title.startswith("add a slow sine: 2 times")
-    assert len(header) == 5
-    assert len(rows) == 4  # no more are printed
-    assert rows[0] == (PLAY, "play_mm", "mm", "0.4", "0.1")
-    never = Plan((seen(MASS, 0.5, backlash=math.inf),), (), (), ())
-    (only,) = plan_stage._tables(plan_stage.record_of(never))
-    assert only[2][0][3:] == ("0.5", "never", PLAY)

@@ -5,12 +5,15 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from tsas_cli.physics.plant.harmonic_drive import DriveValues, linear_response
 
 from tests.counted import Counted
 from tsas_cli.diagnosis.evidence import gain
 from tsas_cli.drive import search as ds
 from tsas_cli.drive.fit import LINEAR
+from tsas_cli.drive.runs import DriveRun
 from tsas_cli.drive.search import NOTHING, DriveFits, drive_folds
+from tsas_cli.numerics.linear_response import sampled
 
 BLOCKS = 20
 
@@ -164,38 +167,6 @@ def test_each_fit_lies_ahead_once():
     assert counted.total == counted.done == 3
 
 
-def test_blocks_outlast_the_memory_of_the_best_structure(monkeypatch):
-    """Residuals are split by the runs; the best one leaves least."""
-    given = []
-    runs = [SimpleNamespace(x_in=np.zeros(n), counts=np.ones(n, dtype=bool)) for n in (1, 2, 3)]
-
-    def folds(runs, residuals):
-        given.append([r.tolist() for r in residuals])
-        return SimpleNamespace(block=np.arange(6) // 2)
-
-    monkeypatch.setattr(ds, "drive_folds", folds)
-    squares = []
-    bench = Bench(runs)
-    fit = bench.fit
-
-    def noted(names, simpler):
-        found = fit(names, simpler)
-        found.solution.residual = found.solution.residual + len(names)
-        return found
-
-    bench.fit = noted
-    monkeypatch.setattr(
-        ds, "held_out_squares", lambda trial, folds: squares.append(trial) or np.ones(3)
-    )
-    monkeypatch.setattr(ds, "chosen", lambda search, gear: NOTHING)
-    monkeypatch.setattr(ds, "_with_gear", lambda search, named: named)
-    _, search = ds.find_terms(DriveFits(bench))
-    assert given == [[[4.0], [5.0, 6.0], [7.0, 8.0, 9.0]]]  # of all four terms
-    assert search.mean_square(NOTHING) == 0.5  # three squares of 1 over six residuals
-    search.mean_square(NOTHING)
-    assert len(squares) == 1
-
-
 def run_of(band, size=40):
     return SimpleNamespace(x_in=np.zeros(size), band=band, counts=np.ones(size, dtype=bool))
 
@@ -244,3 +215,64 @@ def test_few_blocks_are_all_held_out(banded, monkeypatch):
     five = drive_folds([run_of((0.1, 9.0))], [np.zeros(100)])
     assert np.unique(five.fold[80:]).tolist() == [0]
     assert five.blocks == 5
+
+
+def test_rivals_of_a_lag_are_what_explains_as_much_in_its_place():
+    search = MadeUp({NOTHING: 5.0, terms("lag"): 1.0, terms("delay"): 1.005, terms("play"): 1.02})
+    assert ds.rivals(search, terms("lag"), "lag") == ("delay",)
+    closer = MadeUp({NOTHING: 5.0, terms("lag"): 1.0, terms("play"): 1.005})
+    assert ds.rivals(closer, terms("lag"), "lag") == ("play",)
+    alone = MadeUp({NOTHING: 1.01, terms("lag"): 1.0, terms("delay"): 1.0})
+    assert ds.rivals(alone, terms("lag"), "lag") == ()  # no better than nothing
+
+
+def test_the_gear_is_looked_at_where_something_is_left():
+    quiet = MadeUp({NOTHING: 1.14}, default=0.5)
+    assert ds._with_gear(quiet, NOTHING) == NOTHING
+    assert quiet.fitted == []
+    play = MadeUp({NOTHING: 4.0, terms("play"): 1.0, terms("ripple", "play"): 1.0}, default=4.0)
+    assert ds._with_gear(play, NOTHING) == terms("play")
+    ripple = MadeUp({NOTHING: 4.0, terms("ripple"): 1.0, terms("ripple", "play"): 0.98}, 4.0)
+    assert ds._with_gear(ripple, NOTHING) == terms("ripple")  # both are not surely better
+    both = MadeUp({NOTHING: 4.0, terms("ripple"): 2.0, terms("ripple", "play"): 1.0}, 4.0)
+    assert ds._with_gear(both, NOTHING) == terms("ripple", "play")
+    neither = MadeUp({NOTHING: 4.0}, default=3.99)
+    assert ds._with_gear(neither, NOTHING) == NOTHING
+    found = MadeUp({terms("ripple", "play"): 4.0}, default=1.0)
+    assert ds._with_gear(found, terms("ripple", "play")) == terms("ripple", "play")
+
+
+def test_a_gear_that_lags_explain_as_well_is_left_out(monkeypatch):
+    search = MadeUp({terms("lag", "play"): 1.0, terms("lag"): 1.01})
+    monkeypatch.setattr(ds, "chosen", lambda search, gear: terms("lag") | gear)
+    assert ds._without_idle_gear(search, terms("lag", "play")) == terms("lag")
+    needed = MadeUp({terms("lag", "play"): 1.0, terms("lag"): 3.0})
+    assert ds._without_idle_gear(needed, terms("lag", "play")) == terms("lag", "play")
+
+
+def chirped(kind, size=1000, highest_Hz=20.0):
+    t = 0.005 * np.arange(size)
+    rate = highest_Hz / t[-1]
+    speed = 500.0 * np.sin(2.0 * np.pi * 0.5 * rate * t**2)
+    u = sampled(0.005, speed, "first")
+    return DriveRun(kind, u, linear_response(u, DriveValues(0.02)), 1e-3, at_rest=True)
+
+
+def test_runs_of_one_band_are_held_out_one_by_one():
+    runs = [chirped("a"), chirped("b", 1200)]
+    residuals = [np.random.default_rng(k).standard_normal(r.x_in.size) for k, r in enumerate(runs)]
+    folds = drive_folds(runs, residuals)
+    assert folds.by_run
+    np.testing.assert_array_equal(folds.fold, np.repeat([0, 1], [1000, 1200]))
+    assert np.all(np.diff(folds.block) >= 0)
+    assert folds.block[999] < folds.block[1000]
+    assert 100 <= folds.blocks <= 220
+
+
+@pytest.mark.parametrize("others", [[], [chirped("slow", 1000, 5.0)]])
+def test_what_only_one_run_shows_is_held_out_in_stretches(others):
+    runs = [chirped("a"), *others]
+    residuals = [np.random.default_rng(k).standard_normal(r.x_in.size) for k, r in enumerate(runs)]
+    folds = drive_folds(runs, residuals)
+    assert not folds.by_run
+    np.testing.assert_array_equal(folds.fold, folds.block % 4)

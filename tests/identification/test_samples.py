@@ -1,4 +1,4 @@
-"""Which samples count, one by one: on a drive whose travel is written down by hand."""
+"""Which samples a fit uses, and at which it simulates."""
 
 from types import SimpleNamespace
 
@@ -134,3 +134,23 @@ def test_the_last_sample_is_simulated_and_a_turn_may_be_near_it():
 
 def test_of_nothing_there_are_no_means():
     assert s.mean_edges(0).size == 0
+
+
+@pytest.mark.parametrize(("size", "stride"), [(1, 1), (1000, 1), (1001, 2), (2000, 2), (5500, 6)])
+def test_no_more_than_a_thousand_means_of_as_many_samples(size, stride):
+    edges = s.mean_edges(size)
+    assert edges[0] == 0
+    assert set(np.diff(edges)) <= {stride}
+    assert edges[-1] < size <= edges[-1] + stride
+    assert edges.size <= 1000
+
+
+def test_a_short_run_is_simulated_at_every_sample():
+    np.testing.assert_array_equal(points(7999, [0, 7998]), np.arange(7999))
+
+
+def test_a_long_run_is_thinned_but_after_its_reversals():
+    """30,000 samples: every seventh, four strides of seven after each reversal, and the last."""
+    found = points(30_000, [0, 10_001, 29_999])
+    close = set(range(10_001, 10_001 + 28)) | set(range(28))
+    assert set(found) == set(range(0, 30_000, 7)) | close | {29_999}

@@ -1,4 +1,4 @@
-"""The decisions of the dynamic fit on fits that are made up: what is freed, looked at, said."""
+"""What the dynamic fit tries, and what it frees, fixes or seeks again, on fits that are linear."""
 
 from dataclasses import dataclass, field
 from types import SimpleNamespace
@@ -17,8 +17,6 @@ from tsas_cli.support.steps import SILENT
 SLOPES = np.linalg.qr(np.random.default_rng(1).standard_normal((50, 2)))[0]
 OWN = np.random.default_rng(2).standard_normal(50)
 OWN = 10.0 * (OWN - SLOPES @ (SLOPES.T @ OWN)) / np.linalg.norm(OWN - SLOPES @ (SLOPES.T @ OWN))
-
-
 NOTHING = Model(())
 
 
@@ -107,6 +105,57 @@ def test_what_would_show_is_ten_times_noise_at_a_tenth_more_friction(size, shows
 
 def look(saves, stiffness=1e4, moves=(0.0, 0.0)):
     return d.Look({d.STIFFNESS: stiffness}, np.array(moves), saves)
+
+
+def test_what_would_have_shown_is_said():
+    shown = [
+        d.Look({d.EXCESS: 0.1, d.VELOCITY: v}, np.zeros(2), 0.0, shows)
+        for v, shows in ((0.01, False), (0.5, True), (7.0, True), (100.0, False))
+    ]
+    assert "velocity were 0.5 to 7 mm/s" in d._unseen_rest(shown)
+    assert "10% more friction" in d._unseen_rest(shown)
+    assert d._unseen_rest(shown[:1]).endswith("whatever they are.")
+
+
+def test_values_that_fit_alike_are_said():
+    like = [look(1.0, 2e3), look(2.0, 5e4), look(1.5, 1e4)]
+    assert d._alike(d.STIFFNESS, like).startswith(
+        f"{d.STIFFNESS} is not told: 2e+03 to 5e+04 N/mm fit alike"
+    )
+    viscous = [d.Look({d.VISCOUS: v}, np.zeros(2), 0.0) for v in (0.01, 0.2)]
+    assert d._alike(d.VISCOUS, viscous).startswith(f"{d.VISCOUS} is not told: 0 to 0.2 N s/mm")
+
+
+def test_what_is_looked_at():
+    """Stribeck velocities from 0.01 to 100 mm/s, four for each ten times as fast."""
+    assert d.VELOCITIES[[0, 4, 8, 12, 16]] == pytest.approx([0.01, 0.1, 1.0, 10.0, 100.0])
+    assert d.VELOCITIES.size == 17
+    assert d.TIMES == (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
+
+
+def test_the_finest_stiffness_reaches_as_far_as_a_lump_is_long():
+    """√(EA L/σ0) is L/LUMPS there."""
+    fit = SimpleNamespace(rigs=[TABLE_1, "another"])
+    length = TABLE_1.sheath_length_mm
+    reach = np.sqrt(TABLE_1.tendon_stiffness_N * length / d._finest_stiffness(fit))
+    assert reach == pytest.approx(length / LUMPS)
+
+
+def test_moves_that_are_asked_for_take_errors_away():
+    slopes = np.array([[1.0, 0.0], [0.0, 2.0], [0.0, 0.0]])
+    assert d._asked(slopes, np.array([3.0, -4.0, 7.0])) == pytest.approx([-3.0, 2.0])
+
+
+def test_values_to_start_from_have_their_units():
+    (one, two) = d._model_of({d.STIFFNESS: 5.0, d.EXCESS: 0.2}).estimates
+    assert (one.name, one.value, one.unit, one.origin) == (d.STIFFNESS, 5.0, "N/mm", "default")
+    assert (two.name, two.value, two.unit) == (d.EXCESS, 0.2, QUANTITIES[d.EXCESS].unit)
+
+
+def test_only_names_that_are_free_are_free():
+    fit = SimpleNamespace(free=[SimpleNamespace(name=d.VISCOUS)])
+    assert d._is_free(fit, d.VISCOUS)
+    assert not d._is_free(fit, d.STIFFNESS)
 
 
 def solved(estimates=(), further=(d.STIFFNESS, d.VISCOUS)):
@@ -203,27 +252,6 @@ def test_what_is_freed_stays_free_where_it_is_told(again, more, kept):
 def test_what_saves_too_little_is_not_freed(again):
     assert d._freed(solved(), [look(24.9), look(3.0)], SILENT) is None
     assert again[0] == []
-
-
-def test_what_would_have_shown_is_said():
-    shown = [
-        d.Look({d.EXCESS: 0.1, d.VELOCITY: v}, np.zeros(2), 0.0, shows)
-        for v, shows in ((0.01, False), (0.5, True), (7.0, True), (100.0, False))
-    ]
-    assert "velocity were 0.5 to 7 mm/s" in d._static_friction_note(shown)
-    assert "10% more friction" in d._static_friction_note(shown)
-    assert d._static_friction_note(shown[:1]).endswith("whatever they are.")
-
-
-def test_values_that_fit_alike_are_said():
-    like = [look(1.0, 2e3), look(2.0, 5e4), look(1.5, 1e4)]
-    assert d._indistinguishable_note(d.STIFFNESS, like).startswith(
-        f"{d.STIFFNESS} is not identifiable: 2e+03 to 5e+04 N/mm fit equally well"
-    )
-    viscous = [d.Look({d.VISCOUS: v}, np.zeros(2), 0.0) for v in (0.01, 0.2)]
-    assert d._indistinguishable_note(d.VISCOUS, viscous).startswith(
-        f"{d.VISCOUS} is not identifiable: 0 to 0.2 N s/mm"
-    )
 
 
 def test_errors_are_widened_by_the_largest_move_in_units_of_student():

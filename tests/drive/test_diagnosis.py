@@ -1,0 +1,213 @@
+"""From the terms of a drive to a verdict, its causes and its sentence."""
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from tests.drive.verdicts import STATED, TITLE, TOLD, cause, terms, verdict
+from tsas_cli.diagnosis.evidence import gain
+from tsas_cli.drive import diagnosis as dd
+from tsas_cli.drive.search import NOTHING
+from tsas_cli.numerics.linear_response import sampled
+
+
+class Searched:
+    """Held-out mean squares by set of terms, even over twenty blocks of ten residuals."""
+
+    def __init__(self, squares, *, stated=None, blocks=20, rivals=()):
+        self.given, self.rivals = squares, dict(rivals)
+        self.bench = SimpleNamespace(stated_Hz=stated, runs=[SimpleNamespace(noise_mm=0.1)])
+        block = np.arange(10 * blocks) // 10
+        self.folds = SimpleNamespace(
+            block=block, run=np.zeros(block.size, int), blocks=blocks, by_run=False
+        )
+
+    def held_out(self, names):
+        return np.full(self.folds.blocks, 10.0 * self.given[names])
+
+    def mean_square(self, names):
+        return self.given[names]
+
+    def gain(self, before, after):
+        return gain(self.held_out(before), self.held_out(after))
+
+
+@pytest.fixture
+def diagnosed(monkeypatch):
+    monkeypatch.setattr(dd, "_left", lambda search, terms: (("time_s",), 0.36))
+    monkeypatch.setattr(dd, "rivals", lambda search, final, term: search.rivals.get(term, ()))
+    return lambda search, final: dd.diagnose_drive(search, final, TOLD)
+
+
+def test_a_delay_is_named_with_its_gain_and_what_is_left(diagnosed):
+    """Of 17 − 1 there is left 1.95 − 1 − 0.15: a twentieth."""
+    found = diagnosed(Searched({NOTHING: 17.0, terms("delay"): 1.95}), terms("delay"))
+    assert (found.verdict, found.nominal, found.final) == ("named", NOTHING, terms("delay"))
+    (cause,) = found.causes
+    assert (cause.effect, cause.kind, cause.rivals) == ("channel_delay", "pure delay", ())
+    assert [e.name for e in cause.parameters] == ["motor_lag_s", "delay_s"]
+    percent = 100.0 * (1.0 - math.sqrt(1.95 / 17.0))
+    assert cause.gain_percent == pytest.approx(percent)
+    assert cause.gain_interval_percent == pytest.approx((percent, percent))
+    assert found.gain_percent == pytest.approx((percent,) * 3)
+    assert found.share_left == pytest.approx(0.8 / 16.0)
+    assert found.mean_square == 1.95
+    assert found.unexplained  # a twentieth is more than a fiftieth
+    assert found.depends_on == ("time_s",)
+
+
+def test_errors_of_the_drive_are_in_millimetres(diagnosed):
+    found = diagnosed(Searched({NOTHING: 16.0, terms("delay"): 4.0}), terms("delay")).channel
+    assert (found.rmse_before, found.rmse_after) == pytest.approx((0.4, 0.2))
+    assert found.noise_floor == pytest.approx(0.1)
+    assert found.best_obtainable == pytest.approx(0.2 * 0.8)  # √(1 − 0.36)
+    low = diagnosed(Searched({NOTHING: 16.0, terms("delay"): 0.25}), terms("delay")).channel
+    assert low.noise_floor == low.best_obtainable == pytest.approx(0.05)
+    near = diagnosed(Searched({NOTHING: 16.0, terms("delay"): 1.21}), terms("delay")).channel
+    assert near.best_obtainable == pytest.approx(0.1)
+
+
+def test_without_a_cause_the_nominal_equation_stays(diagnosed):
+    found = diagnosed(Searched({NOTHING: 1.0, terms("delay"): 0.99}), terms("delay"))
+    assert (found.verdict, found.final, found.share_left) == ("sufficient", NOTHING, 1.0)
+    assert (found.depends_on, found.unexplained) == ((), False)
+    assert found.gain_percent == (0.0, 0.0, 0.0)
+    rest = diagnosed(Searched({NOTHING: 9.0, terms("delay"): 8.99}), terms("delay"))
+    assert (rest.verdict, rest.unexplained, rest.depends_on) == ("unexplained", True, ("time_s",))
+
+
+def test_where_nothing_was_beyond_the_noise_no_share_is_left(diagnosed):
+    found = diagnosed(Searched({NOTHING: 0.9, terms("delay"): 0.5}), terms("delay"))
+    assert (found.verdict, found.share_left, found.unexplained) == ("named", 0.0, False)
+    quiet = diagnosed(Searched({NOTHING: 17.0, terms("delay"): 1.14}), terms("delay"))
+    assert (quiet.share_left, quiet.depends_on) == (0.0, ())
+
+
+@pytest.mark.parametrize(("blocks", "verdict"), [(5, "undecided"), (6, "named")])
+def test_too_few_blocks_decide_nothing(diagnosed, blocks, verdict):
+    search = Searched({NOTHING: 17.0, terms("delay"): 1.0}, blocks=blocks)
+    assert diagnosed(search, terms("delay")).verdict == verdict
+
+
+def test_a_stated_frequency_makes_the_equation_nominal(diagnosed):
+    """Then the spring of the equation is no cause; what it gains counts against that."""
+    squares = {STATED: 9.0, terms("spring"): 8.99, STATED | {"delay"}: 1.0}
+    same = diagnosed(Searched(squares, stated=30.0), terms("spring"))
+    assert (same.nominal, same.causes) == (STATED, ())
+    better = diagnosed(Searched({STATED: 9.0, terms("spring"): 1.0}, stated=30.0), terms("spring"))
+    (cause,) = better.causes
+    assert (cause.effect, cause.kind) == ("drive_compliance", "")
+    assert [e.name for e in cause.parameters] == ["damping_ratio"]
+    own = diagnosed(Searched({STATED: 9.0}, stated=30.0), STATED)
+    assert own.causes == ()
+
+
+def test_rivals_are_effects_or_the_other_kind_of_delay(diagnosed):
+    squares = {NOTHING: 9.0, terms("lag"): 1.0}
+    search = Searched(squares, rivals={"lag": ("delay", "play")})
+    found = diagnosed(search, terms("lag"))
+    assert found.verdict == "ambiguous"
+    assert found.causes[0].rivals == ("channel_delay (pure delay)", "backlash")
+
+
+def test_two_terms_of_one_effect_are_one_cause_without_rivals(diagnosed):
+    both = terms("lag", "delay")
+    search = Searched({NOTHING: 9.0, both: 1.0}, rivals={"lag": ("play",)})
+    (cause,) = diagnosed(search, both).causes
+    assert (cause.kind, cause.rivals) == ("pure delay and first-order lag", ())
+
+
+def test_each_cause_is_held_against_all_the_others(diagnosed):
+    """Play gains on the delay alone, and the other way round."""
+    both = terms("delay", "play")
+    squares = {NOTHING: 16.0, terms("delay"): 4.0, terms("play"): 9.0, both: 1.0}
+    found = diagnosed(Searched(squares), both)
+    gains = {c.effect: c.gain_percent for c in found.causes}
+    assert gains == pytest.approx({"channel_delay": 100.0 * 2.0 / 3.0, "backlash": 50.0})
+    assert list(gains) == ["channel_delay", "backlash"]
+    idle = diagnosed(Searched(squares | {terms("delay"): 1.01}), both)
+    assert [c.effect for c in idle.causes] == ["channel_delay"]
+
+
+PLAIN = "A drive without lag and stiffness, x_in = g ∫u dt,"
+
+
+def test_the_reason_of_each_verdict():
+    assert dd._reason(verdict("undecided"), 9.0).startswith("too few stretches")
+    quiet = dd._reason(verdict("sufficient"), 9.0)
+    assert quiet == f"{PLAIN} is at the noise floor: nothing is missing that these runs show."
+    rest = verdict("unexplained", depends=("time_s", "x_in_mm"))
+    assert dd._reason(rest, 9.0) == (
+        f"{PLAIN} misses x_in by 3 times what noise explains, and no known effect of a drive "
+        "accounts for it. It depends on time_s, x_in_mm."
+    )
+    stated = dd._reason(verdict("sufficient", nominal=STATED), 9.0)
+    assert stated.startswith("The nominal drive equation (Yang 2025, Eq. 25, without reaction) is")
+
+
+def test_the_reason_names_causes_rivals_and_the_rest():
+    two = (
+        cause("drive_compliance", rivals=("b", "a")),
+        cause("channel_delay", "pure delay", ("a",)),
+    )
+    said = dd._reason(verdict("ambiguous", *two, unexplained=True, depends=("time_s",)), 9.0)
+    assert said == (
+        f"{PLAIN} misses x_in by 3 times what noise explains. What it lacks is: the compliance of "
+        "the drive, whose stiffness reacts on the position and a pure delay of the motor. With "
+        "that it is 1.2 times. These recordings cannot tell it from: a, b. What is left no known "
+        "effect explains. It depends on time_s."
+    )
+    plain = dd._reason(verdict("named", cause("backlash")), 9.0)
+    assert f"What it lacks is: the {TITLE['backlash'].lower()}. With" in plain
+    assert plain.endswith("With that it is 1.2 times.")
+
+
+def searched(residual, *, noises=(1.0, 2.0)):
+    """Two runs of half of the residual each, in blocks of ten samples, held out in turns."""
+    size = residual.size // 2
+    u = sampled(0.01, 300.0 * np.sin(0.05 * np.arange(size)), "first")
+    runs = [
+        SimpleNamespace(
+            noise_mm=noise,
+            x_in=0.02 * u.integral,
+            u=u,
+            time_s=0.01 * np.arange(size),
+            counts=np.ones(size, dtype=bool),
+        )
+        for noise in noises
+    ]
+    block = np.arange(residual.size) // 10
+    folds = SimpleNamespace(
+        block=block, run=np.repeat([0, 1], size), fold=block % 4, blocks=int(block.max()) + 1
+    )
+    trial = SimpleNamespace(solution=SimpleNamespace(residual=residual))
+    squares = np.bincount(block, residual**2)
+    return SimpleNamespace(
+        bench=SimpleNamespace(runs=runs),
+        folds=folds,
+        held_out=lambda _: squares,
+        trial=lambda _: trial,
+    )
+
+
+def test_errors_and_noise_are_in_millimetres_of_each_run():
+    """Residuals are in units of each run's noise: 1 and 2 mm here."""
+    search = searched(np.full(400, 3.0))
+    assert dd._rmse(search, NOTHING) == pytest.approx(3.0 * math.sqrt(0.5 * (1.0 + 4.0)))
+    assert dd._noise(search) == pytest.approx(math.sqrt(0.5 * (1.0 + 4.0)))
+    assert dd._noises(search).tolist() == [1.0] * 20 + [2.0] * 20
+
+
+def test_what_is_left_depends_on_what_it_was_made_of():
+    """A wave over the motor's angle, with period one turn of it."""
+    plain = searched(np.zeros(2000))
+    angle = np.concatenate([r.u.integral * math.pi / 30.0 for r in plain.bench.runs])
+    noise = np.random.default_rng(1).standard_normal(2000)
+    depends, part = dd._left(searched(8.0 * np.sin(angle) + noise), NOTHING)
+    assert depends[0] == "motor_angle_rad"
+    assert 0.8 < part < 1.0
+    none, nothing = dd._left(searched(noise), NOTHING)
+    assert none == ()
+    assert nothing == 0.0

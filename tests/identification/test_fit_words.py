@@ -1,0 +1,63 @@
+"""What is said of a fit: bounds, missing errors, what is fixed and why."""
+
+from tests.identification.fits import FRICTION, ZERO, fitted, problem_of, unknown
+from tsas_cli.identification import fit_words as w
+from tsas_cli.identification.estimate import Estimate
+from tsas_cli.identification.model import Model
+from tsas_cli.identification.quantities import QUANTITIES
+
+
+def estimate(name=FRICTION, run=None, *, at_bound=False, stderr=0.1, low=1.0, high=2.0, value=1.5):
+    return Estimate(name, value, QUANTITIES[name].unit, "fitted", run, stderr, low, high, at_bound)
+
+
+def doubts(*estimates, **how):
+    return w.doubts_of(estimates, fitted([0.0], [1.0], **how))
+
+
+def test_a_good_fit_leaves_no_doubt():
+    assert doubts(estimate(), estimate(ZERO, "a")) == []
+
+
+def test_what_ended_at_a_bound_is_said():
+    (said,) = doubts(estimate(ZERO, "a", at_bound=True))
+    assert said == (
+        "x_in_zero_mm of run a ended at the bound of what is plausible, 1.5: "
+        "it is not to be relied on."
+    )
+    assert doubts(estimate(at_bound=True))[0].startswith("friction_coefficient ended at the bound")
+
+
+def test_what_ended_where_it_does_nothing_is_no_bound():
+    name = "free_tendon.proximal_length_mm"
+    (said,) = doubts(estimate(name, at_bound=True, value=0.0, low=0.0, high=3.14159))
+    assert said == f"{name} ended where it does nothing: at most 3.1 mm would go unseen."
+    assert doubts(estimate(name, value=0.0, low=0.0)) == []  # near it, not at the bound
+
+
+def test_what_has_no_error_or_no_end_is_said():
+    (said,) = doubts(estimate(stderr=None))
+    assert said.startswith("friction_coefficient does not show where the fit ended")
+    (said,) = doubts(estimate(), converged=False, message="too many evaluations.")
+    assert said.startswith("The fit did not converge (too many evaluations): its values")
+
+
+def test_what_is_fixed_is_said_once_for_each_reason():
+    unknowns = [unknown(FRICTION), unknown(ZERO, 0), unknown(ZERO, 1), unknown("preload_N", 1)]
+    problem = problem_of(unknowns, fixed=Model((Estimate(ZERO, 0.25, "mm", "given", "a"),)))
+    assert w.fixed_sentences(problem, {1: [3, 0], 2: [0, 3], 0: [], 3: []}) == [
+        (
+            "x_in_zero_mm cannot be told apart from friction_coefficient and preload_N in these "
+            "recordings (runs a, b); it is kept at 0.25 mm."
+        ),
+        "friction_coefficient does not show in these recordings; it is kept at 0.1.",
+        "preload_N does not show in these recordings (runs b); it is kept at 10 N.",
+    ]
+    assert problem.ids == ["a", "b"]
+
+
+def test_damping_that_nobody_knows_is_critical():
+    name = "bristles.damping_N_s_per_mm"
+    assert w._fixed_value(Model(()), name, "") == "its critical value"
+    known = Model((Estimate(name, 0.5, "N s/mm", "given"),))
+    assert w._fixed_value(known, name, "") == "0.5 N s/mm"

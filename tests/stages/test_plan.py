@@ -1,0 +1,114 @@
+"""A plan as a stage: what it writes, as JSON and as tables."""
+
+import json
+import math
+
+import pytest
+
+from tests.diagnosis.sizes import CANDIDATES, LENGTH, MASS, OF, PLAY, better, seen
+from tests.diagnosis.test_rig_file import TEXT
+from tsas_cli.diagnosis.plan import Plan, Proposal
+from tsas_cli.diagnosis.visibility import Cause, Seen
+from tsas_cli.stages import plan as plan_stage
+from tsas_cli.support.errors import InputError
+from tsas_cli.support.files import sha256_of
+
+NOTHING = Plan((), (), (), ("nobody knows.",))
+
+
+@pytest.fixture
+def rig(tmp_path, monkeypatch):
+    asked = []
+    monkeypatch.setattr(plan_stage, "plan_rig", lambda file, step: asked.append(file) or NOTHING)
+    path = tmp_path / "rig.toml"
+    path.write_text(TEXT, encoding="utf-8")
+    return path, asked
+
+
+def test_a_rig_file_is_planned_and_written(rig, tmp_path):
+    path, asked = rig
+    result = plan_stage.plan(path, out=tmp_path / "deep" / "out")
+    assert [file.name for file in asked] == ["bench"]
+    written = json.loads((tmp_path / "deep" / "out" / "plan.json").read_text())
+    assert written == result.summary
+    assert (written["format"], written["stage"]) == (1, "plan")
+    assert written["rig"] == {
+        "name": "bench",
+        "file": "../../rig.toml",
+        "sha256": sha256_of(path),
+    }
+    assert result.plan is NOTHING
+    assert "nobody knows." in repr(result)
+
+
+def test_without_a_folder_nothing_is_written_and_with_one_nothing_is_overwritten(rig, tmp_path):
+    path, _ = rig
+    before = sorted(tmp_path.rglob("*"))
+    assert plan_stage.plan(path).out is None
+    assert sorted(tmp_path.rglob("*")) == before
+    plan_stage.plan(path, out=tmp_path / "out")
+    with pytest.raises(InputError):
+        plan_stage.plan(path, out=tmp_path / "out")
+    plan_stage.plan(path, out=tmp_path / "out", force=True)
+
+
+HIDDEN = Plan(
+    (
+        seen(PLAY, 0.01234, load_inertia=0.05),
+        seen(MASS, 0.5, free_tendon=6.0, backlash=1.0),
+        seen(LENGTH, math.inf),
+    ),
+    ((LENGTH, MASS),),
+    (
+        Proposal(
+            CANDIDATES[0],
+            math.log(4.0),
+            (*(better(PLAY, 0.4, 0.1) for _ in range(5)), better(MASS, math.inf, 0.3)),
+            (),
+        ),
+    ),
+    ("nobody knows.",),
+)
+
+
+def test_a_plan_as_json():
+    found = plan_stage.as_json(HIDDEN)
+    first, second, third = found["effects"]
+    assert (first["effect"], first["parameter"], first["unit"]) == (PLAY, "play_mm", "mm")
+    assert (first["found_from"], first["named_from"]) == (0.01234, 0.05)
+    assert (first["nearest"], first["hidden_in"]) == (MASS, [])
+    assert second["hidden_in"] == [LENGTH]
+    assert (third["found_from"], third["named_from"], third["nearest"]) == (None, None, None)
+    assert found["groups"] == [[LENGTH, MASS]]
+    (proposal,) = found["proposals"]
+    assert proposal["falls_percent"] == pytest.approx(75.0)
+    assert "id" not in proposal["run"]
+    assert "frequency_Hz" not in proposal["run"]
+    assert proposal["better"][0]["named_from_with_it"] == 0.1
+    assert proposal["better"][-1]["named_from"] is None
+    assert found["cannot_tell"] == ["nobody knows."]
+
+
+def test_shapes_are_named_within_their_effect():
+    shaped = Seen(Cause(OF[PLAY], OF[PLAY].parameters[0], {"backlash.kind": 2.0}), 1.0, {})
+    found = plan_stage.as_json(Plan((shaped,), (), (), ()))["effects"][0]
+    assert found["shape"] == {"kind": 2.0}
+
+
+def test_the_tables_of_a_plan():
+    sizes, groups, proposal = plan_stage._tables(plan_stage.as_json(HIDDEN))
+    assert [row[3:] for row in sizes[2]] == [
+        ("0.012", "0.05", MASS),
+        ("0.5", "6", LENGTH),
+        ("not shown", "", ""),
+    ]
+    assert groups[2] == [[LENGTH, MASS]]
+    title, header, rows = proposal
+    assert title.endswith(": sizes fall by 75 % on average")
+    assert title.startswith("add a slow sine: 2 times")
+    assert len(header) == 5
+    assert len(rows) == 4  # no more are printed
+    assert rows[0] == (PLAY, "play_mm", "mm", "0.4", "0.1")
+    never = Plan((seen(MASS, 0.5, backlash=math.inf),), (), (), ())
+    (only,) = plan_stage._tables(plan_stage.as_json(never))
+    assert only[2][0][3:] == ("0.5", "never", PLAY)
