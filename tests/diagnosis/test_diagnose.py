@@ -10,8 +10,8 @@ from tests.counted import Counted
 from tsas_cli.diagnosis import diagnose as d
 from tsas_cli.diagnosis.diagnose import (
     Diagnosis,
-    _as_sure_as_the_data_sheet,
     _two_digits,
+    _with_data_sheet_interval,
     leaves_much,
     verdict_of,
 )
@@ -263,14 +263,14 @@ def test_a_sheath_is_as_unsure_as_the_tendons_data_sheet():
     unknown = Unknown("tendon_stiffness_N", None, 0.0, math.log(0.8), math.log(1.2), 1.0)
     trial = SimpleNamespace(unknowns=[unknown], solution=SimpleNamespace(values=np.zeros(1)))
     ratio = Estimate("sheath_compression.compliance_ratio", 0.5, "1", "fitted", None, 0.0, 0.5, 0.5)
-    found = _as_sure_as_the_data_sheet(ratio, trial)
+    found = _with_data_sheet_interval(ratio, trial)
     assert found.interval_low == pytest.approx(1.5 * 0.8 - 1.0)
     assert found.interval_high == pytest.approx(1.5 * 1.2 - 1.0)
     assert found.stderr == pytest.approx(0.3 / 1.96)
-    low = _as_sure_as_the_data_sheet(Estimate("r", 0.1, "1", "fitted"), trial)
+    low = _with_data_sheet_interval(Estimate("r", 0.1, "1", "fitted"), trial)
     assert low.interval_low == 0.0
     without = SimpleNamespace(unknowns=[], solution=trial.solution)
-    assert _as_sure_as_the_data_sheet(ratio, without) is ratio
+    assert _with_data_sheet_interval(ratio, without) is ratio
 
 
 def found(rivals=(), unexplained=False):

@@ -5,12 +5,12 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from tsas_cli.physics.plant.harmonic_drive import DriveValues, linear_response
 
 from tests.counted import Counted
 from tsas_cli.diagnosis.evidence import gain
 from tsas_cli.drive import search as ds
 from tsas_cli.drive.fit import LINEAR
+from tsas_cli.drive.harmonic_drive import DriveValues, linear_response
 from tsas_cli.drive.runs import DriveRun
 from tsas_cli.drive.search import NOTHING, DriveFits, drive_folds
 from tsas_cli.numerics.linear_response import sampled

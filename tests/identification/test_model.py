@@ -11,7 +11,6 @@ from tsas_cli.identification.model import (
     Model,
     _axial_stiffness,
     data_sheet,
-    fitted_to,
     model_of,
     read_model,
     source_of,
@@ -269,12 +268,6 @@ def test_bristles_have_a_table_of_their_own(tmp_path):
     write_model(path, bristles, version="1", dataset={})
     assert "[bristles.stiffness_N_per_mm]" in path.read_text(encoding="utf-8")
     assert read_model(path) == bristles
-
-
-def test_recordings_behind_a_model_are_said():
-    summary = {"dataset": {"name": "x"}, "chosen": ["a"], "conditions": {}, "other": 1}
-    assert fitted_to(summary) == {"name": "x", "chosen": ["a"], "conditions": {}}
-    assert fitted_to({"dataset": {"name": "x"}}) == {"name": "x"}
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ from scipy.linalg import fractional_matrix_power
 from tests.identification.recorded import manifest, prepared
 from tsas_cli.identification.model import data_sheet
 from tsas_cli.identification.run_errors import (
-    TURN,
+    REVERSAL_SD,
     RunErrors,
     Turns,
     _before_turns,
@@ -126,7 +126,7 @@ def test_errors_in_the_shape_of_a_wrong_turn_are_taken_down_to_their_variance():
     for first, count in zip(turns.starts, turns.counts, strict=True):
         part = slice(first, first + count)
         c, s = change[at][part], turns.shape[part]
-        root = fractional_matrix_power(np.eye(count) + TURN**2 * np.outer(c, c), -0.5)
+        root = fractional_matrix_power(np.eye(count) + REVERSAL_SD**2 * np.outer(c, c), -0.5)
         np.testing.assert_allclose(e[part] - s * (s @ e[part]), root @ e[part], atol=1e-12)
 
 
