@@ -210,9 +210,9 @@ def test_what_would_have_shown_is_said():
         d.Look({d.EXCESS: 0.1, d.VELOCITY: v}, np.zeros(2), 0.0, shows)
         for v, shows in ((0.01, False), (0.5, True), (7.0, True), (100.0, False))
     ]
-    assert "velocity were 0.5 to 7 mm/s" in d._static_friction_note(shown)
+    assert "velocities of 0.5 to 7 mm/s" in d._static_friction_note(shown)
     assert "10% more friction" in d._static_friction_note(shown)
-    assert d._static_friction_note(shown[:1]).endswith("whatever they are.")
+    assert d._static_friction_note(shown[:1]).endswith("whatever their values.")
 
 
 def test_values_that_fit_alike_are_said():
