@@ -63,10 +63,10 @@ LINES = {
     "physics/sensors.py": {
         "from tsas_cli.effects.force_sensor_drift": "from tsas_cli.effects.bent_scale import bent\n"
         "from tsas_cli.effects.force_sensor_drift",
-        "    seen = _later(values, time_s, _delay(channel, rig))\n    return": "    seen = _later("
-        'values, time_s, _delay(channel, rig))\n    if channel == "f_out_N":\n        seen = '
-        "seen + (bent(1.0, rig.effects.bent_scale.curvature_per_N) - 1.0) * seen * seen\n"
-        "    return",
+        "    return delayed * _gain": '    if channel == "f_out_N":\n'
+        "        bend = bent(1.0, rig.effects.bent_scale.curvature_per_N) - 1.0\n"
+        "        delayed = delayed + bend * delayed * delayed\n"
+        "    return delayed * _gain",
     },
 }
 

@@ -60,7 +60,7 @@ def test_what_cannot_be_told_is_said():
     result = calibrate_runs(manifest(run), [run])
     said = " ".join(result.cannot_tell)
     assert "x_in_zero_mm is not identifiable together with preload_N" in said
-    assert "x_out_zero_mm does not show" in said
+    assert "x_out_zero_mm is not identifiable from" in said
     assert ("x_in_zero_mm", "a") not in found(result)
 
 

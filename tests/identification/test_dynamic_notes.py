@@ -50,7 +50,7 @@ def test_where_it_gave_up_is_said(monkeypatch):
 
 def test_notes_come_in_order(monkeypatch):
     said = notes(monkeypatch, model=Model(()), steps=200, unsettled=[1], unstable=["unstable"])
-    assert [note.split()[0] for note in said] == ["the", "unstable", "200", "given"]
+    assert [note.split()[0] for note in said] == ["the", "unstable", "200", "aborted"]
 
 
 @pytest.mark.parametrize(

@@ -117,8 +117,8 @@ def test_what_a_fit_has_seen_is_said():
     assert long.thinned_notes([thinned(1, 10, 5)]) == []
     (said,) = long.thinned_notes([thinned(2, 160, 10)])
     assert said == (
-        "Run a has 1000 samples: the fit takes one in 2 of them, and those where the drive turns "
-        "back."
+        "Run a has 1000 samples: the fit uses one in 2 of them, and those at reversals "
+        "of the drive."
     )
     (said,) = long.thinned_notes([thinned(2, 155, 10)])
     assert said.endswith("A stroke keeps 16 of its samples, too few to detect its phases.")

@@ -155,7 +155,7 @@ def test_the_calibration_finds_the_truth_and_says_what_it_has_seen(tmp_path, lon
     }.items():
         assert told[name].value == pytest.approx(true, rel=2e-3)
         assert told[name].interval_low < true < told[name].interval_high
-    said = f"Run a has {ROWS} samples: the fit takes one in 5 of them, and those where the drive"
+    said = f"Run a has {ROWS} samples: the fit uses one in 5 of them, and those at reversals"
     assert any(sentence.startswith(said) for sentence in result.summary["cannot_tell"])
     assert said in "\n".join(result.sentences())
 

@@ -105,7 +105,7 @@ def test_what_is_left_out_is_said():
     assert len(whole) == 2
     run.noise = dict.fromkeys(run.measured, 0.0)
     assert len(s.lost(run, {})) == 3
-    assert all("never changes" in sentence for sentence in s.lost(run, {}))
+    assert all("is constant" in sentence for sentence in s.lost(run, {}))
 
 
 def points(n, reversals):

@@ -124,6 +124,6 @@ def evidence_of(search: Hypotheses | None) -> Evidence:
         held_out="runs" if folds.by_run else "stretches",
         blocks=folds.blocks,
         runs=runs,
-        sentence=f"{how}; the evidence are {folds.blocks} blocks longer than the residual's "
-        "autocorrelation. The noise level is that of each channel's high-frequency part.",
+        sentence=f"{how}; {folds.blocks} blocks longer than the residual's autocorrelation count "
+        "as evidence. The noise level is that of each channel's high-frequency part.",
     )
