@@ -67,6 +67,17 @@ def test_help_loads_no_library_that_it_does_not_need() -> None:
     assert HEAVY & {name.split(".")[0] for name in json.loads(loaded.stdout)} == set()
 
 
+def test_each_command_is_in_a_panel_of_the_help(tsas: Tsas) -> None:
+    panels = {name: command.rich_help_panel for name, command in COMMANDS.items()}
+    assert set(panels.values()) == set(tsas_cli.app.PANELS)
+    assert panels["reproduce"] == panels["challenge"] == tsas_cli.app.STUDIES
+    page = tsas("--help").stdout
+    places = [page.find(f"─ {panel} ─") for panel in tsas_cli.app.PANELS]
+    assert -1 not in places
+    assert places == sorted(places)
+    assert "─ Commands ─" not in page
+
+
 def test_every_command_file_is_a_command() -> None:
     homes = (Path(package.__file__).parent for package in (tsas_cli, tsas_studies))
     files = {path.stem for home in homes for path in (home / "commands").glob("*.py")}

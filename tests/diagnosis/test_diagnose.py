@@ -140,7 +140,7 @@ def test_the_share_left_is_of_what_was_beyond_the_noise(concluded):
     assert [e.name for e in found.model.estimates] == [f"{PLAY}.size"]
     assert found.nominal.estimates == ()
     assert found.causes[0].gain_percent == pytest.approx(100.0 * (1.0 - math.sqrt(2.15 / 9.0)))
-    assert "from 3.0 to 1.5 times" in found.reason
+    assert "from 3.0 to 1.5 ×" in found.reason
 
 
 def test_what_is_below_the_noise_leaves_nothing(concluded):

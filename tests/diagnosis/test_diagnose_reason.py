@@ -47,42 +47,43 @@ def reason(found, start=16.0):
 
 
 def test_a_model_that_lacks_nothing_is_at_the_noise_floor():
-    said = "The nominal model is at the noise floor: nothing is missing that these runs show."
+    said = "The nominal model is at the noise level: these runs show no missing effect."
     assert reason(diagnosis("sufficient", signals=("time_s",))) == said
 
 
 def test_what_no_effect_explains_is_said_with_what_it_depends_on():
     found = diagnosis("unexplained", mean_square=16.0, signals=("time_s", "x_in_mm"))
     assert reason(found) == (
-        "The model misses the runs by 4.0 times what noise explains, and no known effect accounts "
-        "for it. It depends on the time in the run, the place of the drive."
+        "The residual RMS is 4.0 × the noise level, and no catalogued effect explains it. "
+        "It depends on the time in the run, the displacement of the drive."
     )
-    assert reason(diagnosis("unexplained", mean_square=16.0)).endswith("accounts for it.")
+    assert reason(diagnosis("unexplained", mean_square=16.0)).endswith("effect explains it.")
 
 
 def test_causes_are_named_with_what_they_take_away():
     """From a mean square of 16 to one of 1.44: from 4 times the noise to 1.2 times."""
     said = reason(diagnosis("named", cause(PLAY), cause(MASS), mean_square=1.44))
     assert said == (
-        f"What the nominal model lacks is: {TITLE[PLAY]} and {TITLE[MASS]}. "
-        "It takes the error from 4.0 to 1.2 times what noise explains."
+        f"The nominal model lacks: {TITLE[PLAY]} and {TITLE[MASS]}. "
+        "With it the residual RMS falls from 4.0 to 1.2 × the noise level."
     )
 
 
 def test_rivals_are_told_once_each_in_order():
     found = diagnosis("ambiguous", cause(PLAY, (MASS, "free_tendon")), cause("presliding", (MASS,)))
     told = ", ".join(sorted((TITLE[MASS], TITLE["free_tendon"])))
-    assert reason(found).endswith(f" These recordings cannot tell it from: {told}.")
+    assert reason(found).endswith(f" Indistinguishable from it in these recordings: {told}.")
 
 
 def test_a_rest_is_said_by_how_much_of_it_there_is():
     most = diagnosis("unexplained", cause(PLAY), mean_square=9.0, share=0.6, signals=("time_s",))
     assert reason(most).endswith(
-        " Most of the rest is explained by no known effect. It depends on the time in the run."
+        " No catalogued effect explains most of the remaining residual. It depends on the time in "
+        "the run."
     )
     some = diagnosis("named", cause(PLAY), mean_square=2.0, share=0.1, signals=("time_s",))
     assert reason(some).endswith(
-        " What is left no known effect explains. It depends on the time in the run."
+        " No catalogued effect explains the remaining residual. It depends on the time in the run."
     )
 
 
@@ -96,7 +97,7 @@ def test_why_nothing_can_be_diagnosed():
 
     assert reason([1], good) is None
     assert reason([], good).startswith("no run lasts")
-    assert reason([1], None).startswith("these recordings identify no")
+    assert reason([1], None).startswith("no parameter")
     assert reason([1], bad).endswith("did not converge (steps).")
 
 

@@ -35,7 +35,7 @@ def found(monkeypatch):
             monkeypatch.setattr(d, better, lambda *_: None)
         monkeypatch.setattr(d, "_solved", lambda *_: d.Solved(fit, FITTED))
         monkeypatch.setattr(d, "_friction_at_rest", lambda fit, step: "at rest")
-        monkeypatch.setattr(d, "_unseen_rest", lambda looks: f"unseen {looks}")
+        monkeypatch.setattr(d, "_static_friction_note", lambda looks: f"unseen {looks}")
         monkeypatch.setattr(d, "_finest_stiffness", lambda fit: finest)
         monkeypatch.setattr(d, "misfit", lambda fit: [])
         monkeypatch.setattr(

@@ -112,18 +112,20 @@ def test_what_would_have_shown_is_said():
         d.Look({d.EXCESS: 0.1, d.VELOCITY: v}, np.zeros(2), 0.0, shows)
         for v, shows in ((0.01, False), (0.5, True), (7.0, True), (100.0, False))
     ]
-    assert "velocity were 0.5 to 7 mm/s" in d._unseen_rest(shown)
-    assert "10% more friction" in d._unseen_rest(shown)
-    assert d._unseen_rest(shown[:1]).endswith("whatever they are.")
+    assert "velocities of 0.5 to 7 mm/s" in d._static_friction_note(shown)
+    assert "10% more friction" in d._static_friction_note(shown)
+    assert d._static_friction_note(shown[:1]).endswith("whatever their values.")
 
 
 def test_values_that_fit_alike_are_said():
     like = [look(1.0, 2e3), look(2.0, 5e4), look(1.5, 1e4)]
-    assert d._alike(d.STIFFNESS, like).startswith(
-        f"{d.STIFFNESS} is not told: 2e+03 to 5e+04 N/mm fit alike"
+    assert d._indistinguishable_note(d.STIFFNESS, like).startswith(
+        f"{d.STIFFNESS} is not identifiable: 2e+03 to 5e+04 N/mm fit equally well"
     )
     viscous = [d.Look({d.VISCOUS: v}, np.zeros(2), 0.0) for v in (0.01, 0.2)]
-    assert d._alike(d.VISCOUS, viscous).startswith(f"{d.VISCOUS} is not told: 0 to 0.2 N s/mm")
+    assert d._indistinguishable_note(d.VISCOUS, viscous).startswith(
+        f"{d.VISCOUS} is not identifiable: 0 to 0.2 N s/mm"
+    )
 
 
 def test_what_is_looked_at():
@@ -143,7 +145,7 @@ def test_the_finest_stiffness_reaches_as_far_as_a_lump_is_long():
 
 def test_moves_that_are_asked_for_take_errors_away():
     slopes = np.array([[1.0, 0.0], [0.0, 2.0], [0.0, 0.0]])
-    assert d._asked(slopes, np.array([3.0, -4.0, 7.0])) == pytest.approx([-3.0, 2.0])
+    assert d._least_squares_step(slopes, np.array([3.0, -4.0, 7.0])) == pytest.approx([-3.0, 2.0])
 
 
 def test_values_to_start_from_have_their_units():

@@ -22,8 +22,10 @@ def test_a_good_fit_leaves_no_doubt():
 def test_what_ended_at_a_bound_is_said():
     (said,) = doubts(estimate(ZERO, "a", at_bound=True))
     assert said == (
-        "x_in_zero_mm of run a ended at the bound of what is plausible, 1.5: "
-        "it is not to be relied on."
+        "x_in_zero_mm of run a converged to its plausible bound, 1.5: the estimate is unreliable."
+    )
+    assert doubts(estimate(at_bound=True))[0].startswith(
+        "friction_coefficient converged to its plausible bound"
     )
     assert doubts(estimate(at_bound=True))[0].startswith("friction_coefficient ended at the bound")
 
@@ -31,15 +33,15 @@ def test_what_ended_at_a_bound_is_said():
 def test_what_ended_where_it_does_nothing_is_no_bound():
     name = "free_tendon.proximal_length_mm"
     (said,) = doubts(estimate(name, at_bound=True, value=0.0, low=0.0, high=3.14159))
-    assert said == f"{name} ended where it does nothing: at most 3.1 mm would go unseen."
+    assert said == f"{name} converged to zero: values up to 3.1 mm are not excluded."
     assert doubts(estimate(name, value=0.0, low=0.0)) == []  # near it, not at the bound
 
 
 def test_what_has_no_error_or_no_end_is_said():
     (said,) = doubts(estimate(stderr=None))
-    assert said.startswith("friction_coefficient does not show where the fit ended")
+    assert said.startswith("friction_coefficient is not identifiable at the minimum")
     (said,) = doubts(estimate(), converged=False, message="too many evaluations.")
-    assert said.startswith("The fit did not converge (too many evaluations): its values")
+    assert said.startswith("The fit did not converge (too many evaluations): its estimates")
 
 
 def test_what_is_fixed_is_said_once_for_each_reason():
@@ -47,11 +49,11 @@ def test_what_is_fixed_is_said_once_for_each_reason():
     problem = problem_of(unknowns, fixed=Model((Estimate(ZERO, 0.25, "mm", "given", "a"),)))
     assert w.fixed_sentences(problem, {1: [3, 0], 2: [0, 3], 0: [], 3: []}) == [
         (
-            "x_in_zero_mm cannot be told apart from friction_coefficient and preload_N in these "
-            "recordings (runs a, b); it is kept at 0.25 mm."
+            "x_in_zero_mm is not identifiable together with friction_coefficient and preload_N "
+            "from these recordings (runs a, b); it is fixed at 0.25 mm."
         ),
-        "friction_coefficient does not show in these recordings; it is kept at 0.1.",
-        "preload_N does not show in these recordings (runs b); it is kept at 10 N.",
+        "friction_coefficient is not identifiable from these recordings; it is fixed at 0.1.",
+        "preload_N is not identifiable from these recordings (runs b); it is fixed at 10 N.",
     ]
     assert problem.ids == ["a", "b"]
 

@@ -34,7 +34,7 @@ def test_squares_that_a_fit_to_the_first_samples_leaves(columns):
     basis = np.column_stack([TRAVEL**0.5**k for k in range(columns)])
     basis[:, 0] = 1.0
     values = 7.0 + np.random.default_rng(3).standard_normal(N)
-    left = p._squares_left(basis, values)
+    left = p._residual_squares(basis, values)
     assert left.size == N + 1
     assert left[0] == 0.0
     for k in (1, 2, 5, 40, N):
@@ -177,7 +177,7 @@ def test_a_cut_that_leaves_nothing_needs_to_save_next_to_nothing():
 def test_squares_are_never_negative():
     basis = np.column_stack((np.ones(N), TRAVEL))
     for values in (1e6 * TRAVEL, 0.1 * TRAVEL - 7e5):
-        assert p._squares_left(basis, values).min() == 0.0
+        assert p._residual_squares(basis, values).min() == 0.0
 
 
 @pytest.mark.parametrize("cut", [None, 20, CUT])

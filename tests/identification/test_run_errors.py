@@ -12,11 +12,11 @@ from tests.identification.recorded import manifest, prepared
 from tsas_cli.identification.model import data_sheet
 from tsas_cli.identification.run_errors import (
     REVERSAL_SD,
+    ReversalShapes,
     RunErrors,
-    Turns,
-    _before_turns,
-    _moved_on,
-    _turns,
+    _advanced,
+    _before_reversals,
+    _reversal_shapes,
     run_errors,
 )
 from tsas_cli.identification.samples import kept_samples
@@ -111,7 +111,7 @@ def errors_with(samples, measured=None, predicted=3.0):
         None,
         lambda rig: dict.fromkeys(samples, np.full(size, predicted)),
         dict.fromkeys(samples, np.ones(size)),
-        {n: Turns(np.zeros(at.size), np.array([0]), at.size) for n, at in samples.items()},
+        {n: ReversalShapes(np.zeros(at.size), np.array([0]), at.size) for n, at in samples.items()},
     )
 
 
@@ -119,7 +119,7 @@ def test_errors_in_the_shape_of_a_wrong_turn_are_taken_down_to_their_variance():
     """Stroke by stroke (I + 3² c cᵀ)^(−1/2), here by the matrix's eigenvalues."""
     at = np.array([1, 2, 3, 5, 6, 7, 9])  # the strokes begin after samples 0, 4 and 8
     change = np.random.default_rng(1).standard_normal(X.size)
-    turns = _turns(change, at, REVERSALS)
+    turns = _reversal_shapes(change, at, REVERSALS)
     np.testing.assert_array_equal(turns.starts, [0, 3, 6])
     np.testing.assert_array_equal(turns.counts, [3, 3, 1])
     e = np.random.default_rng(2).standard_normal(at.size)
@@ -133,20 +133,20 @@ def test_errors_in_the_shape_of_a_wrong_turn_are_taken_down_to_their_variance():
 def test_a_stroke_that_a_wrong_turn_does_not_change_keeps_its_errors():
     at = np.arange(X.size)
     change = np.where(at < 5, 0.0, 1.0)
-    turns = _turns(change, at, REVERSALS)
+    turns = _reversal_shapes(change, at, REVERSALS)
     assert not turns.shape[:5].any()
     assert turns.shape[5:].all()
 
 
 def test_strokes_without_samples_have_no_start():
     at = np.array([5, 6, 7])
-    turns = _turns(np.ones(X.size), at, REVERSALS)
+    turns = _reversal_shapes(np.ones(X.size), at, REVERSALS)
     assert turns.starts.tolist() == [0]
     assert turns.counts.tolist() == [3]
 
 
 def test_every_stroke_is_moved_on_its_own_way():
-    moved = _moved_on(conditioned(0.25)) - X
+    moved = _advanced(conditioned(0.25)) - X
     assert moved.tolist() == [0.25] * 5 + [-0.25] * 4 + [0.25]
 
 
@@ -157,7 +157,7 @@ def test_samples_just_before_a_reversal_may_be_behind_it():
     """
     change = np.array([0.0, 1.0, 2.0, 3.0, 5.0, 4.0, 7.0, 9.0, 2.0, 6.0])
     square = np.full(X.size, 100.0)
-    _before_turns(square, change, conditioned(0.05))  # 0.15 mm: 2.9 and 3.0 are alike
+    _before_reversals(square, change, conditioned(0.05))  # 0.15 mm: 2.9 and 3.0 are alike
     added = square - 100.0
     assert added.tolist() == [0.0, 0.0, 0.0, 49.0, 49.0, 0.0, 0.0, 0.0, 36.0, 0.0]
 

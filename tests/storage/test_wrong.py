@@ -53,7 +53,7 @@ def test_a_server_that_never_answers(keys, monkeypatch):
 
 
 def test_a_storage_that_stays_silent_is_given_up_in_time(keys, monkeypatch):
-    monkeypatch.setattr(storage, "ANSWER_S", 1.0)
+    monkeypatch.setattr(storage, "RESPONSE_S", 1.0)
     with socket.create_server((HOST, 0)) as silent:
         monkeypatch.setenv("AWS_ENDPOINT_URL", f"http://{HOST}:{silent.getsockname()[1]}")
         before = time.monotonic()

@@ -169,7 +169,7 @@ def test_no_scheduler_is_one_line(monkeypatch, shared):
     ],
 )
 def test_what_is_no_address_is_refused_before_anybody_is_asked(address, shared):
-    with pytest.raises(tsas.InputError, match="no address of a scheduler; expected tcp://HOST:PO"):
+    with pytest.raises(tsas.InputError, match="is no scheduler address; expected tcp://HOST:PO"):
         dict(on_cluster(f"{WORKS}:squared", texts([1]), address, shared))
 
 
@@ -189,7 +189,7 @@ def test_a_cluster_that_would_do_it_otherwise_is_refused(tmp_path, shared):
         with pytest.raises(tsas.InputError, match="has no workers; start some with `OPENBLAS_NUM"):
             outcomes_of(made, "squared", texts([1]), shared)
         worker = made.add(threads=2)
-        with pytest.raises(tsas.InputError, match="does 2 tasks at once in one process"):
+        with pytest.raises(tsas.InputError, match="runs 2 tasks at once in one process"):
             outcomes_of(made, "squared", texts([1]), shared)
         worker.terminate()
         worker.wait()

@@ -61,9 +61,7 @@ def test_a_machine_that_starts_no_more_processes_is_one_line(monkeypatch):
         raise OSError(errno.EMFILE, "Too many open files")
 
     monkeypatch.setattr("subprocess.Popen", refused)
-    with pytest.raises(
-        InputError, match=r"no process can be started \(Too many open files\); take"
-    ):
+    with pytest.raises(InputError, match=r"no process can be started \(Too many open files\); use"):
         dict(in_processes(f"{WORKS}:squared", texts([1, 2]), workers=2))
 
 

@@ -28,17 +28,18 @@ def init(
     from tsas_cli.project.start import MAP, start
 
     files, proposal = start(folder, sources or [])
-    asked = proposal.questions if proposal else {}
+    questions = proposal.questions if proposal else {}
     summary = {
         "format": 1,
         "stage": "init",
         "version": __version__,
         "folder": str(folder),
         "files": files,
-        "questions": asked,
+        "questions": questions,
     }
     tables = [(f"project {folder}", ("file",), [(name,) for name in files])]
     show(summary, tables, quiet=quiet, as_json=as_json)
     if not quiet and not as_json:
-        first = f"answer the questions in {folder / MAP}, then " if asked or not proposal else ""
+        todo = questions or not proposal
+        first = f"answer the questions in {folder / MAP}, then " if todo else ""
         print(printable(f"Next: {first}`make -C {shlex.quote(str(folder))}`"))

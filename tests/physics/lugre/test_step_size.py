@@ -25,7 +25,7 @@ def test_what_a_step_may_be_off_by_is_a_share_of_the_largest_tension(f_in, f_out
     law = lugre_laws(GROUP_A, N, LOADED_BY_SPRING)
     found = tolerances_of(step_ends(f_in, f_out), law, 1e-3, 1.0)
     assert found == pytest.approx((1e-3 * tension, 0.3e-3 * tension))
-    assert tolerances_of(step_ends(f_in, f_out), law, 1e-3, 1e-5).leaves_N == pytest.approx(
+    assert tolerances_of(step_ends(f_in, f_out), law, 1e-3, 1e-5).residual_N == pytest.approx(
         1e-5 * tension
     )
     heavy = law._replace(load=law.load._replace(mass_kg=1.0))

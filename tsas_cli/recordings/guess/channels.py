@@ -66,13 +66,13 @@ def _one(name: str, columns: Sequence[FileColumn]) -> Proposed:
     measured = [c for c in columns if not c.words.is_reference] or columns
     if len(measured) > 1:
         shown = ", ".join(c.shown for c in columns)
-        asked = {"source": f"which one: {shown}?"}
-        return Proposed(name, {"source": QUESTION}, "open", ("several columns match",), asked)
+        questions = {"source": f"which one: {shown}?"}
+        return Proposed(name, {"source": QUESTION}, "open", ("several columns match",), questions)
     column = measured[0]
-    entry, asked = with_unit(column, name)
+    entry, questions = with_unit(column, name)
     others = tuple(c.shown for c in columns if c is not column)
     return Proposed(
-        name, entry, "open" if asked else "likely", tuple(column.reasons), asked, others
+        name, entry, "open" if questions else "likely", tuple(column.reasons), questions, others
     )
 
 
@@ -85,17 +85,17 @@ def _assigned(ends: Assignment) -> dict[str, Proposed]:
 
 
 def _channel(name: str, column: FileColumn, ends: Assignment, sign: Sign) -> Proposed:
-    entry, asked = with_unit(column, name)
+    entry, questions = with_unit(column, name)
     why = [*column.reasons, *_motion(column, ends)]
     if sign[0] == QUESTION:
-        asked["sign"] = sign[1]
+        questions["sign"] = sign[1]
     elif sign[1]:
         why.append(sign[1])
     if sign[0] != 1:
         entry["sign"] = sign[0]
     named = column.end is not None
     certainty: Certainty = "sure" if named and _motion(column, ends) else "likely"
-    return Proposed(name, entry, "open" if asked else certainty, tuple(why), asked)
+    return Proposed(name, entry, "open" if questions else certainty, tuple(why), questions)
 
 
 def _motion(column: FileColumn, ends: Assignment) -> list[str]:
@@ -119,11 +119,11 @@ def _open_channels(ends: Assignment) -> dict[str, Proposed]:
         if other in found and len(candidates) == 1:
             continue
         shown = ", ".join(c.shown for c in candidates)
-        asked = {"source": f"which column is this, if any: {shown}?"}
+        questions = {"source": f"which column is this, if any: {shown}?"}
         if len(candidates) == 1:
-            asked = {"source": f"is {shown} this? If it is at the load, rename the table."}
+            questions = {"source": f"is {shown} this? If it is at the load, rename the table."}
         why = (ends.reason, *_orders(candidates, ends))
-        found[name] = _open(name, candidates, why, asked)
+        found[name] = _open(name, candidates, why, questions)
     return found
 
 
@@ -137,16 +137,16 @@ def _unknown(
         "neither names nor units identify these columns",
         *_orders(columns, free),
     )
-    asked = {"source": f"which column is this, if any: {shown}?"}
-    return {name: _open(name, columns, why, asked) for name in names}
+    questions = {"source": f"which column is this, if any: {shown}?"}
+    return {name: _open(name, columns, why, questions) for name in names}
 
 
 def _open(
-    name: str, columns: Sequence[FileColumn], why: tuple[str, ...], asked: dict[str, str]
+    name: str, columns: Sequence[FileColumn], why: tuple[str, ...], questions: dict[str, str]
 ) -> Proposed:
     alternatives = tuple(_described(c) for c in columns)
     sources = tuple(c.source for c in columns)
-    return Proposed(name, {"source": QUESTION}, "open", why, asked, alternatives, sources)
+    return Proposed(name, {"source": QUESTION}, "open", why, questions, alternatives, sources)
 
 
 def _orders(columns: Sequence[FileColumn], ends: Assignment) -> list[str]:

@@ -41,8 +41,10 @@ def clock(columns: Sequence[FileColumn]) -> Proposed:
     why = tuple(f"{c.shown} counts samples" for c in counters) or (
         "no column is named as a time, and none increases evenly",
     )
-    asked = {"rate_Hz": "how many samples a second? Or name the clock: source and unit instead."}
-    return Proposed(TIME, {"rate_Hz": QUESTION}, "open", why, asked)
+    questions = {
+        "rate_Hz": "how many samples a second? Or name the clock: source and unit instead."
+    }
+    return Proposed(TIME, {"rate_Hz": QUESTION}, "open", why, questions)
 
 
 def interval(column: FileColumn) -> float:
@@ -57,9 +59,9 @@ def like_a_clock(column: FileColumn) -> bool:
 
 
 def _which(found: Sequence[FileColumn], why: str) -> Proposed:
-    asked = {"source": f"which one is the clock: {', '.join(c.shown for c in found)}?"}
+    questions = {"source": f"which one is the clock: {', '.join(c.shown for c in found)}?"}
     return Proposed(
-        TIME, {"source": QUESTION}, "open", (why,), asked, (), tuple(c.source for c in found)
+        TIME, {"source": QUESTION}, "open", (why,), questions, (), tuple(c.source for c in found)
     )
 
 
@@ -67,21 +69,21 @@ def _with_unit(column: FileColumn, columns: Sequence[FileColumn], *, named: bool
     why = column.reasons
     if not increases(column.values):
         why.append("it stops or decreases somewhere; ingest will refuse it and name the row")
-        entry, asked = with_unit(column, TIME)
-        return Proposed(TIME, entry, "open" if asked else "likely", tuple(why), asked)
+        entry, questions = with_unit(column, TIME)
+        return Proposed(TIME, entry, "open" if questions else "likely", tuple(why), questions)
     why.append("it increases from row to row" + (", evenly" if is_even(column.values) else ""))
     entry = {"source": column.source}
     unit, sentence, others = _unit(column, _rows_per_stroke(columns, column))
-    asked = {"unit": sentence} if unit == QUESTION else {}
+    questions = {"unit": sentence} if unit == QUESTION else {}
     if unit:
         entry["unit"] = unit
-    if sentence and not asked:
+    if sentence and not questions:
         why.append(sentence)
     if abs(float(column.values[0])) > 0.5 * interval(column):
         entry["offset"] = "first"
         why.append(f"it begins at {column.values[0]:.6g}, which becomes 0")
     certainty: Certainty = "sure" if named and column.kind == "time" else "likely"
-    return Proposed(TIME, entry, "open" if asked else certainty, tuple(why), asked, others)
+    return Proposed(TIME, entry, "open" if questions else certainty, tuple(why), questions, others)
 
 
 def _unit(column: FileColumn, rows: float) -> tuple[str, str, tuple[str, ...]]:

@@ -48,20 +48,20 @@ def with_unit(column: FileColumn, name: str) -> tuple[Raw, dict[str, str]]:
     """Return the keys that convert a column to a channel's unit, and the questions among them."""
     to = BY_NAME[name].unit
     entry: Raw = {"source": column.source}
-    asked: dict[str, str] = {}
+    questions: dict[str, str] = {}
     if column.unit and not column.own_unit:
         entry["unit"] = column.unit
     if column.kind is None:
-        asked["unit"] = (
+        questions["unit"] = (
             f"which unit does {column.shown} have? Neither its name nor the file states it."
         )
     elif column.kind == "label":
-        asked["factor"] = f"how many {to} (or what else) is one of {column.unit}?"
-        asked["factor_unit"] = f"the unit of that factor, such as {_EXAMPLE.get(to, to)}"
+        questions["factor"] = f"how many {to} (or what else) is one of {column.unit}?"
+        questions["factor_unit"] = f"the unit of that factor, such as {_EXAMPLE.get(to, to)}"
     elif column.kind in ("angle", "torque") and to in ("mm", "N"):
         what = "an angle to mm" if column.kind == "angle" else "a torque to N"
-        asked["pulley_radius_mm"] = f"which pulley radius, in mm, converts {what}?"
-    return entry | dict.fromkeys(asked, QUESTION), asked
+        questions["pulley_radius_mm"] = f"which pulley radius, in mm, converts {what}?"
+    return entry | dict.fromkeys(questions, QUESTION), questions
 
 
 _EXAMPLE = {
