@@ -122,7 +122,13 @@ def test_half_of_the_files_are_not_half_a_dataset(bench, ingest):
 def test_a_wrong_unit_is_reported_with_the_place_in_the_map(bench, ingest):
     text = (bench / "map.toml").read_text()
     (bench / "map.toml").write_text(text.replace('unit = "N"', 'unit = "mm"'))
-    refused(ingest("a.csv"), bench, "map.toml, columns.f_in_N", "'mm' cannot become N", "a force")
+    refused(
+        ingest("a.csv"),
+        bench,
+        "map.toml, columns.f_in_N",
+        "'mm' is not convertible to N",
+        "a force",
+    )
 
 
 @pytest.mark.parametrize(

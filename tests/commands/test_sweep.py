@@ -35,7 +35,7 @@ def test_a_stage_is_called_for_every_dataset_and_failure_is_told(strict, rigs, t
     assert ["failed", "1"] in lines
     failed = next(line for line in done.stdout.splitlines() if "b/runs/a.parquet" in line)
     assert "the checksum differs from the manifest's" in failed
-    assert done.stdout.endswith("tried again by the same call; the others are not.\n")
+    assert done.stdout.endswith("run the failed tasks again; the others are kept.\n")
 
     shutil.copy(rigs / "a/runs/a.parquet", rigs / "b/runs/a.parquet")
     again = strict("sweep", "check", rigs / "*", "--out", out, "--workers", 1, "--json")

@@ -157,7 +157,7 @@ def spoilt(name, stream, folder):
 @pytest.mark.parametrize(
     ("name", "message"),
     [
-        ("missing", "does not exist"),
+        ("missing", "is not there"),
         ("junk", "Not an RRD file"),
         ("empty", "too small"),
         ("cut", "exceeds file size"),
