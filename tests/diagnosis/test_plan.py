@@ -134,7 +134,7 @@ def test_too_few_stretches_are_said():
 
 
 def test_a_run_too_short_to_move_the_load_is_refused():
-    with pytest.raises(InputError, match="whole tendon slip"):
+    with pytest.raises(InputError, match="reaches full slip"):
         plan_rig(rig_file(run(1.0, amplitude_mm=0.02)))
 
 
