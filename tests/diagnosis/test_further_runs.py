@@ -122,7 +122,7 @@ def test_effects_that_stay_free_are_fitted_by_their_names(looked):
 
 def test_runs_that_show_nothing_are_refused(looked):
     looked.out = ("a",)
-    with pytest.raises(InputError, match="no run makes the whole tendon slip"):
+    with pytest.raises(InputError, match="no run reaches full slip"):
         f.beside([recorded()], further("one"), "initial", "fixed")
 
 

@@ -28,7 +28,7 @@ def test_the_next_experiment_follows_from_the_verdict():
     told = diagnosis("named", cause(PLAY, gain=20.0), cause(MASS, gain=30.0))
     assert n.next_experiment(told) == EXPERIMENT[MASS]  # what gains most
     assert n.next_experiment(diagnosis("unexplained")).startswith("Repeat one run")
-    assert n.next_experiment(diagnosis("sufficient")).startswith("Nothing is missing")
+    assert n.next_experiment(diagnosis("sufficient")).startswith("No effect is missing")
 
 
 def test_rivals_ask_for_the_run_that_tells_them_apart(monkeypatch):

@@ -128,11 +128,11 @@ def test_too_few_stretches_are_said():
     """One slow stroke and back: √7 standard deviations are the least that is more than 2.6."""
     short = plan_rig(rig_file(run(5.0, periods=1)))
     assert all(s.found == math.inf for s in short.seen)
-    assert any("fewer than 7" in sentence for sentence in short.cannot_tell)
+    assert any("needs at least 7" in sentence for sentence in short.cannot_tell)
 
 
 def test_a_run_too_short_to_move_the_load_is_refused():
-    with pytest.raises(InputError, match="whole tendon slip"):
+    with pytest.raises(InputError, match="reaches full slip"):
         plan_rig(rig_file(run(1.0, amplitude_mm=0.02)))
 
 

@@ -4,9 +4,9 @@ What one sees: a wave on f_in, f_out and x_out with a fixed period in x_in; twic
 twice its frequency in time. On f_in it is much higher in dead bands than in full slip, because
 the tendon is stiff there.
 Equation: first harmonic of the kinematic error of a gear (for harmonic drives e.g. Tuttle and
-Seering 1996, IEEE Trans. Robotics and Automation 12(3)). Two waves per turn of the wave generator
-make a period of 2π r1/(2 im), 0.7095 mm for the drive of Yang 2025, Eq. (48): r1 = 27.1 mm,
-im = 120.
+Seering 1996, IEEE Trans. Robotics and Automation 12(3)). Two waves per revolution of the wave
+generator make a period of 2π r1/(2 im), 0.7095 mm for the drive of Yang 2025, Eq. (48): r1 =
+27.1 mm, im = 120.
 Mistaken for: mains hum on a sensor (its period is one of time); load_spring_nonlinearity (where
 the period is longer than the stroke).
 Not validated: higher harmonics; a ripple that changes with torque; one so steep that

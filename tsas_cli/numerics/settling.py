@@ -14,7 +14,7 @@ def settling(rate: float, settling_per_s: float, time_s: float) -> float:
     rate
         Initial rate, in any unit per second.
     settling_per_s
-        The inverse ν of the time constant [1/s]; at zero the drift goes on for ever.
+        The inverse ν of the time constant [1/s]; at zero the drift never ends.
     time_s
         Time t since the start [s].
     """
