@@ -9,7 +9,7 @@ from benchmarks.row import Row
 from tests.physics.references import TABLE_1
 from tsas_cli.effects import Effects
 from tsas_cli.physics.bristles import Bristles
-from tsas_cli.physics.ends import Drive
+from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.response import simulate
 
 GROUPS = {  # speed [rad/s], radius [mm], bend [rad] of Table 2
@@ -27,7 +27,7 @@ def measure() -> Iterator[Row]:
     for group, (omega, radius, bend) in GROUPS.items():
         rig = TABLE_1._replace(sheath_length_mm=radius * bend, total_bend_rad=bend)
         time_s = np.arange(0.0, 4.0 * math.pi / omega, 1e-3)
-        drive = Drive(10.0 * (1.0 - np.cos(omega * time_s)), time_s=time_s)
+        drive = DriveInput(10.0 * (1.0 - np.cos(omega * time_s)), time_s=time_s)
         plain = rig._replace(effects=Effects())
         models = {
             "static": simulate(plain, drive, "static"),

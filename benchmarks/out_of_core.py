@@ -23,8 +23,8 @@ import pyarrow.csv as csv
 from benchmarks.row import Row
 from tsas_cli.identification.model import data_sheet
 from tsas_cli.physics.by_pieces import simulate_pieces
-from tsas_cli.physics.ends import Drive
-from tsas_cli.recordings.manifest import Manifest, Rig, Run
+from tsas_cli.physics.ends import DriveInput
+from tsas_cli.recordings.manifest import Manifest, RigSheet, Run
 
 ROWS = tuple(int(float(n)) for n in os.environ.get("TSAS_ROWS", "2e6").split(","))
 RATE_HZ = 1000.0
@@ -164,13 +164,13 @@ def map_text() -> str:
 def make(path: str, rows: int) -> None:
     """Write a recording of so many rows as CSV, a piece at a time."""
     run = Run(id="a", file="runs/a.parquet", sha256="0" * 64, **CONDITIONS)
-    manifest = Manifest(format=1, name="big", kind="simulated", rig=Rig(**SHEET), run=(run,))
+    manifest = Manifest(format=1, name="big", kind="simulated", rig=RigSheet(**SHEET), run=(run,))
     rig = data_sheet(manifest).rig(run)
     rng = np.random.default_rng(1)
     schema = pa.schema([(name, pa.float64()) for name in UNITS])
     with csv.CSVWriter(path, schema) as writer:
         times = (np.arange(k, min(k + PIECE, rows)) / RATE_HZ for k in range(0, rows, PIECE))
-        drives = (Drive(motion(time_s), time_s=time_s) for time_s in times)
+        drives = (DriveInput(motion(time_s), time_s=time_s) for time_s in times)
         done = 0
         for answer in simulate_pieces(rig, drives):
             n = answer.f_in_N.size

@@ -18,7 +18,7 @@ from tests.physics.references import (
 from tsas_cli.effects import EFFECTS
 from tsas_cli.numerics.conditioning import condition
 from tsas_cli.physics.closed_form.branches import branches
-from tsas_cli.physics.ends import Drive, ends_of
+from tsas_cli.physics.ends import DriveInput, ends_of
 from tsas_cli.physics.rig import Rig, with_values
 from tsas_cli.physics.slip.chain import slip_chain
 
@@ -48,7 +48,7 @@ def measure() -> Iterator[Row]:
             took = times(lambda: slip_chain(course, GROUP_A, boundary, n), REPEATS)  # noqa: B023 # called at once
             yield per_sample(f"slip chain, {n} nodes, load {name}", took, at_most)
     rig = with_every_effect()
-    ends = ends_of(rig, Drive(drive, time_s=TIME_S))
+    ends = ends_of(rig, DriveInput(drive, time_s=TIME_S))
     took = times(lambda: slip_chain(ends.course, rig, ends.boundary, 30), REPEATS)
     yield per_sample("slip chain, 30 nodes, every effect at once", took, at_most=1000.0)
     if sys.platform == "linux":

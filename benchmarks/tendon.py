@@ -12,7 +12,7 @@ from benchmarks.row import Row
 from benchmarks.timing import Times
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model
-from tsas_cli.physics.ends import Drive
+from tsas_cli.physics.ends import DriveInput
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.reporting.stream.opened import to_file
 from tsas_cli.reporting.stream.sources import EXTENDED, NOMINAL
@@ -52,7 +52,7 @@ def measure() -> Iterator[Row]:
 def recorded(path: Path) -> float:
     """Follow and record the tendon; return the time [s]."""
     x_in = 10.0 - 10.0 * np.cos(TIME_S)
-    drive = Drive(x_in, time_s=TIME_S)
+    drive = DriveInput(x_in, time_s=TIME_S)
     models = {NOMINAL: model(NOMINAL_VALUES), EXTENDED: model(NOMINAL_VALUES | FREE)}
     start = time.perf_counter()
     tendons = follow(RUN, TIME_S, drive, models, [25.0 + 2.9 * x_in])

@@ -6,7 +6,7 @@ import pytest
 from tests.reporting.made_folders import make_calibration, make_check, make_dataset, make_simulation
 from tsas_cli.__main__ import main
 from tsas_cli.app import app
-from tsas_cli.reporting.pdf import MARK
+from tsas_cli.reporting.pdf import PDF_MARK
 
 
 @pytest.fixture(scope="module")
@@ -149,7 +149,7 @@ def printer(monkeypatch):
     """Print without a browser."""
 
     def printed(html, path):
-        path.write_bytes(b"%PDF" + MARK + html[:9].encode())
+        path.write_bytes(b"%PDF" + PDF_MARK + html[:9].encode())
 
     import tsas_cli.stages.report as module
 
@@ -161,7 +161,7 @@ def test_the_pdf_stands_beside_the_page(folder, run, printer):
     code, out, _ = run("report", folder / "check", "--out", folder / "r.html", "--pdf", "--json")
     assert code == 0
     assert json.loads(out)["pdf"] == str(folder / "r.pdf")
-    assert (folder / "r.pdf").read_bytes() == b"%PDF" + MARK + b"<!DOCTYPE"
+    assert (folder / "r.pdf").read_bytes() == b"%PDF" + PDF_MARK + b"<!DOCTYPE"
     assert (folder / "r.html").is_file()
     code, out, _ = run("report", folder / "check", "--out", folder / "t.html", "--pdf")
     assert "t.pdf, 0.00 MB" in out

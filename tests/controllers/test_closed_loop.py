@@ -6,7 +6,7 @@ import pytest
 
 from tests.both_ways import answers
 from tests.physics.references import GROUP_A
-from tsas_cli.controllers.closed_loop import followed_from
+from tsas_cli.controllers.closed_loop import plant_at_rest
 from tsas_cli.physics.plant.turntable import Actuator
 from tsas_cli.physics.rig import with_values
 from tsas_cli.physics.slip.state import POSITION
@@ -32,7 +32,7 @@ def test_it_begins_at_rest_in_balance():
     a = GROUP_A.friction_coefficient * GROUP_A.total_bend_rad
     EA, L = GROUP_A.tendon_stiffness_N, GROUP_A.sheath_length_mm
     for drive_mm, way in ((6.0, 1.0), (-4.0, -1.0)):
-        motor, table, chain = followed_from(drive_mm, GROUP_A, DRIVE, 200)
+        motor, table, chain = plant_at_rest(drive_mm, GROUP_A, DRIVE, 200)
         ratio, mean = math.exp(-way * a), (1.0 - math.exp(-way * a)) / (way * a)
         per_N = ratio / 1.579 + mean * L / EA
         expected = (drive_mm + 25.0 / 1.579 + 25.0 * L / EA) / per_N
@@ -44,20 +44,20 @@ def test_it_begins_at_rest_in_balance():
 
 
 def test_at_zero_nothing_is_wound_up():
-    motor, table, _ = followed_from(0.0, GROUP_A, DRIVE, 20)
+    motor, table, _ = plant_at_rest(0.0, GROUP_A, DRIVE, 20)
     assert (motor.mm, table.f_in) == (0.0, 25.0)
 
 
 def test_a_spring_beside_the_tendon_is_wound_up_too():
     spring = with_values(GROUP_A, {"proximal_spring.stiffness_N_per_mm": 12.5})
-    plain, more = (followed_from(6.0, rig, DRIVE, 20) for rig in (GROUP_A, spring))
+    plain, more = (plant_at_rest(6.0, rig, DRIVE, 20) for rig in (GROUP_A, spring))
     assert more.table.f_in - plain.table.f_in == pytest.approx(12.5 * 6.0)
     assert more.motor.mm - plain.motor.mm == pytest.approx(12.5 * 6.0 / 52.0)
 
 
 def test_a_zero_of_the_sensor_does_not_move_the_start():
     shifted = GROUP_A._replace(x_in_zero_mm=3.0)
-    one, other = (followed_from(6.0, rig, DRIVE, 20) for rig in (GROUP_A, shifted))
+    one, other = (plant_at_rest(6.0, rig, DRIVE, 20) for rig in (GROUP_A, shifted))
     assert one.motor == pytest.approx(other.motor)
     assert one.table == pytest.approx(other.table)
 

@@ -9,7 +9,7 @@ import pytest
 from tests.physics.references import GROUP_A
 from tsas_cli.controllers.path import drive_at, follow, geared_at, smoothed
 from tsas_cli.effects.drive_ripple import DriveRipple
-from tsas_cli.physics.ends import Drive, ends_of
+from tsas_cli.physics.ends import DriveInput, ends_of
 from tsas_cli.physics.plant.turntable import Actuator
 from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import with_values
@@ -120,11 +120,11 @@ def test_the_model_driven_along_the_path_gives_the_wanted_force(values):
     """Between the turns; what smoothing takes off is x″ crossing²/96, 0.006 mm at most here."""
     path = path_to(SINE, values)
     rig = with_values(GROUP_A, values)
-    there = simulate(rig, Drive(path.drive[0], time_s=T), on_mesh=True, nodes=NODES)
+    there = simulate(rig, DriveInput(path.drive[0], time_s=T), on_mesh=True, nodes=NODES)
     between = (np.abs(np.sin(2.0 * T)) > 0.27) & (T[-1] - CROSSING_S > T)
     np.testing.assert_allclose(there.f_out_N[between], SINE[between], atol=0.04)
     if values:
-        other = simulate(GROUP_A, Drive(path.drive[0], time_s=T), on_mesh=True, nodes=NODES)
+        other = simulate(GROUP_A, DriveInput(path.drive[0], time_s=T), on_mesh=True, nodes=NODES)
         assert np.abs(other.f_out_N[between] - SINE[between]).max() > 0.1
 
 
@@ -144,7 +144,7 @@ def test_the_motor_winds_up_the_gear_by_what_hangs_at_it():
     rig = with_values(GROUP_A, values)
     assert (path_to(SINE, values).motor == path_to(SINE, values).drive).all()
     path = path_to(SINE, values, actuator=soft)
-    f_in = simulate(rig, Drive(path.drive[0], time_s=T), on_mesh=True, nodes=NODES).f_in_N
+    f_in = simulate(rig, DriveInput(path.drive[0], time_s=T), on_mesh=True, nodes=NODES).f_in_N
     wound = (f_in - GROUP_A.preload_N) / 52.0
     between = np.abs(np.sin(2.0 * T)) > 0.25
     np.testing.assert_allclose((path.motor - path.drive)[0][between], wound[between], atol=0.01)
@@ -159,7 +159,7 @@ def test_play_and_ripple_are_taken_back():
     end = np.concatenate((np.linspace(0.0, 6.0, 500), np.linspace(6.0, -1.0, 400)))
     geared = geared_at(end, rig.effects)
     drive = drive_at(np.vstack((geared, np.zeros((3, 900)))), rig.effects.drive_ripple, H)[0]
-    np.testing.assert_allclose(ends_of(rig, Drive(drive)).drive, end, atol=1e-9)
+    np.testing.assert_allclose(ends_of(rig, DriveInput(drive)).drive, end, atol=1e-9)
     assert np.abs(drive - geared).max() > 0.08
 
 

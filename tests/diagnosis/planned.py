@@ -1,10 +1,10 @@
 """Runs that are planned on the rig of Yang 2025, Table 1, as several tests need them."""
 
-from tsas_cli.diagnosis.further_runs import beside
-from tsas_cli.diagnosis.made_runs import made
+from tsas_cli.diagnosis.further_runs import joined_runs
+from tsas_cli.diagnosis.made_runs import simulated_recordings
 from tsas_cli.diagnosis.plan import FIRST
 from tsas_cli.diagnosis.rig_file import PlannedRun, RigFile
-from tsas_cli.diagnosis.visibility import Seen
+from tsas_cli.diagnosis.visibility import Visibility
 from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.model import data_sheet
 from tsas_cli.identification.prepared import Prepared, prepare
@@ -50,14 +50,14 @@ def prepared(file: RigFile) -> tuple[Manifest, list[Prepared]]:
     sheet = {"format": 1, "name": "t", "kind": "simulated", "rig": SHEET}
     none = {"id": "none", "file": "none", "sha256": "0" * 64}
     model = data_sheet(Manifest.model_validate(sheet | {"run": [none]}))
-    recordings = made(file.run, file.sensors, model.rig, FIRST)
+    recordings = simulated_recordings(file.run, file.sensors, model.rig, FIRST)
     manifest = Manifest.model_validate(sheet | {"run": [r.run for r in recordings]})
     return manifest, [prepare(r, FIRST) for r in recordings]
 
 
-def seen(*runs: PlannedRun, **noise: float) -> dict[str, Seen]:
+def seen(*runs: PlannedRun, **noise: float) -> dict[str, Visibility]:
     """Return how each cause is seen in some runs, by its name."""
     manifest, there = prepared(rig_file(*runs, **noise))
     model = data_sheet(manifest)
-    part = beside(there, [], model, model).part()
+    part = joined_runs(there, [], model, model).part()
     return {s.cause.name: s for s in part.seen(EFFECTS, EFFECTS)}

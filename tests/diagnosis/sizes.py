@@ -4,7 +4,7 @@ from tests.physics.references import GROUP_A
 from tsas_cli.diagnosis.candidates import candidates
 from tsas_cli.diagnosis.plan import Better
 from tsas_cli.diagnosis.rig_file import Limits
-from tsas_cli.diagnosis.visibility import Cause, Seen
+from tsas_cli.diagnosis.visibility import Amplitude, Visibility
 from tsas_cli.effects import EFFECTS
 
 OF = {e.name: e for e in EFFECTS}
@@ -14,11 +14,11 @@ PLAY, MASS, LENGTH = "backlash", "load_inertia", "free_tendon"
 
 def cause(name):
     parameter = next(q for q in OF[name].parameters if not q.shape)
-    return Cause(OF[name], parameter, {})
+    return Amplitude(OF[name], parameter, {})
 
 
 def seen(name, found, **told):
-    return Seen(cause(name), found, told)
+    return Visibility(cause(name), found, told)
 
 
 def better(name, before, after):

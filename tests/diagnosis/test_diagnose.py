@@ -19,7 +19,7 @@ from tsas_cli.diagnosis.held_out import Folds
 from tsas_cli.diagnosis.remainder import Remainder
 from tsas_cli.diagnosis.search import Hypotheses
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.extension import Trial
+from tsas_cli.identification.extension import HypothesisFit
 from tsas_cli.identification.fit import Fitted, Solution, Unknown
 from tsas_cli.identification.model import Model
 
@@ -215,7 +215,7 @@ def test_a_sheath_beside_an_unknown_tendon_is_found_by_its_name():
         "",
         1,
     )
-    trial = Trial((), tuple(unknowns), solution, (1,), on_mesh=False)
+    trial = HypothesisFit((), tuple(unknowns), solution, (1,), on_mesh=False)
     found = d._with_data_sheet_interval(Estimate(d.SHEATH, 1.0, "1", "fitted"), trial)
     assert found.interval_low == 0.0  # 2 · 0.5/1.25 is less than 1
     assert found.interval_high == pytest.approx(2.0 * 2.0 / 1.25 - 1.0)

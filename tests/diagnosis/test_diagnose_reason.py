@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import pytest
 
 from tsas_cli.diagnosis import diagnose as d
-from tsas_cli.diagnosis.diagnose import Cause, Diagnosis
+from tsas_cli.diagnosis.diagnose import FoundCause, Diagnosis
 from tsas_cli.diagnosis.remainder import Remainder
 from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.model import Model
@@ -15,7 +15,7 @@ PLAY, MASS = "backlash", "load_inertia"
 
 
 def cause(effect, rivals=(), gain=50.0):
-    return Cause(effect, rivals, (), gain, (gain - 1.0, gain + 1.0))
+    return FoundCause(effect, rivals, (), gain, (gain - 1.0, gain + 1.0))
 
 
 def left_of(mean_square, *signals):

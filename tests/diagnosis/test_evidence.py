@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tsas_cli.diagnosis.evidence import Gain, gain, gain_percent
+from tsas_cli.diagnosis.evidence import Reduction, gain, gain_percent
 
 RNG = np.random.default_rng(1)
 BEFORE = RNG.chisquare(50, 40)
@@ -53,12 +53,12 @@ def test_the_gain_in_percent_is_that_of_the_root_and_lies_in_its_interval():
 
 
 def test_to_be_convincing_takes_more_than_the_least_of_both():
-    assert Gain(0.026, 2.61).convincing
-    assert not Gain(0.025, 2.61).convincing
-    assert not Gain(0.026, 2.6).convincing
-    assert Gain(0.026, 2.5, needed=2.4).convincing
-    assert Gain(0.011, 2.61).beyond(0.01)
-    assert not Gain(0.01, 2.61).beyond(0.01)
+    assert Reduction(0.026, 2.61).convincing
+    assert not Reduction(0.025, 2.61).convincing
+    assert not Reduction(0.026, 2.6).convincing
+    assert Reduction(0.026, 2.5, needed=2.4).convincing
+    assert Reduction(0.011, 2.61).beyond(0.01)
+    assert not Reduction(0.01, 2.61).beyond(0.01)
 
 
 def test_what_changes_nothing_is_not_sure():

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from tsas_cli.diagnosis import found as f
-from tsas_cli.diagnosis.channel_errors import Channel
-from tsas_cli.diagnosis.diagnose import Cause, Diagnosis
-from tsas_cli.diagnosis.evidence import Gain
+from tsas_cli.diagnosis.channel_errors import HeldOutErrors
+from tsas_cli.diagnosis.diagnose import FoundCause, Diagnosis
+from tsas_cli.diagnosis.evidence import Reduction
 from tsas_cli.diagnosis.remainder import Remainder
 from tsas_cli.effects import BACKLASH
 from tsas_cli.identification.estimate import Estimate
@@ -33,7 +33,7 @@ class MadeUp:
         return SimpleNamespace(mean_square=1.5, solution=solution, values=lambda: {"p": 2.0})
 
     def gain(self, found):
-        return Gain(PARTS["".join(sorted(found))], 4.0)
+        return Reduction(PARTS["".join(sorted(found))], 4.0)
 
 
 def rows(named, *sets):
@@ -120,7 +120,7 @@ def test_signatures_are_told_in_the_order_of_names():
 
 def test_a_cause_has_its_title_and_values():
     parameter = Estimate("backlash.play_mm", 0.2, "mm", "fitted", None, 0.1, 0.05, 0.35, True)
-    cause = Cause("backlash", ("load_friction",), (parameter,), 40.0, (30.0, 50.0))
+    cause = FoundCause("backlash", ("load_friction",), (parameter,), 40.0, (30.0, 50.0))
     found = f.cause_of(cause)
     assert (found.effect, found.title, found.rivals) == (
         "backlash",
@@ -154,7 +154,7 @@ def test_without_a_search_nothing_is_said_of_one():
 
 def test_errors_and_what_is_left_have_units_and_percent():
     left = Remainder(1.5, {}, ("time_s",))
-    channels = {"f_in_N": Channel(4.0, math.nan, 1.0, 2.0)}
+    channels = {"f_in_N": HeldOutErrors(4.0, math.nan, 1.0, 2.0)}
     whole = Diagnosis(
         "sufficient", "why", Model(()), Model(()), (), channels, left, share_left=0.25
     )

@@ -52,10 +52,10 @@ def test_each_is_recorded_right_after_the_last_run_with_noise_of_its_own(monkeyp
         asked.append((runs[0], sensors, rig_of, started, seed))
         return [f"recorded {runs[0].id}"]
 
-    monkeypatch.setattr(f, "made", made)
+    monkeypatch.setattr(f, "simulated_recordings", made)
     monkeypatch.setattr(f, "prepare", lambda recording, began: (recording, began))
     sensors = Sensors(rate_Hz=100.0, x_in_mm=0.02, f_in_N=0.1)
-    out = f.recorded_in_thought(CANDIDATES, sensors, GROUP_A, [recorded(session_s=60.0)])
+    out = f.simulated_candidates(CANDIDATES, sensors, GROUP_A, [recorded(session_s=60.0)])
     assert [candidate for candidate, _ in out] == CANDIDATES
     began = NOON - timedelta(minutes=1)
     assert [run for _, run in out] == [(f"recorded {c.run.id}", began) for c in CANDIDATES]
@@ -91,7 +91,7 @@ def looked(monkeypatch):
     monkeypatch.setattr(f, "prepare_fit", prepare_fit)
     monkeypatch.setattr(f, "solve_fit", lambda problem: "solved")
     monkeypatch.setattr(f, "bench_of", {"solved": SimpleNamespace(fit=fit)}.__getitem__)
-    monkeypatch.setattr(f, "look_at", lambda bench, trial: parts)
+    monkeypatch.setattr(f, "linearised_runs", lambda bench, trial: parts)
     return seen
 
 
@@ -104,7 +104,7 @@ def further(*ids):
 def test_what_is_there_and_what_is_added_is_told_apart_by_the_runs_names(looked):
     looked.out = ("b", "two")
     runs = [recorded(i) for i in ("a", "b", "c")]
-    found = f.beside(runs, further("one", "two", "three"), "initial", "fixed")
+    found = f.joined_runs(runs, further("one", "two", "three"), "initial", "fixed")
     assert found.there == (0, 1)
     assert found.added == {2: CANDIDATES[0], 3: CANDIDATES[2]}
     assert found.left_out == ("run b is short",)
@@ -116,14 +116,14 @@ def test_what_is_there_and_what_is_added_is_told_apart_by_the_runs_names(looked)
 
 def test_effects_that_stay_free_are_fitted_by_their_names(looked):
     free = {"presliding.stiffness": 2.0, "backlash.play_mm": 0.1, "presliding.damping": 3.0}
-    f.beside([recorded()], [], "initial", "fixed", free)
+    f.joined_runs([recorded()], [], "initial", "fixed", free)
     assert looked.fits == [(["backlash", "presliding"], free, True)]
 
 
 def test_runs_that_show_nothing_are_refused(looked):
     looked.out = ("a",)
     with pytest.raises(InputError, match="no run reaches full slip"):
-        f.beside([recorded()], further("one"), "initial", "fixed")
+        f.joined_runs([recorded()], further("one"), "initial", "fixed")
 
 
 def test_further_runs_are_recorded_as_the_first_plain_one_was(monkeypatch):
@@ -134,21 +134,21 @@ def test_further_runs_are_recorded_as_the_first_plain_one_was(monkeypatch):
         given.update(proposed=proposed, sensors=sensors, rig=rig, runs=runs)
         return "further"
 
-    monkeypatch.setattr(f, "recorded_in_thought", recorded_in_thought)
+    monkeypatch.setattr(f, "simulated_candidates", recorded_in_thought)
     monkeypatch.setattr(f, "recorded_limits", lambda runs: "limits")
     monkeypatch.setattr(f, "candidates", lambda limits, rig: (limits, rig))
-    monkeypatch.setattr(f, "beside", lambda *what: what)
+    monkeypatch.setattr(f, "joined_runs", lambda *what: what)
     by_force = recorded("f", drive_column="f_in_N")
     weighted = recorded("w", run=SimpleNamespace(load="force"))
     plain = recorded(time_s=(0.0, 0.02, 0.04, 5.0))
     runs = [by_force, weighted, plain, recorded("later")]
     problem = SimpleNamespace(runs=runs, initial="initial", fixed="fixed")
     bench = SimpleNamespace(base=SimpleNamespace(problem=problem), rigs=["r0", "r1", "r2", "r3"])
-    found = f.beside_recorded(bench, {"a.b": 1.0})
+    found = f.joined_to_recorded(bench, {"a.b": 1.0})
     assert found == (runs, "further", "initial", "fixed", {"a.b": 1.0})
     assert (given["proposed"], given["rig"], given["runs"]) == (("limits", "r2"), "r2", runs)
     assert given["sensors"].rate_Hz == pytest.approx(50.0)
     assert given["sensors"].outputs == {"f_in_N": 0.2}  # x_out has no noise: it never changes
     assert given["sensors"].x_in_mm == 0.04
     problem.runs = [by_force, weighted]
-    assert f.beside_recorded(bench)[1] == []
+    assert f.joined_to_recorded(bench)[1] == []

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tsas_cli.diagnosis.held_out import folds_of, held_out_squares, held_out_values
-from tsas_cli.identification.extension import Trial
+from tsas_cli.identification.extension import HypothesisFit
 from tsas_cli.identification.fit import Solution, Unknown
 
 RUNS, ROWS = 4, 60
@@ -27,7 +27,7 @@ def linear():
 def trial_of(J, data, names):
     values = np.linalg.lstsq(J, data, rcond=None)[0]
     solution = Solution(values, np.zeros(values.size, bool), J @ values - data, J, True, "", 1)
-    return Trial((), tuple(names), solution, (ROWS,) * RUNS, on_mesh=False)
+    return HypothesisFit((), tuple(names), solution, (ROWS,) * RUNS, on_mesh=False)
 
 
 def blocks(count=6):
@@ -90,7 +90,7 @@ def single(J, residual, unknowns, at_bound=None):
     at_bound = np.zeros(len(unknowns), bool) if at_bound is None else np.array(at_bound)
     values = np.zeros(len(unknowns))
     solution = Solution(values, at_bound, np.array(residual), np.array(J), True, "", 1)
-    return Trial((), tuple(unknowns), solution, (len(residual),), on_mesh=False)
+    return HypothesisFit((), tuple(unknowns), solution, (len(residual),), on_mesh=False)
 
 
 THREE = [np.array([0, 1]), np.array([0, 0]), np.array([0, 1])]

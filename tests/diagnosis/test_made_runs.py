@@ -23,7 +23,7 @@ def made(monkeypatch):
         return SimpleNamespace(f_in_N=30.0 * there, f_out_N=20.0 * there, x_out_mm=3.0 * there)
 
     monkeypatch.setattr(made_runs, "simulate", simulate)
-    return lambda *runs, **how: made_runs.made(runs, SENSORS, lambda run: None, BEGIN, **how)
+    return lambda *runs, **how: made_runs.simulated_recordings(runs, SENSORS, lambda run: None, BEGIN, **how)
 
 
 def test_each_channel_has_its_noise_and_what_is_not_measured_is_not_there(made):

@@ -9,7 +9,7 @@ from tests.counted import Counted
 from tests.diagnosis.planned import rig_file, run
 from tests.diagnosis.sizes import CANDIDATES, LENGTH, MASS, OF, PLAY, better, cause, seen
 from tsas_cli.diagnosis import plan as p
-from tsas_cli.diagnosis.plan import Proposal, plan_rig, propose
+from tsas_cli.diagnosis.plan import PlannedRun, plan_rig, propose
 from tsas_cli.effects import EFFECTS
 
 
@@ -25,7 +25,7 @@ def test_what_is_better_is_said_with_its_unit():
 
 def test_the_best_of_a_proposal_come_first():
     three = tuple(better(n, 2.0, 1.0) for n in (PLAY, MASS, LENGTH))
-    said = Proposal(CANDIDATES[0], 1.0, three, ()).best_of(2)
+    said = PlannedRun(CANDIDATES[0], 1.0, three, ()).best_of(2)
     assert said == f"{three[0].sentence}; {three[1].sentence}"
 
 
@@ -125,7 +125,7 @@ def proposed(monkeypatch, runs, *effects, values=None):
         asked.free = free
         return runs
 
-    monkeypatch.setattr(p, "beside_recorded", beside_recorded)
+    monkeypatch.setattr(p, "joined_to_recorded", beside_recorded)
     trial = SimpleNamespace(values=lambda: values or {})
     asked.steps = Counted()
     return propose(None, trial, effects, asked.steps), asked
@@ -175,12 +175,12 @@ def test_where_no_run_helps_that_is_said(monkeypatch, after):
 
 def test_a_rig_file_is_planned_by_its_own_rig_and_limits(monkeypatch):
     given = {}
-    monkeypatch.setattr(p, "made", lambda runs, *_: runs)
+    monkeypatch.setattr(p, "simulated_recordings", lambda runs, *_: runs)
     monkeypatch.setattr(p, "prepare", lambda planned, _: SimpleNamespace(run=planned))
     monkeypatch.setattr(
-        p, "recorded_in_thought", lambda proposed, *rest: given.update(proposed=proposed)
+        p, "simulated_candidates", lambda proposed, *rest: given.update(proposed=proposed)
     )
-    monkeypatch.setattr(p, "beside", lambda runs, *_: runs)
+    monkeypatch.setattr(p, "joined_runs", lambda runs, *_: runs)
     monkeypatch.setattr(p, "_plan", lambda runs, step: runs)
     steps = Counted()
     runs = plan_rig(rig_file(run(5.0), run(7.0, "b", preload_N=40.0)), steps)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tsas_cli.diagnosis import search as s
-from tsas_cli.diagnosis.evidence import Gain
+from tsas_cli.diagnosis.evidence import Reduction
 from tsas_cli.diagnosis.search import Search
 from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.screening import Screened
@@ -15,7 +15,7 @@ BLOCKS, SIZE = 20, 200
 A, B, C = "backlash", "free_tendon", "load_friction"
 KNOWN = tuple(e for e in EFFECTS if e.name in (A, B, C))
 OF = {e.name: e for e in KNOWN}
-CONVINCES, DOES_NOT = Gain(0.5, 4.0), Gain(0.5, 1.0)
+CONVINCES, DOES_NOT = Reduction(0.5, 4.0), Reduction(0.5, 1.0)
 
 
 def names(*found):

@@ -8,7 +8,7 @@ import pytest
 
 from tests.counted import Counted
 from tsas_cli.diagnosis import search as s
-from tsas_cli.diagnosis.evidence import Gain
+from tsas_cli.diagnosis.evidence import Reduction
 from tsas_cli.diagnosis.search import Hypotheses, Search
 from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.screening import Screened
@@ -50,7 +50,7 @@ def reweighed(bench, trial):
 @pytest.fixture
 def made(monkeypatch):
     """A search over given mean squares, 8 where none is given, held out evenly."""
-    monkeypatch.setattr(s, "reweighed_bench", reweighed)
+    monkeypatch.setattr(s, "reweighted_bench", reweighed)
     monkeypatch.setattr(
         s, "held_out_squares", lambda trial, _: np.full(BLOCKS, trial.mean_square * SIZE / BLOCKS)
     )
@@ -134,7 +134,7 @@ def test_a_set_that_was_passed_is_not_gone_through_again(made):
 
 def test_the_best_of_the_simple_ones_stands_for_itself(made):
     """What has as many parameters as the best one is no simpler."""
-    convinces = Gain(0.5, 4.0)
+    convinces = Reduction(0.5, 4.0)
     assert len(OF[A].parameters) == len(OF[B].parameters)
     search = made({names(A): 1.0, names(B): 1.0})
     assert search._simplest(names(), [(B, convinces), (A, convinces)]) == B
@@ -204,7 +204,7 @@ def test_errors_are_weighed_three_times_by_what_was_found(made):
     sets = {names(), names(A), names(B), names(A, B)}
     trials = {(n, True): search.trial(n, on_mesh=True) for n in sets}
     found = Hypotheses(search.bench, search.folds, names(A, B), {A: (C,)}, (), trials, {})
-    other = s.weighed_again(found, counted)
+    other = s.reweighted_hypotheses(found, counted)
     assert (other.bench.weighed, found.bench.weighed) == (3, 0)
     assert (other.named, other.rivals) == (found.named, found.rivals)
     assert set(other.trials) == {(n, True) for n in sets}

@@ -7,7 +7,7 @@ import pytest
 
 from tsas_cli.diagnosis import uneven_bend
 from tsas_cli.diagnosis.uneven_bend import stderr_of_unevenness
-from tsas_cli.identification.extension import Trial
+from tsas_cli.identification.extension import HypothesisFit
 from tsas_cli.identification.fit import Solution, Unknown
 
 RUNS, ROWS = 4, 500
@@ -22,7 +22,7 @@ def unsure(signature, truly=0.0):
     data = np.random.default_rng(1).standard_normal(X.size) + truly * signature
     slope = np.linalg.lstsq(LINE, data, rcond=None)[0]
     solution = Solution(slope, np.zeros(1, bool), LINE @ slope - data, LINE, True, "", 1)
-    trial = Trial(
+    trial = HypothesisFit(
         (), (Unknown("slope", None, 0.0, -9.0, 9.0, 1.0),), solution, (ROWS,) * RUNS, on_mesh=False
     )
     ways = np.column_stack((signature, np.zeros(X.size)))
@@ -69,7 +69,7 @@ def test_ways_are_trusted_by_how_sure_they_are(monkeypatch):
     residual = np.array([0.0, 1.0, 2.0, -3.0, 0.0, 0.0])
     solution = Solution(np.array([5.0, 6.0]), np.array([False, True]), residual, J, True, "", 1)
     unknowns = tuple(Unknown(n, None, 0.0, -9.0, 9.0, 1.0) for n in ("a", "b"))
-    trial = Trial((), unknowns, solution, (6,), on_mesh=False)
+    trial = HypothesisFit((), unknowns, solution, (6,), on_mesh=False)
     bench = SimpleNamespace(unevenness=lambda _: ways)
     found = stderr_of_unevenness(bench, trial, [np.arange(6)])
     first = (0.8 * -2.0) ** 2 + 0.8 * 0.25

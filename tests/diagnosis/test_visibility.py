@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from tsas_cli.diagnosis.evidence import TELLING, gain
-from tsas_cli.diagnosis.visibility import TINY, Look, Part, amplitudes_of, causes_of
+from tsas_cli.diagnosis.evidence import LEAST_REDUCTION, gain
+from tsas_cli.diagnosis.visibility import TINY, LinearisedRuns, Part, amplitudes_of, causes_of
 from tsas_cli.effects import EFFECTS
 
 BLOCKS, EACH = 40, 200
@@ -21,7 +21,7 @@ def part(blocks=BLOCKS, each=EACH):
 def test_what_is_everywhere_has_to_take_the_telling_part_of_the_squares():
     """Many blocks: squares s² d² n beside n of noise; their part is TELLING."""
     found = part(blocks=400).smallest(np.full(400 * EACH, 0.5))
-    assert found == pytest.approx(math.sqrt(TELLING / (1.0 - TELLING)) / 0.5, rel=1e-6)
+    assert found == pytest.approx(math.sqrt(LEAST_REDUCTION / (1.0 - LEAST_REDUCTION)) / 0.5, rel=1e-6)
 
 
 def test_what_shows_in_few_blocks_is_never_sure():
@@ -72,7 +72,7 @@ class Answers:
 
 def looked_at(with_it):
     whole = part()
-    look = Look(Answers(with_it), None, None, whole.block, np.zeros(BLOCKS * EACH))
+    look = LinearisedRuns(Answers(with_it), None, None, whole.block, np.zeros(BLOCKS * EACH))
     return Part(look, whole.rows, whole.block, whole.basis)
 
 

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from tsas_cli.diagnosis.visibility import Cause, Seen, amplitudes_of, causes_of
+from tsas_cli.diagnosis.visibility import Amplitude, Visibility, amplitudes_of, causes_of
 from tsas_cli.effects.effect import Effect, Parameter
 
 
@@ -21,7 +21,7 @@ def effect(name, *parameters):
 
 
 def cause(parameter, name="play"):
-    return Cause(effect(name, parameter), parameter, {})
+    return Amplitude(effect(name, parameter), parameter, {})
 
 
 @pytest.mark.parametrize(
@@ -55,7 +55,7 @@ def test_sizes_are_less_the_neutral_value(parameter, start, one_sided, largest):
 )
 def test_what_hides_where(told, named, hidden, nearest):
     """Ten times the size found tells them apart, or nothing does."""
-    found = Seen(cause(amplitude()), 2.0, told)
+    found = Visibility(cause(amplitude()), 2.0, told)
     assert (found.named, found.hidden_in, found.nearest) == (named, hidden, nearest)
     assert found.counted == (math.inf if hidden else named)
 

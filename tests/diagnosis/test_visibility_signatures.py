@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from tsas_cli.diagnosis import visibility as v
-from tsas_cli.diagnosis.visibility import Cause, Imitation, Part
+from tsas_cli.diagnosis.visibility import Amplitude, Imitation, Part
 from tsas_cli.effects.effect import Effect, Parameter
-from tsas_cli.identification.extension import Trial
+from tsas_cli.identification.extension import HypothesisFit
 from tsas_cli.identification.fit import Solution, Unknown
 
 BLOCKS, EACH = 20, 10
@@ -25,7 +25,7 @@ def effect(name, *parameters):
 
 
 def cause(parameter, name="play"):
-    return Cause(effect(name, parameter), parameter, {})
+    return Amplitude(effect(name, parameter), parameter, {})
 
 
 def part(block=None, basis=None, look=None):
@@ -198,7 +198,7 @@ def test_a_look_at_some_runs_has_their_rows_alone(monkeypatch):
     solution = Solution(
         np.zeros(1), np.zeros(1, bool), np.zeros(12), np.zeros((12, 1)), True, "", 1
     )
-    trial = Trial((), (Unknown("a", None, 0.0, -9.0, 9.0, 1.0),), solution, (4, 4, 4), on_mesh=True)
+    trial = HypothesisFit((), (Unknown("a", None, 0.0, -9.0, 9.0, 1.0),), solution, (4, 4, 4), on_mesh=True)
     asked = []
 
     def errors_at(trial, at):
@@ -206,17 +206,17 @@ def test_a_look_at_some_runs_has_their_rows_alone(monkeypatch):
         return np.arange(12.0) * (1.0 + sum(at.values()) ** 2)
 
     bench = SimpleNamespace(closed=[], rigs=[], errors_at=errors_at)
-    look = v.look_at(bench, trial)
+    look = v.linearised_runs(bench, trial)
     found = look.part([0, 2])
     assert found.rows.tolist() == [True] * 4 + [False] * 4 + [True] * 4
     assert found.block.tolist() == [0, 0, 1, 1, 2, 2, 3, 3]
     unit = slopes[found.rows] / np.linalg.norm(slopes[found.rows])
     np.testing.assert_allclose(np.abs(found.basis), unit)
-    one = Cause(effect("e"), amplitude(neutral=1.0), {"e.shape": 2.0})
+    one = Amplitude(effect("e"), amplitude(neutral=1.0), {"e.shape": 2.0})
     # (1 + (2 + 1 + 3)²) − 1, for each unit of a size of 3.
     np.testing.assert_allclose(look.signature(one, 3.0), 12.0 * np.arange(12.0))
     assert asked == [{}, {"e.shape": 2.0, "e.size": 4.0}]
     look.signature(one, 3.0)
     assert len(asked) == 2
-    other = Cause(one.effect, one.parameter, {"e.shape": 0.0})
+    other = Amplitude(one.effect, one.parameter, {"e.shape": 0.0})
     np.testing.assert_allclose(look.signature(other, 3.0), 16.0 / 3.0 * np.arange(12.0))

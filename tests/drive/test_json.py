@@ -14,7 +14,7 @@ from tsas_cli.drive.harmonic_drive import DriveValues
 from tsas_cli.drive.tables import tables
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.records.base import parameters_of
-from tsas_cli.records.drive import Drive, DriveRun, Kinematics, TriedStructure
+from tsas_cli.records.drive import DriveFile, DriveRunErrors, Kinematics, TriedStructure
 
 SHEET = DataSheet(27.1, 120.0, 0.13, 2.3)
 
@@ -178,7 +178,7 @@ def test_a_diagnosis_of_a_drive_as_json_and_as_tables():
 
     tried = TriedStructure(name="lag", parameters=2, held_out_times_noise=1.2345)
     lead = Kinematics(kinematic_lead_rpm_s_per_mm=42.2841, fitted_lead_rpm_s_per_mm=40.0)
-    drive = Drive.model_construct(
+    drive = DriveFile.model_construct(
         parameters=parameters_of([TOLD["play_mm"]]),
         kinematics=lead,
         diagnosis=found,
@@ -187,7 +187,7 @@ def test_a_diagnosis_of_a_drive_as_json_and_as_tables():
             tried,
             tried.model_copy(update={"converged": False}),
         ),
-        runs={"a": DriveRun(rmse=0.12344, rmse_nominal=0.5, noise=0.0123)},
+        runs={"a": DriveRunErrors(rmse=0.12344, rmse_nominal=0.5, noise=0.0123)},
     )
     structures, parameters, runs, causes, error = (rows for *_, rows in tables(drive, "title"))
     assert [row[3] for row in structures] == ["chosen", "", "not converged"]

@@ -1,7 +1,7 @@
 """Verdicts on a drive that are made up, as several tests need them."""
 
-from tsas_cli.diagnosis.channel_errors import Channel
-from tsas_cli.drive.diagnosis import DriveCause, DriveDiagnosis
+from tsas_cli.diagnosis.channel_errors import HeldOutErrors
+from tsas_cli.drive.diagnosis import FoundDriveCause, FoundDriveDiagnosis
 from tsas_cli.drive.search import NOTHING
 from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.estimate import Estimate
@@ -19,11 +19,11 @@ def terms(*names):
 
 
 def cause(effect, kind="", rivals=()):
-    return DriveCause(effect, kind, rivals, (TOLD["play_mm"],), 40.0, (30.0, 50.0))
+    return FoundDriveCause(effect, kind, rivals, (TOLD["play_mm"],), 40.0, (30.0, 50.0))
 
 
 def verdict(name, *causes, nominal=NOTHING, unexplained=False, depends=(), left=1.44):
-    return DriveDiagnosis(
-        name, "why", nominal, terms("play"), causes, Channel(0.4, 0.2, 0.1, 0.15),
+    return FoundDriveDiagnosis(
+        name, "why", nominal, terms("play"), causes, HeldOutErrors(0.4, 0.2, 0.1, 0.15),
         (40.0, 30.0, 50.0), left, 0.05, unexplained, depends,
     )  # fmt: skip

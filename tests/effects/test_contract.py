@@ -8,14 +8,14 @@ import pytest
 from tests.both_ways import answers
 from tests.physics.references import GROUP_A
 from tsas_cli.effects import EFFECTS, Effects
-from tsas_cli.physics.ends import Drive
+from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.phases import UNCONVERGED
 from tsas_cli.physics.response import is_closed, simulate
 from tsas_cli.physics.rig import with_values
 
 CHANNELS = ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N")
 X_IN = np.interp(np.linspace(0, 6, 240), np.arange(7), [0, 14, 13.9, 13.95, 3, 9, 8])
-RUN = Drive(X_IN, time_s=np.linspace(0.0, 12.0, X_IN.size), session_s=100.0)
+RUN = DriveInput(X_IN, time_s=np.linspace(0.0, 12.0, X_IN.size), session_s=100.0)
 LOADS = {
     "spring": RUN,
     "force": replace(RUN, load="force", load_values=25.0 + 1.1 * X_IN),
@@ -129,7 +129,7 @@ def work_of_a_round(rig):
     way = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(ROUND)))))
     passed = np.linspace(0.0, way[-1], 6001)
     x = np.interp(passed, way, ROUND)
-    answer = simulate(rig, Drive(x, time_s=0.1 * passed), on_mesh=True)
+    answer = simulate(rig, DriveInput(x, time_s=0.1 * passed), on_mesh=True)
     trip = slice(
         int(np.searchsorted(passed, 14.0)), int(np.searchsorted(passed, way[-1] - 2.0)) + 1
     )

@@ -7,7 +7,7 @@ from tests.physics.references import GROUP_A
 from tsas_cli.effects import Effects, FreeTendon
 from tsas_cli.effects.free_tendon import free_compliance
 from tsas_cli.physics.closed_form.branches import branches
-from tsas_cli.physics.response import Drive, simulate
+from tsas_cli.physics.response import DriveInput, simulate
 
 EA = GROUP_A.tendon_stiffness_N
 MOTION = np.interp(np.linspace(0, 6, 3000), np.arange(7), [0, 14, 13.9, 13.95, 3, 9, -4])
@@ -35,7 +35,7 @@ def test_at_the_load_it_softens_the_spring_and_moves_the_output_less():
     softer = GROUP_A._replace(load_stiffness_N_per_mm=1.0 / (1.0 / spring + 61.0 / EA))
     f_in, f_out, _ = branches(MOTION, with_free(0.0, 61.0))
     np.testing.assert_allclose(f_in, branches(MOTION, softer)[0], rtol=1e-9)
-    response = simulate(with_free(0.0, 61.0), Drive(MOTION))
+    response = simulate(with_free(0.0, 61.0), DriveInput(MOTION))
     np.testing.assert_allclose(response.x_out_mm, (f_out - 25.0) / spring, atol=1e-9)
 
 
@@ -64,9 +64,9 @@ def test_its_ends_are_not_exchanged():
 @pytest.mark.parametrize("channel", ["f_out_N", "x_out_mm"])
 def test_the_chain_is_the_closed_form_with_free_lengths(channel):
     rig = with_free(152.0, 61.0)
-    exact = simulate(rig, Drive(MOTION))
+    exact = simulate(rig, DriveInput(MOTION))
     kind = "force" if channel == "f_out_N" else "displacement"
-    chain = simulate(rig, Drive(MOTION, load=kind, load_values=getattr(exact, channel)))
+    chain = simulate(rig, DriveInput(MOTION, load=kind, load_values=getattr(exact, channel)))
     for name in ("f_in_N", "f_out_N"):
         error = getattr(chain, name) - getattr(exact, name)
         assert np.sqrt(np.mean(error**2)) < 0.03

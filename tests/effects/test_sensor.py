@@ -7,7 +7,7 @@ import pytest
 
 from tests.effects.runs import UP_AND_DOWN, run
 from tests.physics.references import GROUP_A
-from tsas_cli.physics.ends import Drive
+from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import with_values
 
@@ -52,8 +52,8 @@ def test_a_late_channel_shows_what_was(channel, late):
 
 def test_without_times_nothing_is_late():
     rig = with_values(GROUP_A, {"channel_delay.f_in_delay_s": 0.1})
-    without = simulate(GROUP_A, Drive(UP_AND_DOWN))
-    np.testing.assert_array_equal(simulate(rig, Drive(UP_AND_DOWN)).f_in_N, without.f_in_N)
+    without = simulate(GROUP_A, DriveInput(UP_AND_DOWN))
+    np.testing.assert_array_equal(simulate(rig, DriveInput(UP_AND_DOWN)).f_in_N, without.f_in_N)
 
 
 @pytest.mark.parametrize(("values", "channel", "law"), READINGS)
@@ -64,7 +64,7 @@ def test_a_load_that_is_read_wrongly_is_understood(values, channel, law):
         pytest.skip("f_in drives no load")
     plain = run({})
     reading = law(getattr(plain, channel))
-    drive = Drive(UP_AND_DOWN, load=kind, load_values=reading, time_s=TIME_S)
+    drive = DriveInput(UP_AND_DOWN, load=kind, load_values=reading, time_s=TIME_S)
     again = simulate(with_values(GROUP_A, values), drive)
     true = simulate(GROUP_A, replace(drive, load_values=getattr(plain, channel)))
     np.testing.assert_allclose(getattr(again, channel), reading, atol=1e-9)

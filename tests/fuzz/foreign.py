@@ -8,7 +8,7 @@ import numpy as np
 from tests.fuzz.rules import Broken, answer
 from tsas_cli.recordings.readers import names, read, tables
 from tsas_cli.recordings.readers.options import ReadOptions
-from tsas_cli.recordings.readers.table import Table
+from tsas_cli.recordings.readers.table import ColumnTable
 from tsas_cli.support.errors import InputError
 
 _MOST_COLUMNS = 12
@@ -37,7 +37,7 @@ def _raise(error: InputError) -> None:
     raise error
 
 
-def _same(one: Table, other: Table) -> bool:
+def _same(one: ColumnTable, other: ColumnTable) -> bool:
     return one.columns.keys() == other.columns.keys() and all(
         np.array_equal(one.columns[source], other.columns[source], equal_nan=True)
         for source in one.columns

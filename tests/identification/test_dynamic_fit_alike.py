@@ -17,7 +17,7 @@ FITTED = Fitted(np.zeros(1), np.array([3.0]), np.array([2.0]), np.zeros(1, bool)
 
 
 def look(name, value, saves, move=0.0):
-    return d.Look({name: value}, np.array([move]), saves)
+    return d.ScreenedValue({name: value}, np.array([move]), saves)
 
 
 @pytest.fixture

@@ -12,7 +12,7 @@ from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.physics.response import LUMPS
-from tsas_cli.support.steps import SILENT
+from tsas_cli.support.steps import NO_PROGRESS
 
 SLOPES = np.linalg.qr(np.random.default_rng(1).standard_normal((50, 2)))[0]
 OWN = np.random.default_rng(2).standard_normal(50)
@@ -65,7 +65,7 @@ def linear(monkeypatch):
 def test_a_value_that_fits_better_saves_what_the_others_leave():
     """Twice the stiffness takes ln 2 of its errors away; what the others can do is done by them."""
     left = -np.log(2.0) * OWN + SLOPES @ [3.0, -4.0]
-    looks = d._sizes(Fit(left), d.STIFFNESS, SILENT)
+    looks = d._sizes(Fit(left), d.STIFFNESS, NO_PROGRESS)
     by = {round(look.values[d.STIFFNESS] / 5000.0, 6): look for look in looks}
     assert set(by) == {1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01}
     assert by[2.0].saves == pytest.approx(left @ left)
@@ -75,14 +75,14 @@ def test_a_value_that_fits_better_saves_what_the_others_leave():
 
 
 def test_others_are_looked_at_from_the_usual_size_up():
-    looks = d._sizes(Fit(OWN), d.VISCOUS, SILENT)
+    looks = d._sizes(Fit(OWN), d.VISCOUS, NO_PROGRESS)
     usual = QUANTITIES[d.VISCOUS].size
     assert [look.values[d.VISCOUS] / usual for look in looks] == pytest.approx(list(d.TIMES))
 
 
 @pytest.mark.parametrize(("asked", "started"), [(0.3, 0.3), (5.0, 1.0), (0.001, 0.01)])
 def test_friction_at_rest_is_looked_at_at_the_size_that_is_asked_for(asked, started):
-    looks = d._friction_at_rest(Fit(-asked * OWN), SILENT)
+    looks = d._friction_at_rest(Fit(-asked * OWN), NO_PROGRESS)
     assert [look.values[d.VELOCITY] for look in looks] == pytest.approx(list(d.VELOCITIES))
     for look in looks:
         assert look.values[d.EXCESS] == pytest.approx(started)
@@ -90,26 +90,26 @@ def test_friction_at_rest_is_looked_at_at_the_size_that_is_asked_for(asked, star
 
 
 def test_less_friction_at_rest_is_none():
-    looks = d._friction_at_rest(Fit(0.5 * OWN), SILENT)
+    looks = d._friction_at_rest(Fit(0.5 * OWN), NO_PROGRESS)
     assert {look.saves for look in looks} == {0.0}
     assert {look.values[d.EXCESS] for look in looks} == {0.01}
 
 
 @pytest.mark.parametrize(("size", "shows"), [(99.0, False), (101.0, True)])
 def test_what_would_show_is_ten_times_noise_at_a_tenth_more_friction(size, shows):
-    looks = d._friction_at_rest(Fit(np.zeros(50), size / 10.0 * OWN), SILENT)
+    looks = d._friction_at_rest(Fit(np.zeros(50), size / 10.0 * OWN), NO_PROGRESS)
     assert {look.shows for look in looks} == {shows}
     imitated = Fit(np.zeros(50), 1e3 * SLOPES[:, 0])
-    assert not any(look.shows for look in d._friction_at_rest(imitated, SILENT))
+    assert not any(look.shows for look in d._friction_at_rest(imitated, NO_PROGRESS))
 
 
 def look(saves, stiffness=1e4, moves=(0.0, 0.0)):
-    return d.Look({d.STIFFNESS: stiffness}, np.array(moves), saves)
+    return d.ScreenedValue({d.STIFFNESS: stiffness}, np.array(moves), saves)
 
 
 def test_what_would_have_shown_is_said():
     shown = [
-        d.Look({d.EXCESS: 0.1, d.VELOCITY: v}, np.zeros(2), 0.0, shows)
+        d.ScreenedValue({d.EXCESS: 0.1, d.VELOCITY: v}, np.zeros(2), 0.0, shows)
         for v, shows in ((0.01, False), (0.5, True), (7.0, True), (100.0, False))
     ]
     assert "velocities of 0.5 to 7 mm/s" in d._static_friction_note(shown)
@@ -122,7 +122,7 @@ def test_values_that_fit_alike_are_said():
     assert d._indistinguishable_note(d.STIFFNESS, like).startswith(
         f"{d.STIFFNESS} is not identifiable: 2e+03 to 5e+04 N/mm fit equally well"
     )
-    viscous = [d.Look({d.VISCOUS: v}, np.zeros(2), 0.0) for v in (0.01, 0.2)]
+    viscous = [d.ScreenedValue({d.VISCOUS: v}, np.zeros(2), 0.0) for v in (0.01, 0.2)]
     assert d._indistinguishable_note(d.VISCOUS, viscous).startswith(
         f"{d.VISCOUS} is not identifiable: 0 to 0.2 N s/mm"
     )
@@ -183,7 +183,7 @@ def estimate(name, value, low, high, *, stderr=1.0, at_bound=False):
 
 def test_the_stiffness_is_sought_again_from_where_it_fits_best(again):
     better = d.Solved(Fit(-np.log(5.0) * OWN, further=(d.STIFFNESS,)), None)
-    assert d._from_better_stiffness(better, SILENT) == "fitted"
+    assert d._from_better_stiffness(better, NO_PROGRESS) == "fitted"
     ((initial, fixed, further),) = again[0]
     assert initial.value(d.STIFFNESS) == fixed.value(d.STIFFNESS) == pytest.approx(25e3)
     assert further == [d.STIFFNESS]
@@ -191,9 +191,9 @@ def test_the_stiffness_is_sought_again_from_where_it_fits_best(again):
 
 def test_a_stiffness_that_is_free_or_gains_little_stays(again):
     free = d.Solved(Fit(-np.log(5.0) * OWN, names=(d.STIFFNESS,)), None)
-    assert d._from_better_stiffness(free, SILENT) is None
+    assert d._from_better_stiffness(free, NO_PROGRESS) is None
     little = d.Solved(Fit(-0.4 * OWN), None)  # saves 16 of 25 at the most
-    assert d._from_better_stiffness(little, SILENT) is None
+    assert d._from_better_stiffness(little, NO_PROGRESS) is None
     assert again[0] == []
 
 
@@ -211,7 +211,7 @@ FINEST = TABLE_1.tendon_stiffness_N * LUMPS**2 / TABLE_1.sheath_length_mm
 )
 def test_a_stiffness_that_is_vague_or_too_fine_is_fixed(again, value, low, high, at):
     others = [estimate(d.VISCOUS, 0.02, 0.001, 10.0), estimate(d.STIFFNESS, value, low, high)]
-    found = d._at_stiffness(solved(estimates=others), SILENT)
+    found = d._at_stiffness(solved(estimates=others), NO_PROGRESS)
     if at is None:
         assert found is None
         assert again[0] == []
@@ -224,7 +224,7 @@ def test_a_stiffness_that_is_vague_or_too_fine_is_fixed(again, value, low, high,
 
 def test_a_stiffness_without_interval_is_left_alone(again):
     alone = [Estimate(d.STIFFNESS, 5e3, "N/mm", "default")]
-    assert d._at_stiffness(solved(estimates=alone), SILENT) is None
+    assert d._at_stiffness(solved(estimates=alone), NO_PROGRESS) is None
 
 
 def freed(*, low=0.1, stderr=1.0, at_bound=False):
@@ -245,14 +245,14 @@ def freed(*, low=0.1, stderr=1.0, at_bound=False):
 )
 def test_what_is_freed_stays_free_where_it_is_told(again, more, kept):
     again[1].append(more)
-    found = d._freed(solved(), [look(10.0), look(30.0, 1e4)], SILENT)
+    found = d._freed(solved(), [look(10.0), look(30.0, 1e4)], NO_PROGRESS)
     assert (found is more) == kept or more is None
     assert (found is None) != kept
     assert again[0][0][2] == [d.STIFFNESS, d.VISCOUS, d.STIFFNESS]
 
 
 def test_what_saves_too_little_is_not_freed(again):
-    assert d._freed(solved(), [look(24.9), look(3.0)], SILENT) is None
+    assert d._freed(solved(), [look(24.9), look(3.0)], NO_PROGRESS) is None
     assert again[0] == []
 
 

@@ -58,7 +58,7 @@ def trial_of(unknowns=(), values=(), residual=None, *, J=None, at_bound=None, si
     values = np.array(values, dtype=float)
     bound = np.zeros(values.size, bool) if at_bound is None else np.array(at_bound)
     solution = Solution(values, bound, residual, J, True, "", 1)
-    return e.Trial(("free_tendon",), tuple(unknowns), solution, tuple(sizes), mesh)
+    return e.HypothesisFit(("free_tendon",), tuple(unknowns), solution, tuple(sizes), mesh)
 
 
 def test_residuals_and_slopes_are_told_run_by_run():

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tests.physics.references import GROUP_A, through, wrap_of
-from tsas_cli.identification.initial_values import read_off
+from tsas_cli.identification.initial_values import initial_values_of
 from tsas_cli.identification.phases import Segment
 from tsas_cli.physics.closed_form.static import static_model
 
@@ -42,7 +42,7 @@ def read(channels, slopes=KM, load="spring"):
         conditioned={"x_in_mm": SimpleNamespace(values=X)},
     )
     km = [SimpleNamespace(phase=name, value=value) for name, value in slopes.items()]
-    return read_off(run, segments(), km, GROUP_A)
+    return initial_values_of(run, segments(), km, GROUP_A)
 
 
 def test_all_channels_tell_everything():

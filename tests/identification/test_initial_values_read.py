@@ -45,13 +45,13 @@ def test_friction_is_half_the_logarithm_of_the_ratios_quotient():
 def test_a_bend_of_nothing_is_a_thousandth():
     run = run_of(f_in_N=np.full(6, 10.0), load="force")
     km = [SimpleNamespace(phase=p, value=v) for p, v in (("contraction", 4.0), ("loosening", 1.0))]
-    straight = s.read_off(run, [], km, GROUP_A._replace(total_bend_rad=0.0))
+    straight = s.initial_values_of(run, [], km, GROUP_A._replace(total_bend_rad=0.0))
     assert straight == {}  # 693: more than is plausible
-    bent = s.read_off(run, [], km, GROUP_A._replace(total_bend_rad=2.0))
+    bent = s.initial_values_of(run, [], km, GROUP_A._replace(total_bend_rad=2.0))
     assert bent == pytest.approx({"friction_coefficient": 0.5 * math.log(2.0)})
     hardly = [SimpleNamespace(phase=p, value=2.0) for p in KM]
     for bend, friction in ((0.0, 10.0), (1e-3, 10.0), (0.005, 2.0)):
-        found = s.read_off(run, [], hardly, GROUP_A._replace(total_bend_rad=bend))
+        found = s.initial_values_of(run, [], hardly, GROUP_A._replace(total_bend_rad=bend))
         assert found == pytest.approx({"friction_coefficient": friction})
 
 
@@ -62,7 +62,7 @@ def test_the_tendon_s_stiffness_is_that_of_the_dead_band():
     a = math.log(2.0)
     exact = 160.0 * GROUP_A.sheath_length_mm * (1.0 / 3.0) / a  # tanh(ln √2) = 1/3
     run = run_of(load="force", f_in_N=np.full(6, 10.0))
-    assert s.read_off(run, [], slopes, GROUP_A)["tendon_stiffness_N"] == pytest.approx(exact)
+    assert s.initial_values_of(run, [], slopes, GROUP_A)["tendon_stiffness_N"] == pytest.approx(exact)
 
 
 X_OUT = np.array([1.0, 2.0, 3.0, 4.0, 5.0, 6.0])
@@ -177,7 +177,7 @@ def test_a_slope_of_nothing_tells_nothing():
 
     def read(contraction):
         told = (("contraction", contraction), ("loosening", 0.25))
-        return s.read_off(run, [], [SimpleNamespace(phase=p, value=v) for p, v in told], GROUP_A)
+        return s.initial_values_of(run, [], [SimpleNamespace(phase=p, value=v) for p, v in told], GROUP_A)
 
     assert read(0.0) == {}
     found = read(-1.0)["friction_coefficient"]  # the wrong sign: its size counts

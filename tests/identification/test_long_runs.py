@@ -11,16 +11,16 @@ import tsas_cli as tsas
 from tsas_cli.identification.long_runs import open_long
 from tsas_cli.identification.model import data_sheet
 from tsas_cli.identification.prepared import prepare
-from tsas_cli.physics.ends import Drive
+from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.response import simulate
 from tsas_cli.recordings import pieces
 from tsas_cli.recordings.dataset import read_dataset
-from tsas_cli.recordings.manifest import Manifest, Rig, Run
+from tsas_cli.recordings.manifest import Manifest, RigSheet, Run
 from tsas_cli.recordings.writing import write_dataset
 from tsas_cli.support.errors import InputError
 
 ROWS, PIECE = 12_000, 2500
-SHEET = Rig(
+SHEET = RigSheet(
     tendon_diameter_mm=1.2,
     tendon_modulus_GPa=60.0,
     friction_coefficient=0.125,
@@ -56,7 +56,7 @@ def recorded(rows=ROWS):
 
 def answered(time_s, x):
     manifest = Manifest(format=1, name="long", kind="simulated", rig=SHEET, run=(entry(),))
-    true = simulate(data_sheet(manifest).rig(entry()), Drive(x, time_s=time_s - time_s[0]))
+    true = simulate(data_sheet(manifest).rig(entry()), DriveInput(x, time_s=time_s - time_s[0]))
     return {name: getattr(true, name) for name in ANSWERS}
 
 

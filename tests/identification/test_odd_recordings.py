@@ -11,7 +11,7 @@ from tsas_cli.identification.calibration import calibrate_runs
 from tsas_cli.identification.comparison import compare
 from tsas_cli.identification.prepared import prepare
 from tsas_cli.physics.phases import SLACK
-from tsas_cli.physics.response import Drive, simulate
+from tsas_cli.physics.response import DriveInput, simulate
 from tsas_cli.physics.rig import Rig as ModelRig
 from tsas_cli.recordings.manifest import Manifest, Run
 from tsas_cli.recordings.recording import Recording
@@ -323,7 +323,7 @@ def test_a_tendon_that_hangs_slack_for_a_while():
     """By the product's own model: the independent rig stops where no tension is left."""
     t = np.arange(0.0, 12.0, 0.005)
     rig = ModelRig(0.135, TRUE.axial_stiffness, 1.45, TRUE.sheath_length_mm, math.pi, 27.0)
-    response = simulate(rig, Drive(12.0 * np.sin(t) - 12.0))
+    response = simulate(rig, DriveInput(12.0 * np.sin(t) - 12.0))
     assert 0.05 < np.mean(response.phase == SLACK) < 0.5
     rng = np.random.default_rng(5)
     noise = {"x_in_mm": 0.005, "x_out_mm": 0.005, "f_in_N": 0.08, "f_out_N": 0.08}

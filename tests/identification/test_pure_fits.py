@@ -6,11 +6,11 @@ import pytest
 from tests.identification.recorded import manifest, prepared
 from tsas_cli.diagnosis.diagnose import bench_folds
 from tsas_cli.diagnosis.held_out import held_out_squares
-from tsas_cli.identification.extension import bench_of, reweighed_bench
+from tsas_cli.identification.extension import bench_of, reweighted_bench
 from tsas_cli.identification.fit_problem import prepare_fit
 from tsas_cli.identification.joint_fit import misfit, solve_fit
 from tsas_cli.identification.model import data_sheet
-from tsas_cli.identification.run_errors import meshed, reweighed
+from tsas_cli.identification.run_errors import meshed, reweighted
 from tsas_studies.challenge.rig.motions import sine
 from tsas_studies.challenge.rig.tendon import Rig
 
@@ -55,7 +55,7 @@ def test_a_problem_that_is_solved_twice_gives_the_same_twice(problem):
 def test_a_solution_is_weighed_where_it_ended(problem, solved):
     """The problem stays weighed at its initial values."""
     assert not same(weights_of(problem.errors), weights_of(solved.errors))
-    there = [reweighed(e, rig) for e, rig in zip(problem.errors, solved.rigs, strict=True)]
+    there = [reweighted(e, rig) for e, rig in zip(problem.errors, solved.rigs, strict=True)]
     assert same(weights_of(there), weights_of(solved.errors))
 
 
@@ -67,7 +67,7 @@ def test_weighing_again_leaves_the_old_bench_as_it_was(solved):
     meshes = (bench.closed, bench.meshed, bench.coarse)
     before = [residuals_of(runs, bench.rigs) for runs in meshes]
     squares = held_out_squares(nominal, folds)
-    other = reweighed_bench(bench, trial)
+    other = reweighted_bench(bench, trial)
     changed = [residuals_of(runs, bench.rigs) for runs in (other.closed, other.meshed)]
     assert same([residuals_of(runs, bench.rigs) for runs in meshes], before)
     assert not np.array_equal(changed[0], before[0])

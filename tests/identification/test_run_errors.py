@@ -19,7 +19,7 @@ from tsas_cli.identification.run_errors import (
     _reversal_shapes,
     run_errors,
 )
-from tsas_cli.identification.samples import kept_samples
+from tsas_cli.identification.samples import fitted_samples
 from tsas_studies.challenge.rig.motions import Motion, nested, sine, triangle, two_sines
 from tsas_studies.challenge.rig.sensors import Sensor, Sensors
 from tsas_studies.challenge.rig.tendon import Rig
@@ -27,7 +27,7 @@ from tsas_studies.challenge.rig.tendon import Rig
 
 def errors_of(run):
     rig = data_sheet(manifest(run)).rig(run.run)
-    return run_errors(run, kept_samples(run, rig), rig), rig
+    return run_errors(run, fitted_samples(run, rig), rig), rig
 
 
 @pytest.mark.parametrize("motion", [sine(), triangle()], ids=["sine", "triangle"])

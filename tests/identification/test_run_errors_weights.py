@@ -11,7 +11,7 @@ import pytest
 
 from tsas_cli.identification import run_errors as r
 from tsas_cli.identification import run_simulation as rs
-from tsas_cli.physics.ends import Drive
+from tsas_cli.physics.ends import DriveInput
 
 X = np.array([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 4.0, 3.0, 2.0, 1.0, 0.0])
 N = X.size
@@ -54,7 +54,7 @@ def run_of(*, sd=0.1, unseen=0.0, load_sd=None):
     if load_sd is not None:
         ends["f_out_N"] = conditioned(LOAD, load_sd)
     noise = {n: v for n, v in NOISE.items() if n not in ends}
-    drive = Drive(
+    drive = DriveInput(
         values=X,
         load="spring" if load_sd is None else "force",
         load_values=None if load_sd is None else LOAD,
@@ -202,7 +202,7 @@ def test_the_dynamic_model_takes_the_steps_of_the_rig_that_gave_the_weights(mode
     found.errors(9.0)
     assert [how["step_ends_s"].tolist() for *_, how in model.asked] == [[0.25, 0.5]]
     model.asked.clear()
-    other = r.reweighed(found, 9.0)
+    other = r.reweighted(found, 9.0)
     assert len(model.asked) == 4  # its old predictions had other steps
     assert other.simulation is not found.simulation
 
@@ -211,7 +211,7 @@ def test_between_samples_that_are_simulated_answers_are_straight(monkeypatch, mo
     """Simulated are 0, 4 and 10: at 2 half way from 0 to 4, at 7 half way from 4 to 0."""
     monkeypatch.setattr(rs, "points", lambda run: np.array([0, 4, 10]))
     run = run_of(load_sd=0.1)
-    run.drive = Drive(values=X, load="force", load_values=2.0 * X, time_s=0.1 * EVERY)
+    run.drive = DriveInput(values=X, load="force", load_values=2.0 * X, time_s=0.1 * EVERY)
     found = errors_of(run)
     answers = found.predict(3.0)
     np.testing.assert_allclose(answers["f_in_N"][[0, 2, 4, 7, 10]], [0.0, 6.0, 12.0, 6.0, 0.0])

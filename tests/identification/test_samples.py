@@ -30,14 +30,14 @@ def run_of(x, *, gap=(), noise=0.1, smallest=0.5, **measured):
 @pytest.fixture
 def forgets(monkeypatch):
     """Have the tendon forget its start at a given sample."""
-    return lambda first: monkeypatch.setattr(s, "forgotten", lambda rig, drive: first)
+    return lambda first: monkeypatch.setattr(s, "first_determined_sample", lambda rig, drive: first)
 
 
 UP = np.arange(N, dtype=float)
 
 
 def kept(run):
-    return {name: at.tolist() for name, at in s.kept_samples(run, None).items()}
+    return {name: at.tolist() for name, at in s.fitted_samples(run, None).items()}
 
 
 def test_the_drive_has_to_travel_as_far_again(forgets):
@@ -93,19 +93,19 @@ def test_sixteen_samples_are_enough_and_noise_has_to_be_known(forgets):
 def test_what_is_left_out_is_said():
     run = run_of(UP, f_out_N=UP, x_out_mm=UP)
     everything = dict.fromkeys(run.measured, UP)
-    assert s.lost(run, everything) == []
+    assert s.left_out_notes(run, everything) == []
     few = "of run a does not enter the fit: it has too few samples."
-    assert s.lost(run, {"f_in_N": UP}) == [f"f_out_N {few}", f"x_out_mm {few}"]
+    assert s.left_out_notes(run, {"f_in_N": UP}) == [f"f_out_N {few}", f"x_out_mm {few}"]
     run.noise["f_in_N"] = 0.0
     flat = "f_in_N of run a does not enter the fit: it is constant."
-    assert s.lost(run, {"f_out_N": UP}) == [flat, f"x_out_mm {few}"]
-    whole = s.lost(run, {})
+    assert s.left_out_notes(run, {"f_out_N": UP}) == [flat, f"x_out_mm {few}"]
+    whole = s.left_out_notes(run, {})
     assert whole[0] == flat
     assert whole[1].startswith("Run a does not enter the fit: too few samples after")
     assert len(whole) == 2
     run.noise = dict.fromkeys(run.measured, 0.0)
-    assert len(s.lost(run, {})) == 3
-    assert all("is constant" in sentence for sentence in s.lost(run, {}))
+    assert len(s.left_out_notes(run, {})) == 3
+    assert all("is constant" in sentence for sentence in s.left_out_notes(run, {}))
 
 
 def points(n, reversals):

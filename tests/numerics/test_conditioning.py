@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tsas_cli.numerics.conditioning import condition, monotone_between
-from tsas_cli.physics.response import Drive, simulate
+from tsas_cli.physics.response import DriveInput, simulate
 from tsas_cli.physics.rig import Rig
 from tsas_studies.challenge.rig.motions import dwell, nested, sine, triangle
 from tsas_studies.challenge.rig.tendon import Rig as VirtualRig
@@ -38,10 +38,10 @@ def test_a_true_model_stays_within_twice_the_force_noise(name):
     errors = []
     for seed in range(5):
         cleaned = condition(t, noisy(x, seed)).values
-        errors.append(rms(simulate(MODEL, Drive(cleaned)).f_in_N - f_in))
+        errors.append(rms(simulate(MODEL, DriveInput(cleaned)).f_in_N - f_in))
     assert np.median(errors) < 2.0 * FORCE_NOISE_N
     if name == "sine":
-        raw = simulate(MODEL, Drive(noisy(x, 0))).f_in_N - f_in
+        raw = simulate(MODEL, DriveInput(noisy(x, 0))).f_in_N - f_in
         assert np.std(raw) > 10.0 * FORCE_NOISE_N
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tsas_cli.numerics.conditioning import condition
-from tsas_cli.numerics.conditioning_pieces import Plan, cleaned, plan
+from tsas_cli.numerics.conditioning_pieces import CleaningPlan, cleaned, plan
 from tsas_cli.numerics.turning_points import turning_points
 
 NOISE = 0.01
@@ -65,7 +65,7 @@ def test_between_reversals_it_is_the_nearest_monotone_signal_exactly(rows, thres
 
     monkeypatch.setattr(conditioning_pieces, "smooth_out", as_it_is)
     raw = motion(TIME_S) + NOISE * np.random.default_rng(2).standard_normal(TIME_S.size)
-    known = Plan(NOISE, 1.0, threshold, 0.0, 0.005)
+    known = CleaningPlan(NOISE, 1.0, threshold, 0.0, 0.005)
     found, _ = in_pieces(TIME_S, raw, rows, 10, known)
     turns = turning_points(raw, threshold)
     np.testing.assert_array_equal(found["reversals"], turns[1:-1])
@@ -76,7 +76,7 @@ def test_between_reversals_it_is_the_nearest_monotone_signal_exactly(rows, thres
 @pytest.mark.parametrize("rows", [900, 4000])
 def test_without_noise_nothing_changes(rows):
     raw = motion(TIME_S)
-    known = Plan(0.0, 1.0, 0.0, 0.0, 0.005)
+    known = CleaningPlan(0.0, 1.0, 0.0, 0.0, 0.005)
     found, _ = in_pieces(TIME_S, raw, rows, 100, known)
     np.testing.assert_array_equal(found["values"], raw)
     np.testing.assert_array_equal(found["reversals"], condition(TIME_S, raw).reversals[1:-1])
@@ -89,7 +89,7 @@ def test_a_gap_is_laid_over_straight_wherever_it_is(gap):
     raw = motion(TIME_S)
     raw[gap] = np.nan
     raw[5000::3] = np.nan
-    known = Plan(0.0, 1.0, 0.0, 0.0, 0.005)
+    known = CleaningPlan(0.0, 1.0, 0.0, 0.0, 0.005)
     found, _ = in_pieces(TIME_S, raw, 3000, 100, known)
     there = np.isfinite(raw)
     np.testing.assert_allclose(found["values"], np.interp(TIME_S, TIME_S[there], raw[there]))

@@ -10,7 +10,7 @@ from tests.physics.slip.test_any_effect import any_effects
 from tests.physics.test_any_rig import any_motion, any_rig
 from tsas_cli.physics.by_pieces import simulate_pieces
 from tsas_cli.physics.closed_form.branches import branches
-from tsas_cli.physics.ends import Drive
+from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.phases import UNCONVERGED
 from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import with_values
@@ -19,7 +19,7 @@ CHANNELS = ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N")
 TIME_S = np.concatenate((np.arange(900) * 0.01, 9.0 + np.arange(600) * 0.013))
 MOTION = 9.0 + 8.0 * np.sin(1.7 * TIME_S) + 3.0 * np.sin(5.3 * TIME_S) + 3.0  # nested strokes
 RIG = GROUP_A._replace(x_in_zero_mm=3.0, x_out_zero_mm=-7.0)
-DRIVE = Drive(MOTION, time_s=TIME_S, start_f_in_N=35.0)
+DRIVE = DriveInput(MOTION, time_s=TIME_S, start_f_in_N=35.0)
 DELAYS = {
     "channel_delay.f_in_delay_s": 0.031,
     "channel_delay.f_out_delay_s": -0.047,
@@ -61,7 +61,7 @@ def test_a_slack_tendon_that_rests_over_a_border_stays_slack():
     slack = np.concatenate(
         (np.linspace(3.0, -40.0, 50), np.full(60, -40.0), np.linspace(-40, 9, 50))
     )
-    drive = Drive(slack, time_s=np.arange(160) * 0.01)
+    drive = DriveInput(slack, time_s=np.arange(160) * 0.01)
     whole = simulate(RIG, drive)
     assert (whole.phase[50:110] == 2).all()
     assert_same(in_pieces(RIG, drive, 40), whole, rtol=1e-14)
@@ -84,7 +84,7 @@ def test_a_load_that_is_driven_late_looks_over_the_borders(load, channel):
 
 
 def test_a_drive_by_force_goes_on():
-    drive = Drive(branches(MOTION - 3.0, GROUP_A)[0], kind="force", time_s=TIME_S)
+    drive = DriveInput(branches(MOTION - 3.0, GROUP_A)[0], kind="force", time_s=TIME_S)
     rig = with_values(RIG, DELAYS)
     assert_same(in_pieces(rig, drive, 211, nodes=12), simulate(rig, drive, nodes=12))
 
@@ -96,7 +96,7 @@ def test_any_effects_on_any_rig(seed):
     x = any_motion(rng, nominal)
     x_out = branches(x, nominal)[1]
     rig = with_values(nominal, any_effects(rng, nominal, x, x_out))
-    drive = Drive(x, time_s=np.cumsum(rng.uniform(0.5, 1.5, x.size)) / x.size)
+    drive = DriveInput(x, time_s=np.cumsum(rng.uniform(0.5, 1.5, x.size)) / x.size)
     drive = replace(drive, time_s=drive.time_s - drive.time_s[0])
     whole = simulate(rig, drive, nodes=8)
     found = in_pieces(rig, drive, max(x.size // 7, 8), nodes=8)

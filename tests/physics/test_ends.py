@@ -8,7 +8,7 @@ import pytest
 from tests.physics.references import GROUP_A, wrap_of
 from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, SPRING
 from tsas_cli.physics.course import DRIVE, LOAD, PULLED, RELEASED, STEP, VISCOUS
-from tsas_cli.physics.ends import Drive, ends_of, last_direction, losses_at, losses_without_speed
+from tsas_cli.physics.ends import DriveInput, ends_of, last_direction, losses_at, losses_without_speed
 from tsas_cli.physics.rig import with_values
 
 
@@ -38,7 +38,7 @@ def test_a_course_by_displacement_has_speeds_steps_and_the_last_directions():
     rig = with_values(
         GROUP_A._replace(x_in_zero_mm=1.0), {"viscous_friction.coefficient_N_s_per_mm": 0.5}
     )
-    found = ends_of(rig, Drive(LEVELS, time_s=TIME_S))
+    found = ends_of(rig, DriveInput(LEVELS, time_s=TIME_S))
     assert found.boundary == (DISPLACEMENT, SPRING)
     np.testing.assert_allclose(found.drive, [3.0, 5.0, 2.0])
     np.testing.assert_allclose(found.course[LOAD], 0.0)
@@ -47,7 +47,7 @@ def test_a_course_by_displacement_has_speeds_steps_and_the_last_directions():
     np.testing.assert_allclose(np.abs(found.course[VISCOUS]), 0.5 * np.array([4.0, 2.5, 2.0]))
     np.testing.assert_allclose(found.course[STEP], [math.inf, 0.5, 1.5])
     np.testing.assert_array_equal(found.direction, [0.0, 1.0, -1.0])
-    still = ends_of(rig, Drive(LEVELS))
+    still = ends_of(rig, DriveInput(LEVELS))
     assert not still.course[VISCOUS].any()
     assert np.isinf(still.course[STEP]).all()
     assert found.first().course.shape == (8, 1)
@@ -59,10 +59,10 @@ def test_a_course_by_force_is_free_of_the_sensors_errors():
         GROUP_A._replace(x_out_zero_mm=0.5),
         {"force_sensor_offset.f_in_offset_N": 2.0, "force_sensor_offset.f_out_offset_N": -1.0},
     )
-    pulled = ends_of(rig, Drive(LEVELS, kind="force", load="force", load_values=2.0 * LEVELS))
+    pulled = ends_of(rig, DriveInput(LEVELS, kind="force", load="force", load_values=2.0 * LEVELS))
     assert pulled.boundary == (FORCE, FORCE)
     np.testing.assert_allclose(pulled.course[[DRIVE, LOAD]], [LEVELS - 2.0, 2.0 * LEVELS + 1.0])
-    placed = ends_of(rig, Drive(LEVELS, load="displacement", load_values=LEVELS))
+    placed = ends_of(rig, DriveInput(LEVELS, load="displacement", load_values=LEVELS))
     assert placed.boundary == (DISPLACEMENT, DISPLACEMENT)
     np.testing.assert_allclose(placed.course[LOAD], LEVELS - 0.5)
 
@@ -70,8 +70,8 @@ def test_a_course_by_force_is_free_of_the_sensors_errors():
 def test_a_run_goes_on_with_the_play_and_the_direction_that_it_had():
     """A play of 2 mm: the tendon's end stays while the drive crosses it."""
     rig = with_values(GROUP_A, {"backlash.play_mm": 2.0})
-    begun = ends_of(rig, Drive(LEVELS))
+    begun = ends_of(rig, DriveInput(LEVELS))
     np.testing.assert_allclose(begun.drive, [4.0, 5.0, 4.0])
-    goes_on = ends_of(rig, Drive(LEVELS), (4.5, -1.0))
+    goes_on = ends_of(rig, DriveInput(LEVELS), (4.5, -1.0))
     np.testing.assert_allclose(goes_on.drive, [4.5, 5.0, 4.0])
     np.testing.assert_array_equal(goes_on.direction, [-1.0, 1.0, -1.0])

@@ -19,7 +19,7 @@ from tests.physics.references import (
 )
 from tsas_cli.effects import Effects, Presliding
 from tsas_cli.physics.closed_form.branches import branches
-from tsas_cli.physics.ends import Drive
+from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.frames import empty_frames, is_next, slips_up_to
 from tsas_cli.physics.phases import SLACK, UNCONVERGED
 from tsas_cli.physics.response import simulate
@@ -49,7 +49,7 @@ def chain(x, rig=GROUP_A, *, n=N, every=1, boundary=LOADED_BY_SPRING, load=0.0):
 @pytest.mark.parametrize("solver", ["closed form", "slip chain", "LuGre chain"])
 def test_ends_of_the_profile_are_those_of_the_same_simulation(solver):
     dynamics = "lugre" if solver == "LuGre chain" else "slip"
-    drive = Drive(SINE, time_s=TIME_S, start_f_in_N=30.0)
+    drive = DriveInput(SINE, time_s=TIME_S, start_f_in_N=30.0)
     at = np.arange(0, SINE.size, 7)
     call = {"dynamics": dynamics, "on_mesh": solver == "slip chain"}
     answer = simulate(GROUP_A, drive, looked_at=at, **call)
@@ -141,7 +141,7 @@ def test_the_dynamic_chain_is_the_distributed_model_while_it_is_slow():
     stiff = GROUP_A._replace(
         bristles=GROUP_A.bristles._replace(stiffness_N_per_mm=1e6),
     )
-    slow = Drive(SINE, time_s=20.0 * TIME_S)
+    slow = DriveInput(SINE, time_s=20.0 * TIME_S)
     at = np.arange(0, SINE.size, 50)
     dynamic = simulate(stiff, slow, "lugre", looked_at=at).frames
     exact = simulate(stiff, slow, on_mesh=True, nodes=50, looked_at=at).frames
@@ -153,7 +153,7 @@ def test_the_dynamic_chain_is_the_distributed_model_while_it_is_slow():
 @pytest.mark.parametrize("on_mesh", [False, True])
 def test_a_slack_tendon_carries_nothing(dynamics, on_mesh):
     x = np.concatenate((through(5.0, -40.0, -35.0), np.full(50, -35.0)))
-    drive = Drive(x, time_s=1e-2 * np.arange(x.size))
+    drive = DriveInput(x, time_s=1e-2 * np.arange(x.size))
     answer = simulate(GROUP_A, drive, dynamics, on_mesh=on_mesh, looked_at=np.arange(x.size))
     slack = answer.phase == SLACK
     assert slack.sum() > 100
@@ -181,7 +181,7 @@ def test_what_no_solver_has_reached_is_unknown():
 
 
 def test_the_lumped_model_does_not_say_it():
-    answer = simulate(GROUP_A, Drive(SINE), "static", looked_at=np.array([0, 10]))
+    answer = simulate(GROUP_A, DriveInput(SINE), "static", looked_at=np.array([0, 10]))
     assert answer.frames is None
 
 

@@ -10,9 +10,9 @@ import pytest
 from tests.physics.references import GROUP_A, wrap_of
 from tsas_cli.physics.closed_form.branches import branches
 from tsas_cli.physics.course import Tensions
-from tsas_cli.physics.ends import Drive
+from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.phases import UNCONVERGED
-from tsas_cli.physics.response import force_beside_tendon, forgotten, simulate, with_spring_load
+from tsas_cli.physics.response import force_beside_tendon, first_determined_sample, simulate, with_spring_load
 from tsas_cli.physics.rig import with_values
 
 RIG = GROUP_A._replace(x_in_zero_mm=3.0, x_out_zero_mm=-7.0)
@@ -23,7 +23,7 @@ CHANNELS = ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N")
 
 @pytest.fixture(scope="module")
 def spring():
-    return simulate(RIG, Drive(MOTION + 3.0))
+    return simulate(RIG, DriveInput(MOTION + 3.0))
 
 
 def test_a_spring_is_solved_in_closed_form_and_read_with_the_zeros(spring):
@@ -37,7 +37,7 @@ def test_a_spring_is_solved_in_closed_form_and_read_with_the_zeros(spring):
 
 @pytest.mark.parametrize(("load", "channel"), [("force", "f_out_N"), ("displacement", "x_out_mm")])
 def test_a_measured_load_repeats_the_spring(spring, load, channel):
-    again = simulate(RIG, Drive(MOTION + 3.0, load=load, load_values=getattr(spring, channel)))
+    again = simulate(RIG, DriveInput(MOTION + 3.0, load=load, load_values=getattr(spring, channel)))
     assert "slip chain" in again.solver
     assert UNCONVERGED not in again.phase
     np.testing.assert_array_equal(getattr(again, channel), getattr(spring, channel))
@@ -48,14 +48,14 @@ def test_a_measured_load_repeats_the_spring(spring, load, channel):
 
 
 def test_a_drive_by_force_moves_as_the_drive_did(spring):
-    again = simulate(RIG, Drive(spring.f_in_N, kind="force"))
+    again = simulate(RIG, DriveInput(spring.f_in_N, kind="force"))
     np.testing.assert_array_equal(again.f_in_N, spring.f_in_N)
     np.testing.assert_allclose(again.x_in_mm, spring.x_in_mm, atol=0.02)
     np.testing.assert_allclose(again.x_out_mm, spring.x_out_mm, atol=0.02)
 
 
 def test_dynamics_static_asks_the_lumped_model():
-    answer = simulate(RIG, Drive(np.array([3.0, 3.01])), "static")
+    answer = simulate(RIG, DriveInput(np.array([3.0, 3.01])), "static")
     assert answer.f_in_N[1] - answer.f_in_N[0] == pytest.approx(1.751, abs=2e-3)
     assert answer.x_out_mm == pytest.approx([-7.0, -7.0])
     assert answer.solver == "lumped dead bands"
@@ -64,7 +64,7 @@ def test_dynamics_static_asks_the_lumped_model():
 def mid_cycle(spring, load, part):
     values = {"spring": None, "force": spring.f_out_N, "displacement": spring.x_out_mm}[load]
     load_values = None if values is None else values[part]
-    return Drive(spring.x_in_mm[part], load=load, load_values=load_values)
+    return DriveInput(spring.x_in_mm[part], load=load, load_values=load_values)
 
 
 @pytest.mark.parametrize("cut", [250, 520, 700, 900, 1010, 1100])
@@ -85,7 +85,7 @@ def test_a_start_that_cannot_be_is_the_nearest_that_can(factor):
     """At x_in = 10 mm the tension lies between those of loosening and contraction."""
     x = np.array([13.0, 13.0])
     extreme = branches(np.array([40.0 if factor < 1 else -5.0, 10.0]), GROUP_A)[0][1]
-    answer = simulate(RIG, Drive(x, start_f_in_N=factor * extreme))
+    answer = simulate(RIG, DriveInput(x, start_f_in_N=factor * extreme))
     assert answer.f_in_N[0] == pytest.approx(extreme)
 
 
@@ -97,7 +97,7 @@ def from_both_sides(drive):
 @pytest.mark.parametrize("load", ["spring", "force", "displacement"])
 def test_the_past_is_forgotten_once_the_whole_tendon_slips(spring, load):
     drive = mid_cycle(spring, load, slice(1000, None))  # begins with a reversal
-    first = forgotten(RIG, drive)
+    first = first_determined_sample(RIG, drive)
     pulled, released = from_both_sides(drive)
     assert first is not None
     assert first > 5
@@ -108,7 +108,7 @@ def test_the_past_is_forgotten_once_the_whole_tendon_slips(spring, load):
 @pytest.mark.parametrize("load", ["spring", "force", "displacement"])
 def test_inside_a_dead_band_nothing_is_forgotten(spring, load):
     drive = mid_cycle(spring, load, slice(1000, 1005))
-    assert forgotten(RIG, drive) is None
+    assert first_determined_sample(RIG, drive) is None
 
 
 def test_a_drive_feels_its_friction_and_its_spring():

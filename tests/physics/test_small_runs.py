@@ -11,13 +11,13 @@ from tsas_cli.physics import response
 from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, SPRING, Boundary
 from tsas_cli.physics.course import DRIVE, LOAD, LOST, PULLED, RELEASED, STEP, TIME, VISCOUS
 from tsas_cli.physics.ends import (
-    Drive,
+    DriveInput,
     ends_of,
     last_direction,
     losses_at,
     losses_without_speed,
 )
-from tsas_cli.physics.response import forgotten, is_closed, simulate
+from tsas_cli.physics.response import first_determined_sample, is_closed, simulate
 from tsas_cli.physics.rig import with_values
 
 RIG = GROUP_A._replace(x_in_zero_mm=3.0, x_out_zero_mm=-7.0)
@@ -55,7 +55,7 @@ def test_friction_at_a_moment_is_all_that_changes_it(speed):
 
 def test_the_course_of_a_run_is_what_acts_at_each_sample():
     x = np.array([0.0, 0.2, 0.9, 0.8])
-    ends = ends_of(VARYING, Drive(x, time_s=TIME_S, session_s=30.0))
+    ends = ends_of(VARYING, DriveInput(x, time_s=TIME_S, session_s=30.0))
     assert ends.boundary == Boundary(DISPLACEMENT, SPRING)
     np.testing.assert_array_equal(ends.drive, x)
     np.testing.assert_array_equal(ends.course[LOAD], 0.0)
@@ -64,12 +64,12 @@ def test_the_course_of_a_run_is_what_acts_at_each_sample():
     np.testing.assert_allclose(ends.course[:4].T, expected)
     np.testing.assert_allclose(ends.course[STEP], [math.inf, 0.1, 0.2, 0.1])
     assert ends.direction.tolist() == [0.0, 1.0, 1.0, -1.0]
-    by_force = ends_of(VARYING, Drive(x + 25.0, "force", time_s=TIME_S))  # its speed is not known
+    by_force = ends_of(VARYING, DriveInput(x + 25.0, "force", time_s=TIME_S))  # its speed is not known
     np.testing.assert_allclose(by_force.course[:4, 2], friction_by_hand(0.3, 0.0, 0.0))
-    slowly = ends_of(VARYING, Drive(x))
+    slowly = ends_of(VARYING, DriveInput(x))
     np.testing.assert_allclose(slowly.course[:4].T, [friction_by_hand(0.0, 0.0, 0.0)] * 4)
     assert slowly.course[STEP].tolist() == [math.inf] * 4
-    alone = ends_of(VARYING, Drive(x[:1], time_s=TIME_S[:1]))
+    alone = ends_of(VARYING, DriveInput(x[:1], time_s=TIME_S[:1]))
     assert alone.course[STEP].tolist() == [math.inf]
 
 
@@ -86,7 +86,7 @@ def test_the_course_of_a_run_is_what_acts_at_each_sample():
 )
 def test_what_is_given_at_the_ends_is_read_with_the_zeros(kind, drive, load, expected):
     """Both places count from their zeros, no force does."""
-    given = Drive(np.array([10.0, 11.0]), kind, load, np.array([26.0, 27.0]))
+    given = DriveInput(np.array([10.0, 11.0]), kind, load, np.array([26.0, 27.0]))
     ends = ends_of(RIG, given)
     assert ends.boundary == Boundary(drive[0], expected[0])
     assert [ends.course[DRIVE].tolist(), ends.course[LOAD].tolist()] == [drive[1], expected[1]]
@@ -94,13 +94,13 @@ def test_what_is_given_at_the_ends_is_read_with_the_zeros(kind, drive, load, exp
 
 def test_the_drives_end_goes_through_the_play_from_where_it_was():
     loose = with_values(GROUP_A, {"backlash.play_mm": 0.4})
-    drive = Drive(np.array([1.0, 1.5, 1.5, 1.2, 0.9]))
+    drive = DriveInput(np.array([1.0, 1.5, 1.5, 1.2, 0.9]))
     assert ends_of(loose, drive).drive.tolist() == pytest.approx([1.0, 1.3, 1.3, 1.3, 1.1])
     again = ends_of(loose, drive, (1.1, -1.0))
     assert again.drive.tolist() == pytest.approx([1.1, 1.3, 1.3, 1.3, 1.1])
     assert again.direction.tolist() == [-1.0, 1.0, 1.0, 1.0, -1.0]
     wave = {"drive_ripple.sine_mm": 0.1, "drive_ripple.cosine_mm": 0.2, "drive_ripple.period_mm": 4}
-    uneven = ends_of(with_values(GROUP_A, wave), Drive(np.array([1.0, 2.0])))
+    uneven = ends_of(with_values(GROUP_A, wave), DriveInput(np.array([1.0, 2.0])))
     assert uneven.drive.tolist() == pytest.approx([1.0 + 0.1 - 0.2, 2.0 - 0.4])
 
 
@@ -111,7 +111,7 @@ def test_the_direction_is_that_of_the_last_motion():
 
 
 def test_positions_before_a_run_are_passed_at_no_known_speed():
-    ends = ends_of(VARYING, Drive(np.array([0.5, 0.7, 0.4, 0.6]), time_s=TIME_S))
+    ends = ends_of(VARYING, DriveInput(np.array([0.5, 0.7, 0.4, 0.6]), time_s=TIME_S))
     later = ends.after([9.0, 8.0])
     assert later.drive.tolist() == [9.0, 8.0, 0.5, 0.7, 0.4, 0.6]
     given = [PULLED, RELEASED, VISCOUS, LOST, LOAD, TIME]
@@ -137,7 +137,7 @@ def test_the_sensor_at_the_drive_feels_what_is_beside_the_tendon(friction, stiff
         "drive_friction.friction_N": friction,
         "proximal_spring.stiffness_N_per_mm": stiffness,
     }
-    drive = Drive(MOTION + 3.0)
+    drive = DriveInput(MOTION + 3.0)
     plain = simulate(RIG, drive, on_mesh=on_mesh, nodes=3)
     answer = simulate(with_values(RIG, beside), drive, on_mesh=on_mesh, nodes=3)
     directions = np.array([0.0, 1.0, -1.0, -1.0, 1.0])
@@ -150,22 +150,22 @@ def test_the_sensor_at_the_drive_feels_what_is_beside_the_tendon(friction, stiff
 
 @pytest.mark.parametrize(("load", "read"), [("force", "f_out_N"), ("displacement", "x_out_mm")])
 def test_a_load_that_was_measured_is_read_again(load, read):
-    spring = simulate(RIG, Drive(MOTION + 3.0), on_mesh=True, nodes=3)
-    given = Drive(MOTION + 3.0, load=load, load_values=getattr(spring, read))
+    spring = simulate(RIG, DriveInput(MOTION + 3.0), on_mesh=True, nodes=3)
+    given = DriveInput(MOTION + 3.0, load=load, load_values=getattr(spring, read))
     again = simulate(RIG, given, nodes=3)
     for name in ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N"):
         np.testing.assert_allclose(getattr(again, name), getattr(spring, name), atol=1e-6)
-    by_force = simulate(RIG, Drive(spring.f_in_N, "force"), nodes=3)
+    by_force = simulate(RIG, DriveInput(spring.f_in_N, "force"), nodes=3)
     np.testing.assert_allclose(by_force.x_in_mm, spring.x_in_mm, atol=1e-6)
 
 
 def test_who_answers_and_on_what_mesh():
     """The paper's dynamic chain has 50 lumps."""
-    drive = Drive(MOTION[:2] + 3.0, time_s=TIME_S[:2])
+    drive = DriveInput(MOTION[:2] + 3.0, time_s=TIME_S[:2])
     assert simulate(RIG, drive).solver == "closed form"
     assert simulate(RIG, drive, on_mesh=True).solver == "slip chain, 60 nodes"
     assert simulate(RIG, drive, "static").solver == "lumped dead bands"
-    at_rest = Drive(np.array([3.0, 3.0]), time_s=TIME_S[:2])
+    at_rest = DriveInput(np.array([3.0, 3.0]), time_s=TIME_S[:2])
     assert simulate(RIG, at_rest, "lugre").solver.startswith("LuGre chain, 50 lumps, ")
     for nodes in (2, 1000):
         assert (
@@ -175,7 +175,7 @@ def test_who_answers_and_on_what_mesh():
         with pytest.raises(ValueError, match=f"{nodes} nodes; expected 2 to 1000"):
             simulate(RIG, drive, nodes=nodes)
     with pytest.raises(ValueError, match="times"):
-        simulate(RIG, Drive(MOTION), "lugre")
+        simulate(RIG, DriveInput(MOTION), "lugre")
 
 
 AT_THE_ENDS_ALONE = {  # what the closed form knows, or what is off its path
@@ -194,22 +194,22 @@ def test_where_the_closed_form_holds(effect):
     """A sensor's fault comes after it, what acts on tendon or load is not in it."""
     rig = with_values(RIG, {f"{effect.name}.{p.name}": p.start for p in effect.parameters})
     known = effect.name in AT_THE_ENDS_ALONE or effect.acts_on == "sensor"
-    assert is_closed(rig, Drive(MOTION)) == known
+    assert is_closed(rig, DriveInput(MOTION)) == known
 
 
 def test_where_else_the_closed_form_does_not_hold():
-    assert is_closed(RIG, Drive(MOTION))
-    assert not is_closed(RIG, Drive(MOTION, "force"))
-    assert not is_closed(RIG, Drive(MOTION, load="force", load_values=MOTION))
-    assert not is_closed(RIG._replace(bend_slope=0.1), Drive(MOTION))
-    assert not is_closed(RIG._replace(bend_bow=0.1), Drive(MOTION))
+    assert is_closed(RIG, DriveInput(MOTION))
+    assert not is_closed(RIG, DriveInput(MOTION, "force"))
+    assert not is_closed(RIG, DriveInput(MOTION, load="force", load_values=MOTION))
+    assert not is_closed(RIG._replace(bend_slope=0.1), DriveInput(MOTION))
+    assert not is_closed(RIG._replace(bend_bow=0.1), DriveInput(MOTION))
 
 
 @pytest.mark.parametrize("wanted", [38.0, 50.0, 62.0])
 @pytest.mark.parametrize("on_mesh", [False, True])
 def test_the_history_of_a_run_is_chosen_by_its_first_tension(wanted, on_mesh):
     """At 15 mm between 35 N, let go of, and 62.9 N, pulled; no more than that drive is passed."""
-    drive = Drive(np.array([18.0, 18.1]), start_f_in_N=wanted)
+    drive = DriveInput(np.array([18.0, 18.1]), start_f_in_N=wanted)
     answer = simulate(RIG, drive, on_mesh=on_mesh, nodes=3, looked_at=np.array([1]))
     assert answer.f_in_N.shape == (2,)
     assert answer.f_in_N[0] == pytest.approx(wanted, abs=1e-6)
@@ -221,6 +221,6 @@ def test_what_is_forgotten_of_a_drive_by_force(monkeypatch):
     """Let go of, and pulled until it slips as a whole: e^2a times the tension at first."""
     monkeypatch.setattr(response, "NODES", 3)
     pull = 25.0 * np.exp(np.linspace(0.0, 1.2, 25))
-    first = forgotten(GROUP_A, Drive(pull, kind="force"))
+    first = first_determined_sample(GROUP_A, DriveInput(pull, kind="force"))
     assert first == np.flatnonzero(pull > 25.0 * math.exp(2.0 * A))[0]
-    assert forgotten(GROUP_A, Drive(pull[: first - 1], kind="force")) is None
+    assert first_determined_sample(GROUP_A, DriveInput(pull[: first - 1], kind="force")) is None

@@ -5,7 +5,7 @@ import pytest
 
 from tests.physics.references import GROUP_A
 from tsas_cli.physics.mesh import segment_compliances
-from tsas_cli.physics.response import Drive, simulate
+from tsas_cli.physics.response import DriveInput, simulate
 from tsas_studies.challenge.rig.motions import sine
 from tsas_studies.challenge.rig.tendon import Rig as VirtualRig
 from tsas_studies.challenge.rig.tendon import simulate as run_rig
@@ -37,7 +37,7 @@ def test_an_uneven_bend_does_what_it_does_to_the_rig(way):
         virtual = VirtualRig(cells=120, bend_profile=profile if share else ((0.0, 1.0),))
         columns = run_rig(virtual, MOTION).columns
         model = GROUP_A._replace(tendon_stiffness_N=virtual.axial_stiffness, **{way: share})
-        response = simulate(model, Drive(columns["x_in_mm"]), on_mesh=True, nodes=120)
+        response = simulate(model, DriveInput(columns["x_in_mm"]), on_mesh=True, nodes=120)
         rigs[share], models[share] = columns["f_in_N"], response.f_in_N
     change, expected = models[SHARE] - models[0.0], rigs[SHARE] - rigs[0.0]
     assert np.abs(expected).max() > 0.5

@@ -5,7 +5,7 @@ import pytest
 
 from tsas_cli.recordings.canonical import canonical_columns
 from tsas_cli.recordings.ingest_map import IngestMap
-from tsas_cli.recordings.readers.table import Table
+from tsas_cli.recordings.readers.table import ColumnTable
 from tsas_cli.support.errors import InputError
 
 TIME = {"source": "t", "unit": "ms"}
@@ -15,7 +15,7 @@ FORCE = {"source": "f", "unit": "N"}
 
 def ask(values=None, units=None, time=TIME, place=PLACE, force=FORCE, **read):
     arrays = {"t": [0, 1, 2], "x": [1, 2, 3], "f": [4, np.nan, 6]} | (values or {})
-    table = Table({k: np.array(v, dtype=float) for k, v in arrays.items()}, units or {}, (), 10)
+    table = ColumnTable({k: np.array(v, dtype=float) for k, v in arrays.items()}, units or {}, (), 10)
     columns = {"time_s": time, "x_in_mm": place, "f_in_N": force}
     content = {"dataset": {"name": "m"}, "read": read, "columns": columns}
     mapping = IngestMap.model_validate(content)
@@ -47,7 +47,7 @@ def test_the_files_own_unit_counts_where_the_map_says_none():
 
 
 def test_a_map_cannot_say_another_unit_than_the_type_of_a_column():
-    table = Table({s: np.arange(3.0) for s in "txf"}, {"t": "s"}, typed=frozenset("t"))
+    table = ColumnTable({s: np.arange(3.0) for s in "txf"}, {"t": "s"}, typed=frozenset("t"))
 
     def time_s(**unit):
         columns = {"time_s": {"source": "t"} | unit, "x_in_mm": PLACE, "f_in_N": FORCE}

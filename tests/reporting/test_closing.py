@@ -17,7 +17,7 @@ from tests.reporting.made_folders import (
 )
 from tests.reporting.test_page import Outline, headings
 from tests.reporting.test_tracking import cells
-from tsas_cli.records.closing import Closing
+from tsas_cli.records.closing import ClosingFile
 from tsas_cli.reporting import colours
 from tsas_cli.reporting.closing import call
 from tsas_cli.reporting.closing.errors import MODELS, draw_dots
@@ -120,7 +120,7 @@ def test_the_summary_says_how_many_are_named_and_for_whom_it_matters_most(whole,
 
 
 def test_each_model_has_a_mark_at_its_error_in_its_own_colour_and_form(folder):
-    controllers = read_inputs([folder]).get(Closing).of_controllers()
+    controllers = read_inputs([folder]).get(ClosingFile).of_controllers()
     figure = Figure()
     draw_dots(figure, controllers=controllers)
     assert [axes.get_title(loc="left") for axes in figure.axes] == list(controllers)
@@ -157,7 +157,7 @@ def test_the_command_asks_for_the_same_cases(tmp_path, hide, option):
     names = ["backlash"] if hide else ["backlash", "free_tendon"]
     made = {("hidden" if hide else name): CASES[name] for name in names}
     inputs = read_inputs([make_closing(tmp_path / "loop", made)])
-    options = list(call.options(inputs.get(Closing)))
+    options = list(call.options(inputs.get(ClosingFile)))
     assert options == [*option, "--seeds", "5", "--seed", "3"]
     again = chosen(None, [option[1]]) if hide else chosen(option[1].split(","), [])
     assert [case.name for case in again] == list(made)

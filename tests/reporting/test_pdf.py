@@ -110,7 +110,7 @@ def test_the_same_page_is_printed_as_the_same_bytes(printed, tmp_path, monkeypat
     assert pages[0] == pages[1]
     for made in (printed, pages[0]):
         assert b"Date (" not in made
-        assert pdf.MARK in made[:4096]
+        assert pdf.PDF_MARK in made[:4096]
 
 
 def test_dates_go_and_all_else_stays_in_its_place():
@@ -118,6 +118,6 @@ def test_dates_go_and_all_else_stays_in_its_place():
     other = b">>\nendobj\n2 0 obj\n(/ModDate (D:2))\nendobj\n%%EOF"
     kept = pdf._without_dates(about + b"/ModDate (D:20260101120000Z)" + other)
     assert len(kept) == len(about) + 28 + len(other)
-    assert kept.startswith(b"%PDF-1.4\n1 0 obj\n<</Title (a \\(b\\))\n" + pdf.MARK + b"   ")
+    assert kept.startswith(b"%PDF-1.4\n1 0 obj\n<</Title (a \\(b\\))\n" + pdf.PDF_MARK + b"   ")
     assert kept.endswith(other)
     assert kept.count(b"Date (") == 1

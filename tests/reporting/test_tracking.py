@@ -15,7 +15,7 @@ from tsas_cli.__main__ import main
 from tsas_cli.reporting.colours import CONTROLLERS, STAND_IN, of_controller
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.page import page
-from tsas_cli.reporting.tracking.over_time import Curve, draw_panels
+from tsas_cli.reporting.tracking.over_time import TimeCurve, draw_panels
 from tsas_cli.support.errors import InputError
 from tsas_cli.tracking import settings
 
@@ -169,7 +169,7 @@ def test_notes_and_changes_of_the_plant_are_said(whole):
 
 def test_a_change_within_the_run_is_a_line_at_its_time_in_every_panel():
     time_s = np.linspace(0.0, 10.0, 50)
-    curves = [Curve(name, name, np.sin(time_s)) for name in ("pid", "sliding-mode")]
+    curves = [TimeCurve(name, name, np.sin(time_s)) for name in ("pid", "sliding-mode")]
     for change_s, lines in ((6.0, 1), (None, 0)):
         figure = Figure()
         draw_panels(figure, time_s=time_s, curves=curves, label="", change_s=change_s, band=0.5)

@@ -7,13 +7,13 @@ import pytest
 
 from tests.diagnosis.sizes import CANDIDATES, LENGTH, MASS, OF, PLAY, better, seen
 from tests.diagnosis.test_rig_file import TEXT
-from tsas_cli.diagnosis.plan import Plan, Proposal
-from tsas_cli.diagnosis.visibility import Cause, Seen
+from tsas_cli.diagnosis.plan import ExperimentPlan, PlannedRun
+from tsas_cli.diagnosis.visibility import Amplitude, Visibility
 from tsas_cli.stages import plan as plan_stage
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import sha256_of
 
-NOTHING = Plan((), (), (), ("nobody knows.",))
+NOTHING = ExperimentPlan((), (), (), ("nobody knows.",))
 
 
 @pytest.fixture
@@ -52,7 +52,7 @@ def test_without_a_folder_nothing_is_written_and_with_one_nothing_is_overwritten
     plan_stage.plan(path, out=tmp_path / "out", force=True)
 
 
-HIDDEN = Plan(
+HIDDEN = ExperimentPlan(
     (
         seen(PLAY, 0.01234, load_inertia=0.05),
         seen(MASS, 0.5, free_tendon=6.0, backlash=1.0),
@@ -60,7 +60,7 @@ HIDDEN = Plan(
     ),
     ((LENGTH, MASS),),
     (
-        Proposal(
+        PlannedRun(
             CANDIDATES[0],
             math.log(4.0),
             (*(better(PLAY, 0.4, 0.1) for _ in range(5)), better(MASS, math.inf, 0.3)),
@@ -90,8 +90,8 @@ def test_a_plan_as_json():
 
 
 def test_shapes_are_named_within_their_effect():
-    shaped = Seen(Cause(OF[PLAY], OF[PLAY].parameters[0], {"backlash.kind": 2.0}), 1.0, {})
-    found = plan_stage.as_json(Plan((shaped,), (), (), ()))["effects"][0]
+    shaped = Visibility(Amplitude(OF[PLAY], OF[PLAY].parameters[0], {"backlash.kind": 2.0}), 1.0, {})
+    found = plan_stage.as_json(ExperimentPlan((shaped,), (), (), ()))["effects"][0]
     assert found["shape"] == {"kind": 2.0}
 
 
@@ -109,6 +109,6 @@ def test_the_tables_of_a_plan():
     assert len(header) == 5
     assert len(rows) == 4  # no more are printed
     assert rows[0] == (PLAY, "play_mm", "mm", "0.4", "0.1")
-    never = Plan((seen(MASS, 0.5, backlash=math.inf),), (), (), ())
+    never = ExperimentPlan((seen(MASS, 0.5, backlash=math.inf),), (), (), ())
     (only,) = plan_stage._tables(plan_stage.as_json(never))
     assert only[2][0][3:] == ("0.5", "never", PLAY)

@@ -12,7 +12,7 @@ from tests.counted import Counted
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model
 from tsas_cli.support.files import sha256_of
-from tsas_cli.sweeping.answer import called
+from tsas_cli.sweeping.answer import run_task
 from tsas_cli.sweeping.folder import sweep_folder
 from tsas_cli.sweeping.versions import ONE_THREAD
 from tsas_studies.challenge.rig.recordings import Run, conditions, record, write_dataset
@@ -28,7 +28,7 @@ def _done_in_this_process():
 
     def here(work, texts, workers):
         for number, text in enumerate(texts):
-            yield number, json.loads(called(work, text))
+            yield number, json.loads(run_task(work, text))
 
     with pytest.MonkeyPatch.context() as patch:
         for name, value in ONE_THREAD.items():
@@ -82,7 +82,7 @@ def test_each_task_is_the_call_that_anyone_could_write(base, swept):
     model = tsas.simulate(data).model
     values = {"friction_coefficient": 0.2}
     told = [e for e in model.estimates if e.name not in values]
-    called = tsas.simulate(
+    run_task = tsas.simulate(
         data, model=Model((Estimate("friction_coefficient", 0.2, "1", "given"), *told))
     )
     row = next(
@@ -90,14 +90,14 @@ def test_each_task_is_the_call_that_anyone_could_write(base, swept):
         for row in result.summary["tasks"]
         if (row["friction_coefficient"], row["total_bend_rad"], row["preload_N"]) == (0.2, 3, 20)
     )
-    channels = called.summary["runs"]["x"]["channels"]
+    channels = run_task.summary["runs"]["x"]["channels"]
     assert row["rmse_f_in_N"] == channels["f_in_N"]["rmse"]
-    assert row["highest_f_in_N"] == called["x"].columns["f_in_N"].max()
-    assert row["lowest_f_out_N"] == called["x"].columns["f_out_N"].min()
+    assert row["highest_f_in_N"] == run_task["x"].columns["f_in_N"].max()
+    assert row["lowest_f_out_N"] == run_task["x"].columns["f_out_N"].min()
     task = base / "swept" / "tasks" / row["task"]
     simulation = json.loads((task / "simulation.json").read_text(encoding="utf-8"))
     assert simulation["conditions"] == {"total_bend_rad": 3.0, "preload_N": 20.0}
-    assert simulation["runs"] == json.loads(json.dumps(called.summary["runs"]))
+    assert simulation["runs"] == json.loads(json.dumps(run_task.summary["runs"]))
     assert (task / simulation["dataset"]["folder"]).resolve() == (base / "rigs/a").resolve()
 
 
@@ -197,9 +197,9 @@ def test_the_closed_loop_takes_model_plant_and_settings(tmp_path):
     assert other > 1.5 * same  # the controller does not know the plant's friction
     settings = {"reference": {"duration_s": 2.0}}
     model = Model((Estimate("friction_coefficient", 0.3, "1", "given"),))
-    called = tsas.track(controllers="pid", plant=model, settings=settings)
-    assert called.summary["results"][0]["scores"]["rmse_N"]["mean"] == other
-    assert called.summary["settings"]["file"] == "in memory"
+    run_task = tsas.track(controllers="pid", plant=model, settings=settings)
+    assert run_task.summary["results"][0]["scores"]["rmse_N"]["mean"] == other
+    assert run_task.summary["settings"]["file"] == "in memory"
 
 
 def test_a_folder_of_something_else_is_not_touched(base, tmp_path):

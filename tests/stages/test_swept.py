@@ -7,7 +7,7 @@ import pytest
 
 from tsas_cli.stages.swept import WORK, options_of
 from tsas_cli.support.files import sha256_of
-from tsas_cli.sweeping.answer import called
+from tsas_cli.sweeping.answer import run_task
 from tsas_cli.sweeping.folder import sweep_folder, what_is_done
 from tsas_cli.sweeping.plan import read_plan
 from tsas_cli.sweeping.tasks import tasks_of
@@ -27,7 +27,7 @@ def begun(tmp_path, dataset, monkeypatch):
 
 
 def answer(task, folder, *, force=False):
-    return json.loads(called(WORK, task.text(folder, force=force)))
+    return json.loads(run_task(WORK, task.text(folder, force=force)))
 
 
 def written(folder):

@@ -13,7 +13,7 @@ import tsas_cli as tsas
 from tsas_cli.recordings import fetched, storage
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.run_files import open_run
-from tsas_cli.recordings.storage import place_of
+from tsas_cli.recordings.storage import location_of
 from tsas_cli.recordings.writing import write_dataset
 from tsas_cli.support.errors import InputError
 
@@ -32,7 +32,7 @@ def large(tmp_path, manifest, bucket, wire):
     write_dataset(folder, manifest, {"a": pa.table(columns)})
     tsas.upload(folder, f"{bucket}/bench")
     wire.reset()
-    return folder, place_of(f"{bucket}/bench")
+    return folder, location_of(f"{bucket}/bench")
 
 
 class Full(io.BytesIO):
@@ -60,7 +60,7 @@ def test_of_what_was_fetched_the_latest_is_kept(large, tmp_path, bucket, wire, m
     tsas.upload(folder, f"{bucket}/other")
     for _ in range(2):
         wire.reset()
-        for place in (address, place_of(f"{bucket}/other")):
+        for place in (address, location_of(f"{bucket}/other")):
             read_dataset(place)["a"]
             read_dataset(place)["a"]
         assert [verb for verb, path in wire.requests if "parquet" in path] == 2 * ["HEAD", "GET"]

@@ -2,7 +2,7 @@ import pytest
 
 import tsas_cli as tsas
 from tsas_cli.recordings import storage
-from tsas_cli.recordings.storage import place_of
+from tsas_cli.recordings.storage import location_of
 from tsas_cli.support.errors import InputError
 
 
@@ -30,7 +30,7 @@ def delete(address):
 
 
 def test_what_belongs_to_no_dataset_is_not_replaced(dataset, bucket):
-    there = place_of(f"{bucket}/bench")
+    there = location_of(f"{bucket}/bench")
     (there / "runs/a.parquet").write_bytes(b"of somebody else")
     with pytest.raises(InputError, match="was not written by `tsas upload`"):
         tsas.upload(dataset, f"{bucket}/bench", force=True)
@@ -47,7 +47,7 @@ def test_an_upload_that_was_cut_off_goes_on(dataset, bucket):
 
 def test_a_replacement_that_was_cut_off_goes_on(dataset, bucket):
     tsas.upload(dataset, f"{bucket}/bench")
-    place_of(f"{bucket}/bench/runs/a.parquet").write_bytes(b"of another version")
+    location_of(f"{bucket}/bench/runs/a.parquet").write_bytes(b"of another version")
     with pytest.raises(InputError, match="the checksum differs"):
         tsas.read(f"{bucket}/bench")["a"]
     tsas.upload(dataset, f"{bucket}/bench", force=True)

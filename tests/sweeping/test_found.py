@@ -6,8 +6,8 @@ import pyarrow.parquet as pq
 
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model
-from tsas_cli.records.calibration import Calibration, ChannelError, NominalFit
-from tsas_cli.records.diagnosis import Cause, Diagnosis, HeldOut
+from tsas_cli.records.calibration import CalibrationFile, ChannelError, NominalFit
+from tsas_cli.records.diagnosis import NamedCause, DiagnosisFile, HeldOut
 from tsas_cli.sweeping.found import estimates, figures
 from tsas_cli.sweeping.tables import printed, write_rows
 
@@ -18,7 +18,7 @@ MODEL = Model((FRICTION, GIVEN, OF_A_RUN))
 
 
 def diagnosis(named):
-    record = Diagnosis.model_construct(
+    record = DiagnosisFile.model_construct(
         verdict="ambiguous",
         named=named,
         channels={"f_in_N": HeldOut(rmse_before=0.9, rmse_after=0.1)},
@@ -27,7 +27,7 @@ def diagnosis(named):
 
 
 def test_a_diagnosis_gives_verdict_causes_gains_errors_and_what_was_fitted():
-    cause = Cause(
+    cause = NamedCause(
         effect="backlash",
         rivals=("drive_ripple",),
         gain_percent=40.0,
@@ -56,7 +56,7 @@ def test_errors_of_runs_are_pooled_by_their_squares():
         run: {"f_in_N": ChannelError(rmse=rmse, noise=0.1)}
         for run, rmse in (("a", 3.0), ("b", 4.0))
     }
-    record = Calibration.model_construct(fit=NominalFit(converged=False), channels=channels)
+    record = CalibrationFile.model_construct(fit=NominalFit(converged=False), channels=channels)
     found = figures("calibrate", SimpleNamespace(record=record, model=Model(())))
     assert found == {"converged": False, "rmse_f_in_N": 12.5**0.5}
 

@@ -12,14 +12,14 @@ from duckdb import DuckDBPyConnection
 
 from tsas_cli.collection.found import DIAGNOSIS, MANIFEST
 from tsas_cli.recordings.columns import TIME
-from tsas_cli.recordings.manifest import Rig, Run, parse, read_manifest
-from tsas_cli.records.diagnosis import Diagnosis
+from tsas_cli.recordings.manifest import RigSheet, Run, parse, read_manifest
+from tsas_cli.records.diagnosis import DiagnosisFile
 from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import read_json, sha256_of
 
 Entry = dict[str, object]  # by the names of `SCHEMA`, which checks it
-RIG = tuple(Rig.model_fields)
+RIG = tuple(RigSheet.model_fields)
 TEXTS = pa.list_(pa.string())
 RUN = pa.struct(
     {
@@ -175,7 +175,7 @@ def _durations_s(connection: DuckDBPyConnection, paths: Sequence[Path]) -> dict[
 def _diagnosis(_: DuckDBPyConnection, folder: Path) -> Entry:
     path = folder / DIAGNOSIS
     content = read_json(path)
-    diagnosis = parse(Diagnosis, content, path)
+    diagnosis = parse(DiagnosisFile, content, path)
     chosen = diagnosis.chosen if diagnosis.chosen is not None else diagnosis.dataset.chosen
     return {
         "manifest_sha256": diagnosis.dataset.hashes.get(MANIFEST, "").lower(),

@@ -44,7 +44,7 @@ EXAMPLE = "total_bend_rad > 3 and f_out in channels and started >= 2026-01"
 
 
 @dataclass(frozen=True)
-class Answer:
+class QueryResult:
     """Result of a query: columns, one row per run, and the numbers of runs."""
 
     columns: tuple[str, ...]
@@ -74,7 +74,7 @@ def connected() -> "DuckDBPyConnection":
     )
 
 
-def asked(
+def run_query(
     connection: "DuckDBPyConnection",
     index: Index,
     query: str,
@@ -82,7 +82,7 @@ def asked(
     columns: Sequence[str],
     sort: Sequence[str],
     limit: int | None,
-) -> Answer:
+) -> QueryResult:
     """Return the matching runs with the requested columns, or with all.
 
     A minus before a name in `sort` reverses its order; missing values come last.
@@ -109,7 +109,7 @@ def asked(
     except duckdb.Error as error:
         raise _query_error(query, translated, error, runs.columns) from error
     folders = tuple(dict.fromkeys(str(row[-1]) for row in rows))
-    return Answer(chosen, [row[:-1] for row in rows], folders, fit, every, problems)
+    return QueryResult(chosen, [row[:-1] for row in rows], folders, fit, every, problems)
 
 
 def _opened(connection: "DuckDBPyConnection", index: Index) -> list[str]:

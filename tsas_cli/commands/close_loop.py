@@ -58,10 +58,10 @@ def close_loop(
 
 def _of_each_case(folder: Path) -> Iterator[tuple[Path, list[Path]]]:
     """Yield each case's folder, and the folders that its stream shows."""
-    from tsas_cli.records.closing import Closing
+    from tsas_cli.records.closing import ClosingFile
     from tsas_cli.reporting.inputs import read_stage
 
-    for case in read_stage(Closing, folder).cases:
+    for case in read_stage(ClosingFile, folder).cases:
         home = folder / case.case
         shown = (home / name for name in ("dataset", "calibrate", "diagnose", "identify"))
         yield home, [path for path in shown if path.is_dir()]

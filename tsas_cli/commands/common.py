@@ -68,12 +68,12 @@ def with_stream(
 
     def add(folder: Path) -> None:
         from tsas_cli.reporting.inputs import read_inputs
-        from tsas_cli.reporting.stream import FILE, write_stream
+        from tsas_cli.reporting.stream import STREAM_FILE, write_stream
 
         for home, shown in of(folder):
             inputs = read_inputs(shown)
             step.ahead(0 if inputs.dataset is None else len(inputs.dataset.runs))
-            write_stream(inputs, home / FILE, step=step)
+            write_stream(inputs, home / STREAM_FILE, step=step)
 
     return extra_output(add if wanted else None)
 

@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from datetime import timedelta
 from typing import TYPE_CHECKING
 
-from tsas_cli.support.steps import SILENT, Steps
+from tsas_cli.support.steps import NO_PROGRESS, Steps
 
 if TYPE_CHECKING:
     from rich.progress import Progress
@@ -52,7 +52,7 @@ def progress(label: str, total: int = 0, *, quiet: bool) -> Iterator[Steps]:
         Show nothing.
     """
     if quiet or not sys.stderr.isatty():
-        yield SILENT
+        yield NO_PROGRESS
         return
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn

@@ -30,7 +30,7 @@ def view(
     Each PATH is a dataset or an output of a stage, all in one stream; or one .rrd file. A window
     opens; without a screen, a page is served and its address printed.
     """
-    from tsas_cli.recordings.storage import place_of
+    from tsas_cli.recordings.storage import location_of
     from tsas_cli.reporting.viewer.analytics import note_once
     from tsas_cli.reporting.viewer.open import opened
     from tsas_cli.reporting.viewer.screen import has_screen
@@ -40,7 +40,7 @@ def view(
     in_browser = web or not has_screen()
     with until_stopped(), ExitStack() as stack:
         with progress("stream", quiet=quiet) as step:
-            stream, notes = stack.enter_context(stream_of([place_of(path) for path in paths], step))
+            stream, notes = stack.enter_context(stream_of([location_of(path) for path in paths], step))
         viewer = stack.enter_context(opened(stream, in_browser=in_browser, port=port))
         talk = () if quiet else (*notes, note_once(), _HOW_TO_END[in_browser])
         for sentence in filter(None, talk):

@@ -14,16 +14,16 @@ from tsas_cli.identification.prepared import CHANNELS, Prepared, prepare
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Run
-from tsas_cli.recordings.storage import Place
-from tsas_cli.recordings.written import answers_of, check_rows, columns_of, names_of
+from tsas_cli.recordings.storage import Location
+from tsas_cli.recordings.written import result_file, check_rows, columns_of, names_of
 from tsas_cli.records.comparison import ErrorRow
-from tsas_cli.support.steps import SILENT, Steps
+from tsas_cli.support.steps import NO_PROGRESS, Steps
 
 Floats = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Answer:
+class ComparedRun:
     """One run: the model's tension at the drive, and measured less simulated, shape (n,) each."""
 
     run: Prepared
@@ -47,8 +47,8 @@ class Answer:
 class Both:
     """One recording and what the sides answer to it; one of them may be missing."""
 
-    a: Answer | None
-    b: Answer | None
+    a: ComparedRun | None
+    b: ComparedRun | None
 
     @property
     def ids(self) -> tuple[str | None, str | None]:
@@ -66,12 +66,12 @@ class Both:
 class Answers:
     """Answers to recordings, each of which is read and made ready once."""
 
-    def __init__(self, step: Steps = SILENT) -> None:
+    def __init__(self, step: Steps = NO_PROGRESS) -> None:
         """Take what is called after each answer."""
-        self._prepared: dict[tuple[Place, str], Prepared] = {}
+        self._prepared: dict[tuple[Location, str], Prepared] = {}
         self._step = step
 
-    def of(self, side: Side, dataset: Dataset | None, *, fit_own: bool = False) -> list[Answer]:
+    def of(self, side: Side, dataset: Dataset | None, *, fit_own: bool = False) -> list[ComparedRun]:
         """Return what a side answers to the runs of a dataset, none where it is not there.
 
         Raises
@@ -100,7 +100,7 @@ class Answers:
         return self._prepared[key]
 
 
-def matched(a: list[Answer], b: list[Answer]) -> list[Both]:
+def matched(a: list[ComparedRun], b: list[ComparedRun]) -> list[Both]:
     """Return the recordings that both answer to, by checksum, then those of A and of B alone."""
     first, second = ({x.run.run.id: x for x in side} for side in (a, b))
     digests = (
@@ -167,18 +167,18 @@ def _for_run(model: Model, recordings: dict[str, str] | None, run: Run) -> Model
     )
 
 
-def _simulated(model: Model, side: Side, run: Prepared) -> Answer:
+def _simulated(model: Model, side: Side, run: Prepared) -> ComparedRun:
     answer = simulated(run, model, side.dynamics)
     errors = {name: measured - answer.channels[name] for name, measured in run.measured.items()}
-    return Answer(run, answer.response.f_in_N, errors)
+    return ComparedRun(run, answer.response.f_in_N, errors)
 
 
-def _written(side: Side, run: Prepared) -> Answer:
+def _written(side: Side, run: Prepared) -> ComparedRun:
     """Return the answer that `tsas simulate` has written."""
-    path = answers_of(side.path, run.run.id)
+    path = result_file(side.path, run.run.id)
     columns = columns_of(path, names_of(path))
     for values in columns.values():
         check_rows(path, values.size, run.time_s.size, stage="`tsas simulate`")
     errors = {n: values - columns[n] for n, values in run.measured.items() if n in columns}
     f_in = columns.get("f_in_N", run.channel("f_in_N"))
-    return Answer(run, np.full(run.time_s.size, np.nan) if f_in is None else f_in, errors)
+    return ComparedRun(run, np.full(run.time_s.size, np.nan) if f_in is None else f_in, errors)

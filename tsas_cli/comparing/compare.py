@@ -11,7 +11,7 @@ from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.records.comparison import ErrorRow, ParameterPair
 from tsas_cli.records.diagnosis import Maps
 from tsas_cli.support.errors import InputError
-from tsas_cli.support.steps import SILENT, Steps
+from tsas_cli.support.steps import NO_PROGRESS, Steps
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ def compare(
     *,
     on: Dataset | None = None,
     fit_own: bool = False,
-    step: Steps = SILENT,
+    step: Steps = NO_PROGRESS,
 ) -> Comparison:
     """Hold two models, or what two stages wrote, against each other.
 

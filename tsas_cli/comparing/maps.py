@@ -3,7 +3,7 @@
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.comparing.answers import Answer, Both
+from tsas_cli.comparing.answers import ComparedRun, Both
 from tsas_cli.diagnosis.residual_map import LABELS, binned, edges_of
 from tsas_cli.diagnosis.signals import signals_of
 from tsas_cli.records.diagnosis import Maps
@@ -34,7 +34,7 @@ def residual_maps(recordings: list[Both]) -> dict[str, Maps]:
     return out if out["a"] else {}
 
 
-def _collected(answers: list[Answer]) -> Errors:
+def _collected(answers: list[ComparedRun]) -> Errors:
     """Return the errors of all runs over each signal, where both are numbers."""
     parts: dict[tuple[str, str], list[tuple[Floats, Floats]]] = {}
     for answer in answers:

@@ -7,18 +7,18 @@ from typing import Literal
 from tsas_cli.identification.model import Model, read_model
 from tsas_cli.physics.response import Dynamics
 from tsas_cli.recordings.dataset import Dataset, read_dataset
-from tsas_cli.recordings.manifest import FILE as MANIFEST
+from tsas_cli.recordings.manifest import MANIFEST_FILE as MANIFEST
 from tsas_cli.recordings.manifest import parse, read_toml
-from tsas_cli.recordings.storage import place_from
-from tsas_cli.records.base import OfDataset, Source
-from tsas_cli.records.calibration import MODEL_FILE, Calibration
-from tsas_cli.records.diagnosis import EXTENDED_MODEL, Cause, Diagnosis, HeldOut
-from tsas_cli.records.simulation import Simulation
+from tsas_cli.recordings.storage import recorded_location
+from tsas_cli.records.base import OfDataset, DatasetSource
+from tsas_cli.records.calibration import MODEL_FILE, CalibrationFile
+from tsas_cli.records.diagnosis import EXTENDED_MODEL, NamedCause, DiagnosisFile, HeldOut
+from tsas_cli.records.simulation import SimulationFile
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import read_json, sha256_of
 
 Kind = Literal["model", "calibration", "diagnosis", "simulation"]
-STAGES: tuple[type[OfDataset], ...] = (Calibration, Diagnosis, Simulation)
+STAGES: tuple[type[OfDataset], ...] = (CalibrationFile, DiagnosisFile, SimulationFile)
 
 
 @dataclass(frozen=True)
@@ -35,13 +35,13 @@ class Side:
     files: dict[str, str]
     model: Model | None = None
     dynamics: Dynamics = "slip"
-    source: Source | None = None
+    source: DatasetSource | None = None
     dataset: Dataset | None = None
     gone: str = ""
     recordings: dict[str, str] | None = None
     verdict: str = ""
     reason: str = ""
-    named: tuple[Cause, ...] = ()
+    named: tuple[NamedCause, ...] = ()
     held_out: dict[str, HeldOut] = field(default_factory=dict)
     not_converged: str = ""
 
@@ -80,7 +80,7 @@ def read_side(path: Path) -> Side:
 def _of_model(path: Path) -> Side:
     model = read_model(path)
     said = read_toml(path).get("dataset", {})
-    source = parse(Source, said, path) if "hashes" in said else None
+    source = parse(DatasetSource, said, path) if "hashes" in said else None
     with_bristles = any(e.name.startswith("bristles.") for e in model.estimates)
     dataset, gone = (None, "") if source is None else _dataset(source, source, path.parent)
     return Side(
@@ -102,29 +102,29 @@ def _of_stage(path: Path, kind: type[OfDataset]) -> Side:
     files = {kind.FILE: sha256_of(file)}
     dataset, gone = _dataset(stage.dataset, stage, path)
     read = _recordings(stage.dataset, stage.chosen, dataset)
-    if isinstance(stage, Simulation):
+    if isinstance(stage, SimulationFile):
         return Side(
             path, "simulation", files, None, stage.dynamics, stage.dataset, dataset, gone, read
         )
-    name = EXTENDED_MODEL if isinstance(stage, Diagnosis) else MODEL_FILE
+    name = EXTENDED_MODEL if isinstance(stage, DiagnosisFile) else MODEL_FILE
     model = read_model(path / name)
     files[name] = sha256_of(path / name)
-    if isinstance(stage, Diagnosis):
+    if isinstance(stage, DiagnosisFile):
         return Side(
             path, "diagnosis", files, model, "slip", stage.dataset, dataset, gone, read,
             stage.verdict, stage.reason, stage.named, stage.channels,
         )  # fmt: skip
-    assert isinstance(stage, Calibration)  # noqa: S101  the only other kind
+    assert isinstance(stage, CalibrationFile)  # noqa: S101  the only other kind
     return Side(
         path, "calibration", files, model, stage.dynamics, stage.dataset, dataset, gone, read,
         not_converged="" if stage.fit.converged else stage.fit.message,
     )  # fmt: skip
 
 
-def _dataset(source: Source, read: Source | OfDataset, home: Path) -> tuple[Dataset | None, str]:
+def _dataset(source: DatasetSource, read: DatasetSource | OfDataset, home: Path) -> tuple[Dataset | None, str]:
     """Return the dataset as it was read, with the runs that were; or None, and why."""
     try:
-        folder = place_from(home, source.folder)
+        folder = recorded_location(home, source.folder)
         if not source.folder or not (folder / MANIFEST).is_file():
             return None, f"the dataset {source.name} is no longer at {folder}"
         dataset = read_dataset(folder)
@@ -138,7 +138,7 @@ def _dataset(source: Source, read: Source | OfDataset, home: Path) -> tuple[Data
 
 
 def _recordings(
-    source: Source, chosen: tuple[str, ...] | None, dataset: Dataset | None
+    source: DatasetSource, chosen: tuple[str, ...] | None, dataset: Dataset | None
 ) -> dict[str, str]:
     """Return the checksum of each recording that was read, by the id of its run.
 

@@ -7,11 +7,11 @@ from typing import Any
 
 from tsas_cli.recordings.manifest import parse
 from tsas_cli.records.comparison import Setting
-from tsas_cli.records.tracking import Result, Tracking
+from tsas_cli.records.tracking import TrackedResult, TrackingFile
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import read_json, sha256_of
 
-FILE = Tracking.FILE
+TRACKING_FILE = TrackingFile.FILE
 SCORES = {  # those that are better the smaller they are, with their units
     "rmse_N": "N",
     "outside_percent": "%",
@@ -23,11 +23,11 @@ TASK = ("plant", "dynamics", "reference", "settings.reference")  # with others t
 
 
 @dataclass(frozen=True)
-class Followed:
+class ControllerPair:
     """One controller under one condition in both folders."""
 
-    a: Result
-    b: Result
+    a: TrackedResult
+    b: TrackedResult
 
     def ratio(self, score: str) -> float | None:
         """Return B over A of a score's mean."""
@@ -45,7 +45,7 @@ class Tracks:
     paths: dict[str, Path]
     checksums: dict[str, str]
     settings: list[Setting]
-    followed: list[Followed]
+    followed: list[ControllerPair]
     alone: dict[str, list[str]]
 
     @property
@@ -62,12 +62,12 @@ def are_tracked(a: Path, b: Path) -> bool:
     InputError
         Only one of them is.
     """
-    there = [(path / FILE).is_file() for path in (a, b)]
+    there = [(path / TRACKING_FILE).is_file() for path in (a, b)]
     if any(there) and not all(there):
         raise InputError(
             "tracked runs can be compared with tracked runs only",
             where=b if there[0] else a,
-            expected=f"a folder with {FILE}",
+            expected=f"a folder with {TRACKING_FILE}",
         )
     return all(there)
 
@@ -80,8 +80,8 @@ def compare_tracked(a: Path, b: Path) -> Tracks:
     InputError
         A file cannot be read, or is not whole.
     """
-    raw = [read_json(path / FILE) for path in (a, b)]
-    one, other = (parse(Tracking, r, p / FILE) for r, p in zip(raw, (a, b), strict=True))
+    raw = [read_json(path / TRACKING_FILE) for path in (a, b)]
+    one, other = (parse(TrackingFile, r, p / TRACKING_FILE) for r, p in zip(raw, (a, b), strict=True))
     same = {n for n, what in one.conditions.items() if other.conditions.get(n) == what}
     first, second = (
         {(r.controller, r.condition): r for r in side.results} for side in (one, other)
@@ -89,9 +89,9 @@ def compare_tracked(a: Path, b: Path) -> Tracks:
     both = [key for key in first if key in second and key[1] in same]
     return Tracks(
         {"A": a, "B": b},
-        {name: sha256_of(path / FILE) for name, path in (("A", a), ("B", b))},
+        {name: sha256_of(path / TRACKING_FILE) for name, path in (("A", a), ("B", b))},
         _settings(*raw),
-        [Followed(first[key], second[key]) for key in both],
+        [ControllerPair(first[key], second[key]) for key in both],
         {
             name: [result.run for key, result in side.items() if key not in both]
             for name, side in (("A", first), ("B", second))

@@ -6,10 +6,10 @@ from typing import Literal
 
 from tsas_cli.comparing.sides import Side
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.records.base import Parameter, parameters_of
+from tsas_cli.records.base import ParameterValue, parameters_of
 from tsas_cli.records.comparison import ParameterPair, ValueDifference
 
-AnyEstimate = Estimate | Parameter
+AnyEstimate = Estimate | ParameterValue
 Overlap = Literal["none", "some", "all", "unknown"]
 MOST_DECIMALS = 10
 FALSE_CLAIMS = 0.05  # of intervals of 95 % that exclude a difference of zero by chance
@@ -99,7 +99,7 @@ def difference(a: AnyEstimate, b: AnyEstimate) -> ValueDifference:
     return ValueDifference(value=value, low=low, high=high, excludes_zero=apart)
 
 
-def _difference(a: Parameter, b: Parameter, how: Overlap) -> ValueDifference | None:
+def _difference(a: ParameterValue, b: ParameterValue, how: Overlap) -> ValueDifference | None:
     """Return the difference, with an interval where one may be claimed."""
     why = ""
     if any(e.interval_low is None or e.interval_high is None for e in (a, b)):

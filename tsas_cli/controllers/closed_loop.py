@@ -15,7 +15,7 @@ from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.boundary import FORCE, SPRING, Boundary
 from tsas_cli.physics.course import Losses
-from tsas_cli.physics.ends import Drive, ends_of
+from tsas_cli.physics.ends import DriveInput, ends_of
 from tsas_cli.physics.lugre.start import lugre_laws
 from tsas_cli.physics.plant.lugre_plant import (
     lumps_at_rest,
@@ -54,7 +54,7 @@ RUNAWAY_MM = 1e3  # error of x_in at which a run has diverged
 GIVEN_UP = 0.01  # of the steps: beyond this share the run ends
 
 
-class Wanted(NamedTuple):
+class LoopReference(NamedTuple):
     """Reference of the loop at m samples."""
 
     path: Floats  # of the drive: position and its first three derivatives, shape (4, m) [mm, s]
@@ -90,9 +90,9 @@ class LoopPlant(NamedTuple):
     start: PlantStart
 
 
-def followed_from(drive_mm: float, rig: Rig, actuator: Actuator, n: int) -> PlantStart:
+def plant_at_rest(drive_mm: float, rig: Rig, actuator: Actuator, n: int) -> PlantStart:
     """Return motor, turntable and tendon at rest at x_in = `drive_mm`, reached from x_in = 0."""
-    ends = ends_of(rig, Drive(np.linspace(0.0, drive_mm, 1 + STEPS_TO_START) + rig.x_in_zero_mm))
+    ends = ends_of(rig, DriveInput(np.linspace(0.0, drive_mm, 1 + STEPS_TO_START) + rig.x_in_zero_mm))
     state = initial_state(ends.course, rig, ends.boundary, n)
     f_in = rig.preload_N
     if drive_mm != 0.0:
@@ -107,7 +107,7 @@ def followed_from(drive_mm: float, rig: Rig, actuator: Actuator, n: int) -> Plan
 
 @kernel
 def close_loop(
-    wanted: Wanted,
+    wanted: LoopReference,
     sensor: DriveSensor,
     laws: ControlLaws,
     plant: LoopPlant,

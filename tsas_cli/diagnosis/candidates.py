@@ -17,7 +17,7 @@ LONG = 12  # periods of a run in which drifts are visible
 
 
 @dataclass(frozen=True)
-class Candidate:
+class CandidateRun:
     """A run that may be proposed, and a name for it."""
 
     title: str
@@ -76,7 +76,7 @@ def within(stated: Limits, otherwise: Limits) -> Limits:
     return otherwise.model_copy(update=stated.model_dump(exclude_defaults=True))
 
 
-def candidates(limits: Limits, usual: Rig, repeated: PlannedRun | None = None) -> list[Candidate]:
+def candidates(limits: Limits, usual: Rig, repeated: PlannedRun | None = None) -> list[CandidateRun]:
     """Return the runs that may be proposed.
 
     Parameters
@@ -100,7 +100,7 @@ def candidates(limits: Limits, usual: Rig, repeated: PlannedRun | None = None) -
         amplitude: float = 1.0,
         preload_N: float = usual.preload_N,
         bend_rad: float = usual.total_bend_rad,
-    ) -> Candidate:
+    ) -> CandidateRun:
         run = PlannedRun(
             id=f"proposed: {title}",
             sheath_length_mm=usual.sheath_length_mm,
@@ -112,7 +112,7 @@ def candidates(limits: Limits, usual: Rig, repeated: PlannedRun | None = None) -
             periods=periods,
             dwell_s=dwell_s,
         )
-        return Candidate(title, run)
+        return CandidateRun(title, run)
 
     out = [
         made("a slow sine", "sine", SLOW),
@@ -132,7 +132,7 @@ def candidates(limits: Limits, usual: Rig, repeated: PlannedRun | None = None) -
         out.append(made("another bend", "sine", MIDDLE, bend_rad=bend))
     if repeated is not None:
         again = repeated.model_copy(update={"id": f"proposed: {repeated.id} again"})
-        out.append(Candidate(f"run {repeated.id} again", again))
+        out.append(CandidateRun(f"run {repeated.id} again", again))
     return out
 
 

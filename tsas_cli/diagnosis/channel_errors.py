@@ -8,12 +8,12 @@ import numpy as np
 from tsas_cli.diagnosis.held_out import held_out_values
 from tsas_cli.diagnosis.remainder import Remainder
 from tsas_cli.diagnosis.search import Hypotheses
-from tsas_cli.identification.extension import Trial
+from tsas_cli.identification.extension import HypothesisFit
 from tsas_cli.identification.fit_problem import rig_at
 
 
 @dataclass(frozen=True)
-class Channel:
+class HeldOutErrors:
     """Residual RMS of one channel on held-out data, its noise level and the attainable RMS."""
 
     rmse_before: float
@@ -23,8 +23,8 @@ class Channel:
 
 
 def channel_errors(
-    search: Hypotheses, before: Trial, final: Trial, start: Remainder, remaining: Remainder
-) -> dict[str, Channel]:
+    search: Hypotheses, before: HypothesisFit, final: HypothesisFit, start: Remainder, remaining: Remainder
+) -> dict[str, HeldOutErrors]:
     """Return the residual RMS of each channel on held-out data, newly simulated."""
     rmse = {id(t): _held_out_rmse(search, t) for t in (before, final)}
     out = {}
@@ -41,11 +41,11 @@ def channel_errors(
             math.sqrt(max(after**2 - remaining.explained[name] * noise**2, 0.0)),
         ]
         floor_rms = min(noise, after)  # what was reached cannot be below it
-        out[name] = Channel(first, after, floor_rms, max(min(attainable), floor_rms))
+        out[name] = HeldOutErrors(first, after, floor_rms, max(min(attainable), floor_rms))
     return out
 
 
-def _held_out_rmse(search: Hypotheses, trial: Trial) -> dict[str, float]:
+def _held_out_rmse(search: Hypotheses, trial: HypothesisFit) -> dict[str, float]:
     """Return each channel's RMS, every run simulated with estimates from the others."""
     bench, folds = search.bench, search.folds
     squares: dict[str, float] = {}

@@ -8,17 +8,17 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.diagnosis.channel_errors import Channel, channel_errors
+from tsas_cli.diagnosis.channel_errors import HeldOutErrors, channel_errors
 from tsas_cli.diagnosis.evidence import gain_percent
 from tsas_cli.diagnosis.held_out import Folds, folds_of
 from tsas_cli.diagnosis.remainder import Remainder, remainder
-from tsas_cli.diagnosis.search import BLURRED, Hypotheses, find_effects, weighed_again
-from tsas_cli.diagnosis.signals import spoken
+from tsas_cli.diagnosis.search import EXCESS_OF_COMPLETE_MODEL, Hypotheses, find_effects, reweighted_hypotheses
+from tsas_cli.diagnosis.signals import signal_in_words
 from tsas_cli.diagnosis.uneven_bend import stderr_of_unevenness
 from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.base_fit import base_fit, slopes_of
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.extension import Bench, Trial, bench_of
+from tsas_cli.identification.extension import Bench, HypothesisFit, bench_of
 from tsas_cli.identification.fit import with_errors
 from tsas_cli.identification.fit_problem import FitProblem
 from tsas_cli.identification.joint_fit import FittedModel, estimates_of, solve_fit
@@ -28,7 +28,7 @@ from tsas_cli.identification.preload_correction import with_preload_correction
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.run_errors import blocks_of
 from tsas_cli.recordings.manifest import Manifest
-from tsas_cli.support.steps import SILENT, Steps
+from tsas_cli.support.steps import NO_PROGRESS, Steps
 
 Floats = npt.NDArray[np.float64]
 Verdict = Literal["named", "ambiguous", "sufficient", "unexplained", "undecided"]
@@ -37,14 +37,14 @@ PLAUSIBLE = 0.15  # relative deviation of a tendon's axial stiffness from its da
 MOST_SHARE_LEFT = 0.02  # of the initial excess over the noise, that named causes may leave
 MOST_LEFT = 4.0  # mean square of the residual, twice the noise level, that causes may leave
 UNEXPLAINED_SHARE = 0.5  # of the excess, beyond which the verdict is `unexplained`
-NEEDS_CAUSE = 2.0 * BLURRED  # excess of the mean square that needs an explanation
+NEEDS_CAUSE = 2.0 * EXCESS_OF_COMPLETE_MODEL  # excess of the mean square that needs an explanation
 FEW_BLOCKS = 6  # fewer are too few for a test
 SEED = 1  # of the resampling of blocks
 SHEATH = "sheath_compression.compliance_ratio"
 
 
 @dataclass(frozen=True)
-class Cause:
+class FoundCause:
     """A named effect, with its parameters and its reduction of the RMS on held-out data [%]."""
 
     effect: str
@@ -67,14 +67,14 @@ class Diagnosis:
     reason: str
     model: Model
     nominal: Model
-    causes: tuple[Cause, ...] = ()
-    channels: dict[str, Channel] = field(default_factory=dict)
+    causes: tuple[FoundCause, ...] = ()
+    channels: dict[str, HeldOutErrors] = field(default_factory=dict)
     remainder: Remainder | None = None
     share_left: float = 0.0
     search: Hypotheses | None = None
     judged: Hypotheses | None = None
-    before: Trial | None = None
-    final: Trial | None = None
+    before: HypothesisFit | None = None
+    final: HypothesisFit | None = None
     cannot_tell: tuple[str, ...] = ()
 
     @property
@@ -98,14 +98,14 @@ def verdict_of(rivals: Sequence[tuple[str, ...]], mean_square: float, share: flo
 
 def leaves_much(mean_square: float, share: float) -> bool:
     """Return whether named causes leave a residual that needs a further explanation."""
-    return mean_square > MOST_LEFT or (mean_square > 1.0 + BLURRED and share > MOST_SHARE_LEFT)
+    return mean_square > MOST_LEFT or (mean_square > 1.0 + EXCESS_OF_COMPLETE_MODEL and share > MOST_SHARE_LEFT)
 
 
 def diagnose_runs(
     manifest: Manifest,
     stated: Model,
     runs: Sequence[Prepared],
-    step: Steps = SILENT,
+    step: Steps = NO_PROGRESS,
 ) -> Diagnosis:
     """Return the effects that a model of these runs lacks; `step` reports progress.
 
@@ -131,7 +131,7 @@ def diagnose_runs(
         reason = f"only {folds.blocks} independent stretches: too few for a diagnosis."
         return Diagnosis("undecided", reason, model, model, cannot_tell=cannot_tell)
     search = find_effects(bench, folds, step)
-    judged = weighed_again(search, step) if search.named else search
+    judged = reweighted_hypotheses(search, step) if search.named else search
     found = _concluded(search, judged, base)
     extended, nominal = (with_preload_correction(m, runs) for m in (found.model, found.nominal))
     return replace(found, model=extended, nominal=nominal)
@@ -176,7 +176,7 @@ def _concluded(search: Hypotheses, judged: Hypotheses, base: FittedModel) -> Dia
     after = remainder(judged.bench, final, judged.folds)
     start = remainder(judged.bench, before, judged.folds) if named else after
     excess = [max(r.mean_square - 1.0, 0.0) for r in (start, after)]
-    share = max(excess[1] - BLURRED, 0.0) / excess[0] if excess[0] > 0.0 else 0.0
+    share = max(excess[1] - EXCESS_OF_COMPLETE_MODEL, 0.0) / excess[0] if excess[0] > 0.0 else 0.0
     verdict = verdict_of([cause.rivals for cause in causes], after.mean_square, share)
     extended = Model(tuple(estimates)).over(model)
     nominal = Model(tuple(_estimates(judged, before))).over(model) if named else extended
@@ -198,7 +198,7 @@ def _concluded(search: Hypotheses, judged: Hypotheses, base: FittedModel) -> Dia
     return replace(found, reason=_reason(found, start, after))
 
 
-def _cause(judged: Hypotheses, name: str, estimates: Sequence[Estimate]) -> Cause:
+def _cause(judged: Hypotheses, name: str, estimates: Sequence[Estimate]) -> FoundCause:
     named = judged.named
     gains = gain_percent(
         judged.held_out(named - {name}, on_mesh=judged.bench.on_mesh(named)),
@@ -206,10 +206,10 @@ def _cause(judged: Hypotheses, name: str, estimates: Sequence[Estimate]) -> Caus
         np.random.default_rng(SEED),
     )
     own = tuple(e for e in estimates if e.name.startswith(f"{name}."))
-    return Cause(name, judged.rivals[name], own, gains[0], (gains[1], gains[2]))
+    return FoundCause(name, judged.rivals[name], own, gains[0], (gains[1], gains[2]))
 
 
-def _estimates(search: Hypotheses, trial: Trial) -> list[Estimate]:
+def _estimates(search: Hypotheses, trial: HypothesisFit) -> list[Estimate]:
     """Return the estimates of a trial, with intervals that include an uneven bend."""
     solution = trial.solution
     blocks = [search.folds.block[search.folds.run == k] for k in range(len(search.bench.rigs))]
@@ -221,7 +221,7 @@ def _estimates(search: Hypotheses, trial: Trial) -> list[Estimate]:
     return [_with_data_sheet_interval(e, trial) if e.name == SHEATH else e for e in estimates]
 
 
-def _with_data_sheet_interval(ratio: Estimate, trial: Trial) -> Estimate:
+def _with_data_sheet_interval(ratio: Estimate, trial: HypothesisFit) -> Estimate:
     """Return the sheath's compliance with the interval that follows from the tendon's data sheet.
 
     The recordings determine (1 + ratio)/EA only, so the ratio is as uncertain as EA is.
@@ -242,7 +242,7 @@ def _reason(found: Diagnosis, start: Remainder, after: Remainder) -> str:
     titles = {effect.name: effect.title.lower() for effect in EFFECTS}
     names = " and ".join(titles[c.effect] for c in found.causes)
     rms = [_two_digits(math.sqrt(r.mean_square)) for r in (start, after)]
-    depends = ", ".join(spoken(signal) for signal in after.depends_on)
+    depends = ", ".join(signal_in_words(signal) for signal in after.depends_on)
     depends = f" It depends on {depends}." if depends else ""
     if found.verdict == "sufficient":
         return "The nominal model is at the noise level: these runs show no missing effect."

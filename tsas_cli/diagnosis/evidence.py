@@ -8,16 +8,16 @@ import numpy.typing as npt
 
 Floats = npt.NDArray[np.float64]
 
-SURE = 2.6  # critical value of the test statistic; 1 in 200 by chance
+CRITICAL_VALUE = 2.6  # critical value of the test statistic; 1 in 200 by chance
 AGREE = 0.8  # of its largest possible value, the critical value for few blocks
-TELLING = 0.025  # least reduction of the squares by a cause; conditioning leaves up to 0.01
-APART = 0.01  # least reduction of the squares that distinguishes a cause from a rival
-RICHER = 0.03  # least reduction of the squares by a cause with more parameters than another
+LEAST_REDUCTION = 0.025  # least reduction of the squares by a cause; conditioning leaves up to 0.01
+LEAST_DIFFERENCE = 0.01  # least reduction of the squares that distinguishes a cause from a rival
+LEAST_REDUCTION_PER_COMPLEXITY = 0.03  # least reduction of the squares by a cause with more parameters than another
 RESAMPLED = 2000  # bootstrap samples
 
 
 @dataclass(frozen=True)
-class Gain:
+class Reduction:
     """Reduction of the held-out squares by a hypothesis compared with another one.
 
     `part` is the share of all squares; `sureness` is the test statistic, the sum of the blocks'
@@ -28,7 +28,7 @@ class Gain:
 
     part: float
     sureness: float
-    needed: float = SURE
+    needed: float = CRITICAL_VALUE
 
     def beyond(self, part: float) -> bool:
         """Return whether the reduction is significant, and larger than a share of the squares."""
@@ -37,16 +37,16 @@ class Gain:
     @property
     def convincing(self) -> bool:
         """Whether the reduction is significant and large enough."""
-        return self.beyond(TELLING)
+        return self.beyond(LEAST_REDUCTION)
 
 
-def gain(before: Floats, after: Floats) -> Gain:
+def gain(before: Floats, after: Floats) -> Reduction:
     """Return the reduction between the squares of two hypotheses by block, shape (blocks,)."""
     relative = np.log(before / after)
     spread = math.sqrt(float(relative @ relative))
     part = 1.0 - float(after.sum()) / float(before.sum())
     sureness = float(relative.sum()) / spread if spread > 0.0 else 0.0
-    return Gain(part, sureness, min(SURE, AGREE * math.sqrt(before.size)))
+    return Reduction(part, sureness, min(CRITICAL_VALUE, AGREE * math.sqrt(before.size)))
 
 
 def gain_percent(

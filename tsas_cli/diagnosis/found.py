@@ -3,7 +3,7 @@
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.diagnosis.diagnose import Cause, Diagnosis
+from tsas_cli.diagnosis.diagnose import FoundCause, Diagnosis
 from tsas_cli.diagnosis.residual_map import residual_map
 from tsas_cli.diagnosis.search import Hypotheses
 from tsas_cli.effects import EFFECTS
@@ -15,10 +15,10 @@ from tsas_cli.support.wording import count_of
 Floats = npt.NDArray[np.float64]
 
 
-def cause_of(cause: Cause) -> records.Cause:
+def cause_of(cause: FoundCause) -> records.NamedCause:
     """Return the record of a named effect with its title, equation and values."""
     effect = next(e for e in EFFECTS if e.name == cause.effect)
-    return records.Cause(
+    return records.NamedCause(
         effect=cause.effect,
         title=effect.title,
         equation=effect.equation,
@@ -40,10 +40,10 @@ def held_out_of(result: Diagnosis) -> dict[str, records.HeldOut]:
     }
 
 
-def remainder_of(result: Diagnosis) -> records.Remainder:
+def remainder_of(result: Diagnosis) -> records.RemainingResidual:
     """Return the record of the remaining residual, and the signals that it depends on."""
     remainder = result.remainder
-    return records.Remainder(
+    return records.RemainingResidual(
         unexplained=result.unexplained,
         depends_on=() if remainder is None else remainder.depends_on,
         share_percent=100.0 * result.share_left,
@@ -51,7 +51,7 @@ def remainder_of(result: Diagnosis) -> records.Remainder:
     )
 
 
-def candidates_of(result: Diagnosis) -> list[records.Candidate]:
+def candidates_of(result: Diagnosis) -> list[records.Hypothesis]:
     """Return single effects, and sets with one named effect replaced, the best first."""
     search = result.search
     if search is None:
@@ -64,7 +64,7 @@ def candidates_of(result: Diagnosis) -> list[records.Candidate]:
             continue
         trial, found = search.trial(names), search.gain(names)
         rows.append(
-            records.Candidate(
+            records.Hypothesis(
                 effects=tuple(sorted(names)),
                 gain_percent=100.0 * (1.0 - float(np.sqrt(1.0 - found.part))),
                 sureness=found.sureness,

@@ -6,10 +6,10 @@ from datetime import datetime, timedelta
 
 import numpy as np
 
-from tsas_cli.diagnosis.candidates import Candidate, candidates, recorded_limits
-from tsas_cli.diagnosis.made_runs import APART, made
+from tsas_cli.diagnosis.candidates import CandidateRun, candidates, recorded_limits
+from tsas_cli.diagnosis.made_runs import APART, simulated_recordings
 from tsas_cli.diagnosis.rig_file import Sensors
-from tsas_cli.diagnosis.visibility import Look, Part, look_at
+from tsas_cli.diagnosis.visibility import LinearisedRuns, Part, linearised_runs
 from tsas_cli.identification.extension import Bench, bench_of
 from tsas_cli.identification.fit_problem import prepare_fit
 from tsas_cli.identification.joint_fit import solve_fit
@@ -29,9 +29,9 @@ class FurtherRuns:
     `left_out` has notes on recordings that do not enter the fit.
     """
 
-    look: Look
+    look: LinearisedRuns
     there: tuple[int, ...]
-    added: dict[int, Candidate]
+    added: dict[int, CandidateRun]
     left_out: tuple[str, ...]
 
     def part(self, *added: int) -> Part:
@@ -39,9 +39,9 @@ class FurtherRuns:
         return self.look.part([*self.there, *added])
 
 
-def beside(
+def joined_runs(
     runs: Sequence[Prepared],
-    further: Sequence[tuple[Candidate, Prepared]],
+    further: Sequence[tuple[CandidateRun, Prepared]],
     initial: Model,
     fixed: Model,
     free: Mapping[str, float] | None = None,
@@ -73,17 +73,17 @@ def beside(
         )
     bench = bench_of(solve_fit(problem))
     named = sorted({name.split(".")[0] for name in free or {}})
-    look = look_at(bench, bench.fit(named, free or {}, on_mesh=True))
+    look = linearised_runs(bench, bench.fit(named, free or {}, on_mesh=True))
     added = {k: by_id[r.run.id] for k, r in enumerate(problem.runs) if r.run.id in by_id}
     left_out = tuple(s for s in problem.left_out if not any(i in s for i in by_id))
     return FurtherRuns(look, there, added, left_out)
 
 
-def beside_recorded(bench: Bench, free: Mapping[str, float] | None = None) -> FurtherRuns:
+def joined_to_recorded(bench: Bench, free: Mapping[str, float] | None = None) -> FurtherRuns:
     """Return the runs of a bench with those that might be recorded next on the same rig."""
     base = bench.base.problem
     plain = [(r.drive_column, r.run.load) == ("x_in_mm", "spring") for r in base.runs]
-    further: list[tuple[Candidate, Prepared]] = []
+    further: list[tuple[CandidateRun, Prepared]] = []
     if any(plain):
         k = plain.index(True)
         first = base.runs[k]
@@ -94,13 +94,13 @@ def beside_recorded(bench: Bench, free: Mapping[str, float] | None = None) -> Fu
             **noise,
         )
         proposed = candidates(recorded_limits(base.runs), bench.rigs[k])
-        further = recorded_in_thought(proposed, sensors, bench.rigs[k], base.runs)
-    return beside(base.runs, further, base.initial, base.fixed, free)
+        further = simulated_candidates(proposed, sensors, bench.rigs[k], base.runs)
+    return joined_runs(base.runs, further, base.initial, base.fixed, free)
 
 
-def recorded_in_thought(
-    proposed: Sequence[Candidate], sensors: Sensors, rig: Rig, runs: Sequence[Prepared]
-) -> list[tuple[Candidate, Prepared]]:
+def simulated_candidates(
+    proposed: Sequence[CandidateRun], sensors: Sensors, rig: Rig, runs: Sequence[Prepared]
+) -> list[tuple[CandidateRun, Prepared]]:
     """Return candidates with simulated recordings, each right after the last run."""
 
     def rig_of(run: Run) -> Rig:
@@ -112,7 +112,7 @@ def recorded_in_thought(
 
     started, ends = _clock(runs)
     return [
-        (c, prepare(made([c.run], sensors, rig_of, ends, seed=SEED + k)[0], started))
+        (c, prepare(simulated_recordings([c.run], sensors, rig_of, ends, seed=SEED + k)[0], started))
         for k, c in enumerate(proposed)
     ]
 

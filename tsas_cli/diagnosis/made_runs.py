@@ -7,7 +7,7 @@ import numpy as np
 
 from tsas_cli.diagnosis.motions import motion
 from tsas_cli.diagnosis.rig_file import MOST_SAMPLES, PlannedRun, Sensors
-from tsas_cli.physics.ends import Drive
+from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import Rig
 from tsas_cli.recordings.manifest import Run
@@ -18,7 +18,7 @@ SEED = 1  # the same plan gives the same numbers
 APART = timedelta(minutes=5)  # from the end of one run to the start of the next
 
 
-def made(
+def simulated_recordings(
     runs: Sequence[PlannedRun],
     sensors: Sensors,
     rig_of: Callable[[Run], Rig],
@@ -51,7 +51,7 @@ def made(
         conditions = planned.model_dump(include={"sheath_length_mm", "total_bend_rad", "preload_N"})
         file = f"runs/{planned.id}.parquet"
         run = Run(id=planned.id, file=file, sha256="0" * 64, started=started, **conditions)
-        predicted = simulate(rig_of(run), Drive(x, time_s=t))
+        predicted = simulate(rig_of(run), DriveInput(x, time_s=t))
         columns = {"time_s": t, "x_in_mm": x + sensors.x_in_mm * rng.standard_normal(t.size)}
         for name, sd in sensors.outputs.items():
             columns[name] = getattr(predicted, name) + sd * rng.standard_normal(t.size)

@@ -3,10 +3,10 @@
 from tsas_cli.diagnosis.diagnose import Diagnosis
 from tsas_cli.diagnosis.plan import propose
 from tsas_cli.effects import EFFECTS
-from tsas_cli.support.steps import SILENT, Steps
+from tsas_cli.support.steps import NO_PROGRESS, Steps
 
 
-def next_experiment(result: Diagnosis, step: Steps = SILENT) -> str:
+def next_experiment(result: Diagnosis, step: Steps = NO_PROGRESS) -> str:
     """Return the instruction for the next experiment."""
     experiments = {effect.name: effect.experiment for effect in EFFECTS}
     if result.verdict == "undecided":

@@ -6,27 +6,27 @@ from dataclasses import dataclass, replace
 from datetime import datetime
 from itertools import combinations
 
-from tsas_cli.diagnosis.candidates import Candidate, candidates, planned_limits, within
-from tsas_cli.diagnosis.evidence import SURE
+from tsas_cli.diagnosis.candidates import CandidateRun, candidates, planned_limits, within
+from tsas_cli.diagnosis.evidence import CRITICAL_VALUE
 from tsas_cli.diagnosis.further_runs import (
     FurtherRuns,
-    beside,
-    beside_recorded,
-    recorded_in_thought,
+    joined_runs,
+    joined_to_recorded,
+    simulated_candidates,
 )
-from tsas_cli.diagnosis.made_runs import made
+from tsas_cli.diagnosis.made_runs import simulated_recordings
 from tsas_cli.diagnosis.rig_file import RigFile
-from tsas_cli.diagnosis.visibility import Cause, Seen
+from tsas_cli.diagnosis.visibility import Amplitude, Visibility
 from tsas_cli.effects import EFFECTS, Effect
 from tsas_cli.identification.base_fit import base_fit, slopes_of
-from tsas_cli.identification.extension import Bench, Trial, bench_of
+from tsas_cli.identification.extension import Bench, HypothesisFit, bench_of
 from tsas_cli.identification.joint_fit import solve_fit
 from tsas_cli.identification.model import data_sheet
 from tsas_cli.identification.phases import segment
 from tsas_cli.identification.prepared import prepare
 from tsas_cli.recordings.manifest import Manifest, Run
-from tsas_cli.recordings.quality.copies.counted import Counted
-from tsas_cli.support.steps import SILENT, Steps
+from tsas_cli.recordings.quality.copies.counted import DeduplicatedDataset
+from tsas_cli.support.steps import NO_PROGRESS, Steps
 
 PROPOSED = 3
 LEAST_FACTOR = 1.2  # by which a size has to fall
@@ -37,7 +37,7 @@ FIRST = datetime(2000, 1, 1)  # noqa: DTZ001 # start of simulated runs; a rig ha
 class Better:
     """The smallest size at which a cause is named, without and with a further run."""
 
-    cause: Cause
+    cause: Amplitude
     before: float
     after: float
 
@@ -51,14 +51,14 @@ class Better:
 
 
 @dataclass(frozen=True)
-class Proposal:
+class PlannedRun:
     """A further run, and its improvements, the largest first.
 
     `score` is the mean decrease of the logarithm of the smallest named sizes, `groups` are the
     pairs of effects that remain indistinguishable.
     """
 
-    candidate: Candidate
+    candidate: CandidateRun
     score: float
     better: tuple[Better, ...]
     groups: tuple[tuple[str, str], ...]
@@ -69,20 +69,20 @@ class Proposal:
 
 
 @dataclass(frozen=True)
-class Plan:
+class ExperimentPlan:
     """Visibility of effects in planned runs.
 
     `groups` are pairs of indistinguishable effects, `cannot_tell` has sentences on what the runs do
     not determine, and why.
     """
 
-    seen: tuple[Seen, ...]
+    seen: tuple[Visibility, ...]
     groups: tuple[tuple[str, str], ...]
-    proposals: tuple[Proposal, ...]
+    proposals: tuple[PlannedRun, ...]
     cannot_tell: tuple[str, ...]
 
 
-def plan_rig(file: RigFile, step: Steps = SILENT) -> Plan:
+def plan_rig(file: RigFile, step: Steps = NO_PROGRESS) -> ExperimentPlan:
     """Return the plan for the runs of a rig file.
 
     Raises
@@ -95,14 +95,14 @@ def plan_rig(file: RigFile, step: Steps = SILENT) -> Plan:
     nobody = Run(id="none", file="none", sha256="0" * 64)
     sheet = Manifest(format=1, name=file.name, kind="simulated", rig=file.rig, run=(nobody,))
     model = data_sheet(sheet)
-    runs = [prepare(r, FIRST) for r in made(file.run, file.sensors, model.rig, FIRST)]
+    runs = [prepare(r, FIRST) for r in simulated_recordings(file.run, file.sensors, model.rig, FIRST)]
     usual = model.rig(runs[0].run)
     proposed = candidates(within(file.limits, planned_limits(file.run)), usual, file.run[0])
-    further = recorded_in_thought(proposed, file.sensors, usual, runs)
-    return _plan(beside(runs, further, model, model), step)
+    further = simulated_candidates(proposed, file.sensors, usual, runs)
+    return _plan(joined_runs(runs, further, model, model), step)
 
 
-def plan_dataset(counted: Counted, step: Steps = SILENT) -> Plan:
+def plan_dataset(counted: DeduplicatedDataset, step: Steps = NO_PROGRESS) -> ExperimentPlan:
     """Return the plan for the runs of a dataset, without duplicate samples.
 
     Raises
@@ -119,11 +119,11 @@ def plan_dataset(counted: Counted, step: Steps = SILENT) -> Plan:
     segments = [segment(run) for run in runs]
     measured = [slopes_of(run, parts) for run, parts in zip(runs, segments, strict=True)]
     base = solve_fit(base_fit(data_sheet(manifest), runs, segments, measured))
-    plan = _plan(beside_recorded(bench_of(base)), step)
+    plan = _plan(joined_to_recorded(bench_of(base)), step)
     return replace(plan, cannot_tell=(*counted.notes, *plan.cannot_tell))
 
 
-def propose(bench: Bench, trial: Trial, effects: Sequence[str], step: Steps = SILENT) -> str:
+def propose(bench: Bench, trial: HypothesisFit, effects: Sequence[str], step: Steps = NO_PROGRESS) -> str:
     """Return as a sentence the further run that distinguishes effects best.
 
     Parameters
@@ -141,7 +141,7 @@ def propose(bench: Bench, trial: Trial, effects: Sequence[str], step: Steps = SI
     chosen = [e for e in EFFECTS if e.name in effects] or list(EFFECTS)
     rivals = chosen if len(chosen) > 1 else EFFECTS
     free = {name: v for name, v in trial.values().items() if name.split(".")[0] not in effects}
-    runs = beside_recorded(bench, free)
+    runs = joined_to_recorded(bench, free)
     step()
     step.ahead(len(runs.added))
     found = _proposals(runs, runs.part().seen(chosen, rivals), rivals, step)
@@ -152,26 +152,26 @@ def propose(bench: Bench, trial: Trial, effects: Sequence[str], step: Steps = SI
     return f"Record {found[0].candidate.sentence}. With it {found[0].best_of(2)}.{remaining}"
 
 
-def _plan(runs: FurtherRuns, step: Steps) -> Plan:
+def _plan(runs: FurtherRuns, step: Steps) -> ExperimentPlan:
     step()
     step.ahead(1 + len(runs.added))
     seen = runs.part().seen(EFFECTS, EFFECTS)
     step()
     proposals = _proposals(runs, seen, EFFECTS, step)
     cannot_tell = [*runs.left_out, *_few(runs.part().blocks)]
-    return Plan(tuple(seen), _groups(seen), tuple(proposals[:PROPOSED]), tuple(cannot_tell))
+    return ExperimentPlan(tuple(seen), _groups(seen), tuple(proposals[:PROPOSED]), tuple(cannot_tell))
 
 
 def _few(blocks: int) -> list[str]:
     """Return a note if the blocks are too few: the test statistic is at most √blocks."""
-    least = math.floor(SURE**2) + 1
+    least = math.floor(CRITICAL_VALUE**2) + 1
     sentence = f"These runs have {blocks} independent stretches; a diagnosis needs at least {least}"
     return [f"{sentence}."] if blocks < least else []
 
 
 def _proposals(
-    runs: FurtherRuns, seen: Sequence[Seen], rivals: Sequence[Effect], step: Steps
-) -> list[Proposal]:
+    runs: FurtherRuns, seen: Sequence[Visibility], rivals: Sequence[Effect], step: Steps
+) -> list[PlannedRun]:
     """Return the further runs with an improvement, the best first."""
     effects = list({s.cause.effect.name: s.cause.effect for s in seen}.values())
     out = []
@@ -181,7 +181,7 @@ def _proposals(
     return sorted((p for p in out if p.score > 0.0), key=lambda p: -p.score)
 
 
-def _proposal(candidate: Candidate, before: Sequence[Seen], after: Sequence[Seen]) -> Proposal:
+def _proposal(candidate: CandidateRun, before: Sequence[Visibility], after: Sequence[Visibility]) -> PlannedRun:
     falls = {}
     for b, a in zip(before, after, strict=True):
         largest = b.cause.largest
@@ -191,10 +191,10 @@ def _proposal(candidate: Candidate, before: Sequence[Seen], after: Sequence[Seen
         key=lambda pair: -falls[pair.cause.name],
     )
     improved = [p for p in better if p.before > LEAST_FACTOR * p.after]
-    return Proposal(candidate, sum(falls.values()) / len(falls), tuple(improved), _groups(after))
+    return PlannedRun(candidate, sum(falls.values()) / len(falls), tuple(improved), _groups(after))
 
 
-def _groups(seen: Sequence[Seen]) -> tuple[tuple[str, str], ...]:
+def _groups(seen: Sequence[Visibility]) -> tuple[tuple[str, str], ...]:
     """Return the pairs of indistinguishable effects."""
     hidden = {(s.cause.effect.name, rival) for s in seen for rival in s.hidden_in}
     pairs = combinations([e.name for e in EFFECTS], 2)

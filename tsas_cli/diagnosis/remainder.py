@@ -13,7 +13,7 @@ import numpy.typing as npt
 from tsas_cli.diagnosis.evidence import gain
 from tsas_cli.diagnosis.held_out import Folds
 from tsas_cli.diagnosis.signals import DIRECTION, signals_of
-from tsas_cli.identification.extension import Bench, Trial
+from tsas_cli.identification.extension import Bench, HypothesisFit
 from tsas_cli.identification.samples import mean_edges
 
 Floats = npt.NDArray[np.float64]
@@ -37,7 +37,7 @@ class Remainder:
     depends_on: tuple[str, ...]
 
 
-def remainder(bench: Bench, trial: Trial, folds: Folds) -> Remainder:
+def remainder(bench: Bench, trial: HypothesisFit, folds: Folds) -> Remainder:
     """Return the remaining residual of a trial."""
     errors = np.concatenate(
         [
@@ -82,7 +82,7 @@ def _by_block(residual: Floats, folds: Folds, here: npt.NDArray[np.bool_]) -> Fl
     return squares.astype(np.float64)
 
 
-def _signals(bench: Bench, trial: Trial) -> tuple[dict[str, Floats], Floats]:
+def _signals(bench: Bench, trial: HypothesisFit) -> tuple[dict[str, Floats], Floats]:
     """Return all signals, and the number of the channel, at each residual, shape (n,)."""
     out: dict[str, list[Floats]] = {}
     channel = []
@@ -121,7 +121,7 @@ def regressed(columns: Floats, residual: Floats, fold: npt.NDArray[np.int64]) ->
     return out
 
 
-def _periodic(bench: Bench, trial: Trial) -> str | None:
+def _periodic(bench: Bench, trial: HypothesisFit) -> str | None:
     """Return a phrase on a dominant frequency of the residuals of most runs, or None."""
     found = []
     for k, run in enumerate(bench.errors_for(trial)):

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.diagnosis.signals import DIRECTION, signals_of
-from tsas_cli.identification.extension import Bench, Trial
+from tsas_cli.identification.extension import Bench, HypothesisFit
 from tsas_cli.records.diagnosis import Bin, Maps
 
 Floats = npt.NDArray[np.float64]
@@ -16,7 +16,7 @@ RUN = "run"
 LABELS = (RUN, DIRECTION)
 
 
-def residual_map(bench: Bench, trial: Trial) -> Maps:
+def residual_map(bench: Bench, trial: HypothesisFit) -> Maps:
     """Return, per channel and signal, the bins with mean and standard deviation of the residual.
 
     The residual is measured minus simulated, in units of its standard deviation.

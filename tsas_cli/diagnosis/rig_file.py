@@ -6,18 +6,18 @@ from typing import Literal
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from tsas_cli.diagnosis.motions import PEAK, Kind
-from tsas_cli.recordings.manifest import Rig, parse, read_toml
+from tsas_cli.recordings.manifest import RigSheet, parse, read_toml
 from tsas_cli.support.errors import InputError
 
 MOST_SAMPLES = 1_000_000  # of a run
 OUTPUTS = ("f_in_N", "f_out_N", "x_out_mm")
 
 
-class _Table(BaseModel):
+class _RigFileTable(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
 
-class Sensors(_Table):
+class Sensors(_RigFileTable):
     """The sample rate, and the noise level of each channel; None: not recorded."""
 
     rate_Hz: float = Field(gt=0)
@@ -39,7 +39,7 @@ class Sensors(_Table):
         return {name: sd for name, sd in noise.items() if sd is not None}
 
 
-class PlannedRun(_Table):
+class PlannedRun(_RigFileTable):
     """One run: its conditions and its motion."""
 
     id: str = Field(min_length=1)
@@ -71,7 +71,7 @@ class PlannedRun(_Table):
         return PEAK[self.motion] * self.amplitude_mm * (self.frequency_Hz or 0.0)
 
 
-class Limits(_Table):
+class Limits(_RigFileTable):
     """Limits of the rig; by default those of the planned runs."""
 
     amplitude_mm: float | None = Field(default=None, gt=0)
@@ -80,13 +80,13 @@ class Limits(_Table):
     total_bend_rad: tuple[float, ...] = ()
 
 
-class RigFile(_Table):
+class RigFile(_RigFileTable):
     """The whole file."""
 
     format: Literal[1]
     kind: Literal["plan"]
     name: str
-    rig: Rig = Rig()
+    rig: RigSheet = RigSheet()
     sensors: Sensors
     limits: Limits = Limits()
     run: tuple[PlannedRun, ...] = Field(min_length=1)

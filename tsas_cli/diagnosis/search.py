@@ -15,13 +15,13 @@ from itertools import combinations
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.diagnosis.evidence import APART, RICHER, TELLING, Gain, gain
+from tsas_cli.diagnosis.evidence import LEAST_DIFFERENCE, LEAST_REDUCTION_PER_COMPLEXITY, LEAST_REDUCTION, Reduction, gain
 from tsas_cli.diagnosis.held_out import Folds, held_out_squares
 from tsas_cli.effects import EFFECTS, Effect
-from tsas_cli.identification.extension import TOLERANCE, Bench, Trial, reweighed_bench
+from tsas_cli.identification.extension import TOLERANCE, Bench, HypothesisFit, reweighted_bench
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.identification.screening import Screened, projector, screen
-from tsas_cli.support.steps import SILENT, Steps
+from tsas_cli.support.steps import NO_PROGRESS, Steps
 
 Floats = npt.NDArray[np.float64]
 Names = frozenset[str]
@@ -29,7 +29,7 @@ Names = frozenset[str]
 MOST_EFFECTS = 4
 SHARE = 0.4  # least reduction of the excess over the noise by a cause
 LEAST = 0.003  # least reduction of the nominal model's excess by a further cause
-BLURRED = 0.15  # excess of the mean square that a complete model may have
+EXCESS_OF_COMPLETE_MODEL = 0.15  # excess of the mean square that a complete model may have
 LEAST_SIGNATURE = 0.0005  # share of the squares that a signature has to explain to be fitted
 SHARE_OF_BEST = 0.02  # the same, of the share of the best signature
 ATTEMPTS, CLOSER = 4, 0.2  # fits from initial values closer to neutral each time, by that factor
@@ -50,10 +50,10 @@ class Hypotheses:
     named: Names
     rivals: Mapping[str, tuple[str, ...]]
     screened: tuple[Screened, ...]
-    trials: Mapping[tuple[Names, bool], Trial]
+    trials: Mapping[tuple[Names, bool], HypothesisFit]
     squares: Mapping[tuple[Names, bool], Floats]
 
-    def trial(self, names: Names, *, on_mesh: bool = False) -> Trial:
+    def trial(self, names: Names, *, on_mesh: bool = False) -> HypothesisFit:
         """Return the fit of a set of effects, that on the mesh if any of it needs one."""
         return self.trials[names, on_mesh or self.bench.on_mesh(names)]
 
@@ -61,13 +61,13 @@ class Hypotheses:
         """Return the held-out squares of a set of effects, block by block."""
         return self.squares[names, on_mesh or self.bench.on_mesh(names)]
 
-    def gain(self, names: Names) -> Gain:
+    def gain(self, names: Names) -> Reduction:
         """Return the reduction by a set of effects, both fits on the mesh if it needs one."""
         mesh = self.bench.on_mesh(names)
         return gain(self.held_out(frozenset(), on_mesh=mesh), self.held_out(names))
 
 
-def find_effects(bench: Bench, folds: Folds, step: Steps = SILENT) -> Hypotheses:
+def find_effects(bench: Bench, folds: Folds, step: Steps = NO_PROGRESS) -> Hypotheses:
     """Return the effects that are significant together, and all other fits."""
     search = Search(bench, folds, step)
     named = search.run()
@@ -78,7 +78,7 @@ def find_effects(bench: Bench, folds: Folds, step: Steps = SILENT) -> Hypotheses
     return Hypotheses(bench, folds, named, rivals, screened, search.trials, search.squares)
 
 
-def weighed_again(found: Hypotheses, step: Steps = SILENT) -> Hypotheses:
+def reweighted_hypotheses(found: Hypotheses, step: Steps = NO_PROGRESS) -> Hypotheses:
     """Return the fits of the named effects, of none, and of all but one, with new weights.
 
     The weights are those at the named effects' fit. Rivals and signatures are unchanged.
@@ -88,7 +88,7 @@ def weighed_again(found: Hypotheses, step: Steps = SILENT) -> Hypotheses:
     sets = _judged_sets(named)
     step.ahead(REWEIGHTINGS + len(sets))
     for _ in range(REWEIGHTINGS):
-        bench = reweighed_bench(bench, trial)
+        bench = reweighted_bench(bench, trial)
         trial = bench.fit(sorted(named), near=trial, on_mesh=mesh)
         step()
     trials = {}
@@ -111,9 +111,9 @@ class Search:
 
     bench: Bench
     folds: Folds
-    step: Steps = SILENT
+    step: Steps = NO_PROGRESS
     effects: tuple[Effect, ...] = EFFECTS
-    trials: dict[tuple[Names, bool], Trial] = field(default_factory=dict)
+    trials: dict[tuple[Names, bool], HypothesisFit] = field(default_factory=dict)
     squares: dict[tuple[Names, bool], Floats] = field(default_factory=dict)
     screened: dict[Names, list[Screened]] = field(default_factory=dict)
 
@@ -137,7 +137,7 @@ class Search:
         if not ends:
             return named
         simple, best = ends[0], ends[-1]
-        return best if self.gain(simple, best).beyond(RICHER) else simple
+        return best if self.gain(simple, best).beyond(LEAST_REDUCTION_PER_COMPLEXITY) else simple
 
     def rivals(self, named: Names, name: str) -> tuple[str, ...]:
         """Return the effects that are indistinguishable from a named one."""
@@ -148,12 +148,12 @@ class Search:
             if other in named or not found.convincing:
                 continue
             if self.trial(instead).solution.converged and not self.gain(instead, named).beyond(
-                APART
+                LEAST_DIFFERENCE
             ):
                 out.append(other)
         return tuple(out)
 
-    def trial(self, names: Names, *, on_mesh: bool = False) -> Trial:
+    def trial(self, names: Names, *, on_mesh: bool = False) -> HypothesisFit:
         """Return the fit of a set of effects, made on the mesh if any of it needs one."""
         mesh = on_mesh or self.bench.on_mesh(names)
         if (names, mesh) not in self.trials:
@@ -166,14 +166,14 @@ class Search:
         trial = self.trial(names, on_mesh=on_mesh)
         return self.squares[names, trial.on_mesh]
 
-    def gain(self, before: Names, after: Names) -> Gain:
+    def gain(self, before: Names, after: Names) -> Reduction:
         """Return the reduction between two sets of effects, both on the mesh if one needs it."""
         mesh = self.bench.on_mesh(before | after)
         return gain(self.held_out(before, on_mesh=mesh), self.held_out(after, on_mesh=mesh))
 
     def is_quiet(self, names: Names) -> bool:
         """Return whether the excess is too small for a further cause."""
-        return bool(self.held_out(names).sum() / self.folds.block.size < 1.0 + BLURRED)
+        return bool(self.held_out(names).sum() / self.folds.block.size < 1.0 + EXCESS_OF_COMPLETE_MODEL)
 
     def matters(self, before: Names, added: Iterable[str]) -> bool:
         """Return whether added effects reduce the excess over the noise by a sufficient share."""
@@ -184,11 +184,11 @@ class Search:
         ]
         reduction = excess[0] - excess[1]
         if not before:
-            return bool(reduction > SHARE * (excess[0] - BLURRED))
+            return bool(reduction > SHARE * (excess[0] - EXCESS_OF_COMPLETE_MODEL))
         first = self.held_out(frozenset(), on_mesh=mesh).sum() / self.folds.block.size - 1.0
         return bool(reduction > max(SHARE * excess[0], LEAST * first))
 
-    def add(self, names: Names) -> list[tuple[str, Gain]]:
+    def add(self, names: Names) -> list[tuple[str, Reduction]]:
         """Return each further effect that passes screening, fitted, with its gain, best first."""
         screened = self.screen(names)
         best = max((s.part for s in screened), default=0.0)
@@ -227,14 +227,14 @@ class Search:
         pair = self._best_pair(names) if len(names) + 2 <= MOST_EFFECTS else None
         return [] if pair is None else [names | pair]
 
-    def _simplest(self, names: Names, singles: list[tuple[str, Gain]]) -> str:
+    def _simplest(self, names: Names, singles: list[tuple[str, Reduction]]) -> str:
         """Return the best effect, or one with fewer parameters that is not significantly worse."""
         best = singles[0][0]
         count = {e.name: len(e.parameters) for e in self.effects}
         for name, _ in sorted(singles, key=lambda s: count[s[0]]):
             if count[name] >= count[best]:
                 break
-            if not self.gain(names | {name}, names | {best}).beyond(RICHER):
+            if not self.gain(names | {name}, names | {best}).beyond(LEAST_REDUCTION_PER_COMPLEXITY):
                 return name
         return best
 
@@ -251,7 +251,7 @@ class Search:
             parts.append((part - a.part - b.part, a, b))
         parts.sort(key=lambda p: -p[0])
         for surplus, a, b in parts[:PAIRS]:
-            if surplus < TELLING:
+            if surplus < LEAST_REDUCTION:
                 break
             pair = frozenset({a.effect.name, b.effect.name})
             self.step.ahead(self._is_new(names | pair))
@@ -286,6 +286,6 @@ class Search:
         self._store(names, trial)
         self.step()
 
-    def _store(self, names: Names, trial: Trial) -> None:
+    def _store(self, names: Names, trial: HypothesisFit) -> None:
         self.trials[names, trial.on_mesh] = trial
         self.squares[names, trial.on_mesh] = held_out_squares(trial, self.folds)

@@ -30,7 +30,7 @@ def signals_of(run: Prepared, f_in_N: Floats) -> dict[str, Floats]:
     return out
 
 
-def spoken(signal: str) -> str:
+def signal_in_words(signal: str) -> str:
     """Return a signal's name in words, for a sentence."""
     words = {
         "f_in_N": "the tension at the drive",

@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.identification.extension import Bench, Trial
+from tsas_cli.identification.extension import Bench, HypothesisFit
 from tsas_cli.identification.fit import Unknown, with_errors
 
 Floats = npt.NDArray[np.float64]
@@ -20,7 +20,7 @@ Indices = npt.NDArray[np.int64]
 FAR = 1e9  # bounds that are never active
 
 
-def stderr_of_unevenness(bench: Bench, trial: Trial, blocks: Sequence[Indices]) -> Floats:
+def stderr_of_unevenness(bench: Bench, trial: HypothesisFit, blocks: Sequence[Indices]) -> Floats:
     """Return the standard error of a trial's scaled values by an uneven bend, shape (p,).
 
     Parameters
@@ -39,7 +39,7 @@ def stderr_of_unevenness(bench: Bench, trial: Trial, blocks: Sequence[Indices]) 
 
 
 def _estimated_unevenness(
-    trial: Trial, signatures: Floats, blocks: Sequence[Indices]
+    trial: HypothesisFit, signatures: Floats, blocks: Sequence[Indices]
 ) -> tuple[Floats, Floats]:
     """Return the estimated unevenness, by one Gauss-Newton step, and its standard error."""
     solution, modes = trial.solution, signatures.shape[1]

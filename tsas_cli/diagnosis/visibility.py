@@ -15,10 +15,10 @@ from itertools import product
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.diagnosis.evidence import SURE, TELLING
+from tsas_cli.diagnosis.evidence import CRITICAL_VALUE, LEAST_REDUCTION
 from tsas_cli.diagnosis.held_out import folds_of
 from tsas_cli.effects import Effect, Parameter
-from tsas_cli.identification.extension import Bench, Trial
+from tsas_cli.identification.extension import Bench, HypothesisFit
 from tsas_cli.identification.fit import jacobian
 from tsas_cli.identification.fit_problem import rig_at
 from tsas_cli.identification.run_errors import blocks_of
@@ -35,7 +35,7 @@ TINY = 1e-6  # of the start, so small that the model is linear, with hardly a ki
 
 
 @dataclass(frozen=True)
-class Cause:
+class Amplitude:
     """One amplitude of an effect, at one of its shapes."""
 
     effect: Effect
@@ -66,13 +66,13 @@ class Cause:
 
 
 @dataclass(frozen=True)
-class Seen:
+class Visibility:
     """Smallest detected size of a cause, and smallest ones distinguished from each effect.
 
     `found` and `told`, infinite where there is no such size.
     """
 
-    cause: Cause
+    cause: Amplitude
     found: float
     told: dict[str, float]
 
@@ -98,26 +98,26 @@ class Seen:
         return worst if worst is not None and self.told[worst] > self.found else None
 
 
-def causes_of(effect: Effect) -> list[Cause]:
+def causes_of(effect: Effect) -> list[Amplitude]:
     """Return each amplitude of an effect at each of its considered shapes."""
     shapes = [p for p in effect.parameters if p.shape]
     options = [p.starts if 0 < len(p.starts) <= FEW_SHAPES else (p.start,) for p in shapes]
     return [
-        Cause(effect, p, {f"{effect.name}.{s.name}": v for s, v in zip(shapes, at, strict=True)})
+        Amplitude(effect, p, {f"{effect.name}.{s.name}": v for s, v in zip(shapes, at, strict=True)})
         for at in product(*options)
         for p in effect.parameters
         if not p.shape
     ]
 
 
-def amplitudes_of(effect: Effect) -> list[Cause]:
+def amplitudes_of(effect: Effect) -> list[Amplitude]:
     """Return each amplitude of an effect at the first of its shapes."""
     causes = causes_of(effect)
     return [cause for cause in causes if cause.shape == causes[0].shape]
 
 
 @dataclass(frozen=True, eq=False)
-class Look:
+class LinearisedRuns:
     """The runs of a bench, some of which are planned, and the signatures of effects in them.
 
     Linearised at the values of `trial`. `run` and `block` are the numbers of each residual's run
@@ -125,7 +125,7 @@ class Look:
     """
 
     bench: Bench
-    trial: Trial
+    trial: HypothesisFit
     run: Indices
     block: Indices
     without: Floats
@@ -141,7 +141,7 @@ class Look:
         block = np.unique(self.block[rows], return_inverse=True)[1]
         return Part(self, rows, block, projector(replace(self.trial, solution=solution)))
 
-    def signature(self, cause: Cause, size: float) -> Floats:
+    def signature(self, cause: Amplitude, size: float) -> Floats:
         """Return the change of all residuals by a cause, over its size, shape (n,).
 
         Zero where the model does not converge with it: then it is not detected.
@@ -155,11 +155,11 @@ class Look:
         return self.signatures[key]
 
 
-def look_at(bench: Bench, trial: Trial) -> Look:
+def linearised_runs(bench: Bench, trial: HypothesisFit) -> LinearisedRuns:
     """Return the runs of a bench linearised at a trial on the mesh."""
     slopes = _slopes(bench, trial)
     linear = replace(trial, solution=replace(trial.solution, jacobian=slopes))
-    return Look(
+    return LinearisedRuns(
         bench,
         linear,
         np.repeat(np.arange(len(trial.sizes)), trial.sizes),
@@ -189,7 +189,7 @@ class Imitation:
 class Part:
     """Some runs of a look: their rows, blocks, and a basis of the free parameters' Jacobian."""
 
-    look: Look
+    look: LinearisedRuns
     rows: npt.NDArray[np.bool_]
     block: Indices
     basis: Floats
@@ -200,7 +200,7 @@ class Part:
         """The number of blocks."""
         return int(self.block.max()) + 1
 
-    def own(self, cause: Cause) -> Floats:
+    def own(self, cause: Amplitude) -> Floats:
         """Return a cause's signature per unit, with the free parameters projected out.
 
         Not every effect is linear: the signature is that of about the detected size.
@@ -209,16 +209,16 @@ class Part:
             self.sizes[cause.name] = self._converged_size(cause)
         return self._own(self.look.signature(cause, self.sizes[cause.name]))
 
-    def tiny(self, cause: Cause) -> Floats:
+    def tiny(self, cause: Amplitude) -> Floats:
         """Return the same for a size small enough to be linear."""
         return self._own(self.look.signature(cause, TINY * cause.start))
 
-    def shows(self, cause: Cause) -> bool:
+    def shows(self, cause: Amplitude) -> bool:
         """Return whether the free parameters cannot imitate a tiny size of a cause."""
         whole, own = self.look.signature(cause, TINY * cause.start)[self.rows], self.tiny(cause)
         return bool(own @ own > SAME * (whole @ whole))
 
-    def _converged_size(self, cause: Cause) -> float:
+    def _converged_size(self, cause: Amplitude) -> float:
         """Return a size between the detected one and its half: the start times a power of 2.
 
         Parts thus share signatures. Where none is detected it is the last one tried. Where any size
@@ -241,15 +241,15 @@ class Part:
         total = float(squares.sum())
         if total <= 0.0:
             return math.inf
-        telling = np.sqrt(TELLING / (1.0 - TELLING) * counts.sum() / total)
+        telling = np.sqrt(LEAST_REDUCTION / (1.0 - LEAST_REDUCTION) * counts.sum() / total)
         factors = telling * np.geomspace(1.0, 1e3, 301)
         gained = factors[:, None] ** 2 * squares
         expected = np.log1p(gained / counts)
         scatter = 4.0 * gained / (counts + gained) ** 2
-        sure = expected.sum(axis=1) / np.sqrt((expected**2 + scatter).sum(axis=1)) > SURE
+        sure = expected.sum(axis=1) / np.sqrt((expected**2 + scatter).sum(axis=1)) > CRITICAL_VALUE
         return float(factors[np.argmax(sure)]) if sure.any() else math.inf
 
-    def seen(self, effects: Sequence[Effect], rivals: Sequence[Effect]) -> list[Seen]:
+    def seen(self, effects: Sequence[Effect], rivals: Sequence[Effect]) -> list[Visibility]:
         """Return the visibility of each amplitude of some effects, and against the rivals."""
         imitations = {e.name: (_imitations(e, self.own), _imitations(e, self.tiny)) for e in rivals}
         out = []
@@ -260,10 +260,10 @@ class Part:
                 for name, of_rival in imitations.items()
                 if name != cause.effect.name
             }
-            out.append(Seen(cause, found if self.shows(cause) else math.inf, told))
+            out.append(Visibility(cause, found if self.shows(cause) else math.inf, told))
         return out
 
-    def _distinct_from(self, cause: Cause, usual: list[Imitation], tiny: list[Imitation]) -> float:
+    def _distinct_from(self, cause: Amplitude, usual: list[Imitation], tiny: list[Imitation]) -> float:
         """Return the smallest size at which no imitation equals a cause, in either direction."""
         own, exact = self.own(cause), self.tiny(cause)
         signs = (1.0,) if cause.one_sided else (1.0, -1.0)
@@ -281,11 +281,11 @@ class Part:
         return np.asarray(here - self.basis @ (self.basis.T @ here))
 
     @staticmethod
-    def _limited(cause: Cause, size: float) -> float:
+    def _limited(cause: Amplitude, size: float) -> float:
         return size if size <= cause.largest else math.inf
 
 
-def _slopes(bench: Bench, trial: Trial) -> Floats:
+def _slopes(bench: Bench, trial: HypothesisFit) -> Floats:
     """Return the Jacobian of a trial on the mesh of the signatures."""
     return jacobian(
         trial.unknowns,
@@ -295,7 +295,7 @@ def _slopes(bench: Bench, trial: Trial) -> Floats:
     )
 
 
-def _imitations(effect: Effect, own: Callable[[Cause], Floats]) -> list[Imitation]:
+def _imitations(effect: Effect, own: Callable[[Amplitude], Floats]) -> list[Imitation]:
     """Return the imitations by the amplitudes of an effect, for each of its shapes.
 
     An amplitude of either sign has a column for each.

@@ -15,11 +15,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.diagnosis.channel_errors import Channel
+from tsas_cli.diagnosis.channel_errors import HeldOutErrors
 from tsas_cli.diagnosis.diagnose import FEW_BLOCKS, SEED, Verdict, leaves_much, verdict_of
 from tsas_cli.diagnosis.evidence import gain, gain_percent
 from tsas_cli.diagnosis.remainder import DEPENDS, hats, regressed
-from tsas_cli.diagnosis.search import BLURRED
+from tsas_cli.diagnosis.search import EXCESS_OF_COMPLETE_MODEL
 from tsas_cli.drive.fit import Terms
 from tsas_cli.drive.search import EFFECT_OF, NOTHING, DriveSearch, rivals
 from tsas_cli.effects import EFFECTS
@@ -41,7 +41,7 @@ KIND = {"lag": "first-order lag", "delay": "pure delay"}
 
 
 @dataclass(frozen=True)
-class DriveCause:
+class FoundDriveCause:
     """A named effect; `rivals` are effects, or the other kind of delay, that would do as well."""
 
     effect: str
@@ -53,15 +53,15 @@ class DriveCause:
 
 
 @dataclass(frozen=True)
-class DriveDiagnosis:
+class FoundDriveDiagnosis:
     """The verdict on a drive; `nominal` and `final` are the sets of terms that are compared."""
 
     verdict: Verdict
     reason: str
     nominal: Terms
     final: Terms
-    causes: tuple[DriveCause, ...]
-    channel: Channel
+    causes: tuple[FoundDriveCause, ...]
+    channel: HeldOutErrors
     gain_percent: tuple[float, float, float]
     mean_square: float
     share_left: float
@@ -71,7 +71,7 @@ class DriveDiagnosis:
 
 def diagnose_drive(
     search: DriveSearch, final: Terms, estimates: dict[str, Estimate]
-) -> DriveDiagnosis:
+) -> FoundDriveDiagnosis:
     """Compare what was found with the nominal drive equation."""
     nominal = NOTHING if search.bench.stated_Hz is None else EQUATION
     causes = tuple(
@@ -81,24 +81,24 @@ def diagnose_drive(
     )
     explained = final if causes else nominal
     start, left = search.mean_square(nominal), search.mean_square(explained)
-    share = max(left - 1.0 - BLURRED, 0.0) / (start - 1.0) if start > 1.0 else 0.0
+    share = max(left - 1.0 - EXCESS_OF_COMPLETE_MODEL, 0.0) / (start - 1.0) if start > 1.0 else 0.0
     depends, could = _left(search, explained)
     rmse = [_rmse(search, terms) for terms in (nominal, explained)]
     noise = _noise(search)
     floor = min(noise, rmse[1])
-    channel = Channel(rmse[0], rmse[1], floor, max(floor, rmse[1] * math.sqrt(1.0 - could)))
+    channel = HeldOutErrors(rmse[0], rmse[1], floor, max(floor, rmse[1] * math.sqrt(1.0 - could)))
     verdict = _verdict(search, causes, left, share)
     unexplained = verdict == "unexplained" or (bool(causes) and leaves_much(left, share))
-    found = DriveDiagnosis(
+    found = FoundDriveDiagnosis(
         verdict, "", nominal, explained, causes, channel,
         _gain_percent(search, nominal, explained), left, share if causes else 1.0,
-        unexplained, depends if left > 1.0 + BLURRED else (),
+        unexplained, depends if left > 1.0 + EXCESS_OF_COMPLETE_MODEL else (),
     )  # fmt: skip
     return replace(found, reason=_reason(found, start))
 
 
 def _verdict(
-    search: DriveSearch, causes: tuple[DriveCause, ...], left: float, share: float
+    search: DriveSearch, causes: tuple[FoundDriveCause, ...], left: float, share: float
 ) -> Verdict:
     if search.folds.blocks < FEW_BLOCKS:
         return "undecided"
@@ -107,7 +107,7 @@ def _verdict(
 
 def _cause(
     search: DriveSearch, nominal: Terms, final: Terms, effect: str, estimates: dict[str, Estimate]
-) -> DriveCause | None:
+) -> FoundDriveCause | None:
     """Return an effect as a cause, or None where the nominal equation does as well without it."""
     own = frozenset(term for term in final if EFFECT_OF.get(term) == effect)
     fewer = final - own
@@ -124,7 +124,7 @@ def _cause(
     whole = _gain_percent(search, fewer, final)
     kind = " and ".join(KIND[term] for term in sorted(own) if term in KIND)
     parameters = tuple(estimates[name] for name in PARAMETERS[effect] if name in estimates)
-    return DriveCause(effect, kind, tuple(instead), parameters, whole[0], (whole[1], whole[2]))
+    return FoundDriveCause(effect, kind, tuple(instead), parameters, whole[0], (whole[1], whole[2]))
 
 
 def _gain_percent(search: DriveSearch, before: Terms, after: Terms) -> tuple[float, float, float]:
@@ -181,7 +181,7 @@ def _part(columns: Floats, residual: Floats, fold: npt.NDArray[np.int64]) -> flo
     return 1.0 - float(own @ own) / float(residual @ residual)
 
 
-def _reason(found: DriveDiagnosis, start: float) -> str:
+def _reason(found: FoundDriveDiagnosis, start: float) -> str:
     equation = (
         "The nominal drive equation (Yang 2025, Eq. 25, without reaction)"
         if found.nominal
@@ -205,7 +205,7 @@ def _reason(found: DriveDiagnosis, start: float) -> str:
     return f"{said} What is left no known effect explains.{depends}" if found.unexplained else said
 
 
-def _spoken(cause: DriveCause, titles: dict[str, str]) -> str:
+def _spoken(cause: FoundDriveCause, titles: dict[str, str]) -> str:
     if cause.effect == "drive_compliance":
         return "the compliance of the drive, whose stiffness reacts on the position"
     return f"a {cause.kind} of the motor" if cause.kind else f"the {titles[cause.effect]}"

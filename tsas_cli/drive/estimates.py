@@ -17,7 +17,7 @@ from tsas_cli.drive.harmonic_drive import DriveValues
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.fit import Fitted, with_errors
 from tsas_cli.physics.closed_form.capstan import speed_per_stiffness
-from tsas_cli.recordings.manifest import Manifest, Rig
+from tsas_cli.recordings.manifest import Manifest, RigSheet
 
 Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
@@ -65,7 +65,7 @@ def drive_sheet(manifest: Manifest) -> DataSheet:
     )
 
 
-def _pull(rig: Rig, manifest: Manifest) -> float | None:
+def _pull(rig: RigSheet, manifest: Manifest) -> float | None:
     bends = [run.total_bend_rad for run in manifest.run]
     bend = bends[0]
     if rig.load_stiffness_N_per_mm is None or rig.friction_coefficient is None or bend is None:

@@ -77,7 +77,7 @@ class _Structure(BaseModel):
     hold: Literal["zero", "first"] = "first"
 
 
-class _File(BaseModel):
+class _DriveTables(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     format: Literal[1]
@@ -125,7 +125,7 @@ def read_drive(path: Path) -> IdentifiedDrive:
         the gain, or a value or its unit is not what it has to be.
     """
     path = path / DRIVE_FILE if path.is_dir() else path
-    file = parse(_File, read_toml(path), path)
+    file = parse(_DriveTables, read_toml(path), path)
     for name, value in file.parameters.items():
         _check(name, value, path)
     values = {name: value.value for name, value in file.parameters.items()}

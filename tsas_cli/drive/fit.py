@@ -24,7 +24,7 @@ from tsas_cli.drive.harmonic_drive import (
 from tsas_cli.drive.runs import DriveRun
 from tsas_cli.effects.backlash import BACKLASH
 from tsas_cli.effects.drive_ripple import DRIVE_RIPPLE
-from tsas_cli.identification.extension import ROUGHER
+from tsas_cli.identification.extension import MOST_LOOSENING
 from tsas_cli.identification.fit import Solution, Unknown, solve
 from tsas_cli.identification.quantities import Quantity
 
@@ -113,7 +113,7 @@ class DriveBench:
                 ]
         ranked = sorted(((self._mean_square(s), k) for k, s in enumerate(starts)))[:FOLLOWED]
         # Far from the noise a rougher fit shows as much.
-        tolerance = TOLERANCE * min(max(ranked[0][0], 1.0), ROUGHER)
+        tolerance = TOLERANCE * min(max(ranked[0][0], 1.0), MOST_LOOSENING)
         found = [self._solved(quantities, starts[k], terms, tolerance) for _, k in ranked]
         return min(found, key=lambda trial: (not trial.solution.converged, trial.mean_square))
 

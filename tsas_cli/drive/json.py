@@ -6,7 +6,7 @@ from collections.abc import Mapping
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.drive.diagnosis import DriveCause, DriveDiagnosis
+from tsas_cli.drive.diagnosis import FoundDriveCause, FoundDriveDiagnosis
 from tsas_cli.drive.estimates import DataSheet
 from tsas_cli.drive.fit import LINEAR, Terms, quantities_of
 from tsas_cli.drive.frequency_response import FrequencyResponse
@@ -18,7 +18,7 @@ from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.records import drive as records
 from tsas_cli.records.base import Value
-from tsas_cli.records.diagnosis import HeldOut, Remainder
+from tsas_cli.records.diagnosis import HeldOut, RemainingResidual
 
 Floats = npt.NDArray[np.float64]
 
@@ -55,7 +55,7 @@ def kinematics(sheet: DataSheet, fitted: Mapping[str, Estimate]) -> records.Kine
     )
 
 
-def response(seen: FrequencyResponse, values: DriveValues) -> records.Response:
+def response(seen: FrequencyResponse, values: DriveValues) -> records.FrequencyResponses:
     """Return the frequency response, measured and fitted, on the same turn of the phase."""
     at = seen.frequency_Hz
     curve = np.geomspace(at[0], at[-1], CURVE_POINTS)
@@ -66,7 +66,7 @@ def response(seen: FrequencyResponse, values: DriveValues) -> records.Response:
         k = int(excited[0])
         off = measured[k] - float(np.interp(at[k], curve, phase))
         measured -= 360.0 * round(off / 360.0)
-    return records.Response(
+    return records.FrequencyResponses(
         band_Hz=seen.band,
         measured=records.MeasuredResponse(
             frequency_Hz=at.tolist(),
@@ -75,7 +75,7 @@ def response(seen: FrequencyResponse, values: DriveValues) -> records.Response:
             coherence=seen.coherence.tolist(),
             excited=seen.excited.tolist(),
         ),
-        fitted=records.Curve(
+        fitted=records.BodeCurve(
             frequency_Hz=curve.tolist(), magnitude=magnitude.tolist(), phase_deg=phase.tolist()
         ),
     )
@@ -102,10 +102,10 @@ def pole_rows(values: DriveValues, seen: FrequencyResponse) -> list[records.Pole
 
 def run_rows(
     search: DriveSearch, fitted: list[Floats], nominal: list[Floats]
-) -> dict[str, records.DriveRun]:
+) -> dict[str, records.DriveRunErrors]:
     """Return by run how far the simulated x_in is from the measured one."""
     return {
-        run.id: records.DriveRun(
+        run.id: records.DriveRunErrors(
             samples=int(run.counts.sum()),
             rate_Hz=1.0 / run.u.step_s,
             noise=run.noise_mm,
@@ -121,7 +121,7 @@ def _rms(error: Floats) -> float:
     return float(np.sqrt(np.nanmean(error**2)))
 
 
-def diagnosis(search: DriveSearch, found: DriveDiagnosis) -> records.DriveDiagnosis:
+def diagnosis(search: DriveSearch, found: FoundDriveDiagnosis) -> records.DriveDiagnosis:
     """Return the verdict, what is named, and what it rests on."""
     folds = search.folds
     how = "Each run is predicted by a fit to the others"
@@ -136,7 +136,7 @@ def diagnosis(search: DriveSearch, found: DriveDiagnosis) -> records.DriveDiagno
         gain_percent=gain,
         gain_interval_percent=interval,
         channels={"x_in_mm": HeldOut(unit="mm", **vars(found.channel))},
-        remainder=Remainder(
+        remainder=RemainingResidual(
             unexplained=found.unexplained,
             depends_on=found.depends_on,
             share_percent=100.0 * found.share_left,
@@ -151,7 +151,7 @@ def diagnosis(search: DriveSearch, found: DriveDiagnosis) -> records.DriveDiagno
     )
 
 
-def _cause(cause: DriveCause) -> records.DriveCause:
+def _cause(cause: FoundDriveCause) -> records.DriveCause:
     return records.DriveCause(
         effect=cause.effect,
         title=next(e.title for e in EFFECTS if e.name == cause.effect),

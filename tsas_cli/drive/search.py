@@ -12,14 +12,14 @@ from itertools import combinations
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.diagnosis.evidence import APART, RICHER, Gain, gain
+from tsas_cli.diagnosis.evidence import LEAST_DIFFERENCE, LEAST_REDUCTION_PER_COMPLEXITY, Reduction, gain
 from tsas_cli.diagnosis.held_out import STRETCHES, Folds, held_out_squares
-from tsas_cli.diagnosis.search import BLURRED
+from tsas_cli.diagnosis.search import EXCESS_OF_COMPLETE_MODEL
 from tsas_cli.drive.fit import LINEAR, DriveBench, DriveTrial, Terms, quantities_of
 from tsas_cli.drive.frequency_response import frequency_response
 from tsas_cli.drive.runs import DriveRun
 from tsas_cli.numerics.covariance import block_length, block_numbers
-from tsas_cli.support.steps import SILENT, Steps
+from tsas_cli.support.steps import NO_PROGRESS, Steps
 
 Floats = npt.NDArray[np.float64]
 
@@ -45,7 +45,7 @@ class DriveFits:
     """
 
     bench: DriveBench
-    step: Steps = SILENT
+    step: Steps = NO_PROGRESS
     trials: dict[Terms, DriveTrial] = field(default_factory=dict)
     ahead: set[Terms] = field(default_factory=set)  # sets of terms that are known to be fitted
 
@@ -94,7 +94,7 @@ class DriveSearch:
             self.squares[terms] = held_out_squares(self.trial(terms), self.folds)
         return self.squares[terms]
 
-    def gain(self, before: Terms, after: Terms) -> Gain:
+    def gain(self, before: Terms, after: Terms) -> Reduction:
         """Compare two sets of terms."""
         return gain(self.held_out(before), self.held_out(after))
 
@@ -130,7 +130,7 @@ def chosen(search: DriveSearch, gear: Terms) -> Terms:
     search.fits.trials_of(every)
     ended = [t for t in every if search.trial(t).solution.converged] or every
     best = min(ended, key=lambda t: float(search.held_out(t).sum()))
-    return next(t for t in ended if t == best or not search.gain(t, best).beyond(RICHER))
+    return next(t for t in ended if t == best or not search.gain(t, best).beyond(LEAST_REDUCTION_PER_COMPLEXITY))
 
 
 def rivals(search: DriveSearch, named: Terms, term: str) -> tuple[str, ...]:
@@ -142,7 +142,7 @@ def rivals(search: DriveSearch, named: Terms, term: str) -> tuple[str, ...]:
             continue
         instead = fewer | {other}
         helps = search.gain(fewer, instead).convincing
-        if helps and not search.gain(instead, named).beyond(APART):
+        if helps and not search.gain(instead, named).beyond(LEAST_DIFFERENCE):
             out.append(other)
     return tuple(out)
 
@@ -150,7 +150,7 @@ def rivals(search: DriveSearch, named: Terms, term: str) -> tuple[str, ...]:
 def _with_gear(search: DriveSearch, named: Terms) -> Terms:
     """Add what convinces in the gear, alone or together, where there is something left."""
     left = [g for g in GEAR if g not in named]
-    if not left or search.mean_square(named) < 1.0 + BLURRED:
+    if not left or search.mean_square(named) < 1.0 + EXCESS_OF_COMPLETE_MODEL:
         return named
     sets = [frozenset({g}) for g in left] + ([frozenset(left)] if len(left) > 1 else [])
     search.fits.trials_of([named | s for s in sets])
@@ -160,7 +160,7 @@ def _with_gear(search: DriveSearch, named: Terms) -> Terms:
         return named
     best = max(good, key=lambda f: f[1].part)[0]
     for s, _ in good:  # a single one that both together do not surely beat
-        if not search.gain(named | s, named | best).beyond(RICHER):
+        if not search.gain(named | s, named | best).beyond(LEAST_REDUCTION_PER_COMPLEXITY):
             return named | s
     return named | best
 

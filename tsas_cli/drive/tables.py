@@ -3,11 +3,11 @@
 from collections.abc import Iterator
 
 from tsas_cli.records.base import number_text
-from tsas_cli.records.drive import Drive
+from tsas_cli.records.drive import DriveFile
 from tsas_cli.records.result import Table
 
 
-def tables(drive: Drive, title: str) -> Iterator[Table]:
+def tables(drive: DriveFile, title: str) -> Iterator[Table]:
     """Yield the tables of an identified drive; the title is that of the parameters."""
     structures = [
         (

@@ -2,12 +2,12 @@
 
 from collections.abc import Iterable
 
-from tsas_cli.drive.diagnosis import DriveDiagnosis
+from tsas_cli.drive.diagnosis import FoundDriveDiagnosis
 from tsas_cli.drive.estimates import DataSheet, total_lag_s
 from tsas_cli.drive.fit import Terms
 from tsas_cli.drive.harmonic_drive import DriveValues
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.records.drive import Drive
+from tsas_cli.records.drive import DriveFile
 
 _FACTORS = {
     "lag": "(τs + 1)",
@@ -40,7 +40,7 @@ def inverse_of(values: DriveValues) -> str:
     return f"G⁻¹(s) ≈ {first:.4g} s{second}{own}; u_ff = kV dx/dt + kA d²x/dt²"
 
 
-def next_run(found: DriveDiagnosis) -> str:
+def next_run(found: FoundDriveDiagnosis) -> str:
     """Return what to record next."""
     if any(cause.rivals for cause in found.causes):
         return (
@@ -53,7 +53,7 @@ def next_run(found: DriveDiagnosis) -> str:
 
 
 def cannot_tell(
-    drive: Drive, sheet: DataSheet, final: Terms, known: Iterable[Estimate]
+    drive: DriveFile, sheet: DataSheet, final: Terms, known: Iterable[Estimate]
 ) -> list[str]:
     """Return what the recordings do not say, and why."""
     band = drive.frequency_response.band_Hz

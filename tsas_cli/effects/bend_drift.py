@@ -16,7 +16,7 @@ import numpy as np
 
 from tsas_cli.effects.effect import SETTLING, Effect, Parameter
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.numerics.settling import settling
+from tsas_cli.numerics.settling import exponential_drift
 
 
 class BendDrift(NamedTuple):
@@ -29,7 +29,7 @@ class BendDrift(NamedTuple):
 @kernel
 def drifted_bend(bend: float, drift: BendDrift, time_s: float) -> float:
     """Return the total bend [rad] at a time since the start of the run, not below 0."""
-    drifted = bend + settling(drift.rate_rad_per_s, drift.settling_per_s, time_s)
+    drifted = bend + exponential_drift(drift.rate_rad_per_s, drift.settling_per_s, time_s)
     angle: float = np.maximum(drifted, 0.0)
     return angle
 

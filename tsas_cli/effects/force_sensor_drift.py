@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 from tsas_cli.effects.effect import SETTLING, Effect, Parameter
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.numerics.settling import settling
+from tsas_cli.numerics.settling import exponential_drift
 
 
 class ForceSensorDrift(NamedTuple):
@@ -29,7 +29,7 @@ class ForceSensorDrift(NamedTuple):
 @kernel
 def drift_reading(force: float, rate: float, settling_per_s: float, time_s: float) -> float:
     """Return the reading of a drifting sensor [N] at a time since the start of the run."""
-    return force + settling(rate, settling_per_s, time_s)
+    return force + exponential_drift(rate, settling_per_s, time_s)
 
 
 FORCE_SENSOR_DRIFT = Effect(

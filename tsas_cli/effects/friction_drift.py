@@ -18,7 +18,7 @@ import numpy as np
 
 from tsas_cli.effects.effect import SETTLING, Effect, Parameter
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.numerics.settling import settling
+from tsas_cli.numerics.settling import exponential_drift
 
 
 class FrictionDrift(NamedTuple):
@@ -36,7 +36,7 @@ def friction_factor(drift: FrictionDrift, time_s: float, session_s: float) -> fl
     `time_s` counts from the start of the run, `session_s` is the start of the run since that of
     the first run.
     """
-    run = settling(drift.rate_per_s, drift.settling_per_s, time_s)
+    run = exponential_drift(drift.rate_per_s, drift.settling_per_s, time_s)
     factor: float = np.maximum(1.0 + run + drift.session_rate_per_s * session_s, 0.0)
     return factor
 

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 from tsas_cli.effects.effect import SETTLING, Effect, Parameter
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.numerics.settling import settling
+from tsas_cli.numerics.settling import exponential_drift
 
 
 class PreloadLoss(NamedTuple):
@@ -28,7 +28,7 @@ class PreloadLoss(NamedTuple):
 @kernel
 def lost_preload(loss: PreloadLoss, time_s: float) -> float:
     """Return the loss of spring force [N] at a time since the start of the run."""
-    return settling(loss.rate_N_per_s, loss.settling_per_s, time_s)
+    return exponential_drift(loss.rate_N_per_s, loss.settling_per_s, time_s)
 
 
 PRELOAD_LOSS = Effect(

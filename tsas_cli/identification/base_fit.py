@@ -6,7 +6,7 @@ import numpy as np
 
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.fit_problem import FitProblem, prepare_fit
-from tsas_cli.identification.initial_values import read_off
+from tsas_cli.identification.initial_values import initial_values_of
 from tsas_cli.identification.joint_fit import solve_fit
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.phases import Segment, segment
@@ -62,7 +62,7 @@ def _read_off(
     """Return initial values from the phases of the runs; the median where runs share one."""
     found: dict[tuple[str, str | None], list[float]] = {}
     for run, parts, km in zip(runs, segments, measured, strict=True):
-        values = read_off(run, parts, km, stated.rig(run.run))
+        values = initial_values_of(run, parts, km, stated.rig(run.run))
         for name, value in values.items():
             owner = None if NOMINAL_BY_NAME[name].shared else run.run.id
             found.setdefault((name, owner), []).append(value)

@@ -19,9 +19,9 @@ from tsas_cli.identification.stiffness import Slope, slopes
 from tsas_cli.identification.transfer import tension_transfer
 from tsas_cli.physics.response import Dynamics
 from tsas_cli.recordings.manifest import Manifest
-from tsas_cli.support.steps import SILENT, Steps
+from tsas_cli.support.steps import NO_PROGRESS, Steps
 
-LACKING = (
+MISSING_EFFECTS_NOTE = (
     "The intervals do not include effects that the model lacks: find them with `tsas diagnose` and "
     "start from its extended model with --model."
 )
@@ -45,7 +45,7 @@ class Calibration:
 def calibrate_runs(
     manifest: Manifest,
     runs: Sequence[Prepared],
-    step: Steps = SILENT,
+    step: Steps = NO_PROGRESS,
     *,
     dynamics: Dynamics = "slip",
     stated: Model | None = None,
@@ -74,7 +74,7 @@ def calibrate_runs(
     predictions = [compare(run, model, dynamics) for run in runs]
     expected = [_predicted_slopes(*each) for each in zip(runs, predictions, segments, strict=True)]
     if dynamic is not None:
-        residual_notes = [*dynamic.misfit, LACKING] if dynamic.misfit else []
+        residual_notes = [*dynamic.misfit, MISSING_EFFECTS_NOTE] if dynamic.misfit else []
         sentences = [*dynamic.cannot_tell, *_notes(predictions)]
     else:
         residual_notes = misfit(fit)

@@ -10,10 +10,10 @@ from tsas_cli.identification.dynamic_notes import dynamic_notes
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.physics.phases import SLACK, UNCONVERGED
-from tsas_cli.physics.response import Dynamics, Response, simulate
+from tsas_cli.physics.response import Dynamics, Prediction, simulate
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.manifest import Run
-from tsas_cli.records.simulation import Channel, SimulatedRun
+from tsas_cli.records.simulation import SimulatedChannel, SimulatedRun
 from tsas_cli.support.errors import InputError
 
 Floats = npt.NDArray[np.float64]
@@ -23,7 +23,7 @@ Floats = npt.NDArray[np.float64]
 class Compared:
     """One run simulated; `channels` are the predictions, shape (n,), NaN in gaps of the drive."""
 
-    response: Response
+    response: Prediction
     channels: dict[str, Floats]
     rmse: dict[str, float]
     samples: dict[str, int]
@@ -67,7 +67,7 @@ class RunSummary:
             unconverged_samples=self.unconverged,
             notes=self.notes,
             channels={
-                name: Channel(
+                name: SimulatedChannel(
                     rmse=self.rmse[name],
                     noise=run.noise[name],
                     samples=self.samples[name],
@@ -129,7 +129,7 @@ def refuse_static(run: Run, drive_column: str, dynamics: Dynamics) -> None:
 
 
 def channels_of(
-    response: Response, driven: Set[str], in_gap: npt.NDArray[np.bool_]
+    response: Prediction, driven: Set[str], in_gap: npt.NDArray[np.bool_]
 ) -> dict[str, Floats]:
     """Return the channels that a model predicts, NaN in gaps of the drive."""
     predicted = {

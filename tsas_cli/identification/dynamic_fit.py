@@ -30,7 +30,7 @@ from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.physics.lugre.start import bristles_of
 from tsas_cli.physics.response import LUMPS
-from tsas_cli.support.steps import SILENT, Steps
+from tsas_cli.support.steps import NO_PROGRESS, Steps
 
 Floats = npt.NDArray[np.float64]
 
@@ -58,7 +58,7 @@ class DynamicFit:
 
 
 @dataclass(frozen=True)
-class Look:
+class ScreenedValue:
     """Screened values of parameters that are not free yet, linearised where a fit ended."""
 
     values: Mapping[str, float]
@@ -75,7 +75,7 @@ class Solved:
     fitted: Fitted
 
 
-def dynamic_fit(nominal: Model, runs: Sequence[Prepared], step: Steps = SILENT) -> DynamicFit:
+def dynamic_fit(nominal: Model, runs: Sequence[Prepared], step: Steps = NO_PROGRESS) -> DynamicFit:
     """Return the fit of nominal values, bristles and friction over speed with the dynamic chain.
 
     `nominal` is the model fitted with the slip chain, the initial one here. `step` reports each fit
@@ -138,7 +138,7 @@ def _model_of(values: Mapping[str, float]) -> Model:
     )
 
 
-def _friction_at_rest(fit: FittedModel, step: Steps) -> list[Look]:
+def _friction_at_rest(fit: FittedModel, step: Steps) -> list[ScreenedValue]:
     """Return friction at rest screened over Stribeck velocities, with its least-squares size."""
     step.ahead(len(VELOCITIES))
     residual, slopes = residuals_with(fit, {}), slopes_of_free(fit)
@@ -157,7 +157,7 @@ def _friction_at_rest(fit: FittedModel, step: Steps) -> list[Look]:
             np.linalg.norm(e + slopes @ _least_squares_step(slopes, e)) for e in (small, visible)
         )
         looks.append(
-            Look(
+            ScreenedValue(
                 {EXCESS: float(np.clip(excess_step, *FIRST_EXCESS)), VELOCITY: velocity},
                 np.array(moves),
                 float(reduction) if excess_step > 0.0 else 0.0,
@@ -168,7 +168,7 @@ def _friction_at_rest(fit: FittedModel, step: Steps) -> list[Look]:
     return looks
 
 
-def _sizes(fit: FittedModel, name: str, step: Steps) -> list[Look]:
+def _sizes(fit: FittedModel, name: str, step: Steps) -> list[ScreenedValue]:
     """Return a fixed parameter screened from its usual value up; the stiffness down too."""
     residual, slopes = residuals_with(fit, {}), slopes_of_free(fit)
     rigs = fit.rigs
@@ -184,7 +184,7 @@ def _sizes(fit: FittedModel, name: str, step: Steps) -> list[Look]:
         with_value = residuals_with(fit, {name: value})
         moves = _least_squares_step(slopes, with_value)
         reduction = float(np.sum(residual**2) - np.sum((with_value + slopes @ moves) ** 2))
-        looks.append(Look({name: value}, moves, reduction))
+        looks.append(ScreenedValue({name: value}, moves, reduction))
         step()
     return looks
 
@@ -235,7 +235,7 @@ def _least_squares_step(slopes: Floats, residual: Floats) -> Floats:
     return np.asarray(np.linalg.lstsq(slopes, -residual, rcond=None)[0])
 
 
-def _freed(solved: Solved, looks: Sequence[Look], step: Steps) -> Solved | None:
+def _freed(solved: Solved, looks: Sequence[ScreenedValue], step: Steps) -> Solved | None:
     """Return a fit with the best screened values free too; None if they are not identifiable."""
     best = max(looks, key=lambda look: look.saves)
     if best.saves < LEAST_REDUCTION:
@@ -255,7 +255,7 @@ def _freed(solved: Solved, looks: Sequence[Look], step: Steps) -> Solved | None:
     return more
 
 
-def _static_friction_note(looks: Sequence[Look]) -> str:
+def _static_friction_note(looks: Sequence[ScreenedValue]) -> str:
     """Return the note on the Stribeck velocities at which friction at rest would be visible."""
     visible = [look.values[VELOCITY] for look in looks if look.shows]
     names = f"{EXCESS} and {VELOCITY} are not identifiable from these recordings"
@@ -267,7 +267,7 @@ def _static_friction_note(looks: Sequence[Look]) -> str:
     )
 
 
-def _indistinguishable_note(name: str, equivalent: Sequence[Look]) -> str:
+def _indistinguishable_note(name: str, equivalent: Sequence[ScreenedValue]) -> str:
     """Return the note on the values of a fixed parameter that the recordings do not exclude."""
     values = [look.values[name] for look in equivalent]
     lowest = f"{min(values):.2g}" if name == STIFFNESS else "0"
@@ -277,7 +277,7 @@ def _indistinguishable_note(name: str, equivalent: Sequence[Look]) -> str:
     )
 
 
-def _widened(fitted: Fitted, equivalent: Sequence[Look]) -> Fitted:
+def _widened(fitted: Fitted, equivalent: Sequence[ScreenedValue]) -> Fitted:
     """Return standard errors widened by the steps of values that fit equally well."""
     most = np.max([np.abs(look.moves) for look in equivalent], axis=0, initial=0.0)
     return replace(fitted, stderr=np.hypot(fitted.stderr, most / fitted.t))

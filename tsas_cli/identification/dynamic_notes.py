@@ -8,12 +8,12 @@ import numpy.typing as npt
 
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.prepared import Prepared
-from tsas_cli.physics.ends import Drive
+from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.lugre.chain import MOST_PER_SAMPLE, MOST_TRIES
 from tsas_cli.physics.lugre.stability import Stability, stability
 from tsas_cli.physics.lugre.start import bristles_of
 from tsas_cli.physics.phases import UNCONVERGED
-from tsas_cli.physics.response import Response, simulate
+from tsas_cli.physics.response import Prediction, simulate
 from tsas_cli.physics.rig import Rig
 
 Floats = npt.NDArray[np.float64]
@@ -21,7 +21,7 @@ MANY_STEPS = 10  # steps for each sample
 HIGH_DAMPING = 3.0  # times critical, from which the bristles are the cause of unstable sliding
 
 
-def dynamic_notes(run: Prepared, model: Model, response: Response) -> Iterator[str]:
+def dynamic_notes(run: Prepared, model: Model, response: Prediction) -> Iterator[str]:
     """Yield notes on what makes the dynamic model's prediction of a run unreliable."""
     rig = model.rig(run.run)
     if model.value("bristles.stiffness_N_per_mm") is None:
@@ -44,7 +44,7 @@ def dynamic_notes(run: Prepared, model: Model, response: Response) -> Iterator[s
         )
 
 
-def unstable_sliding(rig: Rig, time_s: Floats, drive: Drive) -> Iterator[str]:
+def unstable_sliding(rig: Rig, time_s: Floats, drive: DriveInput) -> Iterator[str]:
     """Yield a note on the most unstable moment of sliding in a run, if there is one."""
     slow = simulate(rig, drive)
     found = stability(rig, time_s, slow.x_in_mm, slow.f_in_N, slow.phase)

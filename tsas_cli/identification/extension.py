@@ -11,7 +11,7 @@ from tsas_cli.identification.fit import Solution, Unknown, solve
 from tsas_cli.identification.fit_problem import rig_at
 from tsas_cli.identification.joint_fit import FittedModel
 from tsas_cli.identification.quantities import QUANTITIES
-from tsas_cli.identification.run_errors import RunErrors, meshed, reweighed
+from tsas_cli.identification.run_errors import RunErrors, meshed, reweighted
 from tsas_cli.identification.unknowns import unknown_of
 from tsas_cli.physics.response import ON_CHAIN, is_closed
 from tsas_cli.physics.rig import Rig, with_values
@@ -19,13 +19,13 @@ from tsas_cli.physics.rig import Rig, with_values
 Floats = npt.NDArray[np.float64]
 
 TOLERANCE = 1e-5  # of the squares, for the last step of a fit that is one of many
-ROUGHER = 100.0  # of TOLERANCE, in proportion to the mean square of the residuals
+MOST_LOOSENING = 100.0  # of TOLERANCE, in proportion to the mean square of the residuals
 NODES, COARSE_NODES = 40, 12  # of the slip chain, in fits and in screening
 UNEVEN = 0.05  # standard deviation of a sheath's relative variation of curvature
 
 
 @dataclass(frozen=True)
-class Trial:
+class HypothesisFit:
     """One hypothesis fitted: the effects freed, and the least squares with them."""
 
     effects: tuple[str, ...]
@@ -94,9 +94,9 @@ class Bench:
         effects: Sequence[str] = (),
         initial: Mapping[str, float] | None = None,
         *,
-        near: Trial | None = None,
+        near: HypothesisFit | None = None,
         on_mesh: bool = False,
-    ) -> Trial:
+    ) -> HypothesisFit:
         """Return a fit of the free parameters of the base fit and those of the effects.
 
         Parameters
@@ -124,7 +124,7 @@ class Bench:
         mesh = on_mesh or self.on_mesh(effects)
         runs = len(self.rigs)
         mean_square = 1.0 if near is None else near.mean_square
-        tolerance = TOLERANCE * min(max(mean_square, 1.0), ROUGHER)
+        tolerance = TOLERANCE * min(max(mean_square, 1.0), MOST_LOOSENING)
         errors = self.meshed if mesh else self.closed
 
         def residuals(k: int, values: Floats) -> Floats:
@@ -132,9 +132,9 @@ class Bench:
 
         solution = solve(unknowns, runs, residuals, tolerance=tolerance)
         sizes = tuple(residuals(k, solution.values).size for k in range(runs))
-        return Trial(tuple(effects), unknowns, solution, sizes, mesh)
+        return HypothesisFit(tuple(effects), unknowns, solution, sizes, mesh)
 
-    def errors_at(self, trial: Trial, changes: Mapping[str, float]) -> Floats:
+    def errors_at(self, trial: HypothesisFit, changes: Mapping[str, float]) -> Floats:
         """Return all residuals at a trial's values with some effects' parameters set.
 
         For screening: on a coarse mesh, where one is needed, so that only differences between two
@@ -148,7 +148,7 @@ class Bench:
             [run.residuals(rig_at(self.rigs[k], k, unknowns, at)) for k, run in enumerate(errors)]
         )
 
-    def unevenness(self, trial: Trial) -> Floats:
+    def unevenness(self, trial: HypothesisFit) -> Floats:
         """Return the sensitivity of a trial's residuals to an unevenly bent sheath.
 
         Shape (n, 2), one standard deviation of each of the first two modes.
@@ -166,11 +166,11 @@ class Bench:
         """The compared channels, in a fixed order."""
         return sorted({name for run in self.closed for name in run.samples})
 
-    def errors_for(self, trial: Trial) -> tuple[RunErrors, ...]:
+    def errors_for(self, trial: HypothesisFit) -> tuple[RunErrors, ...]:
         """Return the residual functions of the runs for a trial's solver."""
         return self.meshed if trial.on_mesh else self.closed
 
-    def rig(self, trial: Trial, k: int) -> Rig:
+    def rig(self, trial: HypothesisFit, k: int) -> Rig:
         """Return the rig of run k with a trial's values."""
         return rig_at(self.rigs[k], k, trial.unknowns, trial.solution.values)
 
@@ -191,9 +191,9 @@ def bench_of(base: FittedModel) -> Bench:
     )
 
 
-def reweighed_bench(bench: Bench, trial: Trial) -> Bench:
+def reweighted_bench(bench: Bench, trial: HypothesisFit) -> Bench:
     """Return a bench with the residuals weighted at a trial's model."""
-    errors = tuple(reweighed(e, bench.rig(trial, k)) for k, e in enumerate(bench.closed))
+    errors = tuple(reweighted(e, bench.rig(trial, k)) for k, e in enumerate(bench.closed))
     return replace(
         bench,
         closed=errors,
@@ -202,7 +202,7 @@ def reweighed_bench(bench: Bench, trial: Trial) -> Bench:
     )
 
 
-def _pairs(trial: Trial) -> list[tuple[Unknown, float]]:
+def _pairs(trial: HypothesisFit) -> list[tuple[Unknown, float]]:
     return list(zip(trial.unknowns, trial.solution.values, strict=True))
 
 

@@ -11,7 +11,7 @@ from tsas_cli.identification.model import Model
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.identification.run_errors import RunErrors, run_errors
-from tsas_cli.identification.samples import kept_samples, lost
+from tsas_cli.identification.samples import fitted_samples, left_out_notes
 from tsas_cli.identification.unknowns import further_unknown, nominal_unknowns
 from tsas_cli.physics.response import Dynamics
 from tsas_cli.physics.rig import Rig, with_values
@@ -77,7 +77,7 @@ def prepare_fit(
     shared
         Whether shared parameters are free; else only those of single runs.
     """
-    samples = [kept_samples(run, initial.rig(run.run)) for run in runs]
+    samples = [fitted_samples(run, initial.rig(run.run)) for run in runs]
     used = [(run, at) for run, at in zip(runs, samples, strict=True) if at]
     rigs = tuple(initial.rig(run.run) for run, _ in used)
     used_runs = tuple(run for run, _ in used)
@@ -90,7 +90,7 @@ def prepare_fit(
         rigs,
         tuple(u for u in unknowns if shared or u.run is not None),
         tuple(run_errors(*each, rig, dynamics) for each, rig in zip(used, rigs, strict=True)),
-        tuple(s for run, at in zip(runs, samples, strict=True) for s in lost(run, at)),
+        tuple(s for run, at in zip(runs, samples, strict=True) for s in left_out_notes(run, at)),
     )
 
 

@@ -19,7 +19,7 @@ SMALLEST_BEND = 1e-3  # rad
 SMALLEST_WRAP = 0.01  # below it the residual is insensitive to friction
 
 
-def read_off(
+def initial_values_of(
     run: Prepared, segments: Sequence[Segment], slopes: Sequence[Slope], rig: Rig
 ) -> dict[str, float]:
     """Return the parameters of one run by the formulas of the static model.

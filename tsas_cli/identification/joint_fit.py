@@ -17,7 +17,7 @@ from tsas_cli.identification.fit_problem import FitProblem
 from tsas_cli.identification.fit_words import doubts_of, fixed_sentences
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.quantities import QUANTITIES
-from tsas_cli.identification.run_errors import RunErrors, blocks_of, reweighed
+from tsas_cli.identification.run_errors import RunErrors, blocks_of, reweighted
 from tsas_cli.numerics.side_by_side import each
 from tsas_cli.physics.rig import Rig, with_values
 
@@ -84,7 +84,7 @@ def solve_fit(problem: FitProblem) -> FittedModel:
         fitted = _fit(problem, errors, values, chosen, tolerance=FINE if before else ROUGH)
         values = _fixed_values(problem)
         values[chosen] = fitted.values
-        errors = tuple(reweighed(e, problem.rig(k, values)) for k, e in enumerate(errors))
+        errors = tuple(reweighted(e, problem.rig(k, values)) for k, e in enumerate(errors))
         if chosen == before:
             break
         before = chosen

@@ -24,7 +24,7 @@ from tsas_cli.identification.prepared import (
     seconds_into,
 )
 from tsas_cli.numerics.conditioning import Conditioned
-from tsas_cli.numerics.conditioning_pieces import Cleaned, Plan, Samples, cleaned, plan
+from tsas_cli.numerics.conditioning_pieces import Cleaned, CleaningPlan, Samples, cleaned, plan
 from tsas_cli.recordings import pieces as reading
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.copied import NONE_COPIED, CopiedRows
@@ -59,7 +59,7 @@ class LongRun:
     run: Run
     columns: RunColumns
     drive_column: str
-    plans: Mapping[str, Plan]
+    plans: Mapping[str, CleaningPlan]
     noise: Mapping[str, float]
     session_s: float
     copied: CopiedRows = NONE_COPIED  # from another run
@@ -242,7 +242,7 @@ def _concatenated(parts: Sequence[Cleaned]) -> Cleaned:
     )
 
 
-def _conditioned(parts: Sequence[Cleaned], known: Plan, size: int) -> Conditioned:
+def _conditioned(parts: Sequence[Cleaned], known: CleaningPlan, size: int) -> Conditioned:
     starts = np.cumsum([0, *(part.values.size for part in parts)])
     reversals = [part.reversals + start for part, start in zip(parts, starts[:-1], strict=True)]
     whole = _concatenated(parts)

@@ -15,9 +15,9 @@ from tsas_cli.identification.long_runs import LongRun, Rows
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.prepared import CHANNELS, LOAD_COLUMNS, Prepared, drive_of
 from tsas_cli.physics.by_pieces import simulate_pieces
-from tsas_cli.physics.ends import Drive
+from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.phases import SLACK, UNCONVERGED
-from tsas_cli.physics.response import Dynamics, Response
+from tsas_cli.physics.response import Dynamics, Prediction
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.writing import parquet_writer, table_of
 from tsas_cli.support.errors import InputError
@@ -81,7 +81,7 @@ def simulate_long(
     return _summary(parts), long.thinned(thinned)
 
 
-def _counted(response: Response, channels: dict[str, Floats], rows: Rows) -> _Counted:
+def _counted(response: Prediction, channels: dict[str, Floats], rows: Rows) -> _Counted:
     """Return the counts of some rows."""
     errors = {name: measured - channels[name] for name, measured in rows.measured.items()}
     errors = {name: error[np.isfinite(error)] for name, error in errors.items()}
@@ -110,7 +110,7 @@ def _summary(parts: Sequence[_Counted]) -> RunSummary:
     )
 
 
-def _drives(long: LongRun, waiting: deque[Rows]) -> Iterator[Drive]:
+def _drives(long: LongRun, waiting: deque[Rows]) -> Iterator[DriveInput]:
     """Yield the drive of each piece of a run; append its rows to `waiting`."""
     load = LOAD_COLUMNS.get(long.run.load)
     begin_s = 0.0

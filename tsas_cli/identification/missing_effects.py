@@ -11,12 +11,12 @@ from dataclasses import dataclass, replace
 
 from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.extension import Bench, Trial, bench_of
+from tsas_cli.identification.extension import Bench, HypothesisFit, bench_of
 from tsas_cli.identification.fit import with_errors
 from tsas_cli.identification.joint_fit import FittedModel, estimates_of
 from tsas_cli.identification.run_errors import blocks_of
 from tsas_cli.identification.screening import projector, screen
-from tsas_cli.support.steps import SILENT, Steps
+from tsas_cli.support.steps import NO_PROGRESS, Steps
 
 LEAST_SHARE = 0.5  # of the best effect's linear reduction, for an effect to be fitted
 NEAR = 2.0  # times the best effect's excess over the noise, for an effect to be included
@@ -32,7 +32,7 @@ class Widened:
     effects: tuple[str, ...]
 
 
-def widened(fit: FittedModel, step: Steps = SILENT) -> Widened:
+def widened(fit: FittedModel, step: Steps = NO_PROGRESS) -> Widened:
     """Return the estimates of a fit, widened by the effects that explain most of its residual.
 
     `step` counts each effect that is screened, and each that is fitted.
@@ -56,7 +56,7 @@ def widened(fit: FittedModel, step: Steps = SILENT) -> Widened:
     )
 
 
-def _best_trials(bench: Bench, step: Steps) -> list[Trial]:
+def _best_trials(bench: Bench, step: Steps) -> list[HypothesisFit]:
     """Return the converged fits with one effect each that reduce the residual."""
     screened = []
     bases = {}
@@ -80,7 +80,7 @@ def _best_trials(bench: Bench, step: Steps) -> list[Trial]:
     return out
 
 
-def _estimates(bench: Bench, trial: Trial) -> list[Estimate]:
+def _estimates(bench: Bench, trial: HypothesisFit) -> list[Estimate]:
     rigs = [bench.rig(trial, k) for k in range(len(bench.rigs))]
     fitted = with_errors(trial.unknowns, trial.solution, blocks_of(bench.closed, rigs))
     return estimates_of(trial.unknowns, fitted, bench.base.problem.ids)

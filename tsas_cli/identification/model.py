@@ -177,7 +177,7 @@ def _axial_stiffness(diameter_mm: float | None, modulus_GPa: float | None) -> fl
     return 1e3 * modulus_GPa * math.pi / 4.0 * diameter_mm**2
 
 
-class _File(BaseModel):
+class _ModelTables(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     format: Literal[1]
@@ -192,7 +192,7 @@ class _File(BaseModel):
 
 def write_model(path: Path, model: Model, *, version: str, dataset: Mapping[str, object]) -> None:
     """Write `model.toml`."""
-    file = _File(format=1, version=version, dataset=dict(dataset))
+    file = _ModelTables(format=1, version=version, dataset=dict(dataset))
     for e in model.estimates:
         entry = StoredValue.model_validate(e, from_attributes=True)
         group, _, name = e.name.rpartition(".")
@@ -219,7 +219,7 @@ def read_model(path: Path) -> Model:
     """
     if path.is_dir():
         path = path / MODEL_FILE
-    file = parse(_File, read_toml(path), path)
+    file = parse(_ModelTables, read_toml(path), path)
     units = {name: q.unit for name, q in QUANTITIES.items()} | {CORRECTION: "N"}
     values: list[tuple[str, str | None, StoredValue]] = []
     values += [(name, None, v) for name, v in file.parameters.items()]

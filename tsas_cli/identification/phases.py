@@ -82,11 +82,11 @@ def segment(run: Prepared) -> list[Segment]:
     return out
 
 
-def segment_records(run: Prepared, segments: Sequence[Segment]) -> tuple[records.Segment, ...]:
+def segment_records(run: Prepared, segments: Sequence[Segment]) -> tuple[records.PhaseSegment, ...]:
     """Return the records of a run's phases in the stages' files."""
     last = run.time_s.size - 1
     return tuple(
-        records.Segment(
+        records.PhaseSegment(
             start_s=float(run.time_s[s.first]),
             end_s=float(run.time_s[min(s.end, last)]),
             phase=s.phase,

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from tsas_cli.numerics.conditioning import METHOD, Conditioned, condition
 from tsas_cli.numerics.interpolated import interpolated
 from tsas_cli.numerics.noise import noise_sd, quantisation_step
-from tsas_cli.physics.ends import Drive
+from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.response import TOLERANCE
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.copied import NONE_COPIED, CopiedRows
@@ -51,7 +51,7 @@ class Prepared:
     all_noise: Mapping[str, float] | None = None
 
     @cached_property
-    def drive(self) -> Drive:
+    def drive(self) -> DriveInput:
         """The given quantities at the ends, conditioned."""
         load = LOAD_COLUMNS.get(self.run.load)
         return drive_of(
@@ -111,13 +111,13 @@ def drive_of(
     load_values: Floats | None,
     f_in_N: Floats | None,
     session_s: float,
-) -> Drive:
+) -> DriveInput:
     """Return the drive of a run: conditioned values at the drive and, where given, at the load.
 
     The measured tension at the drive, unless it is given, is the initial condition.
     """
     start = None if f_in_N is None or by_force else _start_value(time_s, f_in_N)
-    return Drive(
+    return DriveInput(
         values=values,
         kind="force" if by_force else "displacement",
         load=run.load,

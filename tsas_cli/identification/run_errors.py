@@ -129,7 +129,7 @@ def run_errors(
     return _weighted(run, samples, simulation, predictor(simulation), rig)
 
 
-def reweighed(errors: RunErrors, rig: Rig) -> RunErrors:
+def reweighted(errors: RunErrors, rig: Rig) -> RunErrors:
     """Return the residuals of the same run, weighted at another rig."""
     return _weighted(errors.run, errors.samples, errors.simulation, errors.predict, rig)
 

@@ -9,9 +9,9 @@ import numpy.typing as npt
 
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.samples import points
-from tsas_cli.physics.ends import Drive
+from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.lugre.chain import OWN_STEPS
-from tsas_cli.physics.response import Dynamics, Response, is_closed, simulate
+from tsas_cli.physics.response import Dynamics, Prediction, is_closed, simulate
 from tsas_cli.physics.rig import Rig
 
 Floats = npt.NDArray[np.float64]
@@ -30,7 +30,7 @@ class RunSimulation:
     have its own small errors, which would dominate finite differences.
     """
 
-    drive: Drive
+    drive: DriveInput
     points: Indices
     tolerance: float
     dynamics: Dynamics
@@ -80,7 +80,7 @@ def predict_driven(
     return _at_samples(simulation, _response(simulation, rig, drive, OWN_STEPS))
 
 
-def _response(simulation: RunSimulation, rig: Rig, drive: Drive, step_ends_s: Floats) -> Response:
+def _response(simulation: RunSimulation, rig: Rig, drive: DriveInput, step_ends_s: Floats) -> Prediction:
     """Return the response at all samples by the closed form, or at `points` by a chain."""
     slip = simulation.nodes is None and simulation.dynamics == "slip"
     at = slice(None) if slip and is_closed(rig, drive) else simulation.points
@@ -97,7 +97,7 @@ def _response(simulation: RunSimulation, rig: Rig, drive: Drive, step_ends_s: Fl
     )
 
 
-def _at_samples(simulation: RunSimulation, response: Response) -> Predictions:
+def _at_samples(simulation: RunSimulation, response: Prediction) -> Predictions:
     """Return the predictions at all samples, interpolated linearly between simulated ones."""
     channels = {
         "f_in_N": response.f_in_N,

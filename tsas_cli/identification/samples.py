@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.identification.prepared import Prepared
-from tsas_cli.physics.response import forgotten
+from tsas_cli.physics.response import first_determined_sample
 from tsas_cli.physics.rig import Rig
 
 Indices = npt.NDArray[np.int64]
@@ -37,14 +37,14 @@ def points(run: Prepared) -> Indices:
     return np.flatnonzero(followed)
 
 
-def kept_samples(run: Prepared, rig: Rig) -> dict[str, Indices]:
+def fitted_samples(run: Prepared, rig: Rig) -> dict[str, Indices]:
     """Return the samples of each channel that enter the fit, none where there are too few.
 
     They start where the prediction is independent of the history before the run and the drive has
     travelled as far again, as other parameters may need. Samples after the last motion beyond the
     noise are left out. The channel's noise must be known.
     """
-    first = forgotten(rig, run.drive)
+    first = first_determined_sample(rig, run.drive)
     if first is None:
         return {}
     travel = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(run.drive.values)))))
@@ -61,7 +61,7 @@ def kept_samples(run: Prepared, rig: Rig) -> dict[str, Indices]:
     return {name: at for name, at in used.items() if at.size >= FEWEST_SAMPLES}
 
 
-def lost(run: Prepared, samples: Mapping[str, Indices]) -> list[str]:
+def left_out_notes(run: Prepared, samples: Mapping[str, Indices]) -> list[str]:
     """Return a sentence for each channel or run that does not enter the fit."""
     flat = [name for name, noise in run.noise.items() if noise == 0.0]
     short = [name for name in run.measured if name not in samples and name not in flat]

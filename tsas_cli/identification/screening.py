@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.effects import Effect, Parameter
-from tsas_cli.identification.extension import Bench, Trial
+from tsas_cli.identification.extension import Bench, HypothesisFit
 
 Floats = npt.NDArray[np.float64]
 
@@ -35,7 +35,7 @@ class Screened:
     signatures: Floats
 
 
-def projector(trial: Trial) -> Floats:
+def projector(trial: HypothesisFit) -> Floats:
     """Return an orthonormal basis of the Jacobian of a trial's free parameters."""
     free = trial.solution.jacobian[:, ~trial.solution.at_bound]
     basis, r = np.linalg.qr(
@@ -45,7 +45,7 @@ def projector(trial: Trial) -> Floats:
     return np.asarray(basis[:, own])
 
 
-def screen(bench: Bench, trial: Trial, effect: Effect, basis: Floats) -> Screened:
+def screen(bench: Bench, trial: HypothesisFit, effect: Effect, basis: Floats) -> Screened:
     """Return an effect screened at a fitted trial, with the best of its shapes."""
     residual = trial.solution.residual
     without = bench.errors_at(trial, {})

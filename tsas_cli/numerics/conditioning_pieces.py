@@ -27,7 +27,7 @@ PLANNED_SAMPLES = 1 << 17  # of each of them, at most
 
 
 @dataclass(frozen=True)
-class Plan:
+class CleaningPlan:
     """Estimates for the whole signal; `interval_s` is the median time between its samples."""
 
     noise: float
@@ -77,7 +77,7 @@ class _Final:
     reversals: Indices
 
 
-def plan(pieces: Iterable[Samples], count: int) -> Plan:
+def plan(pieces: Iterable[Samples], count: int) -> CleaningPlan:
     """Return the estimates for a signal of `count` pieces: medians over them."""
     noise, memory, ratio, window, interval = [], [], [], [], []
     for number, (_, time_s, values) in enumerate(pieces):
@@ -96,7 +96,7 @@ def plan(pieces: Iterable[Samples], count: int) -> Plan:
             ratio.append(smallest_reversal(sd, here) / here)
             window.append(window_s)
     usual = float(np.median(noise)) if noise else 0.0
-    return Plan(
+    return CleaningPlan(
         usual,
         float(np.median(memory)) if noise else 1.0,
         usual * float(np.median(ratio)) if ratio else 0.0,
@@ -105,7 +105,7 @@ def plan(pieces: Iterable[Samples], count: int) -> Plan:
     )
 
 
-def cleaned(pieces: Iterable[Samples], beside: int, plan: Plan) -> Iterator[Cleaned]:
+def cleaned(pieces: Iterable[Samples], beside: int, plan: CleaningPlan) -> Iterator[Cleaned]:
     """Yield the rows of the cleaned signal in order, as they become final.
 
     Parameters
@@ -130,7 +130,7 @@ def cleaned(pieces: Iterable[Samples], beside: int, plan: Plan) -> Iterator[Clea
         yield _over_all_rows(start, waiting, last, _no_samples())
 
 
-def _smooth(pieces: Iterable[Samples], beside: int, plan: Plan) -> Iterator[_Smoothed]:
+def _smooth(pieces: Iterable[Samples], beside: int, plan: CleaningPlan) -> Iterator[_Smoothed]:
     """Yield each piece smoothed, without the overlap that the next one covers better."""
     upcoming = iter(pieces)
     now: Samples | None = next(upcoming)
@@ -149,7 +149,7 @@ def _smooth(pieces: Iterable[Samples], beside: int, plan: Plan) -> Iterator[_Smo
         now = after
 
 
-def _monotone(parts: Iterable[_Smoothed], plan: Plan) -> Iterator[_Final]:
+def _monotone(parts: Iterable[_Smoothed], plan: CleaningPlan) -> Iterator[_Final]:
     """Yield the signal, monotone between reversals, as far as it is final."""
     pending: _Smoothed | None = None
     partly_regressed: Floats = np.empty(0)  # pending samples; the stroke before ends at the first
@@ -183,7 +183,7 @@ def _monotone(parts: Iterable[_Smoothed], plan: Plan) -> Iterator[_Final]:
         yield _final(pending, out, pending.rows.size, np.empty(0, dtype=np.int64))
 
 
-def _rising(values: Floats, direction: int, bound: float, plan: Plan) -> Floats:
+def _rising(values: Floats, direction: int, bound: float, plan: CleaningPlan) -> Floats:
     """Return the nearest monotone signal beyond the value that the stroke has reached before."""
     from scipy.optimize import isotonic_regression
 

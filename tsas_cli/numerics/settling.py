@@ -6,7 +6,7 @@ from tsas_cli.numerics.compiled import kernel
 
 
 @kernel
-def settling(rate: float, settling_per_s: float, time_s: float) -> float:
+def exponential_drift(rate: float, settling_per_s: float, time_s: float) -> float:
     """Return rate·(1 − exp(−ν t))/ν, which is rate·t where ν is zero.
 
     Parameters

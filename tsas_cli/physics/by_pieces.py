@@ -22,12 +22,12 @@ from tsas_cli.physics.closed_form.branches import (
 )
 from tsas_cli.physics.closed_form.static import StaticState, follow_static
 from tsas_cli.physics.course import Output
-from tsas_cli.physics.ends import Drive, EndInputs, ends_of
+from tsas_cli.physics.ends import DriveInput, EndInputs, ends_of
 from tsas_cli.physics.response import (
     CLOSED,
     NODES,
     Dynamics,
-    Response,
+    Prediction,
     at_drive_sensor,
     history,
     is_closed,
@@ -62,7 +62,7 @@ class _OverlappingPiece:
     both are None in the last piece.
     """
 
-    drive: Drive
+    drive: DriveInput
     first: int
     end: int
     begin: int
@@ -73,12 +73,12 @@ class _OverlappingPiece:
 
 def simulate_pieces(
     rig: Rig,
-    drives: Iterable[Drive],
+    drives: Iterable[DriveInput],
     dynamics: Dynamics = "slip",
     *,
     on_mesh: bool = False,
     nodes: int | None = None,
-) -> Iterator[Response]:
+) -> Iterator[Prediction]:
     """Yield the response of each piece of a run, equal to that of `simulate` for the whole run.
 
     `drives` are one run's samples in order, with times since the start of the run; the fields
@@ -141,9 +141,9 @@ def _longest_delay(rig: Rig) -> float:
     return max(abs(delay) for delay in rig.effects.channel_delay)
 
 
-def _overlapping(drives: Iterable[Drive], delay_s: float) -> Iterator[_OverlappingPiece]:
+def _overlapping(drives: Iterable[DriveInput], delay_s: float) -> Iterator[_OverlappingPiece]:
     """Yield each piece with samples of its neighbours, over more than twice the longest delay."""
-    tail: Drive | None = None
+    tail: DriveInput | None = None
     begin = 0
     upcoming = iter(drives)
     now = next(upcoming)
@@ -167,25 +167,25 @@ def _overlapping(drives: Iterable[Drive], delay_s: float) -> Iterator[_Overlappi
         tail, begin, now = _part(drive, handover, end), next_begin - handover, after
 
 
-def _head(now: Drive, after: Drive, delay_s: float) -> Drive:
+def _head(now: DriveInput, after: DriveInput, delay_s: float) -> DriveInput:
     until = float(_times(now)[-1]) + 2.0 * delay_s
     return _part(after, 0, int(np.searchsorted(_times(after), until, side="right")) + OVERLAP)
 
 
-def _times(drive: Drive) -> Floats:
+def _times(drive: DriveInput) -> Floats:
     if drive.time_s is None:
         raise ValueError("pieces need the times of their samples")
     return drive.time_s
 
 
-def _part(drive: Drive, first: int, end: int) -> Drive:
+def _part(drive: DriveInput, first: int, end: int) -> DriveInput:
     """Return the samples first … end−1 of a drive."""
     load = None if drive.load_values is None else drive.load_values[first:end]
     time_s = _times(drive)[first:end]
     return replace(drive, values=drive.values[first:end], load_values=load, time_s=time_s)
 
 
-def _concatenated_drives(parts: Sequence[Drive]) -> Drive:
+def _concatenated_drives(parts: Sequence[DriveInput]) -> DriveInput:
     loads = [part.load_values for part in parts if part.load_values is not None]
     return replace(
         parts[0],
@@ -202,7 +202,7 @@ def _concatenated(one: Output, other: Output) -> Output:
     return Output(x_in, x_out, f_in, f_out, np.concatenate((one.phase, other.phase)))
 
 
-def _own_samples(response: Response, first: int, end: int) -> Response:
+def _own_samples(response: Prediction, first: int, end: int) -> Prediction:
     """Return a response without the samples of the neighbours."""
     rows = slice(first, end)
     return replace(

@@ -26,7 +26,7 @@ Floats = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Drive:
+class DriveInput:
     """Sensor readings of the given quantities at both ends during a run, shape (n,).
 
     `time_s` is the time since the start of the run, shape (n,); without it the run is quasi-static:
@@ -77,7 +77,7 @@ class EndInputs:
         return self.part(0, 1)
 
 
-def ends_of(rig: Rig, drive: Drive, start: tuple[float, float] | None = None) -> EndInputs:
+def ends_of(rig: Rig, drive: DriveInput, start: tuple[float, float] | None = None) -> EndInputs:
     """Return the inputs of a rig's tendon for ends driven as measured.
 
     `start` is the position of the tendon's end at the drive at the first sample and the direction

@@ -14,7 +14,7 @@ from tsas_cli.physics.boundary import FORCE
 from tsas_cli.physics.closed_form.branches import branches
 from tsas_cli.physics.closed_form.static import static_model
 from tsas_cli.physics.course import Output, Tensions
-from tsas_cli.physics.ends import Drive, EndInputs, ends_of
+from tsas_cli.physics.ends import DriveInput, EndInputs, ends_of
 from tsas_cli.physics.frames import Frames, Indices, empty_frames
 from tsas_cli.physics.lugre.chain import OWN_STEPS, StepControl, lugre_chain
 from tsas_cli.physics.mesh import MOST_NODES
@@ -37,7 +37,7 @@ ON_CHAIN = tuple(effect.name for effect in EFFECTS if not effect.closed_form)
 
 
 @dataclass(frozen=True)
-class Response:
+class Prediction:
     """A prediction: simulated sensor readings, shape (n,) [mm, N].
 
     `phase` is +1 in contraction and −1 in loosening with the whole tendon slipping, 0 in a dead
@@ -59,7 +59,7 @@ class Response:
 
 def simulate(
     rig: Rig,
-    drive: Drive,
+    drive: DriveInput,
     dynamics: Dynamics = "slip",
     *,
     on_mesh: bool = False,
@@ -67,7 +67,7 @@ def simulate(
     tolerance: float = TOLERANCE,
     step_ends_s: Floats = OWN_STEPS,
     looked_at: Indices | None = None,
-) -> Response:
+) -> Prediction:
     """Return the prediction of the distributed model (`slip`), the static or the dynamic one.
 
     The distributed model uses the closed form where that is valid (`is_closed`), and the slip chain
@@ -99,11 +99,11 @@ def simulate(
 
 def _dynamic(
     rig: Rig,
-    drive: Drive,
+    drive: DriveInput,
     lumps: int,
     control: StepControl,
     looked_at: Indices | None,
-) -> Response:
+) -> Prediction:
     """Return the prediction of the dynamic chain, from the slip chain's state of rest."""
     if drive.time_s is None:
         raise ValueError("the dynamic model needs the times of its samples")
@@ -130,7 +130,7 @@ def solver_of(nodes: int, dynamics: Dynamics) -> str:
     return "closed form" if nodes == CLOSED else f"slip chain, {nodes} nodes"
 
 
-def is_closed(rig: Rig, drive: Drive) -> bool:
+def is_closed(rig: Rig, drive: DriveInput) -> bool:
     """Return whether the closed form is valid: displacement drive, spring, constant friction."""
     neutral = Effects()
     return (
@@ -141,10 +141,10 @@ def is_closed(rig: Rig, drive: Drive) -> bool:
     )
 
 
-def sensor_readings(rig: Rig, drive: Drive, output: Output, skip: int, solver: str) -> Response:
+def sensor_readings(rig: Rig, drive: DriveInput, output: Output, skip: int, solver: str) -> Prediction:
     """Return the sensor readings of an output without its first `skip` samples."""
     x_in = output.x_in[skip:]
-    return Response(
+    return Prediction(
         drive.values if drive.kind == "displacement" else x_in + rig.x_in_zero_mm,
         reading("x_out_mm", output.x_out[skip:], drive.time_s, rig),
         reading("f_in_N", output.f_in[skip:], drive.time_s, rig),
@@ -186,7 +186,7 @@ def force_beside_tendon(rig: Rig, ends: EndInputs) -> Floats | float:
     return friction_N + proximal_spring_force(1.0, stiffness) * ends.drive
 
 
-def forgotten(rig: Rig, drive: Drive) -> int | None:
+def first_determined_sample(rig: Rig, drive: DriveInput) -> int | None:
     """Return the first sample whose prediction is independent of the history before the run.
 
     None where there is none. The history is forgotten once the tendon slips as a whole in the same

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import tomlkit
 
-from tsas_cli.recordings.guess.proposal import Proposal, propose
+from tsas_cli.recordings.guess.proposal import MapProposal, propose
 from tsas_cli.recordings.guess.text import map_text
 from tsas_cli.recordings.ingest import find_files
 from tsas_cli.support.errors import InputError, printable
@@ -24,7 +24,7 @@ def makefile() -> str:
     return "\n".join((HERE / "make" / name).read_text(encoding="utf-8") for name in MAKE)
 
 
-def start(folder: Path, sources: Sequence[Path]) -> tuple[list[str], Proposal | None]:
+def start(folder: Path, sources: Sequence[Path]) -> tuple[list[str], MapProposal | None]:
     """Return the files of a new project, and the proposal for its map if there are sources.
 
     The sources are copied into `raw/`, a folder with its name. Files are added to an existing

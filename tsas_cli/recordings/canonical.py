@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from tsas_cli.recordings.columns import BY_NAME, TIME
 from tsas_cli.recordings.ingest_map import ColumnMap, IngestMap
-from tsas_cli.recordings.readers.table import Floats, Table
+from tsas_cli.recordings.readers.table import Floats, ColumnTable
 from tsas_cli.recordings.units import conversion
 from tsas_cli.support.errors import InputError
 
@@ -29,7 +29,7 @@ class PrecedingRows:
 
 
 def canonical_columns(
-    table: Table,
+    table: ColumnTable,
     mapping: IngestMap,
     path: Path,
     map_path: Path,
@@ -82,7 +82,7 @@ def canonical_columns(
     return columns, PrecedingRows(before.read + rows, kept_rows, offsets, last)
 
 
-def _rows(table: Table, path: Path, *, fewest: int) -> int:
+def _rows(table: ColumnTable, path: Path, *, fewest: int) -> int:
     lengths = {source: values.size for source, values in table.columns.items()}
     if len(set(lengths.values())) > 1:
         listed = ", ".join(f"{source} has {n}" for source, n in lengths.items())
@@ -94,7 +94,7 @@ def _rows(table: Table, path: Path, *, fewest: int) -> int:
 
 
 def _converted(
-    name: str, column: ColumnMap, table: Table, rows: int, where: str, *, first: int
+    name: str, column: ColumnMap, table: ColumnTable, rows: int, where: str, *, first: int
 ) -> Floats:
     """Return a column in its canonical unit; `first` is the number of its first row, from 0."""
     values, unit = _raw(column, table, rows, first)
@@ -121,7 +121,7 @@ def _converted(
     return values * (column.sign * slope) + column.sign * intercept
 
 
-def _raw(column: ColumnMap, table: Table, rows: int, first: int) -> tuple[Floats, str | None]:
+def _raw(column: ColumnMap, table: ColumnTable, rows: int, first: int) -> tuple[Floats, str | None]:
     """Return the values in the unit of the file, and that unit."""
     if column.rate_Hz is not None:
         return np.arange(first, first + rows) / column.rate_Hz, "s"

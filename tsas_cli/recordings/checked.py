@@ -7,14 +7,14 @@ import pyarrow as pa
 
 from tsas_cli.recordings.fetched import fetched
 from tsas_cli.recordings.manifest import Run
-from tsas_cli.recordings.storage import Address, Place, check_inside
+from tsas_cli.recordings.storage import Address, Location, check_inside
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import sha256_of
 
 ParquetSource: TypeAlias = Path | pa.NativeFile
 
 
-def checked_file(folder: Place, run: Run) -> ParquetSource:
+def checked_file(folder: Location, run: Run) -> ParquetSource:
     """Return the source that Parquet is read from, after its checksum matches the manifest.
 
     Raises
@@ -56,13 +56,13 @@ def local_file(folder: Path, run: Run) -> Path:
     return path
 
 
-def _missing(path: Place, run: Run) -> InputError:
+def _missing(path: Location, run: Run) -> InputError:
     return InputError(
         "the run's file is missing", where=path, expected=f"the Parquet file of run {run.id}"
     )
 
 
-def changed(path: Place, run: Run) -> InputError:
+def changed(path: Location, run: Run) -> InputError:
     """Return the error for a file whose checksum differs from the manifest."""
     return InputError(
         "the checksum differs from the manifest's",

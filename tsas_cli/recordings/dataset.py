@@ -6,10 +6,10 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
-from tsas_cli.recordings.manifest import FILE, Manifest, Run, parse, read_manifest
+from tsas_cli.recordings.manifest import MANIFEST_FILE, Manifest, Run, parse, read_manifest
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.recordings.run_files import read_recording
-from tsas_cli.recordings.storage import Place, location_text
+from tsas_cli.recordings.storage import Location, location_text
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import sha256_of
 
@@ -34,7 +34,7 @@ class Dataset:
         Conditions of every run that replace the manifest's, by key.
     """
 
-    folder: Place
+    folder: Location
     manifest: Manifest
     chosen: tuple[str, ...] | None = None
     conditions: Mapping[str, float] = field(default_factory=dict)
@@ -58,7 +58,7 @@ class Dataset:
             if name not in known:
                 raise InputError(
                     f"there is no run {name!r}",
-                    where=self.folder / FILE,
+                    where=self.folder / MANIFEST_FILE,
                     remedy=nearest(name, known),
                 )
         return replace(self, chosen=chosen)
@@ -74,7 +74,7 @@ class Dataset:
         for name in conditions:
             if name not in CONDITIONS:
                 raise InputError(f"unknown condition {name}", remedy=nearest(name, CONDITIONS))
-        where = self.folder / FILE
+        where = self.folder / MANIFEST_FILE
         runs = [
             parse(Run, run.model_dump(exclude_unset=True) | conditions, where)
             for run in self.manifest.run
@@ -117,8 +117,8 @@ class Dataset:
 
     def hashes(self) -> dict[str, str]:
         """Return the checksum of the manifest and of each run's file, by path in the dataset."""
-        manifest = (self.folder / FILE).read_bytes()
-        return {FILE: sha256(manifest).hexdigest()} | {r.file: r.sha256 for r in self.manifest.run}
+        manifest = (self.folder / MANIFEST_FILE).read_bytes()
+        return {MANIFEST_FILE: sha256(manifest).hexdigest()} | {r.file: r.sha256 for r in self.manifest.run}
 
 
 def read_from(path: Path, home: Path) -> dict[str, str]:
@@ -130,7 +130,7 @@ def read_from(path: Path, home: Path) -> dict[str, str]:
     }
 
 
-def read_dataset(folder: Place) -> Dataset:
+def read_dataset(folder: Location) -> Dataset:
     """Return a dataset in a local folder, or at an address.
 
     Raises

@@ -13,12 +13,12 @@ from tsas_cli.recordings.dataset import read_from
 from tsas_cli.recordings.ingest_map import IngestMap
 from tsas_cli.recordings.manifest import Manifest, Run, parse, write_manifest
 from tsas_cli.recordings.readers import SUFFIXES, batches
-from tsas_cli.recordings.readers.table import Table
+from tsas_cli.recordings.readers.table import ColumnTable
 from tsas_cli.recordings.writing import parquet_writer, table_of
 from tsas_cli.support import __version__, limits
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import check_unchanged, sha256_of, state_of
-from tsas_cli.support.steps import SILENT, Steps
+from tsas_cli.support.steps import NO_PROGRESS, Steps
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ def ingest_files(
     map_path: Path,
     folder: Path,
     *,
-    step: Steps = SILENT,
+    step: Steps = NO_PROGRESS,
 ) -> list[Ingested]:
     """Write the files as the runs of a dataset into an empty folder.
 
@@ -129,7 +129,7 @@ def _files_in(folder: Path, pattern: str) -> list[Path]:
     )
 
 
-def _run(path: Path, table: Table, mapping: IngestMap) -> Run:
+def _run(path: Path, table: ColumnTable, mapping: IngestMap) -> Run:
     conditions = run_conditions(path, table.header, mapping.run, mapping.read.decimal)
     written = {
         "file": f"runs/{conditions['id']}.parquet",
@@ -148,7 +148,7 @@ def _origin(ingested: Sequence[Ingested], map_path: Path, folder: Path) -> dict[
 
 
 def _ingest(
-    parts: Iterator[Table], run: str, path: Path, mapping: IngestMap, map_path: Path, written: Path
+    parts: Iterator[ColumnTable], run: str, path: Path, mapping: IngestMap, map_path: Path, written: Path
 ) -> Ingested:
     """Write one file part by part; return its summary."""
     columns, before = canonical_columns(next(parts), mapping, path, map_path)

@@ -8,7 +8,7 @@ from typing import Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
 
 from tsas_cli.recordings.columns import NAMES, TIME, has_input_and_output
-from tsas_cli.recordings.manifest import Load, Rig, parse, read_toml
+from tsas_cli.recordings.manifest import Load, RigSheet, parse, read_toml
 from tsas_cli.recordings.readers.options import ReadOptions
 from tsas_cli.recordings.readers.table import ColumnSource
 from tsas_cli.support.errors import InputError, nearest
@@ -32,7 +32,7 @@ class DatasetEntry(_Strict):
     source: str | None = None
 
 
-class MapRig(Rig):
+class MapRig(RigSheet):
     """`[rig]`: the keys of the manifest's `[rig]`, and no others."""
 
     model_config = ConfigDict(extra="forbid")

@@ -20,12 +20,12 @@ from pydantic import (
 )
 
 from tsas_cli.recordings.run_names import check_run_name, colliding_names
-from tsas_cli.recordings.storage import Address, Place, check_inside
+from tsas_cli.recordings.storage import Address, Location, check_inside
 from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import Raw
 
-FILE = "dataset.toml"
+MANIFEST_FILE = "dataset.toml"
 Load = Literal["spring", "force", "displacement"]
 T = TypeVar("T", bound=BaseModel)
 _MOST_ERRORS = 5  # listed of one file; further ones are counted
@@ -44,7 +44,7 @@ def _as_date(value: object) -> object:
     raise ValueError("is no date such as 2026-03-02 or 2026-03-02T09:30:00Z")
 
 
-class _Table(BaseModel):
+class _ManifestTable(BaseModel):
     # A dataset made with any tool must work: unknown keys are kept, and `tsas check` names them
     # with the nearest known one.
     model_config = ConfigDict(frozen=True, extra="allow", allow_inf_nan=False)
@@ -62,7 +62,7 @@ class _Table(BaseModel):
         return {key: nearest(key, known) for key in self.model_extra or {}}
 
 
-class Rig(_Table):
+class RigSheet(_ManifestTable):
     """Data sheet of the rig; every key is optional and carries its unit."""
 
     tendon_diameter_mm: float | None = Field(default=None, gt=0)
@@ -76,7 +76,7 @@ class Rig(_Table):
     distal_length_mm: float | None = Field(default=None, ge=0)
 
 
-class Run(_Table):
+class Run(_ManifestTable):
     """One run: its file with checksum, and the conditions under which it was recorded."""
 
     id: str = Field(min_length=1)
@@ -106,7 +106,7 @@ class Run(_Table):
         return name
 
 
-class Manifest(_Table):
+class Manifest(_ManifestTable):
     """The whole manifest."""
 
     format: Literal[1]
@@ -115,7 +115,7 @@ class Manifest(_Table):
     description: str = ""
     license: str | None = None
     source: str | None = None
-    rig: Rig = Rig()
+    rig: RigSheet = RigSheet()
     run: tuple[Run, ...] = Field(min_length=1)
     ingest: dict[str, object] | None = None  # the input files and the map of `tsas ingest`
 
@@ -144,7 +144,7 @@ class Manifest(_Table):
         return self
 
 
-def read_manifest(folder: Place) -> Manifest:
+def read_manifest(folder: Location) -> Manifest:
     """Return the validated `dataset.toml` of a folder.
 
     Raises
@@ -152,7 +152,7 @@ def read_manifest(folder: Place) -> Manifest:
     InputError
         The manifest is missing, is not TOML, or violates format 1.
     """
-    path = folder / FILE
+    path = folder / MANIFEST_FILE
     if not path.is_file():
         raise InputError(
             "no dataset.toml here",
@@ -164,7 +164,7 @@ def read_manifest(folder: Place) -> Manifest:
     return parse(Manifest, read_toml(path), path)
 
 
-def read_toml(path: Place) -> Raw:
+def read_toml(path: Location) -> Raw:
     """Return the content of a TOML file.
 
     Raises
@@ -271,4 +271,4 @@ def write_manifest(folder: Path, manifest: Manifest) -> None:
     """Write `dataset.toml` without the keys that are not set."""
     content = manifest.model_dump(mode="python", exclude_none=True)
     content["run"] = list(content["run"])
-    (folder / FILE).write_text(tomlkit.dumps(content), encoding="utf-8")
+    (folder / MANIFEST_FILE).write_text(tomlkit.dumps(content), encoding="utf-8")

@@ -11,7 +11,7 @@ import pyarrow.parquet as pq
 
 from tsas_cli.recordings.checked import ParquetSource
 from tsas_cli.recordings.guards.expansion import Expanded
-from tsas_cli.recordings.storage import Place
+from tsas_cli.recordings.storage import Location
 from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError
 
@@ -19,7 +19,7 @@ BUFFER_BYTES = 1 << 20  # read at a time: a row group need not fit into memory
 _TRAILER_BYTES = 8  # at the end: the footer's length and PAR1
 
 
-def open_parquet(source: ParquetSource, where: Place | None = None) -> pq.ParquetFile:
+def open_parquet(source: ParquetSource, where: Location | None = None) -> pq.ParquetFile:
     """Return an open Parquet file; no row is read.
 
     `where` is the location in error messages; default: the source.
@@ -66,7 +66,7 @@ def _check_footer(stream: IO[bytes] | pa.NativeFile, path: object) -> None:
 
 def check_size(
     file: pq.ParquetFile,
-    path: Place,
+    path: Location,
     names: Collection[str],
     *,
     whole: bool,

@@ -25,7 +25,7 @@ from tsas_cli.recordings.run_files import (
     floats_of,
     open_run,
 )
-from tsas_cli.recordings.storage import Place
+from tsas_cli.recordings.storage import Location
 
 MOST_ROWS = 1 << 20  # of a recording that is read whole, and of a piece of a longer one
 _BATCH_ROWS = 1 << 16
@@ -49,7 +49,7 @@ class Piece:
         return self.start + self.rows
 
 
-def long_run(folder: Place, run: Run) -> RunColumns | None:
+def long_run(folder: Location, run: Run) -> RunColumns | None:
     """Return an open run of more than `MOST_ROWS` rows; None if it has fewer, or is no Parquet.
 
     Raises

@@ -22,7 +22,7 @@ from tsas_cli.recordings.guards.damaged import damaged
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.parquet_files import check_size, is_number, open_parquet, size_of
 from tsas_cli.recordings.recording import Recording
-from tsas_cli.recordings.storage import Place
+from tsas_cli.recordings.storage import Location
 from tsas_cli.recordings.units import conversion
 from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError
@@ -32,7 +32,7 @@ from tsas_cli.support.memory import out_of_memory
 Floats = npt.NDArray[np.float64]
 
 
-def read_recording(folder: Place, run: Run, *, strict: bool = True) -> Recording:
+def read_recording(folder: Location, run: Run, *, strict: bool = True) -> Recording:
     """Return one run, verified by its checksum and validated against format 1.
 
     With `strict=False`, time may decrease or repeat, and values may be implausible, so that
@@ -66,7 +66,7 @@ class RunColumns:
     """One run, whose columns are read one at a time, on demand."""
 
     run: Run
-    path: Place
+    path: Location
     file: pq.ParquetFile
     size: int
 
@@ -108,7 +108,7 @@ class RunColumns:
         return values
 
 
-def open_run(folder: Place, run: Run) -> RunColumns:
+def open_run(folder: Location, run: Run) -> RunColumns:
     """Return one run, opened and validated as far as possible without reading samples.
 
     Raises
@@ -150,7 +150,7 @@ def read_columns(path: Path) -> dict[str, Floats]:
     return columns
 
 
-def _table_of(source: ParquetSource, path: Place) -> tuple[pa.Table, list[str]]:
+def _table_of(source: ParquetSource, path: Location) -> tuple[pa.Table, list[str]]:
     """Return the canonical columns of a file, and the names of all columns."""
     try:
         with open_parquet(source, path) as file:
@@ -165,7 +165,7 @@ def _table_of(source: ParquetSource, path: Place) -> tuple[pa.Table, list[str]]:
         raise damaged(path, "Parquet", error) from error
 
 
-def _check_names_and_units(schema: pa.Schema, path: Place) -> None:
+def _check_names_and_units(schema: pa.Schema, path: Location) -> None:
     """Refuse a canonical column that is duplicate, not numeric, or in another unit."""
     for field in schema:
         if field.name not in BY_NAME:
@@ -194,7 +194,7 @@ def _is_same(unit: str, expected: str) -> bool:
         return False
 
 
-def floats_of(table: pa.Table, name: str, path: Place, *, first_row: int = 0) -> Floats:
+def floats_of(table: pa.Table, name: str, path: Location, *, first_row: int = 0) -> Floats:
     """Return a column as float64, null as NaN; `first_row` is the number of its first row.
 
     Raises
@@ -220,7 +220,7 @@ def floats_of(table: pa.Table, name: str, path: Place, *, first_row: int = 0) ->
     return values
 
 
-def check_columns(known: list[str], present: list[str], path: Place) -> None:
+def check_columns(known: list[str], present: list[str], path: Location) -> None:
     """Refuse a run without time, or without an input and another column that is an output."""
     listed = ", ".join(present) or "none"
     if TIME not in known:
@@ -239,7 +239,7 @@ def check_columns(known: list[str], present: list[str], path: Place) -> None:
         )
 
 
-def check_time(time_s: Floats, path: Place, *, first_row: int = 0) -> None:
+def check_time(time_s: Floats, path: Location, *, first_row: int = 0) -> None:
     """Refuse time that does not strictly increase, or increases by implausible steps.
 
     `first_row` is the number of the first sample.
@@ -270,7 +270,7 @@ def check_time(time_s: Floats, path: Place, *, first_row: int = 0) -> None:
         )
 
 
-def check_magnitude(name: str, values: Floats, path: Place, *, first_row: int = 0) -> None:
+def check_magnitude(name: str, values: Floats, path: Location, *, first_row: int = 0) -> None:
     """Refuse implausible values of a canonical column; `first_row` is the number of the first row.
 
     Raises

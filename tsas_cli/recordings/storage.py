@@ -127,7 +127,7 @@ class Address:
             raise _storage_error(self, error) from error
 
 
-Place = Path | Address
+Location = Path | Address
 
 
 def is_address(given: str) -> bool:
@@ -135,7 +135,7 @@ def is_address(given: str) -> bool:
     return SCHEME.match(given) is not None
 
 
-def place_of(given: "str | Place") -> Place:
+def location_of(given: "str | Location") -> Location:
     """Return a local path, or an address on object storage; file:///… is a local path too.
 
     Raises
@@ -174,7 +174,7 @@ def place_of(given: "str | Place") -> Place:
     return Address(parts.scheme, f"{parts.netloc}/{inner}".rstrip("/"))
 
 
-def check_inside(path: Place, folder: Place) -> None:
+def check_inside(path: Location, folder: Location) -> None:
     """Refuse a file that a link places outside its dataset's folder; an address has no links.
 
     Raises
@@ -188,9 +188,9 @@ def check_inside(path: Place, folder: Place) -> None:
         raise InputError("a link leads out of the dataset's folder", where=path)
 
 
-def place_from(home: Path, text: str) -> Place:
+def recorded_location(home: Path, text: str) -> Location:
     """Return the location that a stage recorded in `home`: an address, or a path relative to it."""
-    return place_of(text) if is_address(text) else path_from(home, text)
+    return location_of(text) if is_address(text) else path_from(home, text)
 
 
 def path_from(home: Path, relative: str) -> Path:
@@ -199,7 +199,7 @@ def path_from(home: Path, relative: str) -> Path:
     return Path(os.path.normpath((real if linked else home) / relative))
 
 
-def location_text(home: Path, place: Place) -> str:
+def location_text(home: Path, place: Location) -> str:
     """Return a location as a stage records it in `home`: an address, or a path relative to it."""
     if isinstance(place, Address):
         return str(place)

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from tsas_cli.recordings.checked import changed, local_file
 from tsas_cli.recordings.dataset import read_dataset
-from tsas_cli.recordings.manifest import FILE, Run
+from tsas_cli.recordings.manifest import MANIFEST_FILE, Run
 from tsas_cli.recordings.storage import Address
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import sha256_of
@@ -24,7 +24,7 @@ def upload_dataset(folder: Path, target: Address, *, force: bool, step: Steps) -
         replace an object of no dataset, or the storage fails.
     """
     dataset = read_dataset(folder)
-    manifest = target / FILE
+    manifest = target / MANIFEST_FILE
     exists = manifest.is_file()
     if exists and not force:
         raise InputError(
@@ -42,9 +42,9 @@ def upload_dataset(folder: Path, target: Address, *, force: bool, step: Steps) -
     for run in dataset.runs:
         sizes[run.file] = _upload_run(folder, run, target)
         step()
-    content = (folder / FILE).read_bytes()
+    content = (folder / MANIFEST_FILE).read_bytes()
     manifest.write_bytes(content)
-    return sizes | {FILE: len(content)}
+    return sizes | {MANIFEST_FILE: len(content)}
 
 
 def _refuse_foreign(existing: Address, size: int) -> None:

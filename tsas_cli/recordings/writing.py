@@ -32,10 +32,10 @@ def write_runs(folder: Path, runs: Mapping[str, Recording]) -> None:
     """Write runs that belong to no dataset into a new folder, one file each, NaN as null."""
     folder.mkdir()
     for recording in runs.values():
-        write_answer(folder, recording)
+        write_result(folder, recording)
 
 
-def write_answer(folder: Path, result: Recording) -> None:
+def write_result(folder: Path, result: Recording) -> None:
     """Write a stage's result for a run, NaN as null, into the folder of its runs."""
     write_parquet(folder / f"{result.run.id}.parquet", table_of(result.columns))
 

@@ -53,7 +53,7 @@ class WrittenRuns(Mapping[str, Recording]):
         return len(self.runs)
 
 
-def answers_of(folder: Path, run: str) -> Path:
+def result_file(folder: Path, run: str) -> Path:
     """Return the file of a stage's result for a run.
 
     Raises

@@ -66,7 +66,7 @@ class Record(BaseModel):
         return {key: v for key, v in dump(self).items() if v or key not in self.SPARSE}
 
 
-class Source(Record):
+class DatasetSource(Record):
     """The recordings that were read: their dataset, where it was, and which of its runs.
 
     `folder` is relative to that of the file; `chosen` are the runs, None where it is all;
@@ -95,14 +95,14 @@ class StageFile(Record):
 
 
 class OfDataset(StageFile):
-    """What a stage says that has read a dataset; `chosen` and `conditions` as of `Source`."""
+    """What a stage says that has read a dataset; `chosen` and `conditions` as of `DatasetSource`."""
 
-    SPARSE = Source.SPARSE
-    dataset: Source
+    SPARSE = DatasetSource.SPARSE
+    dataset: DatasetSource
     chosen: tuple[str, ...] | None = None
     conditions: dict[str, float] = {}
 
-    def source(self) -> Source:
+    def source(self) -> DatasetSource:
         """Return the recordings as a model file names them."""
         said = {"chosen": self.chosen, "conditions": self.conditions}
         return self.dataset.model_copy(update=said)
@@ -117,7 +117,7 @@ class ModelFile(Record):
     sha256: str | None = None
 
 
-class Segment(Record):
+class PhaseSegment(Record):
     """A stretch of one run that is in one phase, from `start_s` up to and with `end_s`."""
 
     start_s: float
@@ -160,7 +160,7 @@ class Value(Record):
         return self.value - half, self.value + half
 
 
-class Parameter(Value):
+class ParameterValue(Value):
     """A value with its name, its run where it belongs to one, and where it is from."""
 
     name: str
@@ -168,9 +168,9 @@ class Parameter(Value):
     origin: str
 
 
-def parameters_of(estimates: Iterable[object]) -> tuple[Parameter, ...]:
+def parameters_of(estimates: Iterable[object]) -> tuple[ParameterValue, ...]:
     """Return estimates as they are written down."""
-    return tuple(Parameter.model_validate(e, from_attributes=True) for e in estimates)
+    return tuple(ParameterValue.model_validate(e, from_attributes=True) for e in estimates)
 
 
 class Fit(Record):

@@ -8,9 +8,9 @@ from tsas_cli.records.base import (
     ModelFile,
     Number,
     OfDataset,
-    Parameter,
+    ParameterValue,
     Record,
-    Segment,
+    PhaseSegment,
 )
 
 MODEL_FILE = "model.toml"  # beside it, and beside a simulation: the model that was used
@@ -21,8 +21,8 @@ class Stiffness(Record):
 
     run: str
     phase: str
-    km: Parameter
-    kr: Parameter | None = None
+    km: ParameterValue
+    kr: ParameterValue | None = None
     theory_N_per_mm: Number = None
     theory_elastic_N_per_mm: Number = None
     expected_N_per_mm: Number = None
@@ -44,17 +44,17 @@ class ChannelError(Record):
     noise: Number
 
 
-class Calibration(OfDataset):
+class CalibrationFile(OfDataset):
     """The content of `calibration.json`."""
 
     FILE: ClassVar[str] = "calibration.json"
     stage: Literal["calibrate"] = "calibrate"
     model: ModelFile = ModelFile(file="data sheet")
     dynamics: Dynamics = "slip"
-    segments: dict[str, tuple[Segment, ...]]
+    segments: dict[str, tuple[PhaseSegment, ...]]
     stiffness: tuple[Stiffness, ...]
-    transfer: tuple[Parameter, ...] = ()
-    parameters: tuple[Parameter, ...]
+    transfer: tuple[ParameterValue, ...] = ()
+    parameters: tuple[ParameterValue, ...]
     cannot_tell: tuple[str, ...]
     fit: NominalFit
     channels: dict[str, dict[str, ChannelError]] = {}

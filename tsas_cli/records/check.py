@@ -6,7 +6,7 @@ from tsas_cli.recordings.quality.finding import Finding, NotChecked
 from tsas_cli.records.base import OfDataset
 
 
-class Check(OfDataset):
+class CheckFile(OfDataset):
     """The content of `check.json`."""
 
     FILE: ClassVar[str] = "check.json"

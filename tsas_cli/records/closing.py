@@ -5,7 +5,7 @@ from typing import ClassVar, Literal
 from pydantic import Field
 
 from tsas_cli.records.base import Record, StageFile
-from tsas_cli.records.tracking import Scores, Settings, Spread
+from tsas_cli.records.tracking import Scores, StatedSettings, Spread
 
 
 class Rmse(Spread):
@@ -72,14 +72,14 @@ class ClosedCase(Record):
     controllers: tuple[Row, ...] = Field(min_length=1)
 
 
-class ClosedSettings(Settings):
+class ClosedSettings(StatedSettings):
     """The settings of all runs, whole: they stand for the file that they were read from."""
 
     file: str | None = Field(default=None, exclude=True)
     sha256: str | None = Field(default=None, exclude=True)
 
 
-class Closing(StageFile):
+class ClosingFile(StageFile):
     """The content of `closing.json`; each case's dataset and diagnosis lie in a folder below."""
 
     FILE: ClassVar[str] = "closing.json"

@@ -4,7 +4,7 @@ from typing import Any, ClassVar, Literal
 
 from pydantic import Field
 
-from tsas_cli.records.base import Number, Parameter, Record, StageFile
+from tsas_cli.records.base import Number, ParameterValue, Record, StageFile
 from tsas_cli.records.diagnosis import Maps
 from tsas_cli.records.tracking import Spread
 
@@ -74,8 +74,8 @@ class ParameterPair(Record):
 
     name: str
     unit: str
-    a: Parameter | None = None
-    b: Parameter | None = None
+    a: ParameterValue | None = None
+    b: ParameterValue | None = None
     difference: ValueDifference | None = None
 
     @property

@@ -12,7 +12,7 @@ from tsas_cli.records.base import (
     Number,
     OfDataset,
     Record,
-    Segment,
+    PhaseSegment,
     Value,
 )
 
@@ -21,7 +21,7 @@ Verdict = Literal["named", "ambiguous", "sufficient", "unexplained", "undecided"
 UNITS = {effect.name: {p.name: p.unit for p in effect.parameters} for effect in EFFECTS}
 
 
-class Cause(Record):
+class NamedCause(Record):
     """An effect that is named; `rivals` are those that may be it just as well.
 
     `gain_percent` is what it takes off the RMS of the residual on held-out data.
@@ -54,7 +54,7 @@ class HeldOut(Record):
     best_obtainable: NotNegative = None
 
 
-class Remainder(Record):
+class RemainingResidual(Record):
     """What is left; `mean_square` is the reduced chi-square."""
 
     unexplained: bool
@@ -63,7 +63,7 @@ class Remainder(Record):
     mean_square: Number = None
 
 
-class Candidate(Record):
+class Hypothesis(Record):
     """One hypothesis that was fitted, and by how much it lowers the residual on held-out data."""
 
     effects: tuple[str, ...]
@@ -116,9 +116,9 @@ class Findings(Record):
 
     format: Literal[1] = 1
     verdict: Verdict
-    named: tuple[Cause, ...]
+    named: tuple[NamedCause, ...]
     channels: dict[str, HeldOut] = {}
-    remainder: Remainder
+    remainder: RemainingResidual
     next_experiment: str = ""
 
     @model_validator(mode="after")
@@ -140,19 +140,19 @@ class Findings(Record):
         return self.verdict == "unexplained" or self.remainder.unexplained
 
 
-class Diagnosis(OfDataset, Findings):
+class DiagnosisFile(OfDataset, Findings):
     """The content of `diagnosis.json`."""
 
     FILE: ClassVar[str] = "diagnosis.json"
     stage: Literal["diagnose"] = "diagnose"
     model: ModelFile = ModelFile(file="data sheet")
     reason: str
-    named: tuple[Cause, ...] = ()
-    remainder: Remainder = Remainder(unexplained=False)
-    candidates: tuple[Candidate, ...] = ()
+    named: tuple[NamedCause, ...] = ()
+    remainder: RemainingResidual = RemainingResidual(unexplained=False)
+    candidates: tuple[Hypothesis, ...] = ()
     signatures: Signatures = Signatures()
     residual_map: ResidualMaps = ResidualMaps()
     evidence: Evidence = Evidence()
     cannot_tell: tuple[str, ...] = ()
     solver: str = ""
-    segments: dict[str, tuple[Segment, ...]] = {}
+    segments: dict[str, tuple[PhaseSegment, ...]] = {}

@@ -4,13 +4,13 @@ from typing import ClassVar, Literal
 
 from pydantic import Field
 
-from tsas_cli.records.base import Evidence, Fit, Number, OfDataset, Parameter, Record
-from tsas_cli.records.diagnosis import Cause, HeldOut, Remainder, Verdict
+from tsas_cli.records.base import Evidence, Fit, Number, OfDataset, ParameterValue, Record
+from tsas_cli.records.diagnosis import NamedCause, HeldOut, RemainingResidual, Verdict
 
 DRIVE_FILE = "drive.toml"  # beside it: the drive, as a feedforward reads it
 
 
-class Curve(Record):
+class BodeCurve(Record):
     """A transfer function over frequency: magnitude [mm per rpm s] and phase."""
 
     frequency_Hz: tuple[float, ...]
@@ -18,19 +18,19 @@ class Curve(Record):
     phase_deg: tuple[float, ...]
 
 
-class MeasuredResponse(Curve):
+class MeasuredResponse(BodeCurve):
     """The measured one, with its coherence and where the input tells it."""
 
     coherence: tuple[float, ...]
     excited: tuple[bool, ...]
 
 
-class Response(Record):
+class FrequencyResponses(Record):
     """Measured and fitted frequency response of a drive."""
 
     band_Hz: tuple[float, float] | None = None
     measured: MeasuredResponse
-    fitted: Curve
+    fitted: BodeCurve
 
 
 class Pole(Record):
@@ -70,7 +70,7 @@ class Kinematics(Record):
     fitted_above_kinematic_percent: Number = None
 
 
-class DriveRun(Record):
+class DriveRunErrors(Record):
     """One run of a drive: its errors and noise in mm."""
 
     samples: int | None = None
@@ -82,7 +82,7 @@ class DriveRun(Record):
     begins_at_rest: bool | None = None
 
 
-class DriveCause(Cause):
+class DriveCause(NamedCause):
     """An effect that the nominal drive equation lacks; `kind` is that of a lag or a delay."""
 
     equation: str = Field(default="", exclude=True)
@@ -105,12 +105,12 @@ class DriveDiagnosis(Record):
     gain_percent: Number = None
     gain_interval_percent: tuple[Number, Number] | None = None
     channels: dict[str, HeldOut] = {}
-    remainder: Remainder = Remainder(unexplained=False)
+    remainder: RemainingResidual = RemainingResidual(unexplained=False)
     evidence: DriveEvidence = DriveEvidence()
     next_experiment: str = ""
 
 
-class Drive(OfDataset):
+class DriveFile(OfDataset):
     """The content of `drive.json`; its series are in `runs/ID.parquet`."""
 
     FILE: ClassVar[str] = "drive.json"
@@ -118,12 +118,12 @@ class Drive(OfDataset):
     hold: Literal["zero", "first"] = "first"
     structure: Structure
     structures: tuple[TriedStructure, ...] = ()
-    parameters: tuple[Parameter, ...]
+    parameters: tuple[ParameterValue, ...]
     kinematics: Kinematics
     inverse: str = ""
-    frequency_response: Response
+    frequency_response: FrequencyResponses
     poles: tuple[Pole, ...] = ()
-    runs: dict[str, DriveRun] = {}
+    runs: dict[str, DriveRunErrors] = {}
     fit: Fit
     diagnosis: DriveDiagnosis
     cannot_tell: tuple[str, ...] = ()

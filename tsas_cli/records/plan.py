@@ -2,7 +2,7 @@
 
 from typing import ClassVar, Literal
 
-from tsas_cli.records.base import Number, Record, Source, StageFile
+from tsas_cli.records.base import Number, Record, DatasetSource, StageFile
 
 
 class EffectSize(Record):
@@ -66,10 +66,10 @@ class RigSource(Record):
 class RunPlan(StageFile):
     """The content of `plan.json`, of a dataset or of a rig file."""
 
-    SPARSE = Source.SPARSE | {"dataset", "rig"}
+    SPARSE = DatasetSource.SPARSE | {"dataset", "rig"}
     FILE: ClassVar[str] = "plan.json"
     stage: Literal["plan"] = "plan"
-    dataset: Source | None = None
+    dataset: DatasetSource | None = None
     chosen: tuple[str, ...] | None = None
     conditions: dict[str, float] = {}
     rig: RigSource | None = None

@@ -4,10 +4,10 @@ from collections.abc import Iterable
 from typing import ClassVar, Literal, Self
 
 from tsas_cli.physics.response import Dynamics
-from tsas_cli.records.base import ModelFile, Number, OfDataset, Record, Segment
+from tsas_cli.records.base import ModelFile, Number, OfDataset, Record, PhaseSegment
 
 
-class Channel(Record):
+class SimulatedChannel(Record):
     """How far a simulated channel is from the measured one, and how noisy that is."""
 
     rmse: Number
@@ -36,10 +36,10 @@ class SimulatedRun(Record):
     slack_samples: int = 0
     unconverged_samples: int = 0
     notes: tuple[str, ...] = ()
-    channels: dict[str, Channel]
+    channels: dict[str, SimulatedChannel]
 
 
-class Simulation(OfDataset):
+class SimulationFile(OfDataset):
     """The content of `simulation.json`; its series are in `runs/ID.parquet`."""
 
     FILE: ClassVar[str] = "simulation.json"
@@ -49,10 +49,10 @@ class Simulation(OfDataset):
     nodes: int | None = None
     own_values_fitted: bool = False
     runs: dict[str, SimulatedRun]
-    segments: dict[str, tuple[Segment, ...]] = {}
+    segments: dict[str, tuple[PhaseSegment, ...]] = {}
     notes: tuple[str, ...] = ()
 
-    def with_run(self, run: str, found: SimulatedRun, segments: Iterable[Segment]) -> Self:
+    def with_run(self, run: str, found: SimulatedRun, segments: Iterable[PhaseSegment]) -> Self:
         """Return it with one run more."""
         runs, phases = self.runs | {run: found}, self.segments | {run: tuple(segments)}
         return self.model_copy(update={"runs": runs, "segments": phases})

@@ -40,7 +40,7 @@ class Scores(Record):
         return spread
 
 
-class Result(Record):
+class TrackedResult(Record):
     """One controller under one condition; `run` is the recording of the first seed."""
 
     controller: str
@@ -52,7 +52,7 @@ class Result(Record):
     unsettled_steps: int = 0
 
 
-class Change(Record):
+class ConditionChange(Record):
     """What is changed about the plant, and from when on."""
 
     quantity: str
@@ -95,7 +95,7 @@ class Loop(Stated):
     filter_Hz: float = Field(gt=0)
 
 
-class Settings(Stated):
+class StatedSettings(Stated):
     """The settings of all runs (docs/tracking.md), and the file that they are from."""
 
     file: str | None = None
@@ -119,7 +119,7 @@ class Reference(Record):
     sha256: str | None = None
 
 
-class Tracking(StageFile):
+class TrackingFile(StageFile):
     """The content of `tracking.json`; the runs are the dataset in the same folder."""
 
     FILE: ClassVar[str] = "tracking.json"
@@ -127,11 +127,11 @@ class Tracking(StageFile):
     model: ModelFile
     plant: ModelFile
     drive: ModelFile
-    settings: Settings
+    settings: StatedSettings
     reference: Reference
     dynamics: Literal["slip", "lugre"]
     gains: str
     seeds: tuple[int, int]
-    conditions: dict[str, tuple[Change, ...]]
-    results: tuple[Result, ...] = Field(min_length=1)
+    conditions: dict[str, tuple[ConditionChange, ...]]
+    results: tuple[TrackedResult, ...] = Field(min_length=1)
     notes: tuple[str, ...] = ()

@@ -3,11 +3,11 @@
 from collections.abc import Iterator, Mapping, Sequence
 from statistics import median
 
-from tsas_cli.records.closing import Closing
-from tsas_cli.records.diagnosis import Cause, Diagnosis, HeldOut
-from tsas_cli.records.drive import Drive, DriveDiagnosis
-from tsas_cli.records.simulation import Simulation
-from tsas_cli.records.tracking import Tracking
+from tsas_cli.records.closing import ClosingFile
+from tsas_cli.records.diagnosis import NamedCause, DiagnosisFile, HeldOut
+from tsas_cli.records.drive import DriveFile, DriveDiagnosis
+from tsas_cli.records.simulation import SimulationFile
+from tsas_cli.records.tracking import TrackingFile
 from tsas_cli.reporting.channels import called
 from tsas_cli.reporting.content import Fact, Glance
 from tsas_cli.reporting.diagnosis.words import heading_of, listed, title_of, within
@@ -31,20 +31,20 @@ _NO_CAUSE = {
 
 def glance(inputs: Inputs) -> Glance | None:
     """Return the first screen, None where there are only recordings."""
-    if closing := inputs.get(Closing):
+    if closing := inputs.get(ClosingFile):
         return _of_closing(closing)
-    if tracking := inputs.get(Tracking):
+    if tracking := inputs.get(TrackingFile):
         return _of_tracking(tracking)
-    if diagnosis := inputs.get(Diagnosis):
+    if diagnosis := inputs.get(DiagnosisFile):
         return _of_diagnosis(diagnosis)
-    if drive := inputs.get(Drive):
+    if drive := inputs.get(DriveFile):
         return _of_diagnosis(drive.diagnosis)
-    if simulation := inputs.get(Simulation):
+    if simulation := inputs.get(SimulationFile):
         return _of_simulation(simulation)
     return None
 
 
-def _of_diagnosis(diagnosis: Diagnosis | DriveDiagnosis) -> Glance:
+def _of_diagnosis(diagnosis: DiagnosisFile | DriveDiagnosis) -> Glance:
     named = diagnosis.named
     verdict = _causes(named) if named else _NO_CAUSE.get(diagnosis.verdict, diagnosis.reason)
     numbers = "Root mean square error on data that no fit has seen"
@@ -56,7 +56,7 @@ def _of_diagnosis(diagnosis: Diagnosis | DriveDiagnosis) -> Glance:
     return Glance(kind, verdict, numbers if shown else "", shown)
 
 
-def _causes(named: Sequence[Cause]) -> str:
+def _causes(named: Sequence[NamedCause]) -> str:
     first, *more = (heading_of(cause) for cause in named)
     return listed([first, *map(within, more)])
 
@@ -69,7 +69,7 @@ def _errors(channels: Mapping[str, HeldOut], *, named: bool) -> Iterator[Fact]:
         yield Fact(called(name), value, noise, before if named else "")
 
 
-def _gains(named: Sequence[Cause]) -> Iterator[Fact]:
+def _gains(named: Sequence[NamedCause]) -> Iterator[Fact]:
     for cause in named:
         low, high = cause.gain_interval_percent or (None, None)
         gain, interval = with_interval(cause.gain_percent, low, high)
@@ -80,7 +80,7 @@ def _gains(named: Sequence[Cause]) -> Iterator[Fact]:
             yield Fact(f"taken away{by}", f"{gain} %", f"95 % interval: {interval} %")
 
 
-def _of_tracking(tracking: Tracking) -> Glance:
+def _of_tracking(tracking: TrackingFile) -> Glance:
     by_controller: dict[str, dict[str, str]] = {}
     means: dict[str, float] = {}
     for result in tracking.results:
@@ -101,7 +101,7 @@ def _of_tracking(tracking: Tracking) -> Glance:
     return Glance("Tracking, simulated", verdict, numbers, tuple(facts))
 
 
-def _of_closing(closing: Closing) -> Glance:
+def _of_closing(closing: ClosingFile) -> Glance:
     total, named = len(closing.cases), sum(bool(case.named) for case in closing.cases)
     facts = []
     for name, rows in closing.of_controllers().items():
@@ -121,7 +121,7 @@ def _of_closing(closing: Closing) -> Glance:
     return Glance("Hidden differences, diagnosed and tracked", verdict, numbers, tuple(facts))
 
 
-def _of_simulation(simulation: Simulation) -> Glance | None:
+def _of_simulation(simulation: SimulationFile) -> Glance | None:
     ratios: dict[str, list[float]] = {}
     for run in simulation.runs.values():
         for name, channel in run.channels.items():

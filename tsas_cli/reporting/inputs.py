@@ -10,31 +10,31 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.recordings.dataset import Dataset, read_dataset
-from tsas_cli.recordings.manifest import FILE, parse
+from tsas_cli.recordings.manifest import MANIFEST_FILE, parse
 from tsas_cli.recordings.quality import check_dataset
 from tsas_cli.recordings.recording import Recording
-from tsas_cli.recordings.storage import Place, place_from
-from tsas_cli.recordings.written import answers_of, check_rows, columns_of, names_of
+from tsas_cli.recordings.storage import Location, recorded_location
+from tsas_cli.recordings.written import result_file, check_rows, columns_of, names_of
 from tsas_cli.records.base import OfDataset, StageFile
-from tsas_cli.records.calibration import Calibration
-from tsas_cli.records.check import Check
-from tsas_cli.records.closing import Closing
-from tsas_cli.records.diagnosis import Diagnosis
-from tsas_cli.records.drive import Drive
-from tsas_cli.records.simulation import Simulation
-from tsas_cli.records.tracking import Tracking
+from tsas_cli.records.calibration import CalibrationFile
+from tsas_cli.records.check import CheckFile
+from tsas_cli.records.closing import ClosingFile
+from tsas_cli.records.diagnosis import DiagnosisFile
+from tsas_cli.records.drive import DriveFile
+from tsas_cli.records.simulation import SimulationFile
+from tsas_cli.records.tracking import TrackingFile
 from tsas_cli.support.errors import InputError, printable
 from tsas_cli.support.files import read_json
 
 Floats = npt.NDArray[np.float64]
 STAGES: tuple[type[StageFile], ...] = (
-    Check,
-    Calibration,
-    Simulation,
-    Diagnosis,
-    Drive,
-    Tracking,
-    Closing,
+    CheckFile,
+    CalibrationFile,
+    SimulationFile,
+    DiagnosisFile,
+    DriveFile,
+    TrackingFile,
+    ClosingFile,
 )
 Stage = TypeVar("Stage", bound=StageFile)
 
@@ -51,9 +51,9 @@ class Inputs:
     folders: Mapping[type[StageFile], Path]
 
     @cached_property
-    def check(self) -> Check:
+    def check(self) -> CheckFile:
         """What the checks say of the dataset; they are run here where no folder holds them."""
-        given = self.get(Check)
+        given = self.get(CheckFile)
         return _own_check(cast("Dataset", self.dataset)) if given is None else given
 
     @property
@@ -73,7 +73,7 @@ class Inputs:
         InputError
             The file cannot be read, or does not belong to this recording.
         """
-        path = answers_of(self.folders[stage], run)
+        path = result_file(self.folders[stage], run)
         values = columns_of(path, (column,))[column]
         check_rows(path, len(values), rows)
         return values
@@ -86,11 +86,11 @@ class Inputs:
         InputError
             The file cannot be read.
         """
-        path = answers_of(self.folders[stage], run)
+        path = result_file(self.folders[stage], run)
         return frozenset(names_of(path) if path.is_file() else ())
 
 
-def read_inputs(folders: Sequence[Place]) -> Inputs:
+def read_inputs(folders: Sequence[Location]) -> Inputs:
     """Recognise each folder by the files in it, read all, and find the dataset.
 
     Raises
@@ -105,16 +105,16 @@ def read_inputs(folders: Sequence[Place]) -> Inputs:
     named = (
         _dataset_of(stage, where[kind] / kind.FILE)
         for kind, stage in stages.items()
-        if kind is not Closing
+        if kind is not ClosingFile
     )
-    folder = by_file[FILE] if FILE in by_file else next(named, None)
+    folder = by_file[MANIFEST_FILE] if MANIFEST_FILE in by_file else next(named, None)
     if folder is None:
         return Inputs(None, stages, where)
     dataset = read_dataset(folder).under(**_conditions(stages, where))
     for kind, stage in stages.items():
         if isinstance(stage, OfDataset):
             _check_hashes(stage, dataset, where[kind] / kind.FILE)
-        elif kind is Tracking:
+        elif kind is TrackingFile:
             _check_own(dataset, where[kind] / kind.FILE)
     return Inputs(dataset, stages, where)
 
@@ -147,11 +147,11 @@ def _visible(content: Any) -> Any:
     return content
 
 
-def _by_file(folders: Sequence[Place]) -> dict[str, Place]:
-    known = (FILE, *(kind.FILE for kind in STAGES))
-    found: dict[str, Place] = {}
+def _by_file(folders: Sequence[Location]) -> dict[str, Location]:
+    known = (MANIFEST_FILE, *(kind.FILE for kind in STAGES))
+    found: dict[str, Location] = {}
     for folder in folders:
-        looked_for = known if isinstance(folder, Path) else (FILE,)  # stages write to local folders
+        looked_for = known if isinstance(folder, Path) else (MANIFEST_FILE,)  # stages write to local folders
         files = [file for file in looked_for if (folder / file).is_file()]
         if not files:
             raise InputError(
@@ -171,23 +171,23 @@ def _by_file(folders: Sequence[Place]) -> dict[str, Place]:
     return found
 
 
-def _dataset_of(stage: StageFile, path: Path) -> Place:
+def _dataset_of(stage: StageFile, path: Path) -> Location:
     if not isinstance(stage, OfDataset):
         return path.parent
-    folder = place_from(path.parent, stage.dataset.folder)
-    if not (folder / FILE).is_file():
+    folder = recorded_location(path.parent, stage.dataset.folder)
+    if not (folder / MANIFEST_FILE).is_file():
         raise InputError(
             f"the dataset {stage.dataset.name} is no longer at {folder}",
             where=path,
-            expected=f"a folder with {FILE}",
+            expected=f"a folder with {MANIFEST_FILE}",
             remedy="give the dataset's folder to `tsas report` too",
         )
     return folder
 
 
-def _own_check(dataset: Dataset) -> Check:
+def _own_check(dataset: Dataset) -> CheckFile:
     report = check_dataset(dataset)
-    return Check(
+    return CheckFile(
         **dataset.header(Path()),
         findings=report.findings,
         not_checked=report.not_checked,
@@ -200,7 +200,7 @@ def _check_own(dataset: Dataset, path: Path) -> None:
         raise InputError(
             f"its runs are not in the dataset {dataset.folder}",
             where=path,
-            expected=f"{FILE} in the same folder",
+            expected=f"{MANIFEST_FILE} in the same folder",
             remedy="give this folder alone, or write it again with `tsas track`",
         )
 

@@ -2,9 +2,9 @@
 
 from collections.abc import Callable
 
-from tsas_cli.records.closing import Closing
-from tsas_cli.records.drive import Drive
-from tsas_cli.records.tracking import Tracking
+from tsas_cli.records.closing import ClosingFile
+from tsas_cli.records.drive import DriveFile
+from tsas_cli.records.tracking import TrackingFile
 from tsas_cli.reporting import repeat, simulation, summary
 from tsas_cli.reporting.calibration import parameters, stiffness, transfer
 from tsas_cli.reporting.closing import section as closing
@@ -44,7 +44,7 @@ def page(inputs: Inputs, advance: Callable[[], None] = lambda: None) -> str:
     InputError
         A recording or a simulated run cannot be read.
     """
-    alone = any(inputs.get(kind) is not None for kind in (Closing, Tracking, Drive))
+    alone = any(inputs.get(kind) is not None for kind in (ClosingFile, TrackingFile, DriveFile))
     sections = []
     for make in SECTIONS:
         section = make(inputs)

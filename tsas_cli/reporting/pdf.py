@@ -18,7 +18,7 @@ BROWSERS = (
     "microsoft-edge",
 )
 _LONGEST_S = 120.0
-MARK = b"/Maker (tsas)"  # in the first object, which describes the document
+PDF_MARK = b"/Maker (tsas)"  # in the first object, which describes the document
 _DATE = re.compile(rb"/(?:Creation|Mod)Date \(D:[^()]*\)")
 _OPTIONS = (
     "--headless",
@@ -82,11 +82,11 @@ def print_page(html: str, pdf: Path) -> None:
 def _without_dates(pdf: bytes) -> bytes:
     """Return a PDF that does not say when it was printed: the same page makes the same bytes.
 
-    The dates of its first object, which describes the document, become `MARK`, filled up with
+    The dates of its first object, which describes the document, become `PDF_MARK`, filled up with
     spaces, so that all else stays in its place.
     """
     about, end, rest = pdf.partition(b"endobj")
-    marked = _DATE.sub(lambda date: MARK.ljust(len(date[0])), about, count=1)
+    marked = _DATE.sub(lambda date: PDF_MARK.ljust(len(date[0])), about, count=1)
     return _DATE.sub(lambda date: b" " * len(date[0]), marked) + end + rest
 
 

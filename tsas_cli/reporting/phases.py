@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.records.base import Segment
+from tsas_cli.records.base import PhaseSegment
 
 Floats = npt.NDArray[np.float64]
 
@@ -37,7 +37,7 @@ def label_of(key: str) -> str:
     return BY_KEY[key].label if key in BY_KEY else key
 
 
-def phase_of_samples(time_s: Floats, segments: Iterable[Segment]) -> npt.NDArray[np.object_]:
+def phase_of_samples(time_s: Floats, segments: Iterable[PhaseSegment]) -> npt.NDArray[np.object_]:
     """Return the phase's key at each sample, shape (n,); "unknown" outside all segments."""
     keys = np.full(time_s.size, "unknown", dtype=object)
     for segment in segments:

@@ -8,13 +8,13 @@ from pathlib import Path
 
 from tsas_cli.identification.model import IN_MEMORY
 from tsas_cli.records.base import ModelFile, OfDataset, StageFile
-from tsas_cli.records.calibration import Calibration
-from tsas_cli.records.check import Check
-from tsas_cli.records.closing import Closing
-from tsas_cli.records.diagnosis import Diagnosis
-from tsas_cli.records.drive import Drive
-from tsas_cli.records.simulation import Simulation
-from tsas_cli.records.tracking import Tracking
+from tsas_cli.records.calibration import CalibrationFile
+from tsas_cli.records.check import CheckFile
+from tsas_cli.records.closing import ClosingFile
+from tsas_cli.records.diagnosis import DiagnosisFile
+from tsas_cli.records.drive import DriveFile
+from tsas_cli.records.simulation import SimulationFile
+from tsas_cli.records.tracking import TrackingFile
 from tsas_cli.reporting.closing import call as closing_call
 from tsas_cli.reporting.content import Section, Table
 from tsas_cli.reporting.inputs import Inputs
@@ -23,12 +23,12 @@ from tsas_cli.support import __version__
 from tsas_cli.support.files import sha256_of
 
 _WROTE: dict[type[StageFile], str] = {
-    Calibration: "calibration",
-    Simulation: "simulation",
-    Diagnosis: "diagnosis",
-    Tracking: "tracking",
-    Drive: "drive",
-    Closing: "close-loop",
+    CalibrationFile: "calibration",
+    SimulationFile: "simulation",
+    DiagnosisFile: "diagnosis",
+    TrackingFile: "tracking",
+    DriveFile: "drive",
+    ClosingFile: "close-loop",
 }
 _LIBRARIES = ("numpy", "scipy", "numba", "matplotlib")
 
@@ -36,10 +36,10 @@ _LIBRARIES = ("numpy", "scipy", "numba", "matplotlib")
 def section(inputs: Inputs) -> Section:
     """Return the section on how to repeat the page."""
     hashes = {} if inputs.dataset is None else inputs.dataset.hashes()
-    for stage in (inputs.get(Simulation), inputs.get(Diagnosis)):
+    for stage in (inputs.get(SimulationFile), inputs.get(DiagnosisFile)):
         if stage and stage.model.sha256:
             hashes[stage.model.file] = stage.model.sha256
-    if tracking := inputs.get(Tracking):
+    if tracking := inputs.get(TrackingFile):
         hashes |= call.files_read(tracking)
     tables = [Table("Versions", ("program", "version"), tuple(_versions(inputs)))]
     if hashes:
@@ -57,10 +57,10 @@ def _intro(inputs: Inputs) -> Iterator[str]:
     yield "These commands make the same page from the same files."
     if _in_memory(inputs):
         yield "They lack what was handed over without a file: a model, settings, or conditions."
-    closing = inputs.get(Closing)
+    closing = inputs.get(ClosingFile)
     if closing and closing_call.own_settings(closing):
         yield (
-            f"`{closing_call.SETTINGS}` stands for a file with the settings that `{Closing.FILE}` "
+            f"`{closing_call.SETTINGS}` stands for a file with the settings that `{ClosingFile.FILE}` "
             "holds; they are not the defaults."
         )
 
@@ -71,14 +71,14 @@ def _in_memory(inputs: Inputs) -> bool:
     if any(isinstance(stage, OfDataset) and stage.conditions for stage in stages):
         return True
     told = [getattr(s, name, None) for s in stages for name in ("model", "plant", "drive")]
-    told += [s.settings for s in stages if isinstance(s, Tracking)]
+    told += [s.settings for s in stages if isinstance(s, TrackingFile)]
     return any(getattr(one, "file", None) == IN_MEMORY for one in told)
 
 
 def _commands(inputs: Inputs) -> Iterator[list[str]]:
     folder = {kind: str(path) for kind, path in inputs.folders.items()}
-    if closing := inputs.get(Closing):
-        yield ["tsas", "close-loop", *closing_call.options(closing), "--out", folder[Closing]]
+    if closing := inputs.get(ClosingFile):
+        yield ["tsas", "close-loop", *closing_call.options(closing), "--out", folder[ClosingFile]]
     read = list(folder.values())
     if inputs.dataset is not None:
         read.insert(0, str(inputs.dataset.folder))
@@ -90,35 +90,35 @@ def _commands(inputs: Inputs) -> Iterator[list[str]]:
 def _of_dataset(
     inputs: Inputs, dataset: str, folder: Mapping[type[StageFile], str]
 ) -> Iterator[list[str]]:
-    if tracking := inputs.get(Tracking):
-        yield ["tsas", "track", *call.options(tracking), "--out", folder[Tracking]]
-    if Check in folder:
-        yield ["tsas", "check", dataset, "--out", folder[Check]]
-    if calibration := inputs.get(Calibration):
-        options = ["--dynamics", calibration.dynamics, "--out", folder[Calibration]]
+    if tracking := inputs.get(TrackingFile):
+        yield ["tsas", "track", *call.options(tracking), "--out", folder[TrackingFile]]
+    if CheckFile in folder:
+        yield ["tsas", "check", dataset, "--out", folder[CheckFile]]
+    if calibration := inputs.get(CalibrationFile):
+        options = ["--dynamics", calibration.dynamics, "--out", folder[CalibrationFile]]
         if calibration.model.sha256 is not None:
             options += ["--model", calibration.model.file]
         yield ["tsas", "calibrate", dataset, *options]
-    if diagnosis := inputs.get(Diagnosis):
-        options = ["--out", folder[Diagnosis]]
+    if diagnosis := inputs.get(DiagnosisFile):
+        options = ["--out", folder[DiagnosisFile]]
         yield ["tsas", "diagnose", dataset, *_model(diagnosis.model, inputs), *options]
-    if simulation := inputs.get(Simulation):
-        options = ["--dynamics", simulation.dynamics, "--out", folder[Simulation]]
+    if simulation := inputs.get(SimulationFile):
+        options = ["--dynamics", simulation.dynamics, "--out", folder[SimulationFile]]
         if simulation.nodes is not None:
             options += ["--nodes", str(simulation.nodes)]
         if simulation.own_values_fitted:
             options += ["--fit-own"]
         yield ["tsas", "simulate", dataset, *_model(simulation.model, inputs), *options]
-    if drive := inputs.get(Drive):
+    if drive := inputs.get(DriveFile):
         options = ["--speed", "measured" if drive.hold == "first" else "commanded"]
-        yield ["tsas", "identify-harmonic-drive", dataset, *options, "--out", folder[Drive]]
+        yield ["tsas", "identify-harmonic-drive", dataset, *options, "--out", folder[DriveFile]]
 
 
 def _model(model: ModelFile, inputs: Inputs) -> list[str]:
     """Return the option that names the model: the calibration's where it is the one read."""
     if model.sha256 is None:
         return []
-    folder = inputs.folders.get(Calibration)
+    folder = inputs.folders.get(CalibrationFile)
     calibrated = folder / model.file if folder else Path(model.file)
     same = calibrated.is_file() and sha256_of(calibrated) == model.sha256
     return ["--model", str(calibrated) if same else model.file]

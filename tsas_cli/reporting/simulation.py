@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.recording import Recording
-from tsas_cli.records.simulation import Channel, Simulation
+from tsas_cli.records.simulation import SimulatedChannel, SimulationFile
 from tsas_cli.reporting.channels import in_words
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Group, Picture, Section, Table, missing
@@ -24,7 +24,7 @@ _TITLE = "Simulation and measurement"
 
 def section(inputs: Inputs) -> Section:
     """Return the section of the simulation, one group per run."""
-    simulation = inputs.get(Simulation)
+    simulation = inputs.get(SimulationFile)
     if simulation is None:
         return missing("simulation", _TITLE, what="simulation", stage="simulate")
     intro: tuple[str, ...] = (
@@ -49,7 +49,7 @@ def section(inputs: Inputs) -> Section:
     )
 
 
-def _table(simulation: Simulation) -> Table:
+def _table(simulation: SimulationFile) -> Table:
     rows = tuple(
         (
             run_id,
@@ -78,7 +78,7 @@ def _table(simulation: Simulation) -> Table:
     return Table(caption, header, rows, numeric=frozenset({2, 3, 4, 6, 7}))
 
 
-def _inputs(simulation: Simulation) -> Table:
+def _inputs(simulation: SimulationFile) -> Table:
     """Return how each run's inputs were cleaned, where it starts and what solved it."""
     rows = tuple(
         (
@@ -108,17 +108,17 @@ def _inputs(simulation: Simulation) -> Table:
     return Table(caption, header, rows, numeric=frozenset({2, 3, 5}))
 
 
-def _ratio(channel: Channel) -> str:
+def _ratio(channel: SimulatedChannel) -> str:
     if channel.rmse is None or not channel.noise:
         return ABSENT
     return plain(channel.rmse / channel.noise, 3)
 
 
-def _unit(name: str, channel: Channel) -> str:
+def _unit(name: str, channel: SimulatedChannel) -> str:
     return channel.unit or (BY_NAME[name].unit if name in BY_NAME else ABSENT)
 
 
-def _residual_in_words(time_s: Floats, residual: Floats, channel: Channel, unit: str) -> str:
+def _residual_in_words(time_s: Floats, residual: Floats, channel: SimulatedChannel, unit: str) -> str:
     """Return the residual's span, where it is largest, and how much of it noise explains."""
     there = np.isfinite(residual)
     at = float(time_s[np.nanargmax(np.abs(residual))])
@@ -132,14 +132,14 @@ def _residual_in_words(time_s: Floats, residual: Floats, channel: Channel, unit:
 def _pictures(
     inputs: Inputs,
     recording: Recording,
-    channels: Mapping[str, Mapping[str, Channel]],
+    channels: Mapping[str, Mapping[str, SimulatedChannel]],
     number: int,
 ) -> Iterator[Picture]:
     for name, channel in channels.get(recording.run.id, {}).items():
         measured = recording.get(name)
         if measured is None:
             continue
-        simulated = inputs.answer(recording.run.id, recording.time_s.size, name, Simulation)
+        simulated = inputs.answer(recording.run.id, recording.time_s.size, name, SimulationFile)
         if not np.isfinite(measured - simulated).any():
             continue
         unit, what = _unit(name, channel), in_words(name)

@@ -4,11 +4,11 @@ from collections.abc import Iterator
 
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.manifest import Manifest
-from tsas_cli.records.calibration import Calibration
-from tsas_cli.records.check import Check
-from tsas_cli.records.closing import Closing
-from tsas_cli.records.simulation import Simulation
-from tsas_cli.records.tracking import Tracking
+from tsas_cli.records.calibration import CalibrationFile
+from tsas_cli.records.check import CheckFile
+from tsas_cli.records.closing import ClosingFile
+from tsas_cli.records.simulation import SimulationFile
+from tsas_cli.records.tracking import TrackingFile
 from tsas_cli.reporting.channels import in_words
 from tsas_cli.reporting.closing import cases, errors
 from tsas_cli.reporting.inputs import Inputs
@@ -19,7 +19,7 @@ from tsas_cli.support.wording import count_of
 
 def sentences(inputs: Inputs) -> Iterator[str]:
     """Yield the sentences of the summary."""
-    if closing := inputs.get(Closing):
+    if closing := inputs.get(ClosingFile):
         yield cases.summary(closing)
         yield from errors.most_and_least(closing)
     if inputs.dataset is not None:
@@ -29,16 +29,16 @@ def sentences(inputs: Inputs) -> Iterator[str]:
 def _of_dataset(inputs: Inputs, manifest: Manifest) -> Iterator[str]:
     many = count_of(len(manifest.run), "recording")
     yield f"{manifest.name} holds {many}, {manifest.kind}."
-    if tracking := inputs.get(Tracking):
+    if tracking := inputs.get(TrackingFile):
         yield from best_and_worst(tracking)
     yield _findings(inputs.check)
-    simulation = inputs.get(Simulation)
+    simulation = inputs.get(SimulationFile)
     if simulation and (distances := _distances(simulation)):
         yield (
             f"The RMSE between simulation and measurement is {', '.join(distances)}; "
             "1 is as near as noise allows."
         )
-    if calibration := inputs.get(Calibration):
+    if calibration := inputs.get(CalibrationFile):
         yield from _open_questions(calibration.cannot_tell)
 
 
@@ -49,7 +49,7 @@ def _open_questions(sentences: tuple[str, ...]) -> Iterator[str]:
         yield f"The other {len(sentences) - 1} of these sentences stand under Parameters."
 
 
-def _findings(check: Check) -> str:
+def _findings(check: CheckFile) -> str:
     counts = {
         severity: sum(f.severity == severity for f in check.findings)
         for severity in ("error", "warning", "note")
@@ -58,7 +58,7 @@ def _findings(check: Check) -> str:
     return f"The checks report {', '.join(said)}." if said else "The checks found nothing."
 
 
-def _distances(simulation: Simulation) -> list[str]:
+def _distances(simulation: SimulationFile) -> list[str]:
     """Return, for each channel, the range over the runs of RMSE against noise."""
     said = []
     for name in BY_NAME:

@@ -26,17 +26,17 @@ from tsas_cli.recordings.copied import CopiedRows
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Manifest, Run
 from tsas_cli.recordings.quality.checks import sign
-from tsas_cli.recordings.quality.copies.counted import counted_once
+from tsas_cli.recordings.quality.copies.counted import without_duplicates
 from tsas_cli.recordings.quality.finding import CannotTell, Remark
 from tsas_cli.recordings.quality.stretches import look_by_stretches
-from tsas_cli.recordings.quality.trial import Trial
+from tsas_cli.recordings.quality.trial import RunSignals
 from tsas_cli.records import calibration as records
-from tsas_cli.records.base import Parameter, number_text, parameters_of
+from tsas_cli.records.base import ParameterValue, number_text, parameters_of
 from tsas_cli.records.result import Result, Table, notes
 from tsas_cli.stages.given import Named, dataset_of, one_of, path_of
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import folder_if
-from tsas_cli.support.steps import SILENT, Steps
+from tsas_cli.support.steps import NO_PROGRESS, Steps
 
 DYNAMICS: tuple[Literal["slip", "lugre"], ...] = ("slip", "lugre")
 
@@ -53,7 +53,7 @@ class CalibrationResult(Result):
         The calibrated model and, run by run, phases, slopes and answers.
     """
 
-    record: records.Calibration
+    record: records.CalibrationFile
     calibration: Calibration
 
     @property
@@ -78,7 +78,7 @@ def calibrate(
     dynamics: Literal["slip", "lugre"] = "slip",
     runs: Iterable[str] | None = None,
     force: bool = False,
-    step: Steps = SILENT,
+    step: Steps = NO_PROGRESS,
 ) -> CalibrationResult:
     """Fit the nominal model to a dataset, and the stiffness km of each phase.
 
@@ -116,14 +116,14 @@ def calibrate(
     data, given, path = dataset_of(dataset, runs), path_of(model), path_of(out)
     stated = stated_model(data.manifest, given)
     with folder_if(path, stage="calibrate", inputs=[data.folder, given], force=force) as folder:
-        counted = counted_once(data)
+        counted = without_duplicates(data)
         step.ahead(len(counted.dataset.runs))
         prepared = []
         for run in counted.dataset.runs:
             prepared.append(_prepared(data, run, counted.copied_of(run.id)))
             step()
         result = calibrate_runs(data.manifest, prepared, step, dynamics=taken, stated=stated)
-        record = records.Calibration(
+        record = records.CalibrationFile(
             **counted.dataset.header(path),
             model=source_of(given, path),
             dynamics=taken,
@@ -154,7 +154,7 @@ def _prepared(dataset: Dataset, run: Run, copied: CopiedRows) -> Prepared:
         _refuse_wrong_sign(look_by_stretches((sign.CHECK,), long.columns, rig)["sign"], run)
         return long.prepared()
     recording = dataset[run.id]
-    _refuse_wrong_sign(sign.find(Trial(recording, rig)), run)
+    _refuse_wrong_sign(sign.find(RunSignals(recording, rig)), run)
     return prepare(recording, dataset.manifest.session_start, copied)
 
 
@@ -226,9 +226,9 @@ def _stiffness(
     )
 
 
-def _parameter(name: str, slope: Slope, unit: str, factor: float, run: str) -> Parameter:
+def _parameter(name: str, slope: Slope, unit: str, factor: float, run: str) -> ParameterValue:
     low, high = slope.value - slope.half_width, slope.value + slope.half_width
-    return Parameter(
+    return ParameterValue(
         name=name,
         value=slope.value * factor,
         unit=unit,
@@ -259,7 +259,7 @@ def _theory(rig: Rig, slope: Slope, run: Prepared) -> tuple[float | None, float 
     )
 
 
-def _tables(record: records.Calibration, title: str) -> Iterator[Table]:
+def _tables(record: records.CalibrationFile, title: str) -> Iterator[Table]:
     """Yield the slopes, the parameters under their title, and the errors."""
     slopes = [
         (

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.quality import check_dataset
 from tsas_cli.recordings.quality.finding import Finding, NotChecked
-from tsas_cli.records.check import Check
+from tsas_cli.records.check import CheckFile
 from tsas_cli.records.result import Result, Table
 from tsas_cli.stages.given import Named, dataset_of, path_of
 from tsas_cli.support.files import folder_if
-from tsas_cli.support.steps import SILENT, Steps
+from tsas_cli.support.steps import NO_PROGRESS, Steps
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -23,7 +23,7 @@ class CheckResult(Result):
         What `check.json` holds: the findings, and the checks that could not tell.
     """
 
-    record: Check
+    record: CheckFile
 
     @property
     def findings(self) -> tuple[Finding, ...]:
@@ -46,7 +46,7 @@ def check(
     out: Named | None = None,
     runs: Iterable[str] | None = None,
     force: bool = False,
-    step: Steps = SILENT,
+    step: Steps = NO_PROGRESS,
 ) -> CheckResult:
     """Say what is wrong with recordings before anyone fits anything.
 
@@ -76,7 +76,7 @@ def check(
     data, folder = dataset_of(dataset, runs), path_of(out)
     with folder_if(folder, stage="check", inputs=[data.folder], force=force) as written:
         report = check_dataset(data, step)
-        record = Check(
+        record = CheckFile(
             **data.header(folder),
             findings=report.findings,
             not_checked=report.not_checked,
@@ -86,7 +86,7 @@ def check(
     return CheckResult(record.content(), folder, record)
 
 
-def _tables(report: Check) -> Iterator[Table]:
+def _tables(report: CheckFile) -> Iterator[Table]:
     found = [(str(f.severity), f.code, f.run or "", f.sentence) for f in report.findings]
     header = ("severity", "code", "run", "finding") if found else ()
     yield f"the checks found {len(found) or 'nothing'}", header, found

@@ -18,7 +18,7 @@ from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.writing import write_dataset
 from tsas_cli.records.calibration import MODEL_FILE
 from tsas_cli.records.closing import ClosedCase, Models, Named, Row
-from tsas_cli.records.diagnosis import EXTENDED_MODEL, Diagnosis
+from tsas_cli.records.diagnosis import EXTENDED_MODEL, DiagnosisFile
 from tsas_cli.records.drive import DriveDiagnosis
 from tsas_cli.records.tracking import Scores
 from tsas_cli.stages.calibrate import calibrate
@@ -91,7 +91,7 @@ def _row(controller: str, by_model: Mapping[str, Scores]) -> Row:
 
 def _find_tendon(
     plant: Plant, sheet: Rig, settings: Settings, folder: Path, step: Callable[[], None]
-) -> tuple[Diagnosis, tuple[Known, ...]]:
+) -> tuple[DiagnosisFile, tuple[Known, ...]]:
     """Record, calibrate and diagnose; return the diagnosis and what is known by each model."""
     drive, run = plant.actuator, conditions("track", settings)
     record(plant, Known(sheet, drive), settings, folder / "dataset")

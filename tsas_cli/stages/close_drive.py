@@ -17,9 +17,9 @@ from tsas_cli.controllers.closed_loop import (
     X_SEEN,
     DriveSensor,
     LoopPlant,
-    Wanted,
+    LoopReference,
     close_loop,
-    followed_from,
+    plant_at_rest,
 )
 from tsas_cli.controllers.pid import Pid
 from tsas_cli.controllers.signals import error_filter
@@ -77,7 +77,7 @@ def driven(rpm: Floats, bench: Settings, seed: int) -> Floats:
     noise = bench.sensor.noise_mm * np.random.default_rng(seed).standard_normal(m)
     A, b = error_filter(bench.loop.filter_Hz, bench.step_s)
     columns, _, _ = close_loop(
-        Wanted(np.zeros((4, m)), rpm),
+        LoopReference(np.zeros((4, m)), rpm),
         DriveSensor(bench.step_s, noise, bench.sensor.step_mm, A, b),
         bench.laws("pid", drive.gain_mm_per_s_rpm)._replace(pid=Pid(0.0, 0.0, 0.0)),
         LoopPlant(
@@ -86,7 +86,7 @@ def driven(rpm: Floats, bench: Settings, seed: int) -> Floats:
             change_at=-1,
             substeps=SUBSTEPS,
             nodes=NODES,
-            start=followed_from(0.0, rig, drive, NODES),
+            start=plant_at_rest(0.0, rig, drive, NODES),
         ),
     )
     seen: Floats = columns[X_SEEN]

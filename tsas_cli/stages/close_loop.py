@@ -4,13 +4,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from tsas_cli.records.closing import Closing
+from tsas_cli.records.closing import ClosingFile
 from tsas_cli.records.result import Result, Table
 from tsas_cli.stages.close_cases import MODELS, STEPS, close
 from tsas_cli.stages.given import Named, at_least, listed, number_of_seeds, path_of
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import stage_folder
-from tsas_cli.support.steps import SILENT, Steps
+from tsas_cli.support.steps import NO_PROGRESS, Steps
 from tsas_cli.tracking.cases import CASES, Case
 from tsas_cli.tracking.conditions import disturbed
 from tsas_cli.tracking.settings import read_settings
@@ -26,7 +26,7 @@ class ClosingResult(Result):
         What `closing.json` holds.
     """
 
-    record: Closing
+    record: ClosingFile
 
     def tables(self) -> list[Table]:
         """Return what was hidden and named, and the RMSE by model."""
@@ -63,7 +63,7 @@ def close_loop(
     seeds: int = 5,
     first_seed: int = 1,
     force: bool = False,
-    step: Steps = SILENT,
+    step: Steps = NO_PROGRESS,
 ) -> ClosingResult:
     """Record, diagnose and track with the nominal, the extended and the true model side by side.
 
@@ -105,7 +105,7 @@ def close_loop(
     with stage_folder(path, stage="close-loop", inputs=[given], force=force) as folder:
         step.ahead(STEPS * len(wanted))
         found = [close(case, read, folder / case.name, taken, step) for case in wanted]
-        record = Closing(
+        record = ClosingFile(
             settings=read.model_dump(mode="json", by_alias=True),
             seeds=(taken[0], taken[-1]),
             cases=found,
@@ -114,7 +114,7 @@ def close_loop(
     return ClosingResult(record.content(), path, record)
 
 
-def _tables(record: Closing, title: str) -> list[Table]:
+def _tables(record: ClosingFile, title: str) -> list[Table]:
     """Return what was hidden and named, under its title, and the RMSE by model."""
     named = [
         (

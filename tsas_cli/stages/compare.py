@@ -14,7 +14,7 @@ from tsas_cli.records.result import Result, Table, notes
 from tsas_cli.stages.given import Named, dataset_of
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import folder_if
-from tsas_cli.support.steps import SILENT, Steps
+from tsas_cli.support.steps import NO_PROGRESS, Steps
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -52,7 +52,7 @@ def compare(
     runs: Iterable[str] | None = None,
     fit_own: bool = False,
     force: bool = False,
-    step: Steps = SILENT,
+    step: Steps = NO_PROGRESS,
 ) -> CompareResult:
     """Say what differs between two models, and whether that is more than the uncertainty.
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tsas_cli.diagnosis import found
-from tsas_cli.diagnosis.diagnose import Cause, Diagnosis, diagnose_runs
+from tsas_cli.diagnosis.diagnose import FoundCause, Diagnosis, diagnose_runs
 from tsas_cli.diagnosis.next_experiment import next_experiment
 from tsas_cli.identification.comparison import compare
 from tsas_cli.identification.model import Model, source_of, stated_model, write_model
@@ -13,15 +13,15 @@ from tsas_cli.identification.phases import segment, segment_records
 from tsas_cli.identification.prepared import Prepared, prepare
 from tsas_cli.recordings.columns import nominal_name
 from tsas_cli.recordings.dataset import Dataset
-from tsas_cli.recordings.quality.copies.counted import counted_once
+from tsas_cli.recordings.quality.copies.counted import without_duplicates
 from tsas_cli.recordings.recording import Recording
-from tsas_cli.recordings.writing import write_answer
+from tsas_cli.recordings.writing import write_result
 from tsas_cli.records import diagnosis as records
 from tsas_cli.records.base import number_text
 from tsas_cli.records.result import Result, Table, notes
 from tsas_cli.stages.given import Named, dataset_of, path_of
 from tsas_cli.support.files import folder_if
-from tsas_cli.support.steps import SILENT, Steps
+from tsas_cli.support.steps import NO_PROGRESS, Steps
 
 SHOWN = 8  # hypotheses that are printed
 
@@ -38,7 +38,7 @@ class DiagnosisResult(Result):
         The verdict and all that it rests on: causes, errors, what is left, every hypothesis.
     """
 
-    record: records.Diagnosis
+    record: records.DiagnosisFile
     diagnosis: Diagnosis
 
     @property
@@ -52,7 +52,7 @@ class DiagnosisResult(Result):
         return self.diagnosis.reason
 
     @property
-    def causes(self) -> tuple[Cause, ...]:
+    def causes(self) -> tuple[FoundCause, ...]:
         """What is named, with rivals, parameters and the gain on held-out data [%]."""
         return self.diagnosis.causes
 
@@ -83,7 +83,7 @@ def diagnose(
     model: Model | Named | None = None,
     runs: Iterable[str] | None = None,
     force: bool = False,
-    step: Steps = SILENT,
+    step: Steps = NO_PROGRESS,
 ) -> DiagnosisResult:
     """Show what the simulation gets wrong, name the cause, extend the model, measure the gain.
 
@@ -117,7 +117,7 @@ def diagnose(
     data, known, path = dataset_of(dataset, runs), path_of(model), path_of(out)
     stated = stated_model(data.manifest, known)
     with folder_if(path, stage="diagnose", inputs=[data.folder, known], force=force) as folder:
-        counted = counted_once(data)
+        counted = without_duplicates(data)
         step.ahead(len(counted.dataset.runs) + 1)
         prepared = []
         for recording in counted.dataset:
@@ -125,7 +125,7 @@ def diagnose(
             prepared.append(prepare(recording, data.manifest.session_start, copied))
             step()
         result = diagnose_runs(data.manifest, stated, prepared, step)
-        record = records.Diagnosis(
+        record = records.DiagnosisFile(
             **counted.dataset.header(path),
             model=source_of(known, path),
             verdict=result.verdict,
@@ -149,7 +149,7 @@ def diagnose(
 
 
 def _write(
-    folder: Path, record: records.Diagnosis, result: Diagnosis, runs: Sequence[Prepared]
+    folder: Path, record: records.DiagnosisFile, result: Diagnosis, runs: Sequence[Prepared]
 ) -> None:
     record.write(folder)
     fitted = record.source().content()
@@ -160,7 +160,7 @@ def _write(
         write_model(folder / name, model, version=record.version, dataset=fitted)
     (folder / "runs").mkdir()
     for run in runs:
-        write_answer(folder / "runs", _answer(run, result.model, result.nominal))
+        write_result(folder / "runs", _answer(run, result.model, result.nominal))
 
 
 def _answer(run: Prepared, extended: Model, nominal: Model) -> Recording:
@@ -171,7 +171,7 @@ def _answer(run: Prepared, extended: Model, nominal: Model) -> Recording:
     return Recording(run.run, columns)
 
 
-def _tables(record: records.Diagnosis, title: str) -> Iterator[Table]:
+def _tables(record: records.DiagnosisFile, title: str) -> Iterator[Table]:
     """Yield what is named under its title, the errors before and after, and the ranking."""
     named = [
         (cause.effect, name, value.text(), value.unit, ", ".join(cause.rivals))

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from tsas_cli.recordings.dataset import Dataset, read_dataset
-from tsas_cli.recordings.storage import Place, place_of
+from tsas_cli.recordings.storage import Location, location_of
 from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError, nearest
 
@@ -24,9 +24,9 @@ def paths_of(given: Named | Iterable[Named]) -> list[Path]:
     return [Path(each) for each in ([given] if isinstance(given, str | Path) else given)]
 
 
-def places_of(given: Named | Iterable[Named]) -> list[Place]:
+def places_of(given: Named | Iterable[Named]) -> list[Location]:
     """Return one place or several as a list: local paths, or addresses of datasets."""
-    return [place_of(each) for each in ([given] if isinstance(given, str | Path) else given)]
+    return [location_of(each) for each in ([given] if isinstance(given, str | Path) else given)]
 
 
 def dataset_of(given: Dataset | Named, runs: Iterable[str] | None = None) -> Dataset:
@@ -37,7 +37,7 @@ def dataset_of(given: Dataset | Named, runs: Iterable[str] | None = None) -> Dat
     InputError
         The folder is none, or there is no such run.
     """
-    dataset = given if isinstance(given, Dataset) else read_dataset(place_of(given))
+    dataset = given if isinstance(given, Dataset) else read_dataset(location_of(given))
     return dataset if runs is None else dataset.only(listed(runs))
 
 

@@ -3,9 +3,9 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from tsas_cli.recordings.guess.proposal import Proposal, propose
+from tsas_cli.recordings.guess.proposal import MapProposal, propose
 from tsas_cli.recordings.guess.summary import content, tables
-from tsas_cli.recordings.guess.text import MARK, map_text
+from tsas_cli.recordings.guess.text import MAP_MARK, map_text
 from tsas_cli.recordings.ingest import find_files
 from tsas_cli.records.result import Result, Table
 from tsas_cli.stages.given import Named, path_of, paths_of
@@ -22,7 +22,7 @@ class GuessResult(Result):
         Which column each channel takes, how sure that is, and what is open.
     """
 
-    proposal: Proposal
+    proposal: MapProposal
 
     @property
     def map(self) -> str:
@@ -66,6 +66,6 @@ def guess(
     proposal = propose(files)
     summary = content(proposal)
     if path is not None:
-        with new_file(path, mark=MARK, inputs=files, force=force) as written:
+        with new_file(path, mark=MAP_MARK, inputs=files, force=force) as written:
             written.write_text(map_text(proposal), encoding="utf-8")
     return GuessResult(summary, path, proposal)

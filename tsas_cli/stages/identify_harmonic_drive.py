@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.drive import json as drive_json
-from tsas_cli.drive.diagnosis import DriveDiagnosis, diagnose_drive
+from tsas_cli.drive.diagnosis import FoundDriveDiagnosis, diagnose_drive
 from tsas_cli.drive.estimates import DataSheet, drive_sheet, estimates_of
 from tsas_cli.drive.file import UNITS, IdentifiedDrive, drive_of, write_drive
 from tsas_cli.drive.fit import DriveBench, Terms
@@ -22,15 +22,15 @@ from tsas_cli.identification.estimate import Estimate
 from tsas_cli.numerics.linear_response import Hold
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Run
-from tsas_cli.recordings.quality.copies.counted import counted_once
+from tsas_cli.recordings.quality.copies.counted import without_duplicates
 from tsas_cli.recordings.recording import Recording, recording_of
 from tsas_cli.recordings.writing import write_runs
 from tsas_cli.records.base import Fit, parameters_of
-from tsas_cli.records.drive import DRIVE_FILE, Drive, Structure
+from tsas_cli.records.drive import DRIVE_FILE, DriveFile, Structure
 from tsas_cli.records.result import Result, Table, notes
 from tsas_cli.stages.given import Named, dataset_of, one_of, path_of
 from tsas_cli.support.files import folder_if
-from tsas_cli.support.steps import SILENT, Steps
+from tsas_cli.support.steps import NO_PROGRESS, Steps
 
 SPEEDS: tuple[Literal["measured", "commanded"], ...] = ("measured", "commanded")
 HOLDS: dict[str, Hold] = {"measured": "first", "commanded": "zero"}
@@ -56,9 +56,9 @@ class DriveResult(Result):
         the nominal drive, `x_in_nominal_mm` [mm].
     """
 
-    record: Drive
+    record: DriveFile
     estimates: Mapping[str, Estimate]
-    diagnosis: DriveDiagnosis
+    diagnosis: FoundDriveDiagnosis
     runs: Mapping[str, Recording]
 
     @property
@@ -94,7 +94,7 @@ def identify_harmonic_drive(
     speed: Literal["measured", "commanded"] = "measured",
     runs: Iterable[str] | None = None,
     force: bool = False,
-    step: Steps = SILENT,
+    step: Steps = NO_PROGRESS,
 ) -> DriveResult:
     """Fit the drive from motor speed [rpm] to x_in [mm], diagnose it, and give its feedforward.
 
@@ -129,7 +129,7 @@ def identify_harmonic_drive(
     data, path = dataset_of(dataset, runs), path_of(out)
     with folder_if(path, stage=STAGE, inputs=[data.folder], force=force) as folder:
         step.ahead(2)
-        counted = counted_once(data)
+        counted = without_duplicates(data)
         prepared = drive_runs(counted.dataset, hold, counted.copied)
         step()
         seen, sheet = frequency_response(prepared), drive_sheet(data.manifest)
@@ -142,7 +142,7 @@ def identify_harmonic_drive(
         found = diagnose_drive(search, final, fitted)
         by_fit, by_nominal = _simulated(search, final), _simulated(search, found.nominal)
         known = fitted | _given(sheet)
-        record = Drive(
+        record = DriveFile(
             **counted.dataset.header(path),
             hold=hold,
             structure=Structure(name=name_of(final), equation=equation_of(final)),

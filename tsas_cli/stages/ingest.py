@@ -11,7 +11,7 @@ from tsas_cli.records.result import Result, Table
 from tsas_cli.stages.given import Named, paths_of
 from tsas_cli.support import __version__
 from tsas_cli.support.files import new_folder
-from tsas_cli.support.steps import SILENT, Steps
+from tsas_cli.support.steps import NO_PROGRESS, Steps
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -51,7 +51,7 @@ def ingest(
     map: Named,  # noqa: A002 # as the option is called
     out: Named,
     force: bool = False,
-    step: Steps = SILENT,
+    step: Steps = NO_PROGRESS,
 ) -> IngestResult:
     """Turn files of a rig into a dataset, as a map says.
 

@@ -6,17 +6,17 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from tsas_cli.diagnosis.plan import Plan, Proposal, plan_dataset, plan_rig
+from tsas_cli.diagnosis.plan import ExperimentPlan, PlannedRun, plan_dataset, plan_rig
 from tsas_cli.diagnosis.rig_file import read_rig_file
-from tsas_cli.diagnosis.visibility import Seen
+from tsas_cli.diagnosis.visibility import Visibility
 from tsas_cli.recordings.dataset import Dataset, read_dataset
-from tsas_cli.recordings.quality.copies.counted import counted_once
-from tsas_cli.recordings.storage import place_of
+from tsas_cli.recordings.quality.copies.counted import without_duplicates
+from tsas_cli.recordings.storage import location_of
 from tsas_cli.records.plan import EffectSize, ProposedRun, RunPlan, RunProposal, SmallerSize
 from tsas_cli.records.result import Result, Table, notes
 from tsas_cli.stages.given import Named, path_of
 from tsas_cli.support.files import folder_if, sha256_of
-from tsas_cli.support.steps import SILENT, Steps
+from tsas_cli.support.steps import NO_PROGRESS, Steps
 
 SAID = 4  # improvements of a proposal that are printed
 
@@ -34,7 +34,7 @@ class PlanResult(Result):
     """
 
     record: RunPlan
-    plan: Plan
+    plan: ExperimentPlan
 
     def tables(self) -> list[Table]:
         """Return each effect, the pairs, the proposals."""
@@ -50,7 +50,7 @@ def plan(
     *,
     out: Named | None = None,
     force: bool = False,
-    step: Steps = SILENT,
+    step: Steps = NO_PROGRESS,
 ) -> PlanResult:
     """Say from which size on runs would show each effect, and which further run helps most.
 
@@ -77,14 +77,14 @@ def plan(
         not set.
     """
     if not isinstance(runs, Dataset):
-        place = place_of(runs)
+        place = location_of(runs)
         is_rig = isinstance(place, Path) and not place.is_dir()
         runs = Path(runs) if is_rig else read_dataset(place)
     path = path_of(out)
     read = runs.folder if isinstance(runs, Dataset) else runs
     with folder_if(path, stage="plan", inputs=[read], force=force) as folder:
         if isinstance(runs, Dataset):
-            counted = counted_once(runs)
+            counted = without_duplicates(runs)
             of, planned = counted.dataset.header(path), plan_dataset(counted, step)
         else:
             file = read_rig_file(runs)
@@ -97,7 +97,7 @@ def plan(
     return PlanResult(record.content(), path, record, planned)
 
 
-def record_of(plan: Plan, **of: object) -> RunPlan:
+def record_of(plan: ExperimentPlan, **of: object) -> RunPlan:
     """Return what `plan.json` says of a plan, and what it is `of`: a dataset or a rig file."""
     return RunPlan(
         **of,
@@ -108,7 +108,7 @@ def record_of(plan: Plan, **of: object) -> RunPlan:
     )
 
 
-def _size_of(seen: Seen) -> EffectSize:
+def _size_of(seen: Visibility) -> EffectSize:
     return EffectSize(
         effect=seen.cause.effect.name,
         parameter=seen.cause.parameter.name,
@@ -121,7 +121,7 @@ def _size_of(seen: Seen) -> EffectSize:
     )
 
 
-def _proposal(proposal: Proposal) -> RunProposal:
+def _proposal(proposal: PlannedRun) -> RunProposal:
     return RunProposal(
         run=ProposedRun.model_validate(proposal.candidate.run, from_attributes=True),
         sentence=proposal.candidate.sentence,

@@ -6,18 +6,18 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from tsas_cli.recordings.manifest import FILE as MANIFEST
-from tsas_cli.recordings.storage import Place
+from tsas_cli.recordings.manifest import MANIFEST_FILE as MANIFEST
+from tsas_cli.recordings.storage import Location
 from tsas_cli.records.result import Result, Table
 from tsas_cli.reporting.inputs import Inputs, read_inputs
 from tsas_cli.reporting.page import SECTIONS, page
-from tsas_cli.reporting.pdf import MARK as PDF_MARK
+from tsas_cli.reporting.pdf import PDF_MARK as PDF_MARK
 from tsas_cli.reporting.pdf import browser, print_page
 from tsas_cli.stages.given import Named, places_of
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import new_file
-from tsas_cli.support.steps import SILENT, Steps
-from tsas_cli.verifying.seal import MARK as PAGE_MARK
+from tsas_cli.support.steps import NO_PROGRESS, Steps
+from tsas_cli.verifying.seal import PDF_MARK as PAGE_MARK
 from tsas_cli.verifying.seal import with_seal
 
 
@@ -45,7 +45,7 @@ def report(
     out: Named,
     pdf: bool = False,
     force: bool = False,
-    step: Steps = SILENT,
+    step: Steps = NO_PROGRESS,
 ) -> ReportResult:
     """Write one self-contained HTML page: diagnosis, recordings, model, simulation and residual.
 
@@ -82,7 +82,7 @@ def report(
         written = partial(new_file, inputs=places, force=force)
         html, *printed = (
             stack.enter_context(written(path, mark=mark))
-            for path, mark in zip(pages, (PAGE_MARK, PDF_MARK), strict=False)
+            for path, mark in zip(pages, (PDF_MARK, PDF_MARK), strict=False)
         )
         inputs = read_inputs(places)
         step.ahead(len(SECTIONS))
@@ -99,9 +99,9 @@ def report(
     return ReportResult(summary, pages[0], sizes)
 
 
-def _files_of(inputs: Inputs) -> list[tuple[Place, str]]:
+def _files_of(inputs: Inputs) -> list[tuple[Location, str]]:
     """Return the files that say what was read, by which all else is found."""
-    stages: list[tuple[Place, str]] = [
+    stages: list[tuple[Location, str]] = [
         (folder, kind.FILE) for kind, folder in inputs.folders.items()
     ]
     return stages if inputs.dataset is None else [(inputs.dataset.folder, MANIFEST), *stages]

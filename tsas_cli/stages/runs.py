@@ -7,11 +7,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tsas_cli.collection.index import index_of
-from tsas_cli.collection.query import Answer, asked, connected
+from tsas_cli.collection.query import QueryResult, run_query, connected
 from tsas_cli.records.result import Result, Table, notes
 from tsas_cli.support import __version__
 from tsas_cli.support.errors import InputError
-from tsas_cli.support.steps import SILENT, Steps
+from tsas_cli.support.steps import NO_PROGRESS, Steps
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -47,7 +47,7 @@ class RunsResult(Result):
         The columns of the table.
     """
 
-    answer: Answer
+    answer: QueryResult
     shown: Sequence[str]
 
     @property
@@ -93,7 +93,7 @@ def runs(
     columns: Sequence[str] = (),
     sort: Sequence[str] = (),
     limit: int | None = None,
-    step: Steps = SILENT,
+    step: Steps = NO_PROGRESS,
 ) -> RunsResult:
     """Find runs among those of all datasets below some folders.
 
@@ -128,7 +128,7 @@ def runs(
         raise InputError(f"limit is {limit}", expected="0 or more")
     with connected() as connection:
         index = index_of([Path(folder) for folder in named], connection, step)
-        answer = asked(connection, index, query, columns=columns, sort=sort, limit=limit)
+        answer = run_query(connection, index, query, columns=columns, sort=sort, limit=limit)
     summary = {
         "format": 1,
         "stage": "runs",

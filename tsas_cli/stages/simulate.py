@@ -24,7 +24,7 @@ from tsas_cli.physics.mesh import MOST_NODES
 from tsas_cli.physics.response import Dynamics
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.recording import Recording, recording_of
-from tsas_cli.recordings.writing import write_answer
+from tsas_cli.recordings.writing import write_result
 from tsas_cli.recordings.written import WrittenRuns
 from tsas_cli.records import simulation as records
 from tsas_cli.records.base import number_text
@@ -33,7 +33,7 @@ from tsas_cli.records.result import Result, Table, notes
 from tsas_cli.stages.given import Named, dataset_of, one_of, path_of
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import folder_if
-from tsas_cli.support.steps import SILENT, Steps
+from tsas_cli.support.steps import NO_PROGRESS, Steps
 
 DYNAMICS: tuple[Literal["static", "slip", "lugre"], ...] = ("static", "slip", "lugre")
 
@@ -56,7 +56,7 @@ class SimulationResult(Result):
         Those that were written are read when they are asked for.
     """
 
-    record: records.Simulation
+    record: records.SimulationFile
     model: Model
     runs: Mapping[str, Recording]
 
@@ -96,8 +96,8 @@ def simulate(
     nodes: int | None = None,
     runs: Iterable[str] | None = None,
     force: bool = False,
-    step: Steps = SILENT,
-    each: Callable[[records.Simulation, Recording, Model], None] = lambda *_: None,
+    step: Steps = NO_PROGRESS,
+    each: Callable[[records.SimulationFile, Recording, Model], None] = lambda *_: None,
 ) -> SimulationResult:
     """Simulate every run with a model and say how far it is from the measurement.
 
@@ -141,7 +141,7 @@ def simulate(
     data, known, path = dataset_of(dataset, runs), path_of(model), path_of(out)
     _refuse_nodes(nodes, one_of(DYNAMICS, dynamics, "dynamics"))
     taken = data_sheet(data.manifest) if known is None else model_of(known)
-    record = records.Simulation(
+    record = records.SimulationFile(
         **data.header(path),
         model=source_of(known, path),
         dynamics=dynamics,
@@ -171,7 +171,7 @@ def simulate(
                 if folder is None:
                     kept[entry.id] = answered
                 else:  # many runs need no more memory than one
-                    write_answer(folder / "runs", answered)
+                    write_result(folder / "runs", answered)
                 each(record, answered, used)
             step()
         record = record.model_copy(update={"notes": _notes(record.runs)})

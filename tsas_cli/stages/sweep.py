@@ -9,7 +9,7 @@ from typing import Any
 from tsas_cli.stages.given import Named, at_least
 from tsas_cli.stages.swept import WORK, options_of
 from tsas_cli.support.errors import InputError
-from tsas_cli.support.steps import SILENT, Steps
+from tsas_cli.support.steps import NO_PROGRESS, Steps
 from tsas_cli.sweeping.cluster import on_cluster
 from tsas_cli.sweeping.folder import JOURNAL
 from tsas_cli.sweeping.local import in_processes
@@ -25,7 +25,7 @@ def sweep(
     workers: int | None = None,
     cluster: str | None = None,
     force: bool = False,
-    step: Steps = SILENT,
+    step: Steps = NO_PROGRESS,
 ) -> SweepResult:
     """Call a stage for many datasets or values, several at a time, and gather what comes out.
 

@@ -14,15 +14,15 @@ from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model, data_sheet
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.recordings.dataset import Dataset
-from tsas_cli.recordings.manifest import FILE as MANIFEST
+from tsas_cli.recordings.manifest import MANIFEST_FILE as MANIFEST
 from tsas_cli.stages.read import read, read_model
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import Raw, new_folder, read_json, sha256_of, write_json, write_sums
 from tsas_cli.support.temporaries import remove
-from tsas_cli.sweeping.answer import Answer, failure, success
+from tsas_cli.sweeping.answer import TaskOutcome, failure, success
 from tsas_cli.sweeping.folder import JOURNAL, what_is_done
 from tsas_cli.sweeping.found import estimates, figures
-from tsas_cli.sweeping.tasks import FILE
+from tsas_cli.sweeping.tasks import TASK_FILE
 from tsas_cli.sweeping.values import FILES, Options, with_settings
 from tsas_cli.sweeping.versions import ONE_THREAD, refuse_others, versions
 
@@ -41,7 +41,7 @@ def options_of(stage: str) -> Options:
     }
 
 
-def work(task: Raw) -> Answer:
+def work(task: Raw) -> TaskOutcome:
     """Do a task; what goes wrong is its answer."""
     os.environ.update(ONE_THREAD)  # this process does one task at a time
     start, before = time.perf_counter(), time.process_time()
@@ -69,7 +69,7 @@ def _as_named(line: str, task: Raw) -> str:
     return line
 
 
-def _done(task: Raw) -> Answer:
+def _done(task: Raw) -> TaskOutcome:
     """Call the stage, and write its folder with what it was told and what came out."""
     inputs, places, key = task["inputs"], task["places"], task["key"]
     out = Path(places["out"])
@@ -86,9 +86,9 @@ def _done(task: Raw) -> Answer:
         result = getattr(tsas, stage)(**_arguments(inputs, places), out=folder)
         content = {"format": 1, "stage": "sweep", "key": key, "inputs": inputs}
         content |= {"results": figures(stage, result), "parameters": estimates(stage, result)}
-        write_json(folder / FILE, content)
+        write_json(folder / TASK_FILE, content)
         write_sums(folder)  # of the stage, now with this file
-        written: Raw = read_json(folder / FILE)  # as a later call will find it
+        written: Raw = read_json(folder / TASK_FILE)  # as a later call will find it
     return success(written["results"], written["parameters"])
 
 

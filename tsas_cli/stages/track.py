@@ -23,11 +23,11 @@ from tsas_cli.records import tracking as records
 from tsas_cli.records.base import number_text
 from tsas_cli.records.drive import DRIVE_FILE
 from tsas_cli.records.result import Result, Table, notes
-from tsas_cli.records.tracking import Tracking
+from tsas_cli.records.tracking import TrackingFile
 from tsas_cli.stages.given import Named, at_least, listed, number_of_seeds, one_of, path_of
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import folder_if
-from tsas_cli.support.steps import SILENT, Steps
+from tsas_cli.support.steps import NO_PROGRESS, Steps
 from tsas_cli.tracking.conditions import Condition, disturbed, proximal_spring
 from tsas_cli.tracking.drives import known_drive
 from tsas_cli.tracking.dynamic_notes import dynamic_notes
@@ -95,7 +95,7 @@ class TrackingResult(Result):
         `motor_speed_rpm` (docs/tracking.md).
     """
 
-    record: Tracking
+    record: TrackingFile
     runs: Mapping[str, Recording]
 
     def __getitem__(self, run: str) -> Recording:
@@ -127,8 +127,8 @@ def track(
     seeds: int | None = None,
     first_seed: int = 1,
     force: bool = False,
-    step: Steps = SILENT,
-    each: Callable[[Tracking, str, pa.Table], None] = lambda *_: None,
+    step: Steps = NO_PROGRESS,
+    each: Callable[[TrackingFile, str, pa.Table], None] = lambda *_: None,
 ) -> TrackingResult:
     """Follow a wanted force with a controller that sees x_in alone.
 
@@ -210,7 +210,7 @@ def track(
     known, real = what_is_known(call, read)
     wanted = reference_of(call.reference, read.reference, read.step_s)
     path = plan(wanted, known, read)
-    results, tables = list[records.Result](), dict[str, pa.Table]()
+    results, tables = list[records.TrackedResult](), dict[str, pa.Table]()
     record_with = _record_with(call, read, folder_path)
     with folder_if(folder_path, stage="track", inputs=call.inputs(), force=force) as folder:
         step.ahead(len(call.controllers) * len(call.conditions) * call.seeds)
@@ -279,8 +279,8 @@ def what_is_known(call: Call, settings: Settings) -> tuple[Known, Plant]:
 
 def _result(
     run_id: str, name: str, condition: Condition, runs: list[Tracked], printed: float | None
-) -> records.Result:
-    return records.Result(
+) -> records.TrackedResult:
+    return records.TrackedResult(
         controller=name,
         condition=condition.name,
         run=run_id,
@@ -291,7 +291,7 @@ def _result(
     )
 
 
-def _record_with(call: Call, settings: Settings, out: Path | None) -> "partial[Tracking]":
+def _record_with(call: Call, settings: Settings, out: Path | None) -> "partial[TrackingFile]":
     """Return what makes the record of a call, once there are results."""
     stated = settings.model_dump(mode="json", by_alias=True)
     if call.settings is not None:
@@ -299,7 +299,7 @@ def _record_with(call: Call, settings: Settings, out: Path | None) -> "partial[T
     wanted = Path(call.reference)
     shape = {"shape": call.reference}
     return partial(
-        Tracking,
+        TrackingFile,
         model=source_of(call.model, out),
         plant=source_of(call.plant or call.model, out),
         drive=source_of(call.drive, out, DRIVE_FILE, without="kinematics"),
@@ -310,7 +310,7 @@ def _record_with(call: Call, settings: Settings, out: Path | None) -> "partial[T
         seeds=(call.first_seed, call.first_seed + call.seeds - 1),
         conditions={
             condition.name: [
-                records.Change(quantity=c.name, value=c.value, from_s=c.from_s)
+                records.ConditionChange(quantity=c.name, value=c.value, from_s=c.from_s)
                 for c in condition.changes
             ]
             for condition in call.conditions
@@ -319,7 +319,7 @@ def _record_with(call: Call, settings: Settings, out: Path | None) -> "partial[T
 
 
 def _notes(
-    path: DrivePath, known: Known, plant: Plant, results: Sequence[records.Result]
+    path: DrivePath, known: Known, plant: Plant, results: Sequence[records.TrackedResult]
 ) -> list[str]:
     """Return what of the runs is not to be trusted or not to be reached, and why."""
     notes = []
@@ -346,7 +346,7 @@ def _notes(
     return notes
 
 
-def _table(results: Sequence[records.Result], title: str) -> Table:
+def _table(results: Sequence[records.TrackedResult], title: str) -> Table:
     """Return the scores; what Table 5 of the paper prints stands beside them where it applies."""
     header = ["controller", "condition", *(name for name, _ in COLUMNS)]
     rows = [

@@ -3,13 +3,13 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from tsas_cli.recordings.storage import Address, place_of
+from tsas_cli.recordings.storage import Address, location_of
 from tsas_cli.recordings.upload import upload_dataset
 from tsas_cli.records.result import Result, Table
 from tsas_cli.stages.given import Named
 from tsas_cli.support import __version__
 from tsas_cli.support.errors import InputError
-from tsas_cli.support.steps import SILENT, Steps
+from tsas_cli.support.steps import NO_PROGRESS, Steps
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -23,7 +23,7 @@ class UploadResult(Result):
 
 
 def upload(
-    folder: Named, address: str, *, force: bool = False, step: Steps = SILENT
+    folder: Named, address: str, *, force: bool = False, step: Steps = NO_PROGRESS
 ) -> UploadResult:
     """Put a dataset on object storage.
 
@@ -48,7 +48,7 @@ def upload(
     InputError
         The dataset is wrong, one is there and `force` is not set, or the storage refuses.
     """
-    source, target = place_of(folder), place_of(address)
+    source, target = location_of(folder), location_of(address)
     if not isinstance(source, Path):
         raise InputError("is no local folder", where=source, expected="a dataset's folder")
     if not isinstance(target, Address):

@@ -8,7 +8,7 @@ from pathlib import Path
 from tsas_cli.records.result import Result, Table
 from tsas_cli.stages.given import Named, paths_of
 from tsas_cli.support import __version__
-from tsas_cli.support.steps import SILENT, Steps
+from tsas_cli.support.steps import NO_PROGRESS, Steps
 from tsas_cli.verifying.verify import Verified, verify_all
 
 STATES = ("fits", "changed", "missing", "cannot tell")
@@ -42,7 +42,7 @@ class VerifyResult(Result):
         return [(title, ("state", "file", "why", "recorded in") if rows else (), rows)]
 
 
-def verify(path: Named, *, raw: Named | Iterable[Named] = (), step: Steps = SILENT) -> VerifyResult:
+def verify(path: Named, *, raw: Named | Iterable[Named] = (), step: Steps = NO_PROGRESS) -> VerifyResult:
     """Check every checksum from a page, or all that stages wrote, back to the raw recordings.
 
     Parameters

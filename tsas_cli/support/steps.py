@@ -30,4 +30,4 @@ class Steps:
         """Count one completed step."""
 
 
-SILENT = Steps()
+NO_PROGRESS = Steps()

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tsas_cli.support.errors import InputError
-from tsas_cli.sweeping.answer import Answer, called, death, failure
+from tsas_cli.sweeping.answer import TaskOutcome, run_task, worker_death, failure
 from tsas_cli.sweeping.versions import ONE_THREAD, refuse_others, threads_of_algebra, versions
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ START = "{environment} dask worker {address} --nthreads 1 --nworkers auto"
 
 def on_cluster(
     work: str, texts: Sequence[str], address: str, shared: Path
-) -> Iterator[tuple[int, Answer]]:
+) -> Iterator[tuple[int, TaskOutcome]]:
     """Yield the number and the outcome of each task, in the order of completion.
 
     The scheduler reassigns the tasks of a worker that dies; after its `allowed-failures` a task has
@@ -55,7 +55,7 @@ def on_cluster(
     """
     with _connected(address) as client:
         _refuse_workers(client, address, shared)
-        futures = client.map(called, [work] * len(texts), list(texts), pure=False)
+        futures = client.map(run_task, [work] * len(texts), list(texts), pure=False)
         numbers = {future.key: number for number, future in enumerate(futures)}
         try:
             yield from _outcomes(client, futures, numbers, address)
@@ -165,7 +165,7 @@ def facts(shared: str) -> str:
 
 def _outcomes(
     client: "Client", futures: Sequence[Any], numbers: Mapping[str, int], address: str
-) -> Iterator[tuple[int, Answer]]:
+) -> Iterator[tuple[int, TaskOutcome]]:
     from distributed import CancelledError, KilledWorker, as_completed
 
     for future in as_completed(futures, loop=client.loop):
@@ -173,7 +173,7 @@ def _outcomes(
         try:
             yield number, json.loads(future.result())
         except KilledWorker as error:
-            yield number, death(error.allowed_failures + 1)
+            yield number, worker_death(error.allowed_failures + 1)
         except CancelledError as error:
             raise InputError(
                 "the scheduler has ended",

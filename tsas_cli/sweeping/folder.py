@@ -12,8 +12,8 @@ from tsas_cli.support.files import read_json, sha256_of, unwritable
 from tsas_cli.support.limits import text_name
 from tsas_cli.support.replacing import LEFT_BY_DESKTOPS, SUMS, refuse_holding, refuse_kind
 from tsas_cli.support.temporaries import TEMPORARY, is_empty_folder, remove
-from tsas_cli.sweeping.answer import Answer, success
-from tsas_cli.sweeping.tasks import FILE, Task
+from tsas_cli.sweeping.answer import TaskOutcome, success
+from tsas_cli.sweeping.tasks import TASK_FILE, Task
 from tsas_cli.verifying.claims import claims_of
 
 TASKS = "tasks"
@@ -97,7 +97,7 @@ def _clear(tasks: Path) -> None:
             remove(path)
 
 
-def what_is_done(tasks: Path, key: str) -> Answer | None:
+def what_is_done(tasks: Path, key: str) -> TaskOutcome | None:
     """Return the outcome of a completed task, or None.
 
     A task is completed if its `task.json` exists and every file in its checksums is unchanged; else
@@ -106,15 +106,15 @@ def what_is_done(tasks: Path, key: str) -> Answer | None:
     folder = tasks / key
     try:
         sums = {folder / claim.file: claim.sha256 for claim in claims_of(folder / SUMS)}
-        if folder / FILE not in sums or any(sha256_of(path) != sums[path] for path in sums):
+        if folder / TASK_FILE not in sums or any(sha256_of(path) != sums[path] for path in sums):
             return None
-        content = read_json(folder / FILE)
+        content = read_json(folder / TASK_FILE)
         return success(content["results"], content["parameters"]) if content["key"] == key else None
     except (InputError, OSError, KeyError, TypeError):
         return None
 
 
-def note(out: Path, task: Task, outcome: Answer) -> None:
+def note(out: Path, task: Task, outcome: TaskOutcome) -> None:
     """Append a task's state, duration and machine to the journal."""
     line = {"task": task.key, **{key: outcome.get(key) for key in LOGGED}}
     with _writing(out / JOURNAL), (out / JOURNAL).open("a", encoding="utf-8") as journal:

@@ -9,11 +9,11 @@ import numpy as np
 
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.recordings.recording import Recording
-from tsas_cli.records.calibration import Calibration, ChannelError
-from tsas_cli.records.diagnosis import Diagnosis
+from tsas_cli.records.calibration import CalibrationFile, ChannelError
+from tsas_cli.records.diagnosis import DiagnosisFile
 from tsas_cli.records.result import Result
-from tsas_cli.records.simulation import Channel, Simulation
-from tsas_cli.records.tracking import Tracking
+from tsas_cli.records.simulation import SimulatedChannel, SimulationFile
+from tsas_cli.records.tracking import TrackingFile
 from tsas_cli.sweeping.answer import Row
 
 FITTING = ("calibrate", "diagnose")
@@ -41,7 +41,7 @@ def _of_check(result: Any) -> Row:
 
 
 def _of_calibrate(result: Any) -> Row:
-    record: Calibration = result.record
+    record: CalibrationFile = result.record
     return {
         "converged": record.fit.converged,
         **_fitted(result.model.estimates),
@@ -50,7 +50,7 @@ def _of_calibrate(result: Any) -> Row:
 
 
 def _of_simulate(result: Any) -> Row:
-    runs = cast("Simulation", result.record).runs.values()
+    runs = cast("SimulationFile", result.record).runs.values()
     return {
         **_pooled(run.channels for run in runs),
         **dict(_reach(result.runs.values())),
@@ -59,7 +59,7 @@ def _of_simulate(result: Any) -> Row:
 
 
 def _of_diagnose(result: Any) -> Row:
-    record: Diagnosis = result.record
+    record: DiagnosisFile = result.record
     found: Row = {
         "verdict": record.verdict,
         "causes": ", ".join(cause.effect for cause in record.named),
@@ -76,7 +76,7 @@ def _of_diagnose(result: Any) -> Row:
 
 
 def _of_track(result: Any) -> Row:
-    rows, found = cast("Tracking", result.record).results, Row()
+    rows, found = cast("TrackingFile", result.record).results, Row()
     for row in rows:
         prefix = "" if len(rows) == 1 else f"{row.run}."
         for score, spread in row.scores:
@@ -107,7 +107,7 @@ def _fitted(found: Iterable[Estimate]) -> Row:
     return figures
 
 
-def _pooled(runs: Iterable[Mapping[str, Channel | ChannelError]]) -> Row:
+def _pooled(runs: Iterable[Mapping[str, SimulatedChannel | ChannelError]]) -> Row:
     """Return the RMS of each channel's residual over all runs, with equal weights."""
     squares: dict[str, list[float]] = {}
     for channels in runs:

@@ -14,14 +14,14 @@ from threading import local
 from typing import IO
 
 from tsas_cli.support.errors import InputError
-from tsas_cli.sweeping.answer import Answer, death
+from tsas_cli.sweeping.answer import TaskOutcome, worker_death
 from tsas_cli.sweeping.versions import ONE_THREAD
 
 TRIES = 2  # of a task whose worker dies
 STDERR_BYTES = 500  # last bytes of a dead worker's standard error
 
 
-def in_processes(work: str, texts: Sequence[str], workers: int) -> Iterator[tuple[int, Answer]]:
+def in_processes(work: str, texts: Sequence[str], workers: int) -> Iterator[tuple[int, TaskOutcome]]:
     """Yield the number and the outcome of each task, in the order of completion.
 
     A task whose worker dies is repeated once by a new one. If the loop over the outcomes ends
@@ -66,7 +66,7 @@ class _Crew:
         self.work, self.stopped = work, False
         self.own, self.started = local(), list[_Worker]()
 
-    def run(self, text: str) -> Answer:
+    def run(self, text: str) -> TaskOutcome:
         """Return the outcome of a task from this thread's worker."""
         message = ""
         for _ in range(TRIES):
@@ -77,7 +77,7 @@ class _Crew:
             if outcome is not None:
                 return outcome
             message, self.own.worker = worker.ending(), None
-        return death(TRIES, message)
+        return worker_death(TRIES, message)
 
     def kill(self) -> None:
         """Kill every worker."""
@@ -121,7 +121,7 @@ class _Worker:
             self.stderr.close()
             raise
 
-    def run(self, text: str) -> Answer | None:
+    def run(self, text: str) -> TaskOutcome | None:
         """Return the outcome of a task, or None if the process died."""
         assert self.process.stdin is not None  # noqa: S101 # they are pipes
         assert self.process.stdout is not None  # noqa: S101
@@ -131,7 +131,7 @@ class _Worker:
         line = self.process.stdout.readline()
         if not line.endswith("\n"):
             return None
-        outcome: Answer = json.loads(line)
+        outcome: TaskOutcome = json.loads(line)
         return outcome
 
     def ending(self) -> str:

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from tsas_cli.recordings.manifest import FILE, read_toml
+from tsas_cli.recordings.manifest import MANIFEST_FILE, read_toml
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import sha256_of
 
@@ -46,12 +46,12 @@ def _matching(name: str, base: Path) -> Iterator[SweepSource]:
         yield _source(name, base)
         return
     folders = sorted(glob.glob(name, root_dir=base, recursive=True))  # noqa: PTH207 # absolute too
-    datasets = [folder for folder in folders if (base / folder / FILE).is_file()]
+    datasets = [folder for folder in folders if (base / folder / MANIFEST_FILE).is_file()]
     if not datasets:
         raise InputError(
             "no dataset matches",
             where=base / name,
-            expected=f"folders with {FILE}",
+            expected=f"folders with {MANIFEST_FILE}",
             remedy=f"{len(folders)} other files and folders match" if folders else "",
         )
     yield from (_source(folder, base) for folder in datasets)
@@ -59,21 +59,21 @@ def _matching(name: str, base: Path) -> Iterator[SweepSource]:
 
 def _source(name: str, base: Path) -> SweepSource:
     folder = base / name
-    if not (folder / FILE).is_file():
-        inside = next(folder.glob(f"*/{FILE}"), None) if folder.is_dir() else None
+    if not (folder / MANIFEST_FILE).is_file():
+        inside = next(folder.glob(f"*/{MANIFEST_FILE}"), None) if folder.is_dir() else None
         raise InputError(
             "no dataset.toml here",
             where=folder,
             expected="a dataset folder",
             remedy=f"its subfolders are datasets: use '{name}/*'" if inside else "",
         )
-    return SweepSource(Path(name).as_posix(), folder, sha256_of(folder / FILE))
+    return SweepSource(Path(name).as_posix(), folder, sha256_of(folder / MANIFEST_FILE))
 
 
 def _runs(source: SweepSource) -> Iterator[SweepSource]:
     """Yield each run; or the dataset if its manifest lists none, whose task reports the fault."""
     try:
-        runs = [str(run["id"]) for run in read_toml(source.folder / FILE)["run"]]
+        runs = [str(run["id"]) for run in read_toml(source.folder / MANIFEST_FILE)["run"]]
     except (InputError, KeyError, TypeError):
         runs = []
     yield from (SweepSource(source.name, source.folder, source.sha256, run) for run in runs)

@@ -11,7 +11,7 @@ from tsas_cli.records.result import Result, Table
 from tsas_cli.support import __version__
 from tsas_cli.support.files import own_file, write_json
 from tsas_cli.support.steps import Steps
-from tsas_cli.sweeping.answer import Answer, Row
+from tsas_cli.sweeping.answer import TaskOutcome, Row
 from tsas_cli.sweeping.folder import (
     PARAMETERS,
     SUMMARY,
@@ -28,7 +28,7 @@ from tsas_cli.sweeping.versions import versions
 if TYPE_CHECKING:
     import pandas as pd
 
-Pool = Callable[[Sequence[str]], Iterator[tuple[int, Answer]]]
+Pool = Callable[[Sequence[str]], Iterator[tuple[int, TaskOutcome]]]
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -129,7 +129,7 @@ def sweep_tasks(
         )
 
 
-def _written(out: Path, plan: SweepPlan, tasks: Sequence[Task], outcomes: Sequence[Answer]) -> Row:
+def _written(out: Path, plan: SweepPlan, tasks: Sequence[Task], outcomes: Sequence[TaskOutcome]) -> Row:
     """Return the summary, after writing the tables and the summary itself."""
     rows = rows_of(tasks, outcomes)
     summary = {

@@ -10,14 +10,14 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from tsas_cli.records.result import Table
-from tsas_cli.sweeping.answer import Answer, Row
+from tsas_cli.sweeping.answer import TaskOutcome, Row
 from tsas_cli.sweeping.tasks import Task
 
 MOST_SHOWN = 20  # failed tasks in the printed table; the file holds all
 COUNTED = ("verdict", "causes", "codes")  # results that are words, whose frequencies are printed
 
 
-def rows_of(tasks: Sequence[Task], outcomes: Sequence[Answer]) -> list[Row]:
+def rows_of(tasks: Sequence[Task], outcomes: Sequence[TaskOutcome]) -> list[Row]:
     """Return one row per task: its name, input, state and results."""
     return [
         {
@@ -33,7 +33,7 @@ def rows_of(tasks: Sequence[Task], outcomes: Sequence[Answer]) -> list[Row]:
     ]
 
 
-def parameter_rows(tasks: Sequence[Task], outcomes: Sequence[Answer]) -> list[Row]:
+def parameter_rows(tasks: Sequence[Task], outcomes: Sequence[TaskOutcome]) -> list[Row]:
     """Return one row for each parameter of each task, with interval, unit and bound flag."""
     return [
         {
@@ -104,7 +104,7 @@ def _span(name: str, values: Sequence[Any]) -> tuple[str, ...] | None:
     return (name, str(len(numbers)), *(f"{value:.4g}" for value in ends))
 
 
-def counts(outcomes: Iterable[Answer]) -> Mapping[str, int]:
+def counts(outcomes: Iterable[TaskOutcome]) -> Mapping[str, int]:
     """Return the numbers of completed and failed tasks."""
     states = Counter(outcome["state"] for outcome in outcomes)
     return {state: states[state] for state in ("done", "failed")}

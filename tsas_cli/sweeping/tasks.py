@@ -17,7 +17,7 @@ from tsas_cli.sweeping.sources import SweepSource, sources_of
 from tsas_cli.sweeping.values import Options, Values, sorted_values
 from tsas_cli.sweeping.versions import versions
 
-FILE = "task.json"  # in each task's folder: its inputs and results
+TASK_FILE = "task.json"  # in each task's folder: its inputs and results
 LONGEST = 100  # characters of the readable part of a name
 
 

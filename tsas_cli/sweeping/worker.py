@@ -7,7 +7,7 @@ to standard error.
 import os
 import sys
 
-from tsas_cli.sweeping.answer import called
+from tsas_cli.sweeping.answer import run_task
 
 
 def main() -> None:
@@ -15,7 +15,7 @@ def main() -> None:
     outcomes = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)
     for line in sys.stdin:
-        outcomes.write(called(sys.argv[1], line) + "\n")
+        outcomes.write(run_task(sys.argv[1], line) + "\n")
         outcomes.flush()
 
 

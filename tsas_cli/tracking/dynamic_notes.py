@@ -7,7 +7,7 @@ import numpy as np
 from tsas_cli.controllers.path import DrivePath
 from tsas_cli.identification.dynamic_notes import unstable_sliding
 from tsas_cli.physics.bristles import Bristles
-from tsas_cli.physics.ends import Drive
+from tsas_cli.physics.ends import DriveInput
 from tsas_cli.tracking.conditions import Condition
 from tsas_cli.tracking.track import Plant
 
@@ -25,6 +25,6 @@ def dynamic_notes(
     for condition in conditions:
         real = condition.of(plant)
         for rig in (real.rig,) if real.later is None else (real.rig, real.later):
-            drive = Drive(path.drive[0] + rig.x_in_zero_mm, time_s=time_s)
+            drive = DriveInput(path.drive[0] + rig.x_in_zero_mm, time_s=time_s)
             for sentence in unstable_sliding(rig, time_s, drive):
                 yield f"{condition.name}: {sentence}"

@@ -21,7 +21,7 @@ from tsas_cli.identification.model import Model, data_sheet
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.sensors import reading
 from tsas_cli.recordings.manifest import Manifest, Run
-from tsas_cli.recordings.manifest import Rig as DataSheet
+from tsas_cli.recordings.manifest import RigSheet as DataSheet
 from tsas_cli.tracking.settings import Settings
 from tsas_cli.tracking.track import Tracked
 

@@ -13,9 +13,9 @@ from tsas_cli.controllers.closed_loop import (
     X_IN,
     DriveSensor,
     LoopPlant,
-    Wanted,
+    LoopReference,
     close_loop,
-    followed_from,
+    plant_at_rest,
 )
 from tsas_cli.controllers.path import DrivePath, follow
 from tsas_cli.controllers.signals import error_filter
@@ -129,7 +129,7 @@ def run_loop(
     limit_rpm = plant.actuator.speed_limit_rpm
     nodes = settings.loop.nodes
     columns, unsettled, done = close_loop(
-        Wanted(np.ascontiguousarray(path.drive[:, :m]), feedforward(path, known.actuator)[:m]),
+        LoopReference(np.ascontiguousarray(path.drive[:, :m]), feedforward(path, known.actuator)[:m]),
         DriveSensor(step_s, noise, settings.sensor.step_mm, A, b),
         settings.laws(controller, known.actuator.gain_mm_per_s_rpm),
         LoopPlant(
@@ -138,7 +138,7 @@ def run_loop(
             change_at=change_at,
             substeps=settings.loop.substeps,
             nodes=nodes,
-            start=followed_from(float(path.drive[0, 0]), plant.rig, plant.actuator, nodes),
+            start=plant_at_rest(float(path.drive[0, 0]), plant.rig, plant.actuator, nodes),
         ),
         empty_lumps() if dynamics == "lugre" else None,
     )

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from tsas_cli.recordings.manifest import FILE as MANIFEST
+from tsas_cli.recordings.manifest import MANIFEST_FILE as MANIFEST
 from tsas_cli.recordings.manifest import read_toml
 from tsas_cli.recordings.storage import is_address, path_from
 from tsas_cli.support.errors import InputError

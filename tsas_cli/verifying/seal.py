@@ -11,12 +11,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from tsas_cli.recordings.storage import Place, location_text
+from tsas_cli.recordings.storage import Location, location_text
 from tsas_cli.support.errors import InputError
 
 _TYPE = "<!DOCTYPE html>\n"
 _HEAD = "<!-- a page of tsas, which ends with its own checksum -->\n"
-MARK = _HEAD.encode()
+PAGE_MARK = _HEAD.encode()
 _READ = "<!-- tsas has read: "
 _SUM = re.compile(rb"<!-- sha256 of all above: ([0-9a-f]{64}) -->\n")
 
@@ -30,7 +30,7 @@ class Seal:
     read: tuple[Any, ...]
 
 
-def with_seal(text: str, files: Iterable[tuple[Place, str]], page: Path) -> str:
+def with_seal(text: str, files: Iterable[tuple[Location, str]], page: Path) -> str:
     """Return a page's text with its seal; locations are relative to the page.
 
     `files` are folders, or addresses, each with the name of a file in it.
@@ -77,5 +77,5 @@ def sealed(path: Path) -> Seal | None:
     return Seal(checksum[1].decode(), found, tuple(read) if isinstance(read, list) else ())
 
 
-_MARKS = (MARK, _READ.encode(), b"<!-- sha256 of all above: ")
+_MARKS = (PAGE_MARK, _READ.encode(), b"<!-- sha256 of all above: ")
 _LENGTH = len("<!-- sha256 of all above:  -->\n") + 64

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
-from tsas_cli.recordings.manifest import FILE as MANIFEST
+from tsas_cli.recordings.manifest import MANIFEST_FILE as MANIFEST
 from tsas_cli.recordings.storage import is_address
 from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError

@@ -14,7 +14,7 @@ import numpy as np
 from tsas_cli.diagnosis.diagnose import bench_folds, nominal_fit
 from tsas_cli.diagnosis.search import MOST_EFFECTS, Names, Search
 from tsas_cli.effects import EFFECTS
-from tsas_cli.identification.extension import Trial, bench_of
+from tsas_cli.identification.extension import HypothesisFit, bench_of
 from tsas_cli.identification.fit import UNDETERMINED
 from tsas_cli.identification.joint_fit import solve_fit
 from tsas_cli.identification.model import data_sheet
@@ -85,29 +85,29 @@ def search_of(dataset: Path) -> Search:
     return Search(bench, bench_folds(bench))
 
 
-def information_criterion(trial: Trial) -> float:
+def information_criterion(trial: HypothesisFit) -> float:
     """Return the BIC of a fit, every residual counted as independent of all others."""
     count = trial.solution.residual.size
     return count * math.log(trial.mean_square) + len(trial.unknowns) * math.log(count)
 
 
-def _both(search: Search, before: Names, after: Names) -> tuple[Trial, Trial]:
+def _both(search: Search, before: Names, after: Names) -> tuple[HypothesisFit, HypothesisFit]:
     """Return the fits of two sets of effects, on the mesh that the second one needs."""
     trial = search.trial(after)
     return search.trial(before, on_mesh=trial.on_mesh), trial
 
 
-def _fall(before: Trial, after: Trial) -> float:
+def _fall(before: HypothesisFit, after: HypothesisFit) -> float:
     """Return by how much the BIC falls."""
     return information_criterion(before) - information_criterion(after)
 
 
-def _drop(before: Trial, after: Trial) -> float:
+def _drop(before: HypothesisFit, after: HypothesisFit) -> float:
     """Return by which share the root mean square of the residuals falls."""
     return 1.0 - math.sqrt(after.mean_square / before.mean_square)
 
 
-def write_diagnosis(out: Path, trial: Trial, rivals: Mapping[str, Iterable[str]]) -> None:
+def write_diagnosis(out: Path, trial: HypothesisFit, rivals: Mapping[str, Iterable[str]]) -> None:
     """Write `out/diagnosis.json`: the effects of a fit are named, each with its rivals."""
     estimates = _estimates(trial)
     named = [
@@ -136,7 +136,7 @@ def write_diagnosis(out: Path, trial: Trial, rivals: Mapping[str, Iterable[str]]
         write_json(folder / FILE, content)
 
 
-def _estimates(trial: Trial) -> dict[str, dict[str, Any]]:
+def _estimates(trial: HypothesisFit) -> dict[str, dict[str, Any]]:
     """Return value and standard error of each parameter: σ² (JᵀJ)⁻¹ with white residuals."""
     J, residual = trial.solution.jacobian, trial.solution.residual
     gram = J.T @ J

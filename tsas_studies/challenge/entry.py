@@ -8,15 +8,15 @@ from pydantic import Field
 
 from tsas_cli.recordings.manifest import parse
 from tsas_cli.records.base import Record
-from tsas_cli.records.diagnosis import Diagnosis, Findings
+from tsas_cli.records.diagnosis import DiagnosisFile, Findings
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import read_json
 
-FILE = Diagnosis.FILE
+FILE = DiagnosisFile.FILE
 LOG = "entry.json"
 
 
-class Answer(Findings):
+class SubmittedDiagnosis(Findings):
     """What a tool says about one case, and how long that took."""
 
     seconds: float | None = Field(default=None, ge=0)
@@ -32,7 +32,7 @@ class Log(Record):
 class Entry:
     """The diagnoses of one tool by case, and the reason for each one that is missing."""
 
-    diagnoses: dict[str, Answer]
+    diagnoses: dict[str, SubmittedDiagnosis]
     no_answer: dict[str, str]
 
 
@@ -63,8 +63,8 @@ def read_entry(folder: Path, cases: Iterable[str]) -> Entry:
     )
 
 
-def _read_diagnosis(path: Path) -> Answer:
-    return parse(Answer, read_json(path), path)
+def _read_diagnosis(path: Path) -> SubmittedDiagnosis:
+    return parse(SubmittedDiagnosis, read_json(path), path)
 
 
 def _reasons(path: Path) -> Mapping[str, str]:

@@ -13,7 +13,7 @@ from tsas_studies.challenge.targets import SIZES, TARGETS, Target
 
 
 @dataclass(frozen=True)
-class Figure:
+class ScoreRate:
     """One rate; `worst` is the effect farthest from the target, where it holds for each one."""
 
     name: str
@@ -35,7 +35,7 @@ class Figure:
         return self.target.low <= share <= self.target.high
 
 
-def figures(judged: Sequence[Judged]) -> list[Figure]:
+def figures(judged: Sequence[Judged]) -> list[ScoreRate]:
     """Return every rate of the summary, in the order in which it is printed."""
     pairs, nothing, unknown = (
         [j for j in judged if j.case.kind == kind] for kind in ("pair", "nothing", "unknown")
@@ -43,23 +43,23 @@ def figures(judged: Sequence[Judged]) -> list[Figure]:
     covered = [inside for j in judged for inside in j.covered]
     stated = [inside for inside in covered if inside is not None]
     return [
-        Figure("answered", "answered", rate(j.outcome != NO_ANSWER for j in judged)),
+        ScoreRate("answered", "answered", rate(j.outcome != NO_ANSWER for j in judged)),
         *(figure for size in sizes(judged) for figure in _of_one(judged, size)),
-        Figure("pair_both", "two effects: both named", _share(pairs, "both")),
-        Figure("pair_one", "two effects: one of them named", _share(pairs, "one")),
-        Figure("pair_false", "two effects: another one named", _false(pairs)),
-        Figure("nothing_named", "nothing hidden: something named", _false(nothing)),
-        Figure(
+        ScoreRate("pair_both", "two effects: both named", _share(pairs, "both")),
+        ScoreRate("pair_one", "two effects: one of them named", _share(pairs, "one")),
+        ScoreRate("pair_false", "two effects: another one named", _false(pairs)),
+        ScoreRate("nothing_named", "nothing hidden: something named", _false(nothing)),
+        ScoreRate(
             "unknown_false",
             "not in the catalogue: named, not called unexplained",
             rate(j.outcome == "false" for j in _answered(unknown)),
         ),
-        Figure(
+        ScoreRate(
             "unknown_recognised",
             "not in the catalogue: called unexplained",
             _share(unknown, "recognised"),
         ),
-        Figure(
+        ScoreRate(
             "known_unexplained",
             "all others: called unexplained",
             rate(
@@ -68,8 +68,8 @@ def figures(judged: Sequence[Judged]) -> list[Figure]:
                 if j.case.kind != "unknown" and j.diagnosis is not None
             ),
         ),
-        Figure("coverage", "95 % intervals that hold the true parameter", rate(stated)),
-        Figure(
+        ScoreRate("coverage", "95 % intervals that hold the true parameter", rate(stated)),
+        ScoreRate(
             "without_interval",
             "parameters without an interval",
             rate(inside is None for inside in covered),
@@ -96,28 +96,28 @@ def by_effect(judged: Iterable[Judged]) -> dict[str, list[Judged]]:
     return groups
 
 
-def _of_one(judged: Iterable[Judged], size: float) -> list[Figure]:
+def _of_one(judged: Iterable[Judged], size: float) -> list[ScoreRate]:
     cases, name, title = of_size(judged, size), f"size_{size:g}", f"size {size:g}"
     exact_alone = (j.outcome == "exact" and not any(j.rivals) for j in cases)
     return [
         _for_each(f"{name}_exact", f"{title}: named exactly", cases, _exact),
-        Figure(f"{name}_alone", f"{title}: named exactly, no rival beside it", rate(exact_alone)),
-        Figure(f"{name}_rivals", f"{title}: within the rivals", _share(cases, "rivals")),
+        ScoreRate(f"{name}_alone", f"{title}: named exactly, no rival beside it", rate(exact_alone)),
+        ScoreRate(f"{name}_rivals", f"{title}: within the rivals", _share(cases, "rivals")),
         _for_each(f"{name}_false", f"{title}: named falsely", cases, _false),
     ]
 
 
 def _for_each(
     name: str, title: str, cases: Sequence[Judged], measure: Callable[[Sequence[Judged]], Rate]
-) -> Figure:
+) -> ScoreRate:
     target = TARGETS.get(name)
     rates = {effect: measure(group) for effect, group in by_effect(cases).items()}
     shares = {effect: r.share for effect, r in rates.items() if r.share is not None}
     if target is None or not shares:
-        return Figure(name, title, measure(cases))
+        return ScoreRate(name, title, measure(cases))
     pick = min if target.low > 0.0 else max
     worst = pick(shares, key=shares.__getitem__)
-    return Figure(name, title, measure(cases), (worst, rates[worst]))
+    return ScoreRate(name, title, measure(cases), (worst, rates[worst]))
 
 
 def _exact(cases: Sequence[Judged]) -> Rate:

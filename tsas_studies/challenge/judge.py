@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
-from tsas_studies.challenge.entry import Answer, Entry
-from tsas_studies.challenge.truth import CATALOGUE, Case, Truth
+from tsas_studies.challenge.entry import SubmittedDiagnosis, Entry
+from tsas_studies.challenge.truth import CATALOGUE, TrueCase, Truth
 
 NO_ANSWER = "no answer"
 _WORTH_MENDING = 1.1  # times the best obtainable error; a channel below it has nothing to gain
@@ -13,8 +13,8 @@ _WORTH_MENDING = 1.1  # times the best obtainable error; a channel below it has 
 class Judged:
     """One case and the diagnosis of it, None where it is missing."""
 
-    case: Case
-    diagnosis: Answer | None
+    case: TrueCase
+    diagnosis: SubmittedDiagnosis | None
 
     @property
     def outcome(self) -> str:

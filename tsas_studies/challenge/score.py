@@ -10,7 +10,7 @@ from tsas_cli.support import __version__
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import sha256_of
 from tsas_studies.challenge.entry import Entry, read_entry
-from tsas_studies.challenge.figures import Figure, by_effect, figures, of_size, sizes
+from tsas_studies.challenge.figures import ScoreRate, by_effect, figures, of_size, sizes
 from tsas_studies.challenge.judge import NO_ANSWER, Judged, judge
 from tsas_studies.challenge.truth import CATALOGUE, FILE, Kind, Truth, read_truth
 
@@ -75,7 +75,7 @@ def score(answers: Truth, entry: Entry) -> dict[str, Any]:
     }
 
 
-def _figure(figure: Figure) -> dict[str, Any]:
+def _figure(figure: ScoreRate) -> dict[str, Any]:
     low, high = figure.rate.interval() or (None, None)
     worst = figure.worst and {
         "effect": figure.worst[0],

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.diagnosis.held_out import Folds
-from tsas_cli.identification.extension import Bench, Trial
+from tsas_cli.identification.extension import Bench, HypothesisFit
 from tsas_cli.identification.run_errors import RunErrors
 from tsas_cli.identification.screening import projector
 from tsas_cli.physics.rig import Rig
@@ -25,7 +25,7 @@ LEAST, THRESHOLDS = 3.0, 16  # the smallest threshold [standard deviations of no
 OWN = 0.01  # part of a term that the nominal parameters must not be able to imitate
 
 
-def strongest_effect(bench: Bench, trial: Trial, folds: Folds) -> str | None:
+def strongest_effect(bench: Bench, trial: HypothesisFit, folds: Folds) -> str | None:
     """Return the effect of the term that explains most of a trial's residual, if one is kept.
 
     Raises
@@ -46,7 +46,7 @@ def strongest_effect(bench: Bench, trial: Trial, folds: Folds) -> str | None:
     return names[best] if coefficients[best] != 0.0 else None
 
 
-def _columns(bench: Bench, trial: Trial) -> tuple[list[str], Floats]:
+def _columns(bench: Bench, trial: HypothesisFit) -> tuple[list[str], Floats]:
     """Return the effect and the residual's change, shape (n,), of each term."""
     runs = bench.errors_for(trial)
     listed = [list(terms(run.run)) for run in runs]

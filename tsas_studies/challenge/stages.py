@@ -11,7 +11,7 @@ from tsas_cli.stages.given import Named, at_least, number_of_seeds, one_of, path
 from tsas_cli.support import __version__
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import folder_if, stage_folder, write_json
-from tsas_cli.support.steps import SILENT, Steps
+from tsas_cli.support.steps import NO_PROGRESS, Steps
 from tsas_studies.challenge import cases
 from tsas_studies.challenge.make import make
 from tsas_studies.challenge.run import TOOLS, case_folders, run_cases
@@ -35,7 +35,7 @@ class SealedSet(Result):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Entry(Result):
+class EntryResult(Result):
     """What a tool answered."""
 
     def tables(self) -> list[Table]:
@@ -63,7 +63,7 @@ def make_set(
     kind: Kind | None = None,
     rate_Hz: float = 200.0,
     force: bool = False,
-    step: Steps = SILENT,
+    step: Steps = NO_PROGRESS,
 ) -> SealedSet:
     """Make recordings with known causes, and seal the truth beside them.
 
@@ -126,8 +126,8 @@ def run_set(
     tool: Tool = "diagnose",
     workers: int = 1,
     force: bool = False,
-    step: Steps = SILENT,
-) -> Entry:
+    step: Steps = NO_PROGRESS,
+) -> EntryResult:
     """Diagnose every case of a sealed set; the answers stay unread.
 
     Parameters
@@ -147,7 +147,7 @@ def run_set(
 
     Returns
     -------
-    Entry
+    EntryResult
         `.summary["no_answer"]` says why which case has no answer.
 
     Raises
@@ -159,7 +159,7 @@ def run_set(
     taken = TOOLS[one_of(tuple(TOOLS), tool, "tool")]
     step.ahead(len(case_folders(path)))
     log = run_cases(path, folder, workers=many, force=force, diagnose=taken, step=step)
-    return Entry(log, folder)
+    return EntryResult(log, folder)
 
 
 def score_set(

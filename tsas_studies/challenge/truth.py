@@ -24,14 +24,14 @@ class _Record(BaseModel):
     model_config = ConfigDict(frozen=True, extra="ignore", allow_inf_nan=False)
 
 
-class Hidden(_Record):
+class HiddenEffect(_Record):
     """One hidden effect and the values that its parameters have."""
 
     effect: str
     parameters: dict[str, float]
 
     @model_validator(mode="after")
-    def _in_the_catalogue(self) -> "Hidden":
+    def _in_the_catalogue(self) -> "HiddenEffect":
         if self.effect not in CATALOGUE:
             raise ValueError(f"unknown effect {self.effect} ({nearest(self.effect, CATALOGUE)})")
         known = CATALOGUE[self.effect]
@@ -41,12 +41,12 @@ class Hidden(_Record):
         return self
 
 
-class Case(_Record):
+class TrueCase(_Record):
     """One case: what is hidden in it, and how large it is beside the full size."""
 
     kind: Kind
     size: float | None = Field(default=None, ge=0)
-    hidden: tuple[Hidden, ...] = ()
+    hidden: tuple[HiddenEffect, ...] = ()
     unknown: str | None = None
 
     @property
@@ -55,7 +55,7 @@ class Case(_Record):
         return frozenset(hidden.effect for hidden in self.hidden)
 
     @model_validator(mode="after")
-    def _kind_fits(self) -> "Case":
+    def _kind_fits(self) -> "TrueCase":
         if len(self.effects) != _HIDDEN[self.kind] or len(self.hidden) != _HIDDEN[self.kind]:
             raise ValueError(
                 f"kind {self.kind} goes with {_HIDDEN[self.kind]} hidden effects, "
@@ -74,7 +74,7 @@ class Truth(_Record):
     format: Literal[1]
     kind: Literal["challenge-answers"]
     seed: int | tuple[int, ...]
-    cases: dict[CaseId, Case] = Field(min_length=1)
+    cases: dict[CaseId, TrueCase] = Field(min_length=1)
 
 
 def read_truth(folder: Path) -> Truth:

@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 from tsas_cli.physics.closed_form.capstan import dead_band_width
 from tsas_cli.physics.compliances import compliance_at_drive
-from tsas_cli.physics.ends import Drive
+from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import Rig
 from tsas_studies.reproduction.rig import wrap_of
@@ -65,10 +65,10 @@ def dead_band(rig: Rig, top_mm: float, *, up: bool) -> DeadBand:
     way back, and the band is the one on the way up (f-b).
     """
     turns = [top_mm, FULL_SLIP * top_mm] if up else [top_mm]
-    before = simulate(rig, Drive(np.array([0.0, *turns])))
+    before = simulate(rig, DriveInput(np.array([0.0, *turns])))
     travel_mm = _width(rig, float(before.f_out_N[-1]))
     x = np.linspace(0.0, travel_mm if up else -travel_mm, POINTS)
-    run = simulate(rig, Drive(np.concatenate(([0.0, *turns[:-1]], turns[-1] + x))))
+    run = simulate(rig, DriveInput(np.concatenate(([0.0, *turns[:-1]], turns[-1] + x))))
     return DeadBand(x, run.f_in_N[-POINTS:])
 
 

@@ -9,7 +9,7 @@ import numpy.typing as npt
 from tsas_cli.paper import Paper
 from tsas_cli.physics.bristles import bristle_damping
 from tsas_cli.physics.lugre.stability import FOLDS, SLOW, Stability, growth_rate, moments
-from tsas_cli.physics.response import Response, simulate
+from tsas_cli.physics.response import Prediction, simulate
 from tsas_cli.physics.rig import Rig
 from tsas_studies.reproduction.rig import dynamic_rig, motion, quasi_static_rig, wrap_of
 
@@ -40,7 +40,7 @@ class Runs:
     time_s: Floats
     second: npt.NDArray[np.bool_]
     sample_at_p: int
-    models: dict[str, Response]
+    models: dict[str, Prediction]
     unstable: tuple[Stability, ...]
 
     @property
@@ -101,7 +101,7 @@ def runs_of(paper: Paper, group: str) -> Runs:
     )
 
 
-def _unstable(rig: Rig, time_s: Floats, x_in: Floats, slip: Response) -> tuple[Stability, ...]:
+def _unstable(rig: Rig, time_s: Floats, x_in: Floats, slip: Prediction) -> tuple[Stability, ...]:
     """Return the moments of a run at which disturbances of steady sliding grow much."""
     found = [
         Stability(growth_rate(rig, moment), moment)

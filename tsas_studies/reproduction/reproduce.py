@@ -7,7 +7,7 @@ from tsas_cli.paper import yang2025
 from tsas_cli.records.result import Result, Table
 from tsas_cli.stages.given import Named, path_of
 from tsas_cli.support.files import folder_if, write_json
-from tsas_cli.support.steps import SILENT, Steps
+from tsas_cli.support.steps import NO_PROGRESS, Steps
 from tsas_studies.reproduction.group import Group
 from tsas_studies.reproduction.page import reproduction_page
 from tsas_studies.reproduction.summary import reproduce as reproduce_paper
@@ -37,7 +37,7 @@ class ReproductionResult(Result):
 
 
 def reproduce(
-    *, out: Named | None = None, force: bool = False, step: Steps = SILENT
+    *, out: Named | None = None, force: bool = False, step: Steps = NO_PROGRESS
 ) -> ReproductionResult:
     """Compute the tables and figures of Yang et al. 2025 again, and say what agrees.
 

@@ -10,7 +10,7 @@ from tsas_cli.effects import Effects, StribeckFriction, ViscousFriction
 from tsas_cli.paper import Paper
 from tsas_cli.physics.bristles import Bristles
 from tsas_cli.physics.closed_form.capstan import speed_per_stiffness
-from tsas_cli.physics.ends import Drive
+from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.rig import Rig
 
 Floats = npt.NDArray[np.float64]
@@ -82,12 +82,12 @@ def dynamic_rig(paper: Paper, group: str, *, as_printed: bool) -> Rig:
     )
 
 
-def motion(paper: Paper, group: str, *, periods: float = 2.0) -> tuple[Floats, Drive]:
+def motion(paper: Paper, group: str, *, periods: float = 2.0) -> tuple[Floats, DriveInput]:
     """Return the times [s], and the drive's motion A sin(ωt − π/2) + A of a group."""
     omega = paper.value(f"groups.{group}.angular_frequency")
     time_s = np.arange(0.0, periods * 2.0 * math.pi / omega, 1.0 / RATE_HZ)
     x_in = paper.value("rig.input_amplitude") * (1.0 - np.cos(omega * time_s))
-    return time_s, Drive(x_in, time_s=time_s)
+    return time_s, DriveInput(x_in, time_s=time_s)
 
 
 def kr_per_km(paper: Paper) -> float:

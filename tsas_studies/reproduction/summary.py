@@ -5,12 +5,12 @@ from typing import Any
 
 from tsas_cli.paper import Paper
 from tsas_cli.support import __version__
-from tsas_cli.support.steps import SILENT, Steps
+from tsas_cli.support.steps import NO_PROGRESS, Steps
 from tsas_studies.reproduction import GROUPS
 from tsas_studies.reproduction.group import VERDICTS, Group, Verdict
 
 
-def reproduce(paper: Paper, step: Steps = SILENT) -> list[Group]:
+def reproduce(paper: Paper, step: Steps = NO_PROGRESS) -> list[Group]:
     """Compute every group; `step` is called after each."""
     groups = []
     step.ahead(len(GROUPS))

@@ -6,7 +6,7 @@ from tests.fuzz.documents import toml_document as mutate
 from tests.fuzz.rules import Broken, Scratch, answer
 from tsas_cli.identification.model import data_sheet
 from tsas_cli.recordings.dataset import read_dataset
-from tsas_cli.recordings.manifest import FILE, write_manifest
+from tsas_cli.recordings.manifest import MANIFEST_FILE, write_manifest
 
 __all__ = ["WORDS", "mutate", "one", "seeds"]
 SHARE = 6
@@ -17,7 +17,7 @@ _written = Scratch()
 
 def one(data: bytes) -> None:
     """A manifest that is taken keeps its runs inside, and is the same when it is read again."""
-    path = _scratch.file(FILE, data)
+    path = _scratch.file(MANIFEST_FILE, data)
     dataset = answer(read_dataset, path.parent)
     if dataset is None:
         return

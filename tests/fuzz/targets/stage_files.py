@@ -12,7 +12,7 @@ from tests.reporting import made_folders as made
 from tsas_cli.comparing.sides import STAGES as COMPARED
 from tsas_cli.comparing.sides import read_side
 from tsas_cli.comparing.tracked import compare_tracked
-from tsas_cli.records.tracking import Tracking
+from tsas_cli.records.tracking import TrackingFile
 from tsas_cli.reporting.inputs import STAGES, read_inputs, read_stage
 from tsas_studies.challenge import answers, entry
 
@@ -41,7 +41,7 @@ def one(data: bytes) -> None:
         answer(read_inputs, [path.parent])
         if kind in COMPARED:
             answer(read_side, path.parent)
-        if kind is Tracking:
+        if kind is TrackingFile:
             answer(compare_tracked, path.parent, path.parent)
 
 

@@ -15,7 +15,7 @@ from tsas_cli.effects import (
     ViscousFriction,
 )
 from tsas_cli.physics.bristles import Bristles
-from tsas_cli.physics.ends import Drive
+from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.lugre.chain import OWN_STEPS, Progress, StepControl, lugre_chain
 from tsas_cli.physics.lugre.stability import stability
 from tsas_cli.physics.response import TOLERANCE, simulate
@@ -93,7 +93,7 @@ def followed(case, tolerance):
 
 
 def is_unstable(case):
-    quasi = simulate(case.rig, Drive(case.x_in_mm, time_s=case.time_s))
+    quasi = simulate(case.rig, DriveInput(case.x_in_mm, time_s=case.time_s))
     found = stability(case.rig, case.time_s, case.x_in_mm, quasi.f_in_N, quasi.phase)
     return found is not None and found.unstable
 

@@ -9,7 +9,7 @@ import pytest
 from tests.physics.references import GROUP_A
 from tsas_cli.effects import EFFECTS
 from tsas_cli.physics.bristles import Bristles
-from tsas_cli.physics.ends import Drive
+from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.mesh import MOST_NODES
 from tsas_cli.physics.phases import SLACK, UNCONVERGED
 from tsas_cli.physics.response import simulate
@@ -36,16 +36,16 @@ def apart(rig, drive, *, lumps=50):
 
 @pytest.fixture(scope="module")
 def slip():
-    return simulate(STIFF, Drive(NESTED, time_s=TIME_S), on_mesh=True, nodes=50)
+    return simulate(STIFF, DriveInput(NESTED, time_s=TIME_S), on_mesh=True, nodes=50)
 
 
 @pytest.mark.parametrize("name", [e.name for e in EFFECTS if e.name not in DYNAMIC])
 def test_every_effect_acts_as_in_the_slip_chain(name):
     effect = next(e for e in EFFECTS if e.name == name)
     rig = with_values(STIFF, {f"{name}.{p.name}": p.start for p in effect.parameters})
-    nominal = simulate(STIFF, Drive(NESTED, time_s=TIME_S), "lugre")
-    changed = simulate(rig, Drive(NESTED, time_s=TIME_S), "lugre")
-    assert max(apart(rig, Drive(NESTED, time_s=TIME_S)).values()) < 4e-4
+    nominal = simulate(STIFF, DriveInput(NESTED, time_s=TIME_S), "lugre")
+    changed = simulate(rig, DriveInput(NESTED, time_s=TIME_S), "lugre")
+    assert max(apart(rig, DriveInput(NESTED, time_s=TIME_S)).values()) < 4e-4
     assert any(
         np.max(np.abs(getattr(nominal, c) - getattr(changed, c))) > 1e-3
         for c in ("f_in_N", "f_out_N", "x_out_mm")
@@ -53,27 +53,27 @@ def test_every_effect_acts_as_in_the_slip_chain(name):
 
 
 def test_a_load_by_force(slip):
-    drive = Drive(NESTED, load="force", load_values=slip.f_out_N, time_s=TIME_S)
+    drive = DriveInput(NESTED, load="force", load_values=slip.f_out_N, time_s=TIME_S)
     assert max(apart(STIFF, drive).values()) < 4e-4
 
 
 def test_a_load_by_displacement(slip):
-    drive = Drive(NESTED, load="displacement", load_values=slip.x_out_mm, time_s=TIME_S)
+    drive = DriveInput(NESTED, load="displacement", load_values=slip.x_out_mm, time_s=TIME_S)
     assert max(apart(STIFF, drive).values()) < 2e-3
 
 
 def test_a_drive_by_force(slip):
-    assert max(apart(STIFF, Drive(slip.f_in_N, kind="force", time_s=TIME_S)).values()) < 4e-4
+    assert max(apart(STIFF, DriveInput(slip.f_in_N, kind="force", time_s=TIME_S)).values()) < 4e-4
 
 
 def test_a_run_that_begins_in_the_middle_of_a_stroke():
-    drive = Drive(NESTED + 3.0, time_s=TIME_S, start_f_in_N=22.0)
+    drive = DriveInput(NESTED + 3.0, time_s=TIME_S, start_f_in_N=22.0)
     assert max(apart(STIFF, drive).values()) < 4e-4
     assert simulate(STIFF, drive, "lugre").f_in_N[0] == pytest.approx(22.0, abs=0.05)
 
 
 def test_a_tendon_that_hangs_slack_for_a_while():
-    drive = Drive(NESTED - 18.0, time_s=TIME_S)
+    drive = DriveInput(NESTED - 18.0, time_s=TIME_S)
     assert max(apart(STIFF, drive).values()) < 4e-4
     slack = simulate(STIFF, drive, "lugre").phase == SLACK
     slip_slack = simulate(STIFF, drive, on_mesh=True).phase == SLACK
@@ -82,7 +82,7 @@ def test_a_tendon_that_hangs_slack_for_a_while():
 
 
 def test_the_slip_chain_is_approached_with_the_stiffness_of_the_bristles():
-    drive = Drive(NESTED, time_s=TIME_S)
+    drive = DriveInput(NESTED, time_s=TIME_S)
     off = [
         apart(GROUP_A._replace(bristles=Bristles(stiffness)), drive)["f_in_N"]
         for stiffness in (5e3, 2e4, 8e4)
@@ -95,4 +95,4 @@ def test_the_slip_chain_is_approached_with_the_stiffness_of_the_bristles():
 @pytest.mark.parametrize("lumps", [1, -3, MOST_NODES + 1])
 def test_a_number_of_lumps_that_cannot_be_is_refused(lumps):
     with pytest.raises(ValueError, match=f"{lumps} nodes; expected 2 to {MOST_NODES}"):
-        simulate(STIFF, Drive(NESTED, time_s=TIME_S), "lugre", nodes=lumps)
+        simulate(STIFF, DriveInput(NESTED, time_s=TIME_S), "lugre", nodes=lumps)

@@ -8,7 +8,7 @@ import pytest
 from tests.physics.references import GROUP_A
 from tsas_cli.effects import EFFECTS
 from tsas_cli.physics.bristles import Bristles
-from tsas_cli.physics.ends import Drive
+from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.phases import SLACK, UNCONVERGED
 from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import with_values
@@ -37,20 +37,20 @@ def both(rig, drive):
 def test_every_effect(name):
     effect = next(e for e in EFFECTS if e.name == name)
     rig = with_values(STIFF, {f"{name}.{p.name}": p.start for p in effect.parameters})
-    _, lugre, off = both(rig, Drive(MOTION, time_s=TIME_S))
+    _, lugre, off = both(rig, DriveInput(MOTION, time_s=TIME_S))
     assert max(off.values()) < 5e-3
     assert {-1, 0, 1} == set(lugre.phase.tolist())
 
 
 @pytest.mark.parametrize("kind", ["force", "displacement", "drive by force"])
 def test_what_is_given_at_the_ends(kind):
-    slip = simulate(STIFF, Drive(MOTION, time_s=TIME_S), on_mesh=True, nodes=N)
+    slip = simulate(STIFF, DriveInput(MOTION, time_s=TIME_S), on_mesh=True, nodes=N)
     drive = {
-        "force": Drive(MOTION, load="force", load_values=slip.f_out_N, time_s=TIME_S),
-        "displacement": Drive(
+        "force": DriveInput(MOTION, load="force", load_values=slip.f_out_N, time_s=TIME_S),
+        "displacement": DriveInput(
             MOTION, load="displacement", load_values=slip.x_out_mm, time_s=TIME_S
         ),
-        "drive by force": Drive(slip.f_in_N, kind="force", time_s=TIME_S),
+        "drive by force": DriveInput(slip.f_in_N, kind="force", time_s=TIME_S),
     }[kind]
     assert max(both(STIFF, drive)[2].values()) < 5e-3
 
@@ -59,7 +59,7 @@ def test_what_is_given_at_the_ends(kind):
 def test_a_tendon_that_hangs_slack_at_first_and_at_last(lost_N_per_s):
     """It is pulled again where the spring, without its preload, has left the load."""
     rig = with_values(STIFF, {"preload_loss.rate_N_per_s": lost_N_per_s})
-    slip, lugre, off = both(rig, Drive(MOTION - 18.0, time_s=TIME_S))
+    slip, lugre, off = both(rig, DriveInput(MOTION - 18.0, time_s=TIME_S))
     assert max(off.values()) < 1e-3
     # At the first sample nothing has moved, and the dynamic chain says no more than that.
     np.testing.assert_array_equal(slip.phase[1:] == SLACK, lugre.phase[1:] == SLACK)
@@ -68,20 +68,20 @@ def test_a_tendon_that_hangs_slack_at_first_and_at_last(lost_N_per_s):
 
 
 def test_a_run_that_begins_in_the_middle_of_a_stroke():
-    drive = Drive(MOTION + 3.0, time_s=TIME_S, start_f_in_N=26.0)
+    drive = DriveInput(MOTION + 3.0, time_s=TIME_S, start_f_in_N=26.0)
     _, lugre, off = both(STIFF, drive)
     assert max(off.values()) < 2e-3
     assert lugre.f_in_N[0] == pytest.approx(26.0, abs=0.05)
 
 
 def test_along_the_tendon_it_is_the_slip_chain():
-    at, drive = np.array([3, 11, 22, 23, 30, 40]), Drive(MOTION, time_s=TIME_S)
+    at, drive = np.array([3, 11, 22, 23, 30, 40]), DriveInput(MOTION, time_s=TIME_S)
     slip = simulate(STIFF, drive, on_mesh=True, nodes=N, looked_at=at).frames
     lugre = simulate(STIFF, drive, "lugre", nodes=N, looked_at=at).frames
     np.testing.assert_allclose(lugre.tension_N, slip.tension_N, atol=0.02)
     np.testing.assert_array_equal(lugre.slip, slip.slip)
     np.testing.assert_array_equal(lugre.front, slip.front)
-    hanging = Drive(MOTION - 18.0, time_s=TIME_S)
+    hanging = DriveInput(MOTION - 18.0, time_s=TIME_S)
     limp = simulate(STIFF, hanging, "lugre", nodes=N, looked_at=np.array([1, 20, 40])).frames
     assert limp.slip[[0, 2]].tolist() == [[SLACK] * N] * 2
     assert not np.any(limp.tension_N[[0, 2]])

@@ -9,7 +9,7 @@ from tests.physics.lugre.test_chain import SINE, TIME_S, follow
 from tests.physics.references import TABLE_1
 from tsas_cli.effects import Effects, StribeckFriction
 from tsas_cli.physics.bristles import Bristles
-from tsas_cli.physics.ends import Drive
+from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.lugre.chain import OWN_STEPS
 from tsas_cli.physics.lugre.stability import Sliding, growth_rate, stability
 from tsas_cli.physics.response import simulate
@@ -53,7 +53,7 @@ def test_a_run_is_judged_by_its_least_stable_moment():
     slow, fast = np.arange(0.0, 2.0 * math.pi, 1e-3), np.arange(0.0, math.pi, 1e-3)
     for time_s, omega in ((slow, 1.0), (fast, 2.0)):
         x = 10.0 - 10.0 * np.cos(omega * time_s)
-        quasi = simulate(TABLE_1, Drive(x, time_s=time_s))
+        quasi = simulate(TABLE_1, DriveInput(x, time_s=time_s))
         run = (time_s, x, quasi.f_in_N, quasi.phase)
         assert not stability(TABLE_1, *run).unstable
         found = stability(AS_PRINTED, *run)

@@ -10,9 +10,9 @@ from tsas_cli.controllers.closed_loop import (
     X_OUT,
     DriveSensor,
     LoopPlant,
-    Wanted,
+    LoopReference,
     close_loop,
-    followed_from,
+    plant_at_rest,
 )
 from tsas_cli.controllers.pid import Pid
 from tsas_cli.controllers.signals import error_filter
@@ -35,7 +35,7 @@ def run(rig, motor_mm, step_s, *, lumped, n=50, substeps=4, actuator=ACTUATOR, l
     path = np.zeros((4, m))
     path[0] = motor_mm
     columns, unsettled, done = close_loop(
-        Wanted(path, rpm),
+        LoopReference(path, rpm),
         DriveSensor(step_s, np.zeros(m), 0.0, *error_filter(10.0, step_s)),
         laws,
         LoopPlant(
@@ -44,7 +44,7 @@ def run(rig, motor_mm, step_s, *, lumped, n=50, substeps=4, actuator=ACTUATOR, l
             change_at=at,
             substeps=substeps,
             nodes=n,
-            start=followed_from(float(motor_mm[0]), rig, actuator, n),
+            start=plant_at_rest(float(motor_mm[0]), rig, actuator, n),
         ),
         empty_lumps() if lumped else None,
     )

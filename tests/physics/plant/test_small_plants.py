@@ -6,7 +6,7 @@ import pytest
 from tests.physics.plant.open_loop import ACTUATOR, run
 from tests.physics.references import GROUP_A
 from tsas_cli.physics.bristles import Bristles
-from tsas_cli.physics.ends import Drive, losses_over
+from tsas_cli.physics.ends import DriveInput, losses_over
 from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import with_values
 from tsas_cli.physics.slip.inverse import inverse_chain
@@ -77,7 +77,7 @@ def test_a_path_to_a_force_gives_that_force(values):
     assert missed == 0
     # As fast as it is, the path has no speed to the inverse: none is given to it.
     still = with_values(rig, {"viscous_friction.coefficient_N_s_per_mm": 0.0})
-    there = simulate(still, Drive(path, time_s=time_s), on_mesh=True, nodes=N)
+    there = simulate(still, DriveInput(path, time_s=time_s), on_mesh=True, nodes=N)
     np.testing.assert_allclose(there.f_out_N, WANTED, atol=1e-5)
     np.testing.assert_allclose(there.f_in_N, tension, atol=1e-4)
     assert path[9] == path[8] or "drifts" in str(values) or rig != GROUP_A

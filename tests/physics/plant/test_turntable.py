@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 
 from tests.physics.references import DRIVEN_BY_FORCE, GROUP_A
 from tsas_cli.physics.course import Losses
-from tsas_cli.physics.ends import Drive
+from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.plant.slip_plant import step_plant
 from tsas_cli.physics.plant.turntable import (
     Actuator,
@@ -144,7 +144,7 @@ def test_tensions_are_those_of_the_model_whose_drive_is_moved_likewise(values):
     rig = with_values(GROUP_A, values)
     run = Run(MOTION, rig)
     start = np.concatenate(([0.0], run.end)), np.concatenate(([0.0], run.time_s))
-    there = simulate(rig, Drive(start[0], time_s=start[1]), on_mesh=True, nodes=N)
+    there = simulate(rig, DriveInput(start[0], time_s=start[1]), on_mesh=True, nodes=N)
     np.testing.assert_allclose(run.x_out, there.x_out_mm[1:], atol=1e-5)
     np.testing.assert_allclose(run.f_out, there.f_out_N[1:], atol=1e-5)
     np.testing.assert_allclose(run.f_in, there.f_in_N[1:], atol=1e-5)
@@ -164,7 +164,7 @@ def test_friction_over_speed_is_late_by_a_step(values):
     damped = DRIVE._replace(damping_N_s_per_mm=0.5)  # else friction that falls with speed shakes it
     for h in (1e-3, 5e-4, 2.5e-4):
         run = Run(there_and_back(1500.0, -1200.0, each_s=0.15, h=h), rig, drive=damped, h=h)
-        moved = Drive(np.concatenate(([0.0], run.end)), time_s=np.append(0.0, run.time_s))
+        moved = DriveInput(np.concatenate(([0.0], run.end)), time_s=np.append(0.0, run.time_s))
         there, plain = (simulate(r, moved, on_mesh=True, nodes=N) for r in (rig, GROUP_A))
         errors.append(np.mean(np.abs(run.f_in - there.f_in_N[1:])))
         assert np.mean(np.abs(run.f_in - plain.f_in_N[1:])) > 5.0 * errors[-1]
@@ -233,7 +233,7 @@ def test_friction_at_the_drive_sticks_until_the_gear_is_wound_up():
     np.testing.assert_allclose(slow.f_in[sticks] - F0, wound[sticks], atol=0.02)
     assert slow.x[-1] > 0.05
     same = simulate(
-        GROUP_A, Drive(np.concatenate(([0.0], slow.end))), on_mesh=True, nodes=N
+        GROUP_A, DriveInput(np.concatenate(([0.0], slow.end))), on_mesh=True, nodes=N
     ).f_in_N[1:]
     moves = np.diff(slow.end, prepend=0.0) > 0.0
     np.testing.assert_allclose((slow.f_in - same)[moves], 6.0, atol=1e-6)
@@ -253,7 +253,7 @@ def test_a_motor_that_unwinds_far_lets_the_tendon_hang(friction):
     assert (run.f_out >= 0.0).all()
     assert run.f_in.min() > -friction - 1e-9
     moved = np.concatenate(([0.0], run.end))
-    same = simulate(GROUP_A, Drive(moved), on_mesh=True, nodes=N)
+    same = simulate(GROUP_A, DriveInput(moved), on_mesh=True, nodes=N)
     np.testing.assert_allclose(run.f_out, same.f_out_N[1:], atol=1e-5)
 
 

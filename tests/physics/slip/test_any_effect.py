@@ -7,7 +7,7 @@ import pytest
 
 from tests.physics.test_any_rig import any_motion, any_rig
 from tsas_cli.physics.closed_form.branches import branches
-from tsas_cli.physics.ends import Drive, ends_of
+from tsas_cli.physics.ends import DriveInput, ends_of
 from tsas_cli.physics.phases import UNCONVERGED
 from tsas_cli.physics.rig import with_values
 from tsas_cli.physics.slip.chain import slip_chain
@@ -63,12 +63,12 @@ def every_load(rng, x_in, f_in, f_out, x_out, preload):
     """Loads near what the spring does, a pair of tendons that pushes, and a drive by force."""
     time_s = np.linspace(0.0, 5.0, x_in.size)
     near = np.interp(time_s, np.arange(6), rng.normal(1.0, 0.2, 6))
-    yield "spring", Drive(x_in, time_s=time_s)
-    yield "force", Drive(x_in, load="force", load_values=near * f_out, time_s=time_s)
+    yield "spring", DriveInput(x_in, time_s=time_s)
+    yield "force", DriveInput(x_in, load="force", load_values=near * f_out, time_s=time_s)
     pushing = near * f_out - 1.5 * preload
-    yield "push-pull", Drive(x_in, load="force", load_values=pushing, time_s=time_s)
-    yield "displacement", Drive(x_in, load="displacement", load_values=near * x_out, time_s=time_s)
-    yield "drive by force", Drive(near * f_in + 0.02 * preload, kind="force", time_s=time_s)
+    yield "push-pull", DriveInput(x_in, load="force", load_values=pushing, time_s=time_s)
+    yield "displacement", DriveInput(x_in, load="displacement", load_values=near * x_out, time_s=time_s)
+    yield "drive by force", DriveInput(near * f_in + 0.02 * preload, kind="force", time_s=time_s)
 
 
 @pytest.mark.parametrize("samples", [16, 60, 300])

@@ -5,7 +5,7 @@ import pytest
 
 from tests.physics.references import GROUP_A, wrap_of
 from tsas_cli.physics.closed_form.capstan import dead_band_width
-from tsas_cli.physics.ends import Drive, losses_over
+from tsas_cli.physics.ends import DriveInput, losses_over
 from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import with_values
 from tsas_cli.physics.slip.inverse import inverse_chain
@@ -108,7 +108,7 @@ def test_the_model_driven_along_the_path_gives_the_force(values, wanted):
     rig = with_values(GROUP_A, values)
     path, tension = path_to(wanted, rig)
     time_s = STEP_S * np.arange(path.size)
-    there = simulate(rig, Drive(path, time_s=time_s), on_mesh=True, nodes=50)
+    there = simulate(rig, DriveInput(path, time_s=time_s), on_mesh=True, nodes=50)
     np.testing.assert_allclose(there.f_out_N, wanted, atol=1e-5)
     np.testing.assert_allclose(there.f_in_N, tension, atol=1e-4)
 

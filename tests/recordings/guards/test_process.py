@@ -16,7 +16,7 @@ from tsas_cli.recordings.guards import process as module
 from tsas_cli.recordings.guards.process import in_another_process
 from tsas_cli.recordings.readers import read
 from tsas_cli.recordings.readers.options import ReadOptions
-from tsas_cli.recordings.readers.table import Table
+from tsas_cli.recordings.readers.table import ColumnTable
 from tsas_cli.support.errors import InputError
 
 COLUMN = np.arange(100_000) / 7
@@ -48,7 +48,7 @@ def is_wrong(path):
 
 
 def gives(path):
-    return Table({"x": COLUMN}, {"x": "mm"}, ("a",), 3)
+    return ColumnTable({"x": COLUMN}, {"x": "mm"}, ("a",), 3)
 
 
 def ask(path, function, *rest):

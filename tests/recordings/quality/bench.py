@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from tsas_cli.recordings.manifest import Rig, Run
-from tsas_cli.recordings.quality.trial import Trial
+from tsas_cli.recordings.manifest import RigSheet, Run
+from tsas_cli.recordings.quality.trial import RunSignals
 from tsas_cli.recordings.recording import Floats, Recording
 
 STIFFNESS, LOAD, PRELOAD, FRICTION = 100.0, 1.5, 25.0, 0.4  # N/mm, N/mm, N, μθ
@@ -103,8 +103,8 @@ _LOADS = {"spring": _spring, "force": _force, "displacement": _displacement}
 
 def trial(
     measured: Mapping[str, Floats], rig: Mapping[str, Any] | None = None, load: str = "spring"
-) -> Trial:
+) -> RunSignals:
     """Return a run as the checks see it."""
     entry = {"id": "a", "file": "runs/a.parquet", "sha256": "0" * 64, "load": load}
     recording = Recording(Run.model_validate(entry), dict(measured))
-    return Trial(recording, Rig.model_validate(dict(rig or {})))
+    return RunSignals(recording, RigSheet.model_validate(dict(rig or {})))

@@ -9,7 +9,7 @@ import pytest
 from tests.recordings.quality.bench import LOAD, Bench, columns
 from tsas_cli.recordings import pieces
 from tsas_cli.recordings.dataset import read_dataset
-from tsas_cli.recordings.manifest import Manifest, Rig, Run
+from tsas_cli.recordings.manifest import Manifest, RigSheet, Run
 from tsas_cli.recordings.quality import RUN_CHECKS, check_dataset
 from tsas_cli.recordings.quality.stretches import OVERLAP
 from tsas_cli.recordings.writing import write_dataset
@@ -25,7 +25,7 @@ def check(tmp_path, monkeypatch):
 
     def checked(measured, load="spring", parts=PARTS):
         run = Run(id="a", file="runs/a.parquet", sha256="0" * 64, load=load)
-        rig = Rig(load_stiffness_N_per_mm=LOAD)
+        rig = RigSheet(load_stiffness_N_per_mm=LOAD)
         manifest = Manifest(format=1, name="long", kind="measured", rig=rig, run=(run,))
         folder = tmp_path / "dataset"
         folder.mkdir(exist_ok=True)

@@ -9,8 +9,8 @@ from tests.reporting.made_folders import make_dataset, make_simulation, make_tra
 from tsas_cli.identification.model import data_sheet
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.recording import Recording
-from tsas_cli.records.simulation import Simulation
-from tsas_cli.records.tracking import Tracking
+from tsas_cli.records.simulation import SimulationFile
+from tsas_cli.records.tracking import TrackingFile
 from tsas_cli.reporting.stream.live import LiveStream
 from tsas_cli.reporting.stream.opened import to_file
 from tsas_cli.reporting.stream.recorder import Recorder
@@ -55,7 +55,7 @@ def answer(dataset, run):
 def test_each_simulated_run_is_there_before_the_next_is_computed(seen, tmp_path):
     dataset = make_dataset(tmp_path / "dataset", ("a", "b"), samples=300)
     simulated = make_simulation(dataset, tmp_path / "simulated")
-    stage = Simulation.model_validate_json((simulated / "simulation.json").read_text())
+    stage = SimulationFile.model_validate_json((simulated / "simulation.json").read_text())
     opened = read_dataset(dataset)
     model = data_sheet(opened.manifest)
 
@@ -73,7 +73,7 @@ def test_each_simulated_run_is_there_before_the_next_is_computed(seen, tmp_path)
 
 def test_tracked_runs_too(seen, tmp_path):
     folder = make_tracking(tmp_path / "tracked")
-    stage = Tracking.model_validate_json((folder / "tracking.json").read_text())
+    stage = TrackingFile.model_validate_json((folder / "tracking.json").read_text())
     runs = [result.run for result in stage.results][:2]
 
     def step(run):
@@ -91,7 +91,7 @@ def test_layouts_follow_the_runs_and_do_not_crowd_them_out(tmp_path, monkeypatch
     monkeypatch.setattr(Recorder, "lay_out", outlined)
     dataset = make_dataset(tmp_path / "dataset", ("a", "b"), samples=300)
     simulated = make_simulation(dataset, tmp_path / "simulated")
-    stage = Simulation.model_validate_json((simulated / "simulation.json").read_text())
+    stage = SimulationFile.model_validate_json((simulated / "simulation.json").read_text())
     opened = read_dataset(dataset)
     with to_file(tmp_path / "live.rrd", "live") as recorder:
         live = LiveStream(recorder, tmp_path)

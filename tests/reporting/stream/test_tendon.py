@@ -20,7 +20,7 @@ from tests.reporting.made_folders import (
 from tests.reporting.stream.streams import read, shown, views
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model, write_model
-from tsas_cli.physics.ends import Drive
+from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.response import simulate
 from tsas_cli.recordings.columns import nominal_name
 from tsas_cli.recordings.dataset import read_dataset
@@ -51,7 +51,7 @@ MODELS = {NOMINAL: model(VALUES), EXTENDED: model(VALUES | FREE)}
 def answer(recording, one, samples=None):
     f_in = recording.columns["f_in_N"]
     slope_and_start = np.polyfit(recording.time_s[:20], f_in[:20], 1)
-    drive = Drive(
+    drive = DriveInput(
         recording.columns["x_in_mm"],
         time_s=recording.time_s,
         start_f_in_N=float(slope_and_start[1]),

@@ -10,7 +10,7 @@ from scipy.signal import lfilter
 
 from tsas_cli.diagnosis.held_out import folds_of
 from tsas_cli.effects import EFFECTS
-from tsas_cli.identification.extension import Trial
+from tsas_cli.identification.extension import HypothesisFit
 from tsas_cli.identification.fit import Solution
 from tsas_cli.identification.prepared import prepare
 from tsas_cli.identification.unknowns import unknown_of
@@ -61,7 +61,7 @@ def trial(names, jacobian, values, residual):
     bound = np.zeros(len(names), dtype=bool)
     solution = Solution(np.array(values), bound, residual, jacobian, True, "", 1)
     unknowns = tuple(unknown_of(name) for name in names)
-    return Trial((), unknowns, solution, (residual.size,), on_mesh=False)
+    return HypothesisFit((), unknowns, solution, (residual.size,), on_mesh=False)
 
 
 def test_bic_is_schwarzs():

@@ -3,13 +3,13 @@
 import pytest
 
 from tests.studies.challenge.made import case, diagnosis, estimate, named
-from tsas_studies.challenge.entry import Answer
+from tsas_studies.challenge.entry import SubmittedDiagnosis
 from tsas_studies.challenge.judge import Judged
-from tsas_studies.challenge.truth import Case
+from tsas_studies.challenge.truth import TrueCase
 
 
 def judged(truth, said):
-    return Judged(Case.model_validate(truth), said and Answer.model_validate(said))
+    return Judged(TrueCase.model_validate(truth), said and SubmittedDiagnosis.model_validate(said))
 
 
 ONE, PAIR, NOTHING = case("backlash"), case("backlash", "drive_friction"), case()

@@ -7,7 +7,7 @@ from typing import Any
 
 from tsas_cli.recordings.readers import names, read, tables
 from tsas_cli.recordings.readers.options import ReadOptions
-from tsas_cli.recordings.readers.table import ColumnSource, Table
+from tsas_cli.recordings.readers.table import ColumnSource, ColumnTable
 from tsas_cli.support.errors import InputError
 
 _TEXT = (".csv", ".tsv", ".txt", ".dat", ".asc")
@@ -32,7 +32,7 @@ class Opened:
 
     path: Path
     read: dict[str, tuple[Any, str]]
-    table: Table
+    table: ColumnTable
     names: dict[ColumnSource, str]
     left_out: dict[str, str] = field(default_factory=dict)
 
@@ -128,7 +128,7 @@ def _columns_in(path: Path, required: dict[str, tuple[Any, str]]) -> int:
 
 def _all_or_each(
     path: Path, options: ReadOptions, sources: list[ColumnSource], *, each: bool = False
-) -> tuple[Table | None, dict[str, str]]:
+) -> tuple[ColumnTable | None, dict[str, str]]:
     """Return all columns; or the readable ones, and the reason for each of the others.
 
     None if every column is readable by itself but not all of them together.
@@ -136,7 +136,7 @@ def _all_or_each(
     try:
         return read(path, options, sources), {}
     except InputError:
-        tables: dict[ColumnSource, Table] = {}
+        tables: dict[ColumnSource, ColumnTable] = {}
         left_out: dict[str, str] = {}
         for source in sources:
             try:
@@ -153,7 +153,7 @@ def _all_or_each(
         return None, {}
 
 
-def _longest(table: Table) -> tuple[dict[ColumnSource, Any], dict[str, str]]:
+def _longest(table: ColumnTable) -> tuple[dict[ColumnSource, Any], dict[str, str]]:
     """Return the columns as long as the longest one, and the reason for each of the others."""
     rows = max(values.size for values in table.columns.values())
     short = {

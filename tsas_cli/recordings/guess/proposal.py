@@ -24,7 +24,7 @@ _SPRING = 0.95  # least correlation of tension and displacement at the load of a
 
 
 @dataclass(frozen=True)
-class Proposal:
+class MapProposal:
     """A proposed map with its evidence.
 
     Attributes
@@ -73,7 +73,7 @@ class Proposal:
         return has_input_and_output(frozenset(channel.name for channel in self.channels))
 
 
-def propose(files: Sequence[Path]) -> Proposal:
+def propose(files: Sequence[Path]) -> MapProposal:
     """Return the map proposed for files.
 
     Raises
@@ -94,7 +94,7 @@ def propose(files: Sequence[Path]) -> Proposal:
     if time.entry.get("source") == QUESTION:
         rest = [c for c in rest if not like_a_clock(c)]
     found = (time, *channels(rest))
-    return Proposal(
+    return MapProposal(
         _name(opened.path),
         opened,
         tuple(matching),

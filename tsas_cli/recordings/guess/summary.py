@@ -3,12 +3,12 @@
 from collections.abc import Iterator
 from typing import Any
 
-from tsas_cli.recordings.guess.proposal import Proposal
+from tsas_cli.recordings.guess.proposal import MapProposal
 from tsas_cli.recordings.guess.text import map_text
 from tsas_cli.support import __version__
 
 
-def content(proposal: Proposal) -> dict[str, object]:
+def content(proposal: MapProposal) -> dict[str, object]:
     """Return the proposal with the text of its map (docs/ingest.md, format 1)."""
     return {
         "format": 1,
@@ -31,7 +31,7 @@ def content(proposal: Proposal) -> dict[str, object]:
     }
 
 
-def tables(proposal: Proposal, out: object) -> Iterator[tuple[str, tuple[str, ...], list[Any]]]:
+def tables(proposal: MapProposal, out: object) -> Iterator[tuple[str, tuple[str, ...], list[Any]]]:
     """Yield the tables of the channels with their sources, and of the open questions."""
     rows = [
         (channel.name, str(channel.entry.get("source", "")), channel.certainty)

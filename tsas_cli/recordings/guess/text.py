@@ -9,10 +9,10 @@ from tomlkit.items import Table
 
 from tsas_cli.recordings.columns import BY_NAME, COLUMNS, INPUTS, OUTPUTS
 from tsas_cli.recordings.guess.file_name import conditions_in
-from tsas_cli.recordings.guess.proposal import Proposal
+from tsas_cli.recordings.guess.proposal import MapProposal
 from tsas_cli.recordings.guess.proposed import Proposed
 from tsas_cli.recordings.ingest_map import QUESTION
-from tsas_cli.recordings.manifest import Rig
+from tsas_cli.recordings.manifest import RigSheet
 from tsas_cli.support.errors import printable
 
 _WIDTH = 96
@@ -21,10 +21,10 @@ _CONDITIONS = {
     "total_bend_rad": "its total bend, 3.1416 for half a turn",
     "preload_N": "the tension at rest",
 }
-MARK = b"# A map for `tsas ingest`"  # beginning of a proposed map
+MAP_MARK = b"# A map for `tsas ingest`"  # beginning of a proposed map
 
 
-def map_text(proposal: Proposal) -> str:
+def map_text(proposal: MapProposal) -> str:
     """Return the text of the map; a comment above each key states its evidence."""
     document = tomlkit.document()
     for line in _head(proposal):
@@ -41,7 +41,7 @@ def map_text(proposal: Proposal) -> str:
     return tomlkit.dumps(document).rstrip("\n") + "\n"
 
 
-def _head(proposal: Proposal) -> Iterable[str]:
+def _head(proposal: MapProposal) -> Iterable[str]:
     opened = proposal.looked_at
     rows = next(iter(opened.table.columns.values())).size
     yield from _wrapped(
@@ -72,7 +72,7 @@ def _head(proposal: Proposal) -> Iterable[str]:
         )
 
 
-def _dataset(proposal: Proposal) -> Table:
+def _dataset(proposal: MapProposal) -> Table:
     table = tomlkit.table()
     table.add("name", proposal.name)
     table["name"].comment("the folder's name")
@@ -83,12 +83,12 @@ def _dataset(proposal: Proposal) -> Table:
 def _rig() -> Table:
     table = tomlkit.table()
     _comment(table, "The data sheet of the rig; each line is optional:")
-    for key in list(Rig.model_fields)[:4]:
+    for key in list(RigSheet.model_fields)[:4]:
         table.add(tomlkit.comment(f"{key} ="))
     return table
 
 
-def _read(proposal: Proposal) -> Table:
+def _read(proposal: MapProposal) -> Table:
     table = tomlkit.table()
     for key, (value, why) in proposal.read.items():
         _add(table, key, value, why)
@@ -120,7 +120,7 @@ def _asked(question: str) -> str:
     return f"QUESTION: {question}" if question else ""
 
 
-def _run(proposal: Proposal) -> Table:
+def _run(proposal: MapProposal) -> Table:
     table = tomlkit.table()
     for key, (value, why) in proposal.run.items():
         _add(table, key, value, _asked(why) if value == QUESTION else why)

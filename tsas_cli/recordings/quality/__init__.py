@@ -34,13 +34,13 @@ from tsas_cli.recordings.quality.finding import (
     Remark,
 )
 from tsas_cli.recordings.quality.stretches import look, look_by_stretches
-from tsas_cli.recordings.quality.trial import Trial
+from tsas_cli.recordings.quality.trial import RunSignals
 from tsas_cli.recordings.run_files import read_recording
 from tsas_cli.support.errors import InputError
-from tsas_cli.support.steps import SILENT, Steps
+from tsas_cli.support.steps import NO_PROGRESS, Steps
 
 MANIFEST_CHECKS: tuple[QualityCheck[Manifest], ...] = (unknown_key.CHECK, manifest_unit.CHECK)
-RUN_CHECKS: tuple[QualityCheck[Trial], ...] = (
+RUN_CHECKS: tuple[QualityCheck[RunSignals], ...] = (
     time_order.CHECK,
     time_jitter.CHECK,
     gap.CHECK,
@@ -70,7 +70,7 @@ class Report:
     not_checked: tuple[NotChecked, ...]
 
 
-def check_dataset(dataset: Dataset, step: Steps = SILENT) -> Report:
+def check_dataset(dataset: Dataset, step: Steps = NO_PROGRESS) -> Report:
     """Return the findings on the manifest, each run and the whole dataset; `step` counts runs.
 
     An unreadable run is a finding (`unreadable`), as long as another run can be read.
@@ -112,7 +112,7 @@ def _check_run(dataset: Dataset, run: Run) -> list[Finding | NotChecked]:
     if long is not None:
         results = look_by_stretches(RUN_CHECKS, long, dataset.manifest.rig)
     else:
-        trial = Trial(read_recording(dataset.folder, run, strict=False), dataset.manifest.rig)
+        trial = RunSignals(read_recording(dataset.folder, run, strict=False), dataset.manifest.rig)
         results = {check.code: look(check, trial) for check in RUN_CHECKS}
     return [_attributed(one, code, run.id) for code, each in results.items() for one in each]
 

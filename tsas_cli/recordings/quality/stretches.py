@@ -16,7 +16,7 @@ import numpy as np
 from tsas_cli.numerics.noise import noise_sd
 from tsas_cli.recordings import pieces as reading
 from tsas_cli.recordings.columns import TIME
-from tsas_cli.recordings.manifest import Rig
+from tsas_cli.recordings.manifest import RigSheet
 from tsas_cli.recordings.pieces import known_columns, pieces
 from tsas_cli.recordings.quality.checks import (
     exchanged,
@@ -29,7 +29,7 @@ from tsas_cli.recordings.quality.checks import (
 )
 from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
 from tsas_cli.recordings.quality.samples import span_of, step_of
-from tsas_cli.recordings.quality.trial import Overall, Trial
+from tsas_cli.recordings.quality.trial import Overall, RunSignals
 from tsas_cli.recordings.recording import Floats, Recording
 from tsas_cli.recordings.run_files import RunColumns
 
@@ -47,7 +47,7 @@ _MOTION = (
 )
 
 
-def look(check: QualityCheck[Trial], trial: Trial) -> Results:
+def look(check: QualityCheck[RunSignals], trial: RunSignals) -> Results:
     """Return the results of a check on a trial; a missing column is a reason not to apply."""
     missing = [name for name in check.needs if name not in trial.channels]
     if missing:
@@ -57,7 +57,7 @@ def look(check: QualityCheck[Trial], trial: Trial) -> Results:
 
 
 def look_by_stretches(
-    checks: Sequence[QualityCheck[Trial]], run: RunColumns, rig: Rig
+    checks: Sequence[QualityCheck[RunSignals]], run: RunColumns, rig: RigSheet
 ) -> dict[str, Results]:
     """Return the results of the checks on a long run, by code.
 
@@ -67,13 +67,13 @@ def look_by_stretches(
         The run cannot be read.
     """
     overall, decimated = _overview(run)
-    whole = Trial(Recording(run.run, decimated), rig, overall)
+    whole = RunSignals(Recording(run.run, decimated), rig, overall)
     by_whole = (*_WHOLE, *_MOTION) if _shows_strokes(whole, run) else _WHOLE
     results: dict[str, list[tuple[str, Results]]] = {check.code: [] for check in checks}
     for piece in pieces(
         run, known_columns(run), overlap=reading.MOST_ROWS // OVERLAP, strict=False
     ):
-        trial = Trial(Recording(run.run, piece.columns), rig, overall, piece.start)
+        trial = RunSignals(Recording(run.run, piece.columns), rig, overall, piece.start)
         rows = f"rows {piece.start} to {piece.stop - 1}"
         for check in checks:
             if check not in by_whole:
@@ -84,7 +84,7 @@ def look_by_stretches(
     }
 
 
-def _shows_strokes(whole: Trial, run: RunColumns) -> bool:
+def _shows_strokes(whole: RunSignals, run: RunColumns) -> bool:
     """Return whether a decimated stroke has more rows than a stretch has strokes."""
     strokes, rows = len(whole.strokes), whole.time_s.size
     return strokes * strokes <= rows * run.rows / reading.MOST_ROWS

@@ -9,7 +9,7 @@ import numpy as np
 from tsas_cli.numerics.noise import noise_sd
 from tsas_cli.numerics.turning_points import turning_points
 from tsas_cli.recordings.columns import TIME, largest
-from tsas_cli.recordings.manifest import Rig
+from tsas_cli.recordings.manifest import RigSheet
 from tsas_cli.recordings.quality.outlying import outlying
 from tsas_cli.recordings.quality.samples import Booleans, span_of, step_of
 from tsas_cli.recordings.recording import Floats, Recording
@@ -46,7 +46,7 @@ class Overall:
 
 
 @dataclass(frozen=True)
-class Trial:
+class RunSignals:
     """A recording, and the data sheet of the rig.
 
     It may be a part of a long run from row `first_row` on; `overall` then holds the properties of
@@ -54,7 +54,7 @@ class Trial:
     """
 
     recording: Recording
-    rig: Rig
+    rig: RigSheet
     overall: Overall | None = None
     first_row: int = 0
 

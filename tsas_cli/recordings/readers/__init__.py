@@ -8,7 +8,7 @@ from typing import Any
 
 from tsas_cli.recordings.guards.process import in_another_process
 from tsas_cli.recordings.readers.options import ReadOptions
-from tsas_cli.recordings.readers.table import ColumnSource, Table, whole
+from tsas_cli.recordings.readers.table import ColumnSource, ColumnTable, whole
 from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError
 
@@ -30,7 +30,7 @@ _WITH_TABLES = ("json_table", "matlab")
 SUFFIXES = tuple(_READERS)
 
 
-def read(path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]) -> Table:
+def read(path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]) -> ColumnTable:
     """Return the requested columns of one file.
 
     Raises
@@ -42,7 +42,7 @@ def read(path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]) -> Ta
     return whole(batches(path, options, wanted))
 
 
-def batches(path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]) -> Iterator[Table]:
+def batches(path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]) -> Iterator[ColumnTable]:
     """Yield the requested columns in parts of `BATCH_ROWS` rows, or whole for some formats.
 
     Raises

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from tsas_cli.recordings.readers.options import ReadOptions
-from tsas_cli.recordings.readers.table import ColumnSource, Floats, Table, floats, resolve
+from tsas_cli.recordings.readers.table import ColumnSource, Floats, ColumnTable, floats, resolve
 from tsas_cli.recordings.readers.timebase import TIME, on_one_clock
 from tsas_cli.support.errors import InputError
 
@@ -45,7 +45,7 @@ def channel_names(capture: Mapping[str, Any]) -> list[str]:
 
 def read_capture(
     capture: Mapping[str, Any], options: ReadOptions, wanted: Sequence[ColumnSource], path: Path
-) -> Table:
+) -> ColumnTable:
     """Return the requested channels of a capture; its clock is `time`, in s.
 
     Raises
@@ -63,7 +63,7 @@ def read_capture(
     units = dict.fromkeys(clock_sources, "s")
     units |= {s: unit for s, channel in selected.items() if (unit := str(channel.get("Unit", "")))}
     description = str(capture.get("Description", ""))
-    return Table(
+    return ColumnTable(
         on_one_clock(series, path, clock_sources=clock_sources, resample=options.resample),
         units,
         (description,) if description else (),

@@ -14,7 +14,7 @@ from tsas_cli.recordings.readers.options import ReadOptions
 from tsas_cli.recordings.readers.table import (
     BATCH_ROWS,
     ColumnSource,
-    Table,
+    ColumnTable,
     in_batches,
     not_a_number,
     resolve,
@@ -25,7 +25,7 @@ from tsas_cli.support.errors import InputError
 _NULLS = frozenset(csv.ConvertOptions().null_values)
 
 
-def batches(path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]) -> Iterator[Table]:
+def batches(path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]) -> Iterator[ColumnTable]:
     """Yield the requested columns of a text table in parts.
 
     From a row that pyarrow refuses, or with a delimiter outside ASCII, it is read line by line.
@@ -42,13 +42,13 @@ def batches(path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]) ->
     try:
         for table in in_batches(_fast(path, options, layout, at)):
             columns = {source: floats_from(table.column(str(i))) for source, i in at.items()}
-            yield Table(columns, units, layout.header, layout.first_line + rows)
+            yield ColumnTable(columns, units, layout.header, layout.first_line + rows)
             rows += table.num_rows
     except pa.ArrowException:
         lines = islice(_line_by_line(path, options, layout, at), rows, None)
         while part := list(islice(lines, BATCH_ROWS)):
             values = dict(zip(at, np.ascontiguousarray(np.transpose(part)), strict=True))
-            yield Table(values, units, layout.header, layout.first_line + rows)
+            yield ColumnTable(values, units, layout.header, layout.first_line + rows)
             rows += len(part)
 
 

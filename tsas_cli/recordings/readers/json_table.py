@@ -5,12 +5,12 @@ from pathlib import Path
 from typing import Any
 
 from tsas_cli.recordings.readers.options import ReadOptions
-from tsas_cli.recordings.readers.table import ColumnSource, Table, floats, resolve
+from tsas_cli.recordings.readers.table import ColumnSource, ColumnTable, floats, resolve
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import Raw, read_json
 
 
-def read(path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]) -> Table:
+def read(path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]) -> ColumnTable:
     """Return the requested columns of a JSON table.
 
     It is a list of rows, a list of records, or an object of columns, under the key `table` of the
@@ -26,7 +26,7 @@ def read(path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]) -> Ta
     names, column = _columns(content, above.get("columns"), path)
     at = resolve(wanted, names, path)
     header = tuple(f"{key} = {value}" for key, value in above.items() if _is_plain(value))
-    return Table({s: floats(column(i), s, path) for s, i in at.items()}, header=header)
+    return ColumnTable({s: floats(column(i), s, path) for s, i in at.items()}, header=header)
 
 
 def names(path: Path, options: ReadOptions) -> Sequence[str]:

@@ -18,7 +18,7 @@ from tsas_cli.recordings.readers.controldesk import (
     read_capture,
 )
 from tsas_cli.recordings.readers.options import ReadOptions
-from tsas_cli.recordings.readers.table import ColumnSource, Floats, Table, floats, resolve
+from tsas_cli.recordings.readers.table import ColumnSource, Floats, ColumnTable, floats, resolve
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import Raw
 from tsas_cli.support.memory import out_of_memory
@@ -26,7 +26,7 @@ from tsas_cli.support.memory import out_of_memory
 _HDF5 = b"\x89HDF\r\n\x1a\n"
 
 
-def read(path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]) -> Table:
+def read(path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]) -> ColumnTable:
     """Return the requested columns of a MATLAB file.
 
     A vector is a column with its name, column j of a matrix is `name(:,j)`, and a member of a
@@ -47,7 +47,7 @@ def read(path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]) -> Ta
     at = resolve(wanted, names, path)
     columns = {source: floats(vectors[names[i]], source, path) for source, i in at.items()}
     header = tuple(f"{k} = {v}" for k, v in content.items() if isinstance(v, str | int | float))
-    return Table(columns, header=header)
+    return ColumnTable(columns, header=header)
 
 
 def names(path: Path, options: ReadOptions) -> Sequence[str]:

@@ -15,7 +15,7 @@ from tsas_cli.recordings.guards.damaged import damaged
 from tsas_cli.recordings.guards.mdf_blocks import check_blocks, check_claims
 from tsas_cli.recordings.readers.optional import optional
 from tsas_cli.recordings.readers.options import ReadOptions
-from tsas_cli.recordings.readers.table import ColumnSource, Floats, Table, floats, resolve
+from tsas_cli.recordings.readers.table import ColumnSource, Floats, ColumnTable, floats, resolve
 from tsas_cli.recordings.readers.timebase import TIME, on_one_clock
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.memory import out_of_memory
@@ -24,7 +24,7 @@ _KINDS = {1: "a time", 2: "an angle", 3: "a distance", 4: "a count"}  # a master
 _MASTER_ELSEWHERE = 8  # of `cg_flags`: the master is that of another group
 
 
-def read(path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]) -> Table:
+def read(path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]) -> ColumnTable:
     """Return the requested channels of an MDF file; its master channel is `time`.
 
     Raises
@@ -70,7 +70,7 @@ def _discard_half_made(error: Exception) -> None:
     sys.unraisablehook = hook
 
 
-def _table(file: Any, options: ReadOptions, wanted: Sequence[ColumnSource], path: Path) -> Table:
+def _table(file: Any, options: ReadOptions, wanted: Sequence[ColumnSource], path: Path) -> ColumnTable:
     channels = _channels(file)
     at = resolve(wanted, [*(name for name, _, _ in channels), TIME], path)
     groups = [channels[i][1] for i in at.values() if i < len(channels)]
@@ -87,7 +87,7 @@ def _table(file: Any, options: ReadOptions, wanted: Sequence[ColumnSource], path
     units = dict.fromkeys(clock_sources, clock_unit)
     units |= {source: signal.unit for source, signal in signals.items() if signal.unit}
     header = (str(file.header.comment), f"started {file.start_time.isoformat()}")
-    return Table(columns, units, header)
+    return ColumnTable(columns, units, header)
 
 
 def _channels(file: Any) -> list[tuple[str, int, int]]:

@@ -15,7 +15,7 @@ from tsas_cli.recordings.readers.table import (
     BATCH_ROWS,
     ColumnSource,
     Floats,
-    Table,
+    ColumnTable,
     floats,
     in_batches,
     resolve,
@@ -23,7 +23,7 @@ from tsas_cli.recordings.readers.table import (
 from tsas_cli.support.memory import out_of_memory
 
 
-def batches(path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]) -> Iterator[Table]:
+def batches(path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]) -> Iterator[ColumnTable]:
     """Yield the requested columns of a Parquet file in parts; units from field metadata `unit`.
 
     Dates become seconds since the first one in their column, durations become seconds.
@@ -60,10 +60,10 @@ def batches(path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]) ->
                 typed = frozenset(s for s, found in values.items() if found.dtype.kind in "mM")
                 values |= {source: _seconds(values[source], zeros, source) for source in typed}
                 columns = {s: floats(found, s, path, first=first) for s, found in values.items()}
-                yield Table(columns, units | dict.fromkeys(typed, "s"), (), first, typed)
+                yield ColumnTable(columns, units | dict.fromkeys(typed, "s"), (), first, typed)
                 first += table.num_rows
             if first == 1:
-                yield Table({source: np.empty(0) for source in fields}, units)
+                yield ColumnTable({source: np.empty(0) for source in fields}, units)
     except MemoryError as error:
         raise out_of_memory(path) from error
     except (pa.ArrowException, UnicodeDecodeError) as error:  # the latter is of names

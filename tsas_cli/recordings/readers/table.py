@@ -19,7 +19,7 @@ BATCH_ROWS = 1 << 20  # of a file that is read in parts, and of a row group of i
 
 
 @dataclass(frozen=True)
-class Table:
+class ColumnTable:
     """The requested columns of one file, or of a part of its rows.
 
     Attributes
@@ -64,7 +64,7 @@ def resolve(
     return {source: _index(source, names, path) for source in wanted}
 
 
-def whole(parts: Iterable[Table]) -> Table:
+def whole(parts: Iterable[ColumnTable]) -> ColumnTable:
     """Return the parts of one file as one table."""
     tables = list(parts)
     first = tables[0]

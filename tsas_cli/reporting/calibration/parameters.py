@@ -2,8 +2,8 @@
 
 from collections.abc import Sequence
 
-from tsas_cli.records.base import Parameter
-from tsas_cli.records.calibration import Calibration
+from tsas_cli.records.base import ParameterValue
+from tsas_cli.records.calibration import CalibrationFile
 from tsas_cli.reporting.content import Section, Table, missing
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import with_interval
@@ -13,7 +13,7 @@ _TITLE = "Parameters"
 
 def section(inputs: Inputs) -> Section:
     """Return the section of the parameters."""
-    calibration = inputs.get(Calibration)
+    calibration = inputs.get(CalibrationFile)
     if calibration is None:
         return missing("parameters", _TITLE, what="calibration", stage="calibrate")
     intro = ["The origin says which values are fitted, and which are taken as given."]
@@ -27,7 +27,7 @@ def section(inputs: Inputs) -> Section:
     )
 
 
-def table(caption: str, parameters: Sequence[Parameter]) -> Table:
+def table(caption: str, parameters: Sequence[ParameterValue]) -> Table:
     """Return a model's parameters with their intervals."""
     rows = tuple(
         (

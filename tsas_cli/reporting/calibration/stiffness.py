@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from functools import partial
 from typing import Any
 
-from tsas_cli.records.calibration import Calibration, Stiffness
+from tsas_cli.records.calibration import CalibrationFile, Stiffness
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Picture, Section, Table, missing
 from tsas_cli.reporting.drawing import picture, shortened
@@ -27,7 +27,7 @@ _NAME_LENGTH = 14
 
 def section(inputs: Inputs) -> Section:
     """Return the section of the stiffness in each phase."""
-    calibration = inputs.get(Calibration)
+    calibration = inputs.get(CalibrationFile)
     if calibration is None:
         return missing("stiffness", _TITLE, what="calibration", stage="calibrate")
     rows = calibration.stiffness

@@ -1,6 +1,6 @@
 """How tension passes through the sheath in both directions, where both ends were measured."""
 
-from tsas_cli.records.calibration import Calibration
+from tsas_cli.records.calibration import CalibrationFile
 from tsas_cli.reporting.content import Section, Table, missing
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import with_interval
@@ -20,7 +20,7 @@ _NONE = "It needs f_in_N and f_out_N, and slip in both directions with a tension
 
 def section(inputs: Inputs) -> Section:
     """Return the section of the tension's transfer."""
-    calibration = inputs.get(Calibration)
+    calibration = inputs.get(CalibrationFile)
     if calibration is None:
         return missing("transfer", _TITLE, what="calibration", stage="calibrate")
     if not calibration.transfer:

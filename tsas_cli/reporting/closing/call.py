@@ -2,12 +2,12 @@
 
 from collections.abc import Iterator
 
-from tsas_cli.records.closing import Closing
+from tsas_cli.records.closing import ClosingFile
 
 SETTINGS = "settings.toml"
 
 
-def options(closing: Closing) -> Iterator[str]:
+def options(closing: ClosingFile) -> Iterator[str]:
     """Yield the options; settings that are not the defaults as if they stood in `SETTINGS`."""
     from tsas_cli.tracking.cases import CASES
 
@@ -24,7 +24,7 @@ def options(closing: Closing) -> Iterator[str]:
     yield from ("--seeds", str(last - first + 1), "--seed", str(first))
 
 
-def own_settings(closing: Closing) -> bool:
+def own_settings(closing: ClosingFile) -> bool:
     """Return whether the settings are others than the defaults."""
     from tsas_cli.tracking.settings import Settings
 

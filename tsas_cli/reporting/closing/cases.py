@@ -1,11 +1,11 @@
 """What was hidden in the plant, and what the diagnosis named."""
 
-from tsas_cli.records.closing import ClosedCase, Closing, Named
+from tsas_cli.records.closing import ClosedCase, ClosingFile, Named
 from tsas_cli.reporting.content import Table
 from tsas_cli.reporting.numbers import as_printed
 
 
-def table(closing: Closing) -> Table:
+def table(closing: ClosingFile) -> Table:
     """Return the table, one row for each case."""
     rows = tuple(
         (case.case, case.title, _hidden(case), case.verdict, _named(case.named))
@@ -15,7 +15,7 @@ def table(closing: Closing) -> Table:
     return Table("What was hidden in the plant, and what the diagnosis named", header, rows)
 
 
-def summary(closing: Closing) -> str:
+def summary(closing: ClosingFile) -> str:
     """Return in a sentence how many cases there are and of how many a cause is named."""
     total, named = len(closing.cases), sum(bool(case.named) for case in closing.cases)
     if total == 1:

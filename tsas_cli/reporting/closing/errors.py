@@ -6,7 +6,7 @@ from functools import partial
 from statistics import median
 from typing import Any
 
-from tsas_cli.records.closing import Closing, Row
+from tsas_cli.records.closing import ClosingFile, Row
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Picture, Table
 from tsas_cli.reporting.diagnosis.words import listed
@@ -19,7 +19,7 @@ _PERCENT = f"{100.0 * (NEAR - 1.0):.0f} %"
 
 
 @dataclass(frozen=True)
-class Look:
+class Marker:
     """How a model is called, and the form of its mark, so that colour alone tells nothing."""
 
     label: str
@@ -28,16 +28,16 @@ class Look:
 
 
 MODELS = {  # by role
-    "data-sheet": Look("data sheet", "s"),
-    "calibrated": Look("calibrated", "D", 5.5),
-    "extended": Look("extended", "o"),
-    "true": Look("true", "|", 13.0),
+    "data-sheet": Marker("data sheet", "s"),
+    "calibrated": Marker("calibrated", "D", 5.5),
+    "extended": Marker("extended", "o"),
+    "true": Marker("true", "|", 13.0),
 }
 _ROW_IN = 0.21
 _PANEL_IN = 0.34  # its title
 
 
-def table(closing: Closing) -> Table:
+def table(closing: ClosingFile) -> Table:
     """Return the table, with its spread where there is more than one seed."""
     seeds = closing.seeds[1] - closing.seeds[0] + 1
     over = f", mean ± standard deviation over {seeds} seeds of noise" if seeds > 1 else ""
@@ -56,7 +56,7 @@ def table(closing: Closing) -> Table:
     return Table(f"RMSE of the force [N] by model{over}", header, rows, numeric=numeric)
 
 
-def dots(closing: Closing) -> Picture:
+def dots(closing: ClosingFile) -> Picture:
     """Return the picture of the same errors, one panel for each controller."""
     controllers = closing.of_controllers()
     said = "; ".join(
@@ -74,13 +74,13 @@ def dots(closing: Closing) -> Picture:
     )
 
 
-def worth(closing: Closing) -> Iterator[str]:
+def worth(closing: ClosingFile) -> Iterator[str]:
     """Yield, for each controller, what the extended model is worth, and where it falls short."""
     for name, rows in closing.of_controllers().items():
         yield f"`{name}`: {_gain(rows)} {_limit(rows)}"
 
 
-def most_and_least(closing: Closing) -> Iterator[str]:
+def most_and_least(closing: ClosingFile) -> Iterator[str]:
     """Yield for which controller the extended model matters most, and for which least."""
     gains = {name: _median_gain(rows) for name, rows in closing.of_controllers().items()}
     ranked = sorted(gains, key=lambda name: gains[name])

@@ -1,6 +1,6 @@
 """What a diagnosis is worth in tracking: hidden differences, named, and tracked with each model."""
 
-from tsas_cli.records.closing import Closing
+from tsas_cli.records.closing import ClosingFile
 from tsas_cli.reporting.closing import cases, errors
 from tsas_cli.reporting.content import Section
 from tsas_cli.reporting.inputs import Inputs
@@ -23,7 +23,7 @@ _LIMIT = (
 
 def section(inputs: Inputs) -> Section | None:
     """Return the section, None where no loop was closed over a diagnosis."""
-    closing = inputs.get(Closing)
+    closing = inputs.get(ClosingFile)
     if closing is None:
         return None
     return Section(

@@ -4,9 +4,9 @@ import shlex
 from collections.abc import Callable, Iterator
 from functools import partial
 
-from tsas_cli.comparing.tracked import FILE, SCORES, Followed, Tracks
+from tsas_cli.comparing.tracked import TRACKING_FILE, SCORES, ControllerPair, Tracks
 from tsas_cli.comparing.tracked_stage import findings, notes, shown
-from tsas_cli.recordings.written import answers_of, columns_of
+from tsas_cli.recordings.written import result_file, columns_of
 from tsas_cli.reporting.comparing.two_residuals import Residuals, draw_two_residuals, height_in
 from tsas_cli.reporting.content import Picture, Section, Table
 from tsas_cli.reporting.drawing import picture
@@ -50,7 +50,7 @@ def _sections(it: Tracks) -> Iterator[Section]:
     if pictures := tuple(_pictures(it)):
         what = "Wanted less true force at the load, with the first seed of noise."
         yield Section("tracking-error", "Tracking error", (what,), pictures=pictures)
-    files = tuple((n, FILE, digest) for n, digest in it.checksums.items())
+    files = tuple((n, TRACKING_FILE, digest) for n, digest in it.checksums.items())
     yield Section(
         "repeat",
         "How to repeat it",
@@ -84,7 +84,7 @@ def _pictures(it: Tracks) -> Iterator[Picture]:
     """Yield the errors over time of each pair whose runs have the same clock."""
     for number, both in enumerate(it.followed):
         a, b = (
-            columns_of(answers_of(path, result.run), ("time_s", WANTED, TRUE))
+            columns_of(result_file(path, result.run), ("time_s", WANTED, TRUE))
             for path, result in zip(it.paths.values(), (both.a, both.b), strict=True)
         )
         if a["time_s"].shape != b["time_s"].shape or (a["time_s"] != b["time_s"]).any():
@@ -100,6 +100,6 @@ def _pictures(it: Tracks) -> Iterator[Picture]:
         )
 
 
-def _words(both: Followed) -> str:
+def _words(both: ControllerPair) -> str:
     a, b = (with_spread(r.scores["rmse_N"].mean, r.scores["rmse_N"].sd) for r in (both.a, both.b))
     return f"{both.a.controller}, {both.a.condition}: RMSE {a} N in A, {b} N in B."

@@ -7,7 +7,7 @@ from typing import Any
 
 from tsas_cli.comparing.compare import Comparison
 from tsas_cli.comparing.stage import differs
-from tsas_cli.records.base import Parameter
+from tsas_cli.records.base import ParameterValue
 from tsas_cli.records.comparison import ParameterPair
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Picture, Section, Table
@@ -23,7 +23,7 @@ _HOW = (
 
 
 @dataclass(frozen=True)
-class Value:
+class IntervalMark:
     """A value and its 95 % interval in the parameter's unit, None where it has none."""
 
     value: float
@@ -36,8 +36,8 @@ class Strip:
     """One parameter: its name, what both say of it, and whether that differs."""
 
     label: str
-    a: Value
-    b: Value
+    a: IntervalMark
+    b: IntervalMark
     differs: bool
 
 
@@ -105,7 +105,7 @@ def _row(pair: ParameterPair) -> tuple[str, ...]:
     )
 
 
-def _estimate(e: Parameter | None) -> tuple[str, str]:
+def _estimate(e: ParameterValue | None) -> tuple[str, str]:
     if e is None:
         return ABSENT, ABSENT
     return with_interval(e.value, e.interval_low, e.interval_high)
@@ -135,7 +135,7 @@ def _pictures(it: Comparison) -> Iterator[Picture]:
 
 def _strip(pair: ParameterPair) -> Strip:
     a, b = (
-        Value(e.value, e.interval_low, e.interval_high)
+        IntervalMark(e.value, e.interval_low, e.interval_high)
         for e in (pair.a, pair.b)
         if e is not None and e.value is not None
     )

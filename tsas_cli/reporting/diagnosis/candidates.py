@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from tsas_cli.records.diagnosis import Candidate, Cause, Diagnosis
+from tsas_cli.records.diagnosis import Hypothesis, NamedCause, DiagnosisFile
 from tsas_cli.reporting.content import Section, Table
 from tsas_cli.reporting.numbers import fixed, plain
 
@@ -18,7 +18,7 @@ _WHAT = (
 _NONE = "Screening left no effect that could explain enough of the error to be fitted."
 
 
-def part(diagnosis: Diagnosis) -> Section | None:
+def part(diagnosis: DiagnosisFile) -> Section | None:
     """Return the part, None where it was undecided before anything was tried."""
     tried = diagnosis.candidates
     if not tried:
@@ -38,7 +38,7 @@ def part(diagnosis: Diagnosis) -> Section | None:
     return Section("diagnosis-candidates", _TITLE, (_WHAT,), tables=(table,))
 
 
-def _standing(candidate: Candidate, named: Sequence[Cause]) -> str:
+def _standing(candidate: Hypothesis, named: Sequence[NamedCause]) -> str:
     """Say whether a hypothesis is what is named, or has a rival in place of a cause."""
     causes = {cause.effect for cause in named}
     if not causes:
@@ -49,7 +49,7 @@ def _standing(candidate: Candidate, named: Sequence[Cause]) -> str:
     return "rival" if set(candidate.effects) in rivals else ""
 
 
-def _row(candidate: Candidate, standing: str) -> tuple[str, ...]:
+def _row(candidate: Hypothesis, standing: str) -> tuple[str, ...]:
     return (
         " + ".join(candidate.effects),
         fixed(candidate.gain_percent, 1),

@@ -2,13 +2,13 @@
 
 from collections.abc import Iterator
 
-from tsas_cli.records.diagnosis import Cause, Diagnosis
+from tsas_cli.records.diagnosis import NamedCause, DiagnosisFile
 from tsas_cli.reporting.content import Section, Table, anchor
 from tsas_cli.reporting.diagnosis.words import EFFECT, heading_of, sentence_of, title_of, within
 from tsas_cli.reporting.numbers import ABSENT, plain, with_interval
 
 
-def parts(diagnosis: Diagnosis) -> Iterator[Section]:
+def parts(diagnosis: DiagnosisFile) -> Iterator[Section]:
     """Yield one part for each named cause."""
     for cause in diagnosis.named:
         law = EFFECT[cause.effect].equation if cause.effect in EFFECT else ""
@@ -23,7 +23,7 @@ def parts(diagnosis: Diagnosis) -> Iterator[Section]:
         )
 
 
-def _parameters(cause: Cause) -> Table:
+def _parameters(cause: NamedCause) -> Table:
     rows = tuple(
         (
             name,
@@ -37,7 +37,7 @@ def _parameters(cause: Cause) -> Table:
     return Table(f"Parameters of {cause.effect}", header, rows, numeric=frozenset({1, 2}))
 
 
-def _rivals(cause: Cause) -> Iterator[str]:
+def _rivals(cause: NamedCause) -> Iterator[str]:
     for rival in cause.rivals:
         yield (
             f"These recordings cannot tell it from {within(title_of(rival))} (`{rival}`). "
@@ -45,7 +45,7 @@ def _rivals(cause: Cause) -> Iterator[str]:
         )
 
 
-def _gain(cause: Cause) -> Iterator[str]:
+def _gain(cause: NamedCause) -> Iterator[str]:
     if cause.gain_percent is None:
         return
     low, high = cause.gain_interval_percent or (None, None)

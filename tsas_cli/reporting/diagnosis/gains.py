@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from functools import partial
 from typing import Any
 
-from tsas_cli.records.diagnosis import Diagnosis, HeldOut
+from tsas_cli.records.diagnosis import DiagnosisFile, HeldOut
 from tsas_cli.reporting.channels import called
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Section, Table
@@ -18,7 +18,7 @@ _BOUNDS = (
 )
 
 
-def part(diagnosis: Diagnosis) -> Section | None:
+def part(diagnosis: DiagnosisFile) -> Section | None:
     """Return the part, None where no channel was judged."""
     if not diagnosis.channels:
         return None
@@ -40,12 +40,12 @@ def part(diagnosis: Diagnosis) -> Section | None:
     )
 
 
-def _judged(diagnosis: Diagnosis) -> str:
+def _judged(diagnosis: DiagnosisFile) -> str:
     how = diagnosis.evidence.sentence
     return how[:1].upper() + how[1:]
 
 
-def table(diagnosis: Diagnosis) -> Table:
+def table(diagnosis: DiagnosisFile) -> Table:
     """Return the errors in numbers."""
     named = bool(diagnosis.named)
     rows = tuple(

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.records.diagnosis import Diagnosis
+from tsas_cli.records.diagnosis import DiagnosisFile
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Section
 from tsas_cli.reporting.diagnosis.words import listed
@@ -31,7 +31,7 @@ _NAMES_IN = 2.0  # of the longest name
 _CORNERS = np.array([(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5), (-0.5, -0.5)])
 
 
-def part(diagnosis: Diagnosis) -> Section | None:
+def part(diagnosis: DiagnosisFile) -> Section | None:
     """Return the part, None where no signatures were compared."""
     names = np.array(diagnosis.signatures.effects, dtype=object)
     if names.size < 2:

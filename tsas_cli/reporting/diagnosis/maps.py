@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from tsas_cli.records.diagnosis import Bin, Diagnosis
+from tsas_cli.records.diagnosis import Bin, DiagnosisFile
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Picture, Section
 from tsas_cli.reporting.diagnosis.words import listed, signal_at_axis, signal_in_words
@@ -35,7 +35,7 @@ class Panel:
     after: tuple[Bin, ...] = ()
 
 
-def part(diagnosis: Diagnosis) -> Section | None:
+def part(diagnosis: DiagnosisFile) -> Section | None:
     """Return the part, None where the errors were not looked at."""
     maps = diagnosis.residual_map
     if not maps.before:
@@ -66,7 +66,7 @@ def pictures(
     )
 
 
-def _panels(diagnosis: Diagnosis) -> Iterator[Panel]:
+def _panels(diagnosis: DiagnosisFile) -> Iterator[Panel]:
     after = diagnosis.residual_map.after if diagnosis.named else {}
     for channel, signals in diagnosis.residual_map.before.items():
         for signal, bins in signals.items():

@@ -2,19 +2,19 @@
 
 from collections.abc import Iterator
 
-from tsas_cli.records.diagnosis import Diagnosis
+from tsas_cli.records.diagnosis import DiagnosisFile
 from tsas_cli.reporting.content import Section, missing
 from tsas_cli.reporting.diagnosis import candidates, causes, gains, likeness, maps
 from tsas_cli.reporting.diagnosis.words import listed, signal_in_words
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import fixed, plain
 
-_TITLE = "Diagnosis"
+_TITLE = "DiagnosisFile"
 
 
 def section(inputs: Inputs) -> Section:
     """Return the section of the diagnosis; its first sentence is the verdict."""
-    diagnosis = inputs.get(Diagnosis)
+    diagnosis = inputs.get(DiagnosisFile)
     if diagnosis is None:
         return missing("diagnosis", _TITLE, what="diagnosis", stage="diagnose")
     evidence = (part.part(diagnosis) for part in (gains, maps, candidates, likeness))
@@ -30,12 +30,12 @@ def section(inputs: Inputs) -> Section:
     )
 
 
-def _verdict(diagnosis: Diagnosis) -> str:
+def _verdict(diagnosis: DiagnosisFile) -> str:
     undecided = diagnosis.verdict == "undecided"
     return f"Undecided: {diagnosis.reason}" if undecided else diagnosis.reason
 
 
-def remainder(diagnosis: Diagnosis) -> Iterator[Section]:
+def remainder(diagnosis: DiagnosisFile) -> Iterator[Section]:
     """Yield the parts that close the diagnosis."""
     if left := tuple(_left(diagnosis)):
         yield Section("diagnosis-remainder", "What is left", left)
@@ -45,7 +45,7 @@ def remainder(diagnosis: Diagnosis) -> Iterator[Section]:
         yield Section("diagnosis-unknown", "Cannot tell", points=diagnosis.cannot_tell)
 
 
-def _left(diagnosis: Diagnosis) -> Iterator[str]:
+def _left(diagnosis: DiagnosisFile) -> Iterator[str]:
     left = diagnosis.remainder
     if left.mean_square is not None:
         yield (

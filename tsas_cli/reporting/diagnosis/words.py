@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from tsas_cli.effects import EFFECTS
 from tsas_cli.recordings.columns import BY_NAME
-from tsas_cli.records.diagnosis import Cause
+from tsas_cli.records.diagnosis import NamedCause
 from tsas_cli.reporting.channels import called
 
 EFFECT = {effect.name: effect for effect in EFFECTS}
@@ -34,7 +34,7 @@ def within(title: str) -> str:
     return title[:1].lower() + title[1:]
 
 
-def heading_of(cause: Cause) -> str:
+def heading_of(cause: NamedCause) -> str:
     """Return a cause's title, with its rival where there is one, or how many there are."""
     title = cause.title or title_of(cause.effect)
     if not cause.rivals:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.records.drive import Curve, MeasuredResponse, Pole
+from tsas_cli.records.drive import BodeCurve, MeasuredResponse, Pole
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.figures import legend, line, noise_bounds
 from tsas_cli.reporting.numbers import RAISED
@@ -18,7 +18,7 @@ Floats = npt.NDArray[np.float64]
 def draw_bode(
     figure: Any,
     measured: MeasuredResponse,
-    fitted: Curve,
+    fitted: BodeCurve,
     band_Hz: tuple[float, float] | None,
 ) -> None:
     """Draw magnitude, phase and coherence below each other; dots where the input does not tell."""

@@ -5,26 +5,26 @@ from functools import partial
 
 import numpy as np
 
-from tsas_cli.records.drive import Drive, Pole, Response
+from tsas_cli.records.drive import DriveFile, Pole, FrequencyResponses
 from tsas_cli.reporting.content import Picture, Section, Table
 from tsas_cli.reporting.drawing import picture
 from tsas_cli.reporting.drive.figures import draw_bode, draw_poles, draw_residuals
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import plain, spanned, with_interval
 
-_TITLE = "Drive"
+_TITLE = "DriveFile"
 
 
 def section(inputs: Inputs) -> Section | None:
     """Return the section of the drive, None without one; its first sentence is the verdict."""
-    drive = inputs.get(Drive)
+    drive = inputs.get(DriveFile)
     if drive is None:
         return None
     return told_of(drive, _response(drive), _residuals(inputs, drive))
 
 
 def told_of(
-    drive: Drive, response: tuple[Picture, ...] = (), left: tuple[Picture, ...] = ()
+    drive: DriveFile, response: tuple[Picture, ...] = (), left: tuple[Picture, ...] = ()
 ) -> Section:
     """Return the section with pictures of the frequency response and of what is left, if any."""
     lead = drive.kinematics
@@ -48,7 +48,7 @@ def told_of(
 
 
 def _parts(
-    drive: Drive, response: tuple[Picture, ...], left: tuple[Picture, ...]
+    drive: DriveFile, response: tuple[Picture, ...], left: tuple[Picture, ...]
 ) -> Iterator[Section]:
     lacks = tuple(_causes(drive))
     if lacks:
@@ -66,12 +66,12 @@ def _parts(
     )
 
 
-def _next(drive: Drive) -> str:
+def _next(drive: DriveFile) -> str:
     following = drive.diagnosis.next_experiment
     return f"Next: {following}" if following else ""
 
 
-def _parameters(drive: Drive) -> Table:
+def _parameters(drive: DriveFile) -> Table:
     rows = tuple(
         (
             p.name,
@@ -86,7 +86,7 @@ def _parameters(drive: Drive) -> Table:
     return Table("Parameters of the drive", header, rows, numeric=frozenset({1, 2}))
 
 
-def _causes(drive: Drive) -> Iterator[Table]:
+def _causes(drive: DriveFile) -> Iterator[Table]:
     rows = tuple(
         (
             cause.effect,
@@ -115,7 +115,7 @@ def _causes(drive: Drive) -> Iterator[Table]:
         yield Table(caption, header, rows, numeric=frozenset({2, 3, 6})).without_empty()
 
 
-def _structures(drive: Drive) -> Table:
+def _structures(drive: DriveFile) -> Table:
     rows = tuple(
         (
             s.name,
@@ -130,7 +130,7 @@ def _structures(drive: Drive) -> Table:
     return Table(caption, header, rows, numeric=frozenset({1, 2}))
 
 
-def _errors(drive: Drive) -> Table:
+def _errors(drive: DriveFile) -> Table:
     rows = tuple(
         (name, plain(run.rmse_nominal, 3), plain(run.rmse, 3), plain(run.noise, 3))
         for name, run in drive.runs.items()
@@ -139,7 +139,7 @@ def _errors(drive: Drive) -> Table:
     return Table("Simulated against measured x_in [mm]", header, rows, numeric=frozenset({1, 2, 3}))
 
 
-def _response(drive: Drive) -> tuple[Picture, ...]:
+def _response(drive: DriveFile) -> tuple[Picture, ...]:
     response = drive.frequency_response
     band = response.band_Hz
     shown = (
@@ -164,7 +164,7 @@ def _response(drive: Drive) -> tuple[Picture, ...]:
     return bode, poles
 
 
-def _bode_in_words(response: Response) -> str:
+def _bode_in_words(response: FrequencyResponses) -> str:
     fitted = response.fitted
     at = np.array(fitted.frequency_Hz)
     if not at.size:
@@ -184,14 +184,14 @@ def _pole_in_words(pole: Pole) -> str:
     return f"; {pole.kind} at {plain(pole.frequency_Hz, 3)} Hz{where}"
 
 
-def _residuals(inputs: Inputs, drive: Drive) -> tuple[Picture, ...]:
+def _residuals(inputs: Inputs, drive: DriveFile) -> tuple[Picture, ...]:
     runs, said = {}, []
     for recording in inputs.recordings:
         run, x_in = drive.runs.get(recording.run.id), recording.get("x_in_mm")
         if run is None or x_in is None or run.noise is None:
             continue
         nominal, fitted = (
-            x_in - inputs.answer(recording.run.id, x_in.size, column, Drive)
+            x_in - inputs.answer(recording.run.id, x_in.size, column, DriveFile)
             for column in ("x_in_nominal_mm", "x_in_mm")
         )
         runs[recording.run.id] = (recording.time_s, nominal, fitted, run.noise)

@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.recordings.recording import Recording
-from tsas_cli.records.base import Segment
-from tsas_cli.records.calibration import Calibration
+from tsas_cli.records.base import PhaseSegment
+from tsas_cli.records.calibration import CalibrationFile
 from tsas_cli.reporting.channels import at_axis, in_words
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Group, Picture, Section
@@ -31,7 +31,7 @@ def section(inputs: Inputs) -> Section | None:
     if inputs.dataset is None:
         return None
     intro = "Each cycle runs through four phases, numbered in the order in which they follow."
-    calibration = inputs.get(Calibration)
+    calibration = inputs.get(CalibrationFile)
     if calibration is None:
         intro = "Without a folder written by `tsas calibrate`, the phases are not told apart."
     segments = calibration.segments if calibration else {}
@@ -46,7 +46,7 @@ def section(inputs: Inputs) -> Section | None:
 
 
 def _pictures(
-    recording: Recording, segments: tuple[Segment, ...], number: int
+    recording: Recording, segments: tuple[PhaseSegment, ...], number: int
 ) -> Iterator[Picture]:
     phase = phase_of_samples(recording.time_s, segments)
     x = recording.get(_X)

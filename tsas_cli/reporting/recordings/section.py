@@ -7,7 +7,7 @@ from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Manifest
 from tsas_cli.recordings.quality.finding import Finding
 from tsas_cli.recordings.recording import Recording
-from tsas_cli.records.check import Check
+from tsas_cli.records.check import CheckFile
 from tsas_cli.reporting.content import Section, Table
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import ABSENT, plain
@@ -75,7 +75,7 @@ def _run(recording: Recording, more: Sequence[str]) -> tuple[str, ...]:
     )
 
 
-def _findings(check: Check) -> Table:
+def _findings(check: CheckFile) -> Table:
     """Return the findings, errors first; of many of one kind the first few, and whose they are."""
     kinds: dict[tuple[str, str], list[Finding]] = {}
     for finding in sorted(check.findings, key=_rank):
@@ -99,7 +99,7 @@ def _rank(finding: Finding) -> int:
     return _SEVERITIES.index(finding.severity) if finding.severity in _SEVERITIES else -1
 
 
-def _not_checked(check: Check) -> Table:
+def _not_checked(check: CheckFile) -> Table:
     reasons: dict[tuple[str, str], list[str]] = {}
     for silent in check.not_checked:
         reasons.setdefault((silent.code, silent.reason), []).append(silent.run or ABSENT)

@@ -9,6 +9,6 @@ import rerun  # noqa: E402, F401  it looks at the environment once
 if not _LOGGED:  # for the viewer, which is a process of its own
     del os.environ["RUST_LOG"]
 
-from tsas_cli.reporting.stream.stream import FILE, Stream, stream_of, write_stream  # noqa: E402
+from tsas_cli.reporting.stream.stream import STREAM_FILE, Stream, stream_of, write_stream  # noqa: E402
 
-__all__ = ["FILE", "Stream", "stream_of", "write_stream"]
+__all__ = ["STREAM_FILE", "Stream", "stream_of", "write_stream"]

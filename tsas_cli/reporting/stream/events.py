@@ -8,8 +8,8 @@ import numpy as np
 import rerun as rr
 
 from tsas_cli.recordings.quality.finding import Finding
-from tsas_cli.records.base import Segment
-from tsas_cli.records.check import Check
+from tsas_cli.records.base import PhaseSegment
+from tsas_cli.records.check import CheckFile
 from tsas_cli.reporting.colours import dark
 from tsas_cli.reporting.phases import BY_KEY, PHASES
 from tsas_cli.reporting.stream.recorder import Entity, Recorder
@@ -78,7 +78,7 @@ def record_own_events(recorder: Recorder, run: SeenRun) -> None:
     record_events(recorder, run, "faults", faults)
 
 
-def reversals(segments: Sequence[Segment]) -> list[tuple[float, bool]]:
+def reversals(segments: Sequence[PhaseSegment]) -> list[tuple[float, bool]]:
     """Return when the drive turns [s], and whether it pulls from then on."""
     known = [(s.start_s, _UP[s.phase]) for s in segments if s.phase in _UP]
     return [(at, up) for (_, before), (at, up) in pairwise(known) if up != before]
@@ -86,7 +86,7 @@ def reversals(segments: Sequence[Segment]) -> list[tuple[float, bool]]:
 
 def faults_of(run: SeenRun) -> list[Finding]:
     """Return what a check found in a run."""
-    check = run.inputs.get(Check)
+    check = run.inputs.get(CheckFile)
     return [] if check is None else [f for f in check.findings if f.run == run.id]
 
 
@@ -109,7 +109,7 @@ def record_phases(recorder: Recorder, run: SeenRun) -> None:
     recorder.columns(phases_of(run), run.at(np.array(starts)), rr.StateChange.columns(state=keys))
 
 
-def changes(segments: Sequence[Segment]) -> tuple[list[float], list[str]]:
+def changes(segments: Sequence[PhaseSegment]) -> tuple[list[float], list[str]]:
     """Return when which phase begins [s]; a stretch in none begins with an empty name."""
     starts: list[float] = []
     keys: list[str] = []

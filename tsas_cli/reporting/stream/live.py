@@ -13,11 +13,11 @@ import pyarrow as pa
 from tsas_cli.identification.model import Model, write_model
 from tsas_cli.recordings.dataset import Dataset, read_dataset
 from tsas_cli.recordings.recording import Recording
-from tsas_cli.recordings.writing import write_answer, write_dataset
+from tsas_cli.recordings.writing import write_result, write_dataset
 from tsas_cli.records.base import ModelFile
 from tsas_cli.records.calibration import MODEL_FILE
-from tsas_cli.records.simulation import Simulation
-from tsas_cli.records.tracking import Tracking
+from tsas_cli.records.simulation import SimulationFile
+from tsas_cli.records.tracking import TrackingFile
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.stream.opened import to_viewer
 from tsas_cli.reporting.stream.recorder import Recorder
@@ -45,24 +45,24 @@ class LiveStream:
     failure: InputError | None = None
 
     def simulated(
-        self, dataset: Dataset, stage: Simulation, answer: Recording, model: Model
+        self, dataset: Dataset, stage: SimulationFile, answer: Recording, model: Model
     ) -> None:
         """Show a simulated run beside its recording; `stage` says of the runs so far."""
         (self.folder / "runs").mkdir(exist_ok=True)
-        write_answer(self.folder / "runs", answer)
+        write_result(self.folder / "runs", answer)
         fitted = stage.dataset.content()
         write_model(self.folder / MODEL_FILE, model, version=stage.version, dataset=fitted)
         self._show(
-            Inputs(dataset.only([answer.run.id]), {Simulation: stage}, {Simulation: self.folder})
+            Inputs(dataset.only([answer.run.id]), {SimulationFile: stage}, {SimulationFile: self.folder})
         )
 
-    def tracked(self, stage: Tracking, run: str, table: pa.Table) -> None:
+    def tracked(self, stage: TrackingFile, run: str, table: pa.Table) -> None:
         """Show a run of the closed loop; `stage` says of the runs so far."""
         stated = stage.settings.model_dump(by_alias=True, exclude=set(ModelFile.model_fields))
         folder = self.folder / run
         folder.mkdir()
         write_dataset(folder, manifest((run,), Settings.model_validate(stated)), {run: table})
-        self._show(Inputs(read_dataset(folder), {Tracking: stage}, {Tracking: folder}))
+        self._show(Inputs(read_dataset(folder), {TrackingFile: stage}, {TrackingFile: folder}))
 
     def lay_out(self) -> None:
         """Give every run so far its place in the viewer."""

@@ -22,7 +22,7 @@ from tsas_cli.reporting.stream.events import reversals
 from tsas_cli.reporting.stream.plane import Frame, frame_of, plane_view, record_frame
 from tsas_cli.reporting.stream.recorder import Entity, Recorder
 from tsas_cli.reporting.stream.seen import MEASURED, X_IN, Channel, SeenRun
-from tsas_cli.reporting.stream.sources import Source
+from tsas_cli.reporting.stream.sources import StreamSource
 
 Floats = npt.NDArray[np.float64]
 
@@ -69,7 +69,7 @@ class Portrait:
             recorder.static(self._entity("phase", phase.key), look)
         self._record_stretch(recorder, MEASURED, self.y, dark("ink"), place=0)
 
-    def record_answer(self, recorder: Recorder, source: Source, values: Floats) -> None:
+    def record_answer(self, recorder: Recorder, source: StreamSource, values: Floats) -> None:
         """Record the stretch that a model answers, shape (n,), over the measured displacement."""
         if self.there.any():
             place, which = 1 + self.channel.sources.index(source), source.which

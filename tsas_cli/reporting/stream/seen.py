@@ -11,15 +11,15 @@ from tsas_cli.recordings.columns import BY_NAME, TIME
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.run_files import RunColumns, open_run
-from tsas_cli.records.base import OfDataset, Segment
-from tsas_cli.records.calibration import Calibration
-from tsas_cli.records.check import Check
-from tsas_cli.records.diagnosis import Diagnosis
-from tsas_cli.records.simulation import Simulation
-from tsas_cli.records.tracking import Result, Tracking
+from tsas_cli.records.base import OfDataset, PhaseSegment
+from tsas_cli.records.calibration import CalibrationFile
+from tsas_cli.records.check import CheckFile
+from tsas_cli.records.diagnosis import DiagnosisFile
+from tsas_cli.records.simulation import SimulationFile
+from tsas_cli.records.tracking import TrackedResult, TrackingFile
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.stream.recorder import Entity, Times, times_of
-from tsas_cli.reporting.stream.sources import Source, sources
+from tsas_cli.reporting.stream.sources import StreamSource, sources
 
 Floats = npt.NDArray[np.float64]
 
@@ -34,7 +34,7 @@ class Channel:
     """A column of a run, and what stages say of it."""
 
     column: str
-    sources: tuple[Source, ...] = ()
+    sources: tuple[StreamSource, ...] = ()
 
     @property
     def quantity(self) -> str:
@@ -57,8 +57,8 @@ class SeenRun:
     inputs: Inputs
     file: RunColumns
     channels: tuple[Channel, ...]
-    segments: Sequence[Segment]
-    tracked: Result | None
+    segments: Sequence[PhaseSegment]
+    tracked: TrackedResult | None
 
     @property
     def id(self) -> str:
@@ -104,7 +104,7 @@ class SeenRun:
         """
         return self.x_in_mm if column == X_IN else self.file.read(column)
 
-    def told(self, column: str, source: Source) -> Floats:
+    def told(self, column: str, source: StreamSource) -> Floats:
         """Return what a stage says of a column, shape (n,), NaN for gaps.
 
         Raises
@@ -125,7 +125,7 @@ def seen_runs(inputs: Inputs) -> Iterator[SeenRun]:
     """
     if inputs.dataset is None:
         return
-    given, tracking = tuple(sources(inputs)), inputs.get(Tracking)
+    given, tracking = tuple(sources(inputs)), inputs.get(TrackingFile)
     tracked = {} if tracking is None else {result.run: result for result in tracking.results}
     for run in _taken(inputs, inputs.dataset):
         file = open_run(inputs.dataset.folder, run)
@@ -156,7 +156,7 @@ def _taken(inputs: Inputs, dataset: Dataset) -> list[Run]:
 
     What the checks found to be no recording is left out: it stands among their findings.
     """
-    check = inputs.get(Check)
+    check = inputs.get(CheckFile)
     broken = {f.run for f in check.findings if f.code in _BROKEN} if check else set()
     chosen = [stage.chosen for stage in inputs.stages.values() if isinstance(stage, OfDataset)]
     taken = {name for names in chosen for name in names or ()}
@@ -164,8 +164,8 @@ def _taken(inputs: Inputs, dataset: Dataset) -> list[Run]:
     return [run for run in dataset.runs if (every or run.id in taken) and run.id not in broken]
 
 
-def _segments(inputs: Inputs, run: str) -> Sequence[Segment]:
-    for stage in (inputs.get(Calibration), inputs.get(Diagnosis), inputs.get(Simulation)):
+def _segments(inputs: Inputs, run: str) -> Sequence[PhaseSegment]:
+    for stage in (inputs.get(CalibrationFile), inputs.get(DiagnosisFile), inputs.get(SimulationFile)):
         if stage is not None and run in stage.segments:
             return stage.segments[run]
     return ()

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 from tsas_cli.recordings.columns import nominal_name
 from tsas_cli.records.base import StageFile
-from tsas_cli.records.diagnosis import Diagnosis
-from tsas_cli.records.drive import Drive
-from tsas_cli.records.simulation import Simulation
+from tsas_cli.records.diagnosis import DiagnosisFile
+from tsas_cli.records.drive import DriveFile
+from tsas_cli.records.simulation import SimulationFile
 from tsas_cli.reporting.inputs import Inputs
 
 TENDON = frozenset({"f_in_N", "f_out_N", "x_out_mm"})
@@ -32,7 +32,7 @@ IDENTIFIED_DRIVE = Which("model_identified", "identified drive", "after")
 
 
 @dataclass(frozen=True)
-class Source:
+class StreamSource:
     """What a stage says of some columns, by `which` model, whose key ends the entities.
 
     What comes later in the alphabet is drawn over what comes before. `cleaned` where it is the
@@ -46,18 +46,18 @@ class Source:
     cleaned: bool = False
 
 
-def sources(inputs: Inputs) -> Iterator[Source]:
+def sources(inputs: Inputs) -> Iterator[StreamSource]:
     """Yield the sources that were given; where nothing is named, both models are one."""
-    simulation, diagnosis = inputs.get(Simulation), inputs.get(Diagnosis)
+    simulation, diagnosis = inputs.get(SimulationFile), inputs.get(DiagnosisFile)
     if simulation is not None:
-        yield Source(SIMULATED, Simulation, TENDON)
+        yield StreamSource(SIMULATED, SimulationFile, TENDON)
     if diagnosis is not None:
-        yield Source(NOMINAL, Diagnosis, TENDON, nominal_name)
+        yield StreamSource(NOMINAL, DiagnosisFile, TENDON, nominal_name)
         if diagnosis.named:
-            yield Source(EXTENDED, Diagnosis, TENDON)
+            yield StreamSource(EXTENDED, DiagnosisFile, TENDON)
     if simulation is not None or diagnosis is not None:
-        stage = Diagnosis if simulation is None else Simulation
-        yield Source(CONDITIONED, stage, DRIVE, cleaned=True)
-    if inputs.get(Drive) is not None:
-        yield Source(NOMINAL_DRIVE, Drive, DRIVE, nominal_name)
-        yield Source(IDENTIFIED_DRIVE, Drive, DRIVE)
+        stage = DiagnosisFile if simulation is None else SimulationFile
+        yield StreamSource(CONDITIONED, stage, DRIVE, cleaned=True)
+    if inputs.get(DriveFile) is not None:
+        yield StreamSource(NOMINAL_DRIVE, DriveFile, DRIVE, nominal_name)
+        yield StreamSource(IDENTIFIED_DRIVE, DriveFile, DRIVE)

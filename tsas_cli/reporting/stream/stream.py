@@ -17,7 +17,7 @@ from tsas_cli.reporting.stream.tabs import DIAGNOSIS, OVERVIEW, layout_of
 from tsas_cli.reporting.stream.tendon.content import record_tendon
 from tsas_cli.reporting.stream.tracking import record_tracking
 
-FILE = "stream.rrd"
+STREAM_FILE = "stream.rrd"
 CONTENT: tuple[Callable[[Recorder, SeenRun], None], ...] = (
     record_channels,
     record_tracking,

@@ -5,12 +5,12 @@ from collections.abc import Iterator
 from tsas_cli.identification.model import read_model
 from tsas_cli.recordings.quality.finding import Finding
 from tsas_cli.records.base import Value, parameters_of
-from tsas_cli.records.calibration import Calibration
-from tsas_cli.records.check import Check
-from tsas_cli.records.diagnosis import EXTENDED_MODEL, Diagnosis
-from tsas_cli.records.drive import Drive
-from tsas_cli.records.simulation import Simulation
-from tsas_cli.records.tracking import Tracking
+from tsas_cli.records.calibration import CalibrationFile
+from tsas_cli.records.check import CheckFile
+from tsas_cli.records.diagnosis import EXTENDED_MODEL, DiagnosisFile
+from tsas_cli.records.drive import DriveFile
+from tsas_cli.records.simulation import SimulationFile
+from tsas_cli.records.tracking import TrackingFile
 from tsas_cli.reporting.calibration import parameters
 from tsas_cli.reporting.content import Section, Table
 from tsas_cli.reporting.diagnosis import candidates, causes, gains
@@ -40,7 +40,7 @@ def diagnosis(inputs: Inputs) -> str | None:
     InputError
         The extended model cannot be read.
     """
-    found, drive = inputs.get(Diagnosis), inputs.get(Drive)
+    found, drive = inputs.get(DiagnosisFile), inputs.get(DriveFile)
     if found is not None:
         parts = (
             *causes.parts(found),
@@ -50,36 +50,36 @@ def diagnosis(inputs: Inputs) -> str | None:
             _extended(inputs),
         )
         told = tuple(part for part in parts if part is not None)
-        return section_text(Section("diagnosis", "Diagnosis", (found.reason,), parts=told))
+        return section_text(Section("diagnosis", "DiagnosisFile", (found.reason,), parts=told))
     return None if drive is None else section_text(told_of(drive))
 
 
 def _short(inputs: Inputs) -> Iterator[Section]:
     """Yield what each stage says in few words and narrow tables."""
-    if found := inputs.get(Diagnosis):
+    if found := inputs.get(DiagnosisFile):
         named = tuple(_narrow(p, n) for cause in found.named for n, p in cause.parameters.items())
         both = Table("What is named", _NARROW, named, numeric=frozenset({1, 2})), _held_out(found)
         tables = tuple(table for table in both if table.rows)
         after = (f"Next: {found.next_experiment}",) if found.next_experiment else ()
-        yield Section("diagnosis", "Diagnosis", (found.reason,), tables=tables, closing=after)
-    if tracking := inputs.get(Tracking):
+        yield Section("diagnosis", "DiagnosisFile", (found.reason,), tables=tables, closing=after)
+    if tracking := inputs.get(TrackingFile):
         said = tuple(best_and_worst(tracking))
         table = _scores(tracking)
-        yield Section("tracking", "Tracking", said, points=tracking.notes, tables=(table,))
-    if drive := inputs.get(Drive):
+        yield Section("tracking", "TrackingFile", said, points=tracking.notes, tables=(table,))
+    if drive := inputs.get(DriveFile):
         told = told_of(drive)
-        yield Section("drive", "Drive", told.intro, equations=told.equations)
-    if simulation := inputs.get(Simulation):
+        yield Section("drive", "DriveFile", told.intro, equations=told.equations)
+    if simulation := inputs.get(SimulationFile):
         table = _errors(simulation)
-        yield Section("simulation", "Simulation", points=simulation.notes, tables=(table,))
-    if calibration := inputs.get(Calibration):
+        yield Section("simulation", "SimulationFile", points=simulation.notes, tables=(table,))
+    if calibration := inputs.get(CalibrationFile):
         rows = tuple(
             _narrow(p, p.name if p.run is None else f"{p.name}, run {p.run}")
             for p in calibration.parameters
         )
         table, said = Table("Parameters", _NARROW, rows), calibration.cannot_tell
-        yield Section("calibration", "Calibration", points=said, tables=(table,))
-    if check := inputs.get(Check):
+        yield Section("calibration", "CalibrationFile", points=said, tables=(table,))
+    if check := inputs.get(CheckFile):
         found_out = tuple(_finding(finding) for finding in check.findings)
         said = () if found_out else ("The checks found nothing.",)
         yield Section("check", "Checks", said, points=found_out)
@@ -95,7 +95,7 @@ def _narrow(p: Value, name: str) -> tuple[str, ...]:
     return (name, *with_interval(p.value, p.interval_low, p.interval_high), unit)
 
 
-def _held_out(found: Diagnosis) -> Table:
+def _held_out(found: DiagnosisFile) -> Table:
     rows = tuple(
         (name, plain(c.rmse_before, 3), plain(c.rmse_after, 3), plain(c.noise_floor, 3), c.unit)
         for name, c in found.channels.items()
@@ -104,7 +104,7 @@ def _held_out(found: Diagnosis) -> Table:
     return Table("Error on held-out data", header, rows, numeric=frozenset({1, 2, 3}))
 
 
-def _scores(tracking: Tracking) -> Table:
+def _scores(tracking: TrackingFile) -> Table:
     rows = tuple(
         (result.controller, result.condition, plain(result.scores.rmse_N.mean))
         for result in tracking.results
@@ -112,7 +112,7 @@ def _scores(tracking: Tracking) -> Table:
     return Table("How well it is followed", ("controller", "condition", "RMSE [N]"), rows)
 
 
-def _errors(simulation: Simulation) -> Table:
+def _errors(simulation: SimulationFile) -> Table:
     rows = tuple(
         (run_id, name, plain(channel.rmse, 3), plain(channel.noise, 3))
         for run_id, run in simulation.runs.items()
@@ -123,6 +123,6 @@ def _errors(simulation: Simulation) -> Table:
 
 
 def _extended(inputs: Inputs) -> Section:
-    model = read_model(inputs.folders[Diagnosis] / EXTENDED_MODEL)
+    model = read_model(inputs.folders[DiagnosisFile] / EXTENDED_MODEL)
     table = parameters.table(f"Parameters of {EXTENDED_MODEL}", parameters_of(model.estimates))
     return Section("model", "The model with what is named", tables=(table,))

@@ -15,7 +15,7 @@ from tsas_cli.reporting.drawing import picture
 from tsas_cli.reporting.figures import bound, line
 from tsas_cli.reporting.numbers import plain
 from tsas_cli.reporting.tracking.over_time import mark_change
-from tsas_cli.reporting.tracking.runs import ESTIMATES, Condition, Followed
+from tsas_cli.reporting.tracking.runs import ESTIMATES, RunsUnderCondition, TrackedRun
 
 _WHAT = (
     "The estimates φ̂ of the drive's parameters (Yang 2025, Eq. 44), which stay between the dashed "
@@ -26,7 +26,7 @@ Floats = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Estimate:
+class AdaptiveEstimate:
     """One parameter: symbol, unit, values over time, shape (n,), and bounds."""
 
     symbol: str
@@ -36,7 +36,7 @@ class Estimate:
     highest: float
 
 
-def part(conditions: tuple[Condition, ...], law: Adaptive) -> Section | None:
+def part(conditions: tuple[RunsUnderCondition, ...], law: Adaptive) -> Section | None:
     """Return the part, None where no controller adapts."""
     runs = [(c, run) for c in conditions for run in c.runs if run.name == ADAPTIVE]
     if not runs:
@@ -62,13 +62,13 @@ def part(conditions: tuple[Condition, ...], law: Adaptive) -> Section | None:
     )
 
 
-def _estimates(run: Followed, law: Adaptive) -> Iterator[Estimate]:
+def _estimates(run: TrackedRun, law: Adaptive) -> Iterator[AdaptiveEstimate]:
     names = zip(ESTIMATES, _SYMBOLS, law.lowest, law.highest, strict=True)
     for column, (symbol, unit), lowest, highest in names:
-        yield Estimate(symbol, unit, run.columns[column], lowest, highest)
+        yield AdaptiveEstimate(symbol, unit, run.columns[column], lowest, highest)
 
 
-def _rows(condition: str, run: Followed, law: Adaptive) -> Iterator[tuple[str, ...]]:
+def _rows(condition: str, run: TrackedRun, law: Adaptive) -> Iterator[tuple[str, ...]]:
     for it in _estimates(run, law):
         at_bound = (it.values <= it.lowest) | (it.values >= it.highest)
         yield (
@@ -83,7 +83,7 @@ def _rows(condition: str, run: Followed, law: Adaptive) -> Iterator[tuple[str, .
         )
 
 
-def _picture(condition: Condition, run: Followed, law: Adaptive) -> Picture:
+def _picture(condition: RunsUnderCondition, run: TrackedRun, law: Adaptive) -> Picture:
     estimates = tuple(_estimates(run, law))
     said = "; ".join(
         f"{it.symbol} from {plain(float(it.values[0]), 3)} to {plain(float(it.values[-1]), 3)} "
@@ -108,7 +108,7 @@ def draw_estimates(
     figure: Any,
     *,
     time_s: Floats,
-    estimates: Sequence[Estimate],
+    estimates: Sequence[AdaptiveEstimate],
     change_s: float | None,
 ) -> None:
     """Draw one panel for each estimate, its axis in powers of ten where all is positive."""

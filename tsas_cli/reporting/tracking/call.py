@@ -2,10 +2,10 @@
 
 from collections.abc import Iterator
 
-from tsas_cli.records.tracking import Tracking
+from tsas_cli.records.tracking import TrackingFile
 
 
-def options(tracking: Tracking) -> Iterator[str]:
+def options(tracking: TrackingFile) -> Iterator[str]:
     """Yield the options, files by their names."""
     changes = [change for changes in tracking.conditions.values() for change in changes]
     if tracking.model.sha256 is not None:
@@ -33,7 +33,7 @@ def options(tracking: Tracking) -> Iterator[str]:
     yield from ("--seeds", str(last - first + 1), "--seed", str(first))
 
 
-def files_read(tracking: Tracking) -> dict[str, str]:
+def files_read(tracking: TrackingFile) -> dict[str, str]:
     """Return the checksums of models and reference by file, of those that were given."""
     named = (tracking.model, tracking.plant, tracking.drive, tracking.reference)
     return {one.file: one.sha256 for one in named if one.sha256 is not None}

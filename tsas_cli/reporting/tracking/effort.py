@@ -5,8 +5,8 @@ from functools import partial
 from tsas_cli.reporting.content import Picture, Section
 from tsas_cli.reporting.drawing import picture
 from tsas_cli.reporting.numbers import plain
-from tsas_cli.reporting.tracking.over_time import Curve, draw_panels, panels_in
-from tsas_cli.reporting.tracking.runs import ASKED, Condition, Followed
+from tsas_cli.reporting.tracking.over_time import TimeCurve, draw_panels, panels_in
+from tsas_cli.reporting.tracking.runs import ASKED, RunsUnderCondition, TrackedRun
 
 _WHAT = (
     "The motor speed u that is asked for, feedforward and controller together. In the table above, "
@@ -15,13 +15,13 @@ _WHAT = (
 )
 
 
-def part(conditions: tuple[Condition, ...]) -> Section:
+def part(conditions: tuple[RunsUnderCondition, ...]) -> Section:
     """Return the part, one picture for each condition."""
     pictures = tuple(map(_picture, conditions))
     return Section("tracking-effort", "Control effort", (_WHAT,), pictures=pictures)
 
 
-def _picture(condition: Condition) -> Picture:
+def _picture(condition: RunsUnderCondition) -> Picture:
     first = condition.runs[0]
     curves = [_curve(run) for run in condition.runs]
     said = "; ".join(
@@ -45,6 +45,6 @@ def _picture(condition: Condition) -> Picture:
     )
 
 
-def _curve(run: Followed) -> Curve:
+def _curve(run: TrackedRun) -> TimeCurve:
     chatter = plain(run.result.scores.chatter_rpm_per_s.mean, 3)
-    return Curve(f"{run.name}, chatter {chatter} rpm/s", run.name, run.columns[ASKED])
+    return TimeCurve(f"{run.name}, chatter {chatter} rpm/s", run.name, run.columns[ASKED])

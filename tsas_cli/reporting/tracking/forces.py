@@ -8,8 +8,8 @@ import numpy.typing as npt
 from tsas_cli.reporting.content import Picture, Section
 from tsas_cli.reporting.drawing import picture
 from tsas_cli.reporting.numbers import plain, spanned
-from tsas_cli.reporting.tracking.over_time import Curve, draw_panels, draw_together, panels_in
-from tsas_cli.reporting.tracking.runs import TRUE, WANTED, Condition, Followed
+from tsas_cli.reporting.tracking.over_time import TimeCurve, draw_panels, draw_together, panels_in
+from tsas_cli.reporting.tracking.runs import TRUE, WANTED, RunsUnderCondition, TrackedRun
 
 Floats = npt.NDArray[np.float64]
 _OUTSIDE = 0.02
@@ -19,7 +19,7 @@ _SCALES = (
 )
 
 
-def followed(conditions: tuple[Condition, ...]) -> Section:
+def followed(conditions: tuple[RunsUnderCondition, ...]) -> Section:
     """Return the part that shows wanted and true force, one picture for each condition."""
     return Section(
         "tracking-force",
@@ -29,17 +29,17 @@ def followed(conditions: tuple[Condition, ...]) -> Section:
     )
 
 
-def errors(conditions: tuple[Condition, ...]) -> Section:
+def errors(conditions: tuple[RunsUnderCondition, ...]) -> Section:
     """Return the part that shows the errors, one picture for each condition."""
     return Section(
         "tracking-error", "Tracking error", (_SCALES,), pictures=tuple(map(_error, conditions))
     )
 
 
-def _force(condition: Condition) -> Picture:
+def _force(condition: RunsUnderCondition) -> Picture:
     first = condition.runs[0]
     wanted = first.columns[WANTED]
-    curves = [Curve(run.name, run.name, run.columns[TRUE]) for run in condition.runs]
+    curves = [TimeCurve(run.name, run.name, run.columns[TRUE]) for run in condition.runs]
     spans = "; ".join(f"{c.label} {spanned(c.values)}" for c in curves)
     return picture(
         partial(
@@ -57,7 +57,7 @@ def _force(condition: Condition) -> Picture:
     )
 
 
-def _error(condition: Condition) -> Picture:
+def _error(condition: RunsUnderCondition) -> Picture:
     first = condition.runs[0]
     curves = [_error_curve(run) for run in condition.runs]
     spans = "; ".join(f"{c.label}, {spanned(c.values)}" for c in curves)
@@ -77,7 +77,7 @@ def _error(condition: Condition) -> Picture:
     )
 
 
-def _error_curve(run: Followed) -> Curve:
+def _error_curve(run: TrackedRun) -> TimeCurve:
     error = run.error
     rmse = plain(float(np.sqrt(np.mean(error**2))), 3)
-    return Curve(f"{run.name}, RMSE {rmse} N", run.name, error)
+    return TimeCurve(f"{run.name}, RMSE {rmse} N", run.name, error)

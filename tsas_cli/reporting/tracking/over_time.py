@@ -14,7 +14,7 @@ Floats = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Curve:
+class TimeCurve:
     """What it is called, the controller that it is of, and its values, shape (n,)."""
 
     label: str
@@ -32,7 +32,7 @@ def draw_together(
     *,
     time_s: Floats,
     wanted: Floats,
-    curves: Sequence[Curve],
+    curves: Sequence[TimeCurve],
     label: str,
     change_s: float | None = None,
 ) -> None:
@@ -51,7 +51,7 @@ def draw_panels(
     figure: Any,
     *,
     time_s: Floats,
-    curves: Sequence[Curve],
+    curves: Sequence[TimeCurve],
     label: str,
     change_s: float | None = None,
     band: float | None = None,

@@ -9,13 +9,13 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.controllers.signals import ORDER, error_filter, filtered
-from tsas_cli.records.tracking import Settings
+from tsas_cli.records.tracking import StatedSettings
 from tsas_cli.reporting.colours import STAND_IN, of_controller
 from tsas_cli.reporting.content import Picture, Section
 from tsas_cli.reporting.decimation import kept_cells
 from tsas_cli.reporting.drawing import picture
 from tsas_cli.reporting.numbers import plain
-from tsas_cli.reporting.tracking.runs import X_IN, X_INV, Condition, Followed
+from tsas_cli.reporting.tracking.runs import X_IN, X_INV, RunsUnderCondition, TrackedRun
 
 Floats = npt.NDArray[np.float64]
 _ACROSS = 2
@@ -30,7 +30,7 @@ class Orbit:
     y: Floats
 
 
-def part(conditions: tuple[Condition, ...], settings: Settings) -> Section:
+def part(conditions: tuple[RunsUnderCondition, ...], settings: StatedSettings) -> Section:
     """Return the part, one picture for each condition."""
     what = (
         "The rate of the error e = x_inv − x_in of the drive over the error, both by the filter of "
@@ -42,7 +42,7 @@ def part(conditions: tuple[Condition, ...], settings: Settings) -> Section:
     return Section("tracking-phase", "Phase portraits", (what,), pictures=pictures)
 
 
-def _picture(condition: Condition, settings: Settings) -> Picture:
+def _picture(condition: RunsUnderCondition, settings: StatedSettings) -> Picture:
     orbits = [Orbit(run.name, *_error_and_rate(run, settings)) for run in condition.runs]
     said = "; ".join(
         f"{o.name} error up to {plain(_most(o.x), 3)} mm, rate up to {plain(_most(o.y), 3)} mm/s"
@@ -57,7 +57,7 @@ def _picture(condition: Condition, settings: Settings) -> Picture:
     )
 
 
-def _error_and_rate(run: Followed, settings: Settings) -> tuple[Floats, Floats]:
+def _error_and_rate(run: TrackedRun, settings: StatedSettings) -> tuple[Floats, Floats]:
     """Return what the filter of the controllers makes of the run's error, shape (n,) each."""
     A, b = error_filter(settings.loop.filter_Hz, 1.0 / settings.sensor.rate_Hz)
     state, error = np.zeros(ORDER), run.columns[X_INV] - run.columns[X_IN]

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.recordings.written import answers_of, columns_of
-from tsas_cli.records.tracking import ADAPTIVE, Change, Result, Tracking
+from tsas_cli.recordings.written import result_file, columns_of
+from tsas_cli.records.tracking import ADAPTIVE, ConditionChange, TrackedResult, TrackingFile
 from tsas_cli.reporting.inputs import Inputs
 
 Floats = npt.NDArray[np.float64]
@@ -18,10 +18,10 @@ _COLUMNS = ("time_s", WANTED, TRUE, ASKED, X_IN, X_INV)
 
 
 @dataclass(frozen=True)
-class Followed:
+class TrackedRun:
     """One run: its scores, and its columns by name, shape (n,) each."""
 
-    result: Result
+    result: TrackedResult
     columns: Mapping[str, Floats]
 
     @property
@@ -41,13 +41,13 @@ class Followed:
 
 
 @dataclass(frozen=True)
-class Condition:
+class RunsUnderCondition:
     """What is done to the plant, and the runs under it, at least one."""
 
     name: str
     number: int
-    changes: tuple[Change, ...]
-    runs: tuple[Followed, ...]
+    changes: tuple[ConditionChange, ...]
+    runs: tuple[TrackedRun, ...]
 
     @property
     def change_s(self) -> float | None:
@@ -55,7 +55,7 @@ class Condition:
         return max((c.from_s for c in self.changes if c.from_s > 0.0), default=None)
 
 
-def read_conditions(inputs: Inputs, tracking: Tracking) -> tuple[Condition, ...]:
+def read_conditions(inputs: Inputs, tracking: TrackingFile) -> tuple[RunsUnderCondition, ...]:
     """Read what the plots need, in the order of the file.
 
     Raises
@@ -63,13 +63,13 @@ def read_conditions(inputs: Inputs, tracking: Tracking) -> tuple[Condition, ...]
     InputError
         A run cannot be read, or lacks a column.
     """
-    folder = inputs.folders[Tracking]
-    found: dict[str, list[Followed]] = {}
+    folder = inputs.folders[TrackingFile]
+    found: dict[str, list[TrackedRun]] = {}
     for result in tracking.results:
         more = ESTIMATES if result.controller == ADAPTIVE else ()
-        followed = Followed(result, columns_of(answers_of(folder, result.run), (*_COLUMNS, *more)))
+        followed = TrackedRun(result, columns_of(result_file(folder, result.run), (*_COLUMNS, *more)))
         found.setdefault(result.condition, []).append(followed)
     return tuple(
-        Condition(name, number, tracking.conditions.get(name, ()), tuple(runs))
+        RunsUnderCondition(name, number, tracking.conditions.get(name, ()), tuple(runs))
         for number, (name, runs) in enumerate(found.items())
     )

@@ -1,6 +1,6 @@
 """The scores of every controller under every condition, with their spread over the seeds."""
 
-from tsas_cli.records.tracking import Spread, Tracking
+from tsas_cli.records.tracking import Spread, TrackingFile
 from tsas_cli.reporting.content import Table
 from tsas_cli.reporting.numbers import ABSENT, with_spread
 
@@ -14,7 +14,7 @@ _COLUMNS = (
 )
 
 
-def table(tracking: Tracking) -> Table:
+def table(tracking: TrackingFile) -> Table:
     """Return the table, with its spread where there is more than one seed."""
     seeds = tracking.seeds[1] - tracking.seeds[0] + 1
     over = f", mean ± standard deviation over {seeds} seeds of noise" if seeds > 1 else ""
@@ -32,7 +32,7 @@ def table(tracking: Tracking) -> Table:
     return Table(f"Scores{over}", header, rows, numeric=numeric).without_empty()
 
 
-def best_and_worst(tracking: Tracking) -> list[str]:
+def best_and_worst(tracking: TrackingFile) -> list[str]:
     """Return, for each condition, who follows best and who worst, in a sentence."""
     said = []
     for condition in dict.fromkeys(result.condition for result in tracking.results):

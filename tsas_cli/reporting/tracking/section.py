@@ -3,17 +3,17 @@
 import numpy as np
 
 from tsas_cli.records.base import ModelFile
-from tsas_cli.records.tracking import Tracking
+from tsas_cli.records.tracking import TrackingFile
 from tsas_cli.reporting.content import Section
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import plain
 from tsas_cli.reporting.tracking import adaptation, effort, forces, portraits, scores
-from tsas_cli.reporting.tracking.runs import WANTED, Condition, read_conditions
+from tsas_cli.reporting.tracking.runs import WANTED, RunsUnderCondition, read_conditions
 
 
 def section(inputs: Inputs) -> Section | None:
     """Return the section of the closed loop, None where nothing was tracked."""
-    tracking = inputs.get(Tracking)
+    tracking = inputs.get(TrackingFile)
     if tracking is None:
         return None
     conditions = read_conditions(inputs, tracking)
@@ -26,7 +26,7 @@ def section(inputs: Inputs) -> Section | None:
     )
     return Section(
         "tracking",
-        "Tracking",
+        "TrackingFile",
         tuple(_intro(tracking, conditions)),
         points=tracking.notes,
         tables=(scores.table(tracking),),
@@ -34,7 +34,7 @@ def section(inputs: Inputs) -> Section | None:
     )
 
 
-def _intro(tracking: Tracking, conditions: tuple[Condition, ...]) -> list[str]:
+def _intro(tracking: TrackingFile, conditions: tuple[RunsUnderCondition, ...]) -> list[str]:
     said = [_wanted(tracking, conditions[0]), _loop(tracking)]
     said += [_change(condition) for condition in conditions if condition.changes]
     if tracking.gains != "default":
@@ -46,7 +46,7 @@ def _intro(tracking: Tracking, conditions: tuple[Condition, ...]) -> list[str]:
     return [*said, "Keep in mind:"] if tracking.notes else said
 
 
-def _wanted(tracking: Tracking, condition: Condition) -> str:
+def _wanted(tracking: TrackingFile, condition: RunsUnderCondition) -> str:
     run = condition.runs[0]
     wanted = run.columns[WANTED]
     low, high = plain(float(wanted.min()), 3), plain(float(wanted.max()), 3)
@@ -57,7 +57,7 @@ def _wanted(tracking: Tracking, condition: Condition) -> str:
     )
 
 
-def _loop(tracking: Tracking) -> str:
+def _loop(tracking: TrackingFile) -> str:
     sensor = tracking.settings.sensor
     same = tracking.model == tracking.plant
     tendon = ", with the dynamic chain as its tendon" if tracking.dynamics == "lugre" else ""
@@ -73,7 +73,7 @@ def _name(model: ModelFile) -> str:
     return "the data sheet" if model.sha256 is None else model.file
 
 
-def _change(condition: Condition) -> str:
+def _change(condition: RunsUnderCondition) -> str:
     changes = ", ".join(
         f"`{c.quantity}` = {c.value:g} "
         + (f"from {c.from_s:g} s on (dotted line)" if c.from_s > 0.0 else "from the start")

@@ -7,7 +7,7 @@ from pathlib import Path
 from urllib.parse import urlencode
 
 from tsas_cli.reporting.viewer.child import Child, viewer_child
-from tsas_cli.reporting.viewer.page_server import FILE, served_page
+from tsas_cli.reporting.viewer.page_server import PAGE_STREAM, served_page
 from tsas_cli.reporting.viewer.ports import LOOPBACK, free_ports
 
 BIND = ("--bind", LOOPBACK)
@@ -55,7 +55,7 @@ def _page(file: Path | None, port: int | None) -> Iterator[Viewer]:
         shown = _proxy(data[0])
         call += [*ALL_OF_IT, "--port", str(data[0])]
     else:
-        shown = f"http://{LOOPBACK}:{own}{FILE}"
+        shown = f"http://{LOOPBACK}:{own}{PAGE_STREAM}"
         call.append(shown)
     with (
         viewer_child(call, port=inside) as child,

@@ -16,7 +16,7 @@ from threading import Thread
 
 from tsas_cli.reporting.viewer.ports import LOOPBACK
 
-FILE = "/stream.rrd"
+PAGE_STREAM = "/stream.rrd"
 KEPT = ("Content-Type", "Content-Length", "rerun-final-length")  # what the page reads of headers
 HOSTS = (LOOPBACK, "localhost")
 POLICY = (
@@ -30,7 +30,7 @@ AT_ONCE = 1 << 20  # bytes
 def served_page(
     port: int, *, inside: int, file: Path | None = None, data: Sequence[int] = ()
 ) -> Iterator[None]:
-    """Serve the page that Rerun serves at the port `inside`, and a file at `FILE`.
+    """Serve the page that Rerun serves at the port `inside`, and a file at `PAGE_STREAM`.
 
     Of other addresses the page may only reach the ports `data`, which send what is live.
     """
@@ -44,7 +44,7 @@ def served_page(
                 self.send_error(HTTPStatus.FORBIDDEN)
                 return
             with suppress(ConnectionError):  # the browser has seen enough
-                if file is not None and self.path == FILE:
+                if file is not None and self.path == PAGE_STREAM:
                     self._send_file(file)
                 else:
                     self._pass_on()

@@ -5,16 +5,16 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
-from tsas_cli.recordings.storage import Place
+from tsas_cli.recordings.storage import Location
 from tsas_cli.reporting.inputs import read_inputs
-from tsas_cli.reporting.stream import FILE, write_stream
+from tsas_cli.reporting.stream import STREAM_FILE, write_stream
 from tsas_cli.reporting.stream.opened import is_finished
 from tsas_cli.support.errors import InputError
 
 
 @contextmanager
 def stream_of(
-    paths: Sequence[Place], step: Callable[[], None] = lambda: None
+    paths: Sequence[Location], step: Callable[[], None] = lambda: None
 ) -> Iterator[tuple[Path, list[str]]]:
     """Yield the stream's file, and sentences about it; what is made here is gone afterwards.
 
@@ -32,7 +32,7 @@ def stream_of(
             raise InputError("is not there", where=path, expected="an .rrd file or a folder")
     first, *others = paths
     if isinstance(first, Path) and not others:
-        stream = first / FILE if first.is_dir() else first
+        stream = first / STREAM_FILE if first.is_dir() else first
         if stream.is_file():
             yield stream, _notes(stream)
             return
@@ -44,7 +44,7 @@ def stream_of(
                 expected="folders of stages, or one .rrd file alone",
             )
     with tempfile.TemporaryDirectory(prefix="tsas-view-") as folder:
-        stream = Path(folder) / FILE
+        stream = Path(folder) / STREAM_FILE
         write_stream(read_inputs(paths), stream, step=step)
         yield stream, []
 

@@ -7,7 +7,7 @@ import pytest
 
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model
-from tsas_cli.physics.ends import Drive
+from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.response import simulate
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.reporting.stream.sources import EXTENDED, NOMINAL
@@ -41,7 +41,7 @@ def model(**values):
 
 @pytest.fixture(scope="module")
 def both():
-    drive = Drive(X_IN, time_s=TIME_S - 5.0)
+    drive = DriveInput(X_IN, time_s=TIME_S - 5.0)
     models = {NOMINAL: model(**VALUES), EXTENDED: model(**VALUES, **FREE)}
     answers = [simulate(one.rig(RUN), drive).f_in_N for one in models.values()]
     return follow(RUN, TIME_S, drive, models, answers)
@@ -88,5 +88,5 @@ def test_the_last_turn_and_the_front_of_each_moment(both):
 
 
 def test_the_lumped_model_has_no_tendon():
-    drive = Drive(X_IN, time_s=TIME_S - 5.0)
+    drive = DriveInput(X_IN, time_s=TIME_S - 5.0)
     assert follow(RUN, TIME_S, drive, {NOMINAL: model(**VALUES)}, [X_IN], "static") == {}

@@ -12,14 +12,14 @@ import numpy as np
 
 from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
 from tsas_cli.recordings.quality.samples import plateaus
-from tsas_cli.recordings.quality.trial import Trial
+from tsas_cli.recordings.quality.trial import RunSignals
 from tsas_cli.support.wording import count_of
 
 _FEWEST_ROWS = 5
 _TRAVEL = 0.05  # of the drive's span
 
 
-def find(trial: Trial) -> Iterator[Remark | CannotTell]:
+def find(trial: RunSignals) -> Iterator[Remark | CannotTell]:
     """Yield the clipped extremes of each displacement and tension."""
     for name in trial.mechanical:
         if name == trial.prescribed:
@@ -31,7 +31,7 @@ def find(trial: Trial) -> Iterator[Remark | CannotTell]:
             yield from _clipping(trial, name, end, sign)
 
 
-def _clipping(trial: Trial, name: str, end: str, sign: int) -> Iterator[Remark]:
+def _clipping(trial: RunSignals, name: str, end: str, sign: int) -> Iterator[Remark]:
     values = trial.channels[name]
     extreme = trial.highest[name] if sign > 0 else trial.lowest[name]
     flat = [
@@ -53,7 +53,7 @@ def _clipping(trial: Trial, name: str, end: str, sign: int) -> Iterator[Remark]:
         )
 
 
-def _motion_continues(trial: Trial, name: str, rows: slice, sign: int) -> bool:
+def _motion_continues(trial: RunSignals, name: str, rows: slice, sign: int) -> bool:
     """Return whether the motion continues beyond its position at the start of the plateau."""
     coarse = 4.0 * trial.step[name] / max(trial.span[name], 1e-300)
     for other in trial.references(name):

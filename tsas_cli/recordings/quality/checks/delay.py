@@ -14,7 +14,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
-from tsas_cli.recordings.quality.trial import Trial
+from tsas_cli.recordings.quality.trial import RunSignals
 from tsas_cli.recordings.recording import Floats
 
 _MOST_CYCLES = 100  # evenly spread; more would not improve the estimate
@@ -25,7 +25,7 @@ _SPRING = 0.002  # largest share of the tension's variance that a spring leaves 
 _OWN = 0.02  # least share of the speed that the other terms leave unexplained
 
 
-def find(trial: Trial) -> Iterator[Remark | CannotTell]:
+def find(trial: RunSignals) -> Iterator[Remark | CannotTell]:
     """Yield the mean delay of the cycles if it exceeds its confidence interval and the limit."""
     reason = _not_judged(trial)
     if reason:
@@ -49,13 +49,13 @@ def find(trial: Trial) -> Iterator[Remark | CannotTell]:
         )
 
 
-def _not_judged(trial: Trial) -> str:
+def _not_judged(trial: RunSignals) -> str:
     if trial.recording.run.load != "spring":
         return "the load is no spring, so the tension at the load need not follow the displacement"
     return "" if trial.increases else "time does not increase"
 
 
-def _smallest(trial: Trial) -> float:
+def _smallest(trial: RunSignals) -> float:
     """Return the shortest delay that matters [s]."""
     interval = float(np.median(np.diff(trial.time_s)))
     force = trial.channels["f_out_N"]
@@ -63,7 +63,7 @@ def _smallest(trial: Trial) -> float:
     return max(0.5 * interval, 0.25 * trial.noise["f_out_N"] / float(rate))
 
 
-def _delay(trial: Trial, rows: slice) -> float:
+def _delay(trial: RunSignals, rows: slice) -> float:
     """Return the delay of f_out behind x_out in one cycle [s]; NaN if it is not identifiable."""
     x, y, time = (
         trial.channels["x_out_mm"][rows],

@@ -10,12 +10,12 @@ from collections.abc import Iterator
 import numpy as np
 
 from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
-from tsas_cli.recordings.quality.trial import Trial
+from tsas_cli.recordings.quality.trial import RunSignals
 
 _CLEAR = 0.03
 
 
-def find(trial: Trial) -> Iterator[Remark | CannotTell]:
+def find(trial: RunSignals) -> Iterator[Remark | CannotTell]:
     """Yield the exchange if f_in is lower in contraction than in loosening at the same f_out."""
     spring = trial.recording.run.load == "spring"
     against = [n for n in ("f_in_N", "f_out_N") if spring and (trial.follows(n) or 0.0) < 0.0]
@@ -37,7 +37,7 @@ def find(trial: Trial) -> Iterator[Remark | CannotTell]:
         )
 
 
-def _excess_while_pulling(trial: Trial) -> float:
+def _excess_while_pulling(trial: RunSignals) -> float:
     """Return d of f_in = a + b f_out + d/2 · direction, fitted while the drive moves [N].
 
     A wrong gain or offset of a sensor enters a and b. If the load's own tension reverses with the

@@ -7,13 +7,13 @@ repeatability is unknown.
 from collections.abc import Iterator
 
 from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
-from tsas_cli.recordings.quality.trial import Trial
+from tsas_cli.recordings.quality.trial import RunSignals
 from tsas_cli.support.wording import count_of
 
 _ENOUGH = 3
 
 
-def find(trial: Trial) -> Iterator[Remark | CannotTell]:
+def find(trial: RunSignals) -> Iterator[Remark | CannotTell]:
     """Yield a remark if the drive has fewer than three reversals."""
     reversals = max(len(trial.strokes) - 1, 0)
     if reversals >= _ENOUGH:

@@ -11,14 +11,14 @@ import numpy as np
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
 from tsas_cli.recordings.quality.samples import Booleans
-from tsas_cli.recordings.quality.trial import Trial
+from tsas_cli.recordings.quality.trial import RunSignals
 from tsas_cli.support.wording import count_of
 
 _COMMON = 0.05  # share of long intervals from which on they are jitter
 _REMEDY = "look for lost samples at the source; the stages leave the gap out"
 
 
-def find(trial: Trial) -> Iterator[Remark | CannotTell]:
+def find(trial: RunSignals) -> Iterator[Remark | CannotTell]:
     """Yield the missing rows, then the empty cells of each column."""
     if trial.increases:
         yield from _missing_rows(trial)
@@ -30,7 +30,7 @@ def find(trial: Trial) -> Iterator[Remark | CannotTell]:
             yield _empty_cells(trial, name, empty)
 
 
-def _missing_rows(trial: Trial) -> Iterator[Remark]:
+def _missing_rows(trial: RunSignals) -> Iterator[Remark]:
     interval = np.diff(trial.time_s)
     median = float(np.median(interval))
     scatter = 1.4826 * float(np.median(np.abs(interval - median)))
@@ -48,7 +48,7 @@ def _missing_rows(trial: Trial) -> Iterator[Remark]:
         )
 
 
-def _empty_cells(trial: Trial, name: str, empty: Booleans) -> Remark:
+def _empty_cells(trial: RunSignals, name: str, empty: Booleans) -> Remark:
     if empty.all() and (trial.overall is None or name not in trial.overall.span):
         return Remark("error", f"{name} holds no value at all", "leave the column out", name)
     edges = np.flatnonzero(np.diff(np.concatenate(([False], empty, [False])).astype(np.int8)))

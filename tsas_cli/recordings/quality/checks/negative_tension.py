@@ -9,12 +9,12 @@ from collections.abc import Iterator
 import numpy as np
 
 from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
-from tsas_cli.recordings.quality.trial import Trial
+from tsas_cli.recordings.quality.trial import RunSignals
 
 _SPAN = 0.02  # of the range, below zero: a slack tendon on a sensor with a small offset
 
 
-def find(trial: Trial) -> Iterator[Remark | CannotTell]:
+def find(trial: RunSignals) -> Iterator[Remark | CannotTell]:
     """Yield the tensions with negative values that neither noise nor a small offset explains."""
     for name in trial.mechanical:
         if not name.startswith("f_"):

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
-from tsas_cli.recordings.quality.trial import Stroke, Trial
+from tsas_cli.recordings.quality.trial import Stroke, RunSignals
 
 _ENOUGH = 0.2
 _FEWEST_ROWS = 10
@@ -21,7 +21,7 @@ _INDICATORS = {
 }
 
 
-def find(trial: Trial) -> Iterator[Remark | CannotTell]:
+def find(trial: RunSignals) -> Iterator[Remark | CannotTell]:
     """Yield the directions in which the distal end moves in too small a part of each stroke."""
     indicators = [n for n in _INDICATORS[trial.recording.run.load] if n in trial.channels]
     if not indicators or not trial.strokes:
@@ -44,7 +44,7 @@ def find(trial: Trial) -> Iterator[Remark | CannotTell]:
             )
 
 
-def _moving(trial: Trial, name: str, stroke: Stroke) -> float:
+def _moving(trial: RunSignals, name: str, stroke: Stroke) -> float:
     """Return the share of a stroke's travel that lies after the distal end has begun to move."""
     values, x = trial.channels[name][stroke.rows], trial.channels["x_in_mm"][stroke.rows]
     valid = np.isfinite(values) & np.isfinite(x)

@@ -13,11 +13,11 @@ import numpy as np
 
 from tsas_cli.recordings.columns import largest
 from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
-from tsas_cli.recordings.quality.trial import Trial
+from tsas_cli.recordings.quality.trial import RunSignals
 from tsas_cli.support.wording import count_of
 
 
-def find(trial: Trial) -> Iterator[Remark | CannotTell]:
+def find(trial: RunSignals) -> Iterator[Remark | CannotTell]:
     """Yield the number of outliers of each channel, and the farthest one."""
     for name, outlying in trial.outlying.items():
         rows = np.flatnonzero(outlying)

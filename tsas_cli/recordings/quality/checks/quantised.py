@@ -7,12 +7,12 @@ than a 500th of the range; a warning from a 50th of the range on.
 from collections.abc import Iterator
 
 from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
-from tsas_cli.recordings.quality.trial import Trial
+from tsas_cli.recordings.quality.trial import RunSignals
 
 _NOTE, _WARNING = 1 / 500, 1 / 50
 
 
-def find(trial: Trial) -> Iterator[Remark | CannotTell]:
+def find(trial: RunSignals) -> Iterator[Remark | CannotTell]:
     """Yield the channels whose step exceeds their noise and a share of their span."""
     for name in trial.mechanical:
         step, noise, span = trial.step[name], trial.noise[name], trial.span[name]

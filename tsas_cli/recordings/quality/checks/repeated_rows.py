@@ -13,14 +13,14 @@ import numpy as np
 
 from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
 from tsas_cli.recordings.quality.samples import Booleans, smallest_change
-from tsas_cli.recordings.quality.trial import Trial
+from tsas_cli.recordings.quality.trial import RunSignals
 from tsas_cli.recordings.recording import Floats
 
 _BLOCK = 32  # rows
 _MEDIAN_OF_THIRD = 0.6745 * math.sqrt(20.0)  # of |third difference|, for noise of unit deviation
 
 
-def find(trial: Trial) -> Iterator[Remark | CannotTell]:
+def find(trial: RunSignals) -> Iterator[Remark | CannotTell]:
     """Yield the number of exact repeats if it is far above that expected by chance."""
     if not trial.channels:
         yield CannotTell("no column besides time holds enough numbers")
@@ -46,7 +46,7 @@ def find(trial: Trial) -> Iterator[Remark | CannotTell]:
         )
 
 
-def _chances(trial: Trial, fresh: Booleans) -> Floats:
+def _chances(trial: RunSignals, fresh: Booleans) -> Floats:
     """Return the probability that a row equals the preceding one, for each block of fresh rows.
 
     It is the largest of a block and its two neighbours, for blocks at the edge of a rest.

@@ -10,12 +10,12 @@ from collections.abc import Iterator
 import numpy as np
 
 from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
-from tsas_cli.recordings.quality.trial import Trial
+from tsas_cli.recordings.quality.trial import RunSignals
 
 _CLEAR = 0.8
 
 
-def find(trial: Trial) -> Iterator[Remark | CannotTell]:
+def find(trial: RunSignals) -> Iterator[Remark | CannotTell]:
     """Yield the channels that move opposite to the drive, and the tensions of a pushing tendon."""
     pushing = [n for n in trial.mechanical if n.startswith("f_") and _pushes(trial, n)]
     scores = {name: trial.follows(name) for name in _followers(trial)}
@@ -35,13 +35,13 @@ def find(trial: Trial) -> Iterator[Remark | CannotTell]:
         yield CannotTell("no channel that follows x_in_mm moves visibly")
 
 
-def _followers(trial: Trial) -> list[str]:
+def _followers(trial: RunSignals) -> list[str]:
     """Return the channels that follow the drive; with a driven load, tensions need not."""
     spring = trial.recording.run.load == "spring"
     return [n for n in trial.mechanical if n == "x_out_mm" or (spring and n.startswith("f_"))]
 
 
-def _pushes(trial: Trial, name: str) -> bool:
+def _pushes(trial: RunSignals, name: str) -> bool:
     values = trial.channels[name]
     return bool(np.nanpercentile(values, 98.0) < -trial.visible(name))
 

@@ -11,13 +11,13 @@ import numpy as np
 
 from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
 from tsas_cli.recordings.quality.samples import rows_between_changes, smallest_change
-from tsas_cli.recordings.quality.trial import Trial
+from tsas_cli.recordings.quality.trial import RunSignals
 from tsas_cli.recordings.recording import Floats
 
 _FEWEST_CHANGES = 20
 
 
-def find(trial: Trial) -> Iterator[Remark | CannotTell]:
+def find(trial: RunSignals) -> Iterator[Remark | CannotTell]:
     """Yield the displacements and tensions that seldom change from one row to the next."""
     fresh = ~trial.repeats
     for name, values in trial.mechanical.items():

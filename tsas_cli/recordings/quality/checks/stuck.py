@@ -13,14 +13,14 @@ from tsas_cli.numerics.noise import noise_sd
 from tsas_cli.numerics.turning_points import turning_points
 from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark, Severity
 from tsas_cli.recordings.quality.samples import alternates, plateaus, rows_between_changes
-from tsas_cli.recordings.quality.trial import Trial
+from tsas_cli.recordings.quality.trial import RunSignals
 from tsas_cli.recordings.recording import Floats
 
 _FEWEST_UPDATES = 20
 _LEAST_NOISE = 1e-4  # of the span; less may be interpolation of a computed channel
 
 
-def find(trial: Trial) -> Iterator[Remark | CannotTell]:
+def find(trial: RunSignals) -> Iterator[Remark | CannotTell]:
     """Yield the longest stuck stretch of each displacement and tension."""
     for name, values in trial.mechanical.items():
         if name == trial.prescribed:
@@ -38,7 +38,7 @@ def find(trial: Trial) -> Iterator[Remark | CannotTell]:
             yield _remark("error", trial, name, max(stuck, key=lambda r: r.stop - r.start))
 
 
-def _remark(severity: Severity, trial: Trial, name: str, rows: slice) -> Remark:
+def _remark(severity: Severity, trial: RunSignals, name: str, rows: slice) -> Remark:
     begin, end = trial.time_s[rows.start], trial.time_s[rows.stop - 1]
     return Remark(
         severity,
@@ -50,7 +50,7 @@ def _remark(severity: Severity, trial: Trial, name: str, rows: slice) -> Remark:
     )
 
 
-def _hangs(trial: Trial, name: str, rows: slice, *, noisy: bool) -> bool:
+def _hangs(trial: RunSignals, name: str, rows: slice, *, noisy: bool) -> bool:
     values = trial.channels[name]
     interior = trial.lowest[name] < values[rows.start] < trial.highest[name]
     for other in trial.references(name):
@@ -65,7 +65,7 @@ def _hangs(trial: Trial, name: str, rows: slice, *, noisy: bool) -> bool:
     return False
 
 
-def _noisy(trial: Trial, name: str, long: list[slice]) -> bool:
+def _noisy(trial: RunSignals, name: str, long: list[slice]) -> bool:
     """Return whether the noise exceeds the quantisation outside the long plateaus."""
     values = trial.channels[name].copy()
     for rows in long:

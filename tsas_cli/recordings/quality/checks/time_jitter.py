@@ -9,12 +9,12 @@ from collections.abc import Iterator
 import numpy as np
 
 from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
-from tsas_cli.recordings.quality.trial import Trial
+from tsas_cli.recordings.quality.trial import RunSignals
 
 _TOLERATED = 0.05
 
 
-def find(trial: Trial) -> Iterator[Remark | CannotTell]:
+def find(trial: RunSignals) -> Iterator[Remark | CannotTell]:
     """Yield the scatter of the intervals about their median if it exceeds the limit."""
     if not trial.increases:
         yield CannotTell("time does not increase")

@@ -10,11 +10,11 @@ import numpy as np
 
 from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
 from tsas_cli.recordings.quality.samples import Booleans
-from tsas_cli.recordings.quality.trial import Trial
+from tsas_cli.recordings.quality.trial import RunSignals
 from tsas_cli.support.limits import LONGEST_STEP_S, SHORTEST_STEP_S
 
 
-def find(trial: Trial) -> Iterator[Remark | CannotTell]:
+def find(trial: RunSignals) -> Iterator[Remark | CannotTell]:
     """Yield the first step of time that is not positive, else the first implausible one."""
     step = np.diff(trial.time_s)
     rows = np.flatnonzero(step <= 0) + 1
@@ -33,7 +33,7 @@ def find(trial: Trial) -> Iterator[Remark | CannotTell]:
     )
 
 
-def _implausible_steps(trial: Trial, implausible: Booleans) -> Iterator[Remark]:
+def _implausible_steps(trial: RunSignals, implausible: Booleans) -> Iterator[Remark]:
     if implausible.any():
         row = int(implausible.argmax()) + 1
         before = float(trial.time_s[row - 1])

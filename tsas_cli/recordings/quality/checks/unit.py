@@ -13,7 +13,7 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
-from tsas_cli.recordings.quality.trial import Trial
+from tsas_cli.recordings.quality.trial import RunSignals
 
 # Each ratio, if a channel were in that unit.
 _TRAVEL = {
@@ -46,7 +46,7 @@ _COPY = 0.98  # correlation above which one path is a scaled copy of the other
 _SLOW_S, _LONG_S = 0.2, 500.0  # a sample interval and a stroke that are normal in milliseconds
 
 
-def find(trial: Trial) -> Iterator[Remark | CannotTell]:
+def find(trial: RunSignals) -> Iterator[Remark | CannotTell]:
     """Yield the channels that look as if they were in another unit."""
     yield from _time(trial)
     travel, tension, stiffness = _travel_ratio(trial), _tension_ratio(trial), _slope_ratio(trial)
@@ -89,7 +89,7 @@ def _suspect_unit(
         )
 
 
-def _travel_ratio(trial: Trial) -> float | None:
+def _travel_ratio(trial: RunSignals) -> float | None:
     """Return the travel of x_out over that of x_in, if one is a scaled copy of the other."""
     driven = trial.recording.run.load == "displacement"
     if driven or not trial.strokes or "x_out_mm" not in trial.channels:
@@ -97,7 +97,7 @@ def _travel_ratio(trial: Trial) -> float | None:
     return _slope(trial, "x_in_mm", "x_out_mm")
 
 
-def _tension_ratio(trial: Trial) -> float | None:
+def _tension_ratio(trial: RunSignals) -> float | None:
     """Return the level of f_out over f_in, averaged geometrically over the two directions."""
     if not trial.strokes or not {"f_in_N", "f_out_N"} <= trial.channels.keys():
         return None
@@ -110,7 +110,7 @@ def _tension_ratio(trial: Trial) -> float | None:
     return math.sqrt(levels[0] * levels[1]) if min(levels) > 0.0 else None
 
 
-def _slope_ratio(trial: Trial) -> float | None:
+def _slope_ratio(trial: RunSignals) -> float | None:
     """Return the slope of f_out over x_out divided by the data sheet's load stiffness."""
     nominal = trial.rig.load_stiffness_N_per_mm
     spring = trial.recording.run.load == "spring"
@@ -120,7 +120,7 @@ def _slope_ratio(trial: Trial) -> float | None:
     return slope / nominal if slope is not None else None
 
 
-def _slope(trial: Trial, x: str, y: str) -> float | None:
+def _slope(trial: RunSignals, x: str, y: str) -> float | None:
     """Return the magnitude of the slope of y over x; None if they are not correlated."""
     both = np.isfinite(trial.channels[x]) & np.isfinite(trial.channels[y])
     a, b = trial.channels[x][both], trial.channels[y][both]
@@ -131,7 +131,7 @@ def _slope(trial: Trial, x: str, y: str) -> float | None:
     return float(np.std(b) / np.std(a))
 
 
-def _time(trial: Trial) -> Iterator[Remark]:
+def _time(trial: RunSignals) -> Iterator[Remark]:
     interval = float(np.median(np.diff(trial.time_s)))
     strokes = [trial.time_s[s.stop] - trial.time_s[s.start] for s in trial.strokes]
     if strokes and interval >= _SLOW_S and float(np.median(strokes)) > _LONG_S:

@@ -9,14 +9,14 @@ from dataclasses import dataclass, field
 
 from tsas_cli.recordings.copied import NONE_COPIED, CopiedRows
 from tsas_cli.recordings.dataset import Dataset
-from tsas_cli.recordings.manifest import FILE
+from tsas_cli.recordings.manifest import MANIFEST_FILE
 from tsas_cli.recordings.quality.copies.copy import WHOLE_SHARE, Copy
 from tsas_cli.recordings.quality.copies.search import find_copies
 from tsas_cli.support.errors import InputError
 
 
 @dataclass(frozen=True)
-class Counted:
+class DeduplicatedDataset:
     """The runs without whole copies, their duplicate rows, and notes for the user."""
 
     dataset: Dataset
@@ -28,7 +28,7 @@ class Counted:
         return self.copied.get(run, NONE_COPIED)
 
 
-def counted_once(dataset: Dataset) -> Counted:
+def without_duplicates(dataset: Dataset) -> DeduplicatedDataset:
     """Return a dataset without duplicate samples.
 
     Raises
@@ -41,14 +41,14 @@ def counted_once(dataset: Dataset) -> Counted:
         if copy.contradicts:
             raise InputError(
                 f"run {copy.run.id} {copy.sentence}{copy.contradiction}",
-                where=dataset.folder / FILE,
+                where=dataset.folder / MANIFEST_FILE,
                 remedy="correct the conditions, or leave one of the two out with --runs",
             )
         by_run.setdefault(copy.run.id, []).append(copy)
     copied = {run: _rows(copies) for run, copies in by_run.items()}
     removed = {run for run, copies in by_run.items() if _all_of_it(copied[run], copies[0])}
     kept = dataset.only(r.id for r in dataset.runs if r.id not in removed) if removed else dataset
-    return Counted(
+    return DeduplicatedDataset(
         kept,
         {run: rows for run, rows in copied.items() if run not in removed},
         tuple(

@@ -9,14 +9,14 @@ from tsas_cli.reporting.colours import dark
 from tsas_cli.reporting.stream.plane import frame_of, record_frame, record_key
 from tsas_cli.reporting.stream.recorder import Entity, Recorder
 from tsas_cli.reporting.stream.sources import Which
-from tsas_cli.reporting.stream.tendon.followed import Followed
+from tsas_cli.reporting.stream.tendon.followed import TendonStates
 
 Floats = npt.NDArray[np.float64]
 FAINT = 0x60
 X_LABEL, Y_LABEL = "place along the sheath [mm], drive to load", "tension [N]"
 
 
-def record_along(recorder: Recorder, entity: Entity, tendons: Mapping[Which, Followed]) -> None:
+def record_along(recorder: Recorder, entity: Entity, tendons: Mapping[Which, TendonStates]) -> None:
     """Record the curves of one run."""
     every = np.concatenate([one.frames.tension_N.ravel() for one in tendons.values()])
     longest = max(one.rig.sheath_length_mm for one in tendons.values())

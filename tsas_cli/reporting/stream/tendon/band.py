@@ -10,7 +10,7 @@ from tsas_cli.reporting.colours import dark
 from tsas_cli.reporting.stream.plane import Frame, frame_of, record_frame, record_key
 from tsas_cli.reporting.stream.recorder import Entity, Recorder, Times
 from tsas_cli.reporting.stream.sources import Which
-from tsas_cli.reporting.stream.tendon.followed import Followed
+from tsas_cli.reporting.stream.tendon.followed import TendonStates
 
 Floats = npt.NDArray[np.float64]
 
@@ -22,7 +22,7 @@ X_LABEL, Y_LABEL = "travel of the drive since it turned [mm]", "tension at the d
 def record_band(
     recorder: Recorder,
     entity: Entity,
-    tendons: Mapping[Which, Followed],
+    tendons: Mapping[Which, TendonStates],
     f_in_N: Floats | None,
 ) -> None:
     """Record the strokes of one run, one after the other.
@@ -53,7 +53,7 @@ def record_band(
         recorder.points_2d([*mine, "now"], one.times, now, shade, shown=travel <= widest)
 
 
-def _width(one: Followed) -> float:
+def _width(one: TendonStates) -> float:
     """Return how much of a stroke is to be shown [mm]."""
     x = one.response.x_in_mm
     through = [
@@ -62,7 +62,7 @@ def _width(one: Followed) -> float:
     return BEYOND * float(max(through, default=np.ptp(x) if x.size else 0.0))
 
 
-def _strokes(one: Followed, f_in: Floats, widest: float) -> tuple[Times, Floats]:
+def _strokes(one: TendonStates, f_in: Floats, widest: float) -> tuple[Times, Floats]:
     """Return when strokes began, shape (k,), and their tension over travel, shape (k, p, 2).
 
     Those of which nothing is known, since the tension is NaN, are left out.

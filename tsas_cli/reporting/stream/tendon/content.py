@@ -13,7 +13,7 @@ from tsas_cli.reporting.stream.seen import SeenRun
 from tsas_cli.reporting.stream.sources import Which
 from tsas_cli.reporting.stream.tendon.along import record_along
 from tsas_cli.reporting.stream.tendon.band import record_band
-from tsas_cli.reporting.stream.tendon.followed import Followed
+from tsas_cli.reporting.stream.tendon.followed import TendonStates
 from tsas_cli.reporting.stream.tendon.models import F_IN, models_of, tendons_of
 from tsas_cli.reporting.stream.tendon.scene import record_scene, view_of_scene
 from tsas_cli.reporting.stream.views import Part
@@ -60,14 +60,14 @@ def record_tendon(recorder: Recorder, run: SeenRun) -> None:
     record_band(recorder, run.entity(*BAND), tendons, measured)
 
 
-def record_passages(recorder: Recorder, run: SeenRun, tendons: Mapping[Which, Followed]) -> None:
+def record_passages(recorder: Recorder, run: SeenRun, tendons: Mapping[Which, TendonStates]) -> None:
     """Record when the front of each stroke has reached the load, or that it never did."""
     for which, one in tendons.items():
         events = sorted(_events(run.id, which, one), key=lambda event: event.at_s)
         record_events(recorder, run, f"fronts-{which.key}", events)
 
 
-def _events(run: str, which: Which, one: Followed) -> list[Event]:
+def _events(run: str, which: Which, one: TendonStates) -> list[Event]:
     time_s, found = one.sample_time_s, []
     for passage, end in zip(one.passages, ends_of(one.passages, time_s.size - 1), strict=True):
         way = _WORDS[passage.direction]

@@ -9,10 +9,10 @@ import numpy.typing as npt
 
 from tsas_cli.identification.model import Model
 from tsas_cli.physics.compliances import compliance_at_drive, sheath_compliance
-from tsas_cli.physics.ends import Drive
+from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.frames import Frames
 from tsas_cli.physics.passages import Passage, passages, turns
-from tsas_cli.physics.response import Dynamics, Response, simulate
+from tsas_cli.physics.response import Dynamics, Prediction, simulate
 from tsas_cli.physics.rig import Rig
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.reporting.stream.recorder import Times, times_of
@@ -28,7 +28,7 @@ MOST = 1500  # of one run, whatever its length, and as many turns
 
 
 @dataclass(frozen=True)
-class Followed:
+class TendonStates:
     """What one model says along the tendon of a run, at k moments of its n samples.
 
     `started` is when the run began, None where that is not known. `sample_time_s`, shape (n,), is
@@ -38,7 +38,7 @@ class Followed:
     rig: Rig
     started: datetime | None
     sample_time_s: Floats
-    response: Response
+    response: Prediction
     frames: Frames
     passages: list[Passage]
 
@@ -106,12 +106,12 @@ class Followed:
 def follow(
     run: Run,
     time_s: Floats,
-    drive: Drive,
+    drive: DriveInput,
     models: Mapping[Which, Model],
     answers: Sequence[Floats],
     dynamics: Dynamics = "slip",
     nodes: int | None = None,
-) -> dict[Which, Followed]:
+) -> dict[Which, TendonStates]:
     """Follow a run with each model, all at the same moments.
 
     Parameters
@@ -134,7 +134,7 @@ def follow(
             rig, drive, dynamics, on_mesh=nodes is not None, nodes=nodes, looked_at=at
         )
         if answer.frames is not None:
-            found[which] = Followed(
+            found[which] = TendonStates(
                 rig,
                 run.started,
                 time_s,

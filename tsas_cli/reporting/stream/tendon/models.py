@@ -6,18 +6,18 @@ from typing import cast
 
 from tsas_cli.identification.model import Model, read_model
 from tsas_cli.identification.prepared import drive_of, prepare, seconds_into
-from tsas_cli.physics.ends import Drive
+from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.response import Dynamics
 from tsas_cli.recordings.columns import nominal_name
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.run_files import read_recording
 from tsas_cli.records.base import StageFile
 from tsas_cli.records.calibration import MODEL_FILE
-from tsas_cli.records.diagnosis import EXTENDED_MODEL, NOMINAL_MODEL, Diagnosis
-from tsas_cli.records.simulation import Simulation
+from tsas_cli.records.diagnosis import EXTENDED_MODEL, NOMINAL_MODEL, DiagnosisFile
+from tsas_cli.records.simulation import SimulationFile
 from tsas_cli.reporting.stream.seen import X_IN, SeenRun
 from tsas_cli.reporting.stream.sources import EXTENDED, NOMINAL, SIMULATED, Which
-from tsas_cli.reporting.stream.tendon.followed import Followed, follow
+from tsas_cli.reporting.stream.tendon.followed import TendonStates, follow
 
 F_IN, F_OUT = "f_in_N", "f_out_N"
 
@@ -43,13 +43,13 @@ def models_of(run: SeenRun) -> TendonModels | None:
     InputError
         A model's file cannot be read.
     """
-    diagnosis, simulation = run.inputs.get(Diagnosis), run.inputs.get(Simulation)
-    stage: type[StageFile] = Diagnosis
+    diagnosis, simulation = run.inputs.get(DiagnosisFile), run.inputs.get(SimulationFile)
+    stage: type[StageFile] = DiagnosisFile
     dynamics, nodes = "slip", None
     if diagnosis is not None:
         files = {NOMINAL: NOMINAL_MODEL} | ({EXTENDED: EXTENDED_MODEL} if diagnosis.named else {})
     elif simulation is not None and simulation.dynamics != "static":
-        stage, files = Simulation, {SIMULATED: MODEL_FILE}
+        stage, files = SimulationFile, {SIMULATED: MODEL_FILE}
         dynamics, nodes = simulation.dynamics, simulation.nodes
     else:
         return None
@@ -60,7 +60,7 @@ def models_of(run: SeenRun) -> TendonModels | None:
     return TendonModels(stage, models, cast("Dynamics", dynamics), nodes)
 
 
-def tendons_of(run: SeenRun) -> dict[Which, Followed]:
+def tendons_of(run: SeenRun) -> dict[Which, TendonStates]:
     """Return the run followed with the models that a stage wrote; none where it wrote none.
 
     Raises
@@ -80,7 +80,7 @@ def tendons_of(run: SeenRun) -> dict[Which, Followed]:
     )
 
 
-def _drive(run: SeenRun, stage: type[StageFile]) -> Drive:
+def _drive(run: SeenRun, stage: type[StageFile]) -> DriveInput:
     """Return what drives the run, as the stage has conditioned it, where it has written it down."""
     dataset = cast("Dataset", run.inputs.dataset)
     started, told = dataset.manifest.session_start, run.file.run

@@ -14,7 +14,7 @@ from tsas_cli.physics.rig import Rig
 from tsas_cli.reporting.colours import dark
 from tsas_cli.reporting.stream.recorder import Entity, Recorder, Times
 from tsas_cli.reporting.stream.sources import Which
-from tsas_cli.reporting.stream.tendon.followed import Followed
+from tsas_cli.reporting.stream.tendon.followed import TendonStates
 from tsas_cli.reporting.stream.tendon.shades import Scale, dimmed, packed, scale_of
 from tsas_cli.reporting.stream.tendon.stage import LEFT, TALL, Stand, stage_of
 from tsas_cli.reporting.stream.views import all_below
@@ -43,7 +43,7 @@ def view_of_scene(entity: Entity, rigs: Sequence[Rig]) -> View:
     )
 
 
-def record_scene(recorder: Recorder, entity: Entity, tendons: Mapping[Which, Followed]) -> None:
+def record_scene(recorder: Recorder, entity: Entity, tendons: Mapping[Which, TendonStates]) -> None:
     """Record the tendons of one run above each other."""
     every = np.concatenate([one.frames.tension_N.ravel() for one in tendons.values()])
     scale = scale_of(float(np.nanmin(every)), float(np.nanmax(every)))
@@ -60,7 +60,7 @@ def record_scene(recorder: Recorder, entity: Entity, tendons: Mapping[Which, Fol
 
 
 def _sheath(
-    recorder: Recorder, entity: Entity, times: Times, one: Followed, stand: Stand, scale: Scale
+    recorder: Recorder, entity: Entity, times: Times, one: TendonStates, stand: Stand, scale: Scale
 ) -> None:
     """Draw the tendon between the sheath's walls, with marks that move with it."""
     for side in (1.0, -1.0):
@@ -84,7 +84,7 @@ def _sheath(
 
 
 def _curtain(
-    recorder: Recorder, entity: Entity, times: Times, one: Followed, stand: Stand, scale: Scale
+    recorder: Recorder, entity: Entity, times: Times, one: TendonStates, stand: Stand, scale: Scale
 ) -> None:
     """Draw a surface from the sheath up to the tension, bright and edged where the tendon slips."""
     line, tension = stand.sheath, np.nan_to_num(one.frames.tension_N)
@@ -124,7 +124,7 @@ def _raised(stand: Stand, scale: Scale, tension_N: Floats) -> Floats:
 
 
 def _front(
-    recorder: Recorder, entity: Entity, times: Times, one: Followed, stand: Stand, scale: Scale
+    recorder: Recorder, entity: Entity, times: Times, one: TendonStates, stand: Stand, scale: Scale
 ) -> None:
     """Draw the front where it runs: bright points on the tendon and on the curtain's edge."""
     low = stand.at + stand.shape.at(one.frames.front)
@@ -137,7 +137,7 @@ def _front(
 
 
 def _ends(
-    recorder: Recorder, entity: Entity, times: Times, one: Followed, stand: Stand, scale: Scale
+    recorder: Recorder, entity: Entity, times: Times, one: TendonStates, stand: Stand, scale: Scale
 ) -> None:
     """Draw free tendon, the drive's pulley and the load's spring."""
     ends, at, muted = stand.ends, stand.at, dark("muted")
@@ -161,7 +161,7 @@ def _ends(
 
 
 def _captions(
-    recorder: Recorder, entity: Entity, times: Times, one: Followed, stand: Stand, which: Which
+    recorder: Recorder, entity: Entity, times: Times, one: TendonStates, stand: Stand, which: Which
 ) -> None:
     """Write the model's name, and under it what the tendon does at each time."""
     title, state = stand.captions
@@ -173,7 +173,7 @@ def _captions(
     recorder.columns([*entity, "state"], times, columns)
 
 
-def _said(one: Followed) -> list[str]:
+def _said(one: TendonStates) -> list[str]:
     """Say in a few words what the tendon does at each time."""
     texts = []
     for slip, front in zip(one.frames.slip, one.frames.front, strict=True):
