@@ -68,14 +68,14 @@ def test_what_could_be_had_is_the_better_of_both_less_what_is_explained(errors):
     """Explained is in squares of the noise: 0.125 N² of f_in, 0.25 mm² of x_out."""
     after = {"f_in_N": 46.0 / 4.0, "x_out_mm": 41.0 / 2.0}
     found = errors(10.0, 1.0, (0.0, 0.0), (80.0, 1000.0))
-    could = found["f_in_N"].best_obtainable
+    could = found["f_in_N"].attainable
     assert could == pytest.approx(math.sqrt(after["f_in_N"] - 80.0 * 0.125))
-    assert found["x_out_mm"].best_obtainable == 0.5  # no less than the noise
+    assert found["x_out_mm"].attainable == 0.5  # no less than the noise
     before = (1.0**2 + 11.0**2 + 22.0**2 + 32.0**2) / 4.0
     first = errors(10.0, 1.0, (before / 0.125 - 16.0, 0.0), (0.0, 0.0))["f_in_N"]
-    assert first.best_obtainable == pytest.approx(math.sqrt(16.0 * 0.125))
+    assert first.attainable == pytest.approx(math.sqrt(16.0 * 0.125))
     none = errors(10.0, 1.0, (1e9, 0.0), (0.0, 0.0))["f_in_N"]
-    assert none.best_obtainable == none.noise_floor
+    assert none.attainable == none.noise_floor
 
 
 def test_what_was_reached_is_never_below_the_floor(errors):
@@ -85,4 +85,4 @@ def test_what_was_reached_is_never_below_the_floor(errors):
         found = errors(0.0, 0.0, (0.0, 0.0), (0.0, 0.0))["f_in_N"]
     assert found.rmse_after == pytest.approx(0.1)
     assert found.noise_floor == pytest.approx(0.1)
-    assert found.best_obtainable == pytest.approx(0.1)
+    assert found.attainable == pytest.approx(0.1)

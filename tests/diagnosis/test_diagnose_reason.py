@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import pytest
 
 from tsas_cli.diagnosis import diagnose as d
-from tsas_cli.diagnosis.diagnose import FoundCause, Diagnosis
+from tsas_cli.diagnosis.diagnose import Diagnosis, FoundCause
 from tsas_cli.diagnosis.remainder import Remainder
 from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.model import Model

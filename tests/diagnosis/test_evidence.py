@@ -27,7 +27,7 @@ def test_one_block_alone_convinces_nobody_however_much_it_gains():
 def test_blocks_that_gain_nothing_do_not_speak():
     after = BEFORE.copy()
     after[:20] *= 0.5
-    assert gain(BEFORE, after).sureness == pytest.approx(np.sqrt(20.0))
+    assert gain(BEFORE, after).test_statistic == pytest.approx(np.sqrt(20.0))
 
 
 def test_chance_is_rarely_convincing():
@@ -40,7 +40,7 @@ def test_chance_is_rarely_convincing():
 
 def test_a_sure_gain_that_is_tiny_does_not_matter():
     found = gain(BEFORE, 0.999 * BEFORE)
-    assert found.sureness > 6.0
+    assert found.test_statistic > 6.0
     assert not found.convincing
 
 
@@ -63,7 +63,7 @@ def test_to_be_convincing_takes_more_than_the_least_of_both():
 
 def test_what_changes_nothing_is_not_sure():
     same = gain(BEFORE, BEFORE)
-    assert (same.part, same.sureness) == (0.0, 0.0)
+    assert (same.part, same.test_statistic) == (0.0, 0.0)
 
 
 @pytest.mark.parametrize(("blocks", "needed"), [(4, 1.6), (9, 2.4), (10, 0.8 * 10**0.5), (11, 2.6)])
@@ -72,9 +72,9 @@ def test_few_blocks_have_to_agree(blocks, needed):
     assert gain(np.ones(blocks), np.ones(blocks)).needed == pytest.approx(needed)
 
 
-def test_sureness_is_the_sum_of_relative_gains_over_that_with_random_signs():
+def test_the_test_statistic_is_the_sum_of_relative_gains_over_that_with_random_signs():
     found = gain(np.array([np.e, 1.0, np.e**3]), np.array([1.0, np.e**2, 1.0]))
-    assert found.sureness == pytest.approx((1.0 - 2.0 + 3.0) / np.sqrt(1.0 + 4.0 + 9.0))
+    assert found.test_statistic == pytest.approx((1.0 - 2.0 + 3.0) / np.sqrt(1.0 + 4.0 + 9.0))
     assert found.part == pytest.approx(1.0 - (2.0 + np.e**2) / (1.0 + np.e + np.e**3))
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from tsas_cli.diagnosis import found as f
 from tsas_cli.diagnosis.channel_errors import HeldOutErrors
-from tsas_cli.diagnosis.diagnose import FoundCause, Diagnosis
+from tsas_cli.diagnosis.diagnose import Diagnosis, FoundCause
 from tsas_cli.diagnosis.evidence import Reduction
 from tsas_cli.diagnosis.remainder import Remainder
 from tsas_cli.effects import BACKLASH
@@ -54,13 +54,13 @@ def test_single_effects_and_what_stands_in_place_of_the_named_ones():
 def test_a_candidate_says_how_it_was_fitted():
     (row,) = f.candidates_of(SimpleNamespace(search=MadeUp((names("a"), False)), causes=[]))
     assert row.convincing
-    assert (row.sureness, row.mean_square, row.converged) == (4.0, 1.5, True)
+    assert (row.test_statistic, row.mean_square, row.converged) == (4.0, 1.5, True)
     assert row.parameters == {"p": 2.0}
     assert f.candidates_of(SimpleNamespace(search=None, causes=[])) == []
 
 
 @pytest.mark.parametrize("angle", [0.0, 30.0, 90.0])
-def test_likeness_is_the_cosine_between_two_directions(angle):
+def test_similarity_is_the_cosine_between_two_directions(angle):
     first = np.array([[1.0], [0.0], [0.0]])
     turn = np.radians(angle)
     second = np.array([[np.cos(turn)], [np.sin(turn)], [0.0]])
@@ -115,7 +115,7 @@ def test_signatures_are_told_in_the_order_of_names():
     assert found.effects == ("a", "b")
     assert found.visible == pytest.approx([np.sqrt(2.0), 5.0])
     half = np.sqrt(0.5)
-    np.testing.assert_allclose(found.likeness, [[1.0, half], [half, 1.0]])
+    np.testing.assert_allclose(found.similarity, [[1.0, half], [half, 1.0]])
 
 
 def test_a_cause_has_its_title_and_values():
@@ -163,7 +163,7 @@ def test_errors_and_what_is_left_have_units_and_percent():
         "rmse_before": 4.0,
         "rmse_after": None,
         "noise_floor": 1.0,
-        "best_obtainable": 2.0,
+        "attainable": 2.0,
     }
     said = f.remainder_of(whole)
     assert (said.share_percent, said.mean_square, said.depends_on) == (25.0, 1.5, ("time_s",))

@@ -7,7 +7,7 @@ import pytest
 
 from tsas_cli.diagnosis.remainder import hats, regressed
 from tsas_cli.diagnosis.residual_map import binned, edges_of
-from tsas_cli.diagnosis.signals import DIRECTION, signals_of, signal_in_words
+from tsas_cli.diagnosis.signals import DIRECTION, signal_in_words, signals_of
 
 X = np.array([0.0, 1.0, 3.0, 2.0, 1.0, 1.5, 2.5])
 TIME_S = 10.0 + 0.5 * np.arange(7)
@@ -44,7 +44,10 @@ def test_a_force_at_the_drive_has_no_place_and_a_rest_pulls():
 def test_every_signal_has_its_words():
     for name in signals_of(run_of(), X):
         assert signal_in_words(name) != name
-    assert signal_in_words("time_s (f_in_N swings at 3 Hz)") == "the time in the run (f_in_N swings at 3 Hz)"
+    assert (
+        signal_in_words("time_s (f_in_N swings at 3 Hz)")
+        == "the time in the run (f_in_N swings at 3 Hz)"
+    )
     assert signal_in_words("something") == "something"
 
 

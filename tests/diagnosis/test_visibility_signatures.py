@@ -198,7 +198,9 @@ def test_a_look_at_some_runs_has_their_rows_alone(monkeypatch):
     solution = Solution(
         np.zeros(1), np.zeros(1, bool), np.zeros(12), np.zeros((12, 1)), True, "", 1
     )
-    trial = HypothesisFit((), (Unknown("a", None, 0.0, -9.0, 9.0, 1.0),), solution, (4, 4, 4), on_mesh=True)
+    trial = HypothesisFit(
+        (), (Unknown("a", None, 0.0, -9.0, 9.0, 1.0),), solution, (4, 4, 4), on_mesh=True
+    )
     asked = []
 
     def errors_at(trial, at):

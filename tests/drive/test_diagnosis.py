@@ -62,11 +62,11 @@ def test_errors_of_the_drive_are_in_millimetres(diagnosed):
     found = diagnosed(Searched({NOTHING: 16.0, terms("delay"): 4.0}), terms("delay")).channel
     assert (found.rmse_before, found.rmse_after) == pytest.approx((0.4, 0.2))
     assert found.noise_floor == pytest.approx(0.1)
-    assert found.best_obtainable == pytest.approx(0.2 * 0.8)  # √(1 − 0.36)
+    assert found.attainable == pytest.approx(0.2 * 0.8)  # √(1 − 0.36)
     low = diagnosed(Searched({NOTHING: 16.0, terms("delay"): 0.25}), terms("delay")).channel
-    assert low.noise_floor == low.best_obtainable == pytest.approx(0.05)
+    assert low.noise_floor == low.attainable == pytest.approx(0.05)
     near = diagnosed(Searched({NOTHING: 16.0, terms("delay"): 1.21}), terms("delay")).channel
-    assert near.best_obtainable == pytest.approx(0.1)
+    assert near.attainable == pytest.approx(0.1)
 
 
 def test_without_a_cause_the_nominal_equation_stays(diagnosed):

@@ -129,9 +129,9 @@ CASES = (
         "should be a valid number",
     ),
     Case(
-        "a likeness with corners missing",
-        stage("diagnosis", put("signatures", "likeness", value=[[1.0], [], [1.0, 2.0, 3.0]])),
-        "visible and likeness need a value",
+        "a similarity with corners missing",
+        stage("diagnosis", put("signatures", "similarity", value=[[1.0], [], [1.0, 2.0, 3.0]])),
+        "visible and similarity need a value",
     ),
     Case(
         "an infinite gain",

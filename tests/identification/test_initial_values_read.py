@@ -62,7 +62,9 @@ def test_the_tendon_s_stiffness_is_that_of_the_dead_band():
     a = math.log(2.0)
     exact = 160.0 * GROUP_A.sheath_length_mm * (1.0 / 3.0) / a  # tanh(ln √2) = 1/3
     run = run_of(load="force", f_in_N=np.full(6, 10.0))
-    assert s.initial_values_of(run, [], slopes, GROUP_A)["tendon_stiffness_N"] == pytest.approx(exact)
+    assert s.initial_values_of(run, [], slopes, GROUP_A)["tendon_stiffness_N"] == pytest.approx(
+        exact
+    )
 
 
 X_OUT = np.array([1.0, 2.0, 3.0, 4.0, 5.0, 6.0])
@@ -177,7 +179,9 @@ def test_a_slope_of_nothing_tells_nothing():
 
     def read(contraction):
         told = (("contraction", contraction), ("loosening", 0.25))
-        return s.initial_values_of(run, [], [SimpleNamespace(phase=p, value=v) for p, v in told], GROUP_A)
+        return s.initial_values_of(
+            run, [], [SimpleNamespace(phase=p, value=v) for p, v in told], GROUP_A
+        )
 
     assert read(0.0) == {}
     found = read(-1.0)["friction_coefficient"]  # the wrong sign: its size counts

@@ -27,7 +27,9 @@ def test_it_begins_at_nothing_with_its_rate(settling_per_s):
 
 
 def test_slow_settling_passes_over_into_none():
-    assert exponential_drift(0.3, 1e-12, 20.0) == pytest.approx(exponential_drift(0.3, 0.0, 20.0), rel=1e-10)
+    assert exponential_drift(0.3, 1e-12, 20.0) == pytest.approx(
+        exponential_drift(0.3, 0.0, 20.0), rel=1e-10
+    )
 
 
 @pytest.mark.parametrize("settling_per_s", [0.0, 0.05])

@@ -8,7 +8,13 @@ import pytest
 from tests.physics.references import GROUP_A, wrap_of
 from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, SPRING
 from tsas_cli.physics.course import DRIVE, LOAD, PULLED, RELEASED, STEP, VISCOUS
-from tsas_cli.physics.ends import DriveInput, ends_of, last_direction, losses_at, losses_without_speed
+from tsas_cli.physics.ends import (
+    DriveInput,
+    ends_of,
+    last_direction,
+    losses_at,
+    losses_without_speed,
+)
 from tsas_cli.physics.rig import with_values
 
 

@@ -36,7 +36,9 @@ def test_the_chain_forgets_where_the_closed_form_does():
     x = 10.0 - np.arange(0.0, 1.0, 2e-3)
     spring = simulate(RIG, DriveInput(np.concatenate(([10.0], x))))
     by_spring = first_determined_sample(RIG, DriveInput(x))
-    by_load = first_determined_sample(RIG, DriveInput(x, load="displacement", load_values=spring.x_out_mm[1:]))
+    by_load = first_determined_sample(
+        RIG, DriveInput(x, load="displacement", load_values=spring.x_out_mm[1:])
+    )
     assert by_spring is not None
     assert by_load is not None
     assert abs(by_load - by_spring) <= 6

@@ -12,7 +12,12 @@ from tsas_cli.physics.closed_form.branches import branches
 from tsas_cli.physics.course import Tensions
 from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.phases import UNCONVERGED
-from tsas_cli.physics.response import force_beside_tendon, first_determined_sample, simulate, with_spring_load
+from tsas_cli.physics.response import (
+    first_determined_sample,
+    force_beside_tendon,
+    simulate,
+    with_spring_load,
+)
 from tsas_cli.physics.rig import with_values
 
 RIG = GROUP_A._replace(x_in_zero_mm=3.0, x_out_zero_mm=-7.0)

@@ -64,7 +64,9 @@ def test_the_course_of_a_run_is_what_acts_at_each_sample():
     np.testing.assert_allclose(ends.course[:4].T, expected)
     np.testing.assert_allclose(ends.course[STEP], [math.inf, 0.1, 0.2, 0.1])
     assert ends.direction.tolist() == [0.0, 1.0, 1.0, -1.0]
-    by_force = ends_of(VARYING, DriveInput(x + 25.0, "force", time_s=TIME_S))  # its speed is not known
+    by_force = ends_of(
+        VARYING, DriveInput(x + 25.0, "force", time_s=TIME_S)
+    )  # its speed is not known
     np.testing.assert_allclose(by_force.course[:4, 2], friction_by_hand(0.3, 0.0, 0.0))
     slowly = ends_of(VARYING, DriveInput(x))
     np.testing.assert_allclose(slowly.course[:4].T, [friction_by_hand(0.0, 0.0, 0.0)] * 4)

@@ -15,7 +15,9 @@ FORCE = {"source": "f", "unit": "N"}
 
 def ask(values=None, units=None, time=TIME, place=PLACE, force=FORCE, **read):
     arrays = {"t": [0, 1, 2], "x": [1, 2, 3], "f": [4, np.nan, 6]} | (values or {})
-    table = ColumnTable({k: np.array(v, dtype=float) for k, v in arrays.items()}, units or {}, (), 10)
+    table = ColumnTable(
+        {k: np.array(v, dtype=float) for k, v in arrays.items()}, units or {}, (), 10
+    )
     columns = {"time_s": time, "x_in_mm": place, "f_in_N": force}
     content = {"dataset": {"name": "m"}, "read": read, "columns": columns}
     mapping = IngestMap.model_validate(content)

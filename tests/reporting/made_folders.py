@@ -275,7 +275,7 @@ def _held_out(unit, noise, before, after, best):
         "rmse_before": before * noise,
         "rmse_after": after * noise,
         "noise_floor": noise,
-        "best_obtainable": best * noise,
+        "attainable": best * noise,
     }
 
 
@@ -284,7 +284,7 @@ def _candidates(*, gain):
         {
             "effects": effects,
             "gain_percent": gain / 2**place,
-            "sureness": 6.0 - place,
+            "test_statistic": 6.0 - place,
             "convincing": gain / 2**place > 0.5 and place < 4,
             "mean_square": 1.02 + place,
             "converged": place != 5,
@@ -302,7 +302,7 @@ def _signatures():
     return {
         "effects": names,
         "visible": list(SIGNATURES.values()),
-        "likeness": [[1.0 if a == b else pairs.get((a, b), 0.1) for b in names] for a in names],
+        "similarity": [[1.0 if a == b else pairs.get((a, b), 0.1) for b in names] for a in names],
     }
 
 

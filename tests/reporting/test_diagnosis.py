@@ -14,8 +14,8 @@ from tsas_cli.effects import EFFECTS
 from tsas_cli.records.diagnosis import Bin, HeldOut
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.diagnosis.gains import draw_gains
-from tsas_cli.reporting.diagnosis.likeness import draw_likeness
 from tsas_cli.reporting.diagnosis.maps import Panel, draw_residual_map
+from tsas_cli.reporting.diagnosis.similarity import draw_similarity
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.page import page
 
@@ -104,7 +104,7 @@ def test_an_ambiguous_cause_shares_its_heading_with_its_rival(sections):
 
 def test_errors_before_and_after_stand_in_their_columns(sections):
     found = rows(sections["named"])
-    header = ["channel", "before", "with what is named", "best obtainable", "noise floor", "unit"]
+    header = ["channel", "before", "with what is named", "attainable", "noise floor", "unit"]
     assert header in found
     assert ["f_in_N", "0.910", "0.110", "0.105", "0.100", "N"] in found
     (bars,) = (label for label in labels(sections["named"]) if "held-out data. " in label)
@@ -114,7 +114,7 @@ def test_errors_before_and_after_stand_in_their_columns(sections):
 @pytest.mark.parametrize("verdict", ["sufficient", "unexplained"])
 def test_without_a_name_there_is_no_after(sections, verdict):
     text = sections[verdict]
-    assert ["channel", "nominal model", "best obtainable", "noise floor", "unit"] in rows(text)
+    assert ["channel", "nominal model", "attainable", "noise floor", "unit"] in rows(text)
     assert "var(--after)" not in text
     assert headings(text, 3)[0] == "Error on held-out data"
 
@@ -165,7 +165,7 @@ def test_an_error_that_shows_only_in_the_scatter_is_drawn(dataset, tmp_path):
     assert "f_in_N: 0.0 to 0.0 with scatter up to 8.0" in label
 
 
-def test_candidates_stand_in_order_with_gain_and_sureness(sections):
+def test_candidates_stand_in_order_with_gain_and_test_statistic(sections):
     found = rows(sections["named"])
     first = found.index(["free_tendon + backlash", "87.2", "6.0", "yes", "1.02", ""])
     assert found[first + 1][:4] == ["backlash", "43.6", "5.0", "yes"]
@@ -175,7 +175,7 @@ def test_candidates_stand_in_order_with_gain_and_sureness(sections):
 
 
 def test_what_is_named_and_its_rivals_are_marked_wherever_they_rank(dataset, tmp_path):
-    alone = {"gain_percent": 9.0, "sureness": 3.0, "convincing": True, "mean_square": 1.0}
+    alone = {"gain_percent": 9.0, "test_statistic": 3.0, "convincing": True, "mean_square": 1.0}
     tried = [{"effects": ["backlash", f"e{n}"], **alone} for n in range(12)]
     tried += [{"effects": [e], **alone} for e in ("free_tendon", "presliding", "drive_compliance")]
     named = written(make_diagnosis(dataset, tmp_path / "a", "ambiguous", candidates=tried))
@@ -255,7 +255,7 @@ def test_a_diagnosis_of_minimal_keys_makes_a_page(dataset, tmp_path):
 
 def test_the_bar_after_is_as_long_as_the_error_after():
     channel = HeldOut(
-        unit="N", rmse_before=0.91, rmse_after=0.11, noise_floor=0.1, best_obtainable=0.105
+        unit="N", rmse_before=0.91, rmse_after=0.11, noise_floor=0.1, attainable=0.105
     )
     figure = Figure()
     draw_gains(figure, {"f_in_N": channel}, named=True)
@@ -265,7 +265,7 @@ def test_the_bar_after_is_as_long_as_the_error_after():
         "with what is named": 0.11,
     }
     marks = {line.get_label(): line.get_xdata()[0] for line in axes.lines}
-    assert marks == {"best obtainable": 0.105, "noise floor": 0.1}
+    assert marks == {"attainable": 0.105, "noise floor": 0.1}
 
 
 def test_the_map_draws_before_and_after_in_their_colours_at_their_means():
@@ -285,10 +285,10 @@ def test_the_map_draws_before_and_after_in_their_colours_at_their_means():
     assert drawn["after"].get_xdata() == pytest.approx([1.5, 3.5], abs=0.3)
 
 
-def test_the_square_of_two_effects_is_as_large_as_their_likeness_and_loud_where_alike():
-    likeness = np.array([[1.0, 0.97, 0.1], [0.0, 1.0, 0.5], [0.0, 0.0, 1.0]]).T
+def test_the_square_of_two_effects_is_as_large_as_their_similarity():
+    similarity = np.array([[1.0, 0.97, 0.1], [0.0, 1.0, 0.5], [0.0, 0.0, 1.0]]).T
     figure = Figure()
-    draw_likeness(figure, ["a", "b", "c"], likeness, alike=0.95)
+    draw_similarity(figure, ["a", "b", "c"], similarity, alike=0.95)
     alike, muted = figure.axes[0].patches
     assert to_hex(alike.get_facecolor()) == STAND_IN["alike"]
     for patch, place, side in ((alike, (0, 1), 0.97), (muted, (1, 2), 0.5)):

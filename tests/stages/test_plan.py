@@ -90,7 +90,9 @@ def test_a_plan_as_json():
 
 
 def test_shapes_are_named_within_their_effect():
-    shaped = Visibility(Amplitude(OF[PLAY], OF[PLAY].parameters[0], {"backlash.kind": 2.0}), 1.0, {})
+    shaped = Visibility(
+        Amplitude(OF[PLAY], OF[PLAY].parameters[0], {"backlash.kind": 2.0}), 1.0, {}
+    )
     found = plan_stage.as_json(ExperimentPlan((shaped,), (), (), ()))["effects"][0]
     assert found["shape"] == {"kind": 2.0}
 

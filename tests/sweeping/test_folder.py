@@ -6,8 +6,8 @@ import pytest
 
 from tests.sweeping.test_tasks import rigs, tasks  # noqa: F401 # a fixture
 from tsas_cli.support.errors import InputError
-from tsas_cli.sweeping.answer import success
 from tsas_cli.sweeping.folder import note, sweep_folder
+from tsas_cli.sweeping.outcome import success
 
 
 def test_what_a_kill_leaves_goes_with_the_next_call(tmp_path):

@@ -5,7 +5,7 @@ import signal
 import time
 from pathlib import Path
 
-from tsas_cli.sweeping.answer import failure, success
+from tsas_cli.sweeping.outcome import failure, success
 
 
 def squared(task):

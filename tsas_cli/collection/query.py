@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tsas_cli.collection.index import Index
-from tsas_cli.collection.words import SqlQuery, to_sql
+from tsas_cli.collection.translation import SqlQuery, to_sql
 from tsas_cli.support.errors import InputError, nearest, printable
 
 if TYPE_CHECKING:

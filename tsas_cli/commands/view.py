@@ -40,7 +40,9 @@ def view(
     in_browser = web or not has_screen()
     with until_stopped(), ExitStack() as stack:
         with progress("stream", quiet=quiet) as step:
-            stream, notes = stack.enter_context(stream_of([location_of(path) for path in paths], step))
+            stream, notes = stack.enter_context(
+                stream_of([location_of(path) for path in paths], step)
+            )
         viewer = stack.enter_context(opened(stream, in_browser=in_browser, port=port))
         talk = () if quiet else (*notes, note_once(), _HOW_TO_END[in_browser])
         for sentence in filter(None, talk):

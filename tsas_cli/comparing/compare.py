@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from tsas_cli.comparing.answers import Answers, Both, error_rows, matched
 from tsas_cli.comparing.maps import residual_maps
+from tsas_cli.comparing.predictions import Answers, Both, error_rows, matched
 from tsas_cli.comparing.sides import Side, read_side
 from tsas_cli.comparing.values import Overlap, overlap, pairs
 from tsas_cli.recordings.dataset import Dataset

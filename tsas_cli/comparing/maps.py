@@ -3,7 +3,7 @@
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.comparing.answers import ComparedRun, Both
+from tsas_cli.comparing.predictions import Both, ComparedRun
 from tsas_cli.diagnosis.residual_map import LABELS, binned, edges_of
 from tsas_cli.diagnosis.signals import signals_of
 from tsas_cli.records.diagnosis import Maps

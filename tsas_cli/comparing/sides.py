@@ -10,9 +10,9 @@ from tsas_cli.recordings.dataset import Dataset, read_dataset
 from tsas_cli.recordings.manifest import MANIFEST_FILE as MANIFEST
 from tsas_cli.recordings.manifest import parse, read_toml
 from tsas_cli.recordings.storage import recorded_location
-from tsas_cli.records.base import OfDataset, DatasetSource
+from tsas_cli.records.base import DatasetSource, OfDataset
 from tsas_cli.records.calibration import MODEL_FILE, CalibrationFile
-from tsas_cli.records.diagnosis import EXTENDED_MODEL, NamedCause, DiagnosisFile, HeldOut
+from tsas_cli.records.diagnosis import EXTENDED_MODEL, DiagnosisFile, HeldOut, NamedCause
 from tsas_cli.records.simulation import SimulationFile
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import read_json, sha256_of
@@ -121,7 +121,9 @@ def _of_stage(path: Path, kind: type[OfDataset]) -> Side:
     )  # fmt: skip
 
 
-def _dataset(source: DatasetSource, read: DatasetSource | OfDataset, home: Path) -> tuple[Dataset | None, str]:
+def _dataset(
+    source: DatasetSource, read: DatasetSource | OfDataset, home: Path
+) -> tuple[Dataset | None, str]:
     """Return the dataset as it was read, with the runs that were; or None, and why."""
     try:
         folder = recorded_location(home, source.folder)

@@ -81,7 +81,9 @@ def compare_tracked(a: Path, b: Path) -> Tracks:
         A file cannot be read, or is not whole.
     """
     raw = [read_json(path / TRACKING_FILE) for path in (a, b)]
-    one, other = (parse(TrackingFile, r, p / TRACKING_FILE) for r, p in zip(raw, (a, b), strict=True))
+    one, other = (
+        parse(TrackingFile, r, p / TRACKING_FILE) for r, p in zip(raw, (a, b), strict=True)
+    )
     same = {n for n, what in one.conditions.items() if other.conditions.get(n) == what}
     first, second = (
         {(r.controller, r.condition): r for r in side.results} for side in (one, other)

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from tsas_cli.comparing.tracked import TRACKING_FILE, SCORES, Tracks
+from tsas_cli.comparing.tracked import SCORES, TRACKING_FILE, Tracks
 from tsas_cli.records.base import number_text
 from tsas_cli.records.comparison import ComparedSide, ScorePair, TrackedComparison
 from tsas_cli.records.result import Table
@@ -11,7 +11,9 @@ from tsas_cli.records.result import Table
 def record_of(it: Tracks) -> TrackedComparison:
     """Return what `compare.json` says."""
     a, b = (
-        ComparedSide(path=path.as_posix(), kind="tracking", files={TRACKING_FILE: it.checksums[name]})
+        ComparedSide(
+            path=path.as_posix(), kind="tracking", files={TRACKING_FILE: it.checksums[name]}
+        )
         for name, path in it.paths.items()
     )
     return TrackedComparison(

@@ -92,7 +92,9 @@ class LoopPlant(NamedTuple):
 
 def plant_at_rest(drive_mm: float, rig: Rig, actuator: Actuator, n: int) -> PlantStart:
     """Return motor, turntable and tendon at rest at x_in = `drive_mm`, reached from x_in = 0."""
-    ends = ends_of(rig, DriveInput(np.linspace(0.0, drive_mm, 1 + STEPS_TO_START) + rig.x_in_zero_mm))
+    ends = ends_of(
+        rig, DriveInput(np.linspace(0.0, drive_mm, 1 + STEPS_TO_START) + rig.x_in_zero_mm)
+    )
     state = initial_state(ends.course, rig, ends.boundary, n)
     f_in = rig.preload_N
     if drive_mm != 0.0:

@@ -76,7 +76,9 @@ def within(stated: Limits, otherwise: Limits) -> Limits:
     return otherwise.model_copy(update=stated.model_dump(exclude_defaults=True))
 
 
-def candidates(limits: Limits, usual: Rig, repeated: PlannedRun | None = None) -> list[CandidateRun]:
+def candidates(
+    limits: Limits, usual: Rig, repeated: PlannedRun | None = None
+) -> list[CandidateRun]:
     """Return the runs that may be proposed.
 
     Parameters

@@ -19,11 +19,15 @@ class HeldOutErrors:
     rmse_before: float
     rmse_after: float
     noise_floor: float
-    best_obtainable: float
+    attainable: float
 
 
 def channel_errors(
-    search: Hypotheses, before: HypothesisFit, final: HypothesisFit, start: Remainder, remaining: Remainder
+    search: Hypotheses,
+    before: HypothesisFit,
+    final: HypothesisFit,
+    start: Remainder,
+    remaining: Remainder,
 ) -> dict[str, HeldOutErrors]:
     """Return the residual RMS of each channel on held-out data, newly simulated."""
     rmse = {id(t): _held_out_rmse(search, t) for t in (before, final)}

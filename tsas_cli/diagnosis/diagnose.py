@@ -12,7 +12,12 @@ from tsas_cli.diagnosis.channel_errors import HeldOutErrors, channel_errors
 from tsas_cli.diagnosis.evidence import gain_percent
 from tsas_cli.diagnosis.held_out import Folds, folds_of
 from tsas_cli.diagnosis.remainder import Remainder, remainder
-from tsas_cli.diagnosis.search import EXCESS_OF_COMPLETE_MODEL, Hypotheses, find_effects, reweighted_hypotheses
+from tsas_cli.diagnosis.search import (
+    EXCESS_OF_COMPLETE_MODEL,
+    Hypotheses,
+    find_effects,
+    reweighted_hypotheses,
+)
 from tsas_cli.diagnosis.signals import signal_in_words
 from tsas_cli.diagnosis.uneven_bend import stderr_of_unevenness
 from tsas_cli.effects import EFFECTS
@@ -98,7 +103,9 @@ def verdict_of(rivals: Sequence[tuple[str, ...]], mean_square: float, share: flo
 
 def leaves_much(mean_square: float, share: float) -> bool:
     """Return whether named causes leave a residual that needs a further explanation."""
-    return mean_square > MOST_LEFT or (mean_square > 1.0 + EXCESS_OF_COMPLETE_MODEL and share > MOST_SHARE_LEFT)
+    return mean_square > MOST_LEFT or (
+        mean_square > 1.0 + EXCESS_OF_COMPLETE_MODEL and share > MOST_SHARE_LEFT
+    )
 
 
 def diagnose_runs(

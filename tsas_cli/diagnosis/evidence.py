@@ -12,7 +12,9 @@ CRITICAL_VALUE = 2.6  # critical value of the test statistic; 1 in 200 by chance
 AGREE = 0.8  # of its largest possible value, the critical value for few blocks
 LEAST_REDUCTION = 0.025  # least reduction of the squares by a cause; conditioning leaves up to 0.01
 LEAST_DIFFERENCE = 0.01  # least reduction of the squares that distinguishes a cause from a rival
-LEAST_REDUCTION_PER_COMPLEXITY = 0.03  # least reduction of the squares by a cause with more parameters than another
+LEAST_REDUCTION_PER_COMPLEXITY = (
+    0.03  # least reduction of the squares by a cause with more parameters than another
+)
 RESAMPLED = 2000  # bootstrap samples
 
 
@@ -20,19 +22,19 @@ RESAMPLED = 2000  # bootstrap samples
 class Reduction:
     """Reduction of the held-out squares by a hypothesis compared with another one.
 
-    `part` is the share of all squares; `sureness` is the test statistic, the sum of the blocks'
+    `part` is the share of all squares; `test_statistic` is the sum of the blocks'
     relative reductions over the standard deviation of the same sum with random signs (a sign-flip
     test: a block without a change has no weight). It is at most the square root of the number of
     blocks, so that most of few blocks have to agree: `needed` is the critical value.
     """
 
     part: float
-    sureness: float
+    test_statistic: float
     needed: float = CRITICAL_VALUE
 
     def beyond(self, part: float) -> bool:
         """Return whether the reduction is significant, and larger than a share of the squares."""
-        return self.sureness > self.needed and self.part > part
+        return self.test_statistic > self.needed and self.part > part
 
     @property
     def convincing(self) -> bool:
@@ -45,8 +47,8 @@ def gain(before: Floats, after: Floats) -> Reduction:
     relative = np.log(before / after)
     spread = math.sqrt(float(relative @ relative))
     part = 1.0 - float(after.sum()) / float(before.sum())
-    sureness = float(relative.sum()) / spread if spread > 0.0 else 0.0
-    return Reduction(part, sureness, min(CRITICAL_VALUE, AGREE * math.sqrt(before.size)))
+    test_statistic = float(relative.sum()) / spread if spread > 0.0 else 0.0
+    return Reduction(part, test_statistic, min(CRITICAL_VALUE, AGREE * math.sqrt(before.size)))
 
 
 def gain_percent(

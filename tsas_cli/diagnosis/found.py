@@ -3,7 +3,7 @@
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.diagnosis.diagnose import FoundCause, Diagnosis
+from tsas_cli.diagnosis.diagnose import Diagnosis, FoundCause
 from tsas_cli.diagnosis.residual_map import residual_map
 from tsas_cli.diagnosis.search import Hypotheses
 from tsas_cli.effects import EFFECTS
@@ -67,7 +67,7 @@ def candidates_of(result: Diagnosis) -> list[records.Hypothesis]:
             records.Hypothesis(
                 effects=tuple(sorted(names)),
                 gain_percent=100.0 * (1.0 - float(np.sqrt(1.0 - found.part))),
-                sureness=found.sureness,
+                test_statistic=found.test_statistic,
                 convincing=bool(found.convincing),
                 mean_square=trial.mean_square,
                 converged=bool(trial.solution.converged),
@@ -86,7 +86,7 @@ def signatures_of(search: Hypotheses | None) -> records.Signatures:
     spaces = [_orthonormal(s.signatures) for s in screened]
     similarity = [[_similarity(a, b) for b in spaces] for a in spaces]
     names = tuple(s.effect.name for s in screened)
-    return records.Signatures(effects=names, visible=sizes, likeness=similarity)
+    return records.Signatures(effects=names, visible=sizes, similarity=similarity)
 
 
 def _orthonormal(signatures: Floats) -> Floats:

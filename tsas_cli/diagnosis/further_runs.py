@@ -7,8 +7,8 @@ from datetime import datetime, timedelta
 import numpy as np
 
 from tsas_cli.diagnosis.candidates import CandidateRun, candidates, recorded_limits
-from tsas_cli.diagnosis.made_runs import APART, simulated_recordings
 from tsas_cli.diagnosis.rig_file import Sensors
+from tsas_cli.diagnosis.simulated_runs import APART, simulated_recordings
 from tsas_cli.diagnosis.visibility import LinearisedRuns, Part, linearised_runs
 from tsas_cli.identification.extension import Bench, bench_of
 from tsas_cli.identification.fit_problem import prepare_fit
@@ -112,7 +112,12 @@ def simulated_candidates(
 
     started, ends = _clock(runs)
     return [
-        (c, prepare(simulated_recordings([c.run], sensors, rig_of, ends, seed=SEED + k)[0], started))
+        (
+            c,
+            prepare(
+                simulated_recordings([c.run], sensors, rig_of, ends, seed=SEED + k)[0], started
+            ),
+        )
         for k, c in enumerate(proposed)
     ]
 

@@ -14,8 +14,8 @@ from tsas_cli.diagnosis.further_runs import (
     joined_to_recorded,
     simulated_candidates,
 )
-from tsas_cli.diagnosis.made_runs import simulated_recordings
 from tsas_cli.diagnosis.rig_file import RigFile
+from tsas_cli.diagnosis.simulated_runs import simulated_recordings
 from tsas_cli.diagnosis.visibility import Amplitude, Visibility
 from tsas_cli.effects import EFFECTS, Effect
 from tsas_cli.identification.base_fit import base_fit, slopes_of
@@ -25,7 +25,7 @@ from tsas_cli.identification.model import data_sheet
 from tsas_cli.identification.phases import segment
 from tsas_cli.identification.prepared import prepare
 from tsas_cli.recordings.manifest import Manifest, Run
-from tsas_cli.recordings.quality.copies.counted import DeduplicatedDataset
+from tsas_cli.recordings.quality.copies.deduplicated import DeduplicatedDataset
 from tsas_cli.support.steps import NO_PROGRESS, Steps
 
 PROPOSED = 3
@@ -95,7 +95,9 @@ def plan_rig(file: RigFile, step: Steps = NO_PROGRESS) -> ExperimentPlan:
     nobody = Run(id="none", file="none", sha256="0" * 64)
     sheet = Manifest(format=1, name=file.name, kind="simulated", rig=file.rig, run=(nobody,))
     model = data_sheet(sheet)
-    runs = [prepare(r, FIRST) for r in simulated_recordings(file.run, file.sensors, model.rig, FIRST)]
+    runs = [
+        prepare(r, FIRST) for r in simulated_recordings(file.run, file.sensors, model.rig, FIRST)
+    ]
     usual = model.rig(runs[0].run)
     proposed = candidates(within(file.limits, planned_limits(file.run)), usual, file.run[0])
     further = simulated_candidates(proposed, file.sensors, usual, runs)
@@ -123,7 +125,9 @@ def plan_dataset(counted: DeduplicatedDataset, step: Steps = NO_PROGRESS) -> Exp
     return replace(plan, cannot_tell=(*counted.notes, *plan.cannot_tell))
 
 
-def propose(bench: Bench, trial: HypothesisFit, effects: Sequence[str], step: Steps = NO_PROGRESS) -> str:
+def propose(
+    bench: Bench, trial: HypothesisFit, effects: Sequence[str], step: Steps = NO_PROGRESS
+) -> str:
     """Return as a sentence the further run that distinguishes effects best.
 
     Parameters
@@ -159,7 +163,9 @@ def _plan(runs: FurtherRuns, step: Steps) -> ExperimentPlan:
     step()
     proposals = _proposals(runs, seen, EFFECTS, step)
     cannot_tell = [*runs.left_out, *_few(runs.part().blocks)]
-    return ExperimentPlan(tuple(seen), _groups(seen), tuple(proposals[:PROPOSED]), tuple(cannot_tell))
+    return ExperimentPlan(
+        tuple(seen), _groups(seen), tuple(proposals[:PROPOSED]), tuple(cannot_tell)
+    )
 
 
 def _few(blocks: int) -> list[str]:
@@ -181,7 +187,9 @@ def _proposals(
     return sorted((p for p in out if p.score > 0.0), key=lambda p: -p.score)
 
 
-def _proposal(candidate: CandidateRun, before: Sequence[Visibility], after: Sequence[Visibility]) -> PlannedRun:
+def _proposal(
+    candidate: CandidateRun, before: Sequence[Visibility], after: Sequence[Visibility]
+) -> PlannedRun:
     falls = {}
     for b, a in zip(before, after, strict=True):
         largest = b.cause.largest

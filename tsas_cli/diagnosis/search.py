@@ -15,7 +15,13 @@ from itertools import combinations
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.diagnosis.evidence import LEAST_DIFFERENCE, LEAST_REDUCTION_PER_COMPLEXITY, LEAST_REDUCTION, Reduction, gain
+from tsas_cli.diagnosis.evidence import (
+    LEAST_DIFFERENCE,
+    LEAST_REDUCTION,
+    LEAST_REDUCTION_PER_COMPLEXITY,
+    Reduction,
+    gain,
+)
 from tsas_cli.diagnosis.held_out import Folds, held_out_squares
 from tsas_cli.effects import EFFECTS, Effect
 from tsas_cli.identification.extension import TOLERANCE, Bench, HypothesisFit, reweighted_bench
@@ -173,7 +179,9 @@ class Search:
 
     def is_quiet(self, names: Names) -> bool:
         """Return whether the excess is too small for a further cause."""
-        return bool(self.held_out(names).sum() / self.folds.block.size < 1.0 + EXCESS_OF_COMPLETE_MODEL)
+        return bool(
+            self.held_out(names).sum() / self.folds.block.size < 1.0 + EXCESS_OF_COMPLETE_MODEL
+        )
 
     def matters(self, before: Names, added: Iterable[str]) -> bool:
         """Return whether added effects reduce the excess over the noise by a sufficient share."""

@@ -103,7 +103,9 @@ def causes_of(effect: Effect) -> list[Amplitude]:
     shapes = [p for p in effect.parameters if p.shape]
     options = [p.starts if 0 < len(p.starts) <= FEW_SHAPES else (p.start,) for p in shapes]
     return [
-        Amplitude(effect, p, {f"{effect.name}.{s.name}": v for s, v in zip(shapes, at, strict=True)})
+        Amplitude(
+            effect, p, {f"{effect.name}.{s.name}": v for s, v in zip(shapes, at, strict=True)}
+        )
         for at in product(*options)
         for p in effect.parameters
         if not p.shape
@@ -263,7 +265,9 @@ class Part:
             out.append(Visibility(cause, found if self.shows(cause) else math.inf, told))
         return out
 
-    def _distinct_from(self, cause: Amplitude, usual: list[Imitation], tiny: list[Imitation]) -> float:
+    def _distinct_from(
+        self, cause: Amplitude, usual: list[Imitation], tiny: list[Imitation]
+    ) -> float:
         """Return the smallest size at which no imitation equals a cause, in either direction."""
         own, exact = self.own(cause), self.tiny(cause)
         signs = (1.0,) if cause.one_sided else (1.0, -1.0)

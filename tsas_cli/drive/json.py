@@ -12,8 +12,8 @@ from tsas_cli.drive.fit import LINEAR, Terms, quantities_of
 from tsas_cli.drive.frequency_response import FrequencyResponse
 from tsas_cli.drive.harmonic_drive import DriveValues
 from tsas_cli.drive.search import DriveSearch, structures
+from tsas_cli.drive.sentences import name_of, next_run
 from tsas_cli.drive.transfer_function import bode_curve, poles
-from tsas_cli.drive.words import name_of, next_run
 from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.records import drive as records

@@ -12,7 +12,12 @@ from itertools import combinations
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.diagnosis.evidence import LEAST_DIFFERENCE, LEAST_REDUCTION_PER_COMPLEXITY, Reduction, gain
+from tsas_cli.diagnosis.evidence import (
+    LEAST_DIFFERENCE,
+    LEAST_REDUCTION_PER_COMPLEXITY,
+    Reduction,
+    gain,
+)
 from tsas_cli.diagnosis.held_out import STRETCHES, Folds, held_out_squares
 from tsas_cli.diagnosis.search import EXCESS_OF_COMPLETE_MODEL
 from tsas_cli.drive.fit import LINEAR, DriveBench, DriveTrial, Terms, quantities_of
@@ -130,7 +135,11 @@ def chosen(search: DriveSearch, gear: Terms) -> Terms:
     search.fits.trials_of(every)
     ended = [t for t in every if search.trial(t).solution.converged] or every
     best = min(ended, key=lambda t: float(search.held_out(t).sum()))
-    return next(t for t in ended if t == best or not search.gain(t, best).beyond(LEAST_REDUCTION_PER_COMPLEXITY))
+    return next(
+        t
+        for t in ended
+        if t == best or not search.gain(t, best).beyond(LEAST_REDUCTION_PER_COMPLEXITY)
+    )
 
 
 def rivals(search: DriveSearch, named: Terms, term: str) -> tuple[str, ...]:

@@ -52,10 +52,10 @@ def tables(drive: DriveFile, title: str) -> Iterator[Table]:
     errors = [
         (
             name,
-            *map(number_text, (c.rmse_before, c.rmse_after, c.noise_floor, c.best_obtainable)),
+            *map(number_text, (c.rmse_before, c.rmse_after, c.noise_floor, c.attainable)),
             c.unit,
         )
         for name, c in drive.diagnosis.channels.items()
     ]
-    columns = ("channel", "before", "after", "noise", "obtainable", "unit")
+    columns = ("channel", "before", "after", "noise", "attainable", "unit")
     yield "error on held-out data", columns, errors

@@ -13,8 +13,8 @@ import numpy.typing as npt
 
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.fit import Fitted, Residuals, Unknown, fit, identifiable, jacobian
+from tsas_cli.identification.fit_notes import doubts_of, fixed_sentences
 from tsas_cli.identification.fit_problem import FitProblem
-from tsas_cli.identification.fit_words import doubts_of, fixed_sentences
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.identification.run_errors import RunErrors, blocks_of, reweighted

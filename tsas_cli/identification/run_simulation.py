@@ -80,7 +80,9 @@ def predict_driven(
     return _at_samples(simulation, _response(simulation, rig, drive, OWN_STEPS))
 
 
-def _response(simulation: RunSimulation, rig: Rig, drive: DriveInput, step_ends_s: Floats) -> Prediction:
+def _response(
+    simulation: RunSimulation, rig: Rig, drive: DriveInput, step_ends_s: Floats
+) -> Prediction:
     """Return the response at all samples by the closed form, or at `points` by a chain."""
     slip = simulation.nodes is None and simulation.dynamics == "slip"
     at = slice(None) if slip and is_closed(rig, drive) else simulation.points

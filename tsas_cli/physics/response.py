@@ -141,7 +141,9 @@ def is_closed(rig: Rig, drive: DriveInput) -> bool:
     )
 
 
-def sensor_readings(rig: Rig, drive: DriveInput, output: Output, skip: int, solver: str) -> Prediction:
+def sensor_readings(
+    rig: Rig, drive: DriveInput, output: Output, skip: int, solver: str
+) -> Prediction:
     """Return the sensor readings of an output without its first `skip` samples."""
     x_in = output.x_in[skip:]
     return Prediction(

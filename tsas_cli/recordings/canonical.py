@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from tsas_cli.recordings.columns import BY_NAME, TIME
 from tsas_cli.recordings.ingest_map import ColumnMap, IngestMap
-from tsas_cli.recordings.readers.table import Floats, ColumnTable
+from tsas_cli.recordings.readers.table import ColumnTable, Floats
 from tsas_cli.recordings.units import conversion
 from tsas_cli.support.errors import InputError
 

@@ -4,7 +4,7 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
-from tsas_cli.recordings.guards.patience import at_most
+from tsas_cli.recordings.guards.time_limit import at_most
 from tsas_cli.recordings.ingest_map import Converted, FromText, RunMap
 from tsas_cli.recordings.readers.layout import may_be_thousands
 from tsas_cli.recordings.units import conversion

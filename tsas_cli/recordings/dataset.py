@@ -118,7 +118,9 @@ class Dataset:
     def hashes(self) -> dict[str, str]:
         """Return the checksum of the manifest and of each run's file, by path in the dataset."""
         manifest = (self.folder / MANIFEST_FILE).read_bytes()
-        return {MANIFEST_FILE: sha256(manifest).hexdigest()} | {r.file: r.sha256 for r in self.manifest.run}
+        return {MANIFEST_FILE: sha256(manifest).hexdigest()} | {
+            r.file: r.sha256 for r in self.manifest.run
+        }
 
 
 def read_from(path: Path, home: Path) -> dict[str, str]:

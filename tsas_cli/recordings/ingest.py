@@ -148,7 +148,12 @@ def _origin(ingested: Sequence[Ingested], map_path: Path, folder: Path) -> dict[
 
 
 def _ingest(
-    parts: Iterator[ColumnTable], run: str, path: Path, mapping: IngestMap, map_path: Path, written: Path
+    parts: Iterator[ColumnTable],
+    run: str,
+    path: Path,
+    mapping: IngestMap,
+    map_path: Path,
+    written: Path,
 ) -> Ingested:
     """Write one file part by part; return its summary."""
     columns, before = canonical_columns(next(parts), mapping, path, map_path)

@@ -95,7 +95,7 @@ class StageFile(Record):
 
 
 class OfDataset(StageFile):
-    """What a stage says that has read a dataset; `chosen` and `conditions` as of `DatasetSource`."""
+    """What a stage says of a dataset; `chosen` and `conditions` as of `DatasetSource`."""
 
     SPARSE = DatasetSource.SPARSE
     dataset: DatasetSource

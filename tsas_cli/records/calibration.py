@@ -9,8 +9,8 @@ from tsas_cli.records.base import (
     Number,
     OfDataset,
     ParameterValue,
-    Record,
     PhaseSegment,
+    Record,
 )
 
 MODEL_FILE = "model.toml"  # beside it, and beside a simulation: the model that was used

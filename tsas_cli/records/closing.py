@@ -5,7 +5,7 @@ from typing import ClassVar, Literal
 from pydantic import Field
 
 from tsas_cli.records.base import Record, StageFile
-from tsas_cli.records.tracking import Scores, StatedSettings, Spread
+from tsas_cli.records.tracking import Scores, Spread, StatedSettings
 
 
 class Rmse(Spread):

@@ -11,8 +11,8 @@ from tsas_cli.records.base import (
     NotNegative,
     Number,
     OfDataset,
-    Record,
     PhaseSegment,
+    Record,
     Value,
 )
 
@@ -51,7 +51,7 @@ class HeldOut(Record):
     rmse_before: NotNegative = None
     rmse_after: NotNegative = None
     noise_floor: NotNegative = None
-    best_obtainable: NotNegative = None
+    attainable: NotNegative = None
 
 
 class RemainingResidual(Record):
@@ -68,7 +68,7 @@ class Hypothesis(Record):
 
     effects: tuple[str, ...]
     gain_percent: Number = None
-    sureness: Number = None
+    test_statistic: Number = None
     convincing: bool = False
     mean_square: Number = None
     converged: bool = True
@@ -80,13 +80,15 @@ class Signatures(Record):
 
     effects: tuple[str, ...] = ()
     visible: tuple[float, ...] = ()
-    likeness: tuple[tuple[float, ...], ...] = ()
+    similarity: tuple[tuple[float, ...], ...] = ()
 
     @model_validator(mode="after")
     def _is_square(self) -> Self:
         count = len(self.effects)
-        if any(len(row) != count for row in (self.visible, self.likeness, *self.likeness)):
-            raise ValueError("visible and likeness need a value for each effect, and for each two")
+        if any(len(row) != count for row in (self.visible, self.similarity, *self.similarity)):
+            raise ValueError(
+                "visible and similarity need a value for each effect, and for each two"
+            )
         return self
 
 

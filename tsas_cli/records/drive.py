@@ -5,7 +5,7 @@ from typing import ClassVar, Literal
 from pydantic import Field
 
 from tsas_cli.records.base import Evidence, Fit, Number, OfDataset, ParameterValue, Record
-from tsas_cli.records.diagnosis import NamedCause, HeldOut, RemainingResidual, Verdict
+from tsas_cli.records.diagnosis import HeldOut, NamedCause, RemainingResidual, Verdict
 
 DRIVE_FILE = "drive.toml"  # beside it: the drive, as a feedforward reads it
 

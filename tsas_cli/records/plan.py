@@ -2,7 +2,7 @@
 
 from typing import ClassVar, Literal
 
-from tsas_cli.records.base import Number, Record, DatasetSource, StageFile
+from tsas_cli.records.base import DatasetSource, Number, Record, StageFile
 
 
 class EffectSize(Record):

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from typing import ClassVar, Literal, Self
 
 from tsas_cli.physics.response import Dynamics
-from tsas_cli.records.base import ModelFile, Number, OfDataset, Record, PhaseSegment
+from tsas_cli.records.base import ModelFile, Number, OfDataset, PhaseSegment, Record
 
 
 class SimulatedChannel(Record):

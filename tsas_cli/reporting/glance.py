@@ -4,8 +4,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from statistics import median
 
 from tsas_cli.records.closing import ClosingFile
-from tsas_cli.records.diagnosis import NamedCause, DiagnosisFile, HeldOut
-from tsas_cli.records.drive import DriveFile, DriveDiagnosis
+from tsas_cli.records.diagnosis import DiagnosisFile, HeldOut, NamedCause
+from tsas_cli.records.drive import DriveDiagnosis, DriveFile
 from tsas_cli.records.simulation import SimulationFile
 from tsas_cli.records.tracking import TrackingFile
 from tsas_cli.reporting.channels import called

@@ -14,7 +14,7 @@ from tsas_cli.recordings.manifest import MANIFEST_FILE, parse
 from tsas_cli.recordings.quality import check_dataset
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.recordings.storage import Location, recorded_location
-from tsas_cli.recordings.written import result_file, check_rows, columns_of, names_of
+from tsas_cli.recordings.written import check_rows, columns_of, names_of, result_file
 from tsas_cli.records.base import OfDataset, StageFile
 from tsas_cli.records.calibration import CalibrationFile
 from tsas_cli.records.check import CheckFile
@@ -151,7 +151,9 @@ def _by_file(folders: Sequence[Location]) -> dict[str, Location]:
     known = (MANIFEST_FILE, *(kind.FILE for kind in STAGES))
     found: dict[str, Location] = {}
     for folder in folders:
-        looked_for = known if isinstance(folder, Path) else (MANIFEST_FILE,)  # stages write to local folders
+        looked_for = (
+            known if isinstance(folder, Path) else (MANIFEST_FILE,)
+        )  # stages write to local folders
         files = [file for file in looked_for if (folder / file).is_file()]
         if not files:
             raise InputError(

@@ -60,7 +60,7 @@ def _intro(inputs: Inputs) -> Iterator[str]:
     closing = inputs.get(ClosingFile)
     if closing and closing_call.own_settings(closing):
         yield (
-            f"`{closing_call.SETTINGS}` stands for a file with the settings that `{ClosingFile.FILE}` "
+            f"`{closing_call.SETTINGS}` is a file with the settings that `{ClosingFile.FILE}` "
             "holds; they are not the defaults."
         )
 

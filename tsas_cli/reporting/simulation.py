@@ -118,7 +118,9 @@ def _unit(name: str, channel: SimulatedChannel) -> str:
     return channel.unit or (BY_NAME[name].unit if name in BY_NAME else ABSENT)
 
 
-def _residual_in_words(time_s: Floats, residual: Floats, channel: SimulatedChannel, unit: str) -> str:
+def _residual_in_words(
+    time_s: Floats, residual: Floats, channel: SimulatedChannel, unit: str
+) -> str:
     """Return the residual's span, where it is largest, and how much of it noise explains."""
     there = np.isfinite(residual)
     at = float(time_s[np.nanargmax(np.abs(residual))])

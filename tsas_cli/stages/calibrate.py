@@ -26,7 +26,7 @@ from tsas_cli.recordings.copied import CopiedRows
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Manifest, Run
 from tsas_cli.recordings.quality.checks import sign
-from tsas_cli.recordings.quality.copies.counted import without_duplicates
+from tsas_cli.recordings.quality.copies.deduplicated import without_duplicates
 from tsas_cli.recordings.quality.finding import CannotTell, Remark
 from tsas_cli.recordings.quality.stretches import look_by_stretches
 from tsas_cli.recordings.quality.trial import RunSignals

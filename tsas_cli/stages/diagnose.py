@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tsas_cli.diagnosis import found
-from tsas_cli.diagnosis.diagnose import FoundCause, Diagnosis, diagnose_runs
+from tsas_cli.diagnosis.diagnose import Diagnosis, FoundCause, diagnose_runs
 from tsas_cli.diagnosis.next_experiment import next_experiment
 from tsas_cli.identification.comparison import compare
 from tsas_cli.identification.model import Model, source_of, stated_model, write_model
@@ -13,7 +13,7 @@ from tsas_cli.identification.phases import segment, segment_records
 from tsas_cli.identification.prepared import Prepared, prepare
 from tsas_cli.recordings.columns import nominal_name
 from tsas_cli.recordings.dataset import Dataset
-from tsas_cli.recordings.quality.copies.counted import without_duplicates
+from tsas_cli.recordings.quality.copies.deduplicated import without_duplicates
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.recordings.writing import write_result
 from tsas_cli.records import diagnosis as records
@@ -181,20 +181,20 @@ def _tables(record: records.DiagnosisFile, title: str) -> Iterator[Table]:
     if named:
         yield title, ("effect", "parameter", "value [95 %]", "unit", "rivals"), named
     errors = [
-        (name, *map(number_text, (c.rmse_before, c.rmse_after, c.noise_floor, c.best_obtainable)))
+        (name, *map(number_text, (c.rmse_before, c.rmse_after, c.noise_floor, c.attainable)))
         for name, c in record.channels.items()
     ]
     units = [c.unit for c in record.channels.values()]
-    header = ("channel", "before", "after", "noise", "obtainable", "unit")
+    header = ("channel", "before", "after", "noise", "attainable", "unit")
     rows = [(*row, unit) for row, unit in zip(errors, units, strict=True)]
     yield "error on held-out data", header, rows
     ranking = [
         (
             " + ".join(row.effects),
             number_text(row.gain_percent, ".1f"),
-            number_text(row.sureness, ".1f"),
+            number_text(row.test_statistic, ".1f"),
             "" if row.converged else "not converged",
         )
         for row in record.candidates[:SHOWN]
     ]
-    yield "hypotheses", ("effects", "gain [%]", "sureness", ""), ranking
+    yield "hypotheses", ("effects", "gain [%]", "test statistic", ""), ranking

@@ -16,13 +16,13 @@ from tsas_cli.drive.fit import DriveBench, Terms
 from tsas_cli.drive.frequency_response import frequency_response
 from tsas_cli.drive.runs import drive_runs
 from tsas_cli.drive.search import DriveFits, DriveSearch, find_terms
+from tsas_cli.drive.sentences import cannot_tell, equation_of, inverse_of, name_of
 from tsas_cli.drive.tables import tables
-from tsas_cli.drive.words import cannot_tell, equation_of, inverse_of, name_of
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.numerics.linear_response import Hold
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Run
-from tsas_cli.recordings.quality.copies.counted import without_duplicates
+from tsas_cli.recordings.quality.copies.deduplicated import without_duplicates
 from tsas_cli.recordings.recording import Recording, recording_of
 from tsas_cli.recordings.writing import write_runs
 from tsas_cli.records.base import Fit, parameters_of

@@ -10,7 +10,7 @@ from tsas_cli.diagnosis.plan import ExperimentPlan, PlannedRun, plan_dataset, pl
 from tsas_cli.diagnosis.rig_file import read_rig_file
 from tsas_cli.diagnosis.visibility import Visibility
 from tsas_cli.recordings.dataset import Dataset, read_dataset
-from tsas_cli.recordings.quality.copies.counted import without_duplicates
+from tsas_cli.recordings.quality.copies.deduplicated import without_duplicates
 from tsas_cli.recordings.storage import location_of
 from tsas_cli.records.plan import EffectSize, ProposedRun, RunPlan, RunProposal, SmallerSize
 from tsas_cli.records.result import Result, Table, notes

@@ -6,19 +6,17 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from tsas_cli.recordings.manifest import MANIFEST_FILE as MANIFEST
+from tsas_cli.recordings.manifest import MANIFEST_FILE
 from tsas_cli.recordings.storage import Location
 from tsas_cli.records.result import Result, Table
 from tsas_cli.reporting.inputs import Inputs, read_inputs
 from tsas_cli.reporting.page import SECTIONS, page
-from tsas_cli.reporting.pdf import PDF_MARK as PDF_MARK
-from tsas_cli.reporting.pdf import browser, print_page
+from tsas_cli.reporting.pdf import PDF_MARK, browser, print_page
 from tsas_cli.stages.given import Named, places_of
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import new_file
 from tsas_cli.support.steps import NO_PROGRESS, Steps
-from tsas_cli.verifying.seal import PDF_MARK as PAGE_MARK
-from tsas_cli.verifying.seal import with_seal
+from tsas_cli.verifying.seal import PAGE_MARK, with_seal
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -82,7 +80,7 @@ def report(
         written = partial(new_file, inputs=places, force=force)
         html, *printed = (
             stack.enter_context(written(path, mark=mark))
-            for path, mark in zip(pages, (PDF_MARK, PDF_MARK), strict=False)
+            for path, mark in zip(pages, (PAGE_MARK, PDF_MARK), strict=False)
         )
         inputs = read_inputs(places)
         step.ahead(len(SECTIONS))
@@ -104,7 +102,7 @@ def _files_of(inputs: Inputs) -> list[tuple[Location, str]]:
     stages: list[tuple[Location, str]] = [
         (folder, kind.FILE) for kind, folder in inputs.folders.items()
     ]
-    return stages if inputs.dataset is None else [(inputs.dataset.folder, MANIFEST), *stages]
+    return stages if inputs.dataset is None else [(inputs.dataset.folder, MANIFEST_FILE), *stages]
 
 
 def _beside(out: Path) -> Path:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tsas_cli.collection.index import index_of
-from tsas_cli.collection.query import QueryResult, run_query, connected
+from tsas_cli.collection.query import QueryResult, connected, run_query
 from tsas_cli.records.result import Result, Table, notes
 from tsas_cli.support import __version__
 from tsas_cli.support.errors import InputError

@@ -19,9 +19,9 @@ from tsas_cli.stages.read import read, read_model
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import Raw, new_folder, read_json, sha256_of, write_json, write_sums
 from tsas_cli.support.temporaries import remove
-from tsas_cli.sweeping.answer import TaskOutcome, failure, success
 from tsas_cli.sweeping.folder import JOURNAL, what_is_done
-from tsas_cli.sweeping.found import estimates, figures
+from tsas_cli.sweeping.key_figures import estimates, figures
+from tsas_cli.sweeping.outcome import TaskOutcome, failure, success
 from tsas_cli.sweeping.tasks import TASK_FILE
 from tsas_cli.sweeping.values import FILES, Options, with_settings
 from tsas_cli.sweeping.versions import ONE_THREAD, refuse_others, versions

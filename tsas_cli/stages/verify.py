@@ -42,7 +42,9 @@ class VerifyResult(Result):
         return [(title, ("state", "file", "why", "recorded in") if rows else (), rows)]
 
 
-def verify(path: Named, *, raw: Named | Iterable[Named] = (), step: Steps = NO_PROGRESS) -> VerifyResult:
+def verify(
+    path: Named, *, raw: Named | Iterable[Named] = (), step: Steps = NO_PROGRESS
+) -> VerifyResult:
     """Check every checksum from a page, or all that stages wrote, back to the raw recordings.
 
     Parameters

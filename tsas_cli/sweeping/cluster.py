@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tsas_cli.support.errors import InputError
-from tsas_cli.sweeping.answer import TaskOutcome, run_task, worker_death, failure
+from tsas_cli.sweeping.outcome import TaskOutcome, failure, run_task, worker_death
 from tsas_cli.sweeping.versions import ONE_THREAD, refuse_others, threads_of_algebra, versions
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from tsas_cli.support.files import read_json, sha256_of, unwritable
 from tsas_cli.support.limits import text_name
 from tsas_cli.support.replacing import LEFT_BY_DESKTOPS, SUMS, refuse_holding, refuse_kind
 from tsas_cli.support.temporaries import TEMPORARY, is_empty_folder, remove
-from tsas_cli.sweeping.answer import TaskOutcome, success
+from tsas_cli.sweeping.outcome import TaskOutcome, success
 from tsas_cli.sweeping.tasks import TASK_FILE, Task
 from tsas_cli.verifying.claims import claims_of
 

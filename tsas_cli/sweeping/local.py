@@ -14,14 +14,16 @@ from threading import local
 from typing import IO
 
 from tsas_cli.support.errors import InputError
-from tsas_cli.sweeping.answer import TaskOutcome, worker_death
+from tsas_cli.sweeping.outcome import TaskOutcome, worker_death
 from tsas_cli.sweeping.versions import ONE_THREAD
 
 TRIES = 2  # of a task whose worker dies
 STDERR_BYTES = 500  # last bytes of a dead worker's standard error
 
 
-def in_processes(work: str, texts: Sequence[str], workers: int) -> Iterator[tuple[int, TaskOutcome]]:
+def in_processes(
+    work: str, texts: Sequence[str], workers: int
+) -> Iterator[tuple[int, TaskOutcome]]:
     """Yield the number and the outcome of each task, in the order of completion.
 
     A task whose worker dies is repeated once by a new one. If the loop over the outcomes ends

@@ -9,7 +9,7 @@ import pyarrow.csv
 import pyarrow.parquet
 
 from tsas_cli.support.errors import InputError
-from tsas_cli.sweeping.answer import Row
+from tsas_cli.sweeping.outcome import Row
 from tsas_cli.sweeping.plan import SweepPlan
 
 MOST_TASKS = 1_000_000

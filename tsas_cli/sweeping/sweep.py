@@ -11,7 +11,6 @@ from tsas_cli.records.result import Result, Table
 from tsas_cli.support import __version__
 from tsas_cli.support.files import own_file, write_json
 from tsas_cli.support.steps import Steps
-from tsas_cli.sweeping.answer import TaskOutcome, Row
 from tsas_cli.sweeping.folder import (
     PARAMETERS,
     SUMMARY,
@@ -20,6 +19,7 @@ from tsas_cli.sweeping.folder import (
     sweep_folder,
     what_is_done,
 )
+from tsas_cli.sweeping.outcome import Row, TaskOutcome
 from tsas_cli.sweeping.plan import SweepPlan
 from tsas_cli.sweeping.tables import counts, parameter_rows, printed, rows_of, write_rows
 from tsas_cli.sweeping.tasks import Task
@@ -129,7 +129,9 @@ def sweep_tasks(
         )
 
 
-def _written(out: Path, plan: SweepPlan, tasks: Sequence[Task], outcomes: Sequence[TaskOutcome]) -> Row:
+def _written(
+    out: Path, plan: SweepPlan, tasks: Sequence[Task], outcomes: Sequence[TaskOutcome]
+) -> Row:
     """Return the summary, after writing the tables and the summary itself."""
     rows = rows_of(tasks, outcomes)
     summary = {

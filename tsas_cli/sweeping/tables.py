@@ -10,7 +10,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from tsas_cli.records.result import Table
-from tsas_cli.sweeping.answer import TaskOutcome, Row
+from tsas_cli.sweeping.outcome import Row, TaskOutcome
 from tsas_cli.sweeping.tasks import Task
 
 MOST_SHOWN = 20  # failed tasks in the printed table; the file holds all

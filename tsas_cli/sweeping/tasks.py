@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from tsas_cli.support.errors import InputError
-from tsas_cli.sweeping.answer import Row
+from tsas_cli.sweeping.outcome import Row
 from tsas_cli.sweeping.plan import SweepPlan
 from tsas_cli.sweeping.points import points_of
 from tsas_cli.sweeping.sources import SweepSource, sources_of

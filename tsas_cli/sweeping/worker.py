@@ -7,7 +7,7 @@ to standard error.
 import os
 import sys
 
-from tsas_cli.sweeping.answer import run_task
+from tsas_cli.sweeping.outcome import run_task
 
 
 def main() -> None:

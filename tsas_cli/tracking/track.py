@@ -129,7 +129,9 @@ def run_loop(
     limit_rpm = plant.actuator.speed_limit_rpm
     nodes = settings.loop.nodes
     columns, unsettled, done = close_loop(
-        LoopReference(np.ascontiguousarray(path.drive[:, :m]), feedforward(path, known.actuator)[:m]),
+        LoopReference(
+            np.ascontiguousarray(path.drive[:, :m]), feedforward(path, known.actuator)[:m]
+        ),
         DriveSensor(step_s, noise, settings.sensor.step_mm, A, b),
         settings.laws(controller, known.actuator.gain_mm_per_s_rpm),
         LoopPlant(

@@ -101,7 +101,9 @@ def _of_one(judged: Iterable[Judged], size: float) -> list[ScoreRate]:
     exact_alone = (j.outcome == "exact" and not any(j.rivals) for j in cases)
     return [
         _for_each(f"{name}_exact", f"{title}: named exactly", cases, _exact),
-        ScoreRate(f"{name}_alone", f"{title}: named exactly, no rival beside it", rate(exact_alone)),
+        ScoreRate(
+            f"{name}_alone", f"{title}: named exactly, no rival beside it", rate(exact_alone)
+        ),
         ScoreRate(f"{name}_rivals", f"{title}: within the rivals", _share(cases, "rivals")),
         _for_each(f"{name}_false", f"{title}: named falsely", cases, _false),
     ]

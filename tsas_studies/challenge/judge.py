@@ -2,11 +2,11 @@
 
 from dataclasses import dataclass
 
-from tsas_studies.challenge.entry import SubmittedDiagnosis, Entry
+from tsas_studies.challenge.entry import Entry, SubmittedDiagnosis
 from tsas_studies.challenge.truth import CATALOGUE, TrueCase, Truth
 
 NO_ANSWER = "no answer"
-_WORTH_MENDING = 1.1  # times the best obtainable error; a channel below it has nothing to gain
+_WORTH_MENDING = 1.1  # times the attainable error; a channel below it has nothing to gain
 
 
 @dataclass(frozen=True)
@@ -76,15 +76,15 @@ class Judged:
 
     @property
     def gain(self) -> float | None:
-        """The held-out gain as a share of the best obtainable, the mean over the channels.
+        """The held-out gain as a share of the attainable, the mean over the channels.
 
-        (rmse_before - rmse_after) / (rmse_before - best_obtainable): 1 where the extended model
+        (rmse_before - rmse_after) / (rmse_before - attainable): 1 where the extended model
         is as good as anything, 0 where it gains nothing, below 0 where it is worse. None where
         no channel has something to gain, or none says so.
         """
         shares = []
         for channel in self.diagnosis.channels.values() if self.diagnosis else ():
-            before, after, best = channel.rmse_before, channel.rmse_after, channel.best_obtainable
+            before, after, best = channel.rmse_before, channel.rmse_after, channel.attainable
             if before is None or after is None or best is None:
                 continue
             if before > _WORTH_MENDING * best:

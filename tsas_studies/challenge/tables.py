@@ -41,7 +41,7 @@ def _summary(content: dict[str, Any]) -> Table:
             rows.append((title, target, *_beside(map(_rate, figures), met)))
     rows += [
         ("rivals beside each name, mean", "", *_beside(map(_rivals, entries), blank)),
-        ("held-out gain of the best obtainable, median", "", *_beside(map(_gain, entries), blank)),
+        ("held-out gain of the attainable, median", "", *_beside(map(_gain, entries), blank)),
         ("seconds per case", "", *_beside(map(_seconds, entries), blank)),
     ]
     cases = ", ".join(f"{n} {kind}" for kind, n in content["answers"]["cases"].items())

@@ -67,7 +67,10 @@ def every_load(rng, x_in, f_in, f_out, x_out, preload):
     yield "force", DriveInput(x_in, load="force", load_values=near * f_out, time_s=time_s)
     pushing = near * f_out - 1.5 * preload
     yield "push-pull", DriveInput(x_in, load="force", load_values=pushing, time_s=time_s)
-    yield "displacement", DriveInput(x_in, load="displacement", load_values=near * x_out, time_s=time_s)
+    yield (
+        "displacement",
+        DriveInput(x_in, load="displacement", load_values=near * x_out, time_s=time_s),
+    )
     yield "drive by force", DriveInput(near * f_in + 0.02 * preload, kind="force", time_s=time_s)
 
 

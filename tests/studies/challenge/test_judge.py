@@ -94,7 +94,7 @@ def test_both_effects_of_a_pair_are_covered():
 
 
 def channel(before, after, best):
-    return {"rmse_before": before, "rmse_after": after, "noise_floor": 0.1, "best_obtainable": best}
+    return {"rmse_before": before, "rmse_after": after, "noise_floor": 0.1, "attainable": best}
 
 
 @pytest.mark.parametrize(

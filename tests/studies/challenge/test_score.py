@@ -24,7 +24,7 @@ GOOD = estimate(0.12, "mm", 0.01)
 
 def channels(after):
     """Return a gain of 0.75 for 0.4, 1 for 0.2, 0 for 1.0."""
-    return {"f_in_N": {"rmse_before": 1.0, "rmse_after": after, "best_obtainable": 0.2}}
+    return {"f_in_N": {"rmse_before": 1.0, "rmse_after": after, "attainable": 0.2}}
 
 
 SAID = {

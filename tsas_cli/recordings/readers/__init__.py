@@ -42,7 +42,9 @@ def read(path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]) -> Co
     return whole(batches(path, options, wanted))
 
 
-def batches(path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]) -> Iterator[ColumnTable]:
+def batches(
+    path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]
+) -> Iterator[ColumnTable]:
     """Yield the requested columns in parts of `BATCH_ROWS` rows, or whole for some formats.
 
     Raises

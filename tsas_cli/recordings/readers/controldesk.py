@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from tsas_cli.recordings.readers.options import ReadOptions
-from tsas_cli.recordings.readers.table import ColumnSource, Floats, ColumnTable, floats, resolve
+from tsas_cli.recordings.readers.table import ColumnSource, ColumnTable, Floats, floats, resolve
 from tsas_cli.recordings.readers.timebase import TIME, on_one_clock
 from tsas_cli.support.errors import InputError
 

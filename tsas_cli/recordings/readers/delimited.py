@@ -25,7 +25,9 @@ from tsas_cli.support.errors import InputError
 _NULLS = frozenset(csv.ConvertOptions().null_values)
 
 
-def batches(path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]) -> Iterator[ColumnTable]:
+def batches(
+    path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]
+) -> Iterator[ColumnTable]:
     """Yield the requested columns of a text table in parts.
 
     From a row that pyarrow refuses, or with a delimiter outside ASCII, it is read line by line.

@@ -18,7 +18,7 @@ from tsas_cli.recordings.readers.controldesk import (
     read_capture,
 )
 from tsas_cli.recordings.readers.options import ReadOptions
-from tsas_cli.recordings.readers.table import ColumnSource, Floats, ColumnTable, floats, resolve
+from tsas_cli.recordings.readers.table import ColumnSource, ColumnTable, Floats, floats, resolve
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import Raw
 from tsas_cli.support.memory import out_of_memory

@@ -15,7 +15,7 @@ from tsas_cli.recordings.guards.damaged import damaged
 from tsas_cli.recordings.guards.mdf_blocks import check_blocks, check_claims
 from tsas_cli.recordings.readers.optional import optional
 from tsas_cli.recordings.readers.options import ReadOptions
-from tsas_cli.recordings.readers.table import ColumnSource, Floats, ColumnTable, floats, resolve
+from tsas_cli.recordings.readers.table import ColumnSource, ColumnTable, Floats, floats, resolve
 from tsas_cli.recordings.readers.timebase import TIME, on_one_clock
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.memory import out_of_memory
@@ -70,7 +70,9 @@ def _discard_half_made(error: Exception) -> None:
     sys.unraisablehook = hook
 
 
-def _table(file: Any, options: ReadOptions, wanted: Sequence[ColumnSource], path: Path) -> ColumnTable:
+def _table(
+    file: Any, options: ReadOptions, wanted: Sequence[ColumnSource], path: Path
+) -> ColumnTable:
     channels = _channels(file)
     at = resolve(wanted, [*(name for name, _, _ in channels), TIME], path)
     groups = [channels[i][1] for i in at.values() if i < len(channels)]

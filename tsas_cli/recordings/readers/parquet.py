@@ -14,8 +14,8 @@ from tsas_cli.recordings.readers.options import ReadOptions
 from tsas_cli.recordings.readers.table import (
     BATCH_ROWS,
     ColumnSource,
-    Floats,
     ColumnTable,
+    Floats,
     floats,
     in_batches,
     resolve,
@@ -23,7 +23,9 @@ from tsas_cli.recordings.readers.table import (
 from tsas_cli.support.memory import out_of_memory
 
 
-def batches(path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]) -> Iterator[ColumnTable]:
+def batches(
+    path: Path, options: ReadOptions, wanted: Sequence[ColumnSource]
+) -> Iterator[ColumnTable]:
     """Yield the requested columns of a Parquet file in parts; units from field metadata `unit`.
 
     Dates become seconds since the first one in their column, durations become seconds.

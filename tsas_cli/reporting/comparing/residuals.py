@@ -4,8 +4,8 @@ from functools import partial
 
 import numpy as np
 
-from tsas_cli.comparing.answers import Both, channels
 from tsas_cli.comparing.compare import Comparison
+from tsas_cli.comparing.predictions import Both, channels
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.records.comparison import shared_name
 from tsas_cli.reporting.comparing.two_residuals import Residuals, draw_two_residuals, height_in

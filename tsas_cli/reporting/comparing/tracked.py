@@ -4,9 +4,9 @@ import shlex
 from collections.abc import Callable, Iterator
 from functools import partial
 
-from tsas_cli.comparing.tracked import TRACKING_FILE, SCORES, ControllerPair, Tracks
+from tsas_cli.comparing.tracked import SCORES, TRACKING_FILE, ControllerPair, Tracks
 from tsas_cli.comparing.tracked_stage import findings, notes, shown
-from tsas_cli.recordings.written import result_file, columns_of
+from tsas_cli.recordings.written import columns_of, result_file
 from tsas_cli.reporting.comparing.two_residuals import Residuals, draw_two_residuals, height_in
 from tsas_cli.reporting.content import Picture, Section, Table
 from tsas_cli.reporting.drawing import picture

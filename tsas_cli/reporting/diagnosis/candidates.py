@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from tsas_cli.records.diagnosis import Hypothesis, NamedCause, DiagnosisFile
+from tsas_cli.records.diagnosis import DiagnosisFile, Hypothesis, NamedCause
 from tsas_cli.reporting.content import Section, Table
 from tsas_cli.reporting.numbers import fixed, plain
 
@@ -28,7 +28,14 @@ def part(diagnosis: DiagnosisFile) -> Section | None:
     standing = {frozenset(c.effects): _standing(c, diagnosis.named) for c in tried}
     shown = [c for place, c in enumerate(tried) if place < _SHOWN or standing[frozenset(c.effects)]]
     of = f", {len(shown)} of {len(tried)}, best first" if len(shown) < len(tried) else ""
-    header = ("effects", "gain [%]", "sureness", "convincing", "mean square / noise", "remark")
+    header = (
+        "effects",
+        "gain [%]",
+        "test statistic",
+        "convincing",
+        "mean square / noise",
+        "remark",
+    )
     table = Table(
         f"Hypotheses{of}",
         header,
@@ -53,7 +60,7 @@ def _row(candidate: Hypothesis, standing: str) -> tuple[str, ...]:
     return (
         " + ".join(candidate.effects),
         fixed(candidate.gain_percent, 1),
-        fixed(candidate.sureness, 1),
+        fixed(candidate.test_statistic, 1),
         "yes" if candidate.convincing else "no",
         plain(candidate.mean_square, 3),
         standing if candidate.converged else "did not converge",

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from tsas_cli.records.diagnosis import NamedCause, DiagnosisFile
+from tsas_cli.records.diagnosis import DiagnosisFile, NamedCause
 from tsas_cli.reporting.content import Section, Table, anchor
 from tsas_cli.reporting.diagnosis.words import EFFECT, heading_of, sentence_of, title_of, within
 from tsas_cli.reporting.numbers import ABSENT, plain, with_interval

@@ -13,7 +13,7 @@ from tsas_cli.reporting.figures import legend
 from tsas_cli.reporting.numbers import ABSENT, plain
 
 _BOUNDS = (
-    "Noise alone leaves the noise floor. Best obtainable is what a flexible regression on the "
+    "Noise alone leaves the noise floor. Attainable is what a flexible regression on the "
     "recorded signals leaves, whatever the cause."
 )
 
@@ -53,14 +53,14 @@ def table(diagnosis: DiagnosisFile) -> Table:
             name,
             plain(c.rmse_before, 3),
             plain(c.rmse_after, 3) if named else ABSENT,
-            plain(c.best_obtainable, 3),
+            plain(c.attainable, 3),
             plain(c.noise_floor, 3),
             c.unit,
         )
         for name, c in diagnosis.channels.items()
     )
     first = "before" if named else "nominal model"
-    header = ("channel", first, "with what is named", "best obtainable", "noise floor", "unit")
+    header = ("channel", first, "with what is named", "attainable", "noise floor", "unit")
     caption = "Root mean square error on held-out data"
     return Table(caption, header, rows, numeric=frozenset(range(1, 5))).without_empty()
 
@@ -70,7 +70,7 @@ def _in_words(name: str, channel: HeldOut, *, named: bool) -> str:
     after = f", with what is named {plain(channel.rmse_after, 3)}" if named else ""
     return (
         f"{called(name)}: {first} {plain(channel.rmse_before, 3)}"
-        f"{after}, best obtainable {plain(channel.best_obtainable, 3)}, noise floor "
+        f"{after}, attainable {plain(channel.attainable, 3)}, noise floor "
         f"{plain(channel.noise_floor, 3)} {channel.unit}"
     )
 
@@ -94,7 +94,7 @@ def draw_gains(figure: Any, channels: Mapping[str, HeldOut], *, named: bool) -> 
         if named:
             _bar(axes, channel.rmse_after, at=-0.2, role="after", label="with what is named")
         _mark(axes, channel.noise_floor, linestyle="-", label="noise floor")
-        _mark(axes, channel.best_obtainable, linestyle=(0, (2, 1.5)), label="best obtainable")
+        _mark(axes, channel.attainable, linestyle=(0, (2, 1.5)), label="attainable")
         axes.set(ylim=(-0.5, 0.5), yticks=[], xlim=(0, None))
         axes.set_ylabel(
             f"{name.rsplit('_', 1)[0]} [{channel.unit}]", rotation=0, ha="right", va="center"

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from tsas_cli.records.diagnosis import DiagnosisFile
 from tsas_cli.reporting.content import Section, missing
-from tsas_cli.reporting.diagnosis import candidates, causes, gains, likeness, maps
+from tsas_cli.reporting.diagnosis import candidates, causes, gains, maps, similarity
 from tsas_cli.reporting.diagnosis.words import listed, signal_in_words
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import fixed, plain
@@ -17,7 +17,7 @@ def section(inputs: Inputs) -> Section:
     diagnosis = inputs.get(DiagnosisFile)
     if diagnosis is None:
         return missing("diagnosis", _TITLE, what="diagnosis", stage="diagnose")
-    evidence = (part.part(diagnosis) for part in (gains, maps, candidates, likeness))
+    evidence = (part.part(diagnosis) for part in (gains, maps, candidates, similarity))
     return Section(
         "diagnosis",
         _TITLE,

@@ -5,7 +5,7 @@ from functools import partial
 
 import numpy as np
 
-from tsas_cli.records.drive import DriveFile, Pole, FrequencyResponses
+from tsas_cli.records.drive import DriveFile, FrequencyResponses, Pole
 from tsas_cli.reporting.content import Picture, Section, Table
 from tsas_cli.reporting.drawing import picture
 from tsas_cli.reporting.drive.figures import draw_bode, draw_poles, draw_residuals

@@ -13,7 +13,7 @@ import pyarrow as pa
 from tsas_cli.identification.model import Model, write_model
 from tsas_cli.recordings.dataset import Dataset, read_dataset
 from tsas_cli.recordings.recording import Recording
-from tsas_cli.recordings.writing import write_result, write_dataset
+from tsas_cli.recordings.writing import write_dataset, write_result
 from tsas_cli.records.base import ModelFile
 from tsas_cli.records.calibration import MODEL_FILE
 from tsas_cli.records.simulation import SimulationFile
@@ -53,7 +53,11 @@ class LiveStream:
         fitted = stage.dataset.content()
         write_model(self.folder / MODEL_FILE, model, version=stage.version, dataset=fitted)
         self._show(
-            Inputs(dataset.only([answer.run.id]), {SimulationFile: stage}, {SimulationFile: self.folder})
+            Inputs(
+                dataset.only([answer.run.id]),
+                {SimulationFile: stage},
+                {SimulationFile: self.folder},
+            )
         )
 
     def tracked(self, stage: TrackingFile, run: str, table: pa.Table) -> None:

@@ -165,7 +165,11 @@ def _taken(inputs: Inputs, dataset: Dataset) -> list[Run]:
 
 
 def _segments(inputs: Inputs, run: str) -> Sequence[PhaseSegment]:
-    for stage in (inputs.get(CalibrationFile), inputs.get(DiagnosisFile), inputs.get(SimulationFile)):
+    for stage in (
+        inputs.get(CalibrationFile),
+        inputs.get(DiagnosisFile),
+        inputs.get(SimulationFile),
+    ):
         if stage is not None and run in stage.segments:
             return stage.segments[run]
     return ()

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.recordings.written import result_file, columns_of
+from tsas_cli.recordings.written import columns_of, result_file
 from tsas_cli.records.tracking import ADAPTIVE, ConditionChange, TrackedResult, TrackingFile
 from tsas_cli.reporting.inputs import Inputs
 
@@ -67,7 +67,9 @@ def read_conditions(inputs: Inputs, tracking: TrackingFile) -> tuple[RunsUnderCo
     found: dict[str, list[TrackedRun]] = {}
     for result in tracking.results:
         more = ESTIMATES if result.controller == ADAPTIVE else ()
-        followed = TrackedRun(result, columns_of(result_file(folder, result.run), (*_COLUMNS, *more)))
+        followed = TrackedRun(
+            result, columns_of(result_file(folder, result.run), (*_COLUMNS, *more))
+        )
         found.setdefault(result.condition, []).append(followed)
     return tuple(
         RunsUnderCondition(name, number, tracking.conditions.get(name, ()), tuple(runs))

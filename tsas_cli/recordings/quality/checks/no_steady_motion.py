@@ -10,7 +10,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
-from tsas_cli.recordings.quality.trial import Stroke, RunSignals
+from tsas_cli.recordings.quality.trial import RunSignals, Stroke
 
 _ENOUGH = 0.2
 _FEWEST_ROWS = 10

@@ -60,7 +60,9 @@ def record_tendon(recorder: Recorder, run: SeenRun) -> None:
     record_band(recorder, run.entity(*BAND), tendons, measured)
 
 
-def record_passages(recorder: Recorder, run: SeenRun, tendons: Mapping[Which, TendonStates]) -> None:
+def record_passages(
+    recorder: Recorder, run: SeenRun, tendons: Mapping[Which, TendonStates]
+) -> None:
     """Record when the front of each stroke has reached the load, or that it never did."""
     for which, one in tendons.items():
         events = sorted(_events(run.id, which, one), key=lambda event: event.at_s)

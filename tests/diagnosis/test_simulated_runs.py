@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from tests.diagnosis.planned import run
-from tsas_cli.diagnosis import made_runs
+from tsas_cli.diagnosis import simulated_runs as made_runs
 from tsas_cli.diagnosis.motions import motion
 from tsas_cli.diagnosis.rig_file import PlannedRun, Sensors
 from tsas_cli.support.errors import InputError
@@ -23,7 +23,9 @@ def made(monkeypatch):
         return SimpleNamespace(f_in_N=30.0 * there, f_out_N=20.0 * there, x_out_mm=3.0 * there)
 
     monkeypatch.setattr(made_runs, "simulate", simulate)
-    return lambda *runs, **how: made_runs.simulated_recordings(runs, SENSORS, lambda run: None, BEGIN, **how)
+    return lambda *runs, **how: made_runs.simulated_recordings(
+        runs, SENSORS, lambda run: None, BEGIN, **how
+    )
 
 
 def test_each_channel_has_its_noise_and_what_is_not_measured_is_not_there(made):

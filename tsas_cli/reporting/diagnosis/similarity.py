@@ -36,61 +36,61 @@ def part(diagnosis: DiagnosisFile) -> Section | None:
     names = np.array(diagnosis.signatures.effects, dtype=object)
     if names.size < 2:
         return None
-    likeness = np.array(diagnosis.signatures.likeness, dtype=float)
+    similarity = np.array(diagnosis.signatures.similarity, dtype=float)
     visible = np.array(diagnosis.signatures.visible, dtype=float) >= _VISIBLE
-    others = np.where(np.eye(names.size) > 0.0, 0.0, likeness)
+    others = np.where(np.eye(names.size) > 0.0, 0.0, similarity)
     points = (
-        *_alike(names[visible], likeness[np.ix_(visible, visible)]),
+        *_alike(names[visible], similarity[np.ix_(visible, visible)]),
         *_hidden(names, np.array(diagnosis.signatures.visible, dtype=float)),
     )
     shown = visible & (others[:, visible] >= _RESEMBLES).any(axis=1)
     title = "Which effects these inputs can tell apart"
     if shown.sum() < 2:
         alone = "No two effects that these inputs show resemble each other."
-        return Section("diagnosis-likeness", title, (_WHAT, alone), points=points)
-    order = np.flatnonzero(shown)[_neighbours(likeness[np.ix_(shown, shown)])]
+        return Section("diagnosis-similarity", title, (_WHAT, alone), points=points)
+    order = np.flatnonzero(shown)[_neighbours(similarity[np.ix_(shown, shown)])]
     matrix = picture(
         partial(
-            draw_likeness,
+            draw_similarity,
             effects=tuple(names[order]),
-            likeness=likeness[np.ix_(order, order)],
+            similarity=similarity[np.ix_(order, order)],
             alike=_ALIKE,
         ),
-        key="diagnosis-likeness",
+        key="diagnosis-similarity",
         alt=f"Likeness of the signatures of {', '.join(names[order])}. "
         + (" ".join(points) or "No two are alike."),
         caption="Likeness of each two signatures, as the size of the block. Effects that "
         f"resemble no other by {_RESEMBLES} are left out.",
         height_in=0.5 + _ROW_IN * int(shown.sum()),
     )
-    return Section("diagnosis-likeness", title, (_WHAT,), points=points, pictures=(matrix,))
+    return Section("diagnosis-similarity", title, (_WHAT,), points=points, pictures=(matrix,))
 
 
-def _neighbours(likeness: Floats) -> npt.NDArray[np.int64]:
+def _neighbours(similarity: Floats) -> npt.NDArray[np.int64]:
     """Return an order in which effects that look alike stand together."""
     from scipy.cluster.hierarchy import leaves_list, linkage
 
-    return np.asarray(leaves_list(linkage(_apart(likeness), "average")))
+    return np.asarray(leaves_list(linkage(_apart(similarity), "average")))
 
 
-def _alike(names: npt.NDArray[np.object_], likeness: Floats) -> Iterator[str]:
+def _alike(names: npt.NDArray[np.object_], similarity: Floats) -> Iterator[str]:
     """Yield a sentence for each group in which all look alike."""
     from scipy.cluster.hierarchy import fcluster, linkage
 
     if names.size < 2:
         return
-    groups = fcluster(linkage(_apart(likeness), "complete"), 1.0 - _ALIKE, "distance")
+    groups = fcluster(linkage(_apart(similarity), "complete"), 1.0 - _ALIKE, "distance")
     for number in dict.fromkeys(groups):
         inside = np.flatnonzero(groups == number)
         if inside.size > 1:
-            pairs = likeness[np.ix_(inside, inside)][np.triu_indices(inside.size, 1)]
+            pairs = similarity[np.ix_(inside, inside)][np.triu_indices(inside.size, 1)]
             group = listed([f"`{name}`" for name in names[inside]])
             yield f"{group} look alike here ({plain(float(pairs.min()), 3)} or more)."
 
 
-def _apart(likeness: Floats) -> Floats:
+def _apart(similarity: Floats) -> Floats:
     """Return the distances above the diagonal, row by row, as scipy's clustering takes them."""
-    return 1.0 - likeness[np.triu_indices(len(likeness), 1)]
+    return 1.0 - similarity[np.triu_indices(len(similarity), 1)]
 
 
 def _hidden(names: npt.NDArray[np.object_], visible: Floats) -> Iterator[str]:
@@ -99,8 +99,10 @@ def _hidden(names: npt.NDArray[np.object_], visible: Floats) -> Iterator[str]:
         yield f"These inputs hardly show {listed(hidden)} at a size that is plausible."
 
 
-def draw_likeness(figure: Any, effects: Sequence[str], likeness: Floats, *, alike: float) -> None:
-    """Draw a square for each two effects, its side the likeness.
+def draw_similarity(
+    figure: Any, effects: Sequence[str], similarity: Floats, *, alike: float
+) -> None:
+    """Draw a square for each two effects, its side the similarity.
 
     Parameters
     ----------
@@ -108,10 +110,10 @@ def draw_likeness(figure: Any, effects: Sequence[str], likeness: Floats, *, alik
         The matplotlib figure to draw on.
     effects
         Their names, shape (n,), the first on top.
-    likeness
+    similarity
         From 0 to 1, shape (n, n); only what is below the diagonal is read.
     alike
-        From which likeness on the square is in the loud colour.
+        From which similarity on the square is in the loud colour.
     """
     axes = figure.add_subplot()
     n = len(effects)
@@ -119,8 +121,8 @@ def draw_likeness(figure: Any, effects: Sequence[str], likeness: Floats, *, alik
         ("alike", alike, np.inf, f"alike, {alike} or more"),
         ("muted", _FAINT, alike, f"less than {alike}"),
     ):
-        pairs = [(i, j) for i in range(n) for j in range(i) if low <= likeness[i, j] < high]
-        _squares(axes, pairs, [float(likeness[pair]) for pair in pairs], role=role, label=label)
+        pairs = [(i, j) for i in range(n) for j in range(i) if low <= similarity[i, j] < high]
+        _squares(axes, pairs, [float(similarity[pair]) for pair in pairs], role=role, label=label)
     for place, name in enumerate(effects):
         axes.text(place - 0.4, place, name, va="center", fontsize=9)
         axes.plot([-0.5, place - 0.5], [place + 0.5] * 2, color=STAND_IN["line"], linewidth=0.6)

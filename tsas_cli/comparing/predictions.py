@@ -15,7 +15,7 @@ from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.storage import Location
-from tsas_cli.recordings.written import result_file, check_rows, columns_of, names_of
+from tsas_cli.recordings.written import check_rows, columns_of, names_of, result_file
 from tsas_cli.records.comparison import ErrorRow
 from tsas_cli.support.steps import NO_PROGRESS, Steps
 
@@ -71,7 +71,9 @@ class Answers:
         self._prepared: dict[tuple[Location, str], Prepared] = {}
         self._step = step
 
-    def of(self, side: Side, dataset: Dataset | None, *, fit_own: bool = False) -> list[ComparedRun]:
+    def of(
+        self, side: Side, dataset: Dataset | None, *, fit_own: bool = False
+    ) -> list[ComparedRun]:
         """Return what a side answers to the runs of a dataset, none where it is not there.
 
         Raises

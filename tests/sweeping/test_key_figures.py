@@ -7,8 +7,8 @@ import pyarrow.parquet as pq
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model
 from tsas_cli.records.calibration import CalibrationFile, ChannelError, NominalFit
-from tsas_cli.records.diagnosis import NamedCause, DiagnosisFile, HeldOut
-from tsas_cli.sweeping.found import estimates, figures
+from tsas_cli.records.diagnosis import DiagnosisFile, HeldOut, NamedCause
+from tsas_cli.sweeping.key_figures import estimates, figures
 from tsas_cli.sweeping.tables import printed, write_rows
 
 FRICTION = Estimate("friction_coefficient", 0.12, "1", "fitted", None, 0.005, 0.11, 0.13)

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 from tsas_cli.drive.estimates import DataSheet
 from tsas_cli.drive.harmonic_drive import DriveValues
 from tsas_cli.drive.search import NOTHING
-from tsas_cli.drive.words import cannot_tell, equation_of, inverse_of, name_of, next_run
+from tsas_cli.drive.sentences import cannot_tell, equation_of, inverse_of, name_of, next_run
 from tsas_cli.identification.estimate import Estimate
 
 

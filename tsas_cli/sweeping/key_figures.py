@@ -14,7 +14,7 @@ from tsas_cli.records.diagnosis import DiagnosisFile
 from tsas_cli.records.result import Result
 from tsas_cli.records.simulation import SimulatedChannel, SimulationFile
 from tsas_cli.records.tracking import TrackingFile
-from tsas_cli.sweeping.answer import Row
+from tsas_cli.sweeping.outcome import Row
 
 FITTING = ("calibrate", "diagnose")
 OF_RUNS = ("f_in_N", "f_out_N", "x_out_mm")
