@@ -137,11 +137,11 @@ PLAIN = "A drive without lag and stiffness, x_in = g ∫u dt,"
 def test_the_reason_of_each_verdict():
     assert dd._reason(verdict("undecided"), 9.0).startswith("too few stretches")
     quiet = dd._reason(verdict("sufficient"), 9.0)
-    assert quiet == f"{PLAIN} is at the noise floor: nothing is missing that these runs show."
+    assert quiet == f"{PLAIN} is at the noise level: these runs show no missing effect."
     rest = verdict("unexplained", depends=("time_s", "x_in_mm"))
     assert dd._reason(rest, 9.0) == (
-        f"{PLAIN} misses x_in by 3 times what noise explains, and no known effect of a drive "
-        "accounts for it. It depends on time_s, x_in_mm."
+        f"{PLAIN} leaves a residual RMS of x_in of 3 × the noise level, and no catalogued effect "
+        "of a drive explains it. It depends on time_s, x_in_mm."
     )
     stated = dd._reason(verdict("sufficient", nominal=STATED), 9.0)
     assert stated.startswith("The nominal drive equation (Yang 2025, Eq. 25, without reaction) is")
@@ -154,14 +154,15 @@ def test_the_reason_names_causes_rivals_and_the_rest():
     )
     said = dd._reason(verdict("ambiguous", *two, unexplained=True, depends=("time_s",)), 9.0)
     assert said == (
-        f"{PLAIN} misses x_in by 3 times what noise explains. What it lacks is: the compliance of "
-        "the drive, whose stiffness reacts on the position and a pure delay of the motor. With "
-        "that it is 1.2 times. These recordings cannot tell it from: a, b. What is left no known "
-        "effect explains. It depends on time_s."
+        f"{PLAIN} leaves a residual RMS of x_in of 3 × the noise level. It lacks: the compliance "
+        "of the drive, whose stiffness reacts on the position and a pure delay of the motor. With "
+        "it the residual RMS is 1.2 × the noise level. Indistinguishable from it in these "
+        "recordings: a, b. No catalogued effect explains the remaining residual. It depends on "
+        "time_s."
     )
     plain = dd._reason(verdict("named", cause("backlash")), 9.0)
-    assert f"What it lacks is: the {TITLE['backlash'].lower()}. With" in plain
-    assert plain.endswith("With that it is 1.2 times.")
+    assert f"It lacks: the {TITLE['backlash'].lower()}. With" in plain
+    assert plain.endswith("With it the residual RMS is 1.2 × the noise level.")
 
 
 def searched(residual, *, noises=(1.0, 2.0)):

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tsas_cli.comparing.maps import residual_maps
-from tsas_cli.comparing.predictions import Answers, Both, error_rows, matched
+from tsas_cli.comparing.predictions import Both, Predictions, error_rows, matched
 from tsas_cli.comparing.sides import Side, read_side
 from tsas_cli.comparing.values import Overlap, overlap, pairs
 from tsas_cli.recordings.dataset import Dataset
@@ -82,12 +82,14 @@ def compare(
     """
     sides = read_side(a), read_side(b)
     _refuse(sides, on)
-    answers = Answers(step)
-    answered = [
-        answers.of(side, on or (None if side.kind == "model" else side.dataset), fit_own=fit_own)
+    predictions = Predictions(step)
+    predicted = [
+        predictions.of(
+            side, on or (None if side.kind == "model" else side.dataset), fit_own=fit_own
+        )
         for side in sides
     ]
-    recordings = matched(*answered)
+    recordings = matched(*predicted)
     return Comparison(
         *sides,
         overlap(*sides),

@@ -16,7 +16,7 @@ def residual_maps(recordings: list[Both]) -> dict[str, Maps]:
     """Return under `a` and `b`, per channel and signal, bins with mean and scatter of the error.
 
     The error is measured less simulated, in units of the channel's noise; the bins hold about as
-    many samples of both sides together. Taken are the recordings that both sides answer to; where
+    many samples of both sides together. Taken are the recordings that both sides one to; where
     there is none, each side's own. A channel or signal that one side lacks is left out.
     """
     shared = [both for both in recordings if both.a and both.b] or recordings
@@ -34,13 +34,13 @@ def residual_maps(recordings: list[Both]) -> dict[str, Maps]:
     return out if out["a"] else {}
 
 
-def _collected(answers: list[ComparedRun]) -> Errors:
+def _collected(compared: list[ComparedRun]) -> Errors:
     """Return the errors of all runs over each signal, where both are numbers."""
     parts: dict[tuple[str, str], list[tuple[Floats, Floats]]] = {}
-    for answer in answers:
-        signals = signals_of(answer.run, answer.f_in_N)
-        for channel, error in answer.errors.items():
-            noise = answer.noise(channel)
+    for one in compared:
+        signals = signals_of(one.run, one.f_in_N)
+        for channel, error in one.errors.items():
+            noise = one.noise(channel)
             if not noise:
                 continue
             for name, signal in signals.items():

@@ -38,14 +38,14 @@ class ComparedRun:
         return float(np.sqrt(np.nanmean(error**2)))
 
     def noise(self, channel: str) -> float | None:
-        """Return the noise of a channel in its unit, None where it is not told."""
+        """Return the noise of a channel in its unit, None where it is unknown."""
         noise = self.run.noise.get(channel, np.nan)
         return float(noise) if np.isfinite(noise) else None
 
 
 @dataclass(frozen=True)
 class Both:
-    """One recording and what the sides answer to it; one of them may be missing."""
+    """One recording and what the sides compared to it; one of them may be missing."""
 
     a: ComparedRun | None
     b: ComparedRun | None
@@ -59,15 +59,15 @@ class Both:
     @property
     def digest(self) -> str:
         """The recording's checksum."""
-        answer = self.a or self.b
-        return "" if answer is None else answer.run.run.sha256.lower()
+        compared = self.a or self.b
+        return "" if compared is None else compared.run.run.sha256.lower()
 
 
-class Answers:
+class Predictions:
     """Answers to recordings, each of which is read and made ready once."""
 
     def __init__(self, step: Steps = NO_PROGRESS) -> None:
-        """Take what is called after each answer."""
+        """Take what is called after each compared."""
         self._prepared: dict[tuple[Location, str], Prepared] = {}
         self._step = step
 
@@ -103,7 +103,7 @@ class Answers:
 
 
 def matched(a: list[ComparedRun], b: list[ComparedRun]) -> list[Both]:
-    """Return the recordings that both answer to, by checksum, then those of A and of B alone."""
+    """Return the recordings that both compared to, by checksum, then those of A and of B alone."""
     first, second = ({x.run.run.id: x for x in side} for side in (a, b))
     digests = (
         {run: x.run.run.sha256.lower() for run, x in side.items()} for side in (first, second)
@@ -120,7 +120,7 @@ def error_rows(a: Side, b: Side, recordings: list[Both]) -> list[ErrorRow]:
 
 
 def _error_row(a: Side, b: Side, both: Both, channel: str) -> ErrorRow:
-    (run_a, run_b), answer = both.ids, both.a or both.b
+    (run_a, run_b), compared = both.ids, both.a or both.b
     rmse_a, rmse_b = (None if one is None else one.rmse(channel) for one in (both.a, both.b))
     return ErrorRow(
         run_a=run_a,
@@ -129,7 +129,7 @@ def _error_row(a: Side, b: Side, both: Both, channel: str) -> ErrorRow:
         unit=BY_NAME[channel].unit,
         rmse_a=rmse_a,
         rmse_b=rmse_b,
-        noise=None if answer is None else answer.noise(channel),
+        noise=None if compared is None else compared.noise(channel),
         fitted_a=_fitted(a, both),
         fitted_b=_fitted(b, both),
         ratio=rmse_b / rmse_a if rmse_a and rmse_b is not None else None,
@@ -138,7 +138,9 @@ def _error_row(a: Side, b: Side, both: Both, channel: str) -> ErrorRow:
 
 def channels(both: Both) -> list[str]:
     """Return the channels of a recording that a side answers, in their usual order."""
-    there = {name for answer in (both.a, both.b) if answer is not None for name in answer.errors}
+    there = {
+        name for compared in (both.a, both.b) if compared is not None for name in compared.errors
+    }
     return [name for name in CHANNELS if name in there]
 
 
@@ -170,13 +172,13 @@ def _for_run(model: Model, recordings: dict[str, str] | None, run: Run) -> Model
 
 
 def _simulated(model: Model, side: Side, run: Prepared) -> ComparedRun:
-    answer = simulated(run, model, side.dynamics)
-    errors = {name: measured - answer.channels[name] for name, measured in run.measured.items()}
-    return ComparedRun(run, answer.response.f_in_N, errors)
+    compared = simulated(run, model, side.dynamics)
+    errors = {name: measured - compared.channels[name] for name, measured in run.measured.items()}
+    return ComparedRun(run, compared.response.f_in_N, errors)
 
 
 def _written(side: Side, run: Prepared) -> ComparedRun:
-    """Return the answer that `tsas simulate` has written."""
+    """Return the compared that `tsas simulate` has written."""
     path = result_file(side.path, run.run.id)
     columns = columns_of(path, names_of(path))
     for values in columns.values():

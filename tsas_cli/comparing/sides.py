@@ -135,8 +135,8 @@ def _dataset(
     then = {file: digest.lower() for file, digest in source.hashes.items()}
     if then != {file: digest.lower() for file, digest in dataset.hashes().items()}:
         return None, f"the dataset {folder} has changed since it was read"
-    told = dataset.under(**read.conditions)
-    return (told if read.chosen is None else told.only(read.chosen)), ""
+    dataset = dataset.under(**read.conditions)
+    return (dataset if read.chosen is None else dataset.only(read.chosen)), ""
 
 
 def _recordings(

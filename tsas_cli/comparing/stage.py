@@ -132,7 +132,7 @@ def _sides(it: Comparison) -> list[tuple[str, ...]]:
 def recordings_of(side: Side) -> str:
     """Return how many recordings of which dataset a side has read."""
     if side.source is None or side.recordings is None:
-        return "not told"
+        return "unknown"
     return f"{len(side.recordings)} of {side.source.name}"
 
 

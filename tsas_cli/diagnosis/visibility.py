@@ -69,17 +69,17 @@ class Amplitude:
 class Visibility:
     """Smallest detected size of a cause, and smallest ones distinguished from each effect.
 
-    `found` and `told`, infinite where there is no such size.
+    `found` and `distinct`, infinite where there is no such size.
     """
 
     cause: Amplitude
     found: float
-    told: dict[str, float]
+    distinct: dict[str, float]
 
     @property
     def named(self) -> float:
         """The smallest size at which it is detected and distinguished from every other effect."""
-        return max([self.found, *self.told.values()])
+        return max([self.found, *self.distinct.values()])
 
     @property
     def counted(self) -> float:
@@ -89,13 +89,13 @@ class Visibility:
     @property
     def hidden_in(self) -> list[str]:
         """The effects that imitate it even at many times the detected size."""
-        return [name for name, size in self.told.items() if size > NEVER * self.found]
+        return [name for name, size in self.distinct.items() if size > NEVER * self.found]
 
     @property
     def nearest(self) -> str | None:
         """The effect that is hardest to distinguish from it, if any prevents its naming."""
-        worst = max(self.told, key=lambda name: self.told[name], default=None)
-        return worst if worst is not None and self.told[worst] > self.found else None
+        worst = max(self.distinct, key=lambda name: self.distinct[name], default=None)
+        return worst if worst is not None and self.distinct[worst] > self.found else None
 
 
 def causes_of(effect: Effect) -> list[Amplitude]:
@@ -257,12 +257,12 @@ class Part:
         out = []
         for cause in (c for effect in effects for c in amplitudes_of(effect)):
             found = self._limited(cause, self.smallest(self.own(cause)))
-            told = {
+            distinct = {
                 name: self._limited(cause, self._distinct_from(cause, *of_rival))
                 for name, of_rival in imitations.items()
                 if name != cause.effect.name
             }
-            out.append(Visibility(cause, found if self.shows(cause) else math.inf, told))
+            out.append(Visibility(cause, found if self.shows(cause) else math.inf, distinct))
         return out
 
     def _distinct_from(

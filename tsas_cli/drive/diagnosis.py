@@ -191,18 +191,21 @@ def _reason(found: FoundDriveDiagnosis, start: float) -> str:
     if found.verdict == "undecided":
         return "too few stretches of these runs are independent of each other."
     if found.verdict == "sufficient":
-        return f"{equation} is at the noise floor: nothing is missing that these runs show."
-    missed = f"{equation} misses x_in by {times[0]} times what noise explains"
+        return f"{equation} is at the noise level: these runs show no missing effect."
+    residual = f"{equation} leaves a residual RMS of x_in of {times[0]} × the noise level"
     depends = f" It depends on {', '.join(found.depends_on)}." if found.depends_on else ""
     if not found.causes:
-        return f"{missed}, and no known effect of a drive accounts for it.{depends}"
+        return f"{residual}, and no catalogued effect of a drive explains it.{depends}"
     titles = {e.name: e.title.lower() for e in EFFECTS}
-    said = f"{missed}. What it lacks is: {' and '.join(_spoken(c, titles) for c in found.causes)}."
-    said += f" With that it is {times[1]} times."
+    causes = " and ".join(_spoken(c, titles) for c in found.causes)
+    text = (
+        f"{residual}. It lacks: {causes}. With it the residual RMS is {times[1]} × the noise level."
+    )
     rivals = sorted({r for c in found.causes for r in c.rivals})
     if rivals:
-        said += f" These recordings cannot tell it from: {', '.join(rivals)}."
-    return f"{said} What is left no known effect explains.{depends}" if found.unexplained else said
+        text += f" Indistinguishable from it in these recordings: {', '.join(rivals)}."
+    rest = f" No catalogued effect explains the remaining residual.{depends}"
+    return text + rest if found.unexplained else text
 
 
 def _spoken(cause: FoundDriveCause, titles: dict[str, str]) -> str:

@@ -20,7 +20,9 @@ Mask = npt.NDArray[np.bool_]
 
 FEWEST_SAMPLES = 500
 UNEVEN = 0.02  # of a sampling step, by which another one may differ
-STRETCHES = 40  # in which the noise is told; the median one is not where the drive swings fastest
+STRETCHES = (
+    40  # of a run, for the noise level; the median one is not where the drive swings fastest
+)
 AT_REST = 0.01  # of the largest speed
 MOVED = 5.0  # times the noise, that x_in has to travel
 FOLLOWS = 0.5  # correlation of travel and turns below which x_in is not what the motor moves

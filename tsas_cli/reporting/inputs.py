@@ -65,7 +65,7 @@ class Inputs:
         """Return what a stage wrote, or None where it was not given."""
         return cast("Stage | None", self.stages.get(kind))
 
-    def answer(self, run: str, rows: int, column: str, stage: type[StageFile]) -> Floats:
+    def series(self, run: str, rows: int, column: str, stage: type[StageFile]) -> Floats:
         """Return a column that a stage wrote about a run of so many samples, NaN for gaps.
 
         Raises
@@ -78,7 +78,7 @@ class Inputs:
         check_rows(path, len(values), rows)
         return values
 
-    def answered(self, run: str, stage: type[StageFile]) -> frozenset[str]:
+    def written_columns(self, run: str, stage: type[StageFile]) -> frozenset[str]:
         """Return the columns that a stage wrote about a run, none where it did not take it.
 
         Raises
@@ -96,7 +96,7 @@ def read_inputs(folders: Sequence[Location]) -> Inputs:
     Raises
     ------
     InputError
-        A folder is of no known kind, a kind is there twice, no dataset can be found, a stage has
+        A folder is of no known kind, a kind is a duplicate, no dataset can be found, a stage has
         read other recordings than the dataset holds, or tracked runs are not in it.
     """
     by_file = _by_file(folders)
@@ -211,16 +211,16 @@ def _conditions(
     stages: Mapping[type[StageFile], StageFile], where: Mapping[type[StageFile], Path]
 ) -> dict[str, float]:
     """Return what the stages say of the runs in place of the manifest; they have to agree."""
-    told = {kind: s.conditions for kind, s in stages.items() if isinstance(s, OfDataset)}
-    for kind, conditions in told.items():
-        first = next(iter(told))
-        if conditions != told[first]:
+    stated = {kind: s.conditions for kind, s in stages.items() if isinstance(s, OfDataset)}
+    for kind, conditions in stated.items():
+        first = next(iter(stated))
+        if conditions != stated[first]:
             raise InputError(
-                f"was told other conditions of the runs than {where[first] / first.FILE}",
+                f"was given other conditions of the runs than {where[first] / first.FILE}",
                 where=where[kind] / kind.FILE,
                 remedy="write a page for each",
             )
-    return next(iter(told.values()), {})
+    return next(iter(stated.values()), {})
 
 
 def _check_hashes(stage: OfDataset, dataset: Dataset, path: Path) -> None:

@@ -27,7 +27,7 @@ PHASES = (
     Phase("loosening", "loosening", "3", "loosening"),
     Phase("dead_band_up", "dead band up", "4", "dead-band-up"),
     Phase("rest", "rest", "", "rest"),
-    Phase("unknown", "not told", "", "unknown"),
+    Phase("unknown", "unknown", "", "unknown"),
 )
 BY_KEY = {phase.key: phase for phase in PHASES}
 

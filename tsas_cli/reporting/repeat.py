@@ -70,9 +70,9 @@ def _in_memory(inputs: Inputs) -> bool:
     stages = inputs.stages.values()
     if any(isinstance(stage, OfDataset) and stage.conditions for stage in stages):
         return True
-    told = [getattr(s, name, None) for s in stages for name in ("model", "plant", "drive")]
-    told += [s.settings for s in stages if isinstance(s, TrackingFile)]
-    return any(getattr(one, "file", None) == IN_MEMORY for one in told)
+    files = [getattr(s, name, None) for s in stages for name in ("model", "plant", "drive")]
+    files += [s.settings for s in stages if isinstance(s, TrackingFile)]
+    return any(getattr(one, "file", None) == IN_MEMORY for one in files)
 
 
 def _commands(inputs: Inputs) -> Iterator[list[str]]:

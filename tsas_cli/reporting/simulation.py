@@ -121,7 +121,7 @@ def _unit(name: str, channel: SimulatedChannel) -> str:
 def _residual_in_words(
     time_s: Floats, residual: Floats, channel: SimulatedChannel, unit: str
 ) -> str:
-    """Return the residual's span, where it is largest, and how much of it noise explains."""
+    """Return the residual's span, where it is largest, and its ratio to the noise level."""
     there = np.isfinite(residual)
     at = float(time_s[np.nanargmax(np.abs(residual))])
     said = f"residual {spanned(residual)} {unit}, largest at {plain(at, 3)} s"
@@ -141,7 +141,7 @@ def _pictures(
         measured = recording.get(name)
         if measured is None:
             continue
-        simulated = inputs.answer(recording.run.id, recording.time_s.size, name, SimulationFile)
+        simulated = inputs.series(recording.run.id, recording.time_s.size, name, SimulationFile)
         if not np.isfinite(measured - simulated).any():
             continue
         unit, what = _unit(name, channel), in_words(name)

@@ -97,7 +97,7 @@ def calibrate(
     force
         Replace the folder if it is there.
     step
-        Told of two pieces of work per run, and of every fit.
+        Called twice for each run, and for every fit.
 
     Returns
     -------

@@ -36,7 +36,7 @@ class CheckResult(Result):
         return self.record.not_checked
 
     def tables(self) -> list[Table]:
-        """Return what was found, what to do about it, and what could not be told."""
+        """Return what was found, what to do about it, and what could not be checked."""
         return list(_tables(self.record))
 
 
@@ -61,7 +61,7 @@ def check(
     force
         Replace the folder if it is there.
     step
-        Told of a piece of work per run.
+        Called once for each run.
 
     Returns
     -------

@@ -85,7 +85,7 @@ def close_loop(
     force
         Replace the folder if it is there.
     step
-        Told of seven pieces of work per case.
+        Called seven times for each case.
 
     Returns
     -------

@@ -73,7 +73,7 @@ def compare(
     force
         Replace the folder if it is there.
     step
-        Told of a piece of work per simulation and section.
+        Called once for each simulation and section.
 
     Returns
     -------

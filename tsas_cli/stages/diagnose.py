@@ -100,7 +100,7 @@ def diagnose(
     force
         Replace the folder if it is there.
     step
-        Told of every hypothesis; how many lie ahead grows with what is found.
+        Called for every hypothesis; the number of them grows with the findings.
 
     Returns
     -------
@@ -160,10 +160,10 @@ def _write(
         write_model(folder / name, model, version=record.version, dataset=fitted)
     (folder / "runs").mkdir()
     for run in runs:
-        write_result(folder / "runs", _answer(run, result.model, result.nominal))
+        write_result(folder / "runs", _predictions(run, result.model, result.nominal))
 
 
-def _answer(run: Prepared, extended: Model, nominal: Model) -> Recording:
+def _predictions(run: Prepared, extended: Model, nominal: Model) -> Recording:
     """Return time, the conditioned or simulated x_in, and what each model answers to it."""
     after, before = compare(run, extended), compare(run, nominal)
     columns = {"time_s": run.time_s, "x_in_mm": after.response.x_in_mm, **after.channels}

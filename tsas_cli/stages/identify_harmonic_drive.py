@@ -77,7 +77,7 @@ class DriveResult(Result):
         return list(tables(self.record, title))
 
     def sentences(self) -> list[str]:
-        """Return the verdict, the inverse, what to measure next, and what cannot be told."""
+        """Return the verdict, the inverse, what to measure next, and what is not identifiable."""
         found = self.record.diagnosis
         return [
             found.reason,
@@ -112,7 +112,7 @@ def identify_harmonic_drive(
     force
         Replace the folder if it is there.
     step
-        Told of every structure; how many lie ahead grows with what is found.
+        Called for every structure; the number of them grows with the findings.
 
     Returns
     -------
@@ -156,8 +156,8 @@ def identify_harmonic_drive(
             fit=Fit.model_validate(trial.solution, from_attributes=True),
             diagnosis=drive_json.diagnosis(search, found),
         )
-        not_told = (*counted.notes, *cannot_tell(record, sheet, final, known.values()))
-        record = record.model_copy(update={"cannot_tell": not_told})
+        notes = (*counted.notes, *cannot_tell(record, sheet, final, known.values()))
+        record = record.model_copy(update={"cannot_tell": notes})
         step()
         simulated = _recordings(counted.dataset.runs, search, by_fit, by_nominal)
         if folder is not None:

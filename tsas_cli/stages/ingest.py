@@ -66,7 +66,7 @@ def ingest(
     force
         Replace the folder if it is there.
     step
-        Told of two pieces of work per file: opened, written.
+        Called twice for each file: opened, written.
 
     Returns
     -------

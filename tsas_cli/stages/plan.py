@@ -63,7 +63,7 @@ def plan(
     force
         Replace the folder if it is there.
     step
-        Told of a piece of work for each run that might be added.
+        Called for each run that might be added.
 
     Returns
     -------
@@ -155,7 +155,7 @@ def _tables(record: RunPlan) -> Iterator[Table]:
     header = ("effect", "parameter", "unit", "found from", "named from", "nearest")
     yield "smallest size of each effect, less its neutral value", header, rows
     if record.groups:
-        yield "cannot be told apart", ("effect", "and"), record.groups
+        yield "indistinguishable", ("effect", "and"), record.groups
     yield from map(_proposal_table, record.proposals)
 
 

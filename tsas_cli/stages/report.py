@@ -59,7 +59,7 @@ def report(
     force
         Replace what is there.
     step
-        Told of a piece of work per section.
+        Called once for each section.
 
     Returns
     -------

@@ -41,25 +41,25 @@ class RunsResult(Result):
 
     Parameters
     ----------
-    answer
+    found
         The columns that were asked for, and a row of values for each run.
     shown
         The columns of the table.
     """
 
-    answer: QueryResult
+    found: QueryResult
     shown: Sequence[str]
 
     @property
     def paths(self) -> tuple[str, ...]:
         """The folders of their datasets, each once."""
-        return self.answer.folders
+        return self.found.folders
 
     def frame(self) -> "pd.DataFrame":
         """Return a row for each run, as a pandas table; `tags` is a dict."""
         import pandas as pd
 
-        frame = pd.DataFrame(self.answer.rows, columns=list(self.answer.columns))
+        frame = pd.DataFrame(self.found.rows, columns=list(self.found.columns))
         for name in TIMES.intersection(frame.columns):
             frame[name] = pd.to_datetime(frame[name])
         return frame
@@ -67,20 +67,20 @@ class RunsResult(Result):
     def tables(self) -> list[Table]:
         """Return the runs; a column that is empty in all of them is left out."""
         limited = self.summary["limit"] is not None
-        rows = self.answer.rows[: None if limited else MOST_SHOWN]
+        rows = self.found.rows[: None if limited else MOST_SHOWN]
         cells = [[_cell(value) for value in row] for row in rows]
-        names = self.answer.columns
+        names = self.found.columns
         places = [names.index(name) for name in self.shown]
-        told = [k for k in places if any(row[k] for row in cells)]
-        header = [names[k] for k in told]
-        title = f"{self.answer.fitting} of {self.answer.all_runs} runs"
-        if len(rows) < self.answer.fitting:
+        filled = [k for k in places if any(row[k] for row in cells)]
+        header = [names[k] for k in filled]
+        title = f"{self.found.fitting} of {self.found.all_runs} runs"
+        if len(rows) < self.found.fitting:
             title += f", the first {len(rows)} of them"
-        return [(title, header, [[row[k] for k in told] for row in cells])]
+        return [(title, header, [[row[k] for k in filled] for row in cells])]
 
     def sentences(self) -> list[str]:
         """Return which files could not be read."""
-        problems = self.answer.problems
+        problems = self.found.problems
         more = len(problems) - MOST_NOTES
         said = problems[:MOST_NOTES] + ([f"and {more} more, in --json"] if more > 0 else [])
         return notes(said)
@@ -105,13 +105,13 @@ def runs(
     folders
         Where to look; the current folder without it.
     columns
-        What is told of each run; all of it without them.
+        What is shown of each run; all of it without them.
     sort
         Columns to sort by, with a minus before the name the other way round.
     limit
         How many runs at most.
     step
-        Told of a piece of work per file that is new or has changed.
+        Called once for each file that is new or has changed.
 
     Returns
     -------
@@ -128,7 +128,7 @@ def runs(
         raise InputError(f"limit is {limit}", expected="0 or more")
     with connected() as connection:
         index = index_of([Path(folder) for folder in named], connection, step)
-        answer = run_query(connection, index, query, columns=columns, sort=sort, limit=limit)
+        found = run_query(connection, index, query, columns=columns, sort=sort, limit=limit)
     summary = {
         "format": 1,
         "stage": "runs",
@@ -136,15 +136,15 @@ def runs(
         "query": query,
         "folders": [str(folder) for folder in named],
         "limit": limit,
-        "fitting": answer.fitting,
-        "all_runs": answer.all_runs,
+        "fitting": found.fitting,
+        "all_runs": found.all_runs,
         "runs": [
-            {name: _plain(value) for name, value in zip(answer.columns, row, strict=True)}
-            for row in answer.rows
+            {name: _plain(value) for name, value in zip(found.columns, row, strict=True)}
+            for row in found.rows
         ],
-        "problems": answer.problems,
+        "problems": found.problems,
     }
-    return RunsResult(summary, None, answer, tuple(columns) or SHOWN)
+    return RunsResult(summary, None, found, tuple(columns) or SHOWN)
 
 
 def _plain(value: Any) -> Any:

@@ -51,7 +51,7 @@ class SimulationResult(Result):
     model
         The model that was simulated.
     runs
-        By id the answer to each run: columns of shape (n,) as in the recording, `x_in_mm` as
+        By id the compared to each run: columns of shape (n,) as in the recording, `x_in_mm` as
         conditioned [mm], `f_in_N` and `f_out_N` [N], `x_out_mm` [mm]; NaN in gaps of the drive.
         Those that were written are read when they are asked for.
     """
@@ -61,7 +61,7 @@ class SimulationResult(Result):
     runs: Mapping[str, Recording]
 
     def __getitem__(self, run: str) -> Recording:
-        """Return the answer to a run."""
+        """Return the compared to a run."""
         return recording_of(self.runs, run)
 
     def tables(self) -> list[Table]:
@@ -120,14 +120,14 @@ def simulate(
     force
         Replace the folder if it is there.
     step
-        Told of a piece of work per run.
+        Called once for each run.
     each
-        Called after each run with the summary so far, the answer to it, and the model as used.
+        Called after each run with the summary so far, the compared to it, and the model as used.
 
     Returns
     -------
     SimulationResult
-        `result["a"].columns` holds the answer to run a, arrays of shape (n,) as in the recording:
+        `result["a"].columns` holds the compared to run a, arrays of shape (n,) as in the recording:
         `time_s`, `x_in_mm` as conditioned, `f_in_N`, `f_out_N`, `x_out_mm`; NaN where nothing is
         simulated. `.summary["runs"]["a"]["channels"]` holds RMSE and noise of each channel, in
         its unit.
@@ -158,21 +158,23 @@ def simulate(
             long = open_long(data, entry)
             if long is not None:
                 own = with_own_values(taken, long.prepared()) if fit_own else taken
-                told, run = simulate_long(long, own, dynamics, nodes, folder and folder / "runs")
+                summary, run = simulate_long(long, own, dynamics, nodes, folder and folder / "runs")
             else:
                 run = prepare(data[entry.id], data.manifest.session_start)
                 own = with_own_values(taken, run) if fit_own else taken
-                answer = compare(run, own, dynamics, nodes)
-                told = answer.summary()
+                compared = compare(run, own, dynamics, nodes)
+                summary = compared.summary()
             used = _of_run(own, entry.id).over(used)
-            record = record.with_run(entry.id, told.record(run), segment_records(run, segment(run)))
+            record = record.with_run(
+                entry.id, summary.record(run), segment_records(run, segment(run))
+            )
             if long is None:
-                answered = Recording(entry, _columns(run, answer))
+                predicted = Recording(entry, _columns(run, compared))
                 if folder is None:
-                    kept[entry.id] = answered
+                    kept[entry.id] = predicted
                 else:  # many runs need no more memory than one
-                    write_result(folder / "runs", answered)
-                each(record, answered, used)
+                    write_result(folder / "runs", predicted)
+                each(record, predicted, used)
             step()
         record = record.model_copy(update={"notes": _notes(record.runs)})
         if folder is not None:
@@ -202,8 +204,8 @@ def _refuse_nodes(nodes: int | None, dynamics: Dynamics) -> None:
 def _notes(runs: Mapping[str, records.SimulatedRun]) -> tuple[str, ...]:
     """Return the runs' notes, each once, with the runs that it is of."""
     of: dict[str, list[str]] = {}
-    for run_id, answer in runs.items():
-        for note in answer.notes:
+    for run_id, compared in runs.items():
+        for note in compared.notes:
             of.setdefault(note, []).append(run_id)
     return tuple(
         note if len(ids) == len(runs) else f"run {', '.join(ids)}: {note}"
@@ -211,7 +213,7 @@ def _notes(runs: Mapping[str, records.SimulatedRun]) -> tuple[str, ...]:
     )
 
 
-def _columns(run: Prepared, answer: Compared) -> dict[str, Floats]:
+def _columns(run: Prepared, compared: Compared) -> dict[str, Floats]:
     """Return time, the conditioned or simulated x_in, and the answers."""
-    columns = {"time_s": run.time_s, "x_in_mm": answer.response.x_in_mm, **answer.channels}
+    columns = {"time_s": run.time_s, "x_in_mm": compared.response.x_in_mm, **compared.channels}
     return {name: values.astype(np.float64) for name, values in columns.items()}

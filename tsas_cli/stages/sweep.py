@@ -27,7 +27,7 @@ def sweep(
     force: bool = False,
     step: Steps = NO_PROGRESS,
 ) -> SweepResult:
-    """Call a stage for many datasets or values, several at a time, and gather what comes out.
+    """Call a stage for many datasets or values, several at a time, and gather the results.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def sweep(
     force
         Do those again that are done.
     step
-        Told of each task.
+        Called for each task.
 
     Returns
     -------

@@ -42,17 +42,17 @@ def options_of(stage: str) -> Options:
 
 
 def work(task: Raw) -> TaskOutcome:
-    """Do a task; what goes wrong is its answer."""
+    """Do a task; what goes wrong is its outcome."""
     os.environ.update(ONE_THREAD)  # this process does one task at a time
     start, before = time.perf_counter(), time.process_time()
     try:
         refuse_others(task["inputs"]["versions"], versions(), "this worker")
-        answer = _done(task)
+        outcome = _done(task)
     except InputError as error:
-        answer = failure(_as_named(error.line(), task), defect=False)
+        outcome = failure(_as_named(error.line(), task), defect=False)
     except Exception as error:  # noqa: BLE001 # the other tasks go on; this one says what it was
-        answer = failure(f"a defect of tsas itself: {type(error).__name__}: {error}")
-    return answer | {
+        outcome = failure(f"a defect of tsas itself: {type(error).__name__}: {error}")
+    return outcome | {
         "where": f"{socket.gethostname()}, process {os.getpid()}",
         "seconds": time.perf_counter() - start,
         "processor_seconds": time.process_time() - before,
@@ -70,14 +70,14 @@ def _as_named(line: str, task: Raw) -> str:
 
 
 def _done(task: Raw) -> TaskOutcome:
-    """Call the stage, and write its folder with what it was told and what came out."""
+    """Call the stage, and write its folder with its options and results."""
     inputs, places, key = task["inputs"], task["places"], task["key"]
     out = Path(places["out"])
     if not (out.parent / JOURNAL).is_file():
         raise InputError("is not there", where=out.parent, expected="the folder of the sweep")
     stage = inputs["stage"]
     found = what_is_done(out, key)
-    if found is not None and not task["force"]:  # a worker died between this and its answer
+    if found is not None and not task["force"]:  # a worker died between this and its outcome
         return found
     if found is None:
         remove(out / key)  # half a result
@@ -102,13 +102,15 @@ def _arguments(inputs: Raw, places: Raw) -> Raw:
         if inputs["model"]:
             base = data_sheet(dataset.manifest) if "model" not in given else given["model"]
             runs = [run.id for run in dataset.runs]
-            given["model"] = _told(inputs["model"], runs, base)
+            given["model"] = _with_values(inputs["model"], runs, base)
         return given
     base = given.get("model")
     if inputs["model"]:
-        given["model"] = _told(inputs["model"], [TRACKED], base)
+        given["model"] = _with_values(inputs["model"], [TRACKED], base)
     if inputs["plant"]:
-        given["plant"] = _told(inputs["plant"], [TRACKED], given.get("plant", given.get("model")))
+        given["plant"] = _with_values(
+            inputs["plant"], [TRACKED], given.get("plant", given.get("model"))
+        )
     if inputs["settings"]:
         given["settings"] = with_settings(given.get("settings"), inputs["settings"])
     return given
@@ -120,15 +122,15 @@ def _dataset(inputs: Raw, places: Raw) -> Dataset:
     return read(folder).under(**inputs["conditions"])
 
 
-def _told(values: Raw, runs: list[str], base: Model | Path | None) -> Model:
-    """Return a model with some values told; what has a value for each run has it for all."""
-    told: list[Estimate] = []
+def _with_values(values: Raw, runs: list[str], base: Model | Path | None) -> Model:
+    """Return a model with some values replaced; what has a value for each run has it for all."""
+    given_values: list[Estimate] = []
     for name, value in values.items():
         quantity = QUANTITIES[name]
         of = [None] if quantity.shared else [None, *runs]
-        told += [Estimate(name, value, quantity.unit, "given", run) for run in of]
+        given_values += [Estimate(name, value, quantity.unit, "given", run) for run in of]
     known = read_model(base) if isinstance(base, Path) else base or Model(())
-    return Model(tuple(told)).over(known)
+    return Model(tuple(given_values)).over(known)
 
 
 def _refuse_changed(path: Path, sha256: str) -> None:

@@ -164,7 +164,7 @@ def track(
     force
         Replace the folder if it is there.
     step
-        Told of a piece of work per run.
+        Called once for each run.
     each
         Called for each recording with the record so far, its name and its table.
 

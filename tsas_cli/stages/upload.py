@@ -36,7 +36,7 @@ def upload(
     force
         Replace a dataset that is there.
     step
-        Told of a piece of work per run.
+        Called once for each run.
 
     Returns
     -------

@@ -33,7 +33,7 @@ class VerifyResult(Result):
         return [one for one in self.files if one.state in {"changed", "missing"}]
 
     def tables(self) -> list[Table]:
-        """Return a row for each file that does not fit, or of which that cannot be told."""
+        """Return a row for each file that does not fit, or cannot be checked."""
         odd = [one for one in self.files if one.state != "fits"]
         rows = [(one.state, one.file, one.why, one.by) for one in odd]
         counts = self.summary["counts"]
@@ -54,7 +54,7 @@ def verify(
     raw
         Folders where raw recordings are looked for that are not where they were ingested from.
     step
-        Told of a piece of work per checksum.
+        Called once for each checksum.
 
     Returns
     -------

@@ -44,9 +44,9 @@ def score(
 
 def over_seeds(scores: Sequence[Score]) -> Scores:
     """Return mean and standard deviation of each number over the seeds; of one seed no spread."""
-    answer = {}
+    spreads = {}
     for field in fields(Score):
         values = np.array([getattr(one, field.name) for one in scores])
         spread = float(values.std(ddof=1)) if values.size > 1 else None
-        answer[field.name] = Spread(mean=float(values.mean()), sd=spread)
-    return Scores(**answer)
+        spreads[field.name] = Spread(mean=float(values.mean()), sd=spread)
+    return Scores(**spreads)

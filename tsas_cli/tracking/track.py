@@ -89,8 +89,8 @@ def plan(wanted_N: Floats, known: Known, settings: Settings) -> DrivePath:
 def feedforward(path: DrivePath, actuator: Actuator) -> Floats:
     """Return kV dx/dt + kA d²x/dt² of the motor's path, shape (m,) [rpm], Eq. (51)."""
     speed, acceleration = path.motor[1], path.motor[2]
-    answer: Floats = (speed + actuator.motor_lag_s * acceleration) / actuator.gain_mm_per_s_rpm
-    return answer
+    rpm: Floats = (speed + actuator.motor_lag_s * acceleration) / actuator.gain_mm_per_s_rpm
+    return rpm
 
 
 def run_loop(

@@ -39,10 +39,10 @@ def draw_two_residuals(figure: Any, *, time_s: Floats, panels: Sequence[Residual
         axes.set_ylabel(panel.label)
     rows[-1].set_xlabel("time [s]")
     figure.align_ylabels()
-    told = dict(zip(*rows[0].get_legend_handles_labels()[::-1], strict=True))
+    handles = dict(zip(*rows[0].get_legend_handles_labels()[::-1], strict=True))
     figure.legend(
-        [told[name] for name in sorted(told)],
-        sorted(told),
+        [handles[name] for name in sorted(handles)],
+        sorted(handles),
         loc="outside upper left",
         ncols=3,
         handlelength=1.6,

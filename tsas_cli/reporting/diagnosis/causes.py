@@ -40,8 +40,8 @@ def _parameters(cause: NamedCause) -> Table:
 def _rivals(cause: NamedCause) -> Iterator[str]:
     for rival in cause.rivals:
         yield (
-            f"These recordings cannot tell it from {within(title_of(rival))} (`{rival}`). "
-            f"{sentence_of(rival)}"
+            "In these recordings it is indistinguishable from "
+            f"{within(title_of(rival))} (`{rival}`). {sentence_of(rival)}"
         )
 
 

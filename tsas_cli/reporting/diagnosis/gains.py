@@ -13,7 +13,7 @@ from tsas_cli.reporting.figures import legend
 from tsas_cli.reporting.numbers import ABSENT, plain
 
 _BOUNDS = (
-    "Noise alone leaves the noise floor. Attainable is what a flexible regression on the "
+    "The noise floor is the RMS of the noise. Attainable is what a flexible regression on the "
     "recorded signals leaves, whatever the cause."
 )
 

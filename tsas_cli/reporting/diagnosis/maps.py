@@ -18,7 +18,7 @@ from tsas_cli.reporting.phases import label_of
 _SEEN = 0.5  # in units of noise
 _SIGNALS = 4
 _WHAT = (
-    "Measured minus simulated in units of what noise explains: the mean in each bin, and bars of "
+    "Measured minus simulated in units of the noise level: the mean in each bin, and bars of "
     "one standard deviation. Noise alone has its mean at zero and bars as long as the band."
 )
 NAMES = ("before", "after")  # of the two series of a panel

@@ -9,7 +9,7 @@ from tsas_cli.reporting.diagnosis.words import listed, signal_in_words
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import fixed, plain
 
-_TITLE = "DiagnosisFile"
+_TITLE = "Diagnosis"
 
 
 def section(inputs: Inputs) -> Section:
@@ -49,8 +49,8 @@ def _left(diagnosis: DiagnosisFile) -> Iterator[str]:
     left = diagnosis.remainder
     if left.mean_square is not None:
         yield (
-            f"The errors that are left have {plain(left.mean_square, 3)} times the mean square "
-            "that noise explains; 1 is nothing but noise."
+            f"The reduced chi-square of the remaining residual is {plain(left.mean_square, 3)}; "
+            "1 is the noise level."
         )
     if diagnosis.named and left.share_percent is not None:
         share = fixed(left.share_percent, 0)

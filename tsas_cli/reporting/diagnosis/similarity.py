@@ -57,9 +57,9 @@ def part(diagnosis: DiagnosisFile) -> Section | None:
             alike=_ALIKE,
         ),
         key="diagnosis-similarity",
-        alt=f"Likeness of the signatures of {', '.join(names[order])}. "
+        alt=f"Similarity of the signatures of {', '.join(names[order])}. "
         + (" ".join(points) or "No two are alike."),
-        caption="Likeness of each two signatures, as the size of the block. Effects that "
+        caption="Similarity of each two signatures, as the size of the block. Effects that "
         f"resemble no other by {_RESEMBLES} are left out.",
         height_in=0.5 + _ROW_IN * int(shown.sum()),
     )

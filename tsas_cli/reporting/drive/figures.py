@@ -23,17 +23,15 @@ def draw_bode(
 ) -> None:
     """Draw magnitude, phase and coherence below each other; dots where the input does not tell."""
     rows = figure.subplots(3, 1, sharex=True, height_ratios=(3, 3, 1.5))
-    at, told = np.array(measured.frequency_Hz), np.array(measured.excited, dtype=bool)
+    at, excited = np.array(measured.frequency_Hz), np.array(measured.excited, dtype=bool)
     for axes, seen, curve in (
         (rows[0], measured.magnitude, fitted.magnitude),
         (rows[1], measured.phase_deg, fitted.phase_deg),
     ):
         dots = {"linestyle": "none", "marker": "o", "markeredgewidth": 0.0}
         values = np.array(seen)
-        axes.plot(
-            at[told], values[told], markersize=3.2, color=STAND_IN["measured"], label="measured",
-            **dots,
-        )  # fmt: skip
+        dots |= {"markersize": 3.2, "color": STAND_IN["measured"], "label": "measured"}
+        axes.plot(at[excited], values[excited], **dots)
         axes.plot(fitted.frequency_Hz, curve, color=STAND_IN["simulated"], label="fitted")
     rows[0].set(xscale="log", yscale="log", ylabel="|G| [mm/(rpm s)]")
     rows[1].set_ylabel("phase [°]")

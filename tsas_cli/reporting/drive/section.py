@@ -12,7 +12,7 @@ from tsas_cli.reporting.drive.figures import draw_bode, draw_poles, draw_residua
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import plain, spanned, with_interval
 
-_TITLE = "DriveFile"
+_TITLE = "Drive"
 
 
 def section(inputs: Inputs) -> Section | None:
@@ -20,10 +20,10 @@ def section(inputs: Inputs) -> Section | None:
     drive = inputs.get(DriveFile)
     if drive is None:
         return None
-    return told_of(drive, _response(drive), _residuals(inputs, drive))
+    return drive_section(drive, _response(drive), _residuals(inputs, drive))
 
 
-def told_of(
+def drive_section(
     drive: DriveFile, response: tuple[Picture, ...] = (), left: tuple[Picture, ...] = ()
 ) -> Section:
     """Return the section with pictures of the frequency response and of what is left, if any."""
@@ -175,8 +175,8 @@ def _bode_in_words(response: FrequencyResponses) -> str:
         f"{plain(fitted.phase_deg[k], 3)}°"
         for k in chosen
     )
-    told = sum(response.measured.excited)
-    return f"Fitted magnitude and phase: {said}. Measured at {told} frequencies with coherence."
+    excited = sum(response.measured.excited)
+    return f"Fitted magnitude and phase: {said}. Measured at {excited} frequencies with coherence."
 
 
 def _pole_in_words(pole: Pole) -> str:
@@ -191,7 +191,7 @@ def _residuals(inputs: Inputs, drive: DriveFile) -> tuple[Picture, ...]:
         if run is None or x_in is None or run.noise is None:
             continue
         nominal, fitted = (
-            x_in - inputs.answer(recording.run.id, x_in.size, column, DriveFile)
+            x_in - inputs.series(recording.run.id, x_in.size, column, DriveFile)
             for column in ("x_in_nominal_mm", "x_in_mm")
         )
         runs[recording.run.id] = (recording.time_s, nominal, fitted, run.noise)

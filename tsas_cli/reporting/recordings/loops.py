@@ -33,7 +33,7 @@ def section(inputs: Inputs) -> Section | None:
     intro = "Each cycle runs through four phases, numbered in the order in which they follow."
     calibration = inputs.get(CalibrationFile)
     if calibration is None:
-        intro = "Without a folder written by `tsas calibrate`, the phases are not told apart."
+        intro = "Without a folder written by `tsas calibrate`, the phases are unknown."
     segments = calibration.segments if calibration else {}
     groups = tuple(
         Group(f"Run {recording.run.id}", pictures)
@@ -64,9 +64,9 @@ def _pictures(
 
 def _alt(run: str, x: Floats, y: Floats, phase: npt.NDArray[np.object_], column: str) -> str:
     whole = f"{at_axis(column)} {spanned(y)} over {at_axis(_X)} {spanned(x)}"
-    told = [one for one in PHASES if one.number and np.isfinite(y[phase == one.key]).any()]
-    each = "; ".join(f"{one.label} {spanned(y[phase == one.key])}" for one in told)
-    return f"Loop of run {run}: {whole}. By phase: {each or 'not told apart'}."
+    shown = [one for one in PHASES if one.number and np.isfinite(y[phase == one.key]).any()]
+    each = "; ".join(f"{one.label} {spanned(y[phase == one.key])}" for one in shown)
+    return f"Loop of run {run}: {whole}. By phase: {each or 'unknown'}."
 
 
 def draw_loop(figure: Any, *, x: Floats, y: Floats, phase: Keys, labels: tuple[str, str]) -> None:

@@ -58,13 +58,13 @@ def record_channels(recorder: Recorder, run: SeenRun) -> None:
             portrait = Portrait(run, channel, run.x_in_mm, measured)
             portrait.record(recorder)
         for source in channel.sources:
-            told, which = run.told(channel.column, source), source.which
-            series = {run.entity(channel.column, which.key): told}
+            values, which = run.series(channel.column, source), source.which
+            series = {run.entity(channel.column, which.key): values}
             if not source.cleaned:
-                series[run.entity(channel.column, RESIDUAL, which.key)] = measured - told
+                series[run.entity(channel.column, RESIDUAL, which.key)] = measured - values
             for entity, values in series.items():
                 recorder.line(entity, which.label, dark(which.role))
                 recorder.scalars(entity, run.times, values)
             if portrait is not None:
-                portrait.record_answer(recorder, source, told)
+                portrait.record_prediction(recorder, source, values)
         recorder.settle()

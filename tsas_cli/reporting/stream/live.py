@@ -45,16 +45,16 @@ class LiveStream:
     failure: InputError | None = None
 
     def simulated(
-        self, dataset: Dataset, stage: SimulationFile, answer: Recording, model: Model
+        self, dataset: Dataset, stage: SimulationFile, predicted: Recording, model: Model
     ) -> None:
         """Show a simulated run beside its recording; `stage` says of the runs so far."""
         (self.folder / "runs").mkdir(exist_ok=True)
-        write_result(self.folder / "runs", answer)
+        write_result(self.folder / "runs", predicted)
         fitted = stage.dataset.content()
         write_model(self.folder / MODEL_FILE, model, version=stage.version, dataset=fitted)
         self._show(
             Inputs(
-                dataset.only([answer.run.id]),
+                dataset.only([predicted.run.id]),
                 {SimulationFile: stage},
                 {SimulationFile: self.folder},
             )

@@ -69,7 +69,7 @@ class Portrait:
             recorder.static(self._entity("phase", phase.key), look)
         self._record_stretch(recorder, MEASURED, self.y, dark("ink"), place=0)
 
-    def record_answer(self, recorder: Recorder, source: StreamSource, values: Floats) -> None:
+    def record_prediction(self, recorder: Recorder, source: StreamSource, values: Floats) -> None:
         """Record the stretch that a model answers, shape (n,), over the measured displacement."""
         if self.there.any():
             place, which = 1 + self.channel.sources.index(source), source.which

@@ -1,4 +1,4 @@
-"""What there is to see of each run, told from its files' headers before any sample is read."""
+"""What there is to see of each run, from its files' headers, before any sample is read."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -104,7 +104,7 @@ class SeenRun:
         """
         return self.x_in_mm if column == X_IN else self.file.read(column)
 
-    def told(self, column: str, source: StreamSource) -> Floats:
+    def series(self, column: str, source: StreamSource) -> Floats:
         """Return what a stage says of a column, shape (n,), NaN for gaps.
 
         Raises
@@ -112,7 +112,7 @@ class SeenRun:
         InputError
             The stage's file cannot be read, or belongs to another recording.
         """
-        return self.inputs.answer(self.id, self.file.rows, source.named(column), source.stage)
+        return self.inputs.series(self.id, self.file.rows, source.named(column), source.stage)
 
 
 def seen_runs(inputs: Inputs) -> Iterator[SeenRun]:
@@ -130,7 +130,7 @@ def seen_runs(inputs: Inputs) -> Iterator[SeenRun]:
     for run in _taken(inputs, inputs.dataset):
         file = open_run(inputs.dataset.folder, run)
         columns = [name for name in BY_NAME if name in file.names and name != TIME]
-        written = {source.stage: inputs.answered(run.id, source.stage) for source in given}
+        written = {source.stage: inputs.written_columns(run.id, source.stage) for source in given}
         yield SeenRun(
             inputs,
             file,

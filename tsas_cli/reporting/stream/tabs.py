@@ -87,7 +87,7 @@ def _residuals(run: SeenRun) -> Part | None:
 def _over_phases(
     run: SeenRun, shown: Mapping[str, Sequence[Entity]], what: str = ""
 ) -> Part | None:
-    """Return series under each other, and the phases below, where they are told.
+    """Return series under each other, and the phases below, where they are known.
 
     A legend stands where a series has a name that is in no plot above.
     """

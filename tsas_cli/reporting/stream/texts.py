@@ -15,7 +15,7 @@ from tsas_cli.reporting.calibration import parameters
 from tsas_cli.reporting.content import Section, Table
 from tsas_cli.reporting.diagnosis import candidates, causes, gains
 from tsas_cli.reporting.diagnosis.section import remainder
-from tsas_cli.reporting.drive.section import told_of
+from tsas_cli.reporting.drive.section import drive_section
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import plain, with_interval
 from tsas_cli.reporting.stream.markdown import section_text
@@ -49,9 +49,9 @@ def diagnosis(inputs: Inputs) -> str | None:
             *remainder(found),
             _extended(inputs),
         )
-        told = tuple(part for part in parts if part is not None)
-        return section_text(Section("diagnosis", "DiagnosisFile", (found.reason,), parts=told))
-    return None if drive is None else section_text(told_of(drive))
+        found_parts = tuple(part for part in parts if part is not None)
+        return section_text(Section("diagnosis", "Diagnosis", (found.reason,), parts=found_parts))
+    return None if drive is None else section_text(drive_section(drive))
 
 
 def _short(inputs: Inputs) -> Iterator[Section]:
@@ -61,24 +61,24 @@ def _short(inputs: Inputs) -> Iterator[Section]:
         both = Table("What is named", _NARROW, named, numeric=frozenset({1, 2})), _held_out(found)
         tables = tuple(table for table in both if table.rows)
         after = (f"Next: {found.next_experiment}",) if found.next_experiment else ()
-        yield Section("diagnosis", "DiagnosisFile", (found.reason,), tables=tables, closing=after)
+        yield Section("diagnosis", "Diagnosis", (found.reason,), tables=tables, closing=after)
     if tracking := inputs.get(TrackingFile):
         said = tuple(best_and_worst(tracking))
         table = _scores(tracking)
-        yield Section("tracking", "TrackingFile", said, points=tracking.notes, tables=(table,))
+        yield Section("tracking", "Tracking", said, points=tracking.notes, tables=(table,))
     if drive := inputs.get(DriveFile):
-        told = told_of(drive)
-        yield Section("drive", "DriveFile", told.intro, equations=told.equations)
+        section = drive_section(drive)
+        yield Section("drive", "Drive", section.intro, equations=section.equations)
     if simulation := inputs.get(SimulationFile):
         table = _errors(simulation)
-        yield Section("simulation", "SimulationFile", points=simulation.notes, tables=(table,))
+        yield Section("simulation", "Simulation", points=simulation.notes, tables=(table,))
     if calibration := inputs.get(CalibrationFile):
         rows = tuple(
             _narrow(p, p.name if p.run is None else f"{p.name}, run {p.run}")
             for p in calibration.parameters
         )
         table, said = Table("Parameters", _NARROW, rows), calibration.cannot_tell
-        yield Section("calibration", "CalibrationFile", points=said, tables=(table,))
+        yield Section("calibration", "Calibration", points=said, tables=(table,))
     if check := inputs.get(CheckFile):
         found_out = tuple(_finding(finding) for finding in check.findings)
         said = () if found_out else ("The checks found nothing.",)

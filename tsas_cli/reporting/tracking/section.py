@@ -26,7 +26,7 @@ def section(inputs: Inputs) -> Section | None:
     )
     return Section(
         "tracking",
-        "TrackingFile",
+        "Tracking",
         tuple(_intro(tracking, conditions)),
         points=tracking.notes,
         tables=(scores.table(tracking),),
@@ -79,4 +79,4 @@ def _change(condition: RunsUnderCondition) -> str:
         + (f"from {c.from_s:g} s on (dotted line)" if c.from_s > 0.0 else "from the start")
         for c in condition.changes
     )
-    return f"{condition.name.capitalize()}: the plant has {changes}, which no controller is told."
+    return f"{condition.name.capitalize()}: the plant has {changes}, which no controller knows."

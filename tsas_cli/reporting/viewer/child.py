@@ -86,13 +86,13 @@ def viewer_child(arguments: Sequence[str], *, port: int) -> Iterator[Child]:
         )
         child = Child(process, log)
         try:
-            _await_answer(child, port)
+            _await_response(child, port)
             yield child
         finally:
             _end(process)
 
 
-def _await_answer(child: Child, port: int) -> None:
+def _await_response(child: Child, port: int) -> None:
     until = time.monotonic() + START_S
     while time.monotonic() < until:
         child.refuse_failure()

@@ -61,14 +61,14 @@ def served_page(
             connection = HTTPConnection(LOOPBACK, inside)
             try:
                 connection.request("GET", self.path)
-                answer = connection.getresponse()
-                self.send_response(answer.status)
+                response = connection.getresponse()
+                self.send_response(response.status)
                 for name in KEPT:
-                    if (value := answer.headers[name]) is not None:
+                    if (value := response.headers[name]) is not None:
                         self.send_header(name, value)
                 self.send_header("Content-Security-Policy", policy)
                 self.end_headers()
-                shutil.copyfileobj(answer, self.wfile, AT_ONCE)
+                shutil.copyfileobj(response, self.wfile, AT_ONCE)
             finally:
                 connection.close()
 

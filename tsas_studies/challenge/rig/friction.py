@@ -24,7 +24,7 @@ class Friction:
     viscous_N_s_per_mm
         Force per speed of the tendon as a whole; each place has its own speed.
     presliding_mm
-        Displacement over which friction turns round, beyond the rig's own; the work lost until it
+        Displacement over which friction reverses, beyond the rig's own; the work lost until it
         has turned is that of a friction that changes by its limit per such displacement.
     rate_per_s, settling_per_s, session_rate_per_s
         μ grows over a run, relative to its first value, and over the session.

@@ -40,7 +40,7 @@ class Rig:
     load
         "spring", or "force" and "displacement": what is prescribed at the distal end.
     presliding_length_mm
-        Displacement over which friction turns round; small enough to pass for Coulomb.
+        Displacement over which friction reverses; small enough to pass for Coulomb.
     sheath_compliance_ratio
         How much more the sheath is compressed than the tendon stretches.
     drive_end, friction, load_end, give

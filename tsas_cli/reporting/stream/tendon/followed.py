@@ -108,7 +108,7 @@ def follow(
     time_s: Floats,
     drive: DriveInput,
     models: Mapping[Which, Model],
-    answers: Sequence[Floats],
+    tensions: Sequence[Floats],
     dynamics: Dynamics = "slip",
     nodes: int | None = None,
 ) -> dict[Which, TendonStates]:
@@ -120,27 +120,27 @@ def follow(
         The run, the time of its samples, shape (n,), and what is given at its ends.
     models
         What follows it.
-    answers
+    tensions
         Tensions that the models have answered, shape (n,) each, which tell when to look.
     dynamics, nodes
         As `simulate` takes them. The lumped model does not say what is along the tendon: with it
         nothing is found.
     """
-    at = moments(time_s, answers, turns(drive.values))
+    at = moments(time_s, tensions, turns(drive.values))
     found = {}
     for which, model in models.items():
         rig = model.rig(run)
-        answer = simulate(
+        prediction = simulate(
             rig, drive, dynamics, on_mesh=nodes is not None, nodes=nodes, looked_at=at
         )
-        if answer.frames is not None:
+        if prediction.frames is not None:
             found[which] = TendonStates(
                 rig,
                 run.started,
                 time_s,
-                answer,
-                answer.frames,
-                passages(answer.x_in_mm, answer.phase),
+                prediction,
+                prediction.frames,
+                passages(prediction.x_in_mm, prediction.phase),
             )
     return found
 

@@ -54,7 +54,9 @@ def models_of(run: SeenRun) -> TendonModels | None:
     else:
         return None
     paths = {which: run.inputs.folders[stage] / file for which, file in files.items()}
-    if not run.inputs.answered(run.id, stage) or not all(p.is_file() for p in paths.values()):
+    if not run.inputs.written_columns(run.id, stage) or not all(
+        p.is_file() for p in paths.values()
+    ):
         return None
     models = {which: read_model(path) for which, path in paths.items()}
     return TendonModels(stage, models, cast("Dynamics", dynamics), nodes)
@@ -71,27 +73,27 @@ def tendons_of(run: SeenRun) -> dict[Which, TendonStates]:
     given = models_of(run)
     if given is None:
         return {}
-    there, rows = run.inputs.answered(run.id, given.stage), run.file.rows
+    there, rows = run.inputs.written_columns(run.id, given.stage), run.file.rows
     columns = [c for name in (F_IN, F_OUT) for c in (name, nominal_name(name)) if c in there]
-    answers = [run.inputs.answer(run.id, rows, name, given.stage) for name in columns]
+    tensions = [run.inputs.series(run.id, rows, name, given.stage) for name in columns]
     drive = _drive(run, given.stage)
     return follow(
-        run.file.run, run.time_s, drive, given.models, answers, given.dynamics, given.nodes
+        run.file.run, run.time_s, drive, given.models, tensions, given.dynamics, given.nodes
     )
 
 
 def _drive(run: SeenRun, stage: type[StageFile]) -> DriveInput:
     """Return what drives the run, as the stage has conditioned it, where it has written it down."""
     dataset = cast("Dataset", run.inputs.dataset)
-    started, told = dataset.manifest.session_start, run.file.run
-    if told.load != "spring" or X_IN not in run.file.names:
-        return prepare(read_recording(dataset.folder, told), started).drive
+    started, entry = dataset.manifest.session_start, run.file.run
+    if entry.load != "spring" or X_IN not in run.file.names:
+        return prepare(read_recording(dataset.folder, entry), started).drive
     return drive_of(
-        told,
+        entry,
         run.time_s,
-        run.inputs.answer(run.id, run.file.rows, X_IN, stage),
+        run.inputs.series(run.id, run.file.rows, X_IN, stage),
         by_force=False,
         load_values=None,
         f_in_N=run.measured(F_IN) if F_IN in run.file.names else None,
-        session_s=seconds_into(started, told.started),
+        session_s=seconds_into(started, entry.started),
     )
