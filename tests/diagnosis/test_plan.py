@@ -52,8 +52,8 @@ def test_a_fast_run_shows_a_smaller_mass_and_less_viscosity(slow):
 def test_two_speeds_tell_viscosity_from_friction_that_knows_no_speed(one_speed):
     two = seen(run(10.0, motion="ramps"), run(20.0, "b", motion="ramps"))
     for rival in ("drive_friction", "load_friction"):
-        assert one_speed[VISCOUS].told[rival] > 2.0 * one_speed[VISCOUS].found
-        assert two[VISCOUS].told[rival] < 1.5 * two[VISCOUS].found
+        assert one_speed[VISCOUS].distinct[rival] > 2.0 * one_speed[VISCOUS].found
+        assert two[VISCOUS].distinct[rival] < 1.5 * two[VISCOUS].found
 
 
 def test_what_the_free_parameters_do_themselves_is_not_shown(slow):

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from tests.diagnosis.planned import run
-from tsas_cli.diagnosis import simulated_runs as made_runs
+from tsas_cli.diagnosis import simulated_runs
 from tsas_cli.diagnosis.motions import motion
 from tsas_cli.diagnosis.rig_file import PlannedRun, Sensors
 from tsas_cli.support.errors import InputError
@@ -22,8 +22,8 @@ def made(monkeypatch):
         there = np.ones(drive.values.size)
         return SimpleNamespace(f_in_N=30.0 * there, f_out_N=20.0 * there, x_out_mm=3.0 * there)
 
-    monkeypatch.setattr(made_runs, "simulate", simulate)
-    return lambda *runs, **how: made_runs.simulated_recordings(
+    monkeypatch.setattr(simulated_runs, "simulate", simulate)
+    return lambda *runs, **how: simulated_runs.simulated_recordings(
         runs, SENSORS, lambda run: None, BEGIN, **how
     )
 
@@ -85,8 +85,8 @@ def planned(speed, **other):
 )
 def test_a_run_that_would_take_too_many_samples_is_refused(runs, fits):
     if fits:
-        t, x = made_runs._moved(runs, 100.0)
+        t, x = simulated_runs._moved(runs, 100.0)
         assert t.size == x.size < 1_000_000
     else:
         with pytest.raises(InputError, match="run a would take more than 1000000 samples"):
-            made_runs._moved(runs, 100.0)
+            simulated_runs._moved(runs, 100.0)

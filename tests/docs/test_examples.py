@@ -12,7 +12,6 @@ from docs.manual.commands import commands as every_command
 
 # What takes more than some seconds: `make docs-examples` runs them too.
 NOT_RUN_HERE = {
-    "README.md": ["identify-harmonic-drive", "track"],
     "docs/close-loop.md": ["close-loop"],
     "docs/drive.md": ["identify-harmonic-drive"],
     "docs/plan.md": ["plan"],

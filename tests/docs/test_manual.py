@@ -59,7 +59,7 @@ def test_nothing_is_loaded_from_elsewhere(site):
 def test_the_search_knows_the_pages(site):
     items = json.loads((site / "search.json").read_text(encoding="utf-8"))["items"]
     found = [i["text"] for i in items if i["location"].startswith("effects/backlash.html")]
-    assert "x_in turns back" in " ".join(found)
+    assert "a reversal of x_in" in " ".join(found)
     assert "[mm]" not in found[0]  # of an axis
     assert (site / "search.js").is_file()
 

@@ -7,6 +7,8 @@ from tsas_cli.drive.harmonic_drive import DriveValues
 from tsas_cli.drive.search import NOTHING
 from tsas_cli.drive.sentences import cannot_tell, equation_of, inverse_of, name_of, next_run
 from tsas_cli.identification.estimate import Estimate
+from tsas_cli.records.base import Fit
+from tsas_cli.records.drive import DriveFile, FrequencyResponses, Pole
 
 
 def terms(*names):
@@ -39,42 +41,46 @@ def test_what_to_record_next():
     assert "half the amplitude" in next_run(found())
 
 
-def summary(band=(0.5, 12.0), poles=(), converged=True):
-    return {
-        "frequency_response": {"band_Hz": band},
-        "poles": list(poles),
-        "fit": {"converged": converged, "message": "too many steps"},
-    }
+def drive(band=(0.5, 12.0), poles=(), converged=True):
+    """Return the part of a record that says what is not identifiable."""
+    return DriveFile.model_construct(
+        frequency_response=FrequencyResponses.model_construct(band_Hz=band),
+        poles=tuple(poles),
+        fit=Fit(converged=converged, message="too many steps"),
+    )
 
 
 NO_SHEET = DataSheet(None, None, None, None)
 SHEET = DataSheet(27.1, 120.0, 0.13, 2.3)
 
 
-def test_what_cannot_be_told_of_a_drive():
-    far = {"kind": "lag", "frequency_Hz": 23.0, "in_band": False}
-    near = {"kind": "lag", "frequency_Hz": 3.0, "in_band": True}
-    quiet = cannot_tell(summary(poles=[near]), SHEET, terms("spring"), {})
+def test_what_is_not_identifiable_of_a_drive():
+    lag = {"kind": "lag", "real_per_s": -1.0, "imaginary_per_s": 0.0}
+    far = Pole(**lag, frequency_Hz=23.0, in_band=False)
+    near = Pole(**lag, frequency_Hz=3.0, in_band=True)
+    quiet = cannot_tell(drive(poles=[near]), SHEET, terms("spring"), ())
     assert quiet == []
-    (outside,) = cannot_tell(summary(poles=[near, far]), SHEET, terms("spring"), {})
+    (outside,) = cannot_tell(drive(poles=[near, far]), SHEET, terms("spring"), ())
     assert outside.startswith(
         "A lag lies at 23 Hz, outside of the band that the input shows (0.5 to"
     )
-    stiff = cannot_tell(summary(), SHEET, NOTHING, {})
+    stiff = cannot_tell(drive(), SHEET, NOTHING, ())
     assert stiff == [
         "These recordings show no resonance: the drive is stiffer than they tell, beyond 12 Hz."
     ]
-    dark = cannot_tell(summary(None, [far]), SHEET, NOTHING, {})
+    dark = cannot_tell(drive(None, [far]), SHEET, NOTHING, ())
     assert "coherence above 0.8" in dark[0]
     assert dark[1].endswith("stiffer than they tell.")
     assert len(dark) == 2
-    ratios, reaction = cannot_tell(summary(), NO_SHEET, terms("spring"), {})
+    ratios, reaction = cannot_tell(drive(), NO_SHEET, terms("spring"), ())
     assert ratios.startswith("Speed and position show ratios")
     assert "pull-back k_p" in reaction
     bound = {
         "play_mm": Estimate("play_mm", 0.0, "mm", "fitted", at_bound=True),
         "delay_s": Estimate("delay_s", 0.1, "s", "fitted"),
     }
-    assert cannot_tell(summary(), SHEET, terms("spring"), bound) == ["play_mm ended at its bound."]
-    (said,) = cannot_tell(summary(converged=False), SHEET, terms("spring"), {})
+    assert cannot_tell(drive(), SHEET, terms("spring"), bound.values()) == [
+        "play_mm ended at its bound."
+    ]
+    (said,) = cannot_tell(drive(converged=False), SHEET, terms("spring"), ())
     assert said == "The fit did not converge: too many steps."

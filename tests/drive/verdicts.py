@@ -9,7 +9,7 @@ from tsas_cli.identification.estimate import Estimate
 TITLE = {e.name: e.title for e in EFFECTS}
 STATED = frozenset({"stated"})
 TOLD = {
-    name: Estimate(name, 0.5, "s", "fitted", None, 0.1, 0.3, 0.7)
+    name: Estimate(name, 0.5, name.rpartition("_")[2], "fitted", None, 0.1, 0.3, 0.7)
     for name in ("delay_s", "motor_lag_s", "play_mm", "damping_ratio", "gain_mm_per_s_rpm")
 }
 

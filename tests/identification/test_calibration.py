@@ -84,7 +84,7 @@ def test_a_right_model_is_not_accused_and_a_wrong_one_is():
     ]
     said = calibrate_runs(manifest(*both), both).cannot_tell
     assert any("wrong somewhere" in s for s in said)
-    (widened,) = [s for s in said if s.startswith("The intervals hold what")]
+    (widened,) = [s for s in said if s.startswith("The intervals are widened")]
     assert "free_tendon" in widened
 
 

@@ -86,7 +86,7 @@ def test_all_constants_of_friction_are_found_where_they_show(quiet):
     assert found["stribeck_friction.velocity_mm_per_s"].value == pytest.approx(8.0, rel=0.01)
 
 
-def test_under_noise_the_bristles_damping_is_not_told_and_the_others_allow_for_it(noisy):
+def test_under_noise_the_bristles_damping_is_not_identifiable_and_the_others_allow_for_it(noisy):
     found = fitted(noisy)
     assert "bristles.damping_N_s_per_mm" not in found
     for name in TRUTH.keys() - {"bristles.damping_N_s_per_mm"}:
@@ -104,13 +104,13 @@ def test_the_model_that_was_fitted_is_the_one_that_is_compared(noisy):
     assert not any("missed by" in sentence for sentence in noisy.cannot_tell)
 
 
-def test_a_stribeck_velocity_far_below_all_speeds_is_not_told():
+def test_a_stribeck_velocity_far_below_all_speeds_is_not_identifiable():
     """Table 1 of Yang 2025 has 4 % more friction at rest, below 0.01 mm/s at strokes of 10 mm/s."""
     result = calibrated(recorded("a-50", noise_N=0.03, noise_mm=2e-3, seed=1))
     found = fitted(result)
     assert not any(name.startswith("stribeck") for name in found)
     (said,) = [s for s in result.cannot_tell if s.startswith("stribeck_friction.excess")]
-    lowest = float(said.split("velocity were ")[1].split(" ")[0])
+    lowest = float(said.split("velocities of ")[1].split(" ")[0])
     assert 0.01 < lowest < 1.0
     friction, viscous = (
         found["friction_coefficient"],
@@ -120,11 +120,13 @@ def test_a_stribeck_velocity_far_below_all_speeds_is_not_told():
     assert viscous.interval_low <= 0.02 <= viscous.interval_high
 
 
-def test_a_rig_without_bristles_is_told_to_have_stiff_ones():
+def test_a_rig_without_bristles_is_found_to_have_stiff_ones():
     """The rig of the challenge sticks and slips by Coulomb's law, without any bristles."""
     result = calibrated(of_the_rig(by_the_rig()))
     (said,) = [s for s in result.cannot_tell if "fit equally well" in s and "stiffness" in s]
-    lowest, highest = (float(part.split(" ")[0]) for part in said.split("told: ")[1].split(" to "))
+    lowest, highest = (
+        float(part.split(" ")[0]) for part in said.split("identifiable: ")[1].split(" to ")
+    )
     assert lowest > 8e3
     assert highest > 1e6
     assert result.predictions[0].rmse["f_in_N"] < 0.12  # 0.34 with the bristles of Table 1

@@ -43,7 +43,7 @@ def found(monkeypatch):
         )
         monkeypatch.setattr(
             d,
-            "_alike",
+            "_indistinguishable_note",
             lambda name, like: f"{name}: {[v for one in like for v in one.values.values()]}",
         )
         monkeypatch.setattr(

@@ -42,11 +42,8 @@ def use_a_kernel(folder: Path, cache: Path) -> tuple[int, str, list[int]]:
 
 @pytest.fixture
 def copy(tmp_path: Path) -> Path:
-    """Copy the package's kernels, so that a test may edit them; imported from this folder."""
-    for part in (*PARTS, "commands"):
-        shutil.copytree(PACKAGE / part, tmp_path / "copy" / "tsas_cli" / part)
-    for source in PACKAGE.glob("*.py"):
-        shutil.copy(source, tmp_path / "copy" / "tsas_cli")
+    """Copy the package, so that a test may edit it; imported from this folder."""
+    shutil.copytree(PACKAGE, tmp_path / "copy" / "tsas_cli")
     return tmp_path / "copy"
 
 

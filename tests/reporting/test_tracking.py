@@ -11,13 +11,13 @@ from matplotlib.figure import Figure
 
 from tests.reporting.made_folders import make_tracking
 from tests.reporting.test_page import Outline, headings
+from tsas_cli import controllers
 from tsas_cli.__main__ import main
 from tsas_cli.reporting.colours import CONTROLLERS, STAND_IN, of_controller
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.page import page
 from tsas_cli.reporting.tracking.over_time import TimeCurve, draw_panels
 from tsas_cli.support.errors import InputError
-from tsas_cli.tracking import settings
 
 PICTURES = ("force", "error", "phase", "adaptation", "effort")
 
@@ -153,7 +153,7 @@ def test_each_controller_is_drawn_in_its_own_colour(whole, what):
 
 
 def test_every_controller_has_a_colour_and_one_that_is_not_known_has_one_too():
-    assert CONTROLLERS == settings.CONTROLLERS
+    assert CONTROLLERS == controllers.CONTROLLERS
     assert len({of_controller(name) for name in CONTROLLERS}) == len(CONTROLLERS)
     assert of_controller("made by another version") == STAND_IN["unknown"]
 

@@ -267,7 +267,7 @@ def test_check_is_told_by_run(folder, tmp_path):
     ("wrong", "says"),
     [
         (lambda folder: tsas.read(folder / "none"), "no dataset.toml here"),
-        (lambda folder: tsas.check(folder, out=folder), "is read, and would be"),
+        (lambda folder: tsas.check(folder, out=folder), "is an input, and would be"),
         (lambda folder: tsas.calibrate(folder, dynamics="static"), "expected slip or lugre"),
         (lambda folder: tsas.simulate(folder, dynamics="lugra"), "did you mean lugre"),
         (lambda folder: tsas.simulate(folder, model="none.toml"), "cannot be read"),

@@ -72,39 +72,40 @@ HIDDEN = ExperimentPlan(
 
 
 def test_a_plan_as_json():
-    found = plan_stage.as_json(HIDDEN)
-    first, second, third = found["effects"]
-    assert (first["effect"], first["parameter"], first["unit"]) == (PLAY, "play_mm", "mm")
-    assert (first["found_from"], first["named_from"]) == (0.01234, 0.05)
-    assert (first["nearest"], first["hidden_in"]) == (MASS, [])
-    assert second["hidden_in"] == [LENGTH]
-    assert (third["found_from"], third["named_from"], third["nearest"]) == (None, None, None)
-    assert found["groups"] == [[LENGTH, MASS]]
-    (proposal,) = found["proposals"]
-    assert proposal["falls_percent"] == pytest.approx(75.0)
-    assert "id" not in proposal["run"]
-    assert "frequency_Hz" not in proposal["run"]
-    assert proposal["better"][0]["named_from_with_it"] == 0.1
-    assert proposal["better"][-1]["named_from"] is None
-    assert found["cannot_tell"] == ["nobody knows."]
+    found = plan_stage.record_of(HIDDEN)
+    first, second, third = found.effects
+    assert (first.effect, first.parameter, first.unit) == (PLAY, "play_mm", "mm")
+    assert (first.found_from, first.named_from) == (0.01234, 0.05)
+    assert (first.nearest, first.hidden_in) == (MASS, ())
+    assert second.hidden_in == (LENGTH,)
+    assert (third.found_from, third.named_from, third.nearest) == (None, None, None)
+    assert found.groups == ((LENGTH, MASS),)
+    (proposal,) = found.proposals
+    assert proposal.falls_percent == pytest.approx(75.0)
+    run = proposal.content()["run"]
+    assert "id" not in run
+    assert "frequency_Hz" not in run
+    assert proposal.better[0].named_from_with_it == 0.1
+    assert proposal.better[-1].named_from is None
+    assert found.cannot_tell == ("nobody knows.",)
 
 
 def test_shapes_are_named_within_their_effect():
     shaped = Visibility(
         Amplitude(OF[PLAY], OF[PLAY].parameters[0], {"backlash.kind": 2.0}), 1.0, {}
     )
-    found = plan_stage.as_json(ExperimentPlan((shaped,), (), (), ()))["effects"][0]
-    assert found["shape"] == {"kind": 2.0}
+    found = plan_stage.record_of(ExperimentPlan((shaped,), (), (), ())).effects[0]
+    assert found.shape == {"kind": 2.0}
 
 
 def test_the_tables_of_a_plan():
-    sizes, groups, proposal = plan_stage._tables(plan_stage.as_json(HIDDEN))
+    sizes, groups, proposal = plan_stage._tables(plan_stage.record_of(HIDDEN))
     assert [row[3:] for row in sizes[2]] == [
         ("0.012", "0.05", MASS),
         ("0.5", "6", LENGTH),
         ("not shown", "", ""),
     ]
-    assert groups[2] == [[LENGTH, MASS]]
+    assert groups[2] == ((LENGTH, MASS),)
     title, header, rows = proposal
     assert title.endswith(": sizes fall by 75 % on average")
     assert title.startswith("add a slow sine: 2 times")
@@ -112,5 +113,5 @@ def test_the_tables_of_a_plan():
     assert len(rows) == 4  # no more are printed
     assert rows[0] == (PLAY, "play_mm", "mm", "0.4", "0.1")
     never = ExperimentPlan((seen(MASS, 0.5, backlash=math.inf),), (), (), ())
-    (only,) = plan_stage._tables(plan_stage.as_json(never))
+    (only,) = plan_stage._tables(plan_stage.record_of(never))
     assert only[2][0][3:] == ("0.5", "never", PLAY)

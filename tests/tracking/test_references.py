@@ -104,5 +104,5 @@ def test_a_tendon_cannot_push(tmp_path):
 def test_an_unknown_shape_names_the_nearest():
     with pytest.raises(InputError, match=r"unknown reference sines.*did you mean sine\?"):
         reference("sines", FORM, H)
-    with pytest.raises(InputError, match="there"):
+    with pytest.raises(InputError, match="does not exist"):
         reference("nowhere.parquet", FORM, H)

@@ -9,7 +9,7 @@ from typing import Any, TypeVar, cast
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
-PARTS = ("controllers", "effects", "numerics", "physics")  # where kernels live
+PARTS = ("controllers", "drive", "effects", "numerics", "physics")  # where kernels live
 PLAIN = os.environ.get("TSAS_PLAIN_PYTHON") == "1"
 
 

@@ -14,12 +14,12 @@ from tsas_cli.comparing.sides import read_side
 from tsas_cli.comparing.tracked import compare_tracked
 from tsas_cli.records.tracking import TrackingFile
 from tsas_cli.reporting.inputs import STAGES, read_inputs, read_stage
-from tsas_studies.challenge import answers, entry
+from tsas_studies.challenge import entry, truth
 
 SHARE = 4
 MOST_BYTES = 8000
 mutate = after_a_byte(json_document)
-FILES = (*(kind.FILE for kind in STAGES), answers.FILE, entry.FILE)
+FILES = (*(kind.FILE for kind in STAGES), truth.FILE, entry.FILE)
 MODEL = b'format = 1\n[parameters.friction_coefficient]\nvalue = 0.1\nunit = "1"\n'
 _scratches = [Scratch() for _ in FILES]
 for _scratch in _scratches:
@@ -32,7 +32,7 @@ def one(data: bytes) -> None:
     which = data[0] % len(FILES) if data else 0
     path = _scratches[which].file(FILES[which], data[1:])
     if which == len(STAGES):
-        answer(answers.read_truth, path.parent)
+        answer(truth.read_truth, path.parent)
     elif which > len(STAGES):
         answer(entry._read_diagnosis, path)
     else:
@@ -80,7 +80,7 @@ def seeds() -> Iterable[bytes]:
     hidden = {"effect": "free_tendon", "parameters": {"proximal_length_mm": 100.0}}
     case = {"kind": "one", "size": 1.0, "hidden": [hidden]}
     sealed = {"format": 1, "kind": "challenge-answers", "seed": 3, "cases": {"a": case}}
-    yield bytes([FILES.index(answers.FILE)]) + json.dumps(sealed).encode()
+    yield bytes([FILES.index(truth.FILE)]) + json.dumps(sealed).encode()
     found = {"format": 1, "verdict": "named", "named": [], "remainder": {"unexplained": False}}
     yield bytes([len(FILES) - 1]) + json.dumps(found).encode()
 

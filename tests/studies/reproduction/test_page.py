@@ -68,7 +68,10 @@ def test_each_row_shows_both_values_verdict_reason_and_source(whole):
     assert "km 175.1 N/mm 175.0 N/mm 0.9994 differs Differs (not to the last digit" in text
     assert "± 0.05), because of a cause. [Table 3]" in text
     assert "fits 1 – – agrees Agrees with room. [Table 1]" in text
-    assert "57.40 rpm s³/mm cannot tell Cannot be told, because none is printed. [Fig. 4]" in text
+    assert (
+        "57.40 rpm s³/mm cannot tell Cannot be determined, because none is printed. [Fig. 4]"
+        in text
+    )
 
 
 def test_the_counts_stand_on_top(whole):
