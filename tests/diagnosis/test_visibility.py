@@ -94,7 +94,7 @@ def test_what_the_model_does_not_get_through_with_is_not_found():
     assert seen.found == math.inf
     other = next(effect for effect in EFFECTS if effect.name == "backlash")
     (seen,) = lost.seen([PRESLIDING], [other])
-    assert (seen.found, seen.told) == (math.inf, {"backlash": math.inf})
+    assert (seen.found, seen.distinct) == (math.inf, {"backlash": math.inf})
 
 
 def test_every_amplitude_of_every_effect_is_looked_at():

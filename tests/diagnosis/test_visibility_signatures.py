@@ -152,34 +152,34 @@ def wide(name, **other):
 def test_an_effect_is_told_from_what_does_something_else():
     look = MadeUpLook(a=wave(1), b=wave(2), c=wave(1) + wave(2))
     told = seen(look, wide("a"), wide("b"), wide("c"))
-    assert set(told.told) == {"b", "c"}
+    assert set(told.distinct) == {"b", "c"}
     assert told.found == pytest.approx(smallest_by_definition(wave(1), part().block))
-    assert told.told["b"] == pytest.approx(told.found)
+    assert told.distinct["b"] == pytest.approx(told.found)
     half = 0.5 * (wave(1) - wave(2))  # what is left of a beside the best of c
-    assert told.told["c"] == pytest.approx(smallest_by_definition(half, part().block))
+    assert told.distinct["c"] == pytest.approx(smallest_by_definition(half, part().block))
 
 
 def test_one_that_acts_in_one_direction_does_not_hide_the_other():
     """A rival that is its opposite hides what may act in both directions, nothing else."""
     look = MadeUpLook(a=wave(1), b=-wave(1))
-    assert seen(look, wide("a"), wide("b")).told["b"] < math.inf
-    assert seen(look, wide("a", lower=-1e9), wide("b")).told["b"] == math.inf
-    assert seen(look, wide("a"), wide("b", lower=-1e9)).told["b"] == math.inf
+    assert seen(look, wide("a"), wide("b")).distinct["b"] < math.inf
+    assert seen(look, wide("a", lower=-1e9), wide("b")).distinct["b"] == math.inf
+    assert seen(look, wide("a"), wide("b", lower=-1e9)).distinct["b"] == math.inf
     # Starting below the neutral value, it acts in the other direction.
     below = wide("b", start=-0.5, lower=-1e9, upper=0.0)
-    assert seen(look, wide("a"), below).told["b"] == math.inf
+    assert seen(look, wide("a"), below).distinct["b"] == math.inf
 
 
 def test_what_nearly_imitates_it_hides_it():
     """A thousandth of the squares is too little to tell."""
     for off, hidden in ((0.031, True), (0.033, False)):
         look = MadeUpLook(a=wave(1) + wave(2, off), b=wave(1))
-        assert (seen(look, wide("a"), wide("b")).told["b"] == math.inf) == hidden
+        assert (seen(look, wide("a"), wide("b")).distinct["b"] == math.inf) == hidden
 
 
 def test_what_is_imitated_while_it_is_small_is_hidden_though_it_is_not_when_it_is_large():
     look = MadeUpLook(a=lambda size: wave(1) if abs(size) < 1e-4 else wave(2), b=wave(1))
-    assert seen(look, wide("a"), wide("b")).told["b"] == math.inf
+    assert seen(look, wide("a"), wide("b")).distinct["b"] == math.inf
 
 
 def test_no_size_is_larger_than_the_largest():
@@ -187,7 +187,7 @@ def test_no_size_is_larger_than_the_largest():
     for upper, limited in ((1.01 * found, False), (0.99 * found, True)):
         told = seen(MadeUpLook(a=wave(1), b=wave(2)), wide("a", upper=upper), wide("b"))
         assert (told.found == math.inf) == limited
-        assert (told.told["b"] == math.inf) == limited
+        assert (told.distinct["b"] == math.inf) == limited
 
 
 def test_a_look_at_some_runs_has_their_rows_alone(monkeypatch):

@@ -39,6 +39,16 @@ def check_interval(low: float | None, high: float | None) -> None:
         raise ValueError(f"interval_low {low:g} is above interval_high {high:g}")
 
 
+def value_text(
+    value: float | None, ends: tuple[float | None, float | None], *, at_bound: bool, origin: str
+) -> str:
+    """Return a value and the ends of its interval for a printed table; without these its origin."""
+    low, high = ends
+    if value is None or low is None or high is None:
+        return f"{number_text(value, '.5g')} ({origin})"
+    return f"{value:.5g} [{low:.5g}, {high:.5g}]{'  AT BOUND' if at_bound else ''}"
+
+
 def _none_if_not_finite(value: Any, info: ValidationInfo) -> Any:
     """Take a number that is not finite for none; in a file there is none, and it is refused."""
     made = isinstance(value, float) and not (info.context or {}).get("file")
@@ -144,10 +154,8 @@ class Value(Record):
 
     def text(self) -> str:
         """Return value and interval for a printed table; where there is none, its origin."""
-        if self.value is None or self.interval_low is None or self.interval_high is None:
-            return f"{number_text(self.value, '.5g')} ({self.origin})"
-        flag = "  AT BOUND" if self.at_bound else ""
-        return f"{self.value:.5g} [{self.interval_low:.5g}, {self.interval_high:.5g}]{flag}"
+        ends = self.interval_low, self.interval_high
+        return value_text(self.value, ends, at_bound=self.at_bound, origin=self.origin)
 
     @property
     def interval(self) -> tuple[float, float] | None:
