@@ -4,7 +4,7 @@ import inspect
 import json
 import subprocess
 import sys
-from dataclasses import fields
+from dataclasses import fields, replace
 
 import numpy as np
 import pyarrow.parquet as pq
@@ -189,8 +189,6 @@ def test_a_notebook_shows_tables_and_escapes_names(simulated):
     assert "<th" in html
     assert f">{simulated.summary['runs']['a']['channels']['f_in_N']['rmse']:.4g}<" in html
 
-    from dataclasses import replace
-
     evil = replace(simulated, summary=simulated.summary | {"notes": ["<script>alert(1)</script>"]})
     assert "<script>" not in evil._repr_html_()
 
@@ -292,11 +290,33 @@ def test_check_is_told_by_run(folder, tmp_path):
         (lambda folder: tsas.report(folder.parent, out=folder.parent / "r.html"), "neither a"),
         (lambda folder: tsas.explain("backlsh"), "did you mean backlash"),
         (lambda folder: tsas.close_loop(out="none", cases=["x"]), "unknown case x"),
+        (lambda folder: tsas.read(5), "5 is of type int; expected str or Path"),
+        (lambda folder: tsas.read(folder)[0], "there is no run 0; known are"),
+        (lambda folder: tsas.check(folder, runs=[]), "no run is chosen"),
+        (lambda folder: tsas.simulate(folder, model={}), "is of type dict; expected Path or Model"),
+        (lambda folder: tsas.runs("", folders=[]), "no folder is named"),
+        (lambda folder: tsas.track(controllers=5), "5 is of type int; expected str"),
+        (lambda folder: tsas.plan(3), "3 is of type int"),
+        (lambda folder: tsas.verify(3), "3 is of type int"),
+        (lambda folder: tsas.ingest(3, map=4, out="x"), "is of type int"),
     ],
 )
 def test_a_wrong_call_is_an_input_error(folder, wrong, says):
     with pytest.raises(tsas.InputError, match=says):
         wrong(folder)
+
+
+def test_two_models_in_memory_are_compared(folder):
+    """Half the friction: a half less, and nothing else differs."""
+    model = tsas.calibrate(folder).model
+    halved = tuple(
+        replace(e, value=0.5 * e.value) if e.name == "friction_coefficient" else e
+        for e in model.estimates
+    )
+    pairs = tsas.compare(model, replace(model, estimates=halved)).record.parameters
+    ratios = {pair.name: pair.b.value / pair.a.value for pair in pairs if pair.a and pair.b}
+    assert ratios.pop("friction_coefficient") == 0.5
+    assert set(ratios.values()) == {1.0}
 
 
 def test_every_name_is_there_and_explained():

@@ -7,6 +7,7 @@ from tsas_cli.comparing.maps import residual_maps
 from tsas_cli.comparing.predictions import Both, Predictions, error_rows, matched
 from tsas_cli.comparing.sides import Side, read_side
 from tsas_cli.comparing.values import Overlap, overlap, pairs
+from tsas_cli.identification.model import Model
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.records.comparison import ErrorRow, ParameterPair
 from tsas_cli.records.diagnosis import Maps
@@ -54,8 +55,8 @@ class Comparison:
 
 
 def compare(
-    a: Path,
-    b: Path,
+    a: Path | Model,
+    b: Path | Model,
     *,
     on: Dataset | None = None,
     fit_own: bool = False,
@@ -66,7 +67,7 @@ def compare(
     Parameters
     ----------
     a, b
-        Model files, or folders that `tsas calibrate`, `diagnose` or `simulate` have written.
+        Models, their files, or folders that `tsas calibrate`, `diagnose` or `simulate` wrote.
     on
         A dataset that both models are simulated on. Without it a folder's model is held to the
         recordings that the stage has read, and a model file to none.

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
-from tsas_cli.identification.model import Model, read_model
+from tsas_cli.identification.model import IN_MEMORY, Model, read_model
 from tsas_cli.physics.response import Dynamics
 from tsas_cli.recordings.dataset import Dataset, read_dataset
 from tsas_cli.recordings.manifest import MANIFEST_FILE as MANIFEST
@@ -52,14 +52,18 @@ class Side:
         return tuple(dict.fromkeys(group for group in groups if group not in ("", "bristles")))
 
 
-def read_side(path: Path) -> Side:
+def read_side(path: Path | Model) -> Side:
     """Read a model file, or a folder that `tsas calibrate`, `diagnose` or `simulate` has written.
+
+    A model in memory is taken as it is.
 
     Raises
     ------
     InputError
         It is neither, more than one of them, or not whole.
     """
+    if isinstance(path, Model):
+        return Side(Path(IN_MEMORY), "model", {}, path, _dynamics_of(path))
     if path.is_file():
         return _of_model(path)
     there = [kind for kind in STAGES if (path / kind.FILE).is_file()]
@@ -77,18 +81,21 @@ def read_side(path: Path) -> Side:
     return _of_stage(path, there[0])
 
 
+def _dynamics_of(model: Model) -> Dynamics:
+    return "lugre" if any(e.name.startswith("bristles.") for e in model.estimates) else "slip"
+
+
 def _of_model(path: Path) -> Side:
     model = read_model(path)
     said = read_toml(path).get("dataset", {})
     source = parse(DatasetSource, said, path) if "hashes" in said else None
-    with_bristles = any(e.name.startswith("bristles.") for e in model.estimates)
     dataset, gone = (None, "") if source is None else _dataset(source, source, path.parent)
     return Side(
         path,
         "model",
         {path.name: sha256_of(path)},
         model,
-        "lugre" if with_bristles else "slip",
+        _dynamics_of(model),
         source,
         dataset,
         gone,

@@ -50,16 +50,19 @@ class Dataset:
         Raises
         ------
         InputError
-            There is no such run.
+            There is no such run, or none is chosen.
         """
         known = [run.id for run in self.manifest.run]
         chosen = tuple(ids)
+        if not chosen:
+            where = self.folder / MANIFEST_FILE
+            raise InputError("no run is chosen", where=where, expected="a run")
         for name in chosen:
             if name not in known:
                 raise InputError(
                     f"there is no run {name!r}",
                     where=self.folder / MANIFEST_FILE,
-                    remedy=nearest(name, known),
+                    remedy=nearest(str(name), known),
                 )
         return replace(self, chosen=chosen)
 

@@ -113,7 +113,7 @@ def calibrate(
         `force` is not set.
     """
     taken = one_of(DYNAMICS, dynamics, "dynamics")
-    data, given, path = dataset_of(dataset, runs), path_of(model), path_of(out)
+    data, given, path = dataset_of(dataset, runs), path_of(model, Model), path_of(out)
     stated = stated_model(data.manifest, given)
     with folder_if(path, stage="calibrate", inputs=[data.folder, given], force=force) as folder:
         counted = without_duplicates(data)

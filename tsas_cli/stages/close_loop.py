@@ -1,6 +1,6 @@
 """The close-loop stage: hidden effects recorded, diagnosed and tracked, into one table."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -99,7 +99,7 @@ def close_loop(
         A case or a setting is wrong, a loop is unstable, or `out` exists and `force` is not set.
     """
     wanted = chosen(None if cases is None else listed(cases), listed(hide))
-    given, path = path_of(settings), Path(out)
+    given, path = path_of(settings, Mapping), Path(out)
     read, first = read_settings(given), at_least(0, first_seed, "first_seed")
     taken = range(first, first + number_of_seeds(seeds))
     with stage_folder(path, stage="close-loop", inputs=[given], force=force) as folder:

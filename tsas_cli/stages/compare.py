@@ -8,10 +8,11 @@ from tsas_cli.comparing import stage, tracked_stage
 from tsas_cli.comparing.compare import Comparison
 from tsas_cli.comparing.compare import compare as compare_sides
 from tsas_cli.comparing.tracked import Tracks, are_tracked, compare_tracked
+from tsas_cli.identification.model import Model
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.records.comparison import ComparisonFile
 from tsas_cli.records.result import Result, Table, notes
-from tsas_cli.stages.given import Named, dataset_of
+from tsas_cli.stages.given import Named, dataset_of, path_of
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import folder_if
 from tsas_cli.support.steps import NO_PROGRESS, Steps
@@ -44,8 +45,8 @@ class CompareResult(Result):
 
 
 def compare(
-    a: Named,
-    b: Named,
+    a: Model | Named,
+    b: Model | Named,
     *,
     out: Named | None = None,
     on: Dataset | Named | None = None,
@@ -59,7 +60,8 @@ def compare(
     Parameters
     ----------
     a
-        A model file, or a folder that `tsas calibrate`, `diagnose`, `simulate` or `track` wrote.
+        A model, its file, or a folder that `tsas calibrate`, `diagnose`, `simulate` or `track`
+        wrote.
     b
         What it is compared with, likewise.
     out
@@ -87,8 +89,9 @@ def compare(
         A or B is none of these, there is nothing that both hold, a recording cannot be read, an
         option has nothing to work on, or `out` exists and `force` is not set.
     """
-    paths = Path(a), Path(b)
-    tracks = are_tracked(*paths)
+    sides: list[Path | Model] = [path_of(a, Model), path_of(b, Model)]
+    paths = [side for side in sides if isinstance(side, Path)]
+    tracks = len(paths) == len(sides) and are_tracked(*paths)
     _refuse(on=on is not None, runs=runs is not None, fit_own=fit_own, tracks=tracks)
     data = None if on is None else dataset_of(on, runs)
     inputs = [*paths, *([] if data is None else [data.folder])]
@@ -97,7 +100,7 @@ def compare(
         both = (
             compare_tracked(*paths)
             if tracks
-            else compare_sides(*paths, on=data, fit_own=fit_own, step=step)
+            else compare_sides(*sides, on=data, fit_own=fit_own, step=step)
         )
         record: ComparisonFile = (
             tracked_stage.record_of(both) if isinstance(both, Tracks) else stage.record_of(both)

@@ -114,7 +114,7 @@ def diagnose(
     InputError
         A recording or the model is wrong, or `out` exists and `force` is not set.
     """
-    data, known, path = dataset_of(dataset, runs), path_of(model), path_of(out)
+    data, known, path = dataset_of(dataset, runs), path_of(model, Model), path_of(out)
     stated = stated_model(data.manifest, known)
     with folder_if(path, stage="diagnose", inputs=[data.folder, known], force=force) as folder:
         counted = without_duplicates(data)

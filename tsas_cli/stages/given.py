@@ -2,10 +2,11 @@
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import TypeVar
+from types import NoneType
+from typing import Any, TypeVar
 
 from tsas_cli.recordings.dataset import Dataset, read_dataset
-from tsas_cli.recordings.storage import Location, location_of
+from tsas_cli.recordings.storage import Address, Location, location_of
 from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError, nearest
 
@@ -14,19 +15,30 @@ Thing = TypeVar("Thing")
 Word = TypeVar("Word", bound=str)
 
 
-def path_of(given: Thing | str) -> Thing | Path:
-    """Return text as a path, and anything else as it is."""
-    return Path(given) if isinstance(given, str) else given
+def path_of(given: Thing | str, *kinds: type) -> Thing | Path:
+    """Return text as a path; a path, None and a value of one of these kinds as they are.
+
+    Raises
+    ------
+    InputError
+        It is of another kind.
+    """
+    return Path(given) if isinstance(given, str) else _of_kind((Path, NoneType, *kinds), given)
+
+
+def file_of(given: Named) -> Path:
+    """Return a path or its text as a path; InputError where it is of another kind."""
+    return Path(_of_kind((str, Path), given))
 
 
 def paths_of(given: Named | Iterable[Named]) -> list[Path]:
-    """Return one path or several as a list."""
-    return [Path(each) for each in ([given] if isinstance(given, str | Path) else given)]
+    """Return one path or several as a list; InputError where one is of another kind."""
+    return [Path(_of_kind((str, Path), each)) for each in _several(given)]
 
 
 def places_of(given: Named | Iterable[Named]) -> list[Location]:
     """Return one place or several as a list: local paths, or addresses of datasets."""
-    return [location_of(each) for each in ([given] if isinstance(given, str | Path) else given)]
+    return [location_of(_of_kind((str, Path, Address), each)) for each in _several(given)]
 
 
 def dataset_of(given: Dataset | Named, runs: Iterable[str] | None = None) -> Dataset:
@@ -37,7 +49,10 @@ def dataset_of(given: Dataset | Named, runs: Iterable[str] | None = None) -> Dat
     InputError
         The folder is none, or there is no such run.
     """
-    dataset = given if isinstance(given, Dataset) else read_dataset(location_of(given))
+    if isinstance(given, Dataset):
+        dataset = given
+    else:
+        dataset = read_dataset(location_of(_of_kind((str, Path, Address, Dataset), given)))
     return dataset if runs is None else dataset.only(listed(runs))
 
 
@@ -84,5 +99,20 @@ def number_of_seeds(given: int) -> int:
 
 
 def listed(words: str | Iterable[str]) -> list[str]:
-    """Return words as a list, a single one too."""
-    return [words] if isinstance(words, str) else list(words)
+    """Return words as a list, a single one too; InputError where one is no word."""
+    return [_of_kind((str,), word) for word in _several(words)]
+
+
+def _several(given: Any) -> list[Any]:
+    """Return what is one thing or several as a list."""
+    if isinstance(given, str | Path) or not isinstance(given, Iterable):
+        return [given]
+    return list(given)
+
+
+def _of_kind(kinds: tuple[type, ...], given: Any) -> Any:
+    """Return what is of one of these kinds; another one is an InputError."""
+    if isinstance(given, kinds):
+        return given
+    names = [kind.__name__ for kind in kinds if kind is not NoneType]
+    raise InputError(f"{given!r} is of type {type(given).__name__}", expected=" or ".join(names))

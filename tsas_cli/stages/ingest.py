@@ -2,13 +2,12 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from pathlib import Path
 
 from tsas_cli.recordings.dataset import Dataset, read_dataset
 from tsas_cli.recordings.ingest import Ingested, find_files, ingest_files
 from tsas_cli.recordings.ingest_map import read_map
 from tsas_cli.records.result import Result, Table
-from tsas_cli.stages.given import Named, paths_of
+from tsas_cli.stages.given import Named, file_of, paths_of
 from tsas_cli.support import __version__
 from tsas_cli.support.files import new_folder
 from tsas_cli.support.steps import NO_PROGRESS, Steps
@@ -78,7 +77,7 @@ def ingest(
     InputError
         The map or a file is wrong, or `out` exists and `force` is not set; nothing is written then.
     """
-    map_path, folder = Path(map), Path(out)
+    map_path, folder = file_of(map), file_of(out)
     mapping = read_map(map_path)
     files = find_files(paths_of(sources), mapping.read.files)
     with new_folder(folder, stage="ingest", inputs=[*files, map_path], force=force) as written:

@@ -11,10 +11,9 @@ from tsas_cli.diagnosis.rig_file import read_rig_file
 from tsas_cli.diagnosis.visibility import Visibility
 from tsas_cli.recordings.dataset import Dataset, read_dataset
 from tsas_cli.recordings.quality.copies.deduplicated import without_duplicates
-from tsas_cli.recordings.storage import location_of
 from tsas_cli.records.plan import EffectSize, ProposedRun, RunPlan, RunProposal, SmallerSize
 from tsas_cli.records.result import Result, Table, notes
-from tsas_cli.stages.given import Named, path_of
+from tsas_cli.stages.given import Named, path_of, places_of
 from tsas_cli.support.files import folder_if, sha256_of
 from tsas_cli.support.steps import NO_PROGRESS, Steps
 
@@ -77,7 +76,7 @@ def plan(
         not set.
     """
     if not isinstance(runs, Dataset):
-        place = location_of(runs)
+        (place,) = places_of(runs)
         is_rig = isinstance(place, Path) and not place.is_dir()
         runs = Path(runs) if is_rig else read_dataset(place)
     path = path_of(out)

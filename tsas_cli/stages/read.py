@@ -1,14 +1,13 @@
 """Open what is on disk: a dataset, a model, an identified drive."""
 
 from collections.abc import Iterable
-from pathlib import Path
 
 from tsas_cli.drive.file import IdentifiedDrive
 from tsas_cli.drive.file import read_drive as read_drive_file
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.model import read_model as read_model_file
 from tsas_cli.recordings.dataset import Dataset
-from tsas_cli.stages.given import Named, dataset_of
+from tsas_cli.stages.given import Named, dataset_of, file_of
 
 
 def read(folder: Named, runs: Iterable[str] | None = None) -> Dataset:
@@ -64,7 +63,7 @@ def read_model(path: Named) -> Model:
     InputError
         The file is missing, is no model, or names what this version does not know.
     """
-    return read_model_file(Path(path))
+    return read_model_file(file_of(path))
 
 
 def read_drive(path: Named) -> IdentifiedDrive:
@@ -85,4 +84,4 @@ def read_drive(path: Named) -> IdentifiedDrive:
     InputError
         The file is missing or is no drive.
     """
-    return read_drive_file(Path(path))
+    return read_drive_file(file_of(path))

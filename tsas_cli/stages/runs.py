@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from tsas_cli.collection.index import index_of
 from tsas_cli.collection.query import QueryResult, connected, run_query
 from tsas_cli.records.result import Result, Table, notes
+from tsas_cli.stages.given import paths_of
 from tsas_cli.support import __version__
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.steps import NO_PROGRESS, Steps
@@ -123,7 +124,9 @@ def runs(
     InputError
         The query is no condition on these columns, a folder is none, or duckdb is not installed.
     """
-    named = [folders] if isinstance(folders, str | Path) else list(folders)
+    named = paths_of(folders)
+    if not named:
+        raise InputError("no folder is named", expected="a folder with datasets below it")
     if limit is not None and limit < 0:
         raise InputError(f"limit is {limit}", expected="0 or more")
     with connected() as connection:

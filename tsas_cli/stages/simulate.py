@@ -138,7 +138,7 @@ def simulate(
         The model, a recording or the number of nodes is wrong, or `out` exists and `force` is not
         set.
     """
-    data, known, path = dataset_of(dataset, runs), path_of(model), path_of(out)
+    data, known, path = dataset_of(dataset, runs), path_of(model, Model), path_of(out)
     _refuse_nodes(nodes, one_of(DYNAMICS, dynamics, "dynamics"))
     taken = data_sheet(data.manifest) if known is None else model_of(known)
     record = records.SimulationFile(

@@ -6,7 +6,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from tsas_cli.stages.given import Named, at_least
+from tsas_cli.stages.given import Named, at_least, file_of
 from tsas_cli.stages.swept import WORK, options_of
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.steps import NO_PROGRESS, Steps
@@ -62,9 +62,9 @@ def sweep(
         raise InputError(
             "workers are those of the cluster", where="--workers", remedy="leave out one of the two"
         )
-    given = plan if isinstance(plan, Mapping) else Path(plan)
+    given = plan if isinstance(plan, Mapping) else file_of(plan)
     read, base = read_plan(given)
-    tasks, folder = tasks_of(read, base, options_of(read.stage)), Path(out)
+    tasks, folder = tasks_of(read, base, options_of(read.stage)), file_of(out)
     if cluster is None:
         many = (os.cpu_count() or 1) if workers is None else at_least(1, workers, "workers")
         pool = partial(in_processes, WORK, workers=many)

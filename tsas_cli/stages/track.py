@@ -188,10 +188,10 @@ def track(
     if compare:
         asked = [Condition("undisturbed"), *(asked or [proximal_spring()])]
     call = Call(
-        model=path_of(model),
-        plant=path_of(plant),
-        drive=path_of(drive),
-        settings=path_of(settings),
+        model=path_of(model, Model),
+        plant=path_of(plant, Model),
+        drive=path_of(drive, IdentifiedDrive),
+        settings=path_of(settings, Mapping),
         controllers=CONTROLLERS if compare or named == ("all",) else tuple(dict.fromkeys(named)),
         conditions=tuple(asked) or (Condition("undisturbed"),),
         reference=str(reference),

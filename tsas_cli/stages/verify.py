@@ -3,10 +3,9 @@
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass
-from pathlib import Path
 
 from tsas_cli.records.result import Result, Table
-from tsas_cli.stages.given import Named, paths_of
+from tsas_cli.stages.given import Named, file_of, paths_of
 from tsas_cli.support import __version__
 from tsas_cli.support.steps import NO_PROGRESS, Steps
 from tsas_cli.verifying.verify import Verified, verify_all
@@ -67,7 +66,7 @@ def verify(
     InputError
         There is nothing that tsas has written.
     """
-    files = verify_all(Path(path), paths_of(raw), step)
+    files = verify_all(file_of(path), paths_of(raw), step)
     found = Counter[str](one.state for one in files)
     summary = {
         "format": 1,
