@@ -4,9 +4,10 @@ from collections.abc import Iterator
 
 from benchmarks.row import Row
 from benchmarks.timing import times
+from tsas_cli.controllers import CONTROLLERS
 from tsas_cli.tracking.recorded import stated_rig
 from tsas_cli.tracking.references import reference
-from tsas_cli.tracking.settings import CONTROLLERS, ReferenceSettings, Settings
+from tsas_cli.tracking.settings import ReferenceSettings, Settings
 from tsas_cli.tracking.track import Known, Plant, plan, track
 
 DURATION_S = 30.0

@@ -81,12 +81,12 @@ from tsas_cli.identification.joint_fit import solve_fit
 from tsas_cli.identification.model import data_sheet
 from tsas_cli.identification.phases import segment
 from tsas_cli.identification.prepared import prepare
-from tsas_cli.physics.ends import Drive
+from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import Rig, with_values
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.recordings.manifest import Manifest, Run
-from tsas_cli.recordings.manifest import Rig as Sheet
+from tsas_cli.recordings.manifest import RigSheet as Sheet
 
 rng = np.random.default_rng(1)
 time_s = np.arange(1500) / 100.0
@@ -94,7 +94,7 @@ runs = []
 for k, bend in enumerate((3.0, 2.0, 1.0)):
     x_in = 8.0 * (1.0 - np.cos((1.0 + 0.2 * k) * time_s))
     rig = with_values(Rig(0.12, 6e4, 1.5, 600.0, bend, 25.0), {"bent_scale.curvature_per_N": 4e-4})
-    r = simulate(rig, Drive(x_in, time_s=time_s))
+    r = simulate(rig, DriveInput(x_in, time_s=time_s))
     clean = {"x_in_mm": x_in, "f_in_N": r.f_in_N, "f_out_N": r.f_out_N, "x_out_mm": r.x_out_mm}
     noise = {"x_in_mm": 0.005, "f_in_N": 0.05, "f_out_N": 0.05, "x_out_mm": 0.005}
     columns = {n: v + noise[n] * rng.standard_normal(v.size) for n, v in clean.items()}

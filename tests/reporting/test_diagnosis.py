@@ -108,7 +108,7 @@ def test_errors_before_and_after_stand_in_their_columns(sections):
     assert header in found
     assert ["f_in_N", "0.910", "0.110", "0.105", "0.100", "N"] in found
     (bars,) = (label for label in labels(sections["named"]) if "held-out data. " in label)
-    assert "tension at the drive: before 0.910, with what is named 0.110, best obtain" in bars
+    assert "tension at the drive: before 0.910, with what is named 0.110, attain" in bars
 
 
 @pytest.mark.parametrize("verdict", ["sufficient", "unexplained"])

@@ -206,5 +206,5 @@ def test_conditions_that_were_told_are_those_of_the_page_and_no_command_repeats_
     given = [folders["dataset"], told]
     assert {run.total_bend_rad for run in read_inputs(given).dataset.runs} == {1.5}
     assert "They lack what was handed over" in page(read_inputs(given))
-    with pytest.raises(InputError, match="was told other conditions of the runs than"):
+    with pytest.raises(InputError, match="was given other conditions of the runs than"):
         read_inputs([*given, folders["calibration"]])
