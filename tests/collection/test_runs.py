@@ -125,14 +125,14 @@ def test_a_damaged_footer_is_reported_or_taken_and_ends_nothing(tmp_path):
     connection = connected()
     (run, other) = entry_of(connection, folder, "dataset.toml")["runs"]
     assert run["duration_s"] == other["duration_s"] == pytest.approx((ROWS - 1) / RATE_Hz)
-    message = 0
+    faults = 0
     for place in range(len(whole) - 8 - int.from_bytes(whole[-8:-4], "little"), len(whole)):
         for bits in (1, 48):  # 48: some column has a lowest value and no highest one
             path.write_bytes(whole[:place] + bytes([whole[place] ^ bits]) + whole[place + 1 :])
             entry = entry_of(connection, folder, "dataset.toml")
-            message += len(entry["problems"])
+            faults += len(entry["problems"])
             assert entry["runs"][1] == other
-    assert message > 100
+    assert faults > 100
 
 
 def test_folders_are_named_as_they_were_given(rigs):

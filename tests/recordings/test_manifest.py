@@ -61,11 +61,9 @@ def test_a_manifest_says_what_was_written_by_hand(tmp_path: Path) -> None:
     assert (a.load, b.load) == ("spring", "force")
 
 
-@pytest.mark.parametrize(
-    "message", ["2024-01-31", '"2024-01-31"', '"20240131"', '"20240131T00:00"']
-)
-def test_a_day_is_a_date_with_dashes_and_without(tmp_path: Path, message: str) -> None:
-    manifest = read(tmp_path, TEXT.replace(STARTED, f"started = {message}"))
+@pytest.mark.parametrize("day", ["2024-01-31", '"2024-01-31"', '"20240131"', '"20240131T00:00"'])
+def test_a_day_is_a_date_with_dashes_and_without(tmp_path: Path, day: str) -> None:
+    manifest = read(tmp_path, TEXT.replace(STARTED, f"started = {day}"))
     assert manifest.run[0].started == dt.datetime.fromisoformat("2024-01-31")
 
 
