@@ -9,7 +9,7 @@ from tests.counted import Counted
 from tests.diagnosis.planned import rig_file, run
 from tests.diagnosis.sizes import CANDIDATES, LENGTH, MASS, OF, PLAY, better, cause, seen
 from tsas_cli.diagnosis import plan as p
-from tsas_cli.diagnosis.plan import PlannedRun, plan_rig, propose
+from tsas_cli.diagnosis.plan import FurtherRun, plan_rig, propose
 from tsas_cli.effects import EFFECTS
 
 
@@ -25,7 +25,7 @@ def test_what_is_better_is_said_with_its_unit():
 
 def test_the_best_of_a_proposal_come_first():
     three = tuple(better(n, 2.0, 1.0) for n in (PLAY, MASS, LENGTH))
-    said = PlannedRun(CANDIDATES[0], 1.0, three, ()).best_of(2)
+    said = FurtherRun(CANDIDATES[0], 1.0, three, ()).best_of(2)
     assert said == f"{three[0].sentence}; {three[1].sentence}"
 
 

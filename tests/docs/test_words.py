@@ -1,8 +1,10 @@
 """The vocabulary of docs/words.md holds in code and text."""
 
+import ast
 import io
 import re
 import tokenize
+from collections import Counter
 
 import pytest
 
@@ -40,6 +42,13 @@ def offences(path):
 @pytest.mark.parametrize("folder", PACKAGES)
 def test_code_uses_the_words_of_the_field(folder):
     assert not [one for p in SOURCES if p.is_relative_to(ROOT / folder) for one in offences(p)]
+
+
+@pytest.mark.parametrize("folder", PACKAGES)
+def test_a_class_has_its_name_alone(folder):
+    trees = (ast.parse(p.read_text(encoding="utf-8")) for p in (ROOT / folder).rglob("*.py"))
+    names = Counter(n.name for tree in trees for n in tree.body if isinstance(n, ast.ClassDef))
+    assert not [name for name, count in names.items() if count > 1]
 
 
 @pytest.mark.parametrize("page", [p for p in PAGES if p.name not in EXEMPT], ids=lambda p: p.name)

@@ -7,7 +7,7 @@ import pytest
 
 from tests.diagnosis.sizes import CANDIDATES, LENGTH, MASS, OF, PLAY, better, seen
 from tests.diagnosis.test_rig_file import TEXT
-from tsas_cli.diagnosis.plan import ExperimentPlan, PlannedRun
+from tsas_cli.diagnosis.plan import ExperimentPlan, FurtherRun
 from tsas_cli.diagnosis.visibility import Amplitude, Visibility
 from tsas_cli.stages import plan as plan_stage
 from tsas_cli.support.errors import InputError
@@ -60,7 +60,7 @@ HIDDEN = ExperimentPlan(
     ),
     ((LENGTH, MASS),),
     (
-        PlannedRun(
+        FurtherRun(
             CANDIDATES[0],
             math.log(4.0),
             (*(better(PLAY, 0.4, 0.1) for _ in range(5)), better(MASS, math.inf, 0.3)),

@@ -7,8 +7,7 @@ from typing import Literal
 from tsas_cli.identification.model import IN_MEMORY, Model, read_model
 from tsas_cli.physics.response import Dynamics
 from tsas_cli.recordings.dataset import Dataset, read_dataset
-from tsas_cli.recordings.manifest import MANIFEST_FILE as MANIFEST
-from tsas_cli.recordings.manifest import parse, read_toml
+from tsas_cli.recordings.manifest import MANIFEST_FILE, parse, read_toml
 from tsas_cli.recordings.storage import recorded_location
 from tsas_cli.records.base import DatasetSource, OfDataset
 from tsas_cli.records.calibration import MODEL_FILE, CalibrationFile
@@ -134,7 +133,7 @@ def _dataset(
     """Return the dataset as it was read, with the runs that were; or None, and why."""
     try:
         folder = recorded_location(home, source.folder)
-        if not source.folder or not (folder / MANIFEST).is_file():
+        if not source.folder or not (folder / MANIFEST_FILE).is_file():
             return None, f"the dataset {source.name} is no longer at {folder}"
         dataset = read_dataset(folder)
     except InputError as error:
@@ -155,5 +154,7 @@ def _recordings(
     """
     if dataset is not None:
         return {run.id: run.sha256.lower() for run in dataset.runs}
-    named = {Path(f).stem: digest.lower() for f, digest in source.hashes.items() if f != MANIFEST}
+    named = {
+        Path(f).stem: digest.lower() for f, digest in source.hashes.items() if f != MANIFEST_FILE
+    }
     return {run: digest for run, digest in named.items() if chosen is None or run in chosen}

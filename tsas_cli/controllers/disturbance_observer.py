@@ -15,7 +15,7 @@ from pydantic import Field
 
 from tsas_cli.controllers.signals import Floats, Signals
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.paper.settings import SettingsTable
+from tsas_cli.support.strict_table import StrictTable
 
 ERROR, DISTURBANCE = 0, 1  # of the memory
 
@@ -28,7 +28,7 @@ class DisturbanceObserver(NamedTuple):
     gain_mm_per_s_rpm: float
 
 
-class ObserverSettings(SettingsTable):
+class ObserverSettings(StrictTable):
     """Bandwidths of loop and observer."""
 
     COLUMNS: ClassVar = ("error_estimate_mm", "disturbance_rpm")

@@ -24,7 +24,7 @@ from tsas_cli.controllers.sliding_mode import (
     sliding_mode,
 )
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.paper.settings import SettingsTable
+from tsas_cli.support.strict_table import StrictTable
 
 PID, SLIDING, ADAPTIVE, OBSERVER = range(len(CONTROLLERS))
 MEMORY = 3  # numbers that a controller keeps from sample to sample
@@ -40,7 +40,7 @@ class ControlLaws(NamedTuple):
     disturbance_observer: DisturbanceObserver
 
 
-class ControllerSettings(SettingsTable):
+class ControllerSettings(StrictTable):
     """Every controller's table in a settings file."""
 
     pid: PidSettings = Field(default_factory=PidSettings)

@@ -11,7 +11,8 @@ from typing import ClassVar, NamedTuple
 
 from tsas_cli.controllers.signals import Floats, Signals
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.paper.settings import SettingsTable, printed
+from tsas_cli.paper.settings import printed
+from tsas_cli.support.strict_table import StrictTable
 
 SUM = 0  # of the memory: ∫e dt [mm s]
 
@@ -24,7 +25,7 @@ class Pid(NamedTuple):
     derivative_rpm_s_per_mm: float = 1.0
 
 
-class PidSettings(SettingsTable):
+class PidSettings(StrictTable):
     """Gains of the paper; e in mm, u in rpm."""
 
     COLUMNS: ClassVar = ("error_sum_mm_s",)  # of the recording: what the memory holds

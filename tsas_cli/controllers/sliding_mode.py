@@ -15,7 +15,8 @@ from pydantic import Field
 
 from tsas_cli.controllers.signals import Signals
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.paper.settings import SettingsTable, printed, printed_three
+from tsas_cli.paper.settings import printed, printed_three
+from tsas_cli.support.strict_table import StrictTable
 
 MM_PER_M = 1e3
 
@@ -45,7 +46,7 @@ class SlidingMode(NamedTuple):
     phi: Phi
 
 
-class SlidingSettings(SettingsTable):
+class SlidingSettings(StrictTable):
     """Gains of the paper, ks read per metre; the parameters are where Table 4 starts."""
 
     COLUMNS: ClassVar[tuple[str, ...]] = ()

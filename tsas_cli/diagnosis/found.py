@@ -51,7 +51,7 @@ def remainder_of(result: Diagnosis) -> records.RemainingResidual:
     )
 
 
-def candidates_of(result: Diagnosis) -> list[records.Hypothesis]:
+def candidates_of(result: Diagnosis) -> list[records.TriedHypothesis]:
     """Return single effects, and sets with one named effect replaced, the best first."""
     search = result.search
     if search is None:
@@ -64,7 +64,7 @@ def candidates_of(result: Diagnosis) -> list[records.Hypothesis]:
             continue
         trial, found = search.trial(names), search.gain(names)
         rows.append(
-            records.Hypothesis(
+            records.TriedHypothesis(
                 effects=tuple(sorted(names)),
                 gain_percent=100.0 * (1.0 - float(np.sqrt(1.0 - found.part))),
                 test_statistic=found.test_statistic,

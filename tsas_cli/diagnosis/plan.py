@@ -51,7 +51,7 @@ class Better:
 
 
 @dataclass(frozen=True)
-class PlannedRun:
+class FurtherRun:
     """A further run, and its improvements, the largest first.
 
     `score` is the mean decrease of the logarithm of the smallest named sizes, `groups` are the
@@ -78,7 +78,7 @@ class ExperimentPlan:
 
     seen: tuple[Visibility, ...]
     groups: tuple[tuple[str, str], ...]
-    proposals: tuple[PlannedRun, ...]
+    proposals: tuple[FurtherRun, ...]
     cannot_tell: tuple[str, ...]
 
 
@@ -177,7 +177,7 @@ def _few(blocks: int) -> list[str]:
 
 def _proposals(
     runs: FurtherRuns, seen: Sequence[Visibility], rivals: Sequence[Effect], step: Steps
-) -> list[PlannedRun]:
+) -> list[FurtherRun]:
     """Return the further runs with an improvement, the best first."""
     effects = list({s.cause.effect.name: s.cause.effect for s in seen}.values())
     out = []
@@ -189,7 +189,7 @@ def _proposals(
 
 def _proposal(
     candidate: CandidateRun, before: Sequence[Visibility], after: Sequence[Visibility]
-) -> PlannedRun:
+) -> FurtherRun:
     falls = {}
     for b, a in zip(before, after, strict=True):
         largest = b.cause.largest
@@ -199,7 +199,7 @@ def _proposal(
         key=lambda pair: -falls[pair.cause.name],
     )
     improved = [p for p in better if p.before > LEAST_FACTOR * p.after]
-    return PlannedRun(candidate, sum(falls.values()) / len(falls), tuple(improved), _groups(after))
+    return FurtherRun(candidate, sum(falls.values()) / len(falls), tuple(improved), _groups(after))
 
 
 def _groups(seen: Sequence[Visibility]) -> tuple[tuple[str, str], ...]:

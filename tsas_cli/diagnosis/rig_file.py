@@ -3,21 +3,18 @@
 from pathlib import Path
 from typing import Literal
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
 
 from tsas_cli.diagnosis.motions import PEAK, Kind
 from tsas_cli.recordings.manifest import RigSheet, parse, read_toml
 from tsas_cli.support.errors import InputError
+from tsas_cli.support.strict_table import StrictTable
 
 MOST_SAMPLES = 1_000_000  # of a run
 OUTPUTS = ("f_in_N", "f_out_N", "x_out_mm")
 
 
-class _RigFileTable(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
-
-
-class Sensors(_RigFileTable):
+class Sensors(StrictTable):
     """The sample rate, and the noise level of each channel; None: not recorded."""
 
     rate_Hz: float = Field(gt=0)
@@ -39,7 +36,7 @@ class Sensors(_RigFileTable):
         return {name: sd for name, sd in noise.items() if sd is not None}
 
 
-class PlannedRun(_RigFileTable):
+class PlannedRun(StrictTable):
     """One run: its conditions and its motion."""
 
     id: str = Field(min_length=1)
@@ -71,7 +68,7 @@ class PlannedRun(_RigFileTable):
         return PEAK[self.motion] * self.amplitude_mm * (self.frequency_Hz or 0.0)
 
 
-class Limits(_RigFileTable):
+class Limits(StrictTable):
     """Limits of the rig; by default those of the planned runs."""
 
     amplitude_mm: float | None = Field(default=None, gt=0)
@@ -80,7 +77,7 @@ class Limits(_RigFileTable):
     total_bend_rad: tuple[float, ...] = ()
 
 
-class RigFile(_RigFileTable):
+class RigFile(StrictTable):
     """The whole file."""
 
     format: Literal[1]

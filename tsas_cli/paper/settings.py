@@ -1,16 +1,10 @@
-"""Tables of a settings file whose defaults are numbers that the paper prints."""
+"""Fields of a settings file whose defaults are numbers that the paper prints."""
 
 from typing import Any
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
 from tsas_cli.paper import yang2025
-
-
-class SettingsTable(BaseModel):
-    """A table of a settings file; an unknown key or a number that is not finite is refused."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
 
 def printed(name: str, factor: float = 1.0, **limits: Any) -> Any:

@@ -5,7 +5,7 @@ from pathlib import Path
 from re import Pattern
 from typing import Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
+from pydantic import ConfigDict, Field, field_validator, model_validator
 
 from tsas_cli.recordings.columns import NAMES, TIME, has_input_and_output
 from tsas_cli.recordings.manifest import Load, RigSheet, parse, read_toml
@@ -13,16 +13,13 @@ from tsas_cli.recordings.readers.options import ReadOptions
 from tsas_cli.recordings.readers.table import ColumnSource
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import Raw
+from tsas_cli.support.strict_table import StrictTable
 
 QUESTION = "?"  # in place of a value that a guessed map leaves open
 _Condition = Literal["preload_N", "sheath_length_mm", "total_bend_rad"]
 
 
-class _Strict(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
-
-
-class DatasetEntry(_Strict):
+class DatasetEntry(StrictTable):
     """`[dataset]`: keys that are copied into the manifest."""
 
     name: str
@@ -38,7 +35,7 @@ class MapRig(RigSheet):
     model_config = ConfigDict(extra="forbid")
 
 
-class ColumnMap(_Strict):
+class ColumnMap(StrictTable):
     """`[columns.NAME]`: value = sign · (source in the canonical unit) − offset."""
 
     source: ColumnSource = ""
@@ -59,20 +56,20 @@ class ColumnMap(_Strict):
         return self
 
 
-class FromText(_Strict):
+class FromText(StrictTable):
     """`[run.from_file_name]`, `[run.from_header]`: named groups become conditions."""
 
     pattern: Pattern[str]
 
 
-class Converted(_Strict):
+class Converted(StrictTable):
     """`[run.conditions.NAME]`: a named group in a unit of its own."""
 
     group: str = Field(alias="from")
     unit: str
 
 
-class RunMap(_Strict):
+class RunMap(StrictTable):
     """`[run]`: the conditions of the runs; later sources take precedence."""
 
     id: str = "{stem}"
@@ -82,11 +79,11 @@ class RunMap(_Strict):
     total_bend_rad: float | None = None
     from_file_name: FromText | None = None
     from_header: FromText | None = None
-    conditions: dict[_Condition, Converted] = {}
-    table: dict[str, Raw] = {}
+    conditions: dict[_Condition, Converted] = Field(default_factory=dict)
+    table: dict[str, Raw] = Field(default_factory=dict)
 
 
-class IngestMap(_Strict):
+class IngestMap(StrictTable):
     """The whole map."""
 
     dataset: DatasetEntry

@@ -63,7 +63,7 @@ class RemainingResidual(Record):
     mean_square: Number = None
 
 
-class Hypothesis(Record):
+class TriedHypothesis(Record):
     """One hypothesis that was fitted, and by how much it lowers the residual on held-out data."""
 
     effects: tuple[str, ...]
@@ -151,7 +151,7 @@ class DiagnosisFile(OfDataset, Findings):
     reason: str
     named: tuple[NamedCause, ...] = ()
     remainder: RemainingResidual = RemainingResidual(unexplained=False)
-    candidates: tuple[Hypothesis, ...] = ()
+    candidates: tuple[TriedHypothesis, ...] = ()
     signatures: Signatures = Signatures()
     residual_map: ResidualMaps = ResidualMaps()
     evidence: Evidence = Evidence()

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from tsas_cli.diagnosis.plan import ExperimentPlan, PlannedRun, plan_dataset, plan_rig
+from tsas_cli.diagnosis.plan import ExperimentPlan, FurtherRun, plan_dataset, plan_rig
 from tsas_cli.diagnosis.rig_file import read_rig_file
 from tsas_cli.diagnosis.visibility import Visibility
 from tsas_cli.recordings.dataset import Dataset, read_dataset
@@ -120,7 +120,7 @@ def _size_of(seen: Visibility) -> EffectSize:
     )
 
 
-def _proposal(proposal: PlannedRun) -> RunProposal:
+def _proposal(proposal: FurtherRun) -> RunProposal:
     return RunProposal(
         run=ProposedRun.model_validate(proposal.candidate.run, from_attributes=True),
         sentence=proposal.candidate.sentence,

@@ -14,7 +14,7 @@ from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model, data_sheet
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.recordings.dataset import Dataset
-from tsas_cli.recordings.manifest import MANIFEST_FILE as MANIFEST
+from tsas_cli.recordings.manifest import MANIFEST_FILE
 from tsas_cli.stages.read import read, read_model
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import Raw, new_folder, read_json, sha256_of, write_json, write_sums
@@ -118,7 +118,7 @@ def _arguments(inputs: Raw, places: Raw) -> Raw:
 
 def _dataset(inputs: Raw, places: Raw) -> Dataset:
     folder = Path(places["dataset"])
-    _refuse_changed(folder / MANIFEST, inputs["dataset"]["sha256"])
+    _refuse_changed(folder / MANIFEST_FILE, inputs["dataset"]["sha256"])
     return read(folder).under(**inputs["conditions"])
 
 

@@ -5,10 +5,11 @@ from pathlib import Path
 from typing import Annotated, Any, Literal, get_args
 
 import numpy as np
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
 from tsas_cli.recordings.manifest import parse, read_toml
 from tsas_cli.support.files import Raw
+from tsas_cli.support.strict_table import StrictTable
 
 StageName = Literal["check", "calibrate", "simulate", "diagnose", "track"]
 STAGES: tuple[StageName, ...] = get_args(StageName)
@@ -19,11 +20,7 @@ def _listed(value: object) -> object:
     return [value] if isinstance(value, str) else value
 
 
-class _Table(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
-
-
-class ValueRange(_Table):
+class ValueRange(StrictTable):
     """Equally spaced values, or values of equal ratio with `scale = "log"`, including both ends."""
 
     first: float = Field(alias="from")
@@ -46,7 +43,7 @@ class ValueRange(_Table):
 Axis = Annotated[tuple[Any, ...], Field(min_length=1)] | ValueRange
 
 
-class SweepPlan(_Table):
+class SweepPlan(StrictTable):
     """The whole plan."""
 
     format: Literal[1] = 1
@@ -54,8 +51,8 @@ class SweepPlan(_Table):
     stage: StageName
     datasets: Annotated[tuple[str, ...], BeforeValidator(_listed)] = ()
     each_run: bool = False
-    options: Raw = {}
-    vary: dict[str, Axis] = {}
+    options: Raw = Field(default_factory=dict)
+    vary: dict[str, Axis] = Field(default_factory=dict)
     combine: Literal["grid", "zip"] = "grid"
     sets: str | None = None
 

@@ -14,15 +14,16 @@ from pydantic import Field
 
 from tsas_cli.controllers.laws import ControlLaws, ControllerSettings
 from tsas_cli.controllers.sliding_mode import MM_PER_M
-from tsas_cli.paper.settings import SettingsTable, printed
+from tsas_cli.paper.settings import printed
 from tsas_cli.physics.closed_form.capstan import speed_per_stiffness
 from tsas_cli.physics.plant.turntable import Actuator
 from tsas_cli.recordings.manifest import parse, read_toml
+from tsas_cli.support.strict_table import StrictTable
 
 LONGEST_S = 3600.0  # of a wanted force
 
 
-class RigSettings(SettingsTable):
+class RigSettings(StrictTable):
     """The rig: its conditions, and what a model would say where none is given."""
 
     tendon_diameter_mm: float = printed("rig.tendon_diameter", gt=0)
@@ -34,7 +35,7 @@ class RigSettings(SettingsTable):
     preload_N: float = printed("rig.preload", gt=0)
 
 
-class DriveSettings(SettingsTable):
+class DriveSettings(StrictTable):
     """The plant's drive: the stiffness is km as chosen for kr, Eq. (34); the lag is ours."""
 
     turntable_radius_mm: float = printed("rig.turntable_radius", gt=0)
@@ -62,7 +63,7 @@ class DriveSettings(SettingsTable):
         return self.actuator()._replace(stiffness_N_per_mm=math.inf, motor_lag_s=0.0)
 
 
-class ReferenceSettings(SettingsTable):
+class ReferenceSettings(StrictTable):
     """The wanted force mean − amplitude · cos(ω t), or what other shapes make of it."""
 
     mean_N: float = printed("reference.mean")
@@ -71,7 +72,7 @@ class ReferenceSettings(SettingsTable):
     duration_s: float = Field(default=8.0 * math.pi, gt=0, le=LONGEST_S)
 
 
-class SensorSettings(SettingsTable):
+class SensorSettings(StrictTable):
     """The encoder of x_in and its rate; noise and steps of the other channels are recorded only."""
 
     rate_Hz: float = Field(default=1000.0, ge=50, le=20000)
@@ -80,7 +81,7 @@ class SensorSettings(SettingsTable):
     force_noise_N: float = Field(default=0.05, ge=0)
 
 
-class LoopSettings(SettingsTable):
+class LoopSettings(StrictTable):
     """How the drive's path is made and its rates are estimated."""
 
     crossing_s: float = Field(default=0.1, gt=0, le=10)
@@ -89,7 +90,7 @@ class LoopSettings(SettingsTable):
     substeps: int = Field(default=4, ge=1, le=100)
 
 
-class Settings(SettingsTable):
+class Settings(StrictTable):
     """The whole file; every key optional."""
 
     format: int = Field(default=1, ge=1, le=1)

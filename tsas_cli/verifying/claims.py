@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from tsas_cli.recordings.manifest import MANIFEST_FILE as MANIFEST
-from tsas_cli.recordings.manifest import read_toml
+from tsas_cli.recordings.manifest import MANIFEST_FILE, read_toml
 from tsas_cli.recordings.storage import is_address, path_from
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import read_json
@@ -44,7 +43,7 @@ def claims_of(path: Path) -> Iterator[Claim]:
     """
     if path.name == SUMS:
         yield from _of_sums(path)
-    elif path.name == MANIFEST:
+    elif path.name == MANIFEST_FILE:
         yield from _of_manifest(path)
     elif path.suffix == ".json":
         content = read_json(path)

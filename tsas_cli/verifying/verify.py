@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
-from tsas_cli.recordings.manifest import MANIFEST_FILE as MANIFEST
+from tsas_cli.recordings.manifest import MANIFEST_FILE
 from tsas_cli.recordings.storage import is_address
 from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError
@@ -107,7 +107,7 @@ def _ours_below(folder: Path) -> list[Path]:
 
 def _records_checksums(path: Path) -> bool:
     """Return whether a file records checksums, or would if it were intact."""
-    if path.name in {SUMS, MANIFEST} or (path.parent / SUMS).is_file():
+    if path.name in {SUMS, MANIFEST_FILE} or (path.parent / SUMS).is_file():
         return True
     try:
         if path.suffix == ".json":
@@ -149,7 +149,7 @@ def _judged(claim: Claim, walk: _Walk) -> Verified:
 
 
 def _why(claim: Claim) -> str:
-    if claim.by.name in {SUMS, MANIFEST} or claim.by == claim.path:
+    if claim.by.name in {SUMS, MANIFEST_FILE} or claim.by == claim.path:
         return "has changed since it was written"
     return "has changed since it was read"
 

@@ -3,11 +3,12 @@
 from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
 
 from tsas_cli.effects import EFFECTS
 from tsas_cli.effects.effect import Parameter
 from tsas_cli.recordings.manifest import parse
+from tsas_cli.records.base import Record
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import read_json
 
@@ -20,11 +21,7 @@ CATALOGUE: dict[str, dict[str, Parameter]] = {
 _HIDDEN: dict[Kind, int] = {"one": 1, "pair": 2, "nothing": 0, "unknown": 0}
 
 
-class _Record(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="ignore", allow_inf_nan=False)
-
-
-class HiddenEffect(_Record):
+class HiddenEffect(Record):
     """One hidden effect and the values that its parameters have."""
 
     effect: str
@@ -41,7 +38,7 @@ class HiddenEffect(_Record):
         return self
 
 
-class TrueCase(_Record):
+class TrueCase(Record):
     """One case: what is hidden in it, and how large it is beside the full size."""
 
     kind: Kind
@@ -68,7 +65,7 @@ class TrueCase(_Record):
         return self
 
 
-class Truth(_Record):
+class Truth(Record):
     """The whole file."""
 
     format: Literal[1]

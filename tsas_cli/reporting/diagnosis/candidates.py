@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from tsas_cli.records.diagnosis import DiagnosisFile, Hypothesis, NamedCause
+from tsas_cli.records.diagnosis import DiagnosisFile, NamedCause, TriedHypothesis
 from tsas_cli.reporting.content import Section, Table
 from tsas_cli.reporting.numbers import fixed, plain
 
@@ -45,7 +45,7 @@ def part(diagnosis: DiagnosisFile) -> Section | None:
     return Section("diagnosis-candidates", _TITLE, (_WHAT,), tables=(table,))
 
 
-def _standing(candidate: Hypothesis, named: Sequence[NamedCause]) -> str:
+def _standing(candidate: TriedHypothesis, named: Sequence[NamedCause]) -> str:
     """Say whether a hypothesis is what is named, or has a rival in place of a cause."""
     causes = {cause.effect for cause in named}
     if not causes:
@@ -56,7 +56,7 @@ def _standing(candidate: Hypothesis, named: Sequence[NamedCause]) -> str:
     return "rival" if set(candidate.effects) in rivals else ""
 
 
-def _row(candidate: Hypothesis, standing: str) -> tuple[str, ...]:
+def _row(candidate: TriedHypothesis, standing: str) -> tuple[str, ...]:
     return (
         " + ".join(candidate.effects),
         fixed(candidate.gain_percent, 1),
