@@ -1,4 +1,4 @@
-"""The errors of each channel on held-out data, on runs whose errors are known."""
+"""The errors of each channel beside their noise floor, on runs whose noise is known."""
 
 import math
 from types import SimpleNamespace
@@ -6,83 +6,58 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from tsas_cli.diagnosis import channel_errors as c
-from tsas_cli.diagnosis.channel_errors import channel_errors
-from tsas_cli.diagnosis.remainder import Remainder
+from tsas_cli.diagnosis.channel_errors import channel_errors, noise_floor
+from tsas_cli.diagnosis.remainder import Remainder, SlowNoise
+
+ROWS = 1000
 
 
-class Simulated:
-    """A run whose errors are known: each value of the trial adds to them."""
-
-    def __init__(self, samples):
-        self.weights = {"f_in_N": np.array([9.0, 0.3, 0.4]), "x_out_mm": np.array([0.5, 9.0, 9.0])}
-        self.samples = {name: np.array(at) for name, at in samples.items()}
-
-    def raw(self, rig):
-        return {name: np.full(2, float(rig)) for name in self.samples}
-
-    def spread(self, name, here):
-        return here[:2]
-
-
-@pytest.fixture
-def errors(monkeypatch):
-    monkeypatch.setattr(c, "held_out_values", lambda trial, folds, fold: (trial.off, fold))
-    monkeypatch.setattr(c, "rig_at", lambda rig, k, unknowns, values: rig + values[0] * values[1])
-    runs = [Simulated({"f_in_N": [1, 2]}), Simulated({"f_in_N": [1, 2], "x_out_mm": [0]})]
-    bench = SimpleNamespace(
-        channels=["f_in_N", "x_out_mm"],
-        closed=runs,
-        rigs=[1.0, 2.0],
-        errors_for=lambda trial: runs,
+def run(advance=0.0):
+    """Return a run with 0.1 N of noise; one sample in ten has the drive's error."""
+    change = np.where(np.arange(ROWS) % 10 == 0, advance, 0.0)
+    return SimpleNamespace(
+        samples={"f_in_N": np.arange(ROWS)},
+        advance={"f_in_N": change},
+        run=SimpleNamespace(noise={"f_in_N": 0.1}),
     )
-    folds = SimpleNamespace(fold=np.array([0, 1, 2, 3]), run=np.array([0, 0, 1, 1]))
-    search = SimpleNamespace(bench=bench, folds=folds)
-
-    def found(before, after, start, left):
-        trials = [SimpleNamespace(off=v, unknowns=[]) for v in (before, after)]
-        rest = [
-            Remainder(1.0, dict(zip(bench.channels, v, strict=True)), ()) for v in (start, left)
-        ]
-        return channel_errors(search, *trials, *rest)
-
-    return found
 
 
-def test_errors_of_a_channel_are_root_mean_squares_over_what_was_held_out(errors):
-    """Run 1 errs by 1 + off·fold in folds 0 and 1, run 2 by 2 + off·fold in 2 and 3."""
-    found = errors(10.0, 1.0, (0.0, 0.0), (0.0, 0.0))
-    mean = (1.0**2 + 11.0**2 + 22.0**2 + 32.0**2) / 4.0
-    assert found["f_in_N"].rmse_before == pytest.approx(math.sqrt(mean))
-    assert found["f_in_N"].rmse_after == pytest.approx(math.sqrt((1.0 + 4.0 + 16.0 + 25.0) / 4.0))
-    assert found["x_out_mm"].rmse_after == pytest.approx(math.sqrt((16.0 + 25.0) / 2.0))
+def bench(*runs):
+    return SimpleNamespace(channels=["f_in_N"], closed=runs)
 
 
-def test_noise_is_the_root_mean_square_of_what_the_samples_weigh(errors):
-    found = errors(10.0, 1.0, (0.0, 0.0), (0.0, 0.0))
-    assert found["f_in_N"].noise_floor == pytest.approx(math.sqrt((0.3**2 + 0.4**2) / 2.0))
-    assert found["x_out_mm"].noise_floor == 0.5
+def test_the_floor_has_white_noise_slow_noise_and_what_the_drive_does():
+    assert noise_floor(bench(run()), "f_in_N", 0.0) == pytest.approx(0.1)
+    assert noise_floor(bench(run()), "f_in_N", 1.0) == pytest.approx(0.1 * math.sqrt(2.0))
+    drive = 0.1 * (0.4 * 2.0) ** 2  # of one sample in ten, by 0.4 standard deviations of it
+    both = noise_floor(bench(run(2.0), run()), "f_in_N", 0.0)
+    assert both == pytest.approx(math.sqrt(0.01 + 0.5 * drive))
 
 
-def test_what_could_be_had_is_the_better_of_both_less_what_is_explained(errors):
-    """Explained is in squares of the noise: 0.125 N² of f_in, 0.25 mm² of x_out."""
-    after = {"f_in_N": 46.0 / 4.0, "x_out_mm": 41.0 / 2.0}
-    found = errors(10.0, 1.0, (0.0, 0.0), (80.0, 1000.0))
-    could = found["f_in_N"].attainable
-    assert could == pytest.approx(math.sqrt(after["f_in_N"] - 80.0 * 0.125))
-    assert found["x_out_mm"].attainable == 0.5  # no less than the noise
-    before = (1.0**2 + 11.0**2 + 22.0**2 + 32.0**2) / 4.0
-    first = errors(10.0, 1.0, (before / 0.125 - 16.0, 0.0), (0.0, 0.0))["f_in_N"]
-    assert first.attainable == pytest.approx(math.sqrt(16.0 * 0.125))
-    none = errors(10.0, 1.0, (1e9, 0.0), (0.0, 0.0))["f_in_N"]
-    assert none.attainable == none.noise_floor
+def found(before, after, start, rest, slow=None):
+    left = [Remainder(1.0, {"f_in_N": part}, ()) for part in (start, rest)]
+    if slow is not None:
+        left[1] = Remainder(1.0, {"f_in_N": rest}, (), slow={"f_in_N": SlowNoise(slow, 1.0)})
+    return channel_errors(bench(run()), {"f_in_N": before}, {"f_in_N": after}, *left)["f_in_N"]
 
 
-def test_what_was_reached_is_never_below_the_floor(errors):
-    """An error of 0.1 N everywhere, where the noise is larger."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(c, "rig_at", lambda rig, k, unknowns, values: 0.1)
-        found = errors(0.0, 0.0, (0.0, 0.0), (0.0, 0.0))["f_in_N"]
-    assert found.rmse_after == pytest.approx(0.1)
-    assert found.noise_floor == pytest.approx(0.1)
-    assert found.attainable == pytest.approx(0.1)
+def test_attainable_is_the_better_of_both_without_what_a_regression_explains():
+    one = found(1.0, 0.5, 0.0, 16.0)
+    assert (one.rmse_before, one.rmse_after) == (1.0, 0.5)
+    assert one.attainable == pytest.approx(math.sqrt(0.25 - 0.16))
+    assert found(1.0, 0.5, 96.0, 0.0).attainable == pytest.approx(math.sqrt(1.0 - 0.96))
+
+
+def test_attainable_is_no_less_than_the_noise():
+    one = found(1.0, 0.5, 0.0, 1e6)
+    assert one.attainable == one.noise_floor == pytest.approx(0.1)
+
+
+def test_a_wrong_model_has_the_same_floor_as_a_right_one():
+    assert found(1.0, 0.9, 0.0, 0.0).noise_floor == found(1.0, 0.1, 0.0, 0.0).noise_floor
+
+
+def test_slow_noise_belongs_to_the_floor():
+    assert found(1.0, 0.2, 0.0, 0.0, slow=1.5).noise_floor == pytest.approx(
+        0.1 * math.sqrt(1.0 + 1.5**2)
+    )

@@ -10,7 +10,7 @@ from tsas_cli.diagnosis import found as f
 from tsas_cli.diagnosis.channel_errors import HeldOutErrors
 from tsas_cli.diagnosis.diagnose import Diagnosis, FoundCause
 from tsas_cli.diagnosis.evidence import Reduction
-from tsas_cli.diagnosis.remainder import Remainder
+from tsas_cli.diagnosis.remainder import Remainder, SlowNoise
 from tsas_cli.effects import BACKLASH
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model
@@ -147,16 +147,32 @@ def test_without_a_search_nothing_is_said_of_one():
     assert f.remainder_of(found).content() == {
         "unexplained": False,
         "depends_on": [],
-        "share_percent": 0.0,
+        "share_percent": None,
         "mean_square": None,
+        "slow_noise": {},
     }
 
 
+def judged_with(noise):
+    run = SimpleNamespace(
+        samples={"f_in_N": np.arange(9)},
+        advance={"f_in_N": np.zeros(9)},
+        run=SimpleNamespace(noise={"f_in_N": noise}),
+    )
+    return SimpleNamespace(bench=SimpleNamespace(closed=[run]))
+
+
 def test_errors_and_what_is_left_have_units_and_percent():
-    left = Remainder(1.5, {}, ("time_s",))
-    channels = {"f_in_N": HeldOutErrors(4.0, math.nan, 1.0, 2.0)}
+    left = Remainder(1.5, {}, ("time_s",), slow={"f_in_N": SlowNoise(1.2, 0.8)})
     whole = Diagnosis(
-        "sufficient", "why", Model(()), Model(()), (), channels, left, share_left=0.25
+        "sufficient",
+        "why",
+        Model(()),
+        Model(()),
+        channels={"f_in_N": HeldOutErrors(4.0, math.nan, 1.0, 2.0)},
+        remainder=left,
+        share_left=0.25,
+        judged=judged_with(0.5),
     )
     assert f.held_out_of(whole)["f_in_N"].content() == {
         "unit": "N",
@@ -167,3 +183,14 @@ def test_errors_and_what_is_left_have_units_and_percent():
     }
     said = f.remainder_of(whole)
     assert (said.share_percent, said.mean_square, said.depends_on) == (25.0, 1.5, ("time_s",))
+    assert said.slow_noise["f_in_N"].text("f_in_N") == (
+        "f_in_N has slow noise of 0.6 N, correlated over 0.8 s, which follows no recorded signal."
+    )
+
+
+def test_errors_of_a_model_that_lacks_something_are_no_slow_noise():
+    left = Remainder(9.0, {"f_in_N": 3.0}, (), slow={"f_in_N": SlowNoise(1.2, 0.8)})
+    wrong = Diagnosis(
+        "unexplained", "", Model(()), Model(()), remainder=left, judged=judged_with(1)
+    )
+    assert f.remainder_of(wrong).slow_noise == {}

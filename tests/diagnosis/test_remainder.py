@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from tsas_cli.diagnosis.remainder import remainder
+from tsas_cli.diagnosis.signals import signals_at_residuals
 
 SIZE = 800
 TIME_S = 0.05 * np.arange(SIZE)
@@ -16,23 +17,26 @@ REVERSALS = np.array([0, *range(100, SIZE, 100), SIZE - 1])
 class Run:
     """A run whose errors are given; a residual is the error of one sample."""
 
-    def __init__(self, errors, f_in):
+    def __init__(self, errors, f_in, delays):
         conditioned = SimpleNamespace(values=X, reversals=REVERSALS)
         self.run = SimpleNamespace(
             time_s=TIME_S, drive_column="x_in_mm", conditioned={"x_in_mm": conditioned}
         )
         self.samples = {name: np.arange(SIZE) for name in errors}
-        self._errors, self._f_in = errors, f_in
+        self._errors, self._f_in, self._delays = errors, f_in, delays
 
     def errors(self, rig):
         return self._errors
+
+    def delays(self, rig):
+        return dict.fromkeys(self._errors, self._delays)
 
     def predict(self, rig):
         return {"f_in_N": self._f_in}
 
 
-def left_of(*errors, f_in=None):
-    runs = [Run(e, np.zeros(SIZE) if f_in is None else f_in) for e in errors]
+def left_of(*errors, delays=(0.1, -0.2, 0.1, 0.0)):
+    runs = [Run(e, np.zeros(SIZE), np.array(delays)) for e in errors]
     bench = SimpleNamespace(
         rigs=[None] * len(runs),
         rig=lambda trial, k: None,
@@ -44,7 +48,7 @@ def left_of(*errors, f_in=None):
     block = np.arange(residual.size) // 40
     folds = SimpleNamespace(block=block, fold=block % 4, blocks=int(block.max()) + 1)
     trial = SimpleNamespace(solution=SimpleNamespace(residual=residual))
-    return remainder(bench, trial, folds)
+    return remainder(bench, trial, folds, signals_at_residuals(bench, trial))
 
 
 def noise(seed):
@@ -69,6 +73,54 @@ def test_noise_depends_on_nothing():
     assert found.depends_on == ()
     assert found.explained == {"f_in_N": 0.0, "f_out_N": 0.0}
     assert found.mean_square == pytest.approx(1.0, rel=0.1)
+    assert found.slow == {}
+    assert found.complete
+
+
+def test_structure_is_not_complete():
+    wave = np.sign(np.sin(0.9 * X))
+    assert not left_of(*({"f_in_N": wave + noise(k)} for k in range(3))).complete
+
+
+def slow_noise(seed, time_s):
+    """Return first-order coloured noise of unit variance."""
+    keep = np.exp(-0.05 / time_s)
+    kicks = np.sqrt(1.0 - keep**2) * np.random.default_rng(seed).standard_normal(SIZE)
+    values = np.zeros(SIZE)
+    for i in range(1, SIZE):
+        values[i] = keep * values[i - 1] + kicks[i]
+    return values
+
+
+def test_noise_that_follows_no_signal_is_slow_noise_and_complete():
+    errors = [
+        {"f_in_N": noise(k) + slow_noise(20 + k, 1.0), "x_out_mm": noise(k)} for k in (1, 2, 3)
+    ]
+    found = left_of(*errors)
+    assert set(found.slow) == {"f_in_N"}
+    assert found.slow["f_in_N"].ratio == pytest.approx(1.0, abs=0.15)
+    assert found.slow["f_in_N"].time_s == pytest.approx(1.0, abs=0.4)
+    assert found.complete
+
+
+def test_an_error_far_above_the_noise_is_no_slow_noise():
+    errors = [{"f_in_N": noise(k) + 2.5 * slow_noise(20 + k, 1.0)} for k in (1, 2, 3)]
+    assert not left_of(*errors).complete
+
+
+@pytest.mark.parametrize(
+    ("delays", "late"),
+    [
+        ((3.0, 3.4, 2.8, 3.1), True),
+        ((-3.0, -3.4, -2.8, -3.1), True),  # a lead
+        ((9.0, -8.0, 9.0, -8.0), False),  # errors of reversals, one by one
+        ((1.0, 1.1, 0.9, 1.0), False),
+    ],
+)
+def test_strokes_that_all_lag_are_not_complete(delays, late):
+    found = left_of(*({"f_in_N": noise(k)} for k in range(3)), delays=delays)
+    assert (found.late == ("f_in_N",)) == late
+    assert found.complete != late
 
 
 def test_an_error_that_swings_by_itself_is_periodic_at_its_frequency():

@@ -8,7 +8,7 @@ import pytest
 from tests.diagnosis.test_signals import DIRECTION, run_of
 from tsas_cli.diagnosis import remainder as r
 from tsas_cli.diagnosis.residual_map import binned, edges_of, residual_map
-from tsas_cli.diagnosis.signals import signals_of
+from tsas_cli.diagnosis.signals import AtResiduals, signals_at_residuals, signals_of
 
 ROWS = 400
 TIME_S = 5.0 + 0.02 * np.arange(ROWS)
@@ -110,6 +110,9 @@ class Run:
     def errors(self, rig):
         return self.given
 
+    def delays(self, rig):
+        return {name: np.zeros(2) for name in self.given}
+
     def predict(self, rig):
         return {"f_in_N": 7.0 * np.arange(float(self.run.time_s.size))}
 
@@ -130,7 +133,8 @@ def test_a_signal_is_taken_in_the_middle_of_the_samples_of_each_mean():
     time_s = 0.01 * np.arange(2600)
     samples = np.arange(50, 2550)
     given = {"f_out_N": np.zeros(2500), "x_out_mm": np.zeros(2500)}
-    signals, channel = r._signals(bench_of(Run(given, samples, time_s)), None)
+    found = signals_at_residuals(bench_of(Run(given, samples, time_s)), None)
+    signals, channel = found.signals, found.channel
     middle = np.minimum(np.arange(51, 2551, 3), 2549)
     assert middle.size == 834
     np.testing.assert_array_equal(signals["x_in_mm"], np.tile(middle, 2))
@@ -152,7 +156,7 @@ NOISE = np.random.default_rng(1).standard_normal((8, ROWS))
 def test_half_of_the_runs_have_to_swing_and_two_at_the_least(runs, of, said):
     made = [Run({"f_in_N": swing(5.0, 3.0) + NOISE[k]}) for k in range(runs)]
     made += [Run({"f_in_N": NOISE[4 + k % 4]}) for k in range(of - runs)]
-    assert (r._periodic(bench_of(*made), None) is not None) == said
+    assert (r._oscillation(bench_of(*made), None) is not None) == said
 
 
 def test_the_frequency_is_the_median_and_the_channels_are_named():
@@ -163,7 +167,8 @@ def test_the_frequency_is_the_median_and_the_channels_are_named():
     ]
     # 400 samples of 20 ms: a bin is 1/7.98 Hz wide.
     assert (
-        r._periodic(bench_of(*made), None) == "time_s (f_in_N and x_out_mm oscillates at 5.01 Hz)"
+        r._oscillation(bench_of(*made), None)
+        == "time_s (f_in_N and x_out_mm oscillates at 5.01 Hz)"
     )
 
 
@@ -174,7 +179,7 @@ def test_a_narrow_band_holds_three_tenths_of_the_squares(share, said):
     rest = sum(np.cos(k * turn) for k in (10, 30, 50, 70, 90, 110, 130))
     whole = np.sqrt(7.0 * share / (1.0 - share)) * np.cos(160 * turn) + rest
     bench = bench_of(*[Run({"f_in_N": whole})] * 2)
-    assert (r._periodic(bench, None) is not None) == said
+    assert (r._oscillation(bench, None) is not None) == said
 
 
 def test_a_band_is_three_lines_wide():
@@ -182,19 +187,23 @@ def test_a_band_is_three_lines_wide():
     turn = 2.0 * np.pi * np.arange(ROWS) / ROWS
     three = sum(size * np.cos(k * turn) for k, size in ((99, 1.0), (100, 1.1), (101, 1.0)))
     rest = sum(np.cos(k * turn) for k in (10, 30, 50, 70, 90, 110, 130))
-    assert r._periodic(bench_of(*[Run({"f_in_N": three + rest})] * 2), None) is not None
+    assert r._oscillation(bench_of(*[Run({"f_in_N": three + rest})] * 2), None) is not None
     lowest = np.cos(turn) + 0.1 * NOISE[0]
-    assert r._periodic(bench_of(*[Run({"f_in_N": lowest})] * 2), None) is not None
+    assert r._oscillation(bench_of(*[Run({"f_in_N": lowest})] * 2), None) is not None
 
 
-def left_of(*errors):
+def left_of(*errors, signals=None):
     """Residuals are the errors of single samples; four folds of blocks of twenty."""
     runs = [Run(e) for e in errors]
     residual = np.concatenate([np.concatenate(list(e.values())) for e in errors])
     block = np.arange(residual.size) // 20
     folds = SimpleNamespace(block=block, fold=block % 4, blocks=int(block.max()) + 1)
     trial = SimpleNamespace(solution=SimpleNamespace(residual=residual))
-    return r.remainder(bench_of(*runs), trial, folds)
+    bench = bench_of(*runs)
+    at = signals_at_residuals(bench, trial)
+    if signals is not None:
+        at = AtResiduals(signals, np.repeat([0, 1], ROWS))
+    return r.remainder(bench, trial, folds, at)
 
 
 def test_what_is_explained_is_of_all_squares_of_the_channel_and_what_is_not_is_none():
@@ -213,8 +222,7 @@ def test_no_more_than_three_signals_are_named(monkeypatch):
     parts = {"one": 0.5, "two": 0.4, "three": 0.3, "four": 0.2, "five": 0.019}
     signals = {name: np.full(2 * ROWS, k) for k, name in enumerate(parts)}
     signals[DIRECTION] = np.ones(2 * ROWS)
-    monkeypatch.setattr(r, "_signals", lambda *_: (signals, np.repeat([0.0, 1.0], ROWS)))
-    monkeypatch.setattr(r, "_periodic", lambda *_: "time_s (swings)")
+    monkeypatch.setattr(r, "_oscillation", lambda *_: "time_s (swings)")
     monkeypatch.setattr(r, "hats", lambda signal, direction: np.full((signal.size, 1), signal[0]))
     order = list(parts.values())
 
@@ -223,19 +231,20 @@ def test_no_more_than_three_signals_are_named(monkeypatch):
         return residual * (1.0 - np.sqrt(1.0 - share))
 
     monkeypatch.setattr(r, "regressed", regressed)
-    found = left_of({"f_in_N": NOISE[0], "x_out_mm": 2.0 * NOISE[1]})
+    found = left_of({"f_in_N": NOISE[0], "x_out_mm": 2.0 * NOISE[1]}, signals=signals)
     assert found.depends_on == ("time_s (swings)", "one", "two", "three")
-    monkeypatch.setattr(r, "_periodic", lambda *_: None)
+    monkeypatch.setattr(r, "_oscillation", lambda *_: None)
     order[:] = [0.021, 0.019, 0.0, 0.0, 0.0]
-    assert left_of({"f_in_N": NOISE[0], "x_out_mm": 2.0 * NOISE[1]}).depends_on == ("one",)
+    assert left_of(
+        {"f_in_N": NOISE[0], "x_out_mm": 2.0 * NOISE[1]}, signals=signals
+    ).depends_on == ("one",)
 
 
 def test_each_channel_counts_by_its_squares(monkeypatch):
     """What explains a tenth of a channel with a tenth of the squares explains a hundredth."""
     signals = {name: np.full(2 * ROWS, k) for k, name in enumerate(("loud", "low"))}
     signals[DIRECTION] = np.ones(2 * ROWS)
-    monkeypatch.setattr(r, "_signals", lambda *_: (signals, np.repeat([0.0, 1.0], ROWS)))
-    monkeypatch.setattr(r, "_periodic", lambda *_: None)
+    monkeypatch.setattr(r, "_oscillation", lambda *_: None)
     monkeypatch.setattr(r, "hats", lambda signal, direction: np.full((signal.size, 1), signal[0]))
 
     def regressed(columns, residual, fold):
@@ -244,4 +253,6 @@ def test_each_channel_counts_by_its_squares(monkeypatch):
         return residual * (1.0 - np.sqrt(0.9 if told else 1.0))
 
     monkeypatch.setattr(r, "regressed", regressed)
-    assert left_of({"f_in_N": NOISE[0], "x_out_mm": 3.0 * NOISE[1]}).depends_on == ("loud",)
+    assert left_of(
+        {"f_in_N": NOISE[0], "x_out_mm": 3.0 * NOISE[1]}, signals=signals
+    ).depends_on == ("loud",)

@@ -63,8 +63,8 @@ def _effects(it: Comparison) -> Iterator[str]:
         if alone:
             yield f"{name} alone holds {', '.join(alone)}."
     for name, side in it.sides.items():
-        if side.verdict in ("undecided", "unexplained"):
-            yield f"The diagnosis {name} is {side.verdict}: {side.reason}"
+        if side.verdict in ("undecided", "partly", "stand_in", "unexplained"):
+            yield f"The verdict of diagnosis {name} is {side.verdict}: {side.reason}"
 
 
 def _errors(it: Comparison) -> Iterator[str]:

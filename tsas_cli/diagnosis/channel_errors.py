@@ -1,15 +1,13 @@
 """Residual RMS of each channel on held-out data, before and after, in the channel's unit."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
-import numpy as np
-
-from tsas_cli.diagnosis.held_out import held_out_values
 from tsas_cli.diagnosis.remainder import Remainder
-from tsas_cli.diagnosis.search import Hypotheses
-from tsas_cli.identification.extension import HypothesisFit
-from tsas_cli.identification.fit_problem import rig_at
+from tsas_cli.identification.extension import Bench
+
+REVERSALS = 0.4  # error of the position of a reversal, in standard deviations of one sample
 
 
 @dataclass(frozen=True)
@@ -23,44 +21,41 @@ class HeldOutErrors:
 
 
 def channel_errors(
-    search: Hypotheses,
-    before: HypothesisFit,
-    final: HypothesisFit,
+    bench: Bench,
+    before: Mapping[str, float],
+    after: Mapping[str, float],
     start: Remainder,
     remaining: Remainder,
 ) -> dict[str, HeldOutErrors]:
-    """Return the residual RMS of each channel on held-out data, newly simulated."""
-    rmse = {id(t): _held_out_rmse(search, t) for t in (before, final)}
+    """Return the residual RMS of each channel on held-out data, with noise and attainable RMS.
+
+    `before` and `after` are the RMS of each channel, of the nominal and of the extended model.
+    """
     out = {}
-    for name in search.bench.channels:
-        weights = [
-            run.weights[name][run.samples[name]]
-            for run in search.bench.closed
-            if name in run.samples
-        ]
-        first, after = rmse[id(before)][name], rmse[id(final)][name]
-        noise = float(np.sqrt(np.mean(np.concatenate(weights) ** 2)))
+    for name in bench.channels:
+        slow = remaining.slow.get(name)
+        floor = noise_floor(bench, name, 0.0 if slow is None else slow.ratio)
+        noise = noise_floor(bench, name, 0.0)
         attainable = [
-            math.sqrt(max(first**2 - start.explained[name] * noise**2, 0.0)),
-            math.sqrt(max(after**2 - remaining.explained[name] * noise**2, 0.0)),
+            math.sqrt(max(rms**2 - rest.explained[name] * noise**2, 0.0))
+            for rms, rest in ((before[name], start), (after[name], remaining))
         ]
-        floor_rms = min(noise, after)  # what was reached cannot be below it
-        out[name] = HeldOutErrors(first, after, floor_rms, max(min(attainable), floor_rms))
+        out[name] = HeldOutErrors(before[name], after[name], floor, max(min(attainable), noise))
     return out
 
 
-def _held_out_rmse(search: Hypotheses, trial: HypothesisFit) -> dict[str, float]:
-    """Return each channel's RMS, every run simulated with estimates from the others."""
-    bench, folds = search.bench, search.folds
-    squares: dict[str, float] = {}
-    counts: dict[str, int] = {}
-    for k, run in enumerate(bench.errors_for(trial)):
-        for fold in np.unique(folds.fold[folds.run == k]):
-            values = held_out_values(trial, folds, int(fold))
-            rig = rig_at(bench.rigs[k], k, trial.unknowns, values)
-            here = folds.fold[folds.run == k] == fold
-            for name, errors in run.raw(rig).items():
-                held_out = errors[run.spread(name, here)]
-                squares[name] = squares.get(name, 0.0) + float(held_out @ held_out)
-                counts[name] = counts.get(name, 0) + held_out.size
-    return {name: float(np.sqrt(squares[name] / counts[name])) for name in squares}
+def noise_floor(bench: Bench, name: str, slow: float) -> float:
+    """Return the RMS of a channel's residual with a true model, in its unit.
+
+    It is the channel's white noise, slow noise of `slow` times that, and what the noise of the
+    driving end does.
+    """
+    squares, count = 0.0, 0
+    for run in bench.closed:
+        if name in run.samples:
+            at = run.samples[name]
+            advance = REVERSALS * run.advance[name][at]
+            squares += at.size * run.run.noise[name] ** 2 * (1.0 + slow**2)
+            squares += float(advance @ advance)
+            count += at.size
+    return math.sqrt(squares / count)

@@ -1,26 +1,28 @@
 """Diagnose the effects that a calibrated model lacks, from runs to a verdict."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.diagnosis.channel_errors import HeldOutErrors, channel_errors
-from tsas_cli.diagnosis.evidence import gain_percent
+from tsas_cli.diagnosis.constancy import worst_split
+from tsas_cli.diagnosis.evidence import gain, gain_percent
 from tsas_cli.diagnosis.held_out import Folds, folds_of
+from tsas_cli.diagnosis.proof import ANOTHER_LAW, FoundCause, failures, split_in_words
+from tsas_cli.diagnosis.reason import reason_of
+from tsas_cli.diagnosis.refitted import HeldOut, refitted
 from tsas_cli.diagnosis.remainder import Remainder, remainder
 from tsas_cli.diagnosis.search import (
-    EXCESS_OF_COMPLETE_MODEL,
     Hypotheses,
     find_effects,
+    judged_sets,
     reweighted_hypotheses,
 )
-from tsas_cli.diagnosis.signals import signal_in_words
+from tsas_cli.diagnosis.signals import AtResiduals, signals_at_residuals
 from tsas_cli.diagnosis.uneven_bend import stderr_of_unevenness
-from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.base_fit import base_fit, slopes_of
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.extension import Bench, HypothesisFit, bench_of
@@ -33,30 +35,15 @@ from tsas_cli.identification.preload_correction import with_preload_correction
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.run_errors import blocks_of
 from tsas_cli.recordings.manifest import Manifest
+from tsas_cli.records.diagnosis import Verdict
 from tsas_cli.support.steps import NO_PROGRESS, Steps
 
 Floats = npt.NDArray[np.float64]
-Verdict = Literal["named", "ambiguous", "sufficient", "unexplained", "undecided"]
 
 PLAUSIBLE = 0.15  # relative deviation of a tendon's axial stiffness from its data sheet
-MOST_SHARE_LEFT = 0.02  # of the initial excess over the noise, that named causes may leave
-MOST_LEFT = 4.0  # mean square of the residual, twice the noise level, that causes may leave
-UNEXPLAINED_SHARE = 0.5  # of the excess, beyond which the verdict is `unexplained`
-NEEDS_CAUSE = 2.0 * EXCESS_OF_COMPLETE_MODEL  # excess of the mean square that needs an explanation
 FEW_BLOCKS = 6  # fewer are too few for a test
 SEED = 1  # of the resampling of blocks
 SHEATH = "sheath_compression.compliance_ratio"
-
-
-@dataclass(frozen=True)
-class FoundCause:
-    """A named effect, with its parameters and its reduction of the RMS on held-out data [%]."""
-
-    effect: str
-    rivals: tuple[str, ...]
-    parameters: tuple[Estimate, ...]
-    gain_percent: float
-    gain_interval_percent: tuple[float, float]
 
 
 @dataclass(frozen=True)
@@ -73,6 +60,7 @@ class Diagnosis:
     model: Model
     nominal: Model
     causes: tuple[FoundCause, ...] = ()
+    stand_ins: tuple[FoundCause, ...] = ()
     channels: dict[str, HeldOutErrors] = field(default_factory=dict)
     remainder: Remainder | None = None
     share_left: float = 0.0
@@ -85,27 +73,39 @@ class Diagnosis:
     @property
     def unexplained(self) -> bool:
         """Whether a residual remains that no effect explains."""
-        if self.remainder is None:
-            return False
-        if not self.causes:
-            return self.verdict == "unexplained"
-        return leaves_much(self.remainder.mean_square, self.share_left)
+        return self.verdict in ("partly", "stand_in", "unexplained")
 
 
-def verdict_of(rivals: Sequence[tuple[str, ...]], mean_square: float, share: float) -> Verdict:
-    """Return the verdict by the residual with the causes, and the rivals of each."""
+@dataclass(frozen=True, eq=False)
+class Proven:
+    """The effects that prove to be causes, with their fits, and those that do not.
+
+    `judged` has the fits with the final weights, `held_out` the errors of each on held-out data.
+    """
+
+    search: Hypotheses
+    judged: Hypotheses
+    causes: tuple[FoundCause, ...]
+    stand_ins: tuple[FoundCause, ...]
+    estimates: tuple[Estimate, ...]
+    held_out: Mapping[frozenset[str], HeldOut]
+    at_residuals: AtResiduals
+
+
+def verdict_of(
+    rivals: Sequence[tuple[str, ...]], stand_ins: Sequence[str], *, complete: bool
+) -> Verdict:
+    """Return the verdict by the rivals of each proven effect, the stand-ins, and what remains.
+
+    `complete` is whether only noise remains.
+    """
     if not rivals:
-        return "unexplained" if mean_square > 1.0 + NEEDS_CAUSE else "sufficient"
-    if share > UNEXPLAINED_SHARE:
-        return "unexplained"
+        if stand_ins:
+            return "stand_in"
+        return "sufficient" if complete else "unexplained"
+    if stand_ins or not complete:
+        return "partly"
     return "ambiguous" if any(rivals) else "named"
-
-
-def leaves_much(mean_square: float, share: float) -> bool:
-    """Return whether named causes leave a residual that needs a further explanation."""
-    return mean_square > MOST_LEFT or (
-        mean_square > 1.0 + EXCESS_OF_COMPLETE_MODEL and share > MOST_SHARE_LEFT
-    )
 
 
 def diagnose_runs(
@@ -137,9 +137,7 @@ def diagnose_runs(
     if folds.blocks < FEW_BLOCKS:
         reason = f"only {folds.blocks} independent stretches: too few for a diagnosis."
         return Diagnosis("undecided", reason, model, model, cannot_tell=cannot_tell)
-    search = find_effects(bench, folds, step)
-    judged = reweighted_hypotheses(search, step) if search.named else search
-    found = _concluded(search, judged, base)
+    found = _concluded(_proven(find_effects(bench, folds, step), step), base)
     extended, nominal = (with_preload_correction(m, runs) for m in (found.model, found.nominal))
     return replace(found, model=extended, nominal=nominal)
 
@@ -173,47 +171,106 @@ def bench_folds(bench: Bench) -> Folds:
     return folds_of(blocks_of(bench.closed, bench.rigs))
 
 
-def _concluded(search: Hypotheses, judged: Hypotheses, base: FittedModel) -> Diagnosis:
-    """Return the diagnosis from a search, and from its fits with the final weights."""
-    named, model = search.named, base.model
-    before = judged.trial(frozenset(), on_mesh=judged.bench.on_mesh(named))
+def _proven(search: Hypotheses, step: Steps) -> Proven:
+    """Return the effects of a search that prove to be causes, and those that do not.
+
+    The one that fails and gains least is left out, and the others are fitted again, until none
+    fails.
+    """
+    stand_ins: list[FoundCause] = []
+    while True:
+        judged = reweighted_hypotheses(search, step) if search.named else search
+        proven = _judged(search, judged, tuple(stand_ins))
+        failing = [cause for cause in proven.causes if cause.failed]
+        if not failing:
+            return proven
+        weakest = min(failing, key=lambda cause: cause.gain_percent)
+        stand_ins.append(weakest)
+        rest = {name: r for name, r in search.rivals.items() if name != weakest.effect}
+        search = replace(search, named=frozenset(rest), rivals=rest)
+
+
+def _judged(search: Hypotheses, judged: Hypotheses, stand_ins: tuple[FoundCause, ...]) -> Proven:
+    """Return the effects of a set with what each does not prove, from the final weights."""
+    bench, named = judged.bench, judged.named
+    mesh = bench.on_mesh(named)
     final = judged.trial(named)
+    held_out = {
+        names: refitted(bench, judged.trial(names, on_mesh=mesh), judged.folds)
+        for names in judged_sets(named)
+    }
     estimates = _estimates(judged, final)
-    causes = tuple(_cause(judged, name, estimates) for name in search.rivals)
-    after = remainder(judged.bench, final, judged.folds)
-    start = remainder(judged.bench, before, judged.folds) if named else after
-    excess = [max(r.mean_square - 1.0, 0.0) for r in (start, after)]
-    share = max(excess[1] - EXCESS_OF_COMPLETE_MODEL, 0.0) / excess[0] if excess[0] > 0.0 else 0.0
-    verdict = verdict_of([cause.rivals for cause in causes], after.mean_square, share)
-    extended = Model(tuple(estimates)).over(model)
-    nominal = Model(tuple(_estimates(judged, before))).over(model) if named else extended
-    found = Diagnosis(
+    at_residuals = signals_at_residuals(bench, final)
+    causes = tuple(
+        _cause(judged, name, estimates, held_out, at_residuals.signals) for name in judged.rivals
+    )
+    return Proven(search, judged, causes, stand_ins, tuple(estimates), held_out, at_residuals)
+
+
+def _concluded(proven: Proven, base: FittedModel) -> Diagnosis:
+    """Return the diagnosis from the effects that prove to be causes."""
+    judged, causes, stand_ins = proven.judged, proven.causes, proven.stand_ins
+    bench, folds, named = judged.bench, judged.folds, judged.named
+    before = judged.trial(frozenset(), on_mesh=bench.on_mesh(named))
+    final = judged.trial(named)
+    after = remainder(bench, final, folds, proven.at_residuals)
+    start = after
+    if named:
+        start = remainder(bench, before, folds, signals_at_residuals(bench, before))
+    complete = after.complete and not any(cause.law_differs for cause in causes)
+    verdict = verdict_of(
+        [cause.rivals for cause in causes],
+        [cause.effect for cause in stand_ins],
+        complete=complete,
+    )
+    errors = proven.held_out[frozenset()].rmse, proven.held_out[named].rmse
+    return Diagnosis(
         verdict,
-        "",
-        extended,
-        nominal,
+        reason_of(verdict, causes, stand_ins, start, after),
+        Model(proven.estimates).over(base.model),
+        Model(tuple(_estimates(judged, before))).over(base.model),
         causes,
-        channel_errors(judged, before, final, start, after),
+        stand_ins,
+        channel_errors(bench, *errors, start, after),
         after,
-        share if named else 1.0,
-        search,
+        _share_left(start, after),
+        proven.search,
         judged,
         before,
         final,
         base.not_identifiable,
     )
-    return replace(found, reason=_reason(found, start, after))
 
 
-def _cause(judged: Hypotheses, name: str, estimates: Sequence[Estimate]) -> FoundCause:
+def _share_left(start: Remainder, after: Remainder) -> float:
+    """Return the share of what could be explained at first that remains, 0 to 1."""
+    floor = after.mean_square - after.reducible
+    first = max(start.mean_square - floor, 0.0)
+    return min(after.reducible / first, 1.0) if first > 0.0 else 0.0
+
+
+def _cause(
+    judged: Hypotheses,
+    name: str,
+    estimates: Sequence[Estimate],
+    held_out: Mapping[frozenset[str], HeldOut],
+    signals: dict[str, Floats],
+) -> FoundCause:
+    """Return an effect of the final set, with what it does not prove."""
     named = judged.named
-    gains = gain_percent(
-        judged.held_out(named - {name}, on_mesh=judged.bench.on_mesh(named)),
-        judged.held_out(named),
-        np.random.default_rng(SEED),
-    )
+    fewer, all_of_them = held_out[named - {name}], held_out[named]
+    gains = gain_percent(fewer.squares, all_of_them.squares, np.random.default_rng(SEED))
     own = tuple(e for e in estimates if e.name.startswith(f"{name}."))
-    return FoundCause(name, judged.rivals[name], own, gains[0], (gains[1], gains[2]))
+    ids = tuple(run.run.run.id for run in judged.bench.closed)
+    split = worst_split(judged.trial(named), name, judged.folds, signals, ids)
+    again = gain(fewer.squares, all_of_them.squares)
+    failed = failures(name, own, again, fewer.rmse, all_of_them.rmse)
+    law = "" if split is None else split_in_words(split)
+    size = judged.folds.block.size
+    excess = [max(float(h.squares.sum()) - size, 0.0) for h in (fewer, all_of_them)]
+    if split is not None and excess[1] > ANOTHER_LAW * excess[0]:
+        failed, law = (f"is not constant {law}", *failed), ""
+    return FoundCause(name, judged.rivals[name], own, gains[0], (gains[1], gains[2]), failed, law)
 
 
 def _estimates(search: Hypotheses, trial: HypothesisFit) -> list[Estimate]:
@@ -242,33 +299,3 @@ def _with_data_sheet_interval(ratio: Estimate, trial: HypothesisFit) -> Estimate
     high = whole * math.exp(unknown.upper - fitted) - 1.0
     stderr = max(high - ratio.value, ratio.value - low) / 1.96
     return replace(ratio, stderr=stderr, interval_low=low, interval_high=high)
-
-
-def _reason(found: Diagnosis, start: Remainder, after: Remainder) -> str:
-    """Return the verdict in a few plain sentences."""
-    titles = {effect.name: effect.title.lower() for effect in EFFECTS}
-    names = " and ".join(titles[c.effect] for c in found.causes)
-    rms = [_two_digits(math.sqrt(r.mean_square)) for r in (start, after)]
-    depends = ", ".join(signal_in_words(signal) for signal in after.depends_on)
-    depends = f" It depends on {depends}." if depends else ""
-    if found.verdict == "sufficient":
-        return "The nominal model is at the noise level: these runs show no missing effect."
-    if not found.causes:
-        return (
-            f"The residual RMS is {rms[0]} × the noise level, and no catalogued effect explains "
-            f"it.{depends}"
-        )
-    sentences = f"The nominal model lacks: {names}. "
-    sentences += f"With it the residual RMS falls from {rms[0]} to {rms[1]} × the noise level."
-    rivals = sorted({titles[r] for c in found.causes for r in c.rivals})
-    if rivals:
-        sentences += f" Indistinguishable from it in these recordings: {', '.join(rivals)}."
-    if found.verdict == "unexplained":
-        return f"{sentences} No catalogued effect explains most of the remaining residual.{depends}"
-    if found.unexplained:
-        return f"{sentences} No catalogued effect explains the remaining residual.{depends}"
-    return sentences
-
-
-def _two_digits(value: float) -> str:
-    return f"{value:#.2g}" if value < 9.95 else f"{float(f'{value:.2g}'):.0f}"

@@ -3,7 +3,9 @@
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.diagnosis.diagnose import Diagnosis, FoundCause
+from tsas_cli.diagnosis.channel_errors import noise_floor
+from tsas_cli.diagnosis.diagnose import Diagnosis
+from tsas_cli.diagnosis.proof import FoundCause
 from tsas_cli.diagnosis.residual_map import residual_map
 from tsas_cli.diagnosis.search import Hypotheses
 from tsas_cli.effects import EFFECTS
@@ -16,7 +18,7 @@ Floats = npt.NDArray[np.float64]
 
 
 def cause_of(cause: FoundCause) -> records.NamedCause:
-    """Return the record of a named effect with its title, equation and values."""
+    """Return the record of an effect that gains with its title, equation and values."""
     effect = next(e for e in EFFECTS if e.name == cause.effect)
     return records.NamedCause(
         effect=cause.effect,
@@ -29,6 +31,8 @@ def cause_of(cause: FoundCause) -> records.NamedCause:
         },
         gain_percent=cause.gain_percent,
         gain_interval_percent=cause.gain_interval_percent,
+        failed=cause.failed,
+        law_differs=cause.law_differs,
     )
 
 
@@ -43,11 +47,23 @@ def held_out_of(result: Diagnosis) -> dict[str, records.HeldOut]:
 def remainder_of(result: Diagnosis) -> records.RemainingResidual:
     """Return the record of the remaining residual, and the signals that it depends on."""
     remainder = result.remainder
+    if remainder is None or result.judged is None:
+        return records.RemainingResidual(unexplained=result.unexplained)
+    bench = result.judged.bench
     return records.RemainingResidual(
         unexplained=result.unexplained,
-        depends_on=() if remainder is None else remainder.depends_on,
+        depends_on=remainder.depends_on,
         share_percent=100.0 * result.share_left,
-        mean_square=None if remainder is None else remainder.mean_square,
+        mean_square=remainder.mean_square,
+        slow_noise={
+            name: records.SlowNoise(
+                sd=slow.ratio * noise_floor(bench, name, 0.0),
+                unit=BY_NAME[name].unit,
+                time_s=slow.time_s,
+            )
+            for name, slow in remainder.slow.items()
+            if remainder.complete
+        },
     )
 
 

@@ -1,12 +1,13 @@
 """Residuals of a hypothesis on held-out runs, block by block.
 
-A run is held out by one Gauss-Newton step from the fit to all runs: exact for a linear model, and
-the steps are small. Parameters of a single run (its preload, its zeros) are fitted to that run for
-every hypothesis. With fewer than three runs, stretches of the runs are held out.
+In the search a run is held out by one Gauss-Newton step from the fit to all runs, which is exact
+for a linear model; `refitted_values` fits again, for what is reported. Parameters of a single run
+(its preload, its zeros) are fitted to that run for every hypothesis. With fewer than three runs,
+stretches of the runs are held out.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
@@ -16,6 +17,7 @@ from tsas_cli.identification.fit import Solution, Unknown
 
 Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
+Bits = npt.NDArray[np.bool_]
 
 FEWEST_RUNS = 3  # of which one can be held out
 STRETCHES = 4  # of each run, where runs are too few
@@ -60,18 +62,32 @@ def folds_of(blocks: Sequence[Indices]) -> Folds:
     block = np.concatenate([b + o for b, o in zip(blocks, offsets, strict=True)])
     if len(blocks) >= FEWEST_RUNS:
         return Folds(run, block, run, by_run=True)
-    parts = [b * STRETCHES // (int(b.max()) + 1) for b in blocks]
-    fold = np.concatenate([p + STRETCHES * k for k, p in enumerate(parts)])
-    return Folds(fold, block, run, by_run=False)
+    return in_stretches(Folds(run, block, run, by_run=False))
+
+
+def in_stretches(folds: Folds) -> Folds:
+    """Return folds that are stretches of the runs, of the same blocks."""
+    fold = np.empty_like(folds.fold)
+    for k in range(int(folds.run.max()) + 1):
+        block = folds.block[folds.run == k]
+        block = block - block.min()
+        fold[folds.run == k] = block * STRETCHES // (int(block.max()) + 1) + STRETCHES * k
+    return replace(folds, fold=fold, by_run=False)
+
+
+def own_of_fold(trial: Hypothesis, folds: Folds, fold: int) -> Bits:
+    """Return which unknowns belong to a held-out run alone, shape (p,)."""
+    if not folds.by_run:
+        return np.zeros(len(trial.unknowns), bool)
+    runs = np.unique(folds.run[folds.fold == fold])
+    return np.array([u.run is not None and u.run in runs for u in trial.unknowns])
 
 
 def held_out_values(trial: Hypothesis, folds: Folds, fold: int) -> Floats:
     """Return the scaled values of a trial without one fold, its run's own ones fitted to it."""
     held_out = folds.fold == fold
     J, r = trial.solution.jacobian, trial.solution.residual
-    runs = np.unique(folds.run[held_out])
-    own = np.array([u.run is not None and u.run in runs for u in trial.unknowns])
-    own &= folds.by_run
+    own = own_of_fold(trial, folds, fold)
     shared = ~own
     weak = (
         np.array([u.scale for u in trial.unknowns]) ** -2.0

@@ -2,26 +2,41 @@
 
 A regression on the recorded signals, each by hat functions and with separate weights for both
 directions, estimates the residual that any model of these signals could attain on held-out runs. It
-shows that a model lacks something, not the cause.
+shows that a model lacks something, not the cause. What it leaves beyond the white noise repeats
+with no signal: slow noise.
 """
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.diagnosis.evidence import gain
 from tsas_cli.diagnosis.held_out import Folds
-from tsas_cli.diagnosis.signals import DIRECTION, signals_of
+from tsas_cli.diagnosis.signals import DIRECTION, AtResiduals
 from tsas_cli.identification.extension import Bench, HypothesisFit
-from tsas_cli.identification.samples import mean_edges
 
 Floats = npt.NDArray[np.float64]
 
 HATS = 10  # hat functions of each signal and direction
 RIDGE = 1.0  # regularisation, in units of noise
 DEPENDS = 0.02  # least share of the squares that a signal alone explains
+STRUCTURE = 0.05  # of the noise's square, that a complete model leaves unexplained at most
+MOST_SLOW = 2.0  # square of slow noise over that of white noise, beyond which it is an error
+LEAST_SLOW = 0.15  # the same, below which there is none
+FEWEST_STROKES = 4
+LATE = 2.0  # mean delay of the strokes of a complete model at most, in units of `delays`
+LATE_CRITICAL = 4.0  # critical value of the t statistic of that mean
 PEAK = 0.3  # share of a run's squares in one narrow band from which the residual is periodic
+
+
+@dataclass(frozen=True)
+class SlowNoise:
+    """Coloured noise of a channel: its standard deviation over the white noise's, its memory."""
+
+    ratio: float
+    time_s: float
 
 
 @dataclass(frozen=True)
@@ -29,73 +44,105 @@ class Remainder:
     """The remaining residual of a trial.
 
     `mean_square` is that of the weighted residuals; `explained` the reduction of each channel's
-    mean square by a regression on held-out data; `depends_on` the signals that explain most of it.
+    mean square by a regression on held-out data, `reducible` that of all; `depends_on` the signals
+    that explain most of it; `slow` what of a channel repeats with no signal; `late` the channels in
+    which each stroke lags behind the model; `oscillates` a phrase on a dominant frequency, if any.
     """
 
     mean_square: float
     explained: dict[str, float]
     depends_on: tuple[str, ...]
+    reducible: float = 0.0
+    slow: dict[str, SlowNoise] = field(default_factory=dict)
+    late: tuple[str, ...] = ()
+    oscillates: str | None = None
+
+    @property
+    def complete(self) -> bool:
+        """Whether only noise remains, white or slow, and nothing that a cause could explain."""
+        return not (
+            self.oscillates
+            or self.late
+            or any(part > STRUCTURE for part in self.explained.values())
+            or any(slow.ratio**2 > MOST_SLOW for slow in self.slow.values())
+        )
 
 
-def remainder(bench: Bench, trial: HypothesisFit, folds: Folds) -> Remainder:
-    """Return the remaining residual of a trial."""
-    errors = np.concatenate(
-        [
-            np.concatenate(list(e.errors(bench.rig(trial, k)).values()))
-            for k, e in enumerate(bench.errors_for(trial))
-        ]
-    )
-    signals, channel = _signals(bench, trial)
+def remainder(
+    bench: Bench, trial: HypothesisFit, folds: Folds, at_residuals: AtResiduals
+) -> Remainder:
+    """Return the remaining residual of a trial, with the signals at its residuals."""
+    runs = [e.errors(bench.rig(trial, k)) for k, e in enumerate(bench.errors_for(trial))]
+    errors = {n: [run[n] for run in runs if n in run] for n in bench.channels}
+    count = sum(part.size for parts in errors.values() for part in parts)
+    squares = {n: sum(float(part @ part) for part in parts) for n, parts in errors.items()}
+    signals, channel = at_residuals.signals, at_residuals.channel
     residual = trial.solution.residual
     names = [name for name in signals if name != DIRECTION]
-    alone: dict[str, float] = {}
-    samples = {
-        name: sum(run.samples[name].size for run in bench.closed if name in run.samples)
-        for name in bench.channels
-    }
+    alone = dict.fromkeys(names, 0.0)
     explained: dict[str, float] = {}
+    slow: dict[str, SlowNoise] = {}
+    reducible = 0.0
     for number, name in enumerate(bench.channels):
         here = channel == number
-        before = _by_block(residual[here], folds, here)
+        own, fold = residual[here], folds.fold[here]
+        before = _by_block(own, folds, here)
         used = before > 0.0
         whole = [hats(signals[s][here], signals[DIRECTION][here]) for s in names]
-        remaining = residual[here] - regressed(np.hstack(whole), residual[here], folds.fold[here])
-        after = _by_block(remaining, folds, here)
+        after = _by_block(own - regressed(np.hstack(whole), own, fold), folds, here)
         best = gain(before[used], after[used])
         # Each residual is a mean of samples, scaled to unit variance.
-        of_mean = float(np.mean(residual[here] ** 2)) * here.sum() / samples[name]
+        samples = sum(part.size for part in errors[name])
+        of_mean = float(np.mean(own**2)) * own.size / samples
         explained[name] = max(best.part, 0.0) * of_mean if best.convincing else 0.0
+        reducible += explained[name] * samples / count
+        ratio = squares[name] / samples - explained[name] - 1.0
+        if ratio > LEAST_SLOW:
+            slow[name] = SlowNoise(math.sqrt(ratio), _memory_s(bench, name, errors[name]))
         for signal, columns in zip(names, whole, strict=True):
-            own = residual[here] - regressed(columns, residual[here], folds.fold[here])
-            part = 1.0 - float(own @ own) / float(residual[here] @ residual[here])
-            share = float(residual[here] @ residual[here]) / float(residual @ residual)
-            alone[signal] = alone.get(signal, 0.0) + max(part, 0.0) * share
+            left = own - regressed(columns, own, fold)
+            part = max(float(own @ own) - float(left @ left), 0.0)
+            alone[signal] += part / float(residual @ residual)
     found = [s for s, part in sorted(alone.items(), key=lambda a: -a[1]) if part > DEPENDS]
-    periodic = _periodic(bench, trial)
-    return Remainder(
-        float(np.mean(errors**2)), explained, tuple(([periodic] if periodic else []) + found[:3])
+    oscillates = _oscillation(bench, trial)
+    depends_on = (*([oscillates] if oscillates else []), *found[:3])
+    mean_square = sum(squares.values()) / count
+    late = tuple(name for name in bench.channels if _is_late(bench, trial, name))
+    return Remainder(mean_square, explained, depends_on, reducible, slow, late, oscillates)
+
+
+def _is_late(bench: Bench, trial: HypothesisFit, name: str) -> bool:
+    """Return whether the strokes of a channel lag behind the model, or lead it, on average."""
+    delays = np.concatenate(
+        [
+            run.delays(bench.rig(trial, k))[name]
+            for k, run in enumerate(bench.errors_for(trial))
+            if name in run.samples
+        ]
     )
+    if delays.size < FEWEST_STROKES:
+        return False
+    scatter = float(delays.std(ddof=1)) / math.sqrt(delays.size)
+    return abs(float(delays.mean())) > max(LATE, LATE_CRITICAL * scatter)
+
+
+def _memory_s(bench: Bench, name: str, errors: list[Floats]) -> float:
+    """Return the time in which the autocorrelation of a channel's slow errors falls to 1/e [s]."""
+    times = []
+    recorded = [run for run in bench.closed if name in run.samples]
+    for run, part in zip(recorded, errors, strict=True):
+        centred = part - part.mean()
+        power = np.abs(np.fft.rfft(centred, 2 * part.size)) ** 2
+        covariance = np.fft.irfft(power)[1 : part.size]
+        lost = np.flatnonzero(covariance < covariance[0] / math.e)
+        step_s = float(np.median(np.diff(run.run.time_s[run.samples[name]])))
+        times.append(step_s * (1 + (int(lost[0]) if lost.size else covariance.size)))
+    return float(np.median(times))
 
 
 def _by_block(residual: Floats, folds: Folds, here: npt.NDArray[np.bool_]) -> Floats:
     squares = np.bincount(folds.block[here], residual**2, minlength=folds.blocks)
     return squares.astype(np.float64)
-
-
-def _signals(bench: Bench, trial: HypothesisFit) -> tuple[dict[str, Floats], Floats]:
-    """Return all signals, and the number of the channel, at each residual, shape (n,)."""
-    out: dict[str, list[Floats]] = {}
-    channel = []
-    for k, run in enumerate(bench.errors_for(trial)):
-        predicted = run.predict(bench.rig(trial, k))
-        signals = signals_of(run.run, predicted["f_in_N"])
-        for name, at in run.samples.items():
-            edges = mean_edges(at.size)
-            middle = at[np.minimum(edges + (edges[1] - edges[0]) // 2, at.size - 1)]
-            channel.append(np.full(edges.size, bench.channels.index(name)))
-            for signal, values in signals.items():
-                out.setdefault(signal, []).append(values[middle])
-    return {name: np.concatenate(v) for name, v in out.items()}, np.concatenate(channel)
 
 
 def hats(signal: Floats, direction: Floats) -> Floats:
@@ -121,7 +168,7 @@ def regressed(columns: Floats, residual: Floats, fold: npt.NDArray[np.int64]) ->
     return out
 
 
-def _periodic(bench: Bench, trial: HypothesisFit) -> str | None:
+def _oscillation(bench: Bench, trial: HypothesisFit) -> str | None:
     """Return a phrase on a dominant frequency of the residuals of most runs, or None."""
     found = []
     for k, run in enumerate(bench.errors_for(trial)):

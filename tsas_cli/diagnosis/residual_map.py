@@ -5,14 +5,13 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.diagnosis.signals import DIRECTION, signals_of
+from tsas_cli.diagnosis.signals import DIRECTION, RUN, signals_of
 from tsas_cli.identification.extension import Bench, HypothesisFit
 from tsas_cli.records.diagnosis import Bin, Maps
 
 Floats = npt.NDArray[np.float64]
 
 BINS = 12
-RUN = "run"
 LABELS = (RUN, DIRECTION)
 
 

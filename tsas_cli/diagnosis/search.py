@@ -33,7 +33,7 @@ Floats = npt.NDArray[np.float64]
 Names = frozenset[str]
 
 MOST_EFFECTS = 4
-SHARE = 0.4  # least reduction of the excess over the noise by a cause
+SHARE = 0.2  # least reduction of the excess over the noise by a cause
 LEAST = 0.003  # least reduction of the nominal model's excess by a further cause
 EXCESS_OF_COMPLETE_MODEL = 0.15  # excess of the mean square that a complete model may have
 LEAST_SIGNATURE = 0.0005  # share of the squares that a signature has to explain to be fitted
@@ -79,7 +79,7 @@ def find_effects(bench: Bench, folds: Folds, step: Steps = NO_PROGRESS) -> Hypot
     named = search.run()
     rivals = {e.name: search.rivals(named, e.name) for e in EFFECTS if e.name in named}
     screened = tuple(search.screen(frozenset()))
-    for names in _judged_sets(named):
+    for names in judged_sets(named):
         search.trial(names, on_mesh=bench.on_mesh(named))
     return Hypotheses(bench, folds, named, rivals, screened, search.trials, search.squares)
 
@@ -90,8 +90,9 @@ def reweighted_hypotheses(found: Hypotheses, step: Steps = NO_PROGRESS) -> Hypot
     The weights are those at the named effects' fit. Rivals and signatures are unchanged.
     """
     named, bench = found.named, found.bench
-    mesh, trial = bench.on_mesh(named), found.trial(named)
-    sets = _judged_sets(named)
+    mesh = bench.on_mesh(named)
+    trial = found.trials.get((named, mesh)) or bench.fit(sorted(named), on_mesh=mesh)
+    sets = judged_sets(named)
     step.ahead(REWEIGHTINGS + len(sets))
     for _ in range(REWEIGHTINGS):
         bench = reweighted_bench(bench, trial)
@@ -99,14 +100,14 @@ def reweighted_hypotheses(found: Hypotheses, step: Steps = NO_PROGRESS) -> Hypot
         step()
     trials = {}
     for names in sets:
-        near = found.trial(names, on_mesh=mesh)
+        near = found.trials.get((names, mesh), trial)
         trials[names, mesh] = bench.fit(sorted(names), near=near, on_mesh=mesh)
         step()
     squares = {key: held_out_squares(trial, found.folds) for key, trial in trials.items()}
     return replace(found, bench=bench, trials=trials, squares=squares)
 
 
-def _judged_sets(named: Names) -> set[Names]:
+def judged_sets(named: Names) -> set[Names]:
     """Return the named set, the empty one, and those with one effect removed."""
     return {frozenset[str](), named, *(named - {name} for name in named)}
 

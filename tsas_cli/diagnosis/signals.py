@@ -1,13 +1,41 @@
 """The signals of a run that a residual may depend on, and their names in words."""
 
+from dataclasses import dataclass
+
 import numpy as np
 import numpy.typing as npt
 
+from tsas_cli.identification.extension import Bench, HypothesisFit
 from tsas_cli.identification.prepared import Prepared
+from tsas_cli.identification.samples import mean_edges
 
 Floats = npt.NDArray[np.float64]
 
-DIRECTION = "direction"
+DIRECTION, RUN = "direction", "run"
+
+
+@dataclass(frozen=True)
+class AtResiduals:
+    """Each signal at each residual of a trial, shape (n,), and the number of its channel."""
+
+    signals: dict[str, Floats]
+    channel: npt.NDArray[np.int64]
+
+
+def signals_at_residuals(bench: Bench, trial: HypothesisFit) -> AtResiduals:
+    """Return the signals in the middle of the samples of each residual of a trial."""
+    out: dict[str, list[Floats]] = {}
+    channel = []
+    for k, run in enumerate(bench.errors_for(trial)):
+        predicted = run.predict(bench.rig(trial, k))
+        signals = signals_of(run.run, predicted["f_in_N"])
+        for name, at in run.samples.items():
+            edges = mean_edges(at.size)
+            middle = at[np.minimum(edges + (edges[1] - edges[0]) // 2, at.size - 1)]
+            channel.append(np.full(edges.size, bench.channels.index(name)))
+            for signal, values in signals.items():
+                out.setdefault(signal, []).append(values[middle])
+    return AtResiduals({n: np.concatenate(v) for n, v in out.items()}, np.concatenate(channel))
 
 
 def signals_of(run: Prepared, f_in_N: Floats) -> dict[str, Floats]:

@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.diagnosis.channel_errors import HeldOutErrors
-from tsas_cli.diagnosis.diagnose import FEW_BLOCKS, SEED, Verdict, leaves_much, verdict_of
+from tsas_cli.diagnosis.diagnose import FEW_BLOCKS, SEED
 from tsas_cli.diagnosis.evidence import gain, gain_percent
 from tsas_cli.diagnosis.remainder import DEPENDS, hats, regressed
 from tsas_cli.diagnosis.search import EXCESS_OF_COMPLETE_MODEL
@@ -24,10 +24,15 @@ from tsas_cli.drive.fit import Terms
 from tsas_cli.drive.search import EFFECT_OF, NOTHING, DriveSearch, rivals
 from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.estimate import Estimate
+from tsas_cli.records.diagnosis import Verdict
 
 Floats = npt.NDArray[np.float64]
 
 EQUATION = frozenset({"stated"})
+MOST_SHARE_LEFT = 0.02  # of the initial excess over the noise, that named causes may leave
+MOST_LEFT = 4.0  # mean square of the residual, twice the noise level, that causes may leave
+UNEXPLAINED_SHARE = 0.5  # of the excess, beyond which the verdict is `unexplained`
+NEEDS_CAUSE = 2.0 * EXCESS_OF_COMPLETE_MODEL  # excess of the mean square that needs an explanation
 LOOKED_AT = 12000  # residuals, for what is left
 PARAMETERS = {
     "drive_compliance": (
@@ -88,7 +93,7 @@ def diagnose_drive(
     floor = min(noise, rmse[1])
     channel = HeldOutErrors(rmse[0], rmse[1], floor, max(floor, rmse[1] * math.sqrt(1.0 - could)))
     verdict = _verdict(search, causes, left, share)
-    unexplained = verdict == "unexplained" or (bool(causes) and leaves_much(left, share))
+    unexplained = verdict == "unexplained" or (bool(causes) and _leaves_much(left, share))
     found = FoundDriveDiagnosis(
         verdict, "", nominal, explained, causes, channel,
         _gain_percent(search, nominal, explained), left, share if causes else 1.0,
@@ -102,7 +107,18 @@ def _verdict(
 ) -> Verdict:
     if search.folds.blocks < FEW_BLOCKS:
         return "undecided"
-    return verdict_of([cause.rivals for cause in causes], left, share)
+    if not causes:
+        return "unexplained" if left > 1.0 + NEEDS_CAUSE else "sufficient"
+    if share > UNEXPLAINED_SHARE:
+        return "unexplained"
+    return "ambiguous" if any(cause.rivals for cause in causes) else "named"
+
+
+def _leaves_much(mean_square: float, share: float) -> bool:
+    """Return whether named causes leave a residual that needs a further explanation."""
+    return mean_square > MOST_LEFT or (
+        mean_square > 1.0 + EXCESS_OF_COMPLETE_MODEL and share > MOST_SHARE_LEFT
+    )
 
 
 def _cause(

@@ -24,7 +24,7 @@ MOST_EVALUATIONS = 60
 WRONG = 2.0  # mean square of the residuals beyond which the model is wrong
 FEWEST_RUNS = 3  # for standard errors of a wrong model
 UNDETERMINED = 1e-3  # tolerance of the resolution of a determined parameter
-NEARLY_BOUND = 1e-4  # of the width between the bounds
+NEARLY_BOUND = 1e-4  # of a plausible change, or of the width between the bounds if it is less
 KNOWN = 0.1  # of its scale: with a larger standard error, alone, an unknown is not identifiable
 INDEPENDENT = 1e-3  # share of an unknown's column that has to be independent of the others
 COLOUR = 10.0  # ratio of the standard errors for coloured and for white noise, at most
@@ -148,7 +148,7 @@ def solve(
     found = least_squares(
         errors, slopes, initial, (lower, upper), tolerance=tolerance, most=MOST_EVALUATIONS
     )
-    near = NEARLY_BOUND * (upper - lower)
+    near = NEARLY_BOUND * np.minimum(upper - lower, 1.0)
     at_bound = (found.values - lower < near) | (upper - found.values < near)
     return Solution(
         found.values,

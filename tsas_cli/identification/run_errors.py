@@ -51,7 +51,8 @@ class RunErrors:
     """The residuals of one run for any rig, with weights computed at one of them.
 
     Of each channel `samples` are those that enter the fit, `weights` the standard deviation of its
-    residual at all samples, shape (n,). `predict` returns the predictions of a rig.
+    residual at all samples, shape (n,), and `advance` its change by each stroke advanced by one
+    standard deviation of the driving end. `predict` returns the predictions of a rig.
     """
 
     run: Prepared
@@ -59,6 +60,7 @@ class RunErrors:
     simulation: RunSimulation
     predict: Callable[[Rig], Predictions]
     weights: Mapping[str, Floats]
+    advance: Mapping[str, Floats]
     turns: Mapping[str, ReversalShapes]
 
     @property
@@ -83,6 +85,20 @@ class RunErrors:
             turns = self.turns[name]
             projection = np.add.reduceat(turns.shape * errors, turns.starts)
             out[name] = errors - turns.shape * np.repeat(projection, turns.counts)
+        return out
+
+    def delays(self, rig: Rig) -> dict[str, Floats]:
+        """Return by how much each stroke lags behind the model's, in each channel.
+
+        In units of `REVERSAL_SD` standard deviations of the driving end, shape (strokes,): what
+        the weighted residuals leave out as an error of the position of a reversal.
+        """
+        out = {}
+        for name, errors in self.errors(rig).items():
+            shape, starts, _ = self.turns[name]
+            size = np.sqrt(np.add.reduceat(shape**2, starts))
+            along = np.add.reduceat(shape * errors, starts)
+            out[name] = np.divide(along, size, out=np.zeros(size.size), where=size > 0.0)
         return out
 
     def residuals(self, rig: Rig) -> Floats:
@@ -178,7 +194,7 @@ def _weighted(
         name: _reversal_shapes(change[name] / weights[name], at, reversals)
         for name, at in samples.items()
     }
-    return RunErrors(run, samples, simulation, predict, weights, turns)
+    return RunErrors(run, samples, simulation, predict, weights, change, turns)
 
 
 def _reversal_shapes(change: Floats, at: Indices, reversals: Indices) -> ReversalShapes:

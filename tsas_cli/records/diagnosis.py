@@ -14,19 +14,24 @@ from tsas_cli.records.base import (
     PhaseSegment,
     Record,
     Value,
+    number_text,
 )
 
 EXTENDED_MODEL, NOMINAL_MODEL = "model-extended.toml", "model-nominal.toml"
-Verdict = Literal["named", "ambiguous", "sufficient", "unexplained", "undecided"]
+Verdict = Literal[
+    "named", "ambiguous", "partly", "stand_in", "unexplained", "sufficient", "undecided"
+]
 UNITS = {effect.name: {p.name: p.unit for p in effect.parameters} for effect in EFFECTS}
 
 
 class NamedCause(Record):
     """An effect that is named; `rivals` are those that may be it just as well.
 
-    `gain_percent` is what it takes off the RMS of the residual on held-out data.
+    `gain_percent` is what it takes off the RMS of the residual on held-out data. A stand-in has
+    `failed`: what it does not prove; a named one may have `law_differs`: over which signal.
     """
 
+    SPARSE = frozenset({"failed", "law_differs"})
     effect: str
     title: str = ""
     equation: str = ""
@@ -34,6 +39,8 @@ class NamedCause(Record):
     parameters: dict[str, Value] = {}
     gain_percent: Number = None
     gain_interval_percent: tuple[Number, Number] | None = None
+    failed: tuple[str, ...] = ()
+    law_differs: str = ""
 
     @model_validator(mode="after")
     def _units_are_the_catalogues(self) -> Self:
@@ -54,6 +61,21 @@ class HeldOut(Record):
     attainable: NotNegative = None
 
 
+class SlowNoise(Record):
+    """Coloured noise of a channel: standard deviation, and time of its autocorrelation [s]."""
+
+    sd: NotNegative
+    unit: str
+    time_s: NotNegative
+
+    def text(self, channel: str) -> str:
+        """Return it in a sentence."""
+        return (
+            f"{channel} has slow noise of {number_text(self.sd, '.2g')} {self.unit}, correlated "
+            f"over {number_text(self.time_s, '.2g')} s, which follows no recorded signal."
+        )
+
+
 class RemainingResidual(Record):
     """What is left; `mean_square` is the reduced chi-square."""
 
@@ -61,6 +83,7 @@ class RemainingResidual(Record):
     depends_on: tuple[str, ...] = ()
     share_percent: Number = None
     mean_square: Number = None
+    slow_noise: dict[str, SlowNoise] = {}
 
 
 class TriedHypothesis(Record):
@@ -119,6 +142,7 @@ class Findings(Record):
     format: Literal[1] = 1
     verdict: Verdict
     named: tuple[NamedCause, ...]
+    stand_ins: tuple[NamedCause, ...] = ()
     channels: dict[str, HeldOut] = {}
     remainder: RemainingResidual
     next_experiment: str = ""
@@ -139,7 +163,8 @@ class Findings(Record):
     @property
     def says_unexplained(self) -> bool:
         """Whether it says that something is there which it has no name for."""
-        return self.verdict == "unexplained" or self.remainder.unexplained
+        warned = ("partly", "stand_in", "unexplained")
+        return self.verdict in warned or self.remainder.unexplained
 
 
 class DiagnosisFile(OfDataset, Findings):

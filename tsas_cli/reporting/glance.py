@@ -17,13 +17,15 @@ from tsas_cli.reporting.numbers import ABSENT, plain, ranged, with_interval
 _KINDS = {
     "named": "Cause found",
     "ambiguous": "Cause found, but these recordings leave open which",
+    "partly": "Cause found, and something unknown beside it",
+    "stand_in": "Something unknown is missing",
     "sufficient": "Nothing is missing",
     "unexplained": "Something unknown is missing",
     "undecided": "Cannot tell",
 }
-_BESIDE = "Cause found, and something unknown beside it"
 _NO_CAUSE = {
     "sufficient": "The nominal model explains these recordings",
+    "stand_in": "No known effect explains what the model misses",
     "unexplained": "No known effect explains what the model misses",
     "undecided": "These recordings hold too little to decide",
 }
@@ -52,8 +54,7 @@ def _of_diagnosis(diagnosis: DiagnosisFile | DriveDiagnosis) -> Glance:
     shown = tuple(fact for fact in facts if ABSENT not in fact.value)
     if named:
         numbers += ", before → after"
-    kind = _BESIDE if named and diagnosis.verdict == "unexplained" else _KINDS[diagnosis.verdict]
-    return Glance(kind, verdict, numbers if shown else "", shown)
+    return Glance(_KINDS[diagnosis.verdict], verdict, numbers if shown else "", shown)
 
 
 def _causes(named: Sequence[NamedCause]) -> str:

@@ -5,8 +5,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tsas_cli.diagnosis import found
-from tsas_cli.diagnosis.diagnose import Diagnosis, FoundCause, diagnose_runs
+from tsas_cli.diagnosis.diagnose import Diagnosis, diagnose_runs
 from tsas_cli.diagnosis.next_experiment import next_experiment
+from tsas_cli.diagnosis.proof import FoundCause
 from tsas_cli.identification.comparison import compare
 from tsas_cli.identification.model import Model, source_of, stated_model, write_model
 from tsas_cli.identification.phases import segment, segment_records
@@ -43,7 +44,7 @@ class DiagnosisResult(Result):
 
     @property
     def verdict(self) -> records.Verdict:
-        """`named`, `ambiguous`, `sufficient`, `unexplained` or `undecided`."""
+        """`named`, `ambiguous`, `partly`, `stand_in`, `unexplained`, `sufficient`, `undecided`."""
         return self.diagnosis.verdict
 
     @property
@@ -72,8 +73,13 @@ class DiagnosisResult(Result):
 
     def sentences(self) -> list[str]:
         """Return the verdict, what to measure next, and what the recordings do not say."""
-        cannot_tell = notes(self.record.cannot_tell)
-        return [self.reason, f"Next: {self.next_experiment}", *cannot_tell]
+        slow = self.record.remainder.slow_noise
+        return [
+            self.reason,
+            *(noise.text(name) for name, noise in slow.items()),
+            f"Next: {self.next_experiment}",
+            *notes(self.record.cannot_tell),
+        ]
 
 
 def diagnose(
@@ -131,6 +137,7 @@ def diagnose(
             verdict=result.verdict,
             reason=result.reason,
             named=[found.cause_of(cause) for cause in result.causes],
+            stand_ins=[found.cause_of(cause) for cause in result.stand_ins],
             channels=found.held_out_of(result),
             remainder=found.remainder_of(result),
             next_experiment=next_experiment(result, step),
@@ -172,14 +179,14 @@ def _predictions(run: Prepared, extended: Model, nominal: Model) -> Recording:
 
 
 def _tables(record: records.DiagnosisFile, title: str) -> Iterator[Table]:
-    """Yield what is named under its title, the errors before and after, and the ranking."""
-    named = [
-        (cause.effect, name, value.text(), value.unit, ", ".join(cause.rivals))
-        for cause in record.named
-        for name, value in cause.parameters.items()
-    ]
-    if named:
-        yield title, ("effect", "parameter", "value [95 %]", "unit", "rivals"), named
+    """Yield what is named, what is not proven, the errors before and after, and the ranking."""
+    columns = ("effect", "parameter", "value [95 %]", "unit")
+    for heading, last, causes in (
+        (title, "rivals", record.named),
+        ("what gains and is not proven", "why", record.stand_ins),
+    ):
+        if causes:
+            yield heading, (*columns, last), list(_parameter_rows(causes))
     errors = [
         (name, *map(number_text, (c.rmse_before, c.rmse_after, c.noise_floor, c.attainable)))
         for name, c in record.channels.items()
@@ -198,3 +205,11 @@ def _tables(record: records.DiagnosisFile, title: str) -> Iterator[Table]:
         for row in record.candidates[:SHOWN]
     ]
     yield "hypotheses", ("effects", "gain [%]", "test statistic", ""), ranking
+
+
+def _parameter_rows(causes: Iterable[records.NamedCause]) -> Iterator[tuple[str, ...]]:
+    """Yield each parameter of each cause, with its rivals, or what it does not prove."""
+    for cause in causes:
+        last = "; ".join(cause.failed) or ", ".join(cause.rivals)
+        for name, value in cause.parameters.items():
+            yield cause.effect, name, value.text(), value.unit, last

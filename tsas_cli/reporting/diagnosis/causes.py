@@ -1,4 +1,7 @@
-"""Each named cause: what it is, its equation, its parameters, its rivals, and what it gains."""
+"""Each effect that gains: what it is, its equation, its parameters, its rivals, its gain.
+
+A stand-in says what it does not prove.
+"""
 
 from collections.abc import Iterator
 
@@ -9,14 +12,14 @@ from tsas_cli.reporting.numbers import ABSENT, plain, with_interval
 
 
 def parts(diagnosis: DiagnosisFile) -> Iterator[Section]:
-    """Yield one part for each named cause."""
-    for cause in diagnosis.named:
+    """Yield one part for each named cause, and one for each stand-in."""
+    for cause in (*diagnosis.named, *diagnosis.stand_ins):
         law = EFFECT[cause.effect].equation if cause.effect in EFFECT else ""
         equation = cause.equation or law
         yield Section(
             anchor("diagnosis", cause.effect),
-            heading_of(cause),
-            tuple(text for text in (sentence_of(cause.effect),) if text),
+            f"Not proven: {within(heading_of(cause))}" if cause.failed else heading_of(cause),
+            tuple(text for text in (sentence_of(cause.effect), *_failed(cause)) if text),
             equations=tuple(equation.split(",  ")) if equation else (),
             tables=(_parameters(cause),),
             closing=(*_rivals(cause), *_gain(cause)),
@@ -35,6 +38,13 @@ def _parameters(cause: NamedCause) -> Table:
     )
     header = ("parameter", "value", "95 % interval", "unit", "at its bound")
     return Table(f"Parameters of {cause.effect}", header, rows, numeric=frozenset({1, 2}))
+
+
+def _failed(cause: NamedCause) -> Iterator[str]:
+    for failure in cause.failed:
+        yield f"It {failure}."
+    if cause.law_differs:
+        yield f"Its law differs from this {cause.law_differs}."
 
 
 def _rivals(cause: NamedCause) -> Iterator[str]:

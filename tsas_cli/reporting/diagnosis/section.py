@@ -54,9 +54,10 @@ def _left(diagnosis: DiagnosisFile) -> Iterator[str]:
         )
     if diagnosis.named and left.share_percent is not None:
         share = fixed(left.share_percent, 0)
-        yield f"Of what was beyond the noise, {share} % is left after what is named."
+        yield f"Of what could be explained, {share} % is left after what is named."
     if left.unexplained:
         yield "There is structure in them that no effect of the catalogue accounts for."
+    yield from (noise.text(name) for name, noise in left.slow_noise.items())
     if left.depends_on:
         signals = listed([signal_in_words(name) for name in left.depends_on])
         yield f"What is left depends on {signals}."

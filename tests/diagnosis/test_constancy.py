@@ -1,0 +1,77 @@
+"""Splits of an effect's parameter, on linear fits to data that are made up."""
+
+import numpy as np
+import pytest
+
+from tsas_cli.diagnosis.constancy import worst_split
+from tsas_cli.diagnosis.held_out import folds_of
+from tsas_cli.identification.extension import HypothesisFit
+from tsas_cli.identification.fit import Solution, Unknown
+
+RUNS, ROWS = 4, 600
+EFFECT, NAME = "drive_friction", "drive_friction.friction_N"
+SIZE = 1.5  # of the friction, in N: a scaled value of 1
+RUN = np.repeat(np.arange(RUNS), ROWS)
+TIME_S = np.tile(np.linspace(0.0, 30.0, ROWS), RUNS)
+SIGNALS = {
+    "direction": np.sign(np.sin(2.0 * np.pi * TIME_S / 5.0)),
+    "speed_mm_per_s": np.cos(2.0 * np.pi * TIME_S / 5.0),
+    "x_in_mm": 10.0 - 10.0 * np.cos(2.0 * np.pi * TIME_S / 7.0),
+    "time_s": TIME_S,
+}
+FOLDS = folds_of([np.arange(ROWS) * 12 // ROWS for _ in range(RUNS)])
+
+
+def trial(sizes, at_bound=False):
+    """Return a fit of one value to a column whose true value is `sizes`, shape (n,), and a mean."""
+    rng = np.random.default_rng(3)
+    column = 5.0 * (1.0 + rng.random(RUN.size))
+    J = np.column_stack((rng.standard_normal(RUN.size), column))
+    data = column * sizes + rng.standard_normal(RUN.size)
+    values = np.linalg.lstsq(J, data, rcond=None)[0]
+    unknowns = (
+        Unknown("friction_coefficient", None, 0.0, -1e6, 1e6, 1e3),
+        Unknown(NAME, None, 0.0, -1e6, 1e6, 1.0),
+    )
+    bounds = np.array([False, at_bound])
+    solution = Solution(values, bounds, J @ values - data, J, True, "", 1)
+    return HypothesisFit((EFFECT,), unknowns, solution, (ROWS,) * RUNS, on_mesh=False)
+
+
+def worst(sizes, **more):
+    ids = tuple("abcd")
+    return worst_split(trial(sizes, **more), EFFECT, FOLDS, SIGNALS, ids)
+
+
+def test_an_effect_with_one_value_has_no_split():
+    assert worst(np.ones(RUN.size)) is None
+
+
+def test_one_value_for_pulls_and_another_for_releases():
+    pulls = SIGNALS["direction"] > 0.0
+    found = worst(np.where(pulls, 1.4, 1.0))
+    assert (found.parameter, found.by) == (NAME, "direction")
+    values = dict(found.values)
+    unit = values["letting go"]
+    assert values["pulling"] / unit == pytest.approx(1.4, abs=0.02)
+
+
+@pytest.mark.parametrize("signal", ["speed_mm_per_s", "x_in_mm", "time_s"])
+def test_a_value_that_changes_with_a_signal_is_split_by_it(signal):
+    size = np.abs(SIGNALS[signal]) / np.abs(SIGNALS[signal]).max()
+    found = worst(1.0 + 0.5 * size)
+    assert found.by == signal
+    low, middle, high = (value for _, value in found.values)
+    assert low < middle < high
+
+
+def test_a_value_of_one_run_is_split_by_run():
+    found = worst(np.where(RUN == 2, 1.5, 1.0))
+    assert found.by == "run"
+    values = dict(found.values)
+    assert values["run c"] / values["run a"] == pytest.approx(1.5, abs=0.05)
+    assert values["run b"] / values["run a"] == pytest.approx(1.0, abs=0.05)
+
+
+def test_a_value_at_its_bound_is_not_split():
+    assert worst(np.where(RUN == 2, 1.5, 1.0), at_bound=True) is None

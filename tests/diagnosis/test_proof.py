@@ -1,0 +1,68 @@
+"""What an effect fails to prove."""
+
+import pytest
+
+from tsas_cli.diagnosis.constancy import Split
+from tsas_cli.diagnosis.evidence import Reduction
+from tsas_cli.diagnosis.proof import failures, split_in_words
+from tsas_cli.identification.estimate import Estimate
+
+CLEAR, CHANCE = Reduction(0.5, 9.0), Reduction(0.5, 2.0)
+SAME = {"f_in_N": 0.1, "x_out_mm": 0.01}
+
+
+def estimate(name, value, low, high, *, unit="N", at_bound=False):
+    return Estimate(name, value, unit, "fitted", None, 0.1, low, high, at_bound)
+
+
+OFFSETS = (
+    estimate("force_sensor_offset.f_in_offset_N", 1.0, 0.9, 1.1),
+    estimate("force_sensor_offset.f_out_offset_N", 0.01, -0.1, 0.12),
+)
+
+
+def of(*offsets, gain=CLEAR, after=SAME):
+    return failures("force_sensor_offset", offsets, gain, SAME, after)
+
+
+def test_one_size_that_is_not_neutral_and_a_gain_are_enough():
+    assert of(*OFFSETS) == ()
+
+
+def test_an_effect_whose_every_interval_holds_the_neutral_value_may_be_zero():
+    zero = estimate("force_sensor_offset.f_in_offset_N", 0.05, -0.01, 0.11)
+    (said,) = of(zero, OFFSETS[1])
+    assert said.startswith("may be zero: f_in_offset_N 0.05 [-0.01, 0.11] N")
+
+
+def test_a_gain_has_its_neutral_value_at_one():
+    def gain(low, high):
+        value = estimate("force_sensor_gain.f_out_gain", 1.02, low, high, unit="1")
+        return failures("force_sensor_gain", (value,), CLEAR, SAME, SAME)
+
+    assert gain(1.01, 1.03) == ()
+    assert gain(0.99, 1.05)
+
+
+def test_the_gain_has_to_hold_with_a_new_fit():
+    assert of(*OFFSETS, gain=CHANCE) == ("gains too little on held-out data with a new fit",)
+
+
+def test_no_channel_may_become_worse():
+    assert of(*OFFSETS, after={"f_in_N": 0.05, "x_out_mm": 0.0102}) == ()
+    (said,) = of(*OFFSETS, after={"f_in_N": 0.05, "x_out_mm": 0.011})
+    assert said == "makes x_out_mm worse on held-out data (0.01 to 0.011)"
+
+
+@pytest.mark.parametrize(("value", "refused"), [(1e-6, False), (1e9, True)])
+def test_a_size_at_the_limit_is_refused_and_one_near_nothing_is_not(value, refused):
+    friction = estimate("drive_friction.friction_N", value, value / 2, value, at_bound=True)
+    said = failures("drive_friction", (friction,), CLEAR, SAME, SAME)
+    assert bool(said) == refused
+
+
+def test_a_split_is_said_with_its_values():
+    over = Split("drive_friction.friction_N", "direction", CLEAR, (("pulling", 0.8), ("x", 2.1)))
+    assert split_in_words(over) == "over the direction: friction_N 0.8 (pulling) and 2.1 (x) N"
+    runs = Split("force_sensor_gain.f_out_gain", "run", CLEAR, (("run a", 1.0), ("run b", 1.04)))
+    assert split_in_words(runs) == "from run to run: f_out_gain 1 (run a) and 1.04 (run b)"

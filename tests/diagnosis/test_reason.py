@@ -1,0 +1,82 @@
+"""The sentences that give the reason of a verdict."""
+
+import math
+
+import pytest
+
+from tsas_cli.diagnosis.proof import FoundCause
+from tsas_cli.diagnosis.reason import reason_of
+from tsas_cli.diagnosis.remainder import Remainder
+from tsas_cli.effects import EFFECTS
+
+TITLE = {e.name: e.title.lower() for e in EFFECTS}
+PLAY, MASS, FREE = "backlash", "load_inertia", "free_tendon"
+START = Remainder(16.0, {}, ())
+
+
+def cause(effect, rivals=(), failed=(), law=""):
+    return FoundCause(effect, rivals, (), 50.0, (49.0, 51.0), failed, law)
+
+
+def left(mean_square, *signals, **more):
+    return Remainder(mean_square, {"f_in_N": 1.0} if signals else {}, signals, **more)
+
+
+def test_a_complete_nominal_model_lacks_nothing():
+    said = reason_of("sufficient", [], [], left(1.0), left(1.0))
+    assert said == "The nominal model is at the noise level: these runs show no missing effect."
+
+
+def test_what_no_effect_explains_is_said_with_what_it_depends_on():
+    after = left(16.0, "time_s", "x_in_mm", late=("x_out_mm",))
+    assert reason_of("unexplained", [], [], START, after) == (
+        "The residual RMS is 4.0 × the noise level, and no catalogued effect explains it. "
+        "It depends on the time in the run, the displacement of the drive. "
+        "At each reversal x_out_mm lags behind the model, or leads it."
+    )
+
+
+def test_causes_are_named_with_their_reduction():
+    said = reason_of("named", [cause(PLAY), cause(MASS)], [], START, left(1.44))
+    assert said == (
+        f"The nominal model lacks: {TITLE[PLAY]} and {TITLE[MASS]}. "
+        "With it the residual RMS falls from 4.0 to 1.2 × the noise level."
+    )
+
+
+def test_rivals_are_said_once_each_in_order():
+    causes = [cause(PLAY, (MASS, FREE)), cause("presliding", (MASS,))]
+    both = ", ".join(sorted((TITLE[MASS], TITLE[FREE])))
+    said = reason_of("ambiguous", causes, [], START, left(1.0))
+    assert said.endswith(f" Indistinguishable from it in these recordings: {both}.")
+
+
+def test_a_stand_in_is_said_with_what_it_fails_to_prove():
+    stand_in = cause(PLAY, failed=("is not constant over the speed: 1 (low) and 2 (high) mm",))
+    alone = reason_of("stand_in", [], [stand_in], START, left(16.0, "time_s"))
+    assert alone.startswith("The residual RMS is 4.0 × the noise level, and no catalogued effect")
+    said = f"{TITLE[PLAY].capitalize()} takes 50 % off it, but is not proven: it is not constant"
+    assert said in alone
+    beside = reason_of("partly", [cause(MASS)], [stand_in], START, left(2.0))
+    assert beside.startswith(f"The nominal model lacks: {TITLE[MASS]}.")
+    assert said in beside
+
+
+def test_a_law_that_differs_is_said_of_its_effect():
+    causes = [cause(MASS, law="over the speed: mass_kg 1 (low) and 2 (high) kg")]
+    said = reason_of("partly", causes, [], START, left(2.0, "time_s"))
+    assert f"The law of {TITLE[MASS]} differs from the catalogue's over the speed: mass" in said
+    assert said.endswith(
+        " No catalogued effect explains the remaining residual. It depends on the time in the run."
+    )
+
+
+@pytest.mark.parametrize(
+    ("rms", "text"),
+    [(1.0, "1.0"), (1.04, "1.0"), (9.94, "9.9"), (9.96, "10"), (10.4, "10"), (123.0, "120")],
+)
+def test_the_noise_level_is_exceeded_to_two_digits(rms, text):
+    after = left(rms**2, "time_s")
+    said = reason_of("unexplained", [], [], after, after)
+    assert said.startswith(f"The residual RMS is {text} × the noise level")
+    assert math.sqrt(after.mean_square) == pytest.approx(rms)

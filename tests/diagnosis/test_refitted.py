@@ -1,0 +1,100 @@
+"""Held-out errors by new fits, against scipy's fit without each run, of a nonlinear model."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from scipy.optimize import least_squares
+
+from tsas_cli.diagnosis import refitted as module
+from tsas_cli.diagnosis.held_out import folds_of, held_out_values
+from tsas_cli.diagnosis.refitted import refitted, refitted_values
+from tsas_cli.identification.extension import HypothesisFit
+from tsas_cli.identification.fit import Unknown, solve
+
+RUNS, ROWS, NOISE = 4, 120, 0.05
+T = np.linspace(0.0, 3.0, ROWS)
+
+
+def curve(rate, offset, k):
+    """Return an exponential whose rate is shared; each run begins elsewhere."""
+    return np.exp(-np.exp(rate) * (T + 0.5 * k)) * 4.0 + offset
+
+
+class Run:
+    """A run of the exponential, in units of its noise."""
+
+    def __init__(self, k, data):
+        self.k, self.data = k, data
+
+    def residuals(self, rig):
+        return self.raw(rig)["f_in_N"] / NOISE
+
+    def raw(self, rig):
+        return {"f_in_N": self.data - curve(rig["rate"], rig["offset"], self.k)}
+
+    def spread(self, name, chosen):
+        return chosen
+
+
+@pytest.fixture(scope="module")
+def fitted():
+    """Four runs, of which the last follows another rate: far from the fit to the others."""
+    rng = np.random.default_rng(5)
+    rates = [-0.5, -0.5, -0.5, 0.6]
+    runs = [
+        Run(k, curve(rate, 0.3 * k, k) + NOISE * rng.standard_normal(ROWS))
+        for k, rate in enumerate(rates)
+    ]
+    unknowns = (
+        Unknown("rate", None, 0.0, -5.0, 5.0, 1e3),
+        *(Unknown("offset", k, 0.0, -9.0, 9.0, 1e3) for k in range(RUNS)),
+    )
+    rig_at = lambda rig, k, names, values: {"rate": values[0], "offset": values[1 + k]}  # noqa: E731
+    bench = SimpleNamespace(rigs=[None] * RUNS, errors_for=lambda trial: runs)
+    found = solve(
+        unknowns, RUNS, lambda k, v: runs[k].residuals(rig_at(None, k, (), v)), tolerance=1e-10
+    )
+    trial = HypothesisFit((), unknowns, found, (ROWS,) * RUNS, on_mesh=False)
+    folds = folds_of([np.arange(ROWS) * 4 // ROWS for _ in range(RUNS)])
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(module, "rig_at", rig_at)
+        yield runs, bench, trial, folds
+
+
+def without(runs, k):
+    """Return scipy's rate of the other runs, and the offset of run k with it."""
+    others = [run for run in runs if run.k != k]
+
+    def errors(v):
+        return np.concatenate([o.data - curve(v[0], v[1 + j], o.k) for j, o in enumerate(others)])
+
+    rate = least_squares(errors, np.zeros(RUNS), xtol=1e-12, ftol=1e-12).x[0]
+    return rate, float(np.mean(runs[k].data - curve(rate, 0.0, k)))
+
+
+@pytest.mark.parametrize("k", range(RUNS))
+def test_a_run_is_left_out_of_the_fit_and_its_offset_fitted_to_it(fitted, k):
+    runs, bench, trial, folds = fitted
+    rate, offset = without(runs, k)
+    values = refitted_values(bench, trial, folds, k)
+    assert (values[0], values[1 + k]) == pytest.approx((rate, offset), abs=1e-3)
+
+
+def test_one_step_is_far_off_where_a_run_differs(fitted):
+    """The reason for the new fit: the run whose rate differs draws the step to all runs."""
+    runs, _, trial, folds = fitted
+    rate, _ = without(runs, 3)
+    assert abs(held_out_values(trial, folds, 3)[0] - rate) > 0.02
+
+
+def test_errors_are_those_of_each_run_predicted_by_the_others(fitted):
+    runs, bench, trial, folds = fitted
+    errors = []
+    for k, run in enumerate(runs):
+        rate, offset = without(runs, k)
+        errors.append(run.data - curve(rate, offset, k))
+    found = refitted(bench, trial, folds)
+    assert found.rmse["f_in_N"] == pytest.approx(np.sqrt(np.mean(np.square(errors))), rel=1e-3)
+    last = found.squares[-4:].sum() * NOISE**2
+    assert last == pytest.approx(float(errors[3] @ errors[3]), rel=1e-2)

@@ -1,0 +1,157 @@
+"""Whether a named effect's parameters have one value wherever the recordings determine them.
+
+A mechanism has one value; what stands in for another mechanism has another one wherever it is
+asked (invariant prediction, Peters, Buehlmann and Meinshausen 2016). An effect's columns of the
+Jacobian are split by direction, by thirds of each signal, and by run. Where values of their own for
+the parts predict held-out data better than one value does, the effect is not constant. Linear: no
+simulation.
+"""
+
+from dataclasses import dataclass, replace
+from functools import cache
+
+import numpy as np
+import numpy.typing as npt
+
+from tsas_cli.diagnosis.evidence import Reduction, gain
+from tsas_cli.diagnosis.held_out import Folds, held_out_squares, in_stretches
+from tsas_cli.diagnosis.signals import DIRECTION, RUN
+from tsas_cli.identification.extension import HypothesisFit
+from tsas_cli.identification.fit import Unknown
+from tsas_cli.identification.quantities import QUANTITIES
+
+Floats = npt.NDArray[np.float64]
+Indices = npt.NDArray[np.int64]
+
+LEAST_GAIN = 0.03  # least reduction of the squares by values of their own; right names reach 0.01
+FAR = 1e9  # bounds that are never active
+THIRDS = ("low", "middle", "high")
+DIRECTIONS = ("letting go", "pulling")
+
+
+@dataclass(frozen=True)
+class Split:
+    """A parameter with values of its own for the parts of the data.
+
+    `by` is the signal that the data are split by, `gain` the reduction of the held-out squares by
+    the split, `values` the parameter's value in each part, by the part's name.
+    """
+
+    parameter: str
+    by: str
+    gain: Reduction
+    values: tuple[tuple[str, float], ...]
+
+
+def worst_split(
+    trial: HypothesisFit,
+    effect: str,
+    folds: Folds,
+    signals: dict[str, Floats],
+    runs: tuple[str, ...],
+) -> Split | None:
+    """Return the split with the largest gain where an effect is not constant, else None.
+
+    Parameters
+    ----------
+    trial, effect
+        A fit, and one of its effects.
+    folds
+        The folds that are held out; a split by run holds out stretches of the runs.
+    signals
+        The signals at each residual, shape (n,) each.
+    runs
+        The ids of the runs.
+    """
+    columns = [
+        j
+        for j, u in enumerate(trial.unknowns)
+        if u.name.split(".")[0] == effect and not trial.solution.at_bound[j]
+    ]
+    if not columns:
+        return None
+    stretches = in_stretches(folds)
+    before = cache(lambda by_run: held_out_squares(trial, stretches if by_run else folds))
+    worst: Split | None = None
+    for by, (labels, part) in _parts(signals, folds.run, runs).items():
+        extended, shape = _split(trial, columns, part, len(labels))
+        after = held_out_squares(extended, stretches if by == RUN else folds)
+        found = gain(before(by == RUN), after)
+        if found.beyond(LEAST_GAIN) and (worst is None or found.part > worst.gain.part):
+            name, values = _values(trial, extended, columns, shape)
+            worst = Split(name, by, found, tuple(zip(labels, values, strict=True)))
+    return worst
+
+
+def _parts(
+    signals: dict[str, Floats], run: Indices, runs: tuple[str, ...]
+) -> dict[str, tuple[tuple[str, ...], Indices]]:
+    """Return the labels of the parts of each signal, and the part of each residual."""
+    parts: dict[str, tuple[tuple[str, ...], Indices]] = {}
+    for name, values in signals.items():
+        if name == DIRECTION:
+            parts[name] = DIRECTIONS, (values > 0.0).astype(np.int64)
+            continue
+        size = np.abs(values) if name.startswith("speed") else values
+        edges = np.quantile(size, (1.0 / 3.0, 2.0 / 3.0))
+        parts[name] = THIRDS, np.searchsorted(edges, size).astype(np.int64)
+    if len(runs) > 1:
+        parts[RUN] = tuple(f"run {name}" for name in runs), run
+    return {
+        name: (labels, part)
+        for name, (labels, part) in parts.items()
+        if np.unique(part).size == len(labels)
+    }
+
+
+def _split(
+    trial: HypothesisFit, columns: list[int], part: Indices, count: int
+) -> tuple[HypothesisFit, tuple[int, int]]:
+    """Return the fit with a further column for each but the first part of each given column.
+
+    A further value is expected within the size of the effect itself.
+    """
+    solution = trial.solution
+    further, unknowns = [], []
+    for j in columns:
+        u = trial.unknowns[j]
+        size = _size(u.name, float(solution.values[j]))
+        for k in range(1, count):
+            further.append(solution.jacobian[:, j] * (part == k))
+            unknowns.append(Unknown(f"{u.name} {k}", None, 0.0, -FAR, FAR, size))
+    extended = replace(
+        solution,
+        values=np.append(solution.values, np.zeros(len(further))),
+        at_bound=np.append(solution.at_bound, np.zeros(len(further), bool)),
+        jacobian=np.column_stack((solution.jacobian, *further)),
+    )
+    split = replace(trial, unknowns=(*trial.unknowns, *unknowns), solution=extended)
+    return split, (len(columns), count - 1)
+
+
+def _size(name: str, value: float) -> float:
+    """Return the scaled distance of a value from the neutral one; 1 for a logarithm."""
+    quantity = QUANTITIES[name]
+    if quantity.positive:
+        return 1.0
+    return max(abs(value - quantity.scaled(quantity.default)), 1e-3)
+
+
+def _values(
+    trial: HypothesisFit, split: HypothesisFit, columns: list[int], shape: tuple[int, int]
+) -> tuple[str, list[float]]:
+    """Return the parameter that differs most between the parts, and its value in each."""
+    solution = split.solution
+    free = np.flatnonzero(~solution.at_bound)
+    J = solution.jacobian[:, free]
+    weak = np.array([split.unknowns[j].scale for j in free]) ** -2.0
+    step = np.zeros(solution.values.size)
+    step[free] = -np.linalg.solve(J.T @ J + np.diag(weak), J.T @ solution.residual)
+    further = step[-shape[0] * shape[1] :].reshape(shape)
+    sizes = [split.unknowns[len(trial.unknowns) + k * shape[1]].scale for k in range(shape[0])]
+    k = int(np.argmax(np.abs(further).max(axis=1) / sizes))
+    j = columns[k]
+    quantity = QUANTITIES[trial.unknowns[j].name]
+    scaled = solution.values[j] + step[j] + np.concatenate(([0.0], further[k]))
+    inside = np.clip(scaled, trial.unknowns[j].lower, trial.unknowns[j].upper)
+    return quantity.name, [quantity.unscaled(float(v)) for v in inside]

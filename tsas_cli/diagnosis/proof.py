@@ -1,0 +1,106 @@
+"""What a named effect has to prove, besides its gain on held-out data.
+
+It has one value wherever the recordings determine it, which is not that of a rig without the
+effect and not the limit of what is plausible, and it makes no channel worse on held-out data. An
+effect that gains and fails one of these stands in for something that the catalogue does not have.
+One that explains nearly all and is not constant is there, with another law than the catalogue's.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from tsas_cli.diagnosis.constancy import Split
+from tsas_cli.diagnosis.evidence import Reduction
+from tsas_cli.diagnosis.signals import RUN, signal_in_words
+from tsas_cli.effects import EFFECTS, Effect, Parameter
+from tsas_cli.identification.estimate import Estimate
+from tsas_cli.identification.quantities import QUANTITIES
+from tsas_cli.records.base import number_text
+
+ANOTHER_LAW = 0.05  # share of the excess that an effect of another law leaves at most
+LEAST_RISE = 0.03  # relative rise of a channel's RMS on held-out data that refuses a name
+
+BY_NAME: Mapping[str, Effect] = {effect.name: effect for effect in EFFECTS}
+
+
+@dataclass(frozen=True)
+class FoundCause:
+    """An effect that gains, with its parameters and its reduction of the RMS on held-out data [%].
+
+    `failed` is what it does not prove, in sentences without their subject; empty for a named one.
+    `law_differs` says over which signal the law of a named one differs from the catalogue's.
+    """
+
+    effect: str
+    rivals: tuple[str, ...]
+    parameters: tuple[Estimate, ...]
+    gain_percent: float
+    gain_interval_percent: tuple[float, float]
+    failed: tuple[str, ...] = ()
+    law_differs: str = ""
+
+
+def failures(
+    effect: str,
+    estimates: Sequence[Estimate],
+    refitted_gain: Reduction,
+    without: Mapping[str, float],
+    with_it: Mapping[str, float],
+) -> tuple[str, ...]:
+    """Return what an effect fails to prove, in sentences without their subject.
+
+    Parameters
+    ----------
+    effect
+        The id of the effect.
+    estimates
+        Its parameters.
+    refitted_gain
+        Its reduction of the squares on held-out data, by new fits.
+    without, with_it
+        The RMS of each channel on held-out data, without the effect and with it.
+    """
+    own = {e.name.partition(".")[2]: e for e in estimates}
+    parameters = {p.name: p for p in BY_NAME[effect].parameters}
+    sizes = {name: e for name, e in own.items() if not parameters[name].shape}
+    out = []
+    if not refitted_gain.convincing:
+        out.append("gains too little on held-out data with a new fit")
+    out += [
+        f"has {name} at the limit of what is plausible ({e.value:.3g} {e.unit})"
+        for name, e in sizes.items()
+        if e.at_bound and not _is_near_neutral(e.value, parameters[name])
+    ]
+    if sizes and all(_may_be_none(e, parameters[name].neutral) for name, e in sizes.items()):
+        out.append(
+            "may be zero: " + ", ".join(f"{n} {e.text()} {e.unit}" for n, e in sizes.items())
+        )
+    out += [
+        f"makes {name} worse on held-out data ({number_text(without[name])} to "
+        f"{number_text(after)})"
+        for name, after in with_it.items()
+        if after > (1.0 + LEAST_RISE) * without[name]
+    ]
+    return tuple(out)
+
+
+def split_in_words(split: Split) -> str:
+    """Return the values of a parameter in the parts of a split, in words."""
+    values = " and ".join(f"{value:.3g} ({part})" for part, value in split.values)
+    unit = QUANTITIES[split.parameter].unit
+    over = "from run to run" if split.by == RUN else f"over {signal_in_words(split.by)}"
+    return (
+        f"{over}: {split.parameter.partition('.')[2]} {values}{'' if unit == '1' else f' {unit}'}"
+    )
+
+
+def _is_near_neutral(value: float, parameter: Parameter) -> bool:
+    """Return whether the bound that is nearer to a value is the neutral value."""
+    nearer = min((parameter.lower, parameter.upper), key=lambda bound: abs(bound - value))
+    return nearer == parameter.neutral
+
+
+def _may_be_none(estimate: Estimate, neutral: float) -> bool:
+    """Return whether the interval of an estimate holds the neutral value."""
+    low, high = estimate.interval_low, estimate.interval_high
+    return low is None or high is None or low <= neutral <= high

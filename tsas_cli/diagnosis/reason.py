@@ -1,0 +1,71 @@
+"""The verdict of a diagnosis in a few plain sentences."""
+
+import math
+from collections.abc import Sequence
+
+from tsas_cli.diagnosis.proof import BY_NAME, FoundCause
+from tsas_cli.diagnosis.remainder import Remainder
+from tsas_cli.diagnosis.signals import signal_in_words
+from tsas_cli.records.diagnosis import Verdict
+
+
+def reason_of(
+    verdict: Verdict,
+    causes: Sequence[FoundCause],
+    stand_ins: Sequence[FoundCause],
+    start: Remainder,
+    after: Remainder,
+) -> str:
+    """Return the verdict in sentences: what is lacking, what it gains, what remains.
+
+    `start` and `after` are the remaining residuals without and with the causes.
+    """
+    sentences = []
+    if causes:
+        both = [_two_digits(math.sqrt(r.mean_square)) for r in (start, after)]
+        names = " and ".join(_title(cause.effect) for cause in causes)
+        sentences += [
+            f"The nominal model lacks: {names}.",
+            f"With it the residual RMS falls from {both[0]} to {both[1]} × the noise level.",
+        ]
+        rivals = sorted({_title(r) for c in causes for r in c.rivals})
+        sentences += [
+            f"The law of {_title(c.effect)} differs from the catalogue's {c.law_differs}."
+            for c in causes
+            if c.law_differs
+        ]
+        if rivals:
+            sentences.append(f"Indistinguishable from it in these recordings: {', '.join(rivals)}.")
+    elif verdict == "sufficient":
+        return "The nominal model is at the noise level: these runs show no missing effect."
+    else:
+        rms = _two_digits(math.sqrt(after.mean_square))
+        sentences.append(
+            f"The residual RMS is {rms} × the noise level, and no catalogued effect explains it."
+        )
+    for cause in stand_ins:
+        gain = f"{_title(cause.effect)} takes {cause.gain_percent:.0f} % off it"
+        sentences.append(f"{gain}, but is not proven: it {cause.failed[0]}.")
+    if not after.complete:
+        if causes:
+            sentences.append("No catalogued effect explains the remaining residual.")
+        sentences += _dependence(after)
+    return " ".join(text[0].upper() + text[1:] for text in sentences)
+
+
+def _dependence(after: Remainder) -> list[str]:
+    out = []
+    if after.depends_on:
+        out.append(f"It depends on {', '.join(signal_in_words(s) for s in after.depends_on)}.")
+    if after.late:
+        names = " and ".join(after.late)
+        out.append(f"At each reversal {names} lags behind the model, or leads it.")
+    return out
+
+
+def _title(effect: str) -> str:
+    return BY_NAME[effect].title.lower()
+
+
+def _two_digits(value: float) -> str:
+    return f"{value:#.2g}" if value < 9.95 else f"{float(f'{value:.2g}'):.0f}"

@@ -1,0 +1,86 @@
+"""Held-out errors by a new fit without each fold, simulated: what a diagnosis reports.
+
+The search holds out by one Gauss-Newton step, which fails where a model is far from the data. Here
+each fold is left out of a fit from that step on, and simulated with its values.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from tsas_cli.diagnosis.held_out import Folds, held_out_values, own_of_fold
+from tsas_cli.identification.extension import TOLERANCE, Bench, HypothesisFit
+from tsas_cli.identification.fit import solve
+from tsas_cli.identification.fit_problem import rig_at
+
+Floats = npt.NDArray[np.float64]
+Bits = npt.NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class HeldOut:
+    """Errors of one hypothesis on held-out data.
+
+    `rmse` is the RMS of each channel, in its unit; `squares` the sum of squares of the weighted
+    residuals in each block, shape (blocks,).
+    """
+
+    rmse: dict[str, float]
+    squares: Floats
+
+
+def refitted(bench: Bench, trial: HypothesisFit, folds: Folds) -> HeldOut:
+    """Return the errors of a hypothesis on each fold, simulated with a fit to the others."""
+    runs = bench.errors_for(trial)
+    raw: dict[str, list[Floats]] = {}
+    weighted = np.empty(folds.fold.size)
+    starts = np.concatenate(([0], np.cumsum(trial.sizes)))
+    for fold in range(int(folds.fold.max()) + 1):
+        held_out = np.split(folds.fold == fold, starts[1:-1])
+        values = refitted_values(bench, trial, folds, fold)
+        for k, run in enumerate(runs):
+            if not held_out[k].any():
+                continue
+            rig = rig_at(bench.rigs[k], k, trial.unknowns, values)
+            here = weighted[starts[k] : starts[k + 1]]
+            here[held_out[k]] = run.residuals(rig)[held_out[k]]
+            for name, errors in run.raw(rig).items():
+                raw.setdefault(name, []).append(errors[run.spread(name, held_out[k])])
+    rmse = {n: float(np.sqrt(np.mean(np.concatenate(parts) ** 2))) for n, parts in raw.items()}
+    squares = np.bincount(folds.block, weighted**2, minlength=folds.blocks)
+    return HeldOut(rmse, squares.astype(np.float64))
+
+
+def refitted_values(bench: Bench, trial: HypothesisFit, folds: Folds, fold: int) -> Floats:
+    """Return the scaled values of a fit without one fold, its run's own ones fitted to it."""
+    held_out = np.split(folds.fold == fold, np.cumsum(trial.sizes)[:-1])
+    own = own_of_fold(trial, folds, fold)
+    values = held_out_values(trial, folds, fold)
+    values = _solved(bench, trial, values, ~own, [~part for part in held_out])
+    return _solved(bench, trial, values, own, held_out) if own.any() else values
+
+
+def _solved(
+    bench: Bench, trial: HypothesisFit, values: Floats, free: Bits, kept: Sequence[Bits]
+) -> Floats:
+    """Return the values with the free unknowns fitted to the kept residuals of each run."""
+    runs = bench.errors_for(trial)
+
+    def residuals(k: int, some: Floats) -> Floats:
+        if not kept[k].any():
+            return np.zeros(0)
+        at = values.copy()
+        at[free] = some
+        rig = rig_at(bench.rigs[k], k, trial.unknowns, at)
+        return runs[k].residuals(rig)[kept[k]]
+
+    unknowns = [
+        replace(u, initial=float(v))
+        for u, v, is_free in zip(trial.unknowns, values, free, strict=True)
+        if is_free
+    ]
+    out = values.copy()
+    out[free] = solve(unknowns, len(runs), residuals, tolerance=TOLERANCE).values
+    return out
