@@ -213,5 +213,14 @@ SIGNATURES: Mapping[str, Signature] = MappingProxyType(
             ),
             planes=(F_IN_OVER_X_IN, F_OUT_OVER_X_IN),
         ),
+        "sensor_lag": Signature(
+            "The channel is late as with a delay, and its corners are round: after a reversal it "
+            "leaves the old line slowly.",
+            (
+                Variant({"f_in_lag_s": 0.15}, "f_in_N", "of f_in"),
+                Variant({"f_out_lag_s": 0.15}, "f_out_N", "of f_out"),
+            ),
+            planes=(F_IN_OVER_X_IN, F_OUT_OVER_X_IN),
+        ),
     }
 )

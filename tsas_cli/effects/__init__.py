@@ -29,6 +29,7 @@ from tsas_cli.effects.position_sensor_gain import POSITION_SENSOR_GAIN, Position
 from tsas_cli.effects.preload_loss import PRELOAD_LOSS, PreloadLoss
 from tsas_cli.effects.presliding import PRESLIDING, Presliding
 from tsas_cli.effects.proximal_spring import PROXIMAL_SPRING, ProximalSpring
+from tsas_cli.effects.sensor_lag import SENSOR_LAG, SensorLag
 from tsas_cli.effects.sheath_compression import SHEATH_COMPRESSION, SheathCompression
 from tsas_cli.effects.stribeck_friction import STRIBECK_FRICTION, StribeckFriction
 from tsas_cli.effects.viscous_friction import VISCOUS_FRICTION, ViscousFriction
@@ -57,6 +58,7 @@ EFFECTS: tuple[Effect, ...] = (  # from the drive to the load, then the sensors
     FORCE_SENSOR_DRIFT,
     POSITION_SENSOR_GAIN,
     CHANNEL_DELAY,
+    SENSOR_LAG,
 )
 
 
@@ -86,6 +88,7 @@ class Effects(NamedTuple):
     force_sensor_drift: ForceSensorDrift = ForceSensorDrift()
     position_sensor_gain: PositionSensorGain = PositionSensorGain()
     channel_delay: ChannelDelay = ChannelDelay()
+    sensor_lag: SensorLag = SensorLag()
 
 
 __all__ = [
@@ -113,6 +116,7 @@ __all__ = [
     "PreloadLoss",
     "Presliding",
     "ProximalSpring",
+    "SensorLag",
     "SheathCompression",
     "StribeckFriction",
     "ViscousFriction",

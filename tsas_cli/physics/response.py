@@ -20,7 +20,7 @@ from tsas_cli.physics.lugre.chain import OWN_STEPS, StepControl, lugre_chain
 from tsas_cli.physics.mesh import MOST_NODES
 from tsas_cli.physics.phases import SLACK
 from tsas_cli.physics.rig import Rig
-from tsas_cli.physics.sensors import reading
+from tsas_cli.physics.sensors import new_memory, reading, sensed
 from tsas_cli.physics.slip.chain import rest_after, slip_chain
 
 Floats = npt.NDArray[np.float64]
@@ -144,14 +144,19 @@ def is_closed(rig: Rig, drive: DriveInput) -> bool:
 def sensor_readings(
     rig: Rig, drive: DriveInput, output: Output, skip: int, solver: str
 ) -> Prediction:
-    """Return the sensor readings of an output without its first `skip` samples."""
-    x_in = output.x_in[skip:]
+    """Return the sensor readings of a run's output without its first `skip` samples."""
+    output = Output(*(column[skip:] for column in output))
+    return readings_of(rig, drive, sensed(output, drive.time_s, rig, new_memory()), solver)
+
+
+def readings_of(rig: Rig, drive: DriveInput, signals: Output, solver: str) -> Prediction:
+    """Return the readings of signals that passed the memory of the sensors."""
     return Prediction(
-        drive.values if drive.kind == "displacement" else x_in + rig.x_in_zero_mm,
-        reading("x_out_mm", output.x_out[skip:], drive.time_s, rig),
-        reading("f_in_N", output.f_in[skip:], drive.time_s, rig),
-        reading("f_out_N", output.f_out[skip:], drive.time_s, rig),
-        output.phase[skip:],
+        drive.values if drive.kind == "displacement" else signals.x_in + rig.x_in_zero_mm,
+        reading("x_out_mm", signals.x_out, drive.time_s, rig),
+        reading("f_in_N", signals.f_in, drive.time_s, rig),
+        reading("f_out_N", signals.f_out, drive.time_s, rig),
+        signals.phase,
         solver,
     )
 

@@ -1,4 +1,8 @@
-"""Sensor readings of true forces and displacements, and the inverse."""
+"""Sensor readings of true forces and displacements, and the inverse.
+
+From the true value to the reading: low pass, delay, gain, offset with drift. The low pass has a
+memory, which is carried over where a run is simulated in pieces.
+"""
 
 from typing import Literal
 
@@ -10,25 +14,79 @@ from tsas_cli.effects.force_sensor_gain import read_gain
 from tsas_cli.effects.force_sensor_offset import offset_reading
 from tsas_cli.effects.position_sensor_gain import read_position
 from tsas_cli.numerics.compiled import kernel
+from tsas_cli.numerics.settling import lag_after
+from tsas_cli.physics.course import Output
 from tsas_cli.physics.rig import Rig
 
 Floats = npt.NDArray[np.float64]
 Channel = Literal["f_in_N", "f_out_N", "x_out_mm"]
+CHANNELS: tuple[Channel, ...] = ("f_in_N", "f_out_N", "x_out_mm")
+
+
+def new_memory() -> Floats:
+    """Return the memory of the sensors before the first sample of a run.
+
+    For each of `CHANNELS` time [s] and input of its low pass at the last sample, and by how much
+    the low pass lags there, shape (3, 3); NaN before the first sample.
+    """
+    return np.full((len(CHANNELS), 3), np.nan)
+
+
+def sensed(output: Output, time_s: Floats | None, rig: Rig, memory: Floats) -> Output:
+    """Return an output with its signals after the sensors' low passes.
+
+    `time_s` are the times of the samples, shape (n,), None for a run without time, which passes no
+    filter. `memory` is that after the sample before, updated in place.
+    """
+    signals = [output.f_in, output.f_out, output.x_out]
+    if time_s is not None:
+        for k, lag_s in enumerate(rig.effects.sensor_lag):
+            if lag_s > 0.0:
+                signals[k] = low_pass(signals[k], time_s, lag_s, memory[k])
+    f_in, f_out, x_out = signals
+    return output._replace(f_in=f_in, f_out=f_out, x_out=x_out)
+
+
+@kernel
+def low_pass(values: Floats, time_s: Floats, lag_s: float, memory: Floats) -> Floats:
+    """Return values after a first-order low pass, which starts at rest at the first one.
+
+    `memory` is a channel's row of that of the sensors, updated in place.
+    """
+    out = np.empty(values.size)
+    time, value, behind = memory
+    for i in range(values.size):
+        if np.isnan(time):
+            behind = 0.0
+        else:
+            behind = lag_after(behind, values[i] - value, time_s[i] - time, lag_s)
+        time, value = time_s[i], values[i]
+        out[i] = value - behind
+    memory[0], memory[1], memory[2] = time, value, behind
+    return out
 
 
 def reading(channel: Channel, values: Floats, time_s: Floats | None, rig: Rig) -> Floats:
-    """Return a channel's readings of true values, shape (n,): delayed, scaled, shifted.
+    """Return a channel's readings of signals that passed `sensed`: delayed, scaled, shifted.
 
-    Without times there is no delay and no drift.
+    Shapes (n,). Without times there is no delay and no drift.
     """
     delayed = _delayed_by(values, time_s, _delay(channel, rig))
     return delayed * _gain(channel, rig) + _shift(channel, time_s, rig)
 
 
 def true_value(channel: Channel, readings: Floats, time_s: Floats | None, rig: Rig) -> Floats:
-    """Return the true values of a channel's readings, the inverse of `reading`."""
+    """Return the true values of a channel's readings, the inverse of `sensed` and `reading`.
+
+    A low pass is inverted to first order in its time, by the rate of the signal: the exact inverse
+    would multiply noise by the square of that time over the sampling period.
+    """
     delayed = (readings - _shift(channel, time_s, rig)) / _gain(channel, rig)
-    return _delayed_by(delayed, time_s, -_delay(channel, rig))
+    signal = _delayed_by(delayed, time_s, -_delay(channel, rig))
+    lag_s = rig.effects.sensor_lag[CHANNELS.index(channel)]
+    if lag_s == 0.0 or time_s is None or signal.size < 2:
+        return signal
+    return signal + lag_s * np.gradient(signal, time_s)
 
 
 def _delayed_by(values: Floats, time_s: Floats | None, delay_s: float) -> Floats:
