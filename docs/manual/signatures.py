@@ -198,6 +198,15 @@ SIGNATURES: Mapping[str, Signature] = MappingProxyType(
             LONG,
             over="time_s",
         ),
+        "force_sensor_curvature": Signature(
+            "The residual of one channel is a parabola over its tension, the same on pull and "
+            "release; the other channels fit.",
+            (
+                Variant({"f_in_per_N": 2e-3}, "f_in_N", "of f_in"),
+                Variant({"f_out_per_N": 2e-3}, "f_out_N", "of f_out"),
+            ),
+            planes=(F_OUT_OVER_X_OUT, F_IN_OVER_F_OUT),
+        ),
         "position_sensor_gain": Signature(
             "x_out is wrong in proportion to its travel and f_out over x_out has a wrong slope; "
             "the tensions fit.",

@@ -1,7 +1,7 @@
 """Sensor readings of true forces and displacements, and the inverse.
 
-From the true value to the reading: low pass, delay, gain, offset with drift. The low pass has a
-memory, which is carried over where a run is simulated in pieces.
+From the true value to the reading: low pass, delay, curve, gain, offset with drift. The low pass
+has a memory, which is carried over where a run is simulated in pieces.
 """
 
 from typing import Literal
@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
+from tsas_cli.effects.force_sensor_curvature import read_curved, straightened
 from tsas_cli.effects.force_sensor_drift import drift_reading
 from tsas_cli.effects.force_sensor_gain import read_gain
 from tsas_cli.effects.force_sensor_offset import offset_reading
@@ -67,11 +68,13 @@ def low_pass(values: Floats, time_s: Floats, lag_s: float, memory: Floats) -> Fl
 
 
 def reading(channel: Channel, values: Floats, time_s: Floats | None, rig: Rig) -> Floats:
-    """Return a channel's readings of signals that passed `sensed`: delayed, scaled, shifted.
+    """Return a channel's readings of signals that passed `sensed`, shape (n,).
 
-    Shapes (n,). Without times there is no delay and no drift.
+    They are delayed, curved, scaled, shifted. Without times there is no delay and no drift.
     """
-    delayed = _delayed_by(values, time_s, _delay(channel, rig))
+    delayed, curvature = _delayed_by(values, time_s, _delay(channel, rig)), _curvature(channel, rig)
+    if curvature != 0.0:
+        delayed = read_curved(delayed, curvature)
     return delayed * _gain(channel, rig) + _shift(channel, time_s, rig)
 
 
@@ -82,6 +85,9 @@ def true_value(channel: Channel, readings: Floats, time_s: Floats | None, rig: R
     would multiply noise by the square of that time over the sampling period.
     """
     delayed = (readings - _shift(channel, time_s, rig)) / _gain(channel, rig)
+    curvature = _curvature(channel, rig)
+    if curvature != 0.0:
+        delayed = straightened(delayed, curvature)
     signal = _delayed_by(delayed, time_s, -_delay(channel, rig))
     lag_s = rig.effects.sensor_lag[CHANNELS.index(channel)]
     if lag_s == 0.0 or time_s is None or signal.size < 2:
@@ -103,6 +109,13 @@ def _delay(channel: Channel, rig: Rig) -> float:
         "f_out_N": delays.f_out_delay_s,
         "x_out_mm": delays.x_out_delay_s,
     }[channel]
+
+
+def _curvature(channel: Channel, rig: Rig) -> float:
+    if channel == "x_out_mm":
+        return 0.0
+    curves = rig.effects.force_sensor_curvature
+    return curves.f_in_per_N if channel == "f_in_N" else curves.f_out_per_N
 
 
 def _gain(channel: Channel, rig: Rig) -> float:
