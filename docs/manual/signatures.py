@@ -207,6 +207,15 @@ SIGNATURES: Mapping[str, Signature] = MappingProxyType(
             ),
             planes=(F_OUT_OVER_X_OUT, F_IN_OVER_F_OUT),
         ),
+        "force_crosstalk": Signature(
+            "f_out moves in dead bands, where the load stands still; f_in is too high on pull and "
+            "release alike, and fits in dead bands.",
+            (
+                Variant({"f_in_of_f_out": 0.2}, "f_in_N", "of f_out in f_in"),
+                Variant({"f_out_of_f_in": 0.1}, "f_out_N", "of f_in in f_out"),
+            ),
+            planes=(F_OUT_OVER_X_OUT, F_IN_OVER_F_OUT),
+        ),
         "position_sensor_gain": Signature(
             "x_out is wrong in proportion to its travel and f_out over x_out has a wrong slope; "
             "the tensions fit.",

@@ -3,9 +3,11 @@
 import numpy as np
 import pytest
 
-from tests.effects.runs import run
+from tests.effects.runs import UP_AND_DOWN, run
 from tests.physics.references import GROUP_A
 from tsas_cli.effects.force_sensor_curvature import read_curved, straightened
+from tsas_cli.physics.ends import DriveInput
+from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import with_values
 from tsas_cli.physics.sensors import true_value
 
@@ -48,3 +50,33 @@ def test_a_measured_load_is_taken_back_to_its_force():
     rig = with_values(GROUP_A, {"force_sensor_curvature.f_out_per_N": 5e-4})
     true = np.array([20.0, 40.0, 60.0])
     np.testing.assert_allclose(true_value("f_out_N", true + 5e-4 * true**2, None, rig), true)
+
+
+@pytest.mark.parametrize(
+    ("values", "channel", "law"),
+    [
+        ({"f_in_of_f_out": 0.04}, "f_in_N", lambda f_in, f_out: f_in + 0.04 * f_out),
+        ({"f_out_of_f_in": -0.03}, "f_out_N", lambda f_in, f_out: f_out - 0.03 * f_in),
+    ],
+)
+def test_a_sensor_picks_up_the_other_force(values, channel, law):
+    changed_alone({f"force_crosstalk.{name}": v for name, v in values.items()}, channel, law)
+
+
+def test_both_sensors_pick_up_the_true_force_of_the_other():
+    values = {"force_crosstalk.f_in_of_f_out": 0.04, "force_crosstalk.f_out_of_f_in": -0.03}
+    plain, read = run({}), run(values)
+    np.testing.assert_allclose(read.f_in_N, plain.f_in_N + 0.04 * plain.f_out_N, rtol=1e-12)
+    np.testing.assert_allclose(read.f_out_N, plain.f_out_N - 0.03 * plain.f_in_N, rtol=1e-12)
+
+
+@pytest.mark.parametrize(("load", "share"), [("force", "f_out_of_f_in"), ("f_in", "f_in_of_f_out")])
+def test_a_measured_tension_that_drives_the_model_is_taken_as_it_is(load, share):
+    plain = run({})
+    drive = DriveInput(UP_AND_DOWN, load="force", load_values=plain.f_out_N)
+    if load == "f_in":
+        drive = DriveInput(plain.f_in_N, kind="force")
+    rig = with_values(GROUP_A, {f"force_crosstalk.{share}": 0.04})
+    with_it, without = simulate(rig, drive), simulate(GROUP_A, drive)
+    for name in CHANNELS:
+        np.testing.assert_array_equal(getattr(with_it, name), getattr(without, name))

@@ -13,6 +13,7 @@ from tsas_cli.effects.drive_compliance import DRIVE_COMPLIANCE, DriveCompliance
 from tsas_cli.effects.drive_friction import DRIVE_FRICTION, DriveFriction
 from tsas_cli.effects.drive_ripple import DRIVE_RIPPLE, DriveRipple
 from tsas_cli.effects.effect import Effect, Parameter
+from tsas_cli.effects.force_crosstalk import FORCE_CROSSTALK, ForceCrosstalk
 from tsas_cli.effects.force_sensor_curvature import FORCE_SENSOR_CURVATURE, ForceSensorCurvature
 from tsas_cli.effects.force_sensor_drift import FORCE_SENSOR_DRIFT, ForceSensorDrift
 from tsas_cli.effects.force_sensor_gain import FORCE_SENSOR_GAIN, ForceSensorGain
@@ -58,6 +59,7 @@ EFFECTS: tuple[Effect, ...] = (  # from the drive to the load, then the sensors
     FORCE_SENSOR_OFFSET,
     FORCE_SENSOR_DRIFT,
     FORCE_SENSOR_CURVATURE,
+    FORCE_CROSSTALK,
     POSITION_SENSOR_GAIN,
     CHANNEL_DELAY,
     SENSOR_LAG,
@@ -89,6 +91,7 @@ class Effects(NamedTuple):
     force_sensor_offset: ForceSensorOffset = ForceSensorOffset()
     force_sensor_drift: ForceSensorDrift = ForceSensorDrift()
     force_sensor_curvature: ForceSensorCurvature = ForceSensorCurvature()
+    force_crosstalk: ForceCrosstalk = ForceCrosstalk()
     position_sensor_gain: PositionSensorGain = PositionSensorGain()
     channel_delay: ChannelDelay = ChannelDelay()
     sensor_lag: SensorLag = SensorLag()
@@ -105,6 +108,7 @@ __all__ = [
     "DriveRipple",
     "Effect",
     "Effects",
+    "ForceCrosstalk",
     "ForceSensorCurvature",
     "ForceSensorDrift",
     "ForceSensorGain",

@@ -110,13 +110,13 @@ def simulate_pieces(
         to = piece.until if piece.next_begin is None else piece.next_begin
         time_s = _times(piece.drive)
         outputs, state = _follow(rig, ends.part(piece.begin, to), mesh, state)
-        signals = sensed(outputs, time_s[piece.begin : to], rig, memory)
+        signals = sensed(outputs, time_s[piece.begin : to], rig, ends.boundary, memory)
         if piece.handover is not None:
             at = piece.handover
             position, direction = float(ends.drive[at]), float(ends.direction[at])
             start = Start(deepcopy(state), memory.copy(), position, direction)
             further, _ = _follow(rig, ends.part(to, piece.until), mesh, state)
-            further = sensed(further, time_s[to : piece.until], rig, memory)
+            further = sensed(further, time_s[to : piece.until], rig, ends.boundary, memory)
             signals = _concatenated(signals, further)
         drive = _part(piece.drive, piece.begin, piece.until)
         response = readings_of(rig, drive, signals, solver_of(mesh, dynamics))

@@ -84,10 +84,6 @@ def ends_of(rig: Rig, drive: DriveInput, start: tuple[float, float] | None = Non
     of its last motion, where the drive continues a run; None at the start of one.
     """
     n = drive.values.size
-    boundary = Boundary(
-        FORCE if drive.kind == "force" else DISPLACEMENT,
-        {"force": FORCE, "displacement": DISPLACEMENT, "spring": SPRING}[drive.load],
-    )
     time_s = np.zeros(n) if drive.time_s is None else drive.time_s
     if drive.kind == "force":
         at_drive = true_value("f_in_N", drive.values, drive.time_s, rig)
@@ -106,7 +102,16 @@ def ends_of(rig: Rig, drive: DriveInput, start: tuple[float, float] | None = Non
         step_s[1:] = np.diff(time_s)
     losses = losses_over(time_s, speed, drive.session_s, rig)
     course = np.vstack((losses, at_drive, at_load, step_s, time_s))
-    return EndInputs(course, boundary, last_direction(at_drive, 0.0 if start is None else start[1]))
+    direction = last_direction(at_drive, 0.0 if start is None else start[1])
+    return EndInputs(course, boundary_of(drive), direction)
+
+
+def boundary_of(drive: DriveInput) -> Boundary:
+    """Return the given quantity at each end of a driven tendon."""
+    return Boundary(
+        FORCE if drive.kind == "force" else DISPLACEMENT,
+        {"force": FORCE, "displacement": DISPLACEMENT, "spring": SPRING}[drive.load],
+    )
 
 
 @kernel

@@ -14,7 +14,7 @@ from tsas_cli.physics.boundary import FORCE
 from tsas_cli.physics.closed_form.branches import branches
 from tsas_cli.physics.closed_form.static import static_model
 from tsas_cli.physics.course import Output, Tensions
-from tsas_cli.physics.ends import DriveInput, EndInputs, ends_of
+from tsas_cli.physics.ends import DriveInput, EndInputs, boundary_of, ends_of
 from tsas_cli.physics.frames import Frames, Indices, empty_frames
 from tsas_cli.physics.lugre.chain import OWN_STEPS, StepControl, lugre_chain
 from tsas_cli.physics.mesh import MOST_NODES
@@ -146,7 +146,8 @@ def sensor_readings(
 ) -> Prediction:
     """Return the sensor readings of a run's output without its first `skip` samples."""
     output = Output(*(column[skip:] for column in output))
-    return readings_of(rig, drive, sensed(output, drive.time_s, rig, new_memory()), solver)
+    signals = sensed(output, drive.time_s, rig, boundary_of(drive), new_memory())
+    return readings_of(rig, drive, signals, solver)
 
 
 def readings_of(rig: Rig, drive: DriveInput, signals: Output, solver: str) -> Prediction:
@@ -230,8 +231,9 @@ def history(rig: Rig, ends: EndInputs, target_f_in_N: float | None, nodes: int) 
         return []
 
     def f_in(before: list[float]) -> float:
-        last = _solve(rig, first.after(before), nodes).f_in[-1:]
-        return float(reading("f_in_N", last, None, rig)[0])
+        last = Output(*(column[-1:] for column in _solve(rig, first.after(before), nodes)))
+        signals = sensed(last, None, rig, ends.boundary, new_memory())
+        return float(reading("f_in_N", signals.f_in, None, rig)[0])
 
     x = float(ends.drive[0])
     first = ends.first()

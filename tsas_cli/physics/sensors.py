@@ -1,6 +1,6 @@
 """Sensor readings of true forces and displacements, and the inverse.
 
-From the true value to the reading: low pass, delay, curve, gain, offset with drift. The low pass
+From the true value to the reading: crosstalk, low pass, delay, curve, gain, offset with drift. The low pass
 has a memory, which is carried over where a run is simulated in pieces.
 """
 
@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
+from tsas_cli.effects.force_crosstalk import with_crosstalk
 from tsas_cli.effects.force_sensor_curvature import read_curved, straightened
 from tsas_cli.effects.force_sensor_drift import drift_reading
 from tsas_cli.effects.force_sensor_gain import read_gain
@@ -16,6 +17,7 @@ from tsas_cli.effects.force_sensor_offset import offset_reading
 from tsas_cli.effects.position_sensor_gain import read_position
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.numerics.settling import lag_after
+from tsas_cli.physics.boundary import FORCE, Boundary
 from tsas_cli.physics.course import Output
 from tsas_cli.physics.rig import Rig
 
@@ -33,13 +35,21 @@ def new_memory() -> Floats:
     return np.full((len(CHANNELS), 3), np.nan)
 
 
-def sensed(output: Output, time_s: Floats | None, rig: Rig, memory: Floats) -> Output:
-    """Return an output with its signals after the sensors' low passes.
+def sensed(
+    output: Output, time_s: Floats | None, rig: Rig, boundary: Boundary, memory: Floats
+) -> Output:
+    """Return an output with its signals after crosstalk and the sensors' low passes.
 
     `time_s` are the times of the samples, shape (n,), None for a run without time, which passes no
-    filter. `memory` is that after the sample before, updated in place.
+    filter. A force that is given at the `boundary` is read as it is given, without crosstalk.
+    `memory` is that after the sample before, updated in place.
     """
-    signals = [output.f_in, output.f_out, output.x_out]
+    f_in, f_out, shares = output.f_in, output.f_out, rig.effects.force_crosstalk
+    if shares.f_in_of_f_out != 0.0 and boundary.drive != FORCE:
+        f_in = with_crosstalk(f_in, output.f_out, shares.f_in_of_f_out)
+    if shares.f_out_of_f_in != 0.0 and boundary.load != FORCE:
+        f_out = with_crosstalk(f_out, output.f_in, shares.f_out_of_f_in)
+    signals = [f_in, f_out, output.x_out]
     if time_s is not None:
         for k, lag_s in enumerate(rig.effects.sensor_lag):
             if lag_s > 0.0:

@@ -18,6 +18,7 @@ from tsas_cli.controllers.closed_loop import (
 from tsas_cli.controllers.path import DrivePath
 from tsas_cli.controllers.sliding_mode import SlidingSettings
 from tsas_cli.identification.model import Model, data_sheet
+from tsas_cli.physics.boundary import DISPLACEMENT, SPRING, Boundary
 from tsas_cli.physics.course import Output
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.sensors import Channel, new_memory, reading, sensed
@@ -40,7 +41,7 @@ def table_of(
 
     x_in, phase = columns[X_SEEN], np.zeros(time_s.size, dtype=np.int8)
     true = Output(x_in, columns[X_OUT], columns[F_IN], columns[F_OUT], phase)
-    signals = sensed(true, time_s, rig, new_memory())
+    signals = sensed(true, time_s, rig, Boundary(DISPLACEMENT, SPRING), new_memory())
 
     def seen(channel: Channel, values: Floats, noise: float) -> Floats:
         read = reading(channel, values, time_s, rig)
