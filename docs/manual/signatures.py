@@ -207,6 +207,15 @@ SIGNATURES: Mapping[str, Signature] = MappingProxyType(
             ),
             planes=(F_OUT_OVER_X_OUT, F_IN_OVER_F_OUT),
         ),
+        "force_sensor_hysteresis": Signature(
+            "One channel is too low while its force grows and too high while it falls, by a "
+            "constant that it takes a span of force to reach: f_out over x_out becomes a loop.",
+            (
+                Variant({"f_in_share": 0.3, "span_N": 10.0}, "f_in_N", "of f_in"),
+                Variant({"f_out_share": 0.2, "span_N": 10.0}, "f_out_N", "of f_out"),
+            ),
+            planes=(F_IN_OVER_X_IN, F_OUT_OVER_X_OUT),
+        ),
         "force_crosstalk": Signature(
             "f_out moves in dead bands, where the load stands still; f_in is too high on pull and "
             "release alike, and fits in dead bands.",

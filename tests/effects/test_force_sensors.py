@@ -80,3 +80,48 @@ def test_a_measured_tension_that_drives_the_model_is_taken_as_it_is(load, share)
     with_it, without = simulate(rig, drive), simulate(GROUP_A, drive)
     for name in CHANNELS:
         np.testing.assert_array_equal(getattr(with_it, name), getattr(without, name))
+
+
+def loop_by_branches(force, span, share):
+    """Return the reading on a rise from rest, then on a fall: straight lines between kinks.
+
+    The element rises with the force to its span; after the reversal it falls as far below it, over
+    twice the span.
+    """
+    top = int(np.argmax(force))
+    up = np.interp(force[: top + 1] - force[0], [0.0, span, 1e6], [0.0, span, span])
+    down = np.interp(force[top] - force[top + 1 :], [0.0, 2.0 * span, 1e6], [span, -span, -span])
+    return force - share * np.concatenate((up, down))
+
+
+@pytest.mark.parametrize("channel", ["f_in", "f_out"])
+def test_a_sensor_with_hysteresis_reads_less_on_the_pull_than_on_the_release(channel):
+    def law(f_in, f_out):
+        return loop_by_branches(f_in if channel == "f_in" else f_out, 6.0, 0.05)
+
+    values = {f"{channel}_share": 0.05, "span_N": 6.0}
+    named = {f"force_sensor_hysteresis.{name}": value for name, value in values.items()}
+    changed_alone(named, f"{channel}_N", law)
+
+
+def test_small_loops_of_a_sensor_with_hysteresis_close_and_only_large_ones_cost():
+    """Within the span the reading is a line of slope 1 − share, and a larger loop is no higher."""
+    heights = []
+    for stroke in (1.0, 6.0, 12.0):
+        x = 10.0 - stroke * np.concatenate((np.linspace(0, 1, 200), np.linspace(1, 0, 200)))
+        plain, read = (
+            run({f"force_sensor_hysteresis.{n}": v for n, v in values.items()}, x)
+            for values in ({}, {"f_out_share": 0.05, "span_N": 4.0})
+        )
+        error = (read.f_out_N - plain.f_out_N)[[0, -1]]
+        heights.append(abs(error[1] - error[0]))
+    assert heights[0] == pytest.approx(0.0, abs=1e-9)
+    assert 0.0 < heights[1] <= heights[2] <= 2.0 * 0.05 * 4.0
+
+
+def test_a_drive_by_force_is_taken_with_the_loop_that_it_has():
+    drive = DriveInput(run({}).f_in_N, kind="force")
+    rig = with_values(GROUP_A, {"force_sensor_hysteresis.f_in_share": 0.05})
+    with_it, without = simulate(rig, drive), simulate(GROUP_A, drive)
+    np.testing.assert_array_equal(with_it.x_in_mm, without.x_in_mm)
+    np.testing.assert_array_equal(with_it.f_in_N, without.f_in_N)

@@ -18,7 +18,7 @@ UNEVEN = np.cumsum(np.random.default_rng(3).uniform(0.0, 0.04, 400))
 
 
 def filtered(values, time_s, lag_s=LAG):
-    return low_pass(values, time_s, lag_s, np.full(3, np.nan))
+    return low_pass(values, time_s, lag_s, np.full(5, np.nan))
 
 
 def test_a_line_is_followed_with_the_lag_of_its_rate():

@@ -26,6 +26,10 @@ DELAYS = {
     "channel_delay.x_out_delay_s": 0.02,
 }
 REMEMBERED = {
+    "force_crosstalk.f_in_of_f_out": 0.05,
+    "force_sensor_hysteresis.f_in_share": 0.1,
+    "force_sensor_hysteresis.f_out_share": 0.2,
+    "force_sensor_curvature.f_out_per_N": 1e-3,
     "sensor_lag.f_in_lag_s": 0.7,
     "sensor_lag.f_out_lag_s": 0.05,
     "sensor_lag.x_out_lag_s": 0.02,

@@ -17,6 +17,7 @@ from tsas_cli.effects.force_crosstalk import FORCE_CROSSTALK, ForceCrosstalk
 from tsas_cli.effects.force_sensor_curvature import FORCE_SENSOR_CURVATURE, ForceSensorCurvature
 from tsas_cli.effects.force_sensor_drift import FORCE_SENSOR_DRIFT, ForceSensorDrift
 from tsas_cli.effects.force_sensor_gain import FORCE_SENSOR_GAIN, ForceSensorGain
+from tsas_cli.effects.force_sensor_hysteresis import FORCE_SENSOR_HYSTERESIS, ForceSensorHysteresis
 from tsas_cli.effects.force_sensor_offset import FORCE_SENSOR_OFFSET, ForceSensorOffset
 from tsas_cli.effects.free_tendon import FREE_TENDON, FreeTendon
 from tsas_cli.effects.friction_drift import FRICTION_DRIFT, FrictionDrift
@@ -59,6 +60,7 @@ EFFECTS: tuple[Effect, ...] = (  # from the drive to the load, then the sensors
     FORCE_SENSOR_OFFSET,
     FORCE_SENSOR_DRIFT,
     FORCE_SENSOR_CURVATURE,
+    FORCE_SENSOR_HYSTERESIS,
     FORCE_CROSSTALK,
     POSITION_SENSOR_GAIN,
     CHANNEL_DELAY,
@@ -91,6 +93,7 @@ class Effects(NamedTuple):
     force_sensor_offset: ForceSensorOffset = ForceSensorOffset()
     force_sensor_drift: ForceSensorDrift = ForceSensorDrift()
     force_sensor_curvature: ForceSensorCurvature = ForceSensorCurvature()
+    force_sensor_hysteresis: ForceSensorHysteresis = ForceSensorHysteresis()
     force_crosstalk: ForceCrosstalk = ForceCrosstalk()
     position_sensor_gain: PositionSensorGain = PositionSensorGain()
     channel_delay: ChannelDelay = ChannelDelay()
@@ -112,6 +115,7 @@ __all__ = [
     "ForceSensorCurvature",
     "ForceSensorDrift",
     "ForceSensorGain",
+    "ForceSensorHysteresis",
     "ForceSensorOffset",
     "FreeTendon",
     "FrictionDrift",

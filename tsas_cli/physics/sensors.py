@@ -1,7 +1,8 @@
 """Sensor readings of true forces and displacements, and the inverse.
 
-From the true value to the reading: crosstalk, low pass, delay, curve, gain, offset with drift. The low pass
-has a memory, which is carried over where a run is simulated in pieces.
+From the true value to the reading: crosstalk, hysteresis, low pass, delay, curve, gain, offset with
+drift. Hysteresis and low pass have a memory, which is carried over where a run is simulated in
+pieces.
 """
 
 from typing import Literal
@@ -13,9 +14,11 @@ from tsas_cli.effects.force_crosstalk import with_crosstalk
 from tsas_cli.effects.force_sensor_curvature import read_curved, straightened
 from tsas_cli.effects.force_sensor_drift import drift_reading
 from tsas_cli.effects.force_sensor_gain import read_gain
+from tsas_cli.effects.force_sensor_hysteresis import read_hysteresis
 from tsas_cli.effects.force_sensor_offset import offset_reading
 from tsas_cli.effects.position_sensor_gain import read_position
 from tsas_cli.numerics.compiled import kernel
+from tsas_cli.numerics.elastoplastic import yielded
 from tsas_cli.numerics.settling import lag_after
 from tsas_cli.physics.boundary import FORCE, Boundary
 from tsas_cli.physics.course import Output
@@ -30,25 +33,33 @@ def new_memory() -> Floats:
     """Return the memory of the sensors before the first sample of a run.
 
     For each of `CHANNELS` time [s] and input of its low pass at the last sample, and by how much
-    the low pass lags there, shape (3, 3); NaN before the first sample.
+    the low pass lags there; input and force of its elastoplastic element; shape (3, 5), NaN before
+    the first sample.
     """
-    return np.full((len(CHANNELS), 3), np.nan)
+    return np.full((len(CHANNELS), 5), np.nan)
 
 
 def sensed(
     output: Output, time_s: Floats | None, rig: Rig, boundary: Boundary, memory: Floats
 ) -> Output:
-    """Return an output with its signals after crosstalk and the sensors' low passes.
+    """Return an output with its signals after crosstalk, hysteresis and low pass of the sensors.
 
     `time_s` are the times of the samples, shape (n,), None for a run without time, which passes no
-    filter. A force that is given at the `boundary` is read as it is given, without crosstalk.
-    `memory` is that after the sample before, updated in place.
+    filter. A force that is given at the `boundary` is read as it is given, without crosstalk and
+    hysteresis. `memory` is that after the sample before, updated in place.
     """
     f_in, f_out, shares = output.f_in, output.f_out, rig.effects.force_crosstalk
-    if shares.f_in_of_f_out != 0.0 and boundary.drive != FORCE:
-        f_in = with_crosstalk(f_in, output.f_out, shares.f_in_of_f_out)
-    if shares.f_out_of_f_in != 0.0 and boundary.load != FORCE:
-        f_out = with_crosstalk(f_out, output.f_in, shares.f_out_of_f_in)
+    loops = rig.effects.force_sensor_hysteresis
+    if boundary.drive != FORCE:
+        if shares.f_in_of_f_out != 0.0:
+            f_in = with_crosstalk(f_in, output.f_out, shares.f_in_of_f_out)
+        if loops.f_in_share != 0.0:
+            f_in = with_hysteresis(f_in, loops.f_in_share, loops.span_N, memory[0])
+    if boundary.load != FORCE:
+        if shares.f_out_of_f_in != 0.0:
+            f_out = with_crosstalk(f_out, output.f_in, shares.f_out_of_f_in)
+        if loops.f_out_share != 0.0:
+            f_out = with_hysteresis(f_out, loops.f_out_share, loops.span_N, memory[1])
     signals = [f_in, f_out, output.x_out]
     if time_s is not None:
         for k, lag_s in enumerate(rig.effects.sensor_lag):
@@ -59,13 +70,29 @@ def sensed(
 
 
 @kernel
+def with_hysteresis(forces: Floats, share: float, span_N: float, memory: Floats) -> Floats:
+    """Return forces with a sensor's hysteresis, whose element is without force at the first one.
+
+    `memory` is a channel's row of that of the sensors, updated in place.
+    """
+    out = np.empty(forces.size)
+    before, element_N = memory[3], memory[4]
+    for i in range(forces.size):
+        element_N = 0.0 if np.isnan(before) else yielded(element_N, forces[i] - before, span_N)
+        before = forces[i]
+        out[i] = read_hysteresis(before, element_N, share)
+    memory[3], memory[4] = before, element_N
+    return out
+
+
+@kernel
 def low_pass(values: Floats, time_s: Floats, lag_s: float, memory: Floats) -> Floats:
     """Return values after a first-order low pass, which starts at rest at the first one.
 
     `memory` is a channel's row of that of the sensors, updated in place.
     """
     out = np.empty(values.size)
-    time, value, behind = memory
+    time, value, behind = memory[:3]
     for i in range(values.size):
         if np.isnan(time):
             behind = 0.0
