@@ -70,6 +70,12 @@ SIGNATURES: Mapping[str, Signature] = MappingProxyType(
             "negative on the release, a jump at the reversal.",
             _one(friction_N=4.0),
         ),
+        "drive_damping": Signature(
+            "The loop of f_in is wider where the drive is fast, in dead bands too, and fits at the "
+            "reversals; f_out is unaffected.",
+            _one(coefficient_N_s_per_mm=0.5),
+            planes=(F_IN_OVER_X_IN, F_OUT_OVER_X_IN),
+        ),
         "drive_ripple": Signature(
             "A wave with a fixed period in x_in, much higher where the tendon sticks.",
             _one(sine_mm=0.15, period_mm=1.0),

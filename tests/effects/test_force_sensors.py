@@ -9,7 +9,7 @@ from tsas_cli.effects.force_sensor_curvature import read_curved, straightened
 from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import with_values
-from tsas_cli.physics.sensors import true_value
+from tsas_cli.physics.sensors import true_value, with_hysteresis
 
 CHANNELS = ("x_in_mm", "f_in_N", "f_out_N", "x_out_mm")
 
@@ -104,19 +104,16 @@ def test_a_sensor_with_hysteresis_reads_less_on_the_pull_than_on_the_release(cha
     changed_alone(named, f"{channel}_N", law)
 
 
-def test_small_loops_of_a_sensor_with_hysteresis_close_and_only_large_ones_cost():
-    """Within the span the reading is a line of slope 1 − share, and a larger loop is no higher."""
-    heights = []
-    for stroke in (1.0, 6.0, 12.0):
-        x = 10.0 - stroke * np.concatenate((np.linspace(0, 1, 200), np.linspace(1, 0, 200)))
-        plain, read = (
-            run({f"force_sensor_hysteresis.{n}": v for n, v in values.items()}, x)
-            for values in ({}, {"f_out_share": 0.05, "span_N": 4.0})
-        )
-        error = (read.f_out_N - plain.f_out_N)[[0, -1]]
-        heights.append(abs(error[1] - error[0]))
-    assert heights[0] == pytest.approx(0.0, abs=1e-9)
-    assert 0.0 < heights[1] <= heights[2] <= 2.0 * 0.05 * 4.0
+@pytest.mark.parametrize("stroke", [3.0, 8.0, 9.0, 30.0])
+def test_a_loop_costs_what_exceeds_twice_the_span(stroke):
+    """The element dissipates 2·span·(stroke − 2·span) in a cycle, nothing in a small one."""
+    span, share = 4.0, 0.05
+    force = 40.0 - stroke * np.abs(np.linspace(-3.0, 3.0, 6001) % 2.0 - 1.0)
+    read = with_hysteresis(force, share, span, np.full(5, np.nan))
+    cycle = slice(4000, 6001)
+    assert force[cycle][0] == pytest.approx(force[cycle][-1])
+    loop = share * 2.0 * span * max(stroke - 2.0 * span, 0.0)
+    assert np.trapezoid(read[cycle], force[cycle]) == pytest.approx(-loop, abs=1e-3)
 
 
 def test_a_drive_by_force_is_taken_with_the_loop_that_it_has():

@@ -17,7 +17,7 @@ from tsas_cli.effects.drive_friction import drive_friction_force
 from tsas_cli.effects.drive_ripple import DriveRipple, rippled
 from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.physics.ends import last_direction, losses_over
+from tsas_cli.physics.ends import force_of_motion, last_direction, losses_over, speed_of
 from tsas_cli.physics.plant.turntable import Actuator
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.slip.inverse import inverse_chain
@@ -79,6 +79,7 @@ def follow(
     force = tension - rig.preload_N
     force += drive_friction_force(1.0, rig.effects.drive_friction.friction_N) * direction
     force += proximal_spring_force(1.0, rig.effects.proximal_spring.stiffness_N_per_mm) * end
+    force += force_of_motion(speed_of(end, time_s), rig.effects)
     drive = drive_at(geared, rig.effects.drive_ripple, step_s)
     wound = smoothed(force / actuator.stiffness_N_per_mm, width, step_s)
     return DrivePath(drive, drive + wound, missed)

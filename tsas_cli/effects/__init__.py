@@ -10,6 +10,7 @@ from tsas_cli.effects.direction_dependent_friction import (
     DirectionDependentFriction,
 )
 from tsas_cli.effects.drive_compliance import DRIVE_COMPLIANCE, DriveCompliance
+from tsas_cli.effects.drive_damping import DRIVE_DAMPING, DriveDamping
 from tsas_cli.effects.drive_friction import DRIVE_FRICTION, DriveFriction
 from tsas_cli.effects.drive_ripple import DRIVE_RIPPLE, DriveRipple
 from tsas_cli.effects.effect import Effect, Parameter
@@ -40,6 +41,7 @@ from tsas_cli.effects.viscous_friction import VISCOUS_FRICTION, ViscousFriction
 EFFECTS: tuple[Effect, ...] = (  # from the drive to the load, then the sensors
     BACKLASH,
     DRIVE_FRICTION,
+    DRIVE_DAMPING,
     DRIVE_RIPPLE,
     DRIVE_COMPLIANCE,
     PROXIMAL_SPRING,
@@ -73,6 +75,7 @@ class Effects(NamedTuple):
 
     backlash: Backlash = Backlash()
     drive_friction: DriveFriction = DriveFriction()
+    drive_damping: DriveDamping = DriveDamping()
     drive_ripple: DriveRipple = DriveRipple()
     drive_compliance: DriveCompliance = DriveCompliance()
     proximal_spring: ProximalSpring = ProximalSpring()
@@ -107,6 +110,7 @@ __all__ = [
     "ChannelDelay",
     "DirectionDependentFriction",
     "DriveCompliance",
+    "DriveDamping",
     "DriveFriction",
     "DriveRipple",
     "Effect",

@@ -22,11 +22,12 @@ class Boundary(NamedTuple):
 
 
 class DriveEnd(NamedTuple):
-    """The proximal end: the given quantity, friction and a spring in parallel to the tendon."""
+    """The proximal end: the given quantity; friction, spring, damper parallel to the tendon."""
 
     given: int
     friction_N: float
     spring_N_per_mm: float
+    damping_N_s_per_mm: float
 
 
 class LoadEnd(NamedTuple):
@@ -43,8 +44,18 @@ class LoadEnd(NamedTuple):
 def drive_end(rig: Rig, given: int) -> DriveEnd:
     """Return the proximal end of a rig."""
     effects = rig.effects
-    stiffness = effects.proximal_spring.stiffness_N_per_mm
-    return DriveEnd(given, effects.drive_friction.friction_N, stiffness)
+    return DriveEnd(
+        given,
+        effects.drive_friction.friction_N,
+        effects.proximal_spring.stiffness_N_per_mm,
+        effects.drive_damping.coefficient_N_s_per_mm,
+    )
+
+
+@kernel
+def with_spring(drive: DriveEnd, given: int, spring_N_per_mm: float) -> DriveEnd:
+    """Return a proximal end with another given quantity and another spring."""
+    return DriveEnd(given, drive.friction_N, spring_N_per_mm, drive.damping_N_s_per_mm)
 
 
 @kernel

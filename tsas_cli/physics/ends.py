@@ -11,6 +11,7 @@ from tsas_cli.effects import Effects
 from tsas_cli.effects.backlash import follow_play
 from tsas_cli.effects.bend_drift import drifted_bend
 from tsas_cli.effects.direction_dependent_friction import direction_factor
+from tsas_cli.effects.drive_damping import drive_damper_force
 from tsas_cli.effects.drive_ripple import rippled
 from tsas_cli.effects.friction_drift import friction_factor
 from tsas_cli.effects.preload_loss import lost_preload
@@ -51,6 +52,7 @@ class EndInputs:
     course: Floats  # with the rows of `course`
     boundary: Boundary
     direction: Floats  # of the last motion of the tendon's end at the drive, shape (n,)
+    motion_N: Floats  # force at the drive's sensor for the motion of that end, shape (n,)
 
     @property
     def drive(self) -> Floats:
@@ -61,7 +63,8 @@ class EndInputs:
     def part(self, first: int, end: int) -> "EndInputs":
         """Return the samples first … end−1."""
         course = np.ascontiguousarray(self.course[:, first:end])
-        return replace(self, course=course, direction=self.direction[first:end])
+        direction, motion_N = self.direction[first:end], self.motion_N[first:end]
+        return replace(self, course=course, direction=direction, motion_N=motion_N)
 
     def after(self, before: list[float]) -> "EndInputs":
         """Return the inputs with positions of the drive prepended."""
@@ -70,7 +73,8 @@ class EndInputs:
         course[DRIVE, :more] = before
         course[STEP, : more + 1] = math.inf  # their speed is not known
         direction = np.concatenate((np.zeros(more), self.direction))
-        return replace(self, course=course, direction=direction)
+        motion_N = np.concatenate((np.zeros(more), self.motion_N))
+        return replace(self, course=course, direction=direction, motion_N=motion_N)
 
     def first(self) -> "EndInputs":
         """Return the first sample alone."""
@@ -91,7 +95,7 @@ def ends_of(rig: Rig, drive: DriveInput, start: tuple[float, float] | None = Non
     else:
         x = drive.values - rig.x_in_zero_mm
         at_drive = tendon_end(x, rig.effects, float(x[0]) if start is None else start[0])
-        speed = np.zeros(n) if drive.time_s is None or n < 2 else np.gradient(at_drive, time_s)
+        speed = speed_of(at_drive, drive.time_s)
     at_load = np.zeros(n)
     if drive.load_values is not None and drive.load == "force":
         at_load = true_value("f_out_N", drive.load_values, drive.time_s, rig)
@@ -103,7 +107,20 @@ def ends_of(rig: Rig, drive: DriveInput, start: tuple[float, float] | None = Non
     losses = losses_over(time_s, speed, drive.session_s, rig)
     course = np.vstack((losses, at_drive, at_load, step_s, time_s))
     direction = last_direction(at_drive, 0.0 if start is None else start[1])
-    return EndInputs(course, boundary_of(drive), direction)
+    return EndInputs(course, boundary_of(drive), direction, force_of_motion(speed, rig.effects))
+
+
+def speed_of(position: Floats, time_s: Floats | None) -> Floats:
+    """Return the speed of the tendon's end at each sample [mm/s], 0 without times."""
+    if time_s is None or position.size < 2:
+        return np.zeros(position.size)
+    speed: Floats = np.gradient(position, time_s)
+    return speed
+
+
+def force_of_motion(speed: Floats, effects: Effects) -> Floats:
+    """Return the force that the drive's sensor reads for the motion of the tendon's end [N]."""
+    return np.asarray(drive_damper_force(1.0, effects.drive_damping.coefficient_N_s_per_mm) * speed)
 
 
 def boundary_of(drive: DriveInput) -> Boundary:

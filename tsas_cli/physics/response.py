@@ -188,10 +188,10 @@ def force_beside_tendon(rig: Rig, ends: EndInputs) -> Floats | float:
     """Return the forces at the drive's sensor parallel to the tendon [N]."""
     friction = rig.effects.drive_friction.friction_N
     stiffness = rig.effects.proximal_spring.stiffness_N_per_mm
-    if friction == 0.0 and stiffness == 0.0:
+    if friction == 0.0 and stiffness == 0.0 and not ends.motion_N.any():
         return 0.0
     friction_N = drive_friction_force(friction, 1.0) * ends.direction
-    return friction_N + proximal_spring_force(1.0, stiffness) * ends.drive
+    return friction_N + proximal_spring_force(1.0, stiffness) * ends.drive + ends.motion_N
 
 
 def first_determined_sample(rig: Rig, drive: DriveInput) -> int | None:

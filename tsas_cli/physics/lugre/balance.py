@@ -6,6 +6,7 @@ tension ratio over a sliding lump is e^(−μθ/n), Eq. 7). The ends have no mas
 The residual depends on the speeds of a node and its two neighbours: the Jacobian is tridiagonal.
 """
 
+from tsas_cli.effects.drive_damping import drive_damper_force
 from tsas_cli.effects.load_dependent_friction import load_factor
 from tsas_cli.effects.load_inertia import inertia_force
 from tsas_cli.effects.load_spring_nonlinearity import spring_force, spring_tangent
@@ -143,9 +144,11 @@ def balance_drive(s: Floats, step: Step, laws: LugreLaws) -> None:
     stiffness = proximal_spring_force(1.0, laws.drive.spring_N_per_mm)
     position = s[POSITION_HISTORY] + step.gh * s[RATE]
     s[UPPER] = -s[TENSION_SLOPE]
-    s[DIAGONAL] = s[TENSION_SLOPE] + stiffness * step.gh + by_speed
+    damping = laws.drive.damping_N_s_per_mm
+    s[DIAGONAL] = s[TENSION_SLOPE] + stiffness * step.gh + by_speed + damping
+    beside = friction_force + drive_damper_force(s[RATE], damping)
     s[RESIDUAL] = (
-        step.drive.value - s[TENSION] - proximal_spring_force(position, stiffness) - friction_force
+        step.drive.value - s[TENSION] - proximal_spring_force(position, stiffness) - beside
     )
     s[FRICTION], s[DEFLECTION_NEW] = friction_force, deflection
 

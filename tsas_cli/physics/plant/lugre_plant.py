@@ -17,8 +17,8 @@ from tsas_cli.physics.boundary import (
     FORCE,
     SPRING,
     Boundary,
-    DriveEnd,
     share_before_sensor,
+    with_spring,
 )
 from tsas_cli.physics.ends import losses_without_speed
 from tsas_cli.physics.lugre.balance import balance_drive
@@ -133,11 +133,11 @@ def step_lumped_plant(
     drive = laws.drive
     if spring.touches:
         stiffness = drive.spring_N_per_mm + spring.stiffness
-        driven = with_drive(laws, DriveEnd(FORCE, drive.friction_N, stiffness))
+        driven = with_drive(laws, with_spring(drive, FORCE, stiffness))
         if tendon.slack:
             tendon, solved = pull_slack(s, given, driven, h)
     else:
-        driven = with_drive(laws, DriveEnd(DISPLACEMENT, drive.friction_N, drive.spring_N_per_mm))
+        driven = with_drive(laws, with_spring(drive, DISPLACEMENT, drive.spring_N_per_mm))
     tension = tendon.ends.drive.tension
     if not tendon.slack:
         before = table.f_in + spring.stiffness * p

@@ -1,7 +1,8 @@
-"""The two ends of the slip chain: the load's spring, mass and guide, the drive's friction."""
+"""The two ends of the slip chain: the load's spring, mass and guide, what is beside the drive."""
 
 import math
 
+from tsas_cli.effects.drive_damping import drive_damper_force
 from tsas_cli.effects.load_inertia import inertia_force
 from tsas_cli.effects.load_spring_nonlinearity import (
     spring_force,
@@ -66,8 +67,20 @@ def drive_position(chain: Floats, now: Moment, laws: SlipLaws) -> float:
     if chain[SLIP] == 0 and friction > 0.0:
         return float(chain[POSITION_BEFORE])
     p, q, r = chain[SWEEP_P], chain[SWEEP_Q], chain[SWEEP_R]
-    stiffness = proximal_spring_force(1.0, laws.drive.spring_N_per_mm)
-    return float(((now.drive - chain[SLIP] * friction) * r - q) / (p + stiffness * r))
+    slope, value = drive_tangent(chain, now, laws)
+    return float(((now.drive - value - chain[SLIP] * friction) * r - q) / (p + slope * r))
+
+
+@kernel
+def drive_tangent(chain: Floats, now: Moment, laws: SlipLaws) -> tuple[float, float]:
+    """Return slope and value at x = 0 of the force beside the tendon at a drive by force."""
+    slope, value = proximal_spring_force(1.0, laws.drive.spring_N_per_mm), 0.0
+    damping = laws.drive.damping_N_s_per_mm
+    if damping > 0.0 and now.step_s < math.inf:  # implicit Euler
+        per_mm = drive_damper_force(1.0 / now.step_s, damping)
+        slope += per_mm
+        value -= per_mm * chain[POSITION_BEFORE]
+    return slope, value
 
 
 @kernel
@@ -89,8 +102,8 @@ def update_ends(chain: Floats, now: Moment, laws: SlipLaws) -> bool:
     n = laws.n
     unsolved = False
     if laws.drive.given == FORCE:
-        stiffness = laws.drive.spring_N_per_mm
-        pull = now.drive - chain[TENSION] - proximal_spring_force(chain[POSITION], stiffness)
+        slope, value = drive_tangent(chain, now, laws)
+        pull = now.drive - chain[TENSION] - slope * chain[POSITION] - value
         if laws.drive.friction_N > 0.0:
             unsolved = update_end(0, pull, laws.drive.friction_N, chain, laws)
     if laws.load.given != DISPLACEMENT:
