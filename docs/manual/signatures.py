@@ -76,6 +76,13 @@ SIGNATURES: Mapping[str, Signature] = MappingProxyType(
             _one(coefficient_N_s_per_mm=0.5),
             planes=(F_IN_OVER_X_IN, F_OUT_OVER_X_IN),
         ),
+        "drive_inertia": Signature(
+            "In fast sines f_in is too high at the near end of the stroke and too low at the far "
+            "one, by the same force on pull and release; f_out is unaffected.",
+            _one(mass_kg=10.0),
+            Motion(speed_mm_per_s=60.0),
+            (F_IN_OVER_X_IN, F_OUT_OVER_X_IN),
+        ),
         "drive_ripple": Signature(
             "A wave with a fixed period in x_in, much higher where the tendon sticks.",
             _one(sine_mm=0.15, period_mm=1.0),

@@ -17,7 +17,7 @@ from tsas_cli.effects.drive_friction import drive_friction_force
 from tsas_cli.effects.drive_ripple import DriveRipple, rippled
 from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.physics.ends import force_of_motion, last_direction, losses_over, speed_of
+from tsas_cli.physics.ends import force_of_motion, last_direction, losses_over, rate_of
 from tsas_cli.physics.plant.turntable import Actuator
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.slip.inverse import inverse_chain
@@ -65,7 +65,7 @@ def follow(
     padded = np.concatenate(
         (np.full(ahead, wanted_N[0]), wanted_N, np.full(MEANS * width - ahead, wanted_N[-1]))
     )
-    time_s = (np.arange(padded.size) - ahead) * step_s
+    time_s = (np.arange(padded.size, dtype=np.float64) - ahead) * step_s
     speed = np.zeros(padded.size)
     for _ in range(ITERATIONS if _depends_on_speed(rig.effects) else 1):
         losses = losses_over(np.maximum(time_s, 0.0), speed, 0.0, rig)
@@ -79,7 +79,7 @@ def follow(
     force = tension - rig.preload_N
     force += drive_friction_force(1.0, rig.effects.drive_friction.friction_N) * direction
     force += proximal_spring_force(1.0, rig.effects.proximal_spring.stiffness_N_per_mm) * end
-    force += force_of_motion(speed_of(end, time_s), rig.effects)
+    force += force_of_motion(rate_of(end, time_s), time_s, rig.effects)
     drive = drive_at(geared, rig.effects.drive_ripple, step_s)
     wound = smoothed(force / actuator.stiffness_N_per_mm, width, step_s)
     return DrivePath(drive, drive + wound, missed)

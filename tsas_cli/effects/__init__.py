@@ -12,6 +12,7 @@ from tsas_cli.effects.direction_dependent_friction import (
 from tsas_cli.effects.drive_compliance import DRIVE_COMPLIANCE, DriveCompliance
 from tsas_cli.effects.drive_damping import DRIVE_DAMPING, DriveDamping
 from tsas_cli.effects.drive_friction import DRIVE_FRICTION, DriveFriction
+from tsas_cli.effects.drive_inertia import DRIVE_INERTIA, DriveInertia
 from tsas_cli.effects.drive_ripple import DRIVE_RIPPLE, DriveRipple
 from tsas_cli.effects.effect import Effect, Parameter
 from tsas_cli.effects.force_crosstalk import FORCE_CROSSTALK, ForceCrosstalk
@@ -42,6 +43,7 @@ EFFECTS: tuple[Effect, ...] = (  # from the drive to the load, then the sensors
     BACKLASH,
     DRIVE_FRICTION,
     DRIVE_DAMPING,
+    DRIVE_INERTIA,
     DRIVE_RIPPLE,
     DRIVE_COMPLIANCE,
     PROXIMAL_SPRING,
@@ -76,6 +78,7 @@ class Effects(NamedTuple):
     backlash: Backlash = Backlash()
     drive_friction: DriveFriction = DriveFriction()
     drive_damping: DriveDamping = DriveDamping()
+    drive_inertia: DriveInertia = DriveInertia()
     drive_ripple: DriveRipple = DriveRipple()
     drive_compliance: DriveCompliance = DriveCompliance()
     proximal_spring: ProximalSpring = ProximalSpring()
@@ -112,6 +115,7 @@ __all__ = [
     "DriveCompliance",
     "DriveDamping",
     "DriveFriction",
+    "DriveInertia",
     "DriveRipple",
     "Effect",
     "Effects",

@@ -43,4 +43,5 @@ def lag_after(before: float, rise: float, step_s: float, time_s: float) -> float
     """
     steps = step_s / time_s
     decay: float = np.exp(-steps)
-    return decay * before - np.expm1(-steps) / steps * rise
+    after: float = decay * before - np.expm1(-steps) / steps * rise
+    return after

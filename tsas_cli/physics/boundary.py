@@ -22,12 +22,13 @@ class Boundary(NamedTuple):
 
 
 class DriveEnd(NamedTuple):
-    """The proximal end: the given quantity; friction, spring, damper parallel to the tendon."""
+    """The proximal end: the given quantity; what is parallel to the tendon."""
 
     given: int
     friction_N: float
     spring_N_per_mm: float
     damping_N_s_per_mm: float
+    mass_kg: float
 
 
 class LoadEnd(NamedTuple):
@@ -49,13 +50,15 @@ def drive_end(rig: Rig, given: int) -> DriveEnd:
         effects.drive_friction.friction_N,
         effects.proximal_spring.stiffness_N_per_mm,
         effects.drive_damping.coefficient_N_s_per_mm,
+        effects.drive_inertia.mass_kg,
     )
 
 
 @kernel
 def with_spring(drive: DriveEnd, given: int, spring_N_per_mm: float) -> DriveEnd:
     """Return a proximal end with another given quantity and another spring."""
-    return DriveEnd(given, drive.friction_N, spring_N_per_mm, drive.damping_N_s_per_mm)
+    damping, mass = drive.damping_N_s_per_mm, drive.mass_kg
+    return DriveEnd(given, drive.friction_N, spring_N_per_mm, damping, mass)
 
 
 @kernel

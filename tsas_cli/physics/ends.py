@@ -12,6 +12,7 @@ from tsas_cli.effects.backlash import follow_play
 from tsas_cli.effects.bend_drift import drifted_bend
 from tsas_cli.effects.direction_dependent_friction import direction_factor
 from tsas_cli.effects.drive_damping import drive_damper_force
+from tsas_cli.effects.drive_inertia import drive_inertia_force
 from tsas_cli.effects.drive_ripple import rippled
 from tsas_cli.effects.friction_drift import friction_factor
 from tsas_cli.effects.preload_loss import lost_preload
@@ -95,7 +96,7 @@ def ends_of(rig: Rig, drive: DriveInput, start: tuple[float, float] | None = Non
     else:
         x = drive.values - rig.x_in_zero_mm
         at_drive = tendon_end(x, rig.effects, float(x[0]) if start is None else start[0])
-        speed = speed_of(at_drive, drive.time_s)
+        speed = rate_of(at_drive, drive.time_s)
     at_load = np.zeros(n)
     if drive.load_values is not None and drive.load == "force":
         at_load = true_value("f_out_N", drive.load_values, drive.time_s, rig)
@@ -107,20 +108,25 @@ def ends_of(rig: Rig, drive: DriveInput, start: tuple[float, float] | None = Non
     losses = losses_over(time_s, speed, drive.session_s, rig)
     course = np.vstack((losses, at_drive, at_load, step_s, time_s))
     direction = last_direction(at_drive, 0.0 if start is None else start[1])
-    return EndInputs(course, boundary_of(drive), direction, force_of_motion(speed, rig.effects))
+    motion_N = force_of_motion(speed, drive.time_s, rig.effects)
+    return EndInputs(course, boundary_of(drive), direction, motion_N)
 
 
-def speed_of(position: Floats, time_s: Floats | None) -> Floats:
-    """Return the speed of the tendon's end at each sample [mm/s], 0 without times."""
-    if time_s is None or position.size < 2:
-        return np.zeros(position.size)
-    speed: Floats = np.gradient(position, time_s)
-    return speed
+def rate_of(values: Floats, time_s: Floats | None) -> Floats:
+    """Return the rate of a quantity at each sample [1/s], 0 without times."""
+    if time_s is None or values.size < 2:
+        return np.zeros(values.size)
+    rate: Floats = np.gradient(values, time_s)
+    return rate
 
 
-def force_of_motion(speed: Floats, effects: Effects) -> Floats:
+def force_of_motion(speed: Floats, time_s: Floats | None, effects: Effects) -> Floats:
     """Return the force that the drive's sensor reads for the motion of the tendon's end [N]."""
-    return np.asarray(drive_damper_force(1.0, effects.drive_damping.coefficient_N_s_per_mm) * speed)
+    damping, mass_kg = effects.drive_damping.coefficient_N_s_per_mm, effects.drive_inertia.mass_kg
+    force: Floats = drive_damper_force(1.0, damping) * speed
+    if mass_kg != 0.0:
+        force = force + drive_inertia_force(1.0, mass_kg) * rate_of(speed, time_s)
+    return force
 
 
 def boundary_of(drive: DriveInput) -> Boundary:

@@ -13,7 +13,7 @@ from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.physics.boundary import FORCE
 from tsas_cli.physics.closed_form.branches import branches
 from tsas_cli.physics.closed_form.static import static_model
-from tsas_cli.physics.course import Output, Tensions
+from tsas_cli.physics.course import Output, Tensions, samples_of
 from tsas_cli.physics.ends import DriveInput, EndInputs, boundary_of, ends_of
 from tsas_cli.physics.frames import Frames, Indices, empty_frames
 from tsas_cli.physics.lugre.chain import OWN_STEPS, StepControl, lugre_chain
@@ -145,8 +145,9 @@ def sensor_readings(
     rig: Rig, drive: DriveInput, output: Output, skip: int, solver: str
 ) -> Prediction:
     """Return the sensor readings of a run's output without its first `skip` samples."""
-    output = Output(*(column[skip:] for column in output))
-    signals = sensed(output, drive.time_s, rig, boundary_of(drive), new_memory())
+    signals = sensed(
+        samples_of(output, slice(skip, None)), drive.time_s, rig, boundary_of(drive), new_memory()
+    )
     return readings_of(rig, drive, signals, solver)
 
 
@@ -231,7 +232,7 @@ def history(rig: Rig, ends: EndInputs, target_f_in_N: float | None, nodes: int) 
         return []
 
     def f_in(before: list[float]) -> float:
-        last = Output(*(column[-1:] for column in _solve(rig, first.after(before), nodes)))
+        last = samples_of(_solve(rig, first.after(before), nodes), slice(-1, None))
         signals = sensed(last, None, rig, ends.boundary, new_memory())
         return float(reading("f_in_N", signals.f_in, None, rig)[0])
 

@@ -52,12 +52,12 @@ def sensed(
     loops = rig.effects.force_sensor_hysteresis
     if boundary.drive != FORCE:
         if shares.f_in_of_f_out != 0.0:
-            f_in = with_crosstalk(f_in, output.f_out, shares.f_in_of_f_out)
+            f_in = f_in + with_crosstalk(0.0, 1.0, shares.f_in_of_f_out) * output.f_out
         if loops.f_in_share != 0.0:
             f_in = with_hysteresis(f_in, loops.f_in_share, loops.span_N, memory[0])
     if boundary.load != FORCE:
         if shares.f_out_of_f_in != 0.0:
-            f_out = with_crosstalk(f_out, output.f_in, shares.f_out_of_f_in)
+            f_out = f_out + with_crosstalk(0.0, 1.0, shares.f_out_of_f_in) * output.f_in
         if loops.f_out_share != 0.0:
             f_out = with_hysteresis(f_out, loops.f_out_share, loops.span_N, memory[1])
     signals = [f_in, f_out, output.x_out]
@@ -111,7 +111,7 @@ def reading(channel: Channel, values: Floats, time_s: Floats | None, rig: Rig) -
     """
     delayed, curvature = _delayed_by(values, time_s, _delay(channel, rig)), _curvature(channel, rig)
     if curvature != 0.0:
-        delayed = read_curved(delayed, curvature)
+        delayed = curved(delayed, curvature)
     return delayed * _gain(channel, rig) + _shift(channel, time_s, rig)
 
 
@@ -124,7 +124,7 @@ def true_value(channel: Channel, readings: Floats, time_s: Floats | None, rig: R
     delayed = (readings - _shift(channel, time_s, rig)) / _gain(channel, rig)
     curvature = _curvature(channel, rig)
     if curvature != 0.0:
-        delayed = straightened(delayed, curvature)
+        delayed = uncurved(delayed, curvature)
     signal = _delayed_by(delayed, time_s, -_delay(channel, rig))
     lag_s = rig.effects.sensor_lag[CHANNELS.index(channel)]
     if lag_s == 0.0 or time_s is None or signal.size < 2:
@@ -174,6 +174,24 @@ def _shift(channel: Channel, time_s: Floats | None, rig: Rig) -> Floats | float:
     if rate == 0.0 or time_s is None:
         return start
     return drifting(start, rate, drift.settling_per_s, time_s)
+
+
+@kernel
+def curved(forces: Floats, curvature: float) -> Floats:
+    """Return the readings of a curved scale [N]."""
+    out = np.empty(forces.size)
+    for i in range(forces.size):
+        out[i] = read_curved(forces[i], curvature)
+    return out
+
+
+@kernel
+def uncurved(readings: Floats, curvature: float) -> Floats:
+    """Return the forces of the readings of a curved scale [N]."""
+    out = np.empty(readings.size)
+    for i in range(readings.size):
+        out[i] = straightened(readings[i], curvature)
+    return out
 
 
 @kernel

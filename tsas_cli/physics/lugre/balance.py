@@ -7,6 +7,7 @@ The residual depends on the speeds of a node and its two neighbours: the Jacobia
 """
 
 from tsas_cli.effects.drive_damping import drive_damper_force
+from tsas_cli.effects.drive_inertia import drive_inertia_force
 from tsas_cli.effects.load_dependent_friction import load_factor
 from tsas_cli.effects.load_inertia import inertia_force
 from tsas_cli.effects.load_spring_nonlinearity import spring_force, spring_tangent
@@ -145,8 +146,10 @@ def balance_drive(s: Floats, step: Step, laws: LugreLaws) -> None:
     position = s[POSITION_HISTORY] + step.gh * s[RATE]
     s[UPPER] = -s[TENSION_SLOPE]
     damping = laws.drive.damping_N_s_per_mm
-    s[DIAGONAL] = s[TENSION_SLOPE] + stiffness * step.gh + by_speed + damping
+    inertia = drive_inertia_force(1.0, laws.drive.mass_kg) / step.gh
+    s[DIAGONAL] = s[TENSION_SLOPE] + stiffness * step.gh + by_speed + damping + inertia
     beside = friction_force + drive_damper_force(s[RATE], damping)
+    beside += inertia * (s[RATE] - s[SPEED_HISTORY])
     s[RESIDUAL] = (
         step.drive.value - s[TENSION] - proximal_spring_force(position, stiffness) - beside
     )

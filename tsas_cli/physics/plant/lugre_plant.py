@@ -45,6 +45,7 @@ from tsas_cli.physics.lugre.state import (
     RESIDUAL,
     ROWS,
     SPEED,
+    SPEED_HISTORY,
     TENSION,
     TENSION_SLOPE,
     Floats,
@@ -194,6 +195,7 @@ def pull_slack(s: Floats, step: Step, laws: LugreLaws, h: float) -> tuple[Lumped
     """
     position, deflection = s[POSITION], s[DEFLECTION]
     s[POSITION_HISTORY], s[DEFLECTION_HISTORY], s[RATE] = position, deflection, 0.0
+    s[SPEED_HISTORY] = s[SPEED]
     s[TENSION] = s[TENSION_SLOPE] = 0.0
     step, solved = with_drive_force(step, step.drive.value, h), False
     for _ in range(MOST_ITERATIONS):

@@ -12,9 +12,10 @@ from tsas_cli.physics.plant.turntable import (
 )
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.slip.chain import advance, go_slack
-from tsas_cli.physics.slip.ends import drive_tangent
+from tsas_cli.physics.slip.ends import drive_tangent, update_end_speeds
 from tsas_cli.physics.slip.start import with_drive
 from tsas_cli.physics.slip.state import (
+    END_SPEED,
     POSITION,
     POSITION_BEFORE,
     SLIP,
@@ -36,6 +37,7 @@ def step_plant(
     p = chain[POSITION]
     spring = spring_of(table, p, rig, step)
     converged, now, x, f_in = True, before, spring.x, table.f_in
+    mass_speed = chain[END_SPEED]
     if spring.touches:
         now = Moment(spring.force, 0.0, losses_at(step.time_s, table.speed, 0.0, rig), step.h)
         drive = laws.drive
@@ -44,10 +46,11 @@ def step_plant(
         converged = advance(chain, before, now, driven)
         if chain[TENSION] < 0.0:
             go_slack(chain, now, laws)
-            chain[POSITION_BEFORE] = p
+            chain[POSITION_BEFORE], chain[END_SPEED] = p, mass_speed
             slope, value = drive_tangent(chain, now, driven)
             friction_N = chain[SLIP] * drive.friction_N
             chain[POSITION] = (spring.force - friction_N - value) / slope
+            update_end_speeds(chain, step.h, laws.n)
             chain[POSITION_BEFORE] = chain[POSITION]
         x, f_in = turntable_at(chain[POSITION], spring)
     speed = (chain[POSITION] - p) / step.h

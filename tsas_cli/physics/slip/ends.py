@@ -3,6 +3,7 @@
 import math
 
 from tsas_cli.effects.drive_damping import drive_damper_force
+from tsas_cli.effects.drive_inertia import drive_inertia_force
 from tsas_cli.effects.load_inertia import inertia_force
 from tsas_cli.effects.load_spring_nonlinearity import (
     spring_force,
@@ -14,7 +15,7 @@ from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, moving_friction
 from tsas_cli.physics.slip.nodes import slips_backwards
 from tsas_cli.physics.slip.state import (
     BALANCED,
-    LOAD_SPEED,
+    END_SPEED,
     POSITION,
     POSITION_BEFORE,
     SLIP,
@@ -28,7 +29,7 @@ from tsas_cli.physics.slip.state import (
     SlipLaws,
 )
 
-SLIPS_ALONG_S = 0.01  # time constant of the load mass's speed; without it the mass would oscillate
+SLIPS_ALONG_S = 0.01  # time constant of a mass's speed; without it the mass would oscillate
 
 
 @kernel
@@ -44,18 +45,18 @@ def load_tangent(chain: Floats, now: Moment, laws: SlipLaws) -> tuple[float, flo
     if mass > 0.0 and now.step_s < math.inf:  # implicit Euler, first order in the step
         per_speed = 1.0 / (SLIPS_ALONG_S + now.step_s)
         slope += inertia_force(per_speed / now.step_s, mass)
-        extrapolated_speed = chain[POSITION_BEFORE + n + 1] / now.step_s + chain[LOAD_SPEED + n + 1]
+        extrapolated_speed = chain[POSITION_BEFORE + n + 1] / now.step_s + chain[END_SPEED + n + 1]
         value -= inertia_force(per_speed * extrapolated_speed, mass)
     return slope, value
 
 
 @kernel
-def update_load_speed(chain: Floats, step_s: float, n: int) -> None:
-    """Update the speed of the load's mass after a step."""
-    last = n + 1
-    speed = (chain[POSITION + last] - chain[POSITION_BEFORE + last]) / step_s
+def update_end_speeds(chain: Floats, step_s: float, n: int) -> None:
+    """Update the speeds of the masses at both ends after a step."""
     share = 1.0 / (1.0 + SLIPS_ALONG_S / step_s)
-    chain[LOAD_SPEED + last] += share * (speed - chain[LOAD_SPEED + last])
+    for end in (0, n + 1):
+        speed = (chain[POSITION + end] - chain[POSITION_BEFORE + end]) / step_s
+        chain[END_SPEED + end] += share * (speed - chain[END_SPEED + end])
 
 
 @kernel
@@ -75,11 +76,12 @@ def drive_position(chain: Floats, now: Moment, laws: SlipLaws) -> float:
 def drive_tangent(chain: Floats, now: Moment, laws: SlipLaws) -> tuple[float, float]:
     """Return slope and value at x = 0 of the force beside the tendon at a drive by force."""
     slope, value = proximal_spring_force(1.0, laws.drive.spring_N_per_mm), 0.0
-    damping = laws.drive.damping_N_s_per_mm
-    if damping > 0.0 and now.step_s < math.inf:  # implicit Euler
-        per_mm = drive_damper_force(1.0 / now.step_s, damping)
-        slope += per_mm
-        value -= per_mm * chain[POSITION_BEFORE]
+    if now.step_s < math.inf:  # implicit Euler
+        per_mm = drive_damper_force(1.0 / now.step_s, laws.drive.damping_N_s_per_mm)
+        per_speed = drive_inertia_force(1.0 / (SLIPS_ALONG_S + now.step_s), laws.drive.mass_kg)
+        slope += per_mm + per_speed / now.step_s
+        value -= (per_mm + per_speed / now.step_s) * chain[POSITION_BEFORE]
+        value -= per_speed * chain[END_SPEED]
     return slope, value
 
 

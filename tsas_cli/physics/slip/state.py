@@ -45,7 +45,7 @@ FACTOR = PITCH * 5  # where it slips, T[i] = FACTOR T[i−1] − DROP − DROP_S
 DROP, DROP_SLOPE = PITCH * 6, PITCH * 7
 COMPLIANCE = PITCH * 8  # of the segment [mm/N]
 SWEEP_P, SWEEP_Q, SWEEP_R = (PITCH * row for row in range(9, 12))  # segment's T = (P x + Q)/R
-LOAD_SPEED = PITCH * 12  # of the load's mass, before [mm/s]
+END_SPEED = PITCH * 12  # of the masses of drive and load, before [mm/s]
 RATIO_PULLED, RATIO_RELEASED = PITCH * 13, PITCH * 14  # of both tensions in full slip, e^(−a/n)
 SHARE_BEFORE = PITCH * 15  # with presliding, SHARE at the end of the last step
 TRAVEL = PITCH * 16  # since the last step, the point of the tangents FACTOR to DROP_SLOPE [mm]
