@@ -187,6 +187,12 @@ SIGNATURES: Mapping[str, Signature] = MappingProxyType(
             Motion(speed_mm_per_s=60.0),
             (F_IN_OVER_X_IN, F_OUT_OVER_X_OUT),
         ),
+        "load_damping": Signature(
+            "f_out over x_out becomes a loop that is wide where the load is fast and closes at the "
+            "reversals.",
+            _one("f_out_N", coefficient_N_s_per_mm=0.3),
+            planes=(F_IN_OVER_X_IN, F_OUT_OVER_X_OUT),
+        ),
         "force_sensor_gain": Signature(
             "In f_in over f_out both lines are stretched sideways by one factor; f_in over x_in "
             "fits.",

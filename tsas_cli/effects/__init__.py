@@ -23,6 +23,7 @@ from tsas_cli.effects.force_sensor_hysteresis import FORCE_SENSOR_HYSTERESIS, Fo
 from tsas_cli.effects.force_sensor_offset import FORCE_SENSOR_OFFSET, ForceSensorOffset
 from tsas_cli.effects.free_tendon import FREE_TENDON, FreeTendon
 from tsas_cli.effects.friction_drift import FRICTION_DRIFT, FrictionDrift
+from tsas_cli.effects.load_damping import LOAD_DAMPING, LoadDamping
 from tsas_cli.effects.load_dependent_friction import LOAD_DEPENDENT_FRICTION, LoadDependentFriction
 from tsas_cli.effects.load_friction import LOAD_FRICTION, LoadFriction
 from tsas_cli.effects.load_inertia import LOAD_INERTIA, LoadInertia
@@ -60,6 +61,7 @@ EFFECTS: tuple[Effect, ...] = (  # from the drive to the load, then the sensors
     LOAD_SPRING_NONLINEARITY,
     LOAD_FRICTION,
     LOAD_INERTIA,
+    LOAD_DAMPING,
     FORCE_SENSOR_GAIN,
     FORCE_SENSOR_OFFSET,
     FORCE_SENSOR_DRIFT,
@@ -95,6 +97,7 @@ class Effects(NamedTuple):
     load_spring_nonlinearity: LoadSpringNonlinearity = LoadSpringNonlinearity()
     load_friction: LoadFriction = LoadFriction()
     load_inertia: LoadInertia = LoadInertia()
+    load_damping: LoadDamping = LoadDamping()
     force_sensor_gain: ForceSensorGain = ForceSensorGain()
     force_sensor_offset: ForceSensorOffset = ForceSensorOffset()
     force_sensor_drift: ForceSensorDrift = ForceSensorDrift()
@@ -127,6 +130,7 @@ __all__ = [
     "ForceSensorOffset",
     "FreeTendon",
     "FrictionDrift",
+    "LoadDamping",
     "LoadDependentFriction",
     "LoadFriction",
     "LoadInertia",

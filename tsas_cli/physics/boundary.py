@@ -32,13 +32,14 @@ class DriveEnd(NamedTuple):
 
 
 class LoadEnd(NamedTuple):
-    """The distal end: the given quantity; spring, guide and mass of the load."""
+    """The distal end: the given quantity; spring, guide, mass and damper of the load."""
 
     given: int
     stiffness_N_per_mm: float
     nonlinearity: LoadSpringNonlinearity
     friction: LoadFriction
     mass_kg: float
+    damping_N_s_per_mm: float
 
 
 @kernel
@@ -71,6 +72,7 @@ def load_end(rig: Rig, given: int) -> LoadEnd:
         effects.load_spring_nonlinearity,
         effects.load_friction,
         effects.load_inertia.mass_kg,
+        effects.load_damping.coefficient_N_s_per_mm,
     )
 
 

@@ -8,6 +8,7 @@ The residual depends on the speeds of a node and its two neighbours: the Jacobia
 
 from tsas_cli.effects.drive_damping import drive_damper_force
 from tsas_cli.effects.drive_inertia import drive_inertia_force
+from tsas_cli.effects.load_damping import load_damper_force
 from tsas_cli.effects.load_dependent_friction import load_factor
 from tsas_cli.effects.load_inertia import inertia_force
 from tsas_cli.effects.load_spring_nonlinearity import spring_force, spring_tangent
@@ -179,7 +180,9 @@ def balance_load(s: Floats, step: Step, laws: LugreLaws) -> None:
             laws.preload_N - step.lost_N + spring_force(position, stiffness, laws.load.nonlinearity)
         )
         inertia = inertia_force(1.0, laws.load.mass_kg) / step.gh
-        pull += inertia * (speed - s[SPEED_HISTORY + last])
+        damping = laws.load.damping_N_s_per_mm
+        pull += inertia * (speed - s[SPEED_HISTORY + last]) + load_damper_force(speed, damping)
+        by_speed += damping
         by_position = spring_tangent(position, stiffness, laws.load.nonlinearity)
     s[LOWER + last] = -behind
     s[DIAGONAL + last] = behind + by_position * step.gh + inertia + by_speed

@@ -4,6 +4,7 @@ import math
 
 from tsas_cli.effects.drive_damping import drive_damper_force
 from tsas_cli.effects.drive_inertia import drive_inertia_force
+from tsas_cli.effects.load_damping import load_damper_force
 from tsas_cli.effects.load_inertia import inertia_force
 from tsas_cli.effects.load_spring_nonlinearity import (
     spring_force,
@@ -47,6 +48,11 @@ def load_tangent(chain: Floats, now: Moment, laws: SlipLaws) -> tuple[float, flo
         slope += inertia_force(per_speed / now.step_s, mass)
         extrapolated_speed = chain[POSITION_BEFORE + n + 1] / now.step_s + chain[END_SPEED + n + 1]
         value -= inertia_force(per_speed * extrapolated_speed, mass)
+    damping = laws.load.damping_N_s_per_mm
+    if damping > 0.0 and now.step_s < math.inf:
+        per_mm = load_damper_force(1.0 / now.step_s, damping)
+        slope += per_mm
+        value -= per_mm * chain[POSITION_BEFORE + n + 1]
     return slope, value
 
 
