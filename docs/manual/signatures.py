@@ -193,6 +193,12 @@ SIGNATURES: Mapping[str, Signature] = MappingProxyType(
             _one("f_out_N", coefficient_N_s_per_mm=0.3),
             planes=(F_IN_OVER_X_IN, F_OUT_OVER_X_OUT),
         ),
+        "load_hysteresis": Signature(
+            "f_out over x_out becomes a loop of constant height, whose flanks take a travel "
+            "of the load.",
+            _one("f_out_N", force_N=3.0, travel_mm=2.0),
+            planes=(F_IN_OVER_X_IN, F_OUT_OVER_X_OUT),
+        ),
         "force_sensor_gain": Signature(
             "In f_in over f_out both lines are stretched sideways by one factor; f_in over x_in "
             "fits.",

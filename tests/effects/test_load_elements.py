@@ -45,3 +45,37 @@ def test_a_damper_at_the_load_is_felt_by_its_sensor(speed):
         assert (sign * v_out > 0.5 * speed).all()
         spring = 25.0 + KL * answer.x_out_mm[part]
         np.testing.assert_allclose(answer.f_out_N[part], spring + 0.2 * v_out, atol=1e-6)
+
+
+def elastoplastic(x, force, travel):
+    """Return an element's force for an input, sample by sample: back inside its limits."""
+    z = [0.0]
+    for moved in np.diff(x):
+        z.append(float(np.clip(z[-1] + force / travel * moved, -force, force)))
+    return np.array(z)
+
+
+@BOTH
+def test_an_element_that_yields_makes_a_loop_of_its_own(dynamics):
+    """f_out is the spring and the element for the motion of x_out that comes out."""
+    t = np.arange(0.0, 6.0, 2e-3)
+    values = {"load_hysteresis.force_N": 6.0, "load_hysteresis.travel_mm": 1.5}
+    x_in = np.interp(t, [0.0, 2.0, 2.6, 3.2, 4.5, 6.0], [0.0, 10.0, 8.0, 10.5, 2.0, 8.0])
+    answer = softly(values, x_in, t, dynamics)
+    element = elastoplastic(answer.x_out_mm, 6.0, 1.5)
+    assert element.max() == -element.min() == 6.0
+    assert np.abs(element[(t > 2.1) & (t < 2.6)]).max() < 6.0  # a small loop, which does not yield
+    spring = 40.0 + KL * answer.x_out_mm
+    np.testing.assert_allclose(answer.f_out_N, spring + element, atol=0.02)
+    np.testing.assert_allclose(answer.f_out_N, 40.0 + K * (x_in - answer.x_out_mm), atol=0.02)
+
+
+def test_an_element_makes_a_load_stiffer_until_it_yields():
+    """On a soft tendon: K/(K + kL + force/travel) of x_in, beyond it K/(K + kL)."""
+    x_in, values = np.linspace(0.0, 12.0, 601), {"force_N": 6.0, "travel_mm": 1.5}
+    named = {f"load_hysteresis.{name}": value for name, value in values.items()}
+    x = softly(named, x_in, 0.01 * np.arange(601), "slip").x_out_mm
+    slopes = np.diff(x) / np.diff(x_in)
+    first, last = x < 1.4, x > 1.6
+    np.testing.assert_allclose(slopes[first[1:]], K / (K + KL + 4.0), rtol=1e-9)
+    np.testing.assert_allclose(slopes[last[:-1]], K / (K + KL), rtol=1e-9)

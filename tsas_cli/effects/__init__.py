@@ -26,6 +26,7 @@ from tsas_cli.effects.friction_drift import FRICTION_DRIFT, FrictionDrift
 from tsas_cli.effects.load_damping import LOAD_DAMPING, LoadDamping
 from tsas_cli.effects.load_dependent_friction import LOAD_DEPENDENT_FRICTION, LoadDependentFriction
 from tsas_cli.effects.load_friction import LOAD_FRICTION, LoadFriction
+from tsas_cli.effects.load_hysteresis import LOAD_HYSTERESIS, LoadHysteresis
 from tsas_cli.effects.load_inertia import LOAD_INERTIA, LoadInertia
 from tsas_cli.effects.load_spring_nonlinearity import (
     LOAD_SPRING_NONLINEARITY,
@@ -62,6 +63,7 @@ EFFECTS: tuple[Effect, ...] = (  # from the drive to the load, then the sensors
     LOAD_FRICTION,
     LOAD_INERTIA,
     LOAD_DAMPING,
+    LOAD_HYSTERESIS,
     FORCE_SENSOR_GAIN,
     FORCE_SENSOR_OFFSET,
     FORCE_SENSOR_DRIFT,
@@ -98,6 +100,7 @@ class Effects(NamedTuple):
     load_friction: LoadFriction = LoadFriction()
     load_inertia: LoadInertia = LoadInertia()
     load_damping: LoadDamping = LoadDamping()
+    load_hysteresis: LoadHysteresis = LoadHysteresis()
     force_sensor_gain: ForceSensorGain = ForceSensorGain()
     force_sensor_offset: ForceSensorOffset = ForceSensorOffset()
     force_sensor_drift: ForceSensorDrift = ForceSensorDrift()
@@ -133,6 +136,7 @@ __all__ = [
     "LoadDamping",
     "LoadDependentFriction",
     "LoadFriction",
+    "LoadHysteresis",
     "LoadInertia",
     "LoadSpringNonlinearity",
     "Parameter",

@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 from tsas_cli.effects.load_friction import LoadFriction, guide_friction
+from tsas_cli.effects.load_hysteresis import LoadHysteresis
 from tsas_cli.effects.load_spring_nonlinearity import (
     LoadSpringNonlinearity,
     spring_force,
@@ -32,7 +33,7 @@ class DriveEnd(NamedTuple):
 
 
 class LoadEnd(NamedTuple):
-    """The distal end: the given quantity; spring, guide, mass and damper of the load."""
+    """The distal end: the given quantity; all that the load consists of."""
 
     given: int
     stiffness_N_per_mm: float
@@ -40,6 +41,7 @@ class LoadEnd(NamedTuple):
     friction: LoadFriction
     mass_kg: float
     damping_N_s_per_mm: float
+    hysteresis: LoadHysteresis
 
 
 @kernel
@@ -73,6 +75,7 @@ def load_end(rig: Rig, given: int) -> LoadEnd:
         effects.load_friction,
         effects.load_inertia.mass_kg,
         effects.load_damping.coefficient_N_s_per_mm,
+        effects.load_hysteresis,
     )
 
 

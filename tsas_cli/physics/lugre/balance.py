@@ -10,6 +10,7 @@ from tsas_cli.effects.drive_damping import drive_damper_force
 from tsas_cli.effects.drive_inertia import drive_inertia_force
 from tsas_cli.effects.load_damping import load_damper_force
 from tsas_cli.effects.load_dependent_friction import load_factor
+from tsas_cli.effects.load_hysteresis import element_force
 from tsas_cli.effects.load_inertia import inertia_force
 from tsas_cli.effects.load_spring_nonlinearity import spring_force, spring_tangent
 from tsas_cli.effects.proximal_spring import proximal_spring_force
@@ -25,6 +26,8 @@ from tsas_cli.physics.lugre.state import (
     LIMIT,
     LIMIT_BY_T,
     LIMIT_BY_V,
+    LOAD_STATE_HISTORY,
+    LOAD_STATE_NEW,
     LOWER,
     POSITION_HISTORY,
     RATE,
@@ -183,6 +186,10 @@ def balance_load(s: Floats, step: Step, laws: LugreLaws) -> None:
         damping = laws.load.damping_N_s_per_mm
         pull += inertia * (speed - s[SPEED_HISTORY + last]) + load_damper_force(speed, damping)
         by_speed += damping
+        force, slope = element_force(s[LOAD_STATE_HISTORY], step.gh * speed, laws.load.hysteresis)
+        pull += force
+        by_speed += slope * step.gh
+        s[LOAD_STATE_NEW] = force
         by_position = spring_tangent(position, stiffness, laws.load.nonlinearity)
     s[LOWER + last] = -behind
     s[DIAGONAL + last] = behind + by_position * step.gh + inertia + by_speed

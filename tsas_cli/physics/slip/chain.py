@@ -35,13 +35,14 @@ from tsas_cli.physics.course import (
 from tsas_cli.physics.frames import Frames
 from tsas_cli.physics.phases import SLACK, UNCONVERGED
 from tsas_cli.physics.rig import Rig
-from tsas_cli.physics.slip.ends import load_force, update_end_speeds
+from tsas_cli.physics.slip.ends import load_force, update_end_speeds, update_load_state
 from tsas_cli.physics.slip.frames import write_frame
 from tsas_cli.physics.slip.nodes import accept
 from tsas_cli.physics.slip.start import chain_at_rest, slip_laws
 from tsas_cli.physics.slip.state import (
     COMPLIANCE,
     END_SPEED,
+    LOAD_STATE,
     POSITION,
     POSITION_BEFORE,
     SHARE_BEFORE,
@@ -195,6 +196,7 @@ def advance(chain: Floats, start: Moment, end: Moment, laws: SlipLaws) -> bool:
         now = between(start, end, target, end.step_s * (target - reached))
         if solve_sample(chain, now, laws):
             update_end_speeds(chain, now.step_s, laws.n)
+            update_load_state(chain, laws)
             accept(chain, laws)
             if target == 1.0:
                 return True
@@ -256,7 +258,8 @@ def go_slack(chain: Floats, now: Moment, laws: SlipLaws) -> None:
     """Set the tendon taut without tension at the load; all nodes slip on the next pull."""
     last = laws.n + 1
     if laws.load.given != DISPLACEMENT:
-        preload_N = laws.preload_N - now.losses.preload_N
+        preload_N = laws.preload_N - now.losses.preload_N - laws.load.hysteresis.force_N
+        chain[LOAD_STATE] = -laws.load.hysteresis.force_N  # the load has returned far enough
         chain[POSITION + last] = unloaded_position(chain[POSITION + last], preload_N, laws.load)
     for j in range(last - 1, -1, -1):
         chain[TENSION + j] = 0.0

@@ -5,6 +5,7 @@ import math
 from tsas_cli.effects.drive_damping import drive_damper_force
 from tsas_cli.effects.drive_inertia import drive_inertia_force
 from tsas_cli.effects.load_damping import load_damper_force
+from tsas_cli.effects.load_hysteresis import element_force
 from tsas_cli.effects.load_inertia import inertia_force
 from tsas_cli.effects.load_spring_nonlinearity import (
     spring_force,
@@ -17,6 +18,7 @@ from tsas_cli.physics.slip.nodes import slips_backwards
 from tsas_cli.physics.slip.state import (
     BALANCED,
     END_SPEED,
+    LOAD_STATE,
     POSITION,
     POSITION_BEFORE,
     SLIP,
@@ -53,6 +55,11 @@ def load_tangent(chain: Floats, now: Moment, laws: SlipLaws) -> tuple[float, flo
         per_mm = load_damper_force(1.0 / now.step_s, damping)
         slope += per_mm
         value -= per_mm * chain[POSITION_BEFORE + n + 1]
+    if laws.load.hysteresis.force_N > 0.0:
+        moved = x - chain[POSITION_BEFORE + n + 1]
+        force, stiffness = element_force(chain[LOAD_STATE], moved, laws.load.hysteresis)
+        slope += stiffness
+        value += force - stiffness * x
     return slope, value
 
 
@@ -63,6 +70,14 @@ def update_end_speeds(chain: Floats, step_s: float, n: int) -> None:
     for end in (0, n + 1):
         speed = (chain[POSITION + end] - chain[POSITION_BEFORE + end]) / step_s
         chain[END_SPEED + end] += share * (speed - chain[END_SPEED + end])
+
+
+@kernel
+def update_load_state(chain: Floats, laws: SlipLaws) -> None:
+    """Update the state of what is beside the load spring after a step."""
+    if laws.load.hysteresis.force_N > 0.0:
+        moved = chain[POSITION + laws.n + 1] - chain[POSITION_BEFORE + laws.n + 1]
+        chain[LOAD_STATE] = element_force(chain[LOAD_STATE], moved, laws.load.hysteresis)[0]
 
 
 @kernel

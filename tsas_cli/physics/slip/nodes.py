@@ -78,6 +78,7 @@ def is_linear(laws: SlipLaws) -> bool:
         laws.friction_exponent == 0.0
         and laws.presliding_mm == 0.0
         and laws.load.mass_kg == 0.0
+        and laws.load.hysteresis.force_N == 0.0
         and laws.load.nonlinearity.quadratic_per_mm == 0.0
         and laws.load.nonlinearity.cubic_per_mm2 == 0.0
     )
