@@ -135,6 +135,11 @@ SIGNATURES: Mapping[str, Signature] = MappingProxyType(
             "In f_in over f_out the lines of pull and release bend apart as the tension rises.",
             _one(exponent=0.5),
         ),
+        "position_dependent_friction": Signature(
+            "In f_in over f_out the lines of pull and release open along the stroke, the same in "
+            "every stroke.",
+            _one(slope_per_mm=0.02),
+        ),
         "presliding": Signature(
             "Rounded corners: f_in leaves a reversal with a finite slope, over the same travel at "
             "every tension. Short strokes become thin loops.",

@@ -55,6 +55,22 @@ def test_the_wrap_follows_the_time(name, direction, settling):
     np.testing.assert_allclose(ratio, direction * wrap(settled), rtol=1e-8)
 
 
+@pytest.mark.parametrize("slope", [0.03, -0.04])
+@pytest.mark.parametrize("direction", [1, -1])
+def test_friction_follows_the_place_of_the_drive(direction, slope):
+    answer = run({"position_dependent_friction.slope_per_mm": slope})
+    slip = in_slip(answer, direction)
+    wrap = A * (1.0 + slope * answer.x_in_mm[slip])
+    ratio = np.log(answer.f_in_N[slip] / answer.f_out_N[slip])
+    np.testing.assert_allclose(ratio, direction * wrap, rtol=1e-8)
+
+
+def test_friction_is_nothing_where_its_law_would_be_negative():
+    answer = run({"position_dependent_friction.slope_per_mm": -0.1})
+    far = (answer.x_in_mm > 10.5) & (answer.x_in_mm < 13.0)
+    np.testing.assert_allclose(answer.f_in_N[far], answer.f_out_N[far], rtol=1e-8)
+
+
 def test_wear_follows_the_session():
     answer = run({"friction_drift.session_rate_per_s": 1e-3}, session_s=200.0)
     slip = in_slip(answer, 1)

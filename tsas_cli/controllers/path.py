@@ -25,7 +25,7 @@ from tsas_cli.support.errors import InputError
 
 Floats = npt.NDArray[np.float64]
 MEANS = 4
-ITERATIONS = 4  # of the path, where friction depends on its speed
+ITERATIONS = 4  # of the path, where friction depends on it or its speed
 HALVINGS = 50  # bisections of the interval of the ripple's height
 
 
@@ -66,9 +66,9 @@ def follow(
         (np.full(ahead, wanted_N[0]), wanted_N, np.full(MEANS * width - ahead, wanted_N[-1]))
     )
     time_s = (np.arange(padded.size, dtype=np.float64) - ahead) * step_s
-    speed = np.zeros(padded.size)
-    for _ in range(ITERATIONS if _depends_on_speed(rig.effects) else 1):
-        losses = losses_over(np.maximum(time_s, 0.0), speed, 0.0, rig)
+    end = speed = np.zeros(padded.size)
+    for _ in range(ITERATIONS if _depends_on_path(rig.effects) else 1):
+        losses = losses_over(np.maximum(time_s, 0.0), end, speed, 0.0, rig)
         end, tension, missed = inverse_chain(padded, losses, step_s, rig, nodes)
         smooth = smoothed(end, width, step_s)[1]
         speed = np.concatenate(
@@ -140,8 +140,9 @@ def _mean(x: Floats, width: int) -> Floats:
     return mean
 
 
-def _depends_on_speed(effects: Effects) -> bool:
+def _depends_on_path(effects: Effects) -> bool:
     return (
-        effects.stribeck_friction.excess != 0.0
+        effects.position_dependent_friction.slope_per_mm != 0.0
+        or effects.stribeck_friction.excess != 0.0
         or effects.viscous_friction.coefficient_N_s_per_mm != 0.0
     )

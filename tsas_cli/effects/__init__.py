@@ -32,6 +32,10 @@ from tsas_cli.effects.load_spring_nonlinearity import (
     LOAD_SPRING_NONLINEARITY,
     LoadSpringNonlinearity,
 )
+from tsas_cli.effects.position_dependent_friction import (
+    POSITION_DEPENDENT_FRICTION,
+    PositionDependentFriction,
+)
 from tsas_cli.effects.position_sensor_gain import POSITION_SENSOR_GAIN, PositionSensorGain
 from tsas_cli.effects.preload_loss import PRELOAD_LOSS, PreloadLoss
 from tsas_cli.effects.presliding import PRESLIDING, Presliding
@@ -55,6 +59,7 @@ EFFECTS: tuple[Effect, ...] = (  # from the drive to the load, then the sensors
     STRIBECK_FRICTION,
     VISCOUS_FRICTION,
     LOAD_DEPENDENT_FRICTION,
+    POSITION_DEPENDENT_FRICTION,
     PRESLIDING,
     BEND_DRIFT,
     FRICTION_DRIFT,
@@ -92,6 +97,7 @@ class Effects(NamedTuple):
     stribeck_friction: StribeckFriction = StribeckFriction()
     viscous_friction: ViscousFriction = ViscousFriction()
     load_dependent_friction: LoadDependentFriction = LoadDependentFriction()
+    position_dependent_friction: PositionDependentFriction = PositionDependentFriction()
     presliding: Presliding = Presliding()
     bend_drift: BendDrift = BendDrift()
     friction_drift: FrictionDrift = FrictionDrift()
@@ -140,6 +146,7 @@ __all__ = [
     "LoadInertia",
     "LoadSpringNonlinearity",
     "Parameter",
+    "PositionDependentFriction",
     "PositionSensorGain",
     "PreloadLoss",
     "Presliding",

@@ -15,6 +15,7 @@ from tsas_cli.effects.drive_damping import drive_damper_force
 from tsas_cli.effects.drive_inertia import drive_inertia_force
 from tsas_cli.effects.drive_ripple import rippled
 from tsas_cli.effects.friction_drift import friction_factor
+from tsas_cli.effects.position_dependent_friction import position_factor
 from tsas_cli.effects.preload_loss import lost_preload
 from tsas_cli.effects.stribeck_friction import stribeck_factor
 from tsas_cli.effects.viscous_friction import viscous_loss
@@ -92,11 +93,11 @@ def ends_of(rig: Rig, drive: DriveInput, start: tuple[float, float] | None = Non
     time_s = np.zeros(n) if drive.time_s is None else drive.time_s
     if drive.kind == "force":
         at_drive = true_value("f_in_N", drive.values, drive.time_s, rig)
-        speed = np.zeros(n)
+        position = speed = np.zeros(n)
     else:
         x = drive.values - rig.x_in_zero_mm
         at_drive = tendon_end(x, rig.effects, float(x[0]) if start is None else start[0])
-        speed = rate_of(at_drive, drive.time_s)
+        position, speed = at_drive, rate_of(at_drive, drive.time_s)
     at_load = np.zeros(n)
     if drive.load_values is not None and drive.load == "force":
         at_load = true_value("f_out_N", drive.load_values, drive.time_s, rig)
@@ -105,7 +106,7 @@ def ends_of(rig: Rig, drive: DriveInput, start: tuple[float, float] | None = Non
     step_s = np.full(n, math.inf)
     if drive.time_s is not None:
         step_s[1:] = np.diff(time_s)
-    losses = losses_over(time_s, speed, drive.session_s, rig)
+    losses = losses_over(time_s, position, speed, drive.session_s, rig)
     course = np.vstack((losses, at_drive, at_load, step_s, time_s))
     direction = last_direction(at_drive, 0.0 if start is None else start[1])
     motion_N = force_of_motion(speed, drive.time_s, rig.effects)
@@ -162,31 +163,35 @@ def last_direction(x: Floats, before: float = 0.0) -> Floats:
 
 
 @kernel
-def losses_over(time_s: Floats, speed: Floats, session_s: float, rig: Rig) -> Floats:
+def losses_over(
+    time_s: Floats, position: Floats, speed: Floats, session_s: float, rig: Rig
+) -> Floats:
     """Return `losses_at` for each time, shape (4, n)."""
     out = np.empty((4, time_s.size))
     for i in range(time_s.size):
-        out[0, i], out[1, i], out[2, i], out[3, i] = losses_at(time_s[i], speed[i], session_s, rig)
+        now = losses_at(time_s[i], position[i], speed[i], session_s, rig)
+        out[0, i], out[1, i], out[2, i], out[3, i] = now
     return out
 
 
 @kernel
-def losses_at(time_s: float, speed: float, session_s: float, rig: Rig) -> Losses:
-    """Return the losses at one moment, by the speed of the tendon's end at the drive [mm/s]."""
+def losses_at(time_s: float, position: float, speed: float, session_s: float, rig: Rig) -> Losses:
+    """Return the losses at one moment, by position [mm] and speed [mm/s] of the end at the drive."""
     effects = rig.effects
-    now = losses_without_speed(time_s, session_s, rig)
+    now = losses_without_speed(time_s, position, session_s, rig)
     factor = stribeck_factor(speed, effects.stribeck_friction)
     viscous_N = viscous_loss(speed, effects.viscous_friction.coefficient_N_s_per_mm)
     return Losses(factor * now.pulled, factor * now.released, viscous_N, now.preload_N)
 
 
 @kernel
-def losses_without_speed(time_s: float, session_s: float, rig: Rig) -> Losses:
+def losses_without_speed(time_s: float, position: float, session_s: float, rig: Rig) -> Losses:
     """Return the losses at one moment without those that depend on the local sliding speed."""
     effects = rig.effects
     asymmetry = effects.direction_dependent_friction.asymmetry
     wrap = rig.friction_coefficient * friction_factor(effects.friction_drift, time_s, session_s)
     wrap *= drifted_bend(rig.total_bend_rad, effects.bend_drift, time_s)
+    wrap *= position_factor(position, effects.position_dependent_friction.slope_per_mm)
     return Losses(
         wrap * direction_factor(asymmetry, 1.0),
         wrap * direction_factor(asymmetry, -1.0),

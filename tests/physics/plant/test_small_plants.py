@@ -72,7 +72,7 @@ WANTED = np.array([25.0, 26.0, 31.0, 44.0, 43.9, 43.0, 43.4, 38.0, 30.0, 30.0, 2
 @pytest.mark.parametrize("values", INVERTED.values(), ids=INVERTED.keys())
 def test_a_path_to_a_force_gives_that_force(values):
     rig, time_s = with_values(GROUP_A, values), STEP_S * np.arange(WANTED.size)
-    friction = losses_over(time_s, np.zeros(WANTED.size), 0.0, rig)
+    friction = losses_over(time_s, *np.zeros((2, WANTED.size)), 0.0, rig)
     path, tension, missed = inverse_chain(WANTED, friction, STEP_S, rig, N)
     assert missed == 0
     # As fast as it is, the path has no speed to the inverse: none is given to it.

@@ -96,7 +96,7 @@ def lumps_at_rest(s: Floats, chain: Floats, f_in: float, rig: Rig, n: int) -> Lu
     clear_state(s, rig, n)
     for j in range(n + 2):
         start[0, j], start[1, j] = chain[slip.POSITION + j], chain[slip.TENSION + j]
-    step = step_of_rest(f_in, 0.0, rig, n)
+    step = step_of_rest(f_in, 0.0, start[0, 0], rig, n)
     ends = rest_at(s, start, step, laws)
     if s[POSITION] < taut_position(s, step, laws):
         return slack_tendon(step, laws)
@@ -127,7 +127,7 @@ def step_lumped_plant(
     """
     p, h = s[POSITION], step.h
     spring = spring_of(table, p, rig, step)
-    given = step_of_rest(spring.force, step.time_s, rig, laws.n)
+    given = step_of_rest(spring.force, step.time_s, p, rig, laws.n)
     if tendon.touched != spring.touches and not tendon.slack:
         tendon = restarted(tendon.ends, spring.touches)
     solved, arrived, x, f_in = True, True, spring.x, table.f_in
@@ -229,9 +229,9 @@ def slack_tendon(step: Step, laws: LugreLaws) -> LumpedTendon:
 
 
 @kernel
-def step_of_rest(force: float, time_s: float, rig: Rig, n: int) -> Step:
-    """Return a step of zero length with a force at the drive [N]."""
-    losses = losses_without_speed(time_s, 0.0, rig)
+def step_of_rest(force: float, time_s: float, position: float, rig: Rig, n: int) -> Step:
+    """Return a step of zero length with a force at the drive [N], which is at a position [mm]."""
+    losses = losses_without_speed(time_s, position, 0.0, rig)
     pulled, released = lump_share(losses.pulled, n), lump_share(losses.released, n)
     none = Given(0.0, 0.0)
     return Step(NO_TIME_S, Given(force, 0.0), none, none, pulled, released, losses.preload_N)

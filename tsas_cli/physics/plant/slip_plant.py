@@ -39,7 +39,8 @@ def step_plant(
     converged, now, x, f_in = True, before, spring.x, table.f_in
     mass_speed = chain[END_SPEED]
     if spring.touches:
-        now = Moment(spring.force, 0.0, losses_at(step.time_s, table.speed, 0.0, rig), step.h)
+        losses = losses_at(step.time_s, p, table.speed, 0.0, rig)
+        now = Moment(spring.force, 0.0, losses, step.h)
         drive = laws.drive
         stiffness = drive.spring_N_per_mm + spring.stiffness
         driven = with_drive(laws, with_spring(drive, drive.given, stiffness))
