@@ -140,6 +140,12 @@ SIGNATURES: Mapping[str, Signature] = MappingProxyType(
             "every stroke.",
             _one(slope_per_mm=0.02),
         ),
+        "uneven_friction": Signature(
+            "Dead bands have another shape, steeper at first where there is more friction at the "
+            "drive; full slip fits.",
+            _one(slope=-1.6),
+            Motion(kind="nested", amplitude_mm=6.0, speed_mm_per_s=6.0, periods=1),
+        ),
         "presliding": Signature(
             "Rounded corners: f_in leaves a reversal with a finite slope, over the same travel at "
             "every tension. Short strokes become thin loops.",

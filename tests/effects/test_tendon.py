@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from tests.effects.runs import UP_AND_DOWN, A, run
-from tests.physics.references import GROUP_A, LOADED_BY_DISPLACEMENT, course_of
-from tsas_cli.physics.response import NODES
+from tests.physics.references import GROUP_A, LOADED_BY_DISPLACEMENT, Profile, course_of
+from tsas_cli.physics.ends import DriveInput
+from tsas_cli.physics.response import NODES, simulate
 from tsas_cli.physics.rig import with_values
 from tsas_cli.physics.slip.chain import slip_chain
 
@@ -111,6 +112,31 @@ def test_friction_that_depends_on_the_tension_bends_the_capstan(direction, expon
     slip = in_slip(answer, direction)
     powers = (answer.f_in_N[slip] / 25.0) ** -exponent + direction * exponent * A
     np.testing.assert_allclose(answer.f_out_N[slip], 25.0 * powers ** (-1.0 / exponent), rtol=1e-5)
+
+
+@pytest.mark.parametrize("slope", [1.5, -1.5])
+def test_uneven_friction_shapes_dead_bands_and_not_full_slip(slope):
+    """The profile of tension, whose friction up to s is a (s + slope (s² − s)/2), bent by hand."""
+    way = np.concatenate(
+        (np.linspace(25, 60, 200), np.linspace(60, 46, 150), np.linspace(46, 57, 99))
+    )
+    profile, x_in, f_out = Profile(GROUP_A, 4001), [], []
+    reached = profile.s + 0.5 * slope * (profile.s**2 - profile.s)
+    for tension in way:
+        profile._change(tension, profile.tension[0], reached)
+        profile.x_out = (profile.tension[-1] - 25.0) / GROUP_A.load_stiffness_N_per_mm
+        x_in.append(profile.x_in)
+        f_out.append(profile.tension[-1])
+    rig = with_values(GROUP_A, {"uneven_friction.slope": slope})
+    uneven, even = (
+        simulate(r, DriveInput(np.array(x_in)), on_mesh=True, nodes=400) for r in (rig, GROUP_A)
+    )
+    np.testing.assert_allclose(uneven.f_in_N, way, atol=0.06)
+    np.testing.assert_allclose(uneven.f_out_N, f_out, atol=0.06)
+    assert np.abs(even.f_in_N - way).max() > 0.6
+    slips = even.phase == 1
+    assert slips.sum() > 80
+    np.testing.assert_allclose(uneven.f_out_N[slips], even.f_out_N[slips], atol=0.5)
 
 
 def test_a_compressed_sheath_is_a_softer_tendon():

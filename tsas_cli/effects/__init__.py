@@ -43,6 +43,7 @@ from tsas_cli.effects.proximal_spring import PROXIMAL_SPRING, ProximalSpring
 from tsas_cli.effects.sensor_lag import SENSOR_LAG, SensorLag
 from tsas_cli.effects.sheath_compression import SHEATH_COMPRESSION, SheathCompression
 from tsas_cli.effects.stribeck_friction import STRIBECK_FRICTION, StribeckFriction
+from tsas_cli.effects.uneven_friction import UNEVEN_FRICTION, UnevenFriction
 from tsas_cli.effects.viscous_friction import VISCOUS_FRICTION, ViscousFriction
 
 EFFECTS: tuple[Effect, ...] = (  # from the drive to the load, then the sensors
@@ -60,6 +61,7 @@ EFFECTS: tuple[Effect, ...] = (  # from the drive to the load, then the sensors
     VISCOUS_FRICTION,
     LOAD_DEPENDENT_FRICTION,
     POSITION_DEPENDENT_FRICTION,
+    UNEVEN_FRICTION,
     PRESLIDING,
     BEND_DRIFT,
     FRICTION_DRIFT,
@@ -98,6 +100,7 @@ class Effects(NamedTuple):
     viscous_friction: ViscousFriction = ViscousFriction()
     load_dependent_friction: LoadDependentFriction = LoadDependentFriction()
     position_dependent_friction: PositionDependentFriction = PositionDependentFriction()
+    uneven_friction: UnevenFriction = UnevenFriction()
     presliding: Presliding = Presliding()
     bend_drift: BendDrift = BendDrift()
     friction_drift: FrictionDrift = FrictionDrift()
@@ -154,5 +157,6 @@ __all__ = [
     "SensorLag",
     "SheathCompression",
     "StribeckFriction",
+    "UnevenFriction",
     "ViscousFriction",
 ]

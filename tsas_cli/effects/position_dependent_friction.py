@@ -29,7 +29,7 @@ class PositionDependentFriction(NamedTuple):
 
 @kernel
 def position_factor(position: float, slope_per_mm: float) -> float:
-    """Return the factor of the friction coefficient at a position of the drive [mm], not below 0."""
+    """Return the factor of the friction coefficient at a position [mm], not below 0."""
     factor: float = np.maximum(1.0 + slope_per_mm * position, 0.0)
     return factor
 

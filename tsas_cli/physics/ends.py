@@ -176,7 +176,7 @@ def losses_over(
 
 @kernel
 def losses_at(time_s: float, position: float, speed: float, session_s: float, rig: Rig) -> Losses:
-    """Return the losses at one moment, by position [mm] and speed [mm/s] of the end at the drive."""
+    """Return the losses at one moment, by position and speed of the end at the drive [mm, s]."""
     effects = rig.effects
     now = losses_without_speed(time_s, position, session_s, rig)
     factor = stribeck_factor(speed, effects.stribeck_friction)

@@ -15,6 +15,7 @@ from tsas_cli.effects.load_inertia import inertia_force
 from tsas_cli.effects.load_spring_nonlinearity import spring_force, spring_tangent
 from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.effects.stribeck_friction import stribeck
+from tsas_cli.effects.uneven_friction import place_factor
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.boundary import DISPLACEMENT, SPRING, moving_friction
 from tsas_cli.physics.bristles import friction
@@ -97,6 +98,11 @@ def set_limits(s: Floats, step: Step, laws: LugreLaws) -> None:
             factor = load_factor(mean / laws.preload_N, laws.lump.friction_exponent)
             s[LIMIT + i] *= factor
             s[LIMIT_BY_T + i] *= factor * (1.0 + laws.lump.friction_exponent)
+    if laws.lump.friction_slope != 0.0:
+        for i in range(1, laws.n + 1):
+            factor = place_factor((i - 0.5) / laws.n, laws.lump.friction_slope)
+            s[LIMIT + i] *= factor
+            s[LIMIT_BY_T + i] *= factor
     if laws.lump.stribeck.excess != 0.0:
         set_stribeck(s, step, laws)
 

@@ -57,6 +57,7 @@ def lugre_laws(rig: Rig, n: int, boundary: Boundary) -> LugreLaws:
         tendon_mass(rig.bristles, rig.sheath_length_mm) / n,
         Bristle(whole.stiffness / n, whole.damping / n, whole.viscous / n, whole.travel),
         effects.load_dependent_friction.exponent,
+        effects.uneven_friction.slope,
         effects.stribeck_friction,
     )
     end_bristle = Bristle(whole.stiffness, whole.damping, 0.0, 0.0)

@@ -39,6 +39,7 @@ class Lump(NamedTuple):
     mass: float  # [t]
     bristle: Bristle
     friction_exponent: float
+    friction_slope: float  # along the sheath, over the mean
     stribeck: StribeckFriction
 
 

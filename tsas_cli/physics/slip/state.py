@@ -22,6 +22,7 @@ class SlipLaws(NamedTuple):
     preload_N: float
     scale_mm: float  # elongation of a node's segment at the preload
     friction_exponent: float
+    friction_slope: float  # along the sheath, over the mean
     presliding_mm: float
     drive: DriveEnd
     load: LoadEnd
