@@ -210,6 +210,12 @@ SIGNATURES: Mapping[str, Signature] = MappingProxyType(
             _one("f_out_N", force_N=3.0, travel_mm=2.0),
             planes=(F_IN_OVER_X_IN, F_OUT_OVER_X_OUT),
         ),
+        "load_relaxation": Signature(
+            "f_out over x_out becomes a loop on a steeper line: in each stroke f_out runs ahead and "
+            "then falls back towards the line of slow motion.",
+            _one("f_out_N", share=0.3, time_s=0.5),
+            planes=(F_IN_OVER_X_IN, F_OUT_OVER_X_OUT),
+        ),
         "force_sensor_gain": Signature(
             "In f_in over f_out both lines are stretched sideways by one factor; f_in over x_in "
             "fits.",

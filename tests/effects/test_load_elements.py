@@ -79,3 +79,33 @@ def test_an_element_makes_a_load_stiffer_until_it_yields():
     first, last = x < 1.4, x > 1.6
     np.testing.assert_allclose(slopes[first[1:]], K / (K + KL + 4.0), rtol=1e-9)
     np.testing.assert_allclose(slopes[last[:-1]], K / (K + KL), rtol=1e-9)
+
+
+@BOTH
+def test_a_load_that_relaxes_falls_back_by_an_exponential(dynamics):
+    """A ramp, then rest: K (x_in − x) = kL x + k w with dw/dt = dx/dt − w/τ, solved for x.
+
+    (K + kL + k) dx/dt = K dx_in/dt + k w/τ; with y = x − w that is dy/dt = (x − y)/τ, and x is
+    (K x_in + k y)/(K + kL + k): y follows x_in by a low pass of its own, slower by k.
+    """
+    share, time_s = 0.8, 0.5
+    t = np.arange(0.0, 4.0, 2e-3)
+    x_in, rate = np.minimum(8.0 * t, 8.0), 8.0
+    values = {"load_relaxation.share": share, "load_relaxation.time_s": time_s}
+    answer = softly(values, x_in, t, dynamics)
+    k = share * KL
+    low, slower = K / (K + KL), time_s * (K + KL + k) / (K + KL)
+    since = np.maximum(t - 1.0, 0.0)
+    y = low * rate * (t - slower * (1.0 - np.exp(-t / slower)))
+    y -= low * rate * (since - slower * (1.0 - np.exp(-since / slower)))
+    x = (K * x_in + k * y) / (K + KL + k)
+    np.testing.assert_allclose(answer.x_out_mm, x, atol=5e-3)
+    np.testing.assert_allclose(answer.f_out_N, 40.0 + KL * x + k * (x - y), atol=0.02)
+    assert answer.f_out_N.max() - answer.f_out_N[-1] > 1.0
+
+
+def test_a_load_without_times_is_relaxed():
+    x_in = np.linspace(0.0, 8.0, 50)
+    rig = with_values(SOFT, {"load_relaxation.share": 0.8})
+    relaxed, plain = (simulate(r, DriveInput(x_in), on_mesh=True) for r in (rig, SOFT))
+    np.testing.assert_array_equal(relaxed.f_out_N, plain.f_out_N)

@@ -28,6 +28,7 @@ from tsas_cli.effects.load_dependent_friction import LOAD_DEPENDENT_FRICTION, Lo
 from tsas_cli.effects.load_friction import LOAD_FRICTION, LoadFriction
 from tsas_cli.effects.load_hysteresis import LOAD_HYSTERESIS, LoadHysteresis
 from tsas_cli.effects.load_inertia import LOAD_INERTIA, LoadInertia
+from tsas_cli.effects.load_relaxation import LOAD_RELAXATION, LoadRelaxation
 from tsas_cli.effects.load_spring_nonlinearity import (
     LOAD_SPRING_NONLINEARITY,
     LoadSpringNonlinearity,
@@ -71,6 +72,7 @@ EFFECTS: tuple[Effect, ...] = (  # from the drive to the load, then the sensors
     LOAD_INERTIA,
     LOAD_DAMPING,
     LOAD_HYSTERESIS,
+    LOAD_RELAXATION,
     FORCE_SENSOR_GAIN,
     FORCE_SENSOR_OFFSET,
     FORCE_SENSOR_DRIFT,
@@ -110,6 +112,7 @@ class Effects(NamedTuple):
     load_inertia: LoadInertia = LoadInertia()
     load_damping: LoadDamping = LoadDamping()
     load_hysteresis: LoadHysteresis = LoadHysteresis()
+    load_relaxation: LoadRelaxation = LoadRelaxation()
     force_sensor_gain: ForceSensorGain = ForceSensorGain()
     force_sensor_offset: ForceSensorOffset = ForceSensorOffset()
     force_sensor_drift: ForceSensorDrift = ForceSensorDrift()
@@ -147,6 +150,7 @@ __all__ = [
     "LoadFriction",
     "LoadHysteresis",
     "LoadInertia",
+    "LoadRelaxation",
     "LoadSpringNonlinearity",
     "Parameter",
     "PositionDependentFriction",

@@ -5,8 +5,8 @@ reversal the dead band has another shape: with more friction at the drive f_in c
 first and slower later, and a dead band that ends early shows another tension. Residuals of f_in sit
 in dead bands and repeat at each.
 Equation: Yang 2025, Eq. (2), with μ (1 + slope·(s/L − ½)) at the place s along the sheath, counted
-by its bend: linear from 1 − slope/2 at the drive to 1 + slope/2 at the load, with the same mean. The
-paper's μ is the same everywhere.
+by its bend: linear from 1 − slope/2 at the drive to 1 + slope/2 at the load, with the same mean.
+The paper's μ is the same everywhere.
 Mistaken for: presliding (rounds the beginning of a dead band, by a travel); sheath_compression,
 free_tendon, drive_compliance (make the whole dead band wider); a bend that is not even along the
 sheath (indistinguishable where it comes with a length of sheath without bend).

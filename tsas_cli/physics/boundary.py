@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 from tsas_cli.effects.load_friction import LoadFriction, guide_friction
 from tsas_cli.effects.load_hysteresis import LoadHysteresis
+from tsas_cli.effects.load_relaxation import LoadRelaxation
 from tsas_cli.effects.load_spring_nonlinearity import (
     LoadSpringNonlinearity,
     spring_force,
@@ -42,6 +43,7 @@ class LoadEnd(NamedTuple):
     mass_kg: float
     damping_N_s_per_mm: float
     hysteresis: LoadHysteresis
+    relaxation: LoadRelaxation
 
 
 @kernel
@@ -76,6 +78,7 @@ def load_end(rig: Rig, given: int) -> LoadEnd:
         effects.load_inertia.mass_kg,
         effects.load_damping.coefficient_N_s_per_mm,
         effects.load_hysteresis,
+        effects.load_relaxation,
     )
 
 

@@ -12,6 +12,7 @@ from tsas_cli.effects.load_damping import load_damper_force
 from tsas_cli.effects.load_dependent_friction import load_factor
 from tsas_cli.effects.load_hysteresis import element_force
 from tsas_cli.effects.load_inertia import inertia_force
+from tsas_cli.effects.load_relaxation import relaxing_force
 from tsas_cli.effects.load_spring_nonlinearity import spring_force, spring_tangent
 from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.effects.stribeck_friction import stribeck
@@ -192,15 +193,27 @@ def balance_load(s: Floats, step: Step, laws: LugreLaws) -> None:
         damping = laws.load.damping_N_s_per_mm
         pull += inertia * (speed - s[SPEED_HISTORY + last]) + load_damper_force(speed, damping)
         by_speed += damping
-        force, slope = element_force(s[LOAD_STATE_HISTORY], step.gh * speed, laws.load.hysteresis)
+        force, by_travel = beside_spring(s, speed, step, laws)
         pull += force
-        by_speed += slope * step.gh
-        s[LOAD_STATE_NEW] = force
+        by_speed += by_travel * step.gh
         by_position = spring_tangent(position, stiffness, laws.load.nonlinearity)
     s[LOWER + last] = -behind
     s[DIAGONAL + last] = behind + by_position * step.gh + inertia + by_speed
     s[RESIDUAL + last] = s[TENSION + laws.n] - pull - friction_force
     s[FRICTION + last], s[DEFLECTION_NEW + last] = friction_force, deflection
+
+
+@kernel
+def beside_spring(s: Floats, speed: float, step: Step, laws: LugreLaws) -> tuple[float, float]:
+    """Return the forces of hysteresis and relaxation of the load [N], and their slope [N/mm]."""
+    load, moved = laws.load, step.gh * speed
+    element_N, slope = element_force(s[LOAD_STATE_HISTORY], moved, load.hysteresis)
+    stretched = 1.0 / (1.0 + step.gh / load.relaxation.time_s)
+    stretch = (s[LOAD_STATE_HISTORY + 1] + moved) * stretched
+    s[LOAD_STATE_NEW], s[LOAD_STATE_NEW + 1] = element_N, stretch
+    stiffness, share = load.stiffness_N_per_mm, load.relaxation.share
+    relaxing_N = relaxing_force(stretch, stiffness, share)
+    return element_N + relaxing_N, slope + relaxing_force(stretched, stiffness, share)
 
 
 @kernel

@@ -119,7 +119,7 @@ def rest_at(s: Floats, start: Floats, step: Step, laws: LugreLaws) -> StepEnds:
         s[POSITION + i] = s[POSITION_HISTORY + i] = start[0, i] - step.frame.value
         s[TENSION_HISTORY + i], s[TENSION_SLOPE + i] = start[1, i], 0.0
         s[SPEED + i] = s[SPEED_HISTORY + i] = s[RATE + i] = s[DEFLECTION_HISTORY + i] = 0.0
-    s[LOAD_STATE_HISTORY] = 0.0
+    s[LOAD_STATE_HISTORY] = s[LOAD_STATE_HISTORY + 1] = s[LOAD_STATE + 1] = 0.0
     balance(s, step, laws)
     element_N = laws.load.hysteresis.force_N if laws.load.given == SPRING else 0.0
     s[LOAD_STATE] = min(max(s[RESIDUAL + last], -element_N), element_N)  # before the guide

@@ -7,21 +7,24 @@ from tsas_cli.effects.drive_inertia import drive_inertia_force
 from tsas_cli.effects.load_damping import load_damper_force
 from tsas_cli.effects.load_hysteresis import element_force
 from tsas_cli.effects.load_inertia import inertia_force
+from tsas_cli.effects.load_relaxation import relaxing_force
 from tsas_cli.effects.load_spring_nonlinearity import (
     spring_force,
     spring_tangent,
 )
 from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.numerics.compiled import kernel
+from tsas_cli.numerics.settling import lag_after
 from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, moving_friction
 from tsas_cli.physics.slip.nodes import slips_backwards
 from tsas_cli.physics.slip.state import (
     BALANCED,
+    ELEMENT,
     END_SPEED,
-    LOAD_STATE,
     POSITION,
     POSITION_BEFORE,
     SLIP,
+    STRETCH,
     SWEEP_P,
     SWEEP_Q,
     SWEEP_R,
@@ -57,9 +60,15 @@ def load_tangent(chain: Floats, now: Moment, laws: SlipLaws) -> tuple[float, flo
         value -= per_mm * chain[POSITION_BEFORE + n + 1]
     if laws.load.hysteresis.force_N > 0.0:
         moved = x - chain[POSITION_BEFORE + n + 1]
-        force, stiffness = element_force(chain[LOAD_STATE], moved, laws.load.hysteresis)
+        force, stiffness = element_force(chain[ELEMENT], moved, laws.load.hysteresis)
         slope += stiffness
         value += force - stiffness * x
+    if laws.load.relaxation.share > 0.0:
+        kept, gained = relaxing_stretch(chain, now.step_s, laws)
+        share, stiffness = laws.load.relaxation.share, laws.load.stiffness_N_per_mm
+        slope += relaxing_force(gained, stiffness, share)
+        at_zero = kept - gained * chain[POSITION_BEFORE + n + 1]
+        value += relaxing_force(at_zero, stiffness, share)
     return slope, value
 
 
@@ -73,11 +82,22 @@ def update_end_speeds(chain: Floats, step_s: float, n: int) -> None:
 
 
 @kernel
-def update_load_state(chain: Floats, laws: SlipLaws) -> None:
+def relaxing_stretch(chain: Floats, step_s: float, laws: SlipLaws) -> tuple[float, float]:
+    """Return what a step leaves of the relaxing spring's stretch [mm], and adds for each mm."""
+    time_s = laws.load.relaxation.time_s
+    return lag_after(chain[STRETCH], 0.0, step_s, time_s), lag_after(0.0, 1.0, step_s, time_s)
+
+
+@kernel
+def update_load_state(chain: Floats, step_s: float, laws: SlipLaws) -> None:
     """Update the state of what is beside the load spring after a step."""
+    if laws.load.relaxation.share > 0.0:
+        moved = chain[POSITION + laws.n + 1] - chain[POSITION_BEFORE + laws.n + 1]
+        kept, gained = relaxing_stretch(chain, step_s, laws)
+        chain[STRETCH] = kept + gained * moved
     if laws.load.hysteresis.force_N > 0.0:
         moved = chain[POSITION + laws.n + 1] - chain[POSITION_BEFORE + laws.n + 1]
-        chain[LOAD_STATE] = element_force(chain[LOAD_STATE], moved, laws.load.hysteresis)[0]
+        chain[ELEMENT] = element_force(chain[ELEMENT], moved, laws.load.hysteresis)[0]
 
 
 @kernel

@@ -55,5 +55,6 @@ SHARE = PITCH * 19  # ratio of friction to its limit, with its sign
 TENSION_RISE = PITCH * 20  # in the last step [N]
 WRAP_LIMIT = PITCH * 21  # a/n at the node's tension, in the direction of SHARE
 WRAP_SIGNED, RATIO = PITCH * 22, PITCH * 23  # friction times bend with its sign, its exponential
-LOAD_STATE = PITCH * 24  # force of the load's hysteresis, before [N]
+ELEMENT, STRETCH = PITCH * 24, PITCH * 24 + 1  # force of the load's hysteresis, before [N], and
+# stretch of its relaxing spring [mm]
 ROWS = 25
