@@ -182,6 +182,12 @@ SIGNATURES: Mapping[str, Signature] = MappingProxyType(
             ),
             planes=(F_IN_OVER_X_IN, F_OUT_OVER_X_OUT),
         ),
+        "load_ripple": Signature(
+            "A wave on f_out over x_out, the same on pull and release, with a fixed period in "
+            "x_out; none in dead bands.",
+            _one("f_out_N", sine_mm=1.0, period_mm=8.0),
+            planes=(F_IN_OVER_X_IN, F_OUT_OVER_X_OUT),
+        ),
         "load_friction": Signature(
             "Behind the sensor, f_out over x_out becomes a loop of constant height; before it, "
             "that stays a line and only f_in feels it, more on a pull than on a release.",
@@ -211,8 +217,8 @@ SIGNATURES: Mapping[str, Signature] = MappingProxyType(
             planes=(F_IN_OVER_X_IN, F_OUT_OVER_X_OUT),
         ),
         "load_relaxation": Signature(
-            "f_out over x_out becomes a loop on a steeper line: in each stroke f_out runs ahead and "
-            "then falls back towards the line of slow motion.",
+            "f_out over x_out becomes a loop on a steeper line: in each stroke f_out runs ahead "
+            "and then falls back towards the line of slow motion.",
             _one("f_out_N", share=0.3, time_s=0.5),
             planes=(F_IN_OVER_X_IN, F_OUT_OVER_X_OUT),
         ),

@@ -109,3 +109,18 @@ def test_a_load_without_times_is_relaxed():
     rig = with_values(SOFT, {"load_relaxation.share": 0.8})
     relaxed, plain = (simulate(r, DriveInput(x_in), on_mesh=True) for r in (rig, SOFT))
     np.testing.assert_array_equal(relaxed.f_out_N, plain.f_out_N)
+
+
+@BOTH
+def test_an_eccentric_pulley_makes_a_wave_on_the_spring(dynamics):
+    t = np.arange(0.0, 4.0, 2e-3)
+    x_in = np.interp(t, [0.0, 2.0, 4.0], [0.0, 14.0, 2.0])
+    wave = {"sine_mm": 0.2, "cosine_mm": -0.1, "period_mm": 5.0}
+    answer = softly({f"load_ripple.{n}": v for n, v in wave.items()}, x_in, t, dynamics)
+    x = answer.x_out_mm
+    angle = 2.0 * np.pi * x / 5.0
+    stretched = x + 0.2 * np.sin(angle) - 0.1 * (np.cos(angle) - 1.0)
+    assert x.max() > 8.0
+    np.testing.assert_allclose(answer.f_out_N, 40.0 + KL * stretched, atol=5e-3)
+    np.testing.assert_allclose(answer.f_out_N, 40.0 + K * (x_in - x), atol=5e-3)
+    assert np.abs(answer.f_out_N - 40.0 - KL * x).max() > 0.3

@@ -29,6 +29,7 @@ from tsas_cli.effects.load_friction import LOAD_FRICTION, LoadFriction
 from tsas_cli.effects.load_hysteresis import LOAD_HYSTERESIS, LoadHysteresis
 from tsas_cli.effects.load_inertia import LOAD_INERTIA, LoadInertia
 from tsas_cli.effects.load_relaxation import LOAD_RELAXATION, LoadRelaxation
+from tsas_cli.effects.load_ripple import LOAD_RIPPLE, LoadRipple
 from tsas_cli.effects.load_spring_nonlinearity import (
     LOAD_SPRING_NONLINEARITY,
     LoadSpringNonlinearity,
@@ -68,6 +69,7 @@ EFFECTS: tuple[Effect, ...] = (  # from the drive to the load, then the sensors
     FRICTION_DRIFT,
     PRELOAD_LOSS,
     LOAD_SPRING_NONLINEARITY,
+    LOAD_RIPPLE,
     LOAD_FRICTION,
     LOAD_INERTIA,
     LOAD_DAMPING,
@@ -108,6 +110,7 @@ class Effects(NamedTuple):
     friction_drift: FrictionDrift = FrictionDrift()
     preload_loss: PreloadLoss = PreloadLoss()
     load_spring_nonlinearity: LoadSpringNonlinearity = LoadSpringNonlinearity()
+    load_ripple: LoadRipple = LoadRipple()
     load_friction: LoadFriction = LoadFriction()
     load_inertia: LoadInertia = LoadInertia()
     load_damping: LoadDamping = LoadDamping()
@@ -151,6 +154,7 @@ __all__ = [
     "LoadHysteresis",
     "LoadInertia",
     "LoadRelaxation",
+    "LoadRipple",
     "LoadSpringNonlinearity",
     "Parameter",
     "PositionDependentFriction",

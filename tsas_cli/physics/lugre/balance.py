@@ -13,12 +13,11 @@ from tsas_cli.effects.load_dependent_friction import load_factor
 from tsas_cli.effects.load_hysteresis import element_force
 from tsas_cli.effects.load_inertia import inertia_force
 from tsas_cli.effects.load_relaxation import relaxing_force
-from tsas_cli.effects.load_spring_nonlinearity import spring_force, spring_tangent
 from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.effects.stribeck_friction import stribeck
 from tsas_cli.effects.uneven_friction import place_factor
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.physics.boundary import DISPLACEMENT, SPRING, moving_friction
+from tsas_cli.physics.boundary import DISPLACEMENT, SPRING, moving_friction, spring_law
 from tsas_cli.physics.bristles import friction
 from tsas_cli.physics.lugre.state import (
     DEFLECTION_HISTORY,
@@ -185,10 +184,8 @@ def balance_load(s: Floats, step: Step, laws: LugreLaws) -> None:
     pull, by_position, inertia = step.load.value, 0.0, 0.0
     if laws.load.given == SPRING:
         position = s[POSITION_HISTORY + last] + step.gh * s[RATE + last] + step.frame.value
-        stiffness = laws.load.stiffness_N_per_mm
-        pull = (
-            laws.preload_N - step.lost_N + spring_force(position, stiffness, laws.load.nonlinearity)
-        )
+        force, by_position = spring_law(position, laws.load)
+        pull = laws.preload_N - step.lost_N + force
         inertia = inertia_force(1.0, laws.load.mass_kg) / step.gh
         damping = laws.load.damping_N_s_per_mm
         pull += inertia * (speed - s[SPEED_HISTORY + last]) + load_damper_force(speed, damping)
@@ -196,7 +193,6 @@ def balance_load(s: Floats, step: Step, laws: LugreLaws) -> None:
         force, by_travel = beside_spring(s, speed, step, laws)
         pull += force
         by_speed += by_travel * step.gh
-        by_position = spring_tangent(position, stiffness, laws.load.nonlinearity)
     s[LOWER + last] = -behind
     s[DIAGONAL + last] = behind + by_position * step.gh + inertia + by_speed
     s[RESIDUAL + last] = s[TENSION + laws.n] - pull - friction_force

@@ -8,14 +8,10 @@ from tsas_cli.effects.load_damping import load_damper_force
 from tsas_cli.effects.load_hysteresis import element_force
 from tsas_cli.effects.load_inertia import inertia_force
 from tsas_cli.effects.load_relaxation import relaxing_force
-from tsas_cli.effects.load_spring_nonlinearity import (
-    spring_force,
-    spring_tangent,
-)
 from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.numerics.settling import lag_after
-from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, moving_friction
+from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, moving_friction, spring_law
 from tsas_cli.physics.slip.nodes import slips_backwards
 from tsas_cli.physics.slip.state import (
     BALANCED,
@@ -43,9 +39,8 @@ def load_tangent(chain: Floats, now: Moment, laws: SlipLaws) -> tuple[float, flo
     """Return slope and value at x = 0 of the tangent of the load's force [N/mm, N]."""
     n = laws.n
     x = chain[POSITION + n + 1]
-    shape = laws.load.nonlinearity
-    slope = spring_tangent(x, laws.load.stiffness_N_per_mm, shape)
-    value = spring_force(x, laws.load.stiffness_N_per_mm, shape) - slope * x
+    force, slope = spring_law(x, laws.load)
+    value = force - slope * x
     value += laws.preload_N - now.losses.preload_N
     mass = laws.load.mass_kg
     if mass > 0.0 and now.step_s < math.inf:  # implicit Euler, first order in the step

@@ -83,6 +83,8 @@ def is_linear(laws: SlipLaws) -> bool:
         and laws.load.hysteresis.force_N == 0.0
         and laws.load.nonlinearity.quadratic_per_mm == 0.0
         and laws.load.nonlinearity.cubic_per_mm2 == 0.0
+        and laws.load.ripple.sine_mm == 0.0
+        and laws.load.ripple.cosine_mm == 0.0
     )
 
 
