@@ -188,7 +188,9 @@ def test_who_answers_and_on_what_mesh():
 AT_THE_ENDS_ALONE = {  # what the closed form knows, or what is off its path
     "backlash",
     "drive_compliance",
+    "drive_damping",
     "drive_friction",
+    "drive_inertia",
     "drive_ripple",
     "free_tendon",
     "proximal_spring",

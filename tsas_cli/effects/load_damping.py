@@ -7,7 +7,7 @@ Equation: Newton's law of friction c v parallel to the spring of Yang 2025, Eq. 
 x_out. The sheath transmits it like the load. The paper's load has no damper.
 Mistaken for: load_friction (a loop of constant height, which does not grow with the speed);
 viscous_friction (f_out over x_out stays a line); channel_delay, sensor_lag of f_out or x_out (the
-same loop, without any effect on f_in).
+same loop, without any effect on f_in); load_relaxation (its loop closes in fast motion).
 Not validated: air dampers, whose force is not proportional to the speed; a slack tendon, whose
 load returns at once.
 """

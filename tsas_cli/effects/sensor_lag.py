@@ -8,7 +8,7 @@ corner frequency of 1/(2π lag); 20 ms are 8 Hz. Exact from sample to sample for
 linear in between. Not in the paper.
 Mistaken for: channel_delay (indistinguishable in slow sines, where the lag is a delay of the same
 time; only corners and fast motion separate them); presliding (rounds the same corners, by travel
-and not by time); viscous_friction (f_in alone, proportional to the speed of x_in).
+and not by time); viscous_friction, drive_damping (f_in alone, proportional to the speed of x_in).
 Not validated: filters of higher order; a lag of x_in itself; a recording that starts in the middle
 of a fast motion, before which the filter is taken to be at rest. A measured load is taken back to
 its true value by its rate alone, which does not restore corners.
