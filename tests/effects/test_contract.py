@@ -126,7 +126,7 @@ def test_a_run_fed_back_as_a_measured_load_repeats_itself(effect, load, channel)
 
 
 ROUND = np.array([0.0, 16.0, 3.0, 9.0, 5.0, 16.0])
-CHANGES_WITH_TIME = {"bend_drift", "friction_drift", "preload_loss"}
+CHANGES_WITH_TIME = {"bend_drift", "friction_drift", "preload_loss", "load_relaxation"}
 
 
 def work_of_a_round(rig):
@@ -161,6 +161,9 @@ def test_no_energy_comes_from_an_effect(effect):
         "drive_friction.friction_N",
         "stribeck_friction.excess",
         "viscous_friction.coefficient_N_s_per_mm",
+        "drive_damping.coefficient_N_s_per_mm",
+        "load_damping.coefficient_N_s_per_mm",
+        "load_hysteresis.force_N",
         "load_friction.after_sensor_N",
         "load_friction.before_sensor_N",
     ],

@@ -37,12 +37,12 @@ def test_a_damped_drive_gives_way_to_a_force_by_an_exponential(dynamics):
     """c dx/dt + K x = r t without friction: x = r/K (t − c/K (1 − e^(−K t/c)))."""
     t, rate, damping = np.arange(0.0, 1.0, 1e-3), 20.0, 0.4
     drive = DriveInput(25.0 + rate * t, kind="force", time_s=t)
-    x = simulate(with_values(SMOOTH, {DAMPER: damping}), drive, dynamics).x_in_mm
+    x = simulate(with_values(SMOOTH, {DAMPER: damping}), drive, dynamics, nodes=4).x_in_mm
     late = damping / STIFFNESS
     exact = rate / STIFFNESS * (t - late * (1.0 - np.exp(-t / late)))
     assert late > 0.2
     np.testing.assert_allclose(x, exact, atol=1e-3 * exact[-1])
-    assert exact[-1] < 0.8 * simulate(SMOOTH, drive, dynamics).x_in_mm[-1]
+    assert exact[-1] < 0.8 * simulate(SMOOTH, drive, dynamics, nodes=4).x_in_mm[-1]
     assert math.isclose(x[-1], exact[-1], rel_tol=1e-3)
 
 
@@ -67,7 +67,9 @@ def test_a_mass_at_a_drive_by_force_is_a_second_order_low_pass(dynamics, late_s)
     t, omega, mass, damping = np.arange(0.0, 2.0, 5e-4), 12.0, 5.0, 0.05
     wave = 20.0 * np.sin(omega * t)
     drive = DriveInput(40.0 + wave, kind="force", time_s=t)
-    x = simulate(with_values(SMOOTH, {MASS: mass, DAMPER: damping}), drive, dynamics).x_in_mm
+    x = simulate(
+        with_values(SMOOTH, {MASS: mass, DAMPER: damping}), drive, dynamics, nodes=4
+    ).x_in_mm
     inertia = 1e-3 * mass * omega**2 / (1.0 + 1j * omega * late_s)
     response = 20.0 / (STIFFNESS - inertia + 1j * damping * omega)
     exact = 15.0 / STIFFNESS + np.imag(response * np.exp(1j * omega * t))

@@ -21,8 +21,9 @@ BOTH = pytest.mark.parametrize("dynamics", ["slip", "lugre"])
 
 
 def softly(values, x_in, time_s, dynamics):
-    """Return the answer of a rig without friction on a soft tendon."""
-    return simulate(with_values(SOFT, values), DriveInput(x_in, time_s=time_s), dynamics)
+    """Return the answer of a rig without friction on a soft tendon, for which four nodes do."""
+    drive = DriveInput(x_in, time_s=time_s)
+    return simulate(with_values(SOFT, values), drive, dynamics, nodes=4)
 
 
 @BOTH
@@ -77,8 +78,8 @@ def test_an_element_makes_a_load_stiffer_until_it_yields():
     x = softly(named, x_in, 0.01 * np.arange(601), "slip").x_out_mm
     slopes = np.diff(x) / np.diff(x_in)
     first, last = x < 1.4, x > 1.6
-    np.testing.assert_allclose(slopes[first[1:]], K / (K + KL + 4.0), rtol=1e-9)
-    np.testing.assert_allclose(slopes[last[:-1]], K / (K + KL), rtol=1e-9)
+    np.testing.assert_allclose(slopes[first[1:]], K / (K + KL + 4.0), rtol=1e-5)
+    np.testing.assert_allclose(slopes[last[:-1]], K / (K + KL), rtol=1e-5)
 
 
 @BOTH
@@ -104,6 +105,20 @@ def test_a_load_that_relaxes_falls_back_by_an_exponential(dynamics):
     assert answer.f_out_N.max() - answer.f_out_N[-1] > 1.0
 
 
+def test_a_load_that_relaxes_loses_energy_in_each_cycle():
+    """π X² k ωτ/(1 + (ωτ)²) for an amplitude X of x_out, most where ωτ is 1."""
+    share, time_s, omega = 0.8, 0.2, 5.0
+    t = np.linspace(0.0, 4.0 * 2.0 * np.pi / omega, 4001)
+    x_in = 6.0 - 6.0 * np.cos(omega * t)
+    values = {"load_relaxation.share": share, "load_relaxation.time_s": time_s}
+    answer = softly(values, x_in, t, "slip")
+    cycle = slice(3000, 4001)
+    x, f_out = answer.x_out_mm[cycle], answer.f_out_N[cycle]
+    turns = omega * time_s
+    lost = np.pi * (0.5 * np.ptp(x)) ** 2 * share * KL * turns / (1.0 + turns**2)
+    assert np.trapezoid(f_out, x) == pytest.approx(lost, rel=1e-3)
+
+
 def test_a_load_without_times_is_relaxed():
     x_in = np.linspace(0.0, 8.0, 50)
     rig = with_values(SOFT, {"load_relaxation.share": 0.8})
@@ -122,5 +137,6 @@ def test_an_eccentric_pulley_makes_a_wave_on_the_spring(dynamics):
     stretched = x + 0.2 * np.sin(angle) - 0.1 * (np.cos(angle) - 1.0)
     assert x.max() > 8.0
     np.testing.assert_allclose(answer.f_out_N, 40.0 + KL * stretched, atol=5e-3)
-    np.testing.assert_allclose(answer.f_out_N, 40.0 + K * (x_in - x), atol=5e-3)
+    # At a corner of the input, which the dynamic chain follows by a cubic, less exactly.
+    np.testing.assert_allclose(answer.f_out_N, 40.0 + K * (x_in - x), atol=0.02)
     assert np.abs(answer.f_out_N - 40.0 - KL * x).max() > 0.3
