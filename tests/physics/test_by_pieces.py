@@ -26,6 +26,7 @@ DELAYS = {
     "channel_delay.x_out_delay_s": 0.02,
 }
 REMEMBERED = {
+    "drive_inertia.mass_kg": 2.0,
     "force_crosstalk.f_in_of_f_out": 0.05,
     "force_sensor_hysteresis.f_in_share": 0.1,
     "force_sensor_hysteresis.f_out_share": 0.2,

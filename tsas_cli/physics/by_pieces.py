@@ -42,7 +42,7 @@ from tsas_cli.physics.slip.chain import ChainState, follow, initial_state
 Floats = npt.NDArray[np.float64]
 State = BranchState | ChainState | StaticState
 
-OVERLAP = 2  # samples of a neighbour: one for a speed, and one more
+OVERLAP = 2  # samples of a neighbour: one for a speed, one more for an acceleration
 STATIC = -1  # nodes of the lumped model
 
 
@@ -168,7 +168,7 @@ def _overlapping(drives: Iterable[DriveInput], delay_s: float) -> Iterator[_Over
         if handover < begin:
             raise ValueError("a piece is shorter than a channel's delay")
         far_enough = int(np.searchsorted(time_s, time_s[handover + 1] + delay_s))
-        next_begin = max(handover + 1, far_enough)
+        next_begin = max(handover + OVERLAP, far_enough)
         yield _OverlappingPiece(drive, first, end, begin, size - 1, handover, next_begin)
         tail, begin, now = _part(drive, handover, end), next_begin - handover, after
 
