@@ -70,6 +70,19 @@ SIGNATURES: Mapping[str, Signature] = MappingProxyType(
             "negative on the release, a jump at the reversal.",
             _one(friction_N=4.0),
         ),
+        "drive_damping": Signature(
+            "The loop of f_in is wider where the drive is fast, in dead bands too, and fits at the "
+            "reversals; f_out is unaffected.",
+            _one(coefficient_N_s_per_mm=0.5),
+            planes=(F_IN_OVER_X_IN, F_OUT_OVER_X_IN),
+        ),
+        "drive_inertia": Signature(
+            "In fast sines f_in is too high at the near end of the stroke and too low at the far "
+            "one, by the same force on pull and release; f_out is unaffected.",
+            _one(mass_kg=10.0),
+            Motion(speed_mm_per_s=60.0),
+            (F_IN_OVER_X_IN, F_OUT_OVER_X_IN),
+        ),
         "drive_ripple": Signature(
             "A wave with a fixed period in x_in, much higher where the tendon sticks.",
             _one(sine_mm=0.15, period_mm=1.0),
@@ -122,6 +135,17 @@ SIGNATURES: Mapping[str, Signature] = MappingProxyType(
             "In f_in over f_out the lines of pull and release bend apart as the tension rises.",
             _one(exponent=0.5),
         ),
+        "position_dependent_friction": Signature(
+            "In f_in over f_out the lines of pull and release open along the stroke, the same in "
+            "every stroke.",
+            _one(slope_per_mm=0.02),
+        ),
+        "uneven_friction": Signature(
+            "Dead bands have another shape, steeper at first where there is more friction at the "
+            "drive; full slip fits.",
+            _one(slope=-1.6),
+            Motion(kind="nested", amplitude_mm=6.0, speed_mm_per_s=6.0, periods=1),
+        ),
         "presliding": Signature(
             "Rounded corners: f_in leaves a reversal with a finite slope, over the same travel at "
             "every tension. Short strokes become thin loops.",
@@ -158,6 +182,12 @@ SIGNATURES: Mapping[str, Signature] = MappingProxyType(
             ),
             planes=(F_IN_OVER_X_IN, F_OUT_OVER_X_OUT),
         ),
+        "load_ripple": Signature(
+            "A wave on f_out over x_out, the same on pull and release, with a fixed period in "
+            "x_out; none in dead bands.",
+            _one("f_out_N", sine_mm=1.0, period_mm=8.0),
+            planes=(F_IN_OVER_X_IN, F_OUT_OVER_X_OUT),
+        ),
         "load_friction": Signature(
             "Behind the sensor, f_out over x_out becomes a loop of constant height; before it, "
             "that stays a line and only f_in feels it, more on a pull than on a release.",
@@ -173,6 +203,24 @@ SIGNATURES: Mapping[str, Signature] = MappingProxyType(
             _one("f_out_N", mass_kg=10.0),
             Motion(speed_mm_per_s=60.0),
             (F_IN_OVER_X_IN, F_OUT_OVER_X_OUT),
+        ),
+        "load_damping": Signature(
+            "f_out over x_out becomes a loop that is wide where the load is fast and closes at the "
+            "reversals.",
+            _one("f_out_N", coefficient_N_s_per_mm=0.3),
+            planes=(F_IN_OVER_X_IN, F_OUT_OVER_X_OUT),
+        ),
+        "load_hysteresis": Signature(
+            "f_out over x_out becomes a loop of constant height, whose flanks take a travel "
+            "of the load.",
+            _one("f_out_N", force_N=3.0, travel_mm=2.0),
+            planes=(F_IN_OVER_X_IN, F_OUT_OVER_X_OUT),
+        ),
+        "load_relaxation": Signature(
+            "f_out over x_out becomes a loop on a steeper line: in each stroke f_out runs ahead "
+            "and then falls back towards the line of slow motion.",
+            _one("f_out_N", share=0.3, time_s=0.5),
+            planes=(F_IN_OVER_X_IN, F_OUT_OVER_X_OUT),
         ),
         "force_sensor_gain": Signature(
             "In f_in over f_out both lines are stretched sideways by one factor; f_in over x_in "
@@ -198,6 +246,33 @@ SIGNATURES: Mapping[str, Signature] = MappingProxyType(
             LONG,
             over="time_s",
         ),
+        "force_sensor_curvature": Signature(
+            "The residual of one channel is a parabola over its tension, the same on pull and "
+            "release; the other channels fit.",
+            (
+                Variant({"f_in_per_N": 2e-3}, "f_in_N", "of f_in"),
+                Variant({"f_out_per_N": 2e-3}, "f_out_N", "of f_out"),
+            ),
+            planes=(F_OUT_OVER_X_OUT, F_IN_OVER_F_OUT),
+        ),
+        "force_sensor_hysteresis": Signature(
+            "One channel is too low while its force grows and too high while it falls, by a "
+            "constant that it takes a span of force to reach: f_out over x_out becomes a loop.",
+            (
+                Variant({"f_in_share": 0.3, "span_N": 10.0}, "f_in_N", "of f_in"),
+                Variant({"f_out_share": 0.2, "span_N": 10.0}, "f_out_N", "of f_out"),
+            ),
+            planes=(F_IN_OVER_X_IN, F_OUT_OVER_X_OUT),
+        ),
+        "force_crosstalk": Signature(
+            "f_out moves in dead bands, where the load stands still; f_in is too high on pull and "
+            "release alike, and fits in dead bands.",
+            (
+                Variant({"f_in_of_f_out": 0.2}, "f_in_N", "of f_out in f_in"),
+                Variant({"f_out_of_f_in": 0.1}, "f_out_N", "of f_in in f_out"),
+            ),
+            planes=(F_OUT_OVER_X_OUT, F_IN_OVER_F_OUT),
+        ),
         "position_sensor_gain": Signature(
             "x_out is wrong in proportion to its travel and f_out over x_out has a wrong slope; "
             "the tensions fit.",
@@ -210,6 +285,15 @@ SIGNATURES: Mapping[str, Signature] = MappingProxyType(
             (
                 Variant({"f_in_delay_s": 0.15}, "f_in_N", "of f_in"),
                 Variant({"f_out_delay_s": 0.15}, "f_out_N", "of f_out"),
+            ),
+            planes=(F_IN_OVER_X_IN, F_OUT_OVER_X_IN),
+        ),
+        "sensor_lag": Signature(
+            "The channel is late as with a delay, and its corners are round: after a reversal it "
+            "leaves the old line slowly.",
+            (
+                Variant({"f_in_lag_s": 0.15}, "f_in_N", "of f_in"),
+                Variant({"f_out_lag_s": 0.15}, "f_out_N", "of f_out"),
             ),
             planes=(F_IN_OVER_X_IN, F_OUT_OVER_X_IN),
         ),

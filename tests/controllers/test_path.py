@@ -112,6 +112,9 @@ ALONG = {
     "presliding": {"presliding.length_mm": 2.0},
     "load spring": {"load_spring_nonlinearity.quadratic_per_mm": 0.03},
     "friction drift": {"friction_drift.rate_per_s": 0.05},
+    "position-dependent friction": {"position_dependent_friction.slope_per_mm": 0.04},
+    "load damping": {"load_damping.coefficient_N_s_per_mm": 0.2},
+    "load hysteresis": {"load_hysteresis.force_N": 3.0},
 }
 
 
@@ -139,7 +142,12 @@ def test_the_path_is_known_ahead_and_begins_and_ends_at_rest():
 
 
 def test_the_motor_winds_up_the_gear_by_what_hangs_at_it():
-    values = {"proximal_spring.stiffness_N_per_mm": 12.5, "drive_friction.friction_N": 3.0}
+    values = {
+        "proximal_spring.stiffness_N_per_mm": 12.5,
+        "drive_friction.friction_N": 3.0,
+        "drive_damping.coefficient_N_s_per_mm": 0.5,
+        "drive_inertia.mass_kg": 2.0,
+    }
     soft = STIFF._replace(stiffness_N_per_mm=52.0)
     rig = with_values(GROUP_A, values)
     assert (path_to(SINE, values).motor == path_to(SINE, values).drive).all()

@@ -10,6 +10,8 @@ from tsas_cli.effects import (
     DriveRipple,
     FrictionDrift,
     LoadFriction,
+    LoadHysteresis,
+    LoadRipple,
     LoadSpringNonlinearity,
     PreloadLoss,
     StribeckFriction,
@@ -18,22 +20,33 @@ from tsas_cli.effects.backlash import follow_play
 from tsas_cli.effects.bend_drift import drifted_bend
 from tsas_cli.effects.direction_dependent_friction import direction_factor
 from tsas_cli.effects.drive_compliance import drive_deflection
+from tsas_cli.effects.drive_damping import drive_damper_force
 from tsas_cli.effects.drive_friction import drive_friction_force
+from tsas_cli.effects.drive_inertia import drive_inertia_force
 from tsas_cli.effects.drive_ripple import rippled
+from tsas_cli.effects.force_crosstalk import with_crosstalk
+from tsas_cli.effects.force_sensor_curvature import read_curved, straightened
 from tsas_cli.effects.force_sensor_drift import drift_reading
 from tsas_cli.effects.force_sensor_gain import read_gain
+from tsas_cli.effects.force_sensor_hysteresis import read_hysteresis
 from tsas_cli.effects.force_sensor_offset import offset_reading
 from tsas_cli.effects.friction_drift import friction_factor
+from tsas_cli.effects.load_damping import load_damper_force
 from tsas_cli.effects.load_dependent_friction import load_factor
 from tsas_cli.effects.load_friction import guide_friction
+from tsas_cli.effects.load_hysteresis import element_force
 from tsas_cli.effects.load_inertia import inertia_force
+from tsas_cli.effects.load_relaxation import relaxing_force
+from tsas_cli.effects.load_ripple import spring_wave
 from tsas_cli.effects.load_spring_nonlinearity import spring_force, spring_tangent
+from tsas_cli.effects.position_dependent_friction import position_factor
 from tsas_cli.effects.position_sensor_gain import read_position
 from tsas_cli.effects.preload_loss import lost_preload
 from tsas_cli.effects.presliding import friction_share, friction_share_rate
 from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.effects.sheath_compression import softened
 from tsas_cli.effects.stribeck_friction import stribeck_factor
+from tsas_cli.effects.uneven_friction import place_factor
 from tsas_cli.effects.viscous_friction import viscous_loss
 
 ODD = 12.345678901234567  # a value whose last bit shows any arithmetic that is done with it
@@ -66,6 +79,18 @@ ODD = 12.345678901234567  # a value whose last bit shows any arithmetic that is 
         (spring_force(ODD, 1.579, LoadSpringNonlinearity()), 1.579 * ODD),
         (spring_tangent(ODD, 1.579, LoadSpringNonlinearity()), 1.579),
         (ODD * friction_share(0.3, 1e-9, 0.0), ODD),
+        (ODD + drive_damper_force(3.0, 0.0), ODD),
+        (ODD + drive_inertia_force(3.0, 0.0), ODD),
+        (ODD + load_damper_force(3.0, 0.0), ODD),
+        (ODD + element_force(0.0, 3.0, LoadHysteresis())[0], ODD),
+        (ODD + relaxing_force(3.0, 2.0, 0.0), ODD),
+        (ODD + spring_wave(3.0, LoadRipple())[0], ODD),
+        (ODD * position_factor(3.0, 0.0), ODD),
+        (ODD * place_factor(0.3, 0.0), ODD),
+        (read_curved(ODD, 0.0), ODD),
+        (straightened(ODD, 0.0), ODD),
+        (with_crosstalk(ODD, 3.0, 0.0), ODD),
+        (read_hysteresis(ODD, 3.0, 0.0), ODD),
     ],
 )
 def test_neutral_gives_back_what_went_in_to_the_last_bit(left, expected):
@@ -193,6 +218,38 @@ def test_the_tangent_is_the_slope_of_the_force(position):
     ahead, behind = (spring_force(position + step, 2.0, shape) for step in (1e-4, -1e-4))
     slope = (ahead - behind) / 2e-4
     assert spring_tangent(position, 2.0, shape) == pytest.approx(slope, rel=1e-7)
+
+
+@pytest.mark.parametrize("position", [-3.0, 0.0, 0.4])
+def test_a_wave_has_its_period_its_slope_and_is_nothing_at_rest(position):
+    ripple = LoadRipple(sine_mm=0.3, cosine_mm=-0.2, period_mm=7.0)
+    ahead, behind = (spring_wave(position + step, ripple)[0] for step in (1e-4, -1e-4))
+    wave, slope = spring_wave(position, ripple)
+    assert slope == pytest.approx((ahead - behind) / 2e-4, rel=1e-6)
+    assert spring_wave(position + 7.0, ripple)[0] == pytest.approx(wave)
+    assert spring_wave(0.0, ripple)[0] == 0.0
+    assert spring_wave(1.75, ripple)[0] == pytest.approx(0.3 + 0.2)
+
+
+def test_an_element_follows_by_its_stiffness_and_yields():
+    law = LoadHysteresis(force_N=2.0, travel_mm=0.5)
+    assert element_force(0.0, 0.25, law) == (1.0, 4.0)
+    assert element_force(1.5, 0.25, law) == (2.0, 0.0)
+    assert element_force(2.0, -0.75, law) == (-1.0, 4.0)
+    assert element_force(2.0, -9.0, law) == (-2.0, 0.0)
+
+
+def test_friction_by_place_and_along_the_sheath():
+    assert position_factor(10.0, 0.01) == pytest.approx(1.1)
+    assert position_factor(-10.0, 0.2) == 0.0
+    assert place_factor(0.0, 0.4) == pytest.approx(0.8)
+    assert place_factor(1.0, 0.4) == pytest.approx(1.2)
+
+
+def test_a_damper_and_a_mass_in_their_units():
+    assert drive_damper_force(-8.0, 0.25) == load_damper_force(-8.0, 0.25) == -2.0
+    assert drive_inertia_force(-500.0, 4.0) == pytest.approx(-2.0)
+    assert relaxing_force(0.5, 3.0, 0.2) == pytest.approx(0.3)
 
 
 def test_both_sides_of_the_sensor_rub():

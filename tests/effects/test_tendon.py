@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from tests.effects.runs import UP_AND_DOWN, A, run
-from tests.physics.references import GROUP_A, LOADED_BY_DISPLACEMENT, course_of
-from tsas_cli.physics.response import NODES
+from tests.physics.references import GROUP_A, LOADED_BY_DISPLACEMENT, Profile, course_of
+from tsas_cli.physics.ends import DriveInput
+from tsas_cli.physics.response import NODES, simulate
 from tsas_cli.physics.rig import with_values
 from tsas_cli.physics.slip.chain import slip_chain
 
@@ -55,6 +56,22 @@ def test_the_wrap_follows_the_time(name, direction, settling):
     np.testing.assert_allclose(ratio, direction * wrap(settled), rtol=1e-8)
 
 
+@pytest.mark.parametrize("slope", [0.03, -0.04])
+@pytest.mark.parametrize("direction", [1, -1])
+def test_friction_follows_the_place_of_the_drive(direction, slope):
+    answer = run({"position_dependent_friction.slope_per_mm": slope})
+    slip = in_slip(answer, direction)
+    wrap = A * (1.0 + slope * answer.x_in_mm[slip])
+    ratio = np.log(answer.f_in_N[slip] / answer.f_out_N[slip])
+    np.testing.assert_allclose(ratio, direction * wrap, rtol=1e-8)
+
+
+def test_friction_is_nothing_where_its_law_would_be_negative():
+    answer = run({"position_dependent_friction.slope_per_mm": -0.1})
+    far = (answer.x_in_mm > 10.5) & (answer.x_in_mm < 13.0)
+    np.testing.assert_allclose(answer.f_in_N[far], answer.f_out_N[far], rtol=1e-8)
+
+
 def test_wear_follows_the_session():
     answer = run({"friction_drift.session_rate_per_s": 1e-3}, session_s=200.0)
     slip = in_slip(answer, 1)
@@ -95,6 +112,31 @@ def test_friction_that_depends_on_the_tension_bends_the_capstan(direction, expon
     slip = in_slip(answer, direction)
     powers = (answer.f_in_N[slip] / 25.0) ** -exponent + direction * exponent * A
     np.testing.assert_allclose(answer.f_out_N[slip], 25.0 * powers ** (-1.0 / exponent), rtol=1e-5)
+
+
+@pytest.mark.parametrize("slope", [1.5, -1.5])
+def test_uneven_friction_shapes_dead_bands_and_not_full_slip(slope):
+    """The profile of tension, whose friction up to s is a (s + slope (s² − s)/2), bent by hand."""
+    way = np.concatenate(
+        (np.linspace(25, 60, 200), np.linspace(60, 46, 150), np.linspace(46, 57, 99))
+    )
+    profile, x_in, f_out = Profile(GROUP_A, 4001), [], []
+    reached = profile.s + 0.5 * slope * (profile.s**2 - profile.s)
+    for tension in way:
+        profile._change(tension, profile.tension[0], reached)
+        profile.x_out = (profile.tension[-1] - 25.0) / GROUP_A.load_stiffness_N_per_mm
+        x_in.append(profile.x_in)
+        f_out.append(profile.tension[-1])
+    rig = with_values(GROUP_A, {"uneven_friction.slope": slope})
+    uneven, even = (
+        simulate(r, DriveInput(np.array(x_in)), on_mesh=True, nodes=400) for r in (rig, GROUP_A)
+    )
+    np.testing.assert_allclose(uneven.f_in_N, way, atol=0.06)
+    np.testing.assert_allclose(uneven.f_out_N, f_out, atol=0.06)
+    assert np.abs(even.f_in_N - way).max() > 0.6
+    slips = even.phase == 1
+    assert slips.sum() > 80
+    np.testing.assert_allclose(uneven.f_out_N[slips], even.f_out_N[slips], atol=0.5)
 
 
 def test_a_compressed_sheath_is_a_softer_tendon():

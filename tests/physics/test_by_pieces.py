@@ -25,6 +25,16 @@ DELAYS = {
     "channel_delay.f_out_delay_s": -0.047,
     "channel_delay.x_out_delay_s": 0.02,
 }
+REMEMBERED = {
+    "drive_inertia.mass_kg": 2.0,
+    "force_crosstalk.f_in_of_f_out": 0.05,
+    "force_sensor_hysteresis.f_in_share": 0.1,
+    "force_sensor_hysteresis.f_out_share": 0.2,
+    "force_sensor_curvature.f_out_per_N": 1e-3,
+    "sensor_lag.f_in_lag_s": 0.7,
+    "sensor_lag.f_out_lag_s": 0.05,
+    "sensor_lag.x_out_lag_s": 0.02,
+}
 
 
 def parts(drive, rows):
@@ -75,9 +85,16 @@ def test_readings_that_come_late_look_over_the_borders(nodes):
     assert_same(found, whole, rtol=1e-13)
 
 
+def test_what_a_sensor_remembers_goes_over_the_borders():
+    rig = with_values(RIG, REMEMBERED | DELAYS)
+    assert_same(in_pieces(rig, DRIVE, 150), simulate(rig, DRIVE), rtol=1e-13)
+    without = simulate(with_values(RIG, DELAYS), DRIVE)
+    assert np.abs(simulate(rig, DRIVE).f_in_N - without.f_in_N).max() > 0.5
+
+
 @pytest.mark.parametrize(("load", "channel"), [("force", "f_out_N"), ("displacement", "x_out_mm")])
 def test_a_load_that_is_driven_late_looks_over_the_borders(load, channel):
-    rig = with_values(RIG, DELAYS)
+    rig = with_values(RIG, DELAYS | REMEMBERED)
     given = getattr(simulate(rig, DRIVE), channel)
     drive = replace(DRIVE, load=load, load_values=given)
     assert_same(in_pieces(rig, drive, 160, nodes=12), simulate(rig, drive, nodes=12))

@@ -22,11 +22,11 @@ def test_friction_of_both_directions_by_the_formula():
     """μ θ (1 ± α), raised by Stribeck at rest; viscous loss and lost preload beside it."""
     a = wrap_of(GROUP_A)
     rig = with_values(GROUP_A, {"direction_dependent_friction.asymmetry": 0.2})
-    assert losses_without_speed(0.0, 0.0, rig) == pytest.approx((1.2 * a, 0.8 * a, 0.0, 0.0))
-    at_speed = losses_at(0.0, 3.0, 0.0, rig)
+    assert losses_without_speed(0.0, 0.0, 0.0, rig) == pytest.approx((1.2 * a, 0.8 * a, 0.0, 0.0))
+    at_speed = losses_at(0.0, 0.0, 3.0, 0.0, rig)
     assert at_speed == pytest.approx((1.2 * a, 0.8 * a, 0.0, 0.0))
     viscous = with_values(rig, {"viscous_friction.coefficient_N_s_per_mm": 0.5})
-    assert losses_at(0.0, 3.0, 0.0, viscous)[2] == pytest.approx(1.5)
+    assert losses_at(0.0, 0.0, 3.0, 0.0, viscous)[2] == pytest.approx(1.5)
 
 
 def test_the_last_direction_holds_on_at_rest():

@@ -116,8 +116,14 @@ def test_inside_a_dead_band_nothing_is_forgotten(spring, load):
     assert first_determined_sample(RIG, drive) is None
 
 
-def test_a_drive_feels_its_friction_and_its_spring():
-    ends = SimpleNamespace(direction=np.array([1.0, -1.0, 0.0]), drive=np.array([2.0, 3.0, -4.0]))
+def test_a_drive_feels_its_friction_its_spring_and_its_motion():
+    ends = SimpleNamespace(
+        direction=np.array([1.0, -1.0, 0.0]),
+        drive=np.array([2.0, 3.0, -4.0]),
+        motion_N=np.zeros(3),
+    )
+    moves = SimpleNamespace(**vars(ends) | {"motion_N": np.array([0.5, 0.0, -1.5])})
+    np.testing.assert_array_equal(force_beside_tendon(GROUP_A, moves), [0.5, 0.0, -1.5])
     both = {"drive_friction.friction_N": 5.0, "proximal_spring.stiffness_N_per_mm": 0.5}
     rubs, springs = ({k: v} for k, v in both.items())
     np.testing.assert_allclose(

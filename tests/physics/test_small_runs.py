@@ -30,6 +30,7 @@ VARYING = with_values(
         "friction_drift.session_rate_per_s": 0.01,
         "bend_drift.rate_rad_per_s": 0.3,
         "preload_loss.rate_N_per_s": 0.5,
+        "position_dependent_friction.slope_per_mm": 0.02,
         "stribeck_friction.excess": 0.4,
         "stribeck_friction.velocity_mm_per_s": 2.0,
         "viscous_friction.coefficient_N_s_per_mm": 0.05,
@@ -38,19 +39,22 @@ VARYING = with_values(
 TIME_S = np.array([0.0, 0.1, 0.3, 0.4])
 
 
-def friction_by_hand(time_s, speed, session_s):
+def friction_by_hand(time_s, position, speed, session_s):
     """Return friction times bend of a pull and of a release, viscous loss and lost preload."""
     wrap = 0.125 * (1.0 + 0.1 * time_s + 0.01 * session_s) * (math.pi + 0.3 * time_s)
+    wrap *= 1.0 + 0.02 * position
     raised = 1.0 + 0.4 * math.exp(-((speed / 2.0) ** 2))
     return 1.2 * wrap * raised, 0.8 * wrap * raised, 0.05 * abs(speed), 0.5 * time_s
 
 
 @pytest.mark.parametrize("speed", [0.0, 3.0, -1.0])
 def test_friction_at_a_moment_is_all_that_changes_it(speed):
-    expected = friction_by_hand(4.0, speed, 30.0)
-    assert losses_at(4.0, speed, 30.0, VARYING) == pytest.approx(expected)
-    still = friction_by_hand(4.0, math.inf, 30.0)
-    assert losses_without_speed(4.0, 30.0, VARYING) == pytest.approx((*still[:2], 0.0, still[3]))
+    expected = friction_by_hand(4.0, 7.0, speed, 30.0)
+    assert losses_at(4.0, 7.0, speed, 30.0, VARYING) == pytest.approx(expected)
+    still = friction_by_hand(4.0, 7.0, math.inf, 30.0)
+    assert losses_without_speed(4.0, 7.0, 30.0, VARYING) == pytest.approx(
+        (*still[:2], 0.0, still[3])
+    )
 
 
 def test_the_course_of_a_run_is_what_acts_at_each_sample():
@@ -59,17 +63,18 @@ def test_the_course_of_a_run_is_what_acts_at_each_sample():
     assert ends.boundary == Boundary(DISPLACEMENT, SPRING)
     np.testing.assert_array_equal(ends.drive, x)
     np.testing.assert_array_equal(ends.course[LOAD], 0.0)
-    moments = zip(TIME_S, np.gradient(x, TIME_S), strict=True)
-    expected = [friction_by_hand(t, v, 30.0) for t, v in moments]
+    moments = zip(TIME_S, x, np.gradient(x, TIME_S), strict=True)
+    expected = [friction_by_hand(t, place, v, 30.0) for t, place, v in moments]
     np.testing.assert_allclose(ends.course[:4].T, expected)
     np.testing.assert_allclose(ends.course[STEP], [math.inf, 0.1, 0.2, 0.1])
     assert ends.direction.tolist() == [0.0, 1.0, 1.0, -1.0]
     by_force = ends_of(
         VARYING, DriveInput(x + 25.0, "force", time_s=TIME_S)
-    )  # its speed is not known
-    np.testing.assert_allclose(by_force.course[:4, 2], friction_by_hand(0.3, 0.0, 0.0))
+    )  # its position and speed are not known
+    np.testing.assert_allclose(by_force.course[:4, 2], friction_by_hand(0.3, 0.0, 0.0, 0.0))
     slowly = ends_of(VARYING, DriveInput(x))
-    np.testing.assert_allclose(slowly.course[:4].T, [friction_by_hand(0.0, 0.0, 0.0)] * 4)
+    still = [friction_by_hand(0.0, place, 0.0, 0.0) for place in x]
+    np.testing.assert_allclose(slowly.course[:4].T, still)
     assert slowly.course[STEP].tolist() == [math.inf] * 4
     alone = ends_of(VARYING, DriveInput(x[:1], time_s=TIME_S[:1]))
     assert alone.course[STEP].tolist() == [math.inf]
@@ -183,7 +188,9 @@ def test_who_answers_and_on_what_mesh():
 AT_THE_ENDS_ALONE = {  # what the closed form knows, or what is off its path
     "backlash",
     "drive_compliance",
+    "drive_damping",
     "drive_friction",
+    "drive_inertia",
     "drive_ripple",
     "free_tendon",
     "proximal_spring",

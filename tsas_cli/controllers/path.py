@@ -17,7 +17,7 @@ from tsas_cli.effects.drive_friction import drive_friction_force
 from tsas_cli.effects.drive_ripple import DriveRipple, rippled
 from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.physics.ends import last_direction, losses_over
+from tsas_cli.physics.ends import force_of_motion, last_direction, losses_over, rate_of
 from tsas_cli.physics.plant.turntable import Actuator
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.slip.inverse import inverse_chain
@@ -25,7 +25,7 @@ from tsas_cli.support.errors import InputError
 
 Floats = npt.NDArray[np.float64]
 MEANS = 4
-ITERATIONS = 4  # of the path, where friction depends on its speed
+ITERATIONS = 4  # of the path, where friction depends on it or its speed
 HALVINGS = 50  # bisections of the interval of the ripple's height
 
 
@@ -65,10 +65,10 @@ def follow(
     padded = np.concatenate(
         (np.full(ahead, wanted_N[0]), wanted_N, np.full(MEANS * width - ahead, wanted_N[-1]))
     )
-    time_s = (np.arange(padded.size) - ahead) * step_s
-    speed = np.zeros(padded.size)
-    for _ in range(ITERATIONS if _depends_on_speed(rig.effects) else 1):
-        losses = losses_over(np.maximum(time_s, 0.0), speed, 0.0, rig)
+    time_s = (np.arange(padded.size, dtype=np.float64) - ahead) * step_s
+    end = speed = np.zeros(padded.size)
+    for _ in range(ITERATIONS if _depends_on_path(rig.effects) else 1):
+        losses = losses_over(np.maximum(time_s, 0.0), end, speed, 0.0, rig)
         end, tension, missed = inverse_chain(padded, losses, step_s, rig, nodes)
         smooth = smoothed(end, width, step_s)[1]
         speed = np.concatenate(
@@ -79,6 +79,7 @@ def follow(
     force = tension - rig.preload_N
     force += drive_friction_force(1.0, rig.effects.drive_friction.friction_N) * direction
     force += proximal_spring_force(1.0, rig.effects.proximal_spring.stiffness_N_per_mm) * end
+    force += force_of_motion(rate_of(end, time_s), time_s, rig.effects)
     drive = drive_at(geared, rig.effects.drive_ripple, step_s)
     wound = smoothed(force / actuator.stiffness_N_per_mm, width, step_s)
     return DrivePath(drive, drive + wound, missed)
@@ -139,8 +140,9 @@ def _mean(x: Floats, width: int) -> Floats:
     return mean
 
 
-def _depends_on_speed(effects: Effects) -> bool:
+def _depends_on_path(effects: Effects) -> bool:
     return (
-        effects.stribeck_friction.excess != 0.0
+        effects.position_dependent_friction.slope_per_mm != 0.0
+        or effects.stribeck_friction.excess != 0.0
         or effects.viscous_friction.coefficient_N_s_per_mm != 0.0
     )

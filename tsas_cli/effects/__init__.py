@@ -10,32 +10,49 @@ from tsas_cli.effects.direction_dependent_friction import (
     DirectionDependentFriction,
 )
 from tsas_cli.effects.drive_compliance import DRIVE_COMPLIANCE, DriveCompliance
+from tsas_cli.effects.drive_damping import DRIVE_DAMPING, DriveDamping
 from tsas_cli.effects.drive_friction import DRIVE_FRICTION, DriveFriction
+from tsas_cli.effects.drive_inertia import DRIVE_INERTIA, DriveInertia
 from tsas_cli.effects.drive_ripple import DRIVE_RIPPLE, DriveRipple
 from tsas_cli.effects.effect import Effect, Parameter
+from tsas_cli.effects.force_crosstalk import FORCE_CROSSTALK, ForceCrosstalk
+from tsas_cli.effects.force_sensor_curvature import FORCE_SENSOR_CURVATURE, ForceSensorCurvature
 from tsas_cli.effects.force_sensor_drift import FORCE_SENSOR_DRIFT, ForceSensorDrift
 from tsas_cli.effects.force_sensor_gain import FORCE_SENSOR_GAIN, ForceSensorGain
+from tsas_cli.effects.force_sensor_hysteresis import FORCE_SENSOR_HYSTERESIS, ForceSensorHysteresis
 from tsas_cli.effects.force_sensor_offset import FORCE_SENSOR_OFFSET, ForceSensorOffset
 from tsas_cli.effects.free_tendon import FREE_TENDON, FreeTendon
 from tsas_cli.effects.friction_drift import FRICTION_DRIFT, FrictionDrift
+from tsas_cli.effects.load_damping import LOAD_DAMPING, LoadDamping
 from tsas_cli.effects.load_dependent_friction import LOAD_DEPENDENT_FRICTION, LoadDependentFriction
 from tsas_cli.effects.load_friction import LOAD_FRICTION, LoadFriction
+from tsas_cli.effects.load_hysteresis import LOAD_HYSTERESIS, LoadHysteresis
 from tsas_cli.effects.load_inertia import LOAD_INERTIA, LoadInertia
+from tsas_cli.effects.load_relaxation import LOAD_RELAXATION, LoadRelaxation
+from tsas_cli.effects.load_ripple import LOAD_RIPPLE, LoadRipple
 from tsas_cli.effects.load_spring_nonlinearity import (
     LOAD_SPRING_NONLINEARITY,
     LoadSpringNonlinearity,
+)
+from tsas_cli.effects.position_dependent_friction import (
+    POSITION_DEPENDENT_FRICTION,
+    PositionDependentFriction,
 )
 from tsas_cli.effects.position_sensor_gain import POSITION_SENSOR_GAIN, PositionSensorGain
 from tsas_cli.effects.preload_loss import PRELOAD_LOSS, PreloadLoss
 from tsas_cli.effects.presliding import PRESLIDING, Presliding
 from tsas_cli.effects.proximal_spring import PROXIMAL_SPRING, ProximalSpring
+from tsas_cli.effects.sensor_lag import SENSOR_LAG, SensorLag
 from tsas_cli.effects.sheath_compression import SHEATH_COMPRESSION, SheathCompression
 from tsas_cli.effects.stribeck_friction import STRIBECK_FRICTION, StribeckFriction
+from tsas_cli.effects.uneven_friction import UNEVEN_FRICTION, UnevenFriction
 from tsas_cli.effects.viscous_friction import VISCOUS_FRICTION, ViscousFriction
 
 EFFECTS: tuple[Effect, ...] = (  # from the drive to the load, then the sensors
     BACKLASH,
     DRIVE_FRICTION,
+    DRIVE_DAMPING,
+    DRIVE_INERTIA,
     DRIVE_RIPPLE,
     DRIVE_COMPLIANCE,
     PROXIMAL_SPRING,
@@ -45,18 +62,28 @@ EFFECTS: tuple[Effect, ...] = (  # from the drive to the load, then the sensors
     STRIBECK_FRICTION,
     VISCOUS_FRICTION,
     LOAD_DEPENDENT_FRICTION,
+    POSITION_DEPENDENT_FRICTION,
+    UNEVEN_FRICTION,
     PRESLIDING,
     BEND_DRIFT,
     FRICTION_DRIFT,
     PRELOAD_LOSS,
     LOAD_SPRING_NONLINEARITY,
+    LOAD_RIPPLE,
     LOAD_FRICTION,
     LOAD_INERTIA,
+    LOAD_DAMPING,
+    LOAD_HYSTERESIS,
+    LOAD_RELAXATION,
     FORCE_SENSOR_GAIN,
     FORCE_SENSOR_OFFSET,
     FORCE_SENSOR_DRIFT,
+    FORCE_SENSOR_CURVATURE,
+    FORCE_SENSOR_HYSTERESIS,
+    FORCE_CROSSTALK,
     POSITION_SENSOR_GAIN,
     CHANNEL_DELAY,
+    SENSOR_LAG,
 )
 
 
@@ -65,6 +92,8 @@ class Effects(NamedTuple):
 
     backlash: Backlash = Backlash()
     drive_friction: DriveFriction = DriveFriction()
+    drive_damping: DriveDamping = DriveDamping()
+    drive_inertia: DriveInertia = DriveInertia()
     drive_ripple: DriveRipple = DriveRipple()
     drive_compliance: DriveCompliance = DriveCompliance()
     proximal_spring: ProximalSpring = ProximalSpring()
@@ -74,18 +103,28 @@ class Effects(NamedTuple):
     stribeck_friction: StribeckFriction = StribeckFriction()
     viscous_friction: ViscousFriction = ViscousFriction()
     load_dependent_friction: LoadDependentFriction = LoadDependentFriction()
+    position_dependent_friction: PositionDependentFriction = PositionDependentFriction()
+    uneven_friction: UnevenFriction = UnevenFriction()
     presliding: Presliding = Presliding()
     bend_drift: BendDrift = BendDrift()
     friction_drift: FrictionDrift = FrictionDrift()
     preload_loss: PreloadLoss = PreloadLoss()
     load_spring_nonlinearity: LoadSpringNonlinearity = LoadSpringNonlinearity()
+    load_ripple: LoadRipple = LoadRipple()
     load_friction: LoadFriction = LoadFriction()
     load_inertia: LoadInertia = LoadInertia()
+    load_damping: LoadDamping = LoadDamping()
+    load_hysteresis: LoadHysteresis = LoadHysteresis()
+    load_relaxation: LoadRelaxation = LoadRelaxation()
     force_sensor_gain: ForceSensorGain = ForceSensorGain()
     force_sensor_offset: ForceSensorOffset = ForceSensorOffset()
     force_sensor_drift: ForceSensorDrift = ForceSensorDrift()
+    force_sensor_curvature: ForceSensorCurvature = ForceSensorCurvature()
+    force_sensor_hysteresis: ForceSensorHysteresis = ForceSensorHysteresis()
+    force_crosstalk: ForceCrosstalk = ForceCrosstalk()
     position_sensor_gain: PositionSensorGain = PositionSensorGain()
     channel_delay: ChannelDelay = ChannelDelay()
+    sensor_lag: SensorLag = SensorLag()
 
 
 __all__ = [
@@ -95,25 +134,37 @@ __all__ = [
     "ChannelDelay",
     "DirectionDependentFriction",
     "DriveCompliance",
+    "DriveDamping",
     "DriveFriction",
+    "DriveInertia",
     "DriveRipple",
     "Effect",
     "Effects",
+    "ForceCrosstalk",
+    "ForceSensorCurvature",
     "ForceSensorDrift",
     "ForceSensorGain",
+    "ForceSensorHysteresis",
     "ForceSensorOffset",
     "FreeTendon",
     "FrictionDrift",
+    "LoadDamping",
     "LoadDependentFriction",
     "LoadFriction",
+    "LoadHysteresis",
     "LoadInertia",
+    "LoadRelaxation",
+    "LoadRipple",
     "LoadSpringNonlinearity",
     "Parameter",
+    "PositionDependentFriction",
     "PositionSensorGain",
     "PreloadLoss",
     "Presliding",
     "ProximalSpring",
+    "SensorLag",
     "SheathCompression",
     "StribeckFriction",
+    "UnevenFriction",
     "ViscousFriction",
 ]

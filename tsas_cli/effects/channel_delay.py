@@ -5,11 +5,10 @@ in dead bands and at their ends, with opposite sign on pull and release. Twice t
 twice the error; at rest there is none.
 Equation: a channel shows at time t its value of t − delay, on the clock of x_in; a delay of x_in
 itself is the opposite of one in all other channels. Not in the paper.
-Mistaken for: backlash, presliding (the same travel at every speed); viscous_friction (proportional
-to speed, and hardly visible in dead bands); load_inertia (proportional to the acceleration of
-x_out).
-Not validated: delays that change during a run; filters, which delay each frequency by another time
-and round the corners.
+Mistaken for: sensor_lag (indistinguishable in slow sines; it rounds corners too); backlash,
+presliding (the same travel at every speed); viscous_friction (proportional to speed, and hardly
+visible in dead bands); load_inertia (proportional to the acceleration of x_out).
+Not validated: delays that change during a run.
 """
 
 from typing import NamedTuple

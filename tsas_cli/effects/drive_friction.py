@@ -6,8 +6,8 @@ f_in over f_out is wider by a constant, its two slopes are unchanged.
 Equation: Coulomb friction independent of the tension T0 behind it: an intercept added to the
 capstan law of Yang 2025, Eq. (7). Not in the paper.
 Mistaken for: a larger friction coefficient (its share grows with tension); load_friction (the
-sheath enlarges it on a pull and reduces it on a release); viscous_friction (grows with speed);
-force_sensor_offset (the same sign in both directions).
+sheath enlarges it on a pull and reduces it on a release); viscous_friction, drive_damping (grow
+with speed); force_sensor_offset (the same sign in both directions).
 Not validated: a drive at rest: the friction keeps the sign of the last motion.
 """
 

@@ -6,9 +6,10 @@ Equation: f_out reads gain times the tension. A wrong gain of f_in is equivalent
 scales the load stiffness, the tendon stiffness and the preload; so only the ratio of both gains is
 identifiable, and it is assigned to f_out. Not in the paper.
 Mistaken for: direction_dependent_friction (in full slip exactly the same within one bend, but it
-grows with the bend); force_sensor_offset (the same force at every tension); a wrong load
-stiffness or preload, where f_in is not recorded.
-Not validated: a gain that changes with temperature or along the sensor's range.
+grows with the bend); force_crosstalk (f_in is wrong too, and differently in dead bands);
+force_sensor_curvature (along a small range of tension); force_sensor_offset (the same force at
+every tension); a wrong load stiffness or preload, where f_in is not recorded.
+Not validated: a gain that changes with temperature.
 """
 
 from typing import NamedTuple

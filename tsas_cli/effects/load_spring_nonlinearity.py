@@ -4,8 +4,9 @@ What one sees: f_out over x_out is a curve, the same one on pull and release; f_
 proportion. The residual of a straight line is a bow (quadratic) or an S (cubic) over the stroke.
 Equation: a polynomial in place of the straight spring of Yang 2025, Eq. (9).
 Mistaken for: load_dependent_friction (bends f_in over f_out; f_out over x_out stays straight);
-load_friction (a loop, not one curve); position_sensor_gain, a wrong spring stiffness (a slope, not
-a curve).
+load_friction (a loop, not one curve); force_sensor_curvature (x_out and f_in fit); load_ripple (a
+wave, where the stroke is long); position_sensor_gain, a wrong spring stiffness (a slope, not a
+curve).
 Not validated: travel outside the recorded range, where a polynomial may even fall.
 """
 

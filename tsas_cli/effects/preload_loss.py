@@ -6,7 +6,8 @@ x_out shifts down in parallel.
 Equation: the load of Yang 2025, Eq. (9), with a preload that falls at an initial rate and converges
 exponentially, as with an anchor that slides or a spring that sags. The paper's F0 is constant.
 Mistaken for: force_sensor_drift (one force channel alone, or both by amounts that the sheath's
-friction does not couple); friction_drift, bend_drift (opposite on pull and release).
+friction does not couple); load_relaxation (comes back); friction_drift, bend_drift (opposite on
+pull and release).
 Not validated: a tendon that creeps, where f_out over x_out stays on its line; a loss that depends
 on the tension; a loss that persists from one run to the next.
 """

@@ -1,4 +1,4 @@
-"""A drift that starts at a rate and decays exponentially to a steady state."""
+"""First-order laws of time: a drift that decays to a steady state, a low pass."""
 
 import numpy as np
 
@@ -22,3 +22,26 @@ def exponential_drift(rate: float, settling_per_s: float, time_s: float) -> floa
         return rate * time_s
     settled: float = -np.expm1(-settling_per_s * time_s)
     return rate * settled / settling_per_s
+
+
+@kernel
+def lag_after(before: float, rise: float, step_s: float, time_s: float) -> float:
+    """Return by how much a first-order low pass lags its input after a step, in the input's unit.
+
+    Exact for an input that rises linearly within the step; none after an infinite one.
+
+    Parameters
+    ----------
+    before
+        Lag at the start of the step.
+    rise
+        Change of the input over the step.
+    step_s
+        Length of the step [s].
+    time_s
+        Time constant, positive [s].
+    """
+    steps = step_s / time_s
+    decay: float = np.exp(-steps)
+    after: float = decay * before - np.expm1(-steps) / steps * rise
+    return after

@@ -3,6 +3,9 @@
 from typing import NamedTuple
 
 from tsas_cli.effects.load_friction import LoadFriction, guide_friction
+from tsas_cli.effects.load_hysteresis import LoadHysteresis
+from tsas_cli.effects.load_relaxation import LoadRelaxation
+from tsas_cli.effects.load_ripple import LoadRipple, spring_wave
 from tsas_cli.effects.load_spring_nonlinearity import (
     LoadSpringNonlinearity,
     spring_force,
@@ -22,29 +25,47 @@ class Boundary(NamedTuple):
 
 
 class DriveEnd(NamedTuple):
-    """The proximal end: the given quantity, friction and a spring in parallel to the tendon."""
+    """The proximal end: the given quantity; what is parallel to the tendon."""
 
     given: int
     friction_N: float
     spring_N_per_mm: float
+    damping_N_s_per_mm: float
+    mass_kg: float
 
 
 class LoadEnd(NamedTuple):
-    """The distal end: the given quantity; spring, guide and mass of the load."""
+    """The distal end: the given quantity; all that the load consists of."""
 
     given: int
     stiffness_N_per_mm: float
     nonlinearity: LoadSpringNonlinearity
+    ripple: LoadRipple
     friction: LoadFriction
     mass_kg: float
+    damping_N_s_per_mm: float
+    hysteresis: LoadHysteresis
+    relaxation: LoadRelaxation
 
 
 @kernel
 def drive_end(rig: Rig, given: int) -> DriveEnd:
     """Return the proximal end of a rig."""
     effects = rig.effects
-    stiffness = effects.proximal_spring.stiffness_N_per_mm
-    return DriveEnd(given, effects.drive_friction.friction_N, stiffness)
+    return DriveEnd(
+        given,
+        effects.drive_friction.friction_N,
+        effects.proximal_spring.stiffness_N_per_mm,
+        effects.drive_damping.coefficient_N_s_per_mm,
+        effects.drive_inertia.mass_kg,
+    )
+
+
+@kernel
+def with_spring(drive: DriveEnd, given: int, spring_N_per_mm: float) -> DriveEnd:
+    """Return a proximal end with another given quantity and another spring."""
+    damping, mass = drive.damping_N_s_per_mm, drive.mass_kg
+    return DriveEnd(given, drive.friction_N, spring_N_per_mm, damping, mass)
 
 
 @kernel
@@ -55,9 +76,26 @@ def load_end(rig: Rig, given: int) -> LoadEnd:
         given,
         rig.load_stiffness_N_per_mm,
         effects.load_spring_nonlinearity,
+        effects.load_ripple,
         effects.load_friction,
         effects.load_inertia.mass_kg,
+        effects.load_damping.coefficient_N_s_per_mm,
+        effects.load_hysteresis,
+        effects.load_relaxation,
     )
+
+
+@kernel
+def spring_law(x: float, load: LoadEnd) -> tuple[float, float]:
+    """Return the load spring's force above the preload [N] and its slope [N/mm]."""
+    stiffness = load.stiffness_N_per_mm
+    force = spring_force(x, stiffness, load.nonlinearity)
+    slope = spring_tangent(x, stiffness, load.nonlinearity)
+    if load.ripple.sine_mm != 0.0 or load.ripple.cosine_mm != 0.0:
+        wave, steeper = spring_wave(x, load.ripple)
+        force += stiffness * wave
+        slope += stiffness * steeper
+    return force, slope
 
 
 @kernel
@@ -84,6 +122,6 @@ def share_before_sensor(load: LoadEnd) -> float:
 def unloaded_position(x: float, preload_N: float, load: LoadEnd) -> float:
     """Return the position of the load without tension [mm], iterated from x."""
     for _ in range(5):  # Newton's method, exact after one iteration for a linear spring
-        force = preload_N + spring_force(x, load.stiffness_N_per_mm, load.nonlinearity)
-        x -= force / spring_tangent(x, load.stiffness_N_per_mm, load.nonlinearity)
+        force, slope = spring_law(x, load)
+        x -= (preload_N + force) / slope
     return x

@@ -31,24 +31,26 @@ from tsas_cli.physics.response import (
     at_drive_sensor,
     history,
     is_closed,
-    sensor_readings,
+    readings_of,
     solver_of,
     with_spring_load,
 )
 from tsas_cli.physics.rig import Rig
+from tsas_cli.physics.sensors import new_memory, sensed
 from tsas_cli.physics.slip.chain import ChainState, follow, initial_state
 
 Floats = npt.NDArray[np.float64]
 State = BranchState | ChainState | StaticState
 
-OVERLAP = 2  # samples of a neighbour: one for a speed, and one more
+OVERLAP = 2  # samples of a neighbour: one for a speed, one more for an acceleration
 STATIC = -1  # nodes of the lumped model
 
 
 class Start(NamedTuple):
-    """Start of a piece: the solver's state, position [mm] and direction of the drive's end."""
+    """Start of a piece: states of solver and sensors, position [mm] and direction of the drive."""
 
     state: State
+    memory: Floats  # of the sensors
     position: float
     direction: float
 
@@ -100,20 +102,24 @@ def simulate_pieces(
             mesh = STATIC if dynamics == "static" else CLOSED if closed else nodes or NODES
             before = [] if mesh == STATIC else history(rig, ends, piece.drive.start_f_in_N, mesh)
             past_inputs = ends.first().after(before)
-            state = _at_rest(rig, past_inputs, mesh)
+            state, memory = _at_rest(rig, past_inputs, mesh), new_memory()
             if before:
                 _, state = _follow(rig, past_inputs.part(0, len(before)), mesh, state)
         else:
-            state = start.state
+            state, memory = start.state, start.memory
         to = piece.until if piece.next_begin is None else piece.next_begin
+        time_s = _times(piece.drive)
         outputs, state = _follow(rig, ends.part(piece.begin, to), mesh, state)
+        signals = sensed(outputs, time_s[piece.begin : to], rig, ends.boundary, memory)
         if piece.handover is not None:
             at = piece.handover
-            start = Start(deepcopy(state), float(ends.drive[at]), float(ends.direction[at]))
+            position, direction = float(ends.drive[at]), float(ends.direction[at])
+            start = Start(deepcopy(state), memory.copy(), position, direction)
             further, _ = _follow(rig, ends.part(to, piece.until), mesh, state)
-            outputs = _concatenated(outputs, further)
+            further = sensed(further, time_s[to : piece.until], rig, ends.boundary, memory)
+            signals = _concatenated(signals, further)
         drive = _part(piece.drive, piece.begin, piece.until)
-        response = sensor_readings(rig, drive, outputs, 0, solver_of(mesh, dynamics))
+        response = readings_of(rig, drive, signals, solver_of(mesh, dynamics))
         yield _own_samples(response, piece.first - piece.begin, piece.end - piece.begin)
 
 
@@ -161,8 +167,8 @@ def _overlapping(drives: Iterable[DriveInput], delay_s: float) -> Iterator[_Over
         handover = int(np.searchsorted(time_s, next_s - 2.0 * delay_s)) - OVERLAP
         if handover < begin:
             raise ValueError("a piece is shorter than a channel's delay")
-        far_enough = int(np.searchsorted(time_s, time_s[handover] + delay_s))
-        next_begin = max(handover + 1, far_enough)
+        far_enough = int(np.searchsorted(time_s, time_s[handover + 1] + delay_s))
+        next_begin = max(handover + OVERLAP, far_enough)
         yield _OverlappingPiece(drive, first, end, begin, size - 1, handover, next_begin)
         tail, begin, now = _part(drive, handover, end), next_begin - handover, after
 

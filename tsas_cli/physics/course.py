@@ -52,6 +52,12 @@ class Output(NamedTuple):
     phase: Phases
 
 
+def samples_of(output: Output, within: slice) -> Output:
+    """Return some samples of an output."""
+    x_in, x_out, f_in, f_out, phase = output
+    return Output(x_in[within], x_out[within], f_in[within], f_out[within], phase[within])
+
+
 @kernel
 def losses_of(course: Floats, i: int) -> Losses:
     """Return the losses at one sample."""

@@ -11,8 +11,11 @@ from tsas_cli.effects import Effects
 from tsas_cli.effects.backlash import follow_play
 from tsas_cli.effects.bend_drift import drifted_bend
 from tsas_cli.effects.direction_dependent_friction import direction_factor
+from tsas_cli.effects.drive_damping import drive_damper_force
+from tsas_cli.effects.drive_inertia import drive_inertia_force
 from tsas_cli.effects.drive_ripple import rippled
 from tsas_cli.effects.friction_drift import friction_factor
+from tsas_cli.effects.position_dependent_friction import position_factor
 from tsas_cli.effects.preload_loss import lost_preload
 from tsas_cli.effects.stribeck_friction import stribeck_factor
 from tsas_cli.effects.viscous_friction import viscous_loss
@@ -51,6 +54,7 @@ class EndInputs:
     course: Floats  # with the rows of `course`
     boundary: Boundary
     direction: Floats  # of the last motion of the tendon's end at the drive, shape (n,)
+    motion_N: Floats  # force at the drive's sensor for the motion of that end, shape (n,)
 
     @property
     def drive(self) -> Floats:
@@ -61,7 +65,8 @@ class EndInputs:
     def part(self, first: int, end: int) -> "EndInputs":
         """Return the samples first … end−1."""
         course = np.ascontiguousarray(self.course[:, first:end])
-        return replace(self, course=course, direction=self.direction[first:end])
+        direction, motion_N = self.direction[first:end], self.motion_N[first:end]
+        return replace(self, course=course, direction=direction, motion_N=motion_N)
 
     def after(self, before: list[float]) -> "EndInputs":
         """Return the inputs with positions of the drive prepended."""
@@ -70,7 +75,8 @@ class EndInputs:
         course[DRIVE, :more] = before
         course[STEP, : more + 1] = math.inf  # their speed is not known
         direction = np.concatenate((np.zeros(more), self.direction))
-        return replace(self, course=course, direction=direction)
+        motion_N = np.concatenate((np.zeros(more), self.motion_N))
+        return replace(self, course=course, direction=direction, motion_N=motion_N)
 
     def first(self) -> "EndInputs":
         """Return the first sample alone."""
@@ -84,18 +90,14 @@ def ends_of(rig: Rig, drive: DriveInput, start: tuple[float, float] | None = Non
     of its last motion, where the drive continues a run; None at the start of one.
     """
     n = drive.values.size
-    boundary = Boundary(
-        FORCE if drive.kind == "force" else DISPLACEMENT,
-        {"force": FORCE, "displacement": DISPLACEMENT, "spring": SPRING}[drive.load],
-    )
     time_s = np.zeros(n) if drive.time_s is None else drive.time_s
     if drive.kind == "force":
         at_drive = true_value("f_in_N", drive.values, drive.time_s, rig)
-        speed = np.zeros(n)
+        position = speed = np.zeros(n)
     else:
         x = drive.values - rig.x_in_zero_mm
         at_drive = tendon_end(x, rig.effects, float(x[0]) if start is None else start[0])
-        speed = np.zeros(n) if drive.time_s is None or n < 2 else np.gradient(at_drive, time_s)
+        position, speed = at_drive, rate_of(at_drive, drive.time_s)
     at_load = np.zeros(n)
     if drive.load_values is not None and drive.load == "force":
         at_load = true_value("f_out_N", drive.load_values, drive.time_s, rig)
@@ -104,9 +106,36 @@ def ends_of(rig: Rig, drive: DriveInput, start: tuple[float, float] | None = Non
     step_s = np.full(n, math.inf)
     if drive.time_s is not None:
         step_s[1:] = np.diff(time_s)
-    losses = losses_over(time_s, speed, drive.session_s, rig)
+    losses = losses_over(time_s, position, speed, drive.session_s, rig)
     course = np.vstack((losses, at_drive, at_load, step_s, time_s))
-    return EndInputs(course, boundary, last_direction(at_drive, 0.0 if start is None else start[1]))
+    direction = last_direction(at_drive, 0.0 if start is None else start[1])
+    motion_N = force_of_motion(speed, drive.time_s, rig.effects)
+    return EndInputs(course, boundary_of(drive), direction, motion_N)
+
+
+def rate_of(values: Floats, time_s: Floats | None) -> Floats:
+    """Return the rate of a quantity at each sample [1/s], 0 without times."""
+    if time_s is None or values.size < 2:
+        return np.zeros(values.size)
+    rate: Floats = np.gradient(values, time_s)
+    return rate
+
+
+def force_of_motion(speed: Floats, time_s: Floats | None, effects: Effects) -> Floats:
+    """Return the force that the drive's sensor reads for the motion of the tendon's end [N]."""
+    damping, mass_kg = effects.drive_damping.coefficient_N_s_per_mm, effects.drive_inertia.mass_kg
+    force: Floats = drive_damper_force(1.0, damping) * speed
+    if mass_kg != 0.0:
+        force = force + drive_inertia_force(1.0, mass_kg) * rate_of(speed, time_s)
+    return force
+
+
+def boundary_of(drive: DriveInput) -> Boundary:
+    """Return the given quantity at each end of a driven tendon."""
+    return Boundary(
+        FORCE if drive.kind == "force" else DISPLACEMENT,
+        {"force": FORCE, "displacement": DISPLACEMENT, "spring": SPRING}[drive.load],
+    )
 
 
 @kernel
@@ -134,31 +163,35 @@ def last_direction(x: Floats, before: float = 0.0) -> Floats:
 
 
 @kernel
-def losses_over(time_s: Floats, speed: Floats, session_s: float, rig: Rig) -> Floats:
+def losses_over(
+    time_s: Floats, position: Floats, speed: Floats, session_s: float, rig: Rig
+) -> Floats:
     """Return `losses_at` for each time, shape (4, n)."""
     out = np.empty((4, time_s.size))
     for i in range(time_s.size):
-        out[0, i], out[1, i], out[2, i], out[3, i] = losses_at(time_s[i], speed[i], session_s, rig)
+        now = losses_at(time_s[i], position[i], speed[i], session_s, rig)
+        out[0, i], out[1, i], out[2, i], out[3, i] = now
     return out
 
 
 @kernel
-def losses_at(time_s: float, speed: float, session_s: float, rig: Rig) -> Losses:
-    """Return the losses at one moment, by the speed of the tendon's end at the drive [mm/s]."""
+def losses_at(time_s: float, position: float, speed: float, session_s: float, rig: Rig) -> Losses:
+    """Return the losses at one moment, by position and speed of the end at the drive [mm, s]."""
     effects = rig.effects
-    now = losses_without_speed(time_s, session_s, rig)
+    now = losses_without_speed(time_s, position, session_s, rig)
     factor = stribeck_factor(speed, effects.stribeck_friction)
     viscous_N = viscous_loss(speed, effects.viscous_friction.coefficient_N_s_per_mm)
     return Losses(factor * now.pulled, factor * now.released, viscous_N, now.preload_N)
 
 
 @kernel
-def losses_without_speed(time_s: float, session_s: float, rig: Rig) -> Losses:
+def losses_without_speed(time_s: float, position: float, session_s: float, rig: Rig) -> Losses:
     """Return the losses at one moment without those that depend on the local sliding speed."""
     effects = rig.effects
     asymmetry = effects.direction_dependent_friction.asymmetry
     wrap = rig.friction_coefficient * friction_factor(effects.friction_drift, time_s, session_s)
     wrap *= drifted_bend(rig.total_bend_rad, effects.bend_drift, time_s)
+    wrap *= position_factor(position, effects.position_dependent_friction.slope_per_mm)
     return Losses(
         wrap * direction_factor(asymmetry, 1.0),
         wrap * direction_factor(asymmetry, -1.0),

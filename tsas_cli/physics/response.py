@@ -13,14 +13,14 @@ from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.physics.boundary import FORCE
 from tsas_cli.physics.closed_form.branches import branches
 from tsas_cli.physics.closed_form.static import static_model
-from tsas_cli.physics.course import Output, Tensions
-from tsas_cli.physics.ends import DriveInput, EndInputs, ends_of
+from tsas_cli.physics.course import Output, Tensions, samples_of
+from tsas_cli.physics.ends import DriveInput, EndInputs, boundary_of, ends_of
 from tsas_cli.physics.frames import Frames, Indices, empty_frames
 from tsas_cli.physics.lugre.chain import OWN_STEPS, StepControl, lugre_chain
 from tsas_cli.physics.mesh import MOST_NODES
 from tsas_cli.physics.phases import SLACK
 from tsas_cli.physics.rig import Rig
-from tsas_cli.physics.sensors import reading
+from tsas_cli.physics.sensors import new_memory, reading, sensed
 from tsas_cli.physics.slip.chain import rest_after, slip_chain
 
 Floats = npt.NDArray[np.float64]
@@ -144,14 +144,21 @@ def is_closed(rig: Rig, drive: DriveInput) -> bool:
 def sensor_readings(
     rig: Rig, drive: DriveInput, output: Output, skip: int, solver: str
 ) -> Prediction:
-    """Return the sensor readings of an output without its first `skip` samples."""
-    x_in = output.x_in[skip:]
+    """Return the sensor readings of a run's output without its first `skip` samples."""
+    signals = sensed(
+        samples_of(output, slice(skip, None)), drive.time_s, rig, boundary_of(drive), new_memory()
+    )
+    return readings_of(rig, drive, signals, solver)
+
+
+def readings_of(rig: Rig, drive: DriveInput, signals: Output, solver: str) -> Prediction:
+    """Return the readings of signals that passed the memory of the sensors."""
     return Prediction(
-        drive.values if drive.kind == "displacement" else x_in + rig.x_in_zero_mm,
-        reading("x_out_mm", output.x_out[skip:], drive.time_s, rig),
-        reading("f_in_N", output.f_in[skip:], drive.time_s, rig),
-        reading("f_out_N", output.f_out[skip:], drive.time_s, rig),
-        output.phase[skip:],
+        drive.values if drive.kind == "displacement" else signals.x_in + rig.x_in_zero_mm,
+        reading("x_out_mm", signals.x_out, drive.time_s, rig),
+        reading("f_in_N", signals.f_in, drive.time_s, rig),
+        reading("f_out_N", signals.f_out, drive.time_s, rig),
+        signals.phase,
         solver,
     )
 
@@ -182,10 +189,10 @@ def force_beside_tendon(rig: Rig, ends: EndInputs) -> Floats | float:
     """Return the forces at the drive's sensor parallel to the tendon [N]."""
     friction = rig.effects.drive_friction.friction_N
     stiffness = rig.effects.proximal_spring.stiffness_N_per_mm
-    if friction == 0.0 and stiffness == 0.0:
+    if friction == 0.0 and stiffness == 0.0 and not ends.motion_N.any():
         return 0.0
     friction_N = drive_friction_force(friction, 1.0) * ends.direction
-    return friction_N + proximal_spring_force(1.0, stiffness) * ends.drive
+    return friction_N + proximal_spring_force(1.0, stiffness) * ends.drive + ends.motion_N
 
 
 def first_determined_sample(rig: Rig, drive: DriveInput) -> int | None:
@@ -225,8 +232,9 @@ def history(rig: Rig, ends: EndInputs, target_f_in_N: float | None, nodes: int) 
         return []
 
     def f_in(before: list[float]) -> float:
-        last = _solve(rig, first.after(before), nodes).f_in[-1:]
-        return float(reading("f_in_N", last, None, rig)[0])
+        last = samples_of(_solve(rig, first.after(before), nodes), slice(-1, None))
+        signals = sensed(last, None, rig, ends.boundary, new_memory())
+        return float(reading("f_in_N", signals.f_in, None, rig)[0])
 
     x = float(ends.drive[0])
     first = ends.first()

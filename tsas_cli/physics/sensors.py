@@ -1,34 +1,135 @@
-"""Sensor readings of true forces and displacements, and the inverse."""
+"""Sensor readings of true forces and displacements, and the inverse.
+
+From the true value to the reading: crosstalk, hysteresis, low pass, delay, curve, gain, offset with
+drift. Hysteresis and low pass have a memory, which is carried over where a run is simulated in
+pieces.
+"""
 
 from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
 
+from tsas_cli.effects.force_crosstalk import with_crosstalk
+from tsas_cli.effects.force_sensor_curvature import read_curved, straightened
 from tsas_cli.effects.force_sensor_drift import drift_reading
 from tsas_cli.effects.force_sensor_gain import read_gain
+from tsas_cli.effects.force_sensor_hysteresis import read_hysteresis
 from tsas_cli.effects.force_sensor_offset import offset_reading
 from tsas_cli.effects.position_sensor_gain import read_position
 from tsas_cli.numerics.compiled import kernel
+from tsas_cli.numerics.elastoplastic import yielded
+from tsas_cli.numerics.settling import lag_after
+from tsas_cli.physics.boundary import FORCE, Boundary
+from tsas_cli.physics.course import Output
 from tsas_cli.physics.rig import Rig
 
 Floats = npt.NDArray[np.float64]
 Channel = Literal["f_in_N", "f_out_N", "x_out_mm"]
+CHANNELS: tuple[Channel, ...] = ("f_in_N", "f_out_N", "x_out_mm")
+
+
+def new_memory() -> Floats:
+    """Return the memory of the sensors before the first sample of a run.
+
+    For each of `CHANNELS` time [s] and input of its low pass at the last sample, and by how much
+    the low pass lags there; input and force of its elastoplastic element; shape (3, 5), NaN before
+    the first sample.
+    """
+    return np.full((len(CHANNELS), 5), np.nan)
+
+
+def sensed(
+    output: Output, time_s: Floats | None, rig: Rig, boundary: Boundary, memory: Floats
+) -> Output:
+    """Return an output with its signals after crosstalk, hysteresis and low pass of the sensors.
+
+    `time_s` are the times of the samples, shape (n,), None for a run without time, which passes no
+    filter. A force that is given at the `boundary` is read as it is given, without crosstalk and
+    hysteresis. `memory` is that after the sample before, updated in place.
+    """
+    f_in, f_out, shares = output.f_in, output.f_out, rig.effects.force_crosstalk
+    loops = rig.effects.force_sensor_hysteresis
+    if boundary.drive != FORCE:
+        if shares.f_in_of_f_out != 0.0:
+            f_in = f_in + with_crosstalk(0.0, 1.0, shares.f_in_of_f_out) * output.f_out
+        if loops.f_in_share != 0.0:
+            f_in = with_hysteresis(f_in, loops.f_in_share, loops.span_N, memory[0])
+    if boundary.load != FORCE:
+        if shares.f_out_of_f_in != 0.0:
+            f_out = f_out + with_crosstalk(0.0, 1.0, shares.f_out_of_f_in) * output.f_in
+        if loops.f_out_share != 0.0:
+            f_out = with_hysteresis(f_out, loops.f_out_share, loops.span_N, memory[1])
+    signals = [f_in, f_out, output.x_out]
+    if time_s is not None:
+        for k, lag_s in enumerate(rig.effects.sensor_lag):
+            if lag_s > 0.0:
+                signals[k] = low_pass(signals[k], time_s, lag_s, memory[k])
+    f_in, f_out, x_out = signals
+    return output._replace(f_in=f_in, f_out=f_out, x_out=x_out)
+
+
+@kernel
+def with_hysteresis(forces: Floats, share: float, span_N: float, memory: Floats) -> Floats:
+    """Return forces with a sensor's hysteresis, whose element is without force at the first one.
+
+    `memory` is a channel's row of that of the sensors, updated in place.
+    """
+    out = np.empty(forces.size)
+    before, element_N = memory[3], memory[4]
+    for i in range(forces.size):
+        element_N = 0.0 if np.isnan(before) else yielded(element_N, forces[i] - before, span_N)
+        before = forces[i]
+        out[i] = read_hysteresis(before, element_N, share)
+    memory[3], memory[4] = before, element_N
+    return out
+
+
+@kernel
+def low_pass(values: Floats, time_s: Floats, lag_s: float, memory: Floats) -> Floats:
+    """Return values after a first-order low pass, which starts at rest at the first one.
+
+    `memory` is a channel's row of that of the sensors, updated in place.
+    """
+    out = np.empty(values.size)
+    time, value, behind = memory[:3]
+    for i in range(values.size):
+        if np.isnan(time):
+            behind = 0.0
+        else:
+            behind = lag_after(behind, values[i] - value, time_s[i] - time, lag_s)
+        time, value = time_s[i], values[i]
+        out[i] = value - behind
+    memory[0], memory[1], memory[2] = time, value, behind
+    return out
 
 
 def reading(channel: Channel, values: Floats, time_s: Floats | None, rig: Rig) -> Floats:
-    """Return a channel's readings of true values, shape (n,): delayed, scaled, shifted.
+    """Return a channel's readings of signals that passed `sensed`, shape (n,).
 
-    Without times there is no delay and no drift.
+    They are delayed, curved, scaled, shifted. Without times there is no delay and no drift.
     """
-    delayed = _delayed_by(values, time_s, _delay(channel, rig))
+    delayed, curvature = _delayed_by(values, time_s, _delay(channel, rig)), _curvature(channel, rig)
+    if curvature != 0.0:
+        delayed = curved(delayed, curvature)
     return delayed * _gain(channel, rig) + _shift(channel, time_s, rig)
 
 
 def true_value(channel: Channel, readings: Floats, time_s: Floats | None, rig: Rig) -> Floats:
-    """Return the true values of a channel's readings, the inverse of `reading`."""
+    """Return the true values of a channel's readings, the inverse of `sensed` and `reading`.
+
+    A low pass is inverted to first order in its time, by the rate of the signal: the exact inverse
+    would multiply noise by the square of that time over the sampling period.
+    """
     delayed = (readings - _shift(channel, time_s, rig)) / _gain(channel, rig)
-    return _delayed_by(delayed, time_s, -_delay(channel, rig))
+    curvature = _curvature(channel, rig)
+    if curvature != 0.0:
+        delayed = uncurved(delayed, curvature)
+    signal = _delayed_by(delayed, time_s, -_delay(channel, rig))
+    lag_s = rig.effects.sensor_lag[CHANNELS.index(channel)]
+    if lag_s == 0.0 or time_s is None or signal.size < 2:
+        return signal
+    return signal + lag_s * np.gradient(signal, time_s)
 
 
 def _delayed_by(values: Floats, time_s: Floats | None, delay_s: float) -> Floats:
@@ -45,6 +146,13 @@ def _delay(channel: Channel, rig: Rig) -> float:
         "f_out_N": delays.f_out_delay_s,
         "x_out_mm": delays.x_out_delay_s,
     }[channel]
+
+
+def _curvature(channel: Channel, rig: Rig) -> float:
+    if channel == "x_out_mm":
+        return 0.0
+    curves = rig.effects.force_sensor_curvature
+    return curves.f_in_per_N if channel == "f_in_N" else curves.f_out_per_N
 
 
 def _gain(channel: Channel, rig: Rig) -> float:
@@ -66,6 +174,24 @@ def _shift(channel: Channel, time_s: Floats | None, rig: Rig) -> Floats | float:
     if rate == 0.0 or time_s is None:
         return start
     return drifting(start, rate, drift.settling_per_s, time_s)
+
+
+@kernel
+def curved(forces: Floats, curvature: float) -> Floats:
+    """Return the readings of a curved scale [N]."""
+    out = np.empty(forces.size)
+    for i in range(forces.size):
+        out[i] = read_curved(forces[i], curvature)
+    return out
+
+
+@kernel
+def uncurved(readings: Floats, curvature: float) -> Floats:
+    """Return the forces of the readings of a curved scale [N]."""
+    out = np.empty(readings.size)
+    for i in range(readings.size):
+        out[i] = straightened(readings[i], curvature)
+    return out
 
 
 @kernel

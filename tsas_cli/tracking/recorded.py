@@ -18,8 +18,10 @@ from tsas_cli.controllers.closed_loop import (
 from tsas_cli.controllers.path import DrivePath
 from tsas_cli.controllers.sliding_mode import SlidingSettings
 from tsas_cli.identification.model import Model, data_sheet
+from tsas_cli.physics.boundary import DISPLACEMENT, SPRING, Boundary
+from tsas_cli.physics.course import Output
 from tsas_cli.physics.rig import Rig
-from tsas_cli.physics.sensors import reading
+from tsas_cli.physics.sensors import Channel, new_memory, reading, sensed
 from tsas_cli.recordings.manifest import Manifest, Run
 from tsas_cli.recordings.manifest import RigSheet as DataSheet
 from tsas_cli.tracking.settings import Settings
@@ -37,16 +39,20 @@ def table_of(
     rng = np.random.default_rng((seed, NOISE))
     sensor, time_s, columns = settings.sensor, run.time_s, run.columns
 
-    def seen(channel: str, values: Floats, noise: float) -> Floats:
-        true = reading(channel, values, time_s, rig)  # type: ignore[arg-type]
-        return true + noise * rng.standard_normal(true.size)
+    x_in, phase = columns[X_SEEN], np.zeros(time_s.size, dtype=np.int8)
+    true = Output(x_in, columns[X_OUT], columns[F_IN], columns[F_OUT], phase)
+    signals = sensed(true, time_s, rig, Boundary(DISPLACEMENT, SPRING), new_memory())
+
+    def seen(channel: Channel, values: Floats, noise: float) -> Floats:
+        read = reading(channel, values, time_s, rig)
+        return read + noise * rng.standard_normal(read.size)
 
     table = {
         "time_s": time_s,
-        "x_in_mm": columns[X_SEEN],
-        "x_out_mm": seen("x_out_mm", columns[X_OUT], sensor.noise_mm),
-        "f_in_N": seen("f_in_N", columns[F_IN], sensor.force_noise_N),
-        "f_out_N": seen("f_out_N", columns[F_OUT], sensor.force_noise_N),
+        "x_in_mm": x_in,
+        "x_out_mm": seen("x_out_mm", signals.x_out, sensor.noise_mm),
+        "f_in_N": seen("f_in_N", signals.f_in, sensor.force_noise_N),
+        "f_out_N": seen("f_out_N", signals.f_out, sensor.force_noise_N),
         "motor_speed_rpm": columns[ASKED],
         "f_out_ref_N": run.wanted_N,
         "f_out_true_N": columns[F_OUT],

@@ -20,7 +20,7 @@ NESTED = 10.0 - 10.0 * np.cos(TIME_S) + 1.5 * np.sin(5.0 * TIME_S)
 STIFF = GROUP_A._replace(bristles=Bristles(stiffness_N_per_mm=5e5))
 DAMPED = ACTUATOR._replace(damping_N_s_per_mm=1.0)
 # Their own frequency, their own instability, or the drive's with them is seen, not the tendon.
-DYNAMIC = {"load_inertia", "stribeck_friction", "backlash", "drive_ripple"}
+DYNAMIC = {"load_inertia", "drive_inertia", "stribeck_friction", "backlash", "drive_ripple"}
 STARTS = {
     e.name: {f"{e.name}.{p.name}": p.start for p in e.parameters}
     for e in EFFECTS

@@ -28,15 +28,26 @@ AT_DRIVE = {
     },
     "friction": {"drive_friction.friction_N": 2.0},
     "spring": {"proximal_spring.stiffness_N_per_mm": 4.0},
+    "damper": {"drive_damping.coefficient_N_s_per_mm": 0.05},
+    "place": {"position_dependent_friction.slope_per_mm": 0.05},
+    "damped load": {"load_damping.coefficient_N_s_per_mm": 0.02},
+    "yielding load": {"load_hysteresis.force_N": 2.0},
+    "relaxing load": {"load_relaxation.share": 0.3, "load_relaxation.time_s": 0.2},
+    "pulley": {"load_ripple.sine_mm": 0.2},
     "guide": {"load_friction.before_sensor_N": 1.0, "load_friction.after_sensor_N": 0.5},
     "bend drift": {"bend_drift.rate_rad_per_s": 0.4},
     "preload loss": {"preload_loss.rate_N_per_s": 2.0},
 }
 
 
+RETURNS_BY_ITSELF = {"load_damping", "load_relaxation"}
+
+
 @pytest.mark.parametrize("values", AT_DRIVE.values(), ids=AT_DRIVE.keys())
 @pytest.mark.parametrize("way", [WAY, AWAY], ids=["taut", "slack at times"])
 def test_a_lumped_tendon_does_to_the_drive_what_the_slip_chain_does(values, way):
+    if way is AWAY and {name.partition(".")[0] for name in values} & RETURNS_BY_ITSELF:
+        pytest.skip("how the load of a slack tendon returns is not modelled")
     rig = with_values(STIFF, values)
     how = {"n": N, "substeps": 8 if way is AWAY else 2, "actuator": DAMPED}
     slip, _, _ = run(rig, way, STEP_S, lumped=False, **how)
@@ -65,6 +76,11 @@ INVERTED = {
     },
     "mass": {"load_inertia.mass_kg": 2.0},
     "viscous": {"viscous_friction.coefficient_N_s_per_mm": 0.05},
+    "uneven friction": {"uneven_friction.slope": 1.5},
+    "damped load": {"load_damping.coefficient_N_s_per_mm": 0.05},
+    "yielding load": {"load_hysteresis.force_N": 2.0},
+    "relaxing load": {"load_relaxation.share": 0.3, "load_relaxation.time_s": 0.2},
+    "pulley": {"load_ripple.sine_mm": 0.2},
 }
 WANTED = np.array([25.0, 26.0, 31.0, 44.0, 43.9, 43.0, 43.4, 38.0, 30.0, 30.0, 21.0, 24.0])
 
@@ -72,7 +88,7 @@ WANTED = np.array([25.0, 26.0, 31.0, 44.0, 43.9, 43.0, 43.4, 38.0, 30.0, 30.0, 2
 @pytest.mark.parametrize("values", INVERTED.values(), ids=INVERTED.keys())
 def test_a_path_to_a_force_gives_that_force(values):
     rig, time_s = with_values(GROUP_A, values), STEP_S * np.arange(WANTED.size)
-    friction = losses_over(time_s, np.zeros(WANTED.size), 0.0, rig)
+    friction = losses_over(time_s, *np.zeros((2, WANTED.size)), 0.0, rig)
     path, tension, missed = inverse_chain(WANTED, friction, STEP_S, rig, N)
     assert missed == 0
     # As fast as it is, the path has no speed to the inverse: none is given to it.

@@ -30,6 +30,7 @@ def any_effects(rng, rig, x_in, x_out):
         return float(rng.choice([-1.0, 1.0]))
 
     stroke, moved, F0 = np.ptp(x_in), np.abs(x_out).max() + 1e-9, rig.preload_N
+    period = moved * between(0.3, 10.0)
     values = {
         "backlash.play_mm": stroke * between(1e-3, 0.3),
         "drive_friction.friction_N": F0 * between(1e-3, 1.0),
@@ -53,6 +54,19 @@ def any_effects(rng, rig, x_in, x_out):
         "load_friction.after_sensor_N": F0 * between(1e-3, 0.5),
         "load_friction.before_sensor_N": F0 * between(1e-3, 0.5),
         "load_inertia.mass_kg": rig.load_stiffness_N_per_mm * between(1e-2, 1e2),
+        "drive_damping.coefficient_N_s_per_mm": F0 / stroke * between(1e-3, 0.3),
+        "drive_inertia.mass_kg": rig.load_stiffness_N_per_mm * between(1e-2, 1e2),
+        "position_dependent_friction.slope_per_mm": rng.uniform(-0.5, 0.5) / stroke,
+        "uneven_friction.slope": rng.uniform(-1.9, 1.9),
+        "load_ripple.sine_mm": period * between(1e-3, 0.1),
+        "load_ripple.period_mm": period,
+        "load_damping.coefficient_N_s_per_mm": F0 / stroke * between(1e-3, 0.3),
+        "load_hysteresis.force_N": F0 * between(1e-3, 0.5),
+        "load_hysteresis.travel_mm": moved * between(1e-2, 1.0),
+        "load_relaxation.share": between(1e-2, 3.0),
+        "load_relaxation.time_s": between(1e-2, 10.0),
+        "force_sensor_hysteresis.f_out_share": between(1e-2, 0.3),
+        "sensor_lag.f_in_lag_s": between(1e-3, 0.3),
     }
     effects = sorted({name.partition(".")[0] for name in values})
     chosen = rng.choice(effects, rng.integers(1, len(effects) + 1), replace=False)

@@ -28,7 +28,8 @@ rigs = pytest.mark.parametrize("rig", [GROUP_A, OTHER], ids=["group a", "other"]
 def path_to(wanted_N, rig=GROUP_A, *, n=50, speed=0.0):
     """Return the inverse model's path; none of its samples may be missed."""
     time_s = STEP_S * np.arange(wanted_N.size)
-    friction = losses_over(time_s, np.broadcast_to(speed, time_s.shape), 0.0, rig)
+    at_rest = np.zeros(time_s.size)
+    friction = losses_over(time_s, at_rest, np.broadcast_to(speed, time_s.shape), 0.0, rig)
     path, tension, missed = inverse_chain(wanted_N, friction, STEP_S, rig, n)
     assert missed == 0
     return path, tension
@@ -143,7 +144,7 @@ def test_a_force_that_no_place_gives_is_told_as_missed():
     rig = with_values(GROUP_A, {"load_spring_nonlinearity.quadratic_per_mm": -0.05})
     most = 25.0 + 1.579 / (4.0 * 0.05)
     wanted = np.concatenate((np.linspace(25.0, most - 0.1, 50), np.full(3, most + 5.0)))
-    friction = losses_over(np.zeros(wanted.size), np.zeros(wanted.size), 0.0, rig)
+    friction = losses_over(*np.zeros((3, wanted.size)), 0.0, rig)
     path, _, missed = inverse_chain(wanted, friction, STEP_S, rig, 10)
     assert missed == 3
     assert (path[-3:] == path[-4]).all()

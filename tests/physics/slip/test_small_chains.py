@@ -55,6 +55,24 @@ EFFECTS = {
         "load_friction.after_sensor_N": 3.0,
         "load_friction.before_sensor_N": 1.5,
     },
+    "friction rises along the sheath": {"uneven_friction.slope": 1.5},
+    "friction falls along the sheath and with tension": {
+        "uneven_friction.slope": -1.2,
+        "load_dependent_friction.exponent": -0.25,
+    },
+    "uneven presliding": {"presliding.length_mm": 0.02, "uneven_friction.slope": 1.2},
+    "a damper": {"load_damping.coefficient_N_s_per_mm": 0.4},
+    "a load that yields": {"load_hysteresis.force_N": 4.0, "load_hysteresis.travel_mm": 0.3},
+    "a load that relaxes": {"load_relaxation.share": 0.5, "load_relaxation.time_s": 0.1},
+    "a load at a pulley": {"load_ripple.sine_mm": 0.1, "load_ripple.period_mm": 2.0},
+    "all at the load": {
+        "load_damping.coefficient_N_s_per_mm": 0.2,
+        "load_hysteresis.force_N": 2.0,
+        "load_relaxation.share": 0.3,
+        "load_ripple.cosine_mm": 0.1,
+        "load_inertia.mass_kg": 10.0,
+        "load_friction.after_sensor_N": 1.0,
+    },
     "a mass": {"load_inertia.mass_kg": 40.0},
     "a mass on a bent spring": {
         "load_inertia.mass_kg": 25.0,
@@ -103,6 +121,7 @@ class Nodes:
         mean = 0.5 * (before + behind)
         exponent = self.rig.effects.load_dependent_friction.exponent
         factor = (abs(mean) / self.rig.preload_N) ** exponent
+        factor *= 1.0 + self.rig.effects.uneven_friction.slope * ((i - 0.5) / N - 0.5)
         loss, sign = 0.5 * viscous_N / N, math.copysign(1.0, mean)
         length = self.rig.effects.presliding.length_mm
         if length > 0.0:
@@ -123,11 +142,32 @@ class Nodes:
             assert behind == pytest.approx(most, abs=ROUNDING)
 
 
+class BesideSpring:
+    """What the load has beside its spring: damper, element that yields, relaxing spring, pulley."""
+
+    def __init__(self, rig):
+        self.rig, self.element, self.stretch = rig, 0.0, 0.0
+
+    def force(self, x, way, step_s):
+        effects, stiffness = self.rig.effects, self.rig.load_stiffness_N_per_mm
+        most, travel = effects.load_hysteresis
+        self.element = float(np.clip(self.element + most / travel * way, -most, most))
+        share, time_s = effects.load_relaxation
+        left = math.exp(-step_s / time_s)
+        gained = (1.0 - left) * time_s / step_s * way if step_s < math.inf else 0.0
+        self.stretch = self.stretch * left + gained
+        sine, cosine, period = effects.load_ripple
+        angle = 2.0 * math.pi * x / period
+        wave = sine * math.sin(angle) + cosine * (math.cos(angle) - 1.0)
+        damped = effects.load_damping.coefficient_N_s_per_mm * way / step_s
+        return damped + self.element + stiffness * (share * self.stretch + wave)
+
+
 def hold_everywhere(course, rig, boundary):
     """Hold every state of a run against all laws; return how the nodes went, shape (m, n + 2)."""
     F0, effects, give = rig.preload_N, rig.effects, gives(rig)
     nodes, x_before, speed = Nodes(rig), np.zeros(N + 2), 0.0
-    ways = []
+    ways, beside = [], BesideSpring(rig)
     for now, (x, T) in zip(moments(course), states(course, rig, boundary), strict=True):
         drive, load, losses, step_s = now
         lost_N = losses.preload_N
@@ -153,6 +193,7 @@ def hold_everywhere(course, rig, boundary):
                 bent = 1.0 + shape.quadratic_per_mm * x[-1] + shape.cubic_per_mm2 * x[-1] ** 2
                 pull, guide = F0 - lost_N, before + after
                 pull += rig.load_stiffness_N_per_mm * x[-1] * bent
+                pull += beside.force(x[-1], way[-1], step_s)
                 if effects.load_inertia.mass_kg > 0.0:
                     faster = way[-1] / step_s - speed
                     faster *= step_s / (step_s + MASS_TAKES_UP_S)

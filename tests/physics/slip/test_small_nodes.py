@@ -25,8 +25,8 @@ from tsas_cli.physics.slip.ends import (
     load_force,
     load_tangent,
     update_end,
+    update_end_speeds,
     update_ends,
-    update_load_speed,
 )
 from tsas_cli.physics.slip.nodes import (
     accept,
@@ -44,8 +44,8 @@ from tsas_cli.physics.slip.start import chain_at_rest, slip_laws
 from tsas_cli.physics.slip.state import (
     DROP,
     DROP_SLOPE,
+    END_SPEED,
     FACTOR,
-    LOAD_SPEED,
     POSITION,
     POSITION_BEFORE,
     RATIO_PULLED,
@@ -335,7 +335,7 @@ SPRING = {
 @pytest.mark.parametrize("mass", [0.0, 40.0])
 @pytest.mark.parametrize("step_s", [0.05, math.inf])
 def test_what_the_load_pulls_back_with_is_a_tangent(chain, mass, step_s):
-    row(chain, POSITION_BEFORE)[LAST], row(chain, LOAD_SPEED)[LAST] = 1.1, 3.0
+    row(chain, POSITION_BEFORE)[LAST], row(chain, END_SPEED)[LAST] = 1.1, 3.0
 
     def pull(x):
         force = F0 - 2.0 + KL * x * (1.0 + 0.1 * x + 0.05 * x * x)
@@ -355,15 +355,15 @@ def test_what_the_load_pulls_back_with_is_a_tangent(chain, mass, step_s):
 
 
 def test_a_mass_takes_up_its_speed_in_a_hundredth_of_a_second(chain):
-    row(chain, POSITION_BEFORE)[LAST], row(chain, POSITION)[LAST], row(chain, LOAD_SPEED)[LAST] = (
+    row(chain, POSITION_BEFORE)[LAST], row(chain, POSITION)[LAST], row(chain, END_SPEED)[LAST] = (
         1.0,
         1.2,
         1.0,
     )
-    update_load_speed(chain, 0.04, N)  # 5 mm/s, of which it takes 4 parts of 5
-    assert row(chain, LOAD_SPEED)[LAST] == pytest.approx(1.0 + 0.8 * 4.0)
-    update_load_speed(chain, math.inf, N)
-    assert row(chain, LOAD_SPEED)[LAST] == 0.0
+    update_end_speeds(chain, 0.04, N)  # 5 mm/s, of which it takes 4 parts of 5
+    assert row(chain, END_SPEED)[LAST] == pytest.approx(1.0 + 0.8 * 4.0)
+    update_end_speeds(chain, math.inf, N)
+    assert row(chain, END_SPEED)[LAST] == 0.0
 
 
 GUIDE = {"load_friction__before_sensor_N": 1.5, "load_friction__after_sensor_N": 3.0}

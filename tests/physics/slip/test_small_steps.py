@@ -44,8 +44,8 @@ from tsas_cli.physics.slip.state import (
     COMPLIANCE,
     DROP,
     DROP_SLOPE,
+    END_SPEED,
     FACTOR,
-    LOAD_SPEED,
     POSITION,
     POSITION_BEFORE,
     SHARE_BEFORE,
@@ -272,7 +272,7 @@ def test_what_a_sensor_at_the_load_feels():
 def test_a_slack_tendon_is_straight_up_to_its_load(boundary):
     laws, chain = slip_laws(GROUP_A, 3, LOADED_BY_SPRING), chain_at_rest(GROUP_A, 3)
     chain[POSITION : POSITION + 5] = -40.0, 1.0, 2.0, 3.0, 0.4
-    for row in (SLIP, LOAD_SPEED, SHARE_BEFORE, TENSION_RISE):
+    for row in (SLIP, END_SPEED, SHARE_BEFORE, TENSION_RISE):
         chain[row : row + 5] = -3.0
     go_slack(chain, NOW, at(laws, boundary))
     load = 0.4 if boundary is LOADED_BY_DISPLACEMENT else -(F0 - NOW.losses.preload_N) / KL
@@ -288,7 +288,7 @@ def test_a_slack_tendon_is_straight_up_to_its_load(boundary):
         1.0,
         1.0,
     ]  # as the next pull finds it
-    assert chain[LOAD_SPEED + 4] == 0.0
+    assert chain[END_SPEED + 4] == 0.0
     assert chain[SHARE_BEFORE : SHARE_BEFORE + 5].tolist() == [1.0] * 5
     assert not chain[TENSION_RISE : TENSION_RISE + 5].any()
     np.testing.assert_array_equal(

@@ -6,13 +6,18 @@ tension ratio over a sliding lump is e^(−μθ/n), Eq. 7). The ends have no mas
 The residual depends on the speeds of a node and its two neighbours: the Jacobian is tridiagonal.
 """
 
+from tsas_cli.effects.drive_damping import drive_damper_force
+from tsas_cli.effects.drive_inertia import drive_inertia_force
+from tsas_cli.effects.load_damping import load_damper_force
 from tsas_cli.effects.load_dependent_friction import load_factor
+from tsas_cli.effects.load_hysteresis import element_force
 from tsas_cli.effects.load_inertia import inertia_force
-from tsas_cli.effects.load_spring_nonlinearity import spring_force, spring_tangent
+from tsas_cli.effects.load_relaxation import relaxing_force
 from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.effects.stribeck_friction import stribeck
+from tsas_cli.effects.uneven_friction import place_factor
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.physics.boundary import DISPLACEMENT, SPRING, moving_friction
+from tsas_cli.physics.boundary import DISPLACEMENT, SPRING, moving_friction, spring_law
 from tsas_cli.physics.bristles import friction
 from tsas_cli.physics.lugre.state import (
     DEFLECTION_HISTORY,
@@ -22,6 +27,8 @@ from tsas_cli.physics.lugre.state import (
     LIMIT,
     LIMIT_BY_T,
     LIMIT_BY_V,
+    LOAD_STATE_HISTORY,
+    LOAD_STATE_NEW,
     LOWER,
     POSITION_HISTORY,
     RATE,
@@ -91,6 +98,11 @@ def set_limits(s: Floats, step: Step, laws: LugreLaws) -> None:
             factor = load_factor(mean / laws.preload_N, laws.lump.friction_exponent)
             s[LIMIT + i] *= factor
             s[LIMIT_BY_T + i] *= factor * (1.0 + laws.lump.friction_exponent)
+    if laws.lump.friction_slope != 0.0:
+        for i in range(1, laws.n + 1):
+            factor = place_factor((i - 0.5) / laws.n, laws.lump.friction_slope)
+            s[LIMIT + i] *= factor
+            s[LIMIT_BY_T + i] *= factor
     if laws.lump.stribeck.excess != 0.0:
         set_stribeck(s, step, laws)
 
@@ -143,9 +155,13 @@ def balance_drive(s: Floats, step: Step, laws: LugreLaws) -> None:
     stiffness = proximal_spring_force(1.0, laws.drive.spring_N_per_mm)
     position = s[POSITION_HISTORY] + step.gh * s[RATE]
     s[UPPER] = -s[TENSION_SLOPE]
-    s[DIAGONAL] = s[TENSION_SLOPE] + stiffness * step.gh + by_speed
+    damping = laws.drive.damping_N_s_per_mm
+    inertia = drive_inertia_force(1.0, laws.drive.mass_kg) / step.gh
+    s[DIAGONAL] = s[TENSION_SLOPE] + stiffness * step.gh + by_speed + damping + inertia
+    beside = friction_force + drive_damper_force(s[RATE], damping)
+    beside += inertia * (s[RATE] - s[SPEED_HISTORY])
     s[RESIDUAL] = (
-        step.drive.value - s[TENSION] - proximal_spring_force(position, stiffness) - friction_force
+        step.drive.value - s[TENSION] - proximal_spring_force(position, stiffness) - beside
     )
     s[FRICTION], s[DEFLECTION_NEW] = friction_force, deflection
 
@@ -168,17 +184,32 @@ def balance_load(s: Floats, step: Step, laws: LugreLaws) -> None:
     pull, by_position, inertia = step.load.value, 0.0, 0.0
     if laws.load.given == SPRING:
         position = s[POSITION_HISTORY + last] + step.gh * s[RATE + last] + step.frame.value
-        stiffness = laws.load.stiffness_N_per_mm
-        pull = (
-            laws.preload_N - step.lost_N + spring_force(position, stiffness, laws.load.nonlinearity)
-        )
+        force, by_position = spring_law(position, laws.load)
+        pull = laws.preload_N - step.lost_N + force
         inertia = inertia_force(1.0, laws.load.mass_kg) / step.gh
-        pull += inertia * (speed - s[SPEED_HISTORY + last])
-        by_position = spring_tangent(position, stiffness, laws.load.nonlinearity)
+        damping = laws.load.damping_N_s_per_mm
+        pull += inertia * (speed - s[SPEED_HISTORY + last]) + load_damper_force(speed, damping)
+        by_speed += damping
+        force, by_travel = beside_spring(s, speed, step, laws)
+        pull += force
+        by_speed += by_travel * step.gh
     s[LOWER + last] = -behind
     s[DIAGONAL + last] = behind + by_position * step.gh + inertia + by_speed
     s[RESIDUAL + last] = s[TENSION + laws.n] - pull - friction_force
     s[FRICTION + last], s[DEFLECTION_NEW + last] = friction_force, deflection
+
+
+@kernel
+def beside_spring(s: Floats, speed: float, step: Step, laws: LugreLaws) -> tuple[float, float]:
+    """Return the forces of hysteresis and relaxation of the load [N], and their slope [N/mm]."""
+    load, moved = laws.load, step.gh * speed
+    element_N, slope = element_force(s[LOAD_STATE_HISTORY], moved, load.hysteresis)
+    stretched = 1.0 / (1.0 + step.gh / load.relaxation.time_s)
+    stretch = (s[LOAD_STATE_HISTORY + 1] + moved) * stretched
+    s[LOAD_STATE_NEW], s[LOAD_STATE_NEW + 1] = element_N, stretch
+    stiffness, share = load.stiffness_N_per_mm, load.relaxation.share
+    relaxing_N = relaxing_force(stretch, stiffness, share)
+    return element_N + relaxing_N, slope + relaxing_force(stretched, stiffness, share)
 
 
 @kernel

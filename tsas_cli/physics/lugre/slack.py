@@ -24,7 +24,8 @@ def load_position(course: Floats, k: int, t: float, laws: LugreLaws) -> float:
 @kernel
 def unloaded_load(lost_N: float, laws: LugreLaws) -> float:
     """Return the position of the load with its spring at rest without tension [mm]."""
-    return unloaded_position(0.0, laws.preload_N - lost_N, laws.load)
+    preload_N = laws.preload_N - lost_N - laws.load.hysteresis.force_N
+    return unloaded_position(0.0, preload_N, laws.load)
 
 
 @kernel

@@ -3,7 +3,7 @@
 import math
 
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.physics.boundary import Boundary, DriveEnd, drive_end, load_end
+from tsas_cli.physics.boundary import SPRING, Boundary, DriveEnd, drive_end, load_end
 from tsas_cli.physics.bristles import Bristle, bristle_damping, tendon_mass
 from tsas_cli.physics.course import DRIVE
 from tsas_cli.physics.lugre.balance import balance, set_limits
@@ -14,6 +14,8 @@ from tsas_cli.physics.lugre.state import (
     DEFLECTION,
     DEFLECTION_HISTORY,
     LIMIT,
+    LOAD_STATE,
+    LOAD_STATE_HISTORY,
     POSITION,
     POSITION_HISTORY,
     RATE,
@@ -55,6 +57,7 @@ def lugre_laws(rig: Rig, n: int, boundary: Boundary) -> LugreLaws:
         tendon_mass(rig.bristles, rig.sheath_length_mm) / n,
         Bristle(whole.stiffness / n, whole.damping / n, whole.viscous / n, whole.travel),
         effects.load_dependent_friction.exponent,
+        effects.uneven_friction.slope,
         effects.stribeck_friction,
     )
     end_bristle = Bristle(whole.stiffness, whole.damping, 0.0, 0.0)
@@ -116,7 +119,10 @@ def rest_at(s: Floats, start: Floats, step: Step, laws: LugreLaws) -> StepEnds:
         s[POSITION + i] = s[POSITION_HISTORY + i] = start[0, i] - step.frame.value
         s[TENSION_HISTORY + i], s[TENSION_SLOPE + i] = start[1, i], 0.0
         s[SPEED + i] = s[SPEED_HISTORY + i] = s[RATE + i] = s[DEFLECTION_HISTORY + i] = 0.0
+    s[LOAD_STATE_HISTORY] = s[LOAD_STATE_HISTORY + 1] = s[LOAD_STATE + 1] = 0.0
     balance(s, step, laws)
+    element_N = laws.load.hysteresis.force_N if laws.load.given == SPRING else 0.0
+    s[LOAD_STATE] = min(max(s[RESIDUAL + last], -element_N), element_N)  # before the guide
     for i in range(1, laws.n + 1):
         s[DEFLECTION_HISTORY + i] = s[RESIDUAL + i]  # its sign decides between the limits
     set_limits(s, step, laws)
@@ -126,5 +132,5 @@ def rest_at(s: Floats, start: Floats, step: Step, laws: LugreLaws) -> StepEnds:
             s[RESIDUAL + i] / laws.lump.bristle.stiffness + share * laws.lump.bristle.travel
         )
     s[DEFLECTION] = s[RESIDUAL] / laws.end_bristle.stiffness
-    s[DEFLECTION + last] = s[RESIDUAL + last] / laws.end_bristle.stiffness
+    s[DEFLECTION + last] = (s[RESIDUAL + last] - s[LOAD_STATE]) / laws.end_bristle.stiffness
     return ends_after(s, step, laws)

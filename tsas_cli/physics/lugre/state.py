@@ -28,7 +28,10 @@ TENSION_HISTORY, TENSION_SLOPE = PITCH * 18, PITCH * 19
 LIMIT, LIMIT_BY_T, LIMIT_BY_V = (PITCH * row for row in range(20, 23))  # of friction, derivatives
 LOWER, DIAGONAL, UPPER, RESIDUAL = (PITCH * row for row in range(23, 27))  # Newton's equations
 MINOR, SCALED, INCREMENT = (PITCH * row for row in range(27, 30))  # elimination and solution
-ROWS = 30
+# Of the load, at 0 the force of its hysteresis [N], at 1 the stretch of its relaxing spring [mm].
+LOAD_STATE, LOAD_STATE_1 = PITCH * 30, PITCH * 31  # after the last two steps
+LOAD_STATE_HISTORY, LOAD_STATE_NEW = PITCH * 32, PITCH * 33  # in the formula, at the present RATE
+ROWS = 34
 
 
 class Lump(NamedTuple):
@@ -37,6 +40,7 @@ class Lump(NamedTuple):
     mass: float  # [t]
     bristle: Bristle
     friction_exponent: float
+    friction_slope: float  # along the sheath, over the mean
     stribeck: StribeckFriction
 
 

@@ -16,6 +16,10 @@ from tsas_cli.physics.lugre.state import (
     DEFLECTION_HISTORY,
     DEFLECTION_NEW,
     INCREMENT,
+    LOAD_STATE,
+    LOAD_STATE_1,
+    LOAD_STATE_HISTORY,
+    LOAD_STATE_NEW,
     POSITION,
     POSITION_1,
     POSITION_2,
@@ -72,6 +76,8 @@ def predict(s: Floats, laws: LugreLaws, formula: Formula) -> None:
             - s[POSITION_HISTORY + i]
         ) / gh
         s[TENSION_SLOPE + i] = s[STIFFNESS + i] * gh + s[DAMPING + i]
+    for i in range(2):
+        s[LOAD_STATE_HISTORY + i] = near * s[LOAD_STATE + i] - far * s[LOAD_STATE_1 + i]
     for j in range(laws.n + 1):
         s[TENSION_HISTORY + j] = laws.preload_N + s[STIFFNESS + j] * (
             s[POSITION_HISTORY + j] - s[POSITION_HISTORY + j + 1]
@@ -143,3 +149,5 @@ def accept_step(s: Floats, step: Step, laws: LugreLaws) -> None:
         s[SPEED + i] = s[RATE + i] + step.frame.rate
         s[DEFLECTION_1 + i] = s[DEFLECTION + i]
         s[DEFLECTION + i] = s[DEFLECTION_NEW + i]
+    for i in range(2):
+        s[LOAD_STATE_1 + i], s[LOAD_STATE + i] = s[LOAD_STATE + i], s[LOAD_STATE_NEW + i]

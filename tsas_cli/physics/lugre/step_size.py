@@ -6,12 +6,13 @@ from typing import NamedTuple
 import numpy as np
 
 from tsas_cli.numerics.compiled import kernel
+from tsas_cli.physics.boundary import FORCE
 from tsas_cli.physics.lugre.ends import StepEnds
 from tsas_cli.physics.lugre.state import Floats, Formula, LugreLaws, Step
 from tsas_cli.physics.lugre.step import newton, predict, step_error
 
 RESIDUAL_SHARE = 0.3  # residual of Newton's method over the error of a step
-WITH_MASS = 0.04  # factor of the tolerance with an oscillating load mass: its errors add up
+WITH_MASS = 0.04  # factor of the tolerance with an oscillating mass: its errors add up
 LONGER, SHORTER, CAREFUL = 2.0, 0.25, 0.85  # bounds of the change of a step, safety factor
 
 
@@ -31,7 +32,8 @@ def tolerances_of(
     An infinite tolerance is for given steps.
     """
     tension = max(abs(ends.drive.tension), abs(ends.load.tension), 0.1 * laws.preload_N)
-    most = tolerance * tension * (WITH_MASS if laws.load.mass_kg > 0.0 else 1.0)
+    swings = laws.load.mass_kg > 0.0 or (laws.drive.given == FORCE and laws.drive.mass_kg > 0.0)
+    most = tolerance * tension * (WITH_MASS if swings else 1.0)
     return Tolerances(most, min(RESIDUAL_SHARE * most, residual_share * tension))
 
 

@@ -17,8 +17,8 @@ from tsas_cli.physics.boundary import (
     FORCE,
     SPRING,
     Boundary,
-    DriveEnd,
     share_before_sensor,
+    with_spring,
 )
 from tsas_cli.physics.ends import losses_without_speed
 from tsas_cli.physics.lugre.balance import balance_drive
@@ -45,6 +45,7 @@ from tsas_cli.physics.lugre.state import (
     RESIDUAL,
     ROWS,
     SPEED,
+    SPEED_HISTORY,
     TENSION,
     TENSION_SLOPE,
     Floats,
@@ -95,7 +96,7 @@ def lumps_at_rest(s: Floats, chain: Floats, f_in: float, rig: Rig, n: int) -> Lu
     clear_state(s, rig, n)
     for j in range(n + 2):
         start[0, j], start[1, j] = chain[slip.POSITION + j], chain[slip.TENSION + j]
-    step = step_of_rest(f_in, 0.0, rig, n)
+    step = step_of_rest(f_in, 0.0, start[0, 0], rig, n)
     ends = rest_at(s, start, step, laws)
     if s[POSITION] < taut_position(s, step, laws):
         return slack_tendon(step, laws)
@@ -126,18 +127,18 @@ def step_lumped_plant(
     """
     p, h = s[POSITION], step.h
     spring = spring_of(table, p, rig, step)
-    given = step_of_rest(spring.force, step.time_s, rig, laws.n)
+    given = step_of_rest(spring.force, step.time_s, p, rig, laws.n)
     if tendon.touched != spring.touches and not tendon.slack:
         tendon = restarted(tendon.ends, spring.touches)
     solved, arrived, x, f_in = True, True, spring.x, table.f_in
     drive = laws.drive
     if spring.touches:
         stiffness = drive.spring_N_per_mm + spring.stiffness
-        driven = with_drive(laws, DriveEnd(FORCE, drive.friction_N, stiffness))
+        driven = with_drive(laws, with_spring(drive, FORCE, stiffness))
         if tendon.slack:
             tendon, solved = pull_slack(s, given, driven, h)
     else:
-        driven = with_drive(laws, DriveEnd(DISPLACEMENT, drive.friction_N, drive.spring_N_per_mm))
+        driven = with_drive(laws, with_spring(drive, DISPLACEMENT, drive.spring_N_per_mm))
     tension = tendon.ends.drive.tension
     if not tendon.slack:
         before = table.f_in + spring.stiffness * p
@@ -194,6 +195,7 @@ def pull_slack(s: Floats, step: Step, laws: LugreLaws, h: float) -> tuple[Lumped
     """
     position, deflection = s[POSITION], s[DEFLECTION]
     s[POSITION_HISTORY], s[DEFLECTION_HISTORY], s[RATE] = position, deflection, 0.0
+    s[SPEED_HISTORY] = s[SPEED]
     s[TENSION] = s[TENSION_SLOPE] = 0.0
     step, solved = with_drive_force(step, step.drive.value, h), False
     for _ in range(MOST_ITERATIONS):
@@ -227,9 +229,9 @@ def slack_tendon(step: Step, laws: LugreLaws) -> LumpedTendon:
 
 
 @kernel
-def step_of_rest(force: float, time_s: float, rig: Rig, n: int) -> Step:
-    """Return a step of zero length with a force at the drive [N]."""
-    losses = losses_without_speed(time_s, 0.0, rig)
+def step_of_rest(force: float, time_s: float, position: float, rig: Rig, n: int) -> Step:
+    """Return a step of zero length with a force at the drive [N], which is at a position [mm]."""
+    losses = losses_without_speed(time_s, position, 0.0, rig)
     pulled, released = lump_share(losses.pulled, n), lump_share(losses.released, n)
     none = Given(0.0, 0.0)
     return Step(NO_TIME_S, Given(force, 0.0), none, none, pulled, released, losses.preload_N)

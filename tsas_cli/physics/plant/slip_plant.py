@@ -1,7 +1,7 @@
 """The plant of a closed loop with the slip chain as its tendon; see `turntable`."""
 
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.physics.boundary import DriveEnd
+from tsas_cli.physics.boundary import with_spring
 from tsas_cli.physics.ends import losses_at
 from tsas_cli.physics.plant.turntable import (
     DriveStep,
@@ -12,8 +12,18 @@ from tsas_cli.physics.plant.turntable import (
 )
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.slip.chain import advance, go_slack
+from tsas_cli.physics.slip.ends import drive_tangent, update_end_speeds
 from tsas_cli.physics.slip.start import with_drive
-from tsas_cli.physics.slip.state import POSITION, SLIP, TENSION, Floats, Moment, SlipLaws
+from tsas_cli.physics.slip.state import (
+    END_SPEED,
+    POSITION,
+    POSITION_BEFORE,
+    SLIP,
+    TENSION,
+    Floats,
+    Moment,
+    SlipLaws,
+)
 
 
 @kernel
@@ -27,18 +37,22 @@ def step_plant(
     p = chain[POSITION]
     spring = spring_of(table, p, rig, step)
     converged, now, x, f_in = True, before, spring.x, table.f_in
+    mass_speed = chain[END_SPEED]
     if spring.touches:
-        now = Moment(spring.force, 0.0, losses_at(step.time_s, table.speed, 0.0, rig), step.h)
+        losses = losses_at(step.time_s, p, table.speed, 0.0, rig)
+        now = Moment(spring.force, 0.0, losses, step.h)
         drive = laws.drive
         stiffness = drive.spring_N_per_mm + spring.stiffness
-        driven = with_drive(laws, DriveEnd(drive.given, drive.friction_N, stiffness))
+        driven = with_drive(laws, with_spring(drive, drive.given, stiffness))
         converged = advance(chain, before, now, driven)
         if chain[TENSION] < 0.0:
             go_slack(chain, now, laws)
+            chain[POSITION_BEFORE], chain[END_SPEED] = p, mass_speed
+            slope, value = drive_tangent(chain, now, driven)
             friction_N = chain[SLIP] * drive.friction_N
-            chain[POSITION] = (spring.force - friction_N) / (
-                spring.stiffness + drive.spring_N_per_mm
-            )
+            chain[POSITION] = (spring.force - friction_N - value) / slope
+            update_end_speeds(chain, step.h, laws.n)
+            chain[POSITION_BEFORE] = chain[POSITION]
         x, f_in = turntable_at(chain[POSITION], spring)
     speed = (chain[POSITION] - p) / step.h
     return advance_turntable(table, x, f_in, speed, step.h), now, converged

@@ -35,17 +35,19 @@ from tsas_cli.physics.course import (
 from tsas_cli.physics.frames import Frames
 from tsas_cli.physics.phases import SLACK, UNCONVERGED
 from tsas_cli.physics.rig import Rig
-from tsas_cli.physics.slip.ends import load_force, update_load_speed
+from tsas_cli.physics.slip.ends import load_force, update_end_speeds, update_load_state
 from tsas_cli.physics.slip.frames import write_frame
 from tsas_cli.physics.slip.nodes import accept
 from tsas_cli.physics.slip.start import chain_at_rest, slip_laws
 from tsas_cli.physics.slip.state import (
     COMPLIANCE,
-    LOAD_SPEED,
+    ELEMENT,
+    END_SPEED,
     POSITION,
     POSITION_BEFORE,
     SHARE_BEFORE,
     SLIP,
+    STRETCH,
     TENSION,
     TENSION_BEFORE,
     TENSION_RISE,
@@ -194,7 +196,8 @@ def advance(chain: Floats, start: Moment, end: Moment, laws: SlipLaws) -> bool:
         target = min(reached + step, 1.0)
         now = between(start, end, target, end.step_s * (target - reached))
         if solve_sample(chain, now, laws):
-            update_load_speed(chain, now.step_s, laws.n)
+            update_end_speeds(chain, now.step_s, laws.n)
+            update_load_state(chain, now.step_s, laws)
             accept(chain, laws)
             if target == 1.0:
                 return True
@@ -256,7 +259,8 @@ def go_slack(chain: Floats, now: Moment, laws: SlipLaws) -> None:
     """Set the tendon taut without tension at the load; all nodes slip on the next pull."""
     last = laws.n + 1
     if laws.load.given != DISPLACEMENT:
-        preload_N = laws.preload_N - now.losses.preload_N
+        preload_N = laws.preload_N - now.losses.preload_N - laws.load.hysteresis.force_N
+        chain[ELEMENT] = -laws.load.hysteresis.force_N  # the load has returned far enough
         chain[POSITION + last] = unloaded_position(chain[POSITION + last], preload_N, laws.load)
     for j in range(last - 1, -1, -1):
         chain[TENSION + j] = 0.0
@@ -264,7 +268,7 @@ def go_slack(chain: Floats, now: Moment, laws: SlipLaws) -> None:
             chain[POSITION + j] = chain[POSITION + j + 1] - chain[COMPLIANCE + j] * laws.preload_N
             chain[SLIP + j] = 1.0
     chain[SLIP + last] = 1.0
-    chain[LOAD_SPEED + last] = 0.0
+    chain[END_SPEED] = chain[END_SPEED + last] = chain[STRETCH] = 0.0
     accept(chain, laws)
     for j in range(laws.n + 2):
         chain[SHARE_BEFORE + j], chain[TRAVEL + j], chain[TENSION_RISE + j] = 1.0, 0.0, 0.0

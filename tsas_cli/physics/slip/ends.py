@@ -1,22 +1,26 @@
-"""The two ends of the slip chain: the load's spring, mass and guide, the drive's friction."""
+"""The two ends of the slip chain: the load's spring, mass and guide, what is beside the drive."""
 
 import math
 
+from tsas_cli.effects.drive_damping import drive_damper_force
+from tsas_cli.effects.drive_inertia import drive_inertia_force
+from tsas_cli.effects.load_damping import load_damper_force
+from tsas_cli.effects.load_hysteresis import element_force
 from tsas_cli.effects.load_inertia import inertia_force
-from tsas_cli.effects.load_spring_nonlinearity import (
-    spring_force,
-    spring_tangent,
-)
+from tsas_cli.effects.load_relaxation import relaxing_force
 from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, moving_friction
+from tsas_cli.numerics.settling import lag_after
+from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, moving_friction, spring_law
 from tsas_cli.physics.slip.nodes import slips_backwards
 from tsas_cli.physics.slip.state import (
     BALANCED,
-    LOAD_SPEED,
+    ELEMENT,
+    END_SPEED,
     POSITION,
     POSITION_BEFORE,
     SLIP,
+    STRETCH,
     SWEEP_P,
     SWEEP_Q,
     SWEEP_R,
@@ -27,7 +31,7 @@ from tsas_cli.physics.slip.state import (
     SlipLaws,
 )
 
-SLIPS_ALONG_S = 0.01  # time constant of the load mass's speed; without it the mass would oscillate
+SLIPS_ALONG_S = 0.01  # time constant of a mass's speed; without it the mass would oscillate
 
 
 @kernel
@@ -35,26 +39,60 @@ def load_tangent(chain: Floats, now: Moment, laws: SlipLaws) -> tuple[float, flo
     """Return slope and value at x = 0 of the tangent of the load's force [N/mm, N]."""
     n = laws.n
     x = chain[POSITION + n + 1]
-    shape = laws.load.nonlinearity
-    slope = spring_tangent(x, laws.load.stiffness_N_per_mm, shape)
-    value = spring_force(x, laws.load.stiffness_N_per_mm, shape) - slope * x
+    force, slope = spring_law(x, laws.load)
+    value = force - slope * x
     value += laws.preload_N - now.losses.preload_N
     mass = laws.load.mass_kg
     if mass > 0.0 and now.step_s < math.inf:  # implicit Euler, first order in the step
         per_speed = 1.0 / (SLIPS_ALONG_S + now.step_s)
         slope += inertia_force(per_speed / now.step_s, mass)
-        extrapolated_speed = chain[POSITION_BEFORE + n + 1] / now.step_s + chain[LOAD_SPEED + n + 1]
+        extrapolated_speed = chain[POSITION_BEFORE + n + 1] / now.step_s + chain[END_SPEED + n + 1]
         value -= inertia_force(per_speed * extrapolated_speed, mass)
+    damping = laws.load.damping_N_s_per_mm
+    if damping > 0.0 and now.step_s < math.inf:
+        per_mm = load_damper_force(1.0 / now.step_s, damping)
+        slope += per_mm
+        value -= per_mm * chain[POSITION_BEFORE + n + 1]
+    if laws.load.hysteresis.force_N > 0.0:
+        moved = x - chain[POSITION_BEFORE + n + 1]
+        force, stiffness = element_force(chain[ELEMENT], moved, laws.load.hysteresis)
+        slope += stiffness
+        value += force - stiffness * x
+    if laws.load.relaxation.share > 0.0:
+        kept, gained = relaxing_stretch(chain, now.step_s, laws)
+        share, stiffness = laws.load.relaxation.share, laws.load.stiffness_N_per_mm
+        slope += relaxing_force(gained, stiffness, share)
+        at_zero = kept - gained * chain[POSITION_BEFORE + n + 1]
+        value += relaxing_force(at_zero, stiffness, share)
     return slope, value
 
 
 @kernel
-def update_load_speed(chain: Floats, step_s: float, n: int) -> None:
-    """Update the speed of the load's mass after a step."""
-    last = n + 1
-    speed = (chain[POSITION + last] - chain[POSITION_BEFORE + last]) / step_s
+def update_end_speeds(chain: Floats, step_s: float, n: int) -> None:
+    """Update the speeds of the masses at both ends after a step."""
     share = 1.0 / (1.0 + SLIPS_ALONG_S / step_s)
-    chain[LOAD_SPEED + last] += share * (speed - chain[LOAD_SPEED + last])
+    for end in (0, n + 1):
+        speed = (chain[POSITION + end] - chain[POSITION_BEFORE + end]) / step_s
+        chain[END_SPEED + end] += share * (speed - chain[END_SPEED + end])
+
+
+@kernel
+def relaxing_stretch(chain: Floats, step_s: float, laws: SlipLaws) -> tuple[float, float]:
+    """Return what a step leaves of the relaxing spring's stretch [mm], and adds for each mm."""
+    time_s = laws.load.relaxation.time_s
+    return lag_after(chain[STRETCH], 0.0, step_s, time_s), lag_after(0.0, 1.0, step_s, time_s)
+
+
+@kernel
+def update_load_state(chain: Floats, step_s: float, laws: SlipLaws) -> None:
+    """Update the state of what is beside the load spring after a step."""
+    if laws.load.relaxation.share > 0.0:
+        moved = chain[POSITION + laws.n + 1] - chain[POSITION_BEFORE + laws.n + 1]
+        kept, gained = relaxing_stretch(chain, step_s, laws)
+        chain[STRETCH] = kept + gained * moved
+    if laws.load.hysteresis.force_N > 0.0:
+        moved = chain[POSITION + laws.n + 1] - chain[POSITION_BEFORE + laws.n + 1]
+        chain[ELEMENT] = element_force(chain[ELEMENT], moved, laws.load.hysteresis)[0]
 
 
 @kernel
@@ -66,8 +104,21 @@ def drive_position(chain: Floats, now: Moment, laws: SlipLaws) -> float:
     if chain[SLIP] == 0 and friction > 0.0:
         return float(chain[POSITION_BEFORE])
     p, q, r = chain[SWEEP_P], chain[SWEEP_Q], chain[SWEEP_R]
-    stiffness = proximal_spring_force(1.0, laws.drive.spring_N_per_mm)
-    return float(((now.drive - chain[SLIP] * friction) * r - q) / (p + stiffness * r))
+    slope, value = drive_tangent(chain, now, laws)
+    return float(((now.drive - value - chain[SLIP] * friction) * r - q) / (p + slope * r))
+
+
+@kernel
+def drive_tangent(chain: Floats, now: Moment, laws: SlipLaws) -> tuple[float, float]:
+    """Return slope and value at x = 0 of the force beside the tendon at a drive by force."""
+    slope, value = proximal_spring_force(1.0, laws.drive.spring_N_per_mm), 0.0
+    if now.step_s < math.inf:  # implicit Euler
+        per_mm = drive_damper_force(1.0 / now.step_s, laws.drive.damping_N_s_per_mm)
+        per_speed = drive_inertia_force(1.0 / (SLIPS_ALONG_S + now.step_s), laws.drive.mass_kg)
+        slope += per_mm + per_speed / now.step_s
+        value -= (per_mm + per_speed / now.step_s) * chain[POSITION_BEFORE]
+        value -= per_speed * chain[END_SPEED]
+    return slope, value
 
 
 @kernel
@@ -89,8 +140,8 @@ def update_ends(chain: Floats, now: Moment, laws: SlipLaws) -> bool:
     n = laws.n
     unsolved = False
     if laws.drive.given == FORCE:
-        stiffness = laws.drive.spring_N_per_mm
-        pull = now.drive - chain[TENSION] - proximal_spring_force(chain[POSITION], stiffness)
+        slope, value = drive_tangent(chain, now, laws)
+        pull = now.drive - chain[TENSION] - slope * chain[POSITION] - value
         if laws.drive.friction_N > 0.0:
             unsolved = update_end(0, pull, laws.drive.friction_N, chain, laws)
     if laws.load.given != DISPLACEMENT:

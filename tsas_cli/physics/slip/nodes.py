@@ -11,6 +11,7 @@ import math
 
 from tsas_cli.effects.load_dependent_friction import load_exponent
 from tsas_cli.effects.presliding import friction_share, friction_share_rate
+from tsas_cli.effects.uneven_friction import place_factor
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.numerics.elementary import exponential
 from tsas_cli.physics.slip.state import (
@@ -50,7 +51,7 @@ def set_friction(chain: Floats, now: Moment, laws: SlipLaws) -> None:
     """Set each node's friction and its capstan ratios, Eq. (7) of Yang 2025 for its bend."""
     n = laws.n
     pulled, released = now.losses.pulled / n, now.losses.released / n
-    if laws.friction_exponent == 0.0:
+    if laws.friction_exponent == 0.0 and laws.friction_slope == 0.0:
         ratio_pulled, ratio_released = math.exp(-pulled), math.exp(-released)
         for i in range(1, n + 1):
             chain[WRAP_PULLED + i], chain[WRAP_RELEASED + i] = pulled, released
@@ -62,6 +63,7 @@ def set_friction(chain: Floats, now: Moment, laws: SlipLaws) -> None:
         chain[WRAP_PULLED + i] = load_exponent(mean, laws.friction_exponent)
     for i in range(1, n + 1):
         factor = exponential(chain[WRAP_PULLED + i])
+        factor *= place_factor((i - 0.5) / n, laws.friction_slope)
         chain[WRAP_PULLED + i] = min(pulled * factor, MOST_WRAP)
         chain[WRAP_RELEASED + i] = min(released * factor, MOST_WRAP)
     if laws.presliding_mm == 0.0:
@@ -78,8 +80,11 @@ def is_linear(laws: SlipLaws) -> bool:
         laws.friction_exponent == 0.0
         and laws.presliding_mm == 0.0
         and laws.load.mass_kg == 0.0
+        and laws.load.hysteresis.force_N == 0.0
         and laws.load.nonlinearity.quadratic_per_mm == 0.0
         and laws.load.nonlinearity.cubic_per_mm2 == 0.0
+        and laws.load.ripple.sine_mm == 0.0
+        and laws.load.ripple.cosine_mm == 0.0
     )
 
 

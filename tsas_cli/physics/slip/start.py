@@ -38,6 +38,7 @@ def slip_laws(rig: Rig, n: int, boundary: Boundary) -> SlipLaws:
         rig.preload_N,
         rig.sheath_length_mm * rig.preload_N / rig.tendon_stiffness_N / n + 1e-9,
         rig.effects.load_dependent_friction.exponent,
+        rig.effects.uneven_friction.slope,
         rig.effects.presliding.length_mm,
         drive_end(rig, boundary.drive),
         load_end(rig, boundary.load),
@@ -47,7 +48,13 @@ def slip_laws(rig: Rig, n: int, boundary: Boundary) -> SlipLaws:
 @kernel
 def with_drive(laws: SlipLaws, drive: DriveEnd) -> SlipLaws:
     """Return the laws with another end at the drive."""
-    exponent, presliding_mm = laws.friction_exponent, laws.presliding_mm
     return SlipLaws(
-        laws.n, laws.preload_N, laws.scale_mm, exponent, presliding_mm, drive, laws.load
+        laws.n,
+        laws.preload_N,
+        laws.scale_mm,
+        laws.friction_exponent,
+        laws.friction_slope,
+        laws.presliding_mm,
+        drive,
+        laws.load,
     )

@@ -22,6 +22,7 @@ class SlipLaws(NamedTuple):
     preload_N: float
     scale_mm: float  # elongation of a node's segment at the preload
     friction_exponent: float
+    friction_slope: float  # along the sheath, over the mean
     presliding_mm: float
     drive: DriveEnd
     load: LoadEnd
@@ -45,7 +46,7 @@ FACTOR = PITCH * 5  # where it slips, T[i] = FACTOR T[i−1] − DROP − DROP_S
 DROP, DROP_SLOPE = PITCH * 6, PITCH * 7
 COMPLIANCE = PITCH * 8  # of the segment [mm/N]
 SWEEP_P, SWEEP_Q, SWEEP_R = (PITCH * row for row in range(9, 12))  # segment's T = (P x + Q)/R
-LOAD_SPEED = PITCH * 12  # of the load's mass, before [mm/s]
+END_SPEED = PITCH * 12  # of the masses of drive and load, before [mm/s]
 RATIO_PULLED, RATIO_RELEASED = PITCH * 13, PITCH * 14  # of both tensions in full slip, e^(−a/n)
 SHARE_BEFORE = PITCH * 15  # with presliding, SHARE at the end of the last step
 TRAVEL = PITCH * 16  # since the last step, the point of the tangents FACTOR to DROP_SLOPE [mm]
@@ -54,4 +55,6 @@ SHARE = PITCH * 19  # ratio of friction to its limit, with its sign
 TENSION_RISE = PITCH * 20  # in the last step [N]
 WRAP_LIMIT = PITCH * 21  # a/n at the node's tension, in the direction of SHARE
 WRAP_SIGNED, RATIO = PITCH * 22, PITCH * 23  # friction times bend with its sign, its exponential
-ROWS = 24
+ELEMENT, STRETCH = PITCH * 24, PITCH * 24 + 1  # force of the load's hysteresis, before [N], and
+# stretch of its relaxing spring [mm]
+ROWS = 25

@@ -1,0 +1,142 @@
+"""What is beside the load spring, against the load's equation solved without a chain.
+
+Without friction the tendon is a spring: K (x_in − x) = kL x + the element's force.
+"""
+
+import numpy as np
+import pytest
+
+from tests.effects.runs import run
+from tests.physics.references import GROUP_A
+from tsas_cli.physics.ends import DriveInput
+from tsas_cli.physics.response import simulate
+from tsas_cli.physics.rig import with_values
+
+KL = GROUP_A.load_stiffness_N_per_mm
+K = 4.0  # of the tendon [N/mm]
+SOFT = GROUP_A._replace(
+    friction_coefficient=1e-9, tendon_stiffness_N=K * GROUP_A.sheath_length_mm, preload_N=40.0
+)
+BOTH = pytest.mark.parametrize("dynamics", ["slip", "lugre"])
+
+
+def softly(values, x_in, time_s, dynamics):
+    """Return the answer of a rig without friction on a soft tendon, for which four nodes do."""
+    drive = DriveInput(x_in, time_s=time_s)
+    return simulate(with_values(SOFT, values), drive, dynamics, nodes=4)
+
+
+@BOTH
+def test_a_damped_load_comes_late(dynamics):
+    """c x′ + (K + kL) x = K r t."""
+    t, rate, damping = np.arange(0.0, 2.0, 2e-3), 6.0, 1.5
+    answer = softly({"load_damping.coefficient_N_s_per_mm": damping}, rate * t, t, dynamics)
+    late = damping / (K + KL)
+    exact = K * rate / (K + KL) * (t - late * (1.0 - np.exp(-t / late)))
+    assert late > 0.2
+    np.testing.assert_allclose(answer.x_out_mm, exact, atol=2e-3 * exact[-1])
+    np.testing.assert_allclose(answer.f_out_N, 40.0 + K * (rate * t - exact), atol=0.1)
+
+
+@pytest.mark.parametrize("speed", [2.0, 8.0])
+def test_a_damper_at_the_load_is_felt_by_its_sensor(speed):
+    answer = run({"load_damping.coefficient_N_s_per_mm": 0.2}, speed=speed)
+    for part, sign in ((slice(500, 690), 1.0), (slice(1100, 1390), -1.0)):
+        v_out = np.gradient(answer.x_out_mm[part], 0.02 / speed)
+        assert (sign * v_out > 0.5 * speed).all()
+        spring = 25.0 + KL * answer.x_out_mm[part]
+        np.testing.assert_allclose(answer.f_out_N[part], spring + 0.2 * v_out, atol=1e-6)
+
+
+def elastoplastic(x, force, travel):
+    """Return an element's force for an input, sample by sample: back inside its limits."""
+    z = [0.0]
+    for moved in np.diff(x):
+        z.append(float(np.clip(z[-1] + force / travel * moved, -force, force)))
+    return np.array(z)
+
+
+@BOTH
+def test_an_element_that_yields_makes_a_loop_of_its_own(dynamics):
+    """f_out is the spring and the element for the motion of x_out that comes out."""
+    t = np.arange(0.0, 6.0, 2e-3)
+    values = {"load_hysteresis.force_N": 6.0, "load_hysteresis.travel_mm": 1.5}
+    x_in = np.interp(t, [0.0, 2.0, 2.6, 3.2, 4.5, 6.0], [0.0, 10.0, 8.0, 10.5, 2.0, 8.0])
+    answer = softly(values, x_in, t, dynamics)
+    element = elastoplastic(answer.x_out_mm, 6.0, 1.5)
+    assert element.max() == -element.min() == 6.0
+    assert np.abs(element[(t > 2.1) & (t < 2.6)]).max() < 6.0  # a small loop, which does not yield
+    spring = 40.0 + KL * answer.x_out_mm
+    np.testing.assert_allclose(answer.f_out_N, spring + element, atol=0.02)
+    np.testing.assert_allclose(answer.f_out_N, 40.0 + K * (x_in - answer.x_out_mm), atol=0.02)
+
+
+def test_an_element_makes_a_load_stiffer_until_it_yields():
+    """On a soft tendon: K/(K + kL + force/travel) of x_in, beyond it K/(K + kL)."""
+    x_in, values = np.linspace(0.0, 12.0, 601), {"force_N": 6.0, "travel_mm": 1.5}
+    named = {f"load_hysteresis.{name}": value for name, value in values.items()}
+    x = softly(named, x_in, 0.01 * np.arange(601), "slip").x_out_mm
+    slopes = np.diff(x) / np.diff(x_in)
+    first, last = x < 1.4, x > 1.6
+    np.testing.assert_allclose(slopes[first[1:]], K / (K + KL + 4.0), rtol=1e-5)
+    np.testing.assert_allclose(slopes[last[:-1]], K / (K + KL), rtol=1e-5)
+
+
+@BOTH
+def test_a_load_that_relaxes_falls_back_by_an_exponential(dynamics):
+    """A ramp, then rest: K (x_in − x) = kL x + k w with dw/dt = dx/dt − w/τ, solved for x.
+
+    (K + kL + k) dx/dt = K dx_in/dt + k w/τ; with y = x − w that is dy/dt = (x − y)/τ, and x is
+    (K x_in + k y)/(K + kL + k): y follows x_in by a low pass of its own, slower by k.
+    """
+    share, time_s = 0.8, 0.5
+    t = np.arange(0.0, 4.0, 2e-3)
+    x_in, rate = np.minimum(8.0 * t, 8.0), 8.0
+    values = {"load_relaxation.share": share, "load_relaxation.time_s": time_s}
+    answer = softly(values, x_in, t, dynamics)
+    k = share * KL
+    low, slower = K / (K + KL), time_s * (K + KL + k) / (K + KL)
+    since = np.maximum(t - 1.0, 0.0)
+    y = low * rate * (t - slower * (1.0 - np.exp(-t / slower)))
+    y -= low * rate * (since - slower * (1.0 - np.exp(-since / slower)))
+    x = (K * x_in + k * y) / (K + KL + k)
+    np.testing.assert_allclose(answer.x_out_mm, x, atol=5e-3)
+    np.testing.assert_allclose(answer.f_out_N, 40.0 + KL * x + k * (x - y), atol=0.02)
+    assert answer.f_out_N.max() - answer.f_out_N[-1] > 1.0
+
+
+def test_a_load_that_relaxes_loses_energy_in_each_cycle():
+    """π X² k ωτ/(1 + (ωτ)²) for an amplitude X of x_out, most where ωτ is 1."""
+    share, time_s, omega = 0.8, 0.2, 5.0
+    t = np.linspace(0.0, 4.0 * 2.0 * np.pi / omega, 4001)
+    x_in = 6.0 - 6.0 * np.cos(omega * t)
+    values = {"load_relaxation.share": share, "load_relaxation.time_s": time_s}
+    answer = softly(values, x_in, t, "slip")
+    cycle = slice(3000, 4001)
+    x, f_out = answer.x_out_mm[cycle], answer.f_out_N[cycle]
+    turns = omega * time_s
+    lost = np.pi * (0.5 * np.ptp(x)) ** 2 * share * KL * turns / (1.0 + turns**2)
+    assert np.trapezoid(f_out, x) == pytest.approx(lost, rel=1e-3)
+
+
+def test_a_load_without_times_is_relaxed():
+    x_in = np.linspace(0.0, 8.0, 50)
+    rig = with_values(SOFT, {"load_relaxation.share": 0.8})
+    relaxed, plain = (simulate(r, DriveInput(x_in), on_mesh=True) for r in (rig, SOFT))
+    np.testing.assert_array_equal(relaxed.f_out_N, plain.f_out_N)
+
+
+@BOTH
+def test_an_eccentric_pulley_makes_a_wave_on_the_spring(dynamics):
+    t = np.arange(0.0, 4.0, 2e-3)
+    x_in = np.interp(t, [0.0, 2.0, 4.0], [0.0, 14.0, 2.0])
+    wave = {"sine_mm": 0.2, "cosine_mm": -0.1, "period_mm": 5.0}
+    answer = softly({f"load_ripple.{n}": v for n, v in wave.items()}, x_in, t, dynamics)
+    x = answer.x_out_mm
+    angle = 2.0 * np.pi * x / 5.0
+    stretched = x + 0.2 * np.sin(angle) - 0.1 * (np.cos(angle) - 1.0)
+    assert x.max() > 8.0
+    np.testing.assert_allclose(answer.f_out_N, 40.0 + KL * stretched, atol=5e-3)
+    # At a corner of the input, which the dynamic chain follows by a cubic, less exactly.
+    np.testing.assert_allclose(answer.f_out_N, 40.0 + K * (x_in - x), atol=0.02)
+    assert np.abs(answer.f_out_N - 40.0 - KL * x).max() > 0.3
