@@ -87,14 +87,7 @@ class Model:
             values["preload_N"] = run.preload_N + (self.value(CORRECTION) or 0.0)
         known = {name: v if v is not None else DEFAULTS[name] for name, v in values.items()}
         bend = UNKNOWN_BEND_RAD if run.total_bend_rad is None else run.total_bend_rad
-        if known["friction_coefficient"] * bend > MOST_WRAP:
-            raise InputError(
-                f"a friction_coefficient of {known['friction_coefficient']:.4g} over a "
-                f"total_bend_rad of {bend:.4g} transmits no tension",
-                where=f"run {run.id}",
-                expected=f"at most {MOST_WRAP:.4g} for their product",
-                remedy="is the bend in radians?",
-            )
+        check_wrap(known["friction_coefficient"], bend, f"run {run.id}")
         nominal = Rig(
             sheath_length_mm=run.sheath_length_mm or UNKNOWN_LENGTH_MM,
             total_bend_rad=bend,
@@ -104,6 +97,18 @@ class Model:
         )
         further = {name: self.value(name) for name in QUANTITIES if "." in name}
         return with_values(nominal, {n: v for n, v in further.items() if v is not None})
+
+
+def check_wrap(friction: float, bend: float, where: str) -> None:
+    """Refuse friction over a bend [rad] that is implausibly large: InputError."""
+    if friction * bend > MOST_WRAP:
+        raise InputError(
+            f"a friction_coefficient of {friction:.4g} over a total_bend_rad of {bend:.4g} "
+            "transmits no tension",
+            where=where,
+            expected=f"at most {MOST_WRAP:.4g} for their product",
+            remedy="is the bend in radians?",
+        )
 
 
 def model_of(given: Model | Path) -> Model:
