@@ -45,10 +45,16 @@ def columns(drive, gear, time_s, speed, seed):
     return measure(clean, Sensors(rate_Hz=rate), seed=seed)
 
 
-def drive_dataset(folder, drive=STIFF, gear=None, *, seed=1, data_sheet=None, only=None, **options):
+def drive_dataset(
+    folder, drive=STIFF, gear=None, *, seed=1, data_sheet=None, only=None, bend=None, **options
+):
     """Write a dataset of three runs of a drive, or only some, and open it."""
     runs = [
-        Run(name, columns(drive, gear or Gear(), t, u, seed=10 * seed + k))
+        Run(
+            name,
+            columns(drive, gear or Gear(), t, u, seed=10 * seed + k),
+            {} if bend is None else {"total_bend_rad": bend},
+        )
         for k, (name, (t, u)) in enumerate(speeds(seed, **options).items())
         if only is None or name in only
     ]

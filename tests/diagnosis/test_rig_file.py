@@ -66,6 +66,27 @@ def test_what_is_wrong_is_said(tmp_path, old, new, said):
     assert said in raised.value.line()
 
 
+@pytest.mark.parametrize(
+    ("limits", "said"),
+    [
+        ("preload_N = [40.0, 15.0]", "limits.preload_N: expected values that increase"),
+        ("preload_N = [15.0, 15.0]", "limits.preload_N: expected values that increase"),
+        ("preload_N = [15.0, 40.0, 20.0]", "got 15, 40, 20"),
+        ("total_bend_rad = [3.14, 1.57]", "limits.total_bend_rad: expected values that increase"),
+        ("preload_N = [0.0, 40.0]", "limits.preload_N.0: input should be greater than 0"),
+        ("preload_N = [-15.0, 40.0]", "limits.preload_N.0: input should be greater than 0"),
+        ("total_bend_rad = [-1.57]", "limits.total_bend_rad.0: input should be greater than or"),
+    ],
+)
+def test_limits_that_no_rig_has_are_refused(tmp_path, limits, said):
+    """Reversed ones passed; a preload of 0 ended as a defect of the program."""
+    with pytest.raises(InputError, match=r"rig\.toml") as raised:
+        read(tmp_path, TEXT.replace("[sensors]", f"[limits]\n{limits}\n\n[sensors]"))
+    assert said in raised.value.line()
+    levels = "[limits]\npreload_N = [15.0, 40.0]\ntotal_bend_rad = [0.0]\n\n[sensors]"
+    assert read(tmp_path, TEXT.replace("[sensors]", levels)).limits.preload_N == (15.0, 40.0)
+
+
 def test_two_runs_of_one_name(tmp_path):
     with pytest.raises(InputError, match="duplicate run id 'a'"):
         read(tmp_path, TEXT + TEXT[TEXT.index("[[run]]") :])

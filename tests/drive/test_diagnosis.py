@@ -104,6 +104,58 @@ def test_a_stated_frequency_makes_the_equation_nominal(diagnosed):
     assert own.causes == ()
 
 
+def test_a_drive_that_shows_no_resonance_is_held_against_a_stiff_one(diagnosed):
+    """Sentence and JSON named a compliance without a number, which no table showed."""
+    squares = {STATED: 99.0, NOTHING: 9.0, terms("lag"): 1.0}
+    search = Searched(squares, stated=30.0, rivals={"lag": ("spring",)})
+    found = diagnosed(search, terms("lag"))
+    assert (found.nominal, found.final) == (NOTHING, terms("lag"))
+    (cause,) = found.causes
+    assert (cause.effect, cause.rivals) == ("channel_delay", ("drive_compliance",))
+    assert "compliance of the drive, whose" not in found.reason
+    stiff = diagnosed(Searched({STATED: 99.0, NOTHING: 1.0}, stated=30.0), NOTHING)
+    assert (stiff.verdict, stiff.nominal, stiff.causes) == ("sufficient", NOTHING, ())
+
+
+def test_what_the_nominal_equation_does_as_well_is_no_cause(diagnosed):
+    """A lag was named whose RMS before and after was 0.00506 mm."""
+    squares = {STATED: 1.001, NOTHING: 9.0, terms("lag"): 1.0}
+    found = diagnosed(Searched(squares, stated=30.0), terms("lag"))
+    assert (found.verdict, found.nominal, found.causes) == ("sufficient", STATED, ())
+
+
+def test_a_gain_that_no_table_shows_names_nothing(diagnosed, monkeypatch):
+    """In millimetres the noisiest run decides, where another one gains."""
+    search = Searched({NOTHING: 1.0, terms("lag"): 0.9})
+    assert len(diagnosed(search, terms("lag")).causes) == 1
+    rms = {NOTHING: 0.005062, terms("lag"): 0.005058}
+    monkeypatch.setattr(dd, "_rmse", lambda search, names: rms[names])
+    assert diagnosed(search, terms("lag")).causes == ()
+
+
+def test_every_cause_has_a_number(diagnosed):
+    every = terms("spring", "lag", "ripple", "play")
+    fewer = {every - {t}: 9.0 for t in every}
+    found = diagnosed(Searched({NOTHING: 99.0, every: 1.0} | fewer), every)
+    named = {c.effect: [e.name for e in c.parameters] for c in found.causes}
+    assert named == {
+        "drive_compliance": ["damping_ratio"],
+        "channel_delay": ["motor_lag_s", "delay_s"],
+        "drive_ripple": [],  # of those that `TOLD` holds
+        "backlash": ["play_mm"],
+    }
+
+
+def test_a_rival_of_the_other_kind_is_told_where_the_effect_is_named(diagnosed):
+    both = terms("spring", "lag")
+    squares = {NOTHING: 99.0, both: 1.0, terms("spring"): 9.0, terms("lag"): 9.0}
+    found = diagnosed(Searched(squares, rivals={"spring": ("delay",)}), both)
+    assert {c.effect: c.rivals for c in found.causes} == {
+        "drive_compliance": ("channel_delay (pure delay)",),
+        "channel_delay": (),
+    }
+
+
 def test_rivals_are_effects_or_the_other_kind_of_delay(diagnosed):
     squares = {NOTHING: 9.0, terms("lag"): 1.0}
     search = Searched(squares, rivals={"lag": ("delay", "play")})

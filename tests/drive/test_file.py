@@ -2,7 +2,13 @@ import dataclasses
 
 import pytest
 
-from tsas_cli.drive.file import UNITS, IdentifiedDrive, read_drive, write_drive
+from tsas_cli.drive.file import (
+    UNITS,
+    IdentifiedDrive,
+    checked_drive,
+    read_drive,
+    write_drive,
+)
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.support.errors import InputError
 
@@ -52,4 +58,24 @@ def test_what_does_not_fit_is_refused(tmp_path, old, new, said):
     path.write_text(text.replace(old, new), encoding="utf-8")
     with pytest.raises(InputError, match=r"drive\.toml") as error:
         read_drive(path)
+    assert said in error.value.line()
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "said"),
+    [
+        ("gain_mm_per_s_rpm", -0.02, "expected a positive number"),
+        ("gain_mm_per_s_rpm", 0.0, "expected a positive number"),
+        ("kV_rpm_s_per_mm", float("nan"), "expected a finite number"),
+        ("gear_ratio", 0.0, "expected a positive number"),
+        ("delay_s", -1.0, "expected zero or more"),
+        ("motor_lag_s", "slow", "should be a valid number"),
+    ],
+)
+def test_a_drive_in_memory_is_checked_like_its_file(name, value, said):
+    drive = IdentifiedDrive(0.02, 50.0, gear_ratio=100.0)
+    assert checked_drive(drive) is drive
+    with pytest.raises(InputError) as error:
+        checked_drive(dataclasses.replace(drive, **{name: value}))
+    assert name in error.value.line()
     assert said in error.value.line()

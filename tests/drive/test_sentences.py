@@ -5,10 +5,24 @@ from types import SimpleNamespace
 from tsas_cli.drive.estimates import DataSheet
 from tsas_cli.drive.harmonic_drive import DriveValues
 from tsas_cli.drive.search import NOTHING
-from tsas_cli.drive.sentences import cannot_tell, equation_of, inverse_of, name_of, next_run
+from tsas_cli.drive.sentences import (
+    EQUATION_NAME,
+    STIFF_NAME,
+    cannot_tell,
+    equation_of,
+    inverse_of,
+    name_of,
+    next_run,
+)
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.records.base import Fit
-from tsas_cli.records.drive import DriveFile, FrequencyResponses, Pole
+from tsas_cli.records.drive import (
+    DriveCause,
+    DriveDiagnosis,
+    DriveFile,
+    FrequencyResponses,
+    Pole,
+)
 
 
 def terms(*names):
@@ -41,9 +55,10 @@ def test_what_to_record_next():
     assert "half the amplitude" in next_run(found())
 
 
-def drive(band=(0.5, 12.0), poles=(), converged=True):
+def drive(band=(0.5, 12.0), poles=(), converged=True, **diagnosis):
     """Return the part of a record that says what is not identifiable."""
     return DriveFile.model_construct(
+        diagnosis=DriveDiagnosis(verdict="sufficient", reason="", **diagnosis),
         frequency_response=FrequencyResponses.model_construct(band_Hz=band),
         poles=tuple(poles),
         fit=Fit(converged=converged, message="too many steps"),
@@ -64,11 +79,24 @@ def test_what_is_not_identifiable_of_a_drive():
     assert outside.startswith(
         "A lag lies at 23 Hz, outside of the band that the input shows (0.5 to"
     )
-    stiff = cannot_tell(drive(), SHEET, NOTHING, ())
+    stiff = cannot_tell(drive(nominal=EQUATION_NAME), SHEET, NOTHING, ())
     assert stiff == [
         "These recordings show no resonance: the drive is stiffer than they tell, beyond 12 Hz."
     ]
-    dark = cannot_tell(drive(None, [far]), SHEET, NOTHING, ())
+    (stiffer,) = cannot_tell(drive(nominal=STIFF_NAME), SHEET, NOTHING, ())
+    assert stiffer == (
+        "Eq. (25) with J, r1 and k_p of the data sheet has a resonance at 18.1 Hz, which these "
+        "recordings do not show, nor another one: the drive is stiffer than they tell, beyond "
+        "12 Hz, and is compared with a stiff one."
+    )
+    lag = DriveCause(
+        effect="channel_delay", kind="first-order lag", rivals=("drive_compliance",),
+        parameters={}, gain_percent=9.0, gain_interval_percent=(8.0, 10.0), title="",
+    )  # fmt: skip
+    assert cannot_tell(drive(nominal=STIFF_NAME, named=[lag]), SHEET, terms("lag"), ()) == [
+        "These recordings do not separate a resonance, beyond 12 Hz, from a first-order lag."
+    ]
+    dark = cannot_tell(drive(None, [far], nominal=EQUATION_NAME), SHEET, NOTHING, ())
     assert "coherence above 0.8" in dark[0]
     assert dark[1].endswith("stiffer than they tell.")
     assert len(dark) == 2

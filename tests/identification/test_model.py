@@ -1,5 +1,7 @@
 """model.toml: written and read back alike, and every wrong one is one line."""
 
+import math
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -17,6 +19,7 @@ from tsas_cli.identification.model import (
     stated_model,
     write_model,
 )
+from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.recordings.manifest import Manifest, Run
 from tsas_cli.support.errors import InputError
 from tsas_studies.challenge.rig.tendon import Rig
@@ -55,6 +58,10 @@ def test_what_is_written_is_read_back(tmp_path):
             r"interval_low 0\.2 is above",
         ),
         ("stderr = -0.1", r"stderr -0\.1 is below 0"),
+        (
+            "interval_low = 0.11\ninterval_high = 0.15",
+            r"value 0\.1 lies outside of its interval, 0\.11 to 0\.15; .* set by hand",
+        ),
     ],
 )
 def test_an_uncertainty_that_cannot_be_is_refused(tmp_path, more, said):
@@ -141,6 +148,71 @@ def test_a_wrong_model_is_one_line(tmp_path, text, says):
     assert says in stopped.value.line()
     assert "\n" not in stopped.value.line()
     assert str(path) in stopped.value.line()
+
+
+@pytest.mark.parametrize(
+    ("wrong", "says"),
+    [
+        ({"value": -1.0}, "friction_coefficient is -1.0; expected a positive number"),
+        ({"value": math.nan}, "friction_coefficient is nan; expected a finite number"),
+        ({"value": math.inf}, "friction_coefficient is inf; expected a finite number"),
+        ({"value": "much"}, "value: input should be a valid number"),
+        ({"value": None}, "value: input should be a valid number"),
+        ({"value": True}, "value: true and false are no numbers"),
+        ({"unit": "parsec"}, "is in 'parsec'; expected the unit '1'"),
+        ({"unit": None}, "unit: input should be a valid string"),
+        ({"name": "friktion"}, "unknown parameter friktion"),
+        ({"name": "backlash.play_mm", "unit": "mm", "value": -1.0}, "expected 0 to"),
+        ({"name": "bristles.stiffness_N_per_mm", "unit": "N/mm", "value": 0.0}, "expected 0.01 to"),
+        ({"name": "backlash.play_mm", "unit": "mm", "run": "b"}, "belongs to run b; expected one"),
+        ({"name": CORRECTION, "unit": "N", "run": "b"}, "belongs to run b; expected one"),
+        ({"stderr": -0.1}, "stderr -0.1 is below 0"),
+        ({"interval_low": 0.1}, "interval_low and interval_high go together"),
+        ({"interval_low": 0.3, "interval_high": 0.1}, "interval_low 0.3 is above"),
+        ({"interval_low": 0.3, "interval_high": 0.4}, "lies outside of its interval"),
+    ],
+)
+def test_a_model_in_memory_is_checked_like_its_file(wrong, says):
+    given = Model((replace(Estimate("friction_coefficient", 0.1, "1", "given"), **wrong),))
+    with pytest.raises(InputError) as stopped:
+        model_of(given)
+    assert says in stopped.value.line()
+    assert "the model in memory" in stopped.value.line()
+
+
+def test_a_parameter_that_is_there_twice_is_refused(tmp_path):
+    twice = (Estimate("friction_coefficient", v, "1", "given") for v in (0.1, 0.2))
+    with pytest.raises(InputError, match="duplicate parameter friction_coefficient"):
+        model_of(Model(tuple(twice)))
+    path = tmp_path / "model.toml"
+    content = "{value = 0.1, unit = 'mm'}"
+    path.write_text(
+        f"format = 1\n[parameters]\n'backlash.play_mm' = {content}\n"
+        f"[effects.backlash]\nplay_mm = {content}\n",
+        encoding="utf-8",
+    )
+    with pytest.raises(InputError, match=r"duplicate parameter backlash\.play_mm"):
+        read_model(path)
+
+
+@pytest.mark.parametrize("name", ["backlash.play_mm", "bristles.stiffness_N_per_mm", CORRECTION])
+def test_what_all_runs_share_is_not_taken_for_a_single_one(tmp_path, name):
+    """Before, the value was read and changed nothing."""
+    path = tmp_path / "model.toml"
+    unit = {"backlash.play_mm": "mm", CORRECTION: "N"}.get(name, "N/mm")
+    text = f"format = 1\n[runs.b.'{name}']\nvalue = 0.3\nunit = '{unit}'\n"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(InputError, match=f"{name} belongs to run b; expected one .* for all runs"):
+        read_model(path)
+
+
+@pytest.mark.parametrize("end", ["lower", "upper"])
+def test_estimates_at_their_bounds_can_be_read_again(end):
+    """exp(log(1e4)) is 10000.00000000001, which was beyond the bound of 1e4."""
+    for quantity in QUANTITIES.values():
+        value = quantity.inside(quantity.scaled(getattr(quantity, end)))
+        given = Model((Estimate(quantity.name, value, quantity.unit, "fitted"),))
+        assert model_of(given).value(quantity.name) == pytest.approx(getattr(quantity, end))
 
 
 def test_a_missing_model_and_an_empty_folder(tmp_path):
@@ -251,7 +323,7 @@ def test_where_a_model_is_from(tmp_path):
     path = tmp_path / "model.toml"
     write_model(path, MODEL, version="1", dataset={})
     assert set(model_of(path).estimates) == set(MODEL.estimates)
-    assert model_of(MODEL) is MODEL
+    assert model_of(MODEL) == MODEL
     assert source_of(None, None) == {"file": "data sheet"}
     assert source_of(None, None, without="nothing") == {"file": "nothing"}
     assert source_of(MODEL, None) == {"file": "in memory"}

@@ -100,3 +100,20 @@ print(json.dumps(["numba" in sys.modules, turns.tolist()]))
     assert (compiled_loaded, plain_loaded) == (True, False)
     assert plain == compiled
     assert len(plain) > 20
+
+
+NO_ROOM = """
+import errno
+from numba.core import caching
+def full(*_):
+    raise OSError(errno.ENOSPC, "No space left on device")
+caching.IndexDataCacheFile.save = full
+"""
+
+
+def test_a_full_disk_of_the_cache_is_no_error_of_the_call(tmp_path):
+    """Before, it was told as a full disk of the output."""
+    done = run(NO_ROOM + USE_A_KERNEL, tmp_path, TSAS_CACHE_DIR=tmp_path / "cache")
+    compilations, _, turns = json.loads(done.stdout)
+    assert compilations > 0
+    assert len(turns) > 2

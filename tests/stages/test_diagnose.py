@@ -6,7 +6,7 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
-from tsas_cli.diagnosis.diagnose import Diagnosis
+from tsas_cli.diagnosis.diagnose import Diagnosis, FoundCause
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model, read_model
 from tsas_cli.recordings.dataset import read_dataset
@@ -73,3 +73,24 @@ def test_the_phases_follow_each_other_over_the_whole_run(diagnosed):
     assert segments[-1]["end_s"] == recording.time_s[-1]
     assert all(a["end_s"] == b["start_s"] for a, b in pairwise(segments))
     assert {"contraction", "loosening", "dead_band_down"} <= {s["phase"] for s in segments}
+
+
+def test_what_contradicts_the_data_sheet_is_said_beside_the_causes(tmp_path, monkeypatch):
+    """Both forces at half: a compliant sheath is named, and had no rival."""
+    recorded = record(TRUE, sensors=Sensors(rate_Hz=100.0))
+    folder = write_dataset(tmp_path / "dataset", [Run("a", recorded, conditions(TRUE))])
+    half = [
+        Estimate("load_stiffness_N_per_mm", 0.79, "N/mm", "fitted", None, 0.01, 0.77, 0.81),
+        Estimate("preload_N", 12.5, "N", "fitted", "a", 0.1, 12.3, 12.7),
+    ]
+    cause = FoundCause("sheath_compression", (), (), 40.0, (30.0, 50.0))
+    monkeypatch.setattr(
+        diagnose_stage,
+        "diagnose_runs",
+        lambda _, stated, __, ___: Diagnosis(
+            "named", "known", model=Model(tuple(half)).over(stated), nominal=stated, causes=(cause,)
+        ),
+    )
+    (said,) = diagnose_stage.diagnose(folder).summary["cannot_tell"]
+    assert said.startswith("A common factor of f_in and f_out of 0.5")
+    assert said.endswith("Either would be a rival of sheath_compression.")

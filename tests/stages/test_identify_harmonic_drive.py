@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tests.counted import Counted
-from tests.drives import LAGGING, SPRUNG, STIFF, drive_dataset
+from tests.drives import DATA_SHEET, LAGGING, SPRUNG, STIFF, drive_dataset
 from tsas_cli.drive.estimates import DataSheet
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.recordings.manifest import Run
@@ -71,6 +71,43 @@ def test_what_is_hidden_is_named_with_its_size(tmp_path, hidden):
             assert abs(told["value"] - true) < SURE * told["stderr"]
             assert told["interval_low"] < told["value"] < told["interval_high"]
             assert not told["at_bound"]
+
+
+STATED = DATA_SHEET | {
+    "inertia_N_mm_s2": 0.1296,
+    "load_stiffness_N_per_mm": 1.579,
+    "friction_coefficient": 0.125,
+}
+
+
+def test_sentence_json_and_tables_name_the_same_of_a_stiff_drive(tmp_path):
+    """A compliance stood in sentence and JSON, with "no resonance" in a note and in no table."""
+    made = drive_dataset(tmp_path / "dataset", LAGGING, data_sheet=STATED, bend=math.pi)
+    result = identify_harmonic_drive(made)
+    found = result.summary["diagnosis"]
+    assert [c["effect"] for c in found["named"]] == ["channel_delay"]
+    (table,) = [rows for title, _, rows in result.tables() if title == "causes"]
+    assert {row[0] for row in table} == {"channel_delay"}
+    assert "It lacks: a first-order lag of the motor. With it" in found["reason"]
+    assert found["nominal"] == "x_in = g ∫u dt"
+    (note,) = result.summary["cannot_tell"]
+    assert "has a resonance at 18.3 Hz, which these recordings do not show" in note
+    before, after = (found["channels"]["x_in_mm"][key] for key in ("rmse_before", "rmse_after"))
+    assert after < 0.2 * before
+
+
+@pytest.mark.parametrize(
+    ("wrong", "why"),
+    [
+        ({"turntable_radius_mm": 54.2}, "2 times the kinematic one of the data sheet, 21.14"),
+        ({"gear_ratio": 1.0}, "a gear_ratio of 120 would agree in place of 1."),
+        ({}, None),
+    ],
+)
+def test_a_lead_that_contradicts_the_data_sheet_is_told(tmp_path, wrong, why):
+    summary = identified(tmp_path, LAGGING, data_sheet=DATA_SHEET | wrong)
+    notes = [note for note in summary["cannot_tell"] if "fitted lead" in note]
+    assert [why in note for note in notes] == ([] if why is None else [True])
 
 
 def test_a_slow_chirp_does_not_tell_them_and_says_so(tmp_path):

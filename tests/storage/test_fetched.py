@@ -4,6 +4,8 @@ import errno
 import io
 import subprocess
 import sys
+import tempfile
+from hashlib import sha256
 
 import numpy as np
 import pyarrow as pa
@@ -36,8 +38,30 @@ def large(tmp_path, manifest, bucket, wire):
 
 
 class Full(io.BytesIO):
+    """A file on a full disk; a buffered one says so only when it is flushed or closed."""
+
+    def __init__(self, buffering=-1):
+        super().__init__()
+        self.buffered = buffering != 0
+
     def write(self, part):
-        raise OSError(errno.ENOSPC, "No space left on device")
+        if not self.buffered:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        return len(part)
+
+    def flush(self):
+        if self.buffered:
+            raise OSError(errno.ENOSPC, "No space left on device")
+
+
+class Object:
+    """An object of a few bytes that is fetched."""
+
+    def size(self):
+        return 7
+
+    def read_bytes(self, start, end):
+        return b"content"[start:end]
 
 
 def put(bucket, name, content):
@@ -91,11 +115,13 @@ def test_one_wrong_byte_is_told_as_for_a_folder(large, bucket):
     assert lines[0] == lines[1]
 
 
-def test_where_there_is_no_room_it_is_said(large, monkeypatch):
-    _, address = large
+def test_where_there_is_no_room_it_is_said(monkeypatch):
+    """Of a small recording it was said when the file was flushed: that the output has no room."""
+    assert fetched._fetch(Object(), sha256(b"content").hexdigest())[:] == b"content"
     monkeypatch.setattr(fetched.tempfile, "TemporaryFile", Full)
-    with pytest.raises(InputError, match="cannot be stored while it is read"):
-        read_dataset(address)["a"]
+    with pytest.raises(InputError, match="cannot be stored while it is read") as caught:
+        fetched._fetch(Object(), sha256(b"content").hexdigest())
+    assert caught.value.where == tempfile.gettempdir()
 
 
 def test_a_recording_that_is_gone_is_told_as_for_a_folder(large, bucket):

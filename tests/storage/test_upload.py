@@ -1,3 +1,7 @@
+import asyncio
+import gc
+import threading
+
 import pytest
 
 import tsas_cli as tsas
@@ -67,3 +71,35 @@ def test_what_is_no_folder_or_no_address_is_refused(dataset, tmp_path):
         tsas.upload(dataset, str(tmp_path / "there"))
     with pytest.raises(InputError, match="is no local folder"):
         tsas.upload("s3://a/b", "s3://a/c")
+
+
+@pytest.mark.parametrize("scheme", ["s3", "gs"])
+def test_what_a_refused_upload_leaves_behind_prints_no_traceback(scheme, keys, caplog, monkeypatch):
+    """Parts that are still on their way when one is refused fail later, with nobody to hear it."""
+    pytest.importorskip(storage.PACKAGES[scheme])
+    monkeypatch.setenv("STORAGE_EMULATOR_HOST", "http://127.0.0.1:1")
+    files = storage.files_of(scheme)
+    over = threading.Event()
+
+    async def refused():
+        raise PermissionError("of another part")
+
+    async def given_up():
+        task = asyncio.ensure_future(refused())
+        await asyncio.sleep(0)
+        del task
+        gc.collect()
+        over.set()
+
+    asyncio.run_coroutine_threadsafe(given_up(), files.loop).result(10)
+    assert over.wait(10)
+    assert [record for record in caplog.records if record.name == "asyncio"] == []
+    if scheme == "gs":
+        storage.files_of.cache_clear()
+
+
+def test_a_refusal_of_google_s_is_told_as_one():
+    refused = OSError("Forbidden: https://storage.googleapis.com/upload?token=secret")
+    told = storage._storage_error(storage.Address("gs", "bucket/x"), refused).line()
+    assert "the storage refuses access" in told
+    assert "secret" not in told

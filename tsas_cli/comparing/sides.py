@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
-from tsas_cli.identification.model import IN_MEMORY, Model, read_model
+from tsas_cli.identification.model import IN_MEMORY, Model, model_of, read_model
 from tsas_cli.physics.response import Dynamics
 from tsas_cli.recordings.dataset import Dataset, read_dataset
 from tsas_cli.recordings.manifest import MANIFEST_FILE, parse, read_toml
@@ -54,7 +54,7 @@ class Side:
 def read_side(path: Path | Model) -> Side:
     """Read a model file, or a folder that `tsas calibrate`, `diagnose` or `simulate` has written.
 
-    A model in memory is taken as it is.
+    A model in memory is checked like its file.
 
     Raises
     ------
@@ -62,7 +62,8 @@ def read_side(path: Path | Model) -> Side:
         It is neither, more than one of them, or not whole.
     """
     if isinstance(path, Model):
-        return Side(Path(IN_MEMORY), "model", {}, path, _dynamics_of(path))
+        model = model_of(path)
+        return Side(Path(IN_MEMORY), "model", {}, model, _dynamics_of(model))
     if path.is_file():
         return _of_model(path)
     there = [kind for kind in STAGES if (path / kind.FILE).is_file()]

@@ -1,9 +1,10 @@
 """The file that describes a rig and its planned runs, before any recording."""
 
+from itertools import pairwise
 from pathlib import Path
-from typing import Literal
+from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field, field_validator, model_validator
 
 from tsas_cli.diagnosis.motions import PEAK, Kind
 from tsas_cli.recordings.manifest import RigSheet, parse, read_toml
@@ -73,8 +74,16 @@ class Limits(StrictTable):
 
     amplitude_mm: float | None = Field(default=None, gt=0)
     speed_mm_per_s: float | None = Field(default=None, gt=0)
-    preload_N: tuple[float, ...] = ()
-    total_bend_rad: tuple[float, ...] = ()
+    preload_N: tuple[Annotated[float, Field(gt=0)], ...] = ()
+    total_bend_rad: tuple[Annotated[float, Field(ge=0)], ...] = ()
+
+    @field_validator("preload_N", "total_bend_rad")
+    @classmethod
+    def _rise(cls, values: tuple[float, ...]) -> tuple[float, ...]:
+        if any(b <= a for a, b in pairwise(values)):
+            listed = ", ".join(f"{value:g}" for value in values)
+            raise ValueError(f"expected values that increase, from the lowest on, got {listed}")
+        return values
 
 
 class RigFile(StrictTable):

@@ -6,7 +6,8 @@ Nominal is Yang 2025, Eqs. (23)-(25):
 
 Where the data sheet gives J, r1 and k_p, its natural frequency is known, and k_d and B are fitted.
 Where it does not, any frequency could be its own; then nominal is what the equation says of slow
-motion, x = g ∫u dt, and a spring with inertia behind it is what the drive was not said to have.
+motion, x = g ∫u dt, and a spring with inertia behind it is what the drive was not said to have. So
+it is where the drive shows neither that frequency nor another one: it is stiff.
 """
 
 import math
@@ -24,6 +25,7 @@ from tsas_cli.drive.fit import Terms
 from tsas_cli.drive.search import EFFECT_OF, NOTHING, DriveSearch, rivals
 from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.estimate import Estimate
+from tsas_cli.records.base import number_text
 from tsas_cli.records.diagnosis import Verdict
 
 Floats = npt.NDArray[np.float64]
@@ -78,11 +80,12 @@ def diagnose_drive(
     search: DriveSearch, final: Terms, estimates: dict[str, Estimate]
 ) -> FoundDriveDiagnosis:
     """Compare what was found with the nominal drive equation."""
-    nominal = NOTHING if search.bench.stated_Hz is None else EQUATION
+    nominal = _nominal(search, final)
+    better = search.gain(nominal, final).convincing
     causes = tuple(
         cause
         for effect in PARAMETERS
-        if (cause := _cause(search, nominal, final, effect, estimates)) is not None
+        if better and (cause := _cause(search, nominal, final, effect, estimates)) is not None
     )
     explained = final if causes else nominal
     start, left = search.mean_square(nominal), search.mean_square(explained)
@@ -100,6 +103,15 @@ def diagnose_drive(
         unexplained, depends if left > 1.0 + EXCESS_OF_COMPLETE_MODEL else (),
     )  # fmt: skip
     return replace(found, reason=_reason(found, start))
+
+
+def _nominal(search: DriveSearch, final: Terms) -> Terms:
+    """Return the nominal equation: of a drive that shows no resonance, that of a stiff one."""
+    if search.bench.stated_Hz is None:
+        return NOTHING
+    if "spring" in final or not search.gain(EQUATION, final).convincing:
+        return EQUATION
+    return NOTHING
 
 
 def _verdict(
@@ -129,10 +141,13 @@ def _cause(
     fewer = final - own
     if effect == "drive_compliance":
         fewer = fewer | nominal  # the equation has a spring of its own, only no reaction
-    if fewer == final or not search.gain(fewer, final).convincing:
+    if not own or not search.gain(fewer, final).convincing:
         return None
+    if number_text(_rmse(search, fewer)) == number_text(_rmse(search, final)):
+        return None  # the tables would show no gain
+    present = {EFFECT_OF.get(term) for term in final}
     instead = dict.fromkeys(
-        f"channel_delay ({KIND[other]})" if EFFECT_OF[other] == effect else EFFECT_OF[other]
+        f"channel_delay ({KIND[other]})" if EFFECT_OF[other] in present else EFFECT_OF[other]
         for term in sorted(own)
         if len(own) == 1
         for other in rivals(search, final, term)

@@ -16,13 +16,16 @@ from tsas_cli.drive.fit import QUANTITIES, DriveTrial
 from tsas_cli.drive.harmonic_drive import DriveValues
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.fit import Fitted, with_errors
+from tsas_cli.identification.model import check_wrap
 from tsas_cli.physics.closed_form.capstan import speed_per_stiffness
-from tsas_cli.recordings.manifest import Manifest, RigSheet
+from tsas_cli.recordings.manifest import MANIFEST_FILE, Manifest, RigSheet
+from tsas_cli.support.errors import InputError
 
 Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
 Derived = tuple[str, str, Callable[[DriveValues], float]]
 
+PLAUSIBLE_HZ = 1e-3, 1e6  # natural frequencies of a drive
 NUDGE = 1e-6  # of a scaled unknown, for the slope of a derived number
 
 
@@ -58,11 +61,27 @@ class DataSheet:
 
 
 def drive_sheet(manifest: Manifest) -> DataSheet:
-    """Return what the data sheet says; k_p is kL e^{μθ}, the pull in contraction (31)."""
+    """Return what the data sheet says; k_p is kL e^{μθ}, the pull in contraction (31).
+
+    Raises
+    ------
+    InputError
+        What follows from it is no property of a drive.
+    """
     rig = manifest.rig
-    return DataSheet(
+    sheet = DataSheet(
         rig.turntable_radius_mm, rig.gear_ratio, rig.inertia_N_mm_s2, _pull(rig, manifest)
     )
+    stated, (low, high) = sheet.stated_frequency, PLAUSIBLE_HZ
+    if stated is not None and not low <= stated <= high:
+        raise InputError(
+            f"inertia_N_mm_s2, turntable_radius_mm and the load's spring give a natural frequency "
+            f"of {stated:.3g} Hz",
+            where=f"{MANIFEST_FILE}, rig",
+            expected=f"{low:g} to {high:g} Hz",
+            remedy="check their units",
+        )
+    return sheet
 
 
 def _pull(rig: RigSheet, manifest: Manifest) -> float | None:
@@ -72,6 +91,7 @@ def _pull(rig: RigSheet, manifest: Manifest) -> float | None:
         return None
     if any(b != bend for b in bends):
         return None
+    check_wrap(rig.friction_coefficient, bend, f"{MANIFEST_FILE}, rig")
     return rig.load_stiffness_N_per_mm * math.exp(rig.friction_coefficient * bend)
 
 

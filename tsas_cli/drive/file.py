@@ -139,13 +139,29 @@ def read_drive(path: Path) -> IdentifiedDrive:
     return drive_of(values)
 
 
+def checked_drive(drive: IdentifiedDrive) -> IdentifiedDrive:
+    """Return a drive in memory whose values can be.
+
+    Raises
+    ------
+    InputError
+        As from `read_drive`.
+    """
+    where = "the drive in memory"
+    for name, value in vars(drive).items():
+        if value is not None:
+            content = {"value": value, "unit": UNITS[name]}
+            _check(name, parse(StoredValue, content, f"{where}, {name}"), where)
+    return drive
+
+
 def drive_of(values: Mapping[str, float]) -> IdentifiedDrive:
     """Return a drive by its values, of which those that are no property of a drive are left out."""
     known = IdentifiedDrive.__dataclass_fields__
     return IdentifiedDrive(**{name: value for name, value in values.items() if name in known})
 
 
-def _check(name: str, value: StoredValue, path: Path) -> None:
+def _check(name: str, value: StoredValue, path: object) -> None:
     if name not in UNITS:
         raise InputError(f"unknown parameter {name}", where=path, remedy=nearest(name, UNITS))
     if value.unit != UNITS[name]:

@@ -12,7 +12,7 @@ from tsas_cli.drive.fit import LINEAR, Terms, quantities_of
 from tsas_cli.drive.frequency_response import FrequencyResponse
 from tsas_cli.drive.harmonic_drive import DriveValues
 from tsas_cli.drive.search import DriveSearch, structures
-from tsas_cli.drive.sentences import name_of, next_run
+from tsas_cli.drive.sentences import EQUATION_NAME, STIFF_NAME, name_of, next_run
 from tsas_cli.drive.transfer_function import bode_curve, poles
 from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.estimate import Estimate
@@ -131,7 +131,7 @@ def diagnosis(search: DriveSearch, found: FoundDriveDiagnosis) -> records.DriveD
     return records.DriveDiagnosis(
         verdict=found.verdict,
         reason=found.reason,
-        nominal="Eq. (25) without reaction" if found.nominal else "x_in = g ∫u dt",
+        nominal=EQUATION_NAME if found.nominal else STIFF_NAME,
         named=[_cause(cause) for cause in found.causes],
         gain_percent=gain,
         gain_interval_percent=interval,

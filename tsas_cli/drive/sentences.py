@@ -6,9 +6,12 @@ from tsas_cli.drive.diagnosis import FoundDriveDiagnosis
 from tsas_cli.drive.estimates import DataSheet, total_lag_s
 from tsas_cli.drive.fit import Terms
 from tsas_cli.drive.harmonic_drive import DriveValues
+from tsas_cli.drive.kinematic_lead import lead_notes
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.records.drive import DriveFile
 
+EQUATION_NAME = "Eq. (25) without reaction"
+STIFF_NAME = "x_in = g ∫u dt"
 _FACTORS = {
     "lag": "(τs + 1)",
     "spring": "(s²/ω² + 2ζs/ω + 1)",
@@ -57,7 +60,9 @@ def cannot_tell(
 ) -> list[str]:
     """Return what the recordings do not say, and why."""
     band = drive.frequency_response.band_Hz
-    said = []
+    by_name = {e.name: e for e in known}
+    lead, pull = by_name.get("kV_rpm_s_per_mm"), by_name.get("pull_back_N_per_mm")
+    said = [] if lead is None else lead_notes(lead, sheet, pull)
     if band is None:
         said.append(
             "No frequency has a coherence above 0.8: x_in shows little that the motor's speed "
@@ -71,11 +76,7 @@ def cannot_tell(
         if band is not None and not pole.in_band
     ]
     if "spring" not in final:
-        said.append(
-            "These recordings show no resonance: the drive is stiffer than they tell"
-            + ("" if band is None else f", beyond {band[1]:.3g} Hz")
-            + "."
-        )
+        said.append(_no_resonance(drive, sheet))
     elif sheet.inertia_N_mm_s2 is None:
         said.append(
             "Speed and position show ratios of J, B, k_d and k_p only: inertia_N_mm_s2 under [rig] "
@@ -86,7 +87,25 @@ def cannot_tell(
             "Without J, r1 and k_p = kL e^(μθ) of the data sheet a pull-back k_p that is as large "
             "as k_d + k_p would look like the reaction of the drive's stiffness in Eq. (25)."
         )
-    said += [f"{e.name} ended at its bound." for e in known if e.at_bound]
+    said += [f"{e.name} ended at its bound." for e in by_name.values() if e.at_bound]
     if not drive.fit.converged:
         said.append(f"The fit did not converge: {drive.fit.message}.")
     return said
+
+
+def _no_resonance(drive: DriveFile, sheet: DataSheet) -> str:
+    band, stated = drive.frequency_response.band_Hz, sheet.stated_frequency
+    beyond = "" if band is None else f", beyond {band[1]:.3g} Hz"
+    alike = [c for c in drive.diagnosis.named if "drive_compliance" in c.rivals]
+    if alike:
+        return (
+            f"These recordings do not separate a resonance{beyond}, from "
+            f"{' and '.join(f'a {c.kind}' if c.kind else c.title.lower() for c in alike)}."
+        )
+    if drive.diagnosis.nominal != EQUATION_NAME and stated is not None:
+        return (
+            f"Eq. (25) with J, r1 and k_p of the data sheet has a resonance at {stated:.3g} Hz, "
+            "which these recordings do not show, nor another one: the drive is stiffer than they "
+            f"tell{beyond}, and is compared with a stiff one."
+        )
+    return f"These recordings show no resonance: the drive is stiffer than they tell{beyond}."

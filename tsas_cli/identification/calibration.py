@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from tsas_cli.identification.against_data_sheet import contradictions
 from tsas_cli.identification.base_fit import base_fit, slopes_of
 from tsas_cli.identification.comparison import Compared, compare
 from tsas_cli.identification.dynamic_fit import dynamic_fit
@@ -82,7 +83,13 @@ def calibrate_runs(
             wider = widened(fit, step)
             model = Model(wider.estimates)
             residual_notes += _widened_by(wider.effects)
-    notes = [*thinned_notes(runs), *residual_notes, *_unknown_conditions(runs), *sentences]
+    notes = [
+        *contradictions(manifest, model),
+        *thinned_notes(runs),
+        *residual_notes,
+        *_unknown_conditions(runs),
+        *sentences,
+    ]
     return Calibration(
         with_preload_correction(model, runs),
         runs,

@@ -194,7 +194,7 @@ def estimates_of(unknowns: Sequence[Unknown], found: Fitted, runs: Sequence[str]
     for u, v, sd, t, at_bound in each_one:
         quantity = QUANTITIES[u.name]
         ends = np.clip([v - t * sd, v, v + t * sd], u.lower, u.upper)
-        low, value, high = (quantity.unscaled(float(end)) for end in ends)
+        low, value, high = (quantity.inside(float(end)) for end in ends)
         stderr = sd * (value if quantity.positive else quantity.size)
         out.append(
             Estimate(

@@ -1,7 +1,7 @@
 """The model: estimates of the nominal rig's parameters and of the effects' parameters."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
@@ -87,14 +87,7 @@ class Model:
             values["preload_N"] = run.preload_N + (self.value(CORRECTION) or 0.0)
         known = {name: v if v is not None else DEFAULTS[name] for name, v in values.items()}
         bend = UNKNOWN_BEND_RAD if run.total_bend_rad is None else run.total_bend_rad
-        if known["friction_coefficient"] * bend > MOST_WRAP:
-            raise InputError(
-                f"a friction_coefficient of {known['friction_coefficient']:.4g} over a "
-                f"total_bend_rad of {bend:.4g} transmits no tension",
-                where=f"run {run.id}",
-                expected=f"at most {MOST_WRAP:.4g} for their product",
-                remedy="is the bend in radians?",
-            )
+        check_wrap(known["friction_coefficient"], bend, f"run {run.id}")
         nominal = Rig(
             sheath_length_mm=run.sheath_length_mm or UNKNOWN_LENGTH_MM,
             total_bend_rad=bend,
@@ -106,15 +99,35 @@ class Model:
         return with_values(nominal, {n: v for n, v in further.items() if v is not None})
 
 
+def check_wrap(friction: float, bend: float, where: str) -> None:
+    """Refuse friction over a bend [rad] that is implausibly large: InputError."""
+    if friction * bend > MOST_WRAP:
+        raise InputError(
+            f"a friction_coefficient of {friction:.4g} over a total_bend_rad of {bend:.4g} "
+            "transmits no tension",
+            where=where,
+            expected=f"at most {MOST_WRAP:.4g} for their product",
+            remedy="is the bend in radians?",
+        )
+
+
 def model_of(given: Model | Path) -> Model:
-    """Return a model as it is, or that of a file.
+    """Return a model in memory, or that of a file; both are checked alike.
 
     Raises
     ------
     InputError
         As from `read_model`.
     """
-    return given if isinstance(given, Model) else read_model(given)
+    if not isinstance(given, Model):
+        return read_model(given)
+    values = []
+    for e in given.estimates:
+        of = "" if e.run is None else f" of run {e.run}"
+        content = {name: value for name, value in vars(e).items() if name not in ("name", "run")}
+        stored = parse(StoredValue, content, f"the model in memory, {e.name}{of}")
+        values.append((e.name, e.run, stored))
+    return _checked(values, "the model in memory")
 
 
 def stated_model(manifest: Manifest, given: Model | Path | None) -> Model:
@@ -177,6 +190,9 @@ def _axial_stiffness(diameter_mm: float | None, modulus_GPa: float | None) -> fl
     return 1e3 * modulus_GPa * math.pi / 4.0 * diameter_mm**2
 
 
+_Value = tuple[str, str | None, StoredValue]  # with its name and its run
+
+
 class _ModelTables(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
@@ -215,13 +231,13 @@ def read_model(path: Path) -> Model:
     Raises
     ------
     InputError
-        The file is missing, not TOML, of another format, or has an unknown parameter.
+        The file is missing, not TOML, of another format, or has an unknown parameter, one that is
+        there twice or belongs to no single run, or a value that cannot be.
     """
     if path.is_dir():
         path = path / MODEL_FILE
     file = parse(_ModelTables, read_toml(path), path)
-    units = {name: q.unit for name, q in QUANTITIES.items()} | {CORRECTION: "N"}
-    values: list[tuple[str, str | None, StoredValue]] = []
+    values: list[_Value] = []
     values += [(name, None, v) for name, v in file.parameters.items()]
     values += [(name, run, v) for run, named in file.runs.items() for name, v in named.items()]
     values += [(f"bristles.{name}", None, v) for name, v in file.bristles.items()]
@@ -230,17 +246,34 @@ def read_model(path: Path) -> Model:
         for effect, named in file.effects.items()
         for name, v in named.items()
     ]
-    for name, _, value in values:
+    return _checked(values, path)
+
+
+def _checked(values: Sequence[_Value], where: object) -> Model:
+    """Return the model of these values, each with its name and its run, if they can be."""
+    units = {name: q.unit for name, q in QUANTITIES.items()} | {CORRECTION: "N"}
+    seen = set()
+    for name, run, value in values:
         if name not in units:
             known = [other for other in units if ("." in other) == ("." in name)]
-            raise InputError(f"unknown parameter {name}", where=path, remedy=nearest(name, known))
-        _check_value(name, value, units[name], path)
+            raise InputError(f"unknown parameter {name}", where=where, remedy=nearest(name, known))
+        if run is not None and ("." in name or name == CORRECTION):
+            raise InputError(
+                f"{name} belongs to run {run}",
+                where=where,
+                expected=f"one {name} for all runs",
+                remedy="simulate the runs with a model each",
+            )
+        if (name, run) in seen:
+            raise InputError(f"duplicate parameter {name}", where=where)
+        seen.add((name, run))
+        _check_value(name, value, units[name], where)
     return Model(
         tuple(Estimate(name=name, run=run, **value.model_dump()) for name, run, value in values)
     )
 
 
-def _check_value(name: str, value: StoredValue, unit: str, path: Path) -> None:
+def _check_value(name: str, value: StoredValue, unit: str, path: object) -> None:
     if value.unit != unit:
         raise InputError(f"{name} is in {value.unit!r}", where=path, expected=f"the unit {unit!r}")
     nominal = NOMINAL_BY_NAME.get(name)

@@ -42,6 +42,10 @@ class Quantity:
         inside = min(max(value, self.lower), self.upper)
         return math.log(inside) if self.positive else inside / self.size
 
+    def inside(self, value: float) -> float:
+        """Return the value of a scaled one, which rounding does not take beyond a bound."""
+        return min(max(self.unscaled(value), self.lower), self.upper)
+
     def closer(self, value: float, part: float) -> float:
         """Return a value moved to a part of its distance from the neutral one; not a shape."""
         return value if self.shape else self.default + part * (value - self.default)

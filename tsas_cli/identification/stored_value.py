@@ -1,5 +1,6 @@
 """One number in `model.toml` or `drive.toml`."""
 
+import math
 from typing import Self
 
 from pydantic import BaseModel, ConfigDict, model_validator
@@ -23,7 +24,8 @@ class StoredValue(BaseModel):
 
     @model_validator(mode="after")
     def _can_be_an_estimate(self) -> Self:
-        check_interval(self.interval_low, self.interval_high)
+        if math.isfinite(self.value):  # else the number itself is refused
+            check_interval(self.value, self.interval_low, self.interval_high)
         if self.stderr is not None and self.stderr < 0.0:
             raise ValueError(f"stderr {self.stderr:g} is below 0")
         return self

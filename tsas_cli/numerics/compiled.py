@@ -3,6 +3,7 @@
 import hashlib
 import os
 from collections.abc import Callable
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar, cast
@@ -29,7 +30,21 @@ def kernel(function: Function) -> Function:
     compiler = numba.njit(
         cache=folder is not None, error_model="numpy", nogil=True, forceinline=True
     )
-    return cast("Function", compiler(function))
+    compiled = compiler(function)
+    if folder is not None:
+        _go_on_without_room(compiled._cache)  # noqa: SLF001 # numba offers no other way
+    return cast("Function", compiled)
+
+
+def _go_on_without_room(machine_code: Any) -> None:
+    """Let machine code that cannot be stored be compiled again next time."""
+    store = machine_code.save_overload
+
+    def stored_if_possible(signature: Any, code: Any) -> None:
+        with suppress(OSError):
+            store(signature, code)
+
+    machine_code.save_overload = stored_if_possible
 
 
 @cache

@@ -39,20 +39,22 @@ def fetched(address: Address, sha256: str) -> mmap.mmap | None:
 
 def _fetch(address: Address, sha256: str) -> mmap.mmap | None:
     digest, size = hashlib.sha256(), address.size()
-    with tempfile.TemporaryFile() as file:  # unnamed, so that a killed process leaves nothing
+    # Unnamed: a killed process leaves nothing. Unbuffered: no rest is written at the end.
+    with tempfile.TemporaryFile(buffering=0) as file:
         for start in range(0, size, REQUEST_BYTES):
             part = address.read_bytes(start, min(start + REQUEST_BYTES, size))
             digest.update(part)
             _write(file, part)
         if digest.hexdigest() != sha256 or not size:
             return None
-        file.flush()
         return mmap.mmap(file.fileno(), size, access=mmap.ACCESS_READ)
 
 
 def _write(file: IO[bytes], part: bytes) -> None:
+    rest = memoryview(part)
     try:
-        file.write(part)
+        while rest:
+            rest = rest[file.write(rest) :]
     except OSError as error:
         raise InputError(
             f"a recording cannot be stored while it is read ({error.strerror})",

@@ -223,7 +223,12 @@ def files_of(scheme: str) -> Any:
     files = made(use_listings_cache=False, skip_instance_cache=True, **waits)
     files.retries = TRIES
     logging.getLogger(PACKAGES[scheme]).setLevel(logging.CRITICAL)  # it raises what it logs
+    files.loop.call_soon_threadsafe(files.loop.set_exception_handler, _not_printed)
     return files
+
+
+def _not_printed(_loop: object, _context: object) -> None:
+    """Let a task that its call has given up fail in silence: the call has raised its own error."""
 
 
 if hasattr(os, "register_at_fork"):  # connections belong to one process
@@ -250,8 +255,11 @@ def _storage_error(address: Address, error: Exception) -> InputError:
             where=address,
             remedy="set them as for the storage's own tools (docs/object-storage.md)",
         )
-    if isinstance(error, PermissionError) or (
-        "HttpError" in kinds and getattr(error, "code", None) in {401, 403}
+    code = getattr(error, "code", None)
+    if (
+        isinstance(error, PermissionError)
+        or ("HttpError" in kinds and code in {401, 403})
+        or (isinstance(error, OSError) and str(error).startswith("Forbidden"))  # of gcsfs
     ):
         return InputError(
             "the storage refuses access",

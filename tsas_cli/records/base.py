@@ -24,6 +24,7 @@ from tsas_cli.support import __version__
 from tsas_cli.support.files import write_json
 
 TWO_SIDED = 1.96  # standard errors on each side of a 95 % interval
+_ROUNDING = 1e-9  # relative, of a value at the end of its interval
 
 
 def number_text(value: float | None, form: str = ".3g") -> str:
@@ -31,12 +32,19 @@ def number_text(value: float | None, form: str = ".3g") -> str:
     return "" if value is None else f"{value:{form}}"
 
 
-def check_interval(low: float | None, high: float | None) -> None:
-    """Raise ValueError where an interval has one end alone, or ends that are swapped."""
+def check_interval(value: float | None, low: float | None, high: float | None) -> None:
+    """Raise ValueError where an interval has one end, swapped ends, or its value outside."""
     if (low is None) != (high is None):
         raise ValueError("interval_low and interval_high go together")
     if low is not None and high is not None and low > high:
         raise ValueError(f"interval_low {low:g} is above interval_high {high:g}")
+    if value is None or low is None or high is None:
+        return
+    if not low - _ROUNDING * abs(low) <= value <= high + _ROUNDING * abs(high):
+        raise ValueError(
+            f"value {value:g} lies outside of its interval, {low:g} to {high:g}; "
+            "a value that is set by hand has no interval_low, interval_high and stderr"
+        )
 
 
 def value_text(
@@ -147,7 +155,7 @@ class Value(Record):
 
     @model_validator(mode="after")
     def _interval_has_two_ends(self) -> Self:
-        check_interval(self.interval_low, self.interval_high)
+        check_interval(self.value, self.interval_low, self.interval_high)
         return self
 
     origin: str = Field(default="fitted", exclude=True)

@@ -95,7 +95,7 @@ def compare(
     _refuse(on=on is not None, runs=runs is not None, fit_own=fit_own, tracks=tracks)
     data = None if on is None else dataset_of(on, runs)
     inputs = [*paths, *([] if data is None else [data.folder])]
-    path = None if out is None else Path(out)
+    path = path_of(out)
     with folder_if(path, stage="compare", inputs=inputs, force=force) as folder:
         both = (
             compare_tracked(*paths)

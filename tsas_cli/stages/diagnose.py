@@ -8,6 +8,7 @@ from tsas_cli.diagnosis import found
 from tsas_cli.diagnosis.diagnose import Diagnosis, diagnose_runs
 from tsas_cli.diagnosis.next_experiment import next_experiment
 from tsas_cli.diagnosis.proof import FoundCause
+from tsas_cli.identification.against_data_sheet import contradictions
 from tsas_cli.identification.comparison import compare
 from tsas_cli.identification.model import Model, source_of, stated_model, write_model
 from tsas_cli.identification.phases import segment, segment_records
@@ -145,7 +146,11 @@ def diagnose(
             signatures=found.signatures_of(result.search),
             residual_map=found.residual_maps_of(result),
             evidence=found.evidence_of(result.search),
-            cannot_tell=(*counted.notes, *result.cannot_tell),
+            cannot_tell=(
+                *counted.notes,
+                *contradictions(data.manifest, result.model, [c.effect for c in result.causes]),
+                *result.cannot_tell,
+            ),
             solver="" if result.final is None else result.final.solver,
             segments={run.run.id: segment_records(run, segment(run)) for run in prepared},
         )

@@ -31,14 +31,20 @@ def file_of(given: Named) -> Path:
     return Path(_of_kind((str, Path), given))
 
 
-def paths_of(given: Named | Iterable[Named]) -> list[Path]:
-    """Return one path or several as a list; InputError where one is of another kind."""
-    return [Path(_of_kind((str, Path), each)) for each in _several(given)]
+def paths_of(given: Named | Iterable[Named], *, least: int = 1) -> list[Path]:
+    """Return one path or several as a list; InputError for another kind, or fewer than `least`."""
+    return [Path(_of_kind((str, Path), each)) for each in _several(given, least)]
 
 
 def places_of(given: Named | Iterable[Named]) -> list[Location]:
-    """Return one place or several as a list: local paths, or addresses of datasets."""
-    return [location_of(_of_kind((str, Path, Address), each)) for each in _several(given)]
+    """Return one place or several as a list: local paths, or addresses of datasets.
+
+    Raises
+    ------
+    InputError
+        One is of another kind, or there is none.
+    """
+    return [location_of(_of_kind((str, Path, Address), each)) for each in _several(given, 1)]
 
 
 def dataset_of(given: Dataset | Named, runs: Iterable[str] | None = None) -> Dataset:
@@ -80,7 +86,7 @@ def at_least(least: int, given: int, name: str) -> int:
     InputError
         It is less.
     """
-    if given < least:
+    if _of_kind((int,), given) < least:
         raise InputError(f"{name} is {given}", expected=f"{least} or more")
     return given
 
@@ -98,16 +104,24 @@ def number_of_seeds(given: int) -> int:
     return given
 
 
+def text_of(given: str) -> str:
+    """Return text as it is; InputError where it is of another kind."""
+    return str(_of_kind((str,), given))
+
+
 def listed(words: str | Iterable[str]) -> list[str]:
     """Return words as a list, a single one too; InputError where one is no word."""
-    return [_of_kind((str,), word) for word in _several(words)]
+    return [_of_kind((str,), word) for word in _several(words, 0)]
 
 
-def _several(given: Any) -> list[Any]:
-    """Return what is one thing or several as a list."""
+def _several(given: Any, least: int) -> list[Any]:
+    """Return what is one thing or several as a list; fewer than `least` is an InputError."""
     if isinstance(given, str | Path) or not isinstance(given, Iterable):
         return [given]
-    return list(given)
+    several = list(given)
+    if len(several) < least:
+        raise InputError("no folder or file is named", expected="one or several")
+    return several
 
 
 def _of_kind(kinds: tuple[type, ...], given: Any) -> Any:

@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, Any
 from tsas_cli.collection.index import index_of
 from tsas_cli.collection.query import QueryResult, connected, run_query
 from tsas_cli.records.result import Result, Table, notes
-from tsas_cli.stages.given import paths_of
+from tsas_cli.stages.given import at_least, listed, paths_of, text_of
 from tsas_cli.support import __version__
-from tsas_cli.support.errors import InputError
 from tsas_cli.support.steps import NO_PROGRESS, Steps
 
 if TYPE_CHECKING:
@@ -125,13 +124,12 @@ def runs(
         The query is no condition on these columns, a folder is none, or duckdb is not installed.
     """
     named = paths_of(folders)
-    if not named:
-        raise InputError("no folder is named", expected="a folder with datasets below it")
-    if limit is not None and limit < 0:
-        raise InputError(f"limit is {limit}", expected="0 or more")
+    if limit is not None:
+        at_least(0, limit, "limit")
+    shown, order = tuple(listed(columns)), tuple(listed(sort))
     with connected() as connection:
         index = index_of([Path(folder) for folder in named], connection, step)
-        found = run_query(connection, index, query, columns=columns, sort=sort, limit=limit)
+        found = run_query(connection, index, text_of(query), columns=shown, sort=order, limit=limit)
     summary = {
         "format": 1,
         "stage": "runs",
@@ -147,7 +145,7 @@ def runs(
         ],
         "problems": found.problems,
     }
-    return RunsResult(summary, None, found, tuple(columns) or SHOWN)
+    return RunsResult(summary, None, found, shown or SHOWN)
 
 
 def _plain(value: Any) -> Any:

@@ -11,11 +11,11 @@ from pydantic import TypeAdapter
 
 import tsas_cli as tsas
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.identification.model import Model, data_sheet
+from tsas_cli.identification.model import Model, data_sheet, model_of
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import MANIFEST_FILE
-from tsas_cli.stages.read import read, read_model
+from tsas_cli.stages.read import read
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import Raw, new_folder, read_json, sha256_of, write_json, write_sums
 from tsas_cli.support.temporaries import remove
@@ -129,7 +129,7 @@ def _with_values(values: Raw, runs: list[str], base: Model | Path | None) -> Mod
         quantity = QUANTITIES[name]
         of = [None] if quantity.shared else [None, *runs]
         given_values += [Estimate(name, value, quantity.unit, "given", run) for run in of]
-    known = read_model(base) if isinstance(base, Path) else base or Model(())
+    known = Model(()) if base is None else model_of(base)
     return Model(tuple(given_values)).over(known)
 
 

@@ -66,7 +66,7 @@ def verify(
     InputError
         There is nothing that tsas has written.
     """
-    files = verify_all(file_of(path), paths_of(raw), step)
+    files = verify_all(file_of(path), paths_of(raw, least=0), step)
     found = Counter[str](one.state for one in files)
     summary = {
         "format": 1,

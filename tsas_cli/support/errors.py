@@ -52,7 +52,7 @@ def nearest(name: str, known: Iterable[str]) -> str:
     'did you mean preload_N?'
     """
     known = list(known)
-    close = get_close_matches(name, known, n=1, cutoff=0.6)
+    close = get_close_matches(str(name), known, n=1, cutoff=0.6)
     if close:
         return f"did you mean {close[0]}?"
     return f"known are {', '.join(known)}" if known else "none are known here"

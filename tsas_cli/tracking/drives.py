@@ -3,7 +3,7 @@
 import math
 from pathlib import Path
 
-from tsas_cli.drive.file import IdentifiedDrive, read_drive
+from tsas_cli.drive.file import IdentifiedDrive, checked_drive, read_drive
 from tsas_cli.physics.closed_form.capstan import speed_per_stiffness
 from tsas_cli.physics.plant.turntable import Actuator
 from tsas_cli.tracking.settings import DriveSettings
@@ -17,11 +17,11 @@ def known_drive(given: IdentifiedDrive | Path | None, settings: DriveSettings) -
     Raises
     ------
     InputError
-        The file is no `drive.toml`.
+        The file is no `drive.toml`, or a value of the drive cannot be.
     """
     if given is None:
         return settings.kinematic()
-    drive = given if isinstance(given, IdentifiedDrive) else read_drive(given)
+    drive = checked_drive(given) if isinstance(given, IdentifiedDrive) else read_drive(given)
     return actuator_of(drive, settings.speed_limit_rpm)
 
 

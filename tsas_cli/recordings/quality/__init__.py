@@ -21,6 +21,7 @@ from tsas_cli.recordings.quality.checks import (
     sign,
     slow_channel,
     stuck,
+    time_batches,
     time_jitter,
     time_order,
     unit,
@@ -42,6 +43,7 @@ from tsas_cli.support.steps import NO_PROGRESS, Steps
 MANIFEST_CHECKS: tuple[QualityCheck[Manifest], ...] = (unknown_key.CHECK, manifest_unit.CHECK)
 RUN_CHECKS: tuple[QualityCheck[RunSignals], ...] = (
     time_order.CHECK,
+    time_batches.CHECK,
     time_jitter.CHECK,
     gap.CHECK,
     outlier.CHECK,

@@ -10,6 +10,7 @@ from tsas_cli.numerics.noise import noise_sd
 from tsas_cli.numerics.turning_points import turning_points
 from tsas_cli.recordings.columns import TIME, largest
 from tsas_cli.recordings.manifest import RigSheet
+from tsas_cli.recordings.quality.batches import Batches, batches_of
 from tsas_cli.recordings.quality.outlying import outlying
 from tsas_cli.recordings.quality.samples import Booleans, span_of, step_of
 from tsas_cli.recordings.recording import Floats, Recording
@@ -133,6 +134,12 @@ class RunSignals:
         if self.overall is not None:
             return self.overall.highest
         return {name: float(np.nanmax(values)) for name, values in self.channels.items()}
+
+    @cached_property
+    def batches(self) -> Batches | None:
+        """The batches that the time stamps come in, seen by the channels that move; or None."""
+        moving = {name: v for name, v in self.mechanical.items() if self.moves(name)}
+        return batches_of(self.time_s, moving)
 
     def visible(self, name: str) -> float:
         """Return the smallest change of a channel that neither noise nor quantisation explains."""

@@ -20,7 +20,9 @@ _REMEDY = "look for lost samples at the source; the stages leave the gap out"
 
 def find(trial: RunSignals) -> Iterator[Remark | CannotTell]:
     """Yield the missing rows, then the empty cells of each column."""
-    if trial.increases:
+    if trial.batches is not None:
+        yield CannotTell("rows come in batches, so missing rows cannot be seen")
+    elif trial.increases:
         yield from _missing_rows(trial)
     else:
         yield CannotTell("time does not increase, so missing rows cannot be seen")

@@ -19,6 +19,9 @@ def find(trial: RunSignals) -> Iterator[Remark | CannotTell]:
     if not trial.increases:
         yield CannotTell("time does not increase")
         return
+    if trial.batches is not None:
+        yield CannotTell("rows come in batches")
+        return
     interval = np.diff(trial.time_s)
     median = float(np.median(interval))
     steady = interval < 2.5 * median

@@ -1,0 +1,165 @@
+"""Fitted values that contradict the data sheet are told, with the factor that explains them."""
+
+import math
+from dataclasses import replace
+
+import pytest
+
+from tests.identification.recorded import manifest, prepared
+from tsas_cli.identification.against_data_sheet import contradictions
+from tsas_cli.identification.calibration import calibrate_runs
+from tsas_cli.identification.estimate import Estimate
+from tsas_cli.identification.model import Model
+from tsas_cli.recordings.manifest import Manifest
+from tsas_studies.challenge.rig.tendon import Rig
+
+EA = 1e3 * 60.0 * math.pi / 4.0 * 1.2**2  # 67858 N
+STATED = {
+    "friction_coefficient": (0.125, "1", None),
+    "load_stiffness_N_per_mm": (1.579, "N/mm", None),
+    "tendon_stiffness_N": (EA, "N", None),
+    "preload_N": (25.0, "N", "a"),
+}
+SHEATH = "sheath_compression.compliance_ratio"
+
+
+def sheet(**changed):
+    rig = {
+        "tendon_diameter_mm": 1.2,
+        "tendon_modulus_GPa": 60.0,
+        "friction_coefficient": 0.125,
+        "load_stiffness_N_per_mm": 1.579,
+    }
+    run = {"id": "a", "file": "a.parquet", "sha256": "0" * 64, "preload_N": 25.0} | changed
+    return Manifest.model_validate(
+        {"format": 1, "name": "d", "kind": "measured", "rig": rig, "run": [run]}
+    )
+
+
+def fitted(width=1e-3, **factors):
+    """Return a model with the values of the data sheet, times a factor where one is given."""
+    estimates = []
+    for name, (value, unit, run) in STATED.items():
+        at = value * factors.get(name, 1.0)
+        ends = at * (1.0 - width), at * (1.0 + width)
+        estimates.append(Estimate(name, at, unit, "fitted", run, 0.5 * width * at, *ends))
+    return Model(tuple(estimates))
+
+
+def forces(factor, **others):
+    names = ("preload_N", "load_stiffness_N_per_mm", "tendon_stiffness_N")
+    return fitted(**(dict.fromkeys(names, factor) | others))
+
+
+def displacements(factor):
+    return fitted(load_stiffness_N_per_mm=1.0 / factor, tendon_stiffness_N=1.0 / factor)
+
+
+@pytest.mark.parametrize("factor", [1e-3, 0.102, 0.2248, 0.5, 0.8, 0.85, 1.15, 1.2, 2.0, 1000.0])
+def test_a_common_factor_of_both_forces_is_told_with_its_interval(factor):
+    (said,) = contradictions(sheet(), forces(factor))
+    assert said.startswith(f"A common factor of f_in and f_out of {factor:.3g} [")
+    low, high = (float(end) for end in said.split("[")[1].split("]")[0].split(", "))
+    assert low < factor < high < 1.2 * low
+    assert f"explains preload ({25.0 * factor:.3g} for 25 N), load stiffness" in said
+    assert f"tendon stiffness ({EA * factor:.3g} for 6.79e+04 N)" in said
+    assert "check the unit or the amplifier's gain, or the data sheet." in said
+    assert "x_in and x_out" not in said
+
+
+@pytest.mark.parametrize(
+    ("factor", "unit"),
+    [(1 / 4.448, "pound-force"), (1 / 9.807, "kilogram-force"), (1e-3, "kilonewton"), (0.5, None)],
+)
+def test_a_factor_that_is_a_unit_is_told_as_one(factor, unit):
+    (said,) = contradictions(sheet(), forces(factor))
+    assert ("both look like" in said) == (unit is not None)
+    assert unit is None or f"(both look like {unit})" in said
+
+
+@pytest.mark.parametrize("factor", [0.5, 1 / 25.4])
+def test_a_common_factor_of_both_displacements_leaves_the_preload(factor):
+    (said,) = contradictions(sheet(), displacements(factor))
+    assert said.startswith(f"A common factor of x_in and x_out of {factor:.3g} [")
+    assert ("both look like inch" in said) == (factor != 0.5)
+
+
+def test_without_a_stated_preload_either_factor_explains_the_same():
+    (said,) = contradictions(sheet(preload_N=None), forces(0.5))
+    assert "A common factor of f_in and f_out of 0.5 [" in said
+    assert "or a common factor of x_in and x_out of 2 [" in said
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_what_a_data_sheet_is_off_by_is_silent(seed):
+    """By up to a tenth each, in any direction."""
+    off = dict(zip(STATED, [1.1 if seed >> k & 1 else 0.9 for k in range(4)], strict=True))
+    assert contradictions(sheet(), fitted(**off)) == []
+    assert contradictions(sheet(), Model(())) == []
+
+
+def test_what_the_recordings_do_not_tell_is_no_contradiction():
+    assert contradictions(sheet(), fitted(width=0.9, tendon_stiffness_N=1.5)) == []
+    given = Model(tuple(replace(e, origin="given") for e in forces(0.5).estimates))
+    assert contradictions(sheet(), given) == []
+
+
+def test_a_soft_tendon_has_sheath_and_data_sheet_as_rivals():
+    (said,) = contradictions(sheet(), fitted(tendon_stiffness_N=0.5), ["sheath_compression"])
+    assert "(3.39e+04 for 6.79e+04 N) is 0.5 times that of the data sheet: sheath_comp" in said
+    assert "or a wrong tendon_modulus_GPa or tendon_diameter_mm explains that" in said
+    assert "f_out would change preload (25 for 25 N) and load stiffness (1.58 for 1.58 N" in said
+    assert said.endswith("Either would be a rival of sheath_compression.")
+    (alone,) = contradictions(sheet(preload_N=None), _without(fitted(tendon_stiffness_N=0.5)))
+    assert "or a common factor of f_in and f_out (unit or gain) explains that." in alone
+    (hard,) = contradictions(sheet(), fitted(tendon_stiffness_N=1.3), ["channel_delay"])
+    assert "sheath_compression" not in hard
+    assert "rival" not in hard
+
+
+def _without(model):
+    return Model(tuple(e for e in model.estimates if e.name != "load_stiffness_N_per_mm"))
+
+
+def test_a_sheath_that_a_diagnosis_names_counts_with_the_tendon():
+    """The tendon is bounded by its data sheet then, and the sheath takes the rest."""
+    bounded = forces(0.5, tendon_stiffness_N=0.9)
+    ratio = Estimate(SHEATH, 0.8, "1", "fitted", None, 0.1, 0.7, 1.4)
+    model = Model((*bounded.estimates, ratio))
+    (said,) = contradictions(sheet(), model, ["sheath_compression"])
+    assert said.startswith("A common factor of f_in and f_out of 0.5 [")
+    assert said.endswith("or the data sheet. Either would be a rival of sheath_compression.")
+
+
+def test_a_tendon_at_the_bound_of_its_data_sheet_is_told():
+    model = fitted(tendon_stiffness_N=1.0 / 0.85)
+    at_bound = [replace(e, at_bound=e.name == "tendon_stiffness_N") for e in model.estimates]
+    (said,) = contradictions(sheet(), Model(tuple(at_bound)), ["position_sensor_gain"])
+    assert "is 1.18 times that of the data sheet, the bound of what is plausible" in said
+    assert said.endswith("Either would be a rival of position_sensor_gain.")
+
+
+@pytest.mark.parametrize(
+    ("factors", "check"),
+    [
+        ({"load_stiffness_N_per_mm": 0.5}, "check load_stiffness_N_per_mm, and unit and gain"),
+        ({"preload_N": 2.0}, "check preload_N of the manifest, and zero and gain"),
+        ({"friction_coefficient": 0.4}, "check friction_coefficient, total_bend_rad, and the gain"),
+    ],
+)
+def test_each_contradiction_says_what_to_check(factors, check):
+    (said,) = contradictions(sheet(), fitted(**factors))
+    assert check in said
+
+
+def test_a_calibration_tells_the_factor():
+    run = prepared(Rig(), seed=1)
+    half = replace(
+        run,
+        measured={n: 0.5 * v if n.endswith("_N") else v for n, v in run.measured.items()},
+    )
+    said = calibrate_runs(manifest(half), [half]).cannot_tell
+    assert said[0].startswith("A common factor of f_in and f_out of 0.5")
+    assert not any(
+        "common factor" in note for note in calibrate_runs(manifest(run), [run]).cannot_tell
+    )
