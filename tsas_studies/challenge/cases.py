@@ -1,8 +1,9 @@
 """The cases of the blind benchmark: what is hidden, how large, in which order.
 
 A seed tells everything: `cases(seed)` gives every effect of the catalogue at full size and at
-0.4 of it, pairs, cases with nothing hidden, and causes that the catalogue does not hold. Whoever
-builds or tunes a tool uses the seeds of BUILDING; those of SCORING are for measuring it, once.
+0.4 of it, pairs, cases with nothing hidden, causes that the catalogue does not hold, and causes
+that are near to it. Whoever builds or tunes a tool uses the seeds of BUILDING; those of SCORING are
+for measuring it, once.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -10,6 +11,9 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
+
+from tsas_studies.challenge.near import NEAR_FULL, RESERVED, drawn_near
+from tsas_studies.challenge.rig.hidden import CATALOGUE
 
 BUILDING = range(1000)
 SCORING = range(10_000, 20_000)
@@ -20,7 +24,7 @@ NOTHING = 10
 RANDOM_PAIRS = 4
 FEW = 2  # cases of a kind in a small part of a set
 
-Kind = Literal["one", "pair", "nothing", "unknown"]
+Kind = Literal["one", "pair", "nothing", "unknown", "near"]
 
 
 @dataclass(frozen=True)
@@ -123,10 +127,12 @@ PAIRS = (
 
 
 def cases(seed: int) -> tuple[Case, ...]:
-    """Return all cases of a seed, about eighty."""
+    """Return all cases of a seed, about 140."""
+    listed = (*_all(np.random.default_rng(seed)), *_near(seed))
     return tuple(
         Case(name, kind, size, hidden, seed, number)
-        for number, (name, kind, size, hidden) in enumerate(_all(np.random.default_rng(seed)))
+        for number, (name, kind, size, hidden) in enumerate(listed)
+        if seed in SCORING or not RESERVED & {cause.cause for cause in hidden}
     )
 
 
@@ -134,7 +140,7 @@ def part(of: Iterable[Case]) -> tuple[Case, ...]:
     """Return a small part of the cases: each effect once at full size, a few of what is none."""
     listed = list(of)
     kept = [case for case in listed if case.kind == "one" and case.size == max(SIZES)]
-    for kind in ("nothing", "unknown"):
+    for kind in ("nothing", "unknown", "near"):
         kept += [case for case in listed if case.kind == kind][:FEW]
     return tuple(kept)
 
@@ -153,6 +159,15 @@ def _all(
         yield f"nothing {number + 1}", "nothing", 0.0, ()
     for unknown in _unknowns(rng):
         yield unknown.cause, "unknown", 1.0, (unknown,)
+
+
+def _near(seed: int) -> Iterator[tuple[str, Kind, float, tuple[Hidden, ...]]]:
+    """Yield what is near to the catalogue, or what the catalogue has got since, at each size."""
+    for cause in NEAR_FULL:
+        kind: Kind = "one" if cause in CATALOGUE else "near"
+        for size in SIZES:
+            hidden = Hidden(cause, drawn_near(cause, size, seed))
+            yield f"{cause}, size {size:g}", kind, size, (hidden,)
 
 
 def drawn(effect: str, size: float, rng: np.random.Generator) -> Hidden:

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from tsas_studies.challenge.entry import Entry, SubmittedDiagnosis
-from tsas_studies.challenge.truth import CATALOGUE, TrueCase, Truth
+from tsas_studies.challenge.truth import BEYOND, CATALOGUE, TrueCase, Truth
 
 NO_ANSWER = "no answer"
 _WORTH_MENDING = 1.1  # times the attainable error; a channel below it has nothing to gain
@@ -28,7 +28,7 @@ class Judged:
             return NO_ANSWER
         if case.kind == "nothing":
             return "named" if diagnosis.named else "quiet"
-        if case.kind == "unknown":
+        if case.kind in BEYOND:
             if diagnosis.says_unexplained:
                 return "recognised"
             return "false" if diagnosis.named else "missed"

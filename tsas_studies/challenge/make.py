@@ -11,7 +11,7 @@ import numpy as np
 from tsas_studies.challenge.bench import RUNS, SENSORS, Bench, data_sheet, drawn_bench, recorded
 from tsas_studies.challenge.cases import Case
 from tsas_studies.challenge.rig.recordings import DATA_SHEET, Run, write_dataset
-from tsas_studies.challenge.truth import FILE
+from tsas_studies.challenge.truth import BEYOND, FILE
 
 IDS, RECORDINGS = 0, 1  # streams of chance
 CHANNELS = ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N")
@@ -95,7 +95,7 @@ def _write(
 def _answer(case: Case, bench: Bench) -> dict[str, Any]:
     """Return what is hidden in a case, and what else its rig is like."""
     causes = [{"effect": h.cause, "parameters": dict(h.parameters)} for h in case.hidden]
-    unknown = case.kind == "unknown"
+    unknown = case.kind in BEYOND
     return {
         "name": case.name,
         "seed": case.seed,

@@ -18,7 +18,7 @@ from tsas_studies.challenge.run import TOOLS, case_folders, run_cases
 from tsas_studies.challenge.score import score_entries
 from tsas_studies.challenge.tables import tables
 
-Kind = Literal["one", "pair", "nothing", "unknown"]
+Kind = cases.Kind
 Tool = Literal["diagnose", "bic", "training", "sparse"]
 
 

@@ -13,12 +13,13 @@ from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import read_json
 
 FILE = "answers.json"
-Kind = Literal["one", "pair", "nothing", "unknown"]
+Kind = Literal["one", "pair", "nothing", "unknown", "near"]
 CaseId = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]+$")]
 CATALOGUE: dict[str, dict[str, Parameter]] = {
     effect.name: {p.name: p for p in effect.parameters} for effect in EFFECTS
 }
-_HIDDEN: dict[Kind, int] = {"one": 1, "pair": 2, "nothing": 0, "unknown": 0}
+BEYOND: tuple[Kind, ...] = ("unknown", "near")  # what is hidden is not in the catalogue
+_HIDDEN: dict[Kind, int] = {"one": 1, "pair": 2, "nothing": 0, "unknown": 0, "near": 0}
 
 
 class HiddenEffect(Record):
@@ -58,8 +59,10 @@ class TrueCase(Record):
                 f"kind {self.kind} goes with {_HIDDEN[self.kind]} hidden effects, "
                 f"got {len(self.hidden)}"
             )
-        if (self.unknown is not None) != (self.kind == "unknown"):
-            raise ValueError("unknown is given for kind unknown, and only there")
+        if (self.unknown is not None) != (self.kind in BEYOND):
+            raise ValueError(
+                f"unknown is given for the kinds {' and '.join(BEYOND)}, and only there"
+            )
         if self.kind == "one" and self.size is None:
             raise ValueError("size is missing")
         return self

@@ -34,6 +34,7 @@ class KindOption(StrEnum):
     pair = "pair"
     nothing = "nothing"
     unknown = "unknown"
+    near = "near"
 
 
 @challenge.command("make")

@@ -4,6 +4,8 @@ import pytest
 
 from tsas_cli.effects import EFFECTS
 from tsas_studies.challenge.cases import BUILDING, FULL, PAIRS, SCORING, SIZES, cases, part
+from tsas_studies.challenge.near import NEAR_FULL, RESERVED
+from tsas_studies.challenge.rig.near import NEAR
 from tsas_studies.challenge.rig.unknowns import UNKNOWNS
 
 ALL = cases(7)
@@ -19,7 +21,31 @@ def test_every_effect_is_there_at_every_size_and_the_rest_beside_it():
     assert len(pairs) > len(PAIRS) >= 12
     assert all(len(pair) == 2 for pair in pairs)
     assert all(c.hidden == () for c in ALL if c.kind == "nothing")
-    assert [c.number for c in ALL] == list(range(len(ALL)))
+    near = Counter((c.hidden[0].cause, c.size) for c in ALL if c.kind == "near")
+    assert near == {(cause, size): 1 for cause in set(NEAR) - RESERVED for size in SIZES}
+    assert len({c.number for c in ALL}) == len(ALL)
+
+
+def test_some_causes_are_hidden_with_the_seeds_for_scoring_alone():
+    assert len(RESERVED) == 6
+    scoring = cases(SCORING[0])
+    assert {c.hidden[0].cause for c in scoring if c.kind == "near"} == set(NEAR) > RESERVED
+    for seed in (*BUILDING[:3], BUILDING[-1], SCORING[0] - 1):
+        assert not RESERVED & {h.cause for c in cases(seed) for h in c.hidden}
+
+
+def test_near_causes_have_the_rigs_parameters_and_their_own_chance():
+    for cause, variants in NEAR_FULL.items():
+        assert all({*v.scaled, *v.drawn} <= set(NEAR[cause]) for v in variants)
+    pulls = [
+        next(c for c in cases(seed) if c.name == "pulley_friction, size 0.4").hidden[0].parameters
+        for seed in range(40)
+    ]
+    shares = [
+        pull["share"] / (0.4 * NEAR_FULL["pulley_friction"][0].scaled["share"]) for pull in pulls
+    ]
+    assert 0.8 <= min(shares) < 0.85
+    assert 1.15 < max(shares) <= 1.2
 
 
 def test_a_seed_tells_the_cases():
@@ -72,5 +98,9 @@ def test_a_small_part_has_each_effect_once_at_full_size_and_a_few_of_what_is_non
     one = Counter(c.hidden[0].cause for c in small if c.kind == "one")
     assert one == dict.fromkeys(CATALOGUE, 1)
     assert {c.size for c in small if c.kind == "one"} == {1.0}
-    assert Counter(c.kind for c in small if c.kind != "one") == {"nothing": 2, "unknown": 2}
+    assert Counter(c.kind for c in small if c.kind != "one") == {
+        "nothing": 2,
+        "unknown": 2,
+        "near": 2,
+    }
     assert all(case in ALL for case in small)
