@@ -16,6 +16,13 @@ RESERVED = frozenset({
     "slotted_clamp", "force_sensor_creep", "eccentric_encoder",
 })  # fmt: skip
 
+# Several of these at once, each at this share of its full size, are one cause more.
+MIXED, MIXED_SIZE = "mixed", 0.6
+MIXABLE = (
+    "rational_stribeck", "breakaway_friction", "strand_roll", "friction_cycles", "pulley_friction",
+    "thermal_offset", "amplifier_filter", "force_gain_drift", "encoder_play",
+)  # fmt: skip
+
 VARIES = 0.2  # a size differs from seed to seed by up to this share
 STREAM = 2  # of chance, beside those of `make`
 
@@ -89,12 +96,14 @@ NEAR_FULL: Mapping[str, tuple[Size, ...]] = {
 }  # fmt: skip
 
 
-def drawn_near(cause: str, size: float, seed: int) -> dict[str, float]:
-    """Return the parameters of a cause at a size.
+def stream(seed: int, what: str) -> np.random.Generator:
+    """Return a stream of chance of its own: one more of them leaves the others as they are."""
+    return np.random.default_rng([seed, STREAM, zlib.crc32(what.encode())])
 
-    Each cause has its own stream of chance: one more of them leaves the others as they are.
-    """
-    rng = np.random.default_rng([seed, STREAM, zlib.crc32(f"{cause} {size:g}".encode())])
+
+def drawn_near(cause: str, size: float, seed: int) -> dict[str, float]:
+    """Return the parameters of a cause at a size."""
+    rng = stream(seed, f"{cause} {size:g}")
     variants = NEAR_FULL[cause]
     variant = variants[rng.integers(len(variants))]
     factor = size * rng.uniform(1.0 - VARIES, 1.0 + VARIES)
