@@ -1,6 +1,8 @@
 # The blind benchmark: this program's diagnosis and three baselines on the same sealed recordings.
 #
-# make challenge                             one seed for scoring, about half an hour on two cores
+# make challenge                             one seed for scoring: hours on two cores
+# make challenge CHALLENGE_TOOLS=diagnose    this program alone
+# make challenge CHALLENGE_PART='--conditions clean --kind near'
 # make challenge SEED=10100 SEEDS=3          others, and more of them
 # make challenge-nothing SEED=10200          300 cases in which nothing is hidden: a quarter of an hour
 SEED ?= 10000
@@ -13,7 +15,7 @@ challenge: challenge-table  ## make a sealed set, let every tool diagnose it, pr
 
 challenge-nothing: SEEDS = 30
 challenge-nothing: CHALLENGE_OUT = reports/challenge-nothing
-challenge-nothing: CHALLENGE_PART = --kind nothing
+challenge-nothing: CHALLENGE_PART = --kind nothing --conditions clean
 challenge-nothing: CHALLENGE_TOOLS = diagnose
 challenge-nothing: challenge-table  ## how often something is named where nothing is hidden, in 300 cases
 

@@ -2,12 +2,13 @@
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from datetime import datetime, timedelta
 
 import numpy as np
 
 from tsas_studies.challenge.cases import Hidden
+from tsas_studies.challenge.conditions import Nuisance, spoiled
 from tsas_studies.challenge.rig.courses import Course
 from tsas_studies.challenge.rig.hidden import hide
 from tsas_studies.challenge.rig.load_end import LoadEnd
@@ -54,11 +55,14 @@ class Bench:
         Where the sheath is bent more and where less.
     started
         When each run began.
+    nuisance
+        What its conditions add.
     """
 
     nominal: Mapping[str, float]
     bend_profile: Course
     started: Mapping[str, datetime]
+    nuisance: Nuisance = field(default_factory=Nuisance)
 
 
 def data_sheet() -> dict[str, float]:
@@ -116,6 +120,7 @@ def clean_run(
 ) -> tuple[CleanRun, Sensors]:
     """Return one run with its causes, and the sensors that are to read it."""
     rig, sensors = rig_of(bench, run), replace(SENSORS, rate_Hz=rate_Hz)
+    rig, sensors = spoiled(bench.nuisance, run, rig, sensors)
     for cause in hidden:
         rig, sensors = hide(cause.cause, cause.parameters, rig, sensors)
     session_s = (bench.started[run] - bench.started["a"]).total_seconds()

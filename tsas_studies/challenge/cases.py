@@ -1,15 +1,28 @@
 """The cases of the blind benchmark: what is hidden, how large, in which order.
 
 A seed tells everything: `cases(seed)` gives every effect of the catalogue at full size and at
-0.4 of it, pairs, cases with nothing hidden, and causes that the catalogue does not hold. Whoever
-builds or tunes a tool uses the seeds of BUILDING; those of SCORING are for measuring it, once.
+0.4 of it, pairs, triples, cases with nothing hidden, causes that the catalogue does not hold, and
+causes that are near to it; then all of them under realistic conditions. Whoever builds or tunes a
+tool uses the seeds of BUILDING; those of SCORING are for measuring it, once.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import numpy as np
+
+from tsas_studies.challenge.conditions import Conditions
+from tsas_studies.challenge.near import (
+    MIXABLE,
+    MIXED,
+    MIXED_SIZE,
+    NEAR_FULL,
+    RESERVED,
+    drawn_near,
+    stream,
+)
+from tsas_studies.challenge.rig.hidden import CATALOGUE
 
 BUILDING = range(1000)
 SCORING = range(10_000, 20_000)
@@ -20,7 +33,12 @@ NOTHING = 10
 RANDOM_PAIRS = 4
 FEW = 2  # cases of a kind in a small part of a set
 
-Kind = Literal["one", "pair", "nothing", "unknown"]
+RANDOM_TRIPLES = 2
+
+Kind = Literal["one", "pair", "triple", "nothing", "unknown", "near"]
+Drawn = Iterator[tuple[str, Kind, float, tuple["Hidden", ...]]]
+# Where the numbers of later kinds of cases begin: one more case leaves the others as they are.
+NEAR_FROM, SLOW_FROM, TRIPLES_FROM = 1000, 2000, 3000
 
 
 @dataclass(frozen=True)
@@ -47,6 +65,9 @@ class Case:
         The causes.
     seed, number
         The seed of the set and the place in it; both together seed what else is drawn.
+    conditions
+        What its rig has beside what is hidden. The same case under other conditions has the same
+        number, and the same rig but for that.
     """
 
     name: str
@@ -55,6 +76,7 @@ class Case:
     hidden: tuple[Hidden, ...]
     seed: int
     number: int
+    conditions: Conditions = "clean"
 
 
 # Full sizes, from which a case draws one variant. Chosen with benchmarks/challenge_sizes.py: each
@@ -122,26 +144,48 @@ PAIRS = (
 )
 
 
+TRIPLES = (
+    ("drive_friction", "stribeck_friction", "force_sensor_offset"),
+    ("backlash", "viscous_friction", "load_friction"),
+    ("direction_dependent_friction", "force_sensor_gain", "preload_loss"),
+    ("drive_compliance", "load_spring_nonlinearity", "channel_delay"),
+    ("presliding", "friction_drift", "position_sensor_gain"),
+    ("load_dependent_friction", "proximal_spring", "force_sensor_drift"),
+)
+
+
 def cases(seed: int) -> tuple[Case, ...]:
-    """Return all cases of a seed, about eighty."""
-    return tuple(
-        Case(name, kind, size, hidden, seed, number)
-        for number, (name, kind, size, hidden) in enumerate(_all(np.random.default_rng(seed)))
+    """Return all cases of a seed, about 310.
+
+    The clean ones, nulls in slow noise, and the clean ones again under realistic conditions.
+    """
+    listed = (
+        *enumerate(_all(np.random.default_rng(seed))),
+        *enumerate(_near(seed), NEAR_FROM),
+        *enumerate(_triples(seed), TRIPLES_FROM),
     )
+    clean = [
+        Case(name, kind, size, hidden, seed, number)
+        for number, (name, kind, size, hidden) in listed
+        if seed in SCORING or not RESERVED & {cause.cause for cause in hidden}
+    ]
+    slow = [
+        Case(f"nothing {k + 1} in slow noise", "nothing", 0.0, (), seed, SLOW_FROM + k, "slow")
+        for k in range(NOTHING)
+    ]
+    return (*clean, *slow, *(replace(case, conditions="realistic") for case in clean))
 
 
 def part(of: Iterable[Case]) -> tuple[Case, ...]:
     """Return a small part of the cases: each effect once at full size, a few of what is none."""
-    listed = list(of)
+    listed = [case for case in of if case.conditions == "clean"]
     kept = [case for case in listed if case.kind == "one" and case.size == max(SIZES)]
-    for kind in ("nothing", "unknown"):
+    for kind in ("nothing", "unknown", "near"):
         kept += [case for case in listed if case.kind == kind][:FEW]
     return tuple(kept)
 
 
-def _all(
-    rng: np.random.Generator,
-) -> Iterator[tuple[str, Kind, float, tuple[Hidden, ...]]]:
+def _all(rng: np.random.Generator) -> Drawn:
     for effect in FULL:
         for size in SIZES:
             yield f"{effect}, size {size:g}", "one", size, (drawn(effect, size, rng),)
@@ -153,6 +197,31 @@ def _all(
         yield f"nothing {number + 1}", "nothing", 0.0, ()
     for unknown in _unknowns(rng):
         yield unknown.cause, "unknown", 1.0, (unknown,)
+
+
+def _triples(seed: int) -> Drawn:
+    """Yield three effects at once."""
+    rng = stream(seed, "triples")
+    chosen = [tuple(rng.choice(list(FULL), 3, replace=False)) for _ in range(RANDOM_TRIPLES)]
+    for triple in (*TRIPLES, *chosen):
+        yield " and ".join(triple), "triple", 1.0, tuple(drawn(str(e), 1.0, rng) for e in triple)
+
+
+def _near(seed: int) -> Drawn:
+    """Yield what is near to the catalogue, or what the catalogue has got since, at each size.
+
+    And several small ones of what is near at once.
+    """
+    for size in SIZES:
+        chosen = stream(seed, f"{MIXED} {size:g}").choice(MIXABLE, 3, replace=False)
+        small = MIXED_SIZE * size
+        parts = tuple(Hidden(str(c), drawn_near(str(c), small, seed)) for c in sorted(chosen))
+        yield f"{MIXED}, size {size:g}", "near", size, parts
+    for cause in NEAR_FULL:
+        kind: Kind = "one" if cause in CATALOGUE else "near"
+        for size in SIZES:
+            hidden = Hidden(cause, drawn_near(cause, size, seed))
+            yield f"{cause}, size {size:g}", kind, size, (hidden,)
 
 
 def drawn(effect: str, size: float, rng: np.random.Generator) -> Hidden:

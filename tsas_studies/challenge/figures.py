@@ -5,11 +5,15 @@ of what should not have been said are over the cases with an answer.
 """
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+from tsas_studies.challenge.conditions import CONDITIONS
 from tsas_studies.challenge.judge import NO_ANSWER, Judged
 from tsas_studies.challenge.rates import Rate, rate
 from tsas_studies.challenge.targets import SIZES, TARGETS, Target
+from tsas_studies.challenge.truth import BEYOND
+
+RECOGNISED = ("recognised", "right kind")
 
 
 @dataclass(frozen=True)
@@ -37,36 +41,92 @@ class ScoreRate:
 
 def figures(judged: Sequence[Judged]) -> list[ScoreRate]:
     """Return every rate of the summary, in the order in which it is printed."""
-    pairs, nothing, unknown = (
-        [j for j in judged if j.case.kind == kind] for kind in ("pair", "nothing", "unknown")
+    clean, slow, realistic = (
+        [j for j in judged if j.case.conditions == conditions] for conditions in CONDITIONS
     )
-    covered = [inside for j in judged for inside in j.covered]
-    stated = [inside for inside in covered if inside is not None]
     return [
         ScoreRate("answered", "answered", rate(j.outcome != NO_ANSWER for j in judged)),
-        *(figure for size in sizes(judged) for figure in _of_one(judged, size)),
+        ScoreRate("one_exact", "one effect: named exactly", _exact(_of(clean, "one"))),
+        *(figure for size in sizes(clean) for figure in _of_one(clean, size)),
+        *_of_several(clean),
+        *_of_nothing(clean),
+        *(_under("slow", f) for f in _of_nothing(slow)),
+        *_beyond(clean),
+        *_of_names(clean),
+        _under(
+            "realistic",
+            ScoreRate("one_exact", "one effect: named exactly", _exact(_of(realistic, "one"))),
+        ),
+        *(
+            _under("realistic", f)
+            for part in (_of_several, _of_nothing, _beyond, _of_names)
+            for f in part(realistic)
+        ),
+    ]
+
+
+def _under(conditions: str, figure: ScoreRate) -> ScoreRate:
+    """Return a figure of the cases under conditions that are not clean."""
+    name, title = f"{conditions}_{figure.name}", f"{conditions}, {figure.title}"
+    return replace(figure, name=name, title=title)
+
+
+def _of(judged: Iterable[Judged], *kinds: str) -> list[Judged]:
+    return [j for j in judged if j.case.kind in kinds]
+
+
+def _of_several(judged: Iterable[Judged]) -> list[ScoreRate]:
+    pairs, triples = _of(judged, "pair"), _of(judged, "triple")
+    return [
         ScoreRate("pair_both", "two effects: both named", _share(pairs, "both")),
         ScoreRate("pair_one", "two effects: one of them named", _share(pairs, "one")),
         ScoreRate("pair_false", "two effects: another one named", _false(pairs)),
+        ScoreRate("triple_all", "three effects: all named, or as rivals", _share(triples, "all")),
+        ScoreRate("triple_false", "three effects: another one named", _false(triples)),
+    ]
+
+
+def _of_nothing(judged: Iterable[Judged]) -> list[ScoreRate]:
+    nothing = _of(judged, "nothing")
+    return [
         ScoreRate("nothing_named", "nothing hidden: something named", _false(nothing)),
+        ScoreRate("nothing_unexplained", "nothing hidden: called unexplained", _warned(nothing)),
+    ]
+
+
+def _beyond(judged: Iterable[Judged]) -> list[ScoreRate]:
+    """Return the rates of what is near to the catalogue or not in it."""
+    beyond = _of(judged, *BEYOND)
+    return [
+        ScoreRate("beyond_wrong", "not in the catalogue: something wrong named", _false(beyond)),
         ScoreRate(
-            "unknown_false",
-            "not in the catalogue: named, not called unexplained",
-            rate(j.outcome == "false" for j in _answered(unknown)),
+            "beyond_unwarned",
+            "not in the catalogue: something wrong named, no warning",
+            rate(j.outcome == "false" for j in _answered(beyond)),
         ),
         ScoreRate(
-            "unknown_recognised",
-            "not in the catalogue: called unexplained",
-            _share(unknown, "recognised"),
+            "beyond_recognised",
+            "not in the catalogue: said so, or right in kind",
+            _share(beyond, *RECOGNISED),
         ),
+        *(
+            ScoreRate(
+                f"{kind}_recognised", f"  of these {kind}", _share(_of(beyond, kind), *RECOGNISED)
+            )
+            for kind in BEYOND
+        ),
+    ]
+
+
+def _of_names(judged: Iterable[Judged]) -> list[ScoreRate]:
+    listed = list(judged)
+    covered = [inside for j in listed for inside in j.covered]
+    stated = [inside for inside in covered if inside is not None]
+    return [
         ScoreRate(
-            "known_unexplained",
-            "all others: called unexplained",
-            rate(
-                j.diagnosis.says_unexplained
-                for j in judged
-                if j.case.kind != "unknown" and j.diagnosis is not None
-            ),
+            "right_refused",
+            "one effect: its name refused or with a warning",
+            rate(j.refused for j in listed if j.right_name),
         ),
         ScoreRate("coverage", "95 % intervals that hold the true parameter", rate(stated)),
         ScoreRate(
@@ -126,8 +186,12 @@ def _exact(cases: Sequence[Judged]) -> Rate:
     return _share(cases, "exact")
 
 
-def _share(cases: Iterable[Judged], outcome: str) -> Rate:
-    return rate(j.outcome == outcome for j in cases)
+def _share(cases: Iterable[Judged], *outcomes: str) -> Rate:
+    return rate(j.outcome in outcomes for j in cases)
+
+
+def _warned(cases: Iterable[Judged]) -> Rate:
+    return rate(j.diagnosis.warns for j in cases if j.diagnosis is not None)
 
 
 def _false(cases: Iterable[Judged]) -> Rate:

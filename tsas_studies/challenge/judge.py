@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from tsas_studies.challenge.entry import Entry, SubmittedDiagnosis
-from tsas_studies.challenge.truth import CATALOGUE, TrueCase, Truth
+from tsas_studies.challenge.truth import BEYOND, CATALOGUE, TrueCase, Truth
 
 NO_ANSWER = "no answer"
 _WORTH_MENDING = 1.1  # times the attainable error; a channel below it has nothing to gain
@@ -20,20 +20,26 @@ class Judged:
     def outcome(self) -> str:
         """The class of the case, one of those that docs/challenge.md defines for its kind.
 
-        one: exact, rivals, false, none. pair: both, one, none. nothing: named, quiet.
-        unknown: recognised, false, missed. All of them: no answer.
+        one: exact, rivals, false, none. pair: both, one, none. triple: all, some, none. nothing:
+        named, quiet. unknown, near: recognised, right kind, false, missed. All: no answer.
         """
         case, diagnosis = self.case, self.diagnosis
         if diagnosis is None:
             return NO_ANSWER
         if case.kind == "nothing":
             return "named" if diagnosis.named else "quiet"
-        if case.kind == "unknown":
-            if diagnosis.says_unexplained:
+        if case.kind in BEYOND:
+            if diagnosis.warns:
                 return "recognised"
-            return "false" if diagnosis.named else "missed"
+            if self.false_names:
+                return "false"
+            return "right kind" if diagnosis.named else "missed"
         if case.kind == "pair":
             return ("none", "one", "both")[len(case.effects & diagnosis.effects)]
+        if case.kind == "triple":
+            rivals = {rival for named in diagnosis.named for rival in named.rivals}
+            found = len(case.effects & (diagnosis.effects | rivals))
+            return ("none", "some", "some", "all")[found]
         if self.false_names:
             return "false"
         if diagnosis.effects == case.effects:
@@ -42,10 +48,31 @@ class Judged:
 
     @property
     def false_names(self) -> frozenset[str]:
-        """What is named, is not hidden, and has nothing hidden among its rivals."""
-        hidden = self.case.effects
+        """What is named, is not right, and has nothing right among its rivals.
+
+        Right is what is hidden, and for what is not in the catalogue what describes it fairly.
+        """
+        right = self.case.right
         named = self.diagnosis.named if self.diagnosis else ()
-        return frozenset(n.effect for n in named if not hidden & {n.effect, *n.rivals})
+        return frozenset(n.effect for n in named if not right & {n.effect, *n.rivals})
+
+    @property
+    def right_name(self) -> bool:
+        """Whether the one hidden effect, and no other, is named or said to stand in."""
+        if self.case.kind != "one" or self.diagnosis is None:
+            return False
+        stand_ins = {stand_in.effect for stand_in in self.diagnosis.stand_ins}
+        return self.case.effects == self.diagnosis.effects | stand_ins
+
+    @property
+    def refused(self) -> bool:
+        """Whether that name is refused, or comes with a warning."""
+        diagnosis = self.diagnosis
+        return (
+            self.right_name
+            and diagnosis is not None
+            and (diagnosis.warns or bool(diagnosis.stand_ins))
+        )
 
     @property
     def rivals(self) -> list[int]:

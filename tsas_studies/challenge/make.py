@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Callable, Sequence
+from dataclasses import asdict, replace
 from operator import itemgetter
 from pathlib import Path
 from typing import Any
@@ -10,10 +11,12 @@ import numpy as np
 
 from tsas_studies.challenge.bench import RUNS, SENSORS, Bench, data_sheet, drawn_bench, recorded
 from tsas_studies.challenge.cases import Case
+from tsas_studies.challenge.conditions import drawn_nuisance
+from tsas_studies.challenge.near import MIXED
 from tsas_studies.challenge.rig.recordings import DATA_SHEET, Run, write_dataset
-from tsas_studies.challenge.truth import FILE
+from tsas_studies.challenge.truth import BEYOND, FILE
 
-IDS, RECORDINGS = 0, 1  # streams of chance
+IDS, RECORDINGS, NUISANCE = 0, 1, 2  # streams of chance
 CHANNELS = ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N")
 DESCRIPTION = "Simulated, not measured: a case of the blind benchmark."
 
@@ -52,7 +55,8 @@ def make(
     answers = {}
     for name, case in sorted(((_id(case), case) for case in cases), key=itemgetter(0)):
         rng = np.random.default_rng([case.seed, case.number, RECORDINGS])
-        bench = drawn_bench(rng)
+        nuisance = drawn_nuisance(case.conditions, RUNS, _other(case, NUISANCE))
+        bench = replace(drawn_bench(rng), nuisance=nuisance)
         _write(out / "cases" / name / "dataset", case, bench, rate_Hz, rng)
         answers[name] = _answer(case, bench)
         step()
@@ -69,7 +73,14 @@ def make(
 
 
 def _id(case: Case) -> str:
+    if case.conditions == "realistic":
+        return _other(case, IDS).bytes(6).hex()
     return np.random.default_rng([case.seed, case.number, IDS]).bytes(6).hex()
+
+
+def _other(case: Case, what: int) -> np.random.Generator:
+    """Return a stream of chance that the same case under clean conditions does not have."""
+    return np.random.default_rng([case.seed, case.number, what, NUISANCE])
 
 
 def _write(
@@ -95,17 +106,21 @@ def _write(
 def _answer(case: Case, bench: Bench) -> dict[str, Any]:
     """Return what is hidden in a case, and what else its rig is like."""
     causes = [{"effect": h.cause, "parameters": dict(h.parameters)} for h in case.hidden]
-    unknown = case.kind == "unknown"
+    beyond = case.kind in BEYOND
+    parts = {cause["effect"]: cause["parameters"] for cause in causes}
+    one = len(causes) == 1
     return {
         "name": case.name,
         "seed": case.seed,
         "kind": case.kind,
         "size": case.size,
-        "hidden": [] if unknown else causes,
-        "unknown": causes[0]["effect"] if unknown else None,
-        "unknown_parameters": causes[0]["parameters"] if unknown else {},
+        "conditions": case.conditions,
+        "hidden": [] if beyond else causes,
+        "unknown": (causes[0]["effect"] if one else MIXED) if beyond else None,
+        "unknown_parameters": (causes[0]["parameters"] if one else parts) if beyond else {},
         "nominal": dict(bench.nominal),
         "bend_profile": bench.bend_profile,
         "noise": {channel: getattr(SENSORS, channel).noise for channel in CHANNELS},
         "jitter_s": SENSORS.jitter_s,
+        "nuisance": asdict(bench.nuisance),
     }

@@ -9,10 +9,12 @@ from typing import Any, get_args
 from tsas_cli.support import __version__
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import sha256_of
+from tsas_studies.challenge.cases import Kind
+from tsas_studies.challenge.conditions import CONDITIONS, told
 from tsas_studies.challenge.entry import Entry, read_entry
-from tsas_studies.challenge.figures import ScoreRate, by_effect, figures, of_size, sizes
+from tsas_studies.challenge.figures import RECOGNISED, ScoreRate, by_effect, figures, of_size, sizes
 from tsas_studies.challenge.judge import NO_ANSWER, Judged, judge
-from tsas_studies.challenge.truth import CATALOGUE, FILE, Kind, Truth, read_truth
+from tsas_studies.challenge.truth import CATALOGUE, FILE, Truth, read_truth
 
 CLASSES = ("exact", "rivals", "false", "none", NO_ANSWER)
 
@@ -32,7 +34,8 @@ def score_entries(sealed: Path, folders: Iterable[Path]) -> dict[str, Any]:
         if label in entries:
             raise InputError("the entry is given twice", where=folder)
         entries[label] = score(answers, read_entry(folder, answers.cases))
-    kinds = Counter(case.kind for case in answers.cases.values())
+    kinds = Counter(told(case.kind, case.conditions) for case in answers.cases.values())
+    order = (told(kind, conditions) for conditions in CONDITIONS for kind in get_args(Kind))
     single = {e for case in answers.cases.values() if case.kind == "one" for e in case.effects}
     return {
         "format": 1,
@@ -41,7 +44,7 @@ def score_entries(sealed: Path, folders: Iterable[Path]) -> dict[str, Any]:
         "answers": {
             "sha256": sha256_of(sealed / FILE),
             "seed": answers.seed,
-            "cases": {kind: count for kind in get_args(Kind) if (count := kinds[kind])},
+            "cases": {kind: count for kind in order if (count := kinds[kind])},
             "effects_not_in_the_set": [name for name in CATALOGUE if name not in single],
         },
         "entries": entries,
@@ -97,18 +100,19 @@ def _figure(figure: ScoreRate) -> dict[str, Any]:
 
 
 def _effects(cases: list[Judged]) -> list[dict[str, Any]]:
-    """Return how many cases of each effect are in each class, by size."""
+    """Return how many clean cases of each effect are in each class, by size."""
+    clean = [j for j in cases if j.case.conditions == "clean"]
     return [
         {"effect": effect, "size": size, "cases": len(group)}
         | {name: sum(j.outcome == name for j in group) for name in CLASSES}
-        for size in sizes(cases)
-        for effect, group in by_effect(of_size(cases, size)).items()
+        for size in sizes(clean)
+        for effect, group in by_effect(of_size(clean, size)).items()
     ]
 
 
 def _confusion(cases: list[Judged]) -> list[dict[str, Any]]:
     """Return what was said where it is not the truth, the most frequent first."""
-    wrong = [j for j in cases if j.outcome != "recognised" and _truth(j) != _said(j)]
+    wrong = [j for j in cases if j.outcome not in RECOGNISED and _truth(j) != _said(j)]
     found = Counter((_truth(j), _said(j)) for j in wrong)
     return [
         {"hidden": truth, "said": said, "cases": count}
@@ -125,5 +129,5 @@ def _truth(judged: Judged) -> str:
 def _said(judged: Judged) -> str:
     if judged.diagnosis is None:
         return NO_ANSWER
-    silent = "unexplained" if judged.diagnosis.says_unexplained else "nothing"
+    silent = "unexplained" if judged.diagnosis.warns else "nothing"
     return " + ".join(sorted(judged.diagnosis.effects)) or silent

@@ -13,12 +13,13 @@ from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import folder_if, stage_folder, write_json
 from tsas_cli.support.steps import NO_PROGRESS, Steps
 from tsas_studies.challenge import cases
+from tsas_studies.challenge.cases import Kind
+from tsas_studies.challenge.conditions import Conditions, told
 from tsas_studies.challenge.make import make
 from tsas_studies.challenge.run import TOOLS, case_folders, run_cases
 from tsas_studies.challenge.score import score_entries
 from tsas_studies.challenge.tables import tables
 
-Kind = Literal["one", "pair", "nothing", "unknown"]
 Tool = Literal["diagnose", "bic", "training", "sparse"]
 
 
@@ -61,6 +62,7 @@ def make_set(
     seeds: int = 1,
     small: bool = False,
     kind: Kind | None = None,
+    conditions: Conditions | None = None,
     rate_Hz: float = 200.0,
     force: bool = False,
     step: Steps = NO_PROGRESS,
@@ -75,8 +77,8 @@ def make_set(
         The first seed, and how many from that one on.
     small
         Each effect once at full size, and a few of what is none.
-    kind
-        Only cases in which this is hidden; all without it.
+    kind, conditions
+        Only cases in which this is hidden, and only those under these conditions.
     rate_Hz
         Samples per second.
     force
@@ -100,8 +102,13 @@ def make_set(
         listed = list(cases.part(listed))
     if kind is not None:
         listed = [case for case in listed if case.kind == kind]
+    if conditions is not None:
+        listed = [case for case in listed if case.conditions == conditions]
     if not listed:
-        raise InputError("--small keeps no case of --kind pair", remedy="leave one of them out")
+        raise InputError(
+            "no case is of this kind, under these conditions, and in a small set",
+            remedy="leave out --small, --kind or --conditions",
+        )
     path = Path(out)
     with stage_folder(path, stage="challenge make", inputs=(), force=force) as folder:
         step.ahead(len(listed))
@@ -114,7 +121,7 @@ def make_set(
         "seed": seed,
         "seeds": seeds,
         "rate_Hz": rate_Hz,
-        "cases": dict(Counter(case.kind for case in listed)),
+        "cases": dict(Counter(told(case.kind, case.conditions) for case in listed)),
     }
     return SealedSet(summary, path)
 

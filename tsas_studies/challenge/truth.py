@@ -1,7 +1,7 @@
 """The truth of a sealed set, `answers.json`: what it says and how it is checked."""
 
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
@@ -11,14 +11,18 @@ from tsas_cli.recordings.manifest import parse
 from tsas_cli.records.base import Record
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import read_json
+from tsas_studies.challenge.cases import Kind
+from tsas_studies.challenge.conditions import Conditions
+from tsas_studies.challenge.near import MIXED
+from tsas_studies.challenge.right_kind import RIGHT_KIND
 
 FILE = "answers.json"
-Kind = Literal["one", "pair", "nothing", "unknown"]
 CaseId = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]+$")]
 CATALOGUE: dict[str, dict[str, Parameter]] = {
     effect.name: {p.name: p for p in effect.parameters} for effect in EFFECTS
 }
-_HIDDEN: dict[Kind, int] = {"one": 1, "pair": 2, "nothing": 0, "unknown": 0}
+BEYOND: tuple[Kind, ...] = ("unknown", "near")  # what is hidden is not in the catalogue
+_HIDDEN: dict[Kind, int] = {"one": 1, "pair": 2, "triple": 3, "nothing": 0, "unknown": 0, "near": 0}
 
 
 class HiddenEffect(Record):
@@ -45,11 +49,21 @@ class TrueCase(Record):
     size: float | None = Field(default=None, ge=0)
     hidden: tuple[HiddenEffect, ...] = ()
     unknown: str | None = None
+    unknown_parameters: dict[str, Any] = Field(default_factory=dict)
+    conditions: Conditions = "clean"
 
     @property
     def effects(self) -> frozenset[str]:
         """The names of the hidden effects."""
         return frozenset(hidden.effect for hidden in self.hidden)
+
+    @property
+    def right(self) -> frozenset[str]:
+        """The names that are right: the hidden effects, or fair ones for what is none."""
+        if self.unknown is None:
+            return self.effects
+        parts = self.unknown_parameters if self.unknown == MIXED else (self.unknown,)
+        return frozenset().union(*(RIGHT_KIND.get(part, frozenset()) for part in parts))
 
     @model_validator(mode="after")
     def _kind_fits(self) -> "TrueCase":
@@ -58,8 +72,10 @@ class TrueCase(Record):
                 f"kind {self.kind} goes with {_HIDDEN[self.kind]} hidden effects, "
                 f"got {len(self.hidden)}"
             )
-        if (self.unknown is not None) != (self.kind == "unknown"):
-            raise ValueError("unknown is given for kind unknown, and only there")
+        if (self.unknown is not None) != (self.kind in BEYOND):
+            raise ValueError(
+                f"unknown is given for the kinds {' and '.join(BEYOND)}, and only there"
+            )
         if self.kind == "one" and self.size is None:
             raise ValueError("size is missing")
         return self

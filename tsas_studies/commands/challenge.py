@@ -32,8 +32,18 @@ class KindOption(StrEnum):
 
     one = "one"
     pair = "pair"
+    triple = "triple"
     nothing = "nothing"
     unknown = "unknown"
+    near = "near"
+
+
+class ConditionsOption(StrEnum):
+    """What the rig of a case has beside what is hidden."""
+
+    clean = "clean"
+    slow = "slow"
+    realistic = "realistic"
 
 
 @challenge.command("make")
@@ -52,6 +62,10 @@ def make(
     kind: Annotated[
         KindOption | None, typer.Option("--kind", help="Only cases in which this is hidden.")
     ] = None,
+    conditions: Annotated[
+        ConditionsOption | None,
+        typer.Option("--conditions", help="Only cases under these; slow: slow noise."),
+    ] = None,
     rate: Annotated[
         float, typer.Option("--rate", metavar="HZ", min=50.0, max=500.0, help="Samples per second.")
     ] = 200.0,
@@ -69,6 +83,7 @@ def make(
             seeds=seeds,
             small=small,
             kind=None if kind is None else kind.value,
+            conditions=None if conditions is None else conditions.value,
             rate_Hz=rate,
             force=force,
             step=step,

@@ -10,14 +10,15 @@ TRUTH = {"backlash": {"play_mm": 0.12}, "drive_friction": {"friction_N": 1.5}}
 UNITS = {"play_mm": "mm", "friction_N": "N"}
 
 
-def case(*effects, kind=None, size=1.0, unknown=None):
+def case(*effects, kind=None, size=1.0, unknown=None, **more):
     """Return one case of answers.json."""
-    by_number = {0: "nothing", 1: "one", 2: "pair"}
+    by_number = {0: "nothing", 1: "one", 2: "pair", 3: "triple"}
     return {
         "kind": kind or ("unknown" if unknown else by_number[len(effects)]),
         "size": size,
         "hidden": [{"effect": e, "parameters": TRUTH.get(e, {})} for e in effects],
         "unknown": unknown,
+        **more,
         "nominal": {"friction_coefficient": 0.125},
         "noise": {"f_in_N": 0.1},
     }

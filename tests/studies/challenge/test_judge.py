@@ -14,6 +14,11 @@ def judged(truth, said):
 
 ONE, PAIR, NOTHING = case("backlash"), case("backlash", "drive_friction"), case()
 UNKNOWN = case(unknown="rough_spot")
+TRIPLE = case("backlash", "drive_friction", "presliding")
+NEAR = case(kind="near", unknown="pulley_friction")
+MIXED = case(
+    kind="near", unknown="mixed", unknown_parameters={"pulley_friction": {}, "encoder_play": {}}
+)
 RIVAL = named("free_tendon", "backlash")
 
 
@@ -42,13 +47,54 @@ RIVAL = named("free_tendon", "backlash")
         (UNKNOWN, diagnosis("backlash", unexplained=True), "recognised", {"backlash"}),
         (UNKNOWN, diagnosis(verdict="unexplained"), "recognised", set()),
         (UNKNOWN, diagnosis(), "missed", set()),
+        (UNKNOWN, diagnosis("backlash", verdict="partly"), "recognised", {"backlash"}),
+        (UNKNOWN, diagnosis(verdict="stand_in"), "recognised", set()),
         (UNKNOWN, None, "no answer", set()),
+        (NEAR, diagnosis("backlash"), "false", {"backlash"}),
+        (NEAR, diagnosis("drive_friction"), "right kind", set()),
+        (NEAR, diagnosis(named("backlash", "drive_friction")), "right kind", set()),
+        (NEAR, diagnosis("drive_friction", "backlash"), "false", {"backlash"}),
+        (NEAR, diagnosis("drive_friction", unexplained=True), "recognised", set()),
+        (NEAR, diagnosis(), "missed", set()),
+        (NEAR, None, "no answer", set()),
+        (MIXED, diagnosis("drive_friction"), "right kind", set()),
+        (MIXED, diagnosis("backlash"), "false", {"backlash"}),
+        (TRIPLE, diagnosis("backlash", "drive_friction", "presliding"), "all", set()),
+        (TRIPLE, diagnosis("backlash", named("presliding", "drive_friction")), "all", set()),
+        (TRIPLE, diagnosis("backlash", "free_tendon", "presliding"), "some", {"free_tendon"}),
+        (TRIPLE, diagnosis("presliding"), "some", set()),
+        (TRIPLE, diagnosis("free_tendon"), "none", {"free_tendon"}),
+        (TRIPLE, None, "no answer", set()),
     ],
 )
 def test_the_class_of_a_case(truth, said, outcome, false):
     one = judged(truth, said)
     assert one.outcome == outcome
     assert one.false_names == false
+
+
+STANDS_IN = {"stand_ins": [named("backlash")]}
+
+
+@pytest.mark.parametrize(
+    ("truth", "said", "right_name", "refused"),
+    [
+        (ONE, diagnosis("backlash"), True, False),
+        (ONE, diagnosis("backlash", unexplained=True), True, True),
+        (ONE, diagnosis("backlash", verdict="partly"), True, True),
+        (ONE, diagnosis(verdict="stand_in", **STANDS_IN), True, True),
+        (ONE, diagnosis("drive_friction", **STANDS_IN), False, False),
+        (ONE, diagnosis("drive_friction", unexplained=True), False, False),
+        (ONE, diagnosis(unexplained=True), False, False),
+        (ONE, None, False, False),
+        (NEAR, diagnosis("drive_friction", unexplained=True), False, False),
+    ],
+)
+def test_a_right_name_is_refused_where_it_stands_in_or_comes_with_a_warning(
+    truth, said, right_name, refused
+):
+    one = judged(truth, said)
+    assert (one.right_name, one.refused) == (right_name, refused)
 
 
 @pytest.mark.parametrize(

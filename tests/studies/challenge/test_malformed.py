@@ -22,7 +22,7 @@ def line(read, *arguments):
         ({"kind": "many"}, "cases.a.kind: "),
         ({"kind": "pair"}, "cases.a: kind pair goes with 2 hidden effects, got 1"),
         ({"kind": "nothing"}, "cases.a: kind nothing goes with 0 hidden effects, got 1"),
-        ({"unknown": "hum"}, "cases.a: unknown is given for kind unknown"),
+        ({"unknown": "hum"}, "cases.a: unknown is given for the kinds unknown and near"),
         ({"size": None}, "cases.a: size is missing"),
         (
             {"hidden": [{"effect": "backlsh", "parameters": {}}]},

@@ -12,11 +12,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tsas_studies.challenge.rig.bouc_wen import bouc_wen, bouc_wen_slope
 from tsas_studies.challenge.rig.compiled import compiled
 from tsas_studies.challenge.rig.dahl import dahl, dahl_slope
 from tsas_studies.challenge.rig.give import Path, given
-from tsas_studies.challenge.rig.load_end import Load, LoadState, extra_force, moved
+from tsas_studies.challenge.rig.load_end import AT_REST, Load, LoadState, extra_force, moved
 from tsas_studies.challenge.rig.motions import Floats
+from tsas_studies.challenge.rig.surface import Past, SurfaceLaw, remembered, roughness
 
 MAX_ITERATIONS = 100
 MAX_CUTS = 10
@@ -31,7 +33,9 @@ class Tendon(NamedTuple):
     bend: bend angle of each node [rad]; k: stiffness of each cell [N/mm]; c_in: compliance
     between the drive and the sheath [mm/N]; p, r: the distal end, p T_out = q + r u_end + what
     the load adds; c_out: compliance between the sheath and the load; asymmetry, excess, velocity,
-    exponent: see `Friction`; viscous: of each node [N s/mm].
+    exponent, shift: see `Friction`; viscous: of each node [N s/mm]; surface: what friction depends
+    on at each place; round: presliding follows Bouc and Wen, not Dahl; stiffening: a cell's
+    stiffness grows by this share per newton [1/N].
     """
 
     bend: Floats
@@ -48,6 +52,10 @@ class Tendon(NamedTuple):
     velocity: float
     exponent: float
     viscous: Floats
+    surface: SurfaceLaw
+    round: bool
+    stiffening: float
+    shift: float
 
 
 class Ends(NamedTuple):
@@ -59,11 +67,17 @@ class Ends(NamedTuple):
 
 
 class State(NamedTuple):
-    """What a sample leaves to the next: displacements, friction states, speeds, of each node."""
+    """What a sample leaves to the next, of each node.
+
+    Displacement, friction state, what `Past` holds, and the factor on friction that follows.
+    """
 
     u: Floats
     phi: Floats
     speed: Floats
+    age: Floats
+    slid: Floats
+    rough: Floats
 
 
 def nodes(length_mm: float, cells: int) -> Floats:
@@ -95,14 +109,15 @@ def run(
         The number of samples before the tendon went slack or a step did not converge.
     """
     m, n = x_in.size, tendon.bend.size
-    state = State(np.zeros(n), np.zeros(n), np.zeros(n))
-    load = LoadState(0.0, 0.0, 0.0, 0.0, 0.0)
+    state = _at_rest(n, tendon.surface)
+    load = AT_REST
     t_in, t_out = np.full(m, np.nan), np.full(m, np.nan)
     u_end, guide = np.full(m, np.nan), np.full(m, np.nan)
     before = Ends(0.0, mu[0], tendon.p * tendon.preload)
+    bent = 1.0
     for i in range(m):
         h = time[max(i, 1)] - time[max(i, 1) - 1]
-        now = Ends(x_in[i] - (path.jumped + path.crept), mu[i], q[i])
+        now = Ends(x_in[i] - (path.jumped + path.crept), mu[i] * bent, q[i])
         converged, load, last = _advance(state, load, tendon, before, now, h)
         if not converged:
             return t_in, t_out, u_end, guide, i
@@ -112,7 +127,15 @@ def run(
         if min(t_in[i], t_out[i]) <= 0.0:
             return t_in, t_out, u_end, guide, i
         path = given(path, t_in[i], tendon.preload, h)
+        bent = 1.0 + tendon.shift * (t_in[i] - tendon.preload)
     return t_in, t_out, u_end, guide, m
+
+
+@compiled
+def _at_rest(n: int, law: SurfaceLaw) -> State:
+    """Return the state of n nodes before the first sample."""
+    start = roughness(Past(0.0, 0.0, 0.0), 0.0, law)
+    return State(np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n), np.full(n, start))
 
 
 @compiled
@@ -135,10 +158,10 @@ def _advance(
         step = (to - done) * h
         converged, du = _solve(state, load, tendon, here, step)
         if converged:
-            tension, e = _stretched(state, du, tendon, here.mu)
+            tension, _, e = _stretched(state, du, tendon, here.mu)
             ends = (_at_drive(tendon, tension, e, du, step), _at_load(tendon, tension, e, du, step))
             y = state.u[-1] + du[-1] - tendon.c_out * (ends[1] - tendon.preload)
-            load = moved(load, y, step)
+            load = moved(tendon.load, load, y, step)
             _keep(state, du, tendon, step)
             done = to
         else:
@@ -153,10 +176,12 @@ def _keep(state: State, du: Floats, tendon: Tendon, h: float) -> None:
     """Add a solved displacement to the state."""
     forgotten = 1.0 - np.exp(-h / MEMORY_S)
     for j in range(du.size):
-        rise = _rise(state.speed[j], tendon)
-        state.phi[j] = dahl(du[j], state.phi[j], tendon.delta, tendon.asymmetry, rise)
+        state.phi[j] = _turned(du[j], j, state, tendon)
         state.u[j] += du[j]
-        state.speed[j] += forgotten * (abs(du[j]) / h - state.speed[j])
+        past = Past(state.speed[j], state.age[j], state.slid[j])
+        past = remembered(past, du[j], h, forgotten, tendon.surface)
+        state.speed[j], state.age[j], state.slid[j] = past
+        state.rough[j] = roughness(past, state.u[j], tendon.surface)
 
 
 @compiled
@@ -165,6 +190,24 @@ def _rise(speed: float, tendon: Tendon) -> float:
     if tendon.excess == 0.0:
         return 1.0
     return float(1.0 + tendon.excess * np.exp(-((speed / tendon.velocity) ** 2)))
+
+
+@compiled
+def _turned(du: float, i: int, state: State, tendon: Tendon) -> float:
+    """Return the friction state of node i after a displacement du [mm]."""
+    rise = _rise(state.speed[i], tendon)
+    if tendon.round:
+        return bouc_wen(du, state.phi[i], tendon.delta, rise)
+    return dahl(du, state.phi[i], tendon.delta, tendon.asymmetry, rise)
+
+
+@compiled
+def _turned_slope(du: float, i: int, state: State, tendon: Tendon) -> float:
+    """Return by how much that changes per displacement [1/mm]."""
+    rise = _rise(state.speed[i], tendon)
+    if tendon.round:
+        return bouc_wen_slope(du, state.phi[i], tendon.delta, rise)
+    return dahl_slope(du, state.phi[i], tendon.delta, tendon.asymmetry, rise)
 
 
 @compiled
@@ -177,18 +220,25 @@ def _load_factor(i: int, tension: Floats, tendon: Tendon) -> float:
 
 
 @compiled
-def _stretched(state: State, du: Floats, tendon: Tendon, mu: float) -> tuple[Floats, Floats]:
-    """Return the tension of each cell [N], and e = μ θ φ (T/F0)^n / 2 of each node."""
-    u, phi = state.u, state.phi
-    tension, e = np.empty(u.size - 1), np.empty(u.size)
+def _stretched(
+    state: State, du: Floats, tendon: Tendon, mu: float
+) -> tuple[Floats, Floats, Floats]:
+    """Return tension [N] and stiffness [N/mm] of each cell, and e = μ θ φ (T/F0)^n / 2 by node."""
+    u, stiffening = state.u, tendon.stiffening
+    tension, k, e = np.empty(u.size - 1), tendon.k.copy(), np.empty(u.size)
     for i in range(u.size - 1):
-        stretch = u[i] - u[i + 1] + (du[i] - du[i + 1])
-        tension[i] = tendon.preload + tendon.k[i] * stretch
+        more = du[i] - du[i + 1]
+        if stiffening == 0.0:
+            tension[i] = tendon.preload + k[i] * (u[i] - u[i + 1] + more)
+        else:  # the tangent at the step before, so that a step stays linear in the stretch
+            grown = np.exp(stiffening * k[i] * (u[i] - u[i + 1]))
+            k[i] *= grown
+            tension[i] = tendon.preload + (grown - 1.0) / stiffening + k[i] * more
     for i in range(u.size):
-        rise = _rise(state.speed[i], tendon)
-        turned = dahl(du[i], phi[i], tendon.delta, tendon.asymmetry, rise)
+        turned = _turned(du[i], i, state, tendon)
         e[i] = 0.5 * mu * tendon.bend[i] * turned * _load_factor(i, tension, tendon)
-    return tension, e
+        e[i] *= state.rough[i]
+    return tension, k, e
 
 
 @compiled
@@ -237,6 +287,7 @@ def _newton_change(
     state: State,
     du: Floats,
     tension: Floats,
+    k: Floats,
     e: Floats,
     pull: Floats,
     load_slope: float,
@@ -245,13 +296,12 @@ def _newton_change(
     h: float,
 ) -> Floats:
     """Solve the tridiagonal Newton equations for the change of du."""
-    n, k = du.size, tendon.k
+    n = du.size
     upper, change = np.empty(n), np.empty(n)
     p, r = tendon.p + tendon.c_out * load_slope, tendon.r + load_slope
     for i in range(n):
-        rise = _rise(state.speed[i], tendon)
-        slope = dahl_slope(du[i], state.phi[i], tendon.delta, tendon.asymmetry, rise)
-        slope *= 0.5 * mu * tendon.bend[i] * _load_factor(i, tension, tendon)
+        slope = _turned_slope(du[i], i, state, tendon)
+        slope *= 0.5 * mu * tendon.bend[i] * _load_factor(i, tension, tendon) * state.rough[i]
         lag = tendon.viscous[i] / h
         by_load = e[i] * tendon.exponent
         if i == 0:
@@ -287,18 +337,20 @@ def _solve(
     """Find du by Newton's method from du = 0; return whether it converged, and du.
 
     While all nodes move one way the residual is concave with an M-matrix as Jacobian, and the
-    iteration is monotone. Otherwise a step is cut where the nodes would be pulled back.
+    iteration is monotone. Otherwise a step is cut where the nodes would be pulled back, but for
+    the gentle law of Bouc and Wen, which whole steps solve.
     """
+    cuts = 1 if tendon.round else MAX_CUTS
     du = np.zeros(state.u.size)
-    tension, e = _stretched(state, du, tendon, ends.mu)
+    tension, k, e = _stretched(state, du, tendon, ends.mu)
     pull, slope = _unbalanced(state, load, du, tension, e, tendon, ends, h)
     for _ in range(MAX_ITERATIONS):
-        change = _newton_change(state, du, tension, e, pull, slope, tendon, ends.mu, h)
+        change = _newton_change(state, du, tension, k, e, pull, slope, tendon, ends.mu, h)
         work = np.dot(change[1:-1], pull[1:-1])
         part = 1.0
-        for _ in range(MAX_CUTS):
+        for _ in range(cuts):
             trial = du + part * change
-            tension, e = _stretched(state, trial, tendon, ends.mu)
+            tension, k, e = _stretched(state, trial, tendon, ends.mu)
             pull, slope = _unbalanced(state, load, trial, tension, e, tendon, ends, h)
             after = np.dot(change[1:-1], pull[1:-1])
             if work <= 0.0 or after >= -0.5 * work:

@@ -14,6 +14,7 @@ from tsas_studies.challenge.rig.dahl import dahl
 from tsas_studies.challenge.rig.motions import Floats
 
 PRESLIDING_MM = 1e-4
+TONNE_PER_KG = 1e-3
 
 
 @dataclass(frozen=True)
@@ -34,6 +35,10 @@ class DriveEnd:
         Friction of the drive, felt by the force sensor.
     rough_N, rough_at_mm, rough_width_mm
         More such friction around one place of the stroke: a bell of this height and width.
+    pulley_share
+        Friction of a pulley's bearing behind the force sensor, by so much of the tension.
+    mass_kg, damping_N_s_per_mm
+        What moves with the tendon's end behind the force sensor, and a damper from it to ground.
     """
 
     play_mm: float = 0.0
@@ -46,6 +51,9 @@ class DriveEnd:
     rough_N: float = 0.0
     rough_at_mm: float = 10.0
     rough_width_mm: float = 1.0
+    pulley_share: float = 0.0
+    mass_kg: float = 0.0
+    damping_N_s_per_mm: float = 0.0
 
 
 def tendon_end(end: DriveEnd, x_in: Floats) -> Floats:
@@ -55,11 +63,14 @@ def tendon_end(end: DriveEnd, x_in: Floats) -> Floats:
     return followed(x_in + ripple, end.play_mm)
 
 
-def sensed_force(end: DriveEnd, position: Floats, tension: Floats) -> Floats:
+def sensed_force(end: DriveEnd, time_s: Floats, position: Floats, tension: Floats) -> Floats:
     """Return the force at the sensor [N] from the tendon's position and tension, shape (m,)."""
     bell = np.exp(-(((position - end.rough_at_mm) / end.rough_width_mm) ** 2))
-    friction = (end.friction_N + end.rough_N * bell) * _bristle(position)
-    return np.asarray(tension + friction + end.spring_N_per_mm * position)
+    friction = end.friction_N + end.rough_N * bell + end.pulley_share * tension
+    force = tension + friction * _bristle(position) + end.spring_N_per_mm * position
+    speed = np.gradient(position, time_s)
+    inertia = end.mass_kg * TONNE_PER_KG * np.gradient(speed, time_s)
+    return np.asarray(force + end.damping_N_s_per_mm * speed + inertia)
 
 
 @compiled

@@ -30,6 +30,18 @@ class Friction:
         μ grows over a run, relative to its first value, and over the session.
     bend_rate_rad_per_s, bend_settling_per_s
         The total bend grows over a run.
+    slope_per_mm
+        μ grows by so much per displacement of the drive, relative to that at x_in = 0.
+    slope_along
+        μ at the load's end of the sheath less that at the drive's, relative to their mean.
+    cycle_share, cycle_s, cycle_phase_rad
+        μ goes up and down with a temperature, 1 + share · sin(2πt/period + phase).
+    wear_per_mm
+        μ grows by so much per travel of the drive.
+    round_mm
+        Presliding of Bouc and Wen in place of Dahl's, with this length beside the rig's own.
+    shift_per_N
+        The sheath shifts under load: its bend grows by so much per newton of tension at the drive.
     """
 
     asymmetry: float = 0.0
@@ -43,6 +55,14 @@ class Friction:
     session_rate_per_s: float = 0.0
     bend_rate_rad_per_s: float = 0.0
     bend_settling_per_s: float = 0.0
+    slope_per_mm: float = 0.0
+    slope_along: float = 0.0
+    cycle_share: float = 0.0
+    cycle_s: float = 5.0
+    cycle_phase_rad: float = 0.0
+    wear_per_mm: float = 0.0
+    round_mm: float = 0.0
+    shift_per_N: float = 0.0
 
 
 def over_time(friction: Friction, total_bend_rad: float, t: Floats, session_s: float) -> Floats:
@@ -50,4 +70,12 @@ def over_time(friction: Friction, total_bend_rad: float, t: Floats, session_s: f
     f = friction
     worn = 1.0 + settled(f.rate_per_s, f.settling_per_s, t) + f.session_rate_per_s * session_s
     bend = total_bend_rad + settled(f.bend_rate_rad_per_s, f.bend_settling_per_s, t)
-    return np.maximum(worn, 0.0) * (np.maximum(bend, 0.0) / total_bend_rad)
+    cycle = 1.0 + f.cycle_share * np.sin(2.0 * np.pi * t / f.cycle_s + f.cycle_phase_rad)
+    return np.maximum(worn, 0.0) * (np.maximum(bend, 0.0) / total_bend_rad) * cycle
+
+
+def over_travel(friction: Friction, x_in: Floats) -> Floats:
+    """Return the factor on μ for each position of the drive [mm] and the travel until then."""
+    travel = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(x_in)))))
+    there = 1.0 + friction.slope_per_mm * x_in
+    return np.asarray(np.maximum(there, 0.0) * (1.0 + friction.wear_per_mm * travel))

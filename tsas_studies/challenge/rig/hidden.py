@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, TypeVar
 
+from tsas_studies.challenge.rig.near import NEAR
 from tsas_studies.challenge.rig.sensors import Sensors
 from tsas_studies.challenge.rig.tendon import Rig
 from tsas_studies.challenge.rig.unknowns import UNKNOWNS, Place
@@ -83,7 +84,7 @@ def hide(name: str, parameters: Parameters, rig: Rig, sensors: Sensors) -> tuple
     Parameters
     ----------
     name
-        An effect of the catalogue, or one of `UNKNOWNS`.
+        An effect of the catalogue, or one of `NEAR` or `UNKNOWNS`.
     parameters
         Its parameters by name; those left out stay as they are.
 
@@ -92,13 +93,18 @@ def hide(name: str, parameters: Parameters, rig: Rig, sensors: Sensors) -> tuple
     KeyError
         The cause or a parameter does not exist.
     """
-    places = {**CATALOGUE, **UNKNOWNS}[name]
+    places = {**CATALOGUE, **NEAR, **UNKNOWNS}[name]
     for parameter, value in parameters.items():
         match places[parameter]:
             case ("forces", option):
                 sensors = _set(_set(sensors, "f_in_N", option, value), "f_out_N", option, value)
+            case ("transducers", option):
+                for group in ("f_in_transducer", "f_out_transducer"):
+                    sensors = _set(sensors, group, option, value)
             case (group, option) if hasattr(sensors, group):
                 sensors = _set(sensors, group, option, value)
+            case (option,) if hasattr(sensors, option):
+                sensors = replace(sensors, **{option: value})
             case (group, option):
                 rig = _set(rig, group, option, value)
             case (option,):

@@ -11,6 +11,12 @@ from typing import NamedTuple
 
 from tsas_studies.challenge.rig.compiled import compiled
 from tsas_studies.challenge.rig.dahl import dahl, dahl_slope
+from tsas_studies.challenge.rig.restraint import (
+    RestraintLaw,
+    RestraintState,
+    held,
+    restrained,
+)
 
 PRESLIDING_MM = 1e-4
 TONNE_PER_KG = 1e-3
@@ -61,12 +67,13 @@ class Load(NamedTuple):
     loose: float
     stop_at: float
     stop: float
+    restraint: RestraintLaw
 
 
 class LoadState(NamedTuple):
     """Position [mm], speed [mm/s] and acceleration [mm/s²] of the load, speed of its loose part.
 
-    Beside them the friction state of the guide.
+    Beside them the friction state of the guide, and the state of what else holds it back.
     """
 
     y: float
@@ -74,9 +81,13 @@ class LoadState(NamedTuple):
     a: float
     v_loose: float
     guide: float
+    restraint: RestraintState
 
 
-def load(end: LoadEnd, stiffness_N_per_mm: float) -> Load:
+AT_REST = LoadState(0.0, 0.0, 0.0, 0.0, 0.0, RestraintState(0.0, 0.0, 0.0))
+
+
+def load(end: LoadEnd, stiffness_N_per_mm: float, restraint: RestraintLaw) -> Load:
     """Return the load for the solver."""
     return Load(
         quadratic=stiffness_N_per_mm * end.quadratic_per_mm,
@@ -86,15 +97,19 @@ def load(end: LoadEnd, stiffness_N_per_mm: float) -> Load:
         loose=end.mass_kg * TONNE_PER_KG * end.loose_share,
         stop_at=end.stop_at_mm,
         stop=end.stop_N_per_mm,
+        restraint=restraint,
     )
 
 
 @compiled
-def moved(before: LoadState, y: float, h: float) -> LoadState:
+def moved(load: Load, before: LoadState, y: float, h: float) -> LoadState:
     """Return the state after the load has gone to y within h seconds."""
     a, v = _newmark(before, y, h)
     v_loose = before.v_loose + _taken_up(before, v, h) * h
-    return LoadState(y, v, a, v_loose, dahl(y - before.y, before.guide, PRESLIDING_MM, 0.0, 1.0))
+    dy = y - before.y
+    guide = dahl(dy, before.guide, PRESLIDING_MM, 0.0, 1.0)
+    state = held(load.restraint, before.restraint, y, dy, h)
+    return LoadState(y, v, a, v_loose, guide, state)
 
 
 @compiled
@@ -111,7 +126,8 @@ def extra_force(load: Load, before: LoadState, y: float, h: float) -> tuple[floa
     if y > load.stop_at:
         force += load.stop * (y - load.stop_at)
         slope += load.stop
-    return force, slope
+    more, steeper = restrained(load.restraint, before.restraint, y, dy, h)
+    return force + more, slope + steeper
 
 
 @compiled

@@ -7,6 +7,7 @@ import numpy as np
 from tsas_studies.challenge.rig.courses import settled
 from tsas_studies.challenge.rig.motions import Floats
 from tsas_studies.challenge.rig.tendon import CleanRun
+from tsas_studies.challenge.rig.transducers import Transducer, transduced
 
 
 @dataclass(frozen=True)
@@ -25,6 +26,12 @@ class Sensor:
         How much later than the clock says the channel shows a value.
     gain, offset
         The reading is gain × value + offset.
+    gain_rate_per_s
+        The gain grows at this rate.
+    curvature
+        A scale that is bent: curvature × value² is added.
+    wave, wave_period, wave_phase_rad
+        An eccentric scale: wave × sin(2π value / period + phase) is added.
     rate_per_s, settling_per_s
         An offset that grows at first at this rate, and how fast that settles.
     hum, hum_Hz, hum_phase_rad
@@ -46,6 +53,11 @@ class Sensor:
     hum_Hz: float = 3.0
     hum_phase_rad: float = 0.0
     jumps: tuple[tuple[float, float], ...] = ()
+    gain_rate_per_s: float = 0.0
+    curvature: float = 0.0
+    wave: float = 0.0
+    wave_period: float = 5.0
+    wave_phase_rad: float = 0.0
 
 
 def _position() -> Sensor:
@@ -61,7 +73,9 @@ class Sensors:
     """The sensors of a rig: one per column, and the sampling that they share.
 
     `jitter_s` is the standard deviation of the true sampling instants about the clock that is
-    written down; it is cut off so that instants stay in order.
+    written down; it is cut off so that instants stay in order. `f_in_of_f_out` is the share of
+    f_out that the sensor of f_in picks up, and the other way round. `transducers` are what
+    channels do before they are sampled.
     """
 
     rate_Hz: float = 1000.0
@@ -71,6 +85,11 @@ class Sensors:
     f_in_N: Sensor = field(default_factory=_force)
     f_out_N: Sensor = field(default_factory=_force)
     motor_speed_rpm: Sensor = field(default_factory=Sensor)
+    f_in_of_f_out: float = 0.0
+    f_out_of_f_in: float = 0.0
+    x_out_transducer: Transducer = field(default_factory=Transducer)
+    f_in_transducer: Transducer = field(default_factory=Transducer)
+    f_out_transducer: Transducer = field(default_factory=Transducer)
 
 
 PERFECT = Sensors(x_in_mm=Sensor(), x_out_mm=Sensor(), f_in_N=Sensor(), f_out_N=Sensor())
@@ -89,12 +108,29 @@ def measure(clean: CleanRun, sensors: Sensors, *, seed: int) -> dict[str, Floats
     limit = 0.45 / sensors.rate_Hz
     instants = time_s + np.clip(sensors.jitter_s * rng.standard_normal(time_s.size), -limit, limit)
     columns = {"time_s": time_s}
-    for name, values in clean.columns.items():
+    for name, values in _sensed(clean, sensors).items():
         if name != "time_s":
             sensor = getattr(sensors, name)
             true = np.interp(instants - sensor.delay_s, clean.time_s, values)
             wrong = _systematic(true, sensor, instants)
             columns[name] = _read_out(wrong, sensor, sensors.rate_Hz, rng)
+    return columns
+
+
+def _sensed(clean: CleanRun, sensors: Sensors) -> dict[str, Floats]:
+    """Return what the sensors make of a clean run before they are sampled."""
+    columns = dict(clean.columns)
+    if sensors.f_in_of_f_out:
+        columns["f_in_N"] = columns["f_in_N"] + sensors.f_in_of_f_out * clean.columns["f_out_N"]
+    if sensors.f_out_of_f_in:
+        columns["f_out_N"] = columns["f_out_N"] + sensors.f_out_of_f_in * clean.columns["f_in_N"]
+    for name, transducer in (
+        ("x_out_mm", sensors.x_out_transducer),
+        ("f_in_N", sensors.f_in_transducer),
+        ("f_out_N", sensors.f_out_transducer),
+    ):
+        if name in columns:
+            columns[name] = transduced(transducer, clean.time_s, columns[name])
     return columns
 
 
@@ -105,7 +141,10 @@ def _systematic(true: Floats, sensor: Sensor, instants: Floats) -> Floats:
     at = np.array([time for time, _ in sensor.jumps])
     off = np.array([0.0, *(by for _, by in sensor.jumps)])
     lost = off[np.searchsorted(at, instants, side="right")]
-    return np.asarray(sensor.gain * true + sensor.offset + drift + hum + lost)
+    gain = sensor.gain + sensor.gain_rate_per_s * instants
+    turn = 2.0 * np.pi * true / sensor.wave_period + sensor.wave_phase_rad
+    bent = sensor.curvature * true**2 + sensor.wave * np.sin(turn)
+    return np.asarray(gain * true + sensor.offset + drift + hum + lost + bent)
 
 
 def _read_out(true: Floats, sensor: Sensor, rate_Hz: float, rng: np.random.Generator) -> Floats:

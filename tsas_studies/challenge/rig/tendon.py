@@ -6,17 +6,19 @@ columns = measure(clean, Sensors(), seed=1)          # in tsas_studies.challenge
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import astuple, dataclass, field
 
 import numpy as np
 
 from tsas_studies.challenge.rig import continuum
 from tsas_studies.challenge.rig.courses import ONE, Course, course, settled
 from tsas_studies.challenge.rig.drive_end import DriveEnd, sensed_force, tendon_end
-from tsas_studies.challenge.rig.friction import Friction, over_time
+from tsas_studies.challenge.rig.friction import Friction, over_time, over_travel
 from tsas_studies.challenge.rig.give import Give, path
 from tsas_studies.challenge.rig.load_end import LoadEnd, load
 from tsas_studies.challenge.rig.motions import Floats, Motion
+from tsas_studies.challenge.rig.restraint import Restraint, restraint
+from tsas_studies.challenge.rig.surface import Surface, SurfaceLaw
 
 
 @dataclass(frozen=True)
@@ -43,7 +45,9 @@ class Rig:
         Displacement over which friction reverses; small enough to pass for Coulomb.
     sheath_compliance_ratio
         How much more the sheath is compressed than the tendon stretches.
-    drive_end, friction, load_end, give
+    stiffening_per_N
+        The tendon's force over its stretch s is F0 + (exp(stiffening · k s) − 1) / stiffening.
+    drive_end, friction, surface, load_end, restraint, give
         What else there is along the way; nothing by default. The load's end needs a spring.
     """
 
@@ -63,9 +67,12 @@ class Rig:
     preload_course: Course = ONE
     presliding_length_mm: float = 5e-6
     sheath_compliance_ratio: float = 0.0
+    stiffening_per_N: float = 0.0
     drive_end: DriveEnd = field(default_factory=DriveEnd)
     friction: Friction = field(default_factory=Friction)
+    surface: Surface = field(default_factory=Surface)
     load_end: LoadEnd = field(default_factory=LoadEnd)
+    restraint: Restraint = field(default_factory=Restraint)
     give: Give = field(default_factory=Give)
     cells: int = 200
 
@@ -118,13 +125,14 @@ def simulate(
     """
     if (rig.load == "spring") != (distal is None):
         raise ValueError(f"load {rig.load!r} and distal values do not go together")
-    if rig.load != "spring" and rig.load_end != LoadEnd():
+    if rig.load != "spring" and (rig.load_end, rig.restraint) != (LoadEnd(), Restraint()):
         raise ValueError(f"load {rig.load!r} has no load end")
     t, x_in = motion.time_s, motion.x_in_mm
     tendon = _tendon(rig)
     q = _distal_end(rig, t, tendon.c_out, distal)
     mu = rig.friction_coefficient * course(rig.friction_course, t) * course(rig.bend_course, t)
     mu = mu * over_time(rig.friction, rig.total_bend_rad, t, session_s)
+    mu = mu * over_travel(rig.friction, x_in)
     position = tendon_end(rig.drive_end, x_in)
     t_in, t_out, u_end, guide, solved = continuum.run(tendon, path(rig.give), t, position, mu, q)
     if solved < t.size:
@@ -135,7 +143,7 @@ def simulate(
             "time_s": t,
             "x_in_mm": x_in,
             "x_out_mm": u_end - tendon.c_out * (t_out - rig.preload_N),
-            "f_in_N": sensed_force(rig.drive_end, position, t_in),
+            "f_in_N": sensed_force(rig.drive_end, t, position, t_in),
             "f_out_N": t_out - rig.load_end.friction_before_N * guide,
         }
     )
@@ -145,8 +153,8 @@ def _tendon(rig: Rig) -> continuum.Tendon:
     """Return the rig for the solver."""
     EA, f = rig.axial_stiffness, rig.friction
     s = continuum.nodes(rig.sheath_length_mm, rig.cells)
-    c_out = rig.distal_length_mm / EA
-    p, r = _ends_of(rig.load, rig.load_stiffness_N_per_mm, c_out)
+    c_out, kL = rig.distal_length_mm / EA, rig.load_stiffness_N_per_mm
+    p, r = _ends_of(rig.load, kL, c_out)
     return continuum.Tendon(
         bend=_bend_per_node(rig, s),
         k=EA / np.diff(s) / (1.0 + rig.sheath_compliance_ratio),
@@ -154,14 +162,18 @@ def _tendon(rig: Rig) -> continuum.Tendon:
         p=p,
         r=r,
         preload=rig.preload_N,
-        delta=rig.presliding_length_mm + f.presliding_mm,
+        delta=rig.presliding_length_mm + f.presliding_mm + f.round_mm,
         c_out=c_out,
-        load=load(rig.load_end, rig.load_stiffness_N_per_mm),
+        load=load(rig.load_end, kL, restraint(rig.restraint, kL, rig.preload_N)),
         asymmetry=f.asymmetry,
         excess=f.stribeck_excess,
         velocity=f.stribeck_velocity_mm_per_s,
         exponent=f.load_exponent,
         viscous=f.viscous_N_s_per_mm * np.diff(_edges(s)) / rig.sheath_length_mm,
+        surface=SurfaceLaw(*astuple(rig.surface)),
+        round=f.round_mm > 0.0,
+        stiffening=rig.stiffening_per_N,
+        shift=f.shift_per_N,
     )
 
 
@@ -196,5 +208,7 @@ def _bend_per_node(rig: Rig, s: Floats) -> Floats:
     fine = np.linspace(0.0, rig.sheath_length_mm, 20001)
     curvature = course(rig.bend_profile, fine / rig.sheath_length_mm)
     angle = np.concatenate(([0.0], np.cumsum(0.5 * (curvature[1:] + curvature[:-1]))))
-    bend = np.diff(np.interp(_edges(s), fine, angle / angle[-1]))
-    return np.asarray(rig.total_bend_rad * bend)
+    edges = _edges(s)
+    bend = np.diff(np.interp(edges, fine, angle / angle[-1]))
+    at = 0.5 * (edges[1:] + edges[:-1]) / rig.sheath_length_mm
+    return np.asarray(rig.total_bend_rad * bend * (1.0 + rig.friction.slope_along * (at - 0.5)))

@@ -61,7 +61,7 @@ def test_compliance_is_a_length_of_free_tendon():
 def test_a_rough_spot_is_felt_where_it_is():
     end = DriveEnd(rough_N=3.0, rough_at_mm=6.0, rough_width_mm=0.5)
     x = sine().x_in_mm
-    more = sensed_force(end, x, np.zeros(x.size))
+    more = sensed_force(end, sine().time_s, x, np.zeros(x.size))
     assert np.abs(more[np.abs(x - 6.0) > 2.0]).max() < 1e-6
     for i in np.flatnonzero(np.diff(np.sign(x - 6.0)))[:4]:
         assert more[i] == pytest.approx(math.copysign(3.0, x[i + 1] - x[i]), rel=1e-3)

@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 
 from tsas_cli.effects import EFFECTS
+from tsas_studies.challenge.near import NEAR_FULL
 from tsas_studies.challenge.rig.hidden import CATALOGUE, hide
 from tsas_studies.challenge.rig.motions import nested
+from tsas_studies.challenge.rig.near import NEAR
 from tsas_studies.challenge.rig.sensors import Sensors, measure
 from tsas_studies.challenge.rig.tendon import Rig, simulate
 from tsas_studies.challenge.rig.unknowns import UNKNOWNS
@@ -26,8 +28,10 @@ def test_the_rig_knows_the_whole_catalogue_and_nothing_of_it_is_unknown():
     assert {name: set(places) for name, places in CATALOGUE.items()} == {
         name: set(parameters) for name, parameters in NEUTRAL.items()
     }
-    assert not set(CATALOGUE) & set(UNKNOWNS)
+    assert not set(CATALOGUE) & (set(UNKNOWNS) | set(NEAR))
+    assert not set(UNKNOWNS) & set(NEAR)
     assert len(UNKNOWNS) >= 6
+    assert len(NEAR) >= 20
 
 
 @pytest.mark.parametrize("name", CATALOGUE)
@@ -52,6 +56,33 @@ def test_every_parameter_acts(name, parameter, value):
     rig, sensors = hide(name, {parameter: value}, RIG, replace(SENSORS))
     columns = recorded(rig, sensors)
     assert any(np.any(columns[c] != PLAIN[c]) for c in ("x_out_mm", "f_in_N", "f_out_N"))
+    np.testing.assert_array_equal(columns["x_in_mm"], PLAIN["x_in_mm"])
+
+
+SHOWN = [
+    (name, {**{p: np.mean(bounds) for p, bounds in size.drawn.items()}, p: value or 0.4})
+    for name, sizes in NEAR_FULL.items()
+    for size in sizes
+    for p, value in size.scaled.items()
+]
+
+
+@pytest.mark.parametrize("name", NEAR)
+def test_a_near_cause_of_no_size_changes_nothing_to_the_last_bit(name):
+    parameters = {p: 0.0 for size in NEAR_FULL[name] for p in size.scaled}
+    columns = recorded(*hide(name, parameters, RIG, SENSORS))
+    for column, values in PLAIN.items():
+        np.testing.assert_array_equal(columns[column], values)
+
+
+@pytest.mark.parametrize(("name", "parameters"), SHOWN)
+def test_every_size_of_a_near_cause_acts(name, parameters):
+    columns = recorded(*hide(name, parameters, RIG, SENSORS))
+    shows = max(
+        np.std(columns[c] - PLAIN[c]) / unit
+        for c, unit in (("x_out_mm", 0.1), ("f_in_N", 1.0), ("f_out_N", 1.0))
+    )
+    assert 0.1 < shows < 5.0
     np.testing.assert_array_equal(columns["x_in_mm"], PLAIN["x_in_mm"])
 
 

@@ -1,0 +1,44 @@
+"""Which effects are a fair description of a cause that is not in the catalogue.
+
+Right in kind is a name of the same place and of the same dependence by another law: it sends nobody
+to another part of the rig. A cause that is not listed has no fair name.
+"""
+
+from collections.abc import Mapping
+
+RIGHT_KIND: Mapping[str, frozenset[str]] = {
+    cause: frozenset((cause, *effects))
+    for cause, effects in {
+        "position_dependent_friction": (),
+        "uneven_friction": (),
+        "load_damping": ("load_friction",),
+        "load_hysteresis": ("load_friction",),
+        "load_relaxation": ("load_damping",),
+        "load_ripple": (),
+        "drive_inertia": (),
+        "drive_damping": ("drive_friction",),
+        "force_sensor_curvature": ("force_sensor_gain",),
+        "force_sensor_hysteresis": (),
+        "force_crosstalk": (),
+        "sensor_lag": ("channel_delay",),
+        "rational_stribeck": ("stribeck_friction",),
+        "root_stribeck": ("stribeck_friction",),
+        "log_speed_friction": ("viscous_friction",),
+        "ageing_friction": ("stribeck_friction",),
+        "breakaway_friction": ("stribeck_friction",),
+        "round_presliding": ("presliding",),
+        "friction_cycles": ("friction_drift",),
+        "wearing_friction": ("friction_drift",),
+        "strand_roll": ("position_dependent_friction",),
+        "shifting_sheath": ("load_dependent_friction",),
+        "pulley_friction": ("drive_friction",),
+        "slotted_clamp": ("load_hysteresis",),
+        "force_gain_drift": ("force_sensor_drift",),
+        "force_sensor_creep": ("force_sensor_hysteresis",),
+        "thermal_offset": ("force_sensor_drift",),
+        "eccentric_encoder": ("load_ripple",),
+        "amplifier_filter": ("channel_delay", "sensor_lag"),
+        "warm_friction": ("friction_drift",),
+        "end_stop": ("load_spring_nonlinearity",),
+    }.items()
+}
