@@ -1,6 +1,9 @@
 # Everything that must hold before a change goes in: style, types, floors of the house, behaviour.
 # A module's tests stay together, since they share what takes long to make; three at a time on two
-# cores, since some wait for a browser or a viewer.
+# cores, since some wait for a browser or a viewer. Byte code is kept even where the environment says
+# otherwise: to make that of the tests takes each of the three half a minute.
+test test-large: export PYTHONDONTWRITEBYTECODE :=
+
 .PHONY: test
 test: setup  ## ruff, mypy, import-linter and pytest
 	@$(BIN)/ruff check --quiet

@@ -18,8 +18,10 @@ NOT_RUN_HERE = {
     "docs/sweep.md": ["sweep", "sweep"],
     "docs/tracking.md": ["track"],
 }
+# Of the others these take longest: `make test-large` runs them too.
+LARGE = ("tutorial.md", "compare.md", "object-storage.md")
 SHOWING = [
-    page
+    pytest.param(page, id=page.name, marks=pytest.mark.large if page.name in LARGE else ())
     for page in PAGES
     if any(b.kind == "calls" and not b.long for b in blocks(page.read_text(encoding="utf-8")))
 ]
@@ -57,7 +59,7 @@ $ tsas close-loop --out x
 """
 
 
-@pytest.mark.parametrize("page", SHOWING, ids=lambda page: page.name)
+@pytest.mark.parametrize("page", SHOWING)
 def test_what_is_shown_is_what_is_printed(page):
     wrong = [difference(call) for call in run_page(page, long=False) if not call.holds]
     assert not wrong, "\n".join([*wrong, "`make docs-refill` writes what is true"])

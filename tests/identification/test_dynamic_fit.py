@@ -75,6 +75,7 @@ def noisy():
     return calibrated(recorded("speeds-50", noise_N=0.03, noise_mm=2e-3, seed=1))
 
 
+@pytest.mark.large  # tests/commands/test_calibrate.py finds some of them each time
 def test_all_constants_of_friction_are_found_where_they_show(quiet):
     """One of eight intervals of 95 % may just miss."""
     found = fitted(quiet)

@@ -37,7 +37,12 @@ def in_pieces(time_s, values, rows, beside, known=None):
     return {name: np.concatenate([getattr(f, name) for f in found]) for name in names}, known
 
 
-@pytest.mark.parametrize("rows", [3000, 5000, 12_000])
+LARGE = pytest.mark.large
+
+
+@pytest.mark.parametrize(
+    "rows", [3000, pytest.param(5000, marks=LARGE), pytest.param(12_000, marks=LARGE)]
+)
 @pytest.mark.parametrize("shape", [motion, triangle, dwells])
 def test_it_is_the_signal_that_is_cleaned_as_a_whole(shape, rows):
     true = shape(TIME_S)

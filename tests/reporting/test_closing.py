@@ -180,6 +180,7 @@ def test_settings_that_are_not_the_defaults_are_said(folder, tmp_path, whole):
     assert "they are not the defaults" in text
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_beside_a_dataset_the_page_shows_both(folder, tmp_path):
     dataset = make_dataset(tmp_path / "dataset", ("a",), samples=400)
     calibrated = make_calibration(dataset, tmp_path / "cal")
@@ -191,6 +192,7 @@ def test_beside_a_dataset_the_page_shows_both(folder, tmp_path):
     assert f"tsas report {dataset} {calibrated} {folder} --out" in text
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_beside_tracked_runs_the_page_shows_both(folder, tmp_path):
     tracked = make_tracking(tmp_path / "tracked", ("pid",))
     titles = headings(page(read_inputs([tracked, folder])), 2)

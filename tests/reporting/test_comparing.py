@@ -124,6 +124,7 @@ def test_other_recordings_are_shown_each_on_its_own(changed):
     assert 'id="residuals"' not in changed
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_simulation_stands_beside_a_diagnosis_without_values(folders, tmp_path):
     dataset = folders[0].parent / "data-smooth"
     simulated = make_simulation(dataset, tmp_path / "simulated")

@@ -80,6 +80,7 @@ def test_a_named_cause_says_what_it_is_with_equation_and_gain(sections):
     assert "indistinguishable from" not in text
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_an_equation_of_several_lines_stands_on_several(dataset, tmp_path):
     folder = make_diagnosis(dataset, tmp_path / "d", "named")
     content = json.loads((folder / "diagnosis.json").read_text())
@@ -138,6 +139,7 @@ def maps_of(text):
     return [label for label in labels(text) if label.startswith("Mean error over")]
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_errors_that_do_not_stand_out_of_the_noise_are_not_drawn(dataset, tmp_path):
     flat = {"from": 0.0, "to": 1.0, "label": "", "mean": 0.1, "sd": 1.0, "samples": 9}
     maps = {"before": {"f_in_N": {"x_in_mm": [flat, flat]}}}
@@ -154,6 +156,7 @@ def test_maps_show_the_strongest_first_and_only_the_channels_that_are_off(sectio
     assert not any("f_out_N:" in label for label in shown)
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_an_error_that_shows_only_in_the_scatter_is_drawn(dataset, tmp_path):
     bins = [
         {"from": k, "to": k + 1.0, "label": "", "mean": 0.0, "sd": sd, "samples": 9}
@@ -174,6 +177,7 @@ def test_candidates_stand_in_order_with_gain_and_test_statistic(sections):
     assert "bend_drift" not in sections["named"]
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_what_is_named_and_its_rivals_are_marked_wherever_they_rank(dataset, tmp_path):
     alone = {"gain_percent": 9.0, "test_statistic": 3.0, "convincing": True, "mean_square": 1.0}
     tried = [{"effects": ["backlash", f"e{n}"], **alone} for n in range(12)]
@@ -187,6 +191,7 @@ def test_what_is_named_and_its_rivals_are_marked_wherever_they_rank(dataset, tmp
     assert ">backlash + e10<" not in named
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_where_screening_left_nothing_the_page_says_so(dataset, tmp_path):
     text = written(make_diagnosis(dataset, tmp_path / "d", "unexplained", candidates=[]))
     assert "Screening left no effect" in text
@@ -202,6 +207,7 @@ def test_effects_that_look_alike_are_grouped_and_hidden_ones_named(sections):
 
 
 @pytest.mark.parametrize("key", ["reason", "next_experiment"])
+@pytest.mark.usefixtures("undrawn")
 def test_sentences_from_the_file_show_as_text(dataset, tmp_path, key):
     text = written(make_diagnosis(dataset, tmp_path / "d", "undecided", **{key: "<i>`a`\x07"}))
     assert "&lt;i&gt;<code>a</code>\\x07" in text
@@ -225,11 +231,13 @@ def test_the_section_does_not_change_when_nothing_changed(dataset, sections, tmp
     assert written(make_diagnosis(dataset, tmp_path / "d", "named")) == sections["named"]
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_the_commands_repeat_the_diagnosis(dataset, tmp_path):
     folder = make_diagnosis(dataset, tmp_path / "d", "undecided")
     assert f"tsas diagnose {dataset} --out {folder}" in page(read_inputs([folder]))
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_the_command_names_the_model_that_was_diagnosed(dataset, tmp_path):
     model = {"file": "my model.toml", "sha256": "ab" * 32}
     folder = make_diagnosis(dataset, tmp_path / "d", "undecided", model=model)
@@ -238,6 +246,7 @@ def test_the_command_names_the_model_that_was_diagnosed(dataset, tmp_path):
     assert "ab" * 32 in text
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_diagnosis_of_minimal_keys_makes_a_page(dataset, tmp_path):
     folder = make_diagnosis(dataset, tmp_path / "d", "named")
     content = json.loads((folder / "diagnosis.json").read_text())

@@ -110,11 +110,13 @@ def test_a_simulation_alone_says_how_near_it_is(dataset, tmp_path):
     assert facts(it)["tension at the load"] == ("", "2.0", "")
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_recordings_alone_have_no_verdict(dataset):
     assert of(dataset) is None
     assert 'class="glance"' not in page(read_inputs([dataset]))
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_it_stands_above_everything_else(dataset, tmp_path):
     text = page(read_inputs([make_diagnosis(dataset, tmp_path / "d", "named")]))
     assert text.index('class="verdict">Tendon outside') < text.index("<nav")

@@ -7,7 +7,13 @@ import pytest
 from tests.reporting.pages import PAGES, chromium
 
 PHONE, DESK = 390, 1280
-LOOKS = [(width, scheme) for width in (PHONE, DESK) for scheme in ("light", "dark")]
+LARGE = pytest.mark.large
+LOOKS = [
+    (PHONE, "dark"),
+    (DESK, "light"),
+    pytest.param(PHONE, "light", marks=LARGE),
+    pytest.param(DESK, "dark", marks=LARGE),
+]
 # What is inside of a picture counts as one image with its text.
 JUDGE = "axe.run({exclude: [['svg > *']]}, {resultTypes: ['violations']})"
 # Folds are opened first: what is folded away is neither drawn nor judged.

@@ -131,6 +131,7 @@ def test_each_phase_is_drawn_in_its_own_colour(whole):
         assert f"stroke: var(--{colour})" in loop
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_dataset_alone_makes_a_page_that_says_what_is_missing(folders):
     alone = page(read_inputs([folders["dataset"]]))
     Outline(alone)
@@ -139,6 +140,7 @@ def test_a_dataset_alone_makes_a_page_that_says_what_is_missing(folders):
     assert alone.count("<svg") == 4
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_of_many_findings_of_one_kind_the_first_are_shown_and_the_others_named(folders, tmp_path):
     findings = [FINDING | {"run": f"r{n}", "sentence": f"`x` in r{n}"} for n in range(9)]
     alone = FINDING | {"severity": "error", "sentence": "broken"}
@@ -157,6 +159,7 @@ def test_every_section_is_on_the_page():
     assert {Path(section.__code__.co_filename) for section in SECTIONS} == made
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_note_says_for_which_rows_it_holds(folders, tmp_path):
     content = json.loads((folders["calibration"] / "calibration.json").read_text())
     content["stiffness"][0]["note"] = "few samples"
@@ -166,6 +169,7 @@ def test_a_note_says_for_which_rows_it_holds(folders, tmp_path):
 
 
 @pytest.mark.parametrize("same", [True, False])
+@pytest.mark.usefixtures("undrawn")
 def test_the_commands_name_the_calibrated_model_only_where_it_was_simulated(
     folders, tmp_path, same
 ):
@@ -187,6 +191,7 @@ def test_a_simulation_of_the_data_sheet_is_repeated_without_a_model(whole):
     assert "--model" not in command
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_missing_values_of_a_stage_are_dashes(folders, tmp_path):
     content = json.loads((folders["calibration"] / "calibration.json").read_text())
     for row in content["stiffness"]:
@@ -196,6 +201,7 @@ def test_missing_values_of_a_stage_are_dashes(folders, tmp_path):
     Outline(page(read_inputs([tmp_path])))
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_conditions_that_were_told_are_those_of_the_page_and_no_command_repeats_them(
     folders, tmp_path
 ):

@@ -89,6 +89,7 @@ def test_scores_stand_with_their_spread_and_the_limit_where_it_was_reached(whole
     assert (header[-1], last[-1]) == ("at its limit [%]", "12.5 ± 0.5")
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_without_one_at_its_limit_there_is_no_such_column(spoiled):
     def never(content):
         for result in content["results"]:
@@ -125,6 +126,7 @@ def test_adapted_parameters_stand_between_their_bounds(whole):
     assert rows[5][:2] == ["φ̂3", "disturbed"]
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_controller_that_does_not_adapt_has_no_such_part(tmp_path):
     text = page(read_inputs([make_tracking(tmp_path / "tracked", ("pid", "sliding-mode"))]))
     Outline(text)
@@ -132,6 +134,7 @@ def test_a_controller_that_does_not_adapt_has_no_such_part(tmp_path):
     assert len(labels(text)) == 2 * (len(PICTURES) - 1)
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_one_controller_under_one_condition_is_a_page_too(spoiled):
     def one(content):
         content.update(results=content["results"][:1], seeds=[1, 1], notes=[])
@@ -228,6 +231,7 @@ def test_a_file_that_is_not_whole_is_refused(spoiled, spoil, said):
         read_inputs([spoiled(spoil)])
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_the_commands_of_the_page_make_the_same_page(tmp_path, monkeypatch, capsys):
     """What `tsas track` writes, the page reads; and its commands do it again."""
 

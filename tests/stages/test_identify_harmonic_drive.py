@@ -32,6 +32,7 @@ HIDDEN = {
         {"channel_delay": {"motor_lag_s": 0.004}, "backlash": {"play_mm": 0.05}},
     ),
 }
+LARGE = pytest.mark.large  # of them "lag and play" has both
 SURE = 4.0  # standard errors, in which no seed of these may miss
 
 
@@ -43,7 +44,7 @@ def identified(folder, *made, **options):
     return summary
 
 
-@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("seed", [1, pytest.param(2, marks=LARGE)])
 def test_nothing_is_named_where_nothing_is_hidden(tmp_path, seed):
     summary = identified(tmp_path, STIFF, seed=seed)
     assert summary["diagnosis"]["verdict"] == "sufficient"
@@ -53,7 +54,10 @@ def test_nothing_is_named_where_nothing_is_hidden(tmp_path, seed):
     assert gain["interval_low"] < 0.0236492 < gain["interval_high"] + 2e-6
 
 
-@pytest.mark.parametrize("hidden", HIDDEN)
+@pytest.mark.parametrize(
+    "hidden",
+    [pytest.param(name, marks=LARGE if name in ("lag", "play") else ()) for name in HIDDEN],
+)
 def test_what_is_hidden_is_named_with_its_size(tmp_path, hidden):
     drive, gear, truth = HIDDEN[hidden]
     found = identified(tmp_path, drive, gear)["diagnosis"]

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from tests.physics.test_any_rig import any_motion, any_rig
+from tests.physics.test_any_rig import any_motion, any_rig, blocks
 from tsas_cli.physics.closed_form.branches import branches
 from tsas_cli.physics.ends import DriveInput, ends_of
 from tsas_cli.physics.phases import UNCONVERGED
@@ -89,10 +89,10 @@ def every_load(rng, x_in, f_in, f_out, x_out, preload):
 
 
 @pytest.mark.parametrize("samples", [16, 60, 300])
-@pytest.mark.parametrize("first", SEEDS[::100])
-def test_samples_settle(first, samples):
+@pytest.mark.parametrize("seeds", blocks(SEEDS, 100))
+def test_samples_settle(seeds, samples):
     count, unsettled = 0, 0
-    for seed in range(first, first + 100):
+    for seed in seeds:
         rng = np.random.default_rng(seed)
         nominal = any_rig(rng)
         x_in = any_motion(rng, nominal, samples)

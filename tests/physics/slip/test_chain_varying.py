@@ -30,7 +30,7 @@ def wandering(rng, scale, samples=80):
     return np.interp(np.linspace(0.0, knots.size - 1.0, samples), np.arange(knots.size), knots)
 
 
-@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("seed", [1, pytest.param(2, marks=pytest.mark.large)])
 @pytest.mark.parametrize(
     ("drive", "load"),
     [

@@ -29,7 +29,7 @@ def verdicts(start):
     return {row.what[6]: row.verdict for row in group().rows if row.what[7:].startswith(start)}
 
 
-@pytest.mark.parametrize("name", ["a", "c", "d"])
+@pytest.mark.parametrize("name", ["a", *(pytest.param(n, marks=pytest.mark.large) for n in "cd")])
 def test_f_in_at_p_is_that_of_a_profile_of_tensions(name):
     """P is found again by lowering a profile's tension until the drive is back by as much."""
     profile = Profile(quasi_static_rig(PAPER, name))
