@@ -32,7 +32,8 @@ def kernel(function: Function) -> Function:
     )
     compiled = compiler(function)
     if folder is not None:
-        _go_on_without_room(compiled._cache)  # noqa: SLF001 # numba offers no other way
+        # numba offers no other way
+        _go_on_without_room(compiled._cache)  # type: ignore[attr-defined] # noqa: SLF001
     return cast("Function", compiled)
 
 

@@ -161,7 +161,7 @@ class Findings(Record):
         return frozenset(named.effect for named in self.named)
 
     @property
-    def says_unexplained(self) -> bool:
+    def warns(self) -> bool:
         """Whether it says that something is there which it has no name for."""
         warned = ("partly", "stand_in", "unexplained")
         return self.verdict in warned or self.remainder.unexplained

@@ -3,37 +3,23 @@
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
 
 from pydantic import Field
 
 from tsas_cli.recordings.manifest import parse
 from tsas_cli.records.base import Record
-from tsas_cli.records.diagnosis import DiagnosisFile, Findings, NamedCause
+from tsas_cli.records.diagnosis import DiagnosisFile, Findings
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import read_json
 
 FILE = DiagnosisFile.FILE
 LOG = "entry.json"
-SubmittedVerdict = Literal[
-    "named", "ambiguous", "partly", "stand_in", "sufficient", "unexplained", "undecided"
-]
 
 
 class SubmittedDiagnosis(Findings):
-    """What a tool says about one case, and how long that took.
+    """What a tool says about one case, and how long that took."""
 
-    `stand_ins` are effects that fit best of what is catalogued and are not said to be there.
-    """
-
-    verdict: SubmittedVerdict  # type: ignore[assignment] # more of them
-    stand_ins: tuple[NamedCause, ...] = ()
     seconds: float | None = Field(default=None, ge=0)
-
-    @property
-    def warns(self) -> bool:
-        """Whether it says that a name does not hold, or that something has none."""
-        return self.says_unexplained or self.verdict in ("partly", "stand_in")
 
 
 class Log(Record):

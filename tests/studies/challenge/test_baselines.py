@@ -89,7 +89,7 @@ def test_errors_are_those_of_the_plain_formula(tmp_path):
 def test_nothing_named_is_sufficient(tmp_path):
     write_diagnosis(tmp_path / "case", trial((), np.zeros((4, 0)), (), np.ones(4)), {})
     said = read_entry(tmp_path, ["case"]).diagnoses["case"]
-    assert (said.verdict, said.named, said.says_unexplained) == ("sufficient", (), False)
+    assert (said.verdict, said.named, said.warns) == ("sufficient", (), False)
 
 
 def test_every_effect_has_a_term_and_every_run_the_same(sealed):

@@ -75,6 +75,42 @@ CATALOGUE: Mapping[str, Mapping[str, Place]] = {
         "f_out_delay_s": ("f_out_N", "delay_s"),
         "x_out_delay_s": ("x_out_mm", "delay_s"),
     },
+    "position_dependent_friction": {"slope_per_mm": ("friction", "slope_per_mm")},
+    "uneven_friction": {"slope": ("friction", "slope_along")},
+    "load_damping": {"coefficient_N_s_per_mm": ("restraint", "damping_N_s_per_mm")},
+    "load_hysteresis": {
+        "force_N": ("restraint", "hysteresis_N"),
+        "travel_mm": ("restraint", "hysteresis_mm"),
+    },
+    "load_relaxation": {
+        "share": ("restraint", "relaxing_share"),
+        "time_s": ("restraint", "relaxing_s"),
+    },
+    "load_ripple": {
+        "sine_mm": ("restraint", "ripple_sine_mm"),
+        "cosine_mm": ("restraint", "ripple_cosine_mm"),
+        "period_mm": ("restraint", "ripple_period_mm"),
+    },
+    "drive_inertia": {"mass_kg": ("drive_end", "mass_kg")},
+    "drive_damping": {"coefficient_N_s_per_mm": ("drive_end", "damping_N_s_per_mm")},
+    "force_sensor_curvature": {
+        "f_in_per_N": ("f_in_N", "curvature"),
+        "f_out_per_N": ("f_out_N", "curvature"),
+    },
+    "force_sensor_hysteresis": {
+        "f_in_share": ("f_in_transducer", "hysteresis_share"),
+        "f_out_share": ("f_out_transducer", "hysteresis_share"),
+        "span_N": ("transducers", "hysteresis_span"),
+    },
+    "force_crosstalk": {
+        "f_in_of_f_out": ("f_in_of_f_out",),
+        "f_out_of_f_in": ("f_out_of_f_in",),
+    },
+    "sensor_lag": {
+        "f_in_lag_s": ("f_in_transducer", "lag_s"),
+        "f_out_lag_s": ("f_out_transducer", "lag_s"),
+        "x_out_lag_s": ("x_out_transducer", "lag_s"),
+    },
 }
 
 

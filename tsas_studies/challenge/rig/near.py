@@ -2,36 +2,25 @@
 
 They act where effects of the catalogue act, by another law, and are easily taken for one.
 
-position_dependent_friction  friction in the sheath that changes over the stroke
-uneven_friction              friction that is larger at one end of the sheath
-load_damping                 a damper beside the load's spring
-load_hysteresis              inner friction of the load's spring
-load_relaxation              a viscoelastic load
-load_ripple                  an eccentric pulley at the load
-drive_inertia, drive_damping a mass and a damper between the force sensor and the tendon
-force_sensor_curvature       a force sensor with a bent scale
-force_sensor_hysteresis      a force sensor that reads less while the force grows
-force_crosstalk              a force sensor that picks up the other force
-sensor_lag                   first-order low pass of a channel
-rational_stribeck            friction that falls with speed, with a long tail
-root_stribeck                friction that falls with speed, with a sharp peak
-log_speed_friction           friction that grows with the logarithm of the speed
-ageing_friction              friction that grows with the time at rest
-breakaway_friction           a tendon that sticks after each rest
-round_presliding             presliding of Bouc and Wen
-friction_cycles              friction that follows a temperature up and down
-wearing_friction             friction that grows with the travel
-strand_roll                  friction that is periodic in the displacement
-shifting_sheath              a sheath whose bend grows with the tension
-stiffening_tendon            a tendon that gets stiffer as it stretches
-pulley_friction              friction of a pulley at the drive, by the tension on it
-slotted_clamp                an anchor of the load's spring that slides in a slot
-force_gain_drift             a force sensor whose gain drifts
-force_sensor_creep           a force sensor that reads part of a change late
-thermal_offset               an offset of f_in that follows a temperature up and down
-eccentric_encoder            an encoder at the load that turns off its centre
-encoder_play                 play between the load and its encoder
-amplifier_filter             a Butterworth filter of second order on one force
+rational_stribeck   friction that falls with speed, with a long tail
+root_stribeck       friction that falls with speed, with a sharp peak
+log_speed_friction  friction that grows with the logarithm of the speed
+ageing_friction     friction that grows with the time at rest
+breakaway_friction  a tendon that sticks after each rest
+round_presliding    presliding of Bouc and Wen
+friction_cycles     friction that follows a temperature up and down
+wearing_friction    friction that grows with the travel
+strand_roll         friction that is periodic in the displacement
+shifting_sheath     a sheath whose bend grows with the tension
+stiffening_tendon   a tendon that gets stiffer as it stretches
+pulley_friction     friction of a pulley at the drive, by the tension on it
+slotted_clamp       an anchor of the load's spring that slides in a slot
+force_gain_drift    a force sensor whose gain drifts
+force_sensor_creep  a force sensor that reads part of a change late
+thermal_offset      an offset of f_in that follows a temperature up and down
+eccentric_encoder   an encoder at the load that turns off its centre
+encoder_play        play between the load and its encoder
+amplifier_filter    a Butterworth filter of second order on one force
 """
 
 from collections.abc import Mapping
@@ -39,42 +28,6 @@ from collections.abc import Mapping
 from tsas_studies.challenge.rig.unknowns import Place
 
 NEAR: Mapping[str, Mapping[str, Place]] = {
-    "position_dependent_friction": {"slope_per_mm": ("friction", "slope_per_mm")},
-    "uneven_friction": {"slope": ("friction", "slope_along")},
-    "load_damping": {"coefficient_N_s_per_mm": ("restraint", "damping_N_s_per_mm")},
-    "load_hysteresis": {
-        "force_N": ("restraint", "hysteresis_N"),
-        "travel_mm": ("restraint", "hysteresis_mm"),
-    },
-    "load_relaxation": {
-        "share": ("restraint", "relaxing_share"),
-        "time_s": ("restraint", "relaxing_s"),
-    },
-    "load_ripple": {
-        "sine_mm": ("restraint", "ripple_sine_mm"),
-        "cosine_mm": ("restraint", "ripple_cosine_mm"),
-        "period_mm": ("restraint", "ripple_period_mm"),
-    },
-    "drive_inertia": {"mass_kg": ("drive_end", "mass_kg")},
-    "drive_damping": {"coefficient_N_s_per_mm": ("drive_end", "damping_N_s_per_mm")},
-    "force_sensor_curvature": {
-        "f_in_per_N": ("f_in_N", "curvature"),
-        "f_out_per_N": ("f_out_N", "curvature"),
-    },
-    "force_sensor_hysteresis": {
-        "f_in_share": ("f_in_transducer", "hysteresis_share"),
-        "f_out_share": ("f_out_transducer", "hysteresis_share"),
-        "span_N": ("transducers", "hysteresis_span"),
-    },
-    "force_crosstalk": {
-        "f_in_of_f_out": ("f_in_of_f_out",),
-        "f_out_of_f_in": ("f_out_of_f_in",),
-    },
-    "sensor_lag": {
-        "f_in_lag_s": ("f_in_transducer", "lag_s"),
-        "f_out_lag_s": ("f_out_transducer", "lag_s"),
-        "x_out_lag_s": ("x_out_transducer", "lag_s"),
-    },
     "rational_stribeck": {
         "excess": ("surface", "rational_excess"),
         "velocity_mm_per_s": ("surface", "rational_velocity_mm_per_s"),
