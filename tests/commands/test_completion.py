@@ -35,7 +35,8 @@ def completed(monkeypatch, *words):
 @pytest.mark.parametrize(
     ("words", "offered"),
     [
-        (("explain", "drive_"), ["drive_compliance", "drive_friction", "drive_ripple"]),
+        (("explain", "drive_r"), ["drive_ripple"]),
+        (("explain", "free_"), ["free_tendon"]),
         (("track", "--controller", "pid,s"), ["pid,sliding-mode"]),
         (("track", "--reference", "s"), ["sine", "steps"]),
         (("simulate", "--dynamics", "l"), ["lugre"]),

@@ -117,9 +117,8 @@ def test_friction_that_depends_on_the_tension_bends_the_capstan(direction, expon
 @pytest.mark.parametrize("slope", [1.5, -1.5])
 def test_uneven_friction_shapes_dead_bands_and_not_full_slip(slope):
     """The profile of tension, whose friction up to s is a (s + slope (s² − s)/2), bent by hand."""
-    way = np.concatenate(
-        (np.linspace(25, 60, 200), np.linspace(60, 46, 150), np.linspace(46, 57, 99))
-    )
+    legs = ((25, 60, 60), (60, 46, 45), (46, 57, 30))
+    way = np.concatenate([np.linspace(*leg) for leg in legs])
     profile, x_in, f_out = Profile(GROUP_A, 4001), [], []
     reached = profile.s + 0.5 * slope * (profile.s**2 - profile.s)
     for tension in way:
@@ -129,14 +128,14 @@ def test_uneven_friction_shapes_dead_bands_and_not_full_slip(slope):
         f_out.append(profile.tension[-1])
     rig = with_values(GROUP_A, {"uneven_friction.slope": slope})
     uneven, even = (
-        simulate(r, DriveInput(np.array(x_in)), on_mesh=True, nodes=400) for r in (rig, GROUP_A)
+        simulate(r, DriveInput(np.array(x_in)), on_mesh=True, nodes=200) for r in (rig, GROUP_A)
     )
-    np.testing.assert_allclose(uneven.f_in_N, way, atol=0.06)
-    np.testing.assert_allclose(uneven.f_out_N, f_out, atol=0.06)
-    assert np.abs(even.f_in_N - way).max() > 0.6
+    np.testing.assert_allclose(uneven.f_in_N, way, atol=0.12)  # at first, of the mesh
+    np.testing.assert_allclose(uneven.f_out_N, f_out, atol=1e-3)
+    assert np.abs(even.f_in_N - way).max() > 2.0
     slips = even.phase == 1
-    assert slips.sum() > 80
-    np.testing.assert_allclose(uneven.f_out_N[slips], even.f_out_N[slips], atol=0.5)
+    assert slips.sum() > 30
+    np.testing.assert_allclose(uneven.f_out_N[slips], even.f_out_N[slips], atol=0.06)
 
 
 def test_a_compressed_sheath_is_a_softer_tendon():

@@ -21,7 +21,7 @@ import numpy as np
 from tsas_cli.effects.effect import Effect, Parameter
 from tsas_cli.numerics.compiled import kernel
 
-LONGEST_MM, SHORTEST_MM, PERIODS = 60.0, 5.0, 12  # each start costs runs of the slip chain
+LONGEST_MM, SHORTEST_MM, PERIODS = 60.0, 5.0, 8  # each start costs runs of the slip chain
 
 
 class LoadRipple(NamedTuple):
