@@ -11,6 +11,7 @@ import numpy as np
 from tsas_studies.challenge.bench import RUNS, SENSORS, Bench, data_sheet, drawn_bench, recorded
 from tsas_studies.challenge.cases import Case
 from tsas_studies.challenge.rig.recordings import DATA_SHEET, Run, write_dataset
+from tsas_studies.challenge.sums import CASES, DATASET, sums_of
 from tsas_studies.challenge.truth import FILE
 
 IDS, RECORDINGS = 0, 1  # streams of chance
@@ -53,8 +54,9 @@ def make(
     for name, case in sorted(((_id(case), case) for case in cases), key=itemgetter(0)):
         rng = np.random.default_rng([case.seed, case.number, RECORDINGS])
         bench = drawn_bench(rng)
-        _write(out / "cases" / name / "dataset", case, bench, rate_Hz, rng)
-        answers[name] = _answer(case, bench)
+        dataset = out / CASES / name / DATASET
+        _write(dataset, case, bench, rate_Hz, rng)
+        answers[name] = _answer(case, bench) | {"sums": sums_of(dataset)}
         step()
     sealed = {
         "format": 1,

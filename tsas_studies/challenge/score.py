@@ -12,6 +12,7 @@ from tsas_cli.support.files import sha256_of
 from tsas_studies.challenge.entry import Entry, read_entry
 from tsas_studies.challenge.figures import ScoreRate, by_effect, figures, of_size, sizes
 from tsas_studies.challenge.judge import NO_ANSWER, Judged, judge
+from tsas_studies.challenge.sums import check_recordings
 from tsas_studies.challenge.truth import CATALOGUE, FILE, Kind, Truth, read_truth
 
 CLASSES = ("exact", "rivals", "false", "none", NO_ANSWER)
@@ -23,15 +24,18 @@ def score_entries(sealed: Path, folders: Iterable[Path]) -> dict[str, Any]:
     Raises
     ------
     InputError
-        The answers or a diagnosis are malformed, or an entry is given twice.
+        The answers or a diagnosis are malformed, an entry is given twice, or the recordings of a
+        case are not those that were sealed.
     """
     answers = read_truth(sealed)
+    check_recordings(sealed, answers)
+    sums = {name: case.sums for name, case in answers.cases.items()}
     entries: dict[str, Any] = {}
     for folder in folders:
         label = str(folder)
         if label in entries:
             raise InputError("the entry is given twice", where=folder)
-        entries[label] = score(answers, read_entry(folder, answers.cases))
+        entries[label] = score(answers, read_entry(folder, answers.cases, sums))
     kinds = Counter(case.kind for case in answers.cases.values())
     single = {e for case in answers.cases.values() if case.kind == "one" for e in case.effects}
     return {

@@ -45,6 +45,7 @@ class TrueCase(Record):
     size: float | None = Field(default=None, ge=0)
     hidden: tuple[HiddenEffect, ...] = ()
     unknown: str | None = None
+    sums: dict[str, str] = Field(default_factory=dict)  # SHA-256 of each file of its dataset
 
     @property
     def effects(self) -> frozenset[str]:
