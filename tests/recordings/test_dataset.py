@@ -1,3 +1,4 @@
+import copy
 import hashlib
 from pathlib import Path
 
@@ -7,6 +8,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
+from tsas_cli.identification.prepared import prepare
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.manifest import Manifest
 from tsas_cli.recordings.recording import Recording
@@ -314,3 +316,25 @@ def test_other_conditions_are_said_of_every_run_and_stay_on_record(dataset: Path
         whole.under(bend=1.0)
     with pytest.raises(InputError, match=r"dataset\.toml: preload_N: input should be greater"):
         whole.under(preload_N=-1.0)
+
+
+def test_what_is_read_cannot_be_written_to(dataset):
+    """Each access reads the file: what was written into an array was lost without a word."""
+    data = read_dataset(dataset)
+    for recording in (data["a"], next(iter(data))):
+        with pytest.raises(ValueError, match="read-only"):
+            recording.columns["x_in_mm"][0] = 5.0
+        with pytest.raises(ValueError, match="read-only"):
+            recording.time_s[:] += 1.0
+        with pytest.raises(TypeError, match="does not support item assignment"):
+            recording.columns["x_in_mm"] = recording.time_s
+        copied = copy.deepcopy(recording)
+        copied.columns["x_in_mm"][0] = 5.0
+        assert copied.frame()["x_in_mm"].iloc[0] == 5.0
+        assert copied.run == recording.run
+
+
+def test_kernels_are_given_arrays_that_they_were_compiled_for(dataset):
+    run = prepare(read_dataset(dataset)["a"])
+    driving = (conditioned.values for conditioned in run.conditioned.values())  # noqa: PD011
+    assert all(v.flags.writeable for v in (run.time_s, *run.measured.values(), *driving))

@@ -13,6 +13,7 @@ import pytest
 import tsas_cli as tsas
 from tests.counted import Counted
 from tests.test_app import HEAVY
+from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import read_model
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.recording import Recording
@@ -325,7 +326,7 @@ def test_two_models_in_memory_are_compared(folder):
     """Half the friction: a half less, and nothing else differs."""
     model = tsas.calibrate(folder).model
     halved = tuple(
-        replace(e, value=0.5 * e.value) if e.name == "friction_coefficient" else e
+        Estimate(e.name, 0.5 * e.value, e.unit, "given") if e.name == "friction_coefficient" else e
         for e in model.estimates
     )
     pairs = tsas.compare(model, replace(model, estimates=halved)).record.parameters

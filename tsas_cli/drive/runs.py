@@ -138,7 +138,7 @@ def _channel(recording: Recording, name: str) -> Floats:
             expected="a value in each row: the drive remembers what was asked of it",
             remedy="cut the run before the gap",
         )
-    return values
+    return np.array(values)  # a copy, as kernels compile anew for read-only arrays
 
 
 def _noise(values: Floats) -> float:

@@ -153,7 +153,7 @@ def prepare(
     """
     run, columns = recording.run, recording.columns
     driving = driving_columns(run, list(columns))
-    time_s = recording.time_s
+    time_s = np.array(recording.time_s)  # a copy, as kernels compile anew for read-only arrays
     for name in driving:
         if np.isfinite(columns[name]).sum() < 2:
             raise is_empty(run, name)
@@ -225,7 +225,7 @@ def nothing_to_compare(run: Run, columns: Sequence[str]) -> InputError:
 def _recorded(values: Floats) -> Floats:
     """Return a channel with NaN in place of interpolated samples, which carry no information."""
     between = interpolated(values)
-    return np.where(between, math.nan, values) if between.any() else values
+    return np.where(between, math.nan, values) if between.any() else np.array(values)
 
 
 def _in_gap(time_s: Floats, values: Floats) -> Mask:

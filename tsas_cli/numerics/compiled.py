@@ -32,8 +32,7 @@ def kernel(function: Function) -> Function:
     )
     compiled = compiler(function)
     if folder is not None:
-        # numba offers no other way
-        _go_on_without_room(compiled._cache)  # type: ignore[attr-defined] # noqa: SLF001
+        _go_on_without_room(cast("Any", compiled)._cache)  # noqa: SLF001 # no other way
     return cast("Function", compiled)
 
 

@@ -100,11 +100,11 @@ class Dataset:
             There is no such run, or its file is wrong (`read_recording`).
         """
         entry = self.only([run]).runs[0]
-        return read_recording(self.folder, entry)
+        return read_recording(self.folder, entry).read_only()
 
     def __iter__(self) -> Iterator[Recording]:
         """Iterate over the recordings, in the order of the manifest."""
-        return (read_recording(self.folder, run) for run in self.runs)
+        return (read_recording(self.folder, run).read_only() for run in self.runs)
 
     def header(self, folder: Path | None) -> dict[str, Any]:
         """Return what the JSON that a stage writes into `folder` says of the dataset, by key.

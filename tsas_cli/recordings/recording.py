@@ -1,7 +1,8 @@
 """One run in memory: its manifest entry, and its columns."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -26,7 +27,8 @@ class Recording:
     run
         Its manifest entry: conditions, file, checksum.
     columns
-        float64 arrays of shape (n,) by name (with the unit); null is NaN.
+        float64 arrays of shape (n,) by name (with the unit); null is NaN. Those of a dataset are
+        read-only: each access reads its file, so that a change would be lost.
     """
 
     run: Run
@@ -37,6 +39,16 @@ class Recording:
         time_s = self.time_s
         names = " ".join(self.columns)
         return f"run {self.run.id}: {time_s.size} rows, {time_s[-1] - time_s[0]:.6g} s: {names}"
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """Let it be copied and pickled, with columns that may be written to."""
+        return type(self), (self.run, {n: np.array(v) for n, v in self.columns.items()})
+
+    def read_only(self) -> "Recording":
+        """Return it with columns that cannot be written to."""
+        for values in self.columns.values():
+            values.flags.writeable = False
+        return replace(self, columns=MappingProxyType(self.columns))
 
     def frame(self) -> "pd.DataFrame":
         """Return the columns as a pandas table with `time_s` as its index."""

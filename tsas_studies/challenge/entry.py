@@ -11,6 +11,7 @@ from tsas_cli.records.base import Record
 from tsas_cli.records.diagnosis import DiagnosisFile, Findings
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import read_json
+from tsas_studies.challenge.sums import check_said
 
 FILE = DiagnosisFile.FILE
 LOG = "entry.json"
@@ -36,16 +37,18 @@ class Entry:
     no_answer: dict[str, str]
 
 
-def read_entry(folder: Path, cases: Iterable[str]) -> Entry:
-    """Read what a tool says about the given cases.
+def read_entry(
+    folder: Path, cases: Iterable[str], sums: Mapping[str, Mapping[str, str]] | None = None
+) -> Entry:
+    """Read what a tool says about the given cases; `sums` are those of their recordings, by case.
 
     Raises
     ------
     InputError
-        The folder is missing, a diagnosis in it is malformed, or it answers a case that is not
-        in the set.
+        The folder is missing, a diagnosis in it is malformed or of other recordings, or it answers
+        a case that is not in the set.
     """
-    cases = list(cases)
+    cases, sums = list(cases), sums or {}
     if not folder.is_dir():
         raise InputError("no such folder", where=folder, expected=f"a folder with ID/{FILE}")
     for path in sorted(folder.glob(f"*/{FILE}")):
@@ -58,13 +61,15 @@ def read_entry(folder: Path, cases: Iterable[str]) -> Entry:
     there = [case for case in cases if (folder / case / FILE).is_file()]
     reasons = _reasons(folder / LOG)
     return Entry(
-        {case: _read_diagnosis(folder / case / FILE) for case in there},
+        {case: _read_diagnosis(folder / case / FILE, sums.get(case, {})) for case in there},
         {case: reasons.get(case, f"no {FILE}") for case in cases if case not in there},
     )
 
 
-def _read_diagnosis(path: Path) -> SubmittedDiagnosis:
-    return parse(SubmittedDiagnosis, read_json(path), path)
+def _read_diagnosis(path: Path, sums: Mapping[str, str]) -> SubmittedDiagnosis:
+    content = read_json(path)
+    check_said(content, sums, path)
+    return parse(SubmittedDiagnosis, content, path)
 
 
 def _reasons(path: Path) -> Mapping[str, str]:

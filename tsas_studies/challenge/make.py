@@ -14,6 +14,7 @@ from tsas_studies.challenge.cases import Case
 from tsas_studies.challenge.conditions import drawn_nuisance
 from tsas_studies.challenge.near import MIXED
 from tsas_studies.challenge.rig.recordings import DATA_SHEET, Run, write_dataset
+from tsas_studies.challenge.sums import CASES, DATASET, sums_of
 from tsas_studies.challenge.truth import BEYOND, FILE
 
 IDS, RECORDINGS, NUISANCE = 0, 1, 2  # streams of chance
@@ -57,8 +58,9 @@ def make(
         rng = np.random.default_rng([case.seed, case.number, RECORDINGS])
         nuisance = drawn_nuisance(case.conditions, RUNS, _other(case, NUISANCE))
         bench = replace(drawn_bench(rng), nuisance=nuisance)
-        _write(out / "cases" / name / "dataset", case, bench, rate_Hz, rng)
-        answers[name] = _answer(case, bench)
+        dataset = out / CASES / name / DATASET
+        _write(dataset, case, bench, rate_Hz, rng)
+        answers[name] = _answer(case, bench) | {"sums": sums_of(dataset)}
         step()
     sealed = {
         "format": 1,

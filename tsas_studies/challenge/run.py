@@ -18,6 +18,7 @@ from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import read_json, stage_folder, write_json, write_sums
 from tsas_studies.challenge.baselines import bic, sparse, training
 from tsas_studies.challenge.entry import FILE, LOG
+from tsas_studies.challenge.sums import CASES, DATASET
 
 Diagnose = Callable[[Path, Path], None]
 
@@ -44,9 +45,18 @@ def case_folders(sealed: Path) -> list[Path]:
     Raises
     ------
     InputError
-        There is none.
+        There is none, or one is a link.
     """
-    folders = sorted(path.parent for path in sealed.glob("cases/*/dataset"))
+    folders = sorted(path.parent for path in sealed.glob(f"{CASES}/*/{DATASET}"))
+    for folder in folders:
+        for path in (sealed / CASES, folder, folder / DATASET):
+            if path.is_symlink():
+                raise InputError(
+                    "is a link",
+                    where=path,
+                    expected="the folder of a case",
+                    remedy="make the set again with `tsas challenge make`",
+                )
     if not folders:
         raise InputError(
             "no cases/ID/dataset here",

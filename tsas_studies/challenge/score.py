@@ -14,6 +14,7 @@ from tsas_studies.challenge.conditions import CONDITIONS, told
 from tsas_studies.challenge.entry import Entry, read_entry
 from tsas_studies.challenge.figures import RECOGNISED, ScoreRate, by_effect, figures, of_size, sizes
 from tsas_studies.challenge.judge import NO_ANSWER, Judged, judge
+from tsas_studies.challenge.sums import check_recordings
 from tsas_studies.challenge.truth import CATALOGUE, FILE, Truth, read_truth
 
 CLASSES = ("exact", "rivals", "false", "none", NO_ANSWER)
@@ -25,15 +26,18 @@ def score_entries(sealed: Path, folders: Iterable[Path]) -> dict[str, Any]:
     Raises
     ------
     InputError
-        The answers or a diagnosis are malformed, or an entry is given twice.
+        The answers or a diagnosis are malformed, an entry is given twice, or the recordings of a
+        case are not those that were sealed.
     """
     answers = read_truth(sealed)
+    check_recordings(sealed, answers)
+    sums = {name: case.sums for name, case in answers.cases.items()}
     entries: dict[str, Any] = {}
     for folder in folders:
         label = str(folder)
         if label in entries:
             raise InputError("the entry is given twice", where=folder)
-        entries[label] = score(answers, read_entry(folder, answers.cases))
+        entries[label] = score(answers, read_entry(folder, answers.cases, sums))
     kinds = Counter(told(case.kind, case.conditions) for case in answers.cases.values())
     order = (told(kind, conditions) for conditions in CONDITIONS for kind in get_args(Kind))
     single = {e for case in answers.cases.values() if case.kind == "one" for e in case.effects}

@@ -51,6 +51,7 @@ class TrueCase(Record):
     unknown: str | None = None
     unknown_parameters: dict[str, Any] = Field(default_factory=dict)
     conditions: Conditions = "clean"
+    sums: dict[str, str] = Field(default_factory=dict)  # SHA-256 of each file of its dataset
 
     @property
     def effects(self) -> frozenset[str]:

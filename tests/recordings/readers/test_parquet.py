@@ -1,11 +1,15 @@
+import base64
+
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
+from pyarrow.parquet import encryption
 
 from tsas_cli.recordings.guess.opening import open_file
 from tsas_cli.recordings.readers import batches, parquet, read
 from tsas_cli.recordings.readers.options import ReadOptions
+from tsas_cli.recordings.run_files import read_columns
 from tsas_cli.support.errors import InputError
 
 
@@ -85,3 +89,51 @@ def test_a_null_of_a_dictionary_is_a_gap(tmp_path):
     pq.write_table(pa.table({"f": column}), tmp_path / "a.parquet")
     table = read(tmp_path / "a.parquet", ReadOptions(), ["f"])
     np.testing.assert_array_equal(table.columns["f"], [1.0, np.nan, 3.0])
+
+
+class Keys(encryption.KmsClient):
+    """A key service that wraps nothing, for tests."""
+
+    def __init__(self, _):
+        super().__init__()
+
+    def wrap_key(self, key_bytes, _):
+        return base64.b64encode(key_bytes)
+
+    def unwrap_key(self, wrapped_key, _):
+        return base64.b64decode(wrapped_key)
+
+
+def encrypted(path, columns, *, plaintext_footer=True):
+    """Write a recording of which some columns are encrypted."""
+    settings = encryption.EncryptionConfiguration(
+        footer_key="f", column_keys={"c": columns}, plaintext_footer=plaintext_footer
+    )
+    properties = encryption.CryptoFactory(Keys).file_encryption_properties(
+        encryption.KmsConnectionConfig(), settings
+    )
+    time_s = np.arange(500) / 100.0
+    table = pa.table({"time_s": time_s, "x_in_mm": np.sin(time_s), "f_in_N": np.cos(time_s)})
+    with pq.ParquetWriter(path, table.schema, encryption_properties=properties) as writer:
+        writer.write_table(table)
+    return path
+
+
+@pytest.mark.parametrize("column", ["time_s", "f_in_N"])
+def test_an_encrypted_column_is_told_and_not_left_out(tmp_path, column):
+    """The guess proposed a map without it, and said that it was ready."""
+    path = encrypted(tmp_path / "a.parquet", [column])
+    with pytest.raises(InputError, match=f"column {column} is encrypted; .* without it"):
+        open_file(path)
+    with pytest.raises(InputError, match=r"a\.parquet: holds encrypted columns; .* decrypt them"):
+        read(path, ReadOptions(), [column])
+    assert read(path, ReadOptions(), ["x_in_mm"]).columns["x_in_mm"].size == 500
+    with pytest.raises(InputError, match="holds encrypted columns"):
+        read_columns(path)
+
+
+def test_an_encrypted_footer_is_told(tmp_path):
+    path = encrypted(tmp_path / "a.parquet", ["f_in_N"], plaintext_footer=False)
+    for opened in (open_file, read_columns, lambda at: read(at, ReadOptions(), ["x_in_mm"])):
+        with pytest.raises(InputError, match="holds encrypted columns"):
+            opened(path)

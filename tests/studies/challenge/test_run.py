@@ -8,7 +8,7 @@ import pytest
 from tests.studies.challenge.made import case, diagnosis, tool, write_set
 from tsas_cli.support.errors import InputError
 from tsas_studies.challenge.entry import read_entry
-from tsas_studies.challenge.run import run_cases
+from tsas_studies.challenge.run import case_folders, run_cases
 from tsas_studies.challenge.stages import run_set
 
 NAMES = ("answers", "dies", "fails", "refuses", "silent", "well")
@@ -35,6 +35,15 @@ def test_what_went_wrong_is_written_down_and_the_others_answer(tmp_path):
     well = json.loads((tmp_path / "entry" / "well" / "diagnosis.json").read_text(encoding="utf-8"))
     assert 0.0 <= well.pop("seconds") < 60.0
     assert well == diagnosis("backlash")
+
+
+@pytest.mark.parametrize("linked", ["cases", "cases/a", "cases/a/dataset"])
+def test_a_case_that_is_a_link_is_not_followed(tmp_path, linked):
+    sealed, elsewhere = write_set(tmp_path / "set", {"a": case()}), tmp_path / "elsewhere"
+    (sealed / linked).rename(elsewhere)
+    (sealed / linked).symlink_to(elsewhere, target_is_directory=True)
+    with pytest.raises(InputError, match="is a link; expected the folder of a case"):
+        case_folders(sealed)
 
 
 def test_a_set_without_cases(tmp_path):

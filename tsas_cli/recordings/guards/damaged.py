@@ -1,10 +1,26 @@
-"""The error for a damaged file."""
+"""The error for a damaged file, or an encrypted one."""
 
 from tsas_cli.support.errors import InputError
 
 
+class EncryptedError(InputError):
+    """The file, or a column of it, is encrypted."""
+
+
+def is_encrypted(error: Exception) -> bool:
+    """Return whether the library for Parquet fails at an encrypted file or column."""
+    return "crypt" in str(error)
+
+
 def damaged(path: object, kind: str, error: Exception) -> InputError:
     """Return the error for a file that the library for its format refuses."""
+    if is_encrypted(error):
+        return EncryptedError(
+            "holds encrypted columns",
+            where=path,
+            expected="columns that can be read",
+            remedy="decrypt them, and write the file again without encryption",
+        )
     reason = str(error).splitlines()[0] if str(error) else type(error).__name__
     return InputError(
         f"cannot be read as {kind} ({reason})",

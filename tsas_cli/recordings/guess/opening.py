@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+from tsas_cli.recordings.guards.damaged import EncryptedError
 from tsas_cli.recordings.readers import names, read, tables
 from tsas_cli.recordings.readers.options import ReadOptions
 from tsas_cli.recordings.readers.table import ColumnSource, ColumnTable
@@ -141,6 +142,13 @@ def _all_or_each(
         for source in sources:
             try:
                 tables[source] = read(path, options, [source])
+            except EncryptedError as error:
+                raise InputError(
+                    f"column {source} is encrypted",
+                    where=path,
+                    expected="columns that can be read",
+                    remedy="decrypt it, or write a map by hand without it (docs/ingest.md)",
+                ) from error
             except InputError as error:
                 if source != "time":
                     left_out[str(source)] = error.what

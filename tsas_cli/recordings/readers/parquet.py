@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import pyarrow as pa
 
-from tsas_cli.recordings.guards.damaged import damaged
+from tsas_cli.recordings.guards.damaged import damaged, is_encrypted
 from tsas_cli.recordings.parquet_files import check_size, open_parquet
 from tsas_cli.recordings.readers.options import ReadOptions
 from tsas_cli.recordings.readers.table import (
@@ -70,6 +70,10 @@ def batches(
         raise out_of_memory(path) from error
     except (pa.ArrowException, UnicodeDecodeError) as error:  # the latter is of names
         raise damaged(path, "Parquet", error) from error
+    except OSError as error:
+        if is_encrypted(error):
+            raise damaged(path, "Parquet", error) from error
+        raise
 
 
 def names(path: Path, options: ReadOptions) -> Sequence[str]:
@@ -80,6 +84,10 @@ def names(path: Path, options: ReadOptions) -> Sequence[str]:
             return list(file.schema_arrow.names)
     except (pa.ArrowException, UnicodeDecodeError) as error:  # the latter is of names
         raise damaged(path, "Parquet", error) from error
+    except OSError as error:
+        if is_encrypted(error):
+            raise damaged(path, "Parquet", error) from error
+        raise
 
 
 def _values(table: pa.Table, name: str, order: int) -> npt.NDArray[Any]:

@@ -1,0 +1,61 @@
+"""The checksums of a case's recordings: sealed with the truth, and compared when it is scored."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from tsas_cli.support.errors import InputError
+from tsas_cli.support.files import sha256_of
+from tsas_studies.challenge.truth import Truth
+
+CASES, DATASET = "cases", "dataset"  # in the folder of a set, and in that of a case
+
+
+def sums_of(dataset: Path) -> dict[str, str]:
+    """Return the SHA-256 of every file of a dataset, by its path in it."""
+    files = sorted(path for path in dataset.rglob("*") if path.is_file())
+    return {path.relative_to(dataset).as_posix(): sha256_of(path) for path in files}
+
+
+def check_recordings(sealed: Path, answers: Truth) -> None:
+    """Refuse a set whose recordings are not those that were sealed.
+
+    Recordings that are not beside the answers any more are not looked at, nor those of a set that
+    was made without checksums.
+
+    Raises
+    ------
+    InputError
+        A file of a case has changed, is missing, or belongs to another case.
+    """
+    for name, case in answers.cases.items():
+        dataset = sealed / CASES / name / DATASET
+        if case.sums and dataset.is_dir():
+            there = sums_of(dataset)
+            for file, digest in case.sums.items():
+                if there.get(file) != digest:
+                    raise InputError(
+                        "is not the recording that was sealed for this case",
+                        where=dataset / file,
+                        remedy="make the set again with `tsas challenge make`",
+                    )
+
+
+def check_said(said: object, sums: Mapping[str, str], where: Path) -> None:
+    """Refuse a diagnosis that names the checksums of other recordings than those of its case.
+
+    Raises
+    ------
+    InputError
+        It does.
+    """
+    source = said.get("dataset") if isinstance(said, dict) else None
+    hashes = source.get("hashes") if isinstance(source, dict) else None
+    if not sums or not isinstance(hashes, dict):
+        return
+    for file, digest in hashes.items():
+        if str(digest).lower() != sums.get(file):
+            raise InputError(
+                f"was made of another {file} than that of this case",
+                where=where,
+                remedy="run the tool on the set's own recordings",
+            )
