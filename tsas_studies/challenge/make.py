@@ -58,7 +58,7 @@ def make(
         nuisance = drawn_nuisance(case.conditions, RUNS, _other(case, NUISANCE))
         bench = replace(drawn_bench(rng), nuisance=nuisance)
         _write(out / "cases" / name / "dataset", case, bench, rate_Hz, rng)
-        answers[name] = _answer(case, bench)
+        answers[name] = answer(case, bench)
         step()
     sealed = {
         "format": 1,
@@ -103,7 +103,7 @@ def _write(
     )
 
 
-def _answer(case: Case, bench: Bench) -> dict[str, Any]:
+def answer(case: Case, bench: Bench) -> dict[str, Any]:
     """Return what is hidden in a case, and what else its rig is like."""
     causes = [{"effect": h.cause, "parameters": dict(h.parameters)} for h in case.hidden]
     beyond = case.kind in BEYOND
