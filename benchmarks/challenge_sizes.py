@@ -19,6 +19,7 @@ from tsas_studies.challenge.rig.motions import Motion
 from tsas_studies.challenge.rig.sensors import Sensor, Sensors
 from tsas_studies.challenge.rig.sensors import measure as measured
 from tsas_studies.challenge.rig.tendon import simulate
+from tsas_studies.challenge.truth import BEYOND
 
 RATE_HZ = 50.0
 SIZE = {"f_in_N": 0.1, "f_out_N": 0.1, "x_out_mm": 0.01}  # weights of the refit: the noise
@@ -85,7 +86,12 @@ def shown(seed: int = 0) -> Iterable[tuple[Hidden, Mapping[str, float]]]:
     """Yield every variant at full size, and the causes outside the catalogue, with what is left."""
     bench = drawn_bench(np.random.default_rng(seed))
     full = [Hidden(effect, variant) for effect, variants in FULL.items() for variant in variants]
-    beyond = [case.hidden[0] for case in cases(seed) if case.kind == "unknown"]
+    beyond = [
+        case.hidden[0]
+        for case in cases(seed)
+        if case.conditions == "clean" and case.kind in BEYOND
+        if case.size == 1.0 and len(case.hidden) == 1
+    ]
     for hidden in (*full, *beyond):
         yield hidden, left(hidden, bench)
 

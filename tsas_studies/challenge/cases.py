@@ -173,7 +173,10 @@ def cases(seed: int) -> tuple[Case, ...]:
         Case(f"nothing {k + 1} in slow noise", "nothing", 0.0, (), seed, SLOW_FROM + k, "slow")
         for k in range(NOTHING)
     ]
-    return (*clean, *slow, *(replace(case, conditions="realistic") for case in clean))
+    realistic = [
+        replace(case, name=f"{case.name}, realistic", conditions="realistic") for case in clean
+    ]
+    return (*clean, *slow, *realistic)
 
 
 def part(of: Iterable[Case]) -> tuple[Case, ...]:

@@ -60,7 +60,7 @@ def make(
         bench = replace(drawn_bench(rng), nuisance=nuisance)
         dataset = out / CASES / name / DATASET
         _write(dataset, case, bench, rate_Hz, rng)
-        answers[name] = _answer(case, bench) | {"sums": sums_of(dataset)}
+        answers[name] = answer(case, bench) | {"sums": sums_of(dataset)}
         step()
     sealed = {
         "format": 1,
@@ -105,7 +105,7 @@ def _write(
     )
 
 
-def _answer(case: Case, bench: Bench) -> dict[str, Any]:
+def answer(case: Case, bench: Bench) -> dict[str, Any]:
     """Return what is hidden in a case, and what else its rig is like."""
     causes = [{"effect": h.cause, "parameters": dict(h.parameters)} for h in case.hidden]
     beyond = case.kind in BEYOND

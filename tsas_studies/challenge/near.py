@@ -56,8 +56,8 @@ def _size(one_sign: bool = True, /, **values: float | tuple[float, float]) -> Si
 
 
 NEAR_FULL: Mapping[str, tuple[Size, ...]] = {
-    "position_dependent_friction": (_size(False, slope_per_mm=0.005),),
-    "uneven_friction": (_size(False, slope=1.0),),
+    "position_dependent_friction": (_size(False, slope_per_mm=0.006),),
+    "uneven_friction": (_size(False, slope=1.2),),
     "load_damping": (_size(coefficient_N_s_per_mm=0.08),),
     "load_hysteresis": (_size(force_N=1.0, travel_mm=(0.5, 2.0)),),
     "load_relaxation": (_size(share=0.1, time_s=(0.5, 2.0)),),
@@ -66,7 +66,7 @@ NEAR_FULL: Mapping[str, tuple[Size, ...]] = {
     "drive_damping": (_size(coefficient_N_s_per_mm=0.1),),
     "force_sensor_curvature": (_size(False, f_in_per_N=1e-3), _size(False, f_out_per_N=1e-3)),
     "force_sensor_hysteresis": (
-        _size(f_in_share=0.08, span_N=(5.0, 15.0)), _size(f_out_share=0.08, span_N=(5.0, 15.0)),
+        _size(f_in_share=0.1, span_N=(5.0, 15.0)), _size(f_out_share=0.1, span_N=(5.0, 15.0)),
     ),
     "force_crosstalk": (_size(False, f_in_of_f_out=0.04), _size(False, f_out_of_f_in=0.04)),
     "sensor_lag": (_size(f_in_lag_s=0.02), _size(f_out_lag_s=0.04), _size(x_out_lag_s=0.008)),
@@ -82,7 +82,7 @@ NEAR_FULL: Mapping[str, tuple[Size, ...]] = {
     "wearing_friction": (_size(False, per_mm=0.001),),
     "strand_roll": (_size(share=0.06, period_mm=(3.0, 8.0), phase_rad=PHASE),),
     "shifting_sheath": (_size(False, per_N=0.003),),
-    "stiffening_tendon": (_size(per_N=0.016),),
+    "stiffening_tendon": (_size(per_N=0.02),),
     "pulley_friction": (_size(share=0.03),),
     "slotted_clamp": (_size(play_mm=1.5, up_N=(38.0, 42.0), down_N=(32.0, 36.0)),),
     "force_gain_drift": (

@@ -65,3 +65,23 @@ def test_a_rough_spot_is_felt_where_it_is():
     assert np.abs(more[np.abs(x - 6.0) > 2.0]).max() < 1e-6
     for i in np.flatnonzero(np.diff(np.sign(x - 6.0)))[:4]:
         assert more[i] == pytest.approx(math.copysign(3.0, x[i + 1] - x[i]), rel=1e-3)
+
+
+def test_mass_and_damper_behind_the_sensor_are_felt_by_it_alone():
+    m = sine(omega_rad_s=2.0, periods=1.0, rate_Hz=400.0)
+    heavy, plain = (
+        simulate(Rig(cells=30, drive_end=end), m).columns
+        for end in (DriveEnd(mass_kg=20.0, damping_N_s_per_mm=0.05), DriveEnd())
+    )
+    inside = slice(5, -5)
+    speed, acceleration = 20.0 * np.sin(2.0 * m.time_s), 40.0 * np.cos(2.0 * m.time_s)
+    more = (heavy["f_in_N"] - plain["f_in_N"])[inside]
+    np.testing.assert_allclose(more, (0.05 * speed + 0.02 * acceleration)[inside], atol=2e-3)
+    np.testing.assert_array_equal(heavy["f_out_N"], plain["f_out_N"])
+
+
+def test_a_pulley_at_the_drive_takes_its_share_of_the_tension_both_ways():
+    columns = run(pulley_share=0.05)
+    ratio = columns["f_in_N"] / PERFECT["f_in_N"]
+    assert ratio[20 : TURN + 1] == pytest.approx(1.05)
+    assert ratio[TURN + 1 : TURN + 300] == pytest.approx(0.95)

@@ -1,0 +1,83 @@
+"""What holds the load back, each against its closed form with f_out = F0 + kL x + what it adds."""
+
+import math
+
+import numpy as np
+import pytest
+
+from tsas_studies.challenge.rig.motions import Motion, clock, through
+from tsas_studies.challenge.rig.restraint import Restraint
+from tsas_studies.challenge.rig.tendon import Rig, simulate
+
+KL, F0 = 1.579, 25.0
+MOTION = through([10.0, 2.0, 10.0, 2.0], speed_mm_s=4.0, rate_Hz=400.0)
+
+
+def added(motion=MOTION, **options):
+    """Return time, x_out and what the restraint adds to the spring's force."""
+    rig = Rig(cells=30, restraint=Restraint(**options))
+    columns = simulate(rig, motion).columns
+    x = columns["x_out_mm"]
+    return motion.time_s, x, columns["f_out_N"] - F0 - KL * x
+
+
+def test_nothing_holds_back_by_itself():
+    _, _, force = added()
+    assert np.abs(force).max() < 1e-6
+
+
+def test_a_damper_pulls_by_the_speed():
+    t, x, force = added(damping_N_s_per_mm=0.1)
+    np.testing.assert_allclose(force[1:], 0.1 * np.diff(x) / np.diff(t), atol=1e-6)
+    assert force.max() > 0.3
+    assert force.min() < -0.3
+
+
+def test_inner_friction_costs_work_in_a_closed_loop_and_turns_over_its_length():
+    _, x, force = added(hysteresis_N=1.2, hysteresis_mm=0.4)
+    tops = np.flatnonzero(MOTION.x_in_mm > 10.0 - 1e-9)
+    loop = slice(tops[0], tops[-1] + 1)
+    stroke = np.ptp(x[loop])
+    # Twice force times stroke less what turning round saves, 2 · force · length at each reversal.
+    expected = 2.0 * 1.2 * (stroke - 2.0 * 0.4)
+    assert np.trapezoid(force[loop], x[loop]) == pytest.approx(expected, rel=0.02)
+    assert force[tops[0]] == pytest.approx(1.2, rel=1e-3)
+
+
+def test_a_viscoelastic_load_relaxes_to_its_spring_in_its_time():
+    t = clock(6.0, 400.0)
+    _, x, force = added(Motion(t, np.minimum(8.0 * t, 8.0)), relaxing_share=0.3, relaxing_s=1.5)
+    at_rest = t > 1.01
+    begun = int(np.argmax(at_rest))
+    decay = np.exp(-(t[at_rest] - t[begun]) / 1.5)
+    np.testing.assert_allclose(force[at_rest], force[begun] * decay, atol=0.03)
+    pulled = x[begun] * (-math.expm1(-1.0 / 1.5)) * 1.5  # an even pull of about 1 s
+    assert force[begun] == pytest.approx(0.3 * KL * pulled, rel=0.05)
+
+
+def test_an_eccentric_pulley_stretches_the_spring_more_and_less():
+    _, x, force = added(ripple_sine_mm=0.3, ripple_cosine_mm=0.2, ripple_period_mm=6.0)
+    turn = 2.0 * np.pi * x / 6.0
+    np.testing.assert_allclose(
+        force, KL * (0.3 * np.sin(turn) + 0.2 * (np.cos(turn) - 1.0)), atol=1e-6
+    )
+
+
+def test_a_clamp_slides_in_its_slot_between_its_forces():
+    _, x, force = added(clamp_play_mm=0.8, clamp_up_N=34.0, clamp_down_N=31.0)
+    gone = -force / KL
+    assert gone.min() > -1e-6
+    assert gone.max() == pytest.approx(0.8, abs=1e-6)
+    spring = F0 + KL * (x - gone)
+    inside = (gone > 0.01) & (gone < 0.79)
+    assert inside.sum() > 20
+    moving = np.concatenate(([0.0], np.diff(gone)))
+    np.testing.assert_allclose(spring[inside & (moving > 1e-6)], 34.0, atol=1e-3)
+    np.testing.assert_allclose(spring[inside & (moving < -1e-6)], 31.0, atol=1e-3)
+
+
+@pytest.mark.parametrize("load", ["force", "displacement"])
+def test_a_restraint_needs_a_spring(load):
+    rig = Rig(load=load, restraint=Restraint(damping_N_s_per_mm=0.1))
+    with pytest.raises(ValueError, match="no load end"):
+        simulate(rig, Motion(np.arange(3.0), np.zeros(3)), distal=np.full(3, 25.0))
