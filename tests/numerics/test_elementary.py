@@ -8,9 +8,9 @@ import pytest
 from tsas_cli.numerics.elementary import LARGEST, exponential, logarithm
 
 
-@pytest.mark.parametrize("x", [*np.linspace(-LARGEST, LARGEST, 1999).tolist(), 1e-300, -1e-12])
-def test_the_exponential(x):
-    assert exponential(x) == pytest.approx(math.exp(x), rel=1e-12)
+def test_the_exponential():
+    for x in [*np.linspace(-LARGEST, LARGEST, 1999).tolist(), 1e-300, -1e-12]:
+        assert math.isclose(exponential(x), math.exp(x), rel_tol=1e-12), x
 
 
 def test_the_exponential_of_nothing_is_one_and_ends_do_not_run_away():
@@ -20,6 +20,6 @@ def test_the_exponential_of_nothing_is_one_and_ends_do_not_run_away():
     assert math.isnan(exponential(math.nan))
 
 
-@pytest.mark.parametrize("x", [*np.geomspace(1e-30, 1e30, 1999).tolist(), 1.0, 2.0, math.e])
-def test_the_logarithm(x):
-    assert logarithm(x) == pytest.approx(math.log(x), rel=1e-13, abs=1e-13)
+def test_the_logarithm():
+    for x in [*np.geomspace(1e-30, 1e30, 1999).tolist(), 1.0, 2.0, math.e]:
+        assert math.isclose(logarithm(x), math.log(x), rel_tol=1e-13, abs_tol=1e-13), x
