@@ -46,8 +46,9 @@ def left_of(*errors, delays=(0.1, -0.2, 0.1, 0.0)):
     )
     residual = np.concatenate([np.concatenate(list(e.values())) for e in errors])
     block = np.arange(residual.size) // 40
-    folds = SimpleNamespace(block=block, fold=block % 4, blocks=int(block.max()) + 1)
-    trial = SimpleNamespace(solution=SimpleNamespace(residual=residual))
+    run = np.repeat(np.arange(len(runs)), [sum(e.size for e in one.values()) for one in errors])
+    folds = SimpleNamespace(block=block, fold=block % 4, blocks=int(block.max()) + 1, run=run)
+    trial = SimpleNamespace(unknowns=[], solution=SimpleNamespace(residual=residual))
     return remainder(bench, trial, folds, signals_at_residuals(bench, trial))
 
 

@@ -197,8 +197,9 @@ def left_of(*errors, signals=None):
     runs = [Run(e) for e in errors]
     residual = np.concatenate([np.concatenate(list(e.values())) for e in errors])
     block = np.arange(residual.size) // 20
-    folds = SimpleNamespace(block=block, fold=block % 4, blocks=int(block.max()) + 1)
-    trial = SimpleNamespace(solution=SimpleNamespace(residual=residual))
+    run = np.repeat(np.arange(len(runs)), [sum(e.size for e in one.values()) for one in errors])
+    folds = SimpleNamespace(block=block, fold=block % 4, blocks=int(block.max()) + 1, run=run)
+    trial = SimpleNamespace(unknowns=[], solution=SimpleNamespace(residual=residual))
     bench = bench_of(*runs)
     at = signals_at_residuals(bench, trial)
     if signals is not None:

@@ -56,7 +56,16 @@ def made(monkeypatch):
 
 @pytest.mark.parametrize(("left", "quiet"), [(1.149, True), (1.151, False)])
 def test_it_is_quiet_where_the_blur_of_a_right_model_begins(made, left, quiet):
-    assert made({names(A): left}).is_quiet(names(A)) == quiet
+    search = made({names(A): left})
+    search.is_complete = lambda names: False
+    assert search.is_quiet(names(A)) == quiet
+
+
+@pytest.mark.parametrize(("left", "quiet"), [(2.9, True), (3.1, False)])
+def test_slow_noise_is_quiet_too_up_to_its_limit(made, left, quiet):
+    search = made({names(A): left})
+    search.is_complete = lambda names: True
+    assert search.is_quiet(names(A)) == quiet
 
 
 @pytest.mark.parametrize(

@@ -3,8 +3,8 @@
 A mechanism has one value; what stands in for another mechanism has another one wherever it is
 asked (invariant prediction, Peters, Buehlmann and Meinshausen 2016). An effect's columns of the
 Jacobian are split by direction, by thirds of each signal, and by run. Where values of their own for
-the parts predict held-out data better than one value does, the effect is not constant. Linear: no
-simulation.
+the parts predict held-out data better than one value does, the effect is not constant. Each run has
+a friction of its own meanwhile, unless that is what the effect does. Linear: no simulation.
 """
 
 from dataclasses import dataclass, replace
@@ -16,6 +16,7 @@ import numpy.typing as npt
 from tsas_cli.diagnosis.evidence import Reduction, gain
 from tsas_cli.diagnosis.held_out import Folds, held_out_squares, in_stretches
 from tsas_cli.diagnosis.signals import DIRECTION, RUN
+from tsas_cli.diagnosis.tolerances import FAR, is_scatter, with_friction_of_runs
 from tsas_cli.identification.extension import HypothesisFit
 from tsas_cli.identification.fit import Unknown
 from tsas_cli.identification.quantities import QUANTITIES
@@ -24,7 +25,6 @@ Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
 
 LEAST_GAIN = 0.03  # least reduction of the squares by values of their own; right names reach 0.01
-FAR = 1e9  # bounds that are never active
 THIRDS = ("low", "middle", "high")
 DIRECTIONS = ("letting go", "pulling")
 
@@ -34,13 +34,15 @@ class Split:
     """A parameter with values of its own for the parts of the data.
 
     `by` is the signal that the data are split by, `gain` the reduction of the held-out squares by
-    the split, `values` the parameter's value in each part, by the part's name.
+    the split, `values` the parameter's value in each part, by the part's name. `scatter` is whether
+    the effect is no more than a friction of its own for each run.
     """
 
     parameter: str
     by: str
     gain: Reduction
     values: tuple[tuple[str, float], ...]
+    scatter: bool = False
 
 
 def worst_split(
@@ -70,6 +72,9 @@ def worst_split(
     ]
     if not columns:
         return None
+    scatter = any(is_scatter(trial, trial.solution.jacobian[:, j], folds.run) for j in columns)
+    if not scatter:
+        trial = with_friction_of_runs(trial, folds.run)
     stretches = in_stretches(folds)
     before = cache(lambda by_run: held_out_squares(trial, stretches if by_run else folds))
     worst: Split | None = None
@@ -79,7 +84,8 @@ def worst_split(
         found = gain(before(by == RUN), after)
         if found.beyond(LEAST_GAIN) and (worst is None or found.part > worst.gain.part):
             name, values = _values(trial, extended, columns, shape)
-            worst = Split(name, by, found, tuple(zip(labels, values, strict=True)))
+            pairs = tuple(zip(labels, values, strict=True))
+            worst = Split(name, by, found, pairs, scatter and by == RUN)
     return worst
 
 

@@ -175,7 +175,7 @@ def _proven(search: Hypotheses, step: Steps) -> Proven:
     """Return the effects of a search that prove to be causes, and those that do not.
 
     The one that fails and gains least is left out, and the others are fitted again, until none
-    fails.
+    fails. Scatter of the friction from run to run is no stand-in: every rig has it.
     """
     stand_ins: list[FoundCause] = []
     while True:
@@ -185,7 +185,8 @@ def _proven(search: Hypotheses, step: Steps) -> Proven:
         if not failing:
             return proven
         weakest = min(failing, key=lambda cause: cause.gain_percent)
-        stand_ins.append(weakest)
+        if not weakest.scatter:
+            stand_ins.append(weakest)
         rest = {name: r for name, r in search.rivals.items() if name != weakest.effect}
         search = replace(search, named=frozenset(rest), rivals=rest)
 
@@ -270,7 +271,9 @@ def _cause(
     excess = [max(float(h.squares.sum()) - size, 0.0) for h in (fewer, all_of_them)]
     if split is not None and excess[1] > ANOTHER_LAW * excess[0]:
         failed, law = (f"is not constant {law}", *failed), ""
-    return FoundCause(name, judged.rivals[name], own, gains[0], (gains[1], gains[2]), failed, law)
+    interval = gains[1], gains[2]
+    scatter = split is not None and split.scatter
+    return FoundCause(name, judged.rivals[name], own, gains[0], interval, failed, law, scatter)
 
 
 def _estimates(search: Hypotheses, trial: HypothesisFit) -> list[Estimate]:

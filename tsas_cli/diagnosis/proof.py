@@ -29,6 +29,7 @@ class FoundCause:
 
     `failed` is what it does not prove, in sentences without their subject; empty for a named one.
     `law_differs` says over which signal the law of a named one differs from the catalogue's.
+    `scatter` is whether it is no more than friction that differs from run to run.
     """
 
     effect: str
@@ -38,6 +39,7 @@ class FoundCause:
     gain_interval_percent: tuple[float, float]
     failed: tuple[str, ...] = ()
     law_differs: str = ""
+    scatter: bool = False
 
 
 def failures(

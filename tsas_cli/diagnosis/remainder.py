@@ -15,6 +15,7 @@ import numpy.typing as npt
 from tsas_cli.diagnosis.evidence import gain
 from tsas_cli.diagnosis.held_out import Folds
 from tsas_cli.diagnosis.signals import DIRECTION, AtResiduals
+from tsas_cli.diagnosis.tolerances import without_scatter
 from tsas_cli.identification.extension import Bench, HypothesisFit
 
 Floats = npt.NDArray[np.float64]
@@ -71,13 +72,16 @@ class Remainder:
 def remainder(
     bench: Bench, trial: HypothesisFit, folds: Folds, at_residuals: AtResiduals
 ) -> Remainder:
-    """Return the remaining residual of a trial, with the signals at its residuals."""
+    """Return the remaining residual of a trial, with the signals at its residuals.
+
+    What a friction of each run's own explains, within its plausible scatter, is left out.
+    """
     runs = [e.errors(bench.rig(trial, k)) for k, e in enumerate(bench.errors_for(trial))]
     errors = {n: [run[n] for run in runs if n in run] for n in bench.channels}
     count = sum(part.size for parts in errors.values() for part in parts)
     squares = {n: sum(float(part @ part) for part in parts) for n, parts in errors.items()}
     signals, channel = at_residuals.signals, at_residuals.channel
-    residual = trial.solution.residual
+    residual = without_scatter(trial, folds.run)
     names = [name for name in signals if name != DIRECTION]
     alone = dict.fromkeys(names, 0.0)
     explained: dict[str, float] = {}
@@ -96,7 +100,8 @@ def remainder(
         of_mean = float(np.mean(own**2)) * own.size / samples
         explained[name] = max(best.part, 0.0) * of_mean if best.convincing else 0.0
         reducible += explained[name] * samples / count
-        ratio = squares[name] / samples - explained[name] - 1.0
+        scatter = float(np.sum(trial.solution.residual[here] ** 2)) - float(own @ own)
+        ratio = (squares[name] - scatter) / samples - explained[name] - 1.0
         if ratio > LEAST_SLOW:
             slow[name] = SlowNoise(math.sqrt(ratio), _memory_s(bench, name, errors[name]))
         for signal, columns in zip(names, whole, strict=True):

@@ -23,6 +23,8 @@ from tsas_cli.diagnosis.evidence import (
     gain,
 )
 from tsas_cli.diagnosis.held_out import Folds, held_out_squares
+from tsas_cli.diagnosis.remainder import MOST_SLOW, remainder
+from tsas_cli.diagnosis.signals import signals_at_residuals
 from tsas_cli.effects import EFFECTS, Effect
 from tsas_cli.identification.extension import TOLERANCE, Bench, HypothesisFit, reweighted_bench
 from tsas_cli.identification.quantities import QUANTITIES
@@ -179,10 +181,17 @@ class Search:
         return gain(self.held_out(before, on_mesh=mesh), self.held_out(after, on_mesh=mesh))
 
     def is_quiet(self, names: Names) -> bool:
-        """Return whether the excess is too small for a further cause."""
-        return bool(
-            self.held_out(names).sum() / self.folds.block.size < 1.0 + EXCESS_OF_COMPLETE_MODEL
-        )
+        """Return whether noise alone, white or slow, is left with these effects."""
+        mean_square = self.held_out(names).sum() / self.folds.block.size
+        if mean_square < 1.0 + EXCESS_OF_COMPLETE_MODEL:
+            return True
+        return bool(mean_square < 1.0 + MOST_SLOW and self.is_complete(names))
+
+    def is_complete(self, names: Names) -> bool:
+        """Return whether a regression finds nothing that a further cause could explain."""
+        trial = self.trial(names)
+        at_residuals = signals_at_residuals(self.bench, trial)
+        return remainder(self.bench, trial, self.folds, at_residuals).complete
 
     def matters(self, before: Names, added: Iterable[str]) -> bool:
         """Return whether added effects reduce the excess over the noise by a sufficient share."""

@@ -1,0 +1,56 @@
+"""What differs from run to run on every rig, and is no cause: the friction, by a small amount."""
+
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from tsas_cli.identification.extension import HypothesisFit
+from tsas_cli.identification.fit import Unknown
+
+Floats = npt.NDArray[np.float64]
+Indices = npt.NDArray[np.int64]
+
+FRICTION = "friction_coefficient"
+SCATTER = 0.02  # standard deviation of the friction from run to run, relative
+FAR = 1e9  # bounds that are never active
+
+
+def friction_of_runs(trial: HypothesisFit, run: Indices) -> Floats:
+    """Return the residuals' change by one standard deviation of each run's friction, (n, runs)."""
+    column = next((j for j, u in enumerate(trial.unknowns) if u.name == FRICTION), None)
+    runs = np.arange(int(run.max()) + 1)
+    if column is None or runs.size < 2:
+        return np.zeros((run.size, 0))
+    slope = SCATTER * trial.solution.jacobian[:, column]
+    return np.asarray(slope[:, None] * (run[:, None] == runs))
+
+
+def without_scatter(trial: HypothesisFit, run: Indices) -> Floats:
+    """Return the residual without what a plausible friction of each run explains, shape (n,)."""
+    columns, residual = friction_of_runs(trial, run), trial.solution.residual
+    gram = columns.T @ columns + np.eye(columns.shape[1])
+    return np.asarray(residual - columns @ np.linalg.solve(gram, columns.T @ residual))
+
+
+def with_friction_of_runs(trial: HypothesisFit, run: Indices) -> HypothesisFit:
+    """Return a fit with a friction of its own for each run."""
+    columns = friction_of_runs(trial, run)
+    further = [Unknown(f"{FRICTION} {k}", k, 0.0, -FAR, FAR, 1.0) for k in range(columns.shape[1])]
+    solution = replace(
+        trial.solution,
+        values=np.append(trial.solution.values, np.zeros(len(further))),
+        at_bound=np.append(trial.solution.at_bound, np.zeros(len(further), bool)),
+        jacobian=np.hstack((trial.solution.jacobian, columns)),
+    )
+    return replace(trial, unknowns=(*trial.unknowns, *further), solution=solution)
+
+
+def is_scatter(trial: HypothesisFit, column: Floats, run: Indices) -> bool:
+    """Return whether a column of the Jacobian is nearly a friction of each run's own."""
+    columns = friction_of_runs(trial, run)
+    if not columns.shape[1]:
+        return False
+    basis = np.linalg.qr(columns)[0]
+    left = column - basis @ (basis.T @ column)
+    return float(left @ left) < 0.1 * float(column @ column)
