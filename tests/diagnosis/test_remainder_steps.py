@@ -188,8 +188,14 @@ def test_a_band_is_three_lines_wide():
     three = sum(size * np.cos(k * turn) for k, size in ((99, 1.0), (100, 1.1), (101, 1.0)))
     rest = sum(np.cos(k * turn) for k in (10, 30, 50, 70, 90, 110, 130))
     assert r._oscillation(bench_of(*[Run({"f_in_N": three + rest})] * 2), None) is not None
-    lowest = np.cos(turn) + 0.1 * NOISE[0]
-    assert r._oscillation(bench_of(*[Run({"f_in_N": lowest})] * 2), None) is not None
+
+
+@pytest.mark.parametrize(("cycles", "said"), [(1, False), (2, True)])
+def test_an_oscillation_with_the_motion_is_not_its_own(cycles, said):
+    """The drive makes one stroke, half a cycle: 2.5 of that is more than one cycle."""
+    turn = 2.0 * np.pi * np.arange(ROWS) / ROWS
+    swing = np.cos(cycles * turn) + 0.1 * NOISE[0]
+    assert (r._oscillation(bench_of(*[Run({"f_in_N": swing})] * 2), None) is not None) == said
 
 
 def left_of(*errors, signals=None):

@@ -30,6 +30,7 @@ FEWEST_STROKES = 4
 LATE = 2.0  # mean delay of the strokes of a complete model at most, in units of `delays`
 LATE_CRITICAL = 4.0  # critical value of the t statistic of that mean
 PEAK = 0.3  # share of a run's squares in one narrow band from which the residual is periodic
+OWN = 2.5  # multiple of the motion's frequency from which an oscillation is not its own
 
 
 @dataclass(frozen=True)
@@ -177,13 +178,14 @@ def _oscillation(bench: Bench, trial: HypothesisFit) -> str | None:
     """Return a phrase on a dominant frequency of the residuals of most runs, or None."""
     found = []
     for k, run in enumerate(bench.errors_for(trial)):
+        strokes = run.run.conditioned[run.run.drive_column].reversals.size - 1
         for name, errors in run.errors(bench.rig(trial, k)).items():
             time_s = run.run.time_s[run.samples[name]]
             even = np.linspace(time_s[0], time_s[-1], errors.size)
             power = np.abs(np.fft.rfft(np.interp(even, time_s, errors - errors.mean()))) ** 2
             peak = int(np.argmax(power))
             band = power[max(peak - 1, 0) : peak + 2].sum() / power.sum()
-            if band > PEAK:
+            if band > PEAK and peak > OWN * 0.5 * strokes:
                 found.append((name, peak / (even[-1] - even[0])))
     if len(found) < max(2, len(bench.rigs) // 2):
         return None

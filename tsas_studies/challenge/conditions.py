@@ -55,7 +55,7 @@ class Nuisance:
     slow_mm: float = 0.0
 
 
-def told(kind: str, conditions: Conditions) -> str:
+def kind_label(kind: str, conditions: Conditions) -> str:
     """Return a kind of cases in words, under conditions that are not clean by name."""
     return kind if conditions == "clean" else f"{conditions} {kind}"
 

@@ -10,7 +10,7 @@ from tsas_cli.support import __version__
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import sha256_of
 from tsas_studies.challenge.cases import Kind
-from tsas_studies.challenge.conditions import CONDITIONS, told
+from tsas_studies.challenge.conditions import CONDITIONS, kind_label
 from tsas_studies.challenge.entry import Entry, read_entry
 from tsas_studies.challenge.figures import RECOGNISED, ScoreRate, by_effect, figures, of_size, sizes
 from tsas_studies.challenge.judge import NO_ANSWER, Judged, judge
@@ -38,8 +38,8 @@ def score_entries(sealed: Path, folders: Iterable[Path]) -> dict[str, Any]:
         if label in entries:
             raise InputError("the entry is given twice", where=folder)
         entries[label] = score(answers, read_entry(folder, answers.cases, sums))
-    kinds = Counter(told(case.kind, case.conditions) for case in answers.cases.values())
-    order = (told(kind, conditions) for conditions in CONDITIONS for kind in get_args(Kind))
+    kinds = Counter(kind_label(case.kind, case.conditions) for case in answers.cases.values())
+    order = (kind_label(kind, conditions) for conditions in CONDITIONS for kind in get_args(Kind))
     single = {e for case in answers.cases.values() if case.kind == "one" for e in case.effects}
     return {
         "format": 1,

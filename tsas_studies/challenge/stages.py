@@ -14,7 +14,7 @@ from tsas_cli.support.files import folder_if, stage_folder, write_json
 from tsas_cli.support.steps import NO_PROGRESS, Steps
 from tsas_studies.challenge import cases
 from tsas_studies.challenge.cases import Kind
-from tsas_studies.challenge.conditions import Conditions, told
+from tsas_studies.challenge.conditions import Conditions, kind_label
 from tsas_studies.challenge.make import make
 from tsas_studies.challenge.run import TOOLS, case_folders, run_cases
 from tsas_studies.challenge.score import score_entries
@@ -121,7 +121,7 @@ def make_set(
         "seed": seed,
         "seeds": seeds,
         "rate_Hz": rate_Hz,
-        "cases": dict(Counter(told(case.kind, case.conditions) for case in listed)),
+        "cases": dict(Counter(kind_label(case.kind, case.conditions) for case in listed)),
     }
     return SealedSet(summary, path)
 
