@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from tsas_cli.diagnosis.channel_errors import channel_errors, noise_floor
-from tsas_cli.diagnosis.remainder import Remainder, SlowNoise
+from tsas_cli.diagnosis.remainder import Remainder, SlowPart
 
 ROWS = 1000
 
@@ -37,7 +37,7 @@ def test_the_floor_has_white_noise_slow_noise_and_what_the_drive_does():
 def found(before, after, start, rest, slow=None):
     left = [Remainder(1.0, {"f_in_N": part}, ()) for part in (start, rest)]
     if slow is not None:
-        left[1] = Remainder(1.0, {"f_in_N": rest}, (), slow={"f_in_N": SlowNoise(slow, 1.0)})
+        left[1] = Remainder(1.0, {"f_in_N": rest}, (), slow={"f_in_N": SlowPart(slow, 1.0)})
     return channel_errors(bench(run()), {"f_in_N": before}, {"f_in_N": after}, *left)["f_in_N"]
 
 

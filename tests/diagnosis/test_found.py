@@ -10,7 +10,7 @@ from tsas_cli.diagnosis import found as f
 from tsas_cli.diagnosis.channel_errors import HeldOutErrors
 from tsas_cli.diagnosis.diagnose import Diagnosis, FoundCause
 from tsas_cli.diagnosis.evidence import Reduction
-from tsas_cli.diagnosis.remainder import Remainder, SlowNoise
+from tsas_cli.diagnosis.remainder import Remainder, SlowPart
 from tsas_cli.effects import BACKLASH
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model
@@ -163,7 +163,7 @@ def judged_with(noise):
 
 
 def test_errors_and_what_is_left_have_units_and_percent():
-    left = Remainder(1.5, {}, ("time_s",), slow={"f_in_N": SlowNoise(1.2, 0.8)})
+    left = Remainder(1.5, {}, ("time_s",), slow={"f_in_N": SlowPart(1.2, 0.8)})
     whole = Diagnosis(
         "sufficient",
         "why",
@@ -189,7 +189,7 @@ def test_errors_and_what_is_left_have_units_and_percent():
 
 
 def test_errors_of_a_model_that_lacks_something_are_no_slow_noise():
-    left = Remainder(9.0, {"f_in_N": 3.0}, (), slow={"f_in_N": SlowNoise(1.2, 0.8)})
+    left = Remainder(9.0, {"f_in_N": 3.0}, (), slow={"f_in_N": SlowPart(1.2, 0.8)})
     wrong = Diagnosis(
         "unexplained", "", Model(()), Model(()), remainder=left, judged=judged_with(1)
     )

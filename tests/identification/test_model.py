@@ -180,7 +180,7 @@ def test_a_model_in_memory_is_checked_like_its_file(wrong, says):
     assert "the model in memory" in stopped.value.line()
 
 
-def test_a_parameter_that_is_there_twice_is_refused(tmp_path):
+def test_a_duplicate_parameter_is_refused(tmp_path):
     twice = (Estimate("friction_coefficient", v, "1", "given") for v in (0.1, 0.2))
     with pytest.raises(InputError, match="duplicate parameter friction_coefficient"):
         model_of(Model(tuple(twice)))

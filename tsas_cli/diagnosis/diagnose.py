@@ -13,7 +13,7 @@ from tsas_cli.diagnosis.evidence import gain, gain_percent
 from tsas_cli.diagnosis.held_out import Folds, folds_of
 from tsas_cli.diagnosis.proof import ANOTHER_LAW, FoundCause, failures, split_in_words
 from tsas_cli.diagnosis.reason import reason_of
-from tsas_cli.diagnosis.refitted import HeldOut, refitted
+from tsas_cli.diagnosis.refitted import HeldOutFit, refitted
 from tsas_cli.diagnosis.remainder import Remainder, remainder
 from tsas_cli.diagnosis.search import (
     Hypotheses,
@@ -88,7 +88,7 @@ class Proven:
     causes: tuple[FoundCause, ...]
     stand_ins: tuple[FoundCause, ...]
     estimates: tuple[Estimate, ...]
-    held_out: Mapping[frozenset[str], HeldOut]
+    held_out: Mapping[frozenset[str], HeldOutFit]
     at_residuals: AtResiduals
 
 
@@ -254,7 +254,7 @@ def _cause(
     judged: Hypotheses,
     name: str,
     estimates: Sequence[Estimate],
-    held_out: Mapping[frozenset[str], HeldOut],
+    held_out: Mapping[frozenset[str], HeldOutFit],
     signals: dict[str, Floats],
 ) -> FoundCause:
     """Return an effect of the final set, with what it does not prove."""

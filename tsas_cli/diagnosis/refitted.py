@@ -20,7 +20,7 @@ Bits = npt.NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
-class HeldOut:
+class HeldOutFit:
     """Errors of one hypothesis on held-out data.
 
     `rmse` is the RMS of each channel, in its unit; `squares` the sum of squares of the weighted
@@ -31,7 +31,7 @@ class HeldOut:
     squares: Floats
 
 
-def refitted(bench: Bench, trial: HypothesisFit, folds: Folds) -> HeldOut:
+def refitted(bench: Bench, trial: HypothesisFit, folds: Folds) -> HeldOutFit:
     """Return the errors of a hypothesis on each fold, simulated with a fit to the others."""
     runs = bench.errors_for(trial)
     raw: dict[str, list[Floats]] = {}
@@ -50,7 +50,7 @@ def refitted(bench: Bench, trial: HypothesisFit, folds: Folds) -> HeldOut:
                 raw.setdefault(name, []).append(errors[run.spread(name, held_out[k])])
     rmse = {n: float(np.sqrt(np.mean(np.concatenate(parts) ** 2))) for n, parts in raw.items()}
     squares = np.bincount(folds.block, weighted**2, minlength=folds.blocks)
-    return HeldOut(rmse, squares.astype(np.float64))
+    return HeldOutFit(rmse, squares.astype(np.float64))
 
 
 def refitted_values(bench: Bench, trial: HypothesisFit, folds: Folds, fold: int) -> Floats:

@@ -34,7 +34,7 @@ OWN = 2.5  # multiple of the motion's frequency from which an oscillation is not
 
 
 @dataclass(frozen=True)
-class SlowNoise:
+class SlowPart:
     """Coloured noise of a channel: its standard deviation over the white noise's, its memory."""
 
     ratio: float
@@ -55,7 +55,7 @@ class Remainder:
     explained: dict[str, float]
     depends_on: tuple[str, ...]
     reducible: float = 0.0
-    slow: dict[str, SlowNoise] = field(default_factory=dict)
+    slow: dict[str, SlowPart] = field(default_factory=dict)
     late: tuple[str, ...] = ()
     oscillates: str | None = None
 
@@ -86,7 +86,7 @@ def remainder(
     names = [name for name in signals if name != DIRECTION]
     alone = dict.fromkeys(names, 0.0)
     explained: dict[str, float] = {}
-    slow: dict[str, SlowNoise] = {}
+    slow: dict[str, SlowPart] = {}
     reducible = 0.0
     for number, name in enumerate(bench.channels):
         here = channel == number
@@ -104,7 +104,7 @@ def remainder(
         scatter = float(np.sum(trial.solution.residual[here] ** 2)) - float(own @ own)
         ratio = (squares[name] - scatter) / samples - explained[name] - 1.0
         if ratio > LEAST_SLOW:
-            slow[name] = SlowNoise(math.sqrt(ratio), _memory_s(bench, name, errors[name]))
+            slow[name] = SlowPart(math.sqrt(ratio), _memory_s(bench, name, errors[name]))
         for signal, columns in zip(names, whole, strict=True):
             left = own - regressed(columns, own, fold)
             part = max(float(own @ own) - float(left @ left), 0.0)

@@ -231,8 +231,8 @@ def read_model(path: Path) -> Model:
     Raises
     ------
     InputError
-        The file is missing, not TOML, of another format, or has an unknown parameter, one that is
-        there twice or belongs to no single run, or a value that cannot be.
+        The file is missing, not TOML, of another format, or has an unknown or duplicate parameter,
+        one of a single run that all runs share, or an invalid value.
     """
     if path.is_dir():
         path = path / MODEL_FILE

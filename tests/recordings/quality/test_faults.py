@@ -301,3 +301,18 @@ def test_strokes_inside_the_dead_band():
     assert "no steady contraction" in found(small, "no-steady-motion").sentence
     larger = columns(Bench(amplitude_mm=1.0, noise_mm=0.001, noise_N=0.02))
     assert findings(larger) == []
+
+
+@pytest.mark.parametrize("factor", [0.3, 0.5, 2.0])
+def test_a_factor_of_both_forces_contradicts_the_stated_spring(factor):
+    """Both ends agree with each other; it is no ratio of two units, and passed."""
+    forces = {name: factor * GOOD[name] for name in ("f_in_N", "f_out_N")}
+    remark = found(changed(**forces), "unit")
+    assert remark.severity == "warning"
+    assert f"is {factor:.2g}" in remark.sentence
+    assert "times load_stiffness_N_per_mm" in remark.sentence
+    assert "unit and gain of f_out_N and x_out_mm" in remark.remedy
+
+
+def test_a_spring_that_is_a_little_off_its_data_sheet_is_silent():
+    assert findings(changed(f_in_N=1.2 * GOOD["f_in_N"], f_out_N=1.2 * GOOD["f_out_N"])) == []

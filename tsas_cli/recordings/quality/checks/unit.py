@@ -3,8 +3,9 @@
 Pairs that must agree are compared: the travel of the tendon's two ends; the level of the two
 tensions (their ratio is averaged geometrically over both directions, which cancels friction); the
 slope of `f_out_N` over `x_out_mm` with the data sheet's load stiffness; the sample interval with
-the duration of the strokes. A wide dead band also reduces the distal travel, but then the distal
-path is no scaled copy of the proximal one.
+the duration of the strokes. A slope that is off by no known unit is a wrong gain or a wrong data
+sheet. A wide dead band also reduces the distal travel, but then the distal path is no scaled copy
+of the proximal one.
 """
 
 import math
@@ -56,12 +57,15 @@ def find(trial: RunSignals) -> Iterator[Remark | CannotTell]:
     for remark in _suspect_unit(tension, "f_out_N is {:.4g} times f_in_N", _TENSION, 1.15):
         if remark.column != "f_out_N" or not _as_stated(stiffness):
             yield remark
-    yield from _suspect_unit(
-        stiffness,
-        "the slope of f_out_N over x_out_mm is {:.4g} times load_stiffness_N_per_mm",
-        _STIFFNESS,
-        1.1,
-    )
+    slope = "the slope of f_out_N over x_out_mm is {:.4g} times load_stiffness_N_per_mm"
+    suspected = list(_suspect_unit(stiffness, slope, _STIFFNESS, 1.1))
+    yield from suspected
+    if stiffness is not None and not suspected and not _as_stated(stiffness):
+        yield Remark(
+            "warning",
+            slope.format(stiffness),
+            "check unit and gain of f_out_N and x_out_mm, and load_stiffness_N_per_mm",
+        )
 
 
 def _as_stated(stiffness: float | None) -> bool:
