@@ -8,14 +8,16 @@ from pathlib import Path
 from tests.hostile.case import MAP, Case, dataset, ingesting, manifest_text
 
 Made = Callable[[Path], list[object]]
+Content = str | bytes | Callable[[], str]  # what is large is made when it is written
 
 
-def manifest(content: str | bytes, command: str = "check") -> Made:
+def manifest(content: Content, command: str = "check") -> Made:
     """Return a maker of a dataset whose file is right and whose manifest says this."""
 
     def make(folder: Path) -> list[object]:
         dataset(folder)
-        raw = content if isinstance(content, bytes) else content.encode("utf-8", "surrogatepass")
+        made = content() if callable(content) else content
+        raw = made if isinstance(made, bytes) else made.encode("utf-8", "surrogatepass")
         digest = hashlib.sha256((folder / "runs/0.parquet").read_bytes()).hexdigest()
         (folder / "dataset.toml").write_bytes(raw.replace(b"0" * 64, digest.encode()))
         return [command, folder]
@@ -112,10 +114,10 @@ def huge(name: str, *call: str) -> Made:
     return make
 
 
-def model(content: str) -> Made:
+def model(content: str | Callable[[], str]) -> Made:
     def make(folder: Path) -> list[object]:
         dataset(folder / "d")
-        (folder / "m.toml").write_text(content)
+        (folder / "m.toml").write_text(content() if callable(content) else content)
         return ["simulate", folder / "d", "--model", folder / "m.toml", "--out", folder / "o"]
 
     return make
@@ -156,8 +158,11 @@ def named(name: str, run: str = "") -> Made:
     return make
 
 
+def keys(count: int) -> str:
+    return "".join(f"k{i} = 1\n" for i in range(count))
+
+
 RUN = '[run]\nid = "{}"\n'
-KEYS = "".join(f"k{i} = 1\n" for i in range(1_000_000))
 CASES = (
     Case(
         "a file in the folder above",
@@ -275,15 +280,17 @@ CASES = (
     ),
     Case(
         "a million keys",
-        manifest(manifest_text().replace("[[run]]", KEYS + "[[run]]")),
+        manifest(lambda: manifest_text().replace("[[run]]", keys(1_000_000) + "[[run]]")),
         "holds 1000006 keys",
     ),
-    Case("a million keys in a model", model("format = 1\n" + KEYS), "holds 1000001 keys"),
+    Case(
+        "a million keys in a model",
+        model(lambda: "format = 1\n" + keys(1_000_000)),
+        "holds 1000001 keys",
+    ),
     Case(
         "ten thousand keys",
-        manifest(
-            manifest_text().replace("[[run]]", KEYS[:100_000].rsplit("\n", 1)[0] + "\n[[run]]")
-        ),
+        manifest(manifest_text().replace("[[run]]", keys(10_100) + "[[run]]")),
         "10100 keys are unknown, at most 1000",
     ),
     Case("arrays, 100,000 deep", manifest("a = " + "[" * 100_000), "is nested too deep"),

@@ -227,10 +227,6 @@ def test_names_from_the_file_show_as_text_and_need_not_be_in_the_catalogue(datas
     assert not re.search("<[busce]>", text)
 
 
-def test_the_section_does_not_change_when_nothing_changed(dataset, sections, tmp_path):
-    assert written(make_diagnosis(dataset, tmp_path / "d", "named")) == sections["named"]
-
-
 @pytest.mark.usefixtures("undrawn")
 def test_the_commands_repeat_the_diagnosis(dataset, tmp_path):
     folder = make_diagnosis(dataset, tmp_path / "d", "undecided")

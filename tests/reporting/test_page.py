@@ -115,10 +115,6 @@ def test_names_from_files_show_as_text(whole):
     assert "The &lt;sheath&gt; is silent." in whole
 
 
-def test_the_page_does_not_change_when_nothing_changed(folders, whole):
-    assert page(read_inputs(list(folders.values()))) == whole
-
-
 def test_the_numbers_of_the_stages_stand_on_the_page(whole):
     for text in ("2.338", "2.291 to 2.385", "0.1251", "0.1230 to 0.1272", "2.00", "data sheet"):
         assert f">{text}</td>" in whole

@@ -78,10 +78,6 @@ def test_it_leaves_out_what_was_not_given_and_leads_with_tracking(whole):
     assert headings(whole, 2)[0] == "Tracking"
 
 
-def test_the_page_does_not_change_when_nothing_changed(folder, whole):
-    assert page(read_inputs([folder])) == whole
-
-
 def test_scores_stand_with_their_spread_and_the_limit_where_it_was_reached(whole):
     header, first, *_, last = cells(whole, "Scores, mean ± standard deviation over 5 seeds")
     assert first[:3] == ["pid", "undisturbed", "0.200 ± 0.003"]

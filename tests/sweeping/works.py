@@ -5,7 +5,7 @@ import signal
 import time
 from pathlib import Path
 
-from tsas_cli.sweeping.outcome import failure, success
+from tsas_cli.sweeping.outcome import success
 
 
 def squared(task):
@@ -15,10 +15,6 @@ def squared(task):
 def outcome_of(task):
     print("talk of a library")
     return squared(task)
-
-
-def one_is_wrong(task):
-    return failure("two is wrong", defect=False) if task["number"] == 2 else squared(task)
 
 
 def one_raises(task):

@@ -28,7 +28,6 @@ K = 2.0 * math.pi * 27.1 / (60.0 * 120.0)
 DRIVE = Actuator(K, 52.0, 0.1296 / 27.1**2, 0.007, 0.002, 3000.0)
 SMOOTH = GROUP_A._replace(friction_coefficient=0.0)
 N = 12
-FREE_DRIVE = 1  # the tension at the drive is what the plant finds
 F0 = GROUP_A.preload_N
 SERIES = 1.0 / (1.0 / GROUP_A.load_stiffness_N_per_mm + 250.0 * math.pi / 67858.4)
 
