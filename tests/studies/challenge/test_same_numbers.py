@@ -14,7 +14,8 @@ from tsas_cli.physics.response import simulate as run_model
 from tsas_cli.physics.rig import Rig, with_values
 from tsas_studies.challenge.bench import LOOSE_SHARE, RUNS, motion
 from tsas_studies.challenge.cases import FULL
-from tsas_studies.challenge.rig.hidden import hide
+from tsas_studies.challenge.near import NEAR_FULL
+from tsas_studies.challenge.rig.hidden import CATALOGUE, hide
 from tsas_studies.challenge.rig.load_end import LoadEnd
 from tsas_studies.challenge.rig.sensors import PERFECT, measure
 from tsas_studies.challenge.rig.tendon import Rig as VirtualRig
@@ -44,6 +45,12 @@ APART = {
     "load_inertia": 0.6,  # how the load swings after it has set off
 }
 VARIANTS = [(effect, parameters) for effect, variants in FULL.items() for parameters in variants]
+VARIANTS += [  # what the catalogue has got of the causes near to it
+    (cause, {**size.scaled, **{name: sum(bounds) / 2.0 for name, bounds in size.drawn.items()}})
+    for cause, sizes in NEAR_FULL.items()
+    if cause in CATALOGUE
+    for size in sizes
+]
 
 
 def of_the_rig(rig, sensors):
