@@ -58,6 +58,6 @@ def test_a_wrong_model_has_the_same_floor_as_a_right_one():
 
 
 def test_slow_noise_belongs_to_the_floor():
-    assert found(1.0, 0.2, 0.0, 0.0, slow=1.5).noise_floor == pytest.approx(
-        0.1 * math.sqrt(1.0 + 1.5**2)
-    )
+    one = found(1.0, 0.2, 0.0, 0.0, slow=1.2)
+    assert one.noise_floor == pytest.approx(0.1 * math.sqrt(1.0 + 1.2**2))
+    assert found(1.0, 0.2, 0.0, 3.0, slow=1.2).noise_floor == pytest.approx(0.1)  # an error

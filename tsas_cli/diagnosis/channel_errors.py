@@ -33,7 +33,7 @@ def channel_errors(
     """
     out = {}
     for name in bench.channels:
-        slow = remaining.slow.get(name)
+        slow = remaining.slow.get(name) if remaining.complete else None
         floor = noise_floor(bench, name, 0.0 if slow is None else slow.ratio)
         noise = noise_floor(bench, name, 0.0)
         attainable = [

@@ -74,9 +74,8 @@ def failures(
         if e.at_bound and not _is_near_neutral(e.value, parameters[name])
     ]
     if sizes and all(_may_be_none(e, parameters[name].neutral) for name, e in sizes.items()):
-        out.append(
-            "may be zero: " + ", ".join(f"{n} {e.text()} {e.unit}" for n, e in sizes.items())
-        )
+        values = (f"{n} {e.text()} {_unit(e.unit)}".strip() for n, e in sizes.items())
+        out.append(f"may be zero: {', '.join(values)}")
     out += [
         f"makes {name} worse on held-out data ({number_text(without[name])} to "
         f"{number_text(after)})"
@@ -89,10 +88,15 @@ def failures(
 def split_in_words(split: Split) -> str:
     """Return the values of a parameter in the parts of a split, in words."""
     values = " and ".join(f"{value:.3g} ({part})" for part, value in split.values)
-    unit = QUANTITIES[split.parameter].unit
+    unit = _unit(QUANTITIES[split.parameter].unit)
     over = "from run to run" if split.by == RUN else f"over {signal_in_words(split.by)}"
     return (
-        f"{over}: {split.parameter.partition('.')[2]} {values}{'' if unit == '1' else f' {unit}'}"
+        f"{over}: {split.parameter.partition('.')[2]} {values} {unit}".rstrip()
+
+
+def _unit(unit: str) -> str:
+    """Return a unit as a text has it: nothing for a number."""
+    return "" if unit == "1" else unit
     )
 
 
