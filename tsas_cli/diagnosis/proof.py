@@ -90,14 +90,12 @@ def split_in_words(split: Split) -> str:
     values = " and ".join(f"{value:.3g} ({part})" for part, value in split.values)
     unit = _unit(QUANTITIES[split.parameter].unit)
     over = "from run to run" if split.by == RUN else f"over {signal_in_words(split.by)}"
-    return (
-        f"{over}: {split.parameter.partition('.')[2]} {values} {unit}".rstrip()
+    return f"{over}: {split.parameter.partition('.')[2]} {values} {unit}".rstrip()
 
 
 def _unit(unit: str) -> str:
     """Return a unit as a text has it: nothing for a number."""
     return "" if unit == "1" else unit
-    )
 
 
 def _is_near_neutral(value: float, parameter: Parameter) -> bool:
