@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import tomlkit
 
 from tests.comparing.made import NOMINAL, ROUGH, calibrated
 from tsas_cli.comparing.compare import compare
@@ -117,10 +118,11 @@ def test_on_a_dataset_both_models_are_held_to_the_same_recordings(on_second):
 
 def test_another_recording_of_the_same_name_keeps_its_own_preload(root, tmp_path):
     # The model's own preload of its run `slow` is spoiled: it must not reach another recording.
-    text = (root / "calibrated-1" / "model.toml").read_text()
-    head, tail = text.split("[runs.slow.preload_N]\nvalue = ")
+    content = tomlkit.parse((root / "calibrated-1" / "model.toml").read_text())
+    preload = content["runs"]["slow"]["preload_N"]
+    content["runs"]["slow"]["preload_N"] = {"value": 100.0 + preload["value"], "unit": "N"}
     spoiled = tmp_path / "model.toml"
-    spoiled.write_text(f"{head}[runs.slow.preload_N]\nvalue = 1{tail}")
+    spoiled.write_text(tomlkit.dumps(content))
     whole = root / "calibrated-1" / "model.toml"
     other = compare(whole, spoiled, on=read_dataset(root / "data-2"))
     assert {row.ratio for row in other.errors} == {1.0}
