@@ -111,6 +111,7 @@ def errors_with(samples, measured=None, predicted=3.0):
         None,
         lambda rig: dict.fromkeys(samples, np.full(size, predicted)),
         dict.fromkeys(samples, np.ones(size)),
+        dict.fromkeys(samples, np.zeros(size)),
         {n: ReversalShapes(np.zeros(at.size), np.array([0]), at.size) for n, at in samples.items()},
     )
 

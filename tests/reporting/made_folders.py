@@ -199,6 +199,7 @@ REASONS = {
     "named": "A free length of tendon at the drive explains what the nominal model misses.",
     "ambiguous": "The drive gives way: a free tendon or its compliance, these runs cannot tell.",
     "sufficient": "The nominal model is as near as noise allows.",
+    "partly": "A free length of tendon is there, and something else.",
     "unexplained": "Something is left that no effect explains.",
     "undecided": "two strokes are too few to hold any out.",
 }
@@ -206,8 +207,8 @@ REASONS = {
 
 def make_diagnosis(dataset: Path, folder: Path, verdict: str, **more) -> Path:
     """Write what `tsas diagnose` would say with one of the verdicts of `REASONS`."""
-    named = verdict in {"named", "ambiguous"}
-    left = verdict == "unexplained"
+    named = verdict in {"named", "ambiguous", "partly"}
+    left = verdict in {"unexplained", "partly"}
     content = {
         "format": 1,
         "stage": "diagnose",
@@ -221,7 +222,7 @@ def make_diagnosis(dataset: Path, folder: Path, verdict: str, **more) -> Path:
         "next_experiment": "Record the same motion with twice the sheath length.",
     }
     if verdict != "undecided":
-        before = {"named": 9.1, "ambiguous": 9.1, "sufficient": 1.0, "unexplained": 6.2}[verdict]
+        before = 9.1 if named else {"sufficient": 1.0, "unexplained": 6.2}[verdict]
         content |= {
             "channels": {
                 "f_in_N": _held_out("N", 0.1, before, 1.1 if named else before, 1.05),

@@ -127,7 +127,7 @@ def test_what_is_not_explained_says_on_what_it_depends(sections):
     assert "remaining residual is 38.4; 1" in text
     assert "after what is named" not in text
     assert "no effect of the catalogue" not in words(sections["named"])
-    assert "beyond the noise, 12 % is left after what is named" in words(sections["named"])
+    assert "could be explained, 12 % is left after what is named" in words(sections["named"])
 
 
 def test_too_little_data_leaves_the_reason_and_the_next_experiment(sections):

@@ -59,7 +59,7 @@ def test_two_causes_are_one_sentence_and_each_has_its_gain(dataset, tmp_path):
 
 def test_what_is_unknown_beside_a_cause_is_not_kept_back(dataset, tmp_path):
     named = [{"effect": "backlash", "title": "Backlash", "parameters": {}}]
-    it = of(make_diagnosis(dataset, tmp_path / "d", "unexplained", named=named))
+    it = of(make_diagnosis(dataset, tmp_path / "d", "partly", named=named))
     assert it.kind == "Cause found, and something unknown beside it"
     assert it.verdict == "Backlash"
 

@@ -23,6 +23,8 @@ STILL = 0.02  # of the greatest speed, below which no slope over the drive is ta
 MOST_RATIO = 5.0  # of the tensions, either way
 TURN_MM = 0.1  # travel in which friction comes back after a reversal
 SETTLING_PER_S = 0.2
+LATE_S, LAG_S = 1.0, 0.02  # of a viscoelastic load, of a low pass
+PULLEY_MM = 7.0  # of an eccentric pulley
 VELOCITY_MM_PER_S = next(p.start for p in STRIBECK_FRICTION.parameters if p.shape)
 
 
@@ -68,6 +70,8 @@ def terms(run: Prepared) -> Iterator[Term]:
     yield Term("drive_friction", "sign(v)", {"f_in_N": s})
     yield Term("drive_ripple", "moved by sin(x)", moved(np.sin(2.0 * np.pi * x / PERIOD_MM)))
     yield Term("drive_ripple", "moved by cos(x)", moved(np.cos(2.0 * np.pi * x / PERIOD_MM)))
+    yield Term("drive_damping", "v", {"f_in_N": v})
+    yield Term("drive_inertia", "a", {"f_in_N": np.gradient(v, run.time_s)})
     yield Term("drive_compliance", "moved by f_in", moved(-f_in))
     yield Term("proximal_spring", "x", {"f_in_N": x})
     yield Term("free_tendon", "moved by f_out", moved(-f_out))
@@ -78,6 +82,8 @@ def terms(run: Prepared) -> Iterator[Term]:
     yield Term("viscous_friction", "v", {"f_in_N": v})
     level = np.log(np.maximum(tension, 0.1) / max(float(tension.mean()), 0.1))
     yield Term("load_dependent_friction", "f_in θ sign(v) log f_in", rubbed(bend * level))
+    yield Term("position_dependent_friction", "f_in θ sign(v) x", rubbed(bend * x))
+    yield Term("uneven_friction", "f_in θ sign(v) (f_in − f_out)", rubbed(bend * (f_in - f_out)))
     turned = np.exp(-signals["travel_since_reversal_mm"] / TURN_MM)
     yield Term("presliding", "f_in θ sign(v) exp(−travel)", rubbed(-bend * turned))
     yield Term("bend_drift", "f_in sign(v) t", rubbed(t))
@@ -93,14 +99,44 @@ def terms(run: Prepared) -> Iterator[Term]:
     yield Term("load_friction", "pulled by sign(v)", pulled(s))
     yield Term("load_friction", "f_in/f_out sign(v)", {"f_in_N": ratio * s})
     yield Term("load_inertia", "pulled by a", pulled(np.gradient(rates["x_out_mm"], run.time_s)))
+    yield Term("load_damping", "pulled by the speed", pulled(rates["x_out_mm"]))
+    travelled = 1.0 - np.exp(-signals["travel_since_reversal_mm"])
+    yield Term("load_hysteresis", "pulled by sign(v) (1 − exp(−travel))", pulled(s * travelled))
+    late = x_out - lag_of(x_out, run.time_s, LATE_S)
+    yield Term("load_relaxation", "pulled by x_out less itself late", pulled(late))
+    turn = 2.0 * np.pi * x_out / PULLEY_MM
+    yield Term("load_ripple", "pulled by sin(x_out)", pulled(np.sin(turn)))
+    yield Term("load_ripple", "pulled by cos(x_out)", pulled(np.cos(turn)))
     yield Term("force_sensor_gain", "f_out", {"f_out_N": f_out})
     yield Term("position_sensor_gain", "x_out", {"x_out_mm": x_out})
     for channel in ("f_in_N", "f_out_N"):
         yield Term("force_sensor_offset", "1", {channel: np.ones_like(t)})
         yield Term("force_sensor_drift", "t", {channel: t})
         yield Term("force_sensor_drift", "1 − exp(−t)", {channel: settled})
+        other = f_out if channel == "f_in_N" else f_in
+        yield Term("force_crosstalk", "the other force", {channel: other})
+        yield Term("force_sensor_curvature", "its square", {channel: clean[channel] ** 2})
+        yield Term(
+            "force_sensor_hysteresis", "sign of its rate", {channel: -np.sign(rates[channel])}
+        )
     for channel, rate in rates.items():
         yield Term("channel_delay", "rate of change", {channel: -rate})
+        yield Term(
+            "sensor_lag",
+            "late",
+            {channel: lag_of(clean[channel], run.time_s, LAG_S) - clean[channel]},
+        )
+
+
+def lag_of(values: Floats, time_s: Floats, late_s: float) -> Floats:
+    """Return the values behind a first-order low pass, shape (n,)."""
+    keep = np.exp(-np.diff(time_s, prepend=time_s[0]) / late_s)
+    out = np.empty_like(values)
+    last = values[0]
+    for i, (value, share) in enumerate(zip(values, keep, strict=True)):
+        last = value + share * (last - value)
+        out[i] = last
+    return out
 
 
 def _clean(run: Prepared, channel: str) -> Floats:

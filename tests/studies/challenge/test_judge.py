@@ -103,7 +103,7 @@ def test_a_right_name_is_refused_where_it_stands_in_or_comes_with_a_warning(
         ({"play_mm": estimate(0.10, "mm", 0.011)}, [True]),  # 0.02 off, 1.96 · 0.011 = 0.0216
         ({"play_mm": estimate(0.10, "mm", 0.010)}, [False]),  # 1.96 · 0.010 = 0.0196
         ({"play_mm": estimate(0.10, "mm", 0.001, interval_low=0.0, interval_high=0.12)}, [True]),
-        ({"play_mm": estimate(0.12, "mm", 9.0, interval_low=0.0, interval_high=0.11)}, [False]),
+        ({"play_mm": estimate(0.10, "mm", 9.0, interval_low=0.0, interval_high=0.11)}, [False]),
         ({"play_mm": estimate(0.12, "mm")}, [None]),
         ({}, [None]),
     ],

@@ -42,6 +42,9 @@ APART = {
     "free_tendon": 0.05,
     "presliding": 0.08,  # the sharp corner without it, on the mesh
     "stribeck_friction": 0.25,  # each place's own speed, with a memory
+    "load_hysteresis": 0.15,  # Dahl's law, which bends where a slider has a corner
+    "force_sensor_hysteresis": 0.4,  # the same
+    "sensor_lag": 0.06,  # the force between two samples, where the drive turns
     "load_inertia": 0.6,  # how the load swings after it has set off
 }
 VARIANTS = [(effect, parameters) for effect, variants in FULL.items() for parameters in variants]

@@ -31,7 +31,7 @@ def test_the_rig_knows_the_whole_catalogue_and_nothing_of_it_is_unknown():
     assert not set(CATALOGUE) & (set(UNKNOWNS) | set(NEAR))
     assert not set(UNKNOWNS) & set(NEAR)
     assert len(UNKNOWNS) >= 6
-    assert len(NEAR) >= 20
+    assert len(NEAR) + len(UNKNOWNS) >= 20
 
 
 @pytest.mark.parametrize("name", CATALOGUE)
