@@ -94,3 +94,27 @@ def test_what_contradicts_the_data_sheet_is_said_beside_the_causes(tmp_path, mon
     (said,) = diagnose_stage.diagnose(folder).summary["cannot_tell"]
     assert said.startswith("A common factor of f_in and f_out of 0.5")
     assert said.endswith("Either would be a rival of sheath_compression.")
+
+
+@pytest.mark.parametrize("proven", [True, False])
+def test_what_gains_and_is_not_proven_has_a_model_of_its_own(tmp_path, monkeypatch, proven):
+    recorded = record(TRUE, sensors=Sensors(rate_Hz=100.0))
+    folder = write_dataset(tmp_path / "dataset", [Run("a", recorded, conditions(TRUE))])
+    gains = FoundCause("free_tendon", (), (LENGTH,), 40.0, (30.0, 50.0), ("may be zero",))
+
+    def found(_, stated, __, ___):
+        whole = Model((LENGTH,)).over(stated)
+        if proven:
+            return Diagnosis("named", "known", model=whole, nominal=stated)
+        return Diagnosis(
+            "stand_in", "", model=stated, nominal=stated, stand_ins=(gains,), stand_in_model=whole
+        )
+
+    monkeypatch.setattr(diagnose_stage, "diagnose_runs", found)
+    result = diagnose_stage.diagnose(folder, out=tmp_path / "out")
+    model = tmp_path / "out" / "model-stand-in.toml"
+    assert model.exists() != proven
+    assert bool(result.summary["stand_ins"]) != proven
+    if not proven:
+        assert read_model(model).value(LENGTH.name) == 150.0
+        assert read_model(tmp_path / "out" / "model-extended.toml").value(LENGTH.name) is None

@@ -50,7 +50,8 @@ SHEATH = "sheath_compression.compliance_ratio"
 class Diagnosis:
     """The verdict with its evidence, which is None where it is undecided.
 
-    `model` is the extended one, `nominal` the one without the named effects. `search` has all
+    `model` is the extended one, `nominal` the one without the named effects, `stand_in_model` that
+    with all effects that gain, proven or not, where some are not. `search` has all
     hypotheses, `judged` those fitted with the final weights, among them the nominal model `before`
     and the `final` one.
     """
@@ -69,6 +70,7 @@ class Diagnosis:
     before: HypothesisFit | None = None
     final: HypothesisFit | None = None
     cannot_tell: tuple[str, ...] = ()
+    stand_in_model: Model | None = None
 
     @property
     def unexplained(self) -> bool:
@@ -80,7 +82,8 @@ class Diagnosis:
 class Proven:
     """The effects that prove to be causes, with their fits, and those that do not.
 
-    `judged` has the fits with the final weights, `held_out` the errors of each on held-out data.
+    `judged` has the fits with the final weights, `held_out` the errors of each on held-out data;
+    `with_stand_ins` are the estimates with all effects that gain.
     """
 
     search: Hypotheses
@@ -90,6 +93,7 @@ class Proven:
     estimates: tuple[Estimate, ...]
     held_out: Mapping[frozenset[str], HeldOutFit]
     at_residuals: AtResiduals
+    with_stand_ins: tuple[Estimate, ...] = ()
 
 
 def verdict_of(
@@ -139,7 +143,9 @@ def diagnose_runs(
         return Diagnosis("undecided", reason, model, model, cannot_tell=cannot_tell)
     found = _concluded(_proven(find_effects(bench, folds, step), step), base)
     extended, nominal = (with_preload_correction(m, runs) for m in (found.model, found.nominal))
-    return replace(found, model=extended, nominal=nominal)
+    whole = found.stand_in_model
+    whole = None if whole is None else with_preload_correction(whole, runs)
+    return replace(found, model=extended, nominal=nominal, stand_in_model=whole)
 
 
 def nominal_fit(manifest: Manifest, stated: Model, runs: Sequence[Prepared]) -> FitProblem:
@@ -178,12 +184,14 @@ def _proven(search: Hypotheses, step: Steps) -> Proven:
     fails. Scatter of the friction from run to run is no stand-in: every rig has it.
     """
     stand_ins: list[FoundCause] = []
+    first: tuple[Estimate, ...] | None = None
     while True:
         judged = reweighted_hypotheses(search, step) if search.named else search
         proven = _judged(search, judged, tuple(stand_ins))
+        first = first or proven.estimates
         failing = [cause for cause in proven.causes if cause.failed]
         if not failing:
-            return proven
+            return replace(proven, with_stand_ins=first)
         weakest = min(failing, key=lambda cause: cause.gain_percent)
         if not weakest.scatter:
             stand_ins.append(weakest)
@@ -240,6 +248,7 @@ def _concluded(proven: Proven, base: FittedModel) -> Diagnosis:
         before,
         final,
         base.not_identifiable,
+        Model(proven.with_stand_ins).over(base.model) if stand_ins else None,
     )
 
 

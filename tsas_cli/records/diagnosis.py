@@ -18,6 +18,7 @@ from tsas_cli.records.base import (
 )
 
 EXTENDED_MODEL, NOMINAL_MODEL = "model-extended.toml", "model-nominal.toml"
+STAND_IN_MODEL = "model-stand-in.toml"
 Verdict = Literal[
     "named", "ambiguous", "partly", "stand_in", "unexplained", "sufficient", "undecided"
 ]

@@ -168,8 +168,10 @@ def _write(
     for name, model in (
         (records.EXTENDED_MODEL, result.model),
         (records.NOMINAL_MODEL, result.nominal),
+        (records.STAND_IN_MODEL, result.stand_in_model),
     ):
-        write_model(folder / name, model, version=record.version, dataset=fitted)
+        if model is not None:
+            write_model(folder / name, model, version=record.version, dataset=fitted)
     (folder / "runs").mkdir()
     for run in runs:
         write_result(folder / "runs", _predictions(run, result.model, result.nominal))
