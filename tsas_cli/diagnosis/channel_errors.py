@@ -37,7 +37,7 @@ def channel_errors(
         floor = noise_floor(bench, name, 0.0 if slow is None else slow.ratio)
         noise = noise_floor(bench, name, 0.0)
         attainable = [
-            math.sqrt(max(rms**2 - rest.explained[name] * noise**2, 0.0))
+            rms * math.sqrt(1.0 - rest.shares[name])
             for rms, rest in ((before[name], start), (after[name], remaining))
         ]
         out[name] = HeldOutErrors(before[name], after[name], floor, max(min(attainable), noise))

@@ -46,7 +46,8 @@ class Remainder:
     """The remaining residual of a trial.
 
     `mean_square` is that of the weighted residuals; `explained` the reduction of each channel's
-    mean square by a regression on held-out data, `reducible` that of all; `depends_on` the signals
+    mean square by a regression on held-out data, `shares` the part of it, `reducible` the reduction
+    of the whole; `depends_on` the signals
     that explain most of it; `slow` what of a channel repeats with no signal; `late` the channels in
     which each stroke lags behind the model; `oscillates` a phrase on a dominant frequency, if any.
     """
@@ -56,6 +57,7 @@ class Remainder:
     depends_on: tuple[str, ...]
     reducible: float = 0.0
     slow: dict[str, SlowPart] = field(default_factory=dict)
+    shares: dict[str, float] = field(default_factory=dict)
     late: tuple[str, ...] = ()
     oscillates: str | None = None
 
@@ -87,6 +89,7 @@ def remainder(
     alone = dict.fromkeys(names, 0.0)
     explained: dict[str, float] = {}
     slow: dict[str, SlowPart] = {}
+    shares: dict[str, float] = {}
     reducible = 0.0
     for number, name in enumerate(bench.channels):
         here = channel == number
@@ -101,6 +104,7 @@ def remainder(
         of_mean = float(np.mean(own**2)) * own.size / samples
         explained[name] = max(best.part, 0.0) * of_mean if best.convincing else 0.0
         reducible += explained[name] * samples / count
+        shares[name] = best.part if explained[name] > 0.0 else 0.0
         scatter = float(np.sum(trial.solution.residual[here] ** 2)) - float(own @ own)
         ratio = (squares[name] - scatter) / samples - explained[name] - 1.0
         if ratio > LEAST_SLOW:
@@ -114,7 +118,7 @@ def remainder(
     depends_on = (*([oscillates] if oscillates else []), *found[:3])
     mean_square = sum(squares.values()) / count
     late = tuple(name for name in bench.channels if _is_late(bench, trial, name))
-    return Remainder(mean_square, explained, depends_on, reducible, slow, late, oscillates)
+    return Remainder(mean_square, explained, depends_on, reducible, slow, shares, late, oscillates)
 
 
 def _is_late(bench: Bench, trial: HypothesisFit, name: str) -> bool:
