@@ -7,7 +7,7 @@ the parts predict held-out data better than one value does, the effect is not co
 a friction of its own meanwhile, unless that is what the effect does. Linear: no simulation.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
@@ -16,9 +16,8 @@ import numpy.typing as npt
 from tsas_cli.diagnosis.evidence import Reduction, gain
 from tsas_cli.diagnosis.held_out import Folds, held_out_squares, in_stretches
 from tsas_cli.diagnosis.signals import DIRECTION, RUN
-from tsas_cli.diagnosis.tolerances import FAR, is_scatter, with_friction_of_runs
+from tsas_cli.diagnosis.tolerances import is_scatter, with_friction_of_runs
 from tsas_cli.identification.extension import HypothesisFit
-from tsas_cli.identification.fit import Unknown
 from tsas_cli.identification.quantities import QUANTITIES
 
 Floats = npt.NDArray[np.float64]
@@ -118,21 +117,14 @@ def _split(
     A further value is expected within the size of the effect itself.
     """
     solution = trial.solution
-    further, unknowns = [], []
+    further, names = [], []
     for j in columns:
         u = trial.unknowns[j]
         size = _size(u.name, float(solution.values[j]))
         for k in range(1, count):
             further.append(solution.jacobian[:, j] * (part == k))
-            unknowns.append(Unknown(f"{u.name} {k}", None, 0.0, -FAR, FAR, size))
-    extended = replace(
-        solution,
-        values=np.append(solution.values, np.zeros(len(further))),
-        at_bound=np.append(solution.at_bound, np.zeros(len(further), bool)),
-        jacobian=np.column_stack((solution.jacobian, *further)),
-    )
-    split = replace(trial, unknowns=(*trial.unknowns, *unknowns), solution=extended)
-    return split, (len(columns), count - 1)
+            names.append((f"{u.name} {k}", None, size))
+    return trial.with_columns(names, np.column_stack(further)), (len(columns), count - 1)
 
 
 def _size(name: str, value: float) -> float:

@@ -1,19 +1,15 @@
 """What differs from run to run on every rig, and is no cause: the friction, by a small amount."""
 
-from dataclasses import replace
-
 import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.identification.extension import HypothesisFit
-from tsas_cli.identification.fit import Unknown
 
 Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
 
 FRICTION = "friction_coefficient"
 SCATTER = 0.02  # standard deviation of the friction from run to run, relative
-FAR = 1e9  # bounds that are never active
 
 
 def friction_of_runs(trial: HypothesisFit, run: Indices) -> Floats:
@@ -36,14 +32,8 @@ def without_scatter(trial: HypothesisFit, run: Indices) -> Floats:
 def with_friction_of_runs(trial: HypothesisFit, run: Indices) -> HypothesisFit:
     """Return a fit with a friction of its own for each run."""
     columns = friction_of_runs(trial, run)
-    further = [Unknown(f"{FRICTION} {k}", k, 0.0, -FAR, FAR, 1.0) for k in range(columns.shape[1])]
-    solution = replace(
-        trial.solution,
-        values=np.append(trial.solution.values, np.zeros(len(further))),
-        at_bound=np.append(trial.solution.at_bound, np.zeros(len(further), bool)),
-        jacobian=np.hstack((trial.solution.jacobian, columns)),
-    )
-    return replace(trial, unknowns=(*trial.unknowns, *further), solution=solution)
+    names = [(f"{FRICTION} {k}", k, 1.0) for k in range(columns.shape[1])]
+    return trial.with_columns(names, columns)
 
 
 def is_scatter(trial: HypothesisFit, column: Floats, run: Indices) -> bool:

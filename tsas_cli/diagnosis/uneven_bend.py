@@ -11,13 +11,11 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.identification.extension import Bench, HypothesisFit
-from tsas_cli.identification.fit import Unknown, with_errors
+from tsas_cli.identification.extension import FAR, Bench, HypothesisFit
+from tsas_cli.identification.fit import with_errors
 
 Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
-
-FAR = 1e9  # bounds that are never active
 
 
 def stderr_of_unevenness(bench: Bench, trial: HypothesisFit, blocks: Sequence[Indices]) -> Floats:
@@ -45,12 +43,7 @@ def _estimated_unevenness(
     solution, modes = trial.solution, signatures.shape[1]
     J = np.hstack((solution.jacobian * ~solution.at_bound, signatures))
     step = -np.linalg.pinv(J.T @ J, hermitian=True) @ (J.T @ solution.residual)
-    free = [Unknown(f"mode {k}", None, 0.0, -FAR, FAR, 1.0) for k in range(modes)]
-    extended = replace(
-        solution,
-        values=np.append(solution.values, np.zeros(modes)),
-        at_bound=np.append(solution.at_bound, np.zeros(modes, bool)),
-        jacobian=J,
-    )
-    found = with_errors((*trial.unknowns, *free), extended, blocks, by_run=True)
+    free = replace(trial, solution=replace(solution, jacobian=J[:, :-modes]))
+    extended = free.with_columns([(f"mode {k}", None, 1.0) for k in range(modes)], signatures)
+    found = with_errors(extended.unknowns, extended.solution, blocks, by_run=True)
     return step[-modes:], np.minimum(found.stderr[-modes:], FAR)

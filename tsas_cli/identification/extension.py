@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Self
 
 import numpy as np
 import numpy.typing as npt
@@ -21,6 +22,7 @@ Floats = npt.NDArray[np.float64]
 TOLERANCE = 1e-5  # of the squares, for the last step of a fit that is one of many
 MOST_LOOSENING = 100.0  # of TOLERANCE, in proportion to the mean square of the residuals
 NODES, COARSE_NODES = 40, 12  # of the slip chain, in fits and in screening
+FAR = 1e9  # bounds that are never active
 UNEVEN = 0.05  # standard deviation of a sheath's relative variation of curvature
 
 
@@ -53,6 +55,21 @@ class HypothesisFit:
         moves = np.zeros((free.size, changes.shape[1]))
         moves[free] = -np.linalg.pinv(J.T @ J, hermitian=True) @ (J.T @ changes)
         return moves
+
+    def with_columns(self, names: Sequence[tuple[str, int | None, float]], columns: Floats) -> Self:
+        """Return the fit with further free unknowns at zero, by their columns, shape (n, m).
+
+        `names` has the name, the run and the plausible size of each.
+        """
+        solution = self.solution
+        further = (Unknown(name, run, 0.0, -FAR, FAR, size) for name, run, size in names)
+        extended = replace(
+            solution,
+            values=np.append(solution.values, np.zeros(len(names))),
+            at_bound=np.append(solution.at_bound, np.zeros(len(names), bool)),
+            jacobian=np.column_stack((solution.jacobian, columns)),
+        )
+        return replace(self, unknowns=(*self.unknowns, *further), solution=extended)
 
     @property
     def solver(self) -> str:
