@@ -1,8 +1,9 @@
 """The cases of the blind benchmark: what is hidden, how large, in which order.
 
 A seed tells everything: `cases(seed)` gives every effect of the catalogue at full size and at
-0.4 of it, pairs, triples, cases with nothing hidden, causes that the catalogue does not hold, and
-causes that are near to it; then all of them under realistic conditions. Whoever builds or tunes a
+0.4 of it, pairs, triples, cases with nothing hidden, causes that the catalogue does not hold,
+causes that are near to it, and small faults of sensors; then all but the last under realistic
+conditions. Whoever builds or tunes a
 tool uses the seeds of BUILDING; those of SCORING are for measuring it, once.
 """
 
@@ -13,6 +14,7 @@ from typing import Any, Literal
 import numpy as np
 
 from tsas_studies.challenge.conditions import Conditions
+from tsas_studies.challenge.faults import FAULTS, drawn_fault
 from tsas_studies.challenge.near import (
     MIXABLE,
     MIXED,
@@ -35,10 +37,10 @@ FEW = 2  # cases of a kind in a small part of a set
 
 RANDOM_TRIPLES = 2
 
-Kind = Literal["one", "pair", "triple", "nothing", "unknown", "near"]
+Kind = Literal["one", "pair", "triple", "nothing", "unknown", "near", "fault"]
 Drawn = Iterator[tuple[str, Kind, float, tuple["Hidden", ...]]]
 # Where the numbers of later kinds of cases begin: one more case leaves the others as they are.
-NEAR_FROM, SLOW_FROM, TRIPLES_FROM = 1000, 2000, 3000
+NEAR_FROM, SLOW_FROM, TRIPLES_FROM, FAULTS_FROM = 1000, 2000, 3000, 4000
 
 
 @dataclass(frozen=True)
@@ -155,14 +157,16 @@ TRIPLES = (
 
 
 def cases(seed: int) -> tuple[Case, ...]:
-    """Return all cases of a seed, about 310.
+    """Return all cases of a seed, about 340.
 
-    The clean ones, nulls in slow noise, and the clean ones again under realistic conditions.
+    The clean ones, nulls in slow noise, and the clean ones again under realistic conditions, but
+    for small faults of sensors, which are of the size of those conditions.
     """
     listed = (
         *enumerate(_all(np.random.default_rng(seed))),
         *enumerate(_near(seed), NEAR_FROM),
         *enumerate(_triples(seed), TRIPLES_FROM),
+        *enumerate(_faults(seed), FAULTS_FROM),
     )
     clean = [
         Case(name, kind, size, hidden, seed, number)
@@ -174,7 +178,9 @@ def cases(seed: int) -> tuple[Case, ...]:
         for k in range(NOTHING)
     ]
     realistic = [
-        replace(case, name=f"{case.name}, realistic", conditions="realistic") for case in clean
+        replace(case, name=f"{case.name}, realistic", conditions="realistic")
+        for case in clean
+        if case.kind != "fault"
     ]
     return (*clean, *slow, *realistic)
 
@@ -183,7 +189,7 @@ def part(of: Iterable[Case]) -> tuple[Case, ...]:
     """Return a small part of the cases: each effect once at full size, a few of what is none."""
     listed = [case for case in of if case.conditions == "clean"]
     kept = [case for case in listed if case.kind == "one" and case.size == max(SIZES)]
-    for kind in ("nothing", "unknown", "near"):
+    for kind in ("nothing", "unknown", "near", "fault"):
         kept += [case for case in listed if case.kind == kind][:FEW]
     return tuple(kept)
 
@@ -225,6 +231,14 @@ def _near(seed: int) -> Drawn:
         for size in SIZES:
             hidden = Hidden(cause, drawn_near(cause, size, seed))
             yield f"{cause}, size {size:g}", kind, size, (hidden,)
+
+
+def _faults(seed: int) -> Drawn:
+    """Yield small faults of one sensor, at each size."""
+    for fault in FAULTS:
+        for size in SIZES:
+            hidden = Hidden(fault, drawn_fault(fault, size, seed))
+            yield f"small {fault}, size {size:g}", "fault", size, (hidden,)
 
 
 def drawn(effect: str, size: float, rng: np.random.Generator) -> Hidden:

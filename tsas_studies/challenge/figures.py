@@ -11,9 +11,9 @@ from tsas_studies.challenge.conditions import CONDITIONS
 from tsas_studies.challenge.judge import NO_ANSWER, Judged
 from tsas_studies.challenge.rates import Rate, rate
 from tsas_studies.challenge.targets import SIZES, TARGETS, Target
-from tsas_studies.challenge.truth import BEYOND
 
 RECOGNISED = ("recognised", "right kind")
+OUTSIDE = ("unknown", "near")  # mechanisms that the catalogue does not hold
 
 
 @dataclass(frozen=True)
@@ -52,6 +52,7 @@ def figures(judged: Sequence[Judged]) -> list[ScoreRate]:
         *_of_nothing(clean),
         *(_under("slow", f) for f in _of_nothing(slow)),
         *_beyond(clean),
+        *_of_faults(clean),
         *_of_names(clean),
         _under(
             "realistic",
@@ -96,7 +97,7 @@ def _of_nothing(judged: Iterable[Judged]) -> list[ScoreRate]:
 
 def _beyond(judged: Iterable[Judged]) -> list[ScoreRate]:
     """Return the rates of what is near to the catalogue or not in it."""
-    beyond = _of(judged, *BEYOND)
+    beyond = _of(judged, *OUTSIDE)
     return [
         ScoreRate("beyond_wrong", "not in the catalogue: something wrong named", _false(beyond)),
         ScoreRate(
@@ -113,7 +114,20 @@ def _beyond(judged: Iterable[Judged]) -> list[ScoreRate]:
             ScoreRate(
                 f"{kind}_recognised", f"  of these {kind}", _share(_of(beyond, kind), *RECOGNISED)
             )
-            for kind in BEYOND
+            for kind in OUTSIDE
+        ),
+    ]
+
+
+def _of_faults(judged: Iterable[Judged]) -> list[ScoreRate]:
+    faults = _of(judged, "fault")
+    wrong_alone = rate(j.outcome == "false" for j in _answered(faults))
+    return [
+        ScoreRate("fault_wrong", "small fault of a sensor: something wrong named", _false(faults)),
+        ScoreRate(
+            "fault_unwarned",
+            "small fault of a sensor: something wrong named, no warning",
+            wrong_alone,
         ),
     ]
 

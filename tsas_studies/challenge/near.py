@@ -5,7 +5,7 @@ Chosen like those of `cases.FULL`, with benchmarks/challenge_sizes.py: each chan
 """
 
 import zlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -49,50 +49,51 @@ class Size:
 PHASE = (0.0, 2.0 * np.pi)
 
 
-def _size(one_sign: bool = True, /, **values: float | tuple[float, float]) -> Size:
+def sized(one_sign: bool = True, /, **values: float | tuple[float, float]) -> Size:
+    """Return a variant: numbers grow with its size, from pairs of numbers a shape is drawn."""
     scaled = {name: v for name, v in values.items() if not isinstance(v, tuple)}
     drawn = {name: v for name, v in values.items() if isinstance(v, tuple)}
     return Size(scaled, drawn, one_sign)
 
 
 NEAR_FULL: Mapping[str, tuple[Size, ...]] = {
-    "position_dependent_friction": (_size(False, slope_per_mm=0.006),),
-    "uneven_friction": (_size(False, slope=1.2),),
-    "load_damping": (_size(coefficient_N_s_per_mm=0.08),),
-    "load_hysteresis": (_size(force_N=1.0, travel_mm=(0.5, 2.0)),),
-    "load_relaxation": (_size(share=0.1, time_s=(0.5, 2.0)),),
-    "load_ripple": (_size(False, sine_mm=0.4, cosine_mm=0.0, period_mm=(5.0, 10.0)),),
-    "drive_inertia": (_size(mass_kg=30.0),),
-    "drive_damping": (_size(coefficient_N_s_per_mm=0.1),),
-    "force_sensor_curvature": (_size(False, f_in_per_N=1e-3), _size(False, f_out_per_N=1e-3)),
+    "position_dependent_friction": (sized(False, slope_per_mm=0.006),),
+    "uneven_friction": (sized(False, slope=1.2),),
+    "load_damping": (sized(coefficient_N_s_per_mm=0.08),),
+    "load_hysteresis": (sized(force_N=1.0, travel_mm=(0.5, 2.0)),),
+    "load_relaxation": (sized(share=0.1, time_s=(0.5, 2.0)),),
+    "load_ripple": (sized(False, sine_mm=0.4, cosine_mm=0.0, period_mm=(5.0, 10.0)),),
+    "drive_inertia": (sized(mass_kg=30.0),),
+    "drive_damping": (sized(coefficient_N_s_per_mm=0.1),),
+    "force_sensor_curvature": (sized(False, f_in_per_N=1e-3), sized(False, f_out_per_N=1e-3)),
     "force_sensor_hysteresis": (
-        _size(f_in_share=0.1, span_N=(5.0, 15.0)), _size(f_out_share=0.1, span_N=(5.0, 15.0)),
+        sized(f_in_share=0.1, span_N=(5.0, 15.0)), sized(f_out_share=0.1, span_N=(5.0, 15.0)),
     ),
-    "force_crosstalk": (_size(False, f_in_of_f_out=0.04), _size(False, f_out_of_f_in=0.04)),
-    "sensor_lag": (_size(f_in_lag_s=0.02), _size(f_out_lag_s=0.04), _size(x_out_lag_s=0.008)),
+    "force_crosstalk": (sized(False, f_in_of_f_out=0.04), sized(False, f_out_of_f_in=0.04)),
+    "sensor_lag": (sized(f_in_lag_s=0.02), sized(f_out_lag_s=0.04), sized(x_out_lag_s=0.008)),
     "rational_stribeck": (
-        _size(excess=0.2, velocity_mm_per_s=(3.0, 6.0), power=(1.0, 2.0)),
+        sized(excess=0.2, velocity_mm_per_s=(3.0, 6.0), power=(1.0, 2.0)),
     ),
-    "root_stribeck": (_size(excess=0.3, velocity_mm_per_s=(3.0, 6.0)),),
-    "log_speed_friction": (_size(share=0.08, velocity_mm_per_s=(0.5, 2.0)),),
-    "ageing_friction": (_size(share=0.1, time_s=(0.05, 0.2), length_mm=(0.2, 0.6)),),
-    "breakaway_friction": (_size(excess=0.4, length_mm=(0.5, 1.5)),),
-    "round_presliding": (_size(length_mm=0.025),),
-    "friction_cycles": (_size(share=0.06, period_s=(5.0, 12.0), phase_rad=PHASE),),
-    "wearing_friction": (_size(False, per_mm=0.001),),
-    "strand_roll": (_size(share=0.06, period_mm=(3.0, 8.0), phase_rad=PHASE),),
-    "shifting_sheath": (_size(False, per_N=0.003),),
-    "stiffening_tendon": (_size(per_N=0.02),),
-    "pulley_friction": (_size(share=0.03),),
-    "slotted_clamp": (_size(play_mm=1.5, up_N=(38.0, 42.0), down_N=(32.0, 36.0)),),
+    "root_stribeck": (sized(excess=0.3, velocity_mm_per_s=(3.0, 6.0)),),
+    "log_speed_friction": (sized(share=0.08, velocity_mm_per_s=(0.5, 2.0)),),
+    "ageing_friction": (sized(share=0.1, time_s=(0.05, 0.2), length_mm=(0.2, 0.6)),),
+    "breakaway_friction": (sized(excess=0.4, length_mm=(0.5, 1.5)),),
+    "round_presliding": (sized(length_mm=0.025),),
+    "friction_cycles": (sized(share=0.06, period_s=(5.0, 12.0), phase_rad=PHASE),),
+    "wearing_friction": (sized(False, per_mm=0.001),),
+    "strand_roll": (sized(share=0.06, period_mm=(3.0, 8.0), phase_rad=PHASE),),
+    "shifting_sheath": (sized(False, per_N=0.003),),
+    "stiffening_tendon": (sized(per_N=0.02),),
+    "pulley_friction": (sized(share=0.03),),
+    "slotted_clamp": (sized(play_mm=1.5, up_N=(38.0, 42.0), down_N=(32.0, 36.0)),),
     "force_gain_drift": (
-        _size(False, f_in_rate_per_s=0.003), _size(False, f_out_rate_per_s=0.003),
+        sized(False, f_in_rate_per_s=0.003), sized(False, f_out_rate_per_s=0.003),
     ),
-    "force_sensor_creep": (_size(share=0.1, time_s=(1.0, 3.0)),),
-    "thermal_offset": (_size(amplitude_N=0.8, frequency_Hz=(0.08, 0.2), phase_rad=PHASE),),
-    "eccentric_encoder": (_size(amplitude_mm=0.08, period_mm=(4.0, 8.0), phase_rad=PHASE),),
-    "encoder_play": (_size(play_mm=0.15),),
-    "amplifier_filter": (_size(f_in_time_s=0.014), _size(f_out_time_s=0.03)),
+    "force_sensor_creep": (sized(share=0.1, time_s=(1.0, 3.0)),),
+    "thermal_offset": (sized(amplitude_N=0.8, frequency_Hz=(0.08, 0.2), phase_rad=PHASE),),
+    "eccentric_encoder": (sized(amplitude_mm=0.08, period_mm=(4.0, 8.0), phase_rad=PHASE),),
+    "encoder_play": (sized(play_mm=0.15),),
+    "amplifier_filter": (sized(f_in_time_s=0.014), sized(f_out_time_s=0.03)),
 }  # fmt: skip
 
 
@@ -103,9 +104,14 @@ def stream(seed: int, what: str) -> np.random.Generator:
 
 def drawn_near(cause: str, size: float, seed: int) -> dict[str, float]:
     """Return the parameters of a cause at a size."""
-    rng = stream(seed, f"{cause} {size:g}")
-    variants = NEAR_FULL[cause]
-    variant = variants[rng.integers(len(variants))]
+    return drawn_variant(NEAR_FULL[cause], size, stream(seed, f"{cause} {size:g}"))
+
+
+def drawn_variant(
+    variants: Sequence[Size], size: float, rng: np.random.Generator
+) -> dict[str, float]:
+    """Return the parameters of one variant at a size."""
+    variant = variants[int(rng.integers(len(variants)))]
     factor = size * rng.uniform(1.0 - VARIES, 1.0 + VARIES)
     if not variant.one_sign:
         factor *= rng.choice((-1.0, 1.0))

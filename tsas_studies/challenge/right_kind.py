@@ -34,6 +34,8 @@ RIGHT_KIND: Mapping[str, frozenset[str]] = {
         "pulley_friction": ("drive_friction",),
         "slotted_clamp": ("load_hysteresis",),
         "force_gain_drift": ("force_sensor_drift",),
+        "tilting_cell": ("force_sensor_curvature",),
+        "channel_delay": ("sensor_lag",),
         "force_sensor_creep": ("force_sensor_hysteresis",),
         "thermal_offset": ("force_sensor_drift",),
         "eccentric_encoder": ("load_ripple",),

@@ -39,6 +39,8 @@ TARGETS = {
     "beyond_wrong": Target(high=0.05),
     "beyond_unwarned": Target(high=0.01),
     "beyond_recognised": Target(low=0.95),
+    "fault_wrong": Target(high=0.05),
+    "fault_unwarned": Target(high=0.02),
     "right_refused": Target(high=0.05),
     "coverage": Target(low=0.92, high=0.98),
     "realistic_one_exact": Target(low=0.9),

@@ -21,8 +21,8 @@ CaseId = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]+$")]
 CATALOGUE: dict[str, dict[str, Parameter]] = {
     effect.name: {p.name: p for p in effect.parameters} for effect in EFFECTS
 }
-BEYOND: tuple[Kind, ...] = ("unknown", "near")  # what is hidden is not in the catalogue
-_HIDDEN: dict[Kind, int] = {"one": 1, "pair": 2, "triple": 3, "nothing": 0, "unknown": 0, "near": 0}
+BEYOND: tuple[Kind, ...] = ("unknown", "near", "fault")  # what is hidden is not in the catalogue
+_HIDDEN: dict[Kind, int] = {"one": 1, "pair": 2, "triple": 3}  # 0 for the others
 
 
 class HiddenEffect(Record):
@@ -64,14 +64,14 @@ class TrueCase(Record):
         if self.unknown is None:
             return self.effects
         parts = self.unknown_parameters if self.unknown == MIXED else (self.unknown,)
-        return frozenset().union(*(RIGHT_KIND.get(part, frozenset()) for part in parts))
+        return frozenset().union(*(RIGHT_KIND.get(part, frozenset((part,))) for part in parts))
 
     @model_validator(mode="after")
     def _kind_fits(self) -> "TrueCase":
-        if len(self.effects) != _HIDDEN[self.kind] or len(self.hidden) != _HIDDEN[self.kind]:
+        count = _HIDDEN.get(self.kind, 0)
+        if len(self.effects) != count or len(self.hidden) != count:
             raise ValueError(
-                f"kind {self.kind} goes with {_HIDDEN[self.kind]} hidden effects, "
-                f"got {len(self.hidden)}"
+                f"kind {self.kind} goes with {count} hidden effects, got {len(self.hidden)}"
             )
         if (self.unknown is not None) != (self.kind in BEYOND):
             raise ValueError(

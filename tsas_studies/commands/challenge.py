@@ -36,6 +36,7 @@ class KindOption(StrEnum):
     nothing = "nothing"
     unknown = "unknown"
     near = "near"
+    fault = "fault"
 
 
 class ConditionsOption(StrEnum):

@@ -5,11 +5,13 @@ import pytest
 
 from tsas_cli.effects import EFFECTS
 from tsas_studies.challenge.cases import BUILDING, FULL, PAIRS, SCORING, SIZES, TRIPLES, cases, part
+from tsas_studies.challenge.faults import FAULTS
 from tsas_studies.challenge.near import NEAR_FULL, RESERVED
 from tsas_studies.challenge.rig.hidden import CATALOGUE as HIDEABLE
 from tsas_studies.challenge.rig.near import NEAR
 from tsas_studies.challenge.rig.unknowns import UNKNOWNS
 
+KINDS = ("near", "fault")
 ALL = cases(7)
 CLEAN = [case for case in ALL if case.conditions == "clean"]
 CATALOGUE = {effect.name: {p.name: p for p in effect.parameters} for effect in EFFECTS}
@@ -30,18 +32,22 @@ def test_every_effect_is_there_at_every_size_and_the_rest_beside_it():
         assert all(len(causes) == many for causes in sets)
     assert all(c.hidden == () for c in ALL if c.kind == "nothing")
     near = Counter((c.hidden[0].cause, c.size) for c in CLEAN if c.kind == "near" and not mixed(c))
-    assert near == {(cause, size): 1 for cause in set(NEAR) - RESERVED for size in SIZES}
+    causes = set(NEAR_FULL) & set(NEAR) - RESERVED
+    assert near == {(cause, size): 1 for cause in causes for size in SIZES}
+    faults = Counter((c.hidden[0].cause, c.size) for c in CLEAN if c.kind == "fault")
+    assert faults == {(fault, size): 1 for fault in set(FAULTS) - RESERVED for size in SIZES}
+    assert set(NEAR) <= set(NEAR_FULL) | set(FAULTS)
     assert all(len({h.cause for h in c.hidden}) == 3 for c in CLEAN if mixed(c))
     assert sum(map(mixed, CLEAN)) == len(SIZES)
 
 
-def test_every_clean_case_is_there_again_under_realistic_conditions():
+def test_every_clean_case_but_small_faults_is_there_again_under_realistic_conditions():
     again = [
         replace(c, name=c.name.removesuffix(", realistic"), conditions="clean")
         for c in ALL
         if c.conditions == "realistic"
     ]
-    assert again == CLEAN
+    assert again == [c for c in CLEAN if c.kind != "fault"]
     slow = [c for c in ALL if c.conditions == "slow"]
     assert {c.kind for c in slow} == {"nothing"}
     assert len(slow) == len([c for c in CLEAN if c.kind == "nothing"])
@@ -58,14 +64,18 @@ def test_the_first_cases_keep_their_numbers_whatever_else_is_added():
 def test_some_causes_are_hidden_with_the_seeds_for_scoring_alone():
     assert len(RESERVED) == 6
     scoring = cases(SCORING[0])
-    assert {h.cause for c in scoring if c.kind == "near" for h in c.hidden} == set(NEAR) > RESERVED
+    hidden = {
+        kind: {h.cause for c in scoring if c.kind == kind for h in c.hidden} for kind in KINDS
+    }
+    assert hidden["near"] == set(NEAR_FULL) - set(CATALOGUE) > RESERVED
+    assert hidden["fault"] == set(FAULTS)
     for seed in (*BUILDING[:3], BUILDING[-1], SCORING[0] - 1):
         assert not RESERVED & {h.cause for c in cases(seed) for h in c.hidden}
 
 
 def test_near_causes_have_the_rigs_parameters_and_their_own_chance():
-    for cause, variants in NEAR_FULL.items():
-        known = {**HIDEABLE, **NEAR}[cause]
+    for cause, variants in (*NEAR_FULL.items(), *FAULTS.items()):
+        known = {**HIDEABLE, **NEAR, **UNKNOWNS}[cause]
         assert all({*v.scaled, *v.drawn} <= set(known) for v in variants)
     pulls = [
         next(c for c in cases(seed) if c.name == "pulley_friction, size 0.4").hidden[0].parameters
@@ -131,5 +141,6 @@ def test_a_small_part_has_each_effect_once_at_full_size_and_a_few_of_what_is_non
         "nothing": 2,
         "unknown": 2,
         "near": 2,
+        "fault": 2,
     }
     assert all(case in ALL for case in small)

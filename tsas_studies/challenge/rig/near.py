@@ -18,9 +18,12 @@ slotted_clamp       an anchor of the load's spring that slides in a slot
 force_gain_drift    a force sensor whose gain drifts
 force_sensor_creep  a force sensor that reads part of a change late
 thermal_offset      an offset of f_in that follows a temperature up and down
-eccentric_encoder   an encoder at the load that turns off its centre
-encoder_play        play between the load and its encoder
+eccentric_encoder   an encoder that turns off its centre
+encoder_play        play between the load, or the drive, and its encoder
 amplifier_filter    a Butterworth filter of second order on one force
+coarse_converter    a channel that is read in coarse steps
+tilting_cell        a force sensor that tilts as its end of the tendon moves
+unsteady_clock      samples that are taken earlier or later than their time stamps say
 """
 
 from collections.abc import Mapping
@@ -84,13 +87,30 @@ NEAR: Mapping[str, Mapping[str, Place]] = {
         "phase_rad": ("f_in_N", "hum_phase_rad"),
     },
     "eccentric_encoder": {
+        "x_in_amplitude_mm": ("x_in_mm", "wave"),
+        "x_in_period_mm": ("x_in_mm", "wave_period"),
+        "x_in_phase_rad": ("x_in_mm", "wave_phase_rad"),
         "amplitude_mm": ("x_out_mm", "wave"),
         "period_mm": ("x_out_mm", "wave_period"),
         "phase_rad": ("x_out_mm", "wave_phase_rad"),
     },
-    "encoder_play": {"play_mm": ("x_out_transducer", "play")},
+    "encoder_play": {
+        "play_mm": ("x_out_transducer", "play"),
+        "x_in_play_mm": ("x_in_transducer", "play"),
+    },
     "amplifier_filter": {
         "f_in_time_s": ("f_in_transducer", "filter_s"),
         "f_out_time_s": ("f_out_transducer", "filter_s"),
     },
+    "coarse_converter": {
+        "f_in_step_N": ("f_in_N", "step"),
+        "f_out_step_N": ("f_out_N", "step"),
+        "x_in_step_mm": ("x_in_mm", "step"),
+        "x_out_step_mm": ("x_out_mm", "step"),
+    },
+    "tilting_cell": {
+        "f_in_per_mm": ("f_in_tilt_per_mm",),
+        "f_out_per_mm": ("f_out_tilt_per_mm",),
+    },
+    "unsteady_clock": {"jitter_s": ("jitter_s",)},
 }

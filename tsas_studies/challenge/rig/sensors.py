@@ -74,7 +74,8 @@ class Sensors:
 
     `jitter_s` is the standard deviation of the true sampling instants about the clock that is
     written down; it is cut off so that instants stay in order. `f_in_of_f_out` is the share of
-    f_out that the sensor of f_in picks up, and the other way round. `transducers` are what
+    f_out that the sensor of f_in picks up, and the other way round. `f_in_tilt_per_mm` is
+    the change of the gain of f_in with x_in, that of f_out with x_out. `transducers` are what
     channels do before they are sampled.
     """
 
@@ -87,6 +88,9 @@ class Sensors:
     motor_speed_rpm: Sensor = field(default_factory=Sensor)
     f_in_of_f_out: float = 0.0
     f_out_of_f_in: float = 0.0
+    f_in_tilt_per_mm: float = 0.0
+    f_out_tilt_per_mm: float = 0.0
+    x_in_transducer: Transducer = field(default_factory=Transducer)
     x_out_transducer: Transducer = field(default_factory=Transducer)
     f_in_transducer: Transducer = field(default_factory=Transducer)
     f_out_transducer: Transducer = field(default_factory=Transducer)
@@ -124,7 +128,16 @@ def _sensed(clean: CleanRun, sensors: Sensors) -> dict[str, Floats]:
         columns["f_in_N"] = columns["f_in_N"] + sensors.f_in_of_f_out * clean.columns["f_out_N"]
     if sensors.f_out_of_f_in:
         columns["f_out_N"] = columns["f_out_N"] + sensors.f_out_of_f_in * clean.columns["f_in_N"]
+    if sensors.f_in_tilt_per_mm:
+        columns["f_in_N"] = columns["f_in_N"] * (
+            1.0 + sensors.f_in_tilt_per_mm * clean.columns["x_in_mm"]
+        )
+    if sensors.f_out_tilt_per_mm:
+        columns["f_out_N"] = columns["f_out_N"] * (
+            1.0 + sensors.f_out_tilt_per_mm * clean.columns["x_out_mm"]
+        )
     for name, transducer in (
+        ("x_in_mm", sensors.x_in_transducer),
         ("x_out_mm", sensors.x_out_transducer),
         ("f_in_N", sensors.f_in_transducer),
         ("f_out_N", sensors.f_out_transducer),
