@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tsas_cli.diagnosis.held_out import folds_of, held_out_squares, held_out_values
+from tsas_cli.diagnosis.held_out import folds_of, held_out_squares, held_out_values, predicted_folds
 from tsas_cli.identification.extension import HypothesisFit
 from tsas_cli.identification.fit import Solution, Unknown
 
@@ -42,11 +42,44 @@ def test_a_run_is_predicted_by_the_fit_to_the_others_its_own_offset_fitted_to_it
     assert folds.by_run
     left = folds.fold == 2
     others = np.linalg.lstsq(np.hstack((shared, own))[~left], data[~left], rcond=None)[0][:2]
-    error = shared[left] @ others - data[left]
-    error -= error.mean()
-    found = held_out_squares(trial, folds)[folds.block[left].min() : folds.block[left].max() + 1]
-    np.testing.assert_allclose(found, (error**2).reshape(6, -1).sum(axis=1), rtol=1e-6)
     np.testing.assert_allclose(held_out_values(trial, folds, 2)[:2], others, rtol=1e-6)
+
+
+def test_the_squares_of_a_run_are_those_of_its_prediction_by_the_others(linear):
+    """Against the density of the run's data itself, with the covariance of its prediction."""
+    shared, own, data = linear
+    names = [unknown("a"), unknown("b"), *(unknown("zero", k) for k in range(RUNS))]
+    trial = trial_of(np.hstack((shared, own)), data, names)
+    folds = folds_of(blocks())
+    left = folds.fold == 2
+    rest = np.hstack((shared, np.delete(own, 2, axis=1)))[~left]
+    fitted = np.linalg.lstsq(rest, data[~left], rcond=None)[0][:2]
+    covariance = np.linalg.inv(rest.T @ rest)[:2, :2]
+    # Its zero is fitted to the run itself: only what differs from its mean is predicted.
+    centred = shared[left] - shared[left].mean(axis=0)
+    error = centred @ fitted - (data[left] - data[left].mean())
+    whole = np.eye(ROWS) + centred @ covariance @ centred.T
+    expected = error @ np.linalg.solve(whole, error)
+    in_run = held_out_squares(trial, folds)[np.unique(folds.block[left])]
+    uncentred = np.eye(2) + covariance @ shared[left].T @ shared[left]
+    assert in_run.sum() == pytest.approx(expected + np.linalg.slogdet(uncentred)[1], rel=1e-6)
+
+
+def test_what_a_run_alone_determines_is_no_error_of_its_prediction():
+    """Two parameters that only the last run tells apart, and one that it contradicts."""
+    rng = np.random.default_rng(4)
+    a = rng.standard_normal(RUNS * ROWS)
+    last = np.arange(RUNS * ROWS) >= 3 * ROWS
+    b = np.where(last, rng.standard_normal(RUNS * ROWS), a + 1e-3 * rng.standard_normal(a.size))
+    noise = rng.standard_normal(a.size)
+    folds = folds_of(blocks())
+    both = trial_of(np.column_stack((a, b)), a - b + noise, [unknown("a"), unknown("b")])
+    squares = held_out_squares(both, folds)[folds.block[-1] - 5 :]
+    assert squares.sum() == pytest.approx(ROWS, rel=0.4)
+    assert not predicted_folds(both, folds).by_run
+    one = trial_of(a[:, None], np.where(last, 3.0, 1.0) * a + noise, [unknown("a")])
+    assert held_out_squares(one, folds)[folds.block[-1] - 5 :].sum() > 3.0 * ROWS
+    assert predicted_folds(one, folds).by_run
 
 
 def test_an_unknown_that_only_helps_its_own_run_gains_nothing_on_others(linear):
@@ -114,7 +147,9 @@ def test_the_step_of_one_unknown_by_hand():
     step = -(1.0 - 2.0 + 6.0 + 4.0) / (1.0 + 4.0 + 9.0 + 16.0 + 4.0)
     assert held_out_values(trial, folds_of(THREE), 2) == pytest.approx([step])
     squares = held_out_squares(trial, folds_of(THREE))
-    assert squares[3:] == pytest.approx([(7.0 + 5.0 * step) ** 2, (7.0 + 6.0 * step) ** 2])
+    rise = -(2.0 * step * 9.0 + step**2 * 30.0)
+    cost = rise + np.log(1.0 + (25.0 + 36.0) / 34.0)
+    assert squares[3:] == pytest.approx([49.0 + cost / 2.0, 49.0 + cost / 2.0])
 
 
 def test_values_stay_within_their_bounds_and_at_them():
@@ -145,4 +180,5 @@ def test_the_first_run_has_zeros_of_its_own_too():
     trial = single(J, residual, [unknown("zero", k) for k in range(3)])
     found = held_out_values(trial, folds_of(THREE), 0)
     assert found == pytest.approx([-3.0, -1.0, 0.0], abs=1e-5)
-    assert held_out_squares(trial, folds_of(THREE))[:2] == pytest.approx([1.0, 1.0])
+    fitted = single(J, [-1.0, 1.0, 0.0, 0.0, 0.0, 0.0], [unknown("zero", k) for k in range(3)])
+    assert held_out_squares(fitted, folds_of(THREE))[:2] == pytest.approx([1.0, 1.0])

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from tsas_cli.diagnosis.channel_errors import HeldOutErrors, channel_errors
 from tsas_cli.diagnosis.constancy import worst_split
 from tsas_cli.diagnosis.evidence import gain, gain_percent
-from tsas_cli.diagnosis.held_out import Folds, folds_of
+from tsas_cli.diagnosis.held_out import Folds, folds_of, predicted_folds
 from tsas_cli.diagnosis.proof import ANOTHER_LAW, FoundCause, failures, split_in_words
 from tsas_cli.diagnosis.reason import reason_of
 from tsas_cli.diagnosis.refitted import HeldOutFit, refitted
@@ -204,8 +204,9 @@ def _judged(search: Hypotheses, judged: Hypotheses, stand_ins: tuple[FoundCause,
     bench, named = judged.bench, judged.named
     mesh = bench.on_mesh(named)
     final = judged.trial(named)
+    folds = predicted_folds(final, judged.folds)
     held_out = {
-        names: refitted(bench, judged.trial(names, on_mesh=mesh), judged.folds)
+        names: refitted(bench, judged.trial(names, on_mesh=mesh), folds)
         for names in judged_sets(named)
     }
     estimates = _estimates(judged, final)

@@ -5,6 +5,7 @@ import numpy.typing as npt
 
 from tsas_cli.diagnosis.channel_errors import noise_floor
 from tsas_cli.diagnosis.diagnose import Diagnosis
+from tsas_cli.diagnosis.held_out import predicted_folds
 from tsas_cli.diagnosis.proof import FoundCause
 from tsas_cli.diagnosis.residual_map import residual_map
 from tsas_cli.diagnosis.search import Hypotheses
@@ -127,13 +128,19 @@ def residual_maps_of(result: Diagnosis) -> records.ResidualMaps:
     )
 
 
-def evidence_of(search: Hypotheses | None) -> Evidence:
+def evidence_of(result: Diagnosis) -> Evidence:
     """Return the record of the held-out data, with the number of blocks."""
-    if search is None:
+    if result.judged is None or result.final is None:
         return Evidence()
-    folds, runs = search.folds, len(search.bench.rigs)
+    runs = len(result.judged.bench.rigs)
+    folds = predicted_folds(result.final, result.judged.folds)
     if folds.by_run:
         how = f"each of {runs} runs is predicted by a fit to the others"
+    elif result.judged.folds.by_run:
+        how = (
+            "the parameters of a run are not determined by the others: stretches of the runs are "
+            "predicted by a fit to the rest"
+        )
     else:
         how = f"with {count_of(runs, 'run')}, stretches are predicted by a fit to the rest"
     return Evidence(

@@ -1,9 +1,12 @@
-"""Residuals of a hypothesis on held-out runs, block by block.
+"""How well a hypothesis predicts held-out runs, block by block.
 
-In the search a run is held out by one Gauss-Newton step from the fit to all runs, which is exact
-for a linear model; `refitted_values` fits again, for what is reported. Parameters of a single run
-(its preload, its zeros) are fitted to that run for every hypothesis. With fewer than three runs,
-stretches of the runs are held out.
+A run is predicted by the fit to the others, as uncertain as that fit leaves its parameters: what
+they do not determine, such as a gain and a friction that only another bend tells apart, is no error
+of the prediction. The squares are minus twice the logarithm of the predictive density (Geisser and
+Eddy 1979), but for a constant. Linear: one Gauss-Newton step from the fit to all runs leaves a run
+out; `refitted_values` fits again, for what is reported. Parameters of a single run (its preload,
+its zeros) are fitted to that run for every hypothesis. With fewer than three runs, stretches of the
+runs are held out.
 """
 
 from collections.abc import Sequence
@@ -109,11 +112,51 @@ def held_out_values(trial: Hypothesis, folds: Folds, fold: int) -> Floats:
 
 
 def held_out_squares(trial: Hypothesis, folds: Folds) -> Floats:
-    """Return the sum of squares of the held-out residuals in each block, shape (blocks,)."""
-    J, r = trial.solution.jacobian, trial.solution.residual
-    out = np.empty(r.size)
-    for fold in range(int(folds.fold.max()) + 1):
+    """Return the squares of the held-out residuals in each block, shape (blocks,).
+
+    With the fit to all runs a held-out run has its residuals there, and the others fit worse than
+    by themselves. That rise, and the determinant of the prediction's covariance, count as squares
+    of the held-out run, the same for each of its residuals.
+    """
+    r = trial.solution.residual
+    out = r**2
+    for fold in np.unique(folds.fold):
         held_out = folds.fold == fold
-        step = held_out_values(trial, folds, fold) - trial.solution.values
-        out[held_out] = r[held_out] + J[held_out] @ step
-    return np.bincount(folds.block, out**2, minlength=folds.blocks).astype(np.float64)
+        out[held_out] += _penalty(trial, folds, fold) / np.count_nonzero(held_out)
+    return np.bincount(folds.block, out, minlength=folds.blocks).astype(np.float64)
+
+
+def _penalty(trial: Hypothesis, folds: Folds, fold: int) -> float:
+    """Return what the prediction of a fold by the others costs beyond the fit to all."""
+    J, r = trial.solution.jacobian, trial.solution.residual
+    rest = folds.fold != fold
+    change = J[rest] @ (held_out_values(trial, folds, fold) - trial.solution.values)
+    rise = -float(change @ (2.0 * r[rest] + change))
+    covariance = _prediction_covariance(trial, folds, fold)
+    return max(rise, 0.0) + float(np.linalg.slogdet(covariance)[1])
+
+
+def _prediction_covariance(trial: Hypothesis, folds: Folds, fold: int) -> Floats:
+    """Return the covariance of a fold's prediction, in units of noise, in the space of parameters.
+
+    Shape (q, q) for the q shared parameters that are not at a bound; its determinant and trace are
+    those of the residuals' covariance, but for the identity of their noise.
+    """
+    free = ~(own_of_fold(trial, folds, fold) | trial.solution.at_bound)
+    J, held_out = trial.solution.jacobian[:, free], folds.fold == fold
+    weak = np.array([u.scale for u in trial.unknowns])[free] ** -2.0
+    gram = J[~held_out].T @ J[~held_out] + np.diag(weak)
+    return np.eye(weak.size) + np.linalg.solve(gram, J[held_out].T @ J[held_out])
+
+
+def predicted_folds(trial: Hypothesis, folds: Folds) -> Folds:
+    """Return the folds, or stretches where a run is needed to predict itself.
+
+    A run is, where its prediction by the others is more uncertain than its noise.
+    """
+    for fold in np.unique(folds.fold):
+        covariance = _prediction_covariance(trial, folds, fold)
+        uncertain = float(np.trace(covariance)) - len(covariance)
+        if uncertain > np.count_nonzero(folds.fold == fold):
+            return in_stretches(folds)
+    return folds

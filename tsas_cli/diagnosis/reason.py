@@ -60,6 +60,8 @@ def _dependence(after: Remainder) -> list[str]:
     if after.late:
         names = " and ".join(after.late)
         out.append(f"At each reversal {names} lags behind the model, or leads it.")
+    if after.brief:
+        out.append(f"{' and '.join(after.brief)} deviates at a few moments of a run.")
     return out
 
 

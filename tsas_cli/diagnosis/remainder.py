@@ -28,6 +28,7 @@ MOST_SLOW = 2.0  # square of slow noise over that of white noise, beyond which i
 LEAST_SLOW = 0.15  # the same, below which there is none
 FEWEST_STROKES = 4
 LATE = 2.0  # mean delay of the strokes of a complete model at most, in units of `delays`
+FAR, MOST_FAR = 4.0, 0.002  # standard deviations, and the share of a run's errors beyond them
 LATE_CRITICAL = 4.0  # critical value of the t statistic of that mean
 PEAK = 0.3  # share of a run's squares in one narrow band from which the residual is periodic
 OWN = 2.5  # multiple of the motion's frequency from which an oscillation is not its own
@@ -49,7 +50,8 @@ class Remainder:
     mean square by a regression on held-out data, `shares` the part of it, `reducible` the reduction
     of the whole; `depends_on` the signals
     that explain most of it; `slow` what of a channel repeats with no signal; `late` the channels in
-    which each stroke lags behind the model; `oscillates` a phrase on a dominant frequency, if any.
+    which each stroke lags behind the model; `brief` those that deviate at a few moments of a run;
+    `oscillates` a phrase on a dominant frequency, if any.
     """
 
     mean_square: float
@@ -59,6 +61,7 @@ class Remainder:
     slow: dict[str, SlowPart] = field(default_factory=dict)
     shares: dict[str, float] = field(default_factory=dict)
     late: tuple[str, ...] = ()
+    brief: tuple[str, ...] = ()
     oscillates: str | None = None
 
     @property
@@ -67,6 +70,7 @@ class Remainder:
         return not (
             self.oscillates
             or self.late
+            or self.brief
             or any(part > STRUCTURE for part in self.explained.values())
             or any(slow.ratio**2 > MOST_SLOW for slow in self.slow.values())
         )
@@ -118,7 +122,22 @@ def remainder(
     depends_on = (*([oscillates] if oscillates else []), *found[:3])
     mean_square = sum(squares.values()) / count
     late = tuple(name for name in bench.channels if _is_late(bench, trial, name))
-    return Remainder(mean_square, explained, depends_on, reducible, slow, shares, late, oscillates)
+    brief = tuple(name for name in bench.channels if any(map(_is_brief, errors[name])))
+    return Remainder(
+        mean_square, explained, depends_on, reducible, slow, shares, late, brief, oscillates
+    )
+
+
+def _is_brief(errors: Floats) -> bool:
+    """Return whether what a run's errors exceed the noise by comes at a few moments.
+
+    Noise is as large at any time, and seldom far beyond its own standard deviation.
+    """
+    from scipy.stats import median_abs_deviation
+
+    far = FAR * float(median_abs_deviation(errors, scale="normal"))
+    beyond = float(np.mean(np.abs(errors) > far))
+    return float(np.mean(errors**2)) > 1.0 + LEAST_SLOW and beyond > MOST_FAR
 
 
 def _is_late(bench: Bench, trial: HypothesisFit, name: str) -> bool:

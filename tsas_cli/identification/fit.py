@@ -23,6 +23,7 @@ STEP = 1e-5  # of the finite differences, in scaled unknowns
 MOST_EVALUATIONS = 60
 WRONG = 2.0  # mean square of the residuals beyond which the model is wrong
 FEWEST_RUNS = 3  # for standard errors of a wrong model
+ALONE = 50.0  # growth of the variance of a parameter without the run that alone determines it
 UNDETERMINED = 1e-3  # tolerance of the resolution of a determined parameter
 NEARLY_BOUND = 1e-4  # of a plausible change, or of the width between the bounds if it is less
 KNOWN = 0.1  # of its scale: with a larger standard error, alone, an unknown is not identifiable
@@ -195,7 +196,8 @@ def with_errors(
     """Return a solution with standard errors and Student's t of its unknowns, from blocks of runs.
 
     Where the model is wrong, or with `by_run`, its error repeats from block to block, and only runs
-    are independent: shared unknowns get the wider interval of both.
+    are independent: shared unknowns get the wider interval of both, but those that one run alone
+    determines, whose scatter from run to run nothing shows.
     """
     J, residual, runs = solution.jacobian, solution.residual, len(blocks)
     offsets = np.concatenate(([0], np.cumsum([b.max() + 1 for b in blocks])))[:-1]
@@ -205,6 +207,7 @@ def with_errors(
         own = np.repeat(np.arange(runs), [b.size for b in blocks])
         run_stderr, run_t = _errors(J, residual, own)
         wider = (run_t * run_stderr > t * stderr) & [u.run is None for u in unknowns]
+        wider &= _without_a_run(J, own) < ALONE
         stderr, t = np.where(wider, run_stderr, stderr), np.where(wider, run_t, t)
     return Fitted(
         solution.values,
@@ -215,6 +218,19 @@ def with_errors(
         solution.message,
         solution.evaluations,
     )
+
+
+def _without_a_run(J: Floats, run: Indices) -> Floats:
+    """Return by how much the variance of each parameter grows, at most, without one run."""
+    scaled = J / np.maximum(np.linalg.norm(J, axis=0), np.finfo(float).tiny)
+    whole = np.diag(np.linalg.pinv(scaled.T @ scaled, hermitian=True))
+    most = np.ones(J.shape[1])
+    for k in np.unique(run):
+        rest = scaled[run != k]
+        shared = np.any(rest != 0.0, axis=0)
+        less = np.diag(np.linalg.pinv(rest[:, shared].T @ rest[:, shared], hermitian=True))
+        most[shared] = np.maximum(most[shared], less / whole[shared])
+    return most
 
 
 def _errors(J: Floats, residual: Floats, block: Indices) -> tuple[Floats, Floats]:

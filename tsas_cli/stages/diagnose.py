@@ -145,7 +145,7 @@ def diagnose(
             candidates=found.candidates_of(result),
             signatures=found.signatures_of(result.search),
             residual_map=found.residual_maps_of(result),
-            evidence=found.evidence_of(result.search),
+            evidence=found.evidence_of(result),
             cannot_tell=(
                 *counted.notes,
                 *contradictions(data.manifest, result.model, [c.effect for c in result.causes]),
