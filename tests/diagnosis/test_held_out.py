@@ -147,9 +147,11 @@ def test_the_step_of_one_unknown_by_hand():
     step = -(1.0 - 2.0 + 6.0 + 4.0) / (1.0 + 4.0 + 9.0 + 16.0 + 4.0)
     assert held_out_values(trial, folds_of(THREE), 2) == pytest.approx([step])
     squares = held_out_squares(trial, folds_of(THREE))
-    rise = -(2.0 * step * 9.0 + step**2 * 30.0)
-    cost = rise + np.log(1.0 + (25.0 + 36.0) / 34.0)
-    assert squares[3:] == pytest.approx([49.0 + cost / 2.0, 49.0 + cost / 2.0])
+    whole = -(9.0 + 35.0 + 42.0) / (34.0 + 25.0 + 36.0)
+    of_others = [2.0 * a * 9.0 + a**2 * 34.0 for a in (whole, step)]
+    cost = of_others[0] - of_others[1] + np.log(1.0 + (25.0 + 36.0) / 34.0)
+    expected = [(7.0 + factor * whole) ** 2 + cost / 2.0 for factor in (5.0, 6.0)]
+    assert squares[3:] == pytest.approx(expected)
 
 
 def test_values_stay_within_their_bounds_and_at_them():

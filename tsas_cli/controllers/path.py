@@ -16,7 +16,9 @@ from tsas_cli.effects import Effects
 from tsas_cli.effects.drive_friction import drive_friction_force
 from tsas_cli.effects.drive_ripple import DriveRipple, rippled
 from tsas_cli.effects.proximal_spring import proximal_spring_force
+from tsas_cli.effects.stribeck_friction import StribeckFriction, stribeck_factor
 from tsas_cli.numerics.compiled import kernel
+from tsas_cli.physics.course import PULLED, RELEASED
 from tsas_cli.physics.ends import force_of_motion, last_direction, losses_over, rate_of
 from tsas_cli.physics.plant.turntable import Actuator
 from tsas_cli.physics.rig import Rig
@@ -67,9 +69,13 @@ def follow(
     )
     time_s = (np.arange(padded.size, dtype=np.float64) - ahead) * step_s
     end = speed = np.zeros(padded.size)
+    stribeck = rig.effects.stribeck_friction
+    # The inverse crosses a dead band at once: only the smoothed path has a speed.
+    by_drive = rig._replace(effects=rig.effects._replace(stribeck_friction=StribeckFriction()))
     for _ in range(ITERATIONS if _depends_on_path(rig.effects) else 1):
         losses = losses_over(np.maximum(time_s, 0.0), end, speed, 0.0, rig)
-        end, tension, missed = inverse_chain(padded, losses, step_s, rig, nodes)
+        losses[[PULLED, RELEASED]] *= [stribeck_factor(v, stribeck) for v in speed]
+        end, tension, missed = inverse_chain(padded, losses, step_s, by_drive, nodes)
         smooth = smoothed(end, width, step_s)[1]
         speed = np.concatenate(
             (np.zeros(ahead), smooth, np.zeros(padded.size - ahead - smooth.size))

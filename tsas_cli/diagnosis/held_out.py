@@ -91,24 +91,11 @@ def held_out_values(trial: Hypothesis, folds: Folds, fold: int) -> Floats:
     held_out = folds.fold == fold
     J, r = trial.solution.jacobian, trial.solution.residual
     own = own_of_fold(trial, folds, fold)
-    shared = ~own
-    weak = (
-        np.array([u.scale for u in trial.unknowns]) ** -2.0
-    )  # regularises directions that are not identifiable
-    others = J[~held_out][:, shared]
-    free = ~trial.solution.at_bound[shared]
-    gram = others.T @ others + np.diag(weak[shared])
-    step = np.zeros(len(trial.unknowns))
-    gradient = -(others.T @ r[~held_out])
-    moved = np.zeros(int(shared.sum()))
-    moved[free] = np.linalg.solve(gram[np.ix_(free, free)], gradient[free])
-    step[shared] = moved
+    step = _step(trial, ~held_out)
     if own.any():
-        after = r[held_out] + J[held_out] @ step
+        after = r[held_out] + J[held_out][:, ~own] @ step[~own]
         step[own] = -np.linalg.lstsq(J[held_out][:, own], after, rcond=None)[0]
-    lower = np.array([u.lower for u in trial.unknowns])
-    upper = np.array([u.upper for u in trial.unknowns])
-    return np.clip(trial.solution.values + step, lower, upper)
+    return _within(trial, step)
 
 
 def held_out_squares(trial: Hypothesis, folds: Folds) -> Floats:
@@ -118,22 +105,49 @@ def held_out_squares(trial: Hypothesis, folds: Folds) -> Floats:
     by themselves. That rise, and the determinant of the prediction's covariance, count as squares
     of the held-out run, the same for each of its residuals.
     """
-    r = trial.solution.residual
-    out = r**2
+    everything = np.ones(folds.fold.size, bool)
+    whole = _within(trial, _step(trial, everything)) - trial.solution.values
+    out = _moved(trial, everything, whole) ** 2
     for fold in np.unique(folds.fold):
         held_out = folds.fold == fold
-        out[held_out] += _penalty(trial, folds, fold) / np.count_nonzero(held_out)
+        rest = _within(trial, _step(trial, ~held_out)) - trial.solution.values
+        rise = _squares(trial, ~held_out, whole) - _squares(trial, ~held_out, rest)
+        determinant = np.linalg.slogdet(_prediction_covariance(trial, folds, fold))[1]
+        out[held_out] += (max(rise, 0.0) + determinant) / np.count_nonzero(held_out)
     return np.bincount(folds.block, out, minlength=folds.blocks).astype(np.float64)
 
 
-def _penalty(trial: Hypothesis, folds: Folds, fold: int) -> float:
-    """Return what the prediction of a fold by the others costs beyond the fit to all."""
-    J, r = trial.solution.jacobian, trial.solution.residual
-    rest = folds.fold != fold
-    change = J[rest] @ (held_out_values(trial, folds, fold) - trial.solution.values)
-    rise = -float(change @ (2.0 * r[rest] + change))
-    covariance = _prediction_covariance(trial, folds, fold)
-    return max(rise, 0.0) + float(np.linalg.slogdet(covariance)[1])
+def _step(trial: Hypothesis, kept: Bits) -> Floats:
+    """Return the Gauss-Newton step to the least squares of some residuals, shape (p,)."""
+    J, r = trial.solution.jacobian[kept], trial.solution.residual[kept]
+    free = ~trial.solution.at_bound
+    gram = J.T @ J + np.diag(_weak(trial))
+    step = np.zeros(free.size)
+    step[free] = np.linalg.solve(gram[np.ix_(free, free)], -(J.T @ r)[free])
+    return step
+
+
+def _weak(trial: Hypothesis) -> Floats:
+    """Return the weight of each unknown's step, which determines what the residuals do not."""
+    return np.array([u.scale for u in trial.unknowns]) ** -2.0
+
+
+def _within(trial: Hypothesis, step: Floats) -> Floats:
+    """Return the values after a step, within their bounds."""
+    lower = np.array([u.lower for u in trial.unknowns])
+    upper = np.array([u.upper for u in trial.unknowns])
+    return np.clip(trial.solution.values + step, lower, upper)
+
+
+def _moved(trial: Hypothesis, kept: Bits, step: Floats) -> Floats:
+    """Return some residuals after a step."""
+    return np.asarray(trial.solution.residual[kept] + trial.solution.jacobian[kept] @ step)
+
+
+def _squares(trial: Hypothesis, kept: Bits, step: Floats) -> float:
+    """Return the sum of squares that `_step` minimises."""
+    moved = _moved(trial, kept, step)
+    return float(moved @ moved) + float(_weak(trial) @ step**2)
 
 
 def _prediction_covariance(trial: Hypothesis, folds: Folds, fold: int) -> Floats:
@@ -144,9 +158,8 @@ def _prediction_covariance(trial: Hypothesis, folds: Folds, fold: int) -> Floats
     """
     free = ~(own_of_fold(trial, folds, fold) | trial.solution.at_bound)
     J, held_out = trial.solution.jacobian[:, free], folds.fold == fold
-    weak = np.array([u.scale for u in trial.unknowns])[free] ** -2.0
-    gram = J[~held_out].T @ J[~held_out] + np.diag(weak)
-    return np.eye(weak.size) + np.linalg.solve(gram, J[held_out].T @ J[held_out])
+    gram = J[~held_out].T @ J[~held_out] + np.diag(_weak(trial)[free])
+    return np.eye(len(gram)) + np.linalg.solve(gram, J[held_out].T @ J[held_out])
 
 
 def predicted_folds(trial: Hypothesis, folds: Folds) -> Folds:

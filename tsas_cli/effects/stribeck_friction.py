@@ -4,12 +4,12 @@ What one sees: f_in over f_out is widest near reversals, where the drive is slow
 towards the middle of a stroke; a whole run at a lower speed has a wider loop. The residual of f_in
 is proportional to the tension and changes sign with the direction.
 Equation: the exponential Stribeck curve of Yang 2025, Eq. (15), on the friction coefficient of
-Eq. (2); v is the sliding speed of the drive's end. The paper's 0.01 mm/s is far below the speed of
-its strokes, at which the excess has vanished.
+Eq. (2); v is the sliding speed of each point of the tendon, which friction follows 10 ms late (the
+frictional lag of Hess and Soom 1990). The paper's 0.01 mm/s is far below the speed of its strokes,
+at which the excess has vanished.
 Mistaken for: viscous_friction (more at high speed, at any tension the same); presliding (depends on
 travel since the reversal, not on speed); load_dependent_friction (depends on the tension).
-Not validated: stick-slip; the lag of friction behind the speed; points of the tendon that slide
-slower than the drive's end.
+Not validated: stick-slip; how long the lag is.
 """
 
 from typing import NamedTuple

@@ -17,7 +17,6 @@ from tsas_cli.effects.drive_ripple import rippled
 from tsas_cli.effects.friction_drift import friction_factor
 from tsas_cli.effects.position_dependent_friction import position_factor
 from tsas_cli.effects.preload_loss import lost_preload
-from tsas_cli.effects.stribeck_friction import stribeck_factor
 from tsas_cli.effects.viscous_friction import viscous_loss
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, SPRING, Boundary
@@ -177,11 +176,9 @@ def losses_over(
 @kernel
 def losses_at(time_s: float, position: float, speed: float, session_s: float, rig: Rig) -> Losses:
     """Return the losses at one moment, by position and speed of the end at the drive [mm, s]."""
-    effects = rig.effects
     now = losses_without_speed(time_s, position, session_s, rig)
-    factor = stribeck_factor(speed, effects.stribeck_friction)
-    viscous_N = viscous_loss(speed, effects.viscous_friction.coefficient_N_s_per_mm)
-    return Losses(factor * now.pulled, factor * now.released, viscous_N, now.preload_N)
+    viscous_N = viscous_loss(speed, rig.effects.viscous_friction.coefficient_N_s_per_mm)
+    return Losses(now.pulled, now.released, viscous_N, now.preload_N)
 
 
 @kernel

@@ -9,9 +9,9 @@ lacks. F is the force of the slip chain, the drive's friction and a spring paral
 
 Discretisation: the motor exactly for a constant command, the turntable by BDF2 with a constant step
 (second order), in which F is implicit: a turntable after a step is a linear spring of stiffness
-m c² + B c + k_d, c = 3/(2h), in series with the slip chain. Viscous and Stribeck friction use the
-speed of the step before: first order there. While the drive crosses its play the tendon's end
-rests under tension, and the play has friction (`play_friction`).
+m c² + B c + k_d, c = 3/(2h), in series with the slip chain. Viscous friction uses the speed
+of the step before, Stribeck friction each node's, with a lag: first order there. While the drive
+crosses its play the tendon's end rests under tension, and the play has friction (`play_friction`).
 """
 
 import math

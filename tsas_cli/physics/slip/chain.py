@@ -37,7 +37,7 @@ from tsas_cli.physics.phases import SLACK, UNCONVERGED
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.slip.ends import load_force, update_end_speeds, update_load_state
 from tsas_cli.physics.slip.frames import write_frame
-from tsas_cli.physics.slip.nodes import accept
+from tsas_cli.physics.slip.nodes import accept, update_speeds
 from tsas_cli.physics.slip.start import chain_at_rest, slip_laws
 from tsas_cli.physics.slip.state import (
     COMPLIANCE,
@@ -197,6 +197,7 @@ def advance(chain: Floats, start: Moment, end: Moment, laws: SlipLaws) -> bool:
         now = between(start, end, target, end.step_s * (target - reached))
         if solve_sample(chain, now, laws):
             update_end_speeds(chain, now.step_s, laws.n)
+            update_speeds(chain, now.step_s, laws)
             update_load_state(chain, now.step_s, laws)
             accept(chain, laws)
             if target == 1.0:

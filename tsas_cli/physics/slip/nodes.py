@@ -11,6 +11,7 @@ import math
 
 from tsas_cli.effects.load_dependent_friction import load_exponent
 from tsas_cli.effects.presliding import friction_share, friction_share_rate
+from tsas_cli.effects.stribeck_friction import stribeck_factor
 from tsas_cli.effects.uneven_friction import place_factor
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.numerics.elementary import exponential
@@ -27,6 +28,7 @@ from tsas_cli.physics.slip.state import (
     SHARE,
     SHARE_BEFORE,
     SLIP,
+    SPEED,
     TENSION,
     TENSION_BEFORE,
     TENSION_RISE,
@@ -43,6 +45,7 @@ from tsas_cli.physics.slip.state import (
 
 MOST_WRAP = 30.0  # friction of a node times its bend, so that the tension behind it is not zero
 MOST_RATIO_CHANGE = 0.5  # of a node's ratio of tensions by a tangent
+FRICTIONAL_LAG_S = 0.01  # of friction behind the speed; 3 to 9 ms in Hess and Soom 1990
 SLIDING_SHARE = 0.99  # of its friction limit, from which a node with presliding slips
 
 
@@ -51,7 +54,8 @@ def set_friction(chain: Floats, now: Moment, laws: SlipLaws) -> None:
     """Set each node's friction and its capstan ratios, Eq. (7) of Yang 2025 for its bend."""
     n = laws.n
     pulled, released = now.losses.pulled / n, now.losses.released / n
-    if laws.friction_exponent == 0.0 and laws.friction_slope == 0.0:
+    uniform = laws.friction_exponent == 0.0 and laws.friction_slope == 0.0
+    if uniform and laws.stribeck.excess == 0.0:
         ratio_pulled, ratio_released = math.exp(-pulled), math.exp(-released)
         for i in range(1, n + 1):
             chain[WRAP_PULLED + i], chain[WRAP_RELEASED + i] = pulled, released
@@ -64,6 +68,7 @@ def set_friction(chain: Floats, now: Moment, laws: SlipLaws) -> None:
     for i in range(1, n + 1):
         factor = exponential(chain[WRAP_PULLED + i])
         factor *= place_factor((i - 0.5) / n, laws.friction_slope)
+        factor *= stribeck_factor(chain[SPEED + i], laws.stribeck)
         chain[WRAP_PULLED + i] = min(pulled * factor, MOST_WRAP)
         chain[WRAP_RELEASED + i] = min(released * factor, MOST_WRAP)
     if laws.presliding_mm == 0.0:
@@ -71,6 +76,20 @@ def set_friction(chain: Floats, now: Moment, laws: SlipLaws) -> None:
             chain[RATIO_PULLED + i] = exponential(-chain[WRAP_PULLED + i])
         for i in range(1, n + 1):
             chain[RATIO_RELEASED + i] = exponential(-chain[WRAP_RELEASED + i])
+
+
+@kernel
+def update_speeds(chain: Floats, step_s: float, laws: SlipLaws) -> None:
+    """Let the speed that a node's friction follows approach that of its step, before `accept`.
+
+    First order in the step; a quasi-static step has no speed.
+    """
+    if laws.stribeck.excess == 0.0 or step_s == math.inf:
+        return
+    share = 1.0 - math.exp(-step_s / FRICTIONAL_LAG_S)
+    for i in range(1, laws.n + 1):
+        speed = abs(chain[POSITION + i] - chain[POSITION_BEFORE + i]) / step_s
+        chain[SPEED + i] += share * (speed - chain[SPEED + i])
 
 
 @kernel

@@ -40,6 +40,7 @@ def slip_laws(rig: Rig, n: int, boundary: Boundary) -> SlipLaws:
         rig.effects.load_dependent_friction.exponent,
         rig.effects.uneven_friction.slope,
         rig.effects.presliding.length_mm,
+        rig.effects.stribeck_friction,
         drive_end(rig, boundary.drive),
         load_end(rig, boundary.load),
     )
@@ -55,6 +56,7 @@ def with_drive(laws: SlipLaws, drive: DriveEnd) -> SlipLaws:
         laws.friction_exponent,
         laws.friction_slope,
         laws.presliding_mm,
+        laws.stribeck,
         drive,
         laws.load,
     )

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from tsas_cli.effects.stribeck_friction import StribeckFriction
 from tsas_cli.physics.boundary import DriveEnd, LoadEnd
 from tsas_cli.physics.course import Losses
 from tsas_cli.physics.mesh import PITCH
@@ -24,6 +25,7 @@ class SlipLaws(NamedTuple):
     friction_exponent: float
     friction_slope: float  # along the sheath, over the mean
     presliding_mm: float
+    stribeck: StribeckFriction
     drive: DriveEnd
     load: LoadEnd
 
@@ -57,4 +59,5 @@ WRAP_LIMIT = PITCH * 21  # a/n at the node's tension, in the direction of SHARE
 WRAP_SIGNED, RATIO = PITCH * 22, PITCH * 23  # friction times bend with its sign, its exponential
 ELEMENT, STRETCH = PITCH * 24, PITCH * 24 + 1  # force of the load's hysteresis, before [N], and
 # stretch of its relaxing spring [mm]
-ROWS = 25
+SPEED = PITCH * 25  # at which the node has slid within the frictional lag [mm/s]
+ROWS = 26
