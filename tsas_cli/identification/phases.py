@@ -145,7 +145,7 @@ def _block_means(values: Floats, step: int) -> Floats:
     """Return means over blocks of `step` samples; the last one may be shorter."""
     edges = np.arange(0, values.size, step)
     sums = np.add.reduceat(values, edges)
-    means: Floats = sums / np.diff([*edges, values.size])
+    means: Floats = sums / np.diff(edges, append=values.size)
     return means
 
 

@@ -106,7 +106,7 @@ class RunErrors:
         parts = []
         for errors in self.errors(rig).values():
             edges = mean_edges(errors.size)
-            counts = np.diff([*edges, errors.size])
+            counts = np.diff(edges, append=errors.size)
             parts.append(np.add.reduceat(errors, edges) / np.sqrt(counts))
         return np.concatenate(parts)
 
@@ -116,7 +116,7 @@ class RunErrors:
         for channel, at in self.samples.items():
             edges = mean_edges(at.size)
             if channel == name:
-                counts = np.diff([*edges, at.size])
+                counts = np.diff(edges, append=at.size)
                 spread: Bits = np.repeat(chosen[start : start + edges.size], counts)
                 return spread
             start += edges.size
@@ -205,7 +205,7 @@ def _reversal_shapes(change: Floats, at: Indices, reversals: Indices) -> Reversa
     """
     starts = np.unique(np.searchsorted(at, reversals[:-1] + 1))
     starts = np.unique([0, *starts[starts < at.size]])
-    counts = np.diff([*starts, at.size])
+    counts = np.diff(starts, append=at.size)
     shape = change[at]
     size = np.add.reduceat(shape**2, starts)
     share = 1.0 - 1.0 / np.sqrt(1.0 + REVERSAL_SD**2 * size)

@@ -96,7 +96,9 @@ def ends_of(rig: Rig, drive: DriveInput, start: tuple[float, float] | None = Non
     else:
         x = drive.values - rig.x_in_zero_mm
         at_drive = tendon_end(x, rig.effects, float(x[0]) if start is None else start[0])
-        position, speed = at_drive, rate_of(at_drive, drive.time_s)
+        position, speed = at_drive, np.zeros(n)
+        if _follows_speed(rig.effects):
+            speed = rate_of(at_drive, drive.time_s)
     at_load = np.zeros(n)
     if drive.load_values is not None and drive.load == "force":
         at_load = true_value("f_out_N", drive.load_values, drive.time_s, rig)
@@ -112,6 +114,15 @@ def ends_of(rig: Rig, drive: DriveInput, start: tuple[float, float] | None = Non
     return EndInputs(course, boundary_of(drive), direction, motion_N)
 
 
+def _follows_speed(effects: Effects) -> bool:
+    """Return whether a force follows the speed of the drive: a fit asks thousands of times."""
+    return (
+        effects.viscous_friction.coefficient_N_s_per_mm != 0.0
+        or effects.drive_damping.coefficient_N_s_per_mm != 0.0
+        or effects.drive_inertia.mass_kg != 0.0
+    )
+
+
 def rate_of(values: Floats, time_s: Floats | None) -> Floats:
     """Return the rate of a quantity at each sample [1/s], 0 without times."""
     if time_s is None or values.size < 2:
@@ -122,9 +133,9 @@ def rate_of(values: Floats, time_s: Floats | None) -> Floats:
 
 def force_of_motion(speed: Floats, time_s: Floats | None, effects: Effects) -> Floats:
     """Return the force that the drive's sensor reads for the motion of the tendon's end [N]."""
-    damping, mass_kg = effects.drive_damping.coefficient_N_s_per_mm, effects.drive_inertia.mass_kg
-    if damping == 0.0 and mass_kg == 0.0:
+    if not _follows_speed(effects):
         return np.zeros(speed.size)
+    damping, mass_kg = effects.drive_damping.coefficient_N_s_per_mm, effects.drive_inertia.mass_kg
     damped: Floats = drive_damper_force(1.0, damping) * speed
     return damped + drive_inertia_force(1.0, mass_kg) * rate_of(speed, time_s)
 

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, field, replace
+from operator import attrgetter
 from typing import Literal
 
 import numpy as np
@@ -34,6 +35,8 @@ CLOSED = 0  # nodes of the closed form
 ELEMENTS = 60  # of the closed form's profiles along the tendon
 MOST_DOUBLINGS = 30  # of the drive's travel before a run
 ON_CHAIN = tuple(effect.name for effect in EFFECTS if not effect.closed_form)
+_effects_on_chain = attrgetter(*ON_CHAIN)
+_NEUTRAL_ON_CHAIN = _effects_on_chain(Effects())
 
 
 @dataclass(frozen=True)
@@ -132,12 +135,11 @@ def solver_of(nodes: int, dynamics: Dynamics) -> str:
 
 def is_closed(rig: Rig, drive: DriveInput) -> bool:
     """Return whether the closed form is valid: displacement drive, spring, constant friction."""
-    neutral = Effects()
     return (
         drive.kind == "displacement"
         and drive.load == "spring"
         and rig.bend_slope == rig.bend_bow == 0.0
-        and all(getattr(rig.effects, name) == getattr(neutral, name) for name in ON_CHAIN)
+        and _effects_on_chain(rig.effects) == _NEUTRAL_ON_CHAIN
     )
 
 
