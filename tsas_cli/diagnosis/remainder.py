@@ -1,7 +1,7 @@
 """The remaining residual with the named causes: its size, its dependence, the attainable residual.
 
 A regression on the recorded signals, each by hat functions and with separate weights for both
-directions, estimates the residual that any model of these signals could attain on held-out runs. It
+directions, estimates the residual that any model of these signals could attain on held-out data. It
 shows that a model lacks something, not the cause. What it leaves beyond the white noise repeats
 with no signal: slow noise.
 """
@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.diagnosis.evidence import gain
-from tsas_cli.diagnosis.held_out import Folds
+from tsas_cli.diagnosis.held_out import Folds, in_stretches
 from tsas_cli.diagnosis.signals import DIRECTION, AtResiduals
 from tsas_cli.diagnosis.tolerances import without_scatter
 from tsas_cli.identification.extension import Bench, HypothesisFit
@@ -47,7 +47,7 @@ class Remainder:
     """The remaining residual of a trial.
 
     `mean_square` is that of the weighted residuals; `explained` the reduction of each channel's
-    mean square by a regression on held-out data, `shares` the part of it, `reducible` the reduction
+    mean square by a regression on held-out stretches, `shares` the part of it, `reducible` the reduction
     of the whole; `depends_on` the signals
     that explain most of it; `slow` what of a channel repeats with no signal; `late` the channels in
     which each stroke lags behind the model; `brief` those that deviate at a few moments of a run;
@@ -89,6 +89,7 @@ def remainder(
     squares = {n: sum(float(part @ part) for part in parts) for n, parts in errors.items()}
     signals, channel = at_residuals.signals, at_residuals.channel
     residual = without_scatter(trial, folds.run)
+    stretches = in_stretches(folds).fold
     names = [name for name in signals if name != DIRECTION]
     alone = dict.fromkeys(names, 0.0)
     explained: dict[str, float] = {}
@@ -97,7 +98,7 @@ def remainder(
     reducible = 0.0
     for number, name in enumerate(bench.channels):
         here = channel == number
-        own, fold = residual[here], folds.fold[here]
+        own, fold = residual[here], stretches[here]
         before = _by_block(own, folds, here)
         used = before > 0.0
         whole = [hats(signals[s][here], signals[DIRECTION][here]) for s in names]
