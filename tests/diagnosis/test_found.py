@@ -10,9 +10,11 @@ from tsas_cli.diagnosis import found as f
 from tsas_cli.diagnosis.channel_errors import HeldOutErrors
 from tsas_cli.diagnosis.diagnose import Diagnosis, FoundCause
 from tsas_cli.diagnosis.evidence import Reduction
+from tsas_cli.diagnosis.held_out import folds_of
 from tsas_cli.diagnosis.remainder import Remainder, SlowPart
 from tsas_cli.effects import BACKLASH
 from tsas_cli.identification.estimate import Estimate
+from tsas_cli.identification.fit import Solution, Unknown
 from tsas_cli.identification.model import Model
 
 PARTS = {"a": 0.75, "b": 0.36, "ab": 0.84, "ac": 0.19, "bc": 0.5, "abc": 0.9}
@@ -78,14 +80,33 @@ def test_directions_that_are_the_same_count_once():
 
 
 def test_how_was_held_out_is_said():
-    folds = SimpleNamespace(by_run=True, blocks=40)
-    search = SimpleNamespace(folds=folds, bench=SimpleNamespace(rigs=[1, 2, 3]))
-    found = f.evidence_of(search)
-    assert (found.held_out, found.blocks, found.runs) == ("runs", 40, 3)
-    assert found.sentence.startswith("each of 3 runs is predicted by a fit to the others; 40")
-    folds.by_run = False
-    assert f.evidence_of(search).held_out == "stretches"
-    assert f.evidence_of(search).sentence.startswith("with 3 runs, stretches")
+    """Of three runs, of two, and of three of which only the last determines the second parameter."""
+    for runs, columns, how, start in (
+        (
+            3,
+            np.ones((36, 1)),
+            "runs",
+            "each of 3 runs is predicted by a fit to the others; 9 blocks",
+        ),
+        (2, np.ones((24, 1)), "stretches", "with 2 runs, stretches are predicted"),
+        (
+            3,
+            np.eye(2)[np.arange(36) // 24],
+            "stretches",
+            "the parameters of a run are not determined",
+        ),
+    ):
+        folds = folds_of([np.arange(12) // 4] * runs)
+        count = columns.shape[1]
+        unknowns = [Unknown(f"{k}", None, 0.0, -9.0, 9.0, 1e3) for k in range(count)]
+        solution = Solution(
+            np.zeros(count), np.zeros(count, bool), np.zeros(len(columns)), columns, True, "", 1
+        )
+        judged = SimpleNamespace(folds=folds, bench=SimpleNamespace(rigs=range(runs)))
+        final = SimpleNamespace(unknowns=unknowns, solution=solution)
+        found = f.evidence_of(SimpleNamespace(judged=judged, final=final))
+        assert (found.held_out, found.runs) == (how, runs)
+        assert found.sentence.startswith(start)
 
 
 def test_a_cosine_is_never_more_than_one():
@@ -142,7 +163,7 @@ def test_without_a_search_nothing_is_said_of_one():
     found = Diagnosis("undecided", "why", Model(()), Model(()))
     assert f.candidates_of(found) == []
     assert f.signatures_of(None).effects == ()
-    assert f.evidence_of(None).sentence == ""
+    assert f.evidence_of(found).sentence == ""
     assert f.residual_maps_of(found).after == {}
     assert f.remainder_of(found).content() == {
         "unexplained": False,

@@ -1,5 +1,6 @@
 """What an effect fails to prove."""
 
+import numpy as np
 import pytest
 
 from tsas_cli.diagnosis.constancy import Split
@@ -33,6 +34,17 @@ def test_an_effect_whose_every_interval_holds_the_neutral_value_may_be_zero():
     zero = estimate("force_sensor_offset.f_in_offset_N", 0.05, -0.01, 0.11)
     (said,) = of(zero, OFFSETS[1])
     assert said.startswith("may be zero: f_in_offset_N 0.05 [-0.01, 0.11] N")
+
+
+def test_two_offsets_of_which_only_the_sum_is_known_are_not_both_zero():
+    sum_known = np.array([[1.0, -0.99], [-0.99, 1.0]])
+    two = (
+        estimate("force_sensor_offset.f_in_offset_N", 0.8, -0.2, 1.8),
+        estimate("force_sensor_offset.f_out_offset_N", 0.8, -0.2, 1.8),
+    )
+    assert of(*two)
+    assert not failures("force_sensor_offset", two, CLEAR, SAME, SAME, sum_known)
+    assert failures("force_sensor_offset", two, CLEAR, SAME, SAME, -sum_known + 2.0 * np.eye(2))
 
 
 def test_a_gain_has_its_neutral_value_at_one():

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from tsas_cli.diagnosis.held_out import Folds
 from tsas_cli.diagnosis.remainder import remainder
 from tsas_cli.diagnosis.signals import signals_at_residuals
 
@@ -47,7 +48,7 @@ def left_of(*errors, delays=(0.1, -0.2, 0.1, 0.0)):
     residual = np.concatenate([np.concatenate(list(e.values())) for e in errors])
     block = np.arange(residual.size) // 40
     run = np.repeat(np.arange(len(runs)), [sum(e.size for e in one.values()) for one in errors])
-    folds = SimpleNamespace(block=block, fold=block % 4, blocks=int(block.max()) + 1, run=run)
+    folds = Folds(block % 4, block, run, by_run=False)
     trial = SimpleNamespace(unknowns=[], solution=SimpleNamespace(residual=residual))
     return remainder(bench, trial, folds, signals_at_residuals(bench, trial))
 

@@ -7,6 +7,7 @@ import pytest
 
 from tests.diagnosis.test_signals import DIRECTION, run_of
 from tsas_cli.diagnosis import remainder as r
+from tsas_cli.diagnosis.held_out import Folds
 from tsas_cli.diagnosis.residual_map import binned, edges_of, residual_map
 from tsas_cli.diagnosis.signals import AtResiduals, signals_at_residuals, signals_of
 
@@ -204,7 +205,7 @@ def left_of(*errors, signals=None):
     residual = np.concatenate([np.concatenate(list(e.values())) for e in errors])
     block = np.arange(residual.size) // 20
     run = np.repeat(np.arange(len(runs)), [sum(e.size for e in one.values()) for one in errors])
-    folds = SimpleNamespace(block=block, fold=block % 4, blocks=int(block.max()) + 1, run=run)
+    folds = Folds(block % 4, block, run, by_run=False)
     trial = SimpleNamespace(unknowns=[], solution=SimpleNamespace(residual=residual))
     bench = bench_of(*runs)
     at = signals_at_residuals(bench, trial)

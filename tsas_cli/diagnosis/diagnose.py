@@ -21,7 +21,7 @@ from tsas_cli.diagnosis.search import (
     judged_sets,
     reweighted_hypotheses,
 )
-from tsas_cli.diagnosis.signals import AtResiduals, signals_at_residuals
+from tsas_cli.diagnosis.signals import signals_at_residuals
 from tsas_cli.diagnosis.uneven_bend import stderr_of_unevenness
 from tsas_cli.identification.base_fit import base_fit, slopes_of
 from tsas_cli.identification.estimate import Estimate
@@ -82,7 +82,8 @@ class Diagnosis:
 class Proven:
     """The effects that prove to be causes, with their fits, and those that do not.
 
-    `judged` has the fits with the final weights, `held_out` the errors of each on held-out data;
+    `judged` has the fits with the final weights, `held_out` the errors of each on held-out data,
+    `after` what remains;
     `with_stand_ins` are the estimates with all effects that gain.
     """
 
@@ -92,7 +93,7 @@ class Proven:
     stand_ins: tuple[FoundCause, ...]
     estimates: tuple[Estimate, ...]
     held_out: Mapping[frozenset[str], HeldOutFit]
-    at_residuals: AtResiduals
+    after: Remainder
     with_stand_ins: tuple[Estimate, ...] = ()
 
 
@@ -211,10 +212,12 @@ def _judged(search: Hypotheses, judged: Hypotheses, stand_ins: tuple[FoundCause,
     }
     estimates = _estimates(judged, final)
     at_residuals = signals_at_residuals(bench, final)
+    after = remainder(bench, final, judged.folds, at_residuals)
     causes = tuple(
-        _cause(judged, name, estimates, held_out, at_residuals.signals) for name in judged.rivals
+        _cause(judged, name, estimates, held_out, at_residuals.signals, after.structure)
+        for name in judged.rivals
     )
-    return Proven(search, judged, causes, stand_ins, tuple(estimates), held_out, at_residuals)
+    return Proven(search, judged, causes, stand_ins, tuple(estimates), held_out, after)
 
 
 def _concluded(proven: Proven, base: FittedModel) -> Diagnosis:
@@ -223,8 +226,7 @@ def _concluded(proven: Proven, base: FittedModel) -> Diagnosis:
     bench, folds, named = judged.bench, judged.folds, judged.named
     before = judged.trial(frozenset(), on_mesh=bench.on_mesh(named))
     final = judged.trial(named)
-    after = remainder(bench, final, folds, proven.at_residuals)
-    start = after
+    after = start = proven.after
     if named:
         start = remainder(bench, before, folds, signals_at_residuals(bench, before))
     complete = after.complete and not any(cause.law_differs for cause in causes)
@@ -266,8 +268,12 @@ def _cause(
     estimates: Sequence[Estimate],
     held_out: Mapping[frozenset[str], HeldOutFit],
     signals: dict[str, Floats],
+    structure: float,
 ) -> FoundCause:
-    """Return an effect of the final set, with what it does not prove."""
+    """Return an effect of the final set, with what it does not prove.
+
+    `structure` are the squares that the final set leaves and a regression explains.
+    """
     named = judged.named
     fewer, all_of_them = held_out[named - {name}], held_out[named]
     gains = gain_percent(fewer.squares, all_of_them.squares, np.random.default_rng(SEED))
@@ -275,11 +281,11 @@ def _cause(
     ids = tuple(run.run.run.id for run in judged.bench.closed)
     split = worst_split(judged.trial(named), name, judged.folds, signals, ids)
     again = gain(fewer.squares, all_of_them.squares)
-    failed = failures(name, own, again, fewer.rmse, all_of_them.rmse)
+    related = judged.trial(named).correlation([e.name for e in own])
+    failed = failures(name, own, again, fewer.rmse, all_of_them.rmse, related)
     law = "" if split is None else split_in_words(split)
-    size = judged.folds.block.size
-    excess = [max(float(h.squares.sum()) - size, 0.0) for h in (fewer, all_of_them)]
-    if split is not None and excess[1] > ANOTHER_LAW * excess[0]:
+    excess = float(fewer.squares.sum()) - judged.folds.block.size
+    if split is not None and structure > ANOTHER_LAW * excess:
         failed, law = (f"is not constant {law}", *failed), ""
     interval = gains[1], gains[2]
     scatter = split is not None and split.scatter

@@ -9,6 +9,9 @@ One that explains nearly all and is not constant is there, with another law than
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+import numpy.typing as npt
+
 from tsas_cli.diagnosis.constancy import Split
 from tsas_cli.diagnosis.evidence import Reduction
 from tsas_cli.diagnosis.signals import RUN, signal_in_words
@@ -17,7 +20,10 @@ from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.records.base import number_text
 
+Floats = npt.NDArray[np.float64]
+
 ANOTHER_LAW = 0.05  # share of the excess that an effect of another law leaves at most
+NORMAL_95 = 1.96  # half of a 95 % interval, in standard deviations
 LEAST_RISE = 0.03  # relative rise of a channel's RMS on held-out data that refuses a name
 
 BY_NAME: Mapping[str, Effect] = {effect.name: effect for effect in EFFECTS}
@@ -48,6 +54,7 @@ def failures(
     refitted_gain: Reduction,
     without: Mapping[str, float],
     with_it: Mapping[str, float],
+    correlation: Floats | None = None,
 ) -> tuple[str, ...]:
     """Return what an effect fails to prove, in sentences without their subject.
 
@@ -61,6 +68,8 @@ def failures(
         Its reduction of the squares on held-out data, by new fits.
     without, with_it
         The RMS of each channel on held-out data, without the effect and with it.
+    correlation
+        That of the parameters, shape (p, p); None where it is not known.
     """
     own = {e.name.partition(".")[2]: e for e in estimates}
     parameters = {p.name: p for p in BY_NAME[effect].parameters}
@@ -73,7 +82,8 @@ def failures(
         for name, e in sizes.items()
         if e.at_bound and not _is_near_neutral(e.value, parameters[name])
     ]
-    if sizes and all(_may_be_none(e, parameters[name].neutral) for name, e in sizes.items()):
+    neutral = {f"{effect}.{name}": parameters[name].neutral for name in sizes}
+    if sizes and _may_be_none(estimates, neutral, correlation):
         values = (f"{n} {e.text()} {_unit(e.unit)}".strip() for n, e in sizes.items())
         out.append(f"may be zero: {', '.join(values)}")
     out += [
@@ -104,7 +114,27 @@ def _is_near_neutral(value: float, parameter: Parameter) -> bool:
     return nearer == parameter.neutral
 
 
-def _may_be_none(estimate: Estimate, neutral: float) -> bool:
-    """Return whether the interval of an estimate holds the neutral value."""
-    low, high = estimate.interval_low, estimate.interval_high
-    return low is None or high is None or low <= neutral <= high
+def _may_be_none(
+    estimates: Sequence[Estimate], neutral: Mapping[str, float], correlation: Floats | None
+) -> bool:
+    """Return whether the 95 % region of the estimates holds all neutral values (Wald test).
+
+    Two offsets that only their sum is known of may each be zero, and not both.
+    """
+    from scipy.stats import chi2
+
+    deviations, rows = [], []
+    for row, e in enumerate(estimates):
+        if e.name not in neutral or e.interval_low is None or e.interval_high is None:
+            continue
+        away = e.value - neutral[e.name]
+        if away == 0.0:
+            continue
+        half = e.value - e.interval_low if away > 0.0 else e.interval_high - e.value
+        deviations.append(away / half if half > 0.0 else 0.0)
+        rows.append(row)
+    if not rows:
+        return True
+    related = np.eye(len(rows)) if correlation is None else correlation[np.ix_(rows, rows)]
+    z = NORMAL_95 * np.array(deviations)
+    return float(z @ np.linalg.pinv(related, hermitian=True) @ z) <= chi2.ppf(0.95, len(rows))

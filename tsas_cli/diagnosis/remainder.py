@@ -28,7 +28,8 @@ MOST_SLOW = 2.0  # square of slow noise over that of white noise, beyond which i
 LEAST_SLOW = 0.15  # the same, below which there is none
 FEWEST_STROKES = 4
 LATE = 2.0  # mean delay of the strokes of a complete model at most, in units of `delays`
-FAR, MOST_FAR = 4.0, 0.002  # standard deviations, and the share of a run's errors beyond them
+FAR, FARTHEST = 4.0, 10.0  # standard deviations, and where one error counts for no more
+BRIEF = 0.15  # mean square of the errors that far, over the variance, of a run with brief errors
 LATE_CRITICAL = 4.0  # critical value of the t statistic of that mean
 PEAK = 0.3  # share of a run's squares in one narrow band from which the residual is periodic
 OWN = 2.5  # multiple of the motion's frequency from which an oscillation is not its own
@@ -47,17 +48,19 @@ class Remainder:
     """The remaining residual of a trial.
 
     `mean_square` is that of the weighted residuals; `explained` the reduction of each channel's
-    mean square by a regression on held-out stretches, `shares` the part of it, `reducible` the reduction
-    of the whole; `depends_on` the signals
-    that explain most of it; `slow` what of a channel repeats with no signal; `late` the channels in
-    which each stroke lags behind the model; `brief` those that deviate at a few moments of a run;
-    `oscillates` a phrase on a dominant frequency, if any.
+    mean square by a regression on held-out stretches, `shares` the part of it, `reducible` the
+    reduction of the whole, `structure` that of the sum of the fit's squares,
+    all of the excess where that is too large for noise; `depends_on` the
+    signals that explain most of it; `slow` what of a channel repeats with no signal; `late` the
+    channels in which each stroke lags behind the model; `brief` those that deviate at a few moments
+    of a run; `oscillates` a phrase on a dominant frequency, if any.
     """
 
     mean_square: float
     explained: dict[str, float]
     depends_on: tuple[str, ...]
     reducible: float = 0.0
+    structure: float = 0.0
     slow: dict[str, SlowPart] = field(default_factory=dict)
     shares: dict[str, float] = field(default_factory=dict)
     late: tuple[str, ...] = ()
@@ -95,7 +98,7 @@ def remainder(
     explained: dict[str, float] = {}
     slow: dict[str, SlowPart] = {}
     shares: dict[str, float] = {}
-    reducible = 0.0
+    reducible = structure = 0.0
     for number, name in enumerate(bench.channels):
         here = channel == number
         own, fold = residual[here], stretches[here]
@@ -110,8 +113,10 @@ def remainder(
         explained[name] = max(best.part, 0.0) * of_mean if best.convincing else 0.0
         reducible += explained[name] * samples / count
         shares[name] = best.part if explained[name] > 0.0 else 0.0
+        beyond = max(float(own @ own) - own.size, 0.0)
         scatter = float(np.sum(trial.solution.residual[here] ** 2)) - float(own @ own)
         ratio = (squares[name] - scatter) / samples - explained[name] - 1.0
+        structure += shares[name] * float(own @ own) if ratio <= MOST_SLOW else beyond
         if ratio > LEAST_SLOW:
             slow[name] = SlowPart(math.sqrt(ratio), _memory_s(bench, name, errors[name]))
         for signal, columns in zip(names, whole, strict=True):
@@ -125,7 +130,16 @@ def remainder(
     late = tuple(name for name in bench.channels if _is_late(bench, trial, name))
     brief = tuple(name for name in bench.channels if any(map(_is_brief, errors[name])))
     return Remainder(
-        mean_square, explained, depends_on, reducible, slow, shares, late, brief, oscillates
+        mean_square=mean_square,
+        explained=explained,
+        depends_on=depends_on,
+        reducible=reducible,
+        structure=structure,
+        slow=slow,
+        shares=shares,
+        late=late,
+        brief=brief,
+        oscillates=oscillates,
     )
 
 
@@ -136,9 +150,9 @@ def _is_brief(errors: Floats) -> bool:
     """
     from scipy.stats import median_abs_deviation
 
-    far = FAR * float(median_abs_deviation(errors, scale="normal"))
-    beyond = float(np.mean(np.abs(errors) > far))
-    return float(np.mean(errors**2)) > 1.0 + LEAST_SLOW and beyond > MOST_FAR
+    size = np.minimum(np.abs(errors) / median_abs_deviation(errors, scale="normal"), FARTHEST)
+    beyond = float(np.mean(np.where(size > FAR, size, 0.0) ** 2))
+    return float(np.mean(errors**2)) > 1.0 + LEAST_SLOW and beyond > BRIEF
 
 
 def _is_late(bench: Bench, trial: HypothesisFit, name: str) -> bool:

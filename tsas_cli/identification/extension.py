@@ -56,6 +56,19 @@ class HypothesisFit:
         moves[free] = -np.linalg.pinv(J.T @ J, hermitian=True) @ (J.T @ changes)
         return moves
 
+    def correlation(self, names: Sequence[str]) -> Floats:
+        """Return the correlation of some unknowns, by name, shape (p, p)."""
+        J, free = self.solution.jacobian, ~self.solution.at_bound
+        covariance = np.zeros((free.size, free.size))
+        inverse = np.linalg.pinv(J[:, free].T @ J[:, free], hermitian=True)
+        covariance[np.ix_(free, free)] = inverse
+        at = [next(j for j, u in enumerate(self.unknowns) if u.name == name) for name in names]
+        sizes = np.sqrt(np.diag(covariance))[at]
+        scale = np.where(sizes > 0.0, sizes, 1.0)
+        out: Floats = covariance[np.ix_(at, at)] / np.outer(scale, scale)
+        np.fill_diagonal(out, 1.0)  # also of what is at a bound
+        return out
+
     def with_columns(self, names: Sequence[tuple[str, int | None, float]], columns: Floats) -> Self:
         """Return the fit with further free unknowns at zero, by their columns, shape (n, m).
 
