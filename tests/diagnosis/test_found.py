@@ -80,21 +80,12 @@ def test_directions_that_are_the_same_count_once():
 
 
 def test_how_was_held_out_is_said():
-    """Of three runs, of two, and of three of which only the last determines the second parameter."""
+    """Of three runs, of two, and of three of which one alone determines a parameter."""
+    one, one_alone = np.ones((36, 1)), np.eye(2)[np.arange(36) // 24]
     for runs, columns, how, start in (
-        (
-            3,
-            np.ones((36, 1)),
-            "runs",
-            "each of 3 runs is predicted by a fit to the others; 9 blocks",
-        ),
-        (2, np.ones((24, 1)), "stretches", "with 2 runs, stretches are predicted"),
-        (
-            3,
-            np.eye(2)[np.arange(36) // 24],
-            "stretches",
-            "the parameters of a run are not determined",
-        ),
+        (3, one, "runs", "each of 3 runs is predicted by a fit to the others; 9 blocks"),
+        (2, one[:24], "stretches", "with 2 runs, stretches are predicted"),
+        (3, one_alone, "stretches", "the parameters of a run are not determined"),
     ):
         folds = folds_of([np.arange(12) // 4] * runs)
         count = columns.shape[1]
