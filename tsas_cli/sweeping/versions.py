@@ -29,13 +29,7 @@ def versions() -> dict[str, str]:
 
 
 def refuse_others(expected: Mapping[str, str], found: Mapping[str, str], where: str) -> None:
-    """Refuse a worker whose versions differ from the expected ones.
-
-    Raises
-    ------
-    InputError
-        A version differs.
-    """
+    """Refuse a worker whose versions differ from the expected ones."""
     for name, wanted in expected.items():
         if found.get(name) != wanted:
             raise InputError(
