@@ -126,12 +126,7 @@ class LongRun:
         thinned_rows = rows.start + np.flatnonzero(mask)
         parts = {
             name: Cleaned(
-                rows.start,
-                part.values[mask],
-                part.sd[mask],
-                part.unseen[mask],
-                part.apart_s[mask],
-                np.searchsorted(thinned_rows, part.reversals),
+                rows.start, part.samples[:, mask], np.searchsorted(thinned_rows, part.reversals)
             )
             for name, part in rows.cleaned.items()
         }
@@ -221,23 +216,13 @@ class _Aligned:
 
 
 def _part(whole: Cleaned, rows: slice, reversals: Indices) -> Cleaned:
-    return Cleaned(
-        whole.start + (rows.start or 0),
-        whole.values[rows],
-        whole.sd[rows],
-        whole.unseen[rows],
-        whole.apart_s[rows],
-        reversals,
-    )
+    return Cleaned(whole.start + (rows.start or 0), whole.samples[:, rows], reversals)
 
 
 def _concatenated(parts: Sequence[Cleaned]) -> Cleaned:
     return Cleaned(
         parts[0].start,
-        np.concatenate([part.values for part in parts]),
-        np.concatenate([part.sd for part in parts]),
-        np.concatenate([part.unseen for part in parts]),
-        np.concatenate([part.apart_s for part in parts]),
+        np.hstack([part.samples for part in parts]),
         np.concatenate([part.reversals for part in parts]),
     )
 
@@ -247,9 +232,7 @@ def _conditioned(parts: Sequence[Cleaned], known: CleaningPlan, size: int) -> Co
     reversals = [part.reversals + start for part, start in zip(parts, starts[:-1], strict=True)]
     whole = _concatenated(parts)
     return Conditioned(
-        whole.values,
-        whole.sd,
-        whole.unseen,
+        *whole.samples[:3],
         known.window_s,
         known.noise,
         np.unique(np.concatenate(([0], *reversals, [size - 1]))),
