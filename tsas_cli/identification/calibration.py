@@ -105,7 +105,9 @@ def calibrate_runs(
 
 def _notes(predictions: Sequence[Compared]) -> list[str]:
     """Return the dynamic model's notes on its predictions, without duplicates."""
-    return list(dict.fromkeys(note for predicted in predictions for note in predicted.notes))
+    return list(
+        dict.fromkeys(note for predicted in predictions for note in predicted.summary.notes)
+    )
 
 
 def _widened_by(effects: Sequence[str]) -> list[str]:

@@ -187,7 +187,7 @@ def _errors(result: Calibration) -> dict[str, dict[str, records.ChannelError]]:
     return {
         run.run.id: {
             name: records.ChannelError(rmse=rmse, noise=run.noise[name])
-            for name, rmse in a.rmse.items()
+            for name, rmse in a.summary.rmse.items()
         }
         for run, a in zip(result.runs, result.predictions, strict=True)
     }
