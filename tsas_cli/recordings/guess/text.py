@@ -1,6 +1,8 @@
 """A proposed map as commented TOML."""
 
+import re
 from collections.abc import Iterable
+from pathlib import Path
 from textwrap import wrap
 from typing import Any
 
@@ -8,7 +10,6 @@ import tomlkit
 from tomlkit.items import Table
 
 from tsas_cli.recordings.columns import BY_NAME, COLUMNS, INPUTS, OUTPUTS
-from tsas_cli.recordings.guess.file_name import conditions_in
 from tsas_cli.recordings.guess.proposal import MapProposal
 from tsas_cli.recordings.guess.proposed import Proposed
 from tsas_cli.recordings.ingest_map import QUESTION
@@ -163,3 +164,28 @@ def _wrapped(text: str, indent: str = "") -> list[str]:
         break_long_words=False,
         break_on_hyphens=False,
     )
+
+
+# Group, words before the number, and likely unit.
+_BEFORE = {
+    "total_bend_rad": ("bend", r"bend|bending|theta|wrap|biegung|winkel|angle", "deg"),
+    "sheath_length_mm": ("length", r"length|len|laenge|sheath|l", "mm"),
+    "preload_N": ("preload", r"preload|pretension|vorspannung|vorlast|f0", "N"),
+}
+_NUMBER = r"\d+(?:\.\d+)?"
+
+
+def conditions_in(path: Path) -> tuple[str, dict[str, tuple[str, str]]]:
+    """Return a pattern for a file name, and group and likely unit of each condition in it.
+
+    Both are empty without a word of a condition before a number.
+    """
+    found: list[tuple[int, str, str]] = []
+    groups: dict[str, tuple[str, str]] = {}
+    for condition, (group, words, unit) in _BEFORE.items():
+        match = re.search(rf"(?i)(?<![a-z])({words})([_=-]?){_NUMBER}", path.stem)
+        if match:
+            text = f"{re.escape(match[1] + match[2])}(?P<{group}>{_NUMBER})"
+            found.append((match.start(), text, condition))
+            groups[condition] = (group, unit)
+    return ".*?".join(text for _, text, _ in sorted(found)), groups

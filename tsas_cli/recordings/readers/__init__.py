@@ -7,8 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from tsas_cli.recordings.guards.process import in_another_process
-from tsas_cli.recordings.readers.options import ReadOptions
-from tsas_cli.recordings.readers.table import ColumnSource, ColumnTable, whole
+from tsas_cli.recordings.readers.table import ColumnSource, ColumnTable, ReadOptions, whole
 from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError
 

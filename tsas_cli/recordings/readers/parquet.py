@@ -9,12 +9,12 @@ import numpy.typing as npt
 import pyarrow as pa
 
 from tsas_cli.recordings.parquet_files import check_size, open_parquet, reading
-from tsas_cli.recordings.readers.options import ReadOptions
 from tsas_cli.recordings.readers.table import (
     BATCH_ROWS,
     ColumnSource,
     ColumnTable,
     Floats,
+    ReadOptions,
     floats,
     in_batches,
     resolve,
