@@ -6,8 +6,8 @@ from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from threading import local
 
-from tsas_cli.support.child import Child
 from tsas_cli.support.errors import InputError
+from tsas_cli.support.worker_process import WorkerProcess
 from tsas_cli.sweeping.outcome import TaskOutcome, run_task, worker_death
 from tsas_cli.sweeping.versions import ONE_THREAD
 
@@ -59,7 +59,7 @@ class _Crew:
 
     def __init__(self, work: str) -> None:
         self.work, self.stopped = work, False
-        self.own, self.started = local(), list[Child]()
+        self.own, self.started = local(), list[WorkerProcess]()
 
     def run(self, text: str) -> TaskOutcome:
         """Return the outcome of a task from this thread's worker."""
@@ -82,9 +82,9 @@ class _Crew:
         for worker in self.started:
             worker.kill()
 
-    def _start(self) -> Child:
+    def _start(self) -> WorkerProcess:
         try:
-            self.own.worker = worker = Child(heard=True, **ONE_THREAD)
+            self.own.worker = worker = WorkerProcess(heard=True, **ONE_THREAD)
         except OSError as error:
             raise InputError(
                 f"no process can be started ({error.strerror})",

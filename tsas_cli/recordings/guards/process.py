@@ -16,8 +16,8 @@ from threading import Lock, Timer
 from typing import Any
 
 from tsas_cli.recordings.guards.damaged import damaged
-from tsas_cli.support.child import Child
 from tsas_cli.support.errors import InputError
+from tsas_cli.support.worker_process import WorkerProcess
 
 LEAST_S, BYTES_PER_S = 60.0, 1e6  # time limit: least, and per size of the file
 LEAST_BYTES, BYTES_PER_BYTE = 2 << 30, 20  # memory limit, likewise
@@ -29,7 +29,7 @@ class _Process:
     def __init__(self) -> None:
         self.lock, self.owner = Lock(), 0
         self.refused: Path | None = None  # it may have corrupted the library's memory
-        self.running: Child | None = None
+        self.running: WorkerProcess | None = None
         atexit.register(self.end)
 
     def call(self, seconds: float, *request: Any) -> Any:
@@ -44,7 +44,7 @@ class _Process:
         """
         with self.lock:
             if self.running is None or self.owner != os.getpid():  # a fork starts its own
-                self.running, self.owner = Child(heard=False), os.getpid()
+                self.running, self.owner = WorkerProcess(heard=False), os.getpid()
             late = Timer(seconds, self.running.process.kill)
             late.start()
             try:

@@ -15,7 +15,7 @@ STDERR_BYTES = 500  # last bytes of a dead process's standard error
 _START = "import sys; sys.path[:] = {path!r}; from {module} import serve; serve()"
 
 
-class Child:
+class WorkerProcess:
     """A process with one call at a time; it ends with this one."""
 
     def __init__(self, *, heard: bool, **environment: str) -> None:
