@@ -27,10 +27,10 @@ from tsas_cli.numerics.conditioning import Conditioned
 from tsas_cli.numerics.conditioning_pieces import Cleaned, CleaningPlan, Samples, cleaned, plan
 from tsas_cli.recordings import pieces as reading
 from tsas_cli.recordings.columns import TIME
-from tsas_cli.recordings.copied import NONE_COPIED, CopiedRows
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.pieces import known_columns, long_run, pieces
+from tsas_cli.recordings.recording import NONE_COPIED, CopiedRows
 from tsas_cli.recordings.run_files import RunColumns
 
 Floats = npt.NDArray[np.float64]

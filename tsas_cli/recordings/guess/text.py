@@ -1,7 +1,7 @@
-"""A proposed map as commented TOML."""
+"""A proposed map as commented TOML, as JSON and as printed tables."""
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from textwrap import wrap
 from typing import Any
@@ -14,6 +14,7 @@ from tsas_cli.recordings.guess.proposal import MapProposal
 from tsas_cli.recordings.guess.proposed import Proposed
 from tsas_cli.recordings.ingest_map import QUESTION
 from tsas_cli.recordings.manifest import RigSheet
+from tsas_cli.support import __version__
 from tsas_cli.support.errors import printable
 
 _WIDTH = 96
@@ -189,3 +190,37 @@ def conditions_in(path: Path) -> tuple[str, dict[str, tuple[str, str]]]:
             found.append((match.start(), text, condition))
             groups[condition] = (group, unit)
     return ".*?".join(text for _, text, _ in sorted(found)), groups
+
+
+def content(proposal: MapProposal) -> dict[str, object]:
+    """Return the proposal with the text of its map (docs/ingest.md, format 1)."""
+    return {
+        "format": 1,
+        "stage": "guess",
+        "version": __version__,
+        "looked_at": str(proposal.looked_at.path),
+        "unlike": {str(path): reason for path, reason in proposal.different.items()},
+        "columns": {
+            channel.name: {
+                "entry": channel.entry,
+                "sure": channel.certainty,
+                "why": channel.why,
+                "alternatives": channel.alternatives,
+            }
+            for channel in proposal.channels
+        },
+        "not_taken": proposal.not_taken,
+        "questions": proposal.questions,
+        "map": map_text(proposal),
+    }
+
+
+def tables(proposal: MapProposal, out: object) -> Iterator[tuple[str, tuple[str, ...], list[Any]]]:
+    """Yield the tables of the channels with their sources, and of the open questions."""
+    rows = [
+        (channel.name, str(channel.entry.get("source", "")), channel.certainty)
+        for channel in proposal.channels
+    ]
+    yield f"map {out}", ("channel", "source", "certainty"), rows
+    if proposal.questions:
+        yield "open questions", ("key", "question"), list(proposal.questions.items())
