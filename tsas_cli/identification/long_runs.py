@@ -232,7 +232,9 @@ def _conditioned(parts: Sequence[Cleaned], known: CleaningPlan, size: int) -> Co
     reversals = [part.reversals + start for part, start in zip(parts, starts[:-1], strict=True)]
     whole = _concatenated(parts)
     return Conditioned(
-        *whole.samples[:3],
+        whole.values,
+        whole.sd,
+        whole.unseen,
         known.window_s,
         known.noise,
         np.unique(np.concatenate(([0], *reversals, [size - 1]))),

@@ -52,22 +52,22 @@ class Cleaned:
     @property
     def values(self) -> Floats:
         """The cleaned values, shape (n,)."""
-        return self.samples[0]
+        return np.asarray(self.samples[0])
 
     @property
     def sd(self) -> Floats:
         """The standard deviation of their errors, shape (n,)."""
-        return self.samples[1]
+        return np.asarray(self.samples[1])
 
     @property
     def unseen(self) -> Floats:
         """The correction that makes them monotone between reversals, shape (n,)."""
-        return self.samples[2]
+        return np.asarray(self.samples[2])
 
     @property
     def apart_s(self) -> Floats:
         """The length of the gap that each row lies in, shape (n,) [s]."""
-        return self.samples[3]
+        return np.asarray(self.samples[3])
 
 
 # Finite samples are arrays of four columns, shape (4, n): row, time, smooth value, sd; with a
