@@ -5,6 +5,7 @@ import pytest
 
 from tsas_cli.recordings.dataset import read_dataset
 from tsas_cli.recordings.run_files import open_run, read_recording
+from tsas_cli.recordings.written import columns_of
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import sha256_of
 
@@ -55,3 +56,9 @@ def test_time_that_runs_backwards_is_refused_when_it_is_read(dataset):
     run = rewritten(dataset, pa.table({"time_s": [0.0, 2.0, 1.0], "f_in_N": [1.0, 2.0, 3.0]}))
     with pytest.raises(InputError, match="row 2: time_s does not increase"):
         run.read("time_s")
+
+
+def test_a_column_that_a_stage_has_not_written_is_named(tmp_path):
+    pq.write_table(pa.table({"f_in_N": [1.0]}), tmp_path / "a.parquet")
+    with pytest.raises(InputError, match=r"a\.parquet: column f_out_N is missing$"):
+        columns_of(tmp_path / "a.parquet", ["f_in_N", "f_out_N"])
