@@ -123,8 +123,11 @@ def cleaned(pieces: Iterable[Samples], beside: int, plan: CleaningPlan) -> Itera
         if not final.shape[1]:
             continue
         size = int(final[_ROW, -1]) + 1 - start
-        known = np.hstack((last, final))
-        yield _over_all_rows(start, waiting[:size], known, reversals)
+        if final.shape[1] < size:
+            yield _over_all_rows(start, waiting[:size], np.hstack((last, final)), reversals)
+        else:  # no gap
+            _, _, smooth, sd, clean = final
+            yield Cleaned(start, np.array([clean, sd, smooth - clean, np.zeros(size)]), reversals)
         start, waiting, last = start + size, waiting[size:], final[:, -1:]
     if waiting.size and last.shape[1]:
         yield _over_all_rows(start, waiting, last, _NO_REVERSALS)
