@@ -7,8 +7,7 @@ import numpy as np
 
 from tests.fuzz.rules import Broken, answer
 from tsas_cli.recordings.readers import names, read, tables
-from tsas_cli.recordings.readers.options import ReadOptions
-from tsas_cli.recordings.readers.table import ColumnTable
+from tsas_cli.recordings.readers.table import ColumnTable, ReadOptions
 from tsas_cli.support.errors import InputError
 
 _MOST_COLUMNS = 12

@@ -10,7 +10,7 @@ from pathlib import Path
 from tempfile import gettempdir, mkdtemp
 from typing import Any
 
-from tsas_cli.recordings.guards import process
+from tsas_cli.support import worker_process
 from tsas_cli.support.errors import InputError
 
 _WRITES = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND
@@ -24,7 +24,7 @@ _CHANGES = {  # and which of its arguments is the folder that its path is relati
     "os.chmod": 2,
 }
 _STARTS = {"subprocess.Popen", "os.system", "os.exec", "os.posix_spawn", "socket.connect"}
-_READERS = process.__name__  # the process in which foreign formats are read
+_READERS = worker_process.__name__  # the process in which foreign formats are read
 
 
 class Broken(Exception):  # noqa: N818 # as it reads

@@ -130,7 +130,7 @@ def test_a_rig_without_bristles_is_found_to_have_stiff_ones():
     )
     assert lowest > 8e3
     assert highest > 1e6
-    assert result.predictions[0].rmse["f_in_N"] < 0.12  # 0.34 with the bristles of Table 1
+    assert result.predictions[0].summary.rmse["f_in_N"] < 0.12  # 0.34 with the bristles of Table 1
 
 
 def f_in(rig, tolerance=3e-6, step_ends_s=OWN_STEPS):

@@ -14,7 +14,7 @@ def part_of(start, n, reversals=(), begin=0.0):
     """Cleaned rows whose four columns tell their numbers, each in its own hundred."""
     k = start + begin + np.arange(float(n))
     turns = np.array(reversals, dtype=np.int64)
-    return Cleaned(start, 100.0 + k, 200.0 + k, 300.0 + k, 400.0 + k, turns)
+    return Cleaned(start, np.array([100.0 + k, 200.0 + k, 300.0 + k, 400.0 + k]), turns)
 
 
 def rows_of(start, n, reversals=()):

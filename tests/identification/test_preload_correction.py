@@ -5,9 +5,9 @@ from types import SimpleNamespace
 
 import pytest
 
+from tsas_cli.identification.calibration import with_preload_correction
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import CORRECTION, Model
-from tsas_cli.identification.preload_correction import with_preload_correction
 
 STUDENT = {1: 12.7062, 2: 4.30265}  # 97.5 %, as tables have it
 

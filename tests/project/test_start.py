@@ -33,14 +33,6 @@ def test_a_project_without_recordings_asks_for_everything(tmp_path, tsas):
         read_map(tmp_path / "new" / "bench.toml")
 
 
-def test_the_map_of_an_empty_project_is_a_map_once_it_is_answered(tmp_path):
-    start(tmp_path / "new", [])
-    path = tmp_path / "new" / "bench.toml"
-    text = path.read_text().replace('source = "?"', 'source = "a"').replace('unit = "?"', "")
-    path.write_text(text)
-    assert set(read_map(path).columns) == set(CHANNELS)
-
-
 def test_recordings_are_copied_and_guessed(tmp_path):
     source = recording(tmp_path / "bench 1" / "a.csv")
     files, proposal = start(tmp_path / "new", [source.parent])

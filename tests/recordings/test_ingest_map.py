@@ -4,7 +4,7 @@ from pathlib import Path
 import pytest
 
 from tsas_cli.recordings.ingest_map import ColumnMap, read_map
-from tsas_cli.recordings.readers.options import ReadOptions
+from tsas_cli.recordings.readers.table import ReadOptions
 from tsas_cli.support.errors import InputError
 
 REPOSITORY = Path(__file__).parents[2]

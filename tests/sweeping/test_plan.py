@@ -8,8 +8,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from tsas_cli.support.errors import InputError
-from tsas_cli.sweeping.plan import read_plan
-from tsas_cli.sweeping.points import points_of
+from tsas_cli.sweeping.plan import points_of, read_plan
 
 SIMULATE = {"stage": "simulate", "datasets": "rigs/*"}
 

@@ -24,6 +24,7 @@ from tsas_cli.diagnosis.search import (
 from tsas_cli.diagnosis.signals import signals_at_residuals
 from tsas_cli.diagnosis.uneven_bend import stderr_of_unevenness
 from tsas_cli.identification.base_fit import base_fit, slopes_of
+from tsas_cli.identification.calibration import with_preload_correction
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.extension import Bench, HypothesisFit, bench_of
 from tsas_cli.identification.fit import with_errors
@@ -31,7 +32,6 @@ from tsas_cli.identification.fit_problem import FitProblem
 from tsas_cli.identification.joint_fit import FittedModel, estimates_of, solve_fit
 from tsas_cli.identification.model import Model, data_sheet
 from tsas_cli.identification.phases import segment
-from tsas_cli.identification.preload_correction import with_preload_correction
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.run_errors import blocks_of
 from tsas_cli.recordings.manifest import Manifest

@@ -11,8 +11,7 @@ from tsas_cli.numerics.interpolated import interpolated
 from tsas_cli.numerics.linear_response import Hold, Sampled, sampled
 from tsas_cli.numerics.noise import FEWEST_SAMPLES as FEWEST_OF_NOISE
 from tsas_cli.numerics.noise import noise_sd
-from tsas_cli.recordings.copied import NONE_COPIED, CopiedRows
-from tsas_cli.recordings.recording import Recording
+from tsas_cli.recordings.recording import NONE_COPIED, CopiedRows, Recording
 from tsas_cli.support.errors import InputError
 
 Floats = npt.NDArray[np.float64]

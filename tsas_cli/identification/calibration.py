@@ -3,6 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from tsas_cli.identification.against_data_sheet import contradictions
 from tsas_cli.identification.base_fit import base_fit, slopes_of
 from tsas_cli.identification.comparison import Compared, compare
@@ -12,9 +14,8 @@ from tsas_cli.identification.fit import Fitted
 from tsas_cli.identification.joint_fit import misfit, solve_fit
 from tsas_cli.identification.long_runs import thinned_notes
 from tsas_cli.identification.missing_effects import widened
-from tsas_cli.identification.model import Model, data_sheet
+from tsas_cli.identification.model import CORRECTION, Model, data_sheet
 from tsas_cli.identification.phases import Segment, segment
-from tsas_cli.identification.preload_correction import with_preload_correction
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.stiffness import Slope, slopes
 from tsas_cli.identification.transfer import tension_transfer
@@ -105,7 +106,9 @@ def calibrate_runs(
 
 def _notes(predictions: Sequence[Compared]) -> list[str]:
     """Return the dynamic model's notes on its predictions, without duplicates."""
-    return list(dict.fromkeys(note for predicted in predictions for note in predicted.notes))
+    return list(
+        dict.fromkeys(note for predicted in predictions for note in predicted.summary.notes)
+    )
 
 
 def _widened_by(effects: Sequence[str]) -> list[str]:
@@ -145,3 +148,34 @@ def _unknown_conditions(runs: Sequence[Prepared]) -> list[str]:
             "is the stiffness of one metre."
         )
     return out
+
+
+def with_preload_correction(model: Model, runs: Sequence[Prepared]) -> Model:
+    """Return a model with the mean difference of fitted and stated preload.
+
+    Its interval is a prediction interval for a further run; it needs two runs.
+    """
+    from scipy.stats import t
+
+    fitted = {e.run: e.value for e in model.estimates if e.name == "preload_N" and e.stderr}
+    differences = [
+        fitted[r.run.id] - r.run.preload_N
+        for r in runs
+        if r.run.id in fitted and r.run.preload_N is not None
+    ]
+    count = len(differences)
+    if count < 2:
+        return model
+    mean = float(np.mean(differences))
+    spread = float(np.std(differences, ddof=1)) * (1.0 + 1.0 / count) ** 0.5
+    half = float(t.ppf(0.975, count - 1)) * spread
+    correction = Estimate(
+        CORRECTION,
+        mean,
+        "N",
+        "fitted",
+        stderr=spread,
+        interval_low=mean - half,
+        interval_high=mean + half,
+    )
+    return Model((correction,)).over(model)

@@ -1,6 +1,7 @@
 """A model's prediction of one run, and its residual."""
 
-from collections.abc import Mapping, Set
+import math
+from collections.abc import Iterable, Mapping, Set
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,40 +21,27 @@ Floats = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Compared:
-    """One run simulated; `channels` are the predictions, shape (n,), NaN in gaps of the drive."""
-
-    response: Prediction
-    channels: dict[str, Floats]
-    rmse: dict[str, float]
-    samples: dict[str, int]
-    notes: tuple[str, ...] = ()
-
-    def summary(self) -> "RunSummary":
-        """Return the figures of the prediction that are written."""
-        phase = self.response.phase
-        return RunSummary(
-            self.response.solver,
-            int(phase.size),
-            int(np.count_nonzero(phase == SLACK)),
-            int(np.count_nonzero(phase == UNCONVERGED)),
-            self.rmse,
-            self.samples,
-            self.notes,
-        )
-
-
-@dataclass(frozen=True)
 class RunSummary:
-    """Figures of one simulated run: the solver, the samples, the RMS of each residual."""
+    """Figures of one simulated run, or of a part: the solver, the samples, the squared residuals.
+
+    `squares` are their sums by channel, over so many `samples`.
+    """
 
     solver: str
     rows: int
     slack: int
     unconverged: int
-    rmse: Mapping[str, float]
+    squares: Mapping[str, float]
     samples: Mapping[str, int]
     notes: tuple[str, ...] = ()
+
+    @property
+    def rmse(self) -> dict[str, float]:
+        """Root mean square of each channel's residual, NaN without samples."""
+        return {
+            name: math.sqrt(square / self.samples[name]) if self.samples[name] else math.nan
+            for name, square in self.squares.items()
+        }
 
     def record(self, run: Prepared) -> SimulatedRun:
         """Return the run's record in `simulation.json`."""
@@ -78,6 +66,35 @@ class RunSummary:
         )
 
 
+@dataclass(frozen=True)
+class Compared:
+    """One run simulated; `channels` are the predictions, shape (n,), NaN in gaps of the drive."""
+
+    response: Prediction
+    channels: dict[str, Floats]
+    summary: RunSummary
+
+
+def summary_of(
+    response: Prediction,
+    channels: Mapping[str, Floats],
+    measured: Mapping[str, Floats],
+    notes: Iterable[str] = (),
+) -> RunSummary:
+    """Return the figures of a run's prediction, or of a part of it."""
+    residual = {name: values - channels[name] for name, values in measured.items()}
+    residual = {name: r[np.isfinite(r)] for name, r in residual.items()}
+    return RunSummary(
+        response.solver,
+        response.phase.size,
+        int(np.count_nonzero(response.phase == SLACK)),
+        int(np.count_nonzero(response.phase == UNCONVERGED)),
+        {name: float(np.sum(r**2)) for name, r in residual.items()},
+        {name: r.size for name, r in residual.items()},
+        tuple(notes),
+    )
+
+
 def compare(
     run: Prepared, model: Model, dynamics: Dynamics = "slip", nodes: int | None = None
 ) -> Compared:
@@ -100,25 +117,12 @@ def compare(
         tolerance=run.step_tolerance,
     )
     channels = channels_of(response, set(run.conditioned), run.in_gap)
-    residual = {name: run.measured[name] - channels[name] for name in run.measured}
-    residual = {name: r[np.isfinite(r)] for name, r in residual.items()}
-    return Compared(
-        response,
-        channels,
-        {name: float(np.sqrt(np.mean(r**2))) for name, r in residual.items()},
-        {name: int(r.size) for name, r in residual.items()},
-        tuple(dynamic_notes(run, model, response)) if dynamics == "lugre" else (),
-    )
+    notes = dynamic_notes(run, model, response) if dynamics == "lugre" else ()
+    return Compared(response, channels, summary_of(response, channels, run.measured, notes))
 
 
 def refuse_static(run: Run, drive_column: str, dynamics: Dynamics) -> None:
-    """Refuse the static model where it is not valid.
-
-    Raises
-    ------
-    InputError
-        The load is not a spring, or the drive is by force.
-    """
+    """Refuse the static model for a load that is not a spring, or a drive by force."""
     valid = run.load == "spring" and drive_column == "x_in_mm"
     if dynamics == "static" and not valid:
         raise InputError(

@@ -27,10 +27,10 @@ from tsas_cli.numerics.conditioning import Conditioned
 from tsas_cli.numerics.conditioning_pieces import Cleaned, CleaningPlan, Samples, cleaned, plan
 from tsas_cli.recordings import pieces as reading
 from tsas_cli.recordings.columns import TIME
-from tsas_cli.recordings.copied import NONE_COPIED, CopiedRows
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.pieces import known_columns, long_run, pieces
+from tsas_cli.recordings.recording import NONE_COPIED, CopiedRows
 from tsas_cli.recordings.run_files import RunColumns
 
 Floats = npt.NDArray[np.float64]
@@ -126,12 +126,7 @@ class LongRun:
         thinned_rows = rows.start + np.flatnonzero(mask)
         parts = {
             name: Cleaned(
-                rows.start,
-                part.values[mask],
-                part.sd[mask],
-                part.unseen[mask],
-                part.apart_s[mask],
-                np.searchsorted(thinned_rows, part.reversals),
+                rows.start, part.samples[:, mask], np.searchsorted(thinned_rows, part.reversals)
             )
             for name, part in rows.cleaned.items()
         }
@@ -221,23 +216,13 @@ class _Aligned:
 
 
 def _part(whole: Cleaned, rows: slice, reversals: Indices) -> Cleaned:
-    return Cleaned(
-        whole.start + (rows.start or 0),
-        whole.values[rows],
-        whole.sd[rows],
-        whole.unseen[rows],
-        whole.apart_s[rows],
-        reversals,
-    )
+    return Cleaned(whole.start + (rows.start or 0), whole.samples[:, rows], reversals)
 
 
 def _concatenated(parts: Sequence[Cleaned]) -> Cleaned:
     return Cleaned(
         parts[0].start,
-        np.concatenate([part.values for part in parts]),
-        np.concatenate([part.sd for part in parts]),
-        np.concatenate([part.unseen for part in parts]),
-        np.concatenate([part.apart_s for part in parts]),
+        np.hstack([part.samples for part in parts]),
         np.concatenate([part.reversals for part in parts]),
     )
 

@@ -1,40 +1,26 @@
 """Simulate a run that is too long for memory; the prediction is written by row groups."""
 
-import math
 from collections import deque
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 import pyarrow as pa
 
-from tsas_cli.identification.comparison import RunSummary, channels_of, refuse_static
+from tsas_cli.identification.comparison import RunSummary, channels_of, refuse_static, summary_of
 from tsas_cli.identification.long_runs import LongRun, Rows
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.prepared import CHANNELS, LOAD_COLUMNS, Prepared, drive_of
 from tsas_cli.physics.by_pieces import simulate_pieces
 from tsas_cli.physics.ends import DriveInput
-from tsas_cli.physics.phases import SLACK, UNCONVERGED
-from tsas_cli.physics.response import Dynamics, Prediction
+from tsas_cli.physics.response import Dynamics
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.writing import parquet_writer, table_of
 from tsas_cli.support.errors import InputError
 
 Floats = npt.NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class _Counted:
-    """Counts and sums of squares of the prediction of some rows."""
-
-    solver: str
-    rows: int
-    slack: int
-    unconverged: int
-    squares: dict[str, float]
-    samples: dict[str, int]
 
 
 def simulate_long(
@@ -59,7 +45,7 @@ def simulate_long(
         )
     waiting: deque[Rows] = deque()
     thinned: list[Rows] = []
-    parts: list[_Counted] = []
+    parts: list[RunSummary] = []
     driven = long.plans.keys()
     names = [TIME, "x_in_mm", *(name for name in CHANNELS if name not in driven)]
     pieces = simulate_pieces(
@@ -76,37 +62,20 @@ def simulate_long(
             channels = channels_of(response, driven, rows.in_gap)
             columns = {TIME: rows.time_s, "x_in_mm": response.x_in_mm, **channels}
             write(table_of({name: columns[name] for name in names}))
-            parts.append(_counted(response, channels, rows))
+            parts.append(summary_of(response, channels, rows.measured))
             thinned.append(long.thin(rows))
-    return _summary(parts), long.thinned(thinned)
+    return _whole(parts), long.thinned(thinned)
 
 
-def _counted(response: Prediction, channels: dict[str, Floats], rows: Rows) -> _Counted:
-    """Return the counts of some rows."""
-    errors = {name: measured - channels[name] for name, measured in rows.measured.items()}
-    errors = {name: error[np.isfinite(error)] for name, error in errors.items()}
-    return _Counted(
-        response.solver,
-        rows.time_s.size,
-        int(np.count_nonzero(response.phase == SLACK)),
-        int(np.count_nonzero(response.phase == UNCONVERGED)),
-        {name: float(np.sum(error**2)) for name, error in errors.items()},
-        {name: error.size for name, error in errors.items()},
-    )
-
-
-def _summary(parts: Sequence[_Counted]) -> RunSummary:
+def _whole(parts: Sequence[RunSummary]) -> RunSummary:
     """Return the summary of all rows."""
-    samples = {name: sum(part.samples[name] for part in parts) for name in parts[0].samples}
-    squares = {name: sum(part.squares[name] for part in parts) for name in samples}
-    rmse = {n: math.sqrt(squares[n] / samples[n]) if samples[n] else math.nan for n in samples}
     return RunSummary(
         parts[-1].solver,
         sum(part.rows for part in parts),
         sum(part.slack for part in parts),
         sum(part.unconverged for part in parts),
-        rmse,
-        samples,
+        {name: sum(part.squares[name] for part in parts) for name in parts[0].squares},
+        {name: sum(part.samples[name] for part in parts) for name in parts[0].samples},
     )
 
 

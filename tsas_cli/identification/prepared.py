@@ -15,9 +15,8 @@ from tsas_cli.numerics.noise import noise_sd, quantisation_step
 from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.response import TOLERANCE
 from tsas_cli.recordings.columns import BY_NAME
-from tsas_cli.recordings.copied import NONE_COPIED, CopiedRows
 from tsas_cli.recordings.manifest import Load, Run
-from tsas_cli.recordings.recording import Recording
+from tsas_cli.recordings.recording import NONE_COPIED, CopiedRows, Recording
 from tsas_cli.support.errors import InputError
 
 Floats = npt.NDArray[np.float64]

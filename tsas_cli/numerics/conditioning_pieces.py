@@ -8,7 +8,7 @@ bounded by the last value already returned.
 """
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -39,42 +39,41 @@ class CleaningPlan:
 
 @dataclass(frozen=True)
 class Cleaned:
-    """Rows of a cleaned signal; the fields are those of `Conditioned`, `reversals` are rows.
+    """Rows of a cleaned signal from row `start` on; `reversals` are rows of the whole signal.
 
-    `apart_s` is the length of the gap that a row lies in, 0 for a finite sample, infinite before
-    the first and after the last.
+    The `samples`, shape (4, n), are values, sd and unseen of `Conditioned`, and the length of the
+    gap that a row lies in [s]: 0 for a finite sample, infinite before the first and after the last.
     """
 
     start: int
-    values: Floats
-    sd: Floats
-    unseen: Floats
-    apart_s: Floats
+    samples: Floats
     reversals: Indices
 
+    @property
+    def values(self) -> Floats:
+        """The cleaned values, shape (n,)."""
+        return np.asarray(self.samples[0])
 
-@dataclass(frozen=True)
-class _Smoothed:
-    """Finite samples with their rows, and the times `all_s` of all rows read with them."""
+    @property
+    def sd(self) -> Floats:
+        """The standard deviation of their errors, shape (n,)."""
+        return np.asarray(self.samples[1])
 
-    all_s: Floats
-    rows: Indices
-    time_s: Floats
-    smooth: Floats
-    sd: Floats
+    @property
+    def unseen(self) -> Floats:
+        """The correction that makes them monotone between reversals, shape (n,)."""
+        return np.asarray(self.samples[2])
+
+    @property
+    def apart_s(self) -> Floats:
+        """The length of the gap that each row lies in, shape (n,) [s]."""
+        return np.asarray(self.samples[3])
 
 
-@dataclass(frozen=True)
-class _Final:
-    """Samples whose cleaned value is final."""
-
-    all_s: Floats
-    rows: Indices
-    time_s: Floats
-    clean: Floats
-    sd: Floats
-    unseen: Floats
-    reversals: Indices
+# Finite samples are arrays of four columns, shape (4, n): row, time, smooth value, sd; with a
+# fifth, the cleaned value, where that is final.
+_ROW, _TIME, _SMOOTH, _SD = range(4)
+_NO_REVERSALS = np.empty(0, dtype=np.int64)
 
 
 def plan(pieces: Iterable[Samples], count: int) -> CleaningPlan:
@@ -117,21 +116,30 @@ def cleaned(pieces: Iterable[Samples], beside: int, plan: CleaningPlan) -> Itera
     plan
         The estimates for the whole signal.
     """
-    last: _Final | None = None
+    last = np.empty((5, 0))  # the final sample before those that wait
     start, waiting = 0, np.empty(0)
-    for final in _monotone(_smooth(pieces, beside, plan), plan):
-        waiting = np.concatenate((waiting, final.all_s))
-        if not final.rows.size:
+    for all_s, final, reversals in _monotone(_smooth(pieces, beside, plan), plan):
+        waiting = np.concatenate((waiting, all_s))
+        if not final.shape[1]:
             continue
-        size = int(final.rows[-1]) + 1 - start
-        yield _over_all_rows(start, waiting[:size], last, final)
-        start, waiting, last = start + size, waiting[size:], _last_of(final)
-    if waiting.size and last is not None:
-        yield _over_all_rows(start, waiting, last, _no_samples())
+        size = int(final[_ROW, -1]) + 1 - start
+        if final.shape[1] < size:
+            yield _over_all_rows(start, waiting[:size], np.hstack((last, final)), reversals)
+        else:  # no gap
+            _, _, smooth, sd, clean = final
+            yield Cleaned(start, np.array([clean, sd, smooth - clean, np.zeros(size)]), reversals)
+        start, waiting, last = start + size, waiting[size:], final[:, -1:]
+    if waiting.size and last.shape[1]:
+        yield _over_all_rows(start, waiting, last, _NO_REVERSALS)
 
 
-def _smooth(pieces: Iterable[Samples], beside: int, plan: CleaningPlan) -> Iterator[_Smoothed]:
-    """Yield each piece smoothed, without the overlap that the next one covers better."""
+def _smooth(
+    pieces: Iterable[Samples], beside: int, plan: CleaningPlan
+) -> Iterator[tuple[Floats, Floats]]:
+    """Yield the times of all rows of each piece, and its finite samples smoothed.
+
+    They are without the overlap that the next piece covers better.
+    """
     upcoming = iter(pieces)
     now: Samples | None = next(upcoming)
     while now is not None:
@@ -145,42 +153,45 @@ def _smooth(pieces: Iterable[Samples], beside: int, plan: CleaningPlan) -> Itera
             smooth, sd, _ = smooth_out(time_s[finite], smooth, plan.noise, plan.memory)
         own = slice(*np.searchsorted(finite, (low, high)))
         rows = finite[own]
-        yield _Smoothed(time_s[low:high], rows + start, time_s[rows], smooth[own], sd[own])
+        yield time_s[low:high], np.array([rows + start, time_s[rows], smooth[own], sd[own]])
         now = after
 
 
-def _monotone(parts: Iterable[_Smoothed], plan: CleaningPlan) -> Iterator[_Final]:
-    """Yield the signal, monotone between reversals, as far as it is final."""
-    pending: _Smoothed | None = None
+def _monotone(
+    parts: Iterable[tuple[Floats, Floats]], plan: CleaningPlan
+) -> Iterator[tuple[Floats, Floats, Indices]]:
+    """Yield the times of each part's rows, the samples that are final then, and the reversals."""
+    pending = np.empty((4, 0))
     partly_regressed: Floats = np.empty(0)  # pending samples; the stroke before ends at the first
     direction, bound = 0, -np.inf
     most = 0
-    for part in parts:
-        most = max(most, part.all_s.size)
-        pending = part if pending is None else _concatenated(pending, part)
-        partly_regressed = np.concatenate((partly_regressed, part.smooth))
-        reversals = turning_points(pending.smooth, plan.smallest_reversal, direction)[1:-1]
-        out, done = partly_regressed.copy(), 0
+    for all_s, part in parts:
+        most = max(most, all_s.size)
+        pending = np.hstack((pending, part))
+        smooth = pending[_SMOOTH]
+        reversals = turning_points(smooth, plan.smallest_reversal, direction)[1:-1]
+        out, done = np.concatenate((partly_regressed, part[_SMOOTH])), 0
         for reversal in reversals:
-            direction = direction or _sign(pending.smooth[reversal] - pending.smooth[done])
+            direction = direction or _sign(smooth[reversal] - smooth[done])
             out[done : reversal + 1] = _rising(out[done : reversal + 1], direction, bound, plan)
             done, direction, bound = int(reversal), -direction, -np.inf
-        direction = direction or _first_direction(pending.smooth, plan.smallest_reversal)
+        direction = direction or _first_direction(smooth, plan.smallest_reversal)
         known = done
         if direction:
             known += _count_final(direction * out[done:], plan.smallest_reversal)
-        if known == done and pending.rows.size - done > 2 * most:
+        if known == done and out.size - done > 2 * most:
             direction = direction or _sign(out[-1] - out[done])
-            known = pending.rows.size - most
+            known = out.size - most
         if known > done:
             out[done:known] = _rising(out[done:known], direction, bound, plan)
             bound = direction * out[known - 1]
-        yield _final(pending, out, known, reversals)
-        pending, partly_regressed = _after(pending, known), out[known:]
-    if pending is not None and pending.rows.size:
+        rows = pending[_ROW, reversals].astype(np.int64)
+        yield all_s, np.vstack((pending[:, :known], out[:known])), rows
+        pending, partly_regressed = pending[:, known:], out[known:]
+    if partly_regressed.size:
         direction = direction or _sign(partly_regressed[-1] - partly_regressed[0])
         out = _rising(partly_regressed, direction, bound, plan)
-        yield _final(pending, out, pending.rows.size, np.empty(0, dtype=np.int64))
+        yield np.empty(0), np.vstack((pending, out)), _NO_REVERSALS
 
 
 def _rising(values: Floats, direction: int, bound: float, plan: CleaningPlan) -> Floats:
@@ -217,67 +228,12 @@ def _sign(change: float) -> int:
     return 1 if change >= 0.0 else -1
 
 
-def _concatenated(one: _Smoothed, other: _Smoothed) -> _Smoothed:
-    return _Smoothed(
-        other.all_s,  # those of the first part are returned already
-        np.concatenate((one.rows, other.rows)),
-        np.concatenate((one.time_s, other.time_s)),
-        np.concatenate((one.smooth, other.smooth)),
-        np.concatenate((one.sd, other.sd)),
-    )
-
-
-def _after(part: _Smoothed, first: int) -> _Smoothed:
-    return _Smoothed(
-        np.empty(0), part.rows[first:], part.time_s[first:], part.smooth[first:], part.sd[first:]
-    )
-
-
-def _final(pending: _Smoothed, out: Floats, known: int, reversals: Indices) -> _Final:
-    clean = out[:known]
-    return _Final(
-        pending.all_s,
-        pending.rows[:known],
-        pending.time_s[:known],
-        clean,
-        pending.sd[:known],
-        pending.smooth[:known] - clean,
-        pending.rows[reversals],
-    )
-
-
-def _last_of(final: _Final) -> _Final:
-    """Return the last sample alone, from which the next rows are interpolated."""
-    return replace(
-        final,
-        rows=final.rows[-1:],
-        time_s=final.time_s[-1:],
-        clean=final.clean[-1:],
-        sd=final.sd[-1:],
-        unseen=final.unseen[-1:],
-    )
-
-
-def _no_samples() -> _Final:
-    none = np.empty(0)
-    rows = np.empty(0, dtype=np.int64)
-    return _Final(none, rows, none, none, none, none, rows)
-
-
-def _over_all_rows(start: int, time_s: Floats, last: _Final | None, final: _Final) -> Cleaned:
-    """Return the values of all rows from `start` on, interpolated linearly between samples."""
-    if final.rows.size == time_s.size:  # no gap
-        none_s = np.zeros(time_s.size)
-        return Cleaned(start, final.clean, final.sd, final.unseen, none_s, final.reversals)
-    parts = [final] if last is None else [last, final]
-    known_s = np.concatenate([part.time_s for part in parts])
+def _over_all_rows(start: int, time_s: Floats, known: Floats, reversals: Indices) -> Cleaned:
+    """Return all rows from `start` on, interpolated linearly between known final samples."""
+    at, at_s, smooth, sd, clean = known
     rows = np.arange(start, start + time_s.size)
-    at = np.concatenate([part.rows for part in parts])
     before, after = np.searchsorted(at, rows, side="right") - 1, np.searchsorted(at, rows)
-    apart_s = known_s[np.minimum(after, at.size - 1)] - known_s[np.maximum(before, 0)]
+    apart_s = at_s[np.minimum(after, at.size - 1)] - at_s[np.maximum(before, 0)]
     apart_s[(before < 0) | (after >= at.size)] = np.inf
-    values, sd, unseen = (
-        np.interp(time_s, known_s, np.concatenate([getattr(part, name) for part in parts]))
-        for name in ("clean", "sd", "unseen")
-    )
-    return Cleaned(start, values, sd, unseen, apart_s, final.reversals)
+    over_all = [np.interp(time_s, at_s, column) for column in (clean, sd, smooth - clean)]
+    return Cleaned(start, np.array([*over_all, apart_s]), reversals)

@@ -1,7 +1,6 @@
 """Independent calls on threads: compiled kernels release the interpreter's lock."""
 
 import os
-from collections import deque
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
@@ -23,26 +22,10 @@ def each(
     Call short or mostly Python functions without `at_once`: they lose more to the interpreter's
     lock than threads save.
     """
-    if not at_once:
-        return [function(item) for item in items]
-    pool = threads()
+    pool = threads() if at_once else 1
     if pool < 2 or len(items) < 2:
         return [function(item) for item in items]
-    found: dict[int, Result] = {}
-    waiting = iter(range(len(items)))  # shared by all threads: a fixed split is slower
-
-    def work(_: int) -> None:
-        try:
-            for k in waiting:
-                found[k] = function(items[k])
-        finally:
-            deque(waiting, maxlen=0)  # after an error none begins another item
-
-    try:
-        deque(_pool(pool).map(work, range(min(pool, len(items)))), maxlen=0)
-    finally:
-        deque(waiting, maxlen=0)  # nor after Ctrl-C
-    return [found[k] for k in range(len(items))]
+    return list(_pool(pool).map(function, items))  # after an error it begins no other item
 
 
 def threads() -> int:

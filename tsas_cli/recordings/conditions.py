@@ -1,10 +1,13 @@
 """The conditions of a run, from its file name, its header and the map."""
 
 import re
-from collections.abc import Sequence
+import signal
+import threading
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
+from types import FrameType
 
-from tsas_cli.recordings.guards.time_limit import at_most
 from tsas_cli.recordings.ingest_map import Converted, FromText, RunMap
 from tsas_cli.recordings.readers.layout import may_be_thousands
 from tsas_cli.recordings.units import conversion
@@ -106,3 +109,30 @@ def _plain(text: str) -> float | int | str:
         except ValueError:
             continue
     return text
+
+
+@contextmanager
+def at_most(seconds: float) -> Iterator[None]:
+    """Run the block with a time limit; without one on Windows and outside the main thread.
+
+    Raises
+    ------
+    TimeoutError
+        The block took longer.
+    """
+
+    def late(number: int, frame: FrameType | None) -> None:
+        del number, frame
+        raise TimeoutError
+
+    on_main = threading.current_thread() is threading.main_thread()
+    if not on_main or not hasattr(signal, "setitimer"):
+        yield
+        return
+    before = signal.signal(signal.SIGALRM, late)
+    signal.setitimer(signal.ITIMER_REAL, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)

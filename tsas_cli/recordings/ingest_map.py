@@ -9,8 +9,7 @@ from pydantic import ConfigDict, Field, field_validator, model_validator
 
 from tsas_cli.recordings.columns import NAMES, TIME, has_input_and_output
 from tsas_cli.recordings.manifest import Load, RigSheet, parse, read_toml
-from tsas_cli.recordings.readers.options import ReadOptions
-from tsas_cli.recordings.readers.table import ColumnSource
+from tsas_cli.recordings.readers.table import ColumnSource, ReadOptions
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import Raw
 from tsas_cli.support.strict_table import StrictTable

@@ -2,7 +2,8 @@
 
 import io
 import struct
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, cast
 
@@ -10,13 +11,28 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from tsas_cli.recordings.checked import ParquetSource
+from tsas_cli.recordings.guards.damaged import damaged
 from tsas_cli.recordings.guards.expansion import Expanded
 from tsas_cli.recordings.storage import Location
 from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError
+from tsas_cli.support.memory import out_of_memory
 
 BUFFER_BYTES = 1 << 20  # read at a time: a row group need not fit into memory
 _TRAILER_BYTES = 8  # at the end: the footer's length and PAR1
+
+
+@contextmanager
+def reading(path: object) -> Iterator[None]:
+    """Convert the errors of pyarrow at a damaged or too large file to `InputError`."""
+    try:
+        yield
+    except MemoryError as error:
+        raise out_of_memory(path) from error
+    except (pa.ArrowException, OSError, UnicodeDecodeError) as error:  # the last is of names
+        if isinstance(error, OSError) and error.errno is not None:  # not of the content
+            raise InputError(f"cannot be read ({error.strerror})", where=path) from error
+        raise damaged(path, "Parquet", error) from error
 
 
 def open_parquet(source: ParquetSource, where: Location | None = None) -> pq.ParquetFile:

@@ -13,9 +13,8 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from tsas_cli.recordings.columns import BY_NAME, TIME
-from tsas_cli.recordings.guards.damaged import damaged
 from tsas_cli.recordings.manifest import Run
-from tsas_cli.recordings.parquet_files import check_size
+from tsas_cli.recordings.parquet_files import check_size, reading
 from tsas_cli.recordings.recording import Floats
 from tsas_cli.recordings.run_files import (
     RunColumns,
@@ -97,7 +96,7 @@ def pieces(
     buffered: dict[str, list[Floats]] = {name: [] for name in names}
     start = count = read = 0
     last_s: Floats = np.empty(0)
-    try:
+    with reading(run.path):
         for batch in run.file.iter_batches(min(_BATCH_ROWS, MOST_ROWS), columns=list(names)):
             table = pa.Table.from_batches([batch])
             for name in names:
@@ -115,7 +114,5 @@ def pieces(
                 yield Piece(start, {name: v[:MOST_ROWS] for name, v in joined.items()})
                 buffered = {name: [v[MOST_ROWS - overlap :].copy()] for name, v in joined.items()}
                 start, count = start + MOST_ROWS - overlap, count - MOST_ROWS + overlap
-    except (pa.ArrowException, OSError) as error:
-        raise damaged(run.path, "Parquet", error) from error
     if count > overlap or start == 0:
         yield Piece(start, {name: np.concatenate(buffered[name]) for name in names})

@@ -1,4 +1,4 @@
-"""One run in memory: its manifest entry, and its columns."""
+"""One run in memory: its manifest entry, its columns, and which of its rows are copies."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -77,3 +77,20 @@ def recording_of(runs: Mapping[str, Recording], run: str) -> Recording:
     if run not in runs:
         raise InputError(f"there is no run {run!r}", remedy=nearest(run, runs))
     return runs[run]
+
+
+@dataclass(frozen=True)
+class CopiedRows:
+    """Stretches of rows, each from its first row to the one after its last."""
+
+    stretches: tuple[tuple[int, int], ...] = ()
+
+    def mask(self, start: int, stop: int) -> npt.NDArray[np.bool_]:
+        """Return which of the rows from `start` to `stop` − 1 are copies, shape (stop − start,)."""
+        copied = np.zeros(stop - start, dtype=np.bool_)
+        for first, end in self.stretches:
+            copied[max(first - start, 0) : max(end - start, 0)] = True
+        return copied
+
+
+NONE_COPIED = CopiedRows()

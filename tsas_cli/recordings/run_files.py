@@ -18,16 +18,14 @@ from tsas_cli.recordings.columns import (
     has_input_and_output,
     largest,
 )
-from tsas_cli.recordings.guards.damaged import damaged
 from tsas_cli.recordings.manifest import Run
-from tsas_cli.recordings.parquet_files import check_size, is_number, open_parquet, size_of
+from tsas_cli.recordings.parquet_files import check_size, is_number, open_parquet, reading, size_of
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.recordings.storage import Location
 from tsas_cli.recordings.units import conversion
 from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import check_unchanged, state_of
-from tsas_cli.support.memory import out_of_memory
 
 Floats = npt.NDArray[np.float64]
 
@@ -97,10 +95,8 @@ class RunColumns:
                 remedy=f"there are: {', '.join(self.names)}",
             )
         check_size(self.file, self.path, (name,), size=self.size, whole=True)
-        try:
+        with reading(self.path):
             table = self.file.read(columns=[name])
-        except (pa.ArrowException, OSError) as error:
-            raise damaged(self.path, "Parquet", error) from error
         values = floats_of(table, name, self.path)
         if name == TIME:
             check_time(values, self.path)
@@ -119,11 +115,9 @@ def open_run(folder: Location, run: Run) -> RunColumns:
     """
     path = folder / run.file
     source = checked_file(folder, run)
-    try:
+    with reading(path):
         file = open_parquet(source, path)
         _check_names_and_units(file.schema_arrow, path)
-    except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
-        raise damaged(path, "Parquet", error) from error
     if TIME not in file.schema_arrow.names or file.metadata.num_rows < 2:
         raise InputError("column time_s is missing or short", where=path, expected="time in s")
     return RunColumns(run, path, file, size_of(source))
@@ -152,17 +146,12 @@ def read_columns(path: Path) -> dict[str, Floats]:
 
 def _table_of(source: ParquetSource, path: Location) -> tuple[pa.Table, list[str]]:
     """Return the canonical columns of a file, and the names of all columns."""
-    try:
-        with open_parquet(source, path) as file:
-            present = list(file.schema_arrow.names)
-            names = [name for name in present if name in BY_NAME]
-            _check_names_and_units(file.schema_arrow, path)
-            check_size(file, path, names, size=size_of(source), whole=True)
-            return file.read(columns=names), present
-    except MemoryError as error:
-        raise out_of_memory(path) from error
-    except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
-        raise damaged(path, "Parquet", error) from error
+    with reading(path), open_parquet(source, path) as file:
+        present = list(file.schema_arrow.names)
+        names = [name for name in present if name in BY_NAME]
+        _check_names_and_units(file.schema_arrow, path)
+        check_size(file, path, names, size=size_of(source), whole=True)
+        return file.read(columns=names), present
 
 
 def _check_names_and_units(schema: pa.Schema, path: Location) -> None:
@@ -243,11 +232,6 @@ def check_time(time_s: Floats, path: Location, *, first_row: int = 0) -> None:
     """Refuse time that does not strictly increase, or increases by implausible steps.
 
     `first_row` is the number of the first sample.
-
-    Raises
-    ------
-    InputError
-        Time stops, decreases, or has an implausible step.
     """
     with np.errstate(over="ignore"):  # an infinite step is refused below
         step = np.diff(time_s)
@@ -271,13 +255,7 @@ def check_time(time_s: Floats, path: Location, *, first_row: int = 0) -> None:
 
 
 def check_magnitude(name: str, values: Floats, path: Location, *, first_row: int = 0) -> None:
-    """Refuse implausible values of a canonical column; `first_row` is the number of the first row.
-
-    Raises
-    ------
-    InputError
-        There is an implausible value.
-    """
+    """Refuse implausible values of a column; `first_row` is the number of the first row."""
     most = largest(name)
     implausible = np.abs(values) > most
     if implausible.any():

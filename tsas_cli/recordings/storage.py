@@ -175,13 +175,7 @@ def location_of(given: "str | Location") -> Location:
 
 
 def check_inside(path: Location, folder: Location) -> None:
-    """Refuse a file that a link places outside its dataset's folder; an address has no links.
-
-    Raises
-    ------
-    InputError
-        The file is outside.
-    """
+    """Refuse a file that a link places outside its dataset's folder; an address has no links."""
     if isinstance(path, Address) or isinstance(folder, Address):
         return
     if not path.resolve().is_relative_to(folder.resolve()):

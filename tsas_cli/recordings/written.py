@@ -6,17 +6,14 @@ from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
-import pyarrow as pa
 
 from tsas_cli.recordings.arrow_columns import floats_from
-from tsas_cli.recordings.guards.damaged import damaged
 from tsas_cli.recordings.manifest import Run
-from tsas_cli.recordings.parquet_files import check_size, open_parquet
+from tsas_cli.recordings.parquet_files import check_size, open_parquet, reading
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.recordings.run_files import read_columns
 from tsas_cli.recordings.run_names import check_run_name
 from tsas_cli.support.errors import InputError
-from tsas_cli.support.memory import out_of_memory
 
 Floats = npt.NDArray[np.float64]
 
@@ -79,11 +76,8 @@ def names_of(path: Path) -> list[str]:
     InputError
         The file cannot be read.
     """
-    try:
-        with open_parquet(path) as file:
-            return list(file.schema_arrow.names)
-    except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
-        raise damaged(path, "Parquet", error) from error
+    with reading(path), open_parquet(path) as file:
+        return list(file.schema_arrow.names)
 
 
 def columns_of(path: Path, names: Sequence[str]) -> dict[str, Floats]:
@@ -94,15 +88,13 @@ def columns_of(path: Path, names: Sequence[str]) -> dict[str, Floats]:
     InputError
         The file cannot be read or lacks a column.
     """
-    try:
-        with open_parquet(path) as file:
-            check_size(file, path, names, whole=True)
-            table = file.read(columns=list(names))
+    with reading(path), open_parquet(path) as file:
+        check_size(file, path, names, whole=True)
+        table = file.read(columns=list(names))
+        missing = [name for name in names if name not in table.column_names]
+        if missing:
+            raise InputError(f"column {missing[0]} is missing", where=path)
         return {name: floats_from(table.column(name)) for name in names}
-    except MemoryError as error:
-        raise out_of_memory(path) from error
-    except (pa.ArrowException, OSError, KeyError, UnicodeDecodeError) as error:
-        raise damaged(path, "Parquet", error) from error
 
 
 def check_rows(path: Path, found: int, rows: int, *, stage: str = "the stage") -> None:

@@ -22,7 +22,6 @@ from tsas_cli.physics.closed_form.capstan import (
     speed_per_stiffness,
 )
 from tsas_cli.physics.rig import Rig
-from tsas_cli.recordings.copied import CopiedRows
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Manifest, Run
 from tsas_cli.recordings.quality.checks import sign
@@ -30,6 +29,7 @@ from tsas_cli.recordings.quality.copies.deduplicated import without_duplicates
 from tsas_cli.recordings.quality.finding import CannotTell, Remark
 from tsas_cli.recordings.quality.stretches import look_by_stretches
 from tsas_cli.recordings.quality.trial import RunSignals
+from tsas_cli.recordings.recording import CopiedRows
 from tsas_cli.records import calibration as records
 from tsas_cli.records.base import ParameterValue, number_text, parameters_of
 from tsas_cli.records.result import Result, Table, notes
@@ -187,7 +187,7 @@ def _errors(result: Calibration) -> dict[str, dict[str, records.ChannelError]]:
     return {
         run.run.id: {
             name: records.ChannelError(rmse=rmse, noise=run.noise[name])
-            for name, rmse in a.rmse.items()
+            for name, rmse in a.summary.rmse.items()
         }
         for run, a in zip(result.runs, result.predictions, strict=True)
     }

@@ -4,8 +4,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from tsas_cli.recordings.guess.proposal import MapProposal, propose
-from tsas_cli.recordings.guess.summary import content, tables
-from tsas_cli.recordings.guess.text import MAP_MARK, map_text
+from tsas_cli.recordings.guess.text import MAP_MARK, content, map_text, tables
 from tsas_cli.recordings.ingest import find_files
 from tsas_cli.records.result import Result, Table
 from tsas_cli.stages.given import Named, path_of, paths_of

@@ -163,7 +163,7 @@ def simulate(
                 run = prepare(data[entry.id], data.manifest.session_start)
                 own = with_own_values(taken, run) if fit_own else taken
                 compared = compare(run, own, dynamics, nodes)
-                summary = compared.summary()
+                summary = compared.summary
             used = _of_run(own, entry.id).over(used)
             record = record.with_run(
                 entry.id, summary.record(run), segment_records(run, segment(run))

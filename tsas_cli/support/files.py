@@ -59,35 +59,16 @@ def new_folder(
         `path` exists and is not an empty folder, and `force` is not set; or, with `force`, it is no
         earlier output of the same stage, an input, or the current folder; or it is not writable.
     """
-    replaced = partial(refuse_folder, path, stage=stage, inputs=tuple(inputs), force=force)
-    with ExitStack() as stack:
-        with _written(path):
-            limits.text_name(path.absolute())
-            refuse_address(path)
-            refuse_kind(path, folder=True)
-            replaced()
-            path.parent.mkdir(parents=True, exist_ok=True)
-            temporary = stack.enter_context(temporary_for(path))
-            temporary.mkdir(mode=0o700)
-        with _written(path, only=_NO_ROOM), _named(temporary, path):
-            yield temporary
-        with _written(path):
-            temporary.chmod(0o755)
-            replaced()  # another process may have written it meanwhile
-            place_folder(temporary, path, replace=force)
+    refuse = partial(refuse_folder, path, stage=stage, inputs=tuple(inputs), force=force)
+    with _new(path, refuse, folder=True, force=force) as temporary:
+        yield temporary
 
 
 @contextmanager
 def stage_folder(
     path: Path, *, stage: str, inputs: Iterable[object], force: bool = False
 ) -> Iterator[Path]:
-    """Yield a new folder as `new_folder` does, and write `SHA256SUMS` of its files at the end.
-
-    Raises
-    ------
-    InputError
-        As from `new_folder`.
-    """
+    """Yield a new folder as `new_folder` does, and write `SHA256SUMS` of its files at the end."""
     with new_folder(path, stage=stage, inputs=inputs, force=force) as folder:
         write, own = _EXTRA_OUTPUT.get(), _EXTRA_OUTPUT.set(None)  # not for nested outputs
         try:
@@ -103,13 +84,7 @@ def stage_folder(
 def folder_if(
     path: Path | None, *, stage: str, inputs: Iterable[object], force: bool = False
 ) -> Iterator[Path | None]:
-    """Yield a new folder as `stage_folder` does, or None without a path.
-
-    Raises
-    ------
-    InputError
-        As from `new_folder`.
-    """
+    """Yield a new folder as `stage_folder` does, or None without a path."""
     if path is None:
         yield None
         return
@@ -151,22 +126,29 @@ def new_file(
         `path` exists and `force` is not set; or, with `force`, it is no earlier output or an input;
         or it is a folder or not writable.
     """
-    replaced = partial(refuse_file, path, mark=mark, inputs=tuple(inputs), force=force)
+    refuse = partial(refuse_file, path, mark=mark, inputs=tuple(inputs), force=force)
+    with _new(path, refuse, folder=False, force=force) as temporary:
+        yield temporary
+
+
+@contextmanager
+def _new(path: Path, refuse: Callable[[], None], *, folder: bool, force: bool) -> Iterator[Path]:
+    """Yield the temporary path of a new file or folder, unless `refuse` refuses it."""
     with ExitStack() as stack:
         with _written(path):
             limits.text_name(path.absolute())
             refuse_address(path)
-            refuse_kind(path, folder=False)
-            replaced()
+            refuse_kind(path, folder=folder)
+            refuse()
             path.parent.mkdir(parents=True, exist_ok=True)
             temporary = stack.enter_context(temporary_for(path))
-            temporary.touch(mode=0o600)
-        with _written(path, only=_NO_ROOM):
+            temporary.mkdir(0o700) if folder else temporary.touch(0o600)
+        with _written(path, only=_NO_ROOM), _named(temporary, path):
             yield temporary
         with _written(path):
-            temporary.chmod(0o644)
-            replaced()
-            place_file(temporary, path, replace=force)
+            temporary.chmod(0o755 if folder else 0o644)
+            refuse()  # another process may have written it meanwhile
+            (place_folder if folder else place_file)(temporary, path, replace=force)
 
 
 @contextmanager
@@ -238,13 +220,7 @@ def state_of(path: Path) -> tuple[int, ...]:
 
 
 def check_unchanged(path: Path, before: tuple[int, ...]) -> None:
-    """Refuse a file that has changed since its `state_of` was taken.
-
-    Raises
-    ------
-    InputError
-        The file has changed.
-    """
+    """Refuse a file that has changed since its `state_of` was taken."""
     if state_of(path) != before:
         raise InputError(
             "changed while it was read",

@@ -92,13 +92,7 @@ def regular(path: Path, state: os.stat_result | None = None) -> None:
 
 
 def text_name(path: Path) -> None:
-    """Refuse a path that is not UTF-8, since no output can record it.
-
-    Raises
-    ------
-    InputError
-        It is not.
-    """
+    """Refuse a path that is not UTF-8, since no output can record it."""
     if not is_text(path):
         raise InputError("its name is not UTF-8", where=path, remedy="rename it")
 
@@ -109,13 +103,7 @@ def is_text(path: Path) -> bool:
 
 
 def toml(text: str, path: object) -> None:
-    """Refuse TOML whose parsing would take too long.
-
-    Raises
-    ------
-    InputError
-        It has too many runs or keys, or is nested too deep.
-    """
+    """Refuse TOML whose parsing would take too long."""
     runs = text.count("\n[[")
     if runs > RUNS:
         raise InputError(
@@ -132,13 +120,7 @@ def toml(text: str, path: object) -> None:
 
 
 def depth(content: Any, path: object) -> None:
-    """Refuse tables and lists that are nested too deep.
-
-    Raises
-    ------
-    InputError
-        They are nested too deep.
-    """
+    """Refuse tables and lists that are nested too deep."""
     level = [content]
     for _ in range(DEPTH):
         level = [v for outer in level for v in _members(outer) if isinstance(v, dict | list)]
@@ -186,13 +168,7 @@ def lines(stream: TextIO, path: Path) -> Iterator[str]:
 
 
 def columns(names: Sequence[str], path: object) -> None:
-    """Refuse too many columns, or invalid names.
-
-    Raises
-    ------
-    InputError
-        There are too many, or a name is too long or not UTF-8.
-    """
+    """Refuse too many columns, or invalid names."""
     column_count(len(names), path)
     for number, name in enumerate(names, start=1):
         if len(name) > NAME or not _encodable(name):
@@ -204,13 +180,7 @@ def columns(names: Sequence[str], path: object) -> None:
 
 
 def column_count(count: int, path: object) -> None:
-    """Refuse too many columns.
-
-    Raises
-    ------
-    InputError
-        There are too many.
-    """
+    """Refuse too many columns."""
     if count > COLUMNS:
         raise InputError(
             f"holds {count} columns",

@@ -10,13 +10,7 @@ from tsas_cli.support.errors import InputError
 
 
 def fits(path: object, bytes_: int) -> None:
-    """Refuse a file that is loaded whole and exceeds the memory.
-
-    Raises
-    ------
-    InputError
-        It does.
-    """
+    """Refuse a file that is loaded whole and exceeds the memory."""
     free = available()
     if bytes_ > free:
         raise InputError(

@@ -53,21 +53,7 @@ def exists(path: Path) -> InputError:
 def refuse_folder(path: Path, *, stage: str, inputs: Iterable[object], force: bool) -> None:
     """Refuse an existing path, unless it is an earlier output of the same stage and `force` is set.
 
-    Parameters
-    ----------
-    path
-        The folder to write.
-    stage
-        The stage as its JSON names it; "ingest" for datasets.
-    inputs
-        The inputs of the call; those that are no local path are ignored.
-    force
-        Whether an earlier output may be replaced.
-
-    Raises
-    ------
-    InputError
-        The path may not be written.
+    `stage` is named as in its JSON, "ingest" for datasets; only inputs that are local paths count.
     """
     refuse_inputs(path, inputs)
     if not os.path.lexists(path) or is_empty_folder(path):
@@ -87,22 +73,7 @@ def refuse_folder(path: Path, *, stage: str, inputs: Iterable[object], force: bo
 def refuse_file(path: Path, *, mark: bytes, inputs: Iterable[object], force: bool) -> None:
     """Refuse an existing path, unless it is an earlier output of the same stage and `force` is set.
 
-    Parameters
-    ----------
-    path
-        The file to write.
-    mark
-        Bytes in the first 4 KiB of an earlier output; empty if any file may be replaced, since the
-        path belongs to the program.
-    inputs
-        The inputs of the call; those that are no local path are ignored.
-    force
-        Whether an earlier output may be replaced.
-
-    Raises
-    ------
-    InputError
-        The path may not be written.
+    An earlier output has `mark` in its first 4 KiB; only inputs that are local paths count.
     """
     refuse_inputs(path, inputs)
     if not os.path.lexists(path):
@@ -122,11 +93,6 @@ def refuse_inputs(path: Path, inputs: Iterable[object]) -> None:
     """Refuse an output that is an input, contains one, or lies inside one.
 
     Links and other spellings of a path are followed.
-
-    Raises
-    ------
-    InputError
-        It is such a path.
     """
     if not os.path.lexists(path):
         return
@@ -143,13 +109,7 @@ def refuse_inputs(path: Path, inputs: Iterable[object]) -> None:
 
 
 def refuse_holding(path: Path, inputs: Iterable[Path]) -> None:
-    """Refuse an output that is an input or contains one.
-
-    Raises
-    ------
-    InputError
-        `path` is an input or contains one, by any link or spelling.
-    """
+    """Refuse an output that is an input or contains one."""
     if not os.path.lexists(path):
         return
     ours = _ids(path)

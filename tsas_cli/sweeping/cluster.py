@@ -6,6 +6,7 @@ so that they need the same file system under the same paths.
 
 import json
 import logging
+import os
 import re
 import shlex
 from collections.abc import Iterator, Mapping, Sequence
@@ -14,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from tsas_cli.support.errors import InputError
 from tsas_cli.sweeping.outcome import TaskOutcome, failure, run_task, worker_death
-from tsas_cli.sweeping.versions import ONE_THREAD, refuse_others, threads_of_algebra, versions
+from tsas_cli.sweeping.versions import ONE_THREAD, refuse_others, versions
 
 if TYPE_CHECKING:
     from distributed import Client, Security
@@ -159,8 +160,8 @@ def _no_tsas(where: str, error: Exception) -> InputError:
 
 def facts(shared: str) -> str:
     """Return as JSON the properties that must be equal on all workers; called on each."""
-    sees = Path(shared).is_file()
-    return json.dumps({"versions": versions(), "threads": threads_of_algebra(), "sees": sees})
+    sees, threads = Path(shared).is_file(), os.environ.get("OPENBLAS_NUM_THREADS", "")
+    return json.dumps({"versions": versions(), "threads": threads, "sees": sees})
 
 
 def _outcomes(

@@ -1,24 +1,17 @@
 """Worker processes on this machine, each with one task at a time, so that a death has a task."""
 
 import json
-import os
-import signal
-import subprocess
-import sys
-import tempfile
 import time
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
-from contextlib import suppress
 from threading import local
-from typing import IO
 
 from tsas_cli.support.errors import InputError
-from tsas_cli.sweeping.outcome import TaskOutcome, worker_death
+from tsas_cli.support.worker_process import WorkerProcess
+from tsas_cli.sweeping.outcome import TaskOutcome, run_task, worker_death
 from tsas_cli.sweeping.versions import ONE_THREAD
 
 TRIES = 2  # of a task whose worker dies
-STDERR_BYTES = 500  # last bytes of a dead worker's standard error
 
 
 def in_processes(
@@ -66,7 +59,7 @@ class _Crew:
 
     def __init__(self, work: str) -> None:
         self.work, self.stopped = work, False
-        self.own, self.started = local(), list[_Worker]()
+        self.own, self.started = local(), list[WorkerProcess]()
 
     def run(self, text: str) -> TaskOutcome:
         """Return the outcome of a task from this thread's worker."""
@@ -75,10 +68,13 @@ class _Crew:
             if self.stopped:
                 break
             worker = getattr(self.own, "worker", None) or self._start()
-            outcome = worker.run(text)
-            if outcome is not None:
+            try:
+                done = worker.call(f"{run_task.__module__}:{run_task.__name__}", self.work, text)
+            except EOFError as death:
+                message, self.own.worker = str(death), None
+            else:
+                outcome: TaskOutcome = json.loads(done)
                 return outcome
-            message, self.own.worker = worker.ending(), None
         return worker_death(TRIES, message)
 
     def kill(self) -> None:
@@ -86,70 +82,14 @@ class _Crew:
         for worker in self.started:
             worker.kill()
 
-    def _start(self) -> "_Worker":
-        self.own.worker = worker = _started(self.work)
+    def _start(self) -> WorkerProcess:
+        try:
+            self.own.worker = worker = WorkerProcess(heard=True, **ONE_THREAD)
+        except OSError as error:
+            raise InputError(
+                f"no process can be started ({error.strerror})",
+                where="--workers",
+                remedy="use fewer workers, or raise the limits of `ulimit -a`",
+            ) from error
         self.started.append(worker)
         return worker
-
-
-def _started(work: str) -> "_Worker":
-    try:
-        return _Worker(work)
-    except OSError as error:
-        raise InputError(
-            f"no process can be started ({error.strerror})",
-            where="--workers",
-            remedy="use fewer workers, or raise the limits of `ulimit -a`",
-        ) from error
-
-
-class _Worker:
-    """A process that runs one task after the other."""
-
-    def __init__(self, work: str) -> None:
-        self.stderr: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115 # until the process ends
-        try:
-            self.process = subprocess.Popen(  # noqa: S603 # our own program
-                [sys.executable, "-P", "-m", "tsas_cli.sweeping.worker", work],
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                stderr=self.stderr,
-                text=True,
-                encoding="utf-8",
-                env=os.environ | ONE_THREAD,
-                process_group=0,  # Ctrl-C is for the parent process
-            )
-        except OSError:
-            self.stderr.close()
-            raise
-
-    def run(self, text: str) -> TaskOutcome | None:
-        """Return the outcome of a task, or None if the process died."""
-        assert self.process.stdin is not None  # noqa: S101 # they are pipes
-        assert self.process.stdout is not None  # noqa: S101
-        with suppress(BrokenPipeError):
-            self.process.stdin.write(text + "\n")
-            self.process.stdin.flush()
-        line = self.process.stdout.readline()
-        if not line.endswith("\n"):
-            return None
-        outcome: TaskOutcome = json.loads(line)
-        return outcome
-
-    def ending(self) -> str:
-        """Return how the process ended, with the last line of its standard error."""
-        code = self.process.wait()
-        self.stderr.seek(0)
-        last = self.stderr.read()[-STDERR_BYTES:].decode("utf-8", "replace").strip()
-        self.kill()
-        ended = f"ended by {signal.Signals(-code).name}" if code < 0 else f"ended with {code}"
-        return ": ".join([ended, *last.splitlines()[-1:]])
-
-    def kill(self) -> None:
-        """Kill the process and close its pipes."""
-        self.process.kill()
-        self.process.wait()
-        for stream in (self.process.stdin, self.process.stdout, self.stderr):
-            if stream is not None:
-                with suppress(BrokenPipeError, ValueError):
-                    stream.close()

@@ -14,6 +14,7 @@ from tsas_cli.sweeping.outcome import Row, TaskOutcome
 from tsas_cli.sweeping.tasks import Task
 
 MOST_SHOWN = 20  # failed tasks in the printed table; the file holds all
+ENDS = ("_low", "_high", "_sd")  # of figures that are in the file only
 COUNTED = ("verdict", "causes", "codes")  # results that are words, whose frequencies are printed
 
 
@@ -66,7 +67,8 @@ def printed(rows: Sequence[Row], varied: Sequence[str], title: str) -> list[Tabl
     named = {"task", "dataset", "run", "state", "error", *varied}
     done = [row for row in rows if row["state"] == "done"]
     names = [name for name in dict.fromkeys(n for row in done for n in row) if name not in named]
-    spans = [_span(name, [row.get(name) for row in done]) for name in names if _is_printed(name)]
+    printed_names = [name for name in names if not name.endswith(ENDS)]
+    spans = [_span(name, [row.get(name) for row in done]) for name in printed_names]
     header = ("result", "tasks", "lowest", "median", "highest")
     tables: list[Table] = [(title, header, [span for span in spans if span is not None])]
     for name in COUNTED:
@@ -85,11 +87,6 @@ def _input(row: Row, varied: Iterable[str]) -> str:
     """Return the dataset, run and values that identify a task."""
     source = [str(row[name]) for name in ("dataset", "run") if name in row]
     return ", ".join([*source, *(f"{name}={row[name]}" for name in varied if name in row)])
-
-
-def _is_printed(name: str) -> bool:
-    """Return whether a figure is printed; ends of intervals are in the file only."""
-    return not name.endswith(("_low", "_high", "_sd"))
 
 
 def _span(name: str, values: Sequence[Any]) -> tuple[str, ...] | None:

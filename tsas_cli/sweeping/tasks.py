@@ -11,8 +11,7 @@ from typing import Any
 
 from tsas_cli.support.errors import InputError
 from tsas_cli.sweeping.outcome import Row
-from tsas_cli.sweeping.plan import SweepPlan
-from tsas_cli.sweeping.points import points_of
+from tsas_cli.sweeping.plan import SweepPlan, points_of
 from tsas_cli.sweeping.sources import SweepSource, sources_of
 from tsas_cli.sweeping.values import Options, Values, sorted_values
 from tsas_cli.sweeping.versions import versions

@@ -1,7 +1,6 @@
 """Versions that determine the last bits of a result; all workers of a sweep must agree."""
 
 import hashlib
-import os
 import platform
 from collections.abc import Mapping
 from functools import cache
@@ -29,13 +28,7 @@ def versions() -> dict[str, str]:
 
 
 def refuse_others(expected: Mapping[str, str], found: Mapping[str, str], where: str) -> None:
-    """Refuse a worker whose versions differ from the expected ones.
-
-    Raises
-    ------
-    InputError
-        A version differs.
-    """
+    """Refuse a worker whose versions differ from the expected ones."""
     for name, wanted in expected.items():
         if found.get(name) != wanted:
             raise InputError(
@@ -44,8 +37,3 @@ def refuse_others(expected: Mapping[str, str], found: Mapping[str, str], where: 
                 expected=f"{wanted}, as where the sweep was started",
                 remedy="install the same version there",
             )
-
-
-def threads_of_algebra() -> str:
-    """Return the number of threads of linear algebra set by the environment, empty if unset."""
-    return os.environ.get("OPENBLAS_NUM_THREADS", "")

@@ -8,7 +8,7 @@ import pyarrow as pa
 from tests.fuzz.rules import Broken, Scratch, answer
 from tsas_cli.recordings.readers import delimited, names, read
 from tsas_cli.recordings.readers.layout import detect
-from tsas_cli.recordings.readers.options import ReadOptions
+from tsas_cli.recordings.readers.table import ReadOptions
 
 SHARE = 20
 WORDS = (b"time_s", b"[mm]", b"1e308", b"-1.5", b"nan", b"NULL", b"\r\n", b"\xef\xbb\xbf", b"1,5")

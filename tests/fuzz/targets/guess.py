@@ -5,7 +5,7 @@ from collections.abc import Iterable
 
 from tests.fuzz.rules import Broken, Scratch, answer
 from tsas_cli.recordings.guess.proposal import propose
-from tsas_cli.recordings.guess.summary import content, tables
+from tsas_cli.recordings.guess.text import content, tables
 from tsas_cli.recordings.ingest_map import read_map
 from tsas_cli.recordings.readers import delimited, json_table, parquet  # noqa: F401 # instrumented
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from tests.fuzz.documents import after_a_byte, json_document
 from tests.fuzz.rules import Scratch, answer
 from tsas_cli.recordings.readers import json_table, names, read
-from tsas_cli.recordings.readers.options import ReadOptions
+from tsas_cli.recordings.readers.table import ReadOptions
 
 TABLES = (None, "data", "log.rows", "", ".")
 SHARE = 50

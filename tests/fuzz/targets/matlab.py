@@ -14,7 +14,7 @@ from tests.fuzz.foreign import ask
 from tests.fuzz.rules import Scratch
 from tests.recordings.readers.matlab_files import controldesk
 from tsas_cli.recordings.readers import matlab
-from tsas_cli.recordings.readers.options import ReadOptions
+from tsas_cli.recordings.readers.table import ReadOptions
 
 SHARE = 0.12
 WORDS = tuple(struct.pack("<I", kind) for kind in (*range(1, 19), 0x10001, 0x40006))

@@ -10,7 +10,7 @@ from tests.fuzz.foreign import ask
 from tests.fuzz.rules import Scratch
 from tests.recordings.readers import matlab_files as made
 from tsas_cli.recordings.readers import matlab, matlab_hdf5  # noqa: F401 # instrumented
-from tsas_cli.recordings.readers.options import ReadOptions
+from tsas_cli.recordings.readers.table import ReadOptions
 
 MOST_BYTES = 16000
 SHARE = 0.12

@@ -11,7 +11,7 @@ from asammdf import MDF, Signal
 from tests.fuzz.foreign import ask
 from tests.fuzz.rules import Scratch
 from tsas_cli.recordings.readers import mdf
-from tsas_cli.recordings.readers.options import ReadOptions
+from tsas_cli.recordings.readers.table import ReadOptions
 
 MOST_BYTES = 6000
 SHARE = 0.1

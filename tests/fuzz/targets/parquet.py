@@ -9,7 +9,7 @@ import pyarrow.parquet as pq
 from tests.fuzz.rules import Scratch, answer
 from tsas_cli.recordings.readers import names, read
 from tsas_cli.recordings.readers import parquet as _reader  # noqa: F401 # to be instrumented
-from tsas_cli.recordings.readers.options import ReadOptions
+from tsas_cli.recordings.readers.table import ReadOptions
 
 SHARE = 35
 WORDS = (b"PAR1", b"\x15\x00", b"\x15\x02", b"\x15\x04\x19", b"unit", b"\xff\xff\xff\x7f")

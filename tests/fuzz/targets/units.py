@@ -4,7 +4,7 @@ from collections.abc import Iterable
 
 from tests.fuzz.rules import Broken, answer
 from tsas_cli.recordings.columns import COLUMNS
-from tsas_cli.recordings.guess.kinds import kind_of, unit_behind
+from tsas_cli.recordings.guess.words import kind_of, unit_behind
 from tsas_cli.recordings.units import _LABELS, _SPELLINGS, conversion, is_label, is_unit
 
 SHARE = 7

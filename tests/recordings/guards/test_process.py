@@ -15,8 +15,7 @@ from tests.recordings.readers.matlab_files import save_5
 from tsas_cli.recordings.guards import process as module
 from tsas_cli.recordings.guards.process import in_another_process
 from tsas_cli.recordings.readers import read
-from tsas_cli.recordings.readers.options import ReadOptions
-from tsas_cli.recordings.readers.table import ColumnTable
+from tsas_cli.recordings.readers.table import ColumnTable, ReadOptions
 from tsas_cli.support.errors import InputError
 
 COLUMN = np.arange(100_000) / 7

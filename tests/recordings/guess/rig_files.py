@@ -59,7 +59,7 @@ def verdicts(path: Path, truth: dict[str, str | int]) -> dict[str, str]:
 
 
 def _options(proposal):
-    from tsas_cli.recordings.readers.options import ReadOptions
+    from tsas_cli.recordings.readers.table import ReadOptions
 
     return ReadOptions.model_validate({key: value for key, (value, _) in proposal.read.items()})
 

@@ -16,8 +16,7 @@ from tests.recordings.guess.rig_files import CHANNELS, in_unit, run, verdicts, w
 from tests.recordings.readers.matlab_files import controldesk, numbers, save_73, struct
 from tsas_cli.commands.common import show
 from tsas_cli.recordings.guess.proposal import propose
-from tsas_cli.recordings.guess.summary import tables
-from tsas_cli.recordings.guess.text import map_text
+from tsas_cli.recordings.guess.text import map_text, tables
 from tsas_cli.recordings.ingest_map import read_map
 from tsas_cli.recordings.writing import write_parquet
 from tsas_cli.support.errors import InputError

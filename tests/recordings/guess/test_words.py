@@ -1,7 +1,6 @@
 import pytest
 
-from tsas_cli.recordings.guess.kinds import kind_of, unit_behind
-from tsas_cli.recordings.guess.words import words_of
+from tsas_cli.recordings.guess.words import kind_of, unit_behind, words_of
 
 
 @pytest.mark.parametrize(

@@ -17,7 +17,7 @@ from scipy.io import savemat
 from tests.recordings.readers.matlab_files import controldesk, numbers, save_73, struct
 from tsas_cli.recordings.readers import names, read
 from tsas_cli.recordings.readers.layout import may_be_thousands
-from tsas_cli.recordings.readers.options import ReadOptions
+from tsas_cli.recordings.readers.table import ReadOptions
 
 LETTERS = "abcdxyzFT_µé°/²-"
 finite = st.floats(allow_nan=False, allow_infinity=False)

@@ -4,7 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tsas_cli.recordings.readers import read
-from tsas_cli.recordings.readers.options import ReadOptions
+from tsas_cli.recordings.readers.table import ReadOptions
 from tsas_cli.support.errors import InputError
 
 GERMAN = "\ufeffZeit;Kraft\r\ns;N\r\n0,5;1,25\r\n1,5;-2,5e1\r\n"

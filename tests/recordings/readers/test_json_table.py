@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tsas_cli.recordings.readers import read, tables
-from tsas_cli.recordings.readers.options import ReadOptions
+from tsas_cli.recordings.readers.table import ReadOptions
 from tsas_cli.support.errors import InputError
 
 ROWS = [[0, 1.5], [1, None], [2, 3.5]]

@@ -11,7 +11,7 @@ from tests.recordings.readers.matlab_files import (
     text,
 )
 from tsas_cli.recordings.readers import matlab, read
-from tsas_cli.recordings.readers.options import ReadOptions
+from tsas_cli.recordings.readers.table import ReadOptions
 from tsas_cli.support.errors import InputError
 
 T = np.arange(5) / 10

@@ -5,7 +5,7 @@ import pytest
 from asammdf import MDF, Signal
 
 from tsas_cli.recordings.readers import mdf, read
-from tsas_cli.recordings.readers.options import ReadOptions
+from tsas_cli.recordings.readers.table import ReadOptions
 from tsas_cli.support.errors import InputError
 
 T = np.arange(5) / 10

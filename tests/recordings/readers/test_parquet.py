@@ -8,7 +8,7 @@ from pyarrow.parquet import encryption
 
 from tsas_cli.recordings.guess.opening import open_file
 from tsas_cli.recordings.readers import batches, parquet, read
-from tsas_cli.recordings.readers.options import ReadOptions
+from tsas_cli.recordings.readers.table import ReadOptions
 from tsas_cli.recordings.run_files import read_columns
 from tsas_cli.support.errors import InputError
 

@@ -7,14 +7,9 @@ class EncryptedError(InputError):
     """The file, or a column of it, is encrypted."""
 
 
-def is_encrypted(error: Exception) -> bool:
-    """Return whether the library for Parquet fails at an encrypted file or column."""
-    return "crypt" in str(error)
-
-
 def damaged(path: object, kind: str, error: Exception) -> InputError:
     """Return the error for a file that the library for its format refuses."""
-    if is_encrypted(error):
+    if "crypt" in str(error):  # of pyarrow, at an encrypted file or column
         return EncryptedError(
             "holds encrypted columns",
             where=path,

@@ -41,13 +41,7 @@ class Expanded:
         self.grow(more, what=what)
 
     def grow(self, more: int, *, what: str = "") -> None:
-        """Count more bytes of the same item.
-
-        Raises
-        ------
-        InputError
-            As from `add`.
-        """
+        """Count more bytes of the same item."""
         self.bytes += more
         if self.bytes > max(limits.HARMLESS, self.most * self.of_file):
             claimed = f"{what}, {limits.size(self.bytes)}" if what else limits.size(self.bytes)
@@ -59,11 +53,5 @@ class Expanded:
             )
 
     def fits(self) -> None:
-        """Refuse a file that is loaded whole and exceeds the memory.
-
-        Raises
-        ------
-        InputError
-            It does.
-        """
+        """Refuse a file that is loaded whole and exceeds the memory."""
         memory.fits(self.path, limits.COPIES * self.bytes)

@@ -21,11 +21,6 @@ def check_unpacked(path: Path) -> None:
 
     The declared size of a variable may be false, so a file that could be large is first unpacked in
     parts to count its bytes.
-
-    Raises
-    ------
-    InputError
-        It does, or holds too many variables.
     """
     claimed, expanded = Expanded.of(path), Expanded.of(path)
     if expanded.of_file * _MOST_PACKED <= limits.HARMLESS:

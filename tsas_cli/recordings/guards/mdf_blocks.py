@@ -35,13 +35,7 @@ class _Block(NamedTuple):
 
 
 def check_blocks(path: Path) -> None:
-    """Refuse a file whose blocks form a cycle, or unpack to more than a recording can hold.
-
-    Raises
-    ------
-    InputError
-        They do.
-    """
+    """Refuse a file whose blocks form a cycle, or unpack to more than a recording can hold."""
     expanded = Expanded.of(path)
     with path.open("rb") as stream:
         head = stream.read(_FIRST)
@@ -94,13 +88,7 @@ def _links(content: bytes, one: str) -> list[int]:
 
 
 def check_claims(path: Path, cycles: Iterator[int]) -> None:
-    """Refuse channels that declare more samples than a file of this size can hold.
-
-    Raises
-    ------
-    InputError
-        They do, or their samples exceed the memory.
-    """
+    """Refuse channels that declare more samples than a file of this size can hold."""
     expanded = Expanded.of(path)
     for samples in cycles:
         expanded.add(2 * 8 * samples, what=f"{samples} samples of a channel and their times")

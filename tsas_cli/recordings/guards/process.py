@@ -7,9 +7,7 @@ an error here.
 
 import atexit
 import os
-import pickle
 import signal
-import subprocess
 import sys
 import traceback
 from importlib import import_module
@@ -19,10 +17,10 @@ from typing import Any
 
 from tsas_cli.recordings.guards.damaged import damaged
 from tsas_cli.support.errors import InputError
+from tsas_cli.support.worker_process import WorkerProcess
 
 LEAST_S, BYTES_PER_S = 60.0, 1e6  # time limit: least, and per size of the file
 LEAST_BYTES, BYTES_PER_BYTE = 2 << 30, 20  # memory limit, likewise
-_START = "import sys; sys.path[:] = {path!r}; from {module} import serve; serve()"
 
 
 class _Process:
@@ -31,11 +29,11 @@ class _Process:
     def __init__(self) -> None:
         self.lock, self.owner = Lock(), 0
         self.refused: Path | None = None  # it may have corrupted the library's memory
-        self.running: subprocess.Popen[bytes] | None = None
+        self.running: WorkerProcess | None = None
         atexit.register(self.end)
 
-    def call(self, request: Any, seconds: float) -> Any:
-        """Return the result of a request.
+    def call(self, seconds: float, *request: Any) -> Any:
+        """Return the result of `limited`.
 
         Raises
         ------
@@ -45,16 +43,17 @@ class _Process:
             The process has died.
         """
         with self.lock:
-            process = self._running()
-            late = Timer(seconds, process.kill)
+            if self.running is None or self.owner != os.getpid():  # a fork starts its own
+                self.running, self.owner = WorkerProcess(heard=False), os.getpid()
+            late = Timer(seconds, self.running.process.kill)
             late.start()
             try:
-                return _exchange(process, request)
+                return self.running.call(f"{__name__}:limited", seconds, *request)
             except BaseException as error:
                 was_late = late.finished.is_set()
                 self.end()
-                if isinstance(error, OSError | EOFError | pickle.UnpicklingError):
-                    raise (TimeoutError if was_late else EOFError) from error
+                if was_late and isinstance(error, EOFError):
+                    raise TimeoutError from error
                 raise
             finally:
                 late.cancel()
@@ -64,30 +63,6 @@ class _Process:
         process, self.running, self.refused = self.running, None, None
         if process is not None and self.owner == os.getpid():
             process.kill()
-            process.communicate()
-
-    def _running(self) -> subprocess.Popen[bytes]:
-        if self.running is None or self.owner != os.getpid():  # a fork starts its own
-            start = _START.format(path=sys.path, module=__name__)
-            self.running, self.owner = _started(start), os.getpid()
-        return self.running
-
-
-def _exchange(process: subprocess.Popen[bytes], request: Any) -> Any:
-    assert process.stdin is not None  # noqa: S101 # both are pipes
-    assert process.stdout is not None  # noqa: S101
-    pickle.dump(request, process.stdin)
-    process.stdin.flush()
-    return pickle.load(process.stdout)  # noqa: S301 # our own process wrote it
-
-
-def _started(python: str) -> subprocess.Popen[bytes]:
-    return subprocess.Popen(  # noqa: S603 # this program itself
-        [sys.executable, "-c", python],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.DEVNULL,
-    )
 
 
 _PROCESS = _Process()
@@ -109,8 +84,7 @@ def in_another_process(module: str, function: str, path: Path, *rest: Any, kind:
     seconds = LEAST_S + size / BYTES_PER_S
     memory = LEAST_BYTES + BYTES_PER_BYTE * size
     try:
-        request = (module, function, (path, *rest), seconds, memory, Path.cwd())
-        result = _PROCESS.call(request, seconds)
+        result = _PROCESS.call(seconds, memory, Path.cwd(), module, function, path, *rest)
     except TimeoutError as error:
         late = TimeoutError(f"not done after {seconds:.0f} s")
         raise damaged(path, kind, late) from error
@@ -122,32 +96,22 @@ def in_another_process(module: str, function: str, path: Path, *rest: Any, kind:
     return result
 
 
-def serve() -> None:
-    """Process requests on standard input until its end."""
-    results = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
-    os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # output of libraries is no result
-    while True:
-        try:
-            request = pickle.load(sys.stdin.buffer)  # noqa: S301 # from the process that started this
-        except EOFError:
-            return
-        module, function, arguments, seconds, memory, folder = request
-        os.chdir(folder)
-        called = getattr(import_module(module), function)
-        _end_after(seconds + 5.0)  # in case the parent process is dead
-        _limit(memory)
-        pickle.dump(_result(called, arguments), results)
-        results.flush()
-        _end_after(0.0)  # cancels the timer
-
-
-def _result(called: Any, arguments: tuple[Any, ...]) -> Any:
+def limited(
+    seconds: float, memory: int, folder: Path, module: str, function: str, *arguments: Any
+) -> Any:
+    """Return the result of a function, or its error; called in the other process."""
+    os.chdir(folder)
+    called = getattr(import_module(module), function)
+    _end_after(seconds + 5.0)  # in case the parent process is dead
+    _limit(memory)
     try:
         return called(*arguments)
     except (InputError, OSError) as error:
         return error
     except Exception:  # noqa: BLE001 # a defect, whose type may not be picklable
         return RuntimeError(traceback.format_exc())
+    finally:
+        _end_after(0.0)  # cancels the timer
 
 
 def _end_after(seconds: float) -> None:

@@ -5,9 +5,19 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tsas_cli.recordings.guess.kinds import QUANTITY_OF, UnitKind, fits, kind_of, unit_behind
 from tsas_cli.recordings.guess.opening import Opened
-from tsas_cli.recordings.guess.words import WEAK, End, NamedQuantity, Words, words_of
+from tsas_cli.recordings.guess.words import (
+    QUANTITY_OF,
+    WEAK,
+    End,
+    NamedQuantity,
+    UnitKind,
+    Words,
+    fits,
+    kind_of,
+    unit_behind,
+    words_of,
+)
 from tsas_cli.recordings.readers.table import ColumnSource, Floats
 
 _BRACKETS = re.compile(r"\s*[\[(]([^\[\]()]*)[\])]\s*$")

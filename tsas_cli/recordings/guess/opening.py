@@ -7,8 +7,7 @@ from typing import Any
 
 from tsas_cli.recordings.guards.damaged import EncryptedError
 from tsas_cli.recordings.readers import names, read, tables
-from tsas_cli.recordings.readers.options import ReadOptions
-from tsas_cli.recordings.readers.table import ColumnSource, ColumnTable
+from tsas_cli.recordings.readers.table import ColumnSource, ColumnTable, ReadOptions
 from tsas_cli.support.errors import InputError
 
 _TEXT = (".csv", ".tsv", ".txt", ".dat", ".asc")

@@ -16,8 +16,7 @@ from tsas_cli.recordings.guess.opening import Opened, open_file
 from tsas_cli.recordings.guess.proposed import Proposed
 from tsas_cli.recordings.ingest_map import QUESTION
 from tsas_cli.recordings.readers import names
-from tsas_cli.recordings.readers.options import ReadOptions
-from tsas_cli.recordings.readers.table import ColumnSource
+from tsas_cli.recordings.readers.table import ColumnSource, ReadOptions
 from tsas_cli.support.errors import InputError
 
 _SPRING = 0.95  # least correlation of tension and displacement at the load of a spring

@@ -1,6 +1,8 @@
-"""A proposed map as commented TOML."""
+"""A proposed map as commented TOML, as JSON and as printed tables."""
 
-from collections.abc import Iterable
+import re
+from collections.abc import Iterable, Iterator
+from pathlib import Path
 from textwrap import wrap
 from typing import Any
 
@@ -8,11 +10,11 @@ import tomlkit
 from tomlkit.items import Table
 
 from tsas_cli.recordings.columns import BY_NAME, COLUMNS, INPUTS, OUTPUTS
-from tsas_cli.recordings.guess.file_name import conditions_in
 from tsas_cli.recordings.guess.proposal import MapProposal
 from tsas_cli.recordings.guess.proposed import Proposed
 from tsas_cli.recordings.ingest_map import QUESTION
 from tsas_cli.recordings.manifest import RigSheet
+from tsas_cli.support import __version__
 from tsas_cli.support.errors import printable
 
 _WIDTH = 96
@@ -163,3 +165,62 @@ def _wrapped(text: str, indent: str = "") -> list[str]:
         break_long_words=False,
         break_on_hyphens=False,
     )
+
+
+# Group, words before the number, and likely unit.
+_BEFORE = {
+    "total_bend_rad": ("bend", r"bend|bending|theta|wrap|biegung|winkel|angle", "deg"),
+    "sheath_length_mm": ("length", r"length|len|laenge|sheath|l", "mm"),
+    "preload_N": ("preload", r"preload|pretension|vorspannung|vorlast|f0", "N"),
+}
+_NUMBER = r"\d+(?:\.\d+)?"
+
+
+def conditions_in(path: Path) -> tuple[str, dict[str, tuple[str, str]]]:
+    """Return a pattern for a file name, and group and likely unit of each condition in it.
+
+    Both are empty without a word of a condition before a number.
+    """
+    found: list[tuple[int, str, str]] = []
+    groups: dict[str, tuple[str, str]] = {}
+    for condition, (group, words, unit) in _BEFORE.items():
+        match = re.search(rf"(?i)(?<![a-z])({words})([_=-]?){_NUMBER}", path.stem)
+        if match:
+            text = f"{re.escape(match[1] + match[2])}(?P<{group}>{_NUMBER})"
+            found.append((match.start(), text, condition))
+            groups[condition] = (group, unit)
+    return ".*?".join(text for _, text, _ in sorted(found)), groups
+
+
+def content(proposal: MapProposal) -> dict[str, object]:
+    """Return the proposal with the text of its map (docs/ingest.md, format 1)."""
+    return {
+        "format": 1,
+        "stage": "guess",
+        "version": __version__,
+        "looked_at": str(proposal.looked_at.path),
+        "unlike": {str(path): reason for path, reason in proposal.different.items()},
+        "columns": {
+            channel.name: {
+                "entry": channel.entry,
+                "sure": channel.certainty,
+                "why": channel.why,
+                "alternatives": channel.alternatives,
+            }
+            for channel in proposal.channels
+        },
+        "not_taken": proposal.not_taken,
+        "questions": proposal.questions,
+        "map": map_text(proposal),
+    }
+
+
+def tables(proposal: MapProposal, out: object) -> Iterator[tuple[str, tuple[str, ...], list[Any]]]:
+    """Yield the tables of the channels with their sources, and of the open questions."""
+    rows = [
+        (channel.name, str(channel.entry.get("source", "")), channel.certainty)
+        for channel in proposal.channels
+    ]
+    yield f"map {out}", ("channel", "source", "certainty"), rows
+    if proposal.questions:
+        yield "open questions", ("key", "question"), list(proposal.questions.items())

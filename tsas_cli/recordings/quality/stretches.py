@@ -29,7 +29,7 @@ from tsas_cli.recordings.quality.checks import (
 )
 from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
 from tsas_cli.recordings.quality.samples import span_of, step_of
-from tsas_cli.recordings.quality.trial import Overall, RunSignals
+from tsas_cli.recordings.quality.trial import RunSignals, Size
 from tsas_cli.recordings.recording import Floats, Recording
 from tsas_cli.recordings.run_files import RunColumns
 
@@ -120,7 +120,7 @@ def _without_numbers(remark: Remark) -> str:
     return f"{remark.column} {re.sub(_NUMBER, '', remark.sentence)}"
 
 
-def _overview(run: RunColumns) -> tuple[Overall, dict[str, Floats]]:
+def _overview(run: RunColumns) -> tuple[dict[str, Size], dict[str, Floats]]:
     """Return the properties of the whole run, and its columns decimated to the rows of a piece."""
     names = known_columns(run)
     every = -(-run.rows // reading.MOST_ROWS)
@@ -139,13 +139,12 @@ def _overview(run: RunColumns) -> tuple[Overall, dict[str, Floats]]:
     seen = {
         name: np.concatenate(parts) for name, parts in valid.items() if name != TIME and ends[name]
     }
-    overall = Overall(
-        {name: _median(noise[name]) for name in seen},
-        {name: step_of(values) for name, values in seen.items()},
-        {name: span_of(values) for name, values in seen.items()},
-        {name: min(ends[name]) for name in seen},
-        {name: max(ends[name]) for name in seen},
-    )
+    overall = {
+        name: Size(
+            _median(noise[name]), step_of(each), span_of(each), min(ends[name]), max(ends[name])
+        )
+        for name, each in seen.items()
+    }
     return overall, {name: np.concatenate(parts) for name, parts in decimated.items()}
 
 

@@ -1,5 +1,6 @@
 """One run for the checks: its channels, their noise and span, and the strokes of the drive."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -36,27 +37,36 @@ class Stroke:
 
 
 @dataclass(frozen=True)
-class Overall:
-    """Properties of each channel over a whole run, by name."""
+class Size:
+    """Noise (standard deviation), quantisation step, span and ends of one channel, in its unit.
 
-    noise: dict[str, float]
-    step: dict[str, float]
-    span: dict[str, float]
-    lowest: dict[str, float]
-    highest: dict[str, float]
+    The step is 0 without quantisation; the span leaves out the outermost thousandth at either end.
+    """
+
+    noise: float
+    step: float
+    span: float
+    lowest: float
+    highest: float
+
+
+def size_of(values: Floats) -> Size:
+    """Return the size of a channel, shape (n,)."""
+    ends = float(np.nanmin(values)), float(np.nanmax(values))
+    return Size(noise_sd(values), step_of(values), span_of(values), *ends)
 
 
 @dataclass(frozen=True)
 class RunSignals:
     """A recording, and the data sheet of the rig.
 
-    It may be a part of a long run from row `first_row` on; `overall` then holds the properties of
-    the whole run.
+    It may be a part of a long run from row `first_row` on; `overall` then holds the size of each
+    channel over the whole run.
     """
 
     recording: Recording
     rig: RigSheet
-    overall: Overall | None = None
+    overall: Mapping[str, Size] | None = None
     first_row: int = 0
 
     @cached_property
@@ -79,14 +89,15 @@ class RunSignals:
     @cached_property
     def outlying(self) -> dict[str, Booleans]:
         """Which samples of each channel are outliers (`outlying`), shape (n,) each."""
+        sizes = self.overall or {name: size_of(values) for name, values in self._recorded.items()}
         return {
             name: outlying(
                 self.time_s,
                 values,
                 most=largest(name),
-                noise=noise_sd(values) if self.overall is None else self.overall.noise[name],
-                step=step_of(values) if self.overall is None else self.overall.step[name],
-                span=span_of(values) if self.overall is None else self.overall.span[name],
+                noise=sizes[name].noise,
+                step=sizes[name].step,
+                span=sizes[name].span,
             )
             for name, values in self._recorded.items()
         }
@@ -101,39 +112,9 @@ class RunSignals:
         return {name: self.channels[name] for name in MECHANICAL if name in self.channels}
 
     @cached_property
-    def noise(self) -> dict[str, float]:
-        """Sample-to-sample noise of each channel (standard deviation)."""
-        if self.overall is not None:
-            return self.overall.noise
-        return {name: noise_sd(values) for name, values in self.channels.items()}
-
-    @cached_property
-    def step(self) -> dict[str, float]:
-        """Quantisation step of each channel, 0 without quantisation."""
-        if self.overall is not None:
-            return self.overall.step
-        return {name: step_of(values) for name, values in self.channels.items()}
-
-    @cached_property
-    def span(self) -> dict[str, float]:
-        """Span of each channel, without the outermost thousandth at either end."""
-        if self.overall is not None:
-            return self.overall.span
-        return {name: span_of(values) for name, values in self.channels.items()}
-
-    @cached_property
-    def lowest(self) -> dict[str, float]:
-        """The lowest value of each channel."""
-        if self.overall is not None:
-            return self.overall.lowest
-        return {name: float(np.nanmin(values)) for name, values in self.channels.items()}
-
-    @cached_property
-    def highest(self) -> dict[str, float]:
-        """The highest value of each channel."""
-        if self.overall is not None:
-            return self.overall.highest
-        return {name: float(np.nanmax(values)) for name, values in self.channels.items()}
+    def sizes(self) -> Mapping[str, Size]:
+        """The size of each channel over the whole run, by name."""
+        return self.overall or {name: size_of(values) for name, values in self.channels.items()}
 
     @cached_property
     def batches(self) -> Batches | None:
@@ -143,11 +124,11 @@ class RunSignals:
 
     def visible(self, name: str) -> float:
         """Return the smallest change of a channel that neither noise nor quantisation explains."""
-        return 6.0 * self.noise[name] + 2.0 * self.step[name]
+        return 6.0 * self.sizes[name].noise + 2.0 * self.sizes[name].step
 
     def moves(self, name: str) -> bool:
         """Return whether a channel moves visibly."""
-        return self.span[name] > 2.0 * self.visible(name)
+        return self.sizes[name].span > 2.0 * self.visible(name)
 
     def references(self, name: str) -> tuple[str, ...]:
         """Return the other channels that show the motion: the drive, or its followers.
@@ -177,7 +158,7 @@ class RunSignals:
         if x is None or not self.moves("x_in_mm"):
             return ()
         valid = np.flatnonzero(np.isfinite(x))
-        threshold = max(_STROKE * self.span["x_in_mm"], self.visible("x_in_mm"))
+        threshold = max(_STROKE * self.sizes["x_in_mm"].span, self.visible("x_in_mm"))
         reversals = valid[turning_points(x[valid], threshold)]
         return tuple(
             Stroke(int(a), int(b), int(np.sign(x[b] - x[a])))

@@ -7,8 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from tsas_cli.recordings.guards.process import in_another_process
-from tsas_cli.recordings.readers.options import ReadOptions
-from tsas_cli.recordings.readers.table import ColumnSource, ColumnTable, whole
+from tsas_cli.recordings.readers.table import ColumnSource, ColumnTable, ReadOptions, whole
 from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError
 
@@ -60,26 +59,14 @@ def batches(
 
 
 def names(path: Path, options: ReadOptions) -> tuple[str, ...]:
-    """Return the names of a file's columns by number; empty text for a column without a name.
-
-    Raises
-    ------
-    InputError
-        As from `read`.
-    """
+    """Return the names of a file's columns by number; empty text for a column without a name."""
     found = tuple(_call("names", path, options))
     limits.columns(found, path)
     return found
 
 
 def tables(path: Path) -> list[str]:
-    """Return the valid values of `table` in a map: the nested tables of a JSON or MATLAB file.
-
-    Raises
-    ------
-    InputError
-        As from `read`.
-    """
+    """Return the valid values of `table` in a map: the nested tables of a JSON or MATLAB file."""
     return list(_call("tables", path)) if _module(path) in _WITH_TABLES else []
 
 

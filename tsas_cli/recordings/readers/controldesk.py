@@ -6,8 +6,14 @@ from typing import Any
 
 import numpy as np
 
-from tsas_cli.recordings.readers.options import ReadOptions
-from tsas_cli.recordings.readers.table import ColumnSource, ColumnTable, Floats, floats, resolve
+from tsas_cli.recordings.readers.table import (
+    ColumnSource,
+    ColumnTable,
+    Floats,
+    ReadOptions,
+    floats,
+    resolve,
+)
 from tsas_cli.recordings.readers.timebase import TIME, on_one_clock
 from tsas_cli.support.errors import InputError
 

@@ -10,11 +10,11 @@ from pyarrow import csv
 
 from tsas_cli.recordings.arrow_columns import floats_from
 from tsas_cli.recordings.readers.layout import Layout, comment_text, detect, fields, number
-from tsas_cli.recordings.readers.options import ReadOptions
 from tsas_cli.recordings.readers.table import (
     BATCH_ROWS,
     ColumnSource,
     ColumnTable,
+    ReadOptions,
     in_batches,
     not_a_number,
     resolve,

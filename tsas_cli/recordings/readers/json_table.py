@@ -4,8 +4,13 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from tsas_cli.recordings.readers.options import ReadOptions
-from tsas_cli.recordings.readers.table import ColumnSource, ColumnTable, floats, resolve
+from tsas_cli.recordings.readers.table import (
+    ColumnSource,
+    ColumnTable,
+    ReadOptions,
+    floats,
+    resolve,
+)
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import Raw, read_json
 

@@ -17,8 +17,14 @@ from tsas_cli.recordings.readers.controldesk import (
     find_capture,
     read_capture,
 )
-from tsas_cli.recordings.readers.options import ReadOptions
-from tsas_cli.recordings.readers.table import ColumnSource, ColumnTable, Floats, floats, resolve
+from tsas_cli.recordings.readers.table import (
+    ColumnSource,
+    ColumnTable,
+    Floats,
+    ReadOptions,
+    floats,
+    resolve,
+)
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import Raw
 from tsas_cli.support.memory import out_of_memory

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from tsas_cli.recordings.guards.expansion import Expanded
-from tsas_cli.recordings.readers.optional import optional
+from tsas_cli.recordings.readers.table import optional
 from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import Raw

@@ -8,19 +8,17 @@ import numpy as np
 import numpy.typing as npt
 import pyarrow as pa
 
-from tsas_cli.recordings.guards.damaged import damaged, is_encrypted
-from tsas_cli.recordings.parquet_files import check_size, open_parquet
-from tsas_cli.recordings.readers.options import ReadOptions
+from tsas_cli.recordings.parquet_files import check_size, open_parquet, reading
 from tsas_cli.recordings.readers.table import (
     BATCH_ROWS,
     ColumnSource,
     ColumnTable,
     Floats,
+    ReadOptions,
     floats,
     in_batches,
     resolve,
 )
-from tsas_cli.support.memory import out_of_memory
 
 
 def batches(
@@ -36,58 +34,40 @@ def batches(
         The file is damaged, or a column is missing or not numeric.
     """
     del options
-    try:
-        with open_parquet(path) as file:
-            schema = file.schema_arrow
-            at = resolve(wanted, schema.names, path)
-            fields = {source: schema.field(i) for source, i in at.items()}
-            units = {
-                s: f.metadata[b"unit"].decode(errors="replace")
-                for s, f in fields.items()
-                if b"unit" in (f.metadata or {})
+    with reading(path), open_parquet(path) as file:
+        schema = file.schema_arrow
+        at = resolve(wanted, schema.names, path)
+        fields = {source: schema.field(i) for source, i in at.items()}
+        units = {
+            s: f.metadata[b"unit"].decode(errors="replace")
+            for s, f in fields.items()
+            if b"unit" in (f.metadata or {})
+        }
+        names = [field.name for field in fields.values()]
+        check_size(file, path, names, whole=False)
+        # A duplicate name is read twice: `order` is the number among columns of that name.
+        order = {s: schema.get_all_field_indices(schema.names[i]).index(i) for s, i in at.items()}
+        zeros: dict[ColumnSource, Any] = {}
+        first = 1
+        for table in in_batches(file.iter_batches(BATCH_ROWS, columns=names)):
+            values = {
+                source: _values(table, field.name, order[source])
+                for source, field in fields.items()
             }
-            names = [field.name for field in fields.values()]
-            check_size(file, path, names, whole=False)
-            # A duplicate name is read twice: `order` is the number among columns of that name.
-            order = {
-                s: schema.get_all_field_indices(schema.names[i]).index(i) for s, i in at.items()
-            }
-            zeros: dict[ColumnSource, Any] = {}
-            first = 1
-            for table in in_batches(file.iter_batches(BATCH_ROWS, columns=names)):
-                values = {
-                    source: _values(table, field.name, order[source])
-                    for source, field in fields.items()
-                }
-                typed = frozenset(s for s, found in values.items() if found.dtype.kind in "mM")
-                values |= {source: _seconds(values[source], zeros, source) for source in typed}
-                columns = {s: floats(found, s, path, first=first) for s, found in values.items()}
-                yield ColumnTable(columns, units | dict.fromkeys(typed, "s"), (), first, typed)
-                first += table.num_rows
-            if first == 1:
-                yield ColumnTable({source: np.empty(0) for source in fields}, units)
-    except MemoryError as error:
-        raise out_of_memory(path) from error
-    except (pa.ArrowException, UnicodeDecodeError) as error:  # the latter is of names
-        raise damaged(path, "Parquet", error) from error
-    except OSError as error:
-        if is_encrypted(error):
-            raise damaged(path, "Parquet", error) from error
-        raise
+            typed = frozenset(s for s, found in values.items() if found.dtype.kind in "mM")
+            values |= {source: _seconds(values[source], zeros, source) for source in typed}
+            columns = {s: floats(found, s, path, first=first) for s, found in values.items()}
+            yield ColumnTable(columns, units | dict.fromkeys(typed, "s"), (), first, typed)
+            first += table.num_rows
+        if first == 1:
+            yield ColumnTable({source: np.empty(0) for source in fields}, units)
 
 
 def names(path: Path, options: ReadOptions) -> Sequence[str]:
     """Return the names of the columns."""
     del options
-    try:
-        with open_parquet(path) as file:
-            return list(file.schema_arrow.names)
-    except (pa.ArrowException, UnicodeDecodeError) as error:  # the latter is of names
-        raise damaged(path, "Parquet", error) from error
-    except OSError as error:
-        if is_encrypted(error):
-            raise damaged(path, "Parquet", error) from error
-        raise
+    with reading(path), open_parquet(path) as file:
+        return list(file.schema_arrow.names)
 
 
 def _values(table: pa.Table, name: str, order: int) -> npt.NDArray[Any]:

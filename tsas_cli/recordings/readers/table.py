@@ -1,13 +1,16 @@
-"""The table that every reader returns, and the columns of a file by their source in a map."""
+"""What every reader takes and returns: options, a table, its columns by their source in a map."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from importlib import import_module
 from pathlib import Path
-from typing import Any
+from types import ModuleType
+from typing import Annotated, Any, Literal
 
 import numpy as np
 import numpy.typing as npt
 import pyarrow as pa
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 
 from tsas_cli.support import limits
 from tsas_cli.support.errors import InputError, nearest
@@ -16,6 +19,28 @@ Floats = npt.NDArray[np.float64]
 ColumnSource = str | int  # a column's name, or its number counted from 1
 
 BATCH_ROWS = 1 << 20  # of a file that is read in parts, and of a row group of its run
+
+
+def _as_list(value: object) -> object:
+    return [value] if isinstance(value, str) else value
+
+
+class ReadOptions(BaseModel):
+    """The table `[read]` of a map; every key is optional, and detected by default."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    files: str = "*"  # of a folder, the files whose names match
+    extra: tuple[ColumnSource, ...] = ()  # source columns that are kept unchanged
+    drop_repeated_rows: bool = False
+    resample: bool = False  # interpolate channels with different times onto the fastest
+    table: str | None = None  # the JSON key or the MATLAB variable that holds the table
+    encoding: str = "utf-8-sig"
+    skip_lines: int = Field(default=0, ge=0)
+    comment: Annotated[tuple[str, ...], BeforeValidator(_as_list)] = ("%", "#")
+    delimiter: str | None = Field(default=None, min_length=1, max_length=1)
+    decimal: Literal[".", ","] | None = None
+    units_row: bool | None = None
 
 
 @dataclass(frozen=True)
@@ -166,3 +191,19 @@ def _listed(names: Sequence[str]) -> str:
     shown = [name[:80] or f"(number {i + 1})" for i, name in enumerate(names)]
     more = f" and {len(shown) - 40} more" if len(shown) > 40 else ""
     return f"there are: {', '.join(shown[:40])}{more}"
+
+
+def optional(module: str, *, extra: str) -> ModuleType:
+    """Import a package that comes with an extra of tsas.
+
+    Raises
+    ------
+    InputError
+        It is not installed.
+    """
+    try:
+        return import_module(module)
+    except ImportError as error:
+        raise InputError(
+            f"this file format needs the package {module}", remedy=f"install tsas[{extra}]"
+        ) from error

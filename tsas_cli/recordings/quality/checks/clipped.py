@@ -25,7 +25,7 @@ def find(trial: RunSignals) -> Iterator[Remark | CannotTell]:
         if name == trial.prescribed:
             yield CannotTell(f"{name} is prescribed by the load, and may stay at its extremes")
             continue
-        if trial.lowest[name] == trial.highest[name]:
+        if trial.sizes[name].lowest == trial.sizes[name].highest:
             continue
         for end, sign in (("highest", 1), ("lowest", -1)):
             yield from _clipping(trial, name, end, sign)
@@ -33,7 +33,7 @@ def find(trial: RunSignals) -> Iterator[Remark | CannotTell]:
 
 def _clipping(trial: RunSignals, name: str, end: str, sign: int) -> Iterator[Remark]:
     values = trial.channels[name]
-    extreme = trial.highest[name] if sign > 0 else trial.lowest[name]
+    extreme = trial.sizes[name].highest if sign > 0 else trial.sizes[name].lowest
     flat = [
         rows
         for rows in plateaus(values, _FEWEST_ROWS)
@@ -55,13 +55,13 @@ def _clipping(trial: RunSignals, name: str, end: str, sign: int) -> Iterator[Rem
 
 def _motion_continues(trial: RunSignals, name: str, rows: slice, sign: int) -> bool:
     """Return whether the motion continues beyond its position at the start of the plateau."""
-    coarse = 4.0 * trial.step[name] / max(trial.span[name], 1e-300)
+    coarse = 4.0 * trial.sizes[name].step / max(trial.sizes[name].span, 1e-300)
     for other in trial.references(name):
         moved = sign * (trial.channels[other][rows] - trial.channels[other][rows.start])
         further = float(np.nanmax(moved, initial=0.0))
-        needed = max(_TRAVEL, coarse) * trial.span[other] + trial.visible(other)
+        needed = max(_TRAVEL, coarse) * trial.sizes[other].span + trial.visible(other)
         back = float(np.nanmin(moved, initial=0.0))
-        if further > needed and -back < 0.6 * trial.span[other]:
+        if further > needed and -back < 0.6 * trial.sizes[other].span:
             return True
     return False
 

@@ -60,7 +60,7 @@ def _smallest(trial: RunSignals) -> float:
     interval = float(np.median(np.diff(trial.time_s)))
     force = trial.channels["f_out_N"]
     rate = np.nanstd(force) * math.pi * len(trial.strokes) / np.ptp(trial.time_s)
-    return max(0.5 * interval, 0.25 * trial.noise["f_out_N"] / float(rate))
+    return max(0.5 * interval, 0.25 * trial.sizes["f_out_N"].noise / float(rate))
 
 
 def _delay(trial: RunSignals, rows: slice) -> float:

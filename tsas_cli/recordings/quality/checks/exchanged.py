@@ -27,7 +27,7 @@ def find(trial: RunSignals) -> Iterator[Remark | CannotTell]:
         return
     excess = _excess_while_pulling(trial)
     visible = 0.5 * (trial.visible("f_in_N") + trial.visible("f_out_N"))
-    if excess < -max(_CLEAR * trial.span["f_in_N"], visible):
+    if excess < -max(_CLEAR * trial.sizes["f_in_N"].span, visible):
         yield Remark(
             "error",
             f"at the same f_out_N, f_in_N is {-excess:.3g} N lower in contraction than in "

@@ -51,7 +51,7 @@ def _missing_rows(trial: RunSignals) -> Iterator[Remark]:
 
 
 def _empty_cells(trial: RunSignals, name: str, empty: Booleans) -> Remark:
-    if empty.all() and (trial.overall is None or name not in trial.overall.span):
+    if empty.all() and (trial.overall is None or name not in trial.overall):
         return Remark("error", f"{name} holds no value at all", "leave the column out", name)
     edges = np.flatnonzero(np.diff(np.concatenate(([False], empty, [False])).astype(np.int8)))
     starts, lengths = edges[::2], edges[1::2] - edges[::2]

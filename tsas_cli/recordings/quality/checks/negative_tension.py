@@ -20,7 +20,7 @@ def find(trial: RunSignals) -> Iterator[Remark | CannotTell]:
         if not name.startswith("f_"):
             continue
         values = trial.channels[name]
-        limit = max(trial.visible(name), _SPAN * trial.span[name])
+        limit = max(trial.visible(name), _SPAN * trial.sizes[name].span)
         low, high = np.nanpercentile(values, (0.5, 98.0))
         if low < -limit and high >= -trial.visible(name):  # else the sign check reports it
             share = 100.0 * float(np.mean(values < 0.0))

@@ -51,7 +51,7 @@ def _moving(trial: RunSignals, name: str, stroke: Stroke) -> float:
     if not valid.any():
         return 0.0
     values, x = values[valid], x[valid]
-    limit = max(trial.visible(name), 0.02 * trial.span[name])
+    limit = max(trial.visible(name), 0.02 * trial.sizes[name].span)
     away = np.abs(values - values[0]) > limit
     if not away[-1]:
         return 0.0

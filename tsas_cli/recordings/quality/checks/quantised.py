@@ -15,7 +15,7 @@ _NOTE, _WARNING = 1 / 500, 1 / 50
 def find(trial: RunSignals) -> Iterator[Remark | CannotTell]:
     """Yield the channels whose step exceeds their noise and a share of their span."""
     for name in trial.mechanical:
-        step, noise, span = trial.step[name], trial.noise[name], trial.span[name]
+        step, noise, span = trial.sizes[name].step, trial.sizes[name].noise, trial.sizes[name].span
         if step <= max(2.0 * noise, _NOTE * span) or span == 0.0:
             continue
         coarse = step > _WARNING * span and name != trial.prescribed

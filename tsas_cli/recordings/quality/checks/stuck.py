@@ -26,7 +26,7 @@ def find(trial: RunSignals) -> Iterator[Remark | CannotTell]:
         if name == trial.prescribed:
             yield CannotTell(f"{name} is prescribed by the load, and may rest")
             continue
-        if trial.lowest[name] == trial.highest[name]:
+        if trial.sizes[name].lowest == trial.sizes[name].highest:
             yield _remark("warning", trial, name, slice(0, values.size))
             continue
         between = rows_between_changes(values)
@@ -52,7 +52,7 @@ def _remark(severity: Severity, trial: RunSignals, name: str, rows: slice) -> Re
 
 def _hangs(trial: RunSignals, name: str, rows: slice, *, noisy: bool) -> bool:
     values = trial.channels[name]
-    interior = trial.lowest[name] < values[rows.start] < trial.highest[name]
+    interior = trial.sizes[name].lowest < values[rows.start] < trial.sizes[name].highest
     for other in trial.references(name):
         motion = trial.channels[other][rows]
         motion = motion[np.isfinite(motion)]
@@ -60,7 +60,7 @@ def _hangs(trial: RunSignals, name: str, rows: slice, *, noisy: bool) -> bool:
             continue
         if interior and noisy and np.ptp(motion) > 2.0 * trial.visible(other):
             return True
-        if _crosses_and_returns(motion, trial.span[other]):
+        if _crosses_and_returns(motion, trial.sizes[other].span):
             return True
     return False
 
@@ -70,7 +70,7 @@ def _noisy(trial: RunSignals, name: str, long: list[slice]) -> bool:
     values = trial.channels[name].copy()
     for rows in long:
         values[rows] = np.nan
-    least = max(trial.step[name], _LEAST_NOISE * trial.span[name])
+    least = max(trial.sizes[name].step, _LEAST_NOISE * trial.sizes[name].span)
     return alternates(values) and noise_sd(values) > least
 
 

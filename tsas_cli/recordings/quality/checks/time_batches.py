@@ -18,7 +18,8 @@ def find(trial: RunSignals) -> Iterator[Remark | CannotTell]:
     if batches is None:
         return
     costs = {
-        name: batches.cost(values, trial.noise[name]) for name, values in trial.mechanical.items()
+        name: batches.cost(values, trial.sizes[name].noise)
+        for name, values in trial.mechanical.items()
     }
     worst = max(costs, key=lambda name: costs[name], default=None)
     cost = "" if worst is None else f"; the wrong times change {worst} by {costs[worst]:.2g}"

@@ -7,11 +7,11 @@ them, as a gap has.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from tsas_cli.recordings.copied import NONE_COPIED, CopiedRows
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import MANIFEST_FILE
 from tsas_cli.recordings.quality.copies.copy import WHOLE_SHARE, Copy
 from tsas_cli.recordings.quality.copies.search import find_copies
+from tsas_cli.recordings.recording import NONE_COPIED, CopiedRows
 from tsas_cli.support.errors import InputError
 
 
