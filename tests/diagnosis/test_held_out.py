@@ -150,7 +150,7 @@ def test_the_step_of_one_unknown_by_hand():
     whole = -(9.0 + 35.0 + 42.0) / (34.0 + 25.0 + 36.0)
     of_others = [2.0 * a * 9.0 + a**2 * 34.0 for a in (whole, step)]
     cost = of_others[0] - of_others[1] + np.log(1.0 + (25.0 + 36.0) / 34.0)
-    expected = [(7.0 + factor * whole) ** 2 + cost / 2.0 for factor in (5.0, 6.0)]
+    expected = [(7.0 + J * whole) ** 2 + cost * J**2 / 61.0 for J in (5.0, 6.0)]
     assert squares[3:] == pytest.approx(expected)
 
 

@@ -103,7 +103,7 @@ def held_out_squares(trial: Hypothesis, folds: Folds) -> Floats:
 
     With the fit to all runs a held-out run has its residuals there, and the others fit worse than
     by themselves. That rise, and the determinant of the prediction's covariance, count as squares
-    of the held-out run, the same for each of its residuals.
+    of the held-out run's residuals, of each by the variance of its prediction.
     """
     everything = np.ones(folds.fold.size, bool)
     whole = _within(trial, _step(trial, everything)) - trial.solution.values
@@ -112,8 +112,9 @@ def held_out_squares(trial: Hypothesis, folds: Folds) -> Floats:
         held_out = folds.fold == fold
         rest = _within(trial, _step(trial, ~held_out)) - trial.solution.values
         rise = _squares(trial, ~held_out, whole) - _squares(trial, ~held_out, rest)
-        determinant = np.linalg.slogdet(_prediction_covariance(trial, folds, fold))[1]
-        out[held_out] += (max(rise, 0.0) + determinant) / np.count_nonzero(held_out)
+        variance, determinant = _prediction_variance(trial, folds, fold)
+        share = variance / max(float(variance.sum()), np.finfo(float).tiny)
+        out[held_out] += (max(rise, 0.0) + determinant) * share
     return np.bincount(folds.block, out, minlength=folds.blocks).astype(np.float64)
 
 
@@ -150,16 +151,19 @@ def _squares(trial: Hypothesis, kept: Bits, step: Floats) -> float:
     return float(moved @ moved) + float(_weak(trial) @ step**2)
 
 
-def _prediction_covariance(trial: Hypothesis, folds: Folds, fold: int) -> Floats:
-    """Return the covariance of a fold's prediction, in units of noise, in the space of parameters.
+def _prediction_variance(trial: Hypothesis, folds: Folds, fold: int) -> tuple[Floats, float]:
+    """Return the variance of a fold's prediction by the others, over that of the noise.
 
-    Shape (q, q) for the q shared parameters that are not at a bound; its determinant and trace are
-    those of the residuals' covariance, but for the identity of their noise.
+    Of each residual, shape (k,), and the logarithm of the determinant of the whole covariance,
+    noise included.
     """
     free = ~(own_of_fold(trial, folds, fold) | trial.solution.at_bound)
     J, held_out = trial.solution.jacobian[:, free], folds.fold == fold
     gram = J[~held_out].T @ J[~held_out] + np.diag(_weak(trial)[free])
-    return np.eye(len(gram)) + np.linalg.solve(gram, J[held_out].T @ J[held_out])
+    predicted = np.linalg.solve(gram, J[held_out].T)
+    whole = np.eye(len(gram)) + predicted @ J[held_out]  # of the same determinant
+    variance = np.einsum("ij,ji->i", J[held_out], predicted)
+    return variance, float(np.linalg.slogdet(whole)[1])
 
 
 def predicted_folds(trial: Hypothesis, folds: Folds) -> Folds:
@@ -168,8 +172,6 @@ def predicted_folds(trial: Hypothesis, folds: Folds) -> Folds:
     A run is, where its prediction by the others is more uncertain than its noise.
     """
     for fold in np.unique(folds.fold):
-        covariance = _prediction_covariance(trial, folds, fold)
-        uncertain = float(np.trace(covariance)) - len(covariance)
-        if uncertain > np.count_nonzero(folds.fold == fold):
+        if float(np.mean(_prediction_variance(trial, folds, fold)[0])) > 1.0:
             return in_stretches(folds)
     return folds
