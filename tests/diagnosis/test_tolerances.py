@@ -5,7 +5,7 @@ import pytest
 
 from tsas_cli.diagnosis.constancy import worst_split
 from tsas_cli.diagnosis.held_out import folds_of
-from tsas_cli.diagnosis.tolerances import is_scatter, without_scatter
+from tsas_cli.diagnosis.tolerances import is_scatter, within_scatter, without_scatter
 from tsas_cli.identification.extension import HypothesisFit
 from tsas_cli.identification.fit import Solution, Unknown
 
@@ -64,3 +64,13 @@ def test_a_drift_from_run_to_run_that_follows_no_trend_is_scatter():
     assert split([-0.03, -0.01, 0.01, 0.03]) is None
     found = split([-0.03, 0.04, -0.02, 0.05])
     assert (found.by, found.scatter) == ("run", True)
+    large = split([-0.30, 0.10, -0.25, 0.45])
+    assert (large.by, large.scatter) == ("run", False)
+
+
+def test_most_of_what_is_within_scatter_is_one_friction_for_each_run():
+    trial, per_run = fit(np.zeros(RUN.size)), np.array([-0.03, 0.01, 0.03, -0.01])[RUN]
+    assert within_scatter(trial, FRICTION * per_run, RUN)
+    assert not within_scatter(trial, FRICTION * 3.0 * per_run, RUN)
+    within_runs = np.sin(np.arange(RUN.size))
+    assert not within_scatter(trial, FRICTION * (per_run + 0.1 * within_runs), RUN)

@@ -16,7 +16,7 @@ import numpy.typing as npt
 from tsas_cli.diagnosis.evidence import Reduction, gain
 from tsas_cli.diagnosis.held_out import Folds, held_out_squares, in_stretches
 from tsas_cli.diagnosis.signals import DIRECTION, RUN
-from tsas_cli.diagnosis.tolerances import is_scatter, with_friction_of_runs
+from tsas_cli.diagnosis.tolerances import is_scatter, with_friction_of_runs, within_scatter
 from tsas_cli.identification.extension import HypothesisFit
 from tsas_cli.identification.quantities import QUANTITIES
 
@@ -34,7 +34,7 @@ class Split:
 
     `by` is the signal that the data are split by, `gain` the reduction of the held-out squares by
     the split, `values` the parameter's value in each part, by the part's name. `scatter` is whether
-    the effect is no more than a friction of its own for each run.
+    the effect is no more than a plausible friction of its own for each run.
     """
 
     parameter: str
@@ -71,9 +71,11 @@ def worst_split(
     ]
     if not columns:
         return None
-    scatter = any(is_scatter(trial, trial.solution.jacobian[:, j], folds.run) for j in columns)
+    J = trial.solution.jacobian
+    scatter = any(is_scatter(trial, J[:, j], folds.run) for j in columns)
     if not scatter:
         trial = with_friction_of_runs(trial, folds.run)
+    small = scatter and within_scatter(trial, J[:, columns] @ _sizes(trial, columns), folds.run)
     stretches = in_stretches(folds)
     before = cache(lambda by_run: held_out_squares(trial, stretches if by_run else folds))
     worst: Split | None = None
@@ -84,8 +86,17 @@ def worst_split(
         if found.beyond(LEAST_GAIN) and (worst is None or found.part > worst.gain.part):
             name, values = _values(trial, extended, columns, shape)
             pairs = tuple(zip(labels, values, strict=True))
-            worst = Split(name, by, found, pairs, scatter and by == RUN)
+            worst = Split(name, by, found, pairs, small and by == RUN)
     return worst
+
+
+def _sizes(trial: HypothesisFit, columns: list[int]) -> Floats:
+    """Return by how much some parameters of an effect differ from neutral, scaled."""
+    found = []
+    for j in columns:
+        quantity = QUANTITIES[trial.unknowns[j].name]
+        found.append(trial.solution.values[j] - quantity.scaled(quantity.default))
+    return np.array(found)
 
 
 def _parts(

@@ -9,6 +9,7 @@ Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
 
 FRICTION = "friction_coefficient"
+PLAUSIBLE = 2.0  # standard deviations of it
 SCATTER = 0.02  # standard deviation of the friction from run to run, relative
 
 
@@ -34,6 +35,15 @@ def with_friction_of_runs(trial: HypothesisFit, run: Indices) -> HypothesisFit:
     columns = friction_of_runs(trial, run)
     names = [(f"{FRICTION} {k}", k, 1.0) for k in range(columns.shape[1])]
     return trial.with_columns(names, columns)
+
+
+def within_scatter(trial: HypothesisFit, change: Floats, run: Indices) -> bool:
+    """Return whether most of a change of the residuals is a plausible scatter of the friction."""
+    columns = friction_of_runs(trial, run)
+    frictions = np.linalg.lstsq(columns, change, rcond=None)[0]
+    left = change - columns @ frictions
+    plausible = np.all(np.abs(frictions - frictions.mean()) <= PLAUSIBLE)
+    return bool(plausible) and float(left @ left) < 0.5 * float(change @ change)
 
 
 def is_scatter(trial: HypothesisFit, column: Floats, run: Indices) -> bool:
