@@ -7,12 +7,12 @@ from functools import partial
 from tsas_cli.comparing.tracked import TRACKING_FILE, ControllerPair, Tracks
 from tsas_cli.comparing.tracked_stage import findings, notes, tables
 from tsas_cli.recordings.written import columns_of, result_file
-from tsas_cli.reporting.comparing.two_residuals import Residuals, draw_two_residuals, height_in
 from tsas_cli.reporting.content import Picture, Section, Table
 from tsas_cli.reporting.drawing import picture
 from tsas_cli.reporting.numbers import with_spread
 from tsas_cli.reporting.rendered import rendered
 from tsas_cli.reporting.tracking.runs import TRUE, WANTED
+from tsas_cli.reporting.two_residuals import Residuals, draw_two_residuals, height_in
 
 
 def tracked_page(it: Tracks, advance: Callable[[], None] = lambda: None) -> str:
@@ -63,10 +63,11 @@ def _pictures(it: Tracks) -> Iterator[Picture]:
         )
         if a["time_s"].shape != b["time_s"].shape or (a["time_s"] != b["time_s"]).any():
             continue
-        panel = Residuals("error [N]", a[WANTED] - a[TRUE], b[WANTED] - b[TRUE], None)
+        errors = (side[WANTED] - side[TRUE] for side in (a, b))
+        panel = Residuals("error [N]", a["time_s"], *errors, noise=None)
         words = _words(both)
         yield picture(
-            partial(draw_two_residuals, time_s=a["time_s"], panels=[panel]),
+            partial(draw_two_residuals, panels=[panel]),
             key=f"tracked-{number}",
             alt=f"Wanted less true force at the load over time, of A and of B. {words}",
             caption=words,

@@ -11,6 +11,7 @@ from tsas_cli.records.comparison import ParameterPair
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Picture
 from tsas_cli.reporting.drawing import picture
+from tsas_cli.reporting.figures import legend
 from tsas_cli.reporting.numbers import plain
 
 _MOST = 8  # strips of a picture
@@ -92,5 +93,4 @@ def draw_values(figure: Any, strips: Sequence[Strip]) -> None:
         star = " *" if strip.differs else ""
         axes.set_ylabel(strip.label + star, rotation=0, ha="right", va="center")
         axes.spines["left"].set_visible(False)
-    handles, labels = rows[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside upper left", ncols=2, handlelength=1.6)
+    legend(figure, rows[0])

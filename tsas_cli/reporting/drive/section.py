@@ -9,9 +9,10 @@ from tsas_cli.drive.tables import tables
 from tsas_cli.records.drive import DriveFile, FrequencyResponses, Pole
 from tsas_cli.reporting.content import Picture, Section, Table
 from tsas_cli.reporting.drawing import picture
-from tsas_cli.reporting.drive.figures import draw_bode, draw_poles, draw_residuals
+from tsas_cli.reporting.drive.figures import draw_bode, draw_poles
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import plain, spanned
+from tsas_cli.reporting.two_residuals import Residuals, draw_two_residuals, height_in
 
 
 def section(inputs: Inputs) -> Section | None:
@@ -96,7 +97,7 @@ def _pole_in_words(pole: Pole) -> str:
 
 
 def _residuals(inputs: Inputs, drive: DriveFile) -> tuple[Picture, ...]:
-    runs, said = {}, []
+    panels, said = [], []
     for recording in inputs.recordings:
         run, x_in = drive.runs.get(recording.run.id), recording.get("x_in_mm")
         if run is None or x_in is None or run.noise is None:
@@ -105,18 +106,19 @@ def _residuals(inputs: Inputs, drive: DriveFile) -> tuple[Picture, ...]:
             x_in - inputs.series(recording.run.id, x_in.size, column, DriveFile)
             for column in ("x_in_nominal_mm", "x_in_mm")
         )
-        runs[recording.run.id] = (recording.time_s, nominal, fitted, run.noise)
+        label = f"{recording.run.id} [mm]"
+        panels.append(Residuals(label, recording.time_s, nominal, fitted, run.noise))
         said.append(
             f"run {recording.run.id}: nominal {spanned(nominal)}, identified {spanned(fitted)}, "
             f"noise {plain(run.noise, 3)}"
         )
-    if not runs:
+    if not panels:
         return ()
     shown = picture(
-        partial(draw_residuals, runs=runs),
+        partial(draw_two_residuals, panels=panels, names=("nominal", "identified")),
         key="drive-residuals",
         alt=f"Measured less simulated x_in over time, in millimetre: {'; '.join(said)}.",
         caption="Measured less simulated x_in; noise alone leaves 95 % between the dashed lines.",
-        height_in=0.6 + 1.5 * len(runs),
+        height_in=height_in(len(panels)),
     )
     return (shown,)
