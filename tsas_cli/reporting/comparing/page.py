@@ -1,7 +1,7 @@
 """The page of `tsas compare`: what differs, how sure that is, and where it shows."""
 
 import shlex
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 
 from tsas_cli.comparing.compare import Comparison
 from tsas_cli.comparing.sentences import findings, notes
@@ -76,6 +76,11 @@ def _repeat(it: Comparison) -> Section:
     )
     if it.on is not None:
         files += tuple(("", file, digest) for file, digest in it.on.hashes().items())
+    return repeat_section(command, files)
+
+
+def repeat_section(command: Sequence[str], files: tuple[tuple[str, str, str], ...]) -> Section:
+    """Return the command that makes the page, and the checksums of what both sides read."""
     return Section(
         "repeat",
         "How to repeat it",

@@ -1,12 +1,12 @@
 """The page of two folders of tracked runs: what was asked for, the scores, the errors over time."""
 
-import shlex
 from collections.abc import Callable, Iterator
 from functools import partial
 
 from tsas_cli.comparing.tracked import TRACKING_FILE, ControllerPair, Tracks
 from tsas_cli.comparing.tracked_stage import findings, notes, tables
 from tsas_cli.recordings.written import columns_of, result_file
+from tsas_cli.reporting.comparing.page import repeat_section
 from tsas_cli.reporting.content import Picture, Section, Table
 from tsas_cli.reporting.drawing import picture
 from tsas_cli.reporting.numbers import with_spread
@@ -43,15 +43,7 @@ def _sections(it: Tracks) -> Iterator[Section]:
         what = "Wanted less true force at the load, with the first seed of noise."
         yield Section("tracking-error", "Tracking error", (what,), pictures=pictures)
     files = tuple((n, TRACKING_FILE, digest) for n, digest in it.checksums.items())
-    yield Section(
-        "repeat",
-        "How to repeat it",
-        ("This command makes the same page from the same files.",),
-        tables=(Table("Files read", ("side", "file", "SHA-256"), files),),
-        commands=(
-            shlex.join(["tsas", "compare", *map(str, it.paths.values()), "--out", "compared"]),
-        ),
-    )
+    yield repeat_section(["tsas", "compare", *map(str, it.paths.values())], files)
 
 
 def _pictures(it: Tracks) -> Iterator[Picture]:
@@ -63,8 +55,8 @@ def _pictures(it: Tracks) -> Iterator[Picture]:
         )
         if a["time_s"].shape != b["time_s"].shape or (a["time_s"] != b["time_s"]).any():
             continue
-        errors = (side[WANTED] - side[TRUE] for side in (a, b))
-        panel = Residuals("error [N]", a["time_s"], *errors, noise=None)
+        first, second = (side[WANTED] - side[TRUE] for side in (a, b))
+        panel = Residuals("error [N]", a["time_s"], first, second, noise=None)
         words = _words(both)
         yield picture(
             partial(draw_two_residuals, panels=[panel]),

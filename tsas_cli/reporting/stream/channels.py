@@ -4,7 +4,7 @@ A column of a file is read once, recorded, and forgotten.
 """
 
 from tsas_cli.reporting.colours import CONTROLLERS, dark
-from tsas_cli.reporting.stream.loops import Loop
+from tsas_cli.reporting.stream.loops import LoopPlane
 from tsas_cli.reporting.stream.recorder import Entity, Recorder
 from tsas_cli.reporting.stream.seen import MEASURED, RESIDUAL, WANTED, SeenRun
 from tsas_cli.reporting.tracking import runs as tracked
@@ -64,7 +64,7 @@ def record_channels(recorder: Recorder, run: SeenRun) -> None:
             name, colour = controller, _role_of(controller)
         entity, width = run.entity(channel.quantity, channel.key), _WIDTHS[channel.key]
         recorder.series(entity, run.times, measured, name, dark(colour), width=width)
-        loop = Loop.of(recorder, run, channel, measured) if channel in run.loops else None
+        loop = LoopPlane.of(recorder, run, channel, measured) if channel in run.loops else None
         for number, source in enumerate(channel.sources):
             values = run.predicted(channel.column, source)
             series = {run.entity(channel.column, source.key): values}

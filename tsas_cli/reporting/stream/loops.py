@@ -57,7 +57,7 @@ def axis_of(values: Floats, end: float) -> Axis:
 
 
 @dataclass(frozen=True)
-class Loop:
+class LoopPlane:
     """The plane of one loop of a run, and the samples of which it is drawn."""
 
     recorder: Recorder

@@ -21,7 +21,7 @@ def overview(inputs: Inputs) -> str:
     title = "Recordings" if manifest is None else manifest.name
     about = "" if manifest is None else manifest.description
     said = (f"- {plain_text(point)}" for point in _points(inputs))
-    lines = [f"# {plain_text(title)}", plain_text(about), *_answer(inputs), *said]
+    lines = [f"# {plain_text(title)}", plain_text(about), *_first_screen(inputs), *said]
     return "\n\n".join(filter(None, lines))
 
 
@@ -30,7 +30,7 @@ def plain_text(text: str) -> str:
     return _SPECIAL.sub(r"\\\1", printable(text))
 
 
-def _answer(inputs: Inputs) -> Iterator[str]:
+def _first_screen(inputs: Inputs) -> Iterator[str]:
     """Yield the first screen of the page."""
     first = glance(inputs)
     if first is None:
