@@ -79,16 +79,6 @@ def test_it_prints_tables_and_says_what_cannot_be_told(strict, folder, tmp_path)
     assert (quiet.returncode, quiet.stdout, quiet.stderr) == (0, "", "")
 
 
-def test_an_output_is_not_overwritten_unasked(strict, folder, tmp_path):
-    (tmp_path / "out").mkdir()
-    (tmp_path / "out" / "mine.txt").write_text("x", encoding="utf-8")
-    done = strict("calibrate", folder, "--out", tmp_path / "out")
-    assert done.returncode == 2
-    assert done.stderr.count("\n") == 1
-    assert "already exists" in done.stderr
-    assert [p.name for p in (tmp_path / "out").iterdir()] == ["mine.txt"]
-
-
 def test_odd_names_of_runs(strict, tmp_path):
     """They name files, TOML keys and cells of a table, and break none of them."""
     clean = simulate(Rig(), sine())

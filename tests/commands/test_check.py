@@ -73,21 +73,6 @@ def test_json_and_the_written_file_agree(make, tsas, tmp_path):
     assert ("time-jitter", "a") not in reasons
 
 
-def test_quiet_prints_nothing(make, tsas):
-    assert tsas("check", make(b=backwards()), "--quiet").stdout == ""
-
-
-def test_an_earlier_output_stays_without_force(make, tsas, tmp_path):
-    folder, out = make(a=good()), tmp_path / "out"
-    assert tsas("check", folder, "--out", out).returncode == 0
-    before = (out / "check.json").read_bytes()
-    refused = tsas("check", folder, "--out", out)
-    assert refused.returncode == 2
-    assert "--force" in refused.stderr
-    assert (out / "check.json").read_bytes() == before
-    assert tsas("check", folder, "--out", out, "--force").returncode == 0
-
-
 def test_what_is_no_dataset_is_refused_in_one_line(tsas, tmp_path):
     done = tsas("check", tmp_path, "--out", tmp_path / "out")
     assert done.returncode == 2

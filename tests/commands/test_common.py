@@ -32,13 +32,6 @@ def test_json_replaces_the_tables(capsys: pytest.CaptureFixture[str]) -> None:
     assert json.loads(capsys.readouterr().out) == {"noise": None}
 
 
-def test_quiet_prints_nothing(capsys: pytest.CaptureFixture[str]) -> None:
-    show({}, TABLES, quiet=True, as_json=False)
-    with progress("fit", 2, quiet=True) as step:
-        step()
-    assert capsys.readouterr() == ("", "")
-
-
 def test_no_bar_is_drawn_into_a_file(capsys: pytest.CaptureFixture[str]) -> None:
     with progress("fit", 2, quiet=False) as step:
         step()

@@ -61,15 +61,6 @@ def test_the_keys_are_documented(run):
     assert set(content) <= documented("compare.json")
 
 
-def test_quiet_says_nothing_and_an_output_stays_without_force(run, tmp_path):
-    pair = ("calibrated-1/model.toml", "calibrated-2/model.toml")
-    assert run(*pair, "--out", tmp_path / "o", "-q") == (0, "", "")
-    code, out, err = run(*pair, "--out", tmp_path / "o")
-    assert (code, out, err.count("\n")) == (2, "", 1)
-    assert "--force" in err
-    assert run(*pair, "--out", tmp_path / "o", "-q", "--force") == (0, "", "")
-
-
 def test_names_from_files_cannot_steer_the_terminal(run, root, tmp_path):
     folder = shutil.copytree(root / "calibrated-1", tmp_path / "c")
     path = folder / "calibration.json"

@@ -23,8 +23,8 @@ from tests.commands.viewing import (
 )
 from tests.reporting.made_folders import make_dataset
 from tsas_cli.__main__ import main
+from tsas_cli.reporting.viewer.child import program
 from tsas_cli.reporting.viewer.ports import LOOPBACK, free_ports
-from tsas_cli.reporting.viewer.program import program
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
 DONE = "all runs are shown and written"

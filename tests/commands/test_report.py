@@ -5,7 +5,6 @@ import pytest
 
 from tests.reporting.made_folders import make_calibration, make_check, make_dataset, make_simulation
 from tsas_cli.__main__ import main
-from tsas_cli.app import app
 from tsas_cli.reporting.pdf import PDF_MARK
 
 
@@ -138,10 +137,6 @@ def test_a_truncated_simulated_run_is_refused(folder, run):
 def test_a_truncated_stage_file_is_refused(folder, run):
     (folder / "check" / "check.json").write_text('{"format": 1,')
     refused(run("report", folder / "check", "--out", folder / "r.html"), "check.json", "JSON")
-
-
-def test_report_is_registered_once():
-    assert [c.name for c in app.registered_commands].count("report") == 1
 
 
 @pytest.fixture

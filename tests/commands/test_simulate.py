@@ -195,14 +195,6 @@ def test_a_run_that_was_not_fitted_is_predicted_once_its_own_zeros_are_known(
     assert json.loads(done.stdout)["runs"]["b"]["channels"]["f_in_N"] == residuals["own"]
 
 
-@pytest.mark.parametrize("stage", ["calibrate", "diagnose", "simulate"])
-def test_a_run_that_is_not_there_is_named(strict, folder, tmp_path, stage):
-    done = strict(stage, folder, "--runs", "a,A", "--out", tmp_path / "out")
-    assert done.returncode == 2
-    assert "there is no run 'A'" in done.stderr
-    assert not (tmp_path / "out").exists()
-
-
 BRISTLES = """
 [bristles]
 stiffness_N_per_mm = {{ value = {stiffness}, unit = "N/mm" }}

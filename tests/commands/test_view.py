@@ -25,8 +25,8 @@ from tests.commands.viewing import (
 from tests.reporting.made_folders import make_dataset, make_simulation
 from tests.reporting.viewer.streams import make_stream
 from tsas_cli.__main__ import main
+from tsas_cli.reporting.viewer.open import SCREENS
 from tsas_cli.reporting.viewer.ports import free_ports
-from tsas_cli.reporting.viewer.screen import SCREENS
 
 LOOPBACK = "0100007F"  # 127.0.0.1, as /proc/net writes it
 on_linux = pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
@@ -208,7 +208,7 @@ def test_a_window_opens_where_there_is_a_screen(stream, tmp_path):
 
 
 def test_without_the_viewer_it_is_reported_what_to_install(stream, run, monkeypatch):
-    monkeypatch.setattr("tsas_cli.reporting.viewer.program.find_spec", lambda name: None)
+    monkeypatch.setattr("tsas_cli.reporting.viewer.child.find_spec", lambda name: None)
     line = refused(run("view", stream, "--web"))
     assert line.startswith("tsas: package rerun-sdk: the viewer's program is not installed")
     assert "pip install" in line

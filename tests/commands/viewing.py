@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from tsas_cli.reporting.viewer.screen import SCREENS
+from tsas_cli.reporting.viewer.open import SCREENS
 
 ADDRESS = re.compile(r"http://127\.0\.0\.1:(\d+)/\?url=\S+")
 SOON_S = 40.0  # on a machine that is busy

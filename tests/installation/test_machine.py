@@ -4,7 +4,7 @@ from tsas_cli.installation import machine
 from tsas_cli.installation.machine import abilities
 from tsas_cli.numerics import side_by_side
 from tsas_cli.numerics.compiled import cache_folder
-from tsas_cli.reporting.viewer.screen import SCREENS
+from tsas_cli.reporting.viewer.open import SCREENS
 from tsas_cli.support.errors import InputError
 
 

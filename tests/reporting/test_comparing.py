@@ -89,13 +89,12 @@ def test_a_difference_beyond_the_uncertainty_comes_first_and_is_marked(changed):
     assert summary.startswith("friction_coefficient is larger in B, by 0.0250 [0.0222, 0.0278]")
     assert "friction_coefficient *" in changed
     assert "load_stiffness_N_per_mm *" not in changed
-    assert "0.0222 to 0.0278</td>" in changed
+    assert ">0.0250 [0.0222, 0.0278]</td>" in changed
     assert changed.count('<td class="short">yes</td>') == 1
 
 
 def test_the_same_recordings_make_no_claim(extended):
     assert "their errors are not independent" in extended
-    assert "the same recordings</td>" in extended
     assert '<td class="short">yes</td>' not in extended
     assert "friction_coefficient *" not in extended
 

@@ -2,7 +2,7 @@
 
 from functools import cache
 
-from tsas_cli.stages.track import Call, what_is_known
+from tsas_cli.stages.track import what_is_known
 from tsas_cli.tracking.references import reference
 from tsas_cli.tracking.settings import Settings
 from tsas_cli.tracking.track import Plant, plan, run_loop
@@ -23,7 +23,7 @@ def settings_of(**tables):
 @cache
 def loop_of(settings):
     """Return wanted force, path, what is known and the plant of settings."""
-    known, plant = what_is_known(Call(), settings)
+    known, plant = what_is_known(settings)
     wanted = reference("sine", settings.reference, settings.step_s)
     return wanted, plan(wanted, known, settings), known, plant
 

@@ -32,9 +32,7 @@ def watched(live: bool, name: str, *, quiet: bool) -> Iterator["LiveStream | Non
         yield None
         return
     from tsas_cli.reporting.stream.live import live_stream
-    from tsas_cli.reporting.viewer.analytics import note_once
-    from tsas_cli.reporting.viewer.open import opened
-    from tsas_cli.reporting.viewer.screen import has_screen
+    from tsas_cli.reporting.viewer.open import has_screen, note_once, opened
     from tsas_cli.support.stopping import cleaned_up_when_stopped, until_stopped
 
     with cleaned_up_when_stopped(), opened(in_browser=not has_screen()) as viewer:

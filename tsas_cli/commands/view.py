@@ -31,9 +31,7 @@ def view(
     opens; without a screen, a page is served and its address printed.
     """
     from tsas_cli.recordings.storage import location_of
-    from tsas_cli.reporting.viewer.analytics import note_once
-    from tsas_cli.reporting.viewer.open import opened
-    from tsas_cli.reporting.viewer.screen import has_screen
+    from tsas_cli.reporting.viewer.open import has_screen, note_once, opened
     from tsas_cli.reporting.viewer.stream_of import stream_of
     from tsas_cli.support.stopping import until_stopped
 

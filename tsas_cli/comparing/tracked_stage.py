@@ -75,7 +75,7 @@ def _notes(it: Tracks) -> Iterator[str]:
 
 def tables(it: Tracks) -> list[Table]:
     """Return what the stage prints."""
-    asked = [(s.name, shown(s.a), shown(s.b)) for s in it.settings]
+    asked = [(s.name, _shown(s.a), _shown(s.b)) for s in it.settings]
     scores = [
         (
             one.controller,
@@ -95,7 +95,7 @@ def tables(it: Tracks) -> list[Table]:
     return [table for table in every if table[2]]
 
 
-def shown(value: object) -> str:
+def _shown(value: object) -> str:
     """Return a setting as text, a checksum in short."""
     text = "" if value is None else str(value)
     return f"{text[:12]}…" if len(text) == 64 else text

@@ -10,9 +10,9 @@ from pathlib import Path
 
 from tsas_cli.numerics.compiled import cache_folder
 from tsas_cli.numerics.side_by_side import THREADS, threads
+from tsas_cli.reporting.viewer.child import program
 from tsas_cli.reporting.viewer.drawing import drawn_with
-from tsas_cli.reporting.viewer.program import program
-from tsas_cli.reporting.viewer.screen import SCREENS, has_screen
+from tsas_cli.reporting.viewer.open import SCREENS, has_screen
 from tsas_cli.support.errors import InputError
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")

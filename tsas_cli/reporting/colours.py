@@ -37,10 +37,10 @@ def schemes() -> tuple[dict[str, str], dict[str, str]]:
     return light, dark
 
 
-def dark(role: str, opacity: int = 0xFF) -> int:
+def dark(role: str) -> int:
     """Return a role's colour on a dark ground, as the viewer has it, as 0xRRGGBBAA."""
     _, scheme = schemes()
-    return int(scheme[role].removeprefix("#"), 16) << 8 | opacity
+    return int(scheme[role].removeprefix("#"), 16) << 8 | 0xFF
 
 
 def of_controller(name: str) -> str:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from markupsafe import Markup
 
+from tsas_cli.records.result import Table as Printed
 from tsas_cli.reporting.numbers import ABSENT
 
 
@@ -20,6 +21,19 @@ class Table:
     rows: tuple[tuple[str, ...], ...]
     numeric: frozenset[int] = frozenset()
     notes: tuple[str, ...] = ()
+
+    @classmethod
+    def printed(cls, printed: Printed) -> "Table":
+        """Return a table as a command prints it, without the columns in which nothing stands."""
+        caption, header, rows = printed
+        cells = tuple(tuple(row) for row in rows)
+        numeric = (
+            column
+            for column in range(len(header))
+            if all(re.match(r"[-\d]", row[column]) for row in cells if row[column])
+        )
+        title = caption[:1].upper() + caption[1:]
+        return cls(title, tuple(header), cells, frozenset(numeric)).without_empty()
 
     def without_empty(self) -> "Table":
         """Return the table without the columns in which nothing stands."""

@@ -41,22 +41,6 @@ def as_printed(value: float | None) -> str:
     return fixed.rstrip("0").rstrip(".") if "." in fixed else fixed
 
 
-def round_ticks(low: float, high: float, step: float, multiples: Sequence[float]) -> list[float]:
-    """Return round numbers from one value to another.
-
-    They stand apart by the least of the multiples of a power of ten that is no less than `step`.
-
-    Examples
-    --------
-    >>> round_ticks(17.0, 82.0, 13.0, (1.0, 2.0, 5.0, 10.0))
-    [20.0, 40.0, 60.0, 80.0]
-    """
-    power = 10.0 ** math.floor(math.log10(step))
-    apart = next(m * power for m in multiples if m * power >= step)
-    first, last = math.ceil(low / apart), math.floor(high / apart)
-    return [apart * k for k in range(first, last + 1)]
-
-
 def with_interval(value: float | None, low: float | None, high: float | None) -> tuple[str, str]:
     """Return a value and its interval, both cut at the second digit of the interval's half width.
 

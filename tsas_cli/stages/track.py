@@ -9,11 +9,9 @@ from functools import partial
 from pathlib import Path
 from typing import Any, Literal
 
-import numpy as np
 import pyarrow as pa
 
 from tsas_cli.controllers import CONTROLLERS
-from tsas_cli.controllers.path import DrivePath
 from tsas_cli.drive.file import IdentifiedDrive
 from tsas_cli.identification.model import Model, model_of, source_of
 from tsas_cli.recordings.dataset import read_from
@@ -30,7 +28,7 @@ from tsas_cli.support.files import folder_if
 from tsas_cli.support.steps import NO_PROGRESS, Steps
 from tsas_cli.tracking.conditions import Condition, disturbed, proximal_spring
 from tsas_cli.tracking.drives import known_drive
-from tsas_cli.tracking.dynamic_notes import dynamic_notes
+from tsas_cli.tracking.notes import dynamic_notes, run_notes
 from tsas_cli.tracking.recorded import conditions, manifest, stated_model, table_of
 from tsas_cli.tracking.references import reference as reference_of
 from tsas_cli.tracking.scores import over_seeds
@@ -41,7 +39,6 @@ from tsas_cli.tracking.track import (
     Plant,
     TendonDynamics,
     Tracked,
-    feedforward,
     plan,
     run_loop,
 )
@@ -57,28 +54,6 @@ COLUMNS = (
     ("chatter [rpm/s]", "chatter_rpm_per_s"),
     ("outside 2 % [%]", "outside_percent"),
 )
-OFTEN_PERCENT = 5.0  # of the time at the motor's limit, from which it is said
-
-
-@dataclass(frozen=True)
-class Call:
-    """What the stage is asked for; see `tsas track --help`."""
-
-    model: Model | Path | None = None
-    plant: Model | Path | None = None
-    drive: IdentifiedDrive | Path | None = None
-    settings: Path | Mapping[str, Any] | None = None
-    controllers: tuple[str, ...] = ("adaptive-sliding-mode",)
-    conditions: tuple[Condition, ...] = (Condition("undisturbed"),)
-    reference: str = "sine"
-    as_printed: bool = False
-    dynamics: TendonDynamics = "slip"
-    seeds: int = 1
-    first_seed: int = 1
-
-    def inputs(self) -> tuple[object, ...]:
-        """Return what the stage reads; a reference's shape is the name of no file."""
-        return self.model, self.plant, self.drive, self.settings, Path(self.reference)
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -181,73 +156,84 @@ def track(
         A file is wrong, a controller unknown, the reference out of reach, the loop unstable, or
         `out` exists and `force` is not set.
     """
-    named = tuple(listed(controllers))
-    if not named:
-        raise InputError("no controller is named", expected=f"some of {', '.join(CONTROLLERS)}")
     asked = [disturbed(listed(disturb))] if disturb else []
     if compare:
         asked = [Condition("undisturbed"), *(asked or [proximal_spring()])]
-    call = Call(
-        model=path_of(model, Model),
-        plant=path_of(plant, Model),
-        drive=path_of(drive, IdentifiedDrive),
-        settings=path_of(settings, Mapping),
-        controllers=CONTROLLERS if compare or named == ("all",) else tuple(dict.fromkeys(named)),
-        conditions=tuple(asked) or (Condition("undisturbed"),),
-        reference=str(reference),
-        as_printed=as_printed,
-        dynamics=one_of(DYNAMICS, dynamics, "dynamics"),
-        seeds=(COMPARED_SEEDS if compare else 1) if seeds is None else number_of_seeds(seeds),
-        first_seed=at_least(0, first_seed, "first_seed"),
+    changes = asked or [Condition("undisturbed")]
+    names = CONTROLLERS if compare else _known_controllers(listed(controllers))
+    many = (COMPARED_SEEDS if compare else 1) if seeds is None else number_of_seeds(seeds)
+    numbers = range(at_least(0, first_seed, "first_seed"), first_seed + many)
+    given, path = path_of(settings, Mapping), path_of(out)
+    models = path_of(model, Model), path_of(plant, Model), path_of(drive, IdentifiedDrive)
+    one_of(DYNAMICS, dynamics, "dynamics")
+    read = printed_gains(read_settings(given)) if as_printed else read_settings(given)
+    known, real = what_is_known(read, *models)
+    wanted = reference_of(str(reference), read.reference, read.step_s)
+    drive_path = plan(wanted, known, read)
+    made = partial(
+        TrackingFile,
+        model=source_of(models[0], path),
+        plant=source_of(models[1] or models[0], path),
+        drive=source_of(models[2], path, DRIVE_FILE, without="kinematics"),
+        settings=read.model_dump(mode="json", by_alias=True)
+        | ({} if given is None else source_of(given, path)),
+        reference=_reference_of(Path(str(reference)), path),
+        dynamics=dynamics,
+        gains="as printed" if as_printed else "default",
+        seeds=(numbers[0], numbers[-1]),
+        conditions={condition.name: _changes_of(condition) for condition in changes},
     )
-    folder_path = path_of(out)
-    for name in call.controllers:
-        if name not in CONTROLLERS:
-            raise InputError(f"unknown controller {name}", remedy=nearest(name, CONTROLLERS))
-    read = read_settings(call.settings)
-    if call.as_printed:
-        read = printed_gains(read)
-    known, real = what_is_known(call, read)
-    wanted = reference_of(call.reference, read.reference, read.step_s)
-    path = plan(wanted, known, read)
+    follow = partial(run_loop, wanted, drive_path, known, dynamics=dynamics, relay=as_printed)
     results, tables = list[records.TrackedResult](), dict[str, pa.Table]()
-    record_with = _record_with(call, read, folder_path)
-    with folder_if(folder_path, stage="track", inputs=call.inputs(), force=force) as folder:
-        step.ahead(len(call.controllers) * len(call.conditions) * call.seeds)
-        for condition in call.conditions:
+    inputs = (*models, given, Path(str(reference)))  # a shape is the name of no file
+    with folder_if(path, stage="track", inputs=inputs, force=force) as folder:
+        step.ahead(len(names) * len(changes) * many)
+        for condition in changes:
             acted_on = condition.of(real)
-            for name in call.controllers:
+            for name in names:
                 runs = []
-                for one in range(call.first_seed, call.first_seed + call.seeds):
-                    run = run_loop(
-                        wanted,
-                        path,
-                        known,
-                        acted_on,
-                        name,
-                        read,
-                        one,
-                        dynamics=call.dynamics,
-                        relay=call.as_printed,
-                    )
-                    runs.append(run)
+                for seed in numbers:
+                    runs.append(follow(acted_on, name, read, seed))
                     step()
                 run_id = f"{name}-{condition.name}"
-                first, number = runs[0], call.first_seed
-                tables[run_id] = table_of(first, path, acted_on.rig, name, number, read)
+                table = table_of(runs[0], drive_path, acted_on.rig, name, numbers[0], read)
                 printed = None
-                if call.model is None and call.plant is None and call.drive is None:
-                    printed = printed_rmse(name, condition, call.reference, read)
+                if models == (None, None, None):
+                    printed = printed_rmse(name, condition, str(reference), read)
+                tables[run_id] = table
                 results.append(_result(run_id, name, condition, runs, printed))
-                each(record_with(results=results), run_id, tables[run_id])
-        said = _notes(path, known, real, results)
-        if call.dynamics == "lugre":
-            said += dynamic_notes(path, real, call.conditions, read.step_s)
-        record = record_with(results=results, notes=said)
+                each(made(results=results), run_id, table)
+        said = run_notes(drive_path, known, real, results)
+        if dynamics == "lugre":
+            said += dynamic_notes(drive_path, real, changes, read.step_s)
+        record = made(results=results, notes=said)
         if folder is not None:
             write_dataset(folder, manifest(tables, read), tables)
             record.write(folder)
-    return TrackingResult(record.content(), folder_path, record, _recordings(tables, read))
+    return TrackingResult(record.content(), path, record, _recordings(tables, read))
+
+
+def _known_controllers(named: Sequence[str]) -> Sequence[str]:
+    """Return the controllers by name, each once, or all; an unknown one is an InputError."""
+    if not named:
+        raise InputError("no controller is named", expected=f"some of {', '.join(CONTROLLERS)}")
+    if named == ["all"]:
+        return CONTROLLERS
+    for name in named:
+        if name not in CONTROLLERS:
+            raise InputError(f"unknown controller {name}", remedy=nearest(name, CONTROLLERS))
+    return list(dict.fromkeys(named))
+
+
+def _reference_of(reference: Path, out: Path | None) -> dict[str, str]:
+    return read_from(reference, out or Path()) if reference.is_file() else {"shape": str(reference)}
+
+
+def _changes_of(condition: Condition) -> list[records.ConditionChange]:
+    return [
+        records.ConditionChange(quantity=c.name, value=c.value, from_s=c.from_s)
+        for c in condition.changes
+    ]
 
 
 def _recordings(tables: Mapping[str, pa.Table], settings: Settings) -> dict[str, Recording]:
@@ -259,7 +245,12 @@ def _recordings(tables: Mapping[str, pa.Table], settings: Settings) -> dict[str,
     }
 
 
-def what_is_known(call: Call, settings: Settings) -> tuple[Known, Plant]:
+def what_is_known(
+    settings: Settings,
+    model: Model | Path | None = None,
+    plant: Model | Path | None = None,
+    drive: IdentifiedDrive | Path | None = None,
+) -> tuple[Known, Plant]:
     """Return what the controller knows of rig and drive, and the plant that it acts on.
 
     Raises
@@ -267,14 +258,11 @@ def what_is_known(call: Call, settings: Settings) -> tuple[Known, Plant]:
     InputError
         A model file is wrong.
     """
-    run = conditions("track", settings)
-    stated = stated_model(settings)
-    model = stated if call.model is None else model_of(call.model).over(stated)
-    real = model if call.plant is None else model_of(call.plant).over(stated)
-    actuator = settings.drive.actuator()
-    return Known(model.rig(run), known_drive(call.drive, settings.drive)), Plant(
-        real.rig(run), actuator
-    )
+    run, stated = conditions("track", settings), stated_model(settings)
+    known = stated if model is None else model_of(model).over(stated)
+    real = known if plant is None else model_of(plant).over(stated)
+    actuator = known_drive(drive, settings.drive)
+    return Known(known.rig(run), actuator), Plant(real.rig(run), settings.drive.actuator())
 
 
 def _result(
@@ -289,61 +277,6 @@ def _result(
         relay=any(run.is_relay for run in runs),
         unsettled_steps=sum(run.unsettled for run in runs),
     )
-
-
-def _record_with(call: Call, settings: Settings, out: Path | None) -> "partial[TrackingFile]":
-    """Return what makes the record of a call, once there are results."""
-    stated = settings.model_dump(mode="json", by_alias=True)
-    if call.settings is not None:
-        stated |= source_of(call.settings, out)
-    wanted = Path(call.reference)
-    shape = {"shape": call.reference}
-    return partial(
-        TrackingFile,
-        model=source_of(call.model, out),
-        plant=source_of(call.plant or call.model, out),
-        drive=source_of(call.drive, out, DRIVE_FILE, without="kinematics"),
-        settings=stated,
-        reference=read_from(wanted, out or Path()) if wanted.is_file() else shape,
-        dynamics=call.dynamics,
-        gains="as printed" if call.as_printed else "default",
-        seeds=(call.first_seed, call.first_seed + call.seeds - 1),
-        conditions={
-            condition.name: [
-                records.ConditionChange(quantity=c.name, value=c.value, from_s=c.from_s)
-                for c in condition.changes
-            ]
-            for condition in call.conditions
-        },
-    )
-
-
-def _notes(
-    path: DrivePath, known: Known, plant: Plant, results: Sequence[records.TrackedResult]
-) -> list[str]:
-    """Return what of the runs is not to be trusted or not to be reached, and why."""
-    notes = []
-    if path.missed:
-        notes.append(f"{path.missed} samples of the wanted force are met by no place of the drive")
-    limit = plant.actuator.speed_limit_rpm
-    beyond = np.abs(feedforward(path, known.actuator)) > limit
-    if beyond.any():
-        notes.append(
-            f"the reference asks for more than the motor's {limit:g} rpm in {beyond.sum()} samples,"
-            f" up to {np.abs(feedforward(path, known.actuator)).max():.0f} rpm"
-        )
-    for result in results:
-        at_limit = result.scores.at_limit_percent.mean or 0.0
-        if at_limit > OFTEN_PERCENT:
-            notes.append(
-                f"{result.run}: the motor is at its limit for {at_limit:.0f} % of the time"
-                + ("; the loop is a relay" if result.relay else "")
-            )
-        if result.unsettled_steps:
-            notes.append(
-                f"{result.run}: {result.unsettled_steps} steps of the tendon did not settle"
-            )
-    return notes
 
 
 def _table(results: Sequence[records.TrackedResult], title: str) -> Table:

@@ -51,8 +51,8 @@ def views(part) -> list[View]:
 
 def shown(view: View) -> list[str]:
     """Return the paths of the entities that a view names."""
-    named = [expression.removeprefix("+ ").removesuffix("/**") for expression in view.contents]
-    return [*named, *view.visualizer_overrides]
+    contents = [view.contents] if isinstance(view.contents, str) else view.contents
+    return [expression.removeprefix("+ ").removesuffix("/**") for expression in contents]
 
 
 def read(path: Path) -> dict[str, Read]:

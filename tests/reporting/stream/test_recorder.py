@@ -5,14 +5,13 @@ from datetime import UTC, datetime, timedelta, timezone
 import numpy as np
 import pytest
 import rerun as rr
-from rerun.blueprint import Tabs, Vertical
+from rerun.blueprint import Blueprint, Tabs, Vertical
 from rerun.chunk import RrdReader
 
 from tests.reporting.stream.streams import read
+from tsas_cli.reporting.stream.layout import series
 from tsas_cli.reporting.stream.opened import to_file
-from tsas_cli.reporting.stream.plane import plane_view
 from tsas_cli.reporting.stream.recorder import ROWS, times_of
-from tsas_cli.reporting.stream.views import laid_out, series, text
 from tsas_cli.support.errors import InputError
 
 TIME_S = np.array([0.0, 0.001, 0.3, 1234.5678912345])
@@ -23,7 +22,7 @@ LINE = ("run", "a", "f_in_N")
 def test_times_are_rounded_to_the_nanosecond_and_not_cut(tmp_path):
     """0.3 s is 0.299999999999999988898 s in binary."""
     with to_file(tmp_path / "s.rrd", "x") as recorder:
-        recorder.scalars(LINE, times_of(TIME_S), np.arange(4.0))
+        recorder.series(LINE, times_of(TIME_S), np.arange(4.0), "f", 0x112233FF)
     line = read(tmp_path / "s.rrd")["/run/a/f_in_N"]
     assert line.at().tolist() == [0, 1_000_000, 300_000_000, 1_234_567_891_234]
     assert list(line.times) == ["t"]
@@ -39,7 +38,7 @@ def test_times_are_rounded_to_the_nanosecond_and_not_cut(tmp_path):
 )
 def test_a_known_start_puts_the_run_on_the_session(tmp_path, started):
     with to_file(tmp_path / "s.rrd", "x") as recorder:
-        recorder.scalars(LINE, times_of(TIME_S, started), np.arange(4.0))
+        recorder.series(LINE, times_of(TIME_S, started), np.arange(4.0), "f", 0x112233FF)
     line = read(tmp_path / "s.rrd")["/run/a/f_in_N"]
     start = int(datetime(2026, 3, 2, 9, 30, tzinfo=UTC).timestamp()) * 10**9
     assert line.at("session").tolist() == [start + ns for ns in NS]
@@ -49,7 +48,7 @@ def test_a_known_start_puts_the_run_on_the_session(tmp_path, started):
 def test_a_gap_stays_a_gap(tmp_path):
     values = np.array([1.0, np.nan, np.nan, 4.0])
     with to_file(tmp_path / "s.rrd", "x") as recorder:
-        recorder.scalars(LINE, times_of(TIME_S), values)
+        recorder.series(LINE, times_of(TIME_S), values, "f", 0x112233FF)
     line = read(tmp_path / "s.rrd")["/run/a/f_in_N"]
     assert line.rows["Scalars:scalars"] == [[1.0], [], [], [4.0]]
     assert line.at().tolist() == NS
@@ -59,7 +58,7 @@ def test_a_long_series_goes_in_whole_in_pieces(tmp_path):
     n = 2 * ROWS + 5
     values = np.random.default_rng(1).standard_normal(n)
     with to_file(tmp_path / "s.rrd", "x") as recorder:
-        recorder.scalars(LINE, times_of(np.arange(n) / 1000), values)
+        recorder.series(LINE, times_of(np.arange(n) / 1000), values, "f", 0x112233FF)
     line = read(tmp_path / "s.rrd")["/run/a/f_in_N"]
     assert sum(line.chunks) == n
     assert max(line.chunks) <= ROWS
@@ -70,7 +69,7 @@ def test_a_long_series_goes_in_whole_in_pieces(tmp_path):
 def test_columns_of_different_lengths_are_refused_and_nothing_is_written(tmp_path, values):
     path = tmp_path / "s.rrd"
     with pytest.raises(ValueError, match="values at 4 times"), to_file(path, "x") as recorder:
-        recorder.scalars(LINE, times_of(TIME_S), values)
+        recorder.series(LINE, times_of(TIME_S), values, "f", 0x112233FF)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -83,7 +82,7 @@ def test_names_from_files_are_one_part_of_a_path_each(tmp_path):
     odd = ["<script>", "a/b", "a b ", "__x", "é+*", "tab\there", "+ /**"]
     with to_file(tmp_path / "s.rrd", "x") as recorder:
         for name in odd:
-            recorder.scalars(("run", name, "f"), times_of(TIME_S), np.arange(4.0))
+            recorder.series(("run", name, "f"), times_of(TIME_S), np.arange(4.0), "f", 0x112233FF)
     found = [path for path in read(tmp_path / "s.rrd") if path.startswith("/run/")]
     assert len(found) == len(odd)
     assert all(path.replace("\\/", "").count("/") == 3 for path in found)
@@ -93,58 +92,24 @@ def test_names_from_files_are_one_part_of_a_path_each(tmp_path):
 def test_a_series_is_drawn_by_its_extremes(tmp_path):
     """The usual average would draw a fast chirp as if it decayed."""
     with to_file(tmp_path / "s.rrd", "x") as recorder:
-        recorder.line(LINE, "measured", 0x112233FF)
+        recorder.series(LINE, times_of(TIME_S), np.arange(4.0), "measured", 0x112233FF)
     static = read(tmp_path / "s.rrd")["/run/a/f_in_N"].static
     assert static["SeriesLines:names"] == ["measured"]
     assert static["SeriesLines:colors"] == [0x112233FF]
     assert static["SeriesLines:aggregation_policy"] == [5]  # MinMax
 
 
-def test_points_may_be_none_at_a_time(tmp_path):
-    places = [np.zeros((0, 3)), np.ones((1, 3)), np.ones((2, 3)), np.zeros((0, 3))]
-    with to_file(tmp_path / "s.rrd", "x") as recorder:
-        recorder.points_3d(LINE, times_of(TIME_S), places, 0xFF00FFFF, radius=-6.0)
-    found = read(tmp_path / "s.rrd")["/run/a/f_in_N"].rows["Points3D:positions"]
-    assert [len(row) for row in found] == [0, 1, 2, 0]
-
-
-def test_points_in_a_plane_are_shown_at_some_times(tmp_path):
-    places, shown = np.arange(8.0).reshape(4, 2), np.array([False, True, True, False])
-    with to_file(tmp_path / "s.rrd", "x") as recorder:
-        recorder.points_2d(LINE, times_of(TIME_S), places, 0xFF00FFFF, shown=shown)
-    found = read(tmp_path / "s.rrd")["/run/a/f_in_N"].rows["Points2D:positions"]
-    assert found == [[], [[2.0, 3.0]], [[4.0, 5.0]], []]
-
-
-def test_any_number_of_curves_at_each_time(tmp_path):
-    strips = [[], [np.zeros((2, 3))], [np.ones((3, 3)), np.zeros((2, 3))], []]
-    shades = np.array([1, 2, 3, 4], dtype=np.uint32)
-    with to_file(tmp_path / "s.rrd", "x") as recorder:
-        recorder.curves_3d(LINE, times_of(TIME_S), strips, shades, radius=-1.5)
-    found = read(tmp_path / "s.rrd")["/run/a/f_in_N"]
-    lengths = [
-        [len(strip) for strip in row]
-        for row in found.rows["LineStrips3D:strips"]
-        if row is not None
-    ]
-    assert lengths[-4:] == [[], [2], [3, 2], []]
-    assert [row for row in found.rows["LineStrips3D:colors"] if row] == [[1], [2], [3], [4]]
-
-
 def test_every_layout_is_an_application_of_its_own(tmp_path):
     """A viewer keeps the first layout that an application has shown."""
 
-    def one():
-        return laid_out(Tabs(Vertical(text("a", ("a",)), name="A"), series("s", [LINE])))
-
-    def other(seconds):
-        return laid_out(plane_view("p", LINE, {LINE: seconds}))
+    def layout_with(name):
+        return Blueprint(Tabs(Vertical(series(name, [LINE]), name="A"), series("s", [LINE])))
 
     ids = []
-    for number, layout in enumerate((one(), one(), other(2.0), other(3.0))):
+    for number, layout in enumerate(map(layout_with, ("one", "one", "two", "three"))):
         path = tmp_path / f"{number}.rrd"
         with to_file(path, "Prüfstand <1>", layout) as recorder:
-            recorder.markdown(("a",), "hi")
+            recorder.static(("a",), rr.TextDocument("hi"))
         reader = RrdReader(path)
         (recording,), (blueprint,) = reader.recordings(), reader.blueprints()
         assert blueprint.application_id == recording.application_id

@@ -2,6 +2,7 @@
 
 import json
 from datetime import datetime
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -24,6 +25,7 @@ from tsas_cli.reporting.colours import dark
 from tsas_cli.reporting.inputs import read_inputs
 from tsas_cli.reporting.phases import BY_KEY
 from tsas_cli.reporting.stream import write_stream
+from tsas_cli.reporting.stream.overview import plain_text
 from tsas_cli.reporting.stream.recorder import ROWS
 from tsas_cli.support.errors import InputError
 
@@ -33,6 +35,10 @@ SAMPLES = 2 * ROWS + 100
 def stream(folder: Path, *stages: Path) -> dict:
     write_stream(read_inputs(list(stages)), folder / "s.rrd")
     return read(folder / "s.rrd")
+
+
+def overview(found: dict) -> str:
+    return found["/about/overview"].static["TextDocument:text"][0]
 
 
 @pytest.fixture(scope="module")
@@ -118,31 +124,40 @@ def test_phases_begin_when_the_file_says_in_the_colours_of_the_report(made, foun
     }
 
 
-def test_the_drive_turns_where_it_does(made, found):
-    """It is a sine of 10 mm that begins at its lowest place, for two periods."""
-    at_s = found["/run/a/events/reversals"].at() / 1e9
-    step = 4 * np.pi / SAMPLES
-    assert at_s == pytest.approx([np.pi, 2 * np.pi, 3 * np.pi], abs=3 * step)
-    said = [row[0] for row in found["/run/a/events/reversals"].rows["TextLog:text"]]
-    assert ["lets go" in text for text in said] == [True, False, True]
-    marks = found["/run/a/x_in_mm/reversals"]
-    assert marks.scalars == pytest.approx([20.0, 0.0, 20.0], abs=1e-3)
+def test_the_loops_stand_in_their_colours_and_the_points_run_along(made, found):
+    recorded = made / "dataset/runs/0.parquet"
+    x, measured = column(recorded, "x_in_mm"), column(recorded, "f_in_N")
+    known = np.round(column(recorded, "time_s") * 1e9).astype(np.int64)
+    loop = found["/run/a/f_in_N/loop/measured"].static
+    shades = {dark(one.colour) for one in BY_KEY.values() if one.number}
+    assert set(loop["LineStrips2D:colors"]) == shades
+    strips = [np.array(strip) for strip in loop["LineStrips2D:strips"]]
+    assert all((one[-1] == other[0]).all() for one, other in pairwise(strips))
+    scale = []
+    for key, values in (
+        ("measured", measured),
+        ("model", column(made / "diagnose/runs/a.parquet", "f_in_nominal_N")),
+    ):
+        now = found[f"/run/a/f_in_N/loop/{key}/now"]
+        places = np.array([row[0] for row in now.rows["Points2D:positions"]])
+        at = np.searchsorted(known, now.at())
+        assert np.corrcoef(places[:, 0], x[at])[0, 1] == pytest.approx(1.0)
+        assert np.corrcoef(places[:, 1], values[at])[0, 1] == pytest.approx(-1.0)
+        scale.append(np.polyfit(values[at], places[:, 1], 1))
+    assert scale[0] == pytest.approx(scale[1], rel=1e-3)
 
 
-def test_the_loop_stands_in_its_phases_and_the_point_runs_along(made, found):
-    phases = {path.rsplit("/", 1)[1] for path in found if "/run/a/f_in_N/loop/phase/" in path}
-    assert phases == {"contraction", "loosening", "dead_band_up", "dead_band_down"}
-    now, recorded = found["/run/a/f_in_N/loop/now/measured"], made / "dataset/runs/0.parquet"
-    places = np.array([row[0] for row in now.rows["Points2D:positions"]])
-    at = np.searchsorted(np.round(column(recorded, "time_s") * 1e9).astype(np.int64), now.at())
-    x, y = column(recorded, "x_in_mm")[at], column(recorded, "f_in_N")[at]
-    assert np.corrcoef(places[:, 0], x)[0, 1] == pytest.approx(1.0)
-    assert np.corrcoef(places[:, 1], y)[0, 1] == pytest.approx(-1.0)
-    trail = found["/run/a/f_in_N/loop/trail/measured"]
-    ends = np.array([row[0] for row in trail.rows["LineStrips2D:strips"]])
-    assert (ends[:-1, 1] == ends[1:, 0]).all()
-    assert (ends[:, 1] == places[1:].astype(np.float32)).all()
-    assert (trail.at() == now.at()[1:]).all()
+def test_ticks_stand_where_their_values_are(found):
+    loop = found["/run/a/f_in_N/loop/names"].static
+    places, labels = np.array(loop["Points2D:positions"]), loop["Points2D:labels"]
+    assert labels[:9] == ["0", "5", "10", "15", "20", "20", "40", "60", "80"]
+    assert labels[9:] == [
+        "displacement of the tendon at the drive [mm]",
+        "tension at the drive [N]",
+    ]
+    assert np.ptp(np.diff(places[:5, 0])) < 1e-6 < np.diff(places[:5, 0]).min()
+    assert np.ptp(np.diff(places[5:9, 1])) < 1e-6
+    assert np.diff(places[5:9, 1]).max() < 0.0  # y points downwards
 
 
 def test_a_gap_stays_a_gap_and_no_loop_bridges_it(tmp_path):
@@ -158,10 +173,9 @@ def test_a_gap_stays_a_gap_and_no_loop_bridges_it(tmp_path):
     line = found["/run/\\<script\\>/f_in_N/measured"]
     assert line.scalars.size == 200
     assert (np.isnan(line.scalars) == np.isnan(f_in)).all()
-    trail = found["/run/\\<script\\>/f_in_N/loop/trail/measured"]
-    gap_ns = (trail.at() > 0.5 * 1e9) & (trail.at() < 0.605 * 1e9)
-    assert not gap_ns.any()
-    assert trail.at().size == 200 - 1 - (np.isnan(f_in).sum() + 1)
+    loop = found["/run/\\<script\\>/f_in_N/loop/measured"].static["LineStrips2D:strips"]
+    assert [len(strip) for strip in loop] == [51, 140]
+    assert found["/run/\\<script\\>/f_in_N/loop/measured/now"].at().size == 191
 
 
 def test_a_start_puts_all_of_a_run_on_the_session(tmp_path):
@@ -176,7 +190,7 @@ def test_a_start_puts_all_of_a_run_on_the_session(tmp_path):
     write_dataset(tmp_path / "d", manifest, {"a": table, "b": table})
     found = stream(tmp_path, tmp_path / "d")
     moving = [entity for path, entity in found.items() if entity.times]
-    assert len(moving) == 2 * (2 + 2)  # two series, and a trail and a point, of each run
+    assert len(moving) == 2 * (2 + 1)  # two series and a point of each run
     for entity in moving:
         began = np.datetime64("2026-03-02T09:30:00", "ns").astype(np.int64)
         assert (entity.at("session") - began == entity.at()).all()
@@ -188,12 +202,12 @@ def test_faults_stand_where_they_begin_with_their_severity(tmp_path):
     late = finding | {"severity": "error", "first_s": 1.25}
     whole = finding | {"severity": "note", "first_s": None, "sentence": "rate is low"}
     found = stream(tmp_path, make_check(dataset, tmp_path / "check", [late, whole]))
-    faults = found["/run/b/events/faults"]
+    faults = found["/run/b/faults"]
     assert faults.at().tolist() == [0, 1_250_000_000]
     assert [row[0] for row in faults.rows["TextLog:level"]] == ["INFO", "ERROR"]
     assert "clipped: f\\_in" not in faults.rows["TextLog:text"][1][0]
     assert "f_in_N is clipped" in faults.rows["TextLog:text"][1][0]
-    assert "/run/a/events/faults" not in found
+    assert "/run/a/faults" not in found
 
 
 def test_what_the_checks_cannot_read_is_told_and_not_shown(tmp_path):
@@ -209,8 +223,7 @@ def test_what_the_checks_cannot_read_is_told_and_not_shown(tmp_path):
     found = stream(tmp_path, check)
     assert "/run/b/f_in_N/measured" in found
     assert not any(path.startswith("/run/a/") for path in found)
-    said = found["/about/overview"].static["TextDocument:text"][0]
-    assert "error, run a, unreadable: a.parquet is empty" in said
+    assert "- error, run a, unreadable: a.parquet is empty" in overview(found)
 
 
 def test_a_closed_loop_shows_its_error_and_what_the_controller_remembers(tmp_path):
@@ -227,15 +240,33 @@ def test_a_closed_loop_shows_its_error_and_what_the_controller_remembers(tmp_pat
     assert "/run/pid-disturbed/phi1_rpm_s3_per_mm" not in found
 
 
-def test_texts_say_what_was_found_and_escape_what_files_hold(made, found):
-    about = found["/about/overview"].static["TextDocument:text"][0]
-    assert "# bench" in about
-    assert "A free length of tendon" in about
-    told = found["/about/diagnosis"].static["TextDocument:text"][0]
-    assert "| proximal\\_length\\_mm | 152" in told
-    assert "<rest>" not in told
-    assert "\\<rest\\>" in told
-    assert "0.1230 to 0.1270" in told  # of the model
+def test_the_overview_says_what_was_found_and_escapes_what_files_hold(made, tmp_path):
+    tracked = stream(tmp_path, make_tracking(tmp_path / "tracked"))
+    said = overview(tracked)
+    assert r"pid\-disturbed: the motor is at its \<limit\>" in said
+    (tmp_path / "s.rrd").unlink()
+    said = overview(stream(tmp_path, made / "diagnose"))
+    assert said.startswith("# bench")
+    assert "**Cause found: Tendon outside the sheath**" in said
+    assert "A free length of tendon" in said
+    assert "Next: Record the same motion" in said
+    assert "- tension at the drive: 0.910 → 0.110 N (noise alone: 0.100 N)" in said
+
+
+@pytest.mark.parametrize(
+    ("name", "shown"),
+    [
+        ("<script>", r"\<script\>"),
+        ("[x](javascript:y)", r"\[x\]\(javascript:y\)"),
+        ("a|b", r"a\|b"),
+        ("f_in_N *now*", r"f\_in\_N \*now\*"),
+        ("two\nlines", r"two\\nlines"),
+        ("`a`", r"\`a\`"),
+        ("plain 1.5 N", "plain 1.5 N"),
+    ],
+)
+def test_nothing_in_a_name_is_read_as_markdown(name, shown):
+    assert plain_text(name) == shown
 
 
 def test_each_column_is_read_once(made, tmp_path, monkeypatch):

@@ -38,7 +38,7 @@ def test_only_tabs_are_there_that_have_something_to_show(dataset, tmp_path):
         make_check(dataset, tmp_path / "check"): ["Overview"],
         make_calibration(dataset, tmp_path / "calibrate"): ["Overview"],
         make_simulation(dataset, tmp_path / "simulate"): ["Overview", "Residuals"],
-        make_diagnosed(dataset, tmp_path / "diagnose"): ["Overview", "Residuals", "Diagnosis"],
+        make_diagnosed(dataset, tmp_path / "diagnose"): ["Overview", "Residuals"],
         make_tracking(tmp_path / "track"): ["Overview", "Tracking"],
     }
     for folder, names in made.items():
@@ -64,33 +64,19 @@ def test_every_view_shows_something_that_was_recorded(dataset, tmp_path):
                 assert any(one == entity or one.startswith(f"{entity}/") for one in recorded)
 
 
-def test_phases_and_events_stand_with_the_run_that_they_are_of(dataset, tmp_path):
-    found, _ = tabs(make_calibration(dataset, tmp_path / "calibrate"))
-    runs = found["Overview"].contents[0].contents[1].contents
-    assert [run.name for run in runs] == ["run a", "run b", "all runs"]
-    for name, run in zip("ab", runs, strict=False):
-        beside = of_kind(run, "StateTimeline", "TextLog")
-        assert len(beside) == 2
-        assert all(path.split("/")[2] == name for view in beside for path in shown(view))
-
-
-def test_faults_stand_beside_the_run_that_has_them(dataset, tmp_path):
+def test_phases_and_faults_stand_with_the_run_that_they_are_of(dataset, tmp_path):
     fault = {"code": "stuck", "severity": "error", "run": "b", "sentence": "f_in_N is stuck"}
-    found, _ = tabs(make_check(dataset, tmp_path / "check", [fault]))
-    runs = found["Overview"].contents[0].contents[1].contents
-    logs = [of_kind(run, "TextLog") for run in runs[:2]]
-    assert [len(views) for views in logs] == [0, 1]
-
-
-def test_a_legend_stands_where_something_new_is_drawn(dataset, tmp_path):
-    found, _ = tabs(make_diagnosed(dataset, tmp_path / "diagnose"))
-    first = found["Overview"].contents[0].contents[1].contents[0]
-    legends = {
-        view.name: view.properties["PlotLegend"].visible.as_arrow_array().to_pylist()
-        for view in of_kind(first, "TimeSeries")
-    }
-    assert legends == {
-        "tension at the drive [N]": [True],
-        "tension at the load [N]": [False],
-        "displacement of the tendon at the drive [mm]": [True],
-    }
+    folders = [
+        make_calibration(dataset, tmp_path / "calibrate"),
+        make_check(dataset, tmp_path / "check", [fault]),
+    ]
+    overview = root_of(read_inputs(folders)).contents[0]
+    runs = overview.contents[0].contents[1].contents
+    assert [run.name for run in runs] == ["run a", "run b", "all runs"]
+    beside = [of_kind(run, "StateTimeline", "TextLog") for run in runs[:2]]
+    assert [[view.class_identifier for view in views] for views in beside] == [
+        ["StateTimeline"],
+        ["StateTimeline", "TextLog"],
+    ]
+    for name, found in zip("ab", beside, strict=True):
+        assert all(path.split("/")[2] == name for view in found for path in shown(view))

@@ -3,11 +3,11 @@
 from pathlib import Path
 
 import numpy as np
-from rerun.blueprint import Tabs
+from rerun.blueprint import Blueprint, Tabs
 
+from tsas_cli.reporting.stream.layout import series
 from tsas_cli.reporting.stream.opened import to_file
 from tsas_cli.reporting.stream.recorder import times_of
-from tsas_cli.reporting.stream.views import laid_out, series
 
 
 def make_stream(path: Path, samples: int = 2000) -> Path:
@@ -15,7 +15,7 @@ def make_stream(path: Path, samples: int = 2000) -> Path:
     time_s = np.arange(samples) / 1000
     with to_file(path, "waves") as recorder:
         for name, wave in (("sine", np.sin), ("cosine", np.cos)):
-            recorder.line((name,), name, 0x3366CCFF)
-            recorder.scalars((name,), times_of(time_s), wave(7 * time_s))
-        recorder.lay_out(laid_out(Tabs(*(series(name, [(name,)]) for name in ("sine", "cosine")))))
+            recorder.series((name,), times_of(time_s), wave(7 * time_s), name, 0x3366CCFF)
+        tabs = Tabs(*(series(name, [(name,)]) for name in ("sine", "cosine")))
+        recorder.lay_out(Blueprint(tabs, collapse_panels=True))
     return path

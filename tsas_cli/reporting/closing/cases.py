@@ -15,14 +15,6 @@ def table(closing: ClosingFile) -> Table:
     return Table("What was hidden in the plant, and what the diagnosis named", header, rows)
 
 
-def summary(closing: ClosingFile) -> str:
-    """Return in a sentence how many cases there are and of how many a cause is named."""
-    total, named = len(closing.cases), sum(bool(case.named) for case in closing.cases)
-    if total == 1:
-        return f"One difference is hidden in the plant; a cause is {'' if named else 'not '}named."
-    return f"Of {total} differences that are hidden in the plant, a cause is named for {named}."
-
-
 def _hidden(case: ClosedCase) -> str:
     return ", ".join(f"`{name}` = {as_printed(value)}" for name, value in case.hidden.items())
 

@@ -80,20 +80,6 @@ def worth(closing: ClosingFile) -> Iterator[str]:
         yield f"`{name}`: {_gain(rows)} {_limit(rows)}"
 
 
-def most_and_least(closing: ClosingFile) -> Iterator[str]:
-    """Yield for which controller the extended model matters most, and for which least."""
-    gains = {name: _median_gain(rows) for name, rows in closing.of_controllers().items()}
-    ranked = sorted(gains, key=lambda name: gains[name])
-    if len(ranked) > 1:
-        most, least = (plain(gains[name], 2) for name in (ranked[-1], ranked[0]))
-        over = " (median over the cases)" if len(closing.cases) > 1 else ""
-        yield (
-            f"The extended model matters most for {ranked[-1]}, whose RMSE with the data sheet's "
-            f"is {most} times that with the extended one{over}, least for {ranked[0]} ({least} "
-            "times)."
-        )
-
-
 def _said(case: str, row: Row) -> str:
     return f"{case} {', '.join(plain(rmse.mean, 2) for rmse in row.by_model.values())}"
 

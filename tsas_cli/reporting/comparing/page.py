@@ -1,16 +1,21 @@
 """The page of `tsas compare`: what differs, how sure that is, and where it shows."""
 
 import shlex
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 
 from tsas_cli.comparing.compare import Comparison
 from tsas_cli.comparing.sentences import findings, notes
-from tsas_cli.comparing.stage import effects, recordings_of
-from tsas_cli.reporting.comparing import errors, maps, residuals, values
+from tsas_cli.comparing.stage import tables
+from tsas_cli.reporting.comparing import maps, residuals, values
 from tsas_cli.reporting.content import Section, Table
 from tsas_cli.reporting.rendered import rendered
 
 _SAID = 3  # findings that stand in the summary
+_VALUES = (
+    "B − A has a 95 % interval where both values were fitted, to different recordings: it goes as "
+    "far as the two intervals in quadrature, each side on its own. Where it does not hold 0, the "
+    "difference is more than the uncertainty of both."
+)
 
 
 def comparison_page(it: Comparison, advance: Callable[[], None] = lambda: None) -> str:
@@ -28,19 +33,18 @@ def comparison_page(it: Comparison, advance: Callable[[], None] = lambda: None) 
 
 
 def _sections(it: Comparison) -> Iterator[Section]:
-    yield _what(it)
-    if it.pairs:
-        yield values.section(it)
-    if found := effects(it):
-        rows = tuple((row.effect, row.a or "–", row.b or "–") for row in found)
-        yield Section(
-            "effects",
-            "Effects",
-            tuple(f"{name}: {side.reason}" for name, side in it.sides.items() if side.reason),
-            tables=(Table("Effects that a model holds, and their rivals", HEADER, rows),),
-        )
-    if it.errors:
-        yield errors.section(it)
+    printed = {table[0]: Table.printed(table) for table in tables(it)}
+    points = (*findings(it)[_SAID:], *notes(it))
+    yield Section("sides", "What is compared", points=points, tables=(printed["sides"],))
+    if "parameters" in printed:
+        shown = tuple(values.pictures(it))
+        how = (_VALUES,) if it.tested else ()
+        yield Section("values", "Values", how, tables=(printed["parameters"],), pictures=shown)
+    if "effects" in printed:
+        said = tuple(f"{name}: {side.reason}" for name, side in it.sides.items() if side.reason)
+        yield Section("effects", "Effects", said, tables=(printed["effects"],))
+    if errors := tuple(table for name, table in printed.items() if name.startswith("error")):
+        yield Section("errors", "Errors per run", tuple(_held_to(it)), tables=errors)
     if it.maps:
         yield maps.section(it)
     if it.shared:
@@ -48,22 +52,14 @@ def _sections(it: Comparison) -> Iterator[Section]:
     yield _repeat(it)
 
 
-HEADER = ("effect", "A", "B")
-
-
-def _what(it: Comparison) -> Section:
-    rows = tuple(
-        (name, side.kind, str(side.path), recordings_of(side), side.dynamics, side.verdict)
-        for name, side in it.sides.items()
-    )
-    header = ("", "kind", "path", "recordings read", "dynamics", "verdict")
-    said = findings(it)[_SAID:]
-    return Section(
-        "sides",
-        "What is compared",
-        points=(*said, *notes(it)),
-        tables=(Table("The two sides", header, rows).without_empty(),),
-    )
+def _held_to(it: Comparison) -> Iterator[str]:
+    if it.on is None:
+        yield "Each side is held to the recordings that it has read."
+    else:
+        own = " Each run's own preload and zeros are fitted to it first." if it.own_fitted else ""
+        yield f"Both models are simulated on the recordings of {it.on.manifest.name}.{own}"
+    if it.shared:
+        yield "A ratio below 1 means that B is nearer to the measurement than A."
 
 
 def _repeat(it: Comparison) -> Section:
@@ -80,6 +76,11 @@ def _repeat(it: Comparison) -> Section:
     )
     if it.on is not None:
         files += tuple(("", file, digest) for file, digest in it.on.hashes().items())
+    return repeat_section(command, files)
+
+
+def repeat_section(command: Sequence[str], files: tuple[tuple[str, str, str], ...]) -> Section:
+    """Return the command that makes the page, and the checksums of what both sides read."""
     return Section(
         "repeat",
         "How to repeat it",

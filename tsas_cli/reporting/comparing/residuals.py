@@ -8,10 +8,10 @@ from tsas_cli.comparing.compare import Comparison
 from tsas_cli.comparing.predictions import Both, channels
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.records.comparison import shared_name
-from tsas_cli.reporting.comparing.two_residuals import Residuals, draw_two_residuals, height_in
 from tsas_cli.reporting.content import Group, Picture, Section
 from tsas_cli.reporting.drawing import picture
 from tsas_cli.reporting.numbers import plain
+from tsas_cli.reporting.two_residuals import Residuals, draw_two_residuals, height_in
 
 _MOST_RUNS = 10
 
@@ -40,14 +40,15 @@ def _pictures(both: Both, number: int) -> tuple[Picture, ...]:
             continue
         unit = BY_NAME[name].unit
         label = f"{name.rsplit('_', 1)[0]} [{unit}]"
-        panels.append(Residuals(label, a.errors[name], b.errors[name], a.noise(name)))
+        time_s, noise = a.run.time_s, a.noise(name)
+        panels.append(Residuals(label, time_s, a.errors[name], b.errors[name], noise))
         said.append(f"{name} A {plain(a.rmse(name), 3)}, B {plain(b.rmse(name), 3)} {unit}")
     if not panels:
         return ()
     run = shared_name(*both.ids)
     return (
         picture(
-            partial(draw_two_residuals, time_s=a.run.time_s, panels=panels),
+            partial(draw_two_residuals, panels=panels),
             key=f"residuals-{number}",
             alt=f"Run {run}: measured minus simulated over time, of A and of B. "
             f"Root mean square: {'; '.join(said)}.",

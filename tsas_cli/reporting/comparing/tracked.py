@@ -1,18 +1,18 @@
 """The page of two folders of tracked runs: what was asked for, the scores, the errors over time."""
 
-import shlex
 from collections.abc import Callable, Iterator
 from functools import partial
 
-from tsas_cli.comparing.tracked import SCORES, TRACKING_FILE, ControllerPair, Tracks
-from tsas_cli.comparing.tracked_stage import findings, notes, shown
+from tsas_cli.comparing.tracked import TRACKING_FILE, ControllerPair, Tracks
+from tsas_cli.comparing.tracked_stage import findings, notes, tables
 from tsas_cli.recordings.written import columns_of, result_file
-from tsas_cli.reporting.comparing.two_residuals import Residuals, draw_two_residuals, height_in
+from tsas_cli.reporting.comparing.page import repeat_section
 from tsas_cli.reporting.content import Picture, Section, Table
 from tsas_cli.reporting.drawing import picture
-from tsas_cli.reporting.numbers import ABSENT, fixed, with_spread
+from tsas_cli.reporting.numbers import with_spread
 from tsas_cli.reporting.rendered import rendered
 from tsas_cli.reporting.tracking.runs import TRUE, WANTED
+from tsas_cli.reporting.two_residuals import Residuals, draw_two_residuals, height_in
 
 
 def tracked_page(it: Tracks, advance: Callable[[], None] = lambda: None) -> str:
@@ -37,47 +37,13 @@ def tracked_page(it: Tracks, advance: Callable[[], None] = lambda: None) -> str:
 
 def _sections(it: Tracks) -> Iterator[Section]:
     sides = Table("Folders", ("", "path"), tuple((n, str(p)) for n, p in it.paths.items()))
-    asked = tuple((s.name, shown(s.a) or ABSENT, shown(s.b) or ABSENT) for s in it.settings)
-    settings = Table("What differs in the call", ("setting", "A", "B"), asked)
-    yield Section(
-        "sides",
-        "What is compared",
-        points=tuple(notes(it)),
-        tables=(sides, settings) if asked else (sides,),
-    )
-    if it.followed:
-        yield Section("scores", "Scores", tables=(_scores(it),))
+    printed = [Table.printed(table) for table in tables(it)]
+    yield Section("sides", "What is compared", points=tuple(notes(it)), tables=(sides, *printed))
     if pictures := tuple(_pictures(it)):
         what = "Wanted less true force at the load, with the first seed of noise."
         yield Section("tracking-error", "Tracking error", (what,), pictures=pictures)
     files = tuple((n, TRACKING_FILE, digest) for n, digest in it.checksums.items())
-    yield Section(
-        "repeat",
-        "How to repeat it",
-        ("This command makes the same page from the same files.",),
-        tables=(Table("Files read", ("side", "file", "SHA-256"), files),),
-        commands=(
-            shlex.join(["tsas", "compare", *map(str, it.paths.values()), "--out", "compared"]),
-        ),
-    )
-
-
-def _scores(it: Tracks) -> Table:
-    rows = tuple(
-        (
-            both.a.controller,
-            both.a.condition,
-            score,
-            *(with_spread(r.scores[score].mean, r.scores[score].sd) for r in (both.a, both.b)),
-            fixed(both.ratio(score), 3),
-            unit,
-        )
-        for both in it.followed
-        for score, unit in SCORES.items()
-    )
-    header = ("controller", "condition", "score", "A", "B", "B / A", "unit")
-    caption = "Scores, with their standard deviation over the seeds of noise where there are some"
-    return Table(caption, header, rows, numeric=frozenset({3, 4, 5}))
+    yield repeat_section(["tsas", "compare", *map(str, it.paths.values())], files)
 
 
 def _pictures(it: Tracks) -> Iterator[Picture]:
@@ -89,10 +55,11 @@ def _pictures(it: Tracks) -> Iterator[Picture]:
         )
         if a["time_s"].shape != b["time_s"].shape or (a["time_s"] != b["time_s"]).any():
             continue
-        panel = Residuals("error [N]", a[WANTED] - a[TRUE], b[WANTED] - b[TRUE], None)
+        first, second = (side[WANTED] - side[TRUE] for side in (a, b))
+        panel = Residuals("error [N]", a["time_s"], first, second, noise=None)
         words = _words(both)
         yield picture(
-            partial(draw_two_residuals, time_s=a["time_s"], panels=[panel]),
+            partial(draw_two_residuals, panels=[panel]),
             key=f"tracked-{number}",
             alt=f"Wanted less true force at the load over time, of A and of B. {words}",
             caption=words,

@@ -1,4 +1,4 @@
-"""The values of both models with their intervals, and what differs by more than these."""
+"""The values that both models have, with their intervals, as a picture."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -7,19 +7,14 @@ from typing import Any
 
 from tsas_cli.comparing.compare import Comparison
 from tsas_cli.comparing.stage import differs
-from tsas_cli.records.base import ParameterValue
 from tsas_cli.records.comparison import ParameterPair
 from tsas_cli.reporting.colours import STAND_IN
-from tsas_cli.reporting.content import Picture, Section, Table
+from tsas_cli.reporting.content import Picture
 from tsas_cli.reporting.drawing import picture
-from tsas_cli.reporting.numbers import ABSENT, plain, with_interval
+from tsas_cli.reporting.figures import legend
+from tsas_cli.reporting.numbers import plain
 
 _MOST = 8  # strips of a picture
-_HOW = (
-    "B − A has a 95 % interval where both values were fitted, to different recordings: it goes as "
-    "far as the two intervals in quadrature, each side on its own. Where it does not hold 0, the "
-    "difference is more than the uncertainty of both."
-)
 
 
 @dataclass(frozen=True)
@@ -41,77 +36,7 @@ class Strip:
     differs: bool
 
 
-def section(it: Comparison) -> Section:
-    """Return the section of the values: a picture of those that both have, and the tables."""
-    parts = (
-        Section("values-both", "Values that both have", pictures=tuple(_pictures(it))),
-        Section("values-differences", "Differences", tables=(_differences(it),)),
-        Section("values-all", "Every value", tables=(_values(it),)),
-    )
-    return Section(
-        "values",
-        "Values",
-        (_HOW,) if it.tested else (),
-        parts=tuple(p for p in parts if p.pictures or any(table.rows for table in p.tables)),
-    )
-
-
-def _differences(it: Comparison) -> Table:
-    rows = tuple(
-        (
-            pair.name,
-            pair.run,
-            *with_interval(pair.difference.value, pair.difference.low, pair.difference.high),
-            pair.unit,
-            differs(pair),
-            pair.difference.why_none or "",
-        )
-        for pair in it.pairs
-        if pair.difference is not None
-    )
-    header = ("parameter", "run", "B − A", "95 % interval", "unit", "differs", "no interval")
-    caption = "B less A" + (", and whether that is more than both uncertainties" * bool(it.tested))
-    return Table(caption, header, rows, numeric=frozenset({2, 3})).without_empty()
-
-
-def _values(it: Comparison) -> Table:
-    header = (
-        "parameter",
-        "run",
-        "A",
-        "95 % of A",
-        "B",
-        "95 % of B",
-        "unit",
-        "at its bound",
-        "not fitted",
-    )
-    rows = tuple(_row(pair) for pair in it.pairs)
-    return Table("Values of A and B", header, rows, numeric=frozenset(range(2, 6))).without_empty()
-
-
-def _row(pair: ParameterPair) -> tuple[str, ...]:
-    both = [(name, e) for name, e in (("A", pair.a), ("B", pair.b)) if e is not None]
-    bound = [name for name, e in both if e.at_bound]
-    given = [f"{name} ({e.origin})" for name, e in both if e.origin != "fitted"]
-    return (
-        pair.name,
-        pair.run,
-        *_estimate(pair.a),
-        *_estimate(pair.b),
-        pair.unit,
-        " and ".join(bound),
-        ", ".join(given),
-    )
-
-
-def _estimate(e: ParameterValue | None) -> tuple[str, str]:
-    if e is None:
-        return ABSENT, ABSENT
-    return with_interval(e.value, e.interval_low, e.interval_high)
-
-
-def _pictures(it: Comparison) -> Iterator[Picture]:
+def pictures(it: Comparison) -> Iterator[Picture]:
     """Yield the picture of fitted values, differing ones first, those of single runs last."""
     shown = [p for p in it.pairs if p.a and p.b and "fitted" in (p.a.origin, p.b.origin)]
     shown.sort(key=lambda pair: (pair not in it.differing, pair.run != "all"))
@@ -168,5 +93,4 @@ def draw_values(figure: Any, strips: Sequence[Strip]) -> None:
         star = " *" if strip.differs else ""
         axes.set_ylabel(strip.label + star, rotation=0, ha="right", va="center")
         axes.spines["left"].set_visible(False)
-    handles, labels = rows[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside upper left", ncols=2, handlelength=1.6)
+    legend(figure, rows[0])

@@ -1,18 +1,15 @@
-"""The drive: its frequency response with coherence, its poles, and what it leaves over time."""
+"""The drive: its frequency response with coherence, and its poles."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.records.drive import BodeCurve, MeasuredResponse, Pole
 from tsas_cli.reporting.colours import STAND_IN
-from tsas_cli.reporting.figures import legend, line, noise_bounds
+from tsas_cli.reporting.figures import legend
 from tsas_cli.reporting.numbers import RAISED
-
-Floats = npt.NDArray[np.float64]
 
 
 def draw_bode(
@@ -49,8 +46,7 @@ def draw_bode(
     rows[2].xaxis.set_major_formatter("{x:g}")
     rows[2].xaxis.set_minor_formatter("")
     figure.align_ylabels()
-    handles, labels = rows[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside upper left", ncols=2, handlelength=1.6)
+    legend(figure, rows[0])
 
 
 def _power(value: float, _: object) -> str:
@@ -80,28 +76,3 @@ def draw_poles(figure: Any, poles: Sequence[Pole], band_Hz: tuple[float, float] 
         )  # fmt: skip
     axes.axvline(0.0, color=STAND_IN["muted"], linewidth=0.8)
     axes.set(xlabel="real part [1/s]", ylabel="imaginary part [Hz]")
-
-
-def draw_residuals(figure: Any, runs: Mapping[str, tuple[Floats, Floats, Floats, float]]) -> None:
-    """Draw what is left over time, one run below the other.
-
-    Parameters
-    ----------
-    figure
-        The matplotlib figure to draw on.
-    runs
-        By run id, time [s], the residual of the nominal and of the identified drive [mm], shape
-        (n,), and the noise [mm].
-    """
-    rows = figure.subplots(len(runs), 1, squeeze=False)[:, 0]
-    for axes, (name, (time_s, nominal, fitted, noise)) in zip(rows, runs.items(), strict=True):
-        for values, role, label in (
-            (nominal, "before", "nominal"),
-            (fitted, "after", "identified"),
-        ):
-            line(axes, time_s, values, color=STAND_IN[role], linewidth=0.7, label=label)
-        noise_bounds(axes, noise)
-        axes.set_ylabel(f"{name} [mm]")
-    rows[-1].set_xlabel("time [s]")
-    figure.align_ylabels()
-    legend(figure, rows[0], ncols=3)

@@ -5,14 +5,14 @@ from functools import partial
 
 import numpy as np
 
+from tsas_cli.drive.tables import tables
 from tsas_cli.records.drive import DriveFile, FrequencyResponses, Pole
 from tsas_cli.reporting.content import Picture, Section, Table
 from tsas_cli.reporting.drawing import picture
-from tsas_cli.reporting.drive.figures import draw_bode, draw_poles, draw_residuals
+from tsas_cli.reporting.drive.figures import draw_bode, draw_poles
 from tsas_cli.reporting.inputs import Inputs
-from tsas_cli.reporting.numbers import plain, spanned, with_interval
-
-_TITLE = "Drive"
+from tsas_cli.reporting.numbers import plain, spanned
+from tsas_cli.reporting.two_residuals import Residuals, draw_two_residuals, height_in
 
 
 def section(inputs: Inputs) -> Section | None:
@@ -20,123 +20,35 @@ def section(inputs: Inputs) -> Section | None:
     drive = inputs.get(DriveFile)
     if drive is None:
         return None
-    return drive_section(drive, _response(drive), _residuals(inputs, drive))
+    printed = tuple(map(Table.printed, tables(drive, "The identified drive")))
+    evidence = (drive.diagnosis.evidence.sentence, f"Next: {drive.diagnosis.next_experiment}")
+    parts = (
+        Section("drive-numbers", "What was found, in numbers", tables=printed),
+        Section("drive-response", "Frequency response and poles", pictures=_response(drive)),
+        Section("drive-left", "What is left", pictures=_residuals(inputs, drive)),
+        Section("drive-next", "Evidence and next experiment", evidence),
+    )
+    return Section(
+        "drive",
+        "Drive",
+        tuple(_intro(drive)),
+        points=drive.cannot_tell,
+        equations=(drive.structure.equation, drive.inverse),
+        parts=parts,
+    )
 
 
-def drive_section(
-    drive: DriveFile, response: tuple[Picture, ...] = (), left: tuple[Picture, ...] = ()
-) -> Section:
-    """Return the section with pictures of the frequency response and of what is left, if any."""
+def _intro(drive: DriveFile) -> Iterator[str]:
     lead = drive.kinematics
-    intro = [drive.diagnosis.reason]
+    yield drive.diagnosis.reason
     if lead.kinematic_lead_rpm_s_per_mm is not None:
-        intro.append(
+        yield (
             f"At low speed the motor's speed leads x_in by {plain(lead.fitted_lead_rpm_s_per_mm)} "
             f"rpm s/mm; kinematics alone, 60 im/(2π r1), make it "
             f"{plain(lead.kinematic_lead_rpm_s_per_mm)}."
         )
     if not drive.fit.converged:
-        intro.append(f"The fit did not converge: {drive.fit.message}")
-    return Section(
-        "drive",
-        _TITLE,
-        tuple(intro),
-        points=drive.cannot_tell,
-        equations=(drive.structure.equation, drive.inverse),
-        parts=tuple(_parts(drive, response, left)),
-    )
-
-
-def _parts(
-    drive: DriveFile, response: tuple[Picture, ...], left: tuple[Picture, ...]
-) -> Iterator[Section]:
-    lacks = tuple(_causes(drive))
-    if lacks:
-        yield Section("drive-causes", "What the nominal drive lacks", tables=lacks)
-    yield Section("drive-parameters", "The identified drive", tables=(_parameters(drive),))
-    if response:
-        yield Section("drive-response", "Frequency response and poles", pictures=response)
-    yield Section("drive-left", "What is left", tables=(_errors(drive),), pictures=left)
-    if drive.structures:
-        yield Section("drive-structures", "Structures tried", tables=(_structures(drive),))
-    yield Section(
-        "drive-next",
-        "Evidence and next experiment",
-        tuple(text for text in (drive.diagnosis.evidence.sentence, _next(drive)) if text),
-    )
-
-
-def _next(drive: DriveFile) -> str:
-    following = drive.diagnosis.next_experiment
-    return f"Next: {following}" if following else ""
-
-
-def _parameters(drive: DriveFile) -> Table:
-    rows = tuple(
-        (
-            p.name,
-            *with_interval(p.value, p.interval_low, p.interval_high),
-            p.unit,
-            p.origin,
-            "yes" if p.at_bound else "no",
-        )
-        for p in drive.parameters
-    )
-    header = ("parameter", "value", "95 % interval", "unit", "origin", "at its bound")
-    return Table("Parameters of the drive", header, rows, numeric=frozenset({1, 2}))
-
-
-def _causes(drive: DriveFile) -> Iterator[Table]:
-    rows = tuple(
-        (
-            cause.effect,
-            name,
-            *with_interval(p.value, p.interval_low, p.interval_high),
-            p.unit,
-            "yes" if p.at_bound else "no",
-            plain(cause.gain_percent, 3),
-            ", ".join(cause.rivals),
-        )
-        for cause in drive.diagnosis.named
-        for name, p in cause.parameters.items()
-    )
-    header = (
-        "effect",
-        "parameter",
-        "value",
-        "95 % interval",
-        "unit",
-        "at its bound",
-        "gain [%]",
-        "rivals",
-    )
-    if rows:
-        caption = "What the nominal drive lacks, and what each takes off the error on held-out data"
-        yield Table(caption, header, rows, numeric=frozenset({2, 3, 6})).without_empty()
-
-
-def _structures(drive: DriveFile) -> Table:
-    rows = tuple(
-        (
-            s.name,
-            str(s.parameters),
-            plain(s.held_out_times_noise, 3),
-            "chosen" if s.chosen else "" if s.converged else "not converged",
-        )
-        for s in drive.structures
-    )
-    header = ("structure of G(s)", "parameters", "error / noise", "remark")
-    caption = "Structures and their error on held-out data; the simplest one not surely worse"
-    return Table(caption, header, rows, numeric=frozenset({1, 2}))
-
-
-def _errors(drive: DriveFile) -> Table:
-    rows = tuple(
-        (name, plain(run.rmse_nominal, 3), plain(run.rmse, 3), plain(run.noise, 3))
-        for name, run in drive.runs.items()
-    )
-    header = ("run", "RMSE, nominal", "RMSE, identified", "noise")
-    return Table("Simulated against measured x_in [mm]", header, rows, numeric=frozenset({1, 2, 3}))
+        yield f"The fit did not converge: {drive.fit.message}"
 
 
 def _response(drive: DriveFile) -> tuple[Picture, ...]:
@@ -185,7 +97,7 @@ def _pole_in_words(pole: Pole) -> str:
 
 
 def _residuals(inputs: Inputs, drive: DriveFile) -> tuple[Picture, ...]:
-    runs, said = {}, []
+    panels, said = [], []
     for recording in inputs.recordings:
         run, x_in = drive.runs.get(recording.run.id), recording.get("x_in_mm")
         if run is None or x_in is None or run.noise is None:
@@ -194,18 +106,19 @@ def _residuals(inputs: Inputs, drive: DriveFile) -> tuple[Picture, ...]:
             x_in - inputs.series(recording.run.id, x_in.size, column, DriveFile)
             for column in ("x_in_nominal_mm", "x_in_mm")
         )
-        runs[recording.run.id] = (recording.time_s, nominal, fitted, run.noise)
+        label = f"{recording.run.id} [mm]"
+        panels.append(Residuals(label, recording.time_s, nominal, fitted, run.noise))
         said.append(
             f"run {recording.run.id}: nominal {spanned(nominal)}, identified {spanned(fitted)}, "
             f"noise {plain(run.noise, 3)}"
         )
-    if not runs:
+    if not panels:
         return ()
     shown = picture(
-        partial(draw_residuals, runs=runs),
+        partial(draw_two_residuals, panels=panels, names=("nominal", "identified")),
         key="drive-residuals",
         alt=f"Measured less simulated x_in over time, in millimetre: {'; '.join(said)}.",
         caption="Measured less simulated x_in; noise alone leaves 95 % between the dashed lines.",
-        height_in=0.6 + 1.5 * len(runs),
+        height_in=height_in(len(panels)),
     )
     return (shown,)

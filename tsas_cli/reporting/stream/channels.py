@@ -3,15 +3,22 @@
 A column of a file is read once, recorded, and forgotten.
 """
 
-import numpy as np
-import numpy.typing as npt
-
-from tsas_cli.reporting.colours import dark
-from tsas_cli.reporting.stream.portraits import Portrait
+from tsas_cli.reporting.colours import CONTROLLERS, dark
+from tsas_cli.reporting.stream.loops import LoopPlane
 from tsas_cli.reporting.stream.recorder import Entity, Recorder
 from tsas_cli.reporting.stream.seen import MEASURED, RESIDUAL, WANTED, SeenRun
+from tsas_cli.reporting.tracking import runs as tracked
 
-Floats = npt.NDArray[np.float64]
+FORCE, ERROR, SPEED = "f_out_N", "tracking_error_N", "motor_speed_rpm"
+STATES = {  # that a controller keeps: the axis of each column
+    "error_sum_mm_s": "sum of the error ∫e dt [mm s]",
+    "sliding_distance_mm_per_s2": "sliding variable s [mm/s²]",
+    "phi1_rpm_s3_per_mm": "estimate φ̂1 [rpm s³/mm]",
+    "phi2_rpm_s_per_mm": "estimate φ̂2 [rpm s/mm]",
+    "phi3_rpm_s2_per_mm": "estimate φ̂3 [rpm s²/mm]",
+    "error_estimate_mm": "estimated error [mm]",
+    "disturbance_rpm": "estimated disturbance d [rpm]",
+}
 _ROLES = {MEASURED: "measured", WANTED: "ink"}
 _WIDTHS = {MEASURED: 2.5, WANTED: 1.5}  # what is measured shows under what covers it
 
@@ -20,10 +27,12 @@ def series_of(run: SeenRun) -> dict[str, list[Entity]]:
     """Return the entities of all series, by the column that they are shown with."""
     found: dict[str, list[Entity]] = {}
     for channel in run.channels:
-        keys = (channel.key, *(source.which.key for source in channel.sources))
+        keys = (channel.key, *(source.key for source in channel.sources))
         found.setdefault(channel.quantity, []).extend(
             run.entity(channel.quantity, key) for key in keys
         )
+    if run.tracked is not None:
+        found[FORCE].append(run.entity(FORCE, "true"))
     return found
 
 
@@ -31,7 +40,7 @@ def residuals_of(run: SeenRun) -> dict[str, list[Entity]]:
     """Return the entities of the residuals by column."""
     found = {
         channel.column: [
-            run.entity(channel.column, RESIDUAL, source.which.key)
+            run.entity(channel.column, RESIDUAL, source.key)
             for source in channel.sources
             if not source.cleaned
         ]
@@ -48,23 +57,44 @@ def record_channels(recorder: Recorder, run: SeenRun) -> None:
     InputError
         A file cannot be read, or does not belong to the run.
     """
+    controller = None if run.tracked is None else run.tracked.controller
     for channel in run.channels:
-        measured = run.measured(channel.column)
-        entity = run.entity(channel.quantity, channel.key)
-        recorder.line(entity, channel.key, dark(_ROLES[channel.key]), width=_WIDTHS[channel.key])
-        recorder.scalars(entity, run.times, measured)
-        portrait = None
-        if channel in run.loops:
-            portrait = Portrait(run, channel, run.x_in_mm, measured)
-            portrait.record(recorder)
-        for source in channel.sources:
-            values, which = run.series(channel.column, source), source.which
-            series = {run.entity(channel.column, which.key): values}
+        measured, name, colour = run.measured(channel.column), channel.key, _ROLES[channel.key]
+        if controller and channel.column == SPEED:  # which a controller asks for
+            name, colour = controller, _role_of(controller)
+        entity, width = run.entity(channel.quantity, channel.key), _WIDTHS[channel.key]
+        recorder.series(entity, run.times, measured, name, dark(colour), width=width)
+        loop = LoopPlane.of(recorder, run, channel, measured) if channel in run.loops else None
+        for number, source in enumerate(channel.sources):
+            values = run.predicted(channel.column, source)
+            series = {run.entity(channel.column, source.key): values}
             if not source.cleaned:
-                series[run.entity(channel.column, RESIDUAL, which.key)] = measured - values
-            for entity, values in series.items():
-                recorder.line(entity, which.label, dark(which.role))
-                recorder.scalars(entity, run.times, values)
-            if portrait is not None:
-                portrait.record_prediction(recorder, source, values)
+                residual = run.entity(channel.column, RESIDUAL, source.key)
+                series[residual] = measured - values
+            for entity, samples in series.items():
+                recorder.series(entity, run.times, samples, source.label, dark(source.role))
+            if loop is not None:
+                loop.record(source.key, values, dark(source.role), order=2.0 + number)
         recorder.settle()
+
+
+def record_tracking(recorder: Recorder, run: SeenRun) -> None:
+    """Record what a tracked run holds beside its sensors; nothing for any other run.
+
+    Raises
+    ------
+    InputError
+        A column is missing or cannot be read.
+    """
+    if run.tracked is None:
+        return
+    name = run.tracked.controller
+    wanted, true = run.file.read(tracked.WANTED), run.file.read(tracked.TRUE)
+    kept = {run.entity(FORCE, "true"): true, run.entity(ERROR): wanted - true}
+    kept |= {run.entity(state): run.file.read(state) for state in STATES if state in run.file.names}
+    for entity, values in kept.items():
+        recorder.series(entity, run.times, values, name, dark(_role_of(name)))
+
+
+def _role_of(controller: str) -> str:
+    return controller if controller in CONTROLLERS else "unknown"

@@ -10,11 +10,10 @@ from pathlib import Path
 from threading import Thread
 
 import rerun as rr
-from rerun.blueprint import Blueprint
+from rerun.blueprint import Blueprint, Container, View
 from rerun.chunk import RrdReader
 
 from tsas_cli.reporting.stream.recorder import Recorder
-from tsas_cli.reporting.stream.views import outline
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import new_file
 
@@ -107,6 +106,13 @@ def is_finished(path: Path) -> bool:
     except RuntimeError:
         return False
     return True
+
+
+def outline(part: object) -> object:
+    """Return what a part of a layout says, without the numbers that Rerun draws for each."""
+    if isinstance(part, Container | View):
+        return [(name, outline(value)) for name, value in vars(part).items() if name != "id"]
+    return [outline(one) for one in part] if isinstance(part, list | tuple) else repr(part)
 
 
 def _end(stream: rr.RecordingStream, path: Path) -> None:

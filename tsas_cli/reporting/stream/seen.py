@@ -7,26 +7,53 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.recordings.columns import BY_NAME, TIME
+from tsas_cli.recordings.columns import BY_NAME, TIME, nominal_name
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.run_files import RunColumns, open_run
-from tsas_cli.records.base import OfDataset, PhaseSegment
+from tsas_cli.records.base import OfDataset, PhaseSegment, StageFile
 from tsas_cli.records.calibration import CalibrationFile
 from tsas_cli.records.check import CheckFile
 from tsas_cli.records.diagnosis import DiagnosisFile
+from tsas_cli.records.drive import DriveFile
 from tsas_cli.records.simulation import SimulationFile
 from tsas_cli.records.tracking import TrackedResult, TrackingFile
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.stream.recorder import Entity, Times, times_of
-from tsas_cli.reporting.stream.sources import StreamSource, sources
 
 Floats = npt.NDArray[np.float64]
 
 MEASURED, WANTED, RESIDUAL = "measured", "wanted", "residual"
 X_IN, TENSIONS = "x_in_mm", ("f_in_N", "f_out_N")
+_TENDON = frozenset({*TENSIONS, "x_out_mm"})
 _BROKEN = {"unreadable", "time-order"}
 _WISHES = {"f_out_ref_N": "f_out_N"}  # shown with what they are wishes of
+
+
+@dataclass(frozen=True)
+class Source:
+    """What a stage says of some columns: its name in paths, in words, and its colour's role.
+
+    What comes later in the alphabet is drawn over what comes before. `nominal` where it is of the
+    nominal model; `cleaned` where it is the measurement itself, cleaned before it drove a model.
+    """
+
+    key: str
+    label: str
+    role: str
+    stage: type[StageFile]
+    columns: frozenset[str] = _TENDON
+    nominal: bool = False
+    cleaned: bool = False
+
+    def named(self, column: str) -> str:
+        """Return what the column is called in the stage's file."""
+        return nominal_name(column) if self.nominal else column
+
+
+SIMULATED = Source("simulated", "simulated", "simulated", SimulationFile)
+NOMINAL = Source("model", "nominal model", "before", DiagnosisFile, nominal=True)
+EXTENDED = Source("model_extended", "extended model", "after", DiagnosisFile)
 
 
 @dataclass(frozen=True)
@@ -34,7 +61,7 @@ class Channel:
     """A column of a run, and what stages say of it."""
 
     column: str
-    sources: tuple[StreamSource, ...] = ()
+    sources: tuple[Source, ...] = ()
 
     @property
     def quantity(self) -> str:
@@ -68,7 +95,7 @@ class SeenRun:
     @property
     def loops(self) -> tuple[Channel, ...]:
         """The tensions that can be shown over the displacement of the drive."""
-        there = any(channel.column == X_IN for channel in self.channels)
+        there = X_IN in self.file.names
         return tuple(c for c in self.channels if there and c.column in TENSIONS)
 
     @cached_property
@@ -104,7 +131,7 @@ class SeenRun:
         """
         return self.x_in_mm if column == X_IN else self.file.read(column)
 
-    def series(self, column: str, source: StreamSource) -> Floats:
+    def predicted(self, column: str, source: Source) -> Floats:
         """Return what a stage says of a column, shape (n,), NaN for gaps.
 
         Raises
@@ -125,30 +152,39 @@ def seen_runs(inputs: Inputs) -> Iterator[SeenRun]:
     """
     if inputs.dataset is None:
         return
-    given, tracking = tuple(sources(inputs)), inputs.get(TrackingFile)
+    given, tracking = tuple(_sources(inputs)), inputs.get(TrackingFile)
     tracked = {} if tracking is None else {result.run: result for result in tracking.results}
     for run in _taken(inputs, inputs.dataset):
         file = open_run(inputs.dataset.folder, run)
-        columns = [name for name in BY_NAME if name in file.names and name != TIME]
         written = {source.stage: inputs.written_columns(run.id, source.stage) for source in given}
-        yield SeenRun(
-            inputs,
-            file,
-            tuple(
-                Channel(
-                    column,
-                    tuple(
-                        source
-                        for source in given
-                        if column in source.columns
-                        and source.named(column) in written[source.stage]
-                    ),
-                )
-                for column in columns
-            ),
-            _segments(inputs, run.id),
-            tracked.get(run.id),
+        channels = tuple(
+            Channel(name, tuple(s for s in given if _says(s, name, written[s.stage])))
+            for name in BY_NAME
+            if name in file.names and name != TIME
         )
+        yield SeenRun(inputs, file, channels, _segments(inputs, run.id), tracked.get(run.id))
+
+
+def _says(source: Source, column: str, written: frozenset[str]) -> bool:
+    return column in source.columns and source.named(column) in written
+
+
+def _sources(inputs: Inputs) -> Iterator[Source]:
+    """Yield the sources that were given; where nothing is named, both models are one."""
+    simulation, diagnosis = inputs.get(SimulationFile), inputs.get(DiagnosisFile)
+    drive = frozenset({X_IN})
+    if simulation is not None:
+        yield SIMULATED
+    if diagnosis is not None:
+        yield NOMINAL
+        if diagnosis.named:
+            yield EXTENDED
+    if simulation is not None or diagnosis is not None:
+        stage = DiagnosisFile if simulation is None else SimulationFile
+        yield Source("model_input", "conditioned", "simulated", stage, drive, cleaned=True)
+    if inputs.get(DriveFile) is not None:
+        yield Source("model", "nominal drive", "before", DriveFile, drive, nominal=True)
+        yield Source("model_identified", "identified drive", "after", DriveFile, drive)
 
 
 def _taken(inputs: Inputs, dataset: Dataset) -> list[Run]:

@@ -4,27 +4,21 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import rerun as rr
 from rerun.blueprint import Blueprint
 
 from tsas_cli.reporting.inputs import Inputs
-from tsas_cli.reporting.stream import texts
-from tsas_cli.reporting.stream.channels import record_channels
-from tsas_cli.reporting.stream.events import record_own_events, record_phases
+from tsas_cli.reporting.stream.channels import record_channels, record_tracking
+from tsas_cli.reporting.stream.events import record_faults, record_phases
+from tsas_cli.reporting.stream.layout import OVERVIEW, layout_of
 from tsas_cli.reporting.stream.opened import to_file
+from tsas_cli.reporting.stream.overview import overview
 from tsas_cli.reporting.stream.recorder import Recorder
 from tsas_cli.reporting.stream.seen import SeenRun, seen_runs
-from tsas_cli.reporting.stream.tabs import DIAGNOSIS, OVERVIEW, layout_of
-from tsas_cli.reporting.stream.tendon.content import record_tendon
-from tsas_cli.reporting.stream.tracking import record_tracking
+from tsas_cli.reporting.stream.tendon import record_tendon
 
 STREAM_FILE = "stream.rrd"
-CONTENT: tuple[Callable[[Recorder, SeenRun], None], ...] = (
-    record_channels,
-    record_tracking,
-    record_phases,
-    record_own_events,
-    record_tendon,
-)
+CONTENT = (record_channels, record_tracking, record_phases, record_faults, record_tendon)
 
 
 @dataclass(frozen=True)
@@ -33,13 +27,12 @@ class Stream:
 
     name: str
     overview: str
-    diagnosis: str | None
     runs: tuple[SeenRun, ...]
 
     @property
     def layout(self) -> Blueprint:
         """What the viewer opens with."""
-        return layout_of(self.runs, diagnosed=self.diagnosis is not None)
+        return layout_of(self.runs)
 
     def record(self, recorder: Recorder, step: Callable[[], None] = lambda: None) -> None:
         """Record texts and runs, one run after the other; `step` is called after each.
@@ -49,9 +42,8 @@ class Stream:
         InputError
             A file cannot be read, or does not belong to its run.
         """
-        recorder.markdown(OVERVIEW, self.overview)
-        if self.diagnosis is not None:
-            recorder.markdown(DIAGNOSIS, self.diagnosis)
+        text = rr.TextDocument(self.overview, media_type=rr.MediaType.MARKDOWN)
+        recorder.static(OVERVIEW, text)
         for run in self.runs:
             read = replace(run)  # a copy, so that what it has read goes with it
             for content in CONTENT:
@@ -69,12 +61,7 @@ def stream_of(inputs: Inputs) -> Stream:
     """
     dataset = "tsas" if inputs.dataset is None else inputs.dataset.manifest.name
     stages = [kind.FILE.removesuffix(".json") for kind in inputs.folders]
-    return Stream(
-        ", ".join([dataset, *stages]),
-        texts.overview(inputs),
-        texts.diagnosis(inputs),
-        tuple(seen_runs(inputs)),
-    )
+    return Stream(", ".join([dataset, *stages]), overview(inputs), tuple(seen_runs(inputs)))
 
 
 def write_stream(inputs: Inputs, path: Path, *, step: Callable[[], None] = lambda: None) -> None:

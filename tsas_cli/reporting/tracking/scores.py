@@ -32,29 +32,6 @@ def table(tracking: TrackingFile) -> Table:
     return Table(f"Scores{over}", header, rows, numeric=numeric).without_empty()
 
 
-def best_and_worst(tracking: TrackingFile) -> list[str]:
-    """Return, for each condition, who follows best and who worst, in a sentence."""
-    said = []
-    for condition in dict.fromkeys(result.condition for result in tracking.results):
-        rmse = {
-            r.controller: r.scores.rmse_N.mean
-            for r in tracking.results
-            if r.condition == condition and r.scores.rmse_N.mean is not None
-        }
-        ranked = sorted(rmse, key=lambda name: rmse[name])
-        if not ranked:
-            continue
-        sizes = [with_spread(rmse[name], None) for name in (ranked[0], ranked[-1])]
-        words = f"{condition.capitalize()}, {ranked[0]} "
-        if len(ranked) == 1:
-            said.append(f"{words}follows the wanted force with an RMSE of {sizes[0]} N.")
-        else:
-            said.append(
-                f"{words}follows best (RMSE {sizes[0]} N), {ranked[-1]} worst ({sizes[1]} N)."
-            )
-    return said
-
-
 def _cell(number: Spread) -> str:
     return with_spread(number.mean, number.sd)
 

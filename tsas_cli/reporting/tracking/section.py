@@ -7,7 +7,7 @@ from tsas_cli.records.tracking import TrackingFile
 from tsas_cli.reporting.content import Section
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import plain
-from tsas_cli.reporting.tracking import adaptation, effort, forces, portraits, scores
+from tsas_cli.reporting.tracking import adaptation, curves, portraits, scores
 from tsas_cli.reporting.tracking.runs import WANTED, RunsUnderCondition, read_conditions
 
 
@@ -17,20 +17,16 @@ def section(inputs: Inputs) -> Section | None:
     if tracking is None:
         return None
     conditions = read_conditions(inputs, tracking)
-    parts = (
-        forces.followed(conditions),
-        forces.errors(conditions),
-        portraits.part(conditions, tracking.settings),
-        adaptation.part(conditions, tracking.settings.controllers.adaptive),
-        effort.part(conditions),
-    )
+    force, error, effort = curves.parts(conditions)
+    portrait = portraits.part(conditions, tracking.settings)
+    adapted = adaptation.part(conditions, tracking.settings.controllers.adaptive)
     return Section(
         "tracking",
         "Tracking",
         tuple(_intro(tracking, conditions)),
         points=tracking.notes,
         tables=(scores.table(tracking),),
-        parts=tuple(part for part in parts if part is not None),
+        parts=tuple(filter(None, (force, error, portrait, adapted, effort))),
     )
 
 

@@ -11,15 +11,17 @@ import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
 from typing import IO
 
 from tsas_cli.reporting.viewer.ports import LOOPBACK
-from tsas_cli.reporting.viewer.program import program
 from tsas_cli.support.errors import InputError
 
 START_S = 30.0  # a program of 300 MB, read from a slow disk
 END_S = 3.0
 LOOK_S = 0.05
+NAMES = {"win32": "rerun.exe", "darwin": "Rerun.app/Contents/MacOS/Rerun"}
 # Linux ends a child whose parent dies, where the child asks for it before it becomes the viewer.
 ASK = (
     "import ctypes, os, signal, sys\n"
@@ -60,6 +62,29 @@ class Child:
             f"the viewer has failed ({said})",
             remedy="try `tsas view --web`; `tsas doctor` says what the viewer can do here",
         )
+
+
+def program() -> Path:
+    """Return the path of the viewer, which is inside the package `rerun_cli`.
+
+    The script `rerun` beside Python only calls it: who ends the script leaves it running.
+
+    Raises
+    ------
+    InputError
+        The package or its program is not installed.
+    """
+    spec = find_spec("rerun_cli")
+    folders = [] if spec is None else list(spec.submodule_search_locations or ())
+    names = dict.fromkeys((NAMES.get(sys.platform, "rerun"), "rerun"))  # older wheels have no app
+    found = [path for f in folders for name in names if (path := Path(f) / name).is_file()]
+    if not found:
+        raise InputError(
+            "the viewer's program is not installed",
+            where="package rerun-sdk",
+            remedy="install it anew: `pip install --force-reinstall rerun-sdk`",
+        )
+    return found[0]
 
 
 @contextmanager

@@ -6,8 +6,8 @@ import subprocess
 import tempfile
 from pathlib import Path
 
+from tsas_cli.reporting.viewer.child import program
 from tsas_cli.reporting.viewer.ports import LOOPBACK, free_ports
-from tsas_cli.reporting.viewer.program import program
 from tsas_cli.support.errors import InputError
 
 LONGEST_S = 10.0

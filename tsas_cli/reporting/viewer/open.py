@@ -1,7 +1,12 @@
-"""The viewer opened: on a file or for what is live, in a window or in the browser."""
+"""The viewer opened: on a file or for what is live, in a window or in the browser.
 
+It counts how it is used, which a person should know before it starts.
+"""
+
+import os
+import sys
 from collections.abc import Iterator
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import urlencode
@@ -13,6 +18,11 @@ from tsas_cli.reporting.viewer.ports import LOOPBACK, free_ports
 BIND = ("--bind", LOOPBACK)
 ALL_OF_IT = ("--server-memory-limit", "75%")  # beyond it the oldest data go without a word
 OPENS_S = 1.0  # after its port answers, a viewer without screen or graphics has failed by then
+SCREENS = ("WAYLAND_DISPLAY", "WAYLAND_SOCKET", "DISPLAY")  # where Linux says that it has one
+NOTE = (
+    "the viewer is Rerun's; its window sends Rerun usage statistics, never data, until you run "
+    "`rerun analytics disable`; in the browser tsas keeps it from calling anyone (said once)"
+)
 NO_WELCOME = ("--hide-welcome-screen",)  # it would load examples from elsewhere
 
 
@@ -34,6 +44,28 @@ def opened(
     the page's next one.
     """
     return _page(file, port) if in_browser else _window(file, port)
+
+
+def has_screen() -> bool:
+    """Return whether this session has a screen; macOS and Windows always have one."""
+    return sys.platform in {"darwin", "win32"} or any(os.environ.get(name) for name in SCREENS)
+
+
+def note_once() -> str:
+    """Return the note the first time that a user is about to start the viewer, then nothing.
+
+    Where nothing can be remembered it is returned each time.
+    """
+    import platformdirs
+
+    root = os.environ.get("TSAS_STATE_DIR") or platformdirs.user_state_dir("tsas")
+    marker = Path(root) / "viewer-analytics-said"
+    if marker.exists():
+        return ""
+    with suppress(OSError):
+        marker.parent.mkdir(parents=True, exist_ok=True)
+        marker.touch()
+    return NOTE
 
 
 @contextmanager

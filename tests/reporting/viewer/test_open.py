@@ -1,6 +1,6 @@
 import pytest
 
-from tsas_cli.reporting.viewer.analytics import NOTE, note_once
+from tsas_cli.reporting.viewer.open import NOTE, SCREENS, has_screen, note_once
 
 
 @pytest.fixture
@@ -23,3 +23,20 @@ def test_another_user_is_told_too(state, monkeypatch):
 def test_where_nothing_can_be_remembered_it_is_said_each_time(state):
     state.write_text("a file")
     assert [note_once(), note_once()] == [NOTE, NOTE]
+
+
+@pytest.mark.parametrize(
+    ("system", "named", "expected"),
+    [
+        ("linux", None, False),
+        ("linux", "DISPLAY", True),
+        ("linux", "WAYLAND_DISPLAY", True),
+        ("darwin", None, True),
+        ("win32", None, True),
+    ],
+)
+def test_a_screen_is_what_the_system_says(monkeypatch, system, named, expected):
+    monkeypatch.setattr("sys.platform", system)
+    for name in SCREENS:
+        monkeypatch.setenv(name, ":0" if name == named else "")
+    assert has_screen() is expected

@@ -1,0 +1,241 @@
+"""The tendon in its sheath: coloured by its tension, thick where it slips, its slip front.
+
+Of the sheath are known length and total bend. It is drawn evenly bent: flat as an arc up to a
+little over half a turn; beyond, where its ends would meet, as a helix of a gentle pitch.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import cast
+
+import numpy as np
+import numpy.typing as npt
+import rerun as rr
+import rerun.blueprint as rrb
+
+from tsas_cli.identification.model import Model, read_model
+from tsas_cli.identification.prepared import prepare
+from tsas_cli.physics.frames import Frames, Indices
+from tsas_cli.physics.response import Dynamics, simulate
+from tsas_cli.physics.rig import Rig
+from tsas_cli.recordings.dataset import Dataset
+from tsas_cli.recordings.run_files import read_recording
+from tsas_cli.records.base import StageFile
+from tsas_cli.records.calibration import MODEL_FILE
+from tsas_cli.records.diagnosis import EXTENDED_MODEL, NOMINAL_MODEL, DiagnosisFile
+from tsas_cli.records.simulation import SimulationFile
+from tsas_cli.reporting.colours import dark
+from tsas_cli.reporting.stream.recorder import Entity, Recorder, Times, path_of
+from tsas_cli.reporting.stream.seen import EXTENDED, NOMINAL, SIMULATED, TENSIONS, SeenRun, Source
+
+Floats = npt.NDArray[np.float64]
+
+PER_SECOND = 15.0
+PER_SPAN = 120.0  # while a tension goes through all that it has in the run
+MOST = 1500  # moments of one run, whatever its length
+FLAT_UP_TO_RAD = 1.2 * math.pi
+RISE = 0.15  # of a helix, over the way along the ground
+THICK, THIN, TALL, APART = 0.011, 0.004, 0.36, 0.8  # of the scene's size
+EYE = np.array([0.0, -0.9, 0.9])  # of the scene's size, from where it looks to its middle
+
+
+@dataclass(frozen=True)
+class TendonModels:
+    """The models that a stage simulated a run with, and how."""
+
+    stage: type[StageFile]
+    models: Mapping[Source, Model]
+    dynamics: Dynamics = "slip"
+    nodes: int | None = None
+
+
+def models_of(run: SeenRun) -> TendonModels | None:
+    """Return both models of a diagnosis, else the simulated one.
+
+    None where neither stage took the run or wrote its models, and for the lumped model, which
+    does not say what is along the tendon.
+
+    Raises
+    ------
+    InputError
+        A model's file cannot be read.
+    """
+    diagnosis, simulation = run.inputs.get(DiagnosisFile), run.inputs.get(SimulationFile)
+    files = {SIMULATED: MODEL_FILE}
+    if diagnosis is not None:
+        files = {NOMINAL: NOMINAL_MODEL} | ({EXTENDED: EXTENDED_MODEL} if diagnosis.named else {})
+    elif simulation is None or simulation.dynamics == "static":
+        return None
+    stage = next(iter(files)).stage
+    paths = {source: run.inputs.folders[stage] / file for source, file in files.items()}
+    written = run.inputs.written_columns(run.id, stage)
+    if not written or not all(path.is_file() for path in paths.values()):
+        return None
+    models = {source: read_model(path) for source, path in paths.items()}
+    if diagnosis is not None or simulation is None:
+        return TendonModels(stage, models)
+    return TendonModels(stage, models, simulation.dynamics, simulation.nodes)
+
+
+def record_tendon(recorder: Recorder, run: SeenRun) -> None:
+    """Simulate the run again with the models that a stage wrote, and record their tendons.
+
+    Raises
+    ------
+    InputError
+        A file cannot be read, or is not what it was.
+    """
+    given = models_of(run)
+    if given is None:
+        return
+    dataset, entry = cast("Dataset", run.inputs.dataset), run.file.run
+    drive = prepare(read_recording(dataset.folder, entry), dataset.manifest.session_start).drive
+    there = run.inputs.written_columns(run.id, given.stage)
+    at = moments(
+        run.time_s,
+        [run.inputs.series(run.id, run.file.rows, n, given.stage) for n in TENSIONS if n in there],
+    )
+    on_mesh = given.nodes is not None
+    followed: dict[Source, tuple[Rig, Frames]] = {}
+    for source, model in given.models.items():
+        rig = model.rig(entry)
+        found = simulate(
+            rig, drive, given.dynamics, on_mesh=on_mesh, nodes=given.nodes, looked_at=at
+        )
+        if found.frames is not None:
+            followed[source] = rig, found.frames
+    record_tendons(recorder, run.entity("tendon"), run.times.at(at), followed)
+
+
+def moments(time_s: Floats, tensions: Sequence[Floats]) -> Indices:
+    """Return the samples to look at, increasing: more where a tension changes fast.
+
+    `time_s` and each of the tensions, which may hold NaN, are of shape (n,).
+    """
+    steps = PER_SECOND * np.diff(time_s)
+    for tension in tensions:
+        there = tension[np.isfinite(tension)]
+        span = float(np.ptp(there)) if there.size else 0.0
+        if span > 0.0:
+            steps = np.fmax(steps, PER_SPAN / span * np.abs(np.diff(tension)))
+    passed = np.concatenate(([0.0], np.cumsum(steps)))
+    found = np.searchsorted(passed, np.arange(0.0, passed[-1], max(1.0, passed[-1] / MOST)))
+    return np.unique(np.append(found, time_s.size - 1)).astype(np.int64)
+
+
+def record_tendons(
+    recorder: Recorder,
+    entity: Entity,
+    times: Times,
+    tendons: Mapping[Source, tuple[Rig, Frames]],
+) -> None:
+    """Record tendons behind each other, and above each the tension along it, to one scale."""
+    every = np.concatenate([frames.tension_N.ravel() for _, frames in tendons.values()])
+    low, high = float(np.nanmin(every)), float(np.nanmax(every))
+    size = _size([rig for rig, _ in tendons.values()])
+    for number, (source, (rig, frames)) in enumerate(tendons.items()):
+        mine, colour = (*entity, source.key), dark(source.role)
+        line = sheath_of(rig.sheath_length_mm, rig.total_bend_rad, frames.slip.shape[1])
+        line[:, 1] += APART * size * number
+        tension = np.nan_to_num(frames.tension_N)
+        raised = np.broadcast_to(line, (*tension.shape, 3)).astype(np.float32)
+        raised[..., 2] += TALL * size / high * tension
+        recorder.static((*mine, "tension"), rr.LineStrips3D.from_fields(colors=colour, radii=-1.5))
+        recorder.columns((*mine, "tension"), times, rr.LineStrips3D.columns(strips=raised))
+        text = f"{source.label}, {low:.3g} to {high:.3g} N"
+        name = rr.Points3D([line[0]], labels=[text], colors=colour, radii=0.0, show_labels=True)
+        recorder.static((*mine, "name"), name)
+        shades = _shades(0.5 * (tension[:, 1:] + tension[:, :-1]), low, high)
+        _record_line(recorder, (*mine, "tendon"), times, line, frames, shades, size)
+        _record_front(recorder, (*mine, "front"), times, raised, frames)
+
+
+def _record_line(
+    recorder: Recorder,
+    entity: Entity,
+    times: Times,
+    line: Floats,
+    frames: Frames,
+    shades: npt.NDArray[np.uint32],
+    size: float,
+) -> None:
+    """Record the tendon in pieces: their colours, and thick where they slip."""
+    pieces = np.stack((line[:-1], line[1:]), axis=1).astype(np.float32)
+    recorder.static(entity, rr.LineStrips3D(pieces))
+    radii = size * np.where(np.isin(frames.slip, (1, -1)), THICK, THIN)
+    columns = rr.LineStrips3D.columns(colors=shades.ravel(), radii=radii.ravel())
+    recorder.columns(entity, times, columns.partition(np.full(len(radii), len(pieces))))
+
+
+def _record_front(
+    recorder: Recorder,
+    entity: Entity,
+    times: Times,
+    raised: npt.NDArray[np.float32],
+    frames: Frames,
+) -> None:
+    """Record the front where it runs, as a point on the tension."""
+    runs = (frames.front > 0.0) & (frames.front < 1.0)
+    places = [
+        [np.interp(front, frames.places, axis) for axis in now.T]
+        for front, now in zip(frames.front[runs], raised[runs], strict=True)
+    ]
+    recorder.static(entity, rr.Points3D.from_fields(colors=dark("ink"), radii=-6.0))
+    points = rr.Points3D.columns(positions=np.array(places).reshape(-1, 3))
+    recorder.columns(entity, times, points.partition(runs.astype(np.int64)))
+
+
+def view_of_tendon(run: SeenRun) -> rrb.View | None:
+    """Return the view of a run's tendon, None where no stage tells a model of it.
+
+    Raises
+    ------
+    InputError
+        A model's file cannot be read.
+    """
+    given = models_of(run)
+    if given is None:
+        return None
+    size = _size([model.rig(run.file.run) for model in given.models.values()])
+    others = len(given.models) - 1
+    middle = np.array([0.0, 0.5 * APART * size * others, 0.2 * size])
+    eye = rrb.EyeControls3D(
+        position=middle + (1.0 + 0.3 * others) * size * EYE, look_target=middle, eye_up=(0, 0, 1)
+    )
+    return rrb.Spatial3DView(
+        name="Tendon, and the tension along it",
+        contents=f"+ {path_of(run.entity('tendon'))}/**",
+        eye_controls=eye,
+        line_grid=False,
+    )
+
+
+def sheath_of(length_mm: float, bend_rad: float, elements: int) -> Floats:
+    """Return the centre line, evenly spaced, shape (elements + 1, 3) [mm].
+
+    Drive and load are at the near side (−y), the drive on the left, the arc behind them.
+    """
+    rise = math.atan(RISE) if bend_rad > FLAT_UP_TO_RAD else 0.0
+    turn = bend_rad / math.cos(rise)  # of the heading: a helix bends by its cosine
+    heading = turn * (0.5 - (np.arange(elements) + 0.5) / elements)
+    flat = np.column_stack((np.cos(heading), np.sin(heading))) * math.cos(rise)
+    steps = np.column_stack((flat, np.full(elements, math.sin(rise)))) * length_mm / elements
+    line: Floats = np.vstack((np.zeros(3), np.cumsum(steps, axis=0)))
+    middle = 0.5 * (line.min(axis=0) + line.max(axis=0))
+    centred: Floats = line - [middle[0], middle[1], 0.0]
+    return centred
+
+
+def _size(rigs: Sequence[Rig]) -> float:
+    """Return how large the scene is [mm]: half a turn of the longest sheath is as wide."""
+    return 2.0 / math.pi * max(rig.sheath_length_mm for rig in rigs)
+
+
+def _shades(tension_N: Floats, low: float, high: float) -> npt.NDArray[np.uint32]:
+    """Return 0xRRGGBBAA of tensions, of a map that is even to the eye and never lost on black."""
+    from matplotlib import colormaps
+
+    share = 0.18 + 0.79 * (tension_N - low) / ((high - low) or 1.0)
+    packed = np.ascontiguousarray(colormaps["plasma"](share, bytes=True)).view(">u4")
+    return packed[..., 0].astype(np.uint32)
