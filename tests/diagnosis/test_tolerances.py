@@ -72,5 +72,6 @@ def test_most_of_what_is_within_scatter_is_one_friction_for_each_run():
     trial, per_run = fit(np.zeros(RUN.size)), np.array([-0.03, 0.01, 0.03, -0.01])[RUN]
     assert within_scatter(trial, FRICTION * per_run, RUN)
     assert not within_scatter(trial, FRICTION * 3.0 * per_run, RUN)
-    within_runs = np.sin(np.arange(RUN.size))
-    assert not within_scatter(trial, FRICTION * (per_run + 0.1 * within_runs), RUN)
+    within_runs = 0.1 * np.sin(np.arange(RUN.size))
+    assert not within_scatter(trial, FRICTION * (per_run + within_runs), RUN)
+    assert not within_scatter(trial, FRICTION * (0.3 + 0.1 * per_run + 0.1 * within_runs), RUN)

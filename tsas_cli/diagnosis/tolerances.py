@@ -40,6 +40,8 @@ def with_friction_of_runs(trial: HypothesisFit, run: Indices) -> HypothesisFit:
 def within_scatter(trial: HypothesisFit, change: Floats, run: Indices) -> bool:
     """Return whether most of a change of the residuals is a plausible scatter of the friction."""
     columns = friction_of_runs(trial, run)
+    common = columns.sum(axis=1)  # what the friction coefficient does
+    change = change - common * float(common @ change) / float(common @ common)
     frictions = np.linalg.lstsq(columns, change, rcond=None)[0]
     left = change - columns @ frictions
     plausible = np.all(np.abs(frictions - frictions.mean()) <= PLAUSIBLE)
