@@ -159,12 +159,3 @@ def test_one_large_step_is_many_small_ones():
     fine = follow(through(*turns, samples=1000), rig=FREE)
     for coarse, small in zip(follow(turns, rig=FREE), fine, strict=True):
         np.testing.assert_allclose(coarse, small[999::1000], rtol=1e-7)
-
-
-@pytest.mark.parametrize("n", [1, 2, 7])
-def test_few_nodes_obey_the_capstan_ratio_too(n):
-    _, _, f_in, f_out, phase = follow(through(20.0, 0.0), n=n)
-    for direction in (1, -1):
-        slipping = phase == direction
-        assert slipping.any()
-        np.testing.assert_allclose(f_in[slipping] / f_out[slipping], UP**direction, rtol=1e-9)
