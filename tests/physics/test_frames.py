@@ -137,18 +137,6 @@ def test_chain_and_closed_form_agree_along_the_tendon():
         assert np.abs(found.front - exact.front).max() < 0.03
 
 
-def test_the_dynamic_chain_is_the_distributed_model_while_it_is_slow():
-    stiff = GROUP_A._replace(
-        bristles=GROUP_A.bristles._replace(stiffness_N_per_mm=1e6),
-    )
-    slow = DriveInput(SINE, time_s=20.0 * TIME_S)
-    at = np.arange(0, SINE.size, 50)
-    dynamic = simulate(stiff, slow, "lugre", looked_at=at).frames
-    exact = simulate(stiff, slow, on_mesh=True, nodes=50, looked_at=at).frames
-    assert np.abs(dynamic.tension_N - exact.tension_N).max() < 0.5
-    assert (dynamic.slip != exact.slip).mean() < 0.03
-
-
 @pytest.mark.parametrize("dynamics", ["slip", "lugre"])
 @pytest.mark.parametrize("on_mesh", [False, True])
 def test_a_slack_tendon_carries_nothing(dynamics, on_mesh):

@@ -17,7 +17,6 @@ from tsas_cli.physics.plant.turntable import (
     Tangent,
     Turntable,
     across_play,
-    advance_motor,
     advance_turntable,
     play_friction,
     ripple_tangent,
@@ -121,13 +120,6 @@ def test_a_step_moves_all_that_is_remembered_back():
     after = advance_turntable(TABLE, 2.2, 33.0, 5.0, H)
     v = (3.0 * 2.2 - 4.0 * 2.0 + 1.9) / (2.0 * H)
     assert after == pytest.approx(Turntable(2.2, 2.0, v, 9.0, 33.0, 5.0))
-
-
-def test_a_motor_comes_nearer_to_the_speed_asked_for():
-    after = advance_motor(MOTOR, 400.0, ACTUATOR, 0.02)
-    left = math.exp(-1.0)
-    way = 0.024 * (400.0 * 0.02 - 300.0 * 0.02 * (1.0 - left))
-    assert after == pytest.approx((400.0 - 300.0 * left, 2.3 + way))
 
 
 def test_a_spring_more_at_the_tendons_end_changes_nothing_else():
