@@ -210,20 +210,3 @@ def test_a_few_wrong_points_of_the_response_do_not_lead_the_start_astray(wrong):
     start = DriveBench([driven(truth)], seen)._from_response(frozenset(("delay", "spring")))
     for name in ("gain_mm_per_s_rpm", "natural_frequency_Hz", "damping_ratio", "delay_s"):
         assert getattr(start, name) == pytest.approx(getattr(truth, name), rel=0.1), name
-
-
-def test_longer_runs_count_for_more_of_the_response():
-    """The same speeds with two gains, for three times as long with the lower one."""
-
-    def run(gain, size):
-        t = STEP_S * np.arange(size)
-        values = 300.0 * sum(np.sin(2.0 * np.pi * f * t + f) for f in (1.0, 2.0, 3.0, 5.0, 8.0))
-        u = sampled(STEP_S, values, "first")
-        return DriveRun("r", u, linear_response(u, DriveValues(gain)), NOISE_MM, at_rest=True)
-
-    short, long = run(0.04, 2001), run(0.02, 6001)
-    seen = frequency_response([short, long])
-    at = np.argmin(np.abs(seen.frequency_Hz - 3.0))
-    mean = (0.04 * 10.0 + 0.02 * 30.0) / 40.0
-    exact = mean / (2.0 * math.pi * 3.0)
-    assert np.abs(seen.response[at]) == pytest.approx(exact, rel=0.03)
