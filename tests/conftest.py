@@ -28,6 +28,23 @@ settings.load_profile("same")
 signal.signal(signal.SIGINT, signal.default_int_handler)
 signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
+# Begun first: at the end a module of minutes would keep one process busy and the others waiting.
+LONGEST = (
+    *("diagnosis/test_plan", "diagnosis/test_counted_once", "identification/test_dynamic_fit"),
+    *("identification/test_calibration", "identification/test_odd_recordings"),
+    *("studies/challenge/test_found", "studies/challenge/rig/test_tendon"),
+    *("studies/challenge/test_names_hold", "metamorphic/test_relations"),
+    *("commands/test_plan", "commands/test_close_loop", "whole_job/test_whole_job"),
+    *("project/test_start", "stages/test_api", "effects/test_contract", "effects/test_adding_one"),
+    *("torture/test_torture", "physics/plant/test_lugre_plant"),
+)
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Put the longest modules first, in each process alike."""
+    first = {f"tests/{name}.py" for name in LONGEST}
+    items.sort(key=lambda item: item.nodeid.partition("::")[0] not in first)
+
 
 @pytest.fixture(scope="session")
 def warm() -> Iterator[dict[str, Warm]]:

@@ -39,10 +39,6 @@ def test_pid_holds_its_sum_while_the_motor_is_at_its_limit():
     assert u == pytest.approx(25.0 * 0.3 + 65.0 * 0.5 + 2.0 * -1.7)
 
 
-def test_the_papers_gains_are_the_defaults():
-    assert Pid() == (25.0, 65.0, 1.0)
-
-
 def test_the_sliding_surface_is_equation_41():
     assert distance(SEEN, SURFACE) == pytest.approx(S)
 

@@ -148,18 +148,6 @@ def test_a_run_is_simulated_from_where_it_fits_best():
     np.testing.assert_allclose(simulated - moved, (simulated - moved)[0], atol=1e-9)
 
 
-def test_the_motion_that_a_run_begins_with_is_no_error():
-    """A leaking drive that was let go of at 2 mm comes back by itself."""
-    truth = DriveValues(0.0236, leak_per_s=0.8)
-    run = driven(truth, at_rest=False)
-    run = DriveRun(run.id, run.u, run.x_in + 2.0 * np.exp(-0.8 * TIME_S), NOISE_MM, at_rest=False)
-    begun = DriveBench([run], frequency_response([run]))
-    resting = DriveRun(run.id, run.u, run.x_in, NOISE_MM, at_rest=True)
-    at_rest = DriveBench([resting], begun.seen)
-    assert np.abs(begun.simulated(0, truth) - run.x_in).max() < 1e-8
-    assert np.abs(at_rest.simulated(0, truth) - run.x_in).max() > 0.5
-
-
 def test_the_first_gain_is_the_way_per_turn_the_less_noisy_run_counting_most():
     two = [
         driven(DriveValues(0.02), noise_mm=1e-3),
@@ -222,36 +210,3 @@ def test_a_few_wrong_points_of_the_response_do_not_lead_the_start_astray(wrong):
     start = DriveBench([driven(truth)], seen)._from_response(frozenset(("delay", "spring")))
     for name in ("gain_mm_per_s_rpm", "natural_frequency_Hz", "damping_ratio", "delay_s"):
         assert getattr(start, name) == pytest.approx(getattr(truth, name), rel=0.1), name
-
-
-def test_with_too_few_points_the_start_is_read_off_them():
-    """At the resonance the response is 1/(2ζ) as high; what is late is a phase that grows."""
-    truth = DriveValues(0.0236, natural_frequency_Hz=9.0, damping_ratio=0.15)
-    seen = response_of(truth, np.array([3.0, 8.9, 14.0]))
-    start = DriveBench([driven(truth)], seen)._from_response(frozenset(("spring",)))
-    assert start.natural_frequency_Hz == pytest.approx(8.9)
-    assert start.damping_ratio == pytest.approx(0.15, rel=0.05)
-    late = DriveValues(0.0236, delay_s=0.03)
-    seen = response_of(late, np.array([1.0, 2.0, 4.0]))
-    start = DriveBench([driven(late)], seen)._from_response(frozenset(("delay", "lag")))
-    assert start.delay_s == start.motor_lag_s == pytest.approx(0.015)
-    two = response_of(late, np.array([1.0, 2.0]))
-    usual = DriveBench([driven(late)], two)._from_response(frozenset(("delay",)))
-    assert usual.delay_s == replace_defaults(("delay",), 0.02).delay_s
-
-
-def test_longer_runs_count_for_more_of_the_response():
-    """The same speeds with two gains, for three times as long with the lower one."""
-
-    def run(gain, size):
-        t = STEP_S * np.arange(size)
-        values = 300.0 * sum(np.sin(2.0 * np.pi * f * t + f) for f in (1.0, 2.0, 3.0, 5.0, 8.0))
-        u = sampled(STEP_S, values, "first")
-        return DriveRun("r", u, linear_response(u, DriveValues(gain)), NOISE_MM, at_rest=True)
-
-    short, long = run(0.04, 2001), run(0.02, 6001)
-    seen = frequency_response([short, long])
-    at = np.argmin(np.abs(seen.frequency_Hz - 3.0))
-    mean = (0.04 * 10.0 + 0.02 * 30.0) / 40.0
-    exact = mean / (2.0 * math.pi * 3.0)
-    assert np.abs(seen.response[at]) == pytest.approx(exact, rel=0.03)

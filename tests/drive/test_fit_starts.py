@@ -16,34 +16,6 @@ from tsas_cli.drive.harmonic_drive import (
 from tsas_cli.drive.runs import DriveRun
 from tsas_cli.numerics.linear_response import sampled
 
-# What a drive may plausibly be: lower and upper bound, the usual value, and how its change is told.
-PLAUSIBLE = {
-    "gain_mm_per_s_rpm": (1e-7, 1e3, 0.02, "log"),
-    "motor_lag_s": (0.0, 5.0, 0.005, 0.01),
-    "delay_s": (0.0, 0.5, 0.005, 0.01),
-    "natural_frequency_Hz": (0.05, 2e3, 50.0, "log"),
-    "damping_ratio": (1e-3, 1.0, 0.1, "log"),  # beyond 1 it is two lags
-    "leak_per_s": (0.0, 10.0, 0.0, 1e-3),
-    "sine_mm": (-5.0, 5.0, 0.0, 0.01),
-    "cosine_mm": (-5.0, 5.0, 0.0, 0.01),
-    "play_mm": (0.0, 20.0, 0.0, 0.1),
-}
-ALL = ("lag", "delay", "spring", "leak", "ripple", "play")
-
-
-def test_every_number_is_sought_where_it_is_plausible():
-    found = {q.name: q for q in d.quantities_of(ALL)}
-    assert list(found) == list(PLAUSIBLE)
-    for name, (lower, upper, usual, size) in PLAUSIBLE.items():
-        q = found[name]
-        assert (q.lower, q.upper, q.default) == (lower, upper, usual), name
-        assert q.positive == (size == "log"), name
-        assert q.positive or q.size == size, name
-    _, stated = d.quantities_of(["stated"])  # the other one's damping may be as large as it likes
-    assert (stated.lower, stated.upper, stated.default, stated.positive) == (1e-3, 1e3, 0.5, True)
-    assert d.QUANTITIES["damping_ratio"].upper == 1.0
-    assert set(d.QUANTITIES) == set(PLAUSIBLE)
-
 
 def test_a_number_is_scaled_by_its_size_or_its_logarithm():
     lag, spring = d.TERMS["lag"][0], d.TERMS["spring"][0]
@@ -258,18 +230,6 @@ def test_numbers_are_put_together_with_the_stated_frequency():
     assert plain.natural_frequency_Hz == 0.0
 
 
-def test_the_gain_is_the_slope_of_travel_over_turns():
-    """Turns of −1, 0, 1 and 0, 0, 6 less their mean; the second run ten times as noisy."""
-
-    def run(turns, x, noise):
-        u = SimpleNamespace(integral=np.array(turns))
-        return SimpleNamespace(u=u, x_in=np.array(x), noise_mm=noise)
-
-    runs = [run([4.0, 5.0, 6.0], [1.0, 2.0, 5.0], 0.1), run([0.0, 0.0, 6.0], [0.0, 0.0, 3.0], 1.0)]
-    # 4·100 + (4·1 + 4·2)·1 over 2·100 + (4 + 4 + 16)·1
-    assert d._initial_gain(runs) == pytest.approx(412.0 / 224.0)
-
-
 def test_how_far_a_fit_is_off_is_its_mean_square():
     solution = SimpleNamespace(residual=np.array([1.0, -2.0, 2.0]))
     assert d.DriveTrial(frozenset(), (), solution, DriveValues(0.02)).mean_square == 3.0
@@ -295,10 +255,3 @@ def test_a_run_that_begins_in_motion_may_have_moved_already():
     np.testing.assert_allclose(
         bench_of([run]).simulated(0, values), x + NOISE_MM * left, atol=1e-10
     )
-
-
-def test_the_response_of_an_integrator_with_lags():
-    """At ω = 2, a leak of 1, a lag of 1/2 and a delay of 1/4 s: g e^(−j/2)/((1 + 2j)(1 + j))."""
-    values = DriveValues(0.02, motor_lag_s=0.5, delay_s=0.25, leak_per_s=1.0)
-    (found,) = d.response_at(values, np.array([2j]))
-    assert found == pytest.approx(0.02 * cmath.exp(-0.5j) / ((1 + 2j) * (1 + 1j)))

@@ -190,8 +190,3 @@ def test_a_line_is_taken_out_as_a_fit_would():
     values = np.exp(T)
     line = np.polyval(np.polyfit(T, values, 1), T)
     np.testing.assert_allclose(d._without_line(T, values), values - line, atol=1e-12)
-
-
-def test_time_begins_at_the_first_sample():
-    run = checked(time_s=TIME_S + 3.0, motor_speed_rpm=SPEED)
-    assert run.time_s[[0, 1, -1]] == pytest.approx([0.0, STEP_S, TIME_S[-1]])

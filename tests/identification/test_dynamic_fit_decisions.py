@@ -128,13 +128,6 @@ def test_values_that_fit_alike_are_said():
     )
 
 
-def test_what_is_looked_at():
-    """Stribeck velocities from 0.01 to 100 mm/s, four for each ten times as fast."""
-    assert d.VELOCITIES[[0, 4, 8, 12, 16]] == pytest.approx([0.01, 0.1, 1.0, 10.0, 100.0])
-    assert d.VELOCITIES.size == 17
-    assert d.TIMES == (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
-
-
 def test_the_finest_stiffness_reaches_as_far_as_a_lump_is_long():
     """√(EA L/σ0) is L/LUMPS there."""
     fit = SimpleNamespace(rigs=[TABLE_1, "another"])

@@ -103,3 +103,20 @@ def test_what_explains_nothing_has_no_part():
     residual -= basis @ (basis.T @ residual)
     found = screen(Bench(FREE_TENDON), trial_of(residual), FREE_TENDON, np.zeros((N, 0)))
     assert found.part == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("known", [True, False])
+def test_what_cannot_be_simulated_explains_nothing(known):
+    """Before, a decomposition of such signatures that failed ended the calibration."""
+    (shape,) = [p for p in STRIBECK_FRICTION.parameters if p.shape]
+    lost = shape.starts[1:] if known else shape.starts
+
+    class Lost(Bench):
+        def errors_at(self, trial, values):
+            out = super().errors_at(trial, values)
+            return np.where(set(lost) & set(values.values()), np.nan, out)
+
+    bench = Lost(STRIBECK_FRICTION, shape.starts[0])
+    found = screen(bench, trial_of(-0.3 * OWN[:, 0]), STRIBECK_FRICTION, np.zeros((N, 0)))
+    assert found.part == pytest.approx(float(known), abs=1e-6)
+    assert bool(found.initial) == known

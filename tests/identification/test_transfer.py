@@ -58,31 +58,6 @@ def test_exact_lines_are_found_and_what_follows_from_them():
     )
 
 
-@pytest.mark.parametrize("seed", range(3))
-def test_errors_are_those_of_lines_through_noisy_points(seed):
-    """White noise: the plain formula, sd² (JᵀJ)⁻¹, which the jackknife scatters about."""
-    noise = 0.5
-    found = {name: e for (name, _), e in told(run_of(strokes=40, noise=noise, seed=seed)).items()}
-    force = np.tile(np.linspace(20.0, 60.0, STROKE), 20)
-    J = np.column_stack((force, np.ones(force.size)))
-    plain = noise * np.sqrt(np.diag(np.linalg.inv(J.T @ J)))
-    expected = {
-        "ratio_contraction": plain[0],
-        "ratio_loosening": plain[0],
-        "intercept_contraction": plain[1],
-        "intercept_loosening": plain[1],
-        "wrap": 0.5 * math.hypot(plain[0] / UP, plain[0] / DOWN),
-        "constant_friction": 0.5 * math.sqrt(2.0) * plain[1],
-        "offset": 0.5 * math.sqrt(2.0) * plain[1],
-    }
-    for name, error in expected.items():
-        e = found[name]
-        assert 0.6 * error < e.stderr < 1.6 * error, name
-        half = 0.5 * (e.interval_high - e.interval_low)
-        assert 1.9 * e.stderr < half < 3.0 * e.stderr
-        assert 0.5 * (e.interval_high + e.interval_low) == pytest.approx(e.value)
-
-
 def test_bends_are_told_apart_and_runs_of_one_bend_together():
     found = told(run_of("a"), run_of("b"), run_of("c", bend=1.5))
     assert {run for _, run in found} == {"a, b", "c"}

@@ -19,7 +19,7 @@ from tsas_cli.physics.course import (
     Losses,
 )
 from tsas_cli.physics.lugre.ends import EndState, StepEnds
-from tsas_cli.physics.lugre.state import Given, Step
+from tsas_cli.physics.lugre.state import Given
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.slip.chain import slip_chain
 
@@ -101,12 +101,6 @@ def step_ends(f_in=0.0, f_out=0.0):
     none = Given(0.0, 0.0)
     drive, load = (EndState(none, 0.0, 0.0, tension, 0.0) for tension in (f_in, f_out))
     return StepEnds(drive, load, 0.0)
-
-
-def bare_step(*, gh=0.0, pulled=0.0, released=0.0, speed=0.0):
-    """Return a step with nothing given at its end, in a frame that has a speed."""
-    none = Given(0.0, 0.0)
-    return Step(gh, none, none, Given(0.0, speed), pulled, released, 0.0)
 
 
 def moment(now, **values):

@@ -23,7 +23,7 @@ from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.frames import empty_frames, is_next, slips_up_to
 from tsas_cli.physics.phases import SLACK, UNCONVERGED
 from tsas_cli.physics.response import simulate
-from tsas_cli.physics.slip.chain import rest_after, slip_chain
+from tsas_cli.physics.slip.chain import slip_chain
 
 N = 60
 WRAP = wrap_of(GROUP_A)
@@ -137,18 +137,6 @@ def test_chain_and_closed_form_agree_along_the_tendon():
         assert np.abs(found.front - exact.front).max() < 0.03
 
 
-def test_the_dynamic_chain_is_the_distributed_model_while_it_is_slow():
-    stiff = GROUP_A._replace(
-        bristles=GROUP_A.bristles._replace(stiffness_N_per_mm=1e6),
-    )
-    slow = DriveInput(SINE, time_s=20.0 * TIME_S)
-    at = np.arange(0, SINE.size, 50)
-    dynamic = simulate(stiff, slow, "lugre", looked_at=at).frames
-    exact = simulate(stiff, slow, on_mesh=True, nodes=50, looked_at=at).frames
-    assert np.abs(dynamic.tension_N - exact.tension_N).max() < 0.5
-    assert (dynamic.slip != exact.slip).mean() < 0.03
-
-
 @pytest.mark.parametrize("dynamics", ["slip", "lugre"])
 @pytest.mark.parametrize("on_mesh", [False, True])
 def test_a_slack_tendon_carries_nothing(dynamics, on_mesh):
@@ -190,19 +178,6 @@ def test_a_straight_sheath_carries_one_tension():
     (f_in, *_), frames = closed(np.linspace(0.0, 10.0, 50), straight)
     np.testing.assert_allclose(frames.tension_N, np.tile(f_in[:, None], N + 1), rtol=1e-8)
     assert math.isclose(f_in[-1], 25.0 + 10.0 / (1.0 / 1.579 + 785.398 / 67858.4), rel_tol=1e-4)
-
-
-NODES = 3
-
-
-def test_frames_hold_the_samples_that_are_asked_for():
-    """The first and the last but one: tensions as they are after these."""
-    course = course_of(np.array([0.0, 0.5, 1.2, 0.8, 0.3]), GROUP_A)
-    frames = empty_frames(np.array([0, 3]), NODES)
-    slip_chain(course, GROUP_A, LOADED_BY_SPRING, NODES, frames)
-    for k, i in enumerate((0, 3)):
-        _, tensions = rest_after(course[:, : i + 1], GROUP_A, LOADED_BY_SPRING, NODES)
-        np.testing.assert_allclose(frames.tension_N[k], tensions[: NODES + 1])
 
 
 def test_the_front_is_where_slip_changes_first():

@@ -52,15 +52,3 @@ def test_the_rig_of_the_paper_is_far_from_all_bounds():
         value = getattr(source, parameter.name)
         if parameter.positive and not math.isnan(value):
             assert 10.0 * parameter.lower < value < 0.1 * parameter.upper, parameter.name
-
-
-@pytest.mark.parametrize("parameter", [*NOMINAL, *BRISTLES], ids=lambda p: p.name)
-def test_bounds_are_whole_powers_of_ten(parameter):
-    """Nobody has measured a finer limit of what is plausible."""
-    for bound in (parameter.lower, parameter.upper):
-        power = math.log10(abs(bound))
-        assert power == pytest.approx(round(power), abs=1e-12)
-    assert parameter.lower < parameter.upper
-    assert (parameter.lower > 0.0) == parameter.positive
-    if not parameter.positive:
-        assert parameter.lower == -parameter.upper

@@ -1,17 +1,15 @@
 """One run: which solver answers, where it starts, and what the sensors would read."""
 
-import math
 from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from tests.physics.references import GROUP_A, wrap_of
+from tests.physics.references import GROUP_A
 from tsas_cli.physics.closed_form.branches import branches
 from tsas_cli.physics.course import Tensions
 from tsas_cli.physics.ends import DriveInput
-from tsas_cli.physics.phases import UNCONVERGED
 from tsas_cli.physics.response import (
     first_determined_sample,
     force_beside_tendon,
@@ -21,9 +19,7 @@ from tsas_cli.physics.response import (
 from tsas_cli.physics.rig import with_values
 
 RIG = GROUP_A._replace(x_in_zero_mm=3.0, x_out_zero_mm=-7.0)
-UP = math.exp(wrap_of(GROUP_A))
 MOTION = np.concatenate((np.linspace(0, 20, 500), np.linspace(20, 5, 500), np.linspace(5, 9, 300)))
-CHANNELS = ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N")
 
 
 @pytest.fixture(scope="module")
@@ -38,25 +34,6 @@ def test_a_spring_is_solved_in_closed_form_and_read_with_the_zeros(spring):
     np.testing.assert_allclose(spring.f_in_N, f_in, rtol=1e-12)
     np.testing.assert_allclose(spring.x_out_mm + 7.0, (f_out - 25.0) / 1.579, atol=1e-12)
     np.testing.assert_array_equal(spring.phase, phase)
-
-
-@pytest.mark.parametrize(("load", "channel"), [("force", "f_out_N"), ("displacement", "x_out_mm")])
-def test_a_measured_load_repeats_the_spring(spring, load, channel):
-    again = simulate(RIG, DriveInput(MOTION + 3.0, load=load, load_values=getattr(spring, channel)))
-    assert "slip chain" in again.solver
-    assert UNCONVERGED not in again.phase
-    np.testing.assert_array_equal(getattr(again, channel), getattr(spring, channel))
-    for name in CHANNELS:
-        np.testing.assert_allclose(getattr(again, name), getattr(spring, name), atol=0.5)
-        error = getattr(again, name) - getattr(spring, name)
-        assert np.sqrt(np.mean(error**2)) < 0.03
-
-
-def test_a_drive_by_force_moves_as_the_drive_did(spring):
-    again = simulate(RIG, DriveInput(spring.f_in_N, kind="force"))
-    np.testing.assert_array_equal(again.f_in_N, spring.f_in_N)
-    np.testing.assert_allclose(again.x_in_mm, spring.x_in_mm, atol=0.02)
-    np.testing.assert_allclose(again.x_out_mm, spring.x_out_mm, atol=0.02)
 
 
 def test_dynamics_static_asks_the_lumped_model():
@@ -85,15 +62,6 @@ def test_a_run_that_begins_mid_cycle_starts_from_the_measured_tension(spring, lo
     assert answer.f_in_N[-1] == pytest.approx(spring.f_in_N[-1], rel=0.01)
 
 
-@pytest.mark.parametrize("factor", [0.5, 3.0])
-def test_a_start_that_cannot_be_is_the_nearest_that_can(factor):
-    """At x_in = 10 mm the tension lies between those of loosening and contraction."""
-    x = np.array([13.0, 13.0])
-    extreme = branches(np.array([40.0 if factor < 1 else -5.0, 10.0]), GROUP_A)[0][1]
-    answer = simulate(RIG, DriveInput(x, start_f_in_N=factor * extreme))
-    assert answer.f_in_N[0] == pytest.approx(extreme)
-
-
 def from_both_sides(drive):
     """Run with the highest and the lowest tension that the drive can have when it begins."""
     return [simulate(RIG, replace(drive, start_f_in_N=f_in)).f_in_N for f_in in (1e3, 1e-3)]
@@ -108,12 +76,6 @@ def test_the_past_is_forgotten_once_the_whole_tendon_slips(spring, load):
     assert first > 5
     np.testing.assert_allclose(pulled[first:], released[first:], rtol=1e-6)
     assert np.all(pulled[:first] > released[:first] + 1e-3)
-
-
-@pytest.mark.parametrize("load", ["spring", "force", "displacement"])
-def test_inside_a_dead_band_nothing_is_forgotten(spring, load):
-    drive = mid_cycle(spring, load, slice(1000, 1005))
-    assert first_determined_sample(RIG, drive) is None
 
 
 def test_a_drive_feels_its_friction_its_spring_and_its_motion():

@@ -99,6 +99,15 @@ def test_what_is_given_at_the_ends_is_read_with_the_zeros(kind, drive, load, exp
     assert [ends.course[DRIVE].tolist(), ends.course[LOAD].tolist()] == [drive[1], expected[1]]
 
 
+def test_what_is_given_at_the_ends_is_free_of_the_sensors_errors():
+    offsets = {"f_in_offset_N": 2.0, "f_out_offset_N": -1.0}
+    rig = with_values(GROUP_A, {f"force_sensor_offset.{n}": v for n, v in offsets.items()})
+    forces = np.array([4.0, 6.0])
+    ends = ends_of(rig, DriveInput(forces, "force", "force", 2.0 * forces))
+    assert ends.course[DRIVE].tolist() == [2.0, 4.0]
+    assert ends.course[LOAD].tolist() == [9.0, 13.0]
+
+
 def test_the_drives_end_goes_through_the_play_from_where_it_was():
     loose = with_values(GROUP_A, {"backlash.play_mm": 0.4})
     drive = DriveInput(np.array([1.0, 1.5, 1.5, 1.2, 0.9]))

@@ -6,7 +6,7 @@ of the residual on that, how much it could explain. Linear: the full fit that fo
 effects.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
@@ -46,7 +46,10 @@ def projector(trial: HypothesisFit) -> Floats:
 
 
 def screen(bench: Bench, trial: HypothesisFit, effect: Effect, basis: Floats) -> Screened:
-    """Return an effect screened at a fitted trial, with the best of its shapes."""
+    """Return an effect screened at a fitted trial, with the best of its shapes.
+
+    What the model cannot be simulated with explains nothing.
+    """
     residual = trial.solution.residual
     without = bench.errors_at(trial, {})
     amplitudes = [p for p in effect.parameters if not p.shape]
@@ -61,6 +64,8 @@ def screen(bench: Bench, trial: HypothesisFit, effect: Effect, basis: Floats) ->
             columns.append(bench.errors_at(trial, shape | {name: at[name]}) - without)
             sizes.append(at[name] - p.neutral)
         signatures = np.array(columns).T
+        if not np.isfinite(signatures).all():
+            continue
         own = signatures - basis @ (basis.T @ signatures)
         amounts = _amounts(own, residual, amplitudes, sizes)
         remaining = residual + own @ amounts
@@ -71,7 +76,7 @@ def screen(bench: Bench, trial: HypothesisFit, effect: Effect, basis: Floats) ->
                 for p, a, size in zip(amplitudes, amounts, sizes, strict=True)
             }
             best = Screened(effect, part, initial, own)
-    return best
+    return best if best.initial else replace(best, part=0.0)
 
 
 def _amounts(

@@ -90,8 +90,3 @@ def test_motor_speed_turns_into_force_as_in_the_paper(stiffness, per_rpm):
 def test_one_turn_of_the_motor_turns_the_pulley_by_its_gear():
     turn_mm = 2.0 * np.pi * 27.1 / 120.0
     assert speed_per_stiffness(27.1, 120.0) * 60.0 == pytest.approx(turn_mm)
-
-
-def test_the_drives_speed_is_a_turn_of_its_table_for_so_many_of_the_motor():
-    """120 turns a minute are one turn of the table, 2π r1."""
-    assert 120.0 * speed_per_stiffness(27.1, 120.0) == pytest.approx(2.0 * math.pi * 27.1 / 60.0)

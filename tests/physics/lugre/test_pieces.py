@@ -16,7 +16,7 @@ from tests.physics.references import (
 )
 from tsas_cli.physics.boundary import FORCE, share_before_sensor
 from tsas_cli.physics.course import DRIVE, LOAD
-from tsas_cli.physics.lugre.balance import balance, residual_sum, set_limits
+from tsas_cli.physics.lugre.balance import balance, set_limits
 from tsas_cli.physics.lugre.chain import (
     OWN_STEPS,
     StepControl,
@@ -137,13 +137,6 @@ def test_an_end_that_is_moved_keeps_the_bristle_that_it_had():
     assert s[DEFLECTION_NEW] == 0.125
     balance(s, STEP, at(law, DRIVEN_BY_FORCE))
     assert s[DEFLECTION_NEW] == 0.0
-
-
-@pytest.mark.parametrize("count", [1, 3, 4, 5, 8, 9, 11])
-def test_a_sum_of_sizes_counts_every_one_once(count):
-    s = np.zeros(ROWS * PITCH)
-    s[RESIDUAL : RESIDUAL + 20] = [(-2.0) ** k for k in range(20)]
-    assert residual_sum(s, count) == 2.0**count - 1.0
 
 
 @pytest.mark.parametrize("boundary", [LOADED_BY_SPRING, DRIVEN_BY_FORCE])

@@ -67,7 +67,6 @@ from tsas_cli.physics.lugre.state import (
     Step,
 )
 from tsas_cli.physics.lugre.step import accept_step, bdf2, largest_increment, predict, step_error
-from tsas_cli.physics.lugre.step_size import Tolerances, fit_to_reversal, step_factor
 from tsas_cli.physics.rig import with_values
 
 N = 3
@@ -366,25 +365,6 @@ def test_samples_before_and_after_a_time():
     assert [sample_before(course, 0, t) for t in (0.5, 1.0, 1.5, 4.0)] == [0, 0, 1, 3]
     assert sample_before(course, 2, 2.5) == 2
     assert [sample_after(times, 0, t) for t in (-1.0, 0.0, 1.5, 4.0)] == [0, 1, 2, 5]
-
-
-def test_steps_grow_and_shrink_by_their_order():
-    """An error of a BDF2 step goes by the cube of its length, of a first step by the square."""
-    allowed = Tolerances(8.0, 1.0)
-    second, first = bdf2(1.0, 1.0, 1.0), bdf2(1.0, math.inf, math.inf)
-    assert step_factor(8.0, allowed, second) == pytest.approx(0.85)
-    assert step_factor(8.0 * 1.5**3, allowed, second) == pytest.approx(0.85 / 1.5)
-    assert step_factor(8.0 * 1.5**2, allowed, first) == pytest.approx(0.85 / 1.5)
-    assert step_factor(0.0, allowed, second) == 2.0
-    assert step_factor(1e9, allowed, second) == step_factor(math.inf, allowed, second) == 0.25
-
-
-def test_a_step_lands_on_a_turn_and_leaves_no_short_rest():
-    assert fit_to_reversal(1.0, 5.0) == (1.0, False)
-    assert fit_to_reversal(1.0, 1.5) == (0.75, False)
-    assert fit_to_reversal(1.0, 2.0) == (1.0, False)
-    assert fit_to_reversal(2.0, 1.5) == (1.5, True)
-    assert fit_to_reversal(1.0, 1.0) == (1.0, True)
 
 
 MODEL = Model(lumps=N, stribeck_excess=0.05, stribeck_speed_mm_s=3.0)

@@ -9,7 +9,6 @@ from scipy.linalg import expm
 from tests.both_ways import answers
 from tests.physics.plant.open_loop import ACTUATOR, run
 from tests.physics.references import GROUP_A, LOADED_BY_SPRING, TABLE_1
-from tsas_cli.effects import EFFECTS
 from tsas_cli.physics.bristles import TONNES_PER_KG, Bristles
 from tsas_cli.physics.lugre.start import lugre_laws, segments
 from tsas_cli.physics.rig import with_values
@@ -19,14 +18,6 @@ TIME_S = np.arange(0.0, 2.0 * math.pi, STEP_S)
 NESTED = 10.0 - 10.0 * np.cos(TIME_S) + 1.5 * np.sin(5.0 * TIME_S)
 STIFF = GROUP_A._replace(bristles=Bristles(stiffness_N_per_mm=5e5))
 DAMPED = ACTUATOR._replace(damping_N_s_per_mm=1.0)
-# Their own frequency, their own instability, or the drive's with them is seen, not the tendon.
-DYNAMIC = {"load_inertia", "drive_inertia", "stribeck_friction", "backlash", "drive_ripple"}
-STARTS = {
-    e.name: {f"{e.name}.{p.name}": p.start for p in e.parameters}
-    for e in EFFECTS
-    if e.name not in DYNAMIC
-}
-SMALL_RIPPLE = {"sine_mm": 0.005, "cosine_mm": 0.003, "period_mm": 0.7}
 
 
 def apart(rig, motor_mm=NESTED, **how):
@@ -38,26 +29,6 @@ def apart(rig, motor_mm=NESTED, **how):
         name: np.sqrt(np.mean((slip[name] - lugre[name]) ** 2)) / np.ptp(slip[name])
         for name in slip
     }
-
-
-@pytest.mark.parametrize("values", STARTS.values(), ids=STARTS.keys())
-def test_every_effect_acts_as_on_the_slip_chain(values):
-    assert max(apart(with_values(STIFF, values)).values()) < 1.5e-4
-
-
-@pytest.mark.parametrize(
-    ("effect", "values", "actuator"),
-    [
-        ("backlash", {"play_mm": 0.1}, DAMPED),
-        ("drive_ripple", SMALL_RIPPLE, ACTUATOR),
-    ],
-)
-def test_play_and_ripple_act_as_with_the_slip_chain(effect, values, actuator):
-    rig = with_values(STIFF, {f"{effect}.{name}": value for name, value in values.items()})
-    assert max(apart(rig, actuator=actuator).values()) < 1e-4
-    nominal, _, _ = run(STIFF, NESTED, STEP_S, lumped=True, actuator=actuator)
-    changed, _, _ = run(rig, NESTED, STEP_S, lumped=True, actuator=actuator)
-    assert np.max(np.abs(nominal["f_in_N"] - changed["f_in_N"])) > 0.5
 
 
 def test_a_tendon_that_hangs_slack_at_the_start_and_the_end():

@@ -5,6 +5,7 @@ import pytest
 
 from tests.physics.plant.open_loop import ACTUATOR, run
 from tests.physics.references import GROUP_A
+from tsas_cli.effects import EFFECTS
 from tsas_cli.physics.bristles import Bristles
 from tsas_cli.physics.ends import DriveInput, losses_over
 from tsas_cli.physics.response import simulate
@@ -18,83 +19,97 @@ WAY = 2.0 - 2.0 * np.cos(np.pi * TIME_S / 0.4)
 AWAY = 10.0 * np.cos(2.0 * np.pi * TIME_S / TIME_S[-1]) - 10.0
 STIFF = GROUP_A._replace(bristles=Bristles(stiffness_N_per_mm=2e5))
 DAMPED = ACTUATOR._replace(damping_N_s_per_mm=1.0)
+# What changes with time is so much larger that it shows within a second.
+LARGER = {"viscous_friction": 10.0, "bend_drift": 10.0, "friction_drift": 10.0}
+STARTS = {
+    e.name: {
+        f"{e.name}.{p.name}": min(LARGER.get(e.name, 1.0) * p.start, p.upper) for p in e.parameters
+    }
+    for e in EFFECTS
+    if e.acts_on != "sensor"
+}
+# Their own frequency or their own instability shows where the slip chain has neither.
+DYNAMIC = {"drive_inertia", "load_inertia", "stribeck_friction"}
+
+
+def both(values, way, substeps):
+    """Return the channels of both plants, and how many steps of the lumped one did not settle."""
+    how = {"n": N, "substeps": substeps, "actuator": DAMPED}
+    rig = with_values(STIFF, values)
+    lumped, _, unsettled = run(rig, way, STEP_S, lumped=True, **how)
+    return run(rig, way, STEP_S, lumped=False, **how)[0], lumped, unsettled
+
+
+def off(channels, others):
+    """Return the difference (rms, largest) of the channel that is farthest off, over its range."""
+    apart = [np.abs(others[name] - values) / np.ptp(values) for name, values in channels.items()]
+    return max(np.sqrt(np.mean(each**2)) for each in apart), max(map(np.max, apart))
+
+
+@pytest.fixture(scope="module")
+def plain():
+    return both({}, WAY, 2)[1]
+
+
+@pytest.mark.parametrize("name", sorted(STARTS.keys() - DYNAMIC))
+def test_a_lumped_tendon_does_to_the_drive_what_the_slip_chain_does(name, plain):
+    slip, lumped, unsettled = both(STARTS[name], WAY, 2)
+    assert unsettled == 0
+    assert off(slip, lumped)[0] < min(0.01, 0.1 * off(plain, lumped)[0])
+
+
 AT_DRIVE = {
     "nothing": {},
     "play": {"backlash.play_mm": 0.3},
-    "ripple": {
-        "drive_ripple.sine_mm": 0.01,
-        "drive_ripple.cosine_mm": 0.006,
-        "drive_ripple.period_mm": 0.9,
+    "friction and spring": {
+        "drive_friction.friction_N": 2.0,
+        "proximal_spring.stiffness_N_per_mm": 4.0,
     },
-    "friction": {"drive_friction.friction_N": 2.0},
-    "spring": {"proximal_spring.stiffness_N_per_mm": 4.0},
-    "damper": {"drive_damping.coefficient_N_s_per_mm": 0.05},
-    "place": {"position_dependent_friction.slope_per_mm": 0.05},
-    "damped load": {"load_damping.coefficient_N_s_per_mm": 0.02},
-    "yielding load": {"load_hysteresis.force_N": 2.0},
-    "relaxing load": {"load_relaxation.share": 0.3, "load_relaxation.time_s": 0.2},
-    "pulley": {"load_ripple.sine_mm": 0.2},
-    "guide": {"load_friction.before_sensor_N": 1.0, "load_friction.after_sensor_N": 0.5},
-    "bend drift": {"bend_drift.rate_rad_per_s": 0.4},
     "preload loss": {"preload_loss.rate_N_per_s": 2.0},
+    "a load that yields": {"load_hysteresis.force_N": 2.0},
 }
-
-
-RETURNS_BY_ITSELF = {"load_damping", "load_relaxation"}
 
 
 @pytest.mark.parametrize("values", AT_DRIVE.values(), ids=AT_DRIVE.keys())
-@pytest.mark.parametrize("way", [WAY, AWAY], ids=["taut", "slack at times"])
-def test_a_lumped_tendon_does_to_the_drive_what_the_slip_chain_does(values, way):
-    if way is AWAY and {name.partition(".")[0] for name in values} & RETURNS_BY_ITSELF:
-        pytest.skip("how the load of a slack tendon returns is not modelled")
-    rig = with_values(STIFF, values)
-    how = {"n": N, "substeps": 8 if way is AWAY else 2, "actuator": DAMPED}
-    slip, _, _ = run(rig, way, STEP_S, lumped=False, **how)
-    lumped, _, unsettled = run(rig, way, STEP_S, lumped=True, **how)
-    assert unsettled <= (way is AWAY)  # where it is caught
-    for name, values in slip.items():
-        off = np.abs(values - lumped[name]) / np.ptp(values)
-        assert np.sqrt(np.mean(off**2)) < 0.01, name
-        assert np.max(off) < (0.1 if way is AWAY else 0.01), name
+def test_a_tendon_that_is_slack_at_times_does_what_the_slip_chain_does(values):
+    slip, lumped, unsettled = both(values, AWAY, 8)
+    assert unsettled <= 1  # where it is caught
+    mean, largest = off(slip, lumped)
+    assert mean < 0.01
+    assert largest < 0.1
     hangs = lumped["f_out_N"] < 1e-9
-    assert np.any(hangs) == (way.min() < 0.0)
+    assert np.any(hangs)
     assert not np.all(hangs)
 
 
-INVERTED = {
-    "nothing": {},
-    "free tendon": {"free_tendon.proximal_length_mm": 152.0, "free_tendon.distal_length_mm": 61.0},
-    "presliding": {"presliding.length_mm": 0.05},
-    "load-dependent friction": {"load_dependent_friction.exponent": -0.2},
-    "bent spring": {"load_spring_nonlinearity.quadratic_per_mm": 0.03},
-    "guide": {"load_friction.before_sensor_N": 2.0, "load_friction.after_sensor_N": 1.0},
-    "drifts": {
-        "bend_drift.rate_rad_per_s": 0.4,
-        "friction_drift.rate_per_s": 0.2,
-        "preload_loss.rate_N_per_s": 2.0,
-    },
-    "mass": {"load_inertia.mass_kg": 2.0},
-    "viscous": {"viscous_friction.coefficient_N_s_per_mm": 0.05},
-    "uneven friction": {"uneven_friction.slope": 1.5},
-    "damped load": {"load_damping.coefficient_N_s_per_mm": 0.05},
-    "yielding load": {"load_hysteresis.force_N": 2.0},
-    "relaxing load": {"load_relaxation.share": 0.3, "load_relaxation.time_s": 0.2},
-    "pulley": {"load_ripple.sine_mm": 0.2},
-}
+# The path is that of the tendon's end, and has no speed or place to the inverse: none is given.
+INVERTED = {"drive_compliance", *(e.name for e in EFFECTS if e.acts_on in ("tendon", "load"))}
+INVERTED -= {"stribeck_friction", "position_dependent_friction"}
 WANTED = np.array([25.0, 26.0, 31.0, 44.0, 43.9, 43.0, 43.4, 38.0, 30.0, 30.0, 21.0, 24.0])
 
 
-@pytest.mark.parametrize("values", INVERTED.values(), ids=INVERTED.keys())
-def test_a_path_to_a_force_gives_that_force(values):
-    rig, time_s = with_values(GROUP_A, values), STEP_S * np.arange(WANTED.size)
+def inverted(rig):
+    """Return times, the path to the wanted force and the tension at the drive; none is missed."""
+    time_s = STEP_S * np.arange(WANTED.size)
     friction = losses_over(time_s, *np.zeros((2, WANTED.size)), 0.0, rig)
     path, tension, missed = inverse_chain(WANTED, friction, STEP_S, rig, N)
     assert missed == 0
-    # As fast as it is, the path has no speed to the inverse: none is given to it.
+    return time_s, path, tension
+
+
+@pytest.mark.parametrize("name", sorted(INVERTED))
+def test_a_path_to_a_force_gives_that_force(name):
+    rig = with_values(GROUP_A, STARTS[name])
+    time_s, path, tension = inverted(rig)
     still = with_values(rig, {"viscous_friction.coefficient_N_s_per_mm": 0.0})
     there = simulate(still, DriveInput(path, time_s=time_s), on_mesh=True, nodes=N)
     np.testing.assert_allclose(there.f_out_N, WANTED, atol=1e-5)
     np.testing.assert_allclose(there.f_in_N, tension, atol=1e-4)
-    assert path[9] == path[8] or "drifts" in str(values) or rig != GROUP_A
+    moved = np.abs(path - inverted(GROUP_A)[1]).max()
+    assert (moved > 1e-5) == (name != "viscous_friction")
     assert np.all(np.diff(path)[:3] > 0.0)
+
+
+def test_the_path_rests_where_the_force_does():
+    _, path, _ = inverted(GROUP_A)
+    assert path[9] == path[8]

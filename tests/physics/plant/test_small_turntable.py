@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from tests.physics.references import DRIVEN_BY_FORCE, GROUP_A, wrap_of
+from tests.physics.references import DRIVEN_BY_FORCE, GROUP_A
 from tsas_cli.effects.drive_ripple import DriveRipple
 from tsas_cli.physics.course import Losses
 from tsas_cli.physics.mesh import segment_compliances
@@ -17,7 +17,6 @@ from tsas_cli.physics.plant.turntable import (
     Tangent,
     Turntable,
     across_play,
-    advance_motor,
     advance_turntable,
     play_friction,
     ripple_tangent,
@@ -123,13 +122,6 @@ def test_a_step_moves_all_that_is_remembered_back():
     assert after == pytest.approx(Turntable(2.2, 2.0, v, 9.0, 33.0, 5.0))
 
 
-def test_a_motor_comes_nearer_to_the_speed_asked_for():
-    after = advance_motor(MOTOR, 400.0, ACTUATOR, 0.02)
-    left = math.exp(-1.0)
-    way = 0.024 * (400.0 * 0.02 - 300.0 * 0.02 * (1.0 - left))
-    assert after == pytest.approx((400.0 - 300.0 * left, 2.3 + way))
-
-
 def test_a_spring_more_at_the_tendons_end_changes_nothing_else():
     rig = with_values(
         GROUP_A,
@@ -230,42 +222,3 @@ def test_a_tendon_rests_while_its_drive_is_within_the_play():
     assert (after.f_in, after.speed) == (F0, 0.0)
     assert 0.0 <= after.x < 0.1
     assert after.x_before == table.x
-
-
-def table_at(x, *, x_before=0.0, v=0.0, v_before=0.0, f_in=0.0, speed=0.0):
-    return Turntable(x, x_before, v, v_before, f_in, speed)
-
-
-@pytest.mark.parametrize(
-    ("x", "at", "found"),
-    [
-        # Half of the play is 1 mm, what rubs holds 0.3 mm.
-        (0.5, 0.0, 0.2),  # in the play it stays behind
-        (-0.5, 0.0, -0.2),
-        (0.2, 0.0, 0.0),  # and does not move for less
-        (1.5, 1.0, 1.5),  # at the flank, pushing against it
-        (-1.5, -1.0, -1.5),
-        (-1.5, 1.0, -1.2),  # at the other flank
-        (0.5, 1.0, 0.8),  # leaving it
-        (1.5, 0.9, 1.2),  # not there yet
-        (0.95, 1.0, 1.0),  # at the flank, not pushing
-    ],
-)
-def test_friction_in_the_play_holds_the_drive(x, at, found):
-    assert across_play(x, at, 0.0, Tangent(0.0, 1.0), Play(1.0, 0.3)) == pytest.approx(found)
-    # Elsewhere, with a slope of 2: twice as near, behind an end at 7 + 3 mm.
-    near = across_play(x / 2.0, at / 2.0, 10.0, Tangent(10.0, 2.0), Play(1.0, 0.15))
-    assert near == pytest.approx(found / 2.0)
-
-
-def test_what_rubs_is_the_part_of_the_tension_that_full_slip_takes():
-    a = wrap_of(GROUP_A)
-    up, down = math.exp(a), math.exp(-a)
-    assert play_friction(10.0, GROUP_A) == pytest.approx(10.0 * (up - down) / (up + down))
-
-
-def test_a_turntable_moves_on_by_the_backward_formula():
-    before = table_at(4.0, x_before=1.0, v=7.0)
-    now = advance_turntable(before, 9.0, 30.0, 2.5, 0.5)
-    assert now.v == pytest.approx((1.5 * 9.0 - 2.0 * 4.0 + 0.5 * 1.0) / 0.5)
-    assert now._replace(v=0.0) == table_at(9.0, x_before=4.0, v_before=7.0, f_in=30.0, speed=2.5)

@@ -15,22 +15,10 @@ from tests.physics.references import (
     Profile,
     follow,
     through,
-    wrap_of,
 )
 from tsas_cli.physics.closed_form.branches import branches
 
-UP = math.exp(wrap_of(GROUP_A))
 NESTED = through(20.0, 5.0, 15.0, 8.0, 11.0, 8.0, 15.0, 5.0, 20.0, 19.9, 19.95, 19.8, 0.0)
-
-
-@pytest.mark.parametrize(("direction", "slope"), [(1, 2.287), (-1, 1.050)])
-def test_slopes_of_full_slip(direction, slope):
-    x_in, _, f_in, f_out, phase = follow(through(20.0, 0.0))
-    slipping = phase == direction
-    assert slipping.sum() > 300
-    fit = np.polyfit(x_in[slipping], f_in[slipping], 1)[0]
-    assert fit == pytest.approx(slope, abs=5e-4)
-    np.testing.assert_allclose(f_in[slipping] / f_out[slipping], UP**direction, rtol=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -66,28 +54,6 @@ def test_nested_partial_reversals_are_those_of_the_closed_form(rig):
     assert np.abs(f_out - exact_out).max() < 0.02
     np.testing.assert_allclose(f_out, 25.0 + 1.579 * x_out, rtol=1e-12)
     assert set(phase) == {-1, 0, 1}
-
-
-@pytest.mark.parametrize("turns", [(20.0, 20.0 - 0.4), (0.0, 0.4)])
-def test_end_tangents_and_secant_of_the_dead_band(turns):
-    """The band ends with 70.6 N/mm (unloading) or 104.5 N/mm (reloading); 175.10 over all."""
-    pulling = turns[1] > turns[0]
-    before = through(20.0, turns[0]) if pulling else through(turns[0])
-    motion = np.concatenate((before, np.linspace(*turns, 20001)))
-    x, _, f_in, f_out, _ = (column[before.size :] for column in follow(motion, n=200))
-    last = int(np.argmax(np.abs(f_out - f_out[0]) > 1e-6)) - 1
-    secant = (f_in[last] - f_in[0]) / (x[last] - x[0])
-    assert secant == pytest.approx(175.10, rel=5e-3)
-    late = slice(int(0.97 * last), last)
-    tangent = np.polyfit(x[late], f_in[late], 1)[0]
-    assert tangent == pytest.approx(104.5 if pulling else 70.6, rel=0.02)
-
-
-def test_return_point_memory():
-    plain = follow([20.0, 19.95, 19.8])[2]
-    looped = follow([20.0, 19.95, 19.98, 19.96, 19.97, 19.95, 19.8])[2]
-    assert looped[[0, 1, 5, 6]] == pytest.approx(plain[[0, 1, 1, 2]], rel=1e-8)
-    assert looped[2] > looped[1] + 1.0
 
 
 @pytest.mark.parametrize("rig", [GROUP_A, FREE])
@@ -159,12 +125,3 @@ def test_one_large_step_is_many_small_ones():
     fine = follow(through(*turns, samples=1000), rig=FREE)
     for coarse, small in zip(follow(turns, rig=FREE), fine, strict=True):
         np.testing.assert_allclose(coarse, small[999::1000], rtol=1e-7)
-
-
-@pytest.mark.parametrize("n", [1, 2, 7])
-def test_few_nodes_obey_the_capstan_ratio_too(n):
-    _, _, f_in, f_out, phase = follow(through(20.0, 0.0), n=n)
-    for direction in (1, -1):
-        slipping = phase == direction
-        assert slipping.any()
-        np.testing.assert_allclose(f_in[slipping] / f_out[slipping], UP**direction, rtol=1e-9)

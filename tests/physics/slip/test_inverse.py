@@ -5,15 +5,13 @@ import pytest
 
 from tests.physics.references import GROUP_A, wrap_of
 from tsas_cli.physics.closed_form.capstan import dead_band_width
-from tsas_cli.physics.ends import DriveInput, losses_over
-from tsas_cli.physics.response import simulate
+from tsas_cli.physics.ends import losses_over
 from tsas_cli.physics.rig import with_values
 from tsas_cli.physics.slip.inverse import inverse_chain
 
 STEP_S = 0.005
 T = np.arange(0.0, 4.0 * np.pi, STEP_S)
 SINE = 43.0 - 18.0 * np.cos(T)
-NESTED = np.interp(np.arange(0.0, 8.0, STEP_S), np.arange(9), [25, 61, 30, 45, 40, 44, 22, 50, 50])
 OTHER = GROUP_A._replace(
     friction_coefficient=0.3,
     tendon_stiffness_N=3.1e4,
@@ -82,38 +80,6 @@ def test_a_force_below_the_preload_lets_the_tendon_out():
     assert path[-1] == pytest.approx(closed_form(5.0, GROUP_A, -1.0), abs=1e-3)
 
 
-EFFECTS = {
-    "none": {},
-    "free tendon": {"free_tendon.proximal_length_mm": 152.0, "free_tendon.distal_length_mm": 61.0},
-    "compression": {"sheath_compression.compliance_ratio": 0.4},
-    "drive compliance": {"drive_compliance.compliance_mm_per_N": 0.01},
-    "direction": {"direction_dependent_friction.asymmetry": 0.2},
-    "presliding": {"presliding.length_mm": 0.05},
-    "load-dependent friction": {"load_dependent_friction.exponent": -0.2},
-    "load spring": {
-        "load_spring_nonlinearity.quadratic_per_mm": 0.03,
-        "load_spring_nonlinearity.cubic_per_mm2": 0.002,
-    },
-    "friction before the sensor": {"load_friction.before_sensor_N": 2.0},
-    "friction behind the sensor": {"load_friction.after_sensor_N": 2.0},
-    "bend drift": {"bend_drift.rate_rad_per_s": 0.1},
-    "friction drift": {"friction_drift.rate_per_s": 0.05},
-    "preload loss": {"preload_loss.rate_N_per_s": 0.5},
-    "mass": {"load_inertia.mass_kg": 2.0},
-}
-
-
-@pytest.mark.parametrize("wanted", [SINE, NESTED], ids=["sine", "nested"])
-@pytest.mark.parametrize("values", EFFECTS.values(), ids=EFFECTS.keys())
-def test_the_model_driven_along_the_path_gives_the_force(values, wanted):
-    rig = with_values(GROUP_A, values)
-    path, tension = path_to(wanted, rig)
-    time_s = STEP_S * np.arange(path.size)
-    there = simulate(rig, DriveInput(path, time_s=time_s), on_mesh=True, nodes=50)
-    np.testing.assert_allclose(there.f_out_N, wanted, atol=1e-5)
-    np.testing.assert_allclose(there.f_in_N, tension, atol=1e-4)
-
-
 @pytest.mark.parametrize("n", [5, 10, 20, 30, 50])
 @pytest.mark.parametrize("speed", [1.0, 2.0])
 def test_a_dead_band_in_which_the_answer_trembles_is_crossed(n, speed):
@@ -121,11 +87,6 @@ def test_a_dead_band_in_which_the_answer_trembles_is_crossed(n, speed):
     rig = with_values(GROUP_A, {"load_spring_nonlinearity.quadratic_per_mm": 0.03})
     path, _ = path_to(43.0 - 18.0 * np.cos(speed * T), rig, n=n)
     assert path.min() > -0.2
-
-
-@pytest.mark.parametrize("values", [v for v in EFFECTS.values() if v], ids=list(EFFECTS)[1:])
-def test_every_one_of_these_effects_moves_the_path(values):
-    assert np.abs(path_to(SINE, with_values(GROUP_A, values))[0] - path_to(SINE)[0]).max() > 0.01
 
 
 def test_friction_over_speed_is_that_of_the_given_speed():

@@ -267,17 +267,6 @@ def test_a_force_at_the_drive(name):
     assert ways[-1].max() < -0.05
 
 
-def test_what_the_sensor_at_the_load_feels_of_its_guide():
-    """What is before it lowers what it feels: its share of the whole friction of the guide."""
-    rig = with_values(SPRINGY, EFFECTS["a guide at the load"])
-    course = course_of(UP_AND_DOWN, rig)
-    _, x_out, _, f_out, _ = slip_chain(course, rig, LOADED_BY_SPRING, N)
-    pull = rig.preload_N + rig.load_stiffness_N_per_mm * x_out
-    tensions = np.array([T[-1] for _, T in states(course, rig, LOADED_BY_SPRING)])
-    np.testing.assert_allclose(tensions - f_out, (tensions - pull) / 3.0, atol=ROUNDING)
-    assert np.ptp(tensions - f_out) > 2.9
-
-
 def test_a_slack_tendon_waits_where_its_spring_leaves_it():
     """The load rests where the spring has let the preload go; the next pull is that of a new run.
 

@@ -51,14 +51,6 @@ def test_full_slip_obeys_capstan_and_hooke(group_a, pulling):
     assert np.sqrt(np.mean((group_a["f_in_N"][w] - ratio * f_out) ** 2)) < 1e-3
 
 
-@pytest.mark.parametrize(("pulling", "slope"), [(True, 2.287), (False, 1.050)])
-def test_slopes_with_the_elastic_term(group_a, pulling, slope):
-    w = full_slip(group_a, pulling=pulling)
-    assert np.polyfit(group_a["x_in_mm"][w], group_a["f_in_N"][w], 1)[0] == pytest.approx(
-        slope, abs=5e-4
-    )
-
-
 @pytest.mark.parametrize(("top", "ratio", "sign"), [(True, DOWN**2, -1.0), (False, UP**2, 1.0)])
 def test_dead_band_follows_the_slip_front(group_a, top, ratio, sign):
     """T0 = T (1 ± sqrt(D / (C T)))² at D from a turning point with proximal tension T."""
@@ -69,19 +61,6 @@ def test_dead_band_follows_the_slip_front(group_a, top, ratio, sign):
     exact = f[turn] * (1.0 + sign * np.sqrt(D / (C * f[turn]))) ** 2
     assert D.size > 100
     assert np.sqrt(np.mean((f[band] - exact) ** 2)) < 0.01
-
-
-@pytest.mark.parametrize(
-    ("top", "ratio", "tangent"), [(True, DOWN**2, 70.6), (False, UP**2, 104.5)]
-)
-def test_dead_band_secant_and_end_tangent(group_a, top, ratio, tangent):
-    turn = turning(group_a, top=top)
-    band = band_after(group_a, turn, ratio)
-    x, f = group_a["x_in_mm"][band], group_a["f_in_N"][band]
-    assert (f[-1] - f[0]) / (x[-1] - x[0]) == pytest.approx(175.1, rel=0.01)
-    late = slice(int(0.8 * x.size), None)
-    curve = np.polynomial.Polynomial.fit(x[late] - x[-1], f[late], 2)
-    assert curve.deriv()(0.0) == pytest.approx(tangent, rel=0.02)
 
 
 def test_the_distal_end_waits_in_the_dead_band(group_a):
@@ -95,21 +74,6 @@ def test_mesh_order_is_two():
     ends = [simulate(Rig(cells=n), motion).columns["f_in_N"][-1] for n in (20, 40, 80)]
     order = math.log2((ends[0] - ends[1]) / (ends[1] - ends[2]))
     assert order == pytest.approx(2.0, abs=0.1)
-
-
-def test_friction_tends_to_coulomb_as_the_presliding_length_shrinks():
-    motion = through([10.0, 9.9], speed_mm_s=0.5)
-
-    def distance(delta):
-        f = simulate(Rig(presliding_length_mm=delta), motion).columns["f_in_N"]
-        x = motion.x_in_mm
-        top = int(np.argmax(x))
-        exact = f[top] * (1.0 - np.sqrt((x[top] - x[top:]) / (C * f[top]))) ** 2
-        return np.sqrt(np.mean((f[top:] - exact)[10:] ** 2))
-
-    far, near = distance(8e-5), distance(2e-5)
-    assert near < 0.35 * far
-    assert near < 0.02
 
 
 def test_return_point_memory():
@@ -136,25 +100,24 @@ def test_nested_loops_come_back_to_the_outer_branch():
 @pytest.mark.parametrize("distal_length_mm", [0.0, 60.0])
 @pytest.mark.parametrize(("load", "channel"), [("force", "f_out_N"), ("displacement", "x_out_mm")])
 def test_a_prescribed_distal_end_repeats_the_spring(load, channel, distal_length_mm):
-    motion = sine(periods=1.0)
-    spring = simulate(Rig(distal_length_mm=distal_length_mm), motion).columns
-    again = simulate(
-        Rig(load=load, distal_length_mm=distal_length_mm), motion, distal=spring[channel]
-    ).columns
+    motion = sine(periods=1.0, rate_Hz=200.0)
+    given = {"distal_length_mm": distal_length_mm, "cells": 60}
+    spring = simulate(Rig(**given), motion).columns
+    again = simulate(Rig(load=load, **given), motion, distal=spring[channel]).columns
     for name in spring:
         np.testing.assert_allclose(again[name], spring[name], atol=1e-5)
 
 
 def test_free_tendon_is_in_series():
-    free = Rig(proximal_length_mm=150.0, distal_length_mm=60.0)
-    columns = simulate(free, sine()).columns
+    free = Rig(proximal_length_mm=150.0, distal_length_mm=60.0, cells=60)
+    columns = simulate(free, sine(periods=1.0)).columns
     inside = columns["x_in_mm"] - (columns["f_in_N"] - F0) * 150.0 / free.axial_stiffness
     motion = Motion(columns["time_s"], inside)
-    shorter = simulate(Rig(distal_length_mm=60.0), motion).columns
+    shorter = simulate(Rig(distal_length_mm=60.0, cells=60), motion).columns
     np.testing.assert_allclose(shorter["f_in_N"], columns["f_in_N"], atol=1e-4)
-    sheath_end = simulate(Rig(load="force"), motion, distal=columns["f_out_N"]).columns["x_out_mm"]
+    bare = simulate(Rig(load="force", cells=60), motion, distal=columns["f_out_N"]).columns
     stretch = (columns["f_out_N"] - F0) * 60.0 / free.axial_stiffness
-    np.testing.assert_allclose(sheath_end - stretch, columns["x_out_mm"], atol=1e-6)
+    np.testing.assert_allclose(bare["x_out_mm"] - stretch, columns["x_out_mm"], atol=1e-6)
 
 
 def test_where_the_bend_sits_changes_the_elongation_but_not_the_ratio():
