@@ -10,6 +10,7 @@ from tsas_cli.identification.estimate import Estimate
 
 CLEAR, CHANCE = Reduction(0.5, 9.0), Reduction(0.5, 2.0)
 SAME = {"f_in_N": 0.1, "x_out_mm": 0.01}
+NOISE = {"f_in_N": 0.05, "x_out_mm": 0.01}
 
 
 def estimate(name, value, low, high, *, unit="N", at_bound=False):
@@ -23,7 +24,7 @@ OFFSETS = (
 
 
 def of(*offsets, gain=CLEAR, after=SAME):
-    return failures("force_sensor_offset", offsets, gain, SAME, after)
+    return failures("force_sensor_offset", offsets, gain, SAME, after, NOISE)
 
 
 def test_one_size_that_is_not_neutral_and_a_gain_are_enough():
@@ -43,14 +44,16 @@ def test_two_offsets_of_which_only_the_sum_is_known_are_not_both_zero():
         estimate("force_sensor_offset.f_out_offset_N", 0.8, -0.2, 1.8),
     )
     assert of(*two)
-    assert not failures("force_sensor_offset", two, CLEAR, SAME, SAME, sum_known)
-    assert failures("force_sensor_offset", two, CLEAR, SAME, SAME, -sum_known + 2.0 * np.eye(2))
+    assert not failures("force_sensor_offset", two, CLEAR, SAME, SAME, NOISE, sum_known)
+    assert failures(
+        "force_sensor_offset", two, CLEAR, SAME, SAME, NOISE, -sum_known + 2.0 * np.eye(2)
+    )
 
 
 def test_a_gain_has_its_neutral_value_at_one():
     def gain(low, high):
         value = estimate("force_sensor_gain.f_out_gain", 1.02, low, high, unit="1")
-        return failures("force_sensor_gain", (value,), CLEAR, SAME, SAME)
+        return failures("force_sensor_gain", (value,), CLEAR, SAME, SAME, NOISE)
 
     assert gain(1.01, 1.03) == ()
     assert gain(0.99, 1.05)
@@ -66,10 +69,17 @@ def test_no_channel_may_become_worse():
     assert said == "makes x_out_mm worse on held-out data (0.01 to 0.011)"
 
 
+def test_a_channel_may_become_a_little_worse_where_another_gains_far_more():
+    before, after = {"f_in_N": 1.0, "x_out_mm": 0.01}, {"f_in_N": 0.05, "x_out_mm": 0.011}
+    assert failures("force_sensor_offset", OFFSETS, CLEAR, before, after, NOISE) == ()
+    after["x_out_mm"] = 0.04
+    assert failures("force_sensor_offset", OFFSETS, CLEAR, before, after, NOISE)
+
+
 @pytest.mark.parametrize(("value", "refused"), [(1e-6, False), (1e9, True)])
 def test_a_size_at_the_limit_is_refused_and_one_near_nothing_is_not(value, refused):
     friction = estimate("drive_friction.friction_N", value, value / 2, value, at_bound=True)
-    said = failures("drive_friction", (friction,), CLEAR, SAME, SAME)
+    said = failures("drive_friction", (friction,), CLEAR, SAME, SAME, NOISE)
     assert bool(said) == refused
 
 

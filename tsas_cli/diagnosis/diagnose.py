@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import numpy.typing as npt
 
-from tsas_cli.diagnosis.channel_errors import HeldOutErrors, channel_errors
+from tsas_cli.diagnosis.channel_errors import HeldOutErrors, channel_errors, noise_floor
 from tsas_cli.diagnosis.constancy import worst_split
 from tsas_cli.diagnosis.evidence import gain, gain_percent
 from tsas_cli.diagnosis.held_out import Folds, folds_of, predicted_folds
@@ -282,7 +282,8 @@ def _cause(
     split = worst_split(judged.trial(named), name, judged.folds, signals, ids)
     again = gain(fewer.squares, all_of_them.squares)
     related = judged.trial(named).correlation([e.name for e in own])
-    failed = failures(name, own, again, fewer.rmse, all_of_them.rmse, related)
+    noise = {channel: noise_floor(judged.bench, channel, 0.0) for channel in fewer.rmse}
+    failed = failures(name, own, again, fewer.rmse, all_of_them.rmse, noise, related)
     law = "" if split is None else split_in_words(split)
     excess = float(fewer.squares.sum()) - judged.folds.block.size
     if split is not None and structure > ANOTHER_LAW * excess:

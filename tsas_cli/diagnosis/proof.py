@@ -25,6 +25,7 @@ Floats = npt.NDArray[np.float64]
 ANOTHER_LAW = 0.05  # share of the excess that an effect of another law leaves at most
 NORMAL_95 = 1.96  # half of a 95 % interval, in standard deviations
 LEAST_RISE = 0.03  # relative rise of a channel's RMS on held-out data that refuses a name
+RISE_OF_FALL = 0.02  # the same, of its square over what the squares of the others fall by
 
 BY_NAME: Mapping[str, Effect] = {effect.name: effect for effect in EFFECTS}
 
@@ -54,6 +55,7 @@ def failures(
     refitted_gain: Reduction,
     without: Mapping[str, float],
     with_it: Mapping[str, float],
+    noise: Mapping[str, float],
     correlation: Floats | None = None,
 ) -> tuple[str, ...]:
     """Return what an effect fails to prove, in sentences without their subject.
@@ -68,6 +70,8 @@ def failures(
         Its reduction of the squares on held-out data, by new fits.
     without, with_it
         The RMS of each channel on held-out data, without the effect and with it.
+    noise
+        The noise level of each channel.
     correlation
         That of the parameters, shape (p, p); None where it is not known.
     """
@@ -86,11 +90,15 @@ def failures(
     if sizes and _may_be_none(estimates, neutral, correlation):
         values = (f"{n} {e.text()} {_unit(e.unit)}".strip() for n, e in sizes.items())
         out.append(f"may be zero: {', '.join(values)}")
+    changes = {
+        name: (after**2 - without[name] ** 2) / noise[name] ** 2 for name, after in with_it.items()
+    }
+    fall = -sum(min(change, 0.0) for change in changes.values())
     out += [
         f"makes {name} worse on held-out data ({number_text(without[name])} to "
-        f"{number_text(after)})"
-        for name, after in with_it.items()
-        if after > (1.0 + LEAST_RISE) * without[name]
+        f"{number_text(with_it[name])})"
+        for name, change in changes.items()
+        if with_it[name] > (1.0 + LEAST_RISE) * without[name] and change > RISE_OF_FALL * fall
     ]
     return tuple(out)
 
