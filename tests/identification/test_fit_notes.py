@@ -1,7 +1,7 @@
 """What is said of a fit: bounds, missing errors, what is fixed and why."""
 
 from tests.identification.fits import FRICTION, ZERO, fitted, problem_of, unknown
-from tsas_cli.identification import fit_notes as w
+from tsas_cli.identification import joint_fit as w
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.quantities import QUANTITIES
