@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from tsas_cli.diagnosis import diagnose as d
-from tsas_cli.diagnosis.diagnose import _with_data_sheet_interval, verdict_of
+from tsas_cli.diagnosis.diagnose import verdict_of
 from tsas_cli.diagnosis.held_out import Folds
+from tsas_cli.diagnosis.proven import _with_data_sheet_interval
 from tsas_cli.diagnosis.remainder import Remainder
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.extension import HypothesisFit

@@ -8,9 +8,10 @@ import pytest
 
 from tsas_cli.diagnosis import found as f
 from tsas_cli.diagnosis.channel_errors import HeldOutErrors
-from tsas_cli.diagnosis.diagnose import Diagnosis, FoundCause
+from tsas_cli.diagnosis.diagnose import Diagnosis
 from tsas_cli.diagnosis.evidence import Reduction
 from tsas_cli.diagnosis.held_out import folds_of
+from tsas_cli.diagnosis.proof import FoundCause
 from tsas_cli.diagnosis.remainder import Remainder, SlowPart
 from tsas_cli.effects import BACKLASH
 from tsas_cli.identification.estimate import Estimate

@@ -3,7 +3,8 @@
 from types import SimpleNamespace
 
 from tsas_cli.diagnosis import next_experiment as n
-from tsas_cli.diagnosis.diagnose import Diagnosis, FoundCause
+from tsas_cli.diagnosis.diagnose import Diagnosis
+from tsas_cli.diagnosis.proof import FoundCause
 from tsas_cli.diagnosis.remainder import Remainder
 from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.model import Model

@@ -6,7 +6,8 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
-from tsas_cli.diagnosis.diagnose import Diagnosis, FoundCause
+from tsas_cli.diagnosis.diagnose import Diagnosis
+from tsas_cli.diagnosis.proof import FoundCause
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model, read_model
 from tsas_cli.recordings.dataset import read_dataset

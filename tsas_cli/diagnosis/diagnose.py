@@ -1,35 +1,21 @@
 """Diagnose the effects that a calibrated model lacks, from runs to a verdict."""
 
-import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
-import numpy as np
-import numpy.typing as npt
-
-from tsas_cli.diagnosis.channel_errors import HeldOutErrors, channel_errors, noise_floor
-from tsas_cli.diagnosis.constancy import worst_split
-from tsas_cli.diagnosis.evidence import gain, gain_percent
-from tsas_cli.diagnosis.held_out import Folds, folds_of, predicted_folds
-from tsas_cli.diagnosis.proof import ANOTHER_LAW, FoundCause, failures, split_in_words
+from tsas_cli.diagnosis.channel_errors import HeldOutErrors, channel_errors
+from tsas_cli.diagnosis.held_out import Folds, folds_of
+from tsas_cli.diagnosis.proof import FoundCause
+from tsas_cli.diagnosis.proven import Proven, estimates_with_unevenness, proven_effects
 from tsas_cli.diagnosis.reason import reason_of
-from tsas_cli.diagnosis.refitted import HeldOutFit, refitted
 from tsas_cli.diagnosis.remainder import Remainder, remainder
-from tsas_cli.diagnosis.search import (
-    Hypotheses,
-    find_effects,
-    judged_sets,
-    reweighted_hypotheses,
-)
+from tsas_cli.diagnosis.search import Hypotheses, find_effects
 from tsas_cli.diagnosis.signals import signals_at_residuals
-from tsas_cli.diagnosis.uneven_bend import stderr_of_unevenness
 from tsas_cli.identification.base_fit import base_fit, slopes_of
 from tsas_cli.identification.calibration import with_preload_correction
-from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.extension import Bench, HypothesisFit, bench_of
-from tsas_cli.identification.fit import with_errors
 from tsas_cli.identification.fit_problem import FitProblem
-from tsas_cli.identification.joint_fit import FittedModel, estimates_of, solve_fit
+from tsas_cli.identification.joint_fit import FittedModel, solve_fit
 from tsas_cli.identification.model import Model, data_sheet
 from tsas_cli.identification.phases import segment
 from tsas_cli.identification.prepared import Prepared
@@ -38,12 +24,8 @@ from tsas_cli.recordings.manifest import Manifest
 from tsas_cli.records.diagnosis import Verdict
 from tsas_cli.support.steps import NO_PROGRESS, Steps
 
-Floats = npt.NDArray[np.float64]
-
 PLAUSIBLE = 0.15  # relative deviation of a tendon's axial stiffness from its data sheet
 FEW_BLOCKS = 6  # fewer are too few for a test
-SEED = 1  # of the resampling of blocks
-SHEATH = "sheath_compression.compliance_ratio"
 
 
 @dataclass(frozen=True)
@@ -76,25 +58,6 @@ class Diagnosis:
     def unexplained(self) -> bool:
         """Whether a residual remains that no effect explains."""
         return self.verdict in ("partly", "stand_in", "unexplained")
-
-
-@dataclass(frozen=True, eq=False)
-class Proven:
-    """The effects that prove to be causes, with their fits, and those that do not.
-
-    `judged` has the fits with the final weights, `held_out` the errors of each on held-out data,
-    `after` what remains;
-    `with_stand_ins` are the estimates with all effects that gain.
-    """
-
-    search: Hypotheses
-    judged: Hypotheses
-    causes: tuple[FoundCause, ...]
-    stand_ins: tuple[FoundCause, ...]
-    estimates: tuple[Estimate, ...]
-    held_out: Mapping[frozenset[str], HeldOutFit]
-    after: Remainder
-    with_stand_ins: tuple[Estimate, ...] = ()
 
 
 def verdict_of(
@@ -142,7 +105,7 @@ def diagnose_runs(
     if folds.blocks < FEW_BLOCKS:
         reason = f"only {folds.blocks} independent stretches: too few for a diagnosis."
         return Diagnosis("undecided", reason, model, model, cannot_tell=cannot_tell)
-    found = _concluded(_proven(find_effects(bench, folds, step), step), base)
+    found = _concluded(proven_effects(find_effects(bench, folds, step), step), base)
     extended, nominal = (with_preload_correction(m, runs) for m in (found.model, found.nominal))
     whole = found.stand_in_model
     whole = None if whole is None else with_preload_correction(whole, runs)
@@ -178,48 +141,6 @@ def bench_folds(bench: Bench) -> Folds:
     return folds_of(blocks_of(bench.closed, bench.rigs))
 
 
-def _proven(search: Hypotheses, step: Steps) -> Proven:
-    """Return the effects of a search that prove to be causes, and those that do not.
-
-    The one that fails and gains least is left out, and the others are fitted again, until none
-    fails. Scatter of the friction from run to run is no stand-in: every rig has it.
-    """
-    stand_ins: list[FoundCause] = []
-    first: tuple[Estimate, ...] | None = None
-    while True:
-        judged = reweighted_hypotheses(search, step) if search.named else search
-        proven = _judged(search, judged, tuple(stand_ins))
-        first = first or proven.estimates
-        failing = [cause for cause in proven.causes if cause.failed]
-        if not failing:
-            return replace(proven, with_stand_ins=first)
-        weakest = min(failing, key=lambda cause: cause.gain_percent)
-        if not weakest.scatter:
-            stand_ins.append(weakest)
-        rest = {name: r for name, r in search.rivals.items() if name != weakest.effect}
-        search = replace(search, named=frozenset(rest), rivals=rest)
-
-
-def _judged(search: Hypotheses, judged: Hypotheses, stand_ins: tuple[FoundCause, ...]) -> Proven:
-    """Return the effects of a set with what each does not prove, from the final weights."""
-    bench, named = judged.bench, judged.named
-    mesh = bench.on_mesh(named)
-    final = judged.trial(named)
-    folds = predicted_folds(final, judged.folds)
-    held_out = {
-        names: refitted(bench, judged.trial(names, on_mesh=mesh), folds)
-        for names in judged_sets(named)
-    }
-    estimates = _estimates(judged, final)
-    at_residuals = signals_at_residuals(bench, final)
-    after = remainder(bench, final, judged.folds, at_residuals)
-    causes = tuple(
-        _cause(judged, name, estimates, held_out, at_residuals.signals, after.structure)
-        for name in judged.rivals
-    )
-    return Proven(search, judged, causes, stand_ins, tuple(estimates), held_out, after)
-
-
 def _concluded(proven: Proven, base: FittedModel) -> Diagnosis:
     """Return the diagnosis from the effects that prove to be causes."""
     judged, causes, stand_ins = proven.judged, proven.causes, proven.stand_ins
@@ -240,7 +161,7 @@ def _concluded(proven: Proven, base: FittedModel) -> Diagnosis:
         verdict,
         reason_of(verdict, causes, stand_ins, start, after),
         Model(proven.estimates).over(base.model),
-        Model(tuple(_estimates(judged, before))).over(base.model),
+        Model(tuple(estimates_with_unevenness(judged, before))).over(base.model),
         causes,
         stand_ins,
         channel_errors(bench, *errors, start, after),
@@ -260,62 +181,3 @@ def _share_left(start: Remainder, after: Remainder) -> float:
     floor = after.mean_square - after.reducible
     first = max(start.mean_square - floor, 0.0)
     return min(after.reducible / first, 1.0) if first > 0.0 else 0.0
-
-
-def _cause(
-    judged: Hypotheses,
-    name: str,
-    estimates: Sequence[Estimate],
-    held_out: Mapping[frozenset[str], HeldOutFit],
-    signals: dict[str, Floats],
-    structure: float,
-) -> FoundCause:
-    """Return an effect of the final set, with what it does not prove.
-
-    `structure` are the squares that the final set leaves and a regression explains.
-    """
-    named = judged.named
-    fewer, all_of_them = held_out[named - {name}], held_out[named]
-    gains = gain_percent(fewer.squares, all_of_them.squares, np.random.default_rng(SEED))
-    own = tuple(e for e in estimates if e.name.startswith(f"{name}."))
-    ids = tuple(run.run.run.id for run in judged.bench.closed)
-    split = worst_split(judged.trial(named), name, judged.folds, signals, ids)
-    again = gain(fewer.squares, all_of_them.squares)
-    related = judged.trial(named).correlation([e.name for e in own])
-    noise = {channel: noise_floor(judged.bench, channel, 0.0) for channel in fewer.rmse}
-    failed = failures(name, own, again, fewer.rmse, all_of_them.rmse, noise, related)
-    law = "" if split is None else split_in_words(split)
-    excess = float(fewer.squares.sum()) - judged.folds.block.size
-    if split is not None and structure > ANOTHER_LAW * excess:
-        failed, law = (f"is not constant {law}", *failed), ""
-    interval = gains[1], gains[2]
-    scatter = split is not None and split.scatter
-    return FoundCause(name, judged.rivals[name], own, gains[0], interval, failed, law, scatter)
-
-
-def _estimates(search: Hypotheses, trial: HypothesisFit) -> list[Estimate]:
-    """Return the estimates of a trial, with intervals that include an uneven bend."""
-    solution = trial.solution
-    blocks = [search.folds.block[search.folds.run == k] for k in range(len(search.bench.rigs))]
-    counted = [np.unique(block, return_inverse=True)[1] for block in blocks]
-    fitted = with_errors(trial.unknowns, solution, counted, by_run=True)
-    uneven = stderr_of_unevenness(search.bench, trial, counted)
-    fitted = replace(fitted, stderr=np.hypot(fitted.stderr, uneven))
-    estimates = estimates_of(trial.unknowns, fitted, search.bench.base.problem.ids)
-    return [_with_data_sheet_interval(e, trial) if e.name == SHEATH else e for e in estimates]
-
-
-def _with_data_sheet_interval(ratio: Estimate, trial: HypothesisFit) -> Estimate:
-    """Return the sheath's compliance with the interval that follows from the tendon's data sheet.
-
-    The recordings determine (1 + ratio)/EA only, so the ratio is as uncertain as EA is.
-    """
-    EA = next((j for j, u in enumerate(trial.unknowns) if u.name == "tendon_stiffness_N"), None)
-    if EA is None:
-        return ratio
-    unknown, fitted = trial.unknowns[EA], float(trial.solution.values[EA])
-    whole = 1.0 + ratio.value
-    low = max(whole * math.exp(unknown.lower - fitted) - 1.0, 0.0)
-    high = whole * math.exp(unknown.upper - fitted) - 1.0
-    stderr = max(high - ratio.value, ratio.value - low) / 1.96
-    return replace(ratio, stderr=stderr, interval_low=low, interval_high=high)

@@ -17,8 +17,9 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.diagnosis.channel_errors import HeldOutErrors
-from tsas_cli.diagnosis.diagnose import FEW_BLOCKS, SEED
+from tsas_cli.diagnosis.diagnose import FEW_BLOCKS
 from tsas_cli.diagnosis.evidence import gain, gain_percent
+from tsas_cli.diagnosis.proven import SEED
 from tsas_cli.diagnosis.remainder import DEPENDS, hats, regressed
 from tsas_cli.diagnosis.search import EXCESS_OF_COMPLETE_MODEL
 from tsas_cli.drive.fit import Terms
