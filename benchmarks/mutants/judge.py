@@ -42,7 +42,7 @@ class Bench:
 
     def sources(self, root: Path) -> list[str]:
         """Return the files that are mutated."""
-        files = [f for p in self.packages for f in sorted((root / "tsas_cli" / p).glob("*.py"))]
+        files = [f for p in self.packages for f in sorted((root / "tsas_cli" / p).rglob("*.py"))]
         return [file.relative_to(root).as_posix() for file in files]
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from scipy.stats import binomtest
 
-from benchmarks.mutants.judge import Reached
+from benchmarks.mutants.judge import BENCHES, Reached
 from benchmarks.mutants.mutations import mutants, sample, statements
 from benchmarks.mutants.verdicts import equivalents, interval, lines
 
@@ -126,3 +126,8 @@ def test_the_tests_that_judge_are_those_that_run_the_line_the_quick_ones_first(m
     assert reached.tests(by_line[7], 20.0) == []
     assert reached.tests(by_line[2], 20.0) == [quick, slow]
     assert reached.quick([quick, slow]) == [quick]
+
+
+def test_every_module_of_a_package_is_mutated():
+    mutated = {file for bench in BENCHES for file in bench.sources(ROOT)}
+    assert {"tsas_cli/physics/slip/step.py", "tsas_cli/diagnosis/proven.py"} < mutated
