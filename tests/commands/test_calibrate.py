@@ -17,17 +17,18 @@ from tsas_studies.challenge.rig.recordings import Run, conditions, record, write
 from tsas_studies.challenge.rig.sensors import Sensors, measure
 from tsas_studies.challenge.rig.tendon import Rig, simulate
 
+RIG = Rig(cells=60)
 IDS = ["a", "ü → 'b'", "<script>", "..c", "n" * 200]
 
 
 @pytest.fixture(scope="module")
 def recorded():
-    return record(Rig(), sensors=Sensors(rate_Hz=100.0))
+    return record(RIG, sensors=Sensors(rate_Hz=100.0))
 
 
 @pytest.fixture
 def folder(tmp_path, recorded):
-    return write_dataset(tmp_path / "dataset", [Run("a", recorded, conditions(Rig()))])
+    return write_dataset(tmp_path / "dataset", [Run("a", recorded, conditions(RIG))])
 
 
 def nulls(content, path=""):
@@ -81,9 +82,9 @@ def test_it_prints_tables_and_says_what_cannot_be_told(strict, folder, tmp_path)
 
 def test_odd_names_of_runs(strict, tmp_path):
     """They name files, TOML keys and cells of a table, and break none of them."""
-    clean = simulate(Rig(), sine())
+    clean = simulate(RIG, sine())
     runs = [
-        Run(f"r{k}", measure(clean, Sensors(rate_Hz=50.0), seed=k), conditions(Rig()))
+        Run(f"r{k}", measure(clean, Sensors(rate_Hz=50.0), seed=k), conditions(RIG))
         for k in range(len(IDS))
     ]
     folder = write_dataset(tmp_path / "d", runs)
@@ -114,7 +115,7 @@ def test_a_name_that_cannot_be_a_file_is_refused(strict, folder, tmp_path, name)
 
 def test_integer_and_float32_and_further_columns(strict, recorded, tmp_path):
     """Micrometres in whole numbers as another tool may write them are no obstacle."""
-    folder = write_dataset(tmp_path / "d", [Run("a", recorded, conditions(Rig()))])
+    folder = write_dataset(tmp_path / "d", [Run("a", recorded, conditions(RIG))])
     path = folder / "runs" / "a.parquet"
     table = pa.table(
         {
@@ -145,7 +146,7 @@ def rewrite_checksum(folder, path):
 @pytest.mark.parametrize("names", [("x_in_mm",), ("f_in_N", "f_out_N"), ("x_in_mm", "x_out_mm")])
 def test_a_wrong_sign_is_one_line(strict, recorded, tmp_path, names):
     turned = {name: -v if name in names else v for name, v in recorded.items()}
-    folder = write_dataset(tmp_path / "d", [Run("a", turned, conditions(Rig()))])
+    folder = write_dataset(tmp_path / "d", [Run("a", turned, conditions(RIG))])
     done = strict("calibrate", folder, "--out", tmp_path / "c")
     assert done.returncode == 2
     assert done.stderr.count("\n") == 1
@@ -169,7 +170,7 @@ def test_what_the_dynamic_model_is_fitted_to_drives_it_again(strict, tmp_path):
     for name in set(columns) - {"time_s"}:
         noise = 0.03 if name.endswith("_N") else 0.002
         columns[name] = columns[name] + noise * rng.standard_normal(len(table))
-    folder = write_dataset(tmp_path / "d", [Run("a", columns, conditions(Rig()))])
+    folder = write_dataset(tmp_path / "d", [Run("a", columns, conditions(RIG))])
     done = strict("calibrate", folder, "--dynamics", "lugre", "--out", tmp_path / "c", "--json")
     assert (done.returncode, done.stderr) == (0, "")
     summary = json.loads(done.stdout)
@@ -214,7 +215,7 @@ def test_effects_of_a_model_stay(strict, tmp_path):
 def test_a_short_recording_is_no_error_and_no_number(strict, recorded, tmp_path):
     """Two rows: the data sheet's values without intervals, and the reason."""
     short = {name: v[100:102] for name, v in recorded.items()}
-    folder = write_dataset(tmp_path / "d", [Run("a", short, conditions(Rig()))])
+    folder = write_dataset(tmp_path / "d", [Run("a", short, conditions(RIG))])
     done = strict("calibrate", folder, "--out", tmp_path / "c", "--json")
     assert (done.returncode, done.stderr) == (0, "")
     summary = json.loads(done.stdout)

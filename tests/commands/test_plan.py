@@ -20,7 +20,7 @@ def rig_file(tmp_path):
     """Return the example of docs/plan.md as a file."""
     text = DOCS.read_text(encoding="utf-8").split("```toml\n")[1].split("```")[0]
     path = tmp_path / "rig.toml"
-    path.write_text(text.replace("rate_Hz = 200", "rate_Hz = 100"), encoding="utf-8")
+    path.write_text(text.replace("rate_Hz = 200", "rate_Hz = 40"), encoding="utf-8")
     return path
 
 

@@ -23,7 +23,7 @@ print(len(compilations.buffer))
 
 @pytest.mark.parametrize("stage", ["check", pytest.param("calibrate", marks=pytest.mark.large)])
 def test_the_second_call_compiles_nothing(stage: str, tmp_path: Path) -> None:
-    rig = Rig(proximal_length_mm=150.0, distal_length_mm=60.0)
+    rig = Rig(proximal_length_mm=150.0, distal_length_mm=60.0, cells=30)
     dataset = write_dataset(tmp_path / "dataset", [Run("a", record(rig), conditions(rig))])
     call = [sys.executable, "-c", COUNT_COMPILATIONS, stage, dataset, "--quiet", "--out"]
     counts = []

@@ -11,7 +11,7 @@ from tsas_studies.challenge.rig.recordings import Run, conditions, record, write
 from tsas_studies.challenge.rig.sensors import Sensors
 from tsas_studies.challenge.rig.tendon import Rig
 
-TRUE = Rig(friction_coefficient=0.16)
+TRUE = Rig(friction_coefficient=0.16, cells=60)
 
 
 @pytest.fixture(scope="module")

@@ -16,7 +16,7 @@ from tsas_studies.challenge.rig.recordings import Run, conditions, write_dataset
 from tsas_studies.challenge.rig.sensors import Sensors, measure
 from tsas_studies.challenge.rig.tendon import Rig, simulate
 
-RIG = Rig(proximal_length_mm=150.0)
+RIG = Rig(proximal_length_mm=150.0, cells=60)
 SAID = "so that no sample counts twice."
 A = measure(simulate(RIG, nested(rate_Hz=500.0)), Sensors(rate_Hz=50.0), seed=1)
 N = A["time_s"].size

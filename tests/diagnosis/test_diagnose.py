@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from tsas_cli.diagnosis import diagnose as d
+from tsas_cli.diagnosis import proven as p
 from tsas_cli.diagnosis.diagnose import verdict_of
 from tsas_cli.diagnosis.held_out import Folds
-from tsas_cli.diagnosis.proven import _with_data_sheet_interval
 from tsas_cli.diagnosis.remainder import Remainder
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.extension import HypothesisFit
@@ -71,15 +71,15 @@ def test_an_uneven_bend_and_the_noise_add_up_in_squares(monkeypatch):
         given.update(blocks=[b.tolist() for b in blocks], by_run=by_run)
         return fitted
 
-    monkeypatch.setattr(d, "with_errors", with_errors)
-    monkeypatch.setattr(d, "stderr_of_unevenness", lambda *_: np.full(1, 4.0))
+    monkeypatch.setattr(p, "with_errors", with_errors)
+    monkeypatch.setattr(p, "stderr_of_unevenness", lambda *_: np.full(1, 4.0))
     monkeypatch.setattr(
-        d, "estimates_of", lambda unknowns, fit, ids: [Estimate("a", fit.stderr[0], "1", "fitted")]
+        p, "estimates_of", lambda unknowns, fit, ids: [Estimate("a", fit.stderr[0], "1", "fitted")]
     )
     folds = Folds(np.zeros(6, int), np.array([0, 0, 1, 2, 2, 4]), np.repeat([0, 1], 3), True)
     bench = SimpleNamespace(rigs=[0, 1], base=SimpleNamespace(problem=SimpleNamespace(ids=[])))
     trial = SimpleNamespace(unknowns=[], solution=None)
-    (told,) = d._estimates(SimpleNamespace(folds=folds, bench=bench), trial)
+    (told,) = p.estimates_with_unevenness(SimpleNamespace(folds=folds, bench=bench), trial)
     assert told.value == 5.0
     assert given == {"blocks": [[0, 0, 1], [0, 0, 1]], "by_run": True}
 
@@ -100,7 +100,7 @@ def test_a_sheath_beside_an_unknown_tendon_is_found_by_its_name():
         1,
     )
     trial = HypothesisFit((), tuple(unknowns), solution, (1,), on_mesh=False)
-    found = d._with_data_sheet_interval(Estimate(d.SHEATH, 1.0, "1", "fitted"), trial)
+    found = p._with_data_sheet_interval(Estimate(p.SHEATH, 1.0, "1", "fitted"), trial)
     assert found.interval_low == 0.0  # 2 · 0.5/1.25 is less than 1
     assert found.interval_high == pytest.approx(2.0 * 2.0 / 1.25 - 1.0)
     assert found.stderr == pytest.approx((2.0 * 2.0 / 1.25 - 2.0) / 1.96)
@@ -129,11 +129,11 @@ def test_a_sheath_is_as_unsure_as_the_tendons_data_sheet():
     unknown = Unknown("tendon_stiffness_N", None, 0.0, math.log(0.8), math.log(1.2), 1.0)
     trial = SimpleNamespace(unknowns=[unknown], solution=SimpleNamespace(values=np.zeros(1)))
     ratio = Estimate("sheath_compression.compliance_ratio", 0.5, "1", "fitted", None, 0.0, 0.5, 0.5)
-    found = _with_data_sheet_interval(ratio, trial)
+    found = p._with_data_sheet_interval(ratio, trial)
     assert found.interval_low == pytest.approx(1.5 * 0.8 - 1.0)
     assert found.interval_high == pytest.approx(1.5 * 1.2 - 1.0)
     assert found.stderr == pytest.approx(0.3 / 1.96)
-    low = _with_data_sheet_interval(Estimate("r", 0.1, "1", "fitted"), trial)
+    low = p._with_data_sheet_interval(Estimate("r", 0.1, "1", "fitted"), trial)
     assert low.interval_low == 0.0
     without = SimpleNamespace(unknowns=[], solution=trial.solution)
-    assert _with_data_sheet_interval(ratio, without) is ratio
+    assert p._with_data_sheet_interval(ratio, without) is ratio

@@ -18,6 +18,7 @@ from tsas_cli.support.errors import InputError
 
 INERTIA = "load_inertia.mass_kg"
 PERIODS = 4  # 8 strokes: 7 are the least that is planned from
+RATE_HZ = 40.0  # of a whole plan, which looks at a dozen further runs
 VISCOUS = "viscous_friction.coefficient_N_s_per_mm"
 
 
@@ -35,7 +36,7 @@ def slow():
 @pytest.fixture(scope="module")
 def plan():
     counted = Counted()
-    planned = plan_rig(rig_file(run(5.0, periods=PERIODS)), counted)
+    planned = plan_rig(rig_file(run(5.0, periods=PERIODS), rate_Hz=RATE_HZ), counted)
     assert counted.all_of(least=10)  # there are as many runs that might be added
     return planned
 
@@ -104,7 +105,7 @@ def test_proposals_stay_within_twice_the_speed_and_improve_what_they_say(plan):
 def test_what_a_proposal_promises_holds_when_it_is_planned(plan):
     """The run is planned too, with other noise: the sizes named are about the promised ones."""
     first = plan.proposals[0]
-    with_it = seen(run(5.0, periods=PERIODS), first.candidate.run)
+    with_it = seen(run(5.0, periods=PERIODS), first.candidate.run, rate_Hz=RATE_HZ)
     ratios = [with_it[b.cause.name].named / b.after for b in first.better]
     assert np.median(ratios) == pytest.approx(1.0, rel=0.3)
     assert np.mean([0.5 < r < 2.0 for r in ratios]) > 0.8

@@ -1,12 +1,13 @@
 """What is left, on errors that are made of known signals."""
 
+import math
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from tsas_cli.diagnosis.held_out import Folds
-from tsas_cli.diagnosis.remainder import remainder
+from tsas_cli.diagnosis.remainder import _is_brief, remainder
 from tsas_cli.diagnosis.signals import signals_at_residuals
 
 SIZE = 800
@@ -132,3 +133,14 @@ def test_an_error_that_swings_by_itself_is_periodic_at_its_frequency():
     assert found.depends_on[0] == "time_s (f_in_N oscillates at 1.7 Hz)"
     once = left_of({"f_in_N": swing + noise(1)}, {"f_in_N": noise(2)}, {"f_in_N": noise(3)})
     assert not any("swings" in signal for signal in once.depends_on)
+
+
+def test_errors_at_a_few_moments_of_a_run_are_brief_and_noise_of_any_size_is_not():
+    rng = np.random.default_rng(5)
+    noise = rng.standard_normal(4000)
+    slow = np.convolve(rng.standard_normal(4199), np.ones(200) / math.sqrt(200.0), "valid")
+    few, some = noise.copy(), noise.copy()
+    few[[70, 900, 901]] += 25.0
+    some[300:330] += 9.0
+    assert _is_brief(some)
+    assert not any(map(_is_brief, (noise, 2.0 * noise, noise + slow, few)))

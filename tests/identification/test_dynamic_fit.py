@@ -101,7 +101,7 @@ def test_under_noise_the_bristles_damping_is_not_identifiable_and_the_others_all
 def test_the_model_that_was_fitted_is_the_one_that_is_compared(noisy):
     (answer,) = noisy.predictions
     assert answer.response.solver.startswith("LuGre chain")
-    assert answer.rmse["f_out_N"] == pytest.approx(0.03, rel=0.05)
+    assert answer.summary.rmse["f_out_N"] == pytest.approx(0.03, rel=0.05)
     assert not any("missed by" in sentence for sentence in noisy.cannot_tell)
 
 

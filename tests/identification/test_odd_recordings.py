@@ -356,7 +356,7 @@ def test_a_run_begins_with_the_tension_that_was_measured():
     """Started at the top, the first samples are a dead band with a known side."""
     columns = part_of(recorded(), 0.25, 1.0)
     answer = compare(ran(columns), calibrated(ran(columns)).model)
-    assert answer.rmse["f_in_N"] < 0.2
+    assert answer.summary.rmse["f_in_N"] < 0.2
 
 
 def test_what_the_fit_leaves_open_has_no_error_and_a_sentence():

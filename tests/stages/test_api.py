@@ -24,7 +24,7 @@ from tsas_studies.challenge.rig.recordings import Run, conditions, record, write
 from tsas_studies.challenge.rig.sensors import Sensors
 from tsas_studies.challenge.rig.tendon import Rig
 
-RIG = Rig(friction_coefficient=0.16, proximal_length_mm=150.0, distal_length_mm=60.0)
+RIG = Rig(friction_coefficient=0.16, proximal_length_mm=150.0, distal_length_mm=60.0, cells=60)
 
 
 @pytest.fixture(scope="module")

@@ -16,7 +16,7 @@ from tsas_studies.challenge.rig.recordings import Run, conditions, record, write
 from tsas_studies.challenge.rig.sensors import Sensors
 from tsas_studies.challenge.rig.tendon import Rig
 
-TRUE = Rig(proximal_length_mm=150.0)
+TRUE = Rig(proximal_length_mm=150.0, cells=60)
 LENGTH = Estimate("free_tendon.proximal_length_mm", 150.0, "mm", "fitted")
 
 

@@ -1,4 +1,4 @@
-"""Twenty kills in each run of the tests; `make torture` does hundreds."""
+"""A dozen kills in each run of the tests; `make torture` does hundreds."""
 
 import json
 import shutil
@@ -13,14 +13,14 @@ from tests.torture.bench import faults_of, make_old, tree
 ROOT = Path(__file__).parents[2]
 
 
-def test_twenty_kills_leave_nothing_half_written(tmp_path):
-    call = [sys.executable, "-m", "tests.torture", "--kills", "24", "--stages"]
+def test_a_dozen_kills_leave_nothing_half_written(tmp_path):
+    call = [sys.executable, "-m", "tests.torture", "--kills", "12", "--stages"]
     call += ["init,ingest,check,simulate", "--out", str(tmp_path / "torture.json")]
     done = subprocess.run(call, cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     tried = json.loads((tmp_path / "torture.json").read_text())
     ended = sum(one["killed_at_operation"] + one["killed_at_time"] for one in tried)
-    assert ended >= 12
+    assert ended >= 6
     assert {one["stage"] for one in tried} == {"init", "ingest", "check", "simulate"}
 
 

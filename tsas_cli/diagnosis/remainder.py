@@ -29,6 +29,7 @@ LEAST_SLOW = 0.15  # the same, below which there is none
 FEWEST_STROKES = 4
 LATE = 2.0  # mean delay of the strokes of a complete model at most, in units of `delays`
 FAR, FARTHEST = 4.0, 10.0  # standard deviations, and where one error counts for no more
+FEWEST_FAR = 8  # errors that far: fewer may be a reversal out of place
 BRIEF = 0.15  # mean square of the errors that far, over the variance, of a run with brief errors
 LATE_CRITICAL = 4.0  # critical value of the t statistic of that mean
 PEAK = 0.3  # share of a run's squares in one narrow band from which the residual is periodic
@@ -151,8 +152,9 @@ def _is_brief(errors: Floats) -> bool:
     from scipy.stats import median_abs_deviation
 
     size = np.minimum(np.abs(errors) / median_abs_deviation(errors, scale="normal"), FARTHEST)
-    beyond = float(np.mean(np.where(size > FAR, size, 0.0) ** 2))
-    return float(np.mean(errors**2)) > 1.0 + LEAST_SLOW and beyond > BRIEF
+    beyond = np.where(size > FAR, size, 0.0) ** 2
+    brief = np.count_nonzero(beyond) >= FEWEST_FAR and float(np.mean(beyond)) > BRIEF
+    return bool(brief) and float(np.mean(errors**2)) > 1.0 + LEAST_SLOW
 
 
 def _is_late(bench: Bench, trial: HypothesisFit, name: str) -> bool:

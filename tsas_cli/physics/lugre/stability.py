@@ -156,7 +156,7 @@ def moments(
     steepest = STEEPEST * rig.effects.stribeck_friction.velocity_mm_per_s
     chosen: list[tuple[int, bool]] = []
     for direction in (1, -1):
-        slips = np.flatnonzero(moves & (phase == direction))
+        slips = np.flatnonzero(moves & (phase == direction) & (np.sign(speed) == direction))
         if slips.size:
             fast = np.abs(speed[slips])
             most = [fast, fast / f_in_N[slips], -np.abs(fast - steepest)]

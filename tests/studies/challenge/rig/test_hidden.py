@@ -70,7 +70,9 @@ def shown(sized):
     ]
 
 
-@pytest.mark.parametrize("name", sorted(set(NEAR) - {"coarse_converter"}))  # every converter has a step
+@pytest.mark.parametrize(
+    "name", sorted(set(NEAR) - {"coarse_converter"})
+)  # every converter has a step
 def test_a_near_cause_of_no_size_changes_nothing_to_the_last_bit(name):
     parameters = {p: 0.0 for size in NEAR_FULL.get(name, FAULTS.get(name)) for p in size.scaled}
     columns = recorded(*hide(name, parameters, RIG, SENSORS))
