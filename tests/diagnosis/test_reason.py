@@ -80,3 +80,13 @@ def test_the_noise_level_is_exceeded_to_two_digits(rms, text):
     said = reason_of("unexplained", [], [], after, after)
     assert said.startswith(f"The residual RMS is {text} × the noise level")
     assert math.sqrt(after.mean_square) == pytest.approx(rms)
+
+
+def test_three_causes_are_a_list():
+    said = reason_of("named", [cause(PLAY), cause(MASS), cause(FREE)], [], START, left(1.44))
+    assert f"{TITLE[PLAY]}, {TITLE[MASS]} and {TITLE[FREE]}." in said
+
+
+def test_brief_errors_are_said():
+    said = reason_of("unexplained", [], [], START, left(1.3, brief=("f_in_N",)))
+    assert said.endswith("f_in_N deviates from the model at a few moments of a run.")

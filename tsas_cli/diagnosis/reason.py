@@ -23,7 +23,8 @@ def reason_of(
     sentences = []
     if causes:
         both = [_two_digits(math.sqrt(r.mean_square)) for r in (start, after)]
-        names = " and ".join(_title(cause.effect) for cause in causes)
+        *all_but_last, last = (_title(cause.effect) for cause in causes)
+        names = " and ".join(filter(None, (", ".join(all_but_last), last)))
         sentences += [
             f"The nominal model lacks: {names}.",
             f"With it the residual RMS falls from {both[0]} to {both[1]} × the noise level.",
@@ -61,7 +62,8 @@ def _dependence(after: Remainder) -> list[str]:
         names = " and ".join(after.late)
         out.append(f"At each reversal {names} lags behind the model, or leads it.")
     if after.brief:
-        out.append(f"{' and '.join(after.brief)} deviates at a few moments of a run.")
+        names = " and ".join(after.brief)
+        out.append(f"The channel {names} deviates from the model at a few moments of a run.")
     return out
 
 
