@@ -102,6 +102,24 @@ def test_new_datasets_come_in_and_deleted_ones_go(rigs):
     assert found() == [("one/a", "r0"), ("one/a", "r1")]
     write(rigs / "one" / "b", {})
     assert found() == [("one/a", "r0"), ("one/a", "r1"), ("one/b", "r0")]
+    shutil.rmtree(rigs / "one")
+    assert found() == []
+
+
+def test_an_index_whose_files_have_all_changed_is_read_again(rigs):
+    tsas.runs()
+    for manifest in (rigs / "two" / "dataset.toml", rigs / "one" / "a" / "dataset.toml"):
+        manifest.write_text(manifest.read_text() + "\n# changed\n")
+    changed = Counted()
+    assert len(found(step=changed)) == 3
+    assert changed.done == 2
+
+
+def test_a_wrong_call_reads_nothing(rigs):
+    read = Counted()
+    with pytest.raises(InputError, match="expected str"):
+        tsas.runs(5, step=read)
+    assert read.done == 0
 
 
 def test_a_wrong_manifest_is_reported_and_the_rest_is_answered(rigs):

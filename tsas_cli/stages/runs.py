@@ -123,13 +123,13 @@ def runs(
     InputError
         The query is no condition on these columns, a folder is none, or duckdb is not installed.
     """
-    named = paths_of(folders)
+    named, condition = paths_of(folders), text_of(query)
     if limit is not None:
         at_least(0, limit, "limit")
     shown, order = tuple(listed(columns)), tuple(listed(sort))
     with connected() as connection:
         index = index_of([Path(folder) for folder in named], connection, step)
-        found = run_query(connection, index, text_of(query), columns=shown, sort=order, limit=limit)
+        found = run_query(connection, index, condition, columns=shown, sort=order, limit=limit)
     summary = {
         "format": 1,
         "stage": "runs",
