@@ -74,7 +74,8 @@ def follow(
     by_drive = rig._replace(effects=rig.effects._replace(stribeck_friction=StribeckFriction()))
     for _ in range(ITERATIONS if _depends_on_path(rig.effects) else 1):
         losses = losses_over(np.maximum(time_s, 0.0), end, speed, 0.0, rig)
-        losses[[PULLED, RELEASED]] *= [stribeck_factor(v, stribeck) for v in speed]
+        if stribeck.excess != 0.0:
+            losses[[PULLED, RELEASED]] *= [stribeck_factor(v, stribeck) for v in speed]
         end, tension, missed = inverse_chain(padded, losses, step_s, by_drive, nodes)
         smooth = smoothed(end, width, step_s)[1]
         speed = np.concatenate(

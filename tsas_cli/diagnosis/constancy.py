@@ -14,7 +14,12 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.diagnosis.evidence import Reduction, gain
-from tsas_cli.diagnosis.held_out import Folds, held_out_squares, in_stretches
+from tsas_cli.diagnosis.held_out import (
+    Folds,
+    gauss_newton_step,
+    held_out_squares,
+    in_stretches,
+)
 from tsas_cli.diagnosis.signals import DIRECTION, RUN
 from tsas_cli.diagnosis.tolerances import is_scatter, with_friction_of_runs, within_scatter
 from tsas_cli.identification.extension import HypothesisFit
@@ -75,7 +80,8 @@ def worst_split(
     scatter = any(is_scatter(trial, J[:, j], folds.run) for j in columns)
     if not scatter:
         trial = with_friction_of_runs(trial, folds.run)
-    small = scatter and within_scatter(trial, J[:, columns] @ _sizes(trial, columns), folds.run)
+    sizes = [_from_neutral(trial.unknowns[j].name, trial.solution.values[j]) for j in columns]
+    small = scatter and within_scatter(trial, J[:, columns] @ np.array(sizes), folds.run)
     stretches = in_stretches(folds)
     before = cache(lambda by_run: held_out_squares(trial, stretches if by_run else folds))
     worst: Split | None = None
@@ -88,15 +94,6 @@ def worst_split(
             pairs = tuple(zip(labels, values, strict=True))
             worst = Split(name, by, found, pairs, small and by == RUN)
     return worst
-
-
-def _sizes(trial: HypothesisFit, columns: list[int]) -> Floats:
-    """Return by how much some parameters of an effect differ from neutral, scaled."""
-    found = []
-    for j in columns:
-        quantity = QUANTITIES[trial.unknowns[j].name]
-        found.append(trial.solution.values[j] - quantity.scaled(quantity.default))
-    return np.array(found)
 
 
 def _parts(
@@ -139,11 +136,14 @@ def _split(
 
 
 def _size(name: str, value: float) -> float:
-    """Return the scaled distance of a value from the neutral one; 1 for a logarithm."""
+    """Return the plausible size of a further value: the value's own; 1 for a logarithm."""
+    return 1.0 if QUANTITIES[name].positive else max(abs(_from_neutral(name, value)), 1e-3)
+
+
+def _from_neutral(name: str, value: float) -> float:
+    """Return by how much a scaled value differs from the neutral one."""
     quantity = QUANTITIES[name]
-    if quantity.positive:
-        return 1.0
-    return max(abs(value - quantity.scaled(quantity.default)), 1e-3)
+    return value - quantity.scaled(quantity.default)
 
 
 def _values(
@@ -151,11 +151,7 @@ def _values(
 ) -> tuple[str, list[float]]:
     """Return the parameter that differs most between the parts, and its value in each."""
     solution = split.solution
-    free = np.flatnonzero(~solution.at_bound)
-    J = solution.jacobian[:, free]
-    weak = np.array([split.unknowns[j].scale for j in free]) ** -2.0
-    step = np.zeros(solution.values.size)
-    step[free] = -np.linalg.solve(J.T @ J + np.diag(weak), J.T @ solution.residual)
+    step = gauss_newton_step(split, np.ones(solution.residual.size, bool))
     further = step[-shape[0] * shape[1] :].reshape(shape)
     sizes = [split.unknowns[len(trial.unknowns) + k * shape[1]].scale for k in range(shape[0])]
     k = int(np.argmax(np.abs(further).max(axis=1) / sizes))

@@ -91,7 +91,7 @@ def held_out_values(trial: Hypothesis, folds: Folds, fold: int) -> Floats:
     held_out = folds.fold == fold
     J, r = trial.solution.jacobian, trial.solution.residual
     own = own_of_fold(trial, folds, fold)
-    step = _step(trial, ~held_out)
+    step = gauss_newton_step(trial, ~held_out)
     if own.any():
         after = r[held_out] + J[held_out][:, ~own] @ step[~own]
         step[own] = -np.linalg.lstsq(J[held_out][:, own], after, rcond=None)[0]
@@ -106,11 +106,11 @@ def held_out_squares(trial: Hypothesis, folds: Folds) -> Floats:
     of the held-out run's residuals, of each by the variance of its prediction.
     """
     everything = np.ones(folds.fold.size, bool)
-    whole = _within(trial, _step(trial, everything)) - trial.solution.values
+    whole = _within(trial, gauss_newton_step(trial, everything)) - trial.solution.values
     out = _moved(trial, everything, whole) ** 2
     for fold in np.unique(folds.fold):
         held_out = folds.fold == fold
-        rest = _within(trial, _step(trial, ~held_out)) - trial.solution.values
+        rest = _within(trial, gauss_newton_step(trial, ~held_out)) - trial.solution.values
         rise = _squares(trial, ~held_out, whole) - _squares(trial, ~held_out, rest)
         variance, determinant = _prediction_variance(trial, folds, fold)
         share = variance / max(float(variance.sum()), np.finfo(float).tiny)
@@ -118,8 +118,11 @@ def held_out_squares(trial: Hypothesis, folds: Folds) -> Floats:
     return np.bincount(folds.block, out, minlength=folds.blocks).astype(np.float64)
 
 
-def _step(trial: Hypothesis, kept: Bits) -> Floats:
-    """Return the Gauss-Newton step to the least squares of some residuals, shape (p,)."""
+def gauss_newton_step(trial: Hypothesis, kept: Bits) -> Floats:
+    """Return the Gauss-Newton step to the least squares of some residuals, shape (p,), scaled.
+
+    What is at a bound stays there.
+    """
     J, r = trial.solution.jacobian[kept], trial.solution.residual[kept]
     free = ~trial.solution.at_bound
     gram = J.T @ J + np.diag(_weak(trial))
@@ -146,7 +149,7 @@ def _moved(trial: Hypothesis, kept: Bits, step: Floats) -> Floats:
 
 
 def _squares(trial: Hypothesis, kept: Bits, step: Floats) -> float:
-    """Return the sum of squares that `_step` minimises."""
+    """Return the sum of squares that `gauss_newton_step` minimises."""
     moved = _moved(trial, kept, step)
     return float(moved @ moved) + float(_weak(trial) @ step**2)
 

@@ -18,12 +18,11 @@ from tsas_cli.diagnosis.signals import RUN, signal_in_words
 from tsas_cli.effects import EFFECTS, Effect, Parameter
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.quantities import QUANTITIES
-from tsas_cli.records.base import number_text
+from tsas_cli.records.base import TWO_SIDED, number_text
 
 Floats = npt.NDArray[np.float64]
 
 ANOTHER_LAW = 0.05  # share of the excess that an effect of another law leaves at most
-NORMAL_95 = 1.96  # half of a 95 % interval, in standard deviations
 LEAST_RISE = 0.03  # relative rise of a channel's RMS on held-out data that refuses a name
 RISE_OF_FALL = 0.02  # the same, of its square over what the squares of the others fall by
 
@@ -144,5 +143,5 @@ def _may_be_none(
     if not rows:
         return True
     related = np.eye(len(rows)) if correlation is None else correlation[np.ix_(rows, rows)]
-    z = NORMAL_95 * np.array(deviations)
+    z = TWO_SIDED * np.array(deviations)
     return float(z @ np.linalg.pinv(related, hermitian=True) @ z) <= chi2.ppf(0.95, len(rows))

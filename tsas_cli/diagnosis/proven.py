@@ -21,6 +21,7 @@ from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.extension import HypothesisFit
 from tsas_cli.identification.fit import with_errors
 from tsas_cli.identification.joint_fit import estimates_of
+from tsas_cli.records.base import TWO_SIDED
 from tsas_cli.support.steps import Steps
 
 Floats = npt.NDArray[np.float64]
@@ -145,5 +146,5 @@ def _with_data_sheet_interval(ratio: Estimate, trial: HypothesisFit) -> Estimate
     whole = 1.0 + ratio.value
     low = max(whole * math.exp(unknown.lower - fitted) - 1.0, 0.0)
     high = whole * math.exp(unknown.upper - fitted) - 1.0
-    stderr = max(high - ratio.value, ratio.value - low) / 1.96
+    stderr = max(high - ratio.value, ratio.value - low) / TWO_SIDED
     return replace(ratio, stderr=stderr, interval_low=low, interval_high=high)

@@ -7,6 +7,7 @@ from tsas_cli.diagnosis.proof import BY_NAME, FoundCause
 from tsas_cli.diagnosis.remainder import Remainder
 from tsas_cli.diagnosis.signals import signal_in_words
 from tsas_cli.records.diagnosis import Verdict
+from tsas_cli.support.wording import listed
 
 
 def reason_of(
@@ -23,8 +24,7 @@ def reason_of(
     sentences = []
     if causes:
         both = [_two_digits(math.sqrt(r.mean_square)) for r in (start, after)]
-        *all_but_last, last = (_title(cause.effect) for cause in causes)
-        names = " and ".join(filter(None, (", ".join(all_but_last), last)))
+        names = listed([_title(cause.effect) for cause in causes])
         sentences += [
             f"The nominal model lacks: {names}.",
             f"With it the residual RMS falls from {both[0]} to {both[1]} × the noise level.",

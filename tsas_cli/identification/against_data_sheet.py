@@ -6,7 +6,7 @@ A compliant sheath lowers the apparent tendon stiffness EA/(1 + compliance) alon
 """
 
 import math
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,6 +15,7 @@ from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.model import Model, data_sheet
 from tsas_cli.recordings.manifest import Manifest
 from tsas_cli.records.base import TWO_SIDED
+from tsas_cli.support.wording import listed
 
 FRICTION, PRELOAD = "friction_coefficient", "preload_N"
 LOAD, TENDON = "load_stiffness_N_per_mm", "tendon_stiffness_N"
@@ -104,7 +105,7 @@ def contradictions(manifest: Manifest, model: Model, named: Collection[str] = ()
     """
     found = {d.name: d for d in _deviations(data_sheet(manifest), model)}
     alike = [name for name in named if name in IMITATED]
-    rivals = f" Either would be a rival of {_listed(alike)}." if alike else ""
+    rivals = f" Either would be a rival of {listed(alike)}." if alike else ""
     tried = [factor for scale in SCALES if (factor := _factor(scale, found))]
     best = min((spread for spread, _ in tried), default=0.0)
     factors = [text for spread, text in tried if spread < best + ALIKE]
@@ -187,7 +188,7 @@ def _factor(scale: _Scale, found: Mapping[str, _Deviation]) -> tuple[float, str]
     looks = f" (both look like {unit[0]})" if unit else ""
     text = (
         f" common factor of {scale.channels} of {factor:.3g} [{low:.3g}, {high:.3g}] explains "
-        f"{_listed([d.text() for d in scaled])}{looks}: check {scale.gain}"
+        f"{listed([d.text() for d in scaled])}{looks}: check {scale.gain}"
     )
     return spread, text
 
@@ -202,12 +203,8 @@ def _sentence(d: _Deviation, found: Mapping[str, _Deviation]) -> str:
     agree = [found[n] for n in (PRELOAD, LOAD) if n in found and not found[n].contradicts]
     if not agree:
         every = [*sheath, SHEET, "a common factor of f_in and f_out (unit or gain)"]
-        return f"{head}: {_listed(every, ', or ')} explains that."
+        return f"{head}: {listed(every, ', or ')} explains that."
     return (
-        f"{head}: {_listed([*sheath, SHEET], ', or ')} explains that; a common factor of f_in and "
-        f"f_out would change {_listed([other.text() for other in agree])} too."
+        f"{head}: {listed([*sheath, SHEET], ', or ')} explains that; a common factor of f_in and "
+        f"f_out would change {listed([other.text() for other in agree])} too."
     )
-
-
-def _listed(words: Sequence[str], last: str = " and ") -> str:
-    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])}{last}{words[-1]}"

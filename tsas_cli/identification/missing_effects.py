@@ -16,12 +16,12 @@ from tsas_cli.identification.fit import with_errors
 from tsas_cli.identification.joint_fit import FittedModel, estimates_of
 from tsas_cli.identification.run_errors import blocks_of
 from tsas_cli.identification.screening import projector, screen
+from tsas_cli.records.base import TWO_SIDED
 from tsas_cli.support.steps import NO_PROGRESS, Steps
 
 LEAST_SHARE = 0.5  # of the best effect's linear reduction, for an effect to be fitted
 NEAR = 2.0  # times the best effect's excess over the noise, for an effect to be included
 EXPLAINED = 2.0  # mean square of the residuals, beyond which a model is still wrong
-NORMAL = 1.96
 
 
 @dataclass(frozen=True)
@@ -92,6 +92,6 @@ def _hull(own: Estimate, others: Sequence[Estimate]) -> Estimate:
         return own
     low = min([own.value, *(o.interval_low for o in others if o.interval_low is not None)])
     high = max([own.value, *(o.interval_high for o in others if o.interval_high is not None)])
-    reach = max(high - own.value, own.value - low) / NORMAL
+    reach = max(high - own.value, own.value - low) / TWO_SIDED
     stderr = None if own.stderr is None else reach
     return replace(own, interval_low=low, interval_high=high, stderr=stderr)

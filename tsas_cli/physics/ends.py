@@ -133,9 +133,9 @@ def rate_of(values: Floats, time_s: Floats | None) -> Floats:
 
 def force_of_motion(speed: Floats, time_s: Floats | None, effects: Effects) -> Floats:
     """Return the force that the drive's sensor reads for the motion of the tendon's end [N]."""
-    if not _follows_speed(effects):
-        return np.zeros(speed.size)
     damping, mass_kg = effects.drive_damping.coefficient_N_s_per_mm, effects.drive_inertia.mass_kg
+    if damping == 0.0 and mass_kg == 0.0:
+        return np.zeros(speed.size)
     damped: Floats = drive_damper_force(1.0, damping) * speed
     return damped + drive_inertia_force(1.0, mass_kg) * rate_of(speed, time_s)
 

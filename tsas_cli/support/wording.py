@@ -1,6 +1,19 @@
 """Wording that messages share."""
 
+from collections.abc import Sequence
+
 
 def count_of(number: int, noun: str) -> str:
     """Return a number with its noun, in the plural unless it is one."""
     return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+
+
+def listed(words: Sequence[str], last: str = " and ") -> str:
+    """Return words as a person lists them.
+
+    Examples
+    --------
+    >>> listed(["time", "speed", "run"])
+    'time, speed and run'
+    """
+    return last.join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)

@@ -11,9 +11,9 @@ from tsas_studies.challenge.conditions import CONDITIONS
 from tsas_studies.challenge.judge import NO_ANSWER, Judged
 from tsas_studies.challenge.rates import Rate, rate
 from tsas_studies.challenge.targets import SIZES, TARGETS, Target
+from tsas_studies.challenge.truth import OUTSIDE
 
 RECOGNISED = ("recognised", "right kind")
-OUTSIDE = ("unknown", "near")  # mechanisms that the catalogue does not hold
 
 
 @dataclass(frozen=True)

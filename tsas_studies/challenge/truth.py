@@ -21,7 +21,8 @@ CaseId = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]+$")]
 CATALOGUE: dict[str, dict[str, Parameter]] = {
     effect.name: {p.name: p for p in effect.parameters} for effect in EFFECTS
 }
-BEYOND: tuple[Kind, ...] = ("unknown", "near", "fault")  # what is hidden is not in the catalogue
+OUTSIDE: tuple[Kind, ...] = ("unknown", "near")  # mechanisms that the catalogue does not hold
+BEYOND: tuple[Kind, ...] = (*OUTSIDE, "fault")  # what is hidden need not be in the catalogue
 _HIDDEN: dict[Kind, int] = {"one": 1, "pair": 2, "triple": 3}  # 0 for the others
 
 

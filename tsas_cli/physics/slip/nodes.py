@@ -68,7 +68,8 @@ def set_friction(chain: Floats, now: Moment, laws: SlipLaws) -> None:
     for i in range(1, n + 1):
         factor = exponential(chain[WRAP_PULLED + i])
         factor *= place_factor((i - 0.5) / n, laws.friction_slope)
-        factor *= stribeck_factor(chain[SPEED + i], laws.stribeck)
+        if laws.stribeck.excess != 0.0:
+            factor *= stribeck_factor(chain[SPEED + i], laws.stribeck)
         chain[WRAP_PULLED + i] = min(pulled * factor, MOST_WRAP)
         chain[WRAP_RELEASED + i] = min(released * factor, MOST_WRAP)
     if laws.presliding_mm == 0.0:

@@ -9,10 +9,10 @@ from typing import Any
 from tsas_cli.records.closing import ClosingFile, Row
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.content import Picture, Table
-from tsas_cli.reporting.diagnosis.words import listed
 from tsas_cli.reporting.drawing import picture
 from tsas_cli.reporting.figures import legend
 from tsas_cli.reporting.numbers import plain, with_spread
+from tsas_cli.support.wording import listed
 
 NEAR = 1.1  # a ratio that is no more than this, up or down, makes no difference
 _PERCENT = f"{100.0 * (NEAR - 1.0):.0f} %"

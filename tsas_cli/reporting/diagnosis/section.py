@@ -5,9 +5,10 @@ from collections.abc import Iterator
 from tsas_cli.records.diagnosis import DiagnosisFile
 from tsas_cli.reporting.content import Section, missing
 from tsas_cli.reporting.diagnosis import candidates, causes, gains, maps, similarity
-from tsas_cli.reporting.diagnosis.words import listed, signal_in_words
+from tsas_cli.reporting.diagnosis.words import signal_in_words
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import fixed, plain
+from tsas_cli.support.wording import listed
 
 _TITLE = "Diagnosis"
 

@@ -1,7 +1,5 @@
 """How the page names effects and signals."""
 
-from collections.abc import Sequence
-
 from tsas_cli.effects import EFFECTS
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.records.diagnosis import NamedCause
@@ -61,14 +59,3 @@ def signal_at_axis(name: str) -> str:
     own = _SIGNALS[name][1] if name in _SIGNALS else ""
     unit = own or (BY_NAME[name].unit if name in BY_NAME else "")
     return signal_in_words(name) + (f" [{unit}]" if unit else "")
-
-
-def listed(words: Sequence[str]) -> str:
-    """Return words as a person lists them.
-
-    Examples
-    --------
-    >>> listed(["time", "speed", "run"])
-    'time, speed and run'
-    """
-    return " and ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)
