@@ -246,6 +246,16 @@ SIGNATURES: Mapping[str, Signature] = MappingProxyType(
             LONG,
             over="time_s",
         ),
+        "force_sensor_gain_drift": Signature(
+            "One channel leaves the others as the run goes on, on pull and release alike and more "
+            "where the tension is high.",
+            (
+                Variant({"f_in_rate_per_s": 0.01}, "f_in_N", "of f_in"),
+                Variant({"f_out_rate_per_s": 0.01}, "f_out_N", "of f_out"),
+            ),
+            LONG,
+            over="time_s",
+        ),
         "force_sensor_curvature": Signature(
             "The residual of one channel is a parabola over its tension, the same on pull and "
             "release; the other channels fit.",
@@ -264,6 +274,15 @@ SIGNATURES: Mapping[str, Signature] = MappingProxyType(
             ),
             planes=(F_IN_OVER_X_IN, F_OUT_OVER_X_OUT),
         ),
+        "force_sensor_tilt": Signature(
+            "One channel is wrong by its tension times its position, on pull and release alike; "
+            "the other channels fit.",
+            (
+                Variant({"f_in_per_mm": 0.01}, "f_in_N", "of f_in"),
+                Variant({"f_out_per_mm": 0.01}, "f_out_N", "of f_out"),
+            ),
+            planes=(F_IN_OVER_X_IN, F_OUT_OVER_X_OUT),
+        ),
         "force_crosstalk": Signature(
             "f_out moves in dead bands, where the load stands still; f_in is too high on pull and "
             "release alike, and fits in dead bands.",
@@ -277,6 +296,12 @@ SIGNATURES: Mapping[str, Signature] = MappingProxyType(
             "x_out is wrong in proportion to its travel and f_out over x_out has a wrong slope; "
             "the tensions fit.",
             _one("x_out_mm", x_out_gain=1.2),
+            planes=(X_OUT_OVER_X_IN, F_OUT_OVER_X_OUT),
+        ),
+        "position_sensor_ripple": Signature(
+            "A wave on x_out alone with a fixed period in x_out, the same on pull and release; "
+            "the tensions fit.",
+            _one("x_out_mm", sine_mm=0.8, period_mm=6.0),
             planes=(X_OUT_OVER_X_IN, F_OUT_OVER_X_OUT),
         ),
         "channel_delay": Signature(

@@ -118,8 +118,15 @@ def seen(search, at, *parts, signatures=None):
 
 def test_only_what_is_seen_beside_the_best_is_fitted_the_best_gain_first(made):
     search = made({names(): 4.0, names(A): 3.0, names(B): 2.0, names(C): 1.0})
-    seen(search, names(), (A, 0.5), (B, 0.011), (C, 0.009))  # a fiftieth of the best is 0.01
+    seen(search, names(), (A, 0.5), (B, 0.11), (C, 0.09))  # a fifth of the best is 0.1
     assert [name for name, _ in search.add(names())] == [B, A]
+    assert names(C) not in {fitted for fitted, _ in search.bench.fits}
+
+
+def test_where_no_better_one_convinces_what_is_hardly_seen_is_fitted_too(made):
+    search = made({names(): 4.0, names(A): 4.0, names(B): 2.0, names(C): 1.0})
+    seen(search, names(), (A, 0.5), (B, 0.011), (C, 0.009))  # a fiftieth of the best is 0.01
+    assert search._better(names()) == [names(B)]
     assert names(C) not in {fitted for fitted, _ in search.bench.fits}
 
 

@@ -108,7 +108,7 @@ def test_a_pair_is_looked_at_while_there_is_room_for_two(made):
     asked = []
     for count, looked in ((0, True), (2, True), (3, False)):
         search = made({})
-        search.add = lambda _: []
+        search.add = lambda *_: []
         search._best_pair = asked.append
         before = len(asked)
         assert search._better(names(*(A, B, C)[:count])) == []

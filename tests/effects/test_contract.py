@@ -101,13 +101,14 @@ def test_the_chain_is_the_closed_form(effect):
 
 
 NOT_FED_BACK = {
-    # A delayed or filtered channel loses its corners. A measured force is taken with what it holds
-    # of the other one, and with its loop. Where a load stands still, its displacement does not tell
-    # on which side the friction before the sensor is.
+    # A delayed or filtered channel loses its corners. A measured force is taken with its tilt, with
+    # what it holds of the other one, and with its loop. Where a load stands still, its displacement
+    # does not tell on which side the friction before the sensor is.
     ("channel_delay", "force"),
     ("channel_delay", "displacement"),
     ("force_crosstalk", "force"),
     ("force_sensor_hysteresis", "force"),
+    ("force_sensor_tilt", "force"),
     ("sensor_lag", "force"),
     ("sensor_lag", "displacement"),
     ("load_friction", "displacement"),

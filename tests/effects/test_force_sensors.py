@@ -6,6 +6,11 @@ import pytest
 from tests.effects.runs import UP_AND_DOWN, run
 from tests.physics.references import GROUP_A
 from tsas_cli.effects.force_sensor_curvature import read_curved, straightened
+from tsas_cli.effects.position_sensor_ripple import (
+    PositionSensorRipple,
+    read_rippled,
+    without_ripple,
+)
 from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import with_values
@@ -64,16 +69,43 @@ def test_both_sensors_pick_up_the_true_force_of_the_other():
     np.testing.assert_allclose(read.f_out_N, plain.f_out_N - 0.03 * plain.f_in_N, rtol=1e-12)
 
 
-@pytest.mark.parametrize(("load", "share"), [("force", "f_out_of_f_in"), ("f_in", "f_in_of_f_out")])
-def test_a_measured_tension_that_drives_the_model_is_taken_as_it_is(load, share):
+@pytest.mark.parametrize(
+    ("load", "value"),
+    [
+        ("force", "force_crosstalk.f_out_of_f_in"),
+        ("f_in", "force_crosstalk.f_in_of_f_out"),
+        ("force", "force_sensor_tilt.f_out_per_mm"),
+        ("f_in", "force_sensor_tilt.f_in_per_mm"),
+    ],
+)
+def test_a_measured_tension_that_drives_the_model_is_taken_as_it_is(load, value):
     plain = run({})
     drive = DriveInput(UP_AND_DOWN, load="force", load_values=plain.f_out_N)
     if load == "f_in":
         drive = DriveInput(plain.f_in_N, kind="force")
-    rig = with_values(GROUP_A, {f"force_crosstalk.{share}": 0.04})
+    rig = with_values(GROUP_A, {value: 0.04})
     with_it, without = simulate(rig, drive), simulate(GROUP_A, drive)
     for name in CHANNELS:
         np.testing.assert_array_equal(getattr(with_it, name), getattr(without, name))
+
+
+@pytest.mark.parametrize(("channel", "position"), [("f_in", "x_in_mm"), ("f_out", "x_out_mm")])
+def test_a_sensor_that_tilts_reads_more_by_its_own_position(channel, position):
+    where = getattr(run({}), position)
+
+    def law(f_in, f_out):
+        return (f_in if channel == "f_in" else f_out) * (1.0 - 7e-4 * where)
+
+    changed_alone({f"force_sensor_tilt.{channel}_per_mm": -7e-4}, f"{channel}_N", law)
+
+
+def test_a_wave_too_steep_has_no_position():
+    steep = PositionSensorRipple(0.0, 0.9, 2.0)
+    assert without_ripple(
+        read_rippled(3.3, PositionSensorRipple(0.2, -0.1, 4.0)),
+        PositionSensorRipple(0.2, -0.1, 4.0),
+    ) == pytest.approx(3.3, abs=1e-10)
+    assert any(np.isnan(without_ripple(x, steep)) for x in np.linspace(-3.0, 3.0, 200))
 
 
 def loop_by_branches(force, span, share):

@@ -11,7 +11,7 @@ from tsas_cli.physics.rig import with_values
 
 TIME_S = np.arange(UP_AND_DOWN.size) * 0.02
 DRIFTED = (1.0 - np.exp(-0.1 * TIME_S)) / 0.1
-DRIFT = "force_sensor_drift"
+DRIFT, RIPPLE = "force_sensor_drift", "position_sensor_ripple"
 READINGS = [
     ({"force_sensor_gain.f_out_gain": 1.1}, "f_out_N", lambda true: 1.1 * true),
     ({"force_sensor_offset.f_in_offset_N": 0.7}, "f_in_N", lambda true: true + 0.7),
@@ -23,6 +23,21 @@ READINGS = [
         lambda true: true + 0.03 * DRIFTED,
     ),
     ({"position_sensor_gain.x_out_gain": 0.97}, "x_out_mm", lambda true: 0.97 * true),
+    (
+        {f"{RIPPLE}.sine_mm": 0.06, f"{RIPPLE}.cosine_mm": -0.02, f"{RIPPLE}.period_mm": 4.0},
+        "x_out_mm",
+        lambda true: true + 0.06 * np.sin(np.pi * true / 2) - 0.02 * (np.cos(np.pi * true / 2) - 1),
+    ),
+    (
+        {"force_sensor_gain_drift.f_in_rate_per_s": 0.004},
+        "f_in_N",
+        lambda true: true * (1.0 + 0.004 * TIME_S),
+    ),
+    (
+        {"force_sensor_gain_drift.f_out_rate_per_s": -0.004, "force_sensor_gain.f_out_gain": 1.1},
+        "f_out_N",
+        lambda true: 1.1 * true * (1.0 - 0.004 * TIME_S),
+    ),
 ]
 
 

@@ -75,7 +75,9 @@ def run_of(*, sd=0.1, unseen=0.0, load_sd=None):
 @pytest.fixture
 def model(monkeypatch):
     made = Model()
-    monkeypatch.setattr(rs, "simulate", made)
+    monkeypatch.setattr(rs, "solve", made)
+    monkeypatch.setattr(rs, "read", lambda rig, drive, solved: solved)
+    monkeypatch.setattr(rs, "mechanics_of", lambda rig, drive: rig)
     monkeypatch.setattr(rs, "is_closed", lambda rig, drive: False)
     monkeypatch.setattr(rs, "points", lambda run: EVERY)
     monkeypatch.setattr(r, "_before_reversals", lambda square, change, conditioned: None)

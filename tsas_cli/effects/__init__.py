@@ -19,8 +19,13 @@ from tsas_cli.effects.force_crosstalk import FORCE_CROSSTALK, ForceCrosstalk
 from tsas_cli.effects.force_sensor_curvature import FORCE_SENSOR_CURVATURE, ForceSensorCurvature
 from tsas_cli.effects.force_sensor_drift import FORCE_SENSOR_DRIFT, ForceSensorDrift
 from tsas_cli.effects.force_sensor_gain import FORCE_SENSOR_GAIN, ForceSensorGain
+from tsas_cli.effects.force_sensor_gain_drift import (
+    FORCE_SENSOR_GAIN_DRIFT,
+    ForceSensorGainDrift,
+)
 from tsas_cli.effects.force_sensor_hysteresis import FORCE_SENSOR_HYSTERESIS, ForceSensorHysteresis
 from tsas_cli.effects.force_sensor_offset import FORCE_SENSOR_OFFSET, ForceSensorOffset
+from tsas_cli.effects.force_sensor_tilt import FORCE_SENSOR_TILT, ForceSensorTilt
 from tsas_cli.effects.free_tendon import FREE_TENDON, FreeTendon
 from tsas_cli.effects.friction_drift import FRICTION_DRIFT, FrictionDrift
 from tsas_cli.effects.load_damping import LOAD_DAMPING, LoadDamping
@@ -39,6 +44,7 @@ from tsas_cli.effects.position_dependent_friction import (
     PositionDependentFriction,
 )
 from tsas_cli.effects.position_sensor_gain import POSITION_SENSOR_GAIN, PositionSensorGain
+from tsas_cli.effects.position_sensor_ripple import POSITION_SENSOR_RIPPLE, PositionSensorRipple
 from tsas_cli.effects.preload_loss import PRELOAD_LOSS, PreloadLoss
 from tsas_cli.effects.presliding import PRESLIDING, Presliding
 from tsas_cli.effects.proximal_spring import PROXIMAL_SPRING, ProximalSpring
@@ -78,10 +84,13 @@ EFFECTS: tuple[Effect, ...] = (  # from the drive to the load, then the sensors
     FORCE_SENSOR_GAIN,
     FORCE_SENSOR_OFFSET,
     FORCE_SENSOR_DRIFT,
+    FORCE_SENSOR_GAIN_DRIFT,
     FORCE_SENSOR_CURVATURE,
     FORCE_SENSOR_HYSTERESIS,
+    FORCE_SENSOR_TILT,
     FORCE_CROSSTALK,
     POSITION_SENSOR_GAIN,
+    POSITION_SENSOR_RIPPLE,
     CHANNEL_DELAY,
     SENSOR_LAG,
 )
@@ -119,10 +128,13 @@ class Effects(NamedTuple):
     force_sensor_gain: ForceSensorGain = ForceSensorGain()
     force_sensor_offset: ForceSensorOffset = ForceSensorOffset()
     force_sensor_drift: ForceSensorDrift = ForceSensorDrift()
+    force_sensor_gain_drift: ForceSensorGainDrift = ForceSensorGainDrift()
     force_sensor_curvature: ForceSensorCurvature = ForceSensorCurvature()
     force_sensor_hysteresis: ForceSensorHysteresis = ForceSensorHysteresis()
+    force_sensor_tilt: ForceSensorTilt = ForceSensorTilt()
     force_crosstalk: ForceCrosstalk = ForceCrosstalk()
     position_sensor_gain: PositionSensorGain = PositionSensorGain()
+    position_sensor_ripple: PositionSensorRipple = PositionSensorRipple()
     channel_delay: ChannelDelay = ChannelDelay()
     sensor_lag: SensorLag = SensorLag()
 
@@ -144,8 +156,10 @@ __all__ = [
     "ForceSensorCurvature",
     "ForceSensorDrift",
     "ForceSensorGain",
+    "ForceSensorGainDrift",
     "ForceSensorHysteresis",
     "ForceSensorOffset",
+    "ForceSensorTilt",
     "FreeTendon",
     "FrictionDrift",
     "LoadDamping",
@@ -159,6 +173,7 @@ __all__ = [
     "Parameter",
     "PositionDependentFriction",
     "PositionSensorGain",
+    "PositionSensorRipple",
     "PreloadLoss",
     "Presliding",
     "ProximalSpring",

@@ -6,20 +6,21 @@ the tendon is stiff there.
 Equation: first harmonic of the kinematic error of a gear (for harmonic drives e.g. Tuttle and
 Seering 1996, IEEE Trans. Robotics and Automation 12(3)). Two waves per revolution of the wave
 generator make a period of 2π r1/(2 im), 0.7095 mm for the drive of Yang 2025, Eq. (48): r1 =
-27.1 mm, im = 120.
-Mistaken for: mains hum on a sensor (its period is one of time); load_spring_nonlinearity (where
-the period is longer than the stroke).
+27.1 mm, im = 120. An encoder of x_in that turns off its centre is equivalent: what it reads too
+much, the tendon's end lags behind x_in, in every channel.
+Mistaken for: position_sensor_ripple (x_out alone has the wave); mains hum on a sensor (its period
+is one of time); load_spring_nonlinearity (where the period is longer than the stroke).
 Not validated: higher harmonics; a ripple that changes with torque; one so steep that
 2π·amplitude/period exceeds 1, which reverses the tendon's end.
 """
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 
 from tsas_cli.effects.effect import Effect, Parameter
 from tsas_cli.numerics.compiled import kernel
+from tsas_cli.numerics.wave import wave_at
 
 PERIOD_MM = 0.7095
 LONGEST_MM, SHORTEST_MM, PERIODS = 10.0, 0.3, 60
@@ -36,15 +37,12 @@ class DriveRipple(NamedTuple):
 @kernel
 def rippled(drive: float, ripple: DriveRipple) -> float:
     """Return the position of the drive's output [mm] for its input; both are 0 at rest."""
-    angle = 2.0 * math.pi * drive / ripple.period_mm
-    sine: float = np.sin(angle)
-    cosine: float = np.cos(angle)
-    return drive + ripple.sine_mm * sine + ripple.cosine_mm * (cosine - 1.0)
+    return drive + wave_at(drive, ripple.sine_mm, ripple.cosine_mm, ripple.period_mm)[0]
 
 
 DRIVE_RIPPLE = Effect(
     name="drive_ripple",
-    title="Ripple of the drive's gear",
+    title="Ripple of the drive's gear, or of its encoder",
     acts_on="drive",
     closed_form=True,
     equation="p = x_in + s·sin(2π x_in/period) + c·(cos(2π x_in/period) − 1)",

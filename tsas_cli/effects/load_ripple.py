@@ -7,19 +7,19 @@ Equation: the spring of Yang 2025, Eq. (9), is stretched by x + s sin a + c (cos
 2πx/period, the first harmonic of a pulley or drum that turns off its centre; a pulley of radius r
 has a period of 2πr.
 Mistaken for: load_spring_nonlinearity (where the period is longer than the stroke); drive_ripple
-(highest in dead bands, with a period in x_in); position_sensor_gain (a slope, not a wave); an
-encoder that turns off its centre, which leaves f_in and f_out as they are.
+(highest in dead bands, with a period in x_in); position_sensor_ripple (leaves f_in and f_out as
+they are); position_sensor_gain (a slope, not a wave).
 Not validated: the change of the pulley's lever arm, 2π·amplitude/period of the force; higher
 harmonics; a wave so steep that the force falls with x.
 """
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 
 from tsas_cli.effects.effect import Effect, Parameter
 from tsas_cli.numerics.compiled import kernel
+from tsas_cli.numerics.wave import wave_at
 
 LONGEST_MM, SHORTEST_MM, PERIODS = 60.0, 5.0, 8  # each start costs runs of the slip chain
 
@@ -35,12 +35,7 @@ class LoadRipple(NamedTuple):
 @kernel
 def spring_wave(position: float, ripple: LoadRipple) -> tuple[float, float]:
     """Return by how much the spring is stretched beyond the load's travel [mm], and the slope."""
-    per_mm = 2.0 * math.pi / ripple.period_mm
-    angle = per_mm * position
-    sine: float = np.sin(angle)
-    cosine: float = np.cos(angle)
-    wave = ripple.sine_mm * sine + ripple.cosine_mm * (cosine - 1.0)
-    return wave, per_mm * (ripple.sine_mm * cosine - ripple.cosine_mm * sine)
+    return wave_at(position, ripple.sine_mm, ripple.cosine_mm, ripple.period_mm)
 
 
 LOAD_RIPPLE = Effect(

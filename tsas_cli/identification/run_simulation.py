@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import lru_cache, partial
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -11,14 +11,22 @@ from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.samples import points
 from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.lugre.chain import OWN_STEPS
-from tsas_cli.physics.response import Dynamics, Prediction, is_closed, simulate
+from tsas_cli.physics.response import (
+    Dynamics,
+    Prediction,
+    SolvedRun,
+    is_closed,
+    mechanics_of,
+    read,
+    solve,
+)
 from tsas_cli.physics.rig import Rig
 
 Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
 Predictions = dict[str, Floats]  # of each channel at all samples, shape (n,)
 
-CACHED_RIGS = 2  # whose predictions are cached: that of the last step, and of the one before
+CACHED_RIGS = 2  # whose solutions are cached: that of the last step, and of the one before
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,22 +54,24 @@ def run_simulation(run: Prepared, dynamics: Dynamics = "slip") -> RunSimulation:
 
 def with_steps_at(simulation: RunSimulation, rig: Rig) -> RunSimulation:
     """Return the simulation with the steps that the dynamic model chooses at a rig."""
-    own = _response(simulation, rig, simulation.drive, OWN_STEPS)
+    _, own = _solved(simulation, rig, simulation.drive, OWN_STEPS)
     return replace(simulation, step_ends_s=own.step_ends_s)
 
 
 def predictor(simulation: RunSimulation) -> Callable[[Rig], Predictions]:
-    """Return the predictions of the run's own drive as a function of the rig, the last ones cached.
+    """Return the predictions of the run's own drive as a function of the rig.
 
-    The cache belongs to the function and not to the record, which would form a reference cycle:
+    The last solutions are cached: a rig that differs in its sensors alone is not solved again. The
+    cache belongs to the function and not to the record, which would form a reference cycle:
     each of thousands of calibrations in one process would then retain megabytes.
     """
-    return lru_cache(maxsize=CACHED_RIGS)(partial(_predictions, simulation))
+    drive, steps = simulation.drive, simulation.step_ends_s
+    solved = lru_cache(maxsize=CACHED_RIGS)(lambda rig: _solved(simulation, rig, drive, steps))
 
+    def predictions(rig: Rig) -> Predictions:
+        return _at_samples(simulation, read(rig, *solved(mechanics_of(rig, drive))))
 
-def _predictions(simulation: RunSimulation, rig: Rig) -> Predictions:
-    response = _response(simulation, rig, simulation.drive, simulation.step_ends_s)
-    return _at_samples(simulation, response)
+    return predictions
 
 
 def predict_driven(
@@ -77,20 +87,21 @@ def predict_driven(
         drive = replace(drive, values=values)
     if load_values is not None:
         drive = replace(drive, load_values=load_values)
-    return _at_samples(simulation, _response(simulation, rig, drive, OWN_STEPS))
+    return _at_samples(simulation, read(rig, *_solved(simulation, rig, drive, OWN_STEPS)))
 
 
-def _response(
+def _solved(
     simulation: RunSimulation, rig: Rig, drive: DriveInput, step_ends_s: Floats
-) -> Prediction:
-    """Return the response at all samples by the closed form, or at `points` by a chain."""
+) -> tuple[DriveInput, SolvedRun]:
+    """Return drive and solution at all samples by the closed form, or at `points` by a chain."""
     slip = simulation.nodes is None and simulation.dynamics == "slip"
     at = slice(None) if slip and is_closed(rig, drive) else simulation.points
     load = None if drive.load_values is None else drive.load_values[at]
     time_s = None if drive.time_s is None else drive.time_s[at]
-    return simulate(
+    followed = replace(drive, values=drive.values[at], load_values=load, time_s=time_s)
+    return followed, solve(
         rig,
-        replace(drive, values=drive.values[at], load_values=load, time_s=time_s),
+        followed,
         simulation.dynamics,
         on_mesh=simulation.nodes is not None,
         nodes=simulation.nodes,

@@ -37,6 +37,7 @@ MOST_DOUBLINGS = 30  # of the drive's travel before a run
 ON_CHAIN = tuple(effect.name for effect in EFFECTS if not effect.closed_form)
 _effects_on_chain = attrgetter(*ON_CHAIN)
 _NEUTRAL_ON_CHAIN = _effects_on_chain(Effects())
+_NEUTRAL_SENSORS = {e.name: getattr(Effects(), e.name) for e in EFFECTS if e.acts_on == "sensor"}
 
 
 @dataclass(frozen=True)
@@ -60,6 +61,16 @@ class Prediction:
     frames: Frames | None = None
 
 
+@dataclass(frozen=True)
+class SolvedRun:
+    """A run before its sensors read it: output of the solver, and what `Prediction` says of it."""
+
+    output: Output
+    solver: str
+    step_ends_s: Floats = field(default_factory=OWN_STEPS.copy)
+    frames: Frames | None = None
+
+
 def simulate(
     rig: Rig,
     drive: DriveInput,
@@ -72,6 +83,52 @@ def simulate(
     looked_at: Indices | None = None,
 ) -> Prediction:
     """Return the prediction of the distributed model (`slip`), the static or the dynamic one.
+
+    The parameters are those of `solve`, of which this reads the sensors.
+    """
+    solved = solve(
+        rig,
+        drive,
+        dynamics,
+        on_mesh=on_mesh,
+        nodes=nodes,
+        tolerance=tolerance,
+        step_ends_s=step_ends_s,
+        looked_at=looked_at,
+    )
+    return read(rig, drive, solved)
+
+
+def read(rig: Rig, drive: DriveInput, solved: SolvedRun) -> Prediction:
+    """Return the sensor readings of a solved run."""
+    signals = sensed(solved.output, drive.time_s, rig, boundary_of(drive), new_memory())
+    response = readings_of(rig, drive, signals, solved.solver)
+    return replace(response, step_ends_s=solved.step_ends_s, frames=solved.frames)
+
+
+def mechanics_of(rig: Rig, drive: DriveInput) -> Rig:
+    """Return the rig with perfect sensors, or itself where a reading determines the motion.
+
+    Both rigs have the same solution of a run.
+    """
+    if drive.kind != "displacement" or drive.load != "spring" or drive.start_f_in_N is not None:
+        return rig
+    effects = rig.effects._replace(**_NEUTRAL_SENSORS)
+    return rig._replace(effects=effects, x_out_zero_mm=0.0)
+
+
+def solve(
+    rig: Rig,
+    drive: DriveInput,
+    dynamics: Dynamics = "slip",
+    *,
+    on_mesh: bool = False,
+    nodes: int | None = None,
+    tolerance: float = TOLERANCE,
+    step_ends_s: Floats = OWN_STEPS,
+    looked_at: Indices | None = None,
+) -> SolvedRun:
+    """Return the solution of the distributed model (`slip`), the static or the dynamic one.
 
     The distributed model uses the closed form where that is valid (`is_closed`), and the slip chain
     elsewhere, or with `on_mesh`: models that are compared must share a mesh. The static one
@@ -88,16 +145,16 @@ def simulate(
     ends = ends_of(rig, drive)
     if dynamics == "static":
         output = with_spring_load(rig, ends, static_model(ends.drive, rig))
-        return sensor_readings(rig, drive, output, 0, solver_of(nodes, dynamics))
+        return SolvedRun(output, solver_of(nodes, dynamics))
     if is_closed(rig, drive) and not on_mesh:
         nodes = CLOSED
     before = history(rig, ends, drive.start_f_in_N, nodes)
     skip, frames = len(before), None
     if looked_at is not None:
         frames = empty_frames(looked_at + skip, nodes or ELEMENTS)
-    output = _solve(rig, ends.after(before), nodes, frames)
-    response = sensor_readings(rig, drive, output, skip, solver_of(nodes, dynamics))
-    return replace(response, frames=frames and frames._replace(samples=frames.samples - skip))
+    output = samples_of(_solve(rig, ends.after(before), nodes, frames), slice(skip, None))
+    frames = frames and frames._replace(samples=frames.samples - skip)
+    return SolvedRun(output, solver_of(nodes, dynamics), frames=frames)
 
 
 def _dynamic(
@@ -106,8 +163,8 @@ def _dynamic(
     lumps: int,
     control: StepControl,
     looked_at: Indices | None,
-) -> Prediction:
-    """Return the prediction of the dynamic chain, from the slip chain's state of rest."""
+) -> SolvedRun:
+    """Return the solution of the dynamic chain, from the slip chain's state of rest."""
     if drive.time_s is None:
         raise ValueError("the dynamic model needs the times of its samples")
     ends = ends_of(rig, drive)
@@ -122,8 +179,7 @@ def _dynamic(
     output, progress = lugre_chain(course, start, rig, ends.boundary, lumps, control, frames)
     output = at_drive_sensor(rig, ends, output)
     solver = f"LuGre chain, {lumps} lumps, {progress.step_ends_s.size} steps"
-    response = sensor_readings(rig, drive, output, 0, solver)
-    return replace(response, step_ends_s=progress.step_ends_s, frames=frames)
+    return SolvedRun(output, solver, progress.step_ends_s, frames)
 
 
 def solver_of(nodes: int, dynamics: Dynamics) -> str:
@@ -141,16 +197,6 @@ def is_closed(rig: Rig, drive: DriveInput) -> bool:
         and rig.bend_slope == rig.bend_bow == 0.0
         and _effects_on_chain(rig.effects) == _NEUTRAL_ON_CHAIN
     )
-
-
-def sensor_readings(
-    rig: Rig, drive: DriveInput, output: Output, skip: int, solver: str
-) -> Prediction:
-    """Return the sensor readings of a run's output without its first `skip` samples."""
-    signals = sensed(
-        samples_of(output, slice(skip, None)), drive.time_s, rig, boundary_of(drive), new_memory()
-    )
-    return readings_of(rig, drive, signals, solver)
 
 
 def readings_of(rig: Rig, drive: DriveInput, signals: Output, solver: str) -> Prediction:

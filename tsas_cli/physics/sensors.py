@@ -1,8 +1,8 @@
 """Sensor readings of true forces and displacements, and the inverse.
 
-From the true value to the reading: crosstalk, hysteresis, low pass, delay, curve, gain, offset with
-drift. Hysteresis and low pass have a memory, which is carried over where a run is simulated in
-pieces.
+From the true value to the reading: tilt, crosstalk, hysteresis, low pass, delay, curve or wave,
+gain and offset with their drifts. Hysteresis and low pass have a memory, which is carried over
+where a run is simulated in pieces.
 """
 
 from typing import Literal
@@ -14,9 +14,16 @@ from tsas_cli.effects.force_crosstalk import with_crosstalk
 from tsas_cli.effects.force_sensor_curvature import read_curved, straightened
 from tsas_cli.effects.force_sensor_drift import drift_reading
 from tsas_cli.effects.force_sensor_gain import read_gain
+from tsas_cli.effects.force_sensor_gain_drift import drifted_gain
 from tsas_cli.effects.force_sensor_hysteresis import read_hysteresis
 from tsas_cli.effects.force_sensor_offset import offset_reading
+from tsas_cli.effects.force_sensor_tilt import read_tilted
 from tsas_cli.effects.position_sensor_gain import read_position
+from tsas_cli.effects.position_sensor_ripple import (
+    PositionSensorRipple,
+    read_rippled,
+    without_ripple,
+)
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.numerics.elastoplastic import yielded
 from tsas_cli.numerics.settling import lag_after
@@ -42,20 +49,24 @@ def new_memory() -> Floats:
 def sensed(
     output: Output, time_s: Floats | None, rig: Rig, boundary: Boundary, memory: Floats
 ) -> Output:
-    """Return an output with its signals after crosstalk, hysteresis and low pass of the sensors.
+    """Return an output with its signals after tilt, crosstalk, hysteresis and low pass.
 
     `time_s` are the times of the samples, shape (n,), None for a run without time, which passes no
-    filter. A force that is given at the `boundary` is read as it is given, without crosstalk and
-    hysteresis. `memory` is that after the sample before, updated in place.
+    filter. A force that is given at the `boundary` is read as it is given, without tilt, crosstalk
+    and hysteresis. `memory` is that after the sample before, updated in place.
     """
     f_in, f_out, shares = output.f_in, output.f_out, rig.effects.force_crosstalk
-    loops = rig.effects.force_sensor_hysteresis
+    loops, tilts = rig.effects.force_sensor_hysteresis, rig.effects.force_sensor_tilt
     if boundary.drive != FORCE:
+        if tilts.f_in_per_mm != 0.0:
+            f_in = tilted(f_in, tilts.f_in_per_mm, output.x_in)
         if shares.f_in_of_f_out != 0.0:
             f_in = f_in + with_crosstalk(0.0, 1.0, shares.f_in_of_f_out) * output.f_out
         if loops.f_in_share != 0.0:
             f_in = with_hysteresis(f_in, loops.f_in_share, loops.span_N, memory[0])
     if boundary.load != FORCE:
+        if tilts.f_out_per_mm != 0.0:
+            f_out = tilted(f_out, tilts.f_out_per_mm, output.x_out)
         if shares.f_out_of_f_in != 0.0:
             f_out = f_out + with_crosstalk(0.0, 1.0, shares.f_out_of_f_in) * output.f_in
         if loops.f_out_share != 0.0:
@@ -67,6 +78,15 @@ def sensed(
                 signals[k] = low_pass(signals[k], time_s, lag_s, memory[k])
     f_in, f_out, x_out = signals
     return output._replace(f_in=f_in, f_out=f_out, x_out=x_out)
+
+
+@kernel
+def tilted(forces: Floats, per_mm: float, positions: Floats) -> Floats:
+    """Return the readings of a sensor that tilts with the position [N]."""
+    out = np.empty(forces.size)
+    for i in range(forces.size):
+        out[i] = read_tilted(forces[i], per_mm, positions[i])
+    return out
 
 
 @kernel
@@ -107,12 +127,15 @@ def low_pass(values: Floats, time_s: Floats, lag_s: float, memory: Floats) -> Fl
 def reading(channel: Channel, values: Floats, time_s: Floats | None, rig: Rig) -> Floats:
     """Return a channel's readings of signals that passed `sensed`, shape (n,).
 
-    They are delayed, curved, scaled, shifted. Without times there is no delay and no drift.
+    They are delayed, curved, scaled, shifted. Without times there is no delay, no drift.
     """
-    delayed, curvature = _delayed_by(values, time_s, _delay(channel, rig)), _curvature(channel, rig)
+    delayed = _delayed_by(values, time_s, _delay(channel, rig))
+    curvature, ripple = _curvature(channel, rig), _ripple(channel, rig)
     if curvature != 0.0:
         delayed = curved(delayed, curvature)
-    return delayed * _gain(channel, rig) + _shift(channel, time_s, rig)
+    if ripple is not None:
+        delayed = with_wave(delayed, ripple)
+    return delayed * _gain(channel, time_s, rig) + _shift(channel, time_s, rig)
 
 
 def true_value(channel: Channel, readings: Floats, time_s: Floats | None, rig: Rig) -> Floats:
@@ -121,8 +144,10 @@ def true_value(channel: Channel, readings: Floats, time_s: Floats | None, rig: R
     A low pass is inverted to first order in its time, by the rate of the signal: the exact inverse
     would multiply noise by the square of that time over the sampling period.
     """
-    delayed = (readings - _shift(channel, time_s, rig)) / _gain(channel, rig)
-    curvature = _curvature(channel, rig)
+    delayed = (readings - _shift(channel, time_s, rig)) / _gain(channel, time_s, rig)
+    curvature, ripple = _curvature(channel, rig), _ripple(channel, rig)
+    if ripple is not None:
+        delayed = without_wave(delayed, ripple)
     if curvature != 0.0:
         delayed = uncurved(delayed, curvature)
     signal = _delayed_by(delayed, time_s, -_delay(channel, rig))
@@ -155,12 +180,22 @@ def _curvature(channel: Channel, rig: Rig) -> float:
     return curves.f_in_per_N if channel == "f_in_N" else curves.f_out_per_N
 
 
-def _gain(channel: Channel, rig: Rig) -> float:
-    if channel == "f_out_N":
-        return read_gain(1.0, rig.effects.force_sensor_gain.f_out_gain)
+def _ripple(channel: Channel, rig: Rig) -> PositionSensorRipple | None:
+    ripple = rig.effects.position_sensor_ripple
+    there = channel == "x_out_mm" and (ripple.sine_mm != 0.0 or ripple.cosine_mm != 0.0)
+    return ripple if there else None
+
+
+def _gain(channel: Channel, time_s: Floats | None, rig: Rig) -> Floats | float:
     if channel == "x_out_mm":
         return read_position(1.0, rig.effects.position_sensor_gain.x_out_gain)
-    return 1.0
+    drifts, gain = rig.effects.force_sensor_gain_drift, 1.0
+    if channel == "f_out_N":
+        gain = read_gain(1.0, rig.effects.force_sensor_gain.f_out_gain)
+    rate = drifts.f_in_rate_per_s if channel == "f_in_N" else drifts.f_out_rate_per_s
+    if rate == 0.0 or time_s is None:
+        return gain
+    return drifting_gain(gain, rate, time_s)
 
 
 def _shift(channel: Channel, time_s: Floats | None, rig: Rig) -> Floats | float:
@@ -191,6 +226,33 @@ def uncurved(readings: Floats, curvature: float) -> Floats:
     out = np.empty(readings.size)
     for i in range(readings.size):
         out[i] = straightened(readings[i], curvature)
+    return out
+
+
+@kernel
+def with_wave(positions: Floats, ripple: PositionSensorRipple) -> Floats:
+    """Return the readings of a sensor that turns off its centre [mm]."""
+    out = np.empty(positions.size)
+    for i in range(positions.size):
+        out[i] = read_rippled(positions[i], ripple)
+    return out
+
+
+@kernel
+def without_wave(readings: Floats, ripple: PositionSensorRipple) -> Floats:
+    """Return the positions of the readings of such a sensor [mm]."""
+    out = np.empty(readings.size)
+    for i in range(readings.size):
+        out[i] = without_ripple(readings[i], ripple)
+    return out
+
+
+@kernel
+def drifting_gain(gain: float, rate: float, time_s: Floats) -> Floats:
+    """Return a gain that drifts, at each time [1]."""
+    out = np.empty(time_s.size)
+    for i in range(time_s.size):
+        out[i] = drifted_gain(gain, rate, time_s[i])
     return out
 
 

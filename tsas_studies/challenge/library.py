@@ -109,12 +109,17 @@ def terms(run: Prepared) -> Iterator[Term]:
     yield Term("load_ripple", "pulled by cos(x_out)", pulled(np.cos(turn)))
     yield Term("force_sensor_gain", "f_out", {"f_out_N": f_out})
     yield Term("position_sensor_gain", "x_out", {"x_out_mm": x_out})
+    yield Term("position_sensor_ripple", "sin(x_out)", {"x_out_mm": np.sin(turn)})
+    yield Term("position_sensor_ripple", "cos(x_out)", {"x_out_mm": np.cos(turn)})
     for channel in ("f_in_N", "f_out_N"):
         yield Term("force_sensor_offset", "1", {channel: np.ones_like(t)})
         yield Term("force_sensor_drift", "t", {channel: t})
         yield Term("force_sensor_drift", "1 − exp(−t)", {channel: settled})
         other = f_out if channel == "f_in_N" else f_in
         yield Term("force_crosstalk", "the other force", {channel: other})
+        yield Term("force_sensor_gain_drift", "its product with t", {channel: clean[channel] * t})
+        place = x if channel == "f_in_N" else x_out
+        yield Term("force_sensor_tilt", "its product with x", {channel: clean[channel] * place})
         yield Term("force_sensor_curvature", "its square", {channel: clean[channel] ** 2})
         yield Term(
             "force_sensor_hysteresis", "sign of its rate", {channel: -np.sign(rates[channel])}

@@ -13,14 +13,14 @@ import numpy as np
 # Hidden with the seeds for scoring alone: nobody who builds a tool has seen them.
 RESERVED = frozenset({
     "ageing_friction", "shifting_sheath", "stiffening_tendon",
-    "slotted_clamp", "force_sensor_creep", "eccentric_encoder",
+    "slotted_clamp", "force_sensor_creep", "skewed_laser",
 })  # fmt: skip
 
 # Several of these at once, each at this share of its full size, are one cause more.
 MIXED, MIXED_SIZE = "mixed", 0.6
 MIXABLE = (
     "rational_stribeck", "breakaway_friction", "strand_roll", "friction_cycles", "pulley_friction",
-    "thermal_offset", "amplifier_filter", "force_gain_drift", "encoder_play",
+    "thermal_offset", "amplifier_filter", "force_sensor_gain_drift", "encoder_play",
 )  # fmt: skip
 
 VARIES = 0.2  # a size differs from seed to seed by up to this share
@@ -70,6 +70,11 @@ NEAR_FULL: Mapping[str, tuple[Size, ...]] = {
         sized(f_in_share=0.1, span_N=(5.0, 15.0)), sized(f_out_share=0.1, span_N=(5.0, 15.0)),
     ),
     "force_crosstalk": (sized(False, f_in_of_f_out=0.04), sized(False, f_out_of_f_in=0.04)),
+    "force_sensor_gain_drift": (
+        sized(False, f_in_rate_per_s=0.003), sized(False, f_out_rate_per_s=0.003),
+    ),
+    "force_sensor_tilt": (sized(False, f_in_per_mm=2e-3), sized(False, f_out_per_mm=3e-3)),
+    "position_sensor_ripple": (sized(False, sine_mm=0.08, cosine_mm=0.0, period_mm=(4.0, 8.0)),),
     "sensor_lag": (sized(f_in_lag_s=0.02), sized(f_out_lag_s=0.04), sized(x_out_lag_s=0.008)),
     "rational_stribeck": (
         sized(excess=0.2, velocity_mm_per_s=(3.0, 6.0), power=(1.0, 2.0)),
@@ -86,12 +91,10 @@ NEAR_FULL: Mapping[str, tuple[Size, ...]] = {
     "stiffening_tendon": (sized(per_N=0.02),),
     "pulley_friction": (sized(share=0.03),),
     "slotted_clamp": (sized(play_mm=1.5, up_N=(38.0, 42.0), down_N=(32.0, 36.0)),),
-    "force_gain_drift": (
-        sized(False, f_in_rate_per_s=0.003), sized(False, f_out_rate_per_s=0.003),
-    ),
     "force_sensor_creep": (sized(share=0.1, time_s=(1.0, 3.0)),),
     "thermal_offset": (sized(amplitude_N=0.8, frequency_Hz=(0.08, 0.2), phase_rad=PHASE),),
     "eccentric_encoder": (sized(amplitude_mm=0.08, period_mm=(4.0, 8.0), phase_rad=PHASE),),
+    "skewed_laser": (sized(False, per_mm=1e-3),),
     "encoder_play": (sized(play_mm=0.15),),
     "amplifier_filter": (sized(f_in_time_s=0.014), sized(f_out_time_s=0.03)),
 }  # fmt: skip

@@ -24,15 +24,15 @@ from tsas_studies.challenge.make import make
 from tsas_studies.challenge.run import TOOLS
 from tsas_studies.challenge.sparse import regression
 
-HIDDEN = Hidden("proximal_spring", {"stiffness_N_per_mm": 0.12})
+HIDDEN = Hidden("drive_friction", {"friction_N": 1.5})
 BASELINES = [name for name in TOOLS if name != "diagnose"]
 
 
 @pytest.fixture(scope="module")
 def sealed(tmp_path_factory):
-    """A set of one case with a hidden spring and one with nothing hidden."""
+    """A set of one case with hidden friction and one with nothing hidden."""
     out = tmp_path_factory.mktemp("set")
-    cases = (Case("spring", "one", 1.0, (HIDDEN,), 5, 0), Case("plain", "nothing", 0.0, (), 5, 1))
+    cases = (Case("friction", "one", 1.0, (HIDDEN,), 5, 0), Case("plain", "nothing", 0.0, (), 5, 1))
     make(out, cases, rate_Hz=50.0)
     answers = json.loads((out / "answers.json").read_text(encoding="utf-8"))["cases"]
     return {case["name"]: out / "cases" / name / "dataset" for name, case in answers.items()}
@@ -48,11 +48,11 @@ def answer(tool, dataset, folder):
     "tool", [pytest.param(t, marks=pytest.mark.large if t == "bic" else ()) for t in BASELINES]
 )
 def test_a_plain_cause_is_named_first(tool, sealed, tmp_path):
-    said = answer(tool, sealed["spring"], tmp_path / tool)
+    said = answer(tool, sealed["friction"], tmp_path / tool)
     assert said.verdict == "named"
     assert said.named[0].effect == HIDDEN.cause
     (found,) = said.named[0].parameters.values()
-    assert found.value == pytest.approx(0.12, rel=0.05)
+    assert found.value == pytest.approx(1.5, rel=0.05)
     assert found.stderr > 0.0
 
 

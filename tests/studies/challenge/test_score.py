@@ -26,7 +26,7 @@ CASES = {
     "e2": case("backlash", "drive_friction", "presliding"),
     "f1": case(kind="near", unknown="pulley_friction"),
     "g1": case(conditions="slow"),
-    "h1": case(kind="fault", unknown="tilting_cell"),
+    "h1": case(kind="fault", unknown="encoder_play"),
     "h2": case(kind="fault", unknown="sensor_lag"),
     "h3": case(kind="fault", unknown="encoder_play"),
     "r1": case("backlash", conditions="realistic"),

@@ -93,6 +93,10 @@ CATALOGUE: Mapping[str, Mapping[str, Place]] = {
     },
     "drive_inertia": {"mass_kg": ("drive_end", "mass_kg")},
     "drive_damping": {"coefficient_N_s_per_mm": ("drive_end", "damping_N_s_per_mm")},
+    "force_sensor_gain_drift": {
+        "f_in_rate_per_s": ("f_in_N", "gain_rate_per_s"),
+        "f_out_rate_per_s": ("f_out_N", "gain_rate_per_s"),
+    },
     "force_sensor_curvature": {
         "f_in_per_N": ("f_in_N", "curvature"),
         "f_out_per_N": ("f_out_N", "curvature"),
@@ -102,9 +106,18 @@ CATALOGUE: Mapping[str, Mapping[str, Place]] = {
         "f_out_share": ("f_out_transducer", "hysteresis_share"),
         "span_N": ("transducers", "hysteresis_span"),
     },
+    "force_sensor_tilt": {
+        "f_in_per_mm": ("f_in_tilt_per_mm",),
+        "f_out_per_mm": ("f_out_tilt_per_mm",),
+    },
     "force_crosstalk": {
         "f_in_of_f_out": ("f_in_of_f_out",),
         "f_out_of_f_in": ("f_out_of_f_in",),
+    },
+    "position_sensor_ripple": {
+        "sine_mm": ("x_out_mm", "wave"),
+        "cosine_mm": ("x_out_mm", "wave_cosine"),
+        "period_mm": ("x_out_mm", "wave_period"),
     },
     "sensor_lag": {
         "f_in_lag_s": ("f_in_transducer", "lag_s"),

@@ -15,14 +15,13 @@ shifting_sheath     a sheath whose bend grows with the tension
 stiffening_tendon   a tendon that gets stiffer as it stretches
 pulley_friction     friction of a pulley at the drive, by the tension on it
 slotted_clamp       an anchor of the load's spring that slides in a slot
-force_gain_drift    a force sensor whose gain drifts
 force_sensor_creep  a force sensor that reads part of a change late
 thermal_offset      an offset of f_in that follows a temperature up and down
-eccentric_encoder   an encoder that turns off its centre
+eccentric_encoder   an encoder of the drive that turns off its centre
+skewed_laser        a position sensor whose gain changes along its travel
 encoder_play        play between the load, or the drive, and its encoder
 amplifier_filter    a Butterworth filter of second order on one force
 coarse_converter    a channel that is read in coarse steps
-tilting_cell        a force sensor that tilts as its end of the tendon moves
 unsteady_clock      samples that are taken earlier or later than their time stamps say
 """
 
@@ -73,10 +72,6 @@ NEAR: Mapping[str, Mapping[str, Place]] = {
         "up_N": ("restraint", "clamp_up_N"),
         "down_N": ("restraint", "clamp_down_N"),
     },
-    "force_gain_drift": {
-        "f_in_rate_per_s": ("f_in_N", "gain_rate_per_s"),
-        "f_out_rate_per_s": ("f_out_N", "gain_rate_per_s"),
-    },
     "force_sensor_creep": {
         "share": ("f_in_transducer", "creep_share"),
         "time_s": ("f_in_transducer", "creep_s"),
@@ -87,13 +82,11 @@ NEAR: Mapping[str, Mapping[str, Place]] = {
         "phase_rad": ("f_in_N", "hum_phase_rad"),
     },
     "eccentric_encoder": {
-        "x_in_amplitude_mm": ("x_in_mm", "wave"),
-        "x_in_period_mm": ("x_in_mm", "wave_period"),
-        "x_in_phase_rad": ("x_in_mm", "wave_phase_rad"),
-        "amplitude_mm": ("x_out_mm", "wave"),
-        "period_mm": ("x_out_mm", "wave_period"),
-        "phase_rad": ("x_out_mm", "wave_phase_rad"),
+        "amplitude_mm": ("x_in_mm", "wave"),
+        "period_mm": ("x_in_mm", "wave_period"),
+        "phase_rad": ("x_in_mm", "wave_phase_rad"),
     },
+    "skewed_laser": {"per_mm": ("x_out_mm", "curvature")},
     "encoder_play": {
         "play_mm": ("x_out_transducer", "play"),
         "x_in_play_mm": ("x_in_transducer", "play"),
@@ -107,10 +100,6 @@ NEAR: Mapping[str, Mapping[str, Place]] = {
         "f_out_step_N": ("f_out_N", "step"),
         "x_in_step_mm": ("x_in_mm", "step"),
         "x_out_step_mm": ("x_out_mm", "step"),
-    },
-    "tilting_cell": {
-        "f_in_per_mm": ("f_in_tilt_per_mm",),
-        "f_out_per_mm": ("f_out_tilt_per_mm",),
     },
     "unsteady_clock": {"jitter_s": ("jitter_s",)},
 }

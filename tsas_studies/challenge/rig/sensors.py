@@ -32,6 +32,8 @@ class Sensor:
         A scale that is bent: curvature × value² is added.
     wave, wave_period, wave_phase_rad
         An eccentric scale: wave × sin(2π value / period + phase) is added.
+    wave_cosine
+        The same, with a cosine that is zero at the origin and no phase.
     rate_per_s, settling_per_s
         An offset that grows at first at this rate, and how fast that settles.
     hum, hum_Hz, hum_phase_rad
@@ -58,6 +60,7 @@ class Sensor:
     wave: float = 0.0
     wave_period: float = 5.0
     wave_phase_rad: float = 0.0
+    wave_cosine: float = 0.0
 
 
 def _position() -> Sensor:
@@ -155,8 +158,10 @@ def _systematic(true: Floats, sensor: Sensor, instants: Floats) -> Floats:
     off = np.array([0.0, *(by for _, by in sensor.jumps)])
     lost = off[np.searchsorted(at, instants, side="right")]
     gain = sensor.gain + sensor.gain_rate_per_s * instants
-    turn = 2.0 * np.pi * true / sensor.wave_period + sensor.wave_phase_rad
-    bent = sensor.curvature * true**2 + sensor.wave * np.sin(turn)
+    turn = 2.0 * np.pi * true / sensor.wave_period
+    wave = sensor.wave * np.sin(turn + sensor.wave_phase_rad)
+    wave += sensor.wave_cosine * (np.cos(turn) - 1.0)
+    bent = sensor.curvature * true**2 + wave
     return np.asarray(gain * true + sensor.offset + drift + hum + lost + bent)
 
 
