@@ -1,6 +1,7 @@
 """What a joint fit finds, in units and intervals; what it misses; models beside it."""
 
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -101,3 +102,26 @@ def test_each_unknown_has_its_value():
         rig_at(GROUP_A, 0, [unknown(FRICTION)], np.zeros(2))
     with pytest.raises(ValueError, match="longer"):
         j.estimates_of([unknown(FRICTION)], fitted([0.0, 0.0], [1.0, 1.0]), [])
+
+
+class Runaway:
+    """Residuals of one run: a friction of 0.3, and a zero that gains the farther away it is."""
+
+    def residuals(self, rig):
+        noise = np.random.default_rng(7).standard_normal(100)
+        drifted = 2e4 * (1.0 - rig.x_in_zero_mm / 2e5)
+        return noise + drifted + np.linspace(-1, 1, 100) * 1e3 * (rig.friction_coefficient - 0.3)
+
+
+def test_a_zero_that_runs_to_its_bound_is_fixed_and_the_rest_fitted_again(monkeypatch):
+    monkeypatch.setattr(j, "reweighted", lambda errors, rig: errors)
+    monkeypatch.setattr(j, "blocks_of", lambda errors, rigs: [np.arange(100) // 10])
+    problem = problem_of([unknown(FRICTION), unknown(ZERO, 0)], "a")
+    fit = j.solve_fit(replace(problem, errors=(Runaway(),)))
+    assert [u.name for u in fit.free] == [FRICTION]
+    assert fit.model.value(FRICTION) == pytest.approx(0.3, abs=0.05)
+    assert fit.values[1] == 0.0
+    (note,) = fit.not_identifiable
+    assert (
+        note == f"{ZERO} is not identifiable from these recordings (runs a); it is fixed at 0 mm."
+    )

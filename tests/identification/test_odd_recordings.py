@@ -369,3 +369,22 @@ def test_what_the_fit_leaves_open_has_no_error_and_a_sentence():
         assert f"{e.name} of run a is not identifiable at the minimum" in " ".join(
             result.cannot_tell
         )
+
+
+def test_where_a_fit_ends_with_every_parameter_at_a_bound_the_model_is_called_wrong():
+    """A band around a drum, slack at one end: no friction is as large as what is measured."""
+    time_s = np.arange(0.0, 8.0, 0.01)
+    rng = np.random.default_rng(4)
+    pull = 0.5 * (1.0 + np.tanh(6.0 * np.cos(np.pi * time_s)))
+    columns = {
+        "time_s": time_s,
+        "x_in_mm": 5.0 * np.sin(np.pi * time_s) + 0.002 * rng.standard_normal(time_s.size),
+        "f_in_N": 700.0 * pull - 30.0 + 2.0 * rng.standard_normal(time_s.size),
+        "f_out_N": 600.0 * (1.0 - pull) - 30.0 + 2.0 * rng.standard_normal(time_s.size),
+    }
+    run = Run(id="a", file="a.parquet", sha256="0" * 64, preload_N=89.0, load="force")
+    result = calibrate_runs(
+        Manifest(format=1, name="t", kind="measured", run=(run,)),
+        [prepare(Recording(run, columns))],
+    )
+    assert any("the nominal model is wrong" in note for note in result.cannot_tell)

@@ -70,22 +70,27 @@ def solve_fit(problem: FitProblem) -> FittedModel:
     if not problem.runs:
         return FittedModel(problem, values, (), errors, problem.fixed, None, problem.left_out)
     before: list[int] = []
+    lost: set[int] = set()
     for _ in range(MOST_ROUNDS):
         start = _finite(values, unknowns)
         J = jacobian(unknowns, len(problem.runs), start, _residuals(problem, errors))
         chosen, confounded = identifiable(unknowns, J)
-        # A fitted parameter whose value is too small to be sensitive is identifiable as small.
+        # A fitted parameter whose value is too small to be sensitive is identifiable as small. A
+        # zero that has run to its bound is not identifiable: the fit gains by forgetting it.
         small = [j for j in before if confounded.get(j) == []]
-        chosen = sorted({*chosen, *small})
-        fixed = fixed_sentences(problem, {j: p for j, p in confounded.items() if j not in small})
+        chosen = sorted({*chosen, *small} - lost)
+        others = {j: p for j, p in confounded.items() if j not in small} | {j: [] for j in lost}
+        fixed = fixed_sentences(problem, others)
         notes = (*problem.left_out, *fixed)
         if not chosen:
             return FittedModel(problem, values, (), errors, problem.fixed, None, notes)
         fitted = _fit(problem, errors, values, chosen, tolerance=FINE if before else ROUGH)
         values = _fixed_values(problem)
         values[chosen] = fitted.values
+        ends = zip(chosen, fitted.at_bound, strict=True)
+        lost |= {j for j, at_bound in ends if at_bound and _of_either_sign(unknowns[j])}
         errors = tuple(reweighted(e, problem.rig(k, values)) for k, e in enumerate(errors))
-        if chosen == before:
+        if chosen == before and not lost & set(chosen):
             break
         before = chosen
     estimates = estimates_of([unknowns[j] for j in chosen], fitted, problem.ids)
@@ -138,6 +143,11 @@ def moved_model(fit: FittedModel, moves: Floats) -> Model:
         if np.isfinite(v)
     ]
     return Model(tuple(moved)).over(fit.problem.initial)
+
+
+def _of_either_sign(unknown: Unknown) -> bool:
+    quantity = QUANTITIES[unknown.name]
+    return not quantity.positive and unknown.lower < 0.0 < unknown.upper
 
 
 def _finite(values: Floats, unknowns: Sequence[Unknown]) -> Floats:

@@ -41,7 +41,8 @@ def projector(trial: HypothesisFit) -> Floats:
     basis, r = np.linalg.qr(
         free * np.array([u.scale for u in trial.unknowns])[~trial.solution.at_bound]
     )
-    own = np.abs(np.diag(r)) > HIDDEN * np.abs(np.diag(r)).max()
+    sizes = np.abs(np.diag(r))
+    own = sizes > HIDDEN * sizes.max(initial=0.0)
     return np.asarray(basis[:, own])
 
 
