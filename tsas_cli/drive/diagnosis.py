@@ -28,8 +28,7 @@ from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.records.base import number_text
 from tsas_cli.records.diagnosis import Verdict
-
-Floats = npt.NDArray[np.float64]
+from tsas_cli.support.arrays import Floats
 
 EQUATION = frozenset({"stated"})
 MOST_SHARE_LEFT = 0.02  # of the initial excess over the noise, that named causes may leave

@@ -4,7 +4,6 @@ import math
 from collections.abc import Mapping
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.drive.diagnosis import FoundDriveCause, FoundDriveDiagnosis
 from tsas_cli.drive.estimates import DataSheet
@@ -19,8 +18,7 @@ from tsas_cli.identification.estimate import Estimate
 from tsas_cli.records import drive as records
 from tsas_cli.records.base import Value
 from tsas_cli.records.diagnosis import HeldOut, RemainingResidual
-
-Floats = npt.NDArray[np.float64]
+from tsas_cli.support.arrays import Floats
 
 CURVE_POINTS = 200
 BESIDE_BAND = 1.05  # of its edge, up to which a pole counts as inside

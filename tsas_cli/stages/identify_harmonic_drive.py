@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.drive import json as drive_json
 from tsas_cli.drive.diagnosis import FoundDriveDiagnosis, diagnose_drive
@@ -29,13 +28,13 @@ from tsas_cli.records.base import Fit, parameters_of
 from tsas_cli.records.drive import DRIVE_FILE, DriveFile, Structure
 from tsas_cli.records.result import Result, Table, notes
 from tsas_cli.stages.given import Named, dataset_of, one_of, path_of
+from tsas_cli.support.arrays import Floats
 from tsas_cli.support.files import folder_if
 from tsas_cli.support.steps import NO_PROGRESS, Steps
 
 SPEEDS: tuple[Literal["measured", "commanded"], ...] = ("measured", "commanded")
 HOLDS: dict[str, Hold] = {"measured": "first", "commanded": "zero"}
 
-Floats = npt.NDArray[np.float64]
 STAGE = "identify-harmonic-drive"
 
 
