@@ -10,6 +10,7 @@ from tests.drive.verdicts import STATED, TITLE, TOLD, cause, terms, verdict
 from tsas_cli.diagnosis.evidence import gain
 from tsas_cli.drive import diagnosis as dd
 from tsas_cli.drive.search import NOTHING
+from tsas_cli.drive.sentences import EQUATION_NAME, STIFF_NAME
 from tsas_cli.numerics.linear_response import sampled
 
 
@@ -38,51 +39,74 @@ class Searched:
 def diagnosed(monkeypatch):
     monkeypatch.setattr(dd, "_left", lambda search, terms: (("time_s",), 0.36))
     monkeypatch.setattr(dd, "rivals", lambda search, final, term: search.rivals.get(term, ()))
-    return lambda search, final: dd.diagnose_drive(search, final, TOLD)
+    return lambda search, final: dd.diagnose_drive(search, final, TOLD)[1]
 
 
 def test_a_delay_is_named_with_its_gain_and_what_is_left(diagnosed):
     """Of 17 − 1 there is left 1.95 − 1 − 0.15: a twentieth."""
     found = diagnosed(Searched({NOTHING: 17.0, terms("delay"): 1.95}), terms("delay"))
-    assert (found.verdict, found.nominal, found.final) == ("named", NOTHING, terms("delay"))
-    (cause,) = found.causes
+    assert (found.verdict, found.nominal) == ("named", STIFF_NAME)
+    (cause,) = found.named
     assert (cause.effect, cause.kind, cause.rivals) == ("channel_delay", "pure delay", ())
-    assert [e.name for e in cause.parameters] == ["motor_lag_s", "delay_s"]
+    assert list(cause.parameters) == ["motor_lag_s", "delay_s"]
     percent = 100.0 * (1.0 - math.sqrt(1.95 / 17.0))
     assert cause.gain_percent == pytest.approx(percent)
     assert cause.gain_interval_percent == pytest.approx((percent, percent))
-    assert found.gain_percent == pytest.approx((percent,) * 3)
-    assert found.share_left == pytest.approx(0.8 / 16.0)
-    assert found.mean_square == 1.95
-    assert found.unexplained  # a twentieth is more than a fiftieth
-    assert found.depends_on == ("time_s",)
+    assert found.gain_percent == pytest.approx(percent)
+    assert found.gain_interval_percent == pytest.approx((percent, percent))
+    assert found.remainder.share_percent == pytest.approx(80.0 / 16.0)
+    assert found.remainder.mean_square == 1.95
+    assert found.remainder.unexplained  # a twentieth is more than a fiftieth
+    assert found.remainder.depends_on == ("time_s",)
+
+
+def test_a_diagnosis_says_what_it_is_about_and_how_it_judged(diagnosed):
+    search = Searched({NOTHING: 17.0, terms("delay"): 1.95})
+    found = diagnosed(search, terms("delay"))
+    (cause,) = found.named
+    assert cause.title == TITLE["channel_delay"]
+    written = cause.content()["parameters"]["delay_s"]
+    assert written["interval_high"] == 0.7
+    assert set(written).isdisjoint({"name", "run", "origin"})
+    assert (found.evidence.held_out, found.evidence.blocks) == ("stretches", 20)
+    assert found.evidence.sentence.startswith("Stretches are predicted by a fit to the rest; 20")
+    search.folds.by_run = True
+    runs = diagnosed(search, terms("delay")).evidence
+    assert runs.held_out == "runs"
+    assert runs.sentence.startswith("Each run is predicted by a fit to the others; 20 blocks")
+    assert dd.diagnose_drive(search, terms("delay"), TOLD)[0] == NOTHING
 
 
 def test_errors_of_the_drive_are_in_millimetres(diagnosed):
-    found = diagnosed(Searched({NOTHING: 16.0, terms("delay"): 4.0}), terms("delay")).channel
+    def errors(left):
+        search = Searched({NOTHING: 16.0, terms("delay"): left})
+        return diagnosed(search, terms("delay")).channels["x_in_mm"]
+
+    found = errors(4.0)
     assert (found.rmse_before, found.rmse_after) == pytest.approx((0.4, 0.2))
     assert found.noise_floor == pytest.approx(0.1)
     assert found.attainable == pytest.approx(0.2 * 0.8)  # √(1 − 0.36)
-    low = diagnosed(Searched({NOTHING: 16.0, terms("delay"): 0.25}), terms("delay")).channel
+    low = errors(0.25)
     assert low.noise_floor == low.attainable == pytest.approx(0.05)
-    near = diagnosed(Searched({NOTHING: 16.0, terms("delay"): 1.21}), terms("delay")).channel
-    assert near.attainable == pytest.approx(0.1)
+    assert errors(1.21).attainable == pytest.approx(0.1)
 
 
 def test_without_a_cause_the_nominal_equation_stays(diagnosed):
     found = diagnosed(Searched({NOTHING: 1.0, terms("delay"): 0.99}), terms("delay"))
-    assert (found.verdict, found.final, found.share_left) == ("sufficient", NOTHING, 1.0)
-    assert (found.depends_on, found.unexplained) == ((), False)
-    assert found.gain_percent == (0.0, 0.0, 0.0)
+    assert (found.verdict, found.remainder.share_percent) == ("sufficient", 100.0)
+    assert (found.remainder.depends_on, found.remainder.unexplained) == ((), False)
+    assert (found.gain_percent, found.gain_interval_percent) == (0.0, (0.0, 0.0))
     rest = diagnosed(Searched({NOTHING: 9.0, terms("delay"): 8.99}), terms("delay"))
-    assert (rest.verdict, rest.unexplained, rest.depends_on) == ("unexplained", True, ("time_s",))
+    assert (rest.verdict, rest.remainder.unexplained) == ("unexplained", True)
+    assert rest.remainder.depends_on == ("time_s",)
 
 
 def test_where_nothing_was_beyond_the_noise_no_share_is_left(diagnosed):
     found = diagnosed(Searched({NOTHING: 0.9, terms("delay"): 0.5}), terms("delay"))
-    assert (found.verdict, found.share_left, found.unexplained) == ("named", 0.0, False)
+    assert (found.verdict, found.remainder.share_percent) == ("named", 0.0)
+    assert not found.remainder.unexplained
     quiet = diagnosed(Searched({NOTHING: 17.0, terms("delay"): 1.14}), terms("delay"))
-    assert (quiet.share_left, quiet.depends_on) == (0.0, ())
+    assert (quiet.remainder.share_percent, quiet.remainder.depends_on) == (0.0, ())
 
 
 @pytest.mark.parametrize(("blocks", "verdict"), [(5, "undecided"), (6, "named")])
@@ -95,13 +119,13 @@ def test_a_stated_frequency_makes_the_equation_nominal(diagnosed):
     """Then the spring of the equation is no cause; what it gains counts against that."""
     squares = {STATED: 9.0, terms("spring"): 8.99, STATED | {"delay"}: 1.0}
     same = diagnosed(Searched(squares, stated=30.0), terms("spring"))
-    assert (same.nominal, same.causes) == (STATED, ())
+    assert (same.nominal, same.named) == (EQUATION_NAME, ())
     better = diagnosed(Searched({STATED: 9.0, terms("spring"): 1.0}, stated=30.0), terms("spring"))
-    (cause,) = better.causes
+    (cause,) = better.named
     assert (cause.effect, cause.kind) == ("drive_compliance", "")
-    assert [e.name for e in cause.parameters] == ["damping_ratio"]
+    assert list(cause.parameters) == ["damping_ratio"]
     own = diagnosed(Searched({STATED: 9.0}, stated=30.0), STATED)
-    assert own.causes == ()
+    assert own.named == ()
 
 
 def test_a_drive_that_shows_no_resonance_is_held_against_a_stiff_one(diagnosed):
@@ -109,35 +133,35 @@ def test_a_drive_that_shows_no_resonance_is_held_against_a_stiff_one(diagnosed):
     squares = {STATED: 99.0, NOTHING: 9.0, terms("lag"): 1.0}
     search = Searched(squares, stated=30.0, rivals={"lag": ("spring",)})
     found = diagnosed(search, terms("lag"))
-    assert (found.nominal, found.final) == (NOTHING, terms("lag"))
-    (cause,) = found.causes
+    assert (found.verdict, found.nominal) == ("ambiguous", STIFF_NAME)
+    (cause,) = found.named
     assert (cause.effect, cause.rivals) == ("channel_delay", ("drive_compliance",))
     assert "compliance of the drive, whose" not in found.reason
     stiff = diagnosed(Searched({STATED: 99.0, NOTHING: 1.0}, stated=30.0), NOTHING)
-    assert (stiff.verdict, stiff.nominal, stiff.causes) == ("sufficient", NOTHING, ())
+    assert (stiff.verdict, stiff.nominal, stiff.named) == ("sufficient", STIFF_NAME, ())
 
 
 def test_what_the_nominal_equation_does_as_well_is_no_cause(diagnosed):
     """A lag was named whose RMS before and after was 0.00506 mm."""
     squares = {STATED: 1.001, NOTHING: 9.0, terms("lag"): 1.0}
     found = diagnosed(Searched(squares, stated=30.0), terms("lag"))
-    assert (found.verdict, found.nominal, found.causes) == ("sufficient", STATED, ())
+    assert (found.verdict, found.nominal, found.named) == ("sufficient", EQUATION_NAME, ())
 
 
 def test_a_gain_that_no_table_shows_names_nothing(diagnosed, monkeypatch):
     """In millimetres the noisiest run decides, where another one gains."""
     search = Searched({NOTHING: 1.0, terms("lag"): 0.9})
-    assert len(diagnosed(search, terms("lag")).causes) == 1
+    assert len(diagnosed(search, terms("lag")).named) == 1
     rms = {NOTHING: 0.005062, terms("lag"): 0.005058}
     monkeypatch.setattr(dd, "_rmse", lambda search, names: rms[names])
-    assert diagnosed(search, terms("lag")).causes == ()
+    assert diagnosed(search, terms("lag")).named == ()
 
 
 def test_every_cause_has_a_number(diagnosed):
     every = terms("spring", "lag", "ripple", "play")
     fewer = {every - {t}: 9.0 for t in every}
     found = diagnosed(Searched({NOTHING: 99.0, every: 1.0} | fewer), every)
-    named = {c.effect: [e.name for e in c.parameters] for c in found.causes}
+    named = {c.effect: list(c.parameters) for c in found.named}
     assert named == {
         "drive_compliance": ["damping_ratio"],
         "channel_delay": ["motor_lag_s", "delay_s"],
@@ -150,7 +174,7 @@ def test_a_rival_of_the_other_kind_is_told_where_the_effect_is_named(diagnosed):
     both = terms("spring", "lag")
     squares = {NOTHING: 99.0, both: 1.0, terms("spring"): 9.0, terms("lag"): 9.0}
     found = diagnosed(Searched(squares, rivals={"spring": ("delay",)}), both)
-    assert {c.effect: c.rivals for c in found.causes} == {
+    assert {c.effect: c.rivals for c in found.named} == {
         "drive_compliance": ("channel_delay (pure delay)",),
         "channel_delay": (),
     }
@@ -161,13 +185,13 @@ def test_rivals_are_effects_or_the_other_kind_of_delay(diagnosed):
     search = Searched(squares, rivals={"lag": ("delay", "play")})
     found = diagnosed(search, terms("lag"))
     assert found.verdict == "ambiguous"
-    assert found.causes[0].rivals == ("channel_delay (pure delay)", "backlash")
+    assert found.named[0].rivals == ("channel_delay (pure delay)", "backlash")
 
 
 def test_two_terms_of_one_effect_are_one_cause_without_rivals(diagnosed):
     both = terms("lag", "delay")
     search = Searched({NOTHING: 9.0, both: 1.0}, rivals={"lag": ("play",)})
-    (cause,) = diagnosed(search, both).causes
+    (cause,) = diagnosed(search, both).named
     assert (cause.kind, cause.rivals) == ("pure delay and first-order lag", ())
 
 
@@ -176,26 +200,26 @@ def test_each_cause_is_held_against_all_the_others(diagnosed):
     both = terms("delay", "play")
     squares = {NOTHING: 16.0, terms("delay"): 4.0, terms("play"): 9.0, both: 1.0}
     found = diagnosed(Searched(squares), both)
-    gains = {c.effect: c.gain_percent for c in found.causes}
+    gains = {c.effect: c.gain_percent for c in found.named}
     assert gains == pytest.approx({"channel_delay": 100.0 * 2.0 / 3.0, "backlash": 50.0})
     assert list(gains) == ["channel_delay", "backlash"]
     idle = diagnosed(Searched(squares | {terms("delay"): 1.01}), both)
-    assert [c.effect for c in idle.causes] == ["channel_delay"]
+    assert [c.effect for c in idle.named] == ["channel_delay"]
 
 
 PLAIN = "A drive without lag and stiffness, x_in = g ∫u dt,"
 
 
 def test_the_reason_of_each_verdict():
-    assert dd._reason(verdict("undecided"), 9.0).startswith("too few stretches")
-    quiet = dd._reason(verdict("sufficient"), 9.0)
+    assert dd.reason_of(verdict("undecided"), 9.0, 1.44).startswith("too few stretches")
+    quiet = dd.reason_of(verdict("sufficient"), 9.0, 1.44)
     assert quiet == f"{PLAIN} is at the noise level: these runs show no missing effect."
     rest = verdict("unexplained", depends=("time_s", "x_in_mm"))
-    assert dd._reason(rest, 9.0) == (
+    assert dd.reason_of(rest, 9.0, 1.44) == (
         f"{PLAIN} leaves a residual RMS of x_in of 3 × the noise level, and no catalogued effect "
         "of a drive explains it. It depends on time_s, x_in_mm."
     )
-    stated = dd._reason(verdict("sufficient", nominal=STATED), 9.0)
+    stated = dd.reason_of(verdict("sufficient", stated=True), 9.0, 1.44)
     assert stated.startswith("The nominal drive equation (Yang 2025, Eq. 25, without reaction) is")
 
 
@@ -204,7 +228,9 @@ def test_the_reason_names_causes_rivals_and_the_rest():
         cause("drive_compliance", rivals=("b", "a")),
         cause("channel_delay", "pure delay", ("a",)),
     )
-    said = dd._reason(verdict("ambiguous", *two, unexplained=True, depends=("time_s",)), 9.0)
+    said = dd.reason_of(
+        verdict("ambiguous", *two, unexplained=True, depends=("time_s",)), 9.0, 1.44
+    )
     assert said == (
         f"{PLAIN} leaves a residual RMS of x_in of 3 × the noise level. It lacks: the compliance "
         "of the drive, whose stiffness reacts on the position and a pure delay of the motor. With "
@@ -212,7 +238,7 @@ def test_the_reason_names_causes_rivals_and_the_rest():
         "recordings: a, b. No catalogued effect explains the remaining residual. It depends on "
         "time_s."
     )
-    plain = dd._reason(verdict("named", cause("backlash")), 9.0)
+    plain = dd.reason_of(verdict("named", cause("backlash")), 9.0, 1.44)
     assert f"It lacks: the {TITLE['backlash'].lower()}. With" in plain
     assert plain.endswith("With it the residual RMS is 1.2 × the noise level.")
 

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from tests.drive.verdicts import STATED, TITLE, TOLD, cause, terms, verdict
+from tests.drive.verdicts import TOLD, cause, terms, verdict
 from tsas_cli.drive import json as dj
 from tsas_cli.drive.estimates import DataSheet
 from tsas_cli.drive.frequency_response import FrequencyResponse
@@ -157,25 +157,8 @@ def test_each_run_has_the_errors_of_both():
         dj.run_rows(search, [np.zeros(2)] * 2, [np.zeros(2)])
 
 
-def test_a_diagnosis_of_a_drive_as_json_and_as_tables():
-    search = SimpleNamespace(folds=SimpleNamespace(by_run=True, blocks=40))
-    named = verdict("ambiguous", cause("backlash", rivals=("channel_delay",)), nominal=STATED)
-    found = dj.diagnosis(search, named)
-    (row,) = found.named
-    assert (row.effect, row.title) == ("backlash", TITLE["backlash"])
-    assert row.parameters["play_mm"].interval_high == 0.7
-    written = row.content()["parameters"]["play_mm"]
-    assert set(written).isdisjoint({"name", "run", "origin"})
-    assert (found.gain_percent, found.gain_interval_percent) == (40.0, (30.0, 50.0))
-    assert found.nominal.startswith("Eq. (25)")
-    assert found.remainder.share_percent == pytest.approx(5.0)
-    assert found.evidence.held_out == "runs"
-    assert found.evidence.sentence.startswith("Each run is predicted by a fit to the others; 40")
-    search.folds.by_run = False
-    stretches = dj.diagnosis(search, verdict("sufficient"))
-    assert stretches.nominal == "x_in = g ∫u dt"
-    assert stretches.evidence.sentence.startswith("Stretches are predicted by a fit to the")
-
+def test_a_drive_as_tables():
+    found = verdict("ambiguous", cause("backlash", rivals=("channel_delay",)), stated=True)
     tried = TriedStructure(name="lag", parameters=2, held_out_times_noise=1.2345)
     lead = Kinematics(kinematic_lead_rpm_s_per_mm=42.2841, fitted_lead_rpm_s_per_mm=40.0)
     drive = DriveFile.model_construct(
@@ -197,7 +180,10 @@ def test_a_diagnosis_of_a_drive_as_json_and_as_tables():
     assert list(runs) == [("a", "0.1234", "0.5", "0.012")]
     assert causes == [("backlash", "play_mm", "0.5 [0.3, 0.7]", "mm", "40.0", "channel_delay")]
     assert error == [("x_in_mm", "0.4", "0.2", "0.1", "0.15", "mm")]
-    less = {"kinematics": Kinematics(fitted_lead_rpm_s_per_mm=40.0), "diagnosis": stretches}
+    less = {
+        "kinematics": Kinematics(fitted_lead_rpm_s_per_mm=40.0),
+        "diagnosis": verdict("sufficient"),
+    }
     fewer = list(tables(drive.model_copy(update=less), "title"))
     assert len(fewer) == 4
     assert len(fewer[1][2]) == 1

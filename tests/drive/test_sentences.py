@@ -1,7 +1,6 @@
 """Structures of a drive in words, and what its recordings do not tell."""
 
-from types import SimpleNamespace
-
+from tests.drive.verdicts import cause, verdict
 from tsas_cli.drive.estimates import DataSheet
 from tsas_cli.drive.harmonic_drive import DriveValues
 from tsas_cli.drive.search import NOTHING
@@ -46,7 +45,7 @@ def test_the_inverse_in_words():
 
 
 def found(rivals=(), unexplained=False):
-    return SimpleNamespace(causes=[SimpleNamespace(rivals=rivals)], unexplained=unexplained)
+    return verdict("named", cause("backlash", rivals=rivals), unexplained=unexplained)
 
 
 def test_what_to_record_next():

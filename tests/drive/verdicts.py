@@ -1,15 +1,17 @@
 """Verdicts on a drive that are made up, as several tests need them."""
 
-from tsas_cli.diagnosis.channel_errors import HeldOutErrors
-from tsas_cli.drive.diagnosis import FoundDriveCause, FoundDriveDiagnosis
-from tsas_cli.drive.search import NOTHING
+from tsas_cli.drive.file import UNITS
+from tsas_cli.drive.sentences import EQUATION_NAME, STIFF_NAME
 from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.estimate import Estimate
+from tsas_cli.records.base import Value
+from tsas_cli.records.diagnosis import HeldOut, RemainingResidual
+from tsas_cli.records.drive import DriveCause, DriveDiagnosis
 
 TITLE = {e.name: e.title for e in EFFECTS}
 STATED = frozenset({"stated"})
 TOLD = {
-    name: Estimate(name, 0.5, name.rpartition("_")[2], "fitted", None, 0.1, 0.3, 0.7)
+    name: Estimate(name, 0.5, UNITS[name], "fitted", None, 0.1, 0.3, 0.7)
     for name in ("delay_s", "motor_lag_s", "play_mm", "damping_ratio", "gain_mm_per_s_rpm")
 }
 
@@ -19,11 +21,31 @@ def terms(*names):
 
 
 def cause(effect, kind="", rivals=()):
-    return FoundDriveCause(effect, kind, rivals, (TOLD["play_mm"],), 40.0, (30.0, 50.0))
+    return DriveCause(
+        effect=effect,
+        title=TITLE[effect],
+        kind=kind,
+        rivals=rivals,
+        parameters={"play_mm": Value.model_validate(TOLD["play_mm"], from_attributes=True)},
+        gain_percent=40.0,
+        gain_interval_percent=(30.0, 50.0),
+    )
 
 
-def verdict(name, *causes, nominal=NOTHING, unexplained=False, depends=(), left=1.44):
-    return FoundDriveDiagnosis(
-        name, "why", nominal, terms("play"), causes, HeldOutErrors(0.4, 0.2, 0.1, 0.15),
-        (40.0, 30.0, 50.0), left, 0.05, unexplained, depends,
-    )  # fmt: skip
+def verdict(name, *causes, stated=False, unexplained=False, depends=()):
+    return DriveDiagnosis(
+        verdict=name,
+        reason="why",
+        nominal=EQUATION_NAME if stated else STIFF_NAME,
+        named=causes,
+        gain_percent=40.0,
+        gain_interval_percent=(30.0, 50.0),
+        channels={
+            "x_in_mm": HeldOut(
+                unit="mm", rmse_before=0.4, rmse_after=0.2, noise_floor=0.1, attainable=0.15
+            )
+        },
+        remainder=RemainingResidual(
+            unexplained=unexplained, depends_on=depends, share_percent=5.0, mean_square=1.44
+        ),
+    )

@@ -181,5 +181,5 @@ def test_a_drive_is_made_of_what_is_finite(monkeypatch):
         "gain": Estimate("gain", 0.02, "", "fitted"),
         "frequency": Estimate("frequency", math.inf, "Hz", "fitted"),
     }
-    result = drive_stage.DriveResult({}, None, None, known, None, {})
+    result = drive_stage.DriveResult({}, None, None, known, {})
     assert result.drive == {"gain": 0.02}

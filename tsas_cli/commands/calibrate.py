@@ -1,8 +1,7 @@
 """`tsas calibrate`: phases, stiffness per phase, and the joint fit of the nominal model."""
 
-from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import typer
 
@@ -22,13 +21,6 @@ from tsas_cli.commands.common import (
 from tsas_cli.commands.progress import progress
 
 
-class CalibrationDynamics(StrEnum):
-    """The models of the tendon that can be calibrated."""
-
-    slip = "slip"
-    lugre = "lugre"
-
-
 def calibrate(
     dataset: DatasetFolder,
     out: OutFolder,
@@ -37,9 +29,9 @@ def calibrate(
         typer.Option(metavar="M.toml", help="The initial model, whose effects are kept."),
     ] = None,
     dynamics: Annotated[
-        CalibrationDynamics,
+        Literal["slip", "lugre"],
         typer.Option("--dynamics", help="slip: distributed friction; lugre: dynamic friction."),
-    ] = CalibrationDynamics.slip,
+    ] = "slip",
     runs: ChosenRuns = None,
     rrd: Rrd = False,
     force: Force = False,
@@ -52,7 +44,7 @@ def calibrate(
             dataset,
             out=out,
             model=model,
-            dynamics=dynamics.value,
+            dynamics=dynamics,
             runs=names(runs),
             force=force,
             step=step,

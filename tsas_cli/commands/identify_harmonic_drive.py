@@ -1,7 +1,6 @@
 """`tsas identify-harmonic-drive`: G(s) from motor speed to x_in, its inverse, its residuals."""
 
-from enum import StrEnum
-from typing import Annotated
+from typing import Annotated, Literal
 
 import typer
 
@@ -21,24 +20,17 @@ from tsas_cli.commands.common import (
 from tsas_cli.commands.progress import progress
 
 
-class SpeedOption(StrEnum):
-    """What the column motor_speed_rpm holds."""
-
-    measured = "measured"
-    commanded = "commanded"
-
-
 def identify_harmonic_drive(
     dataset: DatasetFolder,
     out: OutFolder,
     speed: Annotated[
-        SpeedOption,
+        Literal["measured", "commanded"],
         typer.Option(
             "--speed",
             help="measured: linear between samples; commanded: zero-order hold, as from a "
             "controller. The wrong choice is a delay of half a sample.",
         ),
-    ] = SpeedOption.measured,
+    ] = "measured",
     runs: ChosenRuns = None,
     rrd: Rrd = False,
     force: Force = False,
@@ -48,6 +40,6 @@ def identify_harmonic_drive(
     """Identify the drive from motor speed to x_in, diagnose it, and compute its feedforward."""
     with progress("identify", quiet=quiet) as step, with_stream(rrd, step):
         result = tsas.identify_harmonic_drive(
-            dataset, out=out, speed=speed.value, runs=names(runs), force=force, step=step
+            dataset, out=out, speed=speed, runs=names(runs), force=force, step=step
         )
     present(result, quiet=quiet, as_json=as_json)

@@ -1,8 +1,7 @@
 """`tsas simulate`: simulate the recorded runs with a model."""
 
-from enum import StrEnum
 from functools import partial
-from typing import Annotated
+from typing import Annotated, Literal
 
 import typer
 
@@ -24,25 +23,17 @@ from tsas_cli.commands.live import Live, not_shown, watched
 from tsas_cli.commands.progress import progress
 
 
-class SimulationDynamics(StrEnum):
-    """The models of the tendon that can be simulated."""
-
-    static = "static"
-    slip = "slip"
-    lugre = "lugre"
-
-
 def simulate(
     dataset: DatasetFolder,
     out: OutFolder,
     model: ModelOption = None,
     dynamics: Annotated[
-        SimulationDynamics,
+        Literal["static", "slip", "lugre"],
         typer.Option(
             "--dynamics",
             help="static: of the paper; slip: distributed friction; lugre: dynamic friction.",
         ),
-    ] = SimulationDynamics.slip,
+    ] = "slip",
     fit_own: Annotated[
         bool,
         typer.Option(help="First fit the preload and zeros of each run."),
@@ -66,7 +57,7 @@ def simulate(
                 data,
                 out=out,
                 model=model,
-                dynamics=dynamics.value,
+                dynamics=dynamics,
                 fit_own=fit_own,
                 nodes=nodes,
                 force=force,

@@ -1,8 +1,7 @@
 """`tsas track`: closed-loop force tracking on a simulated rig."""
 
-from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import typer
 
@@ -20,13 +19,6 @@ from tsas_cli.commands.common import (
 from tsas_cli.commands.completion import controllers, references
 from tsas_cli.commands.live import Live, not_shown, watched
 from tsas_cli.commands.progress import progress
-
-
-class TendonOption(StrEnum):
-    """The models of the plant's tendon; the controller's own is the slip chain."""
-
-    slip = "slip"
-    lugre = "lugre"
 
 
 def track(
@@ -71,11 +63,11 @@ def track(
         typer.Option(help="Gain ks of the sliding modes per mm, as printed in the paper: a relay."),
     ] = False,
     dynamics: Annotated[
-        TendonOption,
+        Literal["slip", "lugre"],
         typer.Option(
             "--dynamics", help="Friction of the plant: slip, quasi-static; lugre, dynamic."
         ),
-    ] = TendonOption.slip,
+    ] = "slip",
     settings: Annotated[
         Path | None,
         typer.Option(metavar="S.toml", help="Rig, drive, sensors, reference and gains."),
@@ -101,7 +93,7 @@ def track(
                 reference=reference,
                 disturb=disturb or (),
                 as_printed=as_printed,
-                dynamics=dynamics.value,
+                dynamics=dynamics,
                 settings=settings,
                 seeds=seeds,
                 first_seed=seed,

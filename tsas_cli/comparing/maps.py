@@ -1,14 +1,13 @@
 """Where each side is wrong: the error of each channel over each signal, in the same bins."""
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.comparing.predictions import Both, ComparedRun
 from tsas_cli.diagnosis.residual_map import LABELS, binned, edges_of
 from tsas_cli.diagnosis.signals import signals_of
 from tsas_cli.records.diagnosis import Maps
+from tsas_cli.support.arrays import Floats
 
-Floats = npt.NDArray[np.float64]
 Errors = dict[tuple[str, str], tuple[Floats, Floats]]  # by channel and signal: signal, error
 
 

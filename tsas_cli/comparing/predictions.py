@@ -3,7 +3,6 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.comparing.sides import Side
 from tsas_cli.comparing.values import same_runs
@@ -17,9 +16,8 @@ from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.storage import Location
 from tsas_cli.recordings.written import check_rows, columns_of, names_of, result_file
 from tsas_cli.records.comparison import ErrorRow
+from tsas_cli.support.arrays import Floats
 from tsas_cli.support.steps import NO_PROGRESS, Steps
-
-Floats = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

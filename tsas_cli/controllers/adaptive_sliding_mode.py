@@ -12,7 +12,7 @@ from typing import ClassVar, NamedTuple, Self
 
 from pydantic import model_validator
 
-from tsas_cli.controllers.signals import Floats, Signals
+from tsas_cli.controllers.signals import Signals
 from tsas_cli.controllers.sliding_mode import (
     MM_PER_M,
     Phi,
@@ -24,6 +24,7 @@ from tsas_cli.controllers.sliding_mode import (
 )
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.paper.settings import printed, printed_three
+from tsas_cli.support.arrays import Floats
 
 PHI = 0  # of the memory: the three estimates
 

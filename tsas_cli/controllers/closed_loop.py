@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tsas_cli.controllers.laws import MEMORY, ControlLaws, control, initial_memory
-from tsas_cli.controllers.signals import Floats, Signals, filtered
+from tsas_cli.controllers.signals import Signals, filtered
 from tsas_cli.effects.proximal_spring import proximal_spring_force
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.boundary import FORCE, SPRING, Boundary
@@ -35,6 +35,7 @@ from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.slip.chain import follow, initial_state, tension_at_sensor
 from tsas_cli.physics.slip.start import set_compliances, slip_laws
 from tsas_cli.physics.slip.state import POSITION, Moment
+from tsas_cli.support.arrays import Floats
 
 DRIVEN = Boundary(FORCE, SPRING)  # the tendon in the plant
 STEPS_TO_START = 200

@@ -13,8 +13,9 @@ from typing import ClassVar, NamedTuple
 
 from pydantic import Field
 
-from tsas_cli.controllers.signals import Floats, Signals
+from tsas_cli.controllers.signals import Signals
 from tsas_cli.numerics.compiled import kernel
+from tsas_cli.support.arrays import Floats
 from tsas_cli.support.strict_table import StrictTable
 
 ERROR, DISTURBANCE = 0, 1  # of the memory

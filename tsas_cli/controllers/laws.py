@@ -16,7 +16,7 @@ from tsas_cli.controllers.disturbance_observer import (
     disturbance_observer,
 )
 from tsas_cli.controllers.pid import Pid, PidSettings, pid
-from tsas_cli.controllers.signals import Floats, Signals
+from tsas_cli.controllers.signals import Signals
 from tsas_cli.controllers.sliding_mode import (
     SlidingMode,
     SlidingSettings,
@@ -24,6 +24,7 @@ from tsas_cli.controllers.sliding_mode import (
     sliding_mode,
 )
 from tsas_cli.numerics.compiled import kernel
+from tsas_cli.support.arrays import Floats
 from tsas_cli.support.strict_table import StrictTable
 
 PID, SLIDING, ADAPTIVE, OBSERVER = range(len(CONTROLLERS))

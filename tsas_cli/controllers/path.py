@@ -10,7 +10,6 @@ adds x″ crossing_s²/96. The ripple of the gear is inverted last, unsmoothed.
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.effects import Effects
 from tsas_cli.effects.drive_friction import drive_friction_force
@@ -23,9 +22,9 @@ from tsas_cli.physics.ends import force_of_motion, last_direction, losses_over, 
 from tsas_cli.physics.plant.turntable import Actuator
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.slip.inverse import inverse_chain
+from tsas_cli.support.arrays import Floats
 from tsas_cli.support.errors import InputError
 
-Floats = npt.NDArray[np.float64]
 MEANS = 4
 ITERATIONS = 4  # of the path, where friction depends on it or its speed
 HALVINGS = 50  # bisections of the interval of the ripple's height

@@ -9,9 +9,10 @@ When it fails: disturbances faster than the loop; a rate taken from a noisy x_in
 
 from typing import ClassVar, NamedTuple
 
-from tsas_cli.controllers.signals import Floats, Signals
+from tsas_cli.controllers.signals import Signals
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.paper.settings import printed
+from tsas_cli.support.arrays import Floats
 from tsas_cli.support.strict_table import StrictTable
 
 SUM = 0  # of the memory: ∫e dt [mm s]

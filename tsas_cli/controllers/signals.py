@@ -11,11 +11,10 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.numerics.compiled import kernel
+from tsas_cli.support.arrays import Floats
 
-Floats = npt.NDArray[np.float64]
 ORDER = 3
 
 

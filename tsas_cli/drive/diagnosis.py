@@ -11,12 +11,9 @@ it is where the drive shows neither that frequency nor another one: it is stiff.
 """
 
 import math
-from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
-from tsas_cli.diagnosis.channel_errors import HeldOutErrors
 from tsas_cli.diagnosis.diagnose import FEW_BLOCKS
 from tsas_cli.diagnosis.evidence import gain, gain_percent
 from tsas_cli.diagnosis.proven import SEED
@@ -24,12 +21,13 @@ from tsas_cli.diagnosis.remainder import DEPENDS, hats, regressed
 from tsas_cli.diagnosis.search import EXCESS_OF_COMPLETE_MODEL
 from tsas_cli.drive.fit import Terms
 from tsas_cli.drive.search import EFFECT_OF, NOTHING, DriveSearch, rivals
+from tsas_cli.drive.sentences import EQUATION_NAME, STIFF_NAME, next_run
 from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.records.base import number_text
-from tsas_cli.records.diagnosis import Verdict
-
-Floats = npt.NDArray[np.float64]
+from tsas_cli.records.base import Value, number_text
+from tsas_cli.records.diagnosis import HeldOut, RemainingResidual, Verdict
+from tsas_cli.records.drive import DriveCause, DriveDiagnosis, DriveEvidence
+from tsas_cli.support.arrays import Floats, Indices
 
 EQUATION = frozenset({"stated"})
 MOST_SHARE_LEFT = 0.02  # of the initial excess over the noise, that named causes may leave
@@ -46,41 +44,13 @@ PARAMETERS = {
     "backlash": ("play_mm",),
 }  # fmt: skip
 KIND = {"lag": "first-order lag", "delay": "pure delay"}
-
-
-@dataclass(frozen=True)
-class FoundDriveCause:
-    """A named effect; `rivals` are effects, or the other kind of delay, that would do as well."""
-
-    effect: str
-    kind: str
-    rivals: tuple[str, ...]
-    parameters: tuple[Estimate, ...]
-    gain_percent: float
-    gain_interval_percent: tuple[float, float]
-
-
-@dataclass(frozen=True)
-class FoundDriveDiagnosis:
-    """The verdict on a drive; `nominal` and `final` are the sets of terms that are compared."""
-
-    verdict: Verdict
-    reason: str
-    nominal: Terms
-    final: Terms
-    causes: tuple[FoundDriveCause, ...]
-    channel: HeldOutErrors
-    gain_percent: tuple[float, float, float]
-    mean_square: float
-    share_left: float
-    unexplained: bool
-    depends_on: tuple[str, ...]
+TITLES = {effect.name: effect.title for effect in EFFECTS}
 
 
 def diagnose_drive(
     search: DriveSearch, final: Terms, estimates: dict[str, Estimate]
-) -> FoundDriveDiagnosis:
-    """Compare what was found with the nominal drive equation."""
+) -> tuple[Terms, DriveDiagnosis]:
+    """Return the nominal terms, and what was found compared with them."""
     nominal = _nominal(search, final)
     better = search.gain(nominal, final).convincing
     causes = tuple(
@@ -92,18 +62,49 @@ def diagnose_drive(
     start, left = search.mean_square(nominal), search.mean_square(explained)
     share = max(left - 1.0 - EXCESS_OF_COMPLETE_MODEL, 0.0) / (start - 1.0) if start > 1.0 else 0.0
     depends, could = _left(search, explained)
-    rmse = [_rmse(search, terms) for terms in (nominal, explained)]
-    noise = _noise(search)
-    floor = min(noise, rmse[1])
-    channel = HeldOutErrors(rmse[0], rmse[1], floor, max(floor, rmse[1] * math.sqrt(1.0 - could)))
+    before, after = (_rmse(search, terms) for terms in (nominal, explained))
+    floor = min(_noise(search), after)
+    attainable = max(floor, after * math.sqrt(1.0 - could))
+    gained, low, high = _gain_percent(search, nominal, explained)
     verdict = _verdict(search, causes, left, share)
-    unexplained = verdict == "unexplained" or (bool(causes) and _leaves_much(left, share))
-    found = FoundDriveDiagnosis(
-        verdict, "", nominal, explained, causes, channel,
-        _gain_percent(search, nominal, explained), left, share if causes else 1.0,
-        unexplained, depends if left > 1.0 + EXCESS_OF_COMPLETE_MODEL else (),
-    )  # fmt: skip
-    return replace(found, reason=_reason(found, start))
+    found = DriveDiagnosis(
+        verdict=verdict,
+        reason="",
+        nominal=EQUATION_NAME if nominal else STIFF_NAME,
+        named=causes,
+        gain_percent=gained,
+        gain_interval_percent=(low, high),
+        channels={
+            "x_in_mm": HeldOut(
+                unit="mm",
+                rmse_before=before,
+                rmse_after=after,
+                noise_floor=floor,
+                attainable=attainable,
+            )
+        },
+        remainder=RemainingResidual(
+            unexplained=verdict == "unexplained" or (bool(causes) and _leaves_much(left, share)),
+            depends_on=depends if left > 1.0 + EXCESS_OF_COMPLETE_MODEL else (),
+            share_percent=100.0 * share if causes else 100.0,
+            mean_square=left,
+        ),
+        evidence=_evidence(search),
+    )
+    said = {"reason": reason_of(found, start, left), "next_experiment": next_run(found)}
+    return nominal, found.model_copy(update=said)
+
+
+def _evidence(search: DriveSearch) -> DriveEvidence:
+    folds = search.folds
+    how = "Each run is predicted by a fit to the others"
+    if not folds.by_run:
+        how = "Stretches are predicted by a fit to the rest"
+    return DriveEvidence(
+        held_out="runs" if folds.by_run else "stretches",
+        blocks=folds.blocks,
+        sentence=f"{how}; {folds.blocks} blocks longer than the error's memory count.",
+    )
 
 
 def _nominal(search: DriveSearch, final: Terms) -> Terms:
@@ -116,7 +117,7 @@ def _nominal(search: DriveSearch, final: Terms) -> Terms:
 
 
 def _verdict(
-    search: DriveSearch, causes: tuple[FoundDriveCause, ...], left: float, share: float
+    search: DriveSearch, causes: tuple[DriveCause, ...], left: float, share: float
 ) -> Verdict:
     if search.folds.blocks < FEW_BLOCKS:
         return "undecided"
@@ -136,7 +137,7 @@ def _leaves_much(mean_square: float, share: float) -> bool:
 
 def _cause(
     search: DriveSearch, nominal: Terms, final: Terms, effect: str, estimates: dict[str, Estimate]
-) -> FoundDriveCause | None:
+) -> DriveCause | None:
     """Return an effect as a cause, or None where the nominal equation does as well without it."""
     own = frozenset(term for term in final if EFFECT_OF.get(term) == effect)
     fewer = final - own
@@ -153,10 +154,20 @@ def _cause(
         if len(own) == 1
         for other in rivals(search, final, term)
     )
-    whole = _gain_percent(search, fewer, final)
-    kind = " and ".join(KIND[term] for term in sorted(own) if term in KIND)
-    parameters = tuple(estimates[name] for name in PARAMETERS[effect] if name in estimates)
-    return FoundDriveCause(effect, kind, tuple(instead), parameters, whole[0], (whole[1], whole[2]))
+    gained, low, high = _gain_percent(search, fewer, final)
+    return DriveCause(
+        effect=effect,
+        title=TITLES[effect],
+        kind=" and ".join(KIND[term] for term in sorted(own) if term in KIND),
+        rivals=tuple(instead),
+        parameters={
+            name: Value.model_validate(estimates[name], from_attributes=True)
+            for name in PARAMETERS[effect]
+            if name in estimates
+        },
+        gain_percent=gained,
+        gain_interval_percent=(low, high),
+    )
 
 
 def _gain_percent(search: DriveSearch, before: Terms, after: Terms) -> tuple[float, float, float]:
@@ -208,39 +219,40 @@ def _left(search: DriveSearch, terms: Terms) -> tuple[tuple[str, ...], float]:
     return tuple(depends), max(best.part, 0.0) if best.convincing and total > 0.0 else 0.0
 
 
-def _part(columns: Floats, residual: Floats, fold: npt.NDArray[np.int64]) -> float:
+def _part(columns: Floats, residual: Floats, fold: Indices) -> float:
     own = residual - regressed(columns, residual, fold)
     return 1.0 - float(own @ own) / float(residual @ residual)
 
 
-def _reason(found: FoundDriveDiagnosis, start: float) -> str:
+def reason_of(found: DriveDiagnosis, start: float, left: float) -> str:
+    """Return what the verdict rests on; mean squares of the residual at the start and left."""
     equation = (
         "The nominal drive equation (Yang 2025, Eq. 25, without reaction)"
-        if found.nominal
+        if found.nominal == EQUATION_NAME
         else "A drive without lag and stiffness, x_in = g ∫u dt,"
     )
-    times = [f"{math.sqrt(v):.3g}" for v in (start, found.mean_square)]
+    times = [f"{math.sqrt(v):.3g}" for v in (start, left)]
     if found.verdict == "undecided":
         return "too few stretches of these runs are independent of each other."
     if found.verdict == "sufficient":
         return f"{equation} is at the noise level: these runs show no missing effect."
     residual = f"{equation} leaves a residual RMS of x_in of {times[0]} × the noise level"
-    depends = f" It depends on {', '.join(found.depends_on)}." if found.depends_on else ""
-    if not found.causes:
+    on = found.remainder.depends_on
+    depends = f" It depends on {', '.join(on)}." if on else ""
+    if not found.named:
         return f"{residual}, and no catalogued effect of a drive explains it.{depends}"
-    titles = {e.name: e.title.lower() for e in EFFECTS}
-    causes = " and ".join(_spoken(c, titles) for c in found.causes)
+    causes = " and ".join(_spoken(cause) for cause in found.named)
     text = (
         f"{residual}. It lacks: {causes}. With it the residual RMS is {times[1]} × the noise level."
     )
-    rivals = sorted({r for c in found.causes for r in c.rivals})
+    rivals = sorted({r for c in found.named for r in c.rivals})
     if rivals:
         text += f" Indistinguishable from it in these recordings: {', '.join(rivals)}."
     rest = f" No catalogued effect explains the remaining residual.{depends}"
-    return text + rest if found.unexplained else text
+    return text + rest if found.remainder.unexplained else text
 
 
-def _spoken(cause: FoundDriveCause, titles: dict[str, str]) -> str:
+def _spoken(cause: DriveCause) -> str:
     if cause.effect == "drive_compliance":
         return "the compliance of the drive, whose stiffness reacts on the position"
-    return f"a {cause.kind} of the motor" if cause.kind else f"the {titles[cause.effect]}"
+    return f"a {cause.kind} of the motor" if cause.kind else f"the {cause.title.lower()}"

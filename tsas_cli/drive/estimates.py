@@ -10,7 +10,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.drive.fit import QUANTITIES, DriveTrial
 from tsas_cli.drive.harmonic_drive import DriveValues
@@ -19,10 +18,9 @@ from tsas_cli.identification.fit import Fitted, with_errors
 from tsas_cli.identification.model import check_wrap
 from tsas_cli.physics.closed_form.capstan import speed_per_stiffness
 from tsas_cli.recordings.manifest import MANIFEST_FILE, Manifest, RigSheet
+from tsas_cli.support.arrays import Indices
 from tsas_cli.support.errors import InputError
 
-Floats = npt.NDArray[np.float64]
-Indices = npt.NDArray[np.int64]
 Derived = tuple[str, str, Callable[[DriveValues], float]]
 
 PLAUSIBLE_HZ = 1e-3, 1e6  # natural frequencies of a drive

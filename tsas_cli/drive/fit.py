@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.drive.frequency_response import FrequencyResponse
 from tsas_cli.drive.harmonic_drive import (
@@ -27,8 +26,8 @@ from tsas_cli.effects.drive_ripple import DRIVE_RIPPLE
 from tsas_cli.identification.extension import MOST_LOOSENING
 from tsas_cli.identification.fit import Solution, Unknown, solve
 from tsas_cli.identification.quantities import Quantity
+from tsas_cli.support.arrays import Complex, Floats
 
-Floats = npt.NDArray[np.float64]
 Terms = frozenset[str]
 
 TOLERANCE = 1e-6  # of the squares, for the last step
@@ -199,7 +198,7 @@ def quantities_of(terms: Iterable[str]) -> list[Quantity]:
     return [GAIN, *(q for name, term in TERMS.items() if name in chosen for q in term)]
 
 
-def response_at(values: DriveValues, jw: npt.NDArray[np.complex128]) -> npt.NDArray[np.complex128]:
+def response_at(values: DriveValues, jw: Complex) -> Complex:
     """Return G(jω) of the linear part [mm per rpm s], shape (m,)."""
     lags = np.polynomial.polynomial.polyval(jw, lag_coefficients(values))
     late = np.exp(-jw * values.delay_s)
@@ -223,8 +222,8 @@ def _initial_gain(runs: Sequence[DriveRun]) -> float:
 
 def _guess(
     terms: Sequence[str],
-    jw: npt.NDArray[np.complex128],
-    measured: npt.NDArray[np.complex128],
+    jw: Complex,
+    measured: Complex,
     gain: float,
     part: float,
 ) -> DriveValues:

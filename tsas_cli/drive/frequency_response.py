@@ -4,12 +4,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.drive.runs import FEWEST_SAMPLES, DriveRun
-
-Floats = npt.NDArray[np.float64]
-Complex = npt.NDArray[np.complex128]
+from tsas_cli.support.arrays import Complex, Floats, Mask
 
 SEGMENTS = 10.0  # of the longest run: long ones show low frequencies, many show coherence
 LONGEST_S = 5.0
@@ -24,7 +21,7 @@ class FrequencyResponse:
     frequency_Hz: Floats
     response: Complex
     coherence: Floats
-    excited: npt.NDArray[np.bool_]
+    excited: Mask
 
     @property
     def band(self) -> tuple[float, float] | None:
@@ -49,7 +46,7 @@ def frequency_response(runs: Sequence[DriveRun]) -> FrequencyResponse:
     ]
     lasts_s = [run.u.step_s * (s.stop - s.start - 1) for run, s in whole]
     segment_s = min(LONGEST_S, max(lasts_s) / SEGMENTS, *(lasts / 2.0 for lasts in lasts_s))
-    sums: list[npt.NDArray[np.complex128]] = []
+    sums: list[Complex] = []
     bins = min(round(segment_s / run.u.step_s) for run, _ in whole) // 2
     for (run, stretch), lasts in zip(whole, lasts_s, strict=True):
         n = round(segment_s / run.u.step_s)

@@ -18,7 +18,6 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.effects.backlash import follow_play
 from tsas_cli.effects.drive_ripple import DriveRipple, rippled
@@ -31,8 +30,7 @@ from tsas_cli.numerics.linear_response import (
     sampled,
     transients,
 )
-
-Floats = npt.NDArray[np.float64]
+from tsas_cli.support.arrays import Floats
 
 WAVES = 2.0  # of the ripple, per revolution of the wave generator, which is the motor's
 SECONDS_PER_MINUTE = 60.0

@@ -4,23 +4,17 @@ import math
 from collections.abc import Mapping
 
 import numpy as np
-import numpy.typing as npt
 
-from tsas_cli.drive.diagnosis import FoundDriveCause, FoundDriveDiagnosis
 from tsas_cli.drive.estimates import DataSheet
 from tsas_cli.drive.fit import LINEAR, Terms, quantities_of
 from tsas_cli.drive.frequency_response import FrequencyResponse
 from tsas_cli.drive.harmonic_drive import DriveValues
 from tsas_cli.drive.search import DriveSearch, structures
-from tsas_cli.drive.sentences import EQUATION_NAME, STIFF_NAME, name_of, next_run
+from tsas_cli.drive.sentences import name_of
 from tsas_cli.drive.transfer_function import bode_curve, poles
-from tsas_cli.effects import EFFECTS
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.records import drive as records
-from tsas_cli.records.base import Value
-from tsas_cli.records.diagnosis import HeldOut, RemainingResidual
-
-Floats = npt.NDArray[np.float64]
+from tsas_cli.support.arrays import Floats
 
 CURVE_POINTS = 200
 BESIDE_BAND = 1.05  # of its edge, up to which a pole counts as inside
@@ -119,47 +113,3 @@ def run_rows(
 
 def _rms(error: Floats) -> float:
     return float(np.sqrt(np.nanmean(error**2)))
-
-
-def diagnosis(search: DriveSearch, found: FoundDriveDiagnosis) -> records.DriveDiagnosis:
-    """Return the verdict, what is named, and what it rests on."""
-    folds = search.folds
-    how = "Each run is predicted by a fit to the others"
-    if not folds.by_run:
-        how = "Stretches are predicted by a fit to the rest"
-    gain, *interval = found.gain_percent
-    return records.DriveDiagnosis(
-        verdict=found.verdict,
-        reason=found.reason,
-        nominal=EQUATION_NAME if found.nominal else STIFF_NAME,
-        named=[_cause(cause) for cause in found.causes],
-        gain_percent=gain,
-        gain_interval_percent=interval,
-        channels={"x_in_mm": HeldOut(unit="mm", **vars(found.channel))},
-        remainder=RemainingResidual(
-            unexplained=found.unexplained,
-            depends_on=found.depends_on,
-            share_percent=100.0 * found.share_left,
-            mean_square=found.mean_square,
-        ),
-        evidence=records.DriveEvidence(
-            held_out="runs" if folds.by_run else "stretches",
-            blocks=folds.blocks,
-            sentence=f"{how}; {folds.blocks} blocks longer than the error's memory count.",
-        ),
-        next_experiment=next_run(found),
-    )
-
-
-def _cause(cause: FoundDriveCause) -> records.DriveCause:
-    return records.DriveCause(
-        effect=cause.effect,
-        title=next(e.title for e in EFFECTS if e.name == cause.effect),
-        kind=cause.kind,
-        rivals=cause.rivals,
-        parameters={
-            e.name: Value.model_validate(e, from_attributes=True) for e in cause.parameters
-        },
-        gain_percent=cause.gain_percent,
-        gain_interval_percent=cause.gain_interval_percent,
-    )

@@ -5,17 +5,14 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.numerics.interpolated import interpolated
 from tsas_cli.numerics.linear_response import Hold, Sampled, sampled
 from tsas_cli.numerics.noise import FEWEST_SAMPLES as FEWEST_OF_NOISE
 from tsas_cli.numerics.noise import noise_sd
 from tsas_cli.recordings.recording import NONE_COPIED, CopiedRows, Recording
+from tsas_cli.support.arrays import Floats, Mask
 from tsas_cli.support.errors import InputError
-
-Floats = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
 
 FEWEST_SAMPLES = 500
 UNEVEN = 0.02  # of a sampling step, by which another one may differ

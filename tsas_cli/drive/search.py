@@ -10,7 +10,6 @@ from dataclasses import dataclass, field
 from itertools import combinations
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.diagnosis.evidence import (
     LEAST_DIFFERENCE,
@@ -24,9 +23,8 @@ from tsas_cli.drive.fit import LINEAR, DriveBench, DriveTrial, Terms, quantities
 from tsas_cli.drive.frequency_response import frequency_response
 from tsas_cli.drive.runs import DriveRun
 from tsas_cli.numerics.covariance import block_length, block_numbers
+from tsas_cli.support.arrays import Floats
 from tsas_cli.support.steps import NO_PROGRESS, Steps
-
-Floats = npt.NDArray[np.float64]
 
 GEAR = ("ripple", "play")
 EFFECT_OF = {

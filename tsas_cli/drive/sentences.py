@@ -2,13 +2,12 @@
 
 from collections.abc import Iterable
 
-from tsas_cli.drive.diagnosis import FoundDriveDiagnosis
 from tsas_cli.drive.estimates import DataSheet, total_lag_s
 from tsas_cli.drive.fit import Terms
 from tsas_cli.drive.harmonic_drive import DriveValues
 from tsas_cli.drive.kinematic_lead import lead_notes
 from tsas_cli.identification.estimate import Estimate
-from tsas_cli.records.drive import DriveFile
+from tsas_cli.records.drive import DriveDiagnosis, DriveFile
 
 EQUATION_NAME = "Eq. (25) without reaction"
 STIFF_NAME = "x_in = g ∫u dt"
@@ -43,14 +42,14 @@ def inverse_of(values: DriveValues) -> str:
     return f"G⁻¹(s) ≈ {first:.4g} s{second}{own}; u_ff = kV dx/dt + kA d²x/dt²"
 
 
-def next_run(found: FoundDriveDiagnosis) -> str:
+def next_run(found: DriveDiagnosis) -> str:
     """Return what to record next."""
-    if any(cause.rivals for cause in found.causes):
+    if any(cause.rivals for cause in found.named):
         return (
             "A chirp to higher frequencies: a lag lets the amplitude fall, a delay does not, and "
             "play shows at each reversal of slow sines of different amplitude."
         )
-    if found.unexplained:
+    if found.remainder.unexplained:
         return "Repeat a run without change: what comes back is the drive's, the rest is chance."
     return "The same chirp with half the amplitude: what is linear scales with it, play does not."
 

@@ -7,12 +7,9 @@ import math
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.drive.harmonic_drive import DriveValues, lag_coefficients
-
-Floats = npt.NDArray[np.float64]
-Complex = npt.NDArray[np.complex128]
+from tsas_cli.support.arrays import Complex, Floats
 
 
 def transfer_function(values: DriveValues) -> Any:

@@ -5,7 +5,6 @@ from collections.abc import Iterable, Mapping, Set
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.identification.dynamic_notes import dynamic_notes
 from tsas_cli.identification.model import Model
@@ -15,9 +14,8 @@ from tsas_cli.physics.response import Dynamics, Prediction, simulate
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.records.simulation import SimulatedChannel, SimulatedRun
+from tsas_cli.support.arrays import Floats, Mask
 from tsas_cli.support.errors import InputError
-
-Floats = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -132,9 +130,7 @@ def refuse_static(run: Run, drive_column: str, dynamics: Dynamics) -> None:
         )
 
 
-def channels_of(
-    response: Prediction, driven: Set[str], in_gap: npt.NDArray[np.bool_]
-) -> dict[str, Floats]:
+def channels_of(response: Prediction, driven: Set[str], in_gap: Mask) -> dict[str, Floats]:
     """Return the channels that a model predicts, NaN in gaps of the drive."""
     predicted = {
         "f_in_N": response.f_in_N,

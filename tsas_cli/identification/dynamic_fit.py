@@ -11,7 +11,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.fit import Fitted
@@ -30,9 +29,8 @@ from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.physics.lugre.start import bristles_of
 from tsas_cli.physics.response import LUMPS
+from tsas_cli.support.arrays import Floats
 from tsas_cli.support.steps import NO_PROGRESS, Steps
-
-Floats = npt.NDArray[np.float64]
 
 STIFFNESS, DAMPING = "bristles.stiffness_N_per_mm", "bristles.damping_N_s_per_mm"
 VISCOUS = "viscous_friction.coefficient_N_s_per_mm"

@@ -4,7 +4,6 @@ import math
 from collections.abc import Iterator
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.prepared import Prepared
@@ -15,8 +14,8 @@ from tsas_cli.physics.lugre.start import bristles_of
 from tsas_cli.physics.phases import UNCONVERGED
 from tsas_cli.physics.response import Prediction, simulate
 from tsas_cli.physics.rig import Rig
+from tsas_cli.support.arrays import Floats
 
-Floats = npt.NDArray[np.float64]
 MANY_STEPS = 10  # steps for each sample
 HIGH_DAMPING = 3.0  # times critical, from which the bristles are the cause of unstable sliding
 

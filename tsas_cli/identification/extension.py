@@ -6,7 +6,6 @@ from functools import cached_property
 from typing import Self
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.identification.fit import Solution, Unknown, solve
 from tsas_cli.identification.fit_problem import rig_at
@@ -16,8 +15,7 @@ from tsas_cli.identification.run_errors import RunErrors, meshed, reweighted
 from tsas_cli.identification.unknowns import unknown_of
 from tsas_cli.physics.response import ON_CHAIN, is_closed
 from tsas_cli.physics.rig import Rig, with_values
-
-Floats = npt.NDArray[np.float64]
+from tsas_cli.support.arrays import Floats
 
 TOLERANCE = 1e-5  # of the squares, for the last step of a fit that is one of many
 MOST_LOOSENING = 100.0  # of TOLERANCE, in proportion to the mean square of the residuals

@@ -9,14 +9,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.numerics.covariance import jackknife
 from tsas_cli.numerics.least_squares import least_squares
 from tsas_cli.numerics.side_by_side import each
+from tsas_cli.support.arrays import Floats, Indices, Mask
 
-Floats = npt.NDArray[np.float64]
-Indices = npt.NDArray[np.int64]
 Residuals = Callable[[int, Floats], Floats]  # of one run, at given unknowns
 
 STEP = 1e-5  # of the finite differences, in scaled unknowns
@@ -48,7 +46,7 @@ class Solution:
     """A minimum: scaled values, bound flags, residual (n,) and Jacobian (n, p) there."""
 
     values: Floats
-    at_bound: npt.NDArray[np.bool_]
+    at_bound: Mask
     residual: Floats
     jacobian: Floats
     converged: bool
@@ -63,7 +61,7 @@ class Fitted:
     values: Floats
     stderr: Floats
     t: Floats
-    at_bound: npt.NDArray[np.bool_]
+    at_bound: Mask
     converged: bool
     message: str
     evaluations: int

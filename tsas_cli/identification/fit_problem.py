@@ -3,9 +3,6 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-import numpy as np
-import numpy.typing as npt
-
 from tsas_cli.identification.fit import Unknown
 from tsas_cli.identification.model import Model
 from tsas_cli.identification.prepared import Prepared
@@ -15,8 +12,7 @@ from tsas_cli.identification.samples import fitted_samples, left_out_notes
 from tsas_cli.identification.unknowns import further_unknown, nominal_unknowns
 from tsas_cli.physics.response import Dynamics
 from tsas_cli.physics.rig import Rig, with_values
-
-Floats = npt.NDArray[np.float64]
+from tsas_cli.support.arrays import Floats
 
 
 @dataclass(frozen=True, eq=False)

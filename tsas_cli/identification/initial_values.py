@@ -4,15 +4,13 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.identification.phases import Segment
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.stiffness import Slope
 from tsas_cli.physics.parameters import NOMINAL_BY_NAME
 from tsas_cli.physics.rig import Rig
-
-Floats = npt.NDArray[np.float64]
+from tsas_cli.support.arrays import Floats
 
 FAR = 5.0  # times the travel: a zero that a fit from 0 mm does not find
 SMALLEST_BEND = 1e-3  # rad

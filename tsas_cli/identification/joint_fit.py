@@ -10,7 +10,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.fit import Fitted, Residuals, Unknown, fit, identifiable, jacobian
@@ -20,8 +19,7 @@ from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.identification.run_errors import RunErrors, blocks_of, reweighted
 from tsas_cli.numerics.side_by_side import each
 from tsas_cli.physics.rig import Rig, with_values
-
-Floats = npt.NDArray[np.float64]
+from tsas_cli.support.arrays import Floats
 
 MOST_ROUNDS = 4
 WRONG_RATIO = 1.3  # normalised residual beyond which the model is wrong

@@ -10,7 +10,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.identification.prepared import (
     CHANNELS,
@@ -32,10 +31,7 @@ from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.pieces import known_columns, long_run, pieces
 from tsas_cli.recordings.recording import NONE_COPIED, CopiedRows
 from tsas_cli.recordings.run_files import RunColumns
-
-Floats = npt.NDArray[np.float64]
-Indices = npt.NDArray[np.int64]
-Mask = npt.NDArray[np.bool_]
+from tsas_cli.support.arrays import Floats, Indices, Mask
 
 FEW = 16  # samples of a stroke, below which no transition is detected (`phases`)
 OVERLAP_SHARE = 1 / 16  # of a piece: rows at its ends that only support the cleaning of others

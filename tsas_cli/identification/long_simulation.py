@@ -5,8 +5,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
-import numpy.typing as npt
 import pyarrow as pa
 
 from tsas_cli.identification.comparison import RunSummary, channels_of, refuse_static, summary_of
@@ -19,8 +17,6 @@ from tsas_cli.physics.response import Dynamics
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.writing import parquet_writer, table_of
 from tsas_cli.support.errors import InputError
-
-Floats = npt.NDArray[np.float64]
 
 
 def simulate_long(

@@ -23,8 +23,8 @@ import numpy.typing as npt
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.numerics.turning_points import last_beyond
 from tsas_cli.records import base as records
+from tsas_cli.support.arrays import Floats
 
-Floats = npt.NDArray[np.float64]
 Phase = Literal["contraction", "loosening", "dead_band_up", "dead_band_down", "unknown"]
 
 POINTS = 400  # of the search for a transition in a stroke

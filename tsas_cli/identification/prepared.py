@@ -7,7 +7,6 @@ from datetime import datetime
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.numerics.conditioning import METHOD, Conditioned, condition
 from tsas_cli.numerics.interpolated import interpolated
@@ -17,10 +16,8 @@ from tsas_cli.physics.response import TOLERANCE
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.manifest import Load, Run
 from tsas_cli.recordings.recording import NONE_COPIED, CopiedRows, Recording
+from tsas_cli.support.arrays import Floats, Mask
 from tsas_cli.support.errors import InputError
-
-Floats = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
 
 CHANNELS = ("f_in_N", "f_out_N", "x_out_mm")  # predicted by the models, unless they drive them
 LOAD_COLUMNS: Mapping[Load, str] = {"force": "f_out_N", "displacement": "x_out_mm"}

@@ -12,7 +12,6 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.run_simulation import (
@@ -29,10 +28,7 @@ from tsas_cli.numerics.covariance import FEWEST_BLOCKS, block_length
 from tsas_cli.numerics.turning_points import last_beyond
 from tsas_cli.physics.response import Dynamics
 from tsas_cli.physics.rig import Rig
-
-Floats = npt.NDArray[np.float64]
-Indices = npt.NDArray[np.int64]
-Bits = npt.NDArray[np.bool_]
+from tsas_cli.support.arrays import Floats, Indices, Mask
 
 REVERSAL_SD = 3.0  # error of the position of a reversal, in standard deviations
 WINDOWS_PER_BLOCK = 2.0  # of the conditioning: the correlation length of a cleaned drive's error
@@ -110,14 +106,14 @@ class RunErrors:
             parts.append(np.add.reduceat(errors, edges) / np.sqrt(counts))
         return np.concatenate(parts)
 
-    def spread(self, name: str, chosen: Bits) -> Bits:
+    def spread(self, name: str, chosen: Mask) -> Mask:
         """Return which samples of a channel belong to the chosen residuals of the run."""
         start = 0
         for channel, at in self.samples.items():
             edges = mean_edges(at.size)
             if channel == name:
                 counts = np.diff(edges, append=at.size)
-                spread: Bits = np.repeat(chosen[start : start + edges.size], counts)
+                spread: Mask = np.repeat(chosen[start : start + edges.size], counts)
                 return spread
             start += edges.size
         raise KeyError(name)

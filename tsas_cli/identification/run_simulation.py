@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.identification.samples import points
@@ -21,9 +20,8 @@ from tsas_cli.physics.response import (
     solve,
 )
 from tsas_cli.physics.rig import Rig
+from tsas_cli.support.arrays import Floats, Indices
 
-Floats = npt.NDArray[np.float64]
-Indices = npt.NDArray[np.int64]
 Predictions = dict[str, Floats]  # of each channel at all samples, shape (n,)
 
 CACHED_RIGS = 2  # whose solutions are cached: that of the last step, and of the one before

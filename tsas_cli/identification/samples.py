@@ -3,13 +3,11 @@
 from collections.abc import Mapping
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.physics.response import first_determined_sample
 from tsas_cli.physics.rig import Rig
-
-Indices = npt.NDArray[np.int64]
+from tsas_cli.support.arrays import Indices
 
 MOST_MEANS = 1000  # means of neighbouring residuals that enter the fit, for a channel of a run
 FEWEST_SAMPLES = 16  # of a channel, after the start of a run

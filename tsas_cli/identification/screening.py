@@ -10,12 +10,10 @@ from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.effects import Effect, Parameter
 from tsas_cli.identification.extension import Bench, HypothesisFit
-
-Floats = npt.NDArray[np.float64]
+from tsas_cli.support.arrays import Floats
 
 MOST_SIZES = 10.0  # plausible sizes, the bound of the initial values of a fit
 HIDDEN = 1e-6  # relative norm below which a column is linearly dependent

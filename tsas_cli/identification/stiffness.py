@@ -4,12 +4,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.identification.phases import Phase, Segment
 from tsas_cli.numerics.covariance import block_length, block_numbers, jackknife
-
-Floats = npt.NDArray[np.float64]
+from tsas_cli.support.arrays import Floats
 
 PHASES: tuple[Phase, ...] = ("contraction", "loosening", "dead_band_up", "dead_band_down")
 FEWEST_SAMPLES = 6

@@ -11,14 +11,12 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.phases import Segment
 from tsas_cli.identification.prepared import Prepared
 from tsas_cli.numerics.covariance import block_length, block_numbers, jackknife
-
-Floats = npt.NDArray[np.float64]
+from tsas_cli.support.arrays import Floats
 
 FEWEST_SAMPLES = 50
 WIDE = 10.0  # the range of f_out must exceed its noise by this factor

@@ -2,20 +2,17 @@
 
 import os
 import platform
-import shutil
-import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 from tsas_cli.numerics.compiled import cache_folder
 from tsas_cli.numerics.side_by_side import THREADS, threads
+from tsas_cli.reporting.pdf import browser
 from tsas_cli.reporting.viewer.child import program
 from tsas_cli.reporting.viewer.drawing import drawn_with
 from tsas_cli.reporting.viewer.open import SCREENS, has_screen
 from tsas_cli.support.errors import InputError
-
-BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
 
 
 @dataclass(frozen=True)
@@ -35,7 +32,7 @@ def abilities() -> Iterator[Ability]:
     yield _queried("viewer", lambda: str(program()))
     yield _queried("drawing", drawn_with)
     yield _screen()
-    yield _browser()
+    yield _queried("Chromium", browser)
 
 
 def _queried(name: str, query: Callable[[], str]) -> Ability:
@@ -67,11 +64,3 @@ def _screen() -> Ability:
     return Ability(
         "screen", False, "none", "`tsas view` serves a page for the browser and prints its address"
     )
-
-
-def _browser() -> Ability:
-    found = next((path for name in BROWSERS if (path := shutil.which(name))), None)
-    if found is not None:
-        return Ability("Chromium", True, found)
-    command = "`apt install chromium`" if sys.platform == "linux" else "install it"
-    return Ability("Chromium", False, "not found", f"for PDF: {command}, or print from any browser")

@@ -17,14 +17,11 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.numerics.local_polynomial import HALF_WINDOWS, best_half_windows, corners, smoothed
 from tsas_cli.numerics.noise import noise_sd, quantisation_step
 from tsas_cli.numerics.turning_points import turning_points
-
-Floats = npt.NDArray[np.float64]
-Indices = npt.NDArray[np.int64]
+from tsas_cli.support.arrays import Floats, Indices
 
 METHOD = (
     "local polynomials of fourth degree between corners, window of least risk; "

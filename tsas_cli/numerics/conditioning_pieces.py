@@ -11,14 +11,11 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.numerics.conditioning import noise_and_memory, smallest_reversal, smooth_out
 from tsas_cli.numerics.turning_points import turning_points
+from tsas_cli.support.arrays import Floats, Indices
 
-Floats = npt.NDArray[np.float64]
-Indices = npt.NDArray[np.int64]
-Mask = npt.NDArray[np.bool_]
 Samples = tuple[int, Floats, Floats]  # number of the first row, times, values (NaN in gaps)
 
 FEWEST = 16  # samples of a piece, below which it is not smoothed

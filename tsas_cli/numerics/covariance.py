@@ -10,10 +10,8 @@ the degrees of freedom of the blocks.
 import math
 
 import numpy as np
-import numpy.typing as npt
 
-Floats = npt.NDArray[np.float64]
-Indices = npt.NDArray[np.int64]
+from tsas_cli.support.arrays import Floats, Indices
 
 FEWEST_BLOCKS = 8
 MEMORIES_PER_BLOCK = 4.0

@@ -6,10 +6,8 @@ and its residual several times the noise level that it is.
 """
 
 import numpy as np
-import numpy.typing as npt
 
-Floats = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
+from tsas_cli.support.arrays import Floats, Mask
 
 MOST_RATIO = 50  # of the clock's rate to that of the recorded samples
 STRAIGHT = 0.03  # second difference, over its RMS, that rounding in a file may leave

@@ -10,9 +10,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-Floats = npt.NDArray[np.float64]
+from tsas_cli.support.arrays import Floats, Mask
 
 FIRST_DAMPING = 1e-4  # of the diagonal of the normal equations
 MOST_DAMPING = 1e8
@@ -85,9 +84,7 @@ def least_squares(
     )
 
 
-def _step(
-    gradient: Floats, gram: Floats, at_bound: npt.NDArray[np.bool_], damping: float
-) -> Floats:
+def _step(gradient: Floats, gram: Floats, at_bound: Mask, damping: float) -> Floats:
     """Return the damped Gauss-Newton step of the unknowns that are not at an active bound."""
     step = np.zeros(gradient.size)
     free = np.flatnonzero(~at_bound & (np.diag(gram) > 0.0))

@@ -12,11 +12,10 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.numerics.compiled import kernel
+from tsas_cli.support.arrays import Floats
 
-Floats = npt.NDArray[np.float64]
 Hold = Literal["zero", "first"]
 
 SLOW = 1e-4  # leak per sample below which its weights are computed by their series

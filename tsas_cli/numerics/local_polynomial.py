@@ -9,12 +9,9 @@ variance at the edge. Times need not be even.
 import math
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.numerics.compiled import kernel
-
-Floats = npt.NDArray[np.float64]
-Indices = npt.NDArray[np.int64]
+from tsas_cli.support.arrays import Floats, Indices
 
 HALF_WINDOWS = np.array([3, 5, 8, 12, 18, 27, 40, 60, 90, 135, 200, 300, 450, 700, 1000])  # samples
 RISK_POINTS = 2000  # samples at which the risk is estimated, evenly spread

@@ -3,9 +3,8 @@
 import math
 
 import numpy as np
-import numpy.typing as npt
 
-Floats = npt.NDArray[np.float64]
+from tsas_cli.support.arrays import Floats
 
 FEWEST_SAMPLES = 16  # for an estimate
 _DIFFERENCE = np.array([1.0, -3.0, 3.0, -1.0])  # zero for a parabola

@@ -1,12 +1,9 @@
 """Reversals of a sampled motion, separated from noise by a threshold."""
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.numerics.compiled import kernel
-
-Floats = npt.NDArray[np.float64]
-Indices = npt.NDArray[np.int64]
+from tsas_cli.support.arrays import Floats, Indices
 
 
 @kernel

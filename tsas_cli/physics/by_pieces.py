@@ -12,7 +12,6 @@ from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.physics.closed_form.branches import (
     BranchState,
@@ -38,8 +37,8 @@ from tsas_cli.physics.response import (
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.sensors import new_memory, sensed
 from tsas_cli.physics.slip.chain import ChainState, follow, initial_state
+from tsas_cli.support.arrays import Floats
 
-Floats = npt.NDArray[np.float64]
 State = BranchState | ChainState | StaticState
 
 OVERLAP = 2  # samples of a neighbour: one for a speed, one more for an acceleration

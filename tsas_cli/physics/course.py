@@ -6,13 +6,9 @@ argument: with a record of rows the dynamic chain takes a quarter longer.
 
 from typing import NamedTuple
 
-import numpy as np
-import numpy.typing as npt
-
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.phases import Phases
-
-Floats = npt.NDArray[np.float64]
+from tsas_cli.support.arrays import Floats
 
 # Rows of a course; the first four alone are a course of `Losses`.
 PULLED, RELEASED, VISCOUS, LOST = range(4)

@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.effects import Effects
 from tsas_cli.effects.backlash import follow_play
@@ -23,8 +22,7 @@ from tsas_cli.physics.boundary import DISPLACEMENT, FORCE, SPRING, Boundary
 from tsas_cli.physics.course import DRIVE, STEP, Losses
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.sensors import true_value
-
-Floats = npt.NDArray[np.float64]
+from tsas_cli.support.arrays import Floats
 
 
 @dataclass(frozen=True)

@@ -8,14 +8,10 @@ length where it is evenly bent; between two neighbours is an element.
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.physics.phases import UNCONVERGED
-
-Floats = npt.NDArray[np.float64]
-Phases = npt.NDArray[np.int8]
-Indices = npt.NDArray[np.int64]
+from tsas_cli.physics.phases import UNCONVERGED, Phases
+from tsas_cli.support.arrays import Floats, Indices
 
 
 class Frames(NamedTuple):

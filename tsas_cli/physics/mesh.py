@@ -1,7 +1,6 @@
 """The mesh of both chains: n nodes in a row, n + 1 segments, half ones at the ends."""
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.compliances import (
@@ -11,8 +10,7 @@ from tsas_cli.physics.compliances import (
     sheath_compliance,
 )
 from tsas_cli.physics.rig import Rig
-
-Floats = npt.NDArray[np.float64]
+from tsas_cli.support.arrays import Floats
 
 PITCH = 1088  # of a row of a chain's state, a compile-time constant, so that row loops vectorise
 MOST_NODES = 1000

@@ -6,7 +6,6 @@ from operator import attrgetter
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.effects import EFFECTS, Effects
 from tsas_cli.effects.drive_friction import drive_friction_force
@@ -16,16 +15,15 @@ from tsas_cli.physics.closed_form.branches import branches
 from tsas_cli.physics.closed_form.static import static_model
 from tsas_cli.physics.course import Output, Tensions, samples_of
 from tsas_cli.physics.ends import DriveInput, EndInputs, boundary_of, ends_of
-from tsas_cli.physics.frames import Frames, Indices, empty_frames
+from tsas_cli.physics.frames import Frames, empty_frames
 from tsas_cli.physics.lugre.chain import OWN_STEPS, StepControl, lugre_chain
 from tsas_cli.physics.mesh import MOST_NODES
-from tsas_cli.physics.phases import SLACK
+from tsas_cli.physics.phases import SLACK, Phases
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.sensors import new_memory, reading, sensed
 from tsas_cli.physics.slip.chain import rest_after, slip_chain
+from tsas_cli.support.arrays import Floats, Indices
 
-Floats = npt.NDArray[np.float64]
-Phases = npt.NDArray[np.int8]
 Dynamics = Literal["static", "slip", "lugre"]
 
 NODES = 60  # of the slip chain, where the closed form is not valid

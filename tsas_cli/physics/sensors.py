@@ -8,7 +8,6 @@ where a run is simulated in pieces.
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.effects.force_crosstalk import with_crosstalk
 from tsas_cli.effects.force_sensor_curvature import read_curved, straightened
@@ -30,8 +29,8 @@ from tsas_cli.numerics.settling import lag_after
 from tsas_cli.physics.boundary import FORCE, Boundary
 from tsas_cli.physics.course import Output
 from tsas_cli.physics.rig import Rig
+from tsas_cli.support.arrays import Floats
 
-Floats = npt.NDArray[np.float64]
 Channel = Literal["f_in_N", "f_out_N", "x_out_mm"]
 CHANNELS: tuple[Channel, ...] = ("f_in_N", "f_out_N", "x_out_mm")
 

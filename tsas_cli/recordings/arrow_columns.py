@@ -4,10 +4,9 @@ pyarrow's own conversion loads pandas, which takes a third of a second that few 
 """
 
 import numpy as np
-import numpy.typing as npt
 import pyarrow as pa
 
-Floats = npt.NDArray[np.float64]
+from tsas_cli.support.arrays import Floats
 
 
 def floats_from(column: pa.ChunkedArray) -> Floats:

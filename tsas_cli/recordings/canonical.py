@@ -5,12 +5,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.recordings.columns import BY_NAME, TIME
 from tsas_cli.recordings.ingest_map import ColumnMap, IngestMap
-from tsas_cli.recordings.readers.table import ColumnTable, Floats
+from tsas_cli.recordings.readers.table import ColumnTable
 from tsas_cli.recordings.units import conversion
+from tsas_cli.support.arrays import Floats, Mask
 from tsas_cli.support.errors import InputError
 
 
@@ -128,9 +128,7 @@ def _raw(column: ColumnMap, table: ColumnTable, rows: int, first: int) -> tuple[
     return table.columns[column.source], column.unit or table.units.get(column.source)
 
 
-def _differs_from_row_before(
-    columns: Mapping[str, Floats], last: Mapping[str, float]
-) -> npt.NDArray[np.bool_]:
+def _differs_from_row_before(columns: Mapping[str, Floats], last: Mapping[str, float]) -> Mask:
     """Return which rows differ from the preceding one, shape (n,); `last` precedes the first."""
     differs = np.zeros(columns[TIME].size, dtype=np.bool_)
     differs[0] = not last
@@ -141,8 +139,8 @@ def _differs_from_row_before(
     return differs
 
 
-def _differ(values: Floats, others: Floats) -> npt.NDArray[np.bool_]:
-    differ: npt.NDArray[np.bool_] = (values != others) & ~(np.isnan(values) & np.isnan(others))
+def _differ(values: Floats, others: Floats) -> Mask:
+    differ: Mask = (values != others) & ~(np.isnan(values) & np.isnan(others))
     return differ
 
 

@@ -1,38 +1,30 @@
-"""The canonical columns of a recording, with their units and roles (format 1)."""
+"""The canonical columns of a recording, with their units (format 1)."""
 
 import math
 from dataclasses import dataclass
-from typing import Literal
 
 from tsas_cli.support import limits
-
-_Role = Literal["time", "input", "output", "other"]
 
 
 @dataclass(frozen=True)
 class ColumnSpec:
-    """One canonical column: its name with the unit, the unit as text, its role and its meaning."""
+    """One canonical column: its name with the unit, the unit as text, and its meaning."""
 
     name: str
     unit: str
-    role: _Role
     meaning: str
 
 
 COLUMNS = (
-    ColumnSpec("time_s", "s", "time", "time since the run began"),
-    ColumnSpec(
-        "x_in_mm", "mm", "input", "displacement of the tendon at the drive, positive when pulled"
-    ),
-    ColumnSpec(
-        "x_out_mm", "mm", "output", "displacement of the tendon at the load, positive when pulled"
-    ),
-    ColumnSpec("f_in_N", "N", "output", "tension at the drive"),
-    ColumnSpec("f_out_N", "N", "output", "tension at the load"),
-    ColumnSpec("motor_speed_rpm", "rpm", "input", "motor speed, commanded or measured"),
-    ColumnSpec("motor_angle_rad", "rad", "input", "motor angle"),
-    ColumnSpec("f_out_ref_N", "N", "other", "reference tension at the load"),
-    ColumnSpec("temperature_C", "°C", "other", "temperature"),
+    ColumnSpec("time_s", "s", "time since the run began"),
+    ColumnSpec("x_in_mm", "mm", "displacement of the tendon at the drive, positive when pulled"),
+    ColumnSpec("x_out_mm", "mm", "displacement of the tendon at the load, positive when pulled"),
+    ColumnSpec("f_in_N", "N", "tension at the drive"),
+    ColumnSpec("f_out_N", "N", "tension at the load"),
+    ColumnSpec("motor_speed_rpm", "rpm", "motor speed, commanded or measured"),
+    ColumnSpec("motor_angle_rad", "rad", "motor angle"),
+    ColumnSpec("f_out_ref_N", "N", "reference tension at the load"),
+    ColumnSpec("temperature_C", "°C", "temperature"),
 )
 BY_NAME = {column.name: column for column in COLUMNS}
 NAMES = tuple(BY_NAME)

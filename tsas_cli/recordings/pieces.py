@@ -15,7 +15,6 @@ import pyarrow.parquet as pq
 from tsas_cli.recordings.columns import BY_NAME, TIME
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.parquet_files import check_size, reading
-from tsas_cli.recordings.recording import Floats
 from tsas_cli.recordings.run_files import (
     RunColumns,
     check_columns,
@@ -25,6 +24,7 @@ from tsas_cli.recordings.run_files import (
     open_run,
 )
 from tsas_cli.recordings.storage import Location
+from tsas_cli.support.arrays import Floats
 
 MOST_ROWS = 1 << 20  # of a recording that is read whole, and of a piece of a longer one
 _BATCH_ROWS = 1 << 16

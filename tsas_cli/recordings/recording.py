@@ -6,16 +6,14 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.manifest import Run
+from tsas_cli.support.arrays import Floats, Mask
 from tsas_cli.support.errors import InputError, nearest
 
 if TYPE_CHECKING:
     import pandas as pd
-
-Floats = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -85,7 +83,7 @@ class CopiedRows:
 
     stretches: tuple[tuple[int, int], ...] = ()
 
-    def mask(self, start: int, stop: int) -> npt.NDArray[np.bool_]:
+    def mask(self, start: int, stop: int) -> Mask:
         """Return which of the rows from `start` to `stop` − 1 are copies, shape (stop − start,)."""
         copied = np.zeros(stop - start, dtype=np.bool_)
         for first, end in self.stretches:

@@ -4,7 +4,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 import pyarrow as pa
 import pyarrow.parquet as pq
 
@@ -24,10 +23,9 @@ from tsas_cli.recordings.recording import Recording
 from tsas_cli.recordings.storage import Location
 from tsas_cli.recordings.units import conversion
 from tsas_cli.support import limits
+from tsas_cli.support.arrays import Floats
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.files import check_unchanged, state_of
-
-Floats = npt.NDArray[np.float64]
 
 
 def read_recording(folder: Location, run: Run, *, strict: bool = True) -> Recording:

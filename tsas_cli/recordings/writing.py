@@ -10,7 +10,8 @@ import pyarrow.parquet as pq
 from tsas_cli.recordings.arrow_columns import column_of
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.manifest import Manifest, Run, write_manifest
-from tsas_cli.recordings.recording import Floats, Recording
+from tsas_cli.recordings.recording import Recording
+from tsas_cli.support.arrays import Floats
 from tsas_cli.support.files import sha256_of
 
 

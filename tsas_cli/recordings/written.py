@@ -4,18 +4,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-import numpy.typing as npt
-
 from tsas_cli.recordings.arrow_columns import floats_from
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.parquet_files import check_size, open_parquet, reading
 from tsas_cli.recordings.recording import Recording
 from tsas_cli.recordings.run_files import read_columns
 from tsas_cli.recordings.run_names import check_run_name
+from tsas_cli.support.arrays import Floats
 from tsas_cli.support.errors import InputError
-
-Floats = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

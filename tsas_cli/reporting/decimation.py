@@ -1,10 +1,8 @@
 """Fewer points for a plot, the same picture."""
 
 import numpy as np
-import numpy.typing as npt
 
-Floats = npt.NDArray[np.float64]
-Indices = npt.NDArray[np.int64]
+from tsas_cli.support.arrays import Floats, Indices
 
 POINTS = 2400  # a bin is then narrower than a pixel of a plot of 30 rem
 CELLS = 300  # across and down a plot of half that width

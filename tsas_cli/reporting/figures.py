@@ -2,13 +2,9 @@
 
 from typing import Any
 
-import numpy as np
-import numpy.typing as npt
-
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.decimation import kept_samples
-
-Floats = npt.NDArray[np.float64]
+from tsas_cli.support.arrays import Floats
 
 
 def line(axes: Any, time_s: Floats, values: Floats, **style: Any) -> None:

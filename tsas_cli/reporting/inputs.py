@@ -6,9 +6,6 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
-import numpy as np
-import numpy.typing as npt
-
 from tsas_cli.recordings.dataset import Dataset, read_dataset
 from tsas_cli.recordings.manifest import MANIFEST_FILE, parse
 from tsas_cli.recordings.quality import check_dataset
@@ -23,10 +20,10 @@ from tsas_cli.records.diagnosis import DiagnosisFile
 from tsas_cli.records.drive import DriveFile
 from tsas_cli.records.simulation import SimulationFile
 from tsas_cli.records.tracking import TrackingFile
+from tsas_cli.support.arrays import Floats
 from tsas_cli.support.errors import InputError, printable
 from tsas_cli.support.files import read_json
 
-Floats = npt.NDArray[np.float64]
 STAGES: tuple[type[StageFile], ...] = (
     CheckFile,
     CalibrationFile,

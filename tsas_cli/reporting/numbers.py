@@ -4,7 +4,8 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
+
+from tsas_cli.support.arrays import Floats
 
 MINUS = "\N{MINUS SIGN}"
 ABSENT = "\N{EN DASH}"
@@ -74,7 +75,7 @@ def with_spread(value: float | None, spread: float | None) -> str:
     return f"{_fixed(value, decimals)} ± {plain(spread, 1)}"
 
 
-def spanned(values: npt.NDArray[np.float64]) -> str:
+def spanned(values: Floats) -> str:
     """Return the lowest and the highest of some numbers, gaps left out.
 
     Examples

@@ -7,8 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.records.base import PhaseSegment
-
-Floats = npt.NDArray[np.float64]
+from tsas_cli.support.arrays import Floats
 
 
 @dataclass(frozen=True)

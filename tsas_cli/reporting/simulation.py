@@ -5,7 +5,6 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.recordings.recording import Recording
@@ -17,8 +16,8 @@ from tsas_cli.reporting.drawing import picture
 from tsas_cli.reporting.figures import legend, line, noise_bounds
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import ABSENT, plain, spanned
+from tsas_cli.support.arrays import Floats
 
-Floats = npt.NDArray[np.float64]
 _TITLE = "Simulation and measurement"
 
 

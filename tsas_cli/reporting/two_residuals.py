@@ -5,12 +5,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.reporting.colours import STAND_IN
 from tsas_cli.reporting.figures import legend, line, noise_bounds
-
-Floats = npt.NDArray[np.float64]
+from tsas_cli.support.arrays import Floats
 
 
 @dataclass(frozen=True)

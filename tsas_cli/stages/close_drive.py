@@ -10,7 +10,6 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 import pyarrow as pa
 
 from tsas_cli.controllers.closed_loop import (
@@ -27,11 +26,11 @@ from tsas_cli.drive.file import read_drive
 from tsas_cli.physics.plant.turntable import Actuator
 from tsas_cli.physics.rig import Rig
 from tsas_cli.recordings.writing import write_dataset
+from tsas_cli.support.arrays import Floats
 from tsas_cli.tracking.drives import actuator_of
 from tsas_cli.tracking.recorded import manifest
 from tsas_cli.tracking.settings import Settings
 
-Floats = npt.NDArray[np.float64]
 CHIRP_S, CHIRP_RPM, FIRST_HZ, LAST_HZ = 40.0, 1500.0, 0.2, 120.0
 SINES_S, SINES = 20.0, ((400.0, 2.0), (150.0, 13.0))  # rpm, rad/s
 PRELOAD_N, STIFF_N = 200.0, 1e7  # so that the spring never hangs loose and nothing else gives

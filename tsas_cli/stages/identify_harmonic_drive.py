@@ -6,10 +6,9 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.drive import json as drive_json
-from tsas_cli.drive.diagnosis import FoundDriveDiagnosis, diagnose_drive
+from tsas_cli.drive.diagnosis import diagnose_drive
 from tsas_cli.drive.estimates import DataSheet, drive_sheet, estimates_of
 from tsas_cli.drive.file import UNITS, IdentifiedDrive, drive_of, write_drive
 from tsas_cli.drive.fit import DriveBench, Terms
@@ -26,16 +25,16 @@ from tsas_cli.recordings.quality.copies.deduplicated import without_duplicates
 from tsas_cli.recordings.recording import Recording, recording_of
 from tsas_cli.recordings.writing import write_runs
 from tsas_cli.records.base import Fit, parameters_of
-from tsas_cli.records.drive import DRIVE_FILE, DriveFile, Structure
+from tsas_cli.records.drive import DRIVE_FILE, DriveDiagnosis, DriveFile, Structure
 from tsas_cli.records.result import Result, Table, notes
 from tsas_cli.stages.given import Named, dataset_of, one_of, path_of
+from tsas_cli.support.arrays import Floats
 from tsas_cli.support.files import folder_if
 from tsas_cli.support.steps import NO_PROGRESS, Steps
 
 SPEEDS: tuple[Literal["measured", "commanded"], ...] = ("measured", "commanded")
 HOLDS: dict[str, Hold] = {"measured": "first", "commanded": "zero"}
 
-Floats = npt.NDArray[np.float64]
 STAGE = "identify-harmonic-drive"
 
 
@@ -49,8 +48,6 @@ class DriveResult(Result):
         What `drive.json` holds.
     estimates
         Every parameter by name: fitted, derived, or given by the data sheet.
-    diagnosis
-        The verdict on the nominal drive equation, with causes and gains on held-out data.
     runs
         By id the simulated runs: columns of shape (n,) as in the recording, `x_in_mm` and that of
         the nominal drive, `x_in_nominal_mm` [mm].
@@ -58,8 +55,12 @@ class DriveResult(Result):
 
     record: DriveFile
     estimates: Mapping[str, Estimate]
-    diagnosis: FoundDriveDiagnosis
     runs: Mapping[str, Recording]
+
+    @property
+    def diagnosis(self) -> DriveDiagnosis:
+        """The verdict on the nominal drive equation, with causes and gains on held-out data."""
+        return self.record.diagnosis
 
     @property
     def drive(self) -> IdentifiedDrive:
@@ -78,11 +79,10 @@ class DriveResult(Result):
 
     def sentences(self) -> list[str]:
         """Return the verdict, the inverse, what to measure next, and what is not identifiable."""
-        found = self.record.diagnosis
         return [
-            found.reason,
+            self.diagnosis.reason,
             self.record.inverse,
-            f"Next: {found.next_experiment}",
+            f"Next: {self.diagnosis.next_experiment}",
             *notes(self.record.cannot_tell),
         ]
 
@@ -139,8 +139,8 @@ def identify_harmonic_drive(
         blocks = [folds.block[folds.run == k] for k in range(len(prepared))]
         numbered = [np.unique(block, return_inverse=True)[1] for block in blocks]
         fitted = estimates_of(trial, numbered, sheet, by_run=folds.by_run)
-        found = diagnose_drive(search, final, fitted)
-        by_fit, by_nominal = _simulated(search, final), _simulated(search, found.nominal)
+        nominal, found = diagnose_drive(search, final, fitted)
+        by_fit, by_nominal = _simulated(search, final), _simulated(search, nominal)
         known = fitted | _given(sheet)
         record = DriveFile(
             **counted.dataset.header(path),
@@ -154,7 +154,7 @@ def identify_harmonic_drive(
             poles=drive_json.pole_rows(trial.values, seen),
             runs=drive_json.run_rows(search, by_fit, by_nominal),
             fit=Fit.model_validate(trial.solution, from_attributes=True),
-            diagnosis=drive_json.diagnosis(search, found),
+            diagnosis=found,
         )
         notes = (*counted.notes, *cannot_tell(record, sheet, final, known.values()))
         record = record.model_copy(update={"cannot_tell": notes})
@@ -165,7 +165,7 @@ def identify_harmonic_drive(
             structure, of = {"name": name_of(final), "hold": hold}, record.dataset.content()
             write_drive(folder / DRIVE_FILE, known, structure, version=record.version, dataset=of)
             write_runs(folder / "runs", simulated)
-    return DriveResult(record.content(), path, record, known, found, simulated)
+    return DriveResult(record.content(), path, record, known, simulated)
 
 
 def _given(sheet: DataSheet) -> dict[str, Estimate]:

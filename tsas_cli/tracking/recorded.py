@@ -3,7 +3,6 @@
 from collections.abc import Mapping
 
 import numpy as np
-import numpy.typing as npt
 import pyarrow as pa
 
 from tsas_cli.controllers.closed_loop import (
@@ -24,10 +23,10 @@ from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.sensors import Channel, new_memory, reading, sensed
 from tsas_cli.recordings.manifest import Manifest, Run
 from tsas_cli.recordings.manifest import RigSheet as DataSheet
+from tsas_cli.support.arrays import Floats
 from tsas_cli.tracking.settings import Settings
 from tsas_cli.tracking.track import Tracked
 
-Floats = npt.NDArray[np.float64]
 NO_CHECKSUM = "0" * 64  # until the run's file is written
 NOISE = 1  # of the streams of a seed; the loop's own is another
 

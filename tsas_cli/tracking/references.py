@@ -4,14 +4,13 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.recordings.run_files import read_columns
+from tsas_cli.support.arrays import Floats
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.tracking import SHAPE_NAMES
 from tsas_cli.tracking.settings import LONGEST_S, ReferenceSettings
 
-Floats = npt.NDArray[np.float64]
 WANTED, MEASURED = "f_out_ref_N", "f_out_N"
 
 

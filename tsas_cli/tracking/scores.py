@@ -4,11 +4,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, fields
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.records.tracking import Scores, Spread
+from tsas_cli.support.arrays import Floats
 
-Floats = npt.NDArray[np.float64]
 OUTSIDE = 0.02  # of the wanted force's range
 
 

@@ -23,11 +23,11 @@ from tsas_cli.physics.ends import last_direction
 from tsas_cli.physics.plant.lugre_plant import empty_lumps
 from tsas_cli.physics.plant.turntable import Actuator
 from tsas_cli.physics.rig import Rig
+from tsas_cli.support.arrays import Floats, Mask
 from tsas_cli.support.errors import InputError
 from tsas_cli.tracking.scores import Score, score
 from tsas_cli.tracking.settings import Settings
 
-Floats = npt.NDArray[np.float64]
 TendonDynamics = Literal["slip", "lugre"]
 RELAY_S = 0.5  # in which …
 RELAY_SHARE = 0.25  # … a loop whose motor is at its limits for so much of the time, and …
@@ -194,7 +194,7 @@ def _swings(asked: Floats, limit_rpm: float, step_s: float) -> tuple[int, float]
     return (int(found[0]), float(turns[found[0]]) / RELAY_S) if found.size else None
 
 
-def _within(true: npt.NDArray[np.bool_], width: int) -> npt.NDArray[np.int64]:
+def _within(true: Mask, width: int) -> npt.NDArray[np.int64]:
     """Return how many are true of each `width` in a row; of a shorter array, of all."""
     total = np.concatenate(([0], np.cumsum(true)))
     width = min(width, true.size)

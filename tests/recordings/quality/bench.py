@@ -9,7 +9,8 @@ import numpy as np
 
 from tsas_cli.recordings.manifest import RigSheet, Run
 from tsas_cli.recordings.quality.trial import RunSignals
-from tsas_cli.recordings.recording import Floats, Recording
+from tsas_cli.recordings.recording import Recording
+from tsas_cli.support.arrays import Floats
 
 STIFFNESS, LOAD, PRELOAD, FRICTION = 100.0, 1.5, 25.0, 0.4  # N/mm, N/mm, N, μθ
 

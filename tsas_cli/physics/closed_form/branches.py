@@ -15,7 +15,6 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.closed_form.capstan import mean_tension_ratio, tension_ratio
@@ -28,8 +27,7 @@ from tsas_cli.physics.course import Tensions
 from tsas_cli.physics.frames import Frames, is_next
 from tsas_cli.physics.phases import SLACK
 from tsas_cli.physics.rig import Rig
-
-Floats = npt.NDArray[np.float64]
+from tsas_cli.support.arrays import Floats
 
 REST, SLIP = 0, 1  # base of the stack of reversals: uniform preload, full slip
 SMALLEST_WRAP = 1e-9  # a straight sheath: C stays finite, and the dead band has no width

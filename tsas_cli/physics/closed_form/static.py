@@ -8,7 +8,6 @@ band only, because a moving slip front makes a curve.
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.closed_form.branches import SMALLEST_WRAP, full_slip
@@ -17,8 +16,7 @@ from tsas_cli.physics.compliances import compliance_at_drive, sheath_compliance
 from tsas_cli.physics.course import Tensions
 from tsas_cli.physics.phases import SLACK
 from tsas_cli.physics.rig import Rig
-
-Floats = npt.NDArray[np.float64]
+from tsas_cli.support.arrays import Floats
 
 
 class StaticState(NamedTuple):

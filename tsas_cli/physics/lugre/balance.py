@@ -38,10 +38,10 @@ from tsas_cli.physics.lugre.state import (
     TENSION_HISTORY,
     TENSION_SLOPE,
     UPPER,
-    Floats,
     LugreLaws,
     Step,
 )
+from tsas_cli.support.arrays import Floats
 
 LEAST_LIMIT_N = 1e-9  # at zero tension, so that a bristle has a limit at all
 

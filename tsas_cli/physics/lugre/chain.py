@@ -38,12 +38,13 @@ from tsas_cli.physics.lugre.frames import (
 from tsas_cli.physics.lugre.input import next_reversal, step_at
 from tsas_cli.physics.lugre.slack import end_of_slack, is_slack, without_tension, write_slack
 from tsas_cli.physics.lugre.start import clear_state, lugre_laws, start_at_rest
-from tsas_cli.physics.lugre.state import ROWS, Floats, LugreLaws
+from tsas_cli.physics.lugre.state import ROWS, LugreLaws
 from tsas_cli.physics.lugre.step import accept_step, bdf2
 from tsas_cli.physics.lugre.step_size import fit_to_reversal, step_factor, tolerances_of, try_step
 from tsas_cli.physics.mesh import PITCH
 from tsas_cli.physics.phases import UNCONVERGED
 from tsas_cli.physics.rig import Rig
+from tsas_cli.support.arrays import Floats
 
 SHORTEST_S = 1e-13
 MOST_TRIES, MOST_PER_SAMPLE = 20_000, 40  # their sum limits the steps of a run

@@ -13,11 +13,11 @@ from tsas_cli.physics.lugre.state import (
     RATE,
     STIFFNESS,
     TENSION,
-    Floats,
     Given,
     LugreLaws,
     Step,
 )
+from tsas_cli.support.arrays import Floats
 
 X_IN, X_OUT, F_IN, F_OUT = range(4)  # rows of the columns
 

@@ -9,16 +9,9 @@ from tsas_cli.physics.course import TIME
 from tsas_cli.physics.frames import Frames, slips_up_to
 from tsas_cli.physics.lugre.ends import Span
 from tsas_cli.physics.lugre.input import Cubic, hermite
-from tsas_cli.physics.lugre.state import (
-    DEFLECTION_NEW,
-    LIMIT,
-    RATE,
-    STIFFNESS,
-    TENSION,
-    Floats,
-    LugreLaws,
-)
+from tsas_cli.physics.lugre.state import DEFLECTION_NEW, LIMIT, RATE, STIFFNESS, TENSION, LugreLaws
 from tsas_cli.physics.phases import SLACK, SLIDING_SHARE
+from tsas_cli.support.arrays import Floats
 
 
 @kernel

@@ -12,7 +12,8 @@ import numpy as np
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.boundary import DISPLACEMENT, SPRING
 from tsas_cli.physics.course import DRIVE, LOAD, TIME, losses_between, losses_of
-from tsas_cli.physics.lugre.state import Floats, Formula, Given, LugreLaws, Step
+from tsas_cli.physics.lugre.state import Formula, Given, LugreLaws, Step
+from tsas_cli.support.arrays import Floats
 
 
 class Cubic(NamedTuple):

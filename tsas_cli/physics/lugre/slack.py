@@ -7,8 +7,9 @@ from tsas_cli.physics.boundary import FORCE, SPRING, unloaded_position
 from tsas_cli.physics.course import DRIVE, LOAD, LOST, TIME
 from tsas_cli.physics.lugre.ends import F_IN, F_OUT, X_IN, X_OUT, Samples
 from tsas_cli.physics.lugre.input import value_at
-from tsas_cli.physics.lugre.state import STIFFNESS, Floats, LugreLaws
+from tsas_cli.physics.lugre.state import STIFFNESS, LugreLaws
 from tsas_cli.physics.phases import SLACK, Phases
+from tsas_cli.support.arrays import Floats
 
 HALVINGS = 40  # of the time between two samples
 

@@ -11,7 +11,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.effects.load_dependent_friction import load_factor
 from tsas_cli.effects.load_spring_nonlinearity import spring_tangent
@@ -23,8 +22,7 @@ from tsas_cli.physics.lugre.start import lugre_laws, segments
 from tsas_cli.physics.lugre.state import LugreLaws
 from tsas_cli.physics.phases import Phases
 from tsas_cli.physics.rig import Rig
-
-Floats = npt.NDArray[np.float64]
+from tsas_cli.support.arrays import Floats
 
 LUMPS = 24  # the growth is the same for 24 to 200
 FOLDS = 3.0  # e-folds by which a disturbance may grow during its moment

@@ -26,7 +26,6 @@ from tsas_cli.physics.lugre.state import (
     STIFFNESS,
     TENSION_HISTORY,
     TENSION_SLOPE,
-    Floats,
     LugreLaws,
     Lump,
     Step,
@@ -34,6 +33,7 @@ from tsas_cli.physics.lugre.state import (
 from tsas_cli.physics.lugre.step import bdf2
 from tsas_cli.physics.mesh import PITCH, segment_compliances
 from tsas_cli.physics.rig import Rig
+from tsas_cli.support.arrays import Floats
 
 NO_TIME_S = 1e-13  # step of the balance at rest
 

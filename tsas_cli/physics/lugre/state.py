@@ -2,15 +2,10 @@
 
 from typing import NamedTuple
 
-import numpy as np
-import numpy.typing as npt
-
 from tsas_cli.effects.stribeck_friction import StribeckFriction
 from tsas_cli.physics.boundary import DriveEnd, LoadEnd
 from tsas_cli.physics.bristles import Bristle
 from tsas_cli.physics.mesh import PITCH
-
-Floats = npt.NDArray[np.float64]
 
 # Rows of the state, over the nodes from 0 at the drive to n + 1 at the load: s[POSITION + i].
 # Positions are relative to the drive, where its position is given: 4 times fewer steps.

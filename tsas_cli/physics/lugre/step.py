@@ -33,12 +33,12 @@ from tsas_cli.physics.lugre.state import (
     STIFFNESS,
     TENSION_HISTORY,
     TENSION_SLOPE,
-    Floats,
     Formula,
     LugreLaws,
     Step,
 )
 from tsas_cli.physics.lugre.tridiagonal import solve
+from tsas_cli.support.arrays import Floats
 
 MOST_ITERATIONS = 8
 

@@ -8,8 +8,9 @@ import numpy as np
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.boundary import FORCE
 from tsas_cli.physics.lugre.ends import StepEnds
-from tsas_cli.physics.lugre.state import Floats, Formula, LugreLaws, Step
+from tsas_cli.physics.lugre.state import Formula, LugreLaws, Step
 from tsas_cli.physics.lugre.step import newton, predict, step_error
+from tsas_cli.support.arrays import Floats
 
 RESIDUAL_SHARE = 0.3  # residual of Newton's method over the error of a step
 WITH_MASS = 0.04  # factor of the tolerance with an oscillating mass: its errors add up

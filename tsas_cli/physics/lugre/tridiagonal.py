@@ -7,16 +7,8 @@ underflow.
 """
 
 from tsas_cli.numerics.compiled import kernel
-from tsas_cli.physics.lugre.state import (
-    DIAGONAL,
-    INCREMENT,
-    LOWER,
-    MINOR,
-    RESIDUAL,
-    SCALED,
-    UPPER,
-    Floats,
-)
+from tsas_cli.physics.lugre.state import DIAGONAL, INCREMENT, LOWER, MINOR, RESIDUAL, SCALED, UPPER
+from tsas_cli.support.arrays import Floats
 
 
 @kernel

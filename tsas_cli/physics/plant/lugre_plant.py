@@ -48,7 +48,6 @@ from tsas_cli.physics.lugre.state import (
     SPEED_HISTORY,
     TENSION,
     TENSION_SLOPE,
-    Floats,
     Given,
     LugreLaws,
     Step,
@@ -65,6 +64,7 @@ from tsas_cli.physics.plant.turntable import (
 )
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.slip import state as slip
+from tsas_cli.support.arrays import Floats
 
 DRIVEN = Boundary(FORCE, SPRING)
 TOLERANCE = 1e-4  # error that a step of the lumps may add, over a tension

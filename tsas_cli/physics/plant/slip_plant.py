@@ -20,10 +20,10 @@ from tsas_cli.physics.slip.state import (
     POSITION_BEFORE,
     SLIP,
     TENSION,
-    Floats,
     Moment,
     SlipLaws,
 )
+from tsas_cli.support.arrays import Floats
 
 
 @kernel

@@ -52,11 +52,11 @@ from tsas_cli.physics.slip.state import (
     TENSION_BEFORE,
     TENSION_RISE,
     TRAVEL,
-    Floats,
     Moment,
     SlipLaws,
 )
 from tsas_cli.physics.slip.step import solve_sample
+from tsas_cli.support.arrays import Floats
 
 MOST_UNCONVERGED = 10  # samples, after which a run is aborted
 MOST_STEPS = 60  # between two samples, unconverged ones included

@@ -26,10 +26,10 @@ from tsas_cli.physics.slip.state import (
     SWEEP_R,
     TENSION,
     TOLERANCE,
-    Floats,
     Moment,
     SlipLaws,
 )
+from tsas_cli.support.arrays import Floats
 
 SLIPS_ALONG_S = 0.01  # time constant of a mass's speed; without it the mass would oscillate
 

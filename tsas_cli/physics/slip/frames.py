@@ -3,7 +3,8 @@
 from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.frames import Frames, is_next, slips_up_to
 from tsas_cli.physics.phases import SLACK, UNCONVERGED
-from tsas_cli.physics.slip.state import SLIP, TENSION, Floats
+from tsas_cli.physics.slip.state import SLIP, TENSION
+from tsas_cli.support.arrays import Floats
 
 
 @kernel

@@ -19,7 +19,8 @@ from tsas_cli.physics.mesh import PITCH
 from tsas_cli.physics.rig import Rig
 from tsas_cli.physics.slip.chain import advance, tension_at_sensor
 from tsas_cli.physics.slip.start import chain_at_rest, slip_laws
-from tsas_cli.physics.slip.state import POSITION, ROWS, TENSION, Floats, Moment, SlipLaws
+from tsas_cli.physics.slip.state import POSITION, ROWS, TENSION, Moment, SlipLaws
+from tsas_cli.support.arrays import Floats
 
 EXACT_N = 1e-7  # tolerance of the force
 MOST_TRIALS = 200  # positions of the tendon's end for one sample

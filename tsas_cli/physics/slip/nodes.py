@@ -38,10 +38,10 @@ from tsas_cli.physics.slip.state import (
     WRAP_PULLED,
     WRAP_RELEASED,
     WRAP_SIGNED,
-    Floats,
     Moment,
     SlipLaws,
 )
+from tsas_cli.support.arrays import Floats
 
 MOST_WRAP = 30.0  # friction of a node times its bend, so that the tension behind it is not zero
 MOST_RATIO_CHANGE = 0.5  # of a node's ratio of tensions by a tangent

@@ -6,7 +6,8 @@ from tsas_cli.numerics.compiled import kernel
 from tsas_cli.physics.boundary import Boundary, DriveEnd, drive_end, load_end
 from tsas_cli.physics.mesh import PITCH, segment_compliances
 from tsas_cli.physics.rig import Rig
-from tsas_cli.physics.slip.state import COMPLIANCE, ROWS, TENSION, TENSION_BEFORE, Floats, SlipLaws
+from tsas_cli.physics.slip.state import COMPLIANCE, ROWS, TENSION, TENSION_BEFORE, SlipLaws
+from tsas_cli.support.arrays import Floats
 
 
 @kernel

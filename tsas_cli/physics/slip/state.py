@@ -2,15 +2,10 @@
 
 from typing import NamedTuple
 
-import numpy as np
-import numpy.typing as npt
-
 from tsas_cli.effects.stribeck_friction import StribeckFriction
 from tsas_cli.physics.boundary import DriveEnd, LoadEnd
 from tsas_cli.physics.course import Losses
 from tsas_cli.physics.mesh import PITCH
-
-Floats = npt.NDArray[np.float64]
 
 TOLERANCE = 1e-10  # of the tension and of a segment's elongation, for rounding
 BALANCED = 1e-9  # of the tension, where a law is not linear

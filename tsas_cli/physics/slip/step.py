@@ -36,10 +36,10 @@ from tsas_cli.physics.slip.state import (
     SWEEP_Q,
     SWEEP_R,
     TENSION,
-    Floats,
     Moment,
     SlipLaws,
 )
+from tsas_cli.support.arrays import Floats
 
 NODES_PER_DIVISION = 16  # in the elimination with presliding
 MOST_ITERATIONS = 20  # changes of the active set

@@ -18,7 +18,8 @@ from tsas_cli.recordings.guess.words import (
     unit_behind,
     words_of,
 )
-from tsas_cli.recordings.readers.table import ColumnSource, Floats
+from tsas_cli.recordings.readers.table import ColumnSource
+from tsas_cli.support.arrays import Floats
 
 _BRACKETS = re.compile(r"\s*[\[(]([^\[\]()]*)[\])]\s*$")
 

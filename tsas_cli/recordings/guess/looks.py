@@ -12,7 +12,7 @@ import numpy as np
 
 from tsas_cli.numerics.noise import noise_sd
 from tsas_cli.numerics.turning_points import turning_points
-from tsas_cli.recordings.readers.table import Floats
+from tsas_cli.support.arrays import Floats
 
 _FEWEST = 64  # samples
 _ROWS = 50_000  # of a longer run that are used, evenly spread

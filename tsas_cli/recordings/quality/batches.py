@@ -8,11 +8,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-from tsas_cli.recordings.recording import Floats
-
-Indices = npt.NDArray[np.int64]
+from tsas_cli.support.arrays import Floats, Indices
 
 _LONG = 2.5  # times the lower quartile of the intervals
 _FEWEST = 5  # batches

@@ -1,6 +1,5 @@
 """Results of a check: a remark about a recording, or the reason why it does not apply."""
 
-import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Generic, Literal, TypeVar
@@ -50,11 +49,6 @@ class QualityCheck(Generic[Subject]):
     code: str
     find: Callable[[Subject], Iterator[Remark | CannotTell]]
     needs: tuple[str, ...] = ()
-
-    @property
-    def explanation(self) -> str:
-        """The explanation for users: the docstring of the check's module."""
-        return (sys.modules[self.find.__module__].__doc__ or "").strip()
 
 
 @dataclass(frozen=True)

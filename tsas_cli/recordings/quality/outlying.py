@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from tsas_cli.recordings.quality.samples import Booleans
-from tsas_cli.recordings.recording import Floats
+from tsas_cli.support.arrays import Floats, Mask
 
 _MOST_IN_A_ROW = 3
 _NOISE, _STEPS, _SPAN = 20.0, 10.0, 0.05  # least deviation, in noise, in steps and in the span
@@ -14,7 +13,7 @@ _COMMON = 0.02  # of all samples: more frequent deviations are the signal
 
 def outlying(
     time_s: Floats, values: Floats, *, most: float, noise: float, step: float, span: float
-) -> Booleans:
+) -> Mask:
     """Return which samples are outliers, shape (n,).
 
     An outlier is an implausible value, or one of up to three consecutive samples that deviate from
@@ -43,7 +42,7 @@ def outlying(
     return found
 
 
-def _deviating(time_s: Floats, values: Floats, least: float, span: float) -> Booleans:
+def _deviating(time_s: Floats, values: Floats, least: float, span: float) -> Mask:
     """Return which of the finite samples deviate from both neighbours, shape (n,)."""
     found = np.zeros(values.size, dtype=np.bool_)
     if values.size <= 2 * _MOST_IN_A_ROW:

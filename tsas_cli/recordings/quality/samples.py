@@ -4,9 +4,8 @@ import numpy as np
 import numpy.typing as npt
 
 from tsas_cli.numerics.noise import quantisation_step
-from tsas_cli.recordings.recording import Floats
+from tsas_cli.support.arrays import Floats
 
-Booleans = npt.NDArray[np.bool_]
 _FEWEST = 16  # samples for an estimate of the noise
 
 

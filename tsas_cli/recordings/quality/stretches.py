@@ -30,8 +30,9 @@ from tsas_cli.recordings.quality.checks import (
 from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
 from tsas_cli.recordings.quality.samples import span_of, step_of
 from tsas_cli.recordings.quality.trial import RunSignals, Size
-from tsas_cli.recordings.recording import Floats, Recording
+from tsas_cli.recordings.recording import Recording
 from tsas_cli.recordings.run_files import RunColumns
+from tsas_cli.support.arrays import Floats
 
 Results = list[Remark | CannotTell]
 

@@ -13,8 +13,9 @@ from tsas_cli.recordings.columns import TIME, largest
 from tsas_cli.recordings.manifest import RigSheet
 from tsas_cli.recordings.quality.batches import Batches, batches_of
 from tsas_cli.recordings.quality.outlying import outlying
-from tsas_cli.recordings.quality.samples import Booleans, span_of, step_of
-from tsas_cli.recordings.recording import Floats, Recording
+from tsas_cli.recordings.quality.samples import span_of, step_of
+from tsas_cli.recordings.recording import Recording
+from tsas_cli.support.arrays import Floats, Mask
 
 MECHANICAL = ("x_in_mm", "x_out_mm", "f_in_N", "f_out_N")
 _FOLLOWERS = {"spring": MECHANICAL[1:], "force": ("x_out_mm",), "displacement": ()}
@@ -87,7 +88,7 @@ class RunSignals:
         )
 
     @cached_property
-    def outlying(self) -> dict[str, Booleans]:
+    def outlying(self) -> dict[str, Mask]:
         """Which samples of each channel are outliers (`outlying`), shape (n,) each."""
         sizes = self.overall or {name: size_of(values) for name, values in self._recorded.items()}
         return {
@@ -144,7 +145,7 @@ class RunSignals:
         return {"force": "f_out_N", "displacement": "x_out_mm"}.get(self.recording.run.load)
 
     @cached_property
-    def repeats(self) -> Booleans:
+    def repeats(self) -> Mask:
         """Which rows equal the row before them in every channel, shape (n,)."""
         same = np.arange(self.time_s.size) > 0
         for values in self.channels.values():

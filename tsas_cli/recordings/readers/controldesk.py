@@ -9,12 +9,12 @@ import numpy as np
 from tsas_cli.recordings.readers.table import (
     ColumnSource,
     ColumnTable,
-    Floats,
     ReadOptions,
     floats,
     resolve,
 )
 from tsas_cli.recordings.readers.timebase import TIME, on_one_clock
+from tsas_cli.support.arrays import Floats
 from tsas_cli.support.errors import InputError
 
 

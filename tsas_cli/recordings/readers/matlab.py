@@ -20,11 +20,11 @@ from tsas_cli.recordings.readers.controldesk import (
 from tsas_cli.recordings.readers.table import (
     ColumnSource,
     ColumnTable,
-    Floats,
     ReadOptions,
     floats,
     resolve,
 )
+from tsas_cli.support.arrays import Floats
 from tsas_cli.support.errors import InputError, nearest
 from tsas_cli.support.files import Raw
 from tsas_cli.support.memory import out_of_memory

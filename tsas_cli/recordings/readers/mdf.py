@@ -16,13 +16,13 @@ from tsas_cli.recordings.guards.mdf_blocks import check_blocks, check_claims
 from tsas_cli.recordings.readers.table import (
     ColumnSource,
     ColumnTable,
-    Floats,
     ReadOptions,
     floats,
     optional,
     resolve,
 )
 from tsas_cli.recordings.readers.timebase import TIME, on_one_clock
+from tsas_cli.support.arrays import Floats
 from tsas_cli.support.errors import InputError
 from tsas_cli.support.memory import out_of_memory
 

@@ -13,12 +13,12 @@ from tsas_cli.recordings.readers.table import (
     BATCH_ROWS,
     ColumnSource,
     ColumnTable,
-    Floats,
     ReadOptions,
     floats,
     in_batches,
     resolve,
 )
+from tsas_cli.support.arrays import Floats
 
 
 def batches(

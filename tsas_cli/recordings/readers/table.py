@@ -8,14 +8,13 @@ from types import ModuleType
 from typing import Annotated, Any, Literal
 
 import numpy as np
-import numpy.typing as npt
 import pyarrow as pa
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 
 from tsas_cli.support import limits
+from tsas_cli.support.arrays import Floats
 from tsas_cli.support.errors import InputError, nearest
 
-Floats = npt.NDArray[np.float64]
 ColumnSource = str | int  # a column's name, or its number counted from 1
 
 BATCH_ROWS = 1 << 20  # of a file that is read in parts, and of a row group of its run

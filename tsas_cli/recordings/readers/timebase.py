@@ -5,7 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from tsas_cli.recordings.readers.table import ColumnSource, Floats
+from tsas_cli.recordings.readers.table import ColumnSource
+from tsas_cli.support.arrays import Floats
 from tsas_cli.support.errors import InputError
 
 TIME = "time"  # source of the common clock of a file's channels in a map

@@ -13,9 +13,8 @@ from tsas_cli.reporting.content import Section
 from tsas_cli.reporting.drawing import WIDTH_IN, picture
 from tsas_cli.reporting.figures import legend
 from tsas_cli.reporting.numbers import plain
+from tsas_cli.support.arrays import Floats
 from tsas_cli.support.wording import listed
-
-Floats = npt.NDArray[np.float64]
 
 _ALIKE = 0.95  # less than a third of one is then left that the other cannot imitate
 _RESEMBLES = 0.5

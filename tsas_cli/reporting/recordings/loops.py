@@ -19,10 +19,10 @@ from tsas_cli.reporting.figures import legend
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.numbers import spanned
 from tsas_cli.reporting.phases import PHASES, Phase, phase_of_samples
+from tsas_cli.support.arrays import Floats, Mask
 
 _TENSIONS = ("f_in_N", "f_out_N")
 _X = "x_in_mm"
-Floats = npt.NDArray[np.float64]
 Keys = npt.NDArray[np.object_]
 
 
@@ -95,14 +95,14 @@ def draw_loop(figure: Any, *, x: Floats, y: Floats, phase: Keys, labels: tuple[s
         legend(figure)
 
 
-def _draw_phase(axes: Any, x: Floats, y: Floats, inside: npt.NDArray[np.bool_], one: Phase) -> None:
+def _draw_phase(axes: Any, x: Floats, y: Floats, inside: Mask, one: Phase) -> None:
     joined = inside.copy()
     joined[1:] |= inside[:-1]  # up to the first sample of the next phase: no hole between two
     label = f"{one.number} {one.label}".strip()
     axes.plot(x, np.where(joined, y, np.nan), color=STAND_IN[one.colour], label=label)
 
 
-def _number(axes: Any, x: Floats, y: Floats, inside: npt.NDArray[np.bool_], one: Phase) -> None:
+def _number(axes: Any, x: Floats, y: Floats, inside: Mask, one: Phase) -> None:
     """Put the phase's number on its longest stretch, apart from that of the opposite phase."""
     edges = np.flatnonzero(np.diff(np.concatenate(([False], inside, [False])).astype(int)))
     first, after = max(edges.reshape(-1, 2), key=lambda stretch: stretch[1] - stretch[0])

@@ -17,13 +17,13 @@ import rerun.blueprint as rrb
 
 from tsas_cli.reporting.channels import at_axis, in_words
 from tsas_cli.reporting.colours import dark
-from tsas_cli.reporting.decimation import Indices, kept_samples
+from tsas_cli.reporting.decimation import kept_samples
 from tsas_cli.reporting.numbers import as_printed
 from tsas_cli.reporting.phases import BY_KEY, phase_of_samples
 from tsas_cli.reporting.stream.recorder import Entity, Recorder, path_of
 from tsas_cli.reporting.stream.seen import MEASURED, X_IN, Channel, SeenRun
+from tsas_cli.support.arrays import Floats, Indices
 
-Floats = npt.NDArray[np.float64]
 POINTS, MOMENTS = 10_000, 4000  # about how many the loop has, and its moving point
 WIDTH, HEIGHT, MARGIN, TICK = 1.7, 1.0, 0.04, 0.015  # of the frame
 _SEEN = rrb.VisualBounds2D(x_range=(-0.2, WIDTH + 0.08), y_range=(-HEIGHT - 0.12, 0.2))

@@ -13,9 +13,9 @@ import numpy.typing as npt
 import rerun as rr
 from rerun.blueprint import Blueprint
 
+from tsas_cli.support.arrays import Floats
 from tsas_cli.support.errors import InputError
 
-Floats = npt.NDArray[np.float64]
 Entity = Sequence[str]
 
 T, SESSION = "t", "session"  # time within the run, and time of day

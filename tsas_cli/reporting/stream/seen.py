@@ -4,9 +4,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-import numpy as np
-import numpy.typing as npt
-
 from tsas_cli.recordings.columns import BY_NAME, TIME, nominal_name
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Run
@@ -20,8 +17,7 @@ from tsas_cli.records.simulation import SimulationFile
 from tsas_cli.records.tracking import TrackedResult, TrackingFile
 from tsas_cli.reporting.inputs import Inputs
 from tsas_cli.reporting.stream.recorder import Entity, Times, times_of
-
-Floats = npt.NDArray[np.float64]
+from tsas_cli.support.arrays import Floats
 
 MEASURED, WANTED, RESIDUAL = "measured", "wanted", "residual"
 X_IN, TENSIONS = "x_in_mm", ("f_in_N", "f_out_N")

@@ -16,7 +16,7 @@ import rerun.blueprint as rrb
 
 from tsas_cli.identification.model import Model, read_model
 from tsas_cli.identification.prepared import prepare
-from tsas_cli.physics.frames import Frames, Indices
+from tsas_cli.physics.frames import Frames
 from tsas_cli.physics.response import Dynamics, simulate
 from tsas_cli.physics.rig import Rig
 from tsas_cli.recordings.dataset import Dataset
@@ -28,8 +28,7 @@ from tsas_cli.records.simulation import SimulationFile
 from tsas_cli.reporting.colours import dark
 from tsas_cli.reporting.stream.recorder import Entity, Recorder, Times, path_of
 from tsas_cli.reporting.stream.seen import EXTENDED, NOMINAL, SIMULATED, TENSIONS, SeenRun, Source
-
-Floats = npt.NDArray[np.float64]
+from tsas_cli.support.arrays import Floats, Indices
 
 PER_SECOND = 15.0
 PER_SPAN = 120.0  # while a tension goes through all that it has in the run

@@ -6,7 +6,6 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.records.tracking import ADAPTIVE, Adaptive
 from tsas_cli.reporting.colours import of_controller
@@ -16,13 +15,13 @@ from tsas_cli.reporting.figures import bound, line
 from tsas_cli.reporting.numbers import plain
 from tsas_cli.reporting.tracking.over_time import mark_change
 from tsas_cli.reporting.tracking.runs import ESTIMATES, RunsUnderCondition, TrackedRun
+from tsas_cli.support.arrays import Floats
 
 _WHAT = (
     "The estimates φ̂ of the drive's parameters (Yang 2025, Eq. 44), which stay between the dashed "
     "bounds. They serve the sliding surface; they need not come to the drive's true values."
 )
 _SYMBOLS = (("φ̂1", "rpm s³/mm"), ("φ̂2", "rpm s/mm"), ("φ̂3", "rpm s²/mm"))
-Floats = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

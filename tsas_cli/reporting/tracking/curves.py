@@ -5,7 +5,6 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.reporting.content import Picture, Section
 from tsas_cli.reporting.drawing import picture
@@ -13,7 +12,6 @@ from tsas_cli.reporting.numbers import plain, spanned
 from tsas_cli.reporting.tracking.over_time import TimeCurve, draw_panels, draw_together, panels_in
 from tsas_cli.reporting.tracking.runs import ASKED, TRUE, WANTED, RunsUnderCondition, TrackedRun
 
-Floats = npt.NDArray[np.float64]
 _OUTSIDE = 0.02
 _SCALES = (
     "Wanted less true force at the load. Each panel has a scale of its own; the dashed lines, "

@@ -4,13 +4,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-import numpy.typing as npt
-
 from tsas_cli.reporting.colours import STAND_IN, of_controller
 from tsas_cli.reporting.figures import bound, legend, line
-
-Floats = npt.NDArray[np.float64]
+from tsas_cli.support.arrays import Floats
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,6 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.controllers.signals import ORDER, error_filter, filtered
 from tsas_cli.records.tracking import StatedSettings
@@ -16,8 +15,8 @@ from tsas_cli.reporting.decimation import kept_cells
 from tsas_cli.reporting.drawing import picture
 from tsas_cli.reporting.numbers import plain
 from tsas_cli.reporting.tracking.runs import X_IN, X_INV, RunsUnderCondition, TrackedRun
+from tsas_cli.support.arrays import Floats
 
-Floats = npt.NDArray[np.float64]
 _ACROSS = 2
 
 

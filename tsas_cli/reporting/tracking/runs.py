@@ -3,14 +3,11 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-import numpy as np
-import numpy.typing as npt
-
 from tsas_cli.recordings.written import columns_of, result_file
 from tsas_cli.records.tracking import ADAPTIVE, ConditionChange, TrackedResult, TrackingFile
 from tsas_cli.reporting.inputs import Inputs
+from tsas_cli.support.arrays import Floats
 
-Floats = npt.NDArray[np.float64]
 WANTED, TRUE, ASKED = "f_out_ref_N", "f_out_true_N", "motor_speed_rpm"
 X_IN, X_INV = "x_in_mm", "x_inv_mm"
 ESTIMATES = ("phi1_rpm_s3_per_mm", "phi2_rpm_s_per_mm", "phi3_rpm_s2_per_mm")

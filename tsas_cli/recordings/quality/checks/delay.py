@@ -15,7 +15,7 @@ import numpy as np
 
 from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
 from tsas_cli.recordings.quality.trial import RunSignals
-from tsas_cli.recordings.recording import Floats
+from tsas_cli.support.arrays import Floats
 
 _MOST_CYCLES = 100  # evenly spread; more would not improve the estimate
 _ROUNDS = 20

@@ -10,8 +10,8 @@ import numpy as np
 
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
-from tsas_cli.recordings.quality.samples import Booleans
 from tsas_cli.recordings.quality.trial import RunSignals
+from tsas_cli.support.arrays import Mask
 from tsas_cli.support.wording import count_of
 
 _COMMON = 0.05  # share of long intervals from which on they are jitter
@@ -50,7 +50,7 @@ def _missing_rows(trial: RunSignals) -> Iterator[Remark]:
         )
 
 
-def _empty_cells(trial: RunSignals, name: str, empty: Booleans) -> Remark:
+def _empty_cells(trial: RunSignals, name: str, empty: Mask) -> Remark:
     if empty.all() and (trial.overall is None or name not in trial.overall):
         return Remark("error", f"{name} holds no value at all", "leave the column out", name)
     edges = np.flatnonzero(np.diff(np.concatenate(([False], empty, [False])).astype(np.int8)))

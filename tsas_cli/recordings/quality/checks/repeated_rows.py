@@ -12,9 +12,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
-from tsas_cli.recordings.quality.samples import Booleans, smallest_change
+from tsas_cli.recordings.quality.samples import smallest_change
 from tsas_cli.recordings.quality.trial import RunSignals
-from tsas_cli.recordings.recording import Floats
+from tsas_cli.support.arrays import Floats, Mask
 
 _BLOCK = 32  # rows
 _MEDIAN_OF_THIRD = 0.6745 * math.sqrt(20.0)  # of |third difference|, for noise of unit deviation
@@ -46,7 +46,7 @@ def find(trial: RunSignals) -> Iterator[Remark | CannotTell]:
         )
 
 
-def _chances(trial: RunSignals, fresh: Booleans) -> Floats:
+def _chances(trial: RunSignals, fresh: Mask) -> Floats:
     """Return the probability that a row equals the preceding one, for each block of fresh rows.
 
     It is the largest of a block and its two neighbours, for blocks at the edge of a rest.

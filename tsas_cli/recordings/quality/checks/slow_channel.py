@@ -12,7 +12,7 @@ import numpy as np
 from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
 from tsas_cli.recordings.quality.samples import rows_between_changes, smallest_change
 from tsas_cli.recordings.quality.trial import RunSignals
-from tsas_cli.recordings.recording import Floats
+from tsas_cli.support.arrays import Floats
 
 _FEWEST_CHANGES = 20
 

@@ -14,7 +14,7 @@ from tsas_cli.numerics.turning_points import turning_points
 from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark, Severity
 from tsas_cli.recordings.quality.samples import alternates, plateaus, rows_between_changes
 from tsas_cli.recordings.quality.trial import RunSignals
-from tsas_cli.recordings.recording import Floats
+from tsas_cli.support.arrays import Floats
 
 _FEWEST_UPDATES = 20
 _LEAST_NOISE = 1e-4  # of the span; less may be interpolation of a computed channel

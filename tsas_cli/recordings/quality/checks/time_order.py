@@ -9,8 +9,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from tsas_cli.recordings.quality.finding import CannotTell, QualityCheck, Remark
-from tsas_cli.recordings.quality.samples import Booleans
 from tsas_cli.recordings.quality.trial import RunSignals
+from tsas_cli.support.arrays import Mask
 from tsas_cli.support.limits import LONGEST_STEP_S, SHORTEST_STEP_S
 
 
@@ -33,7 +33,7 @@ def find(trial: RunSignals) -> Iterator[Remark | CannotTell]:
     )
 
 
-def _implausible_steps(trial: RunSignals, implausible: Booleans) -> Iterator[Remark]:
+def _implausible_steps(trial: RunSignals, implausible: Mask) -> Iterator[Remark]:
     if implausible.any():
         row = int(implausible.argmax()) + 1
         before = float(trial.time_s[row - 1])

@@ -4,13 +4,9 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.recordings.quality.copies.copy import RowSpan
-
-Floats = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
-Indices = npt.NDArray[np.int64]
+from tsas_cli.support.arrays import Floats, Indices, Mask
 
 MARGIN_ROWS = 32  # on either side, beyond which a spline does not depend on its end
 TIME_TOLERANCE = 1e-6  # of a sample interval, by which the times of a copy are rounded

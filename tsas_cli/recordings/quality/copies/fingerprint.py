@@ -11,10 +11,11 @@ from tsas_cli.numerics.noise import noise_sd
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.manifest import Run
 from tsas_cli.recordings.pieces import Piece
-from tsas_cli.recordings.quality.copies.agreement import Floats, Indices, Mask, RunSamples
+from tsas_cli.recordings.quality.copies.agreement import RunSamples
 from tsas_cli.recordings.quality.copies.copy import RowSpan
 from tsas_cli.recordings.quality.samples import alternates, step_of
 from tsas_cli.support import limits
+from tsas_cli.support.arrays import Floats, Indices, Mask
 
 NOISE_SHARE = 0.05  # tolerance of a copy; a repeat deviates by more than the noise
 SINGLE_PRECISION = 2e-7  # of the largest value, rounding of single precision

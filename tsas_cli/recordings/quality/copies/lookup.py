@@ -10,15 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tsas_cli.recordings.quality.copies.agreement import (
-    MARGIN_ROWS,
-    Floats,
-    Indices,
-    Mask,
-    RunSamples,
-    agreement,
-    aligned,
-)
+from tsas_cli.recordings.quality.copies.agreement import MARGIN_ROWS, RunSamples, agreement, aligned
+from tsas_cli.support.arrays import Floats, Indices, Mask
 
 BINS = 4096
 BLOCK = 1 << 16  # segments that are sorted at once

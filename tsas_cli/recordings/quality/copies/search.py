@@ -15,18 +15,12 @@ import numpy as np
 from tsas_cli.recordings.columns import TIME
 from tsas_cli.recordings.dataset import Dataset
 from tsas_cli.recordings.manifest import Run
-from tsas_cli.recordings.quality.copies.agreement import (
-    Floats,
-    Indices,
-    RunSamples,
-    agreement,
-    joined,
-    stretches,
-)
+from tsas_cli.recordings.quality.copies.agreement import RunSamples, agreement, joined, stretches
 from tsas_cli.recordings.quality.copies.copy import Copy, RowSpan, contradictions
 from tsas_cli.recordings.quality.copies.fingerprint import Fineness, Fingerprint
 from tsas_cli.recordings.quality.copies.lookup import Lookup, Shift
 from tsas_cli.recordings.quality.copies.reader import Reader, side_by_side
+from tsas_cli.support.arrays import Floats, Indices
 
 SHIFT_TOLERANCE = 0.1  # of a sample interval, within which two shifts are one
 MOST_SHIFTS = 8  # of a run on another that are compared

@@ -1,0 +1,9 @@
+"""The types of arrays, by what they hold."""
+
+import numpy as np
+import numpy.typing as npt
+
+Floats = npt.NDArray[np.float64]
+Complex = npt.NDArray[np.complex128]
+Indices = npt.NDArray[np.int64]
+Mask = npt.NDArray[np.bool_]
