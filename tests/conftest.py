@@ -1,10 +1,11 @@
 """What many tests need: the command line in a process of its own, and a small dataset."""
 
+import gc
 import os
 import signal
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -44,6 +45,16 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Put the longest modules first, in each process alike."""
     first = {f"tests/{name}.py" for name in LONGEST}
     items.sort(key=lambda item: item.nodeid.partition("::")[0] not in first)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection() -> Generator[None, object, object]:
+    """Collect tests without searching the thousands that are kept for garbage, then or later."""
+    gc.disable()
+    found = yield
+    gc.freeze()
+    gc.enable()
+    return found
 
 
 @pytest.fixture(scope="session")
