@@ -58,26 +58,25 @@ def pytest_collection() -> Generator[None, object, object]:
 
 
 @pytest.fixture(scope="session")
-def warm() -> Iterator[dict[str, Warm]]:
-    """Processes that fork for each call of the command line, by the warnings that they heed."""
-    started: dict[str, Warm] = {}
+def warm() -> Iterator[Warm | None]:
+    """A process that forks for each call of the command line, where processes can."""
+    started = Warm() if hasattr(os, "fork") else None
     yield started
-    for one in started.values():
-        one.close()
+    if started is not None:
+        started.close()
 
 
 @pytest.fixture
-def tsas(warm: dict[str, Warm]) -> Callable[..., subprocess.CompletedProcess[str]]:
+def tsas(warm: Warm | None) -> Callable[..., subprocess.CompletedProcess[str]]:
     """Run the command line in a process of its own; keywords are passed to `subprocess.run`."""
 
     def run(*arguments: object, **keywords: object) -> subprocess.CompletedProcess[str]:
         words = [str(argument) for argument in arguments]
         heeded = os.environ.get("PYTHONWARNINGS", "")
-        forks = warm.get(heeded)
-        if keywords.keys() <= {"cwd"} and heeded in ("", "error") and hasattr(os, "fork"):
-            forks = warm.setdefault(heeded, forks or Warm())
-            if forks.environment == environment():
-                return forks.run(words, Path(str(keywords.get("cwd", Path.cwd()))))
+        simple = keywords.keys() <= {"cwd"} and heeded in ("", "error")
+        if warm is not None and simple and warm.environment == environment():
+            cwd = Path(str(keywords.get("cwd", Path.cwd())))
+            return warm.run(words, cwd, strict=heeded == "error")
         call = [sys.executable, "-m", "tsas_cli", *words]
         return subprocess.run(call, capture_output=True, text=True, check=False, **keywords)  # type: ignore[call-overload]
 

@@ -12,12 +12,14 @@ import os
 import subprocess
 import sys
 import threading
+import warnings
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 ROOT = Path(__file__).parents[1]
-PASSING = {"PYTEST_CURRENT_TEST"}  # what differs from test to test
+PASSING = {"PYTEST_CURRENT_TEST", "PYTHONWARNINGS"}  # what differs from test to test
+STRICT = ("error", None, Warning, None, 0)  # the filter of PYTHONWARNINGS=error
 
 
 def environment() -> dict[str, str]:
@@ -26,7 +28,10 @@ def environment() -> dict[str, str]:
 
 
 class Warm:
-    """The process that forks, in the environment that there is when it is started."""
+    """The process that forks, in the environment that there is when it is started.
+
+    Every warning is an error in it, and in a call that is strict.
+    """
 
     def __init__(self) -> None:
         self.environment = environment()
@@ -36,15 +41,19 @@ class Warm:
             stdout=subprocess.PIPE,
             text=True,
             cwd=ROOT,
+            env=self.environment | {"PYTHONWARNINGS": STRICT[0]},
         )
 
-    def run(self, arguments: Sequence[str], cwd: Path) -> subprocess.CompletedProcess[str]:
+    def run(
+        self, arguments: Sequence[str], cwd: Path, *, strict: bool
+    ) -> subprocess.CompletedProcess[str]:
         """Run `tsas` with these arguments in a folder."""
         assert self.process.stdin is not None
         assert self.process.stdout is not None
         with TemporaryDirectory() as folder:
             out, err = Path(folder) / "out", Path(folder) / "err"
             call = {"arguments": arguments, "streams": [str(out), str(err)], "cwd": str(cwd)}
+            call["strict"] = strict
             self.process.stdin.write(json.dumps(call) + "\n")
             self.process.stdin.flush()
             code = int(self.process.stdout.readline())
@@ -83,6 +92,10 @@ def serve() -> None:
         child = os.fork()
         if child == 0:
             os.chdir(call["cwd"])
+            if not call["strict"]:
+                warnings.filters.remove(STRICT)
+                sys.warnoptions.clear()
+                del os.environ["PYTHONWARNINGS"]
             os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
             for number, path in enumerate(call["streams"], start=1):
                 os.dup2(os.open(path, os.O_WRONLY | os.O_CREAT), number)
