@@ -31,6 +31,7 @@ RANGE = 100.0  # times a parameter's start, the largest size considered
 FEW_SHAPES = 4  # of an effect, up to which all are considered; of more, the start alone
 NEVER = 10.0  # times the detected size, beyond which effects count as indistinguishable
 SAME = 1e-3  # share of a signature's squares below which it is imitated; kinks leave a little
+FACTORS = np.geomspace(1.0, 1e3, 301)  # of a size, where the least that is detected is looked for
 TINY = 1e-6  # of the start, so small that the model is linear, with hardly a kink in between
 
 
@@ -244,7 +245,7 @@ class Part:
         if total <= 0.0:
             return math.inf
         telling = np.sqrt(LEAST_REDUCTION / (1.0 - LEAST_REDUCTION) * counts.sum() / total)
-        factors = telling * np.geomspace(1.0, 1e3, 301)
+        factors = telling * FACTORS
         gained = factors[:, None] ** 2 * squares
         expected = np.log1p(gained / counts)
         scatter = 4.0 * gained / (counts + gained) ** 2
@@ -256,9 +257,12 @@ class Part:
         imitations = {e.name: (_imitations(e, self.own), _imitations(e, self.tiny)) for e in rivals}
         out = []
         for cause in (c for effect in effects for c in amplitudes_of(effect)):
-            found = self._limited(cause, self.smallest(self.own(cause)))
+            own, tiny = self.own(cause), self.tiny(cause)
+            found = self._limited(cause, self.smallest(own))
+            signs = (1.0,) if cause.one_sided else (1.0, -1.0)
+            signed = [sign * own for sign in signs], [sign * tiny for sign in signs]
             distinct = {
-                name: self._limited(cause, self._distinct_from(cause, *of_rival))
+                name: self._limited(cause, self._distinct_from(signed, of_rival))
                 for name, of_rival in imitations.items()
                 if name != cause.effect.name
             }
@@ -266,19 +270,15 @@ class Part:
         return out
 
     def _distinct_from(
-        self, cause: Amplitude, usual: list[Imitation], tiny: list[Imitation]
+        self, signed: tuple[list[Floats], ...], imitations: tuple[list[Imitation], ...]
     ) -> float:
-        """Return the smallest size at which no imitation equals a cause, in either direction."""
-        own, exact = self.own(cause), self.tiny(cause)
-        signs = (1.0,) if cause.one_sided else (1.0, -1.0)
-        for signature, imitations in ((own, usual), (exact, tiny)):
-            for sign, imitation in product(signs, imitations):
-                left = imitation.left(sign * signature)
-                if left @ left <= SAME * (signature @ signature):
-                    return math.inf
-        return max(
-            self.smallest(imitation.left(sign * own)) for sign in signs for imitation in usual
-        )
+        """Return the smallest size at which no imitation equals a cause, in either direction.
+
+        Its signatures and the imitations are those of about the detected size, and of a tiny one.
+        """
+        left = _left(signed[0], imitations[0])
+        same = not left or not _left(signed[1], imitations[1])
+        return math.inf if same else max(map(self.smallest, left))
 
     def _own(self, signature: Floats) -> Floats:
         here = signature[self.rows]
@@ -287,6 +287,17 @@ class Part:
     @staticmethod
     def _limited(cause: Amplitude, size: float) -> float:
         return size if size <= cause.largest else math.inf
+
+
+def _left(signatures: list[Floats], imitations: list[Imitation]) -> list[Floats]:
+    """Return the residual of each signature after each imitation, none where one is the same."""
+    out = []
+    for signature, imitation in product(signatures, imitations):
+        left = imitation.left(signature)
+        if left @ left <= SAME * (signature @ signature):
+            return []
+        out.append(left)
+    return out
 
 
 def _slopes(bench: Bench, trial: HypothesisFit) -> Floats:
