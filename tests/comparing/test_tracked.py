@@ -5,6 +5,7 @@ import shutil
 import pytest
 
 from tests.commands.documented import documented
+from tests.commands.test_track import QUICK
 from tests.reporting.test_page import Outline
 from tsas_cli.comparing import tracked
 from tsas_cli.comparing.tracked import are_tracked, compare_tracked
@@ -13,16 +14,6 @@ from tsas_cli.reporting.comparing.tracked import tracked_page
 from tsas_cli.stages.track import track
 from tsas_cli.support.errors import InputError
 
-QUICK = """
-[reference]
-duration_s = 2.0
-mean_N = 44.0
-angular_frequency_rad_per_s = 3.0
-[sensor]
-rate_Hz = 500
-[loop]
-nodes = 8
-"""
 WEAKER = QUICK + "[controllers.pid]\nproportional_rpm_per_mm = 2.0\n"
 
 
