@@ -5,12 +5,22 @@
 # three half a minute.
 test test-large: export PYTHONDONTWRITEBYTECODE :=
 
-.PHONY: test
-test: setup  ## ruff, mypy, import-linter and pytest
+.PHONY: lint
+lint: setup
 	@$(BIN)/ruff check --quiet
 	@$(BIN)/ruff format --check --quiet || { echo 'ruff format would change files: run .venv/bin/ruff format' >&2; exit 1; }
 	@$(BIN)/mypy --no-error-summary
 	@$(BIN)/lint-imports > .venv/lint-imports.txt || { cat .venv/lint-imports.txt; exit 1; }
+
+# The kernels' machine code is there, made from these sources by two processes: else each of the three
+# that run the tests would make all of it, at once.
+KERNELS := .venv/kernels-made
+$(KERNELS): $(shell find $(addprefix tsas_cli/,controllers drive effects numerics physics) -name '*.py') | lint
+	@printf 'calibrate\ntrack\n' | xargs -P 2 -n 1 $(BIN)/python -m tests.kernels
+	@touch $@
+
+.PHONY: test
+test: lint $(KERNELS)  ## ruff, mypy, import-linter and pytest
 	@TSAS_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/pytest -n 3 --dist loadscope --no-loadscope-reorder
 
 .PHONY: test-large
