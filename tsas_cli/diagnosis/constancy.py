@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.diagnosis.evidence import Reduction, gain
 from tsas_cli.diagnosis.held_out import (
@@ -24,9 +23,7 @@ from tsas_cli.diagnosis.signals import DIRECTION, RUN
 from tsas_cli.diagnosis.tolerances import is_scatter, with_friction_of_runs, within_scatter
 from tsas_cli.identification.extension import HypothesisFit
 from tsas_cli.identification.quantities import QUANTITIES
-
-Floats = npt.NDArray[np.float64]
-Indices = npt.NDArray[np.int64]
+from tsas_cli.support.arrays import Floats, Indices
 
 LEAST_GAIN = 0.03  # least reduction of the squares by values of their own; right names reach 0.01
 THIRDS = ("low", "middle", "high")

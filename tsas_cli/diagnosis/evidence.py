@@ -4,9 +4,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-Floats = npt.NDArray[np.float64]
+from tsas_cli.support.arrays import Floats
 
 CRITICAL_VALUE = 2.6  # critical value of the test statistic; 1 in 200 by chance
 AGREE = 0.8  # of its largest possible value, the critical value for few blocks

@@ -1,7 +1,6 @@
 """Records of a diagnosis for its files (docs/formats.md)."""
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.diagnosis.channel_errors import noise_floor
 from tsas_cli.diagnosis.diagnose import Diagnosis
@@ -13,9 +12,8 @@ from tsas_cli.effects import EFFECTS
 from tsas_cli.recordings.columns import BY_NAME
 from tsas_cli.records import diagnosis as records
 from tsas_cli.records.base import Evidence, Value
+from tsas_cli.support.arrays import Floats
 from tsas_cli.support.wording import count_of
-
-Floats = npt.NDArray[np.float64]
 
 
 def cause_of(cause: FoundCause) -> records.NamedCause:

@@ -14,13 +14,9 @@ from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.identification.fit import Solution, Unknown
-
-Floats = npt.NDArray[np.float64]
-Indices = npt.NDArray[np.int64]
-Bits = npt.NDArray[np.bool_]
+from tsas_cli.support.arrays import Floats, Indices, Mask
 
 FEWEST_RUNS = 3  # of which one can be held out
 STRETCHES = 4  # of each run, where runs are too few
@@ -78,7 +74,7 @@ def in_stretches(folds: Folds) -> Folds:
     return replace(folds, fold=fold, by_run=False)
 
 
-def own_of_fold(trial: Hypothesis, folds: Folds, fold: int) -> Bits:
+def own_of_fold(trial: Hypothesis, folds: Folds, fold: int) -> Mask:
     """Return which unknowns belong to a held-out run alone, shape (p,)."""
     if not folds.by_run:
         return np.zeros(len(trial.unknowns), bool)
@@ -118,7 +114,7 @@ def held_out_squares(trial: Hypothesis, folds: Folds) -> Floats:
     return np.bincount(folds.block, out, minlength=folds.blocks).astype(np.float64)
 
 
-def gauss_newton_step(trial: Hypothesis, kept: Bits) -> Floats:
+def gauss_newton_step(trial: Hypothesis, kept: Mask) -> Floats:
     """Return the Gauss-Newton step to the least squares of some residuals, shape (p,), scaled.
 
     What is at a bound stays there.
@@ -143,12 +139,12 @@ def _within(trial: Hypothesis, step: Floats) -> Floats:
     return np.clip(trial.solution.values + step, lower, upper)
 
 
-def _moved(trial: Hypothesis, kept: Bits, step: Floats) -> Floats:
+def _moved(trial: Hypothesis, kept: Mask, step: Floats) -> Floats:
     """Return some residuals after a step."""
     return np.asarray(trial.solution.residual[kept] + trial.solution.jacobian[kept] @ step)
 
 
-def _squares(trial: Hypothesis, kept: Bits, step: Floats) -> float:
+def _squares(trial: Hypothesis, kept: Mask, step: Floats) -> float:
     """Return the sum of squares that `gauss_newton_step` minimises."""
     moved = _moved(trial, kept, step)
     return float(moved @ moved) + float(_weak(trial) @ step**2)

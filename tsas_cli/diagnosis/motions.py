@@ -4,9 +4,9 @@ import math
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 
-Floats = npt.NDArray[np.float64]
+from tsas_cli.support.arrays import Floats
+
 Kind = Literal["sine", "ramps", "steps", "nested", "chirp"]
 
 # Ends of the strokes of a period, as shares of the longest one.

@@ -10,7 +10,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.diagnosis.constancy import Split
 from tsas_cli.diagnosis.evidence import Reduction
@@ -19,8 +18,7 @@ from tsas_cli.effects import EFFECTS, Effect, Parameter
 from tsas_cli.identification.estimate import Estimate
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.records.base import TWO_SIDED, number_text
-
-Floats = npt.NDArray[np.float64]
+from tsas_cli.support.arrays import Floats
 
 ANOTHER_LAW = 0.05  # share of the excess that an effect of another law leaves at most
 LEAST_RISE = 0.03  # relative rise of a channel's RMS on held-out data that refuses a name

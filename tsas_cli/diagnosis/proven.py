@@ -5,7 +5,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.diagnosis.channel_errors import noise_floor
 from tsas_cli.diagnosis.constancy import worst_split
@@ -22,9 +21,8 @@ from tsas_cli.identification.extension import HypothesisFit
 from tsas_cli.identification.fit import with_errors
 from tsas_cli.identification.joint_fit import estimates_of
 from tsas_cli.records.base import TWO_SIDED
+from tsas_cli.support.arrays import Floats
 from tsas_cli.support.steps import Steps
-
-Floats = npt.NDArray[np.float64]
 
 SEED = 1  # of the resampling of blocks
 SHEATH = "sheath_compression.compliance_ratio"

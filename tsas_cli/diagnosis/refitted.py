@@ -8,15 +8,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.diagnosis.held_out import Folds, held_out_values, own_of_fold
 from tsas_cli.identification.extension import TOLERANCE, Bench, HypothesisFit
 from tsas_cli.identification.fit import solve
 from tsas_cli.identification.fit_problem import rig_at
-
-Floats = npt.NDArray[np.float64]
-Bits = npt.NDArray[np.bool_]
+from tsas_cli.support.arrays import Floats, Mask
 
 
 @dataclass(frozen=True)
@@ -63,7 +60,7 @@ def refitted_values(bench: Bench, trial: HypothesisFit, folds: Folds, fold: int)
 
 
 def _solved(
-    bench: Bench, trial: HypothesisFit, values: Floats, free: Bits, kept: Sequence[Bits]
+    bench: Bench, trial: HypothesisFit, values: Floats, free: Mask, kept: Sequence[Mask]
 ) -> Floats:
     """Return the values with the free unknowns fitted to the kept residuals of each run."""
     runs = bench.errors_for(trial)

@@ -17,8 +17,7 @@ from tsas_cli.diagnosis.held_out import Folds, in_stretches
 from tsas_cli.diagnosis.signals import DIRECTION, AtResiduals
 from tsas_cli.diagnosis.tolerances import without_scatter
 from tsas_cli.identification.extension import Bench, HypothesisFit
-
-Floats = npt.NDArray[np.float64]
+from tsas_cli.support.arrays import Floats
 
 HATS = 10  # hat functions of each signal and direction
 RIDGE = 1.0  # regularisation, in units of noise

@@ -3,13 +3,11 @@
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.diagnosis.signals import DIRECTION, RUN, signals_of
 from tsas_cli.identification.extension import Bench, HypothesisFit
 from tsas_cli.records.diagnosis import Bin, Maps
-
-Floats = npt.NDArray[np.float64]
+from tsas_cli.support.arrays import Floats
 
 BINS = 12
 LABELS = (RUN, DIRECTION)

@@ -13,7 +13,6 @@ from dataclasses import dataclass, field, replace
 from itertools import combinations
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.diagnosis.evidence import (
     LEAST_DIFFERENCE,
@@ -29,9 +28,9 @@ from tsas_cli.effects import EFFECTS, Effect
 from tsas_cli.identification.extension import TOLERANCE, Bench, HypothesisFit, reweighted_bench
 from tsas_cli.identification.quantities import QUANTITIES
 from tsas_cli.identification.screening import Screened, projector, screen
+from tsas_cli.support.arrays import Floats
 from tsas_cli.support.steps import NO_PROGRESS, Steps
 
-Floats = npt.NDArray[np.float64]
 Names = frozenset[str]
 
 MOST_EFFECTS = 4

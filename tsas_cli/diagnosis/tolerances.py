@@ -1,12 +1,9 @@
 """What differs from run to run on every rig, and is no cause: the friction, by a small amount."""
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.identification.extension import HypothesisFit
-
-Floats = npt.NDArray[np.float64]
-Indices = npt.NDArray[np.int64]
+from tsas_cli.support.arrays import Floats, Indices
 
 FRICTION = "friction_coefficient"
 PLAUSIBLE = 2.0  # standard deviations of it

@@ -9,13 +9,10 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.identification.extension import FAR, Bench, HypothesisFit
 from tsas_cli.identification.fit import with_errors
-
-Floats = npt.NDArray[np.float64]
-Indices = npt.NDArray[np.int64]
+from tsas_cli.support.arrays import Floats, Indices
 
 
 def stderr_of_unevenness(bench: Bench, trial: HypothesisFit, blocks: Sequence[Indices]) -> Floats:

@@ -23,9 +23,7 @@ from tsas_cli.identification.fit import jacobian
 from tsas_cli.identification.fit_problem import rig_at
 from tsas_cli.identification.run_errors import blocks_of
 from tsas_cli.identification.screening import projector
-
-Floats = npt.NDArray[np.float64]
-Indices = npt.NDArray[np.int64]
+from tsas_cli.support.arrays import Floats, Indices
 
 RANGE = 100.0  # times a parameter's start, the largest size considered
 FEW_SHAPES = 4  # of an effect, up to which all are considered; of more, the start alone

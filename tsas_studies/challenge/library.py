@@ -9,15 +9,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.diagnosis.signals import DIRECTION, signals_of
 from tsas_cli.effects.drive_ripple import PERIOD_MM
 from tsas_cli.effects.stribeck_friction import STRIBECK_FRICTION
 from tsas_cli.identification.prepared import CHANNELS, Prepared
 from tsas_cli.numerics.conditioning import condition
-
-Floats = npt.NDArray[np.float64]
+from tsas_cli.support.arrays import Floats
 
 STILL = 0.02  # of the greatest speed, below which no slope over the drive is taken
 MOST_RATIO = 5.0  # of the tensions, either way

@@ -16,10 +16,9 @@ from tsas_cli.identification.extension import Bench, HypothesisFit
 from tsas_cli.identification.run_errors import RunErrors
 from tsas_cli.identification.screening import projector
 from tsas_cli.physics.rig import Rig
+from tsas_cli.support.arrays import Floats
 from tsas_cli.support.errors import InputError
 from tsas_studies.challenge.library import Term, terms
-
-Floats = npt.NDArray[np.float64]
 
 LEAST, THRESHOLDS = 3.0, 16  # the smallest threshold [standard deviations of noise], how many
 OWN = 0.01  # part of a term that the nominal parameters must not be able to imitate

@@ -10,10 +10,10 @@ from functools import cache
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.controllers.path import DrivePath
 from tsas_cli.numerics.side_by_side import each
+from tsas_cli.support.arrays import Floats
 from tsas_cli.tracking.conditions import Condition, proximal_spring
 from tsas_cli.tracking.recorded import stated_rig
 from tsas_cli.tracking.references import reference
@@ -21,7 +21,6 @@ from tsas_cli.tracking.scores import Score
 from tsas_cli.tracking.settings import Settings, printed_gains
 from tsas_cli.tracking.track import Known, Plant, Tracked, plan, run_loop
 
-Floats = npt.NDArray[np.float64]
 Reading = Literal["per mm", "per m"]
 READINGS: tuple[Reading, ...] = ("per mm", "per m")
 SEEDS = range(1, 11)

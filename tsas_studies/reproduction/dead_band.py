@@ -4,16 +4,14 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.physics.closed_form.capstan import dead_band_width
 from tsas_cli.physics.compliances import compliance_at_drive
 from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.response import simulate
 from tsas_cli.physics.rig import Rig
+from tsas_cli.support.arrays import Floats
 from tsas_studies.reproduction.rig import wrap_of
-
-Floats = npt.NDArray[np.float64]
 
 POINTS = 2001
 SMALLEST_SHARE = 0.02  # of a band that a line is fitted to

@@ -11,9 +11,8 @@ from tsas_cli.physics.bristles import bristle_damping
 from tsas_cli.physics.lugre.stability import FOLDS, SLOW, Stability, growth_rate, moments
 from tsas_cli.physics.response import Prediction, simulate
 from tsas_cli.physics.rig import Rig
+from tsas_cli.support.arrays import Floats
 from tsas_studies.reproduction.rig import dynamic_rig, motion, quasi_static_rig, wrap_of
-
-Floats = npt.NDArray[np.float64]
 
 FINE_LUMPS = 200  # of the dynamic model that the others are held against
 FINE_TOLERANCE = 1e-7  # of a step, where small differences are sought

@@ -10,8 +10,9 @@ from tsas_cli.effects import Effects, FreeTendon
 from tsas_cli.paper import Paper, Printed
 from tsas_cli.physics.closed_form.capstan import slip_stiffness
 from tsas_cli.physics.rig import Rig
+from tsas_cli.support.arrays import Floats
 from tsas_studies.reproduction.dead_band import DeadBand, dead_band
-from tsas_studies.reproduction.group import Figure, Floats, Group, Line, Row
+from tsas_studies.reproduction.group import Figure, Group, Line, Row
 from tsas_studies.reproduction.recording import Fitted, Noise, fitted_stiffness
 from tsas_studies.reproduction.rig import bench_rig
 from tsas_studies.reproduction.table_3 import lumped_stiffness

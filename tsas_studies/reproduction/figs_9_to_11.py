@@ -6,6 +6,7 @@ import numpy as np
 
 from tsas_cli.controllers.closed_loop import F_OUT, MEMORY_AT
 from tsas_cli.paper import Paper
+from tsas_cli.support.arrays import Floats
 from tsas_cli.tracking.track import Tracked
 from tsas_studies.reproduction.closed_loops import (
     CONDITIONS,
@@ -15,7 +16,7 @@ from tsas_studies.reproduction.closed_loops import (
     followed,
     settings_for,
 )
-from tsas_studies.reproduction.group import Figure, Floats, Group, Line, Role, Row
+from tsas_studies.reproduction.group import Figure, Group, Line, Role, Row
 from tsas_studies.reproduction.verdicts import holds
 
 ADAPTIVE = "adaptive-sliding-mode"

@@ -3,10 +3,8 @@
 from dataclasses import dataclass
 from typing import Any, Literal
 
-import numpy as np
-import numpy.typing as npt
+from tsas_cli.support.arrays import Floats
 
-Floats = npt.NDArray[np.float64]
 Verdict = Literal["agrees", "differs", "cannot tell"]
 Role = Literal["measured", "ink", "muted", "simulated", "before", "after", "alike", "dead-band-up"]
 

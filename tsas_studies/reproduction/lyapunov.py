@@ -13,6 +13,7 @@ from tsas_cli.controllers.signals import Signals
 from tsas_cli.controllers.sliding_mode import Phi, Surface, distance, sliding_mode
 from tsas_cli.paper import Paper
 from tsas_cli.physics.closed_form.capstan import tension_ratio
+from tsas_cli.support.arrays import Floats
 from tsas_studies.reproduction.closed_loops import (
     CONDITIONS,
     READINGS,
@@ -21,7 +22,7 @@ from tsas_studies.reproduction.closed_loops import (
     paper_plant,
     settings_for,
 )
-from tsas_studies.reproduction.group import Floats, Group, Row
+from tsas_studies.reproduction.group import Group, Row
 from tsas_studies.reproduction.verdicts import holds
 
 TRUE = Phi(0.004, 25.0, 0.01)  # of the ideal plant, inside the bounds of Table 4

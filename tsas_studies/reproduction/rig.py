@@ -4,7 +4,6 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 
 from tsas_cli.effects import Effects, StribeckFriction, ViscousFriction
 from tsas_cli.paper import Paper
@@ -12,8 +11,7 @@ from tsas_cli.physics.bristles import Bristles
 from tsas_cli.physics.closed_form.capstan import speed_per_stiffness
 from tsas_cli.physics.ends import DriveInput
 from tsas_cli.physics.rig import Rig
-
-Floats = npt.NDArray[np.float64]
+from tsas_cli.support.arrays import Floats
 
 GROUPS: Sequence[str] = ("a", "b", "c", "d")
 PER_M = 1e-2  # of a mass per 100 m
