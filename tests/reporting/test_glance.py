@@ -38,7 +38,7 @@ def test_a_named_cause_with_its_gain_and_the_error_before_and_after(dataset, tmp
     assert (it.kind, it.verdict) == ("Cause found", "Tendon outside the sheath")
     assert "before → after" in it.numbers
     assert facts(it) == {
-        "reduction": ("", "48.2 %", "95 % interval: 44.9 to 51.0 %"),
+        "normalised residual": ("", "48.2 % less", "95 % interval: 44.9 to 51.0 %"),
         "tension at the drive": ("0.910", "0.110 N", "noise alone: 0.100 N"),
         "tension at the load": ("0.104", "0.0960 N", "noise alone: 0.0800 N"),
         "displacement of the tendon at the load": (
@@ -54,7 +54,7 @@ def test_two_causes_are_one_sentence_and_each_has_its_gain(dataset, tmp_path):
     named = [cause | {"title": "Backlash"}, cause | {"effect": "mine", "title": "Own thing"}]
     it = of(make_diagnosis(dataset, tmp_path / "d", "named", named=named))
     assert it.verdict == "Backlash and own thing"
-    assert facts(it)["reduction by mine"] == ("", "7.25 %", "")
+    assert facts(it)["normalised residual by mine"] == ("", "7.25 % less", "")
 
 
 def test_what_is_unknown_beside_a_cause_is_not_kept_back(dataset, tmp_path):
@@ -82,7 +82,7 @@ def test_without_a_cause_there_is_no_before_and_no_gain(dataset, tmp_path, verdi
     it = of(make_diagnosis(dataset, tmp_path / "d", verdict))
     assert it.verdict == said
     assert "after" not in it.numbers
-    assert not any(fact.before or fact.label == "reduction" for fact in it.facts)
+    assert not any(fact.before or fact.label == "normalised residual" for fact in it.facts)
     assert bool(it.facts) is (verdict != "undecided")
 
 

@@ -77,9 +77,9 @@ def _gains(named: Sequence[NamedCause]) -> Iterator[Fact]:
         gain, interval = with_interval(cause.gain_percent, low, high)
         by = f" by {within(title_of(cause.effect))}" if len(named) > 1 else ""
         if interval == ABSENT:
-            yield Fact(f"reduction{by}", f"{plain(cause.gain_percent, 3)} %")
+            yield Fact(f"normalised residual{by}", f"{plain(cause.gain_percent, 3)} % less")
         else:
-            yield Fact(f"reduction{by}", f"{gain} %", f"95 % interval: {interval} %")
+            yield Fact(f"normalised residual{by}", f"{gain} % less", f"95 % interval: {interval} %")
 
 
 def _of_tracking(tracking: TrackingFile) -> Glance:

@@ -64,4 +64,7 @@ def _gain(cause: NamedCause) -> Iterator[str]:
         gain, sure = plain(cause.gain_percent, 3), ""
     else:
         sure = f" (95 % interval {interval} %)"
-    yield f"On held-out data it takes away {gain} % of the root mean square error{sure}."
+    yield (
+        f"On held-out data it takes {gain} %{sure} off the normalised residual, which averages "
+        "noise over neighbouring samples."
+    )
