@@ -199,8 +199,8 @@ def test_where_screening_left_nothing_the_page_says_so(dataset, tmp_path):
 
 def test_effects_that_look_alike_are_grouped_and_hidden_ones_named(sections):
     text = words(sections["named"])
-    group = "drive_compliance, free_tendon and sheath_compression look alike here (0.970 or more)."
-    assert group in text
+    group = "drive_compliance, free_tendon and sheath_compression look alike here (similarity at "
+    assert f"{group}least 0.970)." in text
     assert "direction_dependent_friction and force_sensor_gain look alike" in text
     assert "backlash and" not in text
     assert "These inputs hardly show load_inertia at" in text

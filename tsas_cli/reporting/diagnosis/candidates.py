@@ -10,7 +10,7 @@ _TITLE = "What was tried"
 _SHOWN = 10  # and what is named, and its rivals
 _WHAT = (
     "Each of these was fitted together with all parameters of the nominal model. Gain: by how "
-    "much the root mean square error on held-out data falls. Test statistic: how many standard "
+    "much the normalised residual on held-out data falls. Test statistic: how many standard "
     "deviations the gain is above what chance gives, over all blocks."
 )
 

@@ -84,7 +84,8 @@ def _alike(names: npt.NDArray[np.object_], similarity: Floats) -> Iterator[str]:
         if inside.size > 1:
             pairs = similarity[np.ix_(inside, inside)][np.triu_indices(inside.size, 1)]
             group = listed([f"`{name}`" for name in names[inside]])
-            yield f"{group} look alike here ({plain(float(pairs.min()), 3)} or more)."
+            least = "at least " if inside.size > 2 else ""
+            yield f"{group} look alike here (similarity {least}{plain(float(pairs.min()), 3)})."
 
 
 def _apart(similarity: Floats) -> Floats:
