@@ -89,4 +89,8 @@ def test_three_causes_are_a_list():
 
 def test_brief_errors_are_said():
     said = reason_of("unexplained", [], [], START, left(1.3, brief=("f_in_N",)))
-    assert said.endswith("f_in_N deviates from the model at a few moments of a run.")
+    assert said.endswith("The channel f_in_N deviates from the model at a few moments of a run.")
+    said = reason_of("unexplained", [], [], START, left(1.3, brief=("f_in_N", "x_out_mm")))
+    assert said.endswith(
+        "The channels f_in_N and x_out_mm deviate from the model at a few moments of a run."
+    )

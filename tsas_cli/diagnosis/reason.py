@@ -59,11 +59,15 @@ def _dependence(after: Remainder) -> list[str]:
     if after.depends_on:
         out.append(f"It depends on {', '.join(signal_in_words(s) for s in after.depends_on)}.")
     if after.late:
-        names = " and ".join(after.late)
-        out.append(f"At each reversal {names} lags behind the model, or leads it.")
+        one = len(after.late) == 1
+        verbs = ("lags", "leads") if one else ("lag", "lead")
+        names = listed(after.late)
+        out.append(f"At each reversal {names} {verbs[0]} behind the model, or {verbs[1]} it.")
     if after.brief:
-        names = " and ".join(after.brief)
-        out.append(f"The channel {names} deviates from the model at a few moments of a run.")
+        one = len(after.brief) == 1
+        which, verb = ("channel", "deviates") if one else ("channels", "deviate")
+        names = listed(after.brief)
+        out.append(f"The {which} {names} {verb} from the model at a few moments of a run.")
     return out
 
 
