@@ -21,7 +21,7 @@ def sentences(inputs: Inputs) -> Iterator[str]:
     if first:
         yield f"Keep in mind: {first}"
     if others:
-        yield f"The other {len(others)} of these sentences stand under Parameters."
+        yield f"{count_of(len(others), 'more note')} on the estimates: see Parameters."
 
 
 def _findings(check: CheckFile) -> str:
